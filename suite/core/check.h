@@ -1,0 +1,30 @@
+/// SUITE_CHECK(condition, message): a broken contract throws, also in release.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+#include <string>
+
+namespace physinv {
+
+/// A caller broke a documented contract: a bug, not a numerical outcome.
+class ContractError : public std::logic_error {
+ public:
+  using std::logic_error::logic_error;
+};
+
+[[noreturn]] inline void fail_check(const char* file, int line,
+                                    const char* condition,
+                                    const std::string& message) {
+  throw ContractError(
+      fmt::format("{}:{}: {} ({})", file, line, message, condition));
+}
+
+}  // namespace physinv
+
+#define SUITE_CHECK(condition, message)                                    \
+  do {                                                                     \
+    if (!(condition)) [[unlikely]]                                         \
+      ::physinv::fail_check(__FILE__, __LINE__, #condition, (message));    \
+  } while (false)

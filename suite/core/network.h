@@ -1,0 +1,67 @@
+/// A network as a pure function of (parameters, state, input, tape).
+///
+/// Parameters are one flat vector owned by the caller, so that Adam, BFGS and
+/// half-inverse gradients treat weights like any unknown. Running statistics
+/// are a second flat vector, `state`, written only by `update_state`.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "suite/core/batch.h"
+#include "suite/core/rng.h"
+#include "suite/core/workspace.h"
+
+namespace physinv {
+
+/// One tensor inside the flat parameter vector.
+struct TensorInfo {
+  std::string name;  ///< kind and number as in the paper's figures: m1, b1, k1
+  char kind = 'm';   ///< m matrix, k kernel, b bias, s scale, o offset
+  Index offset = 0, size = 0;
+  Index fan_in = 0;  ///< inputs x taps of the layer
+};
+
+/// How a pass is to be run.
+struct Pass {
+  bool training = false;  ///< batch statistics instead of running ones
+  /// The input equals that of the last forward pass on this tape: layers in
+  /// front of the first parameter are not run again.
+  bool same_input = false;
+};
+
+template <class T>
+class Network {
+ public:
+  virtual ~Network() = default;
+
+  virtual Index inputs() const = 0;
+  virtual Index outputs() const = 0;
+  virtual Index parameter_count() const = 0;
+  virtual Index state_count() const = 0;
+  virtual const std::vector<TensorInfo>& tensors() const = 0;
+
+  /// Draws initial parameters (in double, rounded) and the initial state.
+  virtual void initialize(const Rng& rng, VectorOut<T> parameters,
+                          VectorOut<T> state) const = 0;
+
+  /// out = N(in). The tape keeps what backward needs; batches of different
+  /// sizes may use the same tape one after the other.
+  virtual void forward(VectorIn<T> parameters, VectorIn<T> state,
+                       BatchIn<T> in, BatchOut<T> out, Tape& tape,
+                       Workspace& work, Pass pass = {}) const = 0;
+
+  /// Gradient at the last forward pass on this tape. A null pointer asks for
+  /// nothing and costs nothing. `parameters_bar` is overwritten.
+  virtual void backward(VectorIn<T> parameters, const Tape& tape,
+                        BatchIn<T> out_bar, VectorOut<T>* parameters_bar,
+                        BatchOut<T>* in_bar, Workspace& work) const = 0;
+
+  /// Folds the batch statistics of the last training pass into the state.
+  virtual void update_state(const Tape& tape, VectorOut<T> state) const = 0;
+
+  /// Rough floating-point operations of one forward pass of one sample.
+  virtual double operations() const = 0;
+};
+
+}  // namespace physinv

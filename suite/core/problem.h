@@ -1,0 +1,148 @@
+/// A physics inverse problem y = F(x | given): find x from y.
+///
+/// Every call takes batches (a single problem is a batch of one) and is a pure
+/// function of its arguments. Abilities beyond the forward pass are separate
+/// base classes; the base-class list is the declaration, read by `provides`.
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+
+#include "suite/core/batch.h"
+#include "suite/core/dataset.h"
+#include "suite/core/rng.h"
+#include "suite/core/workspace.h"
+
+namespace physinv {
+
+/// Rows of the batches.
+struct Shape {
+  Index unknowns = 0;      ///< x
+  Index observations = 0;  ///< y
+  Index given = 0;         ///< side input, may be 0
+};
+
+template <class T>
+class Problem {
+ public:
+  virtual ~Problem() = default;
+
+  virtual Shape shape() const = 0;
+
+  /// Where classical optimizers start, one point for all problems.
+  virtual Vector<double> start() const = 0;
+
+  /// Inverse problems first .. first+count-1 of the set `rng` addresses; the
+  /// i-th draws from rng.child(i), so small sets are prefixes of large ones.
+  /// x holds the true solution where one is known (no rows otherwise).
+  virtual Samples<double> sample(Index first, Index count,
+                                 const Rng& rng) const = 0;
+
+  /// Pairs (x, y = F(x)) for methods that learn from labels.
+  virtual Samples<double> sample_labelled(Index first, Index count,
+                                          const Rng& rng) const {
+    return sample(first, count, rng);
+  }
+
+  /// y = F(x | given). A diverging sample fills its column with non-finite
+  /// values and disturbs no other.
+  virtual void forward(BatchIn<T> x, BatchIn<T> given, BatchOut<T> y,
+                       Workspace& work) const = 0;
+
+  /// Loss per sample, half squared error unless the paper has another, summed
+  /// in double.
+  virtual void loss(BatchIn<T> y, BatchIn<T> target,
+                    VectorOut<double> loss) const {
+    for (Index i = 0; i < y.cols(); ++i) {
+      double sum = 0;
+      for (Index j = 0; j < y.rows(); ++j) {
+        const double r = static_cast<double>(y(j, i) - target(j, i));
+        sum += r * r;
+      }
+      loss(i) = 0.5 * sum;
+    }
+  }
+
+  /// d loss / d y per sample.
+  virtual void loss_gradient(BatchIn<T> y, BatchIn<T> target,
+                             BatchOut<T> y_bar) const {
+    y_bar = y - target;
+  }
+
+  /// Rough floating-point operations of one forward pass of one sample.
+  virtual double operations() const = 0;
+};
+
+/// Exact derivative of the discrete forward, in reverse.
+template <class T>
+class Vjp {
+ public:
+  virtual ~Vjp() = default;
+  /// Forward pass that remembers what `pullback` needs.
+  virtual void linearize(BatchIn<T> x, BatchIn<T> given, BatchOut<T> y,
+                         Tape& tape) const = 0;
+  /// x_bar = J^T y_bar at the point of the last `linearize` on this tape.
+  virtual void pullback(const Tape& tape, BatchIn<T> y_bar, BatchOut<T> x_bar,
+                        Workspace& work) const = 0;
+};
+
+/// Full Jacobians: column i holds sample i's observations x unknowns matrix,
+/// column-major.
+template <class T>
+class Jacobian {
+ public:
+  virtual ~Jacobian() = default;
+  virtual void jacobian(BatchIn<T> x, BatchIn<T> given, BatchOut<T> j,
+                        Workspace& work) const = 0;
+};
+
+/// Local inverse near a guess.
+template <class T>
+class Inverse {
+ public:
+  virtual ~Inverse() = default;
+  virtual void invert(BatchIn<T> y, BatchIn<T> given, BatchIn<T> x_guess,
+                      BatchOut<T> x, Workspace& work) const = 0;
+};
+
+/// Second derivative of the loss: column i holds sample i's matrix.
+template <class T>
+class Hessian {
+ public:
+  virtual ~Hessian() = default;
+  virtual void hessian(BatchIn<T> x, BatchIn<T> given, BatchIn<T> target,
+                       BatchOut<T> h, Workspace& work) const = 0;
+};
+
+/// What a method needs and a problem provides, as a set of bits.
+enum class Needs : std::uint8_t {
+  forward = 1,
+  vjp = 2,
+  jacobian = 4,
+  inverse = 8,
+  hessian = 16,
+  labels = 32,
+};
+
+constexpr Needs operator|(Needs a, Needs b) {
+  return static_cast<Needs>(static_cast<unsigned>(a) |
+                            static_cast<unsigned>(b));
+}
+constexpr bool contains(Needs all, Needs some) {
+  return (static_cast<unsigned>(all) & static_cast<unsigned>(some)) ==
+         static_cast<unsigned>(some);
+}
+
+/// Reads the base-class list of P = SomeProblem<T>. Every problem can draw
+/// labelled samples.
+template <class P, class T>
+constexpr Needs provides() {
+  Needs all = Needs::forward | Needs::labels;
+  if constexpr (std::derived_from<P, Vjp<T>>) all = all | Needs::vjp;
+  if constexpr (std::derived_from<P, Jacobian<T>>) all = all | Needs::jacobian;
+  if constexpr (std::derived_from<P, Inverse<T>>) all = all | Needs::inverse;
+  if constexpr (std::derived_from<P, Hessian<T>>) all = all | Needs::hessian;
+  return all;
+}
+
+}  // namespace physinv

@@ -1,0 +1,72 @@
+#include "suite/core/workspace.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <new>
+
+#include "suite/core/threads.h"
+
+namespace physinv {
+namespace {
+
+std::size_t round_up(std::size_t bytes) {
+  return (bytes + kAlignment - 1) / kAlignment * kAlignment;
+}
+
+constexpr std::size_t kFirstChunk = std::size_t{64} << 10;
+
+}  // namespace
+
+void Buffer::Free::operator()(void* p) const { std::free(p); }
+
+void* Buffer::reserve(std::size_t bytes) {
+  if (bytes > bytes_ || !data_) {
+    const std::size_t size = std::max(round_up(bytes), kAlignment);
+    data_.reset();
+    bytes_ = 0;
+    data_.reset(std::aligned_alloc(kAlignment, size));
+    if (!data_) throw std::bad_alloc();
+    bytes_ = size;
+  }
+  return data_.get();
+}
+
+void* Workspace::allocate(std::size_t bytes) {
+  const std::size_t size = round_up(bytes);
+  while (chunk_ < chunks_.size() && used_ + size > chunks_[chunk_].bytes())
+    ++chunk_, used_ = 0;
+  if (chunk_ == chunks_.size()) {
+    const std::size_t last = chunks_.empty() ? 0 : chunks_.back().bytes();
+    chunks_.emplace_back().reserve(std::max({size, 2 * last, kFirstChunk}));
+    used_ = 0;
+  }
+  void* p = static_cast<std::byte*>(chunks_[chunk_].data()) + used_;
+  used_ += size;
+  return p;
+}
+
+std::size_t Workspace::bytes() const {
+  std::size_t sum = 0;
+  for (const Buffer& chunk : chunks_) sum += chunk.bytes();
+  for (const auto& w : per_thread_) sum += w->bytes();
+  return sum;
+}
+
+Workspace& Workspace::of_thread(int thread) {
+  const auto i = static_cast<std::size_t>(thread);
+  SUITE_CHECK(i < per_thread_.size() || threads_ != nullptr,
+              "a workspace without threads has no thread workspaces");
+  if (per_thread_.empty()) {
+    per_thread_.resize(static_cast<std::size_t>(threads_->count()));
+    for (auto& w : per_thread_) w = std::make_unique<Workspace>();
+  }
+  return *per_thread_[i];
+}
+
+std::size_t Tape::bytes() const {
+  std::size_t sum = 0;
+  for (const Slot& slot : slots_) sum += slot.buffer.bytes();
+  return sum;
+}
+
+}  // namespace physinv
