@@ -1,16 +1,43 @@
+# Programs stand at the top of the build tree, where the launchers look.
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})
+
+find_program(PHYSINV_CCACHE ccache)
+if(PHYSINV_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${PHYSINV_CCACHE})
+endif()
+
 # Flags every target shares. They change Eigen's alignment and the bits of the
 # results, so they are part of the ABI and travel with the exported target.
+# No -ffast-math; -ffp-contract stays at the compiler's default (GCC: fast, so
+# a * b + c becomes one fused operation), as that is a property of the build
+# and therefore of the fingerprint.
 add_library(physinv_flags INTERFACE)
 if(PHYSINV_NATIVE)
-  target_compile_options(physinv_flags INTERFACE -march=native)
+  set(PHYSINV_ARCH native)
 else()
-  target_compile_options(physinv_flags INTERFACE -march=x86-64-v3)
+  set(PHYSINV_ARCH x86-64-v3)
+  if(EXISTS /proc/cpuinfo)
+    file(STRINGS /proc/cpuinfo physinv_avx2 REGEX "flags.* avx2 " LIMIT_COUNT 1)
+    if(NOT physinv_avx2)
+      message(FATAL_ERROR "This processor lacks AVX2 (x86-64-v3): "
+        "use PHYSINV_NATIVE=ON, which has its own baseline.")
+    endif()
+  endif()
 endif()
+target_compile_options(physinv_flags INTERFACE -march=${PHYSINV_ARCH})
 target_compile_features(physinv_flags INTERFACE cxx_std_20)
 target_compile_definitions(physinv_flags INTERFACE EIGEN_DONT_PARALLELIZE)
-set(PHYSINV_WARNINGS -Wall -Wextra -Wshadow)
+# Designated initializers name what they set; the rest is default on purpose.
+set(PHYSINV_WARNINGS -Wall -Wextra -Wshadow -Wno-missing-field-initializers)
 
-# physinv_layer(<name> SOURCES ... DEPENDS ...): one target per layer.
+if(PHYSINV_SANITIZE)
+  add_compile_options(-fsanitize=${PHYSINV_SANITIZE}
+    -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=${PHYSINV_SANITIZE})
+endif()
+
+# physinv_layer(<name> [OBJECT] SOURCES ... DEPENDS ...): one target per layer.
+# OBJECT keeps registrations that nobody names from the linker's broom.
 function(physinv_layer name)
   cmake_parse_arguments(ARG "OBJECT" "" "SOURCES;DEPENDS" ${ARGN})
   set(kind STATIC)
@@ -18,8 +45,10 @@ function(physinv_layer name)
     set(kind OBJECT)
   endif()
   add_library(physinv_${name} ${kind} ${ARG_SOURCES})
+  set_target_properties(physinv_${name} PROPERTIES EXPORT_NAME ${name})
   target_include_directories(physinv_${name} PUBLIC
-    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:include/physinv>)
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+    $<INSTALL_INTERFACE:include/physinv>)
   target_link_libraries(physinv_${name} PUBLIC physinv_flags ${ARG_DEPENDS})
   target_compile_options(physinv_${name} PRIVATE ${PHYSINV_WARNINGS})
 endfunction()

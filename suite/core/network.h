@@ -5,7 +5,10 @@
 /// are a second flat vector, `state`, written only by `update_state`.
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "suite/core/batch.h"
@@ -28,6 +31,10 @@ struct Pass {
   /// The input equals that of the last forward pass on this tape: layers in
   /// front of the first parameter are not run again.
   bool same_input = false;
+  /// This input will be used for many passes: features that are constant over
+  /// the batch are folded into the first layer's bias, also in the backward
+  /// pass. Differs from the full computation by rounding only.
+  bool fixed_input = false;
 };
 
 template <class T>
@@ -62,6 +69,24 @@ class Network {
 
   /// Rough floating-point operations of one forward pass of one sample.
   virtual double operations() const = 0;
+};
+
+/// Makes one network of one configuration, in float and in double.
+struct NetworkRecipe {
+  std::string description;  ///< enters the record and the content key
+  std::function<std::unique_ptr<Network<float>>(Index inputs, Index outputs)>
+      make_float;
+  std::function<std::unique_ptr<Network<double>>(Index inputs, Index outputs)>
+      make_double;
+
+  template <class T>
+  std::unique_ptr<Network<T>> make(Index inputs, Index outputs) const {
+    if constexpr (std::is_same_v<T, float>) {
+      return make_float(inputs, outputs);
+    } else {
+      return make_double(inputs, outputs);
+    }
+  }
 };
 
 }  // namespace physinv

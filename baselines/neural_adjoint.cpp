@@ -1,0 +1,253 @@
+#include "baselines/neural_adjoint.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "baselines/boundary_loss.h"
+#include "optimizers/bfgs.h"
+#include "optimizers/drive.h"
+#include "optimizers/solver_outcome.h"
+
+namespace physinv {
+namespace {
+
+template <class T>
+Outcome fit(const RegressionOptions& options, StageRun& run) {
+  Oracle& oracle = run.oracle;
+  const NetworkRole& role = run.setting.surrogate;
+  const Samples<double>& labelled = oracle.labelled();
+  NetworkModel<T> model(
+      role, oracle.shape(), oracle.shape().observations, run.threads);
+  model.initialize(run.network_init);
+  model.bind(
+      assemble<T>(role.inputs, labelled.x, labelled.given, labelled.y));
+  const Batch<double> start = oracle.start();
+  const double loss =
+      fit_regression<T>(model,
+                        labelled.y.template cast<T>(),
+                        options,
+                        run,
+                        [&](BatchOut<double> x) { x = start; });
+  Outcome out = regression_outcome(model, loss, run);
+  out.x = start;
+  model.save(out.arrays);
+  return out;
+}
+
+/// L~ without the boundary, its gradient by the network's input vjp.
+template <class T>
+class Surrogate {
+ public:
+  explicit Surrogate(StageRun& run)
+      : model_(run.setting.surrogate,
+               run.oracle.shape(),
+               run.oracle.shape().observations,
+               run.threads),
+        work_(run.threads),
+        target_(run.oracle.observations().template cast<T>()),
+        inputs_(assemble<T>(run.setting.surrogate.inputs,
+                            run.oracle.start(),
+                            run.oracle.given(),
+                            run.oracle.observations())) {
+    model_.load(run.previous->arrays);
+    for (const Field f : run.setting.surrogate.inputs) {
+      if (f == Field::unknowns) break;
+      unknown_row_ += input_rows({f}, run.oracle.shape());
+    }
+  }
+
+  void evaluate(std::span<const Index> active,
+                BatchIn<double> x,
+                VectorOut<double> loss,
+                BatchOut<double> gradient) {
+    const auto m = static_cast<Index>(active.size());
+    const Network<T>& network = model_.network();
+    Workspace::Scope scope(work_);
+    auto in = work_.template take<T>(inputs_.rows(), m);
+    auto in_bar = work_.template take<T>(inputs_.rows(), m);
+    auto residual = work_.template take<T>(target_.rows(), m);
+    for (Index j = 0; j < m; ++j)
+      in.col(j) = inputs_.col(active[static_cast<std::size_t>(j)]);
+    in.middleRows(unknown_row_, x.rows()) = x.template cast<T>();
+    network.forward(
+        model_.parameters(), model_.state(), in, residual, tape_, work_);
+    for (Index j = 0; j < m; ++j) {
+      residual.col(j) -= target_.col(active[static_cast<std::size_t>(j)]);
+      loss(j) =
+          0.5 * residual.col(j).template cast<double>().squaredNorm();
+    }
+    BatchOut<T> bar(in_bar);
+    network.backward(
+        model_.parameters(), tape_, residual, nullptr, &bar, work_);
+    gradient = in_bar.middleRows(unknown_row_, x.rows())
+                   .template cast<double>();
+  }
+
+  const Counts& counts() const { return work_.counts; }
+  std::size_t bytes() const {
+    return model_.bytes() + tape_.bytes() + work_.bytes();
+  }
+
+ private:
+  NetworkModel<T> model_;
+  Tape tape_;
+  Workspace work_;
+  Batch<T> target_, inputs_;
+  Index unknown_row_ = 0;
+};
+
+double median(Vector<double> v) {
+  std::sort(v.begin(), v.end());
+  const Index m = v.size();
+  return 0.5 * (v((m - 1) / 2) + v(m / 2));
+}
+
+/// Keeps the best true loss over the accepted iterates of each example.
+class BestTrue {
+ public:
+  explicit BestTrue(StageRun& run)
+      : run_(run),
+        x_(run.oracle.start()),
+        candidate_(x_),
+        loss_(Vector<double>::Constant(x_.cols(), HUGE_VAL)),
+        candidate_loss_(x_.cols()) {}
+
+  void operator()(const Bfgs& solver) {
+    const auto m = static_cast<Index>(solver.accepted().size());
+    for (Index j = 0; j < m; ++j)
+      candidate_.col(j) = solver.x().col(at(solver, j));
+    run_.oracle.evaluate<double>(
+        solver.accepted(), candidate_.leftCols(m), candidate_loss_.head(m));
+    for (Index j = 0; j < m; ++j) {
+      const Index i = at(solver, j);
+      if (candidate_loss_(j) < loss_(i)) {
+        loss_(i) = candidate_loss_(j);
+        x_.col(i) = candidate_.col(j);
+      }
+      run_.probe.accept(i,
+                        solver.iterations()[static_cast<std::size_t>(i)],
+                        candidate_.col(j).data(),
+                        candidate_loss_(j));
+    }
+  }
+
+  const Batch<double>& x() const { return x_; }
+
+ private:
+  static Index at(const Bfgs& solver, Index j) {
+    return solver.accepted()[static_cast<std::size_t>(j)];
+  }
+
+  StageRun& run_;
+  Batch<double> x_, candidate_;
+  Vector<double> loss_, candidate_loss_;
+};
+
+template <class T>
+Outcome solve(const NeuralAdjointOptions& options, StageRun& run) {
+  Oracle& oracle = run.oracle;
+  Surrogate<T> surrogate(run);
+  const BoundaryLoss boundary =
+      BoundaryLoss::over(oracle.labelled().x, options.gamma);
+  Batch<double> start = oracle.start(), gradient(start);
+  Vector<double> loss(start.cols());
+
+  run.probe.begin_warmup();
+  surrogate.evaluate(oracle.all(), start, loss, gradient);
+  const double weight = options.weight * median(loss);
+
+  Bfgs solver({.gtol = run.setting.gtol, .maxiter = run.iterations});
+  BestTrue best(run);
+  run.probe.begin();
+  drive(
+      solver,
+      [&](std::span<const Index> active,
+          BatchIn<double> x,
+          VectorOut<double> l,
+          BatchOut<double> g) {
+        surrogate.evaluate(active, x, l, g);
+        boundary.add(x, weight, l, g);
+        run.probe.trace(x.data(), sizeof(double) * static_cast<std::size_t>(
+                                                       x.size()));
+      },
+      start,
+      best);
+  run.probe.finish();
+
+  Outcome out = solver_outcome(solver, oracle);
+  out.x = best.x();
+  out.bytes = surrogate.bytes();
+  out.arrays["boundary_weight"] = Batch<double>::Constant(1, 1, weight);
+  oracle.add(surrogate.counts());
+  return out;
+}
+
+class SurrogateFit final : public Stage {
+ public:
+  explicit SurrogateFit(const RegressionOptions& options)
+      : options_(options) {}
+
+  std::string name() const override { return "fit"; }
+  Needs needs() const override { return Needs::labels; }
+  Options options() const override {
+    Options all = {{"algorithm", "surrogate"}};
+    for (auto& option : describe(options_)) all.push_back(option);
+    return all;
+  }
+  Index default_iterations() const override { return options_.iterations; }
+  bool has_precision() const override { return true; }
+  double operations(const CaseSize& size) const override {
+    return 3 * size.surrogate_operations *
+           static_cast<double>(size.n * size.iterations);
+  }
+  Outcome run(StageRun& run) const override {
+    if (run.precision == Precision::f32) return fit<float>(options_, run);
+    return fit<double>(options_, run);
+  }
+
+ private:
+  RegressionOptions options_;
+};
+
+class NeuralAdjointSolve final : public Stage {
+ public:
+  explicit NeuralAdjointSolve(const NeuralAdjointOptions& options)
+      : options_(options) {}
+
+  std::string name() const override { return "solve"; }
+  Needs needs() const override { return Needs::forward | Needs::labels; }
+  Options options() const override {
+    return {{"algorithm", "neural_adjoint"},
+            {"gamma", fmt::format("{}", options_.gamma)},
+            {"weight", fmt::format("{}", options_.weight)}};
+  }
+  Index default_iterations() const override { return options_.iterations; }
+  bool takes_row_iterations() const override { return false; }
+  bool has_precision() const override { return true; }
+  double operations(const CaseSize& size) const override {
+    return 60.0 * static_cast<double>(size.n) *
+           (2 * size.surrogate_operations + size.problem_operations + 200);
+  }
+  Outcome run(StageRun& run) const override {
+    if (run.precision == Precision::f32) return solve<float>(options_, run);
+    return solve<double>(options_, run);
+  }
+
+ private:
+  NeuralAdjointOptions options_;
+};
+
+}  // namespace
+
+std::shared_ptr<const Stage> surrogate_fit(const RegressionOptions& options) {
+  return std::make_shared<SurrogateFit>(options);
+}
+
+std::shared_ptr<const Stage> neural_adjoint_solve(
+    const NeuralAdjointOptions& options) {
+  return std::make_shared<NeuralAdjointSolve>(options);
+}
+
+}  // namespace physinv

@@ -1,0 +1,32 @@
+/// Neural adjoint (Ren, Padilla and Malof 2020; JPO paper, App. C): a network
+/// N~ learns the forward process from labelled samples, then BFGS runs through
+/// it instead of the physics,
+///
+///   L~_i(x) = 1/2 |N~(x, given_i) - y_i|^2 + w B(x),
+///
+/// with the boundary loss B of boundary_loss.h and w = 10 median_i of the
+/// first term at the start. The true loss is evaluated at every accepted
+/// iterate, the start included; the best one is the estimate.
+///
+/// Stages `fit` (the surrogate; its estimate is the start) and `solve`.
+#pragma once
+
+#include <memory>
+
+#include "baselines/regression.h"
+
+namespace physinv {
+
+std::shared_ptr<const Stage> surrogate_fit(
+    const RegressionOptions& options = {});
+
+struct NeuralAdjointOptions {
+  Index iterations = 300;  ///< of BFGS
+  double gamma = 20;       ///< sharpness of the boundary's softplus
+  double weight = 10;      ///< of the boundary, in median initial losses
+};
+
+std::shared_ptr<const Stage> neural_adjoint_solve(
+    const NeuralAdjointOptions& options = {});
+
+}  // namespace physinv

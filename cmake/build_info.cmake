@@ -1,0 +1,59 @@
+# physinv_build_info: what this build is made of (suite/harness/build_info.h).
+# Its fingerprint covers the sources of the numerics, hashed at build time, so
+# a changed solver changes it and a changed report does not; the source is
+# rewritten only when its content changes.
+if(PHYSINV_NATIVE)
+  execute_process(
+    COMMAND ${CMAKE_CXX_COMPILER} -march=native "-###" -E -x c++ /dev/null
+    ERROR_VARIABLE physinv_driver OUTPUT_QUIET)
+  string(REPLACE "-march=native" "" physinv_driver "${physinv_driver}")
+  string(REGEX MATCH "(-march=|\"-target-cpu\" \")([a-z0-9_.-]+)" _
+    "${physinv_driver}")
+  set(physinv_instruction_set "native:${CMAKE_MATCH_2}")
+else()
+  set(physinv_instruction_set ${PHYSINV_ARCH})
+endif()
+
+# The bits of exp and sin are the C library's.
+execute_process(COMMAND getconf GNU_LIBC_VERSION
+  OUTPUT_VARIABLE physinv_libc OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+
+string(TOUPPER ${CMAKE_BUILD_TYPE} physinv_config)
+get_target_property(physinv_options physinv_flags INTERFACE_COMPILE_OPTIONS)
+get_directory_property(physinv_directory_options COMPILE_OPTIONS)
+list(JOIN physinv_options " " physinv_options)
+list(JOIN physinv_directory_options " " physinv_directory_options)
+string(CONCAT physinv_flags_text "${CMAKE_CXX_FLAGS} "
+  "${CMAKE_CXX_FLAGS_${physinv_config}} ${physinv_options} "
+  "${physinv_directory_options}")
+string(REGEX REPLACE " +" " " physinv_flags_text "${physinv_flags_text}")
+string(STRIP "${physinv_flags_text}" physinv_flags_text)
+
+set(physinv_info ${PROJECT_BINARY_DIR}/build_info)
+file(CONFIGURE OUTPUT ${physinv_info}/values.cmake @ONLY CONTENT [[
+set(compiler "@CMAKE_CXX_COMPILER_ID@")
+set(compiler_version "@CMAKE_CXX_COMPILER_VERSION@")
+set(flags "@physinv_flags_text@")
+set(build_type "@CMAKE_BUILD_TYPE@")
+set(instruction_set "@physinv_instruction_set@")
+set(version "@PROJECT_VERSION@")
+set(eigen "@Eigen3_VERSION@")
+set(fftw "@FFTW3_VERSION@")
+set(hdf5 "@HDF5_VERSION@")
+set(json "@nlohmann_json_VERSION@")
+set(fmt "@fmt_VERSION@")
+set(cli11 "@CLI11_VERSION@")
+set(libc "@physinv_libc@")
+]])
+
+add_custom_command(
+  OUTPUT ${physinv_info}/build_info.cpp
+  DEPFILE ${physinv_info}/build_info.d
+  DEPENDS ${physinv_info}/values.cmake
+    ${CMAKE_CURRENT_LIST_DIR}/write_build_info.cmake
+  COMMAND ${CMAKE_COMMAND} -D source_dir=${PROJECT_SOURCE_DIR}
+    -D info=${physinv_info}
+    -P ${CMAKE_CURRENT_LIST_DIR}/write_build_info.cmake
+  COMMENT "Fingerprint of the numerics"
+  VERBATIM)
+physinv_layer(build_info SOURCES ${physinv_info}/build_info.cpp)

@@ -1,0 +1,35 @@
+# find_package(physinv) gives physinv::physinv: every layer below the cases,
+# with the flags that they were built with.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+add_library(physinv INTERFACE)
+set(physinv_exported physinv physinv_flags)
+set_target_properties(physinv_flags PROPERTIES EXPORT_NAME flags)
+foreach(layer core nn problems optimizers baselines results build_info harness)
+  if(TARGET physinv_${layer})
+    target_link_libraries(physinv INTERFACE physinv_${layer})
+    list(APPEND physinv_exported physinv_${layer})
+  endif()
+endforeach()
+
+set(physinv_package ${CMAKE_INSTALL_LIBDIR}/cmake/physinv)
+install(TARGETS ${physinv_exported} EXPORT physinv)
+install(EXPORT physinv NAMESPACE physinv:: FILE physinv-targets.cmake
+  DESTINATION ${physinv_package})
+install(DIRECTORY suite problems optimizers baselines
+  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/physinv
+  FILES_MATCHING PATTERN *.h
+  PATTERN app EXCLUDE PATTERN cases EXCLUDE)
+
+write_basic_package_version_file(
+  ${PROJECT_BINARY_DIR}/physinv-config-version.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES
+    ${PROJECT_SOURCE_DIR}/cmake/physinv-config.cmake
+    ${PROJECT_SOURCE_DIR}/cmake/FindFFTW3.cmake
+    ${PROJECT_BINARY_DIR}/physinv-config-version.cmake
+  DESTINATION ${physinv_package})
+if(TARGET physinv-bench)
+  install(TARGETS physinv-bench)
+endif()

@@ -1,0 +1,115 @@
+#include "optimizers/classical.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "optimizers/bfgs.h"
+#include "optimizers/drive.h"
+#include "optimizers/gradient_descent.h"
+#include "optimizers/solver_outcome.h"
+
+namespace physinv {
+namespace {
+
+/// Minimizes the true losses from x0 and leaves the curve with the probe.
+template <class Solver>
+Outcome solve(Solver& solver, StageRun& run, const Batch<double>& x0) {
+  Oracle& oracle = run.oracle;
+  run.probe.begin();
+  drive(
+      solver,
+      [&](std::span<const Index> active,
+          BatchIn<double> x,
+          VectorOut<double> loss,
+          BatchOut<double> gradient) {
+        oracle.evaluate<double>(active, x, loss, gradient);
+        run.probe.trace(x.data(), sizeof(double) * static_cast<std::size_t>(
+                                                       x.size()));
+      },
+      x0,
+      [&](const Solver& s) {
+        for (const Index i : s.accepted()) {
+          run.probe.accept(i,
+                           s.iterations()[static_cast<std::size_t>(i)],
+                           s.x().col(i).data(),
+                           s.loss()(i));
+        }
+      });
+  run.probe.finish();
+  return solver_outcome(solver, oracle);
+}
+
+class BfgsStage final : public Stage {
+ public:
+  BfgsStage(const BfgsStageOptions& options, bool refines)
+      : options_(options), refines_(refines) {}
+
+  std::string name() const override { return refines_ ? "refine" : "solve"; }
+  Needs needs() const override { return Needs::forward | Needs::vjp; }
+  Options options() const override {
+    return {{"algorithm", "bfgs"}, {"from", refines_ ? "previous" : "start"}};
+  }
+  Index default_iterations() const override { return options_.iterations; }
+  bool takes_row_iterations() const override { return !refines_; }
+  double operations(const CaseSize& size) const override {
+    // Tens of evaluations are typical, each with its share of line search.
+    const double d = static_cast<double>(size.shape.unknowns);
+    return 40.0 * static_cast<double>(size.n) *
+           (3 * size.problem_operations + 200 + 4 * d * d);
+  }
+  Outcome run(StageRun& run) const override {
+    Bfgs solver({.gtol = run.setting.gtol, .maxiter = run.iterations});
+    return solve(
+        solver, run, refines_ ? run.previous->x : run.oracle.start());
+  }
+
+ private:
+  BfgsStageOptions options_;
+  bool refines_;
+};
+
+class GradientDescentStage final : public Stage {
+ public:
+  explicit GradientDescentStage(const GradientDescentStageOptions& options)
+      : options_(options) {}
+
+  std::string name() const override { return "solve"; }
+  Needs needs() const override { return Needs::forward | Needs::vjp; }
+  Options options() const override {
+    return {{"algorithm", "gradient_descent"}};
+  }
+  Index default_iterations() const override { return options_.iterations; }
+  double operations(const CaseSize& size) const override {
+    return 0.5 * static_cast<double>(size.n * size.iterations) *
+           (3 * size.problem_operations + 100);
+  }
+  Outcome run(StageRun& run) const override {
+    GradientDescent solver({.step_tolerance = run.setting.gtol,
+                            .maxiter = run.iterations});
+    Outcome out = solve(solver, run, run.oracle.start());
+    run.oracle.add(Counter::skipped_trials,
+                   static_cast<Index>(solver.skipped_trials()));
+    return out;
+  }
+
+ private:
+  GradientDescentStageOptions options_;
+};
+
+}  // namespace
+
+std::shared_ptr<const Stage> bfgs_solve(const BfgsStageOptions& options) {
+  return std::make_shared<BfgsStage>(options, false);
+}
+
+std::shared_ptr<const Stage> bfgs_refine(const BfgsStageOptions& options) {
+  return std::make_shared<BfgsStage>(options, true);
+}
+
+std::shared_ptr<const Stage> gradient_descent_solve(
+    const GradientDescentStageOptions& options) {
+  return std::make_shared<GradientDescentStage>(options);
+}
+
+}  // namespace physinv

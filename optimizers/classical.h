@@ -1,0 +1,33 @@
+/// Classical optimizers as stages: every problem of a case by itself, in
+/// double, all pending evaluations of a round in one batch.
+///
+///   {"bfgs", {bfgs_solve()}}            from the experiment's start
+///   {"jpo", {jpo_fit(), bfgs_refine()}} from what the stage before left
+#pragma once
+
+#include <memory>
+
+#include "suite/core/method.h"
+
+namespace physinv {
+
+struct BfgsStageOptions {
+  Index iterations = 1000;
+};
+
+/// Stage `solve`: BFGS on the true loss from the start.
+std::shared_ptr<const Stage> bfgs_solve(const BfgsStageOptions& options = {});
+
+/// Stage `refine`: BFGS on the true loss from the previous estimates. One that
+/// cannot start (its loss is not finite) keeps its start and status nonfinite.
+std::shared_ptr<const Stage> bfgs_refine(const BfgsStageOptions& options = {});
+
+struct GradientDescentStageOptions {
+  Index iterations = 1000;
+};
+
+/// Stage `solve`: gradient descent with an adaptive step per problem.
+std::shared_ptr<const Stage> gradient_descent_solve(
+    const GradientDescentStageOptions& options = {});
+
+}  // namespace physinv

@@ -1,0 +1,47 @@
+/// Runs a batched solver (`Bfgs`, `GradientDescent`) to its end.
+#pragma once
+
+#include <concepts>
+#include <type_traits>
+
+#include "suite/core/batch.h"
+#include "suite/core/objective.h"
+
+namespace physinv {
+
+/// An observer that only lets time pass.
+struct NoObserver {
+  template <class Solver>
+  void operator()(const Solver&) const {}
+};
+
+/// Evaluates the pending points of all problems as one batch per round.
+///
+/// `observer(solver)` is called after every round that accepted an iterate,
+/// the start included: solver.accepted() says which problems moved, x(),
+/// loss() and iterations() where to. One that returns a value convertible to
+/// bool ends the run with `false`; what is pending then ends as `maxiter`.
+template <class Solver, BatchObjective Objective, class Observer = NoObserver>
+void drive(Solver& solver,
+           Objective&& objective,
+           BatchIn<double> x0,
+           Observer&& observer = {}) {
+  Vector<double> loss(x0.cols());
+  Batch<double> gradient(x0.rows(), x0.cols());
+  solver.start(x0);
+  while (solver.pending()) {
+    const auto m = static_cast<Index>(solver.active().size());
+    objective(
+        solver.active(), solver.points(), loss.head(m), gradient.leftCols(m));
+    solver.supply(loss.head(m), gradient.leftCols(m));
+    if (solver.accepted().empty()) continue;
+    using Answer = std::invoke_result_t<Observer&, const Solver&>;
+    if constexpr (std::convertible_to<Answer, bool>) {
+      if (!observer(static_cast<const Solver&>(solver))) solver.halt();
+    } else {
+      observer(static_cast<const Solver&>(solver));
+    }
+  }
+}
+
+}  // namespace physinv

@@ -1,0 +1,163 @@
+#include "optimizers/network_model.h"
+
+namespace physinv {
+namespace {
+
+const Batch<double>& rows_of(Field field,
+                             const Batch<double>& x,
+                             const Batch<double>& given,
+                             const Batch<double>& y) {
+  switch (field) {
+    case Field::unknowns: return x;
+    case Field::given: return given;
+    case Field::observations: break;
+  }
+  return y;
+}
+
+}  // namespace
+
+template <class T>
+Batch<T> assemble(const std::vector<Field>& fields,
+                  const Batch<double>& x,
+                  const Batch<double>& given,
+                  const Batch<double>& y) {
+  Index rows = 0, cols = 0;
+  for (const Field f : fields) {
+    rows += rows_of(f, x, given, y).rows();
+    cols = rows_of(f, x, given, y).cols();
+  }
+  Batch<T> input(rows, cols);
+  Index at = 0;
+  for (const Field f : fields) {
+    const Batch<double>& block = rows_of(f, x, given, y);
+    input.middleRows(at, block.rows()) = block.template cast<T>();
+    at += block.rows();
+  }
+  return input;
+}
+
+template Batch<float> assemble(const std::vector<Field>&,
+                               const Batch<double>&,
+                               const Batch<double>&,
+                               const Batch<double>&);
+template Batch<double> assemble(const std::vector<Field>&,
+                                const Batch<double>&,
+                                const Batch<double>&,
+                                const Batch<double>&);
+
+Index input_rows(const std::vector<Field>& fields, const Shape& shape) {
+  Index rows = 0;
+  for (const Field f : fields) {
+    rows += f == Field::unknowns ? shape.unknowns
+            : f == Field::given  ? shape.given
+                                 : shape.observations;
+  }
+  return rows;
+}
+
+template <class T>
+NetworkModel<T>::NetworkModel(const NetworkRole& role,
+                              const Shape& shape,
+                              Index outputs,
+                              Threads* threads)
+    : network_(role.recipe.make<T>(input_rows(role.inputs, shape), outputs)),
+      parameters_(network_->parameter_count()),
+      state_(network_->state_count()),
+      gradient_(network_->parameter_count()),
+      work_(threads),
+      prediction_work_(threads) {}
+
+template <class T>
+void NetworkModel<T>::initialize(const Rng& rng) {
+  network_->initialize(rng, parameters_, state_);
+  initial_ = parameters_;
+}
+
+template <class T>
+void NetworkModel<T>::load(const std::map<std::string, Batch<double>>& arrays) {
+  const auto& parameters = arrays.at("parameters");
+  SUITE_CHECK(parameters.rows() == parameters_.size(),
+              "stored parameters belong to another network");
+  parameters_ = parameters.template cast<T>();
+  if (state_.size() > 0) state_ = arrays.at("state").template cast<T>();
+  initial_ = parameters_;
+}
+
+template <class T>
+void NetworkModel<T>::save(
+    std::map<std::string, Batch<double>>& arrays) const {
+  arrays["parameters"] = parameters_.template cast<double>();
+  if (state_.size() > 0) arrays["state"] = state_.template cast<double>();
+}
+
+template <class T>
+void NetworkModel<T>::bind(Batch<T> input) {
+  input_ = std::move(input);
+  output_.resize(network_->outputs(), input_.cols());
+  fresh_ = true;
+}
+
+template <class T>
+const Batch<T>& NetworkModel<T>::forward() {
+  // The input never changes: encode it once, fold what is constant over it.
+  const Pass pass{
+      .training = true, .same_input = !fresh_, .fixed_input = true};
+  network_->forward(parameters_, state_, input_, output_, tape_, work_, pass);
+  fresh_ = false;
+  return output_;
+}
+
+template <class T>
+const Vector<T>& NetworkModel<T>::backward(BatchIn<T> out_bar) {
+  VectorOut<T> gradient(gradient_);
+  network_->backward(parameters_, tape_, out_bar, &gradient, nullptr, work_);
+  return gradient_;
+}
+
+template <class T>
+void NetworkModel<T>::update_state() {
+  if (state_.size() > 0) network_->update_state(tape_, state_);
+}
+
+template <class T>
+void NetworkModel<T>::warm_up() {
+  forward();
+  backward(Batch<T>::Zero(output_.rows(), output_.cols()));
+  work_.counts = {};
+  fresh_ = true;
+}
+
+template <class T>
+void NetworkModel<T>::predict(BatchIn<T> input, BatchOut<T> output) {
+  network_->forward(parameters_, state_, input, output, prediction_tape_,
+                    prediction_work_);
+}
+
+template <class T>
+Batch<double> NetworkModel<T>::change_per_tensor() const {
+  const auto& tensors = network_->tensors();
+  Batch<double> change(static_cast<Index>(tensors.size()), 1);
+  for (Index t = 0; t < change.rows(); ++t) {
+    const TensorInfo& info = tensors[static_cast<std::size_t>(t)];
+    change(t, 0) = (parameters_.segment(info.offset, info.size) -
+                    initial_.segment(info.offset, info.size))
+                       .template cast<double>()
+                       .cwiseAbs()
+                       .mean();
+  }
+  return change;
+}
+
+template <class T>
+std::size_t NetworkModel<T>::bytes() const {
+  const Index numbers = 2 * parameters_.size() + initial_.size() +
+                        state_.size() + input_.size() + output_.size();
+  return static_cast<std::size_t>(numbers) * sizeof(T) + tape_.bytes() +
+         work_.bytes();
+}
+
+template class NetworkModel<float>;
+template class NetworkModel<double>;
+
+}  // namespace physinv

@@ -1,0 +1,72 @@
+/// A network in its place: assembled inputs, parameters, and the buffers that
+/// training and prediction need. Nothing allocates after the first step.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "suite/core/method.h"
+
+namespace physinv {
+
+/// Stacks the fields of a role: one input column per sample.
+template <class T>
+Batch<T> assemble(const std::vector<Field>& fields,
+                  const Batch<double>& x,
+                  const Batch<double>& given,
+                  const Batch<double>& y);
+
+/// Rows a role reads.
+Index input_rows(const std::vector<Field>& fields, const Shape& shape);
+
+template <class T>
+class NetworkModel {
+ public:
+  NetworkModel(const NetworkRole& role,
+               const Shape& shape,
+               Index outputs,
+               Threads* threads);
+
+  const Network<T>& network() const { return *network_; }
+
+  void initialize(const Rng& rng);
+  /// Parameters and running statistics as an earlier stage left them.
+  void load(const std::map<std::string, Batch<double>>& arrays);
+  void save(std::map<std::string, Batch<double>>& arrays) const;
+
+  /// The samples every training pass runs on.
+  void bind(Batch<T> input);
+  /// Outputs for the bound input, in training mode.
+  const Batch<T>& forward();
+  /// Gradient of the parameters for cotangents of the last `forward`.
+  const Vector<T>& backward(BatchIn<T> out_bar);
+  /// Running statistics follow the last `forward`.
+  void update_state();
+  /// One pass forward and back that leaves nothing behind but warm caches.
+  void warm_up();
+
+  /// Outputs for any input, with running statistics; not part of the method's
+  /// counted work.
+  void predict(BatchIn<T> input, BatchOut<T> output);
+
+  Vector<T>& parameters() { return parameters_; }
+  const Vector<T>& state() const { return state_; }
+  /// Mean |change| per tensor since `initialize`.
+  Batch<double> change_per_tensor() const;
+
+  const Counts& counts() const { return work_.counts; }
+  std::size_t bytes() const;
+
+ private:
+  std::unique_ptr<Network<T>> network_;
+  Vector<T> parameters_, initial_, state_, gradient_;
+  Batch<T> input_, output_;
+  Tape tape_, prediction_tape_;
+  Workspace work_, prediction_work_;
+  bool fresh_ = true;
+};
+
+extern template class NetworkModel<float>;
+extern template class NetworkModel<double>;
+
+}  // namespace physinv

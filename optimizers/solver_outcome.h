@@ -1,0 +1,34 @@
+/// A finished batched solver as the outcome of a stage.
+#pragma once
+
+#include <algorithm>
+
+#include "suite/core/method.h"
+
+namespace physinv {
+
+/// Estimates, statuses and counts of a `Bfgs` or `GradientDescent` run. The
+/// evaluations that finished problems did not need are counted as saved.
+template <class Solver>
+Outcome solver_outcome(const Solver& solver, Oracle& oracle) {
+  const auto n = static_cast<Index>(solver.status().size());
+  Outcome out;
+  out.x = solver.x();
+  out.status = solver.status();
+  out.iterations =
+      Eigen::Map<const Vector<Index>>(solver.iterations().data(), n)
+          .template cast<double>();
+  out.evaluations =
+      Eigen::Map<const Vector<Index>>(solver.evaluations().data(), n)
+          .template cast<double>();
+  const bool converged =
+      std::all_of(out.status.begin(), out.status.end(), [](Status s) {
+        return s == Status::gtol;
+      });
+  out.stop = converged ? Stop::converged : Stop::iterations;
+  oracle.add(Counter::skipped_forward,
+             static_cast<Index>(solver.skipped_evaluations()));
+  return out;
+}
+
+}  // namespace physinv

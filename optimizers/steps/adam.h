@@ -1,0 +1,75 @@
+/// Adam (Kingma and Ba 2015, algorithm 1), without weight decay:
+///
+///   m = beta1 m + (1 - beta1) g          v = beta2 v + (1 - beta2) g^2
+///   x -= rate m' / (sqrt(v') + eps)      m' = m / (1 - beta1^t), v' alike
+///
+/// One pass over x, g, m and v. Moments start at zero on the first step; an
+/// object belongs to one vector.
+#pragma once
+
+#include <cmath>
+
+#include "optimizers/steps/simd.h"
+#include "suite/core/batch.h"
+#include "suite/core/check.h"
+
+namespace physinv {
+
+struct AdamOptions {
+  double rate = 1e-3;
+  double beta1 = 0.9, beta2 = 0.999;
+  double eps = 1e-7;  ///< as in the authors' framework; PyTorch has 1e-8
+  /// Keras' form: eps is added to the root of the uncorrected v.
+  bool eps_before_correction = false;
+};
+
+template <class T>
+class Adam {
+ public:
+  using Options = AdamOptions;
+  explicit Adam(const Options& options = {}) : options_(options) {}
+
+  void step(VectorOut<T> x, VectorIn<T> gradient);
+
+  /// Forgets the moments; the next step is a first one.
+  void reset() { steps_ = 0; }
+
+ private:
+  Options options_;
+  Vector<T> m_, v_;
+  long steps_ = 0;
+};
+
+template <class T>
+void Adam<T>::step(VectorOut<T> x, VectorIn<T> gradient) {
+  SUITE_CHECK(x.size() == gradient.size(), "gradient of another size");
+  if (steps_ == 0) m_.setZero(x.size()), v_.setZero(x.size());
+  SUITE_CHECK(x.size() == m_.size(), "the vector changed its size");
+  ++steps_;
+  const auto t = static_cast<double>(steps_);
+  const Options& o = options_;
+  const double c1 = 1 - std::pow(o.beta1, t), c2 = 1 - std::pow(o.beta2, t);
+  const bool before = o.eps_before_correction;
+  const T rate = static_cast<T>(o.rate / c1 * (before ? std::sqrt(c2) : 1.0));
+  const T correct = static_cast<T>(before ? 1.0 : 1 / c2);
+  const T b1 = static_cast<T>(o.beta1), a1 = static_cast<T>(1 - o.beta1);
+  const T b2 = static_cast<T>(o.beta2), a2 = static_cast<T>(1 - o.beta2);
+  const T eps = static_cast<T>(o.eps);
+  T* const px = x.data();
+  const T* const pg = gradient.data();
+  T *const pm = m_.data(), *const pv = v_.data();
+  using R = steps::Register<T>;
+  steps::for_registers<T>(x.size(), [&](Index i, auto lanes) {
+    const auto g = R::load(pg + i, lanes);
+    const auto m = R::multiply_add(R::all(b1), R::load(pm + i, lanes), a1 * g);
+    const auto v =
+        R::multiply_add(R::all(b2), R::load(pv + i, lanes), a2 * (g * g));
+    R::store(pm + i, m, lanes);
+    R::store(pv + i, v, lanes);
+    const auto scaled = v * correct;
+    const auto step = rate * m / (R::root(scaled) + eps);
+    R::store(px + i, R::load(px + i, lanes) - step, lanes);
+  });
+}
+
+}  // namespace physinv

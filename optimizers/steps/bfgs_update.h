@@ -1,0 +1,73 @@
+/// The dense kernels of BFGS for one example: d x d matrices, column-major.
+/// Summation orders are fixed, so an example's bits depend on nothing else.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "suite/core/batch.h"
+
+namespace physinv::dense {
+
+/// a.b in four interleaved partial sums; the plain order for d <= 3.
+inline double dot(Index d, const double* a, const double* b) {
+  std::array<double, 4> lane{};
+  Index i = 0;
+  for (; i + 4 <= d; i += 4)
+    for (Index k = 0; k < 4; ++k)
+      lane[static_cast<std::size_t>(k)] += a[i + k] * b[i + k];
+  for (Index k = 0; i < d; ++i, ++k)
+    lane[static_cast<std::size_t>(k)] += a[i] * b[i];
+  return (lane[0] + lane[1]) + (lane[2] + lane[3]);
+}
+
+inline double norm(Index d, const double* a) { return std::sqrt(dot(d, a, a)); }
+
+/// Largest magnitude; NaN entries are passed over.
+inline double max_abs(Index d, const double* a) {
+  double m = 0;
+  for (Index i = 0; i < d; ++i) m = std::max(m, std::abs(a[i]));
+  return m;
+}
+
+inline bool all_finite(Index d, const double* a) {
+  bool finite = true;
+  for (Index i = 0; i < d; ++i) finite &= std::isfinite(a[i]);
+  return finite;
+}
+
+inline void set_identity(Index d, double* h) {
+  std::fill(h, h + d * d, 0.0);
+  for (Index i = 0; i < d; ++i) h[i * d + i] = 1;
+}
+
+/// out = H v.
+inline void multiply(Index d, const double* h, const double* v, double* out) {
+  std::fill(out, out + d, 0.0);
+  for (Index j = 0; j < d; ++j)
+    for (Index i = 0; i < d; ++i) out[i] += h[j * d + i] * v[j];
+}
+
+/// H <- (I - rho s y^T) H (I - rho y s^T) + rho s s^T, with rho = 1 / (y.s),
+/// or 1000 where y.s is exactly 0 (SciPy's value). No curvature safeguard.
+///
+/// Two rank-one steps, O(d^2). They round like the product of the three
+/// matrices does; the expanded sum would cancel where H is much larger than
+/// rho s s^T. `scratch` holds d numbers.
+inline void bfgs_update(
+    Index d, const double* s, const double* y, double* h, double* scratch) {
+  const double ys = dot(d, y, s);
+  const double rho = ys == 0 ? 1000.0 : 1 / ys;
+  double* u = scratch;
+  multiply(d, h, y, u);
+  for (Index j = 0; j < d; ++j) {
+    double* column = h + j * d;
+    const double right = rho * s[j];
+    for (Index i = 0; i < d; ++i) column[i] -= u[i] * right;
+    const double left = right - rho * dot(d, y, column);
+    for (Index i = 0; i < d; ++i) column[i] += s[i] * left;
+  }
+}
+
+}  // namespace physinv::dense

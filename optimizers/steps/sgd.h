@@ -1,0 +1,51 @@
+/// Gradient descent with (heavy-ball) momentum: u = momentum u + g,
+/// x -= rate u. An object belongs to one vector.
+#pragma once
+
+#include "optimizers/steps/simd.h"
+#include "suite/core/batch.h"
+#include "suite/core/check.h"
+
+namespace physinv {
+
+struct SgdOptions {
+  double rate = 1e-2;
+  double momentum = 0.0;
+};
+
+template <class T>
+class Sgd {
+ public:
+  using Options = SgdOptions;
+  explicit Sgd(const Options& options = {}) : options_(options) {}
+
+  void step(VectorOut<T> x, VectorIn<T> gradient) {
+    SUITE_CHECK(x.size() == gradient.size(), "gradient of another size");
+    if (!started_) u_.setZero(x.size());
+    SUITE_CHECK(x.size() == u_.size(), "the vector changed its size");
+    started_ = true;
+    const T rate = static_cast<T>(options_.rate);
+    const T momentum = static_cast<T>(options_.momentum);
+    T *const px = x.data(), *const pu = u_.data();
+    const T* const pg = gradient.data();
+    using R = steps::Register<T>;
+    steps::for_registers<T>(x.size(), [&](Index i, auto lanes) {
+      const auto u = R::multiply_add(
+          R::all(momentum), R::load(pu + i, lanes), R::load(pg + i, lanes));
+      R::store(pu + i, u, lanes);
+      R::store(px + i,
+               R::multiply_add(R::all(-rate), u, R::load(px + i, lanes)),
+               lanes);
+    });
+  }
+
+  /// Forgets the momentum.
+  void reset() { started_ = false; }
+
+ private:
+  Options options_;
+  Vector<T> u_;
+  bool started_ = false;
+};
+
+}  // namespace physinv

@@ -1,0 +1,416 @@
+#include "problems/billiards/billiards.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+#include "suite/core/check.h"
+#include "suite/core/lanes.h"
+
+namespace physinv {
+namespace {
+
+using Point = std::array<double, 2>;
+
+double reach(const BilliardsOptions& o) {
+  return (1 + o.elasticity) / (2 * o.drag);
+}
+
+/// The options in the precision of the kernel, and its thresholds.
+template <class T>
+struct Constants {
+  static constexpr bool kDouble = std::is_same_v<T, double>;
+  static constexpr T kGrazing = kDouble ? T(1e-14) : T(1e-6);
+  static constexpr T kStopping = kDouble ? T(1e-12) : T(1e-6);
+  // |d| |v| squared stays finite; powers of two near 3e147 and 4e15.
+  static constexpr T kFastest = kDouble ? T(0x1p490) : T(0x1p52f);
+  static constexpr T kFarthest = kDouble ? T(0x1p20) : T(0x1p10f);
+
+  explicit Constants(const BilliardsOptions& o)
+      : cue{T(o.cue[0]), T(o.cue[1])},
+        gap(T(2 * o.radius)),
+        gap2(T(4 * o.radius * o.radius)),
+        gap2_rest(T(4 * o.radius * o.radius - double(gap2))),
+        per_gap(1 / gap),
+        mu(T(o.drag)),
+        c(T(reach(o))) {}
+
+  // gap: distance of the centres at contact, 2 r; its square, what rounding
+  // that to T left over (it matters near grazing in float), its reciprocal.
+  T cue[2], gap, gap2, gap2_rest, per_gap, mu, c;
+};
+
+/// One block of samples at the moment of contact. Lanes that miss hold
+/// harmless values: s = 0, a = 1.
+template <class T>
+struct Contact {
+  Pack<T> v[2], n[2], s, a, keep;  // keep = 1 - mu s
+  Pack<T> y[2];
+  Mask<T> hit, broken;  // broken: some input is not finite
+};
+
+// Compiled once, because the compiler fuses products and sums differently in
+// each inlined copy: forward and linearize must agree to the last bit.
+template <class T>
+[[gnu::noinline, gnu::noclone]] void find_contact(const Constants<T>& k,
+                                                  const Pack<T> (&velocity)[2],
+                                                  const Pack<T> (&ball)[2],
+                                                  Contact<T>& out) {
+  using P = Pack<T>;
+  using K = Constants<T>;
+  const P zero = P{} + T(0), one = P{} + T(1);
+  const auto& [vx0, vy0] = velocity;
+  const auto& [bx0, by0] = ball;
+  const Mask<T> outside =
+      beyond<T>(vx0, K::kFastest) | beyond<T>(vy0, K::kFastest) |
+      beyond<T>(bx0, K::kFarthest) | beyond<T>(by0, K::kFarthest);
+  out.broken = Mask<T>{};
+  if (any(outside)) [[unlikely]] {
+    constexpr T kMax = std::numeric_limits<T>::max();
+    out.broken = beyond<T>(vx0, kMax) | beyond<T>(vy0, kMax) |
+                 beyond<T>(bx0, kMax) | beyond<T>(by0, kMax);
+  }
+
+  const P vx = select(outside, zero, vx0), vy = select(outside, zero, vy0);
+  const P bx = select(outside, zero, bx0), by = select(outside, zero, by0);
+  const P dx = bx - k.cue[0], dy = by - k.cue[1];
+  const P along = dx * vx + dy * vy, across = dx * vy - dy * vx;
+  const P vv = vx * vx + vy * vy;
+  const P disc = (k.gap2 * vv - across * across) + k.gap2_rest * vv;
+  const Mask<T> meets = (along > zero) & (disc > K::kGrazing * (along * along));
+
+  const P root = sqrt_lanes(select(meets, disc, one));
+  const P s = (dx * dx + dy * dy - k.gap2) / select(meets, along + root, one);
+  out.hit = meets & (one - k.mu * s > K::kStopping);
+
+  out.s = select(out.hit, s, zero);
+  out.a = select(out.hit, root * k.per_gap, one);
+  out.keep = one - k.mu * out.s;
+  out.v[0] = vx, out.v[1] = vy;
+  out.n[0] = (dx - vx * out.s) * k.per_gap;
+  out.n[1] = (dy - vy * out.s) * k.per_gap;
+  const P way = k.c * (out.keep * out.a);
+  const P nan = P{} + std::numeric_limits<T>::quiet_NaN();
+  out.y[0] = select(out.hit, bx + way * out.n[0], bx0);
+  out.y[1] = select(out.hit, by + way * out.n[1], by0);
+  for (P& y : out.y) y = select(out.broken, nan, y);
+}
+
+/// j[r + 2 c] = d y_r / d v_c.
+template <class T>
+PHYSINV_LANES void differentiate(const Constants<T>& k,
+                                 const Contact<T>& at,
+                                 Pack<T>* j) {
+  using P = Pack<T>;
+  const P zero = P{} + T(0);
+  const P nan = P{} + std::numeric_limits<T>::quiet_NaN();
+  const P vv = at.v[0] * at.v[0] + at.v[1] * at.v[1];
+  const P ratio = at.s / at.a, speed = at.keep * at.a;
+  for (int c = 0; c < 2; ++c) {
+    const P s_c = -ratio * at.n[c];
+    const P a_c = at.n[c] - (at.s * at.v[c] + vv * s_c) * k.per_gap;
+    const P speed_c = at.keep * a_c - k.mu * at.a * s_c;
+    for (int r = 0; r < 2; ++r) {
+      const P moved = at.v[r] * s_c;
+      const P n_c = (r == c ? at.s + moved : moved) * -k.per_gap;
+      const P full = k.c * (at.n[r] * speed_c + speed * n_c);
+      j[r + 2 * c] = select(at.broken, nan, select(at.hit, full, zero));
+    }
+  }
+}
+
+/// Runs body(constants, contact, block) for every block; returns the hits.
+template <class T, class F>
+PHYSINV_LANES Index for_contacts(const BilliardsOptions& options,
+                                 BatchIn<T> x,
+                                 BatchIn<T> given,
+                                 F&& body) {
+  const Constants<T> k(options);
+  const Index blocks = Lanes<T>::blocks(x.cols());
+  Mask<T> hits{};
+  for (Index b = 0; b < blocks; ++b) {
+    Pack<T> v[2], ball[2];
+    Lanes<T>(v, 2).load(x, b * kLanes<T>);
+    Lanes<T>(ball, 2).load(given, b * kLanes<T>);
+    Contact<T> contact;
+    find_contact(k, v, ball, contact);
+    hits += contact.hit;
+    body(k, contact, b);
+  }
+  return count_set(hits);
+}
+
+template <class T>
+void check_input(BatchIn<T> x, BatchIn<T> given) {
+  SUITE_CHECK(x.rows() == 2, "a velocity has two rows");
+  SUITE_CHECK(given.rows() == 2 && given.cols() == x.cols(),
+              "a ball has two rows and each velocity one ball");
+}
+
+template <class M>
+void check_output(const M& out, Index rows, Index cols) {
+  SUITE_CHECK(out.rows() == rows && out.cols() == cols,
+              "output has the wrong size");
+}
+
+void check_options(const BilliardsOptions& o) {
+  SUITE_CHECK(o.radius > 0 && o.drag > 0, "radius and drag must be positive");
+  SUITE_CHECK(o.elasticity >= 0 && o.elasticity <= 1,
+              "elasticity must be in [0, 1]");
+  SUITE_CHECK(std::abs(o.ball_x - o.cue[0]) > 2 * o.radius,
+              "the balls must start apart");
+}
+
+/// Travelled fraction until two balls a distance d apart, of relative speed u,
+/// touch; negative if they never do.
+double next_contact(const Point& d, const Point& u, const BilliardsOptions& o) {
+  using K = Constants<double>;
+  const double gap = 2 * o.radius, along = d[0] * u[0] + d[1] * u[1];
+  const double uu = u[0] * u[0] + u[1] * u[1];
+  const double across = d[0] * u[1] - d[1] * u[0];
+  const double disc = gap * gap * uu - across * across;
+  if (!(along > 0) || !(disc > K::kGrazing * along * along)) return -1;
+  const double s = (along - std::sqrt(disc)) / uu;
+  return 1 - o.drag * s > K::kStopping ? s : -1;
+}
+
+/// The first draw of a sample's stream.
+Point draw_ball(const BilliardsOptions& o, Stream& stream) {
+  return {o.ball_x, stream.uniform(o.ball_y[0], o.ball_y[1])};
+}
+
+Stream stream_of(const Rng& rng, Index i) {
+  return rng.child(static_cast<std::uint64_t>(i)).stream();
+}
+
+enum Slot : std::size_t { kJacobians, kLive, kCount };
+
+}  // namespace
+
+template <class T>
+Collision<T> collide(const std::array<T, 2>& velocity,
+                     const std::array<T, 2>& ball,
+                     const BilliardsOptions& o) {
+  Pack<T> v[2]{}, b[2]{};
+  for (int i = 0; i < 2; ++i) v[i][0] = velocity[i], b[i][0] = ball[i];
+  const Constants<T> k(o);
+  Contact<T> at;
+  find_contact(k, v, b, at);
+  Collision<T> out;
+  out.hit = at.hit[0] != 0;
+  out.final_ball = {at.y[0][0], at.y[1][0]};
+  if (!out.hit) return out;
+  out.s = at.s[0];
+  out.time = -std::log1p(-k.mu * out.s) / k.mu;
+  out.normal_speed = at.keep[0] * at.a[0];
+  const T kick = T(0.5 * (1 + o.elasticity)) * out.normal_speed;
+  for (int i = 0; i < 2; ++i) {
+    out.cue_at_contact[i] = k.cue[i] + velocity[i] * out.s;
+    out.cue_velocity_before[i] = velocity[i] * at.keep[0];
+    out.normal[i] = at.n[i][0];
+    out.ball_velocity_after[i] = kick * out.normal[i];
+    out.cue_velocity_after[i] =
+        out.cue_velocity_before[i] - kick * out.normal[i];
+  }
+  return out;
+}
+
+template Collision<float> collide(const std::array<float, 2>&,
+                                  const std::array<float, 2>&,
+                                  const BilliardsOptions&);
+template Collision<double> collide(const std::array<double, 2>&,
+                                   const std::array<double, 2>&,
+                                   const BilliardsOptions&);
+
+BilliardsPath simulate_events(const Point& velocity,
+                              const Point& ball,
+                              const BilliardsOptions& o) {
+  Point p[2] = {o.cue, ball}, v[2] = {velocity, {0, 0}};
+  BilliardsPath path;
+  for (; path.events < 8; ++path.events) {
+    const Point d = {p[1][0] - p[0][0], p[1][1] - p[0][1]};
+    const double s = next_contact(d, {v[0][0] - v[1][0], v[0][1] - v[1][1]}, o);
+    if (s < 0) break;
+    for (int b = 0; b < 2; ++b)
+      for (int i = 0; i < 2; ++i) {
+        p[b][i] += v[b][i] * s;
+        v[b][i] *= 1 - o.drag * s;
+      }
+    const Point n = {(p[1][0] - p[0][0]) / (2 * o.radius),
+                     (p[1][1] - p[0][1]) / (2 * o.radius)};
+    const double kick =
+        0.5 * (1 + o.elasticity) *
+        (n[0] * (v[0][0] - v[1][0]) + n[1] * (v[0][1] - v[1][1]));
+    for (int i = 0; i < 2; ++i) {
+      v[0][i] -= kick * n[i];
+      v[1][i] += kick * n[i];
+    }
+  }
+  for (int i = 0; i < 2; ++i) {
+    path.final_cue[i] = p[0][i] + v[0][i] / o.drag;
+    path.final_ball[i] = p[1][i] + v[1][i] / o.drag;
+  }
+  return path;
+}
+
+Options describe(const BilliardsOptions& o) {
+  const auto pair = [](const std::array<double, 2>& p) {
+    return fmt::format("{},{}", p[0], p[1]);
+  };
+  return {{"radius", fmt::format("{}", o.radius)},
+          {"elasticity", fmt::format("{}", o.elasticity)},
+          {"drag", fmt::format("{}", o.drag)},
+          {"cue", pair(o.cue)},
+          {"ball_x", fmt::format("{}", o.ball_x)},
+          {"ball_y", pair(o.ball_y)},
+          {"target", pair(o.target)},
+          {"start", pair(o.start)},
+          {"velocity_spread", fmt::format("{}", o.velocity_spread)}};
+}
+
+std::array<double, 2> exact_velocity(const Point& ball,
+                                     const BilliardsOptions& o) {
+  const double lx = o.target[0] - ball[0], ly = o.target[1] - ball[1];
+  const double l = std::hypot(lx, ly);
+  const Point n = {lx / l, ly / l};
+  const Point w = {ball[0] - 2 * o.radius * n[0] - o.cue[0],
+                   ball[1] - 2 * o.radius * n[1] - o.cue[1]};
+  const double length = std::hypot(w[0], w[1]);
+  const double cosine = (n[0] * w[0] + n[1] * w[1]) / length;
+  const double speed = l / (reach(o) * cosine) + o.drag * length;
+  return {w[0] / length * speed, w[1] / length * speed};
+}
+
+template <class T>
+Billiards<T>::Billiards(const Options& options) : options_(options) {
+  check_options(options);
+}
+
+template <class T>
+Vector<double> Billiards<T>::start() const {
+  return Eigen::Vector2d(options_.start[0], options_.start[1]);
+}
+
+template <class T>
+Samples<double> Billiards<T>::sample(Index first,
+                                     Index count,
+                                     const Rng& rng) const {
+  Samples<double> out;
+  out.x.resize(2, count), out.y.resize(2, count), out.given.resize(2, count);
+  for (Index i = 0; i < count; ++i) {
+    Stream stream = stream_of(rng, first + i);
+    const Point ball = draw_ball(options_, stream);
+    const Point v = exact_velocity(ball, options_);
+    out.given.col(i) << ball[0], ball[1];
+    out.y.col(i) << options_.target[0], options_.target[1];
+    out.x.col(i) << v[0], v[1];
+  }
+  return out;
+}
+
+template <class T>
+Samples<double> Billiards<T>::sample_labelled(Index first,
+                                              Index count,
+                                              const Rng& rng) const {
+  Samples<double> out;
+  out.x.resize(2, count), out.y.resize(2, count), out.given.resize(2, count);
+  const double spread = options_.velocity_spread;
+  for (Index i = 0; i < count; ++i) {
+    Stream stream = stream_of(rng, first + i);
+    const Point ball = draw_ball(options_, stream);
+    out.given.col(i) << ball[0], ball[1];
+    for (int j = 0; j < 2; ++j)
+      out.x(j, i) = options_.start[j] + stream.uniform(-spread, spread);
+  }
+  Workspace work;
+  Billiards<double>(options_).forward(out.x, out.given, out.y, work);
+  return out;
+}
+
+template <class T>
+void Billiards<T>::forward(BatchIn<T> x,
+                           BatchIn<T> given,
+                           BatchOut<T> y,
+                           Workspace& work) const {
+  check_input<T>(x, given);
+  check_output(y, 2, x.cols());
+  work.counts[Counter::skipped_events] += for_contacts<T>(
+      options_, x, given, [&](const auto&, Contact<T>& at, Index b) {
+        Lanes<T>(at.y, 2).store(y, b * kLanes<T>);
+      });
+}
+
+template <class T>
+void Billiards<T>::linearize(BatchIn<T> x,
+                             BatchIn<T> given,
+                             BatchOut<T> y,
+                             Tape& tape) const {
+  check_input<T>(x, given);
+  check_output(y, 2, x.cols());
+  constexpr int W = kLanes<T>;
+  const Index blocks = Lanes<T>::blocks(x.cols());
+  auto jacobians = tape.slot<T>(kJacobians, 4 * W, blocks);
+  auto live = tape.slot<LaneInt<T>>(kLive, W, blocks);
+  tape.slot<Index>(kCount, 1, 1)(0, 0) = x.cols();
+  auto* j = reinterpret_cast<Pack<T>*>(jacobians.data());
+  auto* mask = reinterpret_cast<Mask<T>*>(live.data());
+  tape.counts[Counter::skipped_events] += for_contacts<T>(
+      options_, x, given, [&](const auto& k, Contact<T>& at, Index b) {
+        Lanes<T>(at.y, 2).store(y, b * W);
+        mask[b] = at.hit | at.broken;
+        differentiate(k, at, j + 4 * b);
+      });
+}
+
+template <class T>
+void Billiards<T>::pullback(const Tape& tape,
+                            BatchIn<T> y_bar,
+                            BatchOut<T> x_bar,
+                            Workspace& work) const {
+  using P = Pack<T>;
+  const Index count = tape.view<Index>(kCount)(0, 0);
+  check_output(y_bar, 2, count);
+  check_output(x_bar, 2, count);
+  const auto jacobians = tape.view<T>(kJacobians);
+  const auto live = tape.view<LaneInt<T>>(kLive);
+  const auto* mask = reinterpret_cast<const Mask<T>*>(live.data());
+  const auto* j = reinterpret_cast<const P*>(jacobians.data());
+  Mask<T> computed{};
+  for (Index b = 0; b < live.cols(); ++b, j += 4) {
+    P g[2], out[2] = {};
+    if (any(mask[b])) {
+      Lanes<T>(g, 2).load(y_bar, b * kLanes<T>);
+      // A miss ignores its cotangent, were it infinite: 0 * inf is no 0.
+      for (P& row : g) row = select(mask[b], row, P{});
+      out[0] = j[0] * g[0] + j[1] * g[1];
+      out[1] = j[2] * g[0] + j[3] * g[1];
+      computed += mask[b];
+    }
+    Lanes<T>(out, 2).store(x_bar, b * kLanes<T>);
+  }
+  // Padded lanes are misses that nobody asked for: count from the samples.
+  work.counts[Counter::skipped_vjp] +=
+      static_cast<std::uint64_t>(count - count_set(computed));
+}
+
+template <class T>
+void Billiards<T>::jacobian(BatchIn<T> x,
+                            BatchIn<T> given,
+                            BatchOut<T> j,
+                            Workspace& work) const {
+  check_input<T>(x, given);
+  check_output(j, 4, x.cols());
+  work.counts[Counter::skipped_events] += for_contacts<T>(
+      options_, x, given, [&](const auto& k, Contact<T>& at, Index b) {
+        Pack<T> lanes[4];
+        differentiate(k, at, lanes);
+        Lanes<T>(lanes, 4).store(j, b * kLanes<T>);
+      });
+}
+
+template class Billiards<float>;
+template class Billiards<double>;
+
+}  // namespace physinv

@@ -1,0 +1,140 @@
+#include "reports/heat_map.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "reports/axis.h"
+#include "reports/palette.h"
+
+namespace physinv {
+namespace {
+
+constexpr std::size_t kMostCells = 160;  // a side
+
+struct Cells {
+  std::size_t nx = 0, ny = 0;
+  std::vector<int> color;  // -1: blank
+};
+
+// Mean of what can be shown in a block of the grid; NaN if nothing.
+double block_mean(const Field2D& f,
+                  const Axis& scale,
+                  std::size_t i0,
+                  std::size_t i1,
+                  std::size_t j0,
+                  std::size_t j1) {
+  double sum = 0;
+  int count = 0;
+  for (std::size_t j = j0; j < j1; ++j) {
+    for (std::size_t i = i0; i < i1; ++i) {
+      const double v = f.values[j * f.x.size() + i];
+      if (!scale.shows(v)) continue;
+      sum += f.log_scale ? std::log10(v) : v;
+      ++count;
+    }
+  }
+  const double mean = sum / count;
+  return f.log_scale ? std::pow(10.0, mean) : mean;
+}
+
+Cells color_cells(const Field2D& f, const Axis& scale) {
+  const std::size_t sx = 1 + (f.x.size() - 1) / kMostCells;
+  const std::size_t sy = 1 + (f.y.size() - 1) / kMostCells;
+  Cells cells{(f.x.size() + sx - 1) / sx, (f.y.size() + sy - 1) / sy, {}};
+  for (std::size_t j = 0; j < cells.ny; ++j) {
+    for (std::size_t i = 0; i < cells.nx; ++i) {
+      const double v = block_mean(f,
+                                  scale,
+                                  i * sx,
+                                  std::min((i + 1) * sx, f.x.size()),
+                                  j * sy,
+                                  std::min((j + 1) * sy, f.y.size()));
+      if (!scale.shows(v)) {
+        cells.color.push_back(-1);
+        continue;
+      }
+      const double u = std::clamp(scale.place(v), 0.0, 1.0);
+      cells.color.push_back(
+          std::min(static_cast<int>(u * kFieldColors), kFieldColors - 1));
+    }
+  }
+  return cells;
+}
+
+std::array<std::string, kFieldColors> runs_by_color(const Cells& cells) {
+  std::array<std::string, kFieldColors> paths;
+  for (std::size_t j = 0; j < cells.ny; ++j) {
+    const int* row = cells.color.data() + j * cells.nx;
+    for (std::size_t i = 0; i < cells.nx;) {
+      std::size_t end = i + 1;
+      while (end < cells.nx && row[end] == row[i]) ++end;
+      if (row[i] >= 0) {
+        paths[static_cast<std::size_t>(row[i])] +=
+            fmt::format("M{} {}h{}", i, cells.ny - 1 - j, end - i);
+      }
+      i = end;
+    }
+  }
+  return paths;
+}
+
+void color_bar(Svg& svg,
+               const Field2D& field,
+               const Axis& scale,
+               double x,
+               double y,
+               double h) {
+  const double step = h / kFieldColors;
+  for (int k = 0; k < kFieldColors; ++k) {
+    svg.leaf("rect",
+             {{"x", svg_number(x)},
+              {"y", svg_number(y + h - (k + 1) * step)},
+              {"width", "12"},
+              {"height", svg_number(step + 0.3)},
+              {"fill", field_colors()[static_cast<std::size_t>(k)]}});
+  }
+  svg.rect("frame", x, y, 12, h);
+  for (const Tick& t : scale.ticks(5)) {
+    svg.text("tick", x + 16, y + h * (1 - scale.place(t.value)) + 4, t.label);
+  }
+  if (!field.label.empty()) {
+    svg.text("tick", x, y - 10, field.label);
+  }
+}
+
+}  // namespace
+
+void draw_heat_map(
+    Svg& svg, const Field2D& field, double x, double y, double w, double h) {
+  if (field.values.size() != field.x.size() * field.y.size()) return;
+  Axis scale(field.log_scale);
+  for (const double v : field.values) scale.include(v);
+  scale.finish_tight();
+  const Cells cells = color_cells(field, scale);
+  const double cx = w / static_cast<double>(cells.nx);
+  const double cy = h / static_cast<double>(cells.ny);
+  svg.open("g",
+           {{"transform",
+             fmt::format("translate({:.4f} {:.4f}) scale({:.6f} {:.6f})",
+                         x,
+                         y + 0.5 * cy,
+                         cx,
+                         cy)},
+            {"stroke-width", "1.04"},
+            {"shape-rendering", "crispEdges"},
+            {"fill", "none"}});
+  const auto paths = runs_by_color(cells);
+  for (std::size_t k = 0; k < paths.size(); ++k) {
+    if (paths[k].empty()) continue;
+    svg.leaf("path", {{"stroke", field_colors()[k]}, {"d", paths[k]}});
+  }
+  svg.close();
+  color_bar(svg, field, scale, x + w + 14, y, h);
+}
+
+}  // namespace physinv

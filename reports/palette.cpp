@@ -1,0 +1,129 @@
+#include "reports/palette.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace physinv {
+namespace {
+
+struct Hue {
+  std::string_view method, light, dark;
+};
+
+// Known methods first, then those that are given out in order.
+constexpr Hue kHues[] = {
+    {"bfgs", "#1f6fb5", "#6cb2f2"},
+    {"jpo", "#e07b00", "#ffab47"},
+    {"supervised", "#2c8c3c", "#72d381"},
+    {"na", "#c8322b", "#ff8178"},
+    {"gd", "#7b52ab", "#c09bee"},
+    {"truth", "#1b1b1b", "#f2f2f2"},
+    {"", "#8a5a44", "#cfa28a"},
+    {"", "#17808f", "#5fcbdb"},
+    {"", "#b5478e", "#f293d1"},
+    {"", "#6f6f6f", "#b0b0b0"},
+    {"", "#7d7a12", "#d3cf55"},
+    {"", "#3d4fb0", "#9fadff"},
+};
+constexpr int kHueCount = static_cast<int>(std::size(kHues));
+constexpr int kNamed = 6;
+
+constexpr std::string_view kFurniture =
+    "text{font-family:system-ui,-apple-system,'Segoe UI',Roboto,"
+    "'Helvetica Neue',Arial,sans-serif}"
+    ".title{font-size:15px;font-weight:600}"
+    ".head{font-size:12.5px;font-weight:600}"
+    ".label{font-size:12px}.tick{font-size:11px}.note{font-size:11px}"
+    ".l{fill:none;stroke-width:1.9;stroke-linejoin:round;"
+    "stroke-linecap:round}"
+    ".d{stroke-dasharray:6 4;stroke-linecap:butt}"
+    ".e{fill:none;stroke-width:1.2}.b{stroke:none;opacity:.2}"
+    ".m{stroke-width:1.3;stroke-linejoin:round}"
+    ".o{stroke-width:1.6;stroke-linejoin:round}"
+    ".x{stroke-width:2.2;fill:none}"
+    ".halo{fill:none;stroke-width:4.2;stroke-linejoin:round;opacity:.75}"
+    ".grid{stroke-width:.8}.frame{fill:none;stroke-width:1}";
+
+std::string furniture_colors(bool dark) {
+  const auto pick = [&](const char* l, const char* d) { return dark ? d : l; };
+  return fmt::format(
+      ".bg{{fill:{0}}}.halo{{stroke:{0}}}.m{{stroke:{0}}}.o{{fill:{0}}}"
+      ".grid{{stroke:{1}}}.frame{{stroke:{2}}}"
+      ".title,.head,.label{{fill:{3}}}.tick,.note{{fill:{4}}}",
+      pick("#ffffff", "#14171c"),
+      pick("#e7e8ea", "#2a2f37"),
+      pick("#8d9198", "#727984"),
+      pick("#1b1b1b", "#f0f0f0"),
+      pick("#55585e", "#b3b8c0"));
+}
+
+std::string method_colors(bool dark) {
+  std::string css;
+  for (int i = 0; i < kHueCount; ++i) {
+    css += fmt::format(".s{0}{{stroke:{1}}}.f{0}{{fill:{1}}}",
+                       i,
+                       dark ? kHues[i].dark : kHues[i].light);
+  }
+  return css;
+}
+
+}  // namespace
+
+int Palette::index(std::string_view method) {
+  for (int i = 0; i < kNamed; ++i) {
+    if (kHues[i].method == method) return i;
+  }
+  auto at = std::find(others_.begin(), others_.end(), method);
+  if (at == others_.end()) at = others_.emplace(at, method);
+  const auto order = static_cast<int>(at - others_.begin());
+  return kNamed + order % (kHueCount - kNamed);
+}
+
+Marker marker_of(int index) {
+  constexpr Marker kCycle[] = {Marker::circle,
+                               Marker::square,
+                               Marker::triangle,
+                               Marker::diamond,
+                               Marker::down};
+  if (index == kNamed - 1) return Marker::cross;
+  return kCycle[(index < kNamed ? index : index - kNamed) % 5];
+}
+
+std::string style_sheet() {
+  return fmt::format(
+      "\n{}\n{}\n{}\n@media(prefers-color-scheme:dark){{\n{}\n{}\n}}\n",
+      kFurniture,
+      furniture_colors(false),
+      method_colors(false),
+      furniture_colors(true),
+      method_colors(true));
+}
+
+const std::array<std::string, kFieldColors>& field_colors() {
+  static const auto colors = [] {
+    // Viridis at twenty equidistant places (matplotlib, CC0).
+    constexpr std::uint32_t kAt[] = {
+        0x440154, 0x481567, 0x482677, 0x453781, 0x404788, 0x39568c, 0x33638d,
+        0x2d708e, 0x287d8e, 0x238a8d, 0x1f968b, 0x20a387, 0x29af7f, 0x3cbb75,
+        0x55c667, 0x73d055, 0x95d840, 0xb8de29, 0xdce319, 0xfde725};
+    std::array<std::string, kFieldColors> out;
+    for (int i = 0; i < kFieldColors; ++i) {
+      const double at = 19.0 * i / (kFieldColors - 1);
+      const int k = std::min(static_cast<int>(at), 18);
+      std::string color = "#";
+      for (const int shift : {16, 8, 0}) {
+        const double a = (kAt[k] >> shift) & 0xFFU;
+        const double b = (kAt[k + 1] >> shift) & 0xFFU;
+        color += fmt::format("{:02x}", std::lround(a + (at - k) * (b - a)));
+      }
+      out[static_cast<std::size_t>(i)] = color;
+    }
+    return out;
+  }();
+  return colors;
+}
+
+}  // namespace physinv

@@ -1,0 +1,49 @@
+/// One panel of a figure: axes, curves, field.
+#pragma once
+
+#include <string>
+
+#include "reports/axis.h"
+#include "reports/palette.h"
+#include "reports/svg.h"
+#include "suite/results/report_model.h"
+
+namespace physinv {
+
+struct Rect {
+  double x = 0, y = 0, w = 0, h = 0;
+};
+
+class PanelPlot {
+ public:
+  /// `id` is unique in the document: it names the clip path.
+  PanelPlot(const Panel& panel, std::string id, Palette& palette);
+
+  /// Draws into `cell`, labels included.
+  void draw(Svg& svg, const Rect& cell) const;
+
+ private:
+  void fit_axes();
+  void furniture(Svg& svg, const Rect& box, const Rect& cell) const;
+  void curves(Svg& svg, const Rect& box) const;
+  void band(Svg& svg, const Rect& box, const Series& s, int color) const;
+  void error_bars(Svg& svg, const Rect& box, const Series& s, int color) const;
+  void markers(Svg& svg, const Rect& box, const Series& s, int color) const;
+  // Moved aside by a few units, so that error bars of one x stay apart.
+  Rect dodged(const Rect& box, const Series& series) const;
+  std::string line_path(const Rect& box, const Series& s) const;
+  double px(const Rect& box, double value) const;
+  double py(const Rect& box, double value) const;
+
+  const Panel& panel_;
+  std::string id_;
+  Palette& palette_;
+  Axis x_, y_;
+  bool run_ = false;
+};
+
+/// A marker around a point, `css` its colour; hollow if the line is dashed.
+void draw_marker(
+    Svg& svg, Marker marker, double x, double y, int color, bool hollow);
+
+}  // namespace physinv

@@ -1,0 +1,161 @@
+#include "reports/plot.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "reports/palette.h"
+#include "reports/panel.h"
+#include "reports/svg.h"
+#include "reports/text.h"
+
+namespace physinv {
+namespace {
+
+constexpr double kMargin = 16, kTitleLine = 20, kLegendLine = 20,
+                 kNoteLine = 15;
+
+struct Key {
+  const Series* series;
+  double x = 0, y = 0;
+};
+
+// One entry per look: label, colour and stroke; panels share it.
+std::vector<Key> legend_keys(const Figure& figure) {
+  std::vector<Key> keys;
+  for (const Panel& panel : figure.panels) {
+    for (const Series& s : panel.series) {
+      if (s.label.empty()) continue;
+      const bool known = std::any_of(keys.begin(), keys.end(), [&](Key k) {
+        return k.series->label == s.label && k.series->method == s.method &&
+               k.series->dashed == s.dashed;
+      });
+      if (!known) keys.push_back({&s});
+    }
+  }
+  return keys;
+}
+
+// Places the entries in rows; returns the height used.
+double lay_out(std::vector<Key>& keys, double width) {
+  double x = 0, y = 0;
+  for (Key& key : keys) {
+    const double need =
+        36 + 6.6 * static_cast<double>(display_width(key.series->label)) + 18;
+    if (x > 0 && x + need > width) x = 0, y += kLegendLine;
+    key.x = x, key.y = y;
+    x += need;
+  }
+  return keys.empty() ? 0 : y + kLegendLine;
+}
+
+void draw_key(Svg& svg, const Key& key, Palette& palette, double x, double y) {
+  const Series& s = *key.series;
+  const int color = palette.index(s.method);
+  const double left = x + key.x, mid = y + key.y + 10;
+  if (s.line) {
+    svg.line(fmt::format("l s{}{}", color, s.dashed ? " d" : ""),
+             left,
+             mid,
+             left + 28,
+             mid);
+  }
+  if (s.markers || !s.line) {
+    draw_marker(svg, marker_of(color), left + 14, mid, color, s.dashed);
+  }
+  svg.text("label", left + 35, mid + 4, s.label);
+}
+
+struct Grid {
+  int columns = 1, rows = 1;
+  double cell_w = 0, cell_h = 0;
+};
+
+Grid grid_of(const Figure& figure) {
+  const int count = std::max(1, static_cast<int>(figure.panels.size()));
+  Grid grid;
+  grid.columns = std::clamp(figure.columns, 1, count);
+  grid.rows = (count + grid.columns - 1) / grid.columns;
+  grid.cell_w = grid.columns == 1 ? 640 : grid.columns == 2 ? 420 : 330;
+  grid.cell_h = grid.columns == 1 ? 380 : grid.columns == 2 ? 300 : 260;
+  return grid;
+}
+
+std::string describe(const Figure& figure) {
+  std::string text = figure.source;
+  for (const Panel& p : figure.panels) {
+    text += fmt::format("{}{}: {} over {}",
+                        text.empty() ? "" : "; ",
+                        p.title.empty() ? "panel" : p.title,
+                        p.y_label,
+                        p.x_label);
+  }
+  return text;
+}
+
+// Panels may show different looks under one name; number colours in the order
+// of the legend, not of drawing.
+Palette palette_of(const Figure& figure) {
+  Palette palette;
+  for (const Panel& p : figure.panels) {
+    for (const Series& s : p.series) palette.index(s.method);
+  }
+  return palette;
+}
+
+}  // namespace
+
+std::string render_svg(const Figure& figure) {
+  const Grid grid = grid_of(figure);
+  const double inner = grid.columns * grid.cell_w;
+  const auto chars = [&](double each) {
+    return static_cast<std::size_t>(inner / each);
+  };
+  const std::string head = figure.source.empty()
+                               ? figure.title
+                               : figure.source + " · " + figure.title;
+  const auto title = wrap(head, chars(8.2));
+  const auto note = wrap(figure.note, chars(5.9));
+  Palette palette = palette_of(figure);
+  std::vector<Key> keys = legend_keys(figure);
+  const double legend = lay_out(keys, inner);
+
+  const double legend_y =
+      kMargin + kTitleLine * static_cast<double>(title.size());
+  const double panels_y = legend_y + legend + 8;
+  const double note_y = panels_y + grid.rows * grid.cell_h + 4;
+  const double height =
+      note_y + kNoteLine * static_cast<double>(note.size()) + kMargin / 2;
+  const double width = inner + 2 * kMargin;
+
+  Svg svg(width, height, figure.title, describe(figure), style_sheet());
+  svg.rect("bg", 0, 0, width, height);
+  for (std::size_t i = 0; i < title.size(); ++i) {
+    const double y = kMargin + 12 + kTitleLine * static_cast<double>(i);
+    svg.text("title", kMargin, y, title[i]);
+  }
+  for (const Key& key : keys) draw_key(svg, key, palette, kMargin, legend_y);
+  for (std::size_t i = 0; i < figure.panels.size(); ++i) {
+    const int row = static_cast<int>(i) / grid.columns;
+    const int column = static_cast<int>(i) % grid.columns;
+    const PanelPlot plot(
+        figure.panels[i], fmt::format("{}-{}", figure.id, i), palette);
+    plot.draw(svg,
+              {kMargin + column * grid.cell_w,
+               panels_y + row * grid.cell_h,
+               grid.cell_w,
+               grid.cell_h});
+  }
+  if (figure.panels.empty()) {
+    svg.text(
+        "label", width / 2, panels_y + grid.cell_h / 2, "not run", "middle");
+  }
+  for (std::size_t i = 0; i < note.size(); ++i) {
+    const double y = note_y + 10 + kNoteLine * static_cast<double>(i);
+    svg.text("note", kMargin, y, note[i]);
+  }
+  return std::move(svg).str();
+}
+
+}  // namespace physinv

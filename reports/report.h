@@ -1,0 +1,42 @@
+/// Writes a campaign's report: one folder per experiment, an overview in
+/// Markdown, and everything again as JSON for programs.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "suite/results/report_model.h"
+
+namespace physinv {
+
+/// `reproduced`, `not reproduced`, `not run`.
+std::string_view to_string(Verdict verdict);
+
+nlohmann::ordered_json to_json(const Figure& figure);
+nlohmann::ordered_json to_json(const ClaimResult& claim);
+
+/// Files below `dir`, where jpo/billiards becomes jpo-billiards:
+///   report.md, claims.json ({provenance, sections: [{..., claims}]}),
+///   <experiment>/tables/<id>.{json,csv,md},
+///   <experiment>/figures/<id>.{json,svg}.
+/// Each file appears whole or not at all. Returns what was written, in order.
+/// Same sections and provenance, same bytes.
+/// Throws StoreError if a file cannot be written.
+std::vector<std::filesystem::path> write_report(
+    const std::filesystem::path& dir,
+    const std::vector<Section>& sections,
+    const nlohmann::ordered_json& provenance);
+
+/// The overview alone, with links relative to report.md.
+std::string report_markdown(const std::vector<Section>& sections,
+                            const nlohmann::ordered_json& provenance);
+
+/// Claims and verdicts for a terminal.
+std::string render_claims_text(const std::vector<Section>& sections,
+                               std::size_t width);
+
+}  // namespace physinv

@@ -1,0 +1,29 @@
+/// Tables of the report model as JSON, CSV, Markdown and terminal text.
+#pragma once
+
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "suite/results/report_model.h"
+
+namespace physinv {
+
+/// {id, title, source, unit, corner, columns, rows: [{label, cells: [{ours,
+/// spread, paper, paper_spread}]}], note}; null where a number is absent or
+/// not finite, `text` only where a cell has one.
+nlohmann::ordered_json to_json(const Table& table);
+
+/// RFC 4180 with every digit: per column ours and spread, then the paper's
+/// two where it printed any.
+std::string to_csv(const Table& table);
+
+/// Aligned pipe table with title and note: ours ± spread, and a column
+/// "paper" beside it where the paper printed any.
+std::string to_markdown(const Table& table);
+
+/// The same for a terminal. Columns that do not fit into `width` go on below,
+/// with the labels repeated.
+std::string render_text(const Table& table, std::size_t width);
+
+}  // namespace physinv

@@ -1,0 +1,73 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "suite/app/options.h"
+
+namespace physinv {
+namespace {
+
+double work_of(const Case& c) {
+  return std::accumulate(c.stage_operations.begin(), c.stage_operations.end(),
+                         0.0);
+}
+
+void print_json(const std::vector<Case>& cases) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  for (const Case& c : cases) {
+    nlohmann::ordered_json stages = nlohmann::ordered_json::array();
+    for (std::size_t k = 0; k < c.info.stages.size(); ++k) {
+      stages.push_back({{"name", c.info.stages[k]},
+                        {"iterations", c.stage_iterations[k]},
+                        {"operations", c.stage_operations[k]}});
+    }
+    all.push_back({{"name", c.info.name},
+                   {"experiment", c.info.experiment},
+                   {"method", c.info.method},
+                   {"profile", c.info.profile},
+                   {"n", c.info.n},
+                   {"seed", c.info.seed},
+                   {"precision", to_string(c.info.precision)},
+                   {"stages", std::move(stages)}});
+  }
+  fmt::print("{}\n", all.dump(2));
+}
+
+void print_table(const std::vector<Case>& cases) {
+  std::size_t width = 4, stages_width = 6;
+  for (const Case& c : cases) {
+    width = std::max(width, c.info.name.size());
+    stages_width = std::max(
+        stages_width, fmt::format("{}", fmt::join(c.info.stages, " ")).size());
+  }
+  fmt::print("{:<{}}  {:<{}}  {:>10}\n", "case", width, "stages", stages_width,
+             "operations");
+  double sum = 0;
+  for (const Case& c : cases) {
+    const auto stages = fmt::format("{}", fmt::join(c.info.stages, " "));
+    fmt::print("{:<{}}  {:<{}}  {:>10.2g}\n", c.info.name, width, stages,
+               stages_width, work_of(c));
+    sum += work_of(c);
+  }
+  fmt::print("{} cases, about {:.2g} floating-point operations\n",
+             cases.size(), sum);
+}
+
+}  // namespace
+
+ExitCode list_verb(const Arguments& arguments) {
+  CLI::App app("The cases of a profile, with estimated work.",
+               "physinv-bench list");
+  Selection selection;
+  selection.add_to(app);
+  bool json = false;
+  app.add_flag("--json", json, "as JSON");
+  if (!parse(app, arguments)) return ExitCode::good;
+  const auto cases = selection.cases();
+  json ? print_json(cases) : print_table(cases);
+  return ExitCode::good;
+}
+
+}  // namespace physinv

@@ -1,0 +1,129 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <exception>
+#include <map>
+#include <new>
+#include <string_view>
+#include <system_error>
+
+#include "suite/app/verbs.h"
+#include "suite/harness/context.h"
+#include "suite/harness/select.h"
+#include "suite/results/errors.h"
+
+namespace physinv {
+namespace {
+
+constexpr std::string_view kHelp =
+    R"(Physics inverse problems: benchmarks of the papers, reproduced and timed.
+
+physinv-bench [run] [flags]      run cases (the default verb)
+physinv-bench list [flags]       the cases, their stages and estimated work
+physinv-bench report RESULTS     tables, plots and claims of a campaign
+physinv-bench verify RESULTS     recompute every final loss
+physinv-bench merge OUT SHARD..  join the results of shards
+physinv-bench kernels [flags]    kernel benchmarks (flags of Google Benchmark)
+physinv-bench VERB --help        flags of a verb
+physinv-bench --version          version and build
+
+examples
+  physinv-bench --filter=billiards
+  physinv-bench --profile=paper --filter=billiards --out=results/paper
+  physinv-bench list --profile=smoke
+  physinv-bench report results/quick
+
+exit codes
+    0  good
+    1  internal error
+    2  usage, or input that cannot be read
+    3  nothing matched; the nearest names are shown
+    4  a case failed (exception, out of memory), or verify found a mismatch;
+       divergence is a result
+    7  a gating claim is not reproduced (report --check)
+    9  environment: disk full, unwritable, corrupt store
+  130  interrupted; what had finished is kept
+  5, 6 and 8 are reserved for accuracy, timing, and inconclusive
+
+environment
+  NO_COLOR   no colours
+  COLUMNS    width of the live table
+  CI, TERM=dumb, or no terminal: plain lines, one per stage
+  PHYSINV_PUBLISHED_DIR  the papers' numbers (reports/published)
+)";
+
+using Verb = ExitCode (*)(const Arguments&);
+
+const std::map<std::string, Verb>& verbs() {
+  static const std::map<std::string, Verb> all = {
+      {"run", run_verb},       {"list", list_verb},
+      {"report", report_verb}, {"verify", verify_verb},
+      {"merge", merge_verb},   {"kernels", kernels_verb}};
+  return all;
+}
+
+ExitCode dispatch(Arguments arguments) {
+  if (arguments.empty() || arguments[0].starts_with('-')) {
+    if (!arguments.empty() && (arguments[0] == "--help" || arguments[0] == "-h")) {
+      fmt::print("{}", kHelp);
+      return ExitCode::good;
+    }
+    if (!arguments.empty() && arguments[0] == "--version") {
+      fmt::print("{}\n", version_text());
+      return ExitCode::good;
+    }
+    return run_verb(arguments);
+  }
+  const auto verb = verbs().find(arguments[0]);
+  if (verb != verbs().end()) {
+    arguments.erase(arguments.begin());
+    return verb->second(arguments);
+  }
+  std::vector<std::string> known;
+  for (const auto& [name, call] : verbs()) known.push_back(name);
+  const std::string near = nearest_word(known, arguments[0]);
+  throw UsageError(fmt::format(
+      "unknown verb '{}'; {}", arguments[0],
+      near.empty() ? "run, list, report, verify, merge and kernels are known"
+                   : "did you mean " + near + "?"));
+}
+
+/// One line, whatever the exception says.
+ExitCode complain(ExitCode code, std::string text) {
+  for (char& c : text)
+    if (c == '\n') c = ' ';
+  std::fflush(stdout);
+  fmt::print(stderr, "physinv-bench: {}\n", text);
+  return code;
+}
+
+ExitCode guarded(Arguments arguments) {
+  try {
+    const ExitCode code = dispatch(std::move(arguments));
+    if (std::fflush(stdout) != 0)
+      return complain(ExitCode::environment,
+                      "standard output cannot be written; a disk may be full");
+    return code;
+  } catch (const ExitError& error) {
+    return complain(error.code(), error.what());
+  } catch (const UnreadableInput& error) {
+    return complain(ExitCode::usage, error.what());
+  } catch (const StoreError& error) {
+    return complain(ExitCode::environment, error.what());
+  } catch (const std::bad_alloc&) {
+    return complain(ExitCode::environment, "out of memory; fewer --jobs may do");
+  } catch (const std::system_error& error) {
+    return complain(ExitCode::environment, error.what());
+  } catch (const std::exception& error) {
+    return complain(ExitCode::internal,
+                    fmt::format("internal error: {}", error.what()));
+  }
+}
+
+}  // namespace
+}  // namespace physinv
+
+int main(int argc, char** argv) {
+  return static_cast<int>(
+      physinv::guarded(physinv::Arguments(argv + 1, argv + argc)));
+}

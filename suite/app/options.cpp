@@ -1,0 +1,193 @@
+#include "suite/app/options.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdio>
+
+namespace physinv {
+namespace {
+
+constexpr std::string_view kKeys = "n, seeds, iterations, precision, methods";
+
+std::vector<std::string> split(std::string_view text, char at) {
+  std::vector<std::string> parts;
+  while (true) {
+    const auto end = text.find(at);
+    parts.emplace_back(text.substr(0, end));
+    if (end == std::string_view::npos) return parts;
+    text.remove_prefix(end + 1);
+  }
+}
+
+template <class T>
+T number(std::string_view key, std::string_view text) {
+  T value{};
+  const char* end = text.data() + text.size();
+  const auto [at, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || at != end || text.empty())
+    throw UsageError(fmt::format(
+        "'{}' is no value for {}; whole numbers are", text, key));
+  return value;
+}
+
+/// "0,1" or "0-3", also mixed.
+template <class T>
+std::vector<T> numbers(std::string_view key, std::string_view text) {
+  constexpr T kMost = 100000;
+  std::vector<T> all;
+  for (const auto& part : split(text, ',')) {
+    const auto dash = part.find('-', 1);
+    const T first = number<T>(key, std::string_view(part).substr(0, dash));
+    const T last =
+        dash == std::string::npos
+            ? first
+            : number<T>(key, std::string_view(part).substr(dash + 1));
+    if (last < first || last - first > kMost)
+      throw UsageError(fmt::format(
+          "{}={} is no range; first-last with first <= last is", key, part));
+    for (T v = first; v <= last; ++v) all.push_back(v);
+  }
+  return all;
+}
+
+void set(Overrides& o, const std::string& key, const std::string& value) {
+  if (key == "n") {
+    o.n = numbers<Index>(key, value);
+  } else if (key == "seeds") {
+    o.seeds = numbers<std::uint64_t>(key, value);
+  } else if (key == "iterations") {
+    o.iterations = number<Index>(key, value);
+  } else if (key == "methods") {
+    o.methods = split(value, ',');
+  } else if (key == "precision") {
+    if (value != "f32" && value != "f64")
+      throw UsageError("unknown precision '" + value + "'; known are f32, f64");
+    o.precision = value == "f32" ? Precision::f32 : Precision::f64;
+  } else {
+    throw UsageError(
+        fmt::format("--set has no key '{}'; known are {}", key, kKeys));
+  }
+}
+
+std::string first_line(const std::string& text) {
+  return text.substr(0, text.find('\n'));
+}
+
+std::string unknown_flag(const CLI::App& app, const std::string& word) {
+  if (!word.starts_with('-'))
+    return fmt::format("unexpected argument '{}'; see --help", word);
+  const std::string flag = word.substr(0, word.find('='));
+  std::vector<std::string> known;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const auto& name : option->get_lnames()) known.push_back("--" + name);
+  }
+  const std::string near = nearest_word(known, flag);
+  return near.empty()
+             ? fmt::format("unknown flag {}; see --help", flag)
+             : fmt::format("unknown flag {}; did you mean {}?", flag, near);
+}
+
+}  // namespace
+
+bool parse(CLI::App& app, const Arguments& arguments) {
+  Arguments reversed(arguments.rbegin(), arguments.rend());
+  app.get_formatter()->column_width(26);
+  try {
+    app.parse(std::move(reversed));
+  } catch (const CLI::CallForHelp&) {
+    fmt::print("{}", app.help());
+    return false;
+  } catch (const CLI::ExtrasError&) {
+    throw UsageError(unknown_flag(app, app.remaining().front()));
+  } catch (const CLI::ParseError& error) {
+    throw UsageError(first_line(error.what()) + "; see --help");
+  }
+  return true;
+}
+
+void Selection::add_to(CLI::App& app) {
+  app.add_option("--filter", filters,
+                 "cases whose name matches this regular expression; a leading "
+                 "- negates (--filter=-refine), repeats unite")
+      ->type_name("REGEX")
+      ->allow_extra_args(false);
+  app.add_option("--profile", profile, "smoke, quick (default) or paper");
+  app.add_option("--set", sets,
+                 fmt::format("replace a key of the profile's rows, e.g. "
+                             "n=8,32; keys: {}",
+                             kKeys))
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  app.add_option("--seeds", seeds, "the same as --set seeds=LIST; 0,2 or 0-3")
+      ->type_name("LIST");
+  app.add_option("--shard", shard,
+                 "part I (from 1) of N: every N-th case of the selection")
+      ->type_name("I/N");
+}
+
+std::vector<Case> Selection::cases(std::vector<std::string>* campaign) const {
+  registry().validate();
+  const NameFilter filter(filters);
+  const Shard part = parse_shard(shard);
+  auto all = registry().expand(profile, parse_overrides(sets, seeds));
+  std::vector<std::string> names;
+  for (const Case& c : all) names.push_back(c.info.name);
+  auto chosen = filter.apply(std::move(all));
+  if (campaign != nullptr)
+    for (const Case& c : chosen) campaign->push_back(c.info.name);
+  if (!chosen.empty()) return part.apply(std::move(chosen));
+
+  std::string asked;
+  for (const auto& f : filters) asked += (asked.empty() ? "" : " ") + f;
+  const auto near = nearest_names(names, asked);
+  throw ExitError(
+      ExitCode::nothing_matched,
+      near.empty()
+          ? fmt::format("profile {} has no cases; see physinv-bench list",
+                        profile)
+          : fmt::format("no case of profile {} matches '{}'; nearest are {}",
+                        profile, asked, fmt::join(near, ", ")));
+}
+
+Overrides parse_overrides(const std::vector<std::string>& sets,
+                          const std::string& seeds) {
+  Overrides o;
+  for (const auto& text : sets) {
+    const auto at = text.find('=');
+    if (at == std::string::npos || at + 1 == text.size())
+      throw UsageError(fmt::format(
+          "--set {} has no value; key=value is right, with keys {}", text,
+          kKeys));
+    set(o, text.substr(0, at), text.substr(at + 1));
+  }
+  if (!seeds.empty()) set(o, "seeds", seeds);
+  return o;
+}
+
+Shard parse_shard(const std::string& text) {
+  if (text.empty()) return {};
+  const auto parts = split(text, '/');
+  if (parts.size() != 2)
+    throw UsageError("--shard=" + text + " is no I/N; 1/3 is");
+  const Shard s{number<int>("--shard", parts[0]),
+                number<int>("--shard", parts[1])};
+  if (s.part < 1 || s.part > s.parts)
+    throw UsageError(fmt::format(
+        "--shard={} is out of range; 1/{} to {}/{} are not", text,
+        std::max(1, s.parts), std::max(1, s.parts), std::max(1, s.parts)));
+  return s;
+}
+
+std::filesystem::path results_directory(const std::string& text) {
+  if (!std::filesystem::is_directory(text))
+    throw UsageError(fmt::format(
+        "there are no results in '{}'; a directory that 'run' wrote is "
+        "expected, such as results/quick",
+        text));
+  return text;
+}
+
+}  // namespace physinv

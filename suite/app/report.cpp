@@ -1,0 +1,107 @@
+#include "reports/report.h"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "suite/app/options.h"
+#include "suite/harness/progress.h"
+#include "suite/results/published.h"
+#include "suite/results/store.h"
+
+namespace physinv {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The papers' numbers: named by the environment, beside the sources, or
+/// installed beside the program.
+fs::path published_directory() {
+  if (const char* named = std::getenv("PHYSINV_PUBLISHED_DIR")) return named;
+  const fs::path sources = PHYSINV_PUBLISHED_DIR;
+  if (fs::is_directory(sources)) return sources;
+  return fs::read_symlink("/proc/self/exe").parent_path().parent_path() /
+         "share/physinv/published";
+}
+
+std::vector<Section> sections_of(const Results& results,
+                                 const Published& published) {
+  std::vector<Section> sections;
+  for (const auto& e : registry().experiments()) {
+    if (e->report && !results.sizes(e->name).empty())
+      sections.push_back(e->report(results, published));
+  }
+  return sections;
+}
+
+/// Context of the campaign as far as a report states it.
+nlohmann::ordered_json provenance(const fs::path& directory) {
+  const Store store = Store::read_only(directory);
+  const auto& plan = store.catalog().plan;
+  const auto context = plan.value("context", nlohmann::json::object());
+  nlohmann::ordered_json picked;
+  if (plan.contains("profile")) picked["profile"] = plan["profile"];
+  for (const char* key :
+       {"date", "host_name", "cpu_model", "num_cpus", "instruction_set",
+        "compiler", "compiler_flags", "build_type", "fingerprint", "version",
+        "git_revision", "git_dirty", "options"}) {
+    if (context.contains(key)) picked[key] = context[key];
+  }
+  return picked;
+}
+
+std::vector<std::string> unmet(const std::vector<Section>& sections) {
+  std::vector<std::string> ids;
+  for (const Section& s : sections) {
+    for (const ClaimResult& c : s.claims)
+      if (c.gates && c.verdict == Verdict::not_reproduced)
+        ids.push_back(s.experiment + " " + c.id + ": " + c.says);
+  }
+  return ids;
+}
+
+}  // namespace
+
+ExitCode report_verb(const Arguments& arguments) {
+  CLI::App app("Writes tables, plots and claims of a finished campaign.",
+               "physinv-bench report");
+  std::string results_text, out;
+  bool check = false;
+  app.add_option("RESULTS", results_text, "directory that 'run' wrote")
+      ->required();
+  app.add_option("--out", out, "where to; default: RESULTS/report")
+      ->type_name("DIR");
+  app.add_flag("--check", check, "exit 7 if a gating claim is not reproduced");
+  if (!parse(app, arguments)) return ExitCode::good;
+  const fs::path directory = results_directory(results_text);
+  const Results results = load_results(directory);
+  fs::path published = published_directory();
+  if (!fs::is_directory(published))
+    throw UsageError(fmt::format(
+        "there is no directory '{}' of published numbers; "
+        "PHYSINV_PUBLISHED_DIR names it", published.string()));
+  const auto sections = sections_of(results, Published(published));
+  if (sections.empty())
+    throw ExitError(ExitCode::nothing_matched,
+                    "no registered experiment has results in '" +
+                        results_text + "'; run cases first");
+  const fs::path target = out.empty() ? directory / "report" : fs::path(out);
+  try {
+    write_report(target, sections, provenance(directory));
+  } catch (const std::runtime_error& error) {
+    throw EnvironmentError(error.what());
+  }
+  fmt::print("{}report: {}\n",
+             render_claims_text(sections, static_cast<std::size_t>(
+                                              Screen::of(stdout).columns)),
+             (target / "report.md").string());
+  const auto wrong = unmet(sections);
+  if (check && !wrong.empty())
+    throw ExitError(ExitCode::claim,
+                    fmt::format("{} gating claims are not reproduced, first {}",
+                                wrong.size(), wrong.front()));
+  return ExitCode::good;
+}
+
+}  // namespace physinv

@@ -1,0 +1,127 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "suite/app/options.h"
+#include "suite/harness/campaign.h"
+#include "suite/harness/context.h"
+#include "suite/results/results.h"
+
+namespace physinv {
+namespace {
+
+struct RunFlags {
+  Selection selection;
+  CampaignOptions campaign;
+  std::string out;
+  int jobs = 0;
+  bool dry = false;
+
+  void add_to(CLI::App& app) {
+    selection.add_to(app);
+    app.add_option("--jobs", jobs,
+                   "worker processes; default: cores / threads")
+        ->check(CLI::Range(1, 1024));
+    app.add_option("--threads", campaign.threads,
+                   "threads inside a case (default 1); results do not change")
+        ->check(CLI::Range(1, 1024));
+    app.add_option("--time-budget", campaign.time_budget,
+                   "start no further case after so many seconds; the cases not "
+                   "run are named, and the next run goes on with them")
+        ->type_name("SECONDS")
+        ->check(CLI::PositiveNumber);
+    app.add_option("--out", out, "where to; default: results/<profile>")
+        ->type_name("DIR");
+    app.add_flag("--resume,!--fresh", campaign.resume,
+                 "reuse finished stages (default), or run all again");
+    app.add_flag("--dry-run", dry, "say what would run and what is reused");
+    app.add_flag("--trace", campaign.trace,
+                 "record a hash of all iterates of the stages that run");
+  }
+
+  void complete() {
+    if (jobs == 0)
+      jobs = std::max(1, available_cores() / campaign.threads);
+    campaign.jobs = jobs;
+    campaign.out = out.empty() ? "results/" + selection.profile : out;
+  }
+
+  nlohmann::json json() const {
+    return {{"profile", selection.profile},
+            {"filter", selection.filters},
+            {"set", selection.sets},
+            {"seeds", selection.seeds},
+            {"shard", selection.shard},
+            {"jobs", campaign.jobs},
+            {"threads", campaign.threads},
+            {"time_budget", campaign.time_budget},
+            {"resume", campaign.resume},
+            {"trace", campaign.trace},
+            {"out", campaign.out.string()}};
+  }
+};
+
+/// The records of these cases, out of all that the store holds.
+std::vector<CaseRecord> own_records(const RunFlags& flags,
+                                    const std::vector<std::string>& names) {
+  const Results results = load_results(flags.campaign.out);
+  std::vector<CaseRecord> own;
+  for (const CaseRecord& c : results.cases()) {
+    if (std::find(names.begin(), names.end(), c.info.name) != names.end())
+      own.push_back(c);
+  }
+  return own;
+}
+
+void print_result(const RunFlags& flags, const CampaignResult& r) {
+  fmt::print("{} stages run, {} reused{}; {}, bookkeeping {} ({:.2f} %)\n",
+             r.stages_run, r.stages_reused,
+             r.origins.empty() ? "" : " (" + to_text(r.origins) + ")",
+             duration_text(r.seconds), duration_text(r.bookkeeping),
+             100 * r.bookkeeping / std::max(r.seconds, 1e-9));
+  if (!r.not_run.empty()) {
+    fmt::print("{}: {} cases not run:\n",
+               r.interrupted ? "interrupted" : "out of time",
+               r.not_run.size());
+    for (const auto& name : r.not_run) fmt::print("  {}\n", name);
+  }
+  fmt::print("results: {}\n", flags.campaign.out.string());
+}
+
+}  // namespace
+
+ExitCode run_verb(const Arguments& arguments) {
+  CLI::App app(
+      "Runs the cases of a profile and writes their results. The default verb."
+      "\nExit codes and environment: physinv-bench --help",
+      "physinv-bench run");
+  RunFlags flags;
+  flags.add_to(app);
+  if (!parse(app, arguments)) return ExitCode::good;
+  flags.complete();
+  Prepared prepared =
+      prepare(flags.selection.cases(&flags.campaign.campaign));
+  if (flags.dry) {
+    dry_run(prepared, flags.campaign, stdout);
+    return ExitCode::good;
+  }
+  std::vector<std::string> names;
+  for (const Case& c : prepared.cases) names.push_back(c.info.name);
+  const CampaignResult result =
+      run_campaign(std::move(prepared), flags.campaign, flags.json(),
+                   Screen::of(stdout));
+  fmt::print("{}", summary_table(own_records(flags, names)));
+  print_result(flags, result);
+  if (result.interrupted) return ExitCode::interrupted;
+  if (!result.failed.empty()) {
+    throw ExitError(
+        ExitCode::case_failed,
+        fmt::format("{} stages failed, first {}; the others are kept, and the "
+                    "next run tries these again",
+                    result.failed.size(), result.failed.front()));
+  }
+  return ExitCode::good;
+}
+
+}  // namespace physinv

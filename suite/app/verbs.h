@@ -1,0 +1,22 @@
+/// The verbs of the command line, one file each. They return an exit code and
+/// throw ExitError for what ends them early.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "suite/harness/errors.h"
+
+namespace physinv {
+
+/// What follows the verb.
+using Arguments = std::vector<std::string>;
+
+ExitCode run_verb(const Arguments& arguments);
+ExitCode list_verb(const Arguments& arguments);
+ExitCode report_verb(const Arguments& arguments);
+ExitCode verify_verb(const Arguments& arguments);
+ExitCode merge_verb(const Arguments& arguments);
+ExitCode kernels_verb(const Arguments& arguments);
+
+}  // namespace physinv

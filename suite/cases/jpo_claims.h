@@ -1,0 +1,94 @@
+/// Building blocks of claims about the JPO paper's cases.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "suite/cases/jpo_metrics.h"
+#include "suite/results/report_model.h"
+
+namespace physinv {
+
+/// Collects conditions and the numbers behind them; a number that is not there
+/// makes the claim "not run", unless another condition already fails.
+class Judge {
+ public:
+  /// `label value` must hold against the bounds, each optional.
+  Judge& at_least(const std::string& label,
+                  std::optional<double> value,
+                  double bound) {
+    return put(label, value, ">=", bound, value && *value >= bound);
+  }
+  Judge& at_most(const std::string& label,
+                 std::optional<double> value,
+                 double bound) {
+    return put(label, value, "<=", bound, value && *value <= bound);
+  }
+  Judge& above(const std::string& label,
+               std::optional<double> value,
+               std::optional<double> other) {
+    if (!other) value.reset();
+    return put(
+        label, value, ">", other.value_or(0), value && *value > *other);
+  }
+  /// A condition that could not be evaluated.
+  Judge& missing(const std::string& what) {
+    missing_ = true;
+    return say(what + " not run");
+  }
+
+  ClaimResult result(std::string id,
+                     std::string says,
+                     std::string from,
+                     bool gates = true) && {
+    const Verdict verdict = !holds_    ? Verdict::not_reproduced
+                            : missing_ ? Verdict::not_run
+                                       : Verdict::reproduced;
+    return {.id = std::move(id),
+            .says = std::move(says),
+            .from = std::move(from),
+            .gates = gates,
+            .verdict = verdict,
+            .evidence = std::move(evidence_)};
+  }
+
+ private:
+  Judge& put(const std::string& label,
+             std::optional<double> value,
+             const char* relation,
+             double bound,
+             bool holds) {
+    if (!value) return missing(label);
+    holds_ = holds_ && holds;
+    return say(fmt::format("{} {:.3f} ({} {:.3f}{})",
+                           label,
+                           *value,
+                           relation,
+                           bound,
+                           holds ? "" : ": no"));
+  }
+  Judge& say(const std::string& text) {
+    evidence_ += (evidence_.empty() ? "" : "; ") + text;
+    return *this;
+  }
+
+  bool holds_ = true, missing_ = false;
+  std::string evidence_;
+};
+
+/// The sizes of a campaign within [first, last].
+inline std::vector<Index> sizes_between(const JpoMetrics& metrics,
+                                        Index first,
+                                        Index last) {
+  std::vector<Index> out;
+  for (const Index n : metrics.sizes())
+    if (n >= first && n <= last) out.push_back(n);
+  return out;
+}
+
+}  // namespace physinv

@@ -1,0 +1,139 @@
+/// What the inverse-problem cases of the JPO paper compare: M8 of their
+/// methods. Everything is read from finished stages; what needs a stage that
+/// is not there is empty ("not run"), never 0.
+///
+/// Stages: bfgs and gd `solve`; jpo and supervised `fit`, `refine`; na `fit`
+/// (the surrogate), `solve` (BFGS on it), `refine`.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "suite/core/batch.h"
+#include "suite/results/results.h"
+
+namespace physinv {
+
+/// Mean and ordinary sample standard deviation (divided by count - 1; empty
+/// for a single value). Empty for no values.
+struct MeanStd {
+  double mean = 0;
+  std::optional<double> std;
+};
+std::optional<MeanStd> mean_std(std::span<const double> values);
+
+/// When two losses count as equal: bitwise, or |a - b| <= 1e-6 |b|.
+enum class Equality { strict, tol };
+
+/// Shares of problems on which a method ends below, at or above BFGS.
+struct Shares {
+  double better = 0, equal = 0, worse = 0;
+  /// f_N = N_better / N + N_equal / (2 N).
+  double f() const { return better + 0.5 * equal; }
+};
+
+/// A loss that is not finite is worse; a finite one is better than a BFGS
+/// loss that is not. Sizes must agree and be positive.
+Shares compare_losses(VectorIn<double> loss,
+                      VectorIn<double> bfgs,
+                      Equality equality);
+
+/// Of the losses, the share below `threshold`; NaN is not below.
+double share_below(VectorIn<double> loss, double threshold);
+
+/// One experiment of a campaign.
+class JpoMetrics {
+ public:
+  JpoMetrics(const Results& results, std::string_view experiment)
+      : results_(results), experiment_(experiment) {}
+
+  std::vector<Index> sizes() const { return results_.sizes(experiment_); }
+  std::vector<std::uint64_t> seeds() const {
+    return results_.seeds(experiment_);
+  }
+
+  /// The finished stage with a loss per problem, else null.
+  const StageRecord* stage(std::string_view method,
+                           Index n,
+                           std::uint64_t seed,
+                           std::string_view name) const;
+  /// The last stage of the chain that is not `refine`, or `refine` itself.
+  const StageRecord* ending(std::string_view method,
+                            Index n,
+                            std::uint64_t seed,
+                            bool refined) const;
+
+  /// Against the `solve` of bfgs on the same n and seed.
+  std::optional<Shares> shares(std::string_view method,
+                               Index n,
+                               std::uint64_t seed,
+                               bool refined,
+                               Equality equality) const;
+  /// Mean of every (n, seed) there is among `sizes`; with `spread`, the
+  /// sample deviation over seeds of each seed's mean.
+  struct Pooled {
+    Shares mean;
+    std::optional<double> better_std, equal_std, f_std;
+    Index pairs = 0;
+  };
+  std::optional<Pooled> mean_shares(std::string_view method,
+                                    std::span<const Index> sizes,
+                                    bool refined,
+                                    Equality equality) const;
+
+  /// Share of the decrease made by the fit, mean over problems:
+  /// (L_start - L_fit) / (L_start - min(L_fit, L_refined)), L_start the fit's
+  /// curve at iteration 0. Problems without decrease are left out.
+  std::optional<double> share_of_decrease(std::string_view method,
+                                          Index n,
+                                          std::uint64_t seed) const;
+
+  /// Share of problems with loss < threshold at the end of a chain.
+  std::optional<double> solved_share(std::string_view method,
+                                     Index n,
+                                     std::uint64_t seed,
+                                     bool refined,
+                                     double threshold) const;
+  /// The same over all problems of all seeds and sizes there are.
+  std::optional<double> pooled_solved_share(std::string_view method,
+                                            std::span<const Index> sizes,
+                                            bool refined,
+                                            double threshold) const;
+
+  /// Of the problems that plain BFGS left at loss >= solved, how many the
+  /// method with refinement solves; pooled over seeds and sizes.
+  struct Rescue {
+    Index unsolved = 0, rescued = 0;
+    double rate() const {
+      return static_cast<double>(rescued) / static_cast<double>(unsolved);
+    }
+  };
+  /// Empty if no pair of cases is there or BFGS solved everything.
+  std::optional<Rescue> rescue(std::string_view method,
+                               std::span<const Index> sizes,
+                               double solved) const;
+
+  /// Where plain BFGS ends, pooled over the seeds of one n: on the plateau
+  /// (loss within 1e-12 relative of the problem's plateau loss), solved, or
+  /// elsewhere.
+  struct Plateau {
+    Index problems = 0, plateau = 0, solved = 0;
+    Index elsewhere() const { return problems - plateau - solved; }
+    double share() const {
+      return static_cast<double>(plateau) / static_cast<double>(problems);
+    }
+  };
+  using PlateauLoss = std::function<Vector<double>(const CaseRecord&)>;
+  std::optional<Plateau> plateau(Index n,
+                                 double solved,
+                                 const PlateauLoss& plateau_loss) const;
+
+ private:
+  const Results& results_;
+  std::string_view experiment_;
+};
+
+}  // namespace physinv

@@ -1,0 +1,49 @@
+/// Wall and CPU time of this process.
+#pragma once
+
+#include <ctime>
+
+namespace physinv {
+
+struct Seconds {
+  double wall = 0, cpu = 0;
+  Seconds& operator+=(Seconds other) {
+    wall += other.wall, cpu += other.cpu;
+    return *this;
+  }
+  friend Seconds operator-(Seconds a, Seconds b) {
+    return {a.wall - b.wall, a.cpu - b.cpu};
+  }
+};
+
+/// Monotonic wall time and the CPU time of all threads.
+inline Seconds now() {
+  const auto read = [](clockid_t id) {
+    timespec t{};
+    clock_gettime(id, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+  };
+  return {read(CLOCK_MONOTONIC), read(CLOCK_PROCESS_CPUTIME_ID)};
+}
+
+/// Sums the time between start and stop; starts stopped.
+class Stopwatch {
+ public:
+  void start() { since_ = now(), running_ = true; }
+  void stop() {
+    if (running_) total_ += now() - since_;
+    running_ = false;
+  }
+  bool running() const { return running_; }
+  Seconds total() const {
+    Seconds sum = total_;
+    if (running_) sum += now() - since_;
+    return sum;
+  }
+
+ private:
+  Seconds since_, total_;
+  bool running_ = false;
+};
+
+}  // namespace physinv

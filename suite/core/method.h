@@ -1,0 +1,98 @@
+/// Methods: chains of named stages. A stage is the unit of record, resume and
+/// reuse; what it produces is all that a later stage may see of it.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "suite/core/oracle.h"
+#include "suite/core/probe.h"
+#include "suite/core/recipe.h"
+#include "suite/core/stop.h"
+
+namespace physinv {
+
+/// A part of a network's input, row blocks stacked in the order listed.
+enum class Field : std::uint8_t { unknowns, given, observations };
+
+/// A network in its place: what it reads, what it is.
+struct NetworkRole {
+  std::vector<Field> inputs;
+  NetworkRecipe recipe;
+};
+
+/// Everything an experiment fixes for its methods.
+struct Setting {
+  NetworkRole predictor;  ///< estimates x; x = start + scale * output
+  NetworkRole surrogate;  ///< estimates y
+  double output_scale = 1.0;
+  double gtol = 1e-5;  ///< of BFGS and gradient descent
+};
+
+/// What a stage leaves for the next one and for the record.
+struct Outcome {
+  Batch<double> x;             ///< estimate per example
+  std::vector<Status> status;  ///< how each example ended
+  Vector<double> iterations;   ///< per example
+  Vector<double> evaluations;  ///< per example, as the algorithm is written
+  Stop stop = Stop::iterations;
+  std::string message;
+  /// Whatever else the stage found, by name; `parameters` of a network is
+  /// what a later stage of the chain picks up.
+  std::map<std::string, Batch<double>> arrays;
+  std::size_t bytes = 0;  ///< peak bytes of the stage's own buffers
+};
+
+/// What a stage may see while it runs.
+struct StageRun {
+  Oracle& oracle;
+  Probe& probe;
+  const Setting& setting;
+  const Outcome* previous;  ///< of the stage before, null for the first
+  Rng network_init;         ///< stream of initial weights, same for all methods
+  Rng batches;              ///< stream of batch order, same for all methods
+  Rng method;               ///< stream of this method alone
+  Index iterations;
+  Precision precision;
+  Threads* threads;
+};
+
+/// Size of a case, for estimates of work.
+struct CaseSize {
+  Index n, iterations;
+  Shape shape;
+  double problem_operations, predictor_operations, surrogate_operations;
+};
+
+class Stage {
+ public:
+  virtual ~Stage() = default;
+  virtual std::string name() const = 0;
+  virtual Needs needs() const = 0;
+  /// Options that decide the result, for the record and the content key.
+  virtual Options options() const = 0;
+  /// Iterations when the row names none, or for a stage whose number the row
+  /// does not set.
+  virtual Index default_iterations() const = 0;
+  virtual bool takes_row_iterations() const { return true; }
+  /// True if float and double differ.
+  virtual bool has_precision() const { return false; }
+  /// Estimated floating-point operations, for the ETA.
+  virtual double operations(const CaseSize& size) const = 0;
+  virtual Outcome run(StageRun& run) const = 0;
+};
+
+struct Method {
+  std::string id;  ///< in [a-z0-9_-]
+  std::vector<std::shared_ptr<const Stage>> chain;
+
+  Needs needs() const {
+    Needs all = Needs::forward;
+    for (const auto& stage : chain) all = all | stage->needs();
+    return all;
+  }
+};
+
+}  // namespace physinv

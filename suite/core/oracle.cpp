@@ -1,0 +1,173 @@
+#include "suite/core/oracle.h"
+
+#include <numeric>
+#include <utility>
+
+namespace physinv {
+
+/// The problem and its data in one precision, made when first asked for.
+template <class T>
+struct Oracle::Side {
+  Side(const ProblemRecipe& recipe, const Samples<double>& data)
+      : problem(recipe.make<T>()),
+        vjp(dynamic_cast<const Vjp<T>*>(problem.get())),
+        given(data.given.template cast<T>()),
+        y(data.y.template cast<T>()) {}
+
+  std::unique_ptr<Problem<T>> problem;
+  const Vjp<T>* vjp;
+  Batch<T> given, y;
+  Tape tape;
+};
+
+/// Data of the active problems: the full arrays, or copies of some columns.
+template <class T>
+struct Oracle::Packed {
+  Packed(const Side<T>& side, std::span<const Index> active, Workspace& work)
+      : all(static_cast<Index>(active.size()) == side.y.cols()),
+        given(work.take<T>(side.given.rows(), all ? 0 : size(active))),
+        y(work.take<T>(side.y.rows(), all ? 0 : size(active))) {
+    if (all) return;
+    for (Index j = 0; j < size(active); ++j) {
+      const Index i = active[static_cast<std::size_t>(j)];
+      given.col(j) = side.given.col(i);
+      y.col(j) = side.y.col(i);
+    }
+  }
+  static Index size(std::span<const Index> active) {
+    return static_cast<Index>(active.size());
+  }
+  Eigen::Ref<const Batch<T>> given_of(const Side<T>& side) const {
+    if (all) return side.given;
+    return given;
+  }
+  Eigen::Ref<const Batch<T>> y_of(const Side<T>& side) const {
+    if (all) return side.y;
+    return y;
+  }
+  bool all;
+  Scratch<T> given, y;
+};
+
+Oracle::Oracle(const ProblemRecipe& recipe,
+               Index count,
+               const Rng& data,
+               Needs allowed,
+               Threads* threads)
+    : recipe_(recipe),
+      rng_(data),
+      allowed_(allowed),
+      all_(static_cast<std::size_t>(count)),
+      work_(std::make_unique<Workspace>(threads)),
+      measuring_(std::make_unique<Workspace>(threads)) {
+  SUITE_CHECK(count > 0, "a case has at least one problem");
+  const auto problem = recipe_.make<double>();
+  shape_ = problem->shape();
+  operations_ = problem->operations();
+  data_ = problem->sample(0, count, rng_.child("data/test"));
+  std::iota(all_.begin(), all_.end(), Index{0});
+}
+
+Oracle::~Oracle() = default;
+
+template <>
+Oracle::Side<float>& Oracle::side<float>() {
+  if (!float_) float_ = std::make_unique<Side<float>>(recipe_, data_);
+  return *float_;
+}
+
+template <>
+Oracle::Side<double>& Oracle::side<double>() {
+  if (!double_) double_ = std::make_unique<Side<double>>(recipe_, data_);
+  return *double_;
+}
+
+Batch<double> Oracle::start() const {
+  return recipe_.make<double>()->start().replicate(1, count());
+}
+
+template <class T>
+void Oracle::evaluate(std::span<const Index> active,
+                      BatchIn<T> x,
+                      VectorOut<double> loss) {
+  Side<T>& s = side<T>();
+  const Index m = Packed<T>::size(active);
+  SUITE_CHECK(x.rows() == shape_.unknowns && x.cols() == m && loss.size() == m,
+              "x and loss match the active problems");
+  Workspace::Scope scope(*work_);
+  const Packed<T> data(s, active, *work_);
+  auto y = work_->take<T>(shape_.observations, m);
+  s.problem->forward(x, data.given_of(s), y, *work_);
+  s.problem->loss(y, data.y_of(s), loss);
+  add(Counter::forward, m);
+}
+
+template <class T>
+void Oracle::evaluate(std::span<const Index> active,
+                      BatchIn<T> x,
+                      VectorOut<double> loss,
+                      BatchOut<T> gradient) {
+  Side<T>& s = side<T>();
+  const Index m = Packed<T>::size(active);
+  SUITE_CHECK(s.vjp != nullptr && contains(allowed_, Needs::vjp),
+              "the method asked for a gradient it did not declare");
+  SUITE_CHECK(x.rows() == shape_.unknowns && x.cols() == m &&
+                  loss.size() == m && gradient.cols() == m,
+              "x, loss and gradient match the active problems");
+  Workspace::Scope scope(*work_);
+  const Packed<T> data(s, active, *work_);
+  auto y = work_->take<T>(shape_.observations, m);
+  auto y_bar = work_->take<T>(shape_.observations, m);
+  s.vjp->linearize(x, data.given_of(s), y, s.tape);
+  s.problem->loss(y, data.y_of(s), loss);
+  s.problem->loss_gradient(y, data.y_of(s), y_bar);
+  s.vjp->pullback(s.tape, y_bar, gradient, *work_);
+  add(Counter::vjp, m);
+}
+
+template void Oracle::evaluate(std::span<const Index>, BatchIn<float>,
+                               VectorOut<double>);
+template void Oracle::evaluate(std::span<const Index>, BatchIn<double>,
+                               VectorOut<double>);
+template void Oracle::evaluate(std::span<const Index>, BatchIn<float>,
+                               VectorOut<double>, BatchOut<float>);
+template void Oracle::evaluate(std::span<const Index>, BatchIn<double>,
+                               VectorOut<double>, BatchOut<double>);
+
+const Samples<double>& Oracle::labelled() {
+  SUITE_CHECK(contains(allowed_, Needs::labels),
+              "the method asked for labels it did not declare");
+  if (labelled_.count() == 0) {
+    labelled_ = recipe_.make<double>()->sample_labelled(
+        0, count(), rng_.child("data/train"));
+  }
+  return labelled_;
+}
+
+void Oracle::measure(BatchIn<double> x, VectorOut<double> loss) {
+  Side<double>& s = side<double>();
+  Workspace::Scope scope(*measuring_);
+  auto y = measuring_->take<double>(shape_.observations, count());
+  s.problem->forward(x, s.given, y, *measuring_);
+  s.problem->loss(y, s.y, loss);
+}
+
+const Counts& Oracle::counts() const {
+  counts_ += std::exchange(work_->counts, {});
+  if (float_) counts_ += std::exchange(float_->tape.counts, {});
+  if (double_) counts_ += std::exchange(double_->tape.counts, {});
+  return counts_;
+}
+
+void Oracle::add(Counter counter, Index n) {
+  counts_[counter] += static_cast<std::uint64_t>(n);
+}
+
+std::size_t Oracle::bytes() const {
+  std::size_t sum = work_->bytes();
+  if (float_) sum += float_->tape.bytes();
+  if (double_) sum += double_->tape.bytes();
+  return sum;
+}
+
+}  // namespace physinv

@@ -1,0 +1,79 @@
+/// The problems of one case as a method may see them: shapes checked, calls
+/// counted, true solutions hidden, labels only for those who asked.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "suite/core/problem.h"
+#include "suite/core/recipe.h"
+
+namespace physinv {
+
+class Oracle {
+ public:
+  /// `labelled` is drawn on first use and only if `allowed` has labels.
+  Oracle(const ProblemRecipe& recipe, Index count, const Rng& data,
+         Needs allowed, Threads* threads = nullptr);
+  ~Oracle();
+
+  Shape shape() const { return shape_; }
+  Index count() const { return data_.count(); }
+
+  /// Start of the classical optimizers, one column per problem.
+  Batch<double> start() const;
+  const Batch<double>& given() const { return data_.given; }
+  const Batch<double>& observations() const { return data_.y; }
+
+  /// Loss of x(:, j) on problem active[j], in the precision of x.
+  template <class T>
+  void evaluate(std::span<const Index> active, BatchIn<T> x,
+                VectorOut<double> loss);
+  /// The same with gradients d loss / d x.
+  template <class T>
+  void evaluate(std::span<const Index> active, BatchIn<T> x,
+                VectorOut<double> loss, BatchOut<T> gradient);
+
+  /// Every problem at once: active = 0, 1, .. count-1.
+  std::span<const Index> all() const { return all_; }
+
+  /// As many labelled samples as there are problems, from a separate set.
+  const Samples<double>& labelled();
+
+  /// Losses in double for curves and records; not counted, not part of a
+  /// method's work.
+  void measure(BatchIn<double> x, VectorOut<double> loss);
+
+  const Counts& counts() const;
+  /// Adds counts a method keeps itself (network passes, work it skipped).
+  void add(Counter counter, Index n);
+  void add(const Counts& counts) { counts_ += counts; }
+  /// Peak bytes of buffers held by the physics.
+  std::size_t bytes() const;
+
+  /// The data with the truth: for the harness and the record only.
+  const Samples<double>& data() const { return data_; }
+  double operations() const { return operations_; }
+
+ private:
+  template <class T>
+  struct Side;
+  template <class T>
+  Side<T>& side();
+  template <class T>
+  struct Packed;
+
+  ProblemRecipe recipe_;
+  Rng rng_;
+  Needs allowed_;
+  Shape shape_;
+  Samples<double> data_, labelled_;
+  std::vector<Index> all_;
+  std::unique_ptr<Side<float>> float_;
+  std::unique_ptr<Side<double>> double_;
+  std::unique_ptr<Workspace> work_, measuring_;
+  mutable Counts counts_;
+  double operations_ = 0;
+};
+
+}  // namespace physinv

@@ -1,0 +1,119 @@
+#include "suite/core/probe.h"
+
+#include <algorithm>
+
+namespace physinv {
+
+Index next_measured(Index iteration) {
+  return std::max(iteration + 1, iteration + iteration / 7);
+}
+
+Probe::Probe(Oracle& oracle, Index iterations, Index tracked)
+    : oracle_(oracle),
+      iterations_(iterations),
+      tracked_(std::min(tracked, oracle.count())),
+      x_(oracle.shape().unknowns, oracle.count()),
+      loss_(oracle.count()) {
+  setup_.start();
+}
+
+void Probe::begin_warmup() {
+  setup_.stop();
+  warmup_.start();
+}
+
+void Probe::begin() {
+  setup_.stop();
+  warmup_.stop();
+  begun_ = true;
+  solve_.start();
+}
+
+void Probe::end() {
+  solve_.stop();
+  stopped_ = true;
+}
+
+bool Probe::due() const {
+  return iteration_ >= next_ || iteration_ >= iterations_ || stopped_;
+}
+
+void Probe::measure() {
+  measure_.start();
+  oracle_.measure(x_, loss_);
+  append(iteration_, x_, loss_);
+  measure_.stop();
+}
+
+void Probe::append(Index iteration, BatchIn<double> x, VectorIn<double> loss) {
+  const Index point = open_point(iteration);
+  for (Index i = 0; i < loss.size(); ++i)
+    put(point, i, x.col(i).data(), loss(i));
+  if (observer_) observer_(iteration, loss);
+}
+
+Index Probe::open_point(Index iteration) {
+  const Index point = curve_.points();
+  if (point >= curve_.loss.cols()) {
+    const Index room = std::max<Index>(64, 2 * point);
+    curve_.loss.conservativeResize(loss_.size(), room);
+    curve_.x.conservativeResize(tracked_ * x_.rows(), room);
+  }
+  curve_.iteration.push_back(static_cast<double>(iteration));
+  curve_.seconds.push_back(solve_.total().wall);
+  const Counts& counts = oracle_.counts();
+  curve_.evaluations.push_back(static_cast<double>(counts[Counter::forward] +
+                                                   counts[Counter::vjp]));
+  next_ = next_measured(iteration);
+  return point;
+}
+
+void Probe::put(Index point, Index example, const double* x, double loss) {
+  curve_.loss(example, point) = loss;
+  if (example >= tracked_) return;
+  const Index d = x_.rows();
+  std::copy_n(x, d, &curve_.x(example * d, point));
+}
+
+void Probe::accept(Index example,
+                   Index iteration,
+                   const double* x,
+                   double loss) {
+  if (reached_.empty()) reached_.assign(static_cast<std::size_t>(x_.cols()), 0);
+  Index& reached = reached_[static_cast<std::size_t>(example)];
+  std::copy_n(x, x_.rows(), x_.col(example).data());
+  loss_(example) = loss;
+  iteration_ = std::max(iteration_, iteration);
+  if (iteration >= next_) {
+    pause();
+    open_point(iteration);
+    if (observer_) observer_(iteration, loss_);
+    resume();
+  }
+  if (reached < curve_.points() &&
+      curve_.iteration[static_cast<std::size_t>(reached)] ==
+          static_cast<double>(iteration))
+    put(reached++, example, x, loss);
+}
+
+void Probe::finish() {
+  end();
+  if (curve_.points() == 0 || curve_.iteration.back() < iteration_)
+    open_point(iteration_);
+  for (Index i = 0; i < x_.cols(); ++i)
+    for (Index k = reached_.empty() ? 0 : reached_[static_cast<std::size_t>(i)];
+         k < curve_.points(); ++k)
+      put(k, i, x_.col(i).data(), loss_(i));
+}
+
+const Curve& Probe::curve() {
+  curve_.loss.conservativeResize(curve_.loss.rows(), curve_.points());
+  curve_.x.conservativeResize(curve_.x.rows(), curve_.points());
+  return curve_;
+}
+
+Clocks Probe::clocks() const {
+  return {setup_.total(), warmup_.total(), solve_.total(), measure_.total()};
+}
+
+}  // namespace physinv

@@ -1,0 +1,106 @@
+/// The watch over a running stage: counts iterations, keeps the clock and
+/// measures the curve while the clock stands still.
+///
+///   while (probe.proceed([&](BatchOut<double> x) { predict(x); })) step();
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "suite/core/clock.h"
+#include "suite/core/curve.h"
+#include "suite/core/oracle.h"
+
+namespace physinv {
+
+/// Clocks of a stage. Setup and warm-up are apart from solving; measuring is
+/// the time spent on curves, in none of the others.
+struct Clocks {
+  Seconds setup, warmup, solve, measure;
+};
+
+class Probe {
+ public:
+  /// Trace of a run for tests: called each iteration with bytes to hash.
+  using Trace = std::function<void(const void* data, std::size_t bytes)>;
+
+  /// `tracked` examples have their estimates stored along the curve.
+  Probe(Oracle& oracle, Index iterations, Index tracked = 4);
+
+  /// Ends set-up; what follows is a discarded pass that fills caches.
+  void begin_warmup();
+  /// Starts the solving clock (the first `proceed` does it too).
+  void begin();
+
+  /// True while iterations are left. When a point of the curve is due, stops
+  /// the clock, asks `estimate` to fill x and measures its true loss.
+  template <class F>
+  bool proceed(F&& estimate) {
+    if (!begun_) begin();
+    if (due()) {
+      pause();
+      estimate(BatchOut<double>(x_));
+      measure();
+      resume();
+    }
+    if (iteration_ >= iterations_ || stopped_) {
+      end();
+      return false;
+    }
+    ++iteration_;
+    return true;
+  }
+
+  /// For solvers that advance example by example and know their losses:
+  /// example i reached its iterate `iteration`. A point of the curve holds
+  /// every example's iterate of that number, or its last one if it ended
+  /// before; `finish` fills these in.
+  void accept(Index example, Index iteration, const double* x, double loss);
+  void finish();
+
+  /// No more iterations: the next `proceed` measures and ends.
+  void stop() { stopped_ = true; }
+  void end();
+
+  void pause() { solve_.stop(); }
+  void resume() { solve_.start(); }
+
+  Index iteration() const { return iteration_; }
+  Index iterations() const { return iterations_; }
+  const Curve& curve();
+  Clocks clocks() const;
+
+  /// Told of every point of the curve, the clock stopped meanwhile.
+  using Observer = std::function<void(Index iteration, VectorIn<double> loss)>;
+  void set_observer(Observer observer) { observer_ = std::move(observer); }
+
+  void set_trace(Trace trace) { trace_ = std::move(trace); }
+  bool traced() const { return static_cast<bool>(trace_); }
+  void trace(const void* data, std::size_t bytes) const {
+    if (trace_) trace_(data, bytes);
+  }
+
+ private:
+  bool due() const;
+  void measure();
+  void append(Index iteration, BatchIn<double> x, VectorIn<double> loss);
+  Index open_point(Index iteration);
+  void put(Index point, Index example, const double* x, double loss);
+
+  Oracle& oracle_;
+  Index iterations_, iteration_ = 0, next_ = 0, tracked_;
+  bool begun_ = false, stopped_ = false;
+  Stopwatch setup_, warmup_, solve_, measure_;
+  Batch<double> x_;
+  Vector<double> loss_;
+  std::vector<Index> reached_;  ///< points each example has, with `accept`
+  Curve curve_;
+  Trace trace_;
+  Observer observer_;
+};
+
+/// The iterations at which curves are measured: every one up to 8, then about
+/// seventeen per factor of ten.
+Index next_measured(Index iteration);
+
+}  // namespace physinv

@@ -1,0 +1,58 @@
+/// Recipes: how to make a problem or a network in either precision, with the
+/// options that define it. Registering stores recipes and runs nothing.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "suite/core/network.h"
+#include "suite/core/problem.h"
+
+namespace physinv {
+
+/// Named options in declared order, as text that round-trips. They enter the
+/// record and the content key.
+using Options = std::vector<std::pair<std::string, std::string>>;
+
+enum class Precision : std::uint8_t { f32, f64 };
+
+constexpr std::string_view to_string(Precision p) {
+  return p == Precision::f32 ? "f32" : "f64";
+}
+
+/// Makes one problem of one configuration, in float and in double.
+struct ProblemRecipe {
+  std::string name;
+  Options options;
+  Needs provided = Needs::forward;
+  std::function<std::unique_ptr<Problem<float>>()> make_float;
+  std::function<std::unique_ptr<Problem<double>>()> make_double;
+
+  template <class T>
+  std::unique_ptr<Problem<T>> make() const {
+    if constexpr (std::is_same_v<T, float>) {
+      return make_float();
+    } else {
+      return make_double();
+    }
+  }
+};
+
+/// problem<Heat>("heat", options): reads abilities from the base-class list.
+template <template <class> class P>
+ProblemRecipe problem(std::string name,
+                      typename P<double>::Options options = {}) {
+  return {.name = std::move(name),
+          .options = describe(options),
+          .provided = provides<P<double>, double>(),
+          .make_float = [options] { return std::make_unique<P<float>>(options); },
+          .make_double = [options] {
+            return std::make_unique<P<double>>(options);
+          }};
+}
+
+}  // namespace physinv

@@ -1,0 +1,331 @@
+#include "suite/harness/campaign.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <csignal>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <set>
+
+#include "suite/core/clock.h"
+#include "suite/harness/build_info.h"
+#include "suite/harness/context.h"
+#include "suite/harness/keys.h"
+#include "suite/harness/workers.h"
+#include "suite/results/store.h"
+
+namespace physinv {
+namespace {
+
+volatile std::sig_atomic_t stop_signal = 0;
+
+constexpr auto kNobody = std::numeric_limits<std::size_t>::max();
+
+/// While it lives, SIGINT and SIGTERM only set a flag and end waits.
+class SignalWatch {
+ public:
+  SignalWatch() {
+    stop_signal = 0;
+    struct sigaction action {};
+    action.sa_handler = [](int s) { stop_signal = s; };
+    sigaction(SIGINT, &action, &old_int_);
+    sigaction(SIGTERM, &action, &old_term_);
+  }
+  ~SignalWatch() {
+    sigaction(SIGINT, &old_int_, nullptr);
+    sigaction(SIGTERM, &old_term_, nullptr);
+  }
+  SignalWatch(const SignalWatch&) = delete;
+  SignalWatch& operator=(const SignalWatch&) = delete;
+
+ private:
+  struct sigaction old_int_ {}, old_term_ {};
+};
+
+/// The beginning of the chain that the store holds. Stages that failed or
+/// were skipped are run again.
+std::vector<StageRecord> stored_stages(const Store& store, const Case& c) {
+  std::vector<StageRecord> found;
+  for (const auto& key : c.info.keys) {
+    auto record = store.find(key);
+    if (!record || record->stop == Stop::failed ||
+        record->stop == Stop::skipped)
+      break;
+    found.push_back(std::move(*record));
+  }
+  return found;
+}
+
+class Campaign {
+ public:
+  Campaign(Prepared prepared, const CampaignOptions& options,
+           const nlohmann::json& options_json, const Screen& screen)
+      : begin_(now().wall),
+        options_(options),
+        cases_(std::move(prepared.cases)),
+        data_(std::move(prepared.data)),
+        errors_(std::move(prepared.errors)),
+        revision_(git_revision()),
+        store_(open_store(options)),
+        progress_(screen, cases_, options.jobs) {
+    context_ = machine_context(revision_);
+    context_["options"] = options_json;
+  }
+
+  CampaignResult run() {
+    const SignalWatch watch;
+    plan();
+    if (!store_.warning().empty()) progress_.say(store_.warning());
+    say_reused();
+    if (!queue_.empty() && stop_signal == 0) work();
+    progress_.clear();
+    result_.interrupted = stop_signal != 0;
+    for (const std::size_t i : queue_)
+      result_.not_run.push_back(cases_[i].info.name);
+    finish();
+    return std::move(result_);
+  }
+
+ private:
+  static Store open_store(const CampaignOptions& options) {
+    return Store(options.out, !options.resume);
+  }
+
+  /// Sorts the cases into those to run and those the store already holds.
+  void plan() {
+    std::vector<CaseInfo> infos;
+    for (const Case& c : cases_) infos.push_back(c.info);
+    store_.set_plan(infos, context_, options_.campaign);
+    for (std::size_t i = 0; i < cases_.size(); ++i) {
+      if (!errors_[i].empty()) {
+        lose(i, 0, "data: " + errors_[i]);
+        continue;
+      }
+      const std::size_t stages = take_stored(i).size();
+      if (stages < cases_[i].info.stages.size()) queue_.push_back(i);
+    }
+  }
+
+  /// What the store has of a case; a stage that another case ran is entered
+  /// for this one too.
+  std::vector<StageRecord> take_stored(std::size_t i) {
+    auto found = stored_stages(store_, cases_[i]);
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      StageRecord& record = found[k];
+      if (counted_.insert({i, k}).second) {
+        ++result_.stages_reused;
+        ++result_.origins[{record.finished.substr(0, 10), record.revision}];
+        progress_.reused(i, static_cast<Index>(k));
+        if (record.case_name != cases_[i].info.name) {
+          record.case_name = cases_[i].info.name;
+          store_.append(cases_[i].info, data_[i], record);
+        }
+      }
+    }
+    return found;
+  }
+
+  void say_reused() {
+    if (result_.stages_reused > 0)
+      progress_.say(fmt::format(
+          "reusing {} finished stages: {} (--fresh runs them again)",
+          result_.stages_reused, to_text(result_.origins)));
+  }
+
+  void work() {
+    const auto count = std::min<std::size_t>(
+        static_cast<std::size_t>(options_.jobs), queue_.size());
+    Workers workers(cases_, count, options_.threads,
+                    {.crowded = static_cast<int>(count) * options_.threads >
+                                available_cores(),
+                     .trace = options_.trace,
+                     .revision = revision_});
+    while (stop_signal == 0) {
+      hand_out(workers);
+      if (running_.empty()) break;
+      for (auto& event : workers.wait(0.1)) handle(event);
+      progress_.draw();
+    }
+    if (stop_signal != 0)  // what has arrived is kept
+      for (auto& event : workers.wait(0)) handle(event);
+    for (const auto& [worker, index] : running_) queue_.push_back(index);
+    waited_ = workers.waited();
+  }
+
+  bool out_of_time() const {
+    return options_.time_budget > 0 &&
+           now().wall - begin_ > options_.time_budget;
+  }
+
+  void hand_out(Workers& workers) {
+    for (std::size_t w = 0; w < workers.count() && !out_of_time(); ++w) {
+      if (!workers.idle(w)) continue;
+      const auto next =
+          std::find_if(queue_.begin(), queue_.end(),
+                       [&](std::size_t i) { return !shares_running(i); });
+      if (next == queue_.end()) return;
+      const std::size_t i = *next;
+      queue_.erase(next);
+      const auto earlier = take_stored(i);
+      if (earlier.size() == cases_[i].info.stages.size()) {
+        --w;  // another case has meanwhile run all of it
+        continue;
+      }
+      running_[w] = i;
+      positions_[w] = static_cast<Index>(earlier.size());
+      workers.submit(w, i, earlier);
+    }
+  }
+
+  /// Two cases with the same first stages do not run them at the same time.
+  bool shares_running(std::size_t i) const {
+    return std::any_of(running_.begin(), running_.end(), [&](const auto& r) {
+      return cases_[r.second].info.keys.front() == cases_[i].info.keys.front();
+    });
+  }
+
+  void handle(WorkerEvent& event) {
+    using Kind = WorkerEvent::Kind;
+    switch (event.kind) {
+      case Kind::stage_started:
+        positions_[event.worker] = event.position;
+        progress_.started(event.worker, event.case_index, event.position);
+        break;
+      case Kind::progress:
+        progress_.report(event.worker, event.iteration, event.loss);
+        break;
+      case Kind::stage_done:
+        positions_[event.worker] = event.position + 1;
+        progress_.finished(event.worker, event.case_index, event.record);
+        keep(event.case_index, event.record);
+        break;
+      case Kind::case_done:
+        overhead_ += event.overhead;
+        running_.erase(event.worker);
+        break;
+      case Kind::died:
+        progress_.idle(event.worker);
+        running_.erase(event.worker);
+        if (stop_signal == 0)
+          lose(event.case_index, positions_[event.worker], event.message);
+        break;
+    }
+  }
+
+  void keep(std::size_t i, const StageRecord& record) {
+    store_.append(cases_[i].info, data_[i], record);
+    ++result_.stages_run;
+    if (record.stop == Stop::failed)
+      result_.failed.push_back(
+          fmt::format("{} {}: {}", record.case_name, record.stage,
+                      record.message));
+  }
+
+  /// The stage at `position` failed without a record; those after it are
+  /// skipped.
+  void lose(std::size_t i, Index position, const std::string& message) {
+    const Case& c = cases_[i];
+    const auto stages = static_cast<Index>(c.info.stages.size());
+    for (Index k = position; k < stages; ++k) {
+      const bool first = k == position;
+      const auto& cause = c.info.stages[static_cast<std::size_t>(position)];
+      const auto record = lost_stage(c, k, first ? Stop::failed : Stop::skipped,
+                                     first ? message : cause + " failed",
+                                     revision_);
+      progress_.finished(kNobody, i, record);
+      keep(i, record);
+    }
+  }
+
+  void finish() {
+    result_.bookkeeping = now().wall - begin_ - waited_ + overhead_;
+    context_["bookkeeping_ms"] = 1e3 * result_.bookkeeping;
+    context_["wall_ms"] = 1e3 * (now().wall - begin_);
+    context_["stages_run"] = result_.stages_run;
+    context_["stages_reused"] = result_.stages_reused;
+    store_.set_context(context_);
+    const double t = now().wall;
+    store_.finish();
+    result_.bookkeeping += now().wall - t;
+    result_.seconds = now().wall - begin_;
+  }
+
+  double begin_;
+  const CampaignOptions& options_;
+  std::vector<Case> cases_;
+  std::vector<CaseData> data_;
+  std::vector<std::string> errors_;
+  std::string revision_;
+  Store store_;
+  Progress progress_;
+  nlohmann::json context_;
+  CampaignResult result_;
+  std::vector<std::size_t> queue_;  // cases not handed out yet
+  std::map<std::size_t, std::size_t> running_;  // worker -> case
+  std::map<std::size_t, Index> positions_;      // worker -> stage
+  std::set<std::pair<std::size_t, std::size_t>> counted_;  // reused stages
+  double waited_ = 0, overhead_ = 0;
+};
+
+}  // namespace
+
+Prepared prepare(std::vector<Case> cases) {
+  Prepared p;
+  p.cases = std::move(cases);
+  std::map<std::tuple<std::string, Index, std::uint64_t>, CaseData> drawn;
+  for (Case& c : p.cases) {
+    std::string error;
+    CaseData data;
+    const auto& info = c.info;
+    const auto id = std::tuple(info.experiment, info.n, info.seed);
+    try {
+      auto at = drawn.find(id);
+      if (at == drawn.end()) at = drawn.emplace(id, draw_data(c)).first;
+      data = at->second;
+    } catch (const std::exception& e) {
+      error = e.what();
+    }
+    c.info.keys = content_keys(c, data.hash, build_info().fingerprint);
+    p.data.push_back(std::move(data));
+    p.errors.push_back(std::move(error));
+  }
+  return p;
+}
+
+void dry_run(const Prepared& prepared, const CampaignOptions& options,
+             std::FILE* stream) {
+  std::optional<Store> store;
+  if (options.resume && Store::exists(options.out))
+    store.emplace(Store::read_only(options.out));
+  double all = 0, left = 0;
+  std::size_t run = 0, reused = 0;
+  for (const Case& c : prepared.cases) {
+    const auto found =
+        store ? stored_stages(*store, c) : std::vector<StageRecord>();
+    for (std::size_t k = 0; k < c.info.stages.size(); ++k) {
+      const bool have = k < found.size();
+      all += c.stage_operations[k];
+      have ? ++reused : (left += c.stage_operations[k], ++run);
+      fmt::print(stream, "{:<5} {} {}  {:.2g} operations{}\n",
+                 have ? "reuse" : "run", c.info.name, c.info.stages[k],
+                 c.stage_operations[k],
+                 have ? fmt::format(", {} at {}", found[k].finished,
+                                    found[k].revision)
+                      : "");
+    }
+  }
+  fmt::print(stream,
+             "{} cases: {} stages to run, {} to reuse; {:.3g} of {:.3g} "
+             "declared operations to do\n",
+             prepared.cases.size(), run, reused, left, all);
+}
+
+CampaignResult run_campaign(Prepared prepared, const CampaignOptions& options,
+                            const nlohmann::json& options_json,
+                            const Screen& screen) {
+  return Campaign(std::move(prepared), options, options_json, screen).run();
+}
+
+}  // namespace physinv

@@ -1,0 +1,65 @@
+/// A campaign: cases in, a finished store out.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "suite/harness/case.h"
+#include "suite/harness/progress.h"
+
+namespace physinv {
+
+struct CampaignOptions {
+  std::filesystem::path out;
+  int jobs = 1;     ///< worker processes
+  int threads = 1;  ///< inside a case
+  /// Seconds after which no further case is started; 0 for none.
+  double time_budget = 0;
+  bool resume = true;  ///< reuse finished stages of the same content key
+  bool trace = false;  ///< record hashes of all iterates
+  /// Names of the unsharded campaign, in order; empty if it is this one.
+  std::vector<std::string> campaign;
+};
+
+/// Cases with their data drawn and content keys filled in.
+struct Prepared {
+  std::vector<Case> cases;
+  std::vector<CaseData> data;
+  std::vector<std::string> errors;  ///< why data could not be drawn, or empty
+};
+Prepared prepare(std::vector<Case> cases);
+
+/// (day, revision) that reused stages come from, and how many.
+using Origins = std::map<std::pair<std::string, std::string>, int>;
+std::string to_text(const Origins& origins);
+
+struct CampaignResult {
+  std::size_t stages_run = 0, stages_reused = 0;
+  std::vector<std::string> failed;   ///< "case: why"
+  std::vector<std::string> not_run;  ///< names, out of time or interrupted
+  Origins origins;
+  bool interrupted = false;
+  double seconds = 0;      ///< wall, all of it
+  double bookkeeping = 0;  ///< seconds in neither stages nor waiting for them
+};
+
+/// Runs what the store does not hold. Only this process writes to it; each
+/// finished stage is durable before the next is looked at. SIGINT and SIGTERM
+/// end the campaign with what has finished. `options_json` enters the context.
+CampaignResult run_campaign(Prepared prepared, const CampaignOptions& options,
+                            const nlohmann::json& options_json,
+                            const Screen& screen);
+
+/// What `run_campaign` would do: one line per stage and a sum.
+void dry_run(const Prepared& prepared, const CampaignOptions& options,
+             std::FILE* stream);
+
+/// Table: per experiment, method and n the cases, median final loss of each
+/// stage, and time.
+std::string summary_table(const std::vector<CaseRecord>& cases);
+
+}  // namespace physinv

@@ -1,0 +1,59 @@
+/// Experiments and the cases they expand to.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "suite/core/method.h"
+#include "suite/results/published.h"
+#include "suite/results/record.h"
+#include "suite/results/report_model.h"
+#include "suite/results/results.h"
+
+namespace physinv {
+
+struct Source {
+  std::string paper;  ///< key of reports/published/<paper>.json
+  std::string where;  ///< "Sec. 4, Fig. 4"
+};
+
+/// One line of a profile: the product of its lists.
+struct Row {
+  std::vector<std::string> methods;
+  std::vector<Index> n;
+  std::vector<std::uint64_t> seeds;
+  Index iterations = 0;  ///< 0: each stage's own default
+  Precision precision = Precision::f32;
+};
+
+struct Profile {
+  std::string name;
+  std::vector<Row> rows;
+};
+
+struct Experiment {
+  std::string name;   ///< jpo/billiards
+  std::string title;  ///< Billiards
+  Source source;
+  ProblemRecipe problem;
+  Setting setting;
+  std::vector<Profile> profiles;
+  std::vector<Method> methods;
+  /// Tables, figures and claims from a campaign's results. Claims that cannot
+  /// be judged from them read not_run.
+  std::function<Section(const Results&, const Published&)> report;
+};
+
+/// One case: what it is, and how to run it.
+struct Case {
+  CaseInfo info;
+  std::shared_ptr<const Experiment> experiment;
+  const Method* method = nullptr;
+  std::vector<Index> stage_iterations;
+  std::vector<double> stage_operations;  ///< declared work, for the ETA
+};
+
+}  // namespace physinv

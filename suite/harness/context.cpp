@@ -1,0 +1,200 @@
+#include "suite/harness/context.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sched.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string_view>
+#include <vector>
+
+#include "suite/harness/build_info.h"
+#include "suite/harness/run_case.h"
+
+extern char** environ;
+
+namespace physinv {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+/// First line of a file, empty if it cannot be read.
+std::string first_line(const fs::path& path) {
+  std::ifstream file(path);
+  std::string line;
+  std::getline(file, line);
+  return line;
+}
+
+/// Output of a program found in PATH, nothing if it fails.
+std::string output_of(std::vector<std::string> arguments) {
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) return {};
+  std::vector<char*> argv;
+  for (auto& a : arguments) argv.push_back(a.data());
+  argv.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, ends[1], 1);
+  posix_spawn_file_actions_addopen(&actions, 2, "/dev/null", O_WRONLY, 0);
+  pid_t pid = 0;
+  const int error =
+      posix_spawnp(&pid, argv[0], &actions, nullptr, argv.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  close(ends[1]);
+  std::string text;
+  if (error == 0) {
+    std::array<char, 256> chunk;
+    ssize_t got = 0;
+    while ((got = read(ends[0], chunk.data(), chunk.size())) > 0)
+      text.append(chunk.data(), static_cast<std::size_t>(got));
+    int status = 0;
+    waitpid(pid, &status, 0);
+    if (status != 0) text.clear();
+  }
+  close(ends[0]);
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  return text;
+}
+
+/// Value of the first "key : value" line of /proc/cpuinfo.
+std::string cpuinfo(std::string_view key) {
+  std::ifstream file("/proc/cpuinfo");
+  std::string line;
+  while (std::getline(file, line)) {
+    const auto colon = line.find(':');
+    if (colon == std::string::npos || !line.starts_with(key)) continue;
+    const auto value = line.find_first_not_of(' ', colon + 1);
+    return value == std::string::npos ? "" : line.substr(value);
+  }
+  return {};
+}
+
+/// "32K" -> 32768
+long bytes_of(const std::string& text) {
+  char* unit = nullptr;
+  const long value = std::strtol(text.c_str(), &unit, 10);
+  return value * (*unit == 'K' ? 1024 : *unit == 'M' ? 1024 * 1024 : 1);
+}
+
+/// Processors in a list such as "0-3,8".
+int listed(const std::string& text) {
+  int count = 0;
+  const char* p = text.c_str();
+  while (*p != '\0') {
+    char* end = nullptr;
+    const long first = std::strtol(p, &end, 10);
+    if (end == p) break;
+    long last = first;
+    if (*end == '-') last = std::strtol(end + 1, &end, 10);
+    count += static_cast<int>(last - first + 1);
+    p = *end == ',' ? end + 1 : end;
+  }
+  return count;
+}
+
+json caches() {
+  json all = json::array();
+  const fs::path root = "/sys/devices/system/cpu/cpu0/cache";
+  for (int i = 0;; ++i) {
+    const fs::path dir = root / fmt::format("index{}", i);
+    const std::string level = first_line(dir / "level");
+    if (level.empty()) break;
+    all.push_back({{"type", first_line(dir / "type")},
+                   {"level", std::atoi(level.c_str())},
+                   {"size", bytes_of(first_line(dir / "size"))},
+                   {"num_sharing", listed(first_line(dir / "shared_cpu_list"))}});
+  }
+  return all;
+}
+
+json load() {
+  double averages[3] = {};
+  json all = json::array();
+  const int known = getloadavg(averages, 3);
+  for (int i = 0; i < known; ++i) all.push_back(averages[i]);
+  return all;
+}
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  gethostname(name.data(), name.size() - 1);
+  return name.data();
+}
+
+}  // namespace
+
+int available_cores() {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  if (sched_getaffinity(0, sizeof(set), &set) != 0) return 1;
+  return std::max(1, CPU_COUNT(&set));
+}
+
+std::string git_revision() {
+  const std::string revision =
+      output_of({"git", "-C", PHYSINV_SOURCE_DIR, "describe", "--always",
+                 "--dirty=+dirty", "--abbrev=40", "--exclude=*"});
+  return revision.empty() ? "unknown" : revision;
+}
+
+json machine_context(const std::string& revision) {
+  const BuildInfo& build = build_info();
+  const std::string governor =
+      first_line("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor");
+  const bool dirty = revision.ends_with("+dirty");
+  return {
+      {"date", utc_now()},
+      {"host_name", host_name()},
+      {"num_cpus", available_cores()},
+      {"mhz_per_cpu", std::atoi(cpuinfo("cpu MHz").c_str())},
+      {"cpu_scaling_enabled", !governor.empty() && governor != "performance"},
+      {"scaling_governor", governor},
+      {"caches", caches()},
+      {"load_avg", load()},
+      {"library_build_type",
+       build.build_type == "Release" || build.build_type == "RelWithDebInfo"
+           ? "release"
+           : "debug"},
+      {"cpu_model", cpuinfo("model name")},
+      {"instruction_set", build.instruction_set},
+      {"compiler", fmt::format("{} {}", build.compiler, build.compiler_version)},
+      {"compiler_flags", build.flags},
+      {"build_type", build.build_type},
+      {"fingerprint", build.fingerprint},
+      {"version", build.version},
+      {"libraries",
+       {{"eigen", build.eigen},
+        {"fftw", build.fftw},
+        {"hdf5", build.hdf5},
+        {"nlohmann_json", build.json},
+        {"fmt", build.fmt},
+        {"cli11", build.cli11}}},
+      {"git_revision", dirty ? revision.substr(0, revision.size() - 6) : revision},
+      {"git_dirty", dirty},
+  };
+}
+
+std::string version_text() {
+  const BuildInfo& b = build_info();
+  return fmt::format(
+      "physinv-bench {}\n"
+      "compiler         {} {} ({})\n"
+      "flags            {}\n"
+      "instruction set  {}\n"
+      "numerics         {}\n"
+      "libraries        Eigen {}, FFTW {}, HDF5 {}, nlohmann-json {}, fmt {}, "
+      "CLI11 {}",
+      b.version, b.compiler, b.compiler_version, b.build_type, b.flags,
+      b.instruction_set, b.fingerprint, b.eigen, b.fftw, b.hdf5, b.json, b.fmt,
+      b.cli11);
+}
+
+}  // namespace physinv

@@ -1,0 +1,24 @@
+/// Where and with what a campaign ran, in the shape of Google Benchmark's
+/// `context` plus our own keys.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace physinv {
+
+/// Processors this process may use.
+int available_cores();
+
+/// Revision of the sources, "+dirty" appended if a tracked file differs;
+/// "unknown" without git. Asks git, so some milliseconds.
+std::string git_revision();
+
+/// Machine and build: date, host, processor, caches, load, compiler, flags,
+/// versions, revision.
+nlohmann::json machine_context(const std::string& revision);
+
+/// The build alone, some lines of text for --version.
+std::string version_text();
+
+}  // namespace physinv

@@ -1,0 +1,72 @@
+#include "suite/harness/keys.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "suite/core/hash.h"
+
+namespace physinv {
+namespace {
+
+void append(std::string& text, const Options& options) {
+  for (const auto& [name, value] : options)
+    text += fmt::format("  {}={}\n", name, value);
+}
+
+void append(std::string& text, std::string_view name, const NetworkRole& role) {
+  text += fmt::format("{}=", name);
+  for (const Field f : role.inputs) text += fmt::format("{},", static_cast<int>(f));
+  text += role.recipe.description + '\n';
+}
+
+std::string two_hashes(std::string_view text) {
+  return hex64(hash_text(text)) +
+         hex64(hash_text(text, mix64(0x9e3779b97f4a7c15ULL)));
+}
+
+}  // namespace
+
+CaseData draw_data(const Case& c) {
+  const Rng root = Rng::root(c.info.experiment, c.info.seed);
+  Samples<double> samples = c.experiment->problem.make<double>()->sample(
+      0, c.info.n, root.child("data/test"));
+  return {.hash = hex64(content_hash(samples)),
+          .x = std::move(samples.x),
+          .y = std::move(samples.y),
+          .given = std::move(samples.given)};
+}
+
+std::string recipe_text(const Case& c, std::size_t position) {
+  const Experiment& e = *c.experiment;
+  std::string text = fmt::format("experiment={}\nproblem={}\n", e.name,
+                                 e.problem.name);
+  append(text, e.problem.options);
+  append(text, "predictor", e.setting.predictor);
+  append(text, "surrogate", e.setting.surrogate);
+  text += fmt::format("output_scale={}\ngtol={}\nn={}\nseed={}\n",
+                      e.setting.output_scale, e.setting.gtol, c.info.n,
+                      c.info.seed);
+  for (std::size_t i = 0; i <= position; ++i) {
+    const Stage& stage = *c.method->chain[i];
+    text += fmt::format("stage={}\niterations={}\n", stage.name(),
+                        c.stage_iterations[i]);
+    if (stage.has_precision())
+      text += fmt::format("precision={}\n", to_string(c.info.precision));
+    append(text, stage.options());
+  }
+  return text;
+}
+
+std::vector<std::string> content_keys(const Case& c, std::string_view data_hash,
+                                      std::string_view fingerprint) {
+  std::vector<std::string> keys;
+  for (std::size_t i = 0; i < c.method->chain.size(); ++i) {
+    keys.push_back(two_hashes(recipe_text(c, i) +
+                              fmt::format("data={}\nnumerics={}\n", data_hash,
+                                          fingerprint)));
+  }
+  return keys;
+}
+
+}  // namespace physinv

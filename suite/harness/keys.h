@@ -1,0 +1,23 @@
+/// Content keys: what decides a stage's result, as 32 hexadecimal digits.
+#pragma once
+
+#include <string_view>
+
+#include "suite/harness/case.h"
+
+namespace physinv {
+
+/// The data of a case, truth included, and their hash.
+CaseData draw_data(const Case& c);
+
+/// Text that a stage's results depend on, apart from data and numerics:
+/// problem, setting and networks, n, seed, and for this stage and those before
+/// it name, options, iterations and (if it matters) precision. The method's id
+/// is not part of it: chains with the same beginning share it.
+std::string recipe_text(const Case& c, std::size_t position);
+
+/// One key per stage; `fingerprint` stands for the sources and the build.
+std::vector<std::string> content_keys(const Case& c, std::string_view data_hash,
+                                      std::string_view fingerprint);
+
+}  // namespace physinv

@@ -1,0 +1,94 @@
+/// What the user sees while a campaign runs: on a terminal a bar and a live
+/// table, redrawn at most ten times a second; elsewhere one line per stage.
+/// The time left is estimated from declared operations and the rate measured
+/// so far, not from a count of cases.
+#pragma once
+
+#include <cstdio>
+#include <deque>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "suite/harness/case.h"
+
+namespace physinv {
+
+/// How to write: decided once from the stream and the environment (TERM, CI,
+/// NO_COLOR, COLUMNS).
+struct Screen {
+  std::FILE* stream = stdout;
+  bool live = false, color = false;
+  int columns = 80;
+
+  static Screen of(std::FILE* stream);
+};
+
+/// Operations per second, by stage name, from what has finished.
+class Rates {
+ public:
+  void add(const std::string& stage, double operations, double seconds);
+  /// Expected seconds; negative if nothing is known yet.
+  double seconds(const std::string& stage, double operations) const;
+
+ private:
+  struct Sum {
+    double operations = 0, seconds = 0;
+  };
+  std::map<std::string, Sum> by_stage_;
+  Sum all_;
+};
+
+class Progress {
+ public:
+  Progress(const Screen& screen, const std::vector<Case>& cases, int jobs);
+  ~Progress() { clear(); }
+
+  /// A stage that need not run.
+  void reused(std::size_t case_index, Index position);
+  void started(std::size_t worker, std::size_t case_index, Index position);
+  void report(std::size_t worker, Index iteration, double loss);
+  void finished(std::size_t worker, std::size_t case_index,
+                const StageRecord& record);
+  void idle(std::size_t worker);
+  /// A line that stays.
+  void say(const std::string& line);
+
+  /// Redraws if it is time to.
+  void draw();
+  /// Removes the live part.
+  void clear();
+
+  /// Seconds left, negative if unknown.
+  double remaining() const;
+
+ private:
+  struct Running {
+    bool active = false;
+    std::size_t case_index = 0;
+    Index position = 0, iteration = 0;
+    double loss = 0, since = 0;
+    bool has_loss = false;
+  };
+  std::string bar() const;
+  std::string running_row(const Running& r, double now) const;
+  std::string finished_row(const StageRecord& record) const;
+  std::size_t name_width() const;
+
+  Screen screen_;
+  const std::vector<Case>& cases_;
+  int jobs_;
+  Rates rates_;
+  std::vector<std::vector<bool>> done_;
+  std::size_t stages_ = 0, stages_done_ = 0;
+  double operations_ = 0, operations_done_ = 0;
+  std::vector<Running> running_;
+  std::deque<std::string> recent_;
+  double begin_, drawn_ = 0;
+  int lines_ = 0;
+};
+
+/// "3.4 s", "2 min 5 s", "1 h 10 min".
+std::string duration_text(double seconds);
+
+}  // namespace physinv

@@ -1,0 +1,291 @@
+#include "suite/harness/registry.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <stdexcept>
+
+#include "suite/harness/errors.h"
+
+namespace physinv {
+namespace {
+
+bool is_word(std::string_view text, std::string_view extra = "") {
+  return !text.empty() && std::all_of(text.begin(), text.end(), [&](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-' || extra.find(c) != std::string_view::npos;
+  });
+}
+
+bool is_path(std::string_view text) {
+  return is_word(text, "/") && text.front() != '/' && text.back() != '/' &&
+         text.find("//") == std::string_view::npos;
+}
+
+const Method* find_method(const Experiment& e, std::string_view id) {
+  for (const Method& m : e.methods)
+    if (m.id == id) return &m;
+  return nullptr;
+}
+
+bool has_precision(const Method& method) {
+  return std::any_of(method.chain.begin(), method.chain.end(),
+                     [](const auto& stage) { return stage->has_precision(); });
+}
+
+std::string method_ids(const Experiment& e) {
+  std::vector<std::string> ids;
+  for (const Method& m : e.methods) ids.push_back(m.id);
+  return fmt::format("{}", fmt::join(ids, ", "));
+}
+
+/// Sizes of an experiment that do not change from case to case.
+CaseSize size_of(const Experiment& e) {
+  const auto problem = e.problem.make<double>();
+  CaseSize size{};
+  size.shape = problem->shape();
+  size.problem_operations = problem->operations();
+  const auto operations = [&](const NetworkRole& role, Index outputs) {
+    if (!role.recipe.make_float) return 0.0;
+    Index inputs = 0;
+    for (const Field f : role.inputs) {
+      inputs += f == Field::unknowns ? size.shape.unknowns
+                : f == Field::given  ? size.shape.given
+                                     : size.shape.observations;
+    }
+    return role.recipe.make<float>(inputs, outputs)->operations();
+  };
+  size.predictor_operations =
+      operations(e.setting.predictor, size.shape.unknowns);
+  size.surrogate_operations =
+      operations(e.setting.surrogate, size.shape.observations);
+  return size;
+}
+
+Case make_case(const std::shared_ptr<const Experiment>& e,
+               const Method& method,
+               const std::string& profile,
+               const Row& row,
+               Index n,
+               std::uint64_t seed,
+               CaseSize size) {
+  Case c;
+  c.experiment = e;
+  c.method = &method;
+  c.info.experiment = e->name;
+  c.info.method = method.id;
+  c.info.profile = profile;
+  c.info.n = n;
+  c.info.seed = seed;
+  c.info.precision = has_precision(method) ? row.precision : Precision::f64;
+  c.info.name = fmt::format("{}/{}/n={}", e->name, method.id, n);
+  if (has_precision(method) && row.precision == Precision::f64)
+    c.info.name += "/precision=f64";
+  c.info.name += fmt::format("/seed={}", seed);
+  size.n = n;
+  for (const auto& stage : method.chain) {
+    size.iterations = stage->takes_row_iterations() && row.iterations > 0
+                          ? row.iterations
+                          : stage->default_iterations();
+    c.info.stages.push_back(stage->name());
+    c.stage_iterations.push_back(size.iterations);
+    c.stage_operations.push_back(stage->operations(size));
+  }
+  return c;
+}
+
+Row overridden(Row row, const Overrides& o) {
+  if (o.methods) row.methods = *o.methods;
+  if (o.n) row.n = *o.n;
+  if (o.seeds) row.seeds = *o.seeds;
+  if (o.iterations) row.iterations = *o.iterations;
+  if (o.precision) row.precision = *o.precision;
+  return row;
+}
+
+void check_overrides(const Overrides& o,
+                     const Registry::Experiments& experiments) {
+  for (const Index n : o.n.value_or(std::vector<Index>{})) {
+    if (n < 1) throw UsageError(fmt::format("n={} has no problems; n is at least 1", n));
+  }
+  if (o.iterations && *o.iterations < 1)
+    throw UsageError("iterations must be at least 1");
+  for (const auto& id : o.methods.value_or(std::vector<std::string>{})) {
+    std::set<std::string> known;
+    for (const auto& e : experiments)
+      for (const Method& m : e->methods) known.insert(m.id);
+    if (!known.contains(id))
+      throw UsageError(fmt::format("unknown method '{}'; known are {}", id,
+                                   fmt::join(known, ", ")));
+  }
+}
+
+/// Two rows may name the same case only if they mean the same.
+bool same_work(const Case& a, const Case& b) {
+  return a.stage_iterations == b.stage_iterations &&
+         a.info.precision == b.info.precision;
+}
+
+std::vector<std::string> problems_of(const Experiment& e) {
+  std::vector<std::string> wrong;
+  const auto add = [&](const std::string& text) {
+    wrong.push_back(e.name + ": " + text);
+  };
+  if (!is_path(e.name)) add("the name is no path of [a-z0-9_-]");
+  if (!e.problem.make_float || !e.problem.make_double)
+    add("there is no problem");
+  std::set<std::string> seen;
+  for (const Method& m : e.methods) {
+    if (!is_word(m.id)) add("method '" + m.id + "' is not in [a-z0-9_-]");
+    if (!seen.insert(m.id).second) add("method " + m.id + " appears twice");
+    if (m.chain.empty()) add("method " + m.id + " has no stages");
+    std::set<std::string> stages;
+    for (const auto& stage : m.chain) {
+      if (!is_word(stage->name()))
+        add("stage '" + stage->name() + "' is not in [a-z0-9_-]");
+      if (!stages.insert(stage->name()).second)
+        add("method " + m.id + " has two stages " + stage->name());
+    }
+    if (!contains(e.problem.provided, m.needs()))
+      add(fmt::format("method {} needs {}, problem {} provides {}", m.id,
+                      to_text(m.needs()), e.problem.name,
+                      to_text(e.problem.provided)));
+  }
+  seen.clear();
+  for (const Profile& p : e.profiles) {
+    if (!is_word(p.name)) add("profile '" + p.name + "' is not in [a-z0-9_-]");
+    if (!seen.insert(p.name).second) add("profile " + p.name + " appears twice");
+    for (const Row& row : p.rows) {
+      for (const auto& id : row.methods) {
+        if (find_method(e, id) == nullptr)
+          add(fmt::format("profile {} names method {}, known are {}", p.name,
+                          id, method_ids(e)));
+      }
+      for (const Index n : row.n)
+        if (n < 1) add(fmt::format("profile {} has n={}", p.name, n));
+      if (row.methods.empty() || row.n.empty() || row.seeds.empty())
+        add("profile " + p.name + " has a row without cases");
+    }
+  }
+  return wrong;
+}
+
+}  // namespace
+
+std::string to_text(Needs needs) {
+  constexpr std::pair<Needs, std::string_view> kNames[] = {
+      {Needs::forward, "forward"}, {Needs::vjp, "vjp"},
+      {Needs::jacobian, "jacobian"}, {Needs::inverse, "inverse"},
+      {Needs::hessian, "hessian"}, {Needs::labels, "labels"}};
+  std::string text;
+  for (const auto& [bit, name] : kNames) {
+    if (!contains(needs, bit)) continue;
+    if (!text.empty()) text += '|';
+    text += name;
+  }
+  return text;
+}
+
+void Registry::add(Experiment experiment) {
+  experiments_.push_back(
+      std::make_shared<const Experiment>(std::move(experiment)));
+}
+
+std::shared_ptr<const Experiment> Registry::find(std::string_view name) const {
+  for (const auto& e : experiments_)
+    if (e->name == name) return e;
+  return nullptr;
+}
+
+std::vector<std::string> Registry::problems() const {
+  std::vector<std::string> wrong;
+  std::set<std::string> names;
+  for (const auto& e : experiments_) {
+    if (!names.insert(e->name).second)
+      wrong.push_back(e->name + ": registered twice");
+    const auto own = problems_of(*e);
+    wrong.insert(wrong.end(), own.begin(), own.end());
+  }
+  if (!wrong.empty()) return wrong;
+  for (const auto& profile : profiles()) {
+    try {
+      expand(profile);
+    } catch (const std::exception& error) {
+      wrong.push_back(error.what());
+    }
+  }
+  return wrong;
+}
+
+void Registry::validate() const {
+  const auto wrong = problems();
+  if (!wrong.empty())
+    throw std::logic_error(fmt::format("{}", fmt::join(wrong, "; ")));
+}
+
+std::vector<std::string> Registry::profiles() const {
+  std::vector<std::string> names;
+  for (const auto& e : experiments_) {
+    for (const Profile& p : e->profiles)
+      if (std::find(names.begin(), names.end(), p.name) == names.end())
+        names.push_back(p.name);
+  }
+  return names;
+}
+
+std::vector<Case> Registry::expand(std::string_view profile,
+                                   const Overrides& overrides) const {
+  const auto known = profiles();
+  if (std::find(known.begin(), known.end(), profile) == known.end())
+    throw UsageError(fmt::format("unknown profile '{}'; known are {}", profile,
+                                 fmt::join(known, ", ")));
+  check_overrides(overrides, experiments_);
+  const bool as_declared = !overrides.n && !overrides.iterations &&
+                           !overrides.methods && !overrides.seeds &&
+                           !overrides.precision;
+  std::vector<Case> cases;
+  std::map<std::string, std::size_t> by_name;
+  const auto add = [&](Case c) {
+    const auto [at, is_new] = by_name.emplace(c.info.name, cases.size());
+    if (is_new) {
+      cases.push_back(std::move(c));
+    } else if (as_declared && !same_work(cases[at->second], c)) {
+      throw std::logic_error(fmt::format(
+          "{} stands in two rows of profile {} with different options",
+          c.info.name, profile));
+    }
+  };
+  for (const auto& e : experiments_) {
+    for (const Profile& p : e->profiles) {
+      if (p.name != profile) continue;
+      const CaseSize size = size_of(*e);
+      for (const Row& declared : p.rows) {
+        const Row row = overridden(declared, overrides);
+        for (const Index n : row.n) {
+          for (const auto& id : row.methods) {
+            const Method* method = find_method(*e, id);
+            if (method == nullptr) continue;  // another experiment has it
+            for (const auto seed : row.seeds)
+              add(make_case(e, *method, p.name, row, n, seed, size));
+          }
+        }
+      }
+    }
+  }
+  return cases;
+}
+
+Registry& registry() {
+  static Registry the;
+  return the;
+}
+
+bool register_experiment(Experiment experiment) {
+  registry().add(std::move(experiment));
+  return true;
+}
+
+}  // namespace physinv

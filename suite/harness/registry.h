@@ -1,0 +1,65 @@
+/// What is registered, and the cases it expands to.
+///
+///   const auto kRegistered = register_experiment({.name = "jpo/billiards", ...});
+///
+/// Registering stores a recipe and judges nothing; `main` and a test call
+/// `validate`, so nothing throws before `main`.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "suite/harness/case.h"
+
+namespace physinv {
+
+/// Keys of the rows that the command line replaces.
+struct Overrides {
+  std::optional<std::vector<std::string>> methods;
+  std::optional<std::vector<Index>> n;
+  std::optional<std::vector<std::uint64_t>> seeds;
+  std::optional<Index> iterations;
+  std::optional<Precision> precision;
+};
+
+class Registry {
+ public:
+  using Experiments = std::vector<std::shared_ptr<const Experiment>>;
+
+  void add(Experiment experiment);
+  const Experiments& experiments() const { return experiments_; }
+  /// Null if there is none of this name.
+  std::shared_ptr<const Experiment> find(std::string_view name) const;
+
+  /// Everything wrong with what is registered, one line each: names, rows that
+  /// name unknown methods, methods that need what a problem does not provide.
+  std::vector<std::string> problems() const;
+  /// Throws std::logic_error with the lines of `problems`, if any.
+  void validate() const;
+
+  /// Names of all profiles, in the order they were first declared.
+  std::vector<std::string> profiles() const;
+
+  /// The cases of a profile in declared order (experiment, row, n, method,
+  /// seed), duplicates once. Content keys are still empty. Throws UsageError
+  /// for an unknown profile or method and for a value that cannot be.
+  std::vector<Case> expand(std::string_view profile,
+                           const Overrides& overrides = {}) const;
+
+ private:
+  Experiments experiments_;
+};
+
+/// The program's registry; safe to use while statics are initialised.
+Registry& registry();
+
+/// For static initialisation; returns true.
+bool register_experiment(Experiment experiment);
+
+/// "forward|vjp"
+std::string to_text(Needs needs);
+
+}  // namespace physinv

@@ -1,0 +1,46 @@
+/// Runs the chain of one case, here and now. Exceptions become stages that
+/// failed; the stages after them are skipped.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "suite/core/threads.h"
+#include "suite/harness/case.h"
+
+namespace physinv {
+
+struct RunOptions {
+  bool crowded = false;  ///< more workers x threads than cores
+  bool trace = false;    ///< hash every iterate
+  std::string revision;  ///< for the record
+};
+
+/// What is told while a case runs; empty functions are not called.
+struct CaseHooks {
+  std::function<void(Index position)> started;
+  /// At points of the curve: iterations done, median loss of the examples.
+  std::function<void(Index iteration, double loss)> progress;
+  std::function<void(const StageRecord&)> finished;
+};
+
+/// Runs the stages that `earlier` (a beginning of the chain) does not hold.
+/// Every random stream comes from hash(experiment, seed); the stream
+/// `method/<id>` has the content of the chain up to the stage as its id, so
+/// that chains sharing a beginning share its results.
+void run_case(const Case& c, std::vector<StageRecord> earlier,
+              const RunOptions& options, Threads* threads,
+              const CaseHooks& hooks);
+
+/// The record of a stage that did not come to a result.
+StageRecord lost_stage(const Case& c, Index position, Stop stop,
+                       std::string message, const std::string& revision);
+
+/// Now, UTC, ISO 8601 to the second.
+std::string utc_now();
+
+/// Median of the finite entries; NaN if there are none.
+double median_finite(VectorIn<double> values);
+
+}  // namespace physinv

@@ -1,0 +1,103 @@
+#include "suite/harness/select.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+
+#include "suite/harness/errors.h"
+
+namespace physinv {
+
+NameFilter::NameFilter(const std::vector<std::string>& patterns) {
+  for (const auto& pattern : patterns) {
+    const bool negative = pattern.starts_with('-');
+    const std::string text = negative ? pattern.substr(1) : pattern;
+    try {
+      (negative ? unwanted_ : wanted_).emplace_back(text);
+    } catch (const std::regex_error&) {
+      throw UsageError(
+          fmt::format("--filter='{}' is no regular expression; it is searched "
+                      "in case names, e.g. --filter='billiards/(jpo|bfgs)/'",
+                      pattern));
+    }
+  }
+}
+
+bool NameFilter::matches(const std::string& name) const {
+  const auto hit = [&](const std::regex& r) {
+    return std::regex_search(name, r);
+  };
+  return (wanted_.empty() ||
+          std::any_of(wanted_.begin(), wanted_.end(), hit)) &&
+         std::none_of(unwanted_.begin(), unwanted_.end(), hit);
+}
+
+std::vector<Case> NameFilter::apply(std::vector<Case> cases) const {
+  std::erase_if(cases, [&](const Case& c) { return !matches(c.info.name); });
+  return cases;
+}
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
+    }
+  }
+  return row[b.size()];
+}
+
+std::vector<std::string> nearest_names(const std::vector<std::string>& names,
+                                       std::string_view pattern,
+                                       std::size_t count) {
+  std::map<std::string, std::size_t> score;  // of a path's beginning
+  for (const auto& name : names) {
+    std::size_t begin = 0;
+    while (begin <= name.size()) {
+      const std::size_t end = std::min(name.find('/', begin), name.size());
+      const auto part = std::string_view(name).substr(begin, end - begin);
+      const auto head = std::string_view(name).substr(0, end);
+      const std::size_t d =
+          std::min(edit_distance(part, pattern), edit_distance(head, pattern));
+      score.try_emplace(std::string(head), d);
+      begin = end + 1;
+    }
+  }
+  std::vector<std::pair<std::size_t, std::string>> order;
+  for (const auto& [head, d] : score) order.emplace_back(d, head);
+  std::sort(order.begin(), order.end());
+  std::vector<std::string> best;
+  for (std::size_t i = 0; i < std::min(count, order.size()); ++i)
+    best.push_back(order[i].second);
+  return best;
+}
+
+std::string nearest_word(const std::vector<std::string>& known,
+                         std::string_view word) {
+  std::string best;
+  std::size_t least = std::max<std::size_t>(2, word.size() / 2) + 1;
+  for (const auto& k : known) {
+    const std::size_t d = edit_distance(k, word);
+    if (d < least) least = d, best = k;
+  }
+  return best;
+}
+
+std::vector<Case> Shard::apply(std::vector<Case> cases) const {
+  std::vector<Case> own;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    if (i % static_cast<std::size_t>(parts) ==
+        static_cast<std::size_t>(part - 1))
+      own.push_back(std::move(cases[i]));
+  }
+  return own;
+}
+
+}  // namespace physinv

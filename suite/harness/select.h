@@ -1,0 +1,49 @@
+/// Choosing cases: by name, and by shard.
+#pragma once
+
+#include <regex>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "suite/harness/case.h"
+
+namespace physinv {
+
+/// Regular expressions (ECMAScript, searched anywhere in the name). A leading
+/// '-' negates. A name passes if it matches any positive pattern (or there is
+/// none) and no negative one.
+class NameFilter {
+ public:
+  NameFilter() = default;
+  /// Throws UsageError naming the pattern that is no regular expression.
+  explicit NameFilter(const std::vector<std::string>& patterns);
+
+  bool matches(const std::string& name) const;
+  std::vector<Case> apply(std::vector<Case> cases) const;
+
+ private:
+  std::vector<std::regex> wanted_, unwanted_;
+};
+
+/// Up to `count` beginnings of names whose last part reads most like
+/// `pattern`, best first.
+std::vector<std::string> nearest_names(const std::vector<std::string>& names,
+                                       std::string_view pattern,
+                                       std::size_t count = 3);
+
+/// Levenshtein distance.
+std::size_t edit_distance(std::string_view a, std::string_view b);
+
+/// The word of `known` nearest to `word`, empty if none is near.
+std::string nearest_word(const std::vector<std::string>& known,
+                         std::string_view word);
+
+/// Part `part` of `parts` (from 1): the cases at positions part-1,
+/// part-1+parts, .. of the list.
+struct Shard {
+  int part = 1, parts = 1;
+  std::vector<Case> apply(std::vector<Case> cases) const;
+};
+
+}  // namespace physinv

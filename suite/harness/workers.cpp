@@ -1,0 +1,227 @@
+#include "suite/harness/workers.h"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+
+#include "suite/core/clock.h"
+#include "suite/harness/errors.h"
+#include "suite/results/json.h"
+
+namespace physinv {
+namespace {
+
+enum Kind : std::uint32_t {
+  kRun,
+  kStageStarted,
+  kProgress,
+  kStageDone,
+  kCaseDone
+};
+
+double stage_seconds(const Clocks& c) {
+  return c.setup.wall + c.warmup.wall + c.solve.wall + c.measure.wall;
+}
+
+/// The worker's side: cases in, stages out, until the parent closes.
+void serve(int socket,
+           const std::vector<Case>& cases,
+           int thread_count,
+           const RunOptions& options) {
+  Threads threads(thread_count);
+  while (const auto message = receive_message(socket)) {
+    const double begin = now().wall;
+    double in_stages = 0;
+    BodyReader body(message->body);
+    const auto index = body.get<std::uint64_t>();
+    std::vector<StageRecord> earlier(body.get<std::uint64_t>());
+    for (auto& record : earlier) record = from_wire(body.bytes());
+    const CaseHooks hooks{
+        .started =
+            [&](Index position) {
+              send_message(socket, kStageStarted,
+                           BodyWriter().put(position).take());
+            },
+        .progress =
+            [&](Index iteration, double loss) {
+              send_message(socket, kProgress,
+                           BodyWriter().put(iteration).put(loss).take());
+            },
+        .finished =
+            [&](const StageRecord& record) {
+              in_stages += stage_seconds(record.clocks);
+              send_message(socket, kStageDone, to_wire(record));
+            }};
+    run_case(cases[index], std::move(earlier), options, &threads, hooks);
+    send_message(socket, kCaseDone,
+                 BodyWriter().put(now().wall - begin - in_stages).take());
+  }
+}
+
+/// SIGINT and SIGTERM are the parent's to handle, and its files its own.
+void become_worker(int socket, pid_t parent) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(0);  // it died before the line above
+  std::signal(SIGINT, SIG_IGN);
+  std::signal(SIGTERM, SIG_IGN);
+  const auto s = static_cast<unsigned>(socket);
+  if (s > 3) close_range(3, s - 1, 0);
+  close_range(s + 1, ~0U, 0);
+}
+
+WorkerEvent decode(const Message& message) {
+  WorkerEvent event;
+  BodyReader body(message.body);
+  switch (message.kind) {
+    case kStageStarted:
+      event.kind = WorkerEvent::Kind::stage_started;
+      event.position = body.get<Index>();
+      break;
+    case kProgress:
+      event.kind = WorkerEvent::Kind::progress;
+      event.iteration = body.get<Index>();
+      event.loss = body.get<double>();
+      break;
+    case kStageDone:
+      event.kind = WorkerEvent::Kind::stage_done;
+      event.record = from_wire(message.body);
+      event.position = event.record.position;
+      break;
+    default:
+      event.kind = WorkerEvent::Kind::case_done;
+      event.overhead = body.get<double>();
+  }
+  return event;
+}
+
+std::string death_text(int status) {
+  if (WIFSIGNALED(status)) {
+    const char* name = sigabbrev_np(WTERMSIG(status));
+    const std::string signal =
+        name != nullptr ? fmt::format("SIG{}", name)
+                        : fmt::format("signal {}", WTERMSIG(status));
+    return "the worker was killed by " + signal +
+           (WTERMSIG(status) == SIGKILL ? " (out of memory?)" : "");
+  }
+  return fmt::format("the worker exited with status {}", WEXITSTATUS(status));
+}
+
+}  // namespace
+
+Workers::Workers(const std::vector<Case>& cases,
+                 std::size_t count,
+                 int threads,
+                 RunOptions options)
+    : cases_(cases),
+      threads_(threads),
+      options_(std::move(options)),
+      workers_(count) {
+  for (Worker& worker : workers_) start(worker);
+}
+
+Workers::~Workers() {
+  for (Worker& worker : workers_) {
+    if (worker.pid <= 0) continue;
+    kill(worker.pid, SIGKILL);
+    collect(worker);
+  }
+}
+
+void Workers::start(Worker& worker) {
+  int pair[2];
+  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, pair) != 0)
+    throw EnvironmentError(
+        fmt::format("no socket for a worker ({}); try fewer --jobs",
+                    std::strerror(errno)));
+  std::fflush(nullptr);
+  const pid_t parent = getpid();
+  const pid_t pid = fork();
+  if (pid < 0) {
+    close(pair[0]), close(pair[1]);
+    throw EnvironmentError(fmt::format("no worker process ({}); try fewer --jobs",
+                                       std::strerror(errno)));
+  }
+  if (pid == 0) {
+    become_worker(pair[1], parent);
+    try {
+      serve(pair[1], cases_, threads_, options_);
+    } catch (...) {
+      _exit(static_cast<int>(ExitCode::internal));
+    }
+    _exit(0);
+  }
+  close(pair[1]);
+  worker = {.pid = pid,
+            .socket = pair[0],
+            .busy = false,
+            .case_index = 0,
+            .inbox = std::make_unique<Inbox>()};
+}
+
+std::string Workers::collect(Worker& worker) {
+  int status = 0;
+  while (waitpid(worker.pid, &status, 0) < 0 && errno == EINTR) {
+  }
+  close(worker.socket);
+  worker.pid = -1, worker.socket = -1;
+  return death_text(status);
+}
+
+void Workers::submit(std::size_t worker,
+                     std::size_t case_index,
+                     const std::vector<StageRecord>& earlier) {
+  BodyWriter body;
+  body.put(static_cast<std::uint64_t>(case_index));
+  body.put(static_cast<std::uint64_t>(earlier.size()));
+  for (const auto& record : earlier) body.bytes(to_wire(record));
+  Worker& w = workers_[worker];
+  w.busy = true;
+  w.case_index = case_index;
+  // If it is gone, the next `wait` notices.
+  send_message(w.socket, kRun, body.take());
+}
+
+std::vector<WorkerEvent> Workers::wait(double seconds) {
+  std::vector<pollfd> polled;
+  for (const Worker& w : workers_) polled.push_back({w.socket, POLLIN, 0});
+  const double begin = now().wall;
+  poll(polled.data(), polled.size(), static_cast<int>(1e3 * seconds));
+  waited_ += now().wall - begin;
+
+  std::vector<WorkerEvent> events;
+  for (std::size_t i = 0; i < workers_.size(); ++i) {
+    if (polled[i].revents == 0) continue;
+    Worker& w = workers_[i];
+    const bool alive = w.inbox->fill(w.socket);
+    while (const auto message = w.inbox->next()) {
+      WorkerEvent event = decode(*message);
+      event.worker = i;
+      event.case_index = w.case_index;
+      if (event.kind == WorkerEvent::Kind::case_done) w.busy = false;
+      events.push_back(std::move(event));
+    }
+    if (alive) continue;
+    WorkerEvent event;
+    event.kind = WorkerEvent::Kind::died;
+    event.worker = i;
+    event.case_index = w.case_index;
+    event.message = collect(w);
+    if (w.busy) {
+      events.push_back(std::move(event));
+    } else if (++idle_deaths_ > 3) {
+      throw EnvironmentError(event.message + " while idle, again and again");
+    }
+    start(w);
+  }
+  return events;
+}
+
+}  // namespace physinv

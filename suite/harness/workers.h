@@ -1,0 +1,71 @@
+/// Worker processes. Each is forked from the parent before it has any thread,
+/// runs the cases it is handed one after the other, and sends every finished
+/// stage back at once. A worker that dies is replaced; all die with the parent.
+#pragma once
+
+#include <sys/types.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "suite/harness/run_case.h"
+#include "suite/harness/wire.h"
+
+namespace physinv {
+
+/// What a worker tells.
+struct WorkerEvent {
+  enum class Kind { stage_started, progress, stage_done, case_done, died };
+  Kind kind{};
+  std::size_t worker = 0, case_index = 0;
+  Index position = 0;   ///< of the stage
+  Index iteration = 0;  ///< progress
+  double loss = 0;      ///< progress: median of the examples
+  double overhead = 0;  ///< case_done: seconds in no stage
+  StageRecord record;   ///< stage_done
+  std::string message;  ///< died: how
+};
+
+class Workers {
+ public:
+  /// `cases` must outlive the workers, and its content keys be filled in.
+  Workers(const std::vector<Case>& cases, std::size_t count, int threads,
+          RunOptions options);
+  /// Kills and collects all.
+  ~Workers();
+  Workers(const Workers&) = delete;
+  Workers& operator=(const Workers&) = delete;
+
+  std::size_t count() const { return workers_.size(); }
+  bool idle(std::size_t worker) const { return !workers_[worker].busy; }
+
+  /// Hands a case to an idle worker; `earlier` are the stages it need not run.
+  void submit(std::size_t worker, std::size_t case_index,
+              const std::vector<StageRecord>& earlier);
+
+  /// Waits up to `seconds` (or a signal) and returns what arrived. The time
+  /// spent waiting is summed in `waited`.
+  std::vector<WorkerEvent> wait(double seconds);
+  double waited() const { return waited_; }
+
+ private:
+  struct Worker {
+    pid_t pid = -1;
+    int socket = -1;
+    bool busy = false;
+    std::size_t case_index = 0;
+    std::unique_ptr<Inbox> inbox;
+  };
+  void start(Worker& worker);
+  std::string collect(Worker& worker);
+
+  const std::vector<Case>& cases_;
+  int threads_;
+  RunOptions options_;
+  std::vector<Worker> workers_;
+  double waited_ = 0;
+  int idle_deaths_ = 0;
+};
+
+}  // namespace physinv

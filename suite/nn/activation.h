@@ -1,0 +1,109 @@
+/// Activations and their derivatives.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <string_view>
+
+#include "suite/nn/layer.h"
+#include "suite/nn/vector.h"
+
+namespace physinv::nn {
+
+std::string_view to_string(Activation a);
+
+/// Whether the derivative follows from the output alone, so that an
+/// activation fused into the layer before it needs no memory of its own.
+constexpr bool from_output(Activation a) { return a != Activation::silu; }
+
+template <class T>
+inline T sigmoid(T z) {
+  return T(1) / (T(1) + std::exp(-z));
+}
+
+template <class T>
+inline T activate(Activation a, T z) {
+  switch (a) {
+    case Activation::identity:
+      return z;
+    case Activation::relu:
+      return z < T(0) ? T(0) : z;  // keeps NaN
+    case Activation::tanh:
+      return std::tanh(z);
+    case Activation::sigmoid:
+      return sigmoid(z);
+    case Activation::softplus:
+      return (z > T(0) ? z : T(0)) + std::log1p(std::exp(-std::abs(z)));
+    case Activation::silu:
+      return z * sigmoid(z);
+  }
+  return z;
+}
+
+/// Derivative, given the output y (SiLU: given the input).
+template <class T>
+inline T derivative(Activation a, T y) {
+  switch (a) {
+    case Activation::identity:
+      return T(1);
+    case Activation::relu:
+      return y > T(0) ? T(1) : T(0);
+    case Activation::tanh:
+      return std::fma(-y, y, T(1));
+    case Activation::sigmoid:
+      return y * (T(1) - y);
+    case Activation::softplus:
+      return -std::expm1(-y);
+    case Activation::silu: {
+      const T s = sigmoid(y);
+      return s * std::fma(y, T(1) - s, T(1));
+    }
+  }
+  return T(1);
+}
+
+/// The same for a register.
+template <class T, class V>
+inline V activate_lanes(Activation a, V z) {
+  if (a == Activation::identity) return z;
+  if (a == Activation::relu) return z < V{} ? V{} : z;
+  for (std::size_t l = 0; l < sizeof(V) / sizeof(T); ++l)
+    z[l] = activate<T>(a, z[l]);
+  return z;
+}
+
+/// y_bar times the derivative.
+template <class T, class V>
+inline V pull_lanes(Activation a, V y, V y_bar) {
+  if (a == Activation::identity) return y_bar;
+  if (a == Activation::relu) return y > V{} ? y_bar : V{};
+  for (std::size_t l = 0; l < sizeof(V) / sizeof(T); ++l)
+    y_bar[l] *= derivative<T>(a, y[l]);
+  return y_bar;
+}
+
+/// x_bar *= derivative at `gate`; what a layer does to its input's cotangent
+/// when it has no tile store to fuse it into.
+template <class T>
+void apply_gate(const Gate<T>& gate, Lanes<T> x_bar);
+
+/// An activation on its own: behind a layer that cannot take it in, or one
+/// whose derivative needs the input (SiLU).
+template <class T>
+class ActivationLayer final : public Layer<T> {
+ public:
+  ActivationLayer(Activation a, Index features)
+      : Layer<T>(features, features), activation_(a) {}
+
+  Activation kind() const { return activation_; }
+  const Activation* pure_activation() const override { return &activation_; }
+  void forward(const LayerArgs<T>& at,
+               Lanes<const T> x,
+               Lanes<T> y) const override;
+  void backward(const LayerArgs<T>& at, const Backward<T>& b) const override;
+
+ private:
+  Activation activation_;
+};
+
+}  // namespace physinv::nn

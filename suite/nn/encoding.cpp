@@ -1,0 +1,59 @@
+#include "suite/nn/encoding.h"
+
+#include <cmath>
+
+#include "suite/nn/activation.h"
+
+namespace physinv::nn {
+
+template <class T>
+void PositionalEncoding<T>::forward(const LayerArgs<T>&,
+                                    Lanes<const T> x,
+                                    Lanes<T> y) const {
+  for (Index i = 0; i < x.rows; ++i) {
+    const T* a = x.row(i);
+    T* out = y.row(2 * frequencies_ * i);
+    for (Index j = 0; j < x.width; ++j) {
+      // The padding is not worth a sine.
+      const double s1 = j < x.samples ? std::sin(double(a[j])) : 0.0;
+      const double c1 = j < x.samples ? std::cos(double(a[j])) : 1.0;
+      double s = s1, c = c1;
+      for (Index k = 0; k < frequencies_; ++k) {
+        out[k * y.stride + j] = static_cast<T>(s);
+        out[(frequencies_ + k) * y.stride + j] = static_cast<T>(c);
+        const double next = s * c1 + c * s1;
+        c = c * c1 - s * s1, s = next;
+      }
+    }
+  }
+}
+
+template <class T>
+void PositionalEncoding<T>::backward(const LayerArgs<T>&,
+                                     const Backward<T>& b) const {
+  using V = Simd<T, kNarrow>;
+  if (!b.x_bar) return;
+  const Index n = frequencies_;
+  for (Index i = 0; i < b.x.rows; ++i) {
+    T* bar = b.x_bar.row(i);
+    for (Index j = 0; j < b.x.width; ++j) bar[j] = T(0);
+    for (Index k = 0; k < n; ++k) {
+      const Index sine = 2 * n * i + k, cosine = sine + n;
+      const T *s = b.y.row(sine), *c = b.y.row(cosine);
+      const T *s_bar = b.y_bar.row(sine), *c_bar = b.y_bar.row(cosine);
+      const V f = broadcast<V>(static_cast<T>(k + 1));
+      for (Index j = 0; j < b.x.width; j += kLanes<T>) {
+        const V cross = load<V>(s + j) * load<V>(c_bar + j);
+        const V slope =
+            multiply_add<T>(load<V>(c + j), load<V>(s_bar + j), -cross);
+        store(bar + j, multiply_add<T>(f, slope, load<V>(bar + j)));
+      }
+    }
+  }
+  apply_gate(b.gate, b.x_bar);
+}
+
+template class PositionalEncoding<float>;
+template class PositionalEncoding<double>;
+
+}  // namespace physinv::nn

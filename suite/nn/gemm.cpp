@@ -1,0 +1,196 @@
+#include "suite/nn/gemm.h"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "suite/nn/activation.h"
+#include "suite/nn/vector.h"
+
+namespace physinv::nn {
+namespace {
+
+// Register tiles of rows x vectors. Twelve accumulators fill the sixteen
+// registers of AVX2, and hide the latency of two FMA units (8 in flight).
+#ifdef __AVX512F__
+constexpr int kRows2 = 8, kRows1 = 16;
+#else
+constexpr int kRows2 = 6, kRows1 = 12;
+#endif
+constexpr Index kDepth = 256;    ///< k per round: a panel of B stays in the L1
+constexpr Index kRowBlock = 16;  ///< rows of one block of the thread loop
+constexpr double kThreadFlops = 0.5e6;
+
+/// Part of C: rows from i, columns from j (`valid` of them if the tile is not
+/// whole), products k0..k1.
+struct Part {
+  Index i, j, k0, k1, valid;
+};
+
+/// How a finished tile leaves the registers. The rare ones are done in memory,
+/// so that their code does not spill the accumulators of the common ones.
+enum class Store { plain, relu, relu_gate, in_memory };
+
+template <class T>
+Store store_of(const Gemm<T>& g) {
+  const bool free = g.activation == Activation::identity;
+  const bool open = g.gate_activation == Activation::identity;
+  if (free && open) return Store::plain;
+  if (open && g.activation == Activation::relu) return Store::relu;
+  if (free && g.gate_activation == Activation::relu) return Store::relu_gate;
+  return Store::in_memory;
+}
+
+template <class T>
+[[gnu::noinline]] void finish(
+    const Gemm<T>& g, Index i, Index rows, Index j, Index cols) {
+  using V = Simd<T, kNarrow>;
+  for (Index r = i; r < i + rows; ++r) {
+    for (Index c = j; c < j + cols; c += kLanes<T>) {
+      const Index some = std::min(kLanes<T>, j + cols - c);
+      T* at = g.c + r * g.c_stride + c;
+      V v = activate_lanes<T>(g.activation, load_some<V>(at, some));
+      if (g.gate != nullptr)
+        v = pull_lanes<T>(g.gate_activation,
+                          load_some<V>(g.gate + r * g.gate_stride + c, some),
+                          v);
+      store_some(at, v, some);
+    }
+  }
+}
+
+/// M rows x N vectors in registers. kUnit: a_row is 1, known to the compiler.
+template <class T, class V, int M, int N, bool kUnit, bool kWhole>
+[[gnu::noinline]] void tile(const Gemm<T>& g, const Part& p) {
+  constexpr Index w = sizeof(V) / sizeof(T);
+  const Index a_row = kUnit ? 1 : g.a_row;
+  const Index count = kWhole ? w : p.valid;
+  const auto get = [count](const T* from) {
+    return kWhole ? load<V>(from) : load_some<V>(from, count);
+  };
+  V acc[M][N];
+#pragma GCC unroll 16
+  for (int r = 0; r < M; ++r)
+#pragma GCC unroll 2
+    for (int c = 0; c < N; ++c) acc[r][c] = V{};
+  T* const to = g.c + p.i * g.c_stride + p.j;
+  if (p.k0 > 0) {
+#pragma GCC unroll 16
+    for (int r = 0; r < M; ++r)
+#pragma GCC unroll 2
+      for (int c = 0; c < N; ++c) acc[r][c] = get(to + r * g.c_stride + c * w);
+  } else if (g.bias != nullptr) {
+#pragma GCC unroll 16
+    for (int r = 0; r < M; ++r)
+#pragma GCC unroll 2
+      for (int c = 0; c < N; ++c) acc[r][c] = broadcast<V>(g.bias[p.i + r]);
+  }
+  constexpr int groups = (M + 3) / 4;
+  const T* a[groups];
+#pragma GCC unroll 4
+  for (int q = 0; q < groups; ++q)
+    a[q] = g.a + (p.i + 4 * q) * a_row + p.k0 * g.a_k;
+  const T* b = g.b + p.k0 * g.b_stride + p.j;
+  for (Index k = p.k0; k < p.k1; ++k, b += g.b_stride) {
+    V bv[N];
+#pragma GCC unroll 2
+    for (int c = 0; c < N; ++c) bv[c] = load<V>(b + c * w);
+#pragma GCC unroll 16
+    for (int r = 0; r < M; ++r) {
+      const V s = broadcast<V>(a[r / 4][(r % 4) * a_row]);
+#pragma GCC unroll 2
+      for (int c = 0; c < N; ++c)
+        acc[r][c] = multiply_add<T>(s, bv[c], acc[r][c]);
+    }
+#pragma GCC unroll 4
+    for (int q = 0; q < groups; ++q) a[q] += g.a_k;
+  }
+  const Store how = p.k1 == g.k ? store_of(g) : Store::plain;
+  if (how == Store::relu) {
+#pragma GCC unroll 16
+    for (int r = 0; r < M; ++r)
+#pragma GCC unroll 2
+      for (int c = 0; c < N; ++c)
+        acc[r][c] = activate_lanes<T>(Activation::relu, acc[r][c]);
+  } else if (how == Store::relu_gate) {
+    const T* gate = g.gate + p.i * g.gate_stride + p.j;
+#pragma GCC unroll 16
+    for (int r = 0; r < M; ++r)
+#pragma GCC unroll 2
+      for (int c = 0; c < N; ++c)
+        acc[r][c] = pull_lanes<T>(
+            Activation::relu, get(gate + r * g.gate_stride + c * w), acc[r][c]);
+  }
+#pragma GCC unroll 16
+  for (int r = 0; r < M; ++r) {
+#pragma GCC unroll 2
+    for (int c = 0; c < N; ++c) {
+      if constexpr (kWhole) {
+        store(to + r * g.c_stride + c * w, acc[r][c]);
+      } else {
+        store_some(to + r * g.c_stride + c * w, acc[r][c], count);
+      }
+    }
+  }
+  if (how == Store::in_memory) finish(g, p.i, M, p.j, kWhole ? N * w : count);
+}
+
+/// All rows of one column of tiles, the remainder by smaller ones.
+template <class T, class V, int M, int N, bool kUnit, bool kWhole = true>
+void column(const Gemm<T>& g, Part p, Index end) {
+  for (; p.i + M <= end; p.i += M) tile<T, V, M, N, kUnit, kWhole>(g, p);
+  if constexpr (M > 1) {
+    if (p.i < end) column<T, V, M - 1, N, kUnit, kWhole>(g, p, end);
+  }
+}
+
+template <class T, bool kUnit>
+void rows(const Gemm<T>& g, Index begin, Index end) {
+  using Wide = Simd<T, kWide>;
+  using Narrow = Simd<T, kNarrow>;
+  constexpr Index wide = sizeof(Wide) / sizeof(T);
+  constexpr Index narrow = sizeof(Narrow) / sizeof(T);
+  Index k0 = 0;
+  do {
+    const Index k1 = std::min(k0 + kDepth, g.k);
+    Index j = 0;
+    for (; j + 2 * wide <= g.n; j += 2 * wide)
+      column<T, Wide, kRows2, 2, kUnit>(g, {begin, j, k0, k1, wide}, end);
+    for (; j + wide <= g.n; j += wide)
+      column<T, Wide, kRows1, 1, kUnit>(g, {begin, j, k0, k1, wide}, end);
+    for (; j + narrow <= g.n; j += narrow)
+      column<T, Narrow, kRows1, 1, kUnit>(g, {begin, j, k0, k1, narrow}, end);
+    if (j < g.n)
+      column<T, Narrow, kRows1, 1, kUnit, false>(
+          g, {begin, j, k0, k1, g.n - j}, end);
+    k0 = k1;
+  } while (k0 < g.k);
+}
+
+template <class T>
+void rows(const Gemm<T>& g, Index begin, Index end) {
+  if (g.a_row == 1) {
+    rows<T, true>(g, begin, end);
+  } else {
+    rows<T, false>(g, begin, end);
+  }
+}
+
+}  // namespace
+
+template <class T>
+void gemm(const Gemm<T>& g, Threads* threads) {
+  const double flops = 2.0 * static_cast<double>(g.m * g.n * g.k);
+  if (threads == nullptr || threads->count() == 1 || flops < kThreadFlops) {
+    rows(g, 0, g.m);
+    return;
+  }
+  for_blocks(threads, (g.m + kRowBlock - 1) / kRowBlock, [&](Index block, int) {
+    const Index begin = block * kRowBlock;
+    rows(g, begin, std::min(begin + kRowBlock, g.m));
+  });
+}
+
+template void gemm<float>(const Gemm<float>&, Threads*);
+template void gemm<double>(const Gemm<double>&, Threads*);
+
+}  // namespace physinv::nn

@@ -1,0 +1,320 @@
+// Single thread. Shares of peak: FLOPS of a product over that of
+// machine/gemm<T>/1024, measured in the same run.
+
+#include <benchmark/benchmark.h>
+#include <fftw3.h>
+
+#include <Eigen/Core>
+#include <cstring>
+#include <memory>
+#include <vector>
+
+#include "optimizers/steps/adam.h"
+#include "suite/core/network.h"
+#include "suite/nn/activation.h"
+#include "suite/nn/batch_norm.h"
+#include "suite/nn/encoding.h"
+#include "suite/nn/gemm.h"
+#include "suite/nn/linear.h"
+#include "suite/nn/mlp.h"
+
+namespace physinv::nn {
+namespace {
+
+void flops(benchmark::State& state, double per_iteration) {
+  state.counters["FLOPS"] = benchmark::Counter(
+      per_iteration, benchmark::Counter::kIsIterationInvariantRate);
+}
+
+double products(Index m, Index n, Index k) {
+  return 2.0 * static_cast<double>(m * n * k);
+}
+
+// ------------------------------------------------------------ the machine
+
+template <class T>
+void machine_gemm(benchmark::State& state) {
+  const Index m = state.range(0), n = state.range(1), k = state.range(2);
+  const Batch<T> a = Batch<T>::Random(m, k), b = Batch<T>::Random(k, n);
+  Batch<T> c(m, n);
+  for (auto _ : state) {
+    c.noalias() = a * b;
+    benchmark::DoNotOptimize(c.data());
+    benchmark::ClobberMemory();
+  }
+  flops(state, products(m, n, k));
+}
+
+void machine_copy(benchmark::State& state) {
+  const std::size_t bytes = std::size_t{64} << 20;
+  std::vector<char> a(bytes, 1), b(bytes, 2);
+  for (auto _ : state) {
+    std::memcpy(b.data(), a.data(), bytes);
+    benchmark::ClobberMemory();
+  }
+  state.SetBytesProcessed(static_cast<std::int64_t>(2 * bytes) *
+                          state.iterations());
+}
+
+void machine_fft(benchmark::State& state) {
+  int n = 1024;
+  const int batch = 64, half = n / 2 + 1;
+  Vector<double> in = Vector<double>::Random(n * batch);
+  Eigen::VectorXcd out(half * batch);
+  fftw_plan plan =
+      fftw_plan_many_dft_r2c(1,
+                             &n,
+                             batch,
+                             in.data(),
+                             nullptr,
+                             1,
+                             n,
+                             reinterpret_cast<fftw_complex*>(out.data()),
+                             nullptr,
+                             1,
+                             half,
+                             FFTW_ESTIMATE);
+  for (auto _ : state) {
+    fftw_execute(plan);
+    benchmark::ClobberMemory();
+  }
+  fftw_destroy_plan(plan);
+  flops(state, 2.5 * n * 10 * batch);
+}
+
+BENCHMARK(machine_gemm<float>)
+    ->Name("machine/gemm<float>")
+    ->Args({1024, 1024, 1024})
+    ->Args({128, 128, 128})
+    ->Args({128, 8, 128});
+BENCHMARK(machine_gemm<double>)
+    ->Name("machine/gemm<double>")
+    ->Args({1024, 1024, 1024})
+    ->Args({128, 128, 128})
+    ->Args({128, 8, 128});
+BENCHMARK(machine_copy)->Name("machine/copy_64MiB");
+BENCHMARK(machine_fft)->Name("machine/fft_real_1024x64");
+
+// --------------------------------------------------------------- products
+
+template <class T>
+struct LaneBlock {
+  LaneBlock(Index rows, Index samples) : lanes(nullptr, rows, samples) {
+    buffer.resize(lanes.stride, rows);
+    buffer.setRandom();
+    lanes.data = buffer.data();
+  }
+  Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic> buffer;
+  Lanes<T> lanes;
+};
+
+/// W X, with rows of W contiguous in k (forward) or in m (input gradient).
+template <class T, bool kTransposed>
+void product(benchmark::State& state) {
+  const Index m = state.range(0), n = state.range(1), k = state.range(2);
+  const Vector<T> w = Vector<T>::Random(m * k);
+  LaneBlock<T> b(k, n), c(m, n);
+  for (auto _ : state) {
+    gemm<T>({.m = m,
+             .n = b.lanes.width,
+             .k = k,
+             .a = w.data(),
+             .a_row = kTransposed ? 1 : k,
+             .a_k = kTransposed ? m : 1,
+             .b = b.lanes.data,
+             .b_stride = b.lanes.stride,
+             .c = c.lanes.data,
+             .c_stride = c.lanes.stride});
+    benchmark::ClobberMemory();
+  }
+  flops(state, products(m, n, k));
+}
+
+template <class T>
+void weight_product(benchmark::State& state) {
+  const Index m = state.range(0), n = state.range(1), k = state.range(2);
+  LaneBlock<T> y_bar(m, k), xt(k, n);
+  Vector<T> w(m * n);
+  for (auto _ : state) {
+    gemm<T>({.m = m,
+             .n = n,
+             .k = k,
+             .a = y_bar.lanes.data,
+             .a_row = y_bar.lanes.stride,
+             .a_k = 1,
+             .b = xt.lanes.data,
+             .b_stride = xt.lanes.stride,
+             .c = w.data(),
+             .c_stride = n});
+    benchmark::ClobberMemory();
+  }
+  flops(state, products(m, n, k));
+}
+
+void shapes(benchmark::internal::Benchmark* b) {
+  b->Args({128, 128, 128})->Args({128, 8, 128})->Args({128, 4, 128});
+  b->Args({128, 128, 32})->Args({2, 128, 128})->Args({128, 128, 2});
+}
+void weight_shapes(benchmark::internal::Benchmark* b) {
+  b->Args({128, 128, 128})->Args({128, 128, 8})->Args({128, 32, 128});
+  b->Args({2, 128, 128});
+}
+
+#define PHYSINV_BENCH(T)                                                     \
+  BENCHMARK((product<T, false>))->Name("nn/forward<" #T ">")->Apply(shapes); \
+  BENCHMARK((product<T, true>))                                              \
+      ->Name("nn/input_gradient<" #T ">")                                    \
+      ->Apply(shapes);                                                       \
+  BENCHMARK(weight_product<T>)                                               \
+      ->Name("nn/weight_gradient<" #T ">")                                   \
+      ->Apply(weight_shapes);
+PHYSINV_BENCH(float)
+PHYSINV_BENCH(double)
+#undef PHYSINV_BENCH
+
+// ----------------------------------------------------------------- layers
+
+template <class T>
+void run_layer(benchmark::State& state,
+               std::unique_ptr<Layer<T>> layer,
+               bool backward) {
+  const Index n = state.range(0);
+  Index size = 0;
+  for (const TensorInfo& t : layer->tensors()) size += t.size;
+  const Vector<T> p = Vector<T>::Random(size);
+  Vector<T> p_bar(size), s(layer->state_count());
+  layer->initialize_state(s.data());
+  LaneBlock<T> x(layer->inputs(), n), y(layer->outputs(), n);
+  LaneBlock<T> y_bar(layer->outputs(), n), x_bar(layer->inputs(), n);
+  Tape tape;
+  Workspace work;
+  const LayerArgs<T> at{.parameters = p.data(),
+                        .state = s.data(),
+                        .tape = &tape,
+                        .work = &work,
+                        .training = true};
+  layer->forward(at, x.lanes, y.lanes);
+  for (auto _ : state) {
+    if (backward) {
+      layer->backward(at,
+                      {.x = x.lanes,
+                       .y = y.lanes,
+                       .y_bar = y_bar.lanes,
+                       .parameters_bar = p_bar.data(),
+                       .x_bar = x_bar.lanes});
+    } else {
+      layer->forward(at, x.lanes, y.lanes);
+    }
+    benchmark::ClobberMemory();
+  }
+  flops(state, layer->operations() * double(n) * (backward ? 2 : 1));
+}
+
+using Made = std::unique_ptr<Layer<float>>;
+Made linear() { return std::make_unique<Linear<float>>(128, 128); }
+Made batch_norm() { return std::make_unique<BatchNorm<float>>(128); }
+Made encoding() { return std::make_unique<PositionalEncoding<float>>(4, 4); }
+template <Activation a>
+Made activation() {
+  return std::make_unique<ActivationLayer<float>>(a, 128);
+}
+
+template <Made (*make)(), bool kBackward>
+void layer(benchmark::State& state) {
+  run_layer<float>(state, make(), kBackward);
+}
+
+#define PHYSINV_LAYER(name, make)          \
+  BENCHMARK((layer<make, false>))          \
+      ->Name("nn/layer/" name "/forward")  \
+      ->Arg(8)                             \
+      ->Arg(128);                          \
+  BENCHMARK((layer<make, true>))           \
+      ->Name("nn/layer/" name "/backward") \
+      ->Arg(8)                             \
+      ->Arg(128);
+PHYSINV_LAYER("linear", linear)
+PHYSINV_LAYER("batch_norm", batch_norm)
+PHYSINV_LAYER("encoding", encoding)
+PHYSINV_LAYER("tanh", activation<Activation::tanh>)
+PHYSINV_LAYER("softplus", activation<Activation::softplus>)
+PHYSINV_LAYER("silu", activation<Activation::silu>)
+#undef PHYSINV_LAYER
+
+// --------------------------------------------------------------- networks
+
+enum class What { forward, parameters, input, iteration, surrogate };
+
+/// 4 -> encoding 32 -> 128-128-128 -> 2.
+template <class T, What what, bool kFixed>
+void network(benchmark::State& state) {
+  const Index n = state.range(0);
+  const auto net =
+      mlp({.hidden = {128, 128, 128}, .frequencies = 4}).make<T>(4, 2);
+  Vector<T> p(net->parameter_count()), p_bar(p.size()), s(0);
+  net->initialize(Rng::root("kernels", 0), p, s);
+  Batch<T> in = Batch<T>::Random(4, n), out(2, n), in_bar(4, n);
+  in.row(0).setConstant(T(1)), in.bottomRows(2).setConstant(T(0.5));
+  const Batch<T> out_bar = Batch<T>::Random(2, n) * T(1e-3);
+  Tape tape;
+  Workspace work;
+  Adam<T> adam({.rate = 1e-9});
+  VectorOut<T> p_out(p_bar);
+  BatchOut<T> in_out(in_bar);
+  Pass pass{.fixed_input = kFixed};
+  net->forward(p, s, in, out, tape, work, pass);
+  pass.same_input = what != What::surrogate;
+  for (auto _ : state) {
+    if (what != What::parameters && what != What::input)
+      net->forward(p, s, in, out, tape, work, pass);
+    if (what == What::parameters || what == What::iteration)
+      net->backward(p, tape, out_bar, &p_out, nullptr, work);
+    if (what == What::input || what == What::surrogate)
+      net->backward(p, tape, out_bar, nullptr, &in_out, work);
+    if (what == What::iteration) adam.step(p, p_bar);
+    benchmark::ClobberMemory();
+  }
+  constexpr double passes = what == What::iteration    ? 3
+                            : what == What::parameters ? 2
+                            : what == What::surrogate  ? 2
+                                                       : 1;
+  flops(state, net->operations() * double(n) * passes);
+}
+
+void samples(benchmark::internal::Benchmark* b) {
+  b->Arg(2)->Arg(8)->Arg(32)->Arg(128);
+}
+
+#define PHYSINV_NETWORK(T, what, fixed)                \
+  BENCHMARK((network<T, What::what, fixed>))           \
+      ->Name("nn/mlp<" #T ">/" #what "/fixed=" #fixed) \
+      ->Apply(samples);
+#define PHYSINV_NETWORKS(T)             \
+  PHYSINV_NETWORK(T, forward, false)    \
+  PHYSINV_NETWORK(T, parameters, false) \
+  PHYSINV_NETWORK(T, input, false)      \
+  PHYSINV_NETWORK(T, iteration, false)  \
+  PHYSINV_NETWORK(T, iteration, true)   \
+  PHYSINV_NETWORK(T, surrogate, false)
+PHYSINV_NETWORKS(float)
+PHYSINV_NETWORKS(double)
+#undef PHYSINV_NETWORKS
+#undef PHYSINV_NETWORK
+
+template <class T>
+void adam_step(benchmark::State& state) {
+  Vector<T> x = Vector<T>::Random(37506);
+  const Vector<T> g = Vector<T>::Random(x.size());
+  Adam<T> adam;
+  for (auto _ : state) {
+    adam.step(x, g);
+    benchmark::ClobberMemory();
+  }
+  state.SetBytesProcessed(state.iterations() * x.size() *
+                          static_cast<std::int64_t>(7 * sizeof(T)));
+}
+BENCHMARK(adam_step<float>)->Name("steps/adam<float>/37506");
+BENCHMARK(adam_step<double>)->Name("steps/adam<double>/37506");
+
+}  // namespace
+}  // namespace physinv::nn

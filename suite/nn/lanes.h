@@ -1,0 +1,75 @@
+/// Lanes: how activations lie inside a network. Row = feature, columns =
+/// samples, contiguous and padded to a multiple of 32 bytes. Batches (one
+/// sample = one column) are transposed only at the network's boundary.
+///
+/// The padding holds finite garbage in activations and zeros in cotangents;
+/// no result may depend on it.
+#pragma once
+
+#include <type_traits>
+
+#include "suite/core/batch.h"
+
+namespace physinv::nn {
+
+/// Lanes of one narrow vector; widths are multiples of it.
+template <class T>
+inline constexpr Index kLanes = 32 / static_cast<Index>(sizeof(T));
+
+constexpr Index round_up(Index n, Index multiple) {
+  return (n + multiple - 1) / multiple * multiple;
+}
+
+/// Distance between rows of `width` lanes. An odd number of cache lines: with
+/// 512-byte rows a column of 128 features would fall into 8 sets of the L1.
+template <class T>
+constexpr Index lane_stride(Index width) {
+  constexpr Index line = 2 * kLanes<T>;
+  if (width <= line) return width;
+  const Index lines = (width + line - 1) / line;
+  return (lines | 1) * line;
+}
+
+/// View of features x samples. `T` may be const.
+template <class T>
+struct Lanes {
+  T* data = nullptr;
+  Index rows = 0, samples = 0, width = 0, stride = 0;
+
+  Lanes() = default;
+  Lanes(T* d, Index r, Index n)
+      : data(d),
+        rows(r),
+        samples(n),
+        width(round_up(n, kLanes<std::remove_const_t<T>>)),
+        stride(lane_stride<std::remove_const_t<T>>(width)) {}
+
+  T* row(Index i) const { return data + i * stride; }
+  explicit operator bool() const { return data != nullptr; }
+  operator Lanes<const T>() const requires(!std::is_const_v<T>) {
+    return {data, rows, samples};
+  }
+};
+
+/// to[j][i] = from[i][j] for i < rows, j < cols.
+template <class T>
+void transpose(const T* from,
+               Index from_stride,
+               Index rows,
+               Index cols,
+               T* to,
+               Index to_stride);
+
+/// Samples as columns -> lanes; the padding becomes zero.
+template <class T>
+void to_lanes(BatchIn<T> from, Lanes<T> to);
+
+template <class T>
+void from_lanes(Lanes<const T> from, BatchOut<T> to);
+
+/// sums[i] = sum of row i over its samples. Lane l adds samples l, l + W, ...;
+/// the lanes are then added pairwise, so the order is that of n alone.
+template <class T>
+void row_sums(Lanes<const T> x, T* sums);
+
+}  // namespace physinv::nn

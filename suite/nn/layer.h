@@ -1,0 +1,109 @@
+/// A layer: a pure function on lanes, and its reverse.
+///
+/// A layer owns no numbers. Parameters, state, tape slots and scratch come
+/// with each call, so one object serves any number of threads and vectors.
+///
+/// How more fits in without touching what is there:
+///  - Convolution and pooling: one sample's field is rows [channel][position]
+///    of a lane block, so a tap is a `gemm` with m = channels on shifted rows,
+///    and everything element-wise works as it is.
+///  - Skips (U-Net): a composite layer owns its inner layers, adds up their
+///    tensors and slots, and keeps the skipped rows in its own tape slots.
+///  - Forward mode: one more virtual `tangent(at, x, y, x_dot, p_dot, y_dot)`
+///    with a default that reports the lack; it reads the same tape.
+///  - Per-sample Jacobians: one more virtual beside `backward` that writes
+///    column j's parameter gradient (Linear: y_bar_j x_j^T) into column j of a
+///    batch; the cotangents walking down are those of `backward`, run once per
+///    output on the same tape.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "suite/core/network.h"
+#include "suite/nn/lanes.h"
+
+namespace physinv::nn {
+
+enum class Activation : std::uint8_t {
+  identity,
+  relu,
+  tanh,
+  sigmoid,
+  softplus,
+  silu,  ///< z sigma(z)
+};
+
+/// Everything a layer uses beside its input and output.
+template <class T>
+struct LayerArgs {
+  const T* parameters = nullptr;  ///< this layer's part of the flat vector
+  const T* state = nullptr;       ///< this layer's part; null in backward
+  Tape* tape = nullptr;
+  std::size_t slot = 0;  ///< first of this layer's `slots()` tape slots
+  Workspace* work = nullptr;
+  bool training = false;
+  /// The first `leading` and last `trailing` input rows are constant over the
+  /// batch; a layer may fold them or ignore this.
+  Index leading = 0, trailing = 0;
+};
+
+/// The activation in front of a layer: its derivative at the stored output
+/// multiplies the cotangent on its way down.
+template <class T>
+struct Gate {
+  Activation activation = Activation::identity;
+  Lanes<const T> y = {};
+};
+
+/// One layer's step back. y_bar already carries the derivative of the
+/// activation the layer has taken in; x_bar leaves with that of `gate`.
+template <class T>
+struct Backward {
+  Lanes<const T> x, y, y_bar;
+  T* parameters_bar = nullptr;  ///< overwritten; null: not wanted
+  Lanes<T> x_bar = {};          ///< overwritten; null: not wanted
+  Gate<T> gate = {};
+};
+
+template <class T>
+class Layer {
+ public:
+  Layer(Index inputs, Index outputs) : inputs_(inputs), outputs_(outputs) {}
+  virtual ~Layer() = default;
+
+  Index inputs() const { return inputs_; }
+  Index outputs() const { return outputs_; }
+
+  /// Tensors in the order they lie in memory; kind, size and fan_in are set.
+  virtual std::vector<TensorInfo> tensors() const { return {}; }
+  virtual Index state_count() const { return 0; }
+  virtual void initialize_state(T* /*state*/) const {}
+  /// Tape slots it needs beside its input and output.
+  virtual std::size_t slots() const { return 0; }
+
+  /// Not null if the layer is nothing but this activation.
+  virtual const Activation* pure_activation() const { return nullptr; }
+  /// Takes a following activation into its own store, if it can.
+  virtual bool fuse(Activation) { return false; }
+  /// The activation taken in.
+  virtual Activation fused() const { return Activation::identity; }
+
+  virtual void forward(const LayerArgs<T>& at,
+                       Lanes<const T> x,
+                       Lanes<T> y) const = 0;
+  virtual void backward(const LayerArgs<T>& at, const Backward<T>& b) const = 0;
+  /// Folds the last training pass's statistics into this layer's state.
+  virtual void update_state(const Tape& /*tape*/,
+                            std::size_t /*slot*/,
+                            T* /*state*/) const {}
+  /// Floating-point operations of one sample, forward.
+  virtual double operations() const { return static_cast<double>(outputs_); }
+
+ private:
+  Index inputs_, outputs_;
+};
+
+}  // namespace physinv::nn

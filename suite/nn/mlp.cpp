@@ -1,0 +1,65 @@
+#include "suite/nn/mlp.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <memory>
+#include <utility>
+
+#include "suite/nn/activation.h"
+#include "suite/nn/batch_norm.h"
+#include "suite/nn/encoding.h"
+#include "suite/nn/linear.h"
+#include "suite/nn/sequential.h"
+
+namespace physinv::nn {
+namespace {
+
+template <class T>
+std::unique_ptr<Network<T>> make(const MlpOptions& o,
+                                 Index inputs,
+                                 Index outputs) {
+  typename Sequential<T>::Layers layers;
+  Index size = inputs;
+  const auto add = [&](auto layer) {
+    size = layer->outputs();
+    layers.push_back(std::move(layer));
+  };
+  const auto add_activation = [&](Activation a) {
+    if (a != Activation::identity)
+      add(std::make_unique<ActivationLayer<T>>(a, size));
+  };
+  if (o.frequencies > 0)
+    add(std::make_unique<PositionalEncoding<T>>(size, o.frequencies));
+  for (const Index width : o.hidden) {
+    add(std::make_unique<Linear<T>>(size, width));
+    add_activation(o.activation);
+    if (o.batch_norm) add(std::make_unique<BatchNorm<T>>(size));
+  }
+  add(std::make_unique<Linear<T>>(size, outputs));
+  add_activation(o.output);
+  return std::make_unique<Sequential<T>>(std::move(layers));
+}
+
+}  // namespace
+
+NetworkRecipe mlp(const MlpOptions& options) {
+  return {.description = fmt::format(
+              "mlp hidden={} frequencies={} activation={} output={} "
+              "batch_norm={}",
+              fmt::join(options.hidden, "-"),
+              options.frequencies,
+              to_string(options.activation),
+              to_string(options.output),
+              options.batch_norm),
+          .make_float =
+              [options](Index in, Index out) {
+                return make<float>(options, in, out);
+              },
+          .make_double =
+              [options](Index in, Index out) {
+                return make<double>(options, in, out);
+              }};
+}
+
+}  // namespace physinv::nn

@@ -1,0 +1,254 @@
+#include "suite/nn/sequential.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "suite/core/check.h"
+#include "suite/nn/activation.h"
+
+namespace physinv::nn {
+namespace {
+
+/// Rows from `first` on, by `step`, whose samples are all equal.
+template <class T>
+Index constant_rows(Lanes<const T> x, Index first, Index step) {
+  Index count = 0;
+  for (Index i = first; i >= 0 && i < x.rows; i += step, ++count) {
+    const T* row = x.row(i);
+    if (!std::all_of(row, row + x.samples, [&](T v) { return v == row[0]; }))
+      break;
+  }
+  return count;
+}
+
+}  // namespace
+
+/// Slot 0: what a later call must know about the last forward pass.
+template <class T>
+struct Sequential<T>::Header {
+  Index samples = 0, training = 0, fixed = 0;
+  Index measured = 0;  ///< constant rows were looked for
+  Index leading = 0, trailing = 0;
+
+  static constexpr Index kSize = 6;
+  static Header read(const Tape& tape) {
+    const auto s = tape.view<Index>(0);
+    SUITE_CHECK(s.size() == kSize, "the tape holds no pass of a network");
+    return {s(0), s(1), s(2), s(3), s(4), s(5)};
+  }
+  void write(Tape& tape) const {
+    tape.slot<Index>(0, kSize, 1) << samples, training, fixed, measured,
+        leading, trailing;
+  }
+  void measure(Lanes<const T> x) {
+    measured = 1;
+    leading = constant_rows(x, 0, 1);
+    trailing = leading == x.rows ? 0 : constant_rows(x, x.rows - 1, -1);
+  }
+};
+
+template <class T>
+Sequential<T>::Sequential(Layers layers) {
+  SUITE_CHECK(!layers.empty(), "a network has at least one layer");
+  for (auto& layer : layers) {
+    SUITE_CHECK(layers_.empty() || layers_.back()->outputs() == layer->inputs(),
+                "neighbouring layers differ in size");
+    const Activation* a = layer->pure_activation();
+    if (a != nullptr && !layers_.empty() && layers_.back()->fuse(*a)) continue;
+    layers_.push_back(std::move(layer));
+  }
+  place_layers();
+}
+
+template <class T>
+void Sequential<T>::place_layers() {
+  std::array<int, 128> number{};
+  std::size_t slot = 2 + layers_.size();
+  widest_ = inputs();
+  bool leading = true;
+  for (const auto& layer : layers_) {
+    places_.push_back({parameter_count_, state_count_, slot});
+    for (TensorInfo t : layer->tensors()) {
+      t.offset = parameter_count_;
+      t.name =
+          t.kind + std::to_string(++number[static_cast<std::size_t>(t.kind)]);
+      parameter_count_ += t.size;
+      tensors_.push_back(std::move(t));
+    }
+    state_count_ += layer->state_count();
+    slot += layer->slots();
+    widest_ = std::max(widest_, layer->outputs());
+    leading = leading && parameter_count_ == 0 && state_count_ == 0;
+    if (leading) ++prefix_;
+  }
+}
+
+template <class T>
+void Sequential<T>::initialize(const Rng& rng,
+                               VectorOut<T> parameters,
+                               VectorOut<T> state) const {
+  SUITE_CHECK(
+      parameters.size() == parameter_count_ && state.size() == state_count_,
+      "parameters or state have the wrong size");
+  for (const TensorInfo& t : tensors_) {
+    auto part = parameters.segment(t.offset, t.size);
+    part.setConstant(t.kind == 's' ? T(1) : T(0));
+    if (t.kind != 'm' && t.kind != 'k') continue;
+    Stream stream = rng.child(t.name).stream();
+    const double bound = 1.0 / std::sqrt(static_cast<double>(t.fan_in));
+    for (T& w : part) w = static_cast<T>(stream.uniform(-bound, bound));
+  }
+  for (std::size_t i = 0; i < layers_.size(); ++i)
+    layers_[i]->initialize_state(state.data() + places_[i].state);
+}
+
+template <class T>
+Lanes<T> Sequential<T>::open(Tape& tape, std::size_t i, Index samples) const {
+  const Index rows = i == 0 ? inputs() : layers_[i - 1]->outputs();
+  Lanes<T> x(nullptr, rows, samples);
+  x.data = tape.slot<T>(1 + i, x.stride, rows).data();
+  return x;
+}
+
+template <class T>
+Lanes<T> Sequential<T>::features(const Tape& tape,
+                                 std::size_t i,
+                                 Index samples) const {
+  const Index rows = i == 0 ? inputs() : layers_[i - 1]->outputs();
+  return {tape.view<T>(1 + i).data(), rows, samples};
+}
+
+template <class T>
+LayerArgs<T> Sequential<T>::args(std::size_t layer,
+                                 const Header& header,
+                                 Tape& tape,
+                                 Workspace& work) const {
+  LayerArgs<T> at{.tape = &tape,
+                  .slot = places_[layer].slot,
+                  .work = &work,
+                  .training = header.training != 0};
+  if (layer == prefix_ && header.fixed != 0)
+    at.leading = header.leading, at.trailing = header.trailing;
+  return at;
+}
+
+template <class T>
+void Sequential<T>::run_prefix(BatchIn<T> in,
+                               const Header& header,
+                               Tape& tape,
+                               Workspace& work) const {
+  to_lanes<T>(in, open(tape, 0, header.samples));
+  for (std::size_t i = 0; i < prefix_; ++i)
+    layers_[i]->forward(args(i, header, tape, work),
+                        features(tape, i, header.samples),
+                        open(tape, i + 1, header.samples));
+}
+
+template <class T>
+void Sequential<T>::forward(VectorIn<T> parameters,
+                            VectorIn<T> state,
+                            BatchIn<T> in,
+                            BatchOut<T> out,
+                            Tape& tape,
+                            Workspace& work,
+                            Pass pass) const {
+  const Index n = in.cols();
+  SUITE_CHECK(
+      in.rows() == inputs() && out.rows() == outputs() && out.cols() == n,
+      "a network's batch has the wrong shape");
+  SUITE_CHECK(
+      parameters.size() == parameter_count_ && state.size() == state_count_,
+      "parameters or state have the wrong size");
+  work.counts[Counter::network_forward] += static_cast<std::uint64_t>(n);
+  Header header;
+  if (pass.same_input) {
+    header = Header::read(tape);
+    SUITE_CHECK(header.samples == n, "not the input of the last pass");
+    if (prefix_ > 0)
+      work.counts[Counter::skipped_features] += static_cast<std::uint64_t>(n);
+  }
+  header.samples = n;
+  header.training = pass.training, header.fixed = pass.fixed_input;
+  if (!pass.same_input) run_prefix(in, header, tape, work);
+  if (pass.fixed_input) {
+    if (header.measured == 0) header.measure(features(tape, prefix_, n));
+    work.counts[Counter::skipped_rows] +=
+        static_cast<std::uint64_t>((header.leading + header.trailing) * n);
+  }
+  header.write(tape);
+  for (std::size_t i = prefix_; i < layers_.size(); ++i) {
+    LayerArgs<T> at = args(i, header, tape, work);
+    at.parameters = parameters.data() + places_[i].parameters;
+    at.state = state.data() + places_[i].state;
+    const Lanes<T> y = open(tape, i + 1, n);
+    layers_[i]->forward(at, features(tape, i, n), y);
+  }
+  from_lanes<T>(features(tape, layers_.size(), n), out);
+}
+
+template <class T>
+void Sequential<T>::backward(VectorIn<T> parameters,
+                             const Tape& tape,
+                             BatchIn<T> out_bar,
+                             VectorOut<T>* parameters_bar,
+                             BatchOut<T>* in_bar,
+                             Workspace& work) const {
+  if (parameters_bar == nullptr && in_bar == nullptr) return;
+  const Header header = Header::read(tape);
+  const Index n = header.samples;
+  SUITE_CHECK(out_bar.rows() == outputs() && out_bar.cols() == n,
+              "a network's cotangent has the wrong shape");
+  work.counts[Counter::network_backward] += static_cast<std::uint64_t>(n);
+  const Workspace::Scope scope(work);
+  const Index stride = Lanes<T>(nullptr, widest_, n).stride;
+  T* free = work.take<T>(stride, widest_).data();
+  Lanes<T> y_bar(work.take<T>(stride, widest_).data(), outputs(), n);
+  to_lanes<T>(out_bar, y_bar);
+  apply_gate<T>({layers_.back()->fused(), features(tape, layers_.size(), n)},
+                y_bar);
+
+  const std::size_t end = in_bar != nullptr ? 0 : prefix_;
+  for (std::size_t i = layers_.size(); i-- > end;) {
+    const Layer<T>& layer = *layers_[i];
+    Backward<T> b{.x = features(tape, i, n),
+                  .y = features(tape, i + 1, n),
+                  .y_bar = y_bar};
+    if (parameters_bar != nullptr)
+      b.parameters_bar = parameters_bar->data() + places_[i].parameters;
+    if (i > end) {
+      b.gate = {layers_[i - 1]->fused(), b.x};
+    }
+    if (i > end || in_bar != nullptr) b.x_bar = {free, layer.inputs(), n};
+    // Layers read the tape here; the interface they share also writes it.
+    LayerArgs<T> at = args(i, header, const_cast<Tape&>(tape), work);
+    at.parameters = parameters.data() + places_[i].parameters;
+    layer.backward(at, b);
+    free = y_bar.data;
+    y_bar = b.x_bar;
+  }
+  if (in_bar != nullptr) from_lanes<T>(y_bar, *in_bar);
+}
+
+template <class T>
+void Sequential<T>::update_state(const Tape& tape, VectorOut<T> state) const {
+  if (state_count_ == 0) return;
+  SUITE_CHECK(Header::read(tape).training != 0,
+              "the last pass had no batch statistics");
+  for (std::size_t i = 0; i < layers_.size(); ++i)
+    layers_[i]->update_state(
+        tape, places_[i].slot, state.data() + places_[i].state);
+}
+
+template <class T>
+double Sequential<T>::operations() const {
+  double sum = 0;
+  for (const auto& layer : layers_) sum += layer->operations();
+  return sum;
+}
+
+template class Sequential<float>;
+template class Sequential<double>;
+
+}  // namespace physinv::nn

@@ -1,0 +1,85 @@
+/// Short vectors as GCC and clang know them: element-wise arithmetic, one
+/// operation per instruction, the same bits in every lane.
+#pragma once
+
+#include <cmath>
+#include <cstring>
+
+#if defined(__FMA__) || defined(__AVX512F__)
+#include <immintrin.h>
+#endif
+
+#include "suite/core/batch.h"
+
+namespace physinv::nn {
+
+template <class T, int kBytes>
+struct VectorOf {
+  typedef T type __attribute__((vector_size(kBytes)));
+};
+
+/// kBytes of T in one register.
+template <class T, int kBytes>
+using Simd = typename VectorOf<T, kBytes>::type;
+
+inline constexpr int kNarrow = 32;
+#ifdef __AVX512F__
+inline constexpr int kWide = 64;
+#else
+inline constexpr int kWide = 32;
+#endif
+
+template <class V, class T>
+inline V load(const T* p) {
+  V v;
+  std::memcpy(&v, p, sizeof(V));
+  return v;
+}
+
+template <class V, class T>
+inline void store(T* p, V v) {
+  std::memcpy(p, &v, sizeof(V));
+}
+
+template <class V, class T>
+inline V broadcast(T s) {
+  return s - V{};  // unlike V{} + s, keeps the sign of a zero
+}
+
+/// a * b + c with one rounding. Written out, because whether the compiler
+/// contracts the plain expression differs from one tile size to the next.
+template <class T, class V>
+inline V multiply_add(V a, V b, V c) {
+  constexpr bool single = sizeof(T) == 4;
+#ifdef __AVX512F__
+  if constexpr (sizeof(V) == 64 && single)
+    return (V)_mm512_fmadd_ps((__m512)a, (__m512)b, (__m512)c);
+  if constexpr (sizeof(V) == 64 && !single)
+    return (V)_mm512_fmadd_pd((__m512d)a, (__m512d)b, (__m512d)c);
+#endif
+#ifdef __FMA__
+  if constexpr (sizeof(V) == 32 && single)
+    return (V)_mm256_fmadd_ps((__m256)a, (__m256)b, (__m256)c);
+  if constexpr (sizeof(V) == 32 && !single)
+    return (V)_mm256_fmadd_pd((__m256d)a, (__m256d)b, (__m256d)c);
+#endif
+  V sum{};
+  for (std::size_t l = 0; l < sizeof(V) / sizeof(T); ++l)
+    sum[l] = std::fma(a[l], b[l], c[l]);
+  return sum;
+}
+
+/// The first `count` lanes only; the others read as zero.
+template <class V, class T>
+inline V load_some(const T* p, Index count) {
+  V v{};
+  std::memcpy(&v, p, static_cast<std::size_t>(count) * sizeof(T));
+  return v;
+}
+
+template <class V, class T>
+inline void store_some(T* p, V v, Index count) {
+  std::memcpy(p, &v, static_cast<std::size_t>(count) * sizeof(T));
+}
+
+}  // namespace physinv::nn

@@ -1,0 +1,159 @@
+#include "suite/results/catalog.h"
+
+#include <fmt/format.h>
+
+#include <set>
+
+namespace physinv {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+bool has_result(const StageRecord& r) {
+  return r.stop != Stop::failed && r.stop != Stop::skipped;
+}
+
+json read_plan(const fs::path& path) {
+  if (!fs::exists(path)) return nullptr;
+  const json plan = json::parse(read_file(path), nullptr, false);
+  if (!plan.is_object() || !plan.contains("cases"))
+    throw StoreError(fmt::format(
+        "{} is damaged (delete it and run the campaign again: finished stages "
+        "are kept)",
+        path.string()));
+  if (plan.value("schema_version", 0) > kSchemaVersion)
+    throw UnreadableInput(
+        fmt::format("{} has a newer schema than this program reads, {} (use "
+                    "the program that wrote it or a newer one)",
+                    path.string(),
+                    kSchemaVersion));
+  return plan;
+}
+
+}  // namespace
+
+Catalog::Catalog(fs::path directory) : directory_(std::move(directory)) {}
+
+Catalog Catalog::read(const fs::path& directory) {
+  Catalog catalog(directory);
+  const fs::path path = catalog.journal_path();
+  std::error_code error;
+  const bool there = fs::exists(path, error);
+  if (!there && (!error || error.value() == ENOTDIR))
+    throw UnreadableInput(fmt::format(
+        "{}: no results there (there is no {}; give the --out of a run)",
+        directory.string(),
+        path.filename().string()));
+  catalog.journal_ = read_journal(path);
+  for (auto& entry : catalog.journal_.entries) catalog.add(std::move(entry));
+  catalog.journal_.entries.clear();
+  catalog.plan = read_plan(directory / "plan.json");
+  return catalog;
+}
+
+fs::path Catalog::journal_path() const { return directory_ / "journal.jsonl"; }
+
+fs::path Catalog::case_path(const std::string& case_name) const {
+  return directory_ / "cases" / case_file_name(case_name);
+}
+
+void Catalog::add(JournalEntry entry) {
+  const std::size_t i = entries_.size();
+  const auto slot = std::pair(entry.info.name, entry.stage.position);
+  const auto [at, is_new] = slots_.emplace(slot, i);
+  if (!is_new) {
+    const std::string& old = entries_[at->second].stage.key;
+    const auto [begin, end] = keys_.equal_range(old);
+    for (auto k = begin; k != end; ++k) {
+      if (k->second != at->second) continue;
+      keys_.erase(k);
+      break;
+    }
+    at->second = i;
+  }
+  keys_.emplace(entry.stage.key, i);
+  latest_[entry.info.name] = i;
+  entries_.push_back(std::move(entry));
+}
+
+bool Catalog::knows_case(const std::string& case_name) const {
+  return latest_.contains(case_name);
+}
+
+const JournalEntry* Catalog::at(const std::string& case_name,
+                                Index position) const {
+  const auto at = slots_.find({case_name, position});
+  return at == slots_.end() ? nullptr : &entries_[at->second];
+}
+
+const JournalEntry* Catalog::entry_of(const std::string& key) const {
+  const JournalEntry* best = nullptr;
+  const auto [begin, end] = keys_.equal_range(key);
+  for (auto k = begin; k != end; ++k) {
+    const JournalEntry& e = entries_[k->second];
+    const bool better = best == nullptr ||
+                        std::pair(!has_result(e.stage), &e) <
+                            std::pair(!has_result(best->stage), best);
+    if (better) best = &e;
+  }
+  return best;
+}
+
+std::optional<StageRecord> Catalog::find(const std::string& key) const {
+  const JournalEntry* entry = entry_of(key);
+  return entry == nullptr ? std::nullopt : load(*entry);
+}
+
+std::optional<StageRecord> Catalog::load(const JournalEntry& entry) const {
+  const fs::path path = case_path(entry.info.name);
+  // Gone, or replaced by a run that was killed before its journal line: the
+  // stage counts as not run.
+  if (!fs::exists(path)) return std::nullopt;
+  const CaseFile file(path, entry.info.name);
+  if (!file.has_stage(entry.stage, entry.arrays_hash)) return std::nullopt;
+  StageRecord record = entry.stage;
+  file.read_stage(record, entry.arrays_hash);
+  return record;
+}
+
+std::vector<std::string> Catalog::order() const {
+  std::vector<std::string> names;
+  if (plan.is_object()) names = plan.at("cases");
+  std::set<std::string> seen(names.begin(), names.end());
+  for (const auto& entry : entries_) {
+    if (seen.insert(entry.info.name).second) names.push_back(entry.info.name);
+  }
+  return names;
+}
+
+CaseRecord Catalog::case_record(const std::string& name) const {
+  CaseRecord record;
+  record.info = entries_[latest_.at(name)].info;
+  const fs::path path = case_path(name);
+  if (!fs::exists(path)) return record;
+  const CaseFile file(path, name);
+  record.data = file.data();
+  const auto& keys = record.info.keys;
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    const JournalEntry* own = at(name, static_cast<Index>(k));
+    if (own == nullptr || own->stage.key != keys[k] ||
+        !file.has_stage(own->stage, own->arrays_hash))
+      continue;
+    record.stages.push_back(own->stage);
+    file.read_stage(record.stages.back(), own->arrays_hash);
+  }
+  return record;
+}
+
+std::vector<CaseRecord> Catalog::cases() const {
+  std::vector<CaseRecord> all;
+  for (const auto& name : order()) {
+    if (!knows_case(name)) continue;
+    auto record = case_record(name);
+    if (!record.stages.empty()) all.push_back(std::move(record));
+  }
+  return all;
+}
+
+}  // namespace physinv

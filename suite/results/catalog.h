@@ -1,0 +1,66 @@
+/// What a directory of results holds: journal, plan and case files as one
+/// index. Reads only.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "suite/results/curves.h"
+#include "suite/results/journal.h"
+
+namespace physinv {
+
+class Catalog {
+ public:
+  Catalog() = default;
+  /// An empty one for a new store.
+  explicit Catalog(std::filesystem::path directory);
+  /// Reads journal and plan. StoreError or UnreadableInput if it cannot.
+  static Catalog read(const std::filesystem::path& directory);
+
+  const std::filesystem::path& directory() const { return directory_; }
+  std::filesystem::path journal_path() const;
+  std::filesystem::path case_path(const std::string& case_name) const;
+
+  /// Where several lines name a stage of a case, the last one counts: the
+  /// case's file holds its arrays.
+  void add(JournalEntry entry);
+  const std::vector<JournalEntry>& entries() const { return entries_; }
+  const JournalText& journal() const { return journal_; }
+  bool knows_case(const std::string& case_name) const;
+  const JournalEntry* at(const std::string& case_name, Index position) const;
+
+  /// The stage with this content key, of whichever case; one that came to a
+  /// result if there is one. Nothing if its arrays are gone.
+  std::optional<StageRecord> find(const std::string& key) const;
+  std::optional<StageRecord> load(const JournalEntry& entry) const;
+
+  /// A known case with its arrays; stages of outdated keys are left out.
+  CaseRecord case_record(const std::string& name) const;
+
+  /// Names of the unsharded campaign in order, then cases it does not name.
+  std::vector<std::string> order() const;
+  /// Cases that have a stage, in this order.
+  std::vector<CaseRecord> cases() const;
+
+  /// plan.json, null if there is none.
+  nlohmann::json plan;
+
+ private:
+  const JournalEntry* entry_of(const std::string& key) const;
+
+  std::filesystem::path directory_;
+  JournalText journal_;
+  std::vector<JournalEntry> entries_;
+  std::map<std::pair<std::string, Index>, std::size_t> slots_;
+  std::unordered_multimap<std::string, std::size_t> keys_;
+  std::map<std::string, std::size_t> latest_;  // entry of each case
+};
+
+}  // namespace physinv

@@ -1,0 +1,202 @@
+#include "suite/results/curves.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "suite/results/checksum.h"
+#include "suite/results/file.h"
+
+namespace physinv {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kTrailer = "physinv:";
+constexpr std::size_t kTrailerBytes = 16;
+
+std::string group_name(const StageRecord& r) {
+  return fmt::format("{}_{}", r.position, r.stage);
+}
+
+void add(ArrayHash& hash, const std::vector<double>& v) {
+  hash.add(v.data(), static_cast<Index>(v.size()), 1);
+}
+
+ArrayHash hash_results(const StageRecord& r) {
+  ArrayHash hash;
+  hash.add(r.x).add(r.loss);
+  hash.add(static_cast<std::uint64_t>(r.status.size()));
+  for (const Status s : r.status) hash.add(static_cast<std::uint64_t>(s));
+  hash.add(r.example_iterations).add(r.example_evaluations);
+  add(hash, r.curve.iteration);
+  add(hash, r.curve.evaluations);
+  hash.add(r.curve.loss).add(r.curve.x);
+  for (const auto& [name, array] : r.arrays)
+    hash.add(std::string_view(name)).add(array);
+  return hash;
+}
+
+/// The bytes without the trailer, once it agrees with them.
+std::string verified(const fs::path& path) {
+  std::string bytes = read_file(path);
+  if (bytes.size() > kTrailerBytes) {
+    const std::size_t size = bytes.size() - kTrailerBytes;
+    const std::string_view all = bytes;
+    if (all.substr(size) ==
+        fmt::format("{}{:08x}", kTrailer, crc32c(all.substr(0, size)))) {
+      bytes.resize(size);
+      return bytes;
+    }
+  }
+  throw StoreError(fmt::format(
+      "{} is damaged: it fails its checksum (restore it, or delete it to run "
+      "the stages of this case again)",
+      path.string()));
+}
+
+}  // namespace
+
+std::string case_file_name(const std::string& case_name) {
+  std::string name = case_name;
+  std::replace(name.begin(), name.end(), '/', '+');
+  return name + ".h5";
+}
+
+std::uint64_t results_hash(const StageRecord& record) {
+  return hash_results(record).value();
+}
+
+std::uint64_t arrays_hash(const StageRecord& record) {
+  ArrayHash hash = hash_results(record);
+  add(hash, record.curve.seconds);
+  return hash.value();
+}
+
+/// Puts the file's name before what HDF5 complains about.
+template <class F>
+auto CaseFile::named(F&& body) const {
+  try {
+    return body();
+  } catch (const StoreError& e) {
+    throw StoreError(fmt::format("{}: {}", where_, e.what()));
+  }
+}
+
+CaseFile::CaseFile(const std::string& case_name)
+    : file_(hdf5::new_file()), where_(case_file_name(case_name)) {
+  hdf5::write_attribute(file_, "case", case_name);
+  hdf5::create_group(file_, "stages");
+}
+
+CaseFile::CaseFile(const fs::path& path, const std::string& case_name)
+    : where_(path.string()) {
+  std::string bytes = verified(path);
+  named([&] {
+    file_ = hdf5::open_image(std::move(bytes));
+    const std::string name = hdf5::read_attribute(file_, "case");
+    if (name != case_name)
+      throw StoreError(fmt::format("it holds the case {}, not {} (restore it)",
+                                   name,
+                                   case_name));
+  });
+}
+
+void CaseFile::put_data(const CaseData& data) {
+  named([&] {
+    if (hdf5::has(file_, "data")) {
+      const auto old = hdf5::open_group(file_, "data");
+      if (hdf5::read_attribute(old, "hash") == data.hash) return;
+      hdf5::remove(file_, "data");
+    }
+    const auto group = hdf5::create_group(file_, "data");
+    hdf5::write_attribute(group, "hash", data.hash);
+    hdf5::write(group, "x", data.x);
+    hdf5::write(group, "y", data.y);
+    hdf5::write(group, "given", data.given);
+  });
+}
+
+CaseData CaseFile::data() const {
+  return named([&] {
+    const auto group = hdf5::open_group(file_, "data");
+    return CaseData{.hash = hdf5::read_attribute(group, "hash"),
+                    .x = hdf5::read_batch(group, "x"),
+                    .y = hdf5::read_batch(group, "y"),
+                    .given = hdf5::read_batch(group, "given")};
+  });
+}
+
+void CaseFile::put_stage(const StageRecord& r) {
+  named([&] {
+    const auto stages = hdf5::open_group(file_, "stages");
+    const std::string name = group_name(r);
+    if (hdf5::has(stages, name)) hdf5::remove(stages, name);
+    const auto group = hdf5::create_group(stages, name);
+    hdf5::write_attribute(group, "key", r.key);
+    hdf5::write_attribute(group, "hash", hex64(arrays_hash(r)));
+    hdf5::write(group, "x", r.x);
+    hdf5::write(group, "loss", Batch<double>(r.loss));
+    std::vector<std::uint8_t> status;
+    for (const Status s : r.status)
+      status.push_back(static_cast<std::uint8_t>(s));
+    hdf5::write(group, "status", status);
+    hdf5::write(group, "iterations", Batch<double>(r.example_iterations));
+    hdf5::write(group, "evaluations", Batch<double>(r.example_evaluations));
+    const auto curve = hdf5::create_group(group, "curve");
+    hdf5::write(curve, "iteration", r.curve.iteration);
+    hdf5::write(curve, "seconds", r.curve.seconds);
+    hdf5::write(curve, "evaluations", r.curve.evaluations);
+    hdf5::write(curve, "loss", r.curve.loss);
+    hdf5::write(curve, "x", r.curve.x);
+    const auto arrays = hdf5::create_group(group, "arrays");
+    for (const auto& [key, array] : r.arrays) hdf5::write(arrays, key, array);
+  });
+}
+
+bool CaseFile::has_stage(const StageRecord& r, const std::string& hash) const {
+  return named([&] {
+    const auto stages = hdf5::open_group(file_, "stages");
+    if (!hdf5::has(stages, group_name(r))) return false;
+    const auto group = hdf5::open_group(stages, group_name(r));
+    return hdf5::read_attribute(group, "key") == r.key &&
+           hdf5::read_attribute(group, "hash") == hash;
+  });
+}
+
+void CaseFile::read_stage(StageRecord& r, const std::string& hash) const {
+  named([&] {
+    const auto stages = hdf5::open_group(file_, "stages");
+    const auto group = hdf5::open_group(stages, group_name(r));
+    r.x = hdf5::read_batch(group, "x");
+    r.loss = hdf5::read_batch(group, "loss");
+    r.status.clear();
+    for (const auto s : hdf5::read_bytes(group, "status"))
+      r.status.push_back(static_cast<Status>(s));
+    r.example_iterations = hdf5::read_batch(group, "iterations");
+    r.example_evaluations = hdf5::read_batch(group, "evaluations");
+    const auto curve = hdf5::open_group(group, "curve");
+    r.curve = {.iteration = hdf5::read_list(curve, "iteration"),
+               .seconds = hdf5::read_list(curve, "seconds"),
+               .evaluations = hdf5::read_list(curve, "evaluations"),
+               .loss = hdf5::read_batch(curve, "loss"),
+               .x = hdf5::read_batch(curve, "x")};
+    const auto arrays = hdf5::open_group(group, "arrays");
+    r.arrays.clear();
+    for (const auto& name : hdf5::names(arrays))
+      r.arrays[name] = hdf5::read_batch(arrays, name);
+    if (hex64(arrays_hash(r)) != hash)
+      throw StoreError(fmt::format(
+          "stage {} does not have the hash of its journal line (delete the "
+          "file to run the stages of this case again)",
+          r.stage));
+  });
+}
+
+void CaseFile::save(const fs::path& path) const {
+  std::string bytes = named([&] { return hdf5::image(file_); });
+  bytes += fmt::format("{}{:08x}", kTrailer, crc32c(bytes));
+  write_atomically(path, bytes);
+}
+
+}  // namespace physinv

@@ -1,0 +1,57 @@
+/// The arrays of one case, in one HDF5 file.
+///
+///   /data/{x, y, given}                                  attribute hash
+///   /stages/<position>_<stage>/{x, loss, status, iterations, evaluations}
+///                             /curve/{iteration, seconds, evaluations, loss, x}
+///                             /arrays/<name>             attributes key, hash
+///
+/// Arrays are (samples, features). Sixteen bytes after the end of the HDF5
+/// data hold a checksum of the whole file; HDF5 tools do not mind them.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "suite/results/hdf5.h"
+#include "suite/results/record.h"
+
+namespace physinv {
+
+/// File name of a case: its name with '+' for '/', and .h5.
+std::string case_file_name(const std::string& case_name);
+
+/// Hash of everything in the arrays that another run must reproduce.
+std::uint64_t results_hash(const StageRecord& record);
+/// The same with the times of the curve.
+std::uint64_t arrays_hash(const StageRecord& record);
+
+class CaseFile {
+ public:
+  /// An empty one, in memory.
+  explicit CaseFile(const std::string& case_name);
+  /// Reads and verifies; StoreError if it is missing, damaged or of another
+  /// case.
+  CaseFile(const std::filesystem::path& path, const std::string& case_name);
+
+  void put_data(const CaseData& data);
+  CaseData data() const;
+
+  /// Replaces what stands at the record's position.
+  void put_stage(const StageRecord& record);
+  /// True if the arrays of this key and with this hash are there.
+  bool has_stage(const StageRecord& record, const std::string& hash) const;
+  /// Fills in the arrays of a record; StoreError if they lack the hash.
+  void read_stage(StageRecord& record, const std::string& hash) const;
+
+  void save(const std::filesystem::path& path) const;
+
+ private:
+  template <class F>
+  auto named(F&& body) const;
+
+  hdf5::Handle file_;
+  std::string where_;  ///< for messages
+};
+
+}  // namespace physinv

@@ -1,0 +1,255 @@
+#include "suite/results/hdf5.h"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <span>
+
+#include "suite/results/errors.h"
+
+namespace physinv::hdf5 {
+namespace {
+
+/// Description of the innermost error on HDF5's stack.
+std::string reason() {
+  std::string text;
+  H5Ewalk2(
+      H5E_DEFAULT,
+      H5E_WALK_UPWARD,
+      [](unsigned n, const H5E_error2_t* e, void* out) -> herr_t {
+        if (n == 0 && e->desc != nullptr)
+          *static_cast<std::string*>(out) = e->desc;
+        return 0;
+      },
+      &text);
+  return text.empty() ? "unknown reason" : text;
+}
+
+[[noreturn]] void fail(std::string_view what) {
+  throw StoreError(fmt::format("HDF5 cannot {}: {}", what, reason()));
+}
+
+/// HDF5 prints its errors unless told not to.
+void be_quiet() {
+  static const herr_t done = H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  static_cast<void>(done);
+}
+
+Handle memory_access() {
+  be_quiet();
+  Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "make a property list");
+  check(H5Pset_fapl_core(access, 1 << 18, false), "use memory");
+  return access;
+}
+
+/// HDF5 takes files of one name for one file, also in memory.
+std::string unique_name() {
+  static std::atomic<unsigned> next{0};
+  return fmt::format("memory-{}", next++);
+}
+
+void write_array(hid_t parent, const std::string& name,
+                 std::span<const hsize_t> shape, hid_t stored, hid_t memory,
+                 const void* data, bool empty) {
+  const Handle space(H5Screate_simple(static_cast<int>(shape.size()),
+                                      shape.data(),
+                                      nullptr),
+                     H5Sclose,
+                     "make a shape");
+  const Handle options(
+      H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "make a property list");
+  check(H5Pset_obj_track_times(options, false), "leave out times");
+  const Handle set(H5Dcreate2(parent,
+                              name.c_str(),
+                              stored,
+                              space,
+                              H5P_DEFAULT,
+                              options,
+                              H5P_DEFAULT),
+                   H5Dclose,
+                   "create array " + name);
+  if (!empty)
+    check(H5Dwrite(set, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, data),
+          "write array " + name);
+}
+
+Handle open_array(hid_t parent, const std::string& name) {
+  return {H5Dopen2(parent, name.c_str(), H5P_DEFAULT),
+          H5Dclose,
+          "open array " + name};
+}
+
+std::vector<hsize_t> shape_of(const Handle& set, std::size_t rank,
+                              const std::string& name) {
+  const Handle space(H5Dget_space(set), H5Sclose, "read shape of " + name);
+  std::vector<hsize_t> shape(rank);
+  if (H5Sget_simple_extent_ndims(space) != static_cast<int>(rank))
+    throw StoreError(
+        fmt::format("array {} does not have {} dimensions", name, rank));
+  check(H5Sget_simple_extent_dims(space, shape.data(), nullptr),
+        "read shape of " + name);
+  return shape;
+}
+
+void read_array(const Handle& set, hid_t memory, void* data, bool empty,
+                const std::string& name) {
+  if (!empty)
+    check(H5Dread(set, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, data),
+          "read array " + name);
+}
+
+}  // namespace
+
+Handle::Handle(hid_t id, Close close, std::string_view what)
+    : id_(id), close_(close) {
+  if (id_ < 0) fail(what);
+}
+
+void check(herr_t result, std::string_view what) {
+  if (result < 0) fail(what);
+}
+
+Handle new_file() {
+  const Handle access = memory_access();
+  return {H5Fcreate(unique_name().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access),
+          H5Fclose,
+          "create a file"};
+}
+
+Handle open_image(std::string bytes) {
+  const Handle access = memory_access();
+  check(H5Pset_file_image(access, bytes.data(), bytes.size()), "use memory");
+  return {H5Fopen(unique_name().c_str(), H5F_ACC_RDWR, access),
+          H5Fclose,
+          "open the file"};
+}
+
+std::string image(const Handle& file) {
+  check(H5Fflush(file, H5F_SCOPE_GLOBAL), "flush the file");
+  const auto size = H5Fget_file_image(file, nullptr, 0);
+  if (size < 0) fail("tell the size of the file");
+  std::string bytes(static_cast<std::size_t>(size), '\0');
+  if (H5Fget_file_image(file, bytes.data(), bytes.size()) != size)
+    fail("copy the file");
+  return bytes;
+}
+
+Handle create_group(hid_t parent, const std::string& name) {
+  return {H5Gcreate2(
+              parent, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+          H5Gclose,
+          "create group " + name};
+}
+
+Handle open_group(hid_t parent, const std::string& name) {
+  return {H5Gopen2(parent, name.c_str(), H5P_DEFAULT),
+          H5Gclose,
+          "open group " + name};
+}
+
+bool has(hid_t parent, const std::string& name) {
+  return H5Lexists(parent, name.c_str(), H5P_DEFAULT) > 0;
+}
+
+void remove(hid_t parent, const std::string& name) {
+  check(H5Ldelete(parent, name.c_str(), H5P_DEFAULT), "remove " + name);
+}
+
+std::vector<std::string> names(hid_t group) {
+  std::vector<std::string> all;
+  check(H5Literate(
+            group,
+            H5_INDEX_NAME,
+            H5_ITER_INC,
+            nullptr,
+            [](hid_t, const char* name, const H5L_info_t*, void* out)
+                -> herr_t {
+              static_cast<std::vector<std::string>*>(out)->emplace_back(name);
+              return 0;
+            },
+            &all),
+        "list a group");
+  return all;
+}
+
+void write(hid_t parent, const std::string& name, const Batch<double>& v) {
+  const hsize_t shape[] = {static_cast<hsize_t>(v.cols()),
+                           static_cast<hsize_t>(v.rows())};
+  write_array(parent,
+              name,
+              shape,
+              H5T_IEEE_F64LE,
+              H5T_NATIVE_DOUBLE,
+              v.data(),
+              v.size() == 0);
+}
+
+void write(hid_t parent, const std::string& name,
+           const std::vector<double>& v) {
+  const hsize_t shape[] = {v.size()};
+  write_array(parent,
+              name,
+              shape,
+              H5T_IEEE_F64LE,
+              H5T_NATIVE_DOUBLE,
+              v.data(),
+              v.empty());
+}
+
+void write(hid_t parent, const std::string& name,
+           const std::vector<std::uint8_t>& v) {
+  const hsize_t shape[] = {v.size()};
+  write_array(parent,
+              name,
+              shape,
+              H5T_STD_U8LE,
+              H5T_NATIVE_UINT8,
+              v.data(),
+              v.empty());
+}
+
+Batch<double> read_batch(hid_t parent, const std::string& name) {
+  const Handle set = open_array(parent, name);
+  const auto shape = shape_of(set, 2, name);
+  Batch<double> v(static_cast<Index>(shape[1]), static_cast<Index>(shape[0]));
+  read_array(set, H5T_NATIVE_DOUBLE, v.data(), v.size() == 0, name);
+  return v;
+}
+
+std::vector<double> read_list(hid_t parent, const std::string& name) {
+  const Handle set = open_array(parent, name);
+  std::vector<double> v(shape_of(set, 1, name)[0]);
+  read_array(set, H5T_NATIVE_DOUBLE, v.data(), v.empty(), name);
+  return v;
+}
+
+std::vector<std::uint8_t> read_bytes(hid_t parent, const std::string& name) {
+  const Handle set = open_array(parent, name);
+  std::vector<std::uint8_t> v(shape_of(set, 1, name)[0]);
+  read_array(set, H5T_NATIVE_UINT8, v.data(), v.empty(), name);
+  return v;
+}
+
+void write_attribute(hid_t parent, const std::string& name,
+                     const std::string& value) {
+  const Handle type(H5Tcopy(H5T_C_S1), H5Tclose, "make a text type");
+  check(H5Tset_size(type, value.size() + 1), "make a text type");
+  const Handle space(H5Screate(H5S_SCALAR), H5Sclose, "make a shape");
+  const Handle attribute(
+      H5Acreate2(parent, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT),
+      H5Aclose,
+      "create attribute " + name);
+  check(H5Awrite(attribute, type, value.c_str()), "write attribute " + name);
+}
+
+std::string read_attribute(hid_t parent, const std::string& name) {
+  const Handle attribute(H5Aopen(parent, name.c_str(), H5P_DEFAULT),
+                         H5Aclose,
+                         "open attribute " + name);
+  const Handle type(H5Aget_type(attribute), H5Tclose, "read a text type");
+  std::string value(H5Tget_size(type), '\0');
+  check(H5Aread(attribute, type, value.data()), "read attribute " + name);
+  return value.c_str();  // without the closing zero
+}
+
+}  // namespace physinv::hdf5

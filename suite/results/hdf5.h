@@ -1,0 +1,67 @@
+/// HDF5 handles, and files that live in memory until they are complete.
+#pragma once
+
+#include <hdf5.h>
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "suite/core/batch.h"
+
+namespace physinv::hdf5 {
+
+/// Owns an identifier of any kind.
+class Handle {
+ public:
+  using Close = herr_t (*)(hid_t);
+  Handle() = default;
+  /// Throws StoreError with HDF5's reason if `id` is not valid.
+  Handle(hid_t id, Close close, std::string_view what);
+  Handle(Handle&& o) noexcept
+      : id_(std::exchange(o.id_, -1)), close_(o.close_) {}
+  Handle& operator=(Handle&& o) noexcept {
+    std::swap(id_, o.id_), std::swap(close_, o.close_);
+    return *this;
+  }
+  ~Handle() {
+    if (id_ >= 0) close_(id_);
+  }
+  operator hid_t() const { return id_; }  // NOLINT: passed to the C functions
+
+ private:
+  hid_t id_ = -1;
+  Close close_ = nullptr;
+};
+
+/// Throws StoreError with HDF5's reason if `result` is negative.
+void check(herr_t result, std::string_view what);
+
+/// An empty file in memory, or one with these bytes.
+Handle new_file();
+Handle open_image(std::string bytes);
+/// The bytes that would stand on disk.
+std::string image(const Handle& file);
+
+Handle create_group(hid_t parent, const std::string& name);
+Handle open_group(hid_t parent, const std::string& name);
+bool has(hid_t parent, const std::string& name);
+void remove(hid_t parent, const std::string& name);
+std::vector<std::string> names(hid_t group);
+
+/// Matrices are stored as (columns, rows) arrays: the bytes of a batch.
+void write(hid_t parent, const std::string& name, const Batch<double>& value);
+void write(hid_t parent, const std::string& name,
+           const std::vector<double>& value);
+void write(hid_t parent, const std::string& name,
+           const std::vector<std::uint8_t>& value);
+Batch<double> read_batch(hid_t parent, const std::string& name);
+std::vector<double> read_list(hid_t parent, const std::string& name);
+std::vector<std::uint8_t> read_bytes(hid_t parent, const std::string& name);
+
+void write_attribute(hid_t parent, const std::string& name,
+                     const std::string& value);
+std::string read_attribute(hid_t parent, const std::string& name);
+
+}  // namespace physinv::hdf5

@@ -1,0 +1,57 @@
+/// The journal: what has finished, one line per stage, in order of time.
+///
+///   <8 hexadecimal digits: CRC-32C of the rest> <compact JSON>\n
+///
+/// The first line is a header. Lines do not depend on each other, so deleting
+/// one makes its stage run again and nothing else.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "suite/results/file.h"
+#include "suite/results/json.h"
+#include "suite/results/record.h"
+
+namespace physinv {
+
+struct JournalEntry {
+  CaseInfo info;
+  StageRecord stage;        ///< without its arrays
+  std::string file;         ///< of the arrays, relative to the store
+  std::string data_hash;    ///< of the case's data
+  std::string arrays_hash;  ///< of the stage's arrays
+};
+
+struct JournalText {
+  std::vector<JournalEntry> entries;
+  std::uint64_t good_bytes = 0;  ///< what follows is a torn line
+  std::string warning;           ///< about a torn line, or empty
+};
+
+/// Reads and verifies every line. A torn last line is left out and named in
+/// the warning. Throws CorruptJournal for any other damage, UnreadableInput
+/// for a newer schema.
+JournalText read_journal(const std::filesystem::path& path);
+
+class Journal {
+ public:
+  Journal() = default;
+  /// Starts a journal or continues the one read as `text`, whose torn line is
+  /// cut off.
+  static Journal create(const std::filesystem::path& path);
+  static Journal resume(const std::filesystem::path& path,
+                        const JournalText& text);
+
+  /// The line is on disk when it returns; if it throws, it is not there.
+  void append(const JournalEntry& entry);
+
+ private:
+  std::filesystem::path path_;
+  FileDescriptor fd_;
+  std::uint64_t size_ = 0;
+};
+
+}  // namespace physinv

@@ -1,0 +1,208 @@
+#include "suite/results/json.h"
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+namespace physinv {
+namespace {
+
+using nlohmann::json;
+
+template <class E>
+E parse(std::string_view text, std::initializer_list<E> all) {
+  for (const E e : all)
+    if (to_string(e) == text) return e;
+  throw std::runtime_error("unknown word '" + std::string(text) + "'");
+}
+
+/// JSON has no NaN: it becomes null.
+double number(const json& j) {
+  return j.is_null() ? std::numeric_limits<double>::quiet_NaN()
+                     : j.get<double>();
+}
+
+json to_json(Seconds s) { return json::array({s.wall, s.cpu}); }
+Seconds seconds(const json& j) { return {number(j.at(0)), number(j.at(1))}; }
+
+json to_json(const Counts& counts) {
+  json j = json::object();
+  for (std::size_t i = 0; i < kCounters; ++i)
+    j[std::string(kCounterNames[i])] = counts[static_cast<Counter>(i)];
+  return j;
+}
+
+Counts counts_from_json(const json& j) {
+  Counts counts;
+  for (std::size_t i = 0; i < kCounters; ++i) {
+    const auto at = j.find(kCounterNames[i]);
+    if (at != j.end()) counts[static_cast<Counter>(i)] = *at;
+  }
+  return counts;
+}
+
+json binary(const double* data, Index rows, Index cols) {
+  json::binary_t::container_type bytes(static_cast<std::size_t>(rows * cols) *
+                                       sizeof(double));
+  if (!bytes.empty()) std::memcpy(bytes.data(), data, bytes.size());
+  return json::array({rows, cols, json::binary(std::move(bytes))});
+}
+
+template <class M>
+json binary(const M& m) {
+  return binary(m.data(), m.rows(), m.cols());
+}
+
+json binary(const std::vector<double>& v) {
+  return binary(v.data(), static_cast<Index>(v.size()), 1);
+}
+
+Batch<double> batch(const json& j) {
+  Batch<double> b(j.at(0).get<Index>(), j.at(1).get<Index>());
+  const auto& bytes = j.at(2).get_binary();
+  if (bytes.size() != static_cast<std::size_t>(b.size()) * sizeof(double))
+    throw std::runtime_error("an array has the wrong size");
+  if (!bytes.empty()) std::memcpy(b.data(), bytes.data(), bytes.size());
+  return b;
+}
+
+std::vector<double> list(const json& j) {
+  const Batch<double> b = batch(j);
+  return {b.data(), b.data() + b.size()};
+}
+
+json status_binary(const std::vector<Status>& status) {
+  json::binary_t::container_type bytes;
+  for (const Status s : status) bytes.push_back(static_cast<std::uint8_t>(s));
+  return json::binary(std::move(bytes));
+}
+
+json arrays_to_json(const StageRecord& r) {
+  json arrays = json::object();
+  for (const auto& [name, b] : r.arrays) arrays[name] = binary(b);
+  return {{"x", binary(r.x)},
+          {"loss", binary(r.loss)},
+          {"status", status_binary(r.status)},
+          {"iterations", binary(r.example_iterations)},
+          {"evaluations", binary(r.example_evaluations)},
+          {"curve",
+           {{"iteration", binary(r.curve.iteration)},
+            {"seconds", binary(r.curve.seconds)},
+            {"evaluations", binary(r.curve.evaluations)},
+            {"loss", binary(r.curve.loss)},
+            {"x", binary(r.curve.x)}}},
+          {"arrays", std::move(arrays)}};
+}
+
+void arrays_from_json(const json& j, StageRecord& r) {
+  r.x = batch(j.at("x"));
+  r.loss = batch(j.at("loss"));
+  for (const auto s : j.at("status").get_binary())
+    r.status.push_back(static_cast<Status>(s));
+  r.example_iterations = batch(j.at("iterations"));
+  r.example_evaluations = batch(j.at("evaluations"));
+  const json& curve = j.at("curve");
+  r.curve.iteration = list(curve.at("iteration"));
+  r.curve.seconds = list(curve.at("seconds"));
+  r.curve.evaluations = list(curve.at("evaluations"));
+  r.curve.loss = batch(curve.at("loss"));
+  r.curve.x = batch(curve.at("x"));
+  for (const auto& [name, b] : j.at("arrays").items())
+    r.arrays[name] = batch(b);
+}
+
+}  // namespace
+
+json to_json(const StageRecord& r) {
+  json options = json::array();
+  for (const auto& [name, value] : r.options)
+    options.push_back(json::array({name, value}));
+  return {{"case", r.case_name},
+          {"stage", r.stage},
+          {"key", r.key},
+          {"position", r.position},
+          {"options", std::move(options)},
+          {"stop", to_string(r.stop)},
+          {"message", r.message},
+          {"iterations", r.iterations},
+          {"clocks",
+           {{"setup", to_json(r.clocks.setup)},
+            {"warmup", to_json(r.clocks.warmup)},
+            {"solve", to_json(r.clocks.solve)},
+            {"measure", to_json(r.clocks.measure)}}},
+          {"counts", to_json(r.counts)},
+          {"buffer_bytes", r.buffer_bytes},
+          {"rss_bytes", r.rss_bytes},
+          {"crowded", r.crowded},
+          {"finished", r.finished},
+          {"revision", r.revision},
+          {"trajectory", r.trajectory}};
+}
+
+StageRecord stage_from_json(const json& j) {
+  StageRecord r;
+  r.case_name = j.at("case");
+  r.stage = j.at("stage");
+  r.key = j.at("key");
+  r.position = j.at("position");
+  for (const auto& o : j.at("options")) r.options.emplace_back(o.at(0), o.at(1));
+  r.stop = parse(j.at("stop").get<std::string>(),
+                 {Stop::converged, Stop::iterations, Stop::diverged,
+                  Stop::failed, Stop::skipped});
+  r.message = j.at("message");
+  r.iterations = j.at("iterations");
+  const json& clocks = j.at("clocks");
+  r.clocks = {.setup = seconds(clocks.at("setup")),
+              .warmup = seconds(clocks.at("warmup")),
+              .solve = seconds(clocks.at("solve")),
+              .measure = seconds(clocks.at("measure"))};
+  r.counts = counts_from_json(j.at("counts"));
+  r.buffer_bytes = j.at("buffer_bytes");
+  r.rss_bytes = j.at("rss_bytes");
+  r.crowded = j.at("crowded");
+  r.finished = j.at("finished");
+  r.revision = j.at("revision");
+  r.trajectory = j.at("trajectory");
+  return r;
+}
+
+json to_json(const CaseInfo& c) {
+  return {{"name", c.name},
+          {"experiment", c.experiment},
+          {"method", c.method},
+          {"profile", c.profile},
+          {"n", c.n},
+          {"seed", c.seed},
+          {"precision", to_string(c.precision)},
+          {"stages", c.stages},
+          {"keys", c.keys}};
+}
+
+CaseInfo case_from_json(const json& j) {
+  return {.name = j.at("name"),
+          .experiment = j.at("experiment"),
+          .method = j.at("method"),
+          .profile = j.at("profile"),
+          .n = j.at("n"),
+          .seed = j.at("seed"),
+          .precision = parse(j.at("precision").get<std::string>(),
+                             {Precision::f32, Precision::f64}),
+          .stages = j.at("stages"),
+          .keys = j.at("keys")};
+}
+
+std::vector<std::uint8_t> to_wire(const StageRecord& record) {
+  return json::to_msgpack(
+      {{"stage", to_json(record)}, {"arrays", arrays_to_json(record)}});
+}
+
+StageRecord from_wire(std::span<const std::uint8_t> bytes) {
+  const json j = json::from_msgpack(bytes.begin(), bytes.end());
+  StageRecord record = stage_from_json(j.at("stage"));
+  arrays_from_json(j.at("arrays"), record);
+  return record;
+}
+
+}  // namespace physinv

@@ -1,0 +1,69 @@
+/// The record of a case: what the journal, the HDF5 file and results.json say.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "suite/core/batch.h"
+#include "suite/core/counts.h"
+#include "suite/core/curve.h"
+#include "suite/core/probe.h"
+#include "suite/core/recipe.h"
+#include "suite/core/stop.h"
+
+namespace physinv {
+
+/// What a case is; all of it known before it runs.
+struct CaseInfo {
+  std::string name;        ///< jpo/billiards/jpo/n=64/seed=3
+  std::string experiment;  ///< jpo/billiards
+  std::string method;      ///< jpo
+  std::string profile;     ///< quick
+  Index n = 0;
+  std::uint64_t seed = 0;
+  Precision precision = Precision::f32;
+  std::vector<std::string> stages;  ///< names in the order of the chain
+  std::vector<std::string> keys;    ///< content key of each stage
+};
+
+/// One finished stage.
+struct StageRecord {
+  std::string case_name, stage, key;
+  Index position = 0;  ///< in the chain
+  Options options;     ///< that decide the result
+  Stop stop = Stop::iterations;
+  std::string message;
+
+  Index iterations = 0;  ///< run; a batch of BFGS runs counts its rounds
+  Clocks clocks;
+  Counts counts;
+  std::uint64_t buffer_bytes = 0;  ///< peak bytes of the stage's buffers
+  std::uint64_t rss_bytes = 0;     ///< peak resident set of its process
+  bool crowded = false;  ///< more workers x threads than cores: no speed table
+  std::string finished;  ///< UTC date and time, ISO 8601
+  std::string revision;  ///< git revision it ran from, "+dirty" if so
+  std::string trajectory;  ///< hash of all iterates, if traced
+
+  Batch<double> x;                  ///< unknowns x examples
+  Vector<double> loss;              ///< of x, evaluated again in double
+  std::vector<Status> status;       ///< per example
+  Vector<double> example_iterations, example_evaluations;
+  Curve curve;
+  std::map<std::string, Batch<double>> arrays;  ///< method's own findings
+};
+
+/// Problem data of a case, so that results can be verified alone.
+struct CaseData {
+  std::string hash;  ///< content hash
+  Batch<double> x, y, given;
+};
+
+struct CaseRecord {
+  CaseInfo info;
+  CaseData data;
+  std::vector<StageRecord> stages;  ///< finished ones, in chain order
+};
+
+}  // namespace physinv

@@ -1,0 +1,89 @@
+/// What an experiment reports, free of any file format: tables, figures and
+/// judged claims. Case files fill it from `Results`; reports render it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace physinv {
+
+/// A measured number beside a published one. Absent values are absent, never 0.
+struct Cell {
+  std::optional<double> ours, spread;       ///< mean, std over seeds
+  std::optional<double> paper, paper_spread;
+  std::string text;  ///< shown instead of numbers if not empty ("not run")
+};
+
+struct TableRow {
+  std::string label;
+  std::vector<Cell> cells;
+};
+
+struct Table {
+  std::string id;     ///< file name: table4
+  std::string title;  ///< one line
+  std::string source; ///< "Table 4"
+  std::string unit;   ///< "%", "s", "" - for all cells
+  int digits = 1;     ///< after the point
+  std::string corner; ///< head of the label column
+  std::vector<std::string> columns;
+  std::vector<TableRow> rows;
+  std::string note;
+};
+
+struct Series {
+  std::string label;
+  std::string method;  ///< picks the colour: bfgs, gd, jpo, supervised, na, ...
+  std::vector<double> x, y;
+  std::vector<double> lo, hi;  ///< band or error bar, empty for none
+  bool line = true;            ///< joined points
+  bool markers = false;        ///< a mark at each point
+  bool dashed = false;
+};
+
+/// A grid of values over two axes, drawn as a heat map: value(i, j) =
+/// values[j * x.size() + i].
+struct Field2D {
+  std::vector<double> x, y, values;
+  bool log_scale = false;
+  std::string label;
+};
+
+struct Panel {
+  std::string title, x_label, y_label;
+  bool x_log = false, y_log = false;
+  std::vector<Series> series;
+  std::optional<Field2D> field;  ///< drawn below the series
+  std::optional<double> y_min, y_max;
+};
+
+struct Figure {
+  std::string id;      ///< file name: fig11
+  std::string title;   ///< one line
+  std::string source;  ///< "Fig. 11"
+  std::vector<Panel> panels;
+  int columns = 2;  ///< panels per row
+  std::string note;
+};
+
+enum class Verdict { reproduced, not_reproduced, not_run };
+
+struct ClaimResult {
+  std::string id;    ///< R3
+  std::string says;  ///< the claim in one sentence
+  std::string from;  ///< lowest profile that can judge it
+  bool gates = false;
+  Verdict verdict = Verdict::not_run;
+  std::string evidence;  ///< the numbers behind it, one line
+};
+
+/// One experiment's part of a report.
+struct Section {
+  std::string experiment, title, paper;
+  std::vector<Table> tables;
+  std::vector<Figure> figures;
+  std::vector<ClaimResult> claims;
+};
+
+}  // namespace physinv

@@ -1,0 +1,132 @@
+#include "suite/results/store.h"
+
+#include <fmt/format.h>
+
+#include "suite/core/check.h"
+#include "suite/core/hash.h"
+#include "suite/results/results_json.h"
+
+namespace physinv {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+void remove_file(const fs::path& path) {
+  std::error_code error;
+  fs::remove(path, error);
+  if (error) fail_file("delete", path, error.value());
+}
+
+/// Removes only what a store writes. The journal goes first: without it the
+/// rest is nothing.
+void clear(const Catalog& catalog) {
+  const fs::path& out = catalog.directory();
+  remove_file(catalog.journal_path());
+  sync_directory(out);
+  remove_file(out / "plan.json");
+  remove_file(out / "results.json");
+  for (const auto& file : fs::directory_iterator(out / "cases"))
+    if (file.path().extension() == ".h5") remove_file(file.path());
+}
+
+/// Files aside that a killed writer left.
+void remove_leftovers(const fs::path& directory) {
+  for (const auto& file : fs::directory_iterator(directory))
+    if (file.path().extension() == ".tmp") remove_file(file.path());
+}
+
+bool has_result(const StageRecord& r) {
+  return r.stop != Stop::failed && r.stop != Stop::skipped;
+}
+
+std::string to_text(const json& value) {
+  return value.dump(1, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace
+
+Store::Store(const fs::path& directory, bool fresh) : catalog_(directory) {
+  make_directory(directory);
+  lock_ = DirectoryLock(directory);
+  make_directory(directory / "cases");
+  if (fresh) clear(catalog_);
+  remove_leftovers(directory);
+  remove_leftovers(directory / "cases");
+  if (exists(directory)) {
+    catalog_ = Catalog::read(directory);
+    journal_ = Journal::resume(catalog_.journal_path(), catalog_.journal());
+  } else {
+    journal_ = Journal::create(catalog_.journal_path());
+  }
+}
+
+Store Store::read_only(const fs::path& directory) {
+  Store store;
+  store.catalog_ = Catalog::read(directory);
+  return store;
+}
+
+bool Store::exists(const fs::path& directory) {
+  std::error_code error;
+  return fs::exists(directory / "journal.jsonl", error);
+}
+
+void Store::append(const CaseInfo& info, const CaseData& data,
+                   const StageRecord& record) {
+  SUITE_CHECK(record.case_name == info.name, "a stage of another case");
+  const fs::path path = catalog_.case_path(info.name);
+  // A file that no line names is what a killed writer left: start again.
+  const bool there = catalog_.knows_case(info.name) && fs::exists(path);
+  auto file = there ? CaseFile(path, info.name) : CaseFile(info.name);
+
+  const JournalEntry* old = catalog_.at(info.name, record.position);
+  if (old != nullptr && old->stage.key == record.key &&
+      has_result(old->stage) && file.has_stage(old->stage, old->arrays_hash))
+    return;
+
+  file.put_data(data);
+  file.put_stage(record);
+  file.save(path);
+
+  JournalEntry entry{.info = info,
+                     .stage = stage_from_json(to_json(record)),
+                     .file = "cases/" + case_file_name(info.name),
+                     .data_hash = data.hash,
+                     .arrays_hash = hex64(arrays_hash(record))};
+  journal_.append(entry);
+  catalog_.add(std::move(entry));
+}
+
+void Store::set_plan(const std::vector<CaseInfo>& cases,
+                     const json& context,
+                     std::vector<std::string> campaign) {
+  if (campaign.empty())
+    for (const auto& info : cases) campaign.push_back(info.name);
+  json plan = {{"schema_version", kSchemaVersion},
+            {"cases", std::move(campaign)},
+            {"profile", cases.empty() ? "" : cases.front().profile},
+            {"fingerprint", context.value("fingerprint", "")},
+            {"context", context}};
+  set_plan(std::move(plan));
+}
+
+void Store::set_plan(json plan) {
+  catalog_.plan = std::move(plan);
+  write_atomically(catalog_.directory() / "plan.json", to_text(catalog_.plan));
+}
+
+void Store::set_context(const json& context) {
+  catalog_.plan["context"] = context;
+}
+
+void Store::finish() {
+  const json& plan = catalog_.plan;
+  const json context = plan.is_object() ? plan.value("context", json::object())
+                                        : json::object();
+  write_atomically(
+      catalog_.directory() / "results.json",
+      results_text(results_json(cases(), catalog_.order(), context)));
+}
+
+}  // namespace physinv

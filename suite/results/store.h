@@ -1,0 +1,68 @@
+/// A directory of results and the one process that may write to it.
+///
+///   journal.jsonl  what has finished (the truth)   cases/<case>.h5  its arrays
+///   plan.json      what was asked for              results.json     derived
+///   lock           held by the writer
+///
+/// A stage's arrays are on disk before its line, so that the process may be
+/// killed at any moment: what `append` returned for is there, complete, once.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "suite/results/catalog.h"
+
+namespace physinv {
+
+class Store {
+ public:
+  /// Opens for writing, creating what is missing; `fresh` first deletes what
+  /// earlier campaigns left. StoreError if another process writes there, the
+  /// disk does not let us, or something is damaged.
+  explicit Store(const std::filesystem::path& directory, bool fresh = false);
+  /// Opens an existing store for `find` and `cases`.
+  static Store read_only(const std::filesystem::path& directory);
+  static bool exists(const std::filesystem::path& directory);
+
+  /// A torn line that was cut off, or empty.
+  const std::string& warning() const { return catalog_.journal().warning; }
+
+  /// The stage with this content key, of whichever case has it. Failed and
+  /// skipped stages are found too, unless the same key also has a result.
+  std::optional<StageRecord> find(const std::string& key) const {
+    return catalog_.find(key);
+  }
+
+  /// On disk when it returns. A stage that the case already has with a result
+  /// is left as it is.
+  void append(const CaseInfo& info, const CaseData& data,
+              const StageRecord& record);
+
+  /// What is asked for; in a shard, `campaign` names the cases of the whole
+  /// campaign in order. `context` as for results.json.
+  void set_plan(const std::vector<CaseInfo>& cases,
+                const nlohmann::json& context,
+                std::vector<std::string> campaign = {});
+  void set_plan(nlohmann::json plan);
+  /// Replaces the context of results.json.
+  void set_context(const nlohmann::json& context);
+
+  std::vector<CaseRecord> cases() const { return catalog_.cases(); }
+  const Catalog& catalog() const { return catalog_; }
+
+  /// Writes results.json, derived from everything else.
+  void finish();
+
+ private:
+  Store() = default;
+
+  DirectoryLock lock_;
+  Catalog catalog_;
+  Journal journal_;
+};
+
+}  // namespace physinv

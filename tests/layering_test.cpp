@@ -1,0 +1,171 @@
+// Reads the #include lines of every source: an arrow between layers that is
+// not in the table below fails, and so does a library used out of its place.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Layer {
+  std::set<std::string> layers;     // besides itself
+  std::set<std::string> libraries;  // besides the standard one and fmt
+};
+
+const std::map<std::string, Layer> kLayers{
+    {"suite/core", {{}, {"eigen", "fftw", "hdf5", "random123"}}},
+    {"suite/nn", {{"suite/core"}, {"eigen"}}},
+    {"problems", {{"suite/core"}, {"eigen"}}},
+    {"optimizers", {{"suite/core", "suite/nn"}, {"eigen"}}},
+    {"baselines", {{"suite/core", "suite/nn", "optimizers"}, {"eigen"}}},
+    {"suite/results", {{"suite/core"}, {"json", "hdf5"}}},
+    {"suite/harness", {{"suite/core", "suite/nn", "suite/results"}, {"json"}}},
+    {"suite/cases",
+     {{"suite/core",
+       "suite/nn",
+       "problems",
+       "optimizers",
+       "baselines",
+       "suite/results",
+       "suite/harness"},
+      {"eigen", "json"}}},
+    {"reports", {{"suite/results"}, {"json"}}},
+    {"suite/app",
+     {{"suite/core",
+       "suite/nn",
+       "problems",
+       "optimizers",
+       "baselines",
+       "suite/results",
+       "suite/harness",
+       "suite/cases",
+       "reports"},
+      {"cli11", "benchmark", "json"}}},
+};
+
+// "suite/nn/unet.h" -> "suite/nn", "problems/heat/heat.h" -> "problems".
+std::string layer_of(const std::string& path) {
+  const auto depth =
+      path.starts_with("suite/") ? path.find('/', 6) : path.find('/');
+  return path.substr(0, depth);
+}
+
+// "problems/heat/heat.h" -> "problems/heat"; no problem knows another.
+std::string problem_of(const std::string& path) {
+  const std::string folder = fs::path(path).parent_path().generic_string();
+  return layer_of(path) == "problems" ? folder : "";
+}
+
+// Name of a third-party library, empty for the standard library and system.
+std::string library_of(const std::string& header) {
+  static const std::map<std::string, std::string> kPrefixes{
+      {"Eigen/", "eigen"},
+      {"unsupported/Eigen/", "eigen"},
+      {"fftw3", "fftw"},
+      {"hdf5", "hdf5"},
+      {"H5", "hdf5"},
+      {"Random123/", "random123"},
+      {"fmt/", ""},  // the messages of SUITE_CHECK, so everybody's
+      {"nlohmann/", "json"},
+      {"CLI/", "cli11"},
+      {"benchmark/", "benchmark"},
+  };
+  for (const auto& [prefix, library] : kPrefixes) {
+    if (header.starts_with(prefix)) return library;
+  }
+  static const std::regex kSystem("[a-z_0-9]+|(sys/)?[a-z_0-9]+\\.h");
+  return std::regex_match(header, kSystem) ? "" : header;
+}
+
+// Why `file` may not include `header` ("" if it may). `quoted` as in the line.
+std::string objection(const std::string& file,
+                      const std::string& header,
+                      bool quoted) {
+  const std::string from = layer_of(file);
+  const auto layer = kLayers.find(from);
+  if (layer == kLayers.end()) return "the folder is not a layer";
+  const bool kernels = fs::path(file).filename() == "kernels.cpp";
+  if (kernels && from != "suite/app") {  // a target of its own
+    return layer_of(header) == "suite/app" ? "kernels know no program" : "";
+  }
+  if (!quoted) {
+    const std::string library = library_of(header);
+    if (library.empty() || layer->second.libraries.contains(library)) return "";
+    return from + " does not use " + library;
+  }
+  const std::string to = layer_of(header);
+  if (!kLayers.contains(to)) return "not relative to the project's root";
+  if (to != from && !layer->second.layers.contains(to)) {
+    return from + " does not include " + to;
+  }
+  const std::string problem = problem_of(header);
+  if (from == "problems" && to == from && problem != problem_of(file)) {
+    return "a problem does not include another";
+  }
+  return "";
+}
+
+TEST(Layering, EveryIncludeFollowsTheLayers) {
+  static const std::regex kInclude(
+      "^\\s*#\\s*include\\s*([<\"])([^>\"]+)[>\"].*");
+  const fs::path root = PHYSINV_SOURCE_DIR;
+  int files = 0;
+  for (const char* top :
+       {"suite", "problems", "optimizers", "baselines", "reports"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
+      const auto extension = entry.path().extension();
+      if (extension != ".h" && extension != ".cpp") continue;
+      ++files;
+      const std::string file =
+          fs::relative(entry.path(), root).generic_string();
+      std::ifstream in(entry.path());
+      std::string line;
+      for (int number = 1; std::getline(in, line); ++number) {
+        std::smatch match;
+        if (!std::regex_match(line, match, kInclude)) continue;
+        EXPECT_EQ(objection(file, match[2], match[1] == "\""), "")
+            << file << ":" << number << ": " << line;
+      }
+    }
+  }
+  EXPECT_GT(files, 0);
+}
+
+TEST(Layering, ArrowsThatMustNotBe) {
+  const auto quoted = [](const char* file, const char* header) {
+    return !objection(file, header, true).empty();
+  };
+  const auto angled = [](const char* file, const char* header) {
+    return !objection(file, header, false).empty();
+  };
+  EXPECT_TRUE(quoted("suite/core/rng.cpp", "suite/nn/linear.h"));
+  EXPECT_TRUE(quoted("optimizers/jpo.h", "problems/heat/heat.h"));
+  EXPECT_TRUE(quoted("problems/heat/heat.h", "problems/sine/sine.h"));
+  EXPECT_TRUE(quoted("problems/heat/heat.h", "suite/nn/linear.h"));
+  EXPECT_TRUE(quoted("reports/tables.cpp", "suite/harness/runner.h"));
+  EXPECT_TRUE(quoted("suite/harness/runner.cpp", "optimizers/jpo.h"));
+  EXPECT_TRUE(quoted("optimizers/jpo.cpp", "jpo.h"));
+  EXPECT_TRUE(quoted("elsewhere/a.cpp", "suite/core/rng.h"));
+  EXPECT_TRUE(angled("optimizers/jpo.cpp", "nlohmann/json.hpp"));
+  EXPECT_TRUE(angled("problems/heat/heat.cpp", "benchmark/benchmark.h"));
+  EXPECT_TRUE(quoted("suite/nn/kernels.cpp", "suite/app/verbs.h"));
+  EXPECT_TRUE(angled("suite/core/rng.cpp", "boost/random.hpp"));
+}
+
+TEST(Layering, ArrowsThatMayBe) {
+  EXPECT_EQ(objection("baselines/a.h", "optimizers/training.h", true), "");
+  EXPECT_EQ(objection("problems/heat/a.cpp", "problems/heat/b.h", true), "");
+  EXPECT_EQ(objection("problems/a/kernels.cpp", "benchmark/benchmark.h", false),
+            "");
+  EXPECT_EQ(objection("suite/core/fft.cpp", "fftw3.h", false), "");
+  EXPECT_EQ(objection("reports/svg.cpp", "sys/stat.h", false), "");
+  EXPECT_EQ(objection("suite/core/rng.cpp", "numbers", false), "");
+}
+
+}  // namespace

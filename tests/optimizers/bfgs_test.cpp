@@ -1,0 +1,308 @@
+#include "optimizers/bfgs.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <vector>
+
+#include "optimizers/drive.h"
+#include "optimizers/steps/bfgs_update.h"
+#include "tests/optimizers/functions.h"
+#include "tests/support/gradient_check.h"
+#include "tests/support/reference.h"
+#include "tests/support/run_reference.h"
+
+namespace physinv {
+namespace {
+
+using test::Billiards;
+using test::ClosedForm;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInf = std::numeric_limits<double>::infinity();
+const std::string kId = "jpo-billiards";
+
+/// n starting points in [-3, 3]^d without a random generator.
+Batch<double> starts(Index d, Index n) {
+  Batch<double> x(d, n);
+  for (Index i = 0; i < x.size(); ++i)
+    x(i) = 3 * std::sin(1.3 * static_cast<double>(i * i) + 0.4);
+  return x;
+}
+
+/// A single problem given as f(x, gradient) -> loss.
+template <class F>
+auto single(F f) {
+  return [f](std::span<const Index>,
+             BatchIn<double> x,
+             VectorOut<double> loss,
+             BatchOut<double> gradient) {
+    for (Index i = 0; i < x.cols(); ++i) {
+      Vector<double> g = Vector<double>::Zero(x.rows());
+      loss(i) = f(Vector<double>(x.col(i)), g);
+      gradient.col(i) = g;
+    }
+  };
+}
+
+template <class F>
+Bfgs solve(F&& objective, BatchIn<double> x0, BfgsOptions options = {}) {
+  Bfgs solver(options);
+  drive(solver, objective, x0);
+  return solver;
+}
+
+TEST(BfgsReference, TestFunctions) {
+  for (const auto& entry :
+       test::reference_entries(kId, "bfgs_test_functions")) {
+    for (const auto& stored : entry.at("runs")) {
+      const auto name = stored.at("function").get<std::string>();
+      SCOPED_TRACE(name + " from " + stored.at("x0").dump());
+      const auto run = test::record_bfgs(
+          ClosedForm{name}, test::vector(stored.at("x0")), stored.at("gtol"));
+      test::expect_run(entry, stored, run, 8);
+      if (name != "rosenbrock" && stored.at("status") == 0) {
+        EXPECT_EQ(run.iterations, stored.at("iterations").get<Index>());
+      }
+    }
+  }
+}
+
+TEST(BfgsReference, Billiards) {
+  for (const auto& entry : test::reference_entries(kId, "bfgs")) {
+    for (const auto& stored : entry.at("runs")) {
+      SCOPED_TRACE(stored.at("ball").dump());
+      const auto run =
+          test::record_bfgs(Billiards{test::vector(stored.at("ball"))},
+                            test::vector(stored.at("x0")),
+                            stored.at("gtol"));
+      test::expect_run(entry, stored, run, 1);
+    }
+  }
+}
+
+TEST(Bfgs, TestFunctionsHaveTheirGradients) {
+  const Vector<double> x = (Vector<double>(3) << 0.3, -0.7, 1.1).finished();
+  for (const char* name : {"rosenbrock", "wavy", "well", "rough", "abs"}) {
+    Vector<double> g, ignored;
+    test::closed_form(name, x, g);
+    const auto check = test::difference_gradient(
+        [&](const Vector<double>& at) {
+          return test::closed_form(name, at, ignored);
+        },
+        x);
+    EXPECT_TRUE(test::Comparator(1e-7, 0)(g, check)) << name;
+  }
+}
+
+TEST(Bfgs, BatchEqualsSoloRunsAndPermutationsBitwise) {
+  const Index n = 37;
+  for (const Index d : {1, 2, 3, 7}) {
+    for (const char* name : {"wavy", "rough", "rosenbrock"}) {
+      const Batch<double> x0 = starts(d, n);
+      const Bfgs all = solve(ClosedForm{name}, x0);
+      const Bfgs reversed = solve(ClosedForm{name}, x0.rowwise().reverse());
+      for (Index i = 0; i < n; ++i) {
+        const auto at = static_cast<std::size_t>(i);
+        const auto mirror = static_cast<std::size_t>(n - 1 - i);
+        const Bfgs one = solve(ClosedForm{name}, x0.col(i));
+        const auto bytes = static_cast<std::size_t>(d) * sizeof(double);
+        EXPECT_EQ(std::memcmp(all.x().col(i).data(), one.x().data(), bytes), 0);
+        EXPECT_EQ(std::memcmp(all.x().col(i).data(),
+                              reversed.x().col(n - 1 - i).data(),
+                              bytes),
+                  0);
+        EXPECT_EQ(all.loss()(i), one.loss()(0));
+        EXPECT_EQ(all.status()[at], one.status()[0]);
+        EXPECT_EQ(all.status()[at], reversed.status()[mirror]);
+        EXPECT_EQ(all.evaluations()[at], one.evaluations()[0]);
+        EXPECT_EQ(all.iterations()[at], reversed.iterations()[mirror]);
+      }
+    }
+  }
+}
+
+TEST(Bfgs, CountsWhatFinishedProblemsSave) {
+  const Index n = 20;
+  const Bfgs all = solve(ClosedForm{"rosenbrock"}, starts(2, n));
+  std::uint64_t made = 0;
+  for (const Index e : all.evaluations()) made += static_cast<std::uint64_t>(e);
+  EXPECT_EQ(made + all.skipped_evaluations(),
+            static_cast<std::uint64_t>(n * all.rounds()));
+  EXPECT_GT(all.skipped_evaluations(), 0U);
+}
+
+TEST(Bfgs, ObserverSeesEveryIterateOnce) {
+  const Index n = 12;
+  std::vector<Index> seen(static_cast<std::size_t>(n), 0);
+  std::vector<double> last(static_cast<std::size_t>(n), kInf);
+  Bfgs solver;
+  drive(solver, ClosedForm{"wavy"}, starts(2, n), [&](const Bfgs& b) {
+    for (const Index i : b.accepted()) {
+      const auto at = static_cast<std::size_t>(i);
+      EXPECT_EQ(b.iterations()[at], seen[at]++);
+      EXPECT_LE(b.loss()(i), last[at]);
+      last[at] = b.loss()(i);
+      Vector<double> g;
+      EXPECT_EQ(test::closed_form("wavy", b.x().col(i), g), b.loss()(i));
+    }
+  });
+  for (std::size_t i = 0; i < seen.size(); ++i)
+    EXPECT_EQ(seen[i], solver.iterations()[i] + 1);
+}
+
+TEST(Bfgs, ObserverMayEndTheRun) {
+  Bfgs solver;
+  int calls = 0;
+  drive(solver, ClosedForm{"rosenbrock"}, starts(2, 5), [&](const Bfgs&) {
+    return ++calls < 3;
+  });
+  EXPECT_EQ(calls, 3);
+  EXPECT_FALSE(solver.pending());
+  for (const Status s : solver.status()) EXPECT_EQ(s, Status::maxiter);
+}
+
+TEST(Bfgs, NothingToDo) {
+  const Bfgs flat = solve(ClosedForm{"well"}, Batch<double>::Zero(2, 3));
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(flat.status()[i], Status::gtol);
+    EXPECT_EQ(flat.iterations()[i], 0);
+    EXPECT_EQ(flat.evaluations()[i], 1);
+  }
+  const Bfgs none = solve(ClosedForm{"wavy"}, starts(2, 3), {.maxiter = 0});
+  EXPECT_EQ(none.status()[0], Status::maxiter);
+  EXPECT_EQ(none.evaluations()[0], 1);
+  EXPECT_EQ(none.x(), starts(2, 3));
+  const Bfgs two =
+      solve(ClosedForm{"rosenbrock"}, starts(2, 3), {.maxiter = 2});
+  EXPECT_EQ(two.status()[0], Status::maxiter);
+  EXPECT_EQ(two.iterations()[0], 2);
+  EXPECT_EQ(solve(ClosedForm{"wavy"}, Batch<double>(2, 0)).rounds(), 0);
+}
+
+TEST(Bfgs, SolvesInHigherDimensions) {
+  const Index d = 60;
+  const auto objective =
+      single([&](const Vector<double>& x, Vector<double>& g) {
+        double f = 0;
+        for (Index j = 0; j < d; ++j) {
+          const double k = 1 + static_cast<double>(j), r = x(j) - 1 / k;
+          f += 0.5 * k * r * r;
+          g(j) = k * r;
+        }
+        return f;
+      });
+  const Bfgs b = solve(objective, Batch<double>::Zero(d, 2), {.gtol = 1e-8});
+  EXPECT_EQ(b.status()[1], Status::gtol);
+  EXPECT_LT(b.loss()(1), 1e-15);
+}
+
+TEST(Bfgs, NonFiniteStart) {
+  for (const double bad : {kNan, kInf, -kInf}) {
+    const auto loss = single([&](const Vector<double>&, Vector<double>& g) {
+      g.setOnes();
+      return bad;
+    });
+    const auto slope = single([&](const Vector<double>& x, Vector<double>& g) {
+      g.setOnes();
+      g(0) = bad;
+      return x.sum();
+    });
+    const Batch<double> x0 = starts(2, 1);
+    for (const Bfgs& b : {solve(loss, x0), solve(slope, x0)}) {
+      EXPECT_EQ(b.status()[0], Status::nonfinite);
+      EXPECT_EQ(b.x(), x0);
+      EXPECT_EQ(b.evaluations()[0], 1);
+    }
+  }
+}
+
+TEST(Bfgs, NonFiniteRegionIsNeverEntered) {
+  // The logarithm's wall at 0 is in reach of the extrapolating search.
+  const auto walled = single([](const Vector<double>& x, Vector<double>& g) {
+    double f = 0;
+    for (Index j = 0; j < x.size(); ++j) {
+      f += 4 * x(j) - std::log(x(j));
+      g(j) = 4 - 1 / x(j);
+    }
+    return f;  // NaN for x < 0
+  });
+  Batch<double> x0 = starts(2, 40).cwiseAbs().array() + 0.02;
+  const Bfgs b = solve(walled, x0);
+  EXPECT_TRUE(b.x().allFinite());
+  EXPECT_TRUE(b.loss().allFinite());
+  EXPECT_GT(b.x().minCoeff(), 0);
+
+  // A cliff right in front: both searches meet it, x stays.
+  const auto cliff = single([](const Vector<double>& x, Vector<double>& g) {
+    g(0) = -1;
+    return x(0) > 1 ? kNan : -x(0);
+  });
+  const Bfgs c = solve(cliff, Batch<double>::Constant(1, 1, 1));
+  EXPECT_EQ(c.status()[0], Status::nonfinite);
+  EXPECT_EQ(c.x()(0), 1);
+  EXPECT_EQ(c.loss()(0), -1);
+  EXPECT_EQ(c.evaluations()[0], 3);
+}
+
+TEST(Bfgs, OverflowingPointsAreNotEvaluated) {
+  // tanh is finite at infinity, with a gradient of 0: a trap.
+  const auto trap = single([](const Vector<double>& x, Vector<double>& g) {
+    EXPECT_TRUE(x.allFinite());
+    g(0) = -1e300;
+    return std::tanh(-x(0));
+  });
+  const Bfgs b = solve(trap, Batch<double>::Constant(1, 1, 1.7e308));
+  EXPECT_TRUE(b.x().allFinite());
+  EXPECT_TRUE(b.loss().allFinite());
+}
+
+TEST(Bfgs, KinksEndFiniteAndLower) {
+  const Batch<double> x0 = starts(3, 100);
+  const Bfgs b = solve(ClosedForm{"abs"}, x0);
+  for (Index i = 0; i < x0.cols(); ++i) {
+    EXPECT_TRUE(b.x().col(i).allFinite());
+    EXPECT_LE(b.loss()(i), x0.col(i).cwiseAbs().sum());
+  }
+}
+
+/// The matrix product of the definition.
+Batch<double> product_form(const Batch<double>& h,
+                           const Vector<double>& s,
+                           const Vector<double>& y,
+                           double rho) {
+  const Index d = s.size();
+  const Batch<double> one = Batch<double>::Identity(d, d);
+  return (one - rho * s * y.transpose()) * h * (one - rho * y * s.transpose()) +
+         rho * s * s.transpose();
+}
+
+TEST(BfgsUpdate, EqualsTheMatrixProduct) {
+  for (const Index d : {1, 2, 3, 4, 5, 9}) {
+    Batch<double> h = starts(d, d);  // not even symmetric
+    const Vector<double> s = starts(d, 1), y = starts(d, 2).col(1);
+    Vector<double> scratch(d);
+    const Batch<double> expected = product_form(h, s, y, 1 / y.dot(s));
+    dense::bfgs_update(d, s.data(), y.data(), h.data(), scratch.data());
+    EXPECT_TRUE(test::Comparator(1e-11, 0)(h, expected)) << d;
+  }
+}
+
+TEST(BfgsUpdate, NoCurvatureAndNegativeCurvature) {
+  const Vector<double> s = (Vector<double>(2) << 1, 1).finished();
+  Vector<double> y = (Vector<double>(2) << 1, -1).finished(), scratch(2);
+  Batch<double> h = Batch<double>::Identity(2, 2);
+  dense::bfgs_update(2, s.data(), y.data(), h.data(), scratch.data());
+  EXPECT_TRUE(test::Comparator(1e-12, 0)(
+      h, product_form(Batch<double>::Identity(2, 2), s, y, 1000)));
+  y << -2, 1;
+  h.setIdentity();
+  dense::bfgs_update(2, s.data(), y.data(), h.data(), scratch.data());
+  EXPECT_TRUE(test::Comparator(1e-12, 0)(
+      h, product_form(Batch<double>::Identity(2, 2), s, y, -1)));
+  EXPECT_LT(y.dot(h * y), 0);  // kept, not repaired
+}
+
+}  // namespace
+}  // namespace physinv

@@ -1,0 +1,195 @@
+#include "optimizers/gradient_descent.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <vector>
+
+#include "optimizers/drive.h"
+#include "tests/optimizers/functions.h"
+#include "tests/support/reference.h"
+
+namespace physinv {
+namespace {
+
+using test::Billiards;
+using test::ClosedForm;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+TEST(GradientDescentReference, Billiards) {
+  for (const auto& entry :
+       test::reference_entries("jpo-billiards", "gd_adaptive")) {
+    const auto near = test::EntryTolerance(entry).array();
+    const auto& xs = entry.at("x_after_iteration");
+    const auto& losses = entry.at("loss_after_iteration");
+    const auto steps = static_cast<Index>(xs.size()) - 1;
+    std::vector<Batch<double>> x;
+    std::vector<Vector<double>> loss;
+    GradientDescent gd({.maxiter = steps});
+    drive(gd,
+          Billiards{test::columns(entry.at("balls"))},
+          test::columns(xs.at(0)),
+          [&](const GradientDescent& g) {
+            x.push_back(g.x());
+            loss.push_back(g.loss());
+          });
+    for (std::size_t k = 0; k < xs.size(); ++k) {
+      const std::size_t at = std::min(k, x.size() - 1);
+      EXPECT_TRUE(near(x[at], test::columns(xs[k]))) << "iteration " << k;
+      EXPECT_TRUE(near(loss[at], test::vector(losses[k])));
+    }
+    const Vector<double> evaluations = test::vector(entry.at("evaluations"));
+    for (Index i = 0; i < evaluations.size(); ++i) {
+      // Where the loss stands still, the last bit decides when to stop.
+      const auto n = losses.size();
+      const double before = losses[n - 2][static_cast<std::size_t>(i)];
+      const double after = losses[n - 1][static_cast<std::size_t>(i)];
+      const bool still = std::abs(after - before) <= 1e-12 * std::abs(after) &&
+                         evaluations(i) > 3;
+      EXPECT_NEAR(
+          static_cast<double>(gd.evaluations()[static_cast<std::size_t>(i)]),
+          evaluations(i),
+          still ? 11 : 0);
+    }
+  }
+}
+
+/// The batch of problems whose aiming angles reach from plateau to centre.
+Billiards table(Index n) {
+  Batch<double> balls(2, n);
+  for (Index i = 0; i < n; ++i)
+    balls.col(i) << 1, (static_cast<double>(i) + 0.5) / static_cast<double>(n);
+  return {balls};
+}
+
+Batch<double> cue(Index n) {
+  Batch<double> x(2, n);
+  for (Index i = 0; i < n; ++i) x.col(i) << 1, 0;
+  return x;
+}
+
+TEST(GradientDescent, SkippingZeroGradientsChangesNothing) {
+  const Index n = 40;
+  const auto run = [&](bool skip,
+                       Index maxiter,
+                       const Billiards& problem,
+                       BatchIn<double> x0) {
+    GradientDescent gd({.maxiter = maxiter, .skip_zero_gradient = skip});
+    drive(gd, problem, x0);
+    return gd;
+  };
+  Billiards flat = table(n);
+  flat.balls.row(1).setConstant(0.02);  // nobody is hit
+  for (const Billiards& problem : {table(n), flat}) {
+    for (const Index maxiter : {0, 1, 3, 50, 300}) {
+      const GradientDescent with = run(true, maxiter, problem, cue(n));
+      const GradientDescent without = run(false, maxiter, problem, cue(n));
+      EXPECT_EQ(with.x(), without.x());
+      EXPECT_EQ(with.loss(), without.loss());
+      EXPECT_EQ(with.status(), without.status());
+      EXPECT_EQ(with.iterations(), without.iterations());
+      EXPECT_EQ(with.evaluations(), without.evaluations());
+      EXPECT_EQ(without.skipped_trials(), 0U);
+      EXPECT_EQ(with.skipped_trials() > 0, maxiter > 0);
+    }
+  }
+  const GradientDescent all = run(true, 10, flat, cue(n));
+  EXPECT_EQ(all.rounds(), 1);
+  EXPECT_EQ(all.evaluations()[0], 3);
+  EXPECT_EQ(all.skipped_trials(), static_cast<std::uint64_t>(2 * n));
+}
+
+TEST(GradientDescent, CountsAddUp) {
+  const Index n = 40;
+  GradientDescent gd;
+  std::uint64_t made = 0;
+  const Billiards problem = table(n);
+  const auto counted = [&](std::span<const Index> active,
+                           BatchIn<double> x,
+                           VectorOut<double> loss,
+                           BatchOut<double> gradient) {
+    made += active.size();
+    problem(active, x, loss, gradient);
+  };
+  drive(gd, counted, cue(n));
+  std::uint64_t written = 0;
+  for (const Index e : gd.evaluations())
+    written += static_cast<std::uint64_t>(e);
+  EXPECT_EQ(written, made + gd.skipped_trials());
+}
+
+TEST(GradientDescent, DescendsAndConverges) {
+  Batch<double> x0(2, 3);
+  x0 << 0.5, -1, 2, 1, 0.3, -0.7;
+  GradientDescent gd;
+  Vector<double> before = Vector<double>::Constant(3, 1e300);
+  drive(gd, ClosedForm{"wavy"}, x0, [&](const GradientDescent& g) {
+    for (Index i = 0; i < 3; ++i) {
+      EXPECT_LE(g.loss()(i), before(i));
+      before(i) = g.loss()(i);
+    }
+  });
+  for (Index i = 0; i < 3; ++i) {
+    Vector<double> g;
+    test::closed_form("wavy", gd.x().col(i), g);
+    EXPECT_EQ(gd.status()[static_cast<std::size_t>(i)], Status::gtol);
+    EXPECT_LT(g.norm(), 1e-3);
+  }
+}
+
+TEST(GradientDescent, NonFiniteTrialsShortenTheStep) {
+  // Everything beyond 1 is NaN; the first step of 0.1 * 20 lands there.
+  const auto wall = [](std::span<const Index>,
+                       BatchIn<double> x,
+                       VectorOut<double> loss,
+                       BatchOut<double> gradient) {
+    for (Index i = 0; i < x.cols(); ++i) {
+      loss(i) = x(0, i) > 1 ? kNan : -20 * x(0, i);
+      gradient(0, i) = -20;
+    }
+  };
+  GradientDescent gd({.maxiter = 5});
+  drive(gd, wall, Batch<double>::Zero(1, 2));
+  EXPECT_TRUE(gd.x().allFinite());
+  EXPECT_GT(gd.x()(0), 0.1);
+  EXPECT_LE(gd.x()(0), 1);
+}
+
+TEST(GradientDescent, UselessDirectionsDiverge) {
+  // The gradient points the wrong way: no step lowers the loss.
+  const auto wrong = [](std::span<const Index>,
+                        BatchIn<double> x,
+                        VectorOut<double> loss,
+                        BatchOut<double> gradient) {
+    for (Index i = 0; i < x.cols(); ++i) {
+      loss(i) = 1e9 * x(0, i);
+      gradient(0, i) = -1e9;
+    }
+  };
+  GradientDescent gd({.first_step = 1e9, .substeps = 3});
+  drive(gd, wrong, Batch<double>::Zero(1, 1));
+  EXPECT_EQ(gd.status()[0], Status::linesearch);
+  EXPECT_EQ(gd.x()(0), 0);
+  EXPECT_EQ(gd.evaluations()[0], 1 + 1 + 3);
+}
+
+TEST(GradientDescent, NonFiniteStart) {
+  const auto nan = [](std::span<const Index>,
+                      BatchIn<double>,
+                      VectorOut<double> loss,
+                      BatchOut<double> gradient) {
+    loss.setConstant(kNan);
+    gradient.setConstant(kNan);
+  };
+  for (const bool skip : {false, true}) {
+    GradientDescent gd({.skip_zero_gradient = skip});
+    drive(gd, nan, Batch<double>::Ones(2, 3));
+    EXPECT_EQ(gd.status()[2], Status::nonfinite);
+    EXPECT_EQ(gd.x(), Batch<double>::Ones(2, 3));
+  }
+}
+
+}  // namespace
+}  // namespace physinv

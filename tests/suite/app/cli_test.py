@@ -1,0 +1,195 @@
+"""Exit codes and messages of the command line; bits for every way to run."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+BENCH = os.path.abspath(sys.argv[1])
+FAILED = []
+
+
+def run(*args, cwd, env=None, **kwargs):
+    return subprocess.run([BENCH, *args], cwd=cwd, text=True,
+                          capture_output=True, timeout=120,
+                          env={**os.environ, **(env or {})}, **kwargs)
+
+
+def check(condition, what):
+    print("ok  " if condition else "FAIL", what)
+    if not condition:
+        FAILED.append(what)
+
+
+def expect(code, args, cwd, says="", env=None, **kwargs):
+    """The exit code, and for errors exactly one line that `says` it."""
+    p = run(*args, cwd=cwd, env=env, **kwargs)
+    lines = p.stderr.splitlines()
+    good = p.returncode == code
+    if code:
+        good = good and len(lines) == 1 and says in lines[0] \
+            and lines[0].startswith("physinv-bench: ")
+    else:
+        good = good and not lines and says in p.stdout
+    check(good, f"{' '.join(args)} -> {p.returncode} {p.stderr.strip()[:150]}")
+    return p
+
+
+def results(path):
+    """results.json without what may differ between runs."""
+    with open(os.path.join(path, "results.json")) as f:
+        r = json.load(f)
+    drop = ("time", "date", "seconds", "_ms", "finished", "rss", "crowded",
+            "clocks", "bytes", "threads", "revision", "warmup", "setup")
+
+    def clean(v):
+        if isinstance(v, dict):
+            return {k: clean(w) for k, w in v.items()
+                    if not any(d in k for d in drop)}
+        return [clean(w) for w in v] if isinstance(v, list) else v
+
+    return [clean(b) for b in r["benchmarks"]]
+
+
+def bad_input(d):
+    expect(2, ["--no-such"], d, "unknown flag --no-such")
+    expect(2, ["--profil=smoke"], d, "did you mean --profile")
+    expect(2, ["runn"], d, "did you mean run")
+    expect(2, ["run", "stray"], d, "stray")
+    expect(2, ["--filter=(x"], d, "regular expression")
+    expect(3, ["--filter=cubik"], d, "fake/cubic")
+    expect(2, ["--profile=huge"], d, "known are smoke")
+    expect(2, ["--set", "speed=3"], d, "known are n, seeds")
+    expect(2, ["--set", "n"], d, "key=value")
+    expect(2, ["--set", "n=-3"], d)
+    expect(2, ["--set", "n=four"], d)
+    expect(2, ["--set", "methods=magic"], d, "descend")
+    expect(2, ["--set", "precision=f16"], d, "f32, f64")
+    expect(2, ["--seeds=3-1"], d)
+    expect(2, ["--jobs=0"], d)
+    expect(2, ["--time-budget=-1"], d)
+    for shard in ("3", "0/2", "3/2", "1/x"):
+        expect(2, ["--shard=" + shard], d)
+    expect(2, ["report", "nowhere"], d, "no results")
+    expect(2, ["report"], d)
+    expect(2, ["verify", "nowhere"], d)
+    expect(2, ["merge", "out", "nowhere"], d)
+    os.mkdir(os.path.join(d, "empty"))
+    expect(2, ["verify", "empty"], d)
+    expect(2, ["merge", "out", "empty"], d)
+    expect(9, ["--profile=smoke", "--out=/proc/nowhere"], d)
+    open(os.path.join(d, "file"), "w").close()
+    expect(9, ["--profile=smoke", "--out=file/below"], d)
+    expect(9, ["kernels"], d, "physinv-kernels")
+
+
+def good_input(d):
+    expect(0, ["--help"], d, "exit codes")
+    expect(0, ["--version"], d, "compiler")
+    expect(0, ["run", "--help"], d, "--time-budget")
+    expect(0, ["list", "--profile=smoke"], d, "fake/cubic/walk/n=4/seed=0")
+    p = expect(0, ["list", "--json", "--profile=smoke"], d)
+    check(len(json.loads(p.stdout)) == 4, "list --json lists four cases")
+    expect(0, ["--dry-run", "--profile=smoke"], d, "6 stages to run")
+    check(not os.path.exists(os.path.join(d, "results")), "dry run is dry")
+    expect(0, ["--profile=smoke"], d, "results: results/smoke")
+    p = expect(0, ["--profile=smoke", "--dry-run"], d, "0 stages to run")
+    expect(0, ["run", "--profile=smoke"], d, "0 stages run, 6 reused")
+    expect(0, ["verify", "results/smoke"], d, "0 mismatches")
+    expect(0, ["report", "results/smoke", "--check"], d, "report.md")
+    expect(7, ["report", "results/smoke", "--check"], d, "R1",
+           env={"PHYSINV_FAKE_DOUBT": "1"})
+    expect(0, ["report", "results/smoke"], d,
+           env={"PHYSINV_FAKE_DOUBT": "1"})
+    expect(4, ["--profile=bad", "--jobs=2"], d, "fail")
+    p = run("--profile=quick", "--time-budget=0.000001", cwd=d)
+    check(p.returncode == 0 and "18 cases not run" in p.stdout, "time budget")
+
+
+def damaged(d):
+    """A corrupt journal is named, a torn last line does no harm."""
+    journal = os.path.join(d, "results/smoke/journal.jsonl")
+    whole = open(journal, "rb").read()
+    flipped = bytearray(whole)
+    flipped[len(whole) // 2] ^= 1
+    open(journal, "wb").write(flipped)
+    for args in (["--profile=smoke"], ["verify", "results/smoke"],
+                 ["report", "results/smoke"]):
+        expect(9, args, d, "journal")
+    open(journal, "wb").write(whole[:-20])
+    expect(0, ["--profile=smoke"], d, "1 stages run, 5 reused")
+    expect(0, ["verify", "results/smoke"], d, "0 mismatches")
+
+
+def same_bits(d):
+    quick = ["--profile=quick", "--trace"]
+    expect(0, [*quick, "--jobs=1", "--out=one"], d)
+    base = results(os.path.join(d, "one"))
+    check(len(base) >= 30, f"{len(base)} entries")
+    for name, flags in {"two": ["--jobs=2"], "seven": ["--jobs=7"],
+                        "threads": ["--threads=2", "--jobs=1"]}.items():
+        expect(0, [*quick, *flags, "--out=" + name], d)
+        check(results(os.path.join(d, name)) == base, "same bits: " + name)
+    for i in (1, 2, 3):
+        expect(0, [*quick, f"--shard={i}/3", f"--out=s{i}"], d)
+    expect(0, ["merge", "merged", "s3", "s1", "s2"], d)
+    check(results(os.path.join(d, "merged")) == base, "same bits: merged")
+    expect(0, ["verify", "merged"], d, "0 mismatches")
+
+
+def interrupted(d):
+    """SIGINT keeps what has finished; the next run goes on."""
+    for number, jobs in ((signal.SIGINT, "1"), (signal.SIGTERM, "2")):
+        out = f"slow{jobs}"
+        p = subprocess.Popen(
+            [BENCH, "--profile=slow", "--jobs=" + jobs, "--out=" + out],
+            cwd=d, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        time.sleep(1)
+        p.send_signal(number)
+        begin = time.time()
+        text, _ = p.communicate(timeout=30)
+        check(p.returncode == 130 and time.time() - begin < 5,
+              f"{number.name} ends it with {p.returncode}")
+        check("2 cases not run" in text and "2 stages run" in text,
+              "it says what is kept")
+        expect(0, ["--profile=slow", "--filter=descend", "--out=" + out], d,
+               "2 reused")
+
+
+def no_space(d):
+    """A full disk (a small tmpfs, if we may mount one)."""
+    disk = os.path.join(d, "disk")
+    os.mkdir(disk)
+    mount = ["mount", "-t", "tmpfs", "-o", "size=64k", "tmpfs", disk]
+    if subprocess.run(mount, capture_output=True).returncode != 0:
+        print("skip full disk: no mount")
+        return
+    try:
+        expect(9, ["--profile=quick", "--out=disk/r"], d)
+        subprocess.run(["mount", "-o", "remount,size=16m", disk], check=True)
+        p = expect(0, ["--profile=quick", "--out=disk/r"], d)
+        check(" 0 reused" not in p.stdout, "what fitted was kept")
+        expect(0, ["verify", "disk/r"], d, "0 mismatches")
+    finally:
+        subprocess.run(["umount", disk], check=False)
+
+
+def startup(d):
+    for args in (["--help"], ["--version"], ["list"]):
+        times = []
+        for _ in range(10):
+            begin = time.perf_counter()
+            run(*args, cwd=d)
+            times.append(time.perf_counter() - begin)
+        print(f"     {args[0]}: {1e3 * min(times):.1f} ms")
+        check(min(times) < 0.05, f"{args[0]} within 50 ms")
+
+
+with tempfile.TemporaryDirectory() as directory:
+    for test in (bad_input, good_input, damaged, same_bits, interrupted,
+                 no_space, startup):
+        test(directory)
+sys.exit(f"{len(FAILED)} failed: {FAILED}" if FAILED else 0)

@@ -1,0 +1,91 @@
+#include "suite/cases/jpo_report.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/suite/cases/jpo_fixture.h"
+
+namespace physinv {
+namespace {
+
+const JpoReportOptions kOptions{.experiment = "toy",
+                                .title = "Toy",
+                                .table3_sizes = {4, 8},
+                                .tensors = {"m1", "b1"}};
+
+const Table& table(const Section& s, const std::string& id) {
+  return *std::find_if(s.tables.begin(), s.tables.end(), [&](const Table& t) {
+    return t.id == id;
+  });
+}
+
+const Figure& figure(const Section& s, const std::string& id) {
+  return *std::find_if(s.figures.begin(),
+                       s.figures.end(),
+                       [&](const Figure& f) { return f.id == id; });
+}
+
+Results some_results() {
+  StageRecord fit = stage_of("fit", {1e-3, 0.5}, {1, 1});
+  fit.arrays["weight_change"] = Batch<double>::Constant(2, 1, 0.125);
+  StageRecord crowded = stage_of("refine", {1e-9, 0.5});
+  crowded.crowded = true;
+  return Results(
+      {case_of(
+           "bfgs", 2, 0, {"solve"}, {stage_of("solve", {0.5, 0.5}, {1, 1})}),
+       case_of(
+           "bfgs", 2, 1, {"solve"}, {stage_of("solve", {0.5, 0.0}, {1, 1})}),
+       case_of("jpo", 2, 0, {"fit", "refine"}, {fit, crowded})});
+}
+
+TEST(JpoReport, NothingRunYet) {
+  const Results results;
+  const Section s = jpo_section(kOptions, results, {});
+  EXPECT_EQ(s.tables.size(), 5U);
+  EXPECT_EQ(s.figures.size(), 5U);
+  EXPECT_EQ(table(s, "table4").rows[0].cells[0].text, "not run");
+  EXPECT_FALSE(table(s, "table4").rows[0].cells[0].ours);
+  EXPECT_TRUE(figure(s, "fig13").panels.empty());
+}
+
+TEST(JpoReport, TablesHoldMeansAndSpreads) {
+  const Results results = some_results();
+  const Section s = jpo_section(kOptions, results, {});
+  const Table& seconds = table(s, "table2");
+  ASSERT_EQ(seconds.columns.size(), 8U);
+  EXPECT_EQ(*seconds.rows[0].cells[0].ours, 2);
+  EXPECT_EQ(*seconds.rows[0].cells[0].spread, 0);
+  EXPECT_EQ(seconds.rows[0].cells[2].text, "crowded");
+  EXPECT_FALSE(seconds.rows[0].cells[2].ours);
+  EXPECT_EQ(seconds.rows[0].cells[3].text, "not run");
+  const Table& refined = table(s, "table5");
+  ASSERT_EQ(refined.rows.size(), 2U);
+  EXPECT_EQ(*refined.rows[0].cells[0].ours, 50);
+  EXPECT_EQ(*refined.rows[0].cells[1].ours, 50);
+  EXPECT_FALSE(refined.rows[0].cells[0].spread);
+  EXPECT_EQ(table(s, "results").rows.size(), 7U);
+  EXPECT_EQ(table(s, "table3").rows[0].cells[1].text, "not run");
+}
+
+TEST(JpoReport, FiguresHoldWhatIsThere) {
+  const Results results = some_results();
+  const Section s = jpo_section(kOptions, results, {});
+  const Panel& curves = figure(s, "fig12").panels.at(0);
+  const Series& bfgs = curves.series.at(0);
+  EXPECT_EQ(bfgs.x, (std::vector<double>{1, 6}));  // iteration + 1
+  EXPECT_EQ(bfgs.y, (std::vector<double>{1, 0.375}));
+  EXPECT_GT(bfgs.hi[1], bfgs.y[1]);
+  EXPECT_TRUE(curves.series.at(2).x.empty());  // supervised is not run
+  const Figure& ways = figure(s, "fig13");
+  ASSERT_EQ(ways.panels.size(), 2U);
+  EXPECT_EQ(ways.panels[0].series.back().method, "truth");
+  EXPECT_EQ(ways.panels[0].series.back().x, std::vector<double>{0.25});
+  const Figure& change = figure(s, "fig14");
+  EXPECT_EQ(change.panels.at(1).series.at(0).y, std::vector<double>{0.125});
+  const Figure& fraction = figure(s, "fig4b");
+  EXPECT_EQ(fraction.panels[0].series.at(1).y, std::vector<double>{0.75});
+}
+
+}  // namespace
+}  // namespace physinv

@@ -1,0 +1,112 @@
+#include "suite/harness/campaign.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "suite/harness/registry.h"
+#include "suite/results/results.h"
+#include "tests/suite/harness/fake_experiment.h"
+
+namespace physinv {
+namespace {
+
+namespace fs = std::filesystem;
+
+class CampaignTest : public ::testing::Test {
+ protected:
+  CampaignTest() {
+    registry_.add(fake::experiment());
+    std::string pattern = (fs::temp_directory_path() / "campaignXXXXXX").string();
+    root_ = mkdtemp(pattern.data());
+    sink_ = std::fopen("/dev/null", "w");
+  }
+  ~CampaignTest() override {
+    std::fclose(sink_);
+    fs::remove_all(root_);
+  }
+
+  CampaignResult run(const std::string& profile, CampaignOptions options,
+                     bool backwards = false) {
+    auto cases = registry_.expand(profile);
+    if (backwards) std::reverse(cases.begin(), cases.end());
+    options.trace = true;
+    return run_campaign(prepare(std::move(cases)), options, {},
+                        {.stream = sink_});
+  }
+
+  /// Everything that must not depend on how a campaign is run.
+  static std::string bits(const fs::path& dir) {
+    std::map<std::string, std::string> stages;
+    for (const auto& c : load_results(dir).cases()) {
+      for (const auto& s : c.stages) {
+        std::string all = s.key + s.trajectory;
+        const auto add = [&](const auto& m) {
+          all.append(reinterpret_cast<const char*>(m.data()),
+                     static_cast<std::size_t>(m.size()) * sizeof(double));
+        };
+        add(s.x), add(s.loss), add(s.curve.loss), add(s.curve.x);
+        for (const auto& [name, array] : s.arrays) add(array);
+        stages[c.info.name + s.stage] = all;
+      }
+    }
+    std::string text;
+    for (const auto& [name, all] : stages) text += name + all;
+    return text;
+  }
+
+  Registry registry_;
+  fs::path root_;
+  std::FILE* sink_;
+};
+
+TEST_F(CampaignTest, SameBitsForJobsThreadsAndOrder) {
+  const auto result = run("quick", {.out = root_ / "a", .jobs = 1});
+  EXPECT_EQ(result.stages_run + result.stages_reused, 30u);
+  EXPECT_TRUE(result.failed.empty());
+  run("quick", {.out = root_ / "b", .jobs = 7, .threads = 2});
+  run("quick", {.out = root_ / "c", .jobs = 2}, true);
+  const std::string once = bits(root_ / "a");
+  EXPECT_GT(once.size(), 10000u);
+  EXPECT_EQ(once, bits(root_ / "b"));
+  EXPECT_EQ(once, bits(root_ / "c"));
+}
+
+TEST_F(CampaignTest, ReusesWhatIsFinished) {
+  run("smoke", {.out = root_ / "a"});
+  const std::string once = bits(root_ / "a");
+  const auto again = run("smoke", {.out = root_ / "a"});
+  EXPECT_EQ(again.stages_run, 0u);
+  EXPECT_EQ(again.stages_reused, 6u);
+  ASSERT_EQ(again.origins.size(), 1u);
+  EXPECT_EQ(once, bits(root_ / "a"));
+  const auto fresh = run("smoke", {.out = root_ / "a", .resume = false});
+  // The first stage of walk is that of stroll, so it runs once.
+  EXPECT_EQ(fresh.stages_run, 5u);
+  EXPECT_EQ(fresh.stages_reused, 1u);
+  EXPECT_EQ(once, bits(root_ / "a"));
+}
+
+TEST_F(CampaignTest, FailuresDoNotStopTheOthers) {
+  const auto result = run("bad", {.out = root_ / "a", .jobs = 2});
+  EXPECT_EQ(result.failed.size(), 4u);
+  const Results results = load_results(root_ / "a");
+  const auto* good = results.find("fake/cubic", "descend", 4, 0, "solve");
+  ASSERT_NE(good, nullptr);
+  EXPECT_EQ(good->stop, Stop::iterations);
+  // Failed stages are tried again, finished ones are not.
+  const auto again = run("bad", {.out = root_ / "a"});
+  EXPECT_EQ(again.stages_reused, 1u);
+  EXPECT_EQ(again.failed.size(), 4u);
+}
+
+TEST_F(CampaignTest, BudgetActsBetweenCases) {
+  const auto result = run("quick", {.out = root_ / "a", .time_budget = 1e-9});
+  EXPECT_EQ(result.not_run.size(), 18u);
+  EXPECT_FALSE(result.interrupted);
+  const auto rest = run("quick", {.out = root_ / "a"});
+  EXPECT_TRUE(rest.not_run.empty());
+}
+
+}  // namespace
+}  // namespace physinv

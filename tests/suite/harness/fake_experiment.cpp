@@ -1,0 +1,247 @@
+#include "tests/suite/harness/fake_experiment.h"
+
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdlib>
+#include <limits>
+#include <new>
+#include <stdexcept>
+#include <thread>
+
+#include "suite/core/threads.h"
+
+namespace physinv::fake {
+
+struct CubicOptions {
+  double slope = 1.0;
+};
+Options describe(const CubicOptions& options) {
+  return {{"slope", std::to_string(options.slope)}};
+}
+
+/// y_j = x_j^3 + slope x_j + given, two unknowns.
+template <class T>
+class Cubic final : public Problem<T>, public Vjp<T> {
+ public:
+  using Options = CubicOptions;
+  explicit Cubic(const Options& options = {}) : options_(options) {}
+
+  Shape shape() const override { return {2, 2, 1}; }
+  Vector<double> start() const override { return Vector<double>::Ones(2); }
+  Samples<double> sample(Index first, Index count,
+                         const Rng& rng) const override {
+    Samples<double> s{Batch<double>(2, count), Batch<double>(2, count),
+                      Batch<double>(1, count)};
+    for (Index i = 0; i < count; ++i) {
+      Stream stream = rng.child(static_cast<std::uint64_t>(first + i)).stream();
+      s.given(0, i) = stream.uniform(-1, 1);
+      for (Index j = 0; j < 2; ++j) {
+        const double x = s.x(j, i) = stream.uniform(-1, 1);
+        s.y(j, i) = x * x * x + options_.slope * x + s.given(0, i);
+      }
+    }
+    return s;
+  }
+  void forward(BatchIn<T> x, BatchIn<T> given, BatchOut<T> y,
+               Workspace&) const override {
+    const T slope = static_cast<T>(options_.slope);
+    for (Index i = 0; i < x.cols(); ++i)
+      for (Index j = 0; j < 2; ++j)
+        y(j, i) = x(j, i) * x(j, i) * x(j, i) + slope * x(j, i) + given(0, i);
+  }
+  void linearize(BatchIn<T> x, BatchIn<T> given, BatchOut<T> y,
+                 Tape& tape) const override {
+    Workspace none;
+    forward(x, given, y, none);
+    auto kept = tape.slot<T>(0, 2, x.cols());
+    kept = (T(3) * x.array().square() + static_cast<T>(options_.slope)).matrix();
+  }
+  void pullback(const Tape& tape, BatchIn<T> y_bar, BatchOut<T> x_bar,
+                Workspace&) const override {
+    x_bar = tape.view<T>(0).cwiseProduct(y_bar);
+  }
+  double operations() const override { return 8; }
+
+ private:
+  Options options_;
+};
+
+namespace {
+
+void nap(double seconds) {
+  std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+}
+
+/// Milliseconds per iteration, so that tests can stop a campaign midway.
+double pace() {
+  const char* text = std::getenv("PHYSINV_FAKE_PACE_MS");
+  return text == nullptr ? 0.0 : 1e-3 * std::atof(text);
+}
+
+class Base : public Stage {
+ public:
+  Base(std::string name, Needs needs) : name_(std::move(name)), needs_(needs) {}
+  std::string name() const override { return name_; }
+  Needs needs() const override { return needs_; }
+  Options options() const override { return {{"rate", "0.1"}}; }
+  Index default_iterations() const override { return 20; }
+  double operations(const CaseSize& size) const override {
+    return static_cast<double>(size.n * size.iterations) *
+           size.problem_operations;
+  }
+
+ private:
+  std::string name_;
+  Needs needs_;
+};
+
+/// Gradient descent in double from the start, or from the stage before.
+class Descend final : public Base {
+ public:
+  Descend(std::string name, double rate)
+      : Base(std::move(name), Needs::vjp), rate_(rate) {}
+  Options options() const override { return {{"rate", std::to_string(rate_)}}; }
+  Outcome run(StageRun& run) const override {
+    Batch<double> x =
+        run.previous != nullptr ? run.previous->x : run.oracle.start();
+    Batch<double> gradient(x.rows(), x.cols());
+    Vector<double> loss(x.cols());
+    run.probe.begin_warmup();
+    while (run.probe.proceed([&](BatchOut<double> out) { out = x; })) {
+      run.oracle.evaluate<double>(run.oracle.all(), x, loss, gradient);
+      for_blocks(run.threads, x.cols(), [&](Index i, int) {
+        x.col(i) -= rate_ * gradient.col(i);
+      });
+      run.probe.trace(x.data(), static_cast<std::size_t>(x.size()) * 8);
+      nap(pace());
+    }
+    return {.x = x,
+            .status = {},
+            .iterations = {},
+            .evaluations = {},
+            .message = {},
+            .arrays = {{"gradient", gradient}}};
+  }
+
+ private:
+  double rate_;
+};
+
+/// A random walk that keeps what is better, in the case's precision.
+class Walk final : public Base {
+ public:
+  Walk() : Base("fit", Needs::vjp) {}
+  bool has_precision() const override { return true; }
+  Outcome run(StageRun& run) const override {
+    return run.precision == Precision::f32 ? go<float>(run) : go<double>(run);
+  }
+
+ private:
+  template <class T>
+  Outcome go(StageRun& run) const {
+    Stream noise = run.method.stream(), order = run.batches.stream();
+    Batch<T> x = run.oracle.start().template cast<T>();
+    x.array() += static_cast<T>(0.1 * run.network_init.stream().normal());
+    Vector<double> best(x.cols()), loss(x.cols());
+    run.oracle.evaluate<T>(run.oracle.all(), x, best);
+    while (run.probe.proceed(
+        [&](BatchOut<double> out) { out = x.template cast<double>(); })) {
+      Batch<T> tried = x;
+      const double scale = order.uniform(0.0, 0.3);
+      for (Index i = 0; i < x.size(); ++i)
+        tried(i) += static_cast<T>(scale * noise.normal());
+      run.oracle.evaluate<T>(run.oracle.all(), tried, loss);
+      for_blocks(run.threads, x.cols(), [&](Index i, int) {
+        if (loss(i) < best(i)) best(i) = loss(i), x.col(i) = tried.col(i);
+      });
+      run.probe.trace(x.data(), static_cast<std::size_t>(x.size()) * sizeof(T));
+      nap(pace());
+    }
+    Outcome out;
+    out.x = x.template cast<double>();
+    return out;
+  }
+};
+
+/// Ends as it is told to.
+class Ends final : public Base {
+ public:
+  explicit Ends(std::string how)
+      : Base("solve", Needs::forward), how_(std::move(how)) {}
+  Options options() const override { return {{"how", how_}}; }
+  Outcome run(StageRun& run) const override {
+    if (how_ == "throws") throw std::runtime_error("no solution today");
+    if (how_ == "exhaust") throw std::bad_alloc();
+    if (how_ == "die") {
+      std::signal(SIGSEGV, SIG_DFL);
+      std::raise(SIGSEGV);
+    }
+    if (how_ == "sleep") nap(60);
+    Outcome out;
+    out.x = run.oracle.start();
+    if (how_ == "diverge")
+      out.x.setConstant(std::numeric_limits<double>::quiet_NaN());
+    return out;
+  }
+
+ private:
+  std::string how_;
+};
+
+Method chain(std::string id, std::vector<std::shared_ptr<const Stage>> stages) {
+  return {.id = std::move(id), .chain = std::move(stages)};
+}
+
+Section report(const Results& results, const Published&) {
+  const auto* found = results.find("fake/cubic", "descend", 4, 0, "solve");
+  ClaimResult claim;
+  claim.id = "R1";
+  claim.says = "descend lowers the loss";
+  claim.from = "smoke";
+  claim.gates = true;
+  if (found != nullptr)
+    claim.verdict = found->loss.maxCoeff() < 1.0 ? Verdict::reproduced
+                                                 : Verdict::not_reproduced;
+  if (std::getenv("PHYSINV_FAKE_DOUBT") != nullptr)
+    claim.verdict = Verdict::not_reproduced;
+  return {.experiment = "fake/cubic",
+          .title = "Cubic",
+          .paper = "fake",
+          .tables = {},
+          .figures = {},
+          .claims = {claim}};
+}
+
+}  // namespace
+
+Experiment experiment() {
+  const auto descend = std::make_shared<Descend>("solve", 0.05);
+  const auto fit = std::make_shared<Walk>();
+  const auto ends = [&](const char* how) {
+    return chain(how, {std::make_shared<Ends>(how)});
+  };
+  Experiment e;
+  e.name = "fake/cubic";
+  e.title = "Cubic";
+  e.source = {"fake", "nowhere"};
+  e.problem = problem<Cubic>("cubic");
+  e.methods = {chain("descend", {descend}),
+               chain("walk", {fit, std::make_shared<Descend>("refine", 0.05)}),
+               chain("stroll", {fit, std::make_shared<Descend>("refine", 0.1)}),
+               ends("diverge"), ends("throws"), ends("exhaust"), ends("die"),
+               ends("sleep"),
+               chain("broken", {std::make_shared<Ends>("throws"),
+                                std::make_shared<Descend>("refine", 0.1)})};
+  const std::vector<std::string> good = {"descend", "walk", "stroll"};
+  e.profiles = {
+      {"smoke", {{good, {4}, {0}, 10}, {{"diverge"}, {4}, {0}, 10}}},
+      {"quick", {{good, {4, 9}, {0, 1, 2}, 40}}},
+      {"bad",
+       {{{"throws", "descend", "exhaust", "die", "broken"}, {4}, {0}, 10}}},
+      {"slow", {{{"descend", "sleep"}, {4}, {0, 1}, 10}}}};
+  e.report = report;
+  return e;
+}
+
+}  // namespace physinv::fake

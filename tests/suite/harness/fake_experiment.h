@@ -1,0 +1,15 @@
+/// A small problem, methods that end in every way there is, and an experiment
+/// of them.
+#pragma once
+
+#include "suite/harness/case.h"
+
+namespace physinv::fake {
+
+/// Methods: descend (one stage); walk and stroll (fit, refine; the same fit,
+/// threads and random numbers in it); diverge; throws; exhaust (bad_alloc);
+/// die (a signal); sleep (a minute). Profiles: smoke, quick (all that end
+/// well), bad (throws, exhaust, die, and descend between them), slow.
+Experiment experiment();
+
+}  // namespace physinv::fake

@@ -1,0 +1,50 @@
+#include "suite/harness/progress.h"
+
+#include <gtest/gtest.h>
+
+#include "suite/harness/registry.h"
+#include "tests/suite/harness/fake_experiment.h"
+
+namespace physinv {
+namespace {
+
+TEST(Rates, ByStageThenOverall) {
+  Rates rates;
+  EXPECT_LT(rates.seconds("fit", 10), 0);
+  rates.add("fit", 100, 10);
+  rates.add("refine", 100, 1);
+  EXPECT_DOUBLE_EQ(rates.seconds("fit", 20), 2);
+  EXPECT_DOUBLE_EQ(rates.seconds("refine", 20), 0.2);
+  EXPECT_DOUBLE_EQ(rates.seconds("other", 200), 11);
+}
+
+TEST(Progress, EstimatesFromOperations) {
+  Registry registry;
+  registry.add(fake::experiment());
+  Overrides o;
+  o.methods = {"descend"};
+  o.n = {1, 9};
+  const auto cases = registry.expand("smoke", o);
+  ASSERT_EQ(cases.size(), 2u);
+  std::FILE* sink = std::fopen("/dev/null", "w");
+  Progress progress({.stream = sink}, cases, 1);
+  EXPECT_LT(progress.remaining(), 0);
+  StageRecord record;
+  record.stage = "solve";
+  record.clocks.solve.wall = 2;
+  progress.finished(0, 0, record);
+  EXPECT_NEAR(progress.remaining(), 18, 1e-9);
+  progress.reused(1, 0);
+  EXPECT_EQ(progress.remaining(), 0);
+  std::fclose(sink);
+}
+
+TEST(Duration, Reads) {
+  EXPECT_EQ(duration_text(0.0034), "3.4 ms");
+  EXPECT_EQ(duration_text(3.44), "3.4 s");
+  EXPECT_EQ(duration_text(125), "2 min 5 s");
+  EXPECT_EQ(duration_text(4200), "1 h 10 min");
+}
+
+}  // namespace
+}  // namespace physinv

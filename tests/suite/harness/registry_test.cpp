@@ -1,0 +1,106 @@
+#include "suite/harness/registry.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "suite/harness/errors.h"
+#include "tests/suite/harness/fake_experiment.h"
+
+namespace physinv {
+namespace {
+
+Registry fake_registry() {
+  Registry r;
+  r.add(fake::experiment());
+  return r;
+}
+
+/// The complaint about the fake experiment after `change`.
+template <class F>
+std::string complaint(F change) {
+  Experiment e = fake::experiment();
+  change(e);
+  Registry r;
+  r.add(std::move(e));
+  const auto lines = r.problems();
+  return lines.empty() ? "" : lines.front();
+}
+
+TEST(Registry, AcceptsTheFake) {
+  EXPECT_TRUE(fake_registry().problems().empty());
+  EXPECT_NO_THROW(fake_registry().validate());
+}
+
+TEST(Registry, NamesBothSetsOfACaseThatCannotWork) {
+  const std::string text =
+      complaint([](Experiment& e) { e.problem.provided = Needs::forward; });
+  EXPECT_EQ(text,
+            "fake/cubic: method descend needs forward|vjp, problem cubic "
+            "provides forward");
+}
+
+TEST(Registry, FindsWhatIsWrong) {
+  EXPECT_NE(complaint([](Experiment& e) { e.name = "Fake cubic"; }), "");
+  EXPECT_NE(complaint([](Experiment& e) { e.methods[0].id = "a/b"; }), "");
+  EXPECT_NE(complaint([](Experiment& e) { e.methods[1].id = "descend"; }), "");
+  EXPECT_NE(complaint([](Experiment& e) { e.methods[0].chain.clear(); }), "");
+  EXPECT_NE(complaint([](Experiment& e) {
+              e.profiles[0].rows[0].methods = {"nobody"};
+            }),
+            "");
+  EXPECT_NE(complaint([](Experiment& e) { e.profiles[0].rows[0].n = {}; }), "");
+  EXPECT_NE(complaint([](Experiment& e) {  // the same cases, other iterations
+              e.profiles[0].rows.push_back(e.profiles[0].rows[0]);
+              e.profiles[0].rows.back().iterations = 77;
+            }),
+            "");
+  Registry twice = fake_registry();
+  twice.add(fake::experiment());
+  EXPECT_THROW(twice.validate(), std::logic_error);
+}
+
+TEST(Registry, ExpandsInDeclaredOrder) {
+  const auto cases = fake_registry().expand("quick");
+  ASSERT_EQ(cases.size(), 18u);
+  EXPECT_EQ(cases[0].info.name, "fake/cubic/descend/n=4/seed=0");
+  EXPECT_EQ(cases[1].info.name, "fake/cubic/descend/n=4/seed=1");
+  EXPECT_EQ(cases[3].info.name, "fake/cubic/walk/n=4/seed=0");
+  EXPECT_EQ(cases[9].info.name, "fake/cubic/descend/n=9/seed=0");
+  EXPECT_EQ(cases[3].info.stages, (std::vector<std::string>{"fit", "refine"}));
+  EXPECT_EQ(cases[3].stage_iterations, (std::vector<Index>{40, 40}));
+  EXPECT_GT(cases[3].stage_operations[0], 0);
+}
+
+TEST(Registry, CollapsesDuplicates) {
+  Experiment e = fake::experiment();
+  e.profiles[0].rows.push_back(e.profiles[0].rows[0]);
+  Registry r;
+  r.add(std::move(e));
+  EXPECT_EQ(r.expand("smoke").size(), fake_registry().expand("smoke").size());
+}
+
+TEST(Registry, OverridesKeysOfRows) {
+  Overrides o;
+  o.n = {2, 3};
+  o.seeds = {7};
+  o.methods = {"walk", "descend"};
+  o.iterations = 5;
+  o.precision = Precision::f64;
+  const auto cases = fake_registry().expand("smoke", o);
+  ASSERT_EQ(cases.size(), 4u);
+  EXPECT_EQ(cases[0].info.name, "fake/cubic/walk/n=2/precision=f64/seed=7");
+  // A method without a choice of precision does not show one.
+  EXPECT_EQ(cases[1].info.name, "fake/cubic/descend/n=2/seed=7");
+  EXPECT_EQ(cases[0].stage_iterations[0], 5);
+}
+
+TEST(Registry, RefusesWhatIsUnknown) {
+  const Registry r = fake_registry();
+  EXPECT_THROW(r.expand("enormous"), UsageError);
+  EXPECT_THROW(r.expand("smoke", {.methods = {{"magic"}}}), UsageError);
+  EXPECT_THROW(r.expand("smoke", {.methods = {}, .n = {{0}}}), UsageError);
+}
+
+}  // namespace
+}  // namespace physinv

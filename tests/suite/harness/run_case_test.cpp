@@ -1,0 +1,130 @@
+#include "suite/harness/run_case.h"
+
+#include <gtest/gtest.h>
+
+#include "suite/harness/keys.h"
+#include "suite/harness/registry.h"
+#include "suite/harness/verify.h"
+#include "tests/suite/harness/fake_experiment.h"
+
+namespace physinv {
+namespace {
+
+class RunCase : public ::testing::Test {
+ protected:
+  RunCase() { registry_.add(fake::experiment()); }
+
+  Case make(const std::string& method, Overrides o = {}) {
+    o.methods = {method};
+    if (!o.n) o.n = {5};
+    if (!o.seeds) o.seeds = {3};
+    if (!o.iterations) o.iterations = 12;
+    Case c = registry_.expand("smoke", o).front();
+    c.info.keys = content_keys(c, draw_data(c).hash, "build");
+    return c;
+  }
+
+  static std::vector<StageRecord> run(const Case& c,
+                                      std::vector<StageRecord> earlier = {},
+                                      int threads = 1) {
+    std::vector<StageRecord> records;
+    Threads pool(threads);
+    run_case(c, std::move(earlier), {.trace = true, .revision = "r"}, &pool,
+             {.started = {}, .progress = {}, .finished = [&](const auto& r) {
+                records.push_back(r);
+              }});
+    return records;
+  }
+
+  static void expect_same(const StageRecord& a, const StageRecord& b) {
+    EXPECT_EQ(a.key, b.key);
+    EXPECT_EQ(a.trajectory, b.trajectory);
+    EXPECT_EQ(a.x, b.x);
+    EXPECT_EQ(a.loss, b.loss);
+    EXPECT_EQ(a.curve.loss, b.curve.loss);
+    EXPECT_EQ(a.counts, b.counts);
+  }
+
+  Registry registry_;
+};
+
+TEST_F(RunCase, FillsTheRecord) {
+  const auto records = run(make("walk"));
+  ASSERT_EQ(records.size(), 2u);
+  const StageRecord& fit = records[0];
+  EXPECT_EQ(fit.case_name, "fake/cubic/walk/n=5/seed=3");
+  EXPECT_EQ(fit.stage, "fit");
+  EXPECT_EQ(fit.key.size(), 32u);
+  EXPECT_EQ(fit.stop, Stop::iterations);
+  EXPECT_EQ(fit.iterations, 12);
+  EXPECT_EQ(fit.x.cols(), 5);
+  EXPECT_EQ(fit.loss.size(), 5);
+  EXPECT_EQ(fit.counts[Counter::forward], 13u * 5u);
+  EXPECT_GT(fit.clocks.solve.wall, 0);
+  EXPECT_GT(fit.buffer_bytes, 0u);
+  EXPECT_GT(fit.rss_bytes, 1u << 20);
+  EXPECT_EQ(fit.revision, "r");
+  EXPECT_EQ(fit.trajectory.size(), 16u);
+  EXPECT_EQ(records[1].position, 1);
+  EXPECT_LE(records[1].loss.maxCoeff(), fit.loss.maxCoeff());
+}
+
+TEST_F(RunCase, SameBitsForAnyThreadsAndWhenResumed) {
+  const Case c = make("walk");
+  const auto once = run(c), threaded = run(c, {}, 3);
+  const auto resumed = run(c, {once[0]});
+  for (std::size_t k = 0; k < 2; ++k) expect_same(once[k], threaded[k]);
+  ASSERT_EQ(resumed.size(), 1u);
+  expect_same(once[1], resumed[0]);
+}
+
+TEST_F(RunCase, ChainsWithTheSameBeginningShareIt) {
+  const auto walk = run(make("walk")), stroll = run(make("stroll"));
+  expect_same(walk[0], stroll[0]);
+  EXPECT_NE(walk[1].key, stroll[1].key);
+}
+
+TEST_F(RunCase, FailuresAreRecorded) {
+  const auto thrown = run(make("broken"));
+  ASSERT_EQ(thrown.size(), 2u);
+  EXPECT_EQ(thrown[0].stop, Stop::failed);
+  EXPECT_EQ(thrown[0].message, "no solution today");
+  EXPECT_EQ(thrown[1].stop, Stop::skipped);
+  EXPECT_EQ(thrown[1].message, "solve failed");
+  EXPECT_EQ(run(make("exhaust"))[0].message, "out of memory");
+  EXPECT_EQ(run(make("diverge"))[0].stop, Stop::diverged);
+}
+
+TEST_F(RunCase, KeysChangeWithWhatDecides) {
+  const Case base = make("walk");
+  const auto other = [&](Overrides o) { return make("walk", o).info.keys; };
+  EXPECT_EQ(other({}), base.info.keys);
+  EXPECT_NE(other({.methods = {}, .n = {{6}}})[0], base.info.keys[0]);
+  Overrides o;
+  o.seeds = {4};
+  EXPECT_NE(other(o)[0], base.info.keys[0]);
+  o = {};
+  o.iterations = 13;
+  EXPECT_NE(other(o)[0], base.info.keys[0]);
+  o = {};
+  o.precision = Precision::f64;
+  EXPECT_NE(other(o)[0], base.info.keys[0]);
+  EXPECT_NE(content_keys(base, "data", "build")[0], base.info.keys[0]);
+  EXPECT_NE(content_keys(base, draw_data(base).hash, "other")[0],
+            base.info.keys[0]);
+}
+
+TEST_F(RunCase, VerifyFindsAWrongLoss) {
+  const Case c = make("walk");
+  CaseRecord record{.info = c.info, .data = draw_data(c), .stages = run(c)};
+  VerifyReport report = verify_results(Results({record}), registry_);
+  EXPECT_EQ(report.losses, 10u);
+  EXPECT_EQ(report.bitwise + report.close, 10u);
+  EXPECT_TRUE(report.mismatches.empty());
+  record.stages[0].loss(2) *= 1 + 1e-9;
+  report = verify_results(Results({record}), registry_);
+  EXPECT_EQ(report.mismatches.size(), 1u);
+}
+
+}  // namespace
+}  // namespace physinv

@@ -1,0 +1,56 @@
+#include "suite/harness/select.h"
+
+#include <gtest/gtest.h>
+
+#include "suite/harness/errors.h"
+
+namespace physinv {
+namespace {
+
+TEST(NameFilter, UnitesAndNegates) {
+  EXPECT_TRUE(NameFilter().matches("anything"));
+  const NameFilter two({"/bfgs/", "n=4/"});
+  EXPECT_TRUE(two.matches("jpo/billiards/bfgs/n=8/seed=0"));
+  EXPECT_TRUE(two.matches("jpo/billiards/gd/n=4/seed=0"));
+  EXPECT_FALSE(two.matches("jpo/billiards/gd/n=8/seed=0"));
+  const NameFilter without({"-/bfgs/"});
+  EXPECT_TRUE(without.matches("jpo/billiards/gd/n=8/seed=0"));
+  EXPECT_FALSE(without.matches("jpo/billiards/bfgs/n=8/seed=0"));
+  const NameFilter both({"billiards", "-seed=[1-9]"});
+  EXPECT_TRUE(both.matches("jpo/billiards/gd/n=8/seed=0"));
+  EXPECT_FALSE(both.matches("jpo/billiards/gd/n=8/seed=3"));
+}
+
+TEST(NameFilter, NamesABadPattern) {
+  try {
+    NameFilter({"good", "(bad"});
+    FAIL();
+  } catch (const UsageError& error) {
+    EXPECT_NE(std::string(error.what()).find("(bad"), std::string::npos);
+  }
+}
+
+TEST(Nearest, FindsTheTypo) {
+  const std::vector<std::string> names = {"jpo/billiards/bfgs/n=8/seed=0",
+                                          "jpo/waves/bfgs/n=8/seed=0"};
+  EXPECT_EQ(nearest_names(names, "biliards").front(), "jpo/billiards");
+  EXPECT_EQ(nearest_names(names, "jpo/wave").front(), "jpo/waves");
+  EXPECT_TRUE(nearest_names({}, "x").empty());
+  EXPECT_EQ(edit_distance("kitten", "sitting"), 3u);
+  EXPECT_EQ(nearest_word({"--jobs", "--out"}, "--job"), "--jobs");
+  EXPECT_EQ(nearest_word({"--jobs", "--out"}, "--completely-else"), "");
+}
+
+TEST(Shard, SplitsByPosition) {
+  std::vector<Case> cases(7);
+  for (std::size_t i = 0; i < 7; ++i) cases[i].info.name = std::to_string(i);
+  std::string all;
+  for (int part = 1; part <= 3; ++part) {
+    for (const Case& c : Shard{part, 3}.apply(cases)) all += c.info.name;
+  }
+  EXPECT_EQ(all, "0361425");
+  EXPECT_EQ(Shard().apply(cases).size(), 7u);
+}
+
+}  // namespace
+}  // namespace physinv

@@ -1,0 +1,128 @@
+#include "suite/nn/gemm.h"
+
+#include <gtest/gtest.h>
+
+#include "suite/nn/activation.h"
+#include "tests/suite/nn/nn_testing.h"
+
+namespace physinv::nn {
+namespace {
+
+template <class T>
+class GemmTest : public testing::Test {};
+using Types = testing::Types<float, double>;
+TYPED_TEST_SUITE(GemmTest, Types);
+
+/// Every size class of tile, against the definition, term by term in order.
+TYPED_TEST(GemmTest, EqualsTheSequentialSumBitwise) {
+  using T = TypeParam;
+  for (const Index m : {1, 2, 5, 7, 17, 40}) {
+    for (const Index n : {1, 3, 8, 13, 16, 24, 37, 64}) {
+      for (const Index k : {0, 1, 2, 19, 300, 520}) {
+        const Index stride = lane_stride<T>(round_up(n, kLanes<T>));
+        const Batch<T> a = wavy<T>(k, m), b = wavy<T>(stride, k, 0.3);
+        const Vector<T> bias = wavy<T>(m, 1, 0.7);
+        // One more column: nothing may be written behind the last.
+        Batch<T> c = Batch<T>::Constant(n + 1, m, T(9)), expected = c;
+        gemm<T>({.m = m,
+                 .n = n,
+                 .k = k,
+                 .a = a.data(),
+                 .a_row = k,
+                 .a_k = 1,
+                 .b = b.data(),
+                 .b_stride = stride,
+                 .c = c.data(),
+                 .c_stride = n + 1,
+                 .bias = bias.data(),
+                 .activation = Activation::relu});
+        for (Index i = 0; i < m; ++i) {
+          for (Index j = 0; j < n; ++j) {
+            T sum = bias(i);
+            for (Index q = 0; q < k; ++q) sum = std::fma(a(q, i), b(j, q), sum);
+            expected(j, i) = activate(Activation::relu, sum);
+          }
+        }
+        ASSERT_TRUE((c.array() == expected.array()).all())
+            << m << " " << n << " " << k;
+      }
+    }
+  }
+}
+
+TYPED_TEST(GemmTest, TransposedAndGated) {
+  using T = TypeParam;
+  for (const Activation f : {Activation::relu, Activation::tanh}) {
+    const Index m = 29, n = 40, k = 33, stride = lane_stride<T>(n);
+    const Batch<T> a = wavy<T>(m, k), b = wavy<T>(stride, k, 0.3);
+    const Batch<T> gate = wavy<T>(stride, m, 0.9);
+    Batch<T> c(stride, m);
+    gemm<T>({.m = m,
+             .n = n,
+             .k = k,
+             .a = a.data(),
+             .a_row = 1,
+             .a_k = m,
+             .b = b.data(),
+             .b_stride = stride,
+             .c = c.data(),
+             .c_stride = stride,
+             .gate_activation = f,
+             .gate = gate.data(),
+             .gate_stride = stride});
+    for (Index i = 0; i < m; ++i) {
+      for (Index j = 0; j < n; ++j) {
+        T sum = 0;
+        for (Index q = 0; q < k; ++q) sum = std::fma(a(i, q), b(j, q), sum);
+        ASSERT_EQ(c(j, i), sum * derivative(f, gate(j, i)));
+      }
+    }
+  }
+}
+
+TYPED_TEST(GemmTest, ThreadsDoNotChangeBits) {
+  using T = TypeParam;
+  const Index m = 131, n = 128, k = 90, stride = lane_stride<T>(n);
+  const Batch<T> a = wavy<T>(k, m), b = wavy<T>(stride, k);
+  Batch<T> one(stride, m), three(stride, m);
+  one.setZero(), three.setZero();
+  Gemm<T> g{.m = m,
+            .n = n,
+            .k = k,
+            .a = a.data(),
+            .a_row = k,
+            .a_k = 1,
+            .b = b.data(),
+            .b_stride = stride,
+            .c = one.data(),
+            .c_stride = stride};
+  gemm(g);
+  g.c = three.data();
+  Threads threads(3);
+  gemm(g, &threads);
+  expect_same_bits(one, three);
+}
+
+TYPED_TEST(GemmTest, LanesTransposeBothWays) {
+  using T = TypeParam;
+  for (const Index rows : {1, 4, 9, 32}) {
+    for (const Index n : {1, 8, 11, 40}) {
+      const Batch<T> in = wavy<T>(rows, n);
+      Lanes<T> x(nullptr, rows, n);
+      Batch<T> memory = Batch<T>::Constant(x.stride, rows, T(7)), out(rows, n);
+      x.data = memory.data();
+      to_lanes<T>(in, x);
+      for (Index i = 0; i < rows; ++i)
+        for (Index j = 0; j < x.width; ++j)
+          ASSERT_EQ(x.row(i)[j], j < n ? in(i, j) : T(0));
+      from_lanes<T>(x, out);
+      expect_same_bits(in, out);
+      Vector<T> sums(rows);
+      row_sums<T>(x, sums.data());
+      EXPECT_LE((sums - in.rowwise().sum()).norm(), 1e-5);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace physinv::nn

@@ -1,0 +1,56 @@
+#include "suite/results/json.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "suite/results/checksum.h"
+#include "tests/suite/results/results_testing.h"
+
+namespace physinv {
+namespace {
+
+TEST(Checksum, AgreesWithPublishedVectors) {
+  EXPECT_EQ(crc32c(""), 0U);
+  EXPECT_EQ(crc32c("123456789"), 0xe3069283U);            // RFC 3720's CRC
+  EXPECT_EQ(crc32c(std::string(32, '\0')), 0x8a9136aaU);  // RFC 3720, B.4
+}
+
+TEST(Json, WireKeepsEveryBit) {
+  const auto record = sample_stage(sample_case("jpo", 6, 1), 1);
+  expect_same(record, from_wire(to_wire(record)));
+}
+
+TEST(Json, WireRejectsGarbage) {
+  auto bytes = to_wire(sample_stage(sample_case("jpo", 2, 1), 0));
+  bytes.resize(bytes.size() / 2);
+  EXPECT_THROW(from_wire(bytes), std::exception);
+}
+
+TEST(Json, ScalarsRoundTripAsText) {
+  auto record = sample_stage(sample_case("jpo", 4, 1), 0);
+  record.stop = Stop::diverged;
+  const auto text = to_json(record).dump();
+  auto back = stage_from_json(nlohmann::json::parse(text));
+  back.x = record.x, back.loss = record.loss, back.status = record.status;
+  back.example_iterations = record.example_iterations;
+  back.example_evaluations = record.example_evaluations;
+  back.curve = record.curve, back.arrays = record.arrays;
+  expect_same(record, back);
+}
+
+TEST(Json, CaseRoundTrips) {
+  auto info = sample_case("na", 128, ~0ULL);
+  info.precision = Precision::f64;
+  const auto back =
+      case_from_json(nlohmann::json::parse(to_json(info).dump()));
+  EXPECT_EQ(back.name, info.name);
+  EXPECT_EQ(back.n, info.n);
+  EXPECT_EQ(back.seed, info.seed);
+  EXPECT_EQ(back.precision, info.precision);
+  EXPECT_EQ(back.stages, info.stages);
+  EXPECT_EQ(back.keys, info.keys);
+}
+
+}  // namespace
+}  // namespace physinv

@@ -1,0 +1,72 @@
+#include "suite/results/results.h"
+
+#include <gtest/gtest.h>
+
+#include "suite/results/published.h"
+#include "tests/suite/results/results_testing.h"
+
+namespace physinv {
+namespace {
+
+CaseRecord sample_record(const std::string& method, Index n,
+                         std::uint64_t seed) {
+  CaseRecord c;
+  c.info = sample_case(method, n, seed);
+  for (Index k = 0; k < 2; ++k) c.stages.push_back(sample_stage(c.info, k));
+  return c;
+}
+
+TEST(Results, FindsByWhatACaseIs) {
+  auto lost = sample_record("na", 8, 1);
+  lost.stages[1].stop = Stop::failed;
+  const Results results({sample_record("jpo", 64, 1),
+                         sample_record("jpo", 8, 0),
+                         lost});
+  const auto* stage = results.find("jpo/sample", "jpo", 8, 0, "refine");
+  ASSERT_NE(stage, nullptr);
+  EXPECT_EQ(stage->stage, "refine");
+  EXPECT_EQ(stage->case_name, "jpo/sample/jpo/n=8/seed=0");
+  EXPECT_EQ(results.find("jpo/sample", "jpo", 8, 1, "fit"), nullptr);
+  EXPECT_EQ(results.find("jpo/sample", "jpo", 8, 0, "solve"), nullptr);
+  EXPECT_EQ(results.find("jpo/sample", "na", 8, 1, "refine"), nullptr)
+      << "a failed stage is not run";
+  EXPECT_NE(results.find("jpo/sample", "na", 8, 1, "fit"), nullptr);
+  EXPECT_EQ(results.sizes("jpo/sample"), (std::vector<Index>{8, 64}));
+  EXPECT_EQ(results.seeds("jpo/sample"), (std::vector<std::uint64_t>{0, 1}));
+  EXPECT_EQ(results.methods("jpo/sample"),
+            (std::vector<std::string>{"jpo", "na"}));
+  EXPECT_TRUE(results.sizes("other").empty());
+}
+
+TEST(Published, HasThePapersBilliardsNumbers) {
+  const Published published(std::string(PHYSINV_SOURCE_DIR) +
+                            "/reports/published");
+  const auto get = [&](const char* quantity) {
+    return published.find("jpo/billiards", quantity).value();
+  };
+  EXPECT_EQ(get("table2/jpo/fit").value, 115.2);
+  EXPECT_EQ(get("table2/na/solve").spread, 2.5);
+  EXPECT_EQ(get("table3/n=128").value, 98.1);
+  EXPECT_EQ(get("table4/jpo/better").value, 44.3);
+  EXPECT_FALSE(get("table4/jpo/better").spread);
+  EXPECT_EQ(get("table5/na/equal").value, 98.4);
+  EXPECT_EQ(get("table5/na/equal").where, "Table 5");
+  EXPECT_FALSE(published.find("jpo/billiards", "table9"));
+  EXPECT_EQ(published.find("jpo/navier-stokes", "table2/jpo/fit")->value,
+            29510.0);
+}
+
+TEST(Published, MalformedFileIsNamed) {
+  TemporaryDirectory directory;
+  for (const std::string text :
+       {"{", "{}", R"({"values": [{"experiment": "a", "quantity": 3}]})"}) {
+    write_file(directory / "bad.json", text);
+    const auto message = message_of<std::runtime_error>(
+        [&] { Published p(directory.path()); });
+    EXPECT_TRUE(contains(message, "bad.json")) << message;
+  }
+  EXPECT_THROW(Published(directory / "nowhere"), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace physinv

@@ -1,0 +1,200 @@
+/// Made-up campaigns for the tests of the store.
+#pragma once
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <string>
+
+#include "suite/results/checksum.h"
+#include "suite/results/curves.h"
+#include "suite/results/file.h"
+#include "suite/results/record.h"
+
+namespace physinv {
+
+/// A directory that is deleted at the end.
+class TemporaryDirectory {
+ public:
+  TemporaryDirectory() {
+    auto name =
+        (std::filesystem::temp_directory_path() / "physinv-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) std::abort();
+    path_ = name;
+  }
+  ~TemporaryDirectory() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TemporaryDirectory(const TemporaryDirectory&) = delete;
+  TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+  std::filesystem::path operator/(const std::string& name) const {
+    return path_ / name;
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+inline CaseInfo sample_case(const std::string& method, Index n,
+                            std::uint64_t seed) {
+  CaseInfo info;
+  info.experiment = "jpo/sample";
+  info.method = method;
+  info.profile = "smoke";
+  info.n = n;
+  info.seed = seed;
+  info.name = fmt::format("jpo/sample/{}/n={}/seed={}", method, n, seed);
+  info.stages = {"fit", "refine"};
+  for (const auto& stage : info.stages)
+    info.keys.push_back(hex64(hash_text(info.name + stage)));
+  return info;
+}
+
+/// Numbers in [0, 1) that differ with the salt.
+inline double sample_number(std::uint64_t salt) {
+  return static_cast<double>(mix64(salt) >> 11) * 0x1p-53;
+}
+
+inline Batch<double> sample_batch(Index rows, Index cols, std::uint64_t salt) {
+  Batch<double> b(rows, cols);
+  for (Index i = 0; i < b.size(); ++i)
+    b.data()[i] = sample_number(salt + static_cast<std::uint64_t>(i));
+  return b;
+}
+
+inline CaseData sample_data(const CaseInfo& info) {
+  CaseData data;
+  data.x = sample_batch(2, info.n, info.seed);
+  data.y = sample_batch(3, info.n, info.seed + 1000);
+  data.given = Batch<double>(0, info.n);
+  data.hash = hex64(ArrayHash().add(data.x).add(data.y).value());
+  return data;
+}
+
+/// The results depend on the case and stage alone, the times on `run`.
+inline StageRecord sample_stage(const CaseInfo& info, Index position,
+                                std::uint64_t run = 0, Index parameters = 50) {
+  const auto k = static_cast<std::size_t>(position);
+  const std::uint64_t salt = hash_text(info.keys[k]);
+  StageRecord r;
+  r.case_name = info.name;
+  r.stage = info.stages[k];
+  r.key = info.keys[k];
+  r.position = position;
+  r.options = {{"rate", "0.001"}, {"gtol", "1e-05"}};
+  r.message = "says \"so\"\n\xc3\xa9";
+  r.iterations = 3000;
+  r.clocks.setup = {sample_number(run), 1e-3};
+  r.clocks.solve = {0.1 + sample_number(run + 1), 1.0 / 3.0};
+  r.counts[Counter::forward] = 12345678901234567ULL;
+  r.counts[Counter::skipped_rows] = 3;
+  r.buffer_bytes = 1 << 20;
+  r.rss_bytes = 3ULL << 32;
+  r.crowded = true;
+  r.finished = "2024-01-02T03:04:05Z";
+  r.revision = "abcdef+dirty";
+  r.trajectory = "0123456789abcdef";
+  r.x = sample_batch(2, info.n, salt);
+  r.loss = sample_batch(info.n, 1, salt + 1);
+  r.loss(0) = std::numeric_limits<double>::quiet_NaN();
+  if (info.n > 2) {
+    r.loss(1) = std::numeric_limits<double>::infinity();
+    r.loss(2) = -0.0;
+  }
+  for (Index i = 0; i < info.n; ++i)
+    r.status.push_back(static_cast<Status>(i % 4));
+  r.example_iterations = sample_batch(info.n, 1, salt + 2);
+  r.example_evaluations = sample_batch(info.n, 1, salt + 3);
+  for (int p = 0; p < 5; ++p) {
+    r.curve.iteration.push_back(p);
+    r.curve.seconds.push_back(0.1 * p + 0.01 * sample_number(run));
+    r.curve.evaluations.push_back(7 * p);
+  }
+  r.curve.loss = sample_batch(info.n, 5, salt + 4);
+  r.curve.x = sample_batch(4, 5, salt + 5);
+  r.curve.x(0, 0) = -std::numeric_limits<double>::infinity();
+  r.arrays["parameters"] = sample_batch(parameters, 1, salt + 6);
+  r.arrays["empty"] = Batch<double>(0, 3);
+  return r;
+}
+
+template <class M>
+bool same_bits(const M& a, const M& b) {
+  return a.rows() == b.rows() && a.cols() == b.cols() &&
+         (a.size() == 0 ||
+          std::memcmp(a.data(),
+                      b.data(),
+                      static_cast<std::size_t>(a.size()) * sizeof(double)) ==
+              0);
+}
+
+/// Every field and every bit.
+inline void expect_same(const StageRecord& a, const StageRecord& b) {
+  EXPECT_EQ(a.case_name, b.case_name);
+  EXPECT_EQ(a.stage, b.stage);
+  EXPECT_EQ(a.key, b.key);
+  EXPECT_EQ(a.position, b.position);
+  EXPECT_EQ(a.options, b.options);
+  EXPECT_EQ(a.stop, b.stop);
+  EXPECT_EQ(a.message, b.message);
+  EXPECT_EQ(a.iterations, b.iterations);
+  EXPECT_EQ(a.clocks.setup.wall, b.clocks.setup.wall);
+  EXPECT_EQ(a.clocks.solve.wall, b.clocks.solve.wall);
+  EXPECT_EQ(a.clocks.solve.cpu, b.clocks.solve.cpu);
+  EXPECT_EQ(a.counts, b.counts);
+  EXPECT_EQ(a.buffer_bytes, b.buffer_bytes);
+  EXPECT_EQ(a.rss_bytes, b.rss_bytes);
+  EXPECT_EQ(a.crowded, b.crowded);
+  EXPECT_EQ(a.finished, b.finished);
+  EXPECT_EQ(a.revision, b.revision);
+  EXPECT_EQ(a.trajectory, b.trajectory);
+  EXPECT_TRUE(same_bits(a.x, b.x));
+  EXPECT_TRUE(same_bits(a.loss, b.loss));
+  EXPECT_EQ(a.status, b.status);
+  EXPECT_TRUE(same_bits(a.example_iterations, b.example_iterations));
+  EXPECT_TRUE(same_bits(a.example_evaluations, b.example_evaluations));
+  EXPECT_EQ(a.curve.iteration, b.curve.iteration);
+  EXPECT_EQ(a.curve.seconds, b.curve.seconds);
+  EXPECT_EQ(a.curve.evaluations, b.curve.evaluations);
+  EXPECT_TRUE(same_bits(a.curve.loss, b.curve.loss));
+  EXPECT_TRUE(same_bits(a.curve.x, b.curve.x));
+  ASSERT_EQ(a.arrays.size(), b.arrays.size());
+  for (const auto& [name, array] : a.arrays)
+    EXPECT_TRUE(b.arrays.contains(name) && same_bits(array, b.arrays.at(name)))
+        << name;
+}
+
+inline void write_file(const std::filesystem::path& path,
+                       const std::string& bytes) {
+  std::filesystem::remove(path);  // file systems flush what is cut to zero
+  std::ofstream(path, std::ios::binary) << bytes;
+}
+
+/// The message of the E that body() throws; fails without one.
+template <class E, class F>
+std::string message_of(F&& body) {
+  try {
+    body();
+  } catch (const E& e) {
+    return e.what();
+  } catch (const std::exception& e) {
+    ADD_FAILURE() << "another kind of error: " << e.what();
+    return "";
+  }
+  ADD_FAILURE() << "nothing was thrown";
+  return "";
+}
+
+inline bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+}  // namespace physinv

@@ -1,0 +1,256 @@
+#include "suite/results/store.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+
+#include <csignal>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "suite/results/results.h"
+#include "tests/suite/results/results_testing.h"
+
+namespace physinv {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(CaseFile, KeepsEveryBit) {
+  TemporaryDirectory out;
+  const auto info = sample_case("jpo", 8, 3);
+  const auto data = sample_data(info);
+  CaseFile file(info.name);
+  file.put_data(data);
+  for (Index k = 0; k < 2; ++k) file.put_stage(sample_stage(info, k));
+  file.save(out / "a.h5");
+
+  const CaseFile back(out / "a.h5", info.name);
+  EXPECT_EQ(back.data().hash, data.hash);
+  EXPECT_TRUE(same_bits(back.data().x, data.x));
+  EXPECT_TRUE(same_bits(back.data().y, data.y));
+  EXPECT_TRUE(same_bits(back.data().given, data.given));
+  for (Index k = 0; k < 2; ++k) {
+    const auto record = sample_stage(info, k);
+    auto scalars = record;
+    scalars.x.resize(0, 0), scalars.arrays.clear(), scalars.status.clear();
+    back.read_stage(scalars, hex64(arrays_hash(record)));
+    expect_same(record, scalars);
+  }
+}
+
+TEST(CaseFile, EveryFlippedBitIsFound) {
+  TemporaryDirectory out;
+  const auto info = sample_case("jpo", 2, 3);
+  CaseFile file(info.name);
+  file.put_data(sample_data(info));
+  file.put_stage(sample_stage(info, 0));
+  file.save(out / "a.h5");
+  const auto bytes = read_file(out / "a.h5");
+  for (std::size_t i = 0; i < bytes.size(); i += 1 + bytes.size() / 199) {
+    auto wrong = bytes;
+    wrong[i] = static_cast<char>(wrong[i] ^ (1 << (i % 8)));
+    write_file(out / "b.h5", wrong);
+    const auto message = message_of<StoreError>(
+        [&] { CaseFile(out / "b.h5", info.name); });
+    ASSERT_TRUE(contains(message, "b.h5 is damaged")) << i;
+    write_file(out / "b.h5", bytes.substr(0, i));
+    ASSERT_THROW(CaseFile(out / "b.h5", info.name), StoreError) << i;
+  }
+}
+
+class StoreTest : public testing::Test {
+ protected:
+  void append(Store& store, const CaseInfo& info, Index position,
+              std::uint64_t run = 0) {
+    store.append(info, sample_data(info), sample_stage(info, position, run));
+  }
+
+  TemporaryDirectory out_;
+  CaseInfo a_ = sample_case("bfgs", 4, 0), b_ = sample_case("jpo", 4, 0);
+};
+
+TEST_F(StoreTest, FindsWhatWasAppendedAlsoLater) {
+  {
+    Store store(out_.path());
+    for (Index k = 0; k < 2; ++k) append(store, a_, k), append(store, b_, k);
+    expect_same(*store.find(b_.keys[1]), sample_stage(b_, 1));
+    EXPECT_FALSE(store.find("nothing"));
+  }
+  Store store(out_.path());
+  for (Index k = 0; k < 2; ++k)
+    expect_same(*store.find(a_.keys[static_cast<std::size_t>(k)]),
+                sample_stage(a_, k));
+}
+
+TEST_F(StoreTest, StageIsKeptOnceAndTheFirstCounts) {
+  Store store(out_.path());
+  append(store, a_, 0, 1);
+  append(store, a_, 0, 2);
+  EXPECT_EQ(store.catalog().entries().size(), 1U);
+  expect_same(*store.find(a_.keys[0]), sample_stage(a_, 0, 1));
+}
+
+TEST_F(StoreTest, ResultReplacesAFailure) {
+  Store store(out_.path());
+  auto failed = sample_stage(a_, 0);
+  failed.stop = Stop::failed;
+  store.append(a_, sample_data(a_), failed);
+  EXPECT_EQ(store.find(a_.keys[0])->stop, Stop::failed);
+  append(store, a_, 0);
+  expect_same(*Store::read_only(out_.path()).find(a_.keys[0]),
+              sample_stage(a_, 0));
+}
+
+TEST_F(StoreTest, ChangedKeyReplacesAndItsFollowersAreOutdated) {
+  Store store(out_.path());
+  append(store, a_, 0), append(store, a_, 1);
+  const auto old = a_.keys;
+  a_.keys = {"new fit", "new refine"};
+  EXPECT_FALSE(store.find("new fit"));
+  append(store, a_, 0);
+  EXPECT_FALSE(store.find(old[0]));
+  const auto results = load_results(out_.path());
+  ASSERT_EQ(results.cases().size(), 1U);
+  ASSERT_EQ(results.cases()[0].stages.size(), 1U);
+  EXPECT_EQ(results.cases()[0].stages[0].key, "new fit");
+}
+
+TEST_F(StoreTest, CasesShareStagesByKey) {
+  Store store(out_.path());
+  append(store, a_, 0);
+  b_.keys[0] = a_.keys[0];
+  auto record = *store.find(b_.keys[0]);
+  EXPECT_EQ(record.case_name, a_.name);
+  record.case_name = b_.name;
+  store.append(b_, sample_data(b_), record);
+  EXPECT_EQ(store.cases().size(), 2U);
+}
+
+TEST_F(StoreTest, MissingArraysMakeTheStageRunAgain) {
+  Store store(out_.path());
+  append(store, a_, 0), append(store, b_, 0);
+  fs::remove(store.catalog().case_path(a_.name));
+  EXPECT_FALSE(store.find(a_.keys[0]));
+  EXPECT_TRUE(store.find(b_.keys[0]));
+  append(store, a_, 0, 7);
+  expect_same(*Store::read_only(out_.path()).find(a_.keys[0]),
+              sample_stage(a_, 0, 7));
+}
+
+TEST_F(StoreTest, OnlyOneWriter) {
+  const Store store(out_.path());
+  const auto message =
+      message_of<StoreError>([&] { Store second(out_.path()); });
+  EXPECT_TRUE(contains(message, fmt::format("process {} ", getpid())));
+  EXPECT_FALSE(contains(message, "\n"));
+  EXPECT_NO_THROW(load_results(out_.path()));
+}
+
+TEST_F(StoreTest, FreshForgetsEarlierResultsAndNothingElse) {
+  write_file(out_ / "mine.txt", "kept");
+  {
+    Store store(out_.path());
+    append(store, a_, 0);
+    store.finish();
+  }
+  Store store(out_.path(), true);
+  EXPECT_FALSE(store.find(a_.keys[0]));
+  EXPECT_TRUE(fs::exists(out_ / "mine.txt"));
+  EXPECT_FALSE(fs::exists(out_ / "results.json"));
+}
+
+TEST_F(StoreTest, NoResultsIsSaid) {
+  for (const auto& directory : {out_.path(), out_ / "nowhere"}) {
+    const auto message =
+        message_of<UnreadableInput>([&] { load_results(directory); });
+    EXPECT_TRUE(contains(message, "no results there")) << message;
+  }
+}
+
+TEST_F(StoreTest, FileInsteadOfADirectory) {
+  write_file(out_ / "file", "");
+  EXPECT_THROW(Store(out_ / "file"), StoreError);
+  EXPECT_THROW(Store(out_ / "file" / "below"), StoreError);
+}
+
+TEST_F(StoreTest, UnwritableDirectory) {
+  const bool root = geteuid() == 0;
+  fs::permissions(out_.path(), fs::perms::owner_read | fs::perms::owner_exec |
+                                   fs::perms::others_read |
+                                   fs::perms::others_exec);
+  if (root && seteuid(65534) != 0) GTEST_SKIP() << "cannot give up root";
+  const auto message = message_of<StoreError>([&] { Store s(out_.path()); });
+  ASSERT_EQ(seteuid(root ? 0 : geteuid()), 0);
+  fs::permissions(out_.path(), fs::perms::owner_all);
+  EXPECT_TRUE(contains(message, "Permission denied")) << message;
+  EXPECT_TRUE(contains(message, "--out")) << message;
+}
+
+/// In a child process: appends until the disk is full, then checks that the
+/// store says so, is whole and goes on once there is room. 0 if so.
+int fill_the_disk(const fs::path& out, const std::function<void()>& make_full,
+                  const std::function<void()>& make_room) {
+  int kept = 0;
+  std::string message;
+  {
+    Store store(out);
+    for (std::uint64_t seed = 0; seed < 100 && message.empty(); ++seed) {
+      const auto info = sample_case("jpo", 4, seed);
+      if (seed == 2) make_full();
+      try {
+        store.append(info, sample_data(info), sample_stage(info, 0, 0, 5000));
+        ++kept;
+      } catch (const StoreError& e) {
+        message = e.what();
+      }
+    }
+  }
+  if (message.empty() || kept < 2) return 1;
+  if (!contains(message, "cannot write ") ||
+      !contains(message, "finished stages are kept"))
+    return 2;
+  if (static_cast<int>(load_results(out).cases().size()) != kept) return 3;
+  make_room();
+  const auto info = sample_case("jpo", 4, static_cast<std::uint64_t>(kept));
+  Store store(out);
+  store.append(info, sample_data(info), sample_stage(info, 0, 0, 5000));
+  store.finish();
+  return static_cast<int>(store.cases().size()) == kept + 1 ? 0 : 4;
+}
+
+template <class F>
+int exit_code_of_child(F&& body) {
+  const pid_t child = fork();
+  if (child == 0) {
+    int code = 99;
+    try {
+      code = body();
+    } catch (const std::exception& e) {
+      fmt::print(stderr, "{}\n", e.what());
+    }
+    _exit(code);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 100;
+}
+
+TEST_F(StoreTest, FileSizeLimit) {
+  EXPECT_EQ(exit_code_of_child([&] {
+              const auto limit = [](rlim_t bytes) {
+                const rlimit value{.rlim_cur = bytes,
+                                   .rlim_max = RLIM_INFINITY};
+                setrlimit(RLIMIT_FSIZE, &value);
+              };
+              std::signal(SIGXFSZ, SIG_IGN);
+              return fill_the_disk(
+                  out_.path(),
+                  [&] { limit(20000); },
+                  [&] { limit(RLIM_INFINITY); });
+            }),
+            0);
+}
+
+}  // namespace
+}  // namespace physinv

@@ -1,0 +1,91 @@
+/// One run of BFGS against the record of a reference run.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "optimizers/bfgs.h"
+#include "optimizers/drive.h"
+#include "tests/support/reference.h"
+
+namespace physinv::test {
+
+struct RecordedRun {
+  Batch<double> iterates;  ///< the start and every accepted point
+  Vector<double> losses;
+  Status status = Status::maxiter;
+  Index iterations = 0, evaluations = 0;
+};
+
+/// Runs the single problem `f(active, x, loss, gradient)` from x0.
+template <class F>
+RecordedRun record_bfgs(F&& f,
+                        const Vector<double>& x0,
+                        double gtol,
+                        Index maxiter = 1000) {
+  std::vector<Vector<double>> xs;
+  std::vector<double> losses;
+  Bfgs solver({.gtol = gtol, .maxiter = maxiter});
+  drive(solver, f, x0, [&](const Bfgs& b) {
+    xs.emplace_back(b.x().col(0));
+    losses.push_back(b.loss()(0));
+  });
+  RecordedRun run;
+  run.iterates.resize(x0.size(), static_cast<Index>(xs.size()));
+  for (std::size_t k = 0; k < xs.size(); ++k)
+    run.iterates.col(static_cast<Index>(k)) = xs[k];
+  run.losses = Eigen::Map<const Vector<double>>(
+      losses.data(), static_cast<Index>(losses.size()));
+  run.status = solver.status()[0];
+  run.iterations = solver.iterations()[0];
+  run.evaluations = solver.evaluations()[0];
+  return run;
+}
+
+inline int scipy_status(Status status) {
+  return status == Status::gtol ? 0 : status == Status::maxiter ? 1 : 2;
+}
+
+/// The first `compared` iterates as one array, the counts of short converged
+/// runs, and the outcome. A search that fails at the rounding level (stored
+/// status 2) may as well reach the tolerance elsewhere.
+inline void expect_run(const Json& entry,
+                       const Json& stored,
+                       const RecordedRun& run,
+                       Index compared) {
+  const EntryTolerance tolerance(entry);
+  const Batch<double> iterates = columns(stored.at("iterates"));
+  const Index count =
+      std::min({compared + 1, iterates.cols(), run.iterates.cols()});
+  ASSERT_GE(run.iterates.cols(), std::min(compared + 1, iterates.cols()));
+  const auto near = tolerance.iterates();
+  if (tolerance.first_only()) {
+    for (Index k = 0; k < count; ++k)
+      EXPECT_TRUE(near(run.iterates.col(k), iterates.col(k))) << "at " << k;
+  } else {
+    EXPECT_TRUE(near(run.iterates.leftCols(count), iterates.leftCols(count)));
+  }
+
+  const int status = stored.at("status").get<int>();
+  const auto iterations = stored.at("iterations").get<Index>();
+  const bool short_run = status == 0 && iterations < 30;
+  if (status != 2) {
+    EXPECT_EQ(scipy_status(run.status), status);
+  }
+  if (short_run) {
+    EXPECT_NEAR(static_cast<double>(run.iterations),
+                static_cast<double>(iterations),
+                1);
+    EXPECT_NEAR(static_cast<double>(run.evaluations),
+                stored.at("evaluations").get<double>(),
+                2);
+  }
+  if (status != 2) {
+    const double last = run.losses(run.losses.size() - 1);
+    EXPECT_TRUE(tolerance.final_loss(last, number(stored.at("loss")), 1e-6));
+  }
+}
+
+}  // namespace physinv::test
