@@ -100,7 +100,6 @@ void GradientDescent::begin_iteration() {
   const bool skip = options_.skip_zero_gradient && step_tolerance_2() > 0;
   std::size_t kept = 0;
   for (const Index i : active_) {
-    ++iterations_[at(i)];
     converged_[at(i)] = 0;
     test_(i) = best_step_(i) = eta_(i);
     const bool flat = dense::max_abs(d_, gradient_.col(i).data()) == 0;
@@ -166,11 +165,13 @@ double GradientDescent::step_tolerance_2() const {
 /// Moves to the best points and drops what converged or diverged.
 void GradientDescent::end_iteration() {
   for (const Index i : flat_) {
+    ++iterations_[at(i)];
     status_[at(i)] = loss_(i) < kInf ? Status::gtol : Status::nonfinite;
   }
   std::size_t kept = 0;
   for (const Index i : active_) {
     accepted_.push_back(i);
+    ++iterations_[at(i)];
     const bool worse = best_loss_(i) > loss_(i);
     if (!worse) {
       for (Index j = 0; j < d_; ++j)

@@ -41,7 +41,8 @@ std::string linear_label(double value, double step, double largest) {
 }  // namespace
 
 bool Axis::shows(double value) const {
-  return std::isfinite(value) && (!log_ || value > 0);
+  // The limit keeps the length of a range finite; NaN fails it too.
+  return std::abs(value) <= 1e300 && (!log_ || value > 0);
 }
 
 double Axis::warp(double value) const {
@@ -73,6 +74,7 @@ void Axis::finish(std::optional<double> lo, std::optional<double> hi) {
     if (!lo) a -= room;
     if (!hi) b += room;
   }
+  if (log_) a = std::max(a, -305.0), b = std::min(b, 305.0);
   lo_ = unwarp(a), hi_ = unwarp(b);
 }
 
@@ -99,7 +101,7 @@ std::vector<Tick> Axis::linear_ticks(int wanted) const {
   const double unit = std::pow(10.0, std::floor(std::log10(rough)));
   double step = 10 * unit;
   for (const double m : {5.0, 2.5, 2.0, 1.0}) {
-    if (m * unit >= rough * 0.999) step = m * unit;
+    if (m * unit >= 0.85 * rough) step = m * unit;
   }
   const double slack = 1e-9 * (hi_ - lo_);
   const double first = std::ceil((lo_ - slack) / step);

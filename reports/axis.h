@@ -17,7 +17,7 @@ class Axis {
   Axis() = default;
   explicit Axis(bool log) : log_(log) {}
 
-  /// True if the value can be drawn: finite, and positive on a log axis.
+  /// True if the value can be drawn: at most 1e300, positive on a log axis.
   bool shows(double value) const;
   /// Widens the range to a value; what cannot be shown is ignored.
   void include(double value);

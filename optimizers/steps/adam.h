@@ -3,11 +3,13 @@
 ///   m = beta1 m + (1 - beta1) g          v = beta2 v + (1 - beta2) g^2
 ///   x -= rate m' / (sqrt(v') + eps)      m' = m / (1 - beta1^t), v' alike
 ///
-/// One pass over x, g, m and v. Moments start at zero on the first step; an
+/// Moments below 1e-31 (float; 1e-292 double) are set to zero: next to eps they
+/// move nothing. One pass over x, g, m and v. Moments start at zero on the first step; an
 /// object belongs to one vector.
 #pragma once
 
 #include <cmath>
+#include <limits>
 
 #include "optimizers/steps/simd.h"
 #include "suite/core/batch.h"
@@ -59,11 +61,16 @@ void Adam<T>::step(VectorOut<T> x, VectorIn<T> gradient) {
   const T* const pg = gradient.data();
   T *const pm = m_.data(), *const pv = v_.data();
   using R = steps::Register<T>;
-  steps::for_registers<T>(x.size(), [&](Index i, auto lanes) {
+  // A gradient that stays zero lets its moments decay into denormal numbers,
+  // which never reach zero and take several times as long.
+  const T tiny = std::numeric_limits<T>::min() / std::numeric_limits<T>::epsilon();
+  steps::for_registers<T>(x.size(), [=](Index i, auto lanes) {
     const auto g = R::load(pg + i, lanes);
-    const auto m = R::multiply_add(R::all(b1), R::load(pm + i, lanes), a1 * g);
-    const auto v =
-        R::multiply_add(R::all(b2), R::load(pv + i, lanes), a2 * (g * g));
+    const auto m = R::without_tiny(
+        R::multiply_add(R::all(b1), R::load(pm + i, lanes), a1 * g), tiny);
+    const auto v = R::without_tiny(
+        R::multiply_add(R::all(b2), R::load(pv + i, lanes), a2 * (g * g)),
+        tiny);
     R::store(pm + i, m, lanes);
     R::store(pv + i, v, lanes);
     const auto scaled = v * correct;

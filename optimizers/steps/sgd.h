@@ -29,7 +29,7 @@ class Sgd {
     T *const px = x.data(), *const pu = u_.data();
     const T* const pg = gradient.data();
     using R = steps::Register<T>;
-    steps::for_registers<T>(x.size(), [&](Index i, auto lanes) {
+    steps::for_registers<T>(x.size(), [=](Index i, auto lanes) {
       const auto u = R::multiply_add(
           R::all(momentum), R::load(pu + i, lanes), R::load(pg + i, lanes));
       R::store(pu + i, u, lanes);

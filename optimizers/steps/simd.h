@@ -43,6 +43,10 @@ struct Register {
 #endif
   }
   static V all(T s) { return s - V{}; }
+  /// v where |v| >= tiny (or NaN), else 0.
+  static V without_tiny(V v, T tiny) {
+    return (v < all(tiny)) & (v > all(-tiny)) ? V{} : v;
+  }
   /// The compiler may not vectorise std::sqrt, which has to set errno.
   static V root(V v) {
 #ifdef __AVX__
@@ -58,9 +62,10 @@ struct Register {
   }
 };
 
-/// body(i, lanes) for consecutive pieces of [0, size).
+/// body(i, lanes) for consecutive pieces of [0, size). The body should capture
+/// by value: it is inlined, and its constants then stay in registers.
 template <class T, class F>
-void for_registers(Index size, F&& body) {
+[[gnu::always_inline]] inline void for_registers(Index size, F body) {
   constexpr Index w = Register<T>::kLanes;
   Index i = 0;
   for (; i + w <= size; i += w) body(i, std::integral_constant<Index, w>{});

@@ -19,9 +19,10 @@ ExitCode kernels_verb(const Arguments& arguments) {
   for (auto& a : copies) argv.push_back(a.data());
   argv.push_back(nullptr);
   execv(name.c_str(), argv.data());
-  throw EnvironmentError(fmt::format(
-      "cannot start {} ({}); build the target physinv-kernels", name,
-      std::strerror(errno)));
+  throw EnvironmentError(
+      fmt::format("cannot start {} ({}); build the target physinv-kernels",
+                  name,
+                  std::strerror(errno)));
 }
 
 }  // namespace physinv

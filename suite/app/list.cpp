@@ -10,8 +10,8 @@ namespace physinv {
 namespace {
 
 double work_of(const Case& c) {
-  return std::accumulate(c.stage_operations.begin(), c.stage_operations.end(),
-                         0.0);
+  return std::accumulate(
+      c.stage_operations.begin(), c.stage_operations.end(), 0.0);
 }
 
 void print_json(const std::vector<Case>& cases) {
@@ -42,17 +42,25 @@ void print_table(const std::vector<Case>& cases) {
     stages_width = std::max(
         stages_width, fmt::format("{}", fmt::join(c.info.stages, " ")).size());
   }
-  fmt::print("{:<{}}  {:<{}}  {:>10}\n", "case", width, "stages", stages_width,
+  fmt::print("{:<{}}  {:<{}}  {:>10}\n",
+             "case",
+             width,
+             "stages",
+             stages_width,
              "operations");
   double sum = 0;
   for (const Case& c : cases) {
     const auto stages = fmt::format("{}", fmt::join(c.info.stages, " "));
-    fmt::print("{:<{}}  {:<{}}  {:>10.2g}\n", c.info.name, width, stages,
-               stages_width, work_of(c));
+    fmt::print("{:<{}}  {:<{}}  {:>10.2g}\n",
+               c.info.name,
+               width,
+               stages,
+               stages_width,
+               work_of(c));
     sum += work_of(c);
   }
-  fmt::print("{} cases, about {:.2g} floating-point operations\n",
-             cases.size(), sum);
+  fmt::print(
+      "{} cases, about {:.2g} floating-point operations\n", cases.size(), sum);
 }
 
 }  // namespace

@@ -1,3 +1,5 @@
+#include <malloc.h>
+
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -55,16 +57,19 @@ environment
 using Verb = ExitCode (*)(const Arguments&);
 
 const std::map<std::string, Verb>& verbs() {
-  static const std::map<std::string, Verb> all = {
-      {"run", run_verb},       {"list", list_verb},
-      {"report", report_verb}, {"verify", verify_verb},
-      {"merge", merge_verb},   {"kernels", kernels_verb}};
+  static const std::map<std::string, Verb> all = {{"run", run_verb},
+                                                  {"list", list_verb},
+                                                  {"report", report_verb},
+                                                  {"verify", verify_verb},
+                                                  {"merge", merge_verb},
+                                                  {"kernels", kernels_verb}};
   return all;
 }
 
 ExitCode dispatch(Arguments arguments) {
   if (arguments.empty() || arguments[0].starts_with('-')) {
-    if (!arguments.empty() && (arguments[0] == "--help" || arguments[0] == "-h")) {
+    if (!arguments.empty() &&
+        (arguments[0] == "--help" || arguments[0] == "-h")) {
       fmt::print("{}", kHelp);
       return ExitCode::good;
     }
@@ -83,7 +88,8 @@ ExitCode dispatch(Arguments arguments) {
   for (const auto& [name, call] : verbs()) known.push_back(name);
   const std::string near = nearest_word(known, arguments[0]);
   throw UsageError(fmt::format(
-      "unknown verb '{}'; {}", arguments[0],
+      "unknown verb '{}'; {}",
+      arguments[0],
       near.empty() ? "run, list, report, verify, merge and kernels are known"
                    : "did you mean " + near + "?"));
 }
@@ -111,7 +117,8 @@ ExitCode guarded(Arguments arguments) {
   } catch (const StoreError& error) {
     return complain(ExitCode::environment, error.what());
   } catch (const std::bad_alloc&) {
-    return complain(ExitCode::environment, "out of memory; fewer --jobs may do");
+    return complain(ExitCode::environment,
+                    "out of memory; fewer --jobs may do");
   } catch (const std::system_error& error) {
     return complain(ExitCode::environment, error.what());
   } catch (const std::exception& error) {
@@ -124,6 +131,10 @@ ExitCode guarded(Arguments arguments) {
 }  // namespace physinv
 
 int main(int argc, char** argv) {
+  // Records of some 100 kB come and go; the default hands each back to the
+  // system and pays for its pages again.
+  mallopt(M_MMAP_THRESHOLD, 64 << 20);
+  mallopt(M_TRIM_THRESHOLD, 256 << 20);
   return static_cast<int>(
       physinv::guarded(physinv::Arguments(argv + 1, argv + argc)));
 }

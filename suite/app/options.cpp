@@ -28,8 +28,8 @@ T number(std::string_view key, std::string_view text) {
   const char* end = text.data() + text.size();
   const auto [at, error] = std::from_chars(text.data(), end, value);
   if (error != std::errc() || at != end || text.empty())
-    throw UsageError(fmt::format(
-        "'{}' is no value for {}; whole numbers are", text, key));
+    throw UsageError(
+        fmt::format("'{}' is no value for {}; a whole number is", text, key));
   return value;
 }
 
@@ -109,13 +109,15 @@ bool parse(CLI::App& app, const Arguments& arguments) {
 }
 
 void Selection::add_to(CLI::App& app) {
-  app.add_option("--filter", filters,
+  app.add_option("--filter",
+                 filters,
                  "cases whose name matches this regular expression; a leading "
                  "- negates (--filter=-refine), repeats unite")
       ->type_name("REGEX")
       ->allow_extra_args(false);
   app.add_option("--profile", profile, "smoke, quick (default) or paper");
-  app.add_option("--set", sets,
+  app.add_option("--set",
+                 sets,
                  fmt::format("replace a key of the profile's rows, e.g. "
                              "n=8,32; keys: {}",
                              kKeys))
@@ -123,7 +125,8 @@ void Selection::add_to(CLI::App& app) {
       ->allow_extra_args(false);
   app.add_option("--seeds", seeds, "the same as --set seeds=LIST; 0,2 or 0-3")
       ->type_name("LIST");
-  app.add_option("--shard", shard,
+  app.add_option("--shard",
+                 shard,
                  "part I (from 1) of N: every N-th case of the selection")
       ->type_name("I/N");
 }
@@ -149,7 +152,9 @@ std::vector<Case> Selection::cases(std::vector<std::string>* campaign) const {
           ? fmt::format("profile {} has no cases; see physinv-bench list",
                         profile)
           : fmt::format("no case of profile {} matches '{}'; nearest are {}",
-                        profile, asked, fmt::join(near, ", ")));
+                        profile,
+                        asked,
+                        fmt::join(near, ", ")));
 }
 
 Overrides parse_overrides(const std::vector<std::string>& sets,
@@ -158,9 +163,10 @@ Overrides parse_overrides(const std::vector<std::string>& sets,
   for (const auto& text : sets) {
     const auto at = text.find('=');
     if (at == std::string::npos || at + 1 == text.size())
-      throw UsageError(fmt::format(
-          "--set {} has no value; key=value is right, with keys {}", text,
-          kKeys));
+      throw UsageError(
+          fmt::format("--set {} has no value; key=value is right, with keys {}",
+                      text,
+                      kKeys));
     set(o, text.substr(0, at), text.substr(at + 1));
   }
   if (!seeds.empty()) set(o, "seeds", seeds);
@@ -175,9 +181,12 @@ Shard parse_shard(const std::string& text) {
   const Shard s{number<int>("--shard", parts[0]),
                 number<int>("--shard", parts[1])};
   if (s.part < 1 || s.part > s.parts)
-    throw UsageError(fmt::format(
-        "--shard={} is out of range; 1/{} to {}/{} are not", text,
-        std::max(1, s.parts), std::max(1, s.parts), std::max(1, s.parts)));
+    throw UsageError(
+        fmt::format("--shard={} is no part; the parts are 1/{} to {}/{}",
+                    text,
+                    std::max(1, s.parts),
+                    std::max(1, s.parts),
+                    std::max(1, s.parts)));
   return s;
 }
 

@@ -42,10 +42,19 @@ nlohmann::ordered_json provenance(const fs::path& directory) {
   const auto context = plan.value("context", nlohmann::json::object());
   nlohmann::ordered_json picked;
   if (plan.contains("profile")) picked["profile"] = plan["profile"];
-  for (const char* key :
-       {"date", "host_name", "cpu_model", "num_cpus", "instruction_set",
-        "compiler", "compiler_flags", "build_type", "fingerprint", "version",
-        "git_revision", "git_dirty", "options"}) {
+  for (const char* key : {"date",
+                          "host_name",
+                          "cpu_model",
+                          "num_cpus",
+                          "instruction_set",
+                          "compiler",
+                          "compiler_flags",
+                          "build_type",
+                          "fingerprint",
+                          "version",
+                          "git_revision",
+                          "git_dirty",
+                          "options"}) {
     if (context.contains(key)) picked[key] = context[key];
   }
   return picked;
@@ -78,29 +87,32 @@ ExitCode report_verb(const Arguments& arguments) {
   const Results results = load_results(directory);
   fs::path published = published_directory();
   if (!fs::is_directory(published))
-    throw UsageError(fmt::format(
-        "there is no directory '{}' of published numbers; "
-        "PHYSINV_PUBLISHED_DIR names it", published.string()));
+    throw UsageError(
+        fmt::format("there is no directory '{}' of published numbers; "
+                    "PHYSINV_PUBLISHED_DIR names it",
+                    published.string()));
   const auto sections = sections_of(results, Published(published));
   if (sections.empty())
     throw ExitError(ExitCode::nothing_matched,
-                    "no registered experiment has results in '" +
-                        results_text + "'; run cases first");
+                    "no registered experiment has results in '" + results_text +
+                        "'; run cases first");
   const fs::path target = out.empty() ? directory / "report" : fs::path(out);
   try {
     write_report(target, sections, provenance(directory));
   } catch (const std::runtime_error& error) {
     throw EnvironmentError(error.what());
   }
-  fmt::print("{}report: {}\n",
-             render_claims_text(sections, static_cast<std::size_t>(
-                                              Screen::of(stdout).columns)),
-             (target / "report.md").string());
+  fmt::print(
+      "{}report: {}\n",
+      render_claims_text(sections,
+                         static_cast<std::size_t>(Screen::of(stdout).columns)),
+      (target / "report.md").string());
   const auto wrong = unmet(sections);
   if (check && !wrong.empty())
     throw ExitError(ExitCode::claim,
                     fmt::format("{} gating claims are not reproduced, first {}",
-                                wrong.size(), wrong.front()));
+                                wrong.size(),
+                                wrong.front()));
   return ExitCode::good;
 }
 

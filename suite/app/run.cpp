@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "suite/app/options.h"
@@ -20,29 +21,33 @@ struct RunFlags {
 
   void add_to(CLI::App& app) {
     selection.add_to(app);
-    app.add_option("--jobs", jobs,
-                   "worker processes; default: cores / threads")
+    app.add_option("--jobs", jobs, "worker processes; default: cores / threads")
         ->check(CLI::Range(1, 1024));
-    app.add_option("--threads", campaign.threads,
+    app.add_option("--threads",
+                   campaign.threads,
                    "threads inside a case (default 1); results do not change")
         ->check(CLI::Range(1, 1024));
-    app.add_option("--time-budget", campaign.time_budget,
+    app.add_option("--time-budget",
+                   campaign.time_budget,
                    "start no further case after so many seconds; the cases not "
                    "run are named, and the next run goes on with them")
         ->type_name("SECONDS")
-        ->check(CLI::PositiveNumber);
+        ->check([](const std::string& text) {
+          return std::atof(text.c_str()) > 0 ? "" : text + " is not positive";
+        });
     app.add_option("--out", out, "where to; default: results/<profile>")
         ->type_name("DIR");
-    app.add_flag("--resume,!--fresh", campaign.resume,
+    app.add_flag("--resume,!--fresh",
+                 campaign.resume,
                  "reuse finished stages (default), or run all again");
     app.add_flag("--dry-run", dry, "say what would run and what is reused");
-    app.add_flag("--trace", campaign.trace,
+    app.add_flag("--trace",
+                 campaign.trace,
                  "record a hash of all iterates of the stages that run");
   }
 
   void complete() {
-    if (jobs == 0)
-      jobs = std::max(1, available_cores() / campaign.threads);
+    if (jobs == 0) jobs = std::max(1, available_cores() / campaign.threads);
     campaign.jobs = jobs;
     campaign.out = out.empty() ? "results/" + selection.profile : out;
   }
@@ -63,23 +68,23 @@ struct RunFlags {
 };
 
 /// The records of these cases, out of all that the store holds.
-std::vector<CaseRecord> own_records(const RunFlags& flags,
+std::vector<CaseRecord> own_records(std::vector<CaseRecord> cases,
                                     const std::vector<std::string>& names) {
-  const Results results = load_results(flags.campaign.out);
-  std::vector<CaseRecord> own;
-  for (const CaseRecord& c : results.cases()) {
-    if (std::find(names.begin(), names.end(), c.info.name) != names.end())
-      own.push_back(c);
-  }
-  return own;
+  std::erase_if(cases, [&](const CaseRecord& c) {
+    return std::find(names.begin(), names.end(), c.info.name) == names.end();
+  });
+  return cases;
 }
 
 void print_result(const RunFlags& flags, const CampaignResult& r) {
-  fmt::print("{} stages run, {} reused{}; {}, bookkeeping {} ({:.2f} %)\n",
-             r.stages_run, r.stages_reused,
+  fmt::print("{} stages run, {} reused{}; {}, bookkeeping {} ({:.2f} % of CPU)\n",
+             r.stages_run,
+             r.stages_reused,
              r.origins.empty() ? "" : " (" + to_text(r.origins) + ")",
-             duration_text(r.seconds), duration_text(r.bookkeeping),
-             100 * r.bookkeeping / std::max(r.seconds, 1e-9));
+             duration_text(r.seconds),
+             duration_text(r.bookkeeping),
+             100 * r.bookkeeping /
+                 std::max(r.bookkeeping + r.stage_cpu, 1e-9));
   if (!r.not_run.empty()) {
     fmt::print("{}: {} cases not run:\n",
                r.interrupted ? "interrupted" : "out of time",
@@ -100,18 +105,16 @@ ExitCode run_verb(const Arguments& arguments) {
   flags.add_to(app);
   if (!parse(app, arguments)) return ExitCode::good;
   flags.complete();
-  Prepared prepared =
-      prepare(flags.selection.cases(&flags.campaign.campaign));
+  Prepared prepared = prepare(flags.selection.cases(&flags.campaign.campaign));
   if (flags.dry) {
     dry_run(prepared, flags.campaign, stdout);
     return ExitCode::good;
   }
   std::vector<std::string> names;
   for (const Case& c : prepared.cases) names.push_back(c.info.name);
-  const CampaignResult result =
-      run_campaign(std::move(prepared), flags.campaign, flags.json(),
-                   Screen::of(stdout));
-  fmt::print("{}", summary_table(own_records(flags, names)));
+  CampaignResult result = run_campaign(
+      std::move(prepared), flags.campaign, flags.json(), Screen::of(stdout));
+  fmt::print("{}", summary_table(own_records(std::move(result.cases), names)));
   print_result(flags, result);
   if (result.interrupted) return ExitCode::interrupted;
   if (!result.failed.empty()) {
@@ -119,7 +122,8 @@ ExitCode run_verb(const Arguments& arguments) {
         ExitCode::case_failed,
         fmt::format("{} stages failed, first {}; the others are kept, and the "
                     "next run tries these again",
-                    result.failed.size(), result.failed.front()));
+                    result.failed.size(),
+                    result.failed.front()));
   }
   return ExitCode::good;
 }

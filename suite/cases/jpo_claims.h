@@ -33,8 +33,7 @@ class Judge {
                std::optional<double> value,
                std::optional<double> other) {
     if (!other) value.reset();
-    return put(
-        label, value, ">", other.value_or(0), value && *value > *other);
+    return put(label, value, ">", other.value_or(0), value && *value > *other);
   }
   /// A condition that could not be evaluated.
   Judge& missing(const std::string& what) {

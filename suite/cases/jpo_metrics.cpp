@@ -11,7 +11,7 @@ namespace {
 constexpr std::string_view kBfgs = "bfgs", kSolve = "solve", kRefine = "refine";
 
 bool are_equal(double a, double b, Equality equality) {
-  if (equality == Equality::strict) return a == b;
+  if (equality == Equality::strict || !std::isfinite(b)) return a == b;
   return std::abs(a - b) <= 1e-6 * std::abs(b);
 }
 

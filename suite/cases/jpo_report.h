@@ -20,8 +20,8 @@ struct FigureRef {
 };
 
 /// The paper's numbers are looked up under these names (of the experiment):
-/// table2/<method>/<stage>, table3/n=<n>, table4/<method>/better and /equal,
-/// table5 likewise.
+/// table2/bfgs, table2/<method>/<stage>, table3/n=<n>, table4/<method>/better
+/// and /equal, table5 likewise.
 struct JpoReportOptions {
   std::string experiment;  ///< jpo/billiards
   std::string title;       ///< Billiards

@@ -90,9 +90,13 @@ Table JpoReport::seconds() const {
   const Index n = sizes.empty() ? 0 : sizes.back();
   TableRow row{.label = options_.title};
   for (const auto& [title, method, stage] : kSecondsColumns) {
+    // BFGS alone has one stage only, so the paper's number names none.
+    std::string published = fmt::format("table2/{}", method);
+    if (std::string_view(method) != "bfgs") {
+      published += fmt::format("/{}", stage);
+    }
     table.columns.emplace_back(title);
-    row.cells.push_back(with_paper(seconds_cell(method, stage, n),
-                                   fmt::format("table2/{}/{}", method, stage)));
+    row.cells.push_back(with_paper(seconds_cell(method, stage, n), published));
   }
   table.rows.push_back(std::move(row));
   table.note = fmt::format(

@@ -24,7 +24,7 @@ struct Oracle::Side {
 template <class T>
 struct Oracle::Packed {
   Packed(const Side<T>& side, std::span<const Index> active, Workspace& work)
-      : all(static_cast<Index>(active.size()) == side.y.cols()),
+      : all(is_all(active, side.y.cols())),
         given(work.take<T>(side.given.rows(), all ? 0 : size(active))),
         y(work.take<T>(side.y.rows(), all ? 0 : size(active))) {
     if (all) return;
@@ -33,6 +33,12 @@ struct Oracle::Packed {
       given.col(j) = side.given.col(i);
       y.col(j) = side.y.col(i);
     }
+  }
+  static bool is_all(std::span<const Index> active, Index count) {
+    if (size(active) != count) return false;
+    for (Index j = 0; j < count; ++j)
+      if (active[static_cast<std::size_t>(j)] != j) return false;
+    return true;
   }
   static Index size(std::span<const Index> active) {
     return static_cast<Index>(active.size());
@@ -112,7 +118,8 @@ void Oracle::evaluate(std::span<const Index> active,
   SUITE_CHECK(s.vjp != nullptr && contains(allowed_, Needs::vjp),
               "the method asked for a gradient it did not declare");
   SUITE_CHECK(x.rows() == shape_.unknowns && x.cols() == m &&
-                  loss.size() == m && gradient.cols() == m,
+                  loss.size() == m && gradient.rows() == x.rows() &&
+                  gradient.cols() == m,
               "x, loss and gradient match the active problems");
   Workspace::Scope scope(*work_);
   const Packed<T> data(s, active, *work_);

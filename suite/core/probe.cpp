@@ -1,8 +1,15 @@
 #include "suite/core/probe.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace physinv {
+namespace {
+
+/// Stands for what was never measured: an example without a usable start.
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
 
 Index next_measured(Index iteration) {
   return std::max(iteration + 1, iteration + iteration / 7);
@@ -12,8 +19,9 @@ Probe::Probe(Oracle& oracle, Index iterations, Index tracked)
     : oracle_(oracle),
       iterations_(iterations),
       tracked_(std::min(tracked, oracle.count())),
-      x_(oracle.shape().unknowns, oracle.count()),
-      loss_(oracle.count()) {
+      x_(Batch<double>::Constant(
+          oracle.shape().unknowns, oracle.count(), kNan)),
+      loss_(Vector<double>::Constant(oracle.count(), kNan)) {
   setup_.start();
 }
 

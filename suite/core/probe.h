@@ -17,6 +17,11 @@ namespace physinv {
 /// the time spent on curves, in none of the others.
 struct Clocks {
   Seconds setup, warmup, solve, measure;
+
+  Seconds total() const {
+    Seconds sum = setup;
+    return ((sum += warmup) += solve) += measure;
+  }
 };
 
 class Probe {

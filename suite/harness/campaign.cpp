@@ -41,7 +41,8 @@ class SignalWatch {
   SignalWatch& operator=(const SignalWatch&) = delete;
 
  private:
-  struct sigaction old_int_ {}, old_term_ {};
+  struct sigaction old_int_ {
+  }, old_term_{};
 };
 
 /// The beginning of the chain that the store holds. Stages that failed or
@@ -60,8 +61,10 @@ std::vector<StageRecord> stored_stages(const Store& store, const Case& c) {
 
 class Campaign {
  public:
-  Campaign(Prepared prepared, const CampaignOptions& options,
-           const nlohmann::json& options_json, const Screen& screen)
+  Campaign(Prepared prepared,
+           const CampaignOptions& options,
+           const nlohmann::json& options_json,
+           const Screen& screen)
       : begin_(now().wall),
         options_(options),
         cases_(std::move(prepared.cases)),
@@ -131,13 +134,16 @@ class Campaign {
     if (result_.stages_reused > 0)
       progress_.say(fmt::format(
           "reusing {} finished stages: {} (--fresh runs them again)",
-          result_.stages_reused, to_text(result_.origins)));
+          result_.stages_reused,
+          to_text(result_.origins)));
   }
 
   void work() {
     const auto count = std::min<std::size_t>(
         static_cast<std::size_t>(options_.jobs), queue_.size());
-    Workers workers(cases_, count, options_.threads,
+    Workers workers(cases_,
+                    count,
+                    options_.threads,
                     {.crowded = static_cast<int>(count) * options_.threads >
                                 available_cores(),
                      .trace = options_.trace,
@@ -151,7 +157,6 @@ class Campaign {
     if (stop_signal != 0)  // what has arrived is kept
       for (auto& event : workers.wait(0)) handle(event);
     for (const auto& [worker, index] : running_) queue_.push_back(index);
-    waited_ = workers.waited();
   }
 
   bool out_of_time() const {
@@ -163,8 +168,9 @@ class Campaign {
     for (std::size_t w = 0; w < workers.count() && !out_of_time(); ++w) {
       if (!workers.idle(w)) continue;
       const auto next =
-          std::find_if(queue_.begin(), queue_.end(),
-                       [&](std::size_t i) { return !shares_running(i); });
+          std::find_if(queue_.begin(), queue_.end(), [&](std::size_t i) {
+            return !shares_running(i);
+          });
       if (next == queue_.end()) return;
       const std::size_t i = *next;
       queue_.erase(next);
@@ -217,10 +223,10 @@ class Campaign {
   void keep(std::size_t i, const StageRecord& record) {
     store_.append(cases_[i].info, data_[i], record);
     ++result_.stages_run;
+    result_.stage_cpu += record.clocks.total().cpu;
     if (record.stop == Stop::failed)
-      result_.failed.push_back(
-          fmt::format("{} {}: {}", record.case_name, record.stage,
-                      record.message));
+      result_.failed.push_back(fmt::format(
+          "{} {}: {}", record.case_name, record.stage, record.message));
   }
 
   /// The stage at `position` failed without a record; those after it are
@@ -231,7 +237,9 @@ class Campaign {
     for (Index k = position; k < stages; ++k) {
       const bool first = k == position;
       const auto& cause = c.info.stages[static_cast<std::size_t>(position)];
-      const auto record = lost_stage(c, k, first ? Stop::failed : Stop::skipped,
+      const auto record = lost_stage(c,
+                                     k,
+                                     first ? Stop::failed : Stop::skipped,
                                      first ? message : cause + " failed",
                                      revision_);
       progress_.finished(kNobody, i, record);
@@ -240,15 +248,17 @@ class Campaign {
   }
 
   void finish() {
-    result_.bookkeeping = now().wall - begin_ - waited_ + overhead_;
+    // What this process does is bookkeeping; waiting, also for the disk, costs
+    // the workers nothing.
+    result_.bookkeeping = now().cpu + overhead_;
     context_["bookkeeping_ms"] = 1e3 * result_.bookkeeping;
+    context_["stages_cpu_ms"] = 1e3 * result_.stage_cpu;
     context_["wall_ms"] = 1e3 * (now().wall - begin_);
     context_["stages_run"] = result_.stages_run;
     context_["stages_reused"] = result_.stages_reused;
     store_.set_context(context_);
-    const double t = now().wall;
-    store_.finish();
-    result_.bookkeeping += now().wall - t;
+    result_.cases = store_.finish();
+    result_.bookkeeping = now().cpu + overhead_;
     result_.seconds = now().wall - begin_;
   }
 
@@ -262,11 +272,11 @@ class Campaign {
   Progress progress_;
   nlohmann::json context_;
   CampaignResult result_;
-  std::vector<std::size_t> queue_;  // cases not handed out yet
+  std::vector<std::size_t> queue_;              // cases not handed out yet
   std::map<std::size_t, std::size_t> running_;  // worker -> case
   std::map<std::size_t, Index> positions_;      // worker -> stage
   std::set<std::pair<std::size_t, std::size_t>> counted_;  // reused stages
-  double waited_ = 0, overhead_ = 0;
+  double overhead_ = 0;  // CPU seconds of workers outside of stages
 };
 
 }  // namespace
@@ -294,7 +304,8 @@ Prepared prepare(std::vector<Case> cases) {
   return p;
 }
 
-void dry_run(const Prepared& prepared, const CampaignOptions& options,
+void dry_run(const Prepared& prepared,
+             const CampaignOptions& options,
              std::FILE* stream) {
   std::optional<Store> store;
   if (options.resume && Store::exists(options.out))
@@ -308,21 +319,29 @@ void dry_run(const Prepared& prepared, const CampaignOptions& options,
       const bool have = k < found.size();
       all += c.stage_operations[k];
       have ? ++reused : (left += c.stage_operations[k], ++run);
-      fmt::print(stream, "{:<5} {} {}  {:.2g} operations{}\n",
-                 have ? "reuse" : "run", c.info.name, c.info.stages[k],
-                 c.stage_operations[k],
-                 have ? fmt::format(", {} at {}", found[k].finished,
-                                    found[k].revision)
-                      : "");
+      fmt::print(
+          stream,
+          "{:<5} {} {}  {:.2g} operations{}\n",
+          have ? "reuse" : "run",
+          c.info.name,
+          c.info.stages[k],
+          c.stage_operations[k],
+          have ? fmt::format(", {} at {}", found[k].finished, found[k].revision)
+               : "");
     }
   }
   fmt::print(stream,
              "{} cases: {} stages to run, {} to reuse; {:.3g} of {:.3g} "
              "declared operations to do\n",
-             prepared.cases.size(), run, reused, left, all);
+             prepared.cases.size(),
+             run,
+             reused,
+             left,
+             all);
 }
 
-CampaignResult run_campaign(Prepared prepared, const CampaignOptions& options,
+CampaignResult run_campaign(Prepared prepared,
+                            const CampaignOptions& options,
                             const nlohmann::json& options_json,
                             const Screen& screen) {
   return Campaign(std::move(prepared), options, options_json, screen).run();

@@ -42,20 +42,24 @@ struct CampaignResult {
   std::vector<std::string> failed;   ///< "case: why"
   std::vector<std::string> not_run;  ///< names, out of time or interrupted
   Origins origins;
+  std::vector<CaseRecord> cases;  ///< all of the store, without curves
   bool interrupted = false;
   double seconds = 0;      ///< wall, all of it
-  double bookkeeping = 0;  ///< seconds in neither stages nor waiting for them
+  double stage_cpu = 0;    ///< CPU seconds in stages
+  double bookkeeping = 0;  ///< CPU seconds of all processes outside of stages
 };
 
 /// Runs what the store does not hold. Only this process writes to it; each
 /// finished stage is durable before the next is looked at. SIGINT and SIGTERM
 /// end the campaign with what has finished. `options_json` enters the context.
-CampaignResult run_campaign(Prepared prepared, const CampaignOptions& options,
+CampaignResult run_campaign(Prepared prepared,
+                            const CampaignOptions& options,
                             const nlohmann::json& options_json,
                             const Screen& screen);
 
 /// What `run_campaign` would do: one line per stage and a sum.
-void dry_run(const Prepared& prepared, const CampaignOptions& options,
+void dry_run(const Prepared& prepared,
+             const CampaignOptions& options,
              std::FILE* stream);
 
 /// Table: per experiment, method and n the cases, median final loss of each

@@ -107,10 +107,11 @@ json caches() {
     const fs::path dir = root / fmt::format("index{}", i);
     const std::string level = first_line(dir / "level");
     if (level.empty()) break;
-    all.push_back({{"type", first_line(dir / "type")},
-                   {"level", std::atoi(level.c_str())},
-                   {"size", bytes_of(first_line(dir / "size"))},
-                   {"num_sharing", listed(first_line(dir / "shared_cpu_list"))}});
+    all.push_back(
+        {{"type", first_line(dir / "type")},
+         {"level", std::atoi(level.c_str())},
+         {"size", bytes_of(first_line(dir / "size"))},
+         {"num_sharing", listed(first_line(dir / "shared_cpu_list"))}});
   }
   return all;
 }
@@ -139,9 +140,14 @@ int available_cores() {
 }
 
 std::string git_revision() {
-  const std::string revision =
-      output_of({"git", "-C", PHYSINV_SOURCE_DIR, "describe", "--always",
-                 "--dirty=+dirty", "--abbrev=40", "--exclude=*"});
+  const std::string revision = output_of({"git",
+                                          "-C",
+                                          PHYSINV_SOURCE_DIR,
+                                          "describe",
+                                          "--always",
+                                          "--dirty=+dirty",
+                                          "--abbrev=40",
+                                          "--exclude=*"});
   return revision.empty() ? "unknown" : revision;
 }
 
@@ -165,7 +171,8 @@ json machine_context(const std::string& revision) {
            : "debug"},
       {"cpu_model", cpuinfo("model name")},
       {"instruction_set", build.instruction_set},
-      {"compiler", fmt::format("{} {}", build.compiler, build.compiler_version)},
+      {"compiler",
+       fmt::format("{} {}", build.compiler, build.compiler_version)},
       {"compiler_flags", build.flags},
       {"build_type", build.build_type},
       {"fingerprint", build.fingerprint},
@@ -177,7 +184,8 @@ json machine_context(const std::string& revision) {
         {"nlohmann_json", build.json},
         {"fmt", build.fmt},
         {"cli11", build.cli11}}},
-      {"git_revision", dirty ? revision.substr(0, revision.size() - 6) : revision},
+      {"git_revision",
+       dirty ? revision.substr(0, revision.size() - 6) : revision},
       {"git_dirty", dirty},
   };
 }
@@ -192,8 +200,18 @@ std::string version_text() {
       "numerics         {}\n"
       "libraries        Eigen {}, FFTW {}, HDF5 {}, nlohmann-json {}, fmt {}, "
       "CLI11 {}",
-      b.version, b.compiler, b.compiler_version, b.build_type, b.flags,
-      b.instruction_set, b.fingerprint, b.eigen, b.fftw, b.hdf5, b.json, b.fmt,
+      b.version,
+      b.compiler,
+      b.compiler_version,
+      b.build_type,
+      b.flags,
+      b.instruction_set,
+      b.fingerprint,
+      b.eigen,
+      b.fftw,
+      b.hdf5,
+      b.json,
+      b.fmt,
       b.cli11);
 }
 

@@ -16,7 +16,8 @@ void append(std::string& text, const Options& options) {
 
 void append(std::string& text, std::string_view name, const NetworkRole& role) {
   text += fmt::format("{}=", name);
-  for (const Field f : role.inputs) text += fmt::format("{},", static_cast<int>(f));
+  for (const Field f : role.inputs)
+    text += fmt::format("{},", static_cast<int>(f));
   text += role.recipe.description + '\n';
 }
 
@@ -39,18 +40,20 @@ CaseData draw_data(const Case& c) {
 
 std::string recipe_text(const Case& c, std::size_t position) {
   const Experiment& e = *c.experiment;
-  std::string text = fmt::format("experiment={}\nproblem={}\n", e.name,
-                                 e.problem.name);
+  std::string text =
+      fmt::format("experiment={}\nproblem={}\n", e.name, e.problem.name);
   append(text, e.problem.options);
   append(text, "predictor", e.setting.predictor);
   append(text, "surrogate", e.setting.surrogate);
   text += fmt::format("output_scale={}\ngtol={}\nn={}\nseed={}\n",
-                      e.setting.output_scale, e.setting.gtol, c.info.n,
+                      e.setting.output_scale,
+                      e.setting.gtol,
+                      c.info.n,
                       c.info.seed);
   for (std::size_t i = 0; i <= position; ++i) {
     const Stage& stage = *c.method->chain[i];
-    text += fmt::format("stage={}\niterations={}\n", stage.name(),
-                        c.stage_iterations[i]);
+    text += fmt::format(
+        "stage={}\niterations={}\n", stage.name(), c.stage_iterations[i]);
     if (stage.has_precision())
       text += fmt::format("precision={}\n", to_string(c.info.precision));
     append(text, stage.options());
@@ -58,13 +61,14 @@ std::string recipe_text(const Case& c, std::size_t position) {
   return text;
 }
 
-std::vector<std::string> content_keys(const Case& c, std::string_view data_hash,
+std::vector<std::string> content_keys(const Case& c,
+                                      std::string_view data_hash,
                                       std::string_view fingerprint) {
   std::vector<std::string> keys;
   for (std::size_t i = 0; i < c.method->chain.size(); ++i) {
-    keys.push_back(two_hashes(recipe_text(c, i) +
-                              fmt::format("data={}\nnumerics={}\n", data_hash,
-                                          fingerprint)));
+    keys.push_back(two_hashes(
+        recipe_text(c, i) +
+        fmt::format("data={}\nnumerics={}\n", data_hash, fingerprint)));
   }
   return keys;
 }

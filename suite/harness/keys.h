@@ -17,7 +17,8 @@ CaseData draw_data(const Case& c);
 std::string recipe_text(const Case& c, std::size_t position);
 
 /// One key per stage; `fingerprint` stands for the sources and the build.
-std::vector<std::string> content_keys(const Case& c, std::string_view data_hash,
+std::vector<std::string> content_keys(const Case& c,
+                                      std::string_view data_hash,
                                       std::string_view fingerprint);
 
 }  // namespace physinv

@@ -24,12 +24,21 @@ std::string_view variable(const char* name) {
 }
 
 /// Rows of the live table and plain lines have the same columns.
-std::string row(std::string_view name, std::size_t width, std::string_view stage,
-                std::string_view status, double loss, double seconds) {
+std::string row(std::string_view name,
+                std::size_t width,
+                std::string_view stage,
+                std::string_view status,
+                double loss,
+                double seconds) {
   const std::string best =
       std::isfinite(loss) ? fmt::format("{:.2e}", loss) : std::string("-");
-  return fmt::format("{:<{}}  {:<7} {:<10} {:>8} {:>9}", name, width, stage,
-                     status, best, duration_text(seconds));
+  return fmt::format("{:<{}}  {:<7} {:<10} {:>8} {:>9}",
+                     name,
+                     width,
+                     stage,
+                     status,
+                     best,
+                     duration_text(seconds));
 }
 
 double seconds_of(const Clocks& c) {
@@ -75,14 +84,15 @@ double Rates::seconds(const std::string& stage, double operations) const {
   return operations * sum.seconds / sum.operations;
 }
 
-Progress::Progress(const Screen& screen, const std::vector<Case>& cases,
+Progress::Progress(const Screen& screen,
+                   const std::vector<Case>& cases,
                    int jobs)
     : screen_(screen), cases_(cases), jobs_(jobs), begin_(now().wall) {
   for (const Case& c : cases) {
     done_.emplace_back(c.info.stages.size(), false);
     stages_ += c.info.stages.size();
-    operations_ = std::accumulate(c.stage_operations.begin(),
-                                  c.stage_operations.end(), operations_);
+    operations_ = std::accumulate(
+        c.stage_operations.begin(), c.stage_operations.end(), operations_);
   }
 }
 
@@ -94,7 +104,8 @@ void Progress::reused(std::size_t case_index, Index position) {
   operations_done_ += cases_[case_index].stage_operations[at];
 }
 
-void Progress::started(std::size_t worker, std::size_t case_index,
+void Progress::started(std::size_t worker,
+                       std::size_t case_index,
                        Index position) {
   if (running_.size() <= worker) running_.resize(worker + 1);
   running_[worker] = {.active = true,
@@ -113,7 +124,8 @@ void Progress::report(std::size_t worker, Index iteration, double loss) {
   }
 }
 
-void Progress::finished(std::size_t worker, std::size_t case_index,
+void Progress::finished(std::size_t worker,
+                        std::size_t case_index,
                         const StageRecord& record) {
   const auto at = static_cast<std::size_t>(record.position);
   reused(case_index, record.position);
@@ -125,10 +137,15 @@ void Progress::finished(std::size_t worker, std::size_t case_index,
   if (screen_.live) {
     recent_.push_back(line);
     if (recent_.size() > kRecent) recent_.pop_front();
-    if (record.stop == Stop::failed) say(record.case_name + ": " + record.message);
+    if (record.stop == Stop::failed)
+      say(record.case_name + ": " + record.message);
     return;
   }
-  fmt::print(screen_.stream, "[{}/{}] {}{}\n", stages_done_, stages_, line,
+  fmt::print(screen_.stream,
+             "[{}/{}] {}{}\n",
+             stages_done_,
+             stages_,
+             line,
              record.message.empty() || record.stop != Stop::failed
                  ? ""
                  : "  " + record.message);
@@ -150,8 +167,8 @@ double Progress::remaining() const {
   for (std::size_t i = 0; i < cases_.size(); ++i) {
     for (std::size_t k = 0; k < done_[i].size(); ++k) {
       if (done_[i][k]) continue;
-      const double s =
-          rates_.seconds(cases_[i].info.stages[k], cases_[i].stage_operations[k]);
+      const double s = rates_.seconds(cases_[i].info.stages[k],
+                                      cases_[i].stage_operations[k]);
       if (s < 0) return -1;
       sum += s;
     }
@@ -171,7 +188,8 @@ std::size_t Progress::name_width() const {
   std::size_t widest = 20;
   for (const Case& c : cases_) widest = std::max(widest, c.info.name.size());
   if (!screen_.live) return widest;
-  const auto fits = static_cast<std::size_t>(std::max(20, screen_.columns - 42));
+  const auto fits =
+      static_cast<std::size_t>(std::max(20, screen_.columns - 42));
   return std::min(widest, fits);
 }
 
@@ -180,27 +198,40 @@ std::string Progress::bar() const {
       operations_ > 0 ? std::clamp(operations_done_ / operations_, 0.0, 1.0)
                       : 1.0;
   const double left = remaining();
-  const std::string tail = fmt::format(
-      " {}/{} stages  {}  left {}", stages_done_, stages_,
-      duration_text(now().wall - begin_), left < 0 ? "?" : duration_text(left));
-  const int width = std::clamp(
-      screen_.columns - static_cast<int>(tail.size()) - 8, 10, 40);
+  const std::string tail = fmt::format(" {}/{} stages  {}  left {}",
+                                       stages_done_,
+                                       stages_,
+                                       duration_text(now().wall - begin_),
+                                       left < 0 ? "?" : duration_text(left));
+  const int width =
+      std::clamp(screen_.columns - static_cast<int>(tail.size()) - 8, 10, 40);
   const int full = static_cast<int>(std::lround(share * width));
-  return fmt::format("[{:#<{}}{:.<{}}] {:3.0f}%{}", "", full, "", width - full,
-                     100 * share, tail);
+  return fmt::format("[{:#<{}}{:.<{}}] {:3.0f}%{}",
+                     "",
+                     full,
+                     "",
+                     width - full,
+                     100 * share,
+                     tail);
 }
 
 std::string Progress::running_row(const Running& r, double t) const {
   const Case& c = cases_[r.case_index];
   const auto at = static_cast<std::size_t>(r.position);
-  return row(c.info.name, name_width(), c.info.stages[at],
+  return row(c.info.name,
+             name_width(),
+             c.info.stages[at],
              r.iteration > 0 ? fmt::format("it {}", r.iteration) : "running",
-             r.has_loss ? r.loss : std::nan(""), t - r.since);
+             r.has_loss ? r.loss : std::nan(""),
+             t - r.since);
 }
 
 std::string Progress::finished_row(const StageRecord& record) const {
-  return row(record.case_name, name_width(), record.stage,
-             to_string(record.stop), median_finite(record.loss),
+  return row(record.case_name,
+             name_width(),
+             record.stage,
+             to_string(record.stop),
+             median_finite(record.loss),
              seconds_of(record.clocks));
 }
 
@@ -209,8 +240,14 @@ void Progress::draw() {
   if (!screen_.live || t - drawn_ < 0.1) return;
   drawn_ = t;
   std::vector<std::string> lines = {
-      bar(), fmt::format("{:<{}}  {:<7} {:<10} {:>8} {:>9}", "case",
-                         name_width(), "stage", "status", "best loss", "time")};
+      bar(),
+      fmt::format("{:<{}}  {:<7} {:<10} {:>8} {:>9}",
+                  "case",
+                  name_width(),
+                  "stage",
+                  "status",
+                  "best loss",
+                  "time")};
   for (const Running& r : running_)
     if (r.active && lines.size() < 12) lines.push_back(running_row(r, t));
   const std::size_t first_recent = lines.size();
@@ -223,8 +260,12 @@ void Progress::draw() {
         lines[i].substr(0, static_cast<std::size_t>(screen_.columns - 1));
     const bool dim = screen_.color && i >= first_recent;
     const bool bold = screen_.color && i == 0;
-    text += fmt::format("{}{}{}\n", dim ? "\033[2m" : bold ? "\033[1m" : "",
-                        line, dim || bold ? "\033[0m" : "");
+    text += fmt::format("{}{}{}\n",
+                        dim    ? "\033[2m"
+                        : bold ? "\033[1m"
+                               : "",
+                        line,
+                        dim || bold ? "\033[0m" : "");
   }
   lines_ = static_cast<int>(lines.size());
   std::fputs(text.c_str(), screen_.stream);

@@ -48,7 +48,8 @@ class Progress {
   void reused(std::size_t case_index, Index position);
   void started(std::size_t worker, std::size_t case_index, Index position);
   void report(std::size_t worker, Index iteration, double loss);
-  void finished(std::size_t worker, std::size_t case_index,
+  void finished(std::size_t worker,
+                std::size_t case_index,
                 const StageRecord& record);
   void idle(std::size_t worker);
   /// A line that stays.

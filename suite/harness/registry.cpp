@@ -32,7 +32,8 @@ const Method* find_method(const Experiment& e, std::string_view id) {
 }
 
 bool has_precision(const Method& method) {
-  return std::any_of(method.chain.begin(), method.chain.end(),
+  return std::any_of(method.chain.begin(),
+                     method.chain.end(),
                      [](const auto& stage) { return stage->has_precision(); });
 }
 
@@ -109,7 +110,8 @@ Row overridden(Row row, const Overrides& o) {
 void check_overrides(const Overrides& o,
                      const Registry::Experiments& experiments) {
   for (const Index n : o.n.value_or(std::vector<Index>{})) {
-    if (n < 1) throw UsageError(fmt::format("n={} has no problems; n is at least 1", n));
+    if (n < 1)
+      throw UsageError(fmt::format("n={} has no problems; n is at least 1", n));
   }
   if (o.iterations && *o.iterations < 1)
     throw UsageError("iterations must be at least 1");
@@ -118,8 +120,8 @@ void check_overrides(const Overrides& o,
     for (const auto& e : experiments)
       for (const Method& m : e->methods) known.insert(m.id);
     if (!known.contains(id))
-      throw UsageError(fmt::format("unknown method '{}'; known are {}", id,
-                                   fmt::join(known, ", ")));
+      throw UsageError(fmt::format(
+          "unknown method '{}'; known are {}", id, fmt::join(known, ", ")));
   }
 }
 
@@ -150,19 +152,24 @@ std::vector<std::string> problems_of(const Experiment& e) {
         add("method " + m.id + " has two stages " + stage->name());
     }
     if (!contains(e.problem.provided, m.needs()))
-      add(fmt::format("method {} needs {}, problem {} provides {}", m.id,
-                      to_text(m.needs()), e.problem.name,
+      add(fmt::format("method {} needs {}, problem {} provides {}",
+                      m.id,
+                      to_text(m.needs()),
+                      e.problem.name,
                       to_text(e.problem.provided)));
   }
   seen.clear();
   for (const Profile& p : e.profiles) {
     if (!is_word(p.name)) add("profile '" + p.name + "' is not in [a-z0-9_-]");
-    if (!seen.insert(p.name).second) add("profile " + p.name + " appears twice");
+    if (!seen.insert(p.name).second)
+      add("profile " + p.name + " appears twice");
     for (const Row& row : p.rows) {
       for (const auto& id : row.methods) {
         if (find_method(e, id) == nullptr)
-          add(fmt::format("profile {} names method {}, known are {}", p.name,
-                          id, method_ids(e)));
+          add(fmt::format("profile {} names method {}, known are {}",
+                          p.name,
+                          id,
+                          method_ids(e)));
       }
       for (const Index n : row.n)
         if (n < 1) add(fmt::format("profile {} has n={}", p.name, n));
@@ -177,9 +184,12 @@ std::vector<std::string> problems_of(const Experiment& e) {
 
 std::string to_text(Needs needs) {
   constexpr std::pair<Needs, std::string_view> kNames[] = {
-      {Needs::forward, "forward"}, {Needs::vjp, "vjp"},
-      {Needs::jacobian, "jacobian"}, {Needs::inverse, "inverse"},
-      {Needs::hessian, "hessian"}, {Needs::labels, "labels"}};
+      {Needs::forward, "forward"},
+      {Needs::vjp, "vjp"},
+      {Needs::jacobian, "jacobian"},
+      {Needs::inverse, "inverse"},
+      {Needs::hessian, "hessian"},
+      {Needs::labels, "labels"}};
   std::string text;
   for (const auto& [bit, name] : kNames) {
     if (!contains(needs, bit)) continue;
@@ -240,8 +250,8 @@ std::vector<Case> Registry::expand(std::string_view profile,
                                    const Overrides& overrides) const {
   const auto known = profiles();
   if (std::find(known.begin(), known.end(), profile) == known.end())
-    throw UsageError(fmt::format("unknown profile '{}'; known are {}", profile,
-                                 fmt::join(known, ", ")));
+    throw UsageError(fmt::format(
+        "unknown profile '{}'; known are {}", profile, fmt::join(known, ", ")));
   check_overrides(overrides, experiments_);
   const bool as_declared = !overrides.n && !overrides.iterations &&
                            !overrides.methods && !overrides.seeds &&
@@ -255,7 +265,8 @@ std::vector<Case> Registry::expand(std::string_view profile,
     } else if (as_declared && !same_work(cases[at->second], c)) {
       throw std::logic_error(fmt::format(
           "{} stands in two rows of profile {} with different options",
-          c.info.name, profile));
+          c.info.name,
+          profile));
     }
   };
   for (const auto& e : experiments_) {

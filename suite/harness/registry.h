@@ -1,6 +1,7 @@
 /// What is registered, and the cases it expands to.
 ///
-///   const auto kRegistered = register_experiment({.name = "jpo/billiards", ...});
+///   const auto kRegistered = register_experiment({.name = "jpo/billiards",
+///   ...});
 ///
 /// Registering stores a recipe and judges nothing; `main` and a test call
 /// `validate`, so nothing throws before `main`.

@@ -64,7 +64,9 @@ StageRecord blank(const Case& c, Index position, const std::string& revision) {
 
 class Runner {
  public:
-  Runner(const Case& c, const RunOptions& options, Threads* threads,
+  Runner(const Case& c,
+         const RunOptions& options,
+         Threads* threads,
          const CaseHooks& hooks)
       : case_(c),
         options_(options),
@@ -77,8 +79,11 @@ class Runner {
     const auto at = static_cast<std::size_t>(position);
     const Stage& stage = *case_.method->chain[at];
     StageRecord record = blank(case_, position, options_.revision);
-    Oracle oracle(case_.experiment->problem, case_.info.n, root_,
-                  stage.needs(), threads_);
+    Oracle oracle(case_.experiment->problem,
+                  case_.info.n,
+                  root_,
+                  stage.needs(),
+                  threads_);
     Probe probe(oracle, case_.stage_iterations[at]);
     std::uint64_t trajectory = hash_text("trajectory");
     listen(probe, trajectory);
@@ -183,8 +188,11 @@ double median_finite(VectorIn<double> values) {
   return *middle;
 }
 
-StageRecord lost_stage(const Case& c, Index position, Stop stop,
-                       std::string message, const std::string& revision) {
+StageRecord lost_stage(const Case& c,
+                       Index position,
+                       Stop stop,
+                       std::string message,
+                       const std::string& revision) {
   StageRecord r = blank(c, position, revision);
   r.stop = stop;
   r.message = std::move(message);
@@ -192,8 +200,10 @@ StageRecord lost_stage(const Case& c, Index position, Stop stop,
   return r;
 }
 
-void run_case(const Case& c, std::vector<StageRecord> earlier,
-              const RunOptions& options, Threads* threads,
+void run_case(const Case& c,
+              std::vector<StageRecord> earlier,
+              const RunOptions& options,
+              Threads* threads,
               const CaseHooks& hooks) {
   Runner runner(c, options, threads, hooks);
   const auto stages = static_cast<Index>(c.method->chain.size());
@@ -204,15 +214,15 @@ void run_case(const Case& c, std::vector<StageRecord> earlier,
   for (; position < stages; ++position) {
     StageRecord record;
     if (!failed.empty()) {
-      record = lost_stage(c, position, Stop::skipped, failed + " failed",
-                          options.revision);
+      record = lost_stage(
+          c, position, Stop::skipped, failed + " failed", options.revision);
     } else {
       if (hooks.started) hooks.started(position);
       try {
         record = runner.run(position, previous);
       } catch (...) {
-        record = lost_stage(c, position, Stop::failed, exception_text(),
-                            options.revision);
+        record = lost_stage(
+            c, position, Stop::failed, exception_text(), options.revision);
         failed = record.stage;
       }
     }

@@ -29,13 +29,18 @@ struct CaseHooks {
 /// Every random stream comes from hash(experiment, seed); the stream
 /// `method/<id>` has the content of the chain up to the stage as its id, so
 /// that chains sharing a beginning share its results.
-void run_case(const Case& c, std::vector<StageRecord> earlier,
-              const RunOptions& options, Threads* threads,
+void run_case(const Case& c,
+              std::vector<StageRecord> earlier,
+              const RunOptions& options,
+              Threads* threads,
               const CaseHooks& hooks);
 
 /// The record of a stage that did not come to a result.
-StageRecord lost_stage(const Case& c, Index position, Stop stop,
-                       std::string message, const std::string& revision);
+StageRecord lost_stage(const Case& c,
+                       Index position,
+                       Stop stop,
+                       std::string message,
+                       const std::string& revision);
 
 /// Now, UTC, ISO 8601 to the second.
 std::string utc_now();

@@ -40,6 +40,13 @@ std::string medians(const Group& group) {
   return text;
 }
 
+/// A revision as people read it.
+std::string brief(const std::string& revision) {
+  const auto plus = revision.find('+');
+  return revision.substr(0, std::min<std::size_t>(12, plus)) +
+         (plus == std::string::npos ? "" : revision.substr(plus));
+}
+
 }  // namespace
 
 std::string summary_table(const std::vector<CaseRecord>& cases) {
@@ -61,11 +68,21 @@ std::string summary_table(const std::vector<CaseRecord>& cases) {
   for (const Group& g : groups)
     loss_width = std::max(loss_width, medians(g).size());
   std::string text = fmt::format("{:<{}}  {:>5}  {:>5}  {:<{}}  {:>9}\n",
-                                 "method", width, "n", "cases",
-                                 "median final loss", loss_width, "time");
+                                 "method",
+                                 width,
+                                 "n",
+                                 "cases",
+                                 "median final loss",
+                                 loss_width,
+                                 "time");
   for (const Group& g : groups) {
-    text += fmt::format("{:<{}}  {:>5}  {:>5}  {:<{}}  {:>9}\n", g.label, width,
-                        g.n, g.cases.size(), medians(g), loss_width,
+    text += fmt::format("{:<{}}  {:>5}  {:>5}  {:<{}}  {:>9}\n",
+                        g.label,
+                        width,
+                        g.n,
+                        g.cases.size(),
+                        medians(g),
+                        loss_width,
                         duration_text(g.seconds));
   }
   return text;
@@ -74,8 +91,11 @@ std::string summary_table(const std::vector<CaseRecord>& cases) {
 std::string to_text(const Origins& origins) {
   std::string text;
   for (const auto& [origin, count] : origins) {
-    text += fmt::format("{}{} of {} at {}", text.empty() ? "" : ", ", count,
-                        origin.first, origin.second);
+    text += fmt::format("{}{} of {} at {}",
+                        text.empty() ? "" : ", ",
+                        count,
+                        origin.first,
+                        brief(origin.second));
   }
   return text;
 }

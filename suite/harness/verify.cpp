@@ -12,8 +12,11 @@ namespace physinv {
 namespace {
 
 /// Loss of one example alone.
-double loss_of(const Problem<double>& problem, const CaseData& data,
-               const Batch<double>& x, Index i, Workspace& work) {
+double loss_of(const Problem<double>& problem,
+               const CaseData& data,
+               const Batch<double>& x,
+               Index i,
+               Workspace& work) {
   Batch<double> y(data.y.rows(), 1);
   Vector<double> loss(1);
   Batch<double> given(data.given.rows(), 1);
@@ -35,28 +38,41 @@ Match compare(double a, double b) {
              : Match::none;
 }
 
-void verify_stage(const Problem<double>& problem, const CaseRecord& c,
-                  const StageRecord& stage, Workspace& work,
+void verify_stage(const Problem<double>& problem,
+                  const CaseRecord& c,
+                  const StageRecord& stage,
+                  Workspace& work,
                   VerifyReport& report) {
   ++report.stages;
   const Index n = c.data.y.cols();
   if (stage.x.cols() != n || stage.loss.size() != n ||
       stage.x.rows() != problem.shape().unknowns) {
-    report.mismatches.push_back(fmt::format(
-        "{} {}: solutions of {} examples stored, data of {}", c.info.name,
-        stage.stage, stage.x.cols(), n));
+    report.mismatches.push_back(
+        fmt::format("{} {}: solutions of {} examples stored, data of {}",
+                    c.info.name,
+                    stage.stage,
+                    stage.x.cols(),
+                    n));
     return;
   }
   for (Index i = 0; i < n; ++i) {
     ++report.losses;
     const double again = loss_of(problem, c.data, stage.x, i, work);
     switch (compare(again, stage.loss(i))) {
-      case Match::bitwise: ++report.bitwise; break;
-      case Match::close: ++report.close; break;
+      case Match::bitwise:
+        ++report.bitwise;
+        break;
+      case Match::close:
+        ++report.close;
+        break;
       case Match::none:
         report.mismatches.push_back(
             fmt::format("{} {} example {}: recorded {:.17g}, is {:.17g}",
-                        c.info.name, stage.stage, i, stage.loss(i), again));
+                        c.info.name,
+                        stage.stage,
+                        i,
+                        stage.loss(i),
+                        again));
     }
   }
 }
@@ -70,7 +86,8 @@ VerifyReport verify_results(const Results& results, const Registry& registry) {
   for (const CaseRecord& c : results.cases()) {
     const auto experiment = registry.find(c.info.experiment);
     if (!experiment) {
-      if (std::find(report.unknown.begin(), report.unknown.end(),
+      if (std::find(report.unknown.begin(),
+                    report.unknown.end(),
                     c.info.experiment) == report.unknown.end())
         report.unknown.push_back(c.info.experiment);
       continue;

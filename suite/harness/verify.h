@@ -12,8 +12,8 @@ namespace physinv {
 inline constexpr double kVerifyTolerance = 1e-12;
 
 struct VerifyReport {
-  std::size_t stages = 0, losses = 0;  ///< looked at
-  std::size_t bitwise = 0, close = 0;  ///< equal, or within the tolerance
+  std::size_t stages = 0, losses = 0;   ///< looked at
+  std::size_t bitwise = 0, close = 0;   ///< equal, or within the tolerance
   std::vector<std::string> mismatches;  ///< "case stage example 3: a is b"
   std::vector<std::string> unknown;     ///< experiments not in this program
 };

@@ -37,7 +37,8 @@ bool receive_all(int socket, void* data, std::size_t size) {
 
 }  // namespace
 
-bool send_message(int socket, std::uint32_t kind,
+bool send_message(int socket,
+                  std::uint32_t kind,
                   std::span<const std::uint8_t> body) {
   const Header header{.length = body.size(), .kind = kind};
   return send_all(socket, &header, sizeof(header)) &&
@@ -57,8 +58,7 @@ std::optional<Message> receive_message(int socket) {
 bool Inbox::fill(int socket) {
   std::array<std::uint8_t, 65536> chunk;
   while (true) {
-    const ssize_t got =
-        recv(socket, chunk.data(), chunk.size(), MSG_DONTWAIT);
+    const ssize_t got = recv(socket, chunk.data(), chunk.size(), MSG_DONTWAIT);
     if (got > 0) {
       bytes_.insert(bytes_.end(), chunk.data(), chunk.data() + got);
     } else if (got < 0 && errno == EINTR) {
@@ -77,9 +77,8 @@ std::optional<Message> Inbox::next() {
   if (there < sizeof(header) + header.length) return std::nullopt;
   const auto begin =
       bytes_.begin() + static_cast<std::ptrdiff_t>(used_ + sizeof(header));
-  Message message{
-      static_cast<std::uint32_t>(header.kind),
-      {begin, begin + static_cast<std::ptrdiff_t>(header.length)}};
+  Message message{static_cast<std::uint32_t>(header.kind),
+                  {begin, begin + static_cast<std::ptrdiff_t>(header.length)}};
   used_ += sizeof(header) + header.length;
   if (used_ == bytes_.size()) bytes_.clear(), used_ = 0;
   return message;

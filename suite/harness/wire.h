@@ -61,7 +61,8 @@ class BodyReader {
 };
 
 /// Sends all of it, waiting if it must; false if the other side is gone.
-bool send_message(int socket, std::uint32_t kind,
+bool send_message(int socket,
+                  std::uint32_t kind,
                   std::span<const std::uint8_t> body);
 
 /// Waits for one message; nothing if the other side is gone.

@@ -27,10 +27,6 @@ enum Kind : std::uint32_t {
   kCaseDone
 };
 
-double stage_seconds(const Clocks& c) {
-  return c.setup.wall + c.warmup.wall + c.solve.wall + c.measure.wall;
-}
-
 /// The worker's side: cases in, stages out, until the parent closes.
 void serve(int socket,
            const std::vector<Case>& cases,
@@ -38,7 +34,7 @@ void serve(int socket,
            const RunOptions& options) {
   Threads threads(thread_count);
   while (const auto message = receive_message(socket)) {
-    const double begin = now().wall;
+    const double begin = now().cpu;
     double in_stages = 0;
     BodyReader body(message->body);
     const auto index = body.get<std::uint64_t>();
@@ -47,22 +43,24 @@ void serve(int socket,
     const CaseHooks hooks{
         .started =
             [&](Index position) {
-              send_message(socket, kStageStarted,
-                           BodyWriter().put(position).take());
+              send_message(
+                  socket, kStageStarted, BodyWriter().put(position).take());
             },
         .progress =
             [&](Index iteration, double loss) {
-              send_message(socket, kProgress,
+              send_message(socket,
+                           kProgress,
                            BodyWriter().put(iteration).put(loss).take());
             },
         .finished =
             [&](const StageRecord& record) {
-              in_stages += stage_seconds(record.clocks);
+              in_stages += record.clocks.total().cpu;
               send_message(socket, kStageDone, to_wire(record));
             }};
     run_case(cases[index], std::move(earlier), options, &threads, hooks);
-    send_message(socket, kCaseDone,
-                 BodyWriter().put(now().wall - begin - in_stages).take());
+    send_message(socket,
+                 kCaseDone,
+                 BodyWriter().put(now().cpu - begin - in_stages).take());
   }
 }
 
@@ -105,9 +103,9 @@ WorkerEvent decode(const Message& message) {
 std::string death_text(int status) {
   if (WIFSIGNALED(status)) {
     const char* name = sigabbrev_np(WTERMSIG(status));
-    const std::string signal =
-        name != nullptr ? fmt::format("SIG{}", name)
-                        : fmt::format("signal {}", WTERMSIG(status));
+    const std::string signal = name != nullptr
+                                   ? fmt::format("SIG{}", name)
+                                   : fmt::format("signal {}", WTERMSIG(status));
     return "the worker was killed by " + signal +
            (WTERMSIG(status) == SIGKILL ? " (out of memory?)" : "");
   }
@@ -138,16 +136,15 @@ Workers::~Workers() {
 void Workers::start(Worker& worker) {
   int pair[2];
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, pair) != 0)
-    throw EnvironmentError(
-        fmt::format("no socket for a worker ({}); try fewer --jobs",
-                    std::strerror(errno)));
+    throw EnvironmentError(fmt::format(
+        "no socket for a worker ({}); try fewer --jobs", std::strerror(errno)));
   std::fflush(nullptr);
   const pid_t parent = getpid();
   const pid_t pid = fork();
   if (pid < 0) {
     close(pair[0]), close(pair[1]);
-    throw EnvironmentError(fmt::format("no worker process ({}); try fewer --jobs",
-                                       std::strerror(errno)));
+    throw EnvironmentError(fmt::format(
+        "no worker process ({}); try fewer --jobs", std::strerror(errno)));
   }
   if (pid == 0) {
     become_worker(pair[1], parent);
@@ -192,9 +189,7 @@ void Workers::submit(std::size_t worker,
 std::vector<WorkerEvent> Workers::wait(double seconds) {
   std::vector<pollfd> polled;
   for (const Worker& w : workers_) polled.push_back({w.socket, POLLIN, 0});
-  const double begin = now().wall;
   poll(polled.data(), polled.size(), static_cast<int>(1e3 * seconds));
-  waited_ += now().wall - begin;
 
   std::vector<WorkerEvent> events;
   for (std::size_t i = 0; i < workers_.size(); ++i) {

@@ -22,7 +22,7 @@ struct WorkerEvent {
   Index position = 0;   ///< of the stage
   Index iteration = 0;  ///< progress
   double loss = 0;      ///< progress: median of the examples
-  double overhead = 0;  ///< case_done: seconds in no stage
+  double overhead = 0;  ///< case_done: CPU seconds in no stage
   StageRecord record;   ///< stage_done
   std::string message;  ///< died: how
 };
@@ -30,7 +30,9 @@ struct WorkerEvent {
 class Workers {
  public:
   /// `cases` must outlive the workers, and its content keys be filled in.
-  Workers(const std::vector<Case>& cases, std::size_t count, int threads,
+  Workers(const std::vector<Case>& cases,
+          std::size_t count,
+          int threads,
           RunOptions options);
   /// Kills and collects all.
   ~Workers();
@@ -41,13 +43,12 @@ class Workers {
   bool idle(std::size_t worker) const { return !workers_[worker].busy; }
 
   /// Hands a case to an idle worker; `earlier` are the stages it need not run.
-  void submit(std::size_t worker, std::size_t case_index,
+  void submit(std::size_t worker,
+              std::size_t case_index,
               const std::vector<StageRecord>& earlier);
 
-  /// Waits up to `seconds` (or a signal) and returns what arrived. The time
-  /// spent waiting is summed in `waited`.
+  /// Waits up to `seconds` (or a signal) and returns what arrived.
   std::vector<WorkerEvent> wait(double seconds);
-  double waited() const { return waited_; }
 
  private:
   struct Worker {
@@ -64,7 +65,6 @@ class Workers {
   int threads_;
   RunOptions options_;
   std::vector<Worker> workers_;
-  double waited_ = 0;
   int idle_deaths_ = 0;
 };
 

@@ -1,30 +1,51 @@
 #include "suite/nn/linear.h"
 
+#include <algorithm>
+
 #include "suite/nn/activation.h"
 #include "suite/nn/gemm.h"
 
 namespace physinv::nn {
 namespace {
 
-/// b + W_const x_const, one number per output.
+/// The features that are constant over the batch: columns [0, leading) and
+/// [end, in) of the weights, with their values, contiguous.
+template <class T>
+struct Constants {
+  Constants(const LayerArgs<T>& at, Lanes<const T> x)
+      : leading(at.leading),
+        end(x.rows - at.trailing),
+        values(at.work->template take<T>(x.rows, 1)) {
+    for (Index j = 0; j < leading; ++j) values(j) = x.row(j)[0];
+    for (Index j = end; j < x.rows; ++j) values(j) = x.row(j)[0];
+  }
+  Index leading, end;
+  Scratch<T> values;
+};
+
+/// b + W_const x_const, one number per output. Rows go in groups, so that
+/// their sums, each in order, hide each other's latency.
 template <class T>
 void fold_bias(const T* weights,
                const T* bias,
-               const LayerArgs<T>& at,
-               Lanes<const T> x,
+               const Constants<T>& x,
                Index outputs,
                T* folded) {
-  for (Index i = 0; i < outputs; ++i) folded[i] = bias[i];
-  const auto add = [&](Index begin, Index end) {
-    for (Index i = 0; i < outputs; ++i) {
-      const T* row = weights + i * x.rows;
-      T sum = folded[i];
-      for (Index j = begin; j < end; ++j) sum += row[j] * x.row(j)[0];
-      folded[i] = sum;
-    }
-  };
-  add(0, at.leading);
-  add(x.rows - at.trailing, x.rows);
+  constexpr Index kGroup = 8;
+  const Index in = x.values.rows();
+  for (Index i = 0; i < outputs; i += kGroup) {
+    const Index rows = std::min(kGroup, outputs - i);
+    T sum[kGroup] = {};
+    for (Index r = 0; r < rows; ++r) sum[r] = bias[i + r];
+    const auto add = [&](Index begin, Index end) {
+      for (Index j = begin; j < end; ++j)
+        for (Index r = 0; r < rows; ++r)
+          sum[r] += weights[(i + r) * in + j] * x.values(j);
+    };
+    add(0, x.leading);
+    add(x.end, in);
+    for (Index r = 0; r < rows; ++r) folded[i + r] = sum[r];
+  }
 }
 
 }  // namespace
@@ -59,7 +80,7 @@ void Linear<T>::forward(const LayerArgs<T>& at,
   const Workspace::Scope scope(*at.work);
   if (folded > 0) {
     auto b = at.work->template take<T>(out, 1);
-    fold_bias(at.parameters, bias, at, x, out, b.data());
+    fold_bias(at.parameters, bias, Constants<T>(at, x), out, b.data());
     bias = b.data();
   }
   gemm<T>({.m = out,
@@ -84,13 +105,18 @@ void Linear<T>::weight_gradient(const LayerArgs<T>& at,
   const Index first = at.leading, end = in - at.trailing;
   T* bias_bar = b.parameters_bar + in * out;
   row_sums<T>(b.y_bar, bias_bar);
-  for (Index i = 0; i < out && end - first < in; ++i) {
-    T* row = b.parameters_bar + i * in;
-    for (Index j = 0; j < first; ++j) row[j] = bias_bar[i] * b.x.row(j)[0];
-    for (Index j = end; j < in; ++j) row[j] = bias_bar[i] * b.x.row(j)[0];
+  const Workspace::Scope scope(*at.work);
+  if (end - first < in) {
+    const Constants<T> constants(at, b.x);
+    const T* const x = constants.values.data();
+    for (Index i = 0; i < out; ++i) {
+      T* const row = b.parameters_bar + i * in;
+      const T y_bar = bias_bar[i];
+      for (Index j = 0; j < first; ++j) row[j] = y_bar * x[j];
+      for (Index j = end; j < in; ++j) row[j] = y_bar * x[j];
+    }
   }
   if (end == first) return;
-  const Workspace::Scope scope(*at.work);
   const Index stride = lane_stride<T>(round_up(end - first, kLanes<T>));
   auto xt = at.work->template take<T>(stride, b.x.samples);
   // The columns behind the last feature are multiplied, never stored.

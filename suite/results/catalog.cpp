@@ -92,9 +92,9 @@ const JournalEntry* Catalog::entry_of(const std::string& key) const {
   const auto [begin, end] = keys_.equal_range(key);
   for (auto k = begin; k != end; ++k) {
     const JournalEntry& e = entries_[k->second];
-    const bool better = best == nullptr ||
-                        std::pair(!has_result(e.stage), &e) <
-                            std::pair(!has_result(best->stage), best);
+    const bool better =
+        best == nullptr || std::pair(!has_result(e.stage), &e) <
+                               std::pair(!has_result(best->stage), best);
     if (better) best = &e;
   }
   return best;
@@ -146,14 +146,37 @@ CaseRecord Catalog::case_record(const std::string& name) const {
   return record;
 }
 
-std::vector<CaseRecord> Catalog::cases() const {
+CaseRecord Catalog::summary(const std::string& name) const {
+  CaseRecord record;
+  record.info = entries_[latest_.at(name)].info;
+  for (std::size_t k = 0; k < record.info.keys.size(); ++k) {
+    const JournalEntry* own = at(name, static_cast<Index>(k));
+    if (own == nullptr || own->stage.key != record.info.keys[k]) continue;
+    if (has_result(own->stage) && own->stage.loss.size() == 0)
+      return case_record(name);
+    record.stages.push_back(own->stage);
+    record.data.hash = own->data_hash;
+  }
+  return record;
+}
+
+std::vector<CaseRecord> Catalog::collect(
+    CaseRecord (Catalog::*read)(const std::string&) const) const {
   std::vector<CaseRecord> all;
   for (const auto& name : order()) {
     if (!knows_case(name)) continue;
-    auto record = case_record(name);
+    auto record = (this->*read)(name);
     if (!record.stages.empty()) all.push_back(std::move(record));
   }
   return all;
+}
+
+std::vector<CaseRecord> Catalog::cases() const {
+  return collect(&Catalog::case_record);
+}
+
+std::vector<CaseRecord> Catalog::summaries() const {
+  return collect(&Catalog::summary);
 }
 
 }  // namespace physinv

@@ -48,11 +48,17 @@ class Catalog {
   std::vector<std::string> order() const;
   /// Cases that have a stage, in this order.
   std::vector<CaseRecord> cases() const;
+  /// The same with what results.json needs: estimates, losses, statuses and
+  /// the hash of the data. Reads only files of stages from earlier processes.
+  std::vector<CaseRecord> summaries() const;
 
   /// plan.json, null if there is none.
   nlohmann::json plan;
 
  private:
+  CaseRecord summary(const std::string& name) const;
+  std::vector<CaseRecord> collect(
+      CaseRecord (Catalog::*read)(const std::string&) const) const;
   const JournalEntry* entry_of(const std::string& key) const;
 
   std::filesystem::path directory_;

@@ -4,8 +4,23 @@
 #include <bit>
 #include <cstring>
 
+#ifdef __SSE4_2__
+#include <nmmintrin.h>
+#endif
+
 namespace physinv {
 namespace {
+
+#ifdef __SSE4_2__
+
+std::uint32_t add_word(std::uint32_t r, std::uint64_t word) {
+  return static_cast<std::uint32_t>(_mm_crc32_u64(r, word));
+}
+std::uint32_t add_byte(std::uint32_t r, unsigned char byte) {
+  return _mm_crc32_u8(r, byte);
+}
+
+#else
 
 using Tables = std::array<std::array<std::uint32_t, 256>, 8>;
 
@@ -26,6 +41,19 @@ constexpr Tables make_tables() {
 
 constexpr Tables kTables = make_tables();
 
+std::uint32_t add_word(std::uint32_t r, std::uint64_t word) {
+  word ^= r;
+  r = 0;
+  for (std::size_t k = 0; k < 8; ++k)
+    r ^= kTables[7 - k][(word >> (8 * k)) & 0xff];
+  return r;
+}
+std::uint32_t add_byte(std::uint32_t r, unsigned char byte) {
+  return (r >> 8) ^ kTables[0][(r ^ byte) & 0xff];
+}
+
+#endif
+
 }  // namespace
 
 std::uint32_t crc32c(std::string_view bytes) {
@@ -36,13 +64,9 @@ std::uint32_t crc32c(std::string_view bytes) {
   for (; n >= 8; p += 8, n -= 8) {
     std::uint64_t word = 0;
     std::memcpy(&word, p, 8);
-    word ^= r;
-    r = 0;
-    for (std::size_t k = 0; k < 8; ++k)
-      r ^= kTables[7 - k][(word >> (8 * k)) & 0xff];
+    r = add_word(r, word);
   }
-  for (; n > 0; ++p, --n)
-    r = (r >> 8) ^ kTables[0][(r ^ static_cast<unsigned char>(*p)) & 0xff];
+  for (; n > 0; ++p, --n) r = add_byte(r, static_cast<unsigned char>(*p));
   return ~r;
 }
 

@@ -96,9 +96,8 @@ CaseFile::CaseFile(const fs::path& path, const std::string& case_name)
     file_ = hdf5::open_image(std::move(bytes));
     const std::string name = hdf5::read_attribute(file_, "case");
     if (name != case_name)
-      throw StoreError(fmt::format("it holds the case {}, not {} (restore it)",
-                                   name,
-                                   case_name));
+      throw StoreError(fmt::format(
+          "it holds the case {}, not {} (restore it)", name, case_name));
   });
 }
 
@@ -127,14 +126,14 @@ CaseData CaseFile::data() const {
   });
 }
 
-void CaseFile::put_stage(const StageRecord& r) {
+void CaseFile::put_stage(const StageRecord& r, const std::string& hash) {
   named([&] {
     const auto stages = hdf5::open_group(file_, "stages");
     const std::string name = group_name(r);
     if (hdf5::has(stages, name)) hdf5::remove(stages, name);
     const auto group = hdf5::create_group(stages, name);
     hdf5::write_attribute(group, "key", r.key);
-    hdf5::write_attribute(group, "hash", hex64(arrays_hash(r)));
+    hdf5::write_attribute(group, "hash", hash);
     hdf5::write(group, "x", r.x);
     hdf5::write(group, "loss", Batch<double>(r.loss));
     std::vector<std::uint8_t> status;

@@ -2,8 +2,9 @@
 ///
 ///   /data/{x, y, given}                                  attribute hash
 ///   /stages/<position>_<stage>/{x, loss, status, iterations, evaluations}
-///                             /curve/{iteration, seconds, evaluations, loss, x}
-///                             /arrays/<name>             attributes key, hash
+///                             /curve/{iteration, seconds, evaluations, loss,
+///                             x} /arrays/<name>             attributes key,
+///                             hash
 ///
 /// Arrays are (samples, features). Sixteen bytes after the end of the HDF5
 /// data hold a checksum of the whole file; HDF5 tools do not mind them.
@@ -38,7 +39,8 @@ class CaseFile {
   CaseData data() const;
 
   /// Replaces what stands at the record's position.
-  void put_stage(const StageRecord& record);
+  /// `hash` is arrays_hash(record).
+  void put_stage(const StageRecord& record, const std::string& hash);
   /// True if the arrays of this key and with this hash are there.
   bool has_stage(const StageRecord& record, const std::string& hash) const;
   /// Fills in the arrays of a record; StoreError if they lack the hash.

@@ -43,7 +43,8 @@ auto retry(F&& call) {
   return result;
 }
 
-FileDescriptor open_file(const fs::path& path, int flags,
+FileDescriptor open_file(const fs::path& path,
+                         int flags,
                          std::string_view what) {
   FileDescriptor fd(
       retry([&] { return ::open(path.c_str(), flags | O_CLOEXEC, 0644); }));
@@ -51,7 +52,8 @@ FileDescriptor open_file(const fs::path& path, int flags,
   return fd;
 }
 
-void write_aside(const fs::path& aside, std::string_view bytes,
+void write_aside(const fs::path& aside,
+                 std::string_view bytes,
                  const fs::path& path) {
   const auto fd = open_file(aside, O_WRONLY | O_CREAT | O_TRUNC, "write");
   write_all(fd, bytes, path);

@@ -21,8 +21,7 @@ class FileDescriptor {
  public:
   FileDescriptor() = default;
   explicit FileDescriptor(int fd) : fd_(fd) {}
-  FileDescriptor(FileDescriptor&& o) noexcept
-      : fd_(std::exchange(o.fd_, -1)) {}
+  FileDescriptor(FileDescriptor&& o) noexcept : fd_(std::exchange(o.fd_, -1)) {}
   FileDescriptor& operator=(FileDescriptor&& o) noexcept {
     std::swap(fd_, o.fd_);
     return *this;
@@ -35,7 +34,8 @@ class FileDescriptor {
 };
 
 /// Writes all of it at the descriptor's position.
-void write_all(const FileDescriptor& fd, std::string_view bytes,
+void write_all(const FileDescriptor& fd,
+               std::string_view bytes,
                const std::filesystem::path& path);
 
 /// Data and size are on disk when it returns.

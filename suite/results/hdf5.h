@@ -52,15 +52,18 @@ std::vector<std::string> names(hid_t group);
 
 /// Matrices are stored as (columns, rows) arrays: the bytes of a batch.
 void write(hid_t parent, const std::string& name, const Batch<double>& value);
-void write(hid_t parent, const std::string& name,
+void write(hid_t parent,
+           const std::string& name,
            const std::vector<double>& value);
-void write(hid_t parent, const std::string& name,
+void write(hid_t parent,
+           const std::string& name,
            const std::vector<std::uint8_t>& value);
 Batch<double> read_batch(hid_t parent, const std::string& name);
 std::vector<double> read_list(hid_t parent, const std::string& name);
 std::vector<std::uint8_t> read_bytes(hid_t parent, const std::string& name);
 
-void write_attribute(hid_t parent, const std::string& name,
+void write_attribute(hid_t parent,
+                     const std::string& name,
                      const std::string& value);
 std::string read_attribute(hid_t parent, const std::string& name);
 

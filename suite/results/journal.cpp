@@ -42,8 +42,10 @@ bool hides_line(std::string_view line) {
   return false;
 }
 
-[[noreturn]] void fail_line(const fs::path& path, std::size_t number,
-                            std::size_t offset, std::string_view line,
+[[noreturn]] void fail_line(const fs::path& path,
+                            std::size_t number,
+                            std::size_t offset,
+                            std::string_view line,
                             std::string_view why) {
   throw CorruptJournal(fmt::format(
       "{}: line {}, at byte {} and {} bytes long, {}; nothing was changed "
@@ -146,8 +148,7 @@ JournalText read_journal(const fs::path& path) {
 Journal Journal::create(const fs::path& path) {
   // Complete or not there at all, so that a first line is never torn.
   write_atomically(
-      path,
-      to_line({{"schema_version", kSchemaVersion}, {"created", utc()}}));
+      path, to_line({{"schema_version", kSchemaVersion}, {"created", utc()}}));
   return resume(path, read_journal(path));
 }
 

@@ -19,7 +19,7 @@ namespace physinv {
 
 struct JournalEntry {
   CaseInfo info;
-  StageRecord stage;        ///< without its arrays
+  StageRecord stage;        ///< the line has none of its arrays
   std::string file;         ///< of the arrays, relative to the store
   std::string data_hash;    ///< of the case's data
   std::string arrays_hash;  ///< of the stage's arrays

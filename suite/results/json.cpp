@@ -147,10 +147,14 @@ StageRecord stage_from_json(const json& j) {
   r.stage = j.at("stage");
   r.key = j.at("key");
   r.position = j.at("position");
-  for (const auto& o : j.at("options")) r.options.emplace_back(o.at(0), o.at(1));
+  for (const auto& o : j.at("options"))
+    r.options.emplace_back(o.at(0), o.at(1));
   r.stop = parse(j.at("stop").get<std::string>(),
-                 {Stop::converged, Stop::iterations, Stop::diverged,
-                  Stop::failed, Stop::skipped});
+                 {Stop::converged,
+                  Stop::iterations,
+                  Stop::diverged,
+                  Stop::failed,
+                  Stop::skipped});
   r.message = j.at("message");
   r.iterations = j.at("iterations");
   const json& clocks = j.at("clocks");

@@ -41,9 +41,7 @@ void check_same_campaign(const Catalog& a, const Catalog& b) {
         what,
         std::string_view(what) == "cases"
             ? ""
-            : fmt::format(", {} and {}",
-                          of_a.dump(),
-                          of_b.dump())));
+            : fmt::format(", {} and {}", of_a.dump(), of_b.dump())));
   }
 }
 
@@ -58,7 +56,9 @@ bool has_result(const StageRecord& r) {
   return r.stop != Stop::failed && r.stop != Stop::skipped;
 }
 
-void merge_case(Store& store, const Catalog& shard, const std::string& name,
+void merge_case(Store& store,
+                const Catalog& shard,
+                const std::string& name,
                 Origins& origins) {
   const CaseRecord c = shard.case_record(name);
   for (const StageRecord& stage : c.stages) {

@@ -46,9 +46,9 @@ struct StageRecord {
   std::string revision;  ///< git revision it ran from, "+dirty" if so
   std::string trajectory;  ///< hash of all iterates, if traced
 
-  Batch<double> x;                  ///< unknowns x examples
-  Vector<double> loss;              ///< of x, evaluated again in double
-  std::vector<Status> status;       ///< per example
+  Batch<double> x;             ///< unknowns x examples
+  Vector<double> loss;         ///< of x, evaluated again in double
+  std::vector<Status> status;  ///< per example
   Vector<double> example_iterations, example_evaluations;
   Curve curve;
   std::map<std::string, Batch<double>> arrays;  ///< method's own findings

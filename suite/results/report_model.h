@@ -10,7 +10,7 @@ namespace physinv {
 
 /// A measured number beside a published one. Absent values are absent, never 0.
 struct Cell {
-  std::optional<double> ours, spread;       ///< mean, std over seeds
+  std::optional<double> ours, spread;  ///< mean, std over seeds
   std::optional<double> paper, paper_spread;
   std::string text;  ///< shown instead of numbers if not empty ("not run")
 };
@@ -21,12 +21,12 @@ struct TableRow {
 };
 
 struct Table {
-  std::string id;     ///< file name: table4
-  std::string title;  ///< one line
-  std::string source; ///< "Table 4"
-  std::string unit;   ///< "%", "s", "" - for all cells
-  int digits = 1;     ///< after the point
-  std::string corner; ///< head of the label column
+  std::string id;      ///< file name: table4
+  std::string title;   ///< one line
+  std::string source;  ///< "Table 4"
+  std::string unit;    ///< "%", "s", "" - for all cells
+  int digits = 1;      ///< after the point
+  std::string corner;  ///< head of the label column
   std::vector<std::string> columns;
   std::vector<TableRow> rows;
   std::string note;

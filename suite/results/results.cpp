@@ -11,7 +11,8 @@ namespace {
 /// Sorted and different values of get(info) over an experiment's cases.
 template <class T, class F>
 std::vector<T> values(const std::vector<CaseRecord>& cases,
-                      std::string_view experiment, F&& get) {
+                      std::string_view experiment,
+                      F&& get) {
   std::set<T> all;
   for (const auto& c : cases)
     if (c.info.experiment == experiment) all.insert(get(c.info));
@@ -23,7 +24,8 @@ std::vector<T> values(const std::vector<CaseRecord>& cases,
 Results::Results(std::vector<CaseRecord> cases) : cases_(std::move(cases)) {}
 
 const CaseRecord* Results::find_case(std::string_view experiment,
-                                     std::string_view method, Index n,
+                                     std::string_view method,
+                                     Index n,
                                      std::uint64_t seed) const {
   for (const auto& c : cases_) {
     if (c.info.n == n && c.info.seed == seed && c.info.method == method &&
@@ -34,7 +36,8 @@ const CaseRecord* Results::find_case(std::string_view experiment,
 }
 
 const StageRecord* Results::find(std::string_view experiment,
-                                 std::string_view method, Index n,
+                                 std::string_view method,
+                                 Index n,
                                  std::uint64_t seed,
                                  std::string_view stage) const {
   const CaseRecord* c = find_case(experiment, method, n, seed);

@@ -19,11 +19,14 @@ class Results {
 
   /// The finished stage `stage` of the case of this experiment, method, n and
   /// seed; null if it is not there ("not run").
-  const StageRecord* find(std::string_view experiment, std::string_view method,
-                          Index n, std::uint64_t seed,
+  const StageRecord* find(std::string_view experiment,
+                          std::string_view method,
+                          Index n,
+                          std::uint64_t seed,
                           std::string_view stage) const;
   const CaseRecord* find_case(std::string_view experiment,
-                              std::string_view method, Index n,
+                              std::string_view method,
+                              Index n,
                               std::uint64_t seed) const;
 
   /// Sorted values present for an experiment.

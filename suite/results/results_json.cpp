@@ -44,10 +44,9 @@ void add_counts(Json& j, const Counts& counts) {
 
 Json statuses(const std::vector<Status>& status) {
   Json j = Json::object();
-  for (const Status s : {Status::gtol, Status::maxiter, Status::linesearch,
-                         Status::nonfinite})
-    j[std::string(to_string(s))] =
-        std::count(status.begin(), status.end(), s);
+  for (const Status s :
+       {Status::gtol, Status::maxiter, Status::linesearch, Status::nonfinite})
+    j[std::string(to_string(s))] = std::count(status.begin(), status.end(), s);
   return j;
 }
 
@@ -81,7 +80,9 @@ Json details(const CaseRecord& c, const StageRecord& s) {
           {"options", std::move(options)}};
 }
 
-Json entry(const CaseRecord& c, const StageRecord& s, std::size_t family,
+Json entry(const CaseRecord& c,
+           const StageRecord& s,
+           std::size_t family,
            int threads) {
   const std::string name = c.info.name + "/" + s.stage;
   Json j{{"name", name},
@@ -139,8 +140,7 @@ Json results_json(const std::vector<CaseRecord>& cases,
     const auto at = by_name.find(order[i]);
     if (at == by_name.end()) continue;
     for (const auto& stage : at->second->stages)
-      entries.push_back(
-          entry(*at->second, stage, i, threads_of(context)));
+      entries.push_back(entry(*at->second, stage, i, threads_of(context)));
   }
   return {{"context", full_context(context)},
           {"benchmarks", std::move(entries)}};

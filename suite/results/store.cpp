@@ -72,30 +72,49 @@ bool Store::exists(const fs::path& directory) {
   return fs::exists(directory / "journal.jsonl", error);
 }
 
-void Store::append(const CaseInfo& info, const CaseData& data,
+void Store::append(const CaseInfo& info,
+                   const CaseData& data,
                    const StageRecord& record) {
   SUITE_CHECK(record.case_name == info.name, "a stage of another case");
   const fs::path path = catalog_.case_path(info.name);
-  // A file that no line names is what a killed writer left: start again.
-  const bool there = catalog_.knows_case(info.name) && fs::exists(path);
-  auto file = there ? CaseFile(path, info.name) : CaseFile(info.name);
+  CaseFile& file = open_case(info.name, path);
 
   const JournalEntry* old = catalog_.at(info.name, record.position);
   if (old != nullptr && old->stage.key == record.key &&
       has_result(old->stage) && file.has_stage(old->stage, old->arrays_hash))
     return;
 
-  file.put_data(data);
-  file.put_stage(record);
-  file.save(path);
+  const std::string hash = hex64(arrays_hash(record));
+  try {
+    file.put_data(data);
+    file.put_stage(record, hash);
+    file.save(path);
+  } catch (...) {
+    open_.erase(info.name);  // it no longer is what the disk has
+    throw;
+  }
+  const auto stages = static_cast<Index>(info.stages.size());
+  if (record.position + 1 >= stages) open_.erase(info.name);
 
   JournalEntry entry{.info = info,
                      .stage = stage_from_json(to_json(record)),
                      .file = "cases/" + case_file_name(info.name),
                      .data_hash = data.hash,
-                     .arrays_hash = hex64(arrays_hash(record))};
+                     .arrays_hash = hash};
   journal_.append(entry);
+  entry.stage.x = record.x;
+  entry.stage.loss = record.loss;
+  entry.stage.status = record.status;
   catalog_.add(std::move(entry));
+}
+
+CaseFile& Store::open_case(const std::string& name, const fs::path& path) {
+  if (const auto at = open_.find(name); at != open_.end()) return at->second;
+  // A file that no line names is what a killed writer left: start again.
+  const bool there = catalog_.knows_case(name) && fs::exists(path);
+  return open_
+      .emplace(name, there ? CaseFile(path, name) : CaseFile(name))
+      .first->second;
 }
 
 void Store::set_plan(const std::vector<CaseInfo>& cases,
@@ -104,10 +123,10 @@ void Store::set_plan(const std::vector<CaseInfo>& cases,
   if (campaign.empty())
     for (const auto& info : cases) campaign.push_back(info.name);
   json plan = {{"schema_version", kSchemaVersion},
-            {"cases", std::move(campaign)},
-            {"profile", cases.empty() ? "" : cases.front().profile},
-            {"fingerprint", context.value("fingerprint", "")},
-            {"context", context}};
+               {"cases", std::move(campaign)},
+               {"profile", cases.empty() ? "" : cases.front().profile},
+               {"fingerprint", context.value("fingerprint", "")},
+               {"context", context}};
   set_plan(std::move(plan));
 }
 
@@ -120,13 +139,15 @@ void Store::set_context(const json& context) {
   catalog_.plan["context"] = context;
 }
 
-void Store::finish() {
+std::vector<CaseRecord> Store::finish() {
   const json& plan = catalog_.plan;
-  const json context = plan.is_object() ? plan.value("context", json::object())
-                                        : json::object();
+  const json context =
+      plan.is_object() ? plan.value("context", json::object()) : json::object();
+  auto cases = catalog_.summaries();
   write_atomically(
       catalog_.directory() / "results.json",
-      results_text(results_json(cases(), catalog_.order(), context)));
+      results_text(results_json(cases, catalog_.order(), context)));
+  return cases;
 }
 
 }  // namespace physinv

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -39,7 +40,8 @@ class Store {
 
   /// On disk when it returns. A stage that the case already has with a result
   /// is left as it is.
-  void append(const CaseInfo& info, const CaseData& data,
+  void append(const CaseInfo& info,
+              const CaseData& data,
               const StageRecord& record);
 
   /// What is asked for; in a shard, `campaign` names the cases of the whole
@@ -54,15 +56,19 @@ class Store {
   std::vector<CaseRecord> cases() const { return catalog_.cases(); }
   const Catalog& catalog() const { return catalog_; }
 
-  /// Writes results.json, derived from everything else.
-  void finish();
+  /// Writes results.json, derived from everything else. Returns the cases it
+  /// describes, without curves and arrays.
+  std::vector<CaseRecord> finish();
 
  private:
   Store() = default;
+  CaseFile& open_case(const std::string& name,
+                      const std::filesystem::path& path);
 
   DirectoryLock lock_;
   Catalog catalog_;
   Journal journal_;
+  std::map<std::string, CaseFile> open_;  ///< of cases with stages to come
 };
 
 }  // namespace physinv

@@ -120,6 +120,21 @@ TEST(GradientDescent, CountsAddUp) {
   EXPECT_EQ(written, made + gd.skipped_trials());
 }
 
+// The start is iterate 0; a problem's numbers have no gaps up to its end.
+TEST(GradientDescent, AnnouncesEveryIterateWithItsNumber) {
+  const Index n = 40;
+  std::vector<Index> next(static_cast<std::size_t>(n), 0);
+  GradientDescent gd({.skip_zero_gradient = false});
+  drive(gd, table(n), cue(n), [&](const GradientDescent& g) {
+    for (const Index i : g.accepted()) {
+      const auto k = static_cast<std::size_t>(i);
+      EXPECT_EQ(g.iterations()[k], next[k]++);
+    }
+  });
+  for (std::size_t k = 0; k < next.size(); ++k)
+    EXPECT_EQ(gd.iterations()[k], next[k] - 1);
+}
+
 TEST(GradientDescent, DescendsAndConverges) {
   Batch<double> x0(2, 3);
   x0 << 0.5, -1, 2, 1, 0.3, -0.7;

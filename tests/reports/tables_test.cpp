@@ -53,9 +53,9 @@ TEST(Tables, MarkdownIsAligned) {
   EXPECT_EQ(text,
             "**Table 4 · Better, or equal [%]**\n\n"
             "| equality | JPO, better | paper | NA \"x\" a\\|b |\n"
-            "| -------- | ----------: | ----: | -----------: |\n"
-            "| strict   |  44.2 ± 2.0 |  44.3 |      not run |\n"
-            "| tol      |           – |       |      1.0e-09 |\n"
+            "| -------- | ----------: | ----: | ----------: |\n"
+            "| strict   |  44.2 ± 2.0 |  44.3 |     not run |\n"
+            "| tol      |           – |       |     1.0e-09 |\n"
             "\nMean over seeds.\n");
 }
 
@@ -70,15 +70,15 @@ TEST(Tables, TextKeepsTheWidth) {
             "Table 4 · Better, or equal [%]\n"
             "equality  JPO, better  paper  NA \"x\" a|b\n"
             "────────────────────────────────────────\n"
-            "strict     44.2 ± 2.0   44.3      not run\n"
-            "tol                 –             1.0e-09\n"
+            "strict     44.2 ± 2.0   44.3     not run\n"
+            "tol                 –            1.0e-09\n"
             "Mean over seeds.\n");
 }
 
 TEST(Tables, ShortRowsAndNoColumns) {
   const Table table{.id = "t", .columns = {"a"}, .rows = {{"r", {}}}};
   EXPECT_NE(to_markdown(table).find("–"), std::string::npos);
-  EXPECT_FALSE(render_text({.id = "t"}, 80).empty());
+  EXPECT_EQ(render_text({.id = "t", .title = "T"}, 80), "T\n");
   EXPECT_EQ(to_csv({.id = "t", .corner = "c"}), "c\r\n");
 }
 

@@ -68,6 +68,22 @@ TEST(JpoReport, TablesHoldMeansAndSpreads) {
   EXPECT_EQ(table(s, "table3").rows[0].cells[1].text, "not run");
 }
 
+TEST(JpoReport, PaperNumbersStandBeside) {
+  JpoReportOptions options = kOptions;
+  options.experiment = "jpo/billiards";
+  options.table3_sizes = {4};
+  const Published published(PHYSINV_SOURCE_DIR "/reports/published");
+  const Results results;
+  const Section s = jpo_section(options, results, published);
+  for (const char* id : {"table2", "table3", "table4", "table5"}) {
+    for (const Cell& cell : table(s, id).rows[0].cells) {
+      EXPECT_TRUE(cell.paper) << id;
+    }
+  }
+  EXPECT_EQ(*table(s, "table2").rows[0].cells[0].paper, 21.5);
+  EXPECT_EQ(*table(s, "table4").rows[0].cells[0].paper, 44.3);
+}
+
 TEST(JpoReport, FiguresHoldWhatIsThere) {
   const Results results = some_results();
   const Section s = jpo_section(kOptions, results, {});

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 
 #include "suite/harness/registry.h"
@@ -17,7 +19,8 @@ class CampaignTest : public ::testing::Test {
  protected:
   CampaignTest() {
     registry_.add(fake::experiment());
-    std::string pattern = (fs::temp_directory_path() / "campaignXXXXXX").string();
+    std::string pattern =
+        (fs::temp_directory_path() / "campaignXXXXXX").string();
     root_ = mkdtemp(pattern.data());
     sink_ = std::fopen("/dev/null", "w");
   }
@@ -26,19 +29,21 @@ class CampaignTest : public ::testing::Test {
     fs::remove_all(root_);
   }
 
-  CampaignResult run(const std::string& profile, CampaignOptions options,
+  CampaignResult run(const std::string& profile,
+                     CampaignOptions options,
                      bool backwards = false) {
     auto cases = registry_.expand(profile);
     if (backwards) std::reverse(cases.begin(), cases.end());
     options.trace = true;
-    return run_campaign(prepare(std::move(cases)), options, {},
-                        {.stream = sink_});
+    return run_campaign(
+        prepare(std::move(cases)), options, {}, {.stream = sink_});
   }
 
   /// Everything that must not depend on how a campaign is run.
   static std::string bits(const fs::path& dir) {
     std::map<std::string, std::string> stages;
-    for (const auto& c : load_results(dir).cases()) {
+    const Results results = load_results(dir);
+    for (const auto& c : results.cases()) {
       for (const auto& s : c.stages) {
         std::string all = s.key + s.trajectory;
         const auto add = [&](const auto& m) {

@@ -29,9 +29,11 @@ class Cubic final : public Problem<T>, public Vjp<T> {
 
   Shape shape() const override { return {2, 2, 1}; }
   Vector<double> start() const override { return Vector<double>::Ones(2); }
-  Samples<double> sample(Index first, Index count,
+  Samples<double> sample(Index first,
+                         Index count,
                          const Rng& rng) const override {
-    Samples<double> s{Batch<double>(2, count), Batch<double>(2, count),
+    Samples<double> s{Batch<double>(2, count),
+                      Batch<double>(2, count),
                       Batch<double>(1, count)};
     for (Index i = 0; i < count; ++i) {
       Stream stream = rng.child(static_cast<std::uint64_t>(first + i)).stream();
@@ -43,21 +45,28 @@ class Cubic final : public Problem<T>, public Vjp<T> {
     }
     return s;
   }
-  void forward(BatchIn<T> x, BatchIn<T> given, BatchOut<T> y,
+  void forward(BatchIn<T> x,
+               BatchIn<T> given,
+               BatchOut<T> y,
                Workspace&) const override {
     const T slope = static_cast<T>(options_.slope);
     for (Index i = 0; i < x.cols(); ++i)
       for (Index j = 0; j < 2; ++j)
         y(j, i) = x(j, i) * x(j, i) * x(j, i) + slope * x(j, i) + given(0, i);
   }
-  void linearize(BatchIn<T> x, BatchIn<T> given, BatchOut<T> y,
+  void linearize(BatchIn<T> x,
+                 BatchIn<T> given,
+                 BatchOut<T> y,
                  Tape& tape) const override {
     Workspace none;
     forward(x, given, y, none);
     auto kept = tape.slot<T>(0, 2, x.cols());
-    kept = (T(3) * x.array().square() + static_cast<T>(options_.slope)).matrix();
+    kept =
+        (T(3) * x.array().square() + static_cast<T>(options_.slope)).matrix();
   }
-  void pullback(const Tape& tape, BatchIn<T> y_bar, BatchOut<T> x_bar,
+  void pullback(const Tape& tape,
+                BatchIn<T> y_bar,
+                BatchOut<T> x_bar,
                 Workspace&) const override {
     x_bar = tape.view<T>(0).cwiseProduct(y_bar);
   }
@@ -229,10 +238,14 @@ Experiment experiment() {
   e.methods = {chain("descend", {descend}),
                chain("walk", {fit, std::make_shared<Descend>("refine", 0.05)}),
                chain("stroll", {fit, std::make_shared<Descend>("refine", 0.1)}),
-               ends("diverge"), ends("throws"), ends("exhaust"), ends("die"),
+               ends("diverge"),
+               ends("throws"),
+               ends("exhaust"),
+               ends("die"),
                ends("sleep"),
-               chain("broken", {std::make_shared<Ends>("throws"),
-                                std::make_shared<Descend>("refine", 0.1)})};
+               chain("broken",
+                     {std::make_shared<Ends>("throws"),
+                      std::make_shared<Descend>("refine", 0.1)})};
   const std::vector<std::string> good = {"descend", "walk", "stroll"};
   e.profiles = {
       {"smoke", {{good, {4}, {0}, 10}, {{"diverge"}, {4}, {0}, 10}}},

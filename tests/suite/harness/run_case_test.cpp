@@ -29,7 +29,10 @@ class RunCase : public ::testing::Test {
                                       int threads = 1) {
     std::vector<StageRecord> records;
     Threads pool(threads);
-    run_case(c, std::move(earlier), {.trace = true, .revision = "r"}, &pool,
+    run_case(c,
+             std::move(earlier),
+             {.trace = true, .revision = "r"},
+             &pool,
              {.started = {}, .progress = {}, .finished = [&](const auto& r) {
                 records.push_back(r);
               }});

@@ -79,7 +79,8 @@ std::pair<CaseInfo, Index> stage_number(std::uint64_t i) {
 }
 
 /// Appends stage after stage, telling each number once it is durable.
-[[noreturn]] void write_until_killed(const fs::path& out, std::uint64_t from,
+[[noreturn]] void write_until_killed(const fs::path& out,
+                                     std::uint64_t from,
                                      int told) {
   try {
     Store store(out);
@@ -134,8 +135,7 @@ TEST(Crash, KilledAtAnyMomentNothingIsLostOrDoubled) {
   }
   std::size_t stages = 0;
   const auto results = load_results(out.path());
-  for (const auto& c : results.cases())
-    stages += c.stages.size();
+  for (const auto& c : results.cases()) stages += c.stages.size();
   EXPECT_EQ(stages, next);
   EXPECT_GT(next, 20U);
 }

@@ -51,7 +51,8 @@ TEST_F(JournalTest, TornLastLineIsNamedAndCutOffByTheWriterOnly) {
     write_file(path_, bytes_.substr(0, size));
     const auto text = read_journal(path_);
     ASSERT_EQ(text.entries.size(), 2U) << size;
-    ASSERT_TRUE(contains(text.warning, fmt::format("line 4, at byte {}", last_)));
+    ASSERT_TRUE(
+        contains(text.warning, fmt::format("line 4, at byte {}", last_)));
     ASSERT_EQ(std::filesystem::file_size(path_), size);
   }
   auto journal = Journal::resume(path_, read_journal(path_));

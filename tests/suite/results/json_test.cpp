@@ -42,8 +42,7 @@ TEST(Json, ScalarsRoundTripAsText) {
 TEST(Json, CaseRoundTrips) {
   auto info = sample_case("na", 128, ~0ULL);
   info.precision = Precision::f64;
-  const auto back =
-      case_from_json(nlohmann::json::parse(to_json(info).dump()));
+  const auto back = case_from_json(nlohmann::json::parse(to_json(info).dump()));
   EXPECT_EQ(back.name, info.name);
   EXPECT_EQ(back.n, info.n);
   EXPECT_EQ(back.seed, info.seed);

@@ -24,7 +24,9 @@ class MergeTest : public testing::Test {
 
   /// Runs the cases for which `mine` holds, the last one first.
   template <class F>
-  void run(const std::string& where, F&& mine, std::uint64_t times = 0,
+  void run(const std::string& where,
+           F&& mine,
+           std::uint64_t times = 0,
            const std::string& fingerprint = "f") {
     Store store(out_ / where);
     std::vector<CaseInfo> chosen;
@@ -81,8 +83,9 @@ TEST_F(MergeTest, SameStageTwiceMayDifferInTimesOnly) {
   auto stage = sample_stage(cases_[2], 1);
   stage.x(0, 0) += 1e-16 + stage.x(0, 0);
   other.append(cases_[2], sample_data(cases_[2]), stage);
-  const auto message = message_of<UnreadableInput>(
-      [&] { merge({out_ / "a", out_ / "c"}, out_ / "wrong"); });
+  const auto message = message_of<UnreadableInput>([&] {
+    merge({out_ / "a", out_ / "c"}, out_ / "wrong");
+  });
   EXPECT_TRUE(contains(message, (out_ / "a").string())) << message;
   EXPECT_TRUE(contains(message, (out_ / "c").string())) << message;
   EXPECT_TRUE(contains(message, cases_[2].name)) << message;
@@ -90,8 +93,9 @@ TEST_F(MergeTest, SameStageTwiceMayDifferInTimesOnly) {
 
 TEST_F(MergeTest, OtherBuildIsRefused) {
   run("even", even), run("odd", odd, 0, "g");
-  const auto message = message_of<UnreadableInput>(
-      [&] { merge({out_ / "even", out_ / "odd"}, out_ / "merged"); });
+  const auto message = message_of<UnreadableInput>([&] {
+    merge({out_ / "even", out_ / "odd"}, out_ / "merged");
+  });
   EXPECT_TRUE(contains(message, "fingerprint, \"f\" and \"g\"")) << message;
   EXPECT_FALSE(std::filesystem::exists(out_ / "merged"));
 }

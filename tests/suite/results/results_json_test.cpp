@@ -20,9 +20,10 @@ CaseRecord sample_record(const std::string& method, Index n) {
 }
 
 json parsed(const std::vector<CaseRecord>& cases,
-            const std::vector<std::string>& order, const json& context = {}) {
-  return json::parse(results_text(
-      results_json(cases, order, context.is_null() ? json::object() : context)));
+            const std::vector<std::string>& order,
+            const json& context = {}) {
+  return json::parse(results_text(results_json(
+      cases, order, context.is_null() ? json::object() : context)));
 }
 
 std::string type_of(const json& value) {
@@ -33,7 +34,8 @@ std::string type_of(const json& value) {
 
 /// Texts in angle brackets are types, everything else is meant literally; an
 /// object of the pattern lists all keys.
-void expect_pattern(const json& pattern, const json& value,
+void expect_pattern(const json& pattern,
+                    const json& value,
                     const std::string& where) {
   if (pattern.is_object()) {
     ASSERT_TRUE(value.is_object()) << where;

@@ -8,7 +8,8 @@
 namespace physinv {
 namespace {
 
-CaseRecord sample_record(const std::string& method, Index n,
+CaseRecord sample_record(const std::string& method,
+                         Index n,
                          std::uint64_t seed) {
   CaseRecord c;
   c.info = sample_case(method, n, seed);
@@ -19,9 +20,8 @@ CaseRecord sample_record(const std::string& method, Index n,
 TEST(Results, FindsByWhatACaseIs) {
   auto lost = sample_record("na", 8, 1);
   lost.stages[1].stop = Stop::failed;
-  const Results results({sample_record("jpo", 64, 1),
-                         sample_record("jpo", 8, 0),
-                         lost});
+  const Results results(
+      {sample_record("jpo", 64, 1), sample_record("jpo", 8, 0), lost});
   const auto* stage = results.find("jpo/sample", "jpo", 8, 0, "refine");
   ASSERT_NE(stage, nullptr);
   EXPECT_EQ(stage->stage, "refine");
@@ -61,8 +61,8 @@ TEST(Published, MalformedFileIsNamed) {
   for (const std::string text :
        {"{", "{}", R"({"values": [{"experiment": "a", "quantity": 3}]})"}) {
     write_file(directory / "bad.json", text);
-    const auto message = message_of<std::runtime_error>(
-        [&] { Published p(directory.path()); });
+    const auto message =
+        message_of<std::runtime_error>([&] { Published p(directory.path()); });
     EXPECT_TRUE(contains(message, "bad.json")) << message;
   }
   EXPECT_THROW(Published(directory / "nowhere"), std::runtime_error);

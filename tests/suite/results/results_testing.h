@@ -43,7 +43,8 @@ class TemporaryDirectory {
   std::filesystem::path path_;
 };
 
-inline CaseInfo sample_case(const std::string& method, Index n,
+inline CaseInfo sample_case(const std::string& method,
+                            Index n,
                             std::uint64_t seed) {
   CaseInfo info;
   info.experiment = "jpo/sample";
@@ -80,8 +81,10 @@ inline CaseData sample_data(const CaseInfo& info) {
 }
 
 /// The results depend on the case and stage alone, the times on `run`.
-inline StageRecord sample_stage(const CaseInfo& info, Index position,
-                                std::uint64_t run = 0, Index parameters = 50) {
+inline StageRecord sample_stage(const CaseInfo& info,
+                                Index position,
+                                std::uint64_t run = 0,
+                                Index parameters = 50) {
   const auto k = static_cast<std::size_t>(position);
   const std::uint64_t salt = hash_text(info.keys[k]);
   StageRecord r;
@@ -129,11 +132,10 @@ inline StageRecord sample_stage(const CaseInfo& info, Index position,
 template <class M>
 bool same_bits(const M& a, const M& b) {
   return a.rows() == b.rows() && a.cols() == b.cols() &&
-         (a.size() == 0 ||
-          std::memcmp(a.data(),
-                      b.data(),
-                      static_cast<std::size_t>(a.size()) * sizeof(double)) ==
-              0);
+         (a.size() == 0 || std::memcmp(a.data(),
+                                       b.data(),
+                                       static_cast<std::size_t>(a.size()) *
+                                           sizeof(double)) == 0);
 }
 
 /// Every field and every bit.

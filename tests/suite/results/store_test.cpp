@@ -51,8 +51,8 @@ TEST(CaseFile, EveryFlippedBitIsFound) {
     auto wrong = bytes;
     wrong[i] = static_cast<char>(wrong[i] ^ (1 << (i % 8)));
     write_file(out / "b.h5", wrong);
-    const auto message = message_of<StoreError>(
-        [&] { CaseFile(out / "b.h5", info.name); });
+    const auto message =
+        message_of<StoreError>([&] { CaseFile(out / "b.h5", info.name); });
     ASSERT_TRUE(contains(message, "b.h5 is damaged")) << i;
     write_file(out / "b.h5", bytes.substr(0, i));
     ASSERT_THROW(CaseFile(out / "b.h5", info.name), StoreError) << i;
@@ -61,7 +61,9 @@ TEST(CaseFile, EveryFlippedBitIsFound) {
 
 class StoreTest : public testing::Test {
  protected:
-  void append(Store& store, const CaseInfo& info, Index position,
+  void append(Store& store,
+              const CaseInfo& info,
+              Index position,
               std::uint64_t run = 0) {
     store.append(info, sample_data(info), sample_stage(info, position, run));
   }
@@ -176,9 +178,9 @@ TEST_F(StoreTest, FileInsteadOfADirectory) {
 
 TEST_F(StoreTest, UnwritableDirectory) {
   const bool root = geteuid() == 0;
-  fs::permissions(out_.path(), fs::perms::owner_read | fs::perms::owner_exec |
-                                   fs::perms::others_read |
-                                   fs::perms::others_exec);
+  fs::permissions(out_.path(),
+                  fs::perms::owner_read | fs::perms::owner_exec |
+                      fs::perms::others_read | fs::perms::others_exec);
   if (root && seteuid(65534) != 0) GTEST_SKIP() << "cannot give up root";
   const auto message = message_of<StoreError>([&] { Store s(out_.path()); });
   ASSERT_EQ(seteuid(root ? 0 : geteuid()), 0);
@@ -189,7 +191,8 @@ TEST_F(StoreTest, UnwritableDirectory) {
 
 /// In a child process: appends until the disk is full, then checks that the
 /// store says so, is whole and goes on once there is room. 0 if so.
-int fill_the_disk(const fs::path& out, const std::function<void()>& make_full,
+int fill_the_disk(const fs::path& out,
+                  const std::function<void()>& make_full,
                   const std::function<void()>& make_room) {
   int kept = 0;
   std::string message;
@@ -237,19 +240,17 @@ int exit_code_of_child(F&& body) {
 }
 
 TEST_F(StoreTest, FileSizeLimit) {
-  EXPECT_EQ(exit_code_of_child([&] {
-              const auto limit = [](rlim_t bytes) {
-                const rlimit value{.rlim_cur = bytes,
-                                   .rlim_max = RLIM_INFINITY};
-                setrlimit(RLIMIT_FSIZE, &value);
-              };
-              std::signal(SIGXFSZ, SIG_IGN);
-              return fill_the_disk(
-                  out_.path(),
-                  [&] { limit(20000); },
-                  [&] { limit(RLIM_INFINITY); });
-            }),
-            0);
+  EXPECT_EQ(
+      exit_code_of_child([&] {
+        const auto limit = [](rlim_t bytes) {
+          const rlimit value{.rlim_cur = bytes, .rlim_max = RLIM_INFINITY};
+          setrlimit(RLIMIT_FSIZE, &value);
+        };
+        std::signal(SIGXFSZ, SIG_IGN);
+        return fill_the_disk(
+            out_.path(), [&] { limit(20000); }, [&] { limit(RLIM_INFINITY); });
+      }),
+      0);
 }
 
 }  // namespace

@@ -1,0 +1,66 @@
+#include "baselines/supervised.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/bits.h"
+#include "tests/support/quadratic.h"
+
+namespace physinv::test {
+namespace {
+
+constexpr Index kCount = 24;
+
+double training_loss(const Outcome& out) {
+  return out.arrays.at("training_loss")(0, 0);
+}
+
+TEST(Supervised, LearnsAndGeneralises) {
+  const auto stage = supervised_fit({.step = {.rate = 1e-2}});
+  for (const auto precision : {Precision::f32, Precision::f64}) {
+    StageBench first(*stage, kCount, 1), bench(*stage, kCount, 600);
+    const double before = training_loss(first.run(nullptr, precision));
+    const Outcome out = bench.run(nullptr, precision);
+    EXPECT_LT(training_loss(out), 0.05 * before);
+    EXPECT_LT(bench.loss(out.x).mean(),
+              0.3 * bench.probe.curve().loss.col(0).mean());
+    EXPECT_TRUE((out.iterations.array() == 600).all());
+  }
+}
+
+// The prediction of the last network, be it better or worse than before.
+TEST(Supervised, SelectsNoBestIterate) {
+  const auto stage = supervised_fit({.step = {.rate = 0.3}});
+  StageBench bench(*stage, kCount, 60);
+  const Outcome out = bench.run();
+  const Batch<double>& curve = bench.probe.curve().loss;
+  const Vector<double> last = curve.rightCols(1);
+  EXPECT_TRUE(same_bits(bench.loss(out.x), last));
+  EXPECT_GT((last - curve.rowwise().minCoeff()).maxCoeff(), 0);
+}
+
+// Nothing of the problems it is asked about enters the training: neither
+// simulations nor gradients are made, and other problems leave the weights.
+TEST(Supervised, SeesOnlyTheLabelledSamples) {
+  const auto stage = supervised_fit();
+  StageBench bench(*stage, kCount, 20);
+  const Outcome out = bench.run();
+  const Counts& counts = bench.oracle.counts();
+  EXPECT_EQ(counts[Counter::forward], 0U);
+  EXPECT_EQ(counts[Counter::vjp], 0U);
+  EXPECT_EQ(counts[Counter::network_forward],
+            static_cast<std::uint64_t>(20 * kCount));
+  const auto broken = quadratic({.broken_above = -1e9});
+  StageBench other(*stage, kCount, 20, broken);
+  EXPECT_TRUE(same_bits(other.run().x, out.x));
+}
+
+TEST(Supervised, TargetsAreScaledLikeTheOutput) {
+  const auto stage = supervised_fit({.step = {.rate = 1e-2}});
+  StageBench bench(*stage, kCount, 600, quadratic(), quadratic_setting(0.5));
+  const Outcome out = bench.run();
+  EXPECT_LT(bench.loss(out.x).mean(),
+            0.3 * bench.probe.curve().loss.col(0).mean());
+}
+
+}  // namespace
+}  // namespace physinv::test

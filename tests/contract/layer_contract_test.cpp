@@ -1,0 +1,167 @@
+// The networks of every registered experiment, as it configures them. Single
+// layers and activations: tests/suite/nn.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+#include "optimizers/network_model.h"
+#include "tests/support/gradient_check.h"
+#include "tests/support/registered.h"
+#include "tests/support/tolerance.h"
+
+namespace physinv::test {
+namespace {
+
+/// Parameters as the papers print them.
+const std::map<std::string, Index> kParameters = {{"jpo/billiards", 37506}};
+
+struct Role {
+  ExperimentPtr experiment;
+  bool surrogate;
+};
+
+std::vector<Role> roles() {
+  std::vector<Role> all;
+  for (const auto& e : registry().experiments()) {
+    if (e->setting.predictor.recipe.make_double) all.push_back({e, false});
+    if (e->setting.surrogate.recipe.make_double) all.push_back({e, true});
+  }
+  return all;
+}
+
+class LayerContract : public testing::TestWithParam<Role> {
+ protected:
+  LayerContract() {
+    const auto& experiment = *GetParam().experiment;
+    const auto problem = experiment.problem.make<double>();
+    const auto& setting = experiment.setting;
+    role_ = GetParam().surrogate ? setting.surrogate : setting.predictor;
+    const Shape shape = problem->shape();
+    net_ = role_.recipe.make<double>(
+        input_rows(role_.inputs, shape),
+        GetParam().surrogate ? shape.observations : shape.unknowns);
+    const auto s =
+        problem->sample_labelled(0, kCount, Rng::root("layer_contract", 1));
+    in_ = assemble<double>(role_.inputs, s.x, s.given, s.y);
+    p_.resize(net_->parameter_count());
+    state_.resize(net_->state_count());
+    net_->initialize(Rng::root("layer_contract", 2), p_, state_);
+    for (Index i = 0; i < p_.size(); ++i)
+      p_(i) += 0.05 * std::cos(0.9 * double(i));
+    out_bar_ = Batch<double>::NullaryExpr(
+        net_->outputs(), kCount, [](Index i, Index j) {
+          return std::sin(1.7 * double(i) + 0.6 * double(j) + 1);
+        });
+  }
+
+  Batch<double> forward(const Vector<double>& p,
+                        const Batch<double>& in,
+                        Pass pass = {}) {
+    Batch<double> out(net_->outputs(), in.cols());
+    net_->forward(p, state_, in, out, tape_, work_, pass);
+    return out;
+  }
+  double value(const Vector<double>& p, const Batch<double>& in, Pass pass) {
+    return (forward(p, in, pass).array() * out_bar_.array()).sum();
+  }
+
+  static constexpr Index kCount = 5;
+  NetworkRole role_;
+  std::unique_ptr<Network<double>> net_;
+  Batch<double> in_, out_bar_;
+  Vector<double> p_, state_;
+  Tape tape_;
+  Workspace work_;
+};
+
+TEST_P(LayerContract, HasTheParametersOfThePaper) {
+  Index sum = 0;
+  for (const TensorInfo& t : net_->tensors()) {
+    EXPECT_EQ(t.offset, sum) << t.name;
+    EXPECT_GT(t.size, 0) << t.name;
+    EXPECT_GT(t.fan_in, 0) << t.name;
+    sum += t.size;
+  }
+  EXPECT_EQ(sum, net_->parameter_count());
+  const auto printed = kParameters.find(GetParam().experiment->name);
+  if (printed != kParameters.end()) {
+    EXPECT_EQ(sum, printed->second);
+  }
+}
+
+TEST_P(LayerContract, GradientsAgreeWithCentralDifferences) {
+  for (const bool training : {false, true}) {
+    const Pass pass{.training = training, .fixed_input = training};
+    Vector<double> p_bar(p_.size());
+    Batch<double> in_bar(in_.rows(), kCount);
+    VectorOut<double> p_ref(p_bar);
+    BatchOut<double> in_ref(in_bar);
+    forward(p_, in_, pass);
+    net_->backward(p_, tape_, out_bar_, &p_ref, &in_ref, work_);
+
+    // Every tensor's first, middle and last entries, and all inputs.
+    Index checked = 0, asked = in_.size();
+    const double h = 1e-6;
+    const auto expect_slope = [&](double& at, double bar, const auto& name) {
+      const double old = at;
+      const auto slope = [&](double step) {
+        at = old + step;
+        const double up = value(p_, in_, pass);
+        at = old - step;
+        const double down = value(p_, in_, pass);
+        at = old;
+        return (up - down) / (2 * step);
+      };
+      const double d = slope(h);
+      if (std::abs(d - slope(4 * h)) > 1e-6 * (1 + std::abs(d))) return;
+      ++checked;
+      EXPECT_NEAR(bar, d, 1e-6 * (1 + std::abs(d))) << name;
+    };
+    for (const TensorInfo& t : net_->tensors()) {
+      for (const Index k : {Index{0}, t.size / 2, t.size - 1}) {
+        expect_slope(p_(t.offset + k), p_bar(t.offset + k), t.name);
+        ++asked;
+      }
+    }
+    for (Index i = 0; i < in_.size(); ++i)
+      expect_slope(in_(i), in_bar(i), "input");
+    EXPECT_GE(checked, asked / 2) << "too many kinks";
+
+    // All at once: the directional derivative in parameters and inputs.
+    const Vector<double> p_dot = Vector<double>::NullaryExpr(
+        p_.size(), [](Index i) { return std::cos(1.3 * double(i)); });
+    const Batch<double> in_dot = out_bar_(0, 0) * in_;
+    const double step = 1e-7;
+    const double pushed =
+        (value(p_ + step * p_dot, in_ + step * in_dot, pass) -
+         value(p_ - step * p_dot, in_ - step * in_dot, pass)) /
+        (2 * step);
+    const double pulled =
+        p_bar.dot(p_dot) + (in_bar.array() * in_dot.array()).sum();
+    EXPECT_NEAR(pulled, pushed, 1e-5 * (1 + std::abs(pushed)));
+  }
+}
+
+TEST_P(LayerContract, FloatAgreesWithDouble) {
+  const auto single = role_.recipe.make<float>(net_->inputs(), net_->outputs());
+  const Vector<float> p = p_.cast<float>(), s = state_.cast<float>();
+  Batch<float> out(net_->outputs(), kCount);
+  Tape tape;
+  Workspace work;
+  single->forward(p, s, in_.cast<float>(), out, tape, work);
+  EXPECT_TRUE(Comparator(Tolerance<float>::relative, 0)(out, forward(p_, in_)));
+}
+
+INSTANTIATE_TEST_SUITE_P(Registered,
+                         LayerContract,
+                         testing::ValuesIn(roles()),
+                         [](const testing::TestParamInfo<Role>& at) {
+                           return test_name(at.param.experiment->name) +
+                                  (at.param.surrogate ? "_surrogate"
+                                                      : "_predictor");
+                         });
+
+}  // namespace
+}  // namespace physinv::test

@@ -1,0 +1,193 @@
+// What every method of every registered experiment promises
+// (suite/core/method.h), on small cases.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "suite/nn/mlp.h"
+#include "tests/support/bits.h"
+#include "tests/support/quadratic.h"
+#include "tests/support/registered.h"
+
+namespace physinv::test {
+namespace {
+
+struct Cell {
+  ExperimentPtr experiment;
+  std::string method;
+};
+
+std::vector<Cell> cells() {
+  std::vector<Cell> all;
+  for (const auto& e : registry().experiments())
+    for (const Method& m : e->methods) all.push_back({e, m.id});
+  return all;
+}
+
+std::string cell_name(const testing::TestParamInfo<Cell>& info) {
+  return test_name(info.param.experiment->name + "_" + info.param.method);
+}
+
+class MethodContract : public testing::TestWithParam<Cell> {
+ protected:
+  static Case make(Index n,
+                   Index iterations,
+                   Precision precision = Precision::f32) {
+    return small_case(
+        GetParam().experiment, GetParam().method, n, iterations, precision);
+  }
+  static const Stage& stage(const Case& c, const StageRecord& r) {
+    return *c.method->chain[static_cast<std::size_t>(r.position)];
+  }
+};
+
+TEST_P(MethodContract, ObeysItsBudgetAndLeavesFiniteEstimates) {
+  for (const auto precision : {Precision::f32, Precision::f64}) {
+    for (const Index iterations : {0, 1, 5}) {
+      const Case c = make(3, iterations, precision);
+      const Shape shape = c.experiment->problem.make<double>()->shape();
+      const auto records = run(c);
+      ASSERT_EQ(records.size(), c.method->chain.size());
+      for (const StageRecord& r : records) {
+        SCOPED_TRACE(r.stage);
+        ASSERT_NE(r.stop, Stop::failed) << r.message;
+        ASSERT_NE(r.stop, Stop::skipped);
+        EXPECT_LE(r.iterations, iterations);
+        EXPECT_EQ(r.x.rows(), shape.unknowns);
+        EXPECT_EQ(r.x.cols(), 3);
+        EXPECT_TRUE(r.x.allFinite());
+        ASSERT_EQ(r.loss.size(), 3);
+        EXPECT_TRUE(r.loss.allFinite());
+        EXPECT_EQ(r.status.size(), 3U);
+        ASSERT_EQ(r.example_iterations.size(), 3);
+        EXPECT_LE(r.example_iterations.maxCoeff(), iterations);
+        EXPECT_EQ(r.example_evaluations.size(), 3);
+        for (const auto& [name, array] : r.arrays)
+          EXPECT_TRUE(array.allFinite()) << name;
+      }
+    }
+  }
+}
+
+TEST_P(MethodContract, CurvesHoldEveryExampleAtEveryPoint) {
+  const Case c = make(3, 12);
+  const Index unknowns = c.experiment->problem.make<double>()->shape().unknowns;
+  for (const StageRecord& r : run(c)) {
+    SCOPED_TRACE(r.stage);
+    const Curve& curve = r.curve;
+    const Index points = curve.points();
+    ASSERT_GT(points, 0);
+    EXPECT_EQ(curve.iteration.front(), 0);
+    EXPECT_EQ(curve.iteration.back(), static_cast<double>(r.iterations));
+    EXPECT_EQ(curve.seconds.size(), curve.iteration.size());
+    EXPECT_EQ(curve.evaluations.size(), curve.iteration.size());
+    for (std::size_t k = 1; k < curve.iteration.size(); ++k) {
+      EXPECT_LT(curve.iteration[k - 1], curve.iteration[k]);
+      EXPECT_LE(curve.seconds[k - 1], curve.seconds[k]);
+      EXPECT_LE(curve.evaluations[k - 1], curve.evaluations[k]);
+    }
+    EXPECT_EQ(curve.loss.rows(), 3);
+    EXPECT_EQ(curve.loss.cols(), points);
+    EXPECT_EQ(curve.x.rows(), 3 * unknowns);
+    EXPECT_EQ(curve.x.cols(), points);
+    EXPECT_TRUE(curve.loss.allFinite());
+    EXPECT_TRUE(curve.x.allFinite());
+  }
+}
+
+TEST_P(MethodContract, RepeatsItselfForAnyThreadsAndWhenResumed) {
+  for (const auto precision : {Precision::f32, Precision::f64}) {
+    const Case c = make(3, 5, precision);
+    const auto once = run(c), again = run(c), threaded = run(c, {}, 3);
+    ASSERT_EQ(once.size(), again.size());
+    ASSERT_EQ(once.size(), threaded.size());
+    for (std::size_t i = 0; i < once.size(); ++i) {
+      expect_same(once[i], again[i]);
+      expect_same(once[i], threaded[i]);
+    }
+    if (once.size() < 2) continue;
+    const auto rest = run(c, {once.front()});
+    ASSERT_EQ(rest.size() + 1, once.size());
+    for (std::size_t i = 0; i < rest.size(); ++i)
+      expect_same(once[i + 1], rest[i]);
+  }
+}
+
+TEST_P(MethodContract, TouchesOnlyWhatItDeclares) {
+  const Case c = make(3, 5);
+  for (const StageRecord& r : run(c)) {
+    SCOPED_TRACE(r.stage);
+    const Needs needs = stage(c, r).needs();
+    const auto check = [&](Needs need, Counter counter) {
+      if (contains(needs, need)) return;
+      EXPECT_EQ(r.counts[counter], 0U)
+          << kCounterNames[static_cast<std::size_t>(counter)];
+    };
+    check(Needs::forward, Counter::forward);
+    check(Needs::vjp, Counter::vjp);
+    check(Needs::jacobian, Counter::jacobian);
+    check(Needs::inverse, Counter::inverse);
+    if (contains(needs, Needs::vjp)) {
+      EXPECT_GT(r.counts[Counter::vjp], 0U);
+    }
+    EXPECT_TRUE(contains(c.experiment->problem.provided, needs));
+    EXPECT_TRUE(contains(c.method->needs(), needs));
+  }
+}
+
+// Estimates that are chosen by their loss are no worse than any on the way.
+TEST_P(MethodContract, KeepsTheBestWhereItPromisesTo) {
+  const Case c = make(8, 12, Precision::f64);
+  Vector<double> before;
+  for (const StageRecord& r : run(c)) {
+    const auto algorithm = option(r.options, "algorithm");
+    SCOPED_TRACE(algorithm);
+    for (Index i = 0; i < 8; ++i) {
+      const auto curve = r.curve.loss.row(i);
+      if (algorithm == "jpo" || algorithm == "neural_adjoint")
+        EXPECT_LE(r.loss(i), curve.minCoeff());
+      if (algorithm == "bfgs" || algorithm == "gradient_descent")
+        EXPECT_EQ(r.loss(i), curve.minCoeff());
+      if (r.stage == "refine") EXPECT_LE(r.loss(i), before(i));
+    }
+    before = r.loss;
+  }
+}
+
+// The same method on a problem with a known optimum.
+TEST_P(MethodContract, LowersAQuadratic) {
+  auto experiment = std::make_shared<Experiment>(*GetParam().experiment);
+  experiment->problem = quadratic();
+  const auto net =
+      nn::mlp({.hidden = {16, 16}, .activation = nn::Activation::tanh});
+  experiment->setting.predictor = {{Field::given, Field::observations}, net};
+  experiment->setting.surrogate = {{Field::unknowns, Field::given}, net};
+  if (!contains(experiment->problem.provided, make(3, 1).method->needs()))
+    GTEST_SKIP() << "needs what the quadratic does not provide";
+  const Case c =
+      small_case(experiment, GetParam().method, 16, 600, Precision::f64);
+  const auto records = run(c);
+  const double start = records.front().curve.loss.col(0).mean();
+  for (const StageRecord& r : records) {
+    ASSERT_NE(r.stop, Stop::failed) << r.message;
+    const auto algorithm = option(r.options, "algorithm");
+    SCOPED_TRACE(algorithm);
+    if (algorithm == "surrogate") {
+      EXPECT_LT(r.arrays.at("training_loss")(0, 0), 1);
+    } else if (algorithm == "bfgs" || algorithm == "gradient_descent") {
+      EXPECT_EQ(r.stop, Stop::converged);
+      EXPECT_LT(r.loss.maxCoeff(), 1e-8);
+    } else {
+      EXPECT_LT(r.loss.mean(), 0.9 * start);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Registered,
+                         MethodContract,
+                         testing::ValuesIn(cells()),
+                         cell_name);
+
+}  // namespace
+}  // namespace physinv::test

@@ -1,0 +1,345 @@
+// What every registered problem promises (suite/core/problem.h).
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "tests/support/bits.h"
+#include "tests/support/gradient_check.h"
+#include "tests/support/registered.h"
+#include "tests/support/tolerance.h"
+
+namespace physinv::test {
+namespace {
+
+constexpr Index kCount = 37;  // no multiple of any lane width
+
+/// A problem with its scratch, and its answers by value.
+template <class T>
+struct Bench {
+  explicit Bench(const ProblemRecipe& recipe)
+      : problem(recipe.make<T>()),
+        vjp(dynamic_cast<const Vjp<T>*>(problem.get())),
+        jac(dynamic_cast<const Jacobian<T>*>(problem.get())) {}
+
+  Batch<T> forward(const Batch<T>& x, const Batch<T>& given) {
+    Batch<T> y(problem->shape().observations, x.cols());
+    problem->forward(x, given, y, work);
+    return y;
+  }
+  /// Leaves y of the linearization in `y`.
+  Batch<T> pull(const Batch<T>& x,
+                const Batch<T>& given,
+                const Batch<T>& y_bar) {
+    y.resize(problem->shape().observations, x.cols());
+    Batch<T> x_bar(problem->shape().unknowns, x.cols());
+    vjp->linearize(x, given, y, tape);
+    vjp->pullback(tape, y_bar, x_bar, work);
+    return x_bar;
+  }
+
+  std::unique_ptr<Problem<T>> problem;
+  const Vjp<T>* vjp;
+  const Jacobian<T>* jac;
+  Batch<T> y;
+  Tape tape;
+  Workspace work;
+};
+
+template <class T>
+Batch<T> directions(Index rows, Index cols, double shift) {
+  return Batch<T>::NullaryExpr(rows, cols, [=](Index i, Index j) {
+    return static_cast<T>(std::sin(1.7 * double(i) + 0.9 * double(j) + shift));
+  });
+}
+
+/// A derivative that hardly depends on the step, or nothing at a kink.
+template <class F>
+bool smooth_derivative(F&& along, Vector<double>& d) {
+  d = along(1e-6);
+  const Vector<double> wide = along(4e-6);
+  if (!d.allFinite() || !wide.allFinite()) return false;
+  return (d - wide).cwiseAbs().maxCoeff() <=
+         1e-6 * (1 + d.cwiseAbs().maxCoeff());
+}
+
+class ProblemContract : public testing::TestWithParam<ExperimentPtr> {
+ protected:
+  const ProblemRecipe& recipe() const { return GetParam()->problem; }
+  Samples<double> labelled(Index count = kCount) const {
+    return recipe().make<double>()->sample_labelled(0, count, rng_);
+  }
+  bool provides(Needs n) const { return contains(recipe().provided, n); }
+
+  template <class F>
+  void in_both(F&& check) const {
+    check(float{}), check(double{});
+  }
+
+  const Rng rng_ = Rng::root("problem_contract", 1);
+};
+
+TEST_P(ProblemContract, ShapesAndAbilitiesAreAsDeclared) {
+  in_both([&](auto t) {
+    using T = decltype(t);
+    const auto p = recipe().template make<T>();
+    const Shape s = p->shape();
+    EXPECT_GT(s.unknowns, 0);
+    EXPECT_GT(s.observations, 0);
+    EXPECT_GE(s.given, 0);
+    EXPECT_EQ(p->start().size(), s.unknowns);
+    EXPECT_TRUE(p->start().allFinite());
+    EXPECT_GT(p->operations(), 0);
+    EXPECT_EQ(dynamic_cast<Vjp<T>*>(p.get()) != nullptr, provides(Needs::vjp));
+    EXPECT_EQ(dynamic_cast<Jacobian<T>*>(p.get()) != nullptr,
+              provides(Needs::jacobian));
+    EXPECT_EQ(dynamic_cast<Inverse<T>*>(p.get()) != nullptr,
+              provides(Needs::inverse));
+    EXPECT_EQ(dynamic_cast<Hessian<T>*>(p.get()) != nullptr,
+              provides(Needs::hessian));
+    for (const auto& set : {p->sample(0, 5, rng_), labelled(5)}) {
+      EXPECT_EQ(set.y.rows(), s.observations);
+      EXPECT_EQ(set.given.rows(), s.given);
+      EXPECT_EQ(set.y.cols(), 5);
+      EXPECT_TRUE(set.x.rows() == s.unknowns || set.x.rows() == 0);
+      EXPECT_TRUE(set.x.allFinite() && set.y.allFinite() &&
+                  set.given.allFinite());
+    }
+    EXPECT_EQ(labelled(5).x.rows(), s.unknowns);
+  });
+}
+
+TEST_P(ProblemContract, SamplesSatisfyTheModel) {
+  Bench<double> b(recipe());
+  const auto l = labelled();
+  EXPECT_TRUE(same_bits(b.forward(l.x, l.given), l.y));
+  const auto s = b.problem->sample(0, kCount, rng_);
+  if (s.x.rows() > 0) {
+    EXPECT_TRUE(Comparator(1e-10, 0)(b.forward(s.x, s.given), s.y));
+  }
+}
+
+TEST_P(ProblemContract, SamplesRepeatAndSmallSetsArePrefixes) {
+  const auto expect_part =
+      [](const Samples<double>& all, const Samples<double>& part, Index first) {
+        const Index n = part.count();
+        const auto cut = [&](const Batch<double>& b) {
+          return Batch<double>(b.middleCols(first, n));
+        };
+        EXPECT_TRUE(same_bits(cut(all.x), part.x));
+        EXPECT_TRUE(same_bits(cut(all.y), part.y));
+        EXPECT_TRUE(same_bits(cut(all.given), part.given));
+      };
+  const auto d = recipe().make<double>();
+  const auto f = recipe().make<float>();
+  const Rng other = Rng::root("problem_contract", 2);
+  const auto all = d->sample(0, kCount, rng_);
+  expect_part(all, d->sample(0, 4, rng_), 0);
+  expect_part(all, d->sample(9, 11, rng_), 9);
+  expect_part(all, f->sample(0, kCount, rng_), 0);
+  EXPECT_NE(content_hash(all), content_hash(d->sample(0, kCount, other)));
+  const auto pairs = labelled();
+  expect_part(pairs, d->sample_labelled(0, 4, rng_), 0);
+  expect_part(pairs, d->sample_labelled(9, 11, rng_), 9);
+  expect_part(pairs, f->sample_labelled(0, kCount, rng_), 0);
+}
+
+TEST_P(ProblemContract, PullbackAgreesWithCentralDifferences) {
+  if (!provides(Needs::vjp)) GTEST_SKIP() << "has no vjp";
+  Bench<double> b(recipe());
+  const auto l = labelled(24);
+  const Batch<double> y_bar = directions<double>(l.y.rows(), 24, 0.4);
+  const Batch<double> x_bar = b.pull(l.x, l.given, y_bar);
+  EXPECT_TRUE(same_bits(b.y, l.y)) << "linearize differs from forward";
+  Index checked = 0, sloping = 0;
+  for (Index i = 0; i < 24; ++i) {
+    const Batch<double> given = l.given.col(i);
+    const auto pulled = [&](const Vector<double>& x) {
+      return y_bar.col(i).dot(b.forward(x, given).col(0));
+    };
+    Vector<double> g;
+    if (!smooth_derivative(
+            [&](double h) {
+              return difference_gradient(pulled, l.x.col(i), h);
+            },
+            g))
+      continue;
+    ++checked;
+    sloping += x_bar.col(i).norm() > 0;
+    EXPECT_TRUE(Comparator(1e-5, 1e-7)(x_bar.col(i), g)) << "sample " << i;
+  }
+  EXPECT_GE(checked, 12);
+  EXPECT_GE(sloping, 6);
+}
+
+TEST_P(ProblemContract, PullbackIsTheAdjointOfTheDirectionalDerivative) {
+  if (!provides(Needs::vjp)) GTEST_SKIP() << "has no vjp";
+  Bench<double> b(recipe());
+  const auto l = labelled(24);
+  const Batch<double> y_bar = directions<double>(l.y.rows(), 24, 2.4);
+  const Batch<double> v = directions<double>(l.x.rows(), 24, 0.7);
+  const Batch<double> x_bar = b.pull(l.x, l.given, y_bar);
+  Index checked = 0;
+  for (Index i = 0; i < 24; ++i) {
+    const Batch<double> given = l.given.col(i);
+    const auto f = [&](const Vector<double>& x) {
+      return Vector<double>(b.forward(x, given).col(0));
+    };
+    Vector<double> jv;
+    if (!smooth_derivative(
+            [&](double h) {
+              return difference_along(f, l.x.col(i), v.col(i), h);
+            },
+            jv))
+      continue;
+    ++checked;
+    EXPECT_NEAR(x_bar.col(i).dot(v.col(i)),
+                y_bar.col(i).dot(jv),
+                1e-5 * y_bar.col(i).norm() * jv.norm() + 1e-7);
+  }
+  EXPECT_GE(checked, 12);
+}
+
+TEST_P(ProblemContract, JacobianAgreesWithPullback) {
+  if (!provides(Needs::vjp | Needs::jacobian))
+    GTEST_SKIP() << "has no vjp or no Jacobian";
+  in_both([&](auto t) {
+    using T = decltype(t);
+    Bench<T> b(recipe());
+    const auto l = labelled().template cast<T>();
+    const Index m = l.y.rows(), d = l.x.rows();
+    Batch<T> j(m * d, kCount);
+    b.jac->jacobian(l.x, l.given, j, b.work);
+    const Batch<T> y_bar = directions<T>(m, kCount, 0.4);
+    const Batch<T> x_bar = b.pull(l.x, l.given, y_bar);
+    for (Index i = 0; i < kCount; ++i) {
+      const Eigen::Map<const Batch<T>> ji(j.col(i).data(), m, d);
+      const double scale = static_cast<double>(ji.cwiseAbs().maxCoeff());
+      EXPECT_TRUE(Comparator(0, Tolerance<T>::relative * scale)(
+          x_bar.col(i), ji.transpose() * y_bar.col(i)));
+    }
+  });
+}
+
+TEST_P(ProblemContract, LossGradientAgreesWithCentralDifferences) {
+  const auto p = recipe().make<double>();
+  const auto l = labelled(6);
+  const Batch<double> y = l.y + directions<double>(l.y.rows(), 6, 0.3);
+  Batch<double> y_bar(l.y.rows(), 6);
+  p->loss_gradient(y, l.y, y_bar);
+  for (Index i = 0; i < 6; ++i) {
+    const auto loss = [&](const Vector<double>& at) {
+      Vector<double> value(1);
+      p->loss(at, l.y.col(i), value);
+      return value(0);
+    };
+    EXPECT_TRUE(Comparator(1e-6, 1e-8)(y_bar.col(i),
+                                       difference_gradient(loss, y.col(i))));
+  }
+  Vector<double> zero(6);
+  p->loss(l.y, l.y, zero);
+  EXPECT_EQ(zero.cwiseAbs().maxCoeff(), 0);
+}
+
+TEST_P(ProblemContract, BatchesEqualTheirColumnsInAnyOrderBitwise) {
+  in_both([&](auto t) {
+    using T = decltype(t);
+    Bench<T> b(recipe());
+    const auto l = labelled().template cast<T>();
+    const Batch<T> y_bar = directions<T>(l.y.rows(), kCount, 0.4);
+    const Batch<T> y = b.forward(l.x, l.given);
+    Batch<T> x_bar;
+    if (b.vjp != nullptr) {
+      x_bar = b.pull(l.x, l.given, y_bar);
+      EXPECT_TRUE(same_bits(b.y, y));
+    }
+    std::vector<std::vector<Index>> subsets;
+    for (Index i = 0; i < kCount; ++i) subsets.push_back({i});
+    subsets.push_back({5, 3, 36, 0, 17, 2, 11, 9, 30});
+    subsets.emplace_back(kCount);
+    std::iota(subsets.back().rbegin(), subsets.back().rend(), Index{0});
+    for (const auto& some : subsets) {
+      const auto of = [&](const Batch<T>& all) {
+        return Batch<T>(all(Eigen::all, some));
+      };
+      EXPECT_TRUE(same_bits(b.forward(of(l.x), of(l.given)), of(y)));
+      if (b.vjp == nullptr) continue;
+      EXPECT_TRUE(
+          same_bits(b.pull(of(l.x), of(l.given), of(y_bar)), of(x_bar)));
+    }
+  });
+}
+
+TEST_P(ProblemContract, ADivergedSampleDisturbsNoOther) {
+  in_both([&](auto t) {
+    using T = decltype(t);
+    Bench<T> b(recipe());
+    const auto l = labelled().template cast<T>();
+    const Batch<T> y_bar = directions<T>(l.y.rows(), kCount, 0.4);
+    Batch<T> expected = b.forward(l.x, l.given), x = l.x;
+    x.col(7).setConstant(std::numeric_limits<T>::quiet_NaN());
+    Batch<T> y = b.forward(x, l.given);
+    EXPECT_FALSE(y.col(7).allFinite());
+    y.col(7) = expected.col(7);
+    EXPECT_TRUE(same_bits(y, expected));
+    if (b.vjp == nullptr) return;
+    expected = b.pull(l.x, l.given, y_bar);
+    EXPECT_TRUE(expected.allFinite());
+    Batch<T> x_bar = b.pull(x, l.given, y_bar);
+    EXPECT_FALSE(x_bar.col(7).allFinite());
+    x_bar.col(7) = expected.col(7);
+    EXPECT_TRUE(same_bits(x_bar, expected));
+  });
+}
+
+TEST_P(ProblemContract, RepeatsItselfAndTakesNoMoreMemory) {
+  in_both([&](auto t) {
+    using T = decltype(t);
+    Bench<T> b(recipe());
+    const auto l = labelled().template cast<T>();
+    const Batch<T> y_bar = directions<T>(l.y.rows(), kCount, 0.4);
+    const auto all = [&] {
+      Batch<T> y = b.forward(l.x, l.given);
+      if (b.vjp == nullptr) return y;
+      Batch<T> both(y.rows() + l.x.rows(), kCount);
+      both << y, b.pull(l.x, l.given, y_bar);
+      return both;
+    };
+    const Batch<T> first = all();
+    EXPECT_TRUE(first.allFinite());
+    const std::size_t bytes = b.tape.bytes() + b.work.bytes();
+    for (int i = 0; i < 3; ++i) EXPECT_TRUE(same_bits(all(), first));
+    EXPECT_EQ(b.tape.bytes() + b.work.bytes(), bytes);
+  });
+}
+
+TEST_P(ProblemContract, FloatAgreesWithDouble) {
+  Bench<float> f(recipe());
+  const auto l = labelled(128);
+  // The same inputs for both: rounding may move a sample across a kink.
+  const auto rounded = l.cast<float>();
+  const auto exact = rounded.cast<double>();
+  Bench<double> d(recipe());
+  const Batch<double> y = d.forward(exact.x, exact.given);
+  const Batch<double> seen = f.forward(rounded.x, rounded.given).cast<double>();
+  Index close = 0;
+  for (Index i = 0; i < 128; ++i) {
+    close += (seen.col(i) - y.col(i)).cwiseAbs().maxCoeff() <=
+             1e-3 * (1 + y.col(i).cwiseAbs().maxCoeff());
+  }
+  EXPECT_GE(close, 122);
+}
+
+INSTANTIATE_TEST_SUITE_P(Registered,
+                         ProblemContract,
+                         testing::ValuesIn(registry().experiments()),
+                         ExperimentName());
+
+TEST(Registered, IsValidAndNotEmpty) {
+  EXPECT_FALSE(registry().experiments().empty());
+  EXPECT_NO_THROW(registry().validate());
+}
+
+}  // namespace
+}  // namespace physinv::test

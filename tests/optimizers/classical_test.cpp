@@ -1,0 +1,115 @@
+#include "optimizers/classical.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/bits.h"
+#include "tests/support/quadratic.h"
+#include "tests/support/tolerance.h"
+
+namespace physinv::test {
+namespace {
+
+constexpr Index kCount = 9;
+
+TEST(Classical, FindsTheOptimumOfAQuadratic) {
+  for (const auto& stage : {bfgs_solve(), gradient_descent_solve()}) {
+    StageBench bench(*stage, kCount, 1000);
+    const Outcome out = bench.run();
+    SCOPED_TRACE(stage->options().front().second);
+    EXPECT_EQ(out.stop, Stop::converged);
+    EXPECT_TRUE(Comparator(0, 1e-4)(out.x, bench.oracle.data().x));
+    EXPECT_LT(bench.loss(out.x).maxCoeff(), 1e-8);
+    for (const Status s : out.status) EXPECT_EQ(s, Status::gtol);
+  }
+}
+
+TEST(Classical, CurvesStartAtTheStartAndEndAtTheResult) {
+  for (const auto& stage : {bfgs_solve(), gradient_descent_solve()}) {
+    StageBench bench(*stage, kCount, 1000);
+    const Outcome out = bench.run();
+    const Curve& curve = bench.probe.curve();
+    EXPECT_TRUE(same_bits(Vector<double>(curve.loss.col(0)),
+                          bench.loss(bench.oracle.start())));
+    EXPECT_TRUE(
+        same_bits(Vector<double>(curve.loss.rightCols(1)), bench.loss(out.x)));
+    EXPECT_EQ(curve.iteration.back(), out.iterations.maxCoeff());
+    for (Index k = 1; k < curve.points(); ++k)
+      EXPECT_TRUE(
+          (curve.loss.col(k).array() <= curve.loss.col(k - 1).array()).all());
+  }
+}
+
+TEST(Classical, CountsTheEvaluationsMade) {
+  const auto bfgs = bfgs_solve();
+  StageBench bench(*bfgs, kCount, 1000);
+  const Outcome out = bench.run();
+  EXPECT_EQ(bench.oracle.counts()[Counter::vjp],
+            static_cast<std::uint64_t>(out.evaluations.sum()));
+  const auto gd = gradient_descent_solve();
+  StageBench descent(*gd, kCount, 1000);
+  const Outcome end = descent.run();
+  const Counts counts = descent.oracle.counts();
+  EXPECT_EQ(counts[Counter::vjp] + counts[Counter::skipped_trials],
+            static_cast<std::uint64_t>(end.evaluations.sum()));
+}
+
+TEST(Classical, RefinesWhatTheStageBeforeLeft) {
+  const auto refine = bfgs_refine();
+  StageBench bench(*refine, kCount, 1000), solved(*refine, kCount, 1000);
+  Outcome previous;
+  previous.x = bench.oracle.start().array() + 0.25;
+  const Outcome out = bench.run(&previous);
+  EXPECT_TRUE(same_bits(Vector<double>(bench.probe.curve().loss.col(0)),
+                        bench.loss(previous.x)));
+  EXPECT_EQ(out.stop, Stop::converged);
+  // From a solution there is nothing to do.
+  const Outcome again = solved.run(&out);
+  EXPECT_TRUE(same_bits(again.x, out.x));
+  EXPECT_TRUE((again.iterations.array() == 0).all());
+}
+
+TEST(Classical, AStartThatIsNotFiniteStaysWithItsStatus) {
+  const ProblemRecipe broken = quadratic({.broken_above = 5});
+  for (const bool refines : {true, false}) {
+    const auto stage = refines ? bfgs_refine() : gradient_descent_solve();
+    StageBench bench(*stage, kCount, 50, broken);
+    Outcome previous;
+    previous.x = bench.oracle.start();
+    if (refines) previous.x(0, 2) = 6;
+    const Outcome out = bench.run(&previous);
+    EXPECT_TRUE(out.x.allFinite());
+    const auto expected = refines ? Status::nonfinite : Status::gtol;
+    EXPECT_EQ(out.status[2], expected);
+    EXPECT_EQ(out.status[3], Status::gtol);
+    if (!refines) continue;
+    EXPECT_EQ(out.x(0, 2), 6);
+    EXPECT_EQ(out.stop, Stop::iterations);
+    // No number was measured, so none may stand in the curve.
+    const Curve& curve = bench.probe.curve();
+    EXPECT_TRUE(curve.loss.row(2).array().isNaN().all());
+    EXPECT_TRUE(Batch<double>(curve.loss.row(3)).allFinite());
+  }
+}
+
+TEST(Classical, ObeysItsIterations) {
+  for (const auto& stage : {bfgs_solve(), gradient_descent_solve()}) {
+    for (const Index most : {0, 1, 2}) {
+      StageBench bench(*stage, kCount, most);
+      const Outcome out = bench.run();
+      EXPECT_LE(out.iterations.maxCoeff(), static_cast<double>(most));
+      EXPECT_EQ(out.stop, Stop::iterations);
+    }
+  }
+}
+
+TEST(Classical, StagesNameThemselves) {
+  EXPECT_EQ(bfgs_solve()->name(), "solve");
+  EXPECT_EQ(bfgs_refine()->name(), "refine");
+  EXPECT_EQ(bfgs_solve({.iterations = 7})->default_iterations(), 7);
+  EXPECT_TRUE(bfgs_solve()->takes_row_iterations());
+  EXPECT_FALSE(bfgs_refine()->takes_row_iterations());
+  EXPECT_NE(bfgs_solve()->options(), bfgs_refine()->options());
+}
+
+}  // namespace
+}  // namespace physinv::test

@@ -1,0 +1,151 @@
+#include "suite/core/oracle.h"
+
+#include <gtest/gtest.h>
+
+#include "suite/core/check.h"
+#include "tests/support/bits.h"
+#include "tests/support/quadratic.h"
+
+namespace physinv::test {
+namespace {
+
+constexpr Index kCount = 11;
+const Rng kData = Rng::root("oracle_test", 1);
+
+Oracle make(Needs needs = Needs::forward | Needs::vjp, Index n = kCount) {
+  return Oracle(quadratic(), n, kData, needs);
+}
+
+TEST(Oracle, EvaluatesLossAndGradientOfItsProblems) {
+  Oracle oracle = make();
+  const Batch<double> x = oracle.data().x.array() + 0.1;
+  Vector<double> loss(kCount), alone(kCount), measured(kCount);
+  Batch<double> gradient(2, kCount);
+  oracle.evaluate<double>(oracle.all(), x, loss, gradient);
+  oracle.evaluate<double>(oracle.all(), x, alone);
+  oracle.measure(x, measured);
+  EXPECT_TRUE(same_bits(loss, alone));
+  EXPECT_TRUE(same_bits(loss, measured));
+  // r = A 0.1 for everybody.
+  const Eigen::Matrix2d a = Quadratic<double>::matrix();
+  const Eigen::Vector2d r = a * Eigen::Vector2d(0.1, 0.1);
+  EXPECT_LE((loss.array() - 0.5 * r.squaredNorm()).abs().maxCoeff(), 1e-15);
+  EXPECT_LE((gradient.colwise() - a.transpose() * r).cwiseAbs().maxCoeff(),
+            1e-14);
+}
+
+template <class T>
+void expect_subsets() {
+  Oracle oracle = make();
+  const Batch<T> x = oracle.start().template cast<T>();
+  Vector<double> loss(kCount);
+  Batch<T> gradient(2, kCount);
+  oracle.evaluate<T>(oracle.all(), x, loss, gradient);
+  std::vector<Index> reversed(kCount);
+  for (Index i = 0; i < kCount; ++i)
+    reversed[static_cast<std::size_t>(i)] = kCount - 1 - i;
+  const std::vector<std::vector<Index>> subsets = {
+      {0}, {10}, {3, 4, 9}, {9, 2}, {5, 5}, reversed};
+  for (const auto& some : subsets) {
+    const auto m = static_cast<Index>(some.size());
+    Vector<double> l(m), alone(m);
+    Batch<T> g(2, m);
+    oracle.evaluate<T>(some, x.leftCols(m), l, g);
+    oracle.evaluate<T>(some, x.leftCols(m), alone);
+    EXPECT_TRUE(same_bits(l, Vector<double>(loss(some))));
+    EXPECT_TRUE(same_bits(alone, l));
+    EXPECT_TRUE(same_bits(g, Batch<T>(gradient(Eigen::all, some))));
+  }
+}
+
+TEST(Oracle, ActiveSubsetsEqualTheFullSetBitwise) {
+  expect_subsets<float>();
+  expect_subsets<double>();
+}
+
+TEST(Oracle, CountsWhatIsAskedAndNothingElse) {
+  Oracle oracle = make();
+  Vector<double> loss(kCount);
+  Batch<double> gradient(2, kCount);
+  const Batch<double> x = oracle.start();
+  const std::vector<Index> some = {2, 5};
+  oracle.measure(x, loss);
+  EXPECT_EQ(oracle.counts(), Counts{});
+  oracle.evaluate<double>(oracle.all(), x, loss);
+  oracle.evaluate<double>(some, x.leftCols(2), loss.head(2));
+  oracle.evaluate<float>(some, x.leftCols(2).cast<float>(), loss.head(2));
+  oracle.evaluate<double>(
+      some, x.leftCols(2), loss.head(2), gradient.leftCols(2));
+  oracle.add(Counter::network_forward, 3);
+  Counts more;
+  more[Counter::skipped_rows] = 4;
+  oracle.add(more);
+  Counts expected = more;
+  expected[Counter::forward] = kCount + 4;
+  expected[Counter::vjp] = 2;
+  expected[Counter::network_forward] = 3;
+  EXPECT_EQ(oracle.counts(), expected);
+  EXPECT_EQ(oracle.counts(), expected) << "asking twice adds nothing";
+}
+
+TEST(Oracle, RefusesWhatWasNotDeclared) {
+  Oracle oracle = make(Needs::forward);
+  Vector<double> loss(kCount);
+  Batch<double> gradient(2, kCount);
+  EXPECT_THROW(oracle.labelled(), ContractError);
+  EXPECT_THROW(
+      oracle.evaluate<double>(oracle.all(), oracle.start(), loss, gradient),
+      ContractError);
+  EXPECT_NO_THROW(oracle.evaluate<double>(oracle.all(), oracle.start(), loss));
+}
+
+TEST(Oracle, RefusesWrongShapes) {
+  Oracle oracle = make();
+  Vector<double> loss(kCount);
+  Batch<double> gradient(2, kCount), tall(3, kCount);
+  const Batch<double> x = oracle.start();
+  const auto all = oracle.all();
+  EXPECT_THROW(oracle.evaluate<double>(all, tall, loss), ContractError);
+  EXPECT_THROW(oracle.evaluate<double>(all, x.leftCols(2), loss),
+               ContractError);
+  EXPECT_THROW(oracle.evaluate<double>(all, x, loss.head(2)), ContractError);
+  EXPECT_THROW(oracle.evaluate<double>(all, x, loss, tall), ContractError);
+  EXPECT_THROW(oracle.evaluate<double>(all, x, loss, gradient.leftCols(2)),
+               ContractError);
+  EXPECT_THROW(make(Needs::forward, 0), ContractError);
+}
+
+TEST(Oracle, LabelsAreASeparateSetOfPrefixes) {
+  const Needs needs = Needs::forward | Needs::labels;
+  Oracle small = make(needs, 4), large = make(needs);
+  EXPECT_EQ(large.labelled().count(), kCount);
+  const auto& few = small.labelled();
+  EXPECT_TRUE(same_bits(few.x, Batch<double>(large.labelled().x.leftCols(4))));
+  EXPECT_TRUE(
+      same_bits(small.data().x, Batch<double>(large.data().x.leftCols(4))));
+  for (Index i = 0; i < 4; ++i)
+    for (Index j = 0; j < kCount; ++j)
+      EXPECT_NE(few.x(0, i), large.data().x(0, j));
+  EXPECT_EQ(large.counts(), Counts{});
+  EXPECT_EQ(&large.labelled(), &large.labelled());
+}
+
+TEST(Oracle, TakesNoMoreMemoryTheSecondTime) {
+  Oracle oracle = make();
+  Vector<double> loss(kCount);
+  Batch<double> gradient(2, kCount);
+  const std::vector<Index> some = {2, 5};
+  const Batch<double> x = oracle.start();
+  const auto use = [&] {
+    oracle.evaluate<double>(oracle.all(), x, loss, gradient);
+    oracle.evaluate<double>(some, x.leftCols(2), loss.head(2));
+  };
+  use();
+  const std::size_t bytes = oracle.bytes();
+  EXPECT_GT(bytes, 0U);
+  for (int i = 0; i < 3; ++i) use();
+  EXPECT_EQ(oracle.bytes(), bytes);
+}
+
+}  // namespace
+}  // namespace physinv::test

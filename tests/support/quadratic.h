@@ -1,0 +1,153 @@
+/// A problem everybody must solve: y = A x + given, two unknowns, A regular.
+#pragma once
+
+#include <cstring>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "optimizers/network_model.h"
+#include "suite/core/method.h"
+#include "suite/nn/mlp.h"
+
+namespace physinv::test {
+
+struct QuadraticOptions {
+  double broken_above = 1e300;  ///< y is NaN where x(0) is larger
+};
+
+inline Options describe(const QuadraticOptions&) { return {}; }
+
+template <class T>
+class Quadratic final : public Problem<T>, public Vjp<T> {
+ public:
+  using Options = QuadraticOptions;
+  explicit Quadratic(const Options& options = {}) : options_(options) {}
+
+  static Eigen::Matrix<T, 2, 2> matrix() {
+    return (Eigen::Matrix<T, 2, 2>() << 1, T(0.5), T(-0.25), T(0.75))
+        .finished();
+  }
+  Shape shape() const override { return {2, 2, 2}; }
+  Vector<double> start() const override { return Eigen::Vector2d(0.5, -0.5); }
+  Samples<double> sample(Index first,
+                         Index count,
+                         const Rng& rng) const override {
+    Samples<double> s{Batch<double>(2, count), Batch<double>(2, count), {}};
+    s.given.resize(2, count);
+    for (Index i = 0; i < count; ++i) {
+      Stream r = rng.child(static_cast<std::uint64_t>(first + i)).stream();
+      for (Index j = 0; j < 2; ++j) s.x(j, i) = r.uniform(-1, 1);
+      for (Index j = 0; j < 2; ++j) s.given(j, i) = r.uniform(-1, 1);
+    }
+    s.y = Quadratic<double>::matrix() * s.x + s.given;
+    return s;
+  }
+  void forward(BatchIn<T> x,
+               BatchIn<T> given,
+               BatchOut<T> y,
+               Workspace&) const override {
+    for (Index i = 0; i < x.cols(); ++i) {
+      y.col(i) = matrix() * x.col(i) + given.col(i);
+      if (x(0, i) > T(options_.broken_above)) y.col(i).setConstant(kNan);
+    }
+  }
+  void linearize(BatchIn<T> x,
+                 BatchIn<T> given,
+                 BatchOut<T> y,
+                 Tape&) const override {
+    Workspace none;
+    forward(x, given, y, none);
+  }
+  void pullback(const Tape&,
+                BatchIn<T> y_bar,
+                BatchOut<T> x_bar,
+                Workspace&) const override {
+    for (Index i = 0; i < y_bar.cols(); ++i)
+      x_bar.col(i) = matrix().transpose() * y_bar.col(i);
+  }
+  double operations() const override { return 8; }
+
+ private:
+  static constexpr T kNan = std::numeric_limits<T>::quiet_NaN();
+  Options options_;
+};
+
+inline ProblemRecipe quadratic(const QuadraticOptions& options = {}) {
+  return problem<Quadratic>("quadratic", options);
+}
+
+/// Small networks for it.
+inline Setting quadratic_setting(double output_scale = 1) {
+  const auto net =
+      nn::mlp({.hidden = {16, 16}, .activation = nn::Activation::tanh});
+  return {.predictor = {{Field::given, Field::observations}, net},
+          .surrogate = {{Field::unknowns, Field::given}, net},
+          .output_scale = output_scale,
+          .gtol = 1e-7};
+}
+
+/// A stage by itself, with everything a test may want to see afterwards.
+struct StageBench {
+  explicit StageBench(const Stage& stage,
+                      Index n = 8,
+                      Index iterations = 10,
+                      ProblemRecipe recipe = quadratic(),
+                      Setting a_setting = quadratic_setting())
+      : setting(std::move(a_setting)),
+        oracle(recipe, n, root, stage.needs()),
+        probe(oracle, iterations),
+        stage_(stage) {
+    probe.set_trace([this](const void* data, std::size_t bytes) {
+      const auto* p = static_cast<const char*>(data);
+      trace.emplace_back(p, p + bytes);
+    });
+  }
+
+  Outcome run(const Outcome* previous = nullptr,
+              Precision precision = Precision::f64) {
+    StageRun run{.oracle = oracle,
+                 .probe = probe,
+                 .setting = setting,
+                 .previous = previous,
+                 .network_init = root.child("network/init"),
+                 .batches = root.child("batches"),
+                 .method = root.child("method"),
+                 .iterations = probe.iterations(),
+                 .precision = precision,
+                 .threads = nullptr};
+    return stage_.run(run);
+  }
+
+  /// True losses of any estimates.
+  Vector<double> loss(const Batch<double>& x) {
+    Vector<double> l(x.cols());
+    oracle.measure(x, l);
+    return l;
+  }
+  /// Traced blocks of `bytes` bytes as columns.
+  template <class T>
+  Batch<T> traced(Index rows) const {
+    std::vector<const std::vector<char>*> found;
+    for (const auto& block : trace)
+      if (block.size() == sizeof(T) * static_cast<std::size_t>(rows))
+        found.push_back(&block);
+    Batch<T> columns(rows, static_cast<Index>(found.size()));
+    for (std::size_t j = 0; j < found.size(); ++j)
+      std::memcpy(columns.col(static_cast<Index>(j)).data(),
+                  found[j]->data(),
+                  found[j]->size());
+    return columns;
+  }
+
+  const Rng root = Rng::root("stage_bench", 5);
+  Setting setting;
+  Oracle oracle;
+  Probe probe;
+  std::vector<std::vector<char>> trace;
+
+ private:
+  const Stage& stage_;
+};
+
+}  // namespace physinv::test
