@@ -21,15 +21,13 @@ Outcome fit(const RegressionOptions& options, StageRun& run) {
   NetworkModel<T> model(
       role, oracle.shape(), oracle.shape().observations, run.threads);
   model.initialize(run.network_init);
-  model.bind(
-      assemble<T>(role.inputs, labelled.x, labelled.given, labelled.y));
+  model.bind(assemble<T>(role.inputs, labelled.x, labelled.given, labelled.y));
   const Batch<double> start = oracle.start();
-  const double loss =
-      fit_regression<T>(model,
-                        labelled.y.template cast<T>(),
-                        options,
-                        run,
-                        [&](BatchOut<double> x) { x = start; });
+  const double loss = fit_regression<T>(model,
+                                        labelled.y.template cast<T>(),
+                                        options,
+                                        run,
+                                        [&](BatchOut<double> x) { x = start; });
   Outcome out = regression_outcome(model, loss, run);
   out.x = start;
   model.save(out.arrays);
@@ -75,14 +73,13 @@ class Surrogate {
         model_.parameters(), model_.state(), in, residual, tape_, work_);
     for (Index j = 0; j < m; ++j) {
       residual.col(j) -= target_.col(active[static_cast<std::size_t>(j)]);
-      loss(j) =
-          0.5 * residual.col(j).template cast<double>().squaredNorm();
+      loss(j) = 0.5 * residual.col(j).template cast<double>().squaredNorm();
     }
     BatchOut<T> bar(in_bar);
     network.backward(
         model_.parameters(), tape_, residual, nullptr, &bar, work_);
-    gradient = in_bar.middleRows(unknown_row_, x.rows())
-                   .template cast<double>();
+    gradient =
+        in_bar.middleRows(unknown_row_, x.rows()).template cast<double>();
   }
 
   const Counts& counts() const { return work_.counts; }
@@ -169,8 +166,8 @@ Outcome solve(const NeuralAdjointOptions& options, StageRun& run) {
           BatchOut<double> g) {
         surrogate.evaluate(active, x, l, g);
         boundary.add(x, weight, l, g);
-        run.probe.trace(x.data(), sizeof(double) * static_cast<std::size_t>(
-                                                       x.size()));
+        run.probe.trace(x.data(),
+                        sizeof(double) * static_cast<std::size_t>(x.size()));
       },
       start,
       best);
@@ -186,8 +183,7 @@ Outcome solve(const NeuralAdjointOptions& options, StageRun& run) {
 
 class SurrogateFit final : public Stage {
  public:
-  explicit SurrogateFit(const RegressionOptions& options)
-      : options_(options) {}
+  explicit SurrogateFit(const RegressionOptions& options) : options_(options) {}
 
   std::string name() const override { return "fit"; }
   Needs needs() const override { return Needs::labels; }

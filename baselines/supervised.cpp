@@ -26,8 +26,7 @@ Outcome fit(const RegressionOptions& options, StageRun& run) {
     model.predict(query, output);
     x = start + setting.output_scale * output.template cast<double>();
   };
-  const double loss =
-      fit_regression<T>(model, target, options, run, predict);
+  const double loss = fit_regression<T>(model, target, options, run, predict);
 
   Outcome out = regression_outcome(model, loss, run);
   out.x.resizeLike(start);

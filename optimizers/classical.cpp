@@ -24,8 +24,8 @@ Outcome solve(Solver& solver, StageRun& run, const Batch<double>& x0) {
           VectorOut<double> loss,
           BatchOut<double> gradient) {
         oracle.evaluate<double>(active, x, loss, gradient);
-        run.probe.trace(x.data(), sizeof(double) * static_cast<std::size_t>(
-                                                       x.size()));
+        run.probe.trace(x.data(),
+                        sizeof(double) * static_cast<std::size_t>(x.size()));
       },
       x0,
       [&](const Solver& s) {
@@ -60,8 +60,7 @@ class BfgsStage final : public Stage {
   }
   Outcome run(StageRun& run) const override {
     Bfgs solver({.gtol = run.setting.gtol, .maxiter = run.iterations});
-    return solve(
-        solver, run, refines_ ? run.previous->x : run.oracle.start());
+    return solve(solver, run, refines_ ? run.previous->x : run.oracle.start());
   }
 
  private:
@@ -85,8 +84,8 @@ class GradientDescentStage final : public Stage {
            (3 * size.problem_operations + 100);
   }
   Outcome run(StageRun& run) const override {
-    GradientDescent solver({.step_tolerance = run.setting.gtol,
-                            .maxiter = run.iterations});
+    GradientDescent solver(
+        {.step_tolerance = run.setting.gtol, .maxiter = run.iterations});
     Outcome out = solve(solver, run, run.oracle.start());
     run.oracle.add(Counter::skipped_trials,
                    static_cast<Index>(solver.skipped_trials()));

@@ -150,13 +150,13 @@ class JpoFit final : public Stage {
 }  // namespace
 
 Options describe(const AdamOptions& o) {
-  return {{"step", "adam"},
-          {"rate", fmt::format("{}", o.rate)},
-          {"beta1", fmt::format("{}", o.beta1)},
-          {"beta2", fmt::format("{}", o.beta2)},
-          {"eps", fmt::format("{}", o.eps)},
-          {"eps_before_correction",
-           fmt::format("{}", o.eps_before_correction)}};
+  return {
+      {"step", "adam"},
+      {"rate", fmt::format("{}", o.rate)},
+      {"beta1", fmt::format("{}", o.beta1)},
+      {"beta2", fmt::format("{}", o.beta2)},
+      {"eps", fmt::format("{}", o.eps)},
+      {"eps_before_correction", fmt::format("{}", o.eps_before_correction)}};
 }
 
 std::shared_ptr<const Stage> jpo_fit(const JpoOptions& options) {

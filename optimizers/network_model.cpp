@@ -8,9 +8,12 @@ const Batch<double>& rows_of(Field field,
                              const Batch<double>& given,
                              const Batch<double>& y) {
   switch (field) {
-    case Field::unknowns: return x;
-    case Field::given: return given;
-    case Field::observations: break;
+    case Field::unknowns:
+      return x;
+    case Field::given:
+      return given;
+    case Field::observations:
+      break;
   }
   return y;
 }
@@ -85,8 +88,7 @@ void NetworkModel<T>::load(const std::map<std::string, Batch<double>>& arrays) {
 }
 
 template <class T>
-void NetworkModel<T>::save(
-    std::map<std::string, Batch<double>>& arrays) const {
+void NetworkModel<T>::save(std::map<std::string, Batch<double>>& arrays) const {
   arrays["parameters"] = parameters_.template cast<double>();
   if (state_.size() > 0) arrays["state"] = state_.template cast<double>();
 }
@@ -101,8 +103,7 @@ void NetworkModel<T>::bind(Batch<T> input) {
 template <class T>
 const Batch<T>& NetworkModel<T>::forward() {
   // The input never changes: encode it once, fold what is constant over it.
-  const Pass pass{
-      .training = true, .same_input = !fresh_, .fixed_input = true};
+  const Pass pass{.training = true, .same_input = !fresh_, .fixed_input = true};
   network_->forward(parameters_, state_, input_, output_, tape_, work_, pass);
   fresh_ = false;
   return output_;
@@ -130,8 +131,8 @@ void NetworkModel<T>::warm_up() {
 
 template <class T>
 void NetworkModel<T>::predict(BatchIn<T> input, BatchOut<T> output) {
-  network_->forward(parameters_, state_, input, output, prediction_tape_,
-                    prediction_work_);
+  network_->forward(
+      parameters_, state_, input, output, prediction_tape_, prediction_work_);
 }
 
 template <class T>

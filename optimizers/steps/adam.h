@@ -4,8 +4,8 @@
 ///   x -= rate m' / (sqrt(v') + eps)      m' = m / (1 - beta1^t), v' alike
 ///
 /// Moments below 1e-31 (float; 1e-292 double) are set to zero: next to eps they
-/// move nothing. One pass over x, g, m and v. Moments start at zero on the first step; an
-/// object belongs to one vector.
+/// move nothing. One pass over x, g, m and v. Moments start at zero on the
+/// first step; an object belongs to one vector.
 #pragma once
 
 #include <cmath>
@@ -63,7 +63,8 @@ void Adam<T>::step(VectorOut<T> x, VectorIn<T> gradient) {
   using R = steps::Register<T>;
   // A gradient that stays zero lets its moments decay into denormal numbers,
   // which never reach zero and take several times as long.
-  const T tiny = std::numeric_limits<T>::min() / std::numeric_limits<T>::epsilon();
+  const T tiny =
+      std::numeric_limits<T>::min() / std::numeric_limits<T>::epsilon();
   steps::for_registers<T>(x.size(), [=](Index i, auto lanes) {
     const auto g = R::load(pg + i, lanes);
     const auto m = R::without_tiny(

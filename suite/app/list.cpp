@@ -63,6 +63,40 @@ void print_table(const std::vector<Case>& cases) {
       "{} cases, about {:.2g} floating-point operations\n", cases.size(), sum);
 }
 
+/// '|' would end a cell of a Markdown table.
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text)
+    out += c == '|' ? std::string(", ") : std::string(1, c);
+  return out;
+}
+
+std::string chain_text(const Method& method) {
+  std::string text;
+  for (const auto& stage : method.chain)
+    text += (text.empty() ? "" : " → ") + stage->name();
+  return text;
+}
+
+/// Problem x method as a Markdown table: what is provided, needed, missing.
+void print_methods() {
+  fmt::print(
+      "| experiment | problem provides | method | stages | needs | runs |\n"
+      "| --- | --- | --- | --- | --- | --- |\n");
+  for (const auto& e : registry().experiments()) {
+    for (const Method& m : e->methods) {
+      const bool works = contains(e->problem.provided, m.needs());
+      fmt::print("| {} | {} | {} | {} | {} | {} |\n",
+                 e->name,
+                 escaped(to_text(e->problem.provided)),
+                 m.id,
+                 chain_text(m),
+                 escaped(to_text(m.needs())),
+                 works ? "yes" : "no: the problem does not provide it");
+    }
+  }
+}
+
 }  // namespace
 
 ExitCode list_verb(const Arguments& arguments) {
@@ -70,9 +104,14 @@ ExitCode list_verb(const Arguments& arguments) {
                "physinv-bench list");
   Selection selection;
   selection.add_to(app);
-  bool json = false;
+  bool json = false, methods = false;
   app.add_flag("--json", json, "as JSON");
+  app.add_flag("--methods", methods, "experiments and methods, as Markdown");
   if (!parse(app, arguments)) return ExitCode::good;
+  if (methods) {
+    print_methods();
+    return ExitCode::good;
+  }
   const auto cases = selection.cases();
   json ? print_json(cases) : print_table(cases);
   return ExitCode::good;

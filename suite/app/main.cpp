@@ -1,6 +1,5 @@
-#include <malloc.h>
-
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include <cstdio>
 #include <exception>

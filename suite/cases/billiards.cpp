@@ -76,23 +76,20 @@ ClaimResult bfgs_on_the_plateau(const Results& results,
 }
 
 ClaimResult jpo_solves(const JpoMetrics& metrics) {
-  Judge judge;
-  const auto large = sizes_between(metrics, 64, kEvery);
-  if (large.empty()) judge.missing("JPO at n >= 64");
-  for (const Index n : large) {
+  std::optional<double> close, solved;  // the lowest shares of any n and seed
+  const auto lower = [](std::optional<double>& lowest,
+                        std::optional<double> share) {
+    if (share) lowest = std::min(lowest.value_or(1), *share);
+  };
+  for (const Index n : sizes_between(metrics, 64, kEvery)) {
     for (const std::uint64_t seed : metrics.seeds()) {
-      const auto at = fmt::format("n={} seed={}", n, seed);
-      if (metrics.ending("bfgs", n, seed, false) != nullptr &&
-          metrics.ending("jpo", n, seed, false) == nullptr &&
-          metrics.ending("jpo", n, metrics.seeds().front(), false) != nullptr)
-        continue;  // the profile has more seeds of BFGS than of JPO
-      judge
-          .at_least(at + " L<1e-2",
-                    metrics.solved_share("jpo", n, seed, false, 1e-2), 0.95)
-          .at_least(at + " refined L<1e-6",
-                    metrics.solved_share("jpo", n, seed, true, kSolved), 0.97);
+      lower(close, metrics.solved_share("jpo", n, seed, false, 1e-2));
+      lower(solved, metrics.solved_share("jpo", n, seed, true, kSolved));
     }
   }
+  Judge judge;
+  judge.at_least("lowest share with L < 1e-2", close, 0.95)
+      .at_least("lowest share with refined L < 1e-6", solved, 0.97);
   return std::move(judge).result(
       "R3",
       "For n >= 64, JPO brings at least 95 % of the problems below 1e-2 and, "
@@ -108,8 +105,7 @@ ClaimResult jpo_rescues(const JpoMetrics& metrics) {
     return found->rate();
   };
   const std::array<Index, 1> largest = {128};
-  const auto f =
-      metrics.mean_shares("jpo", largest, true, Equality::strict);
+  const auto f = metrics.mean_shares("jpo", largest, true, Equality::strict);
   std::vector<double> decrease;
   for (const std::uint64_t seed : metrics.seeds()) {
     if (const auto d = metrics.share_of_decrease("jpo", 128, seed))
@@ -120,9 +116,11 @@ ClaimResult jpo_rescues(const JpoMetrics& metrics) {
   judge.at_least("rescue rate n>=64", rate(64, kEvery), 0.97)
       .above("rescue rate n>=64 over n<=8", rate(64, kEvery), rate(0, 8))
       .at_least("f(JPO refined) at n=128",
-                f ? std::optional(f->mean.f()) : std::nullopt, 0.70)
+                f ? std::optional(f->mean.f()) : std::nullopt,
+                0.70)
       .at_least("share of decrease at n=128",
-                mean ? std::optional(mean->mean) : std::nullopt, 0.95);
+                mean ? std::optional(mean->mean) : std::nullopt,
+                0.95);
   return std::move(judge).result(
       "R4",
       "Refined JPO solves what BFGS left unsolved, more of it for n >= 64 than "
@@ -133,8 +131,7 @@ ClaimResult jpo_rescues(const JpoMetrics& metrics) {
 ClaimResult jpo_beats_samples(const JpoMetrics& metrics) {
   const auto sizes = sizes_between(metrics, 16, kEvery);
   const auto better = [&](const char* method) -> std::optional<double> {
-    const auto s =
-        metrics.mean_shares(method, sizes, false, Equality::strict);
+    const auto s = metrics.mean_shares(method, sizes, false, Equality::strict);
     if (!s) return {};
     return s->mean.better;
   };
@@ -143,10 +140,12 @@ ClaimResult jpo_beats_samples(const JpoMetrics& metrics) {
   };
   Judge judge;
   for (const char* other : {"supervised", "na"}) {
-    judge.above(fmt::format("better: jpo over {}", other), better("jpo"),
+    judge.above(fmt::format("better: jpo over {}", other),
+                better("jpo"),
                 better(other));
     judge.above(fmt::format("solved, refined: jpo over {}", other),
-                solved("jpo"), solved(other));
+                solved("jpo"),
+                solved(other));
   }
   return std::move(judge).result(
       "R5",
@@ -170,7 +169,8 @@ ClaimResult samples_share_plateaus(const JpoMetrics& metrics) {
     for (const bool refined : {false, true}) {
       judge.at_least(
           fmt::format("equal: {}{}", method, refined ? " refined" : ""),
-          equal(method, refined), 0.05);
+          equal(method, refined),
+          0.05);
     }
   }
   return std::move(judge).result(
@@ -185,8 +185,8 @@ Figure landscape() {
   const Billiards<double> billiards;
   const std::array<double, 2> ball = {1.0, 0.3};
   constexpr Index kColumns = 161, kRows = 121;
-  Field2D field{.x = {}, .y = {}, .values = {}, .log_scale = true,
-                .label = "loss"};
+  Field2D field{
+      .x = {}, .y = {}, .values = {}, .log_scale = true, .label = "loss"};
   for (Index i = 0; i < kColumns; ++i)
     field.x.push_back(3.0 * static_cast<double>(i) / (kColumns - 1));
   for (Index j = 0; j < kRows; ++j)
@@ -207,24 +207,29 @@ Figure landscape() {
   field.values.assign(loss.begin(), loss.end());
 
   const auto exact = exact_velocity(ball);
-  const auto mark = [](std::string label, std::string method, double x,
-                       double at) {
-    return Series{.label = std::move(label), .method = std::move(method),
-                  .x = {x}, .y = {at}, .line = false, .markers = true};
-  };
-  return {.id = "fig4a",
-          .title = "Loss over the initial velocity, ball at (1, 0.3)",
-          .source = "Fig. 4a",
-          .panels = {{.title = "",
-                      .x_label = "v1",
-                      .y_label = "v2",
-                      .series = {mark("start", "bfgs", 1, 0),
-                                 mark("solution", "solution", exact[0],
-                                      exact[1])},
-                      .field = std::move(field)}},
-          .columns = 1,
-          .note = "The even region is the plateau: the cue ball misses or "
-                  "stops short, and the gradient is exactly zero."};
+  const auto mark =
+      [](std::string label, std::string method, double x, double at) {
+        return Series{.label = std::move(label),
+                      .method = std::move(method),
+                      .x = {x},
+                      .y = {at},
+                      .line = false,
+                      .markers = true};
+      };
+  return {
+      .id = "fig4a",
+      .title = "Loss over the initial velocity, ball at (1, 0.3)",
+      .source = "Fig. 4a",
+      .panels = {{.title = "",
+                  .x_label = "v1",
+                  .y_label = "v2",
+                  .series = {mark("start", "bfgs", 1, 0),
+                             mark("solution", "solution", exact[0], exact[1])},
+                  .field = std::move(field)}},
+      .columns = 1,
+      .note =
+          "The even region is the plateau: the cue ball misses or "
+          "stops short, and the gradient is exactly zero."};
 }
 
 Section report(const Results& results, const Published& published) {
@@ -237,12 +242,11 @@ Section report(const Results& results, const Published& published) {
   Section section = jpo_section(options, results, published);
   section.figures.insert(section.figures.begin(), landscape());
   const JpoMetrics metrics(results, options.experiment);
-  section.claims = {
-      bfgs_on_the_plateau(results, metrics, options.experiment),
-      jpo_solves(metrics),
-      jpo_rescues(metrics),
-      jpo_beats_samples(metrics),
-      samples_share_plateaus(metrics)};
+  section.claims = {bfgs_on_the_plateau(results, metrics, options.experiment),
+                    jpo_solves(metrics),
+                    jpo_rescues(metrics),
+                    jpo_beats_samples(metrics),
+                    samples_share_plateaus(metrics)};
   return section;
 }
 
@@ -253,38 +257,41 @@ const auto kRegistered = register_experiment({
     .title = "Billiards",
     .source = {.paper = "jpo", .where = "Sec. 4, Fig. 4, App. D.2"},
     .problem = problem<Billiards>("billiards"),
-    .setting = {.predictor = {{Field::given, Field::observations},
-                              nn::mlp({.hidden = {128, 128, 128},
-                                       .frequencies = 4})},
-                .surrogate = {{Field::unknowns, Field::given},
-                              nn::mlp({.hidden = {128, 128, 128},
-                                       .frequencies = 4})},
-                .output_scale = 1.0,
-                .gtol = 1e-5},
+    .setting =
+        {.predictor = {{Field::given, Field::observations},
+                       nn::mlp({.hidden = {128, 128, 128}, .frequencies = 4})},
+         .surrogate = {{Field::unknowns, Field::given},
+                       nn::mlp({.hidden = {128, 128, 128}, .frequencies = 4})},
+         .output_scale = 1.0,
+         .gtol = 1e-5},
     .profiles =
         {{.name = "smoke",
-          .rows = {{.methods = {"bfgs"}, .n = {4}, .seeds = {0}},
-                   {.methods = {"gd"}, .n = {4}, .seeds = {0},
-                    .iterations = 50},
-                   {.methods = kTrained, .n = {4}, .seeds = {0},
-                    .iterations = 50},
-                   {.methods = {"bfgs"}, .n = {128}, .seeds = {0, 1, 2, 3}}}},
+          .rows =
+              {{.methods = {"bfgs"}, .n = {4}, .seeds = {0}},
+               {.methods = {"gd"}, .n = {4}, .seeds = {0}, .iterations = 50},
+               {.methods = kTrained, .n = {4}, .seeds = {0}, .iterations = 50},
+               {.methods = {"bfgs"}, .n = {128}, .seeds = {0, 1, 2, 3}}}},
          {.name = "quick",
-          .rows = {{.methods = {"bfgs", "gd"}, .n = {8, 32, 128},
-                    .seeds = {0, 1}},
-                   {.methods = kTrained, .n = {8, 32, 128}, .seeds = {0, 1},
-                    .iterations = 3000}}},
+          .rows =
+              {{.methods = {"bfgs", "gd"}, .n = {8, 32, 128}, .seeds = {0, 1}},
+               {.methods = kTrained,
+                .n = {8, 32, 128},
+                .seeds = {0, 1},
+                .iterations = 3000}}},
          {.name = "paper",
-          .rows = {{.methods = {"bfgs", "gd"}, .n = {2, 4, 8, 16, 32, 64, 128},
+          .rows = {{.methods = {"bfgs", "gd"},
+                    .n = {2, 4, 8, 16, 32, 64, 128},
                     .seeds = {0, 1, 2, 3}},
-                   {.methods = kTrained, .n = {2, 4, 8, 16, 32, 64, 128},
-                    .seeds = {0, 1, 2, 3}, .iterations = 3000}}}},
+                   {.methods = kTrained,
+                    .n = {2, 4, 8, 16, 32, 64, 128},
+                    .seeds = {0, 1, 2, 3},
+                    .iterations = 3000}}}},
     .methods = {{"bfgs", {bfgs_solve()}},
                 {"gd", {gradient_descent_solve()}},
                 {"jpo", {jpo_fit(), bfgs_refine()}},
                 {"supervised", {supervised_fit(), bfgs_refine()}},
-                {"na", {surrogate_fit(), neural_adjoint_solve(),
-                        bfgs_refine()}}},
+                {"na",
+                 {surrogate_fit(), neural_adjoint_solve(), bfgs_refine()}}},
     .report = report,
 });
 

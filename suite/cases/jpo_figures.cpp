@@ -86,7 +86,7 @@ Series JpoReport::loss_series(const std::string& method, bool refined) const {
 
 // BFGS against itself is equal everywhere: f_N = 1/2.
 Series JpoReport::reference_half() const {
-  Series s{.label = "BFGS", .method = "bfgs", .dashed = true};
+  Series s{.label = "as good as BFGS", .method = "bfgs", .dashed = true};
   for (const Index n : metrics_.sizes()) {
     s.x.push_back(static_cast<double>(n));
     s.y.push_back(0.5);

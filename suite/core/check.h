@@ -14,7 +14,8 @@ class ContractError : public std::logic_error {
   using std::logic_error::logic_error;
 };
 
-[[noreturn]] inline void fail_check(const char* file, int line,
+[[noreturn]] inline void fail_check(const char* file,
+                                    int line,
                                     const char* condition,
                                     const std::string& message) {
   throw ContractError(
@@ -23,8 +24,8 @@ class ContractError : public std::logic_error {
 
 }  // namespace physinv
 
-#define SUITE_CHECK(condition, message)                                    \
-  do {                                                                     \
-    if (!(condition)) [[unlikely]]                                         \
-      ::physinv::fail_check(__FILE__, __LINE__, #condition, (message));    \
+#define SUITE_CHECK(condition, message)                                 \
+  do {                                                                  \
+    if (!(condition)) [[unlikely]]                                      \
+      ::physinv::fail_check(__FILE__, __LINE__, #condition, (message)); \
   } while (false)

@@ -21,7 +21,8 @@ inline Seconds now() {
   const auto read = [](clockid_t id) {
     timespec t{};
     clock_gettime(id, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+    return static_cast<double>(t.tv_sec) +
+           1e-9 * static_cast<double>(t.tv_nsec);
   };
   return {read(CLOCK_MONOTONIC), read(CLOCK_PROCESS_CPUTIME_ID)};
 }
@@ -29,7 +30,10 @@ inline Seconds now() {
 /// Sums the time between start and stop; starts stopped.
 class Stopwatch {
  public:
-  void start() { since_ = now(), running_ = true; }
+  void start() {
+    if (!running_) since_ = now();
+    running_ = true;
+  }
   void stop() {
     if (running_) total_ += now() - since_;
     running_ = false;

@@ -9,18 +9,18 @@
 namespace physinv {
 
 enum class Counter : std::uint8_t {
-  forward,             ///< simulations
-  vjp,                 ///< simulations with a gradient (forward included)
-  jacobian,            ///< full Jacobians
-  inverse,             ///< local inverses
-  network_forward,     ///< network passes forward
-  network_backward,    ///< network passes backward
-  skipped_vjp,         ///< gradients known to be zero, not computed
-  skipped_forward,     ///< evaluations of finished examples, not made
-  skipped_features,    ///< input encodings reused, not recomputed
-  skipped_rows,        ///< first-layer rows folded, constant over the batch
-  skipped_events,      ///< motion that nobody observes, not simulated
-  skipped_trials,      ///< line-search trials known to change nothing
+  forward,           ///< simulations
+  vjp,               ///< simulations with a gradient (forward included)
+  jacobian,          ///< full Jacobians
+  inverse,           ///< local inverses
+  network_forward,   ///< network passes forward
+  network_backward,  ///< network passes backward
+  skipped_vjp,       ///< gradients known to be zero, not computed
+  skipped_forward,   ///< evaluations of finished examples, not made
+  skipped_features,  ///< input encodings reused, not recomputed
+  skipped_rows,      ///< first-layer rows folded, constant over the batch
+  skipped_events,    ///< motion that nobody observes, not simulated
+  skipped_trials,    ///< line-search trials known to change nothing
   kCount
 };
 
@@ -29,10 +29,18 @@ inline constexpr std::size_t kCounters =
 
 /// Names as they stand in the record.
 inline constexpr std::array<std::string_view, kCounters> kCounterNames = {
-    "forward",          "vjp",             "jacobian",
-    "inverse",          "network_forward", "network_backward",
-    "skipped_vjp",      "skipped_forward", "skipped_features",
-    "skipped_rows",     "skipped_events",  "skipped_trials"};
+    "forward",
+    "vjp",
+    "jacobian",
+    "inverse",
+    "network_forward",
+    "network_backward",
+    "skipped_vjp",
+    "skipped_forward",
+    "skipped_features",
+    "skipped_rows",
+    "skipped_events",
+    "skipped_trials"};
 
 class Counts {
  public:

@@ -8,8 +8,8 @@ namespace {
 std::uint64_t add(std::uint64_t h, const Batch<double>& b) {
   const Index shape[] = {b.rows(), b.cols()};
   h = hash_bytes(shape, sizeof(shape), h);
-  return hash_bytes(b.data(), static_cast<std::size_t>(b.size()) * sizeof(double),
-                    h);
+  return hash_bytes(
+      b.data(), static_cast<std::size_t>(b.size()) * sizeof(double), h);
 }
 
 }  // namespace

@@ -17,8 +17,8 @@ struct Samples {
 
   template <class U>
   Samples<U> cast() const {
-    return {x.template cast<U>(), y.template cast<U>(),
-            given.template cast<U>()};
+    return {
+        x.template cast<U>(), y.template cast<U>(), given.template cast<U>()};
   }
 };
 

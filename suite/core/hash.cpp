@@ -4,7 +4,8 @@
 
 namespace physinv {
 
-std::uint64_t hash_bytes(const void* data, std::size_t bytes,
+std::uint64_t hash_bytes(const void* data,
+                         std::size_t bytes,
                          std::uint64_t seed) {
   const auto* p = static_cast<const unsigned char*>(data);
   std::uint64_t h = seed;

@@ -16,7 +16,8 @@ constexpr std::uint64_t mix64(std::uint64_t z) {
 }
 
 /// FNV-1a over bytes, then mixed. Not cryptographic.
-std::uint64_t hash_bytes(const void* data, std::size_t bytes,
+std::uint64_t hash_bytes(const void* data,
+                         std::size_t bytes,
                          std::uint64_t seed = 0xcbf29ce484222325ULL);
 
 inline std::uint64_t hash_text(std::string_view text,

@@ -49,20 +49,28 @@ class Network {
   virtual const std::vector<TensorInfo>& tensors() const = 0;
 
   /// Draws initial parameters (in double, rounded) and the initial state.
-  virtual void initialize(const Rng& rng, VectorOut<T> parameters,
+  virtual void initialize(const Rng& rng,
+                          VectorOut<T> parameters,
                           VectorOut<T> state) const = 0;
 
   /// out = N(in). The tape keeps what backward needs; batches of different
   /// sizes may use the same tape one after the other.
-  virtual void forward(VectorIn<T> parameters, VectorIn<T> state,
-                       BatchIn<T> in, BatchOut<T> out, Tape& tape,
-                       Workspace& work, Pass pass = {}) const = 0;
+  virtual void forward(VectorIn<T> parameters,
+                       VectorIn<T> state,
+                       BatchIn<T> in,
+                       BatchOut<T> out,
+                       Tape& tape,
+                       Workspace& work,
+                       Pass pass = {}) const = 0;
 
   /// Gradient at the last forward pass on this tape. A null pointer asks for
   /// nothing and costs nothing. `parameters_bar` is overwritten.
-  virtual void backward(VectorIn<T> parameters, const Tape& tape,
-                        BatchIn<T> out_bar, VectorOut<T>* parameters_bar,
-                        BatchOut<T>* in_bar, Workspace& work) const = 0;
+  virtual void backward(VectorIn<T> parameters,
+                        const Tape& tape,
+                        BatchIn<T> out_bar,
+                        VectorOut<T>* parameters_bar,
+                        BatchOut<T>* in_bar,
+                        Workspace& work) const = 0;
 
   /// Folds the batch statistics of the last training pass into the state.
   virtual void update_state(const Tape& tape, VectorOut<T> state) const = 0;

@@ -13,9 +13,11 @@ namespace physinv {
 /// belongs to problem active[j]; loss and gradient are filled in that order.
 ///   f(active, x, loss, gradient)
 template <class F>
-concept BatchObjective =
-    std::invocable<F&, std::span<const Index>, BatchIn<double>,
-                   VectorOut<double>, BatchOut<double>>;
+concept BatchObjective = std::invocable<F&,
+                                        std::span<const Index>,
+                                        BatchIn<double>,
+                                        VectorOut<double>,
+                                        BatchOut<double>>;
 
 /// Turns a gradient and its own state into a step: x is updated in place.
 template <class U, class T>

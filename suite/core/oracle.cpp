@@ -132,14 +132,20 @@ void Oracle::evaluate(std::span<const Index> active,
   add(Counter::vjp, m);
 }
 
-template void Oracle::evaluate(std::span<const Index>, BatchIn<float>,
+template void Oracle::evaluate(std::span<const Index>,
+                               BatchIn<float>,
                                VectorOut<double>);
-template void Oracle::evaluate(std::span<const Index>, BatchIn<double>,
+template void Oracle::evaluate(std::span<const Index>,
+                               BatchIn<double>,
                                VectorOut<double>);
-template void Oracle::evaluate(std::span<const Index>, BatchIn<float>,
-                               VectorOut<double>, BatchOut<float>);
-template void Oracle::evaluate(std::span<const Index>, BatchIn<double>,
-                               VectorOut<double>, BatchOut<double>);
+template void Oracle::evaluate(std::span<const Index>,
+                               BatchIn<float>,
+                               VectorOut<double>,
+                               BatchOut<float>);
+template void Oracle::evaluate(std::span<const Index>,
+                               BatchIn<double>,
+                               VectorOut<double>,
+                               BatchOut<double>);
 
 const Samples<double>& Oracle::labelled() {
   SUITE_CHECK(contains(allowed_, Needs::labels),

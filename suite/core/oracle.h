@@ -13,8 +13,11 @@ namespace physinv {
 class Oracle {
  public:
   /// `labelled` is drawn on first use and only if `allowed` has labels.
-  Oracle(const ProblemRecipe& recipe, Index count, const Rng& data,
-         Needs allowed, Threads* threads = nullptr);
+  Oracle(const ProblemRecipe& recipe,
+         Index count,
+         const Rng& data,
+         Needs allowed,
+         Threads* threads = nullptr);
   ~Oracle();
 
   Shape shape() const { return shape_; }
@@ -27,12 +30,15 @@ class Oracle {
 
   /// Loss of x(:, j) on problem active[j], in the precision of x.
   template <class T>
-  void evaluate(std::span<const Index> active, BatchIn<T> x,
+  void evaluate(std::span<const Index> active,
+                BatchIn<T> x,
                 VectorOut<double> loss);
   /// The same with gradients d loss / d x.
   template <class T>
-  void evaluate(std::span<const Index> active, BatchIn<T> x,
-                VectorOut<double> loss, BatchOut<T> gradient);
+  void evaluate(std::span<const Index> active,
+                BatchIn<T> x,
+                VectorOut<double> loss,
+                BatchOut<T> gradient);
 
   /// Every problem at once: active = 0, 1, .. count-1.
   std::span<const Index> all() const { return all_; }

@@ -70,8 +70,8 @@ Index Probe::open_point(Index iteration) {
   curve_.iteration.push_back(static_cast<double>(iteration));
   curve_.seconds.push_back(solve_.total().wall);
   const Counts& counts = oracle_.counts();
-  curve_.evaluations.push_back(static_cast<double>(counts[Counter::forward] +
-                                                   counts[Counter::vjp]));
+  curve_.evaluations.push_back(
+      static_cast<double>(counts[Counter::forward] + counts[Counter::vjp]));
   next_ = next_measured(iteration);
   return point;
 }
@@ -110,7 +110,8 @@ void Probe::finish() {
     open_point(iteration_);
   for (Index i = 0; i < x_.cols(); ++i)
     for (Index k = reached_.empty() ? 0 : reached_[static_cast<std::size_t>(i)];
-         k < curve_.points(); ++k)
+         k < curve_.points();
+         ++k)
       put(k, i, x_.col(i).data(), loss_(i));
 }
 

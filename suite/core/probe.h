@@ -104,7 +104,7 @@ class Probe {
   Observer observer_;
 };
 
-/// The iterations at which curves are measured: every one up to 8, then about
+/// The iterations at which curves are measured: every one up to 14, then about
 /// seventeen per factor of ten.
 Index next_measured(Index iteration);
 

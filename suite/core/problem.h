@@ -35,23 +35,28 @@ class Problem {
   /// Inverse problems first .. first+count-1 of the set `rng` addresses; the
   /// i-th draws from rng.child(i), so small sets are prefixes of large ones.
   /// x holds the true solution where one is known (no rows otherwise).
-  virtual Samples<double> sample(Index first, Index count,
+  virtual Samples<double> sample(Index first,
+                                 Index count,
                                  const Rng& rng) const = 0;
 
   /// Pairs (x, y = F(x)) for methods that learn from labels.
-  virtual Samples<double> sample_labelled(Index first, Index count,
+  virtual Samples<double> sample_labelled(Index first,
+                                          Index count,
                                           const Rng& rng) const {
     return sample(first, count, rng);
   }
 
   /// y = F(x | given). A diverging sample fills its column with non-finite
   /// values and disturbs no other.
-  virtual void forward(BatchIn<T> x, BatchIn<T> given, BatchOut<T> y,
+  virtual void forward(BatchIn<T> x,
+                       BatchIn<T> given,
+                       BatchOut<T> y,
                        Workspace& work) const = 0;
 
   /// Loss per sample, half squared error unless the paper has another, summed
   /// in double.
-  virtual void loss(BatchIn<T> y, BatchIn<T> target,
+  virtual void loss(BatchIn<T> y,
+                    BatchIn<T> target,
                     VectorOut<double> loss) const {
     for (Index i = 0; i < y.cols(); ++i) {
       double sum = 0;
@@ -64,7 +69,8 @@ class Problem {
   }
 
   /// d loss / d y per sample.
-  virtual void loss_gradient(BatchIn<T> y, BatchIn<T> target,
+  virtual void loss_gradient(BatchIn<T> y,
+                             BatchIn<T> target,
                              BatchOut<T> y_bar) const {
     y_bar = y - target;
   }
@@ -79,10 +85,14 @@ class Vjp {
  public:
   virtual ~Vjp() = default;
   /// Forward pass that remembers what `pullback` needs.
-  virtual void linearize(BatchIn<T> x, BatchIn<T> given, BatchOut<T> y,
+  virtual void linearize(BatchIn<T> x,
+                         BatchIn<T> given,
+                         BatchOut<T> y,
                          Tape& tape) const = 0;
   /// x_bar = J^T y_bar at the point of the last `linearize` on this tape.
-  virtual void pullback(const Tape& tape, BatchIn<T> y_bar, BatchOut<T> x_bar,
+  virtual void pullback(const Tape& tape,
+                        BatchIn<T> y_bar,
+                        BatchOut<T> x_bar,
                         Workspace& work) const = 0;
 };
 
@@ -92,7 +102,9 @@ template <class T>
 class Jacobian {
  public:
   virtual ~Jacobian() = default;
-  virtual void jacobian(BatchIn<T> x, BatchIn<T> given, BatchOut<T> j,
+  virtual void jacobian(BatchIn<T> x,
+                        BatchIn<T> given,
+                        BatchOut<T> j,
                         Workspace& work) const = 0;
 };
 
@@ -101,8 +113,11 @@ template <class T>
 class Inverse {
  public:
   virtual ~Inverse() = default;
-  virtual void invert(BatchIn<T> y, BatchIn<T> given, BatchIn<T> x_guess,
-                      BatchOut<T> x, Workspace& work) const = 0;
+  virtual void invert(BatchIn<T> y,
+                      BatchIn<T> given,
+                      BatchIn<T> x_guess,
+                      BatchOut<T> x,
+                      Workspace& work) const = 0;
 };
 
 /// Second derivative of the loss: column i holds sample i's matrix.
@@ -110,8 +125,11 @@ template <class T>
 class Hessian {
  public:
   virtual ~Hessian() = default;
-  virtual void hessian(BatchIn<T> x, BatchIn<T> given, BatchIn<T> target,
-                       BatchOut<T> h, Workspace& work) const = 0;
+  virtual void hessian(BatchIn<T> x,
+                       BatchIn<T> given,
+                       BatchIn<T> target,
+                       BatchOut<T> h,
+                       Workspace& work) const = 0;
 };
 
 /// What a method needs and a problem provides, as a set of bits.

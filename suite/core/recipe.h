@@ -46,13 +46,13 @@ struct ProblemRecipe {
 template <template <class> class P>
 ProblemRecipe problem(std::string name,
                       typename P<double>::Options options = {}) {
-  return {.name = std::move(name),
-          .options = describe(options),
-          .provided = provides<P<double>, double>(),
-          .make_float = [options] { return std::make_unique<P<float>>(options); },
-          .make_double = [options] {
-            return std::make_unique<P<double>>(options);
-          }};
+  return {
+      .name = std::move(name),
+      .options = describe(options),
+      .provided = provides<P<double>, double>(),
+      .make_float = [options] { return std::make_unique<P<float>>(options); },
+      .make_double =
+          [options] { return std::make_unique<P<double>>(options); }};
 }
 
 }  // namespace physinv

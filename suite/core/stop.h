@@ -24,14 +24,14 @@ enum class Stop : std::uint8_t {
 };
 
 constexpr std::string_view to_string(Status s) {
-  constexpr std::string_view names[] = {"gtol", "maxiter", "linesearch",
-                                        "nonfinite"};
+  constexpr std::string_view names[] = {
+      "gtol", "maxiter", "linesearch", "nonfinite"};
   return names[static_cast<std::size_t>(s)];
 }
 
 constexpr std::string_view to_string(Stop s) {
-  constexpr std::string_view names[] = {"converged", "iterations", "diverged",
-                                        "failed", "skipped"};
+  constexpr std::string_view names[] = {
+      "converged", "iterations", "diverged", "failed", "skipped"};
   return names[static_cast<std::size_t>(s)];
 }
 

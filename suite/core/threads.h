@@ -24,7 +24,8 @@ class Threads {
   template <class F>
   void run(Index blocks, F&& body) {
     using Body = std::remove_reference_t<F>;
-    run(blocks,
+    run(
+        blocks,
         [](void* f, Index block, int thread) {
           (*static_cast<Body*>(f))(block, thread);
         },

@@ -43,8 +43,7 @@ class Workspace {
 
   class Scope {
    public:
-    explicit Scope(Workspace& w)
-        : work_(w), chunk_(w.chunk_), used_(w.used_) {}
+    explicit Scope(Workspace& w) : work_(w), chunk_(w.chunk_), used_(w.used_) {}
     ~Scope() { work_.chunk_ = chunk_, work_.used_ = used_; }
     Scope(const Scope&) = delete;
     Scope& operator=(const Scope&) = delete;

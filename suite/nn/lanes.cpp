@@ -98,11 +98,15 @@ void row_sums(Lanes<const T> x, T* sums) {
   using V = Simd<T, kNarrow>;
   constexpr Index w = kLanes<T>;
   const Index full = x.samples / w * w;
+  // The last lanes are there, but padding: a comparison masks what they hold.
+  V lane{};
+  for (Index l = 0; l < w; ++l) lane[l] = static_cast<T>(l);
+  const auto valid = lane < broadcast<V>(static_cast<T>(x.samples - full));
   for (Index i = 0; i < x.rows; ++i) {
     const T* row = x.row(i);
     V sum{};
     for (Index j = 0; j < full; j += w) sum += load<V>(row + j);
-    if (full < x.samples) sum += load_some<V>(row + full, x.samples - full);
+    if (full < x.samples) sum += valid ? load<V>(row + full) : V{};
     for (Index half = w / 2; half > 0; half /= 2)
       for (Index l = 0; l < half; ++l) sum[l] += sum[l + half];
     sums[i] = sum[0];

@@ -161,11 +161,11 @@ CaseRecord Catalog::summary(const std::string& name) const {
 }
 
 std::vector<CaseRecord> Catalog::collect(
-    CaseRecord (Catalog::*read)(const std::string&) const) const {
+    CaseRecord (Catalog::*read_case)(const std::string&) const) const {
   std::vector<CaseRecord> all;
   for (const auto& name : order()) {
     if (!knows_case(name)) continue;
-    auto record = (this->*read)(name);
+    auto record = (this->*read_case)(name);
     if (!record.stages.empty()) all.push_back(std::move(record));
   }
   return all;

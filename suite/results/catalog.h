@@ -58,7 +58,7 @@ class Catalog {
  private:
   CaseRecord summary(const std::string& name) const;
   std::vector<CaseRecord> collect(
-      CaseRecord (Catalog::*read)(const std::string&) const) const;
+      CaseRecord (Catalog::*read_case)(const std::string&) const) const;
   const JournalEntry* entry_of(const std::string& key) const;
 
   std::filesystem::path directory_;

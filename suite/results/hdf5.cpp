@@ -39,9 +39,6 @@ Handle memory_access() {
   be_quiet();
   Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "make a property list");
   check(H5Pset_fapl_core(access, 1 << 18, false), "use memory");
-  // The compact groups of HDF5 1.8 take half the time to write.
-  check(H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_LATEST),
-        "choose a format");
   return access;
 }
 

@@ -112,8 +112,7 @@ CaseFile& Store::open_case(const std::string& name, const fs::path& path) {
   if (const auto at = open_.find(name); at != open_.end()) return at->second;
   // A file that no line names is what a killed writer left: start again.
   const bool there = catalog_.knows_case(name) && fs::exists(path);
-  return open_
-      .emplace(name, there ? CaseFile(path, name) : CaseFile(name))
+  return open_.emplace(name, there ? CaseFile(path, name) : CaseFile(name))
       .first->second;
 }
 

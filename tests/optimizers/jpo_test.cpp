@@ -64,8 +64,9 @@ TEST(Jpo, ScalesTheOutput) {
   EXPECT_GT((a - start).norm(), 0);
   EXPECT_TRUE(Comparator(1e-14, 0)(b - start, 2 * (a - start)));
 
+  // The chain rule knows the scale, and its sign.
   const auto scaled = jpo_fit({.step = {.rate = 1e-2}});
-  StageBench bench(*scaled, kCount, 300, quadratic(), quadratic_setting(0.5));
+  StageBench bench(*scaled, kCount, 300, quadratic(), quadratic_setting(-0.5));
   const Outcome out = bench.run();
   EXPECT_LT(bench.loss(out.x).mean(),
             0.1 * bench.probe.curve().loss.col(0).mean());

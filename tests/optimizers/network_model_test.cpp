@@ -19,7 +19,7 @@ Batch<double> filled(Index rows, Index cols, double shift) {
 
 NetworkRole role(bool batch_norm = true) {
   return {{Field::given, Field::observations},
-          nn::mlp({.hidden = {8}, .batch_norm = batch_norm})};
+          nn::mlp({.hidden = {8}, .frequencies = 2, .batch_norm = batch_norm})};
 }
 
 template <class T>

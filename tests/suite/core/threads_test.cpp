@@ -3,8 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <numeric>
+#include <chrono>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 #include "suite/core/check.h"
@@ -39,6 +40,18 @@ TEST_P(ThreadsTest, RunsShortJobsOneAfterTheOther) {
     });
   }
   for (const Index t : total) EXPECT_EQ(t, 299 * 300 / 2);
+}
+
+TEST_P(ThreadsTest, ReturnsWhenAllAreDone) {
+  Threads threads(GetParam());
+  for (int round = 0; round < 5; ++round) {
+    std::atomic<Index> done{0};
+    threads.run(2 * GetParam(), [&](Index, int thread) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1 + 2 * thread));
+      ++done;
+    });
+    EXPECT_EQ(done, 2 * GetParam());
+  }
 }
 
 TEST_P(ThreadsTest, NoTwoBlocksShareAThread) {
