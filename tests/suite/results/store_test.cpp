@@ -16,13 +16,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
+void put(CaseFile& file, const StageRecord& record) {
+  file.put_stage(record, hex64(arrays_hash(record)));
+}
+
 TEST(CaseFile, KeepsEveryBit) {
   TemporaryDirectory out;
   const auto info = sample_case("jpo", 8, 3);
   const auto data = sample_data(info);
   CaseFile file(info.name);
   file.put_data(data);
-  for (Index k = 0; k < 2; ++k) file.put_stage(sample_stage(info, k));
+  for (Index k = 0; k < 2; ++k) put(file, sample_stage(info, k));
   file.save(out / "a.h5");
 
   const CaseFile back(out / "a.h5", info.name);
@@ -44,7 +48,7 @@ TEST(CaseFile, EveryFlippedBitIsFound) {
   const auto info = sample_case("jpo", 2, 3);
   CaseFile file(info.name);
   file.put_data(sample_data(info));
-  file.put_stage(sample_stage(info, 0));
+  put(file, sample_stage(info, 0));
   file.save(out / "a.h5");
   const auto bytes = read_file(out / "a.h5");
   for (std::size_t i = 0; i < bytes.size(); i += 1 + bytes.size() / 199) {
