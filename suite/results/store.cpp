@@ -109,6 +109,7 @@ void Store::append(const CaseInfo& info,
 }
 
 CaseFile& Store::open_case(const std::string& name, const fs::path& path) {
+  if (!fs::exists(path)) open_.erase(name);  // somebody took it away
   if (const auto at = open_.find(name); at != open_.end()) return at->second;
   // A file that no line names is what a killed writer left: start again.
   const bool there = catalog_.knows_case(name) && fs::exists(path);
