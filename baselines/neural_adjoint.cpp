@@ -152,6 +152,7 @@ Outcome solve(const NeuralAdjointOptions& options, StageRun& run) {
   Vector<double> loss(start.cols());
 
   run.probe.begin_warmup();
+  oracle.warm_up<double>();
   surrogate.evaluate(oracle.all(), start, loss, gradient);
   const double weight = options.weight * median(loss);
 

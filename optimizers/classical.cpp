@@ -16,6 +16,8 @@ namespace {
 template <class Solver>
 Outcome solve(Solver& solver, StageRun& run, const Batch<double>& x0) {
   Oracle& oracle = run.oracle;
+  run.probe.begin_warmup();
+  oracle.warm_up<double>();
   run.probe.begin();
   drive(
       solver,

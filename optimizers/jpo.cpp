@@ -41,6 +41,7 @@ class JpoRun {
     Probe& probe = run_.probe;
     probe.begin_warmup();
     model_.warm_up();
+    oracle_.template warm_up<T>();
     probe.begin();
     estimate();
     while (probe.proceed(

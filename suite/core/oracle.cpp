@@ -147,6 +147,24 @@ template void Oracle::evaluate(std::span<const Index>,
                                VectorOut<double>,
                                BatchOut<double>);
 
+template <class T>
+void Oracle::warm_up() {
+  const Counts before = counts();
+  const Batch<T> x = start().template cast<T>();
+  Batch<T> gradient(x.rows(), x.cols());
+  Vector<double> loss(count());
+  if (side<T>().vjp != nullptr && contains(allowed_, Needs::vjp)) {
+    evaluate<T>(all_, x, loss, gradient);
+  } else {
+    evaluate<T>(all_, x, loss);
+  }
+  static_cast<void>(counts());
+  counts_ = before;
+}
+
+template void Oracle::warm_up<float>();
+template void Oracle::warm_up<double>();
+
 const Samples<double>& Oracle::labelled() {
   SUITE_CHECK(contains(allowed_, Needs::labels),
               "the method asked for labels it did not declare");

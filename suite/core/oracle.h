@@ -40,6 +40,11 @@ class Oracle {
                 VectorOut<double> loss,
                 BatchOut<T> gradient);
 
+  /// Makes what the first evaluation in T would make: problem, data, buffers.
+  /// Leaves no count behind.
+  template <class T>
+  void warm_up();
+
   /// Every problem at once: active = 0, 1, .. count-1.
   std::span<const Index> all() const { return all_; }
 

@@ -18,7 +18,7 @@
 namespace physinv::test {
 namespace {
 
-/// What one run passed around; the first network pass is the warm-up.
+/// What one run passed around; the first pass of each is the warm-up.
 struct Notes {
   std::vector<Batch<double>> outputs, clipped, xi, gradients;
   std::vector<Vector<double>> weights;
@@ -173,13 +173,13 @@ void run_entry(const Json& entry, Precision precision) {
     const Json& step = steps.at(at);
     SCOPED_TRACE("step " + step.at("step").dump());
     EXPECT_TRUE(same(seen.outputs.at(at + 1), columns(step.at("net_output"))));
-    EXPECT_TRUE(same(seen.xi.at(at), columns(step.at("xi"))));
+    EXPECT_TRUE(same(seen.xi.at(at + 1), columns(step.at("xi"))));
     EXPECT_TRUE(same(losses.col(k), vector(step.at("loss"))));
     if (!step.contains("grad_xi")) {
       EXPECT_EQ(k + 1, count) << "only the last state has no gradient";
       continue;
     }
-    const Batch<double>& g = seen.gradients.at(at);
+    const Batch<double>& g = seen.gradients.at(at + 1);
     EXPECT_TRUE(same(g, columns(step.at("grad_xi"))));
     EXPECT_TRUE(
         same(g.colwise().norm().transpose(), vector(step.at("grad_norm"))));
