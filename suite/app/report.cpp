@@ -94,8 +94,8 @@ ExitCode report_verb(const Arguments& arguments) {
   const auto sections = sections_of(results, Published(published));
   if (sections.empty())
     throw ExitError(ExitCode::nothing_matched,
-                    "no registered experiment has results in '" + results_text +
-                        "'; run cases first");
+                    "no experiment that declares a report has results in '" +
+                        results_text + "'; run cases first");
   const fs::path target = out.empty() ? directory / "report" : fs::path(out);
   try {
     write_report(target, sections, provenance(directory));

@@ -77,14 +77,16 @@ std::vector<CaseRecord> own_records(std::vector<CaseRecord> cases,
 }
 
 void print_result(const RunFlags& flags, const CampaignResult& r) {
-  fmt::print(
-      "{} stages run, {} reused{}; {}, bookkeeping {} ({:.2f} % of CPU)\n",
-      r.stages_run,
-      r.stages_reused,
-      r.origins.empty() ? "" : " (" + to_text(r.origins) + ")",
-      duration_text(r.seconds),
-      duration_text(r.bookkeeping),
-      100 * r.bookkeeping / std::max(r.bookkeeping + r.stage_cpu, 1e-9));
+  fmt::print("{} stages run, {} reused{}; {}, bookkeeping {}{}\n",
+             r.stages_run,
+             r.stages_reused,
+             r.origins.empty() ? "" : " (" + to_text(r.origins) + ")",
+             duration_text(r.seconds),
+             duration_text(r.bookkeeping),
+             r.stage_cpu > 0 ? fmt::format(" ({:.2f} % of CPU)",
+                                           100 * r.bookkeeping /
+                                               (r.bookkeeping + r.stage_cpu))
+                             : "");
   if (!r.not_run.empty()) {
     fmt::print("{}: {} cases not run:\n",
                r.interrupted ? "interrupted" : "out of time",
