@@ -182,32 +182,6 @@ Outcome solve(const NeuralAdjointOptions& options, StageRun& run) {
   return out;
 }
 
-class SurrogateFit final : public Stage {
- public:
-  explicit SurrogateFit(const RegressionOptions& options) : options_(options) {}
-
-  std::string name() const override { return "fit"; }
-  Needs needs() const override { return Needs::labels; }
-  Options options() const override {
-    Options all = {{"algorithm", "surrogate"}};
-    for (auto& option : describe(options_)) all.push_back(option);
-    return all;
-  }
-  Index default_iterations() const override { return options_.iterations; }
-  bool has_precision() const override { return true; }
-  double operations(const CaseSize& size) const override {
-    return 3 * size.surrogate_operations *
-           static_cast<double>(size.n * size.iterations);
-  }
-  Outcome run(StageRun& run) const override {
-    if (run.precision == Precision::f32) return fit<float>(options_, run);
-    return fit<double>(options_, run);
-  }
-
- private:
-  RegressionOptions options_;
-};
-
 class NeuralAdjointSolve final : public Stage {
  public:
   explicit NeuralAdjointSolve(const NeuralAdjointOptions& options)
@@ -239,7 +213,12 @@ class NeuralAdjointSolve final : public Stage {
 }  // namespace
 
 std::shared_ptr<const Stage> surrogate_fit(const RegressionOptions& options) {
-  return std::make_shared<SurrogateFit>(options);
+  return regression_stage({.algorithm = "surrogate",
+                           .needs = Needs::labels,
+                           .operations = &CaseSize::surrogate_operations,
+                           .in_float = fit<float>,
+                           .in_double = fit<double>},
+                          options);
 }
 
 std::shared_ptr<const Stage> neural_adjoint_solve(

@@ -2,6 +2,9 @@
 /// loop that supervised learning and surrogates share.
 #pragma once
 
+#include <memory>
+#include <string>
+
 #include "optimizers/network_model.h"
 #include "optimizers/steps/adam.h"
 
@@ -12,7 +15,18 @@ struct RegressionOptions {
   Index iterations = 3000;
 };
 
-Options describe(const RegressionOptions& options);
+/// What distinguishes one stage of this kind from another.
+struct RegressionFit {
+  std::string algorithm;  ///< for the record
+  Needs needs;
+  double CaseSize::*operations;  ///< of the network's forward pass
+  Outcome (*in_float)(const RegressionOptions& options, StageRun& run);
+  Outcome (*in_double)(const RegressionOptions& options, StageRun& run);
+};
+
+/// Stage `fit`.
+std::shared_ptr<const Stage> regression_stage(const RegressionFit& fit,
+                                              const RegressionOptions& options);
 
 /// Minimizes sum |N(input) - target|^2; `model` is bound to the input.
 /// `estimate(x)` fills the true problems' estimates when a point of the curve

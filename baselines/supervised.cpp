@@ -34,37 +34,15 @@ Outcome fit(const RegressionOptions& options, StageRun& run) {
   return out;
 }
 
-class SupervisedFit final : public Stage {
- public:
-  explicit SupervisedFit(const RegressionOptions& options)
-      : options_(options) {}
-
-  std::string name() const override { return "fit"; }
-  Needs needs() const override { return Needs::forward | Needs::labels; }
-  Options options() const override {
-    Options all = {{"algorithm", "supervised"}};
-    for (auto& option : describe(options_)) all.push_back(option);
-    return all;
-  }
-  Index default_iterations() const override { return options_.iterations; }
-  bool has_precision() const override { return true; }
-  double operations(const CaseSize& size) const override {
-    return 3 * size.predictor_operations *
-           static_cast<double>(size.n * size.iterations);
-  }
-  Outcome run(StageRun& run) const override {
-    if (run.precision == Precision::f32) return fit<float>(options_, run);
-    return fit<double>(options_, run);
-  }
-
- private:
-  RegressionOptions options_;
-};
-
 }  // namespace
 
 std::shared_ptr<const Stage> supervised_fit(const RegressionOptions& options) {
-  return std::make_shared<SupervisedFit>(options);
+  return regression_stage({.algorithm = "supervised",
+                           .needs = Needs::forward | Needs::labels,
+                           .operations = &CaseSize::predictor_operations,
+                           .in_float = fit<float>,
+                           .in_double = fit<double>},
+                          options);
 }
 
 }  // namespace physinv
