@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <optional>
 #include <span>
 #include <string>
@@ -29,11 +30,21 @@ class Judge {
                  double bound) {
     return put(label, value, "<=", bound, value && *value <= bound);
   }
+  Judge& below(const std::string& label,
+               std::optional<double> value,
+               double bound) {
+    return put(label, value, "<", bound, value && *value < bound);
+  }
   Judge& above(const std::string& label,
                std::optional<double> value,
                std::optional<double> other) {
-    if (!other) value.reset();
-    return put(label, value, ">", other.value_or(0), value && *value > *other);
+    if (!value || !other) return missing(label);
+    return put(label, value, ">", *other, *value > *other);
+  }
+  /// A number without a condition.
+  Judge& report(const std::string& label, std::optional<double> value) {
+    if (!value) return missing(label);
+    return say(fmt::format("{} {}", label, text(*value)));
   }
   /// A condition that could not be evaluated.
   Judge& missing(const std::string& what) {
@@ -64,16 +75,22 @@ class Judge {
              bool holds) {
     if (!value) return missing(label);
     holds_ = holds_ && holds;
-    return say(fmt::format("{} {:.3f} ({} {:.3f}{})",
+    return say(fmt::format("{} {} ({} {}{})",
                            label,
-                           *value,
+                           text(*value),
                            relation,
-                           bound,
+                           text(bound),
                            holds ? "" : ": no"));
   }
-  Judge& say(const std::string& text) {
-    evidence_ += (evidence_.empty() ? "" : "; ") + text;
+  Judge& say(const std::string& words) {
+    evidence_ += (evidence_.empty() ? "" : "; ") + words;
     return *this;
+  }
+  /// Shares need three digits, losses an exponent.
+  static std::string text(double value) {
+    const double size = std::abs(value);
+    const bool plain = size == 0 || (size >= 1e-3 && size < 1e5);
+    return plain ? fmt::format("{:.3f}", value) : fmt::format("{:.2e}", value);
   }
 
   bool holds_ = true, missing_ = false;
