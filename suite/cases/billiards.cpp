@@ -7,11 +7,8 @@
 #include <limits>
 #include <string>
 
-#include "baselines/neural_adjoint.h"
-#include "baselines/supervised.h"
-#include "optimizers/classical.h"
-#include "optimizers/jpo.h"
 #include "suite/cases/jpo_claims.h"
+#include "suite/cases/jpo_methods.h"
 #include "suite/cases/jpo_report.h"
 #include "suite/harness/registry.h"
 #include "suite/nn/mlp.h"
@@ -250,7 +247,7 @@ Section report(const Results& results, const Published& published) {
   return section;
 }
 
-const std::vector<std::string> kTrained = {"jpo", "supervised", "na"};
+const auto kTrained = trained_methods();
 
 const auto kRegistered = register_experiment({
     .name = "jpo/billiards",
@@ -286,12 +283,7 @@ const auto kRegistered = register_experiment({
                     .n = {2, 4, 8, 16, 32, 64, 128},
                     .seeds = {0, 1, 2, 3},
                     .iterations = 3000}}}},
-    .methods = {{"bfgs", {bfgs_solve()}},
-                {"gd", {gradient_descent_solve()}},
-                {"jpo", {jpo_fit(), bfgs_refine()}},
-                {"supervised", {supervised_fit(), bfgs_refine()}},
-                {"na",
-                 {surrogate_fit(), neural_adjoint_solve(), bfgs_refine()}}},
+    .methods = jpo_methods(),
     .report = report,
 });
 

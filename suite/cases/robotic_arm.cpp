@@ -8,11 +8,8 @@
 #include <numbers>
 #include <string>
 
-#include "baselines/neural_adjoint.h"
-#include "baselines/supervised.h"
-#include "optimizers/classical.h"
-#include "optimizers/jpo.h"
 #include "suite/cases/jpo_claims.h"
+#include "suite/cases/jpo_methods.h"
 #include "suite/cases/jpo_report.h"
 #include "suite/harness/registry.h"
 #include "suite/nn/mlp.h"
@@ -24,7 +21,7 @@ constexpr const char* kName = "jpo/robotic-arm";
 constexpr double kSolved = 1e-12;
 constexpr Index kFitIterations = 2000;
 
-const std::vector<std::string> kTrained = {"jpo", "supervised", "na"};
+const auto kTrained = trained_methods();
 
 double median(std::vector<double> values) {
   const auto middle = values.size() / 2;
@@ -383,18 +380,7 @@ const auto kRegistered = register_experiment({
                     .n = {2, 4, 8, 16, 32, 64, 128},
                     .seeds = {0, 1, 2, 3},
                     .iterations = kFitIterations}}}},
-    .methods =
-        {{"bfgs", {bfgs_solve()}},
-         {"gd", {gradient_descent_solve()}},
-         {"jpo",
-          {jpo_fit({.step = {.rate = 1e-3}, .iterations = kFitIterations}),
-           bfgs_refine()}},
-         {"supervised",
-          {supervised_fit({.iterations = kFitIterations}), bfgs_refine()}},
-         {"na",
-          {surrogate_fit({.iterations = kFitIterations}),
-           neural_adjoint_solve(),
-           bfgs_refine()}}},
+    .methods = jpo_methods({.rate = 1e-3, .iterations = kFitIterations}),
     .report = report,
 });
 
