@@ -8,7 +8,7 @@
 #include <numbers>
 #include <string>
 
-#include "suite/cases/jpo_claims.h"
+#include "suite/cases/jpo_endings.h"
 #include "suite/cases/jpo_methods.h"
 #include "suite/cases/jpo_report.h"
 #include "suite/harness/registry.h"
@@ -23,71 +23,7 @@ constexpr Index kFitIterations = 2000;
 
 const auto kTrained = trained_methods();
 
-double median(std::vector<double> values) {
-  const auto middle = values.size() / 2;
-  std::sort(values.begin(), values.end());
-  return values.size() % 2 == 1 ? values[middle]
-                                : 0.5 * (values[middle - 1] + values[middle]);
-}
-
-/// One method's finished chains, refined or not, of n >= first.
-class Endings {
- public:
-  Endings(const JpoMetrics& metrics,
-          const std::string& method,
-          bool refined,
-          Index first = 0) {
-    for (const Index n : sizes_between(metrics, first, 1 << 30))
-      for (const std::uint64_t seed : metrics.seeds())
-        if (const auto* end = metrics.ending(method, n, seed, refined))
-          found_.push_back(end);
-  }
-
-  /// The largest (or smallest) value of any case.
-  template <class F>
-  std::optional<double> largest(F&& value) const {
-    std::optional<double> out;
-    for (const StageRecord* s : found_)
-      out = std::max(out.value_or(value(*s)), value(*s));
-    return out;
-  }
-  template <class F>
-  std::optional<double> smallest(F&& value) const {
-    const auto out = largest([&](const StageRecord& s) { return -value(s); });
-    if (!out) return {};
-    return -*out;
-  }
-  /// Of all problems: one row of the records, joined.
-  std::vector<double> all(Vector<double> StageRecord::*row) const {
-    std::vector<double> out;
-    for (const StageRecord* s : found_)
-      out.insert(out.end(), (s->*row).begin(), (s->*row).end());
-    return out;
-  }
-
- private:
-  std::vector<const StageRecord*> found_;
-};
-
 double solved(const StageRecord& s) { return share_below(s.loss, kSolved); }
-double mean_loss(const StageRecord& s) { return s.loss.mean(); }
-double median_loss(const StageRecord& s) {
-  return median({s.loss.begin(), s.loss.end()});
-}
-
-std::optional<double> median_iterations(const Endings& endings) {
-  const auto all = endings.all(&StageRecord::example_iterations);
-  if (all.empty()) return {};
-  return median(all);
-}
-
-/// Claims about full training mean nothing in a campaign that cut it short.
-bool complete(const Results& results) {
-  const auto& cases = results.cases();
-  return std::none_of(cases.begin(), cases.end(), [](const CaseRecord& c) {
-    return c.info.experiment == kName && c.info.profile == "smoke";
-  });
-}
 
 ClaimResult bfgs_solves(const JpoMetrics& metrics) {
   const Endings bfgs(metrics, "bfgs", false);
@@ -100,8 +36,8 @@ ClaimResult bfgs_solves(const JpoMetrics& metrics) {
   }
   Judge judge;
   judge.at_least("lowest share solved", bfgs.smallest(solved), 1)
-      .at_least("median iterations", median_iterations(bfgs), 6)
-      .at_most("median iterations", median_iterations(bfgs), 14)
+      .at_least("median iterations", bfgs.median_iterations(), 6)
+      .at_most("median iterations", bfgs.median_iterations(), 14)
       .at_least("share with L <= 1e-18", exact, 0.95);
   return std::move(judge).result(
       "R2",
@@ -139,8 +75,8 @@ ClaimResult descent_solves(const Results& results,
                  }),
                  1000)
         .above("median iterations over those of BFGS",
-               median_iterations(gd),
-               median_iterations(bfgs));
+               gd.median_iterations(),
+               bfgs.median_iterations());
     judge.report(
         "share solved of all problems",
         metrics.pooled_solved_share("gd", metrics.sizes(), false, kSolved));
@@ -337,7 +273,7 @@ Section report(const Results& results, const Published& published) {
   }
   section.figures.insert(section.figures.begin(), {task(), landscape()});
   const JpoMetrics metrics(results, options.experiment);
-  const bool full = complete(results);
+  const bool full = full_training(results, kName);
   section.claims = {bfgs_solves(metrics),
                     descent_solves(results, metrics, full),
                     jpo_needs_refinement(metrics, full),
