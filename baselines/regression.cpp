@@ -1,7 +1,5 @@
 #include "baselines/regression.h"
 
-#include "optimizers/jpo.h"
-
 namespace physinv {
 namespace {
 

@@ -6,12 +6,12 @@
 #include <string>
 
 #include "optimizers/network_model.h"
-#include "optimizers/steps/adam.h"
+#include "optimizers/steps/rule.h"
 
 namespace physinv {
 
 struct RegressionOptions {
-  AdamOptions step = {.rate = 1e-3};
+  StepOptions step = AdamOptions{.rate = 1e-3};
   Index iterations = 3000;
 };
 
@@ -37,7 +37,7 @@ double fit_regression(NetworkModel<T>& model,
                       const RegressionOptions& options,
                       StageRun& run,
                       Estimate&& estimate) {
-  Adam<T> adam(options.step);
+  UpdateStep<T> update(options.step);
   Batch<T> residual(target.rows(), target.cols());
   double loss = 0;
   run.probe.begin_warmup();
@@ -48,7 +48,7 @@ double fit_regression(NetworkModel<T>& model,
     model.update_state();
     loss = residual.template cast<double>().squaredNorm();
     residual *= T(2);
-    adam.step(model.parameters(), model.backward(residual));
+    update(model.parameters(), model.backward(residual));
     if (run.probe.traced()) {
       run.probe.trace(&loss, sizeof(loss));
       run.probe.trace(

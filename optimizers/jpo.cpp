@@ -22,7 +22,7 @@ class JpoRun {
                oracle_.shape().unknowns,
                run.threads),
         clip_(options.clip),
-        adam_(options.step),
+        update_(options.step),
         start_(oracle_.start().template cast<T>()),
         scale_(static_cast<T>(run.setting.output_scale)),
         x_(start_),
@@ -78,7 +78,7 @@ class JpoRun {
     clip_.template operator()<T>(gradient_);
     // d x / d output = scale; Adam's step hardly feels it, but eps does.
     if (scale_ != T(1)) gradient_ *= scale_;
-    adam_.step(model_.parameters(), model_.backward(gradient_));
+    update_(model_.parameters(), model_.backward(gradient_));
     run_.probe.trace(model_.parameters().data(),
                      sizeof(T) * bytes_of(model_.parameters()));
   }
@@ -111,7 +111,7 @@ class JpoRun {
   Oracle& oracle_;
   NetworkModel<T> model_;
   ClipPercentile clip_;
-  Adam<T> adam_;
+  UpdateStep<T> update_;
   Batch<T> start_;
   T scale_;
   Batch<T> x_, gradient_, best_x_;
@@ -149,16 +149,6 @@ class JpoFit final : public Stage {
 };
 
 }  // namespace
-
-Options describe(const AdamOptions& o) {
-  return {
-      {"step", "adam"},
-      {"rate", fmt::format("{}", o.rate)},
-      {"beta1", fmt::format("{}", o.beta1)},
-      {"beta2", fmt::format("{}", o.beta2)},
-      {"eps", fmt::format("{}", o.eps)},
-      {"eps_before_correction", fmt::format("{}", o.eps_before_correction)}};
-}
 
 std::shared_ptr<const Stage> jpo_fit(const JpoOptions& options) {
   return std::make_shared<JpoFit>(options);

@@ -14,20 +14,17 @@
 
 #include <memory>
 
-#include "optimizers/steps/adam.h"
+#include "optimizers/steps/rule.h"
 #include "suite/core/method.h"
 
 namespace physinv {
 
 struct JpoOptions {
-  AdamOptions step = {.rate = 1e-4};
+  StepOptions step = AdamOptions{.rate = 1e-4};
   double clip = 0.9;  ///< quantile of the gradient norms
   Index iterations = 3000;
 };
 
 std::shared_ptr<const Stage> jpo_fit(const JpoOptions& options = {});
-
-/// Options of Adam as text, for records.
-Options describe(const AdamOptions& options);
 
 }  // namespace physinv

@@ -14,22 +14,27 @@ namespace physinv {
 struct JpoMethodOptions {
   double rate = 1e-4;       ///< of JPO's Adam; the other networks use 1e-3
   Index iterations = 3000;  ///< of every network, unless a row says otherwise
+  Index bfgs_iterations = 1000;     ///< of BFGS and of refinement, at most
+  Index descent_iterations = 1000;  ///< of gradient descent, at most
 };
 
 /// bfgs, gd, jpo, supervised and na, the networks' chains with refinement.
 inline std::vector<Method> jpo_methods(const JpoMethodOptions& options = {}) {
   const Index iterations = options.iterations;
-  return {{"bfgs", {bfgs_solve()}},
-          {"gd", {gradient_descent_solve()}},
-          {"jpo",
-           {jpo_fit({.step = {.rate = options.rate}, .iterations = iterations}),
-            bfgs_refine()}},
-          {"supervised",
-           {supervised_fit({.iterations = iterations}), bfgs_refine()}},
-          {"na",
-           {surrogate_fit({.iterations = iterations}),
-            neural_adjoint_solve(),
-            bfgs_refine()}}};
+  const auto refine = bfgs_refine({.iterations = options.bfgs_iterations});
+  return {
+      {"bfgs", {bfgs_solve({.iterations = options.bfgs_iterations})}},
+      {"gd",
+       {gradient_descent_solve({.iterations = options.descent_iterations})}},
+      {"jpo",
+       {jpo_fit({.step = AdamOptions{.rate = options.rate},
+                 .iterations = iterations}),
+        refine}},
+      {"supervised", {supervised_fit({.iterations = iterations}), refine}},
+      {"na",
+       {surrogate_fit({.iterations = iterations}),
+        neural_adjoint_solve(),
+        refine}}};
 }
 
 /// Those of them that train a network.

@@ -14,7 +14,7 @@ namespace {
 constexpr Index kCount = 15;
 
 Outcome surrogate(Index iterations, Precision precision = Precision::f64) {
-  const auto fit = surrogate_fit({.step = {.rate = 1e-2}});
+  const auto fit = surrogate_fit({.step = AdamOptions{.rate = 1e-2}});
   StageBench bench(*fit, kCount, iterations);
   return bench.run(nullptr, precision);
 }
@@ -106,7 +106,7 @@ TEST(NeuralAdjoint, SimulatesAcceptedIteratesOnly) {
 TEST(NeuralAdjoint, ReadsUnknownsWhereverTheyStand) {
   Setting swapped = quadratic_setting();
   std::swap(swapped.surrogate.inputs[0], swapped.surrogate.inputs[1]);
-  const auto fit = surrogate_fit({.step = {.rate = 1e-2}});
+  const auto fit = surrogate_fit({.step = AdamOptions{.rate = 1e-2}});
   const auto solve = neural_adjoint_solve();
   StageBench first(*fit, kCount, 500, quadratic(), swapped);
   const Outcome fitted = first.run();

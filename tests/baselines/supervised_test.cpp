@@ -15,7 +15,7 @@ double training_loss(const Outcome& out) {
 }
 
 TEST(Supervised, LearnsAndGeneralises) {
-  const auto stage = supervised_fit({.step = {.rate = 1e-2}});
+  const auto stage = supervised_fit({.step = AdamOptions{.rate = 1e-2}});
   for (const auto precision : {Precision::f32, Precision::f64}) {
     StageBench first(*stage, kCount, 1), bench(*stage, kCount, 600);
     const double before = training_loss(first.run(nullptr, precision));
@@ -29,7 +29,7 @@ TEST(Supervised, LearnsAndGeneralises) {
 
 // The prediction of the last network, be it better or worse than before.
 TEST(Supervised, SelectsNoBestIterate) {
-  const auto stage = supervised_fit({.step = {.rate = 0.3}});
+  const auto stage = supervised_fit({.step = AdamOptions{.rate = 0.3}});
   StageBench bench(*stage, kCount, 60);
   const Outcome out = bench.run();
   const Batch<double>& curve = bench.probe.curve().loss;
@@ -55,7 +55,7 @@ TEST(Supervised, SeesOnlyTheLabelledSamples) {
 }
 
 TEST(Supervised, TargetsAreScaledLikeTheOutput) {
-  const auto stage = supervised_fit({.step = {.rate = 1e-2}});
+  const auto stage = supervised_fit({.step = AdamOptions{.rate = 1e-2}});
   StageBench bench(*stage, kCount, 600, quadratic(), quadratic_setting(0.5));
   const Outcome out = bench.run();
   EXPECT_LT(bench.loss(out.x).mean(),

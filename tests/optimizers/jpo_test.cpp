@@ -15,7 +15,7 @@ constexpr Index kCount = 12;
 
 TEST(Jpo, KeepsTheBestEstimateOfEachExample) {
   // A rate that makes the losses jump: the last iterate is rarely the best.
-  const auto jpo = jpo_fit({.step = {.rate = 0.3}});
+  const auto jpo = jpo_fit({.step = AdamOptions{.rate = 0.3}});
   StageBench bench(*jpo, kCount, 25);
   const Outcome out = bench.run();
   const Batch<double> losses = bench.traced<double>(kCount);
@@ -33,7 +33,7 @@ TEST(Jpo, KeepsTheBestEstimateOfEachExample) {
 // The state after the last step counts: with one step that improves, the best
 // is what the step led to.
 TEST(Jpo, TheLastStateCounts) {
-  const auto jpo = jpo_fit({.step = {.rate = 1e-4}});
+  const auto jpo = jpo_fit({.step = AdamOptions{.rate = 1e-4}});
   StageBench bench(*jpo, kCount, 1);
   const Outcome out = bench.run();
   const Batch<double> losses = bench.traced<double>(kCount);
@@ -44,7 +44,7 @@ TEST(Jpo, TheLastStateCounts) {
 }
 
 TEST(Jpo, LowersTheLossInBothPrecisions) {
-  const auto jpo = jpo_fit({.step = {.rate = 1e-2}});
+  const auto jpo = jpo_fit({.step = AdamOptions{.rate = 1e-2}});
   for (const auto precision : {Precision::f32, Precision::f64}) {
     StageBench bench(*jpo, kCount, 400);
     const Outcome out = bench.run(nullptr, precision);
@@ -65,7 +65,7 @@ TEST(Jpo, ScalesTheOutput) {
   EXPECT_TRUE(Comparator(1e-14, 0)(b - start, 2 * (a - start)));
 
   // The chain rule knows the scale, and its sign.
-  const auto scaled = jpo_fit({.step = {.rate = 1e-2}});
+  const auto scaled = jpo_fit({.step = AdamOptions{.rate = 1e-2}});
   StageBench bench(*scaled, kCount, 300, quadratic(), quadratic_setting(-0.5));
   const Outcome out = bench.run();
   EXPECT_LT(bench.loss(out.x).mean(),
@@ -74,7 +74,7 @@ TEST(Jpo, ScalesTheOutput) {
 
 // One loss that is not finite does not spoil the others.
 TEST(Jpo, SurvivesExamplesThatAreNotFinite) {
-  const auto jpo = jpo_fit({.step = {.rate = 1e-3}});
+  const auto jpo = jpo_fit({.step = AdamOptions{.rate = 1e-3}});
   StageBench bench(*jpo, kCount, 30, quadratic({.broken_above = 0.6}));
   const Outcome out = bench.run();
   const Batch<double> losses = bench.traced<double>(kCount);

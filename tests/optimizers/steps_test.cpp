@@ -1,29 +1,34 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
-#include "optimizers/steps/adam.h"
-#include "optimizers/steps/sgd.h"
+#include "optimizers/steps/rule.h"
 #include "suite/core/objective.h"
 
 namespace physinv {
 namespace {
 
 template <class T>
+Vector<T> some_gradient(Index n, int t) {
+  return Vector<T>::NullaryExpr(n, [=](Index i) {
+    return static_cast<T>(std::sin(0.7 * double(i) + 1.1 * t) * (i + 1));
+  });
+}
+
+template <class T>
 class StepsTest : public testing::Test {
  protected:
   const double tol_ = sizeof(T) == 4 ? 2e-6 : 1e-14;
-  static Vector<T> gradient(Index n, int t) {
-    return Vector<T>::NullaryExpr(n, [=](Index i) {
-      return static_cast<T>(std::sin(0.7 * double(i) + 1.1 * t) * (i + 1));
-    });
-  }
 };
 using Types = testing::Types<float, double>;
 TYPED_TEST_SUITE(StepsTest, Types);
 
 static_assert(UpdateRule<Adam<float>, float>);
 static_assert(UpdateRule<Sgd<double>, double>);
+static_assert(UpdateRule<Adagrad<float>, float>);
+static_assert(UpdateRule<Adadelta<float>, float>);
+static_assert(UpdateRule<Rmsprop<float>, float>);
 
 TYPED_TEST(StepsTest, AdamFollowsTheFormula) {
   using T = TypeParam;
@@ -34,7 +39,7 @@ TYPED_TEST(StepsTest, AdamFollowsTheFormula) {
     Vector<T> x = Vector<T>::Ones(n);
     Vector<double> y = Vector<double>::Ones(n), m = 0 * y, v = 0 * y;
     for (int t = 1; t <= 20; ++t) {
-      const Vector<T> g = this->gradient(n, t);
+      const Vector<T> g = some_gradient<T>(n, t);
       adam.step(x, g);
       for (Index i = 0; i < n; ++i) {
         const auto gi = static_cast<double>(g(i));
@@ -58,13 +63,61 @@ TYPED_TEST(StepsTest, SgdFollowsTheFormula) {
   Vector<T> x = Vector<T>::Ones(5);
   Vector<double> y = Vector<double>::Ones(5), u = 0 * y;
   for (int t = 1; t <= 10; ++t) {
-    const Vector<T> g = this->gradient(5, t);
+    const Vector<T> g = some_gradient<T>(5, t);
     sgd.step(x, g);
     u = 0.9 * u + g.template cast<double>();
     y -= 0.01 * u;
     EXPECT_LE((x.template cast<double>() - y).cwiseAbs().maxCoeff(),
               this->tol_ * 4 * t);
   }
+}
+
+/// Steps `rule` twenty times beside `formula(g, x)` on each number, in double.
+template <class T, class Formula>
+void expect_formula(const StepOptions& options, double tol, Formula make) {
+  const Index n = 13;
+  UpdateStep<T> step(options);
+  Vector<T> x = Vector<T>::Ones(n);
+  std::vector<double> y(static_cast<std::size_t>(n), 1.0);
+  std::vector formulas(static_cast<std::size_t>(n), make());
+  for (int t = 1; t <= 20; ++t) {
+    const Vector<T> g = some_gradient<T>(n, t);
+    step(x, g);
+    for (Index i = 0; i < n; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      y[at] -= formulas[at](static_cast<double>(g(i)));
+      EXPECT_NEAR(static_cast<double>(x(i)), y[at], tol * t);
+    }
+  }
+}
+
+TYPED_TEST(StepsTest, AdagradFollowsTheFormula) {
+  expect_formula<TypeParam>(AdagradOptions{.rate = 0.1}, this->tol_, [] {
+    return [a = 0.1](double g) mutable {
+      a += g * g;
+      return 0.1 * g / (std::sqrt(a) + 1e-7);
+    };
+  });
+}
+
+TYPED_TEST(StepsTest, RmspropFollowsTheFormula) {
+  expect_formula<TypeParam>(RmspropOptions{.rate = 0.01}, this->tol_, [] {
+    return [a = 0.0](double g) mutable {
+      a = 0.9 * a + 0.1 * g * g;
+      return 0.01 * g / (std::sqrt(a) + 1e-7);
+    };
+  });
+}
+
+TYPED_TEST(StepsTest, AdadeltaFollowsTheFormula) {
+  expect_formula<TypeParam>(AdadeltaOptions{.rate = 0.1}, this->tol_, [] {
+    return [a = 0.0, c = 0.0](double g) mutable {
+      a = 0.95 * a + 0.05 * g * g;
+      const double d = std::sqrt(c + 1e-7) / std::sqrt(a + 1e-7) * g;
+      c = 0.95 * c + 0.05 * d * d;
+      return 0.1 * d;
+    };
+  });
 }
 
 /// Equal numbers take equal steps wherever they stand, also unaligned.
@@ -84,6 +137,9 @@ TYPED_TEST(StepsTest, TheTailHasTheBitsOfTheBody) {
   expect_place_does_not_matter<T>([] { return Adam<T>(); });
   expect_place_does_not_matter<T>(
       [] { return Sgd<T>({.rate = 0.1, .momentum = 0.37}); });
+  expect_place_does_not_matter<T>([] { return Adagrad<T>(); });
+  expect_place_does_not_matter<T>([] { return Adadelta<T>(); });
+  expect_place_does_not_matter<T>([] { return Rmsprop<T>(); });
 }
 
 template <class T, class Rule>
@@ -103,6 +159,9 @@ TYPED_TEST(StepsTest, EveryRuleDescends) {
   EXPECT_LE(descend<T>(Sgd<T>({.rate = 0.1}), 200), 1e-3);
   EXPECT_LE(descend<T>(Sgd<T>({.rate = 0.05, .momentum = 0.8}), 200), 1e-3);
   EXPECT_LE(descend<T>(Adam<T>({.rate = 0.05}), 500), 1e-2);
+  EXPECT_LE(descend<T>(Adagrad<T>({.rate = 0.5}), 500), 1e-2);
+  EXPECT_LE(descend<T>(Adadelta<T>({.rate = 10}), 500), 5e-2);
+  EXPECT_LE(descend<T>(Rmsprop<T>({.rate = 1e-3}), 3000), 1e-2);
   EXPECT_LE(
       descend<T>(Adam<T>({.rate = 0.05, .eps_before_correction = true}), 500),
       1e-2);
@@ -112,11 +171,11 @@ TYPED_TEST(StepsTest, ResetForgets) {
   using T = TypeParam;
   Adam<T> a({.rate = 0.1}), b({.rate = 0.1});
   Vector<T> x = Vector<T>::Ones(6), y = x;
-  a.step(x, this->gradient(6, 1));
+  a.step(x, some_gradient<T>(6, 1));
   a.reset();
   x.setOnes();
-  a.step(x, this->gradient(6, 2));
-  b.step(y, this->gradient(6, 2));
+  a.step(x, some_gradient<T>(6, 2));
+  b.step(y, some_gradient<T>(6, 2));
   EXPECT_TRUE((x.array() == y.array()).all());
 }
 

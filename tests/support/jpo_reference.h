@@ -163,7 +163,7 @@ void expect_jpo(const Json& entry,
                                 return std::make_unique<Noting<double>>(
                                     mlp.make<double>(in, out), shift, last);
                               }};
-  const auto jpo = jpo_fit({.step = {.rate = about.rate}});
+  const auto jpo = jpo_fit({.step = AdamOptions{.rate = about.rate}});
   const Json& steps = entry.at("steps");
   const auto count = static_cast<Index>(steps.size());
   ASSERT_EQ(count, 4);  // 3 steps and what they led to

@@ -1,0 +1,55 @@
+/// Adagrad (Duchi, Hazan and Singer 2011) as Keras has it:
+///
+///   a += g^2   from a = accumulator        x -= rate g / (sqrt(a) + eps)
+///
+/// An object belongs to one vector.
+#pragma once
+
+#include "optimizers/steps/simd.h"
+#include "suite/core/batch.h"
+#include "suite/core/check.h"
+
+namespace physinv {
+
+struct AdagradOptions {
+  double rate = 1e-2;
+  double accumulator = 0.1;  ///< a before the first step; PyTorch has 0
+  double eps = 1e-7;
+};
+
+template <class T>
+class Adagrad {
+ public:
+  using Options = AdagradOptions;
+  explicit Adagrad(const Options& options = {}) : options_(options) {}
+
+  void step(VectorOut<T> x, VectorIn<T> gradient) {
+    SUITE_CHECK(x.size() == gradient.size(), "gradient of another size");
+    if (!started_)
+      a_.setConstant(x.size(), static_cast<T>(options_.accumulator));
+    SUITE_CHECK(x.size() == a_.size(), "the vector changed its size");
+    started_ = true;
+    const T rate = static_cast<T>(options_.rate);
+    const T eps = static_cast<T>(options_.eps);
+    T *const px = x.data(), *const pa = a_.data();
+    const T* const pg = gradient.data();
+    using R = steps::Register<T>;
+    steps::for_registers<T>(x.size(), [=](Index i, auto lanes) {
+      const auto g = R::load(pg + i, lanes);
+      const auto a = R::multiply_add(g, g, R::load(pa + i, lanes));
+      R::store(pa + i, a, lanes);
+      const auto step = rate * g / (R::root(a) + eps);
+      R::store(px + i, R::load(px + i, lanes) - step, lanes);
+    });
+  }
+
+  /// Forgets the sum of squares.
+  void reset() { started_ = false; }
+
+ private:
+  Options options_;
+  Vector<T> a_;
+  bool started_ = false;
+};
+
+}  // namespace physinv

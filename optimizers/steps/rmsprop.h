@@ -1,0 +1,57 @@
+/// RMSprop (Tieleman and Hinton 2012) as Keras has it, without momentum:
+///
+///   a = decay a + (1 - decay) g^2          x -= rate g / (sqrt(a) + eps)
+///
+/// An object belongs to one vector.
+#pragma once
+
+#include "optimizers/steps/simd.h"
+#include "suite/core/batch.h"
+#include "suite/core/check.h"
+
+namespace physinv {
+
+struct RmspropOptions {
+  double rate = 1e-3;
+  double decay = 0.9;
+  double eps = 1e-7;
+};
+
+template <class T>
+class Rmsprop {
+ public:
+  using Options = RmspropOptions;
+  explicit Rmsprop(const Options& options = {}) : options_(options) {}
+
+  void step(VectorOut<T> x, VectorIn<T> gradient) {
+    SUITE_CHECK(x.size() == gradient.size(), "gradient of another size");
+    if (!started_) a_.setZero(x.size());
+    SUITE_CHECK(x.size() == a_.size(), "the vector changed its size");
+    started_ = true;
+    const T rate = static_cast<T>(options_.rate);
+    const T decay = static_cast<T>(options_.decay);
+    const T fresh = static_cast<T>(1 - options_.decay);
+    const T eps = static_cast<T>(options_.eps);
+    T *const px = x.data(), *const pa = a_.data();
+    const T* const pg = gradient.data();
+    using R = steps::Register<T>;
+    steps::for_registers<T>(x.size(), [=](Index i, auto lanes) {
+      const auto g = R::load(pg + i, lanes);
+      const auto a = R::multiply_add(
+          R::all(decay), R::load(pa + i, lanes), fresh * (g * g));
+      R::store(pa + i, a, lanes);
+      const auto step = rate * g / (R::root(a) + eps);
+      R::store(px + i, R::load(px + i, lanes) - step, lanes);
+    });
+  }
+
+  /// Forgets the mean square.
+  void reset() { started_ = false; }
+
+ private:
+  Options options_;
+  Vector<T> a_;
+  bool started_ = false;
+};
+
+}  // namespace physinv

@@ -1,0 +1,50 @@
+/// Any of the first-order update rules, chosen by its options.
+///
+///   UpdateStep<float> step(AdamOptions{.rate = 1e-3});
+///   step(weights, gradient);
+#pragma once
+
+#include <variant>
+
+#include "optimizers/steps/adadelta.h"
+#include "optimizers/steps/adagrad.h"
+#include "optimizers/steps/adam.h"
+#include "optimizers/steps/rmsprop.h"
+#include "optimizers/steps/sgd.h"
+#include "suite/core/recipe.h"
+
+namespace physinv {
+
+using StepOptions = std::variant<AdamOptions,
+                                 SgdOptions,
+                                 AdagradOptions,
+                                 AdadeltaOptions,
+                                 RmspropOptions>;
+
+/// As text for records, the rule's name first.
+Options describe(const StepOptions& options);
+
+template <class T>
+class UpdateStep {
+ public:
+  explicit UpdateStep(const StepOptions& options)
+      : rule_(std::visit([](const auto& o) { return make(o); }, options)) {}
+
+  void operator()(VectorOut<T> x, VectorIn<T> gradient) {
+    std::visit([&](auto& rule) { rule.step(x, gradient); }, rule_);
+  }
+
+ private:
+  using Rule =
+      std::variant<Adam<T>, Sgd<T>, Adagrad<T>, Adadelta<T>, Rmsprop<T>>;
+
+  static Rule make(const AdamOptions& o) { return Adam<T>(o); }
+  static Rule make(const SgdOptions& o) { return Sgd<T>(o); }
+  static Rule make(const AdagradOptions& o) { return Adagrad<T>(o); }
+  static Rule make(const AdadeltaOptions& o) { return Adadelta<T>(o); }
+  static Rule make(const RmspropOptions& o) { return Rmsprop<T>(o); }
+
+  Rule rule_;
+};
+
+}  // namespace physinv
