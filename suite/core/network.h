@@ -22,7 +22,8 @@ struct TensorInfo {
   std::string name;  ///< kind and number as in the paper's figures: m1, b1, k1
   char kind = 'm';   ///< m matrix, k kernel, b bias, s scale, o offset
   Index offset = 0, size = 0;
-  Index fan_in = 0;  ///< inputs x taps of the layer
+  Index fan_in = 0;   ///< inputs x taps of the layer
+  Index fan_out = 0;  ///< outputs x taps
 };
 
 /// How a pass is to be run.

@@ -36,6 +36,13 @@ enum class Activation : std::uint8_t {
   silu,  ///< z sigma(z)
 };
 
+/// How weights are drawn, uniform within +-bound; biases and offsets start at
+/// 0, scales at 1.
+enum class Init : std::uint8_t {
+  fan_in,  ///< bound 1 / sqrt(fan_in), PyTorch's default
+  glorot,  ///< bound sqrt(6 / (fan_in + fan_out)), Keras' default
+};
+
 /// Everything a layer uses beside its input and output.
 template <class T>
 struct LayerArgs {

@@ -53,9 +53,8 @@ void fold_bias(const T* weights,
 template <class T>
 std::vector<TensorInfo> Linear<T>::tensors() const {
   const Index in = this->inputs(), out = this->outputs();
-  return {
-      {.name = {}, .kind = 'm', .offset = 0, .size = in * out, .fan_in = in},
-      {.name = {}, .kind = 'b', .offset = 0, .size = out, .fan_in = in}};
+  return {{.kind = 'm', .size = in * out, .fan_in = in, .fan_out = out},
+          {.kind = 'b', .size = out, .fan_in = in, .fan_out = out}};
 }
 
 template <class T>

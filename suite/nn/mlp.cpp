@@ -38,7 +38,7 @@ std::unique_ptr<Network<T>> make(const MlpOptions& o,
   }
   add(std::make_unique<Linear<T>>(size, outputs));
   add_activation(o.output);
-  return std::make_unique<Sequential<T>>(std::move(layers));
+  return std::make_unique<Sequential<T>>(std::move(layers), o.init);
 }
 
 }  // namespace
@@ -46,12 +46,13 @@ std::unique_ptr<Network<T>> make(const MlpOptions& o,
 NetworkRecipe mlp(const MlpOptions& options) {
   return {.description = fmt::format(
               "mlp hidden={} frequencies={} activation={} output={} "
-              "batch_norm={}",
+              "batch_norm={}{}",
               fmt::join(options.hidden, "-"),
               options.frequencies,
               to_string(options.activation),
               to_string(options.output),
-              options.batch_norm),
+              options.batch_norm,
+              options.init == Init::glorot ? " init=glorot" : ""),
           .make_float =
               [options](Index in, Index out) {
                 return make<float>(options, in, out);

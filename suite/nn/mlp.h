@@ -19,6 +19,7 @@ struct MlpOptions {
   Activation activation = Activation::relu;
   Activation output = Activation::identity;
   bool batch_norm = false;  ///< behind each hidden activation
+  Init init = Init::fan_in;
 };
 
 NetworkRecipe mlp(const MlpOptions& options);

@@ -23,6 +23,12 @@ Index constant_rows(Lanes<const T> x, Index first, Index step) {
   return count;
 }
 
+double bound_of(Init init, const TensorInfo& t) {
+  if (init == Init::glorot)
+    return std::sqrt(6.0 / static_cast<double>(t.fan_in + t.fan_out));
+  return 1.0 / std::sqrt(static_cast<double>(t.fan_in));
+}
+
 }  // namespace
 
 /// Slot 0: what a later call must know about the last forward pass.
@@ -50,7 +56,7 @@ struct Sequential<T>::Header {
 };
 
 template <class T>
-Sequential<T>::Sequential(Layers layers) {
+Sequential<T>::Sequential(Layers layers, Init init) : init_(init) {
   SUITE_CHECK(!layers.empty(), "a network has at least one layer");
   for (auto& layer : layers) {
     SUITE_CHECK(layers_.empty() || layers_.back()->outputs() == layer->inputs(),
@@ -97,7 +103,7 @@ void Sequential<T>::initialize(const Rng& rng,
     part.setConstant(t.kind == 's' ? T(1) : T(0));
     if (t.kind != 'm' && t.kind != 'k') continue;
     Stream stream = rng.child(t.name).stream();
-    const double bound = 1.0 / std::sqrt(static_cast<double>(t.fan_in));
+    const double bound = bound_of(init_, t);
     for (T& w : part) w = static_cast<T>(stream.uniform(-bound, bound));
   }
   for (std::size_t i = 0; i < layers_.size(); ++i)

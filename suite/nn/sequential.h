@@ -23,7 +23,7 @@ class Sequential final : public Network<T> {
   using Layers = std::vector<std::unique_ptr<Layer<T>>>;
 
   /// Sizes must fit each other; at least one layer.
-  explicit Sequential(Layers layers);
+  explicit Sequential(Layers layers, Init init = Init::fan_in);
 
   Index inputs() const override { return layers_.front()->inputs(); }
   Index outputs() const override { return layers_.back()->outputs(); }
@@ -31,7 +31,7 @@ class Sequential final : public Network<T> {
   Index state_count() const override { return state_count_; }
   const std::vector<TensorInfo>& tensors() const override { return tensors_; }
 
-  /// Weights uniform in +-1/sqrt(fan_in), biases and offsets 0, scales 1.
+  /// As `Init` says, in double, then rounded.
   /// Each tensor draws from the child of its own name.
   void initialize(const Rng& rng,
                   VectorOut<T> parameters,
@@ -74,6 +74,7 @@ class Sequential final : public Network<T> {
   Lanes<T> open(Tape& tape, std::size_t i, Index samples) const;
 
   Layers layers_;
+  Init init_;
   std::vector<Place> places_;
   std::vector<TensorInfo> tensors_;
   Index parameter_count_ = 0, state_count_ = 0;
