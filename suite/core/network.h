@@ -38,6 +38,19 @@ struct Pass {
   bool fixed_input = false;
 };
 
+/// One dense layer's columns of a stacked Jacobian. Row r belongs to sample
+/// r / per_sample; its entries are b_r (outer) a_sample, outputs x inputs
+/// row-major, then b_r. Features are rows of memory, samples contiguous.
+template <class T>
+struct LayerRows {
+  Index offset;           ///< of the layer's parameters
+  Index inputs, outputs;  ///< features of a and b
+  const T* a;             ///< inputs x samples
+  Index a_stride;
+  const T* b;  ///< outputs x rows
+  Index b_stride;
+};
+
 template <class T>
 class Network {
  public:
@@ -73,12 +86,33 @@ class Network {
                         BatchOut<T>* in_bar,
                         Workspace& work) const = 0;
 
+  using RowsVisitor = std::function<void(const LayerRows<T>&)>;
+  /// The Jacobian of several functions of each sample's output, layer by layer
+  /// from the last to the first, at the last forward pass on this tape:
+  /// columns [i * per_sample, (i + 1) * per_sample) of `out_bar` are the
+  /// cotangents of sample i's functions. What `visit` is shown lives until it
+  /// returns. Networks with other layers than dense ones refuse.
+  virtual void jacobian_rows(VectorIn<T> parameters,
+                             const Tape& tape,
+                             BatchIn<T> out_bar,
+                             const RowsVisitor& visit,
+                             Workspace& work) const;
+
   /// Folds the batch statistics of the last training pass into the state.
   virtual void update_state(const Tape& tape, VectorOut<T> state) const = 0;
 
   /// Rough floating-point operations of one forward pass of one sample.
   virtual double operations() const = 0;
 };
+
+template <class T>
+void Network<T>::jacobian_rows(VectorIn<T>,
+                               const Tape&,
+                               BatchIn<T>,
+                               const RowsVisitor&,
+                               Workspace&) const {
+  SUITE_CHECK(false, "this network does not give its Jacobian by rows");
+}
 
 /// Makes one network of one configuration, in float and in double.
 struct NetworkRecipe {

@@ -13,10 +13,13 @@
 #include "suite/core/network.h"
 #include "suite/nn/activation.h"
 #include "suite/nn/batch_norm.h"
+#include "suite/nn/conv.h"
 #include "suite/nn/encoding.h"
 #include "suite/nn/gemm.h"
 #include "suite/nn/linear.h"
 #include "suite/nn/mlp.h"
+#include "suite/nn/unet.h"
+#include "suite/nn/vgg.h"
 
 namespace physinv::nn {
 namespace {
@@ -300,6 +303,223 @@ PHYSINV_NETWORKS(float)
 PHYSINV_NETWORKS(double)
 #undef PHYSINV_NETWORKS
 #undef PHYSINV_NETWORK
+
+// ---------------------------------------------------------- convolutions
+
+/// A convolution with 3 taps, and the same products as a plain matrix product
+/// on rows gathered before (im2col), the gathering included.
+struct Field {
+  Field(const benchmark::State& state)
+      : shape{.grid = {state.range(0)},
+              .in = state.range(1),
+              .out = state.range(2),
+              .taps = {3, 1}},
+        runs(window_runs(shape.grid, shape.taps, Padding::zero)),
+        n(state.range(3)),
+        x(shape.positions() * shape.in, n),
+        y(shape.positions() * shape.out, n),
+        weights(Vector<float>::Random(shape.weights())),
+        packed(shape.weights()) {}
+  double flops() const {
+    return 2.0 * static_cast<double>(shape.weights() * shape.positions() * n);
+  }
+  ConvShape shape;
+  std::vector<Run> runs;
+  Index n;
+  LaneBlock<float> x, y;
+  Vector<float> weights, packed;
+};
+
+void conv_forward(benchmark::State& state) {
+  Field f(state);
+  for (auto _ : state) {
+    pack_weights(f.shape, f.weights.data(), f.packed.data());
+    convolve<float>(f.shape,
+                    f.runs,
+                    f.packed.data(),
+                    nullptr,
+                    f.x.lanes,
+                    f.y.lanes,
+                    0,
+                    f.shape.positions());
+    benchmark::ClobberMemory();
+  }
+  flops(state, f.flops());
+}
+
+void conv_weights(benchmark::State& state) {
+  Field f(state);
+  const Index width = f.x.lanes.width;
+  Vector<float> sums(weight_sums<float>(f.shape, width));
+  for (auto _ : state) {
+    sums.setZero();
+    accumulate_weights<float>(f.shape,
+                              f.runs,
+                              f.x.lanes,
+                              f.y.lanes,
+                              0,
+                              f.shape.positions(),
+                              sums.data());
+    finish_weights(
+        f.shape, width, sums.data(), 1, f.packed.data(), f.weights.data());
+    benchmark::ClobberMemory();
+  }
+  flops(state, f.flops());
+}
+
+/// One `gemm` per position on shifted rows.
+void conv_shifted_gemm(benchmark::State& state) {
+  Field f(state);
+  const Index depth = f.shape.depth();
+  for (auto _ : state) {
+    for (Index p = 0; p < f.shape.positions(); ++p) {
+      const Index skip = p == 0 ? f.shape.in : 0;
+      const Index end = p + 1 == f.shape.positions() ? f.shape.in : 0;
+      gemm<float>({.m = f.shape.out,
+                   .n = f.x.lanes.width,
+                   .k = depth - skip - end,
+                   .a = f.weights.data() + skip,
+                   .a_row = depth,
+                   .a_k = 1,
+                   .b = f.x.lanes.row((p - 1) * f.shape.in + skip),
+                   .b_stride = f.x.lanes.stride,
+                   .c = f.y.lanes.row(p * f.shape.out),
+                   .c_stride = f.y.lanes.stride});
+    }
+    benchmark::ClobberMemory();
+  }
+  flops(state, f.flops());
+}
+
+/// Gathered to [channel and tap][position and sample], one product for all.
+void conv_im2col(benchmark::State& state) {
+  Field f(state);
+  const Index width = f.x.lanes.width, columns = f.shape.positions() * width;
+  const Index depth = f.shape.depth(), in = f.shape.in;
+  Batch<float> gathered = Batch<float>::Zero(columns, depth);
+  Batch<float> out(columns, f.shape.out);
+  for (auto _ : state) {
+    for (Index k = 0; k < depth; ++k)
+      for (Index p = 0; p < f.shape.positions(); ++p) {
+        const Index from = p + k / in - 1;
+        if (from < 0 || from >= f.shape.positions()) continue;
+        const float* row = f.x.lanes.row(from * in + k % in);
+        std::copy(row, row + width, gathered.col(k).data() + p * width);
+      }
+    gemm<float>({.m = f.shape.out,
+                 .n = columns,
+                 .k = depth,
+                 .a = f.weights.data(),
+                 .a_row = depth,
+                 .a_k = 1,
+                 .b = gathered.data(),
+                 .b_stride = columns,
+                 .c = out.data(),
+                 .c_stride = columns});
+    benchmark::ClobberMemory();
+  }
+  flops(state, f.flops());
+}
+
+void conv_shapes(benchmark::internal::Benchmark* b) {
+  for (const std::int64_t n : {8, 128}) {
+    b->Args({256, 1, 16, n})->Args({128, 16, 16, n})->Args({16, 64, 64, n});
+    b->Args({256, 32, 16, n});
+  }
+}
+BENCHMARK(conv_forward)->Name("nn/conv/forward")->Apply(conv_shapes);
+BENCHMARK(conv_weights)->Name("nn/conv/weight_gradient")->Apply(conv_shapes);
+BENCHMARK(conv_shifted_gemm)
+    ->Name("nn/conv/forward_by_gemm_per_position")
+    ->Apply(conv_shapes);
+BENCHMARK(conv_im2col)->Name("nn/conv/forward_by_im2col")->Apply(conv_shapes);
+
+enum class Step { forward, training, input };
+
+/// As the experiments train them.
+template <class T, Step step>
+void field_network(benchmark::State& state,
+                   const NetworkRecipe& recipe,
+                   Index inputs,
+                   Index outputs) {
+  const Index n = state.range(0);
+  const auto net = recipe.make<T>(inputs, outputs);
+  Vector<T> p(net->parameter_count()), p_bar(p.size()), s(net->state_count());
+  net->initialize(Rng::root("kernels", 0), p, s);
+  const Batch<T> in = Batch<T>::Random(inputs, n);
+  const Batch<T> out_bar = Batch<T>::Random(outputs, n);
+  Batch<T> out(outputs, n), in_bar(inputs, n);
+  Tape tape;
+  Workspace work;
+  VectorOut<T> p_out(p_bar);
+  BatchOut<T> in_out(in_bar);
+  Pass pass{.training = step != Step::input};
+  net->forward(p, s, in, out, tape, work, pass);
+  pass.same_input = step == Step::training;
+  for (auto _ : state) {
+    net->forward(p, s, in, out, tape, work, pass);
+    if (step == Step::training)
+      net->backward(p, tape, out_bar, &p_out, nullptr, work);
+    if (step == Step::input)
+      net->backward(p, tape, out_bar, nullptr, &in_out, work);
+    benchmark::ClobberMemory();
+  }
+  const double passes = step == Step::forward    ? 1
+                        : step == Step::training ? 3
+                                                 : 2;
+  flops(state, net->operations() * double(n) * passes);
+}
+
+template <class T, Step step>
+void packet_vgg(benchmark::State& state) {
+  field_network<T, step>(state,
+                         vgg({.channels = 1,
+                              .grid = {256},
+                              .features = {16, 16, 16, 16, 16},
+                              .hidden = {64, 32}}),
+                         256,
+                         1);
+}
+template <class T, Step step>
+void ks_vgg(benchmark::State& state) {
+  field_network<T, step>(state,
+                         vgg({.channels = 2,
+                              .grid = {128},
+                              .features = {32, 32, 64, 64},
+                              .hidden = {64, 64}}),
+                         256,
+                         2);
+}
+template <class T, Step step>
+void packet_unet(benchmark::State& state) {
+  field_network<T, step>(
+      state, unet({.grid = {256}, .scalars_before = 1}), 257, 256);
+}
+template <class T, Step step>
+void ks_unet(benchmark::State& state) {
+  field_network<T, step>(
+      state, unet({.grid = {128}, .scalars_after = 2}), 130, 128);
+}
+
+#define PHYSINV_FIELD_NETWORK(T, name, step) \
+  BENCHMARK((name<T, Step::step>))           \
+      ->Name("nn/" #name "<" #T ">/" #step)  \
+      ->Arg(8)                               \
+      ->Arg(32)                              \
+      ->Arg(128)                             \
+      ->Arg(256);
+#define PHYSINV_FIELD_NETWORKS(T, name)    \
+  PHYSINV_FIELD_NETWORK(T, name, forward)  \
+  PHYSINV_FIELD_NETWORK(T, name, training) \
+  PHYSINV_FIELD_NETWORK(T, name, input)
+PHYSINV_FIELD_NETWORKS(float, packet_vgg)
+PHYSINV_FIELD_NETWORKS(float, ks_vgg)
+PHYSINV_FIELD_NETWORKS(float, packet_unet)
+PHYSINV_FIELD_NETWORKS(float, ks_unet)
+PHYSINV_FIELD_NETWORK(double, packet_vgg, training)
+PHYSINV_FIELD_NETWORK(double, packet_unet, training)
+#undef PHYSINV_FIELD_NETWORKS
+#undef PHYSINV_FIELD_NETWORK
 
 template <class T>
 void adam_step(benchmark::State& state) {

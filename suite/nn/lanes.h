@@ -20,14 +20,16 @@ constexpr Index round_up(Index n, Index multiple) {
   return (n + multiple - 1) / multiple * multiple;
 }
 
-/// Distance between rows of `width` lanes. An odd number of cache lines: with
-/// 512-byte rows a column of 128 features would fall into 8 sets of the L1.
+/// Distance between rows of `width` lanes. From three cache lines on an odd
+/// number of them: with 512-byte rows a column of 128 features would fall into
+/// 8 sets of the L1. With two lines it fits, and a third of the memory is
+/// saved.
 template <class T>
 constexpr Index lane_stride(Index width) {
   constexpr Index line = 2 * kLanes<T>;
   if (width <= line) return width;
   const Index lines = (width + line - 1) / line;
-  return (lines | 1) * line;
+  return (lines <= 2 ? lines : lines | 1) * line;
 }
 
 /// View of features x samples. `T` may be const.

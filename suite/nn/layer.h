@@ -4,17 +4,14 @@
 /// with each call, so one object serves any number of threads and vectors.
 ///
 /// How more fits in without touching what is there:
-///  - Convolution and pooling: one sample's field is rows [channel][position]
-///    of a lane block, so a tap is a `gemm` with m = channels on shifted rows,
-///    and everything element-wise works as it is.
-///  - Skips (U-Net): a composite layer owns its inner layers, adds up their
-///    tensors and slots, and keeps the skipped rows in its own tape slots.
+///  - Fields: between `FieldInput` and `Flatten` rows are [position][channel]
+///    (window.h); everything element-wise works as it is.
+///  - Composite layers own inner layers, add up their tensors and slots, and
+///    keep what runs between them in tape slots of their own (skip.h).
 ///  - Forward mode: one more virtual `tangent(at, x, y, x_dot, p_dot, y_dot)`
 ///    with a default that reports the lack; it reads the same tape.
-///  - Per-sample Jacobians: one more virtual beside `backward` that writes
-///    column j's parameter gradient (Linear: y_bar_j x_j^T) into column j of a
-///    batch; the cotangents walking down are those of `backward`, run once per
-///    output on the same tape.
+///  - Stacked Jacobians of more layer kinds: `show_rows`; the cotangents
+///    walking down are those of `backward`, run on each sample's rows at once.
 #pragma once
 
 #include <cstddef>
@@ -22,6 +19,7 @@
 #include <string>
 #include <vector>
 
+#include "suite/core/check.h"
 #include "suite/core/network.h"
 #include "suite/nn/lanes.h"
 
@@ -95,6 +93,8 @@ class Layer {
   virtual const Activation* pure_activation() const { return nullptr; }
   /// Takes a following activation into its own store, if it can.
   virtual bool fuse(Activation) { return false; }
+  /// Whether it makes use of `LayerArgs::leading` and `trailing`.
+  virtual bool folds_constants() const { return false; }
   /// The activation taken in.
   virtual Activation fused() const { return Activation::identity; }
 
@@ -102,6 +102,14 @@ class Layer {
                        Lanes<const T> x,
                        Lanes<T> y) const = 0;
   virtual void backward(const LayerArgs<T>& at, const Backward<T>& b) const = 0;
+  /// Shows its columns of a stacked Jacobian: see Network::jacobian_rows. x has
+  /// the samples, y_bar the rows.
+  virtual void show_rows(Lanes<const T> /*x*/,
+                         Lanes<const T> /*y_bar*/,
+                         Index /*offset*/,
+                         const typename Network<T>::RowsVisitor&) const {
+    SUITE_CHECK(tensors().empty(), "not a dense layer");
+  }
   /// Folds the last training pass's statistics into this layer's state.
   virtual void update_state(const Tape& /*tape*/,
                             std::size_t /*slot*/,

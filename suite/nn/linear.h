@@ -19,11 +19,16 @@ class Linear final : public Layer<T> {
 
   std::vector<TensorInfo> tensors() const override;
   bool fuse(Activation a) override;
+  bool folds_constants() const override { return true; }
   Activation fused() const override { return activation_; }
   void forward(const LayerArgs<T>& at,
                Lanes<const T> x,
                Lanes<T> y) const override;
   void backward(const LayerArgs<T>& at, const Backward<T>& b) const override;
+  void show_rows(Lanes<const T> x,
+                 Lanes<const T> y_bar,
+                 Index offset,
+                 const typename Network<T>::RowsVisitor& visit) const override;
   double operations() const override;
 
  private:

@@ -176,9 +176,11 @@ void Sequential<T>::forward(VectorIn<T> parameters,
       work.counts[Counter::skipped_features] += static_cast<std::uint64_t>(n);
   }
   header.samples = n;
-  header.training = pass.training, header.fixed = pass.fixed_input;
+  header.training = pass.training;
+  header.fixed = pass.fixed_input && prefix_ < layers_.size() &&
+                 layers_[prefix_]->folds_constants();
   if (!pass.same_input) run_prefix(in, header, tape, work);
-  if (pass.fixed_input) {
+  if (header.fixed != 0) {
     if (header.measured == 0) header.measure(features(tape, prefix_, n));
     work.counts[Counter::skipped_rows] +=
         static_cast<std::uint64_t>((header.leading + header.trailing) * n);
@@ -235,6 +237,57 @@ void Sequential<T>::backward(VectorIn<T> parameters,
     y_bar = b.x_bar;
   }
   if (in_bar != nullptr) from_lanes<T>(y_bar, *in_bar);
+}
+
+template <class T>
+void Sequential<T>::jacobian_rows(VectorIn<T> parameters,
+                                  const Tape& tape,
+                                  BatchIn<T> out_bar,
+                                  const typename Network<T>::RowsVisitor& visit,
+                                  Workspace& work) const {
+  const Header header = Header::read(tape);
+  const Index n = header.samples, rows = out_bar.cols(), per = rows / n;
+  SUITE_CHECK(out_bar.rows() == outputs() && per * n == rows,
+              "as many rows for each sample");
+  work.counts[Counter::network_backward] += static_cast<std::uint64_t>(rows);
+  const Workspace::Scope scope(work);
+  const Index stride = Lanes<T>(nullptr, widest_, rows).stride;
+  const auto take = [&] { return work.take<T>(stride, widest_).data(); };
+  T *free = take(), *const before = take(), *const behind = take();
+  Lanes<T> y_bar(take(), outputs(), rows);
+  to_lanes<T>(out_bar, y_bar);
+  // What a layer remembers is one column per sample; its rows share it.
+  const auto spread = [&](std::size_t i, T* to) {
+    const Lanes<T> from = features(tape, i, n);
+    const Lanes<T> wide(to, from.rows, rows);
+    for (Index f = 0; f < from.rows; ++f) {
+      for (Index s = 0; s < n; ++s)
+        std::fill_n(wide.row(f) + s * per, per, from.row(f)[s]);
+      std::fill(wide.row(f) + rows, wide.row(f) + wide.width, T(0));
+    }
+    return wide;
+  };
+  Lanes<T> y = spread(layers_.size(), behind);
+  apply_gate<T>({layers_.back()->fused(), y}, y_bar);
+  T* spare = before;
+  for (std::size_t i = layers_.size(); i-- > prefix_;) {
+    const Layer<T>& layer = *layers_[i];
+    layer.show_rows(features(tape, i, n), y_bar, places_[i].parameters, visit);
+    if (i == prefix_) break;
+    const Lanes<T> x = spread(i, spare);
+    const Backward<T> b{.x = x,
+                        .y = y,
+                        .y_bar = y_bar,
+                        .x_bar = {free, layer.inputs(), rows},
+                        .gate = {layers_[i - 1]->fused(), x}};
+    LayerArgs<T> at = args(i, header, const_cast<Tape&>(tape), work);
+    at.parameters = parameters.data() + places_[i].parameters;
+    layer.backward(at, b);
+    free = y_bar.data;
+    y_bar = b.x_bar;
+    spare = y.data;
+    y = x;
+  }
 }
 
 template <class T>

@@ -49,6 +49,11 @@ class Sequential final : public Network<T> {
                 VectorOut<T>* parameters_bar,
                 BatchOut<T>* in_bar,
                 Workspace& work) const override;
+  void jacobian_rows(VectorIn<T> parameters,
+                     const Tape& tape,
+                     BatchIn<T> out_bar,
+                     const typename Network<T>::RowsVisitor& visit,
+                     Workspace& work) const override;
   void update_state(const Tape& tape, VectorOut<T> state) const override;
   double operations() const override;
 

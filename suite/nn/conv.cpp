@@ -1,0 +1,229 @@
+#include "suite/nn/conv.h"
+
+#include <algorithm>
+
+#include "suite/core/check.h"
+#include "suite/nn/activation.h"
+
+namespace physinv::nn {
+namespace {
+
+ConvShape shape_of(const ConvOptions& o) {
+  return {.grid = o.grid, .in = o.in, .out = o.out, .taps = o.taps};
+}
+
+Index rows(const NormShape& s) { return s.pooled().positions() * s.channels; }
+
+/// Sums over positions and samples, one per channel.
+template <class T>
+void channel_sums(Workspace& work, Lanes<const T> x, Index channels, T* sums) {
+  const Workspace::Scope scope(work);
+  auto per_row = work.take<T>(x.rows, 1);
+  row_sums<T>(x, per_row.data());
+  for (Index c = 0; c < channels; ++c) {
+    double sum = 0;
+    for (Index i = c; i < x.rows; i += channels) sum += double(per_row(i));
+    sums[c] = static_cast<T>(sum);
+  }
+}
+
+}  // namespace
+
+// ------------------------------------------------------------------- Conv
+
+template <class T>
+Conv<T>::Conv(const ConvOptions& o)
+    : Layer<T>(o.grid.positions() * o.in, o.grid.positions() * o.out),
+      conv_(shape_of(o), o.padding) {}
+
+template <class T>
+std::vector<TensorInfo> Conv<T>::tensors() const {
+  return conv_.tensors();
+}
+
+template <class T>
+bool Conv<T>::fuse(Activation a) {
+  if (activation_ != Activation::identity || !from_output(a)) return false;
+  activation_ = a;
+  return true;
+}
+
+template <class T>
+void Conv<T>::forward(const LayerArgs<T>& at,
+                      Lanes<const T> x,
+                      Lanes<T> y) const {
+  using V = Simd<T, kNarrow>;
+  const Index out = conv_.shape().out;
+  conv_.forward(at, x, y, [&](Index, Index begin, Index end) {
+    if (activation_ == Activation::identity) return;
+    for (Index i = begin * out; i < end * out; ++i)
+      for (Index j = 0; j < y.width; j += kLanes<T>)
+        store(y.row(i) + j,
+              activate_lanes<T>(activation_, load<V>(y.row(i) + j)));
+  });
+}
+
+template <class T>
+void Conv<T>::backward(const LayerArgs<T>& at, const Backward<T>& b) const {
+  conv_.gradients(
+      at, b.x, b.y_bar, 1, b.parameters_bar, b.x_bar, [](Index, Index) {});
+  if (b.x_bar) apply_gate(b.gate, b.x_bar);
+  if (b.parameters_bar != nullptr)
+    channel_sums<T>(*at.work,
+                    b.y_bar,
+                    conv_.shape().out,
+                    b.parameters_bar + conv_.shape().weights());
+}
+
+// -------------------------------------------------------------- ConvBlock
+
+template <class T>
+ConvBlock<T>::ConvBlock(const ConvOptions& o, Activation activation, bool pool)
+    : Layer<T>(o.grid.positions() * o.in,
+               rows({.grid = o.grid, .channels = o.out, .pool = pool})),
+      conv_(shape_of(o), o.padding),
+      norm_{.grid = o.grid,
+            .channels = o.out,
+            .activation = activation,
+            .pool = pool} {
+  SUITE_CHECK(from_output(activation), "the activation needs a layer");
+}
+
+template <class T>
+std::vector<TensorInfo> ConvBlock<T>::tensors() const {
+  auto all = conv_.tensors();
+  const Index n = norm_.channels;
+  all.push_back({.name = {}, .kind = 's', .offset = 0, .size = n, .fan_in = n});
+  all.push_back({.name = {}, .kind = 'o', .offset = 0, .size = n, .fan_in = n});
+  return all;
+}
+
+template <class T>
+void ConvBlock<T>::initialize_state(T* state) const {
+  std::fill_n(state, norm_.channels, T(0));
+  std::fill_n(state + norm_.channels, norm_.channels, T(1));
+}
+
+template <class T>
+void ConvBlock<T>::forward(const LayerArgs<T>& at,
+                           Lanes<const T> x,
+                           Lanes<T> y) const {
+  const Index channels = norm_.channels, positions = norm_.positions();
+  Lanes<T> z(nullptr, conv_.outputs(), x.samples);
+  z.data = at.tape->template slot<T>(at.slot, z.stride, z.rows).data();
+  const NormColumns<T> kept(
+      at.tape->template slot<T>(at.slot + 1, channels, NormColumns<T>::kCount)
+          .data(),
+      channels);
+  const Workspace::Scope scope(*at.work);
+  if (at.training) {
+    T* moments =
+        at.work->template take<T>(2 * channels, conv_.blocks(z)).data();
+    conv_.forward(at, x, z, [&](Index block, Index begin, Index end) {
+      block_moments<T>(z, channels, begin, end, moments + 2 * channels * block);
+    });
+    combine_moments<T>(
+        moments, channels, positions, conv_.per_block(z), x.samples, kept);
+  } else {
+    conv_.forward(at, x, z, [](Index, Index, Index) {});
+    use_state(at.state, channels, kept);
+  }
+  const T* parameters = at.parameters + conv_.parameter_count();
+  const Index outputs = norm_.pooled().positions();
+  const Index some = conv_.per_block(z);
+  for_blocks(conv_.threads(at, x.samples),
+             (outputs + some - 1) / some,
+             [&](Index block, int) {
+               normalise<T>(norm_,
+                            kept,
+                            parameters,
+                            z,
+                            y,
+                            block * some,
+                            std::min((block + 1) * some, outputs));
+             });
+}
+
+template <class T>
+void ConvBlock<T>::backward(const LayerArgs<T>& at,
+                            const Backward<T>& b) const {
+  const Index channels = norm_.channels, samples = b.x.samples;
+  const Lanes<const T> z(
+      at.tape->template view<T>(at.slot).data(), conv_.outputs(), samples);
+  const NormColumns<T> kept(at.tape->template view<T>(at.slot + 1).data(),
+                            channels);
+  const T* parameters = at.parameters + conv_.parameter_count();
+  const Index outputs = norm_.pooled().positions();
+  const Index some = conv_.per_block(z), blocks = (outputs + some - 1) / some;
+  Threads* const threads = conv_.threads(at, samples);
+  const Workspace::Scope scope(*at.work);
+
+  T* sums = at.work->template take<T>(2 * channels, blocks).data();
+  for_blocks(threads, blocks, [&](Index block, int) {
+    block_sums<T>(norm_,
+                  kept,
+                  parameters,
+                  z,
+                  b.y,
+                  b.y_bar,
+                  block * some,
+                  std::min((block + 1) * some, outputs),
+                  sums + 2 * channels * block);
+  });
+  T* means = at.work->template take<T>(2 * channels, 1).data();
+  combine_sums(sums, blocks, channels, means);
+  if (b.parameters_bar != nullptr) {
+    T* bias_bar = b.parameters_bar + conv_.shape().weights();
+    T *scale_bar = bias_bar + channels, *offset_bar = scale_bar + channels;
+    for (Index c = 0; c < channels; ++c) {
+      offset_bar[c] = means[c], scale_bar[c] = means[channels + c];
+      bias_bar[c] =
+          at.training ? T(0) : parameters[c] * kept.inverse[c] * means[c];
+    }
+  }
+  // Outside training the statistics are constants.
+  const T share =
+      at.training ? T(1) / static_cast<T>(norm_.positions() * samples) : T(0);
+  for (Index c = 0; c < 2 * channels; ++c) means[c] *= share;
+
+  Lanes<T> z_bar(nullptr, z.rows, samples);
+  z_bar.data = at.work->template take<T>(z.stride, z.rows).data();
+  // Cells of whole rows, where pooling joins rows.
+  const Index cell = norm_.positions() / outputs;
+  const Index unit = cell == 4 ? 2 * norm_.grid.columns : cell;
+  conv_.gradients(at,
+                  b.x,
+                  z_bar,
+                  unit,
+                  b.parameters_bar,
+                  b.x_bar,
+                  [&](Index begin, Index end) {
+                    pull_norm<T>(norm_,
+                                 kept,
+                                 parameters,
+                                 means,
+                                 z,
+                                 b.y,
+                                 b.y_bar,
+                                 z_bar,
+                                 begin / cell,
+                                 end / cell);
+                  });
+  if (b.x_bar) apply_gate(b.gate, b.x_bar);
+}
+
+template <class T>
+void ConvBlock<T>::update_state(const Tape& tape,
+                                std::size_t slot,
+                                T* state) const {
+  move_state(NormColumns<T>(tape.view<T>(slot + 1).data(), norm_.channels),
+             norm_.channels,
+             state);
+}
+
+template class Conv<float>;
+template class Conv<double>;
+template class ConvBlock<float>;
+template class ConvBlock<double>;
+
+}  // namespace physinv::nn

@@ -1,0 +1,454 @@
+#include "suite/nn/conv_kernels.h"
+
+#include <algorithm>
+
+#include "suite/nn/vector.h"
+
+namespace physinv::nn {
+namespace {
+
+// Register tiles. Channel counts are multiples of 8 more often than of 6, and
+// depths are multiples of 3.
+#ifdef __AVX512F__
+constexpr int kPanel = 8, kColumns = 3;   ///< outputs x columns
+constexpr int kOutTile = 4, kInTile = 6;  ///< weight gradient
+#else
+constexpr int kPanel = 4, kColumns = 3;
+constexpr int kOutTile = 4, kInTile = 3;
+#endif
+constexpr Index kBlockBytes = 16384;
+
+template <class T>
+constexpr Index kWideLanes = kWide / static_cast<Index>(sizeof(T));
+
+/// One column = one vector of samples at one position.
+template <class T, int N>
+struct Columns {
+  const T* x[N];
+  T* y[N];
+};
+
+/// What all tiles of one run share.
+template <class T>
+struct Product {
+  Index in, depth, stride;
+  const Segment* segments;
+  Index segment_count;
+};
+
+/// M outputs x N columns in registers.
+template <class T, class V, int M, int N>
+[[gnu::noinline]] void tile(const Product<T>& g,
+                            const T* panel,
+                            const T* bias,
+                            Index output,
+                            const Columns<T, N>& columns) {
+  V acc[M][N];
+#pragma GCC unroll 16
+  for (int r = 0; r < M; ++r)
+#pragma GCC unroll 8
+    for (int c = 0; c < N; ++c)
+      acc[r][c] = bias != nullptr ? broadcast<V>(bias[output + r]) : V{};
+  for (Index s = 0; s < g.segment_count; ++s) {
+    const Segment segment = g.segments[s];
+    const T* a = panel + segment.tap * g.in * M;
+    const T* x[N];
+#pragma GCC unroll 8
+    for (int c = 0; c < N; ++c)
+      x[c] = columns.x[c] + segment.shift * g.in * g.stride;
+    for (Index k = segment.taps * g.in; k > 0; --k, a += M) {
+      V b[N];
+#pragma GCC unroll 8
+      for (int c = 0; c < N; ++c) b[c] = load<V>(x[c]), x[c] += g.stride;
+#pragma GCC unroll 16
+      for (int r = 0; r < M; ++r) {
+        const V w = broadcast<V>(a[r]);
+#pragma GCC unroll 8
+        for (int c = 0; c < N; ++c)
+          acc[r][c] = multiply_add<T>(w, b[c], acc[r][c]);
+      }
+    }
+  }
+#pragma GCC unroll 16
+  for (int r = 0; r < M; ++r)
+#pragma GCC unroll 8
+    for (int c = 0; c < N; ++c)
+      store(columns.y[c] + (output + r) * g.stride, acc[r][c]);
+}
+
+/// The last outputs, fewer than a panel.
+template <class T, class V, int M, int N>
+void last_panel(const Product<T>& g,
+                const T* panel,
+                const T* bias,
+                Index output,
+                Index outputs,
+                const Columns<T, N>& columns) {
+  if constexpr (M > 0) {
+    if (outputs == M) {
+      tile<T, V, M, N>(g, panel, bias, output, columns);
+    } else {
+      last_panel<T, V, M - 1, N>(g, panel, bias, output, outputs, columns);
+    }
+  }
+}
+
+template <class T, class V, int N>
+void all_outputs(const Product<T>& g,
+                 const T* packed,
+                 const T* bias,
+                 Index out,
+                 const Columns<T, N>& columns) {
+  Index i = 0;
+  for (; i + kPanel <= out; i += kPanel)
+    tile<T, V, kPanel, N>(g, packed + i * g.depth, bias, i, columns);
+  last_panel<T, V, kPanel - 1, N>(
+      g, packed + i * g.depth, bias, i, out - i, columns);
+}
+
+/// Walks over the vectors of samples of a run's positions, lane by lane.
+template <class T, class V>
+struct Walk {
+  Index x_step, y_step, lane0, vectors;  ///< per position
+  const T* x;
+  T* y;
+  Index position = 0, vector = 0;
+
+  template <int N>
+  Columns<T, N> next() {
+    constexpr Index w = sizeof(V) / sizeof(T);
+    Columns<T, N> c;
+    for (int i = 0; i < N; ++i) {
+      const Index lane = lane0 + vector * w;
+      c.x[i] = x + position * x_step + lane;
+      c.y[i] = y + position * y_step + lane;
+      if (++vector == vectors) vector = 0, ++position;
+    }
+    return c;
+  }
+};
+
+template <class T, class V>
+void convolve_run(const Product<T>& g,
+                  const T* packed,
+                  const T* bias,
+                  Index out,
+                  Walk<T, V> walk,
+                  Index columns) {
+  for (; columns >= kColumns; columns -= kColumns)
+    all_outputs<T, V>(g, packed, bias, out, walk.template next<kColumns>());
+  for (; columns > 0; --columns)
+    all_outputs<T, V>(g, packed, bias, out, walk.template next<1>());
+}
+
+/// R outputs x Q inputs, each a vector of partial sums.
+template <class T, class V, int R, int Q>
+[[gnu::noinline]] void weight_tile(const T* x,
+                                   Index x_step,
+                                   const T* y,
+                                   Index y_step,
+                                   Index stride,
+                                   Index positions,
+                                   Index vectors,
+                                   T* sums,
+                                   Index sums_step) {
+  constexpr Index w = sizeof(V) / sizeof(T);
+  V acc[R][Q];
+#pragma GCC unroll 8
+  for (int r = 0; r < R; ++r)
+#pragma GCC unroll 8
+    for (int q = 0; q < Q; ++q)
+      acc[r][q] = load<V>(sums + r * sums_step + q * w);
+  for (Index p = 0; p < positions; ++p, x += x_step, y += y_step) {
+    for (Index v = 0; v < vectors * w; v += w) {
+      V xv[Q];
+#pragma GCC unroll 8
+      for (int q = 0; q < Q; ++q) xv[q] = load<V>(x + q * stride + v);
+#pragma GCC unroll 8
+      for (int r = 0; r < R; ++r) {
+        const V yv = load<V>(y + r * stride + v);
+#pragma GCC unroll 8
+        for (int q = 0; q < Q; ++q)
+          acc[r][q] = multiply_add<T>(yv, xv[q], acc[r][q]);
+      }
+    }
+  }
+#pragma GCC unroll 8
+  for (int r = 0; r < R; ++r)
+#pragma GCC unroll 8
+    for (int q = 0; q < Q; ++q) store(sums + r * sums_step + q * w, acc[r][q]);
+}
+
+template <class T, class V, int Q>
+void weight_rows(const T* x,
+                 Index x_step,
+                 const T* y,
+                 Index y_step,
+                 Index stride,
+                 Index positions,
+                 Index vectors,
+                 Index out,
+                 T* sums,
+                 Index sums_step) {
+  Index o = 0;
+  const auto step = [&]<int R>() {
+    weight_tile<T, V, R, Q>(x,
+                            x_step,
+                            y + o * stride,
+                            y_step,
+                            stride,
+                            positions,
+                            vectors,
+                            sums + o * sums_step,
+                            sums_step);
+    o += R;
+  };
+  while (o + kOutTile <= out) step.template operator()<kOutTile>();
+  while (o < out) step.template operator()<1>();
+}
+
+/// One run of positions, lanes [lane, lane + vectors).
+template <class T, class V>
+void weight_run(const ConvShape& shape,
+                const Run& run,
+                Lanes<const T> x,
+                Lanes<const T> y_bar,
+                Index first,
+                Index last,
+                Index lane0,
+                Index vectors,
+                T* sums) {
+  constexpr Index w = sizeof(V) / sizeof(T);
+  if (vectors == 0) return;
+  const Index stride = x.stride, in = shape.in;
+  const Index x_step = in * stride, y_step = shape.out * stride;
+  const Index sums_step = shape.depth() * w;
+  // y_bar's part stays in the L1 while all inputs pass by; with many outputs
+  // in the L2, as a tile's sums must not come and go too often.
+  const Index budget = std::max<Index>(
+      16, kBlockBytes / (shape.out * static_cast<Index>(sizeof(V))));
+  const Index per_row = std::min(vectors, budget);
+  const Index per_block = std::max<Index>(1, budget / per_row);
+  for (Index p = first; p < last; p += per_block) {
+    const Index count = std::min(per_block, last - p);
+    for (Index v = 0; v < vectors; v += per_row) {
+      const Index some = std::min(per_row, vectors - v);
+      const Index lane = lane0 + v * w;
+      const T* y = y_bar.data + p * y_step + lane;
+      for (const Segment& s : run.segments) {
+        const T* from = x.data + (p + s.shift) * x_step + lane;
+        T* to = sums + s.tap * in * w;
+        Index k = 0;
+        const auto step = [&]<int Q>() {
+          weight_rows<T, V, Q>(from + k * stride,
+                               x_step,
+                               y,
+                               y_step,
+                               stride,
+                               count,
+                               some,
+                               shape.out,
+                               to + k * w,
+                               sums_step);
+          k += Q;
+        };
+        const Index depth = s.taps * in;
+        while (k + kInTile <= depth) step.template operator()<kInTile>();
+        if constexpr (kInTile > 3)
+          while (k + 3 <= depth) step.template operator()<3>();
+        while (k < depth) step.template operator()<1>();
+      }
+    }
+  }
+}
+
+/// How a row's lanes are cut into vectors.
+template <class T>
+struct Split {
+  explicit Split(Index width)
+      : wide(width / kWideLanes<T>),
+        narrow((width - wide * kWideLanes<T>) / kLanes<T>) {}
+  Index wide_sums(const ConvShape& shape) const {
+    return wide > 0 ? shape.weights() * kWideLanes<T> : 0;
+  }
+  Index narrow_sums(const ConvShape& shape) const {
+    return narrow > 0 ? shape.weights() * kLanes<T> : 0;
+  }
+  Index wide, narrow;
+};
+
+/// totals[i] += the lanes of vector i, one after the other.
+template <class T>
+void add_lanes(const T* sums, Index lanes, Index count, T* totals) {
+  constexpr Index kSome = 64;
+  T turned[16 * kSome];
+  for (Index i = 0; i < count; i += kSome) {
+    const Index some = std::min(kSome, count - i);
+    transpose(sums + i * lanes, lanes, some, lanes, turned, kSome);
+    for (Index l = 0; l < lanes; ++l)
+      for (Index j = 0; j < some; ++j) totals[i + j] += turned[l * kSome + j];
+  }
+}
+
+/// Calls f(i, k, position in the packed array) for an `out` x `depth` matrix.
+template <class F>
+void for_packed(Index out, Index depth, F&& f) {
+  for (Index i0 = 0; i0 < out; i0 += kPanel) {
+    const Index rows = std::min<Index>(kPanel, out - i0);
+    for (Index k = 0; k < depth; ++k)
+      for (Index r = 0; r < rows; ++r) f(i0 + r, k, i0 * depth + k * rows + r);
+  }
+}
+
+}  // namespace
+
+template <class T>
+void pack_weights(const ConvShape& shape, const T* weights, T* packed) {
+  const Index taps = shape.taps.count(), in = shape.in;
+  for_packed(shape.out, shape.depth(), [&](Index o, Index k, Index at) {
+    packed[at] = weights[(o * in + k % in) * taps + k / in];
+  });
+}
+
+template <class T>
+void pack_flipped(const ConvShape& shape, const T* weights, T* packed) {
+  const Index taps = shape.taps.count(), in = shape.in, out = shape.out;
+  for_packed(in, taps * out, [&](Index c, Index k, Index at) {
+    packed[at] = weights[(k % out * in + c) * taps + taps - 1 - k / out];
+  });
+}
+
+template <class T>
+void convolve(const ConvShape& shape,
+              const std::vector<Run>& runs,
+              const T* packed,
+              const T* bias,
+              Lanes<const T> x,
+              Lanes<T> y,
+              Index begin,
+              Index end) {
+  using Wide = Simd<T, kWide>;
+  using Narrow = Simd<T, kNarrow>;
+  const Split<T> split(x.width);
+  const Index wide = split.wide, narrow = split.narrow;
+  const Index in = shape.in, out = shape.out;
+  for (const Run& run : runs) {
+    const Index first = std::max(begin, run.first);
+    const Index count = std::min(end, run.first + run.count) - first;
+    if (count <= 0) continue;
+    const Product<T> g{in,
+                       shape.depth(),
+                       x.stride,
+                       run.segments.data(),
+                       static_cast<Index>(run.segments.size())};
+    const Index x_step = in * x.stride, y_step = out * x.stride;
+    const T* from = x.data + first * x_step;
+    T* to = y.data + first * y_step;
+    if (wide > 0)
+      convolve_run<T, Wide>(g,
+                            packed,
+                            bias,
+                            out,
+                            {x_step, y_step, 0, wide, from, to},
+                            wide * count);
+    if (narrow > 0)
+      convolve_run<T, Narrow>(
+          g,
+          packed,
+          bias,
+          out,
+          {x_step, y_step, wide * kWideLanes<T>, narrow, from, to},
+          narrow * count);
+  }
+}
+
+template <class T>
+Index weight_sums(const ConvShape& shape, Index width) {
+  const Split<T> split(width);
+  return split.wide_sums(shape) + split.narrow_sums(shape);
+}
+
+template <class T>
+void accumulate_weights(const ConvShape& shape,
+                        const std::vector<Run>& runs,
+                        Lanes<const T> x,
+                        Lanes<const T> y_bar,
+                        Index begin,
+                        Index end,
+                        T* sums) {
+  using Wide = Simd<T, kWide>;
+  using Narrow = Simd<T, kNarrow>;
+  const Split<T> split(x.width);
+  const Index wide = split.wide, narrow = split.narrow;
+  for (const Run& run : runs) {
+    const Index first = std::max(begin, run.first);
+    const Index last = std::min(end, run.first + run.count);
+    if (first >= last) continue;
+    weight_run<T, Wide>(shape, run, x, y_bar, first, last, 0, wide, sums);
+    weight_run<T, Narrow>(shape,
+                          run,
+                          x,
+                          y_bar,
+                          first,
+                          last,
+                          wide * kWideLanes<T>,
+                          narrow,
+                          sums + split.wide_sums(shape));
+  }
+}
+
+template <class T>
+void finish_weights(const ConvShape& shape,
+                    Index width,
+                    const T* sums,
+                    Index parts,
+                    T* totals,
+                    T* weights_bar) {
+  const Index taps = shape.taps.count(), in = shape.in, depth = shape.depth();
+  const Split<T> split(width);
+  std::fill_n(totals, shape.weights(), T(0));
+  for (Index part = 0; part < parts; ++part) {
+    if (split.wide > 0) add_lanes(sums, kWideLanes<T>, shape.weights(), totals);
+    sums += split.wide_sums(shape);
+    if (split.narrow > 0) add_lanes(sums, kLanes<T>, shape.weights(), totals);
+    sums += split.narrow_sums(shape);
+  }
+  for (Index o = 0; o < shape.out; ++o)
+    for (Index t = 0; t < taps; ++t)
+      for (Index c = 0; c < in; ++c)
+        weights_bar[(o * in + c) * taps + t] = totals[o * depth + t * in + c];
+}
+
+template <class T>
+Index positions_per_block(Lanes<const T> x, Index channels) {
+  const Index bytes = channels * x.stride * static_cast<Index>(sizeof(T));
+  return std::max<Index>(1, kBlockBytes / bytes);
+}
+
+#define PHYSINV_INSTANTIATE(T)                                   \
+  template void pack_weights<T>(const ConvShape&, const T*, T*); \
+  template void pack_flipped<T>(const ConvShape&, const T*, T*); \
+  template void convolve<T>(const ConvShape&,                    \
+                            const std::vector<Run>&,             \
+                            const T*,                            \
+                            const T*,                            \
+                            Lanes<const T>,                      \
+                            Lanes<T>,                            \
+                            Index,                               \
+                            Index);                              \
+  template Index weight_sums<T>(const ConvShape&, Index);        \
+  template void accumulate_weights<T>(const ConvShape&,          \
+                                      const std::vector<Run>&,   \
+                                      Lanes<const T>,            \
+                                      Lanes<const T>,            \
+                                      Index,                     \
+                                      Index,                     \
+                                      T*);                       \
+  template void finish_weights<T>(                               \
+      const ConvShape&, Index, const T*, Index, T*, T*);         \
+  template Index positions_per_block<T>(Lanes<const T>, Index);
+PHYSINV_INSTANTIATE(float)
+PHYSINV_INSTANTIATE(double)
+#undef PHYSINV_INSTANTIATE
+
+}  // namespace physinv::nn

@@ -1,0 +1,92 @@
+/// The three products of a convolution on fields laid out position by
+/// position (see window.h): rows = position * channels + channel, samples
+/// along the lanes.
+/// Nothing is gathered: the taps of a position along x are one block of
+/// contiguous rows. A register tile spans outputs x columns, a column being a
+/// vector of samples at one position, so that small batches fill a tile with
+/// neighbouring positions. The weight gradient's tiles are whole vectors over
+/// samples; nothing is transposed before the lanes are added up at the end.
+///
+/// Measured on one Zen 4 core, float, PHYSINV_NATIVE, GFlop/s with 8 and 128
+/// samples, 128 positions, 16 -> 16 channels: 101 and 97; one `gemm` per
+/// position 85 and 100; im2col and one `gemm` 46 and 62. At 256 positions,
+/// 32 -> 16: 107 and 79 against 92 and 83, 45 and 26. (Eigen's best product
+/// beside them: 84.) `gemm` per position does as well with many samples; the
+/// small batches decide. Weight gradient, 16 -> 16: 68 and 61.
+///
+/// Bits: `convolve` adds a sample's products one by one in the order of taps
+/// and channels, by fused multiply-add, whatever tile it falls into. The
+/// weight gradient's order follows from the shape and the number of samples.
+#pragma once
+
+#include <vector>
+
+#include "suite/nn/lanes.h"
+#include "suite/nn/window.h"
+
+namespace physinv::nn {
+
+struct ConvShape {
+  Grid grid;
+  Index in = 1, out = 1;  ///< channels
+  Taps taps;
+
+  Index positions() const { return grid.positions(); }
+  Index depth() const { return taps.count() * in; }
+  Index weights() const { return out * depth(); }
+  /// Of the input gradient.
+  ConvShape flipped() const { return {grid, out, in, taps}; }
+};
+
+/// Weights [out][in][tap] in the order in which `convolve` reads them.
+template <class T>
+void pack_weights(const ConvShape& shape, const T* weights, T* packed);
+
+/// The same for the input gradient, a convolution of the output's cotangent
+/// with flipped taps and swapped channels.
+template <class T>
+void pack_flipped(const ConvShape& shape, const T* weights, T* packed);
+
+/// y[p][o] = bias[o] + sum over taps t and channels c of
+/// w[o][c][t] x[p + t][c], for output positions [begin, end).
+template <class T>
+void convolve(const ConvShape& shape,
+              const std::vector<Run>& runs,
+              const T* packed,
+              const T* bias,  ///< or null for zero
+              Lanes<const T> x,
+              Lanes<T> y,
+              Index begin,
+              Index end);
+
+/// Number of partial sums that `accumulate_weights` needs for rows of `width`.
+template <class T>
+Index weight_sums(const ConvShape& shape, Index width);
+
+/// sums += y_bar[p][o] x[p + t][c] over positions [begin, end), a vector of
+/// samples each. Padding lanes of y_bar must be zero, of x finite.
+template <class T>
+void accumulate_weights(const ConvShape& shape,
+                        const std::vector<Run>& runs,
+                        Lanes<const T> x,
+                        Lanes<const T> y_bar,
+                        Index begin,
+                        Index end,
+                        T* sums);
+
+/// Adds up the vectors of `parts` arrays of sums: weights_bar [out][in][tap].
+/// totals: room for as many.
+template <class T>
+void finish_weights(const ConvShape& shape,
+                    Index width,
+                    const T* sums,
+                    Index parts,
+                    T* totals,
+                    T* weights_bar);
+
+/// Positions of a block that should stay in the L1 cache, by shape and samples
+/// alone.
+template <class T>
+Index positions_per_block(Lanes<const T> x, Index channels);
+
+}  // namespace physinv::nn

@@ -1,0 +1,58 @@
+#include "suite/nn/convolution.h"
+
+#include <algorithm>
+
+namespace physinv::nn {
+namespace {
+
+constexpr double kThreadFlops = 0.5e6, kPartFlops = 4e6;
+constexpr Index kMostParts = 8;
+
+}  // namespace
+
+template <class T>
+Convolution<T>::Convolution(const ConvShape& shape, Padding padding)
+    : shape_(shape), runs_(window_runs(shape.grid, shape.taps, padding)) {
+  for (const Run& run : runs_)
+    for (const Segment& s : run.segments)
+      reach_ = std::max({reach_, -s.shift, s.shift + s.taps - 1});
+}
+
+template <class T>
+std::vector<TensorInfo> Convolution<T>::tensors() const {
+  const Index fan_in = shape_.depth();
+  return {{.name = {},
+           .kind = 'k',
+           .offset = 0,
+           .size = shape_.weights(),
+           .fan_in = fan_in},
+          {.name = {},
+           .kind = 'b',
+           .offset = 0,
+           .size = shape_.out,
+           .fan_in = fan_in}};
+}
+
+template <class T>
+double Convolution<T>::operations() const {
+  return 2.0 * static_cast<double>(shape_.weights() * shape_.positions());
+}
+
+template <class T>
+Threads* Convolution<T>::threads(const LayerArgs<T>& at, Index samples) const {
+  const bool worth = operations() * static_cast<double>(samples) > kThreadFlops;
+  return worth ? at.work->threads() : nullptr;
+}
+
+template <class T>
+Index Convolution<T>::parts(Index samples) const {
+  const double flops = operations() * static_cast<double>(samples);
+  return std::clamp(static_cast<Index>(flops / kPartFlops),
+                    Index{1},
+                    std::min(kMostParts, shape_.positions()));
+}
+
+template class Convolution<float>;
+template class Convolution<double>;
+
+}  // namespace physinv::nn

@@ -1,0 +1,143 @@
+/// What the convolution layers share: weights [out][in][tap] and biases [out],
+/// their pass over all positions and its two reverses.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "suite/core/threads.h"
+#include "suite/nn/conv_kernels.h"
+#include "suite/nn/layer.h"
+
+namespace physinv::nn {
+
+template <class T>
+class Convolution {
+ public:
+  Convolution(const ConvShape& shape, Padding padding);
+
+  const ConvShape& shape() const { return shape_; }
+  Index inputs() const { return shape_.positions() * shape_.in; }
+  Index outputs() const { return shape_.positions() * shape_.out; }
+  Index parameter_count() const { return shape_.weights() + shape_.out; }
+  std::vector<TensorInfo> tensors() const;
+  double operations() const;
+
+  /// Positions of a block, of one channel count on one side.
+  Index per_block(Lanes<const T> y) const {
+    return positions_per_block<T>(y, shape_.out);
+  }
+  Index blocks(Lanes<const T> y) const {
+    const Index some = per_block(y);
+    return (shape_.positions() + some - 1) / some;
+  }
+
+  /// y = bias + convolution, then `done(block, begin, end)` on each block of
+  /// positions while it is in the cache.
+  template <class F>
+  void forward(const LayerArgs<T>& at,
+               Lanes<const T> x,
+               Lanes<T> y,
+               F&& done) const;
+
+  /// Number of partial sums a gradient is added up from: depends on the shape
+  /// and the samples, not on the threads.
+  Index parts(Index samples) const;
+  /// weights_bar and x_bar from y_bar, of which `fill(begin, end)` prepares
+  /// positions [begin, end), a multiple of `unit`, just before both read them.
+  /// Either may be null.
+  template <class F>
+  void gradients(const LayerArgs<T>& at,
+                 Lanes<const T> x,
+                 Lanes<const T> y_bar,
+                 Index unit,
+                 T* weights_bar,
+                 Lanes<T> x_bar,
+                 F&& fill) const;
+
+  /// Threads for the pass over this many samples, or null if it is too short.
+  Threads* threads(const LayerArgs<T>& at, Index samples) const;
+
+ private:
+  ConvShape shape_;
+  std::vector<Run> runs_;
+  Index reach_ = 0;  ///< largest distance between an output and its inputs
+};
+
+template <class T>
+template <class F>
+void Convolution<T>::forward(const LayerArgs<T>& at,
+                             Lanes<const T> x,
+                             Lanes<T> y,
+                             F&& done) const {
+  const Workspace::Scope scope(*at.work);
+  T* packed = at.work->template take<T>(shape_.weights(), 1).data();
+  pack_weights(shape_, at.parameters, packed);
+  const T* bias = at.parameters + shape_.weights();
+  const Index per_block = this->per_block(y);
+  for_blocks(threads(at, x.samples), blocks(y), [&](Index block, int) {
+    const Index begin = block * per_block;
+    const Index end = std::min(begin + per_block, shape_.positions());
+    convolve<T>(shape_, runs_, packed, bias, x, y, begin, end);
+    done(block, begin, end);
+  });
+}
+
+template <class T>
+template <class F>
+void Convolution<T>::gradients(const LayerArgs<T>& at,
+                               Lanes<const T> x,
+                               Lanes<const T> y_bar,
+                               Index unit,
+                               T* weights_bar,
+                               Lanes<T> x_bar,
+                               F&& fill) const {
+  const Workspace::Scope scope(*at.work);
+  const Index parts = this->parts(x.samples);
+  const Index size = weight_sums<T>(shape_, x.width);
+  T *sums = nullptr, *packed = nullptr;
+  if (weights_bar != nullptr) {
+    sums = at.work->template take<T>(size, parts).data();
+    std::fill_n(sums, size * parts, T(0));
+  }
+  if (x_bar) {
+    packed = at.work->template take<T>(shape_.weights(), 1).data();
+    pack_flipped(shape_, at.parameters, packed);
+  }
+  const ConvShape flipped = shape_.flipped();
+  const auto pull = [&](Index begin, Index end) {
+    if (x_bar && begin < end)
+      convolve<T>(flipped, runs_, packed, nullptr, y_bar, x_bar, begin, end);
+  };
+  const Index units = shape_.positions() / unit;
+  const Index some = std::max<Index>(1, per_block(y_bar) / unit);
+  const auto first = [&](Index part) { return units * part / parts; };
+  for_blocks(threads(at, x.samples), parts, [&](Index part, int) {
+    const Index last = first(part + 1);
+    // Cotangents of inputs that only this part's outputs have seen.
+    Index pulled = first(part) * unit + reach_;
+    for (Index u = first(part); u < last; u += some) {
+      const Index begin = u * unit, end = std::min(u + some, last) * unit;
+      fill(begin, end);
+      if (weights_bar != nullptr)
+        accumulate_weights<T>(
+            shape_, runs_, x, y_bar, begin, end, sums + part * size);
+      pull(pulled, end - reach_);
+      pulled = std::max(pulled, end - reach_);
+    }
+  });
+  for (Index part = 0; part < parts; ++part) {
+    const Index begin = first(part) * unit, end = first(part + 1) * unit;
+    pull(begin, std::min(end, begin + reach_));
+    pull(std::max(begin + reach_, end - reach_), end);
+  }
+  if (weights_bar != nullptr) {
+    T* totals = at.work->template take<T>(shape_.weights(), 1).data();
+    finish_weights<T>(shape_, x.width, sums, parts, totals, weights_bar);
+  }
+}
+
+extern template class Convolution<float>;
+extern template class Convolution<double>;
+
+}  // namespace physinv::nn

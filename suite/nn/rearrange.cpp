@@ -1,0 +1,96 @@
+#include "suite/nn/rearrange.h"
+
+#include <algorithm>
+
+#include "suite/nn/activation.h"
+
+namespace physinv::nn {
+namespace {
+
+template <class T>
+using V = Simd<T, kNarrow>;
+
+template <class T>
+void copy_row(const T* from, Index width, T* to) {
+  std::copy(from, from + width, to);
+}
+
+}  // namespace
+
+template <class T>
+FieldInput<T>::FieldInput(const FieldInputOptions& o)
+    : Layer<T>(o.inputs(), o.positions * o.width()), o_(o) {}
+
+template <class T>
+void FieldInput<T>::forward(const LayerArgs<T>&,
+                            Lanes<const T> x,
+                            Lanes<T> y) const {
+  const V<T> shift = broadcast<V<T>>(static_cast<T>(o_.shift));
+  const V<T> unit = broadcast<V<T>>(static_cast<T>(o_.unit));
+  const auto spread = [&](Index from, Index channel) {
+    T* const first = y.row(channel);
+    for (Index j = 0; j < x.width; j += kLanes<T>)
+      store(first + j, (load<V<T>>(x.row(from) + j) - shift) / unit);
+    for (Index p = 1; p < o_.positions; ++p)
+      copy_row(first, x.width, y.row(p * o_.width() + channel));
+  };
+  for (Index c = 0; c < o_.before; ++c) spread(c, c);
+  for (Index c = 0; c < o_.channels; ++c)
+    for (Index p = 0; p < o_.positions; ++p)
+      copy_row(x.row(o_.before + c * o_.positions + p),
+               x.width,
+               y.row(p * o_.width() + o_.before + c));
+  for (Index c = 0; c < o_.after; ++c)
+    spread(o_.inputs() - o_.after + c, o_.width() - o_.after + c);
+}
+
+template <class T>
+void FieldInput<T>::backward(const LayerArgs<T>&, const Backward<T>& b) const {
+  if (!b.x_bar) return;
+  const V<T> unit = broadcast<V<T>>(static_cast<T>(o_.unit));
+  const Index width = b.x_bar.width;
+  const auto collect = [&](Index to, Index channel) {
+    for (Index j = 0; j < width; j += kLanes<T>) {
+      V<T> sum{};
+      for (Index p = 0; p < o_.positions; ++p)
+        sum += load<V<T>>(b.y_bar.row(p * o_.width() + channel) + j);
+      store(b.x_bar.row(to) + j, sum / unit);
+    }
+  };
+  for (Index c = 0; c < o_.before; ++c) collect(c, c);
+  for (Index c = 0; c < o_.channels; ++c)
+    for (Index p = 0; p < o_.positions; ++p)
+      copy_row(b.y_bar.row(p * o_.width() + o_.before + c),
+               width,
+               b.x_bar.row(o_.before + c * o_.positions + p));
+  for (Index c = 0; c < o_.after; ++c)
+    collect(o_.inputs() - o_.after + c, o_.width() - o_.after + c);
+  apply_gate(b.gate, b.x_bar);
+}
+
+template <class T>
+void Flatten<T>::forward(const LayerArgs<T>&,
+                         Lanes<const T> x,
+                         Lanes<T> y) const {
+  for (Index p = 0; p < positions_; ++p)
+    for (Index c = 0; c < channels_; ++c)
+      copy_row(x.row(p * channels_ + c), x.width, y.row(c * positions_ + p));
+}
+
+template <class T>
+void Flatten<T>::backward(const LayerArgs<T>&, const Backward<T>& b) const {
+  if (!b.x_bar) return;
+  for (Index p = 0; p < positions_; ++p)
+    for (Index c = 0; c < channels_; ++c)
+      copy_row(b.y_bar.row(c * positions_ + p),
+               b.x_bar.width,
+               b.x_bar.row(p * channels_ + c));
+  apply_gate(b.gate, b.x_bar);
+}
+
+template class FieldInput<float>;
+template class FieldInput<double>;
+template class Flatten<float>;
+template class Flatten<double>;
+
+}  // namespace physinv::nn

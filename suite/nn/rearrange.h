@@ -1,0 +1,58 @@
+/// Into and out of the convolutional part's order of rows (see window.h).
+#pragma once
+
+#include "suite/nn/grid.h"
+#include "suite/nn/layer.h"
+
+namespace physinv::nn {
+
+/// Rows: `before` numbers, `channels` fields as [channel][position], `after`
+/// numbers -> [position][before, channels, after]. A number z becomes a field
+/// of constant value (z - shift) / unit.
+struct FieldInputOptions {
+  Index positions = 1;
+  Index before = 0, channels = 1, after = 0;
+  double shift = 0, unit = 1;
+
+  Index inputs() const { return before + channels * positions + after; }
+  Index width() const { return before + channels + after; }
+};
+
+template <class T>
+class FieldInput final : public Layer<T> {
+ public:
+  explicit FieldInput(const FieldInputOptions& options);
+
+  void forward(const LayerArgs<T>& at,
+               Lanes<const T> x,
+               Lanes<T> y) const override;
+  void backward(const LayerArgs<T>& at, const Backward<T>& b) const override;
+
+ private:
+  FieldInputOptions o_;
+};
+
+/// [position][channel] -> [channel][position].
+template <class T>
+class Flatten final : public Layer<T> {
+ public:
+  Flatten(Index positions, Index channels)
+      : Layer<T>(positions * channels, positions * channels),
+        positions_(positions),
+        channels_(channels) {}
+
+  void forward(const LayerArgs<T>& at,
+               Lanes<const T> x,
+               Lanes<T> y) const override;
+  void backward(const LayerArgs<T>& at, const Backward<T>& b) const override;
+
+ private:
+  Index positions_, channels_;
+};
+
+extern template class FieldInput<float>;
+extern template class FieldInput<double>;
+extern template class Flatten<float>;
+extern template class Flatten<double>;
+
+}  // namespace physinv::nn

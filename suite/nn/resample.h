@@ -1,0 +1,52 @@
+/// Max pooling and linear upsampling by 2 per axis, on rows laid out position
+/// by position (see window.h).
+#pragma once
+
+#include <vector>
+
+#include "suite/nn/channel_norm.h"
+#include "suite/nn/layer.h"
+
+namespace physinv::nn {
+
+/// The largest of each cell; a tie's cotangent goes to the first.
+template <class T>
+class MaxPool final : public Layer<T> {
+ public:
+  /// `grid` is that of the input.
+  MaxPool(Grid grid, Index channels);
+
+  void forward(const LayerArgs<T>& at,
+               Lanes<const T> x,
+               Lanes<T> y) const override;
+  void backward(const LayerArgs<T>& at, const Backward<T>& b) const override;
+
+ private:
+  Grid grid_;
+  Index channels_;
+};
+
+/// Half-pixel centres, clamped ends; per axis
+///   y[2i] = v[i-1] / 4 + 3 v[i] / 4,  y[2i+1] = 3 v[i] / 4 + v[i+1] / 4.
+template <class T>
+class Upsample final : public Layer<T> {
+ public:
+  /// `grid` is that of the input.
+  Upsample(Grid grid, Index channels);
+
+  void forward(const LayerArgs<T>& at,
+               Lanes<const T> x,
+               Lanes<T> y) const override;
+  void backward(const LayerArgs<T>& at, const Backward<T>& b) const override;
+
+ private:
+  Grid grid_;
+  Index channels_;
+};
+
+extern template class MaxPool<float>;
+extern template class MaxPool<double>;
+extern template class Upsample<float>;
+extern template class Upsample<double>;
+
+}  // namespace physinv::nn

@@ -1,0 +1,157 @@
+#include "suite/nn/skip.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "suite/core/check.h"
+#include "suite/nn/activation.h"
+
+namespace physinv::nn {
+namespace {
+
+/// Copies `count` rows per position between fields of different width.
+template <class T>
+void copy_channels(Lanes<const T> from,
+                   Index from_step,
+                   Lanes<T> to,
+                   Index to_step,
+                   Index count,
+                   Index positions) {
+  for (Index p = 0; p < positions; ++p) {
+    const T* row = from.row(p * from_step);
+    std::copy(row, row + count * from.stride, to.row(p * to_step));
+  }
+}
+
+template <class T>
+Lanes<T> from_row(Lanes<T> x, Index row) {
+  x.data += row * x.stride;
+  return x;
+}
+
+template <class T>
+Index outputs_of(const std::vector<std::unique_ptr<Layer<T>>>& layers) {
+  SUITE_CHECK(!layers.empty(), "a skip connection leads around something");
+  return layers.front()->inputs() + layers.back()->outputs();
+}
+
+}  // namespace
+
+template <class T>
+Skip<T>::Skip(Index positions, Layers inner)
+    : Layer<T>(inner.empty() ? 0 : inner.front()->inputs(), outputs_of(inner)),
+      positions_(positions),
+      inner_(std::move(inner)) {
+  Index parameters = 0, size = this->inputs();
+  slots_ = inner_.size();
+  for (const auto& layer : inner_) {
+    SUITE_CHECK(layer->inputs() == size, "neighbouring layers differ in size");
+    size = layer->outputs();
+    widest_ = std::max({widest_, layer->inputs(), size});
+    places_.push_back({parameters, state_count_, slots_});
+    for (const TensorInfo& t : layer->tensors()) parameters += t.size;
+    state_count_ += layer->state_count();
+    slots_ += layer->slots();
+  }
+  SUITE_CHECK(this->inputs() % positions == 0 && size % positions == 0,
+              "a skip connection joins fields on one grid");
+}
+
+template <class T>
+std::vector<TensorInfo> Skip<T>::tensors() const {
+  std::vector<TensorInfo> all;
+  for (const auto& layer : inner_)
+    for (TensorInfo& t : layer->tensors()) all.push_back(std::move(t));
+  return all;
+}
+
+template <class T>
+void Skip<T>::initialize_state(T* state) const {
+  for (std::size_t i = 0; i < inner_.size(); ++i)
+    inner_[i]->initialize_state(state + places_[i].state);
+}
+
+template <class T>
+LayerArgs<T> Skip<T>::args(const LayerArgs<T>& at, std::size_t i) const {
+  LayerArgs<T> inner = at;
+  inner.parameters = at.parameters + places_[i].parameters;
+  if (at.state != nullptr) inner.state = at.state + places_[i].state;
+  inner.slot = at.slot + places_[i].slot;
+  inner.leading = inner.trailing = 0;
+  return inner;
+}
+
+template <class T>
+void Skip<T>::forward(const LayerArgs<T>& at,
+                      Lanes<const T> x,
+                      Lanes<T> y) const {
+  const Index own = this->inputs() / positions_;
+  const Index all = this->outputs() / positions_;
+  copy_channels<T>(x, own, y, all, own, positions_);
+  Lanes<const T> from = x;
+  for (std::size_t i = 0; i < inner_.size(); ++i) {
+    Lanes<T> to(nullptr, inner_[i]->outputs(), x.samples);
+    to.data = at.tape->template slot<T>(at.slot + i, to.stride, to.rows).data();
+    inner_[i]->forward(args(at, i), from, to);
+    from = to;
+  }
+  copy_channels<T>(
+      from, all - own, from_row(y, own), all, all - own, positions_);
+}
+
+template <class T>
+void Skip<T>::backward(const LayerArgs<T>& at, const Backward<T>& b) const {
+  using V = Simd<T, kNarrow>;
+  const Index own = this->inputs() / positions_;
+  const Index all = this->outputs() / positions_;
+  const Index n = b.x.samples, stride = b.x.stride;
+  const Workspace::Scope scope(*at.work);
+  T* free = at.work->template take<T>(stride, widest_).data();
+  Lanes<T> y_bar(at.work->template take<T>(stride, widest_).data(),
+                 inner_.back()->outputs(),
+                 n);
+  copy_channels<T>(
+      from_row(b.y_bar, own), all, y_bar, all - own, all - own, positions_);
+  const auto kept = [&](std::size_t i) -> Lanes<const T> {
+    return {
+        at.tape->template view<T>(at.slot + i).data(), inner_[i]->outputs(), n};
+  };
+  for (std::size_t i = inner_.size(); i-- > 0;) {
+    Backward<T> inner{
+        .x = i > 0 ? kept(i - 1) : b.x, .y = kept(i), .y_bar = y_bar};
+    if (b.parameters_bar != nullptr)
+      inner.parameters_bar = b.parameters_bar + places_[i].parameters;
+    if (i > 0 || b.x_bar) inner.x_bar = {free, inner_[i]->inputs(), n};
+    if (i > 0) inner.gate = {inner_[i - 1]->fused(), inner.x};
+    inner_[i]->backward(args(at, i), inner);
+    free = y_bar.data;
+    y_bar = inner.x_bar;
+  }
+  if (!b.x_bar) return;
+  for (Index p = 0; p < positions_; ++p)
+    for (Index c = 0; c < own; ++c)
+      for (Index j = 0; j < b.x_bar.width; j += kLanes<T>)
+        store(b.x_bar.row(p * own + c) + j,
+              load<V>(b.y_bar.row(p * all + c) + j) +
+                  load<V>(y_bar.row(p * own + c) + j));
+  apply_gate(b.gate, b.x_bar);
+}
+
+template <class T>
+void Skip<T>::update_state(const Tape& tape, std::size_t slot, T* state) const {
+  for (std::size_t i = 0; i < inner_.size(); ++i)
+    inner_[i]->update_state(
+        tape, slot + places_[i].slot, state + places_[i].state);
+}
+
+template <class T>
+double Skip<T>::operations() const {
+  double sum = 0;
+  for (const auto& layer : inner_) sum += layer->operations();
+  return sum;
+}
+
+template class Skip<float>;
+template class Skip<double>;
+
+}  // namespace physinv::nn

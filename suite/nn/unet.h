@@ -1,0 +1,29 @@
+/// U-net (G2G): from fields on a grid to fields on the same grid.
+///
+/// D(a->b) = conv(a->b) - BN - ReLU - conv(b->b) - BN - ReLU, 3 taps per axis.
+/// in: D(c->f); levels - 1 times [max pooling 2, D(f->f)]; as often [linear
+/// upsampling 2, concatenate (skip, upsampled), D(2f->f)]; a 1-tap convolution
+/// f->outputs. (Joint parameter optimization, App. C.)
+///
+/// Rows of the input: `scalars_before` numbers, `channels` fields as
+/// [channel][position], `scalars_after` numbers. A scalar z becomes a field of
+/// constant value (z - scalar_shift) / scalar_unit.
+#pragma once
+
+#include "suite/core/network.h"
+#include "suite/nn/grid.h"
+
+namespace physinv::nn {
+
+struct UnetOptions {
+  Grid grid;  ///< extent divisible by 2^(levels - 1)
+  Index channels = 1;
+  Index scalars_before = 0, scalars_after = 0;
+  double scalar_shift = 0, scalar_unit = 1;
+  Index levels = 4, features = 16;
+  Index outputs = 1;  ///< fields
+};
+
+NetworkRecipe unet(const UnetOptions& options);
+
+}  // namespace physinv::nn

@@ -1,0 +1,76 @@
+#include "suite/nn/vgg.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <memory>
+#include <utility>
+
+#include "suite/core/check.h"
+#include "suite/nn/activation.h"
+#include "suite/nn/batch_norm.h"
+#include "suite/nn/conv.h"
+#include "suite/nn/linear.h"
+#include "suite/nn/rearrange.h"
+#include "suite/nn/sequential.h"
+
+namespace physinv::nn {
+namespace {
+
+template <class T>
+std::unique_ptr<Network<T>> make(const VggOptions& o,
+                                 Index inputs,
+                                 Index outputs) {
+  typename Sequential<T>::Layers layers;
+  const auto add = [&](auto layer) { layers.push_back(std::move(layer)); };
+  Grid grid = o.grid;
+  Index channels = o.channels;
+  SUITE_CHECK(inputs == channels * grid.positions(),
+              "the network's grid is not that of its input");
+  if (channels > 1)
+    add(std::make_unique<FieldInput<T>>(FieldInputOptions{
+        .positions = grid.positions(), .channels = channels}));
+  for (const Index width : o.features) {
+    add(std::make_unique<ConvBlock<T>>(
+        ConvOptions{.grid = grid,
+                    .in = channels,
+                    .out = width,
+                    .taps = {3, grid.flat() ? 1 : 3}},
+        Activation::relu,
+        true));
+    grid = halved(grid);
+    channels = width;
+  }
+  add(std::make_unique<Flatten<T>>(grid.positions(), channels));
+  Index size = grid.positions() * channels;
+  for (const Index width : o.hidden) {
+    add(std::make_unique<Linear<T>>(size, width));
+    add(std::make_unique<ActivationLayer<T>>(Activation::relu, width));
+    add(std::make_unique<BatchNorm<T>>(width));
+    size = width;
+  }
+  add(std::make_unique<Linear<T>>(size, outputs));
+  return std::make_unique<Sequential<T>>(std::move(layers));
+}
+
+}  // namespace
+
+NetworkRecipe vgg(const VggOptions& options) {
+  return {.description = fmt::format("vgg channels={} grid={}x{} features={} "
+                                     "hidden={}",
+                                     options.channels,
+                                     options.grid.columns,
+                                     options.grid.rows,
+                                     fmt::join(options.features, "-"),
+                                     fmt::join(options.hidden, "-")),
+          .make_float =
+              [options](Index in, Index out) {
+                return make<float>(options, in, out);
+              },
+          .make_double =
+              [options](Index in, Index out) {
+                return make<double>(options, in, out);
+              }};
+}
+
+}  // namespace physinv::nn

@@ -1,0 +1,51 @@
+#include "suite/nn/window.h"
+
+#include "suite/core/check.h"
+
+namespace physinv::nn {
+namespace {
+
+std::vector<Segment> segments_at(
+    Grid grid, Taps taps, Padding padding, Index column, Index row) {
+  std::vector<Segment> segments;
+  const auto wrap = [](Index i, Index n) { return (i % n + n) % n; };
+  for (Index t = 0; t < taps.count(); ++t) {
+    Index c = column + t % taps.x - taps.x / 2;
+    Index r = row + t / taps.x - taps.y / 2;
+    if (padding == Padding::circular) {
+      c = wrap(c, grid.columns), r = wrap(r, grid.rows);
+    } else if (c < 0 || c >= grid.columns || r < 0 || r >= grid.rows) {
+      continue;
+    }
+    const Index shift = (r - row) * grid.columns + c - column;
+    if (!segments.empty()) {
+      Segment& last = segments.back();
+      if (last.tap + last.taps == t && last.shift + last.taps == shift) {
+        ++last.taps;
+        continue;
+      }
+    }
+    segments.push_back({shift, t, 1});
+  }
+  return segments;
+}
+
+}  // namespace
+
+std::vector<Run> window_runs(Grid grid, Taps taps, Padding padding) {
+  SUITE_CHECK(taps.x % 2 == 1 && taps.y % 2 == 1, "taps are odd per axis");
+  SUITE_CHECK(grid.columns > 0 && grid.rows > 0, "a grid has positions");
+  std::vector<Run> runs;
+  for (Index p = 0; p < grid.positions(); ++p) {
+    auto segments =
+        segments_at(grid, taps, padding, p % grid.columns, p / grid.columns);
+    if (!runs.empty() && runs.back().segments == segments) {
+      ++runs.back().count;
+    } else {
+      runs.push_back({p, 1, std::move(segments)});
+    }
+  }
+  return runs;
+}
+
+}  // namespace physinv::nn

@@ -1,0 +1,177 @@
+// Vgg and u-net as built: sizes, bits, reuse.
+
+#include <gtest/gtest.h>
+
+#include "suite/core/check.h"
+#include "suite/core/threads.h"
+#include "suite/nn/unet.h"
+#include "suite/nn/vgg.h"
+#include "tests/suite/nn/nn_testing.h"
+
+namespace physinv::nn {
+namespace {
+
+struct Built {
+  const char* name;
+  NetworkRecipe recipe;
+  Index inputs, outputs, parameters;
+};
+
+std::vector<Built> networks() {
+  const auto packet = [](std::vector<Index> hidden) {
+    return vgg({.channels = 1,
+                .grid = {256},
+                .features = {16, 16, 16, 16, 16},
+                .hidden = std::move(hidden)});
+  };
+  return {
+      {"packet", packet({64, 32}), 256, 1, 13921},
+      {"packet_variant", packet({64, 32, 1}), 256, 1, 13925},
+      {"ks",
+       vgg({.channels = 2,
+            .grid = {128},
+            .features = {32, 32, 64, 64},
+            .hidden = {64, 64}}),
+       256,
+       2,
+       59650},
+      {"packet_surrogate",
+       unet({.grid = {256}, .scalars_before = 1}),
+       257,
+       256,
+       13073},
+      {"ks_surrogate",
+       unet({.grid = {128}, .scalars_after = 2}),
+       130,
+       128,
+       13121},
+      // 3x3 taps: 160 + 8 x (9 f f + f + 2 f) with f = 16, but 2 f into
+      // two of the eight; and 2 x 16 + 2 at the end.
+      {"plane",
+       unet({.grid = {16, 8},
+             .channels = 2,
+             .levels = 3,
+             .features = 4,
+             .outputs = 2}),
+       256,
+       256,
+       9 * (2 * 4 + 7 * 16 + 2 * 32) + 10 * 12 + 10},
+      {"plane_vgg",
+       vgg({.channels = 2, .grid = {16, 8}, .features = {4, 5}, .hidden = {7}}),
+       256,
+       3,
+       9 * (2 * 4 + 4 * 5) + 9 * 3 + (40 * 7 + 7 + 14) + (7 * 3 + 3)}};
+}
+
+class ConvNetwork : public testing::TestWithParam<Built> {
+ protected:
+  template <class T>
+  Bench<T> make(Threads* threads = nullptr) {
+    const Built& b = GetParam();
+    return Bench<T>(b.recipe, b.inputs, b.outputs, threads);
+  }
+};
+
+TEST_P(ConvNetwork, HasTheParametersOfThePaper) {
+  const auto net =
+      GetParam().recipe.make<float>(GetParam().inputs, GetParam().outputs);
+  EXPECT_EQ(net->parameter_count(), GetParam().parameters);
+  EXPECT_THROW(
+      GetParam().recipe.make<float>(GetParam().inputs + 1, GetParam().outputs),
+      ContractError);
+}
+
+template <class T>
+void expect_equal_passes(Bench<T>& a, Bench<T>& b, Index n, bool training) {
+  const Batch<T> in = wavy<T>(a.net->inputs(), n);
+  const Batch<T> out_bar = wavy<T>(a.net->outputs(), n, 0.3);
+  expect_same_bits(a.forward(in, {.training = training}),
+                   b.forward(in, {.training = training}));
+  expect_same_bits(a.parameters_bar(out_bar), b.parameters_bar(out_bar));
+  expect_same_bits(a.in_bar(out_bar), b.in_bar(out_bar));
+}
+
+TEST_P(ConvNetwork, ThreadsDoNotChangeBits) {
+  Threads threads(3);
+  for (const bool training : {false, true}) {
+    auto one = make<float>(), three = make<float>(&threads);
+    expect_equal_passes(one, three, 40, training);
+    auto one64 = make<double>(), three64 = make<double>(&threads);
+    expect_equal_passes(one64, three64, 21, training);
+  }
+}
+
+TEST_P(ConvNetwork, TapesAndWorkspacesAreReused) {
+  auto used = make<float>();
+  for (const Index n : {50, 3}) {
+    const Batch<float> in = wavy<float>(used.net->inputs(), n, 9.0);
+    used.forward(in, {.training = true});
+    used.in_bar(wavy<float>(used.net->outputs(), n));
+    used.parameters_bar(wavy<float>(used.net->outputs(), n));
+  }
+  const std::size_t bytes = used.tape.bytes() + used.work.bytes();
+  for (const Index n : {50, 17, 2}) {
+    auto fresh = make<float>();
+    expect_equal_passes(used, fresh, n, true);
+  }
+  EXPECT_EQ(used.tape.bytes() + used.work.bytes(), bytes);
+}
+
+TEST_P(ConvNetwork, SameInputKeepsBits) {
+  auto b = make<float>();
+  const Index n = 6;
+  const Batch<float> in = wavy<float>(b.net->inputs(), n);
+  const Batch<float> out_bar = wavy<float>(b.net->outputs(), n, 0.3);
+  const Batch<float> first =
+      b.forward(in, {.training = true, .fixed_input = true});
+  const Vector<float> bar = b.parameters_bar(out_bar);
+  expect_same_bits(
+      b.forward(in,
+                {.training = true, .same_input = true, .fixed_input = true}),
+      first);
+  expect_same_bits(b.parameters_bar(out_bar), bar);
+  // The rearrangement in front is not run again; nothing is folded.
+  const bool has_prefix =
+      std::string(GetParam().name).rfind("packet", 0) != 0 ||
+      GetParam().inputs == 257;
+  EXPECT_EQ(b.work.counts[Counter::skipped_features],
+            has_prefix ? std::uint64_t(n) : 0U);
+  EXPECT_EQ(b.work.counts[Counter::skipped_rows], 0U);
+}
+
+TEST_P(ConvNetwork, EvaluatedSamplesAreIndependentBitwise) {
+  auto b = make<float>();
+  const Batch<float> in = wavy<float>(b.net->inputs(), 27);
+  const Batch<float> out_bar = wavy<float>(b.net->outputs(), 27, 0.3);
+  b.forward(in, {.training = true});
+  b.net->update_state(b.tape, b.s);
+  const Batch<float> out = b.forward(in), in_bar = b.in_bar(out_bar);
+  for (const auto& some :
+       {std::vector<Index>{26}, std::vector<Index>{4, 1, 0, 13, 25}}) {
+    expect_same_bits(b.forward(Batch<float>(in(Eigen::all, some))),
+                     Batch<float>(out(Eigen::all, some)));
+    expect_same_bits(b.in_bar(Batch<float>(out_bar(Eigen::all, some))),
+                     Batch<float>(in_bar(Eigen::all, some)));
+  }
+}
+
+TEST_P(ConvNetwork, NaNEndsItsSampleAlone) {
+  auto b = make<float>();
+  Batch<float> in = wavy<float>(b.net->inputs(), 5);
+  const Batch<float> out = b.forward(in);
+  in(100, 2) = std::nanf("");
+  const Batch<float> hit = b.forward(in);
+  EXPECT_FALSE(hit.col(2).allFinite());
+  for (const Index j : {0, 1, 3, 4})
+    expect_same_bits(Batch<float>(hit.col(j)), Batch<float>(out.col(j)));
+}
+
+INSTANTIATE_TEST_SUITE_P(All,
+                         ConvNetwork,
+                         testing::ValuesIn(networks()),
+                         [](const testing::TestParamInfo<Built>& at) {
+                           return std::string(at.param.name);
+                         });
+
+}  // namespace
+}  // namespace physinv::nn
