@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "optimizers/bfgs.h"
 #include "optimizers/drive.h"
@@ -16,6 +17,7 @@ namespace {
 template <class Solver>
 Outcome solve(Solver& solver, StageRun& run, const Batch<double>& x0) {
   Oracle& oracle = run.oracle;
+  Batch<double> first_step = Batch<double>::Zero(1, x0.cols());
   run.probe.begin_warmup();
   oracle.warm_up<double>();
   run.probe.begin();
@@ -32,14 +34,15 @@ Outcome solve(Solver& solver, StageRun& run, const Batch<double>& x0) {
       x0,
       [&](const Solver& s) {
         for (const Index i : s.accepted()) {
-          run.probe.accept(i,
-                           s.iterations()[static_cast<std::size_t>(i)],
-                           s.x().col(i).data(),
-                           s.loss()(i));
+          const Index k = s.iterations()[static_cast<std::size_t>(i)];
+          run.probe.accept(i, k, s.x().col(i).data(), s.loss()(i));
+          if (k == 1) first_step(0, i) = (s.x().col(i) - x0.col(i)).norm();
         }
       });
   run.probe.finish();
-  return solver_outcome(solver, oracle);
+  Outcome out = solver_outcome(solver, oracle);
+  out.arrays["first_step"] = std::move(first_step);
+  return out;
 }
 
 class BfgsStage final : public Stage {

@@ -1,5 +1,6 @@
 /// Classical optimizers as stages: every problem of a case by itself, in
-/// double, all pending evaluations of a round in one batch.
+/// double, all pending evaluations of a round in one batch. Array `first_step`
+/// (1 x examples): length of the first accepted step, 0 if there is none.
 ///
 ///   {"bfgs", {bfgs_solve()}}            from the experiment's start
 ///   {"jpo", {jpo_fit(), bfgs_refine()}} from what the stage before left

@@ -110,6 +110,15 @@ const Batch<T>& NetworkModel<T>::forward() {
 }
 
 template <class T>
+const Batch<T>& NetworkModel<T>::forward(const Batch<T>& input) {
+  output_.resize(network_->outputs(), input.cols());
+  network_->forward(
+      parameters_, state_, input, output_, tape_, work_, {.training = true});
+  fresh_ = true;
+  return output_;
+}
+
+template <class T>
 const Vector<T>& NetworkModel<T>::backward(BatchIn<T> out_bar) {
   VectorOut<T> gradient(gradient_);
   network_->backward(parameters_, tape_, out_bar, &gradient, nullptr, work_);

@@ -38,6 +38,8 @@ class NetworkModel {
   void bind(Batch<T> input);
   /// Outputs for the bound input, in training mode.
   const Batch<T>& forward();
+  /// Outputs for a minibatch, in training mode.
+  const Batch<T>& forward(const Batch<T>& input);
   /// Gradient of the parameters for cotangents of the last `forward`.
   const Vector<T>& backward(BatchIn<T> out_bar);
   /// Running statistics follow the last `forward`.
@@ -49,6 +51,8 @@ class NetworkModel {
   /// counted work.
   void predict(BatchIn<T> input, BatchOut<T> output);
 
+  const Tape& tape() const { return tape_; }
+  Workspace& workspace() { return work_; }
   Vector<T>& parameters() { return parameters_; }
   const Vector<T>& state() const { return state_; }
   /// Mean |change| per tensor since `initialize`.

@@ -70,6 +70,19 @@ std::string method_colors(bool dark) {
   return css;
 }
 
+std::string page_variables(bool dark) {
+  std::string css = dark ? "color-scheme:dark;--bg:#14171c;--grid:#2a2f37;"
+                           "--frame:#727984;--ink:#f0f0f0;--soft:#b3b8c0;"
+                           "--yes:#72d381;--no:#ff8178;"
+                         : "color-scheme:light;--bg:#ffffff;--grid:#e7e8ea;"
+                           "--frame:#8d9198;--ink:#1b1b1b;--soft:#55585e;"
+                           "--yes:#1d7a36;--no:#b3261e;";
+  for (int i = 0; i < kHueCount; ++i) {
+    css += fmt::format("--c{}:{};", i, dark ? kHues[i].dark : kHues[i].light);
+  }
+  return css;
+}
+
 }  // namespace
 
 int Palette::index(std::string_view method) {
@@ -100,6 +113,25 @@ std::string style_sheet() {
       method_colors(false),
       furniture_colors(true),
       method_colors(true));
+}
+
+std::string page_style_sheet() {
+  std::string css = fmt::format(
+      ":root{{{0}}}\n"
+      "@media screen and (prefers-color-scheme:dark){{"
+      ":root:not([data-theme=light]){{{1}}}}}\n"
+      "@media screen{{:root[data-theme=dark]{{{1}}}}}\n{2}\n"
+      ".halo{{stroke:var(--bg)}}.m{{stroke:var(--bg)}}.o{{fill:var(--bg)}}"
+      ".grid{{stroke:var(--grid)}}.frame{{stroke:var(--frame)}}"
+      ".head,.label{{fill:var(--ink)}}.tick{{fill:var(--soft)}}\n",
+      page_variables(false),
+      page_variables(true),
+      kFurniture);
+  for (int i = 0; i < kHueCount; ++i) {
+    css +=
+        fmt::format(".s{0}{{stroke:var(--c{0})}}.f{0}{{fill:var(--c{0})}}", i);
+  }
+  return css + '\n';
 }
 
 const std::array<std::string, kFieldColors>& field_colors() {

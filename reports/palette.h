@@ -27,6 +27,12 @@ Marker marker_of(int index);
 /// furniture (bg, grid, frame, tick, label, title, note, halo).
 std::string style_sheet();
 
+/// The same for a page of many figures, its colours in custom properties: c<i>
+/// of methods, and bg, grid, frame, ink, soft, yes, no of the page. Follows
+/// the reader's system unless data-theme of the root says light or dark;
+/// print is light.
+std::string page_style_sheet();
+
 inline constexpr int kFieldColors = 32;
 /// Viridis in 32 steps, dark blue to yellow: "#440154".
 const std::array<std::string, kFieldColors>& field_colors();

@@ -135,7 +135,7 @@ void PanelPlot::draw(Svg& svg, const Rect& cell) const {
                  cell.y + top,
                  cell.w - left - right,
                  cell.h - top - bottom};
-  svg.open("g");
+  open_panel(svg, box);
   furniture(svg, box, cell);
   svg.open("clipPath", {{"id", id_}});
   svg.rect("", box.x, box.y, box.w, box.h);
@@ -188,22 +188,66 @@ void PanelPlot::curves(Svg& svg, const Rect& box) const {
   svg.open("g", {{"clip-path", "url(#" + id_ + ")"}});
   for (const Series& s : panel_.series) {
     if (has_spread(s) && !has_error_bars(s)) {
+      open_series(svg, box, s);
       band(svg, box, s, palette_.index(s.method));
+      close_series(svg);
     }
   }
   for (const Series& s : panel_.series) {
     if (!s.line) continue;
     const std::string d = line_path(dodged(box, s), s);
     const int color = palette_.index(s.method);
+    open_series(svg, box, s);
     if (panel_.field) svg.path("halo", d);
     svg.path(fmt::format("l s{}{}", color, s.dashed ? " d" : ""), d);
+    close_series(svg);
   }
   svg.close();
   for (const Series& s : panel_.series) {
     const int color = palette_.index(s.method);
+    open_series(svg, box, s);
     if (has_error_bars(s)) error_bars(svg, dodged(box, s), s, color);
     if (s.markers || !s.line) markers(svg, dodged(box, s), s, color);
+    close_series(svg);
   }
+}
+
+// Both axes as "from to log start length": what a script needs to turn places
+// back into values.
+void PanelPlot::open_panel(Svg& svg, const Rect& box) const {
+  if (keys_.empty() || !run_) {
+    svg.open("g");
+    return;
+  }
+  const auto axis = [](const Axis& a, double start, double length) {
+    return fmt::format("{:.6g} {:.6g} {:d} {} {}",
+                       a.lo(),
+                       a.hi(),
+                       a.log(),
+                       svg_number(start),
+                       svg_number(length));
+  };
+  svg.open("g",
+           {{"data-x", axis(x_, box.x, box.w)},
+            {"data-y", axis(y_, box.y + box.h, -box.h)},
+            {"data-x-label", panel_.x_label},
+            {"data-y-label", panel_.y_label}});
+}
+
+void PanelPlot::open_series(Svg& svg,
+                            const Rect& box,
+                            const Series& series) const {
+  if (keys_.empty()) return;
+  const int key =
+      keys_[static_cast<std::size_t>(&series - panel_.series.data())];
+  const double aside = dodged(box, series).x - box.x;
+  svg.open("g",
+           {{"class", key < 0 ? "k" : fmt::format("k k{}", key)},
+            {"data-dx", aside == 0 ? "" : svg_number(aside)}});
+}
+
+void PanelPlot::close_series(Svg& svg) const {
+  if (!keys_.empty()) svg.close();
 }
 
 Rect PanelPlot::dodged(const Rect& box, const Series& series) const {

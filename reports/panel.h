@@ -2,6 +2,8 @@
 #pragma once
 
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "reports/axis.h"
 #include "reports/palette.h"
@@ -19,6 +21,10 @@ class PanelPlot {
   /// `id` is unique in the document: it names the clip path.
   PanelPlot(const Panel& panel, std::string id, Palette& palette);
 
+  /// Marks each series with its place in the legend (class k<i>, -1 for none)
+  /// and the panel with its axes, for the script of a page.
+  void set_keys(std::vector<int> keys) { keys_ = std::move(keys); }
+
   /// Draws into `cell`, labels included.
   void draw(Svg& svg, const Rect& cell) const;
 
@@ -31,6 +37,9 @@ class PanelPlot {
   void markers(Svg& svg, const Rect& box, const Series& s, int color) const;
   // Moved aside by a few units, so that error bars of one x stay apart.
   Rect dodged(const Rect& box, const Series& series) const;
+  void open_panel(Svg& svg, const Rect& box) const;
+  void open_series(Svg& svg, const Rect& box, const Series& series) const;
+  void close_series(Svg& svg) const;
   std::string line_path(const Rect& box, const Series& s) const;
   double px(const Rect& box, double value) const;
   double py(const Rect& box, double value) const;
@@ -39,6 +48,7 @@ class PanelPlot {
   std::string id_;
   Palette& palette_;
   Axis x_, y_;
+  std::vector<int> keys_;  // empty: no marks
   bool run_ = false;
 };
 

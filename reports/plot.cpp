@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "reports/legend.h"
 #include "reports/palette.h"
 #include "reports/panel.h"
 #include "reports/svg.h"
@@ -21,19 +22,9 @@ struct Key {
   double x = 0, y = 0;
 };
 
-// One entry per look: label, colour and stroke; panels share it.
 std::vector<Key> legend_keys(const Figure& figure) {
   std::vector<Key> keys;
-  for (const Panel& panel : figure.panels) {
-    for (const Series& s : panel.series) {
-      if (s.label.empty()) continue;
-      const bool known = std::any_of(keys.begin(), keys.end(), [&](Key k) {
-        return k.series->label == s.label && k.series->method == s.method &&
-               k.series->dashed == s.dashed;
-      });
-      if (!known) keys.push_back({&s});
-    }
-  }
+  for (const Series* s : legend_of(figure)) keys.push_back({s});
   return keys;
 }
 
@@ -51,20 +42,9 @@ double lay_out(std::vector<Key>& keys, double width) {
 }
 
 void draw_key(Svg& svg, const Key& key, Palette& palette, double x, double y) {
-  const Series& s = *key.series;
-  const int color = palette.index(s.method);
   const double left = x + key.x, mid = y + key.y + 10;
-  if (s.line) {
-    svg.line(fmt::format("l s{}{}", color, s.dashed ? " d" : ""),
-             left,
-             mid,
-             left + 28,
-             mid);
-  }
-  if (s.markers || !s.line) {
-    draw_marker(svg, marker_of(color), left + 14, mid, color, s.dashed);
-  }
-  svg.text("label", left + 35, mid + 4, s.label);
+  draw_sample(svg, *key.series, palette.index(key.series->method), left, mid);
+  svg.text("label", left + 35, mid + 4, key.series->label);
 }
 
 struct Grid {
@@ -92,16 +72,6 @@ std::string describe(const Figure& figure) {
                         p.x_label);
   }
   return text;
-}
-
-// Panels may show different looks under one name; number colours in the order
-// of the legend, not of drawing.
-Palette palette_of(const Figure& figure) {
-  Palette palette;
-  for (const Panel& p : figure.panels) {
-    for (const Series& s : p.series) palette.index(s.method);
-  }
-  return palette;
 }
 
 }  // namespace

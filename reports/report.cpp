@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "reports/html.h"
 #include "reports/plot.h"
 #include "reports/tables.h"
 #include "reports/text.h"
@@ -234,6 +235,7 @@ std::vector<fs::path> write_report(const fs::path& dir,
   }
   writer.write("claims.json", dump(claims));
   writer.write("report.md", report_markdown(sections, provenance));
+  writer.write("index.html", report_html(sections, provenance));
   return std::move(writer).files();
 }
 

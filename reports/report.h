@@ -1,5 +1,6 @@
-/// Writes a campaign's report: one folder per experiment, an overview in
-/// Markdown, and everything again as JSON for programs.
+/// Writes a campaign's report: one page to read it in a browser, an overview in
+/// Markdown with one folder per experiment, and everything again as JSON for
+/// programs.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +21,8 @@ nlohmann::ordered_json to_json(const Figure& figure);
 nlohmann::ordered_json to_json(const ClaimResult& claim);
 
 /// Files below `dir`, where jpo/billiards becomes jpo-billiards:
-///   report.md, claims.json ({provenance, sections: [{..., claims}]}),
+///   index.html, report.md,
+///   claims.json ({provenance, sections: [{..., claims}]}),
 ///   <experiment>/tables/<id>.{json,csv,md},
 ///   <experiment>/figures/<id>.{json,svg}.
 /// Each file appears whole or not at all. Returns what was written, in order.

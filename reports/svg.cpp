@@ -56,6 +56,32 @@ Svg::Svg(double width,
   out_ += fmt::format("<style>{}</style>\n", style);
 }
 
+Svg Svg::inlined(double width,
+                 double height,
+                 std::string_view title,
+                 std::string_view description) {
+  Svg svg;
+  svg.open("svg",
+           {{"viewBox",
+             fmt::format("0 0 {} {}", svg_number(width), svg_number(height))},
+            {"role", "img"}});
+  svg.out_ += fmt::format("<title>{}</title>\n<desc>{}</desc>\n",
+                          svg_escape(title),
+                          svg_escape(description));
+  return svg;
+}
+
+Svg Svg::ornament(double width, double height) {
+  const std::string w = svg_number(width), h = svg_number(height);
+  Svg svg;
+  svg.open("svg",
+           {{"viewBox", fmt::format("0 0 {} {}", w, h)},
+            {"width", w},
+            {"height", h},
+            {"aria-hidden", "true"}});
+  return svg;
+}
+
 void Svg::begin(std::string_view name, Attributes attributes) {
   out_ += fmt::format("<{}", name);
   for (const auto& [key, value] : attributes) {

@@ -28,6 +28,15 @@ class Svg {
       std::string_view description,
       std::string_view style);
 
+  /// One that stands in an HTML page, as wide as its place, and takes its
+  /// style from there.
+  static Svg inlined(double width,
+                     double height,
+                     std::string_view title,
+                     std::string_view description);
+  /// An ornament of such a page, in its own size; screen readers pass by.
+  static Svg ornament(double width, double height);
+
   void open(std::string_view name, Attributes attributes = {});
   void close();
   void leaf(std::string_view name, Attributes attributes);
@@ -46,6 +55,7 @@ class Svg {
   std::string str() &&;
 
  private:
+  Svg() = default;
   void begin(std::string_view name, Attributes attributes);
   std::string out_;
   std::vector<std::string> open_;

@@ -7,6 +7,7 @@
 
 #include "suite/app/options.h"
 #include "suite/harness/progress.h"
+#include "suite/results/profiles.h"
 #include "suite/results/published.h"
 #include "suite/results/store.h"
 
@@ -29,8 +30,16 @@ std::vector<Section> sections_of(const Results& results,
                                  const Published& published) {
   std::vector<Section> sections;
   for (const auto& e : registry().experiments()) {
-    if (e->report && !results.sizes(e->name).empty())
-      sections.push_back(e->report(results, published));
+    if (!e->report || results.sizes(e->name).empty()) continue;
+    Section section = e->report(results, published);
+    for (Figure& figure :
+         profile_figures(results,
+                         e->name,
+                         {.title = section.title,
+                         .method_titles = section.method_titles})) {
+      section.figures.push_back(std::move(figure));
+    }
+    sections.push_back(std::move(section));
   }
   return sections;
 }
@@ -106,7 +115,7 @@ ExitCode report_verb(const Arguments& arguments) {
       "{}report: {}\n",
       render_claims_text(sections,
                          static_cast<std::size_t>(Screen::of(stdout).columns)),
-      (target / "report.md").string());
+      (target / "index.html").string());
   const auto wrong = unmet(sections);
   if (check && !wrong.empty())
     throw ExitError(ExitCode::claim,

@@ -288,14 +288,20 @@ Panel JpoReport::over_iterations(Index n, Index example, Index unknown) const {
   return panel;
 }
 
+Index JpoReport::size_of_trajectories() const {
+  const auto sizes = metrics_.sizes();
+  const Index asked = options_.trajectory_size;
+  return std::count(sizes.begin(), sizes.end(), asked) > 0 ? asked
+                                                           : largest_size();
+}
+
 Figure JpoReport::trajectories() const {
   Figure figure{.id = options_.trajectories.id,
                 .title = options_.title + ": estimates during optimization",
                 .source = options_.trajectories.source};
-  const auto sizes = metrics_.sizes();
   const auto seeds = metrics_.seeds();
-  if (sizes.empty() || seeds.empty()) return figure;
-  const Index n = sizes.back();
+  const Index n = size_of_trajectories();
+  if (n == 0 || seeds.empty()) return figure;
   Index unknowns = 0, examples = kExamples;
   for (const auto& method : with_bfgs()) {
     if (const auto* s = metrics_.ending(method, n, seeds.front(), false)) {
@@ -348,20 +354,29 @@ Panel JpoReport::tensor_panel(const std::string& title,
 }
 
 Figure JpoReport::weight_change() const {
-  std::vector<Index> weights, biases;
+  std::vector<Index> weights, biases, normalisation;
   for (std::size_t t = 0; t < options_.tensors.size(); ++t) {
-    const bool bias = options_.tensors[t].starts_with('b');
-    (bias ? biases : weights).push_back(static_cast<Index>(t));
+    const char kind = options_.tensors[t].front();
+    auto& list = kind == 'b'                  ? biases
+                 : kind == 's' || kind == 'o' ? normalisation
+                                              : weights;
+    list.push_back(static_cast<Index>(t));
   }
-  return {.id = options_.weight_change.id,
-          .title = options_.title + ": change of the JPO network",
-          .source = options_.weight_change.source,
-          .panels = {tensor_panel("Weights", weights),
-                     tensor_panel("Biases", biases)},
-          .note =
-              "Mean absolute difference of a tensor's entries before and "
-              "after the fit (k: kernels, m: matrices, b: biases). Bars: "
-              "sample standard deviation over seeds."};
+  Figure figure{
+      .id = options_.weight_change.id,
+      .title = options_.title + ": change of the JPO network",
+      .source = options_.weight_change.source,
+      .panels = {tensor_panel("Weights", weights),
+                 tensor_panel("Biases", biases)},
+      .note =
+          "Mean absolute difference of a tensor's entries before and "
+          "after the fit (k: kernels, m: matrices, b: biases, s and o: scales "
+          "and offsets of normalisations). Bars: sample standard deviation "
+          "over seeds."};
+  if (!normalisation.empty()) {
+    figure.panels.push_back(tensor_panel("Scales and offsets", normalisation));
+  }
+  return figure;
 }
 
 }  // namespace physinv

@@ -1,5 +1,7 @@
 #include "suite/cases/jpo_metrics.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -57,6 +59,29 @@ double share_below(VectorIn<double> loss, double threshold) {
   SUITE_CHECK(loss.size() > 0, "a share of no problems");
   const Index below = (loss.array() < threshold).count();
   return static_cast<double>(below) / static_cast<double>(loss.size());
+}
+
+Solved::Solved(double loss)
+    : Solved(
+          [loss](const CaseData&, const StageRecord& stage, Index example) {
+            return stage.loss[example] < loss;
+          },
+          fmt::format("loss < {:g}", loss)) {}
+
+Index Solved::count(const CaseData& data, const StageRecord& stage) const {
+  Index count = 0;
+  for (Index i = 0; i < stage.loss.size(); ++i) count += test_(data, stage, i);
+  return count;
+}
+
+Solved within_of_truth(double tolerance) {
+  return {[tolerance](
+              const CaseData& data, const StageRecord& stage, Index example) {
+            return ((stage.x.col(example) - data.x.col(example)).array().abs() <
+                    tolerance)
+                .all();
+          },
+          fmt::format("every unknown within {:g} of the truth", tolerance)};
 }
 
 const StageRecord* JpoMetrics::stage(std::string_view method,
@@ -153,34 +178,35 @@ std::optional<double> JpoMetrics::solved_share(std::string_view method,
                                                Index n,
                                                std::uint64_t seed,
                                                bool refined,
-                                               double threshold) const {
+                                               const Solved& solved) const {
   const StageRecord* found = ending(method, n, seed, refined);
   if (found == nullptr) return {};
-  return share_below(found->loss, threshold);
+  return static_cast<double>(solved.count(data(method, n, seed), *found)) /
+         static_cast<double>(found->loss.size());
 }
 
 std::optional<double> JpoMetrics::pooled_solved_share(
     std::string_view method,
     std::span<const Index> sizes,
     bool refined,
-    double threshold) const {
-  Index solved = 0, all = 0;
+    const Solved& solved) const {
+  Index count = 0, all = 0;
   for (const Index n : sizes) {
     for (const std::uint64_t seed : seeds()) {
       const StageRecord* found = ending(method, n, seed, refined);
       if (found == nullptr) continue;
-      solved += (found->loss.array() < threshold).count();
+      count += solved.count(data(method, n, seed), *found);
       all += found->loss.size();
     }
   }
   if (all == 0) return {};
-  return static_cast<double>(solved) / static_cast<double>(all);
+  return static_cast<double>(count) / static_cast<double>(all);
 }
 
 std::optional<JpoMetrics::Rescue> JpoMetrics::rescue(
     std::string_view method,
     std::span<const Index> sizes,
-    double solved) const {
+    const Solved& solved) const {
   Rescue out;
   for (const Index n : sizes) {
     for (const std::uint64_t seed : seeds()) {
@@ -188,9 +214,9 @@ std::optional<JpoMetrics::Rescue> JpoMetrics::rescue(
       const StageRecord* bfgs = stage(kBfgs, n, seed, kSolve);
       if (ours == nullptr || bfgs == nullptr) continue;
       for (Index i = 0; i < bfgs->loss.size(); ++i) {
-        if (bfgs->loss[i] < solved) continue;
+        if (solved(data(kBfgs, n, seed), *bfgs, i)) continue;
         ++out.unsolved;
-        out.rescued += ours->loss[i] < solved;
+        out.rescued += solved(data(method, n, seed), *ours, i);
       }
     }
   }

@@ -9,7 +9,9 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "suite/core/batch.h"
@@ -43,6 +45,35 @@ Shares compare_losses(VectorIn<double> loss,
 
 /// Of the losses, the share below `threshold`; NaN is not below.
 double share_below(VectorIn<double> loss, double threshold);
+
+/// When a problem counts as solved. A number means a loss below it; any other
+/// test sees the data of the case, so that it may ask for the truth.
+class Solved {
+ public:
+  using Test =
+      std::function<bool(const CaseData&, const StageRecord&, Index example)>;
+
+  Solved(double loss);  // NOLINT(google-explicit-constructor)
+  Solved(Test test, std::string says)
+      : test_(std::move(test)), says_(std::move(says)) {}
+
+  bool operator()(const CaseData& data,
+                  const StageRecord& stage,
+                  Index example) const {
+    return test_(data, stage, example);
+  }
+  /// How many of the stage's examples.
+  Index count(const CaseData& data, const StageRecord& stage) const;
+  /// "loss < 1e-06"
+  const std::string& says() const { return says_; }
+
+ private:
+  Test test_;
+  std::string says_;
+};
+
+/// max_j |x_j - truth_j| < tolerance; an estimate that is not finite is not.
+Solved within_of_truth(double tolerance);
 
 /// One experiment of a campaign.
 class JpoMetrics {
@@ -91,19 +122,19 @@ class JpoMetrics {
                                           Index n,
                                           std::uint64_t seed) const;
 
-  /// Share of problems with loss < threshold at the end of a chain.
+  /// Share of problems solved at the end of a chain.
   std::optional<double> solved_share(std::string_view method,
                                      Index n,
                                      std::uint64_t seed,
                                      bool refined,
-                                     double threshold) const;
+                                     const Solved& solved) const;
   /// The same over all problems of all seeds and sizes there are.
   std::optional<double> pooled_solved_share(std::string_view method,
                                             std::span<const Index> sizes,
                                             bool refined,
-                                            double threshold) const;
+                                            const Solved& solved) const;
 
-  /// Of the problems that plain BFGS left at loss >= solved, how many the
+  /// Of the problems that plain BFGS left unsolved, how many the
   /// method with refinement solves; pooled over seeds and sizes.
   struct Rescue {
     Index unsolved = 0, rescued = 0;
@@ -114,7 +145,7 @@ class JpoMetrics {
   /// Empty if no pair of cases is there or BFGS solved everything.
   std::optional<Rescue> rescue(std::string_view method,
                                std::span<const Index> sizes,
-                               double solved) const;
+                               const Solved& solved) const;
 
   /// Where plain BFGS ends, pooled over the seeds of one n: on the plateau
   /// (loss within 1e-12 relative of the problem's plateau loss), solved, or
@@ -132,6 +163,12 @@ class JpoMetrics {
                                  const PlateauLoss& plateau_loss) const;
 
  private:
+  const CaseData& data(std::string_view method,
+                       Index n,
+                       std::uint64_t seed) const {
+    return results_.find_case(experiment_, method, n, seed)->data;
+  }
+
   const Results& results_;
   std::string_view experiment_;
 };

@@ -17,10 +17,26 @@ std::vector<std::string> JpoReport::with_bfgs() const {
   return out;
 }
 
+// With a network, if there is one: BFGS alone may have seen more problems.
+Index JpoReport::largest_size() const {
+  Index largest = 0;
+  for (const Index n : metrics_.sizes())
+    for (const std::uint64_t seed : metrics_.seeds())
+      for (const auto& method : options_.methods)
+        if (metrics_.ending(method, n, seed, false) != nullptr) largest = n;
+  if (largest == 0 && !metrics_.sizes().empty())
+    largest = metrics_.sizes().back();
+  return largest;
+}
+
 Section jpo_section(const JpoReportOptions& options,
                     const Results& results,
                     const Published& published) {
   const JpoReport report(options, results, published);
+  std::map<std::string, std::string> titles;
+  for (const auto& method : results.methods(options.experiment)) {
+    titles[method] = method_title(method);
+  }
   return {.experiment = options.experiment,
           .title = options.title,
           .paper = options.paper,
@@ -34,7 +50,8 @@ Section jpo_section(const JpoReportOptions& options,
                       report.curves(),
                       report.trajectories(),
                       report.weight_change()},
-          .claims = {}};
+          .claims = {},
+          .method_titles = std::move(titles)};
 }
 
 }  // namespace physinv

@@ -27,8 +27,9 @@ struct JpoReportOptions {
   std::string title;       ///< Billiards
   std::string paper;       ///< key of the publication
   std::vector<std::string> methods = {"jpo", "supervised", "na"};
-  double solved = 1e-6;            ///< loss below which a problem is solved
+  Solved solved = 1e-6;            ///< when a problem counts as solved
   std::vector<Index> curve_sizes;  ///< of fig. 12; default: four present
+  Index trajectory_size = 0;       ///< of fig. 13; default: the largest
   std::vector<Index> table3_sizes = {4, 8, 32, 128};
   std::vector<std::string> unknowns;  ///< names of the unknowns, for axes
   std::vector<std::string> tensors;   ///< m1, b1, ... in the order of the rows
@@ -66,6 +67,7 @@ class JpoReport {
   Figure weight_change() const;  ///< by tensor over n
 
   const JpoMetrics& metrics() const { return metrics_; }
+  Index largest_size() const;  ///< of problems, with a network if there is one
 
  private:
   using PerCase = std::function<std::optional<double>(Index, std::uint64_t)>;
@@ -77,6 +79,7 @@ class JpoReport {
   Series reference_half() const;
   Series curve_series(const std::string& method, Index n) const;
   std::vector<Index> sizes_of_curves() const;
+  Index size_of_trajectories() const;
   Panel plane(Index n, Index example) const;
   Panel over_iterations(Index n, Index example, Index unknown) const;
   Panel tensor_panel(const std::string& title,

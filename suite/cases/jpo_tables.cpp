@@ -86,8 +86,7 @@ Table JpoReport::seconds() const {
               .source = "Table 2",
               .unit = "s",
               .digits = 1};
-  const auto sizes = metrics_.sizes();
-  const Index n = sizes.empty() ? 0 : sizes.back();
+  const Index n = largest_size();
   TableRow row{.label = options_.title};
   for (const auto& [title, method, stage] : kSecondsColumns) {
     // BFGS alone has one stage only, so the paper's number names none.
@@ -200,10 +199,10 @@ Table JpoReport::results_table() const {
   }
   table.note = fmt::format(
       "Mean ± sample standard deviation over seeds. solved: share of problems "
-      "with loss < {:g}. f_N: share better than BFGS plus half the share equal "
+      "with {}. f_N: share better than BFGS plus half the share equal "
       "to it. Iterations: mean over problems. Seconds: all stages of the row, "
       "a refined row counts the refinement alone; without crowded ones.",
-      options_.solved);
+      options_.solved.says());
   return table;
 }
 
@@ -244,9 +243,11 @@ TableRow JpoReport::results_row(const std::string& method,
   if (!time.ours && loss.ours) time.text = "crowded";
   return {.label = fmt::format(
               "{} {}{}", n, method_title(method), refined ? " refined" : ""),
-          .cells = {read([&](const StageRecord& s) {
-                      return share_below(s.loss, options_.solved);
-                    }),
+          .cells = {over_seeds(n,
+                               [&](Index, std::uint64_t seed) {
+                                 return metrics_.solved_share(
+                                     method, n, seed, refined, options_.solved);
+                               }),
                     shown_as(loss, "{:.2e}"),
                     f(Equality::strict),
                     f(Equality::tol),

@@ -21,6 +21,8 @@ enum class Counter : std::uint8_t {
   skipped_rows,      ///< first-layer rows folded, constant over the batch
   skipped_events,    ///< motion that nobody observes, not simulated
   skipped_trials,    ///< line-search trials known to change nothing
+  skipped_zeros,     ///< entries of y without a signal, not computed
+  skipped_steps,     ///< time steps of diverged samples, not simulated
   kCount
 };
 
@@ -40,7 +42,9 @@ inline constexpr std::array<std::string_view, kCounters> kCounterNames = {
     "skipped_features",
     "skipped_rows",
     "skipped_events",
-    "skipped_trials"};
+    "skipped_trials",
+    "skipped_zeros",
+    "skipped_steps"};
 
 class Counts {
  public:

@@ -80,6 +80,28 @@ PHYSINV_LANES P sqrt_lanes(P x) {
   return root;
 }
 
+/// a b + c, rounded once. The compiler fuses products and sums as it sees fit
+/// in each copy of a function; written out, two copies have the same bits.
+template <class P>
+PHYSINV_LANES P fma_lanes(P a, P b, P c) {
+#ifdef __AVX512F__
+  if constexpr (sizeof(P) == 64 && sizeof(a[0]) == 8)
+    return _mm512_fmadd_pd(a, b, c);
+  if constexpr (sizeof(P) == 64 && sizeof(a[0]) == 4)
+    return _mm512_fmadd_ps(a, b, c);
+#endif
+#ifdef __FMA__
+  if constexpr (sizeof(P) == 32 && sizeof(a[0]) == 8)
+    return _mm256_fmadd_pd(a, b, c);
+  if constexpr (sizeof(P) == 32 && sizeof(a[0]) == 4)
+    return _mm256_fmadd_ps(a, b, c);
+#endif
+  P out = c;
+  for (std::size_t k = 0; k < sizeof(P) / sizeof(a[0]); ++k)
+    out[k] = std::fma(a[k], b[k], c[k]);
+  return out;
+}
+
 /// Is any lane set?
 template <class M>
 PHYSINV_LANES bool any(M mask) {

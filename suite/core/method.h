@@ -29,6 +29,9 @@ struct Setting {
   NetworkRole surrogate;  ///< estimates y
   double output_scale = 1.0;
   double gtol = 1e-5;  ///< of BFGS and gradient descent
+  /// Examples whose estimates and curves are recorded, 0 for all. Every
+  /// example's final loss is.
+  Index recorded = 0;
 };
 
 /// What a stage leaves for the next one and for the record.

@@ -8,11 +8,14 @@ namespace physinv {
 /// The problem and its data in one precision, made when first asked for.
 template <class T>
 struct Oracle::Side {
-  Side(const ProblemRecipe& recipe, const Samples<double>& data)
+  Side(const ProblemRecipe& recipe,
+       const Samples<double>& data,
+       Threads* threads)
       : problem(recipe.make<T>()),
         vjp(dynamic_cast<const Vjp<T>*>(problem.get())),
         given(data.given.template cast<T>()),
-        y(data.y.template cast<T>()) {}
+        y(data.y.template cast<T>()),
+        tape(threads) {}
 
   std::unique_ptr<Problem<T>> problem;
   const Vjp<T>* vjp;
@@ -78,13 +81,15 @@ Oracle::~Oracle() = default;
 
 template <>
 Oracle::Side<float>& Oracle::side<float>() {
-  if (!float_) float_ = std::make_unique<Side<float>>(recipe_, data_);
+  if (!float_)
+    float_ = std::make_unique<Side<float>>(recipe_, data_, work_->threads());
   return *float_;
 }
 
 template <>
 Oracle::Side<double>& Oracle::side<double>() {
-  if (!double_) double_ = std::make_unique<Side<double>>(recipe_, data_);
+  if (!double_)
+    double_ = std::make_unique<Side<double>>(recipe_, data_, work_->threads());
   return *double_;
 }
 
@@ -173,6 +178,13 @@ const Samples<double>& Oracle::labelled() {
         0, count(), rng_.child("data/train"));
   }
   return labelled_;
+}
+
+Samples<double> Oracle::training(Index first, Index count) const {
+  Samples<double> drawn =
+      recipe_.make<double>()->sample(first, count, rng_.child("data/train"));
+  drawn.x.resize(0, count);
+  return drawn;
 }
 
 void Oracle::measure(BatchIn<double> x, VectorOut<double> loss) {

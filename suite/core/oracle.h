@@ -51,6 +51,12 @@ class Oracle {
   /// As many labelled samples as there are problems, from a separate set.
   const Samples<double>& labelled();
 
+  /// Problems first .. first+count-1 of the same separate set, without their
+  /// solutions: for methods that learn from the physics. Whoever simulates
+  /// them with `recipe` adds the counts.
+  Samples<double> training(Index first, Index count) const;
+  const ProblemRecipe& recipe() const { return recipe_; }
+
   /// Losses in double for curves and records; not counted, not part of a
   /// method's work.
   void measure(BatchIn<double> x, VectorOut<double> loss);

@@ -81,6 +81,10 @@ class Workspace {
 /// memory is kept from call to call. The writer defines what a slot means.
 class Tape {
  public:
+  explicit Tape(Threads* threads = nullptr) : threads_(threads) {}
+
+  Threads* threads() const { return threads_; }
+
   /// Opens slot i for writing; old contents are lost if the size changed.
   template <class T>
   Scratch<T> slot(std::size_t i, Index rows, Index cols) {
@@ -109,6 +113,7 @@ class Tape {
     Index rows = 0, cols = 0;
   };
   std::vector<Slot> slots_;
+  Threads* threads_;
 };
 
 }  // namespace physinv

@@ -84,7 +84,9 @@ class Runner {
                   root_,
                   stage.needs(),
                   threads_);
-    Probe probe(oracle, case_.stage_iterations[at]);
+    // Paths are looked at where there are few unknowns.
+    const Index tracked = oracle.shape().unknowns <= 16 ? 4 : 1;
+    Probe probe(oracle, case_.stage_iterations[at], tracked);
     std::uint64_t trajectory = hash_text("trajectory");
     listen(probe, trajectory);
     StageRun run{.oracle = oracle,
@@ -130,7 +132,10 @@ class Runner {
     r.counts = oracle.counts();
     r.loss.resize(oracle.count());
     oracle.measure(out.x, r.loss);
-    r.x = out.x;
+    const Index setting = case_.experiment->setting.recorded;
+    const Index recorded =
+        setting > 0 ? std::min(setting, oracle.count()) : oracle.count();
+    r.x = out.x.leftCols(recorded);
     r.status = out.status;
     r.example_iterations = out.iterations;
     r.example_evaluations = out.evaluations;
@@ -141,6 +146,7 @@ class Runner {
     r.iterations = probe.iteration();
     r.clocks = probe.clocks();
     r.curve = probe.curve();
+    r.curve.loss.conservativeResize(recorded, Eigen::NoChange);
     r.buffer_bytes = out.bytes + oracle.bytes();
     r.rss_bytes = peak_rss();
     r.crowded = options_.crowded;

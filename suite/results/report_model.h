@@ -2,6 +2,7 @@
 /// judged claims. Case files fill it from `Results`; reports render it.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -84,6 +85,7 @@ struct Section {
   std::vector<Table> tables;
   std::vector<Figure> figures;
   std::vector<ClaimResult> claims;
+  std::map<std::string, std::string> method_titles;  ///< jpo -> JPO
 };
 
 }  // namespace physinv

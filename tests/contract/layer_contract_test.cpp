@@ -17,7 +17,10 @@ namespace {
 
 /// Parameters as printed, of predictor and surrogate.
 const std::map<std::string, std::array<Index, 2>> kParameters = {
-    {"jpo/billiards", {37506, 37506}}, {"jpo/robotic-arm", {33924, 33922}}};
+    {"jpo/billiards", {37506, 37506}},
+    {"jpo/kuramoto-sivashinsky", {59650, 13121}},
+    {"jpo/robotic-arm", {33924, 33922}},
+    {"jpo/wave-packet", {13921, 13073}}};
 
 struct Role {
   ExperimentPtr experiment;

@@ -3,6 +3,7 @@
 #include "tests/support/jpo_reference.h"
 
 #include "problems/billiards/billiards.h"
+#include "suite/nn/mlp.h"
 
 namespace physinv::test {
 namespace {
@@ -18,7 +19,7 @@ void run_entries(Precision precision) {
     expect_jpo<Billiards>(
         entry,
         {.inputs = {Field::given, Field::observations},
-         .network = {.hidden = {128, 128, 128}, .frequencies = 4},
+         .network = nn::mlp({.hidden = {128, 128, 128}, .frequencies = 4}),
          .parameters = 37506,
          .rate = 1e-4,
          .last_matrix = 0.05},

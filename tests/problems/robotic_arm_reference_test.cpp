@@ -6,72 +6,15 @@
 #include <functional>
 #include <map>
 
-#include "baselines/boundary_loss.h"
-#include "optimizers/gradient_descent.h"
 #include "problems/robotic_arm/robotic_arm.h"
-#include "tests/optimizers/functions.h"
+#include "suite/nn/mlp.h"
+#include "tests/support/jpo_entries.h"
 #include "tests/support/jpo_reference.h"
-#include "tests/support/run_reference.h"
 
 namespace physinv::test {
 namespace {
 
 const std::string kId = "jpo-robotic-arm";
-
-/// The losses of arms that should reach targets.col(i), for the solvers.
-struct Reaching {
-  Batch<double> targets;
-
-  void operator()(std::span<const Index> active,
-                  BatchIn<double> x,
-                  VectorOut<double> loss,
-                  BatchOut<double> gradient) const {
-    const RoboticArm<double> arm;
-    const Index n = x.cols();
-    Batch<double> y(2, n), target(2, n), y_bar(2, n);
-    for (Index k = 0; k < n; ++k)
-      target.col(k) = targets.col(active[static_cast<std::size_t>(k)]);
-    Tape tape;
-    Workspace work;
-    arm.linearize(x, Batch<double>(0, n), y, tape);
-    arm.loss(y, target, loss);
-    arm.loss_gradient(y, target, y_bar);
-    arm.pullback(tape, y_bar, gradient, work);
-  }
-};
-
-void check_clip(const Json& entry) {
-  Batch<double> g = columns(entry.at("input"));
-  const auto near = EntryTolerance(entry).array();
-  EXPECT_TRUE(near(g.colwise().norm().transpose(), vector(entry.at("norms"))));
-  const double tau = ClipPercentile(0.9).operator()<double>(g);
-  EXPECT_TRUE(near(tau, number(entry.at("threshold"))));
-  EXPECT_TRUE(near(g, columns(entry.at("output"))));
-}
-
-void check_boundary(const Json& entry) {
-  const auto near = EntryTolerance(entry).array();
-  const Batch<double> x = columns(entry.at("xi"));
-  const BoundaryLoss wall(vector(entry.at("lo")), vector(entry.at("hi")));
-  Vector<double> loss = Vector<double>::Zero(x.cols());
-  Batch<double> g = Batch<double>::Zero(x.rows(), x.cols());
-  wall.add(x, 1, loss, g);
-  EXPECT_TRUE(near(loss, vector(entry.at("value"))));
-  EXPECT_TRUE(near(g, columns(entry.at("gradient"))));
-}
-
-void check_test_functions(const Json& entry) {
-  for (const Json& stored : entry.at("runs")) {
-    const auto name = stored.at("function").get<std::string>();
-    SCOPED_TRACE(name + " from " + stored.at("x0").dump());
-    const auto run = record_bfgs(
-        ClosedForm{name}, vector(stored.at("x0")), stored.at("gtol"));
-    expect_run(entry, stored, run, 8);
-    if (name != "rosenbrock") {
-      EXPECT_EQ(run.iterations, stored.at("iterations").get<Index>());
-    }
-  }
-}
 
 /// One forward and one gradient evaluation; sines and cosines of the angles
 /// as T rounds them.
@@ -114,37 +57,16 @@ void check_forward(const Json& entry) {
 void check_bfgs(const Json& entry) {
   for (const Json& stored : entry.at("runs")) {
     SCOPED_TRACE(stored.at("target").dump());
-    const auto run = record_bfgs(Reaching{vector(stored.at("target"))},
-                                 vector(stored.at("x0")),
-                                 stored.at("gtol"));
+    const auto run =
+        record_bfgs(Matching<RoboticArm>{vector(stored.at("target"))},
+                    vector(stored.at("x0")),
+                    stored.at("gtol"));
     expect_run(entry, stored, run, 1);
   }
 }
 
-void check_descent(const Json& entry) {
-  const auto near = EntryTolerance(entry).array();
-  const Json& xs = entry.at("x_after_iteration");
-  const Json& losses = entry.at("loss_after_iteration");
-  std::vector<Batch<double>> x;
-  std::vector<Vector<double>> loss;
-  GradientDescent gd(
-      {.step_tolerance = 1e-10, .maxiter = static_cast<Index>(xs.size()) - 1});
-  drive(gd,
-        Reaching{columns(entry.at("targets"))},
-        columns(xs.at(0)),
-        [&](const GradientDescent& g) {
-          if (g.accepted().empty()) return;
-          x.push_back(g.x());
-          loss.push_back(g.loss());
-        });
-  ASSERT_EQ(x.size(), xs.size());
-  for (std::size_t k = 0; k < xs.size(); ++k) {
-    EXPECT_TRUE(near(x[k], columns(xs[k]))) << "iteration " << k;
-    EXPECT_TRUE(near(loss[k], vector(losses[k]))) << "iteration " << k;
-  }
-  const Vector<double> evaluations = vector(entry.at("evaluations"));
-  for (Index i = 0; i < evaluations.size(); ++i)
-    EXPECT_EQ(gd.evaluations()[static_cast<std::size_t>(i)], evaluations(i));
+void check_arm_descent(const Json& entry) {
+  check_descent<RoboticArm>(entry, columns(entry.at("targets")), 1e-10);
 }
 
 void check_jpo(const Json& entry) {
@@ -154,7 +76,7 @@ void check_jpo(const Json& entry) {
     SCOPED_TRACE(to_string(precision));
     expect_jpo<RoboticArm>(entry,
                            {.inputs = {Field::observations},
-                            .network = {.hidden = {128, 128, 128}},
+                            .network = nn::mlp({.hidden = {128, 128, 128}}),
                             .parameters = 33924,
                             .rate = 1e-3},
                            s,
@@ -169,7 +91,7 @@ TEST(RoboticArmReference, EveryEntry) {
       {"bfgs_test_functions", check_test_functions},
       {"forward", check_forward},
       {"bfgs", check_bfgs},
-      {"gd_adaptive", check_descent},
+      {"gd_adaptive", check_arm_descent},
       {"jpo_mlp", check_jpo}};
   const Json file = load_reference(kId);
   ASSERT_FALSE(file.at("entries").empty());

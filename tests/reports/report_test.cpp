@@ -56,14 +56,15 @@ class ReportTest : public testing::Test {
 
 TEST_F(ReportTest, WritesEveryFormat) {
   const auto files = write_report(dir_, sample(), {{"revision", "abc"}});
-  EXPECT_EQ(files.size(), 7U);
+  EXPECT_EQ(files.size(), 8U);
   for (const char* name : {"jpo-toy/tables/table1.json",
                            "jpo-toy/tables/table1.csv",
                            "jpo-toy/tables/table1.md",
                            "jpo-toy/figures/fig1.json",
                            "jpo-toy/figures/fig1.svg",
                            "claims.json",
-                           "report.md"}) {
+                           "report.md",
+                           "index.html"}) {
     EXPECT_TRUE(fs::exists(dir_ / name)) << name;
   }
   std::size_t found = 0;

@@ -1,5 +1,5 @@
-/// Entries `jpo_mlp` of the reference files through the stage itself: a network
-/// and a problem that write down what passes through them.
+/// Entries `jpo_mlp` and `jpo_g2s` of the reference files through the stage
+/// itself: a network and a problem that write down what passes through them.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -11,7 +11,6 @@
 
 #include "optimizers/jpo.h"
 #include "optimizers/steps/clip_percentile.h"
-#include "suite/nn/mlp.h"
 #include "tests/support/quadratic.h"
 #include "tests/support/reference.h"
 
@@ -38,21 +37,18 @@ class Noting final : public Network<T> {
   const std::vector<TensorInfo>& tensors() const override {
     return net_->tensors();
   }
-  void initialize(const Rng&,
+  void initialize(const Rng& rng,
                   VectorOut<T> parameters,
-                  VectorOut<T>) const override {
+                  VectorOut<T> state) const override {
+    net_->initialize(rng, parameters, state);
     const auto& all = tensors();
     for (std::size_t t = 0; t < all.size(); ++t) {
       const double last = t + 2 == all.size() ? last_ : 1.0;
       const double ft = static_cast<double>(t);
       for (Index k = 0; k < all[t].size; ++k) {
         const double fk = static_cast<double>(k);
-        const double value =
-            all[t].kind == 'b'
-                ? 0.05 * std::cos(0.9 * fk + 0.4 * ft + shift_)
-                : last * std::sqrt(3.0 / static_cast<double>(all[t].fan_in)) *
-                      std::sin(0.7 * fk + 1.3 * ft + 0.5 + shift_);
-        parameters(all[t].offset + k) = static_cast<T>(value);
+        parameters(all[t].offset + k) =
+            static_cast<T>(formula(all[t], ft, fk, last));
       }
     }
   }
@@ -82,6 +78,20 @@ class Noting final : public Network<T> {
   double operations() const override { return net_->operations(); }
 
  private:
+  double formula(const TensorInfo& t, double ft, double k, double last) const {
+    switch (t.kind) {
+      case 'b':
+        return 0.05 * std::cos(0.9 * k + 0.4 * ft + shift_);
+      case 's':
+        return 1 + 0.1 * std::sin(0.6 * k + ft + shift_);
+      case 'o':
+        return 0.05 * std::cos(0.8 * k + ft + shift_);
+      default:
+        return last * std::sqrt(3.0 / static_cast<double>(t.fan_in)) *
+               std::sin(0.7 * k + 1.3 * ft + 0.5 + shift_);
+    }
+  }
+
   std::unique_ptr<Network<T>> net_;
   double shift_, last_;
 };
@@ -127,11 +137,46 @@ class Fixed final : public Problem<T>, public Vjp<T> {
 /// What the file says about the network and its training.
 struct JpoEntry {
   std::vector<Field> inputs;
-  nn::MlpOptions network;
+  NetworkRecipe network;
   Index parameters;
   double rate;
   double last_matrix = 1;  ///< factor of its formula weights
 };
+
+/// d/d(weights) of sum(out * out_bar) at the formula weights, in double.
+inline Vector<double> exact_weight_gradient(
+    std::unique_ptr<Network<double>> net,
+    double shift,
+    double last,
+    const Batch<double>& in,
+    const Batch<double>& out_bar) {
+  Vector<double> weights(net->parameter_count()), state(net->state_count());
+  Vector<double> bar(net->parameter_count());
+  Batch<double> out(net->outputs(), in.cols());
+  const Network<double>& plain = *net;
+  const Noting<double> noting(std::move(net), shift, last);
+  noting.initialize(Rng::root("unused", 0), weights, state);
+  Tape tape;
+  Workspace work;
+  plain.forward(weights, state, in, out, tape, work, {.training = true});
+  VectorOut<double> to = bar;
+  plain.backward(weights, tape, out_bar, &to, nullptr, work);
+  return bar;
+}
+
+/// d loss / d xi of every problem, in double.
+template <template <class> class P>
+Batch<double> exact_gradient(const Batch<double>& xi,
+                             const Samples<double>& samples) {
+  const P<double> problem;
+  Batch<double> y(samples.y.rows(), xi.cols()), y_bar = y, x_bar = xi;
+  Tape tape;
+  Workspace work;
+  problem.linearize(xi, samples.given, y, tape);
+  problem.loss_gradient(y, samples.y, y_bar);
+  problem.pullback(tape, y_bar, x_bar, work);
+  return x_bar;
+}
 
 /// The stage on problems P with these observations, against every step of the
 /// entry; in float, against the first.
@@ -151,18 +196,18 @@ void expect_jpo(const Json& entry,
       .make_double =
           [=] { return std::make_unique<Fixed<P, double>>(samples); }};
   const double last = about.last_matrix;
-  const auto mlp = nn::mlp(about.network);
-  const NetworkRecipe net{.description = "noting",
-                          .make_float =
-                              [=](Index in, Index out) {
-                                return std::make_unique<Noting<float>>(
-                                    mlp.make<float>(in, out), shift, last);
-                              },
-                          .make_double =
-                              [=](Index in, Index out) {
-                                return std::make_unique<Noting<double>>(
-                                    mlp.make<double>(in, out), shift, last);
-                              }};
+  const NetworkRecipe net{
+      .description = "noting",
+      .make_float =
+          [=](Index in, Index out) {
+            return std::make_unique<Noting<float>>(
+                about.network.make<float>(in, out), shift, last);
+          },
+      .make_double =
+          [=](Index in, Index out) {
+            return std::make_unique<Noting<double>>(
+                about.network.make<double>(in, out), shift, last);
+          }};
   const auto jpo = jpo_fit({.step = AdamOptions{.rate = about.rate}});
   const Json& steps = entry.at("steps");
   const auto count = static_cast<Index>(steps.size());
@@ -174,14 +219,15 @@ void expect_jpo(const Json& entry,
                    {.predictor = {about.inputs, net}, .surrogate = {}});
   const Shape shape = P<double>().shape();
   const Index in = input_rows(about.inputs, shape), out = shape.unknowns;
-  ASSERT_EQ(mlp.make<double>(in, out)->parameter_count(), about.parameters);
+  const auto plain = about.network.make<double>(in, out);
+  ASSERT_EQ(plain->parameter_count(), about.parameters);
   bench.run(nullptr, precision);
   const Batch<double> losses = bench.traced<double>(samples.count());
 
   const bool single = precision == Precision::f32;
   const Comparator same =
       single ? Comparator(1e-4, 0) : EntryTolerance(entry).array();
-  const auto tensors = mlp.make<double>(in, out)->tensors();
+  const auto& tensors = plain->tensors();
   for (Index k = 0; k < (single ? 1 : count); ++k) {
     const auto at = static_cast<std::size_t>(k);
     const Json& step = steps.at(at);
@@ -194,28 +240,68 @@ void expect_jpo(const Json& entry,
       continue;
     }
     const Batch<double>& g = seen.gradients.at(at + 1);
-    EXPECT_TRUE(same(g, columns(step.at("grad_xi"))));
+    const Batch<double> stored_g = columns(step.at("grad_xi"));
+    // A rounded xi has another gradient, more so the more the loss is curved:
+    // in float it is compared where it was computed, and what follows from it
+    // may differ by as much.
+    double moved = 0;
+    if (single) {
+      EXPECT_TRUE(same(g, exact_gradient<P>(seen.xi.at(at + 1), samples)));
+      moved =
+          (g - stored_g).cwiseAbs().maxCoeff() / stored_g.cwiseAbs().maxCoeff();
+      EXPECT_LT(moved, 5e-3);
+    } else {
+      EXPECT_TRUE(same(g, stored_g));
+    }
+    const Comparator follows(same.rtol() + moved, same.atol());
     EXPECT_TRUE(
-        same(g.colwise().norm().transpose(), vector(step.at("grad_norm"))));
+        follows(g.colwise().norm().transpose(), vector(step.at("grad_norm"))));
     Batch<double> again = g;
-    EXPECT_TRUE(same(ClipPercentile(0.9).operator()<double>(again),
-                     step.at("clip_threshold").get<double>()));
+    EXPECT_TRUE(follows(ClipPercentile(0.9).operator()<double>(again),
+                        step.at("clip_threshold").get<double>()));
     EXPECT_TRUE(
-        same(seen.clipped.at(at + 1), columns(step.at("grad_clipped"))));
+        follows(seen.clipped.at(at + 1), columns(step.at("grad_clipped"))));
 
     const Vector<double>& w = seen.weights.at(at + 1);
+    Vector<double> exact;  // of what the rounded network passed back
+    if (single) {
+      exact = exact_weight_gradient(
+          about.network.make<double>(in, out),
+          shift,
+          last,
+          assemble<double>(
+              about.inputs, bench.oracle.start(), samples.given, samples.y),
+          seen.clipped.at(at + 1));
+    }
     const Json& first = step.at("weight_grad_first_entries");
+    const Vector<double> stored_norms =
+        vector(step.at("weight_grad_norm_per_tensor"));
+    const double largest = stored_norms.maxCoeff();
     Vector<double> norms(static_cast<Index>(tensors.size()));
+    ASSERT_EQ(norms.size(), stored_norms.size());
     for (std::size_t t = 0; t < tensors.size(); ++t) {
       const auto part = w.segment(tensors[t].offset, tensors[t].size);
       norms(static_cast<Index>(t)) = part.norm();
+      if (stored_norms(static_cast<Index>(t)) <= 1e-8 * largest) {
+        // Exactly zero, as of a bias in front of a normalisation; what is
+        // stored is rounding noise.
+        EXPECT_LE(part.norm(), (single ? 1e-6 : 1e-8) * largest)
+            << tensors[t].name;
+        continue;
+      }
+      if (single) {
+        EXPECT_TRUE(
+            same(part, exact.segment(tensors[t].offset, tensors[t].size)))
+            << tensors[t].name;
+        continue;
+      }
       const Vector<double> stored = vector(first.at(t));
       // Relative to the whole tensor, of which these are the first entries.
       EXPECT_TRUE(Comparator(0, same.rtol() * part.cwiseAbs().maxCoeff())(
           part.head(stored.size()), stored))
           << tensors[t].name;
     }
-    EXPECT_TRUE(same(norms, vector(step.at("weight_grad_norm_per_tensor"))));
+    EXPECT_TRUE(follows(norms, stored_norms));
   }
 }
 

@@ -99,7 +99,7 @@ def good_input(d):
     p = expect(0, ["--profile=smoke", "--dry-run"], d, "0 stages to run")
     expect(0, ["run", "--profile=smoke"], d, "0 stages run, 6 reused")
     expect(0, ["verify", "results/smoke"], d, "0 mismatches")
-    expect(0, ["report", "results/smoke", "--check"], d, "report.md")
+    expect(0, ["report", "results/smoke", "--check"], d, "index.html")
     expect(7, ["report", "results/smoke", "--check"], d, "R1",
            env={"PHYSINV_FAKE_DOUBT": "1"})
     expect(0, ["report", "results/smoke"], d,

@@ -137,6 +137,32 @@ TEST_F(JpoMetricsTest, SolvedShares) {
   EXPECT_EQ(*metrics_.pooled_solved_share("jpo", all_, false, 1e-2), 0.25);
 }
 
+TEST(SolvedTest, MayAskForTheTruthInsteadOfTheLoss) {
+  CaseRecord c =
+      case_of("bfgs", 3, 0, {"solve"}, {stage_of("solve", {1, 1, 1})});
+  StageRecord& s = c.stages.front();
+  s.x = c.data.x;
+  s.x(1, 1) += 0.9e-3;
+  s.x(0, 2) -= 1.1e-3;
+  const Solved near = within_of_truth(1e-3);
+  EXPECT_TRUE(near(c.data, s, 0));
+  EXPECT_TRUE(near(c.data, s, 1));
+  EXPECT_FALSE(near(c.data, s, 2));
+  s.x(0, 0) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(near(c.data, s, 0));
+  EXPECT_EQ(near.count(c.data, s), 1);
+  EXPECT_EQ(Solved(1e-6).count(c.data, s), 0);
+  EXPECT_EQ(Solved(2).count(c.data, s), 3);
+  EXPECT_EQ(Solved(1e-6).says(), "loss < 1e-06");
+
+  const Results results({c});
+  const JpoMetrics metrics(results, "toy");
+  EXPECT_DOUBLE_EQ(*metrics.solved_share("bfgs", 3, 0, false, near), 1.0 / 3);
+  const std::vector<Index> sizes{3};
+  EXPECT_DOUBLE_EQ(*metrics.pooled_solved_share("bfgs", sizes, false, near),
+                   1.0 / 3);
+}
+
 TEST_F(JpoMetricsTest, PlateauIsPooledOverSeeds) {
   const auto found = metrics_.plateau(4, 1e-6, [](const CaseRecord& c) {
     return Vector<double>::Constant(c.info.n, 0.5);

@@ -1,0 +1,34 @@
+/// Stages that look instead of solving: what they find are arrays of the
+/// record; their estimate is the start.
+#pragma once
+
+#include "suite/core/method.h"
+
+namespace physinv {
+
+class Diagnostic : public Stage {
+ public:
+  Needs needs() const override { return Needs::forward; }
+  /// `algorithm=diagnostic` first, then what the kind adds.
+  Options options() const final;
+  Index default_iterations() const override { return 1; }
+  bool takes_row_iterations() const override { return false; }
+  Outcome run(StageRun& run) const final;
+
+ protected:
+  virtual std::string kind() const = 0;
+  virtual void describe(Options& options) const = 0;
+  /// Fills `out.arrays`, every number finite, and starts the solving clock.
+  virtual void diagnose(StageRun& run, Outcome& out) const = 0;
+};
+
+/// Hash of a problem's name and options, for the options of a stage.
+std::string fingerprint(const std::vector<ProblemRecipe>& problems);
+
+/// |a - b| / |b| in the norm of all entries; not finite if one of them is not.
+double relative_distance(VectorIn<double> a, VectorIn<double> b);
+
+/// What is not finite has no number: -1 in arrays of what is never negative.
+double number_or_none(double value);
+
+}  // namespace physinv

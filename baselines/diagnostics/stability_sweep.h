@@ -1,0 +1,76 @@
+/// How far a problem can be trusted: at each of many points, does the forward
+/// pass stay finite in double and in float, and is the adjoint its derivative?
+///
+/// With w and v fixed unit vectors, every point gets five checks:
+///   forward f64      is y finite?
+///   forward f32      |y_32 - y_64| <= 1e-3 |y_64|
+///   adjoint          (J^T w) . v against central differences of w . F(x + hv)
+///   tangent          the same against w . (J v), if there is a Jacobian
+///   adjoint f32      |J^T w in float - in double| <= 1e-2 |J^T w|
+/// Differences take h = 0.1 / 4^k, extrapolated (Richardson) from neighbouring
+/// steps; the value that differs least from both neighbours counts, the
+/// difference is its uncertainty. Discrepancies are relative to
+/// |J^T w|. Nothing is ever NaN: what has no number has a status.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "suite/core/method.h"
+
+namespace physinv {
+
+enum class SweepStatus : std::uint8_t {
+  ok,
+  inaccurate,  ///< finite, but beyond the tolerance
+  diverged,    ///< not finite
+  undecided,   ///< nothing to compare with: no Jacobian, or no step works
+};
+
+enum class SweepCheck : std::uint8_t {
+  forward_double,
+  forward_single,
+  adjoint,
+  tangent,
+  adjoint_single,
+};
+
+inline constexpr Index kSweepChecks = 5;
+inline constexpr std::array<std::string_view, kSweepChecks> kSweepCheckNames = {
+    "forward f64",
+    "forward f32",
+    "adjoint, differences",
+    "adjoint, tangent",
+    "adjoint f32"};
+inline constexpr std::array<std::string_view, 4> kSweepStatusNames = {
+    "ok", "inaccurate", "diverged", "undecided"};
+
+struct SweepPoint {
+  Index problem = 0;  ///< in the list of problems
+  Vector<double> x;
+};
+
+struct StabilitySweepOptions {
+  std::string name = "stability";  ///< of the stage
+  std::vector<ProblemRecipe> problems;
+  std::vector<SweepPoint> points;  ///< those of one problem side by side
+  /// Gradients smaller than this count as that large: rounding, underflow and
+  /// cut-off tails have no relative accuracy.
+  double zero = 1e-30;
+  Index examples = 1;  ///< side inputs drawn per point, if the problem has any
+};
+
+/// Arrays, one column per point, in their order, examples side by side:
+/// `point` (x), `status` and `error` (kSweepChecks rows; -1: no number).
+std::shared_ptr<const Stage> stability_sweep(StabilitySweepOptions options);
+
+/// A derivative from central differences d(k) with steps h0 / 4^k.
+struct Extrapolated {
+  double value = 0, uncertainty = 0;
+  bool found = false;  ///< false without four neighbouring finite differences
+};
+Extrapolated extrapolate(VectorIn<double> differences);
+
+}  // namespace physinv

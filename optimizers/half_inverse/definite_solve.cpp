@@ -1,0 +1,90 @@
+#include "optimizers/half_inverse/definite_solve.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "optimizers/half_inverse/spectral_power.h"
+
+namespace physinv::hig {
+namespace {
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+constexpr int kRounds = 30;
+
+/// Upper bound of the largest eigenvalue: the Frobenius norm.
+double norm_bound(BatchIn<double> gram) {
+  double total = 0;
+  for (Index j = 0; j < gram.cols(); ++j) {
+    const Index below = gram.rows() - j - 1;
+    total +=
+        gram(j, j) * gram(j, j) + 2 * gram.col(j).tail(below).squaredNorm();
+  }
+  return std::sqrt(total) * (1 + 1e-12);
+}
+
+}  // namespace
+
+bool DefiniteSolve::operator()(BatchIn<double> gram,
+                               VectorIn<double> g,
+                               const Power& power,
+                               double tolerance,
+                               VectorOut<double> v,
+                               PowerReport& report,
+                               double gram_noise) {
+  const Index m = g.size();
+  if (power.kappa != -1 || power.beta != 0 || m == 0) return false;
+  double largest = 0;
+  if (!g.allFinite() || !finite_lower(gram, largest)) return false;
+  if (g.isZero(0) || !(largest > 1e-140 && largest < 1e140)) return false;
+
+  const double lambda_max = norm_bound(gram);
+  const double s_max = std::sqrt(lambda_max);
+  const double cut = power.absolute ? power.tau : power.tau * s_max;
+  // A factorisation that runs to its end is that of a definite matrix up to
+  // (m + 2) eps trace (Demmel; Higham, Accuracy and Stability, theorem 10.7).
+  const double noise = kEpsilon * gram_noise * lambda_max;
+  const double theta =
+      cut * cut + noise +
+      kEpsilon * static_cast<double>(m + 2) * gram.diagonal().sum();
+  factor_ = gram.triangularView<Eigen::Lower>();
+  factor_.diagonal().array() -= theta;
+  const Eigen::LLT<Eigen::Ref<Batch<double>>> cholesky(factor_);
+  if (cholesky.info() != Eigen::Success) return false;
+
+  const auto full = gram.selfadjointView<Eigen::Lower>();
+  v.setZero();
+  residual_ = g;
+  report = PowerReport{};
+  // |J^T G^{-1} r|^2 = r.G^{-1} r <= r.(G - theta I)^{-1} r, of the residual
+  // that is left, against |update|^2 = v.G v.
+  for (int round = 0;; ++round) {
+    step_ = cholesky.solve(residual_);
+    const double left = std::max(residual_.dot(step_), 0.0);
+    if (round > 0) report.error = std::sqrt(left) / report.norm;
+    if (report.error <= 1e-3 * tolerance && round > 0) break;
+    if (round == kRounds) return false;
+    v += step_;
+    residual_.noalias() = full * v;
+    const double square = v.dot(residual_);
+    residual_ = g - residual_;
+    if (!(square > 0)) return false;
+    report.norm = std::sqrt(square);
+  }
+  // G itself is known to `noise`: |delta update| <= noise |v| / (2 s_min).
+  const double s_min = std::sqrt(theta);
+  report.error +=
+      kEpsilon * gram_noise * lambda_max * v.norm() / (s_min * report.norm);
+  if (!(report.error <= tolerance)) return false;
+  report.s_max = s_max;
+  report.cut = cut;
+  report.kept = m;
+  report.smallest_kept = s_min;
+  report.margin =
+      cut > 0 ? s_min / cut - 1 : std::numeric_limits<double>::infinity();
+  report.norm_bound = g.norm() / s_min;
+  return true;
+}
+
+}  // namespace physinv::hig

@@ -1,0 +1,33 @@
+/// Gauss-Newton while the cut removes nothing: v = G^{-1} g by one Cholesky
+/// factorisation (m^3 / 3 flops), behind a proof.
+///
+/// G - theta I is factored, with theta above the squared cut plus everything
+/// rounding may have done. If that succeeds, every singular value exceeds the
+/// cut. The shifted factor then solves G v = g by refinement, which gains a
+/// factor theta / (lambda_min - theta) a round.
+#pragma once
+
+#include "optimizers/half_inverse/power.h"
+
+namespace physinv::hig {
+
+class DefiniteSolve {
+ public:
+  /// False, with v undefined, where kappa is not -1, beta is not 0, the proof
+  /// fails, or the refinement does not come below `tolerance`: use another
+  /// path. In the report s_max is an upper and smallest_kept a lower bound;
+  /// `error` bounds the relative error of the update for this G.
+  bool operator()(BatchIn<double> gram,
+                  VectorIn<double> g,
+                  const Power& power,
+                  double tolerance,
+                  VectorOut<double> v,
+                  PowerReport& report,
+                  double gram_noise = 1);
+
+ private:
+  Batch<double> factor_;
+  Vector<double> residual_, step_;
+};
+
+}  // namespace physinv::hig

@@ -1,0 +1,139 @@
+#include "optimizers/half_inverse/explicit_power.h"
+
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "suite/core/check.h"
+
+namespace physinv::hig {
+namespace {
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+/// Up to here Jacobi is as fast as bidiagonalisation, and more accurate.
+constexpr Index kJacobi = 64;
+constexpr int kSweeps = 60;
+
+}  // namespace
+
+bool orthogonalize_columns(BatchOut<double> x, VectorOut<double> h) {
+  const Index n = x.cols();
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    bool turned = false;
+    for (Index p = 0; p + 1 < n; ++p) {
+      // The longest of the remaining columns comes first.
+      Index longest = p;
+      double most = x.col(p).squaredNorm();
+      for (Index q = p + 1; q < n; ++q) {
+        const double square = x.col(q).squaredNorm();
+        if (square > most) most = square, longest = q;
+      }
+      if (longest != p) {
+        x.col(p).swap(x.col(longest));
+        std::swap(h(p), h(longest));
+      }
+      for (Index q = p + 1; q < n; ++q) {
+        const double a = x.col(p).squaredNorm(), b = x.col(q).squaredNorm();
+        const double along = x.col(p).dot(x.col(q));
+        if (std::abs(along) <= kEpsilon * std::sqrt(a) * std::sqrt(b)) continue;
+        turned = true;
+        const double zeta = (b - a) / (2 * along);
+        const double t =
+            std::copysign(1.0, zeta) / (std::abs(zeta) + std::hypot(1.0, zeta));
+        const double c = 1 / std::sqrt(1 + t * t), s = c * t;
+        for (Index i = 0; i < x.rows(); ++i) {
+          const double left = x(i, p), right = x(i, q);
+          x(i, p) = c * left - s * right;
+          x(i, q) = s * left + c * right;
+        }
+        const double left = h(p), right = h(q);
+        h(p) = c * left - s * right;
+        h(q) = s * left + c * right;
+      }
+    }
+    if (!turned) return true;
+  }
+  return false;
+}
+
+Ending ExplicitPower::factor(BatchIn<double> jacobian, VectorIn<double> g) {
+  const Index m = jacobian.rows(), p = jacobian.cols(), n = std::min(m, p);
+  SUITE_CHECK(n > 0 && g.size() == m, "g has a number for each row of J");
+  spectrum_.lambda.setZero(n), spectrum_.c.setZero(n);
+  spectrum_.scale = 1;
+  if (!g.allFinite() || !jacobian.allFinite())
+    return ending_ = Ending::nonfinite;
+  const double largest = jacobian.cwiseAbs().maxCoeff();
+  if (largest == 0 || g.isZero(0)) return ending_ = Ending::zero;
+  int exponent;
+  std::frexp(largest, &exponent);
+  spectrum_.scale = std::ldexp(1.0, exponent);
+  const double unscale = std::ldexp(1.0, -exponent);
+
+  // Tall: J P = Q R, h = Q^T g. Wide: J^T P = Q R, h = P^T g.
+  const bool tall = m >= p;
+  using Pivoted = Eigen::ColPivHouseholderQR<Batch<double>>;
+  Pivoted qr(tall ? m : p, n);
+  if (tall) {
+    qr.compute(jacobian * unscale);
+  } else {
+    qr.compute(jacobian.transpose() * unscale);
+  }
+  const Batch<double> r =
+      qr.matrixR().topRows(n).template triangularView<Eigen::Upper>();
+  Vector<double> h = g;
+  if (tall) {
+    h.applyOnTheLeft(qr.householderQ().adjoint());
+    h.conservativeResize(n);
+  } else {
+    h = qr.colsPermutation().transpose() * h;
+  }
+  // Tall: R^T = V diag(s) U^T, c = U^T h. Wide: J = P R^T Q^T, so that with
+  // R = V diag(s) U^T the same c, and the update is Q V.
+  Batch<double> x = tall ? Batch<double>(r.transpose()) : r;
+  if (n <= kJacobi) {
+    if (!orthogonalize_columns(x, h)) return ending_ = Ending::stalled;
+    spectrum_.c = h;
+    for (Index i = 0; i < n; ++i) {
+      const double s = x.col(i).stableNorm();
+      spectrum_.lambda(i) = s * s;
+      if (s > 0) x.col(i) /= s;
+    }
+  } else {
+    const Eigen::BDCSVD<Batch<double>> svd(
+        x, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    if (svd.info() != Eigen::Success) return ending_ = Ending::stalled;
+    spectrum_.lambda = svd.singularValues().array().square();
+    spectrum_.c = svd.matrixV().transpose() * h;
+    x = svd.matrixU();
+  }
+  if (tall) {
+    right_ = qr.colsPermutation() * x;
+  } else {
+    right_.setZero(p, n);
+    right_.topRows(n) = x;
+    right_.applyOnTheLeft(qr.householderQ());
+  }
+  // Entries of the error of J against s_max, as in SpectralPower.
+  spectrum_.noise = {.jacobian = entry_noise(n, 0),
+                     .tail_begin = 0,
+                     .norm_factor = norm_factor(n)};
+  return ending_ = Ending::ok;
+}
+
+PowerReport ExplicitPower::apply(const Power& power,
+                                 VectorOut<double> update) const {
+  update.setZero();
+  PowerReport report;
+  report.ending = ending_;
+  if (ending_ != Ending::ok) return report;
+  Vector<double> w(spectrum_.c.size());
+  report = power_weights(spectrum_, power, w);
+  for (Index i = 0; i < w.size(); ++i) w(i) *= spectrum_.s(i);
+  update.noalias() = right_ * w;
+  return report;
+}
+
+}  // namespace physinv::hig

@@ -1,0 +1,101 @@
+#include "optimizers/half_inverse/half_inverse.h"
+
+#include "suite/core/check.h"
+
+namespace physinv::hig {
+
+/// Takes reports_[i] of `path` as the answer, or counts why not.
+bool HalfInverse::settled(std::size_t i, Path path, bool last) {
+  HalfInverseReport& report = reports_[i];
+  report.path = path;
+  const bool ended =
+      report.ending == Ending::zero || report.ending == Ending::nonfinite;
+  report.proven =
+      report.ending == Ending::zero ||
+      (report.ending == Ending::ok && report.error <= options_.tolerance);
+  if (!report.proven && !ended && !last) {
+    ++counts_.abandoned[static_cast<std::size_t>(path)];
+    return false;
+  }
+  ++counts_.taken[static_cast<std::size_t>(path)];
+  if (!report.proven) ++counts_.unproven;
+  done_[i] = true;
+  return true;
+}
+
+std::span<const HalfInverseReport> HalfInverse::operator()(
+    BatchIn<double> gram,
+    VectorIn<double> g,
+    const Pullback& pullback,
+    std::span<const Power> powers,
+    BatchOut<double> updates) {
+  const Index m = g.size(), p = updates.rows();
+  SUITE_CHECK(updates.cols() == static_cast<Index>(powers.size()),
+              "an update for each power");
+  reports_.assign(powers.size(), {});
+  done_.assign(powers.size(), false);
+  v_.resize(m, 1);
+  const bool jacobian_fits = m * p <= options_.largest_jacobian;
+
+  // The settings of one path that are still open: f(setting) -> report, with
+  // the update in place if it is to be taken.
+  const auto attempt = [&](Path path, bool last, auto&& apply) {
+    bool all = true;
+    for (std::size_t i = 0; i < powers.size(); ++i) {
+      if (done_[i]) continue;
+      auto update = updates.col(static_cast<Index>(i));
+      static_cast<PowerReport&>(reports_[i]) = apply(powers[i], update);
+      if (!settled(i, path, last)) {
+        all = false;
+      } else if (reports_[i].ending == Ending::zero) {
+        update.setZero();
+      } else if (reports_[i].ending != Ending::ok) {
+        update.setConstant(std::numeric_limits<double>::quiet_NaN());
+      } else if (path != Path::explicit_jacobian) {
+        pullback(v_, updates.middleCols(static_cast<Index>(i), 1));
+      }
+    }
+    return all;
+  };
+
+  if (options_.shortcut) {
+    for (std::size_t i = 0; i < powers.size(); ++i) {
+      if (powers[i].kappa != -1 || powers[i].beta != 0) continue;
+      if (!definite_(gram,
+                     g,
+                     powers[i],
+                     options_.tolerance,
+                     v_.col(0),
+                     reports_[i],
+                     options_.gram_noise)) {
+        ++counts_.abandoned[static_cast<std::size_t>(Path::shortcut)];
+        continue;
+      }
+      settled(i, Path::shortcut, true);
+      pullback(v_, updates.middleCols(static_cast<Index>(i), 1));
+    }
+  }
+  bool all = true;
+  for (const bool done : done_) all = all && done;
+  if (all) return reports_;
+
+  spectral_.factor(gram, g, options_.gram_noise);
+  if (attempt(Path::gram, false, [&](const Power& power, auto&) {
+        return spectral_.apply(power, v_.col(0));
+      }))
+    return reports_;
+  two_level_.factor(gram, g, p, pullback, options_.gram_noise);
+  if (attempt(Path::two_level, !jacobian_fits, [&](const Power& power, auto&) {
+        return two_level_.apply(power, v_.col(0));
+      }))
+    return reports_;
+  transposed_.resize(p, m);
+  pullback(Batch<double>::Identity(m, m), transposed_);
+  explicit_.factor(transposed_.transpose(), g);
+  attempt(Path::explicit_jacobian, true, [&](const Power& power, auto& update) {
+    return explicit_.apply(power, update);
+  });
+  return reports_;
+}
+
+}  // namespace physinv::hig

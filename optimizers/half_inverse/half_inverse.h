@@ -1,0 +1,80 @@
+/// An update by a power of the stacked Jacobian, by the cheapest path that
+/// shows itself accurate enough:
+///
+///   shortcut   Gauss-Newton, nothing cut: Cholesky (definite_solve.h)
+///   gram       one tridiagonalisation of J J^T (spectral_power.h)
+///   two_level  eigenvectors, small values through J^T U2 (two_level.h)
+///   explicit   J itself, QR and SVD (explicit_power.h)
+///
+/// A path whose error estimate exceeds the tolerance is left for the next
+/// one, and the fall is counted. All settings of one call share what is
+/// factored; each gets the bits that it would get alone.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "optimizers/half_inverse/definite_solve.h"
+#include "optimizers/half_inverse/explicit_power.h"
+#include "optimizers/half_inverse/spectral_power.h"
+#include "optimizers/half_inverse/two_level.h"
+
+namespace physinv::hig {
+
+enum class Path { shortcut, gram, two_level, explicit_jacobian };
+
+struct HalfInverseOptions {
+  /// What the estimate of an update's relative error (2-norm) may be; the
+  /// error itself is 3 to 100 times smaller. 1e-6 is a strict mode.
+  double tolerance = 3e-4;
+  bool shortcut = true;
+  double gram_noise = 1;  ///< see SpectralPower::factor
+  /// Largest explicit Jacobian, in numbers; beyond it two levels are the end.
+  Index largest_jacobian = 64'000'000;
+};
+
+struct HalfInverseReport : PowerReport {
+  Path path = Path::gram;
+  bool proven = false;  ///< error <= tolerance
+};
+
+class HalfInverse {
+ public:
+  using Options = HalfInverseOptions;
+  explicit HalfInverse(const Options& options = {}, Threads* threads = nullptr)
+      : options_(options), spectral_(threads) {}
+
+  /// gram = J J^T (m x m, lower triangle), g (m); `pullback` is J^T. Column i
+  /// of `updates` (p x settings) becomes the update of powers[i]; an update
+  /// that did not end ok or zero is NaN.
+  std::span<const HalfInverseReport> operator()(BatchIn<double> gram,
+                                                VectorIn<double> g,
+                                                const Pullback& pullback,
+                                                std::span<const Power> powers,
+                                                BatchOut<double> updates);
+
+  /// Updates by their final path, and attempts that were given up.
+  struct Counts {
+    std::array<std::int64_t, 4> taken{}, abandoned{};
+    std::int64_t unproven = 0;
+  };
+  const Counts& counts() const { return counts_; }
+
+ private:
+  bool settled(std::size_t i, Path path, bool last);
+
+  Options options_;
+  SpectralPower spectral_;
+  TwoLevelPower two_level_;
+  ExplicitPower explicit_;
+  DefiniteSolve definite_;
+  Counts counts_;
+  std::vector<HalfInverseReport> reports_;
+  std::vector<bool> done_;
+  Batch<double> v_, transposed_;
+};
+
+}  // namespace physinv::hig

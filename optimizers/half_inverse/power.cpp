@@ -1,0 +1,177 @@
+#include "optimizers/half_inverse/power.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "suite/core/check.h"
+
+namespace physinv::hig {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+/// Standard deviations of a sum that one pair (i, j) may dominate.
+constexpr double kSafety = 4;
+
+/// Kept and dropped directions, in units of lambda_max = s_max = 1.
+struct Side {
+  Vector<double> lambda, s, f, c2;
+  std::vector<bool> tail;
+};
+
+/// |δ update|^2 to first order. A perturbation E of J J^T = diag(lambda) turns
+/// f(J J^T) g by F_ij E_ij c_j, F the divided differences of
+/// f = lambda^((kappa-1)/2) behind the cut, and the update by s_i times that:
+///
+///   sum_i s_i^2 sum_j F_ij^2 E_ij^2 c_j^2
+///
+/// for independent E_ij. Between kept values |F_ij| <= f(low) / high, as the
+/// exponent of f lies in [-1, 0]; across the cut F_ij = f(kept) / distance.
+double first_order(const Spectrum::Noise& noise,
+                   double kappa,
+                   double cut,
+                   const Side& kept,
+                   const Side& dropped) {
+  const auto entry2 = [&](const Side& a, Index i, const Side& b, Index j) {
+    const bool tails = a.tail[static_cast<std::size_t>(i)] &&
+                       b.tail[static_cast<std::size_t>(j)];
+    const double e =
+        tails ? noise.tail + noise.jacobian * (a.s(i) + b.s(j)) : noise.gram;
+    return e * e;
+  };
+  double total = 0;
+  const Index k = kept.s.size(), d = dropped.s.size();
+  for (Index j = 0; j < k; ++j) {
+    if (kappa < 1) {
+      for (Index i = 0; i < k; ++i) {
+        const double high = std::max(kept.lambda(i), kept.lambda(j));
+        const double f = std::max(kept.f(i), kept.f(j)) / high;
+        total += kept.lambda(i) * f * f * kept.c2(j) * entry2(kept, i, kept, j);
+      }
+    }
+    for (Index i = 0; i < d; ++i) {
+      const double e2 = entry2(kept, j, dropped, i);
+      const double distance = kept.lambda(j) - dropped.lambda(i);
+      const double f2 =
+          kept.f(j) * kept.f(j) * e2 / std::max(distance * distance, e2);
+      total += f2 * (dropped.s(i) * dropped.s(i) * kept.c2(j) +
+                     kept.lambda(j) * dropped.c2(i));
+    }
+  }
+  // A value that may lie on the other side takes its component with it.
+  const double f_cut = std::pow(cut, kappa - 1);
+  for (const Side* side : {&kept, &dropped})
+    for (Index i = 0; i < side->s.size(); ++i) {
+      const double reach = kSafety * std::sqrt(entry2(*side, i, *side, i));
+      if (std::abs(side->lambda(i) - cut * cut) > reach) continue;
+      const double f = side == &kept ? side->f(i) : f_cut;
+      total += cut * cut * f * f * side->c2(i);
+    }
+  return total;
+}
+
+}  // namespace
+
+double entry_noise(Index m, double matrix_noise) {
+  const double solver = 0.75 * std::pow(static_cast<double>(m), 0.25);
+  return kEpsilon * (matrix_noise + solver) / norm_factor(m);
+}
+
+double norm_factor(Index m) { return 2 * std::sqrt(static_cast<double>(m)); }
+
+double Spectrum::s(Index i) const {
+  return scale * std::sqrt(std::max(lambda(i), 0.0));
+}
+
+double Spectrum::s_max() const {
+  return lambda.size() == 0
+             ? 0
+             : scale * std::sqrt(std::max(lambda.maxCoeff(), 0.0));
+}
+
+PowerReport power_weights(const Spectrum& spectrum,
+                          const Power& power,
+                          VectorOut<double> weights) {
+  const Index n = spectrum.lambda.size();
+  SUITE_CHECK(std::abs(power.kappa) <= 1, "kappa lies in [-1, 1]");
+  SUITE_CHECK(power.tau >= 0, "tau is not negative");
+  PowerReport report;
+  report.s_max = spectrum.s_max();
+  report.cut = power.absolute ? power.tau : power.tau * report.s_max;
+  weights.setZero();
+  const double prefactor =
+      power.beta == 0 ? 1 : std::pow(report.s_max, power.beta);
+  double square = 0, v2 = 0, s_kappa_max = 0;
+  report.smallest_kept = kInfinity;
+  report.margin = kInfinity;
+  for (Index i = 0; i < n; ++i) {
+    const double s = spectrum.s(i);
+    if (report.cut > 0)
+      report.margin =
+          std::min(report.margin, std::abs(s - report.cut) / report.cut);
+    if (!(s > report.cut)) {
+      report.largest_dropped = std::max(report.largest_dropped, s);
+      continue;
+    }
+    ++report.kept;
+    report.smallest_kept = std::min(report.smallest_kept, s);
+    const double w = prefactor * std::pow(s, power.kappa - 1);
+    weights(i) = w * spectrum.c(i);
+    square += s * weights(i) * (s * weights(i));
+    v2 += weights(i) * weights(i);
+    s_kappa_max = std::max(s_kappa_max, w * s);
+  }
+  if (report.kept == 0) {
+    report.smallest_kept = 0;
+    report.ending = Ending::zero;
+    return report;
+  }
+  report.norm = std::sqrt(square);
+  report.norm_bound = s_kappa_max * spectrum.c.norm();
+  if (report.norm == 0) return report;
+
+  const double top = report.s_max / spectrum.scale, lambda_max = top * top;
+  const Spectrum::Noise& noise = spectrum.noise;
+  Side kept, dropped;
+  for (Side* side : {&kept, &dropped}) {
+    const Index size = side == &kept ? report.kept : n - report.kept;
+    side->lambda.resize(size), side->s.resize(size), side->f.resize(size);
+    side->c2.resize(size);
+    side->tail.reserve(static_cast<std::size_t>(size));
+  }
+  Index k = 0, d = 0;
+  for (Index i = 0; i < n; ++i) {
+    const bool tail = i >= noise.tail_begin;
+    const double lambda = spectrum.lambda(i) / lambda_max;
+    const double size =
+        noise.norm_factor *
+        (tail ? noise.tail +
+                    2 * noise.jacobian * std::sqrt(std::max(lambda, 0.0))
+              : noise.gram);
+    Side& side = spectrum.s(i) > report.cut ? kept : dropped;
+    Index& at = &side == &kept ? k : d;
+    // A value that noise could have made is not proven to exist.
+    if (&side == &kept && lambda <= 2 * size) {
+      report.error = kInfinity;
+      return report;
+    }
+    side.lambda(at) = lambda;
+    side.s(at) =
+        std::sqrt(&side == &kept ? lambda : std::max(lambda, 0.0) + size);
+    side.f(at) = std::pow(side.s(at), power.kappa - 1);
+    side.c2(at) = spectrum.c(i) * spectrum.c(i);
+    side.tail.push_back(tail);
+    ++at;
+  }
+  const double unit =
+      report.norm / (prefactor * std::pow(report.s_max, power.kappa));
+  const double leaked =
+      first_order(noise, power.kappa, report.cut / report.s_max, kept, dropped);
+  // v itself, and J^T v, carry rounding of size eps s_max |v|.
+  const double direct = kEpsilon * report.s_max * std::sqrt(v2) / report.norm;
+  report.error = kSafety * (std::sqrt(leaked) / unit + direct);
+  return report;
+}
+
+}  // namespace physinv::hig

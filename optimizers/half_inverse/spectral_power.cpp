@@ -1,0 +1,98 @@
+#include "optimizers/half_inverse/spectral_power.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "suite/core/check.h"
+
+namespace physinv::hig {
+
+bool finite_lower(BatchIn<double> a, double& largest) {
+  largest = 0;
+  double poison = 0;  // x * 0 is NaN unless x is finite
+  for (Index j = 0; j < a.cols(); ++j) {
+    const double* x = a.col(j).data();
+    double top = 0, zero = 0;
+    for (Index i = j; i < a.rows(); ++i) {
+      top = std::max(top, std::abs(x[i]));
+      zero += x[i] * 0;
+    }
+    largest = std::max(largest, top);
+    poison += zero;
+  }
+  return poison == 0;
+}
+
+Ending SpectralPower::factor(BatchIn<double> gram,
+                             VectorIn<double> g,
+                             double gram_noise,
+                             Stages stages) {
+  const Index m = g.size();
+  SUITE_CHECK(m > 0 && gram.rows() == m && gram.cols() == m, "G is m x m");
+  double largest = 0;
+  spectrum_.lambda.setZero(m), spectrum_.c.setZero(m);
+  spectrum_.scale = 1;
+  const double top = g.cwiseAbs().maxCoeff();
+  if (!g.allFinite() || !finite_lower(gram, largest))
+    return ending_ = Ending::nonfinite;
+  if (top == 0 || largest == 0) return ending_ = Ending::zero;
+
+  // By a power of 4, so that s is scaled without rounding.
+  int exponent;
+  std::frexp(largest, &exponent);
+  exponent = (exponent + (exponent > 0)) / 2;
+  spectrum_.scale = std::ldexp(1.0, exponent);
+  const double unscale = std::ldexp(1.0, -2 * exponent);
+
+  const Symmetric a = reduction_.matrix(m);
+  for (Index j = 0; j < m; ++j) {
+    const double* from = gram.col(j).data();
+    double* to = a.row(j);
+    for (Index i = j; i < m; ++i) to[i] = from[i] * unscale;
+  }
+  u_.setZero(a.stride), gu_.setZero(a.stride);
+  u_.head(m) = g / top;
+  const double norm = u_.head(m).norm();
+  const double alpha = -std::copysign(norm, u_(0));
+  u_(0) -= alpha;
+  u_.head(m) /= u_.head(m).norm();
+  // G - u z^T - z u^T with z = 2 G u - 2 (u.G u) u.
+  product_(a, 0, u_.data(), gu_.data(), threads_);
+  gu_.tail(a.stride - m).setZero();
+  const double along = u_.head(m).dot(gu_.head(m));
+  gu_ = 2 * (gu_ - along * u_);
+  for (Index j = 0; j < m; ++j) {
+    double* row = a.row(j);
+    const double uj = u_(j), zj = gu_(j);
+    for (Index i = j; i < m; ++i) row[i] -= uj * gu_(i) + zj * u_(i);
+  }
+  reduction_.reduce(stages);
+
+  spectrum_.lambda = reduction_.diagonal();
+  e_ = reduction_.off_diagonal();
+  spectrum_.c(0) = alpha * top;
+  spectrum_.noise = {.gram = entry_noise(m, gram_noise),
+                     .tail_begin = m,
+                     .norm_factor = norm_factor(m)};
+  return ending_ = qr_.run(spectrum_.lambda, e_, spectrum_.c) ? Ending::ok
+                                                              : Ending::stalled;
+}
+
+PowerReport SpectralPower::apply(const Power& power,
+                                 VectorOut<double> v) const {
+  v.setZero();
+  if (ending_ != Ending::ok) {
+    PowerReport report;
+    report.ending = ending_;
+    return report;
+  }
+  const PowerReport report = power_weights(spectrum_, power, v);
+  if (report.kept == 0) return report;
+  qr_.apply(v);
+  reduction_.apply(v);
+  const auto u = u_.head(v.size());
+  v -= (2 * u.dot(v)) * u;
+  return report;
+}
+
+}  // namespace physinv::hig

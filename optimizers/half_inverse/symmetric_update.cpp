@@ -1,0 +1,155 @@
+#include "optimizers/half_inverse/symmetric_update.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "optimizers/half_inverse/tile_product.h"
+
+namespace physinv::hig {
+namespace {
+
+constexpr Index kMaxParts = 8;
+constexpr Index kPartRows = 192;     ///< below, a second part costs more
+constexpr Index kThreadRows = 1024;  ///< below, a product is over too soon
+constexpr Index kColumnBlock = 256;
+
+/// Rows first + [begin, end): y += A x for the stored and mirrored entries.
+void add_product(
+    Symmetric a, Index begin, Index end, const double* x, double* y) {
+  const Index columns = round_up(a.n, kWidth);
+  Index r = begin;
+  for (; r + 4 <= end; r += 4) {
+    const double* row[4] = {a.row(r), a.row(r + 1), a.row(r + 2), a.row(r + 3)};
+    for (Index i = 0; i < 4; ++i) {
+      y[r + i] += row[i][r + i] * x[r + i];
+      for (Index j = i + 1; j < 4; ++j) {
+        y[r + i] += row[i][r + j] * x[r + j];
+        y[r + j] += row[i][r + j] * x[r + i];
+      }
+    }
+    Wide dot[4] = {}, s[4];
+#pragma GCC unroll 4
+    for (int i = 0; i < 4; ++i) s[i] = broadcast(x[r + i]);
+    for (Index c = r + 4; c < columns; c += kWidth) {
+      const Wide xc = load(x + c);
+      Wide yc = load(y + c);
+#pragma GCC unroll 4
+      for (int i = 0; i < 4; ++i) {
+        const Wide v = load(row[i] + c);
+        yc = fma(v, s[i], yc);
+        dot[i] = fma(v, xc, dot[i]);
+      }
+      store(y + c, yc);
+    }
+#pragma GCC unroll 4
+    for (int i = 0; i < 4; ++i) y[r + i] += sum(dot[i]);
+  }
+  for (; r < end; ++r) {
+    const double* row = a.row(r);
+    const double s = x[r];
+    double dot = row[r] * s;
+    for (Index c = r + 1; c < a.n; ++c) {
+      y[c] += row[c] * s;
+      dot += row[c] * x[c];
+    }
+    y[r] += dot;
+  }
+}
+
+}  // namespace
+
+Index padded_stride(Index n) {
+  // The kernels may run one register beyond a row's last tile.
+  const Index lines = (n + kTileColumns + kWidth + 15) / 16;
+  return 16 * (lines | 1);
+}
+
+void SymmetricProduct::operator()(
+    Symmetric a, Index first, const double* x, double* y, Threads* threads) {
+  const Index n = a.n - first;
+  const Index parts = std::clamp<Index>(n / kPartRows, 1, kMaxParts);
+  const Index length = round_up(n, kWidth) + kWidth;
+  std::fill(y + first, y + first + length, 0.0);
+  if (parts == 1) {
+    add_product(a, first, a.n, x, y);
+    return;
+  }
+  // Equal areas: the rows before part p hold the share p / parts.
+  const auto begin = [&](Index p) {
+    if (p == parts) return n;
+    const double left =
+        std::sqrt(1 - static_cast<double>(p) / static_cast<double>(parts));
+    return static_cast<Index>(static_cast<double>(n) * (1 - left)) / 4 * 4;
+  };
+  if (static_cast<Index>(parts_.size()) < kMaxParts * a.stride)
+    parts_.resize(static_cast<std::size_t>(kMaxParts * a.stride));
+  if (n < kThreadRows) threads = nullptr;
+  for_blocks(threads, parts, [&](Index p, int) {
+    double* to = p == 0 ? y : parts_.data() + p * a.stride;
+    const Index from = first + begin(p);
+    if (p > 0) std::fill(to + from, to + first + length, 0.0);
+    add_product(a, from, first + begin(p + 1), x, to);
+  });
+  for (Index p = 1; p < parts; ++p) {
+    const double* part = parts_.data() + p * a.stride;
+    for (Index c = first + begin(p); c < a.n; ++c) y[c] += part[c];
+  }
+}
+
+void RankUpdate::operator()(Symmetric a,
+                            Index first,
+                            const double* v,
+                            const double* w,
+                            Index stride,
+                            Index count,
+                            Threads* threads) {
+  const Index n = a.n - first;
+  if (n <= 0) return;
+  const Index depth = 2 * count,
+              groups = round_up(n, kTileColumns) / kTileColumns;
+  rows_.resize(std::max(rows_.size(), static_cast<std::size_t>(n * depth)));
+  columns_.resize(
+      std::max(columns_.size(),
+               static_cast<std::size_t>(groups * depth * kTileColumns)));
+  // Row r reads [-W V](r, :), column group q reads [V W](q, :), both packed.
+  for (Index k = 0; k < count; ++k)
+    for (Index r = 0; r < n; ++r) {
+      rows_[static_cast<std::size_t>(r * depth + k)] =
+          -w[k * stride + first + r];
+      rows_[static_cast<std::size_t>(r * depth + count + k)] =
+          -v[k * stride + first + r];
+    }
+  for (Index q = 0; q < groups; ++q)
+    for (Index k = 0; k < depth; ++k) {
+      const double* from =
+          (k < count ? v + k * stride : w + (k - count) * stride) + first +
+          q * kTileColumns;
+      double* to = columns_.data() + (q * depth + k) * kTileColumns;
+      store(to, load(from));
+      store(to + kWidth, load(from + kWidth));
+    }
+  const Index blocks = (n + kColumnBlock - 1) / kColumnBlock;
+  for_blocks(threads, blocks, [&](Index reversed, int) {
+    const Index block = blocks - 1 - reversed;  // the largest first
+    const Index begin = block * kColumnBlock;
+    const Index end = std::min(begin + kColumnBlock, n);
+    for (Index r0 = 0; r0 < end; r0 += kTileRows) {
+      const Index some = std::min<Index>(kTileRows, n - r0);
+      Index q = std::max(begin, r0) / kTileColumns;
+      for (; q * kTileColumns < end; ++q)
+        tile_rows(some,
+                  depth,
+                  {rows_.data() + r0 * depth, depth, 1},
+                  columns_.data() + q * depth * kTileColumns,
+                  kTileColumns,
+                  [&](Index r, Wide x, Wide y) {
+                    double* to =
+                        a.row(first + r0 + r) + first + q * kTileColumns;
+                    store(to, load(to) + x);
+                    store(to + kWidth, load(to + kWidth) + y);
+                  });
+    }
+  });
+}
+
+}  // namespace physinv::hig

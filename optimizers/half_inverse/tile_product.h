@@ -1,0 +1,115 @@
+/// Register tiles for the level-3 parts of the half-inverse: kRows broadcast
+/// numbers against two vectors. Every output adds its products one by one in
+/// the order of k by fused multiply-add, so its bits depend neither on the
+/// tile it falls into nor on threads.
+#pragma once
+
+#include <utility>
+
+#include "suite/nn/vector.h"
+
+namespace physinv::hig {
+
+using Wide = nn::Simd<double, nn::kWide>;
+inline constexpr Index kWidth = nn::kWide / 8;     ///< doubles of one register
+inline constexpr Index kTileColumns = 2 * kWidth;  ///< of one tile
+/// With two vectors each, accumulators for 32 (AVX-512) or 16 registers.
+inline constexpr int kTileRows = nn::kWide == 64 ? 8 : 6;
+
+constexpr Index round_up(Index n, Index multiple) {
+  return (n + multiple - 1) / multiple * multiple;
+}
+
+inline Wide fma(Wide a, Wide b, Wide c) {
+  return nn::multiply_add<double>(a, b, c);
+}
+inline Wide load(const double* p) { return nn::load<Wide>(p); }
+inline void store(double* p, Wide v) { nn::store(p, v); }
+inline Wide broadcast(double s) { return nn::broadcast<Wide>(s); }
+
+/// Sum of the lanes, pairwise.
+inline double sum(Wide v) {
+  double lane[kWidth];
+  store(lane, v);
+  for (Index w = kWidth / 2; w > 0; w /= 2)
+    for (Index i = 0; i < w; ++i) lane[i] += lane[i + w];
+  return lane[0];
+}
+
+/// a[r * row + k * step], read as single numbers.
+struct Scalars {
+  const double* data;
+  Index row, step;
+};
+
+/// finish(r, first, second) gets sum_k a(r, k) b[k][0..kTileColumns) for
+/// r < M; b has `b_step` numbers from one k to the next.
+template <int M, class Finish>
+[[gnu::always_inline]] inline void tile(
+    Index depth, Scalars a, const double* b, Index b_step, Finish&& finish) {
+  Wide acc[M][2];
+#pragma GCC unroll 8
+  for (int r = 0; r < M; ++r) acc[r][0] = acc[r][1] = Wide{};
+  const double* at = a.data;
+  for (Index k = 0; k < depth; ++k, at += a.step, b += b_step) {
+    const Wide first = load(b), second = load(b + kWidth);
+#pragma GCC unroll 8
+    for (int r = 0; r < M; ++r) {
+      const Wide s = broadcast(at[r * a.row]);
+      acc[r][0] = fma(s, first, acc[r][0]);
+      acc[r][1] = fma(s, second, acc[r][1]);
+    }
+  }
+#pragma GCC unroll 8
+  for (int r = 0; r < M; ++r) finish(r, acc[r][0], acc[r][1]);
+}
+
+/// The same for any number of rows.
+template <int M = kTileRows, class Finish>
+inline void tile_rows(Index rows,
+                      Index depth,
+                      Scalars a,
+                      const double* b,
+                      Index b_step,
+                      Finish&& finish) {
+  Index i = 0;
+  for (; i + M <= rows; i += M)
+    tile<M>(depth,
+            {a.data + i * a.row, a.row, a.step},
+            b,
+            b_step,
+            [&](int r, Wide x, Wide y) { finish(i + r, x, y); });
+  if constexpr (M > 1) {
+    if (i < rows)
+      tile_rows<M - 1>(rows - i,
+                       depth,
+                       {a.data + i * a.row, a.row, a.step},
+                       b,
+                       b_step,
+                       [&](Index r, Wide x, Wide y) { finish(i + r, x, y); });
+  }
+}
+
+enum class Into { set, add };
+
+/// C (rows x columns, rows c_row apart) = or += A B. `columns` is a multiple
+/// of kTileColumns.
+template <Into kInto>
+void multiply(Index rows,
+              Index columns,
+              Index depth,
+              Scalars a,
+              const double* b,
+              Index b_step,
+              double* c,
+              Index c_row) {
+  for (Index j = 0; j < columns; j += kTileColumns)
+    tile_rows(rows, depth, a, b + j, b_step, [&](Index r, Wide x, Wide y) {
+      double* to = c + r * c_row + j;
+      if constexpr (kInto == Into::add) x += load(to), y += load(to + kWidth);
+      store(to, x);
+      store(to + kWidth, y);
+    });
+}
+
+}  // namespace physinv::hig

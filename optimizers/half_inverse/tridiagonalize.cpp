@@ -1,0 +1,238 @@
+#include "optimizers/half_inverse/tridiagonalize.h"
+
+#include <algorithm>
+
+#include "optimizers/half_inverse/reflector.h"
+
+namespace physinv::hig {
+namespace {
+
+constexpr Index kPanel = 32;  ///< columns of a panel of the one-stage form
+constexpr Index kTwoStagesFrom = 1024;
+constexpr Index kSquare = 64;  ///< blocks of A for A V: two uses from the L1
+constexpr Index kMaxParts = 8;
+
+double* reserve(Buffer& buffer, Index count) {
+  return static_cast<double*>(
+      buffer.reserve(static_cast<std::size_t>(count) * sizeof(double)));
+}
+double* data(const Buffer& buffer) {
+  return static_cast<double*>(buffer.data());
+}
+
+}  // namespace
+
+Symmetric Tridiagonalize::matrix(Index n) {
+  const Index stride = padded_stride(n);
+  a_ = {reserve(memory_, n * stride), n, stride};
+  for (Index r = 0; r < n; ++r) {
+    std::fill(a_.row(r), a_.row(r) + r, 0.0);
+    std::fill(a_.row(r) + n, a_.row(r) + stride, 0.0);
+  }
+  return a_;
+}
+
+void Tridiagonalize::reduce(Stages stages) {
+  const Index n = a_.n;
+  d_.resize(n), e_.resize(std::max<Index>(n - 1, 0)), tau_.setZero(n);
+  two_ = stages == Stages::two ||
+         (stages == Stages::automatic && n >= kTwoStagesFrom);
+  const Index count = std::max(kPanel, kBand);
+  for (Buffer* b : {&v_, &w_})
+    std::fill_n(reserve(*b, count * a_.stride), count * a_.stride, 0.0);
+  two_ ? two_stage() : one_stage();
+}
+
+void Tridiagonalize::one_stage() {
+  const Index n = a_.n, stride = a_.stride;
+  for (Index first = 0; first < n; first += kPanel) {
+    const Index count = std::min(kPanel, n - first);
+    panel(first, count);
+    update_(a_, first + count, data(v_), data(w_), stride, count, threads_);
+  }
+}
+
+/// Reflectors of `count` columns; the matrix behind them is left as it was,
+/// A - V W^T - W V^T in truth.
+void Tridiagonalize::panel(Index first, Index count) {
+  const Index n = a_.n, stride = a_.stride;
+  double* const v = data(v_);
+  double* const w = data(w_);
+  for (Index i = 0; i < count; ++i) {
+    const Index j = first + i;
+    double* x = a_.row(j);
+    for (Index p = 0; p < i; ++p) {
+      axpy(n - j, -w[p * stride + j], v + p * stride + j, x + j);
+      axpy(n - j, -v[p * stride + j], w + p * stride + j, x + j);
+    }
+    d_(j) = x[j];
+    double* const vi = v + i * stride;
+    double* const wi = w + i * stride;
+    std::fill(vi, vi + j + 1, 0.0);
+    std::fill(wi, wi + j + 1, 0.0);
+    if (j + 1 == n) {
+      std::fill(vi + j, vi + stride, 0.0);
+      std::fill(wi + j, wi + stride, 0.0);
+      return;
+    }
+    const Index k = j + 1, rest = n - k;
+    const double tau = tau_(j) = reflect(rest, x + k, e_(j));
+    std::copy(x + k, x + stride, vi + k);
+    product_(a_, k, vi, wi, threads_);
+    for (Index p = 0; p < i; ++p) {
+      const double along_w = dot(rest, w + p * stride + k, vi + k);
+      const double along_v = dot(rest, v + p * stride + k, vi + k);
+      axpy(rest, -along_w, v + p * stride + k, wi + k);
+      axpy(rest, -along_v, w + p * stride + k, wi + k);
+    }
+    for (Index c = k; c < n; ++c) wi[c] *= tau;
+    axpy(rest, -0.5 * tau * dot(rest, wi + k, vi + k), vi + k, wi + k);
+    std::fill(wi + n, wi + stride, 0.0);
+  }
+}
+
+/// QR of the block of columns first.. from row `start` on, in place: memory
+/// rows hold the reflectors (unit head written out), the band gets R.
+void Tridiagonalize::factor_panel(Index first, Index start) {
+  const Index n = a_.n, count = std::min(kBand, n - first);
+  for (Index i = 0; i < count; ++i) {
+    double* x = a_.row(first + i) + start;
+    const Index at = std::min(i, n - start - 1);
+    const Index length = n - start - at;
+    for (Index r = 0; r < at; ++r) band_.entry(start + r, first + i) = x[r];
+    std::fill(x, x + at, 0.0);
+    double beta = x[at];
+    double tau = 0;
+    if (length > 1) {
+      tau = reflect(length, x + at, beta);
+    } else {
+      x[at] = 0;
+    }
+    tau_(first + i) = tau;
+    band_.entry(start + at, first + i) = beta;
+    if (tau == 0) continue;
+    for (Index c = i + 1; c < count; ++c) {
+      double* y = a_.row(first + c) + start + at;
+      axpy(length, -tau * dot(length, x + at, y), x + at, y);
+    }
+  }
+}
+
+/// A <- Q^T A Q behind `start` with Q = I - V S V^T, the V of the last panel
+/// in v_ (memory rows) and in x_ (row-major).
+void Tridiagonalize::update_behind(Index start) {
+  constexpr Index b = kBand;
+  const Index n = a_.n, stride = a_.stride, rest = n - start;
+  const double* const vt = data(v_);
+  double* const v = reserve(x_, 4 * n * b);
+  double* const av = v + n * b;
+  double* const y = av + n * b;
+  for (Index c = start; c < n; ++c)
+    for (Index i = 0; i < b; ++i) v[c * b + i] = vt[i * stride + c];
+
+  // S: the triangular factor of the product of the reflectors.
+  alignas(64) double s[b * b] = {}, inner[b * b] = {}, half[b * b] = {};
+  multiply<Into::set>(
+      b, b, rest, {v + start * b, 1, b}, v + start * b, b, inner, b);
+  const double* const tau = tau_.data() + start - b;
+  for (Index k = 0; k < b; ++k) {
+    s[k * b + k] = tau[k];
+    for (Index i = 0; i < k; ++i) {
+      double z = 0;
+      for (Index l = i; l < k; ++l) z += s[i * b + l] * inner[l * b + k];
+      s[i * b + k] = -tau[k] * z;
+    }
+  }
+
+  // A V from one triangle: every square block is used as itself and mirrored.
+  // Parts of equal area sum in their own copies, added up in order.
+  const Index squares = (rest + kSquare - 1) / kSquare;
+  const Index parts = std::clamp<Index>(squares / 4, 1, kMaxParts);
+  const auto begin = [&](Index p) {
+    if (p == parts) return squares;
+    const double left =
+        std::sqrt(1 - static_cast<double>(p) / static_cast<double>(parts));
+    return static_cast<Index>(static_cast<double>(squares) * (1 - left));
+  };
+  const Index size = n * b;
+  if (static_cast<Index>(parts_.size()) < (parts - 1) * size)
+    parts_.resize(static_cast<std::size_t>((parts - 1) * size));
+  for_blocks(threads_, parts, [&](Index p, int) {
+    double* const to = p == 0 ? av : parts_.data() + (p - 1) * size;
+    std::fill(to + (start + begin(p) * kSquare) * b, to + n * b, 0.0);
+    alignas(64) double block[kSquare * kSquare];
+    for (Index i = begin(p); i < begin(p + 1); ++i) {
+      const Index r = start + i * kSquare, rows = std::min(kSquare, n - r);
+      for (Index c = r; c < n; c += kSquare) {
+        const Index columns = std::min(kSquare, n - c);
+        if (c == r) {
+          for (Index k = 0; k < rows; ++k)
+            for (Index l = k; l < rows; ++l)
+              block[k * kSquare + l] = block[l * kSquare + k] =
+                  a_.row(r + k)[r + l];
+          multiply<Into::add>(
+              rows, b, rows, {block, kSquare, 1}, v + r * b, b, to + r * b, b);
+          continue;
+        }
+        const double* from = a_.row(r) + c;
+        multiply<Into::add>(
+            rows, b, columns, {from, stride, 1}, v + c * b, b, to + r * b, b);
+        multiply<Into::add>(
+            columns, b, rows, {from, 1, stride}, v + r * b, b, to + c * b, b);
+      }
+    }
+  });
+  for (Index p = 1; p < parts; ++p) {
+    const double* part = parts_.data() + (p - 1) * size;
+    for (Index i = (start + begin(p) * kSquare) * b; i < n * b; ++i)
+      av[i] += part[i];
+  }
+
+  // Y = A V S, W = Y - V (S^T V^T Y) / 2, A -= V W^T + W V^T.
+  multiply<Into::set>(
+      rest, b, b, {av + start * b, b, 1}, s, b, y + start * b, b);
+  multiply<Into::set>(
+      b, b, rest, {v + start * b, 1, b}, y + start * b, b, inner, b);
+  multiply<Into::set>(b, b, b, {s, 1, b}, inner, b, half, b);
+  for (double& h : half) h *= -0.5;
+  multiply<Into::add>(
+      rest, b, b, {v + start * b, b, 1}, half, b, y + start * b, b);
+  double* const wt = data(w_);
+  for (Index c = start; c < n; ++c)
+    for (Index i = 0; i < b; ++i) wt[i * stride + c] = y[c * b + i];
+  update_(a_, start, vt, wt, stride, b, threads_);
+}
+
+void Tridiagonalize::two_stage() {
+  const Index n = a_.n, stride = a_.stride;
+  band_.reset(n);
+  for (Index first = 0; first < n; first += kBand) {
+    const Index start = std::min(first + kBand, n);
+    for (Index r = first; r < start; ++r)
+      for (Index c = r; c < start; ++c) band_.entry(c, r) = a_.row(r)[c];
+    if (start == n) break;
+    factor_panel(first, start);
+    for (Index i = 0; i < kBand; ++i) {
+      const double* x = a_.row(first + i);
+      std::copy(x + start, x + stride, data(v_) + i * stride + start);
+    }
+    update_behind(start);
+  }
+  band_.reduce(d_, e_);
+}
+
+void Tridiagonalize::apply(VectorOut<double> vector) const {
+  double* const x = vector.data();
+  const Index n = a_.n;
+  if (two_) band_.apply(x);
+  for (Index j = n - 2; j >= 0; --j) {
+    const double tau = tau_(j);
+    if (tau == 0) continue;
+    const Index from = two_ ? j / kBand * kBand + kBand + j % kBand : j + 1;
+    if (from >= n) continue;
+    const double* v = a_.row(j) + from;
+    axpy(n - from, -tau * dot(n - from, v, x + from), v, x + from);
+  }
+}
+
+}  // namespace physinv::hig

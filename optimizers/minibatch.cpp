@@ -1,0 +1,97 @@
+#include "optimizers/minibatch.h"
+
+#include <algorithm>
+
+#include "optimizers/network_model.h"
+
+namespace physinv {
+
+template <class T>
+Minibatch<T>::Minibatch(StageRun& run, Index batch, bool fresh, Index drawn)
+    : run_(run),
+      problem_(run.oracle.recipe().make<T>()),
+      vjp_(dynamic_cast<const Vjp<T>*>(problem_.get())),
+      jacobian_(dynamic_cast<const Jacobian<T>*>(problem_.get())),
+      projection_(dynamic_cast<const GradientProjection<T>*>(problem_.get())),
+      batch_(fresh ? batch : std::min(batch, run.oracle.count())),
+      batches_(run.oracle.count() / batch_),
+      drawn_(drawn),
+      fresh_(fresh),
+      y_(run.oracle.shape().observations, batch_),
+      y_bar_(y_),
+      loss_(batch_),
+      tape_(run.threads),
+      work_(run.threads) {
+  if (!fresh_) all_ = run.oracle.training(0, batches_ * batch_);
+}
+
+template <class T>
+void Minibatch<T>::next() {
+  if (fresh_) {
+    load(run_.oracle.training(drawn_, batch_), 0);
+  } else {
+    load(all_, at_ * batch_);
+    at_ = (at_ + 1) % batches_;
+  }
+  drawn_ += batch_;
+}
+
+template <class T>
+void Minibatch<T>::load(const Samples<double>& from, Index first) {
+  target_ = from.y.middleCols(first, batch_).template cast<T>();
+  given_ = from.given.middleCols(first, batch_).template cast<T>();
+  const auto& fields = run_.setting.predictor.inputs;
+  input_.resize(input_rows(fields, run_.oracle.shape()), batch_);
+  Index at = 0;
+  for (const Field f : fields) {
+    SUITE_CHECK(f != Field::unknowns, "a predictor cannot read the unknowns");
+    const Batch<T>& block = f == Field::given ? given_ : target_;
+    input_.middleRows(at, block.rows()) = block;
+    at += block.rows();
+  }
+}
+
+template <class T>
+void Minibatch<T>::weigh(T factor) {
+  problem_->loss(y_, target_, loss_);
+  problem_->loss_gradient(y_, target_, y_bar_);
+  y_bar_ *= factor;
+}
+
+template <class T>
+void Minibatch<T>::gradient(BatchIn<T> x, T factor, BatchOut<T> x_bar) {
+  vjp_->linearize(x, given_, y_, tape_);
+  weigh(factor);
+  vjp_->pullback(tape_, y_bar_, x_bar, work_);
+  counts_[Counter::vjp] += static_cast<std::uint64_t>(batch_);
+}
+
+template <class T>
+void Minibatch<T>::jacobian(BatchIn<T> x, T factor, BatchOut<T> j) {
+  problem_->forward(x, given_, y_, work_);
+  weigh(factor);
+  if (projection_ != nullptr) projection_->project(y_, y_bar_);
+  jacobian_->jacobian(x, given_, j, work_);
+  counts_[Counter::jacobian] += static_cast<std::uint64_t>(batch_);
+}
+
+template <class T>
+Counts Minibatch<T>::counts() const {
+  Counts all = counts_;
+  all += work_.counts;
+  all += tape_.counts;
+  return all;
+}
+
+template <class T>
+std::size_t Minibatch<T>::bytes() const {
+  const Index numbers = target_.size() + given_.size() + input_.size() +
+                        y_.size() + y_bar_.size();
+  return static_cast<std::size_t>(numbers) * sizeof(T) + tape_.bytes() +
+         work_.bytes();
+}
+
+template class Minibatch<float>;
+template class Minibatch<double>;
+
+}  // namespace physinv

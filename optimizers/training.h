@@ -1,0 +1,58 @@
+/// Training of a network through a solver on minibatches (half-inverse
+/// gradients paper, Eqs. 1 to 6):
+///
+///   x_i = x_start + scale N(input_i | theta),  y_i = F(x_i),
+///   theta <- rule(theta, d/d theta of the batch's loss).
+///
+/// Batches are consecutive slices of a training set as large as the set of the
+/// case, in the same order every epoch, or fresh samples for every update. The
+/// estimates of the case's own problems come from the network as it stands.
+/// Ends with status diverged before an update that would make a parameter
+/// infinite or NaN.
+///
+/// Arrays left: `parameters`, `state` (a later stage of the chain starts from
+/// them), `samples_drawn` (1), `mean_loss` (1 x points of the curve, over the
+/// case's problems), `batch_loss` (1 x updates, mean before the update), and
+/// what `metrics` and the rule add.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "optimizers/steps/rule.h"
+#include "suite/core/method.h"
+
+namespace physinv {
+
+/// The network and its estimates at a point of the curve.
+struct Snapshot {
+  Index iteration;
+  VectorIn<double> parameters;
+  BatchIn<double> x, y;
+  const Oracle& oracle;
+};
+
+/// Further numbers at each point of the curve, array `metrics`.
+struct Metrics {
+  std::string name;  ///< enters the content key; empty: none
+  std::vector<std::string> rows;
+  std::function<void(const Snapshot&, VectorOut<double>)> evaluate;
+};
+
+struct TrainingOptions {
+  std::string stage = "train";
+  StepOptions rule;
+  Index batch = 128;
+  Index iterations = 1000;
+  /// g = gradient_scale / batch * dLoss_i/dy_i: 1 is the batch's mean.
+  double gradient_scale = 1;
+  bool fresh = false;  ///< every update draws samples never seen before
+  Metrics metrics = {};
+};
+
+std::shared_ptr<const Stage> train(const TrainingOptions& options);
+
+}  // namespace physinv

@@ -1,0 +1,220 @@
+#include "problems/grid_poisson/grid_poisson.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "suite/core/check.h"
+#include "suite/core/threads.h"
+
+namespace physinv {
+namespace {
+
+constexpr Index kSide = kPoissonSide, kCells = kPoissonCells;
+constexpr Index kBlock = 64;  ///< samples of one unit of work
+
+/// out = L in. Compiled once: forward and linearize must agree to the last
+/// bit. The sums of a row of cells fill registers.
+template <class T>
+[[gnu::noinline, gnu::noclone]] void apply(const T* in, T* out) {
+  T rows[kSide + 2][kSide] = {};
+  for (Index i = 0; i < kSide; ++i)
+    for (Index j = 0; j < kSide; ++j) rows[i + 1][j] = in[kSide * i + j];
+  for (Index i = 1; i <= kSide; ++i) {
+    T beside[kSide];
+    beside[0] = rows[i][1], beside[kSide - 1] = rows[i][kSide - 2];
+    for (Index j = 1; j + 1 < kSide; ++j)
+      beside[j] = rows[i][j - 1] + rows[i][j + 1];
+    for (Index j = 0; j < kSide; ++j)
+      out[kSide * (i - 1) + j] =
+          ((rows[i - 1][j] + rows[i + 1][j]) + beside[j]) - T(4) * rows[i][j];
+  }
+}
+
+/// out = a b of 8 x 8 matrices, columns contiguous. Not Eigen's product, whose
+/// bits may depend on the alignment of its operands.
+template <class T>
+[[gnu::noinline]] void multiply(const T* __restrict a,
+                                const T* __restrict b,
+                                T* __restrict out) {
+  for (Index j = 0; j < kSide; ++j) {
+    T sum[kSide] = {};
+    for (Index k = 0; k < kSide; ++k) {
+      const T factor = b[kSide * j + k];
+      for (Index i = 0; i < kSide; ++i) sum[i] += a[kSide * k + i] * factor;
+    }
+    for (Index i = 0; i < kSide; ++i) out[kSide * j + i] = sum[i];
+  }
+}
+
+/// 0, or NaN if some entry is not finite: L knows no point, but a derivative
+/// taken at such a point must say so.
+template <class T>
+T poison(const T* x) {
+  T sum = 0;
+  for (Index r = 0; r < kCells; ++r) sum += T(0) * x[r];
+  return sum;
+}
+
+template <class F>
+void for_samples(Threads* threads, Index samples, F&& body) {
+  for_blocks(threads, (samples + kBlock - 1) / kBlock, [&](Index b, int) {
+    const Index end = std::min(samples, (b + 1) * kBlock);
+    for (Index i = b * kBlock; i < end; ++i) body(i);
+  });
+}
+
+template <class M>
+void check_size(const M& batch, Index rows, Index cols) {
+  SUITE_CHECK(batch.rows() == rows && batch.cols() == cols,
+              "batch has the wrong size");
+}
+
+/// fftfreq(8) scaled by 8, squared
+double squared_frequency(Index k) {
+  const auto f = static_cast<double>(k < kSide / 2 ? k : k - kSide);
+  return f * f;
+}
+
+enum Slot : std::size_t { kPoison };
+
+}  // namespace
+
+Options describe(const GridPoissonOptions& /*options*/) { return {}; }
+
+Vector<double> poisson_potential(const Vector<double>& noise) {
+  SUITE_CHECK(noise.size() == 2 * kCells, "noise of 64 complex numbers");
+  double cosine[kSide], sine[kSide];
+  for (Index k = 0; k < kSide; ++k) {
+    const double angle = 2 * std::numbers::pi * double(k) / kSide;
+    cosine[k] = std::cos(angle), sine[k] = std::sin(angle);
+  }
+  Vector<double> phi(kCells);
+  for (Index i = 0; i < kSide; ++i)
+    for (Index j = 0; j < kSide; ++j) {
+      double sum = 0;
+      for (Index k = 0; k < kSide; ++k)
+        for (Index l = 0; l < kSide; ++l) {
+          if (k == 0 && l == 0) continue;
+          const Index at = kSide * k + l, turn = (k * i + l * j) % kSide;
+          sum += (noise(at) * cosine[turn] - noise(kCells + at) * sine[turn]) /
+                 (squared_frequency(k) + squared_frequency(l));
+        }
+      phi(kSide * i + j) = sum;
+    }
+  const double mean = phi.mean();
+  const double deviation =
+      std::sqrt((phi.array() - mean).square().sum() / kCells);
+  if (deviation > 0) phi /= deviation;
+  return phi.array() - phi.mean();
+}
+
+template <class T>
+GridPoisson<T>::GridPoisson(const Options& options)
+    : options_(options), matrix_(kCells, kCells) {
+  const double turn = std::numbers::pi / (kSide + 1);
+  for (Index i = 0; i < kSide; ++i)
+    for (Index k = 0; k < kSide; ++k) {
+      const auto a = static_cast<double>(i + 1), b = static_cast<double>(k + 1);
+      sines_(i, k) = T(std::sqrt(2.0 / (kSide + 1)) * std::sin(a * b * turn));
+      inverse_eigenvalues_(i, k) =
+          T(1 / (-4 + 2 * std::cos(a * turn) + 2 * std::cos(b * turn)));
+    }
+  const Batch<T> unit = Batch<T>::Identity(kCells, kCells);
+  for (Index r = 0; r < kCells; ++r)
+    apply(unit.col(r).data(), matrix_.col(r).data());
+}
+
+template <class T>
+Samples<double> GridPoisson<T>::sample(Index first,
+                                       Index count,
+                                       const Rng& rng) const {
+  Samples<double> out;
+  out.x.resize(kCells, count), out.y.resize(kCells, count);
+  out.given.resize(0, count);
+  Vector<double> noise(2 * kCells);
+  for (Index i = 0; i < count; ++i) {
+    Stream stream = rng.child(static_cast<std::uint64_t>(first + i)).stream();
+    for (double& c : noise) c = stream.normal();
+    out.x.col(i) = poisson_potential(noise);
+    apply(out.x.col(i).data(), out.y.col(i).data());
+  }
+  return out;
+}
+
+template <class T>
+void GridPoisson<T>::forward(BatchIn<T> x,
+                             BatchIn<T> /*given*/,
+                             BatchOut<T> y,
+                             Workspace& work) const {
+  check_size(x, kCells, x.cols());
+  check_size(y, kCells, x.cols());
+  for_samples(work.threads(), x.cols(), [&](Index i) {
+    apply(x.col(i).data(), y.col(i).data());
+  });
+}
+
+template <class T>
+void GridPoisson<T>::linearize(BatchIn<T> x,
+                               BatchIn<T> /*given*/,
+                               BatchOut<T> y,
+                               Tape& tape) const {
+  check_size(x, kCells, x.cols());
+  check_size(y, kCells, x.cols());
+  auto kept = tape.slot<T>(kPoison, 1, x.cols());
+  for_samples(tape.threads(), x.cols(), [&](Index i) {
+    kept(0, i) = poison(x.col(i).data());
+    apply(x.col(i).data(), y.col(i).data());
+  });
+}
+
+template <class T>
+void GridPoisson<T>::pullback(const Tape& tape,
+                              BatchIn<T> y_bar,
+                              BatchOut<T> x_bar,
+                              Workspace& work) const {
+  const auto kept = tape.view<T>(kPoison);
+  check_size(y_bar, kCells, kept.cols());
+  check_size(x_bar, kCells, kept.cols());
+  for_samples(work.threads(), kept.cols(), [&](Index i) {
+    apply(y_bar.col(i).data(), x_bar.col(i).data());
+    x_bar.col(i).array() += kept(0, i);
+  });
+}
+
+template <class T>
+void GridPoisson<T>::jacobian(BatchIn<T> x,
+                              BatchIn<T> /*given*/,
+                              BatchOut<T> j,
+                              Workspace& work) const {
+  check_size(x, kCells, x.cols());
+  check_size(j, kCells * kCells, x.cols());
+  for_samples(work.threads(), x.cols(), [&](Index i) {
+    j.col(i) = matrix_.reshaped().array() + poison(x.col(i).data());
+  });
+}
+
+template <class T>
+void GridPoisson<T>::invert(BatchIn<T> y,
+                            BatchIn<T> /*given*/,
+                            BatchIn<T> /*x_guess*/,
+                            BatchOut<T> x,
+                            Workspace& work) const {
+  check_size(y, kCells, x.cols());
+  check_size(x, kCells, x.cols());
+  for_samples(work.threads(), x.cols(), [&](Index i) {
+    const T* s = sines_.data();
+    Square left, both;
+    multiply(s, y.col(i).data(), left.data());
+    multiply(left.data(), s, both.data());
+    both.array() *= inverse_eigenvalues_.array();
+    multiply(s, both.data(), left.data());
+    multiply(left.data(), s, both.data());
+    x.col(i) = both.reshaped();
+  });
+}
+
+template class GridPoisson<float>;
+template class GridPoisson<double>;
+
+}  // namespace physinv

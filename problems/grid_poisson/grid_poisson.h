@@ -1,0 +1,98 @@
+/// Poisson's equation on a small grid: which potential has a given source?
+/// (Half-inverse gradients, Sec. 3.2, App. B.3, Figs. 3, 7; the ghost values
+/// and the data are those of the authors' code.)
+///
+///   y = L x,  (L x)_ij = x_{i-1,j} + x_{i+1,j} + x_{i,j-1} + x_{i,j+1} - 4
+///   x_ij
+///
+/// 8 x 8 cells, spacing 1, x = 0 one spacing outside the grid. L is symmetric
+/// with eigenvalues lambda_kl = -4 + 2 cos(k pi/9) + 2 cos(l pi/9), k, l =
+/// 1 .. 8, from -7.76 to -0.24, and sine eigenvectors: with the symmetric,
+/// orthogonal S_ik = sqrt(2/9) sin(i k pi/9),
+///
+///   L^{-1} y = S ((S y S) / lambda) S
+///
+/// Unknown x: the potential, cell (i, j) at 8 i + j (64). Given: nothing.
+/// Observation y: the source (64). vjp, Jacobian: exact and constant.
+/// invert: exact; it needs no guess.
+///
+/// What is not finite stays in its own column.
+#pragma once
+
+#include "suite/core/problem.h"
+#include "suite/core/recipe.h"
+
+namespace physinv {
+
+inline constexpr Index kPoissonSide = 8;
+inline constexpr Index kPoissonCells = kPoissonSide * kPoissonSide;
+
+struct GridPoissonOptions {};
+
+Options describe(const GridPoissonOptions& options);
+
+/// Smooth random potential: with complex noise c (real parts, then imaginary
+/// parts, 64 each, frequency 8 k + l) the real part of the inverse Fourier
+/// transform of c / |f|^2 without its mean frequency, divided by its standard
+/// deviation over the cells, minus its mean.
+Vector<double> poisson_potential(const Vector<double>& noise);
+
+template <class T>
+class GridPoisson final : public Problem<T>,
+                          public Vjp<T>,
+                          public Jacobian<T>,
+                          public Inverse<T> {
+ public:
+  using Options = GridPoissonOptions;
+  explicit GridPoisson(const Options& options = {});
+
+  Shape shape() const override { return {kPoissonCells, kPoissonCells, 0}; }
+  Vector<double> start() const override {
+    return Vector<double>::Zero(kPoissonCells);
+  }
+
+  /// x = poisson_potential of standard normal noise, y = L x in double.
+  Samples<double> sample(Index first,
+                         Index count,
+                         const Rng& rng) const override;
+
+  void forward(BatchIn<T> x,
+               BatchIn<T> given,
+               BatchOut<T> y,
+               Workspace& work) const override;
+  /// Keeps nothing.
+  void linearize(BatchIn<T> x,
+                 BatchIn<T> given,
+                 BatchOut<T> y,
+                 Tape& tape) const override;
+  /// x_bar = L y_bar
+  void pullback(const Tape& tape,
+                BatchIn<T> y_bar,
+                BatchOut<T> x_bar,
+                Workspace& work) const override;
+  /// The same matrix L for every sample.
+  void jacobian(BatchIn<T> x,
+                BatchIn<T> given,
+                BatchOut<T> j,
+                Workspace& work) const override;
+  void invert(BatchIn<T> y,
+              BatchIn<T> given,
+              BatchIn<T> x_guess,
+              BatchOut<T> x,
+              Workspace& work) const override;
+
+  double operations() const override { return 5.0 * kPoissonCells; }
+
+  const Options& options() const { return options_; }
+
+ private:
+  using Square = Eigen::Matrix<T, kPoissonSide, kPoissonSide>;
+  Options options_;
+  Square sines_, inverse_eigenvalues_;
+  Batch<T> matrix_;  // L
+};
+
+extern template class GridPoisson<float>;
+extern template class GridPoisson<double>;
+
+}  // namespace physinv

@@ -1,0 +1,91 @@
+/// Times of a simulation and of a gradient, beside the bare transforms that
+/// they need: four real ones of 128 points per step and way. The counters are
+/// seconds per sample and step.
+#include <benchmark/benchmark.h>
+
+#include "problems/kuramoto_sivashinsky/kuramoto_sivashinsky.h"
+#include "suite/core/real_fft.h"
+
+namespace physinv {
+namespace {
+
+constexpr Index kCells = 128;
+
+void report(benchmark::State& state, double items, double operations) {
+  const double all = static_cast<double>(state.iterations()) * items;
+  state.SetItemsProcessed(static_cast<std::int64_t>(all));
+  state.counters["per_sample_step"] = benchmark::Counter(
+      all * operations,
+      benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
+template <class T>
+struct Fixture {
+  explicit Fixture(Index n, double budget)
+      : problem({.tape_budget = budget}), y(kCells, n), x_bar(2, n) {
+    const auto samples =
+        problem.sample(0, n, Rng::root("kernels/kuramoto_sivashinsky", 0));
+    x = samples.x.template cast<T>();
+    given = samples.given.template cast<T>();
+    y_bar = samples.y.template cast<T>();
+  }
+  double steps() const { return static_cast<double>(problem.options().steps); }
+
+  KuramotoSivashinsky<T> problem;
+  Batch<T> x, given, y, y_bar, x_bar;
+  Workspace work;
+  Tape tape;
+};
+
+template <class T>
+void BM_kuramoto_sivashinsky_forward(benchmark::State& state) {
+  Fixture<T> f(state.range(0), 0);
+  for (auto _ : state) {
+    f.problem.forward(f.x, f.given, f.y, f.work);
+    benchmark::ClobberMemory();
+  }
+  report(state, static_cast<double>(state.range(0)), f.steps());
+}
+
+/// The second argument is the budget of the tape in megabytes: 0 makes every
+/// state twice, and all fit into 1000.
+template <class T>
+void BM_kuramoto_sivashinsky_gradient(benchmark::State& state) {
+  Fixture<T> f(state.range(0), 1e6 * static_cast<double>(state.range(1)));
+  for (auto _ : state) {
+    f.problem.linearize(f.x, f.given, f.y, f.tape);
+    f.problem.pullback(f.tape, f.y_bar, f.x_bar, f.work);
+    benchmark::ClobberMemory();
+  }
+  report(state, static_cast<double>(state.range(0)), f.steps());
+}
+
+/// The transforms of one step, two there and two back.
+template <class T>
+void BM_kuramoto_sivashinsky_bare_transforms(benchmark::State& state) {
+  const RealFft<T> fft(kCells);
+  Workspace work;
+  auto u = work.take<T>(fft.signal_stride(), 1);
+  auto y = work.take<T>(fft.spectrum_stride(), 1);
+  u.setZero();
+  for (auto _ : state) {
+    for (int i = 0; i < 2; ++i) {
+      fft.forward(u.data(), y.data());
+      fft.inverse(y.data(), u.data());
+    }
+    benchmark::ClobberMemory();
+  }
+  report(state, 1, 1);
+}
+
+#define PHYSINV_KS(T)                                                      \
+  BENCHMARK(BM_kuramoto_sivashinsky_bare_transforms<T>);                   \
+  BENCHMARK(BM_kuramoto_sivashinsky_forward<T>)->Arg(1)->Arg(8)->Arg(128); \
+  BENCHMARK(BM_kuramoto_sivashinsky_gradient<T>)                           \
+      ->ArgsProduct({{1, 8, 128}, {0, 4, 1000}})
+PHYSINV_KS(float);
+PHYSINV_KS(double);
+#undef PHYSINV_KS
+
+}  // namespace
+}  // namespace physinv

@@ -1,0 +1,71 @@
+/// Fresh problems of `NoisyAbsolute` by the million, one per lane: drawn,
+/// differentiated at one point and forgotten. The same distributions as
+/// `sample`, from numbers of 24 bits.
+#pragma once
+
+#include <numbers>
+
+#include "problems/noisy_absolute/noisy_absolute.h"
+#include "suite/core/lanes_math.h"
+#include "suite/core/rng_lanes.h"
+
+namespace physinv {
+
+template <class T>
+class NoiseLanes {
+ public:
+  using Options = NoisyAbsoluteOptions;
+  using P = Pack<T>;
+
+  struct Problem {
+    P gamma, solution, lambda, level;
+  };
+
+  explicit NoiseLanes(const Options& o)
+      : options_(o),
+        omega_min_(static_cast<T>(o.omega_min)),
+        omega_max_(static_cast<T>(o.omega_max)) {}
+
+  /// Everything but the noise.
+  Problem draw(StreamLanes<T>& random) const {
+    const T g = static_cast<T>(options_.gamma);
+    Problem p;
+    p.gamma = random.uniform(-g, g);
+    p.solution = P{};
+    if (options_.solution == Solution::linear) p.solution = 10 * p.gamma;
+    if (options_.solution == Solution::sine)
+      p.solution = sin_turns(p.gamma * std::numbers::inv_pi_v<T>);
+    p.level = static_cast<T>(options_.level) - P{};
+    if (options_.decades > 0) {
+      const T d = static_cast<T>(options_.decades * std::numbers::ln10);
+      p.level *= exp_lanes(random.uniform(-d, d));
+    }
+    p.lambda = static_cast<T>(options_.snr) * p.level;
+    return p;
+  }
+
+  /// sum_j A_j w_j sin(w_j x + phi_j), the noise drawn on the spot. Phases are
+  /// turns, and a scale common to all A cancels.
+  [[gnu::noinline]] P noise(StreamLanes<T>& stream, P level, P x) const {
+    StreamLanes<T> random = stream;  // stays in registers
+    const P turns = x * (T(0.5) * std::numbers::inv_pi_v<T>);
+    P sum{}, square{};
+    for (Index j = 0; j < options_.terms; ++j) {
+      const P w = random.uniform(omega_min_, omega_max_);
+      const P aw = random.whole() * w;
+      sum += aw * sin_turns(w * turns + random.uniform());
+      square += aw * aw;
+    }
+    stream = random;
+    const P drawn = sqrt_lanes(square);
+    return select(drawn > P{}, level * sum / drawn, P{});
+  }
+
+  const Options& options() const { return options_; }
+
+ private:
+  Options options_;
+  T omega_min_, omega_max_;
+};
+
+}  // namespace physinv

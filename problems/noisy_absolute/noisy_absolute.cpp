@@ -1,0 +1,195 @@
+#include "problems/noisy_absolute/noisy_absolute.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "suite/core/check.h"
+#include "suite/core/lanes_math.h"
+
+namespace physinv {
+namespace {
+
+enum Row : Index { kGamma, kSolution, kLambda, kNoise };
+
+/// A block of columns as one evaluation sees it; lanes beyond it repeat the
+/// last column.
+template <class T>
+struct Block {
+  const T* data;
+  Index stride, count;
+
+  Pack<T> row(Index r) const {
+    Pack<T> lanes;
+    for (Index k = 0; k < kLanes<T>; ++k)
+      lanes[k] = data[std::min(k, count - 1) * stride + r];
+    return lanes;
+  }
+};
+
+/// Loss and its derivative. Compiled once, because the compiler fuses
+/// products and sums differently in each inlined copy.
+template <class T>
+[[gnu::noinline, gnu::noclone]] void evaluate(
+    Index terms, Block<T> given, Block<T> at, Pack<T>& y, Pack<T>& slope) {
+  constexpr T kTurn = T(0.5) * std::numbers::inv_pi_v<T>;
+  const Pack<T> x = at.row(0), away = x - given.row(kSolution);
+  const Pack<T> lambda = given.row(kLambda);
+  y = lambda * abs_lanes(away);
+  slope = lambda * sign_lanes(away);
+  for (Index j = 0; j < terms; ++j) {
+    const Pack<T> a = given.row(kNoise + j);
+    const Pack<T> w = given.row(kNoise + terms + j);
+    const Pack<T> phi = given.row(kNoise + 2 * terms + j);
+    const Pack<T> turns = (w * x + phi) * kTurn;
+    const Pack<T> part = turns - round_lanes(turns);
+    y -= a * sin_turns(part + T(0.25));
+    slope += a * w * sin_turns(part);
+  }
+}
+
+/// Runs body(i, y, slope) for every column.
+template <class T, class F>
+void for_columns(Index terms, BatchIn<T> x, BatchIn<T> given, F&& body) {
+  SUITE_CHECK(x.rows() == 1 && given.rows() == kNoise + 3 * terms &&
+                  given.cols() == x.cols(),
+              "x and given match the problem");
+  for (Index first = 0; first < x.cols(); first += kLanes<T>) {
+    const Index count = std::min<Index>(kLanes<T>, x.cols() - first);
+    Pack<T> y, slope;
+    evaluate<T>(terms,
+                {given.col(first).data(), given.outerStride(), count},
+                {x.col(first).data(), x.outerStride(), count},
+                y,
+                slope);
+    for (Index k = 0; k < count; ++k) body(first + k, y[k], slope[k]);
+  }
+}
+
+double solution_at(Solution solution, double gamma) {
+  if (solution == Solution::zero) return 0;
+  return solution == Solution::linear ? 10 * gamma : std::sin(2 * gamma);
+}
+
+}  // namespace
+
+Options describe(const NoisyAbsoluteOptions& o) {
+  constexpr std::string_view kNames[] = {"zero", "10*gamma", "sin(2*gamma)"};
+  return {
+      {"solution", std::string(kNames[static_cast<std::size_t>(o.solution)])},
+      {"gamma", fmt::format("{}", o.gamma)},
+      {"terms", fmt::format("{}", o.terms)},
+      {"omega", fmt::format("{},{}", o.omega_min, o.omega_max)},
+      {"level", fmt::format("{}", o.level)},
+      {"decades", fmt::format("{}", o.decades)},
+      {"snr", fmt::format("{}", o.snr)}};
+}
+
+double noise_level(VectorIn<double> amplitude, VectorIn<double> omega) {
+  return amplitude.cwiseProduct(omega).norm();
+}
+
+template <class T>
+NoisyAbsolute<T>::NoisyAbsolute(const Options& options) : options_(options) {
+  SUITE_CHECK(options.terms >= 0, "the number of terms is not negative");
+  SUITE_CHECK(options.gamma > 0, "gamma has a range");
+  SUITE_CHECK(options.level >= 0 && options.decades >= 0 && options.snr >= 0,
+              "levels and their ratio are not negative");
+  SUITE_CHECK(options.omega_max >= options.omega_min,
+              "frequencies have a range");
+}
+
+template <class T>
+Samples<double> NoisyAbsolute<T>::draw(Index first,
+                                       Index count,
+                                       const Rng& rng,
+                                       double spread) const {
+  const Index m = options_.terms;
+  Samples<double> out;
+  out.x.resize(1, count), out.y.resize(1, count);
+  out.given.resize(shape().given, count);
+  for (Index i = 0; i < count; ++i) {
+    Stream stream = rng.child(static_cast<std::uint64_t>(first + i)).stream();
+    auto given = out.given.col(i);
+    given(kGamma) = stream.uniform(-options_.gamma, options_.gamma);
+    given(kSolution) = solution_at(options_.solution, given(kGamma));
+    const double level =
+        options_.level *
+        std::pow(10, options_.decades * stream.uniform(-1.0, 1.0));
+    given(kLambda) = options_.snr * level;
+    out.x(0, i) = given(kSolution) + spread * stream.uniform(-1.0, 1.0);
+    auto a = given.segment(kNoise, m), w = given.segment(kNoise + m, m);
+    for (Index j = 0; j < m; ++j) {
+      a(j) = stream.uniform();
+      w(j) = stream.uniform(options_.omega_min, options_.omega_max);
+      given(kNoise + 2 * m + j) = 2 * std::numbers::pi * stream.uniform();
+    }
+    const double drawn = noise_level(a, w);
+    if (drawn > 0) a *= level / drawn;
+  }
+  Workspace work;
+  NoisyAbsolute<double>(options_).forward(out.x, out.given, out.y, work);
+  return out;
+}
+
+template <class T>
+Samples<double> NoisyAbsolute<T>::sample(Index first,
+                                         Index count,
+                                         const Rng& rng) const {
+  return draw(first, count, rng, 0);
+}
+
+template <class T>
+Samples<double> NoisyAbsolute<T>::sample_labelled(Index first,
+                                                  Index count,
+                                                  const Rng& rng) const {
+  return draw(first, count, rng, 1);
+}
+
+template <class T>
+void NoisyAbsolute<T>::forward(BatchIn<T> x,
+                               BatchIn<T> given,
+                               BatchOut<T> y,
+                               Workspace& /*work*/) const {
+  for_columns<T>(
+      options_.terms, x, given, [&](Index i, T loss, T) { y(0, i) = loss; });
+}
+
+template <class T>
+void NoisyAbsolute<T>::loss(BatchIn<T> y,
+                            BatchIn<T> target,
+                            VectorOut<double> loss) const {
+  loss = (y - target).row(0).transpose().template cast<double>();
+}
+
+template <class T>
+void NoisyAbsolute<T>::loss_gradient(BatchIn<T> /*y*/,
+                                     BatchIn<T> /*target*/,
+                                     BatchOut<T> y_bar) const {
+  y_bar.setOnes();
+}
+
+template <class T>
+void NoisyAbsolute<T>::linearize(BatchIn<T> x,
+                                 BatchIn<T> given,
+                                 BatchOut<T> y,
+                                 Tape& tape) const {
+  auto slopes = tape.slot<T>(0, 1, x.cols());
+  for_columns<T>(options_.terms, x, given, [&](Index i, T loss, T slope) {
+    y(0, i) = loss, slopes(0, i) = slope;
+  });
+}
+
+template <class T>
+void NoisyAbsolute<T>::pullback(const Tape& tape,
+                                BatchIn<T> y_bar,
+                                BatchOut<T> x_bar,
+                                Workspace& /*work*/) const {
+  x_bar = tape.view<T>(0).cwiseProduct(y_bar);
+}
+
+template class NoisyAbsolute<float>;
+template class NoisyAbsolute<double>;
+
+}  // namespace physinv

@@ -1,0 +1,101 @@
+/// Absolute distance under Fourier noise (joint parameter optimization, Eq. 2
+/// and Sec. 2): the loss landscape in which the paper counts how often noisy
+/// gradients point the right way.
+///
+///   L(x) = lambda |x - x*| - sum_j A_j cos(w_j x + phi_j)
+///   dL/dx = lambda sign(x - x*) + sum_j A_j w_j sin(w_j x + phi_j)
+///
+/// sign(0) = 0. The noise level is a = sqrt(sum_j (A_j w_j)^2), the
+/// signal-to-noise ratio lambda / a.
+///
+/// Unknown x (1). Given: gamma, x*, lambda, A, w, phi (3 + 3 terms); gamma is
+/// what a network would see, x* a function of it. Observation y: the loss
+/// itself (1), so `loss` is y - target: how far above x* an x lies, less than
+/// 0 where the noise digs deeper. vjp: exact. Without terms the noise costs
+/// nothing.
+///
+/// A column of x that is not finite gives NaN in its own column only.
+#pragma once
+
+#include "suite/core/problem.h"
+#include "suite/core/recipe.h"
+
+namespace physinv {
+
+/// What x* is.
+enum class Solution : std::uint8_t {
+  zero,    ///< 0, the same for all
+  linear,  ///< 10 gamma
+  sine,    ///< sin(2 gamma)
+};
+
+struct NoisyAbsoluteOptions {
+  Solution solution = Solution::sine;
+  double gamma = 2;  ///< gamma ~ U(-gamma, gamma)
+  Index terms = 32;  ///< of the noise; w ~ U(omega), phi ~ U(0, 2 pi)
+  double omega_min = 1, omega_max = 50;
+  double level = 1;    ///< a; A ~ U(0, 1), then rescaled to this level
+  double decades = 0;  ///< a = level 10^U(-decades, decades)
+  double snr = 1;      ///< lambda = snr a
+};
+
+Options describe(const NoisyAbsoluteOptions& options);
+
+/// sqrt(sum_j (A_j w_j)^2).
+double noise_level(VectorIn<double> amplitude, VectorIn<double> omega);
+
+template <class T>
+class NoisyAbsolute final : public Problem<T>, public Vjp<T> {
+ public:
+  using Options = NoisyAbsoluteOptions;
+  explicit NoisyAbsolute(const Options& options = {});
+
+  Shape shape() const override { return {1, 1, 3 + 3 * options_.terms}; }
+  Vector<double> start() const override { return Vector<double>::Zero(1); }
+
+  /// x = x*.
+  Samples<double> sample(Index first,
+                         Index count,
+                         const Rng& rng) const override;
+  /// x = x* + U(-1, 1), off the kink.
+  Samples<double> sample_labelled(Index first,
+                                  Index count,
+                                  const Rng& rng) const override;
+
+  void forward(BatchIn<T> x,
+               BatchIn<T> given,
+               BatchOut<T> y,
+               Workspace& work) const override;
+  void loss(BatchIn<T> y,
+            BatchIn<T> target,
+            VectorOut<double> loss) const override;
+  void loss_gradient(BatchIn<T> y,
+                     BatchIn<T> target,
+                     BatchOut<T> y_bar) const override;
+  void linearize(BatchIn<T> x,
+                 BatchIn<T> given,
+                 BatchOut<T> y,
+                 Tape& tape) const override;
+  void pullback(const Tape& tape,
+                BatchIn<T> y_bar,
+                BatchOut<T> x_bar,
+                Workspace& work) const override;
+
+  /// A sine or cosine counts as 10.
+  double operations() const override {
+    return 4 + 25 * static_cast<double>(options_.terms);
+  }
+
+ private:
+  Samples<double> draw(Index first,
+                       Index count,
+                       const Rng& rng,
+                       double spread) const;
+
+  Options options_;
+};
+
+extern template class NoisyAbsolute<float>;
+extern template class NoisyAbsolute<double>;
+
+}  // namespace physinv

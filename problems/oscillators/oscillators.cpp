@@ -1,0 +1,401 @@
+#include "problems/oscillators/oscillators.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "suite/core/check.h"
+#include "suite/core/threads.h"
+#include "suite/core/wide.h"
+
+namespace physinv {
+namespace {
+
+constexpr int kGroups = 2;  ///< registers of samples that run side by side
+constexpr Index kStages = 4;
+constexpr Index kChunk = 4;  ///< steps whose controls are loaded together
+
+template <class T>
+using Group = Wide<T, kGroups>;
+
+template <class T>
+constexpr Index group_count(Index samples) {
+  return (samples + Group<T>::kSamples - 1) / Group<T>::kSamples;
+}
+
+template <class T>
+struct Constants {
+  explicit Constants(const OscillatorsOptions& o)
+      : steps(o.steps),
+        g(T(o.coupling)),
+        c(T(o.control)),
+        dt(T(o.dt)),
+        half(T(o.dt / 2)),
+        sixth(T(o.dt / 6)),
+        third(T(o.dt / 3)) {}
+  Index steps;
+  T g, c, dt, half, sixth, third;
+};
+
+/// State, tangent or cotangent: components in the order x1, x2, p1, p2.
+template <class V>
+struct Four {
+  V x1, x2, p1, p2;
+};
+
+template <class S, class V>
+PHYSINV_LANES Four<V> add(const Four<V>& a, S s, const Four<V>& b) {
+  return {a.x1 + s * b.x1, a.x2 + s * b.x2, a.p1 + s * b.p1, a.p2 + s * b.p2};
+}
+
+template <class S, class V>
+PHYSINV_LANES Four<V> scale(S s, const Four<V>& a) {
+  return {s * a.x1, s * a.x2, s * a.p1, s * a.p2};
+}
+
+/// Time derivative at s; w = g (x2 - x1)^2 for the reverse pass.
+template <class T, class V>
+PHYSINV_LANES Four<V> rate(const Constants<T>& k,
+                           const Four<V>& s,
+                           const V& force,
+                           V& w) {
+  const V d = s.x2 - s.x1;
+  w = k.g * (d * d);
+  const V pull = w * d;
+  return {s.p1, s.p2, pull - s.x1, (force - s.x2) - pull};
+}
+
+template <class T, class V>
+PHYSINV_LANES Four<V> runge_kutta(const Constants<T>& k,
+                                  const Four<V>& s,
+                                  const V& u,
+                                  V (&w)[kStages]) {
+  const V force = k.c * u;
+  const Four<V> k1 = rate(k, s, force, w[0]);
+  const Four<V> k2 = rate(k, add(s, k.half, k1), force, w[1]);
+  const Four<V> k3 = rate(k, add(s, k.half, k2), force, w[2]);
+  const Four<V> k4 = rate(k, add(s, k.dt, k3), force, w[3]);
+  const Four<V> end = add(add(s, k.sixth, k1), k.sixth, k4);
+  return add(add(end, k.third, k2), k.third, k3);
+}
+
+/// All steps of one group; `kept` (or null) takes w of every stage. Compiled
+/// once, because the compiler fuses products and sums differently in each
+/// inlined copy: forward and linearize must agree to the last bit.
+template <class T>
+[[gnu::noinline, gnu::noclone]] void integrate(const Constants<T>& constants,
+                                               BatchIn<T> x,
+                                               Index first,
+                                               Four<Group<T>>& state,
+                                               Group<T>* kept) {
+  const Constants<T> k = constants;  // stores through `kept` cannot touch it
+  Four<Group<T>> s = state;
+  for (Index n = 0; n < k.steps; n += kChunk) {
+    const Index count = std::min(kChunk, k.steps - n);
+    Group<T> u[kChunk], w[kStages];
+    load_rows(x, n, count, first, u);
+    for (Index i = 0; i < count; ++i) {
+      s = runge_kutta(k, s, u[i], w);
+      if (kept == nullptr) continue;
+      for (Index stage = 0; stage < kStages; ++stage) *kept++ = w[stage];
+    }
+  }
+  state = s;
+}
+
+/// Cotangent of one stage's state, from that of its rate.
+template <class T, class E, class V>
+PHYSINV_LANES Four<V> rate_transposed(const E& w, const Four<V>& k_bar) {
+  const V m = w * (k_bar.p1 - k_bar.p2);
+  return {-k_bar.p1 - m, m - k_bar.p2, k_bar.x1, k_bar.x2};
+}
+
+template <class T>
+PHYSINV_LANES Pack<T> tripled(Pack<T> w) {
+  return T(3) * w;
+}
+template <class T, int N>
+PHYSINV_LANES Wide<T, N> tripled(const Wide<T, N>& w) {
+  return T(3) * w;
+}
+
+/// One step backwards: the cotangent of its start replaces that of its end;
+/// returns the cotangent of the control. V may hold several rows of one
+/// group's samples, whose w are then shared.
+template <class T, class V, class W>
+PHYSINV_LANES V step_transposed(const Constants<T>& k,
+                                Four<V>& bar,
+                                const W& w) {
+  const Four<V> sixth = scale(k.sixth, bar), third = scale(k.third, bar);
+  const Four<V> k4 = sixth;
+  const Four<V> s4 = rate_transposed<T>(w(3), k4);
+  const Four<V> k3 = add(third, k.dt, s4);
+  const Four<V> s3 = rate_transposed<T>(w(2), k3);
+  const Four<V> k2 = add(third, k.half, s3);
+  const Four<V> s2 = rate_transposed<T>(w(1), k2);
+  const Four<V> k1 = add(sixth, k.half, s2);
+  const Four<V> s1 = rate_transposed<T>(w(0), k1);
+  bar = add(add(add(add(bar, T(1), s4), T(1), s3), T(1), s2), T(1), s1);
+  return k.c * ((k1.p2 + k4.p2) + (k2.p2 + k3.p2));
+}
+
+template <class T>
+Four<Group<T>> load_state(BatchIn<T> batch, Index first) {
+  Group<T> s[4];
+  load_rows(batch, 0, 4, first, s);
+  return {s[0], s[1], s[2], s[3]};
+}
+
+template <class T>
+void store_state(const Four<Group<T>>& s, BatchOut<T>& batch, Index first) {
+  const Group<T> rows[4] = {s.x1, s.x2, s.p1, s.p2};
+  store_rows(rows, batch, 0, 4, first);
+}
+
+/// Gradients of one group from the cotangent of its final state.
+template <class T>
+void pull_group(const Constants<T>& k,
+                const Group<T>* kept,
+                Four<Group<T>> bar,
+                BatchOut<T>& x_bar,
+                Index first) {
+  for (Index end = k.steps; end > 0;) {
+    const Index begin = (end - 1) / kChunk * kChunk;
+    Group<T> u_bar[kChunk];
+    for (Index n = end; n-- > begin;) {
+      const Group<T>* w = kept + n * kStages;
+      u_bar[n - begin] =
+          step_transposed(k, bar, [&](int i) { return tripled(w[i]); });
+    }
+    store_rows(u_bar, x_bar, begin, end - begin, first);
+    end = begin;
+  }
+}
+
+/// The rows of the identity.
+template <class T>
+Four<Wide<T, 4>> unit_rows() {
+  const auto unit = [](int component) {
+    return Wide<T, 4>::make(
+        [&](int row) { return Pack<T>{} + T(row == component); });
+  };
+  return {unit(0), unit(1), unit(2), unit(3)};
+}
+
+/// Jacobians of register g of one group; returns d state_end / d state_start.
+template <class T>
+Four<Wide<T, 4>> differentiate(const Constants<T>& k,
+                               const Group<T>* kept,
+                               int g,
+                               BatchOut<T>& j,
+                               Index first) {
+  Four<Wide<T, 4>> bar = unit_rows<T>();
+  for (Index n = k.steps; n-- > 0;) {
+    const Group<T>* w = kept + n * kStages;
+    const Wide<T, 4> column =
+        step_transposed(k, bar, [&](int i) { return tripled<T>(w[i].r[g]); });
+    store_rows<T>(column.r, 1, j, 4 * n, 4, first);
+  }
+  return bar;
+}
+
+template <class M>
+void check_size(const M& batch, Index rows, Index cols) {
+  SUITE_CHECK(batch.rows() == rows && batch.cols() == cols,
+              "batch has the wrong size");
+}
+
+enum Slot : std::size_t { kKept, kCount };
+
+}  // namespace
+
+Options describe(const OscillatorsOptions& o) {
+  return {{"steps", fmt::format("{}", o.steps)},
+          {"dt", fmt::format("{}", o.dt)},
+          {"coupling", fmt::format("{}", o.coupling)},
+          {"control", fmt::format("{}", o.control)},
+          {"deviation", fmt::format("{}", o.deviation)}};
+}
+
+template <class T>
+OscillatorsStep oscillators_step(const std::array<double, 4>& state,
+                                 double u,
+                                 const OscillatorsOptions& options) {
+  OscillatorsOptions one = options;
+  one.steps = 1;
+  const Constants<T> k(one);
+  Batch<T> x(1, 1), s(4, 1), j(4, 1);
+  x(0, 0) = T(u);
+  for (Index i = 0; i < 4; ++i) s(i, 0) = T(state[std::size_t(i)]);
+  Group<T> kept[kStages];
+  auto at = load_state<T>(s, 0);
+  integrate<T>(k, x, 0, at, kept);
+  BatchOut<T> columns(j), end(s);
+  const auto rows = differentiate(k, kept, 0, columns, 0);
+  store_state<T>(at, end, 0);
+  OscillatorsStep out;
+  for (std::size_t i = 0; i < 4; ++i) {
+    out.y[i] = double(s(Index(i), 0));
+    out.b[i] = double(j(Index(i), 0));
+    out.a[i] = {double(rows.x1.r[i][0]),
+                double(rows.x2.r[i][0]),
+                double(rows.p1.r[i][0]),
+                double(rows.p2.r[i][0])};
+  }
+  return out;
+}
+
+template OscillatorsStep oscillators_step<float>(const std::array<double, 4>&,
+                                                 double,
+                                                 const OscillatorsOptions&);
+template OscillatorsStep oscillators_step<double>(const std::array<double, 4>&,
+                                                  double,
+                                                  const OscillatorsOptions&);
+
+template <class T>
+Oscillators<T>::Oscillators(const Options& options) : options_(options) {
+  SUITE_CHECK(options.steps > 0 && options.dt > 0,
+              "there must be steps, forward in time");
+}
+
+template <class T>
+Vector<double> Oscillators<T>::start() const {
+  return Vector<double>::Zero(options_.steps);
+}
+
+template <class T>
+Samples<double> Oscillators<T>::sample(Index first,
+                                       Index count,
+                                       const Rng& rng) const {
+  Samples<double> out;
+  out.x.resize(0, count), out.given.resize(4, count);
+  for (Index i = 0; i < count; ++i) {
+    Stream stream = rng.child(static_cast<std::uint64_t>(first + i)).stream();
+    for (Index k = 0; k < 4; ++k) out.given(k, i) = stream.uniform();
+  }
+  out.y = out.given;
+  return out;
+}
+
+template <class T>
+Samples<double> Oscillators<T>::sample_labelled(Index first,
+                                                Index count,
+                                                const Rng& rng) const {
+  Samples<double> out = sample(first, count, rng);
+  out.x.resize(options_.steps, count);
+  for (Index i = 0; i < count; ++i) {
+    Stream stream = rng.child(static_cast<std::uint64_t>(first + i))
+                        .child("control")
+                        .stream();
+    for (Index n = 0; n < options_.steps; ++n)
+      out.x(n, i) = options_.deviation * stream.normal();
+  }
+  Workspace work;
+  Oscillators<double>(options_).forward(out.x, out.given, out.y, work);
+  return out;
+}
+
+template <class T>
+void Oscillators<T>::forward(BatchIn<T> x,
+                             BatchIn<T> given,
+                             BatchOut<T> y,
+                             Workspace& work) const {
+  const Index samples = x.cols();
+  check_size(x, options_.steps, samples);
+  check_size(given, 4, samples);
+  check_size(y, 4, samples);
+  const Constants<T> k(options_);
+  for_blocks(work.threads(), group_count<T>(samples), [&](Index b, int) {
+    const Index first = b * Group<T>::kSamples;
+    auto s = load_state<T>(given, first);
+    integrate<T>(k, x, first, s, nullptr);
+    store_state<T>(s, y, first);
+  });
+}
+
+template <class T>
+void Oscillators<T>::linearize(BatchIn<T> x,
+                               BatchIn<T> given,
+                               BatchOut<T> y,
+                               Tape& tape) const {
+  const Index samples = x.cols(), groups = group_count<T>(samples);
+  check_size(x, options_.steps, samples);
+  check_size(given, 4, samples);
+  check_size(y, 4, samples);
+  const Constants<T> k(options_);
+  tape.slot<Index>(kCount, 1, 1)(0, 0) = samples;
+  auto kept = tape.slot<T>(
+      kKept, options_.steps * kStages * Group<T>::kSamples, groups);
+  for_blocks(tape.threads(), groups, [&](Index b, int) {
+    const Index first = b * Group<T>::kSamples;
+    auto s = load_state<T>(given, first);
+    integrate<T>(
+        k, x, first, s, reinterpret_cast<Group<T>*>(kept.col(b).data()));
+    store_state<T>(s, y, first);
+  });
+}
+
+template <class T>
+void Oscillators<T>::pullback(const Tape& tape,
+                              BatchIn<T> y_bar,
+                              BatchOut<T> x_bar,
+                              Workspace& work) const {
+  const Index samples = tape.view<Index>(kCount)(0, 0);
+  check_size(y_bar, 4, samples);
+  check_size(x_bar, options_.steps, samples);
+  const auto kept = tape.view<T>(kKept);
+  const Constants<T> k(options_);
+  for_blocks(work.threads(), kept.cols(), [&](Index b, int) {
+    const Index first = b * Group<T>::kSamples;
+    pull_group<T>(k,
+                  reinterpret_cast<const Group<T>*>(kept.col(b).data()),
+                  load_state<T>(y_bar, first),
+                  x_bar,
+                  first);
+  });
+}
+
+template <class T>
+void Oscillators<T>::jacobian(BatchIn<T> x,
+                              BatchIn<T> given,
+                              BatchOut<T> j,
+                              Workspace& work) const {
+  const Index samples = x.cols(), steps = options_.steps;
+  check_size(x, steps, samples);
+  check_size(given, 4, samples);
+  check_size(j, 4 * steps, samples);
+  const Constants<T> k(options_);
+  Threads* threads = work.threads();
+  if (threads != nullptr) work.of_thread(0);  // makes them all
+  for_blocks(threads, group_count<T>(samples), [&](Index b, int thread) {
+    Workspace& own = threads != nullptr ? work.of_thread(thread) : work;
+    const Workspace::Scope scope(own);
+    auto* kept = reinterpret_cast<Group<T>*>(
+        own.take<T>(steps * kStages * Group<T>::kSamples, 1).data());
+    const Index first = b * Group<T>::kSamples;
+    auto s = load_state<T>(given, first);
+    integrate<T>(k, x, first, s, kept);
+    for (int g = 0; g < kGroups && first + g * kLanes<T> < samples; ++g)
+      differentiate(k, kept, g, j, first + g * kLanes<T>);
+  });
+}
+
+template <class T>
+void Oscillators<T>::loss(BatchIn<T> y,
+                          BatchIn<T> target,
+                          VectorOut<double> loss) const {
+  Problem<T>::loss(y, target, loss);
+  loss *= 2;
+}
+
+template <class T>
+void Oscillators<T>::loss_gradient(BatchIn<T> y,
+                                   BatchIn<T> target,
+                                   BatchOut<T> y_bar) const {
+  y_bar = T(2) * (y - target);
+}
+
+template class Oscillators<float>;
+template class Oscillators<double>;
+
+}  // namespace physinv

@@ -1,0 +1,137 @@
+/// The time step of the quantum dipole, in lanes: factorisation and solve.
+#pragma once
+
+#include <algorithm>
+
+#include "problems/quantum_dipole/quantum_dipole.h"
+#include "suite/core/wide.h"
+
+namespace physinv::quantum {
+
+inline constexpr int kPoints = kQuantumPoints;
+/// Where elimination from the left wall and from the right meet.
+inline constexpr int kMiddle = kPoints / 2;
+inline constexpr Index kChunk = 4;  ///< steps that are factored together
+
+template <class T>
+struct Constants {
+  explicit Constants(const QuantumDipoleOptions& o) : steps(o.steps) {
+    const double dx = 2.0 / (kPoints + 1), r = o.dt / (2 * dx * dx);
+    inverse_r = T(1 / r);
+    twice_inverse_r = T(2 / r);
+    for (int j = 0; j < kPoints; ++j) {
+      slope[j] = T(o.dt / 2 * (j + 1) * dx / r);
+      pull[j] = T(o.dt / 4 * (j + 1) * dx);
+    }
+  }
+  Index steps;
+  T inverse_r, twice_inverse_r;
+  T slope[kPoints];  ///< dt/2 x_j / r
+  T pull[kPoints];   ///< dt/4 x_j
+};
+
+template <class V>
+struct Complex {
+  V re, im;
+};
+
+/// a b + c
+template <class E, class V>
+PHYSINV_LANES Complex<V> multiply_add(const Complex<E>& a,
+                                      const Complex<V>& b,
+                                      const Complex<V>& c) {
+  return {(a.re * b.re + c.re) - a.im * b.im,
+          (a.re * b.im + c.im) + a.im * b.re};
+}
+
+template <class E, class V>
+PHYSINV_LANES Complex<V> multiply(const Complex<E>& a, const Complex<V>& b) {
+  return {a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
+}
+
+/// e_j = i r p_j of `count` lanes of (step, sample): e[k * kPoints + j] for
+/// control u[k]. 1 / e_j = 2 + slope_j u - i / r - e_{j -+ 1}. Compiled once,
+/// as is everything here that forward and linearize share.
+template <class T>
+[[gnu::noinline, gnu::noclone]] void factor(const Constants<T>& k,
+                                            const Pack<T>* u,
+                                            int count,
+                                            Complex<Pack<T>>* e) {
+  using P = Pack<T>;
+  const P zero = P{} + T(0);
+  const T inverse_r = k.inverse_r;
+  // One division for the two chains: 1 / a = b / (a b).
+  for (int j = 0; j + 1 < kMiddle; ++j) {
+    const int l = kPoints - 1 - j;
+    const T left = k.slope[j], right = k.slope[l];
+    for (int n = 0; n < count; ++n) {
+      Complex<P>* at = e + n * kPoints;
+      const Complex<P> before = j > 0 ? at[j - 1] : Complex<P>{zero, zero};
+      const Complex<P> after = j > 0 ? at[l + 1] : Complex<P>{zero, zero};
+      const P ar = (left * u[n] + T(2)) - before.re;
+      const P ai = inverse_r + before.im;
+      const P br = (right * u[n] + T(2)) - after.re;
+      const P bi = inverse_r + after.im;
+      const P a2 = ar * ar + ai * ai, b2 = br * br + bi * bi;
+      const P shared = T(1) / (a2 * b2);
+      const P a = b2 * shared, b = a2 * shared;
+      at[j] = {ar * a, ai * a};
+      at[l] = {br * b, bi * b};
+    }
+  }
+  for (int j = kMiddle - 1; j <= kMiddle; ++j) {
+    const T slope = k.slope[j];
+    for (int n = 0; n < count; ++n) {
+      Complex<P>* at = e + n * kPoints;
+      P re = (slope * u[n] + T(2)) - at[j - 1].re;
+      P im = inverse_r + at[j - 1].im;
+      if (j == kMiddle) re = re - at[j + 1].re, im = im + at[j + 1].im;
+      const P scale = T(1) / (re * re + im * im);
+      at[j] = {re * scale, im * scale};
+    }
+  }
+}
+
+/// Solves M y = 2 c, calls sink(j, y_j), and sets c <- y - c. `e(j)` gives the
+/// factorisation; V may hold several right-hand sides that share it.
+template <class T, class V, class E, class Sink>
+PHYSINV_LANES void advance(const Constants<T>& k,
+                           const E& e,
+                           Complex<V>* c,
+                           Sink&& sink) {
+  const T s = k.twice_inverse_r;
+  Complex<V> y[kPoints];
+  y[0] = multiply(e(0), Complex<V>{s * c[0].im, -(s * c[0].re)});
+  y[kPoints - 1] =
+      multiply(e(kPoints - 1),
+               Complex<V>{s * c[kPoints - 1].im, -(s * c[kPoints - 1].re)});
+#pragma GCC unroll 8
+  for (int j = 1; j < kMiddle; ++j) {
+    const int l = kPoints - 1 - j;
+    y[j] = multiply(
+        e(j), Complex<V>{y[j - 1].re + s * c[j].im, y[j - 1].im - s * c[j].re});
+    if (l == kMiddle) continue;
+    y[l] = multiply(
+        e(l), Complex<V>{y[l + 1].re + s * c[l].im, y[l + 1].im - s * c[l].re});
+  }
+  constexpr int m = kMiddle;
+  y[m] = multiply(e(m),
+                  Complex<V>{(y[m - 1].re + y[m + 1].re) + s * c[m].im,
+                             (y[m - 1].im + y[m + 1].im) - s * c[m].re});
+  const auto leave = [&](int j) __attribute__((always_inline)) {
+    sink(j, y[j]);
+    c[j] = {y[j].re - c[j].re, y[j].im - c[j].im};
+  };
+  leave(m);
+#pragma GCC unroll 8
+  for (int j = m - 1; j >= 0; --j) {
+    const int l = kPoints - 1 - j;
+    y[j] = multiply_add(e(j), y[j + 1], y[j]);
+    leave(j);
+    if (l == m) continue;
+    y[l] = multiply_add(e(l), y[l - 1], y[l]);
+    leave(l);
+  }
+}
+
+}  // namespace physinv::quantum

@@ -1,0 +1,390 @@
+#include "problems/quantum_dipole/quantum_dipole.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include "problems/quantum_dipole/cayley.h"
+#include "suite/core/check.h"
+#include "suite/core/threads.h"
+
+namespace physinv {
+namespace {
+
+using quantum::advance;
+using quantum::Complex;
+using quantum::Constants;
+using quantum::factor;
+using quantum::kChunk;
+using quantum::kPoints;
+
+constexpr Index kRows = 2 * kPoints;
+constexpr int kGroups = 2;    ///< registers of samples in a forward pass
+constexpr int kRowsOfCs = 2;  ///< rows of cotangents that go back together
+
+template <class T>
+using Group = Wide<T, kGroups>;
+
+template <class T>
+constexpr Index block_count(Index samples, Index width) {
+  return (samples + width - 1) / width;
+}
+
+/// All steps of one group, from the ground state. Compiled once: forward and
+/// linearize must agree to the last bit.
+template <class T>
+[[gnu::noinline, gnu::noclone]] void propagate(const Constants<T>& k,
+                                               BatchIn<T> x,
+                                               Index first,
+                                               BatchOut<T>& psi_end) {
+  static const Vector<double> ground = quantum_eigenstate(1);
+  Complex<Group<T>> psi[kPoints];
+  const Group<T> zero = Group<T>::make([](int) { return Pack<T>{}; });
+  for (int j = 0; j < kPoints; ++j)
+    psi[j] = {Group<T>::make([&](int) { return Pack<T>{} + T(ground(j)); }),
+              zero};
+  for (Index n = 0; n < k.steps; n += kChunk) {
+    const Index count = std::min(kChunk, k.steps - n);
+    Group<T> u[kChunk];
+    Complex<Pack<T>> factors[kChunk * kGroups * kPoints];
+    load_rows(x, n, count, first, u);
+    factor(k, u->r, static_cast<int>(count) * kGroups, factors);
+    for (Index i = 0; i < count; ++i) {
+      const auto* e = factors + i * kGroups * kPoints;
+      advance(
+          k,
+          [e](int j) __attribute__((always_inline)) {
+            return Complex<Group<T>>{
+                Group<T>::make([=](int g) { return e[g * kPoints + j].re; }),
+                Group<T>::make([=](int g) { return e[g * kPoints + j].im; })};
+          },
+          psi,
+          [](int, const auto&) {});
+    }
+  }
+  Group<T> rows[kRows];
+  for (int j = 0; j < kPoints; ++j)
+    rows[2 * j] = psi[j].re, rows[2 * j + 1] = psi[j].im;
+  store_rows(rows, psi_end, 0, kRows, first);
+}
+
+/// Calls step(n, e) from the last step to the first with the factorisation of
+/// each, for one register of samples.
+template <class T, class F>
+PHYSINV_LANES void backwards(const Constants<T>& k,
+                             BatchIn<T> x,
+                             Index first,
+                             F&& step) {
+  for (Index end = k.steps; end > 0;) {
+    const Index begin = (end - 1) / kChunk * kChunk;
+    Pack<T> u[kChunk];
+    Complex<Pack<T>> factors[kChunk * kPoints];
+    load_rows<T>(x, begin, end - begin, first, u);
+    factor(k, u, static_cast<int>(end - begin), factors);
+    for (Index n = end; n-- > begin;) {
+      const auto* e = factors + (n - begin) * kPoints;
+      step(
+          n, [e](int j) __attribute__((always_inline)) { return e[j]; });
+    }
+    end = begin;
+  }
+}
+
+/// Gradients of one register of samples. conj(psi) and the row of cotangents
+/// share every solve.
+template <class T>
+[[gnu::noinline]] void pull_block(const Constants<T>& k,
+                                  BatchIn<T> x,
+                                  BatchIn<T> psi,
+                                  BatchIn<T> y_bar,
+                                  Index first,
+                                  BatchOut<T>& x_bar) {
+  using P = Pack<T>;
+  using Two = Wide<T, 2>;  // conj(psi), c
+  P end[kRows], bar[kRows];
+  load_rows<T>(psi, 0, kRows, first, end);
+  load_rows<T>(y_bar, 0, kRows, first, bar);
+  Complex<Two> c[kPoints];
+  for (int j = 0; j < kPoints; ++j) {
+    c[j].re = {{end[2 * j], bar[2 * j]}};
+    c[j].im = {{-end[2 * j + 1], -bar[2 * j + 1]}};
+  }
+  P gathered[kChunk];
+  backwards(k, x, first, [&](Index n, const auto& e) {
+    P even{}, odd{};
+    advance(k, e, c, [&](int j, const Complex<Two>& y) {
+      P& sum = j % 2 == 0 ? even : odd;
+      sum += k.pull[j] * (y.im.r[1] * y.re.r[0] - y.re.r[1] * y.im.r[0]);
+    });
+    gathered[n % kChunk] = even + odd;
+    if (n % kChunk != 0) return;
+    store_rows<T>(gathered, 1, x_bar, n, std::min(kChunk, k.steps - n), first);
+  });
+}
+
+/// Jacobians of one register of samples: 14 unit rows of cotangents.
+template <class T>
+[[gnu::noinline]] void differentiate_block(const Constants<T>& k,
+                                           BatchIn<T> x,
+                                           BatchIn<T> psi,
+                                           Index first,
+                                           BatchOut<T>& jacobian) {
+  using P = Pack<T>;
+  using Rows = Wide<T, kRowsOfCs>;
+  P end[kRows];
+  load_rows<T>(psi, 0, kRows, first, end);
+  Complex<Wide<T, 1>> back[kPoints];
+  for (int j = 0; j < kPoints; ++j)
+    back[j] = {{{end[2 * j]}}, {{-end[2 * j + 1]}}};
+  constexpr int kBundles = kPoints / kRowsOfCs;
+  Complex<Rows> c[kBundles][kPoints];
+  for (int b = 0; b < kBundles; ++b)
+    for (int j = 0; j < kPoints; ++j)
+      c[b][j] = {Rows::make([&](int row) {
+                   return P{} + T(b * kRowsOfCs + row == j);
+                 }),
+                 Rows::make([](int) { return P{}; })};
+  backwards(k, x, first, [&](Index n, const auto& e) {
+    Complex<P> q[kPoints];  // dt/4 x_j (psi_{n+1} + psi_n)_j / i
+    advance(k, e, back, [&](int j, const Complex<Wide<T, 1>>& y) {
+      q[j] = {-(k.pull[j] * y.im.r[0]), -(k.pull[j] * y.re.r[0])};
+    });
+    P column[kRows];
+    for (int b = 0; b < kBundles; ++b) {
+      const Rows zero = Rows::make([](int) { return P{}; });
+      Complex<Rows> sum{zero, zero};
+      advance(k, e, c[b], [&](int j, const Complex<Rows>& y) {
+        sum = multiply_add(q[j], y, sum);
+      });
+      for (int row = 0; row < kRowsOfCs; ++row) {
+        column[2 * (b * kRowsOfCs + row)] = sum.re.r[row];
+        column[2 * (b * kRowsOfCs + row) + 1] = sum.im.r[row];
+      }
+    }
+    store_rows<T>(column, 1, jacobian, kRows * n, kRows, first);
+  });
+}
+
+/// <a, b> of two states
+template <class A, class B>
+std::complex<double> inner(const A& a, const B& b) {
+  double re = 0, im = 0;
+  for (Index j = 0; j < kPoints; ++j) {
+    const double ar = a(2 * j), ai = a(2 * j + 1);
+    const double br = b(2 * j), bi = b(2 * j + 1);
+    re += ar * br + ai * bi;
+    im += ar * bi - ai * br;
+  }
+  return {re, im};
+}
+
+template <class M>
+void check_size(const M& batch, Index rows, Index cols) {
+  SUITE_CHECK(batch.rows() == rows && batch.cols() == cols,
+              "batch has the wrong size");
+}
+
+enum Slot : std::size_t { kControls, kEnd };
+
+}  // namespace
+
+Options describe(const QuantumDipoleOptions& o) {
+  return {{"steps", fmt::format("{}", o.steps)},
+          {"dt", fmt::format("{}", o.dt)},
+          {"accurate_loss", fmt::format("{}", o.accurate_loss)},
+          {"deviation", fmt::format("{}", o.deviation)}};
+}
+
+Vector<double> quantum_eigenstate(int k) {
+  SUITE_CHECK(k >= 1 && k <= kPoints, "there are 14 eigenstates");
+  Vector<double> psi(kPoints);
+  for (int j = 1; j <= kPoints; ++j)
+    psi(j - 1) = std::sin(std::numbers::pi * k * j / (kPoints + 1));
+  return psi / std::sqrt(0.5 * (kPoints + 1));
+}
+
+double quantum_energy(int k) {
+  SUITE_CHECK(k >= 1 && k <= kPoints, "there are 14 eigenstates");
+  const double dx = 2.0 / (kPoints + 1);
+  const double s = std::sin(std::numbers::pi * k / (2 * (kPoints + 1)));
+  return 4 / (dx * dx) * s * s;
+}
+
+Vector<double> quantum_observation(const Vector<double>& real_state) {
+  SUITE_CHECK(real_state.size() == kPoints, "a state has 14 points");
+  Vector<double> y = Vector<double>::Zero(kRows);
+  for (Index j = 0; j < kPoints; ++j) y(2 * j) = real_state(j);
+  return y;
+}
+
+template <class T>
+QuantumDipole<T>::QuantumDipole(const Options& options) : options_(options) {
+  SUITE_CHECK(options.steps > 0 && options.dt > 0,
+              "there must be steps, forward in time");
+}
+
+template <class T>
+Vector<double> QuantumDipole<T>::start() const {
+  Stream stream = Rng::root("quantum_dipole/start", 0).stream();
+  return Vector<double>::NullaryExpr(options_.steps, [&](Index) {
+    return options_.deviation * stream.normal();
+  });
+}
+
+template <class T>
+Samples<double> QuantumDipole<T>::sample(Index first,
+                                         Index count,
+                                         const Rng& rng) const {
+  const Vector<double> psi2 = quantum_observation(quantum_eigenstate(2));
+  const Vector<double> psi3 = quantum_observation(quantum_eigenstate(3));
+  Samples<double> out;
+  out.x.resize(0, count), out.y.resize(kRows, count),
+      out.given.resize(0, count);
+  for (Index i = 0; i < count; ++i) {
+    Stream stream = rng.child(static_cast<std::uint64_t>(first + i)).stream();
+    const double f1 = stream.normal(), f2 = stream.normal();
+    out.y.col(i) = (f1 * psi2 + f2 * psi3) / std::hypot(f1, f2);
+  }
+  return out;
+}
+
+template <class T>
+Samples<double> QuantumDipole<T>::sample_labelled(Index first,
+                                                  Index count,
+                                                  const Rng& rng) const {
+  Samples<double> out;
+  out.x.resize(options_.steps, count);
+  out.y.resize(kRows, count), out.given.resize(0, count);
+  for (Index i = 0; i < count; ++i) {
+    Stream stream = rng.child(static_cast<std::uint64_t>(first + i)).stream();
+    for (Index n = 0; n < options_.steps; ++n)
+      out.x(n, i) = options_.deviation * stream.normal();
+  }
+  Workspace work;
+  QuantumDipole<double>(options_).forward(out.x, out.given, out.y, work);
+  return out;
+}
+
+template <class T>
+void QuantumDipole<T>::forward(BatchIn<T> x,
+                               BatchIn<T> /*given*/,
+                               BatchOut<T> y,
+                               Workspace& work) const {
+  check_size(x, options_.steps, x.cols());
+  check_size(y, kRows, x.cols());
+  const Constants<T> k(options_);
+  constexpr Index kWidth = Group<T>::kSamples;
+  for_blocks(work.threads(),
+             block_count<T>(x.cols(), kWidth),
+             [&](Index b, int) { propagate<T>(k, x, b * kWidth, y); });
+}
+
+template <class T>
+void QuantumDipole<T>::linearize(BatchIn<T> x,
+                                 BatchIn<T> /*given*/,
+                                 BatchOut<T> y,
+                                 Tape& tape) const {
+  check_size(x, options_.steps, x.cols());
+  check_size(y, kRows, x.cols());
+  const Constants<T> k(options_);
+  constexpr Index kWidth = Group<T>::kSamples;
+  for_blocks(tape.threads(),
+             block_count<T>(x.cols(), kWidth),
+             [&](Index b, int) { propagate<T>(k, x, b * kWidth, y); });
+  tape.slot<T>(kControls, x.rows(), x.cols()) = x;
+  tape.slot<T>(kEnd, kRows, x.cols()) = y;
+}
+
+template <class T>
+void QuantumDipole<T>::pullback(const Tape& tape,
+                                BatchIn<T> y_bar,
+                                BatchOut<T> x_bar,
+                                Workspace& work) const {
+  const auto x = tape.view<T>(kControls), psi = tape.view<T>(kEnd);
+  check_size(y_bar, kRows, x.cols());
+  check_size(x_bar, options_.steps, x.cols());
+  const Constants<T> k(options_);
+  for_blocks(
+      work.threads(), block_count<T>(x.cols(), kLanes<T>), [&](Index b, int) {
+        pull_block<T>(k, x, psi, y_bar, b * kLanes<T>, x_bar);
+      });
+}
+
+template <class T>
+void QuantumDipole<T>::jacobian(BatchIn<T> x,
+                                BatchIn<T> given,
+                                BatchOut<T> j,
+                                Workspace& work) const {
+  check_size(j, kRows * options_.steps, x.cols());
+  const Workspace::Scope scope(work);
+  auto psi = work.take<T>(kRows, x.cols());
+  forward(x, given, psi, work);
+  const Constants<T> k(options_);
+  for_blocks(
+      work.threads(), block_count<T>(x.cols(), kLanes<T>), [&](Index b, int) {
+        differentiate_block<T>(k, x, psi, b * kLanes<T>, j);
+      });
+}
+
+template <class T>
+void QuantumDipole<T>::loss(BatchIn<T> y,
+                            BatchIn<T> target,
+                            VectorOut<double> loss) const {
+  for (Index i = 0; i < y.cols(); ++i) {
+    const auto psi = y.col(i), t = target.col(i);
+    const std::complex<double> ip = inner(t, psi);
+    loss(i) = 1 - std::norm(ip);
+    if (!options_.accurate_loss) continue;
+    double rest = 0;
+    for (Index j = 0; j < kPoints; ++j) {
+      const std::complex<double> at(psi(2 * j), psi(2 * j + 1));
+      rest += std::norm(at - ip * std::complex<double>(t(2 * j), t(2 * j + 1)));
+    }
+    loss(i) = rest;
+  }
+}
+
+template <class T>
+void QuantumDipole<T>::loss_gradient(BatchIn<T> y,
+                                     BatchIn<T> target,
+                                     BatchOut<T> y_bar) const {
+  for (Index i = 0; i < y.cols(); ++i) {
+    const auto t = target.col(i);
+    const std::complex<double> ip = inner(t, y.col(i));
+    for (Index j = 0; j < kPoints; ++j) {
+      const auto g = -2.0 * (ip * std::complex<double>(t(2 * j), t(2 * j + 1)));
+      y_bar(2 * j, i) = T(g.real());
+      y_bar(2 * j + 1, i) = T(g.imag());
+    }
+  }
+}
+
+template <class T>
+void QuantumDipole<T>::project(BatchIn<T> y, BatchOut<T> y_bar) const {
+  for (Index i = 0; i < y.cols(); ++i) {
+    double along = 0;
+    for (Index r = 0; r < kRows; ++r) along += double(y(r, i)) * y_bar(r, i);
+    for (Index r = 0; r < kRows; ++r)
+      y_bar(r, i) = T(y_bar(r, i) - along * y(r, i));
+  }
+}
+
+template <class T>
+void QuantumDipole<T>::level_loss(int k,
+                                  BatchIn<T> y,
+                                  BatchIn<T> target,
+                                  VectorOut<double> loss) const {
+  const Vector<double> level = quantum_observation(quantum_eigenstate(k));
+  for (Index i = 0; i < y.cols(); ++i) {
+    const double miss = std::abs(inner(level, y.col(i))) -
+                        std::abs(inner(level, target.col(i)));
+    loss(i) = miss * miss;
+  }
+}
+
+template class QuantumDipole<float>;
+template class QuantumDipole<double>;
+
+}  // namespace physinv

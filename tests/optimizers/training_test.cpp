@@ -1,0 +1,114 @@
+#include "optimizers/training.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/bits.h"
+#include "tests/support/quadratic.h"
+#include "tests/support/tolerance.h"
+
+namespace physinv::test {
+namespace {
+
+constexpr Index kCount = 12;
+
+TrainingOptions adam(Index batch) {
+  return {.rule = AdamOptions{.rate = 1e-2}, .batch = batch};
+}
+
+TEST(Training, LowersTheLossOfProblemsItDoesNotSee) {
+  for (const auto precision : {Precision::f32, Precision::f64}) {
+    for (const bool fresh : {false, true}) {
+      auto options = adam(16);
+      options.fresh = fresh;
+      const auto stage = train(options);
+      StageBench bench(*stage, 64, 400);
+      const Outcome out = bench.run(nullptr, precision);
+      const auto& mean = out.arrays.at("mean_loss");
+      EXPECT_LT(mean(mean.size() - 1), 0.05 * mean(0));
+      EXPECT_NEAR(mean(mean.size() - 1), bench.loss(out.x).mean(), 1e-12);
+      EXPECT_EQ(out.arrays.at("batch_loss").size(), 400);
+      EXPECT_EQ(out.arrays.at("samples_drawn")(0, 0), 400 * 16);
+    }
+  }
+}
+
+// One epoch of batches is one pass over the set, in order; the remainder is
+// left out. Plain descent on the whole set by hand gives the same weights.
+TEST(Training, WholeBatchesAreGradientDescentOnTheMeanLoss) {
+  const auto stage = train({.rule = SgdOptions{.rate = 0.1}, .batch = kCount});
+  StageBench bench(*stage, kCount, 3);
+  const Outcome out = bench.run();
+
+  const Setting setting = quadratic_setting();
+  Oracle oracle(quadratic(), kCount, bench.root, stage->needs());
+  NetworkModel<double> model(setting.predictor, oracle.shape(), 2, nullptr);
+  model.initialize(bench.root.child("network/init"));
+  const Samples<double> data = oracle.training(0, kCount);
+  const Batch<double> start = oracle.start();
+  const Batch<double> input =
+      assemble<double>(setting.predictor.inputs, start, data.given, data.y);
+  const Quadratic<double> problem;
+  Workspace work;
+  Tape tape;
+  for (int k = 0; k < 3; ++k) {
+    const Batch<double> x = start + model.forward(input);
+    Batch<double> y(2, kCount), x_bar(2, kCount);
+    problem.forward(x, data.given, y, work);
+    problem.pullback(tape, (y - data.y) / kCount, x_bar, work);
+    model.parameters() -= 0.1 * model.backward(x_bar);
+  }
+  EXPECT_TRUE(Comparator(1e-12, 1e-14)(
+      Vector<double>(out.arrays.at("parameters").col(0)),
+      Vector<double>(model.parameters())));
+}
+
+TEST(Training, BatchesAreSlicesInOrder) {
+  // With a rate of zero the losses are those of the untrained network, so the
+  // third batch of five out of twelve is the first again.
+  const auto stage = train({.rule = SgdOptions{.rate = 0}, .batch = 5});
+  StageBench bench(*stage, kCount, 4);
+  const auto losses = bench.run().arrays.at("batch_loss");
+  EXPECT_EQ(losses(0), losses(2));
+  EXPECT_EQ(losses(1), losses(3));
+  EXPECT_NE(losses(0), losses(1));
+}
+
+TEST(Training, ChainsContinue) {
+  const auto stage = train(adam(4));
+  StageBench first(*stage, kCount, 5), second(*stage, kCount, 0);
+  const Outcome before = first.run();
+  const Outcome after = second.run(&before);
+  EXPECT_TRUE(same_bits(before.x, after.x));
+  EXPECT_EQ(after.arrays.at("samples_drawn")(0, 0), 20);
+}
+
+TEST(Training, MetricsAreTakenAtEveryPointOfTheCurve) {
+  auto options = adam(4);
+  options.metrics = {
+      .name = "mean_y",
+      .rows = {"y0", "iteration"},
+      .evaluate = [](const Snapshot& s, VectorOut<double> values) {
+        values << s.y.row(0).mean(), static_cast<double>(s.iteration);
+      }};
+  const auto stage = train(options);
+  StageBench bench(*stage, kCount, 30);
+  const auto metrics = bench.run().arrays.at("metrics");
+  const Curve& curve = bench.probe.curve();
+  ASSERT_EQ(metrics.cols(), curve.points());
+  for (Index k = 0; k < curve.points(); ++k)
+    EXPECT_EQ(metrics(1, k), curve.iteration[static_cast<std::size_t>(k)]);
+}
+
+TEST(Training, AnUpdateThatOverflowsIsNotTaken) {
+  const auto stage = train({.rule = SgdOptions{.rate = 1e300}, .batch = 4});
+  StageBench bench(*stage, kCount, 50);
+  const Outcome out = bench.run();
+  EXPECT_EQ(out.stop, Stop::diverged);
+  EXPECT_FALSE(out.message.empty());
+  EXPECT_LT(bench.probe.iteration(), 50);
+  for (const auto& [name, array] : out.arrays)
+    EXPECT_TRUE(array.allFinite()) << name;
+}
+
+}  // namespace
+}  // namespace physinv::test

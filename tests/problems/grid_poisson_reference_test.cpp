@@ -1,0 +1,78 @@
+// The solver entries of hig-poisson.
+
+#include <Eigen/Eigenvalues>
+#include <functional>
+#include <map>
+
+#include "problems/grid_poisson/grid_poisson.h"
+#include "tests/problems/physics_checks.h"
+#include "tests/support/hig_reference.h"
+
+namespace physinv::test {
+namespace {
+
+const std::string kId = "hig-poisson";
+
+/// Entries of the network and of the updates.
+const std::set<std::string> kTraining = {
+    "batch2", "batch4", "adam_three_steps", "hig_three_updates"};
+
+template <class T>
+void check_stencil(const Json& entry, const TwoNorm& same) {
+  const Batch<T> f = flat(entry.at("input").at("f")).cast<T>(), given(0, 1);
+  const Vector<double> laplace = flat(entry.at("expected").at("laplace"));
+  const GridPoisson<T> grid;
+  Physics<GridPoisson<T>, T> at(grid);
+  EXPECT_TRUE(same(at.forward(f, given), laplace));
+  at.linearize(f, given);
+  EXPECT_TRUE(same(at.pullback(f), laplace));
+  const Batch<T> j = at.jacobian(f, given);
+  EXPECT_TRUE(same(at.matrix(j, 0) * f, laplace));
+}
+
+void check_laplacian(const Json& entry) {
+  check_stencil<double>(entry, HigTolerance(entry).array());
+  check_stencil<float>(entry, {1e-6, 1e-6});
+  const GridPoisson<double> grid;
+  Physics<GridPoisson<double>, double> at(grid);
+  const Batch<double> j =
+      at.jacobian(Batch<double>::Zero(64, 1), Batch<double>(0, 1));
+  EXPECT_TRUE(HigTolerance(entry).array()(
+      Eigen::SelfAdjointEigenSolver<Batch<double>>(at.matrix(j, 0))
+          .eigenvalues(),
+      flat(entry.at("expected").at("eigenvalues_sorted"))));
+}
+
+void check_sample(const Json& entry) {
+  const auto same = HigTolerance(entry).array();
+  Vector<double> noise(128);
+  noise << flat(entry.at("input").at("noise_re")),
+      flat(entry.at("input").at("noise_im"));
+  const Batch<double> phi = poisson_potential(noise);
+  EXPECT_TRUE(same(phi, flat(entry.at("expected").at("phi"))));
+  const GridPoisson<double> grid;
+  Physics<GridPoisson<double>, double> at(grid);
+  EXPECT_TRUE(same(at.forward(phi, Batch<double>(0, 1)),
+                   flat(entry.at("expected").at("rho"))));
+}
+
+TEST(GridPoissonReference, SolverEntries) {
+  const std::map<std::string, std::function<void(const Json&)>> checks = {
+      {"laplacian", check_laplacian},
+      {"sample_0", check_sample},
+      {"sample_1", check_sample}};
+  const Json file = load_reference(kId);
+  std::size_t seen = 0;
+  for (const Json& entry : file.at("entries")) {
+    const auto name = entry.at("name").get<std::string>();
+    SCOPED_TRACE(name);
+    if (kTraining.contains(name)) continue;
+    ASSERT_TRUE(checks.contains(name)) << "no test reads this entry";
+    checks.at(name)(entry);
+    ++seen;
+  }
+  EXPECT_GE(seen, checks.size());
+}
+
+}  // namespace
+}  // namespace physinv::test

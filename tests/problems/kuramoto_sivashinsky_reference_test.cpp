@@ -1,0 +1,200 @@
+// Every entry of jpo-kuramoto-sivashinsky that is physics or a solver's.
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <map>
+#include <set>
+
+#include "problems/kuramoto_sivashinsky/kuramoto_sivashinsky.h"
+#include "tests/support/jpo_entries.h"
+#include "tests/support/run_reference.h"
+
+namespace physinv::test {
+namespace {
+
+const std::string kId = "jpo-kuramoto-sivashinsky";
+
+/// What a comparison in T allows: the file's tolerance in double.
+template <class T>
+Comparator within(const Json& entry, double in_float) {
+  if constexpr (sizeof(T) == 8) return EntryTolerance(entry).array();
+  return {in_float, 0};
+}
+
+/// The inverse problems that several entries speak about, by column.
+Samples<double> problems() {
+  const Json entry = reference_entries(kId, "problems").at(0);
+  return {columns(entry.at("true")),
+          columns(entry.at("uT")),
+          columns(entry.at("u0"))};
+}
+
+template <class T>
+Batch<double> simulate(const Batch<double>& x,
+                       const Batch<double>& u0,
+                       const KuramotoSivashinskyOptions& options = {}) {
+  Batch<T> y(u0.rows(), u0.cols());
+  Workspace work;
+  KuramotoSivashinsky<T>(options).forward(x.cast<T>(), u0.cast<T>(), y, work);
+  return y.template cast<double>();
+}
+
+/// Losses and gradients of `problems()`, each at its column of x.
+template <class T>
+struct Observed {
+  Samples<T> data = problems().cast<T>();
+
+  void operator()(std::span<const Index> active,
+                  BatchIn<T> x,
+                  VectorOut<double> loss,
+                  BatchOut<T> gradient) const {
+    const std::vector<Index> some(active.begin(), active.end());
+    const Batch<T> given = data.given(Eigen::all, some);
+    const Batch<T> target = data.y(Eigen::all, some);
+    Batch<T> y(target.rows(), x.cols()), y_bar = y;
+    const KuramotoSivashinsky<T> problem;
+    Tape tape;
+    Workspace work;
+    problem.linearize(x, given, y, tape);
+    problem.loss(y, target, loss);
+    problem.loss_gradient(y, target, y_bar);
+    problem.pullback(tape, y_bar, gradient, work);
+  }
+};
+
+void check_operators(const Json& entry) {
+  const auto near = EntryTolerance(entry).array();
+  const auto op = operators(KuramotoSivashinskyOptions{});
+  EXPECT_TRUE(near(op.k, vector(entry.at("k"))));
+  EXPECT_TRUE(near(op.linear, vector(entry.at("linear"))));
+  EXPECT_TRUE(near(op.exp, vector(entry.at("exp"))));
+  EXPECT_TRUE(near(op.dt_phi1, vector(entry.at("dt_phi1"))));
+  EXPECT_TRUE(near(op.dt_phi2, vector(entry.at("dt_phi2"))));
+  EXPECT_TRUE(near(op.forcing, vector(entry.at("G"))));
+}
+
+template <class T>
+void check_problems(const Json& entry) {
+  const auto near = within<T>(entry, 1e-3);
+  const auto s = problems();
+  EXPECT_TRUE(near(simulate<T>(s.x, s.given), s.y));
+}
+
+template <class T>
+void check_intermediate(const Json& entry) {
+  const auto near = within<T>(entry, 1e-3);
+  const auto s = problems();
+  const Vector<T> x = s.x.col(0).cast<T>(), u0 = s.given.col(0).cast<T>();
+  const Batch<T> path = KuramotoSivashinsky<T>().trajectory(x, u0);
+  const Json& steps = entry.at("steps");
+  ASSERT_FALSE(steps.empty());
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const auto k = steps[i].get<Index>();
+    const Vector<double> expected = vector(entry.at("u").at(i));
+    EXPECT_TRUE(near(path.col(k), expected)) << "after " << k;
+    EXPECT_TRUE(near(
+        simulate<T>(s.x.leftCols(1), s.given.leftCols(1), {.steps = k}).col(0),
+        expected))
+        << "after " << k;
+  }
+}
+
+template <class T>
+void check_gradients(const Json& entry) {
+  const auto loss_near = within<T>(entry, 2e-4);
+  const auto gradient_near = within<T>(entry, 1e-2);
+  const Observed<T> objective;
+  const Index n = objective.data.count();
+  std::vector<Index> all(static_cast<std::size_t>(n));
+  for (Index i = 0; i < n; ++i) all[static_cast<std::size_t>(i)] = i;
+  ASSERT_FALSE(entry.at("points").empty());
+  for (const Json& point : entry.at("points")) {
+    const T alpha = static_cast<T>(number(point.at("alpha")));
+    const T beta = static_cast<T>(number(point.at("beta")));
+    SCOPED_TRACE(fmt::format("alpha {}, beta {}", alpha, beta));
+    Batch<T> x(2, n), gradient(2, n);
+    x.row(0).setConstant(alpha), x.row(1).setConstant(beta);
+    Vector<double> loss(n);
+    objective(all, x, loss, gradient);
+    EXPECT_TRUE(loss_near(loss, vector(point.at("loss"))));
+    EXPECT_TRUE(gradient_near(gradient, columns(point.at("gradient"))));
+  }
+}
+
+template <class T>
+void check_special(const Json& entry) {
+  const auto near = within<T>(entry, 1e-3);
+  ASSERT_FALSE(entry.at("cases").empty());
+  for (const Json& c : entry.at("cases")) {
+    SCOPED_TRACE(c.at("case").get<std::string>());
+    const Vector<double> x =
+        Eigen::Vector2d(number(c.at("alpha")), number(c.at("beta")));
+    const Batch<double> y = simulate<T>(x, vector(c.at("u0")));
+    if (c.value("finite", true)) {
+      EXPECT_TRUE(near(y.col(0), vector(c.at("uT"))));
+    } else {
+      EXPECT_TRUE(y.array().isNaN().all());
+    }
+  }
+}
+
+/// One problem per run, in order; rounding decides the path after iterate 3.
+void check_runs(const Json& entry) {
+  const Samples<double> all = problems();
+  const Json& runs = entry.at("runs");
+  ASSERT_EQ(static_cast<Index>(runs.size()), all.count());
+  for (Index i = 0; i < all.count(); ++i) {
+    SCOPED_TRACE(fmt::format("problem {}", i));
+    const Json& stored = runs.at(static_cast<std::size_t>(i));
+    const auto run = record_bfgs(
+        Observed<double>{
+            {.x = all.x.col(i), .y = all.y.col(i), .given = all.given.col(i)}},
+        vector(stored.at("x0")),
+        stored.at("gtol"));
+    expect_run(entry, stored, run, 3);
+    const auto solved = [&](const Vector<double>& x) {
+      return (x - all.x.col(i)).cwiseAbs().maxCoeff() < 1e-3;
+    };
+    EXPECT_EQ(solved(run.iterates.rightCols<1>()),
+              solved(vector(stored.at("x"))));
+  }
+}
+
+template <void (*F)(const Json&), void (*D)(const Json&)>
+void in_both(const Json& entry) {
+  {
+    SCOPED_TRACE("float");
+    F(entry);
+  }
+  SCOPED_TRACE("double");
+  D(entry);
+}
+
+TEST(KuramotoSivashinskyReference, EveryEntry) {
+  const std::map<std::string, std::function<void(const Json&)>> checks = {
+      {"clip_percentile_90", check_clip},
+      {"boundary_loss", check_boundary},
+      {"bfgs_test_functions", check_test_functions},
+      {"operators", check_operators},
+      {"problems", in_both<check_problems<float>, check_problems<double>>},
+      {"intermediate",
+       in_both<check_intermediate<float>, check_intermediate<double>>},
+      {"loss_and_gradient",
+       in_both<check_gradients<float>, check_gradients<double>>},
+      {"special_states", in_both<check_special<float>, check_special<double>>},
+      {"bfgs", check_runs}};
+  const std::set<std::string> of_networks = {"jpo_g2s", "surrogate_unet"};
+  const Json file = load_reference(kId);
+  ASSERT_FALSE(file.at("entries").empty());
+  for (const Json& entry : file.at("entries")) {
+    const auto name = entry.at("name").get<std::string>();
+    SCOPED_TRACE(name);
+    if (of_networks.contains(name)) continue;
+    ASSERT_TRUE(checks.contains(name)) << "no test reads this entry";
+    checks.at(name)(entry);
+  }
+}
+
+}  // namespace
+}  // namespace physinv::test

@@ -1,0 +1,97 @@
+// The solver entries of hig-oscillators.
+
+#include <functional>
+#include <map>
+
+#include "problems/oscillators/oscillators.h"
+#include "tests/problems/physics_checks.h"
+#include "tests/support/hig_reference.h"
+
+namespace physinv::test {
+namespace {
+
+const std::string kId = "hig-oscillators";
+
+/// Entries of the network and of the updates.
+const std::set<std::string> kTraining = {"batch4",
+                                         "batch16",
+                                         "batch64",
+                                         "sequence_hig",
+                                         "sequence_gn",
+                                         "first_order_rules"};
+
+template <class T>
+void check_solver(const Json& entry, const TwoNorm& same) {
+  const Json &in = entry.at("input"), &out = entry.at("expected");
+  const double g = number(in.at("g_cubic"));
+  const Batch<T> x = flat(in.at("u")).cast<T>();
+  const Batch<T> given = flat(in.at("x0")).cast<T>();
+  const Oscillators<T> pair({.coupling = g});
+  Physics<Oscillators<T>, T> at(pair);
+  const Batch<T> y = at.linearize(x, given);
+  EXPECT_TRUE(same(y, flat(out.at("y"))));
+  for (const Index steps : {1, 48}) {
+    const Oscillators<T> part({.steps = steps, .coupling = g});
+    EXPECT_TRUE(same(
+        (Physics<Oscillators<T>, T>(part).forward(x.topRows(steps), given)),
+        flat(out.at("after_" + std::to_string(steps)))));
+  }
+  Vector<double> loss(1);
+  Batch<T> y_bar(4, 1);
+  pair.loss(y, given, loss);
+  pair.loss_gradient(y, given, y_bar);
+  EXPECT_TRUE(same(loss(0), number(out.at("loss"))));
+  EXPECT_TRUE(same(at.pullback(y_bar), flat(out.at("dL_du"))));
+  if (out.contains("S")) {
+    EXPECT_TRUE(same(at.matrix(at.jacobian(x, given), 0), rows(out.at("S"))));
+  }
+}
+
+void check_solver_both(const Json& entry) {
+  check_solver<double>(entry, HigTolerance(entry).array());
+  check_solver<float>(entry, {2e-5, 1e-6});
+}
+
+template <class T>
+void check_step(const Json& entry, const TwoNorm& same) {
+  const Json &in = entry.at("input"), &out = entry.at("expected");
+  const Vector<double> x0 = flat(in.at("x0"));
+  const auto step = oscillators_step<T>({x0(0), x0(1), x0(2), x0(3)},
+                                        number(in.at("u")),
+                                        {.coupling = number(in.at("g_cubic"))});
+  const auto list = [](const std::array<double, 4>& v) {
+    return Vector<double>(Eigen::Map<const Vector<double>>(v.data(), 4));
+  };
+  Batch<double> a(4, 4);
+  for (Index r = 0; r < 4; ++r) a.row(r) = list(step.a[std::size_t(r)]);
+  EXPECT_TRUE(same(a, rows(out.at("A"))));
+  EXPECT_TRUE(same(list(step.b), flat(out.at("B"))));
+  EXPECT_TRUE(same(list(step.y), flat(out.at("y"))));
+}
+
+void check_step_both(const Json& entry) {
+  check_step<double>(entry, HigTolerance(entry).array());
+  check_step<float>(entry, {1e-6, 1e-7});
+}
+
+TEST(OscillatorsReference, SolverEntries) {
+  const std::map<std::string, std::function<void(const Json&)>> checks = {
+      {"solver_random", check_solver_both},
+      {"solver_free", check_solver_both},
+      {"solver_g4", check_solver_both},
+      {"one_step_tangent", check_step_both}};
+  const Json file = load_reference(kId);
+  std::size_t seen = 0;
+  for (const Json& entry : file.at("entries")) {
+    const auto name = entry.at("name").get<std::string>();
+    SCOPED_TRACE(name);
+    if (kTraining.contains(name)) continue;
+    ASSERT_TRUE(checks.contains(name)) << "no test reads this entry";
+    checks.at(name)(entry);
+    ++seen;
+  }
+  EXPECT_GE(seen, checks.size());
+}
+
+}  // namespace
+}  // namespace physinv::test

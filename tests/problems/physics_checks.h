@@ -1,0 +1,144 @@
+/// Properties every problem with a full Jacobian has, on inputs of one's own.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <vector>
+
+#include "suite/core/problem.h"
+#include "suite/core/threads.h"
+#include "tests/support/bits.h"
+#include "tests/support/gradient_check.h"
+#include "tests/support/tolerance.h"
+
+namespace physinv::test {
+
+/// The answers of problem P<T> by value, on `threads` threads.
+template <class P, class T>
+struct Physics {
+  explicit Physics(const P& p, int thread_count = 1)
+      : problem(p), threads(thread_count), work(&threads), tape(&threads) {}
+
+  Batch<T> forward(const Batch<T>& x, const Batch<T>& given) {
+    Batch<T> y(problem.shape().observations, x.cols());
+    problem.forward(x, given, y, work);
+    return y;
+  }
+  Batch<T> linearize(const Batch<T>& x, const Batch<T>& given) {
+    Batch<T> y(problem.shape().observations, x.cols());
+    problem.linearize(x, given, y, tape);
+    return y;
+  }
+  /// At the point of the last linearize.
+  Batch<T> pullback(const Batch<T>& y_bar) {
+    Batch<T> x_bar(problem.shape().unknowns, y_bar.cols());
+    problem.pullback(tape, y_bar, x_bar, work);
+    return x_bar;
+  }
+  Batch<T> gradient(const Batch<T>& x,
+                    const Batch<T>& given,
+                    const Batch<T>& y_bar) {
+    linearize(x, given);
+    return pullback(y_bar);
+  }
+  Batch<T> jacobian(const Batch<T>& x, const Batch<T>& given) {
+    const Shape s = problem.shape();
+    Batch<T> j(s.observations * s.unknowns, x.cols());
+    problem.jacobian(x, given, j, work);
+    return j;
+  }
+  /// Sample i's matrix.
+  Batch<T> matrix(const Batch<T>& j, Index i) const {
+    const Shape s = problem.shape();
+    return Eigen::Map<const Batch<T>>(
+        j.col(i).data(), s.observations, s.unknowns);
+  }
+
+  const P& problem;
+  Threads threads;
+  Workspace work;
+  Tape tape;
+};
+
+template <class T>
+Batch<T> waves(Index rows, Index cols, double shift) {
+  return Batch<T>::NullaryExpr(rows, cols, [=](Index i, Index j) {
+    return static_cast<T>(std::sin(1.7 * double(i) + 0.9 * double(j) + shift));
+  });
+}
+
+/// Jacobian against central differences, pullback against the Jacobian.
+template <class P>
+void expect_derivatives(const P& problem,
+                        const Batch<double>& x,
+                        const Batch<double>& given,
+                        double rtol = 1e-7) {
+  Physics<P, double> at(problem);
+  const Batch<double> j = at.jacobian(x, given);
+  const Batch<double> y_bar =
+      waves<double>(problem.shape().observations, x.cols(), 0.4);
+  const Batch<double> x_bar = at.gradient(x, given, y_bar);
+  for (Index i = 0; i < x.cols(); ++i) {
+    SCOPED_TRACE(i);
+    const Batch<double> ji = at.matrix(j, i);
+    const auto f = [&](const Vector<double>& v) {
+      return Vector<double>(at.forward(v, given.col(i)).col(0));
+    };
+    EXPECT_TRUE(Comparator(rtol, 1e-12)(ji, difference_jacobian(f, x.col(i))));
+    EXPECT_GT(ji.norm(), 0);
+    EXPECT_TRUE(Comparator(1e-11, 1e-14)(Vector<double>(x_bar.col(i)),
+                                         ji.transpose() * y_bar.col(i)));
+  }
+}
+
+/// No answer of a sample depends, to the last bit, on the batch around it or
+/// on the number of threads.
+template <class T, class P>
+void expect_independent_samples(const P& problem,
+                                const Batch<T>& x,
+                                const Batch<T>& given) {
+  Physics<P, T> at(problem), threaded(problem, 3);
+  const Index n = x.cols();
+  const Batch<T> y_bar = waves<T>(problem.shape().observations, n, 0.4);
+  const Batch<T> y = at.forward(x, given), j = at.jacobian(x, given);
+  EXPECT_TRUE(same_bits(at.linearize(x, given), y));
+  const Batch<T> x_bar = at.pullback(y_bar);
+  EXPECT_TRUE(x_bar.allFinite() && j.allFinite());
+  EXPECT_TRUE(same_bits(threaded.forward(x, given), y));
+  EXPECT_TRUE(same_bits(threaded.gradient(x, given, y_bar), x_bar));
+  EXPECT_TRUE(same_bits(threaded.jacobian(x, given), j));
+  std::vector<std::vector<Index>> subsets = {{n - 1, 0, 3, 2, n / 2}};
+  for (const Index i : {Index{0}, Index{1}, n / 2, n - 1})
+    subsets.push_back({i});
+  for (const auto& some : subsets) {
+    const auto of = [&](const Batch<T>& all) {
+      return Batch<T>(all(Eigen::all, some));
+    };
+    EXPECT_TRUE(same_bits(at.forward(of(x), of(given)), of(y)));
+    EXPECT_TRUE(same_bits(at.gradient(of(x), of(given), of(y_bar)), of(x_bar)));
+    EXPECT_TRUE(same_bits(at.jacobian(of(x), of(given)), of(j)));
+  }
+}
+
+/// Sample `bad` of x diverges: it says so in y, gradient and Jacobian, and no
+/// other column changes.
+template <class T, class P>
+void expect_contained(const P& problem,
+                      const Batch<T>& good,
+                      const Batch<T>& given,
+                      const Batch<T>& x,
+                      Index bad) {
+  Physics<P, T> at(problem);
+  const Batch<T> y_bar = waves<T>(problem.shape().observations, x.cols(), 0.4);
+  const auto check = [&](const Batch<T>& expected, Batch<T> seen) {
+    EXPECT_FALSE(seen.col(bad).allFinite());
+    seen.col(bad) = expected.col(bad);
+    EXPECT_TRUE(same_bits(seen, expected));
+  };
+  check(at.forward(good, given), at.forward(x, given));
+  check(at.gradient(good, given, y_bar), at.gradient(x, given, y_bar));
+  check(at.jacobian(good, given), at.jacobian(x, given));
+}
+
+}  // namespace physinv::test

@@ -1,0 +1,171 @@
+// The entries of jpo-wave-packet about the physics, the classical solvers and
+// JPO; those about networks alone have their test with the networks.
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <map>
+#include <set>
+
+#include "problems/wave_packet/wave_packet.h"
+#include "suite/nn/vgg.h"
+#include "tests/support/jpo_entries.h"
+#include "tests/support/jpo_reference.h"
+
+namespace physinv::test {
+namespace {
+
+const std::string kId = "jpo-wave-packet";
+constexpr Index kSamples = 256;
+
+/// The signals that all other entries are about.
+Batch<double> signals() {
+  const auto found = reference_entries(kId, "observations");
+  if (found.size() != 1) throw std::runtime_error("which observations?");
+  return columns(found.front().at("y"));
+}
+
+double xi_of(double t0) { return (t0 - 128) / 128; }
+
+template <class T>
+struct Evaluation {
+  Batch<T> y, x_bar;
+  Vector<double> loss;
+
+  /// Of every column of x against the same column of targets.
+  Evaluation(const Batch<double>& xi, const Batch<double>& targets)
+      : y(kSamples, xi.cols()), x_bar(1, xi.cols()), loss(xi.cols()) {
+    const WavePacket<T> packet;
+    const Batch<T> x = xi.cast<T>(), target = targets.cast<T>();
+    const Batch<T> given = Batch<T>::Zero(kSamples, xi.cols());
+    Batch<T> y_bar(kSamples, xi.cols()), forward(kSamples, xi.cols());
+    Tape tape;
+    Workspace work;
+    packet.linearize(x, given, y, tape);
+    packet.loss(y, target, loss);
+    packet.loss_gradient(y, target, y_bar);
+    packet.pullback(tape, y_bar, x_bar, work);
+    packet.forward(x, given, forward, work);
+    EXPECT_EQ(forward, y);
+  }
+};
+
+/// The truth leaves nothing but noise of deviation 0.1.
+void check_observations(const Json& entry) {
+  const Batch<double> y = columns(entry.at("y"));
+  const Vector<double> t0 = vector(entry.at("t0_true"));
+  ASSERT_EQ(y.rows(), kSamples);
+  ASSERT_EQ(y.cols(), t0.size());
+  const Batch<double> xi =
+      t0.unaryExpr([](double t) { return xi_of(t); }).transpose();
+  const Batch<double> noise = y - Evaluation<double>(xi, y).y;
+  for (Index i = 0; i < y.cols(); ++i) {
+    EXPECT_NEAR(noise.col(i).norm() / std::sqrt(kSamples), 0.1, 0.025);
+    EXPECT_LT(noise.col(i).cwiseAbs().maxCoeff(), 0.55);
+  }
+}
+
+template <class T>
+void check_case(const Json& c, const Batch<double>& y, const Comparator& same) {
+  const Evaluation<T> e(
+      Batch<double>::Constant(1, y.cols(), number(c.at("xi"))), y);
+  EXPECT_TRUE(same(e.loss, vector(c.at("loss"))));
+  EXPECT_TRUE(same(e.x_bar.row(0).transpose(), vector(c.at("grad_xi"))));
+}
+
+void check_loss(const Json& entry) {
+  const Batch<double> y = signals();
+  ASSERT_FALSE(entry.at("points").empty());
+  for (const Json& c : entry.at("points")) {
+    SCOPED_TRACE(c.at("xi").dump());
+    check_case<double>(c, y, EntryTolerance(entry).array());
+    check_case<float>(c, y, {1e-4, 0});
+  }
+}
+
+void check_packet(const Json& entry) {
+  const Batch<double> xi =
+      Batch<double>::Constant(1, 1, xi_of(number(entry.at("t0"))));
+  const Vector<double> u = vector(entry.at("u"));
+  EXPECT_TRUE(
+      EntryTolerance(entry).array()(Evaluation<double>(xi, u).y.col(0), u));
+  EXPECT_TRUE(Comparator(1e-4, 0)(Evaluation<float>(xi, u).y.col(0), u));
+}
+
+void check_landscape(const Json& entry) {
+  const Vector<double> stored = vector(entry.at("loss"));
+  Batch<double> xi(1, stored.size());
+  for (Index k = 0; k < stored.size(); ++k)
+    xi(0, k) = xi_of(static_cast<double>(k + 1));
+  const Batch<double> y = signals().col(0).replicate(1, stored.size());
+  EXPECT_TRUE(
+      EntryTolerance(entry).array()(Evaluation<double>(xi, y).loss, stored));
+  EXPECT_TRUE(Comparator(1e-4, 0)(Evaluation<float>(xi, y).loss, stored));
+}
+
+void check_bfgs(const Json& entry) {
+  const Batch<double> y = signals();
+  const Json& runs = entry.at("runs");
+  ASSERT_EQ(static_cast<Index>(runs.size()), y.cols());
+  for (Index i = 0; i < y.cols(); ++i) {
+    SCOPED_TRACE(i);
+    const Json& stored = runs.at(static_cast<std::size_t>(i));
+    const auto run = record_bfgs(Matching<WavePacket>{y.col(i)},
+                                 vector(stored.at("x0")),
+                                 stored.at("gtol"));
+    expect_run(entry, stored, run, 1);
+  }
+}
+
+void check_packet_descent(const Json& entry) {
+  check_descent<WavePacket>(
+      entry, signals(), 1e-5, [](const Vector<double>& xi) {
+        const double t0 = 128 + 128 * xi(0);
+        return t0 < 1 - 177 || t0 > kSamples + 177;
+      });
+}
+
+void check_jpo(const Json& entry) {
+  const Batch<double> y = signals();
+  const Samples<double> s{{}, y, Batch<double>::Zero(kSamples, y.cols())};
+  for (const Precision precision : {Precision::f64, Precision::f32}) {
+    SCOPED_TRACE(to_string(precision));
+    expect_jpo<WavePacket>(
+        entry,
+        {.inputs = {Field::observations},
+         .network = nn::vgg({.grid = {.columns = kSamples},
+                             .features = {16, 16, 16, 16, 16},
+                             .hidden = {64, 32}}),
+         .parameters = 13921,
+         .rate = 1e-3},
+        s,
+        precision);
+  }
+}
+
+TEST(WavePacketReference, EveryEntry) {
+  const std::map<std::string, std::function<void(const Json&)>> checks = {
+      {"clip_percentile_90", check_clip},
+      {"boundary_loss", check_boundary},
+      {"bfgs_test_functions", check_test_functions},
+      {"observations", check_observations},
+      {"loss_and_gradient", check_loss},
+      {"packet", check_packet},
+      {"landscape", check_landscape},
+      {"bfgs", check_bfgs},
+      {"gd_adaptive", check_packet_descent},
+      {"jpo_g2s", check_jpo}};
+  const std::set<std::string> of_networks = {"g2s_eval", "surrogate_unet"};
+  const Json file = load_reference(kId);
+  ASSERT_FALSE(file.at("entries").empty());
+  for (const Json& entry : file.at("entries")) {
+    const auto name = entry.at("name").get<std::string>();
+    SCOPED_TRACE(name);
+    if (of_networks.contains(name)) continue;
+    ASSERT_TRUE(checks.contains(name)) << "no test reads this entry";
+    checks.at(name)(entry);
+  }
+}
+
+}  // namespace
+}  // namespace physinv::test

@@ -1,0 +1,268 @@
+#include "reports/html.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <regex>
+#include <set>
+
+#include "tests/reports/xml_check.h"
+
+namespace physinv {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+std::size_t count(const std::string& text, const std::string& part) {
+  std::size_t found = 0;
+  for (auto at = text.find(part); at != text.npos;
+       at = text.find(part, at + part.size())) {
+    ++found;
+  }
+  return found;
+}
+
+// What stands between the first two marks after `from`.
+std::string between(const std::string& text,
+                    const std::string& from,
+                    const std::string& to) {
+  const auto a = text.find(from);
+  if (a == text.npos) return "";
+  return text.substr(a, text.find(to, a) - a);
+}
+
+// The page without the words in which < and & are no markup.
+std::string markup(std::string page) {
+  const std::string doctype = "<!DOCTYPE html>\n";
+  EXPECT_TRUE(page.starts_with(doctype));
+  page.erase(0, doctype.size());
+  for (const std::string name : {"style", "script"}) {
+    const auto a = page.find("<" + name + ">") + name.size() + 2;
+    page.erase(a, page.find("</" + name + ">") - a);
+  }
+  return page;
+}
+
+Section section(const std::string& experiment) {
+  Series jpo{.label = "JPO <&>",
+             .method = "jpo",
+             .x = {1, 2, 4},
+             .y = {1, 0.5, kNaN},
+             .lo = {0.5, 0.2, 0},
+             .hi = {2, 1, 1},
+             .markers = true};
+  Series bfgs{.label = "BFGS", .method = "bfgs", .x = {1, 4}, .y = {1, 1}};
+  Series end{.method = "bfgs", .x = {4}, .y = {1}, .line = false};
+  Panel panel{.title = "p & q", .x_label = "n", .y_label = "loss"};
+  panel.series = {jpo, bfgs, end};
+  return {
+      .experiment = experiment,
+      .title = "Toy <b>",
+      .paper = "someone2020",
+      .tables = {{.id = "table1",
+                  .title = "Times",
+                  .source = "Table 1",
+                  .unit = "s",
+                  .digits = 2,
+                  .corner = "method",
+                  .columns = {"a", "b"},
+                  .rows = {{.label = "JPO",
+                            .cells = {{.ours = 1.5,
+                                       .spread = 0.25,
+                                       .paper = 2.25,
+                                       .paper_spread = 0.75},
+                                      {.ours = 1e-5}}},
+                           {.label = "x < y", .cells = {{.text = "not run"}}},
+                           {.label = "GD", .cells = {{}, {.ours = 2}}}}}},
+      .figures = {{.id = "fig1",
+                   .title = "F",
+                   .source = "Fig. 1",
+                   .panels = {panel, panel},
+                   .note = "note > this"},
+                  {.id = "fig2", .title = "Empty"}},
+      .claims = {{.id = "R1",
+                  .says = "a < b & \"c\"",
+                  .from = "quick",
+                  .gates = true,
+                  .verdict = Verdict::reproduced,
+                  .evidence = "0.98 >= 0.5"},
+                 {.id = "R2",
+                  .says = "c",
+                  .gates = true,
+                  .verdict = Verdict::not_reproduced},
+                 {.id = "R3", .says = "d", .from = "paper"}}};
+}
+
+nlohmann::ordered_json provenance() {
+  return {{"profile", "quick"},
+          {"date", "2024-01-02T03:04:05Z"},
+          {"compiler_flags", "-O3 <&>"},
+          {"options", {{"threads", 1}}}};
+}
+
+std::string page() {
+  // Names that differ only in what no id can hold.
+  return report_html({section("jpo/toy"), section("jpo-toy")}, provenance());
+}
+
+TEST(ReportHtml, IsWellFormed) {
+  EXPECT_EQ(xml_error(markup(page())), "");
+  EXPECT_EQ(xml_error(markup(report_html({}, nullptr))), "");
+}
+
+TEST(ReportHtml, AsksNobodyForAnything) {
+  const std::string text = page();
+  EXPECT_EQ(count(text, "://"), 0U);
+  EXPECT_EQ(count(text, "src="), 0U);
+  EXPECT_EQ(count(text, "@import"), 0U);
+  EXPECT_EQ(count(text, "<link"), 0U);
+  EXPECT_EQ(count(text, "default-src 'none'"), 1U);
+  static const std::regex kUrl("url\\(([^)]*)\\)");
+  for (std::sregex_iterator at(text.begin(), text.end(), kUrl), end; at != end;
+       ++at) {
+    EXPECT_EQ((*at)[1].str().front(), '#');
+  }
+}
+
+TEST(ReportHtml, IdsAreUniqueAndLinksArrive) {
+  const std::string text = page();
+  static const std::regex kId(" id=\"([^\"]*)\""), kHref(
+                                                       "href=\"#([^\"]*)\"|"
+                                                       "url\\(#([^)]*)\\)|"
+                                                       "labelledby=\"([^\"]"
+                                                       "*)\"");
+  std::set<std::string> ids;
+  for (std::sregex_iterator at(text.begin(), text.end(), kId), end; at != end;
+       ++at) {
+    EXPECT_TRUE(ids.insert((*at)[1]).second) << (*at)[1];
+  }
+  std::size_t links = 0;
+  for (std::sregex_iterator at(text.begin(), text.end(), kHref), end; at != end;
+       ++at, ++links) {
+    const std::string to = (*at)[1].str() + (*at)[2].str() + (*at)[3].str();
+    EXPECT_TRUE(ids.contains(to)) << to;
+  }
+  EXPECT_GT(links, 20U);
+  for (const char* id : {"jpo-toy",
+                         "jpo-toy-R1",
+                         "jpo-toy-R3",
+                         "jpo-toy-table1",
+                         "jpo-toy-fig1",
+                         "jpo-toy-fig2",
+                         "jpo-toy-2",
+                         "jpo-toy-R1-2",
+                         "jpo-toy-fig1-2",
+                         "provenance"}) {
+    EXPECT_TRUE(ids.contains(id)) << id;
+  }
+}
+
+TEST(ReportHtml, CountsClaimsAndShowsEvidence) {
+  const std::string text = page();
+  EXPECT_EQ(count(text, "<strong>2</strong> reproduced"), 1U);
+  EXPECT_EQ(count(text, "<strong>2</strong> not reproduced"), 1U);
+  EXPECT_EQ(count(text, "<strong>2</strong> not run"), 1U);
+  EXPECT_EQ(count(text, "not reproduced: 2.</p>"), 1U);
+  const std::string row = between(text, "<tr id=\"jpo-toy-R1\">", "</tr>");
+  EXPECT_NE(row.find("✓ reproduced"), row.npos);
+  EXPECT_NE(row.find("0.98 &gt;= 0.5"), row.npos);
+  EXPECT_NE(row.find("• gating"), row.npos);
+  EXPECT_NE(between(text, "<tr id=\"jpo-toy-R3\">", "</tr>")
+                .find("not gating, judged from profile paper"),
+            row.npos);
+}
+
+TEST(ReportHtml, TablesPutThePaperBeside) {
+  const std::string table =
+      between(page(), "<table id=\"jpo-toy-table1\">", "</table>");
+  EXPECT_NE(table.find("<caption id=\"jpo-toy-table1-caption\">"), table.npos);
+  EXPECT_NE(table.find("Table 1 · Times [s]"), table.npos);
+  EXPECT_NE(table.find("<td>1.50</td><td class=\"spread\">± 0.25</td>"
+                       "<td class=\"paper\">2.25</td>"
+                       "<td class=\"spread\">± 0.75</td><td>1.0·10⁻⁵</td>"),
+            table.npos)
+      << table;
+  EXPECT_NE(table.find("<td class=\"nil\" colspan=\"2\">not run</td>"),
+            table.npos);
+  EXPECT_NE(table.find("<th scope=\"row\">x &lt; y</th>"), table.npos);
+  // Each row as wide as the head: label, 2 + 2 for a, 1 for b.
+  std::size_t rows = 0;
+  const std::string body = table.substr(table.find("<tbody>"));
+  for (auto at = body.find("<tr>"); at != body.npos;
+       at = body.find("<tr>", at + 1)) {
+    const std::string row = body.substr(at, body.find("</tr>", at) - at);
+    EXPECT_EQ(count(row, "<td") + count(row, "colspan=\"2\""), 5U) << row;
+    ++rows;
+  }
+  EXPECT_EQ(rows, 3U);
+}
+
+TEST(ReportHtml, FlatTablesAreTurned) {
+  Section s{.experiment = "e", .title = "E"};
+  s.tables = {{.id = "t",
+               .title = "T",
+               .columns = {"a", "b", "c", "d"},
+               .rows = {{.label = "only",
+                         .cells = {{.ours = 1}, {.ours = 2}, {.ours = 3}}}}}};
+  const std::string text = report_html({s}, nullptr);
+  EXPECT_NE(text.find("<th scope=\"row\">b</th><td>2.0</td>"), text.npos);
+  EXPECT_NE(text.find("<th scope=\"row\">d</th><td>–</td>"), text.npos);
+}
+
+TEST(ReportHtml, FiguresShareOneStyleAndMarkTheirSeries) {
+  const std::string text = page();
+  EXPECT_EQ(count(text, "<style"), 1U);
+  const std::string figure =
+      between(text, "<figure id=\"jpo-toy-fig1\">", "</figure>");
+  EXPECT_EQ(count(figure, "<svg viewBox=\"0 0 430 290\" role=\"img\">"), 2U);
+  EXPECT_EQ(count(figure, "<title>p &amp; q</title>"), 2U);
+  EXPECT_EQ(count(figure, "<li data-k="), 2U);
+  EXPECT_EQ(count(figure, "JPO &lt;&amp;&gt;</li>"), 1U);
+  EXPECT_EQ(count(figure, "data-x=\""), 2U);
+  // Line, error bars and marker of each panel; the end of BFGS, which has no
+  // label, goes with BFGS.
+  EXPECT_EQ(count(figure, "<g class=\"k k0\""), 4U);
+  EXPECT_EQ(count(figure, "<g class=\"k k1\""), 6U);
+  EXPECT_NE(figure.find("note &gt; this"), figure.npos);
+  EXPECT_NE(between(text, "<figure id=\"jpo-toy-fig2\">", "</figure>")
+                .find("not run"),
+            text.npos);
+}
+
+TEST(ReportHtml, NothingIsTakenForMarkup) {
+  const std::string text = page();
+  EXPECT_EQ(count(text, "<b>"), 0U);
+  EXPECT_EQ(count(text, "<&>"), 0U);
+  EXPECT_NE(text.find("Toy &lt;b&gt;"), text.npos);
+  EXPECT_NE(text.find("a &lt; b &amp; &quot;c&quot;"), text.npos);
+}
+
+TEST(ReportHtml, ProvenanceInTheFooter) {
+  const std::string footer = between(page(), "<footer", "</footer>");
+  EXPECT_NE(footer.find("<dt>compiler flags</dt><dd>-O3 &lt;&amp;&gt;</dd>"),
+            footer.npos);
+  EXPECT_NE(footer.find("&quot;threads&quot;: 1"), footer.npos);
+}
+
+TEST(ReportHtml, SameBytesAndSmall) {
+  EXPECT_EQ(page(), page());
+  Section large = section("jpo/large");
+  Figure figure{.id = "curves", .title = "Curves", .columns = 4};
+  for (int p = 0; p < 16; ++p) {
+    Panel panel{.x_log = true, .y_log = true};
+    for (const char* method : {"bfgs", "gd", "jpo", "supervised", "na"}) {
+      Series s{.label = method, .method = method};
+      for (int i = 1; i <= 100; ++i) {
+        s.x.push_back(i);
+        s.y.push_back(1.0 / i);
+      }
+      panel.series.push_back(std::move(s));
+    }
+    figure.panels.push_back(std::move(panel));
+  }
+  large.figures.push_back(std::move(figure));
+  EXPECT_LT(report_html({large}, provenance()).size(), 250'000U);
+}
+
+}  // namespace
+}  // namespace physinv

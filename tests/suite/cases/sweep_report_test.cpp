@@ -1,0 +1,97 @@
+#include "suite/cases/sweep_report.h"
+
+#include <gtest/gtest.h>
+
+#include "baselines/diagnostics/stability_sweep.h"
+
+namespace physinv {
+namespace {
+
+/// 2 x 2 points with one example: fine, float off, float gone, all gone.
+StageRecord four_cells() {
+  StageRecord s;
+  s.stage = "grid";
+  s.arrays["status"].resize(kSweepChecks, 4);
+  s.arrays["status"] << 0, 0, 0, 2,  //
+      0, 1, 2, 2,                    //
+      0, 0, 3, 2,                    //
+      0, 0, 0, 2,                    //
+      0, 1, 2, 2;
+  s.arrays["error"].resize(kSweepChecks, 4);
+  s.arrays["error"] << 0, 0, 0, -1,  //
+      1e-7, 1e-2, -1, -1,            //
+      1e-9, 1e-8, -1, -1,            //
+      0, 1e-13, 1e-12, -1,           //
+      1e-6, 0.1, -1, -1;
+  return s;
+}
+
+const SweepAxis kX{"x", {1, 2}}, kY{"y", {10, 20}};
+
+TEST(SweepReport, CountsCellsByStatus) {
+  const StageRecord s = four_cells();
+  const Table table = sweep_table("t", "T", &s);
+  ASSERT_EQ(table.rows.size(), 5U);
+  const auto counts = [&](std::size_t row) {
+    std::vector<double> out;
+    for (std::size_t c = 0; c < 4; ++c)
+      out.push_back(*table.rows[row].cells[c].ours);
+    return out;
+  };
+  EXPECT_EQ(counts(0), (std::vector<double>{3, 0, 1, 0}));
+  EXPECT_EQ(counts(1), (std::vector<double>{1, 1, 2, 0}));
+  EXPECT_EQ(counts(2), (std::vector<double>{2, 0, 1, 1}));
+  EXPECT_EQ(table.rows[1].cells[4].text, "1.0e-02");
+}
+
+TEST(SweepReport, MapsHaveStatusesAndBlanksInsteadOfNan) {
+  const StageRecord s = four_cells();
+  const Figure figure = sweep_maps("f", "F", kX, kY, &s);
+  ASSERT_EQ(figure.panels.size(), 4U);
+  EXPECT_EQ(figure.panels[0].field->values, (std::vector<double>{0, 1, 2, 3}));
+  EXPECT_EQ(figure.panels[1].field->values,
+            (std::vector<double>{1e-7, 1e-2, 0, 0}));
+  EXPECT_TRUE(figure.panels[1].field->log_scale);
+}
+
+TEST(SweepReport, MapsShowTheWorstExample) {
+  StageRecord s = four_cells();
+  const Figure figure = sweep_maps("f", "F", kX, {"y", {10}}, &s);
+  EXPECT_EQ(figure.panels[0].field->values, (std::vector<double>{1, 3}));
+}
+
+TEST(SweepReport, TheAdjointClaimLooksAtFiniteCellsOnly) {
+  StageRecord s = four_cells();
+  EXPECT_EQ(adjoint_claim("N1", {&s}).verdict, Verdict::reproduced);
+  EXPECT_EQ(adjoint_claim("N1", {&s, nullptr}).verdict, Verdict::not_run);
+  EXPECT_EQ(adjoint_claim("N1", {}).verdict, Verdict::not_run);
+  for (const Index row : {2, 3}) {
+    for (const double bad : {1, 2}) {
+      StageRecord wrong = four_cells();
+      wrong.arrays["status"](row, 1) = bad;
+      EXPECT_EQ(adjoint_claim("N1", {&wrong}).verdict, Verdict::not_reproduced);
+    }
+  }
+}
+
+TEST(SweepReport, WithoutASweepNothingWasRun) {
+  const Table table = sweep_table("t", "T", nullptr);
+  EXPECT_EQ(table.rows[0].cells[0].text, "not run");
+  EXPECT_FALSE(table.rows[0].cells[0].ours);
+  EXPECT_TRUE(sweep_maps("f", "F", kX, kY, nullptr).panels.empty());
+}
+
+TEST(SweepReport, FindsTheStageOfTheMethod) {
+  CaseRecord c;
+  c.info.experiment = "numerics/toy";
+  c.info.method = "stability";
+  c.stages = {four_cells()};
+  const Results results({c});
+  EXPECT_NE(find_sweep(results, "numerics/toy", "stability", "grid"), nullptr);
+  EXPECT_EQ(find_sweep(results, "numerics/toy", "stability", "x"), nullptr);
+  EXPECT_EQ(find_sweep(results, "numerics/toy", "growth", "grid"), nullptr);
+  EXPECT_EQ(find_sweep(results, "other", "stability", "grid"), nullptr);
+}
+
+}  // namespace
+}  // namespace physinv

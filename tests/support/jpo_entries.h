@@ -1,0 +1,119 @@
+/// Entries that the reference files of several JPO experiments share, each
+/// checked by what carries it out.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <vector>
+
+#include "baselines/boundary_loss.h"
+#include "optimizers/drive.h"
+#include "optimizers/gradient_descent.h"
+#include "optimizers/steps/clip_percentile.h"
+#include "tests/optimizers/functions.h"
+#include "tests/support/reference.h"
+#include "tests/support/run_reference.h"
+
+namespace physinv::test {
+
+/// The losses of problems P with observations target.col(i), for the solvers.
+template <template <class> class P>
+struct Matching {
+  Batch<double> targets;
+
+  void operator()(std::span<const Index> active,
+                  BatchIn<double> x,
+                  VectorOut<double> loss,
+                  BatchOut<double> gradient) const {
+    const P<double> problem;
+    const Index n = x.cols(), m = targets.rows();
+    const Batch<double> given = Batch<double>::Zero(problem.shape().given, n);
+    Batch<double> y(m, n), target(m, n), y_bar(m, n);
+    for (Index k = 0; k < n; ++k)
+      target.col(k) = targets.col(active[static_cast<std::size_t>(k)]);
+    Tape tape;
+    Workspace work;
+    problem.linearize(x, given, y, tape);
+    problem.loss(y, target, loss);
+    problem.loss_gradient(y, target, y_bar);
+    problem.pullback(tape, y_bar, gradient, work);
+  }
+};
+
+inline void check_clip(const Json& entry) {
+  Batch<double> g = columns(entry.at("input"));
+  const auto near = EntryTolerance(entry).array();
+  EXPECT_TRUE(near(g.colwise().norm().transpose(), vector(entry.at("norms"))));
+  const double tau = ClipPercentile(0.9).operator()<double>(g);
+  EXPECT_TRUE(near(tau, number(entry.at("threshold"))));
+  EXPECT_TRUE(near(g, columns(entry.at("output"))));
+}
+
+inline void check_boundary(const Json& entry) {
+  const auto near = EntryTolerance(entry).array();
+  const Batch<double> x = columns(entry.at("xi"));
+  const BoundaryLoss wall(vector(entry.at("lo")), vector(entry.at("hi")));
+  Vector<double> loss = Vector<double>::Zero(x.cols());
+  Batch<double> g = Batch<double>::Zero(x.rows(), x.cols());
+  wall.add(x, 1, loss, g);
+  EXPECT_TRUE(near(loss, vector(entry.at("value"))));
+  EXPECT_TRUE(near(g, columns(entry.at("gradient"))));
+}
+
+inline void check_test_functions(const Json& entry) {
+  for (const Json& stored : entry.at("runs")) {
+    const auto name = stored.at("function").get<std::string>();
+    SCOPED_TRACE(name + " from " + stored.at("x0").dump());
+    const auto run = record_bfgs(
+        ClosedForm{name}, vector(stored.at("x0")), stored.at("gtol"));
+    expect_run(entry, stored, run, 8);
+    if (name != "rosenbrock") {
+      EXPECT_EQ(run.iterations, stored.at("iterations").get<Index>());
+    }
+  }
+}
+
+/// Every iterate and loss of gradient descent on problems P. `flat(x)` says
+/// where the loss is constant: how many evaluations show that hangs on the
+/// last bit, and may differ by those of one iteration.
+template <template <class> class P>
+void check_descent(
+    const Json& entry,
+    const Batch<double>& targets,
+    double step_tolerance,
+    const std::function<bool(const Vector<double>&)>& flat = {}) {
+  const auto near = EntryTolerance(entry).array();
+  const Json& xs = entry.at("x_after_iteration");
+  const Json& losses = entry.at("loss_after_iteration");
+  std::vector<Batch<double>> x;
+  std::vector<Vector<double>> loss;
+  const GradientDescentOptions options{
+      .step_tolerance = step_tolerance,
+      .maxiter = static_cast<Index>(xs.size()) - 1};
+  GradientDescent gd(options);
+  drive(gd,
+        Matching<P>{targets},
+        columns(xs.at(0)),
+        [&](const GradientDescent& g) {
+          if (g.accepted().empty()) return;
+          x.push_back(g.x());
+          loss.push_back(g.loss());
+        });
+  ASSERT_EQ(x.size(), xs.size());
+  for (std::size_t k = 0; k < xs.size(); ++k) {
+    EXPECT_TRUE(near(x[k], columns(xs[k]))) << "iteration " << k;
+    EXPECT_TRUE(near(loss[k], vector(losses[k]))) << "iteration " << k;
+  }
+  const Vector<double> evaluations = vector(entry.at("evaluations"));
+  for (Index i = 0; i < evaluations.size(); ++i) {
+    const bool free = flat && flat(gd.x().col(i));
+    EXPECT_NEAR(
+        static_cast<double>(gd.evaluations()[static_cast<std::size_t>(i)]),
+        evaluations(i),
+        free ? static_cast<double>(1 + options.substeps) : 0)
+        << "problem " << i;
+  }
+}
+
+}  // namespace physinv::test
