@@ -329,6 +329,13 @@ void KuramotoSivashinsky<T>::jacobian(BatchIn<T> x,
 }
 
 template <class T>
+Index KuramotoSivashinsky<T>::gradient_block() const {
+  const auto bytes =
+      2 * options_.steps * options_.cells * static_cast<Index>(sizeof(T));
+  return std::max<Index>(4, (Index{1} << 19) / bytes);
+}
+
+template <class T>
 Batch<T> KuramotoSivashinsky<T>::trajectory(VectorIn<T> x,
                                             VectorIn<T> given) const {
   const Etdrk2<T>& k = *kernel_;

@@ -121,6 +121,9 @@ class KuramotoSivashinsky final : public Problem<T>,
   /// steps; the first is `given` itself, the last has the bits of `forward`.
   Batch<T> trajectory(VectorIn<T> x, VectorIn<T> given) const;
 
+  /// As many as keep their states in half a megabyte of cache, or nearly so.
+  Index gradient_block() const override;
+
   double operations() const override;
 
   const Options& options() const { return options_; }

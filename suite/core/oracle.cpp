@@ -1,5 +1,6 @@
 #include "suite/core/oracle.h"
 
+#include <algorithm>
 #include <numeric>
 #include <utility>
 
@@ -128,12 +129,23 @@ void Oracle::evaluate(std::span<const Index> active,
               "x, loss and gradient match the active problems");
   Workspace::Scope scope(*work_);
   const Packed<T> data(s, active, *work_);
-  auto y = work_->take<T>(shape_.observations, m);
-  auto y_bar = work_->take<T>(shape_.observations, m);
-  s.vjp->linearize(x, data.given_of(s), y, s.tape);
-  s.problem->loss(y, data.y_of(s), loss);
-  s.problem->loss_gradient(y, data.y_of(s), y_bar);
-  s.vjp->pullback(s.tape, y_bar, gradient, *work_);
+  const auto given = data.given_of(s), target = data.y_of(s);
+  const Index wanted = s.problem->gradient_block();
+  const Index block = wanted > 0 ? std::min(wanted, m) : m;
+  auto y = work_->take<T>(shape_.observations, block);
+  auto y_bar = work_->take<T>(shape_.observations, block);
+  for (Index first = 0; first < m; first += block) {
+    const Index some = std::min(block, m - first);
+    const auto part = [=](const auto& all) {
+      return all.middleCols(first, some);
+    };
+    s.vjp->linearize(part(x), part(given), y.leftCols(some), s.tape);
+    s.problem->loss(y.leftCols(some), part(target), loss.segment(first, some));
+    s.problem->loss_gradient(
+        y.leftCols(some), part(target), y_bar.leftCols(some));
+    s.vjp->pullback(
+        s.tape, y_bar.leftCols(some), gradient.middleCols(first, some), *work_);
+  }
   add(Counter::vjp, m);
 }
 

@@ -75,6 +75,10 @@ class Problem {
     y_bar = y - target;
   }
 
+  /// Samples whose gradients are best computed together, so that what
+  /// `linearize` keeps is still in the cache for `pullback`. 0: any number.
+  virtual Index gradient_block() const { return 0; }
+
   /// Rough floating-point operations of one forward pass of one sample.
   virtual double operations() const = 0;
 };
