@@ -33,6 +33,10 @@ set(PHYSINV_WARNINGS -Wall -Wextra -Wshadow -Wno-missing-field-initializers)
 if(PHYSINV_SANITIZE)
   add_compile_options(-fsanitize=${PHYSINV_SANITIZE}
     -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  if(PHYSINV_SANITIZE MATCHES undefined)
+    # They take 40 % of the build; null pointers trap by themselves.
+    add_compile_options(-fno-sanitize=null,alignment,vptr)
+  endif()
   add_link_options(-fsanitize=${PHYSINV_SANITIZE})
 endif()
 

@@ -106,8 +106,8 @@ TEST_P(LayerContract, GradientsAgreeWithCentralDifferences) {
     forward(p_, in_, pass);
     net_->backward(p_, tape_, out_bar_, &p_ref, &in_ref, work_);
 
-    // Every tensor's first, middle and last entries, and all inputs.
-    Index checked = 0, asked = in_.size();
+    // Every tensor's first, middle and last entries, and inputs here and there.
+    Index checked = 0, asked = 0;
     const double h = 1e-6;
     const auto expect_slope = [&](double& at, double bar, const auto& name) {
       const double old = at;
@@ -130,7 +130,8 @@ TEST_P(LayerContract, GradientsAgreeWithCentralDifferences) {
         ++asked;
       }
     }
-    for (Index i = 0; i < in_.size(); ++i)
+    const Index apart = std::max<Index>(1, in_.size() / 50);
+    for (Index i = 0; i < in_.size(); i += apart, ++asked)
       expect_slope(in_(i), in_bar(i), "input");
     EXPECT_GE(checked, asked / 2) << "too many kinks";
 

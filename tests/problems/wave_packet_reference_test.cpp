@@ -118,11 +118,7 @@ void check_bfgs(const Json& entry) {
 }
 
 void check_packet_descent(const Json& entry) {
-  check_descent<WavePacket>(
-      entry, signals(), 1e-5, [](const Vector<double>& xi) {
-        const double t0 = 128 + 128 * xi(0);
-        return t0 < 1 - 177 || t0 > kSamples + 177;
-      });
+  check_descent<WavePacket>(entry, signals(), 1e-5);
 }
 
 void check_jpo(const Json& entry) {

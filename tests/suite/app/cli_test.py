@@ -177,19 +177,8 @@ def no_space(d):
         subprocess.run(["umount", disk], check=False)
 
 
-def startup(d):
-    for args in (["--help"], ["--version"], ["list"]):
-        times = []
-        for _ in range(10):
-            begin = time.perf_counter()
-            run(*args, cwd=d)
-            times.append(time.perf_counter() - begin)
-        print(f"     {args[0]}: {1e3 * min(times):.1f} ms")
-        check(min(times) < 0.05, f"{args[0]} within 50 ms")
-
-
 with tempfile.TemporaryDirectory() as directory:
     for test in (bad_input, good_input, damaged, same_bits, interrupted,
-                 no_space, startup):
+                 no_space):
         test(directory)
 sys.exit(f"{len(FAILED)} failed: {FAILED}" if FAILED else 0)
