@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "optimizers/minibatch.h"
 #include "optimizers/network_model.h"
@@ -47,8 +48,13 @@ class Training {
                                static_cast<double>(batch_.size()))),
         scale_(static_cast<T>(run.setting.output_scale)),
         start_(oracle_.start().col(0).template cast<T>()),
-        update_(options.rule),
         metrics_(static_cast<Index>(options.metrics.rows.size()), 0) {
+    if (const auto* rule = std::get_if<StepOptions>(&options.rule)) {
+      update_.emplace(*rule);
+    } else {
+      half_inverse_.emplace(std::get<HalfInverseStepOptions>(options.rule),
+                            run.threads);
+    }
     if (run.previous != nullptr &&
         run.previous->arrays.contains("parameters")) {
       model_.load(run.previous->arrays);
@@ -74,14 +80,12 @@ class Training {
     probe.begin();
     while (probe.proceed(estimate)) {
       batch_.next();
-      before_ = model_.parameters();
-      step();
+      diverged_ = !step();
+      if (diverged_) probe.stop();
       losses_.push_back(finite(batch_.mean_loss()));
-      probe.trace(before_.data(),
-                  sizeof(T) * static_cast<std::size_t>(before_.size()));
-      if (model_.parameters().allFinite()) continue;
-      model_.parameters() = before_;
-      probe.stop(), diverged_ = true;
+      const auto& theta = model_.parameters();
+      probe.trace(theta.data(),
+                  sizeof(T) * static_cast<std::size_t>(theta.size()));
     }
     Outcome out = outcome();
     out.x.resizeLike(start);
@@ -91,7 +95,8 @@ class Training {
   }
 
  private:
-  void step();
+  /// False, and nothing changed, if the update is not finite.
+  bool step();
 
   /// The metrics at this point of the curve.
   void measure(BatchIn<double> x) {
@@ -113,12 +118,14 @@ class Training {
     Outcome out;
     out.iterations.setConstant(oracle_.count(),
                                static_cast<double>(run_.probe.iteration()));
+    out.bytes = model_.bytes() + batch_.bytes();
     out.arrays["batch_loss"] = row(losses_);
     out.arrays["mean_loss"] =
         run_.probe.curve().loss.colwise().mean().unaryExpr(&finite);
     out.arrays["samples_drawn"] =
         Batch<double>::Constant(1, 1, static_cast<double>(batch_.drawn()));
     if (metrics_.rows() > 0) out.arrays["metrics"] = metrics_;
+    if (half_inverse_) add_spectra(out);
     if (diverged_) {
       out.stop = Stop::diverged;
       out.message =
@@ -127,10 +134,17 @@ class Training {
     }
     model_.save(out.arrays);
     for (auto& [name, array] : out.arrays) array = array.unaryExpr(&finite);
-    out.bytes = model_.bytes() + batch_.bytes();
     oracle_.add(model_.counts());
     oracle_.add(batch_.counts());
     return out;
+  }
+
+  void add_spectra(Outcome& out) {
+    out.arrays["kept"] = row(kept_);
+    out.arrays["smallest"] = row(smallest_);
+    out.arrays["path"] = row(path_);
+    out.arrays["unproven"] = Batch<double>::Constant(1, 1, unproven_);
+    out.bytes += half_inverse_->bytes();
   }
 
   const TrainingOptions& options_;
@@ -140,24 +154,49 @@ class Training {
   Minibatch<T> batch_;
   T factor_, scale_;
   Vector<T> start_;
-  UpdateStep<T> update_;
+  std::optional<UpdateStep<T>> update_;
+  std::optional<HalfInverseStep<T>> half_inverse_;
+  Batch<T> jacobian_;
+  std::vector<double> kept_, smallest_, path_;
   Batch<T> x_, x_bar_;
   Vector<T> before_;  ///< parameters, should the update spoil them
   Batch<double> metrics_;
   std::vector<double> losses_;
+  double unproven_ = 0;
   bool diverged_ = false;
 };
 
 template <class T>
-void Training<T>::step() {
-  const Batch<T>& output = model_.forward(batch_.input());
-  x_ = scale_ * output;
+bool Training<T>::step() {
+  x_ = scale_ * model_.forward(batch_.input());
   x_.colwise() += start_;
-  x_bar_.resizeLike(x_);
-  batch_.gradient(x_, factor_, x_bar_);
-  if (scale_ != T(1)) x_bar_ *= scale_;
-  update_(model_.parameters(), model_.backward(x_bar_));
   model_.update_state();
+  if (update_) {
+    x_bar_.resizeLike(x_);
+    batch_.gradient(x_, factor_, x_bar_);
+    if (scale_ != T(1)) x_bar_ *= scale_;
+    before_ = model_.parameters();
+    (*update_)(model_.parameters(), model_.backward(x_bar_));
+    if (model_.parameters().allFinite()) return true;
+    model_.parameters() = before_;
+    return false;
+  }
+  jacobian_.resize(x_.rows() * oracle_.shape().observations, x_.cols());
+  batch_.jacobian(x_, factor_, jacobian_);
+  if (scale_ != T(1)) jacobian_ *= scale_;
+  const bool taken = (*half_inverse_)(model_.network(),
+                                      model_.parameters(),
+                                      model_.tape(),
+                                      jacobian_,
+                                      batch_.y_bar(),
+                                      model_.workspace());
+  const auto& report = half_inverse_->report();
+  kept_.push_back(static_cast<double>(report.kept));
+  smallest_.push_back(report.s_max > 0 ? report.smallest_kept / report.s_max
+                                       : 0);
+  path_.push_back(static_cast<double>(report.path));
+  unproven_ += !report.proven;
+  return taken;
 }
 
 class TrainingStage final : public Stage {
@@ -165,7 +204,11 @@ class TrainingStage final : public Stage {
   explicit TrainingStage(const TrainingOptions& options) : options_(options) {}
 
   std::string name() const override { return options_.stage; }
-  Needs needs() const override { return Needs::forward | Needs::vjp; }
+  Needs needs() const override {
+    return Needs::forward | (std::holds_alternative<StepOptions>(options_.rule)
+                                 ? Needs::vjp
+                                 : Needs::jacobian);
+  }
   Options options() const override {
     Options all = {
         {"algorithm", "training"},
@@ -173,7 +216,9 @@ class TrainingStage final : public Stage {
         {"gradient_scale", fmt::format("{}", options_.gradient_scale)},
         {"fresh", fmt::format("{}", options_.fresh)},
         {"metrics", options_.metrics.name}};
-    for (auto& option : describe(options_.rule)) all.push_back(option);
+    const Options rule =
+        std::visit([](const auto& o) { return describe(o); }, options_.rule);
+    all.insert(all.end(), rule.begin(), rule.end());
     return all;
   }
   Index default_iterations() const override { return options_.iterations; }

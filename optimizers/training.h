@@ -13,7 +13,9 @@
 /// Arrays left: `parameters`, `state` (a later stage of the chain starts from
 /// them), `samples_drawn` (1), `mean_loss` (1 x points of the curve, over the
 /// case's problems), `batch_loss` (1 x updates, mean before the update), and
-/// what `metrics` and the rule add.
+/// what `metrics` adds. A half-inverse rule leaves per update `kept` (singular
+/// values), `smallest` (kept, relative to the largest) and `path`
+/// (hig::Path); `unproven` (1) counts updates whose accuracy was not shown.
 #pragma once
 
 #include <functional>
@@ -22,6 +24,7 @@
 #include <variant>
 #include <vector>
 
+#include "optimizers/half_inverse_step.h"
 #include "optimizers/steps/rule.h"
 #include "suite/core/method.h"
 
@@ -44,7 +47,7 @@ struct Metrics {
 
 struct TrainingOptions {
   std::string stage = "train";
-  StepOptions rule;
+  std::variant<StepOptions, HalfInverseStepOptions> rule;
   Index batch = 128;
   Index iterations = 1000;
   /// g = gradient_scale / batch * dLoss_i/dy_i: 1 is the batch's mean.

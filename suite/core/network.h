@@ -86,16 +86,16 @@ class Network {
                         BatchOut<T>* in_bar,
                         Workspace& work) const = 0;
 
-  using RowsVisitor = std::function<void(const LayerRows<T>&)>;
-  /// The Jacobian of several functions of each sample's output, layer by layer
-  /// from the last to the first, at the last forward pass on this tape:
-  /// columns [i * per_sample, (i + 1) * per_sample) of `out_bar` are the
-  /// cotangents of sample i's functions. What `visit` is shown lives until it
-  /// returns. Networks with other layers than dense ones refuse.
+  /// The Jacobian of several functions of each sample's output, at the last
+  /// forward pass on this tape: columns [i * per_sample, (i + 1) * per_sample)
+  /// of `out_bar` are the cotangents of sample i's functions. Appends its
+  /// layers from the last to the first; their arrays live on the tape and in
+  /// `work`, until the scope there ends. Networks with other layers than dense
+  /// ones refuse.
   virtual void jacobian_rows(VectorIn<T> parameters,
                              const Tape& tape,
                              BatchIn<T> out_bar,
-                             const RowsVisitor& visit,
+                             std::vector<LayerRows<T>>& layers,
                              Workspace& work) const;
 
   /// Folds the batch statistics of the last training pass into the state.
@@ -109,7 +109,7 @@ template <class T>
 void Network<T>::jacobian_rows(VectorIn<T>,
                                const Tape&,
                                BatchIn<T>,
-                               const RowsVisitor&,
+                               std::vector<LayerRows<T>>&,
                                Workspace&) const {
   SUITE_CHECK(false, "this network does not give its Jacobian by rows");
 }

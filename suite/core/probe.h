@@ -104,6 +104,12 @@ class Probe {
   Observer observer_;
 };
 
+/// Examples whose paths curves keep: paths are looked at where there are few
+/// unknowns.
+constexpr Index tracked_examples(Index unknowns) {
+  return unknowns <= 16 ? 4 : 1;
+}
+
 /// The iterations at which curves are measured: every one up to 14, then about
 /// seventeen per factor of ten.
 Index next_measured(Index iteration);

@@ -84,9 +84,9 @@ class Runner {
                   root_,
                   stage.needs(),
                   threads_);
-    // Paths are looked at where there are few unknowns.
-    const Index tracked = oracle.shape().unknowns <= 16 ? 4 : 1;
-    Probe probe(oracle, case_.stage_iterations[at], tracked);
+    Probe probe(oracle,
+                case_.stage_iterations[at],
+                tracked_examples(oracle.shape().unknowns));
     std::uint64_t trajectory = hash_text("trajectory");
     listen(probe, trajectory);
     StageRun run{.oracle = oracle,

@@ -10,7 +10,7 @@
 ///    keep what runs between them in tape slots of their own (skip.h).
 ///  - Forward mode: one more virtual `tangent(at, x, y, x_dot, p_dot, y_dot)`
 ///    with a default that reports the lack; it reads the same tape.
-///  - Stacked Jacobians of more layer kinds: `show_rows`; the cotangents
+///  - Stacked Jacobians of more layer kinds: `add_rows`; the cotangents
 ///    walking down are those of `backward`, run on each sample's rows at once.
 #pragma once
 
@@ -102,12 +102,12 @@ class Layer {
                        Lanes<const T> x,
                        Lanes<T> y) const = 0;
   virtual void backward(const LayerArgs<T>& at, const Backward<T>& b) const = 0;
-  /// Shows its columns of a stacked Jacobian: see Network::jacobian_rows. x has
-  /// the samples, y_bar the rows.
-  virtual void show_rows(Lanes<const T> /*x*/,
-                         Lanes<const T> /*y_bar*/,
-                         Index /*offset*/,
-                         const typename Network<T>::RowsVisitor&) const {
+  /// Appends its columns of a stacked Jacobian: see Network::jacobian_rows. x
+  /// has the samples, y_bar the rows.
+  virtual void add_rows(Lanes<const T> /*x*/,
+                        Lanes<const T> /*y_bar*/,
+                        Index /*offset*/,
+                        std::vector<LayerRows<T>>&) const {
     SUITE_CHECK(tensors().empty(), "not a dense layer");
   }
   /// Folds the last training pass's statistics into this layer's state.

@@ -158,17 +158,17 @@ void Linear<T>::backward(const LayerArgs<T>& at, const Backward<T>& b) const {
 }
 
 template <class T>
-void Linear<T>::show_rows(Lanes<const T> x,
-                          Lanes<const T> y_bar,
-                          Index offset,
-                          const typename Network<T>::RowsVisitor& visit) const {
-  visit({.offset = offset,
-         .inputs = this->inputs(),
-         .outputs = this->outputs(),
-         .a = x.data,
-         .a_stride = x.stride,
-         .b = y_bar.data,
-         .b_stride = y_bar.stride});
+void Linear<T>::add_rows(Lanes<const T> x,
+                         Lanes<const T> y_bar,
+                         Index offset,
+                         std::vector<LayerRows<T>>& layers) const {
+  layers.push_back({.offset = offset,
+                    .inputs = this->inputs(),
+                    .outputs = this->outputs(),
+                    .a = x.data,
+                    .a_stride = x.stride,
+                    .b = y_bar.data,
+                    .b_stride = y_bar.stride});
 }
 
 template class Linear<float>;

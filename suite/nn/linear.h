@@ -25,10 +25,10 @@ class Linear final : public Layer<T> {
                Lanes<const T> x,
                Lanes<T> y) const override;
   void backward(const LayerArgs<T>& at, const Backward<T>& b) const override;
-  void show_rows(Lanes<const T> x,
-                 Lanes<const T> y_bar,
-                 Index offset,
-                 const typename Network<T>::RowsVisitor& visit) const override;
+  void add_rows(Lanes<const T> x,
+                Lanes<const T> y_bar,
+                Index offset,
+                std::vector<LayerRows<T>>& layers) const override;
   double operations() const override;
 
  private:

@@ -243,50 +243,45 @@ template <class T>
 void Sequential<T>::jacobian_rows(VectorIn<T> parameters,
                                   const Tape& tape,
                                   BatchIn<T> out_bar,
-                                  const typename Network<T>::RowsVisitor& visit,
+                                  std::vector<LayerRows<T>>& layers,
                                   Workspace& work) const {
   const Header header = Header::read(tape);
   const Index n = header.samples, rows = out_bar.cols(), per = rows / n;
   SUITE_CHECK(out_bar.rows() == outputs() && per * n == rows,
               "as many rows for each sample");
   work.counts[Counter::network_backward] += static_cast<std::uint64_t>(rows);
-  const Workspace::Scope scope(work);
-  const Index stride = Lanes<T>(nullptr, widest_, rows).stride;
-  const auto take = [&] { return work.take<T>(stride, widest_).data(); };
-  T *free = take(), *const before = take(), *const behind = take();
-  Lanes<T> y_bar(take(), outputs(), rows);
-  to_lanes<T>(out_bar, y_bar);
+  const auto take = [&](Index features) {
+    Lanes<T> lanes(nullptr, features, rows);
+    lanes.data = work.take<T>(lanes.stride, features).data();
+    return lanes;
+  };
   // What a layer remembers is one column per sample; its rows share it.
-  const auto spread = [&](std::size_t i, T* to) {
-    const Lanes<T> from = features(tape, i, n);
-    const Lanes<T> wide(to, from.rows, rows);
+  const auto spread = [&](std::size_t i) {
+    const Lanes<T> from = features(tape, i, n), to = take(from.rows);
     for (Index f = 0; f < from.rows; ++f) {
       for (Index s = 0; s < n; ++s)
-        std::fill_n(wide.row(f) + s * per, per, from.row(f)[s]);
-      std::fill(wide.row(f) + rows, wide.row(f) + wide.width, T(0));
+        std::fill_n(to.row(f) + s * per, per, from.row(f)[s]);
+      std::fill(to.row(f) + rows, to.row(f) + to.width, T(0));
     }
-    return wide;
+    return to;
   };
-  Lanes<T> y = spread(layers_.size(), behind);
+  Lanes<T> y_bar = take(outputs()), y = spread(layers_.size());
+  to_lanes<T>(out_bar, y_bar);
   apply_gate<T>({layers_.back()->fused(), y}, y_bar);
-  T* spare = before;
   for (std::size_t i = layers_.size(); i-- > prefix_;) {
     const Layer<T>& layer = *layers_[i];
-    layer.show_rows(features(tape, i, n), y_bar, places_[i].parameters, visit);
+    layer.add_rows(features(tape, i, n), y_bar, places_[i].parameters, layers);
     if (i == prefix_) break;
-    const Lanes<T> x = spread(i, spare);
+    const Lanes<T> x = spread(i);
     const Backward<T> b{.x = x,
                         .y = y,
                         .y_bar = y_bar,
-                        .x_bar = {free, layer.inputs(), rows},
+                        .x_bar = take(layer.inputs()),
                         .gate = {layers_[i - 1]->fused(), x}};
     LayerArgs<T> at = args(i, header, const_cast<Tape&>(tape), work);
     at.parameters = parameters.data() + places_[i].parameters;
     layer.backward(at, b);
-    free = y_bar.data;
-    y_bar = b.x_bar;
-    spare = y.data;
-    y = x;
+    y_bar = b.x_bar, y = x;
   }
 }
 

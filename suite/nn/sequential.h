@@ -52,7 +52,7 @@ class Sequential final : public Network<T> {
   void jacobian_rows(VectorIn<T> parameters,
                      const Tape& tape,
                      BatchIn<T> out_bar,
-                     const typename Network<T>::RowsVisitor& visit,
+                     std::vector<LayerRows<T>>& layers,
                      Workspace& work) const override;
   void update_state(const Tape& tape, VectorOut<T> state) const override;
   double operations() const override;

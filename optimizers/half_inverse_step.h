@@ -1,0 +1,82 @@
+/// One update of a network's parameters by a power of the stacked Jacobian of
+/// network and solver together (half-inverse gradients paper, Eq. 6):
+///
+///   theta -= rate * s_max^beta J^(kappa, tau) g,   J = S N
+///
+/// S_i the solver's Jacobian of sample i, N_i the network's, g = dLoss/dy
+/// stacked. A wide J (more parameters than rows) is never formed: its rows are
+/// outer products, and J J^T is enough (optimizers/half_inverse). A tall one
+/// is small, and is taken apart as it is.
+#pragma once
+
+#include <vector>
+
+#include "optimizers/half_inverse/half_inverse.h"
+#include "optimizers/half_inverse/structured_gram.h"
+#include "suite/core/clock.h"
+#include "suite/core/network.h"
+#include "suite/core/recipe.h"
+
+namespace physinv {
+
+struct HalfInverseStepOptions {
+  hig::Power power = {};
+  double rate = 1;
+  hig::HalfInverseOptions numerics = {};
+};
+
+Options describe(const HalfInverseStepOptions& options);
+
+template <class T>
+class HalfInverseStep {
+ public:
+  explicit HalfInverseStep(const HalfInverseStepOptions& options,
+                           Threads* threads = nullptr)
+      : options_(options), power_(options.numerics, threads) {}
+
+  /// At the last forward pass on `tape`. Column i of `solver` is S_i
+  /// (observations x unknowns, column-major), of `g` the gradient by sample
+  /// i's observations. False, and nothing changed, if the update is not
+  /// finite.
+  bool operator()(const Network<T>& network,
+                  VectorOut<T> parameters,
+                  const Tape& tape,
+                  BatchIn<T> solver,
+                  BatchIn<T> g,
+                  Workspace& work);
+
+  /// The last update, without the rate, and what is known about it.
+  const Batch<double>& update() const { return update_; }
+  const hig::HalfInverseReport& report() const { return report_; }
+  const hig::HalfInverse::Counts& counts() const { return power_.counts(); }
+  /// Time until J J^T (or J) stood, and of everything.
+  Seconds gram_time() const { return gram_time_; }
+  Seconds time() const { return time_; }
+  std::size_t bytes() const;
+
+ private:
+  void power_of_gram(const Network<T>& network,
+                     VectorIn<T> parameters,
+                     const Tape& tape,
+                     Index samples,
+                     Workspace& work);
+  void power_of_jacobian(Index samples);
+
+  HalfInverseStepOptions options_;
+  hig::HalfInverse power_;
+  hig::ExplicitPower explicit_;
+  hig::StructuredGram form_gram_;
+  hig::HalfInverseReport report_;
+  Seconds begun_, gram_time_, time_;
+  std::vector<LayerRows<T>> layers_;
+  std::vector<hig::GramLayer<T>> blocks_;
+  Batch<T> rows_, out_bar_;
+  Batch<double> gram_, transposed_, update_;
+  Vector<double> g_;
+  Vector<T> column_;
+};
+
+extern template class HalfInverseStep<float>;
+extern template class HalfInverseStep<double>;
+
+}  // namespace physinv
