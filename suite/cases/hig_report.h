@@ -1,5 +1,5 @@
 /// What the experiments of the half-inverse-gradients paper share: test losses
-/// of training stages, over updates and over time.
+/// of training stages over updates, over our time and over the paper's.
 #pragma once
 
 #include <optional>
@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "suite/results/published.h"
 #include "suite/results/report_model.h"
 #include "suite/results/results.h"
 
@@ -33,10 +34,16 @@ std::optional<double> median_test_loss(const Results& results,
 /// A method as a figure shows it.
 struct MethodLine {
   std::string method, label, colour;
+  double paper_update = 0;  ///< seconds per update by the paper; 0: unknown
 };
 
-/// Median test loss over updates, and over solving time; the band is the range
-/// over seeds.
+/// The lines whose method has results.
+std::vector<MethodLine> present(const Results& results,
+                                std::string_view experiment,
+                                std::vector<MethodLine> lines);
+
+/// Median test loss over updates, over solving time and, for lines that know
+/// it, over the paper's time; the band is the range over seeds.
 Figure loss_figure(const Results& results,
                    std::string_view experiment,
                    const std::vector<MethodLine>& lines,
@@ -44,9 +51,40 @@ Figure loss_figure(const Results& results,
                    std::string title,
                    std::string source);
 
+/// The same over all stages of each method's chain, joined.
+Figure chain_figure(const Results& results,
+                    std::string_view experiment,
+                    const std::vector<MethodLine>& lines,
+                    std::string id,
+                    std::string title,
+                    std::string source);
+
+/// Median of row `row` of the array `metrics` over updates.
+Figure metric_figure(const Results& results,
+                     std::string_view experiment,
+                     const std::vector<MethodLine>& lines,
+                     Index row,
+                     std::string y_label,
+                     std::string id,
+                     std::string title,
+                     std::string source);
+
 /// Per method: test loss at the end, seconds and bytes per update.
 Table loss_table(const Results& results,
                  std::string_view experiment,
                  const std::vector<MethodLine>& lines);
+
+/// A method beside a row of the paper's tables of memory and durations.
+struct CostLine {
+  std::string method, label;
+  std::string published;  ///< "table3/hig/b=128"
+};
+
+/// Memory and duration of an update, ours and the paper's.
+Table cost_table(const Results& results,
+                 std::string_view experiment,
+                 const Published& published,
+                 const std::vector<CostLine>& lines,
+                 std::string source);
 
 }  // namespace physinv

@@ -1,0 +1,14 @@
+/// What the figures of the oscillators claim (Figs. 2, 12, 13), as conditions
+/// on test losses.
+#pragma once
+
+#include <vector>
+
+#include "suite/results/report_model.h"
+#include "suite/results/results.h"
+
+namespace physinv {
+
+std::vector<ClaimResult> oscillator_claims(const Results& results);
+
+}  // namespace physinv
