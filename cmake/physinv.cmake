@@ -40,6 +40,19 @@ if(PHYSINV_SANITIZE)
   add_link_options(-fsanitize=${PHYSINV_SANITIZE})
 endif()
 
+# Sanitized builds read what everybody includes once. Release builds do not, so
+# that a missing #include cannot hide.
+function(physinv_precompile name)
+  add_library(${name} OBJECT ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/precompiled.cpp)
+  target_link_libraries(${name} PRIVATE physinv_flags Eigen3::Eigen fmt::fmt)
+  target_compile_options(${name} PRIVATE ${PHYSINV_WARNINGS})
+  target_precompile_headers(${name} PRIVATE <Eigen/Core> <fmt/format.h>
+    <algorithm> <functional> <map> <memory> <string> <vector> ${ARGN})
+endfunction()
+if(PHYSINV_SANITIZE)
+  physinv_precompile(physinv_precompiled)
+endif()
+
 # physinv_layer(<name> [OBJECT] SOURCES ... DEPENDS ...): one target per layer.
 # OBJECT keeps registrations that nobody names from the linker's broom.
 function(physinv_layer name)
@@ -55,4 +68,7 @@ function(physinv_layer name)
     $<INSTALL_INTERFACE:include/physinv>)
   target_link_libraries(physinv_${name} PUBLIC physinv_flags ${ARG_DEPENDS})
   target_compile_options(physinv_${name} PRIVATE ${PHYSINV_WARNINGS})
+  if(PHYSINV_SANITIZE)
+    target_precompile_headers(physinv_${name} REUSE_FROM physinv_precompiled)
+  endif()
 endfunction()
