@@ -20,7 +20,7 @@ install(EXPORT physinv NAMESPACE physinv:: FILE physinv-targets.cmake
 install(DIRECTORY suite problems optimizers baselines
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/physinv
   FILES_MATCHING PATTERN *.h
-  PATTERN app EXCLUDE PATTERN cases EXCLUDE)
+  PATTERN app EXCLUDE PATTERN cases EXCLUDE PATTERN kernels.h EXCLUDE)
 
 write_basic_package_version_file(
   ${PROJECT_BINARY_DIR}/physinv-config-version.cmake

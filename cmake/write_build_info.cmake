@@ -8,7 +8,7 @@ foreach(directory suite/core suite/nn problems optimizers baselines)
     ${source_dir}/${directory}/*.h ${source_dir}/${directory}/*.cpp)
   list(APPEND sources ${found})
 endforeach()
-list(FILTER sources EXCLUDE REGEX "/kernels\\.cpp$")
+list(FILTER sources EXCLUDE REGEX "/kernels\\.(cpp|h)$")
 list(SORT sources)
 
 string(CONCAT content "${compiler} ${compiler_version} ${flags} "

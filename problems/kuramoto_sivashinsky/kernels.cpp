@@ -1,7 +1,7 @@
 /// Times of a simulation and of a gradient, beside the bare transforms that
 /// they need: four real ones of 128 points per step and way. The counters are
 /// seconds per sample and step.
-#include <benchmark/benchmark.h>
+#include "problems/kernels.h"
 
 #include "problems/kuramoto_sivashinsky/kuramoto_sivashinsky.h"
 #include "suite/core/real_fft.h"
@@ -20,21 +20,12 @@ void report(benchmark::State& state, double items, double operations) {
 }
 
 template <class T>
-struct Fixture {
-  explicit Fixture(Index n, double budget)
-      : problem({.tape_budget = budget}), y(kCells, n), x_bar(2, n) {
-    const auto samples =
-        problem.sample(0, n, Rng::root("kernels/kuramoto_sivashinsky", 0));
-    x = samples.x.template cast<T>();
-    given = samples.given.template cast<T>();
-    y_bar = samples.y.template cast<T>();
+struct Fixture : KernelFixture<KuramotoSivashinsky, T> {
+  Fixture(Index n, double budget)
+      : KernelFixture<KuramotoSivashinsky, T>(n, {.tape_budget = budget}) {}
+  double steps() const {
+    return static_cast<double>(this->problem.options().steps);
   }
-  double steps() const { return static_cast<double>(problem.options().steps); }
-
-  KuramotoSivashinsky<T> problem;
-  Batch<T> x, given, y, y_bar, x_bar;
-  Workspace work;
-  Tape tape;
 };
 
 template <class T>
