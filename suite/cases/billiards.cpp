@@ -103,20 +103,12 @@ ClaimResult jpo_rescues(const JpoMetrics& metrics) {
   };
   const std::array<Index, 1> largest = {128};
   const auto f = metrics.mean_shares("jpo", largest, true, Equality::strict);
-  std::vector<double> decrease;
-  for (const std::uint64_t seed : metrics.seeds()) {
-    if (const auto d = metrics.share_of_decrease("jpo", 128, seed))
-      decrease.push_back(*d);
-  }
-  const auto mean = mean_std(decrease);
   Judge judge;
   judge.at_least("rescue rate n>=64", rate(64, kEvery), 0.97)
       .above("rescue rate n>=64 over n<=8", rate(64, kEvery), rate(0, 8))
-      .at_least("f(JPO refined) at n=128",
-                f ? std::optional(f->mean.f()) : std::nullopt,
-                0.70)
+      .at_least("f(JPO refined) at n=128", f_of(f), 0.70)
       .at_least("share of decrease at n=128",
-                mean ? std::optional(mean->mean) : std::nullopt,
+                metrics.share_of_decrease("jpo", 128),
                 0.95);
   return std::move(judge).result(
       "R4",

@@ -174,6 +174,16 @@ std::optional<double> JpoMetrics::share_of_decrease(std::string_view method,
   return sum / static_cast<double>(count);
 }
 
+std::optional<double> JpoMetrics::share_of_decrease(std::string_view method,
+                                                    Index n) const {
+  std::vector<double> shares;
+  for (const std::uint64_t seed : seeds())
+    if (const auto one = share_of_decrease(method, n, seed))
+      shares.push_back(*one);
+  const auto found = mean_std(shares);
+  return found ? std::optional(found->mean) : std::nullopt;
+}
+
 std::optional<double> JpoMetrics::solved_share(std::string_view method,
                                                Index n,
                                                std::uint64_t seed,

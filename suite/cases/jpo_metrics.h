@@ -121,6 +121,9 @@ class JpoMetrics {
   std::optional<double> share_of_decrease(std::string_view method,
                                           Index n,
                                           std::uint64_t seed) const;
+  /// Mean of it over the seeds there are.
+  std::optional<double> share_of_decrease(std::string_view method,
+                                          Index n) const;
 
   /// Share of problems solved at the end of a chain.
   std::optional<double> solved_share(std::string_view method,
@@ -172,5 +175,18 @@ class JpoMetrics {
   const Results& results_;
   std::string_view experiment_;
 };
+
+/// One of the shares, if there are any.
+inline std::optional<double> better_of(
+    const std::optional<JpoMetrics::Pooled>& p) {
+  return p ? std::optional(p->mean.better) : std::nullopt;
+}
+inline std::optional<double> equal_of(
+    const std::optional<JpoMetrics::Pooled>& p) {
+  return p ? std::optional(p->mean.equal) : std::nullopt;
+}
+inline std::optional<double> f_of(const std::optional<JpoMetrics::Pooled>& p) {
+  return p ? std::optional(p->mean.f()) : std::nullopt;
+}
 
 }  // namespace physinv

@@ -38,10 +38,10 @@ std::optional<double> better(const JpoMetrics& metrics,
                              const char* method,
                              Index first,
                              bool refined) {
-  const auto found = metrics.mean_shares(
-      method, sizes_between(metrics, first, kEvery), refined, Equality::strict);
-  if (!found) return {};
-  return found->mean.better;
+  return better_of(metrics.mean_shares(method,
+                                       sizes_between(metrics, first, kEvery),
+                                       refined,
+                                       Equality::strict));
 }
 
 /// Plain BFGS on all problems of the largest n.
@@ -192,18 +192,12 @@ ClaimResult networks_stagnate(const JpoMetrics& metrics) {
 ClaimResult network_makes_the_decrease(const JpoMetrics& metrics, bool full) {
   std::optional<double> lowest;
   for (const Index n : sizes_between(metrics, 8, kEvery)) {
-    std::vector<double> shares;
-    for (const std::uint64_t seed : metrics.seeds())
-      if (const auto one = metrics.share_of_decrease("jpo", n, seed))
-        shares.push_back(*one);
-    if (const auto mean = mean_std(shares))
-      lowest = std::min(lowest.value_or(mean->mean), mean->mean);
+    if (const auto mean = metrics.share_of_decrease("jpo", n))
+      lowest = std::min(lowest.value_or(*mean), *mean);
   }
-  const auto f = [&](Index n) -> std::optional<double> {
-    const auto found =
-        metrics.mean_shares("jpo", std::vector{n}, true, Equality::strict);
-    if (!found) return {};
-    return found->mean.f();
+  const auto f = [&](Index n) {
+    return f_of(
+        metrics.mean_shares("jpo", std::vector{n}, true, Equality::strict));
   };
   Judge judge;
   judge.at_least("lowest share of the decrease, n >= 8", lowest, 0.85);
@@ -233,9 +227,7 @@ ClaimResult samples_teach_less(const JpoMetrics& metrics) {
   Judge judge;
   judge.above("better: jpo over supervised", jpo, supervised)
       .at_most("better: na", better(metrics, "na", kFirst, false), 0.2)
-      .at_least("equal: na refined",
-                na ? std::optional(na->mean.equal) : std::nullopt,
-                0.3);
+      .at_least("equal: na refined", equal_of(na), 0.3);
   return std::move(judge).result(
       "R7",
       "For n >= 16, unrefined supervised learning is better than BFGS less "
@@ -288,14 +280,14 @@ Table in_words(const JpoMetrics& metrics, const Published& published) {
     return percent(metrics.pooled_solved_share(
         method, sizes_between(metrics, kMany, kEvery), refined, solved()));
   };
-  const auto better_at = [&](const char* method,
-                             bool refined,
-                             Index first,
-                             Index last) {
-    const auto found = metrics.mean_shares(
-        method, sizes_between(metrics, first, last), refined, Equality::strict);
-    return percent(found ? std::optional(found->mean.better) : std::nullopt);
-  };
+  const auto better_at =
+      [&](const char* method, bool refined, Index first, Index last) {
+        return percent(
+            better_of(metrics.mean_shares(method,
+                                          sizes_between(metrics, first, last),
+                                          refined,
+                                          Equality::strict)));
+      };
   add("BFGS solves, n >= 32, %", "text/bfgs/solved", solved_by("bfgs", false));
   add("JPO refined solves, n >= 32, %",
       "text/jpo/solved",
