@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <limits>
+#include <type_traits>
+
 namespace physinv {
 namespace {
 
@@ -12,13 +16,52 @@ void write_out(const std::vector<LayerRows<T>>& layers,
                Batch<double>& transposed) {
   for (const LayerRows<T>& l : layers) {
     for (Index r = 0; r < transposed.cols(); ++r) {
-      double* to = transposed.col(r).data() + l.offset;
-      const T* a = l.a + r / per_sample;
-      const T* b = l.b + r;
-      for (Index o = 0; o < l.outputs; ++o)
-        for (Index i = 0; i < l.inputs; ++i)
-          *to++ = double(b[o * l.b_stride]) * double(a[i * l.a_stride]);
-      for (Index o = 0; o < l.outputs; ++o) *to++ = double(b[o * l.b_stride]);
+      double* const to = transposed.col(r).data() + l.offset;
+      const Index weights = l.inputs * l.outputs;
+      std::fill_n(to, weights + l.outputs, 0.0);
+      const Index channels = l.inputs / l.taps;
+      for (Index p = 0; p < l.positions; ++p) {
+        const T* a = l.a + p * l.a_step * l.a_stride + r / per_sample;
+        const T* b = l.b + p * l.b_step * l.b_stride + r;
+        for (Index o = 0; o < l.outputs; ++o) {
+          const auto bar = double(b[o * l.b_stride]);
+          for (Index i = 0; i < l.inputs; ++i)
+            to[o * l.inputs + i % channels * l.taps + i / channels] +=
+                bar * double(a[i * l.a_stride]);
+          to[weights + o] += bar;
+        }
+      }
+    }
+  }
+}
+
+/// out = J^T u, in double whatever J was rounded to: the small singular values
+/// are found by it.
+template <class T>
+void pull_back(const std::vector<LayerRows<T>>& layers,
+               Index per_sample,
+               BatchIn<double> u,
+               BatchOut<double> out) {
+  out.setZero();
+  for (Index c = 0; c < u.cols(); ++c) {
+    for (const LayerRows<T>& l : layers) {
+      double* const to = out.col(c).data() + l.offset;
+      const Index weights = l.inputs * l.outputs, channels = l.inputs / l.taps;
+      for (Index r = 0; r < u.rows(); r += per_sample) {
+        for (Index p = 0; p < l.positions; ++p) {
+          const T* a = l.a + p * l.a_step * l.a_stride + r / per_sample;
+          const T* b = l.b + p * l.b_step * l.b_stride + r;
+          for (Index o = 0; o < l.outputs; ++o) {
+            double bar = 0;
+            for (Index k = 0; k < per_sample; ++k)
+              bar += double(b[o * l.b_stride + k]) * u(r + k, c);
+            for (Index i = 0; i < l.inputs; ++i)
+              to[o * l.inputs + i % channels * l.taps + i / channels] +=
+                  bar * double(a[i * l.a_stride]);
+            to[weights + o] += bar;
+          }
+        }
+      }
     }
   }
 }
@@ -49,15 +92,18 @@ void HalfInverseStep<T>::power_of_gram(const Network<T>& network,
                        .a_stride = l.a_stride,
                        .b = l.b,
                        .outputs = l.outputs,
-                       .b_stride = l.b_stride});
+                       .b_stride = l.b_stride,
+                       .positions = l.positions,
+                       .a_step = l.a_step,
+                       .b_step = l.b_step});
   gram_.resize(rows, rows);
   form_gram_.template operator()<T>(
       blocks_, samples, per, gram_, work.threads());
-  gram_time_ += now() - begun_;
 
   out_bar_.resize(rows_.rows(), samples);
   column_.resize(parameters.size());
   const hig::Pullback pullback = [&](BatchIn<double> u, BatchOut<double> out) {
+    if (std::is_same_v<T, float>) return pull_back(layers_, per, u, out);
     for (Index c = 0; c < u.cols(); ++c) {
       for (Index i = 0; i < samples; ++i)
         out_bar_.col(i).noalias() =
@@ -73,14 +119,31 @@ void HalfInverseStep<T>::power_of_gram(const Network<T>& network,
 }
 
 template <class T>
-void HalfInverseStep<T>::power_of_jacobian(Index samples) {
-  transposed_.resize(update_.rows(), g_.size());
-  write_out(layers_, g_.size() / samples, transposed_);
-  gram_time_ += now() - begun_;
-  update_.setZero();
-  explicit_.factor(transposed_.transpose(), g_);
-  static_cast<hig::PowerReport&>(report_) =
-      explicit_.apply(options_.power, update_.col(0));
+void HalfInverseStep<T>::power_of_jacobian(VectorIn<T> parameters,
+                                           Index samples) {
+  const Index rows = g_.size(), p = update_.rows();
+  auto update = update_.col(0);
+  hig::PowerReport& report = report_;
+  report_ = {};
+  const bool shared =
+      shared_.template triangle<T>(layers_, parameters, g_, rows / samples);
+  if (!shared) {
+    transposed_.resize(p, rows);
+    write_out(layers_, rows / samples, transposed_);
+    columns_.open(rows, p + 1);
+    for (Index j = 0; j < p; ++j)
+      Eigen::Map<Vector<double>>(columns_.column(j), rows) =
+          transposed_.row(j).transpose();
+    std::copy_n(g_.data(), rows, columns_.column(p));
+  }
+  if (shared) {
+    reordered_.resize(p);
+    report = tall_.of_triangle(shared_.result(), options_.power, reordered_);
+    for (Index j = 0; j < p; ++j)
+      update(shared_.place()[static_cast<std::size_t>(j)]) = reordered_(j);
+  } else {
+    report = tall_(columns_, options_.power, update);
+  }
   report_.path = hig::Path::explicit_jacobian;
   report_.proven = report_.ending == hig::Ending::zero ||
                    report_.error <= options_.numerics.tolerance;
@@ -96,28 +159,30 @@ bool HalfInverseStep<T>::operator()(const Network<T>& network,
                                     BatchIn<T> g,
                                     Workspace& work) {
   const Index samples = g.cols(), per = g.rows();
-  begun_ = now();
   const Workspace::Scope scope(work);
   rows_.resize(solver.rows() / per, samples * per);
-  for (Index i = 0; i < samples; ++i)
-    rows_.middleCols(i * per, per) =
-        Eigen::Map<const Batch<T>>(solver.col(i).data(), per, rows_.rows())
-            .transpose();
+  for (Index i = 0; i < samples; ++i) {
+    const T* from = solver.col(i).data();
+    T* to = rows_.col(i * per).data();
+    for (Index c = 0; c < per; ++c)
+      for (Index u = 0; u < rows_.rows(); ++u) *to++ = from[u * per + c];
+  }
   layers_.clear();
   network.jacobian_rows(parameters, tape, rows_, layers_, work);
   g_.resize(samples * per);
   for (Index i = 0; i < samples; ++i)
-    g_.segment(i * per, per) = g.col(i).template cast<double>();
+    for (Index c = 0; c < per; ++c)
+      g_(i * per + c) = static_cast<double>(g(c, i));
   update_.resize(parameters.size(), 1);
   if (parameters.size() < g_.size()) {
-    power_of_jacobian(samples);
+    power_of_jacobian(parameters, samples);
   } else {
     power_of_gram(network, parameters, tape, samples, work);
   }
-  time_ += now() - begun_;
-  const bool finite = update_.allFinite();
-  if (finite) parameters -= (options_.rate * update_.col(0)).template cast<T>();
-  return finite && parameters.allFinite();
+  column_ = parameters - (options_.rate * update_.col(0)).template cast<T>();
+  const bool finite = column_.allFinite();
+  if (finite) parameters = column_;
+  return finite;
 }
 
 template <class T>
@@ -125,9 +190,10 @@ std::size_t HalfInverseStep<T>::bytes() const {
   const auto bytes = [](const auto& m) {
     return static_cast<std::size_t>(m.size()) * sizeof(m.data()[0]);
   };
-  // The factorisation holds one more matrix of the Gram matrix's size.
-  return bytes(rows_) + bytes(out_bar_) + 2 * bytes(gram_) + bytes(g_) +
-         bytes(update_) + bytes(column_) + bytes(transposed_);
+  return bytes(rows_) + bytes(out_bar_) + bytes(gram_) + form_gram_.bytes() +
+         power_.bytes() + bytes(g_) + bytes(update_) + bytes(column_) +
+         bytes(transposed_) + columns_.bytes() + shared_.bytes() +
+         tall_.bytes();
 }
 
 template class HalfInverseStep<float>;

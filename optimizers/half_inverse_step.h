@@ -12,8 +12,9 @@
 #include <vector>
 
 #include "optimizers/half_inverse/half_inverse.h"
+#include "optimizers/half_inverse/shared_functions.h"
 #include "optimizers/half_inverse/structured_gram.h"
-#include "suite/core/clock.h"
+#include "optimizers/half_inverse/tall_power.h"
 #include "suite/core/network.h"
 #include "suite/core/recipe.h"
 
@@ -48,10 +49,6 @@ class HalfInverseStep {
   /// The last update, without the rate, and what is known about it.
   const Batch<double>& update() const { return update_; }
   const hig::HalfInverseReport& report() const { return report_; }
-  const hig::HalfInverse::Counts& counts() const { return power_.counts(); }
-  /// Time until J J^T (or J) stood, and of everything.
-  Seconds gram_time() const { return gram_time_; }
-  Seconds time() const { return time_; }
   std::size_t bytes() const;
 
  private:
@@ -60,19 +57,20 @@ class HalfInverseStep {
                      const Tape& tape,
                      Index samples,
                      Workspace& work);
-  void power_of_jacobian(Index samples);
+  void power_of_jacobian(VectorIn<T> parameters, Index samples);
 
   HalfInverseStepOptions options_;
   hig::HalfInverse power_;
-  hig::ExplicitPower explicit_;
+  hig::SharedFunctions shared_;
+  hig::TallPower tall_;
+  hig::TallColumns columns_;
   hig::StructuredGram form_gram_;
   hig::HalfInverseReport report_;
-  Seconds begun_, gram_time_, time_;
   std::vector<LayerRows<T>> layers_;
   std::vector<hig::GramLayer<T>> blocks_;
   Batch<T> rows_, out_bar_;
   Batch<double> gram_, transposed_, update_;
-  Vector<double> g_;
+  Vector<double> g_, reordered_;
   Vector<T> column_;
 };
 

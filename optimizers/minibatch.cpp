@@ -52,24 +52,32 @@ void Minibatch<T>::load(const Samples<double>& from, Index first) {
 }
 
 template <class T>
-void Minibatch<T>::weigh(T factor) {
-  problem_->loss(y_, target_, loss_);
-  problem_->loss_gradient(y_, target_, y_bar_);
-  y_bar_ *= factor;
+void Minibatch<T>::weigh(T factor, Index first, Index count) {
+  const auto y = y_.middleCols(first, count);
+  const auto target = target_.middleCols(first, count);
+  auto y_bar = y_bar_.middleCols(first, count);
+  problem_->loss(y, target, loss_.segment(first, count));
+  problem_->loss_gradient(y, target, y_bar);
+  y_bar *= factor;
 }
 
 template <class T>
-void Minibatch<T>::gradient(BatchIn<T> x, T factor, BatchOut<T> x_bar) {
-  vjp_->linearize(x, given_, y_, tape_);
-  weigh(factor);
-  vjp_->pullback(tape_, y_bar_, x_bar, work_);
-  counts_[Counter::vjp] += static_cast<std::uint64_t>(batch_);
+void Minibatch<T>::gradient(BatchIn<T> x,
+                            T factor,
+                            BatchOut<T> x_bar,
+                            Index first) {
+  const Index n = x.cols();
+  vjp_->linearize(
+      x, given_.middleCols(first, n), y_.middleCols(first, n), tape_);
+  weigh(factor, first, n);
+  vjp_->pullback(tape_, y_bar_.middleCols(first, n), x_bar, work_);
+  counts_[Counter::vjp] += static_cast<std::uint64_t>(n);
 }
 
 template <class T>
 void Minibatch<T>::jacobian(BatchIn<T> x, T factor, BatchOut<T> j) {
   problem_->forward(x, given_, y_, work_);
-  weigh(factor);
+  weigh(factor, 0, batch_);
   if (projection_ != nullptr) projection_->project(y_, y_bar_);
   jacobian_->jacobian(x, given_, j, work_);
   counts_[Counter::jacobian] += static_cast<std::uint64_t>(batch_);

@@ -25,7 +25,8 @@ class Minibatch {
   const Batch<T>& input() const { return input_; }
 
   /// y = F(x), losses, y_bar = factor * d loss / d y, and x_bar = J^T y_bar.
-  void gradient(BatchIn<T> x, T factor, BatchOut<T> x_bar);
+  /// x may be a part of the batch, from sample `first` on.
+  void gradient(BatchIn<T> x, T factor, BatchOut<T> x_bar, Index first = 0);
   /// The same with the solver's Jacobians (see suite/core/problem.h) in place
   /// of x_bar; y_bar is projected if the problem can.
   void jacobian(BatchIn<T> x, T factor, BatchOut<T> j);
@@ -39,7 +40,7 @@ class Minibatch {
  private:
   void load(const Samples<double>& from, Index first);
   /// Losses at y, and y_bar.
-  void weigh(T factor);
+  void weigh(T factor, Index first, Index count);
 
   StageRun& run_;
   std::unique_ptr<Problem<T>> problem_;

@@ -79,7 +79,7 @@ class Training {
     probe.begin_warmup();
     probe.begin();
     while (probe.proceed(estimate)) {
-      batch_.next();
+      next_batch();
       diverged_ = !step();
       if (diverged_) probe.stop();
       losses_.push_back(finite(batch_.mean_loss()));
@@ -95,6 +95,16 @@ class Training {
   }
 
  private:
+  /// Samples that are new for every update are drawn off the clock.
+  void next_batch() {
+    if (options_.fresh) run_.probe.pause();
+    batch_.next();
+    if (options_.fresh) run_.probe.resume();
+  }
+
+  /// Of the batch, by the parameters.
+  const Vector<T>& gradient();
+
   /// False, and nothing changed, if the update is not finite.
   bool step();
 
@@ -118,7 +128,12 @@ class Training {
     Outcome out;
     out.iterations.setConstant(oracle_.count(),
                                static_cast<double>(run_.probe.iteration()));
-    out.bytes = model_.bytes() + batch_.bytes();
+    const Index numbers =
+        x_.size() + x_bar_.size() + before_.size() + jacobian_.size() +
+        input_.size() + sum_.size() +
+        (update_ ? update_->numbers_per_parameter() * before_.size() : 0);
+    out.bytes = model_.bytes() + batch_.bytes() +
+                static_cast<std::size_t>(numbers) * sizeof(T);
     out.arrays["batch_loss"] = row(losses_);
     out.arrays["mean_loss"] =
         run_.probe.curve().loss.colwise().mean().unaryExpr(&finite);
@@ -158,7 +173,8 @@ class Training {
   std::optional<HalfInverseStep<T>> half_inverse_;
   Batch<T> jacobian_;
   std::vector<double> kept_, smallest_, path_;
-  Batch<T> x_, x_bar_;
+  Batch<T> x_, x_bar_, input_;
+  Vector<T> sum_;
   Vector<T> before_;  ///< parameters, should the update spoil them
   Batch<double> metrics_;
   std::vector<double> losses_;
@@ -167,20 +183,41 @@ class Training {
 };
 
 template <class T>
-bool Training<T>::step() {
-  x_ = scale_ * model_.forward(batch_.input());
-  x_.colwise() += start_;
-  model_.update_state();
-  if (update_) {
+const Vector<T>& Training<T>::gradient() {
+  const Index n = batch_.size();
+  const Index most = options_.chunk > 0 ? std::min(options_.chunk, n) : n;
+  const auto part = [&](const Batch<T>& input, Index first) -> const auto& {
+    x_ = scale_ * model_.forward(input);
+    x_.colwise() += start_;
+    model_.update_state();
     x_bar_.resizeLike(x_);
-    batch_.gradient(x_, factor_, x_bar_);
+    batch_.gradient(x_, factor_, x_bar_, first);
     if (scale_ != T(1)) x_bar_ *= scale_;
+    return model_.backward(x_bar_);
+  };
+  if (most == n) return part(batch_.input(), 0);
+  SUITE_CHECK(model_.state().size() == 0, "batch statistics need the batch");
+  sum_.setZero(model_.parameters().size());
+  for (Index first = 0; first < n; first += most) {
+    input_ = batch_.input().middleCols(first, std::min(most, n - first));
+    sum_ += part(input_, first);
+  }
+  return sum_;
+}
+
+template <class T>
+bool Training<T>::step() {
+  if (update_) {
     before_ = model_.parameters();
-    (*update_)(model_.parameters(), model_.backward(x_bar_));
-    if (model_.parameters().allFinite()) return true;
+    (*update_)(model_.parameters(), gradient());
+    // As allFinite(), but in registers.
+    if ((T(0) * model_.parameters()).sum() == T(0)) return true;
     model_.parameters() = before_;
     return false;
   }
+  x_ = scale_ * model_.forward(batch_.input());
+  x_.colwise() += start_;
+  model_.update_state();
   jacobian_.resize(x_.rows() * oracle_.shape().observations, x_.cols());
   batch_.jacobian(x_, factor_, jacobian_);
   if (scale_ != T(1)) jacobian_ *= scale_;
@@ -216,12 +253,15 @@ class TrainingStage final : public Stage {
         {"gradient_scale", fmt::format("{}", options_.gradient_scale)},
         {"fresh", fmt::format("{}", options_.fresh)},
         {"metrics", options_.metrics.name}};
+    if (options_.chunk > 0)
+      all.push_back({"chunk", fmt::format("{}", options_.chunk)});
     const Options rule =
         std::visit([](const auto& o) { return describe(o); }, options_.rule);
     all.insert(all.end(), rule.begin(), rule.end());
     return all;
   }
   Index default_iterations() const override { return options_.iterations; }
+  bool takes_row_iterations() const override { return !options_.own_length; }
   bool has_precision() const override { return true; }
   double operations(const CaseSize& size) const override {
     return static_cast<double>(options_.batch * size.iterations) *

@@ -5,10 +5,10 @@
 ///   theta <- rule(theta, d/d theta of the batch's loss).
 ///
 /// Batches are consecutive slices of a training set as large as the set of the
-/// case, in the same order every epoch, or fresh samples for every update. The
-/// estimates of the case's own problems come from the network as it stands.
-/// Ends with status diverged before an update that would make a parameter
-/// infinite or NaN.
+/// case, in the same order every epoch, or fresh samples for every update,
+/// which are drawn while the clock stands still. The estimates of the case's
+/// own problems come from the network as it stands. Ends with status diverged
+/// before an update that would make a parameter infinite or NaN.
 ///
 /// Arrays left: `parameters`, `state` (a later stage of the chain starts from
 /// them), `samples_drawn` (1), `mean_loss` (1 x points of the curve, over the
@@ -49,7 +49,11 @@ struct TrainingOptions {
   std::string stage = "train";
   std::variant<StepOptions, HalfInverseStepOptions> rule;
   Index batch = 128;
+  /// Samples that first-order rules have on the tapes at once, 0: the batch.
+  /// Saves memory; the gradient differs by rounding.
+  Index chunk = 0;
   Index iterations = 1000;
+  bool own_length = false;  ///< `iterations` stands, whatever a row says
   /// g = gradient_scale / batch * dLoss_i/dy_i: 1 is the batch's mean.
   double gradient_scale = 1;
   bool fresh = false;  ///< every update draws samples never seen before

@@ -25,6 +25,8 @@ class BandReduction {
   /// x <- Q x for T = Q^T A Q.
   void apply(double* x) const;
 
+  std::size_t bytes() const { return memory_.bytes() + reflectors_.bytes(); }
+
  private:
   /// From a column to the next within one row. At least 2 kBand - 1 for the
   /// bulge; columns of a block then lie in different cache sets.

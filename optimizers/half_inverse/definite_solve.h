@@ -25,6 +25,10 @@ class DefiniteSolve {
                   PowerReport& report,
                   double gram_noise = 1);
 
+  std::size_t bytes() const {
+    return static_cast<std::size_t>(factor_.size()) * sizeof(double);
+  }
+
  private:
   Batch<double> factor_;
   Vector<double> residual_, step_;

@@ -15,12 +15,16 @@ constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 /// Up to here Jacobi is as fast as bidiagonalisation, and more accurate.
 constexpr Index kJacobi = 64;
 constexpr int kSweeps = 60;
+/// Squared norms below have lost digits to underflow; such columns count as 0.
+constexpr double kNothing = 1e-280;
 
 }  // namespace
 
 bool orthogonalize_columns(BatchOut<double> x, VectorOut<double> h) {
   const Index n = x.cols();
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    // Columns of nothing but rounding may never come closer than that.
+    const double angle = kEpsilon * (2 * sweep < kSweeps ? 1.0 : double(n));
     bool turned = false;
     for (Index p = 0; p + 1 < n; ++p) {
       // The longest of the remaining columns comes first.
@@ -36,8 +40,9 @@ bool orthogonalize_columns(BatchOut<double> x, VectorOut<double> h) {
       }
       for (Index q = p + 1; q < n; ++q) {
         const double a = x.col(p).squaredNorm(), b = x.col(q).squaredNorm();
+        if (b < kNothing) continue;
         const double along = x.col(p).dot(x.col(q));
-        if (std::abs(along) <= kEpsilon * std::sqrt(a) * std::sqrt(b)) continue;
+        if (std::abs(along) <= angle * std::sqrt(a) * std::sqrt(b)) continue;
         turned = true;
         const double zeta = (b - a) / (2 * along);
         const double t =

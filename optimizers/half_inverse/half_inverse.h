@@ -62,6 +62,8 @@ class HalfInverse {
     std::int64_t unproven = 0;
   };
   const Counts& counts() const { return counts_; }
+  /// Of the paths taken as a rule; others hold two more matrices of G's size.
+  std::size_t bytes() const { return spectral_.bytes() + definite_.bytes(); }
 
  private:
   bool settled(std::size_t i, Path path, bool last);

@@ -14,6 +14,14 @@ constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 /// Standard deviations of a sum that one pair (i, j) may dominate.
 constexpr double kSafety = 4;
 
+/// s^exponent; the exponents of the half-inverse and of Gauss-Newton without
+/// the general function.
+double raised(double s, double exponent) {
+  if (exponent == -1.5) return 1 / (s * std::sqrt(s));
+  if (exponent == -2) return 1 / (s * s);
+  return std::pow(s, exponent);
+}
+
 /// Kept and dropped directions, in units of lambda_max = s_max = 1.
 struct Side {
   Vector<double> lambda, s, f, c2;
@@ -116,7 +124,7 @@ PowerReport power_weights(const Spectrum& spectrum,
     }
     ++report.kept;
     report.smallest_kept = std::min(report.smallest_kept, s);
-    const double w = prefactor * std::pow(s, power.kappa - 1);
+    const double w = prefactor * raised(s, power.kappa - 1);
     weights(i) = w * spectrum.c(i);
     square += s * weights(i) * (s * weights(i));
     v2 += weights(i) * weights(i);
@@ -159,7 +167,7 @@ PowerReport power_weights(const Spectrum& spectrum,
     side.lambda(at) = lambda;
     side.s(at) =
         std::sqrt(&side == &kept ? lambda : std::max(lambda, 0.0) + size);
-    side.f(at) = std::pow(side.s(at), power.kappa - 1);
+    side.f(at) = raised(side.s(at), power.kappa - 1);
     side.c2(at) = spectrum.c(i) * spectrum.c(i);
     side.tail.push_back(tail);
     ++at;

@@ -34,6 +34,7 @@ class SpectralPower {
 
   const Spectrum& spectrum() const { return spectrum_; }
   Index rotations() const { return qr_.rotations(); }
+  std::size_t bytes() const { return reduction_.bytes() + qr_.bytes(); }
 
  private:
   Threads* threads_;

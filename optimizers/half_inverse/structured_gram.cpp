@@ -1,6 +1,7 @@
 #include "optimizers/half_inverse/structured_gram.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "optimizers/half_inverse/tile_product.h"
@@ -21,52 +22,122 @@ void grow(std::vector<double>& v, Index size) {
     v.resize(static_cast<std::size_t>(size));
 }
 
+/// Features packed at once: the columns of a block stay in the L2.
+constexpr Index kMostFeatures = 1280;
+
+template <class T>
+Index packed_features(const GramLayer<T>& layer) {
+  return layer.written_out() ? layer.columns()
+                             : layer.positions * layer.outputs;
+}
+
+/// One feature of all rows, in groups of kTileColumns rows,
+/// [group][feature][row], zero behind the end.
+template <class F>
+void pack_feature(
+    Index rows, Index features, Index feature, double* packed, F&& value) {
+  for (Index first = 0; first < rows; first += kTileColumns) {
+    const Index some = std::min(kTileColumns, rows - first);
+    double* to = packed + first * features + feature * kTileColumns;
+    for (Index i = 0; i < some; ++i) to[i] = value(first + i);
+    std::fill(to + some, to + kTileColumns, 0.0);
+  }
+}
+
+/// Features of A at one position, `stride` samples apart.
+template <class T>
+void widen(const GramLayer<T>& layer,
+           Index position,
+           Index samples,
+           Index stride,
+           std::vector<double>& to) {
+  grow(to, layer.inputs * stride);
+  for (Index i = 0; i < layer.inputs; ++i) {
+    const T* from = layer.a + (position * layer.a_step + i) * layer.a_stride;
+    for (Index s = 0; s < stride; ++s)
+      to[static_cast<std::size_t>(i * stride + s)] =
+          s < samples ? static_cast<double>(from[s]) : 0.0;
+  }
+}
+
 }  // namespace
 
-/// Groups of kTileColumns rows of all B, [group][feature][row], zero behind
-/// the end; and the factors A^T A + 1 of every layer.
+/// Features of B from `first` on, and per pair of positions the factors
+/// A_p^T A_q + 1.
 template <class T>
-void StructuredGram::pack(std::span<const GramLayer<T>> layers,
+void StructuredGram::pack(const GramLayer<T>& layer,
                           Index samples,
-                          Index rows) {
-  begin_.assign(1, 0);
-  for (const auto& layer : layers)
-    begin_.push_back(begin_.back() + layer.outputs);
-  const Index features = begin_.back();
-  const Index groups = round_up(rows, kTileColumns) / kTileColumns;
-  grow(packed_, groups * features * kTileColumns);
-  const Index stride = round_up(samples, kTileColumns);
-  grow(factors_, static_cast<Index>(layers.size()) * samples * stride);
-  for (std::size_t l = 0; l < layers.size(); ++l) {
-    const GramLayer<T>& layer = layers[l];
-    for (Index q = 0; q < groups; ++q) {
-      const Index first = q * kTileColumns;
-      const Index some = std::min(kTileColumns, rows - first);
-      for (Index o = 0; o < layer.outputs; ++o) {
-        const T* from = layer.b + o * layer.b_stride + first;
-        double* to = at(packed_, (q * features + begin_[l] + o) * kTileColumns);
-        for (Index i = 0; i < some; ++i) to[i] = static_cast<double>(from[i]);
-        std::fill(to + some, to + kTileColumns, 0.0);
-      }
+                          Index rows,
+                          Index first) {
+  for (Index p = 0; p < layer.positions; ++p)
+    for (Index o = 0; o < layer.outputs; ++o) {
+      const T* from = layer.b + (p * layer.b_step + o) * layer.b_stride;
+      pack_feature(rows,
+                   features_,
+                   first + p * layer.outputs + o,
+                   packed_.data(),
+                   [=](Index r) { return static_cast<double>(from[r]); });
     }
-    grow(inputs_, layer.inputs * stride);
-    for (Index i = 0; i < layer.inputs; ++i)
-      for (Index s = 0; s < stride; ++s)
-        inputs_[static_cast<std::size_t>(i * stride + s)] =
-            s < samples ? static_cast<double>(layer.a[i * layer.a_stride + s])
-                        : 0.0;
-    double* factor = at(factors_, static_cast<Index>(l) * samples * stride);
-    multiply<Into::set>(samples,
-                        stride,
-                        layer.inputs,
-                        {inputs_.data(), 1, stride},
-                        inputs_.data(),
-                        stride,
-                        factor,
-                        stride);
-    if (layer.bias)
-      for (Index i = 0; i < samples * stride; ++i) factor[i] += 1;
+  const Index stride = round_up(samples, kTileColumns);
+  for (Index p = 0; p < layer.positions; ++p) {
+    widen(layer, p, samples, stride, left_);
+    for (Index q = 0; q < layer.positions; ++q) {
+      widen(layer, q, samples, stride, right_);
+      const Index size = samples * stride;
+      const Index begin = static_cast<Index>(terms_.size()) * size;
+      grow(factors_, begin + size);
+      double* factor = at(factors_, begin);
+      multiply<Into::set>(samples,
+                          stride,
+                          layer.inputs,
+                          {left_.data(), 1, stride},
+                          right_.data(),
+                          stride,
+                          factor,
+                          stride);
+      if (layer.bias)
+        for (Index i = 0; i < size; ++i) factor[i] += 1;
+      terms_.push_back({first + p * layer.outputs,
+                        first + q * layer.outputs,
+                        layer.outputs});
+    }
   }
+}
+
+/// The layer's columns of J, with the factor 1.
+template <class T>
+void StructuredGram::pack_columns(const GramLayer<T>& layer,
+                                  Index rows_per_sample,
+                                  Index rows,
+                                  Index first) {
+  const Index samples = rows / rows_per_sample;
+  for (Index o = 0; o < layer.outputs; ++o)
+    for (Index i = 0; i < layer.columns() / layer.outputs; ++i) {
+      const bool bias = i == layer.inputs;
+      left_.assign(static_cast<std::size_t>(rows), 0.0);
+      for (Index p = 0; p < layer.positions; ++p) {
+        const T* a =
+            bias ? nullptr : layer.a + (p * layer.a_step + i) * layer.a_stride;
+        const T* b = layer.b + (p * layer.b_step + o) * layer.b_stride;
+        for (Index s = 0; s < samples; ++s) {
+          const double scale = bias ? 1.0 : static_cast<double>(a[s]);
+          double* to = at(left_, s * rows_per_sample);
+          const T* from = b + s * rows_per_sample;
+          for (Index k = 0; k < rows_per_sample; ++k)
+            to[k] = std::fma(scale, static_cast<double>(from[k]), to[k]);
+        }
+      }
+      pack_feature(rows,
+                   features_,
+                   first + i * layer.outputs + o,
+                   packed_.data(),
+                   [&](Index r) { return *at(left_, r); });
+    }
+  const Index size = samples * round_up(samples, kTileColumns);
+  const Index begin = static_cast<Index>(terms_.size()) * size;
+  grow(factors_, begin + size);
+  std::fill_n(at(factors_, begin), size, 1.0);
+  terms_.push_back({first, first, layer.columns()});
 }
 
 template <class T>
@@ -78,9 +149,51 @@ void StructuredGram::operator()(std::span<const GramLayer<T>> layers,
   const Index m = samples * rows_per_sample;
   SUITE_CHECK(gram.rows() == m && gram.cols() == m, "G is m x m");
   if (m == 0) return;
-  pack(layers, samples, m);
-  const Index features = begin_.back();
-  const auto count = static_cast<Index>(layers.size());
+  // As many layers at once as fit into the caches.
+  bool first = true;
+  while (!layers.empty()) {
+    std::size_t count = 0;
+    Index features = 0;
+    for (; count < layers.size(); ++count) {
+      features += packed_features(layers[count]);
+      if (count > 0 && features > kMostFeatures) break;
+    }
+    add(layers.first(count), samples, rows_per_sample, first, gram, threads);
+    layers = layers.subspan(count);
+    first = false;
+  }
+}
+
+std::size_t StructuredGram::bytes() const {
+  std::size_t numbers =
+      packed_.size() + left_.size() + right_.size() + factors_.size();
+  for (const auto& e : expanded_) numbers += e.size();
+  return numbers * sizeof(double);
+}
+
+template <class T>
+void StructuredGram::add(std::span<const GramLayer<T>> layers,
+                         Index samples,
+                         Index rows_per_sample,
+                         bool set,
+                         BatchOut<double> gram,
+                         Threads* threads) {
+  const Index m = samples * rows_per_sample;
+  features_ = 0;
+  for (const auto& layer : layers) features_ += packed_features(layer);
+  terms_.clear();
+  grow(packed_, round_up(m, kTileColumns) * features_);
+  Index packed = 0;
+  for (const auto& layer : layers) {
+    if (layer.written_out()) {
+      pack_columns(layer, rows_per_sample, m, packed);
+    } else {
+      pack(layer, samples, m, packed);
+    }
+    packed += packed_features(layer);
+  }
+  const Index features = features_;
+  const auto count = static_cast<Index>(terms_.size());
   const Index stride = round_up(samples, kTileColumns);
   const Index blocks = (m + kBlock - 1) / kBlock;
   expanded_.resize(
@@ -123,11 +236,10 @@ void StructuredGram::operator()(std::span<const GramLayer<T>> layers,
         const double* const column_pack = at(packed_, c * features);
         Wide total[kRows][2] = {};
         for (Index l = 0; l < count; ++l) {
-          const Index skip = begin_[static_cast<std::size_t>(l)];
-          const Index depth = layers[static_cast<std::size_t>(l)].outputs;
-          tile<kRows>(depth,
-                      {row_pack + skip * kTileColumns, 1, kTileColumns},
-                      column_pack + skip * kTileColumns,
+          const Term& term = terms_[static_cast<std::size_t>(l)];
+          tile<kRows>(term.depth,
+                      {row_pack + term.row * kTileColumns, 1, kTileColumns},
+                      column_pack + term.column * kTileColumns,
                       kTileColumns,
                       [&](int r, Wide x, Wide y) {
                         const double* e = of_row[r] + l * kBlock + c - begin;
@@ -139,6 +251,10 @@ void StructuredGram::operator()(std::span<const GramLayer<T>> layers,
 #pragma GCC unroll 8
           for (int r = 0; r < kRows; ++r) {
             double* out = &gram(c, r0 + r);
+            if (!set) {
+              total[r][0] += load(out);
+              total[r][1] += load(out + kWidth);
+            }
             store(out, total[r][0]);
             store(out + kWidth, total[r][1]);
           }
@@ -149,7 +265,7 @@ void StructuredGram::operator()(std::span<const GramLayer<T>> layers,
           store(row, total[r - r0][0]);
           store(row + kWidth, total[r - r0][1]);
           for (Index i = std::max(c, r); i < std::min(c + kTileColumns, m); ++i)
-            gram(i, r) = row[i - c];
+            gram(i, r) = set ? row[i - c] : gram(i, r) + row[i - c];
         }
       }
     }

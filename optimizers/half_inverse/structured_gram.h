@@ -8,8 +8,14 @@
 /// with features x samples A and features x rows B: m^2 sum(outputs) flops
 /// instead of m^2 p. Sums in double, one by one in the order of the features;
 /// the factor is applied while a tile is in registers.
+///
+/// A convolution is the sum of that over pairs of positions p, q, with A_p^T
+/// A_q and B_p^T B_q: P^2 outputs m^2 flops. With many positions its explicit
+/// columns, sum over p of (a_p outer B_p, B_p), take fewer: (inputs + 1)
+/// outputs m^2.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -24,7 +30,15 @@ struct GramLayer {
   Index inputs = 0, a_stride = 0;
   const T* b = nullptr;  ///< B(o, row) = b[o * b_stride + row]
   Index outputs = 0, b_stride = 0;
-  bool bias = true;  ///< the layer has a bias: the + 1
+  bool bias = true;              ///< the layer has a bias: the + 1
+  Index positions = 1;           ///< of a convolution
+  Index a_step = 0, b_step = 0;  ///< features from a position to the next
+
+  Index columns() const { return (inputs + (bias ? 1 : 0)) * outputs; }
+  /// Whether its own columns are cheaper than pairs of positions.
+  bool written_out() const {
+    return positions > 1 && columns() <= positions * positions * outputs;
+  }
 };
 
 class StructuredGram {
@@ -38,13 +52,34 @@ class StructuredGram {
                   BatchOut<double> gram,
                   Threads* threads = nullptr);
 
- private:
-  template <class T>
-  void pack(std::span<const GramLayer<T>> layers, Index samples, Index rows);
+  std::size_t bytes() const;
 
-  std::vector<double> packed_, inputs_, factors_;
+ private:
+  /// B_p^T B_q of packed features [row, row + depth) and [column, column +
+  /// depth), times a factor.
+  struct Term {
+    Index row, column, depth;
+  };
+
+  template <class T>
+  void add(std::span<const GramLayer<T>> layers,
+           Index samples,
+           Index rows_per_sample,
+           bool first,
+           BatchOut<double> gram,
+           Threads* threads);
+  template <class T>
+  void pack(const GramLayer<T>& layer, Index samples, Index rows, Index first);
+  template <class T>
+  void pack_columns(const GramLayer<T>& layer,
+                    Index rows_per_sample,
+                    Index rows,
+                    Index first);
+
+  std::vector<double> packed_, left_, right_, factors_;
   std::vector<std::vector<double>> expanded_;
-  std::vector<Index> begin_;
+  std::vector<Term> terms_;
+  Index features_ = 0;
 };
 
 extern template void StructuredGram::operator()<float>(

@@ -22,6 +22,10 @@ class TridiagonalQr {
 
   Index rotations() const { return static_cast<Index>(cosine_.size()); }
   Index sweeps() const { return static_cast<Index>(sweeps_.size()); }
+  std::size_t bytes() const {
+    return (cosine_.capacity() + sine_.capacity()) * sizeof(double) +
+           sweeps_.capacity() * sizeof(Sweep);
+  }
 
  private:
   /// Rotation k of a sweep turns the plane (start + k, start + k + 1).

@@ -35,6 +35,8 @@ class Tridiagonalize {
   /// x <- Q x.
   void apply(VectorOut<double> x) const;
 
+  std::size_t bytes() const { return memory_.bytes() + band_.bytes(); }
+
  private:
   void one_stage();
   void two_stage();

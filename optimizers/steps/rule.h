@@ -34,6 +34,12 @@ class UpdateStep {
     std::visit([&](auto& rule) { rule.step(x, gradient); }, rule_);
   }
 
+  /// That the rule keeps.
+  Index numbers_per_parameter() const {
+    constexpr Index kKept[] = {2, 0, 1, 2, 1};
+    return kKept[rule_.index()];
+  }
+
  private:
   using Rule =
       std::variant<Adam<T>, Sgd<T>, Adagrad<T>, Adadelta<T>, Rmsprop<T>>;

@@ -3,16 +3,11 @@
 /// through the same register operations as everything else.
 #pragma once
 
-#include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <type_traits>
 
-#ifdef __AVX__
-#include <immintrin.h>
-#endif
-
-#include "suite/core/batch.h"
+#include "suite/core/lanes.h"
 
 namespace physinv::steps {
 
@@ -30,36 +25,14 @@ struct Register {
     std::memcpy(p, &v, static_cast<std::size_t>(count) * sizeof(T));
   }
   /// a * b + c with one rounding, in the body as in the tail.
-  static V multiply_add(V a, V b, V c) {
-#ifdef __FMA__
-    if constexpr (sizeof(T) == 4) {
-      return (V)_mm256_fmadd_ps((__m256)a, (__m256)b, (__m256)c);
-    } else {
-      return (V)_mm256_fmadd_pd((__m256d)a, (__m256d)b, (__m256d)c);
-    }
-#else
-    for (Index l = 0; l < kLanes; ++l) c[l] = std::fma(a[l], b[l], c[l]);
-    return c;
-#endif
-  }
+  static V multiply_add(V a, V b, V c) { return fma_lanes(a, b, c); }
   static V all(T s) { return s - V{}; }
   /// v where |v| >= tiny (or NaN), else 0.
   static V without_tiny(V v, T tiny) {
     return (v < all(tiny)) & (v > all(-tiny)) ? V{} : v;
   }
   /// The compiler may not vectorise std::sqrt, which has to set errno.
-  static V root(V v) {
-#ifdef __AVX__
-    if constexpr (sizeof(T) == 4) {
-      return (V)_mm256_sqrt_ps((__m256)v);
-    } else {
-      return (V)_mm256_sqrt_pd((__m256d)v);
-    }
-#else
-    for (Index l = 0; l < kLanes; ++l) v[l] = std::sqrt(v[l]);
-    return v;
-#endif
-  }
+  static V root(V v) { return sqrt_lanes(v); }
 };
 
 /// body(i, lanes) for consecutive pieces of [0, size). The body should capture

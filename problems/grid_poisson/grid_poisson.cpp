@@ -64,16 +64,30 @@ void for_samples(Threads* threads, Index samples, F&& body) {
   });
 }
 
-template <class M>
-void check_size(const M& batch, Index rows, Index cols) {
-  SUITE_CHECK(batch.rows() == rows && batch.cols() == cols,
-              "batch has the wrong size");
-}
-
 /// fftfreq(8) scaled by 8, squared
 double squared_frequency(Index k) {
   const auto f = static_cast<double>(k < kSide / 2 ? k : k - kSide);
   return f * f;
+}
+
+/// What each number of the noise adds to the potential, before it is scaled.
+Batch<double> waves() {
+  double cosine[kSide], sine[kSide];
+  for (Index k = 0; k < kSide; ++k) {
+    const double angle = 2 * std::numbers::pi * double(k) / kSide;
+    cosine[k] = std::cos(angle), sine[k] = std::sin(angle);
+  }
+  Batch<double> out = Batch<double>::Zero(kCells, 2 * kCells);
+  for (Index f = 1; f < kCells; ++f) {
+    const Index k = f / kSide, l = f % kSide;
+    const double damp = squared_frequency(k) + squared_frequency(l);
+    for (Index at = 0; at < kCells; ++at) {
+      const Index turn = (k * (at / kSide) + l * (at % kSide)) % kSide;
+      out(at, f) = cosine[turn] / damp;
+      out(at, kCells + f) = -sine[turn] / damp;
+    }
+  }
+  return out;
 }
 
 enum Slot : std::size_t { kPoison };
@@ -84,24 +98,14 @@ Options describe(const GridPoissonOptions& /*options*/) { return {}; }
 
 Vector<double> poisson_potential(const Vector<double>& noise) {
   SUITE_CHECK(noise.size() == 2 * kCells, "noise of 64 complex numbers");
-  double cosine[kSide], sine[kSide];
-  for (Index k = 0; k < kSide; ++k) {
-    const double angle = 2 * std::numbers::pi * double(k) / kSide;
-    cosine[k] = std::cos(angle), sine[k] = std::sin(angle);
+  static const Batch<double> kWaves = waves();
+  Vector<double> phi = Vector<double>::Zero(kCells);
+  double* const sum = phi.data();
+  for (Index f = 0; f < 2 * kCells; ++f) {
+    const double* const wave = kWaves.col(f).data();
+    const double factor = noise(f);
+    for (Index i = 0; i < kCells; ++i) sum[i] += factor * wave[i];
   }
-  Vector<double> phi(kCells);
-  for (Index i = 0; i < kSide; ++i)
-    for (Index j = 0; j < kSide; ++j) {
-      double sum = 0;
-      for (Index k = 0; k < kSide; ++k)
-        for (Index l = 0; l < kSide; ++l) {
-          if (k == 0 && l == 0) continue;
-          const Index at = kSide * k + l, turn = (k * i + l * j) % kSide;
-          sum += (noise(at) * cosine[turn] - noise(kCells + at) * sine[turn]) /
-                 (squared_frequency(k) + squared_frequency(l));
-        }
-      phi(kSide * i + j) = sum;
-    }
   const double mean = phi.mean();
   const double deviation =
       std::sqrt((phi.array() - mean).square().sum() / kCells);

@@ -54,12 +54,6 @@ void draw_state(const KuramotoSivashinskyOptions& o,
   for (Index j = 0; j < n; ++j) u(j) = (u(j) - mean) / deviation;
 }
 
-template <class M>
-void check_size(const M& batch, Index rows, Index cols) {
-  SUITE_CHECK(batch.rows() == rows && batch.cols() == cols,
-              "batch has the wrong size");
-}
-
 /// A sample under way, in 3 `stride` reals of memory.
 template <class T>
 typename Etdrk2<T>::Run run_of(VectorIn<T> x, const Etdrk2<T>& k, T* memory) {

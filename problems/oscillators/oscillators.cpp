@@ -199,12 +199,6 @@ Four<Wide<T, 4>> differentiate(const Constants<T>& k,
   return bar;
 }
 
-template <class M>
-void check_size(const M& batch, Index rows, Index cols) {
-  SUITE_CHECK(batch.rows() == rows && batch.cols() == cols,
-              "batch has the wrong size");
-}
-
 enum Slot : std::size_t { kKept, kCount };
 
 }  // namespace

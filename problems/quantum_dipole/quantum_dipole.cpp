@@ -1,6 +1,7 @@
 #include "problems/quantum_dipole/quantum_dipole.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <complex>
@@ -180,12 +181,6 @@ std::complex<double> inner(const A& a, const B& b) {
   return {re, im};
 }
 
-template <class M>
-void check_size(const M& batch, Index rows, Index cols) {
-  SUITE_CHECK(batch.rows() == rows && batch.cols() == cols,
-              "batch has the wrong size");
-}
-
 enum Slot : std::size_t { kControls, kEnd };
 
 }  // namespace
@@ -194,7 +189,9 @@ Options describe(const QuantumDipoleOptions& o) {
   return {{"steps", fmt::format("{}", o.steps)},
           {"dt", fmt::format("{}", o.dt)},
           {"accurate_loss", fmt::format("{}", o.accurate_loss)},
-          {"deviation", fmt::format("{}", o.deviation)}};
+          {"deviation", fmt::format("{}", o.deviation)},
+          {"zero_start", fmt::format("{}", o.zero_start)},
+          {"angles", fmt::format("{}", fmt::join(o.angles, " "))}};
 }
 
 Vector<double> quantum_eigenstate(int k) {
@@ -227,6 +224,7 @@ QuantumDipole<T>::QuantumDipole(const Options& options) : options_(options) {
 
 template <class T>
 Vector<double> QuantumDipole<T>::start() const {
+  if (options_.zero_start) return Vector<double>::Zero(options_.steps);
   Stream stream = Rng::root("quantum_dipole/start", 0).stream();
   return Vector<double>::NullaryExpr(options_.steps, [&](Index) {
     return options_.deviation * stream.normal();
@@ -244,7 +242,10 @@ Samples<double> QuantumDipole<T>::sample(Index first,
       out.given.resize(0, count);
   for (Index i = 0; i < count; ++i) {
     Stream stream = rng.child(static_cast<std::uint64_t>(first + i)).stream();
-    const double f1 = stream.normal(), f2 = stream.normal();
+    double f1 = stream.normal(), f2 = stream.normal();
+    if (const auto k = static_cast<std::size_t>(first + i);
+        k < options_.angles.size())
+      f1 = std::cos(options_.angles[k]), f2 = std::sin(options_.angles[k]);
     out.y.col(i) = (f1 * psi2 + f2 * psi3) / std::hypot(f1, f2);
   }
   return out;

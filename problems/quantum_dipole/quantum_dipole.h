@@ -30,6 +30,8 @@
 /// numbers in their own column only.
 #pragma once
 
+#include <vector>
+
 #include "suite/core/problem.h"
 #include "suite/core/recipe.h"
 
@@ -48,6 +50,10 @@ struct QuantumDipoleOptions {
   /// Controls of the start and of labelled samples are N(0, deviation^2):
   /// without any control the third eigenstate is out of reach.
   double deviation = 0.08;
+  /// start() is no control at all: for networks whose output is the control.
+  bool zero_start = false;
+  /// Angles of the first targets, (f1, f2) = (cos, sin); the rest is drawn.
+  std::vector<double> angles = {};
 };
 
 Options describe(const QuantumDipoleOptions& options);
@@ -71,7 +77,7 @@ class QuantumDipole final : public Problem<T>,
   Shape shape() const override {
     return {options_.steps, 2 * kQuantumPoints, 0};
   }
-  /// Small random controls, always the same.
+  /// Small random controls, always the same; or none (`zero_start`).
   Vector<double> start() const override;
 
   /// Targets f1 psi_2 + f2 psi_3, (f1, f2) uniform on the circle; no truth.

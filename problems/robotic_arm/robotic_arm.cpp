@@ -43,12 +43,6 @@ void for_arms(const RoboticArmOptions& options, BatchIn<T> x, F&& body) {
   }
 }
 
-template <class M>
-void check_size(const M& batch, Index rows, Index cols) {
-  SUITE_CHECK(batch.rows() == rows && batch.cols() == cols,
-              "batch has the wrong size");
-}
-
 }  // namespace
 
 Options describe(const RoboticArmOptions& o) {

@@ -9,12 +9,6 @@
 namespace physinv {
 namespace {
 
-template <class M>
-void check_size(const M& batch, Index rows, Index cols) {
-  SUITE_CHECK(batch.rows() == rows && batch.cols() == cols,
-              "batch has the wrong size");
-}
-
 template <class T>
 void scale(T gamma, BatchIn<T> in, BatchOut<T>& out) {
   for (Index i = 0; i < in.cols(); ++i) {

@@ -87,12 +87,6 @@ template <class T>
   return 0.5 * sum_lanes((sums[0] + sums[1]) + (sums[2] + sums[3]));
 }
 
-template <class M>
-void check_size(const M& batch, Index rows, Index cols) {
-  SUITE_CHECK(batch.rows() == rows && batch.cols() == cols,
-              "batch has the wrong size");
-}
-
 }  // namespace
 
 Options describe(const WavePacketOptions& o) {

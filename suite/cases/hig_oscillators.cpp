@@ -64,8 +64,14 @@ StepOptions first_order(std::string_view rule, double rate) {
   return AdamOptions{.rate = rate, .eps_before_correction = true};
 }
 
+/// Rates are powers of ten or thrice one: 3e-4, 1e1.
 std::string grid_id(const char* rule, double rate, Index batch) {
-  return fmt::format("grid-{}-{:.0e}-b{}", rule, rate, batch);
+  const double exponent = std::floor(std::log10(rate) + 1e-9);
+  return fmt::format("grid-{}-{:.0f}e{:.0f}-b{}",
+                     rule,
+                     rate / std::pow(10.0, exponent),
+                     exponent,
+                     batch);
 }
 
 std::vector<Method> methods() {

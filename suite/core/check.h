@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cstddef>
 #include <stdexcept>
 #include <string>
 
@@ -29,3 +30,14 @@ class ContractError : public std::logic_error {
     if (!(condition)) [[unlikely]]                                      \
       ::physinv::fail_check(__FILE__, __LINE__, #condition, (message)); \
   } while (false)
+
+namespace physinv {
+
+/// A batch has so many rows and columns.
+template <class M>
+void check_size(const M& batch, std::ptrdiff_t rows, std::ptrdiff_t cols) {
+  SUITE_CHECK(batch.rows() == rows && batch.cols() == cols,
+              "batch has the wrong size");
+}
+
+}  // namespace physinv

@@ -38,17 +38,23 @@ struct Pass {
   bool fixed_input = false;
 };
 
-/// One dense layer's columns of a stacked Jacobian. Row r belongs to sample
-/// r / per_sample; its entries are b_r (outer) a_sample, outputs x inputs
-/// row-major, then b_r. Features are rows of memory, samples contiguous.
+/// One layer's columns of a stacked Jacobian. Row r belongs to sample
+/// r / per_sample; its entries are b_r (outer) a_sample, outputs x inputs, then
+/// b_r, added up over the positions of a convolution. Features are rows of
+/// memory, samples contiguous.
 template <class T>
 struct LayerRows {
   Index offset;           ///< of the layer's parameters
-  Index inputs, outputs;  ///< features of a and b
+  Index inputs, outputs;  ///< features of a and b, at one position
   const T* a;             ///< inputs x samples
   Index a_stride;
   const T* b;  ///< outputs x rows
   Index b_stride;
+  Index positions = 1;
+  Index a_step = 0, b_step = 0;  ///< features from a position to the next
+  /// Input i = tap (inputs / taps) + channel has the weight channel taps + tap
+  /// of its output.
+  Index taps = 1;
 };
 
 template <class T>
@@ -91,7 +97,7 @@ class Network {
   /// of `out_bar` are the cotangents of sample i's functions. Appends its
   /// layers from the last to the first; their arrays live on the tape and in
   /// `work`, until the scope there ends. Networks with other layers than dense
-  /// ones refuse.
+  /// ones and convolutions without padding refuse.
   virtual void jacobian_rows(VectorIn<T> parameters,
                              const Tape& tape,
                              BatchIn<T> out_bar,

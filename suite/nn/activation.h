@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "suite/core/lanes_math.h"
 #include "suite/nn/layer.h"
 #include "suite/nn/vector.h"
 
@@ -62,11 +63,13 @@ inline T derivative(Activation a, T y) {
   return T(1);
 }
 
-/// The same for a register.
+/// The same for a register. tanh has an absolute, not a relative, error of
+/// about eps.
 template <class T, class V>
 inline V activate_lanes(Activation a, V z) {
   if (a == Activation::identity) return z;
   if (a == Activation::relu) return z < V{} ? V{} : z;
+  if (a == Activation::tanh) return tanh_lanes(z);
   for (std::size_t l = 0; l < sizeof(V) / sizeof(T); ++l)
     z[l] = activate<T>(a, z[l]);
   return z;
@@ -77,6 +80,8 @@ template <class T, class V>
 inline V pull_lanes(Activation a, V y, V y_bar) {
   if (a == Activation::identity) return y_bar;
   if (a == Activation::relu) return y > V{} ? y_bar : V{};
+  if (a == Activation::tanh)
+    return y_bar * multiply_add<T>(-y, y, broadcast<V>(T(1)));
   for (std::size_t l = 0; l < sizeof(V) / sizeof(T); ++l)
     y_bar[l] *= derivative<T>(a, y[l]);
   return y_bar;

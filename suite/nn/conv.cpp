@@ -8,8 +8,8 @@
 namespace physinv::nn {
 namespace {
 
-ConvShape shape_of(const ConvOptions& o) {
-  return {.grid = o.grid, .in = o.in, .out = o.out, .taps = o.taps};
+Grid output(const ConvOptions& o) {
+  return window_output(o.grid, o.taps, o.padding);
 }
 
 Index rows(const NormShape& s) { return s.pooled().positions() * s.channels; }
@@ -33,8 +33,9 @@ void channel_sums(Workspace& work, Lanes<const T> x, Index channels, T* sums) {
 
 template <class T>
 Conv<T>::Conv(const ConvOptions& o)
-    : Layer<T>(o.grid.positions() * o.in, o.grid.positions() * o.out),
-      conv_(shape_of(o), o.padding) {}
+    : Layer<T>(o.grid.positions() * o.in, output(o).positions() * o.out),
+      conv_(o.grid, o.in, o.out, o.taps, o.padding),
+      padding_(o.padding) {}
 
 template <class T>
 std::vector<TensorInfo> Conv<T>::tensors() const {
@@ -75,14 +76,34 @@ void Conv<T>::backward(const LayerArgs<T>& at, const Backward<T>& b) const {
                     b.parameters_bar + conv_.shape().weights());
 }
 
+template <class T>
+void Conv<T>::add_rows(Lanes<const T> x,
+                       Lanes<const T> y_bar,
+                       Index offset,
+                       std::vector<LayerRows<T>>& layers) const {
+  SUITE_CHECK(padding_ == Padding::none, "patches reach into the padding");
+  const ConvShape& shape = conv_.shape();
+  layers.push_back({.offset = offset,
+                    .inputs = shape.depth(),
+                    .outputs = shape.out,
+                    .a = x.data,
+                    .a_stride = x.stride,
+                    .b = y_bar.data,
+                    .b_stride = y_bar.stride,
+                    .positions = shape.positions(),
+                    .a_step = shape.in,
+                    .b_step = shape.out,
+                    .taps = shape.taps.count()});
+}
+
 // -------------------------------------------------------------- ConvBlock
 
 template <class T>
 ConvBlock<T>::ConvBlock(const ConvOptions& o, Activation activation, bool pool)
     : Layer<T>(o.grid.positions() * o.in,
-               rows({.grid = o.grid, .channels = o.out, .pool = pool})),
-      conv_(shape_of(o), o.padding),
-      norm_{.grid = o.grid,
+               rows({.grid = output(o), .channels = o.out, .pool = pool})),
+      conv_(o.grid, o.in, o.out, o.taps, o.padding),
+      norm_{.grid = output(o),
             .channels = o.out,
             .activation = activation,
             .pool = pool} {

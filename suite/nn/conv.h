@@ -30,10 +30,16 @@ class Conv final : public Layer<T> {
                Lanes<const T> x,
                Lanes<T> y) const override;
   void backward(const LayerArgs<T>& at, const Backward<T>& b) const override;
+  /// Without padding only: the patches then lie in x as they are.
+  void add_rows(Lanes<const T> x,
+                Lanes<const T> y_bar,
+                Index offset,
+                std::vector<LayerRows<T>>& layers) const override;
   double operations() const override { return conv_.operations(); }
 
  private:
   Convolution<T> conv_;
+  Padding padding_;
   Activation activation_ = Activation::identity;
 };
 

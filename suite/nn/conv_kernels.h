@@ -27,7 +27,7 @@
 namespace physinv::nn {
 
 struct ConvShape {
-  Grid grid;
+  Grid grid;              ///< of the output
   Index in = 1, out = 1;  ///< channels
   Taps taps;
 

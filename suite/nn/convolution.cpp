@@ -11,8 +11,15 @@ constexpr Index kMostParts = 8;
 }  // namespace
 
 template <class T>
-Convolution<T>::Convolution(const ConvShape& shape, Padding padding)
-    : shape_(shape), runs_(window_runs(shape.grid, shape.taps, padding)) {
+Convolution<T>::Convolution(
+    Grid grid, Index in, Index out, const Taps& taps, Padding padding)
+    : shape_{.grid = window_output(grid, taps, padding),
+             .in = in,
+             .out = out,
+             .taps = taps},
+      input_positions_(grid.positions()),
+      runs_(window_runs(grid, taps, padding)),
+      flipped_runs_(flipped_runs(grid, taps, padding)) {
   for (const Run& run : runs_)
     for (const Segment& s : run.segments)
       reach_ = std::max({reach_, -s.shift, s.shift + s.taps - 1});
@@ -20,17 +27,13 @@ Convolution<T>::Convolution(const ConvShape& shape, Padding padding)
 
 template <class T>
 std::vector<TensorInfo> Convolution<T>::tensors() const {
-  const Index fan_in = shape_.depth();
-  return {{.name = {},
-           .kind = 'k',
-           .offset = 0,
-           .size = shape_.weights(),
-           .fan_in = fan_in},
-          {.name = {},
-           .kind = 'b',
-           .offset = 0,
-           .size = shape_.out,
-           .fan_in = fan_in}};
+  const Index fan_in = shape_.depth(), fan_out = shape_.flipped().depth();
+  return {
+      {.kind = 'k',
+       .size = shape_.weights(),
+       .fan_in = fan_in,
+       .fan_out = fan_out},
+      {.kind = 'b', .size = shape_.out, .fan_in = fan_in, .fan_out = fan_out}};
 }
 
 template <class T>

@@ -14,10 +14,12 @@ namespace physinv::nn {
 template <class T>
 class Convolution {
  public:
-  Convolution(const ConvShape& shape, Padding padding);
+  /// `grid` is that of the input.
+  Convolution(
+      Grid grid, Index in, Index out, const Taps& taps, Padding padding);
 
   const ConvShape& shape() const { return shape_; }
-  Index inputs() const { return shape_.positions() * shape_.in; }
+  Index inputs() const { return input_positions_ * shape_.in; }
   Index outputs() const { return shape_.positions() * shape_.out; }
   Index parameter_count() const { return shape_.weights() + shape_.out; }
   std::vector<TensorInfo> tensors() const;
@@ -60,7 +62,8 @@ class Convolution {
 
  private:
   ConvShape shape_;
-  std::vector<Run> runs_;
+  Index input_positions_;
+  std::vector<Run> runs_, flipped_runs_;
   Index reach_ = 0;  ///< largest distance between an output and its inputs
 };
 
@@ -107,7 +110,8 @@ void Convolution<T>::gradients(const LayerArgs<T>& at,
   const ConvShape flipped = shape_.flipped();
   const auto pull = [&](Index begin, Index end) {
     if (x_bar && begin < end)
-      convolve<T>(flipped, runs_, packed, nullptr, y_bar, x_bar, begin, end);
+      convolve<T>(
+          flipped, flipped_runs_, packed, nullptr, y_bar, x_bar, begin, end);
   };
   const Index units = shape_.positions() / unit;
   const Index some = std::max<Index>(1, per_block(y_bar) / unit);
@@ -131,6 +135,7 @@ void Convolution<T>::gradients(const LayerArgs<T>& at,
     pull(begin, std::min(end, begin + reach_));
     pull(std::max(begin + reach_, end - reach_), end);
   }
+  pull(shape_.positions(), input_positions_);
   if (weights_bar != nullptr) {
     T* totals = at.work->template take<T>(shape_.weights(), 1).data();
     finish_weights<T>(shape_, x.width, sums, parts, totals, weights_bar);

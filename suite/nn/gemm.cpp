@@ -47,13 +47,20 @@ template <class T>
   for (Index r = i; r < i + rows; ++r) {
     for (Index c = j; c < j + cols; c += kLanes<T>) {
       const Index some = std::min(kLanes<T>, j + cols - c);
+      const bool whole = some == kLanes<T>;  // a copy of known size
+      const auto get = [=](const T* from) {
+        return whole ? load<V>(from) : load_some<V>(from, some);
+      };
       T* at = g.c + r * g.c_stride + c;
-      V v = activate_lanes<T>(g.activation, load_some<V>(at, some));
+      V v = activate_lanes<T>(g.activation, get(at));
       if (g.gate != nullptr)
-        v = pull_lanes<T>(g.gate_activation,
-                          load_some<V>(g.gate + r * g.gate_stride + c, some),
-                          v);
-      store_some(at, v, some);
+        v = pull_lanes<T>(
+            g.gate_activation, get(g.gate + r * g.gate_stride + c), v);
+      if (whole) {
+        store(at, v);
+      } else {
+        store_some(at, v, some);
+      }
     }
   }
 }

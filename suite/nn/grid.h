@@ -15,6 +15,10 @@ struct Grid {
   bool flat() const { return rows == 1; }
 };
 
-enum class Padding : std::uint8_t { zero, circular };
+enum class Padding : std::uint8_t {
+  zero,
+  circular,
+  none,  ///< only where all taps are inside; one dimension
+};
 
 }  // namespace physinv::nn

@@ -108,7 +108,7 @@ class Layer {
                         Lanes<const T> /*y_bar*/,
                         Index /*offset*/,
                         std::vector<LayerRows<T>>&) const {
-    SUITE_CHECK(tensors().empty(), "not a dense layer");
+    SUITE_CHECK(tensors().empty(), "this layer gives no rows");
   }
   /// Folds the last training pass's statistics into this layer's state.
   virtual void update_state(const Tape& /*tape*/,

@@ -250,9 +250,18 @@ void Sequential<T>::jacobian_rows(VectorIn<T> parameters,
   SUITE_CHECK(out_bar.rows() == outputs() && per * n == rows,
               "as many rows for each sample");
   work.counts[Counter::network_backward] += static_cast<std::uint64_t>(rows);
+  // One block, as the workspace grows by doubling.
+  Index all = 2 * outputs();
+  for (std::size_t i = prefix_ + 1; i < layers_.size(); ++i)
+    all += 2 * layers_[i]->inputs();
+  const bool looks_back = layers_.back()->fused() != Activation::identity ||
+                          layers_.back()->tensors().empty();
+  if (!looks_back) all -= outputs();
+  const Index stride = Lanes<T>(nullptr, 1, rows).stride;
+  T* free = work.take<T>(stride, all).data();
   const auto take = [&](Index features) {
-    Lanes<T> lanes(nullptr, features, rows);
-    lanes.data = work.take<T>(lanes.stride, features).data();
+    const Lanes<T> lanes(free, features, rows);
+    free += features * stride;
     return lanes;
   };
   // What a layer remembers is one column per sample; its rows share it.
@@ -265,8 +274,10 @@ void Sequential<T>::jacobian_rows(VectorIn<T> parameters,
     }
     return to;
   };
-  Lanes<T> y_bar = take(outputs()), y = spread(layers_.size());
+  Lanes<T> y_bar = take(outputs()), y;
   to_lanes<T>(out_bar, y_bar);
+  // Layers that give rows do not look at their output in `backward`.
+  if (looks_back) y = spread(layers_.size());
   apply_gate<T>({layers_.back()->fused(), y}, y_bar);
   for (std::size_t i = layers_.size(); i-- > prefix_;) {
     const Layer<T>& layer = *layers_[i];

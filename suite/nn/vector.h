@@ -2,14 +2,9 @@
 /// operation per instruction, the same bits in every lane.
 #pragma once
 
-#include <cmath>
 #include <cstring>
 
-#if defined(__FMA__) || defined(__AVX512F__)
-#include <immintrin.h>
-#endif
-
-#include "suite/core/batch.h"
+#include "suite/core/lanes.h"
 
 namespace physinv::nn {
 
@@ -50,23 +45,7 @@ inline V broadcast(T s) {
 /// contracts the plain expression differs from one tile size to the next.
 template <class T, class V>
 inline V multiply_add(V a, V b, V c) {
-  constexpr bool single = sizeof(T) == 4;
-#ifdef __AVX512F__
-  if constexpr (sizeof(V) == 64 && single)
-    return (V)_mm512_fmadd_ps((__m512)a, (__m512)b, (__m512)c);
-  if constexpr (sizeof(V) == 64 && !single)
-    return (V)_mm512_fmadd_pd((__m512d)a, (__m512d)b, (__m512d)c);
-#endif
-#ifdef __FMA__
-  if constexpr (sizeof(V) == 32 && single)
-    return (V)_mm256_fmadd_ps((__m256)a, (__m256)b, (__m256)c);
-  if constexpr (sizeof(V) == 32 && !single)
-    return (V)_mm256_fmadd_pd((__m256d)a, (__m256d)b, (__m256d)c);
-#endif
-  V sum{};
-  for (std::size_t l = 0; l < sizeof(V) / sizeof(T); ++l)
-    sum[l] = std::fma(a[l], b[l], c[l]);
-  return sum;
+  return fma_lanes(a, b, c);
 }
 
 /// The first `count` lanes only; the others read as zero.

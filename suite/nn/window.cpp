@@ -1,5 +1,7 @@
 #include "suite/nn/window.h"
 
+#include <algorithm>
+
 #include "suite/core/check.h"
 
 namespace physinv::nn {
@@ -30,11 +32,40 @@ std::vector<Segment> segments_at(
   return segments;
 }
 
+/// Inside a row of `inputs`, output position p's first tap lies at p + first.
+std::vector<Run> row_runs(Index outputs,
+                          Index inputs,
+                          Index taps,
+                          Index first) {
+  std::vector<Run> runs;
+  for (Index p = 0; p < outputs; ++p) {
+    const Index begin = std::max<Index>(0, -(p + first));
+    const Index end = std::min(taps, inputs - p - first);
+    const std::vector<Segment> segments = {{first + begin, begin, end - begin}};
+    if (!runs.empty() && runs.back().segments == segments) {
+      ++runs.back().count;
+    } else {
+      runs.push_back({p, 1, segments});
+    }
+  }
+  return runs;
+}
+
 }  // namespace
+
+Grid window_output(Grid grid, Taps taps, Padding padding) {
+  if (padding != Padding::none) return grid;
+  SUITE_CHECK(grid.flat() && taps.y == 1 && grid.columns >= taps.x,
+              "without padding: one dimension, and room for the taps");
+  return {grid.columns - taps.x + 1};
+}
 
 std::vector<Run> window_runs(Grid grid, Taps taps, Padding padding) {
   SUITE_CHECK(taps.x % 2 == 1 && taps.y % 2 == 1, "taps are odd per axis");
   SUITE_CHECK(grid.columns > 0 && grid.rows > 0, "a grid has positions");
+  if (padding == Padding::none)
+    return row_runs(
+        window_output(grid, taps, padding).columns, grid.columns, taps.x, 0);
   std::vector<Run> runs;
   for (Index p = 0; p < grid.positions(); ++p) {
     auto segments =
@@ -46,6 +77,14 @@ std::vector<Run> window_runs(Grid grid, Taps taps, Padding padding) {
     }
   }
   return runs;
+}
+
+std::vector<Run> flipped_runs(Grid grid, Taps taps, Padding padding) {
+  if (padding != Padding::none) return window_runs(grid, taps, padding);
+  return row_runs(grid.columns,
+                  window_output(grid, taps, padding).columns,
+                  taps.x,
+                  1 - taps.x);
 }
 
 }  // namespace physinv::nn

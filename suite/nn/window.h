@@ -34,4 +34,11 @@ struct Taps {
 
 std::vector<Run> window_runs(Grid grid, Taps taps, Padding padding);
 
+/// The same for the input gradient, whose outputs are the positions of `grid`
+/// and whose inputs are those of the convolution's output.
+std::vector<Run> flipped_runs(Grid grid, Taps taps, Padding padding);
+
+/// Extent of the output: smaller by taps - 1 without padding.
+Grid window_output(Grid grid, Taps taps, Padding padding);
+
 }  // namespace physinv::nn

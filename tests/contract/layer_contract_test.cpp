@@ -17,6 +17,8 @@ namespace {
 
 /// Parameters as printed, of predictor and surrogate.
 const std::map<std::string, std::array<Index, 2>> kParameters = {
+    {"hig/quantum-dipole", {9484, 0}},
+    {"hig/quantum-dipole-cnn", {21984, 0}},
     {"jpo/billiards", {37506, 37506}},
     {"jpo/kuramoto-sivashinsky", {59650, 13121}},
     {"jpo/robotic-arm", {33924, 33922}},

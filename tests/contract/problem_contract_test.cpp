@@ -24,9 +24,9 @@ struct Bench {
         jac(dynamic_cast<const Jacobian<T>*>(problem.get())) {}
 
   Batch<T> forward(const Batch<T>& x, const Batch<T>& given) {
-    Batch<T> y(problem->shape().observations, x.cols());
-    problem->forward(x, given, y, work);
-    return y;
+    Batch<T> seen(problem->shape().observations, x.cols());
+    problem->forward(x, given, seen, work);
+    return seen;
   }
   /// Leaves y of the linearization in `y`.
   Batch<T> pull(const Batch<T>& x,

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "suite/core/clock.h"
 #include "tests/support/bits.h"
 #include "tests/support/quadratic.h"
 #include "tests/support/tolerance.h"
@@ -33,9 +34,11 @@ TEST(Training, LowersTheLossOfProblemsItDoesNotSee) {
 }
 
 // One epoch of batches is one pass over the set, in order; the remainder is
-// left out. Plain descent on the whole set by hand gives the same weights.
-TEST(Training, WholeBatchesAreGradientDescentOnTheMeanLoss) {
-  const auto stage = train({.rule = SgdOptions{.rate = 0.1}, .batch = kCount});
+// left out. Plain descent on the whole set by hand gives the same weights, in
+// however many parts a batch is taken.
+void expect_gradient_descent(Index chunk) {
+  const auto stage =
+      train({.rule = SgdOptions{.rate = 0.1}, .batch = kCount, .chunk = chunk});
   StageBench bench(*stage, kCount, 3);
   const Outcome out = bench.run();
 
@@ -60,6 +63,13 @@ TEST(Training, WholeBatchesAreGradientDescentOnTheMeanLoss) {
   EXPECT_TRUE(Comparator(1e-12, 1e-14)(
       Vector<double>(out.arrays.at("parameters").col(0)),
       Vector<double>(model.parameters())));
+}
+
+TEST(Training, WholeBatchesAreGradientDescentOnTheMeanLoss) {
+  for (const Index chunk : {Index{0}, Index{5}, Index{6}, kCount}) {
+    SCOPED_TRACE(chunk);
+    expect_gradient_descent(chunk);
+  }
 }
 
 TEST(Training, BatchesAreSlicesInOrder) {
@@ -108,6 +118,36 @@ TEST(Training, AnUpdateThatOverflowsIsNotTaken) {
   EXPECT_LT(bench.probe.iteration(), 50);
   for (const auto& [name, array] : out.arrays)
     EXPECT_TRUE(array.allFinite()) << name;
+}
+
+TEST(Training, ARowSetsTheLengthUnlessTheStageKeepsItsOwn) {
+  auto options = adam(4);
+  EXPECT_TRUE(train(options)->takes_row_iterations());
+  options.iterations = 7;
+  options.own_length = true;
+  EXPECT_FALSE(train(options)->takes_row_iterations());
+  EXPECT_EQ(train(options)->default_iterations(), 7);
+}
+
+// A recipe that takes long to make: it is made anew for every draw.
+TEST(Training, DrawingFreshSamplesIsOffTheClock) {
+  auto recipe = quadratic();
+  double drawing = 0;
+  const auto make = recipe.make_double;
+  recipe.make_double = [&] {
+    const double begun = now().cpu;
+    while (now().cpu < begun + 2e-3) {
+    }
+    drawing += now().cpu - begun;
+    return make();
+  };
+  auto options = adam(4);
+  options.fresh = true;
+  const auto stage = train(options);
+  StageBench bench(*stage, kCount, 40, recipe);
+  bench.run();
+  EXPECT_GT(drawing, 40 * 2e-3);
+  EXPECT_LT(bench.probe.clocks().solve.cpu, drawing / 2);
 }
 
 }  // namespace

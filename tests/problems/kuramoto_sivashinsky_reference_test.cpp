@@ -172,7 +172,7 @@ void in_both(const Json& entry) {
 }
 
 TEST(KuramotoSivashinskyReference, EveryEntry) {
-  const std::map<std::string, std::function<void(const Json&)>> checks = {
+  const std::map<std::string, EntryCheck> checks = {
       {"clip_percentile_90", check_clip},
       {"boundary_loss", check_boundary},
       {"bfgs_test_functions", check_test_functions},
@@ -185,15 +185,7 @@ TEST(KuramotoSivashinskyReference, EveryEntry) {
       {"special_states", in_both<check_special<float>, check_special<double>>},
       {"bfgs", check_runs}};
   const std::set<std::string> of_networks = {"jpo_g2s", "surrogate_unet"};
-  const Json file = load_reference(kId);
-  ASSERT_FALSE(file.at("entries").empty());
-  for (const Json& entry : file.at("entries")) {
-    const auto name = entry.at("name").get<std::string>();
-    SCOPED_TRACE(name);
-    if (of_networks.contains(name)) continue;
-    ASSERT_TRUE(checks.contains(name)) << "no test reads this entry";
-    checks.at(name)(entry);
-  }
+  check_entries(kId, checks, of_networks);
 }
 
 }  // namespace

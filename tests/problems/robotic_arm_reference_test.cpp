@@ -85,7 +85,7 @@ void check_jpo(const Json& entry) {
 }
 
 TEST(RoboticArmReference, EveryEntry) {
-  const std::map<std::string, std::function<void(const Json&)>> checks = {
+  const std::map<std::string, EntryCheck> checks = {
       {"clip_percentile_90", check_clip},
       {"boundary_loss", check_boundary},
       {"bfgs_test_functions", check_test_functions},
@@ -93,14 +93,7 @@ TEST(RoboticArmReference, EveryEntry) {
       {"bfgs", check_bfgs},
       {"gd_adaptive", check_arm_descent},
       {"jpo_mlp", check_jpo}};
-  const Json file = load_reference(kId);
-  ASSERT_FALSE(file.at("entries").empty());
-  for (const Json& entry : file.at("entries")) {
-    const auto name = entry.at("name").get<std::string>();
-    SCOPED_TRACE(name);
-    ASSERT_TRUE(checks.contains(name)) << "no test reads this entry";
-    checks.at(name)(entry);
-  }
+  check_entries(kId, checks);
 }
 
 }  // namespace

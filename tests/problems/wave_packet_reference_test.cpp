@@ -140,7 +140,7 @@ void check_jpo(const Json& entry) {
 }
 
 TEST(WavePacketReference, EveryEntry) {
-  const std::map<std::string, std::function<void(const Json&)>> checks = {
+  const std::map<std::string, EntryCheck> checks = {
       {"clip_percentile_90", check_clip},
       {"boundary_loss", check_boundary},
       {"bfgs_test_functions", check_test_functions},
@@ -152,15 +152,7 @@ TEST(WavePacketReference, EveryEntry) {
       {"gd_adaptive", check_packet_descent},
       {"jpo_g2s", check_jpo}};
   const std::set<std::string> of_networks = {"g2s_eval", "surrogate_unet"};
-  const Json file = load_reference(kId);
-  ASSERT_FALSE(file.at("entries").empty());
-  for (const Json& entry : file.at("entries")) {
-    const auto name = entry.at("name").get<std::string>();
-    SCOPED_TRACE(name);
-    if (of_networks.contains(name)) continue;
-    ASSERT_TRUE(checks.contains(name)) << "no test reads this entry";
-    checks.at(name)(entry);
-  }
+  check_entries(kId, checks, of_networks);
 }
 
 }  // namespace

@@ -7,8 +7,11 @@
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
+#include <functional>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -131,6 +134,26 @@ class EntryTolerance {
  private:
   Json entry_;
 };
+
+using EntryCheck = std::function<void(const Json&)>;
+
+/// Runs the check of every entry's name. Entries `elsewhere` are read by
+/// another test of the file; one that nobody reads is an error.
+inline void check_entries(const std::string& id,
+                          const std::map<std::string, EntryCheck>& checks,
+                          const std::set<std::string>& elsewhere = {}) {
+  const Json file = load_reference(id);
+  std::size_t seen = 0;
+  for (const Json& entry : file.at("entries")) {
+    const auto name = entry.at("name").get<std::string>();
+    SCOPED_TRACE(name);
+    if (elsewhere.contains(name)) continue;
+    ASSERT_TRUE(checks.contains(name)) << "no test reads this entry";
+    checks.at(name)(entry);
+    ++seen;
+  }
+  EXPECT_GE(seen, checks.size());
+}
 
 /// Visits the entries whose names `check` knows; the rest must be known to
 /// another test of the same file (`others`), or the test fails.

@@ -71,7 +71,10 @@ std::vector<Case> cases() {
                                                      {{3, 7}, {5, 3}},
                                                      {{2, 2}, {3, 5}}};
   for (const auto& [grid, taps] : fields)
-    for (const Padding padding : {Padding::zero, Padding::circular})
+    for (const Padding padding :
+         {Padding::zero, Padding::circular, Padding::none}) {
+      if (padding == Padding::none && (!grid.flat() || grid.columns < taps.x))
+        continue;
       for (const auto& [in, out, n] : {std::array<Index, 3>{1, 16, 8},
                                        std::array<Index, 3>{3, 5, 37},
                                        std::array<Index, 3>{5, 2, 1},
@@ -82,6 +85,7 @@ std::vector<Case> cases() {
                         .taps = taps,
                         .padding = padding},
                        n});
+    }
   return all;
 }
 
@@ -89,11 +93,13 @@ std::vector<Case> cases() {
 template <class F>
 void for_products(const ConvOptions& o, F&& f) {
   const auto wrap = [](Index i, Index n) { return ((i % n) + n) % n; };
-  for (Index r = 0; r < o.grid.rows; ++r)
-    for (Index c = 0; c < o.grid.columns; ++c)
+  const Grid to = window_output(o.grid, o.taps, o.padding);
+  const Index shift = o.padding == Padding::none ? o.taps.x / 2 : 0;
+  for (Index r = 0; r < to.rows; ++r)
+    for (Index c = 0; c < to.columns; ++c)
       for (Index ty = 0; ty < o.taps.y; ++ty)
         for (Index tx = 0; tx < o.taps.x; ++tx) {
-          Index rr = r + ty - o.taps.y / 2, cc = c + tx - o.taps.x / 2;
+          Index rr = r + ty - o.taps.y / 2, cc = c + shift + tx - o.taps.x / 2;
           if (o.padding == Padding::circular) {
             rr = wrap(rr, o.grid.rows), cc = wrap(cc, o.grid.columns);
           } else if (rr < 0 || cc < 0 || rr >= o.grid.rows ||
@@ -102,7 +108,7 @@ void for_products(const ConvOptions& o, F&& f) {
           }
           for (Index i = 0; i < o.in; ++i)
             for (Index q = 0; q < o.out; ++q)
-              f((r * o.grid.columns + c) * o.out + q,
+              f((r * to.columns + c) * o.out + q,
                 (rr * o.grid.columns + cc) * o.in + i,
                 (q * o.in + i) * o.taps.count() + ty * o.taps.x + tx);
         }
@@ -121,12 +127,13 @@ TYPED_TEST(ConvTest, AgreesWithTheDirectSum) {
       using U = Number<std::decay_t<decltype(layers)>>;
       layers.push_back(std::make_unique<Conv<U>>(o));
     }));
-    const Index positions = o.grid.positions();
-    const Batch<T> in = wavy<T>(positions * o.in, n);
-    const Batch<T> out_bar = wavy<T>(positions * o.out, n, 0.4);
+    const Index outputs =
+        window_output(o.grid, o.taps, o.padding).positions() * o.out;
+    const Batch<T> in = wavy<T>(o.grid.positions() * o.in, n);
+    const Batch<T> out_bar = wavy<T>(outputs, n, 0.4);
     const Batch<double> x = in.template cast<double>();
     const Batch<double> y_bar = out_bar.template cast<double>();
-    Batch<double> y(positions * o.out, n), x_bar = 0 * x;
+    Batch<double> y(outputs, n), x_bar = 0 * x;
     Vector<double> p_bar = Vector<double>::Zero(b.p.size());
     const Index weights = o.in * o.out * o.taps.count();
     for (Index i = 0; i < y.rows(); ++i) {

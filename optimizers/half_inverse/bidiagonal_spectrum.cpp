@@ -1,0 +1,278 @@
+#include "optimizers/half_inverse/bidiagonal_spectrum.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "optimizers/half_inverse/reflector.h"
+
+namespace physinv::hig {
+namespace {
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+/// Registers that search at the same time: their divisions overlap.
+constexpr int kGroup = 4;
+constexpr Index kLanes = kGroup * kWidth;
+constexpr int kTwin = 2;  ///< registers of a Rayleigh quotient
+/// Stands for a pivot of zero; its quotients neither overflow nor vanish.
+constexpr double kTiny = 1e-140;
+constexpr int kRounds = 64, kRefinements = 8;
+/// Cosine between two vectors, and residual over value, that are put up with.
+constexpr double kCosine = 1e-11, kResidual = 1e-12;
+
+using Flags = std::int64_t __attribute__((vector_size(nn::kWide)));
+
+inline Wide magnitude(Wide x) {
+  return (Wide)((Flags)x & std::numeric_limits<std::int64_t>::max());
+}
+inline Wide guarded(Wide pivot) {
+  return magnitude(pivot) < kTiny ? broadcast(-kTiny) : pivot;
+}
+inline Wide root(Wide x) {
+#ifdef __AVX512F__
+  return (Wide)_mm512_sqrt_pd((__m512d)x);
+#else
+  for (Index l = 0; l < kWidth; ++l) x[l] = std::sqrt(x[l]);
+  return x;
+#endif
+}
+
+}  // namespace
+
+/// counts[l] = values of L^T L above x[l], for `groups` times kLanes numbers.
+void BidiagonalSpectrum::count_above(const double* x,
+                                     double* counts,
+                                     Index groups) const {
+  for (Index g = 0; g < groups; ++g, x += kLanes, counts += kLanes) {
+    Wide at[kGroup], s[kGroup], above[kGroup];
+#pragma GCC unroll 4
+    for (int r = 0; r < kGroup; ++r) {
+      at[r] = load(x + r * kWidth);
+      s[r] = -at[r];
+      above[r] = Wide{};
+    }
+    for (Index i = 0; i < n_; ++i) {
+      const Wide q = broadcast(q_[i]), e = broadcast(e_[i]);
+#pragma GCC unroll 4
+      for (int r = 0; r < kGroup; ++r) {
+        const Wide pivot = guarded(s[r] + q);
+        above[r] += pivot > 0 ? broadcast(1) : Wide{};
+        s[r] = fma(e, s[r] / pivot, -at[r]);
+      }
+    }
+#pragma GCC unroll 4
+    for (int r = 0; r < kGroup; ++r) store(counts + r * kWidth, above[r]);
+  }
+}
+
+/// Brackets (low, high] with one value each, in geometric steps first.
+void BidiagonalSpectrum::isolate(double floor2, double top) {
+  const Index lanes = groups_ * kLanes;
+  double* const x = residual_;
+  double* const counts = x + lanes;
+  // A first look with shifts spread over all decades.
+  const double ratio = std::log(floor2 / top);
+  for (Index l = 0; l < lanes; ++l)
+    x[l] = l + 1 == lanes ? floor2
+                          : top * std::exp(ratio * static_cast<double>(l + 1) /
+                                           static_cast<double>(lanes));
+  count_above(x, counts, groups_);
+  count_ = static_cast<Index>(counts[lanes - 1]);
+  Index at = 0;
+  for (Index j = 0; j < lanes; ++j) {
+    const auto rank = static_cast<double>(std::min(j, count_ - 1)) + 1;
+    while (at + 1 < lanes && counts[at] < rank) ++at;
+    low_[j] = x[at], high_[j] = at == 0 ? top : x[at - 1];
+  }
+  groups_ = (count_ + kLanes - 1) / kLanes;
+  const Index active = groups_ * kLanes;
+  for (int round = 0; round < kRounds; ++round) {
+    // Far enough apart, Rayleigh quotients find the rest of the way.
+    bool alone = true;
+    for (Index j = 0; alone && j < count_; ++j) {
+      const double width = high_[j] - low_[j];
+      double gap = low_[j];
+      if (j > 0) gap = std::min(gap, low_[j - 1] - high_[j]);
+      if (j + 1 < count_) gap = std::min(gap, low_[j] - high_[j + 1]);
+      alone = width <= std::max(0.25 * gap, 1e-10 * low_[j]);
+    }
+    if (alone) break;
+    for (Index j = 0; j < active; j += kWidth) {
+      const Wide lo = load(low_ + j), hi = load(high_ + j);
+      const Wide middle = hi > 4 * lo ? root(lo) * root(hi) : 0.5 * (lo + hi);
+      store(x + j, middle);
+    }
+    count_above(x, counts, groups_);
+    for (Index j = 0; j < active; j += kWidth) {
+      Wide rank;
+      for (Index l = 0; l < kWidth; ++l)
+        rank[l] = static_cast<double>(std::min(j + l, count_ - 1)) + 1;
+      const auto inside = load(counts + j) >= rank;
+      const Wide middle = load(x + j);
+      store(low_ + j, inside ? middle : load(low_ + j));
+      store(high_ + j, inside ? load(high_ + j) : middle);
+    }
+  }
+}
+
+/// Values and vectors of the lanes from `lane` on, kTwin registers at a time,
+/// so that their divisions overlap.
+void BidiagonalSpectrum::refine(Index lane) {
+  constexpr Index kStep = kTwin * kWidth;
+  auto* const down = static_cast<double*>(vectors_.data());
+  double* const up = down + n_ * kStep;
+  double* const s_of = up + n_ * kStep;
+  double* const z = s_of + n_ * kStep;
+  Wide x[kTwin], low[kTwin], high[kTwin], close[kTwin], length2[kTwin],
+      twist[kTwin], gamma[kTwin];
+#pragma GCC unroll 2
+  for (int r = 0; r < kTwin; ++r) {
+    low[r] = load(low_ + lane + r * kWidth);
+    high[r] = load(high_ + lane + r * kWidth);
+    x[r] = 0.5 * (low[r] + high[r]);
+    // Cubic convergence: the next error is far below rounding.
+    close[r] = 1e-6 * (high[r] - low[r]) + 1e-11 * low[r];
+  }
+  bool last = false;
+  for (int round = 0; round < kRefinements; ++round) {
+    Wide s[kTwin], p[kTwin];
+#pragma GCC unroll 2
+    for (int r = 0; r < kTwin; ++r) s[r] = -x[r];
+    for (Index i = 0; i < n_; ++i) {
+#pragma GCC unroll 2
+      for (int r = 0; r < kTwin; ++r) {
+        store(s_of + i * kStep + r * kWidth, s[r]);
+        const Wide inverse = 1 / guarded(s[r] + q_[i]);
+        store(down + i * kStep + r * kWidth, off_[i] * inverse);
+        s[r] = fma(e_[i] * s[r], inverse, -x[r]);
+      }
+    }
+    // Bottom up; the twist is where gamma is smallest.
+    const auto index = [](Index i) {
+      return broadcast(static_cast<double>(i));
+    };
+#pragma GCC unroll 2
+    for (int r = 0; r < kTwin; ++r) {
+      p[r] = q_[n_ - 1] - x[r];
+      gamma[r] = load(s_of + (n_ - 1) * kStep + r * kWidth) + p[r] + x[r];
+      twist[r] = index(n_ - 1);
+    }
+    for (Index i = n_ - 2; i >= 0; --i) {
+#pragma GCC unroll 2
+      for (int r = 0; r < kTwin; ++r) {
+        const Wide inverse = 1 / guarded(e_[i] + p[r]);
+        store(up + i * kStep + r * kWidth, off_[i] * inverse);
+        p[r] = fma(q_[i] * p[r], inverse, -x[r]);
+        const Wide here = load(s_of + i * kStep + r * kWidth) + p[r] + x[r];
+        const auto smaller = magnitude(here) < magnitude(gamma[r]);
+        gamma[r] = smaller ? here : gamma[r];
+        twist[r] = smaller ? index(i) : twist[r];
+      }
+    }
+    Wide entry[kTwin];
+#pragma GCC unroll 2
+    for (int r = 0; r < kTwin; ++r) entry[r] = length2[r] = Wide{};
+    for (Index i = n_ - 1; i >= 0; --i) {
+      const Wide here = index(i);
+#pragma GCC unroll 2
+      for (int r = 0; r < kTwin; ++r) {
+        const Wide next = -load(down + i * kStep + r * kWidth) * entry[r];
+        entry[r] = here == twist[r]  ? broadcast(1)
+                   : here < twist[r] ? next
+                                     : Wide{};
+        store(z + i * kStep + r * kWidth, entry[r]);
+        length2[r] = fma(entry[r], entry[r], length2[r]);
+      }
+    }
+#pragma GCC unroll 2
+    for (int r = 0; r < kTwin; ++r) entry[r] = load(z + r * kWidth);
+    for (Index i = 1; i < n_; ++i) {
+      const Wide here = index(i);
+#pragma GCC unroll 2
+      for (int r = 0; r < kTwin; ++r) {
+        const auto below = here > twist[r];
+        const Wide next = -load(up + (i - 1) * kStep + r * kWidth) * entry[r];
+        entry[r] = below ? next : load(z + i * kStep + r * kWidth);
+        length2[r] += below ? entry[r] * entry[r] : Wide{};
+        store(z + i * kStep + r * kWidth, entry[r]);
+      }
+    }
+    if (last) break;
+    last = true;
+#pragma GCC unroll 2
+    for (int r = 0; r < kTwin; ++r) {
+      Wide next = x[r] + gamma[r] / length2[r];
+      next = next < low[r] ? low[r] : next > high[r] ? high[r] : next;
+      const auto far = magnitude(next - x[r]) > close[r];
+      for (Index l = 0; l < kWidth; ++l) last = last && !far[l];
+      x[r] = next;
+    }
+  }
+  for (Index j = lane; j < std::min(lane + kStep, count_); ++j) {
+    const Index r = (j - lane) / kWidth, l = (j - lane) % kWidth;
+    const double scale = 1 / std::sqrt(length2[r][l]);
+    lambda_(j) = x[r][l];
+    residual_[j] = std::abs(gamma[r][l]) * scale / x[r][l];
+    double* const to = v_.col(j).data();
+    for (Index i = 0; i < n_; ++i) to[i] = z[i * kStep + j - lane] * scale;
+    first_(j) = to[n_ - 1];
+  }
+}
+
+bool BidiagonalSpectrum::orthogonal() {
+  for (Index j = 0; j < count_; ++j) {
+    if (!(residual_[j] <= kResidual)) return false;
+    for (Index i = 0; i < j; ++i)
+      if (!(std::abs(dot(v_.rows(), v_.col(i).data(), v_.col(j).data())) <=
+            kCosine))
+        return false;
+  }
+  return true;
+}
+
+bool BidiagonalSpectrum::find(VectorIn<double> a,
+                              VectorIn<double> b,
+                              double floor) {
+  n_ = a.size();
+  groups_ = (n_ + kLanes - 1) / kLanes;
+  const Index lanes = groups_ * kLanes, padded = round_up(n_, kWidth);
+  const auto reserve = [](Buffer& buffer, Index count) {
+    return static_cast<double*>(
+        buffer.reserve(static_cast<std::size_t>(count) * sizeof(double)));
+  };
+  q_ = reserve(memory_, 3 * padded + 4 * lanes);
+  e_ = q_ + padded, off_ = e_ + padded;
+  low_ = off_ + padded, high_ = low_ + lanes, residual_ = high_ + lanes;
+  reserve(vectors_, 4 * n_ * kTwin * kWidth);
+  double top = 0;
+  for (Index i = 0; i < n_; ++i) {
+    const double diagonal = a(n_ - 1 - i);
+    const double beside = i + 1 < n_ ? b(n_ - 2 - i) : 0;
+    q_[i] = diagonal * diagonal;
+    e_[i] = beside * beside;
+    off_[i] = diagonal * beside;
+    const double before = i > 0 ? std::abs(b(n_ - 1 - i)) : 0;
+    top =
+        std::max(top, std::abs(diagonal) + std::max(before, std::abs(beside)));
+  }
+  count_ = 0;
+  // Singular values are at most the largest row or column of [0 L; L^T 0].
+  top *= 1 + 1e-10;
+  if (!(floor < top)) return true;
+  isolate(floor * floor, top * top);
+  if (lambda_.size() < n_) lambda_.resize(n_), first_.resize(n_);
+  if (v_.rows() != padded || v_.cols() < count_) v_.setZero(padded, n_);
+  for (Index lane = 0; lane < count_; lane += kTwin * kWidth) refine(lane);
+  return orthogonal();
+}
+
+void BidiagonalSpectrum::combine(VectorIn<double> w,
+                                 VectorOut<double> out) const {
+  out.setZero();
+  for (Index j = 0; j < w.size(); ++j) {
+    const double* v = v_.col(j).data();
+    for (Index i = 0; i < n_; ++i) out(n_ - 1 - i) += w(j) * v[i];
+  }
+}
+
+}  // namespace physinv::hig

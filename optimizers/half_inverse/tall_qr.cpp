@@ -1,0 +1,151 @@
+#include "optimizers/half_inverse/tall_qr.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "optimizers/half_inverse/reflector.h"
+#include "suite/core/check.h"
+
+namespace physinv::hig {
+namespace {
+
+constexpr int kPanel = 4;
+
+/// Reflectors I - V S V^T of one panel; the columns of V lie in the matrix.
+struct Panel {
+  const double* v[kPanel];
+  double s[kPanel][kPanel];  ///< upper triangular
+};
+
+/// N columns y <- (I - V S V^T)^T y on rows [begin, end), multiples of kWidth.
+template <int N>
+void reflect_columns(const Panel& p, double* const* y, Index begin, Index end) {
+  Wide w[kPanel][N];
+#pragma GCC unroll 8
+  for (int k = 0; k < kPanel; ++k)
+#pragma GCC unroll 4
+    for (int c = 0; c < N; ++c) w[k][c] = Wide{};
+  for (Index i = begin; i < end; i += kWidth) {
+    Wide at[N];
+#pragma GCC unroll 4
+    for (int c = 0; c < N; ++c) at[c] = load(y[c] + i);
+#pragma GCC unroll 8
+    for (int k = 0; k < kPanel; ++k) {
+      const Wide v = load(p.v[k] + i);
+#pragma GCC unroll 4
+      for (int c = 0; c < N; ++c) w[k][c] = fma(v, at[c], w[k][c]);
+    }
+  }
+  Wide f[kPanel][N];
+#pragma GCC unroll 4
+  for (int c = 0; c < N; ++c) {
+    double along[kPanel];
+#pragma GCC unroll 8
+    for (int k = 0; k < kPanel; ++k) along[k] = sum(w[k][c]);
+#pragma GCC unroll 8
+    for (int k = 0; k < kPanel; ++k) {
+      double total = 0;
+      for (int l = 0; l <= k; ++l) total += p.s[l][k] * along[l];
+      f[k][c] = broadcast(-total);
+    }
+  }
+  for (Index i = begin; i < end; i += kWidth) {
+    Wide at[N];
+#pragma GCC unroll 4
+    for (int c = 0; c < N; ++c) at[c] = load(y[c] + i);
+#pragma GCC unroll 8
+    for (int k = 0; k < kPanel; ++k) {
+      const Wide v = load(p.v[k] + i);
+#pragma GCC unroll 4
+      for (int c = 0; c < N; ++c) at[c] = fma(v, f[k][c], at[c]);
+    }
+#pragma GCC unroll 4
+    for (int c = 0; c < N; ++c) store(y[c] + i, at[c]);
+  }
+}
+
+}  // namespace
+
+void TallColumns::open(Index rows, Index columns) {
+  rows_ = rows, columns_ = columns;
+  // A column of zeros behind the last fills the last panel.
+  stride_ = round_up(rows, kWidth) + kWidth;
+  data_ = static_cast<double*>(memory_.reserve(
+      static_cast<std::size_t>(stride_ * (columns + 1)) * sizeof(double)));
+  for (Index j = 0; j < columns; ++j)
+    std::fill(column(j) + rows, column(j) + stride_, 0.0);
+  std::fill(column(columns), column(columns) + stride_, 0.0);
+}
+
+bool TallColumns::finite() const {
+  // 0 x is 0 for what is finite, and NaN for all else.
+  Wide zero{};
+  const Index end = round_up(rows_, kWidth);
+  for (Index j = 0; j < columns_; ++j)
+    for (Index i = 0; i < end; i += kWidth)
+      zero = fma(load(column(j) + i), Wide{}, zero);
+  return sum(zero) == 0;
+}
+
+void triangularize(TallColumns& a, Index pivots, BatchOut<double> r) {
+  const Index rows = a.rows(), columns = a.columns();
+  SUITE_CHECK(rows >= pivots && columns >= pivots && r.rows() == pivots &&
+                  r.cols() == columns,
+              "a tall matrix and the top of its result");
+  const Index end = round_up(rows, kWidth);
+  if (!a.finite()) {
+    r.setConstant(std::numeric_limits<double>::quiet_NaN());
+    return;
+  }
+  r.setZero();
+  for (Index first = 0; first < pivots; first += kPanel) {
+    const int count = static_cast<int>(std::min<Index>(kPanel, pivots - first));
+    const Index begin = first / kWidth * kWidth;
+    Panel p{};
+    for (int k = 0; k < kPanel; ++k) p.v[k] = a.column(columns);
+    double tau[kPanel] = {};
+    for (int k = 0; k < count; ++k) {
+      const Index at = first + k;
+      double* x = a.column(at);
+      // What is above the head belongs to R already; V has zeros there.
+      for (Index i = 0; i < at; ++i) {
+        r(i, at) = x[i];
+        x[i] = 0;
+      }
+      tau[k] = reflect(rows - at, x + at, r(at, at));
+      p.v[k] = x;
+      if (tau[k] == 0) x[at] = 0;
+      for (int c = k + 1; c < count; ++c) {
+        double* y = a.column(first + c);
+        axpy(end - begin,
+             -tau[k] * dot(end - begin, x + begin, y + begin),
+             x + begin,
+             y + begin);
+      }
+    }
+    for (int k = 0; k < count; ++k) {
+      p.s[k][k] = tau[k];
+      double inner[kPanel];
+      for (int l = 0; l < k; ++l)
+        inner[l] = dot(end - begin, p.v[l] + begin, p.v[k] + begin);
+      for (int l = 0; l < k; ++l) {
+        double total = 0;
+        for (int m = l; m < k; ++m) total += p.s[l][m] * inner[m];
+        p.s[l][k] = -tau[k] * total;
+      }
+    }
+    Index j = first + count;
+    for (; j + 2 <= columns; j += 2) {
+      double* const y[] = {a.column(j), a.column(j + 1)};
+      reflect_columns<2>(p, y, begin, end);
+    }
+    for (; j < columns; ++j) {
+      double* const y[] = {a.column(j)};
+      reflect_columns<1>(p, y, begin, end);
+    }
+  }
+  for (Index j = pivots; j < columns; ++j)
+    for (Index i = 0; i < pivots; ++i) r(i, j) = a.column(j)[i];
+}
+
+}  // namespace physinv::hig

@@ -1,0 +1,29 @@
+/// Claims of the quantum dipole's experiments (HIG paper, Figs. 4, 8 to 11).
+#pragma once
+
+#include <vector>
+
+#include "suite/results/report_model.h"
+#include "suite/results/results.h"
+
+namespace physinv::dipole {
+
+inline constexpr const char* kDense = "hig/quantum-dipole";
+inline constexpr const char* kConvolutional = "hig/quantum-dipole-cnn";
+inline constexpr const char* kDirect = "hig/quantum-dipole-direct";
+
+/// Rows of the array `metrics`: losses of the first and of the second excited
+/// state alone (LE and HE of Fig. 4c), means over the test set.
+enum Level : Index { kLow, kHigh };
+
+/// A1 to A6 and A8.
+std::vector<ClaimResult> dense_claims(const Results& results);
+/// A7.
+ClaimResult convolutions_keep_the_order(const Results& results);
+/// A9. The first targets have angles 0.7 and 2; rows of `metrics`: their loss
+/// in float by both formulas.
+inline constexpr Index kNamed = 2;
+enum Formula : Index { kOverlap, kRest };
+ClaimResult direct_control_has_no_floor(const Results& results);
+
+}  // namespace physinv::dipole

@@ -1,0 +1,118 @@
+// HIG paper, Fig. 4b's floor: the quantum dipole's control optimised without a
+// network, in double and in float.
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "optimizers/half_inverse_direct.h"
+#include "problems/quantum_dipole/quantum_dipole.h"
+#include "suite/cases/hig_quantum_dipole_claims.h"
+#include "suite/cases/hig_report.h"
+#include "suite/harness/registry.h"
+
+namespace physinv {
+namespace {
+
+constexpr const char* kName = dipole::kDirect;
+
+/// The controls as the authors' precision sees them: the worse loss of the two
+/// named targets by 1 - |<t, psi>|^2, and by |psi - <t, psi> t|^2.
+void in_float(const Snapshot& at, VectorOut<double> out) {
+  out.setZero();
+  if (at.y.rows() != 2 * kQuantumPoints) return;  // not of this problem
+  const Batch<float> x = at.x.cast<float>(), given(0, x.cols());
+  const Batch<float> target = at.oracle.observations().cast<float>();
+  Batch<float> y(at.y.rows(), x.cols());
+  Vector<double> loss(x.cols());
+  Workspace work;
+  for (const bool accurate : {false, true}) {
+    const QuantumDipole<float> problem({.accurate_loss = accurate});
+    problem.forward(x, given, y, work);
+    problem.loss(y, target, loss);
+    out(accurate ? dipole::kRest : dipole::kOverlap) =
+        loss.head(std::min<Index>(dipole::kNamed, loss.size()))
+            .cwiseAbs()
+            .maxCoeff();
+  }
+}
+
+Method method(std::string id, double kappa) {
+  return {
+      .id = std::move(id),
+      .chain = {half_inverse_direct({.power = {.kappa = kappa, .tau = 1e-5},
+                                     .rate = 0.5,
+                                     .metrics = {.name = "float",
+                                                 .rows = {"overlap", "rest"},
+                                                 .evaluate = in_float}})}};
+}
+
+Section report(const Results& results, const Published&) {
+  const auto lines = present(results,
+                             kName,
+                             {{"hig", "HIG", "jpo"},
+                              {"gn", "Gauss-Newton", "bfgs"},
+                              {"hig-f32", "HIG, float", "gd"},
+                              {"gn-f32", "Gauss-Newton, float", "supervised"}});
+  Section section{.experiment = kName,
+                  .title = "Quantum dipole, control without a network",
+                  .paper = "hig",
+                  .tables = {loss_table(results, kName, lines)},
+                  .claims = {dipole::direct_control_has_no_floor(results)}};
+  if (lines.empty()) return section;
+  section.figures = {loss_figure(results,
+                                 kName,
+                                 lines,
+                                 "loss",
+                                 "Loss, evaluated in double",
+                                 "Fig. 4b"),
+                     metric_figure(results,
+                                   kName,
+                                   lines,
+                                   dipole::kOverlap,
+                                   "1 - |<t, psi>|^2 in float",
+                                   "overlap",
+                                   "The formula that cancels, in float",
+                                   "Fig. 4b"),
+                     metric_figure(results,
+                                   kName,
+                                   lines,
+                                   dipole::kRest,
+                                   "|psi - <t, psi> t|^2 in float",
+                                   "rest",
+                                   "The formula that does not cancel, in float",
+                                   "Fig. 4b")};
+  return section;
+}
+
+std::vector<Row> rows(std::vector<std::uint64_t> seeds, Index updates) {
+  return {{.methods = {"hig", "gn"},
+           .n = {16},
+           .seeds = seeds,
+           .iterations = updates,
+           .precision = Precision::f64},
+          {.methods = {"hig-f32", "gn-f32"},
+           .n = {16},
+           .seeds = seeds,
+           .iterations = updates,
+           .precision = Precision::f32}};
+}
+
+const auto kRegistered = register_experiment({
+    .name = kName,
+    .title = "Quantum dipole, control without a network",
+    .source = {.paper = "hig", .where = "Sec. 3.3, Fig. 4b"},
+    .problem = problem<QuantumDipole>("quantum_dipole", {.angles = {0.7, 2}}),
+    .setting = {.recorded = 16},
+    .profiles = {{.name = "smoke", .rows = rows({0}, 20)},
+                 {.name = "quick", .rows = rows({0, 1, 2}, 100)},
+                 {.name = "standard", .rows = rows({0, 1, 2, 3, 4}, 200)},
+                 {.name = "paper", .rows = rows({0, 1, 2, 3, 4}, 1000)}},
+    .methods = {method("hig", -0.5),
+                method("gn", -1),
+                method("hig-f32", -0.5),
+                method("gn-f32", -1)},
+    .report = report,
+});
+
+}  // namespace
+}  // namespace physinv

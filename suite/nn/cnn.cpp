@@ -1,0 +1,61 @@
+#include "suite/nn/cnn.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <memory>
+#include <utility>
+
+#include "suite/core/check.h"
+#include "suite/nn/activation.h"
+#include "suite/nn/conv.h"
+#include "suite/nn/linear.h"
+#include "suite/nn/sequential.h"
+
+namespace physinv::nn {
+namespace {
+
+template <class T>
+std::unique_ptr<Network<T>> make(const CnnOptions& o,
+                                 Index inputs,
+                                 Index outputs) {
+  SUITE_CHECK(inputs == o.positions * o.channels,
+              "the network's grid is not that of its input");
+  typename Sequential<T>::Layers layers;
+  Index positions = o.positions, channels = o.channels;
+  for (const Index width : o.features) {
+    layers.push_back(
+        std::make_unique<Conv<T>>(ConvOptions{.grid = {positions},
+                                              .in = channels,
+                                              .out = width,
+                                              .taps = {o.taps, 1},
+                                              .padding = Padding::none}));
+    positions -= o.taps - 1, channels = width;
+    layers.push_back(std::make_unique<ActivationLayer<T>>(
+        o.activation, positions * channels));
+  }
+  layers.push_back(std::make_unique<Linear<T>>(positions * channels, outputs));
+  return std::make_unique<Sequential<T>>(std::move(layers), o.init);
+}
+
+}  // namespace
+
+NetworkRecipe cnn(const CnnOptions& options) {
+  return {
+      .description = fmt::format(
+          "cnn positions={} channels={} features={} taps={} activation={}{}",
+          options.positions,
+          options.channels,
+          fmt::join(options.features, "-"),
+          options.taps,
+          to_string(options.activation),
+          options.init == Init::glorot ? " init=glorot" : ""),
+      .make_float = [options](
+                        Index in,
+                        Index out) { return make<float>(options, in, out); },
+      .make_double = [options](
+                         Index in,
+                         Index out) { return make<double>(options, in, out); }};
+}
+
+}  // namespace physinv::nn
