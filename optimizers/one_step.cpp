@@ -182,9 +182,7 @@ void product(const Pack<T>* a,
              Index cols,
              Index depth,
              F&& finish) {
-  // As many sums as registers hold beside their factors; the right matrix
-  // comes from the second cache, once for every kP rows.
-  constexpr Index kP = kVectorBytes == 64 ? 4 : 2, kQ = 4;
+  constexpr Index kP = 2, kQ = 4;
   Index p = 0;
   for (; p + kP <= rows; p += kP) {
     Index q = 0;

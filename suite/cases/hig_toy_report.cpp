@@ -35,6 +35,9 @@ struct Weights {
 };
 
 void evaluate(const Snapshot& s, double gamma, VectorOut<double> values) {
+  values.setZero();
+  // Another network on another problem has none of these numbers.
+  if (s.parameters.size() != 4 * kHidden + 2 || s.y.rows() != 2) return;
   const Weights weights(s.parameters);
   const Batch<double> h = weights.hidden(s.oracle.given());
   const Batch<double> r = s.y - s.oracle.observations();
