@@ -98,7 +98,7 @@ Series median_series(const std::vector<Points>& seeds,
     }
     const double middle = median(values);
     // Logarithmic axes have no place for the start, nor for the end of time.
-    if (median(x) <= 0 || !std::isfinite(middle)) continue;
+    if (seeds.front().updates[k] <= 0 || !std::isfinite(middle)) continue;
     s.x.push_back(median(x));
     s.y.push_back(middle);
     const auto [lo, hi] = std::minmax_element(values.begin(), values.end());
