@@ -2,18 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-#include <limits>
-#include <vector>
-
 #include "optimizers/half_inverse/explicit_power.h"
 
 namespace physinv {
 namespace {
-
-double finite(double value) {
-  return std::isfinite(value) ? value : std::numeric_limits<double>::max();
-}
 
 template <class T>
 class Direct {
@@ -31,7 +23,7 @@ class Direct {
         g_(y_),
         jacobian_(y_.rows() * x_.rows(), x_.cols()),
         update_(x_.rows()),
-        metrics_(static_cast<Index>(options.metrics.rows.size()), 0),
+        metrics_(options.metrics, run),
         work_(run.threads) {
     out_.status.assign(static_cast<std::size_t>(x_.cols()), Status::maxiter);
     out_.iterations.setZero(x_.cols());
@@ -43,16 +35,16 @@ class Direct {
     probe.begin();
     while (probe.proceed([&](BatchOut<double> x) {
       x = x_.template cast<double>();
-      measure();
+      if (!metrics_.empty()) metrics_(Vector<double>(), x);
     })) {
       update();
       probe.trace(x_.data(), sizeof(T) * static_cast<std::size_t>(x_.size()));
     }
     out_.x = x_.template cast<double>();
     out_.evaluations = out_.iterations;
-    out_.arrays["mean_loss"] =
-        probe.curve().loss.colwise().mean().unaryExpr(&finite);
-    if (metrics_.rows() > 0) out_.arrays["metrics"] = metrics_;
+    out_.arrays["mean_loss"] = probe.curve().loss.colwise().mean();
+    if (!metrics_.empty()) out_.arrays["metrics"] = metrics_.values();
+    keep_finite(out_.arrays);
     out_.bytes = bytes();
     oracle_.add(work_.counts);
     return std::move(out_);
@@ -85,19 +77,6 @@ class Direct {
     }
   }
 
-  void measure() {
-    if (metrics_.rows() == 0) return;
-    const Batch<double> x = x_.template cast<double>();
-    Batch<double> y(y_.rows(), y_.cols());
-    Workspace work(run_.threads);
-    oracle_.recipe().make<double>()->forward(x, oracle_.given(), y, work);
-    metrics_.conservativeResize(Eigen::NoChange, metrics_.cols() + 1);
-    Vector<double> values(metrics_.rows());
-    options_.metrics.evaluate(
-        {run_.probe.iteration(), Vector<double>(), x, y, oracle_}, values);
-    metrics_.rightCols(1) = values.unaryExpr(&finite);
-  }
-
   std::size_t bytes() const {
     const Index numbers = x_.size() + given_.size() + target_.size() +
                           y_.size() + g_.size() + jacobian_.size();
@@ -115,7 +94,7 @@ class Direct {
   Vector<T> next_;
   Batch<double> s_;
   Vector<double> update_;
-  Batch<double> metrics_;
+  MetricsRecorder metrics_;
   hig::ExplicitPower power_;
   Workspace work_;
   Outcome out_;
@@ -129,13 +108,11 @@ class DirectStage final : public Stage {
   std::string name() const override { return options_.stage; }
   Needs needs() const override { return Needs::forward | Needs::jacobian; }
   Options options() const override {
-    return {{"algorithm", "half_inverse_direct"},
-            {"kappa", fmt::format("{}", options_.power.kappa)},
-            {"tau", fmt::format("{}", options_.power.tau)},
-            {"beta", fmt::format("{}", options_.power.beta)},
-            {"cut", options_.power.absolute ? "absolute" : "relative"},
-            {"rate", fmt::format("{}", options_.rate)},
-            {"metrics", options_.metrics.name}};
+    Options all = {{"algorithm", "half_inverse_direct"}};
+    for (const auto& option : describe(options_.power)) all.push_back(option);
+    all.push_back({"rate", fmt::format("{}", options_.rate)});
+    all.push_back({"metrics", options_.metrics.name});
+    return all;
   }
   Index default_iterations() const override { return options_.iterations; }
   bool has_precision() const override { return true; }

@@ -9,26 +9,28 @@
 namespace physinv {
 namespace {
 
-/// J^T (p x rows) written out.
+/// J by columns.
 template <class T>
 void write_out(const std::vector<LayerRows<T>>& layers,
                Index per_sample,
-               Batch<double>& transposed) {
+               hig::TallColumns& columns) {
+  const Index rows = columns.rows();
   for (const LayerRows<T>& l : layers) {
-    for (Index r = 0; r < transposed.cols(); ++r) {
-      double* const to = transposed.col(r).data() + l.offset;
-      const Index weights = l.inputs * l.outputs;
-      std::fill_n(to, weights + l.outputs, 0.0);
-      const Index channels = l.inputs / l.taps;
+    for (Index o = 0; o < l.outputs; ++o) {
+      double* const bias = columns.column(l.offset + l.inputs * l.outputs + o);
+      std::fill_n(bias, rows, 0.0);
       for (Index p = 0; p < l.positions; ++p) {
-        const T* a = l.a + p * l.a_step * l.a_stride + r / per_sample;
-        const T* b = l.b + p * l.b_step * l.b_stride + r;
-        for (Index o = 0; o < l.outputs; ++o) {
-          const auto bar = double(b[o * l.b_stride]);
-          for (Index i = 0; i < l.inputs; ++i)
-            to[o * l.inputs + i % channels * l.taps + i / channels] +=
-                bar * double(a[i * l.a_stride]);
-          to[weights + o] += bar;
+        const T* b = l.b + (p * l.b_step + o) * l.b_stride;
+        for (Index r = 0; r < rows; ++r) bias[r] += double(b[r]);
+      }
+      for (Index i = 0; i < l.inputs; ++i) {
+        double* const to = columns.column(l.offset + l.weight(i, o));
+        std::fill_n(to, rows, 0.0);
+        for (Index p = 0; p < l.positions; ++p) {
+          const T* a = l.a + (p * l.a_step + i) * l.a_stride;
+          const T* b = l.b + (p * l.b_step + o) * l.b_stride;
+          for (Index r = 0; r < rows; ++r)
+            to[r] += double(b[r]) * double(a[r / per_sample]);
         }
       }
     }
@@ -46,7 +48,7 @@ void pull_back(const std::vector<LayerRows<T>>& layers,
   for (Index c = 0; c < u.cols(); ++c) {
     for (const LayerRows<T>& l : layers) {
       double* const to = out.col(c).data() + l.offset;
-      const Index weights = l.inputs * l.outputs, channels = l.inputs / l.taps;
+      const Index weights = l.inputs * l.outputs;
       for (Index r = 0; r < u.rows(); r += per_sample) {
         for (Index p = 0; p < l.positions; ++p) {
           const T* a = l.a + p * l.a_step * l.a_stride + r / per_sample;
@@ -56,8 +58,7 @@ void pull_back(const std::vector<LayerRows<T>>& layers,
             for (Index k = 0; k < per_sample; ++k)
               bar += double(b[o * l.b_stride + k]) * u(r + k, c);
             for (Index i = 0; i < l.inputs; ++i)
-              to[o * l.inputs + i % channels * l.taps + i / channels] +=
-                  bar * double(a[i * l.a_stride]);
+              to[l.weight(i, o)] += bar * double(a[i * l.a_stride]);
             to[weights + o] += bar;
           }
         }
@@ -68,14 +69,19 @@ void pull_back(const std::vector<LayerRows<T>>& layers,
 
 }  // namespace
 
+Options describe(const hig::Power& power) {
+  return {{"kappa", fmt::format("{}", power.kappa)},
+          {"tau", fmt::format("{}", power.tau)},
+          {"beta", fmt::format("{}", power.beta)},
+          {"cut", power.absolute ? "absolute" : "relative"}};
+}
+
 Options describe(const HalfInverseStepOptions& o) {
-  return {{"step", "half_inverse"},
-          {"kappa", fmt::format("{}", o.power.kappa)},
-          {"tau", fmt::format("{}", o.power.tau)},
-          {"beta", fmt::format("{}", o.power.beta)},
-          {"cut", o.power.absolute ? "absolute" : "relative"},
-          {"rate", fmt::format("{}", o.rate)},
-          {"tolerance", fmt::format("{}", o.numerics.tolerance)}};
+  Options all = {{"step", "half_inverse"}};
+  for (const auto& option : describe(o.power)) all.push_back(option);
+  all.push_back({"rate", fmt::format("{}", o.rate)});
+  all.push_back({"tolerance", fmt::format("{}", o.numerics.tolerance)});
+  return all;
 }
 
 template <class T>
@@ -86,16 +92,7 @@ void HalfInverseStep<T>::power_of_gram(const Network<T>& network,
                                        Workspace& work) {
   const Index rows = g_.size(), per = rows / samples;
   blocks_.clear();
-  for (const LayerRows<T>& l : layers_)
-    blocks_.push_back({.a = l.a,
-                       .inputs = l.inputs,
-                       .a_stride = l.a_stride,
-                       .b = l.b,
-                       .outputs = l.outputs,
-                       .b_stride = l.b_stride,
-                       .positions = l.positions,
-                       .a_step = l.a_step,
-                       .b_step = l.b_step});
+  for (const LayerRows<T>& l : layers_) blocks_.push_back(hig::gram_layer(l));
   gram_.resize(rows, rows);
   form_gram_.template operator()<T>(
       blocks_, samples, per, gram_, work.threads());
@@ -128,12 +125,8 @@ void HalfInverseStep<T>::power_of_jacobian(VectorIn<T> parameters,
   const bool shared =
       shared_.template triangle<T>(layers_, parameters, g_, rows / samples);
   if (!shared) {
-    transposed_.resize(p, rows);
-    write_out(layers_, rows / samples, transposed_);
     columns_.open(rows, p + 1);
-    for (Index j = 0; j < p; ++j)
-      Eigen::Map<Vector<double>>(columns_.column(j), rows) =
-          transposed_.row(j).transpose();
+    write_out(layers_, rows / samples, columns_);
     std::copy_n(g_.data(), rows, columns_.column(p));
   }
   if (shared) {
@@ -145,8 +138,7 @@ void HalfInverseStep<T>::power_of_jacobian(VectorIn<T> parameters,
     report = tall_(columns_, options_.power, update);
   }
   report_.path = hig::Path::explicit_jacobian;
-  report_.proven = report_.ending == hig::Ending::zero ||
-                   report_.error <= options_.numerics.tolerance;
+  report_.proven = hig::proven(report_, options_.numerics.tolerance);
   if (report_.ending != hig::Ending::ok && report_.ending != hig::Ending::zero)
     update_.setConstant(std::numeric_limits<double>::quiet_NaN());
 }
@@ -192,8 +184,7 @@ std::size_t HalfInverseStep<T>::bytes() const {
   };
   return bytes(rows_) + bytes(out_bar_) + bytes(gram_) + form_gram_.bytes() +
          power_.bytes() + bytes(g_) + bytes(update_) + bytes(column_) +
-         bytes(transposed_) + columns_.bytes() + shared_.bytes() +
-         tall_.bytes();
+         columns_.bytes() + shared_.bytes() + tall_.bytes();
 }
 
 template class HalfInverseStep<float>;

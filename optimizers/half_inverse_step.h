@@ -26,6 +26,7 @@ struct HalfInverseStepOptions {
   hig::HalfInverseOptions numerics = {};
 };
 
+Options describe(const hig::Power& power);
 Options describe(const HalfInverseStepOptions& options);
 
 template <class T>
@@ -69,7 +70,7 @@ class HalfInverseStep {
   std::vector<LayerRows<T>> layers_;
   std::vector<hig::GramLayer<T>> blocks_;
   Batch<T> rows_, out_bar_;
-  Batch<double> gram_, transposed_, update_;
+  Batch<double> gram_, update_;
   Vector<double> g_, reordered_;
   Vector<T> column_;
 };

@@ -75,10 +75,13 @@ void Minibatch<T>::gradient(BatchIn<T> x,
 }
 
 template <class T>
-void Minibatch<T>::jacobian(BatchIn<T> x, T factor, BatchOut<T> j) {
+void Minibatch<T>::jacobian(BatchIn<T> x,
+                            T factor,
+                            bool project,
+                            BatchOut<T> j) {
   problem_->forward(x, given_, y_, work_);
   weigh(factor, 0, batch_);
-  if (projection_ != nullptr) projection_->project(y_, y_bar_);
+  if (project && projection_ != nullptr) projection_->project(y_, y_bar_);
   jacobian_->jacobian(x, given_, j, work_);
   counts_[Counter::jacobian] += static_cast<std::uint64_t>(batch_);
 }

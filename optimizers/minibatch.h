@@ -28,8 +28,8 @@ class Minibatch {
   /// x may be a part of the batch, from sample `first` on.
   void gradient(BatchIn<T> x, T factor, BatchOut<T> x_bar, Index first = 0);
   /// The same with the solver's Jacobians (see suite/core/problem.h) in place
-  /// of x_bar; y_bar is projected if the problem can.
-  void jacobian(BatchIn<T> x, T factor, BatchOut<T> j);
+  /// of x_bar; y_bar is projected if wanted and the problem can.
+  void jacobian(BatchIn<T> x, T factor, bool project, BatchOut<T> j);
 
   const Batch<T>& y_bar() const { return y_bar_; }
   double mean_loss() const { return loss_.mean(); }

@@ -417,12 +417,15 @@ Options describe(const TinyNetOptions& o) {
 
 template <class T>
 void OneStep<T>::initialize(StreamLanes<T>& random) {
-  const auto fans = fan_in();
+  if (bounds_.empty())
+    for (const Index fan : fan_in())
+      bounds_.push_back(
+          static_cast<T>(1 / std::sqrt(static_cast<double>(fan))));
   const auto theta = parameters();
-  for (std::size_t i = 0; i < theta.size(); ++i) {
-    const T bound = static_cast<T>(1 / std::sqrt(static_cast<double>(fans[i])));
-    theta[i] = random.uniform(-bound, bound);
-  }
+  StreamLanes<T> local = random;  // stays in registers
+  for (std::size_t i = 0; i < theta.size(); ++i)
+    theta[i] = local.uniform(-bounds_[i], bounds_[i]);
+  random = local;
 }
 
 template <class T>

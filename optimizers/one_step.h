@@ -56,6 +56,9 @@ class OneStep {
 
   /// Weights and biases uniform in +-1/sqrt(fan_in).
   void initialize(StreamLanes<T>& random);
+
+ private:
+  std::vector<T> bounds_;
 };
 
 /// One hidden layer of ReLU: sums over active units only, no matrices.

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <optional>
 
 #include "optimizers/minibatch.h"
@@ -12,12 +10,6 @@
 
 namespace physinv {
 namespace {
-
-/// Arrays of records hold finite numbers only.
-double finite(double value) {
-  constexpr double kMost = std::numeric_limits<double>::max();
-  return std::isfinite(value) ? value : kMost;
-}
 
 Batch<double> row(const std::vector<double>& values) {
   return Eigen::Map<const Batch<double>>(
@@ -48,7 +40,7 @@ class Training {
                                static_cast<double>(batch_.size()))),
         scale_(static_cast<T>(run.setting.output_scale)),
         start_(oracle_.start().col(0).template cast<T>()),
-        metrics_(static_cast<Index>(options.metrics.rows.size()), 0) {
+        metrics_(options.metrics, run) {
     if (const auto* rule = std::get_if<StepOptions>(&options.rule)) {
       update_.emplace(*rule);
     } else {
@@ -70,11 +62,15 @@ class Training {
                                        oracle_.given(),
                                        oracle_.observations());
     Batch<T> output(oracle_.shape().unknowns, oracle_.count());
-    const Batch<double> start = oracle_.start();
-    const auto estimate = [&](BatchOut<double> x) {
+    const auto predict = [&](BatchOut<double> x) {
       model_.predict(query, output);
-      x = start + run_.setting.output_scale * output.template cast<double>();
-      measure(x);
+      x = oracle_.start() +
+          run_.setting.output_scale * output.template cast<double>();
+    };
+    const auto estimate = [&](BatchOut<double> x) {
+      predict(x);
+      if (!metrics_.empty())
+        metrics_(model_.parameters().template cast<double>(), x);
     };
     probe.begin_warmup();
     probe.begin();
@@ -82,15 +78,14 @@ class Training {
       next_batch();
       diverged_ = !step();
       if (diverged_) probe.stop();
-      losses_.push_back(finite(batch_.mean_loss()));
+      losses_.push_back(batch_.mean_loss());
       const auto& theta = model_.parameters();
       probe.trace(theta.data(),
                   sizeof(T) * static_cast<std::size_t>(theta.size()));
     }
     Outcome out = outcome();
-    out.x.resizeLike(start);
-    model_.predict(query, output);
-    out.x = start + run_.setting.output_scale * output.template cast<double>();
+    out.x.resize(oracle_.shape().unknowns, oracle_.count());
+    predict(out.x);
     return out;
   }
 
@@ -102,27 +97,18 @@ class Training {
     if (options_.fresh) run_.probe.resume();
   }
 
+  /// x of these inputs, in training mode.
+  void forward(const Batch<T>& input) {
+    x_ = scale_ * model_.forward(input);
+    x_.colwise() += start_;
+    model_.update_state();
+  }
+
   /// Of the batch, by the parameters.
   const Vector<T>& gradient();
 
   /// False, and nothing changed, if the update is not finite.
   bool step();
-
-  /// The metrics at this point of the curve.
-  void measure(BatchIn<double> x) {
-    if (metrics_.rows() == 0) return;
-    const auto problem = oracle_.recipe().make<double>();
-    Batch<double> y(oracle_.shape().observations, oracle_.count());
-    Workspace work(run_.threads);
-    problem->forward(x, oracle_.given(), y, work);
-    const Vector<double> parameters =
-        model_.parameters().template cast<double>();
-    metrics_.conservativeResize(Eigen::NoChange, metrics_.cols() + 1);
-    Vector<double> values(metrics_.rows());
-    options_.metrics.evaluate(
-        {run_.probe.iteration(), parameters, x, y, oracle_}, values);
-    metrics_.rightCols(1) = values.unaryExpr(&finite);
-  }
 
   Outcome outcome() {
     Outcome out;
@@ -135,11 +121,10 @@ class Training {
     out.bytes = model_.bytes() + batch_.bytes() +
                 static_cast<std::size_t>(numbers) * sizeof(T);
     out.arrays["batch_loss"] = row(losses_);
-    out.arrays["mean_loss"] =
-        run_.probe.curve().loss.colwise().mean().unaryExpr(&finite);
+    out.arrays["mean_loss"] = run_.probe.curve().loss.colwise().mean();
     out.arrays["samples_drawn"] =
         Batch<double>::Constant(1, 1, static_cast<double>(batch_.drawn()));
-    if (metrics_.rows() > 0) out.arrays["metrics"] = metrics_;
+    if (!metrics_.empty()) out.arrays["metrics"] = metrics_.values();
     if (half_inverse_) add_spectra(out);
     if (diverged_) {
       out.stop = Stop::diverged;
@@ -148,7 +133,7 @@ class Training {
                       run_.probe.iteration());
     }
     model_.save(out.arrays);
-    for (auto& [name, array] : out.arrays) array = array.unaryExpr(&finite);
+    keep_finite(out.arrays);
     oracle_.add(model_.counts());
     oracle_.add(batch_.counts());
     return out;
@@ -176,7 +161,7 @@ class Training {
   Batch<T> x_, x_bar_, input_;
   Vector<T> sum_;
   Vector<T> before_;  ///< parameters, should the update spoil them
-  Batch<double> metrics_;
+  MetricsRecorder metrics_;
   std::vector<double> losses_;
   double unproven_ = 0;
   bool diverged_ = false;
@@ -187,9 +172,7 @@ const Vector<T>& Training<T>::gradient() {
   const Index n = batch_.size();
   const Index most = options_.chunk > 0 ? std::min(options_.chunk, n) : n;
   const auto part = [&](const Batch<T>& input, Index first) -> const auto& {
-    x_ = scale_ * model_.forward(input);
-    x_.colwise() += start_;
-    model_.update_state();
+    forward(input);
     x_bar_.resizeLike(x_);
     batch_.gradient(x_, factor_, x_bar_, first);
     if (scale_ != T(1)) x_bar_ *= scale_;
@@ -215,11 +198,9 @@ bool Training<T>::step() {
     model_.parameters() = before_;
     return false;
   }
-  x_ = scale_ * model_.forward(batch_.input());
-  x_.colwise() += start_;
-  model_.update_state();
+  forward(batch_.input());
   jacobian_.resize(x_.rows() * oracle_.shape().observations, x_.cols());
-  batch_.jacobian(x_, factor_, jacobian_);
+  batch_.jacobian(x_, factor_, options_.project, jacobian_);
   if (scale_ != T(1)) jacobian_ *= scale_;
   const bool taken = (*half_inverse_)(model_.network(),
                                       model_.parameters(),
@@ -255,6 +236,7 @@ class TrainingStage final : public Stage {
         {"metrics", options_.metrics.name}};
     if (options_.chunk > 0)
       all.push_back({"chunk", fmt::format("{}", options_.chunk)});
+    if (!options_.project) all.push_back({"project", "false"});
     const Options rule =
         std::visit([](const auto& o) { return describe(o); }, options_.rule);
     all.insert(all.end(), rule.begin(), rule.end());
@@ -264,8 +246,16 @@ class TrainingStage final : public Stage {
   bool takes_row_iterations() const override { return !options_.own_length; }
   bool has_precision() const override { return true; }
   double operations(const CaseSize& size) const override {
-    return static_cast<double>(options_.batch * size.iterations) *
-           (3 * size.predictor_operations + 3 * size.problem_operations);
+    const auto samples = static_cast<double>(options_.batch);
+    const double passes =
+        samples * (3 * size.predictor_operations + 3 * size.problem_operations);
+    // One reduction of J J^T, or of J where that is smaller.
+    const double m = samples * static_cast<double>(size.shape.observations),
+                 p = size.predictor_operations / 2;
+    double reduction = 0;
+    if (!std::holds_alternative<StepOptions>(options_.rule))
+      reduction = p < m ? 2 * m * p * p : 4 * m * m * m / 3;
+    return static_cast<double>(size.iterations) * (passes + reduction);
   }
   Outcome run(StageRun& run) const override {
     if (run.precision == Precision::f32)

@@ -18,32 +18,16 @@
 /// (hig::Path); `unproven` (1) counts updates whose accuracy was not shown.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <string>
 #include <variant>
-#include <vector>
 
 #include "optimizers/half_inverse_step.h"
+#include "optimizers/metrics.h"
 #include "optimizers/steps/rule.h"
 #include "suite/core/method.h"
 
 namespace physinv {
-
-/// The network and its estimates at a point of the curve.
-struct Snapshot {
-  Index iteration;
-  VectorIn<double> parameters;
-  BatchIn<double> x, y;
-  const Oracle& oracle;
-};
-
-/// Further numbers at each point of the curve, array `metrics`.
-struct Metrics {
-  std::string name;  ///< enters the content key; empty: none
-  std::vector<std::string> rows;
-  std::function<void(const Snapshot&, VectorOut<double>)> evaluate;
-};
 
 struct TrainingOptions {
   std::string stage = "train";
@@ -57,6 +41,9 @@ struct TrainingOptions {
   /// g = gradient_scale / batch * dLoss_i/dy_i: 1 is the batch's mean.
   double gradient_scale = 1;
   bool fresh = false;  ///< every update draws samples never seen before
+  /// Half-inverse rules project g first, if the problem can: the same update
+  /// but for rounding.
+  bool project = true;
   Metrics metrics = {};
 };
 

@@ -10,9 +10,7 @@ bool HalfInverse::settled(std::size_t i, Path path, bool last) {
   report.path = path;
   const bool ended =
       report.ending == Ending::zero || report.ending == Ending::nonfinite;
-  report.proven =
-      report.ending == Ending::zero ||
-      (report.ending == Ending::ok && report.error <= options_.tolerance);
+  report.proven = proven(report, options_.tolerance);
   if (!report.proven && !ended && !last) {
     ++counts_.abandoned[static_cast<std::size_t>(path)];
     return false;

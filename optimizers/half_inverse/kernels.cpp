@@ -348,16 +348,7 @@ struct Update {
   }
   void form_gram() {
     std::vector<GramLayer<double>> blocks;
-    for (const auto& l : layers)
-      blocks.push_back({.a = l.a,
-                        .inputs = l.inputs,
-                        .a_stride = l.a_stride,
-                        .b = l.b,
-                        .outputs = l.outputs,
-                        .b_stride = l.b_stride,
-                        .positions = l.positions,
-                        .a_step = l.a_step,
-                        .b_step = l.b_step});
+    for (const auto& l : layers) blocks.push_back(gram_layer(l));
     gram.resize(samples * per, samples * per);
     form.operator()<double>(blocks, samples, per, gram);
   }

@@ -48,6 +48,12 @@ struct PowerReport {
   double error = 0;
 };
 
+/// Whether the update is known to be accurate.
+inline bool proven(const PowerReport& report, double tolerance) {
+  return report.ending == Ending::zero ||
+         (report.ending == Ending::ok && report.error <= tolerance);
+}
+
 /// Eigenpairs of J J^T as far as an update needs them.
 struct Spectrum {
   Vector<double> lambda;  ///< s_i^2, in any order, perhaps slightly negative

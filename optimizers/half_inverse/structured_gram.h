@@ -19,7 +19,7 @@
 #include <span>
 #include <vector>
 
-#include "suite/core/batch.h"
+#include "suite/core/network.h"
 #include "suite/core/threads.h"
 
 namespace physinv::hig {
@@ -40,6 +40,19 @@ struct GramLayer {
     return positions > 1 && columns() <= positions * positions * outputs;
   }
 };
+
+template <class T>
+GramLayer<T> gram_layer(const LayerRows<T>& l) {
+  return {.a = l.a,
+          .inputs = l.inputs,
+          .a_stride = l.a_stride,
+          .b = l.b,
+          .outputs = l.outputs,
+          .b_stride = l.b_stride,
+          .positions = l.positions,
+          .a_step = l.a_step,
+          .b_step = l.b_step};
+}
 
 class StructuredGram {
  public:

@@ -23,6 +23,7 @@ template <class T>
 class Adadelta {
  public:
   using Options = AdadeltaOptions;
+  static constexpr Index kNumbersPerParameter = 2;
   explicit Adadelta(const Options& options = {}) : options_(options) {}
 
   void step(VectorOut<T> x, VectorIn<T> gradient) {

@@ -21,6 +21,7 @@ template <class T>
 class Adagrad {
  public:
   using Options = AdagradOptions;
+  static constexpr Index kNumbersPerParameter = 1;
   explicit Adagrad(const Options& options = {}) : options_(options) {}
 
   void step(VectorOut<T> x, VectorIn<T> gradient) {

@@ -29,6 +29,7 @@ template <class T>
 class Adam {
  public:
   using Options = AdamOptions;
+  static constexpr Index kNumbersPerParameter = 2;
   explicit Adam(const Options& options = {}) : options_(options) {}
 
   void step(VectorOut<T> x, VectorIn<T> gradient);

@@ -21,6 +21,7 @@ template <class T>
 class Rmsprop {
  public:
   using Options = RmspropOptions;
+  static constexpr Index kNumbersPerParameter = 1;
   explicit Rmsprop(const Options& options = {}) : options_(options) {}
 
   void step(VectorOut<T> x, VectorIn<T> gradient) {

@@ -36,8 +36,8 @@ class UpdateStep {
 
   /// That the rule keeps.
   Index numbers_per_parameter() const {
-    constexpr Index kKept[] = {2, 0, 1, 2, 1};
-    return kKept[rule_.index()];
+    return std::visit(
+        [](const auto& rule) { return rule.kNumbersPerParameter; }, rule_);
   }
 
  private:

@@ -17,6 +17,7 @@ template <class T>
 class Sgd {
  public:
   using Options = SgdOptions;
+  static constexpr Index kNumbersPerParameter = 1;
   explicit Sgd(const Options& options = {}) : options_(options) {}
 
   void step(VectorOut<T> x, VectorIn<T> gradient) {

@@ -1,6 +1,6 @@
 /// Fresh problems of `NoisyAbsolute` by the million, one per lane: drawn,
 /// differentiated at one point and forgotten. The same distributions as
-/// `sample`, from numbers of 24 bits.
+/// `sample`, from numbers of 21 and 24 bits.
 #pragma once
 
 #include <numbers>
@@ -24,7 +24,7 @@ class NoiseLanes {
   explicit NoiseLanes(const Options& o)
       : options_(o),
         omega_min_(static_cast<T>(o.omega_min)),
-        omega_max_(static_cast<T>(o.omega_max)) {}
+        omega_step_(static_cast<T>((o.omega_max - o.omega_min) * 0x1p-21)) {}
 
   /// Everything but the noise.
   Problem draw(StreamLanes<T>& random) const {
@@ -51,21 +51,22 @@ class NoiseLanes {
     const P turns = x * (T(0.5) * std::numbers::inv_pi_v<T>);
     P sum{}, square{};
     for (Index j = 0; j < options_.terms; ++j) {
-      const P w = random.uniform(omega_min_, omega_max_);
-      const P aw = random.whole() * w;
-      sum += aw * sin_turns(w * turns + random.uniform());
+      const auto drawn = random.whole_three();
+      const P w = drawn.a * omega_step_ + omega_min_;
+      const P aw = drawn.b * w;
+      sum += aw * sin_turns(w * turns + drawn.c * StreamLanes<T>::kUnit);
       square += aw * aw;
     }
     stream = random;
-    const P drawn = sqrt_lanes(square);
-    return select(drawn > P{}, level * sum / drawn, P{});
+    const P norm = sqrt_lanes(square);
+    return select(norm > P{}, level * sum / norm, P{});
   }
 
   const Options& options() const { return options_; }
 
  private:
   Options options_;
-  T omega_min_, omega_max_;
+  T omega_min_, omega_step_;
 };
 
 }  // namespace physinv

@@ -55,6 +55,12 @@ struct LayerRows {
   /// Input i = tap (inputs / taps) + channel has the weight channel taps + tap
   /// of its output.
   Index taps = 1;
+
+  /// Place of the weight from input i to output o, from `offset` on.
+  Index weight(Index i, Index o) const {
+    const Index channels = inputs / taps;
+    return o * inputs + i % channels * taps + i / channels;
+  }
 };
 
 template <class T>

@@ -30,12 +30,7 @@ class StreamLanes {
   }
 
   /// Uniform in [0, 2^24), whole numbers: the same in float and double.
-  PHYSINV_LANES P whole() {
-    const Bits sum = s0_ + s3_, shifted = s1_ << 9;
-    s2_ ^= s0_, s3_ ^= s1_, s1_ ^= s2_, s0_ ^= s3_, s2_ ^= shifted;
-    s3_ = (s3_ << 11) | (s3_ >> 21);
-    return __builtin_convertvector((SignedBits)(sum >> 8), P);
-  }
+  PHYSINV_LANES P whole() { return number(bits() >> 8); }
   static constexpr T kUnit = T(0x1p-24);
 
   /// Uniform in [0, 1), and in [lo, hi).
@@ -44,9 +39,32 @@ class StreamLanes {
     return whole() * ((hi - lo) * kUnit) + lo;
   }
 
+  /// Three independent numbers from two draws, for loops that the draws bound:
+  /// uniform in [0, 2^21), [0, 2^21) and [0, 2^24), whole.
+  struct Three {
+    P a, b, c;
+  };
+  PHYSINV_LANES Three whole_three() {
+    const Bits x = bits(), y = bits();
+    // c: the bits that a and b leave of x, then those of y. Below the former
+    // lie bits of b too, which the xor makes independent of it.
+    return {number(x >> 11), number(y >> 11), number((x << 21 ^ y << 10) >> 8)};
+  }
+
  private:
   using Bits = Pack<std::uint32_t, W>;
   using SignedBits = Pack<std::int32_t, W>;
+
+  PHYSINV_LANES Bits bits() {
+    const Bits sum = s0_ + s3_, shifted = s1_ << 9;
+    s2_ ^= s0_, s3_ ^= s1_, s1_ ^= s2_, s0_ ^= s3_, s2_ ^= shifted;
+    s3_ = (s3_ << 11) | (s3_ >> 21);
+    return sum;
+  }
+  PHYSINV_LANES static P number(Bits bits) {
+    return __builtin_convertvector((SignedBits)bits, P);
+  }
+
   Bits s0_{}, s1_{}, s2_{}, s3_{};
 };
 

@@ -179,6 +179,26 @@ TEST(StreamLanes, IsUniform) {
   EXPECT_NEAR(product / kCount, 1. / 4, 5e-3);
 }
 
+TEST(StreamLanes, ThreeFromTwoDrawsAreUniformAndIndependent) {
+  auto random = streams<double>(5);
+  constexpr int kCount = 100000;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
+  for (int i = 0; i < kCount; ++i) {
+    const auto three = random.whole_three();
+    const Eigen::Vector3d u(
+        three.a[0] * 0x1p-21, three.b[0] * 0x1p-21, three.c[0] * 0x1p-24);
+    ASSERT_GE(u.minCoeff(), 0);
+    ASSERT_LT(u.maxCoeff(), 1);
+    sum += u, products += u * u.transpose();
+  }
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_NEAR(sum(i) / kCount, 1. / 2, 5e-3);
+    for (int j = 0; j < 3; ++j)
+      EXPECT_NEAR(products(i, j) / kCount, i == j ? 1. / 3 : 1. / 4, 5e-3);
+  }
+}
+
 // ---- noise -----------------------------------------------------------------
 
 TEST(NoiseLanes, HasItsLevel) {

@@ -1,0 +1,33 @@
+#include "optimizers/metrics.h"
+
+#include <cmath>
+#include <limits>
+
+namespace physinv {
+
+MetricsRecorder::MetricsRecorder(const Metrics& metrics, const StageRun& run)
+    : metrics_(metrics),
+      run_(run),
+      values_(static_cast<Index>(metrics.rows.size()), 0) {}
+
+void MetricsRecorder::operator()(VectorIn<double> parameters,
+                                 BatchIn<double> x) {
+  const Oracle& oracle = run_.oracle;
+  Batch<double> y(oracle.shape().observations, oracle.count());
+  Workspace work(run_.threads);
+  oracle.recipe().make<double>()->forward(x, oracle.given(), y, work);
+  values_.conservativeResize(Eigen::NoChange, values_.cols() + 1);
+  Vector<double> now(values_.rows());
+  metrics_.evaluate({run_.probe.iteration(), parameters, x, y, oracle}, now);
+  values_.rightCols(1) = now;
+}
+
+void keep_finite(std::map<std::string, Batch<double>>& arrays) {
+  for (auto& [name, array] : arrays)
+    array = array.unaryExpr([](double value) {
+      constexpr double kMost = std::numeric_limits<double>::max();
+      return std::isfinite(value) ? value : kMost;
+    });
+}
+
+}  // namespace physinv

@@ -1,0 +1,48 @@
+/// Numbers of a case's own beside its losses, at every point of the curve.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "suite/core/method.h"
+
+namespace physinv {
+
+/// The network and its estimates at a point of the curve.
+struct Snapshot {
+  Index iteration;
+  VectorIn<double> parameters;  ///< empty where there is no network
+  BatchIn<double> x, y;
+  const Oracle& oracle;
+};
+
+struct Metrics {
+  std::string name;  ///< enters the content key; empty: none
+  std::vector<std::string> rows;
+  std::function<void(const Snapshot&, VectorOut<double>)> evaluate;
+};
+
+/// Evaluates them as a stage runs.
+class MetricsRecorder {
+ public:
+  MetricsRecorder(const Metrics& metrics, const StageRun& run);
+
+  bool empty() const { return values_.rows() == 0; }
+  /// The estimates x (n columns) as they stand now.
+  void operator()(VectorIn<double> parameters, BatchIn<double> x);
+  /// Rows x points of the curve.
+  const Batch<double>& values() const { return values_; }
+
+ private:
+  const Metrics& metrics_;
+  const StageRun& run_;
+  Batch<double> values_;
+};
+
+/// Arrays of records hold finite numbers only: what is not becomes the largest
+/// double.
+void keep_finite(std::map<std::string, Batch<double>>& arrays);
+
+}  // namespace physinv
