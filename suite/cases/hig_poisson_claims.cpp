@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "optimizers/half_inverse/half_inverse.h"
+#include "suite/cases/hig_curve.h"
 #include "suite/cases/jpo_claims.h"
 #include "suite/cases/jpo_endings.h"
 
@@ -17,14 +18,12 @@ constexpr Index kCells = 64;
 
 Index points(const StageRecord& stage) { return stage.curve.points(); }
 
-/// Mean test loss at point k; what overflowed is infinite again.
+/// Mean test loss at point k.
 Level point(const StageRecord& stage, Index k) {
-  const auto at = static_cast<std::size_t>(k);
-  const double loss = stage.arrays.at("mean_loss")(0, k);
-  const bool finite = loss < std::numeric_limits<double>::max();
-  return {stage.curve.iteration[at],
-          stage.curve.seconds[at],
-          finite ? loss : std::numeric_limits<double>::infinity()};
+  const CurveRow loss{stage};
+  return {loss.updates(k),
+          stage.curve.seconds[static_cast<std::size_t>(k)],
+          loss(k)};
 }
 
 Level between(const Level& a, const Level& b, double share) {

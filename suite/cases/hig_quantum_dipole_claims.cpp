@@ -11,6 +11,7 @@
 #include <string>
 #include <utility>
 
+#include "suite/cases/hig_curve.h"
 #include "suite/cases/hig_report.h"
 #include "suite/cases/jpo_claims.h"
 #include "suite/cases/jpo_endings.h"
@@ -25,41 +26,25 @@ using Value = std::function<std::optional<double>(const StageRecord&)>;
 
 // ---- one run ----------------------------------------------------------------
 
-double updates(const StageRecord& s, Index k) {
-  return s.curve.iteration[static_cast<std::size_t>(k)];
+CurveRow low(const StageRecord& s) { return {s, "metrics", kLow}; }
+CurveRow high(const StageRecord& s) { return {s, "metrics", kHigh}; }
+
+/// Updates until the first point below `level`; infinite if there is none.
+double until_below(const CurveRow& values, double level) {
+  for (Index k = 0; k < values.points(); ++k)
+    if (values(k) < level) return values.updates(k);
+  return kInfinite;
 }
-
-/// One row of an array along the curve.
-struct Line {
-  const StageRecord& stage;
-  const char* array = "mean_loss";
-  Index row = 0;
-
-  Index points() const { return stage.curve.points(); }
-  double operator()(Index k) const {
-    const double v = stage.arrays.at(array)(row, k);
-    return v < std::numeric_limits<double>::max() ? v : kInfinite;
-  }
-  /// Updates until the first point below `level`; infinite if there is none.
-  double until_below(double level) const {
-    for (Index k = 0; k < points(); ++k)
-      if ((*this)(k) < level) return updates(stage, k);
-    return kInfinite;
-  }
-};
-
-Line low(const StageRecord& s) { return {s, "metrics", kLow}; }
-Line high(const StageRecord& s) { return {s, "metrics", kHigh}; }
 
 /// Test loss after so many updates; its logarithm is linear between points.
 Value loss_after(double count) {
   return [=](const StageRecord& s) -> std::optional<double> {
-    const Line loss{s};
+    const CurveRow loss{s};
     for (Index k = 0; k < loss.points(); ++k) {
-      const double here = updates(s, k);
+      const double here = loss.updates(k);
       if (here < count) continue;
       if (here == count || !std::isfinite(loss(k))) return loss(k);
-      const double before = updates(s, k - 1);
+      const double before = loss.updates(k - 1);
       const double share = (count - before) / (here - before);
       return std::exp((1 - share) * std::log(loss(k - 1)) +
                       share * std::log(loss(k)));
@@ -69,39 +54,38 @@ Value loss_after(double count) {
   };
 }
 
-double length(const StageRecord& s) { return updates(s, s.curve.points() - 1); }
-
 /// The value of runs of at least `enough` updates: in shorter ones only fast
 /// seeds would show.
 Value if_long(double enough, const Value& value) {
   return [=](const StageRecord& s) -> std::optional<double> {
-    if (length(s) < enough) return {};
+    if (s.curve.iteration.back() < enough) return {};
     return value(s);
   };
 }
 
 /// Updates until the test loss is below `level`, infinite if it never is.
 Value until(double level, double enough) {
-  return if_long(
-      enough, [=](const StageRecord& s) { return Line{s}.until_below(level); });
+  return if_long(enough, [=](const StageRecord& s) {
+    return until_below(CurveRow{s}, level);
+  });
 }
 
 /// Longest stretch of updates with a test loss between 0.4 and 0.56.
 std::optional<double> stalled(const StageRecord& s) {
-  const Line loss{s};
+  const CurveRow loss{s};
   double longest = 0, from = -1;
   for (Index k = 0; k < loss.points(); ++k) {
     const bool inside = loss(k) >= 0.4 && loss(k) <= 0.56;
     if (!inside) from = -1;
-    if (inside && from < 0) from = updates(s, k);
-    if (inside) longest = std::max(longest, updates(s, k) - from);
+    if (inside && from < 0) from = loss.updates(k);
+    if (inside) longest = std::max(longest, loss.updates(k) - from);
   }
   return longest;
 }
 
 /// Updates until HE < 0.1 over updates until LE < 0.1.
 std::optional<double> lag(const StageRecord& s) {
-  const double he = high(s).until_below(0.1), le = low(s).until_below(0.1);
+  const double he = until_below(high(s), 0.1), le = until_below(low(s), 0.1);
   if (he == kInfinite) return {};
   return he / le;
 }
@@ -120,9 +104,9 @@ std::optional<double> rise(const StageRecord& s) {
 /// Median test loss of the last three points of the curve.
 Value settled(double enough) {
   return [=](const StageRecord& s) -> std::optional<double> {
-    const Line loss{s};
+    const CurveRow loss{s};
     const Index last = loss.points() - 1;
-    if (last < 2 || updates(s, last) < enough) return {};
+    if (last < 2 || loss.updates(last) < enough) return {};
     return median({loss(last), loss(last - 1), loss(last - 2)});
   };
 }
@@ -316,7 +300,7 @@ ClaimResult cuts_matter_at_the_ends(const Results& results) {
 ClaimResult gauss_newton_is_stable(const Results& results) {
   Judge judge;
   const Value last = [](const StageRecord& s) {
-    return std::optional(Line{s}(s.curve.points() - 1));
+    return std::optional(CurveRow{s}.last());
   };
   judge.at_most("highest end", Seeds(results, "gn", last).highest(), 1)
       .report("median", Seeds(results, "gn", last).middle())
@@ -360,7 +344,7 @@ ClaimResult direct_control_has_no_floor(const Results& results) {
   const auto at_end = [](auto&& value) -> Value {
     return [=](const StageRecord& s) -> std::optional<double> {
       for (Index k = 0; k < s.curve.points(); ++k)
-        if (updates(s, k) >= 100) return value(s, k);
+        if (CurveRow{s}.updates(k) >= 100) return value(s, k);
       return {};
     };
   };
@@ -376,7 +360,7 @@ ClaimResult direct_control_has_no_floor(const Results& results) {
   });
   const auto in_float = [&](Formula row) {
     return at_end([=](const StageRecord& s, Index k) {
-      return Line{s, "metrics", row}(k);
+      return CurveRow{s, "metrics", row}(k);
     });
   };
   const auto of = [&](const char* method, const Value& value) {

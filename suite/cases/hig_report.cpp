@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "suite/cases/hig_curve.h"
 #include "suite/cases/jpo_endings.h"
 
 namespace physinv {
@@ -44,16 +45,6 @@ std::vector<const StageRecord*> stages_of(const Results& results,
   return found;
 }
 
-/// What overflowed is infinite again: records hold finite numbers only.
-double restored(double value) {
-  return value < std::numeric_limits<double>::max() ? value : kInfinite;
-}
-
-/// Mean test loss at point k.
-double at(const StageRecord& s, std::size_t k) {
-  return restored(s.arrays.at("mean_loss")(0, static_cast<Index>(k)));
-}
-
 /// What one seed's curve shows: a value at each point over three axes.
 struct Points {
   std::vector<double> updates, seconds, paper, value;
@@ -72,13 +63,14 @@ Points points_of(const StageRecord& stage,
   };
   const double updates = end(before.updates), seconds = end(before.seconds),
                paper = end(before.paper);
-  const Batch<double>& values = stage.arrays.at(array);
-  for (std::size_t k = 0; k < stage.curve.iteration.size(); ++k) {
-    const double iteration = stage.curve.iteration[k];
+  const CurveRow values{stage, array, row};
+  for (Index k = 0; k < values.points(); ++k) {
+    const double iteration = values.updates(k);
     before.updates.push_back(updates + iteration);
-    before.seconds.push_back(seconds + stage.curve.seconds[k]);
+    before.seconds.push_back(seconds +
+                             stage.curve.seconds[static_cast<std::size_t>(k)]);
     before.paper.push_back(paper + iteration * paper_update);
-    before.value.push_back(restored(values(row, static_cast<Index>(k))));
+    before.value.push_back(values(k));
   }
   return before;
 }
@@ -180,7 +172,7 @@ std::optional<double> test_loss(const StageRecord* stage, Index updates) {
     return diverged ? std::optional(kInfinite) : std::nullopt;
   const auto after = std::upper_bound(
       iteration.begin(), iteration.end(), static_cast<double>(updates));
-  return at(*stage, static_cast<std::size_t>(after - iteration.begin()) - 1);
+  return CurveRow{*stage}(static_cast<Index>(after - iteration.begin()) - 1);
 }
 
 std::optional<double> median_test_loss(const Results& results,
@@ -290,7 +282,7 @@ Table loss_table(const Results& results,
     std::vector<double> losses, seconds, updates, bytes;
     int diverged = 0;
     for (const auto* s : stages_of(results, experiment, line.method)) {
-      losses.push_back(at(*s, s->curve.iteration.size() - 1));
+      losses.push_back(CurveRow{*s}.last());
       updates.push_back(s->curve.iteration.back());
       const Cost cost = cost_of(*s);
       seconds.push_back(cost.seconds);
