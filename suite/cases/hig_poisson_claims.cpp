@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "optimizers/half_inverse/half_inverse.h"
-#include "suite/cases/hig_curve.h"
 #include "suite/cases/jpo_claims.h"
 #include "suite/cases/jpo_endings.h"
 
@@ -16,51 +15,25 @@ namespace {
 
 constexpr Index kCells = 64;
 
-Index points(const StageRecord& stage) { return stage.curve.points(); }
-
-/// Mean test loss at point k.
-Level point(const StageRecord& stage, Index k) {
-  const CurveRow loss{stage};
-  return {loss.updates(k),
-          stage.curve.seconds[static_cast<std::size_t>(k)],
-          loss(k)};
-}
-
-Level between(const Level& a, const Level& b, double share) {
-  const auto mix = [&](double u, double v) { return u + share * (v - u); };
-  return {mix(a.updates, b.updates),
-          mix(a.seconds, b.seconds),
-          std::exp(mix(std::log(a.loss), std::log(b.loss)))};
-}
-
 /// Lowest loss of a phase over the loss at its start.
 double lowest_ratio(const StageRecord& stage) {
+  const CurveRow loss{stage};
   double lowest = std::numeric_limits<double>::infinity();
-  for (Index k = 1; k < points(stage); ++k)
-    lowest = std::min(lowest, point(stage, k).loss);
-  return lowest / point(stage, 0).loss;
+  for (Index k = 1; k < loss.points(); ++k) lowest = std::min(lowest, loss(k));
+  return lowest / loss(0);
 }
 
 std::optional<double> ratio_at(const StageRecord& stage, double updates) {
-  const auto level = level_at(&stage, updates);
-  if (!level) return {};
-  return level->loss / point(stage, 0).loss;
+  const auto loss = loss_at(stage, updates);
+  if (!loss) return {};
+  return *loss / loss_point(stage, 0).loss;
 }
 
 /// Over its start, at the same number of seconds.
-std::optional<double> ratio_after_seconds(const StageRecord& stage,
-                                          double seconds) {
-  Level before = point(stage, 0);
-  for (Index k = 1; k < points(stage); ++k) {
-    const Level next = point(stage, k);
-    if (next.seconds >= seconds) {
-      const double share =
-          (seconds - before.seconds) / (next.seconds - before.seconds);
-      return between(before, next, share).loss / point(stage, 0).loss;
-    }
-    before = next;
-  }
-  return {};
+std::optional<double> ratio_after(const StageRecord& stage, double seconds) {
+  const auto level = level_after(stage, seconds);
+  if (!level) return {};
+  return level->loss / loss_point(stage, 0).loss;
 }
 
 std::string last_stage(const Runs& runs, std::string_view method) {
@@ -113,22 +86,22 @@ ClaimResult hig_levels(const Runs& runs) {
 
 ClaimResult adam_needs_more_updates(const Runs& runs) {
   Judge judge;
-  const auto to_reach = [&](double Level::*axis) {
+  const auto to_reach = [&](double LossPoint::*axis) {
     return runs.median_of_pairs(
         "hig-002-b16",
         "hig",
         "adam",
         "adam",
         [&](const auto& hig, const auto& adam) -> std::optional<double> {
-          const auto level = level_at(&hig, 60);
+          const auto level = loss_at(hig, 60);
           if (!level) return {};
-          const auto there = reaches(&adam, level->loss);
+          const auto there = reaches(&adam, *level);
           if (!there) return std::numeric_limits<double>::infinity();
           return (*there).*axis;
         });
   };
-  judge.at_least("Adam's updates", to_reach(&Level::updates), 6 * 60);
-  judge.report("Adam's seconds", to_reach(&Level::seconds))
+  judge.at_least("Adam's updates", to_reach(&LossPoint::updates), 6 * 60);
+  judge.report("Adam's seconds", to_reach(&LossPoint::seconds))
       .report(
           "HIG's seconds",
           runs.median_of(
@@ -203,9 +176,9 @@ ClaimResult adam_returns(const Runs& runs) {
         method,
         "again",
         [](const auto& adam, const auto& again) -> std::optional<double> {
-          const auto level = level_at(&again, 200);
-          if (!level) return {};
-          return level->loss / point(adam, points(adam) - 1).loss;
+          const auto loss = loss_at(again, 200);
+          if (!loss) return {};
+          return *loss / CurveRow{adam}.last();
         });
   };
   judge.at_most("Adam 200 updates after HIG over the level before HIG",
@@ -241,8 +214,7 @@ ClaimResult immediate_drop(const Runs& runs) {
     judge.report(
         "Adam for as many seconds",
         beside([](const auto& hig, const auto& adam) {
-          const auto ratio =
-              ratio_after_seconds(adam, point(hig, points(hig) - 1).seconds);
+          const auto ratio = ratio_after(adam, hig.curve.seconds.back());
           return ratio ? ratio : ratio_at(adam, double(adam.iterations));
         }));
   }
@@ -344,39 +316,6 @@ ClaimResult cost(const Runs& runs) {
 
 }  // namespace
 
-std::optional<Level> level_at(const StageRecord* stage, double updates) {
-  if (stage == nullptr) return {};
-  for (Index k = 0; k < points(*stage); ++k) {
-    const Level next = point(*stage, k);
-    if (next.updates < updates) continue;
-    if (next.updates == updates) return next;
-    const Level before = point(*stage, k - 1);
-    return between(
-        before,
-        next,
-        (updates - before.updates) / (next.updates - before.updates));
-  }
-  // A run that diverged counts as infinite from there on.
-  if (stage->stop == Stop::diverged)
-    return Level{updates, 0, std::numeric_limits<double>::infinity()};
-  return {};
-}
-
-std::optional<Level> reaches(const StageRecord* stage, double loss) {
-  if (stage == nullptr) return {};
-  for (Index k = 0; k < points(*stage); ++k) {
-    const Level next = point(*stage, k);
-    if (next.loss > loss) continue;
-    if (k == 0) return next;
-    const Level before = point(*stage, k - 1);
-    return between(
-        before,
-        next,
-        std::log(before.loss / loss) / std::log(before.loss / next.loss));
-  }
-  return {};
-}
-
 const StageRecord* Runs::one(std::string_view method,
                              std::string_view stage,
                              std::uint64_t seed) const {
@@ -410,11 +349,8 @@ std::optional<double> Runs::loss(std::string_view method,
                                  std::string_view stage) const {
   const std::string last =
       stage.empty() ? last_stage(*this, method) : std::string(stage);
-  return median_of(method, last, [&](const auto& s) -> std::optional<double> {
-    const auto level = level_at(&s, updates);
-    if (!level) return {};
-    return level->loss;
-  });
+  return median_of(
+      method, last, [&](const auto& s) { return loss_at(s, updates); });
 }
 
 std::optional<double> Runs::median_of_pairs(std::string_view method,
@@ -485,8 +421,8 @@ Table crossing_table(const Runs& runs) {
     std::optional<double> since;
     double last = 0;
     // Behind a first stretch in which every curve falls alike.
-    for (Index k = 0; !some.empty() && k < points(*some.front()); ++k) {
-      const double updates = point(*some.front(), k).updates;
+    for (Index k = 0; !some.empty() && k < some.front()->curve.points(); ++k) {
+      const double updates = CurveRow{*some.front()}.updates(k);
       const auto a = runs.loss(p.smaller, updates);
       const auto b = runs.loss(p.larger, updates);
       if (!a || !b || updates < 100) continue;

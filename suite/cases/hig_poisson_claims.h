@@ -1,5 +1,5 @@
-/// What the Poisson experiment's runs are asked: levels of the test loss,
-/// phases of chains, spectra, and the claims of HIG paper Figs. 3, 7, Table 4.
+/// What the Poisson experiment's runs are asked: phases of chains, spectra, and
+/// the claims of HIG paper Figs. 3, 7, Table 4.
 #pragma once
 
 #include <functional>
@@ -7,24 +7,13 @@
 #include <string_view>
 #include <vector>
 
+#include "suite/cases/hig_curve.h"
 #include "suite/results/report_model.h"
 #include "suite/results/results.h"
 
 namespace physinv::poisson {
 
 inline constexpr const char* kName = "hig/poisson";
-
-/// A point of a stage's curve, perhaps between two that were measured.
-struct Level {
-  double updates = 0, seconds = 0, loss = 0;
-};
-
-/// Mean test loss after `updates` of a stage; between measured points the
-/// logarithm is linear. Empty if the stage is not there or is shorter.
-std::optional<Level> level_at(const StageRecord* stage, double updates);
-
-/// Where a stage's loss first falls to `loss`. Empty if it does not.
-std::optional<Level> reaches(const StageRecord* stage, double loss);
 
 class Runs {
  public:

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <limits>
 #include <map>
@@ -36,22 +35,8 @@ double until_below(const CurveRow& values, double level) {
   return kInfinite;
 }
 
-/// Test loss after so many updates; its logarithm is linear between points.
-Value loss_after(double count) {
-  return [=](const StageRecord& s) -> std::optional<double> {
-    const CurveRow loss{s};
-    for (Index k = 0; k < loss.points(); ++k) {
-      const double here = loss.updates(k);
-      if (here < count) continue;
-      if (here == count || !std::isfinite(loss(k))) return loss(k);
-      const double before = loss.updates(k - 1);
-      const double share = (count - before) / (here - before);
-      return std::exp((1 - share) * std::log(loss(k - 1)) +
-                      share * std::log(loss(k)));
-    }
-    if (s.stop == Stop::diverged) return kInfinite;
-    return {};
-  };
+Value loss_after(double updates) {
+  return [=](const StageRecord& s) { return loss_at(s, updates); };
 }
 
 /// The value of runs of at least `enough` updates: in shorter ones only fast
