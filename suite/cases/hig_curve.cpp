@@ -1,5 +1,6 @@
 #include "suite/cases/hig_curve.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -38,6 +39,14 @@ std::optional<LossPoint> where(double LossPoint::*axis,
 double CurveRow::operator()(Index k) const {
   const double value = stage.arrays.at(array)(row, k);
   return value < std::numeric_limits<double>::max() ? value : kInfinite;
+}
+
+std::optional<Index> last_point(const StageRecord& stage, Index updates) {
+  const auto& iteration = stage.curve.iteration;
+  const auto last = static_cast<double>(updates);
+  if (iteration.back() < last) return {};
+  const auto after = std::upper_bound(iteration.begin(), iteration.end(), last);
+  return static_cast<Index>(after - iteration.begin()) - 1;
 }
 
 LossPoint loss_point(const StageRecord& stage, Index k) {

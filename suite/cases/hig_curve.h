@@ -23,6 +23,9 @@ struct CurveRow {
   double last() const { return (*this)(points() - 1); }
 };
 
+/// The last measured point at or before `updates`. Empty if the run is shorter.
+std::optional<Index> last_point(const StageRecord& stage, Index updates);
+
 /// A point of the mean test loss, perhaps between two that were measured: there
 /// the logarithm of the loss is linear.
 struct LossPoint {

@@ -4,14 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "suite/cases/hig_curve.h"
 #include "suite/cases/jpo_endings.h"
 
 namespace physinv {
 namespace {
-
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 /// A finished chain of training stages; null if it is not there.
 const CaseRecord* trained_case(const Results& results,
@@ -166,13 +165,10 @@ const StageRecord* trained_stage(const Results& results,
 
 std::optional<double> test_loss(const StageRecord* stage, Index updates) {
   if (stage == nullptr) return {};
-  const auto& iteration = stage->curve.iteration;
-  const bool diverged = stage->stop == Stop::diverged;
-  if (iteration.back() < static_cast<double>(updates))
-    return diverged ? std::optional(kInfinite) : std::nullopt;
-  const auto after = std::upper_bound(
-      iteration.begin(), iteration.end(), static_cast<double>(updates));
-  return CurveRow{*stage}(static_cast<Index>(after - iteration.begin()) - 1);
+  if (const auto k = last_point(*stage, updates)) return CurveRow{*stage}(*k);
+  if (stage->stop == Stop::diverged)
+    return std::numeric_limits<double>::infinity();
+  return {};
 }
 
 std::optional<double> median_test_loss(const Results& results,

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "suite/cases/hig_curve.h"
 #include "suite/cases/jpo_endings.h"
 
 namespace physinv::toy {
@@ -65,12 +66,9 @@ std::optional<double> metric(const StageRecord* stage,
                              Index row,
                              Index updates) {
   if (stage == nullptr || !stage->arrays.contains("metrics")) return {};
-  const auto& iteration = stage->curve.iteration;
-  if (iteration.back() < static_cast<double>(updates)) return {};
-  const auto after = std::upper_bound(
-      iteration.begin(), iteration.end(), static_cast<double>(updates));
-  return stage->arrays.at("metrics")(
-      row, static_cast<Index>(after - iteration.begin()) - 1);
+  const auto k = last_point(*stage, updates);
+  if (!k) return {};
+  return stage->arrays.at("metrics")(row, *k);
 }
 
 /// The first seed that a method was run with.
