@@ -19,10 +19,6 @@ std::optional<double> loss(const Results& results,
   return median_test_loss(results, kName, method, updates);
 }
 
-std::optional<double> ratio(std::optional<double> a, std::optional<double> b) {
-  return a && b ? std::optional(*a / *b) : std::nullopt;
-}
-
 /// The largest factor by which a curve rises above what it had reached.
 double largest_rise(const StageRecord& stage) {
   const auto& losses = stage.arrays.at("mean_loss");

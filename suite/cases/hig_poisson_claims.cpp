@@ -24,9 +24,7 @@ double lowest_ratio(const StageRecord& stage) {
 }
 
 std::optional<double> ratio_at(const StageRecord& stage, double updates) {
-  const auto loss = loss_at(stage, updates);
-  if (!loss) return {};
-  return *loss / loss_point(stage, 0).loss;
+  return ratio(loss_at(stage, updates), loss_point(stage, 0).loss);
 }
 
 /// Over its start, at the same number of seconds.
@@ -67,16 +65,15 @@ ClaimResult adam_levels(const Runs& runs) {
 ClaimResult hig_levels(const Runs& runs) {
   Judge judge;
   const auto early = runs.loss("hig-002-b16", 24);
-  const auto late = runs.loss("hig-002-b16", 60), adam = runs.loss("adam", 60);
+  const auto late = runs.loss("hig-002-b16", 60);
   judge.at_least("after 24", early, 55)
       .at_most("after 24", early, 95)
       .at_least("after 60", late, 40)
       .at_most("after 60", late, 62);
-  if (late && adam) {
-    judge.above("Adam over HIG at 60", *adam / *late, 2);
-  } else {
+  if (const auto over = ratio(runs.loss("adam", 60), late))
+    judge.above("Adam over HIG at 60", over, 2);
+  else
     judge.missing("Adam and HIG for 60 updates");
-  }
   return std::move(judge).result(
       "A2",
       "HIG (0.02, b = 16) from fresh weights: 55..95 after 24 updates, 40..62 "
@@ -170,16 +167,14 @@ ClaimResult hig_after_adam(const Runs& runs) {
 ClaimResult adam_returns(const Runs& runs) {
   Judge judge;
   const auto over_pretrained = [&](const char* method) {
-    return runs.median_of_pairs(
-        method,
-        "adam",
-        method,
-        "again",
-        [](const auto& adam, const auto& again) -> std::optional<double> {
-          const auto loss = loss_at(again, 200);
-          if (!loss) return {};
-          return *loss / CurveRow{adam}.last();
-        });
+    return runs.median_of_pairs(method,
+                                "adam",
+                                method,
+                                "again",
+                                [](const auto& adam, const auto& again) {
+                                  return ratio(loss_at(again, 200),
+                                               CurveRow{adam}.last());
+                                });
   };
   judge.at_most("Adam 200 updates after HIG over the level before HIG",
                 over_pretrained("adam-hig-adam"),
@@ -214,8 +209,8 @@ ClaimResult immediate_drop(const Runs& runs) {
     judge.report(
         "Adam for as many seconds",
         beside([](const auto& hig, const auto& adam) {
-          const auto ratio = ratio_after(adam, hig.curve.seconds.back());
-          return ratio ? ratio : ratio_at(adam, double(adam.iterations));
+          const auto after = ratio_after(adam, hig.curve.seconds.back());
+          return after ? after : ratio_at(adam, double(adam.iterations));
         }));
   }
   if (best) judge.below("lowest of all over start", *best, 0.9);
@@ -301,8 +296,8 @@ ClaimResult cost(const Runs& runs) {
     const auto h = runs.median_of(hig, "hig", value);
     judge.report(fmt::format("Adam {}", what), a)
         .report(fmt::format("HIG {}", what), h);
-    if (a && h)
-      judge.above(fmt::format("{}, HIG over Adam", what), *h / *a, 100);
+    if (const auto over = ratio(h, a))
+      judge.above(fmt::format("{}, HIG over Adam", what), over, 100);
   };
   compare("seconds", seconds);
   judge.report("Adam MB", runs.median_of("adam", "adam", bytes))

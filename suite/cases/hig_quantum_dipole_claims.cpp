@@ -258,22 +258,18 @@ ClaimResult cuts_matter_at_the_ends(const Results& results) {
     return Seeds(results, method, loss_after(256)).middle();
   };
   Judge judge;
-  const auto coarse = after("hig-b16-eta05-tau2");
   const auto middle = after("hig-b16-eta05-tau3");
-  const auto fine = after("hig"), finest = after("hig-b16-eta05-tau6");
   judge.at_most("tau 1e-3", middle, 5e-3)
       .report("1e-4", after("hig-b16-eta05-tau4"));
-  if (coarse && middle) {
-    judge.above("tau 1e-2 over 1e-3", *coarse / *middle, 10);
-  } else {
+  if (const auto coarse = ratio(after("hig-b16-eta05-tau2"), middle))
+    judge.above("tau 1e-2 over 1e-3", coarse, 10);
+  else
     judge.missing("tau 1e-2 and 1e-3");
-  }
-  if (fine && finest) {
-    judge.at_most("tau 1e-6 over 1e-5", *finest / *fine, 5)
-        .at_least("tau 1e-6 over 1e-5", *finest / *fine, 0.2);
-  } else {
+  if (const auto finest = ratio(after("hig-b16-eta05-tau6"), after("hig")))
+    judge.at_most("tau 1e-6 over 1e-5", finest, 5)
+        .at_least("tau 1e-6 over 1e-5", finest, 0.2);
+  else
     judge.missing("tau 1e-6 and 1e-5");
-  }
   return std::move(judge).result(
       "A6",
       "After 256 updates HIG does well for tau 1e-3, ten times worse for "

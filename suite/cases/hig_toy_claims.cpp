@@ -27,9 +27,7 @@ class Judged {
   }
   /// Of the medians.
   std::optional<double> ratio(const char* a, const char* b) const {
-    const auto x = median(a), y = median(b);
-    if (!x || !y) return {};
-    return *x / *y;
+    return physinv::ratio(median(a), median(b));
   }
   std::vector<double> ends(const char* method) const {
     std::vector<double> losses;
@@ -152,10 +150,8 @@ ClaimResult adam_ignores_the_second_component(const Results& results) {
 
 ClaimResult price_of_ill_conditioning(const Results& results) {
   const Judged well(results, kWell), ill(results, kIll);
-  const auto factor = [&](const char* method) -> std::optional<double> {
-    const auto a = ill.median(method), b = well.median(method);
-    if (!a || !b) return {};
-    return *a / *b;
+  const auto factor = [&](const char* method) {
+    return ratio(ill.median(method), well.median(method));
   };
   Judge judge;
   judge.at_least("HIG", factor("hig"), 5)
