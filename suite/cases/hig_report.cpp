@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "suite/cases/hig_curve.h"
 #include "suite/cases/jpo_endings.h"
@@ -51,27 +52,27 @@ struct Points {
 
 using Axis = std::vector<double> Points::*;
 
-/// One row of an array along the curve, behind `before`.
-Points points_of(const StageRecord& stage,
+/// One row of an array along the stages, each behind the one before.
+Points points_of(std::span<const StageRecord> stages,
                  const char* array,
                  Index row,
-                 double paper_update,
-                 Points before = {}) {
+                 double paper_update) {
+  Points all;
   const auto end = [](const std::vector<double>& v) {
     return v.empty() ? 0.0 : v.back();
   };
-  const double updates = end(before.updates), seconds = end(before.seconds),
-               paper = end(before.paper);
-  const CurveRow values{stage, array, row};
-  for (Index k = 0; k < values.points(); ++k) {
-    const double iteration = values.updates(k);
-    before.updates.push_back(updates + iteration);
-    before.seconds.push_back(seconds +
-                             stage.curve.seconds[static_cast<std::size_t>(k)]);
-    before.paper.push_back(paper + iteration * paper_update);
-    before.value.push_back(values(k));
+  for (const StageRecord& stage : stages) {
+    const CurveRow values{stage, array, row};
+    const double updates = end(all.updates), seconds = end(all.seconds);
+    for (Index k = 0; k < values.points(); ++k) {
+      all.updates.push_back(updates + values.updates(k));
+      all.seconds.push_back(seconds +
+                            stage.curve.seconds[static_cast<std::size_t>(k)]);
+      all.paper.push_back(all.updates.back() * paper_update);
+      all.value.push_back(values(k));
+    }
   }
-  return before;
+  return all;
 }
 
 /// Median and range over the seeds at each point that all of them have.
@@ -99,36 +100,53 @@ Series median_series(const std::vector<Points>& seeds,
   return s;
 }
 
-Panel panel(const char* x_label, std::string y_label, bool y_log) {
+Panel panel(const char* x_label, std::string y_label) {
   return {.x_label = x_label,
           .y_label = std::move(y_label),
           .x_log = true,
-          .y_log = y_log};
+          .y_log = true};
 }
 
-/// `points` gives what one seed of a line shows.
-template <class F>
-Figure loss_panels(const std::vector<MethodLine>& lines, F&& points) {
-  const std::pair<const char*, Axis> axes[] = {
-      {"updates", &Points::updates},
-      {"seconds", &Points::seconds},
-      {"seconds by the paper's clock", &Points::paper}};
+enum class Stages { last, all };
+
+std::vector<Points> losses_of(const Results& results,
+                              std::string_view experiment,
+                              const MethodLine& line,
+                              Stages which) {
+  std::vector<Points> seeds;
+  for (const CaseRecord* c : chains_of(results, experiment, line.method)) {
+    const std::span<const StageRecord> chain = c->stages;
+    seeds.push_back(points_of(which == Stages::all ? chain : chain.last(1),
+                              "mean_loss",
+                              0,
+                              line.paper_update));
+  }
+  return seeds;
+}
+
+/// A panel for each axis; the paper's clock is known for some lines only.
+Figure loss_panels(const Results& results,
+                   std::string_view experiment,
+                   const std::vector<MethodLine>& lines,
+                   Stages which) {
+  Panel updates = panel("updates", "test loss"),
+        seconds = panel("seconds", "test loss"),
+        paper = panel("seconds by the paper's clock", "test loss");
+  for (const MethodLine& line : lines) {
+    const auto seeds = losses_of(results, experiment, line, which);
+    if (seeds.empty()) continue;
+    updates.series.push_back(median_series(seeds, line, &Points::updates));
+    seconds.series.push_back(median_series(seeds, line, &Points::seconds));
+    if (line.paper_update > 0)
+      paper.series.push_back(median_series(seeds, line, &Points::paper));
+  }
   Figure figure{
+      .panels = {std::move(updates), std::move(seconds)},
       .columns = 2,
       .note =
           "Median over seeds, band: range. Test losses are not finite "
           "where a line ends early."};
-  for (const auto& [label, axis] : axes) {
-    Panel one = panel(label, "test loss", true);
-    for (const MethodLine& line : lines) {
-      if (axis == &Points::paper && line.paper_update == 0) continue;
-      const std::vector<Points> seeds = points(line);
-      if (!seeds.empty())
-        one.series.push_back(median_series(seeds, line, axis));
-    }
-    if (axis != &Points::paper || !one.series.empty())
-      figure.panels.push_back(std::move(one));
-  }
+  if (!paper.series.empty()) figure.panels.push_back(std::move(paper));
   return figure;
 }
 
@@ -197,13 +215,7 @@ Figure loss_figure(const Results& results,
                    std::string id,
                    std::string title,
                    std::string source) {
-  const auto points = [&](const MethodLine& line) {
-    std::vector<Points> seeds;
-    for (const auto* s : stages_of(results, experiment, line.method))
-      seeds.push_back(points_of(*s, "mean_loss", 0, line.paper_update));
-    return seeds;
-  };
-  return named(loss_panels(lines, points),
+  return named(loss_panels(results, experiment, lines, Stages::last),
                std::move(id),
                std::move(title),
                std::move(source));
@@ -215,18 +227,7 @@ Figure chain_figure(const Results& results,
                     std::string id,
                     std::string title,
                     std::string source) {
-  const auto points = [&](const MethodLine& line) {
-    std::vector<Points> seeds;
-    for (const CaseRecord* c : chains_of(results, experiment, line.method)) {
-      Points joined;
-      for (const StageRecord& s : c->stages)
-        joined =
-            points_of(s, "mean_loss", 0, line.paper_update, std::move(joined));
-      seeds.push_back(std::move(joined));
-    }
-    return seeds;
-  };
-  return named(loss_panels(lines, points),
+  return named(loss_panels(results, experiment, lines, Stages::all),
                std::move(id),
                std::move(title),
                std::move(source));
@@ -240,12 +241,12 @@ Figure metric_figure(const Results& results,
                      std::string id,
                      std::string title,
                      std::string source) {
-  Panel one = panel("updates", std::move(y_label), true);
+  Panel one = panel("updates", std::move(y_label));
   for (const MethodLine& line : lines) {
     std::vector<Points> seeds;
     for (const auto* s : stages_of(results, experiment, line.method))
       if (s->arrays.contains("metrics"))
-        seeds.push_back(points_of(*s, "metrics", row, 0));
+        seeds.push_back(points_of({s, 1}, "metrics", row, 0));
     if (!seeds.empty())
       one.series.push_back(median_series(seeds, line, &Points::updates));
   }
