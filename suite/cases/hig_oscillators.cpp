@@ -171,7 +171,7 @@ std::vector<MethodLine> sweep(const std::string& beginning,
 }
 
 /// One panel per rule: test loss over updates, for each rate and batch size.
-Figure grid_figure(const Results& results,
+Figure grid_figure(const LearningCurves& curves,
                    const std::vector<Grid>& grids,
                    const char* id,
                    const char* source) {
@@ -186,7 +186,7 @@ Figure grid_figure(const Results& results,
         lines.push_back({grid_id(grid.rule, rate, b),
                          fmt::format("{} / {}", rate, b),
                          fmt::format("{} {}", rate, b)});
-    Panel panel = loss_figure(results, kName, lines, "", "", "").panels.front();
+    Panel panel = curves.panel(lines);
     panel.title = grid.rule;
     if (!panel.series.empty()) figure.panels.push_back(std::move(panel));
   }
@@ -220,46 +220,37 @@ Section report(const Results& results, const Published& published) {
                       {"kappa-m05", "HIG, b = 64", "table3/hig/b=64"},
                       {"hig", "HIG, b = 128", "table3/hig/b=128"}},
                      "Table 3"),
-          loss_table(results, kName, present(results, kName, all))}};
-  const auto add = [&](Figure figure) {
-    if (!figure.panels.empty() && !figure.panels.front().series.empty())
-      section.figures.push_back(std::move(figure));
-  };
-  const auto curves = [&](const std::vector<MethodLine>& lines,
-                          const char* id,
-                          const char* title,
-                          const char* source) {
-    add(loss_figure(results, kName, lines, id, title, source));
-  };
-  curves(rules(published), "fig2b", "Learning curves", "Fig. 2b");
-  curves({{"hig-b32", "HIG, b = 32", "na"},
-          {"kappa-m05", "HIG, b = 64", "supervised"},
-          {"hig", "HIG, b = 128", "jpo"},
-          {"adam-b256", "Adam, b = 256", "rmsprop"},
-          {"adam", "Adam, b = 512", "gd"},
-          {"adam-b1024", "Adam, b = 1024", "adadelta"},
-          {"gn-b32", "GN, b = 32", "gn-b32"},
-          {"kappa-m1", "GN, b = 64", "gn-b64"},
-          {"gn", "GN, b = 128", "bfgs"}},
-         "fig2c",
-         "Batch sizes",
-         "Fig. 2c");
-  add(grid_figure(
-      results, {kGrids.begin(), kGrids.end() - 1}, "fig5", "Fig. 5"));
-  add(grid_figure(results, {kGrids.back()}, "fig6", "Fig. 6"));
-  curves(sweep("beta-", {{"kappa-m05", "beta-0", "jpo"}}),
-         "fig12a",
-         "Exponent beta of the prefactor",
-         "Fig. 12a");
-  curves(sweep("kappa-"), "fig12b", "Exponent kappa", "Fig. 12b");
-  curves(sweep("hig-tau", {{"kappa-m05", "hig-tau6", "jpo"}}),
-         "fig13a",
-         "HIG: truncation tau",
-         "Fig. 13");
-  curves(sweep("gn-tau", {{"kappa-m1", "gn-tau6", "bfgs"}}),
-         "fig13b",
-         "Gauss-Newton: truncation tau",
-         "Fig. 13");
+          loss_table(results, kName, all)}};
+  LearningCurves curves(results, section);
+  curves.losses(rules(published), "fig2b", "Learning curves", "Fig. 2b");
+  curves.losses({{"hig-b32", "HIG, b = 32", "na"},
+                 {"kappa-m05", "HIG, b = 64", "supervised"},
+                 {"hig", "HIG, b = 128", "jpo"},
+                 {"adam-b256", "Adam, b = 256", "rmsprop"},
+                 {"adam", "Adam, b = 512", "gd"},
+                 {"adam-b1024", "Adam, b = 1024", "adadelta"},
+                 {"gn-b32", "GN, b = 32", "gn-b32"},
+                 {"kappa-m1", "GN, b = 64", "gn-b64"},
+                 {"gn", "GN, b = 128", "bfgs"}},
+                "fig2c",
+                "Batch sizes",
+                "Fig. 2c");
+  curves.add(grid_figure(
+      curves, {kGrids.begin(), kGrids.end() - 1}, "fig5", "Fig. 5"));
+  curves.add(grid_figure(curves, {kGrids.back()}, "fig6", "Fig. 6"));
+  curves.losses(sweep("beta-", {{"kappa-m05", "beta-0", "jpo"}}),
+                "fig12a",
+                "Exponent beta of the prefactor",
+                "Fig. 12a");
+  curves.losses(sweep("kappa-"), "fig12b", "Exponent kappa", "Fig. 12b");
+  curves.losses(sweep("hig-tau", {{"kappa-m05", "hig-tau6", "jpo"}}),
+                "fig13a",
+                "HIG: truncation tau",
+                "Fig. 13");
+  curves.losses(sweep("gn-tau", {{"kappa-m1", "gn-tau6", "bfgs"}}),
+                "fig13b",
+                "Gauss-Newton: truncation tau",
+                "Fig. 13");
   section.claims = oscillator_claims(results);
   return section;
 }

@@ -149,9 +149,7 @@ Section report(const Results& results, const Published& published) {
       .experiment = poisson::kName,
       .title = "Poisson's equation",
       .paper = "hig",
-      .tables = {loss_table(results,
-                            poisson::kName,
-                            present(results, poisson::kName, all)),
+      .tables = {loss_table(results, poisson::kName, all),
                  cost_table(results,
                             poisson::kName,
                             published,
@@ -165,10 +163,7 @@ Section report(const Results& results, const Published& published) {
                  poisson::spectrum_table(runs),
                  poisson::crossing_table(runs)},
       .claims = poisson::claims(runs)};
-  const auto add = [&](Figure figure) {
-    if (!figure.panels.empty() && !figure.panels.front().series.empty())
-      section.figures.push_back(std::move(figure));
-  };
+  LearningCurves curves(results, section);
   const auto some = [&](std::initializer_list<const char*> ids) {
     std::vector<MethodLine> lines;
     for (const MethodLine& line : kLearning)
@@ -176,45 +171,31 @@ Section report(const Results& results, const Published& published) {
         if (line.method == id) lines.push_back(line);
     return lines;
   };
-  const auto learning = [&](std::initializer_list<const char*> ids,
-                            const char* id,
-                            const char* title,
-                            const char* source) {
-    add(loss_figure(results, poisson::kName, some(ids), id, title, source));
-  };
-  learning({"adam",
-            "adam-3e-4",
-            "adam-1e-3",
-            "hig-001-b64",
-            "hig-002-b64",
-            "hig-005-b64"},
-           "fig3b",
-           "Learning curves, b = 64",
-           "Figs. 3b, 7a");
-  learning({"adam",
-            "hig-002-b16",
-            "hig-002-b64",
-            "gn-002-b16",
-            "gn-1-b16",
-            "gn-002-b64",
-            "gn-1-b64",
-            "hig-b4",
-            "gn-b4"},
-           "fig7a",
-           "Small batches, and Gauss-Newton beside HIG",
-           "Fig. 7a");
-  add(loss_figure(results,
-                  poisson::kName,
-                  present(results, poisson::kName, kTurns),
-                  "fig3c",
-                  "From weights that Adam has trained",
-                  "Fig. 3c"));
-  add(chain_figure(results,
-                   poisson::kName,
-                   present(results, poisson::kName, kReturns),
-                   "fig7b",
-                   "Adam, then HIG, then Adam again",
-                   "Fig. 7b"));
+  curves.losses(some({"adam",
+                      "adam-3e-4",
+                      "adam-1e-3",
+                      "hig-001-b64",
+                      "hig-002-b64",
+                      "hig-005-b64"}),
+                "fig3b",
+                "Learning curves, b = 64",
+                "Figs. 3b, 7a");
+  curves.losses(some({"adam",
+                      "hig-002-b16",
+                      "hig-002-b64",
+                      "gn-002-b16",
+                      "gn-1-b16",
+                      "gn-002-b64",
+                      "gn-1-b64",
+                      "hig-b4",
+                      "gn-b4"}),
+                "fig7a",
+                "Small batches, and Gauss-Newton beside HIG",
+                "Fig. 7a");
+  curves.losses(
+      kTurns, "fig3c", "From weights that Adam has trained", "Fig. 3c");
+  curves.chains(
+      kReturns, "fig7b", "Adam, then HIG, then Adam again", "Fig. 7b");
   return section;
 }
 

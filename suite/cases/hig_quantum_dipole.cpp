@@ -215,34 +215,8 @@ const std::vector<CostLine> kCosts = {
     {"gn", "Gauss-Newton b=16", ""},
     {"adam", "Adam b=16", ""}};
 
-void add(Section& section, Figure figure) {
-  if (!figure.panels.empty() && !figure.panels.front().series.empty())
-    section.figures.push_back(std::move(figure));
-}
-
-/// The learning curves of both grids.
-void add_grids(Section& section,
-               const Results& results,
-               const std::vector<MethodLine>& adam,
-               const std::vector<MethodLine>& hig,
-               std::pair<const char*, const char*> ids,
-               std::pair<const char*, const char*> sources) {
-  const char* name = section.experiment.c_str();
-  add(section,
-      loss_figure(results,
-                  name,
-                  present(results, name, adam),
-                  ids.first,
-                  "Adam: batch size and rate",
-                  sources.first));
-  add(section,
-      loss_figure(results,
-                  name,
-                  present(results, name, hig),
-                  ids.second,
-                  "HIG: batch size, rate and truncation",
-                  sources.second));
-}
+constexpr const char* kAdamGrid = "Adam: batch size and rate";
+constexpr const char* kHigGrid = "HIG: batch size, rate and truncation";
 
 std::vector<MethodLine> joined(std::vector<MethodLine> a,
                                const std::vector<MethodLine>& b) {
@@ -261,61 +235,41 @@ Section dense_report(const Results& results, const Published& published) {
       .experiment = kDense,
       .title = "Quantum dipole",
       .paper = "hig",
-      .tables = {loss_table(results, kDense, present(results, kDense, all)),
+      .tables = {loss_table(results, kDense, all),
                  cost_table(results, kDense, published, kCosts, "Table 5")},
       .claims = dipole::dense_claims(results)};
-  const auto shown = [&](const auto& lines) {
-    return present(results, kDense, lines);
-  };
-  add(section,
-      loss_figure(results,
-                  kDense,
-                  shown(kRates),
-                  "fig4b",
-                  "Learning curves for several rates",
-                  "Fig. 4b"));
-  add(section,
-      metric_figure(results,
-                    kDense,
-                    shown(kMain),
-                    dipole::kLow,
-                    "low-energy loss",
-                    "fig4c_low",
-                    "First excited state alone",
-                    "Fig. 4c"));
-  add(section,
-      metric_figure(results,
-                    kDense,
-                    shown(kMain),
-                    dipole::kHigh,
-                    "high-energy loss",
-                    "fig4c_high",
-                    "Second excited state alone",
-                    "Fig. 4c"));
-  add_grids(
-      section, results, adam, hig, {"fig8", "fig9"}, {"Fig. 8", "Fig. 9"});
-  add(section,
-      chain_figure(results,
-                   kDense,
-                   shown(kRules),
-                   "rules",
-                   "Update rules, and Adam followed by HIG",
-                   ""));
+  LearningCurves curves(results, section);
+  curves.losses(
+      kRates, "fig4b", "Learning curves for several rates", "Fig. 4b");
+  curves.metric(kMain,
+                dipole::kLow,
+                "low-energy loss",
+                "fig4c_low",
+                "First excited state alone",
+                "Fig. 4c");
+  curves.metric(kMain,
+                dipole::kHigh,
+                "high-energy loss",
+                "fig4c_high",
+                "Second excited state alone",
+                "Fig. 4c");
+  curves.losses(adam, "fig8", kAdamGrid, "Fig. 8");
+  curves.losses(hig, "fig9", kHigGrid, "Fig. 9");
+  curves.chains(kRules, "rules", "Update rules, and Adam followed by HIG", "");
   return section;
 }
 
 Section conv_report(const Results& results, const Published&) {
   const auto adam = lines_of(conv_adam()), hig = lines_of(conv_hig());
-  Section section{.experiment = kConvolutional,
-                  .title = "Quantum dipole, convolutional network",
-                  .paper = "hig",
-                  .tables = {loss_table(
-                      results,
-                      kConvolutional,
-                      present(results, kConvolutional, joined(hig, adam)))},
-                  .claims = {dipole::convolutions_keep_the_order(results)}};
-  add_grids(
-      section, results, adam, hig, {"fig10", "fig11"}, {"Fig. 10", "Fig. 11"});
+  Section section{
+      .experiment = kConvolutional,
+      .title = "Quantum dipole, convolutional network",
+      .paper = "hig",
+      .tables = {loss_table(results, kConvolutional, joined(hig, adam))},
+      .claims = {dipole::convolutions_keep_the_order(results)}};
+  LearningCurves curves(results, section);
+  curves.losses(adam, "fig10", kAdamGrid, "Fig. 10");
+  curves.losses(hig, "fig11", kHigGrid, "Fig. 11");
   return section;
 }
 

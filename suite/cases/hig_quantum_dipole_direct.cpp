@@ -46,41 +46,32 @@ Method method(std::string id, double kappa) {
                                                  .evaluate = in_float}})}};
 }
 
+const std::vector<MethodLine> kLines = {
+    {"hig", "HIG", "jpo"},
+    {"gn", "Gauss-Newton", "bfgs"},
+    {"hig-f32", "HIG, float", "gd"},
+    {"gn-f32", "Gauss-Newton, float", "supervised"}};
+
 Section report(const Results& results, const Published&) {
-  const auto lines = present(results,
-                             kName,
-                             {{"hig", "HIG", "jpo"},
-                              {"gn", "Gauss-Newton", "bfgs"},
-                              {"hig-f32", "HIG, float", "gd"},
-                              {"gn-f32", "Gauss-Newton, float", "supervised"}});
   Section section{.experiment = kName,
                   .title = "Quantum dipole, control without a network",
                   .paper = "hig",
-                  .tables = {loss_table(results, kName, lines)},
+                  .tables = {loss_table(results, kName, kLines)},
                   .claims = {dipole::direct_control_has_no_floor(results)}};
-  if (lines.empty()) return section;
-  section.figures = {loss_figure(results,
-                                 kName,
-                                 lines,
-                                 "loss",
-                                 "Loss, evaluated in double",
-                                 "Fig. 4b"),
-                     metric_figure(results,
-                                   kName,
-                                   lines,
-                                   dipole::kOverlap,
-                                   "1 - |<t, psi>|^2 in float",
-                                   "overlap",
-                                   "The formula that cancels, in float",
-                                   "Fig. 4b"),
-                     metric_figure(results,
-                                   kName,
-                                   lines,
-                                   dipole::kRest,
-                                   "|psi - <t, psi> t|^2 in float",
-                                   "rest",
-                                   "The formula that does not cancel, in float",
-                                   "Fig. 4b")};
+  LearningCurves curves(results, section);
+  curves.losses(kLines, "loss", "Loss, evaluated in double", "Fig. 4b");
+  curves.metric(kLines,
+                dipole::kOverlap,
+                "1 - |<t, psi>|^2 in float",
+                "overlap",
+                "The formula that cancels, in float",
+                "Fig. 4b");
+  curves.metric(kLines,
+                dipole::kRest,
+                "|psi - <t, psi> t|^2 in float",
+                "rest",
+                "The formula that does not cancel, in float",
+                "Fig. 4b");
   return section;
 }
 

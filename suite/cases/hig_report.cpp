@@ -100,12 +100,16 @@ Series median_series(const std::vector<Points>& seeds,
   return s;
 }
 
-Panel panel(const char* x_label, std::string y_label) {
+Panel over(const char* x_label, std::string y_label) {
   return {.x_label = x_label,
           .y_label = std::move(y_label),
           .x_log = true,
           .y_log = true};
 }
+
+constexpr const char* kLossNote =
+    "Median over seeds, band: range. Test losses are not finite where a line "
+    "ends early.";
 
 enum class Stages { last, all };
 
@@ -125,13 +129,13 @@ std::vector<Points> losses_of(const Results& results,
 }
 
 /// A panel for each axis; the paper's clock is known for some lines only.
-Figure loss_panels(const Results& results,
-                   std::string_view experiment,
-                   const std::vector<MethodLine>& lines,
-                   Stages which) {
-  Panel updates = panel("updates", "test loss"),
-        seconds = panel("seconds", "test loss"),
-        paper = panel("seconds by the paper's clock", "test loss");
+std::vector<Panel> loss_panels(const Results& results,
+                               std::string_view experiment,
+                               const std::vector<MethodLine>& lines,
+                               Stages which) {
+  Panel updates = over("updates", "test loss"),
+        seconds = over("seconds", "test loss"),
+        paper = over("seconds by the paper's clock", "test loss");
   for (const MethodLine& line : lines) {
     const auto seeds = losses_of(results, experiment, line, which);
     if (seeds.empty()) continue;
@@ -140,24 +144,9 @@ Figure loss_panels(const Results& results,
     if (line.paper_update > 0)
       paper.series.push_back(median_series(seeds, line, &Points::paper));
   }
-  Figure figure{
-      .panels = {std::move(updates), std::move(seconds)},
-      .columns = 2,
-      .note =
-          "Median over seeds, band: range. Test losses are not finite "
-          "where a line ends early."};
-  if (!paper.series.empty()) figure.panels.push_back(std::move(paper));
-  return figure;
-}
-
-Figure named(Figure figure,
-             std::string id,
-             std::string title,
-             std::string source) {
-  figure.id = std::move(id);
-  figure.title = std::move(title);
-  figure.source = std::move(source);
-  return figure;
+  std::vector<Panel> panels = {std::move(updates), std::move(seconds)};
+  if (!paper.series.empty()) panels.push_back(std::move(paper));
+  return panels;
 }
 
 /// What an update took, and the bytes that the stage holds.
@@ -200,62 +189,60 @@ std::optional<double> median_test_loss(const Results& results,
   return median(losses);
 }
 
-std::vector<MethodLine> present(const Results& results,
-                                std::string_view experiment,
-                                std::vector<MethodLine> lines) {
-  std::erase_if(lines, [&](const MethodLine& line) {
-    return stages_of(results, experiment, line.method).empty();
-  });
-  return lines;
+void LearningCurves::losses(const std::vector<MethodLine>& lines,
+                            std::string id,
+                            std::string title,
+                            std::string source) {
+  add({.id = std::move(id),
+       .title = std::move(title),
+       .source = std::move(source),
+       .panels =
+           loss_panels(results_, section_.experiment, lines, Stages::last),
+       .note = kLossNote});
 }
 
-Figure loss_figure(const Results& results,
-                   std::string_view experiment,
-                   const std::vector<MethodLine>& lines,
-                   std::string id,
-                   std::string title,
-                   std::string source) {
-  return named(loss_panels(results, experiment, lines, Stages::last),
-               std::move(id),
-               std::move(title),
-               std::move(source));
+void LearningCurves::chains(const std::vector<MethodLine>& lines,
+                            std::string id,
+                            std::string title,
+                            std::string source) {
+  add({.id = std::move(id),
+       .title = std::move(title),
+       .source = std::move(source),
+       .panels = loss_panels(results_, section_.experiment, lines, Stages::all),
+       .note = kLossNote});
 }
 
-Figure chain_figure(const Results& results,
-                    std::string_view experiment,
-                    const std::vector<MethodLine>& lines,
-                    std::string id,
-                    std::string title,
-                    std::string source) {
-  return named(loss_panels(results, experiment, lines, Stages::all),
-               std::move(id),
-               std::move(title),
-               std::move(source));
-}
-
-Figure metric_figure(const Results& results,
-                     std::string_view experiment,
-                     const std::vector<MethodLine>& lines,
-                     Index row,
-                     std::string y_label,
-                     std::string id,
-                     std::string title,
-                     std::string source) {
-  Panel one = panel("updates", std::move(y_label));
+void LearningCurves::metric(const std::vector<MethodLine>& lines,
+                            Index row,
+                            std::string y_label,
+                            std::string id,
+                            std::string title,
+                            std::string source) {
+  Panel one = over("updates", std::move(y_label));
   for (const MethodLine& line : lines) {
     std::vector<Points> seeds;
-    for (const auto* s : stages_of(results, experiment, line.method))
+    for (const auto* s : stages_of(results_, section_.experiment, line.method))
       if (s->arrays.contains("metrics"))
         seeds.push_back(points_of({s, 1}, "metrics", row, 0));
     if (!seeds.empty())
       one.series.push_back(median_series(seeds, line, &Points::updates));
   }
-  return named({.panels = {std::move(one)},
-                .columns = 1,
-                .note = "Median over seeds, band: range."},
-               std::move(id),
-               std::move(title),
-               std::move(source));
+  add({.id = std::move(id),
+       .title = std::move(title),
+       .source = std::move(source),
+       .panels = {std::move(one)},
+       .columns = 1,
+       .note = "Median over seeds, band: range."});
+}
+
+Panel LearningCurves::panel(const std::vector<MethodLine>& lines) const {
+  return loss_panels(results_, section_.experiment, lines, Stages::last)
+      .front();
+}
+
+void LearningCurves::add(Figure figure) {
+  if (!figure.panels.empty() && !figure.panels.front().series.empty())
+    section_.figures.push_back(std::move(figure));
 }
 
 Table loss_table(const Results& results,
@@ -286,23 +273,22 @@ Table loss_table(const Results& results,
       bytes.push_back(cost.bytes);
       diverged += s->stop == Stop::diverged;
     }
-    TableRow row{.label = line.label};
-    if (losses.empty()) {
-      row.cells.assign(table.columns.size(), Cell{.text = "not run"});
-    } else {
-      const auto number = [](double v) {
-        return Cell{.text = std::isfinite(v) ? fmt::format("{:.3g}", v)
-                                             : "not finite"};
-      };
-      row.cells = {number(median(updates)),
+    if (losses.empty()) continue;
+    const auto number = [](double v) {
+      return Cell{.text = std::isfinite(v) ? fmt::format("{:.3g}", v)
+                                           : "not finite"};
+    };
+    const auto [lowest, highest] =
+        std::minmax_element(losses.begin(), losses.end());
+    table.rows.push_back(
+        {.label = line.label,
+         .cells = {number(median(updates)),
                    number(median(losses)),
-                   number(*std::min_element(losses.begin(), losses.end())),
-                   number(*std::max_element(losses.begin(), losses.end())),
+                   number(*lowest),
+                   number(*highest),
                    Cell{.text = fmt::format("{}/{}", diverged, losses.size())},
                    number(1e3 * median(seconds)),
-                   number(1e-6 * median(bytes))};
-    }
-    table.rows.push_back(std::move(row));
+                   number(1e-6 * median(bytes))}});
   }
   return table;
 }

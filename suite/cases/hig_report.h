@@ -37,39 +37,45 @@ struct MethodLine {
   double paper_update = 0;  ///< seconds per update by the paper; 0: unknown
 };
 
-/// The lines whose method has results.
-std::vector<MethodLine> present(const Results& results,
-                                std::string_view experiment,
-                                std::vector<MethodLine> lines);
+/// Draws learning curves into an experiment's section: medians over seeds, with
+/// their range as a band. What shows nothing is left out, lines and figures.
+class LearningCurves {
+ public:
+  LearningCurves(const Results& results, Section& section)
+      : results_(results), section_(section) {}
 
-/// Median test loss over updates, over solving time and, for lines that know
-/// it, over the paper's time; the band is the range over seeds.
-Figure loss_figure(const Results& results,
-                   std::string_view experiment,
-                   const std::vector<MethodLine>& lines,
-                   std::string id,
-                   std::string title,
-                   std::string source);
+  /// Test loss over updates, over solving time and, for lines that know it,
+  /// over the paper's time; of the last stage.
+  void losses(const std::vector<MethodLine>& lines,
+              std::string id,
+              std::string title,
+              std::string source);
 
-/// The same over all stages of each method's chain, joined.
-Figure chain_figure(const Results& results,
-                    std::string_view experiment,
-                    const std::vector<MethodLine>& lines,
-                    std::string id,
-                    std::string title,
-                    std::string source);
+  /// The same over all stages of each method's chain, joined.
+  void chains(const std::vector<MethodLine>& lines,
+              std::string id,
+              std::string title,
+              std::string source);
 
-/// Median of row `row` of the array `metrics` over updates.
-Figure metric_figure(const Results& results,
-                     std::string_view experiment,
-                     const std::vector<MethodLine>& lines,
-                     Index row,
-                     std::string y_label,
-                     std::string id,
-                     std::string title,
-                     std::string source);
+  /// Row `row` of the array `metrics` over updates.
+  void metric(const std::vector<MethodLine>& lines,
+              Index row,
+              std::string y_label,
+              std::string id,
+              std::string title,
+              std::string source);
 
-/// Per method: test loss at the end, seconds and bytes per update.
+  /// Test loss over updates: a panel for a figure of another form.
+  Panel panel(const std::vector<MethodLine>& lines) const;
+
+  void add(Figure figure);
+
+ private:
+  const Results& results_;
+  Section& section_;
+};
+
+/// Per method with results: test loss at the end, seconds and bytes per update.
 Table loss_table(const Results& results,
                  std::string_view experiment,
                  const std::vector<MethodLine>& lines);

@@ -72,41 +72,26 @@ const std::vector<MethodLine> kVariants = {
 
 Section report(const toy::Gamma& gamma, const Results& results) {
   const char* name = gamma.experiment;
-  const auto lines = present(results, name, kLines);
-  const auto variants = present(results, name, kVariants);
-  auto all = lines;
-  all.insert(all.end(), variants.begin(), variants.end());
+  auto all = kLines;
+  all.insert(all.end(), kVariants.begin(), kVariants.end());
   Section section{.experiment = name,
                   .title = gamma.title,
                   .paper = "hig",
                   .tables = {loss_table(results, name, all),
                              toy::course_table(results, name, all)},
                   .claims = toy::claims(gamma, results)};
-  if (!lines.empty()) {
-    section.figures = {loss_figure(results,
-                                   name,
-                                   lines,
-                                   "fig1-loss",
-                                   "Learning curves",
-                                   "Fig. 1, left"),
-                       metric_figure(results,
-                                     name,
-                                     lines,
-                                     toy::kSecondLoss,
-                                     "loss of the second component",
-                                     "fig1-second",
-                                     "What is learned of the scaled component",
-                                     "Sec. 2.2"),
-                       toy::neuron_figure(results, name, lines),
-                       toy::path_figure(results, name, lines)};
-  }
-  if (!variants.empty())
-    section.figures.push_back(loss_figure(results,
-                                          name,
-                                          variants,
-                                          "variants",
-                                          "Absolute cut, other factors of g",
-                                          "Sec. 2.3"));
+  LearningCurves curves(results, section);
+  curves.losses(kLines, "fig1-loss", "Learning curves", "Fig. 1, left");
+  curves.metric(kLines,
+                toy::kSecondLoss,
+                "loss of the second component",
+                "fig1-second",
+                "What is learned of the scaled component",
+                "Sec. 2.2");
+  curves.add(toy::neuron_figure(results, name, kLines));
+  curves.add(toy::path_figure(results, name, kLines));
+  curves.losses(
+      kVariants, "variants", "Absolute cut, other factors of g", "Sec. 2.3");
   return section;
 }
 
