@@ -313,11 +313,9 @@ Table cost_table(const Results& results,
   };
   for (const CostLine& line : lines) {
     std::vector<double> seconds, bytes;
-    bool crowded = false;
     for (const auto* s : stages_of(results, experiment, line.method)) {
       const Cost cost = cost_of(*s);
       bytes.push_back(cost.bytes);
-      crowded |= s->crowded;
       if (!s->crowded) seconds.push_back(cost.seconds);
     }
     Cell megabytes{.paper = paper(line.published + "/memory", 1)};
@@ -326,10 +324,10 @@ Table cost_table(const Results& results,
       megabytes.text = duration.text = "not run";
     } else {
       megabytes.ours = 1e-6 * median(bytes);
-      if (!seconds.empty())
-        duration.ours = 1e3 * median(seconds);
-      else if (crowded)
+      if (seconds.empty())
         duration.text = "crowded";
+      else
+        duration.ours = 1e3 * median(seconds);
     }
     table.rows.push_back({.label = line.label, .cells = {megabytes, duration}});
   }
