@@ -123,7 +123,7 @@ std::vector<Points> losses_of(const Results& results,
     seeds.push_back(points_of(which == Stages::all ? chain : chain.last(1),
                               "mean_loss",
                               0,
-                              line.paper_update));
+                              line.paper_update.value_or(0)));
   }
   return seeds;
 }
@@ -141,7 +141,7 @@ std::vector<Panel> loss_panels(const Results& results,
     if (seeds.empty()) continue;
     updates.series.push_back(median_series(seeds, line, &Points::updates));
     seconds.series.push_back(median_series(seeds, line, &Points::seconds));
-    if (line.paper_update > 0)
+    if (line.paper_update)
       paper.series.push_back(median_series(seeds, line, &Points::paper));
   }
   std::vector<Panel> panels = {std::move(updates), std::move(seconds)};
@@ -187,6 +187,13 @@ std::optional<double> median_test_loss(const Results& results,
     if (const auto loss = test_loss(s, updates)) losses.push_back(*loss);
   if (losses.empty()) return {};
   return median(losses);
+}
+
+std::optional<double> paper_update(const Published& published,
+                                   std::string_view experiment,
+                                   std::string_view row) {
+  const auto found = published.find(experiment, fmt::format("{}/update", row));
+  return found ? std::optional(found->value) : std::nullopt;
 }
 
 void LearningCurves::losses(const std::vector<MethodLine>& lines,
@@ -307,10 +314,6 @@ Table cost_table(const Results& results,
               .note =
                   "Ours: bytes of the buffers the stage holds, one thread, "
                   "median over seeds. The paper's machine had a GPU."};
-  const auto paper = [&](const std::string& quantity, double unit) {
-    const auto value = published.find(experiment, quantity);
-    return value ? std::optional(unit * value->value) : std::nullopt;
-  };
   for (const CostLine& line : lines) {
     std::vector<double> seconds, bytes;
     for (const auto* s : stages_of(results, experiment, line.method)) {
@@ -318,8 +321,11 @@ Table cost_table(const Results& results,
       bytes.push_back(cost.bytes);
       if (!s->crowded) seconds.push_back(cost.seconds);
     }
-    Cell megabytes{.paper = paper(line.published + "/memory", 1)};
-    Cell duration{.paper = paper(line.published + "/update", 1e3)};
+    Cell megabytes, duration;
+    if (const auto v = published.find(experiment, line.published + "/memory"))
+      megabytes.paper = v->value;
+    if (const auto v = paper_update(published, experiment, line.published))
+      duration.paper = 1e3 * *v;
     if (bytes.empty()) {
       megabytes.text = duration.text = "not run";
     } else {

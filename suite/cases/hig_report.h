@@ -34,8 +34,13 @@ std::optional<double> median_test_loss(const Results& results,
 /// A method as a figure shows it.
 struct MethodLine {
   std::string method, label, colour;
-  double paper_update = 0;  ///< seconds per update by the paper; 0: unknown
+  std::optional<double> paper_update;  ///< seconds by the paper, if it says
 };
+
+/// Seconds of an update by a row of the paper's tables ("table3/hig/b=128").
+std::optional<double> paper_update(const Published& published,
+                                   std::string_view experiment,
+                                   std::string_view row);
 
 /// Draws learning curves into an experiment's section: medians over seeds, with
 /// their range as a band. What shows nothing is left out, lines and figures.
