@@ -7,6 +7,7 @@
 
 #include "optimizers/training.h"
 #include "problems/oscillators/oscillators.h"
+#include "suite/cases/hig_methods.h"
 #include "suite/cases/hig_oscillators_claims.h"
 #include "suite/cases/hig_report.h"
 #include "suite/harness/registry.h"
@@ -64,14 +65,8 @@ StepOptions first_order(std::string_view rule, double rate) {
   return AdamOptions{.rate = rate, .eps_before_correction = true};
 }
 
-/// Rates are powers of ten or thrice one: 3e-4, 1e1.
 std::string grid_id(const char* rule, double rate, Index batch) {
-  const double exponent = std::floor(std::log10(rate) + 1e-9);
-  return fmt::format("grid-{}-{:.0f}e{:.0f}-b{}",
-                     rule,
-                     rate / std::pow(10.0, exponent),
-                     exponent,
-                     batch);
+  return fmt::format("grid-{}-{}-b{}", rule, rate_id(rate), batch);
 }
 
 std::vector<Method> methods() {
@@ -249,15 +244,7 @@ Section report(const Results& results, const Published& published) {
   return section;
 }
 
-Row row(std::vector<std::string> ids,
-        std::vector<std::uint64_t> seeds,
-        Index updates) {
-  return {.methods = std::move(ids),
-          .n = {kStates},
-          .seeds = std::move(seeds),
-          .iterations = updates,
-          .precision = Precision::f64};
-}
+constexpr RowOf row{.n = kStates};
 
 const std::vector<std::string> kOthers = {
     "sgd", "adagrad", "adadelta", "rmsprop"};

@@ -6,6 +6,7 @@
 
 #include "optimizers/training.h"
 #include "problems/grid_poisson/grid_poisson.h"
+#include "suite/cases/hig_methods.h"
 #include "suite/cases/hig_poisson_claims.h"
 #include "suite/cases/hig_report.h"
 #include "suite/harness/registry.h"
@@ -208,15 +209,7 @@ Section report(const Results& results, const Published& published) {
 
 // ---- profiles ---------------------------------------------------------------
 
-Row row(std::vector<std::string> ids,
-        std::vector<std::uint64_t> seeds,
-        Index updates) {
-  return {.methods = std::move(ids),
-          .n = {kEvaluation},
-          .seeds = std::move(seeds),
-          .iterations = updates,
-          .precision = Precision::f64};
-}
+constexpr RowOf row{.n = kEvaluation};
 
 const std::vector<std::uint64_t> kThree = {0, 1, 2}, kFive = {0, 1, 2, 3, 4};
 

@@ -11,6 +11,7 @@
 
 #include "optimizers/training.h"
 #include "problems/quantum_dipole/quantum_dipole.h"
+#include "suite/cases/hig_methods.h"
 #include "suite/cases/hig_quantum_dipole_claims.h"
 #include "suite/cases/hig_report.h"
 #include "suite/harness/registry.h"
@@ -77,9 +78,7 @@ struct AdamPoint {
 };
 
 std::string adam_id(Index batch, double rate) {
-  const int exponent = static_cast<int>(std::floor(std::log10(rate) + 1e-9));
-  return fmt::format(
-      "adam-b{}-{:.0f}e{}", batch, rate / std::pow(10.0, exponent), exponent);
+  return fmt::format("adam-b{}-{}", batch, rate_id(rate));
 }
 
 /// Figs. 8 and 10; `adam` is the one other figures show.
@@ -286,15 +285,7 @@ Section conv_report(const Results& results, const Published& published) {
 
 // ---- registration -----------------------------------------------------------
 
-Row row(std::vector<std::string> ids,
-        std::vector<std::uint64_t> seeds,
-        Index updates) {
-  return {.methods = std::move(ids),
-          .n = {kTargets},
-          .seeds = std::move(seeds),
-          .iterations = updates,
-          .precision = Precision::f64};
-}
+constexpr RowOf row{.n = kTargets};
 
 /// The grids' points but those with rows of their own.
 template <class Grid>
