@@ -126,9 +126,8 @@ Table final_losses(const Results& results, const Published& published) {
               .note = "The paper's are the best of a search, after an hour."};
   for (const char* id : {"adam", "gn", "hig"}) {
     Cell cell;
-    for (const std::uint64_t seed : results.seeds(kName)) {
-      const StageRecord* s = trained_stage(results, kName, id, seed);
-      if (s == nullptr || s->stop == Stop::diverged) continue;
+    for (const auto* s : trained_stages(results, kName, id)) {
+      if (s->stop == Stop::diverged) continue;
       const double loss = s->arrays.at("mean_loss").rightCols(1).value();
       cell.ours = std::min(cell.ours.value_or(loss), loss);
     }

@@ -33,9 +33,8 @@ double largest_rise(const StageRecord& stage) {
 std::optional<double> highest_rise(const Results& results,
                                    const std::string& method) {
   std::optional<double> most;
-  for (const std::uint64_t seed : results.seeds(kName))
-    if (const auto* s = trained_stage(results, kName, method, seed))
-      most = std::max(most.value_or(0), largest_rise(*s));
+  for (const auto* s : trained_stages(results, kName, method))
+    most = std::max(most.value_or(0), largest_rise(*s));
   return most;
 }
 
@@ -85,9 +84,7 @@ ClaimResult gauss_newton_is_unstable(const Results& results) {
   Judge judge;
   int seeds = 0, unstable = 0;
   std::optional<double> best;
-  for (const std::uint64_t seed : results.seeds(kName)) {
-    const auto* s = trained_stage(results, kName, "gn", seed);
-    if (s == nullptr) continue;
+  for (const auto* s : trained_stages(results, kName, "gn")) {
     ++seeds;
     const auto& losses = s->arrays.at("mean_loss");
     if (s->stop == Stop::diverged || losses.maxCoeff() > 3 * losses(0, 0)) {

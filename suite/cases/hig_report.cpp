@@ -36,15 +36,6 @@ std::vector<const CaseRecord*> chains_of(const Results& results,
   return found;
 }
 
-std::vector<const StageRecord*> stages_of(const Results& results,
-                                          std::string_view experiment,
-                                          std::string_view method) {
-  std::vector<const StageRecord*> found;
-  for (const CaseRecord* c : chains_of(results, experiment, method))
-    found.push_back(&c->stages.back());
-  return found;
-}
-
 /// What one seed's curve shows: a value at each point over three axes.
 struct Points {
   std::vector<double> updates, seconds, paper, value;
@@ -170,6 +161,15 @@ const StageRecord* trained_stage(const Results& results,
   return c == nullptr ? nullptr : &c->stages.back();
 }
 
+std::vector<const StageRecord*> trained_stages(const Results& results,
+                                               std::string_view experiment,
+                                               std::string_view method) {
+  std::vector<const StageRecord*> found;
+  for (const CaseRecord* c : chains_of(results, experiment, method))
+    found.push_back(&c->stages.back());
+  return found;
+}
+
 std::optional<double> test_loss(const StageRecord* stage, Index updates) {
   if (stage == nullptr) return {};
   if (const auto k = last_point(*stage, updates)) return CurveRow{*stage}(*k);
@@ -183,7 +183,7 @@ std::optional<double> median_test_loss(const Results& results,
                                        std::string_view method,
                                        Index updates) {
   std::vector<double> losses;
-  for (const auto* s : stages_of(results, experiment, method))
+  for (const auto* s : trained_stages(results, experiment, method))
     if (const auto loss = test_loss(s, updates)) losses.push_back(*loss);
   if (losses.empty()) return {};
   return median(losses);
@@ -228,7 +228,8 @@ void LearningCurves::metric(const std::vector<MethodLine>& lines,
   Panel one = over("updates", std::move(y_label));
   for (const MethodLine& line : lines) {
     std::vector<Points> seeds;
-    for (const auto* s : stages_of(results_, section_.experiment, line.method))
+    for (const auto* s :
+         trained_stages(results_, section_.experiment, line.method))
       if (s->arrays.contains("metrics"))
         seeds.push_back(points_of({s, 1}, "metrics", row, 0));
     if (!seeds.empty())
@@ -272,7 +273,7 @@ Table loss_table(const Results& results,
   for (const MethodLine& line : lines) {
     std::vector<double> losses, seconds, updates, bytes;
     int diverged = 0;
-    for (const auto* s : stages_of(results, experiment, line.method)) {
+    for (const auto* s : trained_stages(results, experiment, line.method)) {
       losses.push_back(CurveRow{*s}.last());
       updates.push_back(s->curve.iteration.back());
       const Cost cost = cost_of(*s);
@@ -316,7 +317,7 @@ Table cost_table(const Results& results,
                   "median over seeds. The paper's machine had a GPU."};
   for (const CostLine& line : lines) {
     std::vector<double> seconds, bytes;
-    for (const auto* s : stages_of(results, experiment, line.method)) {
+    for (const auto* s : trained_stages(results, experiment, line.method)) {
       const Cost cost = cost_of(*s);
       bytes.push_back(cost.bytes);
       if (!s->crowded) seconds.push_back(cost.seconds);

@@ -20,6 +20,11 @@ const StageRecord* trained_stage(const Results& results,
                                  std::string_view method,
                                  std::uint64_t seed);
 
+/// Those of all seeds that have one.
+std::vector<const StageRecord*> trained_stages(const Results& results,
+                                               std::string_view experiment,
+                                               std::string_view method);
+
 /// Mean test loss at the last point of the curve at or before `updates`
 /// (the end of a run that diverged counts as infinite). Empty if the run is
 /// not there or is shorter.

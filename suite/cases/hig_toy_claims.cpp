@@ -31,10 +31,8 @@ class Judged {
   }
   std::vector<double> ends(const char* method) const {
     std::vector<double> losses;
-    for (const std::uint64_t seed : results_.seeds(experiment_))
-      if (const auto loss = test_loss(
-              trained_stage(results_, experiment_, method, seed), kEnd))
-        losses.push_back(*loss);
+    for (const auto* stage : stages(method))
+      if (const auto loss = test_loss(stage, kEnd)) losses.push_back(*loss);
     return losses;
   }
   bool enough_for_ratios(const char* a, const char* b) const {
@@ -57,25 +55,21 @@ class Judged {
   }
   /// The largest median along the curve.
   std::optional<double> highest(const char* method) const {
+    const auto seeds = stages(method);
+    if (seeds.empty()) return {};
     std::optional<double> most;
-    for (const std::uint64_t seed : results_.seeds(experiment_)) {
-      const auto* stage = trained_stage(results_, experiment_, method, seed);
-      if (stage == nullptr) continue;
-      for (const double at : stage->curve.iteration) {
-        const auto m = median_test_loss(
-            results_, experiment_, method, static_cast<Index>(at));
-        if (m) most = std::max(most.value_or(*m), *m);
-      }
-      return most;
+    for (const double at : seeds.front()->curve.iteration) {
+      const auto m = median_test_loss(
+          results_, experiment_, method, static_cast<Index>(at));
+      if (m) most = std::max(most.value_or(*m), *m);
     }
     return most;
   }
   std::optional<double> diverged() const {
     std::optional<double> count;
     for (const char* method : {"adam", "gn", "hig", "sgd", "gn_tau6"})
-      for (const std::uint64_t seed : results_.seeds(experiment_))
-        if (const auto* s = trained_stage(results_, experiment_, method, seed))
-          count = count.value_or(0) + (s->stop == Stop::diverged);
+      for (const auto* s : stages(method))
+        count = count.value_or(0) + (s->stop == Stop::diverged);
     return count;
   }
   std::optional<Saturation> flat(const char* method) const {
@@ -83,6 +77,10 @@ class Judged {
   }
 
  private:
+  std::vector<const StageRecord*> stages(const char* method) const {
+    return trained_stages(results_, experiment_, method);
+  }
+
   const Results& results_;
   const char* experiment_;
 };
