@@ -1,10 +1,7 @@
 // HIG paper, Sec. 3.3, App. B.4, Figs. 4, 8 to 11, Table 5: a network learns
 // which control steers a quantum state in a box to a given superposition, with
 // dense layers and with convolutions.
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,16 +10,14 @@
 #include "problems/quantum_dipole/quantum_dipole.h"
 #include "suite/cases/hig_methods.h"
 #include "suite/cases/hig_quantum_dipole_claims.h"
-#include "suite/cases/hig_report.h"
+#include "suite/cases/hig_quantum_dipole_grids.h"
+#include "suite/cases/hig_quantum_dipole_report.h"
 #include "suite/harness/registry.h"
 #include "suite/nn/cnn.h"
 #include "suite/nn/mlp.h"
 
-namespace physinv {
+namespace physinv::dipole {
 namespace {
-
-using dipole::kConvolutional;
-using dipole::kDense;
 
 constexpr Index kTargets = 1024;
 constexpr Index kChunk = 64;
@@ -36,9 +31,9 @@ void levels(const Snapshot& at, VectorOut<double> out) {
   const QuantumDipole<double> problem;
   Vector<double> loss(at.y.cols());
   problem.level_loss(2, at.y, at.oracle.observations(), loss);
-  out(dipole::kLow) = loss.mean();
+  out(kLow) = loss.mean();
   problem.level_loss(3, at.y, at.oracle.observations(), loss);
-  out(dipole::kHigh) = loss.mean();
+  out(kHigh) = loss.mean();
 }
 
 const Metrics kLevels{
@@ -70,56 +65,6 @@ Method one(std::string id, const TrainingOptions& options) {
   return {.id = std::move(id), .chain = {train(options)}};
 }
 
-/// A grid's point; `id` is the method.
-struct AdamPoint {
-  Index batch;
-  double rate;
-  std::string id;
-};
-
-std::string adam_id(Index batch, double rate) {
-  return fmt::format("adam-b{}-{}", batch, rate_id(rate));
-}
-
-/// Figs. 8 and 10; `adam` is the one other figures show.
-std::vector<AdamPoint> adam_grid(Index batch_of_adam, double rate_of_adam) {
-  std::vector<AdamPoint> all;
-  for (const Index b : {16, 256, 512, 1024})
-    for (const double rate : {1e-4, 2e-4, 5e-4, 1e-3}) {
-      const bool main = b == batch_of_adam && rate == rate_of_adam;
-      all.push_back({b, rate, main ? "adam" : adam_id(b, rate)});
-    }
-  return all;
-}
-
-struct HigPoint {
-  Index batch;
-  double rate;
-  int digits;  ///< tau = 10^-digits
-  std::string id;
-
-  double tau() const { return std::pow(10.0, -digits); }
-};
-
-/// Figs. 9 and 11; `hig` is the one other figures show.
-std::vector<HigPoint> hig_grid(double rate_of_hig, int digits_of_hig) {
-  std::vector<HigPoint> all;
-  for (const Index b : {8, 16})
-    for (const double rate : {0.5, 0.7, 1.0})
-      for (const int digits : {2, 3, 4, 5, 6}) {
-        const bool main =
-            b == 16 && rate == rate_of_hig && digits == digits_of_hig;
-        all.push_back(
-            {b,
-             rate,
-             digits,
-             main ? "hig"
-                  : fmt::format(
-                        "hig-b{}-eta{:02.0f}-tau{}", b, 10 * rate, digits)});
-      }
-  return all;
-}
-
 std::vector<Method> grids(const std::vector<AdamPoint>& adam,
                           const std::vector<HigPoint>& hig) {
   std::vector<Method> all;
@@ -129,11 +74,6 @@ std::vector<Method> grids(const std::vector<AdamPoint>& adam,
     all.push_back(one(p.id, by_adam(p.batch, p.rate)));
   return all;
 }
-
-std::vector<AdamPoint> dense_adam() { return adam_grid(16, 1e-4); }
-std::vector<HigPoint> dense_hig() { return hig_grid(0.5, 5); }
-std::vector<AdamPoint> conv_adam() { return adam_grid(256, 2e-4); }
-std::vector<HigPoint> conv_hig() { return hig_grid(0.7, 4); }
 
 std::vector<Method> dense_methods() {
   std::vector<Method> all = grids(dense_adam(), dense_hig());
@@ -149,138 +89,6 @@ std::vector<Method> dense_methods() {
   second.stage = "hig";
   all.push_back({.id = "adam-hig", .chain = {train(first), train(second)}});
   return all;
-}
-
-// ---- report -----------------------------------------------------------------
-
-/// Seconds of an update in Table 5. Adam with fewer than 256 samples, the
-/// fewest that it lists, takes as long as with these.
-std::optional<double> adam_update(const Published& published, Index batch) {
-  const Index listed = std::max<Index>(batch, 256);
-  return paper_update(
-      published, kDense, fmt::format("table5/adam/b={}", listed));
-}
-
-std::optional<double> hig_update(const Published& published, Index batch) {
-  return paper_update(published, kDense, fmt::format("table5/hig/b={}", batch));
-}
-
-std::vector<MethodLine> lines_of(const std::vector<AdamPoint>& grid,
-                                 const Published& published) {
-  std::vector<MethodLine> lines;
-  for (const AdamPoint& p : grid)
-    lines.push_back({p.id,
-                     fmt::format("b={} eta={:.0e}", p.batch, p.rate),
-                     p.id,
-                     adam_update(published, p.batch)});
-  return lines;
-}
-
-std::vector<MethodLine> lines_of(const std::vector<HigPoint>& grid,
-                                 const Published& published) {
-  std::vector<MethodLine> lines;
-  for (const HigPoint& p : grid)
-    lines.push_back(
-        {p.id,
-         fmt::format("b={} eta={} tau=1e-{}", p.batch, p.rate, p.digits),
-         p.id,
-         hig_update(published, p.batch)});
-  return lines;
-}
-
-const std::vector<MethodLine> kMain = {
-    {"hig", "HIG", "jpo"},
-    {"gn", "Gauss-Newton", "bfgs"},
-    {"adam", "Adam b=16 1e-4", "gd"},
-    {"adam-b256-5e-4", "Adam b=256 5e-4", "supervised"}};
-
-std::vector<MethodLine> rates(const Published& published) {
-  const auto hig = hig_update(published, 16), adam = adam_update(published, 16);
-  return {{"hig-b16-eta025-tau5", "HIG eta=0.25", "na", hig},
-          {"hig", "HIG eta=0.5", "jpo", hig},
-          {"hig-b16-eta10-tau5", "HIG eta=1", "bfgs", hig},
-          {"adam", "Adam b=16 1e-4", "gd", adam},
-          {"adam-b16-3e-4", "Adam b=16 3e-4", "adam-b16-3e-4", adam},
-          {"adam-b16-1e-3", "Adam b=16 1e-3", "adam-b16-1e-3", adam},
-          {"adam-b16-3e-3", "Adam b=16 3e-3", "adam-b16-3e-3", adam},
-          {"adam-b256-5e-4", "Adam b=256 5e-4", "supervised", adam}};
-}
-
-const std::vector<MethodLine> kRules = {{"hig", "HIG", "jpo"},
-                                        {"gn", "Gauss-Newton", "bfgs"},
-                                        {"adam", "Adam", "gd"},
-                                        {"sgd", "SGD", "supervised"},
-                                        {"adagrad", "Adagrad", "na"},
-                                        {"rmsprop", "RMSprop", "rmsprop"},
-                                        {"adam-hig", "Adam, then HIG", "sip"}};
-
-const std::vector<CostLine> kCosts = {
-    {"adam-b256-5e-4", "Adam b=256", "table5/adam/b=256"},
-    {"adam-b512-5e-4", "Adam b=512", "table5/adam/b=512"},
-    {"adam-b1024-5e-4", "Adam b=1024", "table5/adam/b=1024"},
-    {"hig-b8-eta05-tau5", "HIG b=8", "table5/hig/b=8"},
-    {"hig", "HIG b=16", "table5/hig/b=16"},
-    {"gn", "Gauss-Newton b=16", ""},
-    {"adam", "Adam b=16", ""}};
-
-constexpr const char* kAdamGrid = "Adam: batch size and rate";
-constexpr const char* kHigGrid = "HIG: batch size, rate and truncation";
-
-std::vector<MethodLine> joined(std::vector<MethodLine> a,
-                               const std::vector<MethodLine>& b) {
-  for (const MethodLine& line : b) {
-    const auto same = [&](const auto& l) { return l.method == line.method; };
-    if (std::none_of(a.begin(), a.end(), same)) a.push_back(line);
-  }
-  return a;
-}
-
-Section dense_report(const Results& results, const Published& published) {
-  const auto adam = lines_of(dense_adam(), published),
-             hig = lines_of(dense_hig(), published), by_rate = rates(published);
-  const auto all =
-      joined(joined(joined(kMain, kRules), by_rate), joined(hig, adam));
-  Section section{
-      .experiment = kDense,
-      .title = "Quantum dipole",
-      .paper = "hig",
-      .tables = {loss_table(results, kDense, all),
-                 cost_table(results, kDense, published, kCosts, "Table 5")},
-      .claims = dipole::dense_claims(results)};
-  LearningCurves curves(results, section);
-  curves.losses(
-      by_rate, "fig4b", "Learning curves for several rates", "Fig. 4b");
-  curves.metric(kMain,
-                dipole::kLow,
-                "low-energy loss",
-                "fig4c_low",
-                "First excited state alone",
-                "Fig. 4c");
-  curves.metric(kMain,
-                dipole::kHigh,
-                "high-energy loss",
-                "fig4c_high",
-                "Second excited state alone",
-                "Fig. 4c");
-  curves.losses(adam, "fig8", kAdamGrid, "Fig. 8");
-  curves.losses(hig, "fig9", kHigGrid, "Fig. 9");
-  curves.chains(kRules, "rules", "Update rules, and Adam followed by HIG", "");
-  return section;
-}
-
-Section conv_report(const Results& results, const Published& published) {
-  const auto adam = lines_of(conv_adam(), published),
-             hig = lines_of(conv_hig(), published);
-  Section section{
-      .experiment = kConvolutional,
-      .title = "Quantum dipole, convolutional network",
-      .paper = "hig",
-      .tables = {loss_table(results, kConvolutional, joined(hig, adam))},
-      .claims = {dipole::convolutions_keep_the_order(results)}};
-  LearningCurves curves(results, section);
-  curves.losses(adam, "fig10", kAdamGrid, "Fig. 10");
-  curves.losses(hig, "fig11", kHigGrid, "Fig. 11");
-  return section;
 }
 
 // ---- registration -----------------------------------------------------------
@@ -396,4 +204,4 @@ const auto kRegisteredCnn = register_experiment({
 });
 
 }  // namespace
-}  // namespace physinv
+}  // namespace physinv::dipole
