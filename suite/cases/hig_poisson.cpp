@@ -8,6 +8,7 @@
 #include "problems/grid_poisson/grid_poisson.h"
 #include "suite/cases/hig_methods.h"
 #include "suite/cases/hig_poisson_claims.h"
+#include "suite/cases/hig_poisson_tables.h"
 #include "suite/cases/hig_report.h"
 #include "suite/harness/registry.h"
 #include "suite/nn/mlp.h"

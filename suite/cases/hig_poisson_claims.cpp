@@ -6,14 +6,10 @@
 #include <cmath>
 #include <limits>
 
-#include "optimizers/half_inverse/half_inverse.h"
 #include "suite/cases/jpo_claims.h"
-#include "suite/cases/jpo_endings.h"
 
 namespace physinv::poisson {
 namespace {
-
-constexpr Index kCells = 64;
 
 /// Lowest loss of a phase over the loss at its start.
 double lowest_ratio(const StageRecord& stage) {
@@ -33,15 +29,6 @@ std::optional<double> ratio_after(const StageRecord& stage, double seconds) {
   if (!level) return {};
   return level->loss / loss_point(stage, 0).loss;
 }
-
-std::string last_stage(const Runs& runs, std::string_view method) {
-  for (const CaseRecord& c : runs.results().cases())
-    if (c.info.experiment == kName && c.info.method == method)
-      return c.info.stages.back();
-  return {};
-}
-
-// ---- claims -----------------------------------------------------------------
 
 ClaimResult adam_levels(const Runs& runs) {
   Judge judge;
@@ -222,42 +209,6 @@ ClaimResult immediate_drop(const Runs& runs) {
       false);
 }
 
-struct Phase {
-  std::string method, stage;
-  Index updates = 0, rows = 0, least_kept = 0, unproven = 0, runs = 0;
-  double smallest = std::numeric_limits<double>::infinity();
-};
-
-/// Every method's phase with kept counts.
-std::vector<Phase> phases(const Runs& runs) {
-  std::vector<Phase> found;
-  for (const std::string& method : runs.results().methods(kName)) {
-    for (const StageRecord* s : runs.all(method, "hig")) {
-      if (!s->arrays.contains("kept")) continue;
-      if (found.empty() || found.back().method != method)
-        found.push_back({.method = method, .stage = "hig"});
-      Phase& phase = found.back();
-      const auto& kept = s->arrays.at("kept");
-      if (kept.size() == 0) continue;
-      for (const auto& [name, value] : s->options)
-        if (name == "batch") phase.rows = kCells * std::stoll(value);
-      const auto least = static_cast<Index>(kept.minCoeff());
-      phase.least_kept =
-          phase.runs == 0 ? least : std::min(phase.least_kept, least);
-      ++phase.runs;
-      phase.updates += kept.size();
-      phase.unproven += static_cast<Index>(s->arrays.at("unproven")(0, 0));
-      // A Cholesky factorisation has only a lower bound.
-      const auto &path = s->arrays.at("path"),
-                 &s_min = s->arrays.at("smallest");
-      for (Index k = 0; k < path.size(); ++k)
-        if (path(k) != static_cast<double>(hig::Path::shortcut))
-          phase.smallest = std::min(phase.smallest, s_min(k));
-    }
-  }
-  return found;
-}
-
 ClaimResult nothing_is_cut(const Runs& runs) {
   Judge judge;
   const auto all = phases(runs);
@@ -310,130 +261,6 @@ ClaimResult cost(const Runs& runs) {
 }
 
 }  // namespace
-
-const StageRecord* Runs::one(std::string_view method,
-                             std::string_view stage,
-                             std::uint64_t seed) const {
-  for (const Index n : results_.sizes(kName)) {
-    const auto* s = results_.find(kName, method, n, seed, stage);
-    if (s != nullptr && s->arrays.contains("mean_loss")) return s;
-  }
-  return nullptr;
-}
-
-std::vector<const StageRecord*> Runs::all(std::string_view method,
-                                          std::string_view stage) const {
-  std::vector<const StageRecord*> found;
-  for (const std::uint64_t seed : results_.seeds(kName))
-    if (const auto* s = one(method, stage, seed)) found.push_back(s);
-  return found;
-}
-
-std::optional<double> Runs::median_of(std::string_view method,
-                                      std::string_view stage,
-                                      const Value& value) const {
-  std::vector<double> values;
-  for (const StageRecord* s : all(method, stage))
-    if (const auto v = value(*s)) values.push_back(*v);
-  if (values.empty()) return {};
-  return median(values);
-}
-
-std::optional<double> Runs::loss(std::string_view method,
-                                 double updates,
-                                 std::string_view stage) const {
-  const std::string last =
-      stage.empty() ? last_stage(*this, method) : std::string(stage);
-  return median_of(
-      method, last, [&](const auto& s) { return loss_at(s, updates); });
-}
-
-std::optional<double> Runs::median_of_pairs(std::string_view method,
-                                            std::string_view stage,
-                                            std::string_view other_method,
-                                            std::string_view other_stage,
-                                            const Pair& value) const {
-  std::vector<double> values;
-  for (const std::uint64_t seed : results_.seeds(kName)) {
-    const auto* a = one(method, stage, seed);
-    const auto* b = one(other_method, other_stage, seed);
-    if (a == nullptr || b == nullptr) continue;
-    if (const auto v = value(*a, *b)) values.push_back(*v);
-  }
-  if (values.empty()) return {};
-  return median(values);
-}
-
-Table spectrum_table(const Runs& runs) {
-  Table table{.id = "spectra",
-              .title = "Singular values of the stacked Jacobian",
-              .source = "App. B.3",
-              .digits = 0,
-              .corner = "method",
-              .columns = {"rows m",
-                          "updates seen",
-                          "least kept",
-                          "smallest s / s_max",
-                          "unproven"},
-              .note =
-                  "Over all seeds. The cut is 1e-5 s_max. Gauss-Newton by a "
-                  "Cholesky factorisation knows that all s are above the cut, "
-                  "not where. Unproven: updates whose accuracy was not "
-                  "shown."};
-  for (const Phase& p : phases(runs)) {
-    const auto number = [](Index v) {
-      return Cell{.ours = static_cast<double>(v)};
-    };
-    table.rows.push_back(
-        {.label = p.method,
-         .cells = {number(p.rows),
-                   number(p.updates),
-                   number(p.least_kept),
-                   Cell{.text = std::isfinite(p.smallest)
-                                    ? fmt::format("{:.1e}", p.smallest)
-                                    : "above the cut"},
-                   number(p.unproven)}});
-  }
-  return table;
-}
-
-Table crossing_table(const Runs& runs) {
-  Table table{.id = "crossings",
-              .title = "From when on the smaller of two of Adam's rates leads",
-              .source = "Figs. 3b, 7a",
-              .digits = 0,
-              .corner = "rates",
-              .columns = {"updates"},
-              .note = "Medians over seeds, at the measured points."};
-  struct Pairing {
-    const char *label, *smaller, *larger;
-  };
-  for (const Pairing& p : {Pairing{"1e-4, 3e-4", "adam", "adam-3e-4"},
-                           Pairing{"1e-4, 1e-3", "adam", "adam-1e-3"},
-                           Pairing{"3e-4, 1e-3", "adam-3e-4", "adam-1e-3"}}) {
-    Cell cell{.text = "not run"};
-    const auto some = runs.all(p.larger, "adam");
-    std::optional<double> since;
-    double last = 0;
-    // Behind a first stretch in which every curve falls alike.
-    for (Index k = 0; !some.empty() && k < some.front()->curve.points(); ++k) {
-      const double updates = CurveRow{*some.front()}.updates(k);
-      const auto a = runs.loss(p.smaller, updates);
-      const auto b = runs.loss(p.larger, updates);
-      if (!a || !b || updates < 100) continue;
-      last = updates;
-      if (*a >= *b) since.reset();
-      if (*a < *b && !since) since = updates;
-    }
-    if (since) {
-      cell = {.ours = since};
-    } else if (last > 0) {
-      cell.text = fmt::format("not within {}", last);
-    }
-    table.rows.push_back({.label = p.label, .cells = {cell}});
-  }
-  return table;
-}
 
 std::vector<ClaimResult> claims(const Runs& runs) {
   return {adam_levels(runs),
