@@ -20,7 +20,10 @@ const StageRecord* trained_stage(const Results& results,
                                  std::string_view method,
                                  std::uint64_t seed);
 
-/// Those of all seeds that have one.
+/// Those of all seeds that have one: whole chains, and their last stages.
+std::vector<const CaseRecord*> trained_chains(const Results& results,
+                                              std::string_view experiment,
+                                              std::string_view method);
 std::vector<const StageRecord*> trained_stages(const Results& results,
                                                std::string_view experiment,
                                                std::string_view method);
