@@ -7,6 +7,7 @@
 
 #include "optimizers/training.h"
 #include "problems/oscillators/oscillators.h"
+#include "suite/cases/hig_methods.h"
 #include "suite/cases/hig_oscillators_claims.h"
 #include "suite/cases/hig_report.h"
 #include "suite/harness/registry.h"
@@ -64,14 +65,8 @@ StepOptions first_order(std::string_view rule, double rate) {
   return AdamOptions{.rate = rate, .eps_before_correction = true};
 }
 
-/// Rates are powers of ten or thrice one: 3e-4, 1e1.
 std::string grid_id(const char* rule, double rate, Index batch) {
-  const double exponent = std::floor(std::log10(rate) + 1e-9);
-  return fmt::format("grid-{}-{:.0f}e{:.0f}-b{}",
-                     rule,
-                     rate / std::pow(10.0, exponent),
-                     exponent,
-                     batch);
+  return fmt::format("grid-{}-{}-b{}", rule, rate_id(rate), batch);
 }
 
 std::vector<Method> methods() {
@@ -131,9 +126,8 @@ Table final_losses(const Results& results, const Published& published) {
               .note = "The paper's are the best of a search, after an hour."};
   for (const char* id : {"adam", "gn", "hig"}) {
     Cell cell;
-    for (const std::uint64_t seed : results.seeds(kName)) {
-      const StageRecord* s = trained_stage(results, kName, id, seed);
-      if (s == nullptr || s->stop == Stop::diverged) continue;
+    for (const auto* s : trained_stages(results, kName, id)) {
+      if (s->stop == Stop::diverged) continue;
       const double loss = s->arrays.at("mean_loss").rightCols(1).value();
       cell.ours = std::min(cell.ours.value_or(loss), loss);
     }
@@ -145,15 +139,9 @@ Table final_losses(const Results& results, const Published& published) {
   return table;
 }
 
-/// What the paper's clock says for Adam and for HIG at b = 128 (Table 3).
-double paper_update(const Published& published, const char* row) {
-  const auto v = published.find(kName, fmt::format("table3/{}/update", row));
-  return v ? v->value : 0;
-}
-
 std::vector<MethodLine> rules(const Published& published) {
-  const double adam = paper_update(published, "adam/b=512"),
-               hig = paper_update(published, "hig/b=128");
+  const auto adam = paper_update(published, kName, "table3/adam/b=512"),
+             hig = paper_update(published, kName, "table3/hig/b=128");
   return {{"hig", "HIG", "jpo", hig},
           {"gn", "Gauss-Newton", "bfgs", hig},
           {"adam", "Adam", "gd", adam},
@@ -171,7 +159,7 @@ std::vector<MethodLine> sweep(const std::string& beginning,
 }
 
 /// One panel per rule: test loss over updates, for each rate and batch size.
-Figure grid_figure(const Results& results,
+Figure grid_figure(const LearningCurves& curves,
                    const std::vector<Grid>& grids,
                    const char* id,
                    const char* source) {
@@ -186,7 +174,7 @@ Figure grid_figure(const Results& results,
         lines.push_back({grid_id(grid.rule, rate, b),
                          fmt::format("{} / {}", rate, b),
                          fmt::format("{} {}", rate, b)});
-    Panel panel = loss_figure(results, kName, lines, "", "", "").panels.front();
+    Panel panel = curves.panel(lines);
     panel.title = grid.rule;
     if (!panel.series.empty()) figure.panels.push_back(std::move(panel));
   }
@@ -220,59 +208,42 @@ Section report(const Results& results, const Published& published) {
                       {"kappa-m05", "HIG, b = 64", "table3/hig/b=64"},
                       {"hig", "HIG, b = 128", "table3/hig/b=128"}},
                      "Table 3"),
-          loss_table(results, kName, present(results, kName, all))}};
-  const auto add = [&](Figure figure) {
-    if (!figure.panels.empty() && !figure.panels.front().series.empty())
-      section.figures.push_back(std::move(figure));
-  };
-  const auto curves = [&](const std::vector<MethodLine>& lines,
-                          const char* id,
-                          const char* title,
-                          const char* source) {
-    add(loss_figure(results, kName, lines, id, title, source));
-  };
-  curves(rules(published), "fig2b", "Learning curves", "Fig. 2b");
-  curves({{"hig-b32", "HIG, b = 32", "na"},
-          {"kappa-m05", "HIG, b = 64", "supervised"},
-          {"hig", "HIG, b = 128", "jpo"},
-          {"adam-b256", "Adam, b = 256", "rmsprop"},
-          {"adam", "Adam, b = 512", "gd"},
-          {"adam-b1024", "Adam, b = 1024", "adadelta"},
-          {"gn-b32", "GN, b = 32", "gn-b32"},
-          {"kappa-m1", "GN, b = 64", "gn-b64"},
-          {"gn", "GN, b = 128", "bfgs"}},
-         "fig2c",
-         "Batch sizes",
-         "Fig. 2c");
-  add(grid_figure(
-      results, {kGrids.begin(), kGrids.end() - 1}, "fig5", "Fig. 5"));
-  add(grid_figure(results, {kGrids.back()}, "fig6", "Fig. 6"));
-  curves(sweep("beta-", {{"kappa-m05", "beta-0", "jpo"}}),
-         "fig12a",
-         "Exponent beta of the prefactor",
-         "Fig. 12a");
-  curves(sweep("kappa-"), "fig12b", "Exponent kappa", "Fig. 12b");
-  curves(sweep("hig-tau", {{"kappa-m05", "hig-tau6", "jpo"}}),
-         "fig13a",
-         "HIG: truncation tau",
-         "Fig. 13");
-  curves(sweep("gn-tau", {{"kappa-m1", "gn-tau6", "bfgs"}}),
-         "fig13b",
-         "Gauss-Newton: truncation tau",
-         "Fig. 13");
-  section.claims = oscillator_claims(results);
+          loss_table(results, kName, all)}};
+  LearningCurves curves(results, section);
+  curves.losses(rules(published), "fig2b", "Learning curves", "Fig. 2b");
+  curves.losses({{"hig-b32", "HIG, b = 32", "na"},
+                 {"kappa-m05", "HIG, b = 64", "supervised"},
+                 {"hig", "HIG, b = 128", "jpo"},
+                 {"adam-b256", "Adam, b = 256", "rmsprop"},
+                 {"adam", "Adam, b = 512", "gd"},
+                 {"adam-b1024", "Adam, b = 1024", "adadelta"},
+                 {"gn-b32", "GN, b = 32", "gn-b32"},
+                 {"kappa-m1", "GN, b = 64", "gn-b64"},
+                 {"gn", "GN, b = 128", "bfgs"}},
+                "fig2c",
+                "Batch sizes",
+                "Fig. 2c");
+  curves.add(grid_figure(
+      curves, {kGrids.begin(), kGrids.end() - 1}, "fig5", "Fig. 5"));
+  curves.add(grid_figure(curves, {kGrids.back()}, "fig6", "Fig. 6"));
+  curves.losses(sweep("beta-", {{"kappa-m05", "beta-0", "jpo"}}),
+                "fig12a",
+                "Exponent beta of the prefactor",
+                "Fig. 12a");
+  curves.losses(sweep("kappa-"), "fig12b", "Exponent kappa", "Fig. 12b");
+  curves.losses(sweep("hig-tau", {{"kappa-m05", "hig-tau6", "jpo"}}),
+                "fig13a",
+                "HIG: truncation tau",
+                "Fig. 13");
+  curves.losses(sweep("gn-tau", {{"kappa-m1", "gn-tau6", "bfgs"}}),
+                "fig13b",
+                "Gauss-Newton: truncation tau",
+                "Fig. 13");
+  section.claims = oscillator_claims(results, published);
   return section;
 }
 
-Row row(std::vector<std::string> ids,
-        std::vector<std::uint64_t> seeds,
-        Index updates) {
-  return {.methods = std::move(ids),
-          .n = {kStates},
-          .seeds = std::move(seeds),
-          .iterations = updates,
-          .precision = Precision::f64};
-}
+constexpr RowOf row{.n = kStates};
 
 const std::vector<std::string> kOthers = {
     "sgd", "adagrad", "adadelta", "rmsprop"};

@@ -4,11 +4,13 @@
 
 #include <vector>
 
+#include "suite/results/published.h"
 #include "suite/results/report_model.h"
 #include "suite/results/results.h"
 
 namespace physinv {
 
-std::vector<ClaimResult> oscillator_claims(const Results& results);
+std::vector<ClaimResult> oscillator_claims(const Results& results,
+                                           const Published& published);
 
 }  // namespace physinv

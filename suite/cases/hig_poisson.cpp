@@ -6,7 +6,9 @@
 
 #include "optimizers/training.h"
 #include "problems/grid_poisson/grid_poisson.h"
+#include "suite/cases/hig_methods.h"
 #include "suite/cases/hig_poisson_claims.h"
+#include "suite/cases/hig_poisson_tables.h"
 #include "suite/cases/hig_report.h"
 #include "suite/harness/registry.h"
 #include "suite/nn/mlp.h"
@@ -20,7 +22,6 @@ constexpr double kTau = 1e-5;
 constexpr Index kPretrained = 5000, kDetour = 60;
 constexpr Index kPaperPretrained = 30'000, kPaperDetour = 20;
 /// An hour by the paper's Table 4.
-constexpr double kAdamUpdate = 0.011, kHigUpdate = 13.8;
 constexpr Index kPaperAdam = 327'000, kPaperHig = 261;
 
 // ---- methods ----------------------------------------------------------------
@@ -103,31 +104,38 @@ std::vector<Method> methods() {
 
 // ---- report -----------------------------------------------------------------
 
-const std::vector<MethodLine> kLearning = {
-    {"adam", "Adam 1e-4", "gd", kAdamUpdate},
-    {"adam-3e-4", "Adam 3e-4", "adam-3e-4", kAdamUpdate},
-    {"adam-1e-3", "Adam 1e-3", "adam-1e-3", kAdamUpdate},
-    {"hig-001-b64", "HIG 0.01", "hig-001", kHigUpdate},
-    {"hig-002-b64", "HIG 0.02", "jpo", kHigUpdate},
-    {"hig-005-b64", "HIG 0.05", "hig-005", kHigUpdate},
-    {"gn-002-b64", "GN 0.02", "bfgs"},
-    {"gn-1-b64", "GN 1", "gn-1"},
-    {"hig-001-b16", "HIG 0.01, b = 16", "hig-001-b16"},
-    {"hig-002-b16", "HIG 0.02, b = 16", "supervised"},
-    {"hig-005-b16", "HIG 0.05, b = 16", "hig-005-b16"},
-    {"gn-002-b16", "GN 0.02, b = 16", "na"},
-    {"gn-1-b16", "GN 1, b = 16", "gn-1-b16"},
-    {"hig-b4", "HIG 0.02, b = 4", "hig-b4"},
-    {"gn-b4", "GN 0.02, b = 4", "gn-b4"}};
+std::vector<MethodLine> learning(const Published& published) {
+  const auto adam = paper_update(published, poisson::kName, "table4/adam/b=64"),
+             hig = paper_update(published, poisson::kName, "table4/hig/b=64");
+  return {{"adam", "Adam 1e-4", "gd", adam},
+          {"adam-3e-4", "Adam 3e-4", "adam-3e-4", adam},
+          {"adam-1e-3", "Adam 1e-3", "adam-1e-3", adam},
+          {"hig-001-b64", "HIG 0.01", "hig-001", hig},
+          {"hig-002-b64", "HIG 0.02", "jpo", hig},
+          {"hig-005-b64", "HIG 0.05", "hig-005", hig},
+          {"gn-002-b64", "GN 0.02", "bfgs"},
+          {"gn-1-b64", "GN 1", "gn-1"},
+          {"hig-001-b16", "HIG 0.01, b = 16", "hig-001-b16"},
+          {"hig-002-b16", "HIG 0.02, b = 16", "supervised"},
+          {"hig-005-b16", "HIG 0.05, b = 16", "hig-005-b16"},
+          {"gn-002-b16", "GN 0.02, b = 16", "na"},
+          {"gn-1-b16", "GN 1, b = 16", "gn-1-b16"},
+          {"hig-b4", "HIG 0.02, b = 4", "hig-b4"},
+          {"gn-b4", "GN 0.02, b = 4", "gn-b4"}};
+}
 
-const std::vector<MethodLine> kTurns = {
-    {"adam-adam", "Adam, Adam", "gd", kAdamUpdate},
-    {"adam-hig-0001-b16", "Adam, HIG 0.001, b = 16", "hig-001"},
-    {"adam-hig-0005-b16", "Adam, HIG 0.005, b = 16", "hig-005"},
-    {"adam-hig-002-b16", "Adam, HIG 0.02, b = 16", "supervised"},
-    {"adam-hig-002-b64", "Adam, HIG 0.02", "jpo", kHigUpdate},
-    {"long-adam-adam", "Adam, Adam, later", "adam-3e-4", kAdamUpdate},
-    {"long-adam-hig", "Adam, HIG 0.02, later", "na", kHigUpdate}};
+/// From weights that Adam has trained.
+std::vector<MethodLine> turns(const Published& published) {
+  const auto adam = paper_update(published, poisson::kName, "table4/adam/b=64"),
+             hig = paper_update(published, poisson::kName, "table4/hig/b=64");
+  return {{"adam-adam", "Adam, Adam", "gd", adam},
+          {"adam-hig-0001-b16", "Adam, HIG 0.001, b = 16", "hig-001"},
+          {"adam-hig-0005-b16", "Adam, HIG 0.005, b = 16", "hig-005"},
+          {"adam-hig-002-b16", "Adam, HIG 0.02, b = 16", "supervised"},
+          {"adam-hig-002-b64", "Adam, HIG 0.02", "jpo", hig},
+          {"long-adam-adam", "Adam, Adam, later", "adam-3e-4", adam},
+          {"long-adam-hig", "Adam, HIG 0.02, later", "na", hig}};
+}
 
 const std::vector<MethodLine> kReturns = {
     {"adam", "Adam, uninterrupted", "truth"},
@@ -139,8 +147,9 @@ const std::vector<MethodLine> kReturns = {
 
 Section report(const Results& results, const Published& published) {
   const poisson::Runs runs(results);
-  std::vector<MethodLine> all = kLearning;
-  for (const auto* group : {&kTurns, &kReturns})
+  const auto fresh = learning(published), turned = turns(published);
+  std::vector<MethodLine> all = fresh;
+  for (const auto* group : {&turned, &kReturns})
     for (const MethodLine& line : *group)
       if (line.method != "adam" && line.method != "adam-adam" &&
           line.method != "long-adam-adam")
@@ -149,9 +158,7 @@ Section report(const Results& results, const Published& published) {
       .experiment = poisson::kName,
       .title = "Poisson's equation",
       .paper = "hig",
-      .tables = {loss_table(results,
-                            poisson::kName,
-                            present(results, poisson::kName, all)),
+      .tables = {loss_table(results, poisson::kName, all),
                  cost_table(results,
                             poisson::kName,
                             published,
@@ -165,70 +172,45 @@ Section report(const Results& results, const Published& published) {
                  poisson::spectrum_table(runs),
                  poisson::crossing_table(runs)},
       .claims = poisson::claims(runs)};
-  const auto add = [&](Figure figure) {
-    if (!figure.panels.empty() && !figure.panels.front().series.empty())
-      section.figures.push_back(std::move(figure));
-  };
+  LearningCurves curves(results, section);
   const auto some = [&](std::initializer_list<const char*> ids) {
     std::vector<MethodLine> lines;
-    for (const MethodLine& line : kLearning)
+    for (const MethodLine& line : fresh)
       for (const char* id : ids)
         if (line.method == id) lines.push_back(line);
     return lines;
   };
-  const auto learning = [&](std::initializer_list<const char*> ids,
-                            const char* id,
-                            const char* title,
-                            const char* source) {
-    add(loss_figure(results, poisson::kName, some(ids), id, title, source));
-  };
-  learning({"adam",
-            "adam-3e-4",
-            "adam-1e-3",
-            "hig-001-b64",
-            "hig-002-b64",
-            "hig-005-b64"},
-           "fig3b",
-           "Learning curves, b = 64",
-           "Figs. 3b, 7a");
-  learning({"adam",
-            "hig-002-b16",
-            "hig-002-b64",
-            "gn-002-b16",
-            "gn-1-b16",
-            "gn-002-b64",
-            "gn-1-b64",
-            "hig-b4",
-            "gn-b4"},
-           "fig7a",
-           "Small batches, and Gauss-Newton beside HIG",
-           "Fig. 7a");
-  add(loss_figure(results,
-                  poisson::kName,
-                  present(results, poisson::kName, kTurns),
-                  "fig3c",
-                  "From weights that Adam has trained",
-                  "Fig. 3c"));
-  add(chain_figure(results,
-                   poisson::kName,
-                   present(results, poisson::kName, kReturns),
-                   "fig7b",
-                   "Adam, then HIG, then Adam again",
-                   "Fig. 7b"));
+  curves.losses(some({"adam",
+                      "adam-3e-4",
+                      "adam-1e-3",
+                      "hig-001-b64",
+                      "hig-002-b64",
+                      "hig-005-b64"}),
+                "fig3b",
+                "Learning curves, b = 64",
+                "Figs. 3b, 7a");
+  curves.losses(some({"adam",
+                      "hig-002-b16",
+                      "hig-002-b64",
+                      "gn-002-b16",
+                      "gn-1-b16",
+                      "gn-002-b64",
+                      "gn-1-b64",
+                      "hig-b4",
+                      "gn-b4"}),
+                "fig7a",
+                "Small batches, and Gauss-Newton beside HIG",
+                "Fig. 7a");
+  curves.losses(
+      turned, "fig3c", "From weights that Adam has trained", "Fig. 3c");
+  curves.chains(
+      kReturns, "fig7b", "Adam, then HIG, then Adam again", "Fig. 7b");
   return section;
 }
 
 // ---- profiles ---------------------------------------------------------------
 
-Row row(std::vector<std::string> ids,
-        std::vector<std::uint64_t> seeds,
-        Index updates) {
-  return {.methods = std::move(ids),
-          .n = {kEvaluation},
-          .seeds = std::move(seeds),
-          .iterations = updates,
-          .precision = Precision::f64};
-}
+constexpr RowOf row{.n = kEvaluation};
 
 const std::vector<std::uint64_t> kThree = {0, 1, 2}, kFive = {0, 1, 2, 3, 4};
 

@@ -6,72 +6,29 @@
 #include <cmath>
 #include <limits>
 
-#include "optimizers/half_inverse/half_inverse.h"
 #include "suite/cases/jpo_claims.h"
-#include "suite/cases/jpo_endings.h"
 
 namespace physinv::poisson {
 namespace {
 
-constexpr Index kCells = 64;
-
-Index points(const StageRecord& stage) { return stage.curve.points(); }
-
-/// Mean test loss at point k; what overflowed is infinite again.
-Level point(const StageRecord& stage, Index k) {
-  const auto at = static_cast<std::size_t>(k);
-  const double loss = stage.arrays.at("mean_loss")(0, k);
-  const bool finite = loss < std::numeric_limits<double>::max();
-  return {stage.curve.iteration[at],
-          stage.curve.seconds[at],
-          finite ? loss : std::numeric_limits<double>::infinity()};
-}
-
-Level between(const Level& a, const Level& b, double share) {
-  const auto mix = [&](double u, double v) { return u + share * (v - u); };
-  return {mix(a.updates, b.updates),
-          mix(a.seconds, b.seconds),
-          std::exp(mix(std::log(a.loss), std::log(b.loss)))};
-}
-
 /// Lowest loss of a phase over the loss at its start.
 double lowest_ratio(const StageRecord& stage) {
+  const CurveRow loss{stage};
   double lowest = std::numeric_limits<double>::infinity();
-  for (Index k = 1; k < points(stage); ++k)
-    lowest = std::min(lowest, point(stage, k).loss);
-  return lowest / point(stage, 0).loss;
+  for (Index k = 1; k < loss.points(); ++k) lowest = std::min(lowest, loss(k));
+  return lowest / loss(0);
 }
 
 std::optional<double> ratio_at(const StageRecord& stage, double updates) {
-  const auto level = level_at(&stage, updates);
-  if (!level) return {};
-  return level->loss / point(stage, 0).loss;
+  return ratio(loss_at(stage, updates), loss_point(stage, 0).loss);
 }
 
 /// Over its start, at the same number of seconds.
-std::optional<double> ratio_after_seconds(const StageRecord& stage,
-                                          double seconds) {
-  Level before = point(stage, 0);
-  for (Index k = 1; k < points(stage); ++k) {
-    const Level next = point(stage, k);
-    if (next.seconds >= seconds) {
-      const double share =
-          (seconds - before.seconds) / (next.seconds - before.seconds);
-      return between(before, next, share).loss / point(stage, 0).loss;
-    }
-    before = next;
-  }
-  return {};
+std::optional<double> ratio_after(const StageRecord& stage, double seconds) {
+  const auto level = level_after(stage, seconds);
+  if (!level) return {};
+  return level->loss / loss_point(stage, 0).loss;
 }
-
-std::string last_stage(const Runs& runs, std::string_view method) {
-  for (const CaseRecord& c : runs.results().cases())
-    if (c.info.experiment == kName && c.info.method == method)
-      return c.info.stages.back();
-  return {};
-}
-
-// ---- claims -----------------------------------------------------------------
 
 ClaimResult adam_levels(const Runs& runs) {
   Judge judge;
@@ -95,16 +52,15 @@ ClaimResult adam_levels(const Runs& runs) {
 ClaimResult hig_levels(const Runs& runs) {
   Judge judge;
   const auto early = runs.loss("hig-002-b16", 24);
-  const auto late = runs.loss("hig-002-b16", 60), adam = runs.loss("adam", 60);
+  const auto late = runs.loss("hig-002-b16", 60);
   judge.at_least("after 24", early, 55)
       .at_most("after 24", early, 95)
       .at_least("after 60", late, 40)
       .at_most("after 60", late, 62);
-  if (late && adam) {
-    judge.above("Adam over HIG at 60", *adam / *late, 2);
-  } else {
+  if (const auto over = ratio(runs.loss("adam", 60), late))
+    judge.above("Adam over HIG at 60", over, 2);
+  else
     judge.missing("Adam and HIG for 60 updates");
-  }
   return std::move(judge).result(
       "A2",
       "HIG (0.02, b = 16) from fresh weights: 55..95 after 24 updates, 40..62 "
@@ -114,22 +70,22 @@ ClaimResult hig_levels(const Runs& runs) {
 
 ClaimResult adam_needs_more_updates(const Runs& runs) {
   Judge judge;
-  const auto to_reach = [&](double Level::*axis) {
+  const auto to_reach = [&](double LossPoint::*axis) {
     return runs.median_of_pairs(
         "hig-002-b16",
         "hig",
         "adam",
         "adam",
         [&](const auto& hig, const auto& adam) -> std::optional<double> {
-          const auto level = level_at(&hig, 60);
+          const auto level = loss_at(hig, 60);
           if (!level) return {};
-          const auto there = reaches(&adam, level->loss);
+          const auto there = reaches(&adam, *level);
           if (!there) return std::numeric_limits<double>::infinity();
           return (*there).*axis;
         });
   };
-  judge.at_least("Adam's updates", to_reach(&Level::updates), 6 * 60);
-  judge.report("Adam's seconds", to_reach(&Level::seconds))
+  judge.at_least("Adam's updates", to_reach(&LossPoint::updates), 6 * 60);
+  judge.report("Adam's seconds", to_reach(&LossPoint::seconds))
       .report(
           "HIG's seconds",
           runs.median_of(
@@ -198,16 +154,14 @@ ClaimResult hig_after_adam(const Runs& runs) {
 ClaimResult adam_returns(const Runs& runs) {
   Judge judge;
   const auto over_pretrained = [&](const char* method) {
-    return runs.median_of_pairs(
-        method,
-        "adam",
-        method,
-        "again",
-        [](const auto& adam, const auto& again) -> std::optional<double> {
-          const auto level = level_at(&again, 200);
-          if (!level) return {};
-          return level->loss / point(adam, points(adam) - 1).loss;
-        });
+    return runs.median_of_pairs(method,
+                                "adam",
+                                method,
+                                "again",
+                                [](const auto& adam, const auto& again) {
+                                  return ratio(loss_at(again, 200),
+                                               CurveRow{adam}.last());
+                                });
   };
   judge.at_most("Adam 200 updates after HIG over the level before HIG",
                 over_pretrained("adam-hig-adam"),
@@ -242,9 +196,8 @@ ClaimResult immediate_drop(const Runs& runs) {
     judge.report(
         "Adam for as many seconds",
         beside([](const auto& hig, const auto& adam) {
-          const auto ratio =
-              ratio_after_seconds(adam, point(hig, points(hig) - 1).seconds);
-          return ratio ? ratio : ratio_at(adam, double(adam.iterations));
+          const auto after = ratio_after(adam, hig.curve.seconds.back());
+          return after ? after : ratio_at(adam, double(adam.iterations));
         }));
   }
   if (best) judge.below("lowest of all over start", *best, 0.9);
@@ -254,42 +207,6 @@ ClaimResult immediate_drop(const Runs& runs) {
       "a tenth (Fig. 3c; verdict only)",
       "standard",
       false);
-}
-
-struct Phase {
-  std::string method, stage;
-  Index updates = 0, rows = 0, least_kept = 0, unproven = 0, runs = 0;
-  double smallest = std::numeric_limits<double>::infinity();
-};
-
-/// Every method's phase with kept counts.
-std::vector<Phase> phases(const Runs& runs) {
-  std::vector<Phase> found;
-  for (const std::string& method : runs.results().methods(kName)) {
-    for (const StageRecord* s : runs.all(method, "hig")) {
-      if (!s->arrays.contains("kept")) continue;
-      if (found.empty() || found.back().method != method)
-        found.push_back({.method = method, .stage = "hig"});
-      Phase& phase = found.back();
-      const auto& kept = s->arrays.at("kept");
-      if (kept.size() == 0) continue;
-      for (const auto& [name, value] : s->options)
-        if (name == "batch") phase.rows = kCells * std::stoll(value);
-      const auto least = static_cast<Index>(kept.minCoeff());
-      phase.least_kept =
-          phase.runs == 0 ? least : std::min(phase.least_kept, least);
-      ++phase.runs;
-      phase.updates += kept.size();
-      phase.unproven += static_cast<Index>(s->arrays.at("unproven")(0, 0));
-      // A Cholesky factorisation has only a lower bound.
-      const auto &path = s->arrays.at("path"),
-                 &s_min = s->arrays.at("smallest");
-      for (Index k = 0; k < path.size(); ++k)
-        if (path(k) != static_cast<double>(hig::Path::shortcut))
-          phase.smallest = std::min(phase.smallest, s_min(k));
-    }
-  }
-  return found;
 }
 
 ClaimResult nothing_is_cut(const Runs& runs) {
@@ -330,8 +247,8 @@ ClaimResult cost(const Runs& runs) {
     const auto h = runs.median_of(hig, "hig", value);
     judge.report(fmt::format("Adam {}", what), a)
         .report(fmt::format("HIG {}", what), h);
-    if (a && h)
-      judge.above(fmt::format("{}, HIG over Adam", what), *h / *a, 100);
+    if (const auto over = ratio(h, a))
+      judge.above(fmt::format("{}, HIG over Adam", what), over, 100);
   };
   compare("seconds", seconds);
   judge.report("Adam MB", runs.median_of("adam", "adam", bytes))
@@ -344,166 +261,6 @@ ClaimResult cost(const Runs& runs) {
 }
 
 }  // namespace
-
-std::optional<Level> level_at(const StageRecord* stage, double updates) {
-  if (stage == nullptr) return {};
-  for (Index k = 0; k < points(*stage); ++k) {
-    const Level next = point(*stage, k);
-    if (next.updates < updates) continue;
-    if (next.updates == updates) return next;
-    const Level before = point(*stage, k - 1);
-    return between(
-        before,
-        next,
-        (updates - before.updates) / (next.updates - before.updates));
-  }
-  // A run that diverged counts as infinite from there on.
-  if (stage->stop == Stop::diverged)
-    return Level{updates, 0, std::numeric_limits<double>::infinity()};
-  return {};
-}
-
-std::optional<Level> reaches(const StageRecord* stage, double loss) {
-  if (stage == nullptr) return {};
-  for (Index k = 0; k < points(*stage); ++k) {
-    const Level next = point(*stage, k);
-    if (next.loss > loss) continue;
-    if (k == 0) return next;
-    const Level before = point(*stage, k - 1);
-    return between(
-        before,
-        next,
-        std::log(before.loss / loss) / std::log(before.loss / next.loss));
-  }
-  return {};
-}
-
-const StageRecord* Runs::one(std::string_view method,
-                             std::string_view stage,
-                             std::uint64_t seed) const {
-  for (const Index n : results_.sizes(kName)) {
-    const auto* s = results_.find(kName, method, n, seed, stage);
-    if (s != nullptr && s->arrays.contains("mean_loss")) return s;
-  }
-  return nullptr;
-}
-
-std::vector<const StageRecord*> Runs::all(std::string_view method,
-                                          std::string_view stage) const {
-  std::vector<const StageRecord*> found;
-  for (const std::uint64_t seed : results_.seeds(kName))
-    if (const auto* s = one(method, stage, seed)) found.push_back(s);
-  return found;
-}
-
-std::optional<double> Runs::median_of(std::string_view method,
-                                      std::string_view stage,
-                                      const Value& value) const {
-  std::vector<double> values;
-  for (const StageRecord* s : all(method, stage))
-    if (const auto v = value(*s)) values.push_back(*v);
-  if (values.empty()) return {};
-  return median(values);
-}
-
-std::optional<double> Runs::loss(std::string_view method,
-                                 double updates,
-                                 std::string_view stage) const {
-  const std::string last =
-      stage.empty() ? last_stage(*this, method) : std::string(stage);
-  return median_of(method, last, [&](const auto& s) -> std::optional<double> {
-    const auto level = level_at(&s, updates);
-    if (!level) return {};
-    return level->loss;
-  });
-}
-
-std::optional<double> Runs::median_of_pairs(std::string_view method,
-                                            std::string_view stage,
-                                            std::string_view other_method,
-                                            std::string_view other_stage,
-                                            const Pair& value) const {
-  std::vector<double> values;
-  for (const std::uint64_t seed : results_.seeds(kName)) {
-    const auto* a = one(method, stage, seed);
-    const auto* b = one(other_method, other_stage, seed);
-    if (a == nullptr || b == nullptr) continue;
-    if (const auto v = value(*a, *b)) values.push_back(*v);
-  }
-  if (values.empty()) return {};
-  return median(values);
-}
-
-Table spectrum_table(const Runs& runs) {
-  Table table{.id = "spectra",
-              .title = "Singular values of the stacked Jacobian",
-              .source = "App. B.3",
-              .digits = 0,
-              .corner = "method",
-              .columns = {"rows m",
-                          "updates seen",
-                          "least kept",
-                          "smallest s / s_max",
-                          "unproven"},
-              .note =
-                  "Over all seeds. The cut is 1e-5 s_max. Gauss-Newton by a "
-                  "Cholesky factorisation knows that all s are above the cut, "
-                  "not where. Unproven: updates whose accuracy was not "
-                  "shown."};
-  for (const Phase& p : phases(runs)) {
-    const auto number = [](Index v) {
-      return Cell{.ours = static_cast<double>(v)};
-    };
-    table.rows.push_back(
-        {.label = p.method,
-         .cells = {number(p.rows),
-                   number(p.updates),
-                   number(p.least_kept),
-                   Cell{.text = std::isfinite(p.smallest)
-                                    ? fmt::format("{:.1e}", p.smallest)
-                                    : "above the cut"},
-                   number(p.unproven)}});
-  }
-  return table;
-}
-
-Table crossing_table(const Runs& runs) {
-  Table table{.id = "crossings",
-              .title = "From when on the smaller of two of Adam's rates leads",
-              .source = "Figs. 3b, 7a",
-              .digits = 0,
-              .corner = "rates",
-              .columns = {"updates"},
-              .note = "Medians over seeds, at the measured points."};
-  struct Pairing {
-    const char *label, *smaller, *larger;
-  };
-  for (const Pairing& p : {Pairing{"1e-4, 3e-4", "adam", "adam-3e-4"},
-                           Pairing{"1e-4, 1e-3", "adam", "adam-1e-3"},
-                           Pairing{"3e-4, 1e-3", "adam-3e-4", "adam-1e-3"}}) {
-    Cell cell{.text = "not run"};
-    const auto some = runs.all(p.larger, "adam");
-    std::optional<double> since;
-    double last = 0;
-    // Behind a first stretch in which every curve falls alike.
-    for (Index k = 0; !some.empty() && k < points(*some.front()); ++k) {
-      const double updates = point(*some.front(), k).updates;
-      const auto a = runs.loss(p.smaller, updates);
-      const auto b = runs.loss(p.larger, updates);
-      if (!a || !b || updates < 100) continue;
-      last = updates;
-      if (*a >= *b) since.reset();
-      if (*a < *b && !since) since = updates;
-    }
-    if (since) {
-      cell = {.ours = since};
-    } else if (last > 0) {
-      cell.text = fmt::format("not within {}", last);
-    }
-    table.rows.push_back({.label = p.label, .cells = {cell}});
-  }
-  return table;
-}
 
 std::vector<ClaimResult> claims(const Runs& runs) {
   return {adam_levels(runs),

@@ -1,27 +1,23 @@
 // HIG paper, Sec. 3.3, App. B.4, Figs. 4, 8 to 11, Table 5: a network learns
 // which control steers a quantum state in a box to a given superposition, with
 // dense layers and with convolutions.
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "optimizers/training.h"
 #include "problems/quantum_dipole/quantum_dipole.h"
+#include "suite/cases/hig_methods.h"
 #include "suite/cases/hig_quantum_dipole_claims.h"
-#include "suite/cases/hig_report.h"
+#include "suite/cases/hig_quantum_dipole_grids.h"
+#include "suite/cases/hig_quantum_dipole_report.h"
 #include "suite/harness/registry.h"
 #include "suite/nn/cnn.h"
 #include "suite/nn/mlp.h"
 
-namespace physinv {
+namespace physinv::dipole {
 namespace {
-
-using dipole::kConvolutional;
-using dipole::kDense;
 
 constexpr Index kTargets = 1024;
 constexpr Index kChunk = 64;
@@ -35,9 +31,9 @@ void levels(const Snapshot& at, VectorOut<double> out) {
   const QuantumDipole<double> problem;
   Vector<double> loss(at.y.cols());
   problem.level_loss(2, at.y, at.oracle.observations(), loss);
-  out(dipole::kLow) = loss.mean();
+  out(kLow) = loss.mean();
   problem.level_loss(3, at.y, at.oracle.observations(), loss);
-  out(dipole::kHigh) = loss.mean();
+  out(kHigh) = loss.mean();
 }
 
 const Metrics kLevels{
@@ -69,58 +65,6 @@ Method one(std::string id, const TrainingOptions& options) {
   return {.id = std::move(id), .chain = {train(options)}};
 }
 
-/// A grid's point; `id` is the method.
-struct AdamPoint {
-  Index batch;
-  double rate;
-  std::string id;
-};
-
-std::string adam_id(Index batch, double rate) {
-  const int exponent = static_cast<int>(std::floor(std::log10(rate) + 1e-9));
-  return fmt::format(
-      "adam-b{}-{:.0f}e{}", batch, rate / std::pow(10.0, exponent), exponent);
-}
-
-/// Figs. 8 and 10; `adam` is the one other figures show.
-std::vector<AdamPoint> adam_grid(Index batch_of_adam, double rate_of_adam) {
-  std::vector<AdamPoint> all;
-  for (const Index b : {16, 256, 512, 1024})
-    for (const double rate : {1e-4, 2e-4, 5e-4, 1e-3}) {
-      const bool main = b == batch_of_adam && rate == rate_of_adam;
-      all.push_back({b, rate, main ? "adam" : adam_id(b, rate)});
-    }
-  return all;
-}
-
-struct HigPoint {
-  Index batch;
-  double rate;
-  int digits;  ///< tau = 10^-digits
-  std::string id;
-
-  double tau() const { return std::pow(10.0, -digits); }
-};
-
-/// Figs. 9 and 11; `hig` is the one other figures show.
-std::vector<HigPoint> hig_grid(double rate_of_hig, int digits_of_hig) {
-  std::vector<HigPoint> all;
-  for (const Index b : {8, 16})
-    for (const double rate : {0.5, 0.7, 1.0})
-      for (const int digits : {2, 3, 4, 5, 6}) {
-        const bool main =
-            b == 16 && rate == rate_of_hig && digits == digits_of_hig;
-        all.push_back(
-            {b,
-             rate,
-             digits,
-             main ? "hig"
-                  : fmt::format(
-                        "hig-b{}-eta{:02.0f}-tau{}", b, 10 * rate, digits)});
-      }
-  return all;
-}
-
 std::vector<Method> grids(const std::vector<AdamPoint>& adam,
                           const std::vector<HigPoint>& hig) {
   std::vector<Method> all;
@@ -130,11 +74,6 @@ std::vector<Method> grids(const std::vector<AdamPoint>& adam,
     all.push_back(one(p.id, by_adam(p.batch, p.rate)));
   return all;
 }
-
-std::vector<AdamPoint> dense_adam() { return adam_grid(16, 1e-4); }
-std::vector<HigPoint> dense_hig() { return hig_grid(0.5, 5); }
-std::vector<AdamPoint> conv_adam() { return adam_grid(256, 2e-4); }
-std::vector<HigPoint> conv_hig() { return hig_grid(0.7, 4); }
 
 std::vector<Method> dense_methods() {
   std::vector<Method> all = grids(dense_adam(), dense_hig());
@@ -152,184 +91,9 @@ std::vector<Method> dense_methods() {
   return all;
 }
 
-// ---- report -----------------------------------------------------------------
-
-/// Seconds of an update in Table 5; what it does not list takes as long as the
-/// smallest batch it does.
-double paper_seconds(bool hig, Index batch) {
-  if (hig) return batch == 8 ? 0.42 : 0.60;
-  return batch == 1024 ? 1.33 : batch == 512 ? 0.50 : 0.40;
-}
-
-std::vector<MethodLine> lines_of(const std::vector<AdamPoint>& grid) {
-  std::vector<MethodLine> lines;
-  for (const AdamPoint& p : grid)
-    lines.push_back({p.id,
-                     fmt::format("b={} eta={:.0e}", p.batch, p.rate),
-                     p.id,
-                     paper_seconds(false, p.batch)});
-  return lines;
-}
-
-std::vector<MethodLine> lines_of(const std::vector<HigPoint>& grid) {
-  std::vector<MethodLine> lines;
-  for (const HigPoint& p : grid)
-    lines.push_back(
-        {p.id,
-         fmt::format("b={} eta={} tau=1e-{}", p.batch, p.rate, p.digits),
-         p.id,
-         paper_seconds(true, p.batch)});
-  return lines;
-}
-
-const std::vector<MethodLine> kMain = {
-    {"hig", "HIG", "jpo", 0.60},
-    {"gn", "Gauss-Newton", "bfgs", 0.60},
-    {"adam", "Adam b=16 1e-4", "gd", 0.40},
-    {"adam-b256-5e-4", "Adam b=256 5e-4", "supervised", 0.40}};
-
-const std::vector<MethodLine> kRates = {
-    {"hig-b16-eta025-tau5", "HIG eta=0.25", "na", 0.60},
-    {"hig", "HIG eta=0.5", "jpo", 0.60},
-    {"hig-b16-eta10-tau5", "HIG eta=1", "bfgs", 0.60},
-    {"adam", "Adam b=16 1e-4", "gd", 0.40},
-    {"adam-b16-3e-4", "Adam b=16 3e-4", "adam-b16-3e-4", 0.40},
-    {"adam-b16-1e-3", "Adam b=16 1e-3", "adam-b16-1e-3", 0.40},
-    {"adam-b16-3e-3", "Adam b=16 3e-3", "adam-b16-3e-3", 0.40},
-    {"adam-b256-5e-4", "Adam b=256 5e-4", "supervised", 0.40}};
-
-const std::vector<MethodLine> kRules = {{"hig", "HIG", "jpo"},
-                                        {"gn", "Gauss-Newton", "bfgs"},
-                                        {"adam", "Adam", "gd"},
-                                        {"sgd", "SGD", "supervised"},
-                                        {"adagrad", "Adagrad", "na"},
-                                        {"rmsprop", "RMSprop", "rmsprop"},
-                                        {"adam-hig", "Adam, then HIG", "sip"}};
-
-const std::vector<CostLine> kCosts = {
-    {"adam-b256-5e-4", "Adam b=256", "table5/adam/b=256"},
-    {"adam-b512-5e-4", "Adam b=512", "table5/adam/b=512"},
-    {"adam-b1024-5e-4", "Adam b=1024", "table5/adam/b=1024"},
-    {"hig-b8-eta05-tau5", "HIG b=8", "table5/hig/b=8"},
-    {"hig", "HIG b=16", "table5/hig/b=16"},
-    {"gn", "Gauss-Newton b=16", ""},
-    {"adam", "Adam b=16", ""}};
-
-void add(Section& section, Figure figure) {
-  if (!figure.panels.empty() && !figure.panels.front().series.empty())
-    section.figures.push_back(std::move(figure));
-}
-
-/// The learning curves of both grids.
-void add_grids(Section& section,
-               const Results& results,
-               const std::vector<MethodLine>& adam,
-               const std::vector<MethodLine>& hig,
-               std::pair<const char*, const char*> ids,
-               std::pair<const char*, const char*> sources) {
-  const char* name = section.experiment.c_str();
-  add(section,
-      loss_figure(results,
-                  name,
-                  present(results, name, adam),
-                  ids.first,
-                  "Adam: batch size and rate",
-                  sources.first));
-  add(section,
-      loss_figure(results,
-                  name,
-                  present(results, name, hig),
-                  ids.second,
-                  "HIG: batch size, rate and truncation",
-                  sources.second));
-}
-
-std::vector<MethodLine> joined(std::vector<MethodLine> a,
-                               const std::vector<MethodLine>& b) {
-  for (const MethodLine& line : b) {
-    const auto same = [&](const auto& l) { return l.method == line.method; };
-    if (std::none_of(a.begin(), a.end(), same)) a.push_back(line);
-  }
-  return a;
-}
-
-Section dense_report(const Results& results, const Published& published) {
-  const auto adam = lines_of(dense_adam()), hig = lines_of(dense_hig());
-  const auto all =
-      joined(joined(joined(kMain, kRules), kRates), joined(hig, adam));
-  Section section{
-      .experiment = kDense,
-      .title = "Quantum dipole",
-      .paper = "hig",
-      .tables = {loss_table(results, kDense, present(results, kDense, all)),
-                 cost_table(results, kDense, published, kCosts, "Table 5")},
-      .claims = dipole::dense_claims(results)};
-  const auto shown = [&](const auto& lines) {
-    return present(results, kDense, lines);
-  };
-  add(section,
-      loss_figure(results,
-                  kDense,
-                  shown(kRates),
-                  "fig4b",
-                  "Learning curves for several rates",
-                  "Fig. 4b"));
-  add(section,
-      metric_figure(results,
-                    kDense,
-                    shown(kMain),
-                    dipole::kLow,
-                    "low-energy loss",
-                    "fig4c_low",
-                    "First excited state alone",
-                    "Fig. 4c"));
-  add(section,
-      metric_figure(results,
-                    kDense,
-                    shown(kMain),
-                    dipole::kHigh,
-                    "high-energy loss",
-                    "fig4c_high",
-                    "Second excited state alone",
-                    "Fig. 4c"));
-  add_grids(
-      section, results, adam, hig, {"fig8", "fig9"}, {"Fig. 8", "Fig. 9"});
-  add(section,
-      chain_figure(results,
-                   kDense,
-                   shown(kRules),
-                   "rules",
-                   "Update rules, and Adam followed by HIG",
-                   ""));
-  return section;
-}
-
-Section conv_report(const Results& results, const Published&) {
-  const auto adam = lines_of(conv_adam()), hig = lines_of(conv_hig());
-  Section section{.experiment = kConvolutional,
-                  .title = "Quantum dipole, convolutional network",
-                  .paper = "hig",
-                  .tables = {loss_table(
-                      results,
-                      kConvolutional,
-                      present(results, kConvolutional, joined(hig, adam)))},
-                  .claims = {dipole::convolutions_keep_the_order(results)}};
-  add_grids(
-      section, results, adam, hig, {"fig10", "fig11"}, {"Fig. 10", "Fig. 11"});
-  return section;
-}
-
 // ---- registration -----------------------------------------------------------
 
-Row row(std::vector<std::string> ids,
-        std::vector<std::uint64_t> seeds,
-        Index updates) {
-  return {.methods = std::move(ids),
-          .n = {kTargets},
-          .seeds = std::move(seeds),
-          .iterations = updates,
-          .precision = Precision::f64};
-}
+constexpr RowOf row{.n = kTargets};
 
 /// The grids' points but those with rows of their own.
 template <class Grid>
@@ -440,4 +204,4 @@ const auto kRegisteredCnn = register_experiment({
 });
 
 }  // namespace
-}  // namespace physinv
+}  // namespace physinv::dipole

@@ -1,199 +1,13 @@
 #include "suite/cases/hig_quantum_dipole_claims.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <map>
 #include <optional>
-#include <string>
-#include <utility>
 
-#include "suite/cases/hig_report.h"
+#include "suite/cases/hig_curve.h"
+#include "suite/cases/hig_quantum_dipole_runs.h"
 #include "suite/cases/jpo_claims.h"
-#include "suite/cases/jpo_endings.h"
 
 namespace physinv::dipole {
 namespace {
-
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
-
-/// A number of one run; empty if the run is too short to tell.
-using Value = std::function<std::optional<double>(const StageRecord&)>;
-
-// ---- one run ----------------------------------------------------------------
-
-double updates(const StageRecord& s, Index k) {
-  return s.curve.iteration[static_cast<std::size_t>(k)];
-}
-
-/// One row of an array along the curve.
-struct Line {
-  const StageRecord& stage;
-  const char* array = "mean_loss";
-  Index row = 0;
-
-  Index points() const { return stage.curve.points(); }
-  double operator()(Index k) const {
-    const double v = stage.arrays.at(array)(row, k);
-    return v < std::numeric_limits<double>::max() ? v : kInfinite;
-  }
-  /// Updates until the first point below `level`; infinite if there is none.
-  double until_below(double level) const {
-    for (Index k = 0; k < points(); ++k)
-      if ((*this)(k) < level) return updates(stage, k);
-    return kInfinite;
-  }
-};
-
-Line low(const StageRecord& s) { return {s, "metrics", kLow}; }
-Line high(const StageRecord& s) { return {s, "metrics", kHigh}; }
-
-/// Test loss after so many updates; its logarithm is linear between points.
-Value loss_after(double count) {
-  return [=](const StageRecord& s) -> std::optional<double> {
-    const Line loss{s};
-    for (Index k = 0; k < loss.points(); ++k) {
-      const double here = updates(s, k);
-      if (here < count) continue;
-      if (here == count || !std::isfinite(loss(k))) return loss(k);
-      const double before = updates(s, k - 1);
-      const double share = (count - before) / (here - before);
-      return std::exp((1 - share) * std::log(loss(k - 1)) +
-                      share * std::log(loss(k)));
-    }
-    if (s.stop == Stop::diverged) return kInfinite;
-    return {};
-  };
-}
-
-double length(const StageRecord& s) { return updates(s, s.curve.points() - 1); }
-
-/// The value of runs of at least `enough` updates: in shorter ones only fast
-/// seeds would show.
-Value if_long(double enough, const Value& value) {
-  return [=](const StageRecord& s) -> std::optional<double> {
-    if (length(s) < enough) return {};
-    return value(s);
-  };
-}
-
-/// Updates until the test loss is below `level`, infinite if it never is.
-Value until(double level, double enough) {
-  return if_long(
-      enough, [=](const StageRecord& s) { return Line{s}.until_below(level); });
-}
-
-/// Longest stretch of updates with a test loss between 0.4 and 0.56.
-std::optional<double> stalled(const StageRecord& s) {
-  const Line loss{s};
-  double longest = 0, from = -1;
-  for (Index k = 0; k < loss.points(); ++k) {
-    const bool inside = loss(k) >= 0.4 && loss(k) <= 0.56;
-    if (!inside) from = -1;
-    if (inside && from < 0) from = updates(s, k);
-    if (inside) longest = std::max(longest, updates(s, k) - from);
-  }
-  return longest;
-}
-
-/// Updates until HE < 0.1 over updates until LE < 0.1.
-std::optional<double> lag(const StageRecord& s) {
-  const double he = high(s).until_below(0.1), le = low(s).until_below(0.1);
-  if (he == kInfinite) return {};
-  return he / le;
-}
-
-/// Largest rise of LE over its lowest value so far, until HE < 0.1.
-std::optional<double> rise(const StageRecord& s) {
-  double lowest = kInfinite, most = 0;
-  for (Index k = 0; k < low(s).points(); ++k) {
-    lowest = std::min(lowest, low(s)(k));
-    most = std::max(most, low(s)(k) - lowest);
-    if (high(s)(k) < 0.1) return most;
-  }
-  return {};
-}
-
-/// Median test loss of the last three points of the curve.
-Value settled(double enough) {
-  return [=](const StageRecord& s) -> std::optional<double> {
-    const Line loss{s};
-    const Index last = loss.points() - 1;
-    if (last < 2 || updates(s, last) < enough) return {};
-    return median({loss(last), loss(last - 1), loss(last - 2)});
-  };
-}
-
-// ---- all seeds --------------------------------------------------------------
-
-std::map<std::uint64_t, double> of_seeds(const Results& results,
-                                         const char* experiment,
-                                         std::string_view method,
-                                         const Value& value) {
-  std::map<std::uint64_t, double> found;
-  for (const std::uint64_t seed : results.seeds(experiment))
-    if (const auto* s = trained_stage(results, experiment, method, seed))
-      if (const auto v = value(*s)) found[seed] = *v;
-  return found;
-}
-
-class Seeds {
- public:
-  Seeds(const Results& results,
-        std::string_view method,
-        const Value& value,
-        const char* experiment = kDense)
-      : values_(of_seeds(results, experiment, method, value)) {}
-
-  bool any() const { return !values_.empty(); }
-  std::optional<double> middle() const {
-    if (!any()) return {};
-    return median(sorted());
-  }
-  std::optional<double> lowest() const { return ranked(0); }
-  std::optional<double> highest() const {
-    return ranked(static_cast<Index>(values_.size()) - 1);
-  }
-  /// The bound that four seeds of five keep (two of three), from above and
-  /// from below.
-  std::optional<double> most_below() const { return ranked(enough() - 1); }
-  std::optional<double> most_above() const {
-    return ranked(static_cast<Index>(values_.size()) - enough());
-  }
-  /// The smallest ratio of a pair of one seed.
-  std::optional<double> smallest_ratio(const Seeds& other) const {
-    std::optional<double> least;
-    for (const auto& [seed, v] : values_) {
-      const auto pair = other.values_.find(seed);
-      if (pair != other.values_.end())
-        least = std::min(least.value_or(kInfinite), v / pair->second);
-    }
-    return least;
-  }
-
- private:
-  std::vector<double> sorted() const {
-    std::vector<double> all;
-    for (const auto& [seed, v] : values_) all.push_back(v);
-    std::sort(all.begin(), all.end());
-    return all;
-  }
-  std::optional<double> ranked(Index i) const {
-    if (!any()) return {};
-    return sorted()[static_cast<std::size_t>(i)];
-  }
-  Index enough() const {
-    const auto n = static_cast<Index>(values_.size());
-    return std::max<Index>(1, 4 * n / 5);
-  }
-
-  std::map<std::uint64_t, double> values_;
-};
-
-// ---- the claims -------------------------------------------------------------
 
 ClaimResult hig_leaves_the_plateau(const Results& results) {
   Judge judge;
@@ -289,22 +103,18 @@ ClaimResult cuts_matter_at_the_ends(const Results& results) {
     return Seeds(results, method, loss_after(256)).middle();
   };
   Judge judge;
-  const auto coarse = after("hig-b16-eta05-tau2");
   const auto middle = after("hig-b16-eta05-tau3");
-  const auto fine = after("hig"), finest = after("hig-b16-eta05-tau6");
   judge.at_most("tau 1e-3", middle, 5e-3)
       .report("1e-4", after("hig-b16-eta05-tau4"));
-  if (coarse && middle) {
-    judge.above("tau 1e-2 over 1e-3", *coarse / *middle, 10);
-  } else {
+  if (const auto coarse = ratio(after("hig-b16-eta05-tau2"), middle))
+    judge.above("tau 1e-2 over 1e-3", coarse, 10);
+  else
     judge.missing("tau 1e-2 and 1e-3");
-  }
-  if (fine && finest) {
-    judge.at_most("tau 1e-6 over 1e-5", *finest / *fine, 5)
-        .at_least("tau 1e-6 over 1e-5", *finest / *fine, 0.2);
-  } else {
+  if (const auto finest = ratio(after("hig-b16-eta05-tau6"), after("hig")))
+    judge.at_most("tau 1e-6 over 1e-5", finest, 5)
+        .at_least("tau 1e-6 over 1e-5", finest, 0.2);
+  else
     judge.missing("tau 1e-6 and 1e-5");
-  }
   return std::move(judge).result(
       "A6",
       "After 256 updates HIG does well for tau 1e-3, ten times worse for "
@@ -316,7 +126,7 @@ ClaimResult cuts_matter_at_the_ends(const Results& results) {
 ClaimResult gauss_newton_is_stable(const Results& results) {
   Judge judge;
   const Value last = [](const StageRecord& s) {
-    return std::optional(Line{s}(s.curve.points() - 1));
+    return std::optional(CurveRow{s}.last());
   };
   judge.at_most("highest end", Seeds(results, "gn", last).highest(), 1)
       .report("median", Seeds(results, "gn", last).middle())
@@ -353,50 +163,6 @@ ClaimResult convolutions_keep_the_order(const Results& results) {
       "With the convolutional network, HIG is below 5e-3 after 256 updates, "
       "Adam (b=256, 2e-4) above 1e-2 after 600",
       "standard");
-}
-
-ClaimResult direct_control_has_no_floor(const Results& results) {
-  // At update 100, from the losses of all targets.
-  const auto at_end = [](auto&& value) -> Value {
-    return [=](const StageRecord& s) -> std::optional<double> {
-      for (Index k = 0; k < s.curve.points(); ++k)
-        if (updates(s, k) >= 100) return value(s, k);
-      return {};
-    };
-  };
-  const Value named = at_end([](const StageRecord& s, Index k) {
-    return s.curve.loss.col(k).head(kNamed).maxCoeff();
-  });
-  const Value middle = at_end([](const StageRecord& s, Index k) {
-    const Vector<double> all = s.curve.loss.col(k);
-    return median({all.begin(), all.end()});
-  });
-  const Value worst = at_end([](const StageRecord& s, Index k) {
-    return s.curve.loss.col(k).maxCoeff();
-  });
-  const auto in_float = [&](Formula row) {
-    return at_end([=](const StageRecord& s, Index k) {
-      return Line{s, "metrics", row}(k);
-    });
-  };
-  const auto of = [&](const char* method, const Value& value) {
-    return Seeds(results, method, value, kDirect).highest();
-  };
-  Judge judge;
-  judge.below("float64", of("hig", named), 1e-7)
-      .below(
-          "float32, |psi - <t, psi> t|^2", of("hig-f32", in_float(kRest)), 1e-7)
-      .report("float32, 1 - |<t, psi>|^2", of("hig-f32", in_float(kOverlap)))
-      .report("GN float64", of("gn", named))
-      .report("GN float32", of("gn-f32", in_float(kRest)))
-      .report("random targets, float64, median", of("hig", middle))
-      .report("worst", of("hig", worst));
-  return std::move(judge).result(
-      "A9",
-      "A control optimised without a network (target angles 0.7 and 2) goes "
-      "below 1e-7 in 100 updates, in double and, by the formula that does not "
-      "cancel, in float",
-      "quick");
 }
 
 }  // namespace physinv::dipole

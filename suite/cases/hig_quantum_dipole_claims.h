@@ -10,7 +10,6 @@ namespace physinv::dipole {
 
 inline constexpr const char* kDense = "hig/quantum-dipole";
 inline constexpr const char* kConvolutional = "hig/quantum-dipole-cnn";
-inline constexpr const char* kDirect = "hig/quantum-dipole-direct";
 
 /// Rows of the array `metrics`: losses of the first and of the second excited
 /// state alone (LE and HE of Fig. 4c), means over the test set.
@@ -20,10 +19,5 @@ enum Level : Index { kLow, kHigh };
 std::vector<ClaimResult> dense_claims(const Results& results);
 /// A7.
 ClaimResult convolutions_keep_the_order(const Results& results);
-/// A9. The first targets have angles 0.7 and 2; rows of `metrics`: their loss
-/// in float by both formulas.
-inline constexpr Index kNamed = 2;
-enum Formula : Index { kOverlap, kRest };
-ClaimResult direct_control_has_no_floor(const Results& results);
 
 }  // namespace physinv::dipole

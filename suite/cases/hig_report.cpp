@@ -2,15 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
+#include <limits>
 
+#include "suite/cases/hig_curve.h"
 #include "suite/cases/jpo_endings.h"
 
 namespace physinv {
 namespace {
-
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 /// A finished chain of training stages; null if it is not there.
 const CaseRecord* trained_case(const Results& results,
@@ -25,143 +23,6 @@ const CaseRecord* trained_case(const Results& results,
   return nullptr;
 }
 
-std::vector<const CaseRecord*> chains_of(const Results& results,
-                                         std::string_view experiment,
-                                         std::string_view method) {
-  std::vector<const CaseRecord*> found;
-  for (const std::uint64_t seed : results.seeds(experiment))
-    if (const auto* c = trained_case(results, experiment, method, seed))
-      found.push_back(c);
-  return found;
-}
-
-std::vector<const StageRecord*> stages_of(const Results& results,
-                                          std::string_view experiment,
-                                          std::string_view method) {
-  std::vector<const StageRecord*> found;
-  for (const CaseRecord* c : chains_of(results, experiment, method))
-    found.push_back(&c->stages.back());
-  return found;
-}
-
-/// What overflowed is infinite again: records hold finite numbers only.
-double restored(double value) {
-  return value < std::numeric_limits<double>::max() ? value : kInfinite;
-}
-
-/// Mean test loss at point k.
-double at(const StageRecord& s, std::size_t k) {
-  return restored(s.arrays.at("mean_loss")(0, static_cast<Index>(k)));
-}
-
-/// What one seed's curve shows: a value at each point over three axes.
-struct Points {
-  std::vector<double> updates, seconds, paper, value;
-};
-
-using Axis = std::vector<double> Points::*;
-
-/// One row of an array along the curve, behind `before`.
-Points points_of(const StageRecord& stage,
-                 const char* array,
-                 Index row,
-                 double paper_update,
-                 Points before = {}) {
-  const auto end = [](const std::vector<double>& v) {
-    return v.empty() ? 0.0 : v.back();
-  };
-  const double updates = end(before.updates), seconds = end(before.seconds),
-               paper = end(before.paper);
-  const Batch<double>& values = stage.arrays.at(array);
-  for (std::size_t k = 0; k < stage.curve.iteration.size(); ++k) {
-    const double iteration = stage.curve.iteration[k];
-    before.updates.push_back(updates + iteration);
-    before.seconds.push_back(seconds + stage.curve.seconds[k]);
-    before.paper.push_back(paper + iteration * paper_update);
-    before.value.push_back(restored(values(row, static_cast<Index>(k))));
-  }
-  return before;
-}
-
-/// Median and range over the seeds at each point that all of them have.
-Series median_series(const std::vector<Points>& seeds,
-                     const MethodLine& line,
-                     Axis axis) {
-  Series s{.label = line.label, .method = line.colour};
-  std::size_t points = seeds.empty() ? 0 : SIZE_MAX;
-  for (const Points& p : seeds) points = std::min(points, p.value.size());
-  for (std::size_t k = 0; k < points; ++k) {
-    std::vector<double> values, x;
-    for (const Points& p : seeds) {
-      values.push_back(p.value[k]);
-      x.push_back((p.*axis)[k]);
-    }
-    const double middle = median(values);
-    // Logarithmic axes have no place for the start, nor for the end of time.
-    if (seeds.front().updates[k] <= 0 || !std::isfinite(middle)) continue;
-    s.x.push_back(median(x));
-    s.y.push_back(middle);
-    const auto [lo, hi] = std::minmax_element(values.begin(), values.end());
-    s.lo.push_back(*lo);
-    s.hi.push_back(std::isfinite(*hi) ? *hi : middle);
-  }
-  return s;
-}
-
-Panel panel(const char* x_label, std::string y_label, bool y_log) {
-  return {.x_label = x_label,
-          .y_label = std::move(y_label),
-          .x_log = true,
-          .y_log = y_log};
-}
-
-/// `points` gives what one seed of a line shows.
-template <class F>
-Figure loss_panels(const std::vector<MethodLine>& lines, F&& points) {
-  const std::pair<const char*, Axis> axes[] = {
-      {"updates", &Points::updates},
-      {"seconds", &Points::seconds},
-      {"seconds by the paper's clock", &Points::paper}};
-  Figure figure{
-      .columns = 2,
-      .note =
-          "Median over seeds, band: range. Test losses are not finite "
-          "where a line ends early."};
-  for (const auto& [label, axis] : axes) {
-    Panel one = panel(label, "test loss", true);
-    for (const MethodLine& line : lines) {
-      if (axis == &Points::paper && line.paper_update == 0) continue;
-      const std::vector<Points> seeds = points(line);
-      if (!seeds.empty())
-        one.series.push_back(median_series(seeds, line, axis));
-    }
-    if (axis != &Points::paper || !one.series.empty())
-      figure.panels.push_back(std::move(one));
-  }
-  return figure;
-}
-
-Figure named(Figure figure,
-             std::string id,
-             std::string title,
-             std::string source) {
-  figure.id = std::move(id);
-  figure.title = std::move(title);
-  figure.source = std::move(source);
-  return figure;
-}
-
-/// What an update took, and the bytes that the stage holds.
-struct Cost {
-  double seconds, bytes;
-};
-
-Cost cost_of(const StageRecord& s) {
-  return {
-      .seconds = s.clocks.solve.wall / std::max(1.0, s.curve.iteration.back()),
-      .bytes = static_cast<double>(s.buffer_bytes)};
-}
-
 }  // namespace
 
 const StageRecord* trained_stage(const Results& results,
@@ -172,15 +33,31 @@ const StageRecord* trained_stage(const Results& results,
   return c == nullptr ? nullptr : &c->stages.back();
 }
 
+std::vector<const CaseRecord*> trained_chains(const Results& results,
+                                              std::string_view experiment,
+                                              std::string_view method) {
+  std::vector<const CaseRecord*> found;
+  for (const std::uint64_t seed : results.seeds(experiment))
+    if (const auto* c = trained_case(results, experiment, method, seed))
+      found.push_back(c);
+  return found;
+}
+
+std::vector<const StageRecord*> trained_stages(const Results& results,
+                                               std::string_view experiment,
+                                               std::string_view method) {
+  std::vector<const StageRecord*> found;
+  for (const CaseRecord* c : trained_chains(results, experiment, method))
+    found.push_back(&c->stages.back());
+  return found;
+}
+
 std::optional<double> test_loss(const StageRecord* stage, Index updates) {
   if (stage == nullptr) return {};
-  const auto& iteration = stage->curve.iteration;
-  const bool diverged = stage->stop == Stop::diverged;
-  if (iteration.back() < static_cast<double>(updates))
-    return diverged ? std::optional(kInfinite) : std::nullopt;
-  const auto after = std::upper_bound(
-      iteration.begin(), iteration.end(), static_cast<double>(updates));
-  return at(*stage, static_cast<std::size_t>(after - iteration.begin()) - 1);
+  if (const auto k = last_point(*stage, updates)) return CurveRow{*stage}(*k);
+  if (stage->stop == Stop::diverged)
+    return std::numeric_limits<double>::infinity();
+  return {};
 }
 
 std::optional<double> median_test_loss(const Results& results,
@@ -188,177 +65,17 @@ std::optional<double> median_test_loss(const Results& results,
                                        std::string_view method,
                                        Index updates) {
   std::vector<double> losses;
-  for (const auto* s : stages_of(results, experiment, method))
+  for (const auto* s : trained_stages(results, experiment, method))
     if (const auto loss = test_loss(s, updates)) losses.push_back(*loss);
   if (losses.empty()) return {};
   return median(losses);
 }
 
-std::vector<MethodLine> present(const Results& results,
-                                std::string_view experiment,
-                                std::vector<MethodLine> lines) {
-  std::erase_if(lines, [&](const MethodLine& line) {
-    return stages_of(results, experiment, line.method).empty();
-  });
-  return lines;
-}
-
-Figure loss_figure(const Results& results,
-                   std::string_view experiment,
-                   const std::vector<MethodLine>& lines,
-                   std::string id,
-                   std::string title,
-                   std::string source) {
-  const auto points = [&](const MethodLine& line) {
-    std::vector<Points> seeds;
-    for (const auto* s : stages_of(results, experiment, line.method))
-      seeds.push_back(points_of(*s, "mean_loss", 0, line.paper_update));
-    return seeds;
-  };
-  return named(loss_panels(lines, points),
-               std::move(id),
-               std::move(title),
-               std::move(source));
-}
-
-Figure chain_figure(const Results& results,
-                    std::string_view experiment,
-                    const std::vector<MethodLine>& lines,
-                    std::string id,
-                    std::string title,
-                    std::string source) {
-  const auto points = [&](const MethodLine& line) {
-    std::vector<Points> seeds;
-    for (const CaseRecord* c : chains_of(results, experiment, line.method)) {
-      Points joined;
-      for (const StageRecord& s : c->stages)
-        joined =
-            points_of(s, "mean_loss", 0, line.paper_update, std::move(joined));
-      seeds.push_back(std::move(joined));
-    }
-    return seeds;
-  };
-  return named(loss_panels(lines, points),
-               std::move(id),
-               std::move(title),
-               std::move(source));
-}
-
-Figure metric_figure(const Results& results,
-                     std::string_view experiment,
-                     const std::vector<MethodLine>& lines,
-                     Index row,
-                     std::string y_label,
-                     std::string id,
-                     std::string title,
-                     std::string source) {
-  Panel one = panel("updates", std::move(y_label), true);
-  for (const MethodLine& line : lines) {
-    std::vector<Points> seeds;
-    for (const auto* s : stages_of(results, experiment, line.method))
-      if (s->arrays.contains("metrics"))
-        seeds.push_back(points_of(*s, "metrics", row, 0));
-    if (!seeds.empty())
-      one.series.push_back(median_series(seeds, line, &Points::updates));
-  }
-  return named({.panels = {std::move(one)},
-                .columns = 1,
-                .note = "Median over seeds, band: range."},
-               std::move(id),
-               std::move(title),
-               std::move(source));
-}
-
-Table loss_table(const Results& results,
-                 std::string_view experiment,
-                 const std::vector<MethodLine>& lines) {
-  Table table{.id = "results",
-              .title = "Test loss at the end, and what an update takes",
-              .digits = 5,
-              .corner = "method",
-              .columns = {"updates",
-                          "median loss",
-                          "lowest",
-                          "highest",
-                          "diverged",
-                          "ms / update",
-                          "MB"},
-              .note =
-                  "Memory: buffers the stage holds. Times on this machine, "
-                  "one thread per case."};
-  for (const MethodLine& line : lines) {
-    std::vector<double> losses, seconds, updates, bytes;
-    int diverged = 0;
-    for (const auto* s : stages_of(results, experiment, line.method)) {
-      losses.push_back(at(*s, s->curve.iteration.size() - 1));
-      updates.push_back(s->curve.iteration.back());
-      const Cost cost = cost_of(*s);
-      seconds.push_back(cost.seconds);
-      bytes.push_back(cost.bytes);
-      diverged += s->stop == Stop::diverged;
-    }
-    TableRow row{.label = line.label};
-    if (losses.empty()) {
-      row.cells.assign(table.columns.size(), Cell{.text = "not run"});
-    } else {
-      const auto number = [](double v) {
-        return Cell{.text = std::isfinite(v) ? fmt::format("{:.3g}", v)
-                                             : "not finite"};
-      };
-      row.cells = {number(median(updates)),
-                   number(median(losses)),
-                   number(*std::min_element(losses.begin(), losses.end())),
-                   number(*std::max_element(losses.begin(), losses.end())),
-                   Cell{.text = fmt::format("{}/{}", diverged, losses.size())},
-                   number(1e3 * median(seconds)),
-                   number(1e-6 * median(bytes))};
-    }
-    table.rows.push_back(std::move(row));
-  }
-  return table;
-}
-
-Table cost_table(const Results& results,
-                 std::string_view experiment,
-                 const Published& published,
-                 const std::vector<CostLine>& lines,
-                 std::string source) {
-  Table table{.id = "cost",
-              .title = "Memory and duration of an update",
-              .source = std::move(source),
-              .digits = 2,
-              .corner = "method",
-              .columns = {"MB", "ms / update"},
-              .note =
-                  "Ours: bytes of the buffers the stage holds, one thread, "
-                  "median over seeds. The paper's machine had a GPU."};
-  const auto paper = [&](const std::string& quantity, double unit) {
-    const auto value = published.find(experiment, quantity);
-    return value ? std::optional(unit * value->value) : std::nullopt;
-  };
-  for (const CostLine& line : lines) {
-    std::vector<double> seconds, bytes;
-    bool crowded = false;
-    for (const auto* s : stages_of(results, experiment, line.method)) {
-      const Cost cost = cost_of(*s);
-      bytes.push_back(cost.bytes);
-      crowded |= s->crowded;
-      if (!s->crowded) seconds.push_back(cost.seconds);
-    }
-    Cell megabytes{.paper = paper(line.published + "/memory", 1)};
-    Cell duration{.paper = paper(line.published + "/update", 1e3)};
-    if (bytes.empty()) {
-      megabytes.text = duration.text = "not run";
-    } else {
-      megabytes.ours = 1e-6 * median(bytes);
-      if (!seconds.empty())
-        duration.ours = 1e3 * median(seconds);
-      else if (crowded)
-        duration.text = "crowded";
-    }
-    table.rows.push_back({.label = line.label, .cells = {megabytes, duration}});
-  }
-  return table;
+std::optional<double> paper_update(const Published& published,
+                                   std::string_view experiment,
+                                   std::string_view row) {
+  const auto found = published.find(experiment, fmt::format("{}/update", row));
+  return found ? std::optional(found->value) : std::nullopt;
 }
 
 }  // namespace physinv

@@ -20,6 +20,14 @@ const StageRecord* trained_stage(const Results& results,
                                  std::string_view method,
                                  std::uint64_t seed);
 
+/// Those of all seeds that have one: whole chains, and their last stages.
+std::vector<const CaseRecord*> trained_chains(const Results& results,
+                                              std::string_view experiment,
+                                              std::string_view method);
+std::vector<const StageRecord*> trained_stages(const Results& results,
+                                               std::string_view experiment,
+                                               std::string_view method);
+
 /// Mean test loss at the last point of the curve at or before `updates`
 /// (the end of a run that diverged counts as infinite). Empty if the run is
 /// not there or is shorter.
@@ -34,42 +42,53 @@ std::optional<double> median_test_loss(const Results& results,
 /// A method as a figure shows it.
 struct MethodLine {
   std::string method, label, colour;
-  double paper_update = 0;  ///< seconds per update by the paper; 0: unknown
+  std::optional<double> paper_update;  ///< seconds by the paper, if it says
 };
 
-/// The lines whose method has results.
-std::vector<MethodLine> present(const Results& results,
-                                std::string_view experiment,
-                                std::vector<MethodLine> lines);
+/// Seconds of an update by a row of the paper's tables ("table3/hig/b=128").
+std::optional<double> paper_update(const Published& published,
+                                   std::string_view experiment,
+                                   std::string_view row);
 
-/// Median test loss over updates, over solving time and, for lines that know
-/// it, over the paper's time; the band is the range over seeds.
-Figure loss_figure(const Results& results,
-                   std::string_view experiment,
-                   const std::vector<MethodLine>& lines,
-                   std::string id,
-                   std::string title,
-                   std::string source);
+/// Draws learning curves into an experiment's section: medians over seeds, with
+/// their range as a band. What shows nothing is left out, lines and figures.
+class LearningCurves {
+ public:
+  LearningCurves(const Results& results, Section& section)
+      : results_(results), section_(section) {}
 
-/// The same over all stages of each method's chain, joined.
-Figure chain_figure(const Results& results,
-                    std::string_view experiment,
-                    const std::vector<MethodLine>& lines,
-                    std::string id,
-                    std::string title,
-                    std::string source);
+  /// Test loss over updates, over solving time and, for lines that know it,
+  /// over the paper's time; of the last stage.
+  void losses(const std::vector<MethodLine>& lines,
+              std::string id,
+              std::string title,
+              std::string source);
 
-/// Median of row `row` of the array `metrics` over updates.
-Figure metric_figure(const Results& results,
-                     std::string_view experiment,
-                     const std::vector<MethodLine>& lines,
-                     Index row,
-                     std::string y_label,
-                     std::string id,
-                     std::string title,
-                     std::string source);
+  /// The same over all stages of each method's chain, joined.
+  void chains(const std::vector<MethodLine>& lines,
+              std::string id,
+              std::string title,
+              std::string source);
 
-/// Per method: test loss at the end, seconds and bytes per update.
+  /// Row `row` of the array `metrics` over updates.
+  void metric(const std::vector<MethodLine>& lines,
+              Index row,
+              std::string y_label,
+              std::string id,
+              std::string title,
+              std::string source);
+
+  /// Test loss over updates: a panel for a figure of another form.
+  Panel panel(const std::vector<MethodLine>& lines) const;
+
+  void add(Figure figure);
+
+ private:
+  const Results& results_;
+  Section& section_;
+};
+
+/// Per method with results: test loss at the end, seconds and bytes per update.
 Table loss_table(const Results& results,
                  std::string_view experiment,
                  const std::vector<MethodLine>& lines);

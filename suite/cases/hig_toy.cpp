@@ -6,6 +6,7 @@
 
 #include "optimizers/training.h"
 #include "problems/scaled_output/scaled_output.h"
+#include "suite/cases/hig_methods.h"
 #include "suite/cases/hig_toy_claims.h"
 #include "suite/cases/hig_toy_report.h"
 #include "suite/harness/registry.h"
@@ -72,41 +73,26 @@ const std::vector<MethodLine> kVariants = {
 
 Section report(const toy::Gamma& gamma, const Results& results) {
   const char* name = gamma.experiment;
-  const auto lines = present(results, name, kLines);
-  const auto variants = present(results, name, kVariants);
-  auto all = lines;
-  all.insert(all.end(), variants.begin(), variants.end());
+  auto all = kLines;
+  all.insert(all.end(), kVariants.begin(), kVariants.end());
   Section section{.experiment = name,
                   .title = gamma.title,
                   .paper = "hig",
                   .tables = {loss_table(results, name, all),
                              toy::course_table(results, name, all)},
                   .claims = toy::claims(gamma, results)};
-  if (!lines.empty()) {
-    section.figures = {loss_figure(results,
-                                   name,
-                                   lines,
-                                   "fig1-loss",
-                                   "Learning curves",
-                                   "Fig. 1, left"),
-                       metric_figure(results,
-                                     name,
-                                     lines,
-                                     toy::kSecondLoss,
-                                     "loss of the second component",
-                                     "fig1-second",
-                                     "What is learned of the scaled component",
-                                     "Sec. 2.2"),
-                       toy::neuron_figure(results, name, lines),
-                       toy::path_figure(results, name, lines)};
-  }
-  if (!variants.empty())
-    section.figures.push_back(loss_figure(results,
-                                          name,
-                                          variants,
-                                          "variants",
-                                          "Absolute cut, other factors of g",
-                                          "Sec. 2.3"));
+  LearningCurves curves(results, section);
+  curves.losses(kLines, "fig1-loss", "Learning curves", "Fig. 1, left");
+  curves.metric(kLines,
+                toy::kSecondLoss,
+                "loss of the second component",
+                "fig1-second",
+                "What is learned of the scaled component",
+                "Sec. 2.2");
+  curves.add(toy::neuron_figure(results, name, kLines));
+  curves.add(toy::path_figure(results, name, kLines));
+  curves.losses(
+      kVariants, "variants", "Absolute cut, other factors of g", "Sec. 2.3");
   return section;
 }
 
@@ -118,25 +104,20 @@ std::vector<std::uint64_t> first_seeds(std::uint64_t count) {
 
 std::vector<Profile> profiles(const toy::Gamma& gamma) {
   const std::vector<std::string> five = {"adam", "gn", "hig", "sgd", "gn_tau6"};
-  const auto rows =
-      [](std::vector<std::string> ids, std::uint64_t seeds, Index updates) {
-        return Row{.methods = std::move(ids),
-                   .n = {kPoints},
-                   .seeds = first_seeds(seeds),
-                   .iterations = updates,
-                   .precision = Precision::f64};
-      };
+  constexpr RowOf row{.n = kPoints};
   std::vector<Profile> all = {
-      {.name = "smoke", .rows = {rows(five, 3, kSmoke)}},
-      {.name = "quick", .rows = {rows(five, 5, kUpdates)}},
-      {.name = "standard", .rows = {rows(five, 12, kUpdates)}},
-      {.name = "paper", .rows = {rows(five, 12, kPaper)}}};
+      {.name = "smoke", .rows = {row(five, first_seeds(3), kSmoke)}},
+      {.name = "quick", .rows = {row(five, first_seeds(5), kUpdates)}},
+      {.name = "standard", .rows = {row(five, first_seeds(12), kUpdates)}},
+      {.name = "paper", .rows = {row(five, first_seeds(12), kPaper)}}};
   if (gamma.value == 0.01) {
     for (Profile& p : all) {
       if (p.name != "standard" && p.name != "paper") continue;
-      p.rows.push_back(rows({"hig_absolute", "gn_absolute"}, 12, kUpdates / 2));
-      p.rows.push_back(rows({"hig_mean", "gn_mean"}, 12, kUpdates));
-      p.rows.push_back(rows({"hig_sum", "gn_sum"}, 12, kUpdates / 4));
+      const auto twelve = first_seeds(12);
+      p.rows.push_back(
+          row({"hig_absolute", "gn_absolute"}, twelve, kUpdates / 2));
+      p.rows.push_back(row({"hig_mean", "gn_mean"}, twelve, kUpdates));
+      p.rows.push_back(row({"hig_sum", "gn_sum"}, twelve, kUpdates / 4));
     }
   }
   return all;

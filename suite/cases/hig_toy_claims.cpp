@@ -27,16 +27,12 @@ class Judged {
   }
   /// Of the medians.
   std::optional<double> ratio(const char* a, const char* b) const {
-    const auto x = median(a), y = median(b);
-    if (!x || !y) return {};
-    return *x / *y;
+    return physinv::ratio(median(a), median(b));
   }
   std::vector<double> ends(const char* method) const {
     std::vector<double> losses;
-    for (const std::uint64_t seed : results_.seeds(experiment_))
-      if (const auto loss = test_loss(
-              trained_stage(results_, experiment_, method, seed), kEnd))
-        losses.push_back(*loss);
+    for (const auto* stage : stages(method))
+      if (const auto loss = test_loss(stage, kEnd)) losses.push_back(*loss);
     return losses;
   }
   bool enough_for_ratios(const char* a, const char* b) const {
@@ -59,25 +55,21 @@ class Judged {
   }
   /// The largest median along the curve.
   std::optional<double> highest(const char* method) const {
+    const auto seeds = stages(method);
+    if (seeds.empty()) return {};
     std::optional<double> most;
-    for (const std::uint64_t seed : results_.seeds(experiment_)) {
-      const auto* stage = trained_stage(results_, experiment_, method, seed);
-      if (stage == nullptr) continue;
-      for (const double at : stage->curve.iteration) {
-        const auto m = median_test_loss(
-            results_, experiment_, method, static_cast<Index>(at));
-        if (m) most = std::max(most.value_or(*m), *m);
-      }
-      return most;
+    for (const double at : seeds.front()->curve.iteration) {
+      const auto m = median_test_loss(
+          results_, experiment_, method, static_cast<Index>(at));
+      if (m) most = std::max(most.value_or(*m), *m);
     }
     return most;
   }
   std::optional<double> diverged() const {
     std::optional<double> count;
     for (const char* method : {"adam", "gn", "hig", "sgd", "gn_tau6"})
-      for (const std::uint64_t seed : results_.seeds(experiment_))
-        if (const auto* s = trained_stage(results_, experiment_, method, seed))
-          count = count.value_or(0) + (s->stop == Stop::diverged);
+      for (const auto* s : stages(method))
+        count = count.value_or(0) + (s->stop == Stop::diverged);
     return count;
   }
   std::optional<Saturation> flat(const char* method) const {
@@ -85,6 +77,10 @@ class Judged {
   }
 
  private:
+  std::vector<const StageRecord*> stages(const char* method) const {
+    return trained_stages(results_, experiment_, method);
+  }
+
   const Results& results_;
   const char* experiment_;
 };
@@ -152,10 +148,8 @@ ClaimResult adam_ignores_the_second_component(const Results& results) {
 
 ClaimResult price_of_ill_conditioning(const Results& results) {
   const Judged well(results, kWell), ill(results, kIll);
-  const auto factor = [&](const char* method) -> std::optional<double> {
-    const auto a = ill.median(method), b = well.median(method);
-    if (!a || !b) return {};
-    return *a / *b;
+  const auto factor = [&](const char* method) {
+    return ratio(ill.median(method), well.median(method));
   };
   Judge judge;
   judge.at_least("HIG", factor("hig"), 5)

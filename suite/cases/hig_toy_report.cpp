@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "suite/cases/hig_curve.h"
 #include "suite/cases/jpo_endings.h"
 
 namespace physinv::toy {
@@ -61,26 +61,21 @@ void evaluate(const Snapshot& s, double gamma, VectorOut<double> values) {
 }
 
 /// The row of a stage's metrics at the last point at or before `updates`.
-std::optional<double> metric(const StageRecord* stage,
+std::optional<double> metric(const StageRecord& stage,
                              Index row,
                              Index updates) {
-  if (stage == nullptr || !stage->arrays.contains("metrics")) return {};
-  const auto& iteration = stage->curve.iteration;
-  if (iteration.back() < static_cast<double>(updates)) return {};
-  const auto after = std::upper_bound(
-      iteration.begin(), iteration.end(), static_cast<double>(updates));
-  return stage->arrays.at("metrics")(
-      row, static_cast<Index>(after - iteration.begin()) - 1);
+  if (!stage.arrays.contains("metrics")) return {};
+  const auto k = last_point(stage, updates);
+  if (!k) return {};
+  return stage.arrays.at("metrics")(row, *k);
 }
 
 /// The first seed that a method was run with.
 const StageRecord* first_seed(const Results& results,
                               std::string_view experiment,
                               std::string_view method) {
-  for (const std::uint64_t seed : results.seeds(experiment)) {
-    const auto* stage = trained_stage(results, experiment, method, seed);
-    if (stage != nullptr && stage->arrays.contains("metrics")) return stage;
-  }
+  for (const auto* stage : trained_stages(results, experiment, method))
+    if (stage->arrays.contains("metrics")) return stage;
   return nullptr;
 }
 
@@ -110,10 +105,8 @@ std::optional<double> median_metric(const Results& results,
                                     MetricRow row,
                                     Index updates) {
   std::vector<double> values;
-  for (const std::uint64_t seed : results.seeds(experiment))
-    if (const auto v = metric(
-            trained_stage(results, experiment, method, seed), row, updates))
-      values.push_back(*v);
+  for (const auto* stage : trained_stages(results, experiment, method))
+    if (const auto v = metric(*stage, row, updates)) values.push_back(*v);
   if (values.empty()) return {};
   return median(values);
 }
@@ -122,9 +115,8 @@ std::optional<Saturation> saturation(const Results& results,
                                      std::string_view experiment,
                                      std::string_view method) {
   Saturation all;
-  for (const std::uint64_t seed : results.seeds(experiment)) {
-    const auto* stage = trained_stage(results, experiment, method, seed);
-    if (stage == nullptr || !stage->arrays.contains("metrics")) continue;
+  for (const auto* stage : trained_stages(results, experiment, method)) {
+    if (!stage->arrays.contains("metrics")) continue;
     const auto end = stage->arrays.at("metrics").rightCols(1);
     const auto flat = static_cast<int>(
         (end.middleRows(kDeviations, kHidden).array() < kSaturated).count());

@@ -1,4 +1,4 @@
-/// Building blocks of claims about the JPO paper's cases.
+/// Building blocks of claims.
 #pragma once
 
 #include <fmt/format.h>
@@ -96,6 +96,12 @@ class Judge {
   bool holds_ = true, missing_ = false;
   std::string evidence_;
 };
+
+/// a / b, if both are there.
+inline std::optional<double> ratio(std::optional<double> a,
+                                   std::optional<double> b) {
+  return a && b ? std::optional(*a / *b) : std::nullopt;
+}
 
 /// The sizes of a campaign within [first, last].
 inline std::vector<Index> sizes_between(const JpoMetrics& metrics,

@@ -1,0 +1,38 @@
+/// How the experiments of the half-inverse-gradients paper name and order
+/// their runs.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "suite/harness/case.h"
+
+namespace physinv {
+
+/// Rates are a digit times a power of ten: 3e-4, 1e1.
+inline std::string rate_id(double rate) {
+  const double exponent = std::floor(std::log10(rate) + 1e-9);
+  return fmt::format(
+      "{:.0f}e{:.0f}", rate / std::pow(10.0, exponent), exponent);
+}
+
+/// Makes the rows of an experiment: one n, in double.
+struct RowOf {
+  Index n;
+
+  Row operator()(std::vector<std::string> ids,
+                 std::vector<std::uint64_t> seeds,
+                 Index updates) const {
+    return {.methods = std::move(ids),
+            .n = {n},
+            .seeds = std::move(seeds),
+            .iterations = updates,
+            .precision = Precision::f64};
+  }
+};
+
+}  // namespace physinv

@@ -1,0 +1,37 @@
+/// The quantum dipole's methods as points of grids (HIG paper, Figs. 8 to 11).
+#pragma once
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "suite/core/batch.h"
+
+namespace physinv::dipole {
+
+/// A grid's point; `id` is the method.
+struct AdamPoint {
+  Index batch;
+  double rate;
+  std::string id;
+};
+
+struct HigPoint {
+  Index batch;
+  double rate;
+  int digits;  ///< tau = 10^-digits
+  std::string id;
+
+  double tau() const { return std::pow(10.0, -digits); }
+};
+
+std::string adam_id(Index batch, double rate);
+
+/// Dense layers: Figs. 8 and 9.
+std::vector<AdamPoint> dense_adam();
+std::vector<HigPoint> dense_hig();
+/// Convolutions: Figs. 10 and 11.
+std::vector<AdamPoint> conv_adam();
+std::vector<HigPoint> conv_hig();
+
+}  // namespace physinv::dipole
