@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
@@ -100,14 +101,16 @@ void print_methods() {
 }  // namespace
 
 ExitCode list_verb(const Arguments& arguments) {
-  CLI::App app("The cases of a profile, with estimated work.",
-               "physinv-bench list");
   Selection selection;
-  selection.add_to(app);
   bool json = false, methods = false;
-  app.add_flag("--json", json, "as JSON");
-  app.add_flag("--methods", methods, "experiments and methods, as Markdown");
-  if (!parse(app, arguments)) return ExitCode::good;
+  if (!parse("physinv-bench list",
+             "The cases of a profile, with estimated work.",
+             selection.flags({{"--json", "as JSON", &json},
+                              {"--methods",
+                               "experiments and methods, as Markdown",
+                               &methods}}),
+             arguments))
+    return ExitCode::good;
   if (methods) {
     print_methods();
     return ExitCode::good;

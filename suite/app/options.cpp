@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cstdio>
 
 namespace physinv {
 namespace {
@@ -72,63 +71,29 @@ void set(Overrides& o, const std::string& key, const std::string& value) {
   }
 }
 
-std::string first_line(const std::string& text) {
-  return text.substr(0, text.find('\n'));
-}
-
-std::string unknown_flag(const CLI::App& app, const std::string& word) {
-  if (!word.starts_with('-'))
-    return fmt::format("unexpected argument '{}'; see --help", word);
-  const std::string flag = word.substr(0, word.find('='));
-  std::vector<std::string> known;
-  for (const CLI::Option* option : app.get_options()) {
-    for (const auto& name : option->get_lnames()) known.push_back("--" + name);
-  }
-  const std::string near = nearest_word(known, flag);
-  return near.empty()
-             ? fmt::format("unknown flag {}; see --help", flag)
-             : fmt::format("unknown flag {}; did you mean {}?", flag, near);
-}
-
 }  // namespace
 
-bool parse(CLI::App& app, const Arguments& arguments) {
-  Arguments reversed(arguments.rbegin(), arguments.rend());
-  app.get_formatter()->column_width(26);
-  try {
-    app.parse(std::move(reversed));
-  } catch (const CLI::CallForHelp&) {
-    fmt::print("{}", app.help());
-    return false;
-  } catch (const CLI::ExtrasError&) {
-    throw UsageError(unknown_flag(app, app.remaining().front()));
-  } catch (const CLI::ParseError& error) {
-    throw UsageError(first_line(error.what()) + "; see --help");
-  }
-  return true;
-}
-
-void Selection::add_to(CLI::App& app) {
-  app.add_option("--filter",
-                 filters,
-                 "cases whose name matches this regular expression; a leading "
-                 "- negates (--filter=-refine), repeats unite")
-      ->type_name("REGEX")
-      ->allow_extra_args(false);
-  app.add_option("--profile", profile, "smoke, quick (default) or paper");
-  app.add_option("--set",
-                 sets,
-                 fmt::format("replace a key of the profile's rows, e.g. "
-                             "n=8,32; keys: {}",
-                             kKeys))
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
-  app.add_option("--seeds", seeds, "the same as --set seeds=LIST; 0,2 or 0-3")
-      ->type_name("LIST");
-  app.add_option("--shard",
-                 shard,
-                 "part I (from 1) of N: every N-th case of the selection")
-      ->type_name("I/N");
+std::vector<Flag> Selection::flags(const std::vector<Flag>& own) {
+  std::vector<Flag> all = {
+      {"--filter",
+       "cases whose name matches this regular expression; a leading "
+       "- negates (--filter=-refine), repeats unite",
+       &filters,
+       "REGEX"},
+      {"--profile", "smoke, quick (default) or paper", &profile},
+      {"--set",
+       fmt::format("replace a key of the profile's rows, e.g. "
+                   "n=8,32; keys: {}",
+                   kKeys),
+       &sets,
+       "KEY=VALUE"},
+      {"--seeds", "the same as --set seeds=LIST; 0,2 or 0-3", &seeds, "LIST"},
+      {"--shard",
+       "part I (from 1) of N: every N-th case of the selection",
+       &shard,
+       "I/N"}};
+  all.insert(all.end(), own.begin(), own.end());
+  return all;
 }
 
 std::vector<Case> Selection::cases(std::vector<std::string>* campaign) const {

@@ -1,29 +1,23 @@
-/// Flags that several verbs share.
+/// What several verbs read from their flags.
 #pragma once
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <filesystem>
 #include <string>
 #include <vector>
 
-#include "suite/app/verbs.h"
+#include "suite/app/flags.h"
 #include "suite/harness/registry.h"
 #include "suite/harness/select.h"
 
 namespace physinv {
-
-/// Parses; prints the help and returns false if that was asked for. Throws
-/// UsageError, with the nearest flag for an unknown one.
-bool parse(CLI::App& app, const Arguments& arguments);
 
 /// Flags that choose cases.
 struct Selection {
   std::vector<std::string> filters, sets;
   std::string profile = "quick", seeds, shard;
 
-  void add_to(CLI::App& app);
+  /// Its flags, followed by a verb's own.
+  std::vector<Flag> flags(const std::vector<Flag>& own = {});
   /// The chosen cases in declared order, of this shard; `campaign` gets the
   /// names of all shards' cases. Throws UsageError, or ExitError with
   /// the nearest names if nothing matched.

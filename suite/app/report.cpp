@@ -82,16 +82,16 @@ std::vector<std::string> unmet(const std::vector<Section>& sections) {
 }  // namespace
 
 ExitCode report_verb(const Arguments& arguments) {
-  CLI::App app("Writes tables, plots and claims of a finished campaign.",
-               "physinv-bench report");
   std::string results_text, out;
   bool check = false;
-  app.add_option("RESULTS", results_text, "directory that 'run' wrote")
-      ->required();
-  app.add_option("--out", out, "where to; default: RESULTS/report")
-      ->type_name("DIR");
-  app.add_flag("--check", check, "exit 7 if a gating claim is not reproduced");
-  if (!parse(app, arguments)) return ExitCode::good;
+  if (!parse(
+          "physinv-bench report",
+          "Writes tables, plots and claims of a finished campaign.",
+          {{"RESULTS", "directory that 'run' wrote", &results_text},
+           {"--out", "where to; default: RESULTS/report", &out, "DIR"},
+           {"--check", "exit 7 if a gating claim is not reproduced", &check}},
+          arguments))
+    return ExitCode::good;
   const fs::path directory = results_directory(results_text);
   const Results results = load_results(directory);
   fs::path published = published_directory();

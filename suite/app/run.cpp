@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "suite/app/options.h"
@@ -19,31 +18,25 @@ struct RunFlags {
   int jobs = 0;
   bool dry = false;
 
-  void add_to(CLI::App& app) {
-    selection.add_to(app);
-    app.add_option("--jobs", jobs, "worker processes; default: cores / threads")
-        ->check(CLI::Range(1, 1024));
-    app.add_option("--threads",
-                   campaign.threads,
-                   "threads inside a case (default 1); results do not change")
-        ->check(CLI::Range(1, 1024));
-    app.add_option("--time-budget",
-                   campaign.time_budget,
-                   "start no further case after so many seconds; the cases not "
-                   "run are named, and the next run goes on with them")
-        ->type_name("SECONDS")
-        ->check([](const std::string& text) {
-          return std::atof(text.c_str()) > 0 ? "" : text + " is not positive";
-        });
-    app.add_option("--out", out, "where to; default: results/<profile>")
-        ->type_name("DIR");
-    app.add_flag("--resume,!--fresh",
-                 campaign.resume,
-                 "reuse finished stages (default), or run all again");
-    app.add_flag("--dry-run", dry, "say what would run and what is reused");
-    app.add_flag("--trace",
-                 campaign.trace,
-                 "record a hash of all iterates of the stages that run");
+  std::vector<Flag> flags() {
+    return selection.flags(
+        {{"--jobs", "worker processes; default: cores / threads", &jobs},
+         {"--threads",
+          "threads inside a case (default 1); results do not change",
+          &campaign.threads},
+         {"--time-budget",
+          "start no further case after so many seconds; the cases not "
+          "run are named, and the next run goes on with them",
+          &campaign.time_budget,
+          "SECONDS"},
+         {"--out", "where to; default: results/<profile>", &out, "DIR"},
+         {"--resume,!--fresh",
+          "reuse finished stages (default), or run all again",
+          &campaign.resume},
+         {"--dry-run", "say what would run and what is reused", &dry},
+         {"--trace",
+          "record a hash of all iterates of the stages that run",
+          &campaign.trace}});
   }
 
   void complete() {
@@ -99,13 +92,13 @@ void print_result(const RunFlags& flags, const CampaignResult& r) {
 }  // namespace
 
 ExitCode run_verb(const Arguments& arguments) {
-  CLI::App app(
-      "Runs the cases of a profile and writes their results. The default verb."
-      "\nExit codes and environment: physinv-bench --help",
-      "physinv-bench run");
   RunFlags flags;
-  flags.add_to(app);
-  if (!parse(app, arguments)) return ExitCode::good;
+  if (!parse("physinv-bench run",
+             "Runs the cases of a profile and writes their results. The "
+             "default verb.\nExit codes and environment: physinv-bench --help",
+             flags.flags(),
+             arguments))
+    return ExitCode::good;
   flags.complete();
   Prepared prepared = prepare(flags.selection.cases(&flags.campaign.campaign));
   if (flags.dry) {

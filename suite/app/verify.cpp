@@ -2,19 +2,22 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "suite/app/options.h"
 #include "suite/results/results.h"
 
 namespace physinv {
 
 ExitCode verify_verb(const Arguments& arguments) {
-  CLI::App app(
-      "Recomputes every final loss from the stored solutions, one example at a "
-      "time in double, and compares bitwise or within 1e-12 relative.",
-      "physinv-bench verify");
   std::string results;
-  app.add_option("RESULTS", results, "directory that 'run' wrote")->required();
-  if (!parse(app, arguments)) return ExitCode::good;
+  if (!parse("physinv-bench verify",
+             "Recomputes every final loss from the stored solutions, one "
+             "example at a time in double, and compares bitwise or within "
+             "1e-12 relative.",
+             {{"RESULTS", "directory that 'run' wrote", &results}},
+             arguments))
+    return ExitCode::good;
   const VerifyReport r =
       verify_results(load_results(results_directory(results)), registry());
   fmt::print(

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <functional>
 #include <memory>
 #include <utility>
 
@@ -50,12 +51,8 @@ NetworkRecipe cnn(const CnnOptions& options) {
           options.taps,
           to_string(options.activation),
           options.init == Init::glorot ? " init=glorot" : ""),
-      .make_float = [options](
-                        Index in,
-                        Index out) { return make<float>(options, in, out); },
-      .make_double = [options](
-                         Index in,
-                         Index out) { return make<double>(options, in, out); }};
+      .make_float = std::bind_front(make<float>, options),
+      .make_double = std::bind_front(make<double>, options)};
 }
 
 }  // namespace physinv::nn

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <functional>
 #include <memory>
 #include <utility>
 
@@ -53,14 +54,8 @@ NetworkRecipe mlp(const MlpOptions& options) {
               to_string(options.output),
               options.batch_norm,
               options.init == Init::glorot ? " init=glorot" : ""),
-          .make_float =
-              [options](Index in, Index out) {
-                return make<float>(options, in, out);
-              },
-          .make_double =
-              [options](Index in, Index out) {
-                return make<double>(options, in, out);
-              }};
+          .make_float = std::bind_front(make<float>, options),
+          .make_double = std::bind_front(make<double>, options)};
 }
 
 }  // namespace physinv::nn

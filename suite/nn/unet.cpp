@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <functional>
 #include <memory>
 #include <utility>
 
@@ -85,14 +86,8 @@ NetworkRecipe unet(const UnetOptions& options) {
               options.levels,
               options.features,
               options.outputs),
-          .make_float =
-              [options](Index in, Index out) {
-                return make<float>(options, in, out);
-              },
-          .make_double =
-              [options](Index in, Index out) {
-                return make<double>(options, in, out);
-              }};
+          .make_float = std::bind_front(make<float>, options),
+          .make_double = std::bind_front(make<double>, options)};
 }
 
 }  // namespace physinv::nn

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <functional>
 #include <memory>
 #include <utility>
 
@@ -63,14 +64,8 @@ NetworkRecipe vgg(const VggOptions& options) {
                                      options.grid.rows,
                                      fmt::join(options.features, "-"),
                                      fmt::join(options.hidden, "-")),
-          .make_float =
-              [options](Index in, Index out) {
-                return make<float>(options, in, out);
-              },
-          .make_double =
-              [options](Index in, Index out) {
-                return make<double>(options, in, out);
-              }};
+          .make_float = std::bind_front(make<float>, options),
+          .make_double = std::bind_front(make<double>, options)};
 }
 
 }  // namespace physinv::nn

@@ -33,6 +33,28 @@ inline TensorNumbers unet_numbers(std::size_t levels) {
   return all;
 }
 
+/// Entry k of tensor `number`, by its kind (TensorInfo); matrices and kernels
+/// are multiplied by `scale`.
+inline double formula_weight(char kind,
+                             Index fan_in,
+                             std::size_t number,
+                             Index k,
+                             double shift,
+                             double scale = 1) {
+  const auto t = static_cast<double>(number), fk = static_cast<double>(k);
+  switch (kind) {
+    case 'b':
+      return 0.05 * std::cos(0.9 * fk + 0.4 * t + shift);
+    case 's':
+      return 1 + 0.1 * std::sin(0.6 * fk + t + shift);
+    case 'o':
+      return 0.05 * std::cos(0.8 * fk + t + shift);
+    default:
+      return scale * std::sqrt(3.0 / static_cast<double>(fan_in)) *
+             std::sin(0.7 * fk + 1.3 * t + 0.5 + shift);
+  }
+}
+
 /// The last matrix is multiplied by `last`.
 template <class T>
 void formula_weights(const std::vector<TensorInfo>& tensors,
@@ -42,25 +64,10 @@ void formula_weights(const std::vector<TensorInfo>& tensors,
                      VectorOut<T> parameters) {
   for (std::size_t t = 0; t < tensors.size(); ++t) {
     const TensorInfo& info = tensors[t];
-    const auto number = static_cast<double>(numbers.at(t));
-    const double factor = t + 2 == tensors.size() ? last : 1.0;
-    for (Index k = 0; k < info.size; ++k) {
-      const auto fk = static_cast<double>(k);
-      const auto value = [&] {
-        switch (info.kind) {
-          case 'b':
-            return 0.05 * std::cos(0.9 * fk + 0.4 * number + shift);
-          case 's':
-            return 1 + 0.1 * std::sin(0.6 * fk + number + shift);
-          case 'o':
-            return 0.05 * std::cos(0.8 * fk + number + shift);
-          default:
-            return factor * std::sqrt(3.0 / static_cast<double>(info.fan_in)) *
-                   std::sin(0.7 * fk + 1.3 * number + 0.5 + shift);
-        }
-      };
-      parameters(info.offset + k) = static_cast<T>(value());
-    }
+    const double scale = t + 2 == tensors.size() ? last : 1.0;
+    for (Index k = 0; k < info.size; ++k)
+      parameters(info.offset + k) = static_cast<T>(formula_weight(
+          info.kind, info.fan_in, numbers.at(t), k, shift, scale));
   }
 }
 

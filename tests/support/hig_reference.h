@@ -1,5 +1,5 @@
 /// What the reference files of the half-inverse-gradient experiments share:
-/// hashed weights, arrays stored as summaries, comparison in the 2-norm.
+/// hashed numbers, arrays stored as summaries, comparison in the 2-norm.
 #pragma once
 
 #include <cstdint>
@@ -25,41 +25,6 @@ inline Vector<double> hig_probe(Index size, std::uint32_t offset) {
   return Vector<double>::NullaryExpr(size, [=](Index i) {
     return 2 * hig_hash(offset + static_cast<std::uint32_t>(i)) - 1;
   });
-}
-
-/// One tensor of a flat parameter vector, and the bound of its entries.
-struct HigTensor {
-  Index size;
-  double limit;
-};
-
-/// Matrices (Glorot limit times gain) and biases of a dense network.
-inline std::vector<HigTensor> hig_dense(const std::vector<Index>& sizes,
-                                        double gain = 1,
-                                        double bias_scale = 0.1) {
-  std::vector<HigTensor> tensors;
-  for (std::size_t l = 0; l + 1 < sizes.size(); ++l) {
-    const auto in = static_cast<double>(sizes[l]);
-    const auto out = static_cast<double>(sizes[l + 1]);
-    tensors.push_back(
-        {sizes[l] * sizes[l + 1], gain * std::sqrt(6 / (in + out))});
-    tensors.push_back({sizes[l + 1], bias_scale});
-  }
-  return tensors;
-}
-
-/// theta_k = limit (2 hash(k + offset) - 1), k the flat index.
-inline Vector<double> hig_weights(const std::vector<HigTensor>& tensors,
-                                  std::uint32_t offset) {
-  Index size = 0;
-  for (const HigTensor& t : tensors) size += t.size;
-  Vector<double> theta = hig_probe(size, offset);
-  Index at = 0;
-  for (const HigTensor& t : tensors) {
-    theta.segment(at, t.size) *= t.limit;
-    at += t.size;
-  }
-  return theta;
 }
 
 /// Nested lists in the order of their numbers.

@@ -4,13 +4,13 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <memory>
 #include <utility>
 #include <vector>
 
 #include "optimizers/jpo.h"
 #include "optimizers/steps/clip_percentile.h"
+#include "tests/support/formula_weights.h"
 #include "tests/support/quadratic.h"
 #include "tests/support/reference.h"
 
@@ -41,16 +41,11 @@ class Noting final : public Network<T> {
                   VectorOut<T> parameters,
                   VectorOut<T> state) const override {
     net_->initialize(rng, parameters, state);
-    const auto& all = tensors();
-    for (std::size_t t = 0; t < all.size(); ++t) {
-      const double last = t + 2 == all.size() ? last_ : 1.0;
-      const double ft = static_cast<double>(t);
-      for (Index k = 0; k < all[t].size; ++k) {
-        const double fk = static_cast<double>(k);
-        parameters(all[t].offset + k) =
-            static_cast<T>(formula(all[t], ft, fk, last));
-      }
-    }
+    formula_weights<T>(tensors(),
+                       numbers_in_order(tensors().size()),
+                       shift_,
+                       last_,
+                       parameters);
   }
   void forward(VectorIn<T> parameters,
                VectorIn<T> state,
@@ -78,20 +73,6 @@ class Noting final : public Network<T> {
   double operations() const override { return net_->operations(); }
 
  private:
-  double formula(const TensorInfo& t, double ft, double k, double last) const {
-    switch (t.kind) {
-      case 'b':
-        return 0.05 * std::cos(0.9 * k + 0.4 * ft + shift_);
-      case 's':
-        return 1 + 0.1 * std::sin(0.6 * k + ft + shift_);
-      case 'o':
-        return 0.05 * std::cos(0.8 * k + ft + shift_);
-      default:
-        return last * std::sqrt(3.0 / static_cast<double>(t.fan_in)) *
-               std::sin(0.7 * k + 1.3 * ft + 0.5 + shift_);
-    }
-  }
-
   std::unique_ptr<Network<T>> net_;
   double shift_, last_;
 };

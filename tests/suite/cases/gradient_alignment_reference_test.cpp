@@ -2,13 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <functional>
 #include <map>
 
 #include "optimizers/one_step.h"
 #include "problems/noisy_absolute/noisy_absolute.h"
 #include "suite/cases/alignment_theory.h"
+#include "tests/support/formula_weights.h"
 #include "tests/support/reference.h"
 
 namespace physinv::test {
@@ -88,23 +88,20 @@ void set_formula_weights(OneStep<T>& net,
                          const std::vector<Index>& hidden,
                          double shift) {
   auto theta = net.parameters();
-  std::size_t at = 0;
-  Index in = 1, t = 0;
+  std::size_t at = 0, tensor = 0;
+  const auto add = [&](char kind, Index fan_in, Index size) {
+    for (Index k = 0; k < size; ++k)
+      theta[at++] =
+          static_cast<T>(formula_weight(kind, fan_in, tensor, k, shift)) -
+          Pack<T>{};
+    ++tensor;
+  };
+  Index in = 1;
   std::vector<Index> widths = hidden;
   widths.push_back(1);
   for (const Index out : widths) {
-    const double size = std::sqrt(3.0 / static_cast<double>(in));
-    for (Index k = 0; k < in * out; ++k)
-      theta[at++] =
-          static_cast<T>(size * std::sin(0.7 * double(k) + 1.3 * double(t) +
-                                         0.5 + shift)) -
-          Pack<T>{};
-    ++t;
-    for (Index k = 0; k < out; ++k)
-      theta[at++] = static_cast<T>(0.05 * std::cos(0.9 * double(k) +
-                                                   0.4 * double(t) + shift)) -
-                    Pack<T>{};
-    ++t;
+    add('m', in, in * out);
+    add('b', in, out);
     in = out;
   }
   ASSERT_EQ(at, theta.size());

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -12,6 +11,7 @@
 #include "suite/nn/mlp.h"
 #include "suite/nn/sequential.h"
 #include "tests/suite/nn/nn_testing.h"
+#include "tests/support/formula_weights.h"
 
 namespace physinv::nn {
 namespace {
@@ -38,23 +38,6 @@ Batch<T> batch(const Json& rows) {
       b(i, j) = static_cast<T>(
           rows.at(std::size_t(j)).at(std::size_t(i)).get<double>());
   return b;
-}
-
-template <class T>
-void formula_weights(const Network<T>& net, double shift, Vector<T>& p) {
-  for (std::size_t t = 0; t < net.tensors().size(); ++t) {
-    const TensorInfo& info = net.tensors()[t];
-    const double last = t + 2 == net.tensors().size() ? 0.05 : 1.0;
-    const double ft = double(t);
-    for (Index k = 0; k < info.size; ++k) {
-      const double fk = double(k);
-      const double value =
-          info.kind == 'b' ? 0.05 * std::cos(0.9 * fk + 0.4 * ft + shift)
-                           : last * std::sqrt(3.0 / double(info.fan_in)) *
-                                 std::sin(0.7 * fk + 1.3 * ft + 0.5 + shift);
-      p(info.offset + k) = static_cast<T>(value);
-    }
-  }
 }
 
 template <class T>
@@ -91,7 +74,12 @@ TYPED_TEST(ReferenceTest, FirstStepOfTheBilliardsNetwork) {
   in.row(3).setConstant(T(0.5));
   for (const bool fixed : {false, true}) {
     Bench<T> b(mlp({.hidden = {128, 128, 128}, .frequencies = 4}), 4, 2);
-    formula_weights(*b.net, e["shift"].get<double>(), b.p);
+    const auto& tensors = b.net->tensors();
+    test::formula_weights<T>(tensors,
+                             test::numbers_in_order(tensors.size()),
+                             e["shift"].get<double>(),
+                             0.05,
+                             b.p);
     const Batch<double> expected = batch<double>(step["net_output"]);
     const Batch<T> out = b.forward(in, {.fixed_input = fixed});
     EXPECT_LE((out.template cast<double>() - expected).cwiseAbs().maxCoeff(),

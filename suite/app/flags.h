@@ -1,0 +1,30 @@
+/// The command line of one verb. CLI11 takes long to compile: only flags.cpp
+/// knows it.
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "suite/app/verbs.h"
+
+namespace physinv {
+
+/// A flag; if the name has no dashes, an argument that must be there.
+struct Flag {
+  std::string name, help;
+  /// An int is from 1 to 1024, a double positive; a list takes one value each
+  /// time its flag is repeated, or all remaining arguments.
+  std::variant<bool*, int*, double*, std::string*, std::vector<std::string>*>
+      to;
+  std::string type;  ///< of the value, for the help; empty: by `to`
+};
+
+/// Parses; prints the help and returns false if that was asked for. Throws
+/// UsageError, with the nearest flag for an unknown one.
+bool parse(const std::string& program,
+           const std::string& about,
+           const std::vector<Flag>& flags,
+           const Arguments& arguments);
+
+}  // namespace physinv
