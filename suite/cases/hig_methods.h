@@ -20,9 +20,10 @@ inline std::string rate_id(double rate) {
       "{:.0f}e{:.0f}", rate / std::pow(10.0, exponent), exponent);
 }
 
-/// Makes the rows of an experiment: one n, in double.
+/// Makes the rows of an experiment: one n and one precision.
 struct RowOf {
   Index n;
+  Precision precision = Precision::f64;
 
   Row operator()(std::vector<std::string> ids,
                  std::vector<std::uint64_t> seeds,
@@ -31,7 +32,7 @@ struct RowOf {
             .n = {n},
             .seeds = std::move(seeds),
             .iterations = updates,
-            .precision = Precision::f64};
+            .precision = precision};
   }
 };
 

@@ -2,6 +2,7 @@
 // which control steers a quantum state in a box to a given superposition, with
 // dense layers and with convolutions.
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -81,6 +82,11 @@ std::vector<Method> dense_methods() {
   all.push_back(one("hig-b16-eta025-tau5", by_power(16, 0.25, 1e-5)));
   for (const double rate : {3e-4, 3e-3})
     all.push_back(one(adam_id(16, rate), by_adam(16, rate)));
+  for (const FloatPoint& p : in_float()) {
+    TrainingOptions options = by_power(16, 0.5, std::pow(10.0, -p.digits));
+    options.project = p.project;
+    all.push_back(one(p.id, options));
+  }
   all.push_back(one("sgd", training(SgdOptions{.rate = 0.1}, 16)));
   all.push_back(one("adagrad", training(AdagradOptions{.rate = 0.01}, 16)));
   all.push_back(one("rmsprop", training(RmspropOptions{.rate = 1e-4}, 16)));
@@ -94,6 +100,7 @@ std::vector<Method> dense_methods() {
 // ---- registration -----------------------------------------------------------
 
 constexpr RowOf row{.n = kTargets};
+constexpr RowOf float_row{.n = kTargets, .precision = Precision::f32};
 
 /// The grids' points but those with rows of their own.
 template <class Grid>
@@ -146,6 +153,7 @@ std::vector<Profile> dense_profiles() {
                 row({"adam-b16-1e-3", "adam-b256-5e-4"}, kFive, 2000),
                 row(kCuts, kFive, 256),
                 row({"hig-b16-eta025-tau5", "hig-b16-eta10-tau5"}, kThree, 256),
+                float_row(rest(in_float(), {}), kThree, 256),
                 row(kOthers, kThree, 6000),
                 row({"adam-hig"}, {0}, 512),
                 row(kTimed, {0}, 64)}},
@@ -157,6 +165,7 @@ std::vector<Profile> dense_profiles() {
                kFive,
                kSlowAdam),
            row({"hig-b16-eta025-tau5", "hig-b16-eta10-tau5"}, kFive, 512),
+           float_row(rest(in_float(), {}), kFive, 256),
            row(kOthers, kFive, kSlowAdam),
            row({"adam-hig"}, kFive, 512),
            row(rest(dense_hig(), {"hig", "hig-b16-eta10-tau5"}), kFive, 256),

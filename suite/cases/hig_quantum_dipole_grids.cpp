@@ -43,6 +43,17 @@ std::string adam_id(Index batch, double rate) {
   return fmt::format("adam-b{}-{}", batch, rate_id(rate));
 }
 
+std::vector<FloatPoint> in_float() {
+  std::vector<FloatPoint> all;
+  for (const int digits : {3, 5, 7})
+    for (const bool project : {true, false})
+      all.push_back(
+          {digits,
+           project,
+           fmt::format("hig-f32-{}tau{}", project ? "" : "raw-", digits)});
+  return all;
+}
+
 std::vector<AdamPoint> dense_adam() { return adam_grid(16, 1e-4); }
 std::vector<HigPoint> dense_hig() { return hig_grid(0.5, 5); }
 std::vector<AdamPoint> conv_adam() { return adam_grid(256, 2e-4); }

@@ -25,6 +25,16 @@ struct HigPoint {
   double tau() const { return std::pow(10.0, -digits); }
 };
 
+/// HIG in float, with the gradient projected or raw: once trained, most of g
+/// lies in the Jacobian's null space, where it acts by rounding alone.
+struct FloatPoint {
+  int digits;  ///< tau = 10^-digits
+  bool project;
+  std::string id;
+};
+
+std::vector<FloatPoint> in_float();
+
 std::string adam_id(Index batch, double rate);
 
 /// Dense layers: Figs. 8 and 9.

@@ -49,6 +49,17 @@ std::vector<MethodLine> lines_of(const std::vector<HigPoint>& grid,
   return lines;
 }
 
+std::vector<MethodLine> lines_of(const std::vector<FloatPoint>& points) {
+  std::vector<MethodLine> lines;
+  for (const FloatPoint& p : points)
+    lines.push_back({p.id,
+                     fmt::format("float, g {}, tau=1e-{}",
+                                 p.project ? "projected" : "raw",
+                                 p.digits),
+                     p.id});
+  return lines;
+}
+
 const std::vector<MethodLine> kMain = {
     {"hig", "HIG", "jpo"},
     {"gn", "Gauss-Newton", "bfgs"},
@@ -100,9 +111,10 @@ std::vector<MethodLine> joined(std::vector<MethodLine> a,
 
 Section dense_report(const Results& results, const Published& published) {
   const auto adam = lines_of(dense_adam(), published),
-             hig = lines_of(dense_hig(), published), by_rate = rates(published);
-  const auto all =
-      joined(joined(joined(kMain, kRules), by_rate), joined(hig, adam));
+             hig = lines_of(dense_hig(), published), by_rate = rates(published),
+             single = lines_of(in_float());
+  const auto all = joined(joined(joined(kMain, kRules), by_rate),
+                          joined(joined(hig, adam), single));
   Section section{
       .experiment = kDense,
       .title = "Quantum dipole",
@@ -127,6 +139,7 @@ Section dense_report(const Results& results, const Published& published) {
                 "Fig. 4c");
   curves.losses(adam, "fig8", kAdamGrid, "Fig. 8");
   curves.losses(hig, "fig9", kHigGrid, "Fig. 9");
+  curves.losses(single, "float", "HIG in float: gradient projected or raw", "");
   curves.chains(kRules, "rules", "Update rules, and Adam followed by HIG", "");
   return section;
 }
