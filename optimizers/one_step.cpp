@@ -159,6 +159,7 @@ PHYSINV_LANES void product_tile(const Pack<T>* a,
                                 Index q,
                                 F& finish) {
   Pack<T> sum[kP][kQ] = {};
+#pragma GCC unroll 4
   for (Index k = 0; k < depth; ++k) {
     Pack<T> right[kQ];
     for (Index j = 0; j < kQ; ++j) right[j] = b[(q + j) * bq + k * bk];
