@@ -67,7 +67,7 @@ Outcome regression_outcome(const NetworkModel<T>& model,
   Outcome out;
   out.iterations.setConstant(run.oracle.count(),
                              static_cast<double>(run.probe.iteration()));
-  out.arrays["weight_change"] = model.change_per_tensor();
+  out.arrays["weight_change"] = model.change_per_tensor(run.network_init);
   out.arrays["training_loss"] = Batch<double>::Constant(1, 1, loss);
   out.bytes = model.bytes();
   run.oracle.add(model.counts());

@@ -69,7 +69,7 @@ class AlignmentBlock {
     for (Index i = 0; i < n_; ++i) {
       const auto p = noise_.draw(random);
       const P s = sign_lanes(x - p.solution);
-      const P g = s * (p.lambda * s + noise_.noise(random, p.level, x));
+      const P g = s * (p.lambda * s + noise_.noise(random, p.level));
       sum += g;
       votes += sign_lanes(g);
     }
@@ -97,7 +97,7 @@ class AlignmentBlock {
     Shares out;
     out.noise_free = aligned();
     if (!noisy_) return out;
-    for (Index i = 0; i < n_; ++i) g[i] += noise_.noise(random, level[i], x[i]);
+    for (Index i = 0; i < n_; ++i) g[i] += noise_.noise(random, level[i]);
     out.sum = aligned();
     for (Index i = 0; i < n_; ++i) g[i] = sign_lanes(g[i]);
     out.vote = aligned();

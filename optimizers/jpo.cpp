@@ -94,7 +94,7 @@ class JpoRun {
     const auto iterations = static_cast<double>(run_.probe.iteration());
     out.iterations.setConstant(oracle_.count(), iterations);
     out.evaluations.setConstant(oracle_.count(), iterations + 1);
-    out.arrays["weight_change"] = model_.change_per_tensor();
+    out.arrays["weight_change"] = model_.change_per_tensor(run_.network_init);
     out.bytes = model_.bytes();
     if (diverged_) {
       out.stop = Stop::diverged;

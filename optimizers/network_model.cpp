@@ -74,7 +74,6 @@ NetworkModel<T>::NetworkModel(const NetworkRole& role,
 template <class T>
 void NetworkModel<T>::initialize(const Rng& rng) {
   network_->initialize(rng, parameters_, state_);
-  initial_ = parameters_;
 }
 
 template <class T>
@@ -84,7 +83,6 @@ void NetworkModel<T>::load(const std::map<std::string, Batch<double>>& arrays) {
               "stored parameters belong to another network");
   parameters_ = parameters.template cast<T>();
   if (state_.size() > 0) state_ = arrays.at("state").template cast<T>();
-  initial_ = parameters_;
 }
 
 template <class T>
@@ -145,13 +143,16 @@ void NetworkModel<T>::predict(BatchIn<T> input, BatchOut<T> output) {
 }
 
 template <class T>
-Batch<double> NetworkModel<T>::change_per_tensor() const {
+Batch<double> NetworkModel<T>::change_per_tensor(const Rng& start) const {
+  // Drawn again rather than kept for the whole training.
+  Vector<T> initial(parameters_.size()), state(state_.size());
+  network_->initialize(start, initial, state);
   const auto& tensors = network_->tensors();
   Batch<double> change(static_cast<Index>(tensors.size()), 1);
   for (Index t = 0; t < change.rows(); ++t) {
     const TensorInfo& info = tensors[static_cast<std::size_t>(t)];
     change(t, 0) = (parameters_.segment(info.offset, info.size) -
-                    initial_.segment(info.offset, info.size))
+                    initial.segment(info.offset, info.size))
                        .template cast<double>()
                        .cwiseAbs()
                        .mean();
@@ -161,8 +162,8 @@ Batch<double> NetworkModel<T>::change_per_tensor() const {
 
 template <class T>
 std::size_t NetworkModel<T>::bytes() const {
-  const Index numbers = 2 * parameters_.size() + initial_.size() +
-                        state_.size() + input_.size() + output_.size();
+  const Index numbers =
+      2 * parameters_.size() + state_.size() + input_.size() + output_.size();
   return static_cast<std::size_t>(numbers) * sizeof(T) + tape_.bytes() +
          work_.bytes();
 }

@@ -55,15 +55,15 @@ class NetworkModel {
   Workspace& workspace() { return work_; }
   Vector<T>& parameters() { return parameters_; }
   const Vector<T>& state() const { return state_; }
-  /// Mean |change| per tensor since `initialize`.
-  Batch<double> change_per_tensor() const;
+  /// Mean |change| per tensor since `initialize(start)`.
+  Batch<double> change_per_tensor(const Rng& start) const;
 
   const Counts& counts() const { return work_.counts; }
   std::size_t bytes() const;
 
  private:
   std::unique_ptr<Network<T>> network_;
-  Vector<T> parameters_, initial_, state_, gradient_;
+  Vector<T> parameters_, state_, gradient_;
   Batch<T> input_, output_;
   Tape tape_, prediction_tape_;
   Workspace work_, prediction_work_;

@@ -44,17 +44,17 @@ class NoiseLanes {
     return p;
   }
 
-  /// sum_j A_j w_j sin(w_j x + phi_j), the noise drawn on the spot. Phases are
-  /// turns, and a scale common to all A cancels.
-  [[gnu::noinline]] P noise(StreamLanes<T>& stream, P level, P x) const {
+  /// sum_j A_j w_j sin(w_j x + phi_j), the noise drawn on the spot for one
+  /// point: there w_j x + phi_j is uniform over a turn because phi_j is,
+  /// whatever x, so it is drawn itself. A scale common to all A cancels.
+  [[gnu::noinline]] P noise(StreamLanes<T>& stream, P level) const {
     StreamLanes<T> random = stream;  // stays in registers
-    const P turns = x * (T(0.5) * std::numbers::inv_pi_v<T>);
     P sum{}, square{};
     for (Index j = 0; j < options_.terms; ++j) {
       const auto drawn = random.whole_three();
       const P w = drawn.a * omega_step_ + omega_min_;
       const P aw = drawn.b * w;
-      sum += aw * sin_turns(w * turns + drawn.c * StreamLanes<T>::kUnit);
+      sum += aw * sin_of_turn(drawn.c * StreamLanes<T>::kUnit);
       square += aw * aw;
     }
     stream = random;

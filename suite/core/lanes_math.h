@@ -50,12 +50,11 @@ PHYSINV_LANES P sign_lanes(P x) {
   return x > P{} ? one : x < P{} ? -one : x;
 }
 
-/// sin(2 pi t). Absolute error 1e-6 in float, 2e-15 in double, as long as t
-/// itself is exact; |t| < 2^(digits-3). The series of sin(pi z) in Chebyshev
-/// polynomials over a whole period, cut where its terms vanish.
+/// sin(2 pi r) for |r| <= 1/2. Absolute error 1e-6 in float, 2e-15 in double.
+/// The series of sin(pi z) in Chebyshev polynomials over a whole period, cut
+/// where its terms vanish.
 template <class P>
-PHYSINV_LANES P sin_turns(P t) {
-  const P r = t - round_lanes(t);
+PHYSINV_LANES P sin_of_turn(P r) {
   if constexpr (sizeof(LaneScalar<P>) == 4) {
     constexpr float kSeries[] = {6.2831827934070340683F,
                                  -41.34141938561704525F,
@@ -78,6 +77,12 @@ PHYSINV_LANES P sin_turns(P t) {
                                   0.0010106614446953475128};
     return r * polynomial(r * r, kSeries);
   }
+}
+
+/// sin(2 pi t) as good as that where t itself is exact; |t| < 2^(digits-3).
+template <class P>
+PHYSINV_LANES P sin_turns(P t) {
+  return sin_of_turn(t - round_lanes(t));
 }
 
 /// e^x, relative error about 2 eps. Beyond the range of normal numbers the

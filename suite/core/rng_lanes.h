@@ -40,7 +40,7 @@ class StreamLanes {
   }
 
   /// Three independent numbers from two draws, for loops that the draws bound:
-  /// uniform in [0, 2^21), [0, 2^21) and [0, 2^24), whole.
+  /// uniform in [0, 2^21), [0, 2^21) and [-2^23, 2^23), whole.
   struct Three {
     P a, b, c;
   };
@@ -48,7 +48,8 @@ class StreamLanes {
     const Bits x = bits(), y = bits();
     // c: the bits that a and b leave of x, then those of y. Below the former
     // lie bits of b too, which the xor makes independent of it.
-    return {number(x >> 11), number(y >> 11), number((x << 21 ^ y << 10) >> 8)};
+    const auto c = (SignedBits)(x << 21 ^ y << 10) >> 8;
+    return {number(x >> 11), number(y >> 11), number((Bits)c)};
   }
 
  private:

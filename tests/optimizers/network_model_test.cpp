@@ -110,15 +110,16 @@ TYPED_TEST(NetworkModelTest, TrainsAndPredictsInDifferentModes) {
 TYPED_TEST(NetworkModelTest, ChangePerTensorIsTheMeanAbsoluteChange) {
   using T = TypeParam;
   NetworkModel<T> model(role(), kShape, 2, nullptr);
-  model.initialize(Rng::root("network_model", 1));
-  EXPECT_EQ(model.change_per_tensor().cwiseAbs().maxCoeff(), 0);
+  const Rng start = Rng::root("network_model", 1);
+  model.initialize(start);
+  EXPECT_EQ(model.change_per_tensor(start).cwiseAbs().maxCoeff(), 0);
   const auto& tensors = model.network().tensors();
   for (std::size_t t = 0; t < tensors.size(); ++t) {
     auto part = model.parameters().segment(tensors[t].offset, tensors[t].size);
     for (Index k = 0; k < part.size(); ++k)
       part(k) += static_cast<T>((k % 2 == 0 ? 1 : -1) * double(t + 1));
   }
-  const Batch<double> change = model.change_per_tensor();
+  const Batch<double> change = model.change_per_tensor(start);
   for (Index t = 0; t < change.rows(); ++t)
     EXPECT_NEAR(change(t, 0), double(t + 1), 1e-5);
 }
