@@ -145,6 +145,32 @@ class HingeStep final : public OneStep<T> {
 
 // ---- deep tanh networks ----------------------------------------------------
 
+/// In float x p(x^2) / q(x^2) with the coefficients of Eigen's `ptanh`, up to
+/// where tanh rounds to 1: relative error 3e-7 for any x. Networks this small
+/// spend a third of their time here, and this takes half as long as by exp.
+template <class P>
+PHYSINV_LANES P activate(P x) {
+  if constexpr (sizeof(LaneScalar<P>) == 4) {
+    constexpr float kEnd = 7.99881172180175781F;
+    constexpr float kAbove[] = {4.89352455891786e-3F,
+                                6.37261928875436e-4F,
+                                1.48572235717979e-5F,
+                                5.12229709037114e-8F,
+                                -8.60467152213735e-11F,
+                                2.00018790482477e-13F,
+                                -2.76076847742355e-16F};
+    constexpr float kBelow[] = {4.89352518554385e-3F,
+                                2.26843463243900e-3F,
+                                1.18534705686654e-4F,
+                                1.19825839466702e-6F};
+    x = x > kEnd ? kEnd - P{} : x < -kEnd ? -kEnd - P{} : x;
+    const P square = x * x;
+    return x * polynomial(square, kAbove) / polynomial(square, kBelow);
+  } else {
+    return tanh_lanes(x);
+  }
+}
+
 /// finish(p, q, sum_k a[p * ap + k * ak] b[q * bq + k * bk]), with as many
 /// sums at a time as registers hold.
 template <class T, Index kP, Index kQ, class F>
@@ -362,7 +388,7 @@ class SmoothStep final : public OneStep<T> {
                    out[p * n + q] = last ? scale * z : z;
                  });
       if (last) continue;
-      for (Index i = 0; i < width(l + 1) * n; ++i) out[i] = tanh_lanes(out[i]);
+      for (Index i = 0; i < width(l + 1) * n; ++i) out[i] = activate(out[i]);
     }
   }
 
