@@ -29,8 +29,11 @@ void write_out(const std::vector<LayerRows<T>>& layers,
         for (Index p = 0; p < l.positions; ++p) {
           const T* a = l.a + (p * l.a_step + i) * l.a_stride;
           const T* b = l.b + (p * l.b_step + o) * l.b_stride;
-          for (Index r = 0; r < rows; ++r)
-            to[r] += double(b[r]) * double(a[r / per_sample]);
+          for (Index r = 0; r < rows; ++a) {
+            const auto input = double(*a);
+            for (const Index end = r + per_sample; r < end; ++r)
+              to[r] += double(b[r]) * input;
+          }
         }
       }
     }

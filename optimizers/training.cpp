@@ -62,10 +62,10 @@ class Training {
                                        oracle_.given(),
                                        oracle_.observations());
     Batch<T> output(oracle_.shape().unknowns, oracle_.count());
+    const Batch<double> start = oracle_.start();  // makes a problem
     const auto predict = [&](BatchOut<double> x) {
       model_.predict(query, output);
-      x = oracle_.start() +
-          run_.setting.output_scale * output.template cast<double>();
+      x = start + run_.setting.output_scale * output.template cast<double>();
     };
     const auto estimate = [&](BatchOut<double> x) {
       predict(x);
@@ -84,7 +84,7 @@ class Training {
                   sizeof(T) * static_cast<std::size_t>(theta.size()));
     }
     Outcome out = outcome();
-    out.x.resize(oracle_.shape().unknowns, oracle_.count());
+    out.x.resizeLike(start);
     predict(out.x);
     return out;
   }

@@ -72,10 +72,6 @@ Panel over(const char* x_label, std::string y_label) {
           .y_log = true};
 }
 
-constexpr const char* kLossNote =
-    "Median over seeds, band: range. Test losses are not finite where a line "
-    "ends early.";
-
 enum class Stages { last, all };
 
 std::vector<Points> losses_of(const Results& results,
@@ -114,29 +110,41 @@ std::vector<Panel> loss_panels(const Results& results,
   return panels;
 }
 
+Figure loss_figure(std::vector<Panel> panels,
+                   std::string id,
+                   std::string title,
+                   std::string source) {
+  return {.id = std::move(id),
+          .title = std::move(title),
+          .source = std::move(source),
+          .panels = std::move(panels),
+          .note =
+              "Median over seeds, band: range. Test losses are not finite "
+              "where a line ends early."};
+}
+
 }  // namespace
 
 void LearningCurves::losses(const std::vector<MethodLine>& lines,
                             std::string id,
                             std::string title,
                             std::string source) {
-  add({.id = std::move(id),
-       .title = std::move(title),
-       .source = std::move(source),
-       .panels =
-           loss_panels(results_, section_.experiment, lines, Stages::last),
-       .note = kLossNote});
+  add(loss_figure(
+      loss_panels(results_, section_.experiment, lines, Stages::last),
+      std::move(id),
+      std::move(title),
+      std::move(source)));
 }
 
 void LearningCurves::chains(const std::vector<MethodLine>& lines,
                             std::string id,
                             std::string title,
                             std::string source) {
-  add({.id = std::move(id),
-       .title = std::move(title),
-       .source = std::move(source),
-       .panels = loss_panels(results_, section_.experiment, lines, Stages::all),
-       .note = kLossNote});
+  add(loss_figure(
+      loss_panels(results_, section_.experiment, lines, Stages::all),
+      std::move(id),
+      std::move(title),
+      std::move(source)));
 }
 
 void LearningCurves::metric(const std::vector<MethodLine>& lines,
