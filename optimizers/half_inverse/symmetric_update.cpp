@@ -31,11 +31,11 @@ void add_product(
 #pragma GCC unroll 4
     for (int i = 0; i < 4; ++i) s[i] = broadcast(x[r + i]);
     for (Index c = r + 4; c < columns; c += kWidth) {
-      const Wide xc = load(x + c);
+      const Wide xc = held(load(x + c));
       Wide yc = load(y + c);
 #pragma GCC unroll 4
       for (int i = 0; i < 4; ++i) {
-        const Wide v = load(row[i] + c);
+        const Wide v = held(load(row[i] + c));
         yc = fma(v, s[i], yc);
         dot[i] = fma(v, xc, dot[i]);
       }

@@ -28,6 +28,15 @@ inline Wide load(const double* p) { return nn::load<Wide>(p); }
 inline void store(double* p, Wide v) { nn::store(p, v); }
 inline Wide broadcast(double s) { return nn::broadcast<Wide>(s); }
 
+/// v, in a register: else the compiler loads it again for each of its uses, and
+/// loads are what bounds a matrix-vector product.
+inline Wide held(Wide v) {
+#ifdef __x86_64__
+  asm("" : "+v"(v));
+#endif
+  return v;
+}
+
 /// Sum of the lanes, halves onto halves.
 template <int kBytes>
 inline double sum_lanes(nn::Simd<double, kBytes> v) {

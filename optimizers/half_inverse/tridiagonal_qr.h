@@ -1,6 +1,10 @@
 /// Implicit QR of a symmetric tridiagonal matrix that keeps its rotations
 /// instead of eigenvectors: T = W diag(lambda) W^T, W applied to single
 /// vectors at two multiply-adds a rotation.
+///
+/// A sweep is one chain of square roots and divisions, so several run at once,
+/// each two rows behind the one before. Their shifts are the eigenvalues of
+/// the last rows; Wilkinson's for single sweeps of short or stubborn blocks.
 #pragma once
 
 #include <vector>
@@ -12,7 +16,7 @@ namespace physinv::hig {
 class TridiagonalQr {
  public:
   /// d (n) becomes the eigenvalues in no order, e (n - 1) is used up, and x
-  /// becomes W^T x. Wilkinson shifts; e_i counts as zero where
+  /// becomes W^T x. e_i counts as zero where
   /// |e_i| <= eps (|d_i| + |d_i+1|), which keeps the small eigenvalues of a
   /// graded matrix. False after 60 n sweeps without an end.
   bool run(VectorOut<double> d, VectorOut<double> e, VectorOut<double> x);
@@ -20,22 +24,29 @@ class TridiagonalQr {
   /// x <- W x: the recorded rotations backwards.
   void apply(VectorOut<double> x) const;
 
-  Index rotations() const { return static_cast<Index>(cosine_.size()); }
-  Index sweeps() const { return static_cast<Index>(sweeps_.size()); }
+  Index rotations() const { return rotations_; }
+  Index sweeps() const { return sweeps_; }
   std::size_t bytes() const {
-    return (cosine_.capacity() + sine_.capacity()) * sizeof(double) +
-           sweeps_.capacity() * sizeof(Sweep);
+    return record_.capacity() * sizeof(double) +
+           rounds_.capacity() * sizeof(Round);
   }
 
  private:
-  /// Rotation k of a sweep turns the plane (start + k, start + k + 1).
-  struct Sweep {
-    Index start, count;
+  /// One sweep, or as many as run at once, of the rows start ... end.
+  struct Round {
+    Index start, end, sweeps;
+    /// Cosines and sines, those of one step next to each other.
+    std::size_t numbers() const;
   };
-  void sweep(double* d, double* e, double* x, Index start, Index end);
+  /// The room for its record.
+  double* begin(const Round& round);
+  void single(double* d, double* e, double* x, Index start, Index end);
+  bool several(double* d, double* e, double* x, Index start, Index end);
 
-  std::vector<Sweep> sweeps_;
-  std::vector<double> cosine_, sine_;
+  std::vector<Round> rounds_;
+  std::vector<double> record_;  ///< longer than `used_` after a shorter run
+  std::size_t used_ = 0;
+  Index rotations_ = 0, sweeps_ = 0;
 };
 
 }  // namespace physinv::hig

@@ -2,12 +2,13 @@
 
 #include <algorithm>
 
+#include "optimizers/half_inverse/panel_product.h"
 #include "optimizers/half_inverse/reflector.h"
 
 namespace physinv::hig {
 namespace {
 
-constexpr Index kPanel = 32;  ///< columns of a panel of the one-stage form
+constexpr Index kPanel = 24;  ///< columns of a panel of the one-stage form
 constexpr Index kTwoStagesFrom = 1024;
 constexpr Index kSquare = 64;  ///< blocks of A for A V: two uses from the L1
 constexpr Index kMaxParts = 8;
@@ -53,18 +54,25 @@ void Tridiagonalize::one_stage() {
 }
 
 /// Reflectors of `count` columns; the matrix behind them is left as it was,
-/// A - V W^T - W V^T in truth.
+/// A - V W^T - W V^T in truth. Products start at whole registers: v_i is zero
+/// up to row i, w_i is made so.
 void Tridiagonalize::panel(Index first, Index count) {
   const Index n = a_.n, stride = a_.stride;
   double* const v = data(v_);
   double* const w = data(w_);
+  double by_v[kPanel], by_w[kPanel];
+  const auto subtract_both = [&](Index from, Index i, double* to) {
+    subtract_combination(n - from, i, by_w, v + from, stride, to + from);
+    subtract_combination(n - from, i, by_v, w + from, stride, to + from);
+  };
   for (Index i = 0; i < count; ++i) {
     const Index j = first + i;
     double* x = a_.row(j);
     for (Index p = 0; p < i; ++p) {
-      axpy(n - j, -w[p * stride + j], v + p * stride + j, x + j);
-      axpy(n - j, -v[p * stride + j], w + p * stride + j, x + j);
+      by_v[p] = v[p * stride + j];
+      by_w[p] = w[p * stride + j];
     }
+    subtract_both(j / kWidth * kWidth, i, x);
     d_(j) = x[j];
     double* const vi = v + i * stride;
     double* const wi = w + i * stride;
@@ -75,16 +83,14 @@ void Tridiagonalize::panel(Index first, Index count) {
       std::fill(wi + j, wi + stride, 0.0);
       return;
     }
-    const Index k = j + 1, rest = n - k;
+    const Index k = j + 1, rest = n - k, from = k / kWidth * kWidth;
     const double tau = tau_(j) = reflect(rest, x + k, e_(j));
     std::copy(x + k, x + stride, vi + k);
     product_(a_, k, vi, wi, threads_);
-    for (Index p = 0; p < i; ++p) {
-      const double along_w = dot(rest, w + p * stride + k, vi + k);
-      const double along_v = dot(rest, v + p * stride + k, vi + k);
-      axpy(rest, -along_w, v + p * stride + k, wi + k);
-      axpy(rest, -along_v, w + p * stride + k, wi + k);
-    }
+    project(n - from, i, v + from, stride, vi + from, by_v);
+    project(n - from, i, w + from, stride, vi + from, by_w);
+    subtract_both(from, i, wi);
+    std::fill(wi + from, wi + k, 0.0);
     for (Index c = k; c < n; ++c) wi[c] *= tau;
     axpy(rest, -0.5 * tau * dot(rest, wi + k, vi + k), vi + k, wi + k);
     std::fill(wi + n, wi + stride, 0.0);

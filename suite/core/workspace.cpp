@@ -42,7 +42,14 @@ void* Workspace::allocate(std::size_t bytes) {
   }
   void* p = static_cast<std::byte*>(chunks_[chunk_].data()) + used_;
   used_ += size;
+  taken_ += size;
+  most_ = std::max(most_, taken_);
   return p;
+}
+
+void Workspace::gather() {
+  chunks_.clear();
+  chunks_.emplace_back().reserve(most_);
 }
 
 std::size_t Workspace::bytes() const {

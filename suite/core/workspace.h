@@ -1,5 +1,5 @@
 /// Scratch memory and tapes: everything a kernel needs beside its arguments.
-/// Both grow on the first call of a size and allocate nothing afterwards.
+/// Both settle within the first call of a size and allocate nothing afterwards.
 #pragma once
 
 #include <cstddef>
@@ -43,14 +43,18 @@ class Workspace {
 
   class Scope {
    public:
-    explicit Scope(Workspace& w) : work_(w), chunk_(w.chunk_), used_(w.used_) {}
-    ~Scope() { work_.chunk_ = chunk_, work_.used_ = used_; }
+    explicit Scope(Workspace& w)
+        : work_(w), chunk_(w.chunk_), used_(w.used_), taken_(w.taken_) {}
+    ~Scope() {
+      work_.chunk_ = chunk_, work_.used_ = used_, work_.taken_ = taken_;
+      if (taken_ == 0 && work_.chunks_.size() > 1) work_.gather();
+    }
     Scope(const Scope&) = delete;
     Scope& operator=(const Scope&) = delete;
 
    private:
     Workspace& work_;
-    std::size_t chunk_, used_;
+    std::size_t chunk_, used_, taken_;
   };
 
   /// Uninitialised rows x cols array, valid until the enclosing scope ends.
@@ -70,9 +74,12 @@ class Workspace {
 
  private:
   void* allocate(std::size_t bytes);
+  /// One chunk of what was needed at most, once nothing is in use.
+  void gather();
 
   std::vector<Buffer> chunks_;
   std::size_t chunk_ = 0, used_ = 0;
+  std::size_t taken_ = 0, most_ = 0;  ///< bytes in use, now and ever
   Threads* threads_;
   std::vector<std::unique_ptr<Workspace>> per_thread_;
 };

@@ -40,29 +40,41 @@ Store store_of(const Gemm<T>& g) {
   return Store::in_memory;
 }
 
+/// f(address, lanes) -> lanes for what lies in rows from i, columns from j.
+template <class T, class F>
+[[gnu::always_inline]] inline void for_vectors(
+    const Gemm<T>& g, Index i, Index rows, Index j, Index cols, F&& f) {
+  using V = Simd<T, kNarrow>;
+  for (Index r = i; r < i + rows; ++r) {
+    T* const row = g.c + r * g.c_stride;
+    Index c = j;
+    for (; c + kLanes<T> <= j + cols; c += kLanes<T>)
+      store(row + c, f(r, c, load<V>(row + c), kLanes<T>));
+    if (const Index some = j + cols - c; some > 0)
+      store_some(row + c, f(r, c, load_some<V>(row + c, some), some), some);
+  }
+}
+
+/// The activation and the gate of a tile, in memory.
 template <class T>
 [[gnu::noinline]] void finish(
     const Gemm<T>& g, Index i, Index rows, Index j, Index cols) {
   using V = Simd<T, kNarrow>;
-  for (Index r = i; r < i + rows; ++r) {
-    for (Index c = j; c < j + cols; c += kLanes<T>) {
-      const Index some = std::min(kLanes<T>, j + cols - c);
-      const bool whole = some == kLanes<T>;  // a copy of known size
-      const auto get = [=](const T* from) {
-        return whole ? load<V>(from) : load_some<V>(from, some);
-      };
-      T* at = g.c + r * g.c_stride + c;
-      V v = activate_lanes<T>(g.activation, get(at));
-      if (g.gate != nullptr)
-        v = pull_lanes<T>(
-            g.gate_activation, get(g.gate + r * g.gate_stride + c), v);
-      if (whole) {
-        store(at, v);
-      } else {
-        store_some(at, v, some);
-      }
-    }
-  }
+  // By itself: around a choice the constants of tanh are set up each time.
+  if (g.activation == Activation::tanh)
+    for_vectors(g, i, rows, j, cols, [](Index, Index, V v, Index) {
+      return tanh_lanes(v);
+    });
+  else if (g.activation != Activation::identity)
+    for_vectors(g, i, rows, j, cols, [&](Index, Index, V v, Index) {
+      return activate_lanes<T>(g.activation, v);
+    });
+  if (g.gate == nullptr) return;
+  for_vectors(g, i, rows, j, cols, [&](Index r, Index c, V v, Index some) {
+    const T* from = g.gate + r * g.gate_stride + c;
+    const V gate = some == kLanes<T> ? load<V>(from) : load_some<V>(from, some);
+    return pull_lanes<T>(g.gate_activation, gate, v);
+  });
 }
 
 /// M rows x N vectors in registers. kUnit: a_row is 1, known to the compiler.

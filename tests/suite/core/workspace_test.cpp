@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <cstdint>
 
 #include "suite/core/threads.h"
@@ -79,6 +80,21 @@ TEST(Workspace, HoldsNoMoreTheSecondTime) {
   EXPECT_GT(bytes, 0U);
   for (int i = 0; i < 10; ++i) use();
   EXPECT_EQ(work.bytes(), bytes);
+}
+
+TEST(Workspace, SettlesToWhatWasInUseAtMost) {
+  Workspace work;
+  {
+    const Workspace::Scope outer(work);
+    work.take<std::byte>(1, 1);
+    for (int i = 0; i < 10; ++i) {
+      const Workspace::Scope inner(work);
+      work.take<std::byte>(i * 100'000, 1);
+    }
+    work.take<std::byte>(300'000, 1);
+    EXPECT_GT(work.bytes(), 64U + 900'032U);  // several chunks
+  }
+  EXPECT_EQ(work.bytes(), 64U + 900'032U);
 }
 
 TEST(Workspace, EmptyArraysAreFine) {

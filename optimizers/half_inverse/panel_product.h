@@ -1,0 +1,62 @@
+/// Products with a thin panel: the `count` memory rows X_k, `stride` numbers
+/// apart, several of them in one pass over the other vector. Lengths are
+/// rounded up to whole registers, so rows and vectors are padded.
+#pragma once
+
+#include "optimizers/half_inverse/tile_product.h"
+
+namespace physinv::hig {
+
+/// f.operator()<kRows>(k) for groups of 8, 2 and 1 rows that cover `count`.
+template <class F>
+void for_row_groups(Index count, F&& f) {
+  Index k = 0;
+  for (; k + 8 <= count; k += 8) f.template operator()<8>(k);
+  for (; k + 2 <= count; k += 2) f.template operator()<2>(k);
+  if (k < count) f.template operator()<1>(k);
+}
+
+/// y -= sum_k s_k X_k.
+inline void subtract_combination(Index n,
+                                 Index count,
+                                 const double* s,
+                                 const double* x,
+                                 Index stride,
+                                 double* y) {
+  for_row_groups(count, [&]<int kRows>(Index k) {
+    const double* const from = x + k * stride;
+    Wide factor[kRows];
+#pragma GCC unroll 8
+    for (int i = 0; i < kRows; ++i) factor[i] = broadcast(-s[k + i]);
+    for (Index c = 0; c < n; c += kWidth) {
+      Wide sum = load(y + c);
+#pragma GCC unroll 8
+      for (int i = 0; i < kRows; ++i)
+        sum = fma(factor[i], load(from + i * stride + c), sum);
+      store(y + c, sum);
+    }
+  });
+}
+
+/// s_k = X_k.v.
+inline void project(Index n,
+                    Index count,
+                    const double* x,
+                    Index stride,
+                    const double* v,
+                    double* s) {
+  for_row_groups(count, [&]<int kRows>(Index k) {
+    const double* const from = x + k * stride;
+    Wide dots[kRows] = {};
+    for (Index c = 0; c < n; c += kWidth) {
+      const Wide vc = held(load(v + c));
+#pragma GCC unroll 8
+      for (int i = 0; i < kRows; ++i)
+        dots[i] = fma(load(from + i * stride + c), vc, dots[i]);
+    }
+#pragma GCC unroll 8
+    for (int i = 0; i < kRows; ++i) s[k + i] = sum(dots[i]);
+  });
+}
+
+}  // namespace physinv::hig
