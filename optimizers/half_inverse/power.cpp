@@ -24,8 +24,8 @@ double raised(double s, double exponent) {
 
 /// Kept and dropped directions, in units of lambda_max = s_max = 1.
 struct Side {
-  Vector<double> lambda, s, f, c2;
-  std::vector<bool> tail;
+  Eigen::ArrayXd lambda, s, f, c2;
+  Eigen::ArrayXd tail;  ///< 1 from Spectrum::Noise::tail_begin on, else 0
 };
 
 /// |δ update|^2 to first order. A perturbation E of J J^T = diag(lambda) turns
@@ -41,38 +41,37 @@ double first_order(const Spectrum::Noise& noise,
                    double cut,
                    const Side& kept,
                    const Side& dropped) {
-  const auto entry2 = [&](const Side& a, Index i, const Side& b, Index j) {
-    const bool tails = a.tail[static_cast<std::size_t>(i)] &&
-                       b.tail[static_cast<std::size_t>(j)];
-    const double e =
-        tails ? noise.tail + noise.jacobian * (a.s(i) + b.s(j)) : noise.gram;
-    return e * e;
+  // E_ij^2 of one i of a and all j of b.
+  const auto entries2 = [&](const Side& a, Index i, const Side& b) {
+    const double tail = a.tail(i), s = a.s(i);
+    return (noise.gram +
+            tail * b.tail *
+                (noise.tail + noise.jacobian * (b.s + s) - noise.gram))
+        .square();
   };
   double total = 0;
-  const Index k = kept.s.size(), d = dropped.s.size();
+  const Index k = kept.s.size();
   for (Index j = 0; j < k; ++j) {
-    if (kappa < 1) {
-      for (Index i = 0; i < k; ++i) {
-        const double high = std::max(kept.lambda(i), kept.lambda(j));
-        const double f = std::max(kept.f(i), kept.f(j)) / high;
-        total += kept.lambda(i) * f * f * kept.c2(j) * entry2(kept, i, kept, j);
-      }
-    }
-    for (Index i = 0; i < d; ++i) {
-      const double e2 = entry2(kept, j, dropped, i);
-      const double distance = kept.lambda(j) - dropped.lambda(i);
-      const double f2 =
-          kept.f(j) * kept.f(j) * e2 / std::max(distance * distance, e2);
-      total += f2 * (dropped.s(i) * dropped.s(i) * kept.c2(j) +
-                     kept.lambda(j) * dropped.c2(i));
-    }
+    const double lambda = kept.lambda(j), f = kept.f(j), c2 = kept.c2(j);
+    if (kappa < 1)
+      total += c2 * (kept.lambda * entries2(kept, j, kept) *
+                     (kept.f.max(f) / kept.lambda.max(lambda)).square())
+                        .sum();
+    total +=
+        f * f *
+        (entries2(kept, j, dropped) /
+         (lambda - dropped.lambda).square().max(entries2(kept, j, dropped)) *
+         (dropped.s.square() * c2 + lambda * dropped.c2))
+            .sum();
   }
   // A value that may lie on the other side takes its component with it.
   const double f_cut = std::pow(cut, kappa - 1);
   for (const Side* side : {&kept, &dropped})
     for (Index i = 0; i < side->s.size(); ++i) {
-      const double reach = kSafety * std::sqrt(entry2(*side, i, *side, i));
-      if (std::abs(side->lambda(i) - cut * cut) > reach) continue;
+      const double own = side->tail(i) > 0
+                             ? noise.tail + 2 * noise.jacobian * side->s(i)
+                             : noise.gram;
+      if (std::abs(side->lambda(i) - cut * cut) > kSafety * own) continue;
       const double f = side == &kept ? side->f(i) : f_cut;
       total += cut * cut * f * f * side->c2(i);
     }
@@ -145,8 +144,7 @@ PowerReport power_weights(const Spectrum& spectrum,
   for (Side* side : {&kept, &dropped}) {
     const Index size = side == &kept ? report.kept : n - report.kept;
     side->lambda.resize(size), side->s.resize(size), side->f.resize(size);
-    side->c2.resize(size);
-    side->tail.reserve(static_cast<std::size_t>(size));
+    side->c2.resize(size), side->tail.resize(size);
   }
   Index k = 0, d = 0;
   for (Index i = 0; i < n; ++i) {
@@ -169,7 +167,7 @@ PowerReport power_weights(const Spectrum& spectrum,
         std::sqrt(&side == &kept ? lambda : std::max(lambda, 0.0) + size);
     side.f(at) = raised(side.s(at), power.kappa - 1);
     side.c2(at) = spectrum.c(i) * spectrum.c(i);
-    side.tail.push_back(tail);
+    side.tail(at) = tail;
     ++at;
   }
   const double unit =

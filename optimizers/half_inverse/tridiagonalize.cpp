@@ -26,8 +26,10 @@ double* data(const Buffer& buffer) {
 Symmetric Tridiagonalize::matrix(Index n) {
   const Index stride = padded_stride(n);
   a_ = {reserve(memory_, n * stride), n, stride};
+  // What tiles reach of the scratch in front of the diagonal has to be numbers.
+  constexpr Index kReach = kTileColumns + kTileRows;
   for (Index r = 0; r < n; ++r) {
-    std::fill(a_.row(r), a_.row(r) + r, 0.0);
+    std::fill(a_.row(r) + std::max<Index>(r - kReach, 0), a_.row(r) + r, 0.0);
     std::fill(a_.row(r) + n, a_.row(r) + stride, 0.0);
   }
   return a_;
