@@ -13,47 +13,67 @@ constexpr Index kPartRows = 192;     ///< below, a second part costs more
 constexpr Index kThreadRows = 1024;  ///< below, a product is over too soon
 constexpr Index kColumnBlock = 256;
 
-/// Rows first + [begin, end): y += A x for the stored and mirrored entries.
+/// kCount registers from column c on of kRows rows: y += A x for the stored
+/// entries, dot for the mirrored ones.
+template <int kRows, int kCount>
+[[gnu::always_inline]] inline void add_columns(const double* rows,
+                                               Index stride,
+                                               Index c,
+                                               const double* x,
+                                               double* y,
+                                               const Wide* s,
+                                               Wide* dot) {
+  Wide xc[kCount], yc[kCount];
+#pragma GCC unroll 2
+  for (int k = 0; k < kCount; ++k) {
+    xc[k] = held(load(x + c + k * kWidth));
+    yc[k] = load(y + c + k * kWidth);
+  }
+#pragma GCC unroll 4
+  for (int i = 0; i < kRows; ++i)
+#pragma GCC unroll 2
+    for (int k = 0; k < kCount; ++k) {
+      const Wide v = held(load(rows + i * stride + c + k * kWidth));
+      yc[k] = fma(v, s[i], yc[k]);
+      dot[i] = fma(v, xc[k], dot[i]);
+    }
+#pragma GCC unroll 2
+  for (int k = 0; k < kCount; ++k) store(y + c + k * kWidth, yc[k]);
+}
+
+template <int kRows>
+[[gnu::always_inline]] inline void add_rows(Symmetric a,
+                                            Index r,
+                                            const double* x,
+                                            double* y) {
+  const double* const rows = a.row(r);
+  for (Index i = 0; i < kRows; ++i) {
+    const double* row = rows + i * a.stride;
+    y[r + i] += row[r + i] * x[r + i];
+    for (Index j = i + 1; j < kRows; ++j) {
+      y[r + i] += row[r + j] * x[r + j];
+      y[r + j] += row[r + j] * x[r + i];
+    }
+  }
+  Wide dot[kRows] = {}, s[kRows];
+#pragma GCC unroll 4
+  for (int i = 0; i < kRows; ++i) s[i] = broadcast(x[r + i]);
+  Index c = r + kRows;
+  for (; c + kWidth < a.n; c += 2 * kWidth)
+    add_columns<kRows, 2>(rows, a.stride, c, x, y, s, dot);
+  if (c < a.n) add_columns<kRows, 1>(rows, a.stride, c, x, y, s, dot);
+#pragma GCC unroll 4
+  for (int i = 0; i < kRows; ++i) y[r + i] += sum(dot[i]);
+}
+
+/// Rows [begin, end): y += A x for the stored and mirrored entries; four rows
+/// at a time from a multiple of four on, so that few loads cross a cache line.
 void add_product(
     Symmetric a, Index begin, Index end, const double* x, double* y) {
-  const Index columns = round_up(a.n, kWidth);
   Index r = begin;
-  for (; r + 4 <= end; r += 4) {
-    const double* row[4] = {a.row(r), a.row(r + 1), a.row(r + 2), a.row(r + 3)};
-    for (Index i = 0; i < 4; ++i) {
-      y[r + i] += row[i][r + i] * x[r + i];
-      for (Index j = i + 1; j < 4; ++j) {
-        y[r + i] += row[i][r + j] * x[r + j];
-        y[r + j] += row[i][r + j] * x[r + i];
-      }
-    }
-    Wide dot[4] = {}, s[4];
-#pragma GCC unroll 4
-    for (int i = 0; i < 4; ++i) s[i] = broadcast(x[r + i]);
-    for (Index c = r + 4; c < columns; c += kWidth) {
-      const Wide xc = held(load(x + c));
-      Wide yc = load(y + c);
-#pragma GCC unroll 4
-      for (int i = 0; i < 4; ++i) {
-        const Wide v = held(load(row[i] + c));
-        yc = fma(v, s[i], yc);
-        dot[i] = fma(v, xc, dot[i]);
-      }
-      store(y + c, yc);
-    }
-#pragma GCC unroll 4
-    for (int i = 0; i < 4; ++i) y[r + i] += sum(dot[i]);
-  }
-  for (; r < end; ++r) {
-    const double* row = a.row(r);
-    const double s = x[r];
-    double dot = row[r] * s;
-    for (Index c = r + 1; c < a.n; ++c) {
-      y[c] += row[c] * s;
-      dot += row[c] * x[c];
-    }
-    y[r] += dot;
-  }
+  for (; r < end && r % 4 != 0; ++r) add_rows<1>(a, r, x, y);
+  for (; r + 4 <= end; r += 4) add_rows<4>(a, r, x, y);
+  for (; r < end; ++r) add_rows<1>(a, r, x, y);
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ Index padded_stride(Index n);
 
 /// y = A x on rows and columns >= first, for x that is padded like a row and
 /// zero before `first`; y is written from `first` on (and up to its padding).
-/// `parts` is scratch. The order of the sums depends on n - first only.
+/// `parts` is scratch. The order of the sums depends on n and first only.
 class SymmetricProduct {
  public:
   void operator()(
