@@ -188,9 +188,9 @@ PHYSINV_LANES void product_tile(const Pack<T>* a,
 #pragma GCC unroll 4
   for (Index k = 0; k < depth; ++k) {
     Pack<T> right[kQ];
-    for (Index j = 0; j < kQ; ++j) right[j] = b[(q + j) * bq + k * bk];
+    for (Index j = 0; j < kQ; ++j) right[j] = held(b[(q + j) * bq + k * bk]);
     for (Index i = 0; i < kP; ++i) {
-      const Pack<T> left = a[(p + i) * ap + k * ak];
+      const Pack<T> left = held(a[(p + i) * ap + k * ak]);
       for (Index j = 0; j < kQ; ++j) sum[i][j] += left * right[j];
     }
   }

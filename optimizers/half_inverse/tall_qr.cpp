@@ -28,10 +28,10 @@ void reflect_columns(const Panel& p, double* const* y, Index begin, Index end) {
   for (Index i = begin; i < end; i += kWidth) {
     Wide at[N];
 #pragma GCC unroll 4
-    for (int c = 0; c < N; ++c) at[c] = load(y[c] + i);
+    for (int c = 0; c < N; ++c) at[c] = held(load(y[c] + i));
 #pragma GCC unroll 8
     for (int k = 0; k < kPanel; ++k) {
-      const Wide v = load(p.v[k] + i);
+      const Wide v = held(load(p.v[k] + i));
 #pragma GCC unroll 4
       for (int c = 0; c < N; ++c) w[k][c] = fma(v, at[c], w[k][c]);
     }
@@ -55,7 +55,7 @@ void reflect_columns(const Panel& p, double* const* y, Index begin, Index end) {
     for (int c = 0; c < N; ++c) at[c] = load(y[c] + i);
 #pragma GCC unroll 8
     for (int k = 0; k < kPanel; ++k) {
-      const Wide v = load(p.v[k] + i);
+      const Wide v = held(load(p.v[k] + i));
 #pragma GCC unroll 4
       for (int c = 0; c < N; ++c) at[c] = fma(v, f[k][c], at[c]);
     }

@@ -28,15 +28,6 @@ inline Wide load(const double* p) { return nn::load<Wide>(p); }
 inline void store(double* p, Wide v) { nn::store(p, v); }
 inline Wide broadcast(double s) { return nn::broadcast<Wide>(s); }
 
-/// v, in a register: else the compiler loads it again for each of its uses, and
-/// loads are what bounds a matrix-vector product.
-inline Wide held(Wide v) {
-#ifdef __x86_64__
-  asm("" : "+v"(v));
-#endif
-  return v;
-}
-
 /// Sum of the lanes, halves onto halves.
 template <int kBytes>
 inline double sum_lanes(nn::Simd<double, kBytes> v) {
@@ -67,7 +58,7 @@ template <int M, class Finish>
   for (int r = 0; r < M; ++r) acc[r][0] = acc[r][1] = Wide{};
   const double* at = a.data;
   for (Index k = 0; k < depth; ++k, at += a.step, b += b_step) {
-    const Wide first = load(b), second = load(b + kWidth);
+    const Wide first = held(load(b)), second = held(load(b + kWidth));
 #pragma GCC unroll 8
     for (int r = 0; r < M; ++r) {
       const Wide s = broadcast(at[r * a.row]);

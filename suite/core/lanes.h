@@ -55,6 +55,16 @@ using Mask = Pack<LaneInt<T>, W>;
 
 #define PHYSINV_LANES [[gnu::always_inline]] inline
 
+/// v, in a register: GCC would rather load it again for each of its uses, and
+/// loads are what bounds a product whose factors come from the caches.
+template <class P>
+PHYSINV_LANES P held(P v) {
+#ifdef __AVX__
+  asm("" : "+v"(v));
+#endif
+  return v;
+}
+
 /// a where the mask is set, b elsewhere.
 template <class M, class P>
 PHYSINV_LANES P select(M mask, P a, P b) {

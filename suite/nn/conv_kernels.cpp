@@ -59,7 +59,7 @@ template <class T, class V, int M, int N>
     for (Index k = segment.taps * g.in; k > 0; --k, a += M) {
       V b[N];
 #pragma GCC unroll 8
-      for (int c = 0; c < N; ++c) b[c] = load<V>(x[c]), x[c] += g.stride;
+      for (int c = 0; c < N; ++c) b[c] = held(load<V>(x[c])), x[c] += g.stride;
 #pragma GCC unroll 16
       for (int r = 0; r < M; ++r) {
         const V w = broadcast<V>(a[r]);
@@ -163,10 +163,10 @@ template <class T, class V, int R, int Q>
     for (Index v = 0; v < vectors * w; v += w) {
       V xv[Q];
 #pragma GCC unroll 8
-      for (int q = 0; q < Q; ++q) xv[q] = load<V>(x + q * stride + v);
+      for (int q = 0; q < Q; ++q) xv[q] = held(load<V>(x + q * stride + v));
 #pragma GCC unroll 8
       for (int r = 0; r < R; ++r) {
-        const V yv = load<V>(y + r * stride + v);
+        const V yv = held(load<V>(y + r * stride + v));
 #pragma GCC unroll 8
         for (int q = 0; q < Q; ++q)
           acc[r][q] = multiply_add<T>(yv, xv[q], acc[r][q]);

@@ -112,7 +112,7 @@ template <class T, class V, int M, int N, bool kUnit, bool kWhole>
   for (Index k = p.k0; k < p.k1; ++k, b += g.b_stride) {
     V bv[N];
 #pragma GCC unroll 2
-    for (int c = 0; c < N; ++c) bv[c] = load<V>(b + c * w);
+    for (int c = 0; c < N; ++c) bv[c] = held(load<V>(b + c * w));
 #pragma GCC unroll 16
     for (int r = 0; r < M; ++r) {
       const V s = broadcast<V>(a[r / 4][(r % 4) * a_row]);
