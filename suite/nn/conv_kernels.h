@@ -7,12 +7,11 @@
 /// neighbouring positions. The weight gradient's tiles are whole vectors over
 /// samples; nothing is transposed before the lanes are added up at the end.
 ///
-/// Measured on one Zen 4 core, float, PHYSINV_NATIVE, GFlop/s with 8 and 128
-/// samples, 128 positions, 16 -> 16 channels: 101 and 97; one `gemm` per
-/// position 85 and 100; im2col and one `gemm` 46 and 62. At 256 positions,
-/// 32 -> 16: 107 and 79 against 92 and 83, 45 and 26. (Eigen's best product
-/// beside them: 84.) `gemm` per position does as well with many samples; the
-/// small batches decide. Weight gradient, 16 -> 16: 68 and 61.
+/// Measured on one Zen 3 core, float, PHYSINV_NATIVE, GFlop/s with 8 and 128
+/// samples, 128 positions, 16 -> 16 channels: 71 and 79; one `gemm` per
+/// position 50 and 71; im2col and one `gemm` 28 and 33. At 256 positions,
+/// 32 -> 16: 91 and 66 against 62 and 57, 28 and 14. (Eigen's best product
+/// beside them: 52.) Weight gradient, 16 -> 16: 48 and 74.
 ///
 /// Bits: `convolve` adds a sample's products one by one in the order of taps
 /// and channels, by fused multiply-add, whatever tile it falls into. The

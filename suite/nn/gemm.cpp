@@ -40,7 +40,7 @@ Store store_of(const Gemm<T>& g) {
   return Store::in_memory;
 }
 
-/// f(address, lanes) -> lanes for what lies in rows from i, columns from j.
+/// Lanes of rows from i, columns from j <- f(row, column, lanes, how many).
 template <class T, class F>
 [[gnu::always_inline]] inline void for_vectors(
     const Gemm<T>& g, Index i, Index rows, Index j, Index cols, F&& f) {
