@@ -145,7 +145,8 @@ void BandReduction::reduce(VectorOut<double> d, VectorOut<double> e) {
   for (Index j = 0; j + 1 < n_; ++j) e(j) = entry(j + 1, j);
 }
 
-void BandReduction::apply(double* x) const {
+template <class X>
+void BandReduction::apply(X* x) const {
   const double* tau = tau_.data() + tau_.size();
   const auto* v = static_cast<const double*>(reflectors_.data()) +
                   static_cast<Index>(tau_.size()) * kBand;
@@ -153,9 +154,11 @@ void BandReduction::apply(double* x) const {
     for (Index r = j + 1 + (chain(n_, j) - 1) * kBand; r > j; r -= kBand) {
       v -= kBand;
       if (*--tau == 0) continue;
-      const Index length = std::min(kBand, n_ - r);
-      axpy(length, -*tau * dot(length, v, x + r), v, x + r);
+      turn(std::min(kBand, n_ - r), *tau, v, x + r);
     }
 }
+
+template void BandReduction::apply(double*) const;
+template void BandReduction::apply(Eight*) const;
 
 }  // namespace physinv::hig

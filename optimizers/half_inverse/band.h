@@ -22,8 +22,9 @@ class BandReduction {
 
   void reduce(VectorOut<double> d, VectorOut<double> e);
 
-  /// x <- Q x for T = Q^T A Q.
-  void apply(double* x) const;
+  /// x <- Q x for T = Q^T A Q. X is double or Eight.
+  template <class X>
+  void apply(X* x) const;
 
   std::size_t bytes() const { return memory_.bytes() + reflectors_.bytes(); }
 

@@ -82,9 +82,10 @@ std::span<const HalfInverseReport> HalfInverse::operator()(
         return spectral_.apply(power, v_.col(0));
       }))
     return reports_;
-  two_level_.factor(gram, g, p, pullback, options_.gram_noise);
+  two_level_.open();
   if (attempt(Path::two_level, !jacobian_fits, [&](const Power& power, auto&) {
-        return two_level_.apply(power, v_.col(0));
+        return two_level_.apply(
+            power, options_.tolerance, p, pullback, v_.col(0));
       }))
     return reports_;
   transposed_.resize(p, m);

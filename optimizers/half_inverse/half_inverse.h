@@ -3,7 +3,7 @@
 ///
 ///   shortcut   Gauss-Newton, nothing cut: Cholesky (definite_solve.h)
 ///   gram       one tridiagonalisation of J J^T (spectral_power.h)
-///   two_level  eigenvectors, small values through J^T U2 (two_level.h)
+///   two_level  some values through J^T U2 (two_level.h)
 ///   explicit   J itself, QR and SVD (explicit_power.h)
 ///
 /// A path whose error estimate exceeds the tolerance is left for the next
@@ -45,7 +45,8 @@ class HalfInverse {
  public:
   using Options = HalfInverseOptions;
   explicit HalfInverse(const Options& options = {}, Threads* threads = nullptr)
-      : options_(options), spectral_(threads) {}
+      : options_(options), spectral_(threads), two_level_(spectral_, threads) {}
+  HalfInverse(const HalfInverse&) = delete;
 
   /// gram = J J^T (m x m, lower triangle), g (m); `pullback` is J^T. Column i
   /// of `updates` (p x settings) becomes the update of powers[i]; an update
@@ -62,7 +63,7 @@ class HalfInverse {
     std::int64_t unproven = 0;
   };
   const Counts& counts() const { return counts_; }
-  /// Of the paths taken as a rule; others hold two more matrices of G's size.
+  /// Of the paths taken as a rule.
   std::size_t bytes() const { return spectral_.bytes() + definite_.bytes(); }
 
  private:

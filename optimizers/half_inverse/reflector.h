@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "optimizers/half_inverse/eight.h"
 #include "optimizers/half_inverse/tile_product.h"
 
 namespace physinv::hig {
@@ -29,6 +30,22 @@ inline void axpy(Index n, double s, const double* x, double* y) {
   for (; i + kWidth <= n; i += kWidth)
     store(y + i, fma(factor, load(x + i), load(y + i)));
   for (; i < n; ++i) y[i] = std::fma(s, x[i], y[i]);
+}
+
+/// x <- H x.
+inline void turn(Index n, double tau, const double* v, double* x) {
+  axpy(n, -tau * dot(n, v, x), v, x);
+}
+inline void turn(Index n, double tau, const double* v, Eight* x) {
+  Eight even, odd;  // two sums hide the latency of one
+  Index i = 0;
+  for (; i + 2 <= n; i += 2) {
+    even = even + v[i] * x[i];
+    odd = odd + v[i + 1] * x[i + 1];
+  }
+  if (i < n) even = even + v[i] * x[i];
+  const Eight along = -tau * (even + odd);
+  for (i = 0; i < n; ++i) x[i] = x[i] + v[i] * along;
 }
 
 /// x (n) becomes v; H x = beta e1. tau = 0, H = I where x_1.. vanish. The

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "optimizers/half_inverse/reflector.h"
 #include "suite/core/check.h"
 
 namespace physinv::hig {
@@ -87,12 +88,33 @@ PowerReport SpectralPower::apply(const Power& power,
     return report;
   }
   const PowerReport report = power_weights(spectrum_, power, v);
-  if (report.kept == 0) return report;
-  qr_.apply(v);
-  reduction_.apply(v);
+  if (report.kept > 0) leave_eigenbasis(v);
+  return report;
+}
+
+void SpectralPower::leave_eigenbasis(VectorOut<double> v) const {
+  qr_.apply(v.data());
+  reduction_.apply(v.data());
   const auto u = u_.head(v.size());
   v -= (2 * u.dot(v)) * u;
-  return report;
+}
+
+void SpectralPower::directions(std::span<const Index> which,
+                               BatchOut<double> out) const {
+  const Index m = out.rows(), count = out.cols();
+  const Index blocks = (count + Eight::kCount - 1) / Eight::kCount;
+  for_blocks(threads_, blocks, [&](Index block, int) {
+    const Index first = block * Eight::kCount;
+    std::vector<Eight> x(static_cast<std::size_t>(m));
+    Eigen::Map<Batch<double>> columns(&x[0].low[0], Eight::kCount, m);
+    const Index here = std::min(Eight::kCount, count - first);
+    for (Index k = 0; k < here; ++k)
+      columns(k, which[static_cast<std::size_t>(first + k)]) = 1;
+    qr_.apply(x.data());
+    reduction_.apply(x.data());
+    turn(m, 2, u_.data(), x.data());
+    out.middleCols(first, here) = columns.topRows(here).transpose();
+  });
 }
 
 }  // namespace physinv::hig

@@ -10,6 +10,8 @@
 /// report's `error` says what that does to the update at hand.
 #pragma once
 
+#include <span>
+
 #include "optimizers/half_inverse/power.h"
 #include "optimizers/half_inverse/tridiagonal_qr.h"
 #include "optimizers/half_inverse/tridiagonalize.h"
@@ -32,6 +34,12 @@ class SpectralPower {
   /// v of power.h for the matrix factored last; zero unless that ended ok.
   PowerReport apply(const Power& power, VectorOut<double> v) const;
 
+  /// v <- U v, from the order of the spectrum to the rows of G.
+  void leave_eigenbasis(VectorOut<double> v) const;
+  /// The columns of U that are listed.
+  void directions(std::span<const Index> which, BatchOut<double> out) const;
+
+  Ending ending() const { return ending_; }
   const Spectrum& spectrum() const { return spectrum_; }
   Index rotations() const { return qr_.rotations(); }
   std::size_t bytes() const { return reduction_.bytes() + qr_.bytes(); }

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "suite/nn/vector.h"
+#include "optimizers/half_inverse/eight.h"
 
 namespace physinv::hig {
 
@@ -15,7 +15,6 @@ inline constexpr double kTinySquare = 1e-280;
 
 /// Four sweeps to a register. Two such chains fill each other's waits for
 /// the root and the division.
-using Four = nn::Simd<double, 32>;
 inline constexpr int kChains = 2;
 inline constexpr Index kSweeps = 4 * kChains;
 /// Steps from the start of the first sweep to that of the last one.
@@ -154,6 +153,51 @@ inline void turn_back_all(double* x,
     if (in + kLag < end) x[in + kLag + 1] = rows[0][0];
   }
   x[start] = carried[0][0];
+}
+
+/// Step t of that for four of eight vectors: lanes are vectors here. A row
+/// waits for the next sweep where the one before has left it.
+template <bool kEdge>
+[[gnu::always_inline]] inline void turn_back_step(Four Eight::*half,
+                                                  Eight* x,
+                                                  Index count,
+                                                  Index t,
+                                                  Four* carried,
+                                                  const double* record) {
+#pragma GCC unroll 8
+  for (Index k = kSweeps - 1; k >= 0; --k) {
+    const Index i = t - 2 * k;
+    if constexpr (kEdge) {
+      if (i < 0 || i >= count) continue;
+      if (i == count - 1) carried[k] = x[count].*half;
+    }
+    const double c = record[k], s = record[k + kSweeps];
+    const Four low = x[i].*half;
+    x[i + 1].*half = s * low + c * carried[k];
+    carried[k] = c * low - s * carried[k];
+    if constexpr (kEdge) {
+      if (i == 0) x[0].*half = carried[k];
+    }
+  }
+}
+
+inline void turn_back_all(Eight* x,
+                          Index start,
+                          Index end,
+                          const double* record) {
+  const Index count = end - start;
+  x += start;
+  for (Four Eight::*half : {&Eight::low, &Eight::high}) {
+    Four carried[kSweeps]{};
+    const double* at = record;
+    for (Index t = count + kLag; t >= 0; --t) {
+      at -= 2 * kSweeps;
+      if (t > kLag && t < count - 1) [[likely]]
+        turn_back_step<false>(half, x, count, t, carried, at);
+      else
+        turn_back_step<true>(half, x, count, t, carried, at);
+    }
+  }
 }
 
 }  // namespace physinv::hig

@@ -81,10 +81,12 @@ bool find_shifts(const double* d, const double* e, Index end, double* shifts) {
 }
 
 /// x <- the rotations of one sweep backwards; `record` is their end.
-void turn_back(double* x, Index start, Index end, const double* record) {
-  double carried = x[end];
+template <class X>
+void turn_back(X* x, Index start, Index end, const double* record) {
+  X carried = x[end];
   for (Index i = end - 1; i >= start; --i) {
-    const double s = *--record, c = *--record, low = x[i];
+    const double s = *--record, c = *--record;
+    const X low = x[i];
     x[i + 1] = s * low + c * carried;
     carried = c * low - s * carried;
   }
@@ -162,13 +164,20 @@ bool TridiagonalQr::run(VectorOut<double> d,
   });
 }
 
-void TridiagonalQr::apply(VectorOut<double> x) const {
+template <class X>
+void TridiagonalQr::apply(X* x) const {
   const double* record = record_.data() + used_;
   for (auto round = rounds_.rbegin(); round != rounds_.rend(); ++round) {
-    const auto back = round->sweeps == 1 ? turn_back : turn_back_all;
-    back(x.data(), round->start, round->end, record);
+    if (round->sweeps == 1) {
+      turn_back(x, round->start, round->end, record);
+    } else {
+      turn_back_all(x, round->start, round->end, record);
+    }
     record -= round->numbers();
   }
 }
+
+template void TridiagonalQr::apply(double*) const;
+template void TridiagonalQr::apply(Eight*) const;
 
 }  // namespace physinv::hig

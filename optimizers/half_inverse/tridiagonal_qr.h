@@ -21,8 +21,9 @@ class TridiagonalQr {
   /// graded matrix. False after 60 n sweeps without an end.
   bool run(VectorOut<double> d, VectorOut<double> e, VectorOut<double> x);
 
-  /// x <- W x: the recorded rotations backwards.
-  void apply(VectorOut<double> x) const;
+  /// x <- W x: the recorded rotations backwards. X is double or Eight.
+  template <class X>
+  void apply(X* x) const;
 
   Index rotations() const { return rotations_; }
   Index sweeps() const { return sweeps_; }

@@ -229,8 +229,8 @@ void Tridiagonalize::two_stage() {
   band_.reduce(d_, e_);
 }
 
-void Tridiagonalize::apply(VectorOut<double> vector) const {
-  double* const x = vector.data();
+template <class X>
+void Tridiagonalize::apply(X* x) const {
   const Index n = a_.n;
   if (two_) band_.apply(x);
   for (Index j = n - 2; j >= 0; --j) {
@@ -238,9 +238,11 @@ void Tridiagonalize::apply(VectorOut<double> vector) const {
     if (tau == 0) continue;
     const Index from = two_ ? j / kBand * kBand + kBand + j % kBand : j + 1;
     if (from >= n) continue;
-    const double* v = a_.row(j) + from;
-    axpy(n - from, -tau * dot(n - from, v, x + from), v, x + from);
+    turn(n - from, tau, a_.row(j) + from, x + from);
   }
 }
+
+template void Tridiagonalize::apply(double*) const;
+template void Tridiagonalize::apply(Eight*) const;
 
 }  // namespace physinv::hig

@@ -32,8 +32,9 @@ class Tridiagonalize {
   const Vector<double>& diagonal() const { return d_; }
   const Vector<double>& off_diagonal() const { return e_; }
 
-  /// x <- Q x.
-  void apply(VectorOut<double> x) const;
+  /// x <- Q x. X is double or Eight.
+  template <class X>
+  void apply(X* x) const;
 
   std::size_t bytes() const { return memory_.bytes() + band_.bytes(); }
 

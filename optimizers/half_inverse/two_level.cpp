@@ -1,82 +1,119 @@
 #include "optimizers/half_inverse/two_level.h"
 
-#include <Eigen/Eigenvalues>
-#include <cmath>
-
-#include "optimizers/half_inverse/spectral_power.h"
-#include "suite/core/check.h"
+#include <algorithm>
+#include <limits>
 
 namespace physinv::hig {
 namespace {
 
-constexpr double kSecondLevel = 1e-4;  ///< of s_max
+/// Ranges around the cut, tried in this order: cut / width ... cut width.
+constexpr double kWidths[] = {1.25, 1.6, 2, 2.5, 3.2, 4, 5, 6.4, 8, 16, 64};
+constexpr double kSecondLevel = 1e-4;  ///< of s_max, where those do not do
+/// Part of the tolerance that a range may be expected to need: refined values
+/// may lie nearer to the cut.
+constexpr double kExpected = 0.8;
 
 }  // namespace
 
-Ending TwoLevelPower::factor(BatchIn<double> gram,
-                             VectorIn<double> g,
-                             Index parameters,
-                             const Pullback& pullback,
-                             double gram_noise) {
-  const Index m = g.size();
-  SUITE_CHECK(m > 0 && gram.rows() == m && gram.cols() == m, "G is m x m");
-  spectrum_.lambda.setZero(m), spectrum_.c.setZero(m);
-  double largest = 0;
-  if (!g.allFinite() || !finite_lower(gram, largest))
-    return ending_ = Ending::nonfinite;
-  if (largest == 0 || g.isZero(0)) return ending_ = Ending::zero;
+/// The first level's spectrum with the values in [low, high] at the end.
+void TwoLevelPower::arrange(double low, double high) {
+  const Spectrum& first = first_.spectrum();
+  const Index m = first.lambda.size();
+  const auto inside = [&](Index i) {
+    const double s = first.s(i);
+    return low <= s && s <= high;
+  };
+  order_.clear();
+  for (Index i = 0; i < m; ++i)
+    if (!inside(i)) order_.push_back(i);
+  inside_ = m - static_cast<Index>(order_.size());
+  for (Index i = 0; i < m; ++i)
+    if (inside(i)) order_.push_back(i);
+  spectrum_.lambda = first.lambda(order_);
+  spectrum_.c = first.c(order_);
+  spectrum_.scale = first.scale;
+  spectrum_.noise = first.noise;
+  spectrum_.noise.jacobian = first.noise.gram;  // rounding of W2
+  spectrum_.noise.tail_begin = m - inside_;
+  set_inside(spectrum_.lambda.tail(inside_));
+}
 
-  int exponent;
-  std::frexp(largest, &exponent);
-  exponent = (exponent + (exponent > 0)) / 2;
-  spectrum_.scale = std::ldexp(1.0, exponent);
-  using Solver = Eigen::SelfAdjointEigenSolver<Batch<double>>;
-  const Solver first(gram * std::ldexp(1.0, -2 * exponent));
-  if (first.info() != Eigen::Success) return ending_ = Ending::stalled;
-  // Eigen sorts upwards: the second level comes first, its end is k2.
-  const auto& values = first.eigenvalues();
-  const double top = values(m - 1);
-  Index k2 = 0;
-  while (k2 < m && !(values(k2) > kSecondLevel * kSecondLevel * top)) ++k2;
-  const Index k1 = m - k2;
-  u_.resize(m, m);
-  u_.leftCols(k1) = first.eigenvectors().rightCols(k1);
-  spectrum_.lambda.head(k1) = values.tail(k1);
-  double tail = 0;
-  if (k2 > 0) {
-    const Batch<double> u2 = first.eigenvectors().leftCols(k2);
-    Batch<double> w2(parameters, k2);
-    pullback(u2, w2);
-    if (!w2.allFinite()) return ending_ = Ending::nonfinite;
-    w2 /= spectrum_.scale;
-    Batch<double> square = Batch<double>::Zero(k2, k2);
-    square.selfadjointView<Eigen::Lower>().rankUpdate(w2.transpose());
-    const Solver second(square);
-    if (second.info() != Eigen::Success) return ending_ = Ending::stalled;
-    u_.rightCols(k2).noalias() = u2 * second.eigenvectors();
-    spectrum_.lambda.tail(k2) = second.eigenvalues();
-    tail = second.eigenvalues()(k2 - 1) / top;
+void TwoLevelPower::set_inside(VectorIn<double> values) {
+  if (inside_ == 0) return;
+  spectrum_.lambda.tail(inside_) = values;
+  spectrum_.noise.tail = spectrum_.noise.gram *
+                         std::max(values.maxCoeff(), 0.0) /
+                         spectrum_.lambda.maxCoeff();
+}
+
+/// The spectrum of W2^T W2 for the range.
+Ending TwoLevelPower::refine(Index parameters, const Pullback& pullback) {
+  const std::vector<Index> wanted(order_.end() - inside_, order_.end());
+  if (wanted == refined_) return second_.ending();
+  refined_ = wanted;
+  Batch<double> u2(spectrum_.lambda.size(), inside_), w2(parameters, inside_);
+  first_.directions(wanted, u2);
+  pullback(u2, w2);
+  Batch<double> square = Batch<double>::Zero(inside_, inside_);
+  square.selfadjointView<Eigen::Lower>().rankUpdate(w2.transpose());
+  // The spectrum is wanted even where g has no part in it.
+  Vector<double> c = spectrum_.c.tail(inside_);
+  if (c.isZero(0)) c(0) = std::numeric_limits<double>::min();
+  return second_.factor(square, c);
+}
+
+PowerReport TwoLevelPower::settle(const Power& power,
+                                  Index parameters,
+                                  const Pullback& pullback,
+                                  VectorOut<double> v) {
+  PowerReport report;
+  const Ending ending =
+      inside_ > 0 ? refine(parameters, pullback) : Ending::zero;
+  const bool turned = ending == Ending::ok;
+  if (turned) {
+    const Spectrum& second = second_.spectrum();
+    const double rescale = second.scale / spectrum_.scale;
+    set_inside(second.lambda * (rescale * rescale));
+    spectrum_.c.tail(inside_) = second.c;
+  } else if (ending == Ending::zero) {  // W2 = 0
+    set_inside(Vector<double>::Zero(inside_));
+  } else {
+    report.ending = ending;
+    return report;
   }
-  spectrum_.c.noalias() = u_.transpose() * g;
-  const double entry = entry_noise(m, gram_noise);
-  spectrum_.noise = {.gram = entry,
-                     .tail = entry * tail,
-                     .jacobian = entry,  // rounding of W2
-                     .tail_begin = k1,
-                     .norm_factor = norm_factor(m)};
-  return ending_ = Ending::ok;
+  report = power_weights(spectrum_, power, weights_);
+  if (report.kept == 0) return report;
+  if (turned) second_.leave_eigenbasis(weights_.tail(inside_));
+  v(order_) = weights_;
+  first_.leave_eigenbasis(v);
+  return report;
 }
 
 PowerReport TwoLevelPower::apply(const Power& power,
-                                 VectorOut<double> v) const {
+                                 double tolerance,
+                                 Index parameters,
+                                 const Pullback& pullback,
+                                 VectorOut<double> v) {
   v.setZero();
-  PowerReport report;
-  report.ending = ending_;
-  if (ending_ != Ending::ok) return report;
-  Vector<double> w(v.size());
-  report = power_weights(spectrum_, power, w);
-  if (report.kept > 0) v.noalias() = u_ * w;
-  return report;
+  if (first_.ending() != Ending::ok) {
+    PowerReport report;
+    report.ending = first_.ending();
+    return report;
+  }
+  weights_.resize(v.size());
+  const double s_max = first_.spectrum().s_max();
+  const double cut = power.absolute ? power.tau : power.tau * s_max;
+  for (const double width : kWidths) {
+    arrange(cut / width, cut * width);
+    if (!proven(power_weights(spectrum_, power, weights_),
+                kExpected * tolerance))
+      continue;
+    const PowerReport report = settle(power, parameters, pullback, v);
+    if (proven(report, tolerance)) return report;
+    v.setZero();
+  }
+  arrange(0, kSecondLevel * s_max);
+  return settle(power, parameters, pullback, v);
 }
 
 }  // namespace physinv::hig
