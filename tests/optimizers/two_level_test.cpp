@@ -1,0 +1,102 @@
+// A second level for the directions that J J^T does not tell apart.
+#include "optimizers/half_inverse/two_level.h"
+
+#include "suite/core/threads.h"
+#include "tests/optimizers/half_inverse_truth.h"
+
+namespace physinv::hig {
+namespace {
+
+/// Values a thousandth apart on both sides of the cut: the Gram matrix cannot
+/// tell their directions apart, those of the rest need no second level.
+TEST(TwoLevel, OnlyAroundTheCut) {
+  const Index m = 120;
+  const double cut = 1e-6;
+  Batch<double> j = graded(m, 150, 3, 160);
+  const Eigen::BDCSVD<Batch<double>> parts(
+      j, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  Vector<double> s = parts.singularValues();
+  for (Index i = m - 12; i < m; ++i)
+    s(i) = cut * (1 + 1e-3 * (static_cast<double>(m - 7 - i) + 0.5));
+  j = parts.matrixU() * s.asDiagonal() * parts.matrixV().transpose();
+  const Vector<double> g = noise(m, 1, 161);
+  SpectralPower first;
+  ASSERT_EQ(first.factor(j * j.transpose(), g), Ending::ok);
+  Index asked = 0;
+  TwoLevelPower two(first);
+  const Pullback pullback = [&](BatchIn<double> u, BatchOut<double> out) {
+    asked += u.cols();
+    out.noalias() = j.transpose() * u;
+  };
+  Vector<double> v(m), w(m);
+  for (const double kappa : {-0.5, -1.0}) {
+    const Power power{.kappa = kappa, .tau = cut, .absolute = true};
+    EXPECT_GT(first.apply(power, v).error, 1e-3);
+    // The definition, from the parts that J was made of.
+    Vector<double> c = parts.matrixU().transpose() * g;
+    for (Index i = 0; i < m; ++i)
+      c(i) *= s(i) > cut ? std::pow(s(i), kappa) : 0.0;
+    const Vector<double> expected = parts.matrixV() * c;
+    const PowerReport report = two.apply(power, 1e-3, 150, pullback, v);
+    EXPECT_EQ(report.kept, m - 6);
+    EXPECT_LE(report.error, 1e-3);
+    EXPECT_LE((j.transpose() * v - expected).norm(),
+              report.error * expected.norm());
+    EXPECT_EQ(two.second_level(), 12);
+    EXPECT_EQ(asked, 12);  // the second setting has the range of the first
+  }
+  // Another matrix, the same directions: nothing is left of the one before.
+  ASSERT_EQ(first.factor(4 * j * j.transpose(), g), Ending::ok);
+  two.open();
+  j *= 2;
+  const Power power{.kappa = -1, .tau = 2 * cut, .absolute = true};
+  EXPECT_LE(two.apply(power, 1e-3, 150, pullback, w).error, 1e-3);
+  EXPECT_EQ(asked, 24);
+  EXPECT_LT((4 * w - v).norm(), 1e-9 * v.norm());
+}
+
+TEST(TwoLevel, OfExactZeros) {
+  const Index m = 50, dead = 10;
+  Batch<double> j = graded(m, 70, 3, 165);
+  Vector<double> g = noise(m, 1, 166);
+  j.bottomRows(dead).setZero(), g.tail(dead).setZero();
+  const Definition truth(j, g);
+  SpectralPower first;
+  ASSERT_EQ(first.factor(j * j.transpose(), g), Ending::ok);
+  TwoLevelPower two(first);
+  Vector<double> v(m);
+  const Power power{.kappa = -1, .tau = 1e-8};
+  const PowerReport report = two.apply(power, 0, 70, pullback_of(j), v);
+  EXPECT_GE(two.second_level(), dead);
+  ASSERT_EQ(report.ending, Ending::ok);
+  EXPECT_EQ(report.kept, m - dead);
+  const Vector<double> expected = truth.update(power);
+  EXPECT_LE((j.transpose() * v - expected).norm(), 1e-9 * expected.norm());
+}
+
+TEST(SpectralPower, DirectionsEightAbreast) {
+  for (const Index m : {1, 2, 9, 40, 150})
+    for (const Stages stages : {Stages::one, Stages::two}) {
+      const Batch<double> j = graded(m, m + 3, 6, 170);
+      const Batch<double> gram = j * j.transpose();
+      Threads threads(3);
+      SpectralPower power(&threads);
+      ASSERT_EQ(power.factor(gram, noise(m, 1, 171), 1, stages), Ending::ok);
+      std::vector<Index> which;
+      for (Index i = 0; i < m; i += 1 + i % 3) which.push_back(m - 1 - i);
+      const auto count = static_cast<Index>(which.size());
+      Batch<double> u(m, count);
+      power.directions(which, u);
+      for (Index k = 0; k < count; ++k) {
+        const Index i = which[static_cast<std::size_t>(k)];
+        Vector<double> one = Vector<double>::Unit(m, i);
+        power.leave_eigenbasis(one);
+        EXPECT_LT((u.col(k) - one).norm(), 1e-13);
+        const double lambda = power.spectrum().s(i) * power.spectrum().s(i);
+        EXPECT_LT((gram * one - lambda * one).norm(), 1e-14);
+      }
+    }
+}
+
+}  // namespace
+}  // namespace physinv::hig
