@@ -122,7 +122,7 @@ Ending ExplicitPower::factor(BatchIn<double> jacobian, VectorIn<double> g) {
     right_.applyOnTheLeft(qr.householderQ());
   }
   // Entries of the error of J against s_max, as in SpectralPower.
-  spectrum_.noise = {.jacobian = entry_noise(n, 0),
+  spectrum_.noise = {.slope = entry_noise(n, 0),
                      .tail_begin = 0,
                      .norm_factor = norm_factor(n)};
   return ending_ = Ending::ok;

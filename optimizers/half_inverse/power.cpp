@@ -43,10 +43,8 @@ double first_order(const Spectrum::Noise& noise,
                    const Side& dropped) {
   // E_ij^2 of one i of a and all j of b.
   const auto entries2 = [&](const Side& a, Index i, const Side& b) {
-    const double tail = a.tail(i), s = a.s(i);
-    return (noise.gram +
-            tail * b.tail *
-                (noise.tail + noise.jacobian * (b.s + s) - noise.gram))
+    return (noise.gram + a.tail(i) * b.tail * (noise.tail - noise.gram) +
+            noise.slope * (b.s + a.s(i)))
         .square();
   };
   double total = 0;
@@ -68,9 +66,7 @@ double first_order(const Spectrum::Noise& noise,
   const double f_cut = std::pow(cut, kappa - 1);
   for (const Side* side : {&kept, &dropped})
     for (Index i = 0; i < side->s.size(); ++i) {
-      const double own = side->tail(i) > 0
-                             ? noise.tail + 2 * noise.jacobian * side->s(i)
-                             : noise.gram;
+      const double own = noise.entry(side->tail(i) > 0, side->s(i));
       if (std::abs(side->lambda(i) - cut * cut) > kSafety * own) continue;
       const double f = side == &kept ? side->f(i) : f_cut;
       total += cut * cut * f * f * side->c2(i);
@@ -83,6 +79,14 @@ double first_order(const Spectrum::Noise& noise,
 double entry_noise(Index m, double matrix_noise) {
   const double solver = 0.75 * std::pow(static_cast<double>(m), 0.25);
   return kEpsilon * (matrix_noise + solver) / norm_factor(m);
+}
+
+double small_entry_noise(VectorIn<double> lambda,
+                         double largest_diagonal,
+                         double matrix_noise) {
+  const double spread = lambda.norm() / static_cast<double>(lambda.size());
+  return kEpsilon * ((4 + matrix_noise) * spread + 0.25 * largest_diagonal) /
+         lambda.maxCoeff();
 }
 
 double norm_factor(Index m) { return 2 * std::sqrt(static_cast<double>(m)); }
@@ -151,10 +155,7 @@ PowerReport power_weights(const Spectrum& spectrum,
     const bool tail = i >= noise.tail_begin;
     const double lambda = spectrum.lambda(i) / lambda_max;
     const double size =
-        noise.norm_factor *
-        (tail ? noise.tail +
-                    2 * noise.jacobian * std::sqrt(std::max(lambda, 0.0))
-              : noise.gram);
+        noise.norm_factor * noise.entry(tail, std::sqrt(std::max(lambda, 0.0)));
     Side& side = spectrum.s(i) > report.cut ? kept : dropped;
     Index& at = &side == &kept ? k : d;
     // A value that noise could have made is not proven to exist.

@@ -61,24 +61,35 @@ struct Spectrum {
   double scale = 1;       ///< of J: s_i = scale sqrt(lambda_i)
 
   /// Model of the perturbation E of diag(lambda) that the computation stands
-  /// for, relative to lambda_max: |E_ij| is about gram, and where both i and j
-  /// are >= tail_begin about tail + jacobian (s_i + s_j) / s_max.
+  /// for, relative to lambda_max: |E_ij| is about slope (s_i + s_j) / s_max
+  /// more than tail, where both i and j are >= tail_begin, or gram.
   struct Noise {
-    double gram = 0, tail = 0, jacobian = 0;
+    double gram = 0, tail = 0, slope = 0;
     Index tail_begin = 0;
     double norm_factor = 1;  ///< |E|_2 over the size of an entry
+
+    /// |E_ii| for s_i = s s_max.
+    double entry(bool in_tail, double s) const {
+      return (in_tail ? tail : gram) + 2 * slope * s;
+    }
   } noise;
 
   double s(Index i) const;
   double s_max() const;
 };
 
-/// Size of an entry of E for reductions in double of an m x m matrix whose own
-/// error is matrix_noise eps (2-norm over 2-norm), and |E|_2 over that size (a
-/// random symmetric matrix). Seen for the 2-norm of reduction and QR: 0.3 to
-/// 0.7 m^(1/4) eps.
+/// Size of an entry of E between directions of large values for reductions in
+/// double of an m x m matrix whose own error is matrix_noise eps (2-norm over
+/// 2-norm), and |E|_2 over that size (a random symmetric matrix). Seen for the
+/// 2-norm of reduction and QR: 0.3 to 0.7 m^(1/4) eps.
 double entry_noise(Index m, double matrix_noise);
 double norm_factor(Index m);
+/// The same between directions of small values. Rounding is spread over the
+/// whole matrix: seen 2.3 to 4.8 |G|_F / m eps, and more only where single
+/// rows are all of G, up to a quarter of their diagonal entry.
+double small_entry_noise(VectorIn<double> lambda,
+                         double largest_diagonal,
+                         double matrix_noise);
 
 /// Weights of v in the basis U, v = U weights, and the report of the update.
 PowerReport power_weights(const Spectrum& spectrum,

@@ -72,11 +72,15 @@ Ending SpectralPower::factor(BatchIn<double> gram,
   spectrum_.lambda = reduction_.diagonal();
   e_ = reduction_.off_diagonal();
   spectrum_.c(0) = alpha * top;
-  spectrum_.noise = {.gram = entry_noise(m, gram_noise),
-                     .tail_begin = m,
-                     .norm_factor = norm_factor(m)};
-  return ending_ = qr_.run(spectrum_.lambda, e_, spectrum_.c) ? Ending::ok
-                                                              : Ending::stalled;
+  if (!qr_.run(spectrum_.lambda, e_, spectrum_.c))
+    return ending_ = Ending::stalled;
+  const double diagonal = gram.diagonal().maxCoeff() * unscale;
+  spectrum_.noise = {
+      .gram = small_entry_noise(spectrum_.lambda, diagonal, gram_noise),
+      .slope = entry_noise(m, gram_noise),
+      .tail_begin = m,
+      .norm_factor = norm_factor(m)};
+  return ending_ = Ending::ok;
 }
 
 PowerReport SpectralPower::apply(const Power& power,

@@ -81,7 +81,7 @@ bool TallPower::by_lanes(const Power& power,
     spectrum_.lambda(i) = floor * floor;
     spectrum_.c(i) = std::sqrt(std::max(left, 0.0) / others);
   }
-  spectrum_.noise = {.jacobian = entry_noise(n, 0),
+  spectrum_.noise = {.slope = entry_noise(n, 0),
                      .tail_begin = 0,
                      .norm_factor = norm_factor(n)};
   report = power_weights(spectrum_, power, weights_);

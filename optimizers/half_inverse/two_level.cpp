@@ -33,7 +33,6 @@ void TwoLevelPower::arrange(double low, double high) {
   spectrum_.c = first.c(order_);
   spectrum_.scale = first.scale;
   spectrum_.noise = first.noise;
-  spectrum_.noise.jacobian = first.noise.gram;  // rounding of W2
   spectrum_.noise.tail_begin = m - inside_;
   set_inside(spectrum_.lambda.tail(inside_));
 }
@@ -41,7 +40,7 @@ void TwoLevelPower::arrange(double low, double high) {
 void TwoLevelPower::set_inside(VectorIn<double> values) {
   if (inside_ == 0) return;
   spectrum_.lambda.tail(inside_) = values;
-  spectrum_.noise.tail = spectrum_.noise.gram *
+  spectrum_.noise.tail = spectrum_.noise.slope *
                          std::max(values.maxCoeff(), 0.0) /
                          spectrum_.lambda.maxCoeff();
 }

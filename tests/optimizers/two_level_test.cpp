@@ -74,6 +74,45 @@ TEST(TwoLevel, OfExactZeros) {
   EXPECT_LE((j.transpose() * v - expected).norm(), 1e-9 * expected.norm());
 }
 
+/// E between directions of small values, from J itself: the estimates of the
+/// error rest on its size.
+TEST(SpectralPower, RoundingIsOfTheSizeOfTheModel) {
+  const Index m = 200;
+  std::vector<Batch<double>> all = {
+      graded(m, m + 20, 5, 180),
+      graded(m, m + 20, 9, 182),
+      noise(m, 8, 184) * noise(8, m, 185) + 1e-7 * noise(m, m, 186)};
+  Batch<double> twice(m, m);
+  twice << graded(m / 2, m, 6, 187), graded(m / 2, m, 6, 187);
+  all.push_back(twice);
+  Batch<double> rows = noise(m, m + 9, 188);  // single rows are all of G
+  for (Index i = 0; i < m; ++i)
+    rows.row(m - 1 - i) *=
+        std::pow(10, -6 * static_cast<double>(i) / static_cast<double>(m));
+  all.push_back(rows);
+  for (const Batch<double>& j : all)
+    for (const Stages stages : {Stages::one, Stages::two}) {
+      SpectralPower power;
+      ASSERT_EQ(power.factor(j * j.transpose(), noise(m, 1, 189), 1, stages),
+                Ending::ok);
+      const Spectrum& spectrum = power.spectrum();
+      std::vector<Index> small;
+      for (Index i = 0; i < m; ++i)
+        if (spectrum.s(i) < 1e-3 * spectrum.s_max()) small.push_back(i);
+      const auto count = static_cast<Index>(small.size());
+      Batch<double> u(m, count);
+      power.directions(small, u);
+      const Batch<double> w = j.transpose() * u;
+      Batch<double> e = w.transpose() * w;
+      for (Index k = 0; k < count; ++k)
+        e(k, k) -= std::pow(spectrum.s(small[static_cast<std::size_t>(k)]), 2);
+      const double seen =
+          e.norm() / static_cast<double>(count) / std::pow(spectrum.s_max(), 2);
+      EXPECT_LT(seen, spectrum.noise.gram);
+      EXPECT_GT(seen, spectrum.noise.gram / 20);
+    }
+}
+
 TEST(SpectralPower, DirectionsEightAbreast) {
   for (const Index m : {1, 2, 9, 40, 150})
     for (const Stages stages : {Stages::one, Stages::two}) {
