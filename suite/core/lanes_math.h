@@ -23,6 +23,21 @@ PHYSINV_LANES P polynomial(P x, const LaneScalar<P> (&c)[N]) {
   return sum;
 }
 
+/// The same of N packs, which go through each operation together: one pack by
+/// itself would wait for the result of every operation before the next.
+template <class P, int N, std::size_t C>
+PHYSINV_LANES void polynomials(P (&x)[N], const LaneScalar<P> (&c)[C]) {
+  P sum[N];
+#pragma GCC unroll 8
+  for (int i = 0; i < N; ++i) sum[i] = c[C - 1] - P{};
+#pragma GCC unroll 16
+  for (std::size_t k = 1; k < C; ++k)
+#pragma GCC unroll 8
+    for (int i = 0; i < N; ++i) sum[i] = sum[i] * x[i] + c[C - 1 - k];
+#pragma GCC unroll 8
+  for (int i = 0; i < N; ++i) x[i] = sum[i];
+}
+
 /// Added to a number of at most 2^(digits-3), leaves its nearest integer in
 /// the last bits of the mantissa.
 template <class T>
@@ -85,10 +100,10 @@ PHYSINV_LANES P sin_turns(P t) {
   return sin_of_turn(t - round_lanes(t));
 }
 
-/// e^x, relative error about 2 eps. Beyond the range of normal numbers the
-/// value at its end.
-template <class P>
-PHYSINV_LANES P exp_lanes(P x) {
+/// e^x of N packs, relative error about 2 eps. Beyond the range of normal
+/// numbers the value at its end.
+template <class P, int N>
+PHYSINV_LANES void exp_lanes(P (&x)[N]) {
   using T = LaneScalar<P>;
   using I = Mask<T, sizeof(P) / sizeof(T)>;
   constexpr bool kSingle = sizeof(T) == 4;
@@ -99,43 +114,68 @@ PHYSINV_LANES P exp_lanes(P x) {
   constexpr T kHigh = kSingle ? T(0x1.62e4p-1) : T(0x1.62e42fefap-1);
   constexpr T kLow =
       kSingle ? T(0x1.7f7d1cf79abcap-20) : T(0x1.cf79abc9e3b39p-40);
-  x = x > kEnd ? kEnd - P{} : x < -kEnd ? -kEnd - P{} : x;
-  const P shifted = x * std::numbers::log2e_v<T> + kRounder<T>;
-  const P n = shifted - kRounder<T>;
-  const P r = (x - n * kHigh) - n * kLow;
-  const P scale = (P)(((I)shifted << kMantissa) + (kBias << kMantissa));
+  P scale[N];
+#pragma GCC unroll 8
+  for (int i = 0; i < N; ++i) {
+    const P in = x[i] > kEnd ? kEnd - P{} : x[i] < -kEnd ? -kEnd - P{} : x[i];
+    const P shifted = in * std::numbers::log2e_v<T> + kRounder<T>;
+    const P n = shifted - kRounder<T>;
+    x[i] = (in - n * kHigh) - n * kLow;
+    scale[i] = (P)(((I)shifted << kMantissa) + (kBias << kMantissa));
+  }
   if constexpr (kSingle) {
-    constexpr float kTaylor[] = {
+    static constexpr float kTaylor[] = {
         1, 1, 1.F / 2, 1.F / 6, 1.F / 24, 1.F / 120, 1.F / 720, 1.F / 5040};
-    return polynomial(r, kTaylor) * scale;
+    polynomials(x, kTaylor);
   } else {
-    constexpr double kTaylor[] = {1,
-                                  1,
-                                  1. / 2,
-                                  1. / 6,
-                                  1. / 24,
-                                  1. / 120,
-                                  1. / 720,
-                                  1. / 5040,
-                                  1. / 40320,
-                                  1. / 362880,
-                                  1. / 3628800,
-                                  1. / 39916800,
-                                  1. / 479001600,
-                                  1. / 6227020800};
-    return polynomial(r, kTaylor) * scale;
+    static constexpr double kTaylor[] = {1,
+                                         1,
+                                         1. / 2,
+                                         1. / 6,
+                                         1. / 24,
+                                         1. / 120,
+                                         1. / 720,
+                                         1. / 5040,
+                                         1. / 40320,
+                                         1. / 362880,
+                                         1. / 3628800,
+                                         1. / 39916800,
+                                         1. / 479001600,
+                                         1. / 6227020800};
+    polynomials(x, kTaylor);
+  }
+#pragma GCC unroll 8
+  for (int i = 0; i < N; ++i) x[i] = x[i] * scale[i];
+}
+
+template <class P>
+PHYSINV_LANES P exp_lanes(P x) {
+  P one[] = {x};
+  exp_lanes(one);
+  return one[0];
+}
+
+/// tanh x of N packs, absolute error about eps.
+template <class P, int N>
+PHYSINV_LANES void tanh_lanes(P (&x)[N]) {
+  using T = LaneScalar<P>;
+  using I = Mask<T, sizeof(P) / sizeof(T)>;
+  P e[N];
+#pragma GCC unroll 8
+  for (int i = 0; i < N; ++i) e[i] = abs_lanes(x[i]) + abs_lanes(x[i]);
+  exp_lanes(e);
+#pragma GCC unroll 8
+  for (int i = 0; i < N; ++i) {
+    const P less = e[i] - 1, y = less / (less + 2);
+    x[i] = (P)((I)y | ((I)x[i] & std::numeric_limits<LaneInt<T>>::min()));
   }
 }
 
-/// tanh x, absolute error about eps.
 template <class P>
 PHYSINV_LANES P tanh_lanes(P x) {
-  using T = LaneScalar<P>;
-  using I = Mask<T, sizeof(P) / sizeof(T)>;
-  const P size = abs_lanes(x);
-  const P e = exp_lanes(size + size) - 1;
-  const P y = e / (e + 2);
-  return (P)((I)y | ((I)x & std::numeric_limits<LaneInt<T>>::min()));
+  P one[] = {x};
+  tanh_lanes(one);
+  return one[0];
 }
 
 }  // namespace physinv

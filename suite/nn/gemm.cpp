@@ -18,17 +18,20 @@ constexpr int kRows2 = 6, kRows1 = 12;
 #endif
 constexpr Index kDepth = 256;    ///< k per round: a panel of B stays in the L1
 constexpr Index kRowBlock = 16;  ///< rows of one block of the thread loop
+constexpr Index kPanel = 48;     ///< rows of tiles finished together
+constexpr Index kNear = 16384;   ///< bytes of C that are still in the L1
+constexpr Index kGroup = 4;      ///< vectors whose tanh is taken together
 constexpr double kThreadFlops = 0.5e6;
 
-/// Part of C: rows from i, columns from j (`valid` of them if the tile is not
-/// whole), products k0..k1.
+/// Part of C: rows from i, `valid` columns from j, products k0..k1.
 struct Part {
   Index i, j, k0, k1, valid;
 };
 
-/// How a finished tile leaves the registers. The rare ones are done in memory,
-/// so that their code does not spill the accumulators of the common ones.
-enum class Store { plain, relu, relu_gate, in_memory };
+/// How a finished tile leaves the registers. Others are done in memory, a panel
+/// of tiles at a time, while it is in the L1: their code does not spill the
+/// accumulators, and sets up its constants once.
+enum class Store { plain, relu, relu_gate, tanh_gate, in_memory };
 
 template <class T>
 Store store_of(const Gemm<T>& g) {
@@ -37,15 +40,16 @@ Store store_of(const Gemm<T>& g) {
   if (free && open) return Store::plain;
   if (open && g.activation == Activation::relu) return Store::relu;
   if (free && g.gate_activation == Activation::relu) return Store::relu_gate;
+  if (free && g.gate_activation == Activation::tanh) return Store::tanh_gate;
   return Store::in_memory;
 }
 
 /// Lanes of rows from i, columns from j <- f(row, column, lanes, how many).
 template <class T, class F>
 [[gnu::always_inline]] inline void for_vectors(
-    const Gemm<T>& g, Index i, Index rows, Index j, Index cols, F&& f) {
+    const Gemm<T>& g, Index i, Index end, Index j, Index cols, F&& f) {
   using V = Simd<T, kNarrow>;
-  for (Index r = i; r < i + rows; ++r) {
+  for (Index r = i; r < end; ++r) {
     T* const row = g.c + r * g.c_stride;
     Index c = j;
     for (; c + kLanes<T> <= j + cols; c += kLanes<T>)
@@ -55,22 +59,49 @@ template <class T, class F>
   }
 }
 
-/// The activation and the gate of a tile, in memory.
+/// tanh of a panel, several rows at a time. What is missing in the last group
+/// repeats its last row.
+template <class T>
+[[gnu::noinline]] void tanh_panel(T* c, Index stride, Index rows, Index cols) {
+  using V = Simd<T, kNarrow>;
+  for (Index j = 0; j < cols; j += kLanes<T>)
+    for (Index r = 0; r < rows; r += kGroup) {
+      const Index last = std::min(kGroup, rows - r) - 1;
+      const Index width = std::min(kLanes<T>, cols - j);
+      T* const from = c + r * stride + j;
+      V v[kGroup];
+#pragma GCC unroll 8
+      for (Index q = 0; q < kGroup; ++q) {
+        const T* at = from + std::min(q, last) * stride;
+        v[q] = width == kLanes<T> ? load<V>(at) : load_some<V>(at, width);
+      }
+      tanh_lanes(v);
+#pragma GCC unroll 8
+      for (Index q = 0; q < kGroup; ++q) {
+        T* const at = from + q * stride;
+        if (q > last) break;
+        if (width == kLanes<T>) {
+          store(at, v[q]);
+        } else {
+          store_some(at, v[q], width);
+        }
+      }
+    }
+}
+
+/// The activation and the gate of a panel, in memory.
 template <class T>
 [[gnu::noinline]] void finish(
-    const Gemm<T>& g, Index i, Index rows, Index j, Index cols) {
+    const Gemm<T>& g, Index i, Index end, Index j, Index cols) {
   using V = Simd<T, kNarrow>;
-  // By itself: around a choice the constants of tanh are set up each time.
   if (g.activation == Activation::tanh)
-    for_vectors(g, i, rows, j, cols, [](Index, Index, V v, Index) {
-      return tanh_lanes(v);
-    });
+    tanh_panel(g.c + i * g.c_stride + j, g.c_stride, end - i, cols);
   else if (g.activation != Activation::identity)
-    for_vectors(g, i, rows, j, cols, [&](Index, Index, V v, Index) {
+    for_vectors(g, i, end, j, cols, [&](Index, Index, V v, Index) {
       return activate_lanes<T>(g.activation, v);
     });
   if (g.gate == nullptr) return;
-  for_vectors(g, i, rows, j, cols, [&](Index r, Index c, V v, Index some) {
+  for_vectors(g, i, end, j, cols, [&](Index r, Index c, V v, Index some) {
     const T* from = g.gate + r * g.gate_stride + c;
     const V gate = some == kLanes<T> ? load<V>(from) : load_some<V>(from, some);
     return pull_lanes<T>(g.gate_activation, gate, v);
@@ -123,6 +154,15 @@ template <class T, class V, int M, int N, bool kUnit, bool kWhole>
 #pragma GCC unroll 4
     for (int q = 0; q < groups; ++q) a[q] += g.a_k;
   }
+  const auto gate = [&](Activation a) {
+    const T* y = g.gate + p.i * g.gate_stride + p.j;
+#pragma GCC unroll 16
+    for (int r = 0; r < M; ++r)
+#pragma GCC unroll 2
+      for (int c = 0; c < N; ++c)
+        acc[r][c] =
+            pull_lanes<T>(a, get(y + r * g.gate_stride + c * w), acc[r][c]);
+  };
   const Store how = p.k1 == g.k ? store_of(g) : Store::plain;
   if (how == Store::relu) {
 #pragma GCC unroll 16
@@ -131,13 +171,9 @@ template <class T, class V, int M, int N, bool kUnit, bool kWhole>
       for (int c = 0; c < N; ++c)
         acc[r][c] = activate_lanes<T>(Activation::relu, acc[r][c]);
   } else if (how == Store::relu_gate) {
-    const T* gate = g.gate + p.i * g.gate_stride + p.j;
-#pragma GCC unroll 16
-    for (int r = 0; r < M; ++r)
-#pragma GCC unroll 2
-      for (int c = 0; c < N; ++c)
-        acc[r][c] = pull_lanes<T>(
-            Activation::relu, get(gate + r * g.gate_stride + c * w), acc[r][c]);
+    gate(Activation::relu);
+  } else if (how == Store::tanh_gate) {
+    gate(Activation::tanh);
   }
 #pragma GCC unroll 16
   for (int r = 0; r < M; ++r) {
@@ -150,7 +186,6 @@ template <class T, class V, int M, int N, bool kUnit, bool kWhole>
       }
     }
   }
-  if (how == Store::in_memory) finish(g, p.i, M, p.j, kWhole ? N * w : count);
 }
 
 /// All rows of one column of tiles, the remainder by smaller ones.
@@ -159,6 +194,24 @@ void column(const Gemm<T>& g, Part p, Index end) {
   for (; p.i + M <= end; p.i += M) tile<T, V, M, N, kUnit, kWhole>(g, p);
   if constexpr (M > 1) {
     if (p.i < end) column<T, V, M - 1, N, kUnit, kWhole>(g, p, end);
+  }
+}
+
+/// Whether so many rows are finished when all of them are there.
+template <class T>
+bool near(const Gemm<T>& g, Index rows) {
+  return rows * g.n * static_cast<Index>(sizeof(T)) <= kNear;
+}
+
+/// The same with what is left to do in memory, unless that comes last.
+template <class T, class V, int M, int N, bool kUnit, bool kWhole = true>
+void panels(const Gemm<T>& g, Part p, Index end) {
+  const bool finishes =
+      p.k1 == g.k && store_of(g) == Store::in_memory && !near(g, end - p.i);
+  for (Index next; p.i < end; p.i = next) {
+    next = finishes ? std::min(p.i + kPanel, end) : end;
+    column<T, V, M, N, kUnit, kWhole>(g, p, next);
+    if (finishes) finish(g, p.i, next, p.j, p.valid);
   }
 }
 
@@ -173,16 +226,18 @@ void rows(const Gemm<T>& g, Index begin, Index end) {
     const Index k1 = std::min(k0 + kDepth, g.k);
     Index j = 0;
     for (; j + 2 * wide <= g.n; j += 2 * wide)
-      column<T, Wide, kRows2, 2, kUnit>(g, {begin, j, k0, k1, wide}, end);
+      panels<T, Wide, kRows2, 2, kUnit>(g, {begin, j, k0, k1, 2 * wide}, end);
     for (; j + wide <= g.n; j += wide)
-      column<T, Wide, kRows1, 1, kUnit>(g, {begin, j, k0, k1, wide}, end);
+      panels<T, Wide, kRows1, 1, kUnit>(g, {begin, j, k0, k1, wide}, end);
     for (; j + narrow <= g.n; j += narrow)
-      column<T, Narrow, kRows1, 1, kUnit>(g, {begin, j, k0, k1, narrow}, end);
+      panels<T, Narrow, kRows1, 1, kUnit>(g, {begin, j, k0, k1, narrow}, end);
     if (j < g.n)
-      column<T, Narrow, kRows1, 1, kUnit, false>(
+      panels<T, Narrow, kRows1, 1, kUnit, false>(
           g, {begin, j, k0, k1, g.n - j}, end);
     k0 = k1;
   } while (k0 < g.k);
+  if (store_of(g) == Store::in_memory && near(g, end - begin))
+    finish(g, begin, end, 0, g.n);
 }
 
 template <class T>
