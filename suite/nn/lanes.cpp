@@ -17,32 +17,57 @@ F low(F a, F b) {
 F high(F a, F b) {
   return __builtin_shufflevector(a, b, 4, 12, 5, 13, 6, 14, 7, 15);
 }
-D low(D a, D b) { return __builtin_shufflevector(a, b, 0, 4, 1, 5); }
-D high(D a, D b) { return __builtin_shufflevector(a, b, 2, 6, 3, 7); }
+/// One vector per row: rows and columns change places.
+[[gnu::always_inline]] inline void turn(D (&v)[4]) {
+  const D a = __builtin_shufflevector(v[0], v[1], 0, 4, 2, 6);
+  const D b = __builtin_shufflevector(v[0], v[1], 1, 5, 3, 7);
+  const D c = __builtin_shufflevector(v[2], v[3], 0, 4, 2, 6);
+  const D d = __builtin_shufflevector(v[2], v[3], 1, 5, 3, 7);
+  v[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5);
+  v[1] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+  v[2] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
+  v[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+}
 
-/// A square of one vector per row: log2(W) perfect shuffles are a transpose.
-template <class T>
-void transpose_square(const T* from,
-                      Index from_stride,
-                      T* to,
-                      Index to_stride) {
+/// The same: log2(8) perfect shuffles.
+[[gnu::always_inline]] inline void turn(F (&v)[8]) {
+#pragma GCC unroll 3
+  for (int s = 0; s < 3; ++s) {
+    F w[8];
+#pragma GCC unroll 4
+    for (int i = 0; i < 4; ++i)
+      w[2 * i] = low(v[i], v[i + 4]), w[2 * i + 1] = high(v[i], v[i + 4]);
+#pragma GCC unroll 8
+    for (int i = 0; i < 8; ++i) v[i] = w[i];
+  }
+}
+
+/// The first `rows` of a square; the others read as zero.
+template <bool kWhole, class T>
+void transpose_square(
+    const T* from, Index from_stride, T* to, Index to_stride, Index rows) {
   using V = Simd<T, kNarrow>;
   constexpr int w = static_cast<int>(kLanes<T>);
-  V a[w], b[w];
+  V v[w];
 #pragma GCC unroll 8
-  for (int i = 0; i < w; ++i) a[i] = load<V>(from + i * from_stride);
-#pragma GCC unroll 3
-  for (int s = 1; s < w; s *= 2) {
+  for (int i = 0; i < w; ++i)
+    v[i] = kWhole || i < rows ? load<V>(from + i * from_stride) : V{};
+  turn(v);
 #pragma GCC unroll 8
-    for (int i = 0; i < w / 2; ++i) {
-      b[2 * i] = low(a[i], a[i + w / 2]);
-      b[2 * i + 1] = high(a[i], a[i + w / 2]);
-    }
-#pragma GCC unroll 8
-    for (int i = 0; i < w; ++i) a[i] = b[i];
-  }
-#pragma GCC unroll 8
-  for (int i = 0; i < w; ++i) store(to + i * to_stride, a[i]);
+  for (int i = 0; i < w; ++i) store(to + i * to_stride, v[i]);
+}
+
+/// Rows i to i + w of a transpose as far as they fill squares.
+template <bool kWhole, class T>
+void transpose_squares(const T* from,
+                       Index from_stride,
+                       Index cols,
+                       T* to,
+                       Index to_stride,
+                       Index rows) {
+  for (Index j = 0; j + kLanes<T> <= cols; j += kLanes<T>)
+    transpose_square<kWhole>(
+        from + j, from_stride, to + j * to_stride, to_stride, rows);
 }
 
 }  // namespace
@@ -53,18 +78,29 @@ void transpose(const T* from,
                Index rows,
                Index cols,
                T* to,
-               Index to_stride) {
+               Index to_stride,
+               Behind behind) {
   constexpr Index w = kLanes<T>;
-  const Index full_rows = rows / w * w, full_cols = cols / w * w;
-  for (Index i = 0; i < full_rows; i += w)
-    for (Index j = 0; j < full_cols; j += w)
-      transpose_square(from + i * from_stride + j,
-                       from_stride,
-                       to + j * to_stride + i,
-                       to_stride);
-  for (Index i = 0; i < rows; ++i)
-    for (Index j = i < full_rows ? full_cols : 0; j < cols; ++j)
-      to[j * to_stride + i] = from[i * from_stride + j];
+  const bool zeros = behind == Behind::zeros;
+  Index i = 0;
+  for (; i + w <= rows; i += w)
+    transpose_squares<true>(
+        from + i * from_stride, from_stride, cols, to + i, to_stride, w);
+  if (zeros && i < rows)
+    transpose_squares<false>(
+        from + i * from_stride, from_stride, cols, to + i, to_stride, rows - i);
+  // What no square has reached.
+  const Index squares = zeros ? rows : i;
+  for (Index j = cols / w * w; j < cols; ++j) {
+    for (Index r = 0; r < squares; ++r)
+      to[j * to_stride + r] = from[r * from_stride + j];
+    if (zeros)
+      std::fill(
+          to + j * to_stride + rows, to + j * to_stride + round_up(rows, w), 0);
+  }
+  for (Index r = squares; r < rows; ++r)
+    for (Index j = 0; j < cols; ++j)
+      to[j * to_stride + r] = from[r * from_stride + j];
 }
 
 template <class T>
@@ -113,10 +149,11 @@ void row_sums(Lanes<const T> x, T* sums) {
   }
 }
 
-#define PHYSINV_INSTANTIATE(T)                                          \
-  template void transpose<T>(const T*, Index, Index, Index, T*, Index); \
-  template void to_lanes<T>(BatchIn<T>, Lanes<T>);                      \
-  template void from_lanes<T>(Lanes<const T>, BatchOut<T>);             \
+#define PHYSINV_INSTANTIATE(T)                              \
+  template void transpose<T>(                               \
+      const T*, Index, Index, Index, T*, Index, Behind);    \
+  template void to_lanes<T>(BatchIn<T>, Lanes<T>);          \
+  template void from_lanes<T>(Lanes<const T>, BatchOut<T>); \
   template void row_sums<T>(Lanes<const T>, T*);
 PHYSINV_INSTANTIATE(float)
 PHYSINV_INSTANTIATE(double)

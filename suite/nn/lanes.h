@@ -53,6 +53,9 @@ struct Lanes {
   }
 };
 
+/// What a transpose writes behind the last of its rows, up to a whole vector.
+enum class Behind { none, zeros };
+
 /// to[j][i] = from[i][j] for i < rows, j < cols.
 template <class T>
 void transpose(const T* from,
@@ -60,7 +63,8 @@ void transpose(const T* from,
                Index rows,
                Index cols,
                T* to,
-               Index to_stride);
+               Index to_stride,
+               Behind behind = Behind::none);
 
 /// Samples as columns -> lanes; the padding becomes zero.
 template <class T>

@@ -119,11 +119,13 @@ void Linear<T>::weight_gradient(const LayerArgs<T>& at,
   const Index stride = lane_stride<T>(round_up(end - first, kLanes<T>));
   auto xt = at.work->template take<T>(stride, b.x.samples);
   // The columns behind the last feature are multiplied, never stored.
-  for (Index s = 0; s < b.x.samples; ++s)
-    for (Index j = end - first; j < round_up(end - first, kLanes<T>); ++j)
-      xt(j, s) = T(0);
-  transpose(
-      b.x.row(first), b.x.stride, end - first, b.x.samples, xt.data(), stride);
+  transpose(b.x.row(first),
+            b.x.stride,
+            end - first,
+            b.x.samples,
+            xt.data(),
+            stride,
+            Behind::zeros);
   gemm<T>({.m = out,
            .n = end - first,
            .k = b.x.samples,

@@ -117,6 +117,12 @@ TYPED_TEST(GemmTest, LanesTransposeBothWays) {
           ASSERT_EQ(x.row(i)[j], j < n ? in(i, j) : T(0));
       from_lanes<T>(x, out);
       expect_same_bits(in, out);
+      const Index up = round_up(n, kLanes<T>);
+      Batch<T> padded = Batch<T>::Constant(up + 1, rows, T(7));
+      transpose(in.data(), rows, n, rows, padded.data(), up + 1, Behind::zeros);
+      for (Index i = 0; i < rows; ++i)
+        for (Index j = 0; j <= up; ++j)
+          ASSERT_EQ(padded(j, i), j < n ? in(i, j) : T(j < up ? 0 : 7));
       Vector<T> sums(rows);
       row_sums<T>(x, sums.data());
       EXPECT_LE((sums - in.rowwise().sum()).norm(), 1e-5);
