@@ -22,26 +22,26 @@ Minibatch<T>::Minibatch(StageRun& run, Index batch, bool fresh, Index drawn)
       loss_(batch_),
       tape_(run.threads),
       work_(run.threads) {
-  if (!fresh_) all_ = run.oracle.training(0, batches_ * batch_);
+  if (!fresh_) load(run.oracle.training(0, batches_ * batch_));
 }
 
 template <class T>
 void Minibatch<T>::next() {
   if (fresh_) {
-    load(run_.oracle.training(drawn_, batch_), 0);
+    load(run_.oracle.training(drawn_, batch_));
   } else {
-    load(all_, at_ * batch_);
+    first_ = at_ * batch_;
     at_ = (at_ + 1) % batches_;
   }
   drawn_ += batch_;
 }
 
 template <class T>
-void Minibatch<T>::load(const Samples<double>& from, Index first) {
-  target_ = from.y.middleCols(first, batch_).template cast<T>();
-  given_ = from.given.middleCols(first, batch_).template cast<T>();
+void Minibatch<T>::load(const Samples<double>& from) {
+  target_ = from.y.template cast<T>();
+  given_ = from.given.template cast<T>();
   const auto& fields = run_.setting.predictor.inputs;
-  input_.resize(input_rows(fields, run_.oracle.shape()), batch_);
+  input_.resize(input_rows(fields, run_.oracle.shape()), target_.cols());
   Index at = 0;
   for (const Field f : fields) {
     SUITE_CHECK(f != Field::unknowns, "a predictor cannot read the unknowns");
@@ -54,7 +54,7 @@ void Minibatch<T>::load(const Samples<double>& from, Index first) {
 template <class T>
 void Minibatch<T>::weigh(T factor, Index first, Index count) {
   const auto y = y_.middleCols(first, count);
-  const auto target = target_.middleCols(first, count);
+  const auto target = target_.middleCols(first_ + first, count);
   auto y_bar = y_bar_.middleCols(first, count);
   problem_->loss(y, target, loss_.segment(first, count));
   problem_->loss_gradient(y, target, y_bar);
@@ -68,7 +68,7 @@ void Minibatch<T>::gradient(BatchIn<T> x,
                             Index first) {
   const Index n = x.cols();
   vjp_->linearize(
-      x, given_.middleCols(first, n), y_.middleCols(first, n), tape_);
+      x, given_.middleCols(first_ + first, n), y_.middleCols(first, n), tape_);
   weigh(factor, first, n);
   vjp_->pullback(tape_, y_bar_.middleCols(first, n), x_bar, work_);
   counts_[Counter::vjp] += static_cast<std::uint64_t>(n);
@@ -79,10 +79,11 @@ void Minibatch<T>::jacobian(BatchIn<T> x,
                             T factor,
                             bool project,
                             BatchOut<T> j) {
-  problem_->forward(x, given_, y_, work_);
+  const auto given = given_.middleCols(first_, batch_);
+  problem_->forward(x, given, y_, work_);
   weigh(factor, 0, batch_);
   if (project && projection_ != nullptr) projection_->project(y_, y_bar_);
-  jacobian_->jacobian(x, given_, j, work_);
+  jacobian_->jacobian(x, given, j, work_);
   counts_[Counter::jacobian] += static_cast<std::uint64_t>(batch_);
 }
 
@@ -96,8 +97,10 @@ Counts Minibatch<T>::counts() const {
 
 template <class T>
 std::size_t Minibatch<T>::bytes() const {
-  const Index numbers = target_.size() + given_.size() + input_.size() +
-                        y_.size() + y_bar_.size();
+  // One batch of the data.
+  const Index numbers =
+      batch_ * (target_.rows() + given_.rows() + input_.rows()) + y_.size() +
+      y_bar_.size();
   return static_cast<std::size_t>(numbers) * sizeof(T) + tape_.bytes() +
          work_.bytes();
 }

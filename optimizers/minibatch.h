@@ -22,7 +22,7 @@ class Minibatch {
   /// Problems used so far, those of earlier stages included.
   Index drawn() const { return drawn_; }
   /// What the network reads.
-  const Batch<T>& input() const { return input_; }
+  auto input() const { return input_.middleCols(first_, batch_); }
 
   /// y = F(x), losses, y_bar = factor * d loss / d y, and x_bar = J^T y_bar.
   /// x may be a part of the batch, from sample `first` on.
@@ -38,7 +38,7 @@ class Minibatch {
   std::size_t bytes() const;
 
  private:
-  void load(const Samples<double>& from, Index first);
+  void load(const Samples<double>& from);
   /// Losses at y, and y_bar.
   void weigh(T factor, Index first, Index count);
 
@@ -47,10 +47,12 @@ class Minibatch {
   const Vjp<T>* vjp_;
   const Jacobian<T>* jacobian_;
   const GradientProjection<T>* projection_;
-  Samples<double> all_;
   Index batch_, batches_, drawn_, at_ = 0;
   bool fresh_;
-  Batch<T> target_, given_, input_, y_, y_bar_;
+  /// All slices, or a fresh batch; the current batch starts at column `first_`.
+  Batch<T> target_, given_, input_;
+  Index first_ = 0;
+  Batch<T> y_, y_bar_;
   Vector<double> loss_;
   Tape tape_;
   Workspace work_;

@@ -108,7 +108,7 @@ const Batch<T>& NetworkModel<T>::forward() {
 }
 
 template <class T>
-const Batch<T>& NetworkModel<T>::forward(const Batch<T>& input) {
+const Batch<T>& NetworkModel<T>::forward(BatchIn<T> input) {
   output_.resize(network_->outputs(), input.cols());
   network_->forward(
       parameters_, state_, input, output_, tape_, work_, {.training = true});
@@ -117,7 +117,7 @@ const Batch<T>& NetworkModel<T>::forward(const Batch<T>& input) {
 }
 
 template <class T>
-const Vector<T>& NetworkModel<T>::backward(BatchIn<T> out_bar) {
+Vector<T>& NetworkModel<T>::backward(BatchIn<T> out_bar) {
   VectorOut<T> gradient(gradient_);
   network_->backward(parameters_, tape_, out_bar, &gradient, nullptr, work_);
   return gradient_;

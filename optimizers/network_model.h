@@ -39,9 +39,10 @@ class NetworkModel {
   /// Outputs for the bound input, in training mode.
   const Batch<T>& forward();
   /// Outputs for a minibatch, in training mode.
-  const Batch<T>& forward(const Batch<T>& input);
-  /// Gradient of the parameters for cotangents of the last `forward`.
-  const Vector<T>& backward(BatchIn<T> out_bar);
+  const Batch<T>& forward(BatchIn<T> input);
+  /// Gradient of the parameters for cotangents of the last `forward`; its
+  /// memory is the caller's until the next call.
+  Vector<T>& backward(BatchIn<T> out_bar);
   /// Running statistics follow the last `forward`.
   void update_state();
   /// One pass forward and back that leaves nothing behind but warm caches.

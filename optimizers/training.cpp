@@ -40,6 +40,7 @@ class Training {
                                static_cast<double>(batch_.size()))),
         scale_(static_cast<T>(run.setting.output_scale)),
         start_(oracle_.start().col(0).template cast<T>()),
+        level_start_((start_.array() == start_(0)).all()),
         metrics_(options.metrics, run) {
     if (const auto* rule = std::get_if<StepOptions>(&options.rule)) {
       update_.emplace(*rule);
@@ -98,14 +99,18 @@ class Training {
   }
 
   /// x of these inputs, in training mode.
-  void forward(const Batch<T>& input) {
+  void forward(BatchIn<T> input) {
     x_ = scale_ * model_.forward(input);
-    x_.colwise() += start_;
+    if (level_start_) {
+      x_.array() += start_(0);  // whole registers, however short a column is
+    } else {
+      x_.colwise() += start_;
+    }
     model_.update_state();
   }
 
-  /// Of the batch, by the parameters.
-  const Vector<T>& gradient();
+  /// Of the batch, by the parameters, in memory that may be written.
+  Vector<T>& gradient();
 
   /// False, and nothing changed, if the update is not finite.
   bool step();
@@ -115,9 +120,9 @@ class Training {
     out.iterations.setConstant(oracle_.count(),
                                static_cast<double>(run_.probe.iteration()));
     const Index numbers =
-        x_.size() + x_bar_.size() + before_.size() + jacobian_.size() +
-        input_.size() + sum_.size() +
-        (update_ ? update_->numbers_per_parameter() * before_.size() : 0);
+        x_.size() + x_bar_.size() + jacobian_.size() + sum_.size() +
+        (update_ ? update_->numbers_per_parameter() * model_.parameters().size()
+                 : 0);
     out.bytes = model_.bytes() + batch_.bytes() +
                 static_cast<std::size_t>(numbers) * sizeof(T);
     out.arrays["batch_loss"] = row(losses_);
@@ -154,13 +159,13 @@ class Training {
   Minibatch<T> batch_;
   T factor_, scale_;
   Vector<T> start_;
+  bool level_start_;  ///< all of its numbers are equal
   std::optional<UpdateStep<T>> update_;
   std::optional<HalfInverseStep<T>> half_inverse_;
   Batch<T> jacobian_;
   std::vector<double> kept_, smallest_, path_;
-  Batch<T> x_, x_bar_, input_;
+  Batch<T> x_, x_bar_;
   Vector<T> sum_;
-  Vector<T> before_;  ///< parameters, should the update spoil them
   MetricsRecorder metrics_;
   std::vector<double> losses_;
   double unproven_ = 0;
@@ -168,10 +173,10 @@ class Training {
 };
 
 template <class T>
-const Vector<T>& Training<T>::gradient() {
+Vector<T>& Training<T>::gradient() {
   const Index n = batch_.size();
   const Index most = options_.chunk > 0 ? std::min(options_.chunk, n) : n;
-  const auto part = [&](const Batch<T>& input, Index first) -> const auto& {
+  const auto part = [&](BatchIn<T> input, Index first) -> Vector<T>& {
     forward(input);
     x_bar_.resizeLike(x_);
     batch_.gradient(x_, factor_, x_bar_, first);
@@ -182,8 +187,8 @@ const Vector<T>& Training<T>::gradient() {
   SUITE_CHECK(model_.state().size() == 0, "batch statistics need the batch");
   sum_.setZero(model_.parameters().size());
   for (Index first = 0; first < n; first += most) {
-    input_ = batch_.input().middleCols(first, std::min(most, n - first));
-    sum_ += part(input_, first);
+    const Index count = std::min(most, n - first);
+    sum_ += part(batch_.input().middleCols(first, count), first);
   }
   return sum_;
 }
@@ -191,12 +196,14 @@ const Vector<T>& Training<T>::gradient() {
 template <class T>
 bool Training<T>::step() {
   if (update_) {
-    before_ = model_.parameters();
-    (*update_)(model_.parameters(), gradient());
+    // The gradient's memory takes the new parameters, so that the old ones are
+    // there should these be spoilt.
+    Vector<T>& next = gradient();
+    (*update_)(model_.parameters(), next, next);
     // As allFinite(), but in registers.
-    if ((T(0) * model_.parameters()).sum() == T(0)) return true;
-    model_.parameters() = before_;
-    return false;
+    if ((T(0) * next).sum() != T(0)) return false;
+    model_.parameters().swap(next);
+    return true;
   }
   forward(batch_.input());
   jacobian_.resize(x_.rows() * oracle_.shape().observations, x_.cols());

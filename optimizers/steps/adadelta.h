@@ -26,8 +26,11 @@ class Adadelta {
   static constexpr Index kNumbersPerParameter = 2;
   explicit Adadelta(const Options& options = {}) : options_(options) {}
 
-  void step(VectorOut<T> x, VectorIn<T> gradient) {
-    SUITE_CHECK(x.size() == gradient.size(), "gradient of another size");
+  void step(VectorOut<T> x, VectorIn<T> gradient) { step(x, gradient, x); }
+  /// Leaves x and writes the new one to `to`, which may be the gradient.
+  void step(VectorIn<T> x, VectorIn<T> gradient, VectorOut<T> to) {
+    SUITE_CHECK(x.size() == gradient.size() && x.size() == to.size(),
+                "vectors of another size");
     if (!started_) a_.setZero(x.size()), c_.setZero(x.size());
     SUITE_CHECK(x.size() == a_.size(), "the vector changed its size");
     started_ = true;
@@ -35,8 +38,8 @@ class Adadelta {
     const T decay = static_cast<T>(options_.decay);
     const T fresh = static_cast<T>(1 - options_.decay);
     const T eps = static_cast<T>(options_.eps);
-    T *const px = x.data(), *const pa = a_.data(), *const pc = c_.data();
-    const T* const pg = gradient.data();
+    T *const out = to.data(), *const pa = a_.data(), *const pc = c_.data();
+    const T *const px = x.data(), *const pg = gradient.data();
     using R = steps::Register<T>;
     steps::for_registers<T>(x.size(), [=](Index i, auto lanes) {
       const auto g = R::load(pg + i, lanes);
@@ -47,7 +50,7 @@ class Adadelta {
       R::store(pa + i, a, lanes);
       R::store(
           pc + i, R::multiply_add(R::all(decay), c, fresh * (d * d)), lanes);
-      R::store(px + i,
+      R::store(out + i,
                R::multiply_add(R::all(-rate), d, R::load(px + i, lanes)),
                lanes);
     });

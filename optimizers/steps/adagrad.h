@@ -24,23 +24,26 @@ class Adagrad {
   static constexpr Index kNumbersPerParameter = 1;
   explicit Adagrad(const Options& options = {}) : options_(options) {}
 
-  void step(VectorOut<T> x, VectorIn<T> gradient) {
-    SUITE_CHECK(x.size() == gradient.size(), "gradient of another size");
+  void step(VectorOut<T> x, VectorIn<T> gradient) { step(x, gradient, x); }
+  /// Leaves x and writes the new one to `to`, which may be the gradient.
+  void step(VectorIn<T> x, VectorIn<T> gradient, VectorOut<T> to) {
+    SUITE_CHECK(x.size() == gradient.size() && x.size() == to.size(),
+                "vectors of another size");
     if (!started_)
       a_.setConstant(x.size(), static_cast<T>(options_.accumulator));
     SUITE_CHECK(x.size() == a_.size(), "the vector changed its size");
     started_ = true;
     const T rate = static_cast<T>(options_.rate);
     const T eps = static_cast<T>(options_.eps);
-    T *const px = x.data(), *const pa = a_.data();
-    const T* const pg = gradient.data();
+    T *const out = to.data(), *const pa = a_.data();
+    const T *const px = x.data(), *const pg = gradient.data();
     using R = steps::Register<T>;
     steps::for_registers<T>(x.size(), [=](Index i, auto lanes) {
       const auto g = R::load(pg + i, lanes);
       const auto a = R::multiply_add(g, g, R::load(pa + i, lanes));
       R::store(pa + i, a, lanes);
       const auto step = rate * g / (R::root(a) + eps);
-      R::store(px + i, R::load(px + i, lanes) - step, lanes);
+      R::store(out + i, R::load(px + i, lanes) - step, lanes);
     });
   }
 

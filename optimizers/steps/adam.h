@@ -32,7 +32,9 @@ class Adam {
   static constexpr Index kNumbersPerParameter = 2;
   explicit Adam(const Options& options = {}) : options_(options) {}
 
-  void step(VectorOut<T> x, VectorIn<T> gradient);
+  void step(VectorOut<T> x, VectorIn<T> gradient) { step(x, gradient, x); }
+  /// Leaves x and writes the new one to `to`, which may be the gradient.
+  void step(VectorIn<T> x, VectorIn<T> gradient, VectorOut<T> to);
 
   /// Forgets the moments; the next step is a first one.
   void reset() { steps_ = 0; }
@@ -44,8 +46,9 @@ class Adam {
 };
 
 template <class T>
-void Adam<T>::step(VectorOut<T> x, VectorIn<T> gradient) {
-  SUITE_CHECK(x.size() == gradient.size(), "gradient of another size");
+void Adam<T>::step(VectorIn<T> x, VectorIn<T> gradient, VectorOut<T> to) {
+  SUITE_CHECK(x.size() == gradient.size() && x.size() == to.size(),
+              "vectors of another size");
   if (steps_ == 0) m_.setZero(x.size()), v_.setZero(x.size());
   SUITE_CHECK(x.size() == m_.size(), "the vector changed its size");
   ++steps_;
@@ -58,8 +61,8 @@ void Adam<T>::step(VectorOut<T> x, VectorIn<T> gradient) {
   const T b1 = static_cast<T>(o.beta1), a1 = static_cast<T>(1 - o.beta1);
   const T b2 = static_cast<T>(o.beta2), a2 = static_cast<T>(1 - o.beta2);
   const T eps = static_cast<T>(o.eps);
-  T* const px = x.data();
-  const T* const pg = gradient.data();
+  const T *const px = x.data(), *const pg = gradient.data();
+  T* const out = to.data();
   T *const pm = m_.data(), *const pv = v_.data();
   using R = steps::Register<T>;
   // A gradient that stays zero lets its moments decay into denormal numbers,
@@ -77,7 +80,7 @@ void Adam<T>::step(VectorOut<T> x, VectorIn<T> gradient) {
     R::store(pv + i, v, lanes);
     const auto scaled = v * correct;
     const auto step = rate * m / (R::root(scaled) + eps);
-    R::store(px + i, R::load(px + i, lanes) - step, lanes);
+    R::store(out + i, R::load(px + i, lanes) - step, lanes);
   });
 }
 

@@ -34,6 +34,11 @@ class UpdateStep {
     std::visit([&](auto& rule) { rule.step(x, gradient); }, rule_);
   }
 
+  /// Leaves x and writes the new one to `to`, which may be the gradient.
+  void operator()(VectorIn<T> x, VectorIn<T> gradient, VectorOut<T> to) {
+    std::visit([&](auto& rule) { rule.step(x, gradient, to); }, rule_);
+  }
+
   /// That the rule keeps.
   Index numbers_per_parameter() const {
     return std::visit(

@@ -20,21 +20,24 @@ class Sgd {
   static constexpr Index kNumbersPerParameter = 1;
   explicit Sgd(const Options& options = {}) : options_(options) {}
 
-  void step(VectorOut<T> x, VectorIn<T> gradient) {
-    SUITE_CHECK(x.size() == gradient.size(), "gradient of another size");
+  void step(VectorOut<T> x, VectorIn<T> gradient) { step(x, gradient, x); }
+  /// Leaves x and writes the new one to `to`, which may be the gradient.
+  void step(VectorIn<T> x, VectorIn<T> gradient, VectorOut<T> to) {
+    SUITE_CHECK(x.size() == gradient.size() && x.size() == to.size(),
+                "vectors of another size");
     if (!started_) u_.setZero(x.size());
     SUITE_CHECK(x.size() == u_.size(), "the vector changed its size");
     started_ = true;
     const T rate = static_cast<T>(options_.rate);
     const T momentum = static_cast<T>(options_.momentum);
-    T *const px = x.data(), *const pu = u_.data();
-    const T* const pg = gradient.data();
+    T *const out = to.data(), *const pu = u_.data();
+    const T *const px = x.data(), *const pg = gradient.data();
     using R = steps::Register<T>;
     steps::for_registers<T>(x.size(), [=](Index i, auto lanes) {
       const auto u = R::multiply_add(
           R::all(momentum), R::load(pu + i, lanes), R::load(pg + i, lanes));
       R::store(pu + i, u, lanes);
-      R::store(px + i,
+      R::store(out + i,
                R::multiply_add(R::all(-rate), u, R::load(px + i, lanes)),
                lanes);
     });

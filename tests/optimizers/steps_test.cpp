@@ -142,6 +142,31 @@ TYPED_TEST(StepsTest, TheTailHasTheBitsOfTheBody) {
   expect_place_does_not_matter<T>([] { return Rmsprop<T>(); });
 }
 
+/// A step written over its gradient has the bits of one in place.
+template <class T, class Rule>
+void expect_same_beside(Rule make) {
+  auto in_place = make(), beside = make();
+  Vector<T> x = some_gradient<T>(13, 7), y = x;
+  for (int t = 0; t < 5; ++t) {
+    Vector<T> g = some_gradient<T>(13, t);
+    const Vector<T> before = y;
+    in_place.step(x, g);
+    beside.step(y, g, g);
+    EXPECT_TRUE((y.array() == before.array()).all());
+    y.swap(g);
+    EXPECT_TRUE((y.array() == x.array()).all());
+  }
+}
+
+TYPED_TEST(StepsTest, WritesBesideWhatItWouldWriteInPlace) {
+  using T = TypeParam;
+  expect_same_beside<T>([] { return Adam<T>(); });
+  expect_same_beside<T>([] { return Sgd<T>({.rate = 0.1, .momentum = 0.37}); });
+  expect_same_beside<T>([] { return Adagrad<T>(); });
+  expect_same_beside<T>([] { return Adadelta<T>(); });
+  expect_same_beside<T>([] { return Rmsprop<T>(); });
+}
+
 template <class T, class Rule>
 double descend(Rule rule, int steps) {
   const Vector<T> target = Vector<T>::LinSpaced(11, T(-1), T(2));
