@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <numbers>
+#include <numeric>
 
 #include "suite/core/check.h"
+#include "suite/core/lanes.h"
 #include "suite/core/threads.h"
 
 namespace physinv {
@@ -13,21 +16,38 @@ namespace {
 constexpr Index kSide = kPoissonSide, kCells = kPoissonCells;
 constexpr Index kBlock = 64;  ///< samples of one unit of work
 
+/// A row of cells, in registers.
+template <class T>
+struct Row {
+  using Half = Pack<T, kSide / 2>;
+  Half left, right;
+
+  explicit Row(const T* cells) {
+    std::memcpy(&left, cells, sizeof(Half));
+    std::memcpy(&right, cells + kSide / 2, sizeof(Half));
+  }
+};
+
 /// out = L in. Compiled once: forward and linearize must agree to the last
-/// bit. The sums of a row of cells fill registers.
+/// bit.
 template <class T>
 [[gnu::noinline, gnu::noclone]] void apply(const T* in, T* out) {
-  T rows[kSide + 2][kSide] = {};
-  for (Index i = 0; i < kSide; ++i)
-    for (Index j = 0; j < kSide; ++j) rows[i + 1][j] = in[kSide * i + j];
-  for (Index i = 1; i <= kSide; ++i) {
-    T beside[kSide];
-    beside[0] = rows[i][1], beside[kSide - 1] = rows[i][kSide - 2];
-    for (Index j = 1; j + 1 < kSide; ++j)
-      beside[j] = rows[i][j - 1] + rows[i][j + 1];
-    for (Index j = 0; j < kSide; ++j)
-      out[kSide * (i - 1) + j] =
-          ((rows[i - 1][j] + rows[i + 1][j]) + beside[j]) - T(4) * rows[i][j];
+  using Half = typename Row<T>::Half;
+  constexpr T kZeros[kSide] = {};
+  const Half none = T(-0.0) - Half{};  // added to anything, changes nothing
+  Row<T> above(kZeros), row(in);
+  for (Index i = 0; i < kSide; ++i) {
+    const Row<T> below(i + 1 < kSide ? in + kSide * (i + 1) : kZeros);
+    const Half l = row.left, r = row.right;
+    const Half middle_left = __builtin_shufflevector(l, r, 1, 2, 3, 4);
+    const Half middle_right = __builtin_shufflevector(l, r, 3, 4, 5, 6);
+    const Half left = __builtin_shufflevector(none, l, 0, 4, 5, 6);
+    const Half right = __builtin_shufflevector(r, none, 1, 2, 3, 4);
+    const Half sum[] = {
+        ((above.left + below.left) + (left + middle_left)) - T(4) * l,
+        ((above.right + below.right) + (middle_right + right)) - T(4) * r};
+    std::memcpy(out + kSide * i, sum, sizeof(sum));
+    above = row, row = below;
   }
 }
 
@@ -51,9 +71,10 @@ template <class T>
 /// taken at such a point must say so.
 template <class T>
 T poison(const T* x) {
-  T sum = 0;
-  for (Index r = 0; r < kCells; ++r) sum += T(0) * x[r];
-  return sum;
+  T sums[kSide] = {};
+  for (Index r = 0; r < kCells; r += kSide)
+    for (Index k = 0; k < kSide; ++k) sums[k] += T(0) * x[r + k];
+  return std::accumulate(sums, sums + kSide, T(0));
 }
 
 template <class F>

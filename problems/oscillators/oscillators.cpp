@@ -386,7 +386,7 @@ template <class T>
 void Oscillators<T>::loss_gradient(BatchIn<T> y,
                                    BatchIn<T> target,
                                    BatchOut<T> y_bar) const {
-  y_bar = T(2) * (y - target);
+  for_numbers<T>(y, target, y_bar, [](T a, T b) { return T(2) * (a - b); });
 }
 
 template class Oscillators<float>;

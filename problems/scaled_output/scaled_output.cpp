@@ -9,19 +9,28 @@
 namespace physinv {
 namespace {
 
+/// out <- f(i, x_1, x_2) of every column, from plain pointers: columns are too
+/// short for Eigen's.
+template <class T, class F>
+void for_columns(BatchIn<T> in, BatchOut<T>& out, F f) {
+  const Index from = in.outerStride(), to = out.outerStride();
+  const T* const x = in.data();
+  T* const y = out.data();
+  for (Index i = 0; i < in.cols(); ++i)
+    f(i, x[from * i], x[from * i + 1], y + to * i);
+}
+
 template <class T>
 void scale(T gamma, BatchIn<T> in, BatchOut<T>& out) {
-  for (Index i = 0; i < in.cols(); ++i) {
-    out(0, i) = in(0, i);
-    out(1, i) = gamma * in(1, i);
-  }
+  for_columns<T>(
+      in, out, [=](Index, T a, T b, T* y) { y[0] = a, y[1] = gamma * b; });
 }
 
 /// 0, or NaN at a point that is not finite: the map is linear, but its
 /// derivatives must say where they were asked for.
 template <class T>
-T poison(const T* x) {
-  return T(0) * x[0] + T(0) * x[1];
+T poison(T a, T b) {
+  return T(0) * a + T(0) * b;
 }
 
 enum Slot : std::size_t { kPoison };
@@ -81,8 +90,13 @@ void ScaledOutput<T>::linearize(BatchIn<T> x,
   check_size(x, 2, x.cols());
   check_size(y, 2, x.cols());
   auto kept = tape.slot<T>(kPoison, 1, x.cols());
-  for (Index i = 0; i < x.cols(); ++i) kept(0, i) = poison(x.col(i).data());
-  scale<T>(T(options_.gamma), x, y);
+  for_columns<T>(x,
+                 y,
+                 [gamma = T(options_.gamma), zero = kept.data()](
+                     Index i, T a, T b, T* out) {
+                   zero[i] = poison(a, b);
+                   out[0] = a, out[1] = gamma * b;
+                 });
 }
 
 template <class T>
@@ -93,8 +107,12 @@ void ScaledOutput<T>::pullback(const Tape& tape,
   const auto kept = tape.view<T>(kPoison);
   check_size(y_bar, 2, kept.cols());
   check_size(x_bar, 2, kept.cols());
-  scale<T>(T(options_.gamma), y_bar, x_bar);
-  x_bar.rowwise() += kept.row(0);
+  for_columns<T>(y_bar,
+                 x_bar,
+                 [gamma = T(options_.gamma), zero = kept.data()](
+                     Index i, T a, T b, T* out) {
+                   out[0] = a + zero[i], out[1] = gamma * b + zero[i];
+                 });
 }
 
 template <class T>
@@ -105,7 +123,7 @@ void ScaledOutput<T>::jacobian(BatchIn<T> x,
   check_size(x, 2, x.cols());
   check_size(j, 4, x.cols());
   for (Index i = 0; i < x.cols(); ++i) {
-    const T zero = poison(x.col(i).data());
+    const T zero = poison(x(0, i), x(1, i));
     j.col(i) << T(1) + zero, zero, zero, T(options_.gamma) + zero;
   }
 }

@@ -72,7 +72,7 @@ class Problem {
   virtual void loss_gradient(BatchIn<T> y,
                              BatchIn<T> target,
                              BatchOut<T> y_bar) const {
-    y_bar = y - target;
+    for_numbers<T>(y, target, y_bar, [](T a, T b) { return a - b; });
   }
 
   /// Samples whose gradients are best computed together, so that what
