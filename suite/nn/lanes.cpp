@@ -11,12 +11,6 @@ namespace {
 using F = Simd<float, kNarrow>;
 using D = Simd<double, kNarrow>;
 
-F low(F a, F b) {
-  return __builtin_shufflevector(a, b, 0, 8, 1, 9, 2, 10, 3, 11);
-}
-F high(F a, F b) {
-  return __builtin_shufflevector(a, b, 4, 12, 5, 13, 6, 14, 7, 15);
-}
 /// One vector per row: rows and columns change places.
 [[gnu::always_inline]] inline void turn(D (&v)[4]) {
   const D a = __builtin_shufflevector(v[0], v[1], 0, 4, 2, 6);
@@ -29,16 +23,27 @@ F high(F a, F b) {
   v[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
 }
 
-/// The same: log2(8) perfect shuffles.
+/// The same by pairs, by fours, by halves.
 [[gnu::always_inline]] inline void turn(F (&v)[8]) {
-#pragma GCC unroll 3
-  for (int s = 0; s < 3; ++s) {
-    F w[8];
+  F pairs[8], fours[8];
 #pragma GCC unroll 4
-    for (int i = 0; i < 4; ++i)
-      w[2 * i] = low(v[i], v[i + 4]), w[2 * i + 1] = high(v[i], v[i + 4]);
-#pragma GCC unroll 8
-    for (int i = 0; i < 8; ++i) v[i] = w[i];
+  for (int i = 0; i < 8; i += 2) {
+    const F a = v[i], b = v[i + 1];
+    pairs[i] = __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13);
+    pairs[i + 1] = __builtin_shufflevector(a, b, 2, 10, 3, 11, 6, 14, 7, 15);
+  }
+#pragma GCC unroll 4
+  for (int i = 0; i < 4; ++i) {
+    const F a = pairs[i / 2 * 4 + i % 2], b = pairs[i / 2 * 4 + i % 2 + 2];
+    fours[2 * i] = __builtin_shufflevector(a, b, 0, 1, 8, 9, 4, 5, 12, 13);
+    fours[2 * i + 1] =
+        __builtin_shufflevector(a, b, 2, 3, 10, 11, 6, 7, 14, 15);
+  }
+#pragma GCC unroll 4
+  for (int i = 0; i < 4; ++i) {
+    const F a = fours[i], b = fours[i + 4];
+    v[i] = __builtin_shufflevector(a, b, 0, 1, 2, 3, 8, 9, 10, 11);
+    v[i + 4] = __builtin_shufflevector(a, b, 4, 5, 6, 7, 12, 13, 14, 15);
   }
 }
 
