@@ -97,7 +97,7 @@ Counts Minibatch<T>::counts() const {
 
 template <class T>
 std::size_t Minibatch<T>::bytes() const {
-  // One batch of the data.
+  // One batch of the data: the set itself belongs to the problem.
   const Index numbers =
       batch_ * (target_.rows() + given_.rows() + input_.rows()) + y_.size() +
       y_bar_.size();
