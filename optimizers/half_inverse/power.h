@@ -61,8 +61,8 @@ struct Spectrum {
   double scale = 1;       ///< of J: s_i = scale sqrt(lambda_i)
 
   /// Model of the perturbation E of diag(lambda) that the computation stands
-  /// for, relative to lambda_max: |E_ij| is about slope (s_i + s_j) / s_max
-  /// more than tail, where both i and j are >= tail_begin, or gram.
+  /// for, relative to lambda_max: |E_ij| is about slope (s_i + s_j) / s_max,
+  /// and tail on top where both i and j are >= tail_begin, elsewhere gram.
   struct Noise {
     double gram = 0, tail = 0, slope = 0;
     Index tail_begin = 0;
