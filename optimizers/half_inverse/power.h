@@ -9,6 +9,7 @@
 /// kappa = -1/2 is the half-inverse, -1 Gauss-Newton, 1 plain descent.
 #pragma once
 
+#include <algorithm>
 #include <string_view>
 
 #include "suite/core/batch.h"
@@ -68,9 +69,10 @@ struct Spectrum {
     Index tail_begin = 0;
     double norm_factor = 1;  ///< |E|_2 over the size of an entry
 
-    /// |E_ii| for s_i = s s_max.
+    /// |E_ii| for s_i = s s_max. Single values err more than their directions:
+    /// seen up to 1.5 eps where J is exactly rank-deficient.
     double entry(bool in_tail, double s) const {
-      return (in_tail ? tail : gram) + 2 * slope * s;
+      return (in_tail ? tail : std::max(gram, slope)) + 2 * slope * s;
     }
   } noise;
 
