@@ -1,13 +1,20 @@
-// Timings of the classical optimizers without a physics problem.
+// Timings of the classical optimizers without a physics problem; then an update
+// by the half-inverse and its parts, at the experiments' sizes.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "optimizers/bfgs.h"
 #include "optimizers/drive.h"
+#include "optimizers/half_inverse/kernels.h"
+#include "optimizers/half_inverse_step.h"
 #include "optimizers/steps/bfgs_update.h"
+#include "suite/nn/cnn.h"
+#include "suite/nn/mlp.h"
 
 namespace physinv {
 namespace {
@@ -67,3 +74,173 @@ BENCHMARK(bm_bfgs_batch)->Name("optimizers/bfgs_rosenbrock_128");
 
 }  // namespace
 }  // namespace physinv
+
+namespace physinv::hig {
+namespace {
+
+/// Sizes of an experiment: batch x observations rows, dense layers with their
+/// input and output, or the convolutions of the quantum dipole.
+struct Size {
+  const char* name;
+  Index batch, observations;
+  std::vector<Index> layers;
+  bool convolutions = false;
+};
+
+const Size& size_of(Index experiment) {
+  static const std::vector<Size> all = {
+      {"oscillators", 128, 4, {4, 20, 20, 20, 96}},
+      {"quantum", 16, 28, {28, 20, 20, 20, 384}},
+      {"quantum_cnn", 16, 28, {28, 384}, true},
+      {"poisson", 16, 64, {64, 64, 256, 64, 64}}};
+  return all[static_cast<std::size_t>(experiment)];
+}
+
+/// One update: network and tape, a solver's Jacobians, everything up to J^T v.
+struct Update {
+  explicit Update(const Size& size)
+      : samples(size.batch),
+        per(size.observations),
+        outputs(size.layers.back()) {
+    const std::vector<Index> hidden(size.layers.begin() + 1,
+                                    size.layers.end() - 1);
+    const NetworkRecipe recipe =
+        size.convolutions ? nn::cnn({.positions = 14,
+                                     .channels = 2,
+                                     .features = std::vector<Index>(6, 20)})
+                          : nn::mlp({.hidden = hidden,
+                                     .activation = nn::Activation::tanh,
+                                     .init = nn::Init::glorot});
+    net = recipe.make<double>(size.layers.front(), outputs);
+    theta.resize(net->parameter_count());
+    Vector<double> state(net->state_count());
+    net->initialize(Rng::root("kernels/hig", 0), theta, state);
+    Stream random = Rng::root("kernels/hig", 1).stream();
+    const auto noise = [&](Index rows, Index cols) {
+      Batch<double> x(rows, cols);
+      for (double& v : x.reshaped()) v = random.normal();
+      return x;
+    };
+    g = noise(per, samples);
+    // Controls matter less and less: a spectrum over some decades.
+    solver = noise(per * outputs, samples);
+    for (Index k = 0; k < outputs; ++k)
+      solver.middleRows(k * per, per) *= std::pow(
+          10, -3.0 * static_cast<double>(k) / static_cast<double>(outputs));
+    Batch<double> out(outputs, samples);
+    net->forward(theta,
+                 state,
+                 noise(size.layers.front(), samples),
+                 out,
+                 tape,
+                 work,
+                 {.training = true});
+    cotangents.resize(outputs, samples * per);
+    for (Index i = 0; i < samples; ++i)
+      cotangents.middleCols(i * per, per) =
+          solver.col(i).reshaped(per, outputs).transpose();
+  }
+
+  void rows() {
+    layers.clear();
+    net->jacobian_rows(theta, tape, cotangents, layers, work);
+  }
+  void form_gram() {
+    std::vector<GramLayer<double>> blocks;
+    for (const auto& l : layers) blocks.push_back(gram_layer(l));
+    gram.resize(samples * per, samples * per);
+    form.operator()<double>(blocks, samples, per, gram);
+  }
+  void pull_back() {
+    column.resize(theta.size());
+    VectorOut<double> bar(column);
+    net->backward(theta, tape, solver.topRows(outputs), &bar, nullptr, work);
+  }
+
+  Index samples, per, outputs;
+  std::unique_ptr<Network<double>> net;
+  Vector<double> theta, column;
+  Tape tape;
+  Workspace work;
+  Batch<double> g, solver, cotangents, gram;
+  std::vector<LayerRows<double>> layers;
+  StructuredGram form;
+};
+
+void label(benchmark::State& state) {
+  state.SetLabel(size_of(state.range(0)).name);
+}
+
+/// All of it but the solver.
+void bm_update(benchmark::State& state) {
+  Update u(size_of(state.range(0)));
+  HalfInverseStep<double> step({.power = {.tau = 1e-5}, .rate = 0});
+  for (auto _ : state) step(*u.net, u.theta, u.tape, u.solver, u.g, u.work);
+  state.counters["MB"] = 1e-6 * static_cast<double>(step.bytes());
+  label(state);
+}
+
+void bm_update_rows(benchmark::State& state) {
+  Update u(size_of(state.range(0)));
+  for (auto _ : state) {
+    const Workspace::Scope scope(u.work);
+    u.rows();
+    benchmark::ClobberMemory();
+  }
+  label(state);
+}
+
+void bm_update_gram(benchmark::State& state) {
+  Update u(size_of(state.range(0)));
+  const Workspace::Scope scope(u.work);
+  u.rows();
+  double features = 0;
+  for (const auto& l : u.layers)
+    features +=
+        static_cast<double>(std::min(l.positions * l.positions,
+                                     l.positions > 1 ? l.inputs + 1 : 1) *
+                            l.outputs);
+  for (auto _ : state) {
+    u.form_gram();
+    benchmark::ClobberMemory();
+  }
+  // One triangle, two flops a product.
+  count_flops(state, std::pow(double(u.gram.rows()), 2) * features);
+  label(state);
+}
+
+void bm_update_power(benchmark::State& state) {
+  Update u(size_of(state.range(0)));
+  const Workspace::Scope scope(u.work);
+  u.rows();
+  u.form_gram();
+  SpectralPower spectral;
+  Vector<double> v(u.gram.rows());
+  for (auto _ : state) {
+    spectral.factor(u.gram, u.g.reshaped());
+    benchmark::DoNotOptimize(spectral.apply({.tau = 1e-5}, v));
+  }
+  count_flops(state, reduction_flops(u.gram.rows()));
+  label(state);
+}
+
+void bm_update_pullback(benchmark::State& state) {
+  Update u(size_of(state.range(0)));
+  for (auto _ : state) {
+    u.pull_back();
+    benchmark::ClobberMemory();
+  }
+  label(state);
+}
+
+void experiments(benchmark::internal::Benchmark* b) {
+  b->ArgName("experiment")->DenseRange(0, 3)->Unit(benchmark::kMillisecond);
+}
+BENCHMARK(bm_update)->Name("hig/update")->Apply(experiments);
+BENCHMARK(bm_update_rows)->Name("hig/update_rows")->Apply(experiments);
+BENCHMARK(bm_update_gram)->Name("hig/update_gram")->Apply(experiments);
+BENCHMARK(bm_update_power)->Name("hig/update_power")->Apply(experiments);
+BENCHMARK(bm_update_pullback)->Name("hig/update_pullback")->Apply(experiments);
+
+}  // namespace
+}  // namespace physinv::hig

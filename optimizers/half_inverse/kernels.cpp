@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "optimizers/half_inverse/flops.h"
+#include "optimizers/half_inverse/kernels.h"
 #include "optimizers/half_inverse/half_inverse.h"
 
 #ifdef PHYSINV_BENCH_LAPACK

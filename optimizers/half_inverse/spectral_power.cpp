@@ -112,9 +112,13 @@ void SpectralPower::directions(std::span<const Index> which,
     std::vector<Eight> x(static_cast<std::size_t>(m));
     Eigen::Map<Batch<double>> columns(&x[0].low[0], Eight::kCount, m);
     const Index here = std::min(Eight::kCount, count - first);
-    for (Index k = 0; k < here; ++k)
-      columns(k, which[static_cast<std::size_t>(first + k)]) = 1;
-    qr_.apply(x.data());
+    Index top = m;
+    for (Index k = 0; k < here; ++k) {
+      const Index row = which[static_cast<std::size_t>(first + k)];
+      columns(k, row) = 1;
+      top = std::min(top, row);
+    }
+    qr_.apply(x.data(), top);
     reduction_.apply(x.data());
     turn(m, 2, u_.data(), x.data());
     out.middleCols(first, here) = columns.topRows(here).transpose();

@@ -165,19 +165,21 @@ bool TridiagonalQr::run(VectorOut<double> d,
 }
 
 template <class X>
-void TridiagonalQr::apply(X* x) const {
+void TridiagonalQr::apply(X* x, Index first) const {
   const double* record = record_.data() + used_;
-  for (auto round = rounds_.rbegin(); round != rounds_.rend(); ++round) {
+  for (auto round = rounds_.rbegin(); round != rounds_.rend();
+       record -= round->numbers(), ++round) {
+    if (round->end < first) continue;
+    first = std::min(first, round->start);
     if (round->sweeps == 1) {
       turn_back(x, round->start, round->end, record);
     } else {
       turn_back_all(x, round->start, round->end, record);
     }
-    record -= round->numbers();
   }
 }
 
-template void TridiagonalQr::apply(double*) const;
-template void TridiagonalQr::apply(Eight*) const;
+template void TridiagonalQr::apply(double*, Index) const;
+template void TridiagonalQr::apply(Eight*, Index) const;
 
 }  // namespace physinv::hig

@@ -21,9 +21,10 @@ class TridiagonalQr {
   /// graded matrix. False after 60 n sweeps without an end.
   bool run(VectorOut<double> d, VectorOut<double> e, VectorOut<double> x);
 
-  /// x <- W x: the recorded rotations backwards. X is double or Eight.
+  /// x <- W x: the recorded rotations backwards. X is double or Eight. Rows
+  /// before `first` are zero, and rotations of zeros are left out.
   template <class X>
-  void apply(X* x) const;
+  void apply(X* x, Index first = 0) const;
 
   Index rotations() const { return rotations_; }
   Index sweeps() const { return sweeps_; }
