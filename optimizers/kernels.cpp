@@ -1,5 +1,7 @@
 // Timings of the classical optimizers without a physics problem; then an update
 // by the half-inverse and its parts, at the experiments' sizes.
+#include "optimizers/half_inverse/kernels.h"
+
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -10,7 +12,6 @@
 
 #include "optimizers/bfgs.h"
 #include "optimizers/drive.h"
-#include "optimizers/half_inverse/kernels.h"
 #include "optimizers/half_inverse_step.h"
 #include "optimizers/steps/bfgs_update.h"
 #include "suite/nn/cnn.h"

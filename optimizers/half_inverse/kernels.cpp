@@ -1,5 +1,7 @@
 // The spectral power and its phases, against Eigen, and against LAPACK where
 // the build links it (PHYSINV_BENCH_LAPACK). GFlop/s count 4/3 m^3.
+#include "optimizers/half_inverse/kernels.h"
+
 #include <benchmark/benchmark.h>
 
 #include <Eigen/Eigenvalues>
@@ -9,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "optimizers/half_inverse/kernels.h"
 #include "optimizers/half_inverse/half_inverse.h"
 
 #ifdef PHYSINV_BENCH_LAPACK
