@@ -41,14 +41,9 @@ void Minibatch<T>::load(const Samples<double>& from) {
   target_ = from.y.template cast<T>();
   given_ = from.given.template cast<T>();
   const auto& fields = run_.setting.predictor.inputs;
-  input_.resize(input_rows(fields, run_.oracle.shape()), target_.cols());
-  Index at = 0;
-  for (const Field f : fields) {
+  for (const Field f : fields)
     SUITE_CHECK(f != Field::unknowns, "a predictor cannot read the unknowns");
-    const Batch<T>& block = f == Field::given ? given_ : target_;
-    input_.middleRows(at, block.rows()) = block;
-    at += block.rows();
-  }
+  input_ = assemble<T>(fields, from.x, from.given, from.y);
 }
 
 template <class T>

@@ -41,7 +41,7 @@ bool DefiniteSolve::operator()(BatchIn<double> gram,
 
   const double lambda_max = norm_bound(gram);
   const double s_max = std::sqrt(lambda_max);
-  const double cut = power.absolute ? power.tau : power.tau * s_max;
+  const double cut = power.cut(s_max);
   // A factorisation that runs to its end is that of a definite matrix up to
   // (m + 2) eps trace (Demmel; Higham, Accuracy and Stability, theorem 10.7).
   const double noise = kEpsilon * gram_noise * lambda_max;

@@ -109,7 +109,7 @@ PowerReport power_weights(const Spectrum& spectrum,
   SUITE_CHECK(power.tau >= 0, "tau is not negative");
   PowerReport report;
   report.s_max = spectrum.s_max();
-  report.cut = power.absolute ? power.tau : power.tau * report.s_max;
+  report.cut = power.cut(report.s_max);
   weights.setZero();
   const double prefactor =
       power.beta == 0 ? 1 : std::pow(report.s_max, power.beta);

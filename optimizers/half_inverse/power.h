@@ -21,6 +21,8 @@ struct Power {
   double tau = 1e-6;      ///< truncation, see `absolute`
   double beta = 0;        ///< exponent of the prefactor s_max^beta
   bool absolute = false;  ///< cut = tau instead of tau s_max
+
+  double cut(double s_max) const { return absolute ? tau : tau * s_max; }
 };
 
 enum class Ending {

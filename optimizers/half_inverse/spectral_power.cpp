@@ -86,11 +86,7 @@ Ending SpectralPower::factor(BatchIn<double> gram,
 PowerReport SpectralPower::apply(const Power& power,
                                  VectorOut<double> v) const {
   v.setZero();
-  if (ending_ != Ending::ok) {
-    PowerReport report;
-    report.ending = ending_;
-    return report;
-  }
+  if (ending_ != Ending::ok) return {.ending = ending_};
   const PowerReport report = power_weights(spectrum_, power, v);
   if (report.kept > 0) leave_eigenbasis(v);
   return report;

@@ -65,7 +65,6 @@ PowerReport TwoLevelPower::settle(const Power& power,
                                   Index parameters,
                                   const Pullback& pullback,
                                   VectorOut<double> v) {
-  PowerReport report;
   const Ending ending =
       inside_ > 0 ? refine(parameters, pullback) : Ending::zero;
   const bool turned = ending == Ending::ok;
@@ -77,10 +76,9 @@ PowerReport TwoLevelPower::settle(const Power& power,
   } else if (ending == Ending::zero) {  // W2 = 0
     set_inside(Vector<double>::Zero(inside_));
   } else {
-    report.ending = ending;
-    return report;
+    return {.ending = ending};
   }
-  report = power_weights(spectrum_, power, weights_);
+  const PowerReport report = power_weights(spectrum_, power, weights_);
   if (report.kept == 0) return report;
   if (turned) second_.leave_eigenbasis(weights_.tail(inside_));
   v(order_) = weights_;
@@ -94,14 +92,10 @@ PowerReport TwoLevelPower::apply(const Power& power,
                                  const Pullback& pullback,
                                  VectorOut<double> v) {
   v.setZero();
-  if (first_.ending() != Ending::ok) {
-    PowerReport report;
-    report.ending = first_.ending();
-    return report;
-  }
+  if (first_.ending() != Ending::ok) return {.ending = first_.ending()};
   weights_.resize(v.size());
   const double s_max = first_.spectrum().s_max();
-  const double cut = power.absolute ? power.tau : power.tau * s_max;
+  const double cut = power.cut(s_max);
   for (const double width : kWidths) {
     arrange(cut / width, cut * width);
     if (!proven(power_weights(spectrum_, power, weights_),

@@ -31,7 +31,7 @@ class UpdateStep {
       : rule_(std::visit([](const auto& o) { return make(o); }, options)) {}
 
   void operator()(VectorOut<T> x, VectorIn<T> gradient) {
-    std::visit([&](auto& rule) { rule.step(x, gradient); }, rule_);
+    (*this)(x, gradient, x);
   }
 
   /// Leaves x and writes the new one to `to`, which may be the gradient.

@@ -22,6 +22,12 @@ using BatchIn = const Eigen::Ref<const Batch<T>>&;
 template <class T>
 using BatchOut = Eigen::Ref<Batch<T>>;
 
+template <class T>
+using VectorIn = const Eigen::Ref<const Vector<T>>&;
+
+template <class T>
+using VectorOut = Eigen::Ref<Vector<T>>;
+
 /// out = f(a, b), number by number. Columns that follow each other are one
 /// array: most are too short to fill registers.
 template <class T, class F>
@@ -38,11 +44,5 @@ void for_numbers(BatchIn<T> a, BatchIn<T> b, BatchOut<T>& out, F f) {
     for (Index i = 0; i < length; ++i) to[i] = f(in_a[i], in_b[i]);
   }
 }
-
-template <class T>
-using VectorIn = const Eigen::Ref<const Vector<T>>&;
-
-template <class T>
-using VectorOut = Eigen::Ref<Vector<T>>;
 
 }  // namespace physinv

@@ -15,16 +15,9 @@ namespace physinv {
 template <class P>
 using LaneScalar = std::remove_cvref_t<decltype(std::declval<P>()[0])>;
 
-/// c[0] + c[1] x + c[2] x^2 + ...
-template <class P, std::size_t N>
-PHYSINV_LANES P polynomial(P x, const LaneScalar<P> (&c)[N]) {
-  P sum = c[N - 1] - P{};
-  for (std::size_t k = N - 1; k-- > 0;) sum = sum * x + c[k];
-  return sum;
-}
-
-/// The same of N packs, which go through each operation together: one pack by
-/// itself would wait for the result of every operation before the next.
+/// x <- c[0] + c[1] x + c[2] x^2 + ... of N packs, which go through each
+/// operation together: one pack by itself would wait for the result of every
+/// operation before the next.
 template <class P, int N, std::size_t C>
 PHYSINV_LANES void polynomials(P (&x)[N], const LaneScalar<P> (&c)[C]) {
   P sum[N];
@@ -36,6 +29,13 @@ PHYSINV_LANES void polynomials(P (&x)[N], const LaneScalar<P> (&c)[C]) {
     for (int i = 0; i < N; ++i) sum[i] = sum[i] * x[i] + c[C - 1 - k];
 #pragma GCC unroll 8
   for (int i = 0; i < N; ++i) x[i] = sum[i];
+}
+
+template <class P, std::size_t C>
+PHYSINV_LANES P polynomial(P x, const LaneScalar<P> (&c)[C]) {
+  P one[] = {x};
+  polynomials(one, c);
+  return one[0];
 }
 
 /// Added to a number of at most 2^(digits-3), leaves its nearest integer in

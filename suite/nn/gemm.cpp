@@ -44,6 +44,20 @@ Store store_of(const Gemm<T>& g) {
   return Store::in_memory;
 }
 
+/// A vector, of which `count` lanes are there.
+template <class V, class T>
+V load_lanes(const T* from, Index count) {
+  return count == kLanes<T> ? load<V>(from) : load_some<V>(from, count);
+}
+template <class V, class T>
+void store_lanes(T* to, V v, Index count) {
+  if (count == kLanes<T>) {
+    store(to, v);
+  } else {
+    store_some(to, v, count);
+  }
+}
+
 /// Lanes of rows from i, columns from j <- f(row, column, lanes, how many).
 template <class T, class F>
 [[gnu::always_inline]] inline void for_vectors(
@@ -64,29 +78,21 @@ template <class T, class F>
 template <class T>
 [[gnu::noinline]] void tanh_panel(T* c, Index stride, Index rows, Index cols) {
   using V = Simd<T, kNarrow>;
-  for (Index j = 0; j < cols; j += kLanes<T>)
+  for (Index j = 0; j < cols; j += kLanes<T>) {
+    const Index width = std::min(kLanes<T>, cols - j);
     for (Index r = 0; r < rows; r += kGroup) {
       const Index last = std::min(kGroup, rows - r) - 1;
-      const Index width = std::min(kLanes<T>, cols - j);
       T* const from = c + r * stride + j;
       V v[kGroup];
 #pragma GCC unroll 8
-      for (Index q = 0; q < kGroup; ++q) {
-        const T* at = from + std::min(q, last) * stride;
-        v[q] = width == kLanes<T> ? load<V>(at) : load_some<V>(at, width);
-      }
+      for (Index q = 0; q < kGroup; ++q)
+        v[q] = load_lanes<V>(from + std::min(q, last) * stride, width);
       tanh_lanes(v);
 #pragma GCC unroll 8
-      for (Index q = 0; q < kGroup; ++q) {
-        T* const at = from + q * stride;
-        if (q > last) break;
-        if (width == kLanes<T>) {
-          store(at, v[q]);
-        } else {
-          store_some(at, v[q], width);
-        }
-      }
+      for (Index q = 0; q < kGroup && q <= last; ++q)
+        store_lanes(from + q * stride, v[q], width);
     }
+  }
 }
 
 /// The activation and the gate of a panel, in memory.
@@ -102,8 +108,7 @@ template <class T>
     });
   if (g.gate == nullptr) return;
   for_vectors(g, i, end, j, cols, [&](Index r, Index c, V v, Index some) {
-    const T* from = g.gate + r * g.gate_stride + c;
-    const V gate = some == kLanes<T> ? load<V>(from) : load_some<V>(from, some);
+    const V gate = load_lanes<V>(g.gate + r * g.gate_stride + c, some);
     return pull_lanes<T>(g.gate_activation, gate, v);
   });
 }

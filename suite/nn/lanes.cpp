@@ -117,9 +117,8 @@ void to_lanes(BatchIn<T> from, Lanes<T> to) {
             from.cols(),
             from.rows(),
             to.data,
-            to.stride);
-  for (Index i = 0; i < to.rows; ++i)
-    std::fill(to.row(i) + to.samples, to.row(i) + to.width, T(0));
+            to.stride,
+            Behind::zeros);
 }
 
 template <class T>

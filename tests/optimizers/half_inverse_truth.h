@@ -31,25 +31,28 @@ inline Batch<double> noise(Index rows, Index cols, std::uint32_t seed) {
   return x;
 }
 
+/// n orthonormal columns.
+inline Batch<double> orthonormal(Index rows, Index n, std::uint32_t seed) {
+  const Eigen::HouseholderQR<Batch<double>> qr(noise(rows, n, seed));
+  Batch<double> q = Batch<double>::Identity(rows, n);
+  q.applyOnTheLeft(qr.householderQ());
+  return q;
+}
+
 /// Singular values 1 .. 10^-decades between random bases.
 inline Batch<double> graded(Index m,
                             Index p,
                             double decades,
                             std::uint32_t seed) {
   const Index n = std::min(m, p);
-  const auto basis = [&](Index rows, std::uint32_t s) {
-    const Eigen::HouseholderQR<Batch<double>> qr(noise(rows, n, s));
-    Batch<double> q = Batch<double>::Identity(rows, n);
-    q.applyOnTheLeft(qr.householderQ());
-    return q;
-  };
   Vector<double> s(n);
   for (Index i = 0; i < n; ++i)  // not on a power of ten, where the cuts are
     s(i) = std::pow(
         10.0,
         -decades * (static_cast<double>(i) + 0.37) / static_cast<double>(n));
   s(0) = 1;
-  return basis(m, seed) * s.asDiagonal() * basis(p, seed + 1).transpose();
+  return orthonormal(m, n, seed) * s.asDiagonal() *
+         orthonormal(p, n, seed + 1).transpose();
 }
 
 /// The definition, by Eigen's two-sided Jacobi SVD of J.
