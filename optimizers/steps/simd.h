@@ -29,7 +29,7 @@ struct Register {
   static V all(T s) { return s - V{}; }
   /// v where |v| >= tiny (or NaN), else 0.
   static V without_tiny(V v, T tiny) {
-    return (v < all(tiny)) & (v > all(-tiny)) ? V{} : v;
+    return ((v < all(tiny)) & (v > all(-tiny))) ? V{} : v;
   }
   /// The compiler may not vectorise std::sqrt, which has to set errno.
   static V root(V v) { return sqrt_lanes(v); }
