@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <string>
 
 #include "suite/cases/jpo_claims.h"
@@ -17,7 +16,6 @@ namespace physinv {
 namespace {
 
 constexpr double kSolved = 1e-6;
-constexpr Index kEvery = std::numeric_limits<Index>::max();
 
 /// Loss of any miss: the other ball stays where it is.
 Vector<double> plateau_loss(const CaseRecord& record) {
@@ -78,7 +76,7 @@ ClaimResult jpo_solves(const JpoMetrics& metrics) {
                         std::optional<double> share) {
     if (share) lowest = std::min(lowest.value_or(1), *share);
   };
-  for (const Index n : sizes_between(metrics, 64, kEvery)) {
+  for (const Index n : sizes_between(metrics, 64)) {
     for (const std::uint64_t seed : metrics.seeds()) {
       lower(close, metrics.solved_share("jpo", n, seed, false, 1e-2));
       lower(solved, metrics.solved_share("jpo", n, seed, true, kSolved));
@@ -102,7 +100,7 @@ ClaimResult jpo_rescues(const JpoMetrics& metrics) {
     return found->rate();
   };
   const std::array<Index, 1> largest = {128};
-  const auto f = metrics.mean_shares("jpo", largest, true, Equality::strict);
+  const auto f = metrics.mean_shares("jpo", largest, true);
   Judge judge;
   judge.at_least("rescue rate n>=64", rate(64, kEvery), 0.97)
       .above("rescue rate n>=64 over n<=8", rate(64, kEvery), rate(0, 8))
@@ -118,9 +116,9 @@ ClaimResult jpo_rescues(const JpoMetrics& metrics) {
 }
 
 ClaimResult jpo_beats_samples(const JpoMetrics& metrics) {
-  const auto sizes = sizes_between(metrics, 16, kEvery);
+  const auto sizes = sizes_between(metrics, 16);
   const auto better = [&](const char* method) -> std::optional<double> {
-    const auto s = metrics.mean_shares(method, sizes, false, Equality::strict);
+    const auto s = metrics.mean_shares(method, sizes, false);
     if (!s) return {};
     return s->mean.better;
   };
@@ -144,11 +142,10 @@ ClaimResult jpo_beats_samples(const JpoMetrics& metrics) {
 }
 
 ClaimResult samples_share_plateaus(const JpoMetrics& metrics) {
-  const auto sizes = sizes_between(metrics, 32, kEvery);
+  const auto sizes = sizes_between(metrics, 32);
   const auto equal = [&](const char* method,
                          bool refined) -> std::optional<double> {
-    const auto s =
-        metrics.mean_shares(method, sizes, refined, Equality::strict);
+    const auto s = metrics.mean_shares(method, sizes, refined);
     if (!s) return {};
     return s->mean.equal;
   };

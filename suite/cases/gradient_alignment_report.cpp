@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <utility>
 
 namespace physinv::alignment {
@@ -126,10 +125,8 @@ Table shares_table(const Results& results, const Fig2& f) {
         table.columns.push_back(fmt::format("{} theory", name));
         for (std::size_t i = 0; i < rows.size(); ++i) {
           Cell ours{.text = kNotRun}, law{.text = kNotRun};
-          if (m && m->at(sizes[i])) {
-            const auto at = static_cast<std::size_t>(
-                std::find(m->n.begin(), m->n.end(), sizes[i]) - m->n.begin());
-            ours = {.ours = m->share[at], .spread = m->error[at]};
+          if (const auto at = m ? m->find(sizes[i]) : std::nullopt) {
+            ours = {.ours = m->share[*at], .spread = m->error[*at]};
             law = {.ours = theory(sizes[i])};
           }
           rows[i].cells.push_back(std::move(ours));

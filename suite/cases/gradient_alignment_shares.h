@@ -22,10 +22,14 @@ struct Measured {
   std::vector<double> share, error;  ///< mean and its standard error
   Index repetitions = 0;             ///< the fewest of any n
 
-  std::optional<double> at(Index size) const {
+  std::optional<std::size_t> find(Index size) const {
     const auto found = std::find(n.begin(), n.end(), size);
     if (found == n.end()) return {};
-    return share[static_cast<std::size_t>(found - n.begin())];
+    return static_cast<std::size_t>(found - n.begin());
+  }
+  std::optional<double> at(Index size) const {
+    const auto i = find(size);
+    return i ? std::optional(share[*i]) : std::nullopt;
   }
   std::size_t count() const { return n.size(); }
 };

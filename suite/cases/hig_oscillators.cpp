@@ -1,119 +1,25 @@
 // HIG paper, Sec. 3.1, App. B.2 and C, Figs. 2, 5, 6, 12, 13, Tables 2, 3: a
 // network learns to bring two coupled oscillators back to where they started.
-#include <cmath>
-#include <limits>
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <string>
 #include <vector>
 
-#include "optimizers/training.h"
 #include "problems/oscillators/oscillators.h"
 #include "suite/cases/hig_methods.h"
 #include "suite/cases/hig_oscillators_claims.h"
+#include "suite/cases/hig_oscillators_methods.h"
 #include "suite/cases/hig_report.h"
 #include "suite/harness/registry.h"
 #include "suite/nn/mlp.h"
 
-namespace physinv {
+namespace physinv::oscillators {
 namespace {
 
-constexpr const char* kName = "hig/oscillators";
 constexpr Index kStates = 4096;
 // Updates; the paper trains for an hour, this many by its Table 3.
 constexpr Index kQuick = 320, kStandard = 2000, kPaper = 24'700;
-
-Method by_rule(std::string id, Index batch, StepOptions rule) {
-  return {.id = std::move(id),
-          .chain = {train({.rule = std::move(rule), .batch = batch})}};
-}
-
-Method by_power(std::string id, Index batch, hig::Power power) {
-  return {.id = std::move(id),
-          .chain = {train({.rule = HalfInverseStepOptions{.power = power},
-                           .batch = batch})}};
-}
-
-struct Exponent {
-  const char* id;
-  double kappa;
-};
-constexpr Exponent kExponents[] = {{"kappa-1", 1},
-                                   {"kappa-05", 0.5},
-                                   {"kappa-025", 0.25},
-                                   {"kappa-0", 0},
-                                   {"kappa-m025", -0.25},
-                                   {"kappa-m05", -0.5},
-                                   {"kappa-m075", -0.75},
-                                   {"kappa-m1", -1}};
-
-/// Figs. 5 and 6: rates and batch sizes of the first-order rules.
-struct Grid {
-  const char* rule;
-  std::vector<double> rates;
-};
-const std::vector<Grid> kGrids = {{"adadelta", {0.1, 1, 10}},
-                                  {"adagrad", {0.01, 0.1, 1}},
-                                  {"sgd", {0.01, 0.1, 1}},
-                                  {"rmsprop", {1e-5, 1e-4, 1e-3}},
-                                  {"adam", {1e-4, 3e-4, 1e-3, 3e-3}}};
-constexpr Index kGridBatches[] = {256, 512, 1024};
-
-StepOptions first_order(std::string_view rule, double rate) {
-  if (rule == "adadelta") return AdadeltaOptions{.rate = rate};
-  if (rule == "adagrad") return AdagradOptions{.rate = rate};
-  if (rule == "sgd") return SgdOptions{.rate = rate};
-  if (rule == "rmsprop") return RmspropOptions{.rate = rate};
-  return AdamOptions{.rate = rate, .eps_before_correction = true};
-}
-
-std::string grid_id(const char* rule, double rate, Index batch) {
-  return fmt::format("grid-{}-{}-b{}", rule, rate_id(rate), batch);
-}
-
-std::vector<Method> methods() {
-  std::vector<Method> all = {
-      by_power("hig", 128, {.kappa = -0.5, .tau = 1e-6}),
-      by_power("gn", 128, {.kappa = -1, .tau = 1e-6}),
-      by_rule("adam", 512, first_order("adam", 3e-4)),
-      by_rule("sgd", 512, first_order("sgd", 0.1)),
-      by_rule("adagrad", 512, first_order("adagrad", 0.1)),
-      by_rule("adadelta", 512, first_order("adadelta", 0.1)),
-      by_rule("rmsprop", 512, first_order("rmsprop", 1e-4)),
-      by_rule("adam-b256", 256, first_order("adam", 3e-4)),
-      by_rule("adam-b1024", 1024, first_order("adam", 3e-4)),
-      by_power("hig-b32", 32, {.kappa = -0.5, .tau = 1e-6}),
-      by_power("gn-b32", 32, {.kappa = -1, .tau = 1e-6})};
-  for (const Exponent& e : kExponents)
-    all.push_back(by_power(e.id, 64, {.kappa = e.kappa, .tau = 1e-6}));
-  for (const int digits : {5, 7, 8, 9, 10}) {
-    const double tau = std::pow(10.0, -digits);
-    all.push_back(by_power(
-        fmt::format("hig-tau{}", digits), 64, {.kappa = -0.5, .tau = tau}));
-    all.push_back(by_power(
-        fmt::format("gn-tau{}", digits), 64, {.kappa = -1, .tau = tau}));
-  }
-  for (const int thousandths : {125, 250, 375, 500}) {
-    all.push_back(
-        by_power(fmt::format("beta-m{}", thousandths),
-                 64,
-                 {.kappa = -0.5, .tau = 1e-6, .beta = -thousandths / 1000.0}));
-  }
-  for (const Grid& grid : kGrids)
-    for (const double rate : grid.rates)
-      for (const Index batch : kGridBatches)
-        all.push_back(by_rule(grid_id(grid.rule, rate, batch),
-                              batch,
-                              first_order(grid.rule, rate)));
-  return all;
-}
-
-std::vector<std::string> ids_with(const std::string& beginning) {
-  std::vector<std::string> ids;
-  for (const Method& m : methods())
-    if (m.id.starts_with(beginning)) ids.push_back(m.id);
-  return ids;
-}
-
-// ---- report -----------------------------------------------------------------
 
 /// The lowest test loss of any seed beside the paper's best runs of an hour.
 Table final_losses(const Results& results, const Published& published) {
@@ -239,7 +145,7 @@ Section report(const Results& results, const Published& published) {
                 "fig13b",
                 "Gauss-Newton: truncation tau",
                 "Fig. 13");
-  section.claims = oscillator_claims(results, published);
+  section.claims = claims(results, published);
   return section;
 }
 
@@ -255,7 +161,7 @@ std::vector<std::string> groups(const std::vector<std::string>& beginnings) {
   return ids;
 }
 
-const std::vector<std::uint64_t> kFive = {0, 1, 2, 3, 4};
+const auto kThree = first_seeds(3), kFive = first_seeds(5);
 
 const Setting kSetting{
     .predictor = {{Field::observations},
@@ -272,15 +178,15 @@ const auto kRegistered = register_experiment({
                   .rows = {row({"hig", "gn", "adam"}, {0}, 16),
                            row(kOthers, {0}, 16)}},
                  {.name = "quick",
-                  .rows = {row({"hig", "gn"}, {0, 1, 2}, kQuick),
-                           row({"adam"}, {0, 1, 2}, 2000),
-                           row(kOthers, {0, 1, 2}, 300),
+                  .rows = {row({"hig", "gn"}, kThree, kQuick),
+                           row({"adam"}, kThree, 2000),
+                           row(kOthers, kThree, 300),
                            row({"kappa-05", "kappa-0", "kappa-m05", "kappa-m1"},
                                kFive,
                                256)}},
                  {.name = "standard",
                   .rows = {row({"hig"}, kFive, kStandard),
-                           row({"gn"}, {0, 1, 2, 3, 4, 5, 6, 7}, kStandard),
+                           row({"gn"}, first_seeds(8), kStandard),
                            row({"adam"}, kFive, 40'000),
                            row(kOthers, kFive, 40'000),
                            row(groups({"hig-b", "gn-b"}), kFive, 1024),
@@ -304,4 +210,4 @@ const auto kRegistered = register_experiment({
 });
 
 }  // namespace
-}  // namespace physinv
+}  // namespace physinv::oscillators

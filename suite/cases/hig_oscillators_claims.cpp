@@ -4,19 +4,24 @@
 #include <cmath>
 #include <limits>
 
+#include "suite/cases/hig_oscillators_methods.h"
 #include "suite/cases/hig_report.h"
 #include "suite/cases/jpo_claims.h"
 
-namespace physinv {
+namespace physinv::oscillators {
 namespace {
 
-constexpr const char* kName = "hig/oscillators";
 constexpr Index kEarly = 320, kLate = 2000;
 
 std::optional<double> loss(const Results& results,
                            const std::string& method,
                            Index updates) {
   return median_test_loss(results, kName, method, updates);
+}
+
+/// The lower of those that are there.
+std::optional<double> lower(std::optional<double> a, std::optional<double> b) {
+  return a && b ? std::min(a, b) : a ? a : b;
 }
 
 /// The largest factor by which a curve rises above what it had reached.
@@ -84,16 +89,14 @@ ClaimResult gauss_newton_is_unstable(const Results& results) {
   Judge judge;
   int seeds = 0, unstable = 0;
   std::optional<double> early, late;  // of the best run that is stable
-  const auto keep = [](std::optional<double>& best, std::optional<double> one) {
-    if (one) best = std::min(best.value_or(*one), *one);
-  };
   for (const auto* s : trained_stages(results, kName, "gn")) {
     ++seeds;
     const auto& losses = s->arrays.at("mean_loss");
     if (s->stop == Stop::diverged || losses.maxCoeff() > 3 * losses(0, 0)) {
       ++unstable;
     } else {
-      keep(early, test_loss(s, kEarly)), keep(late, test_loss(s, kLate));
+      early = lower(early, test_loss(s, kEarly));
+      late = lower(late, test_loss(s, kLate));
     }
   }
   if (seeds < 8) {
@@ -125,15 +128,9 @@ ClaimResult half_is_best(const Results& results) {
     const auto at = [&](const char* id) { return loss(results, id, updates); };
     const auto half = at("kappa-m05"), none = at("kappa-0");
     if (updates > 256 && !half) break;
-    auto lowest = none;
-    for (const char* id : {"kappa-1",
-                           "kappa-05",
-                           "kappa-025",
-                           "kappa-m025",
-                           "kappa-m075",
-                           "kappa-m1"})
-      if (const auto one = at(id))
-        lowest = std::min(lowest.value_or(*one), *one);
+    std::optional<double> lowest;
+    for (const Exponent& e : kExponents)
+      if (e.kappa != -0.5) lowest = lower(lowest, at(e.id));
     const auto say = [&](const char* what) {
       return fmt::format("{}, {} updates", what, updates);
     };
@@ -230,8 +227,8 @@ ClaimResult larger_batches_help_later(const Results& results) {
 
 }  // namespace
 
-std::vector<ClaimResult> oscillator_claims(const Results& results,
-                                           const Published& published) {
+std::vector<ClaimResult> claims(const Results& results,
+                                const Published& published) {
   return {hig_level(results),
           hig_beats_adam_by_the_papers_clock(results, published),
           gauss_newton_is_unstable(results),
@@ -241,4 +238,4 @@ std::vector<ClaimResult> oscillator_claims(const Results& results,
           larger_batches_help_later(results)};
 }
 
-}  // namespace physinv
+}  // namespace physinv::oscillators

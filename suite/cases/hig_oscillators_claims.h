@@ -8,9 +8,10 @@
 #include "suite/results/report_model.h"
 #include "suite/results/results.h"
 
-namespace physinv {
+namespace physinv::oscillators {
 
-std::vector<ClaimResult> oscillator_claims(const Results& results,
-                                           const Published& published);
+/// A1 to A7.
+std::vector<ClaimResult> claims(const Results& results,
+                                const Published& published);
 
-}  // namespace physinv
+}  // namespace physinv::oscillators

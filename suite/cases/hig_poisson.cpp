@@ -212,7 +212,7 @@ Section report(const Results& results, const Published& published) {
 
 constexpr RowOf row{.n = kEvaluation};
 
-const std::vector<std::uint64_t> kThree = {0, 1, 2}, kFive = {0, 1, 2, 3, 4};
+const auto kThree = first_seeds(3), kFive = first_seeds(5);
 
 const std::vector<Profile> kProfiles = {
     {.name = "smoke",

@@ -113,7 +113,7 @@ std::vector<std::string> rest(const Grid& grid,
   return ids;
 }
 
-const std::vector<std::uint64_t> kThree = {0, 1, 2}, kFive = {0, 1, 2, 3, 4};
+const auto kThree = first_seeds(3), kFive = first_seeds(5);
 const std::vector<std::string> kCuts = {"hig-b16-eta05-tau2",
                                         "hig-b16-eta05-tau3",
                                         "hig-b16-eta05-tau4",

@@ -96,12 +96,6 @@ Section report(const toy::Gamma& gamma, const Results& results) {
   return section;
 }
 
-std::vector<std::uint64_t> first_seeds(std::uint64_t count) {
-  std::vector<std::uint64_t> seeds(count);
-  for (std::uint64_t s = 0; s < count; ++s) seeds[s] = s;
-  return seeds;
-}
-
 std::vector<Profile> profiles(const toy::Gamma& gamma) {
   const std::vector<std::string> five = {"adam", "gn", "hig", "sgd", "gn_tau6"};
   constexpr RowOf row{.n = kPoints};

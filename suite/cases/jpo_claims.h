@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -103,10 +104,13 @@ inline std::optional<double> ratio(std::optional<double> a,
   return a && b ? std::optional(*a / *b) : std::nullopt;
 }
 
+/// As the last size: there is no last.
+inline constexpr Index kEvery = std::numeric_limits<Index>::max();
+
 /// The sizes of a campaign within [first, last].
 inline std::vector<Index> sizes_between(const JpoMetrics& metrics,
                                         Index first,
-                                        Index last) {
+                                        Index last = kEvery) {
   std::vector<Index> out;
   for (const Index n : metrics.sizes())
     if (n >= first && n <= last) out.push_back(n);

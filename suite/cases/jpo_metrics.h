@@ -113,7 +113,7 @@ class JpoMetrics {
   std::optional<Pooled> mean_shares(std::string_view method,
                                     std::span<const Index> sizes,
                                     bool refined,
-                                    Equality equality) const;
+                                    Equality equality = Equality::strict) const;
 
   /// Share of the decrease made by the fit, mean over problems:
   /// (L_start - L_fit) / (L_start - min(L_fit, L_refined)), L_start the fit's

@@ -73,12 +73,6 @@ Section report(const Results& results, const Published& published) {
   return section;
 }
 
-std::vector<std::uint64_t> seeds(std::uint64_t count) {
-  std::vector<std::uint64_t> all;
-  for (std::uint64_t s = 0; s < count; ++s) all.push_back(s);
-  return all;
-}
-
 const std::vector<Index> kSizes = {2, 4, 8, 16, 32, 64, 128, 256};
 
 const auto kRegistered = register_experiment({
@@ -105,16 +99,20 @@ const auto kRegistered = register_experiment({
                     .seeds = {0},
                     .iterations = 20}}},
          {.name = "quick",
-          .rows = {{.methods = {"bfgs", "gd"}, .n = {4, 32}, .seeds = seeds(3)},
+          .rows = {{.methods = {"bfgs", "gd"},
+                    .n = {4, 32},
+                    .seeds = first_seeds(3)},
                    {.methods = kTrained,
                     .n = {4, 32},
-                    .seeds = seeds(3),
+                    .seeds = first_seeds(3),
                     .iterations = 500}}},
          {.name = "paper",
-          .rows = {{.methods = {"bfgs", "gd"}, .n = kSizes, .seeds = seeds(10)},
+          .rows = {{.methods = {"bfgs", "gd"},
+                    .n = kSizes,
+                    .seeds = first_seeds(10)},
                    {.methods = kTrained,
                     .n = kSizes,
-                    .seeds = seeds(10),
+                    .seeds = first_seeds(10),
                     .iterations = kFitIterations}}}},
     .methods = jpo_methods({.rate = 1e-3,
                             .iterations = kFitIterations,

@@ -2,10 +2,10 @@
 /// Fig. 5, App. D.3), as conditions on results.
 #pragma once
 
-#include <limits>
+#include <optional>
 #include <vector>
 
-#include "suite/cases/jpo_metrics.h"
+#include "suite/cases/jpo_claims.h"
 #include "suite/results/report_model.h"
 #include "suite/results/results.h"
 
@@ -14,10 +14,16 @@ namespace physinv::ks {
 inline constexpr const char* kName = "jpo/kuramoto-sivashinsky";
 /// From here on the paper's statements hold; small sets can be memorised.
 inline constexpr Index kMany = 32;
-inline constexpr Index kEvery = std::numeric_limits<Index>::max();
 
 /// Both unknowns within 1e-3 of the truth.
 Solved solved();
+
+/// Mean share of problems on which a method beats BFGS, sizes [first, last].
+std::optional<double> better(const JpoMetrics& metrics,
+                             const char* method,
+                             bool refined,
+                             Index first,
+                             Index last = kEvery);
 
 /// R2 to R7.
 std::vector<ClaimResult> claims(const Results& results);

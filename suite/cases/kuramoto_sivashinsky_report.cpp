@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "suite/cases/jpo_claims.h"
 #include "suite/cases/kuramoto_sivashinsky_claims.h"
 
 namespace physinv::ks {
@@ -114,15 +113,11 @@ Table in_words(const JpoMetrics& metrics, const Published& published) {
   };
   const auto solved_by = [&](const char* method, bool refined) {
     return percent(metrics.pooled_solved_share(
-        method, sizes_between(metrics, kMany, kEvery), refined, solved()));
+        method, sizes_between(metrics, kMany), refined, solved()));
   };
   const auto better_at =
-      [&](const char* method, bool refined, Index first, Index last) {
-        return percent(
-            better_of(metrics.mean_shares(method,
-                                          sizes_between(metrics, first, last),
-                                          refined,
-                                          Equality::strict)));
+      [&](const char* method, bool refined, Index first, Index last = kEvery) {
+        return percent(better(metrics, method, refined, first, last));
       };
   add("BFGS solves, n >= 32, %", "text/bfgs/solved", solved_by("bfgs", false));
   add("JPO refined solves, n >= 32, %",
@@ -148,19 +143,19 @@ Table in_words(const JpoMetrics& metrics, const Published& published) {
       better_at("jpo", true, 256, 256));
   add("supervised refined better, %",
       "text/supervised/refined",
-      better_at("supervised", true, 0, kEvery));
+      better_at("supervised", true, 0));
   add("supervised refined better, n = 2, %",
       "text/supervised/refined/n=2",
       better_at("supervised", true, 2, 2));
   add("supervised refined better, n >= 64, %",
       "text/supervised/refined/n>=64",
-      better_at("supervised", true, 64, kEvery));
+      better_at("supervised", true, 64));
   add("supervised better, n = 2, %",
       "text/supervised/better/n=2",
       better_at("supervised", false, 2, 2));
   add("supervised better, n >= 64, %",
       "text/supervised/better/n>=64",
-      better_at("supervised", false, 64, kEvery));
+      better_at("supervised", false, 64));
   return table;
 }
 

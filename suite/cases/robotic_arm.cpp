@@ -94,7 +94,7 @@ ClaimResult descent_solves(const Results& results,
 /// The smallest ratio of mean losses, JPO over BFGS, of any n >= 8 and seed.
 std::optional<double> loss_over_bfgs(const JpoMetrics& metrics) {
   std::optional<double> smallest;
-  for (const Index n : sizes_between(metrics, 8, 1 << 30)) {
+  for (const Index n : sizes_between(metrics, 8)) {
     for (const std::uint64_t seed : metrics.seeds()) {
       const auto* jpo = metrics.ending("jpo", n, seed, false);
       const auto* bfgs = metrics.stage("bfgs", n, seed, "solve");
@@ -164,10 +164,8 @@ ClaimResult improvement_is_a_coin_flip(const JpoMetrics& metrics,
     judge.below(fmt::format("highest L, refined: {}", method),
                 Endings(metrics, method, true).largest(worst),
                 kSolved);
-    const auto found =
-        metrics.mean_shares(method, sizes, true, Equality::strict);
     judge.report(fmt::format("f_N, refined: {}", method),
-                 found ? std::optional(found->mean.f()) : std::nullopt);
+                 f_of(metrics.mean_shares(method, sizes, true)));
   }
   return std::move(judge).result(
       "R6",

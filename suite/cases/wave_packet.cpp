@@ -120,7 +120,7 @@ Row trained(std::vector<std::string> methods,
 }
 
 const std::vector<Index> kSizes = {2, 4, 8, 16, 32, 64, 128, 256};
-const std::vector<std::uint64_t> kSeeds = {0, 1, 2, 3, 4};
+const auto kSeeds = first_seeds(5);
 /// For claims about BFGS alone.
 const Row kPool{.methods = {"bfgs"}, .n = {256}, .seeds = {0, 1}};
 

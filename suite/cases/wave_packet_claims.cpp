@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <set>
 #include <string>
@@ -17,21 +16,13 @@
 namespace physinv::packet {
 namespace {
 
-constexpr Index kEvery = std::numeric_limits<Index>::max();
 constexpr double kLargeStep = 20;  // samples of the signal
 const double kScale = WavePacketOptions{}.scale;
 
-std::optional<JpoMetrics::Pooled> mean_shares(const JpoMetrics& metrics,
-                                              const std::string& method,
-                                              const std::vector<Index>& sizes,
-                                              bool refined) {
-  return metrics.mean_shares(method, sizes, refined, Equality::strict);
-}
-
 ClaimResult jpo_beats_bfgs(const JpoMetrics& metrics) {
-  const auto sizes = sizes_between(metrics, 32, kEvery);
-  const auto jpo = mean_shares(metrics, "jpo", sizes, false);
-  const auto refined = mean_shares(metrics, "jpo", sizes, true);
+  const auto sizes = sizes_between(metrics, 32);
+  const auto jpo = metrics.mean_shares("jpo", sizes, false);
+  const auto refined = metrics.mean_shares("jpo", sizes, true);
   std::set<std::uint64_t> seeds;
   for (const Index n : sizes)
     for (const std::uint64_t seed : metrics.seeds())
@@ -49,7 +40,7 @@ ClaimResult jpo_beats_bfgs(const JpoMetrics& metrics) {
     for (const char* other : {"supervised", "na"}) {
       judge.above(fmt::format("better: jpo over {}", other),
                   better_of(jpo),
-                  better_of(mean_shares(metrics, other, sizes, false)));
+                  better_of(metrics.mean_shares(other, sizes, false)));
     }
   }
   return std::move(judge).result(
@@ -113,8 +104,7 @@ ClaimResult descent_competes(const JpoMetrics& metrics, bool full) {
   if (full) {
     judge.at_least(
         "f(gradient descent)",
-        f_of(mean_shares(
-            metrics, "gd", sizes_between(metrics, 32, kEvery), false)),
+        f_of(metrics.mean_shares("gd", sizes_between(metrics, 32), false)),
         0.45);
   } else {
     judge.missing("gradient descent with all its iterations");
@@ -158,7 +148,7 @@ std::optional<double> worsened(const JpoMetrics& metrics) {
 ClaimResult refinement_helps(const JpoMetrics& metrics, bool full) {
   const auto sizes = metrics.sizes();
   const auto after = [&](const char* method) {
-    return mean_shares(metrics, method, sizes, true);
+    return metrics.mean_shares(method, sizes, true);
   };
   Judge judge;
   judge.at_most("losses increased", worsened(metrics), 0);
@@ -167,7 +157,7 @@ ClaimResult refinement_helps(const JpoMetrics& metrics, bool full) {
   } else {
     judge.above("f(supervised): refined over not",
                 f_of(after("supervised")),
-                f_of(mean_shares(metrics, "supervised", sizes, false)));
+                f_of(metrics.mean_shares("supervised", sizes, false)));
     const auto na = equal_of(after("na")), jpo = equal_of(after("jpo"));
     if (na && jpo) {
       judge.at_least("equal, refined: na", na, *jpo);
@@ -186,7 +176,7 @@ ClaimResult refinement_helps(const JpoMetrics& metrics, bool full) {
 ClaimResult network_decreases(const JpoMetrics& metrics, bool full) {
   Judge judge;
   if (!full) judge.missing("fits with all their iterations");
-  for (const Index n : sizes_between(metrics, 8, kEvery)) {
+  for (const Index n : sizes_between(metrics, 8)) {
     const auto mean = metrics.share_of_decrease("jpo", n);
     if (mean && full) judge.at_least(fmt::format("n={}", n), mean, 0.7);
   }
@@ -204,7 +194,7 @@ ClaimResult samples_as_printed(const JpoMetrics& metrics, bool full) {
     for (const auto& [method, printed] :
          {std::pair("supervised", 0.559), std::pair("na", 0.282)}) {
       const auto better =
-          better_of(mean_shares(metrics, method, metrics.sizes(), false));
+          better_of(metrics.mean_shares(method, metrics.sizes(), false));
       judge.at_least(fmt::format("better: {}", method), better, printed - 0.1)
           .at_most(fmt::format("better: {}", method), better, printed + 0.1);
     }

@@ -1,8 +1,10 @@
 /// Experiments and the cases they expand to.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,6 +30,13 @@ struct Row {
   Index iterations = 0;  ///< 0: each stage's own default
   Precision precision = Precision::f32;
 };
+
+/// 0, 1, ... of so many seeds.
+inline std::vector<std::uint64_t> first_seeds(std::uint64_t count) {
+  std::vector<std::uint64_t> seeds(count);
+  std::iota(seeds.begin(), seeds.end(), std::uint64_t{0});
+  return seeds;
+}
 
 struct Profile {
   std::string name;
