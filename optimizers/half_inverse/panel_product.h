@@ -7,11 +7,11 @@
 
 namespace physinv::hig {
 
-/// f.operator()<kRows>(k) for groups of 8, 2 and 1 rows that cover `count`.
-template <class F>
+/// f.operator()<kRows>(k) for groups of kMost, 2 and 1 rows that cover `count`.
+template <int kMost = 8, class F>
 void for_row_groups(Index count, F&& f) {
   Index k = 0;
-  for (; k + 8 <= count; k += 8) f.template operator()<8>(k);
+  for (; k + kMost <= count; k += kMost) f.template operator()<kMost>(k);
   for (; k + 2 <= count; k += 2) f.template operator()<2>(k);
   if (k < count) f.template operator()<1>(k);
 }
@@ -34,6 +34,34 @@ inline void subtract_combination(Index n,
       for (int i = 0; i < kRows; ++i)
         sum = fma(factor[i], load(from + i * stride + c), sum);
       store(y + c, sum);
+    }
+  });
+}
+
+/// y -= sum_k s_k X_k and z -= sum_k t_k X_k.
+inline void subtract_combinations(Index n,
+                                  Index count,
+                                  const double* s,
+                                  const double* t,
+                                  const double* x,
+                                  Index stride,
+                                  double* y,
+                                  double* z) {
+  for_row_groups<4>(count, [&]<int kRows>(Index k) {
+    const double* const from = x + k * stride;
+    Wide by_s[kRows], by_t[kRows];
+#pragma GCC unroll 4
+    for (int i = 0; i < kRows; ++i)
+      by_s[i] = broadcast(-s[k + i]), by_t[i] = broadcast(-t[k + i]);
+    for (Index c = 0; c < n; c += kWidth) {
+      Wide to_y = load(y + c), to_z = load(z + c);
+#pragma GCC unroll 4
+      for (int i = 0; i < kRows; ++i) {
+        const Wide v = held(load(from + i * stride + c));
+        to_y = fma(by_s[i], v, to_y);
+        to_z = fma(by_t[i], v, to_z);
+      }
+      store(y + c, to_y), store(z + c, to_z);
     }
   });
 }

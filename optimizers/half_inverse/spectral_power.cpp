@@ -12,14 +12,9 @@ bool finite_lower(BatchIn<double> a, double& largest) {
   largest = 0;
   double poison = 0;  // x * 0 is NaN unless x is finite
   for (Index j = 0; j < a.cols(); ++j) {
-    const double* x = a.col(j).data();
-    double top = 0, zero = 0;
-    for (Index i = j; i < a.rows(); ++i) {
-      top = std::max(top, std::abs(x[i]));
-      zero += x[i] * 0;
-    }
-    largest = std::max(largest, top);
-    poison += zero;
+    const auto x = a.col(j).tail(a.rows() - j);
+    largest = std::max(largest, x.cwiseAbs().maxCoeff());
+    poison += (0 * x).sum();
   }
   return poison == 0;
 }

@@ -9,7 +9,7 @@ namespace physinv::hig {
 namespace {
 
 constexpr Index kMaxParts = 8;
-constexpr Index kPartRows = 192;     ///< below, a second part costs more
+constexpr Index kPartRows = 192;     ///< of a part, at least
 constexpr Index kThreadRows = 1024;  ///< below, a product is over too soon
 constexpr Index kColumnBlock = 256;
 
@@ -66,14 +66,23 @@ template <int kRows>
   for (int i = 0; i < kRows; ++i) y[r + i] += sum(dot[i]);
 }
 
+enum class Way { down, up };
+
 /// Rows [begin, end): y += A x for the stored and mirrored entries; four rows
 /// at a time from a multiple of four on, so that few loads cross a cache line.
 void add_product(
-    Symmetric a, Index begin, Index end, const double* x, double* y) {
-  Index r = begin;
-  for (; r < end && r % 4 != 0; ++r) add_rows<1>(a, r, x, y);
-  for (; r + 4 <= end; r += 4) add_rows<4>(a, r, x, y);
-  for (; r < end; ++r) add_rows<1>(a, r, x, y);
+    Symmetric a, Index begin, Index end, Way way, const double* x, double* y) {
+  const Index head = std::min(round_up(begin, 4), end);
+  const Index tail = std::max(head, end / 4 * 4);
+  if (way == Way::down) {
+    for (Index r = begin; r < head; ++r) add_rows<1>(a, r, x, y);
+    for (Index r = head; r < tail; r += 4) add_rows<4>(a, r, x, y);
+    for (Index r = tail; r < end; ++r) add_rows<1>(a, r, x, y);
+  } else {
+    for (Index r = end; r-- > tail;) add_rows<1>(a, r, x, y);
+    for (Index r = tail; r > head;) add_rows<4>(a, r -= 4, x, y);
+    for (Index r = head; r-- > begin;) add_rows<1>(a, r, x, y);
+  }
 }
 
 }  // namespace
@@ -87,11 +96,15 @@ Index padded_stride(Index n) {
 void SymmetricProduct::operator()(
     Symmetric a, Index first, const double* x, double* y, Threads* threads) {
   const Index n = a.n - first;
-  const Index parts = std::clamp<Index>(n / kPartRows, 1, kMaxParts);
+  const Index parts =
+      n < kThreadRows ? 1 : std::clamp<Index>(n / kPartRows, 1, kMaxParts);
+  // A row shorter, back the way that the last product came: what it left in
+  // the cache is used first.
+  const Way way = first % 2 == 0 ? Way::down : Way::up;
   const Index length = round_up(n, kWidth) + kWidth;
   std::fill(y + first, y + first + length, 0.0);
   if (parts == 1) {
-    add_product(a, first, a.n, x, y);
+    add_product(a, first, a.n, way, x, y);
     return;
   }
   // Equal areas: the rows before part p hold the share p / parts.
@@ -103,12 +116,11 @@ void SymmetricProduct::operator()(
   };
   if (static_cast<Index>(parts_.size()) < kMaxParts * a.stride)
     parts_.resize(static_cast<std::size_t>(kMaxParts * a.stride));
-  if (n < kThreadRows) threads = nullptr;
   for_blocks(threads, parts, [&](Index p, int) {
     double* to = p == 0 ? y : parts_.data() + p * a.stride;
     const Index from = first + begin(p);
     if (p > 0) std::fill(to + from, to + first + length, 0.0);
-    add_product(a, from, first + begin(p + 1), x, to);
+    add_product(a, from, first + begin(p + 1), way, x, to);
   });
   for (Index p = 1; p < parts; ++p) {
     const double* part = parts_.data() + p * a.stride;

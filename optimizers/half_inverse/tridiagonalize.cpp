@@ -8,7 +8,7 @@
 namespace physinv::hig {
 namespace {
 
-constexpr Index kPanel = 24;  ///< columns of a panel of the one-stage form
+constexpr Index kPanel = 12;  ///< columns of a panel of the one-stage form
 constexpr Index kTwoStagesFrom = 1024;
 constexpr Index kSquare = 64;  ///< blocks of A for A V: two uses from the L1
 constexpr Index kMaxParts = 8;
@@ -56,46 +56,51 @@ void Tridiagonalize::one_stage() {
 }
 
 /// Reflectors of `count` columns; the matrix behind them is left as it was,
-/// A - V W^T - W V^T in truth. Products start at whole registers: v_i is zero
-/// up to row i, w_i is made so.
+/// A - V W^T - W V^T in truth. Products start at whole registers, where v_i
+/// and w_i are zero up to row i. V and W are read twice for each column: once
+/// for V^T v and W^T v, once for what they take from w and from the next
+/// column.
 void Tridiagonalize::panel(Index first, Index count) {
   const Index n = a_.n, stride = a_.stride;
   double* const v = data(v_);
   double* const w = data(w_);
-  double by_v[kPanel], by_w[kPanel];
-  const auto subtract_both = [&](Index from, Index i, double* to) {
-    subtract_combination(n - from, i, by_w, v + from, stride, to + from);
-    subtract_combination(n - from, i, by_v, w + from, stride, to + from);
-  };
+  double by_v[kPanel], by_w[kPanel], next_v[kPanel], next_w[kPanel];
   for (Index i = 0; i < count; ++i) {
-    const Index j = first + i;
-    double* x = a_.row(j);
-    for (Index p = 0; p < i; ++p) {
-      by_v[p] = v[p * stride + j];
-      by_w[p] = w[p * stride + j];
-    }
-    subtract_both(j / kWidth * kWidth, i, x);
-    d_(j) = x[j];
+    const Index j = first + i, k = j + 1, rest = n - k;
+    double* const x = a_.row(j);
     double* const vi = v + i * stride;
     double* const wi = w + i * stride;
-    std::fill(vi, vi + j + 1, 0.0);
-    std::fill(wi, wi + j + 1, 0.0);
-    if (j + 1 == n) {
-      std::fill(vi + j, vi + stride, 0.0);
-      std::fill(wi + j, wi + stride, 0.0);
-      return;
-    }
-    const Index k = j + 1, rest = n - k, from = k / kWidth * kWidth;
+    d_(j) = x[j];
+    if (rest == 0) return;
+    const Index from = k / kWidth * kWidth, length = n - from;
     const double tau = tau_(j) = reflect(rest, x + k, e_(j));
+    std::fill(vi + from, vi + k, 0.0);
     std::copy(x + k, x + stride, vi + k);
     product_(a_, k, vi, wi, threads_);
-    project(n - from, i, v + from, stride, vi + from, by_v);
-    project(n - from, i, w + from, stride, vi + from, by_w);
-    subtract_both(from, i, wi);
+    project(length, i, v + from, stride, vi + from, by_v);
+    project(length, i, w + from, stride, vi + from, by_w);
+    // Behind the panel's last column RankUpdate takes it.
+    double* const next = i + 1 < count ? a_.row(k) + from : nullptr;
+    if (next == nullptr) {
+      subtract_combination(length, i, by_w, v + from, stride, wi + from);
+      subtract_combination(length, i, by_v, w + from, stride, wi + from);
+    } else {
+      for (Index p = 0; p < i; ++p) {
+        next_v[p] = v[p * stride + k];
+        next_w[p] = w[p * stride + k];
+      }
+      subtract_combinations(
+          length, i, by_w, next_w, v + from, stride, wi + from, next);
+      subtract_combinations(
+          length, i, by_v, next_v, w + from, stride, wi + from, next);
+    }
     std::fill(wi + from, wi + k, 0.0);
     for (Index c = k; c < n; ++c) wi[c] *= tau;
     axpy(rest, -0.5 * tau * dot(rest, wi + k, vi + k), vi + k, wi + k);
     std::fill(wi + n, wi + stride, 0.0);
+    if (next == nullptr) return;
+    for (Index c = 0; c < length; ++c)
+      next[c] -= wi[k] * vi[from + c] + vi[k] * wi[from + c];
   }
 }
 
