@@ -126,11 +126,14 @@ class StabilitySweep final : public Diagnostic {
   std::string name() const override { return options_.name; }
   Needs needs() const override { return Needs::forward | Needs::vjp; }
   double operations(const CaseSize&) const override {
-    double sum = 0;
+    // Problems are made once, however many points they are looked at in.
+    std::vector<double> points(options_.problems.size());
     for (const auto& point : options_.points)
-      sum += options_.problems[static_cast<std::size_t>(point.problem)]
-                 .make<double>()
-                 ->operations();
+      ++points[static_cast<std::size_t>(point.problem)];
+    double sum = 0;
+    for (std::size_t p = 0; p < points.size(); ++p)
+      if (points[p] > 0)
+        sum += points[p] * options_.problems[p].make<double>()->operations();
     return (2 * kSteps + 8) * static_cast<double>(options_.examples) * sum;
   }
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "suite/nn/activation.h"
+#include "suite/nn/thin_product.h"
 #include "suite/nn/vector.h"
 
 namespace physinv::nn {
@@ -44,20 +45,6 @@ Store store_of(const Gemm<T>& g) {
   return Store::in_memory;
 }
 
-/// A vector, of which `count` lanes are there.
-template <class V, class T>
-V load_lanes(const T* from, Index count) {
-  return count == kLanes<T> ? load<V>(from) : load_some<V>(from, count);
-}
-template <class V, class T>
-void store_lanes(T* to, V v, Index count) {
-  if (count == kLanes<T>) {
-    store(to, v);
-  } else {
-    store_some(to, v, count);
-  }
-}
-
 /// Lanes of rows from i, columns from j <- f(row, column, lanes, how many).
 template <class T, class F>
 [[gnu::always_inline]] inline void for_vectors(
@@ -89,8 +76,8 @@ template <class T>
         v[q] = load_lanes<V>(from + std::min(q, last) * stride, width);
       tanh_lanes(v);
 #pragma GCC unroll 8
-      for (Index q = 0; q < kGroup && q <= last; ++q)
-        store_lanes(from + q * stride, v[q], width);
+      for (Index q = 0; q < kGroup; ++q)
+        if (q <= last) store_lanes(from + q * stride, v[q], width);
     }
   }
 }
@@ -159,14 +146,14 @@ template <class T, class V, int M, int N, bool kUnit, bool kWhole>
 #pragma GCC unroll 4
     for (int q = 0; q < groups; ++q) a[q] += g.a_k;
   }
-  const auto gate = [&](Activation a) {
+  const auto gate = [&](Activation kind) {
     const T* y = g.gate + p.i * g.gate_stride + p.j;
 #pragma GCC unroll 16
     for (int r = 0; r < M; ++r)
 #pragma GCC unroll 2
       for (int c = 0; c < N; ++c)
         acc[r][c] =
-            pull_lanes<T>(a, get(y + r * g.gate_stride + c * w), acc[r][c]);
+            pull_lanes<T>(kind, get(y + r * g.gate_stride + c * w), acc[r][c]);
   };
   const Store how = p.k1 == g.k ? store_of(g) : Store::plain;
   if (how == Store::relu) {
@@ -258,6 +245,7 @@ void rows(const Gemm<T>& g, Index begin, Index end) {
 
 template <class T>
 void gemm(const Gemm<T>& g, Threads* threads) {
+  if (is_thin(g)) return thin_product(g);
   const double flops = 2.0 * static_cast<double>(g.m * g.n * g.k);
   if (threads == nullptr || threads->count() == 1 || flops < kThreadFlops) {
     rows(g, 0, g.m);

@@ -136,20 +136,26 @@ void from_lanes(Lanes<const T> from, BatchOut<T> to) {
 template <class T>
 void row_sums(Lanes<const T> x, T* sums) {
   using V = Simd<T, kNarrow>;
-  constexpr Index w = kLanes<T>;
+  constexpr Index w = kLanes<T>, kRows = 4;
   const Index full = x.samples / w * w;
   // The last lanes are there, but padding: a comparison masks what they hold.
   V lane{};
   for (Index l = 0; l < w; ++l) lane[l] = static_cast<T>(l);
   const auto valid = lane < broadcast<V>(static_cast<T>(x.samples - full));
-  for (Index i = 0; i < x.rows; ++i) {
-    const T* row = x.row(i);
-    V sum{};
-    for (Index j = 0; j < full; j += w) sum += load<V>(row + j);
-    if (full < x.samples) sum += valid ? load<V>(row + full) : V{};
-    for (Index half = w / 2; half > 0; half /= 2)
-      for (Index l = 0; l < half; ++l) sum[l] += sum[l + half];
-    sums[i] = sum[0];
+  // Rows go together, as one would wait for its own sum at every step.
+  for (Index i = 0; i < x.rows; i += kRows) {
+    const Index last = std::min(kRows, x.rows - i) - 1;
+    const T* rows[kRows];
+    V sum[kRows] = {};
+#pragma GCC unroll 4
+    for (Index q = 0; q < kRows; ++q) rows[q] = x.row(i + std::min(q, last));
+    for (Index j = 0; j < full; j += w)
+#pragma GCC unroll 4
+      for (Index q = 0; q < kRows; ++q) sum[q] += load<V>(rows[q] + j);
+    for (Index q = 0; q <= last; ++q) {
+      if (full < x.samples) sum[q] += valid ? load<V>(rows[q] + full) : V{};
+      sums[i + q] = sum_of(sum[q]);
+    }
   }
 }
 

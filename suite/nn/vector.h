@@ -61,4 +61,32 @@ inline void store_some(T* p, V v, Index count) {
   std::memcpy(p, &v, static_cast<std::size_t>(count) * sizeof(T));
 }
 
+/// The same, `count` being all of them as a rule.
+template <class V, class T>
+inline V load_lanes(const T* p, Index count) {
+  constexpr auto all = static_cast<Index>(sizeof(V) / sizeof(T));
+  return count == all ? load<V>(p) : load_some<V>(p, count);
+}
+
+template <class V, class T>
+inline void store_lanes(T* p, V v, Index count) {
+  constexpr auto all = static_cast<Index>(sizeof(V) / sizeof(T));
+  if (count == all) {
+    store(p, v);
+  } else {
+    store_some(p, v, count);
+  }
+}
+
+/// The sum of the lanes, by halves.
+template <class V>
+inline auto sum_of(V v) {
+  constexpr std::size_t lanes = sizeof(V) / sizeof(v[0]);
+#pragma GCC unroll 4
+  for (std::size_t half = lanes / 2; half > 0; half /= 2)
+#pragma GCC unroll 8
+    for (std::size_t l = 0; l < half; ++l) v[l] += v[l + half];
+  return v[0];
+}
+
 }  // namespace physinv::nn

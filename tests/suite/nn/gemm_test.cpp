@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "suite/nn/activation.h"
+#include "suite/nn/thin_product.h"
 #include "tests/suite/nn/nn_testing.h"
 
 namespace physinv::nn {
@@ -11,6 +12,19 @@ namespace {
 template <class T>
 class GemmTest : public testing::Test {};
 using Types = testing::Types<float, double>;
+
+/// A batch as lanes.
+template <class T>
+struct LaneCopy {
+  explicit LaneCopy(const Batch<T>& in) : lanes(nullptr, in.rows(), in.cols()) {
+    memory.setZero(lanes.stride, in.rows());
+    lanes.data = memory.data();
+    to_lanes<T>(in, lanes);
+  }
+  Lanes<T> lanes;
+  Batch<T> memory;
+};
+
 TYPED_TEST_SUITE(GemmTest, Types);
 
 /// Every size class of tile, against the definition, term by term in order.
@@ -52,31 +66,83 @@ TYPED_TEST(GemmTest, EqualsTheSequentialSumBitwise) {
 
 TYPED_TEST(GemmTest, TransposedAndGated) {
   using T = TypeParam;
-  for (const Activation f : {Activation::relu, Activation::tanh}) {
-    const Index m = 29, n = 40, k = 33, stride = lane_stride<T>(n);
-    const Batch<T> a = wavy<T>(m, k), b = wavy<T>(stride, k, 0.3);
-    const Batch<T> gate = wavy<T>(stride, m, 0.9);
-    Batch<T> c(stride, m);
-    gemm<T>({.m = m,
-             .n = n,
-             .k = k,
-             .a = a.data(),
-             .a_row = 1,
-             .a_k = m,
-             .b = b.data(),
-             .b_stride = stride,
-             .c = c.data(),
-             .c_stride = stride,
-             .gate_activation = f,
-             .gate = gate.data(),
-             .gate_stride = stride});
-    for (Index i = 0; i < m; ++i) {
-      for (Index j = 0; j < n; ++j) {
-        T sum = 0;
-        for (Index q = 0; q < k; ++q) sum = std::fma(a(i, q), b(j, q), sum);
-        ASSERT_EQ(c(j, i), sum * derivative(f, gate(j, i)));
+  struct Size {
+    Index m, k;
+  };
+  for (const auto& [m, k] : {Size{29, 33}, Size{7, 2}}) {
+    for (const Activation f : {Activation::relu, Activation::tanh}) {
+      const Index n = 40, stride = lane_stride<T>(n);
+      const Batch<T> a = wavy<T>(m, k), b = wavy<T>(stride, k, 0.3);
+      const Batch<T> gate = wavy<T>(stride, m, 0.9);
+      Batch<T> c(stride, m);
+      gemm<T>({.m = m,
+               .n = n,
+               .k = k,
+               .a = a.data(),
+               .a_row = 1,
+               .a_k = m,
+               .b = b.data(),
+               .b_stride = stride,
+               .c = c.data(),
+               .c_stride = stride,
+               .gate_activation = f,
+               .gate = gate.data(),
+               .gate_stride = stride});
+      for (Index i = 0; i < m; ++i) {
+        for (Index j = 0; j < n; ++j) {
+          T sum = 0;
+          for (Index q = 0; q < k; ++q) sum = std::fma(a(i, q), b(j, q), sum);
+          ASSERT_EQ(c(j, i), sum * derivative(f, gate(j, i)));
+        }
       }
     }
+  }
+}
+
+/// A few rows by themselves, and the same ones among many.
+TYPED_TEST(GemmTest, ThinProductsHaveTheBitsOfTiles) {
+  using T = TypeParam;
+  const Index few = 7, many = 40, k = 2;
+  const Batch<T> a = wavy<T>(k, many);
+  const Vector<T> bias = wavy<T>(many, 1, 0.7);
+  for (const Activation f : {Activation::tanh, Activation::sigmoid}) {
+    for (const Index n : {3, 8, 37, 64}) {
+      const Index stride = lane_stride<T>(round_up(n, kLanes<T>));
+      const Batch<T> b = wavy<T>(stride, k, 0.3);
+      Batch<T> thin = Batch<T>::Constant(n + 1, few, T(9));
+      Batch<T> tiles = Batch<T>::Constant(n + 1, many, T(9));
+      Gemm<T> g{.n = n,
+                .k = k,
+                .a = a.data(),
+                .a_row = k,
+                .a_k = 1,
+                .b = b.data(),
+                .b_stride = stride,
+                .c_stride = n + 1,
+                .bias = bias.data(),
+                .activation = f};
+      g.m = few, g.c = thin.data();
+      ASSERT_TRUE(is_thin(g));
+      gemm(g);
+      g.m = many, g.c = tiles.data();
+      ASSERT_FALSE(is_thin(g));
+      gemm(g);
+      expect_same_bits(thin, Batch<T>(tiles.leftCols(few)));
+    }
+  }
+}
+
+TYPED_TEST(GemmTest, RowProductsAreSumsOverSamples) {
+  using T = TypeParam;
+  for (const Index n : {1, 8, 37, 64}) {
+    const Batch<T> in = wavy<T>(2, n), bar = wavy<T>(7, n, 0.4);
+    LaneCopy<T> x(in), y(bar);
+    if (n < x.lanes.width) x.lanes.data[n] = T(3);  // as an activation's
+    Batch<T> out = Batch<T>::Constant(3, 7, T(9));
+    row_products<T>(x.lanes, y.lanes, out.data(), 1, 3);
+    const Batch<T> expected = in * bar.transpose();
+    EXPECT_LE((out.topRows(2) - expected).norm(), 1e-5);
+    EXPECT_TRUE((out.row(2).array() == T(9)).all());
   }
 }
 
