@@ -26,6 +26,8 @@ list(JOIN physinv_directory_options " " physinv_directory_options)
 string(CONCAT physinv_flags_text "${CMAKE_CXX_FLAGS} "
   "${CMAKE_CXX_FLAGS_${physinv_config}} ${physinv_options} "
   "${physinv_directory_options}")
+# How a compiler is called, not what it makes.
+string(GENEX_STRIP "${physinv_flags_text}" physinv_flags_text)
 string(REGEX REPLACE " +" " " physinv_flags_text "${physinv_flags_text}")
 string(STRIP "${physinv_flags_text}" physinv_flags_text)
 

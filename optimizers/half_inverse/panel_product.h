@@ -16,28 +16,6 @@ void for_row_groups(Index count, F&& f) {
   if (k < count) f.template operator()<1>(k);
 }
 
-/// y -= sum_k s_k X_k.
-inline void subtract_combination(Index n,
-                                 Index count,
-                                 const double* s,
-                                 const double* x,
-                                 Index stride,
-                                 double* y) {
-  for_row_groups(count, [&]<int kRows>(Index k) {
-    const double* const from = x + k * stride;
-    Wide factor[kRows];
-#pragma GCC unroll 8
-    for (int i = 0; i < kRows; ++i) factor[i] = broadcast(-s[k + i]);
-    for (Index c = 0; c < n; c += kWidth) {
-      Wide sum = load(y + c);
-#pragma GCC unroll 8
-      for (int i = 0; i < kRows; ++i)
-        sum = fma(factor[i], load(from + i * stride + c), sum);
-      store(y + c, sum);
-    }
-  });
-}
-
 /// y -= sum_k s_k X_k and z -= sum_k t_k X_k.
 inline void subtract_combinations(Index n,
                                   Index count,

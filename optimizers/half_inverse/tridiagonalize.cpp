@@ -40,7 +40,7 @@ void Tridiagonalize::reduce(Stages stages) {
   d_.resize(n), e_.resize(std::max<Index>(n - 1, 0)), tau_.setZero(n);
   two_ = stages == Stages::two ||
          (stages == Stages::automatic && n >= kTwoStagesFrom);
-  const Index count = std::max(kPanel, kBand);
+  const Index count = std::max(kPanel + 1, kBand);
   for (Buffer* b : {&v_, &w_})
     std::fill_n(reserve(*b, count * a_.stride), count * a_.stride, 0.0);
   two_ ? two_stage() : one_stage();
@@ -79,26 +79,21 @@ void Tridiagonalize::panel(Index first, Index count) {
     product_(a_, k, vi, wi, threads_);
     project(length, i, v + from, stride, vi + from, by_v);
     project(length, i, w + from, stride, vi + from, by_w);
-    // Behind the panel's last column RankUpdate takes it.
-    double* const next = i + 1 < count ? a_.row(k) + from : nullptr;
-    if (next == nullptr) {
-      subtract_combination(length, i, by_w, v + from, stride, wi + from);
-      subtract_combination(length, i, by_v, w + from, stride, wi + from);
-    } else {
-      for (Index p = 0; p < i; ++p) {
-        next_v[p] = v[p * stride + k];
-        next_w[p] = w[p * stride + k];
-      }
-      subtract_combinations(
-          length, i, by_w, next_w, v + from, stride, wi + from, next);
-      subtract_combinations(
-          length, i, by_v, next_v, w + from, stride, wi + from, next);
+    // The column behind the panel is left to RankUpdate: nobody reads its copy.
+    double* const next =
+        (i + 1 < count ? a_.row(k) : w + kPanel * stride) + from;
+    for (Index p = 0; p < i; ++p) {
+      next_v[p] = v[p * stride + k];
+      next_w[p] = w[p * stride + k];
     }
+    subtract_combinations(
+        length, i, by_w, next_w, v + from, stride, wi + from, next);
+    subtract_combinations(
+        length, i, by_v, next_v, w + from, stride, wi + from, next);
     std::fill(wi + from, wi + k, 0.0);
     for (Index c = k; c < n; ++c) wi[c] *= tau;
     axpy(rest, -0.5 * tau * dot(rest, wi + k, vi + k), vi + k, wi + k);
     std::fill(wi + n, wi + stride, 0.0);
-    if (next == nullptr) return;
     for (Index c = 0; c < length; ++c)
       next[c] -= wi[k] * vi[from + c] + vi[k] * wi[from + c];
   }
