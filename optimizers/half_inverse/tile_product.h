@@ -4,7 +4,6 @@
 /// tile it falls into nor on threads.
 #pragma once
 
-#include <cstring>
 #include <utility>
 
 #include "suite/nn/vector.h"
@@ -28,19 +27,7 @@ inline Wide load(const double* p) { return nn::load<Wide>(p); }
 inline void store(double* p, Wide v) { nn::store(p, v); }
 inline Wide broadcast(double s) { return nn::broadcast<Wide>(s); }
 
-/// Sum of the lanes, halves onto halves.
-template <int kBytes>
-inline double sum_lanes(nn::Simd<double, kBytes> v) {
-  if constexpr (kBytes == 16) {
-    return v[0] + v[1];
-  } else {
-    using Half = nn::Simd<double, kBytes / 2>;
-    Half half[2];
-    std::memcpy(half, &v, sizeof(v));
-    return sum_lanes<kBytes / 2>(half[0] + half[1]);
-  }
-}
-inline double sum(Wide v) { return sum_lanes<nn::kWide>(v); }
+inline double sum(Wide v) { return nn::sum_of(v); }
 
 /// a[r * row + k * step], read as single numbers.
 struct Scalars {

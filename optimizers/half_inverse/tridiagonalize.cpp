@@ -40,7 +40,7 @@ void Tridiagonalize::reduce(Stages stages) {
   d_.resize(n), e_.resize(std::max<Index>(n - 1, 0)), tau_.setZero(n);
   two_ = stages == Stages::two ||
          (stages == Stages::automatic && n >= kTwoStagesFrom);
-  const Index count = std::max(kPanel + 1, kBand);
+  const Index count = std::max(kPanel + 1, kBand);  // one to spare
   for (Buffer* b : {&v_, &w_})
     std::fill_n(reserve(*b, count * a_.stride), count * a_.stride, 0.0);
   two_ ? two_stage() : one_stage();

@@ -5,7 +5,8 @@
 /// A is read as single numbers with any two strides and broadcast, B and C
 /// are contiguous along j. So the three products of a linear layer are one
 /// kernel and nothing is packed: forward A = W, B = X; input gradient A = W^T
-/// (strides swapped), B = Y_bar; weight gradient A = Y_bar, B = X^T.
+/// (strides swapped), B = Y_bar; weight gradient A = Y_bar, B = X^T. Layers of
+/// a handful of neurons take thin_product.h, forward with the same bits.
 ///
 /// Bits: every C[i][j] starts from its bias and adds its products one by one
 /// in the order of k, by fused multiply-add in a register. They depend neither

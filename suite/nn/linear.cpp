@@ -120,10 +120,7 @@ void Linear<T>::weight_gradient(const LayerArgs<T>& at,
   if (are_thin(out, end - first)) {
     Lanes<const T> x = b.x;
     x.data = x.row(first), x.rows = end - first;
-    // The fewer rows are gone through one by one.
-    T* const to = b.parameters_bar + first;
-    if (out < x.rows) return row_products(b.y_bar, x, to, in, Index{1});
-    return row_products(x, b.y_bar, to, Index{1}, in);
+    return row_products(b.y_bar, x, b.parameters_bar + first, in, Index{1});
   }
   const Index stride = lane_stride<T>(round_up(end - first, kLanes<T>));
   auto xt = at.work->template take<T>(stride, b.x.samples);

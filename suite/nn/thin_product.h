@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <utility>
 
 #include "suite/nn/activation.h"
 #include "suite/nn/gemm.h"
@@ -98,12 +99,14 @@ inline bool are_thin(Index x_rows, Index y_rows) {
 }
 
 /// out[i * x_step + j * y_step] = x_i . y_j over the samples. One of the two
-/// has zeros behind the last sample.
+/// has zeros behind the last sample. The fewer rows are gone through one by
+/// one, the others in groups.
 template <class T>
 void row_products(
     Lanes<const T> x, Lanes<const T> y, T* out, Index x_step, Index y_step) {
   using V = Simd<T, kNarrow>;
   constexpr Index w = kLanes<T>;
+  if (y.rows < x.rows) std::swap(x, y), std::swap(x_step, y_step);
   for (Index i = 0; i < x.rows; ++i)
     for (Index j = 0; j < y.rows; j += kRowGroup) {
       const Index last = std::min(kRowGroup, y.rows - j) - 1;

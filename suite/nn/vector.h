@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstring>
+#include <type_traits>
 
 #include "suite/core/lanes.h"
 
@@ -78,15 +79,17 @@ inline void store_lanes(T* p, V v, Index count) {
   }
 }
 
-/// The sum of the lanes, by halves.
+/// Sum of the lanes, halves onto halves.
 template <class V>
 inline auto sum_of(V v) {
-  constexpr std::size_t lanes = sizeof(V) / sizeof(v[0]);
-#pragma GCC unroll 4
-  for (std::size_t half = lanes / 2; half > 0; half /= 2)
-#pragma GCC unroll 8
-    for (std::size_t l = 0; l < half; ++l) v[l] += v[l + half];
-  return v[0];
+  using T = std::remove_cvref_t<decltype(v[0])>;
+  if constexpr (sizeof(V) == 2 * sizeof(T)) {
+    return v[0] + v[1];
+  } else {
+    Simd<T, sizeof(V) / 2> half[2];
+    std::memcpy(half, &v, sizeof(v));
+    return sum_of(half[0] + half[1]);
+  }
 }
 
 }  // namespace physinv::nn

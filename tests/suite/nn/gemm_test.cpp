@@ -13,11 +13,26 @@ template <class T>
 class GemmTest : public testing::Test {};
 using Types = testing::Types<float, double>;
 
-/// A batch as lanes.
+/// C = A B; columns of a, b and c are rows of A, B and C.
+template <class T>
+Gemm<T> product(const Batch<T>& a, const Batch<T>& b, Index n, Batch<T>& c) {
+  return {.m = c.cols(),
+          .n = n,
+          .k = a.rows(),
+          .a = a.data(),
+          .a_row = a.rows(),
+          .a_k = 1,
+          .b = b.data(),
+          .b_stride = b.rows(),
+          .c = c.data(),
+          .c_stride = c.rows()};
+}
+
+/// A batch as lanes, in memory that held something else.
 template <class T>
 struct LaneCopy {
   explicit LaneCopy(const Batch<T>& in) : lanes(nullptr, in.rows(), in.cols()) {
-    memory.setZero(lanes.stride, in.rows());
+    memory.setConstant(lanes.stride, in.rows(), T(7));
     lanes.data = memory.data();
     to_lanes<T>(in, lanes);
   }
@@ -38,18 +53,9 @@ TYPED_TEST(GemmTest, EqualsTheSequentialSumBitwise) {
         const Vector<T> bias = wavy<T>(m, 1, 0.7);
         // One more column: nothing may be written behind the last.
         Batch<T> c = Batch<T>::Constant(n + 1, m, T(9)), expected = c;
-        gemm<T>({.m = m,
-                 .n = n,
-                 .k = k,
-                 .a = a.data(),
-                 .a_row = k,
-                 .a_k = 1,
-                 .b = b.data(),
-                 .b_stride = stride,
-                 .c = c.data(),
-                 .c_stride = n + 1,
-                 .bias = bias.data(),
-                 .activation = Activation::relu});
+        Gemm<T> g = product(a, b, n, c);
+        g.bias = bias.data(), g.activation = Activation::relu;
+        gemm(g);
         for (Index i = 0; i < m; ++i) {
           for (Index j = 0; j < n; ++j) {
             T sum = bias(i);
@@ -111,22 +117,12 @@ TYPED_TEST(GemmTest, ThinProductsHaveTheBitsOfTiles) {
       const Batch<T> b = wavy<T>(stride, k, 0.3);
       Batch<T> thin = Batch<T>::Constant(n + 1, few, T(9));
       Batch<T> tiles = Batch<T>::Constant(n + 1, many, T(9));
-      Gemm<T> g{.n = n,
-                .k = k,
-                .a = a.data(),
-                .a_row = k,
-                .a_k = 1,
-                .b = b.data(),
-                .b_stride = stride,
-                .c_stride = n + 1,
-                .bias = bias.data(),
-                .activation = f};
-      g.m = few, g.c = thin.data();
-      ASSERT_TRUE(is_thin(g));
-      gemm(g);
-      g.m = many, g.c = tiles.data();
-      ASSERT_FALSE(is_thin(g));
-      gemm(g);
+      for (Batch<T>* c : {&thin, &tiles}) {
+        Gemm<T> g = product(a, b, n, *c);
+        g.bias = bias.data(), g.activation = f;
+        ASSERT_EQ(is_thin(g), c == &thin);
+        gemm(g);
+      }
       expect_same_bits(thin, Batch<T>(tiles.leftCols(few)));
     }
   }
@@ -152,20 +148,9 @@ TYPED_TEST(GemmTest, ThreadsDoNotChangeBits) {
   const Batch<T> a = wavy<T>(k, m), b = wavy<T>(stride, k);
   Batch<T> one(stride, m), three(stride, m);
   one.setZero(), three.setZero();
-  Gemm<T> g{.m = m,
-            .n = n,
-            .k = k,
-            .a = a.data(),
-            .a_row = k,
-            .a_k = 1,
-            .b = b.data(),
-            .b_stride = stride,
-            .c = one.data(),
-            .c_stride = stride};
-  gemm(g);
-  g.c = three.data();
+  gemm(product(a, b, n, one));
   Threads threads(3);
-  gemm(g, &threads);
+  gemm(product(a, b, n, three), &threads);
   expect_same_bits(one, three);
 }
 
@@ -174,10 +159,9 @@ TYPED_TEST(GemmTest, LanesTransposeBothWays) {
   for (const Index rows : {1, 4, 9, 32}) {
     for (const Index n : {1, 8, 11, 40}) {
       const Batch<T> in = wavy<T>(rows, n);
-      Lanes<T> x(nullptr, rows, n);
-      Batch<T> memory = Batch<T>::Constant(x.stride, rows, T(7)), out(rows, n);
-      x.data = memory.data();
-      to_lanes<T>(in, x);
+      const LaneCopy<T> copy(in);
+      const Lanes<T>& x = copy.lanes;
+      Batch<T> out(rows, n);
       for (Index i = 0; i < rows; ++i)
         for (Index j = 0; j < x.width; ++j)
           ASSERT_EQ(x.row(i)[j], j < n ? in(i, j) : T(0));
