@@ -3,7 +3,8 @@
 include(${info}/values.cmake)
 
 set(sources)
-foreach(directory suite/core suite/nn problems optimizers baselines)
+foreach(directory suite/core suite/nn problems optimizers baselines
+        suite/diagnostics)
   file(GLOB_RECURSE found RELATIVE ${source_dir}
     ${source_dir}/${directory}/*.h ${source_dir}/${directory}/*.cpp)
   list(APPEND sources ${found})

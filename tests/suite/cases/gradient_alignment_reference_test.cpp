@@ -5,9 +5,9 @@
 #include <functional>
 #include <map>
 
-#include "optimizers/one_step.h"
 #include "problems/noisy_absolute/noisy_absolute.h"
-#include "suite/cases/alignment_theory.h"
+#include "suite/cases/jpo/gradient_alignment/theory.h"
+#include "suite/diagnostics/one_step.h"
 #include "tests/support/formula_weights.h"
 #include "tests/support/reference.h"
 

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "optimizers/alignment.h"
 #include "problems/noisy_absolute/noise_lanes.h"
-#include "suite/cases/alignment_theory.h"
+#include "suite/cases/jpo/gradient_alignment/theory.h"
+#include "suite/diagnostics/alignment.h"
 #include "tests/support/tolerance.h"
 
 namespace physinv::test {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "suite/cases/hig_poisson_claims.h"
+#include "suite/cases/hig/poisson/claims.h"
 
 namespace physinv::poisson {
 namespace {

@@ -1,10 +1,9 @@
-#include "suite/cases/jpo_metrics.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
+#include "suite/cases/jpo/common/metrics.h"
 #include "suite/core/check.h"
 #include "tests/suite/cases/jpo_fixture.h"
 

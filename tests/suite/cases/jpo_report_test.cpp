@@ -1,9 +1,8 @@
-#include "suite/cases/jpo_report.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
+#include "suite/cases/jpo/common/report.h"
 #include "tests/suite/cases/jpo_fixture.h"
 
 namespace physinv {

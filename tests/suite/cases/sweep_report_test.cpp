@@ -1,8 +1,8 @@
-#include "suite/cases/sweep_report.h"
+#include "suite/cases/numerics/common/sweep_report.h"
 
 #include <gtest/gtest.h>
 
-#include "baselines/diagnostics/stability_sweep.h"
+#include "suite/diagnostics/stability_sweep.h"
 
 namespace physinv {
 namespace {

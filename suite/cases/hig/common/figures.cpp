@@ -1,0 +1,184 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <span>
+
+#include "suite/cases/hig/common/curve.h"
+#include "suite/cases/hig/common/report.h"
+#include "suite/cases/jpo/common/endings.h"
+
+namespace physinv {
+namespace {
+
+/// What one seed's curve shows: a value at each point over three axes.
+struct Points {
+  std::vector<double> updates, seconds, paper, value;
+};
+
+using Axis = std::vector<double> Points::*;
+
+/// One row of an array along the stages, each behind the one before.
+Points points_of(std::span<const StageRecord> stages,
+                 const char* array,
+                 Index row,
+                 double paper_update) {
+  Points all;
+  const auto end = [](const std::vector<double>& v) {
+    return v.empty() ? 0.0 : v.back();
+  };
+  for (const StageRecord& stage : stages) {
+    const CurveRow values{stage, array, row};
+    const double updates = end(all.updates), seconds = end(all.seconds);
+    for (Index k = 0; k < values.points(); ++k) {
+      all.updates.push_back(updates + values.updates(k));
+      all.seconds.push_back(seconds +
+                            stage.curve.seconds[static_cast<std::size_t>(k)]);
+      all.paper.push_back(all.updates.back() * paper_update);
+      all.value.push_back(values(k));
+    }
+  }
+  return all;
+}
+
+/// Median and range over the seeds at each point that all of them have.
+Series median_series(const std::vector<Points>& seeds,
+                     const MethodLine& line,
+                     Axis axis) {
+  Series s{.label = line.label, .method = line.colour};
+  std::size_t points = seeds.empty() ? 0 : SIZE_MAX;
+  for (const Points& p : seeds) points = std::min(points, p.value.size());
+  for (std::size_t k = 0; k < points; ++k) {
+    std::vector<double> values, x;
+    for (const Points& p : seeds) {
+      values.push_back(p.value[k]);
+      x.push_back((p.*axis)[k]);
+    }
+    const double middle = median(values);
+    // Logarithmic axes have no place for the start, nor for the end of time.
+    if (seeds.front().updates[k] <= 0 || !std::isfinite(middle)) continue;
+    s.x.push_back(median(x));
+    s.y.push_back(middle);
+    const auto [lo, hi] = std::minmax_element(values.begin(), values.end());
+    s.lo.push_back(*lo);
+    s.hi.push_back(std::isfinite(*hi) ? *hi : middle);
+  }
+  return s;
+}
+
+Panel over(const char* x_label, std::string y_label) {
+  return {.x_label = x_label,
+          .y_label = std::move(y_label),
+          .x_log = true,
+          .y_log = true};
+}
+
+enum class Stages { last, all };
+
+std::vector<Points> losses_of(const Results& results,
+                              std::string_view experiment,
+                              const MethodLine& line,
+                              Stages which) {
+  std::vector<Points> seeds;
+  for (const CaseRecord* c : trained_chains(results, experiment, line.method)) {
+    const std::span<const StageRecord> chain = c->stages;
+    seeds.push_back(points_of(which == Stages::all ? chain : chain.last(1),
+                              "mean_loss",
+                              0,
+                              line.paper_update.value_or(0)));
+  }
+  return seeds;
+}
+
+/// A panel for each axis; the paper's clock is known for some lines only.
+std::vector<Panel> loss_panels(const Results& results,
+                               std::string_view experiment,
+                               const std::vector<MethodLine>& lines,
+                               Stages which) {
+  Panel updates = over("updates", "test loss"),
+        seconds = over("seconds", "test loss"),
+        paper = over("seconds by the paper's clock", "test loss");
+  for (const MethodLine& line : lines) {
+    const auto seeds = losses_of(results, experiment, line, which);
+    if (seeds.empty()) continue;
+    updates.series.push_back(median_series(seeds, line, &Points::updates));
+    seconds.series.push_back(median_series(seeds, line, &Points::seconds));
+    if (line.paper_update)
+      paper.series.push_back(median_series(seeds, line, &Points::paper));
+  }
+  std::vector<Panel> panels = {std::move(updates), std::move(seconds)};
+  if (!paper.series.empty()) panels.push_back(std::move(paper));
+  return panels;
+}
+
+Figure loss_figure(std::vector<Panel> panels,
+                   std::string id,
+                   std::string title,
+                   std::string source) {
+  return {.id = std::move(id),
+          .title = std::move(title),
+          .source = std::move(source),
+          .panels = std::move(panels),
+          .note =
+              "Median over seeds, band: range. Test losses are not finite "
+              "where a line ends early."};
+}
+
+}  // namespace
+
+void LearningCurves::losses(const std::vector<MethodLine>& lines,
+                            std::string id,
+                            std::string title,
+                            std::string source) {
+  add(loss_figure(
+      loss_panels(results_, section_.experiment, lines, Stages::last),
+      std::move(id),
+      std::move(title),
+      std::move(source)));
+}
+
+void LearningCurves::chains(const std::vector<MethodLine>& lines,
+                            std::string id,
+                            std::string title,
+                            std::string source) {
+  add(loss_figure(
+      loss_panels(results_, section_.experiment, lines, Stages::all),
+      std::move(id),
+      std::move(title),
+      std::move(source)));
+}
+
+void LearningCurves::metric(const std::vector<MethodLine>& lines,
+                            Index row,
+                            std::string y_label,
+                            std::string id,
+                            std::string title,
+                            std::string source) {
+  Panel one = over("updates", std::move(y_label));
+  for (const MethodLine& line : lines) {
+    std::vector<Points> seeds;
+    for (const auto* s :
+         trained_stages(results_, section_.experiment, line.method))
+      if (s->arrays.contains("metrics"))
+        seeds.push_back(points_of({s, 1}, "metrics", row, 0));
+    if (!seeds.empty())
+      one.series.push_back(median_series(seeds, line, &Points::updates));
+  }
+  add({.id = std::move(id),
+       .title = std::move(title),
+       .source = std::move(source),
+       .panels = {std::move(one)},
+       .columns = 1,
+       .note = "Median over seeds, band: range."});
+}
+
+Panel LearningCurves::panel(const std::vector<MethodLine>& lines) const {
+  return loss_panels(results_, section_.experiment, lines, Stages::last)
+      .front();
+}
+
+void LearningCurves::add(Figure figure) {
+  if (!figure.panels.empty() && !figure.panels.front().series.empty())
+    section_.figures.push_back(std::move(figure));
+}
+
+}  // namespace physinv

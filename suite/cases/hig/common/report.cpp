@@ -1,0 +1,81 @@
+#include "suite/cases/hig/common/report.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "suite/cases/hig/common/curve.h"
+#include "suite/cases/jpo/common/endings.h"
+
+namespace physinv {
+namespace {
+
+/// A finished chain of training stages; null if it is not there.
+const CaseRecord* trained_case(const Results& results,
+                               std::string_view experiment,
+                               std::string_view method,
+                               std::uint64_t seed) {
+  for (const Index n : results.sizes(experiment)) {
+    const CaseRecord* c = results.find_case(experiment, method, n, seed);
+    if (c == nullptr || c->stages.size() != c->info.stages.size()) continue;
+    if (c->stages.back().arrays.contains("mean_loss")) return c;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+const StageRecord* trained_stage(const Results& results,
+                                 std::string_view experiment,
+                                 std::string_view method,
+                                 std::uint64_t seed) {
+  const CaseRecord* c = trained_case(results, experiment, method, seed);
+  return c == nullptr ? nullptr : &c->stages.back();
+}
+
+std::vector<const CaseRecord*> trained_chains(const Results& results,
+                                              std::string_view experiment,
+                                              std::string_view method) {
+  std::vector<const CaseRecord*> found;
+  for (const std::uint64_t seed : results.seeds(experiment))
+    if (const auto* c = trained_case(results, experiment, method, seed))
+      found.push_back(c);
+  return found;
+}
+
+std::vector<const StageRecord*> trained_stages(const Results& results,
+                                               std::string_view experiment,
+                                               std::string_view method) {
+  std::vector<const StageRecord*> found;
+  for (const CaseRecord* c : trained_chains(results, experiment, method))
+    found.push_back(&c->stages.back());
+  return found;
+}
+
+std::optional<double> test_loss(const StageRecord* stage, Index updates) {
+  if (stage == nullptr) return {};
+  if (const auto k = last_point(*stage, updates)) return CurveRow{*stage}(*k);
+  if (stage->stop == Stop::diverged)
+    return std::numeric_limits<double>::infinity();
+  return {};
+}
+
+std::optional<double> median_test_loss(const Results& results,
+                                       std::string_view experiment,
+                                       std::string_view method,
+                                       Index updates) {
+  std::vector<double> losses;
+  for (const auto* s : trained_stages(results, experiment, method))
+    if (const auto loss = test_loss(s, updates)) losses.push_back(*loss);
+  if (losses.empty()) return {};
+  return median(losses);
+}
+
+std::optional<double> paper_update(const Published& published,
+                                   std::string_view experiment,
+                                   std::string_view row) {
+  const auto found = published.find(experiment, fmt::format("{}/update", row));
+  return found ? std::optional(found->value) : std::nullopt;
+}
+
+}  // namespace physinv

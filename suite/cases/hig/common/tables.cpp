@@ -1,0 +1,114 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "suite/cases/hig/common/curve.h"
+#include "suite/cases/hig/common/report.h"
+#include "suite/cases/jpo/common/endings.h"
+
+namespace physinv {
+namespace {
+
+/// What an update took, and the bytes that the stage holds.
+struct Cost {
+  double seconds, bytes;
+};
+
+Cost cost_of(const StageRecord& s) {
+  return {
+      .seconds = s.clocks.solve.wall / std::max(1.0, s.curve.iteration.back()),
+      .bytes = static_cast<double>(s.buffer_bytes)};
+}
+
+}  // namespace
+
+Table loss_table(const Results& results,
+                 std::string_view experiment,
+                 const std::vector<MethodLine>& lines) {
+  Table table{.id = "results",
+              .title = "Test loss at the end, and what an update takes",
+              .digits = 5,
+              .corner = "method",
+              .columns = {"updates",
+                          "median loss",
+                          "lowest",
+                          "highest",
+                          "diverged",
+                          "ms / update",
+                          "MB"},
+              .note =
+                  "Memory: buffers the stage holds. Times on this machine, "
+                  "one thread per case."};
+  for (const MethodLine& line : lines) {
+    std::vector<double> losses, seconds, updates, bytes;
+    int diverged = 0;
+    for (const auto* s : trained_stages(results, experiment, line.method)) {
+      losses.push_back(CurveRow{*s}.last());
+      updates.push_back(s->curve.iteration.back());
+      const Cost cost = cost_of(*s);
+      seconds.push_back(cost.seconds);
+      bytes.push_back(cost.bytes);
+      diverged += s->stop == Stop::diverged;
+    }
+    if (losses.empty()) continue;
+    const auto number = [](double v) {
+      return Cell{.text = std::isfinite(v) ? fmt::format("{:.3g}", v)
+                                           : "not finite"};
+    };
+    const auto [lowest, highest] =
+        std::minmax_element(losses.begin(), losses.end());
+    table.rows.push_back(
+        {.label = line.label,
+         .cells = {number(median(updates)),
+                   number(median(losses)),
+                   number(*lowest),
+                   number(*highest),
+                   Cell{.text = fmt::format("{}/{}", diverged, losses.size())},
+                   number(1e3 * median(seconds)),
+                   number(1e-6 * median(bytes))}});
+  }
+  return table;
+}
+
+Table cost_table(const Results& results,
+                 std::string_view experiment,
+                 const Published& published,
+                 const std::vector<CostLine>& lines,
+                 std::string source) {
+  Table table{.id = "cost",
+              .title = "Memory and duration of an update",
+              .source = std::move(source),
+              .digits = 2,
+              .corner = "method",
+              .columns = {"MB", "ms / update"},
+              .note =
+                  "Ours: bytes of the buffers the stage holds, one thread, "
+                  "median over seeds. The paper's machine had a GPU."};
+  for (const CostLine& line : lines) {
+    std::vector<double> seconds, bytes;
+    for (const auto* s : trained_stages(results, experiment, line.method)) {
+      const Cost cost = cost_of(*s);
+      bytes.push_back(cost.bytes);
+      if (!s->crowded) seconds.push_back(cost.seconds);
+    }
+    Cell megabytes, duration;
+    if (const auto v = published.find(experiment, line.published + "/memory"))
+      megabytes.paper = v->value;
+    if (const auto v = paper_update(published, experiment, line.published))
+      duration.paper = 1e3 * *v;
+    if (bytes.empty()) {
+      megabytes.text = duration.text = "not run";
+    } else {
+      megabytes.ours = 1e-6 * median(bytes);
+      if (seconds.empty())
+        duration.text = "crowded";
+      else
+        duration.ours = 1e3 * median(seconds);
+    }
+    table.rows.push_back({.label = line.label, .cells = {megabytes, duration}});
+  }
+  return table;
+}
+
+}  // namespace physinv

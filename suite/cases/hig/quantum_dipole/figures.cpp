@@ -1,0 +1,162 @@
+#include "suite/cases/hig/quantum_dipole/figures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "suite/cases/hig/common/report.h"
+#include "suite/cases/hig/quantum_dipole/claims.h"
+#include "suite/cases/hig/quantum_dipole/grids.h"
+
+namespace physinv::dipole {
+namespace {
+
+/// Seconds of an update in Table 5. Adam with fewer than 256 samples, the
+/// fewest that it lists, takes as long as with these.
+std::optional<double> adam_update(const Published& published, Index batch) {
+  const Index listed = std::max<Index>(batch, 256);
+  return paper_update(
+      published, kDense, fmt::format("table5/adam/b={}", listed));
+}
+
+std::optional<double> hig_update(const Published& published, Index batch) {
+  return paper_update(published, kDense, fmt::format("table5/hig/b={}", batch));
+}
+
+std::vector<MethodLine> lines_of(const std::vector<AdamPoint>& grid,
+                                 const Published& published) {
+  std::vector<MethodLine> lines;
+  for (const AdamPoint& p : grid)
+    lines.push_back({p.id,
+                     fmt::format("b={} eta={:.0e}", p.batch, p.rate),
+                     p.id,
+                     adam_update(published, p.batch)});
+  return lines;
+}
+
+std::vector<MethodLine> lines_of(const std::vector<HigPoint>& grid,
+                                 const Published& published) {
+  std::vector<MethodLine> lines;
+  for (const HigPoint& p : grid)
+    lines.push_back(
+        {p.id,
+         fmt::format("b={} eta={} tau=1e-{}", p.batch, p.rate, p.digits),
+         p.id,
+         hig_update(published, p.batch)});
+  return lines;
+}
+
+std::vector<MethodLine> lines_of(const std::vector<FloatPoint>& points) {
+  std::vector<MethodLine> lines;
+  for (const FloatPoint& p : points)
+    lines.push_back({p.id,
+                     fmt::format("float, g {}, tau=1e-{}",
+                                 p.project ? "projected" : "raw",
+                                 p.digits),
+                     p.id});
+  return lines;
+}
+
+const std::vector<MethodLine> kMain = {
+    {"hig", "HIG", "jpo"},
+    {"gn", "Gauss-Newton", "bfgs"},
+    {"adam", "Adam b=16 1e-4", "gd"},
+    {"adam-b256-5e-4", "Adam b=256 5e-4", "supervised"}};
+
+std::vector<MethodLine> rates(const Published& published) {
+  const auto hig = hig_update(published, 16), adam = adam_update(published, 16);
+  return {{"hig-b16-eta025-tau5", "HIG eta=0.25", "na", hig},
+          {"hig", "HIG eta=0.5", "jpo", hig},
+          {"hig-b16-eta10-tau5", "HIG eta=1", "bfgs", hig},
+          {"adam", "Adam b=16 1e-4", "gd", adam},
+          {"adam-b16-3e-4", "Adam b=16 3e-4", "adam-b16-3e-4", adam},
+          {"adam-b16-1e-3", "Adam b=16 1e-3", "adam-b16-1e-3", adam},
+          {"adam-b16-3e-3", "Adam b=16 3e-3", "adam-b16-3e-3", adam},
+          {"adam-b256-5e-4", "Adam b=256 5e-4", "supervised", adam}};
+}
+
+const std::vector<MethodLine> kRules = {{"hig", "HIG", "jpo"},
+                                        {"gn", "Gauss-Newton", "bfgs"},
+                                        {"adam", "Adam", "gd"},
+                                        {"sgd", "SGD", "supervised"},
+                                        {"adagrad", "Adagrad", "na"},
+                                        {"rmsprop", "RMSprop", "rmsprop"},
+                                        {"adam-hig", "Adam, then HIG", "sip"}};
+
+const std::vector<CostLine> kCosts = {
+    {"adam-b256-5e-4", "Adam b=256", "table5/adam/b=256"},
+    {"adam-b512-5e-4", "Adam b=512", "table5/adam/b=512"},
+    {"adam-b1024-5e-4", "Adam b=1024", "table5/adam/b=1024"},
+    {"hig-b8-eta05-tau5", "HIG b=8", "table5/hig/b=8"},
+    {"hig", "HIG b=16", "table5/hig/b=16"},
+    {"gn", "Gauss-Newton b=16", ""},
+    {"adam", "Adam b=16", ""}};
+
+constexpr const char* kAdamGrid = "Adam: batch size and rate";
+constexpr const char* kHigGrid = "HIG: batch size, rate and truncation";
+
+std::vector<MethodLine> joined(std::vector<MethodLine> a,
+                               const std::vector<MethodLine>& b) {
+  for (const MethodLine& line : b) {
+    const auto same = [&](const auto& l) { return l.method == line.method; };
+    if (std::none_of(a.begin(), a.end(), same)) a.push_back(line);
+  }
+  return a;
+}
+
+}  // namespace
+
+Section dense_report(const Results& results, const Published& published) {
+  const auto adam = lines_of(dense_adam(), published),
+             hig = lines_of(dense_hig(), published), by_rate = rates(published),
+             single = lines_of(in_float());
+  const auto all = joined(joined(joined(kMain, kRules), by_rate),
+                          joined(joined(hig, adam), single));
+  Section section{
+      .experiment = kDense,
+      .title = "Quantum dipole",
+      .paper = "hig",
+      .tables = {loss_table(results, kDense, all),
+                 cost_table(results, kDense, published, kCosts, "Table 5")},
+      .claims = dense_claims(results)};
+  LearningCurves curves(results, section);
+  curves.losses(
+      by_rate, "fig4b", "Learning curves for several rates", "Fig. 4b");
+  curves.metric(kMain,
+                kLow,
+                "low-energy loss",
+                "fig4c_low",
+                "First excited state alone",
+                "Fig. 4c");
+  curves.metric(kMain,
+                kHigh,
+                "high-energy loss",
+                "fig4c_high",
+                "Second excited state alone",
+                "Fig. 4c");
+  curves.losses(adam, "fig8", kAdamGrid, "Fig. 8");
+  curves.losses(hig, "fig9", kHigGrid, "Fig. 9");
+  curves.losses(single, "float", "HIG in float: gradient projected or raw", "");
+  curves.chains(kRules, "rules", "Update rules, and Adam followed by HIG", "");
+  return section;
+}
+
+Section conv_report(const Results& results, const Published& published) {
+  const auto adam = lines_of(conv_adam(), published),
+             hig = lines_of(conv_hig(), published);
+  Section section{
+      .experiment = kConvolutional,
+      .title = "Quantum dipole, convolutional network",
+      .paper = "hig",
+      .tables = {loss_table(results, kConvolutional, joined(hig, adam))},
+      .claims = {convolutions_keep_the_order(results)}};
+  LearningCurves curves(results, section);
+  curves.losses(adam, "fig10", kAdamGrid, "Fig. 10");
+  curves.losses(hig, "fig11", kHigGrid, "Fig. 11");
+  return section;
+}
+
+}  // namespace physinv::dipole

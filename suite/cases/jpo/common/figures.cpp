@@ -1,0 +1,382 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "suite/cases/jpo/common/report.h"
+
+namespace physinv {
+namespace {
+
+constexpr Index kExamples = 4;
+
+// Mean and, if there is one, mean -+ deviation.
+void append(Series& s, double x, std::span<const double> values) {
+  const auto found = mean_std(values);
+  if (!found) return;
+  const double spread = found->std.value_or(0);
+  s.x.push_back(x);
+  s.y.push_back(found->mean);
+  s.lo.push_back(found->mean - spread);
+  s.hi.push_back(found->mean + spread);
+}
+
+// Mean loss at the last measured point up to an iteration: a run that ended
+// stays where it is while runs of other seeds go on.
+std::optional<double> loss_at(const Curve& curve, double iteration) {
+  const auto after = std::upper_bound(
+      curve.iteration.begin(), curve.iteration.end(), iteration);
+  if (after == curve.iteration.begin()) return {};
+  return curve.loss.col(after - curve.iteration.begin() - 1).mean();
+}
+
+bool tracks(const StageRecord& stage, Index example) {
+  return stage.curve.points() > 0 &&
+         (example + 1) * stage.x.rows() <= stage.curve.x.rows();
+}
+
+std::vector<double> tracked(const StageRecord& stage, Index example, Index j) {
+  const auto row = stage.curve.x.row(example * stage.x.rows() + j);
+  return {row.begin(), row.end()};
+}
+
+std::vector<double> plus_one(std::vector<double> iterations) {
+  for (double& i : iterations) i += 1;
+  return iterations;
+}
+
+}  // namespace
+
+Series JpoReport::over_n(std::string label,
+                         const std::string& method,
+                         const PerCase& value) const {
+  Series s{.label = std::move(label), .method = method, .markers = true};
+  for (const Index n : metrics_.sizes()) {
+    std::vector<double> values;
+    for (const std::uint64_t seed : metrics_.seeds()) {
+      if (const auto one = value(n, seed)) values.push_back(*one);
+    }
+    append(s, static_cast<double>(n), values);
+  }
+  return s;
+}
+
+Series JpoReport::f_series(const std::string& method, bool refined) const {
+  return over_n(method_title(method),
+                method,
+                [&](Index n, std::uint64_t seed) -> std::optional<double> {
+                  const auto one = metrics_.shares(
+                      method, n, seed, refined, Equality::strict);
+                  if (!one) return {};
+                  return one->f();
+                });
+}
+
+Series JpoReport::loss_series(const std::string& method, bool refined) const {
+  return over_n(method_title(method),
+                method,
+                [&](Index n, std::uint64_t seed) -> std::optional<double> {
+                  const auto* end = metrics_.ending(
+                      method, n, seed, refined && method != "bfgs");
+                  if (end == nullptr) return {};
+                  return end->loss.mean();
+                });
+}
+
+// BFGS against itself is equal everywhere: f_N = 1/2.
+Series JpoReport::reference_half() const {
+  Series s{.label = "as good as BFGS", .method = "bfgs", .dashed = true};
+  for (const Index n : metrics_.sizes()) {
+    s.x.push_back(static_cast<double>(n));
+    s.y.push_back(0.5);
+  }
+  return s;
+}
+
+Figure JpoReport::fraction() const {
+  Panel panel{.x_label = "number of problems n",
+              .y_label = "f_N",
+              .x_log = true,
+              .y_min = 0,
+              .y_max = 1};
+  panel.series.push_back(reference_half());
+  panel.series.push_back(f_series("jpo", false));
+  panel.series.push_back(f_series("jpo", true));
+  panel.series.back().label += " refined";
+  panel.series.back().dashed = true;
+  panel.series.push_back(f_series("gd", false));
+  return {.id = options_.fraction.id,
+          .title = options_.title + ": improvement over BFGS",
+          .source = options_.fraction.source,
+          .panels = {std::move(panel)},
+          .columns = 1,
+          .note =
+              "f_N = share of problems solved better than by BFGS plus "
+              "half the share solved equally well (bit by bit). Bars: "
+              "sample standard deviation over seeds."};
+}
+
+Figure JpoReport::improvement() const {
+  Figure figure{.id = options_.improvement.id,
+                .title = options_.title +
+                         ": loss and improvement before and after refinement",
+                .source = options_.improvement.source,
+                .note =
+                    "Mean over problems and seeds. Bars: sample standard "
+                    "deviation over seeds."};
+  for (const bool refined : {false, true}) {
+    Panel panel{
+        .title = refined ? "Loss after refinement" : "Loss before refinement",
+        .x_label = "n",
+        .y_label = "mean loss",
+        .x_log = true,
+        .y_log = true};
+    for (const auto& method : with_bfgs()) {
+      panel.series.push_back(loss_series(method, refined));
+    }
+    figure.panels.push_back(std::move(panel));
+  }
+  for (const bool refined : {false, true}) {
+    Panel panel{.title = refined ? "Improvement after refinement"
+                                 : "Improvement before refinement",
+                .x_label = "n",
+                .y_label = "f_N",
+                .x_log = true,
+                .y_min = 0,
+                .y_max = 1};
+    panel.series.push_back(reference_half());
+    for (const auto& method : options_.methods) {
+      panel.series.push_back(f_series(method, refined));
+    }
+    figure.panels.push_back(std::move(panel));
+  }
+  return figure;
+}
+
+std::vector<Index> JpoReport::sizes_of_curves() const {
+  if (!options_.curve_sizes.empty()) return options_.curve_sizes;
+  const auto all = metrics_.sizes();
+  if (all.size() <= 4) return all;
+  std::vector<Index> four;
+  for (std::size_t k = 0; k < 4; ++k) {
+    four.push_back(all[k * (all.size() - 1) / 3]);
+  }
+  return four;
+}
+
+Series JpoReport::curve_series(const std::string& method, Index n) const {
+  std::vector<const Curve*> curves;
+  std::set<double> iterations;
+  for (const std::uint64_t seed : metrics_.seeds()) {
+    const StageRecord* stage = metrics_.ending(method, n, seed, false);
+    if (stage == nullptr || stage->curve.points() == 0) continue;
+    curves.push_back(&stage->curve);
+    iterations.insert(stage->curve.iteration.begin(),
+                      stage->curve.iteration.end());
+  }
+  Series s{.label = method_title(method), .method = method};
+  for (const double iteration : iterations) {
+    std::vector<double> values;
+    for (const Curve* curve : curves) {
+      if (const auto one = loss_at(*curve, iteration)) values.push_back(*one);
+    }
+    append(s, iteration + 1, values);
+  }
+  return s;
+}
+
+Figure JpoReport::curves() const {
+  Figure figure{
+      .id = options_.curves.id,
+      .title = options_.title + ": optimization curves before refinement",
+      .source = options_.curves.source,
+      .note =
+          "Mean over problems and seeds, band: sample standard deviation "
+          "over seeds. The start is drawn at 1. Curves of BFGS end when "
+          "every problem has."};
+  for (const Index n : sizes_of_curves()) {
+    Panel panel{.title = fmt::format("n = {}", n),
+                .x_label = "iteration + 1",
+                .y_label = "mean loss",
+                .x_log = true,
+                .y_log = true};
+    for (const auto& method : with_bfgs()) {
+      panel.series.push_back(curve_series(method, n));
+    }
+    figure.panels.push_back(std::move(panel));
+  }
+  return figure;
+}
+
+std::string JpoReport::unknown_name(Index j) const {
+  const auto k = static_cast<std::size_t>(j);
+  return k < options_.unknowns.size() ? options_.unknowns[k]
+                                      : fmt::format("unknown {}", j + 1);
+}
+
+std::optional<double> JpoReport::solution_of(Index n,
+                                             Index example,
+                                             Index j) const {
+  const std::uint64_t seed = metrics_.seeds().front();
+  for (const auto& method : with_bfgs()) {
+    const auto* found =
+        results_.find_case(options_.experiment, method, n, seed);
+    if (found == nullptr) continue;
+    const Batch<double> x =
+        options_.solution ? options_.solution(*found) : found->data.x;
+    if (j < x.rows() && example < x.cols()) return x(j, example);
+  }
+  return {};
+}
+
+Panel JpoReport::plane(Index n, Index example) const {
+  Panel panel{.title = fmt::format("Problem {}", example),
+              .x_label = unknown_name(0),
+              .y_label = unknown_name(1)};
+  const std::uint64_t seed = metrics_.seeds().front();
+  for (const auto& method : with_bfgs()) {
+    const StageRecord* stage = metrics_.ending(method, n, seed, false);
+    if (stage == nullptr || !tracks(*stage, example)) continue;
+    Series way{.label = method_title(method),
+               .method = method,
+               .x = tracked(*stage, example, 0),
+               .y = tracked(*stage, example, 1)};
+    Series end{.method = method,
+               .x = {way.x.back()},
+               .y = {way.y.back()},
+               .line = false,
+               .markers = true};
+    panel.series.push_back(std::move(way));
+    panel.series.push_back(std::move(end));
+  }
+  const auto x = solution_of(n, example, 0), y = solution_of(n, example, 1);
+  if (x && y) {
+    panel.series.push_back({.label = "solution",
+                            .method = "truth",
+                            .x = {*x},
+                            .y = {*y},
+                            .line = false,
+                            .markers = true});
+  }
+  return panel;
+}
+
+Panel JpoReport::over_iterations(Index n, Index example, Index unknown) const {
+  Panel panel{.title = fmt::format("Problem {}", example),
+              .x_label = "iteration + 1",
+              .y_label = unknown_name(unknown),
+              .x_log = true};
+  const std::uint64_t seed = metrics_.seeds().front();
+  double last = 1;
+  for (const auto& method : with_bfgs()) {
+    const StageRecord* stage = metrics_.ending(method, n, seed, false);
+    if (stage == nullptr || !tracks(*stage, example)) continue;
+    panel.series.push_back({.label = method_title(method),
+                            .method = method,
+                            .x = plus_one(stage->curve.iteration),
+                            .y = tracked(*stage, example, unknown)});
+    last = std::max(last, panel.series.back().x.back());
+  }
+  if (const auto level = solution_of(n, example, unknown)) {
+    panel.series.push_back({.label = "solution",
+                            .method = "truth",
+                            .x = {1, last},
+                            .y = {*level, *level},
+                            .dashed = true});
+  }
+  return panel;
+}
+
+Index JpoReport::size_of_trajectories() const {
+  const auto sizes = metrics_.sizes();
+  const Index asked = options_.trajectory_size;
+  return std::count(sizes.begin(), sizes.end(), asked) > 0 ? asked
+                                                           : largest_size();
+}
+
+Figure JpoReport::trajectories() const {
+  Figure figure{.id = options_.trajectories.id,
+                .title = options_.title + ": estimates during optimization",
+                .source = options_.trajectories.source};
+  const auto seeds = metrics_.seeds();
+  const Index n = size_of_trajectories();
+  if (n == 0 || seeds.empty()) return figure;
+  Index unknowns = 0, examples = kExamples;
+  for (const auto& method : with_bfgs()) {
+    if (const auto* s = metrics_.ending(method, n, seeds.front(), false)) {
+      unknowns = s->x.rows();
+      examples = std::min(examples, s->x.cols());
+    }
+  }
+  if (unknowns == 0) return figure;
+  figure.note =
+      fmt::format("n = {}, seed {}. Markers: last estimate.", n, seeds.front());
+  for (Index e = 0; e < examples; ++e) {
+    if (unknowns == 2) {
+      figure.panels.push_back(plane(n, e));
+      continue;
+    }
+    for (Index j = 0; j < unknowns; ++j) {
+      figure.panels.push_back(over_iterations(n, e, j));
+    }
+  }
+  if (unknowns != 2) {
+    figure.columns = static_cast<int>(std::clamp<Index>(unknowns, 2, 4));
+    figure.note = fmt::format("n = {}, seed {}.", n, seeds.front());
+  }
+  return figure;
+}
+
+Panel JpoReport::tensor_panel(const std::string& title,
+                              const std::vector<Index>& tensors) const {
+  Panel panel{.title = title,
+              .x_label = "n",
+              .y_label = "mean |change|",
+              .x_log = true};
+  for (const Index t : tensors) {
+    const std::string& name = options_.tensors[static_cast<std::size_t>(t)];
+    Series s =
+        over_n(name,
+               "layer " + name.substr(1),
+               [&](Index n, std::uint64_t seed) -> std::optional<double> {
+                 const StageRecord* fit = metrics_.stage("jpo", n, seed, "fit");
+                 if (fit == nullptr) return {};
+                 const auto found = fit->arrays.find("weight_change");
+                 if (found == fit->arrays.end() || t >= found->second.rows()) {
+                   return {};
+                 }
+                 return found->second(t, 0);
+               });
+    panel.series.push_back(std::move(s));
+  }
+  return panel;
+}
+
+Figure JpoReport::weight_change() const {
+  std::vector<Index> weights, biases, normalisation;
+  for (std::size_t t = 0; t < options_.tensors.size(); ++t) {
+    const char kind = options_.tensors[t].front();
+    auto& list = kind == 'b'                  ? biases
+                 : kind == 's' || kind == 'o' ? normalisation
+                                              : weights;
+    list.push_back(static_cast<Index>(t));
+  }
+  Figure figure{
+      .id = options_.weight_change.id,
+      .title = options_.title + ": change of the JPO network",
+      .source = options_.weight_change.source,
+      .panels = {tensor_panel("Weights", weights),
+                 tensor_panel("Biases", biases)},
+      .note =
+          "Mean absolute difference of a tensor's entries before and "
+          "after the fit (k: kernels, m: matrices, b: biases, s and o: scales "
+          "and offsets of normalisations). Bars: sample standard deviation "
+          "over seeds."};
+  if (!normalisation.empty()) {
+    figure.panels.push_back(tensor_panel("Scales and offsets", normalisation));
+  }
+  return figure;
+}
+
+}  // namespace physinv

@@ -1,0 +1,257 @@
+#include "suite/cases/jpo/common/metrics.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "suite/core/check.h"
+
+namespace physinv {
+namespace {
+
+constexpr std::string_view kBfgs = "bfgs", kSolve = "solve", kRefine = "refine";
+
+bool are_equal(double a, double b, Equality equality) {
+  if (equality == Equality::strict || !std::isfinite(b)) return a == b;
+  return std::abs(a - b) <= 1e-6 * std::abs(b);
+}
+
+std::optional<double> deviation(std::span<const double> values) {
+  const auto found = mean_std(values);
+  return found ? found->std : std::nullopt;
+}
+
+}  // namespace
+
+std::optional<MeanStd> mean_std(std::span<const double> values) {
+  if (values.empty()) return {};
+  const auto count = static_cast<double>(values.size());
+  double sum = 0, squares = 0;
+  for (const double v : values) sum += v;
+  MeanStd out{sum / count, {}};
+  for (const double v : values) squares += (v - out.mean) * (v - out.mean);
+  if (values.size() > 1) out.std = std::sqrt(squares / (count - 1));
+  return out;
+}
+
+Shares compare_losses(VectorIn<double> loss,
+                      VectorIn<double> bfgs,
+                      Equality equality) {
+  SUITE_CHECK(loss.size() == bfgs.size() && loss.size() > 0,
+              "losses of the same problems");
+  Index better = 0, equal = 0;
+  for (Index i = 0; i < loss.size(); ++i) {
+    if (!std::isfinite(loss[i])) continue;
+    if (are_equal(loss[i], bfgs[i], equality)) {
+      ++equal;
+    } else if (!(loss[i] >= bfgs[i])) {  // also where BFGS has NaN
+      ++better;
+    }
+  }
+  const auto count = static_cast<double>(loss.size());
+  return {static_cast<double>(better) / count,
+          static_cast<double>(equal) / count,
+          static_cast<double>(loss.size() - better - equal) / count};
+}
+
+double share_below(VectorIn<double> loss, double threshold) {
+  SUITE_CHECK(loss.size() > 0, "a share of no problems");
+  const Index below = (loss.array() < threshold).count();
+  return static_cast<double>(below) / static_cast<double>(loss.size());
+}
+
+Solved::Solved(double loss)
+    : Solved(
+          [loss](const CaseData&, const StageRecord& stage, Index example) {
+            return stage.loss[example] < loss;
+          },
+          fmt::format("loss < {:g}", loss)) {}
+
+Index Solved::count(const CaseData& data, const StageRecord& stage) const {
+  Index count = 0;
+  for (Index i = 0; i < stage.loss.size(); ++i) count += test_(data, stage, i);
+  return count;
+}
+
+Solved within_of_truth(double tolerance) {
+  return {[tolerance](
+              const CaseData& data, const StageRecord& stage, Index example) {
+            return ((stage.x.col(example) - data.x.col(example)).array().abs() <
+                    tolerance)
+                .all();
+          },
+          fmt::format("every unknown within {:g} of the truth", tolerance)};
+}
+
+const StageRecord* JpoMetrics::stage(std::string_view method,
+                                     Index n,
+                                     std::uint64_t seed,
+                                     std::string_view name) const {
+  const StageRecord* found = results_.find(experiment_, method, n, seed, name);
+  const bool ran = found != nullptr && found->stop != Stop::failed &&
+                   found->stop != Stop::skipped && found->loss.size() > 0;
+  return ran ? found : nullptr;
+}
+
+const StageRecord* JpoMetrics::ending(std::string_view method,
+                                      Index n,
+                                      std::uint64_t seed,
+                                      bool refined) const {
+  if (refined) return stage(method, n, seed, kRefine);
+  const CaseRecord* found = results_.find_case(experiment_, method, n, seed);
+  if (found == nullptr) return nullptr;
+  const auto& names = found->info.stages;
+  const auto last = std::find_if(
+      names.rbegin(), names.rend(), [](auto& name) { return name != kRefine; });
+  return last == names.rend() ? nullptr : stage(method, n, seed, *last);
+}
+
+std::optional<Shares> JpoMetrics::shares(std::string_view method,
+                                         Index n,
+                                         std::uint64_t seed,
+                                         bool refined,
+                                         Equality equality) const {
+  const StageRecord* ours = ending(method, n, seed, refined);
+  const StageRecord* bfgs = stage(kBfgs, n, seed, kSolve);
+  if (ours == nullptr || bfgs == nullptr) return {};
+  return compare_losses(ours->loss, bfgs->loss, equality);
+}
+
+std::optional<JpoMetrics::Pooled> JpoMetrics::mean_shares(
+    std::string_view method,
+    std::span<const Index> sizes,
+    bool refined,
+    Equality equality) const {
+  Pooled out;
+  std::vector<double> better, equal, f;  // one mean per seed
+  for (const std::uint64_t seed : seeds()) {
+    Shares sum;
+    Index count = 0;
+    for (const Index n : sizes) {
+      const auto one = shares(method, n, seed, refined, equality);
+      if (!one) continue;
+      sum.better += one->better, sum.equal += one->equal;
+      sum.worse += one->worse, ++count;
+    }
+    if (count == 0) continue;
+    out.mean.better += sum.better, out.mean.equal += sum.equal;
+    out.mean.worse += sum.worse, out.pairs += count;
+    better.push_back(sum.better / static_cast<double>(count));
+    equal.push_back(sum.equal / static_cast<double>(count));
+    f.push_back(sum.f() / static_cast<double>(count));
+  }
+  if (out.pairs == 0) return {};
+  const auto pairs = static_cast<double>(out.pairs);
+  out.mean.better /= pairs, out.mean.equal /= pairs, out.mean.worse /= pairs;
+  out.better_std = deviation(better);
+  out.equal_std = deviation(equal);
+  out.f_std = deviation(f);
+  return out;
+}
+
+std::optional<double> JpoMetrics::share_of_decrease(std::string_view method,
+                                                    Index n,
+                                                    std::uint64_t seed) const {
+  const StageRecord* fit = ending(method, n, seed, false);
+  const StageRecord* refined = ending(method, n, seed, true);
+  if (fit == nullptr || refined == nullptr) return {};
+  const Curve& curve = fit->curve;
+  if (curve.points() == 0 || curve.iteration.front() != 0) return {};
+  double sum = 0;
+  Index count = 0;
+  for (Index i = 0; i < fit->loss.size(); ++i) {
+    const double start = curve.loss(i, 0), after = fit->loss[i];
+    const double end = std::isfinite(refined->loss[i])
+                           ? std::min(after, refined->loss[i])
+                           : after;
+    const double share = (start - after) / (start - end);
+    if (!std::isfinite(share)) continue;  // no decrease, or no number
+    sum += share;
+    ++count;
+  }
+  if (count == 0) return {};
+  return sum / static_cast<double>(count);
+}
+
+std::optional<double> JpoMetrics::share_of_decrease(std::string_view method,
+                                                    Index n) const {
+  std::vector<double> shares;
+  for (const std::uint64_t seed : seeds())
+    if (const auto one = share_of_decrease(method, n, seed))
+      shares.push_back(*one);
+  const auto found = mean_std(shares);
+  return found ? std::optional(found->mean) : std::nullopt;
+}
+
+std::optional<double> JpoMetrics::solved_share(std::string_view method,
+                                               Index n,
+                                               std::uint64_t seed,
+                                               bool refined,
+                                               const Solved& solved) const {
+  const StageRecord* found = ending(method, n, seed, refined);
+  if (found == nullptr) return {};
+  return static_cast<double>(solved.count(data(method, n, seed), *found)) /
+         static_cast<double>(found->loss.size());
+}
+
+std::optional<double> JpoMetrics::pooled_solved_share(
+    std::string_view method,
+    std::span<const Index> sizes,
+    bool refined,
+    const Solved& solved) const {
+  Index count = 0, all = 0;
+  for (const Index n : sizes) {
+    for (const std::uint64_t seed : seeds()) {
+      const StageRecord* found = ending(method, n, seed, refined);
+      if (found == nullptr) continue;
+      count += solved.count(data(method, n, seed), *found);
+      all += found->loss.size();
+    }
+  }
+  if (all == 0) return {};
+  return static_cast<double>(count) / static_cast<double>(all);
+}
+
+std::optional<JpoMetrics::Rescue> JpoMetrics::rescue(
+    std::string_view method,
+    std::span<const Index> sizes,
+    const Solved& solved) const {
+  Rescue out;
+  for (const Index n : sizes) {
+    for (const std::uint64_t seed : seeds()) {
+      const StageRecord* ours = ending(method, n, seed, true);
+      const StageRecord* bfgs = stage(kBfgs, n, seed, kSolve);
+      if (ours == nullptr || bfgs == nullptr) continue;
+      for (Index i = 0; i < bfgs->loss.size(); ++i) {
+        if (solved(data(kBfgs, n, seed), *bfgs, i)) continue;
+        ++out.unsolved;
+        out.rescued += solved(data(method, n, seed), *ours, i);
+      }
+    }
+  }
+  if (out.unsolved == 0) return {};
+  return out;
+}
+
+std::optional<JpoMetrics::Plateau> JpoMetrics::plateau(
+    Index n, double solved, const PlateauLoss& plateau_loss) const {
+  Plateau out;
+  for (const std::uint64_t seed : seeds()) {
+    const StageRecord* bfgs = stage(kBfgs, n, seed, kSolve);
+    if (bfgs == nullptr) continue;
+    const Vector<double> level =
+        plateau_loss(*results_.find_case(experiment_, kBfgs, n, seed));
+    for (Index i = 0; i < bfgs->loss.size(); ++i) {
+      const double loss = bfgs->loss[i];
+      const bool there = std::abs(loss - level[i]) <= 1e-12 * level[i];
+      ++out.problems;
+      out.plateau += there;
+      out.solved += !there && loss < solved;
+    }
+  }
+  if (out.problems == 0) return {};
+  return out;
+}
+
+}  // namespace physinv

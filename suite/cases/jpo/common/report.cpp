@@ -1,0 +1,57 @@
+#include "suite/cases/jpo/common/report.h"
+
+namespace physinv {
+
+std::string method_title(const std::string& method) {
+  if (method == "bfgs") return "BFGS";
+  if (method == "gd") return "Gradient descent";
+  if (method == "jpo") return "JPO";
+  if (method == "supervised") return "Supervised";
+  if (method == "na") return "Neural adjoint";
+  return method;
+}
+
+std::vector<std::string> JpoReport::with_bfgs() const {
+  std::vector<std::string> out{"bfgs"};
+  out.insert(out.end(), options_.methods.begin(), options_.methods.end());
+  return out;
+}
+
+// With a network, if there is one: BFGS alone may have seen more problems.
+Index JpoReport::largest_size() const {
+  Index largest = 0;
+  for (const Index n : metrics_.sizes())
+    for (const std::uint64_t seed : metrics_.seeds())
+      for (const auto& method : options_.methods)
+        if (metrics_.ending(method, n, seed, false) != nullptr) largest = n;
+  if (largest == 0 && !metrics_.sizes().empty())
+    largest = metrics_.sizes().back();
+  return largest;
+}
+
+Section jpo_section(const JpoReportOptions& options,
+                    const Results& results,
+                    const Published& published) {
+  const JpoReport report(options, results, published);
+  std::map<std::string, std::string> titles;
+  for (const auto& method : results.methods(options.experiment)) {
+    titles[method] = method_title(method);
+  }
+  return {.experiment = options.experiment,
+          .title = options.title,
+          .paper = options.paper,
+          .tables = {report.seconds(),
+                     report.fit_share(),
+                     report.better_equal(false),
+                     report.better_equal(true),
+                     report.results_table()},
+          .figures = {report.fraction(),
+                      report.improvement(),
+                      report.curves(),
+                      report.trajectories(),
+                      report.weight_change()},
+          .claims = {},
+          .method_titles = std::move(titles)};
+}
+
+}  // namespace physinv

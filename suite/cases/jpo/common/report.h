@@ -1,0 +1,109 @@
+/// Tables and figures that every experiment of the JPO paper shares.
+/// Absent stages read "not run"; claims are added by the experiment itself.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "suite/cases/jpo/common/metrics.h"
+#include "suite/results/published.h"
+#include "suite/results/report_model.h"
+#include "suite/results/results.h"
+
+namespace physinv {
+
+/// Where the paper shows a figure: file name and printed number.
+struct FigureRef {
+  std::string id, source;
+};
+
+/// The paper's numbers are looked up under these names (of the experiment):
+/// table2/bfgs, table2/<method>/<stage>, table3/n=<n>, table4/<method>/better
+/// and /equal, table5 likewise.
+struct JpoReportOptions {
+  std::string experiment;  ///< jpo/billiards
+  std::string title;       ///< Billiards
+  std::string paper;       ///< key of the publication
+  std::vector<std::string> methods = {"jpo", "supervised", "na"};
+  Solved solved = 1e-6;            ///< when a problem counts as solved
+  std::vector<Index> curve_sizes;  ///< of fig. 12; default: four present
+  Index trajectory_size = 0;       ///< of fig. 13; default: the largest
+  std::vector<Index> table3_sizes = {4, 8, 32, 128};
+  std::vector<std::string> unknowns;  ///< names of the unknowns, for axes
+  std::vector<std::string> tensors;   ///< m1, b1, ... in the order of the rows
+  /// What trajectories should reach, unknowns x examples; data.x if empty.
+  std::function<Batch<double>(const CaseRecord&)> solution;
+  FigureRef fraction{"fig4b", "Fig. 4b"};
+  FigureRef improvement{"fig11", "Fig. 11"};
+  FigureRef curves{"fig12", "Fig. 12"};
+  FigureRef trajectories{"fig13", "Fig. 13"};
+  FigureRef weight_change{"fig14", "Fig. 14"};
+};
+
+/// Name for readers: jpo -> JPO, na -> Neural adjoint.
+std::string method_title(const std::string& method);
+
+class JpoReport {
+ public:
+  JpoReport(const JpoReportOptions& options,
+            const Results& results,
+            const Published& published)
+      : options_(options),
+        results_(results),
+        published_(published),
+        metrics_(results, options.experiment) {}
+
+  Table seconds() const;                   ///< Table 2, at the largest n
+  Table fit_share() const;                 ///< Table 3
+  Table better_equal(bool refined) const;  ///< Table 4, refined Table 5
+  Table results_table() const;             ///< per n and method
+
+  Figure fraction() const;       ///< f_N over n of JPO and gradient descent
+  Figure improvement() const;    ///< loss and f_N, before and after
+  Figure curves() const;         ///< loss over iterations for four n
+  Figure trajectories() const;   ///< estimates of examples 0..3, largest n
+  Figure weight_change() const;  ///< by tensor over n
+
+  const JpoMetrics& metrics() const { return metrics_; }
+  Index largest_size() const;  ///< of problems, with a network if there is one
+
+ private:
+  using PerCase = std::function<std::optional<double>(Index, std::uint64_t)>;
+  Series over_n(std::string label,
+                const std::string& method,
+                const PerCase& value) const;
+  Series f_series(const std::string& method, bool refined) const;
+  Series loss_series(const std::string& method, bool refined) const;
+  Series reference_half() const;
+  Series curve_series(const std::string& method, Index n) const;
+  std::vector<Index> sizes_of_curves() const;
+  Index size_of_trajectories() const;
+  Panel plane(Index n, Index example) const;
+  Panel over_iterations(Index n, Index example, Index unknown) const;
+  Panel tensor_panel(const std::string& title,
+                     const std::vector<Index>& tensors) const;
+  std::string unknown_name(Index j) const;
+  std::vector<std::string> with_bfgs() const;
+  std::optional<double> solution_of(Index n, Index example, Index j) const;
+
+  Cell seconds_cell(const std::string& method,
+                    const std::string& stage,
+                    Index n) const;
+  Cell over_seeds(Index n, const PerCase& value) const;
+  TableRow results_row(const std::string& method, Index n, bool refined) const;
+  Cell with_paper(Cell cell, const std::string& quantity) const;
+
+  const JpoReportOptions& options_;
+  const Results& results_;
+  const Published& published_;
+  JpoMetrics metrics_;
+};
+
+/// All of the above in the order of the paper.
+Section jpo_section(const JpoReportOptions& options,
+                    const Results& results,
+                    const Published& published);
+
+}  // namespace physinv

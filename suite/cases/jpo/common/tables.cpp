@@ -1,0 +1,258 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "suite/cases/jpo/common/report.h"
+
+namespace physinv {
+namespace {
+
+constexpr const char* kNotRun = "not run";
+
+struct SecondsColumn {
+  const char *title, *method, *stage;
+};
+
+constexpr SecondsColumn kSecondsColumns[] = {
+    {"Parallel BFGS", "bfgs", "solve"},
+    {"Network fit", "jpo", "fit"},
+    {"Refinement", "jpo", "refine"},
+    {"Supervised fit", "supervised", "fit"},
+    {"Sup. refinement", "supervised", "refine"},
+    {"Surrogate fit", "na", "fit"},
+    {"Neural adjoint", "na", "solve"},
+    {"N.A. refinement", "na", "refine"}};
+
+Cell cell_of(std::span<const double> values) {
+  const auto found = mean_std(values);
+  if (!found) return {.text = kNotRun};
+  Cell cell{.ours = found->mean};
+  if (found->std) cell.spread = *found->std;
+  return cell;
+}
+
+// Columns of one table may need other digits than its unit suggests.
+Cell shown_as(Cell cell, const char* format) {
+  if (!cell.ours) return cell;
+  cell.text = fmt::format(fmt::runtime(format), *cell.ours);
+  if (cell.spread) {
+    cell.text += " ± " + fmt::format(fmt::runtime(format), *cell.spread);
+  }
+  return cell;
+}
+
+std::string list(std::span<const Index> sizes) {
+  return fmt::format("{}", fmt::join(sizes, ", "));
+}
+
+}  // namespace
+
+Cell JpoReport::with_paper(Cell cell, const std::string& quantity) const {
+  if (const auto found = published_.find(options_.experiment, quantity)) {
+    cell.paper = found->value;
+    cell.paper_spread = found->spread;
+  }
+  return cell;
+}
+
+Cell JpoReport::over_seeds(Index n, const PerCase& value) const {
+  std::vector<double> values;
+  for (const std::uint64_t seed : metrics_.seeds()) {
+    if (const auto one = value(n, seed)) values.push_back(*one);
+  }
+  return cell_of(values);
+}
+
+Cell JpoReport::seconds_cell(const std::string& method,
+                             const std::string& stage,
+                             Index n) const {
+  bool crowded = false;
+  Cell cell =
+      over_seeds(n, [&](Index, std::uint64_t seed) -> std::optional<double> {
+        const StageRecord* found = metrics_.stage(method, n, seed, stage);
+        if (found == nullptr) return {};
+        crowded = crowded || found->crowded;
+        if (found->crowded) return {};
+        return found->clocks.solve.wall;
+      });
+  if (!cell.ours && crowded) cell.text = "crowded";
+  return cell;
+}
+
+Table JpoReport::seconds() const {
+  Table table{.id = "table2",
+              .title = "Training and optimization times at the largest n",
+              .source = "Table 2",
+              .unit = "s",
+              .digits = 1};
+  const Index n = largest_size();
+  TableRow row{.label = options_.title};
+  for (const auto& [title, method, stage] : kSecondsColumns) {
+    // BFGS alone has one stage only, so the paper's number names none.
+    std::string published = fmt::format("table2/{}", method);
+    if (std::string_view(method) != "bfgs") {
+      published += fmt::format("/{}", stage);
+    }
+    table.columns.emplace_back(title);
+    row.cells.push_back(with_paper(seconds_cell(method, stage, n), published));
+  }
+  table.rows.push_back(std::move(row));
+  table.note = fmt::format(
+      "n = {}; wall-clock time of solving, mean ± sample standard deviation "
+      "over seeds. Stages that shared their cores (\"crowded\") are left out. "
+      "The paper's machine was another one.",
+      n);
+  return table;
+}
+
+Table JpoReport::fit_share() const {
+  Table table{.id = "table3",
+              .title = "Share of the loss decrease made by the network fit",
+              .source = "Table 3",
+              .unit = "%",
+              .digits = 1};
+  TableRow row{.label = options_.title};
+  for (const Index n : options_.table3_sizes) {
+    table.columns.push_back(fmt::format("n = {}", n));
+    Cell cell = over_seeds(n, [&](Index, std::uint64_t seed) {
+      return metrics_.share_of_decrease("jpo", n, seed);
+    });
+    if (cell.ours) cell.ours = 100 * *cell.ours;
+    if (cell.spread) cell.spread = 100 * *cell.spread;
+    row.cells.push_back(with_paper(cell, fmt::format("table3/n={}", n)));
+  }
+  table.rows.push_back(std::move(row));
+  table.note =
+      "Per problem (L_start - L_fit) / (L_start - L_refined), mean over "
+      "problems, then mean ± sample standard deviation over seeds. Problems "
+      "without any decrease are left out.";
+  return table;
+}
+
+Table JpoReport::better_equal(bool refined) const {
+  const std::string id = refined ? "table5" : "table4";
+  const auto sizes = metrics_.sizes();
+  Table table{
+      .id = id,
+      .title = fmt::format("Problems with better or equal solutions than "
+                           "BFGS, {} refinement",
+                           refined ? "with" : "without"),
+      .source = refined ? "Table 5" : "Table 4",
+      .unit = "%",
+      .digits = 1,
+      .corner = "equality"};
+  for (const std::string& method : options_.methods) {
+    table.columns.push_back(method_title(method) + " better");
+    table.columns.push_back(method_title(method) + " equal");
+  }
+  for (const Equality equality : {Equality::strict, Equality::tol}) {
+    const bool strict = equality == Equality::strict;
+    TableRow row{.label = strict ? "strict" : "tol"};
+    for (const std::string& method : options_.methods) {
+      const auto found = metrics_.mean_shares(method, sizes, refined, equality);
+      Cell better{.text = kNotRun}, equal{.text = kNotRun};
+      const auto percent = [](double mean, std::optional<double> std) {
+        Cell cell{.ours = 100 * mean};
+        if (std) cell.spread = 100 * *std;
+        return cell;
+      };
+      if (found) {
+        better = percent(found->mean.better, found->better_std);
+        equal = percent(found->mean.equal, found->equal_std);
+      }
+      const std::string name = id + "/" + method;
+      row.cells.push_back(strict ? with_paper(better, name + "/better")
+                                 : better);
+      row.cells.push_back(strict ? with_paper(equal, name + "/equal") : equal);
+    }
+    table.rows.push_back(std::move(row));
+  }
+  table.note = fmt::format(
+      "Mean over n = {} and seeds; ± sample standard deviation over seeds of "
+      "each seed's mean. strict: equal losses bit by bit; tol: |a - b| <= "
+      "1e-6 |b|.",
+      list(sizes));
+  return table;
+}
+
+Table JpoReport::results_table() const {
+  Table table{.id = "results",
+              .title = options_.title + " by n and method",
+              .digits = 3,
+              .corner = "n, method",
+              .columns = {"solved",
+                          "mean loss",
+                          "f_N strict",
+                          "f_N tol",
+                          "iterations",
+                          "seconds"}};
+  const auto present = results_.methods(options_.experiment);
+  const bool gd = std::count(present.begin(), present.end(), "gd") > 0;
+  for (const Index n : metrics_.sizes()) {
+    table.rows.push_back(results_row("bfgs", n, false));
+    if (gd) table.rows.push_back(results_row("gd", n, false));
+    for (const std::string& method : options_.methods) {
+      table.rows.push_back(results_row(method, n, false));
+      table.rows.push_back(results_row(method, n, true));
+    }
+  }
+  table.note = fmt::format(
+      "Mean ± sample standard deviation over seeds. solved: share of problems "
+      "with {}. f_N: share better than BFGS plus half the share equal "
+      "to it. Iterations: mean over problems. Seconds: all stages of the row, "
+      "a refined row counts the refinement alone; without crowded ones.",
+      options_.solved.says());
+  return table;
+}
+
+TableRow JpoReport::results_row(const std::string& method,
+                                Index n,
+                                bool refined) const {
+  using Value = std::optional<double>;
+  const auto read = [&](auto&& value) {
+    return over_seeds(n, [&](Index, std::uint64_t seed) -> Value {
+      const StageRecord* found = metrics_.ending(method, n, seed, refined);
+      return found == nullptr ? Value{} : Value{value(*found)};
+    });
+  };
+  const auto f = [&](Equality equality) {
+    if (method == "bfgs") return Cell{.text = "–"};
+    return over_seeds(n, [&](Index, std::uint64_t seed) -> Value {
+      const auto one = metrics_.shares(method, n, seed, refined, equality);
+      return one ? Value{one->f()} : Value{};
+    });
+  };
+  const auto iterations = [](const StageRecord& s) {
+    return s.example_iterations.size() > 0 ? s.example_iterations.mean()
+                                           : static_cast<double>(s.iterations);
+  };
+  const auto seconds = [&](Index, std::uint64_t seed) -> Value {
+    if (metrics_.ending(method, n, seed, refined) == nullptr) return {};
+    double sum = 0;
+    for (const StageRecord& s :
+         results_.find_case(options_.experiment, method, n, seed)->stages) {
+      if ((s.stage == "refine") != refined) continue;
+      if (s.crowded) return {};
+      sum += s.clocks.solve.wall;
+    }
+    return sum;
+  };
+  const Cell loss = read([](const StageRecord& s) { return s.loss.mean(); });
+  Cell time = over_seeds(n, seconds);
+  if (!time.ours && loss.ours) time.text = "crowded";
+  return {.label = fmt::format(
+              "{} {}{}", n, method_title(method), refined ? " refined" : ""),
+          .cells = {over_seeds(n,
+                               [&](Index, std::uint64_t seed) {
+                                 return metrics_.solved_share(
+                                     method, n, seed, refined, options_.solved);
+                               }),
+                    shown_as(loss, "{:.2e}"),
+                    f(Equality::strict),
+                    f(Equality::tol),
+                    shown_as(read(iterations), "{:.1f}"),
+                    time}};
+}
+
+}  // namespace physinv

@@ -1,0 +1,88 @@
+// JPO paper, Secs. 2-3, Fig. 2: how often do noisy gradients, and the updates
+// of a network trained with them, point the right way?
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "problems/noisy_absolute/noise_lanes.h"
+#include "suite/cases/jpo/gradient_alignment/claims.h"
+#include "suite/cases/jpo/gradient_alignment/figures.h"
+#include "suite/diagnostics/alignment.h"
+#include "suite/harness/registry.h"
+
+namespace physinv::alignment {
+namespace {
+
+constexpr NoisyAbsoluteOptions kSine{};
+constexpr NoisyAbsoluteOptions kLinear{
+    .solution = Solution::linear, .gamma = 1, .terms = 0};
+constexpr NoisyAbsoluteOptions kKnown{
+    .solution = Solution::zero, .level = 10, .snr = kWeak};
+constexpr NoisyAbsoluteOptions kUnequal{
+    .solution = Solution::zero, .level = 10, .decades = 2, .snr = kWeak};
+
+const TinyNetOptions kSineNet{};
+const TinyNetOptions kLinearNet{.hidden = {32, 32, 32},
+                                .activation = TinyActivation::tanh,
+                                .scale = 40,
+                                .range = 1};
+
+Section report(const Results& results, const Published& published) {
+  const auto printed = [&](const char* quantity, double otherwise) {
+    const auto found = published.find(kName, quantity);
+    return found ? found->value : otherwise;
+  };
+  const Fig2 f(results,
+               {.complexity = printed("fig2b/C", 6.4),
+                .plasticity = printed("fig2b/A", 12.9)});
+  return {.experiment = kName,
+          .title = "Gradient alignment",
+          .paper = "jpo",
+          .tables = tables(results, f, published),
+          .figures = figures(f),
+          .claims = claims(f)};
+}
+
+Method measure(std::string id,
+               const NoisyAbsoluteOptions& data,
+               std::optional<TinyNetOptions> network = {}) {
+  return {.id = std::move(id),
+          .chain = {std::make_shared<MeasureAlignment<NoiseLanes>>(
+              AlignmentOptions<NoiseLanes>{.data = data,
+                                           .network = std::move(network),
+                                           .repetitions = kFull})}};
+}
+
+Profile profile(std::string name, std::vector<Index> n, Index repetitions) {
+  return {.name = std::move(name),
+          .rows = {{.methods = {"known", "unequal", "linear", "sine"},
+                    .n = std::move(n),
+                    .seeds = {0},
+                    .iterations = repetitions}}};
+}
+
+const std::vector<Index> kSizes{1, 2, 4, 8, 16, 32, 64, 128, 256};
+
+Experiment experiment() {
+  Experiment e;
+  e.name = kName;
+  e.title = "Gradient alignment";
+  e.source = {.paper = "jpo", .where = "Secs. 2-3, Fig. 2, Apps. A, B"};
+  e.problem = problem<NoisyAbsolute>("noisy_absolute", kSine);
+  e.profiles = {profile("smoke", {1, 2, 4, 8}, 20),
+                profile("quick", kSizes, kJudged),
+                profile("paper", kSizes, kFull)};
+  e.methods = {measure("known", kKnown),
+               measure("unequal", kUnequal),
+               measure("linear", kLinear, kLinearNet),
+               measure("sine", kSine, kSineNet)};
+  e.report = report;
+  return e;
+}
+
+const auto kRegistered = register_experiment(experiment());
+
+}  // namespace
+}  // namespace physinv::alignment

@@ -1,0 +1,92 @@
+#include "suite/cases/jpo/wave_packet/figures.h"
+
+#include <fmt/format.h>
+
+#include "problems/wave_packet/wave_packet.h"
+
+namespace physinv::packet {
+namespace {
+
+/// One signal of the problem, and what its loss looks like.
+struct Example {
+  static constexpr Index kPoints = 1021;
+
+  Example() {
+    const auto s = problem.sample(0, 1, Rng::root("jpo/wave-packet/figure", 0));
+    truth = s.x;
+    signal = s.y;
+    t0.setLinSpaced(kPoints, 1, 256);
+    const auto& o = problem.options();
+    const Batch<double> x =
+        (t0.array() - o.centre).matrix().transpose() / o.scale;
+    const Batch<double> given = Batch<double>::Zero(o.samples, kPoints);
+    const Batch<double> target = signal.replicate(1, kPoints);
+    Batch<double> y(o.samples, kPoints), y_bar(o.samples, kPoints);
+    loss.resize(kPoints), gradient.resize(1, kPoints);
+    Tape tape;
+    Workspace work;
+    problem.linearize(x, given, y, tape);
+    problem.loss(y, target, loss);
+    problem.loss_gradient(y, target, y_bar);
+    problem.pullback(tape, y_bar, gradient, work);
+    gradient /= o.scale;
+    packet.resize(o.samples, 1);
+    problem.forward(truth, given.leftCols(1), packet, work);
+  }
+  double centre() const {
+    const auto& o = problem.options();
+    return o.centre + o.scale * truth(0, 0);
+  }
+
+  WavePacket<double> problem;
+  Batch<double> truth, signal, packet, gradient;
+  Vector<double> t0, loss;
+};
+
+Figure waveform(const Example& e) {
+  std::vector<double> t;
+  for (Index i = 0; i < e.signal.rows(); ++i)
+    t.push_back(static_cast<double>(i + 1));
+  return {.id = "fig3a",
+          .title = "Task: where is the packet?",
+          .source = "Fig. 3a",
+          .panels = {{.x_label = "t",
+                      .y_label = "signal",
+                      .series = {{.label = "observed",
+                                  .method = "gd",
+                                  .x = t,
+                                  .y = {e.signal.col(0).begin(),
+                                        e.signal.col(0).end()}},
+                                 {.label = "without noise",
+                                  .method = "truth",
+                                  .x = t,
+                                  .y = {e.packet.col(0).begin(),
+                                        e.packet.col(0).end()}}}}},
+          .columns = 1,
+          .note = fmt::format("t0 = {:.1f}.", e.centre())};
+}
+
+Figure landscape(const Example& e) {
+  const auto panel = [&](const char* label, const auto& values) {
+    return Panel{.x_label = "t0",
+                 .y_label = label,
+                 .series = {{.method = "bfgs",
+                             .x = {e.t0.begin(), e.t0.end()},
+                             .y = {values.begin(), values.end()}}}};
+  };
+  return {.id = "fig3b",
+          .title = "Loss and gradient over the packet's centre",
+          .source = "Fig. 3b",
+          .panels = {panel("loss", e.loss),
+                     panel("derivative of the loss", e.gradient.row(0))},
+          .note = fmt::format("The signal above: t0 = {:.1f}.", e.centre())};
+}
+
+}  // namespace
+
+std::vector<Figure> figures() {
+  const Example example;
+  return {waveform(example), landscape(example)};
+}
+
+}  // namespace physinv::packet

@@ -1,0 +1,183 @@
+#include "suite/cases/numerics/common/sweep_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "suite/cases/jpo/common/claims.h"
+#include "suite/diagnostics/stability_sweep.h"
+
+namespace physinv {
+namespace {
+
+SweepStatus status_of(const StageRecord& sweep, SweepCheck check, Index cell) {
+  return static_cast<SweepStatus>(static_cast<int>(
+      sweep.arrays.at("status")(static_cast<Index>(check), cell)));
+}
+
+Index cells(const StageRecord& sweep) {
+  return sweep.arrays.at("status").cols();
+}
+
+Index count(const StageRecord& sweep, SweepCheck check, SweepStatus status) {
+  Index count = 0;
+  for (Index j = 0; j < cells(sweep); ++j)
+    count += status_of(sweep, check, j) == status;
+  return count;
+}
+
+/// 0 fine, 1 float inaccurate, 2 float diverged, 3 both diverged.
+double forward_level(const StageRecord& sweep, Index cell) {
+  if (status_of(sweep, SweepCheck::forward_double, cell) != SweepStatus::ok)
+    return 3;
+  switch (status_of(sweep, SweepCheck::forward_single, cell)) {
+    case SweepStatus::ok:
+      return 0;
+    case SweepStatus::inaccurate:
+      return 1;
+    default:
+      return 2;
+  }
+}
+
+template <class F>
+Panel map(const SweepAxis& x,
+          const SweepAxis& y,
+          const StageRecord& sweep,
+          std::string title,
+          F&& value) {
+  const auto points = static_cast<Index>(x.values.size() * y.values.size());
+  const Index examples = cells(sweep) / points;
+  Panel panel{.title = std::move(title),
+              .x_label = x.label,
+              .y_label = y.label,
+              .x_log = x.log,
+              .y_log = y.log,
+              .field = Field2D{.x = x.values, .y = y.values}};
+  for (Index p = 0; p < points; ++p) {
+    double worst = 0;
+    for (Index e = 0; e < examples; ++e)
+      worst = std::max(worst, value(p * examples + e));
+    panel.field->values.push_back(worst);
+  }
+  return panel;
+}
+
+}  // namespace
+
+const StageRecord* find_sweep(const Results& results,
+                              const std::string& experiment,
+                              const std::string& method,
+                              const std::string& stage) {
+  for (const CaseRecord& c : results.cases()) {
+    if (c.info.experiment != experiment || c.info.method != method) continue;
+    for (const StageRecord& s : c.stages)
+      if (s.stage == stage && s.arrays.contains("status")) return &s;
+  }
+  return nullptr;
+}
+
+Table sweep_table(std::string id, std::string title, const StageRecord* sweep) {
+  Table table{.id = std::move(id),
+              .title = std::move(title),
+              .digits = 0,
+              .corner = "check",
+              .note =
+                  "Cells by outcome. Diverged: not finite. Undecided: central "
+                  "differences of no step agree, or there is no Jacobian. "
+                  "Largest error: of all cells that have one."};
+  for (const auto name : kSweepStatusNames) table.columns.emplace_back(name);
+  table.columns.emplace_back("largest error");
+  for (Index c = 0; c < kSweepChecks; ++c) {
+    TableRow row{
+        .label = std::string(kSweepCheckNames[static_cast<std::size_t>(c)])};
+    for (int s = 0; s < 4; ++s) {
+      Cell cell{.text = "not run"};
+      if (sweep != nullptr) {
+        const Index n = count(
+            *sweep, static_cast<SweepCheck>(c), static_cast<SweepStatus>(s));
+        cell = {.ours = static_cast<double>(n)};
+      }
+      row.cells.push_back(cell);
+    }
+    Cell error{.text = "not run"};
+    if (sweep != nullptr) {
+      const double largest = sweep->arrays.at("error").row(c).maxCoeff();
+      error.text = largest < 0 ? "–" : fmt::format("{:.1e}", largest);
+      if (largest >= 0) error.ours = largest;
+    }
+    row.cells.push_back(error);
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+Figure sweep_maps(std::string id,
+                  std::string title,
+                  const SweepAxis& x,
+                  const SweepAxis& y,
+                  const StageRecord* sweep) {
+  Figure figure{.id = std::move(id),
+                .title = std::move(title),
+                .note =
+                    "Where it runs: 0 fine, 1 float inaccurate, 2 float "
+                    "diverged, 3 both diverged. Errors are relative; blank "
+                    "cells have none."};
+  if (sweep == nullptr) return figure;
+  figure.panels.push_back(map(x, y, *sweep, "Where it runs", [&](Index cell) {
+    return forward_level(*sweep, cell);
+  }));
+  for (const auto check : {SweepCheck::forward_single,
+                           SweepCheck::adjoint,
+                           SweepCheck::adjoint_single}) {
+    const auto row = static_cast<Index>(check);
+    const auto& error = sweep->arrays.at("error");
+    figure.panels.push_back(
+        map(x,
+            y,
+            *sweep,
+            "Error: " +
+                std::string(kSweepCheckNames[static_cast<std::size_t>(row)]),
+            [&](Index cell) {
+              const double e = error(row, cell);
+              return e < 0 ? 0 : std::max(e, 1e-17);  // blank, or on the scale
+            }));
+    figure.panels.back().field->log_scale = true;
+  }
+  return figure;
+}
+
+ClaimResult adjoint_claim(std::string id,
+                          const std::vector<const StageRecord*>& sweeps) {
+  Judge judge;
+  Index finite = 0, undecided = 0, wrong = 0;
+  bool all = !sweeps.empty();
+  for (const StageRecord* sweep : sweeps) {
+    all = all && sweep != nullptr;
+    if (sweep == nullptr) continue;
+    for (Index j = 0; j < cells(*sweep); ++j) {
+      if (status_of(*sweep, SweepCheck::forward_double, j) != SweepStatus::ok)
+        continue;
+      ++finite;
+      const auto differences = status_of(*sweep, SweepCheck::adjoint, j);
+      const auto tangent = status_of(*sweep, SweepCheck::tangent, j);
+      undecided += differences == SweepStatus::undecided;
+      for (const auto s : {differences, tangent})
+        wrong += s == SweepStatus::inaccurate || s == SweepStatus::diverged;
+    }
+  }
+  if (!all) {
+    judge.missing("a sweep");
+  } else {
+    judge.report("cells", static_cast<double>(finite))
+        .at_most("wrong", static_cast<double>(wrong), 0)
+        .report("undecided by differences", static_cast<double>(undecided));
+  }
+  return std::move(judge).result(
+      std::move(id),
+      "Wherever the forward pass is finite in double, the adjoint agrees with "
+      "the tangent and with central differences",
+      "smoke");
+}
+
+}  // namespace physinv
