@@ -16,7 +16,7 @@ namespace physinv {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Tally = std::array<int, 3>;  // by verdict
+using Tally = std::array<int, kVerdictCount>;  // by verdict
 
 struct Look {
   std::string_view css, mark;
@@ -28,14 +28,17 @@ Look look_of(Verdict verdict) {
       return {"yes", "✓"};
     case Verdict::not_reproduced:
       return {"no", "✗"};
-    case Verdict::not_run:
+    case Verdict::not_judged:
+    case Verdict::reported:
       break;
   }
   return {"open", "–"};
 }
 
-constexpr Verdict kVerdicts[] = {
-    Verdict::reproduced, Verdict::not_reproduced, Verdict::not_run};
+constexpr Verdict kVerdicts[] = {Verdict::reproduced,
+                                 Verdict::not_reproduced,
+                                 Verdict::not_judged,
+                                 Verdict::reported};
 
 /// Ids of everything that can be linked to, in the order of a section.
 struct Anchors {

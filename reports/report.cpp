@@ -97,14 +97,17 @@ std::string_view verdict_mark(Verdict verdict) {
       return "✅ reproduced";
     case Verdict::not_reproduced:
       return "❌ not reproduced";
-    case Verdict::not_run:
-      return "➖ not run";
+    case Verdict::not_judged:
+      return "➖ not judged";
+    case Verdict::reported:
+      return "ℹ️ reported";
   }
   return "";
 }
 
-std::array<int, 3> count_verdicts(const std::vector<Section>& sections) {
-  std::array<int, 3> counts{};
+std::array<int, kVerdictCount> count_verdicts(
+    const std::vector<Section>& sections) {
+  std::array<int, kVerdictCount> counts{};
   for (const Section& s : sections) {
     for (const ClaimResult& c : s.claims) {
       ++counts[static_cast<std::size_t>(c.verdict)];
@@ -114,9 +117,13 @@ std::array<int, 3> count_verdicts(const std::vector<Section>& sections) {
 }
 
 std::string summary(const std::vector<Section>& sections) {
-  const auto [yes, no, open] = count_verdicts(sections);
+  const auto [yes, no, open, told] = count_verdicts(sections);
   return fmt::format(
-      "{} reproduced, {} not reproduced, {} not run", yes, no, open);
+      "{} reproduced, {} not reproduced, {} not judged, {} reported",
+      yes,
+      no,
+      open,
+      told);
 }
 
 std::string claims_markdown(const Section& section) {
@@ -193,8 +200,10 @@ std::string_view to_string(Verdict verdict) {
       return "reproduced";
     case Verdict::not_reproduced:
       return "not reproduced";
-    case Verdict::not_run:
-      return "not run";
+    case Verdict::not_judged:
+      return "not judged";
+    case Verdict::reported:
+      return "reported";
   }
   return "";
 }
@@ -257,7 +266,7 @@ std::string render_claims_text(const std::vector<Section>& sections,
       std::string words = c.says;
       if (!c.gates) words += " (reported, does not gate)";
       if (!c.evidence.empty()) words += " — " + c.evidence;
-      if (c.verdict == Verdict::not_run && !c.from.empty()) {
+      if (c.verdict == Verdict::not_judged && !c.from.empty()) {
         words += fmt::format(" [needs profile {}]", c.from);
       }
       std::string head = "  " + pad_right(c.id, 4) + ' ';

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 
@@ -26,12 +27,46 @@ fs::path published_directory() {
          "share/physinv/published";
 }
 
+Section section_of(const Experiment& e,
+                   const Results& results,
+                   const Published& published) {
+  Section section;
+  if (e.report) section = e.report(results, published);
+  section.experiment = e.name;
+  section.title = e.title;
+  section.paper = e.source.paper;
+  std::vector<std::string> profiles;
+  for (const Profile& p : e.profiles) profiles.push_back(p.name);
+  for (auto& claim : judge(e.claims, {results, published, e.name}, profiles))
+    section.claims.push_back(std::move(claim));
+  return section;
+}
+
+/// What a paper says about its experiments together, if one of them was run.
+std::vector<Section> overviews_of(const Results& results,
+                                  const Published& published) {
+  std::vector<Section> sections;
+  for (const Overview& o : registry().overviews()) {
+    const auto& cases = results.cases();
+    if (std::none_of(cases.begin(), cases.end(), [&](const CaseRecord& c) {
+          return c.info.experiment.starts_with(o.paper + "/");
+        }))
+      continue;
+    sections.push_back(
+        {.experiment = o.paper,
+         .title = o.title,
+         .paper = o.paper,
+         .claims = judge(o.claims, {results, published, o.paper}, o.profiles)});
+  }
+  return sections;
+}
+
 std::vector<Section> sections_of(const Results& results,
                                  const Published& published) {
-  std::vector<Section> sections;
+  std::vector<Section> sections = overviews_of(results, published);
   for (const auto& e : registry().experiments()) {
-    if (!e->report || results.sizes(e->name).empty()) continue;
-    Section section = e->report(results, published);
+    if (results.sizes(e->name).empty()) continue;
+    Section section = section_of(*e, results, published);
     for (Figure& figure :
          profile_figures(results,
                          e->name,

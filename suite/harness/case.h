@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "suite/core/method.h"
+#include "suite/evidence/claim.h"
 #include "suite/results/published.h"
 #include "suite/results/record.h"
 #include "suite/results/report_model.h"
@@ -51,9 +52,18 @@ struct Experiment {
   Setting setting;
   std::vector<Profile> profiles;
   std::vector<Method> methods;
-  /// Tables, figures and claims from a campaign's results. Claims that cannot
-  /// be judged from them read not_run.
+  /// Profiles in ascending order are what the claims' `from` refers to.
+  std::vector<Claim> claims;
+  /// Tables and figures from a campaign's results.
   std::function<Section(const Results&, const Published&)> report;
+};
+
+/// What a paper says about several of its experiments.
+struct Overview {
+  std::string paper;  ///< jpo: of all experiments jpo/...
+  std::string title;
+  std::vector<std::string> profiles;  ///< in ascending order
+  std::vector<Claim> claims;
 };
 
 /// One case: what it is, and how to run it.

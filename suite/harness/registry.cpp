@@ -180,6 +180,81 @@ std::vector<std::string> problems_of(const Experiment& e) {
   return wrong;
 }
 
+/// Whether `profile`, or a later one, runs the method on a size selected.
+bool runs_from(const Experiment& e,
+               const std::string& profile,
+               const Select& select) {
+  bool reached = false;
+  for (const Profile& p : e.profiles) {
+    reached = reached || p.name == profile;
+    if (!reached) continue;
+    for (const Row& row : p.rows) {
+      const bool size = std::any_of(row.n.begin(), row.n.end(), [&](Index n) {
+        return n >= select.first && n <= select.last;
+      });
+      if (size &&
+          std::find(row.methods.begin(), row.methods.end(), select.method) !=
+              row.methods.end())
+        return true;
+    }
+  }
+  return false;
+}
+
+/// What is wrong with the runs that a claim asks for, "" if nothing.
+std::string objection(const Registry& registry,
+                      const std::string& experiment,
+                      const Claim& claim,
+                      const Select& select) {
+  const std::string& name =
+      select.experiment.empty() ? experiment : select.experiment;
+  const auto e = registry.find(name);
+  if (!e) return fmt::format("the unknown experiment '{}'", name);
+  const Method* m = find_method(*e, select.method);
+  if (m == nullptr)
+    return fmt::format("the unknown method '{}' of {}", select.method, name);
+  const bool stage =
+      std::any_of(m->chain.begin(), m->chain.end(), [&](const auto& s) {
+        return select.stage.empty() || s->name() == select.stage;
+      });
+  if (!stage)
+    return fmt::format("the unknown stage '{}' of {}", select.stage, m->id);
+  if (!runs_from(*e, claim.from, select))
+    return fmt::format(
+        "'{}', which no profile from {} on runs", select.text(), claim.from);
+  return "";
+}
+
+std::vector<std::string> profile_names(const Experiment& e) {
+  std::vector<std::string> names;
+  for (const Profile& p : e.profiles) names.push_back(p.name);
+  return names;
+}
+
+void check_claims(const Registry& registry,
+                  const std::string& experiment,
+                  const std::vector<Claim>& claims,
+                  const std::vector<std::string>& profiles,
+                  std::vector<std::string>& wrong) {
+  std::set<std::string> ids;
+  for (const Claim& claim : claims) {
+    if (!ids.insert(claim.id).second)
+      wrong.push_back(experiment + ": claim " + claim.id + " appears twice");
+    for (const auto& problem : problems_of(claim, profiles))
+      wrong.push_back(experiment + ": " + problem);
+    for (const Condition& c : claim.conditions) {
+      for (const Quantity& q : c.quantities) {
+        for (const Select& select : q.runs()) {
+          const auto why = objection(registry, experiment, claim, select);
+          if (!why.empty())
+            wrong.push_back(fmt::format(
+                "{}: claim {} asks for {}", experiment, claim.id, why));
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
 
 std::string to_text(Needs needs) {
@@ -204,6 +279,10 @@ void Registry::add(Experiment experiment) {
       std::make_shared<const Experiment>(std::move(experiment)));
 }
 
+void Registry::add(Overview overview) {
+  overviews_.push_back(std::move(overview));
+}
+
 std::shared_ptr<const Experiment> Registry::find(std::string_view name) const {
   for (const auto& e : experiments_)
     if (e->name == name) return e;
@@ -218,7 +297,10 @@ std::vector<std::string> Registry::problems() const {
       wrong.push_back(e->name + ": registered twice");
     const auto own = problems_of(*e);
     wrong.insert(wrong.end(), own.begin(), own.end());
+    check_claims(*this, e->name, e->claims, profile_names(*e), wrong);
   }
+  for (const Overview& o : overviews_)
+    check_claims(*this, o.paper, o.claims, o.profiles, wrong);
   if (!wrong.empty()) return wrong;
   for (const auto& profile : profiles()) {
     try {
@@ -296,6 +378,11 @@ Registry& registry() {
 
 bool register_experiment(Experiment experiment) {
   registry().add(std::move(experiment));
+  return true;
+}
+
+bool register_overview(Overview overview) {
+  registry().add(std::move(overview));
   return true;
 }
 

@@ -31,12 +31,15 @@ class Registry {
   using Experiments = std::vector<std::shared_ptr<const Experiment>>;
 
   void add(Experiment experiment);
+  void add(Overview overview);
   const Experiments& experiments() const { return experiments_; }
+  const std::vector<Overview>& overviews() const { return overviews_; }
   /// Null if there is none of this name.
   std::shared_ptr<const Experiment> find(std::string_view name) const;
 
   /// Everything wrong with what is registered, one line each: names, rows that
-  /// name unknown methods, methods that need what a problem does not provide.
+  /// name unknown methods, methods that need what a problem does not provide,
+  /// claims that name what is not there or never runs.
   std::vector<std::string> problems() const;
   /// Throws std::logic_error with the lines of `problems`, if any.
   void validate() const;
@@ -52,6 +55,7 @@ class Registry {
 
  private:
   Experiments experiments_;
+  std::vector<Overview> overviews_;
 };
 
 /// The program's registry; safe to use while statics are initialised.
@@ -59,6 +63,7 @@ Registry& registry();
 
 /// For static initialisation; returns true.
 bool register_experiment(Experiment experiment);
+bool register_overview(Overview overview);
 
 /// "forward|vjp"
 std::string to_text(Needs needs);

@@ -2,6 +2,7 @@
 /// judged claims. Case files fill it from `Results`; reports render it.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -68,15 +69,36 @@ struct Figure {
   std::string note;
 };
 
-enum class Verdict { reproduced, not_reproduced, not_run };
+/// Whose claim it is: a sentence, number or figure of the paper, or a range
+/// that earlier runs of this suite or of independent programs showed.
+enum class Origin { paper, suite };
+
+/// `not_judged`: runs are missing or too short. `reported`: numbers that no
+/// condition decides.
+enum class Verdict { reproduced, not_reproduced, not_judged, reported };
+inline constexpr int kVerdictCount = 4;
+
+/// One condition of a claim and what was measured for it.
+struct ConditionResult {
+  std::string label;                    ///< "Adam / HIG"
+  std::string bounds;                   ///< "> 2"; empty: a number alone
+  std::optional<double> value, spread;  ///< std over seeds
+  std::int64_t runs = 0;                ///< behind the value
+  std::optional<bool> holds;            ///< empty: not decided
+  std::string missing;                  ///< what is not there
+};
 
 struct ClaimResult {
   std::string id;    ///< R3
   std::string says;  ///< the claim in one sentence
   std::string from;  ///< lowest profile that can judge it
   bool gates = false;
-  Verdict verdict = Verdict::not_run;
+  Verdict verdict = Verdict::not_judged;
   std::string evidence;  ///< the numbers behind it, one line
+  Origin origin = Origin::suite;
+  std::string where = {};  ///< place in the paper
+  std::string note = {};
+  std::vector<ConditionResult> conditions = {};
 };
 
 /// One experiment's part of a report.

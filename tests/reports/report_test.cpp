@@ -89,7 +89,7 @@ TEST_F(ReportTest, ClaimsAndFiguresAreData) {
   const auto claims = nlohmann::json::parse(read(dir_ / "claims.json"));
   EXPECT_EQ(claims["provenance"]["revision"], "abc");
   EXPECT_EQ(claims["sections"][0]["claims"][0]["verdict"], "reproduced");
-  EXPECT_EQ(claims["sections"][0]["claims"][1]["verdict"], "not run");
+  EXPECT_EQ(claims["sections"][0]["claims"][1]["verdict"], "not judged");
   const auto fig =
       nlohmann::json::parse(read(dir_ / "jpo-toy/figures/fig1.json"));
   EXPECT_TRUE(fig["panels"][0]["series"][0]["y"][1].is_null());

@@ -61,7 +61,7 @@ TEST(HigPoisson, ADivergedRunIsInfiniteFromThereOn) {
 
 TEST(HigPoisson, NothingRunIsNotRun) {
   for (const char* id : {"A1", "A2", "A3", "A4", "A5", "A6", "A7", "A8", "A9"})
-    EXPECT_EQ(claim({}, id).verdict, Verdict::not_run) << id;
+    EXPECT_EQ(claim({}, id).verdict, Verdict::not_judged) << id;
   EXPECT_FALSE(claim({}, "A7").gates);
 }
 

@@ -63,8 +63,8 @@ TEST(SweepReport, MapsShowTheWorstExample) {
 TEST(SweepReport, TheAdjointClaimLooksAtFiniteCellsOnly) {
   StageRecord s = four_cells();
   EXPECT_EQ(adjoint_claim("N1", {&s}).verdict, Verdict::reproduced);
-  EXPECT_EQ(adjoint_claim("N1", {&s, nullptr}).verdict, Verdict::not_run);
-  EXPECT_EQ(adjoint_claim("N1", {}).verdict, Verdict::not_run);
+  EXPECT_EQ(adjoint_claim("N1", {&s, nullptr}).verdict, Verdict::not_judged);
+  EXPECT_EQ(adjoint_claim("N1", {}).verdict, Verdict::not_judged);
   for (const Index row : {2, 3}) {
     for (const double bad : {1, 2}) {
       StageRecord wrong = four_cells();

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "suite/cases/hig/common/curve.h"
+#include "suite/evidence/curve.h"
 #include "suite/cases/jpo/common/endings.h"
 
 namespace physinv {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "suite/cases/hig/common/curve.h"
+#include "suite/evidence/curve.h"
 #include "suite/cases/hig/common/report.h"
 #include "suite/cases/jpo/common/endings.h"
 

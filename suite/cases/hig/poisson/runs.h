@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "suite/cases/hig/common/curve.h"
+#include "suite/evidence/curve.h"
 #include "suite/results/results.h"
 
 namespace physinv::poisson {

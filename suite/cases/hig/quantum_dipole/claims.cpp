@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "suite/cases/hig/common/curve.h"
+#include "suite/evidence/curve.h"
 #include "suite/cases/hig/quantum_dipole/runs.h"
 #include "suite/cases/jpo/common/claims.h"
 

@@ -8,7 +8,7 @@
 
 #include "optimizers/half_inverse_direct.h"
 #include "problems/quantum_dipole/quantum_dipole.h"
-#include "suite/cases/hig/common/curve.h"
+#include "suite/evidence/curve.h"
 #include "suite/cases/hig/common/report.h"
 #include "suite/cases/hig/quantum_dipole/runs.h"
 #include "suite/cases/jpo/common/claims.h"

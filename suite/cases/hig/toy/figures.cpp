@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "suite/cases/hig/common/curve.h"
+#include "suite/evidence/curve.h"
 #include "suite/cases/jpo/common/endings.h"
 
 namespace physinv::toy {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "suite/cases/jpo/common/metrics.h"
+#include "suite/evidence/runs.h"
 #include "suite/results/report_model.h"
 
 namespace physinv {
@@ -58,7 +59,7 @@ class Judge {
                      std::string from,
                      bool gates = true) && {
     const Verdict verdict = !holds_    ? Verdict::not_reproduced
-                            : missing_ ? Verdict::not_run
+                            : missing_ ? Verdict::not_judged
                                        : Verdict::reproduced;
     return {.id = std::move(id),
             .says = std::move(says),
@@ -103,9 +104,6 @@ inline std::optional<double> ratio(std::optional<double> a,
                                    std::optional<double> b) {
   return a && b ? std::optional(*a / *b) : std::nullopt;
 }
-
-/// As the last size: there is no last.
-inline constexpr Index kEvery = std::numeric_limits<Index>::max();
 
 /// The sizes of a campaign within [first, last].
 inline std::vector<Index> sizes_between(const JpoMetrics& metrics,

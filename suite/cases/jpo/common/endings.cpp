@@ -2,13 +2,6 @@
 
 namespace physinv {
 
-double median(std::vector<double> values) {
-  const auto middle = values.size() / 2;
-  std::sort(values.begin(), values.end());
-  return values.size() % 2 == 1 ? values[middle]
-                                : 0.5 * (values[middle - 1] + values[middle]);
-}
-
 Endings::Endings(const JpoMetrics& metrics,
                  std::string_view method,
                  bool refined,

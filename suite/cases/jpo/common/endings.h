@@ -11,9 +11,6 @@
 
 namespace physinv {
 
-/// Of a list that is not empty.
-double median(std::vector<double> values);
-
 /// One method's finished chains, refined or not, of n >= first.
 class Endings {
  public:

@@ -24,17 +24,6 @@ std::optional<double> deviation(std::span<const double> values) {
 
 }  // namespace
 
-std::optional<MeanStd> mean_std(std::span<const double> values) {
-  if (values.empty()) return {};
-  const auto count = static_cast<double>(values.size());
-  double sum = 0, squares = 0;
-  for (const double v : values) sum += v;
-  MeanStd out{sum / count, {}};
-  for (const double v : values) squares += (v - out.mean) * (v - out.mean);
-  if (values.size() > 1) out.std = std::sqrt(squares / (count - 1));
-  return out;
-}
-
 Shares compare_losses(VectorIn<double> loss,
                       VectorIn<double> bfgs,
                       Equality equality) {

@@ -15,17 +15,10 @@
 #include <vector>
 
 #include "suite/core/batch.h"
+#include "suite/evidence/statistics.h"
 #include "suite/results/results.h"
 
 namespace physinv {
-
-/// Mean and ordinary sample standard deviation (divided by count - 1; empty
-/// for a single value). Empty for no values.
-struct MeanStd {
-  double mean = 0;
-  std::optional<double> std;
-};
-std::optional<MeanStd> mean_std(std::span<const double> values);
 
 /// When two losses count as equal: bitwise, or |a - b| <= 1e-6 |b|.
 enum class Equality { strict, tol };

@@ -1,4 +1,4 @@
-#include "suite/cases/hig/common/curve.h"
+#include "suite/evidence/curve.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,48 @@
+/// Claims: conditions on measured numbers, as data of an experiment.
+///
+///   {.id = "A2", .origin = Origin::paper, .where = "Fig. 3",
+///    .from = "standard", .says = "HIG takes fewer updates than Adam",
+///    .conditions = {within("updates to 0.1", median(...), 55, 95)}}
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "suite/evidence/condition.h"
+
+namespace physinv {
+
+struct Claim {
+  std::string id;  ///< unique within the experiment
+  Origin origin = Origin::suite;
+  std::string where;  ///< place in the paper; for the paper's claims
+  std::string from;   ///< lowest profile that can decide it
+  std::string says;   ///< without bounds: these write their own words
+  /// All have to hold. None that decides: the numbers are reported.
+  std::vector<Condition> conditions;
+  std::string note = {};  ///< "contradicts Table 2 of the same paper"
+  bool gates = true;
+};
+
+/// `profiles` are the experiment's in ascending order. A claim is judged from
+/// the profile it names or a later one; below, and where runs are missing, it
+/// is not judged, with what is missing. One condition that fails decides, even
+/// if others are missing.
+std::vector<ClaimResult> judge(const std::vector<Claim>& claims,
+                               const Evidence& evidence,
+                               const std::vector<std::string>& profiles);
+
+/// "Adam / HIG > 2; updates to 0.1 in 55 .. 95"
+std::string conditions_text(const Claim& claim);
+
+/// What is wrong with a claim by itself, one line each: no id, a claim of the
+/// paper without a place, no conditions, an unknown profile.
+std::vector<std::string> problems_of(const Claim& claim,
+                                     const std::vector<std::string>& profiles);
+
+/// Printed values that claims name and the paper's file lacks.
+std::vector<std::string> unknown_printed(const std::vector<Claim>& claims,
+                                         const std::string& experiment,
+                                         const Published& published);
+
+}  // namespace physinv

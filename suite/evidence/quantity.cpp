@@ -1,0 +1,241 @@
+#include "suite/evidence/quantity.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "suite/evidence/statistics.h"
+
+namespace physinv {
+namespace {
+
+/// A statistic of samples, or why there are none.
+template <class F>
+Quantity over_runs(Select select, RunValue value, F statistic) {
+  std::vector<Select> runs = {select};
+  return {[=](const Evidence& e) {
+            const auto samples = sample(e, select, value);
+            if (samples.empty()) {
+              const bool ran = !find_runs(e, select).empty();
+              return missing(select.text() + (ran ? " too short" : " not run"));
+            }
+            return statistic(samples);
+          },
+          std::move(runs)};
+}
+
+template <class F>
+Quantity of_values(Select select, RunValue value, F statistic) {
+  return over_runs(std::move(select),
+                   std::move(value),
+                   [=](const std::vector<Sample>& samples) {
+                     return Measured{
+                         .value = statistic(values_of(samples)),
+                         .runs = static_cast<Index>(samples.size())};
+                   });
+}
+
+std::vector<Select> joined(std::vector<Select> a,
+                           const std::vector<Select>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+template <class F>
+Quantity of_two(const Quantity& a, const Quantity& b, F f) {
+  auto printed = a.printed();
+  printed.insert(printed.end(), b.printed().begin(), b.printed().end());
+  return {[=](const Evidence& e) {
+            Measured x = a(e), y = b(e);
+            if (!x.value) return x;
+            if (!y.value) return y;
+            const double value = f(*x.value, *y.value);
+            if (std::isnan(value)) return missing("no finite value");
+            const Index runs = x.runs == 0   ? y.runs
+                               : y.runs == 0 ? x.runs
+                                             : std::min(x.runs, y.runs);
+            return Measured{.value = value, .runs = runs};
+          },
+          joined(a.runs(), b.runs()),
+          std::move(printed)};
+}
+
+Quantity extreme(const std::vector<Quantity>& of, bool largest) {
+  Quantity out = of.front();
+  for (std::size_t i = 1; i < of.size(); ++i)
+    out = of_two(out, of[i], [=](double a, double b) {
+      return largest ? std::max(a, b) : std::min(a, b);
+    });
+  return out;
+}
+
+}  // namespace
+
+Measured missing(std::string why) { return {.missing = std::move(why)}; }
+
+Quantity::Quantity(double constant)
+    : measure_([=](const Evidence&) { return Measured{.value = constant}; }) {}
+
+Quantity::Quantity(Measure measure,
+                   std::vector<Select> runs,
+                   std::vector<std::string> printed)
+    : measure_(std::move(measure)),
+      runs_(std::move(runs)),
+      printed_(std::move(printed)) {}
+
+Quantity median(Select select, RunValue value) {
+  return of_values(std::move(select), std::move(value), [](auto values) {
+    return median(std::move(values));
+  });
+}
+
+Quantity lowest(Select select, RunValue value) {
+  return of_values(std::move(select), std::move(value), [](const auto& values) {
+    return *std::min_element(values.begin(), values.end());
+  });
+}
+
+Quantity highest(Select select, RunValue value) {
+  return of_values(std::move(select), std::move(value), [](const auto& values) {
+    return *std::max_element(values.begin(), values.end());
+  });
+}
+
+Quantity mean(Select select, RunValue value) {
+  return over_runs(std::move(select),
+                   std::move(value),
+                   [](const std::vector<Sample>& samples) {
+                     const auto seeds = seed_means(samples);
+                     const auto found = mean_std(seeds);
+                     return Measured{.value = found->mean,
+                                     .spread = found->std,
+                                     .runs = static_cast<Index>(seeds.size())};
+                   });
+}
+
+Quantity count(Select select,
+               RunValue value,
+               std::function<bool(double)> test) {
+  return of_values(
+      std::move(select), std::move(value), [test](const auto& values) {
+        return static_cast<double>(
+            std::count_if(values.begin(), values.end(), test));
+      });
+}
+
+Quantity share(Select select,
+               RunValue value,
+               std::function<bool(double)> test) {
+  return of_values(
+      std::move(select), std::move(value), [test](const auto& values) {
+        return static_cast<double>(
+                   std::count_if(values.begin(), values.end(), test)) /
+               static_cast<double>(values.size());
+      });
+}
+
+Quantity median_ratio(Select a, Select b, RunValue value) {
+  const auto pair = [=](const Run& run) -> std::optional<double> {
+    const auto other = run.beside(b);
+    if (!other) return {};
+    const auto x = value(run), y = value(*other);
+    if (!x || !y || std::isnan(*x / *y)) return {};
+    return *x / *y;
+  };
+  const Quantity ratios = median(a, pair);
+  return {[ratios](const Evidence& e) { return ratios(e); }, {a, b}};
+}
+
+Quantity median_of_examples(Select select, RunRow row) {
+  std::vector<Select> runs = {select};
+  return {[=](const Evidence& e) {
+            std::vector<double> all;
+            const auto found = find_runs(e, select);
+            for (const Run& run : found)
+              for (const double v : row(run)) all.push_back(v);
+            if (all.empty()) return missing(select.text() + " not run");
+            return Measured{.value = median(std::move(all)),
+                            .runs = static_cast<Index>(found.size())};
+          },
+          std::move(runs)};
+}
+
+Quantity share_of_examples(Select select,
+                           RunRow row,
+                           std::function<bool(double)> test) {
+  struct Tally {
+    double passed = 0, all = 0;
+  };
+  std::vector<Select> runs = {select};
+  return {[=](const Evidence& e) {
+            Tally total;
+            std::map<std::uint64_t, Tally> seeds;
+            for (const Run& run : find_runs(e, select)) {
+              Tally& seed = seeds[run.seed()];
+              for (const double v : row(run)) {
+                const bool passed = test(v);
+                seed.passed += passed, seed.all += 1;
+                total.passed += passed, total.all += 1;
+              }
+            }
+            if (total.all == 0) return missing(select.text() + " not run");
+            std::vector<double> shares;
+            for (const auto& [seed, c] : seeds)
+              if (c.all > 0) shares.push_back(c.passed / c.all);
+            return Measured{.value = total.passed / total.all,
+                            .spread = mean_std(shares)->std,
+                            .runs = static_cast<Index>(shares.size())};
+          },
+          std::move(runs)};
+}
+
+Quantity ratio(const Quantity& a, const Quantity& b) {
+  return of_two(a, b, [](double x, double y) { return x / y; });
+}
+
+Quantity difference(const Quantity& a, const Quantity& b) {
+  return of_two(a, b, [](double x, double y) { return x - y; });
+}
+
+Quantity times(double factor, const Quantity& a) {
+  return {[=](const Evidence& e) {
+            Measured m = a(e);
+            if (m.value) *m.value *= factor;
+            if (m.spread) *m.spread *= factor;
+            return m;
+          },
+          a.runs(),
+          a.printed()};
+}
+
+Quantity percent(const Quantity& share) { return times(100, share); }
+
+Quantity least(std::vector<Quantity> of) { return extreme(of, false); }
+Quantity most(std::vector<Quantity> of) { return extreme(of, true); }
+
+Quantity from_at_least(Index runs, const Quantity& a) {
+  return {[=](const Evidence& e) {
+            Measured m = a(e);
+            if (!m.value || m.runs >= runs) return m;
+            return missing(
+                fmt::format("{} of {} runs", runs - m.runs, runs) +
+                (a.runs().empty() ? "" : " of " + a.runs().front().text()));
+          },
+          a.runs(),
+          a.printed()};
+}
+
+Quantity printed(std::string quantity) {
+  std::vector<std::string> names = {quantity};
+  return {[=](const Evidence& e) {
+            const auto found = e.published.find(e.experiment, quantity);
+            if (!found) return missing("printed " + quantity);
+            return Measured{.value = found->value, .spread = found->spread};
+          },
+          {},
+          std::move(names)};
+}
+
+}  // namespace physinv

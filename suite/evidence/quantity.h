@@ -1,0 +1,84 @@
+/// Quantities: how a number is measured from a campaign, and which runs and
+/// printed values it needs, so that registration can check them.
+///
+///   ratio(median({"adam"}, loss), median({"hig"}, loss))
+#pragma once
+
+#include <functional>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "suite/evidence/runs.h"
+
+namespace physinv {
+
+struct Measured {
+  std::optional<double> value;   ///< may be infinite
+  std::optional<double> spread;  ///< sample deviation over seeds
+  Index runs = 0;                ///< runs or seeds behind it
+  std::string missing;           ///< what is not there, if there is no value
+};
+
+/// A number with nothing behind it but a reason.
+Measured missing(std::string why);
+
+class Quantity {
+ public:
+  using Measure = std::function<Measured(const Evidence&)>;
+
+  Quantity(double constant);  // NOLINT(google-explicit-constructor)
+  Quantity(Measure measure,
+           std::vector<Select> runs,
+           std::vector<std::string> printed = {});
+
+  Measured operator()(const Evidence& evidence) const {
+    return measure_(evidence);
+  }
+  /// What registration looks up.
+  const std::vector<Select>& runs() const { return runs_; }
+  const std::vector<std::string>& printed() const { return printed_; }
+
+ private:
+  Measure measure_;
+  std::vector<Select> runs_;
+  std::vector<std::string> printed_;
+};
+
+/// Over all runs selected, whatever their n.
+Quantity median(Select select, RunValue value);
+Quantity lowest(Select select, RunValue value);
+Quantity highest(Select select, RunValue value);
+/// The mean over n of each seed; of these the mean, their deviation as spread.
+Quantity mean(Select select, RunValue value);
+/// Share of the runs that have a value and pass; their number.
+Quantity share(Select select, RunValue value, std::function<bool(double)> test);
+Quantity count(Select select, RunValue value, std::function<bool(double)> test);
+/// Of value(a) / value(b) over pairs of runs of one n and seed.
+Quantity median_ratio(Select a, Select b, RunValue value);
+
+/// Values of a run's examples, joined over all runs.
+using RunRow = std::function<std::vector<double>(const Run&)>;
+Quantity median_of_examples(Select select, RunRow row);
+/// Share of all examples, the deviation of each seed's share as spread.
+Quantity share_of_examples(Select select,
+                           RunRow row,
+                           std::function<bool(double)> test);
+
+Quantity ratio(const Quantity& a, const Quantity& b);
+Quantity difference(const Quantity& a, const Quantity& b);
+/// Value and spread times a factor; 100 makes per cent of a share.
+Quantity times(double factor, const Quantity& a);
+Quantity percent(const Quantity& share);
+/// The smallest and the largest of those that are there, missing if one is.
+Quantity least(std::vector<Quantity> of);
+Quantity most(std::vector<Quantity> of);
+
+/// Missing unless so many runs (or seeds) stand behind it.
+Quantity from_at_least(Index runs, const Quantity& a);
+
+/// A value of the paper, with its printed spread.
+Quantity printed(std::string quantity);
+
+}  // namespace physinv

@@ -1,0 +1,81 @@
+#include "suite/evidence/statistics.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace physinv {
+
+double median(std::vector<double> values) {
+  const auto middle = values.size() / 2;
+  std::sort(values.begin(), values.end());
+  return values.size() % 2 == 1 ? values[middle]
+                                : 0.5 * (values[middle - 1] + values[middle]);
+}
+
+double quantile(std::vector<double> values, double q) {
+  std::sort(values.begin(), values.end());
+  const double at = q * static_cast<double>(values.size() - 1);
+  const auto below = static_cast<std::size_t>(at);
+  const double share = at - static_cast<double>(below);
+  if (share == 0 || values[below] == values[below + 1]) return values[below];
+  return (1 - share) * values[below] + share * values[below + 1];
+}
+
+std::optional<MeanStd> mean_std(std::span<const double> values) {
+  if (values.empty()) return {};
+  const auto count = static_cast<double>(values.size());
+  double sum = 0, squares = 0;
+  for (const double v : values) sum += v;
+  MeanStd out{sum / count, {}};
+  for (const double v : values) squares += (v - out.mean) * (v - out.mean);
+  if (values.size() > 1) out.std = std::sqrt(squares / (count - 1));
+  return out;
+}
+
+std::optional<Line> fit_line(std::span<const double> x,
+                             std::span<const double> y) {
+  if (x.size() < 3 || x.size() != y.size()) return {};
+  const auto count = static_cast<double>(x.size());
+  double mean_x = 0, mean_y = 0, xx = 0, xy = 0, residuals = 0;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    mean_x += x[i] / count, mean_y += y[i] / count;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    xx += (x[i] - mean_x) * (x[i] - mean_x);
+    xy += (x[i] - mean_x) * (y[i] - mean_y);
+  }
+  Line line{.slope = xy / xx};
+  line.intercept = mean_y - line.slope * mean_x;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    residuals += std::pow(y[i] - line.intercept - line.slope * x[i], 2);
+  line.slope_error = std::sqrt(residuals / (count - 2) / xx);
+  return line;
+}
+
+namespace {
+
+/// P(at most k of n) where each happens with probability p.
+double binomial_below(int k, int n, double p) {
+  double term = std::pow(1 - p, n), sum = term;
+  for (int i = 1; i <= k; ++i) sum += term *= p / (1 - p) * (n - i + 1) / i;
+  return sum;
+}
+
+}  // namespace
+
+std::optional<Range> tolerance_interval(std::vector<double> values,
+                                        double content,
+                                        double confidence) {
+  // The k-th lowest to the k-th highest hold a share above `content` with
+  // probability P(Binomial(n, content) <= n - 2 k).
+  const auto n = static_cast<int>(values.size());
+  int k = 0;
+  while (2 * (k + 1) <= n &&
+         binomial_below(n - 2 * (k + 1), n, content) >= confidence)
+    ++k;
+  if (k == 0) return {};
+  std::sort(values.begin(), values.end());
+  const auto at = static_cast<std::size_t>(k - 1);
+  return Range{values[at], values[values.size() - 1 - at]};
+}
+
+}  // namespace physinv

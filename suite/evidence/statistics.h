@@ -1,0 +1,45 @@
+/// Statistics over seeds, sizes and examples.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace physinv {
+
+/// Of a list that is not empty; of an even number the mean of the two in the
+/// middle. Infinities are numbers here.
+double median(std::vector<double> values);
+
+/// The value with a share q of the others below it, linear between two.
+/// Of a list that is not empty.
+double quantile(std::vector<double> values, double q);
+
+/// Mean and ordinary sample standard deviation (divided by count - 1; empty
+/// for a single value). Empty for no values.
+struct MeanStd {
+  double mean = 0;
+  std::optional<double> std;
+};
+std::optional<MeanStd> mean_std(std::span<const double> values);
+
+/// Least squares y = intercept + slope x, with the slope's standard error from
+/// the residuals. Empty for fewer than three points.
+struct Line {
+  double intercept = 0, slope = 0, slope_error = 0;
+};
+std::optional<Line> fit_line(std::span<const double> x,
+                             std::span<const double> y);
+
+/// A range that holds a share `content` of all runs with this confidence,
+/// whatever their distribution: the k-th lowest to the k-th highest of the
+/// sample (Wilks 1941), as narrow as the sample allows. Empty if even the
+/// whole sample is too small.
+struct Range {
+  double lowest = 0, highest = 0;
+};
+std::optional<Range> tolerance_interval(std::vector<double> values,
+                                        double content,
+                                        double confidence);
+
+}  // namespace physinv
