@@ -44,6 +44,9 @@ struct Profile {
   std::vector<Row> rows;
 };
 
+/// Tables and figures of an experiment from a campaign's results.
+using Report = std::function<Section(const Results&, const Published&)>;
+
 struct Experiment {
   std::string name;   ///< jpo/billiards
   std::string title;  ///< Billiards
@@ -54,8 +57,7 @@ struct Experiment {
   std::vector<Method> methods;
   /// Profiles in ascending order are what the claims' `from` refers to.
   std::vector<Claim> claims;
-  /// Tables and figures from a campaign's results.
-  std::function<Section(const Results&, const Published&)> report;
+  Report report;  ///< empty: claims alone
 };
 
 /// What a paper says about several of its experiments.

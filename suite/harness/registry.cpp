@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <set>
 #include <stdexcept>
@@ -275,8 +276,38 @@ std::string to_text(Needs needs) {
 }
 
 void Registry::add(Experiment experiment) {
+  if (auto claims = claims_.extract(experiment.name))
+    std::move(claims.mapped().begin(),
+              claims.mapped().end(),
+              std::back_inserter(experiment.claims));
+  if (auto report = reports_.extract(experiment.name))
+    experiment.report = std::move(report.mapped());
   experiments_.push_back(
       std::make_shared<const Experiment>(std::move(experiment)));
+}
+
+void Registry::add_claims(const std::string& experiment,
+                          std::vector<Claim> claims) {
+  for (auto& e : experiments_) {
+    if (e->name != experiment) continue;
+    Experiment with = *e;
+    std::move(claims.begin(), claims.end(), std::back_inserter(with.claims));
+    e = std::make_shared<const Experiment>(std::move(with));
+    return;
+  }
+  auto& waiting = claims_[experiment];
+  std::move(claims.begin(), claims.end(), std::back_inserter(waiting));
+}
+
+void Registry::add_report(const std::string& experiment, Report report) {
+  for (auto& e : experiments_) {
+    if (e->name != experiment) continue;
+    Experiment with = *e;
+    with.report = std::move(report);
+    e = std::make_shared<const Experiment>(std::move(with));
+    return;
+  }
+  reports_[experiment] = std::move(report);
 }
 
 void Registry::add(Overview overview) {
@@ -299,6 +330,10 @@ std::vector<std::string> Registry::problems() const {
     wrong.insert(wrong.end(), own.begin(), own.end());
     check_claims(*this, e->name, e->claims, profile_names(*e), wrong);
   }
+  for (const auto& [name, claims] : claims_)
+    wrong.push_back("claims of the unknown experiment " + name);
+  for (const auto& [name, report] : reports_)
+    wrong.push_back("a report of the unknown experiment " + name);
   for (const Overview& o : overviews_)
     check_claims(*this, o.paper, o.claims, o.profiles, wrong);
   if (!wrong.empty()) return wrong;
@@ -378,6 +413,16 @@ Registry& registry() {
 
 bool register_experiment(Experiment experiment) {
   registry().add(std::move(experiment));
+  return true;
+}
+
+bool register_claims(const std::string& experiment, std::vector<Claim> claims) {
+  registry().add_claims(experiment, std::move(claims));
+  return true;
+}
+
+bool register_report(const std::string& experiment, Report report) {
+  registry().add_report(experiment, std::move(report));
   return true;
 }
 

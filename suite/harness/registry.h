@@ -7,6 +7,7 @@
 /// `validate`, so nothing throws before `main`.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -32,6 +33,9 @@ class Registry {
 
   void add(Experiment experiment);
   void add(Overview overview);
+  /// What stands in other files than its experiment, in either order.
+  void add_claims(const std::string& experiment, std::vector<Claim> claims);
+  void add_report(const std::string& experiment, Report report);
   const Experiments& experiments() const { return experiments_; }
   const std::vector<Overview>& overviews() const { return overviews_; }
   /// Null if there is none of this name.
@@ -56,6 +60,9 @@ class Registry {
  private:
   Experiments experiments_;
   std::vector<Overview> overviews_;
+  /// Of experiments that are not there yet.
+  std::map<std::string, std::vector<Claim>> claims_;
+  std::map<std::string, Report> reports_;
 };
 
 /// The program's registry; safe to use while statics are initialised.
@@ -64,6 +71,8 @@ Registry& registry();
 /// For static initialisation; returns true.
 bool register_experiment(Experiment experiment);
 bool register_overview(Overview overview);
+bool register_claims(const std::string& experiment, std::vector<Claim> claims);
+bool register_report(const std::string& experiment, Report report);
 
 /// "forward|vjp"
 std::string to_text(Needs needs);
