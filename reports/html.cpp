@@ -16,7 +16,6 @@ namespace physinv {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Tally = std::array<int, kVerdictCount>;  // by verdict
 
 struct Look {
   std::string_view css, mark;
@@ -81,14 +80,6 @@ std::vector<Anchors> anchors_of(const std::vector<Section>& sections) {
   return all;
 }
 
-Tally tally(const Section& section) {
-  Tally counts{};
-  for (const ClaimResult& c : section.claims) {
-    ++counts[static_cast<std::size_t>(c.verdict)];
-  }
-  return counts;
-}
-
 std::string name_of(std::string_view source, std::string_view title) {
   if (source.empty()) return std::string(title);
   return title.empty() ? std::string(source)
@@ -101,44 +92,49 @@ std::string link(const std::string& id, const std::string& words) {
 
 // ---- overview -------------------------------------------------------------
 
+/// The paper's claims are what counts as reproduced; the suite's ranges are a
+/// line below.
 std::string totals_html(const std::vector<Section>& sections) {
-  Tally all{};
   int unmet = 0;
-  for (const Section& s : sections) {
-    const Tally one = tally(s);
-    for (std::size_t k = 0; k < all.size(); ++k) all[k] += one[k];
-    for (const ClaimResult& c : s.claims) {
+  for (const Section& s : sections)
+    for (const ClaimResult& c : s.claims)
       unmet += c.gates && c.verdict == Verdict::not_reproduced;
-    }
-  }
-  std::string out = "<ul class=\"totals\">\n";
+  const Tally papers = tally(sections, Origin::paper);
+  std::string out =
+      "<p>What the papers say, by their sentences, tables and figures:</p>\n"
+      "<ul class=\"totals\">\n";
   for (const Verdict v : kVerdicts) {
-    const int count = all[static_cast<std::size_t>(v)];
+    const int count = papers[static_cast<std::size_t>(v)];
     out += fmt::format("<li class=\"{}\"><strong>{}</strong> {}</li>\n",
                        count == 0 ? "open" : look_of(v).css,
                        count,
-                       to_string(v));
+                       words_of(v, Origin::paper));
   }
   return out +
-         fmt::format("</ul>\n<p>{}</p>\n",
-                     unmet == 0
-                         ? "No gating claim (marked •) is missed."
-                         : fmt::format("Gating claims (marked •) that are not "
-                                       "reproduced: {}.",
-                                       unmet));
+         fmt::format(
+             "</ul>\n<p>Ranges of the suite, from earlier runs (regression "
+             "checks): {}. {}</p>\n",
+             tally_text(tally(sections, Origin::suite), Origin::suite),
+             unmet == 0 ? "No gating claim (marked •) is missed."
+                        : fmt::format("Gating claims (marked •) that are not "
+                                      "met: {}.",
+                                      unmet));
 }
 
-std::string chips_html(const Section& section, const Anchors& anchors) {
+std::string chips_html(const Section& section,
+                       const Anchors& anchors,
+                       Origin origin) {
   std::string out;
   for (std::size_t k = 0; k < section.claims.size(); ++k) {
     const ClaimResult& c = section.claims[k];
+    if (c.origin != origin) continue;
     const Look look = look_of(c.verdict);
     out += fmt::format(
         "{}<a class=\"chip {}\" href=\"#{}\" title=\"{}: {}\">{} {}{}</a>",
-        k == 0 ? "" : " ",
+        out.empty() ? "" : " ",
         look.css,
         anchors.claims[k],
-        to_string(c.verdict),
+        words_of(c.verdict, origin),
         html(c.says),
         look.mark,
         html(c.id),
@@ -154,20 +150,24 @@ std::string overview_html(const std::vector<Section>& sections,
                     "<caption class=\"hidden\">Claims by experiment</caption>\n"
                     "<thead>\n<tr><th scope=\"col\">experiment</th>";
   for (const Verdict v : kVerdicts) {
-    out += fmt::format("<th scope=\"col\">{}</th>", to_string(v));
+    out += fmt::format("<th scope=\"col\">{}</th>", words_of(v, Origin::paper));
   }
-  out += "<th scope=\"col\">claims</th></tr>\n</thead>\n<tbody>\n";
+  out +=
+      "<th scope=\"col\">the paper's claims</th>"
+      "<th scope=\"col\">the suite's ranges</th></tr>\n</thead>\n<tbody>\n";
   for (std::size_t s = 0; s < sections.size(); ++s) {
     out += fmt::format("<tr><th scope=\"row\">{}</th>",
                        link(anchors[s].section, sections[s].title));
-    const Tally counts = tally(sections[s]);
+    const Tally counts = tally(sections[s], Origin::paper);
     for (const Verdict v : kVerdicts) {
       out += fmt::format("<td>{}<span class=\"word\"> {}</span></td>",
                          counts[static_cast<std::size_t>(v)],
-                         to_string(v));
+                         words_of(v, Origin::paper));
     }
-    out += fmt::format("<td class=\"chips\">{}</td></tr>\n",
-                       chips_html(sections[s], anchors[s]));
+    for (const Origin origin : {Origin::paper, Origin::suite})
+      out += fmt::format("<td class=\"chips\">{}</td>",
+                         chips_html(sections[s], anchors[s], origin));
+    out += "</tr>\n";
   }
   return out + "</tbody>\n</table>\n</div>\n";
 }
@@ -210,32 +210,42 @@ std::string claim_html(const ClaimResult& claim, const std::string& id) {
       html(claim.id),
       look.css,
       look.mark,
-      to_string(claim.verdict),
+      words_of(claim.verdict, claim.origin),
       html(claim.says));
   if (!claim.evidence.empty()) {
     out += fmt::format("<p class=\"evidence\">{}</p>", html(claim.evidence));
   }
-  return out + fmt::format("<p class=\"evidence\">{}{}</p></td></tr>\n",
-                           claim.gates ? "• gating" : "reported, not gating",
+  if (!claim.note.empty())
+    out += fmt::format("<p class=\"evidence\">{}</p>", html(claim.note));
+  return out + fmt::format("<p class=\"evidence\">{}{}{}</p></td></tr>\n",
+                           claim.where.empty() ? "" : html(claim.where) + " · ",
+                           claim.gates ? "• gating" : "not gating",
                            claim.from.empty()
                                ? ""
                                : fmt::format(", judged from profile {}",
                                              html(claim.from)));
 }
 
-std::string claims_html(const Section& section, const Anchors& anchors) {
-  if (section.claims.empty()) return "";
-  std::string out =
-      "<h3>Claims</h3>\n<div class=\"scroll\">\n<table class=\"claims\">\n" +
-      fmt::format("<caption class=\"hidden\">Claims of {}</caption>\n",
-                  html(section.title)) +
-      "<thead class=\"hidden\">\n<tr><th scope=\"col\">id</th>"
-      "<th scope=\"col\">verdict</th><th scope=\"col\">claim and evidence</th>"
-      "</tr>\n</thead>\n<tbody>\n";
-  for (std::size_t k = 0; k < section.claims.size(); ++k) {
-    out += claim_html(section.claims[k], anchors.claims[k]);
-  }
-  return out + "</tbody>\n</table>\n</div>\n";
+std::string claims_html(const Section& section,
+                        const Anchors& anchors,
+                        Origin origin) {
+  std::string rows;
+  for (std::size_t k = 0; k < section.claims.size(); ++k)
+    if (section.claims[k].origin == origin)
+      rows += claim_html(section.claims[k], anchors.claims[k]);
+  if (rows.empty()) return "";
+  const char* title =
+      origin == Origin::paper ? "What the paper says" : "Ranges of the suite";
+  return fmt::format(
+             "<h3>{0}</h3>\n<div class=\"scroll\">\n"
+             "<table class=\"claims\">\n<caption class=\"hidden\">{0}: {1}"
+             "</caption>\n",
+             title,
+             html(section.title)) +
+         "<thead class=\"hidden\">\n<tr><th scope=\"col\">id</th>"
+         "<th scope=\"col\">verdict</th><th scope=\"col\">claim and "
+         "evidence</th></tr>\n</thead>\n<tbody>\n" +
+         rows + "</tbody>\n</table>\n</div>\n";
 }
 
 std::string section_html(const Section& section, const Anchors& anchors) {
@@ -248,7 +258,8 @@ std::string section_html(const Section& section, const Anchors& anchors) {
       html(section.experiment),
       section.paper.empty() ? ""
                             : fmt::format(" · paper: {}", html(section.paper)));
-  out += claims_html(section, anchors);
+  for (const Origin origin : {Origin::paper, Origin::suite})
+    out += claims_html(section, anchors, origin);
   if (!section.tables.empty()) out += "<h3>Tables</h3>\n";
   for (std::size_t k = 0; k < section.tables.size(); ++k) {
     out += table_html(section.tables[k], anchors.tables[k]);

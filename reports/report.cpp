@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
+#include <cmath>
 
 #include "reports/html.h"
 #include "reports/plot.h"
@@ -94,50 +94,53 @@ Json to_json(const Panel& p) {
 std::string_view verdict_mark(Verdict verdict) {
   switch (verdict) {
     case Verdict::reproduced:
-      return "✅ reproduced";
+      return "✅";
     case Verdict::not_reproduced:
-      return "❌ not reproduced";
+      return "❌";
     case Verdict::not_judged:
-      return "➖ not judged";
+      return "➖";
     case Verdict::reported:
-      return "ℹ️ reported";
+      return "ℹ️";
   }
   return "";
 }
 
-std::array<int, kVerdictCount> count_verdicts(
-    const std::vector<Section>& sections) {
-  std::array<int, kVerdictCount> counts{};
-  for (const Section& s : sections) {
-    for (const ClaimResult& c : s.claims) {
-      ++counts[static_cast<std::size_t>(c.verdict)];
-    }
-  }
-  return counts;
-}
-
 std::string summary(const std::vector<Section>& sections) {
-  const auto [yes, no, open, told] = count_verdicts(sections);
-  return fmt::format(
-      "{} reproduced, {} not reproduced, {} not judged, {} reported",
-      yes,
-      no,
-      open,
-      told);
+  std::string text =
+      fmt::format("claims of the papers {}",
+                  tally_text(tally(sections, Origin::paper), Origin::paper));
+  return text +
+         fmt::format("; of the suite's ranges {}",
+                     tally_text(tally(sections, Origin::suite), Origin::suite));
 }
 
-std::string claims_markdown(const Section& section) {
-  std::string out =
-      "| id | claim | verdict | judged from | gates | evidence |\n"
-      "| -- | ----- | ------- | ----------- | ----- | -------- |\n";
+std::string claims_markdown(const Section& section, Origin origin) {
+  std::string out;
   for (const ClaimResult& c : section.claims) {
-    out += fmt::format("| {} | {} | {} | {} | {} | {} |\n",
+    if (c.origin != origin) continue;
+    if (out.empty())
+      out = origin == Origin::paper
+                ? "\n### What the paper says\n\n"
+                : "\n### Ranges of the suite\n\nFrom earlier runs of this "
+                  "code or of independent programs; regression checks.\n\n";
+    if (out.ends_with("\n\n"))
+      out +=
+          "| id | claim | verdict | judged from | gates | evidence |\n"
+          "| -- | ----- | ------- | ----------- | ----- | -------- |\n";
+    const std::string place =
+        c.where.empty() ? "" : fmt::format(" ({})", one_line(c.where));
+    const std::string note =
+        c.note.empty() ? "" : fmt::format(" *{}*", one_line(c.note));
+    out += fmt::format("| {} | {}{} | {} {} | {} | {} | {}{} |\n",
                        c.id,
                        one_line(c.says),
+                       place,
                        verdict_mark(c.verdict),
+                       words_of(c.verdict, origin),
                        c.from,
                        c.gates ? "yes" : "no",
-                       one_line(c.evidence));
+                       one_line(c.evidence),
+                       note);
   }
   return out;
 }
@@ -148,9 +151,8 @@ std::string section_markdown(const Section& section) {
   if (!section.paper.empty()) {
     out += fmt::format("\nPaper: {}\n", section.paper);
   }
-  if (!section.claims.empty()) {
-    out += "\n### Claims\n\n" + claims_markdown(section);
-  }
+  for (const Origin origin : {Origin::paper, Origin::suite})
+    out += claims_markdown(section, origin);
   if (!section.tables.empty()) out += "\n### Tables\n";
   for (const Table& t : section.tables) out += '\n' + to_markdown(t);
   if (!section.figures.empty()) out += "\n### Figures\n";
@@ -194,18 +196,45 @@ void write_section(Writer& writer, const Section& section) {
 
 }  // namespace
 
-std::string_view to_string(Verdict verdict) {
+std::string_view words_of(Verdict verdict, Origin origin) {
+  const bool paper = origin == Origin::paper;
   switch (verdict) {
     case Verdict::reproduced:
-      return "reproduced";
+      return paper ? "reproduced" : "holds";
     case Verdict::not_reproduced:
-      return "not reproduced";
+      return paper ? "not reproduced" : "fails";
     case Verdict::not_judged:
       return "not judged";
     case Verdict::reported:
       return "reported";
   }
   return "";
+}
+
+Tally tally(const Section& section, Origin origin) {
+  Tally counts{};
+  for (const ClaimResult& c : section.claims)
+    if (c.origin == origin) ++counts[static_cast<std::size_t>(c.verdict)];
+  return counts;
+}
+
+Tally tally(const std::vector<Section>& sections, Origin origin) {
+  Tally all{};
+  for (const Section& s : sections) {
+    const Tally one = tally(s, origin);
+    for (std::size_t k = 0; k < all.size(); ++k) all[k] += one[k];
+  }
+  return all;
+}
+
+std::string tally_text(const Tally& tally, Origin origin) {
+  std::string text;
+  for (int k = 0; k < kVerdictCount; ++k)
+    text += fmt::format("{}{} {}",
+                        k == 0 ? "" : ", ",
+                        tally[static_cast<std::size_t>(k)],
+                        words_of(static_cast<Verdict>(k), origin));
+  return text;
 }
 
 nlohmann::ordered_json to_json(const Figure& figure) {
@@ -220,12 +249,27 @@ nlohmann::ordered_json to_json(const Figure& figure) {
 }
 
 nlohmann::ordered_json to_json(const ClaimResult& claim) {
+  Json conditions = Json::array();
+  for (const ConditionResult& c : claim.conditions) {
+    const bool finite = c.value && std::isfinite(*c.value);
+    conditions.push_back({{"label", c.label},
+                          {"bounds", c.bounds},
+                          {"value", finite ? Json(*c.value) : Json(nullptr)},
+                          {"spread", optional_number(c.spread)},
+                          {"runs", c.runs},
+                          {"holds", c.holds ? Json(*c.holds) : Json(nullptr)},
+                          {"missing", c.missing}});
+  }
   return {{"id", claim.id},
           {"says", claim.says},
           {"from", claim.from},
           {"gates", claim.gates},
-          {"verdict", to_string(claim.verdict)},
-          {"evidence", claim.evidence}};
+          {"verdict", words_of(claim.verdict, claim.origin)},
+          {"evidence", claim.evidence},
+          {"origin", claim.origin == Origin::paper ? "paper" : "suite"},
+          {"where", claim.where},
+          {"note", claim.note},
+          {"conditions", std::move(conditions)}};
 }
 
 std::vector<fs::path> write_report(const fs::path& dir,
@@ -250,7 +294,7 @@ std::vector<fs::path> write_report(const fs::path& dir,
 
 std::string report_markdown(const std::vector<Section>& sections,
                             const nlohmann::ordered_json& provenance) {
-  std::string out = "# Report\n\nClaims: " + summary(sections) + ".\n";
+  std::string out = "# Report\n\nOf the " + summary(sections) + ".\n";
   out += provenance_markdown(provenance);
   for (const Section& s : sections) out += section_markdown(s);
   return out;
@@ -264,13 +308,13 @@ std::string render_claims_text(const std::vector<Section>& sections,
     out += fmt::format("{} ({})\n", s.title, s.experiment);
     for (const ClaimResult& c : s.claims) {
       std::string words = c.says;
-      if (!c.gates) words += " (reported, does not gate)";
+      if (!c.where.empty()) words += fmt::format(" ({})", c.where);
+      if (!c.gates) words += " (does not gate)";
       if (!c.evidence.empty()) words += " — " + c.evidence;
-      if (c.verdict == Verdict::not_judged && !c.from.empty()) {
-        words += fmt::format(" [needs profile {}]", c.from);
-      }
+      if (!c.note.empty()) words += fmt::format(" [{}]", c.note);
       std::string head = "  " + pad_right(c.id, 4) + ' ';
-      head = pad_right(head + std::string(to_string(c.verdict)), kIndent);
+      head += words_of(c.verdict, c.origin);
+      head = pad_right(head, kIndent);
       const std::size_t room = width > kIndent + 20 ? width - kIndent : 20;
       for (const std::string& line : wrap(words, room)) {
         out += head + line + '\n';
@@ -278,7 +322,7 @@ std::string render_claims_text(const std::vector<Section>& sections,
       }
     }
   }
-  return out + summary(sections) + '\n';
+  return out + "of the " + summary(sections) + '\n';
 }
 
 }  // namespace physinv

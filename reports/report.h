@@ -3,6 +3,7 @@
 /// programs.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -14,8 +15,16 @@
 
 namespace physinv {
 
-/// `reproduced`, `not reproduced`, `not run`.
-std::string_view to_string(Verdict verdict);
+/// Of the paper's claims `reproduced`, `not reproduced`, of the suite's ranges
+/// `holds`, `fails`; of both `not judged`, `reported`.
+std::string_view words_of(Verdict verdict, Origin origin);
+
+/// How many claims of an origin came to which verdict.
+using Tally = std::array<int, kVerdictCount>;
+Tally tally(const Section& section, Origin origin);
+Tally tally(const std::vector<Section>& sections, Origin origin);
+/// "12 reproduced, 3 not reproduced, 4 not judged, 1 reported"
+std::string tally_text(const Tally& tally, Origin origin);
 
 nlohmann::ordered_json to_json(const Figure& figure);
 nlohmann::ordered_json to_json(const ClaimResult& claim);

@@ -98,21 +98,53 @@ void print_methods() {
   }
 }
 
+/// Every claim as Markdown, what decides it in the words of its bounds.
+void print_claims(const std::string& of, const std::vector<Claim>& claims) {
+  for (const Claim& c : claims) {
+    fmt::print("| {} | {} | {} | {} | {} | {} | {} |\n",
+               of,
+               c.id,
+               c.origin == Origin::paper ? "paper" : "suite",
+               escaped(c.where),
+               c.from,
+               escaped(c.says),
+               escaped(conditions_text(c)));
+  }
+}
+
+void print_claims() {
+  fmt::print(
+      "| of | id | whose | where | judged from | says | conditions |\n"
+      "| --- | --- | --- | --- | --- | --- | --- |\n");
+  for (const Overview& o : registry().overviews())
+    print_claims(o.paper, o.claims);
+  for (const auto& e : registry().experiments())
+    print_claims(e->name, e->claims);
+}
+
 }  // namespace
 
 ExitCode list_verb(const Arguments& arguments) {
   Selection selection;
-  bool json = false, methods = false;
-  if (!parse("physinv-bench list",
-             "The cases of a profile, with estimated work.",
-             selection.flags({{"--json", "as JSON", &json},
-                              {"--methods",
-                               "experiments and methods, as Markdown",
-                               &methods}}),
-             arguments))
+  bool json = false, methods = false, claims = false;
+  if (!parse(
+          "physinv-bench list",
+          "The cases of a profile, with estimated work.",
+          selection.flags(
+              {{"--json", "as JSON", &json},
+               {"--methods", "experiments and methods, as Markdown", &methods},
+               {"--claims",
+                "what is claimed, whose it is and what decides "
+                "it, as Markdown",
+                &claims}}),
+          arguments))
     return ExitCode::good;
   if (methods) {
     print_methods();
+    return ExitCode::good;
+  }
+  if (claims) {
+    print_claims();
     return ExitCode::good;
   }
   const auto cases = selection.cases();

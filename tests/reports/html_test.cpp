@@ -85,7 +85,10 @@ Section section(const std::string& experiment) {
                   .from = "quick",
                   .gates = true,
                   .verdict = Verdict::reproduced,
-                  .evidence = "0.98 >= 0.5"},
+                  .evidence = "0.98 >= 0.5",
+                  .origin = Origin::paper,
+                  .where = "Sec. <2>",
+                  .note = "against Table 3"},
                  {.id = "R2",
                   .says = "c",
                   .gates = true,
@@ -160,13 +163,16 @@ TEST(ReportHtml, IdsAreUniqueAndLinksArrive) {
 TEST(ReportHtml, CountsClaimsAndShowsEvidence) {
   const std::string text = page();
   EXPECT_EQ(count(text, "<strong>2</strong> reproduced"), 1U);
-  EXPECT_EQ(count(text, "<strong>2</strong> not reproduced"), 1U);
-  EXPECT_EQ(count(text, "<strong>2</strong> not run"), 1U);
-  EXPECT_EQ(count(text, "not reproduced: 2.</p>"), 1U);
+  // The suite's ranges do not count as what the papers say.
+  EXPECT_EQ(count(text, "<strong>0</strong> not reproduced"), 1U);
+  EXPECT_EQ(count(text, "<strong>0</strong> not judged"), 1U);
+  EXPECT_EQ(count(text, "0 holds, 2 fails, 2 not judged, 0 reported"), 1U);
+  EXPECT_EQ(count(text, "not met: 2.</p>"), 1U);
   const std::string row = between(text, "<tr id=\"jpo-toy-R1\">", "</tr>");
   EXPECT_NE(row.find("✓ reproduced"), row.npos);
   EXPECT_NE(row.find("0.98 &gt;= 0.5"), row.npos);
-  EXPECT_NE(row.find("• gating"), row.npos);
+  EXPECT_NE(row.find("Sec. &lt;2&gt; · • gating"), row.npos);
+  EXPECT_NE(row.find("against Table 3"), row.npos);
   EXPECT_NE(between(text, "<tr id=\"jpo-toy-R3\">", "</tr>")
                 .find("not gating, judged from profile paper"),
             row.npos);

@@ -38,7 +38,9 @@ std::vector<Section> sample() {
                        .from = "quick",
                        .gates = true,
                        .verdict = Verdict::reproduced,
-                       .evidence = "0.98"},
+                       .evidence = "0.98",
+                       .origin = Origin::paper,
+                       .where = "Fig. 1"},
                       {.id = "R2", .says = "c", .from = "paper"}}}};
 }
 
@@ -97,9 +99,15 @@ TEST_F(ReportTest, ClaimsAndFiguresAreData) {
 
 TEST(Report, OverviewNamesVerdictsAndLinks) {
   const std::string text = report_markdown(sample(), {{"revision", "abc"}});
-  EXPECT_NE(text.find("1 reproduced, 0 not reproduced, 1 not run"), text.npos);
-  EXPECT_NE(text.find("| R1 | a \\| b | ✅ reproduced | quick | yes | 0.98 |"),
-            text.npos);
+  EXPECT_NE(
+      text.find("claims of the papers 1 reproduced, 0 not reproduced, 0 not "
+                "judged, 0 reported; of the suite's ranges 0 holds, 0 "
+                "fails, 1 not judged"),
+      text.npos);
+  EXPECT_NE(
+      text.find(
+          "| R1 | a \\| b (Fig. 1) | ✅ reproduced | quick | yes | 0.98 |"),
+      text.npos);
   EXPECT_NE(text.find("(jpo-toy/figures/fig1.svg)"), text.npos);
   EXPECT_NE(text.find("- revision: abc"), text.npos);
 }
@@ -107,7 +115,8 @@ TEST(Report, OverviewNamesVerdictsAndLinks) {
 TEST(Report, ClaimsForATerminal) {
   const std::string text = render_claims_text(sample(), 60);
   EXPECT_NE(text.find("R1   reproduced"), text.npos);
-  EXPECT_NE(render_claims_text(sample(), 200).find("[needs profile paper]"),
+  EXPECT_NE(text.find("R2   not judged"), text.npos);
+  EXPECT_NE(render_claims_text(sample(), 200).find("a | b (Fig. 1) — 0.98"),
             text.npos);
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {

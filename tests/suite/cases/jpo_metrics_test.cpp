@@ -5,7 +5,7 @@
 
 #include "suite/cases/jpo/common/metrics.h"
 #include "suite/core/check.h"
-#include "tests/suite/cases/jpo_fixture.h"
+#include "tests/suite/evidence/campaigns.h"
 
 namespace physinv {
 namespace {

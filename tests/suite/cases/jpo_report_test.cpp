@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "suite/cases/jpo/common/report.h"
-#include "tests/suite/cases/jpo_fixture.h"
+#include "tests/suite/evidence/campaigns.h"
 
 namespace physinv {
 namespace {

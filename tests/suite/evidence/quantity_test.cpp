@@ -1,0 +1,119 @@
+#include "suite/evidence/quantity.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/suite/evidence/campaigns.h"
+
+namespace physinv {
+namespace {
+
+RunValue first_loss() {
+  return [](const Run& run) { return std::optional(run.stage->loss[0]); };
+}
+
+RunRow all_losses() {
+  return [](const Run& run) {
+    return std::vector<double>(run.stage->loss.begin(), run.stage->loss.end());
+  };
+}
+
+/// a: seed 0 has 1 and 3 (n = 2, 4), seed 1 has 5 (n = 2); b: seed 0, n = 2.
+Results campaign() {
+  const auto one =
+      [](const char* method, Index n, std::uint64_t seed, double v) {
+        return case_of(
+            method, n, seed, {"solve"}, {stage_of("solve", {v, 10 * v})});
+      };
+  return Results({one("a", 2, 0, 1),
+                  one("a", 4, 0, 3),
+                  one("a", 2, 1, 5),
+                  one("b", 2, 0, 4)});
+}
+
+class QuantityTest : public testing::Test {
+ protected:
+  Measured of(const Quantity& q) const { return q(evidence_); }
+  double value(const Quantity& q) const { return of(q).value.value(); }
+
+  Results results_ = campaign();
+  Published published_;
+  Evidence evidence_{results_, published_, "toy"};
+};
+
+TEST_F(QuantityTest, StatisticsOverRuns) {
+  EXPECT_EQ(value(median({"a"}, first_loss())), 3);
+  EXPECT_EQ(value(lowest({"a"}, first_loss())), 1);
+  EXPECT_EQ(value(highest({"a"}, first_loss())), 5);
+  EXPECT_EQ(of(median({"a"}, first_loss())).runs, 3);
+  EXPECT_EQ(value(median(Select{"a"}.of_sizes(3), first_loss())), 3);
+  const auto above2 = [](double v) { return v > 2; };
+  EXPECT_EQ(value(count({"a"}, first_loss(), above2)), 2);
+  EXPECT_DOUBLE_EQ(value(share({"a"}, first_loss(), above2)), 2.0 / 3);
+}
+
+TEST_F(QuantityTest, AMeanIsOverSeedsOfMeansOverSizes) {
+  const Measured m = of(mean({"a"}, first_loss()));
+  EXPECT_EQ(m.value, 3.5);  // (2 + 5) / 2
+  EXPECT_DOUBLE_EQ(*m.spread, std::sqrt(4.5));
+  EXPECT_EQ(m.runs, 2);
+}
+
+TEST_F(QuantityTest, Examples) {
+  EXPECT_EQ(value(median_of_examples({"a"}, all_losses())), 7.5);
+  const Measured share = of(
+      share_of_examples({"a"}, all_losses(), [](double v) { return v < 4; }));
+  EXPECT_DOUBLE_EQ(*share.value, 2.0 / 6);
+  EXPECT_DOUBLE_EQ(*share.spread, std::sqrt(0.125));  // of 1/2 and 0
+}
+
+TEST_F(QuantityTest, PairsAreOfOneSizeAndSeed) {
+  EXPECT_EQ(value(median_ratio({"b"}, {"a"}, first_loss())), 4);
+  EXPECT_EQ(of(median_ratio({"b"}, {"a"}, first_loss())).runs, 1);
+  EXPECT_EQ(median_ratio({"b"}, {"a"}, first_loss()).runs().size(), 2U);
+}
+
+TEST_F(QuantityTest, Arithmetic) {
+  const Quantity a = median({"a"}, first_loss()),
+                 b = median({"b"}, first_loss());
+  EXPECT_EQ(value(ratio(b, a)), 4.0 / 3);
+  EXPECT_EQ(value(difference(b, a)), 1);
+  EXPECT_EQ(value(percent(a)), 300);
+  EXPECT_EQ(value(least({a, b, 3.5})), 3);
+  EXPECT_EQ(value(most({a, b, 3.5})), 4);
+  EXPECT_EQ(of(times(2, mean({"a"}, first_loss()))).spread, std::sqrt(18.0));
+  EXPECT_FALSE(of(ratio(0, 0)).value);  // not a number is no number
+}
+
+TEST_F(QuantityTest, WhatIsNotThereHasAReason) {
+  EXPECT_EQ(of(median({"c"}, first_loss())).missing, "c not run");
+  EXPECT_EQ(of(median(Select{"a", "fit"}.of_sizes(8), first_loss())).missing,
+            "a fit, n >= 8 not run");
+  const RunValue none = [](const Run&) { return std::optional<double>(); };
+  EXPECT_EQ(of(median({"a"}, none)).missing, "a too short");
+  EXPECT_EQ(of(ratio(1, median({"c"}, first_loss()))).missing, "c not run");
+  EXPECT_EQ(of(printed("table4/a")).missing, "printed table4/a");
+  EXPECT_EQ(of(from_at_least(3, mean({"a"}, first_loss()))).missing,
+            "1 of 3 runs of a");
+  EXPECT_EQ(value(from_at_least(2, mean({"a"}, first_loss()))), 3.5);
+}
+
+TEST_F(QuantityTest, AnotherExperimentIsNamed) {
+  const Evidence other{results_, published_, "elsewhere"};
+  EXPECT_FALSE(median({"a"}, first_loss())(other).value);
+  EXPECT_EQ(median(Select{"a"}.in("toy"), first_loss())(other).value, 3);
+}
+
+TEST_F(QuantityTest, FailedAndUnfinishedRunsDoNotCount) {
+  auto cases = campaign().cases();
+  cases[0].stages[0].stop = Stop::failed;
+  cases[1].info.stages = {"solve", "refine"};  // not all of the chain yet
+  const Results results(cases);
+  const Evidence evidence{results, published_, "toy"};
+  EXPECT_EQ(lowest({"a"}, first_loss())(evidence).value, 5);
+  EXPECT_EQ(lowest({"a", "solve"}, first_loss())(evidence).value, 3);
+}
+
+}  // namespace
+}  // namespace physinv
