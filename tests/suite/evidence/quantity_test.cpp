@@ -90,7 +90,9 @@ TEST_F(QuantityTest, WhatIsNotThereHasAReason) {
   EXPECT_EQ(of(median({"c"}, first_loss())).missing, "c not run");
   EXPECT_EQ(of(median(Select{"a", "fit"}.of_sizes(8), first_loss())).missing,
             "a fit, n >= 8 not run");
-  const RunValue none = [](const Run&) { return std::optional<double>(); };
+  const RunValue none = [](const physinv::Run&) {
+    return std::optional<double>();
+  };
   EXPECT_EQ(of(median({"a"}, none)).missing, "a too short");
   EXPECT_EQ(of(ratio(1, median({"c"}, first_loss()))).missing, "c not run");
   EXPECT_EQ(of(printed("table4/a")).missing, "printed table4/a");
