@@ -322,7 +322,9 @@ std::string render_claims_text(const std::vector<Section>& sections,
       }
     }
   }
-  return out + "of the " + summary(sections) + '\n';
+  for (const std::string& line : wrap("Of the " + summary(sections), width))
+    out += line + '\n';
+  return out;
 }
 
 }  // namespace physinv
