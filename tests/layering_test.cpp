@@ -26,7 +26,7 @@ const std::map<std::string, Layer> kLayers{
     {"baselines", {{"suite/core", "suite/nn", "optimizers"}, {"eigen"}}},
     {"suite/diagnostics",
      {{"suite/core", "suite/nn", "problems", "optimizers"}, {"eigen"}}},
-    {"suite/results", {{"suite/core"}, {"json", "hdf5"}}},
+    {"suite/results", {{"suite/core"}, {"json", "hdf5", "zlib"}}},
     {"suite/evidence", {{"suite/core", "suite/results"}, {}}},
     {"suite/harness",
      {{"suite/core", "suite/nn", "suite/results", "suite/evidence"}, {"json"}}},
@@ -81,6 +81,7 @@ std::string library_of(const std::string& header) {
       {"fmt/", ""},  // the messages of SUITE_CHECK, so everybody's
       {"nlohmann/", "json"},
       {"CLI/", "cli11"},
+      {"zlib.h", "zlib"},
       {"benchmark/", "benchmark"},
   };
   for (const auto& [prefix, library] : kPrefixes) {

@@ -22,6 +22,7 @@ constexpr std::string_view kHelp =
 physinv-bench [run] [flags]      run cases (the default verb)
 physinv-bench list [flags]       the cases, their stages and estimated work
 physinv-bench report RESULTS     tables, plots and claims of a campaign
+physinv-bench results           a page of all published campaigns
 physinv-bench verify RESULTS     recompute every final loss
 physinv-bench merge OUT SHARD..  join the results of shards
 physinv-bench kernels [flags]    kernel benchmarks (flags of Google Benchmark)
@@ -59,6 +60,7 @@ const std::map<std::string, Verb>& verbs() {
   static const std::map<std::string, Verb> all = {{"run", run_verb},
                                                   {"list", list_verb},
                                                   {"report", report_verb},
+                                                  {"results", results_verb},
                                                   {"verify", verify_verb},
                                                   {"merge", merge_verb},
                                                   {"kernels", kernels_verb}};

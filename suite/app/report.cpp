@@ -6,8 +6,10 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "reports/digest.h"
 #include "suite/app/options.h"
 #include "suite/harness/progress.h"
+#include "suite/results/file.h"
 #include "suite/results/profiles.h"
 #include "suite/results/published.h"
 #include "suite/results/store.h"
@@ -104,6 +106,18 @@ nlohmann::ordered_json provenance(const fs::path& directory) {
   return picked;
 }
 
+/// What a later campaign, and the page of results, can be made from.
+void publish_campaign(const fs::path& target,
+                      const fs::path& directory,
+                      const std::vector<Section>& sections,
+                      const nlohmann::ordered_json& provenance) {
+  make_directory(target);
+  write_atomically(target / "results.json.gz",
+                   gzipped(read_file(directory / "results.json")));
+  write_atomically(target / "digest.json",
+                   digest_json(sections, provenance).dump(1) + '\n');
+}
+
 std::vector<std::string> unmet(const std::vector<Section>& sections) {
   std::vector<std::string> ids;
   for (const Section& s : sections) {
@@ -118,12 +132,18 @@ std::vector<std::string> unmet(const std::vector<Section>& sections) {
 
 ExitCode report_verb(const Arguments& arguments) {
   std::string results_text, out;
+  std::string publish;
   bool check = false;
   if (!parse(
           "physinv-bench report",
           "Writes tables, plots and claims of a finished campaign.",
           {{"RESULTS", "directory that 'run' wrote", &results_text},
            {"--out", "where to; default: RESULTS/report", &out, "DIR"},
+           {"--publish",
+            "also keep results.json (compressed) and a digest of claims and "
+            "tables there, for the verb 'results'",
+            &publish,
+            "DIR"},
            {"--check", "exit 7 if a gating claim is not reproduced", &check}},
           arguments))
     return ExitCode::good;
@@ -143,6 +163,8 @@ ExitCode report_verb(const Arguments& arguments) {
   const fs::path target = out.empty() ? directory / "report" : fs::path(out);
   try {
     write_report(target, sections, provenance(directory));
+    if (!publish.empty())
+      publish_campaign(publish, directory, sections, provenance(directory));
   } catch (const std::runtime_error& error) {
     throw EnvironmentError(error.what());
   }

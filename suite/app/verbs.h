@@ -15,6 +15,7 @@ using Arguments = std::vector<std::string>;
 ExitCode run_verb(const Arguments& arguments);
 ExitCode list_verb(const Arguments& arguments);
 ExitCode report_verb(const Arguments& arguments);
+ExitCode results_verb(const Arguments& arguments);
 ExitCode verify_verb(const Arguments& arguments);
 ExitCode merge_verb(const Arguments& arguments);
 ExitCode kernels_verb(const Arguments& arguments);

@@ -5,9 +5,11 @@
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <zlib.h>
 
 #include <cerrno>
 #include <cstring>
+#include <new>
 
 namespace physinv {
 namespace {
@@ -128,6 +130,23 @@ std::string read_file(const fs::path& path) {
   }
   bytes.resize(used);
   return bytes;
+}
+
+std::string gzipped(std::string_view bytes) {
+  constexpr int kGzip = 15 + 16;  // largest window, gzip's header
+  z_stream z{};
+  if (deflateInit2(&z, 9, Z_DEFLATED, kGzip, 9, Z_DEFAULT_STRATEGY) != Z_OK)
+    throw std::bad_alloc();
+  std::string out(deflateBound(&z, bytes.size()), '\0');
+  z.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+  z.avail_in = static_cast<uInt>(bytes.size());
+  z.next_out = reinterpret_cast<Bytef*>(out.data());
+  z.avail_out = static_cast<uInt>(out.size());
+  const int end = deflate(&z, Z_FINISH);
+  out.resize(z.total_out);
+  deflateEnd(&z);
+  if (end != Z_STREAM_END) throw std::runtime_error("cannot compress");
+  return out;
 }
 
 void make_directory(const fs::path& directory) {

@@ -50,6 +50,9 @@ void write_atomically(const std::filesystem::path& path,
 
 std::string read_file(const std::filesystem::path& path);
 
+/// In gzip's format, without name and time: same bytes in, same bytes out.
+std::string gzipped(std::string_view bytes);
+
 /// Creates it and its parents, durably enough for a store.
 void make_directory(const std::filesystem::path& directory);
 

@@ -1,0 +1,174 @@
+#include "reports/digest.h"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <stdexcept>
+#include <utility>
+
+#include "reports/report.h"
+#include "reports/tables.h"
+
+namespace physinv {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string text_of(const Json& object, const char* key) {
+  const auto found = object.find(key);
+  if (found == object.end() || found->is_null()) return "";
+  return found->is_string() ? found->get<std::string>() : found->dump();
+}
+
+std::string cell(std::string text) {
+  for (std::size_t at = 0; (at = text.find('|', at)) != text.npos; at += 2)
+    text.insert(at, 1, '\\');
+  return text;
+}
+
+/// Verdicts of the claims, one for each experiment and id.
+using Verdicts = std::map<std::pair<std::string, std::string>, std::string>;
+
+struct Counted {
+  std::string title;
+  Verdicts paper, suite;
+};
+
+void count(const Json& section, std::map<std::string, Counted>& papers) {
+  const std::string experiment = section.at("experiment");
+  for (const Json& claim : section.at("claims")) {
+    Counted& counted = papers[section.at("paper").get<std::string>()];
+    auto& verdicts =
+        claim.at("origin") == "paper" ? counted.paper : counted.suite;
+    const std::string verdict = claim.at("verdict");
+    auto& entry = verdicts[{experiment, claim.at("id").get<std::string>()}];
+    if (entry.empty() || verdict != "not judged") entry = verdict;
+  }
+}
+
+int count_of(const Verdicts& verdicts, std::string_view verdict) {
+  int count = 0;
+  for (const auto& [id, v] : verdicts) count += v == verdict;
+  return count;
+}
+
+std::string overview(const std::vector<NamedDigest>& campaigns) {
+  std::map<std::string, Counted> papers;
+  for (const auto& c : campaigns)
+    for (const Json& section : c.digest.at("sections")) count(section, papers);
+  std::string out =
+      "| paper | reproduced | not reproduced | not judged | reported | ranges "
+      "of the suite: hold | fail | not judged |\n"
+      "| --- | --- | --- | --- | --- | --- | --- | --- |\n";
+  for (const auto& [paper, c] : papers) {
+    out += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} |\n",
+                       paper.empty() ? "(none)" : paper,
+                       count_of(c.paper, "reproduced"),
+                       count_of(c.paper, "not reproduced"),
+                       count_of(c.paper, "not judged"),
+                       count_of(c.paper, "reported"),
+                       count_of(c.suite, "holds"),
+                       count_of(c.suite, "fails"),
+                       count_of(c.suite, "not judged"));
+  }
+  return out;
+}
+
+std::string claims_of(const Json& section, const char* origin) {
+  std::string rows;
+  for (const Json& claim : section.at("claims")) {
+    if (claim.at("origin") != origin) continue;
+    const std::string where = text_of(claim, "where");
+    const std::string note = text_of(claim, "note");
+    rows += fmt::format("| {} | {}{} | {} | {}{} |\n",
+                        text_of(claim, "id"),
+                        cell(text_of(claim, "says")),
+                        where.empty() ? "" : " (" + cell(where) + ")",
+                        text_of(claim, "verdict"),
+                        cell(text_of(claim, "evidence")),
+                        note.empty() ? "" : " *" + cell(note) + "*");
+  }
+  if (rows.empty()) return "";
+  const bool paper = std::string_view(origin) == "paper";
+  return fmt::format(
+      "\n{}\n\n| id | claim | verdict | measured |\n"
+      "| --- | --- | --- | --- |\n{}",
+      paper ? "What the paper says:"
+            : "Ranges of the suite (regression checks):",
+      rows);
+}
+
+std::string campaign_markdown(const NamedDigest& campaign) {
+  const Json& p = campaign.digest.at("provenance");
+  std::string out = fmt::format(
+      "\n## Campaign {}\n\n`{}`\n\n{}, {} ({} cores), {}, {} {}, revision {}\n",
+      campaign.name,
+      campaign_command(p),
+      text_of(p, "date").substr(0, 10),
+      text_of(p, "cpu_model"),
+      text_of(p, "num_cpus"),
+      text_of(p, "instruction_set"),
+      text_of(p, "compiler"),
+      text_of(p, "compiler_flags"),
+      text_of(p, "git_revision").substr(0, 12));
+  for (const Json& section : campaign.digest.at("sections")) {
+    out += fmt::format("\n### {} (`{}`)\n",
+                       text_of(section, "title"),
+                       text_of(section, "experiment"));
+    for (const char* origin : {"paper", "suite"})
+      out += claims_of(section, origin);
+    for (const Json& table : section.at("tables"))
+      out += '\n' + table.get<std::string>();
+  }
+  return out;
+}
+
+}  // namespace
+
+Json digest_json(const std::vector<Section>& sections, const Json& provenance) {
+  Json out{{"provenance", provenance}, {"sections", Json::array()}};
+  for (const Section& s : sections) {
+    Json claims = Json::array(), tables = Json::array();
+    for (const ClaimResult& c : s.claims) claims.push_back(to_json(c));
+    for (const Table& t : s.tables) tables.push_back(to_markdown(t));
+    out["sections"].push_back({{"experiment", s.experiment},
+                               {"title", s.title},
+                               {"paper", s.paper},
+                               {"claims", std::move(claims)},
+                               {"tables", std::move(tables)}});
+  }
+  return out;
+}
+
+std::string campaign_command(const Json& provenance) {
+  std::string out = "./bench --profile=" + text_of(provenance, "profile");
+  const auto options = provenance.find("options");
+  if (options == provenance.end()) return out;
+  for (const char* list : {"filter", "set"})
+    if (options->contains(list))
+      for (const Json& value : (*options)[list])
+        out += fmt::format(" '--{}={}'", list, value.get<std::string>());
+  const std::string seeds = text_of(*options, "seeds");
+  if (!seeds.empty()) out += " --seeds=" + seeds;
+  return out;
+}
+
+std::string results_markdown(const std::vector<NamedDigest>& campaigns) {
+  std::string out =
+      "# Results\n\n"
+      "Written by `./bench results` from the campaigns under "
+      "`reports/campaigns`; nothing here is copied by hand. A claim is the "
+      "paper's (its sentence, number or figure) or a range of the suite, "
+      "which earlier runs of this code or of independent programs showed. "
+      "Only the former count as reproduced or not.\n\n";
+  try {
+    out += overview(campaigns);
+    for (const auto& c : campaigns) out += campaign_markdown(c);
+  } catch (const nlohmann::json::exception& error) {
+    throw std::runtime_error(std::string("no digest of a campaign: ") +
+                             error.what());
+  }
+  return out;
+}
+
+}  // namespace physinv

@@ -1,0 +1,34 @@
+/// The digest of a campaign: what a table of results needs, as one JSON file
+/// that is small enough to be kept with the sources, and the page that shows
+/// many of them.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "suite/results/report_model.h"
+
+namespace physinv {
+
+/// {provenance, sections: [{experiment, title, paper, claims, tables}]}; a
+/// table is the text of its Markdown.
+nlohmann::ordered_json digest_json(const std::vector<Section>& sections,
+                                   const nlohmann::ordered_json& provenance);
+
+/// The command that makes such a campaign, from the options that its context
+/// holds: "./bench --profile=paper --filter=jpo/".
+std::string campaign_command(const nlohmann::ordered_json& provenance);
+
+struct NamedDigest {
+  std::string name;  ///< folder of the campaign
+  nlohmann::ordered_json digest;
+};
+
+/// Markdown: how many of each paper's claims are reproduced, then every
+/// campaign with its machine, build, date and command, its claims and tables.
+/// Where campaigns judge the same claim, the last one that could decides the
+/// count. std::runtime_error if a digest lacks what it should have.
+std::string results_markdown(const std::vector<NamedDigest>& campaigns);
+
+}  // namespace physinv

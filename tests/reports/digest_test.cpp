@@ -1,0 +1,97 @@
+#include "reports/digest.h"
+
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include "suite/results/file.h"
+
+namespace physinv {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Section section(Verdict of_paper, Verdict of_suite) {
+  return {.experiment = "jpo/toy",
+          .title = "Toy",
+          .paper = "jpo",
+          .tables = {{.id = "t", .title = "A table", .columns = {"a"}}},
+          .claims = {{.id = "P1",
+                      .says = "a | b",
+                      .verdict = of_paper,
+                      .evidence = "0.98 (> 0.5)",
+                      .origin = Origin::paper,
+                      .where = "Sec. 4"},
+                     {.id = "R1", .says = "range", .verdict = of_suite}}};
+}
+
+Json provenance() {
+  return {{"profile", "paper"},
+          {"date", "2024-05-06T07:08:09Z"},
+          {"cpu_model", "A processor"},
+          {"num_cpus", 2},
+          {"options",
+           {{"filter", {"jpo/", "-head"}}, {"set", {"n=8"}}, {"seeds", "3"}}}};
+}
+
+NamedDigest named(const char* name, Verdict of_paper, Verdict of_suite) {
+  return {name, digest_json({section(of_paper, of_suite)}, provenance())};
+}
+
+TEST(Digest, PageSaysWhereItsNumbersComeFrom) {
+  const std::string page = results_markdown(
+      {named("first", Verdict::reproduced, Verdict::not_reproduced)});
+  for (const char* words :
+       {"## Campaign first",
+        "`./bench --profile=paper '--filter=jpo/' '--filter=-head' "
+        "'--set=n=8' --seeds=3`",
+        "2024-05-06, A processor (2 cores)",
+        "| P1 | a \\| b (Sec. 4) | reproduced | 0.98 (> 0.5) |",
+        "| R1 | range | fails |",
+        "A table",
+        "| jpo | 1 | 0 | 0 | 0 | 0 | 1 | 0 |"})
+    EXPECT_NE(page.find(words), page.npos) << words << "\n" << page;
+}
+
+TEST(Digest, TheLastCampaignThatCouldJudgeCounts) {
+  const auto page = [](Verdict first, Verdict second) {
+    return results_markdown({named("a", first, Verdict::reproduced),
+                             named("b", second, Verdict::reproduced)});
+  };
+  const auto counts = [](const std::string& text, const char* row) {
+    return text.find(row) != text.npos;
+  };
+  EXPECT_TRUE(counts(page(Verdict::reproduced, Verdict::not_judged),
+                     "| jpo | 1 | 0 | 0 | 0 | 1 |"));
+  EXPECT_TRUE(counts(page(Verdict::reproduced, Verdict::not_reproduced),
+                     "| jpo | 0 | 1 | 0 | 0 | 1 |"));
+  EXPECT_TRUE(counts(page(Verdict::not_judged, Verdict::not_judged),
+                     "| jpo | 0 | 0 | 1 | 0 | 1 |"));
+}
+
+TEST(Digest, SomethingElseIsNoDigest) {
+  EXPECT_THROW(results_markdown({{"a", Json{{"sections", Json::array()}}}}),
+               std::runtime_error);
+  EXPECT_THROW(results_markdown({{"a", Json::array()}}), std::runtime_error);
+}
+
+TEST(Digest, CompressedBytesComeBack) {
+  std::string text;
+  for (int i = 0; i < 10000; ++i) text += std::to_string(i % 97);
+  const std::string packed = gzipped(text);
+  EXPECT_LT(packed.size(), text.size() / 10);
+  EXPECT_EQ(packed, gzipped(text));
+  std::string back(text.size() + 1, '\0');
+  z_stream z{};
+  ASSERT_EQ(inflateInit2(&z, 15 + 16), Z_OK);
+  z.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));
+  z.avail_in = static_cast<uInt>(packed.size());
+  z.next_out = reinterpret_cast<Bytef*>(back.data());
+  z.avail_out = static_cast<uInt>(back.size());
+  EXPECT_EQ(inflate(&z, Z_FINISH), Z_STREAM_END);
+  back.resize(z.total_out);
+  inflateEnd(&z);
+  EXPECT_EQ(back, text);
+}
+
+}  // namespace
+}  // namespace physinv
