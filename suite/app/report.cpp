@@ -1,6 +1,7 @@
 #include "reports/report.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -155,7 +156,10 @@ ExitCode report_verb(const Arguments& arguments) {
         fmt::format("there is no directory '{}' of published numbers; "
                     "PHYSINV_PUBLISHED_DIR names it",
                     published.string()));
-  const auto sections = sections_of(results, Published(published));
+  const Published numbers(published);
+  if (const auto wrong = registry().unknown_printed(numbers); !wrong.empty())
+    throw std::logic_error(fmt::format("{}", fmt::join(wrong, "; ")));
+  const auto sections = sections_of(results, numbers);
   if (sections.empty())
     throw ExitError(ExitCode::nothing_matched,
                     "no experiment that declares a report has results in '" +

@@ -347,6 +347,18 @@ std::vector<std::string> Registry::problems() const {
   return wrong;
 }
 
+std::vector<std::string> Registry::unknown_printed(
+    const Published& published) const {
+  std::vector<std::string> wrong;
+  const auto add = [&](const auto& claims, const std::string& of) {
+    for (auto& line : physinv::unknown_printed(claims, of, published))
+      wrong.push_back(std::move(line));
+  };
+  for (const auto& e : experiments_) add(e->claims, e->name);
+  for (const Overview& o : overviews_) add(o.claims, o.paper);
+  return wrong;
+}
+
 void Registry::validate() const {
   const auto wrong = problems();
   if (!wrong.empty())

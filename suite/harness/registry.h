@@ -45,6 +45,8 @@ class Registry {
   /// name unknown methods, methods that need what a problem does not provide,
   /// claims that name what is not there or never runs.
   std::vector<std::string> problems() const;
+  /// Printed values that claims name and the papers' files lack.
+  std::vector<std::string> unknown_printed(const Published& published) const;
   /// Throws std::logic_error with the lines of `problems`, if any.
   void validate() const;
 

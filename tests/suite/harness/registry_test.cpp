@@ -60,6 +60,56 @@ TEST(Registry, FindsWhatIsWrong) {
   EXPECT_THROW(twice.validate(), std::logic_error);
 }
 
+Claim claim_on(Select select) {
+  return {.id = "R1",
+          .from = "smoke",
+          .says = "s",
+          .conditions = {report("x", median(std::move(select), {}))}};
+}
+
+/// The complaint about such a claim.
+std::string complaint_of(const Claim& claim) {
+  return complaint([&](Experiment& e) { e.claims = {claim}; });
+}
+
+TEST(Registry, ChecksWhatClaimsAskFor) {
+  EXPECT_EQ(complaint_of(claim_on({"walk", "refine"})), "");
+  const auto asks = [](const char* what) {
+    return std::string("fake/cubic: claim R1 asks for ") + what;
+  };
+  EXPECT_EQ(complaint_of(claim_on({"wlak"})),
+            asks("the unknown method 'wlak' of fake/cubic"));
+  EXPECT_EQ(complaint_of(claim_on({"walk", "train"})),
+            asks("the unknown stage 'train' of walk"));
+  EXPECT_EQ(complaint_of(claim_on(Select{"walk"}.in("fake/quartic"))),
+            asks("the unknown experiment 'fake/quartic'"));
+  EXPECT_EQ(complaint_of(claim_on(Select{"walk"}.of_sizes(1000))),
+            asks("'walk, n >= 1000', which no profile from smoke on runs"));
+  Claim late = claim_on({"descend"});
+  late.from = "yearly";
+  EXPECT_EQ(complaint_of(late),
+            "fake/cubic: claim R1 is judged from the unknown profile 'yearly'");
+}
+
+TEST(Registry, JoinsClaimsAndReportsOfOtherFiles) {
+  const auto report = [](const Results&, const Published&) {
+    return Section{.title = "from elsewhere"};
+  };
+  for (const bool first : {true, false}) {
+    Registry r;
+    if (!first) r.add(fake::experiment());
+    r.add_claims("fake/cubic", {claim_on({"descend"})});
+    r.add_report("fake/cubic", report);
+    if (first) r.add(fake::experiment());
+    EXPECT_TRUE(r.problems().empty());
+    EXPECT_EQ(r.find("fake/cubic")->claims.size(), 1U);
+    EXPECT_EQ(r.find("fake/cubic")->report({}, {}).title, "from elsewhere");
+  }
+  Registry alone;
+  alone.add_claims("fake/quartic", {claim_on({"descend"})});
+  EXPECT_EQ(alone.problems().size(), 1U);
+}
+
 TEST(Registry, ExpandsInDeclaredOrder) {
   const auto cases = fake_registry().expand("quick");
   ASSERT_EQ(cases.size(), 18u);

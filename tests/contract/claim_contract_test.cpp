@@ -1,0 +1,35 @@
+// Claims of everything registered.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <gtest/gtest.h>
+
+#include "suite/harness/registry.h"
+
+namespace physinv {
+namespace {
+
+TEST(ClaimContract, NamesWhatIsRegistered) {
+  const auto wrong = registry().problems();
+  EXPECT_TRUE(wrong.empty()) << fmt::format("{}", fmt::join(wrong, "\n"));
+}
+
+TEST(ClaimContract, NamesWhatThePapersPrint) {
+  const Published published(PHYSINV_SOURCE_DIR "/reports/published");
+  const auto wrong = registry().unknown_printed(published);
+  EXPECT_TRUE(wrong.empty()) << fmt::format("{}", fmt::join(wrong, "\n"));
+}
+
+TEST(ClaimContract, NothingIsJudgedFromNothing) {
+  const Results nothing;
+  const Published published;
+  for (const auto& e : registry().experiments()) {
+    std::vector<std::string> profiles;
+    for (const Profile& p : e->profiles) profiles.push_back(p.name);
+    for (const auto& c :
+         judge(e->claims, {nothing, published, e->name}, profiles))
+      EXPECT_EQ(c.verdict, Verdict::not_judged) << e->name << " " << c.id;
+  }
+}
+
+}  // namespace
+}  // namespace physinv
