@@ -33,7 +33,7 @@ std::string legend_html(const std::vector<const Series*>& legend,
   std::string out = "<ul class=\"legend\">\n";
   for (std::size_t k = 0; k < legend.size(); ++k) {
     Svg sample = Svg::ornament(30, 12);
-    draw_sample(sample, *legend[k], palette.index(legend[k]->method), 1, 6);
+    draw_sample(sample, *legend[k], palette.of(*legend[k]), 1, 6);
     out += fmt::format("<li data-k=\"{}\">{}{}</li>\n",
                        k,
                        std::move(sample).str(),

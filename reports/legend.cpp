@@ -43,22 +43,22 @@ int legend_index(const std::vector<const Series*>& legend,
 Palette palette_of(const Figure& figure) {
   Palette palette;
   for (const Panel& p : figure.panels) {
-    for (const Series& s : p.series) palette.index(s.method);
+    for (const Series& s : p.series) palette.of(s);
   }
   return palette;
 }
 
 void draw_sample(
-    Svg& svg, const Series& series, int color, double left, double middle) {
+    Svg& svg, const Series& series, Ink ink, double left, double middle) {
   if (series.line) {
-    svg.line(fmt::format("l s{}{}", color, series.dashed ? " d" : ""),
+    svg.line(fmt::format("l s{}{}", ink.color, series.dashed ? " d" : ""),
              left,
              middle,
              left + 28,
              middle);
   }
   if (series.markers || !series.line) {
-    draw_marker(svg, marker_of(color), left + 14, middle, color, series.dashed);
+    draw_marker(svg, ink.marker, left + 14, middle, ink.color, series.dashed);
   }
 }
 

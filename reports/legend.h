@@ -24,6 +24,6 @@ Palette palette_of(const Figure& figure);
 
 /// A sample of the line, 28 units wide, and of the marker.
 void draw_sample(
-    Svg& svg, const Series& series, int color, double left, double middle);
+    Svg& svg, const Series& series, Ink ink, double left, double middle);
 
 }  // namespace physinv

@@ -9,27 +9,27 @@
 namespace physinv {
 namespace {
 
-struct Hue {
-  std::string_view method, light, dark;
+struct Color {
+  std::string_view light, dark;
 };
 
-// Known methods first, then those that are given out in order.
-constexpr Hue kHues[] = {
-    {"bfgs", "#1f6fb5", "#6cb2f2"},
-    {"jpo", "#e07b00", "#ffab47"},
-    {"supervised", "#2c8c3c", "#72d381"},
-    {"na", "#c8322b", "#ff8178"},
-    {"gd", "#7b52ab", "#c09bee"},
-    {"truth", "#1b1b1b", "#f2f2f2"},
-    {"", "#8a5a44", "#cfa28a"},
-    {"", "#17808f", "#5fcbdb"},
-    {"", "#b5478e", "#f293d1"},
-    {"", "#6f6f6f", "#b0b0b0"},
-    {"", "#7d7a12", "#d3cf55"},
-    {"", "#3d4fb0", "#9fadff"},
-};
-constexpr int kHueCount = static_cast<int>(std::size(kHues));
-constexpr int kNamed = 6;
+/// In the order of Hue.
+constexpr Color kColors[] = {{"#1f6fb5", "#6cb2f2"},
+                             {"#e07b00", "#ffab47"},
+                             {"#2c8c3c", "#72d381"},
+                             {"#c8322b", "#ff8178"},
+                             {"#7b52ab", "#c09bee"},
+                             {"#1b1b1b", "#f2f2f2"},
+                             {"#8a5a44", "#cfa28a"},
+                             {"#17808f", "#5fcbdb"},
+                             {"#b5478e", "#f293d1"},
+                             {"#6f6f6f", "#b0b0b0"},
+                             {"#7d7a12", "#d3cf55"},
+                             {"#3d4fb0", "#9fadff"}};
+constexpr int kColorCount = static_cast<int>(std::size(kColors));
+static_assert(kColorCount == static_cast<int>(Hue::indigo) + 1);
+/// Given out to series without a look.
+constexpr int kFirstFree = static_cast<int>(Hue::brown);
 
 constexpr std::string_view kFurniture =
     "text{font-family:system-ui,-apple-system,'Segoe UI',Roboto,"
@@ -62,10 +62,10 @@ std::string furniture_colors(bool dark) {
 
 std::string method_colors(bool dark) {
   std::string css;
-  for (int i = 0; i < kHueCount; ++i) {
+  for (int i = 0; i < kColorCount; ++i) {
     css += fmt::format(".s{0}{{stroke:{1}}}.f{0}{{fill:{1}}}",
                        i,
-                       dark ? kHues[i].dark : kHues[i].light);
+                       dark ? kColors[i].dark : kColors[i].light);
   }
   return css;
 }
@@ -77,32 +77,24 @@ std::string page_variables(bool dark) {
                          : "color-scheme:light;--bg:#ffffff;--grid:#e7e8ea;"
                            "--frame:#8d9198;--ink:#1b1b1b;--soft:#55585e;"
                            "--yes:#1d7a36;--no:#b3261e;";
-  for (int i = 0; i < kHueCount; ++i) {
-    css += fmt::format("--c{}:{};", i, dark ? kHues[i].dark : kHues[i].light);
+  for (int i = 0; i < kColorCount; ++i) {
+    css +=
+        fmt::format("--c{}:{};", i, dark ? kColors[i].dark : kColors[i].light);
   }
   return css;
 }
 
 }  // namespace
 
-int Palette::index(std::string_view method) {
-  for (int i = 0; i < kNamed; ++i) {
-    if (kHues[i].method == method) return i;
-  }
-  auto at = std::find(others_.begin(), others_.end(), method);
-  if (at == others_.end()) at = others_.emplace(at, method);
+Ink Palette::of(const Series& series) {
+  if (series.look)
+    return {static_cast<int>(series.look->hue), series.look->marker};
+  auto at = std::find(others_.begin(), others_.end(), series.method);
+  if (at == others_.end()) at = others_.emplace(at, series.method);
   const auto order = static_cast<int>(at - others_.begin());
-  return kNamed + order % (kHueCount - kNamed);
-}
-
-Marker marker_of(int index) {
-  constexpr Marker kCycle[] = {Marker::circle,
-                               Marker::square,
-                               Marker::triangle,
-                               Marker::diamond,
-                               Marker::down};
-  if (index == kNamed - 1) return Marker::cross;
-  return kCycle[(index < kNamed ? index : index - kNamed) % 5];
+  const int free = order % (kColorCount - kFirstFree);
+  constexpr int kMarkers = static_cast<int>(Marker::cross);
+  return {kFirstFree + free, static_cast<Marker>(free % kMarkers)};
 }
 
 std::string style_sheet() {
@@ -127,7 +119,7 @@ std::string page_style_sheet() {
       page_variables(false),
       page_variables(true),
       kFurniture);
-  for (int i = 0; i < kHueCount; ++i) {
+  for (int i = 0; i < kColorCount; ++i) {
     css +=
         fmt::format(".s{0}{{stroke:var(--c{0})}}.f{0}{{fill:var(--c{0})}}", i);
   }

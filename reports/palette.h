@@ -1,5 +1,6 @@
-/// Colours: one per method as in the papers, and a perceptual map for fields.
-/// Both are CSS, so that one file suits light and dark pages.
+/// Colours: those that a case gives its methods, others in order, and a
+/// perceptual map for fields. Both are CSS, so that one file suits light and
+/// dark pages.
 #pragma once
 
 #include <array>
@@ -7,21 +8,25 @@
 #include <string_view>
 #include <vector>
 
+#include "suite/results/report_model.h"
+
 namespace physinv {
 
-/// Numbers the methods of one figure. Known methods (bfgs blue, jpo orange,
-/// supervised green, na red, gd purple, truth in the colour of text) keep
-/// their number everywhere; others get the next free colour.
+/// How a series is drawn: a number of the style sheet's colours, and a marker.
+struct Ink {
+  int color = 0;
+  Marker marker = Marker::circle;
+};
+
+/// The inks of one figure. A series with a look has that; others get the
+/// colours that looks seldom use, one for each method, in order.
 class Palette {
  public:
-  int index(std::string_view method);
+  Ink of(const Series& series);
 
  private:
   std::vector<std::string> others_;
 };
-
-enum class Marker { circle, square, triangle, diamond, down, cross };
-Marker marker_of(int index);
 
 /// The style sheet of a figure: classes s<i> (stroke), f<i> (fill), and the
 /// furniture (bg, grid, frame, tick, label, title, note, halo).

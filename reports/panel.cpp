@@ -189,14 +189,14 @@ void PanelPlot::curves(Svg& svg, const Rect& box) const {
   for (const Series& s : panel_.series) {
     if (has_spread(s) && !has_error_bars(s)) {
       open_series(svg, box, s);
-      band(svg, box, s, palette_.index(s.method));
+      band(svg, box, s, palette_.of(s).color);
       close_series(svg);
     }
   }
   for (const Series& s : panel_.series) {
     if (!s.line) continue;
     const std::string d = line_path(dodged(box, s), s);
-    const int color = palette_.index(s.method);
+    const int color = palette_.of(s).color;
     open_series(svg, box, s);
     if (panel_.field) svg.path("halo", d);
     svg.path(fmt::format("l s{}{}", color, s.dashed ? " d" : ""), d);
@@ -204,10 +204,10 @@ void PanelPlot::curves(Svg& svg, const Rect& box) const {
   }
   svg.close();
   for (const Series& s : panel_.series) {
-    const int color = palette_.index(s.method);
+    const Ink ink = palette_.of(s);
     open_series(svg, box, s);
-    if (has_error_bars(s)) error_bars(svg, dodged(box, s), s, color);
-    if (s.markers || !s.line) markers(svg, dodged(box, s), s, color);
+    if (has_error_bars(s)) error_bars(svg, dodged(box, s), s, ink.color);
+    if (s.markers || !s.line) markers(svg, dodged(box, s), s, ink);
     close_series(svg);
   }
 }
@@ -332,18 +332,14 @@ void PanelPlot::error_bars(Svg& svg,
 void PanelPlot::markers(Svg& svg,
                         const Rect& box,
                         const Series& s,
-                        int color) const {
+                        Ink ink) const {
   const std::size_t stride = 1 + points(s) / kManyMarkers;
   for (std::size_t i = 0; i < points(s); i += stride) {
     if (!x_.shows(s.x[i]) || !y_.shows(s.y[i])) continue;
     const double u = x_.place(s.x[i]), v = y_.place(s.y[i]);
     if (u < 0 || u > 1 || v < 0 || v > 1) continue;
-    draw_marker(svg,
-                marker_of(color),
-                px(box, s.x[i]),
-                py(box, s.y[i]),
-                color,
-                s.dashed);
+    draw_marker(
+        svg, ink.marker, px(box, s.x[i]), py(box, s.y[i]), ink.color, s.dashed);
   }
 }
 

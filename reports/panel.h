@@ -34,7 +34,7 @@ class PanelPlot {
   void curves(Svg& svg, const Rect& box) const;
   void band(Svg& svg, const Rect& box, const Series& s, int color) const;
   void error_bars(Svg& svg, const Rect& box, const Series& s, int color) const;
-  void markers(Svg& svg, const Rect& box, const Series& s, int color) const;
+  void markers(Svg& svg, const Rect& box, const Series& s, Ink ink) const;
   // Moved aside by a few units, so that error bars of one x stay apart.
   Rect dodged(const Rect& box, const Series& series) const;
   void open_panel(Svg& svg, const Rect& box) const;

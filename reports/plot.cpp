@@ -43,7 +43,7 @@ double lay_out(std::vector<Key>& keys, double width) {
 
 void draw_key(Svg& svg, const Key& key, Palette& palette, double x, double y) {
   const double left = x + key.x, mid = y + key.y + 10;
-  draw_sample(svg, *key.series, palette.index(key.series->method), left, mid);
+  draw_sample(svg, *key.series, palette.of(*key.series), left, mid);
   svg.text("label", left + 35, mid + 4, key.series->label);
 }
 

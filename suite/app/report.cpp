@@ -35,6 +35,7 @@ Section section_of(const Experiment& e,
                    const Published& published) {
   Section section;
   if (e.report) section = e.report(results, published);
+  apply(e.looks, section.figures);
   section.experiment = e.name;
   section.title = e.title;
   section.paper = e.source.paper;

@@ -34,14 +34,38 @@ struct Table {
   std::string note;
 };
 
+/// Colours that differ for everybody, on light and on dark pages.
+enum class Hue {
+  blue,
+  orange,
+  green,
+  red,
+  purple,
+  ink,
+  brown,
+  teal,
+  pink,
+  grey,
+  olive,
+  indigo
+};
+enum class Marker { circle, square, triangle, diamond, down, cross };
+
+/// How a method is drawn everywhere in an experiment's report.
+struct Look {
+  Hue hue = Hue::blue;
+  Marker marker = Marker::circle;
+};
+
 struct Series {
   std::string label;
-  std::string method;  ///< picks the colour: bfgs, gd, jpo, supervised, na, ...
+  std::string method;  ///< what is drawn: series of one method look alike
   std::vector<double> x, y;
   std::vector<double> lo, hi;  ///< band or error bar, empty for none
   bool line = true;            ///< joined points
   bool markers = false;        ///< a mark at each point
   bool dashed = false;
+  std::optional<Look> look = {};  ///< empty: the next free colour
 };
 
 /// A grid of values over two axes, drawn as a heat map: value(i, j) =
@@ -109,5 +133,10 @@ struct Section {
   std::vector<ClaimResult> claims;
   std::map<std::string, std::string> method_titles;  ///< jpo -> JPO
 };
+
+/// By what is drawn (`Series::method`).
+using Looks = std::map<std::string, Look>;
+/// Series whose method has a look get it.
+void apply(const Looks& looks, std::vector<Figure>& figures);
 
 }  // namespace physinv

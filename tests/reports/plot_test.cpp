@@ -34,7 +34,8 @@ TEST(RenderSvg, SameFigureSameBytes) {
                           .y = {1, 0.1, 0.01},
                           .lo = {0.5, -1, 0.001},
                           .hi = {2, 1, 1},
-                          .markers = true});
+                          .markers = true,
+                          .look = Look{Hue::orange, Marker::square}});
   const std::string a = render_svg(one_panel(panel));
   EXPECT_EQ(a, render_svg(one_panel(panel)));
   EXPECT_EQ(xml_error(a), "");
@@ -53,7 +54,7 @@ TEST(RenderSvg, WhatCannotBeShownIsAGap) {
   EXPECT_EQ(xml_error(svg), "");
   EXPECT_EQ(count(svg, "nan"), 0U);
   EXPECT_EQ(count(svg, "inf"), 0U);
-  const std::size_t at = svg.find("class=\"l s0\" d=");
+  const std::size_t at = svg.find("class=\"l s6\" d=");
   ASSERT_NE(at, svg.npos);
   const std::string path = svg.substr(at, svg.find("/>", at) - at);
   EXPECT_EQ(count(path, "M"), 2U);
@@ -107,13 +108,17 @@ TEST(RenderSvg, FieldsOfOneValueOrNoneDoNotCrash) {
   EXPECT_EQ(xml_error(render_svg(one_panel(panel))), "");
 }
 
-TEST(RenderSvg, MethodsKeepTheirColours) {
-  Panel panel;
-  panel.series.push_back({.label = "x", .method = "x", .x = {1}, .y = {1}});
-  panel.series.push_back({.label = "NA", .method = "na", .x = {1}, .y = {1}});
-  const std::string svg = render_svg(one_panel(panel));
+TEST(RenderSvg, MethodsHaveTheLookOfTheirCase) {
+  const auto series = [](const char* method) {
+    return Series{.label = method, .method = method, .x = {1}, .y = {1}};
+  };
+  std::vector<Figure> figures = {
+      one_panel({.series = {series("x"), series("na"), series("x")}})};
+  apply({{"na", {Hue::red, Marker::diamond}}, {"other", {}}}, figures);
+  EXPECT_FALSE(figures[0].panels[0].series[0].look);
+  const std::string svg = render_svg(figures[0]);
   EXPECT_EQ(count(svg, "class=\"l s3\""), 2U);  // legend and curve
-  EXPECT_EQ(count(svg, "class=\"l s6\""), 2U);
+  EXPECT_EQ(count(svg, "class=\"l s6\""), 3U);  // one method, one colour
 }
 
 }  // namespace
