@@ -9,20 +9,10 @@
 
 #include "suite/core/clock.h"
 #include "suite/core/curve.h"
-#include "suite/core/oracle.h"
 
 namespace physinv {
 
-/// Clocks of a stage. Setup and warm-up are apart from solving; measuring is
-/// the time spent on curves, in none of the others.
-struct Clocks {
-  Seconds setup, warmup, solve, measure;
-
-  Seconds total() const {
-    Seconds sum = setup;
-    return ((sum += warmup) += solve) += measure;
-  }
-};
+class Oracle;
 
 class Probe {
  public:

@@ -10,19 +10,10 @@
 #include <vector>
 
 #include "suite/core/network.h"
+#include "suite/core/options.h"
 #include "suite/core/problem.h"
 
 namespace physinv {
-
-/// Named options in declared order, as text that round-trips. They enter the
-/// record and the content key.
-using Options = std::vector<std::pair<std::string, std::string>>;
-
-enum class Precision : std::uint8_t { f32, f64 };
-
-constexpr std::string_view to_string(Precision p) {
-  return p == Precision::f32 ? "f32" : "f64";
-}
 
 /// Makes one problem of one configuration, in float and in double.
 struct ProblemRecipe {

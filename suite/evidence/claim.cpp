@@ -4,6 +4,9 @@
 
 #include <algorithm>
 
+#include "suite/results/published.h"
+#include "suite/results/results.h"
+
 namespace physinv {
 namespace {
 

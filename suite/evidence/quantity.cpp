@@ -7,6 +7,8 @@
 #include <map>
 
 #include "suite/evidence/statistics.h"
+#include "suite/results/published.h"
+#include "suite/results/record.h"
 
 namespace physinv {
 namespace {

@@ -6,12 +6,10 @@
 #include <map>
 #include <tuple>
 
+#include "suite/results/results.h"
+
 namespace physinv {
 namespace {
-
-bool has_result(const StageRecord& s) {
-  return s.stop != Stop::failed && s.stop != Stop::skipped;
-}
 
 const StageRecord* stage_of(const CaseRecord& c, const std::string& name) {
   if (name.empty()) {
@@ -35,6 +33,9 @@ std::string Select::text() const {
   if (last < kEvery) out += fmt::format(", n <= {}", last);
   return out;
 }
+
+Index Run::n() const { return record->info.n; }
+std::uint64_t Run::seed() const { return record->info.seed; }
 
 std::optional<Run> Run::beside(const Select& other) const {
   for (const Run& run : find_runs(*evidence, other.of_sizes(n(), n())))

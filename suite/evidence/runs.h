@@ -2,6 +2,7 @@
 /// "not run" means the same everywhere.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -9,10 +10,14 @@
 #include <string_view>
 #include <vector>
 
-#include "suite/results/published.h"
-#include "suite/results/results.h"
+#include "suite/core/batch.h"
 
 namespace physinv {
+
+class Published;
+class Results;
+struct CaseRecord;
+struct StageRecord;
 
 /// As the last size: there is no last.
 inline constexpr Index kEvery = std::numeric_limits<Index>::max();
@@ -51,8 +56,8 @@ struct Run {
   const CaseRecord* record;
   const StageRecord* stage;
 
-  Index n() const { return record->info.n; }
-  std::uint64_t seed() const { return record->info.seed; }
+  Index n() const;
+  std::uint64_t seed() const;
   /// The run of another method on the same n and seed.
   std::optional<Run> beside(const Select& other) const;
 };

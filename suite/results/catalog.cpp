@@ -10,10 +10,6 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-bool has_result(const StageRecord& r) {
-  return r.stop != Stop::failed && r.stop != Stop::skipped;
-}
-
 json read_plan(const fs::path& path) {
   if (!fs::exists(path)) return nullptr;
   const json plan = json::parse(read_file(path), nullptr, false);

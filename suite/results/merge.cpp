@@ -52,10 +52,6 @@ bool same(const StageRecord& a, const StageRecord& b) {
           b.trajectory.empty());
 }
 
-bool has_result(const StageRecord& r) {
-  return r.stop != Stop::failed && r.stop != Stop::skipped;
-}
-
 void merge_case(Store& store,
                 const Catalog& shard,
                 const std::string& name,

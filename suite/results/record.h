@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "suite/core/batch.h"
+#include "suite/core/clock.h"
 #include "suite/core/counts.h"
 #include "suite/core/curve.h"
-#include "suite/core/probe.h"
-#include "suite/core/recipe.h"
+#include "suite/core/options.h"
 #include "suite/core/stop.h"
 
 namespace physinv {
@@ -53,6 +53,11 @@ struct StageRecord {
   Curve curve;
   std::map<std::string, Batch<double>> arrays;  ///< method's own findings
 };
+
+/// Did it run to an end of its own? A divergence is a result, too.
+inline bool has_result(const StageRecord& stage) {
+  return stage.stop != Stop::failed && stage.stop != Stop::skipped;
+}
 
 /// Problem data of a case, so that results can be verified alone.
 struct CaseData {

@@ -36,10 +36,6 @@ void remove_leftovers(const fs::path& directory) {
     if (file.path().extension() == ".tmp") remove_file(file.path());
 }
 
-bool has_result(const StageRecord& r) {
-  return r.stop != Stop::failed && r.stop != Stop::skipped;
-}
-
 std::string to_text(const json& value) {
   return value.dump(1, ' ', false, json::error_handler_t::replace) + "\n";
 }
