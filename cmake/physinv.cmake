@@ -43,26 +43,41 @@ if(PHYSINV_SANITIZE)
   add_link_options(-fsanitize=${PHYSINV_SANITIZE})
 endif()
 
-# What everybody includes is read once: half of the build otherwise. The preset
-# `clang` goes without, so that a missing #include cannot hide.
-option(PHYSINV_PRECOMPILE "Precompiled headers" ON)
+# What everybody includes is read once. Not JSON: its templates wait at the end
+# of every source, a second each. The preset `clang` goes without all this, so
+# that a missing #include cannot hide.
+option(PHYSINV_PRECOMPILE "Precompiled headers, joined sources" ON)
 function(physinv_precompile name)
   add_library(${name} OBJECT ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/precompiled.cpp)
-  target_link_libraries(${name} PRIVATE physinv_flags Eigen3::Eigen fmt::fmt
-    nlohmann_json::nlohmann_json)
+  target_link_libraries(${name} PRIVATE physinv_flags Eigen3::Eigen fmt::fmt)
   target_compile_options(${name} PRIVATE ${PHYSINV_WARNINGS})
   target_precompile_headers(${name} PRIVATE <Eigen/Core> <fmt/format.h>
-    <nlohmann/json.hpp> <algorithm> <filesystem> <functional> <map> <memory>
-    <optional> <span> <string> <variant> <vector> ${ARGN})
+    <algorithm> <functional> <map> <memory> <optional> <span> <string>
+    <variant> <vector> ${ARGN})
 endfunction()
 if(PHYSINV_PRECOMPILE)
   physinv_precompile(physinv_precompiled)
 endif()
 
-# physinv_layer(<name> [OBJECT] SOURCES ... DEPENDS ...): one target per layer.
-# OBJECT keeps registrations that nobody names from the linker's broom.
+# physinv_join(<target> [<sources per compilation>]): for records, pages and
+# tests, whose compilation is all headers. A name of an unnamed namespace then
+# stands for one thing in the whole target. Nothing that computes a stage's
+# numbers is joined: what those depend on is known source by source.
+function(physinv_join name)
+  if(PHYSINV_PRECOMPILE)
+    set_target_properties(${name} PROPERTIES UNITY_BUILD ON
+      UNITY_BUILD_BATCH_SIZE "${ARGN}")
+  endif()
+endfunction()
+
+# physinv_layer(<name> [OBJECT] [RECORDS | WORDS] SOURCES ... DEPENDS ...): one
+# target per layer. OBJECT keeps registrations that nobody names from the
+# linker's broom. RECORDS handles numbers and makes none, WORDS does not touch
+# Eigen either: both are joined, words hardly optimized (-O1 comes after the -O3
+# of the build type). Elsewhere -O1 would be dangerous: the linker takes any one
+# copy of an inline function for all, and without contraction its bits differ.
 function(physinv_layer name)
-  cmake_parse_arguments(ARG "OBJECT" "" "SOURCES;DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "OBJECT;RECORDS;WORDS" "" "SOURCES;DEPENDS" ${ARGN})
   set(kind STATIC)
   if(ARG_OBJECT)
     set(kind OBJECT)
@@ -77,5 +92,11 @@ function(physinv_layer name)
   if(PHYSINV_PRECOMPILE)
     target_link_libraries(physinv_${name} PRIVATE Eigen3::Eigen fmt::fmt)
     target_precompile_headers(physinv_${name} REUSE_FROM physinv_precompiled)
+  endif()
+  if(ARG_RECORDS OR ARG_WORDS)
+    physinv_join(physinv_${name} 8)
+  endif()
+  if(ARG_WORDS)
+    target_compile_options(physinv_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   endif()
 endfunction()

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "reports/html_parts.h"
+#include "reports/tables.h"
 #include "reports/text.h"
 
 namespace physinv {
@@ -22,11 +23,6 @@ struct Layout {
   int ours_width() const { return 1 + spread; }
   int paper_width() const { return paper ? 1 + paper_spread : 0; }
 };
-
-const Cell& cell_at(const TableRow& row, std::size_t column) {
-  static const Cell kNone;
-  return column < row.cells.size() ? row.cells[column] : kNone;
-}
 
 Layout layout_of(const Table& table, std::size_t column) {
   Layout layout;

@@ -19,11 +19,6 @@ using Number = std::optional<double>;
 // A rectangle of words; the first line heads it, the first column labels it.
 using Words = std::vector<std::vector<std::string>>;
 
-const Cell& cell_at(const TableRow& row, std::size_t column) {
-  static const Cell kNone;
-  return column < row.cells.size() ? row.cells[column] : kNone;
-}
-
 bool has_paper(const Table& table, std::size_t column) {
   return std::any_of(table.rows.begin(), table.rows.end(), [&](const auto& r) {
     return cell_at(r, column).paper.has_value();
@@ -127,6 +122,11 @@ std::vector<std::size_t> block_starts(const Words& words,
 }
 
 }  // namespace
+
+const Cell& cell_at(const TableRow& row, std::size_t column) {
+  static const Cell kNone;
+  return column < row.cells.size() ? row.cells[column] : kNone;
+}
 
 nlohmann::ordered_json to_json(const Table& table) {
   const auto number = [](Number v) {

@@ -2,12 +2,15 @@
 #pragma once
 
 #include <cstddef>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "suite/results/report_model.h"
 
 namespace physinv {
+
+/// The cell of a column; an empty one where the row is shorter.
+const Cell& cell_at(const TableRow& row, std::size_t column);
 
 /// {id, title, source, unit, corner, columns, rows: [{label, cells: [{ours,
 /// spread, paper, paper_spread}]}], note}; null where a number is absent or

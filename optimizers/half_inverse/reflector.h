@@ -23,6 +23,9 @@ inline double dot(Index n, const double* a, const double* b) {
   return sum((s[0] + s[1]) + (s[2] + s[3])) + rest;
 }
 
+// GCC 12 thinks up an overflow of i below where n is a constant.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Waggressive-loop-optimizations"
 /// y += s x.
 inline void axpy(Index n, double s, const double* x, double* y) {
   const Wide factor = broadcast(s);
@@ -31,6 +34,7 @@ inline void axpy(Index n, double s, const double* x, double* y) {
     store(y + i, fma(factor, load(x + i), load(y + i)));
   for (; i < n; ++i) y[i] = std::fma(s, x[i], y[i]);
 }
+#pragma GCC diagnostic pop
 
 /// x <- H x.
 inline void turn(Index n, double tau, const double* v, double* x) {
