@@ -23,13 +23,11 @@ Outcome fit(const RegressionOptions& options, StageRun& run) {
   model.initialize(run.network_init);
   model.bind(assemble<T>(role.inputs, labelled.x, labelled.given, labelled.y));
   const Batch<double> start = oracle.start();
-  const double loss = fit_regression<T>(model,
-                                        labelled.y.template cast<T>(),
-                                        options,
-                                        run,
-                                        [&](BatchOut<double> x) { x = start; });
-  Outcome out = regression_outcome(model, loss, run);
-  out.x = start;
+  Outcome out = fit_regression<T>(model,
+                                  labelled.y.template cast<T>(),
+                                  options,
+                                  run,
+                                  [&](BatchOut<double> x) { x = start; });
   model.save(out.arrays);
   return out;
 }
@@ -213,12 +211,10 @@ class NeuralAdjointSolve final : public Stage {
 }  // namespace
 
 std::shared_ptr<const Stage> surrogate_fit(const RegressionOptions& options) {
-  return regression_stage({.algorithm = "surrogate",
-                           .needs = Needs::labels,
-                           .operations = &CaseSize::surrogate_operations,
-                           .in_float = fit<float>,
-                           .in_double = fit<double>},
-                          options);
+  return make_stage(
+      regression_facts(
+          "surrogate", Needs::labels, &CaseSize::surrogate_operations, options),
+      [options]<class T>(StageRun& run) { return fit<T>(options, run); });
 }
 
 std::shared_ptr<const Stage> neural_adjoint_solve(

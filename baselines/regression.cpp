@@ -1,41 +1,90 @@
 #include "baselines/regression.h"
 
+#include "optimizers/training/loop.h"
+
 namespace physinv {
 namespace {
 
-class RegressionStage final : public Stage {
+/// The signal: distance of the outputs from their targets.
+template <class T>
+class Labels final : public Signal<T> {
  public:
-  RegressionStage(const RegressionFit& fit, const RegressionOptions& options)
-      : fit_(fit), options_(options) {}
+  Labels(const Probe& probe, NetworkModel<T>& model, Batch<T> target)
+      : probe_(probe),
+        model_(model),
+        target_(std::move(target)),
+        residual_(target_.rows(), target_.cols()) {}
 
-  std::string name() const override { return "fit"; }
-  Needs needs() const override { return fit_.needs; }
-  Options options() const override {
-    Options all = {{"algorithm", fit_.algorithm}};
-    for (auto& option : describe(options_.step)) all.push_back(option);
-    return all;
+  void warm_up() override { model_.warm_up(); }
+
+  Vector<T>& gradient() override {
+    residual_.noalias() = model_.forward() - target_;
+    model_.update_state();
+    loss_ = residual_.template cast<double>().squaredNorm();
+    probe_.trace(&loss_, sizeof(loss_));
+    residual_ *= T(2);
+    return model_.backward(residual_);
   }
-  Index default_iterations() const override { return options_.iterations; }
-  bool has_precision() const override { return true; }
-  double operations(const CaseSize& size) const override {
-    return 3 * (size.*fit_.operations) *
-           static_cast<double>(size.n * size.iterations);
-  }
-  Outcome run(StageRun& run) const override {
-    const bool single = run.precision == Precision::f32;
-    return (single ? fit_.in_float : fit_.in_double)(options_, run);
+
+  void leave(Outcome& out) const override {
+    out.arrays["training_loss"] = Batch<double>::Constant(1, 1, loss_);
   }
 
  private:
-  RegressionFit fit_;
-  RegressionOptions options_;
+  const Probe& probe_;
+  NetworkModel<T>& model_;
+  Batch<T> target_, residual_;
+  double loss_ = 0;
 };
 
 }  // namespace
 
-std::shared_ptr<const Stage> regression_stage(
-    const RegressionFit& fit, const RegressionOptions& options) {
-  return std::make_shared<RegressionStage>(fit, options);
+template <class T>
+Outcome fit_regression(
+    NetworkModel<T>& model,
+    Batch<T> target,
+    const RegressionOptions& options,
+    StageRun& run,
+    const std::function<void(BatchOut<double> x)>& estimate) {
+  Labels<T> signal(run.probe, model, std::move(target));
+  FirstOrder<T> rule(options.step, model);
+  Outcome out = run_training<T>({.model = model,
+                                 .signal = signal,
+                                 .rule = rule,
+                                 .batches = nullptr,
+                                 .estimate = estimate},
+                                run);
+  out.x.resize(run.oracle.shape().unknowns, run.oracle.count());
+  estimate(out.x);
+  out.arrays["weight_change"] = model.change_per_tensor(run.network_init);
+  return out;
+}
+
+template Outcome fit_regression(NetworkModel<float>&,
+                                Batch<float>,
+                                const RegressionOptions&,
+                                StageRun&,
+                                const std::function<void(BatchOut<double>)>&);
+template Outcome fit_regression(NetworkModel<double>&,
+                                Batch<double>,
+                                const RegressionOptions&,
+                                StageRun&,
+                                const std::function<void(BatchOut<double>)>&);
+
+StageFacts regression_facts(std::string algorithm,
+                            Needs needs,
+                            double CaseSize::*operations,
+                            const RegressionOptions& options) {
+  Options all = {{"algorithm", std::move(algorithm)}};
+  for (auto& option : describe(options.step)) all.push_back(option);
+  return {.name = "fit",
+          .needs = needs,
+          .options = std::move(all),
+          .iterations = options.iterations,
+          .operations = [operations](const CaseSize& size) {
+            return 3 * (size.*operations) *
+                   static_cast<double>(size.n * size.iterations);
+          }};
 }
 
 }  // namespace physinv

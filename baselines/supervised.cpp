@@ -1,48 +1,37 @@
 #include "baselines/supervised.h"
 
+#include "optimizers/training/predictions.h"
+
 namespace physinv {
 namespace {
 
 template <class T>
 Outcome fit(const RegressionOptions& options, StageRun& run) {
   Oracle& oracle = run.oracle;
-  const Setting& setting = run.setting;
-  const auto& fields = setting.predictor.inputs;
+  const NetworkRole& role = run.setting.predictor;
   const Samples<double>& labelled = oracle.labelled();
-  const Batch<double> start = oracle.start();
-  const Index unknowns = oracle.shape().unknowns;
-
   NetworkModel<T> model(
-      setting.predictor, oracle.shape(), unknowns, run.threads);
+      role, oracle.shape(), oracle.shape().unknowns, run.threads);
   model.initialize(run.network_init);
-  model.bind(assemble<T>(fields, labelled.x, labelled.given, labelled.y));
-  const Batch<T> target =
-      ((labelled.x - start) / setting.output_scale).template cast<T>();
-
-  const Batch<T> query =
-      assemble<T>(fields, start, oracle.given(), oracle.observations());
-  Batch<T> output(unknowns, oracle.count());
-  const auto predict = [&](BatchOut<double> x) {
-    model.predict(query, output);
-    x = start + setting.output_scale * output.template cast<double>();
-  };
-  const double loss = fit_regression<T>(model, target, options, run, predict);
-
-  Outcome out = regression_outcome(model, loss, run);
-  out.x.resizeLike(start);
-  predict(out.x);
-  return out;
+  model.bind(assemble<T>(role.inputs, labelled.x, labelled.given, labelled.y));
+  Predictions<T> predict(model, run);
+  const auto map = output_map<double>(run.setting, oracle);
+  return fit_regression<T>(model,
+                           map->outputs_of(labelled.x).template cast<T>(),
+                           options,
+                           run,
+                           [&](BatchOut<double> x) { predict(x); });
 }
 
 }  // namespace
 
 std::shared_ptr<const Stage> supervised_fit(const RegressionOptions& options) {
-  return regression_stage({.algorithm = "supervised",
-                           .needs = Needs::forward | Needs::labels,
-                           .operations = &CaseSize::predictor_operations,
-                           .in_float = fit<float>,
-                           .in_double = fit<double>},
-                          options);
+  return make_stage(
+      regression_facts("supervised",
+                       Needs::forward | Needs::labels,
+                       &CaseSize::predictor_operations,
+                       options),
+      [options]<class T>(StageRun& run) { return fit<T>(options, run); });
 }
 
 }  // namespace physinv

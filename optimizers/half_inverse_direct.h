@@ -15,7 +15,9 @@
 #include <memory>
 #include <string>
 
-#include "optimizers/training.h"
+#include "optimizers/half_inverse_step.h"
+#include "optimizers/metrics.h"
+#include "suite/core/method.h"
 
 namespace physinv {
 

@@ -22,6 +22,11 @@ void MetricsRecorder::operator()(VectorIn<double> parameters,
   values_.rightCols(1) = now;
 }
 
+Batch<double> as_row(const std::vector<double>& values) {
+  return Eigen::Map<const Batch<double>>(
+      values.data(), 1, static_cast<Index>(values.size()));
+}
+
 void keep_finite(std::map<std::string, Batch<double>>& arrays) {
   for (auto& [name, array] : arrays)
     array = array.unaryExpr([](double value) {

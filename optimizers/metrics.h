@@ -41,6 +41,9 @@ class MetricsRecorder {
   Batch<double> values_;
 };
 
+/// Numbers taken one by one, as an array of a record: 1 x as many.
+Batch<double> as_row(const std::vector<double>& values);
+
 /// Arrays of records hold finite numbers only: what is not becomes the largest
 /// double.
 void keep_finite(std::map<std::string, Batch<double>>& arrays);

@@ -1,0 +1,69 @@
+#include "optimizers/training/batch_signal.h"
+
+#include <algorithm>
+
+#include "optimizers/metrics.h"
+
+namespace physinv {
+
+template <class T>
+BatchSignal<T>::BatchSignal(const SignalPlace<T>& place)
+    : run_(place.run),
+      model_(place.model),
+      batches_(place.batches),
+      options_(place.options),
+      factor_(static_cast<T>(options_.gradient_scale /
+                             static_cast<double>(batches_.size()))),
+      map_(output_map<T>(run_.setting, run_.oracle)),
+      loss_(batches_.size()) {}
+
+template <class T>
+const Batch<T>& BatchSignal<T>::estimate(Index first, Index count) {
+  const Batch<T>& out = model_.forward(batches_.input(first, count));
+  x_.resizeLike(out);
+  (*map_)(out, batches_.target(first, count), x_);
+  model_.update_state();
+  return x_;
+}
+
+template <class T>
+Vector<T>& BatchSignal<T>::gradient_of(Index first, Index count) {
+  estimate(first, count);
+  x_bar_.resizeLike(x_);
+  push(x_, first, loss_.segment(first, count), x_bar_);
+  map_->pull_back(x_bar_);
+  return model_.backward(x_bar_);
+}
+
+template <class T>
+Vector<T>& BatchSignal<T>::gradient() {
+  const Index n = batches_.size();
+  const Index most = options_.chunk > 0 ? std::min(options_.chunk, n) : n;
+  if (most == n) {
+    Vector<T>& whole = gradient_of(0, n);
+    note_loss();
+    return whole;
+  }
+  SUITE_CHECK(model_.state().size() == 0, "batch statistics need the batch");
+  sum_.setZero(model_.parameters().size());
+  for (Index first = 0; first < n; first += most)
+    sum_ += gradient_of(first, std::min(most, n - first));
+  note_loss();
+  return sum_;
+}
+
+template <class T>
+void BatchSignal<T>::leave(Outcome& out) const {
+  out.arrays["batch_loss"] = as_row(losses_);
+}
+
+template <class T>
+std::size_t BatchSignal<T>::bytes() const {
+  return static_cast<std::size_t>(x_.size() + x_bar_.size() + sum_.size()) *
+         sizeof(T);
+}
+
+template class BatchSignal<float>;
+template class BatchSignal<double>;
+
+}  // namespace physinv

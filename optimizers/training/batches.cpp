@@ -1,0 +1,61 @@
+#include "optimizers/training/batches.h"
+
+#include <algorithm>
+
+#include "optimizers/network_model.h"
+
+namespace physinv {
+
+Index drawn_before(const StageRun& run) {
+  if (run.previous == nullptr) return 0;
+  const auto found = run.previous->arrays.find("samples_drawn");
+  return found == run.previous->arrays.end()
+             ? 0
+             : static_cast<Index>(found->second(0, 0));
+}
+
+template <class T>
+Batches<T>::Batches(StageRun& run, const BatchOptions& options, Index drawn)
+    : run_(run),
+      size_(options.fresh ? options.size
+                          : std::min(options.size, run.oracle.count())),
+      slices_(run.oracle.count() / size_),
+      drawn_(drawn),
+      fresh_(options.fresh) {
+  if (!fresh_) load(run.oracle.training(0, slices_ * size_));
+}
+
+template <class T>
+void Batches<T>::next() {
+  if (fresh_) {
+    run_.probe.pause();
+    load(run_.oracle.training(drawn_, size_));
+    run_.probe.resume();
+  } else {
+    first_ = at_ * size_;
+    at_ = (at_ + 1) % slices_;
+  }
+  drawn_ += size_;
+}
+
+template <class T>
+void Batches<T>::load(const Samples<double>& from) {
+  target_ = from.y.template cast<T>();
+  given_ = from.given.template cast<T>();
+  const auto& fields = run_.setting.predictor.inputs;
+  for (const Field f : fields)
+    SUITE_CHECK(f != Field::unknowns, "a predictor cannot read the unknowns");
+  input_ = assemble<T>(fields, from.x, from.given, from.y);
+}
+
+template <class T>
+std::size_t Batches<T>::bytes() const {
+  const Index numbers =
+      size_ * (target_.rows() + given_.rows() + input_.rows());
+  return static_cast<std::size_t>(numbers) * sizeof(T);
+}
+
+template class Batches<float>;
+template class Batches<double>;
+
+}  // namespace physinv

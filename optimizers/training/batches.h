@@ -1,0 +1,63 @@
+/// Which samples an update sees, when it does not see all: consecutive slices
+/// of a training set as large as the case's, in the same order every epoch, or
+/// fresh samples for every update, which are drawn while the clock stands
+/// still. Nothing allocates after the first batch, unless every batch is drawn
+/// afresh.
+#pragma once
+
+#include "suite/core/method.h"
+
+namespace physinv {
+
+struct BatchOptions {
+  Index size = 128;
+  bool fresh = false;
+};
+
+template <class T>
+class Batches {
+ public:
+  /// Slices of `size` problems out of as many as the case has (`size` is cut to
+  /// that number, a remainder is left out); with `fresh`, new problems from
+  /// number `drawn` on for every batch.
+  Batches(StageRun& run, const BatchOptions& options, Index drawn);
+
+  void next();
+
+  Index size() const { return size_; }
+  /// Problems used so far, those of earlier stages included.
+  Index drawn() const { return drawn_; }
+
+  /// Samples first .. first+count-1 of the batch: what the network reads, what
+  /// the problem is given, what was observed.
+  auto input(Index first, Index count) const {
+    return input_.middleCols(first_ + first, count);
+  }
+  auto given(Index first, Index count) const {
+    return given_.middleCols(first_ + first, count);
+  }
+  auto target(Index first, Index count) const {
+    return target_.middleCols(first_ + first, count);
+  }
+
+  /// Of one batch: the set itself belongs to the problem.
+  std::size_t bytes() const;
+
+ private:
+  void load(const Samples<double>& from);
+
+  StageRun& run_;
+  Index size_, slices_, drawn_, at_ = 0;
+  bool fresh_;
+  /// All slices, or a fresh batch; the current one starts at column `first_`.
+  Batch<T> target_, given_, input_;
+  Index first_ = 0;
+};
+
+/// Samples that the stages before have used.
+Index drawn_before(const StageRun& run);
+
+extern template class Batches<float>;
+extern template class Batches<double>;
+
+}  // namespace physinv

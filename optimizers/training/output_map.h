@@ -1,0 +1,51 @@
+/// What a network's output o means: an estimate of the unknowns, one column per
+/// sample (OutputForm in suite/core/method.h),
+///
+///   linear                x = start + scale o
+///   box                   x = start + scale tanh(o)
+///   mean_of_observations  x = scale (o - mean o) + mean y
+///
+/// with means over the numbers of one sample.
+#pragma once
+
+#include <memory>
+
+#include "suite/core/method.h"
+
+namespace physinv {
+
+enum class OutputForm : std::uint8_t { linear, box, mean_of_observations };
+
+template <class T>
+class OutputMap {
+ public:
+  virtual ~OutputMap() = default;
+
+  /// x of these outputs; y are the observations the network was asked about.
+  virtual void operator()(BatchIn<T> out, BatchIn<T> y, BatchOut<T> x) = 0;
+
+  /// Gradients by the last x become gradients by its outputs, in place.
+  virtual void pull_back(BatchOut<T> bar) const = 0;
+  /// The same for the rows of Jacobians: column i of `jacobian` is sample i's,
+  /// observations x unknowns, column-major.
+  virtual void pull_back_rows(BatchOut<T> jacobian) const = 0;
+
+  /// The outputs that mean x, of forms that have an inverse.
+  virtual Batch<T> outputs_of(BatchIn<T> x) const;
+};
+
+/// As a setting has it, around the start of the oracle's problems.
+template <class T>
+std::unique_ptr<OutputMap<T>> output_map(const Setting& setting,
+                                         const Oracle& oracle);
+
+/// The same with its parts.
+template <class T>
+std::unique_ptr<OutputMap<T>> output_map(OutputForm form,
+                                         double scale,
+                                         const Vector<double>& start);
+
+extern template class OutputMap<float>;
+extern template class OutputMap<double>;
+
+}  // namespace physinv

@@ -1,0 +1,40 @@
+#include "optimizers/training/stage.h"
+
+namespace physinv {
+namespace {
+
+class FactualStage final : public Stage {
+ public:
+  FactualStage(StageFacts facts, RunStage in_float, RunStage in_double)
+      : facts_(std::move(facts)),
+        in_float_(std::move(in_float)),
+        in_double_(std::move(in_double)) {}
+
+  std::string name() const override { return facts_.name; }
+  Needs needs() const override { return facts_.needs; }
+  Options options() const override { return facts_.options; }
+  Index default_iterations() const override { return facts_.iterations; }
+  bool takes_row_iterations() const override { return !facts_.own_length; }
+  bool has_precision() const override { return true; }
+  double operations(const CaseSize& size) const override {
+    return facts_.operations(size);
+  }
+  Outcome run(StageRun& run) const override {
+    return run.precision == Precision::f32 ? in_float_(run) : in_double_(run);
+  }
+
+ private:
+  StageFacts facts_;
+  RunStage in_float_, in_double_;
+};
+
+}  // namespace
+
+std::shared_ptr<const Stage> make_stage(StageFacts facts,
+                                        RunStage in_float,
+                                        RunStage in_double) {
+  return std::make_shared<FactualStage>(
+      std::move(facts), std::move(in_float), std::move(in_double));
+}
+
+}  // namespace physinv

@@ -1,0 +1,41 @@
+/// A stage of a training: its facts, and a function of the precision.
+///
+///   make_stage({.name = "fit", ...},
+///              [options]<class T>(StageRun& run) {
+///                return fit<T>(options, run);
+///              });
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "suite/core/method.h"
+
+namespace physinv {
+
+struct StageFacts {
+  std::string name;
+  Needs needs;
+  Options options;
+  Index iterations;
+  bool own_length = false;  ///< `iterations` stands, whatever a row says
+  std::function<double(const CaseSize& size)> operations;
+};
+
+using RunStage = std::function<Outcome(StageRun& run)>;
+
+std::shared_ptr<const Stage> make_stage(StageFacts facts,
+                                        RunStage in_float,
+                                        RunStage in_double);
+
+template <class Run>
+std::shared_ptr<const Stage> make_stage(StageFacts facts, Run run) {
+  return make_stage(
+      std::move(facts),
+      [run](StageRun& r) { return run.template operator()<float>(r); },
+      [run](StageRun& r) { return run.template operator()<double>(r); });
+}
+
+}  // namespace physinv
