@@ -11,10 +11,6 @@ namespace physinv::dipole {
 inline constexpr const char* kDense = "hig/quantum-dipole";
 inline constexpr const char* kConvolutional = "hig/quantum-dipole-cnn";
 
-/// Rows of the array `metrics`: losses of the first and of the second excited
-/// state alone (LE and HE of Fig. 4c), means over the test set.
-enum Level : Index { kLow, kHigh };
-
 /// A1 to A6 and A8.
 std::vector<ClaimResult> dense_claims(const Results& results);
 /// A7.

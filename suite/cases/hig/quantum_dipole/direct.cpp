@@ -10,6 +10,7 @@
 #include "problems/quantum_dipole/quantum_dipole.h"
 #include "suite/evidence/curve.h"
 #include "suite/cases/hig/common/report.h"
+#include "suite/cases/hig/quantum_dipole/direct_metrics.h"
 #include "suite/cases/hig/quantum_dipole/runs.h"
 #include "suite/cases/jpo/common/claims.h"
 #include "suite/cases/jpo/common/endings.h"
@@ -19,38 +20,11 @@ namespace physinv::dipole {
 namespace {
 
 constexpr const char* kName = "hig/quantum-dipole-direct";
-/// The first targets have angles 0.7 and 2.
-constexpr Index kNamed = 2;
-/// Rows of `metrics`.
-enum Formula : Index { kOverlap, kRest };
-
-/// The controls as the authors' precision sees them: the worse loss of the two
-/// named targets by 1 - |<t, psi>|^2, and by |psi - <t, psi> t|^2.
-void losses_in_float(const Snapshot& at, VectorOut<double> out) {
-  out.setZero();
-  if (at.y.rows() != 2 * kQuantumPoints) return;  // not of this problem
-  const Batch<float> x = at.x.cast<float>(), given(0, x.cols());
-  const Batch<float> target = at.oracle.observations().cast<float>();
-  Batch<float> y(at.y.rows(), x.cols());
-  Vector<double> loss(x.cols());
-  Workspace work;
-  for (const bool accurate : {false, true}) {
-    const QuantumDipole<float> problem({.accurate_loss = accurate});
-    problem.forward(x, given, y, work);
-    problem.loss(y, target, loss);
-    out(accurate ? kRest : kOverlap) =
-        loss.head(std::min<Index>(kNamed, loss.size())).cwiseAbs().maxCoeff();
-  }
-}
-
 Method method(std::string id, double kappa) {
   return {.id = std::move(id),
-          .chain = {
-              half_inverse_direct({.power = {.kappa = kappa, .tau = 1e-5},
-                                   .rate = 0.5,
-                                   .metrics = {.name = "float",
-                                               .rows = {"overlap", "rest"},
-                                               .evaluate = losses_in_float}})}};
+          .chain = {half_inverse_direct({.power = {.kappa = kappa, .tau = 1e-5},
+                                         .rate = 0.5,
+                                         .metrics = losses_in_float()})}};
 }
 
 // ---- claim ------------------------------------------------------------------

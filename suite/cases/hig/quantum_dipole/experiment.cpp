@@ -13,6 +13,7 @@
 #include "suite/cases/hig/quantum_dipole/claims.h"
 #include "suite/cases/hig/quantum_dipole/figures.h"
 #include "suite/cases/hig/quantum_dipole/grids.h"
+#include "suite/cases/hig/quantum_dipole/metrics.h"
 #include "suite/harness/registry.h"
 #include "suite/nn/cnn.h"
 #include "suite/nn/mlp.h"
@@ -26,26 +27,12 @@ constexpr Index kSlowAdam = 25'000;
 /// Of the chain: where Adam alone has become slow, 244 epochs.
 constexpr Index kBeforeHig = 15'616;
 
-void levels(const Snapshot& at, VectorOut<double> out) {
-  out.setZero();
-  if (at.y.rows() != 2 * kQuantumPoints) return;  // not of this problem
-  const QuantumDipole<double> problem;
-  Vector<double> loss(at.y.cols());
-  problem.level_loss(2, at.y, at.oracle.observations(), loss);
-  out(kLow) = loss.mean();
-  problem.level_loss(3, at.y, at.oracle.observations(), loss);
-  out(kHigh) = loss.mean();
-}
-
-const Metrics kLevels{
-    .name = "levels", .rows = {"low", "high"}, .evaluate = levels};
-
 TrainingOptions training(decltype(TrainingOptions::rule) rule, Index batch) {
   // Controls and tapes of a batch of 1024 would take 20 MB.
   return {.rule = std::move(rule),
           .batch = batch,
           .chunk = kChunk,
-          .metrics = kLevels};
+          .metrics = levels()};
 }
 
 TrainingOptions by_adam(Index batch, double rate) {

@@ -10,6 +10,7 @@
 #include "suite/cases/hig/common/report.h"
 #include "suite/cases/hig/quantum_dipole/claims.h"
 #include "suite/cases/hig/quantum_dipole/grids.h"
+#include "suite/cases/hig/quantum_dipole/metrics.h"
 
 namespace physinv::dipole {
 namespace {

@@ -5,6 +5,7 @@
 
 #include "suite/evidence/curve.h"
 #include "suite/cases/hig/common/report.h"
+#include "suite/cases/hig/quantum_dipole/metrics.h"
 #include "suite/cases/jpo/common/endings.h"
 
 namespace physinv::dipole {
