@@ -195,6 +195,7 @@ class NeuralAdjointSolve final : public Stage {
   Index default_iterations() const override { return options_.iterations; }
   bool takes_row_iterations() const override { return false; }
   bool has_precision() const override { return true; }
+  Networks networks() const override { return Networks::surrogate; }
   double operations(const CaseSize& size) const override {
     return 60.0 * static_cast<double>(size.n) *
            (2 * size.surrogate_operations + size.problem_operations + 200);

@@ -74,9 +74,12 @@ template Outcome fit_regression(NetworkModel<double>&,
 StageFacts regression_facts(std::string algorithm,
                             Needs needs,
                             double CaseSize::*operations,
-                            const RegressionOptions& options) {
+                            const RegressionOptions& options,
+                            const char* source) {
   Options all = {{"algorithm", std::move(algorithm)}};
   for (auto& option : describe(options.step)) all.push_back(option);
+  Sources sources;
+  add_sources(options.step, sources);
   return {.name = "fit",
           .needs = needs,
           .options = std::move(all),
@@ -84,7 +87,9 @@ StageFacts regression_facts(std::string algorithm,
           .operations = [operations](const CaseSize& size) {
             return 3 * (size.*operations) *
                    static_cast<double>(size.n * size.iterations);
-          }};
+          },
+          .sources = std::move(sources),
+          .source = source};
 }
 
 }  // namespace physinv

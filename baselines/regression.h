@@ -32,6 +32,7 @@ Outcome fit_regression(NetworkModel<T>& model,
 StageFacts regression_facts(std::string algorithm,
                             Needs needs,
                             double CaseSize::*operations,
-                            const RegressionOptions& options);
+                            const RegressionOptions& options,
+                            const char* source = __builtin_FILE());
 
 }  // namespace physinv

@@ -1,7 +1,6 @@
-# physinv_build_info: what this build is made of (suite/harness/build_info.h).
-# Its fingerprint covers the sources of the numerics, hashed at build time, so
-# a changed solver changes it and a changed report does not; the source is
-# rewritten only when its content changes.
+# physinv_build_info: what this build is made of (suite/harness/build_info.h),
+# with hash and #include lines of every source that numbers can come from, read
+# at build time. The file is rewritten only when its content changes.
 if(PHYSINV_NATIVE)
   execute_process(
     COMMAND ${CMAKE_CXX_COMPILER} -march=native "-###" -E -x c++ /dev/null
@@ -57,6 +56,6 @@ add_custom_command(
   COMMAND ${CMAKE_COMMAND} -D source_dir=${PROJECT_SOURCE_DIR}
     -D info=${physinv_info}
     -P ${CMAKE_CURRENT_LIST_DIR}/write_build_info.cmake
-  COMMENT "Fingerprint of the numerics"
+  COMMENT "Sources of the numerics"
   VERBATIM)
 physinv_layer(build_info SOURCES ${physinv_info}/build_info.cpp)

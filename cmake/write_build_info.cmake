@@ -1,35 +1,75 @@
 # Writes ${info}/build_info.cpp, and build_info.d naming every source that it
-# hashed. A header that is new comes in with the changed file that includes it.
+# hashed and the folders they are in, so that a new one is seen.
 include(${info}/values.cmake)
 
-set(sources)
-foreach(directory suite/core suite/nn problems optimizers baselines
-        suite/diagnostics)
-  file(GLOB_RECURSE found RELATIVE ${source_dir}
-    ${source_dir}/${directory}/*.h ${source_dir}/${directory}/*.cpp)
-  list(APPEND sources ${found})
-endforeach()
-list(FILTER sources EXCLUDE REGEX "/kernels\\.(cpp|h)$")
-list(SORT sources)
+function(physinv_sources result)
+  set(all)
+  foreach(directory IN LISTS ARGN)
+    file(GLOB_RECURSE found RELATIVE ${source_dir}
+      ${source_dir}/${directory}/*.h ${source_dir}/${directory}/*.cpp)
+    list(APPEND all ${found})
+  endforeach()
+  list(FILTER all EXCLUDE REGEX "/kernels\\.(cpp|h)$")
+  list(SORT all)
+  set(${result} ${all} PARENT_SCOPE)
+endfunction()
 
-string(CONCAT content "${compiler} ${compiler_version} ${flags} "
-  "${instruction_set} ${libc} ${eigen} ${fftw} ${hdf5}\n")
-set(files ${info}/build_info.cpp:)
+physinv_sources(numerics suite/core suite/nn problems optimizers baselines
+  suite/diagnostics)
+physinv_sources(cases suite/cases)  # for the metrics among them
+set(everywhere suite/harness/run_stage.cpp suite/harness/run_stage.h)
+set(sources ${numerics} ${cases} ${everywhere})
+
 foreach(source IN LISTS sources)
   file(SHA256 "${source_dir}/${source}" hash)
-  string(APPEND content "${source} ${hash}\n")
-  list(APPEND files ${source_dir}/${source})
+  string(SUBSTRING ${hash} 0 32 hash_${source})
 endforeach()
+
+# Text of 16 digits over texts and sources.
+function(physinv_digest result text)
+  foreach(source IN LISTS ARGN)
+    string(APPEND text "\n${source} ${hash_${source}}")
+  endforeach()
+  string(SHA256 digest "${text}")
+  string(SUBSTRING ${digest} 0 16 digest)
+  set(${result} ${digest} PARENT_SCOPE)
+endfunction()
+
+string(CONCAT build "${compiler} ${compiler_version} ${flags} "
+  "${instruction_set} ${libc} ${eigen} ${fftw} ${hdf5}")
+physinv_digest(foundation "${build}" ${everywhere})
+physinv_digest(fingerprint ${foundation} ${numerics})
+
+set(table)
+foreach(source IN LISTS numerics cases)
+  set(line "^[ \t]*#[ \t]*include[ \t]*\"([^\"]+)\"")
+  file(STRINGS "${source_dir}/${source}" headers REGEX "${line}")
+  list(TRANSFORM headers REPLACE "${line}.*" "\\1 ")
+  list(JOIN headers "" headers)
+  string(APPEND table "    {\"${source}\", \"${hash_${source}}\",\n"
+    "     \"${headers}\"},\n")
+endforeach()
+
+set(files)
+foreach(source IN LISTS sources)
+  list(APPEND files ${source_dir}/${source})
+  # Its folder, and those above it up to the project's.
+  cmake_path(GET source PARENT_PATH folder)
+  while(folder)
+    list(APPEND files ${source_dir}/${folder})
+    cmake_path(GET folder PARENT_PATH folder)
+  endwhile()
+endforeach()
+list(REMOVE_DUPLICATES files)
 list(TRANSFORM files REPLACE " " "\\\\ ")
+list(PREPEND files ${info}/build_info.cpp:)
 list(JOIN files " \\\n  " depfile)
 file(WRITE ${info}/build_info.d "${depfile}\n")
-string(SHA256 fingerprint "${content}")
-string(SUBSTRING ${fingerprint} 0 16 fingerprint)
 
 # In the order of the struct's members.
 set(members)
 foreach(member compiler compiler_version flags build_type instruction_set
-               fingerprint version eigen fftw hdf5 json fmt cli11)
+               fingerprint foundation version eigen fftw hdf5 json fmt cli11)
   string(REPLACE "\"" "\\\"" value "${${member}}")
   string(APPEND members "    .${member} = \"${value}\",\n")
 endforeach()
@@ -37,10 +77,17 @@ file(CONFIGURE OUTPUT ${info}/build_info.cpp @ONLY CONTENT [[
 #include "suite/harness/build_info.h"
 
 namespace physinv {
+namespace {
+
+constexpr SourceFile kSources[] = {
+@table@};
+
+}  // namespace
 
 const BuildInfo& build_info() {
   static constexpr BuildInfo kInfo{
-@members@  };
+@members@    .sources = kSources,
+  };
   return kInfo;
 }
 

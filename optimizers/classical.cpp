@@ -45,6 +45,12 @@ Outcome solve(Solver& solver, StageRun& run, const Batch<double>& x0) {
   return out;
 }
 
+/// Both stages stand here; each has a solver of its own.
+Sources without(Sources sources, std::string header) {
+  sources.unused.emplace_back("optimizers/classical.cpp", std::move(header));
+  return sources;
+}
+
 class BfgsStage final : public Stage {
  public:
   BfgsStage(const BfgsStageOptions& options, bool refines)
@@ -56,6 +62,10 @@ class BfgsStage final : public Stage {
     return {{"algorithm", "bfgs"}, {"from", refines_ ? "previous" : "start"}};
   }
   Index default_iterations() const override { return options_.iterations; }
+  Networks networks() const override { return Networks::none; }
+  Sources sources() const override {
+    return without(Stage::sources(), "optimizers/gradient_descent.h");
+  }
   bool takes_row_iterations() const override { return !refines_; }
   double operations(const CaseSize& size) const override {
     // Tens of evaluations are typical, each with its share of line search.
@@ -84,6 +94,10 @@ class GradientDescentStage final : public Stage {
     return {{"algorithm", "gradient_descent"}};
   }
   Index default_iterations() const override { return options_.iterations; }
+  Networks networks() const override { return Networks::none; }
+  Sources sources() const override {
+    return without(Stage::sources(), "optimizers/bfgs.h");
+  }
   double operations(const CaseSize& size) const override {
     return 0.5 * static_cast<double>(size.n * size.iterations) *
            (3 * size.problem_operations + 100);

@@ -116,6 +116,12 @@ class DirectStage final : public Stage {
   }
   Index default_iterations() const override { return options_.iterations; }
   bool has_precision() const override { return true; }
+  Networks networks() const override { return Networks::none; }
+  Sources sources() const override {
+    Sources all = Stage::sources();
+    options_.metrics.add_to(all);
+    return all;
+  }
   double operations(const CaseSize& size) const override {
     const auto rows = static_cast<double>(size.shape.observations);
     const auto columns = static_cast<double>(size.shape.unknowns);

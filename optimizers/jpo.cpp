@@ -108,12 +108,15 @@ std::shared_ptr<const Stage> jpo_fit(const JpoOptions& options) {
     return static_cast<double>(size.n * size.iterations) *
            (3 * size.predictor_operations + 3 * size.problem_operations);
   };
+  Sources sources;
+  add_sources(options.step, sources);
   return make_stage(
       {.name = "fit",
        .needs = Needs::forward | Needs::vjp,
        .options = in_words(options),
        .iterations = options.iterations,
-       .operations = operations},
+       .operations = operations,
+       .sources = sources},
       [options]<class T>(StageRun& run) { return fit<T>(options, run); });
 }
 

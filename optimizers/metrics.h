@@ -22,6 +22,13 @@ struct Metrics {
   std::string name;  ///< enters the content key; empty: none
   std::vector<std::string> rows;
   std::function<void(const Snapshot&, VectorOut<double>)> evaluate;
+  /// The file that says what they are: one without claims and figures, as an
+  /// edit of it makes the stages that record them stale.
+  const char* source = __builtin_FILE();
+
+  void add_to(Sources& sources) const {
+    if (!name.empty()) sources.roots.emplace_back(source);
+  }
 };
 
 /// Evaluates them as a stage runs.

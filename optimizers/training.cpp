@@ -105,6 +105,24 @@ double operations(const TrainingOptions& options, const CaseSize& size) {
   return static_cast<double>(size.iterations) * (passes + reduction);
 }
 
+/// Of the two kinds of rules, only the chosen one matters to a stage.
+Sources sources_of(const TrainingOptions& options) {
+  Sources all{.roots = {options.signal.source}, .unused = {}};
+  options.metrics.add_to(all);
+  if (const auto* step = std::get_if<StepOptions>(&options.rule)) {
+    add_sources(*step, all);
+    all.unused.insert(
+        all.unused.end(),
+        {{"optimizers/training.h", "optimizers/half_inverse_step.h"},
+         {"optimizers/training.cpp",
+          "optimizers/training/half_inverse_rule.h"}});
+  } else {
+    all.unused = {{"optimizers/training.h", "optimizers/steps/rule.h"},
+                  {"optimizers/training/rule.h", "optimizers/steps/rule.h"}};
+  }
+  return all;
+}
+
 }  // namespace
 
 std::shared_ptr<const Stage> train(const TrainingOptions& options) {
@@ -119,7 +137,8 @@ std::shared_ptr<const Stage> train(const TrainingOptions& options) {
        .operations =
            [options](const CaseSize& size) {
              return operations(options, size);
-           }},
+           },
+       .sources = sources_of(options)},
       [options]<class T>(StageRun& run) { return fit<T>(options, run); });
 }
 

@@ -11,7 +11,7 @@
 #include "optimizers/steps/adam.h"
 #include "optimizers/steps/rmsprop.h"
 #include "optimizers/steps/sgd.h"
-#include "suite/core/recipe.h"
+#include "suite/core/method.h"
 
 namespace physinv {
 
@@ -23,6 +23,9 @@ using StepOptions = std::variant<AdamOptions,
 
 /// As text for records, the rule's name first.
 Options describe(const StepOptions& options);
+
+/// Of these rules, only the chosen one matters to a stage.
+void add_sources(const StepOptions& options, Sources& sources);
 
 template <class T>
 class UpdateStep {

@@ -81,6 +81,7 @@ struct SignalRecipe {
       std::function<std::unique_ptr<Signal<T>>(const SignalPlace<T>& place)>;
   Make<float> make_float;
   Make<double> make_double;
+  const char* source;  ///< file of the signal, for content keys
 
   template <class T>
   std::unique_ptr<Signal<T>> make(const SignalPlace<T>& place) const {
@@ -93,7 +94,10 @@ struct SignalRecipe {
 };
 
 template <template <class> class S>
-SignalRecipe signal(std::string algorithm, Needs gradient, Needs jacobians) {
+SignalRecipe signal(std::string algorithm,
+                    Needs gradient,
+                    Needs jacobians,
+                    const char* source = __builtin_FILE()) {
   return {.algorithm = std::move(algorithm),
           .gradient = gradient,
           .jacobians = jacobians,
@@ -104,7 +108,8 @@ SignalRecipe signal(std::string algorithm, Needs gradient, Needs jacobians) {
           .make_double =
               [](const SignalPlace<double>& place) {
                 return std::make_unique<S<double>>(place);
-              }};
+              },
+          .source = source};
 }
 
 extern template class BatchSignal<float>;

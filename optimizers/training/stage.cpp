@@ -6,7 +6,8 @@ namespace {
 class FactualStage final : public Stage {
  public:
   FactualStage(StageFacts facts, RunStage in_float, RunStage in_double)
-      : facts_(std::move(facts)),
+      : Stage(facts.source),
+        facts_(std::move(facts)),
         in_float_(std::move(in_float)),
         in_double_(std::move(in_double)) {}
 
@@ -16,6 +17,15 @@ class FactualStage final : public Stage {
   Index default_iterations() const override { return facts_.iterations; }
   bool takes_row_iterations() const override { return !facts_.own_length; }
   bool has_precision() const override { return true; }
+  Networks networks() const override { return facts_.networks; }
+  Sources sources() const override {
+    Sources all = Stage::sources();
+    all.roots.insert(all.roots.end(),
+                     facts_.sources.roots.begin(),
+                     facts_.sources.roots.end());
+    all.unused = facts_.sources.unused;
+    return all;
+  }
   double operations(const CaseSize& size) const override {
     return facts_.operations(size);
   }

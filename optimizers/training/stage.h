@@ -22,6 +22,9 @@ struct StageFacts {
   Index iterations;
   bool own_length = false;  ///< `iterations` stands, whatever a row says
   std::function<double(const CaseSize& size)> operations;
+  Networks networks = Networks::predictor;
+  Sources sources = {};  ///< beside the file that states these facts
+  const char* source = __builtin_FILE();
 };
 
 using RunStage = std::function<Outcome(StageRun& run)>;

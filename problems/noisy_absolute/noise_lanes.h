@@ -16,6 +16,7 @@ class NoiseLanes {
  public:
   using Options = NoisyAbsoluteOptions;
   using P = Pack<T>;
+  static constexpr const char* kSource = __FILE__;
 
   struct Problem {
     P gamma, solution, lambda, level;

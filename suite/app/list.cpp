@@ -2,10 +2,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "suite/app/options.h"
+#include "suite/harness/sources.h"
 
 namespace physinv {
 namespace {
@@ -62,6 +64,26 @@ void print_table(const std::vector<Case>& cases) {
   }
   fmt::print(
       "{} cases, about {:.2g} floating-point operations\n", cases.size(), sum);
+}
+
+/// The stages whose numbers an edit of a source can change.
+void print_stale(const std::vector<Case>& cases, const std::string& path) {
+  const std::string file = project_sources().find(path);
+  std::map<std::pair<const Method*, std::size_t>, bool> known;
+  std::size_t stale = 0, all = 0;
+  for (const Case& c : cases) {
+    for (std::size_t k = 0; k < c.info.stages.size(); ++k, ++all) {
+      const auto [at, first] = known.try_emplace({c.method, k});
+      if (first)
+        at->second = project_sources()
+                         .closure(chain_sources(*c.experiment, *c.method, k))
+                         .contains(file);
+      if (!at->second) continue;
+      ++stale;
+      fmt::print("{} {}\n", c.info.name, c.info.stages[k]);
+    }
+  }
+  fmt::print("an edit of {} makes {} of {} stages stale\n", path, stale, all);
 }
 
 /// '|' would end a cell of a Markdown table.
@@ -126,12 +148,17 @@ void print_claims() {
 
 ExitCode list_verb(const Arguments& arguments) {
   Selection selection;
+  std::string edited;
   bool json = false, methods = false, claims = false;
   if (!parse(
           "physinv-bench list",
           "The cases of a profile, with estimated work.",
           selection.flags(
               {{"--json", "as JSON", &json},
+               {"--edit",
+                "the stages that an edit of this source makes stale",
+                &edited,
+                "FILE"},
                {"--methods", "experiments and methods, as Markdown", &methods},
                {"--claims",
                 "what is claimed, whose it is and what decides "
@@ -148,7 +175,11 @@ ExitCode list_verb(const Arguments& arguments) {
     return ExitCode::good;
   }
   const auto cases = selection.cases();
-  json ? print_json(cases) : print_table(cases);
+  if (!edited.empty()) {
+    print_stale(cases, edited);
+  } else {
+    json ? print_json(cases) : print_table(cases);
+  }
   return ExitCode::good;
 }
 

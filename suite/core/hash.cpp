@@ -17,4 +17,9 @@ std::uint64_t hash_bytes(const void* data,
 
 std::string hex64(std::uint64_t value) { return fmt::format("{:016x}", value); }
 
+std::string hex128(std::string_view text) {
+  return hex64(hash_text(text)) +
+         hex64(hash_text(text, mix64(0x9e3779b97f4a7c15ULL)));
+}
+
 }  // namespace physinv

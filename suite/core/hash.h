@@ -28,4 +28,7 @@ inline std::uint64_t hash_text(std::string_view text,
 /// 16 lower-case hexadecimal digits.
 std::string hex64(std::uint64_t value);
 
+/// Two hashes of a text as 32 digits.
+std::string hex128(std::string_view text);
+
 }  // namespace physinv

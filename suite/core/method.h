@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "suite/core/oracle.h"
@@ -21,6 +22,26 @@ enum class Field : std::uint8_t { unknowns, given, observations };
 struct NetworkRole {
   std::vector<Field> inputs;
   NetworkRecipe recipe;
+};
+
+/// Networks of the setting that a stage may use; the others are empty to it.
+enum class Networks : std::uint8_t {
+  none = 0,
+  predictor = 1,
+  surrogate = 2,
+  both = 3
+};
+
+constexpr bool contains(Networks all, Networks part) {
+  return (static_cast<int>(all) & static_cast<int>(part)) != 0;
+}
+
+/// Sources that a stage's numbers come from, beside its problem and networks:
+/// editing one of them, or what they include, makes the stage stale.
+struct Sources {
+  /// Relative to the project's root, or as the compiler names them.
+  std::vector<std::string> roots;
+  UnusedIncludes unused;
 };
 
 /// Everything an experiment fixes for its methods.
@@ -71,6 +92,9 @@ struct CaseSize {
 
 class Stage {
  public:
+  /// `source`: the file of the constructor that calls this one. Classes between
+  /// Stage and a stage pass on their derived class's.
+  explicit Stage(const char* source = __builtin_FILE()) : source_(source) {}
   virtual ~Stage() = default;
   virtual std::string name() const = 0;
   virtual Needs needs() const = 0;
@@ -82,9 +106,15 @@ class Stage {
   virtual bool takes_row_iterations() const { return true; }
   /// True if float and double differ.
   virtual bool has_precision() const { return false; }
+  virtual Networks networks() const { return Networks::both; }
+  /// The file of the class, and what else its options bring in.
+  virtual Sources sources() const { return {.roots = {source_}, .unused = {}}; }
   /// Estimated floating-point operations, for the ETA.
   virtual double operations(const CaseSize& size) const = 0;
   virtual Outcome run(StageRun& run) const = 0;
+
+ private:
+  std::string source_;
 };
 
 struct Method {

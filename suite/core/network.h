@@ -9,6 +9,7 @@
 #include <memory>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "suite/core/batch.h"
@@ -126,6 +127,10 @@ void Network<T>::jacobian_rows(VectorIn<T>,
   SUITE_CHECK(false, "this network does not give its Jacobian by rows");
 }
 
+/// Lines `#include` (file, header) that options leave without effect: layers
+/// that a network does not have, rules that a stage does not take.
+using UnusedIncludes = std::vector<std::pair<std::string, std::string>>;
+
 /// Makes one network of one configuration, in float and in double.
 struct NetworkRecipe {
   std::string description;  ///< enters the record and the content key
@@ -133,6 +138,8 @@ struct NetworkRecipe {
       make_float;
   std::function<std::unique_ptr<Network<double>>(Index inputs, Index outputs)>
       make_double;
+  const char* source = __builtin_FILE();  ///< where the recipe is written
+  UnusedIncludes unused = {};
 
   template <class T>
   std::unique_ptr<Network<T>> make(Index inputs, Index outputs) const {

@@ -22,6 +22,7 @@ struct ProblemRecipe {
   Needs provided = Needs::forward;
   std::function<std::unique_ptr<Problem<float>>()> make_float;
   std::function<std::unique_ptr<Problem<double>>()> make_double;
+  std::string source;  ///< its header, relative to the project's root
 
   template <class T>
   std::unique_ptr<Problem<T>> make() const {
@@ -34,16 +35,18 @@ struct ProblemRecipe {
 };
 
 /// problem<Heat>("heat", options): reads abilities from the base-class list.
+/// The name is that of the problem's folder.
 template <template <class> class P>
 ProblemRecipe problem(std::string name,
                       typename P<double>::Options options = {}) {
+  std::string source = "problems/" + name + '/' + name + ".h";
   return {
       .name = std::move(name),
       .options = describe(options),
       .provided = provides<P<double>, double>(),
       .make_float = [options] { return std::make_unique<P<float>>(options); },
-      .make_double =
-          [options] { return std::make_unique<P<double>>(options); }};
+      .make_double = [options] { return std::make_unique<P<double>>(options); },
+      .source = std::move(source)};
 }
 
 }  // namespace physinv

@@ -139,6 +139,12 @@ class MeasureAlignment final : public Stage {
   }
   Index default_iterations() const override { return options_.repetitions; }
   bool has_precision() const override { return true; }
+  Networks networks() const override { return Networks::none; }
+  Sources sources() const override {
+    Sources all = Stage::sources();
+    all.roots.emplace_back(Noise<double>::kSource);
+    return all;
+  }
   double operations(const CaseSize& size) const override {
     double each = 50.0 * static_cast<double>(options_.data.terms + 1);
     if (options_.network) {

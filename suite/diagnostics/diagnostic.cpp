@@ -12,6 +12,12 @@ Options Diagnostic::options() const {
   return all;
 }
 
+Sources Diagnostic::sources() const {
+  Sources all = Stage::sources();
+  for (const auto& problem : problems()) all.roots.push_back(problem.source);
+  return all;
+}
+
 Outcome Diagnostic::run(StageRun& run) const {
   Outcome out;
   out.x = run.oracle.start();

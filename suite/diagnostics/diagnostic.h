@@ -8,6 +8,9 @@ namespace physinv {
 
 class Diagnostic : public Stage {
  public:
+  explicit Diagnostic(const char* source = __builtin_FILE()) : Stage(source) {}
+  /// Of the class, and of the problems it looks at.
+  Sources sources() const override;
   Needs needs() const override { return Needs::forward; }
   /// `algorithm=diagnostic` first, then what the kind adds.
   Options options() const final;
@@ -18,6 +21,8 @@ class Diagnostic : public Stage {
  protected:
   virtual std::string kind() const = 0;
   virtual void describe(Options& options) const = 0;
+  /// Those it looks at, beside the experiment's.
+  virtual std::vector<ProblemRecipe> problems() const { return {}; }
   /// Fills `out.arrays`, every number finite, and starts the solving clock.
   virtual void diagnose(StageRun& run, Outcome& out) const = 0;
 };

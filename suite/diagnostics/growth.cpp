@@ -60,15 +60,17 @@ class GrowthStage final : public Diagnostic {
 
  protected:
   std::string kind() const override { return "growth"; }
+  std::vector<ProblemRecipe> problems() const override {
+    std::vector<ProblemRecipe> all;
+    for (const auto& h : options_.horizons) all.push_back(h.problem);
+    return all;
+  }
   void describe(Options& options) const override {
-    std::vector<ProblemRecipe> problems;
     std::string times;
-    for (const auto& h : options_.horizons) {
-      problems.push_back(h.problem);
+    for (const auto& h : options_.horizons)
       times += fmt::format("{}{}", times.empty() ? "" : ",", h.time);
-    }
     options.emplace_back("times", times);
-    options.emplace_back("problems", fingerprint(problems));
+    options.emplace_back("problems", fingerprint(problems()));
   }
   void diagnose(StageRun& run, Outcome& out) const override {
     run.probe.begin();

@@ -146,12 +146,15 @@ class HalfInverseStress final : public Diagnostic {
 
  protected:
   std::string kind() const override { return "half_inverse_stress"; }
+  std::vector<ProblemRecipe> problems() const override {
+    return options_.problems;
+  }
   void describe(Options& options) const override {
     std::string starts;
     for (const StressStart& s : options_.starts)
       starts +=
           fmt::format("{} {}{}, ", s.name, s.gain, s.blind ? " blind" : "");
-    options.emplace_back("problems", fingerprint(options_.problems));
+    options.emplace_back("problems", fingerprint(problems()));
     options.emplace_back("taus",
                          fmt::format("{}", fmt::join(options_.taus, " ")));
     options.emplace_back("kappas",

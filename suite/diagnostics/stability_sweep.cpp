@@ -139,6 +139,9 @@ class StabilitySweep final : public Diagnostic {
 
  protected:
   std::string kind() const override { return "stability_sweep"; }
+  std::vector<ProblemRecipe> problems() const override {
+    return options_.problems;
+  }
   void describe(Options& options) const override {
     std::uint64_t points = 0;
     for (const auto& [problem, x] : options_.points) {
@@ -147,7 +150,7 @@ class StabilitySweep final : public Diagnostic {
                           sizeof(double) * static_cast<std::size_t>(x.size()),
                           points);
     }
-    options.emplace_back("problems", fingerprint(options_.problems));
+    options.emplace_back("problems", fingerprint(problems()));
     options.emplace_back(
         "points", fmt::format("{} {}", options_.points.size(), hex64(points)));
     options.emplace_back("zero", fmt::format("{}", options_.zero));

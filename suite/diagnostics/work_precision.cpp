@@ -23,6 +23,9 @@ class WorkPrecision final : public Diagnostic {
 
  protected:
   std::string kind() const override { return "work_precision"; }
+  std::vector<ProblemRecipe> problems() const override {
+    return {options_.problem, options_.reference};
+  }
   void describe(Options& options) const override {
     options.emplace_back("problem", fingerprint({options_.problem}));
     options.emplace_back("reference", fingerprint({options_.reference}));

@@ -1,21 +1,33 @@
 /// What this build is made of, for records and content keys.
 #pragma once
 
+#include <span>
 #include <string_view>
 
 namespace physinv {
 
+/// A source that numbers can come from. Paths are relative to the project's
+/// root; `includes` are the project's headers that it names, a space behind
+/// each.
+struct SourceFile {
+  std::string_view path, hash, includes;
+};
+
 /// Texts, as the compiler or the library states them. `fingerprint` is 16
 /// hexadecimal digits over everything that can change the bits of a result:
-/// the sources of core, nn, problems, optimizers and baselines, the compiler
-/// and its flags, the instruction set, and the libraries that compute. It does
-/// not change with reports, cases or the command line.
+/// `foundation`, and the sources of core, nn, problems, optimizers and
+/// baselines. It does not change with reports, cases or the command line. What
+/// decides whether a stage is stale is its own part of it (sources.h).
 struct BuildInfo {
   std::string_view compiler, compiler_version, flags, build_type;
   std::string_view instruction_set;  ///< "x86-64-v3" or "native:<processor>"
   std::string_view fingerprint;
-  std::string_view version;  ///< of this suite
+  std::string_view foundation;  ///< hash of what every stage stands on:
+                                ///< compiler, flags, instruction set, libraries
+                                ///< that compute, and run_stage.{h,cpp}
+  std::string_view version;     ///< of this suite
   std::string_view eigen, fftw, hdf5, json, fmt, cli11;
+  std::span<const SourceFile> sources;  ///< and those of the cases
 };
 
 const BuildInfo& build_info();

@@ -10,7 +10,6 @@
 #include <set>
 
 #include "suite/core/clock.h"
-#include "suite/harness/build_info.h"
 #include "suite/harness/context.h"
 #include "suite/harness/keys.h"
 #include "suite/harness/workers.h"
@@ -285,6 +284,12 @@ Prepared prepare(std::vector<Case> cases) {
   Prepared p;
   p.cases = std::move(cases);
   std::map<std::tuple<std::string, Index, std::uint64_t>, CaseData> drawn;
+  std::map<std::pair<const Method*, std::size_t>, std::string> known;
+  const auto numerics = [&](const Case& c, std::size_t position) {
+    std::string& text = known[{c.method, position}];
+    if (text.empty()) text = numerics_of_build(c, position);
+    return text;
+  };
   for (Case& c : p.cases) {
     std::string error;
     CaseData data;
@@ -297,7 +302,7 @@ Prepared prepare(std::vector<Case> cases) {
     } catch (const std::exception& e) {
       error = e.what();
     }
-    c.info.keys = content_keys(c, data.hash, build_info().fingerprint);
+    c.info.keys = content_keys(c, data.hash, numerics);
     p.data.push_back(std::move(data));
     p.errors.push_back(std::move(error));
   }

@@ -63,7 +63,7 @@ BENCHMARK(bm_append)->Name("harness/store_append")->Iterations(200);
 void bm_expand(benchmark::State& state) {
   for (auto _ : state) {
     for (const Case& c : registry().expand("quick"))
-      benchmark::DoNotOptimize(content_keys(c, "data", "numerics"));
+      benchmark::DoNotOptimize(content_keys(c, "data", numerics_of_build));
   }
 }
 BENCHMARK(bm_expand)->Name("harness/expand_and_keys");

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "suite/core/hash.h"
+#include "suite/harness/sources.h"
 
 namespace physinv {
 namespace {
@@ -19,11 +20,6 @@ void append(std::string& text, std::string_view name, const NetworkRole& role) {
   for (const Field f : role.inputs)
     text += fmt::format("{},", static_cast<int>(f));
   text += role.recipe.description + '\n';
-}
-
-std::string two_hashes(std::string_view text) {
-  return hex64(hash_text(text)) +
-         hex64(hash_text(text, mix64(0x9e3779b97f4a7c15ULL)));
 }
 
 }  // namespace
@@ -63,14 +59,21 @@ std::string recipe_text(const Case& c, std::size_t position) {
 
 std::vector<std::string> content_keys(const Case& c,
                                       std::string_view data_hash,
-                                      std::string_view fingerprint) {
+                                      const Numerics& numerics) {
   std::vector<std::string> keys;
   for (std::size_t i = 0; i < c.method->chain.size(); ++i) {
-    keys.push_back(two_hashes(
-        recipe_text(c, i) +
-        fmt::format("data={}\nnumerics={}\n", data_hash, fingerprint)));
+    keys.push_back(hex128(recipe_text(c, i) +
+                          fmt::format("recorded={}\ndata={}\nnumerics={}\n",
+                                      c.experiment->setting.recorded,
+                                      data_hash,
+                                      numerics(c, i))));
   }
   return keys;
+}
+
+std::string numerics_of_build(const Case& c, std::size_t position) {
+  return project_sources().fingerprint(
+      chain_sources(*c.experiment, *c.method, position));
 }
 
 }  // namespace physinv

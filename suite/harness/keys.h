@@ -1,7 +1,10 @@
 /// Content keys: what decides a stage's result, as 32 hexadecimal digits.
 #pragma once
 
+#include <functional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "suite/harness/case.h"
 
@@ -16,9 +19,16 @@ CaseData draw_data(const Case& c);
 /// is not part of it: chains with the same beginning share it.
 std::string recipe_text(const Case& c, std::size_t position);
 
-/// One key per stage; `fingerprint` stands for the sources and the build.
+/// Stands for the sources and the build that the numbers of a stage and those
+/// before it come from.
+using Numerics = std::function<std::string(const Case&, std::size_t position)>;
+
+/// One key per stage.
 std::vector<std::string> content_keys(const Case& c,
                                       std::string_view data_hash,
-                                      std::string_view fingerprint);
+                                      const Numerics& numerics);
+
+/// Fingerprint of this build's sources.
+std::string numerics_of_build(const Case& c, std::size_t position);
 
 }  // namespace physinv

@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "suite/harness/errors.h"
+#include "suite/harness/sources.h"
 
 namespace physinv {
 namespace {
@@ -132,6 +133,18 @@ bool same_work(const Case& a, const Case& b) {
          a.info.precision == b.info.precision;
 }
 
+/// What the stages of an experiment say about their sources and is not so.
+std::set<std::string> unknown_sources(const Experiment& e) {
+  std::set<std::string> wrong;
+  for (const Method& m : e.methods) {
+    if (m.chain.empty()) continue;
+    for (const Sources& sources : chain_sources(e, m, m.chain.size() - 1))
+      for (auto& text : project_sources().errors(sources))
+        wrong.insert(std::move(text));
+  }
+  return wrong;
+}
+
 std::vector<std::string> problems_of(const Experiment& e) {
   std::vector<std::string> wrong;
   const auto add = [&](const std::string& text) {
@@ -159,6 +172,7 @@ std::vector<std::string> problems_of(const Experiment& e) {
                       e.problem.name,
                       to_text(e.problem.provided)));
   }
+  for (const auto& text : unknown_sources(e)) add(text);
   seen.clear();
   for (const Profile& p : e.profiles) {
     if (!is_word(p.name)) add("profile '" + p.name + "' is not in [a-z0-9_-]");

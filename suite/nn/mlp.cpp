@@ -42,6 +42,15 @@ std::unique_ptr<Network<T>> make(const MlpOptions& o,
   return std::make_unique<Sequential<T>>(std::move(layers), o.init);
 }
 
+UnusedIncludes unused(const MlpOptions& o) {
+  UnusedIncludes lines;
+  if (!o.batch_norm)
+    lines.emplace_back("suite/nn/mlp.cpp", "suite/nn/batch_norm.h");
+  if (o.frequencies == 0)
+    lines.emplace_back("suite/nn/mlp.cpp", "suite/nn/encoding.h");
+  return lines;
+}
+
 }  // namespace
 
 NetworkRecipe mlp(const MlpOptions& options) {
@@ -55,7 +64,8 @@ NetworkRecipe mlp(const MlpOptions& options) {
               options.batch_norm,
               options.init == Init::glorot ? " init=glorot" : ""),
           .make_float = std::bind_front(make<float>, options),
-          .make_double = std::bind_front(make<double>, options)};
+          .make_double = std::bind_front(make<double>, options),
+          .unused = unused(options)};
 }
 
 }  // namespace physinv::nn

@@ -34,7 +34,7 @@ class CaseContract : public testing::TestWithParam<Case> {};
 TEST_P(CaseContract, GivesARecordWithFiniteNumbers) {
   Case c = GetParam();
   const CaseData data = draw_data(c);
-  c.info.keys = content_keys(c, data.hash, "build");
+  c.info.keys = content_keys(c, data.hash, numerics_of_build);
   const auto records = run(c);
   ASSERT_EQ(records.size(), c.method->chain.size());
   for (const StageRecord& r : records) {

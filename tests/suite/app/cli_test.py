@@ -91,6 +91,9 @@ def good_input(d):
     expect(0, ["--version"], d, "compiler")
     expect(0, ["run", "--help"], d, "--time-budget")
     expect(0, ["list", "--profile=smoke"], d, "fake/cubic/walk/n=4/seed=0")
+    for edited, stale in (("suite/core/method.h", 6), ("problems/new.cpp", 0)):
+        expect(0, ["list", "--profile=smoke", "--edit=" + edited], d,
+               f"an edit of {edited} makes {stale} of 6 stages stale")
     p = expect(0, ["list", "--json", "--profile=smoke"], d)
     check(len(json.loads(p.stdout)) == 4, "list --json lists four cases")
     expect(0, ["--dry-run", "--profile=smoke"], d, "6 stages to run")

@@ -90,7 +90,9 @@ double pace() {
 
 class Base : public Stage {
  public:
-  Base(std::string name, Needs needs) : name_(std::move(name)), needs_(needs) {}
+  // A test is no source of numbers; an interface stands for it.
+  Base(std::string name, Needs needs)
+      : Stage("suite/core/method.h"), name_(std::move(name)), needs_(needs) {}
   std::string name() const override { return name_; }
   Needs needs() const override { return needs_; }
   Options options() const override { return {{"rate", "0.1"}}; }
@@ -235,6 +237,7 @@ Experiment experiment() {
   e.title = "Cubic";
   e.source = {"fake", "nowhere"};
   e.problem = problem<Cubic>("cubic");
+  e.problem.source = "suite/core/problem.h";
   e.methods = {chain("descend", {descend}),
                chain("walk", {fit, std::make_shared<Descend>("refine", 0.05)}),
                chain("stroll", {fit, std::make_shared<Descend>("refine", 0.1)}),

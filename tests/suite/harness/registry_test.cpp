@@ -55,6 +55,10 @@ TEST(Registry, FindsWhatIsWrong) {
               e.profiles[0].rows.back().iterations = 77;
             }),
             "");
+  EXPECT_EQ(complaint([](Experiment& e) {
+              e.problem.source = "problems/cubic/cubic.h";
+            }),
+            "fake/cubic: no source of numbers 'problems/cubic/cubic.h'");
   Registry twice = fake_registry();
   twice.add(fake::experiment());
   EXPECT_THROW(twice.validate(), std::logic_error);

@@ -1,0 +1,123 @@
+#include "suite/harness/run_stage.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "suite/core/hash.h"
+#include "suite/harness/keys.h"
+
+namespace physinv {
+namespace {
+
+std::uint64_t peak_rss() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+/// Missing per-example findings get neutral values; wrong sizes are a bug of
+/// the stage.
+void check_outcome(Outcome& out, const Oracle& oracle) {
+  const Index n = oracle.count();
+  SUITE_CHECK(out.x.rows() == oracle.shape().unknowns && out.x.cols() == n,
+              "a stage leaves one estimate per example");
+  if (out.status.empty())
+    out.status.assign(static_cast<std::size_t>(n), Status::maxiter);
+  if (out.iterations.size() == 0) out.iterations.setZero(n);
+  if (out.evaluations.size() == 0) out.evaluations.setZero(n);
+  SUITE_CHECK(static_cast<Index>(out.status.size()) == n &&
+                  out.iterations.size() == n && out.evaluations.size() == n,
+              "a stage leaves one status per example");
+}
+
+/// The experiment's setting with the networks that the stage names, so that no
+/// other can enter its numbers.
+Setting setting_for(const Stage& stage, Setting setting) {
+  if (!contains(stage.networks(), Networks::predictor)) setting.predictor = {};
+  if (!contains(stage.networks(), Networks::surrogate)) setting.surrogate = {};
+  return setting;
+}
+
+/// Every final loss of every method is evaluated by this one call.
+void fill(StageRecord& r,
+          const Case& c,
+          const Outcome& out,
+          Oracle& oracle,
+          Probe& probe) {
+  r.counts = oracle.counts();
+  r.loss.resize(oracle.count());
+  oracle.measure(out.x, r.loss);
+  const Index setting = c.experiment->setting.recorded;
+  const Index recorded =
+      setting > 0 ? std::min(setting, oracle.count()) : oracle.count();
+  r.x = out.x.leftCols(recorded);
+  r.status = out.status;
+  r.example_iterations = out.iterations;
+  r.example_evaluations = out.evaluations;
+  r.arrays = out.arrays;
+  r.stop = out.stop;
+  r.message = out.message;
+  if (!r.loss.array().isFinite().any()) r.stop = Stop::diverged;
+  r.iterations = probe.iteration();
+  r.clocks = probe.clocks();
+  r.curve = probe.curve();
+  r.curve.loss.conservativeResize(recorded, Eigen::NoChange);
+  r.buffer_bytes = out.bytes + oracle.bytes();
+  r.rss_bytes = peak_rss();
+}
+
+}  // namespace
+
+void run_stage(const Case& c,
+               std::size_t position,
+               std::optional<Outcome>& previous,
+               bool trace,
+               const Probe::Observer& observer,
+               Threads* threads,
+               StageRecord& record) {
+  const Stage& stage = *c.method->chain[position];
+  const Setting setting = setting_for(stage, c.experiment->setting);
+  const Rng root = Rng::root(c.info.experiment, c.info.seed);
+  Oracle oracle(c.experiment->problem, c.info.n, root, stage.needs(), threads);
+  Probe probe(oracle,
+              c.stage_iterations[position],
+              tracked_examples(oracle.shape().unknowns));
+  std::uint64_t trajectory = hash_text("trajectory");
+  if (trace) {
+    probe.set_trace([&trajectory](const void* data, std::size_t bytes) {
+      trajectory = hash_bytes(data, bytes, trajectory);
+    });
+  }
+  if (observer) probe.set_observer(observer);
+  StageRun run{.oracle = oracle,
+               .probe = probe,
+               .setting = setting,
+               .previous = previous ? &*previous : nullptr,
+               .network_init = root.child("network/init"),
+               .batches = root.child("batches"),
+               .method = root.child("method/" +
+                                    hex64(hash_text(recipe_text(c, position)))),
+               .iterations = c.stage_iterations[position],
+               .precision = c.info.precision,
+               .threads = threads};
+  Outcome out = stage.run(run);
+  probe.end();
+  check_outcome(out, oracle);
+  fill(record, c, out, oracle, probe);
+  if (trace) record.trajectory = hex64(trajectory);
+  previous = std::move(out);
+}
+
+Outcome as_outcome(StageRecord record) {
+  return {.x = std::move(record.x),
+          .status = std::move(record.status),
+          .iterations = std::move(record.example_iterations),
+          .evaluations = std::move(record.example_evaluations),
+          .stop = record.stop,
+          .message = std::move(record.message),
+          .arrays = std::move(record.arrays)};
+}
+
+}  // namespace physinv

@@ -1,0 +1,61 @@
+/// Which sources the numbers of a stage come from, and their fingerprint: the
+/// part of a content key that makes a stage stale when its code changes, and
+/// no other stage.
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "suite/harness/build_info.h"
+#include "suite/harness/case.h"
+
+namespace physinv {
+
+/// Sources and who includes whom. From a root one reaches what it includes,
+/// and from a header x.h its implementation x.cpp beside it. A header whose
+/// implementation has another name must be a root itself; a test lists sources
+/// that nothing reaches.
+class SourceGraph {
+ public:
+  /// `foundation` enters every fingerprint.
+  SourceGraph(std::string_view foundation, std::span<const SourceFile> files);
+
+  /// The file that a path ends in, "" if there is none; compilers name files
+  /// in full.
+  std::string find(std::string_view path) const;
+
+  /// Everything that the roots reach; of a chain, what any of its stages do.
+  std::set<std::string> closure(const Sources& sources) const;
+  std::set<std::string> closure(const std::vector<Sources>& chain) const;
+
+  /// Roots that are no files, lines without effect that do not stand there,
+  /// and included headers of the project that the graph does not know: one
+  /// text each.
+  std::vector<std::string> errors(const Sources& sources) const;
+
+  /// 32 hexadecimal digits over path and content of a chain's closure.
+  std::string fingerprint(const std::vector<Sources>& chain) const;
+
+ private:
+  struct Node {
+    std::string hash;
+    std::vector<std::string> includes;
+  };
+
+  std::string foundation_;
+  std::map<std::string, Node, std::less<>> nodes_;
+};
+
+/// Of this build.
+const SourceGraph& project_sources();
+
+/// What the stages of a method up to `position` come from, each its problem,
+/// the networks that it may use, and what it names itself.
+std::vector<Sources> chain_sources(const Experiment& experiment,
+                                   const Method& method,
+                                   std::size_t position);
+
+}  // namespace physinv
