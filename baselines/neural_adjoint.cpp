@@ -196,6 +196,12 @@ class NeuralAdjointSolve final : public Stage {
   bool takes_row_iterations() const override { return false; }
   bool has_precision() const override { return true; }
   Networks networks() const override { return Networks::surrogate; }
+  Sources sources() const override {
+    Sources all = Stage::sources();
+    all.unused = {{"baselines/regression.h", "optimizers/steps/rule.h"},
+                  {"baselines/regression.cpp", "optimizers/training/loop.h"}};
+    return all;
+  }
   double operations(const CaseSize& size) const override {
     return 60.0 * static_cast<double>(size.n) *
            (2 * size.surrogate_operations + size.problem_operations + 200);
@@ -212,9 +218,17 @@ class NeuralAdjointSolve final : public Stage {
 }  // namespace
 
 std::shared_ptr<const Stage> surrogate_fit(const RegressionOptions& options) {
+  StageFacts facts = regression_facts(
+      "surrogate", Needs::labels, &CaseSize::surrogate_operations, options);
+  facts.networks = Networks::surrogate;
+  // The solver that the surrogate is for stands in this file, too.
+  for (const char* header : {"baselines/boundary_loss.h",
+                             "optimizers/bfgs.h",
+                             "optimizers/drive.h",
+                             "optimizers/solver_outcome.h"})
+    facts.sources.unused.emplace_back("baselines/neural_adjoint.cpp", header);
   return make_stage(
-      regression_facts(
-          "surrogate", Needs::labels, &CaseSize::surrogate_operations, options),
+      std::move(facts),
       [options]<class T>(StageRun& run) { return fit<T>(options, run); });
 }
 

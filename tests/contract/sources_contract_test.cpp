@@ -193,7 +193,7 @@ TEST(SourcesContract, EditsMakeStaleWhoUsesThem) {
   edits("problems/billiards/billiards.cpp", "jpo/billiards/.*");
   edits("problems/kuramoto_sivashinsky/etdrk2.cpp",
         "(jpo|numerics)/kuramoto-sivashinsky.*");
-  edits("optimizers/bfgs.cpp", "jpo/.* (solve|refine|fit)");
+  edits("optimizers/bfgs.cpp", "jpo/.* (solve|refine)");
   edits("optimizers/half_inverse/tridiagonalize.cpp",
         "(hig|numerics/half-inverse).*");
   edits("optimizers/steps/rmsprop.h", "hig/.*rmsprop.*");
