@@ -227,9 +227,9 @@ std::shared_ptr<const Stage> surrogate_fit(const RegressionOptions& options) {
                              "optimizers/drive.h",
                              "optimizers/solver_outcome.h"})
     facts.sources.unused.emplace_back("baselines/neural_adjoint.cpp", header);
-  return make_stage(
-      std::move(facts),
-      [options]<class T>(StageRun& run) { return fit<T>(options, run); });
+  return make_stage(std::move(facts), [options]<class T>(StageRun& run) {
+    return fit<T>(options, run);
+  });
 }
 
 std::shared_ptr<const Stage> neural_adjoint_solve(

@@ -84,10 +84,11 @@ StageFacts regression_facts(std::string algorithm,
           .needs = needs,
           .options = std::move(all),
           .iterations = options.iterations,
-          .operations = [operations](const CaseSize& size) {
-            return 3 * (size.*operations) *
-                   static_cast<double>(size.n * size.iterations);
-          },
+          .operations =
+              [operations](const CaseSize& size) {
+                return 3 * (size.*operations) *
+                       static_cast<double>(size.n * size.iterations);
+              },
           .sources = std::move(sources),
           .source = source};
 }
