@@ -10,6 +10,9 @@
 namespace physinv::hdf5 {
 namespace {
 
+/// What fits into the header of an object, where attributes stand.
+constexpr std::size_t kLongestText = 1 << 16;
+
 /// Description of the innermost error on HDF5's stack.
 std::string reason() {
   std::string text;
@@ -82,16 +85,41 @@ Handle open_array(hid_t parent, const std::string& name) {
           "open array " + name};
 }
 
+hsize_t file_size(hid_t object) {
+  const Handle file(H5Iget_file_id(object), H5Fclose, "find the file");
+  hsize_t size = 0;
+  check(H5Fget_filesize(file, &size), "tell the size of the file");
+  return size;
+}
+
+/// A shape is only a claim: nothing is allocated for bytes that are not there.
+bool holds_all(const Handle& set,
+               std::size_t element,
+               const std::vector<hsize_t>& shape) {
+  hsize_t bytes = element;
+  for (const hsize_t count : shape)
+    if (__builtin_mul_overflow(bytes, count, &bytes)) return false;
+  return bytes == H5Dget_storage_size(set) && bytes <= file_size(set);
+}
+
 std::vector<hsize_t> shape_of(const Handle& set,
                               std::size_t rank,
+                              H5T_class_t number,
                               const std::string& name) {
   const Handle space(H5Dget_space(set), H5Sclose, "read shape of " + name);
-  std::vector<hsize_t> shape(rank);
+  const Handle type(H5Dget_type(set), H5Tclose, "read type of " + name);
+  if (H5Tget_class(type) != number)
+    throw StoreError(fmt::format("array {} holds other than {} numbers",
+                                 name,
+                                 number == H5T_FLOAT ? "real" : "whole"));
   if (H5Sget_simple_extent_ndims(space) != static_cast<int>(rank))
     throw StoreError(
         fmt::format("array {} does not have {} dimensions", name, rank));
+  std::vector<hsize_t> shape(rank);
   check(H5Sget_simple_extent_dims(space, shape.data(), nullptr),
         "read shape of " + name);
+  if (!holds_all(set, H5Tget_size(type), shape))
+    throw StoreError(fmt::format("array {} is not all there", name));
   return shape;
 }
 
@@ -214,7 +242,7 @@ void write(hid_t parent,
 
 Batch<double> read_batch(hid_t parent, const std::string& name) {
   const Handle set = open_array(parent, name);
-  const auto shape = shape_of(set, 2, name);
+  const auto shape = shape_of(set, 2, H5T_FLOAT, name);
   Batch<double> v(static_cast<Index>(shape[1]), static_cast<Index>(shape[0]));
   read_array(set, H5T_NATIVE_DOUBLE, v.data(), v.size() == 0, name);
   return v;
@@ -222,14 +250,14 @@ Batch<double> read_batch(hid_t parent, const std::string& name) {
 
 std::vector<double> read_list(hid_t parent, const std::string& name) {
   const Handle set = open_array(parent, name);
-  std::vector<double> v(shape_of(set, 1, name)[0]);
+  std::vector<double> v(shape_of(set, 1, H5T_FLOAT, name)[0]);
   read_array(set, H5T_NATIVE_DOUBLE, v.data(), v.empty(), name);
   return v;
 }
 
 std::vector<std::uint8_t> read_bytes(hid_t parent, const std::string& name) {
   const Handle set = open_array(parent, name);
-  std::vector<std::uint8_t> v(shape_of(set, 1, name)[0]);
+  std::vector<std::uint8_t> v(shape_of(set, 1, H5T_INTEGER, name)[0]);
   read_array(set, H5T_NATIVE_UINT8, v.data(), v.empty(), name);
   return v;
 }
@@ -252,6 +280,14 @@ std::string read_attribute(hid_t parent, const std::string& name) {
                          H5Aclose,
                          "open attribute " + name);
   const Handle type(H5Aget_type(attribute), H5Tclose, "read a text type");
+  const Handle space(H5Aget_space(attribute), H5Sclose, "read a shape");
+  // H5Aread writes as many elements as there are, or a pointer to a text of
+  // variable length.
+  if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0 ||
+      H5Sget_simple_extent_type(space) != H5S_SCALAR ||
+      H5Tget_size(type) > kLongestText)
+    throw StoreError(
+        fmt::format("attribute {} is not one text of fixed length", name));
   std::string value(H5Tget_size(type), '\0');
   check(H5Aread(attribute, type, value.data()), "read attribute " + name);
   return value.c_str();  // without the closing zero

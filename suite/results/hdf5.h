@@ -58,10 +58,13 @@ void write(hid_t parent,
 void write(hid_t parent,
            const std::string& name,
            const std::vector<std::uint8_t>& value);
+/// What is read has the type and rank that it was written with, and all its
+/// bytes are there; StoreError if not.
 Batch<double> read_batch(hid_t parent, const std::string& name);
 std::vector<double> read_list(hid_t parent, const std::string& name);
 std::vector<std::uint8_t> read_bytes(hid_t parent, const std::string& name);
 
+/// One text each; StoreError for what is anything else.
 void write_attribute(hid_t parent,
                      const std::string& name,
                      const std::string& value);
