@@ -1,6 +1,7 @@
 #include "suite/results/published.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -18,6 +19,15 @@ std::string key(std::string_view experiment, std::string_view quantity) {
   return fmt::format("{}\n{}", experiment, quantity);
 }
 
+Publication publication_from(const nlohmann::json& j) {
+  return {.key = j.at("key"),
+          .title = j.at("title"),
+          .authors = j.at("authors"),
+          .year = j.at("year"),
+          .venue = j.at("venue"),
+          .arxiv = j.value("arxiv", "")};
+}
+
 std::vector<fs::path> json_files(const fs::path& directory) {
   std::vector<fs::path> files;
   std::error_code error;
@@ -32,10 +42,20 @@ std::vector<fs::path> json_files(const fs::path& directory) {
 
 }  // namespace
 
+std::string Publication::text() const {
+  return fmt::format("{}: {}. {}, {}.{}",
+                     fmt::join(authors, ", "),
+                     title,
+                     venue,
+                     year,
+                     arxiv.empty() ? "" : " arXiv:" + arxiv);
+}
+
 Published::Published(const fs::path& directory) {
   for (const auto& path : json_files(directory)) {
     try {
       const auto file = nlohmann::json::parse(read_file(path));
+      publications_.push_back(publication_from(file.at("publication")));
       for (const auto& v : file.at("values")) {
         PublishedValue value;
         value.value = v.at("value");
@@ -56,6 +76,12 @@ std::optional<PublishedValue> Published::find(std::string_view experiment,
   const auto at = values_.find(key(experiment, quantity));
   if (at == values_.end()) return std::nullopt;
   return at->second;
+}
+
+const Publication* Published::publication(std::string_view key) const {
+  for (const Publication& p : publications_)
+    if (p.key == key) return &p;
+  return nullptr;
 }
 
 }  // namespace physinv

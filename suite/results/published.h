@@ -1,4 +1,4 @@
-/// The papers' printed numbers, from reports/published/<paper>.json.
+/// The papers and their printed numbers, from reports/published/<paper>.json.
 #pragma once
 
 #include <filesystem>
@@ -6,8 +6,22 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace physinv {
+
+/// What the numbers were printed in.
+struct Publication {
+  std::string key;  ///< "jpo", what a case's `Source` calls it
+  std::string title;
+  std::vector<std::string> authors;
+  int year = 0;
+  std::string venue;
+  std::string arxiv;  ///< "2203.10131"; may be empty
+
+  /// "Ann Ames, Bo Berg: Title. Venue, 2022. arXiv:2203.10131"
+  std::string text() const;
+};
 
 struct PublishedValue {
   double value = 0;
@@ -27,7 +41,13 @@ class Published {
   std::optional<PublishedValue> find(std::string_view experiment,
                                      std::string_view quantity) const;
 
+  /// In the order of their keys.
+  const std::vector<Publication>& publications() const { return publications_; }
+  /// Null if there is none of this key.
+  const Publication* publication(std::string_view key) const;
+
  private:
+  std::vector<Publication> publications_;
   std::map<std::string, PublishedValue> values_;
 };
 

@@ -8,6 +8,8 @@
 namespace physinv {
 namespace {
 
+namespace fs = std::filesystem;
+
 CaseRecord sample_record(const std::string& method,
                          Index n,
                          std::uint64_t seed) {
@@ -56,10 +58,35 @@ TEST(Published, HasThePapersBilliardsNumbers) {
             29510.0);
 }
 
+TEST(Published, SaysWhatTheNumbersWerePrintedIn) {
+  const fs::path root = PHYSINV_SOURCE_DIR;
+  const Published published(root / "reports/published");
+  const std::string citation = read_file(root / "CITATION.cff");
+  ASSERT_EQ(published.publications().size(), 2u);
+  for (const Publication& p : published.publications()) {
+    EXPECT_TRUE(contains(citation, p.title)) << p.title;
+    EXPECT_TRUE(contains(citation, "arXiv:" + p.arxiv)) << p.arxiv;
+  }
+  EXPECT_EQ(published.publication("hig")->text(),
+            "Patrick Schnell, Philipp Holl, Nils Thuerey: Half-Inverse "
+            "Gradients for Physical Deep Learning. International Conference "
+            "on Learning Representations (ICLR), 2022. arXiv:2203.10131");
+  EXPECT_EQ(published.publication("none"), nullptr);
+}
+
 TEST(Published, MalformedFileIsNamed) {
   TemporaryDirectory directory;
-  for (const std::string text :
-       {"{", "{}", R"({"values": [{"experiment": "a", "quantity": 3}]})"}) {
+  const std::string paper =
+      R"({"publication": {"key": "a", "title": "A", "authors": ["B"],)"
+      R"( "year": 2022, "venue": "C"})";
+  write_file(directory / "bad.json", paper + R"(, "values": []})");
+  EXPECT_EQ(Published(directory.path()).publication("a")->text(),
+            "B: A. C, 2022.");
+  for (const std::string& text :
+       {std::string("{"),
+        std::string(R"({"values": []})"),
+        paper + "}",
+        paper + R"(, "values": [{"quantity": 3}]})"}) {
     write_file(directory / "bad.json", text);
     const auto message =
         message_of<std::runtime_error>([&] { Published p(directory.path()); });
