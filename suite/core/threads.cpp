@@ -1,10 +1,13 @@
 #include "suite/core/threads.h"
 
+#include <fmt/format.h>
+
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -31,6 +34,18 @@ struct Threads::Pool {
   Call call = nullptr;
   void* body = nullptr;
   std::exception_ptr error;
+
+  ~Pool() {
+    stop = true;
+    start_generation();
+    for (std::thread& t : workers) t.join();
+  }
+
+  void start(int count) {
+    workers.reserve(static_cast<std::size_t>(count - 1));
+    for (int t = 1; t < count; ++t)
+      workers.emplace_back([this, t] { loop(t); });
+  }
 
   void work(int thread) {
     for (Index b; (b = next.fetch_add(1)) < blocks;) {
@@ -72,16 +87,17 @@ Threads::Threads(int count) : count_(count) {
   SUITE_CHECK(count >= 1, "a thread count is at least 1");
   if (count == 1) return;
   pool_ = std::make_unique<Pool>();
-  for (int t = 1; t < count; ++t)
-    pool_->workers.emplace_back([p = pool_.get(), t] { p->loop(t); });
+  try {
+    pool_->start(count);
+  } catch (const std::system_error& error) {
+    throw std::system_error(
+        error.code(),
+        fmt::format(
+            "{} of {} threads start", pool_->workers.size() + 1, count));
+  }
 }
 
-Threads::~Threads() {
-  if (!pool_) return;
-  pool_->stop = true;
-  pool_->start_generation();
-  for (std::thread& t : pool_->workers) t.join();
-}
+Threads::~Threads() = default;
 
 void Threads::run(Index blocks, Call call, void* body) {
   if (!pool_) {

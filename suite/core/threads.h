@@ -11,7 +11,8 @@ namespace physinv {
 
 class Threads {
  public:
-  /// `count` >= 1 threads, the calling one included.
+  /// `count` >= 1 threads, the calling one included. Throws std::system_error
+  /// if they cannot all start, and leaves none behind.
   explicit Threads(int count = 1);
   ~Threads();
   Threads(const Threads&) = delete;

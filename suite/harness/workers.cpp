@@ -24,15 +24,15 @@ enum Kind : std::uint32_t {
   kStageStarted,
   kProgress,
   kStageDone,
-  kCaseDone
+  kCaseDone,
+  kCannotStart
 };
 
 /// The worker's side: cases in, stages out, until the parent closes.
 void serve(int socket,
            const std::vector<Case>& cases,
-           int thread_count,
+           Threads& threads,
            const RunOptions& options) {
-  Threads threads(thread_count);
   while (const auto message = receive_message(socket)) {
     const double begin = now().cpu;
     double in_stages = 0;
@@ -61,6 +61,19 @@ void serve(int socket,
     send_message(socket,
                  kCaseDone,
                  BodyWriter().put(now().cpu - begin - in_stages).take());
+  }
+}
+
+/// The worker's threads; if there are too few, the parent learns why.
+std::unique_ptr<Threads> start_threads(int socket, int count) {
+  try {
+    return std::make_unique<Threads>(count);
+  } catch (const std::exception& error) {
+    const std::string_view text = error.what();
+    send_message(socket,
+                 kCannotStart,
+                 std::vector<std::uint8_t>(text.begin(), text.end()));
+    throw;
   }
 }
 
@@ -93,6 +106,10 @@ WorkerEvent decode(const Message& message) {
       event.record = from_wire(message.body);
       event.position = event.record.position;
       break;
+    case kCannotStart:
+      throw EnvironmentError(fmt::format(
+          "a worker cannot start: {}; try fewer --threads or --jobs",
+          std::string(message.body.begin(), message.body.end())));
     default:
       event.kind = WorkerEvent::Kind::case_done;
       event.overhead = body.get<double>();
@@ -122,10 +139,17 @@ Workers::Workers(const std::vector<Case>& cases,
       threads_(threads),
       options_(std::move(options)),
       workers_(count) {
-  for (Worker& worker : workers_) start(worker);
+  try {
+    for (Worker& worker : workers_) start(worker);
+  } catch (...) {
+    end();
+    throw;
+  }
 }
 
-Workers::~Workers() {
+Workers::~Workers() { end(); }
+
+void Workers::end() {
   for (Worker& worker : workers_) {
     if (worker.pid <= 0) continue;
     kill(worker.pid, SIGKILL);
@@ -149,7 +173,8 @@ void Workers::start(Worker& worker) {
   if (pid == 0) {
     become_worker(pair[1], parent);
     try {
-      serve(pair[1], cases_, threads_, options_);
+      const auto threads = start_threads(pair[1], threads_);
+      serve(pair[1], cases_, *threads, options_);
     } catch (...) {
       _exit(static_cast<int>(ExitCode::internal));
     }

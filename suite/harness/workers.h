@@ -30,6 +30,7 @@ struct WorkerEvent {
 class Workers {
  public:
   /// `cases` must outlive the workers, and its content keys be filled in.
+  /// Throws EnvironmentError if there are not so many processes or sockets.
   Workers(const std::vector<Case>& cases,
           std::size_t count,
           int threads,
@@ -47,7 +48,8 @@ class Workers {
               std::size_t case_index,
               const std::vector<StageRecord>& earlier);
 
-  /// Waits up to `seconds` (or a signal) and returns what arrived.
+  /// Waits up to `seconds` (or a signal) and returns what arrived. Throws
+  /// EnvironmentError if a worker has not the threads it needs.
   std::vector<WorkerEvent> wait(double seconds);
 
  private:
@@ -59,6 +61,7 @@ class Workers {
     std::unique_ptr<Inbox> inbox;
   };
   void start(Worker& worker);
+  void end();
   std::string collect(Worker& worker);
 
   const std::vector<Case>& cases_;

@@ -1,8 +1,12 @@
 #include "suite/harness/workers.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "suite/harness/campaign.h"
+#include "suite/harness/errors.h"
 #include "suite/harness/registry.h"
 #include "tests/suite/harness/fake_experiment.h"
 
@@ -39,6 +43,22 @@ TEST(Workers, ADeadWorkerIsNamedAndReplaced) {
   }
   EXPECT_EQ(death, "the worker was killed by SIGSEGV");
   EXPECT_EQ(done, prepared.cases.size() - 1);
+}
+
+TEST(Workers, IfNotAllCanStartNoneIsLeft) {
+  Registry registry;
+  registry.add(fake::experiment());
+  const auto prepared = prepare(registry.expand("smoke"));
+  rlimit before{};
+  getrlimit(RLIMIT_NOFILE, &before);
+  const int next = dup(STDIN_FILENO);
+  close(next);
+  rlimit few = before;
+  few.rlim_cur = static_cast<rlim_t>(next) + 4;  // sockets of three workers
+  setrlimit(RLIMIT_NOFILE, &few);
+  EXPECT_THROW(Workers(prepared.cases, 8, 1, {}), EnvironmentError);
+  setrlimit(RLIMIT_NOFILE, &before);
+  EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1);
 }
 
 }  // namespace
