@@ -5,6 +5,7 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <cmath>
 #include <cstdlib>
 #include <type_traits>
 #include <utility>
@@ -33,7 +34,10 @@ std::string unknown_flag(const CLI::App& app, const std::string& word) {
 }
 
 std::string check_positive(const std::string& text) {
-  return std::atof(text.c_str()) > 0 ? "" : text + " is not positive";
+  const double value = std::atof(text.c_str());
+  return value > 0 && std::isfinite(value)
+             ? ""
+             : text + " is not positive and finite";
 }
 
 void add(CLI::App& app, const Flag& flag) {

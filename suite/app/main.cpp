@@ -1,5 +1,7 @@
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <malloc.h>
+#include <unistd.h>
 
 #include <cstdio>
 #include <exception>
@@ -95,21 +97,32 @@ ExitCode dispatch(Arguments arguments) {
                    : "did you mean " + near + "?"));
 }
 
+/// Whoever starts us may have closed 0, 1 or 2. The next file that opens would
+/// take the place, and what is printed would land in the journal or the lock.
+void open_standard_streams() {
+  int fd = 0;
+  while (fd >= 0 && fd <= STDERR_FILENO) fd = open("/dev/null", O_RDWR);
+  if (fd >= 0) close(fd);
+}
+
+constexpr const char* kUnwritable =
+    "standard output cannot be written; a disk may be full";
+
 /// One line, whatever the exception says.
 ExitCode complain(ExitCode code, std::string text) {
   for (char& c : text)
     if (c == '\n') c = ' ';
   std::fflush(stdout);
-  fmt::print(stderr, "physinv-bench: {}\n", text);
+  // fmt::print would throw where standard error cannot be written either.
+  std::fputs(fmt::format("physinv-bench: {}\n", text).c_str(), stderr);
   return code;
 }
 
 ExitCode guarded(Arguments arguments) {
   try {
     const ExitCode code = dispatch(std::move(arguments));
-    if (std::fflush(stdout) != 0)
-      return complain(ExitCode::environment,
-                      "standard output cannot be written; a disk may be full");
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+      return complain(ExitCode::environment, kUnwritable);
     return code;
   } catch (const ExitError& error) {
     return complain(error.code(), error.what());
@@ -120,8 +133,9 @@ ExitCode guarded(Arguments arguments) {
   } catch (const std::bad_alloc&) {
     return complain(ExitCode::environment,
                     "out of memory; fewer --jobs may do");
-  } catch (const std::system_error& error) {
-    return complain(ExitCode::environment, error.what());
+  } catch (const std::system_error& error) {  // fmt::print throws it, too
+    return complain(ExitCode::environment,
+                    std::ferror(stdout) != 0 ? kUnwritable : error.what());
   } catch (const std::exception& error) {
     return complain(ExitCode::internal,
                     fmt::format("internal error: {}", error.what()));
@@ -132,6 +146,7 @@ ExitCode guarded(Arguments arguments) {
 }  // namespace physinv
 
 int main(int argc, char** argv) {
+  physinv::open_standard_streams();
   // Records of some 100 kB come and go; the default hands each back to the
   // system and pays for its pages again.
   mallopt(M_MMAP_THRESHOLD, 64 << 20);

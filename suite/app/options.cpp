@@ -21,44 +21,62 @@ std::vector<std::string> split(std::string_view text, char at) {
   }
 }
 
-template <class T>
-T number(std::string_view key, std::string_view text) {
-  T value{};
+/// What a key may be. More than any experiment needs, and little enough that
+/// counts, sums and memory stay within bounds.
+struct Range {
+  Index least, most;
+};
+constexpr Range kSizes{1, 1'000'000}, kIterations{1, 1'000'000'000};
+constexpr Range kSeeds{0, (Index{1} << 53) - 1};  // exact in any JSON reader
+constexpr Range kShards{1, 1'000'000};
+constexpr std::size_t kLongestList = 100'000;
+
+Index number(std::string_view key, std::string_view text, Range range) {
+  Index value{};
   const char* end = text.data() + text.size();
   const auto [at, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc() || at != end || text.empty())
+  if (error != std::errc() || at != end || value < range.least ||
+      value > range.most)
     throw UsageError(
-        fmt::format("'{}' is no value for {}; a whole number is", text, key));
+        fmt::format("'{}' is no value for {}; a whole number from {} to {} is",
+                    text,
+                    key,
+                    range.least,
+                    range.most));
   return value;
 }
 
 /// "0,1" or "0-3", also mixed.
 template <class T>
-std::vector<T> numbers(std::string_view key, std::string_view text) {
-  constexpr T kMost = 100000;
+std::vector<T> numbers(std::string_view key,
+                       std::string_view text,
+                       Range range) {
   std::vector<T> all;
   for (const auto& part : split(text, ',')) {
     const auto dash = part.find('-', 1);
-    const T first = number<T>(key, std::string_view(part).substr(0, dash));
-    const T last =
-        dash == std::string::npos
-            ? first
-            : number<T>(key, std::string_view(part).substr(dash + 1));
-    if (last < first || last - first > kMost)
+    const std::string_view from(part.data(), std::min(dash, part.size()));
+    const Index first = number(key, from, range);
+    const Index last = dash == std::string::npos
+                           ? first
+                           : number(key, part.substr(dash + 1), range);
+    if (last < first)
       throw UsageError(fmt::format(
           "{}={} is no range; first-last with first <= last is", key, part));
-    for (T v = first; v <= last; ++v) all.push_back(v);
+    if (all.size() + static_cast<std::size_t>(last - first) >= kLongestList)
+      throw UsageError(fmt::format(
+          "{} has more than {} values; fewer are", key, kLongestList));
+    for (Index v = first; v <= last; ++v) all.push_back(static_cast<T>(v));
   }
   return all;
 }
 
 void set(Overrides& o, const std::string& key, const std::string& value) {
   if (key == "n") {
-    o.n = numbers<Index>(key, value);
+    o.n = numbers<Index>(key, value, kSizes);
   } else if (key == "seeds") {
-    o.seeds = numbers<std::uint64_t>(key, value);
+    o.seeds = numbers<std::uint64_t>(key, value, kSeeds);
   } else if (key == "iterations") {
-    o.iterations = number<Index>(key, value);
+    o.iterations = number(key, value, kIterations);
   } else if (key == "methods") {
     o.methods = split(value, ',');
   } else if (key == "precision") {
@@ -71,16 +89,31 @@ void set(Overrides& o, const std::string& key, const std::string& value) {
   }
 }
 
+/// Takes one method out of the first experiment of the profile.
+std::string filter_example(const std::string& profile) {
+  for (const auto& e : registry().experiments())
+    for (const Profile& p : e->profiles)
+      if (p.name == profile && !p.rows.empty())
+        return fmt::format(
+            "--filter=-{}/{}/", e->name, p.rows.front().methods.front());
+  return "--filter=-NAME";
+}
+
 }  // namespace
 
 std::vector<Flag> Selection::flags(const std::vector<Flag>& own) {
   std::vector<Flag> all = {
       {"--filter",
-       "cases whose name matches this regular expression; a leading "
-       "- negates (--filter=-refine), repeats unite",
+       fmt::format("cases whose name matches this regular expression; a "
+                   "leading - negates ({}), repeats unite",
+                   filter_example(profile)),
        &filters,
        "REGEX"},
-      {"--profile", "smoke, quick (default) or paper", &profile},
+      {"--profile",
+       fmt::format(
+           "{}; default: {}", fmt::join(registry().profiles(), ", "), profile),
+       &profile,
+       "NAME"},
       {"--set",
        fmt::format("replace a key of the profile's rows, e.g. "
                    "n=8,32; keys: {}",
@@ -143,15 +176,15 @@ Shard parse_shard(const std::string& text) {
   const auto parts = split(text, '/');
   if (parts.size() != 2)
     throw UsageError("--shard=" + text + " is no I/N; 1/3 is");
-  const Shard s{number<int>("--shard", parts[0]),
-                number<int>("--shard", parts[1])};
-  if (s.part < 1 || s.part > s.parts)
+  const Shard s{static_cast<int>(number("--shard", parts[0], kShards)),
+                static_cast<int>(number("--shard", parts[1], kShards))};
+  if (s.part > s.parts)
     throw UsageError(
         fmt::format("--shard={} is no part; the parts are 1/{} to {}/{}",
                     text,
-                    std::max(1, s.parts),
-                    std::max(1, s.parts),
-                    std::max(1, s.parts)));
+                    s.parts,
+                    s.parts,
+                    s.parts));
   return s;
 }
 

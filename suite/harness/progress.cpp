@@ -141,15 +141,13 @@ void Progress::finished(std::size_t worker,
       say(record.case_name + ": " + record.message);
     return;
   }
-  fmt::print(screen_.stream,
-             "[{}/{}] {}{}\n",
-             stages_done_,
-             stages_,
-             line,
-             record.message.empty() || record.stop != Stop::failed
-                 ? ""
-                 : "  " + record.message);
-  std::fflush(screen_.stream);
+  put(fmt::format("[{}/{}] {}{}\n",
+                  stages_done_,
+                  stages_,
+                  line,
+                  record.message.empty() || record.stop != Stop::failed
+                      ? ""
+                      : "  " + record.message));
 }
 
 void Progress::idle(std::size_t worker) {
@@ -158,8 +156,7 @@ void Progress::idle(std::size_t worker) {
 
 void Progress::say(const std::string& line) {
   clear();
-  fmt::print(screen_.stream, "{}\n", line);
-  std::fflush(screen_.stream);
+  put(line + "\n");
 }
 
 double Progress::remaining() const {
@@ -268,13 +265,17 @@ void Progress::draw() {
                         dim || bold ? "\033[0m" : "");
   }
   lines_ = static_cast<int>(lines.size());
-  std::fputs(text.c_str(), screen_.stream);
-  std::fflush(screen_.stream);
+  put(text);
 }
 
 void Progress::clear() {
-  if (lines_ > 0) fmt::print(screen_.stream, "\033[{}A\033[J", lines_);
+  if (lines_ > 0) put(fmt::format("\033[{}A\033[J", lines_));
   lines_ = 0;
+}
+
+void Progress::put(const std::string& text) const {
+  std::fputs(text.c_str(), screen_.stream);
+  std::fflush(screen_.stream);
 }
 
 }  // namespace physinv

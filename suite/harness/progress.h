@@ -75,6 +75,9 @@ class Progress {
   std::string running_row(const Running& r, double now) const;
   std::string finished_row(const StageRecord& record) const;
   std::size_t name_width() const;
+  /// A campaign does not end because nobody can read how it goes: an error
+  /// stays in the stream, for whoever prints the result.
+  void put(const std::string& text) const;
 
   Screen screen_;
   const std::vector<Case>& cases_;

@@ -15,6 +15,9 @@
 namespace physinv {
 namespace {
 
+/// Fifty times the largest profile.
+constexpr std::size_t kMostCases = 100'000;
+
 bool is_word(std::string_view text, std::string_view extra = "") {
   return !text.empty() && std::all_of(text.begin(), text.end(), [&](char c) {
     return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' ||
@@ -401,7 +404,13 @@ std::vector<Case> Registry::expand(std::string_view profile,
                            !overrides.precision;
   std::vector<Case> cases;
   std::map<std::string, std::size_t> by_name;
+  std::size_t made = 0;
   const auto add = [&](Case c) {
+    if (++made > kMostCases)
+      throw UsageError(fmt::format(
+          "profile {} has more than {} cases so; fewer n or seeds are right",
+          profile,
+          kMostCases));
     const auto [at, is_new] = by_name.emplace(c.info.name, cases.size());
     if (is_new) {
       cases.push_back(std::move(c));
