@@ -32,4 +32,10 @@ install(FILES
   DESTINATION ${physinv_package})
 if(TARGET physinv-bench)
   install(TARGETS physinv-bench)
+  install(DIRECTORY reports/published
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/physinv)
+endif()
+# ./bench builds it only when asked to.
+if(TARGET physinv-kernels)
+  install(TARGETS physinv-kernels OPTIONAL)
 endif()

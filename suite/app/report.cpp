@@ -4,10 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 
 #include "reports/digest.h"
+#include "suite/app/installed.h"
 #include "suite/app/options.h"
 #include "suite/harness/progress.h"
 #include "suite/results/file.h"
@@ -19,16 +19,6 @@ namespace physinv {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// The papers' numbers: named by the environment, beside the sources, or
-/// installed beside the program.
-fs::path published_directory() {
-  if (const char* named = std::getenv("PHYSINV_PUBLISHED_DIR")) return named;
-  const fs::path sources = PHYSINV_PUBLISHED_DIR;
-  if (fs::is_directory(sources)) return sources;
-  return fs::read_symlink("/proc/self/exe").parent_path().parent_path() /
-         "share/physinv/published";
-}
 
 Section section_of(const Experiment& e,
                    const Results& results,
@@ -151,13 +141,7 @@ ExitCode report_verb(const Arguments& arguments) {
     return ExitCode::good;
   const fs::path directory = results_directory(results_text);
   const Results results = load_results(directory);
-  fs::path published = published_directory();
-  if (!fs::is_directory(published))
-    throw UsageError(
-        fmt::format("there is no directory '{}' of published numbers; "
-                    "PHYSINV_PUBLISHED_DIR names it",
-                    published.string()));
-  const Published numbers(published);
+  const Published numbers(published_directory());
   if (const auto wrong = registry().unknown_printed(numbers); !wrong.empty())
     throw std::logic_error(fmt::format("{}", fmt::join(wrong, "; ")));
   const auto sections = sections_of(results, numbers);

@@ -1,4 +1,5 @@
-# Installs ${build} into ${work}, then builds and runs the consumer there.
+# Installs ${build} into ${work}, builds and runs the consumer there, then moves
+# the tree and runs the programs: they use what was installed alone.
 file(REMOVE_RECURSE ${work})
 function(run)
   execute_process(COMMAND ${ARGV} COMMAND_ERROR_IS_FATAL ANY)
@@ -9,3 +10,22 @@ run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${work}/build -G Ninja
   -D CMAKE_PREFIX_PATH=${work}/prefix)
 run(${CMAKE_COMMAND} --build ${work}/build)
 run(${work}/build/consumer)
+
+file(RENAME ${work}/prefix ${work}/moved)
+set(bench ${work}/moved/bin/physinv-bench)
+set(published ${work}/moved/share/physinv/published)
+unset(ENV{PHYSINV_PUBLISHED_DIR})
+run(${bench} --profile=smoke --filter=robotic-arm/bfgs --out=${work}/results)
+run(${bench} report ${work}/results)
+if(kernels)
+  run(${bench} kernels --benchmark_list_tests)
+endif()
+
+# The sources are still there; whoever read them would notice nothing.
+file(WRITE ${published}/jpo.json "{}")
+execute_process(COMMAND ${bench} report ${work}/results
+  RESULT_VARIABLE status ERROR_VARIABLE message)
+string(FIND "${message}" ${published}/jpo.json place)
+if(status EQUAL 0 OR place EQUAL -1)
+  message(FATAL_ERROR "report does not read ${published}: ${message}")
+endif()

@@ -1,0 +1,35 @@
+#include "suite/app/installed.h"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+
+#include "suite/harness/errors.h"
+
+namespace physinv {
+namespace {
+
+namespace fs = std::filesystem;
+
+}  // namespace
+
+fs::path program_directory() {
+  return fs::read_symlink("/proc/self/exe").parent_path();
+}
+
+fs::path published_directory() {
+  const char* named = std::getenv("PHYSINV_PUBLISHED_DIR");
+  const fs::path installed =
+      (program_directory() / PHYSINV_INSTALLED_PUBLISHED).lexically_normal();
+  const fs::path chosen = named != nullptr              ? fs::path(named)
+                          : fs::is_directory(installed) ? installed
+                                                        : PHYSINV_PUBLISHED_DIR;
+  if (!fs::is_directory(chosen))
+    throw UsageError(
+        fmt::format("there is no directory '{}' of published numbers; "
+                    "PHYSINV_PUBLISHED_DIR names it",
+                    chosen.string()));
+  return chosen;
+}
+
+}  // namespace physinv

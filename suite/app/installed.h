@@ -1,0 +1,17 @@
+/// Where the program finds what belongs to it, in a build tree and installed.
+#pragma once
+
+#include <filesystem>
+
+namespace physinv {
+
+/// The directory of the running program, symbolic links resolved.
+std::filesystem::path program_directory();
+
+/// The papers' numbers: what PHYSINV_PUBLISHED_DIR names, else what was
+/// installed with the program, else the sources that it was built from. The
+/// sources come last, so that an installed program never depends on what
+/// stands there by now. Throws UsageError if there are none.
+std::filesystem::path published_directory();
+
+}  // namespace physinv
