@@ -117,7 +117,9 @@ TEST(Claim, NothingInfiniteIsWithinBounds) {
 class AsPrinted : public testing::Test {
  protected:
   void SetUp() override {
-    std::ofstream(dir_ / "toy.json") << R"({"values": [
+    std::ofstream(dir_ / "toy.json") << R"({"publication": {"key": "toy",
+      "title": "Toy", "authors": ["A"], "year": 2022, "venue": "V"},
+      "values": [
       {"experiment": "toy", "quantity": "alone", "value": 50, "spread": null,
        "unit": "%", "where": "Table 4"},
       {"experiment": "toy", "quantity": "spread", "value": 50, "spread": 2,
