@@ -34,6 +34,8 @@ if(TARGET physinv-bench)
   install(TARGETS physinv-bench)
   install(DIRECTORY reports/published
     DESTINATION ${CMAKE_INSTALL_DATADIR}/physinv)
+  install(FILES ${PROJECT_SOURCE_DIR}/reports/expected_failures.json
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/physinv)
 endif()
 # ./bench builds it only when asked to.
 if(TARGET physinv-kernels)

@@ -38,17 +38,9 @@ examples
   physinv-bench report results/quick
 
 exit codes
-    0  good
-    1  internal error
-    2  usage, or input that cannot be read
-    3  nothing matched; the nearest names are shown
-    4  a case failed (exception, out of memory), or verify found a mismatch;
-       divergence is a result
-    7  a gating claim is not reproduced (report --check)
-    9  environment: disk full, unwritable, corrupt store
-  130  interrupted; what had finished is kept
-  5, 6 and 8 are reserved for accuracy, timing, and inconclusive
+)";
 
+constexpr std::string_view kEnvironmentHelp = R"(
 environment
   NO_COLOR   no colours
   COLUMNS    width of the live table
@@ -73,7 +65,7 @@ ExitCode dispatch(Arguments arguments) {
   if (arguments.empty() || arguments[0].starts_with('-')) {
     if (!arguments.empty() &&
         (arguments[0] == "--help" || arguments[0] == "-h")) {
-      fmt::print("{}", kHelp);
+      fmt::print("{}{}{}", kHelp, kExitCodeHelp, kEnvironmentHelp);
       return ExitCode::good;
     }
     if (!arguments.empty() && arguments[0] == "--version") {

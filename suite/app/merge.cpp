@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "suite/app/load.h"
 #include "suite/app/options.h"
 
 namespace physinv {
@@ -18,8 +19,12 @@ ExitCode merge_verb(const Arguments& arguments) {
     return ExitCode::good;
   std::vector<std::filesystem::path> paths;
   for (const auto& s : shards) paths.push_back(results_directory(s));
-  merge(paths, out);
+  const Merged merged = merge(paths, out);
+  for (const auto& warning : merged.warnings)
+    fmt::print("warning: {}\n", warning);
   fmt::print("merged {} into {}\n", shards.size(), out);
+  require_complete(merged.lacks,
+                   "run what is missing, then merge all shards again");
   return ExitCode::good;
 }
 

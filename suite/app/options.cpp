@@ -129,7 +129,7 @@ std::vector<Flag> Selection::flags(const std::vector<Flag>& own) {
   return all;
 }
 
-std::vector<Case> Selection::cases(std::vector<std::string>* campaign) const {
+std::vector<Case> Selection::cases(std::vector<PlannedCase>* campaign) const {
   registry().validate();
   const NameFilter filter(filters);
   const Shard part = parse_shard(shard);
@@ -138,7 +138,7 @@ std::vector<Case> Selection::cases(std::vector<std::string>* campaign) const {
   for (const Case& c : all) names.push_back(c.info.name);
   auto chosen = filter.apply(std::move(all));
   if (campaign != nullptr)
-    for (const Case& c : chosen) campaign->push_back(c.info.name);
+    for (const Case& c : chosen) campaign->push_back(planned(c));
   if (!chosen.empty()) return part.apply(std::move(chosen));
 
   std::string asked;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "suite/app/flags.h"
+#include "suite/harness/keys.h"
 #include "suite/harness/registry.h"
 #include "suite/harness/select.h"
 
@@ -18,10 +19,10 @@ struct Selection {
 
   /// Its flags, followed by a verb's own.
   std::vector<Flag> flags(const std::vector<Flag>& own = {});
-  /// The chosen cases in declared order, of this shard; `campaign` gets the
-  /// names of all shards' cases. Throws UsageError, or ExitError with
+  /// The chosen cases in declared order, of this shard; `campaign` gets those
+  /// of all shards. Throws UsageError, or ExitError with
   /// the nearest names if nothing matched.
-  std::vector<Case> cases(std::vector<std::string>* campaign = nullptr) const;
+  std::vector<Case> cases(std::vector<PlannedCase>* campaign = nullptr) const;
 };
 
 /// "n=8,32" and the like into overrides; throws UsageError.

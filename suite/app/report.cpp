@@ -8,12 +8,13 @@
 
 #include "reports/digest.h"
 #include "suite/app/installed.h"
+#include "suite/app/load.h"
 #include "suite/app/options.h"
+#include "suite/harness/expected.h"
 #include "suite/harness/progress.h"
 #include "suite/results/file.h"
 #include "suite/results/profiles.h"
 #include "suite/results/published.h"
-#include "suite/results/store.h"
 
 namespace physinv {
 namespace {
@@ -74,12 +75,13 @@ std::vector<Section> sections_of(const Results& results,
 }
 
 /// Context of the campaign as far as a report states it.
-nlohmann::ordered_json provenance(const fs::path& directory) {
-  const Store store = Store::read_only(directory);
-  const auto& plan = store.catalog().plan;
-  const auto context = plan.value("context", nlohmann::json::object());
+nlohmann::ordered_json provenance(const Loaded& loaded) {
+  const auto& plan = loaded.catalog.plan;
+  const auto none = nlohmann::json::object();
+  const auto context = plan.is_object() ? plan.value("context", none) : none;
   nlohmann::ordered_json picked;
   if (plan.contains("profile")) picked["profile"] = plan["profile"];
+  if (loaded.lacks.any()) picked["incomplete"] = to_text(loaded.lacks);
   for (const char* key : {"date",
                           "host_name",
                           "cpu_model",
@@ -110,50 +112,90 @@ void publish_campaign(const fs::path& target,
                    digest_json(sections, provenance).dump(1) + '\n');
 }
 
-std::vector<std::string> unmet(const std::vector<Section>& sections) {
-  std::vector<std::string> ids;
-  for (const Section& s : sections) {
-    for (const ClaimResult& c : s.claims)
-      if (c.gates && c.verdict == Verdict::not_reproduced)
-        ids.push_back(s.experiment + " " + c.id + ": " + c.says);
-  }
-  return ids;
+/// The list named by the flag, else the one beside the published numbers.
+std::vector<ExpectedFailure> expected_failures(
+    const std::string& named,
+    const fs::path& published,
+    const std::vector<Section>& sections) {
+  const fs::path path = named.empty()
+                            ? published.parent_path() / "expected_failures.json"
+                            : fs::path(named);
+  if (named.empty() && !fs::exists(path)) return {};
+  if (!fs::is_regular_file(path))
+    throw UsageError(fmt::format(
+        "there is no file '{}' of expected failures; a JSON list of experiment,"
+        " claim and reason is expected",
+        path.string()));
+  auto expected = read_expected(path);
+  check_expected(expected, registry(), sections, path);
+  return expected;
+}
+
+/// Says how the gating claims stand; ExitError if one fails unexpectedly.
+void check_claims(const Judgement& j) {
+  fmt::print("{} gating claims judged: {} hold, {} fail as expected, {} fail\n",
+             j.judged,
+             j.judged - j.known_misses.size() - j.misses.size(),
+             j.known_misses.size(),
+             j.misses.size());
+  for (const auto& claim : j.known_misses)
+    fmt::print("expected to fail: {}\n", claim);
+  for (const auto& claim : j.surprises)
+    fmt::print("holds, although listed as expected to fail: {}\n", claim);
+  if (!j.misses.empty())
+    throw ExitError(ExitCode::claim,
+                    fmt::format("{} gating claims are not reproduced, first {}",
+                                j.misses.size(),
+                                j.misses.front()));
 }
 
 }  // namespace
 
 ExitCode report_verb(const Arguments& arguments) {
-  std::string results_text, out;
-  std::string publish;
+  std::string results, out, expected, publish;
   bool check = false;
   if (!parse(
           "physinv-bench report",
-          "Writes tables, plots and claims of a finished campaign.",
-          {{"RESULTS", "directory that 'run' wrote", &results_text},
+          "Writes tables, plots and claims of a finished campaign. Exit 8 if "
+          "the campaign is incomplete.",
+          {{"RESULTS", "directory that 'run' wrote", &results},
            {"--out", "where to; default: RESULTS/report", &out, "DIR"},
            {"--publish",
             "also keep results.json (compressed) and a digest of claims and "
             "tables there, for the verb 'results'",
             &publish,
             "DIR"},
-           {"--check", "exit 7 if a gating claim is not reproduced", &check}},
+           {"--check",
+            "exit 7 if a gating claim is not reproduced and not expected to "
+            "fail, 10 if none could be judged",
+            &check},
+           {"--expected",
+            "claims expected to fail; default: reports/expected_failures.json",
+            &expected,
+            "FILE"}},
           arguments))
     return ExitCode::good;
-  const fs::path directory = results_directory(results_text);
-  const Results results = load_results(directory);
-  const Published numbers(published_directory());
+  const Loaded loaded = load(results);
+  const fs::path published = published_directory();
+  const Published numbers(published);
   if (const auto wrong = registry().unknown_printed(numbers); !wrong.empty())
     throw std::logic_error(fmt::format("{}", fmt::join(wrong, "; ")));
-  const auto sections = sections_of(results, numbers);
-  if (sections.empty())
+  const auto sections = sections_of(loaded.results, numbers);
+  if (sections.empty()) {
+    require_complete(loaded.lacks, kRunAgain);
     throw ExitError(ExitCode::nothing_matched,
                     "no experiment that declares a report has results in '" +
-                        results_text + "'; run cases first");
-  const fs::path target = out.empty() ? directory / "report" : fs::path(out);
+                        results + "'; run cases first");
+  }
+  const auto listed = check || !expected.empty()
+                          ? expected_failures(expected, published, sections)
+                          : std::vector<ExpectedFailure>();
+  const fs::path target =
+      out.empty() ? fs::path(results) / "report" : fs::path(out);
+  const auto origin = provenance(loaded);
   try {
-    write_report(target, sections, provenance(directory));
-    if (!publish.empty())
-      publish_campaign(publish, directory, sections, provenance(directory));
+    write_report(target, sections, origin);
+    if (!publish.empty()) publish_campaign(publish, results, sections, origin);
   } catch (const std::runtime_error& error) {
     throw EnvironmentError(error.what());
   }
@@ -162,12 +204,13 @@ ExitCode report_verb(const Arguments& arguments) {
       render_claims_text(sections,
                          static_cast<std::size_t>(Screen::of(stdout).columns)),
       (target / "index.html").string());
-  const auto wrong = unmet(sections);
-  if (check && !wrong.empty())
-    throw ExitError(ExitCode::claim,
-                    fmt::format("{} gating claims are not reproduced, first {}",
-                                wrong.size(),
-                                wrong.front()));
+  const auto judgement = compare(sections, listed, origin.value("profile", ""));
+  if (check) check_claims(judgement);
+  require_complete(loaded.lacks, kRunAgain);
+  if (check && judgement.judged == 0)
+    throw ExitError(ExitCode::incomplete,
+                    "incomplete: no gating claim could be judged; run the "
+                    "profile that a claim names");
   return ExitCode::good;
 }
 

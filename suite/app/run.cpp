@@ -26,12 +26,12 @@ struct RunFlags {
           &campaign.threads},
          {"--time-budget",
           "start no further case after so many seconds; the cases not "
-          "run are named, and the next run goes on with them",
+          "run are named (exit 8), and the next run goes on with them",
           &campaign.time_budget,
           "SECONDS"},
          {"--out", "where to; default: results/<profile>", &out, "DIR"},
          {"--resume,!--fresh",
-          "reuse finished stages (default), or run all again",
+          "reuse finished stages (default), or run the selected cases again",
           &campaign.resume},
          {"--dry-run", "say what would run and what is reused", &dry},
          {"--trace",
@@ -120,6 +120,12 @@ ExitCode run_verb(const Arguments& arguments) {
                     result.failed.size(),
                     result.failed.front()));
   }
+  if (!result.not_run.empty())
+    throw ExitError(ExitCode::incomplete,
+                    fmt::format("incomplete: {} of {} cases not run, out of "
+                                "time; the same command goes on with them",
+                                result.not_run.size(),
+                                names.size()));
   return ExitCode::good;
 }
 

@@ -4,27 +4,19 @@
 
 #include <algorithm>
 
+#include "suite/app/load.h"
 #include "suite/app/options.h"
-#include "suite/results/results.h"
 
 namespace physinv {
+namespace {
 
-ExitCode verify_verb(const Arguments& arguments) {
-  std::string results;
-  if (!parse("physinv-bench verify",
-             "Recomputes every final loss from the stored solutions, one "
-             "example at a time in double, and compares bitwise or within "
-             "1e-12 relative.",
-             {{"RESULTS", "directory that 'run' wrote", &results}},
-             arguments))
-    return ExitCode::good;
-  const VerifyReport r =
-      verify_results(load_results(results_directory(results)), registry());
+void print(const VerifyReport& r, const Shortfall& lacks) {
   fmt::print(
-      "{} losses of {} stages: {} bitwise equal, {} within {:g}, {} "
+      "{} losses of {} of {} stages: {} bitwise equal, {} within {:g}, {} "
       "mismatches\n",
       r.losses,
       r.stages,
+      lacks.stages,
       r.bitwise,
       r.close,
       kVerifyTolerance,
@@ -34,15 +26,39 @@ ExitCode verify_verb(const Arguments& arguments) {
   for (std::size_t i = 0; i < std::min<std::size_t>(10, r.mismatches.size());
        ++i)
     fmt::print("  {}\n", r.mismatches[i]);
+}
+
+}  // namespace
+
+ExitCode verify_verb(const Arguments& arguments) {
+  std::string directory;
+  if (!parse("physinv-bench verify",
+             "Recomputes every final loss from the stored solutions, one "
+             "example at a time in double, and compares bitwise or within "
+             "1e-12 relative. Exit 4 if one differs, 10 if stages are missing.",
+             {{"RESULTS", "directory that 'run' wrote", &directory}},
+             arguments))
+    return ExitCode::good;
+  const Loaded loaded = load(directory);
+  const VerifyReport r = verify_results(loaded.results, registry());
+  print(r, loaded.lacks);
   if (!r.mismatches.empty())
     throw ExitError(ExitCode::case_failed,
                     fmt::format("{} recorded losses are wrong, first {}; the "
                                 "results or the physics changed",
                                 r.mismatches.size(),
                                 r.mismatches.front()));
+  require_complete(
+      loaded.lacks,
+      "the same 'run' command makes up for it, and keeps the rest");
   if (r.stages == 0)
     throw ExitError(ExitCode::nothing_matched,
-                    "there is nothing to verify in '" + results + "'");
+                    "there is nothing to verify in '" + directory + "'");
+  if (!r.unknown.empty())
+    throw ExitError(ExitCode::incomplete,
+                    fmt::format("incomplete: this program does not know {}; "
+                                "verify with the one that ran it",
+                                r.unknown.front()));
   return ExitCode::good;
 }
 

@@ -45,11 +45,14 @@ class SignalWatch {
 };
 
 /// The beginning of the chain that the store holds. Stages that failed or
-/// were skipped are run again.
-std::vector<StageRecord> stored_stages(const Store& store, const Case& c) {
+/// were skipped are run again. With `among`, only stages that these cases ran.
+std::vector<StageRecord> stored_stages(
+    const Store& store,
+    const Case& c,
+    const std::set<std::string>* among = nullptr) {
   std::vector<StageRecord> found;
   for (const auto& key : c.info.keys) {
-    auto record = store.find(key);
+    auto record = store.find(key, among);
     if (!record || record->stop == Stop::failed ||
         record->stop == Stop::skipped)
       break;
@@ -70,10 +73,11 @@ class Campaign {
         data_(std::move(prepared.data)),
         errors_(std::move(prepared.errors)),
         revision_(git_revision()),
-        store_(open_store(options)),
+        store_(options.out),
         progress_(screen, cases_, options.jobs) {
     context_ = machine_context(revision_);
     context_["options"] = options_json;
+    for (const Case& c : cases_) names_.insert(c.info.name);
   }
 
   CampaignResult run() {
@@ -91,15 +95,16 @@ class Campaign {
   }
 
  private:
-  static Store open_store(const CampaignOptions& options) {
-    return Store(options.out, !options.resume);
-  }
-
   /// Sorts the cases into those to run and those the store already holds.
   void plan() {
+    if (!options_.resume) store_.forget(names_);
     std::vector<CaseInfo> infos;
-    for (const Case& c : cases_) infos.push_back(c.info);
-    store_.set_plan(infos, context_, options_.campaign);
+    std::vector<PlannedCase> campaign = options_.campaign;
+    for (const Case& c : cases_) {
+      infos.push_back(c.info);
+      if (options_.campaign.empty()) campaign.push_back(planned(c));
+    }
+    store_.set_plan(infos, context_, std::move(campaign));
     for (std::size_t i = 0; i < cases_.size(); ++i) {
       if (!errors_[i].empty()) {
         lose(i, 0, "data: " + errors_[i]);
@@ -113,7 +118,8 @@ class Campaign {
   /// What the store has of a case; a stage that another case ran is entered
   /// for this one too.
   std::vector<StageRecord> take_stored(std::size_t i) {
-    auto found = stored_stages(store_, cases_[i]);
+    auto found =
+        stored_stages(store_, cases_[i], options_.resume ? nullptr : &names_);
     for (std::size_t k = 0; k < found.size(); ++k) {
       StageRecord& record = found[k];
       if (counted_.insert({i, k}).second) {
@@ -267,6 +273,7 @@ class Campaign {
   std::vector<CaseData> data_;
   std::vector<std::string> errors_;
   std::string revision_;
+  std::set<std::string> names_;  // of the cases
   Store store_;
   Progress progress_;
   nlohmann::json context_;

@@ -10,6 +10,7 @@
 
 #include "suite/harness/case.h"
 #include "suite/harness/progress.h"
+#include "suite/results/plan.h"
 
 namespace physinv {
 
@@ -19,10 +20,12 @@ struct CampaignOptions {
   int threads = 1;  ///< inside a case
   /// Seconds after which no further case is started; 0 for none.
   double time_budget = 0;
-  bool resume = true;  ///< reuse finished stages of the same content key
+  /// Reuse finished stages of the same content key; otherwise what the store
+  /// holds of these cases, and of no other, is deleted first.
+  bool resume = true;
   bool trace = false;  ///< record hashes of all iterates
-  /// Names of the unsharded campaign, in order; empty if it is this one.
-  std::vector<std::string> campaign;
+  /// The unsharded campaign, in order; empty if it is this one.
+  std::vector<PlannedCase> campaign;
 };
 
 /// Cases with their data drawn and content keys filled in.

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <stdexcept>
+#include <string>
+#include <string_view>
 
 namespace physinv {
 
@@ -12,11 +14,30 @@ enum class ExitCode : int {
   usage = 2,
   nothing_matched = 3,
   case_failed = 4,
-  // 5 accuracy regression, 6 timing regression, 8 inconclusive: a later gate
   claim = 7,
   environment = 9,
+  incomplete = 10,
   interrupted = 130,
 };
+
+/// The same in the words of --help. Where several hold, 130 goes before 4
+/// before 7 before 10.
+inline constexpr std::string_view kExitCodeHelp =
+    R"(    0  good, and complete
+    1  internal error
+    2  usage, or input that cannot be read
+    3  nothing matched; the nearest names are shown
+    4  a case failed (exception, out of memory), or verify found a mismatch;
+       divergence is a result
+    7  a gating claim is not reproduced and not listed as expected to fail
+       (report --check)
+    9  environment: disk full, unwritable, corrupt store
+   10  incomplete: cases not run (--time-budget, shards missing), stages that
+       failed or lost their arrays, no plan.json, or nothing to judge (report
+       --check); what is there was run, reported, verified or merged
+  130  interrupted; what had finished is kept
+  5, 6 and 8 are reserved for accuracy, timing, and inconclusive
+)";
 
 class ExitError : public std::runtime_error {
  public:

@@ -40,7 +40,8 @@ BENCHMARK(bm_wire)->Name("harness/record_over_pipe");
 void bm_append(benchmark::State& state) {
   const auto directory =
       std::filesystem::temp_directory_path() / "physinv-kernels-store";
-  Store store(directory, true);
+  std::filesystem::remove_all(directory);
+  Store store(directory);
   StageRecord record = typical_record();
   CaseInfo info{.name = record.case_name,
                 .experiment = "jpo/billiards",

@@ -76,4 +76,9 @@ std::string numerics_of_build(const Case& c, std::size_t position) {
       chain_sources(*c.experiment, *c.method, position));
 }
 
+PlannedCase planned(const Case& c) {
+  const std::size_t last = c.method->chain.size() - 1;
+  return {.name = c.info.name, .recipe = hex128(recipe_text(c, last))};
+}
+
 }  // namespace physinv

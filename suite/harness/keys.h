@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "suite/harness/case.h"
+#include "suite/results/plan.h"
 
 namespace physinv {
 
@@ -30,5 +31,8 @@ std::vector<std::string> content_keys(const Case& c,
 
 /// Fingerprint of this build's sources.
 std::string numerics_of_build(const Case& c, std::size_t position);
+
+/// What a plan says of a case that it may not have drawn data for.
+PlannedCase planned(const Case& c);
 
 }  // namespace physinv

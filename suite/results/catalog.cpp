@@ -2,30 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <set>
+#include "suite/results/plan.h"
 
 namespace physinv {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
-
-json read_plan(const fs::path& path) {
-  if (!fs::exists(path)) return nullptr;
-  const json plan = json::parse(read_file(path), nullptr, false);
-  if (!plan.is_object() || !plan.contains("cases"))
-    throw StoreError(fmt::format(
-        "{} is damaged (delete it and run the campaign again: finished stages "
-        "are kept)",
-        path.string()));
-  if (plan.value("schema_version", 0) > kSchemaVersion)
-    throw UnreadableInput(
-        fmt::format("{} has a newer schema than this program reads, {} (use "
-                    "the program that wrote it or a newer one)",
-                    path.string(),
-                    kSchemaVersion));
-  return plan;
-}
 
 }  // namespace
 
@@ -44,7 +26,10 @@ Catalog Catalog::read(const fs::path& directory) {
   catalog.journal_ = read_journal(path);
   for (auto& entry : catalog.journal_.entries) catalog.add(std::move(entry));
   catalog.journal_.entries.clear();
-  catalog.plan = read_plan(directory / "plan.json");
+  std::string warning;
+  catalog.plan = read_plan(directory / "plan.json", &warning);
+  for (const auto& text : {catalog.journal_.warning, warning})
+    if (!text.empty()) catalog.warnings_.push_back(text);
   return catalog;
 }
 
@@ -83,11 +68,13 @@ const JournalEntry* Catalog::at(const std::string& case_name,
   return at == slots_.end() ? nullptr : &entries_[at->second];
 }
 
-const JournalEntry* Catalog::entry_of(const std::string& key) const {
+const JournalEntry* Catalog::entry_of(
+    const std::string& key, const std::set<std::string>* among) const {
   const JournalEntry* best = nullptr;
   const auto [begin, end] = keys_.equal_range(key);
   for (auto k = begin; k != end; ++k) {
     const JournalEntry& e = entries_[k->second];
+    if (among != nullptr && !among->contains(e.info.name)) continue;
     const bool better =
         best == nullptr || std::pair(!has_result(e.stage), &e) <
                                std::pair(!has_result(best->stage), best);
@@ -96,8 +83,9 @@ const JournalEntry* Catalog::entry_of(const std::string& key) const {
   return best;
 }
 
-std::optional<StageRecord> Catalog::find(const std::string& key) const {
-  const JournalEntry* entry = entry_of(key);
+std::optional<StageRecord> Catalog::find(
+    const std::string& key, const std::set<std::string>* among) const {
+  const JournalEntry* entry = entry_of(key, among);
   return entry == nullptr ? std::nullopt : load(*entry);
 }
 
@@ -123,9 +111,15 @@ std::vector<std::string> Catalog::order() const {
   return names;
 }
 
+CaseInfo Catalog::info_of(const std::string& case_name) const {
+  CaseInfo info = entries_[latest_.at(case_name)].info;
+  info.keys = planned_keys(plan, case_name, std::move(info.keys));
+  return info;
+}
+
 CaseRecord Catalog::case_record(const std::string& name) const {
   CaseRecord record;
-  record.info = entries_[latest_.at(name)].info;
+  record.info = info_of(name);
   const fs::path path = case_path(name);
   if (!fs::exists(path)) return record;
   const CaseFile file(path, name);
@@ -144,7 +138,7 @@ CaseRecord Catalog::case_record(const std::string& name) const {
 
 CaseRecord Catalog::summary(const std::string& name) const {
   CaseRecord record;
-  record.info = entries_[latest_.at(name)].info;
+  record.info = info_of(name);
   for (std::size_t k = 0; k < record.info.keys.size(); ++k) {
     const JournalEntry* own = at(name, static_cast<Index>(k));
     if (own == nullptr || own->stage.key != record.info.keys[k]) continue;

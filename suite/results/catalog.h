@@ -6,6 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -33,15 +34,24 @@ class Catalog {
   void add(JournalEntry entry);
   const std::vector<JournalEntry>& entries() const { return entries_; }
   const JournalText& journal() const { return journal_; }
+  /// What a reader should be told: a torn line, a plan that is missing or old.
+  const std::vector<std::string>& warnings() const { return warnings_; }
   bool knows_case(const std::string& case_name) const;
   const JournalEntry* at(const std::string& case_name, Index position) const;
 
+  /// What a known case is, with the keys that count.
+  CaseInfo info_of(const std::string& case_name) const;
+
   /// The stage with this content key, of whichever case; one that came to a
-  /// result if there is one. Nothing if its arrays are gone.
-  std::optional<StageRecord> find(const std::string& key) const;
+  /// result if there is one. Nothing if its arrays are gone. With `among`,
+  /// only of these cases.
+  std::optional<StageRecord> find(
+      const std::string& key,
+      const std::set<std::string>* among = nullptr) const;
   std::optional<StageRecord> load(const JournalEntry& entry) const;
 
-  /// A known case with its arrays; stages of outdated keys are left out.
+  /// A known case with its arrays; stages of other keys than the plan's, or
+  /// without one the case's latest, are left out.
   CaseRecord case_record(const std::string& name) const;
 
   /// Names of the unsharded campaign in order, then cases it does not name.
@@ -59,9 +69,11 @@ class Catalog {
   CaseRecord summary(const std::string& name) const;
   std::vector<CaseRecord> collect(
       CaseRecord (Catalog::*read_case)(const std::string&) const) const;
-  const JournalEntry* entry_of(const std::string& key) const;
+  const JournalEntry* entry_of(const std::string& key,
+                               const std::set<std::string>* among) const;
 
   std::filesystem::path directory_;
+  std::vector<std::string> warnings_;
   JournalText journal_;
   std::vector<JournalEntry> entries_;
   std::map<std::pair<std::string, Index>, std::size_t> slots_;

@@ -49,13 +49,16 @@ bool hides_line(std::string_view line) {
                             std::string_view why) {
   throw CorruptJournal(fmt::format(
       "{}: line {}, at byte {} and {} bytes long, {}; nothing was changed "
-      "(restore the file, delete this line to run its stage again, or run "
-      "everything again with --fresh)",
+      "({})",
       path.string(),
       number,
       offset,
       line.size(),
-      why));
+      why,
+      number == 1 ? "restore the file or choose another --out"
+                  : fmt::format("restore the file, or delete this line, sed -i "
+                                "{}d, to run its stage again",
+                                number)));
 }
 
 json parse_line(std::string_view line) {
@@ -116,9 +119,8 @@ JournalText read_journal(const fs::path& path) {
     const bool ended = end != std::string::npos;
     const std::string_view line =
         std::string_view(bytes).substr(begin, ended ? end - begin : end);
-    const bool last = !ended || end + 1 == bytes.size();
     if (!ended || !intact(line)) {
-      if (number == 0 || !last || hides_line(line))
+      if (number == 0 || ended || hides_line(line))
         fail_line(path, number + 1, begin, line, "fails its checksum");
       text.warning = fmt::format(
           "{}: line {}, at byte {}, was cut off while it was written; its "
@@ -143,6 +145,20 @@ JournalText read_journal(const fs::path& path) {
   if (number == 0 && text.good_bytes == 0)
     fail_line(path, 1, 0, "", "is missing: the file is empty");
   return text;
+}
+
+void forget_cases(const fs::path& path, const std::set<std::string>& names) {
+  const auto entries = read_journal(path).entries;
+  const std::string bytes = read_file(path);
+  std::size_t begin = bytes.find('\n') + 1;
+  std::string kept = bytes.substr(0, begin);
+  for (const auto& entry : entries) {
+    const std::size_t end = bytes.find('\n', begin) + 1;
+    if (!names.contains(entry.info.name))
+      kept.append(bytes, begin, end - begin);
+    begin = end;
+  }
+  write_atomically(path, kept);
 }
 
 Journal Journal::create(const fs::path& path) {

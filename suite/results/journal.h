@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -31,10 +32,15 @@ struct JournalText {
   std::string warning;           ///< about a torn line, or empty
 };
 
-/// Reads and verifies every line. A torn last line is left out and named in
-/// the warning. Throws CorruptJournal for any other damage, UnreadableInput
-/// for a newer schema.
+/// Reads and verifies every line. A last line without its end was torn by a
+/// kill: it is left out and named in the warning. Throws CorruptJournal for
+/// any other damage, UnreadableInput for a newer schema.
 JournalText read_journal(const std::filesystem::path& path);
+
+/// Takes out the lines of these cases, all or none of them; the other lines
+/// stay byte by byte.
+void forget_cases(const std::filesystem::path& path,
+                  const std::set<std::string>& names);
 
 class Journal {
  public:

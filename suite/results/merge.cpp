@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "suite/results/store.h"
 
@@ -10,6 +11,7 @@ namespace physinv {
 namespace {
 
 namespace fs = std::filesystem;
+using nlohmann::json;
 
 using Origins = std::map<std::pair<std::string, Index>, fs::path>;
 
@@ -27,22 +29,97 @@ std::vector<Catalog> read_shards(const std::vector<fs::path>& paths) {
   return shards;
 }
 
+[[noreturn]] void refuse(const Catalog& a,
+                         const Catalog& b,
+                         std::string_view why,
+                         std::string_view right) {
+  throw UnreadableInput(fmt::format("{} and {} cannot be merged: {} ({})",
+                                    a.directory().string(),
+                                    b.directory().string(),
+                                    why,
+                                    right));
+}
+
+/// The first case for which both plans have an entry of `what`, but another.
+std::string differing_case(const json& a, const json& b, const char* what) {
+  const json none = json::object();
+  const json of_a = a.value(what, none), of_b = b.value(what, none);
+  for (const auto& [name, value] : of_a.items())
+    if (of_b.contains(name) && of_b[name] != value) return name;
+  return "";
+}
+
+/// Plans of version 1 say with which flags they ran, nothing more.
+json set_flags(const Catalog& c) {
+  return c.plan.at("context").value("/options/set"_json_pointer, json());
+}
+
 void check_same_campaign(const Catalog& a, const Catalog& b) {
   for (const char* what : {"profile", "fingerprint", "cases"}) {
-    const auto of_a = a.plan.value(what, nlohmann::json());
-    const auto of_b = b.plan.value(what, nlohmann::json());
+    const json of_a = a.plan.at(what), of_b = b.plan.at(what);
     // A shard without cases does not know its profile.
     if (of_a == of_b || of_a == "" || of_b == "") continue;
-    throw UnreadableInput(fmt::format(
-        "{} and {} cannot be merged: they differ in {}{} (merge shards of one "
-        "campaign, run by one build)",
-        a.directory().string(),
-        b.directory().string(),
-        what,
-        std::string_view(what) == "cases"
-            ? ""
-            : fmt::format(", {} and {}", of_a.dump(), of_b.dump())));
+    refuse(
+        a,
+        b,
+        fmt::format("they differ in {}{}",
+                    what,
+                    of_a.is_array()
+                        ? ""
+                        : fmt::format(", {} and {}", of_a.dump(), of_b.dump())),
+        "merge shards of one campaign, run by one build");
   }
+  const bool old = !a.plan.contains("recipes") || !b.plan.contains("recipes");
+  for (const char* what : {"recipes", "keys"}) {
+    const auto name = differing_case(a.plan, b.plan, what);
+    if (!name.empty())
+      refuse(a,
+             b,
+             fmt::format("they ran {} with other {}",
+                         name,
+                         std::string_view(what) == "keys" ? "data or numerics"
+                                                          : "options"),
+             "run all shards with the same flags but --shard and --out");
+  }
+  if (old && set_flags(a) != set_flags(b))
+    refuse(a,
+           b,
+           fmt::format("they ran with --set={} and {}",
+                       set_flags(a).dump(),
+                       set_flags(b).dump()),
+           "run all shards with the same flags but --shard and --out");
+}
+
+/// Somebody forgot OUT, or it is a campaign that merging would overwrite.
+void check_out(const std::vector<fs::path>& shards, const fs::path& out) {
+  std::error_code error;
+  for (const auto& shard : shards)
+    if (fs::equivalent(shard, out, error))
+      throw UnreadableInput(fmt::format(
+          "{} is both OUT and a shard (name a directory of its own for OUT, "
+          "then the shards)",
+          out.string()));
+  if (!Store::exists(out)) return;
+  const Catalog there = Catalog::read(out);
+  if (there.entries().empty() ||
+      (there.plan.is_object() && there.plan.value("merged", false)))
+    return;
+  throw UnreadableInput(fmt::format(
+      "{} holds a campaign of its own, so it cannot be OUT (name another "
+      "directory for OUT first, then the shards)",
+      out.string()));
+}
+
+json merged_plan(const std::vector<Catalog>& shards) {
+  json plan = shards.front().plan;
+  for (const auto& shard : shards) {
+    for (const char* what : {"recipes", "keys"})
+      plan[what].update(shard.plan.value(what, json::object()));
+    for (const char* what : {"profile", "fingerprint"})
+      if (plan[what] == "") plan[what] = shard.plan.at(what);
+  }
+  plan["merged"] = true;
+  return plan;
 }
 
 bool same(const StageRecord& a, const StageRecord& b) {
@@ -55,8 +132,17 @@ bool same(const StageRecord& a, const StageRecord& b) {
 void merge_case(Store& store,
                 const Catalog& shard,
                 const std::string& name,
-                Origins& origins) {
+                Origins& origins,
+                std::vector<std::string>& warnings) {
   const CaseRecord c = shard.case_record(name);
+  Shortfall lacks;
+  lacks.add(shard, c);
+  for (const auto& stage : lacks.lost)
+    warnings.push_back(fmt::format(
+        "{}: the arrays of {} are gone (run the campaign's command there "
+        "again)",
+        shard.directory().string(),
+        stage));
   for (const StageRecord& stage : c.stages) {
     const auto slot = std::pair(name, stage.position);
     const JournalEntry* there = store.catalog().at(name, stage.position);
@@ -81,19 +167,30 @@ void merge_case(Store& store,
 
 }  // namespace
 
-void merge(const std::vector<fs::path>& paths, const fs::path& out) {
+Merged merge(const std::vector<fs::path>& paths, const fs::path& out) {
   const auto shards = read_shards(paths);
   for (const auto& shard : shards) check_same_campaign(shards.front(), shard);
+  check_out(paths, out);
   Store store(out);
-  if (store.catalog().plan.is_object())
+  json plan = merged_plan(shards);
+  if (store.catalog().plan.is_object()) {
     check_same_campaign(store.catalog(), shards.front());
-  store.set_plan(shards.front().plan);
-  Origins origins;
-  for (const auto& name : shards.front().order()) {
-    for (const auto& shard : shards)
-      if (shard.knows_case(name)) merge_case(store, shard, name, origins);
+    plan = extend_plan(store.catalog().plan, std::move(plan));
   }
-  store.finish();
+  store.set_plan(std::move(plan));
+  Merged merged;
+  for (const auto& shard : shards)
+    merged.warnings.insert(merged.warnings.end(),
+                           shard.warnings().begin(),
+                           shard.warnings().end());
+  Origins origins;
+  for (const std::string name : shards.front().plan.at("cases")) {
+    for (const auto& shard : shards)
+      if (shard.knows_case(name))
+        merge_case(store, shard, name, origins, merged.warnings);
+  }
+  merged.lacks = shortfall(store.catalog(), store.finish());
+  return merged;
 }
 
 }  // namespace physinv

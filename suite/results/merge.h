@@ -2,17 +2,26 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
+#include "suite/results/shortfall.h"
+
 namespace physinv {
+
+struct Merged {
+  Shortfall lacks;                    ///< what the whole campaign still lacks
+  std::vector<std::string> warnings;  ///< about shards
+};
 
 /// Writes to `out` what the unsharded campaign would have left there, apart
 /// from times. A stage that stands in several shards must be the same in all.
 /// UnreadableInput, naming both directories, if shards disagree about a stage,
-/// the campaign's cases, the profile or the fingerprint of the numerics.
-/// What `out` already holds takes part like a shard, so an interrupted merge
-/// can be repeated.
-void merge(const std::vector<std::filesystem::path>& shards,
-           const std::filesystem::path& out);
+/// the campaign's cases and what they run, the profile or the fingerprint of
+/// the numerics; also if `out` is a shard or holds a campaign of its own.
+/// What an earlier merge left in `out` takes part like a shard, so that merges
+/// can be repeated and continued.
+Merged merge(const std::vector<std::filesystem::path>& shards,
+             const std::filesystem::path& out);
 
 }  // namespace physinv

@@ -65,11 +65,8 @@ std::vector<std::string> Results::methods(std::string_view experiment) const {
       cases_, experiment, [](const CaseInfo& i) { return i.method; });
 }
 
-Results load_results(const std::filesystem::path& directory,
-                     std::string* warning) {
-  const Catalog catalog = Catalog::read(directory);
-  if (warning != nullptr) *warning = catalog.journal().warning;
-  return Results(catalog.cases());
+Results load_results(const std::filesystem::path& directory) {
+  return Results(Catalog::read(directory).cases());
 }
 
 }  // namespace physinv

@@ -40,8 +40,7 @@ class Results {
 
 /// Everything a directory holds, in the order of its campaign. StoreError if
 /// something is damaged, UnreadableInput if there is nothing or it is of a
-/// newer schema. `warning` receives a word about a torn last line, or "".
-Results load_results(const std::filesystem::path& directory,
-                     std::string* warning = nullptr);
+/// newer schema.
+Results load_results(const std::filesystem::path& directory);
 
 }  // namespace physinv

@@ -18,40 +18,24 @@ void remove_file(const fs::path& path) {
   if (error) fail_file("delete", path, error.value());
 }
 
-/// Removes only what a store writes. The journal goes first: without it the
-/// rest is nothing.
-void clear(const Catalog& catalog) {
-  const fs::path& out = catalog.directory();
-  remove_file(catalog.journal_path());
-  sync_directory(out);
-  remove_file(out / "plan.json");
-  remove_file(out / "results.json");
-  for (const auto& file : fs::directory_iterator(out / "cases"))
-    if (file.path().extension() == ".h5") remove_file(file.path());
-}
-
 /// Files aside that a killed writer left.
 void remove_leftovers(const fs::path& directory) {
   for (const auto& file : fs::directory_iterator(directory))
     if (file.path().extension() == ".tmp") remove_file(file.path());
 }
 
-std::string to_text(const json& value) {
-  return value.dump(1, ' ', false, json::error_handler_t::replace) + "\n";
-}
-
 }  // namespace
 
-Store::Store(const fs::path& directory, bool fresh) : catalog_(directory) {
+Store::Store(const fs::path& directory) : catalog_(directory) {
   make_directory(directory);
   lock_ = DirectoryLock(directory);
   make_directory(directory / "cases");
-  if (fresh) clear(catalog_);
   remove_leftovers(directory);
   remove_leftovers(directory / "cases");
   if (exists(directory)) {
     catalog_ = Catalog::read(directory);
     journal_ = Journal::resume(catalog_.journal_path(), catalog_.journal());
+    warning_ = catalog_.journal().warning;
   } else {
     journal_ = Journal::create(catalog_.journal_path());
   }
@@ -66,6 +50,18 @@ Store Store::read_only(const fs::path& directory) {
 bool Store::exists(const fs::path& directory) {
   std::error_code error;
   return fs::exists(directory / "journal.jsonl", error);
+}
+
+void Store::forget(const std::set<std::string>& names) {
+  // The lines go first: a file that no line names counts for nothing.
+  forget_cases(catalog_.journal_path(), names);
+  for (const auto& name : names) {
+    open_.erase(name);
+    remove_file(catalog_.case_path(name));
+  }
+  catalog_ = Catalog::read(catalog_.directory());
+  journal_ = Journal::resume(catalog_.journal_path(), catalog_.journal());
+  if (fs::exists(catalog_.directory() / "results.json")) finish();
 }
 
 void Store::append(const CaseInfo& info,
@@ -115,20 +111,15 @@ CaseFile& Store::open_case(const std::string& name, const fs::path& path) {
 
 void Store::set_plan(const std::vector<CaseInfo>& cases,
                      const json& context,
-                     std::vector<std::string> campaign) {
-  if (campaign.empty())
-    for (const auto& info : cases) campaign.push_back(info.name);
-  json plan = {{"schema_version", kSchemaVersion},
-               {"cases", std::move(campaign)},
-               {"profile", cases.empty() ? "" : cases.front().profile},
-               {"fingerprint", context.value("fingerprint", "")},
-               {"context", context}};
-  set_plan(std::move(plan));
+                     std::vector<PlannedCase> campaign) {
+  set_plan(extend_plan(catalog_.plan,
+                       make_plan(cases, context, std::move(campaign))));
 }
 
 void Store::set_plan(json plan) {
   catalog_.plan = std::move(plan);
-  write_atomically(catalog_.directory() / "plan.json", to_text(catalog_.plan));
+  write_atomically(catalog_.directory() / "plan.json",
+                   plan_text(catalog_.plan));
 }
 
 void Store::set_context(const json& context) {

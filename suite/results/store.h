@@ -12,30 +12,36 @@
 #include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "suite/results/catalog.h"
+#include "suite/results/plan.h"
 
 namespace physinv {
 
 class Store {
  public:
-  /// Opens for writing, creating what is missing; `fresh` first deletes what
-  /// earlier campaigns left. StoreError if another process writes there, the
-  /// disk does not let us, or something is damaged.
-  explicit Store(const std::filesystem::path& directory, bool fresh = false);
+  /// Opens for writing, creating what is missing. StoreError if another
+  /// process writes there, the disk does not let us, or something is damaged.
+  explicit Store(const std::filesystem::path& directory);
   /// Opens an existing store for `find` and `cases`.
   static Store read_only(const std::filesystem::path& directory);
   static bool exists(const std::filesystem::path& directory);
 
   /// A torn line that was cut off, or empty.
-  const std::string& warning() const { return catalog_.journal().warning; }
+  const std::string& warning() const { return warning_; }
+
+  /// Deletes what the store holds of these cases, and of no other.
+  void forget(const std::set<std::string>& names);
 
   /// The stage with this content key, of whichever case has it. Failed and
   /// skipped stages are found too, unless the same key also has a result.
-  std::optional<StageRecord> find(const std::string& key) const {
-    return catalog_.find(key);
+  std::optional<StageRecord> find(
+      const std::string& key,
+      const std::set<std::string>* among = nullptr) const {
+    return catalog_.find(key, among);
   }
 
   /// On disk when it returns. A stage that the case already has with a result
@@ -44,11 +50,10 @@ class Store {
               const CaseData& data,
               const StageRecord& record);
 
-  /// What is asked for; in a shard, `campaign` names the cases of the whole
-  /// campaign in order. `context` as for results.json.
+  /// What is asked for, see plan.h, beside what was asked for earlier.
   void set_plan(const std::vector<CaseInfo>& cases,
                 const nlohmann::json& context,
-                std::vector<std::string> campaign = {});
+                std::vector<PlannedCase> campaign = {});
   void set_plan(nlohmann::json plan);
   /// Replaces the context of results.json.
   void set_context(const nlohmann::json& context);
@@ -66,6 +71,7 @@ class Store {
                       const std::filesystem::path& path);
 
   DirectoryLock lock_;
+  std::string warning_;
   Catalog catalog_;
   Journal journal_;
   std::map<std::string, CaseFile> open_;  ///< of cases with stages to come

@@ -13,9 +13,11 @@ FAILED = []
 
 
 def run(*args, cwd, env=None, **kwargs):
+    published = {"PHYSINV_PUBLISHED_DIR": os.path.join(cwd, "published")}
     return subprocess.run([BENCH, *args], cwd=cwd, text=True,
                           capture_output=True, timeout=120,
-                          env={**os.environ, **(env or {})}, **kwargs)
+                          env={**os.environ, **published, **(env or {})},
+                          **kwargs)
 
 
 def check(condition, what):
@@ -108,8 +110,11 @@ def good_input(d):
     expect(0, ["report", "results/smoke"], d,
            env={"PHYSINV_FAKE_DOUBT": "1"})
     expect(4, ["--profile=bad", "--jobs=2"], d, "fail")
-    p = run("--profile=quick", "--time-budget=0.000001", cwd=d)
-    check(p.returncode == 0 and "18 cases not run" in p.stdout, "time budget")
+    p = expect(10, ["--profile=quick", "--time-budget=0.000001"], d,
+               "18 of 18 cases not run")
+    check("out of time: 18 cases not run" in p.stdout, "time budget")
+    for args in (["verify"], ["report"], ["report", "--check"]):
+        expect(10, [*args, "results/quick"], d, "18 cases not run")
 
 
 def damaged(d):
@@ -122,9 +127,111 @@ def damaged(d):
     for args in (["--profile=smoke"], ["verify", "results/smoke"],
                  ["report", "results/smoke"]):
         expect(9, args, d, "journal")
+    flipped = bytearray(whole)
+    flipped[-20] ^= 1
+    open(journal, "wb").write(flipped)
+    for args in (["--profile=smoke"], ["verify", "results/smoke"],
+                 ["report", "results/smoke"],
+                 ["merge", "m", "results/smoke"]):
+        expect(9, args, d, "line 7")
     open(journal, "wb").write(whole[:-20])
+    for args in (["verify", "results/smoke"], ["report", "results/smoke"],
+                 ["merge", "m", "results/smoke"]):
+        p = expect(10, args, d, "1 stages not run")
+        check("line 7" in p.stdout, "the torn line is named")
     expect(0, ["--profile=smoke"], d, "1 stages run, 5 reused")
     expect(0, ["verify", "results/smoke"], d, "0 mismatches")
+    case = os.path.join(d, "results/smoke/cases")
+    case = os.path.join(case, sorted(os.listdir(case))[0])
+    os.remove(case)
+    for args in (["verify", "results/smoke"], ["report", "results/smoke"],
+                 ["report", "results/smoke", "--check"]):
+        expect(10, args, d, "stages lost their arrays (first ")
+    expect(0, ["--profile=smoke"], d, "stages run")
+
+
+def damaged_plan(d):
+    """One wrong byte is an error, a plan of an older version is not."""
+    path = os.path.join(d, "results/smoke/plan.json")
+    readers = (["verify", "results/smoke"], ["report", "results/smoke"])
+    whole = open(path, "rb").read()
+    open(path, "wb").write(whole.replace(b"fake/cubic/walk",
+                                         b"fake/cubic/wolk", 1))
+    for args in (*readers, ["merge", "m", "results/smoke"],
+                 ["--profile=smoke"]):
+        expect(9, args, d, "plan.json is damaged")
+    os.remove(path)
+    for args in readers:
+        expect(10, args, d, "plan.json is missing")
+    expect(2, ["merge", "m", "results/smoke"], d, "plan.json is missing")
+    expect(0, ["--profile=smoke"], d, "0 stages run, 6 reused")
+    plan = json.load(open(path))
+    for key in ("checksum", "recipes", "keys"):
+        del plan[key]
+    json.dump({**plan, "schema_version": 1}, open(path, "w"))
+    for args in (*readers, ["merge", "old", "results/smoke"]):
+        expect(0, args, d, "written by an older version")
+    expect(0, ["--profile=smoke"], d, "0 stages run, 6 reused")
+    p = expect(0, ["verify", "results/smoke"], d, "6 of 6 stages")
+    check("older" not in p.stdout, "a run renews the plan")
+
+
+def fresh(d):
+    """--fresh touches what is selected, nothing else."""
+    out = ["--profile=smoke", "--out=part"]
+    expect(0, out, d)
+    before = results(os.path.join(d, "part"))
+    expect(0, [*out, "--filter=walk", "--fresh"], d, "2 stages run, 0 reused")
+    check(results(os.path.join(d, "part")) == before, "fresh keeps the others")
+    expect(0, [*out], d, "0 stages run, 6 reused")
+    expect(0, ["verify", "part"], d, "6 of 6 stages")
+
+
+def incomplete(d):
+    """What is missing has an exit code; what is there is kept."""
+    quick = ["--profile=quick"]
+    for i in (1, 2):
+        expect(0, [*quick, f"--shard={i}/2", f"--out=h{i}"], d)
+    expect(0, [*quick, "--shard=2/2", "--set", "iterations=5", "--out=h5"], d)
+    expect(2, ["merge", "h", "h1", "h5"], d, "with other options")
+    check(not os.path.exists(os.path.join(d, "h")), "nothing was merged")
+    expect(2, ["merge", "h1", "h2"], d, "cannot be OUT")
+    expect(2, ["merge", "h1", "h1", "h2"], d, "both OUT and a shard")
+    p = expect(10, ["merge", "h", "h1"], d, "9 cases not run")
+    check("merged 1 into h" in p.stdout, "what is there was merged")
+    expect(10, ["report", "h", "--check"], d, "9 cases not run")
+    expect(10, ["verify", "h"], d, "9 cases not run")
+    expect(0, ["merge", "h", "h1", "h2"], d, "merged 2")
+    expect(0, ["report", "h", "--check"], d, "1 gating claims judged: 1 hold")
+    only = ["--profile=smoke", "--filter=walk", "--out=only"]
+    expect(0, only, d)
+    expect(10, ["report", "only", "--check"], d, "no gating claim")
+    expect(0, ["report", "only"], d)
+    expect(4, ["--profile=bad", "--out=bad"], d)
+    expect(10, ["verify", "bad"], d, "stages failed (first ")
+
+
+def expected_failures(d):
+    """A known miss is good, a new one is not, the list must be right."""
+    doubt = {"PHYSINV_FAKE_DOUBT": "1"}
+    args = ["report", "part", "--check", "--expected=list.json"]
+    entry = {"experiment": "fake/cubic", "claim": "R1", "reason": "in doubt"}
+
+    def listed(path, *entries):
+        with open(os.path.join(d, path), "w") as f:
+            json.dump({"expected": list(entries)}, f)
+
+    expect(2, args, d, "no file")
+    listed("list.json", entry)
+    expect(0, args, d, "expected to fail: fake/cubic R1: in doubt", env=doubt)
+    expect(0, args, d, "holds, although listed as expected to fail: fake/cub")
+    listed("list.json", {**entry, "claim": "R2"})
+    expect(2, args, d, "no claim R2 of fake/cubic")
+    listed("list.json")
+    expect(7, args, d, "R1", env=doubt)
+    listed("expected_failures.json", entry)
+    expect(0, args[:3], d, "expected to fail", env=doubt)
+    os.remove(os.path.join(d, "expected_failures.json"))
 
 
 def same_bits(d):
@@ -181,7 +288,9 @@ def no_space(d):
 
 
 with tempfile.TemporaryDirectory() as directory:
-    for test in (bad_input, good_input, damaged, same_bits, interrupted,
+    os.mkdir(os.path.join(directory, "published"))
+    for test in (bad_input, good_input, damaged, damaged_plan, fresh,
+                 incomplete, expected_failures, same_bits, interrupted,
                  no_space):
         test(directory)
 sys.exit(f"{len(FAILED)} failed: {FAILED}" if FAILED else 0)

@@ -7,6 +7,8 @@
 #include <filesystem>
 
 #include "suite/harness/registry.h"
+#include "suite/harness/select.h"
+#include "suite/results/catalog.h"
 #include "suite/results/results.h"
 #include "tests/suite/harness/fake_experiment.h"
 
@@ -31,8 +33,9 @@ class CampaignTest : public ::testing::Test {
 
   CampaignResult run(const std::string& profile,
                      CampaignOptions options,
-                     bool backwards = false) {
-    auto cases = registry_.expand(profile);
+                     bool backwards = false,
+                     const std::string& filter = "") {
+    auto cases = NameFilter({filter}).apply(registry_.expand(profile));
     if (backwards) std::reverse(cases.begin(), cases.end());
     options.trace = true;
     return run_campaign(
@@ -90,6 +93,32 @@ TEST_F(CampaignTest, ReusesWhatIsFinished) {
   EXPECT_EQ(fresh.stages_run, 5u);
   EXPECT_EQ(fresh.stages_reused, 1u);
   EXPECT_EQ(once, bits(root_ / "a"));
+}
+
+TEST_F(CampaignTest, FreshRunsTheSelectedAgainAndKeepsTheRest) {
+  run("smoke", {.out = root_ / "a"});
+  const std::string once = bits(root_ / "a");
+  const auto files = [&] {
+    std::map<std::string, fs::file_time_type> times;
+    for (const auto& f : fs::directory_iterator(root_ / "a/cases"))
+      times[f.path().filename()] = f.last_write_time();
+    return times;
+  };
+  const auto before = files();
+  ASSERT_EQ(before.size(), 4u);
+  // Also the first stage, although stroll's is the same.
+  const auto fresh =
+      run("smoke", {.out = root_ / "a", .resume = false}, false, "/walk/");
+  EXPECT_EQ(fresh.stages_run, 2u);
+  EXPECT_EQ(fresh.stages_reused, 0u);
+  EXPECT_EQ(fresh.cases.size(), 4u);
+  EXPECT_EQ(once, bits(root_ / "a"));
+  for (const auto& [name, time] : files())
+    EXPECT_EQ(time == before.at(name), name.find("walk") == std::string::npos)
+        << name;
+  const auto catalog = Catalog::read(root_ / "a");
+  EXPECT_EQ(catalog.plan.at("cases").size(), 4u);
+  EXPECT_EQ(catalog.entries().size(), 6u);
 }
 
 TEST_F(CampaignTest, FailuresDoNotStopTheOthers) {

@@ -15,7 +15,9 @@ int main(int argc, char** argv) {
       {"compiler", "GNU 12"}};
   std::uint64_t run = 0;
   for (const char* name : {"a", "b"}) {
-    Store store(std::filesystem::path(argv[1]) / name, true);
+    const auto directory = std::filesystem::path(argv[1]) / name;
+    std::filesystem::remove_all(directory);
+    Store store(directory);
     std::vector<CaseInfo> cases;
     for (const char* method : {"bfgs", "jpo"})
       for (const Index n : {1, 8}) cases.push_back(sample_case(method, n, 0));

@@ -153,17 +153,44 @@ TEST_F(StoreTest, OnlyOneWriter) {
   EXPECT_NO_THROW(load_results(out_.path()));
 }
 
-TEST_F(StoreTest, FreshForgetsEarlierResultsAndNothingElse) {
+TEST_F(StoreTest, ForgetsWhatIsNamedAndNothingElse) {
   write_file(out_ / "mine.txt", "kept");
+  Store store(out_.path());
+  append(store, a_, 0), append(store, b_, 0);
+  store.finish();
+  store.forget({a_.name});
+  EXPECT_FALSE(store.find(a_.keys[0]));
+  EXPECT_FALSE(fs::exists(store.catalog().case_path(a_.name)));
+  EXPECT_TRUE(fs::exists(out_ / "mine.txt"));
+  const auto results = read_file(out_ / "results.json");
+  EXPECT_FALSE(contains(results, a_.name));
+  EXPECT_TRUE(contains(results, b_.name));
+  append(store, a_, 0, 7);
+  const auto again = Store::read_only(out_.path());
+  expect_same(*again.find(a_.keys[0]), sample_stage(a_, 0, 7));
+  expect_same(*again.find(b_.keys[0]), sample_stage(b_, 0));
+}
+
+TEST_F(StoreTest, KilledWhileForgettingItGoesOn) {
   {
     Store store(out_.path());
-    append(store, a_, 0);
-    store.finish();
+    append(store, a_, 0), append(store, b_, 0);
   }
-  Store store(out_.path(), true);
+  forget_cases(out_ / "journal.jsonl", {a_.name});  // its file is still there
+  Store store(out_.path());
   EXPECT_FALSE(store.find(a_.keys[0]));
-  EXPECT_TRUE(fs::exists(out_ / "mine.txt"));
-  EXPECT_FALSE(fs::exists(out_ / "results.json"));
+  EXPECT_TRUE(store.find(b_.keys[0]));
+  append(store, a_, 0, 7);
+  expect_same(*Store::read_only(out_.path()).find(a_.keys[0]),
+              sample_stage(a_, 0, 7));
+}
+
+TEST_F(StoreTest, FindsAmongTheCasesNamed) {
+  Store store(out_.path());
+  append(store, a_, 0);
+  const std::set<std::string> only_b = {b_.name}, only_a = {a_.name};
+  EXPECT_TRUE(store.find(a_.keys[0], &only_a));
+  EXPECT_FALSE(store.find(a_.keys[0], &only_b));
 }
 
 TEST_F(StoreTest, NoResultsIsSaid) {
