@@ -2,9 +2,9 @@
 
 #include <optional>
 
-#include "suite/evidence/curve.h"
 #include "suite/cases/hig/quantum_dipole/runs.h"
 #include "suite/cases/jpo/common/claims.h"
+#include "suite/evidence/curve.h"
 
 namespace physinv::dipole {
 namespace {

@@ -8,12 +8,12 @@
 
 #include "optimizers/half_inverse_direct.h"
 #include "problems/quantum_dipole/quantum_dipole.h"
-#include "suite/evidence/curve.h"
 #include "suite/cases/hig/common/report.h"
 #include "suite/cases/hig/quantum_dipole/direct_metrics.h"
 #include "suite/cases/hig/quantum_dipole/runs.h"
 #include "suite/cases/jpo/common/claims.h"
 #include "suite/cases/jpo/common/endings.h"
+#include "suite/evidence/curve.h"
 #include "suite/harness/registry.h"
 
 namespace physinv::dipole {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <limits>
 
-#include "suite/evidence/curve.h"
 #include "suite/cases/hig/common/report.h"
 #include "suite/cases/hig/quantum_dipole/metrics.h"
 #include "suite/cases/jpo/common/endings.h"
+#include "suite/evidence/curve.h"
 
 namespace physinv::dipole {
 namespace {

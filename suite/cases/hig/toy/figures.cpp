@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 
-#include "suite/evidence/curve.h"
 #include "suite/cases/jpo/common/endings.h"
+#include "suite/evidence/curve.h"
 
 namespace physinv::toy {
 namespace {
