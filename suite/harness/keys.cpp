@@ -78,7 +78,8 @@ std::string numerics_of_build(const Case& c, std::size_t position) {
 
 PlannedCase planned(const Case& c) {
   const std::size_t last = c.method->chain.size() - 1;
-  return {.name = c.info.name, .recipe = hex128(recipe_text(c, last))};
+  return {.name = c.info.name,
+          .recipe = hex128(recipe_text(c, last) + numerics_of_build(c, last))};
 }
 
 }  // namespace physinv
