@@ -5,6 +5,7 @@
 #include <fstream>
 #include <limits>
 
+#include "suite/results/published.h"
 #include "tests/suite/evidence/campaigns.h"
 #include "tests/suite/results/results_testing.h"
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "suite/results/published.h"
 #include "tests/suite/evidence/campaigns.h"
 
 namespace physinv {
