@@ -217,6 +217,12 @@ Quantity percent(const Quantity& share) { return times(100, share); }
 Quantity least(std::vector<Quantity> of) { return extreme(of, false); }
 Quantity most(std::vector<Quantity> of) { return extreme(of, true); }
 
+Quantity also_asks(const Quantity& a, const std::vector<Select>& others) {
+  return {[=](const Evidence& e) { return a(e); },
+          joined(a.runs(), others),
+          a.printed()};
+}
+
 Quantity from_at_least(Index runs, const Quantity& a) {
   return {[=](const Evidence& e) {
             Measured m = a(e);

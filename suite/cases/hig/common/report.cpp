@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "suite/evidence/curve.h"
-#include "suite/cases/jpo/common/endings.h"
+#include "suite/evidence/statistics.h"
 
 namespace physinv {
 namespace {

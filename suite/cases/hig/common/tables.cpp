@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "suite/evidence/curve.h"
 #include "suite/cases/hig/common/report.h"
-#include "suite/cases/jpo/common/endings.h"
+#include "suite/evidence/curve.h"
+#include "suite/evidence/statistics.h"
 
 namespace physinv {
 namespace {

@@ -1,0 +1,185 @@
+#include "suite/evidence/training.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace physinv {
+namespace {
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+/// f(row of the curve) of runs that have one.
+template <class F>
+RunValue of_row(RowOfCurve which, F f) {
+  return [=](const Run& run) -> std::optional<double> {
+    if (!run.stage->arrays.contains(which.array) ||
+        run.stage->curve.points() == 0)
+      return {};
+    return f(CurveRow{*run.stage, which.array, which.row}, run);
+  };
+}
+
+template <class F>
+std::optional<double> best(const CurveRow& row, F better) {
+  double found = row(0);
+  for (Index k = 1; k < row.points(); ++k) found = better(found, row(k));
+  return found;
+}
+
+bool has_loss(const Run& run) {
+  return run.stage->arrays.contains("mean_loss") &&
+         run.stage->curve.points() > 0;
+}
+
+}  // namespace
+
+Clock updates() {
+  return {[](const Run& run, double t) { return level_at(run.stage, t); },
+          [](const Run&, const LossPoint& p) { return p.updates; }};
+}
+
+Clock own_seconds() {
+  return {[](const Run& run, double t) { return level_after(*run.stage, t); },
+          [](const Run&, const LossPoint& p) { return p.seconds; }};
+}
+
+Clock paper_seconds(std::function<std::string(const Run&)> update) {
+  const auto seconds = [=](const Run& run) -> std::optional<double> {
+    const Evidence& e = *run.evidence;
+    const auto found =
+        e.published.find(run.record->info.experiment, update(run));
+    return found ? std::optional(found->value) : std::nullopt;
+  };
+  return {[=](const Run& run, double t) -> std::optional<LossPoint> {
+            const auto each = seconds(run);
+            if (!each) return {};
+            return level_at(run.stage, t / *each);
+          },
+          [=](const Run& run, const LossPoint& p) -> std::optional<double> {
+            const auto each = seconds(run);
+            if (!each) return {};
+            return p.updates * *each;
+          }};
+}
+
+RunValue loss_at(Clock clock, double time) {
+  return [=](const Run& run) -> std::optional<double> {
+    if (!has_loss(run)) return {};
+    const auto found = clock.at(run, time);
+    return found ? std::optional(found->loss) : std::nullopt;
+  };
+}
+
+RunValue loss_after(double count) { return loss_at(updates(), count); }
+
+RunValue first_loss() {
+  return of_row({}, [](const CurveRow& row, const Run&) {
+    return std::optional(row(0));
+  });
+}
+
+RunValue last_loss() {
+  return of_row({}, [](const CurveRow& row, const Run& run) {
+    return std::optional(run.stage->stop == Stop::diverged ? kInfinite
+                                                           : row.last());
+  });
+}
+
+RunValue lowest_loss() {
+  return of_row({}, [](const CurveRow& row, const Run&) {
+    return best(row, [](double a, double b) { return std::min(a, b); });
+  });
+}
+
+RunValue highest_loss() {
+  return of_row({}, [](const CurveRow& row, const Run&) {
+    return best(row, [](double a, double b) { return std::max(a, b); });
+  });
+}
+
+RunValue time_to(Clock clock, double level) {
+  return time_to(std::move(clock),
+                 [=](const Run&) { return std::optional(level); });
+}
+
+RunValue time_to(Clock clock, RunValue level) {
+  return [=](const Run& run) -> std::optional<double> {
+    const auto loss = level(run);
+    if (!loss || !has_loss(run)) return {};
+    const auto found = reaches(run.stage, *loss);
+    if (!found) return kInfinite;
+    return clock.time(run, *found);
+  };
+}
+
+RunValue length(Clock clock) {
+  return [=](const Run& run) -> std::optional<double> {
+    if (!has_loss(run)) return {};
+    return clock.time(run,
+                      loss_point(*run.stage, run.stage->curve.points() - 1));
+  };
+}
+
+RunValue first_below(double level, RowOfCurve which) {
+  return of_row(which, [=](const CurveRow& row, const Run&) {
+    for (Index k = 0; k < row.points(); ++k)
+      if (row(k) < level) return std::optional(row.updates(k));
+    return std::optional(kInfinite);
+  });
+}
+
+RunValue last_of(RowOfCurve which) {
+  return of_row(which, [](const CurveRow& row, const Run&) {
+    return std::optional(row.last());
+  });
+}
+
+RunValue value_after(RowOfCurve which, Index count) {
+  return of_row(which,
+                [=](const CurveRow& row, const Run&) -> std::optional<double> {
+                  const auto k = last_point(row.stage, count);
+                  return k ? std::optional(row(*k)) : std::nullopt;
+                });
+}
+
+RunValue diverged() {
+  return [](const Run& run) {
+    return std::optional(run.stage->stop == Stop::diverged ? 1.0 : 0.0);
+  };
+}
+
+RunValue seconds_per_update() {
+  return [](const Run& run) -> std::optional<double> {
+    if (run.stage->iterations == 0) return {};
+    return run.stage->clocks.solve.wall /
+           static_cast<double>(run.stage->iterations);
+  };
+}
+
+RunValue if_ran(double count, RunValue value) {
+  return [=](const Run& run) -> std::optional<double> {
+    const StageRecord& s = *run.stage;
+    const bool whole =
+        !s.curve.iteration.empty() && s.curve.iteration.back() >= count;
+    if (!whole && s.stop != Stop::diverged) return {};
+    return value(run);
+  };
+}
+
+RunValue beside(Select other, RunValue value) {
+  return [=](const Run& run) -> std::optional<double> {
+    const auto found = run.beside(other);
+    return found ? value(*found) : std::nullopt;
+  };
+}
+
+RunValue over(RunValue a, RunValue b) {
+  return [=](const Run& run) -> std::optional<double> {
+    const auto x = a(run), y = b(run);
+    if (!x || !y) return {};
+    return *x / *y;
+  };
+}
+
+}  // namespace physinv

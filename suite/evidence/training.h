@@ -1,0 +1,68 @@
+/// Numbers of one training run, from the curve of its mean test loss or from
+/// another row along it.
+///
+///   median({"hig"}, loss_after(320))
+///   lowest({"adam"}, loss_at(paper_seconds(update_row), 3240))
+///   median({"adam"}, time_to(updates(), beside({"hig"}, loss_after(60))))
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "suite/evidence/curve.h"
+#include "suite/evidence/runs.h"
+
+namespace physinv {
+
+/// What time is: updates, the seconds that the stage took, or the seconds it
+/// would take if each update were as long as a paper prints.
+struct Clock {
+  std::function<std::optional<LossPoint>(const Run&, double time)> at;
+  std::function<std::optional<double>(const Run&, const LossPoint&)> time;
+};
+Clock updates();
+Clock own_seconds();
+/// `update` names the printed seconds of an update: "table3/hig/b=128/update".
+Clock paper_seconds(std::function<std::string(const Run&)> update);
+
+/// Test loss at a time, between measured points if need be; infinite behind
+/// the end of a run that diverged, empty behind that of another.
+RunValue loss_at(Clock clock, double time);
+RunValue loss_after(double updates);
+/// At the ends of the curve; a run that diverged ends at infinity.
+RunValue first_loss();
+RunValue last_loss();
+/// Of all measured points.
+RunValue lowest_loss();
+RunValue highest_loss();
+
+/// When the test loss has first fallen to a level; infinite if it never has.
+RunValue time_to(Clock clock, double level);
+RunValue time_to(Clock clock, RunValue level);
+/// How long the run was.
+RunValue length(Clock clock);
+
+/// A row of an array along the curve, by default the test loss.
+struct RowOfCurve {
+  const char* array = "mean_loss";
+  Index row = 0;
+};
+/// Updates of the first measured point below a level; infinite without one.
+RunValue first_below(double level, RowOfCurve row = {});
+/// At the last measured point, and at the last one up to so many updates.
+RunValue last_of(RowOfCurve row);
+RunValue value_after(RowOfCurve row, Index updates);
+
+/// Whether the run diverged: 1 or 0.
+RunValue diverged();
+RunValue seconds_per_update();
+
+/// Of runs of at least so many updates only: in shorter ones fast seeds alone
+/// would show. A run that diverged counts as long.
+RunValue if_ran(double updates, RunValue value);
+/// Of the run of another method, or of another stage of the same chain, on the
+/// same n and seed.
+RunValue beside(Select other, RunValue value);
+RunValue over(RunValue a, RunValue b);
+
+}  // namespace physinv
