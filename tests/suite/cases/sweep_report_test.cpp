@@ -60,16 +60,40 @@ TEST(SweepReport, MapsShowTheWorstExample) {
   EXPECT_EQ(figure.panels[0].field->values, (std::vector<double>{1, 3}));
 }
 
-TEST(SweepReport, TheAdjointClaimLooksAtFiniteCellsOnly) {
+/// How the claim on the stages `grid` and `other` is judged.
+ClaimResult adjoint(const std::vector<StageRecord>& sweeps) {
+  CaseRecord c;
+  c.info.experiment = "numerics/toy";
+  c.info.method = "stability";
+  c.info.profile = "smoke";
+  c.stages = sweeps;
+  for (const StageRecord& s : sweeps) c.info.stages.push_back(s.stage);
+  const Results results({c});
+  return judge({adjoint_claim("N1", {"grid", "other"})},
+               {results, {}, "numerics/toy"},
+               {"smoke"})
+      .front();
+}
+
+StageRecord other_cells() {
   StageRecord s = four_cells();
-  EXPECT_EQ(adjoint_claim("N1", {&s}).verdict, Verdict::reproduced);
-  EXPECT_EQ(adjoint_claim("N1", {&s, nullptr}).verdict, Verdict::not_judged);
-  EXPECT_EQ(adjoint_claim("N1", {}).verdict, Verdict::not_judged);
+  s.stage = "other";
+  return s;
+}
+
+TEST(SweepReport, TheAdjointClaimLooksAtFiniteCellsOnly) {
+  const ClaimResult good = adjoint({four_cells(), other_cells()});
+  EXPECT_EQ(good.verdict, Verdict::reproduced);
+  EXPECT_EQ(good.conditions[0].value, 6);
+  EXPECT_EQ(good.conditions[2].value, 2);
+  EXPECT_EQ(adjoint({four_cells()}).verdict, Verdict::not_judged);
+  EXPECT_EQ(adjoint({}).verdict, Verdict::not_judged);
   for (const Index row : {2, 3}) {
     for (const double bad : {1, 2}) {
-      StageRecord wrong = four_cells();
+      StageRecord wrong = other_cells();
       wrong.arrays["status"](row, 1) = bad;
-      EXPECT_EQ(adjoint_claim("N1", {&wrong}).verdict, Verdict::not_reproduced);
+      EXPECT_EQ(adjoint({four_cells(), wrong}).verdict,
+                Verdict::not_reproduced);
     }
   }
 }

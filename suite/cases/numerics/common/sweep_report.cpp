@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
-#include "suite/cases/jpo/common/claims.h"
 #include "suite/diagnostics/stability_sweep.h"
 
 namespace physinv {
@@ -147,37 +147,58 @@ Figure sweep_maps(std::string id,
   return figure;
 }
 
-ClaimResult adjoint_claim(std::string id,
-                          const std::vector<const StageRecord*>& sweeps) {
-  Judge judge;
-  Index finite = 0, undecided = 0, wrong = 0;
-  bool all = !sweeps.empty();
-  for (const StageRecord* sweep : sweeps) {
-    all = all && sweep != nullptr;
-    if (sweep == nullptr) continue;
-    for (Index j = 0; j < cells(*sweep); ++j) {
-      if (status_of(*sweep, SweepCheck::forward_double, j) != SweepStatus::ok)
-        continue;
-      ++finite;
-      const auto differences = status_of(*sweep, SweepCheck::adjoint, j);
-      const auto tangent = status_of(*sweep, SweepCheck::tangent, j);
-      undecided += differences == SweepStatus::undecided;
-      for (const auto s : {differences, tangent})
-        wrong += s == SweepStatus::inaccurate || s == SweepStatus::diverged;
-    }
+namespace {
+
+/// Cells with a finite double forward pass.
+struct AdjointTally {
+  double finite = 0, undecided = 0, wrong = 0;
+};
+
+void tally(const StageRecord& sweep, AdjointTally& t) {
+  for (Index j = 0; j < cells(sweep); ++j) {
+    if (status_of(sweep, SweepCheck::forward_double, j) != SweepStatus::ok)
+      continue;
+    const auto differences = status_of(sweep, SweepCheck::adjoint, j);
+    const auto tangent = status_of(sweep, SweepCheck::tangent, j);
+    t.finite += 1;
+    t.undecided += differences == SweepStatus::undecided;
+    for (const auto s : {differences, tangent})
+      t.wrong += s == SweepStatus::inaccurate || s == SweepStatus::diverged;
   }
-  if (!all) {
-    judge.missing("a sweep");
-  } else {
-    judge.report("cells", static_cast<double>(finite))
-        .at_most("wrong", static_cast<double>(wrong), 0)
-        .report("undecided by differences", static_cast<double>(undecided));
-  }
-  return std::move(judge).result(
-      std::move(id),
-      "Wherever the forward pass is finite in double, the adjoint agrees with "
-      "the tangent and with central differences",
-      "smoke");
+}
+
+/// Over all the sweeps, missing if one of them is.
+Quantity total(const std::vector<Select>& sweeps,
+               double AdjointTally::*number) {
+  return {[=](const Evidence& e) {
+            AdjointTally t;
+            for (const Select& select : sweeps) {
+              const auto runs = find_runs(e, select);
+              if (runs.empty()) return missing(select.text() + " not run");
+              tally(*runs.front().stage, t);
+            }
+            return Measured{.value = t.*number,
+                            .runs = static_cast<Index>(sweeps.size())};
+          },
+          sweeps};
+}
+
+}  // namespace
+
+Claim adjoint_claim(std::string id, const std::vector<std::string>& stages) {
+  std::vector<Select> sweeps;
+  for (const std::string& stage : stages)
+    sweeps.push_back({"stability", stage});
+  return {
+      .id = std::move(id),
+      .from = "smoke",
+      .says =
+          "Wherever the forward pass is finite in double, the adjoint "
+          "agrees with the tangent and with central differences",
+      .conditions = {report("cells", total(sweeps, &AdjointTally::finite)),
+                     at_most("wrong", total(sweeps, &AdjointTally::wrong), 0),
+                     report("undecided by differences",
+                            total(sweeps, &AdjointTally::undecided))}};
 }
 
 }  // namespace physinv

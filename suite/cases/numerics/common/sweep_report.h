@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "suite/evidence/claim.h"
 #include "suite/results/record.h"
 #include "suite/results/report_model.h"
 #include "suite/results/results.h"
@@ -35,9 +36,9 @@ Figure sweep_maps(std::string id,
                   const SweepAxis& y,
                   const StageRecord* sweep);
 
-/// Claim: wherever the double forward pass is finite, the adjoint agrees with
-/// the tangent and with the central differences that decide something.
-ClaimResult adjoint_claim(std::string id,
-                          const std::vector<const StageRecord*>& sweeps);
+/// Claim of the method `stability`: in these stages, wherever the double
+/// forward pass is finite, the adjoint agrees with the tangent and with the
+/// central differences that decide something.
+Claim adjoint_claim(std::string id, const std::vector<std::string>& stages);
 
 }  // namespace physinv

@@ -1,0 +1,52 @@
+/// What is asked of the Kuramoto-Sivashinsky solver: step sizes, end times and
+/// the axes of its stability sweeps.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "suite/cases/numerics/common/sweep_report.h"
+#include "suite/evidence/runs.h"
+
+namespace physinv::ks_numerics {
+
+inline constexpr const char* kName = "numerics/kuramoto-sivashinsky";
+inline constexpr double kEnd = 25;
+inline constexpr Index kReferenceSteps = 6400;
+inline const std::vector<Index> kSteps = {25, 50, 100, 200, 400, 800, 1600};
+
+inline std::string stage_name(Index steps) {
+  return fmt::format("steps-{}", steps);
+}
+
+inline std::vector<double> spaced(double first, double step, int count) {
+  std::vector<double> out;
+  for (int i = 0; i < count; ++i) out.push_back(first + step * i);
+  return out;
+}
+
+inline std::vector<double> doubled(double first, int count) {
+  std::vector<double> out;
+  for (int i = 0; i < count; ++i) out.push_back(std::ldexp(first, i));
+  return out;
+}
+
+inline const SweepAxis kAlpha{"alpha", doubled(0.25, 13), true};
+inline const SweepAxis kBeta{"beta", spaced(-6, 0.5, 25)};
+inline const SweepAxis kLowBeta{"beta", spaced(0, 0.5, 9)};
+inline const SweepAxis kTime{"end time", spaced(5, 9.5, 11)};
+
+/// Relative error of u(25) with so many steps, mean of the samples. Empty if a
+/// sample diverged or the stage of this chain is not there.
+std::optional<double> step_error(const CaseRecord& chain, Index steps);
+
+/// Over the samples that have a number: the geometric mean of a column of an
+/// array of the growth stage, or nothing.
+std::optional<double> typical(const StageRecord& s,
+                              const char* array,
+                              Index horizon);
+
+}  // namespace physinv::ks_numerics
