@@ -1,0 +1,58 @@
+/// Planted training runs, and what a registered claim makes of them.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "suite/harness/registry.h"
+
+namespace physinv {
+
+/// One more point of the curve every ten updates and every second.
+inline StageRecord trained(const std::string& name,
+                           const std::vector<double>& loss) {
+  StageRecord s;
+  s.stage = name;
+  for (std::size_t k = 0; k < loss.size(); ++k) {
+    s.curve.iteration.push_back(10.0 * static_cast<double>(k));
+    s.curve.seconds.push_back(static_cast<double>(k));
+  }
+  s.arrays["mean_loss"] = Eigen::Map<const Batch<double>>(
+      loss.data(), 1, static_cast<Index>(loss.size()));
+  s.iterations = 10 * (static_cast<Index>(loss.size()) - 1);
+  return s;
+}
+
+/// A case of the largest profile.
+inline CaseRecord chain(const std::string& experiment,
+                        const std::string& method,
+                        std::vector<StageRecord> stages,
+                        std::uint64_t seed = 0) {
+  CaseRecord c;
+  c.info.experiment = experiment;
+  c.info.method = method;
+  c.info.profile = "paper";
+  c.info.n = 4;
+  c.info.seed = seed;
+  for (const auto& s : stages) c.info.stages.push_back(s.stage);
+  c.stages = std::move(stages);
+  return c;
+}
+
+/// The claim of an experiment whose claims alone are linked.
+inline ClaimResult judged(const std::string& experiment,
+                          const std::vector<CaseRecord>& cases,
+                          const std::string& id) {
+  if (!registry().find(experiment))
+    registry().add(Experiment{.name = experiment});
+  const Results results(cases);
+  const Published published;
+  for (const ClaimResult& c : judge(registry().find(experiment)->claims,
+                                    {results, published, experiment},
+                                    {"smoke", "quick", "standard", "paper"}))
+    if (c.id == id) return c;
+  return {};
+}
+
+}  // namespace physinv
