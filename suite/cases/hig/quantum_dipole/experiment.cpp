@@ -10,8 +10,6 @@
 #include "optimizers/training.h"
 #include "problems/quantum_dipole/quantum_dipole.h"
 #include "suite/cases/hig/common/methods.h"
-#include "suite/cases/hig/quantum_dipole/claims.h"
-#include "suite/cases/hig/quantum_dipole/figures.h"
 #include "suite/cases/hig/quantum_dipole/grids.h"
 #include "suite/cases/hig/quantum_dipole/metrics.h"
 #include "suite/harness/registry.h"
@@ -151,7 +149,7 @@ std::vector<Profile> dense_profiles() {
            row({"adam", "adam-b16-3e-4", "adam-b16-1e-3", "adam-b16-3e-3"},
                kFive,
                kSlowAdam),
-           row({"hig-b16-eta025-tau5", "hig-b16-eta10-tau5"}, kFive, 512),
+           row({"hig-b16-eta025-tau5", "hig-b16-eta10-tau5"}, kFive, 9000),
            float_row(rest(in_float(), {}), kFive, 256),
            row(kOthers, kFive, kSlowAdam),
            row({"adam-hig"}, kFive, 512),
@@ -185,7 +183,6 @@ const auto kRegistered = register_experiment({
     .setting = {.predictor = dense(), .recorded = 16},
     .profiles = dense_profiles(),
     .methods = dense_methods(),
-    .report = dense_report,
 });
 
 const auto kRegisteredCnn = register_experiment({
@@ -196,7 +193,6 @@ const auto kRegisteredCnn = register_experiment({
     .setting = {.predictor = convolutional(), .recorded = 16},
     .profiles = conv_profiles(),
     .methods = grids(conv_adam(), conv_hig()),
-    .report = conv_report,
 });
 
 }  // namespace

@@ -1,5 +1,3 @@
-#include "suite/cases/hig/quantum_dipole/figures.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,9 +6,9 @@
 #include <vector>
 
 #include "suite/cases/hig/common/report.h"
-#include "suite/cases/hig/quantum_dipole/claims.h"
 #include "suite/cases/hig/quantum_dipole/grids.h"
 #include "suite/cases/hig/quantum_dipole/metrics.h"
+#include "suite/harness/registry.h"
 
 namespace physinv::dipole {
 namespace {
@@ -108,8 +106,6 @@ std::vector<MethodLine> joined(std::vector<MethodLine> a,
   return a;
 }
 
-}  // namespace
-
 Section dense_report(const Results& results, const Published& published) {
   const auto adam = lines_of(dense_adam(), published),
              hig = lines_of(dense_hig(), published), by_rate = rates(published),
@@ -118,11 +114,8 @@ Section dense_report(const Results& results, const Published& published) {
                           joined(joined(hig, adam), single));
   Section section{
       .experiment = kDense,
-      .title = "Quantum dipole",
-      .paper = "hig",
       .tables = {loss_table(results, kDense, all),
-                 cost_table(results, kDense, published, kCosts, "Table 5")},
-      .claims = dense_claims(results)};
+                 cost_table(results, kDense, published, kCosts, "Table 5")}};
   LearningCurves curves(results, section);
   curves.losses(
       by_rate, "fig4b", "Learning curves for several rates", "Fig. 4b");
@@ -150,14 +143,15 @@ Section conv_report(const Results& results, const Published& published) {
              hig = lines_of(conv_hig(), published);
   Section section{
       .experiment = kConvolutional,
-      .title = "Quantum dipole, convolutional network",
-      .paper = "hig",
-      .tables = {loss_table(results, kConvolutional, joined(hig, adam))},
-      .claims = {convolutions_keep_the_order(results)}};
+      .tables = {loss_table(results, kConvolutional, joined(hig, adam))}};
   LearningCurves curves(results, section);
   curves.losses(adam, "fig10", kAdamGrid, "Fig. 10");
   curves.losses(hig, "fig11", kHigGrid, "Fig. 11");
   return section;
 }
 
+const bool kRegistered = register_report(kDense, dense_report) &&
+                         register_report(kConvolutional, conv_report);
+
+}  // namespace
 }  // namespace physinv::dipole

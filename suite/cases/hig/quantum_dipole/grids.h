@@ -1,4 +1,5 @@
-/// The quantum dipole's methods as points of grids (HIG paper, Figs. 8 to 11).
+/// The quantum dipole's experiments, their methods as points of grids (HIG
+/// paper, Figs. 8 to 11).
 #pragma once
 
 #include <cmath>
@@ -8,6 +9,10 @@
 #include "suite/core/batch.h"
 
 namespace physinv::dipole {
+
+inline constexpr const char* kDense = "hig/quantum-dipole";
+inline constexpr const char* kConvolutional = "hig/quantum-dipole-cnn";
+inline constexpr const char* kDirect = "hig/quantum-dipole-direct";
 
 /// A grid's point; `id` is the method.
 struct AdamPoint {
