@@ -8,29 +8,11 @@
 #include "baselines/boundary_loss.h"
 #include "optimizers/bfgs.h"
 #include "optimizers/drive.h"
+#include "optimizers/network_model.h"
 #include "optimizers/solver_outcome.h"
 
 namespace physinv {
 namespace {
-
-template <class T>
-Outcome fit(const RegressionOptions& options, StageRun& run) {
-  Oracle& oracle = run.oracle;
-  const NetworkRole& role = run.setting.surrogate;
-  const Samples<double>& labelled = oracle.labelled();
-  NetworkModel<T> model(
-      role, oracle.shape(), oracle.shape().observations, run.threads);
-  model.initialize(run.network_init);
-  model.bind(assemble<T>(role.inputs, labelled.x, labelled.given, labelled.y));
-  const Batch<double> start = oracle.start();
-  Outcome out = fit_regression<T>(model,
-                                  labelled.y.template cast<T>(),
-                                  options,
-                                  run,
-                                  [&](BatchOut<double> x) { x = start; });
-  model.save(out.arrays);
-  return out;
-}
 
 /// L~ without the boundary, its gradient by the network's input vjp.
 template <class T>
@@ -196,12 +178,6 @@ class NeuralAdjointSolve final : public Stage {
   bool takes_row_iterations() const override { return false; }
   bool has_precision() const override { return true; }
   Networks networks() const override { return Networks::surrogate; }
-  Sources sources() const override {
-    Sources all = Stage::sources();
-    all.unused = {{"baselines/regression.h", "optimizers/steps/rule.h"},
-                  {"baselines/regression.cpp", "optimizers/training/loop.h"}};
-    return all;
-  }
   double operations(const CaseSize& size) const override {
     return 60.0 * static_cast<double>(size.n) *
            (2 * size.surrogate_operations + size.problem_operations + 200);
@@ -216,21 +192,6 @@ class NeuralAdjointSolve final : public Stage {
 };
 
 }  // namespace
-
-std::shared_ptr<const Stage> surrogate_fit(const RegressionOptions& options) {
-  StageFacts facts = regression_facts(
-      "surrogate", Needs::labels, &CaseSize::surrogate_operations, options);
-  facts.networks = Networks::surrogate;
-  // The solver that the surrogate is for stands in this file, too.
-  for (const char* header : {"baselines/boundary_loss.h",
-                             "optimizers/bfgs.h",
-                             "optimizers/drive.h",
-                             "optimizers/solver_outcome.h"})
-    facts.sources.unused.emplace_back("baselines/neural_adjoint.cpp", header);
-  return make_stage(std::move(facts), [options]<class T>(StageRun& run) {
-    return fit<T>(options, run);
-  });
-}
 
 std::shared_ptr<const Stage> neural_adjoint_solve(
     const NeuralAdjointOptions& options) {

@@ -8,17 +8,14 @@
 /// first term at the start. The true loss is evaluated at every accepted
 /// iterate, the start included; the best one is the estimate.
 ///
-/// Stages `fit` (the surrogate; its estimate is the start) and `solve`.
+/// Stage `solve`, after the surrogate's `fit` (surrogate.h).
 #pragma once
 
 #include <memory>
 
-#include "baselines/regression.h"
+#include "suite/core/method.h"
 
 namespace physinv {
-
-std::shared_ptr<const Stage> surrogate_fit(
-    const RegressionOptions& options = {});
 
 struct NeuralAdjointOptions {
   Index iterations = 300;  ///< of BFGS

@@ -1,5 +1,6 @@
 #include "baselines/regression.h"
 
+#include "optimizers/training/first_order.h"
 #include "optimizers/training/loop.h"
 
 namespace physinv {
@@ -73,20 +74,24 @@ template Outcome fit_regression(NetworkModel<double>&,
 
 StageFacts regression_facts(std::string algorithm,
                             Needs needs,
-                            double CaseSize::*operations,
+                            Networks network,
                             const RegressionOptions& options,
                             const char* source) {
   Options all = {{"algorithm", std::move(algorithm)}};
   for (auto& option : describe(options.step)) all.push_back(option);
   Sources sources;
   add_sources(options.step, sources);
+  const auto pass = network == Networks::surrogate
+                        ? &CaseSize::surrogate_operations
+                        : &CaseSize::predictor_operations;
   return {.name = "fit",
           .needs = needs,
           .options = std::move(all),
           .iterations = options.iterations,
+          .networks = network,
           .operations =
-              [operations](const CaseSize& size) {
-                return 3 * (size.*operations) *
+              [pass](const CaseSize& size) {
+                return 3 * (size.*pass) *
                        static_cast<double>(size.n * size.iterations);
               },
           .sources = std::move(sources),

@@ -27,11 +27,10 @@ Outcome fit_regression(NetworkModel<T>& model,
                        StageRun& run,
                        const std::function<void(BatchOut<double> x)>& estimate);
 
-/// Facts of a stage `fit` that trains a network so; `operations` are those of
-/// its forward pass.
+/// Facts of a stage `fit` that trains `network` so.
 StageFacts regression_facts(std::string algorithm,
                             Needs needs,
-                            double CaseSize::*operations,
+                            Networks network,
                             const RegressionOptions& options,
                             const char* source = __builtin_FILE());
 

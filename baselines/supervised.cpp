@@ -29,7 +29,7 @@ std::shared_ptr<const Stage> supervised_fit(const RegressionOptions& options) {
   return make_stage(
       regression_facts("supervised",
                        Needs::forward | Needs::labels,
-                       &CaseSize::predictor_operations,
+                       Networks::predictor,
                        options),
       [options]<class T>(StageRun& run) { return fit<T>(options, run); });
 }

@@ -4,6 +4,7 @@
 
 #include "optimizers/steps/clip_percentile.h"
 #include "optimizers/training/best_so_far.h"
+#include "optimizers/training/first_order.h"
 #include "optimizers/training/loop.h"
 #include "optimizers/training/output_map.h"
 #include "optimizers/training/stage.h"

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "optimizers/training/first_order.h"
 #include "optimizers/training/half_inverse_rule.h"
 #include "optimizers/training/loop.h"
 #include "optimizers/training/predictions.h"
@@ -105,20 +106,22 @@ double operations(const TrainingOptions& options, const CaseSize& size) {
   return static_cast<double>(size.iterations) * (passes + reduction);
 }
 
-/// Of the two kinds of rules, only the chosen one matters to a stage.
-Sources sources_of(const TrainingOptions& options) {
-  Sources all{.roots = {options.signal.source}, .unused = {}};
+Sources sources(const TrainingOptions& options) {
+  Sources all;
   options.metrics.add_to(all);
+  all.roots.emplace_back(options.signal.source);
+  const auto unused = [&](const char* file, const char* header) {
+    all.unused.emplace_back(file, header);
+  };
+  unused("optimizers/training.h", "optimizers/training/solver_loss.h");
   if (const auto* step = std::get_if<StepOptions>(&options.rule)) {
     add_sources(*step, all);
-    all.unused.insert(
-        all.unused.end(),
-        {{"optimizers/training.h", "optimizers/half_inverse_step.h"},
-         {"optimizers/training.cpp",
-          "optimizers/training/half_inverse_rule.h"}});
+    unused("optimizers/training.h", "optimizers/half_inverse_step.h");
+    unused("optimizers/training.cpp",
+           "optimizers/training/half_inverse_rule.h");
   } else {
-    all.unused = {{"optimizers/training.h", "optimizers/steps/rule.h"},
-                  {"optimizers/training/rule.h", "optimizers/steps/rule.h"}};
+    unused("optimizers/training.h", "optimizers/steps/rule.h");
+    unused("optimizers/training.cpp", "optimizers/training/first_order.h");
   }
   return all;
 }
@@ -138,7 +141,7 @@ std::shared_ptr<const Stage> train(const TrainingOptions& options) {
            [options](const CaseSize& size) {
              return operations(options, size);
            },
-       .sources = sources_of(options)},
+       .sources = sources(options)},
       [options]<class T>(StageRun& run) { return fit<T>(options, run); });
 }
 

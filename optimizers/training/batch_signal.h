@@ -5,6 +5,9 @@
 
 #include <functional>
 #include <memory>
+#include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "optimizers/training/batches.h"
@@ -81,7 +84,7 @@ struct SignalRecipe {
       std::function<std::unique_ptr<Signal<T>>(const SignalPlace<T>& place)>;
   Make<float> make_float;
   Make<double> make_double;
-  const char* source;  ///< file of the signal, for content keys
+  const char* source;  ///< where it is written
 
   template <class T>
   std::unique_ptr<Signal<T>> make(const SignalPlace<T>& place) const {
@@ -93,11 +96,12 @@ struct SignalRecipe {
   }
 };
 
+/// batch_signal<Proxy>("sip", Needs::inverse, Needs::inverse)
 template <template <class> class S>
-SignalRecipe signal(std::string algorithm,
-                    Needs gradient,
-                    Needs jacobians,
-                    const char* source = __builtin_FILE()) {
+SignalRecipe batch_signal(std::string algorithm,
+                          Needs gradient,
+                          Needs jacobians,
+                          const char* source = __builtin_FILE()) {
   return {.algorithm = std::move(algorithm),
           .gradient = gradient,
           .jacobians = jacobians,

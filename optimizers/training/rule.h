@@ -1,8 +1,7 @@
-/// A rule makes an update of the network's parameters from a signal: here the
-/// first-order ones; half_inverse_rule.h has another.
+/// A rule makes an update of the network's parameters from a signal: from its
+/// gradient (first_order.h), from its Jacobians (half_inverse_rule.h).
 #pragma once
 
-#include "optimizers/steps/rule.h"
 #include "optimizers/training/signal.h"
 
 namespace physinv {
@@ -19,33 +18,5 @@ class Rule {
   virtual void leave(Outcome&) const {}
   virtual std::size_t bytes() const = 0;
 };
-
-/// theta <- step(theta, gradient).
-template <class T>
-class FirstOrder : public Rule<T> {
- public:
-  FirstOrder(const StepOptions& options, NetworkModel<T>& model)
-      : model_(model), step_(options) {}
-
-  bool operator()(Signal<T>& signal) override;
-  std::size_t bytes() const override;
-
- protected:
-  NetworkModel<T>& model_;
-  UpdateStep<T> step_;
-};
-
-/// The same, but no update that makes a parameter infinite or NaN.
-template <class T>
-class GuardedFirstOrder final : public FirstOrder<T> {
- public:
-  using FirstOrder<T>::FirstOrder;
-  bool operator()(Signal<T>& signal) override;
-};
-
-extern template class FirstOrder<float>;
-extern template class FirstOrder<double>;
-extern template class GuardedFirstOrder<float>;
-extern template class GuardedFirstOrder<double>;
 
 }  // namespace physinv

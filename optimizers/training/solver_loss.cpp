@@ -83,7 +83,7 @@ class SolverLoss final : public BatchSignal<T> {
 }  // namespace
 
 SignalRecipe solver_loss() {
-  return signal<SolverLoss>("training", Needs::vjp, Needs::jacobian);
+  return batch_signal<SolverLoss>("training", Needs::vjp, Needs::jacobian);
 }
 
 }  // namespace physinv

@@ -21,10 +21,11 @@ struct StageFacts {
   Options options;
   Index iterations;
   bool own_length = false;  ///< `iterations` stands, whatever a row says
-  std::function<double(const CaseSize& size)> operations;
   Networks networks = Networks::predictor;
-  Sources sources = {};  ///< beside the file that states these facts
-  const char* source = __builtin_FILE();
+  std::function<double(const CaseSize& size)> operations;
+  /// What the options bring in, and leave without effect.
+  Sources sources = {};
+  const char* source = __builtin_FILE();  ///< where the stage is written
 };
 
 using RunStage = std::function<Outcome(StageRun& run)>;

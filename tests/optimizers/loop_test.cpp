@@ -7,18 +7,19 @@
 #include <limits>
 
 #include "optimizers/training.h"
+#include "optimizers/training/first_order.h"
 #include "tests/support/bits.h"
 #include "tests/support/quadratic.h"
 
 namespace physinv::test {
 namespace {
 
-constexpr Index kCount = 12, kUpdates = 4;
+constexpr Index kProblems = 12, kUpdates = 4;
 
 /// Parameters go down by `pull`, whatever they are.
-class Noting final : public Signal<double> {
+class Falling final : public Signal<double> {
  public:
-  explicit Noting(NetworkModel<double>& model) : model_(model) {}
+  explicit Falling(NetworkModel<double>& model) : model_(model) {}
 
   bool look(bool last) override {
     looks.push_back(last);
@@ -39,10 +40,10 @@ class Noting final : public Signal<double> {
   Vector<double> gradient_;
 };
 
-struct Bench {
-  Bench()
+struct LoopBench {
+  LoopBench()
       : stage(train({.rule = SgdOptions{}})),
-        bench(*stage, kCount, kUpdates),
+        bench(*stage, kProblems, kUpdates),
         run{.oracle = bench.oracle,
             .probe = bench.probe,
             .setting = bench.setting,
@@ -71,11 +72,11 @@ struct Bench {
   StageBench bench;
   StageRun run;
   NetworkModel<double> model;
-  Noting signal;
+  Falling signal;
 };
 
 TEST(Loop, LooksBeforeEveryUpdateAndAfterTheLast) {
-  Bench b;
+  LoopBench b;
   FirstOrder<double> rule(SgdOptions{.rate = 0.5}, b.model);
   const Vector<double> before = b.model.parameters();
   const Outcome out = b.train_by(rule);
@@ -91,7 +92,7 @@ TEST(Loop, LooksBeforeEveryUpdateAndAfterTheLast) {
 }
 
 TEST(Loop, EndsWhenTheSignalSeesNothing) {
-  Bench b;
+  LoopBench b;
   b.signal.patience = 2;
   FirstOrder<double> rule(SgdOptions{}, b.model);
   const Outcome out = b.train_by(rule);
@@ -102,7 +103,7 @@ TEST(Loop, EndsWhenTheSignalSeesNothing) {
 
 TEST(Loop, AGuardedRuleKeepsTheParametersAnOtherDoesNot) {
   for (const bool guarded : {true, false}) {
-    Bench b;
+    LoopBench b;
     b.signal.pull = std::numeric_limits<double>::infinity();
     const Vector<double> before = b.model.parameters();
     FirstOrder<double> plain(SgdOptions{}, b.model);
@@ -137,12 +138,12 @@ class Proxy final : public BatchSignal<T> {
 TEST(Loop, AnotherSignalIsOneFunction) {
   TrainingOptions options{.rule = AdamOptions{.rate = 1e-2}, .batch = 16};
   options.fresh = true;
-  options.signal = signal<Proxy>("proxy", Needs::forward, Needs::forward);
+  options.signal = batch_signal<Proxy>("proxy", Needs::forward, Needs::forward);
   const auto stage = train(options);
   EXPECT_EQ(stage->options().front().second, "proxy");
   EXPECT_FALSE(contains(stage->needs(), Needs::vjp));
   for (const auto precision : {Precision::f32, Precision::f64}) {
-    StageBench bench(*stage, kCount, 400);
+    StageBench bench(*stage, kProblems, 400);
     const Outcome out = bench.run(nullptr, precision);
     const auto& mean = out.arrays.at("mean_loss");
     EXPECT_LT(mean(mean.size() - 1), 0.05 * mean(0));
@@ -153,7 +154,7 @@ TEST(Loop, AnotherSignalIsOneFunction) {
   // A rule that wants Jacobians is told that there are none.
   options.rule = HalfInverseStepOptions{};
   const auto other = train(options);
-  StageBench bench(*other, kCount, 1);
+  StageBench bench(*other, kProblems, 1);
   EXPECT_THROW(bench.run(), std::exception);
 }
 

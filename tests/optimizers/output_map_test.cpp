@@ -10,7 +10,7 @@
 namespace physinv::test {
 namespace {
 
-constexpr Index kUnknowns = 5, kObservations = 3, kCount = 4;
+constexpr Index kUnknowns = 5, kObservations = 3, kSamples = 4;
 constexpr double kScale = 0.7;
 constexpr OutputForm kForms[] = {
     OutputForm::linear, OutputForm::box, OutputForm::mean_of_observations};
@@ -23,20 +23,20 @@ Batch<double> numbers(Index rows, Index cols, double seed) {
   return all;
 }
 
-const Batch<double> kOut = numbers(kUnknowns, kCount, 0.3);
-const Batch<double> kY = numbers(kObservations, kCount, 0.9);
+const Batch<double> kOut = numbers(kUnknowns, kSamples, 0.3);
+const Batch<double> kY = numbers(kObservations, kSamples, 0.9);
 const Vector<double> kStart = numbers(kUnknowns, 1, 0.1);
 
 template <class T>
 Batch<T> mapped(OutputMap<T>& map, const Batch<double>& out) {
-  Batch<T> x(kUnknowns, kCount);
+  Batch<T> x(kUnknowns, kSamples);
   map(out.template cast<T>(), kY.template cast<T>(), x);
   return x;
 }
 
 // With every start, the level ones that take a path of their own, too.
 TEST(OutputMap, PullsBackExactly) {
-  const Batch<double> x_bar = numbers(kUnknowns, kCount, 2.1);
+  const Batch<double> x_bar = numbers(kUnknowns, kSamples, 2.1);
   for (const OutputForm form : kForms) {
     for (const Vector<double>& start :
          {kStart, Vector<double>::Constant(kUnknowns, 0.4).eval()}) {
@@ -45,7 +45,7 @@ TEST(OutputMap, PullsBackExactly) {
       const Vector<double> expected = difference_gradient(
           [&](const Vector<double>& flat) {
             const Eigen::Map<const Batch<double>> out(
-                flat.data(), kUnknowns, kCount);
+                flat.data(), kUnknowns, kSamples);
             return mapped<double>(*map, out).cwiseProduct(x_bar).sum();
           },
           kOut.reshaped());
@@ -69,7 +69,7 @@ TEST(OutputMap, PullsBackExactly) {
 
 // A row of a Jacobian goes back like a gradient.
 TEST(OutputMap, PullsRowsOfJacobiansBack) {
-  const Batch<double> rows = numbers(kObservations * kUnknowns, kCount, 1.2);
+  const Batch<double> rows = numbers(kObservations * kUnknowns, kSamples, 1.2);
   for (const OutputForm form : kForms) {
     SCOPED_TRACE(static_cast<int>(form));
     const auto map = output_map<double>(form, kScale, kStart);

@@ -6,6 +6,7 @@
 
 #include "baselines/neural_adjoint.h"
 #include "baselines/supervised.h"
+#include "baselines/surrogate.h"
 #include "optimizers/classical.h"
 #include "optimizers/jpo.h"
 

@@ -1,4 +1,4 @@
-#include "optimizers/training/rule.h"
+#include "optimizers/training/first_order.h"
 
 namespace physinv {
 

@@ -1,0 +1,34 @@
+#include "baselines/surrogate.h"
+
+namespace physinv {
+namespace {
+
+template <class T>
+Outcome fit(const RegressionOptions& options, StageRun& run) {
+  Oracle& oracle = run.oracle;
+  const NetworkRole& role = run.setting.surrogate;
+  const Samples<double>& labelled = oracle.labelled();
+  NetworkModel<T> model(
+      role, oracle.shape(), oracle.shape().observations, run.threads);
+  model.initialize(run.network_init);
+  model.bind(assemble<T>(role.inputs, labelled.x, labelled.given, labelled.y));
+  const Batch<double> start = oracle.start();
+  Outcome out = fit_regression<T>(model,
+                                  labelled.y.template cast<T>(),
+                                  options,
+                                  run,
+                                  [&](BatchOut<double> x) { x = start; });
+  model.save(out.arrays);
+  return out;
+}
+
+}  // namespace
+
+std::shared_ptr<const Stage> surrogate_fit(const RegressionOptions& options) {
+  return make_stage(
+      regression_facts(
+          "surrogate", Needs::labels, Networks::surrogate, options),
+      [options]<class T>(StageRun& run) { return fit<T>(options, run); });
+}
+
+}  // namespace physinv
