@@ -6,6 +6,7 @@ std::string method_title(const std::string& method) {
   if (method == "bfgs") return "BFGS";
   if (method == "gd") return "Gradient descent";
   if (method == "jpo") return "JPO";
+  if (method == "jpo-long") return "JPO, twice as long";
   if (method == "supervised") return "Supervised";
   if (method == "na") return "Neural adjoint";
   return method;

@@ -1,44 +1,32 @@
-#include "suite/cases/jpo/kuramoto_sivashinsky/figures.h"
-
+// Fig. 5 and the numbers in the text of the JPO paper, beside what all its
+// experiments show.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
-#include "suite/cases/jpo/kuramoto_sivashinsky/claims.h"
+#include "problems/kuramoto_sivashinsky/kuramoto_sivashinsky.h"
+#include "suite/cases/jpo/common/networks.h"
+#include "suite/cases/jpo/common/report.h"
+#include "suite/cases/jpo/common/values.h"
+#include "suite/harness/registry.h"
 
-namespace physinv::ks {
+namespace physinv {
 namespace {
 
-/// Lowest and highest mean number of iterations of any n.
-std::optional<std::pair<double, double>> iterations_over_n(
-    const JpoMetrics& metrics, const char* method, bool refined) {
-  std::optional<std::pair<double, double>> range;
-  for (const Index n : metrics.sizes()) {
-    std::vector<double> means;
-    for (const std::uint64_t seed : metrics.seeds())
-      if (const auto* end = metrics.ending(method, n, seed, refined))
-        means.push_back(end->example_iterations.mean());
-    const auto mean = mean_std(means);
-    if (!mean) continue;
-    if (!range) range = {mean->mean, mean->mean};
-    range->first = std::min(range->first, mean->mean);
-    range->second = std::max(range->second, mean->mean);
-  }
-  return range;
-}
+constexpr const char* kName = "jpo/kuramoto-sivashinsky";
+const Solved kSolved = within_of_truth(1e-3);
 
 /// The first problem of seed 0.
 Samples<double> example(const KuramotoSivashinsky<double>& physics) {
   return physics.sample(0, 1, Rng::root(kName, 0).child("data/test"));
 }
 
-}  // namespace
-
-Figure trajectory(const KuramotoSivashinskyOptions& options) {
-  const KuramotoSivashinsky<double> physics(options);
+/// Fig. 5a: one trajectory.
+Figure trajectory() {
+  const KuramotoSivashinsky<double> physics;
+  const auto& options = physics.options();
   const Samples<double> s = example(physics);
   const Batch<double> u = physics.trajectory(s.x.col(0), s.given.col(0));
   Field2D field{.label = "u"};
@@ -61,9 +49,10 @@ Figure trajectory(const KuramotoSivashinskyOptions& options) {
                           s.x(1, 0))};
 }
 
-Figure landscape(const KuramotoSivashinskyOptions& options) {
+/// Fig. 5b: the loss over beta at the true alpha.
+Figure landscape() {
   constexpr Index kPoints = 401;
-  const KuramotoSivashinsky<double> physics(options);
+  const KuramotoSivashinsky<double> physics;
   const Samples<double> s = example(physics);
   Batch<double> x(2, kPoints), y(s.y.rows(), kPoints);
   x.row(0).setConstant(s.x(0, 0));
@@ -91,7 +80,56 @@ Figure landscape(const KuramotoSivashinskyOptions& options) {
       .note = fmt::format("Problem 0 of seed 0, alpha = {:.3f}.", s.x(0, 0))};
 }
 
-Table in_words(const JpoMetrics& metrics, const Published& published) {
+/// Numbers of Sec. 4 and App. D.3 that stand in no table.
+Table in_words(const Evidence& evidence) {
+  const auto better = [](const Select& runs) {
+    return percent(mean(runs, jpo::better()));
+  };
+  const auto solved = [](const Select& runs) {
+    return percent(share_of_examples(
+        runs.of_sizes(32), jpo::if_solved(kSolved), jpo::holds));
+  };
+  const RunValue iterations = jpo::of_row(jpo::iterations(), jpo::mean_of);
+  const Select bfgs = jpo::bfgs(), refined = jpo::refined("jpo"),
+               labels = jpo::plain("supervised"),
+               labels_refined = jpo::refined("supervised");
+  struct Row {
+    const char *label, *printed;
+    Quantity ours;
+  };
+  const Row rows[] = {
+      {"BFGS solves, n >= 32, %", "bfgs/solved", solved(bfgs)},
+      {"JPO refined solves, n >= 32, %", "jpo/solved", solved(refined)},
+      {"BFGS iterations, lowest",
+       "bfgs/iterations_low",
+       jpo::lowest_mean(bfgs, iterations)},
+      {"BFGS iterations, highest",
+       "bfgs/iterations_high",
+       jpo::highest_mean(bfgs, iterations)},
+      {"refinement iterations, lowest",
+       "jpo/iterations_low",
+       jpo::lowest_mean(refined, iterations)},
+      {"refinement iterations, highest",
+       "jpo/iterations_high",
+       jpo::highest_mean(refined, iterations)},
+      {"JPO refined better, n = 256, %",
+       "jpo/better/n=256",
+       better(jpo::at(refined, 256))},
+      {"supervised refined better, %",
+       "supervised/refined",
+       better(labels_refined)},
+      {"supervised refined better, n = 2, %",
+       "supervised/refined/n=2",
+       better(jpo::at(labels_refined, 2))},
+      {"supervised refined better, n >= 64, %",
+       "supervised/refined/n>=64",
+       better(labels_refined.of_sizes(64))},
+      {"supervised better, n = 2, %",
+       "supervised/better/n=2",
+       better(jpo::at(labels, 2))},
+      {"supervised better, n >= 64, %",
+       "supervised/better/n>=64",
+       better(labels.of_sizes(64))}};
   Table table{.id = "text",
               .title = "Numbers of the text",
               .source = "Sec. 4, App. D.3",
@@ -100,63 +138,51 @@ Table in_words(const JpoMetrics& metrics, const Published& published) {
               .note =
                   "Solved: both unknowns within 1e-3. Iterations: lowest and "
                   "highest mean of any n. Better: than BFGS."};
-  const auto add =
-      [&](const char* label, const char* quantity, std::optional<double> ours) {
-        Cell cell{.ours = ours};
-        if (const auto found = published.find(kName, quantity))
-          cell.paper = found->value;
-        if (!ours) cell.text = "not run";
-        table.rows.push_back({label, {cell}});
-      };
-  const auto percent = [](std::optional<double> share) {
-    return share ? std::optional(100 * *share) : std::nullopt;
-  };
-  const auto solved_by = [&](const char* method, bool refined) {
-    return percent(metrics.pooled_solved_share(
-        method, sizes_between(metrics, kMany), refined, solved()));
-  };
-  const auto better_at =
-      [&](const char* method, bool refined, Index first, Index last = kEvery) {
-        return percent(better(metrics, method, refined, first, last));
-      };
-  add("BFGS solves, n >= 32, %", "text/bfgs/solved", solved_by("bfgs", false));
-  add("JPO refined solves, n >= 32, %",
-      "text/jpo/solved",
-      solved_by("jpo", true));
-  const auto bfgs = iterations_over_n(metrics, "bfgs", false);
-  const auto refine = iterations_over_n(metrics, "jpo", true);
-  using Range = std::optional<std::pair<double, double>>;
-  const auto low = [](const Range& r) {
-    return r ? std::optional(r->first) : std::nullopt;
-  };
-  const auto high = [](const Range& r) {
-    return r ? std::optional(r->second) : std::nullopt;
-  };
-  add("BFGS iterations, lowest", "text/bfgs/iterations_low", low(bfgs));
-  add("BFGS iterations, highest", "text/bfgs/iterations_high", high(bfgs));
-  add("refinement iterations, lowest", "text/jpo/iterations_low", low(refine));
-  add("refinement iterations, highest",
-      "text/jpo/iterations_high",
-      high(refine));
-  add("JPO refined better, n = 256, %",
-      "text/jpo/better/n=256",
-      better_at("jpo", true, 256, 256));
-  add("supervised refined better, %",
-      "text/supervised/refined",
-      better_at("supervised", true, 0));
-  add("supervised refined better, n = 2, %",
-      "text/supervised/refined/n=2",
-      better_at("supervised", true, 2, 2));
-  add("supervised refined better, n >= 64, %",
-      "text/supervised/refined/n>=64",
-      better_at("supervised", true, 64));
-  add("supervised better, n = 2, %",
-      "text/supervised/better/n=2",
-      better_at("supervised", false, 2, 2));
-  add("supervised better, n >= 64, %",
-      "text/supervised/better/n>=64",
-      better_at("supervised", false, 64));
+  for (const auto& [label, name, ours] : rows) {
+    Cell cell{.ours = ours(evidence).value};
+    cell.paper = printed(std::string("text/") + name)(evidence).value;
+    if (!cell.ours) cell.text = "not run";
+    table.rows.push_back({label, {cell}});
+  }
   return table;
 }
 
-}  // namespace physinv::ks
+/// Fig. 5c: curves of one n, gradient descent among them.
+Figure curves_with_descent(JpoReportOptions options,
+                           const Results& results,
+                           const Published& published) {
+  const auto sizes = JpoMetrics(results, options.experiment).sizes();
+  options.methods.insert(options.methods.begin(), "gd");
+  options.curves = {"fig5c", "Fig. 5c"};
+  if (!sizes.empty()) options.curve_sizes = {sizes.back()};
+  Figure figure = JpoReport(options, results, published).curves();
+  figure.columns = 1;
+  return figure;
+}
+
+Section report(const Results& results, const Published& published) {
+  const JpoReportOptions options{.experiment = kName,
+                                 .title = "Kuramoto-Sivashinsky equation",
+                                 .paper = "jpo",
+                                 .solved = kSolved,
+                                 .trajectory_size = 128,
+                                 .unknowns = {"alpha", "beta"},
+                                 .tensors = tensor_names(kName),
+                                 .fraction = {"fig5d", "Fig. 5d"},
+                                 .improvement = {"fig15", "Fig. 15"},
+                                 .curves = {"fig16", "Fig. 16"},
+                                 .trajectories = {"fig17", "Fig. 17"},
+                                 .weight_change = {"fig18", "Fig. 18"}};
+  Section section = jpo_section(options, results, published);
+  section.figures.insert(section.figures.begin(),
+                         {trajectory(),
+                          landscape(),
+                          curves_with_descent(options, results, published)});
+  section.tables.push_back(in_words({results, published, kName}));
+  return section;
+}
+
+const bool kReport = register_report(kName, report);
+
+}  // namespace
+}  // namespace physinv

@@ -1,226 +1,303 @@
-#include "suite/cases/jpo/wave_packet/claims.h"
-
-#include <fmt/format.h>
-
+// What the JPO paper says about wave packets (Sec. 4, Fig. 3, App. D.1), and
+// the ranges that independent programs showed.
+#include <algorithm>
 #include <cmath>
-#include <optional>
-#include <set>
-#include <string>
-#include <utility>
+#include <numbers>
 
 #include "problems/wave_packet/wave_packet.h"
-#include "suite/cases/jpo/common/claims.h"
-#include "suite/cases/jpo/common/endings.h"
-#include "suite/cases/jpo/common/methods.h"
+#include "suite/cases/jpo/common/values.h"
+#include "suite/harness/registry.h"
 
-namespace physinv::packet {
+namespace physinv::jpo {
 namespace {
 
-constexpr double kLargeStep = 20;  // samples of the signal
+constexpr const char* kName = "jpo/wave-packet";
+constexpr double kBasin = 1;       // of the global optimum, in samples
+constexpr double kLargeStep = 20;  // samples
 const double kScale = WavePacketOptions{}.scale;
+/// Between minima of the loss.
+const double kPeriod = 2 * std::numbers::pi / WavePacketOptions{}.frequency;
 
-ClaimResult jpo_beats_bfgs(const JpoMetrics& metrics) {
-  const auto sizes = sizes_between(metrics, 32);
-  const auto jpo = metrics.mean_shares("jpo", sizes, false);
-  const auto refined = metrics.mean_shares("jpo", sizes, true);
-  std::set<std::uint64_t> seeds;
-  for (const Index n : sizes)
-    for (const std::uint64_t seed : metrics.seeds())
-      if (metrics.ending("jpo", n, seed, true) != nullptr) seeds.insert(seed);
-  Judge judge;
-  if (seeds.size() < 3) {
-    judge.missing("JPO of n >= 32 on 3 seeds");
-  } else {
-    judge.at_least("f(JPO)", f_of(jpo), 0.60)
-        .at_most("f(JPO)", f_of(jpo), 0.92)
-        .at_least("f(JPO refined)", f_of(refined), 0.65)
-        .at_most("f(JPO refined)", f_of(refined), 0.97);
-    if (jpo && refined)
-      judge.at_least("refined - not", *f_of(refined) - *f_of(jpo), -0.02);
-    for (const char* other : {"supervised", "na"}) {
-      judge.above(fmt::format("better: jpo over {}", other),
-                  better_of(jpo),
-                  better_of(metrics.mean_shares(other, sizes, false)));
-    }
-  }
-  return std::move(judge).result(
-      "R2",
-      "For n >= 32, JPO beats BFGS on most problems, more often than "
-      "supervised learning and the neural adjoint, and refinement keeps that",
-      "quick");
+const Select kJpo = plain("jpo"), kRefined = refined("jpo");
+
+/// |t0 - truth| in samples.
+std::vector<double> distances(const Run& run) {
+  const auto d =
+      kScale * (run.stage->x.row(0) - run.record->data.x.row(0)).array().abs();
+  std::vector<double> out;
+  for (Index i = 0; i < d.size(); ++i) out.push_back(d(i));
+  return out;
 }
 
-/// BFGS over different problems: of every seed the largest set, of which the
-/// smaller ones are parts.
-struct BfgsPool {
-  std::vector<double> iterations;
-  Index large_steps = 0, in_basin = 0;
-
-  explicit BfgsPool(const Results& results) {
-    for (const std::uint64_t seed : results.seeds(kName)) {
-      const CaseRecord* largest = nullptr;
-      for (const Index n : results.sizes(kName))
-        if (results.find(kName, "bfgs", n, seed, "solve") != nullptr)
-          largest = results.find_case(kName, "bfgs", n, seed);
-      if (largest != nullptr) add(largest->data.x, largest->stages.front());
-    }
-  }
-  bool enough() const { return iterations.size() >= 256; }
-  double share(Index count) const {
-    return static_cast<double>(count) / static_cast<double>(iterations.size());
-  }
-
- private:
-  void add(const Batch<double>& truth, const StageRecord& s) {
-    const auto step = s.arrays.find("first_step");
-    if (step == s.arrays.end() || step->second.cols() != s.x.cols()) return;
-    for (Index i = 0; i < s.x.cols(); ++i) {
-      iterations.push_back(s.example_iterations(i));
-      large_steps += kScale * step->second(0, i) > kLargeStep;
-      in_basin += kScale * std::abs(s.x(0, i) - truth(0, i)) < kBasin;
-    }
-  }
-};
-
-ClaimResult bfgs_leaps(const BfgsPool& bfgs) {
-  Judge judge;
-  if (!bfgs.enough()) {
-    judge.missing("BFGS on 256 problems");
-  } else {
-    judge.at_most("median iterations", median(bfgs.iterations), 10)
-        .at_least("share with a first step > 20 samples",
-                  bfgs.share(bfgs.large_steps),
-                  0.5);
-  }
-  return std::move(judge).result(
-      "R3a",
-      "BFGS takes a large first step, then converges to the nearest optimum "
-      "within few iterations",
-      "smoke");
+std::vector<double> first_steps(const Run& run) {
+  const auto& steps = run.stage->arrays.at("first_step");
+  std::vector<double> out;
+  for (Index i = 0; i < steps.cols(); ++i) out.push_back(kScale * steps(0, i));
+  return out;
 }
 
-ClaimResult descent_competes(const JpoMetrics& metrics, bool full) {
-  Judge judge;
-  if (full) {
-    judge.at_least(
-        "f(gradient descent)",
-        f_of(metrics.mean_shares("gd", sizes_between(metrics, 32), false)),
-        0.45);
-  } else {
-    judge.missing("gradient descent with all its iterations");
-  }
-  return std::move(judge).result(
-      "R3b",
-      "For n >= 32, gradient descent is about as good as BFGS or better",
-      "quick");
+/// How much farther from the truth than BFGS.
+std::vector<double> farther_than_bfgs(const Run& run) {
+  const auto other = run.beside(bfgs());
+  auto d = distances(run);
+  if (!other) return {};
+  const auto of_bfgs = distances(*other);
+  for (std::size_t i = 0; i < d.size(); ++i) d[i] -= of_bfgs[i];
+  return d;
 }
 
-ClaimResult landscape_is_hard(const BfgsPool& bfgs) {
-  Judge judge;
-  if (!bfgs.enough()) {
-    judge.missing("BFGS on 256 problems");
-  } else {
-    judge.below("share in the global basin", bfgs.share(bfgs.in_basin), 0.15);
+/// 1 where a path that is kept ends nearer to the truth than it started.
+std::vector<double> approached(const Run& run) {
+  const auto first = first_tracked(0)(run), last = last_tracked(0)(run);
+  std::vector<double> flags;
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    const double truth = run.record->data.x(0, static_cast<Index>(i));
+    flags.push_back(std::abs(last[i] - truth) < std::abs(first[i] - truth));
   }
-  return std::move(judge).result(
-      "R4",
-      "BFGS finds the global basin (|t0 - truth| < 1) in less than 15 % of the "
-      "problems",
-      "smoke");
+  return flags;
 }
 
-/// Problems of all cases whose loss a refinement increased.
-std::optional<double> worsened(const JpoMetrics& metrics) {
-  std::optional<double> count;
-  for (const auto& method : trained_methods())
-    for (const Index n : metrics.sizes())
-      for (const std::uint64_t seed : metrics.seeds()) {
-        const auto* before = metrics.ending(method, n, seed, false);
-        const auto* after = metrics.ending(method, n, seed, true);
-        if (before == nullptr || after == nullptr) continue;
-        const Index worse =
-            (after->loss.array() > before->loss.array()).count();
-        count = count.value_or(0) + static_cast<double>(worse);
-      }
-  return count;
+/// Of the paths that are kept: the first measured iteration from which on they
+/// stay in the minimum where they end.
+std::vector<double> settled(const Run& run) {
+  const Curve& curve = run.stage->curve;
+  std::vector<double> out;
+  for (Index i = 0; i < curve.x.rows(); ++i) {
+    Index k = curve.points() - 1;
+    const double end = curve.x(i, k);
+    while (k > 0 && kScale * std::abs(curve.x(i, k - 1) - end) < kPeriod / 2)
+      --k;
+    out.push_back(curve.iteration[static_cast<std::size_t>(k)]);
+  }
+  return out;
 }
 
-ClaimResult refinement_helps(const JpoMetrics& metrics, bool full) {
-  const auto sizes = metrics.sizes();
-  const auto after = [&](const char* method) {
-    return metrics.mean_shares(method, sizes, true);
-  };
-  Judge judge;
-  judge.at_most("losses increased", worsened(metrics), 0);
-  if (!full) {
-    judge.missing("fits with all their iterations");
-  } else {
-    judge.above("f(supervised): refined over not",
-                f_of(after("supervised")),
-                f_of(metrics.mean_shares("supervised", sizes, false)));
-    const auto na = equal_of(after("na")), jpo = equal_of(after("jpo"));
-    if (na && jpo) {
-      judge.at_least("equal, refined: na", na, *jpo);
-    } else {
-      judge.missing("equal shares after refinement");
-    }
-  }
-  return std::move(judge).result(
-      "R5",
-      "Refinement never increases a loss; it makes supervised learning better, "
-      "and equal solutions at least as common with the neural adjoint as with "
-      "JPO",
-      "quick");
+/// Over different problems, of which a claim needs enough.
+Quantity pool_share(const Select& runs,
+                    const RunRow& row,
+                    std::function<bool(double)> test) {
+  return from_problems(
+      256, runs, share_of_examples(runs, largest_sets(row), std::move(test)));
+}
+Quantity pool_median(const Select& runs, const RunRow& row) {
+  return from_problems(256, runs, median_of_examples(runs, largest_sets(row)));
 }
 
-ClaimResult network_decreases(const JpoMetrics& metrics, bool full) {
-  Judge judge;
-  if (!full) judge.missing("fits with all their iterations");
-  for (const Index n : sizes_between(metrics, 8)) {
-    const auto mean = metrics.share_of_decrease("jpo", n);
-    if (mean && full) judge.at_least(fmt::format("n={}", n), mean, 0.7);
-  }
-  return std::move(judge).result(
-      "R6",
-      "For n >= 8, the network makes at least 70 % of JPO's decrease",
-      "quick");
+bool misses(double distance) { return distance > kBasin; }
+Quantity better_share(const Select& runs) { return mean(runs, better()); }
+
+const auto kProblem = problem<WavePacket>("wave_packet");
+
+std::vector<Claim> paper_claims() {
+  const Select labels = plain("supervised"), na_256 = at(refined("na"), 256);
+  return {
+      {.id = "P1",
+       .origin = Origin::paper,
+       .where = "Sec. 4, Table 4",
+       .from = "paper",
+       .says = "JPO is better than BFGS in around 80 % of examples",
+       .conditions = table4("jpo")},
+      {.id = "P2",
+       .origin = Origin::paper,
+       .where = "Table 4",
+       .from = "paper",
+       .says = "How often supervised learning and the neural adjoint are "
+               "better than BFGS, and equal",
+       .conditions = joined({table4("supervised"), table4("na")}),
+       .note = "This hangs on the waveform, shown only as a picture."},
+      {.id = "P3",
+       .origin = Origin::paper,
+       .where = "Table 5",
+       .from = "paper",
+       .says = "How often refined JPO is better than BFGS, and equal",
+       .conditions = table5("jpo")},
+      {.id = "P4",
+       .origin = Origin::paper,
+       .where = "Table 5",
+       .from = "paper",
+       .says = "The same of refined supervised learning and neural adjoint",
+       .conditions = joined({table5("supervised"), table5("na")})},
+      {.id = "P5",
+       .origin = Origin::paper,
+       .where = "Table 3",
+       .from = "paper",
+       .says = "Share of the decrease that the network makes",
+       .conditions = table3()},
+      {.id = "P6",
+       .origin = Origin::paper,
+       .where = "Sec. 4",
+       .from = "paper",
+       .says = "BFGS and gradient descent often end in local minima",
+       .conditions = {at_least(
+                          "BFGS", pool_share(bfgs(), distances, misses), 0.2),
+                      at_least("gradient descent",
+                               pool_share(gd(), distances, misses),
+                               0.2)}},
+      {.id = "P7",
+       .origin = Origin::paper,
+       .where = "Sec. 4",
+       .from = "paper",
+       .says = "BFGS usually takes a large first step and then converges "
+               "quickly; gradient descent needs more iterations",
+       .conditions = {above("first steps of BFGS that leave the basin",
+                            pool_share(bfgs(),
+                                       first_steps,
+                                       [](double d) { return d > kPeriod; }),
+                            0.5),
+                      above("median iterations of gradient descent over BFGS",
+                            pool_median(gd(), iterations()),
+                            pool_median(bfgs(), iterations()))}},
+      {.id = "P8",
+       .origin = Origin::paper,
+       .where = "Sec. 4",
+       .from = "paper",
+       .says = "Gradient descent comes closer to the global optimum more often",
+       .conditions = {above(
+           "closer than BFGS, over farther",
+           pool_share(gd(), farther_than_bfgs, [](double d) { return d < 0; }),
+           pool_share(
+               gd(), farther_than_bfgs, [](double d) { return d > 0; }))}},
+      {.id = "P9",
+       .origin = Origin::paper,
+       .where = "Sec. 4",
+       .from = "paper",
+       .says = "JPO moves from minimum to minimum until it settles after 500 "
+               "to 3000 iterations",
+       .conditions = {within(
+           "median iteration of the last change",
+           from_at_least(5, median_of_examples({"jpo-long", "fit"}, settled)),
+           500,
+           3000)},
+       .note = "Fits of twice as many iterations; the four problems of each "
+               "whose paths are kept, measured every seventh part of an "
+               "iteration number."},
+      {.id = "P10",
+       .origin = Origin::paper,
+       .where = "Sec. 4",
+       .from = "paper",
+       .says = "Many examples of JPO miss the global optimum, but none moves "
+               "far away",
+       .conditions = {at_least("share that misses it",
+                               share_of_examples(kJpo, distances, misses),
+                               0.2),
+                      below("median |t0 - truth|, over BFGS's",
+                            median_of_examples(kJpo, distances),
+                            median_of_examples(bfgs(), distances))}},
+      {.id = "P11",
+       .origin = Origin::paper,
+       .where = "App. D.1",
+       .from = "paper",
+       .says = "With supervised learning all estimates approach the truth "
+               "while the total loss rises",
+       .conditions = {at_least("share that ends nearer than it started",
+                               share_of_examples(labels, approached, holds),
+                               0.9),
+                      above("mean L at the end over the start",
+                            mean(labels, of_row(losses(), mean_of)),
+                            mean(labels, of_row(start_losses(), mean_of)))},
+       .note = "Paths are kept of four problems of each run."},
+      {.id = "P12",
+       .origin = Origin::paper,
+       .where = "App. D.1",
+       .from = "paper",
+       .says = "At n = 256 the refined neural adjoint is better in about a "
+               "third; many estimates get stuck at the boundary",
+       .conditions =
+           {either(within("better, %", percent(better_share(na_256)), 28, 38),
+                   as_printed("better, %",
+                              percent(better_share(na_256)),
+                              "text/na/better/n=256")),
+            at_least("share of ends at or beyond the boundary",
+                     share_of_examples(at(plain("na"), 256),
+                                       beyond_training(kProblem, 0.02),
+                                       holds),
+                     0.2)},
+       .note = "Ends of the four problems of each run whose paths are kept."}};
 }
 
-ClaimResult samples_as_printed(const JpoMetrics& metrics, bool full) {
-  Judge judge;
-  if (!full) {
-    judge.missing("fits with all their iterations");
-  } else {
-    for (const auto& [method, printed] :
-         {std::pair("supervised", 0.559), std::pair("na", 0.282)}) {
-      const auto better =
-          better_of(metrics.mean_shares(method, metrics.sizes(), false));
-      judge.at_least(fmt::format("better: {}", method), better, printed - 0.1)
-          .at_most(fmt::format("better: {}", method), better, printed + 0.1);
-    }
-  }
-  return std::move(judge).result(
-      "T4",
-      "Supervised learning and the neural adjoint beat BFGS as often as Table "
-      "4 prints (to 0.1); this hangs on the waveform, which the paper shows "
-      "only as a picture",
-      "quick",
-      false);
+std::vector<Claim> suite_claims() {
+  const Select jpo = kJpo.of_sizes(32), refined_jpo = kRefined.of_sizes(32);
+  const Quantity f_jpo = from_at_least(3, mean(jpo, f())),
+                 f_refined = from_at_least(3, mean(refined_jpo, f()));
+  return {
+      {.id = "R2",
+       .from = "quick",
+       .says = "For n >= 32, JPO beats BFGS on most problems, more often than "
+               "supervised learning and the neural adjoint, and refinement "
+               "keeps that",
+       .conditions = {within("f(JPO)", f_jpo, 0.60, 0.92),
+                      within("f(JPO refined)", f_refined, 0.65, 0.97),
+                      at_least(
+                          "refined - not", difference(f_refined, f_jpo), -0.02),
+                      above("better: jpo over supervised",
+                            better_share(jpo),
+                            better_share(plain("supervised").of_sizes(32))),
+                      above("better: jpo over na",
+                            better_share(jpo),
+                            better_share(plain("na").of_sizes(32)))}},
+      {.id = "R3a",
+       .from = "smoke",
+       .says = "BFGS takes a large first step, then converges to the nearest "
+               "optimum within few iterations",
+       .conditions =
+           {at_most("median iterations", pool_median(bfgs(), iterations()), 10),
+            at_least("share with a first step > 20 samples",
+                     pool_share(bfgs(),
+                                first_steps,
+                                [](double d) { return d > kLargeStep; }),
+                     0.5)}},
+      {.id = "R3b",
+       .from = "quick",
+       .says = "For n >= 32, gradient descent is about as good as BFGS or "
+               "better",
+       .conditions = {at_least(
+           "f(gradient descent)", mean(gd().of_sizes(32), f()), 0.45)}},
+      {.id = "R4",
+       .from = "smoke",
+       .says = "BFGS rarely finds the global basin",
+       .conditions = {below(
+           "share with |t0 - truth| < 1",
+           pool_share(bfgs(), distances, [](double d) { return d < kBasin; }),
+           0.15)}},
+      {.id = "R5",
+       .from = "quick",
+       .says = "Refinement never increases a loss; it makes supervised "
+               "learning better, and equal solutions at least as common with "
+               "the neural adjoint as with JPO",
+       .conditions = {at_most("losses increased",
+                              most({highest(kRefined, worsened()),
+                                    highest(refined("supervised"), worsened()),
+                                    highest(refined("na"), worsened())}),
+                              0),
+                      above("f(supervised): refined over not",
+                            mean(refined("supervised"), f()),
+                            mean(plain("supervised"), f())),
+                      at_least("equal, refined: na over jpo",
+                               mean(refined("na"), equal()),
+                               mean(kRefined, equal()))}},
+      {.id = "R6",
+       .from = "quick",
+       .says = "For n >= 8, the network makes most of JPO's decrease",
+       .conditions = {at_least(
+           "lowest mean of any n",
+           lowest_mean(kRefined.of_sizes(8), decrease_before()),
+           0.7)}},
+      {.id = "T4",
+       .from = "quick",
+       .says = "Supervised learning and the neural adjoint beat BFGS about as "
+               "often as Table 4 prints; this hangs on the waveform, which the "
+               "paper shows only as a picture",
+       .conditions =
+           {within("better: supervised",
+                   better_share(plain("supervised")),
+                   0.459,
+                   0.659),
+            within("better: na", better_share(plain("na")), 0.182, 0.382)},
+       .gates = false}};
 }
+
+const bool kClaims = register_claims(kName, paper_claims()) &&
+                     register_claims(kName, suite_claims());
 
 }  // namespace
-
-std::vector<ClaimResult> claims(const Results& results) {
-  const JpoMetrics metrics(results, kName);
-  const bool full = full_training(results, kName);
-  const BfgsPool bfgs(results);
-  return {jpo_beats_bfgs(metrics),
-          bfgs_leaps(bfgs),
-          descent_competes(metrics, full),
-          landscape_is_hard(bfgs),
-          refinement_helps(metrics, full),
-          network_decreases(metrics, full),
-          samples_as_printed(metrics, full)};
-}
-
-}  // namespace physinv::packet
+}  // namespace physinv::jpo

@@ -1,10 +1,16 @@
-#include "suite/cases/jpo/wave_packet/figures.h"
-
+// Fig. 3 of the JPO paper, beside what all its experiments show.
 #include <fmt/format.h>
 
-#include "problems/wave_packet/wave_packet.h"
+#include <string>
+#include <utility>
+#include <vector>
 
-namespace physinv::packet {
+#include "problems/wave_packet/wave_packet.h"
+#include "suite/cases/jpo/common/networks.h"
+#include "suite/cases/jpo/common/report.h"
+#include "suite/harness/registry.h"
+
+namespace physinv {
 namespace {
 
 /// One signal of the problem, and what its loss looks like.
@@ -82,11 +88,62 @@ Figure landscape(const Example& e) {
           .note = fmt::format("The signal above: t0 = {:.1f}.", e.centre())};
 }
 
-}  // namespace
-
-std::vector<Figure> figures() {
-  const Example example;
-  return {waveform(example), landscape(example)};
+JpoReportOptions report_options(const std::string& name,
+                                const std::string& title) {
+  return {.experiment = name,
+          .title = title,
+          .paper = "jpo",
+          .solved = within_of_truth(1 / WavePacketOptions{}.scale),
+          .curve_sizes = {},
+          .trajectory_size = 128,
+          .unknowns = {"xi"},
+          .tensors = tensor_names(name),
+          .fraction = {"fig3d", "Fig. 3d"},
+          .improvement = {"fig7", "Fig. 7"},
+          .curves = {"fig8", "Fig. 8"},
+          .trajectories = {"fig9", "Fig. 9"},
+          .weight_change = {"fig10", "Fig. 10"}};
 }
 
-}  // namespace physinv::packet
+/// Fig. 3c: gradient descent beside BFGS and JPO, at the largest n.
+Figure three_curves(JpoReportOptions options,
+                    const Results& results,
+                    const Published& published) {
+  options.methods = {"gd", "jpo"};
+  options.curves = {"fig3c", "Fig. 3c"};
+  const JpoReport report(options, results, published);
+  const Index n = report.largest_size();
+  options.curve_sizes = {n};
+  Figure figure = report.curves();
+  figure.columns = 1;
+  return figure;
+}
+
+Section report(const Results& results, const Published& published) {
+  const JpoReportOptions options =
+      report_options("jpo/wave-packet", "Wave packet");
+  Section section = jpo_section(options, results, published);
+  const Example example;
+  const std::vector<Figure> first = {waveform(example),
+                                     landscape(example),
+                                     three_curves(options, results, published)};
+  section.figures.insert(section.figures.begin(), first.begin(), first.end());
+  return section;
+}
+
+Section report_head(const Results& results, const Published& published) {
+  JpoReportOptions options =
+      report_options("jpo/wave-packet-head", "Wave packet, head 64-32-1");
+  options.methods = {"jpo"};
+  Section section = jpo_section(options, results, published);
+  // The paper's numbers stand with the other network.
+  for (Table& table : section.tables) table.source.clear();
+  for (Figure& figure : section.figures) figure.source.clear();
+  return section;
+}
+
+const bool kReport = register_report("jpo/wave-packet", report) &&
+                     register_report("jpo/wave-packet-head", report_head);
+
+}  // namespace
+}  // namespace physinv

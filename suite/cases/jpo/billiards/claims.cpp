@@ -1,0 +1,281 @@
+// What the JPO paper says about billiards (Sec. 4, App. D.2), and the ranges
+// that independent programs showed.
+#include <algorithm>
+#include <cmath>
+
+#include "problems/billiards/billiards.h"
+#include "suite/cases/jpo/common/methods.h"
+#include "suite/cases/jpo/common/values.h"
+#include "suite/harness/registry.h"
+
+namespace physinv::jpo {
+namespace {
+
+constexpr double kClose = 1e-2, kSolved = 1e-6;
+
+/// 1 where a run ends with the loss of a miss: the other ball stays.
+std::vector<double> on_plateau(const Run& run) {
+  const CaseData& data = run.record->data;
+  const Vector<double> level =
+      0.5 * (data.given - data.y).colwise().squaredNorm();
+  const auto there =
+      (run.stage->loss - level).array().abs() <= 1e-12 * level.array();
+  std::vector<double> flags;
+  for (Index i = 0; i < level.size(); ++i) flags.push_back(there(i));
+  return flags;
+}
+
+/// Neither there nor solved.
+std::vector<double> elsewhere(const Run& run) {
+  auto flags = on_plateau(run);
+  for (std::size_t i = 0; i < flags.size(); ++i)
+    flags[i] =
+        flags[i] == 0 && !(run.stage->loss(static_cast<Index>(i)) < kSolved);
+  return flags;
+}
+
+/// The start (1, 0) passes the other ball.
+bool start_misses(const Run& run, Index i) {
+  return std::abs(run.record->data.given(1, i) - 0.5) >= 0.4;
+}
+
+Quantity bfgs_share(const RunRow& flags) {
+  return from_problems(
+      256, bfgs(), share_of_examples(bfgs(), largest_sets(flags), holds));
+}
+
+Quantity most_where_start_misses(const RunRow& row) {
+  return highest(bfgs(), of_row(where(start_misses, row), most_of));
+}
+
+Quantity solved_share(const Select& runs, double loss = kSolved) {
+  return share_of_examples(runs, if_solved(loss), holds);
+}
+
+/// Share solved of what BFGS left unsolved.
+Quantity rescued(Index first, Index last = kEvery) {
+  return share_of_examples(refined("jpo").of_sizes(first, last),
+                           where(bfgs_unsolved(kSolved), if_solved(kSolved)),
+                           holds);
+}
+
+Quantity mean_at_16(const Select& runs) {
+  return mean(runs.of_sizes(16), better());
+}
+
+/// At every n <= 32, |f - 1/2| beyond two standard errors is at most half of
+/// its mean over n >= 64.
+Condition small_differences(const char* label, const Select& runs) {
+  std::vector<Quantity> distances;
+  for (const Index n : {2, 4, 8, 16, 32}) {
+    const Quantity at_n = mean(at(runs, n), f());
+    distances.emplace_back(
+        [=](const Evidence& e) {
+          Measured m = at_n(e);
+          if (!m.value) return m;
+          *m.value =
+              std::abs(*m.value - 0.5) -
+              2 * m.spread.value_or(0) / std::sqrt(static_cast<double>(m.runs));
+          return m;
+        },
+        at_n.runs());
+  }
+  const RunValue distance = [](const Run& run) -> std::optional<double> {
+    const auto value = f()(run);
+    if (!value) return {};
+    return std::abs(*value - 0.5);
+  };
+  return at_most(
+      label, most(distances), times(0.5, mean(runs.of_sizes(64), distance)));
+}
+
+const auto kProblem = problem<Billiards>("billiards");
+const Select kJpo = plain("jpo"), kRefined = refined("jpo");
+
+std::vector<Claim> paper_claims() {
+  return {
+      {.id = "P1",
+       .origin = Origin::paper,
+       .where = "Sec. 4",
+       .from = "paper",
+       .says = "For n <= 32 JPO differs little from BFGS",
+       .conditions = {either(
+           small_differences("largest |f - 1/2| - 2 s.e., n <= 32", kJpo),
+           small_differences("refined", kRefined))}},
+      {.id = "P2",
+       .origin = Origin::paper,
+       .where = "Sec. 4, Fig. 4b",
+       .from = "paper",
+       .says = "For n >= 64 almost all problems reach the solution",
+       .conditions = {either(at_least("share with L < 1e-2",
+                                      solved_share(kJpo.of_sizes(64), kClose),
+                                      0.9),
+                             at_least("refined, L < 1e-6",
+                                      solved_share(kRefined.of_sizes(64)),
+                                      0.9))}},
+      {.id = "P3",
+       .origin = Origin::paper,
+       .where = "Sec. 4",
+       .from = "smoke",
+       .says = "Without a collision there is no gradient, and classical "
+               "optimizers fail unless they start near the solution",
+       .conditions = {at_most("iterations where the start misses",
+                              most_where_start_misses(iterations()),
+                              0),
+                      at_most("of these, solved by BFGS",
+                              most_where_start_misses(if_solved(kSolved)),
+                              0),
+                      at_least("share that BFGS leaves unsolved",
+                               difference(1, bfgs_share(if_solved(kSolved))),
+                               0.2)}},
+      {.id = "P4",
+       .origin = Origin::paper,
+       .where = "Sec. 4",
+       .from = "paper",
+       .says = "JPO drastically improves the solutions: refined, it leaves "
+               "less than half of what BFGS leaves unsolved, n >= 64",
+       .conditions = {below(
+           "share unsolved",
+           difference(1, solved_share(kRefined.of_sizes(64))),
+           times(0.5, difference(1, solved_share(bfgs().of_sizes(64)))))}},
+      {.id = "P5",
+       .origin = Origin::paper,
+       .where = "Table 4",
+       .from = "paper",
+       .says = "How often JPO is better than BFGS, and equal",
+       .conditions = table4("jpo")},
+      {.id = "P6",
+       .origin = Origin::paper,
+       .where = "Table 5",
+       .from = "paper",
+       .says = "How often refined JPO is better than BFGS, and equal",
+       .conditions = table5("jpo")},
+      {.id = "P7",
+       .origin = Origin::paper,
+       .where = "Tables 4 and 5",
+       .from = "paper",
+       .says = "How often supervised learning and the neural adjoint are "
+               "better and equal; JPO, supervised learning, neural adjoint is "
+               "their order",
+       .conditions = joined({table4("supervised"),
+                             table5("supervised"),
+                             table4("na"),
+                             table5("na"),
+                             {above("better: jpo over supervised",
+                                    mean(kJpo, better()),
+                                    mean(plain("supervised"), better())),
+                              above("better: supervised over na",
+                                    mean(plain("supervised"), better()),
+                                    mean(plain("na"), better())),
+                              above("refined: jpo over supervised",
+                                    mean(kRefined, better()),
+                                    mean(refined("supervised"), better())),
+                              above("refined: supervised over na",
+                                    mean(refined("supervised"), better()),
+                                    mean(refined("na"), better()))}}),
+       .note = "The training samples of these methods are not in the paper."},
+      {.id = "P8",
+       .origin = Origin::paper,
+       .where = "App. D.2",
+       .from = "paper",
+       .says = "The neural adjoint gets stuck on the boundary of its training "
+               "data; supervised learning cannot extrapolate to the solutions",
+       .conditions =
+           {above("share of ends of the neural adjoint at or beyond it",
+                  share_of_examples(
+                      plain("na"), beyond_training(kProblem, 0.02), holds),
+                  0.5),
+            below("solved by supervised learning",
+                  solved_share(plain("supervised")),
+                  0.5)},
+       .note = "Ends of the four problems of each run whose paths are kept."},
+      {.id = "P9",
+       .origin = Origin::paper,
+       .where = "Table 3",
+       .from = "paper",
+       .says = "Share of the decrease that the network makes",
+       .conditions = table3()}};
+}
+
+std::vector<Claim> suite_claims() {
+  return {
+      {.id = "R2",
+       .from = "smoke",
+       .says = "BFGS from (1, 0) ends on the no-collision plateau for about "
+               "half of the problems and solves all others",
+       .conditions = {within(
+                          "plateau share", bfgs_share(on_plateau), 0.42, 0.62),
+                      at_most("unsolved elsewhere", bfgs_share(elsewhere), 0),
+                      at_most("iterations where the start misses",
+                              most_where_start_misses(iterations()),
+                              0),
+                      at_most("evaluations there",
+                              most_where_start_misses(evaluations()),
+                              1)}},
+      {.id = "R3",
+       .from = "quick",
+       .says = "For n >= 64 and every seed, JPO brings nearly all problems "
+               "close to the solution, and refinement solves them",
+       .conditions = {at_least("lowest share with L < 1e-2",
+                               lowest(kJpo.of_sizes(64), solved(kClose)),
+                               0.95),
+                      at_least("lowest share with refined L < 1e-6",
+                               lowest(kRefined.of_sizes(64), solved(kSolved)),
+                               0.97)}},
+      {.id = "R4",
+       .from = "quick",
+       .says = "Refined JPO solves what BFGS left unsolved, more of it for "
+               "n >= 64 than for n <= 8, and the network makes nearly all of "
+               "the decrease",
+       .conditions = {at_least("rescue rate n >= 64", rescued(64), 0.97),
+                      above("rescue rate n >= 64 over n <= 8",
+                            rescued(64),
+                            rescued(0, 8)),
+                      at_least("f(JPO refined) at n = 128",
+                               mean(at(kRefined, 128), f()),
+                               0.70),
+                      at_least("share of decrease at n = 128",
+                               mean(at(kRefined, 128), decrease_before()),
+                               0.95)}},
+      {.id = "R5",
+       .from = "quick",
+       .says = "For n >= 16, JPO is better than BFGS more often than "
+               "supervised learning and the neural adjoint, and refined solves "
+               "more problems",
+       .conditions = {above("better: jpo over supervised",
+                            mean_at_16(kJpo),
+                            mean_at_16(plain("supervised"))),
+                      above("solved, refined: jpo over supervised",
+                            solved_share(kRefined.of_sizes(16)),
+                            solved_share(refined("supervised").of_sizes(16))),
+                      above("better: jpo over na",
+                            mean_at_16(kJpo),
+                            mean_at_16(plain("na"))),
+                      above("solved, refined: jpo over na",
+                            solved_share(kRefined.of_sizes(16)),
+                            solved_share(refined("na").of_sizes(16)))}},
+      {.id = "R6",
+       .from = "quick",
+       .says = "For n >= 32, refined JPO ends on BFGS's plateaus hardly ever, "
+               "while supervised learning and the neural adjoint share them",
+       .conditions = {
+           at_most("equal: jpo refined",
+                   mean(kRefined.of_sizes(32), equal()),
+                   0.02),
+           at_least("equal: supervised",
+                    mean(plain("supervised").of_sizes(32), equal()),
+                    0.05),
+           at_least("equal: supervised refined",
+                    mean(refined("supervised").of_sizes(32), equal()),
+                    0.05),
+           at_least("equal: na", mean(plain("na").of_sizes(32), equal()), 0.05),
+           at_least("equal: na refined",
+                    mean(refined("na").of_sizes(32), equal()),
+                    0.05)}}};
+}
+
+const bool kClaims = register_claims("jpo/billiards", paper_claims()) &&
+                     register_claims("jpo/billiards", suite_claims());
+
+}  // namespace
+}  // namespace physinv::jpo

@@ -1,0 +1,330 @@
+#include "suite/cases/jpo/common/values.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <utility>
+
+namespace physinv::jpo {
+namespace {
+
+using Value = std::optional<double>;
+
+template <class V>
+std::vector<double> list(const V& row) {
+  return {row.begin(), row.end()};
+}
+
+RunValue against_bfgs(double (*share)(const Shares&)) {
+  return [=](const Run& run) -> Value {
+    const auto other = run.beside(bfgs());
+    if (!other) return {};
+    return share(
+        compare_losses(run.stage->loss, other->stage->loss, Equality::strict));
+  };
+}
+
+/// The stage before this one.
+std::optional<Run> before(const Run& run) {
+  const auto& stages = run.record->stages;
+  if (run.stage == &stages.front()) return {};
+  return Run{run.evidence, run.record, run.stage - 1};
+}
+
+double share_of(const Solved& solved, const Run& run) {
+  return static_cast<double>(solved.count(run.record->data, *run.stage)) /
+         static_cast<double>(run.stage->loss.size());
+}
+
+/// Unknown j of all examples along a curve, at one of its points.
+std::vector<double> tracked(const Run& run, Index j, Index point) {
+  const Curve& curve = run.stage->curve;
+  const Index unknowns = run.stage->x.rows();
+  std::vector<double> out;
+  if (curve.points() == 0) return out;
+  for (Index row = j; row < curve.x.rows(); row += unknowns)
+    out.push_back(curve.x(row, point));
+  return out;
+}
+
+bool is_largest(const Run& run) {
+  const Select same{.method = run.record->info.method,
+                    .stage = run.stage->stage,
+                    .first = run.n() + 1,
+                    .experiment = run.record->info.experiment};
+  const auto larger = find_runs(*run.evidence, same);
+  return std::none_of(larger.begin(), larger.end(), [&](const Run& other) {
+    return other.seed() == run.seed();
+  });
+}
+
+std::vector<double> means_over_seeds(const std::vector<Sample>& samples) {
+  std::map<Index, std::vector<double>> sizes;
+  for (const Sample& s : samples) sizes[s.n].push_back(s.value);
+  std::vector<double> means;
+  for (const auto& [n, values] : sizes) means.push_back(mean_of(values));
+  return means;
+}
+
+Quantity extreme_mean(const Select& select,
+                      const RunValue& value,
+                      double (*extreme)(std::vector<double>)) {
+  return {[=](const Evidence& e) {
+            const auto samples = sample(e, select, value);
+            if (samples.empty()) return missing(select.text() + " not run");
+            return Measured{.value = extreme(means_over_seeds(samples)),
+                            .runs = static_cast<Index>(samples.size())};
+          },
+          {select}};
+}
+
+std::vector<Condition> row_of_table(const std::string& table,
+                                    const Select& runs) {
+  const std::string& method = runs.method;
+  const auto one = [&](const char* what, const RunValue& value) {
+    return as_printed(fmt::format("{} {}, %", method, what),
+                      percent(mean(runs, value)),
+                      fmt::format("{}/{}/{}", table, method, what));
+  };
+  return {one("better", better()), one("equal", equal())};
+}
+
+}  // namespace
+
+Select bfgs() { return {.method = "bfgs", .stage = "solve"}; }
+Select gd() { return {.method = "gd", .stage = "solve"}; }
+Select plain(const std::string& method) {
+  return {.method = method, .stage = method == "na" ? "solve" : "fit"};
+}
+Select refined(const std::string& method) {
+  return {.method = method, .stage = "refine"};
+}
+
+RunValue better() {
+  return against_bfgs([](const Shares& s) { return s.better; });
+}
+RunValue equal() {
+  return against_bfgs([](const Shares& s) { return s.equal; });
+}
+RunValue f() {
+  return against_bfgs([](const Shares& s) { return s.f(); });
+}
+
+RunValue solved(const Solved& solved) {
+  return [=](const Run& run) -> Value { return share_of(solved, run); };
+}
+
+RunValue gain(const Solved& solved) {
+  return [=](const Run& run) -> Value {
+    const auto other = run.beside(bfgs());
+    if (!other) return {};
+    return share_of(solved, run) - share_of(solved, *other);
+  };
+}
+
+RunValue decrease_before() {
+  return [](const Run& run) -> Value {
+    return JpoMetrics(run.evidence->results, run.record->info.experiment)
+        .share_of_decrease(run.record->info.method, run.n(), run.seed());
+  };
+}
+
+RunValue worsened() {
+  return [](const Run& run) -> Value {
+    const auto start = before(run);
+    if (!start) return {};
+    return static_cast<double>(
+        (run.stage->loss.array() > start->stage->loss.array()).count());
+  };
+}
+
+RunValue of_row(RunRow row, double (*statistic)(std::vector<double>)) {
+  return [=](const Run& run) -> Value {
+    auto values = row(run);
+    if (values.empty()) return {};
+    return statistic(std::move(values));
+  };
+}
+
+double mean_of(std::vector<double> values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) /
+         static_cast<double>(values.size());
+}
+double least_of(std::vector<double> values) {
+  return *std::min_element(values.begin(), values.end());
+}
+double most_of(std::vector<double> values) {
+  return *std::max_element(values.begin(), values.end());
+}
+
+RunValue seconds() {
+  return [](const Run& run) -> Value {
+    if (run.stage->crowded) return {};
+    return run.stage->clocks.solve.wall;
+  };
+}
+
+RunRow losses() {
+  return [](const Run& run) { return list(run.stage->loss); };
+}
+RunRow iterations() {
+  return [](const Run& run) { return list(run.stage->example_iterations); };
+}
+RunRow evaluations() {
+  return [](const Run& run) { return list(run.stage->example_evaluations); };
+}
+
+RunRow if_solved(const Solved& solved) {
+  return [=](const Run& run) {
+    std::vector<double> flags;
+    for (Index i = 0; i < run.stage->loss.size(); ++i)
+      flags.push_back(solved(run.record->data, *run.stage, i));
+    return flags;
+  };
+}
+
+RunRow where(Problems condition, RunRow row) {
+  return [=](const Run& run) {
+    std::vector<double> picked;
+    const auto values = row(run);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (condition(run, static_cast<Index>(i))) picked.push_back(values[i]);
+    return picked;
+  };
+}
+
+Problems is_solved(const Solved& solved) {
+  return [=](const Run& run, Index i) {
+    return solved(run.record->data, *run.stage, i);
+  };
+}
+
+Problems bfgs_unsolved(const Solved& solved) {
+  return [=](const Run& run, Index i) {
+    const auto other = run.beside(bfgs());
+    return other && !solved(other->record->data, *other->stage, i);
+  };
+}
+
+RunRow first_below(double loss) {
+  return [=](const Run& run) {
+    const Curve& curve = run.stage->curve;
+    std::vector<double> first(static_cast<std::size_t>(curve.loss.rows()),
+                              std::numeric_limits<double>::infinity());
+    for (std::size_t i = 0; i < first.size(); ++i)
+      for (Index k = curve.points() - 1; k >= 0; --k)
+        if (curve.loss(static_cast<Index>(i), k) < loss)
+          first[i] = curve.iteration[static_cast<std::size_t>(k)];
+    return first;
+  };
+}
+
+RunRow start_losses() {
+  return [](const Run& run) {
+    const Curve& curve = run.stage->curve;
+    return curve.points() == 0 ? std::vector<double>{}
+                               : list(curve.loss.col(0));
+  };
+}
+
+RunRow last_tracked(Index j) {
+  return [=](const Run& run) {
+    return tracked(run, j, run.stage->curve.points() - 1);
+  };
+}
+RunRow first_tracked(Index j) {
+  return [=](const Run& run) { return tracked(run, j, 0); };
+}
+
+RunRow beyond_training(const ProblemRecipe& problem, double margin) {
+  return [=](const Run& run) {
+    const auto& info = run.record->info;
+    const Batch<double> samples =
+        problem.make<double>()
+            ->sample_labelled(
+                0,
+                run.n(),
+                Rng::root(info.experiment, info.seed).child("data/train"))
+            .x;
+    std::vector<double> beyond;
+    for (Index j = 0; j < samples.rows(); ++j) {
+      const double low = samples.row(j).minCoeff();
+      const double high = samples.row(j).maxCoeff();
+      const double edge = margin * (high - low);
+      const auto ends = last_tracked(j)(run);
+      beyond.resize(ends.size());
+      for (std::size_t i = 0; i < ends.size(); ++i)
+        if (ends[i] <= low + edge || ends[i] >= high - edge) beyond[i] = 1;
+    }
+    return beyond;
+  };
+}
+
+RunRow largest_sets(RunRow row) {
+  return [=](const Run& run) {
+    return is_largest(run) ? row(run) : std::vector<double>{};
+  };
+}
+RunValue largest_sets(RunValue value) {
+  return [=](const Run& run) { return is_largest(run) ? value(run) : Value{}; };
+}
+
+Quantity lowest_mean(const Select& select, const RunValue& value) {
+  return extreme_mean(select, value, least_of);
+}
+Quantity highest_mean(const Select& select, const RunValue& value) {
+  return extreme_mean(select, value, most_of);
+}
+
+Quantity problems_of(const Select& select) {
+  return {[=](const Evidence& e) {
+            double count = 0;
+            for (const Run& run : find_runs(e, select))
+              if (is_largest(run))
+                count += static_cast<double>(run.stage->loss.size());
+            return Measured{.value = count};
+          },
+          {select}};
+}
+
+Quantity from_problems(Index problems, const Select& select, Quantity q) {
+  const Quantity count = problems_of(select);
+  return {[=](const Evidence& e) {
+            if (*count(e).value >= static_cast<double>(problems)) return q(e);
+            return missing(
+                fmt::format("{} of {} problems", select.text(), problems));
+          },
+          q.runs(),
+          q.printed()};
+}
+
+std::vector<Condition> table4(const std::string& method) {
+  return row_of_table("table4", plain(method));
+}
+std::vector<Condition> table5(const std::string& method) {
+  return row_of_table("table5", refined(method));
+}
+
+std::vector<Condition> table3() {
+  std::vector<Condition> out;
+  for (const Index n : {4, 8, 32, 128})
+    out.push_back(as_printed(fmt::format("made by the network, n = {}, %", n),
+                             percent(mean(at(refined("jpo"), n),  //
+                                          decrease_before())),
+                             fmt::format("table3/n={}", n)));
+  return out;
+}
+
+std::vector<Condition> joined(
+    std::initializer_list<std::vector<Condition>> parts) {
+  std::vector<Condition> all;
+  for (const auto& part : parts)
+    all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
+}  // namespace physinv::jpo

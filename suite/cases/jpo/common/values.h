@@ -1,0 +1,102 @@
+/// What claims about the JPO paper's inverse problems are made of: runs by
+/// their place in a chain, and numbers of one run, many of them beside plain
+/// BFGS on the same problems.
+///
+///   percent(mean(refined("jpo"), better()))            // Table 5
+///   share_of_examples(bfgs(), largest_sets(if_solved(1e-6)), holds)
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "suite/cases/jpo/common/metrics.h"
+#include "suite/core/recipe.h"
+#include "suite/evidence/condition.h"
+
+namespace physinv::jpo {
+
+Select bfgs();
+Select gd();
+/// Where a chain ends before its refinement: of a network, or of the solver on
+/// a surrogate.
+Select plain(const std::string& method);
+Select refined(const std::string& method);
+inline Select at(const Select& select, Index n) {
+  return select.of_sizes(n, n);
+}
+
+// ---- numbers of one run ---------------------------------------------------
+
+/// Shares of the run's problems: losses below BFGS's, equal to them bit by
+/// bit, and f = better + equal / 2.
+RunValue better();
+RunValue equal();
+RunValue f();
+RunValue solved(const Solved& solved);
+/// Share that it solves less the share that BFGS solves.
+RunValue gain(const Solved& solved);
+/// Of a refined run: mean share of the decrease that was made before.
+RunValue decrease_before();
+/// Of a refined run: how many losses it increased.
+RunValue worsened();
+/// Any statistic of a row.
+RunValue of_row(RunRow row, double (*statistic)(std::vector<double>));
+double mean_of(std::vector<double> values);
+double least_of(std::vector<double> values);
+double most_of(std::vector<double> values);
+/// Seconds of solving; none where the run shared its cores.
+RunValue seconds();
+
+// ---- a number of each problem ---------------------------------------------
+
+RunRow losses();
+RunRow iterations();
+RunRow evaluations();
+/// 1 where it is solved, else 0.
+RunRow if_solved(const Solved& solved);
+/// Of the problems with `condition`, the values of `row`.
+using Problems = std::function<bool(const Run&, Index)>;
+RunRow where(Problems condition, RunRow row);
+Problems is_solved(const Solved& solved);
+/// What plain BFGS left unsolved.
+Problems bfgs_unsolved(const Solved& solved);
+/// First measured iteration with a loss below `loss`, infinite if there is
+/// none: points of curves lie a seventh apart.
+RunRow first_below(double loss);
+/// Loss at the start of the run.
+RunRow start_losses();
+/// Of the problems whose paths are kept: unknown `j` at the last point and at
+/// the first.
+RunRow last_tracked(Index j);
+RunRow first_tracked(Index j);
+/// Of these problems, 1 where the last point lies outside the training
+/// samples' range of any unknown or within `margin` of its ends, as a share of
+/// the range; else 0.
+RunRow beyond_training(const ProblemRecipe& problem, double margin);
+
+/// Sets of one seed are parts of each other; only the largest one counts.
+RunRow largest_sets(RunRow row);
+RunValue largest_sets(RunValue value);
+
+/// For shares of rows of 0 and 1.
+inline bool holds(double flag) { return flag > 0.5; }
+
+// ---- over runs ------------------------------------------------------------
+
+/// The mean over seeds at each n; of these the lowest, and the highest.
+Quantity lowest_mean(const Select& select, const RunValue& value);
+Quantity highest_mean(const Select& select, const RunValue& value);
+/// Missing unless the largest sets of `select` have so many problems.
+Quantity from_problems(Index problems, const Select& select, Quantity q);
+Quantity problems_of(const Select& select);
+
+/// One row of Table 4 (refined: 5): better and equal as printed.
+std::vector<Condition> table4(const std::string& method);
+std::vector<Condition> table5(const std::string& method);
+/// Table 3 at n = 4, 8, 32, 128.
+std::vector<Condition> table3();
+std::vector<Condition> joined(
+    std::initializer_list<std::vector<Condition>> parts);
+
+}  // namespace physinv::jpo

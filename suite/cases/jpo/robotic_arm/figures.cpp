@@ -1,0 +1,116 @@
+// Fig. 25 of the JPO paper, beside what all its experiments show.
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include "problems/robotic_arm/robotic_arm.h"
+#include "suite/cases/jpo/common/report.h"
+#include "suite/harness/registry.h"
+
+namespace physinv {
+namespace {
+
+constexpr std::array<double, 2> kTarget = {1.4, 0.6};
+
+Series arm_series(std::string label,
+                  std::string method,
+                  const std::array<double, 4>& x) {
+  Series s{
+      .label = std::move(label), .method = std::move(method), .markers = true};
+  for (const auto& joint : arm_joints(x)) {
+    s.x.push_back(joint[0]);
+    s.y.push_back(joint[1]);
+  }
+  return s;
+}
+
+/// Fig. 25a: the arm where every method starts, and one that reaches.
+Figure task() {
+  // The shorter links mirror each other, the long one lies level.
+  const double bend = std::acos(kTarget[0] - 1);
+  const std::array<double, 4> x = {kTarget[1], bend, 0, bend};
+  return {.id = "fig25a",
+          .title = "Task: base and joints that bring the tip to a target",
+          .source = "Fig. 25a",
+          .panels = {{.title = "",
+                      .x_label = "horizontal",
+                      .y_label = "vertical",
+                      .series = {arm_series("start", "bfgs", {0, 0, 0, 0}),
+                                 arm_series("a solution", "jpo", x),
+                                 {.label = "target",
+                                  .method = "truth",
+                                  .x = {kTarget[0]},
+                                  .y = {kTarget[1]},
+                                  .line = false,
+                                  .markers = true}}}},
+          .columns = 1};
+}
+
+/// Fig. 25b: loss and gradient over the first joint angle, through x = 0.
+Figure landscape() {
+  constexpr Index kPoints = 241;
+  const RoboticArm<double> arm;
+  Batch<double> x = Batch<double>::Zero(4, kPoints), given(0, kPoints);
+  x.row(1).setLinSpaced(-std::numbers::pi, std::numbers::pi);
+  Batch<double> y(2, kPoints), target(2, kPoints), y_bar(2, kPoints);
+  target.colwise() = Eigen::Vector2d(kTarget[0], kTarget[1]);
+  Batch<double> gradient(4, kPoints);
+  Vector<double> loss(kPoints);
+  Tape tape;
+  Workspace work;
+  arm.linearize(x, given, y, tape);
+  arm.loss(y, target, loss);
+  arm.loss_gradient(y, target, y_bar);
+  arm.pullback(tape, y_bar, gradient, work);
+  const auto panel = [&](const char* label, const auto& values) {
+    return Panel{.x_label = "angle 1",
+                 .y_label = label,
+                 .series = {{.method = "bfgs",
+                             .x = {x.row(1).begin(), x.row(1).end()},
+                             .y = {values.begin(), values.end()}}}};
+  };
+  return {
+      .id = "fig25b",
+      .title = "Loss and gradient over the first joint angle",
+      .source = "Fig. 25b",
+      .panels = {panel("loss", loss),
+                 panel("derivative of the loss", gradient.row(1))},
+      .note = fmt::format(
+          "Target ({}, {}), all other unknowns 0.", kTarget[0], kTarget[1])};
+}
+
+Section report(const Results& results, const Published& published) {
+  const JpoReportOptions options{
+      .experiment = "jpo/robotic-arm",
+      .title = "Robotic arm",
+      .paper = "jpo",
+      .solved = 1e-12,
+      .unknowns = {"base", "angle 1", "angle 2", "angle 3"},
+      .tensors = {"m1", "b1", "m2", "b2", "m3", "b3", "m4", "b4"},
+      .fraction = {"fraction", ""},
+      .improvement = {"fig25d", "Fig. 25d (loss after refinement)"},
+      .curves = {"fig25c", "Fig. 25c"},
+      .trajectories = {"trajectories", ""},
+      .weight_change = {"weight_change", ""}};
+  Section section = jpo_section(options, results, published);
+  // The paper has no table of this experiment.
+  for (Table& table : section.tables) table.source.clear();
+  // Fig. 25c shows gradient descent too.
+  JpoReportOptions with_descent = options;
+  with_descent.methods.insert(with_descent.methods.begin(), "gd");
+  for (Figure& figure : section.figures) {
+    if (figure.id == options.curves.id)
+      figure = JpoReport(with_descent, results, published).curves();
+  }
+  section.figures.insert(section.figures.begin(), {task(), landscape()});
+  return section;
+}
+
+const bool kReport = register_report("jpo/robotic-arm", report);
+
+}  // namespace
+}  // namespace physinv
