@@ -97,7 +97,6 @@ TEST_F(JpoMetricsTest, AMissingPartnerIsNotRun) {
   EXPECT_FALSE(metrics_.shares("jpo", 4, 1, true, Equality::strict));
   EXPECT_FALSE(metrics_.shares("supervised", 4, 0, false, Equality::strict));
   EXPECT_FALSE(metrics_.mean_shares("gd", all_, false, Equality::strict));
-  EXPECT_FALSE(metrics_.rescue("supervised", all_, 1e-6));
   EXPECT_FALSE(metrics_.solved_share("jpo", 8, 0, false, 1e-6));
   EXPECT_FALSE(metrics_.share_of_decrease("jpo", 4, 1));
 }
@@ -123,17 +122,8 @@ TEST_F(JpoMetricsTest, ShareOfDecrease) {
   EXPECT_NEAR(*metrics_.share_of_decrease("jpo", 4, 0), expected, 1e-12);
 }
 
-TEST_F(JpoMetricsTest, RescueCountsOnlyWhatBfgsLeft) {
-  const auto found = metrics_.rescue("jpo", all_, 1e-6);
-  ASSERT_TRUE(found);  // seed 1 has no refined stage
-  EXPECT_EQ(found->unsolved, 2);
-  EXPECT_EQ(found->rescued, 1);
-  EXPECT_EQ(found->rate(), 0.5);
-}
-
 TEST_F(JpoMetricsTest, SolvedShares) {
   EXPECT_EQ(*metrics_.solved_share("jpo", 4, 0, false, 1e-2), 0.5);
-  EXPECT_EQ(*metrics_.pooled_solved_share("jpo", all_, false, 1e-2), 0.25);
 }
 
 TEST(SolvedTest, MayAskForTheTruthInsteadOfTheLoss) {
@@ -157,21 +147,6 @@ TEST(SolvedTest, MayAskForTheTruthInsteadOfTheLoss) {
   const Results results({c});
   const JpoMetrics metrics(results, "toy");
   EXPECT_DOUBLE_EQ(*metrics.solved_share("bfgs", 3, 0, false, near), 1.0 / 3);
-  const std::vector<Index> sizes{3};
-  EXPECT_DOUBLE_EQ(*metrics.pooled_solved_share("bfgs", sizes, false, near),
-                   1.0 / 3);
-}
-
-TEST_F(JpoMetricsTest, PlateauIsPooledOverSeeds) {
-  const auto found = metrics_.plateau(4, 1e-6, [](const CaseRecord& c) {
-    return Vector<double>::Constant(c.info.n, 0.5);
-  });
-  ASSERT_TRUE(found);
-  EXPECT_EQ(found->problems, 8);
-  EXPECT_EQ(found->plateau, 4);
-  EXPECT_EQ(found->solved, 4);
-  EXPECT_EQ(found->elsewhere(), 0);
-  EXPECT_EQ(found->share(), 0.5);
 }
 
 }  // namespace

@@ -44,12 +44,6 @@ Shares compare_losses(VectorIn<double> loss,
           static_cast<double>(loss.size() - better - equal) / count};
 }
 
-double share_below(VectorIn<double> loss, double threshold) {
-  SUITE_CHECK(loss.size() > 0, "a share of no problems");
-  const Index below = (loss.array() < threshold).count();
-  return static_cast<double>(below) / static_cast<double>(loss.size());
-}
-
 Solved::Solved(double loss)
     : Solved(
           [loss](const CaseData&, const StageRecord& stage, Index example) {
@@ -163,16 +157,6 @@ std::optional<double> JpoMetrics::share_of_decrease(std::string_view method,
   return sum / static_cast<double>(count);
 }
 
-std::optional<double> JpoMetrics::share_of_decrease(std::string_view method,
-                                                    Index n) const {
-  std::vector<double> shares;
-  for (const std::uint64_t seed : seeds())
-    if (const auto one = share_of_decrease(method, n, seed))
-      shares.push_back(*one);
-  const auto found = mean_std(shares);
-  return found ? std::optional(found->mean) : std::nullopt;
-}
-
 std::optional<double> JpoMetrics::solved_share(std::string_view method,
                                                Index n,
                                                std::uint64_t seed,
@@ -182,65 +166,6 @@ std::optional<double> JpoMetrics::solved_share(std::string_view method,
   if (found == nullptr) return {};
   return static_cast<double>(solved.count(data(method, n, seed), *found)) /
          static_cast<double>(found->loss.size());
-}
-
-std::optional<double> JpoMetrics::pooled_solved_share(
-    std::string_view method,
-    std::span<const Index> sizes,
-    bool refined,
-    const Solved& solved) const {
-  Index count = 0, all = 0;
-  for (const Index n : sizes) {
-    for (const std::uint64_t seed : seeds()) {
-      const StageRecord* found = ending(method, n, seed, refined);
-      if (found == nullptr) continue;
-      count += solved.count(data(method, n, seed), *found);
-      all += found->loss.size();
-    }
-  }
-  if (all == 0) return {};
-  return static_cast<double>(count) / static_cast<double>(all);
-}
-
-std::optional<JpoMetrics::Rescue> JpoMetrics::rescue(
-    std::string_view method,
-    std::span<const Index> sizes,
-    const Solved& solved) const {
-  Rescue out;
-  for (const Index n : sizes) {
-    for (const std::uint64_t seed : seeds()) {
-      const StageRecord* ours = ending(method, n, seed, true);
-      const StageRecord* bfgs = stage(kBfgs, n, seed, kSolve);
-      if (ours == nullptr || bfgs == nullptr) continue;
-      for (Index i = 0; i < bfgs->loss.size(); ++i) {
-        if (solved(data(kBfgs, n, seed), *bfgs, i)) continue;
-        ++out.unsolved;
-        out.rescued += solved(data(method, n, seed), *ours, i);
-      }
-    }
-  }
-  if (out.unsolved == 0) return {};
-  return out;
-}
-
-std::optional<JpoMetrics::Plateau> JpoMetrics::plateau(
-    Index n, double solved, const PlateauLoss& plateau_loss) const {
-  Plateau out;
-  for (const std::uint64_t seed : seeds()) {
-    const StageRecord* bfgs = stage(kBfgs, n, seed, kSolve);
-    if (bfgs == nullptr) continue;
-    const Vector<double> level =
-        plateau_loss(*results_.find_case(experiment_, kBfgs, n, seed));
-    for (Index i = 0; i < bfgs->loss.size(); ++i) {
-      const double loss = bfgs->loss[i];
-      const bool there = std::abs(loss - level[i]) <= 1e-12 * level[i];
-      ++out.problems;
-      out.plateau += there;
-      out.solved += !there && loss < solved;
-    }
-  }
-  if (out.problems == 0) return {};
-  return out;
 }
 
 }  // namespace physinv

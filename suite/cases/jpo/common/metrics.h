@@ -36,9 +36,6 @@ Shares compare_losses(VectorIn<double> loss,
                       VectorIn<double> bfgs,
                       Equality equality);
 
-/// Of the losses, the share below `threshold`; NaN is not below.
-double share_below(VectorIn<double> loss, double threshold);
-
 /// When a problem counts as solved. A number means a loss below it; any other
 /// test sees the data of the case, so that it may ask for the truth.
 class Solved {
@@ -114,9 +111,6 @@ class JpoMetrics {
   std::optional<double> share_of_decrease(std::string_view method,
                                           Index n,
                                           std::uint64_t seed) const;
-  /// Mean of it over the seeds there are.
-  std::optional<double> share_of_decrease(std::string_view method,
-                                          Index n) const;
 
   /// Share of problems solved at the end of a chain.
   std::optional<double> solved_share(std::string_view method,
@@ -124,39 +118,6 @@ class JpoMetrics {
                                      std::uint64_t seed,
                                      bool refined,
                                      const Solved& solved) const;
-  /// The same over all problems of all seeds and sizes there are.
-  std::optional<double> pooled_solved_share(std::string_view method,
-                                            std::span<const Index> sizes,
-                                            bool refined,
-                                            const Solved& solved) const;
-
-  /// Of the problems that plain BFGS left unsolved, how many the
-  /// method with refinement solves; pooled over seeds and sizes.
-  struct Rescue {
-    Index unsolved = 0, rescued = 0;
-    double rate() const {
-      return static_cast<double>(rescued) / static_cast<double>(unsolved);
-    }
-  };
-  /// Empty if no pair of cases is there or BFGS solved everything.
-  std::optional<Rescue> rescue(std::string_view method,
-                               std::span<const Index> sizes,
-                               const Solved& solved) const;
-
-  /// Where plain BFGS ends, pooled over the seeds of one n: on the plateau
-  /// (loss within 1e-12 relative of the problem's plateau loss), solved, or
-  /// elsewhere.
-  struct Plateau {
-    Index problems = 0, plateau = 0, solved = 0;
-    Index elsewhere() const { return problems - plateau - solved; }
-    double share() const {
-      return static_cast<double>(plateau) / static_cast<double>(problems);
-    }
-  };
-  using PlateauLoss = std::function<Vector<double>(const CaseRecord&)>;
-  std::optional<Plateau> plateau(Index n,
-                                 double solved,
-                                 const PlateauLoss& plateau_loss) const;
 
  private:
   const CaseData& data(std::string_view method,
@@ -168,18 +129,5 @@ class JpoMetrics {
   const Results& results_;
   std::string_view experiment_;
 };
-
-/// One of the shares, if there are any.
-inline std::optional<double> better_of(
-    const std::optional<JpoMetrics::Pooled>& p) {
-  return p ? std::optional(p->mean.better) : std::nullopt;
-}
-inline std::optional<double> equal_of(
-    const std::optional<JpoMetrics::Pooled>& p) {
-  return p ? std::optional(p->mean.equal) : std::nullopt;
-}
-inline std::optional<double> f_of(const std::optional<JpoMetrics::Pooled>& p) {
-  return p ? std::optional(p->mean.f()) : std::nullopt;
-}
 
 }  // namespace physinv

@@ -21,7 +21,7 @@ std::vector<double> list(const V& row) {
 
 RunValue against_bfgs(double (*share)(const Shares&)) {
   return [=](const Run& run) -> Value {
-    const auto other = run.beside(bfgs());
+    const auto other = bfgs_beside(run);
     if (!other) return {};
     return share(
         compare_losses(run.stage->loss, other->stage->loss, Equality::strict));
@@ -83,10 +83,11 @@ Quantity extreme_mean(const Select& select,
 }
 
 std::vector<Condition> row_of_table(const std::string& table,
+                                    const char* prefix,
                                     const Select& runs) {
   const std::string& method = runs.method;
   const auto one = [&](const char* what, const RunValue& value) {
-    return as_printed(fmt::format("{} {}, %", method, what),
+    return as_printed(fmt::format("{}{} {}, %", prefix, method, what),
                       percent(mean(runs, value)),
                       fmt::format("{}/{}/{}", table, method, what));
   };
@@ -102,6 +103,10 @@ Select plain(const std::string& method) {
 }
 Select refined(const std::string& method) {
   return {.method = method, .stage = "refine"};
+}
+
+std::optional<Run> bfgs_beside(const Run& run) {
+  return run.beside(bfgs().in(run.record->info.experiment));
 }
 
 RunValue better() {
@@ -120,7 +125,7 @@ RunValue solved(const Solved& solved) {
 
 RunValue gain(const Solved& solved) {
   return [=](const Run& run) -> Value {
-    const auto other = run.beside(bfgs());
+    const auto other = bfgs_beside(run);
     if (!other) return {};
     return share_of(solved, run) - share_of(solved, *other);
   };
@@ -205,7 +210,7 @@ Problems is_solved(const Solved& solved) {
 
 Problems bfgs_unsolved(const Solved& solved) {
   return [=](const Run& run, Index i) {
-    const auto other = run.beside(bfgs());
+    const auto other = bfgs_beside(run);
     return other && !solved(other->record->data, *other->stage, i);
   };
 }
@@ -303,10 +308,10 @@ Quantity from_problems(Index problems, const Select& select, Quantity q) {
 }
 
 std::vector<Condition> table4(const std::string& method) {
-  return row_of_table("table4", plain(method));
+  return row_of_table("table4", "", plain(method));
 }
 std::vector<Condition> table5(const std::string& method) {
-  return row_of_table("table5", refined(method));
+  return row_of_table("table5", "refined ", refined(method));
 }
 
 std::vector<Condition> table3() {

@@ -7,6 +7,8 @@
 #pragma once
 
 #include <functional>
+#include <initializer_list>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +27,8 @@ Select refined(const std::string& method);
 inline Select at(const Select& select, Index n) {
   return select.of_sizes(n, n);
 }
+/// Plain BFGS on the same problems.
+std::optional<Run> bfgs_beside(const Run& run);
 
 // ---- numbers of one run ---------------------------------------------------
 

@@ -40,7 +40,7 @@ bool gets_solved(const Run& run, Index i) {
 
 /// Loss at the end over that of BFGS's start, the mean of the truths.
 std::vector<double> loss_over_start(const Run& run) {
-  const auto bfgs_run = run.beside(bfgs());
+  const auto bfgs_run = bfgs_beside(run);
   auto ratios = losses()(run);
   if (!bfgs_run) return {};
   const auto start = start_losses()(*bfgs_run);

@@ -48,7 +48,7 @@ Quantity share_at(const Main& e, Index n) {
 
 /// Mean loss of refined JPO over BFGS's.
 std::optional<double> loss_over_bfgs(const Run& run) {
-  const auto other = run.beside(bfgs().in(run.record->info.experiment));
+  const auto other = bfgs_beside(run);
   if (!other) return {};
   return mean_of(losses()(run)) / mean_of(losses()(*other));
 }
@@ -56,7 +56,7 @@ std::optional<double> loss_over_bfgs(const Run& run) {
 /// The tenth of its problems with JPO's highest losses (at least one) solved
 /// by BFGS instead: mean loss over that without.
 std::optional<double> falling_back(const Run& run) {
-  const auto other = run.beside(bfgs().in(run.record->info.experiment));
+  const auto other = bfgs_beside(run);
   if (!other) return {};
   const auto jpo = losses()(run), classic = losses()(*other);
   std::vector<std::size_t> order(jpo.size());

@@ -34,7 +34,7 @@ Quantity highest_mean_loss(const Select& runs) {
 }
 
 std::optional<double> mean_loss_over_bfgs(const Run& run) {
-  const auto other = run.beside(bfgs());
+  const auto other = bfgs_beside(run);
   if (!other) return {};
   return mean_of(losses()(run)) / mean_of(losses()(*other));
 }

@@ -38,7 +38,7 @@ std::vector<double> first_steps(const Run& run) {
 
 /// How much farther from the truth than BFGS.
 std::vector<double> farther_than_bfgs(const Run& run) {
-  const auto other = run.beside(bfgs());
+  const auto other = bfgs_beside(run);
   auto d = distances(run);
   if (!other) return {};
   const auto of_bfgs = distances(*other);
