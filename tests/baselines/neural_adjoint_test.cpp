@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "baselines/surrogate.h"
 #include "tests/support/bits.h"
 #include "tests/support/quadratic.h"
 #include "tests/support/tolerance.h"
