@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "suite/evidence/statistics.h"
+
 namespace physinv {
 namespace {
-
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 /// Shares as weights: what lies behind an infinite loss is infinite.
 LossPoint between(const LossPoint& a, const LossPoint& b, double share) {

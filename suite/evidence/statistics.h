@@ -1,11 +1,14 @@
 /// Statistics over seeds, sizes and examples.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
 
 namespace physinv {
+
+inline constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 /// Of a list that is not empty; of an even number the mean of the two in the
 /// middle. Infinities are numbers here.

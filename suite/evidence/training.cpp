@@ -4,10 +4,10 @@
 #include <limits>
 #include <utility>
 
+#include "suite/evidence/statistics.h"
+
 namespace physinv {
 namespace {
-
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 /// f(row of the curve) of runs that have one.
 template <class F>
