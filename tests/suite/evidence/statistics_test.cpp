@@ -3,12 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 namespace physinv {
 namespace {
-
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 TEST(Statistics, MiddleOfOddAndEvenLists) {
   EXPECT_EQ(median({3, 1, 2}), 2);

@@ -2,6 +2,7 @@
 // BFGS where a fifth of all problems start on a plateau.
 #include "problems/billiards/billiards.h"
 #include "suite/cases/jpo/common/methods.h"
+#include "suite/cases/jpo/common/report.h"
 #include "suite/harness/registry.h"
 #include "suite/nn/mlp.h"
 
@@ -45,6 +46,7 @@ const auto kRegistered = register_experiment({
                     .seeds = {0, 1, 2, 3},
                     .iterations = 3000}}}},
     .methods = jpo_methods(),
+    .looks = kJpoLooks,
 });
 
 }  // namespace

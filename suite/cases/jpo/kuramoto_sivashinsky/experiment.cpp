@@ -5,6 +5,7 @@
 
 #include "problems/kuramoto_sivashinsky/kuramoto_sivashinsky.h"
 #include "suite/cases/jpo/common/methods.h"
+#include "suite/cases/jpo/common/report.h"
 #include "suite/harness/registry.h"
 #include "suite/nn/unet.h"
 #include "suite/nn/vgg.h"
@@ -65,6 +66,7 @@ const auto kRegistered = register_experiment({
                             .iterations = kFitIterations,
                             .bfgs_iterations = 200,
                             .descent_iterations = 100}),
+    .looks = kJpoLooks,
 });
 
 }  // namespace

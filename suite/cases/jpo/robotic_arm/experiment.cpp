@@ -2,6 +2,7 @@
 // bowl, where joint optimization needs no advantage over BFGS and shows none.
 #include "problems/robotic_arm/robotic_arm.h"
 #include "suite/cases/jpo/common/methods.h"
+#include "suite/cases/jpo/common/report.h"
 #include "suite/harness/registry.h"
 #include "suite/nn/mlp.h"
 
@@ -47,6 +48,7 @@ const auto kRegistered = register_experiment({
                     .seeds = {0, 1, 2, 3},
                     .iterations = kFitIterations}}}},
     .methods = jpo_methods({.rate = 1e-3, .iterations = kFitIterations}),
+    .looks = kJpoLooks,
 });
 
 }  // namespace

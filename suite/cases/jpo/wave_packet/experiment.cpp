@@ -4,6 +4,7 @@
 
 #include "problems/wave_packet/wave_packet.h"
 #include "suite/cases/jpo/common/methods.h"
+#include "suite/cases/jpo/common/report.h"
 #include "suite/harness/registry.h"
 #include "suite/nn/unet.h"
 #include "suite/nn/vgg.h"
@@ -79,6 +80,7 @@ const auto kRegistered = register_experiment({
                    trained(kTrained, kSizes, kSeeds, kFitIterations),
                    {.methods = {"jpo-long"}, .n = {128}, .seeds = kSeeds}}}},
     .methods = methods(),
+    .looks = kJpoLooks,
 });
 
 /// With the paper's number of parameters, 13,925, at the price of one unit
@@ -103,6 +105,7 @@ const auto kRegisteredHead = register_experiment({
           .rows = {{.methods = {"bfgs"}, .n = {32, 128}, .seeds = kSeeds},
                    trained({"jpo"}, {32, 128}, kSeeds, kFitIterations)}}},
     .methods = jpo_methods({.rate = 1e-3, .iterations = kFitIterations}),
+    .looks = kJpoLooks,
 });
 
 }  // namespace
