@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "suite/cases/hig/quantum_dipole/direct_metrics.h"
 #include "suite/cases/hig/quantum_dipole/grids.h"
 #include "suite/cases/hig/quantum_dipole/metrics.h"
 #include "suite/evidence/statistics.h"
