@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "suite/harness/registry.h"
+#include "suite/results/published.h"
 
 namespace physinv {
 

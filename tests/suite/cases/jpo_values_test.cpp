@@ -7,7 +7,8 @@
 
 #include "problems/billiards/billiards.h"
 #include "suite/cases/jpo/common/values.h"
-#include "tests/suite/cases/jpo_fixture.h"
+#include "suite/results/published.h"
+#include "tests/suite/evidence/campaigns.h"
 
 namespace physinv::jpo {
 namespace {

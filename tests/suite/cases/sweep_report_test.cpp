@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "suite/diagnostics/stability_sweep.h"
+#include "suite/results/published.h"
 
 namespace physinv {
 namespace {
