@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "suite/evidence/statistics.h"
+#include "suite/results/published.h"
 
 namespace physinv {
 namespace {

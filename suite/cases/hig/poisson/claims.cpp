@@ -461,7 +461,7 @@ const std::vector<Claim> kSuite = {
                            median(kThenHig, seconds_per_update())),
                     report("Adam", median(kAdam, seconds_per_update()))}}};
 
-const bool kRegistered =
+const bool kClaims =
     register_claims(kName, kSuite) && register_claims(kName, kPaper);
 
 }  // namespace

@@ -189,7 +189,7 @@ Section report(const Results& results, const Published& published) {
   return section;
 }
 
-const bool kRegistered = register_report(kName, report);
+const bool kReport = register_report(kName, report);
 
 }  // namespace
 }  // namespace physinv::poisson

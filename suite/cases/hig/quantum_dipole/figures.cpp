@@ -150,8 +150,8 @@ Section conv_report(const Results& results, const Published& published) {
   return section;
 }
 
-const bool kRegistered = register_report(kDense, dense_report) &&
-                         register_report(kConvolutional, conv_report);
+const bool kReport = register_report(kDense, dense_report) &&
+                     register_report(kConvolutional, conv_report);
 
 }  // namespace
 }  // namespace physinv::dipole

@@ -61,7 +61,7 @@ bool proven(const Cells& c, Index j) {
          c.status(c.once(j)) < StressStatus::unproven;
 }
 
-const bool kRegistered = register_claims(
+const bool kClaims = register_claims(
     kName,
     {{.id = "N1",
       .from = "smoke",

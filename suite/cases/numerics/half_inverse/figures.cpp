@@ -186,7 +186,7 @@ Section report(const Results& results, const Published& published) {
           .figures = {maps(stage), lines(stage)}};
 }
 
-const bool kRegistered = register_report(kName, report);
+const bool kReport = register_report(kName, report);
 
 }  // namespace
 }  // namespace physinv::half_inverse_numerics

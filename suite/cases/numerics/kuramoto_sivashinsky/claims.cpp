@@ -62,7 +62,7 @@ Quantity at(const char* array, double end) {
   });
 }
 
-const bool kRegistered = register_claims(
+const bool kClaims = register_claims(
     kName,
     {{.id = "N1",
       .from = "smoke",

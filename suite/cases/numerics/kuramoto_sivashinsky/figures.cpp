@@ -214,7 +214,7 @@ Section report(const Results& results, const Published&) {
                                  horizons)}};
 }
 
-const bool kRegistered = register_report(kName, report);
+const bool kReport = register_report(kName, report);
 
 }  // namespace
 }  // namespace physinv::ks_numerics
