@@ -65,7 +65,7 @@ const Select kAdam{"adam"}, kAdam3{"adam-3e-4"}, kAdam10{"adam-1e-3"},
 /// From weights that Adam has trained for 5000 and for 30000 updates.
 const Select kThenHig16{"adam-hig-002-b16", "hig"},
     kThenHig{"adam-hig-002-b64", "hig"}, kLateHig{"long-adam-hig", "hig"},
-    kLateAdam{"long-adam-adam", "again"}, kReturns{"adam-hig-adam", "again"},
+    kLateAdam{"long-adam-adam", "again"}, kThenAdam{"adam-hig-adam", "again"},
     kLateReturns{"long-adam-hig-adam", "again"},
     kLateDetour{"long-adam-hig-adam", "hig"},
     kLateStart{"long-adam-hig-adam", "adam"};
@@ -424,7 +424,7 @@ const std::vector<Claim> kSuite = {
      .says = "Adam after HIG is soon back at the level before HIG, or below it",
      .conditions = {at_most(
          "Adam 200 updates after HIG over the level before HIG",
-         median(kReturns,
+         median(kThenAdam,
                 over(loss_after(200),
                      beside({"adam-hig-adam", "adam"}, last_loss()))),
          1.05)}},
