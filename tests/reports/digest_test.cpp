@@ -24,7 +24,7 @@ Section section(Verdict of_paper, Verdict of_suite) {
                      {.id = "R1", .says = "range", .verdict = of_suite}}};
 }
 
-Json provenance() {
+Json origin() {
   return {{"profile", "paper"},
           {"date", "2024-05-06T07:08:09Z"},
           {"cpu_model", "A processor"},
@@ -34,7 +34,7 @@ Json provenance() {
 }
 
 NamedDigest named(const char* name, Verdict of_paper, Verdict of_suite) {
-  return {name, digest_json({section(of_paper, of_suite)}, provenance())};
+  return {name, digest_json({section(of_paper, of_suite)}, origin())};
 }
 
 TEST(Digest, PageSaysWhereItsNumbersComeFrom) {
