@@ -74,6 +74,12 @@ RunValue loss_at(Clock clock, double time) {
 
 RunValue loss_after(double count) { return loss_at(updates(), count); }
 
+RunValue loss_at_share(double share) {
+  return of_row({}, [=](const CurveRow& row, const Run& run) {
+    return loss_at(*run.stage, share * row.updates(row.points() - 1));
+  });
+}
+
 RunValue first_loss() {
   return of_row({}, [](const CurveRow& row, const Run&) {
     return std::optional(row(0));

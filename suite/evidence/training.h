@@ -29,6 +29,8 @@ Clock paper_seconds(std::function<std::string(const Run&)> update);
 /// the end of a run that diverged, empty behind that of another.
 RunValue loss_at(Clock clock, double time);
 RunValue loss_after(double updates);
+/// After this share of the run's updates.
+RunValue loss_at_share(double share);
 /// At the ends of the curve; a run that diverged ends at infinity.
 RunValue first_loss();
 RunValue last_loss();
