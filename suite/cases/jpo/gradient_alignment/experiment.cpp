@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "problems/noisy_absolute/noise_lanes.h"
-#include "suite/cases/jpo/gradient_alignment/claims.h"
-#include "suite/cases/jpo/gradient_alignment/figures.h"
+#include "suite/cases/jpo/gradient_alignment/shares.h"
 #include "suite/diagnostics/alignment.h"
 #include "suite/harness/registry.h"
 
@@ -28,22 +27,6 @@ const TinyNetOptions kLinearNet{.hidden = {32, 32, 32},
                                 .activation = TinyActivation::tanh,
                                 .scale = 40,
                                 .range = 1};
-
-Section report(const Results& results, const Published& published) {
-  const auto printed = [&](const char* quantity, double otherwise) {
-    const auto found = published.find(kName, quantity);
-    return found ? found->value : otherwise;
-  };
-  const Fig2 f(results,
-               {.complexity = printed("fig2b/C", 6.4),
-                .plasticity = printed("fig2b/A", 12.9)});
-  return {.experiment = kName,
-          .title = "Gradient alignment",
-          .paper = "jpo",
-          .tables = tables(results, f, published),
-          .figures = figures(f),
-          .claims = claims(f)};
-}
 
 Method measure(std::string id,
                const NoisyAbsoluteOptions& data,
@@ -78,7 +61,6 @@ Experiment experiment() {
                measure("unequal", kUnequal),
                measure("linear", kLinear, kLinearNet),
                measure("sine", kSine, kSineNet)};
-  e.report = report;
   return e;
 }
 

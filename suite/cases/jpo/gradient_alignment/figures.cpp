@@ -1,8 +1,11 @@
-#include "suite/cases/jpo/gradient_alignment/figures.h"
-
 #include <fmt/format.h>
 
 #include <utility>
+
+#include "suite/cases/jpo/gradient_alignment/shares.h"
+#include "suite/harness/registry.h"
+#include "suite/results/published.h"
+#include "suite/results/results.h"
 
 namespace physinv::alignment {
 namespace {
@@ -14,7 +17,7 @@ std::vector<double> as_doubles(const std::vector<Index>& n) {
 /// Mean and two standard errors.
 Series points(const char* label,
               const char* method,
-              const std::optional<Measured>& m) {
+              const std::optional<Aligned>& m) {
   Series s{.label = label, .method = method, .line = false, .markers = true};
   if (!m) return s;
   s.x = as_doubles(m->n), s.y = m->share;
@@ -28,7 +31,7 @@ Series points(const char* label,
 template <class F>
 Series curve(const char* label,
              const char* method,
-             const std::optional<Measured>& m,
+             const std::optional<Aligned>& m,
              F&& theory) {
   Series s{.label = label, .method = method};
   if (!m) return s;
@@ -84,7 +87,7 @@ Figure noisy_figure(const Fig2& f,
                     const char* id,
                     const char* source,
                     const char* name,
-                    const std::optional<Measured>& m,
+                    const std::optional<Aligned>& m,
                     double (*noise_only)(Index)) {
   Series only = curve("noise only", "noise_only", m, noise_only);
   only.dashed = true;
@@ -120,7 +123,7 @@ Table shares_table(const Results& results, const Fig2& f) {
     rows.push_back({.label = fmt::format("{}", n)});
   const auto sizes = results.sizes(kName);
   const auto add =
-      [&](const char* name, const std::optional<Measured>& m, auto&& theory) {
+      [&](const char* name, const std::optional<Aligned>& m, auto&& theory) {
         table.columns.emplace_back(name);
         table.columns.push_back(fmt::format("{} theory", name));
         for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -201,21 +204,19 @@ Table vote_table(const std::vector<Index>& sizes) {
   return table;
 }
 
+Section report(const Results& results, const Published& published) {
+  const Fig2 f({results, published, kName});
+  return {.tables = {shares_table(results, f),
+                     fits_table(f, published),
+                     vote_table(results.sizes(kName))},
+          .figures = {
+              noise_figure(f),
+              linear_figure(f),
+              noisy_figure(f, "fig2c", "Fig. 2c", "sum", f.sum, sum_even),
+              noisy_figure(f, "fig2d", "Fig. 2d", "vote", f.vote, vote_even)}};
+}
+
+const bool kReport = register_report(kName, report);
+
 }  // namespace
-
-std::vector<Figure> figures(const Fig2& f) {
-  return {noise_figure(f),
-          linear_figure(f),
-          noisy_figure(f, "fig2c", "Fig. 2c", "sum", f.sum, sum_even),
-          noisy_figure(f, "fig2d", "Fig. 2d", "vote", f.vote, vote_even)};
-}
-
-std::vector<Table> tables(const Results& results,
-                          const Fig2& f,
-                          const Published& published) {
-  return {shares_table(results, f),
-          fits_table(f, published),
-          vote_table(results.sizes(kName))};
-}
-
 }  // namespace physinv::alignment

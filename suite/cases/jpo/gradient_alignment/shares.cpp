@@ -1,31 +1,32 @@
 #include "suite/cases/jpo/gradient_alignment/shares.h"
 
 #include <cmath>
+#include <map>
 #include <string>
-#include <string_view>
 
-#include "suite/cases/jpo/common/metrics.h"
+#include "suite/evidence/statistics.h"
+#include "suite/results/published.h"
+#include "suite/results/record.h"
 
 namespace physinv::alignment {
 namespace {
 
-std::optional<Measured> measured(const Results& results,
-                                 std::string_view method,
-                                 const std::string& array) {
-  Measured out;
-  for (const Index n : results.sizes(kName)) {
-    std::vector<double> all;  // of all seeds
-    for (const auto seed : results.seeds(kName)) {
-      const auto* stage = results.find(kName, method, n, seed, "measure");
-      if (stage == nullptr) continue;
-      const auto found = stage->arrays.find(array);
-      if (found == stage->arrays.end()) continue;
-      const auto values = found->second.reshaped();
-      all.insert(all.end(), values.begin(), values.end());
-    }
-    const auto mean = mean_std(all);
+std::optional<Aligned> measured(const Evidence& evidence,
+                                const std::string& method,
+                                const std::string& array) {
+  std::map<Index, std::vector<double>> all;  // of all seeds
+  for (const Run& run : find_runs(evidence, {method, "measure"})) {
+    const auto found = run.stage->arrays.find(array);
+    if (found == run.stage->arrays.end()) continue;
+    const auto values = found->second.reshaped();
+    auto& at = all[run.n()];
+    at.insert(at.end(), values.begin(), values.end());
+  }
+  Aligned out;
+  for (const auto& [n, values] : all) {
+    const auto mean = mean_std(values);
     if (!mean) continue;
-    const auto count = static_cast<Index>(all.size());
+    const auto count = static_cast<Index>(values.size());
     out.n.push_back(n);
     out.share.push_back(mean->mean);
     out.error.push_back(mean->std.value_or(0) /
@@ -37,18 +38,26 @@ std::optional<Measured> measured(const Results& results,
   return out;
 }
 
+double printed(const Evidence& evidence,
+               const char* quantity,
+               double otherwise) {
+  const auto found = evidence.published.find(kName, quantity);
+  return found ? found->value : otherwise;
+}
+
 }  // namespace
 
-Fig2::Fig2(const Results& results, const Response& printed)
-    : known_sum(measured(results, "known", "sum")),
-      known_vote(measured(results, "known", "vote")),
-      unequal_sum(measured(results, "unequal", "sum")),
-      unequal_vote(measured(results, "unequal", "vote")),
-      linear(measured(results, "linear", "noise_free")),
-      free(measured(results, "sine", "noise_free")),
-      sum(measured(results, "sine", "sum")),
-      vote(measured(results, "sine", "vote")),
-      paper(printed) {
+Fig2::Fig2(const Evidence& e)
+    : known_sum(measured(e, "known", "sum")),
+      known_vote(measured(e, "known", "vote")),
+      unequal_sum(measured(e, "unequal", "sum")),
+      unequal_vote(measured(e, "unequal", "vote")),
+      linear(measured(e, "linear", "noise_free")),
+      free(measured(e, "sine", "noise_free")),
+      sum(measured(e, "sine", "sum")),
+      vote(measured(e, "sine", "vote")),
+      paper({.complexity = printed(e, "fig2b/C", 6.4),
+             .plasticity = printed(e, "fig2b/A", 12.9)}) {
   if (linear) linear_fit = fit_response(linear->n, linear->share);
   if (free) sine_fit = fit_response(free->n, free->share);
 }

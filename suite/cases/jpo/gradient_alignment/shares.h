@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "suite/cases/jpo/gradient_alignment/theory.h"
-#include "suite/results/results.h"
+#include "suite/evidence/runs.h"
 
 namespace physinv::alignment {
 
@@ -17,7 +17,7 @@ inline constexpr double kWeak = 0.1, kEven = 1;  ///< signal-to-noise ratios
 inline constexpr Index kJudged = 300, kFull = 1000;
 
 /// Shares measured for one method and kind of gradient, by n.
-struct Measured {
+struct Aligned {
   std::vector<Index> n;
   std::vector<double> share, error;  ///< mean and its standard error
   Index repetitions = 0;             ///< the fewest of any n
@@ -36,12 +36,12 @@ struct Measured {
 
 /// Everything that Fig. 2 shows; what was not measured is empty.
 struct Fig2 {
-  std::optional<Measured> known_sum, known_vote, unequal_sum, unequal_vote,
+  std::optional<Aligned> known_sum, known_vote, unequal_sum, unequal_vote,
       linear, free, sum, vote;
   std::optional<ResponseFit> linear_fit, sine_fit;
   Response paper;  ///< of Fig. 2b
 
-  Fig2(const Results& results, const Response& printed);
+  explicit Fig2(const Evidence& evidence);
 
   static double rho(Index n, const Response& response) {
     return response_curve(n, response).back();
@@ -54,6 +54,7 @@ struct Fig2 {
 
 inline double sum_weak(Index n) { return align_sum(n, kWeak); }
 inline double vote_weak(Index n) { return align_vote(n, kWeak); }
+inline double vote_printed(Index n) { return align_vote_printed(n, kWeak); }
 inline double sum_even(Index n) { return align_sum(n, kEven); }
 inline double vote_even(Index n) { return align_vote(n, kEven); }
 
