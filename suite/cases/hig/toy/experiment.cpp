@@ -1,22 +1,23 @@
 // HIG paper, Secs. 2.1, 2.2, App. B.1, Fig. 1: a small network fits
 // (sin 6x, cos 9x) through a physics that scales its second output by gamma.
-#include <array>
 #include <string>
 #include <vector>
 
 #include "optimizers/training.h"
 #include "problems/scaled_output/scaled_output.h"
 #include "suite/cases/hig/common/methods.h"
-#include "suite/cases/hig/toy/claims.h"
-#include "suite/cases/hig/toy/figures.h"
+#include "suite/cases/hig/toy/metrics.h"
+#include "suite/cases/hig/toy/toy.h"
 #include "suite/harness/registry.h"
 #include "suite/nn/mlp.h"
 
-namespace physinv {
+namespace physinv::toy {
 namespace {
 
 constexpr Index kPoints = 1024, kBatch = 256;
 constexpr Index kSmoke = 80, kUpdates = 1600, kPaper = 16'000;
+
+// ---- methods ----------------------------------------------------------------
 
 constexpr hig::Power kHig{.kappa = -0.5, .tau = 1e-6};
 constexpr hig::Power kGaussNewton{.kappa = -1, .tau = 1e-4};
@@ -34,7 +35,7 @@ std::vector<Method> methods(double gamma) {
                    .chain = {train({.rule = std::move(rule),
                                     .batch = kBatch,
                                     .gradient_scale = gradient_scale,
-                                    .metrics = toy::metrics(gamma)})}});
+                                    .metrics = metrics(gamma)})}});
   };
   const auto power = [](const hig::Power& p) {
     return HalfInverseStepOptions{.power = p};
@@ -57,46 +58,9 @@ std::vector<Method> methods(double gamma) {
   return all;
 }
 
-const std::vector<MethodLine> kLines = {
-    {"hig", "HIG", "jpo"},
-    {"gn", "Gauss-Newton", "bfgs"},
-    {"gn_tau6", "Gauss-Newton, cut of HIG", "na"},
-    {"adam", "Adam", "gd"},
-    {"sgd", "SGD", "supervised"}};
-const std::vector<MethodLine> kVariants = {
-    {"hig_absolute", "HIG, absolute cut", "hig_absolute"},
-    {"gn_absolute", "Gauss-Newton, absolute cut", "gn_absolute"},
-    {"hig_mean", "HIG, g = r/b", "hig_mean"},
-    {"gn_mean", "Gauss-Newton, g = r/b", "gn_mean"},
-    {"hig_sum", "HIG, g = r", "hig_sum"},
-    {"gn_sum", "Gauss-Newton, g = r", "gn_sum"}};
+// ---- profiles ---------------------------------------------------------------
 
-Section report(const toy::Gamma& gamma, const Results& results) {
-  const char* name = gamma.experiment;
-  auto all = kLines;
-  all.insert(all.end(), kVariants.begin(), kVariants.end());
-  Section section{.experiment = name,
-                  .title = gamma.title,
-                  .paper = "hig",
-                  .tables = {loss_table(results, name, all),
-                             toy::course_table(results, name, all)},
-                  .claims = toy::claims(gamma, results)};
-  LearningCurves curves(results, section);
-  curves.losses(kLines, "fig1-loss", "Learning curves", "Fig. 1, left");
-  curves.metric(kLines,
-                toy::kSecondLoss,
-                "loss of the second component",
-                "fig1-second",
-                "What is learned of the scaled component",
-                "Sec. 2.2");
-  curves.add(toy::neuron_figure(results, name, kLines));
-  curves.add(toy::path_figure(results, name, kLines));
-  curves.losses(
-      kVariants, "variants", "Absolute cut, other factors of g", "Sec. 2.3");
-  return section;
-}
-
-std::vector<Profile> profiles(const toy::Gamma& gamma) {
+std::vector<Profile> profiles(const Gamma& gamma) {
   const std::vector<std::string> five = {"adam", "gn", "hig", "sgd", "gn_tau6"};
   constexpr RowOf row{.n = kPoints};
   std::vector<Profile> all = {
@@ -118,7 +82,7 @@ std::vector<Profile> profiles(const toy::Gamma& gamma) {
 }
 
 const bool kRegistered = [] {
-  for (const toy::Gamma& gamma : toy::kGammas) {
+  for (const Gamma& gamma : kGammas) {
     register_experiment({
         .name = gamma.experiment,
         .title = gamma.title,
@@ -126,18 +90,16 @@ const bool kRegistered = [] {
         .problem =
             problem<ScaledOutput>("scaled_output", {.gamma = gamma.value}),
         .setting = {.predictor = {{Field::given},
-                                  nn::mlp({.hidden = {toy::kHidden},
+                                  nn::mlp({.hidden = {kHidden},
                                            .activation = nn::Activation::tanh,
                                            .init = nn::Init::glorot})},
                     .recorded = 16},
         .profiles = profiles(gamma),
         .methods = methods(gamma.value),
-        .report = [&gamma](const Results& results,
-                           const Published&) { return report(gamma, results); },
     });
   }
   return true;
 }();
 
 }  // namespace
-}  // namespace physinv
+}  // namespace physinv::toy

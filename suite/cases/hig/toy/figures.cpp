@@ -1,76 +1,34 @@
-#include "suite/cases/hig/toy/figures.h"
-
 #include <fmt/format.h>
 
 #include <array>
 #include <cmath>
 
-#include "suite/cases/jpo/common/endings.h"
-#include "suite/evidence/curve.h"
+#include "suite/cases/hig/common/report.h"
+#include "suite/cases/hig/toy/toy.h"
+#include "suite/evidence/quantity.h"
+#include "suite/harness/registry.h"
+#include "suite/results/published.h"
+#include "suite/results/results.h"
 
 namespace physinv::toy {
 namespace {
 
-constexpr double kSaturated = 0.02;
-constexpr Index kUpdatesPerEpoch = 4;
+const std::vector<MethodLine> kLines = {
+    {"hig", "HIG", "jpo"},
+    {"gn", "Gauss-Newton", "bfgs"},
+    {"gn_tau6", "Gauss-Newton, cut of HIG", "na"},
+    {"adam", "Adam", "gd"},
+    {"sgd", "SGD", "supervised"}};
+const std::vector<MethodLine> kVariants = {
+    {"hig_absolute", "HIG, absolute cut", "hig_absolute"},
+    {"gn_absolute", "Gauss-Newton, absolute cut", "gn_absolute"},
+    {"hig_mean", "HIG, g = r/b", "hig_mean"},
+    {"gn_mean", "Gauss-Newton, g = r/b", "gn_mean"},
+    {"hig_sum", "HIG, g = r", "hig_sum"},
+    {"gn_sum", "Gauss-Newton, g = r", "gn_sum"}};
 
-/// The row of a stage's metrics at the last point at or before `updates`.
-std::optional<double> metric(const StageRecord& stage,
-                             Index row,
-                             Index updates) {
-  if (!stage.arrays.contains("metrics")) return {};
-  const auto k = last_point(stage, updates);
-  if (!k) return {};
-  return stage.arrays.at("metrics")(row, *k);
-}
-
-/// The first seed that a method was run with.
-const StageRecord* first_seed(const Results& results,
-                              std::string_view experiment,
-                              std::string_view method) {
-  for (const auto* stage : trained_stages(results, experiment, method))
-    if (stage->arrays.contains("metrics")) return stage;
-  return nullptr;
-}
-
-Cell number(std::optional<double> value) {
-  if (!value) return {.text = "not run"};
-  if (!std::isfinite(*value)) return {.text = "not finite"};
-  return {.text = fmt::format("{:.3g}", *value)};
-}
-
-}  // namespace
-
-std::optional<double> median_metric(const Results& results,
-                                    std::string_view experiment,
-                                    std::string_view method,
-                                    MetricRow row,
-                                    Index updates) {
-  std::vector<double> values;
-  for (const auto* stage : trained_stages(results, experiment, method))
-    if (const auto v = metric(*stage, row, updates)) values.push_back(*v);
-  if (values.empty()) return {};
-  return median(values);
-}
-
-std::optional<Saturation> saturation(const Results& results,
-                                     std::string_view experiment,
-                                     std::string_view method) {
-  Saturation all;
-  for (const auto* stage : trained_stages(results, experiment, method)) {
-    if (!stage->arrays.contains("metrics")) continue;
-    const auto end = stage->arrays.at("metrics").rightCols(1);
-    const auto flat = static_cast<int>(
-        (end.middleRows(kDeviations, kHidden).array() < kSaturated).count());
-    all.neurons += kHidden, all.saturated += flat;
-    ++all.seeds, all.seeds_with_one += flat > 0;
-  }
-  if (all.seeds == 0) return {};
-  return all;
-}
-
-Figure neuron_figure(const Results& results,
-                     std::string_view experiment,
+/// Mean and deviation of each neuron of one seed, a panel per method.
+Figure neuron_figure(const Evidence& evidence,
                      const std::vector<MethodLine>& lines) {
   Figure figure{.id = "fig1-neurons",
                 .title = "Outputs of the hidden neurons over the test points",
@@ -78,9 +36,10 @@ Figure neuron_figure(const Results& results,
                 .columns = 3,
                 .note = "Mean and standard deviation (band), one seed."};
   for (const MethodLine& line : lines) {
-    const auto* stage = first_seed(results, experiment, line.method);
-    if (stage == nullptr) continue;
-    const Batch<double>& m = stage->arrays.at("metrics");
+    const auto runs = find_runs(evidence, {line.method});
+    if (runs.empty()) continue;
+    const StageRecord& stage = *runs.front().stage;
+    const Batch<double>& m = stage.arrays.at("metrics");
     Panel panel{.title = line.label,
                 .x_label = "updates",
                 .y_label = "hidden output",
@@ -93,7 +52,7 @@ Figure neuron_figure(const Results& results,
       // A logarithmic axis has no place for the start.
       for (Index i = 1; i < m.cols(); ++i) {
         const double mean = m(kMeans + k, i), spread = m(kDeviations + k, i);
-        s.x.push_back(stage->curve.iteration[static_cast<std::size_t>(i)]);
+        s.x.push_back(stage.curve.iteration[static_cast<std::size_t>(i)]);
         s.y.push_back(mean);
         s.lo.push_back(mean - spread);
         s.hi.push_back(mean + spread);
@@ -105,14 +64,15 @@ Figure neuron_figure(const Results& results,
   return figure;
 }
 
-Figure path_figure(const Results& results,
-                   std::string_view experiment,
+/// (z_1, z_2) of the point from the start to the end, one seed.
+Figure path_figure(const Evidence& evidence,
                    const std::vector<MethodLine>& lines) {
   Panel panel{.x_label = "z1", .y_label = "z2", .y_min = -3, .y_max = 3};
   for (const MethodLine& line : lines) {
-    const auto* stage = first_seed(results, experiment, line.method);
-    if (stage == nullptr) continue;
-    const Batch<double>& m = stage->arrays.at("metrics");
+    const auto runs = find_runs(evidence, {line.method});
+    if (runs.empty()) continue;
+    const StageRecord& stage = *runs.front().stage;
+    const Batch<double>& m = stage.arrays.at("metrics");
     Series s{.label = line.label, .method = line.colour, .markers = true};
     // An excursion beyond the frame would hide everything else.
     for (Index i = 0; i < m.cols(); ++i) {
@@ -138,8 +98,28 @@ Figure path_figure(const Results& results,
           .note = "One seed; excursions beyond 3 are left out."};
 }
 
-Table course_table(const Results& results,
-                   std::string_view experiment,
+Cell number(const Measured& m) {
+  if (!m.value) return {.text = "not run"};
+  if (!std::isfinite(*m.value)) return {.text = "not finite"};
+  return {.text = fmt::format("{:.3g}", *m.value)};
+}
+
+Cell saturation(const Evidence& evidence, const char* method) {
+  Index neurons = 0, saturated = 0;
+  for (const Run& run : find_runs(evidence, {method}))
+    for (const double d : last_deviations(run))
+      ++neurons, saturated += is_saturated(d);
+  return {.text = fmt::format("{}/{}", saturated, neurons)};
+}
+
+Cell seeds_with_saturation(const Evidence& evidence, const char* method) {
+  const auto some = count(
+      {method}, saturated_neurons(), [](double n) { return n > 0; })(evidence);
+  return {.text = fmt::format("{}/{}", some.value.value_or(0), some.runs)};
+}
+
+/// Median losses along the way, and what became of the neurons.
+Table course_table(const Evidence& evidence,
                    const std::vector<MethodLine>& lines) {
   constexpr std::array<Index, 7> kEpochs = {1, 5, 20, 96, 200, 400, 4000};
   Table table{.id = "course",
@@ -158,24 +138,55 @@ Table course_table(const Results& results,
   for (const char* more : {"second", "beyond", "norm", "saturated", "seeds"})
     table.columns.push_back(more);
   for (const MethodLine& line : lines) {
-    const auto flat = saturation(results, experiment, line.method);
-    if (!flat) continue;
+    const Select select{line.method};
+    if (find_runs(evidence, select).empty()) continue;
     TableRow row{.label = line.label};
-    for (const Index e : kEpochs)
-      row.cells.push_back(number(median_test_loss(
-          results, experiment, line.method, e * kUpdatesPerEpoch)));
-    const auto at = [&](MetricRow which, Index epoch) {
-      row.cells.push_back(number(median_metric(
-          results, experiment, line.method, which, epoch * kUpdatesPerEpoch)));
+    const auto add = [&](const RunValue& value) {
+      row.cells.push_back(number(median(select, value)(evidence)));
     };
-    at(kSecondLoss, 20), at(kBeyond, 1), at(kWeightNorm, 400);
-    row.cells.push_back(
-        {.text = fmt::format("{}/{}", flat->saturated, flat->neurons)});
-    row.cells.push_back(
-        {.text = fmt::format("{}/{}", flat->seeds_with_one, flat->seeds)});
+    for (const Index e : kEpochs) add(value_after({}, e * kUpdatesPerEpoch));
+    add(value_after(metric(kSecondLoss), 20 * kUpdatesPerEpoch));
+    add(value_after(metric(kBeyond), kUpdatesPerEpoch));
+    add(value_after(metric(kWeightNorm), 400 * kUpdatesPerEpoch));
+    row.cells.push_back(saturation(evidence, line.method.c_str()));
+    row.cells.push_back(seeds_with_saturation(evidence, line.method.c_str()));
     table.rows.push_back(std::move(row));
   }
   return table;
 }
 
+Section report(const Gamma& gamma,
+               const Results& results,
+               const Published& published) {
+  const Evidence evidence{results, published, gamma.experiment};
+  auto all = kLines;
+  all.insert(all.end(), kVariants.begin(), kVariants.end());
+  Section section{.experiment = gamma.experiment,
+                  .tables = {loss_table(results, gamma.experiment, all),
+                             course_table(evidence, all)}};
+  LearningCurves curves(results, section);
+  curves.losses(kLines, "fig1-loss", "Learning curves", "Fig. 1, left");
+  curves.metric(kLines,
+                kSecondLoss,
+                "loss of the second component",
+                "fig1-second",
+                "What is learned of the scaled component",
+                "Sec. 2.2");
+  curves.add(neuron_figure(evidence, kLines));
+  curves.add(path_figure(evidence, kLines));
+  curves.losses(
+      kVariants, "variants", "Absolute cut, other factors of g", "Sec. 2.3");
+  return section;
+}
+
+const bool kReport = [] {
+  for (const Gamma& gamma : kGammas)
+    register_report(gamma.experiment,
+                    [&gamma](const Results& results, const Published& p) {
+                      return report(gamma, results, p);
+                    });
+  return true;
+}();
+
+}  // namespace
 }  // namespace physinv::toy
