@@ -44,7 +44,9 @@ Points points_of(std::span<const StageRecord> stages,
 Series median_series(const std::vector<Points>& seeds,
                      const MethodLine& line,
                      Axis axis) {
-  Series s{.label = line.label, .method = line.colour};
+  Series s{.label = line.label,
+           .method = line.key.empty() ? line.method : line.key,
+           .look = look_of(line)};
   std::size_t points = seeds.empty() ? 0 : SIZE_MAX;
   for (const Points& p : seeds) points = std::min(points, p.value.size());
   for (std::size_t k = 0; k < points; ++k) {

@@ -41,14 +41,22 @@ std::optional<double> median_test_loss(const Results& results,
 
 /// A method as a figure shows it.
 struct MethodLine {
-  std::string method, label, colour;
-  std::optional<double> paper_update;  ///< seconds by the paper, if it says
+  std::string method, label;
+  std::optional<Hue> hue = {};              ///< empty: the next free one
+  std::optional<double> paper_update = {};  ///< seconds by the paper
+  std::string key = {};  ///< lines of one look alike; empty: the method
 };
 
 /// Seconds of an update by a row of the paper's tables ("table3/hig/b=128").
 std::optional<double> paper_update(const Published& published,
                                    std::string_view experiment,
                                    std::string_view row);
+
+/// Of a series that shows this line; markers go with the hues.
+inline std::optional<Look> look_of(const MethodLine& line) {
+  if (!line.hue) return {};
+  return Look{*line.hue, static_cast<Marker>(*line.hue)};
+}
 
 /// Draws learning curves into an experiment's section: medians over seeds, with
 /// their range as a band. What shows nothing is left out, lines and figures.

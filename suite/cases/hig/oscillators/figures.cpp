@@ -37,19 +37,19 @@ Table final_losses(const Results& results, const Published& published) {
 std::vector<MethodLine> rules(const Published& published) {
   const auto adam = paper_update(published, kName, "table3/adam/b=512"),
              hig = paper_update(published, kName, "table3/hig/b=128");
-  return {{"hig", "HIG", "jpo", hig},
-          {"gn", "Gauss-Newton", "bfgs", hig},
-          {"adam", "Adam", "gd", adam},
-          {"sgd", "SGD", "supervised", adam},
-          {"adagrad", "Adagrad", "na", adam},
-          {"adadelta", "Adadelta", "adadelta", adam},
-          {"rmsprop", "RMSprop", "rmsprop", adam}};
+  return {{"hig", "HIG", Hue::orange, hig},
+          {"gn", "Gauss-Newton", Hue::blue, hig},
+          {"adam", "Adam", Hue::purple, adam},
+          {"sgd", "SGD", Hue::green, adam},
+          {"adagrad", "Adagrad", Hue::red, adam},
+          {"adadelta", "Adadelta", {}, adam},
+          {"rmsprop", "RMSprop", {}, adam}};
 }
 
 /// Lines of the methods so named, behind others that belong to the sweep.
 std::vector<MethodLine> sweep(const std::string& beginning,
                               std::vector<MethodLine> lines = {}) {
-  for (const auto& id : ids_with(beginning)) lines.push_back({id, id, id});
+  for (const auto& id : ids_with(beginning)) lines.push_back({id, id});
   return lines;
 }
 
@@ -66,9 +66,9 @@ Figure grid_figure(const LearningCurves& curves,
     std::vector<MethodLine> lines;
     for (const double rate : grid.rates)
       for (const Index b : kGridBatches)
-        lines.push_back({grid_id(grid.rule, rate, b),
-                         fmt::format("{} / {}", rate, b),
-                         fmt::format("{} {}", rate, b)});
+        lines.push_back({.method = grid_id(grid.rule, rate, b),
+                         .label = fmt::format("{} / {}", rate, b),
+                         .key = fmt::format("{} {}", rate, b)});
     Panel panel = curves.panel(lines);
     panel.title = grid.rule;
     if (!panel.series.empty()) figure.panels.push_back(std::move(panel));
@@ -106,31 +106,31 @@ Section report(const Results& results, const Published& published) {
           loss_table(results, kName, all)}};
   LearningCurves curves(results, section);
   curves.losses(rules(published), "fig2b", "Learning curves", "Fig. 2b");
-  curves.losses({{"hig-b32", "HIG, b = 32", "na"},
-                 {"kappa-m05", "HIG, b = 64", "supervised"},
-                 {"hig", "HIG, b = 128", "jpo"},
-                 {"adam-b256", "Adam, b = 256", "rmsprop"},
-                 {"adam", "Adam, b = 512", "gd"},
-                 {"adam-b1024", "Adam, b = 1024", "adadelta"},
-                 {"gn-b32", "GN, b = 32", "gn-b32"},
-                 {"kappa-m1", "GN, b = 64", "gn-b64"},
-                 {"gn", "GN, b = 128", "bfgs"}},
+  curves.losses({{"hig-b32", "HIG, b = 32", Hue::red},
+                 {"kappa-m05", "HIG, b = 64", Hue::green},
+                 {"hig", "HIG, b = 128", Hue::orange},
+                 {"adam-b256", "Adam, b = 256"},
+                 {"adam", "Adam, b = 512", Hue::purple},
+                 {"adam-b1024", "Adam, b = 1024"},
+                 {"gn-b32", "GN, b = 32"},
+                 {"kappa-m1", "GN, b = 64"},
+                 {"gn", "GN, b = 128", Hue::blue}},
                 "fig2c",
                 "Batch sizes",
                 "Fig. 2c");
   curves.add(grid_figure(
       curves, {kGrids.begin(), kGrids.end() - 1}, "fig5", "Fig. 5"));
   curves.add(grid_figure(curves, {kGrids.back()}, "fig6", "Fig. 6"));
-  curves.losses(sweep("beta-", {{"kappa-m05", "beta-0", "jpo"}}),
+  curves.losses(sweep("beta-", {{"kappa-m05", "beta-0", Hue::orange}}),
                 "fig12a",
                 "Exponent beta of the prefactor",
                 "Fig. 12a");
   curves.losses(sweep("kappa-"), "fig12b", "Exponent kappa", "Fig. 12b");
-  curves.losses(sweep("hig-tau", {{"kappa-m05", "hig-tau6", "jpo"}}),
+  curves.losses(sweep("hig-tau", {{"kappa-m05", "hig-tau6", Hue::orange}}),
                 "fig13a",
                 "HIG: truncation tau",
                 "Fig. 13");
-  curves.losses(sweep("gn-tau", {{"kappa-m1", "gn-tau6", "bfgs"}}),
+  curves.losses(sweep("gn-tau", {{"kappa-m1", "gn-tau6", Hue::blue}}),
                 "fig13b",
                 "Gauss-Newton: truncation tau",
                 "Fig. 13");

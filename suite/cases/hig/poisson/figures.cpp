@@ -92,43 +92,43 @@ Table crossing_table(const Evidence& e) {
 std::vector<MethodLine> learning(const Published& published) {
   const auto adam = paper_update(published, kName, "table4/adam/b=64"),
              hig = paper_update(published, kName, "table4/hig/b=64");
-  return {{"adam", "Adam 1e-4", "gd", adam},
-          {"adam-3e-4", "Adam 3e-4", "adam-3e-4", adam},
-          {"adam-1e-3", "Adam 1e-3", "adam-1e-3", adam},
-          {"hig-001-b64", "HIG 0.01", "hig-001", hig},
-          {"hig-002-b64", "HIG 0.02", "jpo", hig},
-          {"hig-005-b64", "HIG 0.05", "hig-005", hig},
-          {"gn-002-b64", "GN 0.02", "bfgs"},
-          {"gn-1-b64", "GN 1", "gn-1"},
-          {"hig-001-b16", "HIG 0.01, b = 16", "hig-001-b16"},
-          {"hig-002-b16", "HIG 0.02, b = 16", "supervised"},
-          {"hig-005-b16", "HIG 0.05, b = 16", "hig-005-b16"},
-          {"gn-002-b16", "GN 0.02, b = 16", "na"},
-          {"gn-1-b16", "GN 1, b = 16", "gn-1-b16"},
-          {"hig-b4", "HIG 0.02, b = 4", "hig-b4"},
-          {"gn-b4", "GN 0.02, b = 4", "gn-b4"}};
+  return {{"adam", "Adam 1e-4", Hue::purple, adam},
+          {"adam-3e-4", "Adam 3e-4", {}, adam},
+          {"adam-1e-3", "Adam 1e-3", {}, adam},
+          {"hig-001-b64", "HIG 0.01", {}, hig},
+          {"hig-002-b64", "HIG 0.02", Hue::orange, hig},
+          {"hig-005-b64", "HIG 0.05", {}, hig},
+          {"gn-002-b64", "GN 0.02", Hue::blue},
+          {"gn-1-b64", "GN 1"},
+          {"hig-001-b16", "HIG 0.01, b = 16"},
+          {"hig-002-b16", "HIG 0.02, b = 16", Hue::green},
+          {"hig-005-b16", "HIG 0.05, b = 16"},
+          {"gn-002-b16", "GN 0.02, b = 16", Hue::red},
+          {"gn-1-b16", "GN 1, b = 16"},
+          {"hig-b4", "HIG 0.02, b = 4"},
+          {"gn-b4", "GN 0.02, b = 4"}};
 }
 
 /// From weights that Adam has trained.
 std::vector<MethodLine> turns(const Published& published) {
   const auto adam = paper_update(published, kName, "table4/adam/b=64"),
              hig = paper_update(published, kName, "table4/hig/b=64");
-  return {{"adam-adam", "Adam, Adam", "gd", adam},
-          {"adam-hig-0001-b16", "Adam, HIG 0.001, b = 16", "hig-001"},
-          {"adam-hig-0005-b16", "Adam, HIG 0.005, b = 16", "hig-005"},
-          {"adam-hig-002-b16", "Adam, HIG 0.02, b = 16", "supervised"},
-          {"adam-hig-002-b64", "Adam, HIG 0.02", "jpo", hig},
-          {"long-adam-adam", "Adam, Adam, later", "adam-3e-4", adam},
-          {"long-adam-hig", "Adam, HIG 0.02, later", "na", hig}};
+  return {{"adam-adam", "Adam, Adam", Hue::purple, adam},
+          {"adam-hig-0001-b16", "Adam, HIG 0.001, b = 16"},
+          {"adam-hig-0005-b16", "Adam, HIG 0.005, b = 16"},
+          {"adam-hig-002-b16", "Adam, HIG 0.02, b = 16", Hue::green},
+          {"adam-hig-002-b64", "Adam, HIG 0.02", Hue::orange, hig},
+          {"long-adam-adam", "Adam, Adam, later", {}, adam},
+          {"long-adam-hig", "Adam, HIG 0.02, later", Hue::red, hig}};
 }
 
 const std::vector<MethodLine> kReturns = {
-    {"adam", "Adam, uninterrupted", "truth"},
-    {"adam-adam", "Adam, Adam", "gd"},
-    {"adam-hig-adam", "Adam, HIG, Adam", "jpo"},
-    {"long-adam-adam", "Adam, Adam, later", "adam-3e-4"},
-    {"long-adam-hig-adam", "Adam, HIG, Adam, later", "na"},
-    {"chain-smoke", "Adam, HIG, Adam, short", "chain-smoke"}};
+    {"adam", "Adam, uninterrupted", Hue::ink},
+    {"adam-adam", "Adam, Adam", Hue::purple},
+    {"adam-hig-adam", "Adam, HIG, Adam", Hue::orange},
+    {"long-adam-adam", "Adam, Adam, later"},
+    {"long-adam-hig-adam", "Adam, HIG, Adam, later", Hue::red},
+    {"chain-smoke", "Adam, HIG, Adam, short"}};
 
 Section report(const Results& results, const Published& published) {
   const auto fresh = learning(published), turned = turns(published);
@@ -163,7 +163,7 @@ Section report(const Results& results, const Published& published) {
   };
   curves.losses(some({"adam",
                       "adam-3e-4",
-                      "adam-1e-3",
+                      {},
                       "hig-001-b64",
                       "hig-002-b64",
                       "hig-005-b64"}),

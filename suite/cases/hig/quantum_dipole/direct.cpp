@@ -76,12 +76,12 @@ const Claim kNoFloor{
 // ---- report -----------------------------------------------------------------
 
 const std::vector<MethodLine> kLines = {
-    {"hig", "HIG", "jpo"},
-    {"gn", "Gauss-Newton", "bfgs"},
-    {"hig-f32", "HIG, float", "gd"},
-    {"gn-f32", "Gauss-Newton, float", "supervised"},
-    {"hig-tau7", "HIG, tau=1e-7", "na"},
-    {"hig-f32-tau7", "HIG, float, tau=1e-7", "sip"}};
+    {"hig", "HIG", Hue::orange},
+    {"gn", "Gauss-Newton", Hue::blue},
+    {"hig-f32", "HIG, float", Hue::purple},
+    {"gn-f32", "Gauss-Newton, float", Hue::green},
+    {"hig-tau7", "HIG, tau=1e-7", Hue::red},
+    {"hig-f32-tau7", "HIG, float, tau=1e-7"}};
 
 Section report(const Results& results, const Published&) {
   Section section{.experiment = kDirect,

@@ -31,7 +31,7 @@ std::vector<MethodLine> lines_of(const std::vector<AdamPoint>& grid,
   for (const AdamPoint& p : grid)
     lines.push_back({p.id,
                      fmt::format("b={} eta={:.0e}", p.batch, p.rate),
-                     p.id,
+                     {},
                      adam_update(published, p.batch)});
   return lines;
 }
@@ -43,7 +43,7 @@ std::vector<MethodLine> lines_of(const std::vector<HigPoint>& grid,
     lines.push_back(
         {p.id,
          fmt::format("b={} eta={} tau=1e-{}", p.batch, p.rate, p.digits),
-         p.id,
+         {},
          hig_update(published, p.batch)});
   return lines;
 }
@@ -54,36 +54,35 @@ std::vector<MethodLine> lines_of(const std::vector<FloatPoint>& points) {
     lines.push_back({p.id,
                      fmt::format("float, g {}, tau=1e-{}",
                                  p.project ? "projected" : "raw",
-                                 p.digits),
-                     p.id});
+                                 p.digits)});
   return lines;
 }
 
 const std::vector<MethodLine> kMain = {
-    {"hig", "HIG", "jpo"},
-    {"gn", "Gauss-Newton", "bfgs"},
-    {"adam", "Adam b=16 1e-4", "gd"},
-    {"adam-b256-5e-4", "Adam b=256 5e-4", "supervised"}};
+    {"hig", "HIG", Hue::orange},
+    {"gn", "Gauss-Newton", Hue::blue},
+    {"adam", "Adam b=16 1e-4", Hue::purple},
+    {"adam-b256-5e-4", "Adam b=256 5e-4", Hue::green}};
 
 std::vector<MethodLine> rates(const Published& published) {
   const auto hig = hig_update(published, 16), adam = adam_update(published, 16);
-  return {{"hig-b16-eta025-tau5", "HIG eta=0.25", "na", hig},
-          {"hig", "HIG eta=0.5", "jpo", hig},
-          {"hig-b16-eta10-tau5", "HIG eta=1", "bfgs", hig},
-          {"adam", "Adam b=16 1e-4", "gd", adam},
-          {"adam-b16-3e-4", "Adam b=16 3e-4", "adam-b16-3e-4", adam},
-          {"adam-b16-1e-3", "Adam b=16 1e-3", "adam-b16-1e-3", adam},
-          {"adam-b16-3e-3", "Adam b=16 3e-3", "adam-b16-3e-3", adam},
-          {"adam-b256-5e-4", "Adam b=256 5e-4", "supervised", adam}};
+  return {{"hig-b16-eta025-tau5", "HIG eta=0.25", Hue::red, hig},
+          {"hig", "HIG eta=0.5", Hue::orange, hig},
+          {"hig-b16-eta10-tau5", "HIG eta=1", Hue::blue, hig},
+          {"adam", "Adam b=16 1e-4", Hue::purple, adam},
+          {"adam-b16-3e-4", "Adam b=16 3e-4", {}, adam},
+          {"adam-b16-1e-3", "Adam b=16 1e-3", {}, adam},
+          {"adam-b16-3e-3", "Adam b=16 3e-3", {}, adam},
+          {"adam-b256-5e-4", "Adam b=256 5e-4", Hue::green, adam}};
 }
 
-const std::vector<MethodLine> kRules = {{"hig", "HIG", "jpo"},
-                                        {"gn", "Gauss-Newton", "bfgs"},
-                                        {"adam", "Adam", "gd"},
-                                        {"sgd", "SGD", "supervised"},
-                                        {"adagrad", "Adagrad", "na"},
-                                        {"rmsprop", "RMSprop", "rmsprop"},
-                                        {"adam-hig", "Adam, then HIG", "sip"}};
+const std::vector<MethodLine> kRules = {{"hig", "HIG", Hue::orange},
+                                        {"gn", "Gauss-Newton", Hue::blue},
+                                        {"adam", "Adam", Hue::purple},
+                                        {"sgd", "SGD", Hue::green},
+                                        {"adagrad", "Adagrad", Hue::red},
+                                        {"rmsprop", "RMSprop"},
+                                        {"adam-hig", "Adam, then HIG"}};
 
 const std::vector<CostLine> kCosts = {
     {"adam-b256-5e-4", "Adam b=256", "table5/adam/b=256"},

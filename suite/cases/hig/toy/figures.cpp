@@ -14,18 +14,18 @@ namespace physinv::toy {
 namespace {
 
 const std::vector<MethodLine> kLines = {
-    {"hig", "HIG", "jpo"},
-    {"gn", "Gauss-Newton", "bfgs"},
-    {"gn_tau6", "Gauss-Newton, cut of HIG", "na"},
-    {"adam", "Adam", "gd"},
-    {"sgd", "SGD", "supervised"}};
+    {"hig", "HIG", Hue::orange},
+    {"gn", "Gauss-Newton", Hue::blue},
+    {"gn_tau6", "Gauss-Newton, cut of HIG", Hue::red},
+    {"adam", "Adam", Hue::purple},
+    {"sgd", "SGD", Hue::green}};
 const std::vector<MethodLine> kVariants = {
-    {"hig_absolute", "HIG, absolute cut", "hig_absolute"},
-    {"gn_absolute", "Gauss-Newton, absolute cut", "gn_absolute"},
-    {"hig_mean", "HIG, g = r/b", "hig_mean"},
-    {"gn_mean", "Gauss-Newton, g = r/b", "gn_mean"},
-    {"hig_sum", "HIG, g = r", "hig_sum"},
-    {"gn_sum", "Gauss-Newton, g = r", "gn_sum"}};
+    {"hig_absolute", "HIG, absolute cut"},
+    {"gn_absolute", "Gauss-Newton, absolute cut"},
+    {"hig_mean", "HIG, g = r/b"},
+    {"gn_mean", "Gauss-Newton, g = r/b"},
+    {"hig_sum", "HIG, g = r"},
+    {"gn_sum", "Gauss-Newton, g = r"}};
 
 /// Mean and deviation of each neuron of one seed, a panel per method.
 Figure neuron_figure(const Evidence& evidence,
@@ -73,7 +73,10 @@ Figure path_figure(const Evidence& evidence,
     if (runs.empty()) continue;
     const StageRecord& stage = *runs.front().stage;
     const Batch<double>& m = stage.arrays.at("metrics");
-    Series s{.label = line.label, .method = line.colour, .markers = true};
+    Series s{.label = line.label,
+             .method = line.method,
+             .markers = true,
+             .look = look_of(line)};
     // An excursion beyond the frame would hide everything else.
     for (Index i = 0; i < m.cols(); ++i) {
       if (std::abs(m(kPathFirst, i)) > 3 || std::abs(m(kPathSecond, i)) > 3)
@@ -89,7 +92,8 @@ Figure path_figure(const Evidence& evidence,
                             .x = {std::sin(6 * kPoint)},
                             .y = {std::cos(9 * kPoint)},
                             .line = false,
-                            .markers = true});
+                            .markers = true,
+                            .look = Look{Hue::ink, Marker::cross}});
   return {.id = "fig1-path",
           .title = fmt::format("Path of the output at x = {}", kPoint),
           .source = "Fig. 1, right",
