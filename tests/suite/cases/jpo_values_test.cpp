@@ -18,7 +18,7 @@ StageRecord solver(const std::vector<double>& loss,
                    const std::vector<double>& start,
                    const std::vector<double>& iterations) {
   StageRecord s = stage_of("solve", loss, start);
-  s.example_iterations = losses(iterations);
+  s.example_iterations = physinv::losses(iterations);
   return s;
 }
 
