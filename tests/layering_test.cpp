@@ -69,6 +69,13 @@ std::string problem_of(const std::string& path) {
   return layer_of(path) == "problems" ? folder : "";
 }
 
+// "suite/cases/hig/toy/claims.cpp" -> "hig"; no paper knows another.
+std::string paper_of(const std::string& path) {
+  const std::string cases = "suite/cases/";
+  if (!path.starts_with(cases)) return "";
+  return path.substr(cases.size(), path.find('/', cases.size()) - cases.size());
+}
+
 // Name of a third-party library, empty for the standard library and system.
 std::string library_of(const std::string& header) {
   static const std::map<std::string, std::string> kPrefixes{
@@ -116,6 +123,10 @@ std::string objection(const std::string& file,
   if (from == "problems" && to == from && problem != problem_of(file)) {
     return "a problem does not include another";
   }
+  if (from == "suite/cases" && to == from &&
+      paper_of(header) != paper_of(file)) {
+    return "a paper does not include another";
+  }
   return "";
 }
 
@@ -157,6 +168,8 @@ TEST(Layering, ArrowsThatMustNotBe) {
   EXPECT_TRUE(quoted("problems/heat/heat.h", "problems/sine/sine.h"));
   EXPECT_TRUE(quoted("problems/heat/heat.h", "suite/nn/linear.h"));
   EXPECT_TRUE(quoted("reports/tables.cpp", "suite/harness/runner.h"));
+  EXPECT_TRUE(quoted("suite/cases/hig/toy/claims.cpp",
+                     "suite/cases/jpo/common/metrics.h"));
   EXPECT_TRUE(quoted("suite/harness/runner.cpp", "optimizers/jpo.h"));
   EXPECT_TRUE(quoted("optimizers/jpo.cpp", "jpo.h"));
   EXPECT_TRUE(quoted("elsewhere/a.cpp", "suite/core/rng.h"));
@@ -169,6 +182,10 @@ TEST(Layering, ArrowsThatMustNotBe) {
 TEST(Layering, ArrowsThatMayBe) {
   EXPECT_EQ(objection("baselines/a.h", "optimizers/training.h", true), "");
   EXPECT_EQ(objection("problems/heat/a.cpp", "problems/heat/b.h", true), "");
+  EXPECT_EQ(objection("suite/cases/hig/toy/claims.cpp",
+                      "suite/cases/hig/common/report.h",
+                      true),
+            "");
   EXPECT_EQ(objection("problems/a/kernels.cpp", "benchmark/benchmark.h", false),
             "");
   EXPECT_EQ(objection("suite/core/fft.cpp", "fftw3.h", false), "");
