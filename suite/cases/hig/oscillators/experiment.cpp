@@ -40,8 +40,6 @@ StepOptions first_order(std::string_view rule, double rate) {
   return AdamOptions{.rate = rate, .eps_before_correction = true};
 }
 
-}  // namespace
-
 std::vector<Method> methods() {
   std::vector<Method> all = {
       by_power("hig", 128, {.kappa = -0.5, .tau = 1e-6}),
