@@ -163,7 +163,7 @@ Section report(const Results& results, const Published& published) {
   };
   curves.losses(some({"adam",
                       "adam-3e-4",
-                      {},
+                      "adam-1e-3",
                       "hig-001-b64",
                       "hig-002-b64",
                       "hig-005-b64"}),
