@@ -57,7 +57,7 @@ struct Experiment {
   std::vector<Method> methods;
   /// Profiles in ascending order are what the claims' `from` refers to.
   std::vector<Claim> claims;
-  Looks looks;  ///< colours and markers of methods in every figure
+  Looks looks;    ///< colours and markers of methods in every figure
   Report report;  ///< empty: claims alone
 };
 
