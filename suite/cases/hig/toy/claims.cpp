@@ -192,16 +192,17 @@ const std::vector<Claim> kWellConditioned = {
 const std::vector<Claim> kIllConditioned = {
     {.id = "A2",
      .from = "standard",
-     .says = "HIG ends lower than Adam and GN, of which some seeds end as low "
-             "and others ten times higher",
+     .says = "HIG ends low on all seeds, Adam and GN on some of them",
      .conditions = {within("HIG", after("hig"), 3.1e-3, 1.2e-2),
                     within("Adam", after("adam"), 3.2e-3, 6.3e-2),
                     within("GN", after("gn"), 1.6e-3, 0.17),
                     above("Adam over HIG", compared("adam", "hig"), 1),
-                    above("GN over HIG", compared("gn", "hig"), 1),
+                    report("GN over HIG", compared("gn", "hig")),
                     report("worst HIG", highest({"hig"}, loss_after(kEnd)))},
-     .note = "Ranges: lowest to highest of 24 seeds, which hold 80 % of all "
-             "seeds with 95 % confidence."},
+     .note =
+         "Ranges: lowest to highest of 24 seeds, which hold 80 % of all "
+         "seeds with 95 % confidence. GN ends either below 0.009, 11 of 24, "
+         "or above 0.017: which, the median of a dozen leaves to chance."},
     {.id = "A3",
      .from = "quick",
      .says = "After 20 epochs Adam has not touched the second component; HIG "
