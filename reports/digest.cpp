@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -71,6 +72,13 @@ std::string overview(const std::vector<NamedDigest>& campaigns) {
                        count_of(c.suite, "fails"),
                        count_of(c.suite, "not judged"));
   }
+  std::set<std::string> publications;
+  for (const auto& c : campaigns)
+    for (const Json& paper :
+         c.digest.at("provenance").value("papers", Json::array()))
+      publications.insert(paper.get<std::string>());
+  out += '\n';
+  for (const auto& text : publications) out += "- " + text + '\n';
   return out;
 }
 

@@ -316,7 +316,11 @@ std::string summary_html(const Json& provenance) {
     if (std::string_view(key) == "date") words = words.substr(0, 10);
     out += before + html(words);
   }
-  return "<p class=\"remark\">" + out + "</p>\n";
+  out = "<p class=\"remark\">" + out + "</p>\n";
+  if (provenance.contains("papers"))
+    for (const Json& paper : provenance["papers"])
+      out += "<p class=\"remark\">" + html(plain(paper)) + "</p>\n";
+  return out;
 }
 
 }  // namespace

@@ -56,6 +56,18 @@ std::vector<Section> overviews_of(const Results& results,
   return sections;
 }
 
+/// Where the sections' experiments were published.
+std::vector<std::string> papers_of(const std::vector<Section>& sections,
+                                   const Published& published) {
+  std::vector<std::string> papers;
+  for (const Publication& p : published.publications())
+    if (std::any_of(sections.begin(), sections.end(), [&](const Section& s) {
+          return s.paper == p.key;
+        }))
+      papers.push_back(p.key + ": " + p.text());
+  return papers;
+}
+
 std::vector<Section> sections_of(const Results& results,
                                  const Published& published) {
   std::vector<Section> sections = overviews_of(results, published);
@@ -192,7 +204,8 @@ ExitCode report_verb(const Arguments& arguments) {
                           : std::vector<ExpectedFailure>();
   const fs::path target =
       out.empty() ? fs::path(results) / "report" : fs::path(out);
-  const auto origin = provenance(loaded);
+  auto origin = provenance(loaded);
+  origin["papers"] = papers_of(sections, numbers);
   try {
     write_report(target, sections, origin);
     if (!publish.empty()) publish_campaign(publish, results, sections, origin);

@@ -29,6 +29,7 @@ Json origin() {
           {"date", "2024-05-06T07:08:09Z"},
           {"cpu_model", "A processor"},
           {"num_cpus", 2},
+          {"papers", {"jpo: A. Author: A title. A venue, 2024."}},
           {"options",
            {{"filter", {"jpo/", "-head"}}, {"set", {"n=8"}}, {"seeds", "3"}}}};
 }
@@ -48,6 +49,7 @@ TEST(Digest, PageSaysWhereItsNumbersComeFrom) {
         "| P1 | a \\| b (Sec. 4) | reproduced | 0.98 (> 0.5) |",
         "| R1 | range | fails |",
         "A table",
+        "- jpo: A. Author: A title. A venue, 2024.",
         "| jpo | 1 | 0 | 0 | 0 | 0 | 1 | 0 |"})
     EXPECT_NE(page.find(words), page.npos) << words << "\n" << page;
 }

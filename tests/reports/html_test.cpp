@@ -100,6 +100,7 @@ nlohmann::ordered_json provenance() {
   return {{"profile", "quick"},
           {"date", "2024-01-02T03:04:05Z"},
           {"compiler_flags", "-O3 <&>"},
+          {"papers", {"jpo: A. Author & B. Author: A title."}},
           {"options", {{"threads", 1}}}};
 }
 
@@ -162,6 +163,9 @@ TEST(ReportHtml, IdsAreUniqueAndLinksArrive) {
 
 TEST(ReportHtml, CountsClaimsAndShowsEvidence) {
   const std::string text = page();
+  EXPECT_NE(between(text, "<header", "</header>")
+                .find("A. Author &amp; B. Author: A title."),
+            text.npos);
   EXPECT_EQ(count(text, "<strong>2</strong> reproduced"), 1U);
   // The suite's ranges do not count as what the papers say.
   EXPECT_EQ(count(text, "<strong>0</strong> not reproduced"), 1U);
