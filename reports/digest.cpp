@@ -82,28 +82,40 @@ std::string overview(const std::vector<NamedDigest>& campaigns) {
   return out;
 }
 
+/// Judged claims with their numbers, then the others by what is missing.
 std::string claims_of(const Json& section, const char* origin) {
   std::string rows;
+  std::map<std::string, std::string> waiting;  // what for -> ids
   for (const Json& claim : section.at("claims")) {
     if (claim.at("origin") != origin) continue;
     const std::string where = text_of(claim, "where");
     const std::string note = text_of(claim, "note");
+    const std::string evidence = text_of(claim, "evidence");
+    if (text_of(claim, "verdict") == "not judged") {
+      std::string& ids = waiting[evidence.empty() ? note : evidence];
+      ids += (ids.empty() ? "" : ", ") + text_of(claim, "id");
+      continue;
+    }
     rows += fmt::format("| {} | {}{} | {} | {}{} |\n",
                         text_of(claim, "id"),
                         cell(text_of(claim, "says")),
                         where.empty() ? "" : " (" + cell(where) + ")",
                         text_of(claim, "verdict"),
-                        cell(text_of(claim, "evidence")),
+                        cell(evidence),
                         note.empty() ? "" : " *" + cell(note) + "*");
   }
-  if (rows.empty()) return "";
+  if (rows.empty() && waiting.empty()) return "";
   const bool paper = std::string_view(origin) == "paper";
-  return fmt::format(
-      "\n{}\n\n| id | claim | verdict | measured |\n"
-      "| --- | --- | --- | --- |\n{}",
-      paper ? "What the paper says:"
-            : "Ranges of the suite (regression checks):",
-      rows);
+  std::string out = paper ? "\nWhat the paper says:\n"
+                          : "\nRanges of the suite (regression checks):\n";
+  if (!rows.empty())
+    out +=
+        "\n| id | claim | verdict | measured |\n| --- | --- | --- | --- |\n" +
+        rows;
+  if (!waiting.empty()) out += "\nNot judged by this campaign:\n\n";
+  for (const auto& [why, ids] : waiting)
+    out += fmt::format("- {}: {}\n", ids, why);
+  return out;
 }
 
 std::string campaign_markdown(const NamedDigest& campaign) {

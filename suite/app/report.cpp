@@ -112,14 +112,21 @@ nlohmann::ordered_json provenance(const Loaded& loaded) {
   return picked;
 }
 
-/// What a later campaign, and the page of results, can be made from.
+/// What a later campaign, and the page of results, can be made from; without
+/// the directory that it lay in.
 void publish_campaign(const fs::path& target,
                       const fs::path& directory,
                       const std::vector<Section>& sections,
-                      const nlohmann::ordered_json& provenance) {
+                      nlohmann::ordered_json provenance) {
+  const auto forget_place = [](auto& context) {
+    if (context.contains("options")) context["options"].erase("out");
+  };
+  auto results =
+      nlohmann::ordered_json::parse(read_file(directory / "results.json"));
+  forget_place(results["context"]);
+  forget_place(provenance);
   make_directory(target);
-  write_atomically(target / "results.json.gz",
-                   gzipped(read_file(directory / "results.json")));
+  write_atomically(target / "results.json.gz", gzipped(results.dump(1)));
   write_atomically(target / "digest.json",
                    digest_json(sections, provenance).dump(1) + '\n');
 }

@@ -47,7 +47,8 @@ ExitCode results_verb(const Arguments& arguments) {
              "Writes a page of all published campaigns: claims and tables, "
              "each with machine, build, date and command.",
              {{"--campaigns",
-               "folder of what report --publish wrote (default "
+               "folder of what report --publish wrote, shown in the order of "
+               "their names (default "
                "reports/campaigns)",
                &campaigns,
                "DIR"},

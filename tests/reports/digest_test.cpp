@@ -70,6 +70,15 @@ TEST(Digest, TheLastCampaignThatCouldJudgeCounts) {
                      "| jpo | 0 | 0 | 1 | 0 | 1 |"));
 }
 
+TEST(Digest, WhatIsNotJudgedIsNamedByWhatIsMissing) {
+  Section waits = section(Verdict::not_judged, Verdict::not_judged);
+  waits.claims[0].evidence = "needs the profile paper";
+  const std::string page =
+      results_markdown({{"a", digest_json({waits}, origin())}});
+  EXPECT_NE(page.find("- P1: needs the profile paper"), page.npos);
+  EXPECT_EQ(page.find("| P1 |"), page.npos);
+}
+
 TEST(Digest, SomethingElseIsNoDigest) {
   EXPECT_THROW(results_markdown({{"a", Json{{"sections", Json::array()}}}}),
                std::runtime_error);
