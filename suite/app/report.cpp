@@ -26,7 +26,6 @@ Section section_of(const Experiment& e,
                    const Published& published) {
   Section section;
   if (e.report) section = e.report(results, published);
-  apply(e.looks, section.figures);
   section.experiment = e.name;
   section.title = e.title;
   section.paper = e.source.paper;
@@ -81,6 +80,7 @@ std::vector<Section> sections_of(const Results& results,
                          .method_titles = section.method_titles})) {
       section.figures.push_back(std::move(figure));
     }
+    apply(e->looks, section.figures);
     sections.push_back(std::move(section));
   }
   return sections;
