@@ -108,7 +108,7 @@ show_progress() {
   while IFS= read -r line; do
     case $line in
       'ninja: no work to do.' | 'ninja: Entering directory'* | '-- '*) ;;
-      '[0/'*'Re-running CMake'* | '[0/'*'Re-checking globbed'*) ;;
+      '['*'] Re-running CMake'* | '[0/'*'Re-checking globbed'*) ;;
       '['*/*']'*)
         if [[ -t 1 ]]; then
           printf '\r\e[K%.79s' "$line"
