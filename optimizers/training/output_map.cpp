@@ -1,11 +1,24 @@
 #include "optimizers/training/output_map.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace physinv {
 namespace {
 
-/// To every column, in whole registers however short a column is.
+/// f(all numbers as one vector) where they lie side by side, so that registers
+/// are filled however short a column is; else f(the batch).
+template <class T, class F>
+void in_whole_registers(BatchOut<T> x, F&& f) {
+  if (x.outerStride() == x.rows()) {
+    Eigen::Map<Vector<T>> flat(x.data(), x.size());
+    f(flat);
+  } else {
+    f(x);
+  }
+}
+
+/// Added to every column.
 template <class T>
 class Start {
  public:
@@ -15,7 +28,7 @@ class Start {
 
   void add_to(BatchOut<T> x) const {
     if (level_) {
-      x.array() += start_(0);
+      in_whole_registers<T>(x, [&](auto& all) { all.array() += start_(0); });
     } else {
       x.colwise() += start_;
     }
@@ -34,12 +47,15 @@ class Linear final : public OutputMap<T> {
       : scale_(static_cast<T>(scale)), start_(start) {}
 
   void operator()(BatchIn<T> out, BatchIn<T>, BatchOut<T> x) override {
-    x = scale_ * out;
+    if (out.outerStride() == out.rows() && x.outerStride() == x.rows()) {
+      std::copy_n(out.data(), out.size(), x.data());
+    } else {
+      x = out;
+    }
+    scale(x);
     start_.add_to(x);
   }
-  void pull_back(BatchOut<T> bar) const override {
-    if (scale_ != T(1)) bar *= scale_;
-  }
+  void pull_back(BatchOut<T> bar) const override { scale(bar); }
   void pull_back_rows(BatchOut<T> jacobian) const override {
     pull_back(jacobian);
   }
@@ -48,6 +64,11 @@ class Linear final : public OutputMap<T> {
   }
 
  private:
+  void scale(BatchOut<T> x) const {
+    if (scale_ != T(1))
+      in_whole_registers<T>(x, [&](auto& all) { all *= scale_; });
+  }
+
   T scale_;
   Start<T> start_;
 };
