@@ -2,11 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <limits>
-
-#include "suite/evidence/curve.h"
-#include "suite/evidence/statistics.h"
-
 namespace physinv {
 namespace {
 
@@ -25,14 +20,6 @@ const CaseRecord* trained_case(const Results& results,
 
 }  // namespace
 
-const StageRecord* trained_stage(const Results& results,
-                                 std::string_view experiment,
-                                 std::string_view method,
-                                 std::uint64_t seed) {
-  const CaseRecord* c = trained_case(results, experiment, method, seed);
-  return c == nullptr ? nullptr : &c->stages.back();
-}
-
 std::vector<const CaseRecord*> trained_chains(const Results& results,
                                               std::string_view experiment,
                                               std::string_view method) {
@@ -50,25 +37,6 @@ std::vector<const StageRecord*> trained_stages(const Results& results,
   for (const CaseRecord* c : trained_chains(results, experiment, method))
     found.push_back(&c->stages.back());
   return found;
-}
-
-std::optional<double> test_loss(const StageRecord* stage, Index updates) {
-  if (stage == nullptr) return {};
-  if (const auto k = last_point(*stage, updates)) return CurveRow{*stage}(*k);
-  if (stage->stop == Stop::diverged)
-    return std::numeric_limits<double>::infinity();
-  return {};
-}
-
-std::optional<double> median_test_loss(const Results& results,
-                                       std::string_view experiment,
-                                       std::string_view method,
-                                       Index updates) {
-  std::vector<double> losses;
-  for (const auto* s : trained_stages(results, experiment, method))
-    if (const auto loss = test_loss(s, updates)) losses.push_back(*loss);
-  if (losses.empty()) return {};
-  return median(losses);
 }
 
 std::optional<double> paper_update(const Published& published,

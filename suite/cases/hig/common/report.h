@@ -13,31 +13,14 @@
 
 namespace physinv {
 
-/// The last stage of a method's chain for one seed, at the experiment's only
-/// n; null if it is not there.
-const StageRecord* trained_stage(const Results& results,
-                                 std::string_view experiment,
-                                 std::string_view method,
-                                 std::uint64_t seed);
-
-/// Those of all seeds that have one: whole chains, and their last stages.
+/// Finished chains of training stages at the experiment's only n, one for each
+/// seed that has one, and their last stages.
 std::vector<const CaseRecord*> trained_chains(const Results& results,
                                               std::string_view experiment,
                                               std::string_view method);
 std::vector<const StageRecord*> trained_stages(const Results& results,
                                                std::string_view experiment,
                                                std::string_view method);
-
-/// Mean test loss at the last point of the curve at or before `updates`
-/// (the end of a run that diverged counts as infinite). Empty if the run is
-/// not there or is shorter.
-std::optional<double> test_loss(const StageRecord* stage, Index updates);
-
-/// Median over the seeds there are; empty if there are none.
-std::optional<double> median_test_loss(const Results& results,
-                                       std::string_view experiment,
-                                       std::string_view method,
-                                       Index updates);
 
 /// A method as a figure shows it.
 struct MethodLine {
