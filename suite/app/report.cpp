@@ -11,6 +11,7 @@
 #include "suite/app/load.h"
 #include "suite/app/options.h"
 #include "suite/harness/expected.h"
+#include "suite/harness/judge.h"
 #include "suite/harness/progress.h"
 #include "suite/results/file.h"
 #include "suite/results/profiles.h"
@@ -29,9 +30,7 @@ Section section_of(const Experiment& e,
   section.experiment = e.name;
   section.title = e.title;
   section.paper = e.source.paper;
-  std::vector<std::string> profiles;
-  for (const Profile& p : e.profiles) profiles.push_back(p.name);
-  for (auto& claim : judge(e.claims, {results, published, e.name}, profiles))
+  for (auto& claim : judge(e, results, published))
     section.claims.push_back(std::move(claim));
   return section;
 }

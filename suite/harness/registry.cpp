@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "suite/harness/errors.h"
+#include "suite/harness/judge.h"
 #include "suite/harness/sources.h"
 
 namespace physinv {
@@ -241,12 +242,6 @@ std::string objection(const Registry& registry,
     return fmt::format(
         "'{}', which no profile from {} on runs", select.text(), claim.from);
   return "";
-}
-
-std::vector<std::string> profile_names(const Experiment& e) {
-  std::vector<std::string> names;
-  for (const Profile& p : e.profiles) names.push_back(p.name);
-  return names;
 }
 
 void check_claims(const Registry& registry,

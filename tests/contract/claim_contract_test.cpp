@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
+#include "suite/harness/judge.h"
 #include "suite/harness/registry.h"
 
 namespace physinv {
@@ -23,10 +24,7 @@ TEST(ClaimContract, NothingIsJudgedFromNothing) {
   const Results nothing;
   const Published published;
   for (const auto& e : registry().experiments()) {
-    std::vector<std::string> profiles;
-    for (const Profile& p : e->profiles) profiles.push_back(p.name);
-    for (const auto& c :
-         judge(e->claims, {nothing, published, e->name}, profiles))
+    for (const auto& c : judge(*e, nothing, published))
       EXPECT_EQ(c.verdict, Verdict::not_judged) << e->name << " " << c.id;
   }
 }
