@@ -10,6 +10,8 @@
 #include "optimizers/drive.h"
 #include "optimizers/network_model.h"
 #include "optimizers/solver_outcome.h"
+#include "suite/core/oracle.h"
+#include "suite/core/probe.h"
 
 namespace physinv {
 namespace {

@@ -2,6 +2,8 @@
 
 #include "optimizers/training/first_order.h"
 #include "optimizers/training/loop.h"
+#include "suite/core/oracle.h"
+#include "suite/core/probe.h"
 
 namespace physinv {
 namespace {

@@ -1,6 +1,7 @@
 #include "baselines/supervised.h"
 
 #include "optimizers/training/predictions.h"
+#include "suite/core/oracle.h"
 
 namespace physinv {
 namespace {

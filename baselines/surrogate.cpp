@@ -1,5 +1,7 @@
 #include "baselines/surrogate.h"
 
+#include "suite/core/oracle.h"
+
 namespace physinv {
 namespace {
 

@@ -51,6 +51,9 @@ function(physinv_precompile name)
   add_library(${name} OBJECT ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/precompiled.cpp)
   target_link_libraries(${name} PRIVATE physinv_flags Eigen3::Eigen fmt::fmt)
   target_compile_options(${name} PRIVATE ${PHYSINV_WARNINGS})
+  physinv_precompile_headers(${name} ${ARGN})
+endfunction()
+function(physinv_precompile_headers name)
   target_precompile_headers(${name} PRIVATE <Eigen/Core> <fmt/format.h>
     <algorithm> <functional> <map> <memory> <optional> <span> <string>
     <variant> <vector> ${ARGN})
@@ -70,14 +73,24 @@ function(physinv_join name)
   endif()
 endfunction()
 
-# physinv_layer(<name> [OBJECT] [RECORDS | WORDS] SOURCES ... DEPENDS ...): one
-# target per layer. OBJECT keeps registrations that nobody names from the
-# linker's broom. RECORDS handles numbers and makes none, WORDS does not touch
+# physinv_join_group(<folder> <sources>): the same for some sources of a folder,
+# in a target that is GROUPED.
+function(physinv_join_group folder)
+  list(TRANSFORM ARGN PREPEND ${folder}/)
+  string(MAKE_C_IDENTIFIER ${folder} group)
+  set_source_files_properties(${ARGN} PROPERTIES UNITY_GROUP ${group})
+endfunction()
+
+# physinv_layer(<name> [OBJECT] [RECORDS | WORDS | GROUPED] [PRECOMPILE headers]
+# SOURCES ... DEPENDS ...): one target per layer. OBJECT keeps registrations
+# that nobody names from the linker's broom. PRECOMPILE: headers of the project
+# that nearly every source of the layer includes. RECORDS handles numbers and makes none, WORDS does not touch
 # Eigen either: both are joined, words hardly optimized (-O1 comes after the -O3
 # of the build type). Elsewhere -O1 would be dangerous: the linker takes any one
 # copy of an inline function for all, and without contraction its bits differ.
 function(physinv_layer name)
-  cmake_parse_arguments(ARG "OBJECT;RECORDS;WORDS" "" "SOURCES;DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "OBJECT;RECORDS;WORDS;GROUPED" ""
+    "SOURCES;DEPENDS;PRECOMPILE" ${ARGN})
   set(kind STATIC)
   if(ARG_OBJECT)
     set(kind OBJECT)
@@ -91,7 +104,16 @@ function(physinv_layer name)
   target_compile_options(physinv_${name} PRIVATE ${PHYSINV_WARNINGS})
   if(PHYSINV_PRECOMPILE)
     target_link_libraries(physinv_${name} PRIVATE Eigen3::Eigen fmt::fmt)
-    target_precompile_headers(physinv_${name} REUSE_FROM physinv_precompiled)
+    if(ARG_PRECOMPILE)
+      list(TRANSFORM ARG_PRECOMPILE PREPEND ${PROJECT_SOURCE_DIR}/)
+      physinv_precompile_headers(physinv_${name} ${ARG_PRECOMPILE})
+    else()
+      target_precompile_headers(physinv_${name} REUSE_FROM physinv_precompiled)
+    endif()
+  endif()
+  if(ARG_GROUPED AND PHYSINV_PRECOMPILE)
+    set_target_properties(physinv_${name} PROPERTIES
+      UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
   endif()
   if(ARG_RECORDS OR ARG_WORDS)
     physinv_join(physinv_${name} 8)

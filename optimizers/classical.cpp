@@ -9,6 +9,8 @@
 #include "optimizers/drive.h"
 #include "optimizers/gradient_descent.h"
 #include "optimizers/solver_outcome.h"
+#include "suite/core/oracle.h"
+#include "suite/core/probe.h"
 
 namespace physinv {
 namespace {

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include "optimizers/half_inverse/explicit_power.h"
+#include "suite/core/oracle.h"
+#include "suite/core/probe.h"
 
 namespace physinv {
 namespace {

@@ -8,6 +8,8 @@
 #include "optimizers/training/loop.h"
 #include "optimizers/training/output_map.h"
 #include "optimizers/training/stage.h"
+#include "suite/core/oracle.h"
+#include "suite/core/probe.h"
 
 namespace physinv {
 namespace {

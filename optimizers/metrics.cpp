@@ -3,6 +3,9 @@
 #include <cmath>
 #include <limits>
 
+#include "suite/core/oracle.h"
+#include "suite/core/probe.h"
+
 namespace physinv {
 
 MetricsRecorder::MetricsRecorder(const Metrics& metrics, const StageRun& run)

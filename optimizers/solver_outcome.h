@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "suite/core/method.h"
+#include "suite/core/oracle.h"
 
 namespace physinv {
 

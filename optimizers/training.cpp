@@ -7,6 +7,8 @@
 #include "optimizers/training/loop.h"
 #include "optimizers/training/predictions.h"
 #include "optimizers/training/stage.h"
+#include "suite/core/oracle.h"
+#include "suite/core/probe.h"
 
 namespace physinv {
 namespace {

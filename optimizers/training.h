@@ -21,7 +21,7 @@
 #include "optimizers/half_inverse_step.h"
 #include "optimizers/metrics.h"
 #include "optimizers/steps/rule.h"
-#include "optimizers/training/batch_signal.h"
+#include "optimizers/training/signal_recipe.h"
 #include "optimizers/training/solver_loss.h"
 
 namespace physinv {

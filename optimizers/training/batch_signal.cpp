@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "optimizers/metrics.h"
+#include "suite/core/oracle.h"
 
 namespace physinv {
 

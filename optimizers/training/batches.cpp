@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "optimizers/network_model.h"
+#include "suite/core/oracle.h"
+#include "suite/core/probe.h"
 
 namespace physinv {
 

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "suite/core/oracle.h"
+#include "suite/core/probe.h"
+
 namespace physinv {
 
 template <class T>

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "suite/core/oracle.h"
+
 namespace physinv {
 namespace {
 

@@ -1,5 +1,7 @@
 #include "optimizers/training/predictions.h"
 
+#include "suite/core/oracle.h"
+
 namespace physinv {
 
 template <class T>

@@ -1,5 +1,8 @@
 #include "optimizers/training/solver_loss.h"
 
+#include "optimizers/training/batch_signal.h"
+#include "suite/core/oracle.h"
+
 namespace physinv {
 namespace {
 

@@ -2,7 +2,7 @@
 /// x_bar = J^T dLoss/dy, or the Jacobians themselves.
 #pragma once
 
-#include "optimizers/training/batch_signal.h"
+#include "optimizers/training/signal_recipe.h"
 
 namespace physinv {
 

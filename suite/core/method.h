@@ -8,12 +8,13 @@
 #include <utility>
 #include <vector>
 
-#include "suite/core/oracle.h"
-#include "suite/core/probe.h"
 #include "suite/core/recipe.h"
 #include "suite/core/stop.h"
 
 namespace physinv {
+
+class Oracle;
+class Probe;
 
 /// A part of a network's input, row blocks stacked in the order listed.
 enum class Field : std::uint8_t { unknowns, given, observations };

@@ -3,6 +3,8 @@
 #include <cmath>
 
 #include "suite/core/hash.h"
+#include "suite/core/oracle.h"
+#include "suite/core/probe.h"
 
 namespace physinv {
 

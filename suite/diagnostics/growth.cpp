@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "suite/core/oracle.h"
+#include "suite/core/probe.h"
 #include "suite/diagnostics/diagnostic.h"
 
 namespace physinv {

@@ -8,6 +8,7 @@
 
 #include "optimizers/half_inverse_step.h"
 #include "optimizers/network_model.h"
+#include "suite/core/probe.h"
 #include "suite/diagnostics/diagnostic.h"
 
 namespace physinv {

@@ -7,6 +7,8 @@
 #include <limits>
 
 #include "suite/core/hash.h"
+#include "suite/core/oracle.h"
+#include "suite/core/probe.h"
 #include "suite/diagnostics/diagnostic.h"
 
 namespace physinv {

@@ -1,5 +1,7 @@
 #include "suite/diagnostics/work_precision.h"
 
+#include "suite/core/oracle.h"
+#include "suite/core/probe.h"
 #include "suite/diagnostics/diagnostic.h"
 
 namespace physinv {

@@ -10,6 +10,7 @@
 #include <memory>
 #include <string>
 
+#include "suite/core/curve.h"
 #include "suite/core/method.h"
 
 namespace physinv {

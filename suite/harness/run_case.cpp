@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "suite/core/clock.h"
+#include "suite/core/probe.h"
 #include "suite/harness/run_stage.h"
 
 namespace physinv {

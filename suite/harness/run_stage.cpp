@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "suite/core/hash.h"
+#include "suite/core/oracle.h"
+#include "suite/core/probe.h"
 #include "suite/harness/keys.h"
 
 namespace physinv {

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "suite/core/method.h"
+#include "suite/core/probe.h"
 #include "suite/core/threads.h"
 #include "suite/harness/case.h"
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "baselines/surrogate.h"
+#include "suite/core/oracle.h"
+#include "suite/core/probe.h"
 #include "tests/support/bits.h"
 #include "tests/support/quadratic.h"
 #include "tests/support/tolerance.h"

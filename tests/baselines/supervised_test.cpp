@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "suite/core/oracle.h"
+#include "suite/core/probe.h"
 #include "tests/support/bits.h"
 #include "tests/support/quadratic.h"
 

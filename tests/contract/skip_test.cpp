@@ -12,6 +12,7 @@
 #include "optimizers/jpo.h"
 #include "optimizers/network_model.h"
 #include "problems/billiards/billiards.h"
+#include "suite/core/oracle.h"
 #include "suite/nn/mlp.h"
 #include "tests/support/bits.h"
 #include "tests/support/quadratic.h"

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "suite/core/oracle.h"
+#include "suite/core/probe.h"
 #include "tests/support/bits.h"
 #include "tests/support/quadratic.h"
 #include "tests/support/tolerance.h"

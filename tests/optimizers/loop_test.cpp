@@ -8,6 +8,7 @@
 
 #include "optimizers/training.h"
 #include "optimizers/training/first_order.h"
+#include "suite/core/oracle.h"
 #include "tests/support/bits.h"
 #include "tests/support/quadratic.h"
 

@@ -10,6 +10,7 @@
 
 #include "optimizers/jpo.h"
 #include "optimizers/steps/clip_percentile.h"
+#include "suite/core/oracle.h"
 #include "tests/support/formula_weights.h"
 #include "tests/support/quadratic.h"
 #include "tests/support/reference.h"

@@ -8,6 +8,8 @@
 
 #include "optimizers/network_model.h"
 #include "suite/core/method.h"
+#include "suite/core/oracle.h"
+#include "suite/core/probe.h"
 #include "suite/nn/mlp.h"
 
 namespace physinv::test {

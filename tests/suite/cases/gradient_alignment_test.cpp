@@ -5,6 +5,8 @@
 
 #include "problems/noisy_absolute/noise_lanes.h"
 #include "suite/cases/jpo/gradient_alignment/theory.h"
+#include "suite/core/oracle.h"
+#include "suite/core/probe.h"
 #include "suite/diagnostics/alignment.h"
 #include "tests/support/tolerance.h"
 

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <thread>
 
+#include "suite/core/oracle.h"
 #include "tests/support/quadratic.h"
 
 namespace physinv::test {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "suite/core/oracle.h"
+#include "suite/core/probe.h"
 #include "suite/diagnostics/diagnostic.h"
 #include "suite/diagnostics/growth.h"
 #include "suite/diagnostics/stability_sweep.h"

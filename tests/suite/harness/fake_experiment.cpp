@@ -9,6 +9,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "suite/core/oracle.h"
+#include "suite/core/probe.h"
 #include "suite/core/threads.h"
 
 namespace physinv::fake {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "problems/quantum_dipole/quantum_dipole.h"
+#include "suite/core/oracle.h"
 
 namespace physinv::dipole {
 namespace {

@@ -1,6 +1,7 @@
 #include "suite/cases/hig/quantum_dipole/metrics.h"
 
 #include "problems/quantum_dipole/quantum_dipole.h"
+#include "suite/core/oracle.h"
 
 namespace physinv::dipole {
 namespace {

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "suite/core/oracle.h"
+
 namespace physinv::toy {
 namespace {
 
