@@ -3,33 +3,54 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "problems/kuramoto_sivashinsky/etdrk2.h"
+#include "suite/core/lanes_math.h"
+#include "suite/core/workspace.h"
 
 namespace physinv {
 
+/// Uninitialised, valid until the enclosing scope ends.
+template <class P>
+P* take_packs(Workspace& work, Index count) {
+  using T = LaneScalar<P>;
+  constexpr Index kWidth = sizeof(P) / sizeof(T);
+  return reinterpret_cast<P*>(work.take<T>(kWidth, count).data());
+}
+
+/// Is no lane finite?
+template <class P>
+bool all_lost(const P& v) {
+  using T = LaneScalar<P>;
+  constexpr Index kWidth = sizeof(P) / sizeof(T);
+  return count_set(beyond<T, kWidth>(v, std::numeric_limits<T>::max())) ==
+         kWidth;
+}
+
 /// Steps first .. last-1, from state(first) with its spectrum in r.s; returns
 /// the last step reached. A point that is not finite spreads over its sample
-/// in the next transform and never leaves it.
-template <class T, class State, class Between>
+/// in the next transform and never leaves it; a block ends with its last
+/// sample.
+template <class T, class P, class State, class Between>
 Index march(const Etdrk2<T>& k,
-            const typename Etdrk2<T>::Run& r,
+            const Etdrk2Run<P>& r,
             Index first,
             Index last,
             State&& state,
             Between&& between) {
   for (Index i = first; i < last; ++i) {
     k.step(r, state(i), between(i), state(i + 1));
-    if (!std::isfinite(state(i + 1)[0])) [[unlikely]]
+    if (all_lost(state(i + 1)[0])) [[unlikely]]
       return i + 1;
   }
   return last;
 }
 
-/// How a tape keeps the states of a sample: all of them, u_0 a_0 u_1 a_1 ..,
+/// How a tape keeps the states of a block: all of them, u_0 a_0 u_1 a_1 ..,
 /// or state and spectrum at the start of every segment.
 struct Keeping {
-  Index segment, stride, rows;  ///< in steps, 0: all states; in reals
+  Index segment, stride, rows;  ///< in steps, 0: all states; in packs
 
   template <class T>
   Keeping(const KuramotoSivashinskyOptions& o,
@@ -43,29 +64,29 @@ struct Keeping {
   }
 };
 
-/// All steps of one sample back; states that were not kept are made again.
-template <class T>
+/// All steps of one block back; states that were not kept are made again.
+template <class T, class P>
 void pull_steps(const Etdrk2<T>& k,
-                const typename Etdrk2<T>::Run& r,
-                const typename Etdrk2<T>::Sums& sums,
+                const Etdrk2Run<P>& r,
+                const Etdrk2Sums<P>& sums,
                 Index steps,
                 const Keeping& keep,
-                const T* kept,
+                const P* kept,
                 Workspace& work) {
   const Index n = k.cells();
-  const auto back = [&](const T* states, Index count) {
+  const auto back = [&](const P* states, Index count) {
     for (Index i = count; i-- > 0;)
       k.back_step(r, states + 2 * i * n, states + (2 * i + 1) * n, sums);
   };
   if (keep.segment == 0) return back(kept, steps);
   auto again = r;  // only the spectrum is its own
-  again.s = work.take<T>(k.stride(), 1).data();
-  T* const states = work.take<T>((2 * keep.segment + 1) * n, 1).data();
+  again.s = take_packs<P>(work, k.stride());
+  P* const states = take_packs<P>(work, (2 * keep.segment + 1) * n);
   const auto state = [=](Index i) { return states + 2 * i * n; };
   const auto between = [=](Index i) { return state(i) + n; };
   for (Index c = (steps - 1) / keep.segment; c >= 0; --c) {
     const Index count = std::min(keep.segment, steps - c * keep.segment);
-    const T* const start = kept + c * keep.stride;
+    const P* const start = kept + c * keep.stride;
     std::copy_n(start, n, states);
     std::copy_n(start + n, n + 2, again.s);
     march(k, again, 0, count, state, between);

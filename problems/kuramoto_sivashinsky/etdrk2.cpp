@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "suite/core/lanes_math.h"
 #include "suite/core/workspace.h"
 
 namespace physinv {
@@ -28,29 +29,18 @@ double forcing_at(double x) {
 }
 
 /// s := s + scale (-i c) z, and z := s, which transforms may destroy.
-template <class T>
-void add_turned(Index count,
-                T scale,
-                const Vector<T>& c,
-                T* __restrict s,
-                T* __restrict z) {
-  const T* __restrict turn = c.data();
+template <class P, class T>
+PHYSINV_LANES void add_turned(
+    Index count, P scale, const T* turn, P* __restrict s, P* __restrict z) {
   for (Index i = 0; i < count; i += 2) {
-    const T re = z[i], im = z[i + 1];
-    z[i] = s[i] += scale * turn[i] * im;
-    z[i + 1] = s[i + 1] += scale * turn[i + 1] * re;
+    const P re = z[i], im = z[i + 1];
+    z[i] = s[i] = fma_lanes(scale * turn[i], im, s[i]);
+    z[i + 1] = s[i + 1] = fma_lanes(scale * turn[i + 1], re, s[i + 1]);
   }
 }
 
-/// z := (-i c) s
-template <class T>
-void turn_into(Index count, const Vector<T>& c, const T* s, T* __restrict z) {
-  const T* __restrict turn = c.data();
-  for (Index i = 0; i < count; i += 2) {
-    z[i] = turn[i] * s[i + 1];
-    z[i + 1] = turn[i + 1] * s[i];
-  }
-}
+template <class P>
+constexpr Index kWidth = sizeof(P) / sizeof(LaneScalar<P>);
 
 }  // namespace
 
@@ -75,161 +65,215 @@ KuramotoSivashinskyOperators operators(const KuramotoSivashinskyOptions& o) {
 
 template <class T>
 Etdrk2<T>::Etdrk2(const KuramotoSivashinskyOperators& op)
-    : cells_(op.forcing.size()), fft_(cells_), pair_(cells_, 2) {
+    : cells_(op.forcing.size()), fft_(cells_) {
+  using One = Pack<double, 2>;
   const Index modes = op.k.size();
   const double n = static_cast<double>(cells_);
-  const RealFft<double> fft(cells_);
+  const LanesFft<double> fft(cells_);
   Workspace work;
-  auto g = work.take<double>(cells_, 1);
-  auto spectrum = work.take<double>(2 * modes, 1);
-  g = op.forcing;
-  fft.forward(g.data(), spectrum.data());
+  auto g = work.take<double>(2, cells_);
+  auto spectrum = work.take<double>(2, 2 * modes);
+  g.rowwise() = op.forcing.transpose();
+  fft.forward(reinterpret_cast<const One*>(g.data()),
+              reinterpret_cast<One*>(spectrum.data()));
   for (auto* v : {&exp_, &forcing_, &advect1_, &advect2_}) v->resize(2 * modes);
   for (Index i = 0; i < 2 * modes; ++i) {
-    const Index m = i / 2;
+    const Index m = fft_.mode(i / 2);
     // The Nyquist mode has no derivative.
     const double k = m == modes - 1 ? 0 : op.k(m) * (i % 2 == 0 ? 1 : -1);
     exp_(i) = static_cast<T>(op.exp(m));
-    forcing_(i) = static_cast<T>(op.dt_phi1(m) * spectrum(i) / n);
+    forcing_(i) = static_cast<T>(op.dt_phi1(m) * spectrum(0, i) / n);
     advect1_(i) = static_cast<T>(k * op.dt_phi1(m) / (2 * n));
     advect2_(i) = static_cast<T>(k * op.dt_phi2(m) / (2 * n));
   }
 }
 
 template <class T>
-void Etdrk2<T>::begin(const Run& r, const T* u) const {
+template <class P>
+void Etdrk2<T>::begin(const Etdrk2Run<P>& r, const P* u) const {
   fft_.forward(u, r.s);
   const T scale = T(1) / static_cast<T>(cells_);
   for (Index i = 0; i < cells_ + 2; ++i) r.s[i] *= scale;
 }
 
 template <class T>
-void Etdrk2<T>::restore(const Run& r, T* u) const {
+template <class P>
+void Etdrk2<T>::restore(const Etdrk2Run<P>& r, P* u) const {
   std::copy_n(r.s, cells_ + 2, r.z);
   fft_.inverse(r.z, u);
 }
 
-/// s := E s + alpha P1 G^
+/// s := E s + alpha P1 G^. Where alpha is 0, no forcing is added: the sign of
+/// a zero depends on no neighbour.
 template <class T>
-void Etdrk2<T>::propagate(T alpha, T* s) const {
+template <class P>
+void Etdrk2<T>::propagate(P alpha, P* s) const {
   const T *e = exp_.data(), *f = forcing_.data();
   const Index count = cells_ + 2;
-  if (alpha == 0) {
+  const auto unforced = alpha == P{};
+  const Index zeros = count_set(unforced);
+  if (zeros == kWidth<P>) {
     for (Index i = 0; i < count; ++i) s[i] *= e[i];
+  } else if (zeros == 0) {
+    for (Index i = 0; i < count; ++i)
+      s[i] = fma_lanes(alpha, P{} + f[i], e[i] * s[i]);
   } else {
-    for (Index i = 0; i < count; ++i) s[i] = e[i] * s[i] + alpha * f[i];
+    for (Index i = 0; i < count; ++i) {
+      const P drift = e[i] * s[i];
+      s[i] = select(unforced, drift, fma_lanes(alpha, P{} + f[i], drift));
+    }
   }
 }
 
 template <class T>
-void Etdrk2<T>::drift(const Run& r) const {
+template <class P>
+void Etdrk2<T>::drift(const Etdrk2Run<P>& r) const {
   propagate(r.alpha, r.s);
 }
 
 template <class T>
-[[gnu::noinline]] void Etdrk2<T>::step(const Run& r,
-                                       const T* u,
-                                       T* a,
-                                       T* u_new) const {
+template <class P>
+void Etdrk2<T>::step(const Etdrk2Run<P>& r, const P* u, P* a, P* u_new) const {
   const Index n = cells_;
-  T* __restrict w = r.w;
+  P* __restrict w = r.w;
   for (Index j = 0; j < n; ++j) w[j] = u[j] * u[j];
   fft_.forward(w, r.z);
   propagate(r.alpha, r.s);
-  add_turned(n + 2, r.beta, advect1_, r.s, r.z);
+  add_turned(n + 2, r.beta, advect1_.data(), r.s, r.z);
   fft_.inverse(r.z, a);
-  for (Index j = 0; j < n; ++j) w[j] = a[j] * a[j] - u[j] * u[j];
+  for (Index j = 0; j < n; ++j) w[j] = fma_lanes(a[j], a[j], -(u[j] * u[j]));
   fft_.forward(w, r.z);
-  add_turned(n + 2, r.beta, advect2_, r.s, r.z);
+  add_turned(n + 2, r.beta, advect2_.data(), r.s, r.z);
   fft_.inverse(r.z, u_new);
 }
 
+/// d(beta u^2) = 2 beta u du, and u^2 more along beta.
 template <class T>
-void Etdrk2<T>::tangent_step(T beta,
-                             const T* u,
-                             const T* a,
-                             const Tangents& t) const {
-  const Index n = cells_, h = pair_.spectrum_stride();
-  T* __restrict w = t.w, *du = t.du, *da = t.da;
-  const T twice = 2 * beta;
-  for (Index j = 0; j < n; ++j) {
-    w[j] = twice * du[j] * u[j];
-    w[n + j] = (twice * du[n + j] + u[j]) * u[j];
-  }
-  pair_.forward(w, t.z);
-  for (Index d = 0; d < 2; ++d) {
-    propagate(static_cast<T>(1 - d), t.ds + d * h);
-    add_turned(n + 2, T(1), advect1_, t.ds + d * h, t.z + d * h);
-  }
-  pair_.inverse(t.z, da);
-  for (Index j = 0; j < n; ++j) {
-    w[j] = twice * (da[j] * a[j] - du[j] * u[j]);
-    w[n + j] =
-        (twice * da[n + j] + a[j]) * a[j] - (twice * du[n + j] + u[j]) * u[j];
-  }
-  pair_.forward(w, t.z);
-  for (Index d = 0; d < 2; ++d)
-    add_turned(n + 2, T(1), advect2_, t.ds + d * h, t.z + d * h);
-  pair_.inverse(t.z, du);
+template <class P>
+void Etdrk2<T>::tangent_step(const Etdrk2Run<P>& r,
+                             const P* u,
+                             const P* a,
+                             const Etdrk2Tangent<P>& along_alpha,
+                             const Etdrk2Tangent<P>& along_beta) const {
+  const Index n = cells_;
+  const P twice = 2 * r.beta, one = P{} + T(1);
+  P *w = r.w, *z = r.z;
+  const auto advance = [&](const Etdrk2Tangent<P>& t, bool alpha) {
+    const P own = P{} + T(alpha ? 0 : 1);
+    const auto change = [&](P d, P v) {
+      return fma_lanes(twice, d, own * v) * v;
+    };
+    for (Index j = 0; j < n; ++j) w[j] = change(t.du[j], u[j]);
+    fft_.forward(w, z);
+    propagate(alpha ? one : P{}, t.ds);
+    add_turned(n + 2, one, advect1_.data(), t.ds, z);
+    fft_.inverse(z, t.da);
+    for (Index j = 0; j < n; ++j)
+      w[j] = change(t.da[j], a[j]) - change(t.du[j], u[j]);
+    fft_.forward(w, z);
+    add_turned(n + 2, one, advect2_.data(), t.ds, z);
+    fft_.inverse(z, t.du);
+  };
+  advance(along_alpha, true);
+  advance(along_beta, false);
 }
 
 /// With lambda = dL/du_new and D = (i k P), antisymmetric: q = D2 lambda,
 /// la = lambda + beta a q, r = D1 la - q, lambda := E la + beta u r. The
 /// multipliers of the way forward give -q / (2 cells) and -r / (2 cells) here.
 template <class T>
-void Etdrk2<T>::back_step(const Run& r,
-                          const T* u,
-                          const T* a,
-                          const Sums& sums) const {
+template <class P>
+void Etdrk2<T>::back_step(const Etdrk2Run<P>& r,
+                          const P* u,
+                          const P* a,
+                          const Etdrk2Sums<P>& sums) const {
   const Index n = cells_;
-  const T scale = -2 * r.beta;
-  T* __restrict w = r.w, * __restrict s = r.s, * __restrict z = r.z;
-  T* __restrict by_alpha = sums.alpha, * __restrict by_beta = sums.beta;
+  const P scale = -2 * r.beta;
+  P* __restrict w = r.w, * __restrict s = r.s, * __restrict z = r.z;
+  P* __restrict by_alpha = sums.alpha, * __restrict by_beta = sums.beta;
   const T *e = exp_.data(), *c1 = advect1_.data(), *c2 = advect2_.data();
 
-  turn_into(n + 2, advect2_, s, z);
+  for (Index i = 0; i < n + 2; i += 2) {
+    z[i] = c2[i] * s[i + 1];
+    z[i + 1] = c2[i + 1] * s[i];
+  }
   fft_.inverse(z, w);
   for (Index j = 0; j < n; ++j) {
     w[j] *= a[j];
-    by_beta[j] += w[j] * a[j];
+    by_beta[j] = fma_lanes(w[j], a[j], by_beta[j]);
   }
   fft_.forward(w, z);
   for (Index i = 0; i < n + 2; i += 2) {
-    const T re = s[i], im = s[i + 1];
-    const T la_re = re + scale * z[i], la_im = im + scale * z[i + 1];
+    const P re = s[i], im = s[i + 1];
+    const P la_re = fma_lanes(scale, z[i], re);
+    const P la_im = fma_lanes(scale, z[i + 1], im);
     by_alpha[i] += la_re;
     by_alpha[i + 1] += la_im;
     s[i] = e[i] * la_re;
     s[i + 1] = e[i + 1] * la_im;
-    z[i] = c1[i] * la_im - c2[i] * im;
-    z[i + 1] = c1[i + 1] * la_re - c2[i + 1] * re;
+    z[i] = fma_lanes(P{} + c1[i], la_im, -(c2[i] * im));
+    z[i + 1] = fma_lanes(P{} + c1[i + 1], la_re, -(c2[i + 1] * re));
   }
   fft_.inverse(z, w);
   for (Index j = 0; j < n; ++j) {
     w[j] *= u[j];
-    by_beta[j] += w[j] * u[j];
+    by_beta[j] = fma_lanes(w[j], u[j], by_beta[j]);
   }
   fft_.forward(w, z);
-  for (Index i = 0; i < n + 2; ++i) s[i] += scale * z[i];
+  for (Index i = 0; i < n + 2; ++i) s[i] = fma_lanes(scale, z[i], s[i]);
 }
 
 /// Parseval: modes between the ends stand for their conjugates too, and
 /// spectra are divided by `cells` where one product would want it once.
 template <class T>
-T Etdrk2<T>::alpha_bar(const Sums& sums) const {
+template <class P>
+P Etdrk2<T>::alpha_bar(const Etdrk2Sums<P>& sums) const {
   const Index n = cells_;
-  T sum = 0;
-  for (Index i = 2; i < n; ++i) sum += forcing_(i) * sums.alpha[i];
-  return static_cast<T>(n) *
-         (forcing_(0) * sums.alpha[0] + 2 * sum + forcing_(n) * sums.alpha[n]);
+  const auto term = [&](Index i, P sum) {
+    return fma_lanes(P{} + forcing_(i), sums.alpha[i], sum);
+  };
+  P sum{};
+  for (Index i = 2; i < n; ++i) sum = term(i, sum);
+  return static_cast<T>(n) * term(n, term(0, 2 * sum));
 }
 
 template <class T>
-T Etdrk2<T>::beta_bar(const Sums& sums) const {
-  T sum = 0;
+template <class P>
+P Etdrk2<T>::beta_bar(const Etdrk2Sums<P>& sums) const {
+  P sum{};
   for (Index j = 0; j < cells_; ++j) sum += sums.beta[j];
   return -static_cast<T>(cells_) * sum;
 }
+
+#define PHYSINV_STEPS(T, P)                                                   \
+  template void Etdrk2<T>::begin(const Etdrk2Run<P>&, const P*) const;        \
+  template void Etdrk2<T>::restore(const Etdrk2Run<P>&, P*) const;            \
+  template void Etdrk2<T>::drift(const Etdrk2Run<P>&) const;                  \
+  template void Etdrk2<T>::step(const Etdrk2Run<P>&, const P*, P*, P*) const; \
+  template void Etdrk2<T>::tangent_step(const Etdrk2Run<P>&,                  \
+                                        const P*,                             \
+                                        const P*,                             \
+                                        const Etdrk2Tangent<P>&,              \
+                                        const Etdrk2Tangent<P>&) const;       \
+  template void Etdrk2<T>::back_step(                                         \
+      const Etdrk2Run<P>&, const P*, const P*, const Etdrk2Sums<P>&) const;   \
+  template P Etdrk2<T>::alpha_bar(const Etdrk2Sums<P>&) const;                \
+  template P Etdrk2<T>::beta_bar(const Etdrk2Sums<P>&) const;
+using F4 = Pack<float, 4>;
+using F8 = Pack<float, 8>;
+using D2 = Pack<double, 2>;
+using D4 = Pack<double, 4>;
+PHYSINV_STEPS(float, F4)
+PHYSINV_STEPS(float, F8)
+PHYSINV_STEPS(double, D2)
+PHYSINV_STEPS(double, D4)
+#ifdef __AVX512F__
+using F16 = Pack<float, 16>;
+using D8 = Pack<double, 8>;
+PHYSINV_STEPS(float, F16)
+PHYSINV_STEPS(double, D8)
+#endif
+#undef PHYSINV_STEPS
 
 template class Etdrk2<float>;
 template class Etdrk2<double>;

@@ -1,16 +1,38 @@
 /// The time step of the Kuramoto-Sivashinsky equation, forward, along
-/// tangents and backward, one sample at a time: everything of a sample stays
-/// in the first-level cache. Formulas in kuramoto_sivashinsky.h.
+/// tangents and backward, of a block of samples: one per lane of a pack P of
+/// T. Formulas in kuramoto_sivashinsky.h.
 ///
-/// Fields are `cells` reals. Spectra are those of RealFft divided by `cells`,
-/// so that the way back needs no scale. The spectrum is the state: a step in
-/// any direction takes four real transforms (a pair of tangents: of two).
+/// Fields are `cells` packs. Spectra are those of LanesFft, in its order of
+/// modes, divided by `cells`, so that the way back needs no scale. The spectrum
+/// is the state: a step in any direction takes four real transforms.
 #pragma once
 
 #include "problems/kuramoto_sivashinsky/kuramoto_sivashinsky.h"
-#include "suite/core/real_fft.h"
+#include "suite/core/lanes_fft.h"
 
 namespace physinv {
+
+/// Samples under way: their unknowns, their spectrum and scratch, `stride`
+/// each.
+template <class P>
+struct Etdrk2Run {
+  P alpha, beta;
+  P *s, *z, *w;
+};
+
+/// Derivatives of `step` along one unknown: of the spectrum, of u and of the
+/// middle stage, `stride` each.
+template <class P>
+struct Etdrk2Tangent {
+  P *ds, *du, *da;
+};
+
+/// Sums over the steps that `pull` collects: the spectra dL/da^ and, by
+/// point, what beta multiplies. `stride` each, zero at first.
+template <class P>
+struct Etdrk2Sums {
+  P *alpha, *beta;
+};
 
 template <class T>
 class Etdrk2 {
@@ -18,47 +40,46 @@ class Etdrk2 {
   explicit Etdrk2(const KuramotoSivashinskyOperators& op);
 
   Index cells() const { return cells_; }
-  /// Reals that hold any field or spectrum, a multiple of 64 bytes.
-  Index stride() const { return pair_.spectrum_stride(); }
-
-  /// One sample under way: its unknowns, its spectrum and scratch, `stride`
-  /// each. Fields that are passed along are 64-byte aligned.
-  struct Run {
-    T alpha, beta;
-    T *s, *z, *w;
-  };
+  /// Packs that hold any field or spectrum.
+  Index stride() const { return fft_.spectrum(); }
 
   /// s := spectrum of u.
-  void begin(const Run& r, const T* u) const;
+  template <class P>
+  void begin(const Etdrk2Run<P>& r, const P* u) const;
   /// u, of spectrum s, to the middle stage a and to u_new, of spectrum s.
-  void step(const Run& r, const T* u, T* a, T* u_new) const;
+  template <class P>
+  void step(const Etdrk2Run<P>& r, const P* u, P* a, P* u_new) const;
   /// The same for beta = 0 without u: s alone moves on.
-  void drift(const Run& r) const;
+  template <class P>
+  void drift(const Etdrk2Run<P>& r) const;
   /// u := field of s.
-  void restore(const Run& r, T* u) const;
+  template <class P>
+  void restore(const Etdrk2Run<P>& r, P* u) const;
 
-  /// Derivatives of `step` along alpha and along beta, side by side. All have
-  /// 2 `stride` reals: ds the spectra; du the fields, packed; z, w, da scratch.
-  struct Tangents {
-    T *ds, *du, *z, *w, *da;
-  };
-  void tangent_step(T beta, const T* u, const T* a, const Tangents& t) const;
+  template <class P>
+  void tangent_step(const Etdrk2Run<P>& r,
+                    const P* u,
+                    const P* a,
+                    const Etdrk2Tangent<P>& along_alpha,
+                    const Etdrk2Tangent<P>& along_beta) const;
 
-  /// Sums over the steps that `pull` collects: the spectra dL/da^ and, by
-  /// point, what beta multiplies. `stride` each, zero at first.
-  struct Sums {
-    T *alpha, *beta;
-  };
   /// Takes s, the spectrum of dL/du_new, back over one step.
-  void back_step(const Run& r, const T* u, const T* a, const Sums& sums) const;
-  T alpha_bar(const Sums& sums) const;
-  T beta_bar(const Sums& sums) const;
+  template <class P>
+  void back_step(const Etdrk2Run<P>& r,
+                 const P* u,
+                 const P* a,
+                 const Etdrk2Sums<P>& sums) const;
+  template <class P>
+  P alpha_bar(const Etdrk2Sums<P>& sums) const;
+  template <class P>
+  P beta_bar(const Etdrk2Sums<P>& sums) const;
 
  private:
-  void propagate(T alpha, T* s) const;
+  template <class P>
+  void propagate(P alpha, P* s) const;
 
   Index cells_;
-  RealFft<T> fft_, pair_;
+  LanesFft<T> fft_;
   /// By real of a spectrum: E; P1 G^; -i k P1 / 2 and -i k P2 / 2 for spectra
   /// that still want their division by `cells`. A product with -i c reads
   /// (re, im) as (c im, -c re), so these hold (c, -c).
@@ -67,5 +88,18 @@ class Etdrk2 {
 
 extern template class Etdrk2<float>;
 extern template class Etdrk2<double>;
+
+/// f(P{}) with the narrowest pack that holds so many samples.
+template <class T, class F>
+void with_pack(Index samples, F&& f) {
+  constexpr int kHalf = 32 / static_cast<int>(sizeof(T)), kFew = kHalf / 2;
+  if (samples <= kFew) {
+    f(Pack<T, kFew>{});
+  } else if (samples <= kHalf) {
+    f(Pack<T, kHalf>{});
+  } else {
+    f(Pack<T>{});
+  }
+}
 
 }  // namespace physinv

@@ -54,34 +54,62 @@ void draw_state(const KuramotoSivashinskyOptions& o,
   for (Index j = 0; j < n; ++j) u(j) = (u(j) - mean) / deviation;
 }
 
-/// A sample under way, in 3 `stride` reals of memory.
-template <class T>
-typename Etdrk2<T>::Run run_of(VectorIn<T> x, const Etdrk2<T>& k, T* memory) {
-  const Index h = k.stride();
-  return {x(0), x(1), memory, memory + h, memory + 2 * h};
-}
+/// Samples first .. first+count-1, one per lane of P; the last one fills what
+/// is left of the pack.
+template <class T, class P>
+struct Block {
+  static constexpr Index kWidth = sizeof(P) / sizeof(T);
 
-/// A last state goes out, as NaN unless all of it is finite; says whether.
-template <class T>
-bool finish(const T* u, Eigen::Ref<Vector<T>> y) {
-  y = Eigen::Map<const Vector<T>>(u, y.size());
-  const bool finite = y.allFinite();
-  if (!finite) y.setConstant(kNan<T>);
-  return finite;
-}
+  const Etdrk2<T>& k;
+  Index first, count;
 
-/// Runs body(sample, workspace) for every sample; returns the sum of what the
-/// bodies return.
-template <class F>
-std::uint64_t sum_samples(Workspace& work, Index count, F&& body) {
+  Index column(Index lane) const { return first + std::min(lane, count - 1); }
+
+  void load(BatchIn<T> batch, P* out) const {
+    for (Index r = 0; r < batch.rows(); ++r)
+      for (Index lane = 0; lane < kWidth; ++lane)
+        out[r][lane] = batch(r, column(lane));
+  }
+  void store(const P* in, Index lane, Eigen::Ref<Vector<T>> out) const {
+    for (Index r = 0; r < out.size(); ++r) out(r) = in[r][lane];
+  }
+  /// Last states go out, as NaN unless all of one is finite.
+  void finish(const P* u, BatchOut<T>& y) const {
+    for (Index lane = 0; lane < count; ++lane) {
+      auto column = y.col(first + lane);
+      store(u, lane, column);
+      if (!column.allFinite()) column.setConstant(kNan<T>);
+    }
+  }
+  /// Of unknowns x, in 3 `stride` packs of memory.
+  Etdrk2Run<P> run(BatchIn<T> x, P* memory) const {
+    P unknowns[2];
+    load(x, unknowns);
+    const Index h = k.stride();
+    return {unknowns[0], unknowns[1], memory, memory + h, memory + 2 * h};
+  }
+};
+
+/// Runs body(block, workspace) for all samples, a register of them at a time;
+/// returns the sum of what the bodies return.
+template <class T, class F>
+std::uint64_t sum_blocks(const Etdrk2<T>& k,
+                         Workspace& work,
+                         Index count,
+                         F&& body) {
+  constexpr Index W = kLanes<T>;
   const bool threaded =
       work.threads() != nullptr && work.threads()->count() > 1;
   if (threaded) work.of_thread(0);  // makes all of them, before they run
   std::atomic<std::uint64_t> sum = 0;
-  for_blocks(work.threads(), count, [&](Index i, int thread) {
+  for_blocks(work.threads(), (count + W - 1) / W, [&](Index b, int thread) {
     Workspace& mine = threaded ? work.of_thread(thread) : work;
     const Workspace::Scope scope(mine);
-    sum += static_cast<std::uint64_t>(body(i, mine));
+    const Index first = b * W, some = std::min(W, count - first);
+    with_pack<T>(some, [&]<class P>(P) {
+      sum +=
+          static_cast<std::uint64_t>(body(Block<T, P>{k, first, some}, mine));
+    });
   });
   return sum;
 }
@@ -154,32 +182,36 @@ void KuramotoSivashinsky<T>::forward(BatchIn<T> x,
   check_size(x, 2, x.cols());
   check_size(given, n, x.cols());
   check_size(y, n, x.cols());
-  work.counts[Counter::skipped_steps] +=
-      sum_samples(work, x.cols(), [&](Index i, Workspace& mine) {
-        auto u = mine.take<T>(n, 3);
-        const auto r =
-            run_of<T>(x.col(i), k, mine.take<T>(3 * k.stride(), 1).data());
-        const auto state = [&](Index t) { return u.col(t % 2).data(); };
-        u.col(0) = given.col(i);
-        k.begin(r, state(0));
+  work.counts[Counter::skipped_steps] += sum_blocks(
+      k,
+      work,
+      x.cols(),
+      [&]<class P>(const Block<T, P>& block, Workspace& mine) -> Index {
+        P* const u = take_packs<P>(mine, 3 * n);
+        const auto r = block.run(x, take_packs<P>(mine, 3 * k.stride()));
+        const auto state = [=](Index t) { return u + t % 2 * n; };
+        block.load(given, u);
+        k.begin(r, u);
         Index end = steps;
-        if (r.beta == 0) {  // linear: the modes go their own ways
+        if (count_set(r.beta == P{}) == block.kWidth) {
+          // Linear: the modes go their own ways.
           for (Index t = 0; t < steps; ++t) k.drift(r);
           k.restore(r, state(end));
         } else {
-          end = march(
-              k, r, 0, steps, state, [&](Index) { return u.col(2).data(); });
+          end = march(k, r, 0, steps, state, [=](Index) { return u + 2 * n; });
         }
-        finish<T>(state(end), y.col(i));
-        return steps - end;
+        block.finish(state(end), y);
+        return (steps - end) * block.count;
       });
 }
 
+/// A block's part of a slot is as wide as a register, whatever its pack is.
 template <class T>
 void KuramotoSivashinsky<T>::linearize(BatchIn<T> x,
                                        BatchIn<T> given,
                                        BatchOut<T> y,
                                        Tape& tape) const {
+  constexpr Index W = kLanes<T>;
   const Etdrk2<T>& k = *kernel_;
   const Index n = k.cells(), steps = options_.steps;
   check_size(x, 2, x.cols());
@@ -187,16 +219,17 @@ void KuramotoSivashinsky<T>::linearize(BatchIn<T> x,
   check_size(y, n, x.cols());
   const Keeping keep(options_, k, x.cols());
   const Index threads = tape.threads() != nullptr ? tape.threads()->count() : 1;
-  auto states = tape.slot<T>(kStates, keep.rows, x.cols());
-  auto scratch = tape.slot<T>(kScratch, 3 * k.stride() + 3 * n, threads);
+  const Index blocks = (x.cols() + W - 1) / W;
+  auto states = tape.slot<T>(kStates, keep.rows * W, blocks);
+  auto scratch = tape.slot<T>(kScratch, (3 * k.stride() + 3 * n) * W, threads);
   auto lost = tape.slot<unsigned char>(kLost, 1, x.cols());
   tape.slot<T>(kUnknowns, 2, x.cols()) = x;
 
   std::atomic<std::uint64_t> skipped = 0;
-  for_blocks(tape.threads(), x.cols(), [&](Index i, int thread) {
-    T* const u = scratch.col(thread).data();
-    T* const kept = states.col(i).data();
-    const auto r = run_of<T>(x.col(i), k, u + 3 * n);
+  const auto run = [&]<class P>(const Block<T, P>& block, int thread) {
+    P* const u = reinterpret_cast<P*>(scratch.col(thread).data());
+    P* const kept = reinterpret_cast<P*>(states.col(block.first / W).data());
+    const auto r = block.run(x, u + 3 * n);
     const bool all = keep.segment == 0;
     const auto state = [=](Index t) {
       return all ? kept + 2 * t * n : u + t % 2 * n;
@@ -204,21 +237,29 @@ void KuramotoSivashinsky<T>::linearize(BatchIn<T> x,
     const auto between = [=](Index t) {
       return all ? kept + (2 * t + 1) * n : u + 2 * n;
     };
-    Eigen::Map<Vector<T>>(state(0), n) = given.col(i);
+    block.load(given, state(0));
     k.begin(r, state(0));
     Index end = 0, to = all ? steps : 0;
     while (end < steps) {
       if (!all) {
-        T* const start = kept + end / keep.segment * keep.stride;
+        P* const start = kept + end / keep.segment * keep.stride;
         std::copy_n(state(end), n, start);
         std::copy_n(r.s, n + 2, start + n);
         to = std::min(steps, end + keep.segment);
       }
       end = march(k, r, end, to, state, between);
-      if (!std::isfinite(state(end)[0])) break;
+      if (all_lost(state(end)[0])) break;
     }
-    lost(0, i) = !finish<T>(state(end), y.col(i));
-    skipped += static_cast<std::uint64_t>(steps - end);
+    block.finish(state(end), y);
+    for (Index i = 0; i < block.count; ++i)
+      lost(0, block.first + i) = !std::isfinite(y(0, block.first + i));
+    skipped += static_cast<std::uint64_t>((steps - end) * block.count);
+  };
+  for_blocks(tape.threads(), blocks, [&](Index b, int thread) {
+    const Index count = std::min(W, x.cols() - b * W);
+    with_pack<T>(count, [&]<class P>(P) {
+      run(Block<T, P>{k, b * W, count}, thread);
+    });
   });
   tape.counts[Counter::skipped_steps] += skipped;
 }
@@ -256,31 +297,51 @@ void KuramotoSivashinsky<T>::pull(const Tape& tape,
   check_size(x_bar, 2, x.cols());
   const Keeping keep(options_, k, x.cols());
 
-  work.counts[Counter::skipped_vjp] +=
-      sum_samples(work, x.cols(), [&](Index i, Workspace& mine) {
-        // What is lost ends as NaN whatever is done, zeros remain zeros.
-        if (lost(0, i) != 0 || (y_bar.col(i).array() == 0).all()) {
-          const T end = lost(0, i) != 0 ? kNan<T> : T(0);
-          x_bar.col(i).setConstant(end);
-          if (given_bar != nullptr) given_bar->col(i).setConstant(end);
-          return 1;
+  // What is lost ends as NaN whatever is done, zeros remain zeros. A block of
+  // nothing else needs no way back.
+  const auto known = [&](Index i) {
+    return lost(0, i) != 0 || (y_bar.col(i).array() == 0).all();
+  };
+  const auto finish = [&](Index i) {
+    const T end = lost(0, i) != 0 ? kNan<T> : T(0);
+    x_bar.col(i).setConstant(end);
+    if (given_bar != nullptr) given_bar->col(i).setConstant(end);
+  };
+  work.counts[Counter::skipped_vjp] += sum_blocks(
+      k,
+      work,
+      x.cols(),
+      [&]<class P>(const Block<T, P>& block, Workspace& mine) -> Index {
+        Index live = 0;
+        for (Index i = 0; i < block.count; ++i) live += !known(block.first + i);
+        if (live > 0) {
+          P* const lambda = take_packs<P>(mine, n);
+          P* const sum = take_packs<P>(mine, 2 * h);
+          const auto r = block.run(x, take_packs<P>(mine, 3 * h));
+          const Etdrk2Sums<P> sums{sum, sum + h};
+          std::fill_n(sum, 2 * h, P{});
+          block.load(y_bar, lambda);
+          k.begin(r, lambda);
+          const T* const kept = states.col(block.first / kLanes<T>).data();
+          pull_steps(k,
+                     r,
+                     sums,
+                     options_.steps,
+                     keep,
+                     reinterpret_cast<const P*>(kept),
+                     mine);
+          const P alpha_bar = k.alpha_bar(sums), beta_bar = k.beta_bar(sums);
+          if (given_bar != nullptr) k.restore(r, lambda);
+          for (Index i = 0; i < block.count; ++i) {
+            x_bar(0, block.first + i) = alpha_bar[i];
+            x_bar(1, block.first + i) = beta_bar[i];
+            if (given_bar != nullptr)
+              block.store(lambda, i, given_bar->col(block.first + i));
+          }
         }
-        auto lambda = mine.take<T>(n, 1);
-        auto sum = mine.take<T>(h, 2);
-        const auto r = run_of<T>(x.col(i), k, mine.take<T>(3 * h, 1).data());
-        const typename Etdrk2<T>::Sums sums{sum.col(0).data(),
-                                            sum.col(1).data()};
-        sum.setZero();
-        lambda = y_bar.col(i);
-        k.begin(r, lambda.data());
-        pull_steps(
-            k, r, sums, options_.steps, keep, states.col(i).data(), mine);
-        x_bar(0, i) = k.alpha_bar(sums), x_bar(1, i) = k.beta_bar(sums);
-        if (given_bar != nullptr) {
-          k.restore(r, lambda.data());
-          given_bar->col(i) = lambda;
-        }
-        return 0;
+        for (Index i = block.first; i < block.first + block.count; ++i)
+          if (known(i)) finish(i);
+        return live > 0 ? 0 : block.count;
       });
 }
 
@@ -294,39 +355,47 @@ void KuramotoSivashinsky<T>::jacobian(BatchIn<T> x,
   check_size(x, 2, x.cols());
   check_size(given, n, x.cols());
   check_size(j, 2 * n, x.cols());
-  work.counts[Counter::skipped_steps] +=
-      sum_samples(work, x.cols(), [&](Index i, Workspace& mine) {
-        auto u = mine.take<T>(n, 3);
-        auto d = mine.take<T>(2 * h, 5);
-        const auto r = run_of<T>(x.col(i), k, mine.take<T>(3 * h, 1).data());
-        const typename Etdrk2<T>::Tangents along{d.col(0).data(),
-                                                 d.col(1).data(),
-                                                 d.col(2).data(),
-                                                 d.col(3).data(),
-                                                 d.col(4).data()};
-        d.setZero();
-        u.col(0) = given.col(i);
-        k.begin(r, u.col(0).data());
+  work.counts[Counter::skipped_steps] += sum_blocks(
+      k,
+      work,
+      x.cols(),
+      [&]<class P>(const Block<T, P>& block, Workspace& mine) -> Index {
+        P* const u = take_packs<P>(mine, 3 * n);
+        P* const d = take_packs<P>(mine, 6 * h);
+        const auto r = block.run(x, take_packs<P>(mine, 3 * h));
+        const Etdrk2Tangent<P> by_alpha{d, d + h, d + 2 * h},
+            by_beta{d + 3 * h, d + 4 * h, d + 5 * h};
+        std::fill_n(d, 6 * h, P{});
+        block.load(given, u);
+        k.begin(r, u);
         Index end = 0;
         bool finite = true;
         while (end < steps && finite) {
-          const T* const now = u.col(end % 2).data();
-          T* const next = u.col(++end % 2).data();
-          k.step(r, now, u.col(2).data(), next);
-          k.tangent_step(r.beta, now, u.col(2).data(), along);
-          finite = std::isfinite(next[0]);
+          const P* const now = u + end % 2 * n;
+          P* const next = u + ++end % 2 * n;
+          k.step(r, now, u + 2 * n, next);
+          k.tangent_step(r, now, u + 2 * n, by_alpha, by_beta);
+          finite = !all_lost(next[0]);
         }
-        j.col(i) = d.col(1).head(2 * n);
-        if (!u.col(end % 2).allFinite()) j.col(i).setConstant(kNan<T>);
-        return steps - end;
+        auto y = mine.take<T>(n, 1);
+        for (Index i = 0; i < block.count; ++i) {
+          auto column = j.col(block.first + i);
+          block.store(by_alpha.du, i, column.head(n));
+          block.store(by_beta.du, i, column.tail(n));
+          block.store(u + end % 2 * n, i, y.col(0));
+          if (!y.allFinite()) column.setConstant(kNan<T>);
+        }
+        return (steps - end) * block.count;
       });
 }
 
+/// At least a register of samples.
 template <class T>
 Index KuramotoSivashinsky<T>::gradient_block() const {
   const auto bytes =
       2 * options_.steps * options_.cells * static_cast<Index>(sizeof(T));
-  return std::max<Index>(4, (Index{1} << 19) / bytes);
+  constexpr Index W = kLanes<T>;
+  return std::max<Index>(1, (Index{1} << 19) / bytes / W) * W;
 }
 
 template <class T>
@@ -337,16 +406,21 @@ Batch<T> KuramotoSivashinsky<T>::trajectory(VectorIn<T> x,
   check_size(x, 2, 1);
   check_size(given, n, 1);
   Workspace work;
-  auto u = work.take<T>(n, steps + 2);  // and the middle stage
-  const auto r = run_of<T>(x, k, work.take<T>(3 * k.stride(), 1).data());
-  const auto state = [&](Index t) { return u.col(t).data(); };
-  u.col(0) = given;
-  k.begin(r, state(0));
-  const Index end =
-      march(k, r, 0, steps, state, [&](Index) { return state(steps + 1); });
-  if (!u.col(end).allFinite())
-    u.middleCols(end, steps + 1 - end).setConstant(kNan<T>);
-  return u.leftCols(steps + 1);
+  Batch<T> out(n, steps + 1);
+  with_pack<T>(1, [&]<class P>(P) {
+    const Block<T, P> block{k, 0, 1};
+    P* const u = take_packs<P>(work, (steps + 2) * n);  // and the middle stage
+    const auto r = block.run(x, take_packs<P>(work, 3 * k.stride()));
+    const auto state = [=](Index t) { return u + t * n; };
+    block.load(given, u);
+    k.begin(r, u);
+    const Index end = march(
+        k, r, 0, steps, state, [=](Index) { return u + (steps + 1) * n; });
+    for (Index t = 0; t <= end; ++t) block.store(state(t), 0, out.col(t));
+    if (!out.col(end).allFinite())
+      out.middleCols(end, steps + 1 - end).setConstant(kNan<T>);
+  });
+  return out;
 }
 
 template class KuramotoSivashinsky<float>;

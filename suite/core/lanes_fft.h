@@ -1,0 +1,230 @@
+/// Discrete Fourier transforms of real signals side by side, one signal per
+/// lane: no shuffles, and bits that depend on no processor and no neighbour.
+///
+/// Real signals of n = 2 M points are complex ones of M, z_j = u_2j + i u_2j+1
+/// (radix 4, decimated in frequency on the way there and in time on the way
+/// back, in place), taken apart by a last step. What a mode is multiplied by
+/// does not care where it stands, so spectra stay in the order that the passes
+/// leave: `mode(p)` says what stands at position p.
+#pragma once
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "suite/core/check.h"
+#include "suite/core/lanes.h"
+
+namespace physinv {
+
+template <class T>
+class LanesFft {
+ public:
+  /// `size` is a power of two, at least 4.
+  explicit LanesFft(Index size);
+
+  Index size() const { return 2 * half_; }
+  /// Packs of a spectrum: real and imaginary part of size / 2 + 1 modes.
+  Index spectrum() const { return 2 * half_ + 2; }
+  /// The mode at position p = 0 .. size / 2; the last one is Nyquist's.
+  Index mode(Index p) const { return p == half_ ? half_ : mode_[p]; }
+
+  /// y_m = sum_j u_j exp(-2 pi i j m / size), in the order of positions.
+  template <class P>
+  void forward(const P* u, P* y) const;
+
+  /// u_j = sum_m y_m exp(2 pi i j m / size) over all modes, those above
+  /// size / 2 being the conjugates of the others: `size` times the inverse.
+  /// Destroys y.
+  template <class P>
+  void inverse(P* y, P* u) const;
+
+ private:
+  template <class P>
+  struct Complex {
+    P re, im;
+    PHYSINV_LANES friend Complex operator+(Complex a, Complex b) {
+      return {a.re + b.re, a.im + b.im};
+    }
+    PHYSINV_LANES friend Complex operator-(Complex a, Complex b) {
+      return {a.re - b.re, a.im - b.im};
+    }
+    PHYSINV_LANES Complex conjugate() const { return {re, -im}; }
+    PHYSINV_LANES Complex times_i() const { return {-im, re}; }
+    /// times w[0] + i w[1]
+    PHYSINV_LANES Complex times(const T* w) const {
+      const P c = P{} + w[0], s = P{} + w[1];
+      return {fma_lanes(re, c, -(im * s)), fma_lanes(re, s, im * c)};
+    }
+  };
+  template <class P>
+  PHYSINV_LANES static Complex<P> at(const P* z, Index j) {
+    return {z[2 * j], z[2 * j + 1]};
+  }
+  template <class P>
+  PHYSINV_LANES static void put(P* z, Index j, Complex<P> v) {
+    z[2 * j] = v.re, z[2 * j + 1] = v.im;
+  }
+
+  /// Blocks of `length` points, four of each a quarter apart. For point j of a
+  /// quarter: exp(-2 pi i j / length), its square, its cube; their conjugates.
+  struct Pass {
+    Index length;
+    std::vector<T> there, back;
+  };
+  /// Modes m and M - m, m < M / 2, and exp(-2 pi i m / size) / 2.
+  struct Pair {
+    Index p, q;
+    T there[2], back[2];
+  };
+
+  /// Positions first .. of a block hold modes offset, offset + step, ..
+  void place(Index first, Index length, Index offset, Index step);
+  template <bool kThere, bool kTurned, class P>
+  static void four(const P* in, P* out, Index j, Index q, const T* w);
+  template <bool kThere, class P>
+  static void run(const Pass& pass, Index points, const P* in, P* out);
+  template <class P>
+  static void run_pairs(Index points, const P* in, P* out);
+
+  Index half_;                ///< M
+  std::vector<Pass> passes_;  ///< the longest blocks first
+  bool pairs_last_;           ///< blocks of two come last
+  std::vector<Index> mode_;
+  std::vector<Pair> split_;
+  Index middle_;  ///< where mode M / 2 stands
+};
+
+template <class T>
+LanesFft<T>::LanesFft(Index size) : half_(size / 2), mode_(half_) {
+  SUITE_CHECK(size >= 4 && (size & (size - 1)) == 0,
+              "the size must be a power of two, at least 4");
+  const auto turn = [](T* w, double part, double scale, int sign) {
+    const double angle = 2 * std::numbers::pi * part;
+    w[0] = static_cast<T>(scale * std::cos(angle));
+    w[1] = static_cast<T>(-sign * scale * std::sin(angle));
+  };
+  Index length = half_;
+  for (; length >= 4; length /= 4) {
+    Pass pass{length, {}, {}};
+    pass.there.resize(6 * (length / 4)), pass.back.resize(6 * (length / 4));
+    for (Index j = 0; j < length / 4; ++j) {
+      for (Index k = 0; k < 3; ++k) {
+        const double part = double(j * (k + 1)) / double(length);
+        turn(&pass.there[6 * j + 2 * k], part, 1, 1);
+        turn(&pass.back[6 * j + 2 * k], part, 1, -1);
+      }
+    }
+    passes_.push_back(std::move(pass));
+  }
+  pairs_last_ = length == 2;
+  place(0, half_, 0, 1);
+  std::vector<Index> position(half_);
+  for (Index p = 0; p < half_; ++p) position[mode_[p]] = p;
+  middle_ = position[half_ / 2];
+  for (Index m = 1; m < half_ - m; ++m) {
+    Pair pair{position[m], position[half_ - m], {}, {}};
+    turn(pair.there, double(m) / double(size), 0.5, 1);
+    turn(pair.back, double(m) / double(size), 1, -1);
+    split_.push_back(pair);
+  }
+}
+
+template <class T>
+void LanesFft<T>::place(Index first, Index length, Index offset, Index step) {
+  if (length == 1) {
+    mode_[first] = offset;
+    return;
+  }
+  const Index parts = length == 2 ? 2 : 4;
+  for (Index r = 0; r < parts; ++r)
+    place(first + r * (length / parts),
+          length / parts,
+          offset + r * step,
+          parts * step);
+}
+
+template <class T>
+template <bool kThere, bool kTurned, class P>
+PHYSINV_LANES void LanesFft<T>::four(
+    const P* in, P* out, Index j, Index q, const T* w) {
+  Complex<P> a = at(in, j), b = at(in, j + q), c = at(in, j + 2 * q),
+             d = at(in, j + 3 * q);
+  if constexpr (!kThere && kTurned)
+    b = b.times(w), c = c.times(w + 2), d = d.times(w + 4);
+  const auto ac = a + c, a_c = a - c, bd = b + d;
+  const auto turned = kThere ? (d - b).times_i() : (b - d).times_i();
+  a = ac + bd, b = a_c + turned, c = ac - bd, d = a_c - turned;
+  if constexpr (kThere && kTurned)
+    b = b.times(w), c = c.times(w + 2), d = d.times(w + 4);
+  put(out, j, a), put(out, j + q, b);
+  put(out, j + 2 * q, c), put(out, j + 3 * q, d);
+}
+
+template <class T>
+template <bool kThere, class P>
+inline void LanesFft<T>::run(const Pass& pass,
+                             Index points,
+                             const P* in,
+                             P* out) {
+  const Index q = pass.length / 4;
+  const T* const w = kThere ? pass.there.data() : pass.back.data();
+  for (Index b = 0; b < points; b += pass.length) {
+    four<kThere, false>(in, out, b, q, w);
+    for (Index j = 1; j < q; ++j)
+      four<kThere, true>(in, out, b + j, q, w + 6 * j);
+  }
+}
+
+template <class T>
+template <class P>
+inline void LanesFft<T>::run_pairs(Index points, const P* in, P* out) {
+  for (Index j = 0; j < points; j += 2) {
+    const auto a = at(in, j), b = at(in, j + 1);
+    put(out, j, a + b), put(out, j + 1, a - b);
+  }
+}
+
+/// Y_m = E + W O, Y_(M-m) = (E - W O)* with 2 E = Z_m + Z*_(M-m) and
+/// 2 O = -i (Z_m - Z*_(M-m)), W = exp(-2 pi i m / size).
+template <class T>
+template <class P>
+void LanesFft<T>::forward(const P* u, P* y) const {
+  const P* in = u;
+  for (const Pass& p : passes_) run<true>(p, half_, in, y), in = y;
+  if (pairs_last_) run_pairs(half_, in, y);
+  const auto zero = at(y, 0);
+  put<P>(y, 0, {zero.re + zero.im, P{}});
+  put<P>(y, half_, {zero.re - zero.im, P{}});
+  y[2 * middle_ + 1] = -y[2 * middle_ + 1];
+  for (const Pair& s : split_) {
+    const auto a = at(y, s.p), b = at(y, s.q).conjugate();
+    const auto sum = a + b, odd = (b - a).times_i().times(s.there);
+    const Complex<P> even{T(0.5) * sum.re, T(0.5) * sum.im};
+    put(y, s.p, even + odd);
+    put(y, s.q, (even - odd).conjugate());
+  }
+}
+
+/// Z_m = (Y_m + Y*_(M-m)) + i W* (Y_m - Y*_(M-m)), which is twice the above
+/// undone.
+template <class T>
+template <class P>
+void LanesFft<T>::inverse(P* y, P* u) const {
+  const P first = y[0], last = y[2 * half_];
+  put<P>(y, 0, {first + last, first - last});
+  put<P>(y, middle_, {T(2) * y[2 * middle_], T(-2) * y[2 * middle_ + 1]});
+  for (const Pair& s : split_) {
+    const auto a = at(y, s.p), b = at(y, s.q).conjugate();
+    const auto sum = a + b, odd = (a - b).times(s.back).times_i();
+    put(y, s.p, sum + odd);
+    put(y, s.q, (sum - odd).conjugate());
+  }
+  P* const end = passes_.empty() ? u : y;
+  if (pairs_last_) run_pairs(half_, y, end);
+  for (auto p = passes_.rbegin(); p != passes_.rend(); ++p)
+    run<false>(*p, half_, y, p + 1 == passes_.rend() ? u : y);
+}
+
+}  // namespace physinv

@@ -1,0 +1,100 @@
+#include "suite/core/lanes_fft.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "suite/core/real_fft.h"
+#include "suite/core/workspace.h"
+#include "tests/support/tolerance.h"
+
+namespace physinv::test {
+namespace {
+
+template <class T>
+class LanesFftIn : public testing::Test {};
+using Scalars = testing::Types<float, double>;
+TYPED_TEST_SUITE(LanesFftIn, Scalars);
+
+/// Column k: the signal of lane k.
+template <class T>
+Batch<T> signals(Index size, Index lanes) {
+  return Batch<T>::NullaryExpr(size, lanes, [](Index j, Index k) {
+    return T(0.25 + std::sin(1.7 * double(j * j) + 0.9 * double(k)));
+  });
+}
+
+template <class T, int W>
+struct Sides {
+  using P = Pack<T, W>;
+  explicit Sides(Index n) : fft(n), u(n), y(n + 2), back(n) {
+    for (Index j = 0; j < n; ++j)
+      for (int k = 0; k < W; ++k) u[j][k] = given(j, k);
+    fft.forward(u.data(), y.data());
+  }
+  /// As RealFft has it: of one lane, the modes in ascending order.
+  Vector<T> spectrum(int lane) const {
+    Vector<T> ordered(fft.spectrum());
+    for (Index p = 0; p < fft.spectrum(); ++p)
+      ordered(2 * fft.mode(p / 2) + p % 2) = y[p][lane];
+    return ordered;
+  }
+
+  LanesFft<T> fft;
+  Batch<T> given = signals<T>(fft.size(), W);
+  std::vector<P> u, y, back;
+};
+
+template <class T, int W>
+void expect_fftw() {
+  const Comparator near(0, sizeof(T) == 8 ? 1e-15 : 1e-6);
+  for (const Index n : {4, 8, 16, 32, 64, 128, 256, 512}) {
+    SCOPED_TRACE(n);
+    Sides<T, W> s(n);
+    const RealFft<double> fftw(n);
+    Workspace work;
+    auto u = work.take<double>(fftw.signal_stride(), 1);
+    auto y = work.take<double>(fftw.spectrum_stride(), 1);
+    for (int k = 0; k < W; ++k) {
+      u.col(0).head(n) = s.given.col(k).template cast<double>();
+      fftw.forward(u.data(), y.data());
+      EXPECT_TRUE(near(Vector<T>(s.spectrum(k) / T(n)),
+                       Vector<double>(y.col(0).head(n + 2) / double(n))));
+    }
+    s.fft.inverse(s.y.data(), s.back.data());
+    for (int k = 0; k < W; ++k) {
+      Vector<T> back(n);
+      for (Index j = 0; j < n; ++j) back(j) = s.back[j][k] / T(n);
+      EXPECT_TRUE(
+          near(back, Vector<double>(s.given.col(k).template cast<double>())));
+    }
+  }
+}
+
+TYPED_TEST(LanesFftIn, AgreesWithFftwAndGoesBack) {
+  expect_fftw<TypeParam, kLanes<TypeParam>>();
+  expect_fftw<TypeParam, 16 / sizeof(TypeParam)>();
+}
+
+TYPED_TEST(LanesFftIn, HasTheBitsOfAnyWidth) {
+  using T = TypeParam;
+  constexpr int kFew = 16 / sizeof(T);
+  Sides<T, kLanes<T>> wide(128);
+  Sides<T, kFew> narrow(128);
+  for (int k = 0; k < kFew; ++k)
+    EXPECT_EQ(wide.spectrum(k), narrow.spectrum(k));
+  wide.fft.inverse(wide.y.data(), wide.back.data());
+  narrow.fft.inverse(narrow.y.data(), narrow.back.data());
+  for (Index j = 0; j < 128; ++j)
+    for (int k = 0; k < kFew; ++k)
+      EXPECT_EQ(wide.back[j][k], narrow.back[j][k]);
+}
+
+TEST(LanesFft, WantsAPowerOfTwo) {
+  EXPECT_THROW(LanesFft<double>(2), std::exception);
+  EXPECT_THROW(LanesFft<double>(48), std::exception);
+}
+
+}  // namespace
+}  // namespace physinv::test
