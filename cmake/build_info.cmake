@@ -1,18 +1,6 @@
 # physinv_build_info: what this build is made of (suite/harness/build_info.h),
 # with hash and #include lines of every source that numbers can come from, read
 # at build time. The file is rewritten only when its content changes.
-if(PHYSINV_NATIVE)
-  execute_process(
-    COMMAND ${CMAKE_CXX_COMPILER} -march=native "-###" -E -x c++ /dev/null
-    ERROR_VARIABLE physinv_driver OUTPUT_QUIET)
-  string(REPLACE "-march=native" "" physinv_driver "${physinv_driver}")
-  string(REGEX MATCH "(-march=|\"-target-cpu\" \")([a-z0-9_.-]+)" _
-    "${physinv_driver}")
-  set(physinv_instruction_set "native:${CMAKE_MATCH_2}")
-else()
-  set(physinv_instruction_set ${PHYSINV_ARCH})
-endif()
-
 # The bits of exp and sin are the C library's.
 execute_process(COMMAND getconf GNU_LIBC_VERSION
   OUTPUT_VARIABLE physinv_libc OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
@@ -30,14 +18,18 @@ string(CONCAT physinv_flags_text "${CMAKE_CXX_FLAGS} "
 string(GENEX_STRIP "${physinv_flags_text}" physinv_flags_text)
 string(REGEX REPLACE " +" " " physinv_flags_text "${physinv_flags_text}")
 string(STRIP "${physinv_flags_text}" physinv_flags_text)
+# Those that decide about bits: the width of registers does not.
+string(REGEX REPLACE " -(march=|U__AVX512F__)[^ ]*" "" physinv_bit_flags
+  "${physinv_flags_text}")
 
 set(physinv_info ${PROJECT_BINARY_DIR}/build_info)
 file(CONFIGURE OUTPUT ${physinv_info}/values.cmake @ONLY CONTENT [[
 set(compiler "@CMAKE_CXX_COMPILER_ID@")
 set(compiler_version "@CMAKE_CXX_COMPILER_VERSION@")
 set(flags "@physinv_flags_text@")
+set(bit_flags "@physinv_bit_flags@")
 set(build_type "@CMAKE_BUILD_TYPE@")
-set(instruction_set "@physinv_instruction_set@")
+set(instruction_set "@physinv_arch@")
 set(version "@PROJECT_VERSION@")
 set(eigen "@Eigen3_VERSION@")
 set(fftw "@FFTW3_VERSION@")

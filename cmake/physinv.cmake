@@ -15,21 +15,48 @@ endif()
 # a * b + c becomes one fused operation), as that is a property of the build
 # and therefore of the fingerprint.
 add_library(physinv_flags INTERFACE)
-if(PHYSINV_NATIVE)
-  set(PHYSINV_ARCH native)
-else()
-  set(PHYSINV_ARCH x86-64-v3)
+#
+# Registers of 256 bits (x86-64-v3) or of 512 (v4): what this machine has, as
+# the bits are the same. Samples and columns are what fills a register, sums
+# have an order of their own, and Eigen, whose sums follow the register, sees
+# AVX2 in both.
+set(PHYSINV_ARCH "" CACHE STRING
+  "x86-64-v3 or x86-64-v4; empty: the higher one that this machine has")
+set_property(CACHE PHYSINV_ARCH PROPERTY STRINGS "" x86-64-v3 x86-64-v4)
+set(physinv_arch ${PHYSINV_ARCH})
+if(NOT physinv_arch)
+  set(physinv_arch x86-64-v3)
   if(EXISTS /proc/cpuinfo)
-    file(STRINGS /proc/cpuinfo physinv_avx2 REGEX "flags.* avx2 " LIMIT_COUNT 1)
-    if(NOT physinv_avx2)
-      message(FATAL_ERROR "This processor lacks AVX2 (x86-64-v3): "
-        "use PHYSINV_NATIVE=ON, which has its own baseline.")
+    file(STRINGS /proc/cpuinfo physinv_cpu REGEX "^flags" LIMIT_COUNT 1)
+    set(physinv_has_v4 ON)
+    foreach(feature avx512f avx512bw avx512cd avx512dq avx512vl)
+      if(NOT "${physinv_cpu} " MATCHES " ${feature} ")
+        set(physinv_has_v4 OFF)
+      endif()
+    endforeach()
+    if(physinv_has_v4)
+      set(physinv_arch x86-64-v4)
+    elseif(NOT "${physinv_cpu} " MATCHES " avx2 ")
+      message(FATAL_ERROR "This processor lacks AVX2 (x86-64-v3).")
     endif()
   endif()
 endif()
-target_compile_options(physinv_flags INTERFACE -march=${PHYSINV_ARCH})
-target_compile_features(physinv_flags INTERFACE cxx_std_20)
-target_compile_definitions(physinv_flags INTERFACE EIGEN_DONT_PARALLELIZE)
+target_compile_options(physinv_flags INTERFACE -march=${physinv_arch})
+set(physinv_two_widths OFF)
+if(physinv_arch STREQUAL x86-64-v4)
+  target_compile_options(physinv_flags INTERFACE -U__AVX512F__)
+  target_compile_definitions(physinv_flags INTERFACE PHYSINV_AVX512)
+  # A test runs what computes numbers with either width (physinv_layer).
+  if(PHYSINV_TESTS AND NOT PHYSINV_SANITIZE AND CMAKE_BUILD_TYPE STREQUAL Release)
+    set(physinv_two_widths ON)
+  endif()
+endif()
+add_library(physinv_flags_v3 INTERFACE)
+target_compile_options(physinv_flags_v3 INTERFACE -march=x86-64-v3)
+foreach(flags physinv_flags physinv_flags_v3)
+  target_compile_features(${flags} INTERFACE cxx_std_20)
+  target_compile_definitions(${flags} INTERFACE EIGEN_DONT_PARALLELIZE)
+endforeach()
 # Designated initializers name what they set; the rest is default on purpose.
 set(PHYSINV_WARNINGS -Wall -Wextra -Wshadow -Wno-missing-field-initializers)
 
@@ -47,9 +74,9 @@ endif()
 # of every source, a second each. The preset `clang` goes without all this, so
 # that a missing #include cannot hide.
 option(PHYSINV_PRECOMPILE "Precompiled headers, joined sources" ON)
-function(physinv_precompile name)
+function(physinv_precompile name flags)
   add_library(${name} OBJECT ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/precompiled.cpp)
-  target_link_libraries(${name} PRIVATE physinv_flags Eigen3::Eigen fmt::fmt)
+  target_link_libraries(${name} PRIVATE ${flags} Eigen3::Eigen fmt::fmt)
   target_compile_options(${name} PRIVATE ${PHYSINV_WARNINGS})
   physinv_precompile_headers(${name} ${ARGN})
 endfunction()
@@ -59,7 +86,12 @@ function(physinv_precompile_headers name)
     <variant> <vector> ${ARGN})
 endfunction()
 if(PHYSINV_PRECOMPILE)
-  physinv_precompile(physinv_precompiled)
+  physinv_precompile(physinv_precompiled physinv_flags)
+  if(physinv_two_widths)
+    physinv_precompile(physinv_precompiled_v3 physinv_flags_v3)
+    set_target_properties(physinv_precompiled_v3 PROPERTIES
+      EXCLUDE_FROM_ALL ON)
+  endif()
 endif()
 
 # physinv_join(<target> [<sources per compilation>]): for records, pages and
@@ -81,15 +113,17 @@ function(physinv_join_group folder)
   set_source_files_properties(${ARGN} PROPERTIES UNITY_GROUP ${group})
 endfunction()
 
-# physinv_layer(<name> [OBJECT] [RECORDS | WORDS | GROUPED] [PRECOMPILE headers]
-# SOURCES ... DEPENDS ...): one target per layer. OBJECT keeps registrations
-# that nobody names from the linker's broom. PRECOMPILE: headers of the project
+# physinv_layer(<name> [OBJECT] [NUMBERS] [RECORDS | WORDS | GROUPED]
+# [PRECOMPILE headers] SOURCES ... DEPENDS ...): one target per layer. OBJECT
+# keeps registrations that nobody names from the linker's broom. NUMBERS
+# computes what is recorded: physinv_<name>_v3 is the same for AVX2, where that
+# is another build. PRECOMPILE: headers of the project
 # that nearly every source of the layer includes. RECORDS handles numbers and makes none, WORDS does not touch
 # Eigen either: both are joined, words hardly optimized (-O1 comes after the -O3
 # of the build type). Elsewhere -O1 would be dangerous: the linker takes any one
 # copy of an inline function for all, and without contraction its bits differ.
 function(physinv_layer name)
-  cmake_parse_arguments(ARG "OBJECT;RECORDS;WORDS;GROUPED" ""
+  cmake_parse_arguments(ARG "OBJECT;NUMBERS;RECORDS;WORDS;GROUPED" ""
     "SOURCES;DEPENDS;PRECOMPILE" ${ARGN})
   set(kind STATIC)
   if(ARG_OBJECT)
@@ -120,5 +154,24 @@ function(physinv_layer name)
   endif()
   if(ARG_WORDS)
     target_compile_options(physinv_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+  endif()
+  if(ARG_NUMBERS AND physinv_two_widths)
+    physinv_layer_v3(${name} ${kind} "${ARG_SOURCES}" "${ARG_DEPENDS}")
+  endif()
+endfunction()
+
+# Built for who asks. Claims and pages compute nothing.
+function(physinv_layer_v3 name kind sources depends)
+  list(FILTER sources EXCLUDE REGEX "/(claims|figures)\\.cpp$")
+  list(FILTER depends EXCLUDE REGEX "^physinv_")
+  add_library(physinv_${name}_v3 ${kind} EXCLUDE_FROM_ALL ${sources})
+  target_include_directories(physinv_${name}_v3 PRIVATE ${PROJECT_SOURCE_DIR})
+  target_link_libraries(physinv_${name}_v3 PRIVATE
+    physinv_flags_v3 Eigen3::Eigen fmt::fmt ${depends})
+  target_compile_options(physinv_${name}_v3 PRIVATE ${PHYSINV_WARNINGS}
+    -Wno-maybe-uninitialized)
+  if(PHYSINV_PRECOMPILE)
+    target_precompile_headers(physinv_${name}_v3
+      REUSE_FROM physinv_precompiled_v3)
   endif()
 endfunction()

@@ -35,8 +35,8 @@ function(physinv_digest result text)
   set(${result} ${digest} PARENT_SCOPE)
 endfunction()
 
-string(CONCAT build "${compiler} ${compiler_version} ${flags} "
-  "${instruction_set} ${libc} ${eigen} ${fftw} ${hdf5}")
+string(CONCAT build "${compiler} ${compiler_version} ${bit_flags} "
+  "${libc} ${eigen} ${fftw} ${hdf5}")
 physinv_digest(foundation "${build}" ${everywhere})
 physinv_digest(fingerprint ${foundation} ${numerics})
 

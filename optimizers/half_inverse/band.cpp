@@ -1,6 +1,7 @@
 #include "optimizers/half_inverse/band.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 
@@ -21,12 +22,8 @@ struct Masks {
 };
 constexpr Masks kMasks;
 
-using Bits = std::int64_t __attribute__((vector_size(nn::kWide)));
-
-inline Wide from_lane(Wide v, Index first) {
-  Bits mask;
-  std::memcpy(&mask, kMasks.keep[first], sizeof(mask));
-  return (Wide)((Bits)v & mask);
+inline Wide from_lane(const Wide& v, Index first) {
+  return masked(load_flags(kMasks.keep[first]), v);
 }
 
 /// D <- H D H for the symmetric block whose columns start at `d`, `step`
@@ -46,7 +43,7 @@ void turn_diagonal(double* d, Index step, double tau, const double* v) {
       store(w + i, fma(x, s, load(w + i)));
       mirrored = fma(x, load(v + i), mirrored);
     }
-    w[c] += sum(mirrored) - column[c] * v[c];
+    w[c] += std::fma(-column[c], v[c], sum(mirrored));
   }
   for (Index i = 0; i < kBand; ++i) w[i] *= tau;
   axpy(kBand, -0.5 * tau * dot(kBand, w, v), v, w);

@@ -20,21 +20,8 @@ constexpr int kRounds = 64, kRefinements = 8;
 /// Cosine between two vectors, and residual over value, that are put up with.
 constexpr double kCosine = 1e-11, kResidual = 1e-12;
 
-using Flags = std::int64_t __attribute__((vector_size(nn::kWide)));
-
-inline Wide magnitude(Wide x) {
-  return (Wide)((Flags)x & std::numeric_limits<std::int64_t>::max());
-}
-inline Wide guarded(Wide pivot) {
-  return magnitude(pivot) < kTiny ? broadcast(-kTiny) : pivot;
-}
-inline Wide root(Wide x) {
-#ifdef __AVX512F__
-  return (Wide)_mm512_sqrt_pd((__m512d)x);
-#else
-  for (Index l = 0; l < kWidth; ++l) x[l] = std::sqrt(x[l]);
-  return x;
-#endif
+inline Wide guarded(const Wide& pivot) {
+  return select(magnitude(pivot) < broadcast(kTiny), broadcast(-kTiny), pivot);
 }
 
 }  // namespace
@@ -56,7 +43,7 @@ void BidiagonalSpectrum::count_above(const double* x,
 #pragma GCC unroll 4
       for (int r = 0; r < kGroup; ++r) {
         const Wide pivot = guarded(s[r] + q);
-        above[r] += pivot > 0 ? broadcast(1) : Wide{};
+        above[r] += select(pivot > Wide{}, broadcast(1), Wide{});
         s[r] = fma(e, s[r] / pivot, -at[r]);
       }
     }
@@ -99,18 +86,19 @@ void BidiagonalSpectrum::isolate(double floor2, double top) {
     if (alone) break;
     for (Index j = 0; j < active; j += kWidth) {
       const Wide lo = load(low_ + j), hi = load(high_ + j);
-      const Wide middle = hi > 4 * lo ? root(lo) * root(hi) : 0.5 * (lo + hi);
+      const Wide middle =
+          select(hi > 4 * lo, root(lo) * root(hi), 0.5 * (lo + hi));
       store(x + j, middle);
     }
     count_above(x, counts, groups_);
     for (Index j = 0; j < active; j += kWidth) {
-      Wide rank;
+      double rank[kWidth];
       for (Index l = 0; l < kWidth; ++l)
         rank[l] = static_cast<double>(std::min(j + l, count_ - 1)) + 1;
-      const auto inside = load(counts + j) >= rank;
+      const auto inside = load(counts + j) >= load(rank);
       const Wide middle = load(x + j);
-      store(low_ + j, inside ? middle : load(low_ + j));
-      store(high_ + j, inside ? load(high_ + j) : middle);
+      store(low_ + j, select(inside, middle, load(low_ + j)));
+      store(high_ + j, select(inside, load(high_ + j), middle));
     }
   }
 }
@@ -131,7 +119,8 @@ void BidiagonalSpectrum::refine(Index lane) {
     high[r] = load(high_ + lane + r * kWidth);
     x[r] = 0.5 * (low[r] + high[r]);
     // Cubic convergence: the next error is far below rounding.
-    close[r] = 1e-6 * (high[r] - low[r]) + 1e-11 * low[r];
+    close[r] =
+        fma(broadcast(1e-6), high[r] - low[r], broadcast(1e-11) * low[r]);
   }
   bool last = false;
   for (int round = 0; round < kRefinements; ++round) {
@@ -142,7 +131,7 @@ void BidiagonalSpectrum::refine(Index lane) {
 #pragma GCC unroll 2
       for (int r = 0; r < kTwin; ++r) {
         store(s_of + i * kStep + r * kWidth, s[r]);
-        const Wide inverse = 1 / guarded(s[r] + q_[i]);
+        const Wide inverse = 1 / guarded(q_[i] + s[r]);
         store(down + i * kStep + r * kWidth, off_[i] * inverse);
         s[r] = fma(e_[i] * s[r], inverse, -x[r]);
       }
@@ -165,8 +154,8 @@ void BidiagonalSpectrum::refine(Index lane) {
         p[r] = fma(q_[i] * p[r], inverse, -x[r]);
         const Wide here = load(s_of + i * kStep + r * kWidth) + p[r] + x[r];
         const auto smaller = magnitude(here) < magnitude(gamma[r]);
-        gamma[r] = smaller ? here : gamma[r];
-        twist[r] = smaller ? index(i) : twist[r];
+        gamma[r] = select(smaller, here, gamma[r]);
+        twist[r] = select(smaller, index(i), twist[r]);
       }
     }
     Wide entry[kTwin];
@@ -177,9 +166,9 @@ void BidiagonalSpectrum::refine(Index lane) {
 #pragma GCC unroll 2
       for (int r = 0; r < kTwin; ++r) {
         const Wide next = -load(down + i * kStep + r * kWidth) * entry[r];
-        entry[r] = here == twist[r]  ? broadcast(1)
-                   : here < twist[r] ? next
-                                     : Wide{};
+        entry[r] = select(here == twist[r],
+                          broadcast(1),
+                          select(here < twist[r], next, Wide{}));
         store(z + i * kStep + r * kWidth, entry[r]);
         length2[r] = fma(entry[r], entry[r], length2[r]);
       }
@@ -192,8 +181,8 @@ void BidiagonalSpectrum::refine(Index lane) {
       for (int r = 0; r < kTwin; ++r) {
         const auto below = here > twist[r];
         const Wide next = -load(up + (i - 1) * kStep + r * kWidth) * entry[r];
-        entry[r] = below ? next : load(z + i * kStep + r * kWidth);
-        length2[r] += below ? entry[r] * entry[r] : Wide{};
+        entry[r] = select(below, next, load(z + i * kStep + r * kWidth));
+        length2[r] += select(below, entry[r] * entry[r], Wide{});
         store(z + i * kStep + r * kWidth, entry[r]);
       }
     }
@@ -202,9 +191,9 @@ void BidiagonalSpectrum::refine(Index lane) {
 #pragma GCC unroll 2
     for (int r = 0; r < kTwin; ++r) {
       Wide next = x[r] + gamma[r] / length2[r];
-      next = next < low[r] ? low[r] : next > high[r] ? high[r] : next;
-      const auto far = magnitude(next - x[r]) > close[r];
-      for (Index l = 0; l < kWidth; ++l) last = last && !far[l];
+      next =
+          select(next < low[r], low[r], select(next > high[r], high[r], next));
+      last = last && !any_of(magnitude(next - x[r]) > close[r]);
       x[r] = next;
     }
   }
@@ -271,7 +260,8 @@ void BidiagonalSpectrum::combine(VectorIn<double> w,
   out.setZero();
   for (Index j = 0; j < w.size(); ++j) {
     const double* v = v_.col(j).data();
-    for (Index i = 0; i < n_; ++i) out(n_ - 1 - i) += w(j) * v[i];
+    for (Index i = 0; i < n_; ++i)
+      out(n_ - 1 - i) = std::fma(w(j), v[i], out(n_ - 1 - i));
   }
 }
 

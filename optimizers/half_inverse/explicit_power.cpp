@@ -50,12 +50,12 @@ bool orthogonalize_columns(BatchOut<double> x, VectorOut<double> h) {
         const double c = 1 / std::sqrt(1 + t * t), s = c * t;
         for (Index i = 0; i < x.rows(); ++i) {
           const double left = x(i, p), right = x(i, q);
-          x(i, p) = c * left - s * right;
-          x(i, q) = s * left + c * right;
+          x(i, p) = std::fma(c, left, -(s * right));
+          x(i, q) = std::fma(s, left, c * right);
         }
         const double left = h(p), right = h(q);
-        h(p) = c * left - s * right;
-        h(q) = s * left + c * right;
+        h(p) = std::fma(c, left, -(s * right));
+        h(q) = std::fma(s, left, c * right);
       }
     }
     if (!turned) return true;

@@ -64,7 +64,7 @@ inline double reflect(Index n, double* x, double& beta) {
     for (Index i = 1; i < n; ++i) x[i] = 0;
     return 0;
   }
-  beta = -std::copysign(std::sqrt(head * head + tail), head);
+  beta = -std::copysign(std::sqrt(std::fma(head, head, tail)), head);
   const double scale = 1 / (head - beta);
   for (Index i = 1; i < n; ++i) x[i] *= scale;
   return (beta - head) / beta;

@@ -49,10 +49,10 @@ template <int kRows>
   const double* const rows = a.row(r);
   for (Index i = 0; i < kRows; ++i) {
     const double* row = rows + i * a.stride;
-    y[r + i] += row[r + i] * x[r + i];
+    y[r + i] = std::fma(row[r + i], x[r + i], y[r + i]);
     for (Index j = i + 1; j < kRows; ++j) {
-      y[r + i] += row[r + j] * x[r + j];
-      y[r + j] += row[r + j] * x[r + i];
+      y[r + i] = std::fma(row[r + j], x[r + j], y[r + i]);
+      y[r + j] = std::fma(row[r + j], x[r + i], y[r + j]);
     }
   }
   Wide dot[kRows] = {}, s[kRows];

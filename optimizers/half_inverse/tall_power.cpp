@@ -81,7 +81,8 @@ bool TallPower::by_lanes(const Power& power,
     spectrum_.lambda(i) = floor * floor;
     spectrum_.c(i) = std::sqrt(std::max(left, 0.0) / others);
   }
-  spectrum_.noise = {.slope = entry_noise(n, 0),
+  // Two reductions: J to R, and R to two diagonals.
+  spectrum_.noise = {.slope = 2 * entry_noise(n, 0),
                      .tail_begin = 0,
                      .norm_factor = norm_factor(n)};
   report = power_weights(spectrum_, power, weights_);

@@ -1,6 +1,7 @@
 #include "optimizers/half_inverse/tall_qr.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "optimizers/half_inverse/reflector.h"
@@ -45,7 +46,7 @@ void reflect_columns(const Panel& p, double* const* y, Index begin, Index end) {
 #pragma GCC unroll 8
     for (int k = 0; k < kPanel; ++k) {
       double total = 0;
-      for (int l = 0; l <= k; ++l) total += p.s[l][k] * along[l];
+      for (int l = 0; l <= k; ++l) total = std::fma(p.s[l][k], along[l], total);
       f[k][c] = broadcast(-total);
     }
   }
@@ -130,7 +131,8 @@ void triangularize(TallColumns& a, Index pivots, BatchOut<double> r) {
         inner[l] = dot(end - begin, p.v[l] + begin, p.v[k] + begin);
       for (int l = 0; l < k; ++l) {
         double total = 0;
-        for (int m = l; m < k; ++m) total += p.s[l][m] * inner[m];
+        for (int m = l; m < k; ++m)
+          total = std::fma(p.s[l][m], inner[m], total);
         p.s[l][k] = -tau[k] * total;
       }
     }

@@ -6,28 +6,18 @@
 
 #include <utility>
 
-#include "suite/nn/vector.h"
+#include "optimizers/half_inverse/wide.h"
 
 namespace physinv::hig {
 
-using Wide = nn::Simd<double, nn::kWide>;
-inline constexpr Index kWidth = nn::kWide / 8;     ///< doubles of one register
 inline constexpr Index kTileColumns = 2 * kWidth;  ///< of one tile
-/// With two vectors each, accumulators for 32 (AVX-512) or 16 registers.
-inline constexpr int kTileRows = nn::kWide == 64 ? 8 : 6;
+/// With two vectors each, accumulators for 32 registers of 512 bits, or, as a
+/// vector takes two of them, for 16 of 256.
+inline constexpr int kTileRows = nn::kWide == 64 ? 8 : 3;
 
 constexpr Index round_up(Index n, Index multiple) {
   return (n + multiple - 1) / multiple * multiple;
 }
-
-inline Wide fma(Wide a, Wide b, Wide c) {
-  return nn::multiply_add<double>(a, b, c);
-}
-inline Wide load(const double* p) { return nn::load<Wide>(p); }
-inline void store(double* p, Wide v) { nn::store(p, v); }
-inline Wide broadcast(double s) { return nn::broadcast<Wide>(s); }
-
-inline double sum(Wide v) { return nn::sum_of(v); }
 
 /// a[r * row + k * step], read as single numbers.
 struct Scalars {

@@ -1,6 +1,7 @@
 #include "optimizers/half_inverse/tridiagonalize.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "optimizers/half_inverse/panel_product.h"
 #include "optimizers/half_inverse/reflector.h"
@@ -95,7 +96,8 @@ void Tridiagonalize::panel(Index first, Index count) {
     axpy(rest, -0.5 * tau * dot(rest, wi + k, vi + k), vi + k, wi + k);
     std::fill(wi + n, wi + stride, 0.0);
     for (Index c = 0; c < length; ++c)
-      next[c] -= wi[k] * vi[from + c] + vi[k] * wi[from + c];
+      next[c] = std::fma(
+          -wi[k], vi[from + c], std::fma(-vi[k], wi[from + c], next[c]));
   }
 }
 
@@ -147,7 +149,8 @@ void Tridiagonalize::update_behind(Index start) {
     s[k * b + k] = tau[k];
     for (Index i = 0; i < k; ++i) {
       double z = 0;
-      for (Index l = i; l < k; ++l) z += s[i * b + l] * inner[l * b + k];
+      for (Index l = i; l < k; ++l)
+        z = std::fma(s[i * b + l], inner[l * b + k], z);
       s[i * b + k] = -tau[k] * z;
     }
   }

@@ -1,5 +1,6 @@
 /// The dense kernels of BFGS for one example: d x d matrices, column-major.
-/// Summation orders are fixed, so an example's bits depend on nothing else.
+/// Summation orders are fixed and fused operations written out, so an example's
+/// bits depend on nothing else.
 #pragma once
 
 #include <algorithm>
@@ -10,15 +11,19 @@
 
 namespace physinv::dense {
 
+inline void add_product(double& sum, double a, double b) {
+  sum = std::fma(a, b, sum);
+}
+
 /// a.b in four interleaved partial sums; the plain order for d <= 3.
 inline double dot(Index d, const double* a, const double* b) {
   std::array<double, 4> lane{};
   Index i = 0;
   for (; i + 4 <= d; i += 4)
     for (Index k = 0; k < 4; ++k)
-      lane[static_cast<std::size_t>(k)] += a[i + k] * b[i + k];
+      add_product(lane[static_cast<std::size_t>(k)], a[i + k], b[i + k]);
   for (Index k = 0; i < d; ++i, ++k)
-    lane[static_cast<std::size_t>(k)] += a[i] * b[i];
+    add_product(lane[static_cast<std::size_t>(k)], a[i], b[i]);
   return (lane[0] + lane[1]) + (lane[2] + lane[3]);
 }
 
@@ -46,7 +51,7 @@ inline void set_identity(Index d, double* h) {
 inline void multiply(Index d, const double* h, const double* v, double* out) {
   std::fill(out, out + d, 0.0);
   for (Index j = 0; j < d; ++j)
-    for (Index i = 0; i < d; ++i) out[i] += h[j * d + i] * v[j];
+    for (Index i = 0; i < d; ++i) add_product(out[i], h[j * d + i], v[j]);
 }
 
 /// H <- (I - rho s y^T) H (I - rho y s^T) + rho s s^T, with rho = 1 / (y.s),
@@ -64,9 +69,9 @@ inline void bfgs_update(
   for (Index j = 0; j < d; ++j) {
     double* column = h + j * d;
     const double right = rho * s[j];
-    for (Index i = 0; i < d; ++i) column[i] -= u[i] * right;
-    const double left = right - rho * dot(d, y, column);
-    for (Index i = 0; i < d; ++i) column[i] += s[i] * left;
+    for (Index i = 0; i < d; ++i) add_product(column[i], u[i], -right);
+    const double left = std::fma(-rho, dot(d, y, column), right);
+    for (Index i = 0; i < d; ++i) add_product(column[i], s[i], left);
   }
 }
 

@@ -16,7 +16,7 @@ double norm(const T* g, Index d) {
     const auto v = static_cast<double>(g[j]);
     finite &= std::isfinite(v);
     largest = std::max(largest, std::abs(v));
-    sum += v * v;
+    sum = std::fma(v, v, sum);
   }
   if (!finite) return std::numeric_limits<double>::quiet_NaN();
   if (std::isfinite(sum) && sum > 1e-280) return std::sqrt(sum);
@@ -24,7 +24,7 @@ double norm(const T* g, Index d) {
   sum = 0;
   for (Index j = 0; j < d; ++j) {
     const double v = static_cast<double>(g[j]) / largest;
-    sum += v * v;
+    sum = std::fma(v, v, sum);
   }
   return largest * std::sqrt(sum);
 }

@@ -267,7 +267,7 @@ PHYSINV_STEPS(float, F4)
 PHYSINV_STEPS(float, F8)
 PHYSINV_STEPS(double, D2)
 PHYSINV_STEPS(double, D4)
-#ifdef __AVX512F__
+#ifdef PHYSINV_AVX512
 using F16 = Pack<float, 16>;
 using D8 = Pack<double, 8>;
 PHYSINV_STEPS(float, F16)

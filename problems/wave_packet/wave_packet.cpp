@@ -15,7 +15,9 @@ namespace {
 
 enum Slot : std::size_t { kSlopes, kSpans };
 
-constexpr int kPacks = 4;  // side by side, so that no chain waits for itself
+/// Packs side by side, so that no chain waits for itself; of one number of
+/// samples for every width of the registers, which sums and spans depend on.
+constexpr int kPacks = 256 / kVectorBytes;
 template <class T>
 constexpr Index kBlock = kPacks* kLanes<T>;
 
@@ -39,10 +41,16 @@ PHYSINV_LANES void store(T* p, P pack) {
   std::memcpy(p, &pack, sizeof(P));
 }
 
-template <class P>
-PHYSINV_LANES auto sum_lanes(P pack) {
-  auto sum = pack[0];
-  for (std::size_t k = 1; k < sizeof(P) / sizeof(pack[0]); ++k) sum += pack[k];
+/// Of all numbers of a block: four parts side by side, then one by one.
+template <class T>
+PHYSINV_LANES T sum_block(const Pack<T> (&sums)[kPacks]) {
+  constexpr Index kPart = kBlock<T> / 4;
+  alignas(64) T all[kBlock<T>];
+  std::memcpy(all, sums, sizeof(all));
+  T sum = 0;
+  for (Index i = 0; i < kPart; ++i)
+    sum +=
+        (all[i] + all[kPart + i]) + (all[2 * kPart + i] + all[3 * kPart + i]);
   return sum;
 }
 
@@ -66,9 +74,10 @@ template <class T>
   Pack<T> sums[kPacks] = {};
   for (Index i = 0; i < count; i += kBlock<T>)
     for (int k = 0; k < kPacks; ++k)
-      sums[k] += load<Pack<T>>(a + i + k * kLanes<T>) *
-                 load<Pack<T>>(b + i + k * kLanes<T>);
-  return sum_lanes((sums[0] + sums[1]) + (sums[2] + sums[3]));
+      sums[k] = fma_lanes(load<Pack<T>>(a + i + k * kLanes<T>),
+                          load<Pack<T>>(b + i + k * kLanes<T>),
+                          sums[k]);
+  return sum_block<T>(sums);
 }
 
 template <class T>
@@ -82,9 +91,9 @@ template <class T>
       const auto r = load<Pack<T, W>>(y + i + k * W) -
                      load<Pack<T, W>>(target + i + k * W);
       const auto d = __builtin_convertvector(r, Pack<double>);
-      sums[k] += d * d;
+      sums[k] = fma_lanes(d, d, sums[k]);
     }
-  return 0.5 * sum_lanes((sums[0] + sums[1]) + (sums[2] + sums[3]));
+  return 0.5 * sum_block<double>(sums);
 }
 
 }  // namespace

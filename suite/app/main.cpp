@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "suite/app/verbs.h"
+#include "suite/harness/build_info.h"
 #include "suite/harness/context.h"
 #include "suite/harness/select.h"
 #include "suite/results/errors.h"
@@ -97,6 +98,15 @@ void open_standard_streams() {
   if (fd >= 0) close(fd);
 }
 
+/// The build may come from another machine.
+bool can_run_here() {
+#ifdef PHYSINV_AVX512
+  return __builtin_cpu_supports("avx512vl") != 0;
+#else
+  return __builtin_cpu_supports("avx2") != 0;
+#endif
+}
+
 constexpr const char* kUnwritable =
     "standard output cannot be written; a disk may be full";
 
@@ -111,6 +121,11 @@ ExitCode complain(ExitCode code, std::string text) {
 }
 
 ExitCode guarded(Arguments arguments) {
+  if (!can_run_here())
+    return complain(ExitCode::environment,
+                    fmt::format("built for {}, which this processor is not; "
+                                "remove the build directory to build anew",
+                                build_info().instruction_set));
   try {
     const ExitCode code = dispatch(std::move(arguments));
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)

@@ -45,11 +45,12 @@ std::vector<Section> overviews_of(const Results& results,
           return c.info.experiment.starts_with(o.paper + "/");
         }))
       continue;
-    sections.push_back(
-        {.experiment = o.paper,
-         .title = o.title,
-         .paper = o.paper,
-         .claims = judge(o.claims, {results, published, o.paper}, o.profiles)});
+    Section section;
+    if (o.report) section = o.report(results, published);
+    section.experiment = section.paper = o.paper;
+    section.title = o.title;
+    section.claims = judge(o.claims, {results, published, o.paper}, o.profiles);
+    sections.push_back(std::move(section));
   }
   return sections;
 }

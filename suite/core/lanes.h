@@ -25,7 +25,7 @@
 
 namespace physinv {
 
-#ifdef __AVX512F__
+#ifdef PHYSINV_AVX512
 inline constexpr int kVectorBytes = 64;
 #else
 inline constexpr int kVectorBytes = 32;
@@ -74,7 +74,7 @@ PHYSINV_LANES P select(M mask, P a, P b) {
 /// Square root of every lane; the caller keeps negative numbers out.
 template <class P>
 PHYSINV_LANES P sqrt_lanes(P x) {
-#ifdef __AVX512F__
+#ifdef PHYSINV_AVX512
   if constexpr (sizeof(P) == 64 && sizeof(x[0]) == 8)
     return _mm512_maskz_sqrt_pd(0xff, x);
   if constexpr (sizeof(P) == 64 && sizeof(x[0]) == 4)
@@ -94,7 +94,7 @@ PHYSINV_LANES P sqrt_lanes(P x) {
 /// in each copy of a function; written out, two copies have the same bits.
 template <class P>
 PHYSINV_LANES P fma_lanes(P a, P b, P c) {
-#ifdef __AVX512F__
+#ifdef PHYSINV_AVX512
   if constexpr (sizeof(P) == 64 && sizeof(a[0]) == 8)
     return _mm512_fmadd_pd(a, b, c);
   if constexpr (sizeof(P) == 64 && sizeof(a[0]) == 4)

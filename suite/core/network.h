@@ -111,6 +111,14 @@ class Network {
                              std::vector<LayerRows<T>>& layers,
                              Workspace& work) const;
 
+  /// One sample by plain loops in double, which share nothing with `forward`:
+  /// for checks of what was recorded. False where a layer has no such loops.
+  virtual bool evaluate_plainly(VectorIn<double> /*parameters*/,
+                                VectorIn<double> /*in*/,
+                                Vector<double>& /*out*/) const {
+    return false;
+  }
+
   /// Folds the batch statistics of the last training pass into the state.
   virtual void update_state(const Tape& tape, VectorOut<T> state) const = 0;
 

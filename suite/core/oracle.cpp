@@ -5,6 +5,17 @@
 #include <utility>
 
 namespace physinv {
+namespace {
+
+/// Eigen cuts its products into blocks by the caches of the processor that it
+/// finds itself on, and sums by block: before the first product, and before
+/// threads, the same caches for everybody.
+[[maybe_unused]] const bool kBlocksFixed = [] {
+  Eigen::setCpuCacheSizes(32 << 10, 512 << 10, 4 << 20);
+  return true;
+}();
+
+}  // namespace
 
 /// The problem and its data in one precision, made when first asked for.
 template <class T>

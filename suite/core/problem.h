@@ -5,6 +5,7 @@
 /// base classes; the base-class list is the declaration, read by `provides`.
 #pragma once
 
+#include <cmath>
 #include <concepts>
 #include <cstdint>
 
@@ -62,7 +63,7 @@ class Problem {
       double sum = 0;
       for (Index j = 0; j < y.rows(); ++j) {
         const double r = static_cast<double>(y(j, i) - target(j, i));
-        sum += r * r;
+        sum = std::fma(r, r, sum);  // whatever the compiler makes of the loop
       }
       loss(i) = 0.5 * sum;
     }

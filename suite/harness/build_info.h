@@ -20,7 +20,7 @@ struct SourceFile {
 /// decides whether a stage is stale is its own part of it (sources.h).
 struct BuildInfo {
   std::string_view compiler, compiler_version, flags, build_type;
-  std::string_view instruction_set;  ///< "x86-64-v3" or "native:<processor>"
+  std::string_view instruction_set;  ///< "x86-64-v3" or "x86-64-v4"
   std::string_view fingerprint;
   std::string_view foundation;  ///< hash of what every stage stands on:
                                 ///< compiler, flags, instruction set, libraries

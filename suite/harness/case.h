@@ -61,12 +61,14 @@ struct Experiment {
   Report report;  ///< empty: claims alone
 };
 
-/// What a paper says about several of its experiments.
+/// What stands in front of several experiments: what their paper says of them
+/// together, tables of all.
 struct Overview {
   std::string paper;  ///< jpo: of all experiments jpo/...
   std::string title;
   std::vector<std::string> profiles;  ///< in ascending order
   std::vector<Claim> claims;
+  Report report = {};
 };
 
 /// One case: what it is, and how to run it.

@@ -26,6 +26,47 @@ double loss_of(const Problem<double>& problem,
   return loss(0);
 }
 
+/// Estimates of all examples by plain loops through the setting's predictor,
+/// with what the stage has left; empty if they cannot be made.
+Batch<double> plain_estimates(const Experiment& experiment,
+                              const Problem<double>& problem,
+                              const CaseData& data,
+                              const StageRecord& stage) {
+  const NetworkRole& role = experiment.setting.predictor;
+  const auto stored = stage.arrays.find("parameters");
+  if (stored == stage.arrays.end() || !role.recipe.make_double) return {};
+  Index rows = 0;
+  for (const Field field : role.inputs) {
+    if (field == Field::unknowns) return {};
+    rows += field == Field::given ? data.given.rows() : data.y.rows();
+  }
+  const Shape shape = problem.shape();
+  const auto net = role.recipe.make<double>(rows, shape.unknowns);
+  if (net->parameter_count() != stored->second.size()) return {};
+  const Vector<double> parameters = stored->second.reshaped();
+  const Vector<double> start = problem.start();
+  Batch<double> x(shape.unknowns, data.y.cols());
+  Vector<double> in(rows), out;
+  for (Index i = 0; i < x.cols(); ++i) {
+    Index at = 0;
+    for (const Field field : role.inputs) {
+      const auto& part = field == Field::given ? data.given : data.y;
+      in.segment(at, part.rows()) = part.col(i);
+      at += part.rows();
+    }
+    if (!net->evaluate_plainly(parameters, in, out)) return {};
+    for (Index j = 0; j < x.rows(); ++j)
+      x(j, i) = start(j) + experiment.setting.output_scale * out(j);
+  }
+  return x;
+}
+
+bool nearly(double a, double b) {
+  return (!std::isfinite(a) && !std::isfinite(b)) ||
+         std::abs(a - b) <=
+             kPlainTolerance * std::max(std::abs(a), std::abs(b)) + 1e-13;
+}
+
 enum class Match { bitwise, close, none };
 
 Match compare(double a, double b) {
@@ -38,7 +79,42 @@ Match compare(double a, double b) {
              : Match::none;
 }
 
-void verify_stage(const Problem<double>& problem,
+/// What is stored of some examples alone, and their mean.
+void verify_by_network(const Experiment& experiment,
+                       const Problem<double>& problem,
+                       const CaseRecord& c,
+                       const StageRecord& stage,
+                       Workspace& work,
+                       VerifyReport& report) {
+  const Index n = stage.loss.size();
+  const Batch<double> x = plain_estimates(experiment, problem, c.data, stage);
+  if (x.cols() != n) {
+    report.not_again += static_cast<std::size_t>(n - stage.x.cols());
+    return;
+  }
+  Vector<double> loss(n);
+  for (Index i = 0; i < n; ++i) loss(i) = loss_of(problem, c.data, x, i, work);
+  const auto expect = [&](const std::string& what, double recorded, double is) {
+    ++report.losses;
+    ++report.by_network;
+    if (nearly(recorded, is)) return;
+    report.mismatches.push_back(
+        fmt::format("{} {} {}: recorded {:.17g}, is {:.17g} by plain loops",
+                    c.info.name,
+                    stage.stage,
+                    what,
+                    recorded,
+                    is));
+  };
+  for (Index i = stage.x.cols(); i < n; ++i)
+    expect(fmt::format("example {}", i), stage.loss(i), loss(i));
+  const auto mean = stage.arrays.find("mean_loss");
+  if (mean != stage.arrays.end() && mean->second.size() > 0)
+    expect("mean_loss", mean->second.reshaped()(Eigen::last), loss.mean());
+}
+
+void verify_stage(const Experiment& experiment,
+                  const Problem<double>& problem,
                   const CaseRecord& c,
                   const StageRecord& stage,
                   Workspace& work,
@@ -75,6 +151,8 @@ void verify_stage(const Problem<double>& problem,
                         again));
     }
   }
+  if (stage.x.cols() < n)
+    verify_by_network(experiment, problem, c, stage, work, report);
 }
 
 }  // namespace
@@ -96,7 +174,7 @@ VerifyReport verify_results(const Results& results, const Registry& registry) {
     if (!problem) problem = experiment->problem.make<double>();
     for (const StageRecord& stage : c.stages) {
       if (stage.stop == Stop::failed || stage.stop == Stop::skipped) continue;
-      verify_stage(*problem, c, stage, work, report);
+      verify_stage(*experiment, *problem, c, stage, work, report);
     }
   }
   return report;

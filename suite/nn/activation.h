@@ -106,6 +106,12 @@ class ActivationLayer final : public Layer<T> {
                Lanes<const T> x,
                Lanes<T> y) const override;
   void backward(const LayerArgs<T>& at, const Backward<T>& b) const override;
+  bool evaluate_plainly(const double* /*parameters*/,
+                        const Vector<double>& x,
+                        Vector<double>& y) const override {
+    for (Index i = 0; i < x.size(); ++i) y(i) = activate(activation_, x(i));
+    return true;
+  }
 
  private:
   Activation activation_;

@@ -64,6 +64,25 @@ void Conv<T>::forward(const LayerArgs<T>& at,
   });
 }
 
+/// Without padding, where the taps of position p start at p.
+template <class T>
+bool Conv<T>::evaluate_plainly(const double* parameters,
+                               const Vector<double>& x,
+                               Vector<double>& y) const {
+  if (padding_ != Padding::none) return false;
+  const auto& [grid, in, out, taps] = conv_.shape();
+  for (Index p = 0; p < grid.columns; ++p) {
+    for (Index o = 0; o < out; ++o) {
+      double sum = parameters[conv_.shape().weights() + o];
+      for (Index c = 0; c < in; ++c)
+        for (Index t = 0; t < taps.x; ++t)
+          sum += parameters[(o * in + c) * taps.x + t] * x((p + t) * in + c);
+      y(p * out + o) = activate(activation_, sum);
+    }
+  }
+  return true;
+}
+
 template <class T>
 void Conv<T>::backward(const LayerArgs<T>& at, const Backward<T>& b) const {
   conv_.gradients(

@@ -35,6 +35,9 @@ class Conv final : public Layer<T> {
                 Lanes<const T> y_bar,
                 Index offset,
                 std::vector<LayerRows<T>>& layers) const override;
+  bool evaluate_plainly(const double* parameters,
+                        const Vector<double>& x,
+                        Vector<double>& y) const override;
   double operations() const override { return conv_.operations(); }
 
  private:

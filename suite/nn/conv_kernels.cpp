@@ -9,7 +9,7 @@ namespace {
 
 // Register tiles. Channel counts are multiples of 8 more often than of 6, and
 // depths are multiples of 3.
-#ifdef __AVX512F__
+#ifdef PHYSINV_AVX512
 constexpr int kPanel = 8, kColumns = 3;   ///< outputs x columns
 constexpr int kOutTile = 4, kInTile = 6;  ///< weight gradient
 #else
@@ -268,12 +268,6 @@ struct Split {
   explicit Split(Index width)
       : wide(width / kWideLanes<T>),
         narrow((width - wide * kWideLanes<T>) / kLanes<T>) {}
-  Index wide_sums(const ConvShape& shape) const {
-    return wide > 0 ? shape.weights() * kWideLanes<T> : 0;
-  }
-  Index narrow_sums(const ConvShape& shape) const {
-    return narrow > 0 ? shape.weights() * kLanes<T> : 0;
-  }
   Index wide, narrow;
 };
 
@@ -362,10 +356,11 @@ void convolve(const ConvShape& shape,
   }
 }
 
+// Every lane sums over its own samples, so the number of lanes decides about
+// the order: that of the narrow registers on every machine.
 template <class T>
-Index weight_sums(const ConvShape& shape, Index width) {
-  const Split<T> split(width);
-  return split.wide_sums(shape) + split.narrow_sums(shape);
+Index weight_sums(const ConvShape& shape) {
+  return shape.weights() * kLanes<T>;
 }
 
 template <class T>
@@ -376,43 +371,25 @@ void accumulate_weights(const ConvShape& shape,
                         Index begin,
                         Index end,
                         T* sums) {
-  using Wide = Simd<T, kWide>;
-  using Narrow = Simd<T, kNarrow>;
-  const Split<T> split(x.width);
-  const Index wide = split.wide, narrow = split.narrow;
   for (const Run& run : runs) {
     const Index first = std::max(begin, run.first);
     const Index last = std::min(end, run.first + run.count);
     if (first >= last) continue;
-    weight_run<T, Wide>(shape, run, x, y_bar, first, last, 0, wide, sums);
-    weight_run<T, Narrow>(shape,
-                          run,
-                          x,
-                          y_bar,
-                          first,
-                          last,
-                          wide * kWideLanes<T>,
-                          narrow,
-                          sums + split.wide_sums(shape));
+    weight_run<T, Simd<T, kNarrow>>(
+        shape, run, x, y_bar, first, last, 0, x.width / kLanes<T>, sums);
   }
 }
 
 template <class T>
 void finish_weights(const ConvShape& shape,
-                    Index width,
                     const T* sums,
                     Index parts,
                     T* totals,
                     T* weights_bar) {
   const Index taps = shape.taps.count(), in = shape.in, depth = shape.depth();
-  const Split<T> split(width);
   std::fill_n(totals, shape.weights(), T(0));
-  for (Index part = 0; part < parts; ++part) {
-    if (split.wide > 0) add_lanes(sums, kWideLanes<T>, shape.weights(), totals);
-    sums += split.wide_sums(shape);
-    if (split.narrow > 0) add_lanes(sums, kLanes<T>, shape.weights(), totals);
-    sums += split.narrow_sums(shape);
-  }
+  for (Index part = 0; part < parts; ++part, sums += weight_sums<T>(shape))
+    add_lanes(sums, kLanes<T>, shape.weights(), totals);
   for (Index o = 0; o < shape.out; ++o)
     for (Index t = 0; t < taps; ++t)
       for (Index c = 0; c < in; ++c)
@@ -425,27 +402,26 @@ Index positions_per_block(Lanes<const T> x, Index channels) {
   return std::max<Index>(1, kBlockBytes / bytes);
 }
 
-#define PHYSINV_INSTANTIATE(T)                                   \
-  template void pack_weights<T>(const ConvShape&, const T*, T*); \
-  template void pack_flipped<T>(const ConvShape&, const T*, T*); \
-  template void convolve<T>(const ConvShape&,                    \
-                            const std::vector<Run>&,             \
-                            const T*,                            \
-                            const T*,                            \
-                            Lanes<const T>,                      \
-                            Lanes<T>,                            \
-                            Index,                               \
-                            Index);                              \
-  template Index weight_sums<T>(const ConvShape&, Index);        \
-  template void accumulate_weights<T>(const ConvShape&,          \
-                                      const std::vector<Run>&,   \
-                                      Lanes<const T>,            \
-                                      Lanes<const T>,            \
-                                      Index,                     \
-                                      Index,                     \
-                                      T*);                       \
-  template void finish_weights<T>(                               \
-      const ConvShape&, Index, const T*, Index, T*, T*);         \
+#define PHYSINV_INSTANTIATE(T)                                                \
+  template void pack_weights<T>(const ConvShape&, const T*, T*);              \
+  template void pack_flipped<T>(const ConvShape&, const T*, T*);              \
+  template void convolve<T>(const ConvShape&,                                 \
+                            const std::vector<Run>&,                          \
+                            const T*,                                         \
+                            const T*,                                         \
+                            Lanes<const T>,                                   \
+                            Lanes<T>,                                         \
+                            Index,                                            \
+                            Index);                                           \
+  template Index weight_sums<T>(const ConvShape&);                            \
+  template void accumulate_weights<T>(const ConvShape&,                       \
+                                      const std::vector<Run>&,                \
+                                      Lanes<const T>,                         \
+                                      Lanes<const T>,                         \
+                                      Index,                                  \
+                                      Index,                                  \
+                                      T*);                                    \
+  template void finish_weights<T>(const ConvShape&, const T*, Index, T*, T*); \
   template Index positions_per_block<T>(Lanes<const T>, Index);
 PHYSINV_INSTANTIATE(float)
 PHYSINV_INSTANTIATE(double)

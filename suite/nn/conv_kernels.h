@@ -58,9 +58,9 @@ void convolve(const ConvShape& shape,
               Index begin,
               Index end);
 
-/// Number of partial sums that `accumulate_weights` needs for rows of `width`.
+/// Number of partial sums that `accumulate_weights` needs.
 template <class T>
-Index weight_sums(const ConvShape& shape, Index width);
+Index weight_sums(const ConvShape& shape);
 
 /// sums += y_bar[p][o] x[p + t][c] over positions [begin, end), a vector of
 /// samples each. Padding lanes of y_bar must be zero, of x finite.
@@ -77,7 +77,6 @@ void accumulate_weights(const ConvShape& shape,
 /// totals: room for as many.
 template <class T>
 void finish_weights(const ConvShape& shape,
-                    Index width,
                     const T* sums,
                     Index parts,
                     T* totals,

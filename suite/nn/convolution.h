@@ -97,7 +97,7 @@ void Convolution<T>::gradients(const LayerArgs<T>& at,
                                F&& fill) const {
   const Workspace::Scope scope(*at.work);
   const Index parts = this->parts(x.samples);
-  const Index size = weight_sums<T>(shape_, x.width);
+  const Index size = weight_sums<T>(shape_);
   T *sums = nullptr, *packed = nullptr;
   if (weights_bar != nullptr) {
     sums = at.work->template take<T>(size, parts).data();
@@ -138,7 +138,7 @@ void Convolution<T>::gradients(const LayerArgs<T>& at,
   pull(shape_.positions(), input_positions_);
   if (weights_bar != nullptr) {
     T* totals = at.work->template take<T>(shape_.weights(), 1).data();
-    finish_weights<T>(shape_, x.width, sums, parts, totals, weights_bar);
+    finish_weights<T>(shape_, sums, parts, totals, weights_bar);
   }
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 // Register tiles of rows x vectors. Twelve accumulators fill the sixteen
 // registers of AVX2, and hide the latency of two FMA units (8 in flight).
-#ifdef __AVX512F__
+#ifdef PHYSINV_AVX512
 constexpr int kRows2 = 8, kRows1 = 16;
 #else
 constexpr int kRows2 = 6, kRows1 = 12;

@@ -349,8 +349,7 @@ void conv_forward(benchmark::State& state) {
 
 void conv_weights(benchmark::State& state) {
   Field f(state);
-  const Index width = f.x.lanes.width;
-  Vector<float> sums(weight_sums<float>(f.shape, width));
+  Vector<float> sums(weight_sums<float>(f.shape));
   for (auto _ : state) {
     sums.setZero();
     accumulate_weights<float>(f.shape,
@@ -360,8 +359,7 @@ void conv_weights(benchmark::State& state) {
                               0,
                               f.shape.positions(),
                               sums.data());
-    finish_weights(
-        f.shape, width, sums.data(), 1, f.packed.data(), f.weights.data());
+    finish_weights(f.shape, sums.data(), 1, f.packed.data(), f.weights.data());
     benchmark::ClobberMemory();
   }
   flops(state, f.flops());

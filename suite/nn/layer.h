@@ -110,6 +110,12 @@ class Layer {
                         std::vector<LayerRows<T>>&) const {
     SUITE_CHECK(tensors().empty(), "this layer gives no rows");
   }
+  /// Network::evaluate_plainly of this layer, y of the right size.
+  virtual bool evaluate_plainly(const double* /*parameters*/,
+                                const Vector<double>& /*x*/,
+                                Vector<double>& /*y*/) const {
+    return false;
+  }
   /// Folds the last training pass's statistics into this layer's state.
   virtual void update_state(const Tape& /*tape*/,
                             std::size_t /*slot*/,

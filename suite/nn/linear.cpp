@@ -179,6 +179,19 @@ void Linear<T>::add_rows(Lanes<const T> x,
                     .b_stride = y_bar.stride});
 }
 
+template <class T>
+bool Linear<T>::evaluate_plainly(const double* parameters,
+                                 const Vector<double>& x,
+                                 Vector<double>& y) const {
+  const Index in = this->inputs(), out = this->outputs();
+  for (Index o = 0; o < out; ++o) {
+    double sum = parameters[out * in + o];
+    for (Index i = 0; i < in; ++i) sum += parameters[o * in + i] * x(i);
+    y(o) = activate(activation_, sum);
+  }
+  return true;
+}
+
 template class Linear<float>;
 template class Linear<double>;
 

@@ -307,6 +307,21 @@ void Sequential<T>::update_state(const Tape& tape, VectorOut<T> state) const {
 }
 
 template <class T>
+bool Sequential<T>::evaluate_plainly(VectorIn<double> parameters,
+                                     VectorIn<double> in,
+                                     Vector<double>& out) const {
+  out = in;
+  for (std::size_t i = 0; i < layers_.size(); ++i) {
+    Vector<double> y(layers_[i]->outputs());
+    if (!layers_[i]->evaluate_plainly(
+            parameters.data() + places_[i].parameters, out, y))
+      return false;
+    out = std::move(y);
+  }
+  return true;
+}
+
+template <class T>
 double Sequential<T>::operations() const {
   double sum = 0;
   for (const auto& layer : layers_) sum += layer->operations();

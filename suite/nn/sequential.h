@@ -55,6 +55,9 @@ class Sequential final : public Network<T> {
                      std::vector<LayerRows<T>>& layers,
                      Workspace& work) const override;
   void update_state(const Tape& tape, VectorOut<T> state) const override;
+  bool evaluate_plainly(VectorIn<double> parameters,
+                        VectorIn<double> in,
+                        Vector<double>& out) const override;
   double operations() const override;
 
  private:

@@ -19,7 +19,7 @@ template <class T, int kBytes>
 using Simd = typename VectorOf<T, kBytes>::type;
 
 inline constexpr int kNarrow = 32;
-#ifdef __AVX512F__
+#ifdef PHYSINV_AVX512
 inline constexpr int kWide = 64;
 #else
 inline constexpr int kWide = 32;

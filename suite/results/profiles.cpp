@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 #include <set>
+#include <utility>
 
 namespace physinv {
 namespace {
@@ -31,6 +32,13 @@ void add_point(Course& course,
   course.loss.emplace_back(loss);
 }
 
+/// The mean over a test set along the curve, if that is what is known of all.
+const Batch<double>* mean_of(const StageRecord& s) {
+  const auto mean = s.arrays.find("mean_loss");
+  const bool some = s.curve.loss.rows() != s.loss.size();
+  return some && mean != s.arrays.end() ? &mean->second : nullptr;
+}
+
 /// Empty unless every stage is finished, or one of them failed.
 std::optional<Course> course_of(const CaseRecord& found) {
   Course course;
@@ -39,18 +47,24 @@ std::optional<Course> course_of(const CaseRecord& found) {
   for (const StageRecord& s : found.stages) {
     failed = s.stop == Stop::failed || s.stop == Stop::skipped;
     if (failed) break;
-    for (Index k = 0; k < s.curve.points(); ++k) {
+    const Batch<double>* mean = mean_of(s);
+    const Index points = mean == nullptr
+                             ? s.curve.points()
+                             : std::min(mean->cols(), s.curve.points());
+    for (Index k = 0; k < points; ++k) {
       const auto at = static_cast<std::size_t>(k);
       add_point(course,
                 seconds + s.curve.seconds[at],
                 simulations + s.curve.evaluations[at],
-                s.curve.loss.col(k));
+                mean == nullptr ? Vector<double>(s.curve.loss.col(k))
+                                : Vector<double>(mean->col(k)));
     }
     seconds += s.clocks.solve.wall;
     simulations += static_cast<double>(s.counts[Counter::forward] +
                                        s.counts[Counter::vjp]);
     // The estimate may be better than the end of the curve.
-    if (s.loss.size() > 0) add_point(course, seconds, simulations, s.loss);
+    if (s.loss.size() > 0 && mean == nullptr)
+      add_point(course, seconds, simulations, s.loss);
   }
   if (!failed && found.stages.size() < found.info.stages.size()) return {};
   return course;
@@ -105,10 +119,39 @@ std::optional<double> target_of(const Group& group,
   return target;
 }
 
+/// Those of `all` that end lowest, in the order of `all`.
+std::vector<std::string> lowest_of(const Results& results,
+                                   const std::string& experiment,
+                                   const std::vector<std::string>& all,
+                                   std::size_t most) {
+  if (all.size() <= most) return all;
+  std::vector<std::pair<double, std::size_t>> ends;
+  for (std::size_t m = 0; m < all.size(); ++m) {
+    std::vector<double> last;
+    for (const Index n : results.sizes(experiment))
+      for (const std::uint64_t seed : results.seeds(experiment))
+        if (const auto* found = results.find_case(experiment, all[m], n, seed))
+          if (const auto course = course_of(*found);
+              course && !course->loss.empty())
+            last.push_back(course->loss.back().mean());
+    for (double& loss : last)
+      if (!std::isfinite(loss)) loss = kInfinity;
+    std::sort(last.begin(), last.end());
+    ends.emplace_back(last.empty() ? kInfinity : last[last.size() / 2], m);
+  }
+  std::sort(ends.begin(), ends.end());
+  std::set<std::size_t> kept;
+  for (std::size_t k = 0; k < most; ++k) kept.insert(ends[k].second);
+  std::vector<std::string> some;
+  for (const std::size_t m : kept) some.push_back(all[m]);
+  return some;
+}
+
 void append_costs(TargetCosts& out,
                   const Group& group,
                   Index example,
                   double target) {
+  const double share = out.runs ? 1 : static_cast<double>(group.n);
   for (std::size_t m = 0; m < group.courses.size(); ++m) {
     const Course& course = group.courses[m];
     const auto there =
@@ -120,9 +163,7 @@ void append_costs(TargetCosts& out,
     out.seconds[m].push_back(reached ? std::max(course.seconds[k], 1e-9)
                                      : kInfinity);
     out.simulations[m].push_back(
-        reached ? std::max(course.simulations[k] / static_cast<double>(group.n),
-                           1.0)
-                : kInfinity);
+        reached ? std::max(course.simulations[k] / share, 1.0) : kInfinity);
   }
   ++out.problems;
 }
@@ -180,20 +221,30 @@ std::string tolerance_text(double tolerance) {
 
 std::string target_note(const TargetCosts& costs) {
   std::string note = fmt::format(
-      "A problem (one example of one n and seed) is solved to tau once its "
+      "A problem ({}) is solved to tau once its "
       "loss is at most f_L + tau (f_0 - f_L), f_L the lowest loss any method "
       "found for it, f_0 the lowest at which any method starts (More and Wild "
       "2009). {} problems of n = {} and {} seed{}; {} more start there or "
       "without a number and are left out. Costs are those of the whole chain "
-      "of stages, refinement included. Curves hold the times of a batch: an "
-      "example's seconds are the batch's when it first meets its target. "
-      "Simulations, gradients included, are the batch's at that time over n, "
-      "at least 1; those behind labelled training samples are not counted.",
+      "of stages, refinement included. {}",
+      costs.runs ? "one run: the mean test loss of one seed"
+                 : "one example of one n and seed",
       costs.problems,
       fmt::join(costs.sizes, ", "),
       costs.seeds,
       costs.seeds == 1 ? "" : "s",
-      costs.solved_at_start);
+      costs.solved_at_start,
+      costs.runs
+          ? "Simulations are those of training, gradients included."
+          : "Curves hold the times of a batch: an example's seconds are the "
+            "batch's when it first meets its target. Simulations, gradients "
+            "included, are the batch's at that time over n, at least 1; those "
+            "behind labelled training samples are not counted.");
+  if (costs.left_out > 0)
+    note +=
+        fmt::format(" The {} methods that end lowest; {} more are left out.",
+                    costs.methods.size(),
+                    costs.left_out);
   if (costs.crowded) {
     note += " Some stages shared their cores: their seconds are too many.";
   }
@@ -229,9 +280,12 @@ Steps distribution(Costs values) {
 
 TargetCosts target_costs(const Results& results,
                          const std::string& experiment,
-                         double tolerance) {
+                         double tolerance,
+                         std::size_t most) {
   TargetCosts out;
-  out.methods = results.methods(experiment);
+  const auto all = results.methods(experiment);
+  out.methods = lowest_of(results, experiment, all, most);
+  out.left_out = static_cast<Index>(all.size() - out.methods.size());
   out.seconds.resize(out.methods.size());
   out.simulations.resize(out.methods.size());
   std::set<std::uint64_t> seeds;
@@ -241,6 +295,7 @@ TargetCosts target_costs(const Results& results,
       const auto group =
           group_of(results, experiment, out.methods, n, seed, out.crowded);
       if (!group) continue;
+      out.runs = group->examples == 1 && n > 1;
       seeds.insert(seed);
       sizes.insert(n);
       for (Index i = 0; i < group->examples; ++i) {
@@ -268,7 +323,15 @@ std::vector<Figure> profile_figures(const Results& results,
   std::string note;
   for (const double tolerance : options.tolerances) {
     const TargetCosts costs = target_costs(results, experiment, tolerance);
-    if (costs.methods.size() < 2 || costs.sizes.empty()) return {};
+    if (costs.methods.size() < 2 || costs.sizes.empty()) {
+      profile.note = reached.note =
+          costs.methods.size() < 2
+              ? "Not made: only one method was run."
+              : "Not made: no n and seed at which every method is finished "
+                "and has the losses of the same problems.";
+      profile.panels = reached.panels = {Panel{}};
+      return {std::move(profile), std::move(reached)};
+    }
     if (note.empty()) note = target_note(costs);
     for (const bool by_time : {true, false}) {
       const auto& spent = by_time ? costs.seconds : costs.simulations;

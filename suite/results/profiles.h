@@ -8,6 +8,10 @@
 ///
 ///   f <= f_L + tau (f_0 - f_L).
 ///
+/// Where a method is judged by its network on a test set, whose curve is a mean
+/// (`mean_loss`), a problem is one run: all methods from the same weights of
+/// one seed.
+///
 /// The cost t(p, s) of method s is what its whole chain of stages has spent
 /// when its curve first gets there, infinite if it never does.
 #pragma once
@@ -47,23 +51,27 @@ struct ProfileOptions {
 /// Costs of an experiment's methods at one tolerance.
 struct TargetCosts {
   std::vector<std::string> methods;
-  std::vector<Costs> seconds;      ///< the batch's time
-  std::vector<Costs> simulations;  ///< the batch's, over n; at least 1
-  Index problems = 0;              ///< of every entry above
-  Index solved_at_start = 0;       ///< left out: nothing to reach, or no number
-  std::vector<Index> sizes;        ///< n of the cases compared
+  std::vector<Costs> seconds;  ///< the batch's time
+  /// The batch's, over n; those of training if a problem is a run. At least 1.
+  std::vector<Costs> simulations;
+  bool runs = false;          ///< a problem is a run
+  Index left_out = 0;         ///< methods beyond those that end lowest
+  Index problems = 0;         ///< of every entry above
+  Index solved_at_start = 0;  ///< left out: nothing to reach, or no number
+  std::vector<Index> sizes;   ///< n of the cases compared
   Index seeds = 0;
   bool crowded = false;  ///< some stages shared their cores
 };
 
 /// Compares on the n and seeds where all methods' chains are finished. A
-/// failed stage ends its chain.
+/// failed stage ends its chain. Of many methods, the `most` that end lowest.
 TargetCosts target_costs(const Results& results,
                          const std::string& experiment,
-                         double tolerance);
+                         double tolerance,
+                         std::size_t most = 12);
 
 /// performance_profile and time_to_target: two panels per tolerance, seconds
-/// and simulations. Empty if no two methods can be compared.
+/// and simulations. If no two methods can be compared, they say why.
 std::vector<Figure> profile_figures(const Results& results,
                                     const std::string& experiment,
                                     const ProfileOptions& options);

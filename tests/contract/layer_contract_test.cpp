@@ -162,6 +162,18 @@ TEST_P(LayerContract, FloatAgreesWithDouble) {
   EXPECT_TRUE(Comparator(Tolerance<float>::relative, 0)(out, forward(p_, in_)));
 }
 
+// What recorded losses are checked with.
+TEST_P(LayerContract, PlainLoopsAgree) {
+  Vector<double> out;
+  if (!net_->evaluate_plainly(p_, in_.col(0), out))
+    GTEST_SKIP() << "has layers without plain loops";
+  const Batch<double> expected = forward(p_, in_);
+  for (Index i = 0; i < kCount; ++i) {
+    ASSERT_TRUE(net_->evaluate_plainly(p_, in_.col(i), out));
+    EXPECT_TRUE(Comparator(1e-12, 1e-13)(out, Vector<double>(expected.col(i))));
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Registered,
                          LayerContract,
                          testing::ValuesIn(roles()),

@@ -81,10 +81,15 @@ Batch<double> flat_columns(const Json& list);
 /// delta_k-0.5_tau1e-05_beta0, the last part optional.
 bool parse_power(const std::string& key, hig::Power& power);
 
-/// Loss, gradient and updates of an entry; `targets` is its input's name.
-void check_batch(const Learner& l, const char* targets, const Json& entry);
+/// Estimates, loss, gradient, singular values and updates of an entry, in
+/// double; `targets` is its input's name.
+void check_batch(const Learner& l,
+                 const char* targets,
+                 const Json& entry,
+                 Expected& out);
 
-/// Consecutive minibatches in fixed order.
+/// Consecutive minibatches in fixed order, by the strictest path and, as far as
+/// the entry allows updates to differ, by the library's own.
 void check_sequence(const Learner& l,
                     const char* targets,
                     Index batch,

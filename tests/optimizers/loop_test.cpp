@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "optimizers/training.h"
+#include "optimizers/training/batch_signal.h"
 #include "optimizers/training/first_order.h"
 #include "suite/core/oracle.h"
 #include "tests/support/bits.h"

@@ -91,7 +91,9 @@ TEST(TallPower, AgainstTheDefinition) {
         const Vector<double> expected = Definition(j, g).update(p);
         EXPECT_EQ(report.ending, Ending::ok);
         EXPECT_LE((update - expected).norm(),
-                  (report.error + 1e-12) * expected.norm());
+                  (report.error + 1e-12) * expected.norm())
+            << n << " columns, " << decades << " decades, kappa " << p.kappa
+            << ", error " << report.error;
         EXPECT_LE((update - expected).norm(), 1e-8 * expected.norm());
         EXPECT_LT(report.error, 1e-6);
         checked += power.fallbacks() == 0;

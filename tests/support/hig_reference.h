@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <set>
+#include <string>
 #include <vector>
 
 #include "tests/support/reference.h"
@@ -94,6 +95,33 @@ class TwoNorm {
   }
 
   double rel_, abs_;
+};
+
+/// What an entry expects. A key that is never asked for fails the test.
+class Expected {
+ public:
+  explicit Expected(const Json& entry) : values_(entry.at("expected")) {}
+  ~Expected() {
+    for (const auto& [key, value] : values_.items())
+      EXPECT_TRUE(read_.contains(key)) << "no test reads " << key;
+  }
+  Expected(const Expected&) = delete;
+  Expected& operator=(const Expected&) = delete;
+
+  bool contains(const std::string& key) const { return values_.contains(key); }
+  const Json& at(const std::string& key) {
+    read_.insert(key);
+    return values_.at(key);
+  }
+  std::vector<std::string> keys() const {
+    std::vector<std::string> all;
+    for (const auto& [key, value] : values_.items()) all.push_back(key);
+    return all;
+  }
+
+ private:
+  Json values_;
+  std::set<std::string> read_;
 };
 
 /// The limits of one entry; forms nobody here knows are an error.

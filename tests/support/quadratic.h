@@ -21,7 +21,7 @@ struct QuadraticOptions {
 inline Options describe(const QuadraticOptions&) { return {}; }
 
 template <class T>
-class Quadratic final : public Problem<T>, public Vjp<T> {
+class Quadratic final : public Problem<T>, public Vjp<T>, public Jacobian<T> {
  public:
   using Options = QuadraticOptions;
   explicit Quadratic(const Options& options = {}) : options_(options) {}
@@ -67,6 +67,16 @@ class Quadratic final : public Problem<T>, public Vjp<T> {
                 Workspace&) const override {
     for (Index i = 0; i < y_bar.cols(); ++i)
       x_bar.col(i) = matrix().transpose() * y_bar.col(i);
+  }
+  void jacobian(BatchIn<T> x,
+                BatchIn<T>,
+                BatchOut<T> j,
+                Workspace&) const override {
+    const auto a = matrix();
+    for (Index i = 0; i < x.cols(); ++i) {
+      j.col(i) = a.reshaped();
+      if (x(0, i) > T(options_.broken_above)) j.col(i).setConstant(kNan);
+    }
   }
   double operations() const override { return 8; }
 

@@ -132,10 +132,52 @@ TEST(ProfileFigures, StairsFromTheBestToTheLast) {
             std::string::npos);
 }
 
-TEST(ProfileFigures, NothingToCompare) {
+/// A network's run: some examples along the curve, and the mean of all.
+StageRecord training_of(const std::vector<double>& means) {
+  std::vector<std::vector<double>> tracked(means.size(), {7, 7});
+  StageRecord s = stage_of(tracked);
+  s.loss = Vector<double>::Constant(5, 7);
+  Batch<double> mean(1, static_cast<Index>(means.size()));
+  for (std::size_t k = 0; k < means.size(); ++k)
+    mean(0, static_cast<Index>(k)) = means[k];
+  s.arrays["mean_loss"] = mean;
+  return s;
+}
+
+TEST(TargetCosts, OfRunsThatAreJudgedByAMean) {
+  const Results results({case_of("a", {training_of({4, 1, 0})}, 5),
+                         case_of("b", {training_of({4, 0.3, 0.3})}, 5)});
+  const TargetCosts costs = target_costs(results, "e", 0.1);
+  EXPECT_TRUE(costs.runs);
+  EXPECT_EQ(costs.problems, 1);
+  EXPECT_EQ(costs.seconds[0], (Costs{3}));
+  EXPECT_EQ(costs.seconds[1], (Costs{2}));
+  EXPECT_EQ(costs.simulations[1], (Costs{20}));
+}
+
+TEST(TargetCosts, OfManyMethodsThoseThatEndLowest) {
+  const Results results({case_of("a", {training_of({4, 3})}, 5),
+                         case_of("b", {training_of({4, kInf})}, 5),
+                         case_of("c", {training_of({4, 1})}, 5)});
+  const TargetCosts costs = target_costs(results, "e", 0.1, 2);
+  EXPECT_EQ(costs.methods, (std::vector<std::string>{"a", "c"}));
+  EXPECT_EQ(costs.left_out, 1);
+}
+
+TEST(ProfileFigures, SayWhyThereIsNothingToCompare) {
   const Results one({case_of("a", {stage_of({{1, 1}, {0, 0}})})});
-  EXPECT_TRUE(profile_figures(one, "e", {}).empty());
-  EXPECT_TRUE(profile_figures(Results(), "e", {}).empty());
+  const Results apart({case_of("a", {stage_of({{1, 1}, {0, 0}})}),
+                       case_of("b", {stage_of({{1}, {0}})})});
+  for (const auto& [results, why] :
+       {std::pair{&one, "only one method"}, {&apart, "the same problems"}}) {
+    const auto figures = profile_figures(*results, "e", {});
+    ASSERT_EQ(figures.size(), 2U);
+    for (const Figure& figure : figures) {
+      EXPECT_NE(figure.note.find(why), std::string::npos) << figure.note;
+      ASSERT_EQ(figure.panels.size(), 1U);
+      EXPECT_TRUE(figure.panels[0].series.empty());
+    }
+  }
 }
 
 }  // namespace

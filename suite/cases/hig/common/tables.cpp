@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "suite/cases/hig/common/report.h"
+#include "suite/evidence/cell.h"
 #include "suite/evidence/curve.h"
 #include "suite/evidence/statistics.h"
 
@@ -52,10 +53,7 @@ Table loss_table(const Results& results,
       diverged += s->stop == Stop::diverged;
     }
     if (losses.empty()) continue;
-    const auto number = [](double v) {
-      return Cell{.text = std::isfinite(v) ? fmt::format("{:.3g}", v)
-                                           : "not finite"};
-    };
+    const auto number = [](double v) { return written(v); };
     const auto [lowest, highest] =
         std::minmax_element(losses.begin(), losses.end());
     table.rows.push_back(
@@ -98,11 +96,11 @@ Table cost_table(const Results& results,
     if (const auto v = paper_update(published, experiment, line.published))
       duration.paper = 1e3 * *v;
     if (bytes.empty()) {
-      megabytes.text = duration.text = "not run";
+      megabytes.text = duration.text = kNotRun;
     } else {
       megabytes.ours = 1e-6 * median(bytes);
       if (seconds.empty())
-        duration.text = "crowded";
+        duration.text = kCrowded;
       else
         duration.ours = 1e3 * median(seconds);
     }

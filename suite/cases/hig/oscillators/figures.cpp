@@ -5,6 +5,7 @@
 
 #include "suite/cases/hig/common/report.h"
 #include "suite/cases/hig/oscillators/oscillators.h"
+#include "suite/evidence/cell.h"
 #include "suite/evidence/quantity.h"
 #include "suite/evidence/training.h"
 #include "suite/harness/registry.h"
@@ -25,10 +26,9 @@ Table final_losses(const Results& results, const Published& published) {
               .note = "The paper's are the best of a search, after an hour."};
   const Evidence evidence{results, published, kName};
   for (const char* id : {"adam", "gn", "hig"}) {
-    Cell cell{.ours = lowest({id}, last_loss())(evidence).value};
+    Cell cell = cell_of(lowest({id}, last_loss())(evidence).value);
     if (const auto v = published.find(kName, fmt::format("fig2b/{}", id)))
       cell.paper = v->value;
-    if (!cell.ours) cell.text = "not run";
     table.rows.push_back({.label = id, .cells = {cell}});
   }
   return table;

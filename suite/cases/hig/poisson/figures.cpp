@@ -7,6 +7,7 @@
 
 #include "suite/cases/hig/common/report.h"
 #include "suite/cases/hig/poisson/phases.h"
+#include "suite/evidence/cell.h"
 #include "suite/evidence/quantity.h"
 #include "suite/evidence/training.h"
 #include "suite/harness/registry.h"
@@ -17,7 +18,7 @@ namespace {
 /// Since when the smaller rate leads, up to the end of the larger one's curve.
 Cell crossing(const Evidence& e, const char* smaller, const char* larger) {
   const auto some = find_runs(e, {larger});
-  if (some.empty()) return {.text = "not run"};
+  if (some.empty()) return {.text = kNotRun};
   std::optional<double> since;
   double last = 0;
   for (const double updates : some.front().stage->curve.iteration) {
@@ -31,7 +32,7 @@ Cell crossing(const Evidence& e, const char* smaller, const char* larger) {
   }
   if (since) return {.ours = since};
   if (last > 0) return {.text = fmt::format("not within {}", last)};
-  return {.text = "not run"};
+  return {.text = kNotRun};
 }
 
 /// Kept singular values and the smallest of them, by method.

@@ -5,6 +5,7 @@
 
 #include "suite/cases/hig/common/report.h"
 #include "suite/cases/hig/toy/toy.h"
+#include "suite/evidence/cell.h"
 #include "suite/evidence/quantity.h"
 #include "suite/harness/registry.h"
 #include "suite/results/published.h"
@@ -102,12 +103,6 @@ Figure path_figure(const Evidence& evidence,
           .note = "One seed; excursions beyond 3 are left out."};
 }
 
-Cell number(const Measured& m) {
-  if (!m.value) return {.text = "not run"};
-  if (!std::isfinite(*m.value)) return {.text = "not finite"};
-  return {.text = fmt::format("{:.3g}", *m.value)};
-}
-
 Cell saturation(const Evidence& evidence, const char* method) {
   Index neurons = 0, saturated = 0;
   for (const Run& run : find_runs(evidence, {method}))
@@ -146,7 +141,7 @@ Table course_table(const Evidence& evidence,
     if (find_runs(evidence, select).empty()) continue;
     TableRow row{.label = line.label};
     const auto add = [&](const RunValue& value) {
-      row.cells.push_back(number(median(select, value)(evidence)));
+      row.cells.push_back(written(median(select, value)(evidence)));
     };
     for (const Index e : kEpochs) add(value_after({}, e * kUpdatesPerEpoch));
     add(value_after(metric(kSecondLoss), 20 * kUpdatesPerEpoch));

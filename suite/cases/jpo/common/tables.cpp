@@ -4,11 +4,10 @@
 #include <cmath>
 
 #include "suite/cases/jpo/common/report.h"
+#include "suite/evidence/cell.h"
 
 namespace physinv {
 namespace {
-
-constexpr const char* kNotRun = "not run";
 
 struct SecondsColumn {
   const char *title, *method, *stage;
@@ -23,14 +22,6 @@ constexpr SecondsColumn kSecondsColumns[] = {
     {"Surrogate fit", "na", "fit"},
     {"Neural adjoint", "na", "solve"},
     {"N.A. refinement", "na", "refine"}};
-
-Cell cell_of(std::span<const double> values) {
-  const auto found = mean_std(values);
-  if (!found) return {.text = kNotRun};
-  Cell cell{.ours = found->mean};
-  if (found->std) cell.spread = *found->std;
-  return cell;
-}
 
 // Columns of one table may need other digits than its unit suggests.
 Cell shown_as(Cell cell, const char* format) {
@@ -76,7 +67,7 @@ Cell JpoReport::seconds_cell(const std::string& method,
         if (found->crowded) return {};
         return found->clocks.solve.wall;
       });
-  if (!cell.ours && crowded) cell.text = "crowded";
+  if (!cell.ours && crowded) cell.text = kCrowded;
   return cell;
 }
 
@@ -217,7 +208,7 @@ TableRow JpoReport::results_row(const std::string& method,
     });
   };
   const auto f = [&](Equality equality) {
-    if (method == "bfgs") return Cell{.text = "–"};
+    if (method == "bfgs") return Cell{.text = kNothing};
     return over_seeds(n, [&](Index, std::uint64_t seed) -> Value {
       const auto one = metrics_.shares(method, n, seed, refined, equality);
       return one ? Value{one->f()} : Value{};
@@ -240,7 +231,7 @@ TableRow JpoReport::results_row(const std::string& method,
   };
   const Cell loss = read([](const StageRecord& s) { return s.loss.mean(); });
   Cell time = over_seeds(n, seconds);
-  if (!time.ours && loss.ours) time.text = "crowded";
+  if (!time.ours && loss.ours) time.text = kCrowded;
   return {.label = fmt::format(
               "{} {}{}", n, method_title(method), refined ? " refined" : ""),
           .cells = {over_seeds(n,

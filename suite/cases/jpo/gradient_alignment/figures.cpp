@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "suite/cases/jpo/gradient_alignment/shares.h"
+#include "suite/evidence/cell.h"
 #include "suite/harness/registry.h"
 #include "suite/results/published.h"
 #include "suite/results/results.h"
@@ -110,8 +111,6 @@ Figure noisy_figure(const Fig2& f,
           .columns = 1,
           .note = fmt::format("{}SNR {}.", kMarks, kEven)};
 }
-
-constexpr const char* kNotRun = "not run";
 
 Table shares_table(const Results& results, const Fig2& f) {
   Table table{.id = "alignment",

@@ -10,6 +10,7 @@
 #include "suite/cases/jpo/common/networks.h"
 #include "suite/cases/jpo/common/report.h"
 #include "suite/cases/jpo/common/values.h"
+#include "suite/evidence/cell.h"
 #include "suite/harness/registry.h"
 
 namespace physinv {
@@ -139,9 +140,8 @@ Table in_words(const Evidence& evidence) {
                   "Solved: both unknowns within 1e-3. Iterations: lowest and "
                   "highest mean of any n. Better: than BFGS."};
   for (const auto& [label, name, ours] : rows) {
-    Cell cell{.ours = ours(evidence).value};
+    Cell cell = cell_of(ours(evidence).value);
     cell.paper = printed(std::string("text/") + name)(evidence).value;
-    if (!cell.ours) cell.text = "not run";
     table.rows.push_back({label, {cell}});
   }
   return table;

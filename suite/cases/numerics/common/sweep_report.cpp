@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "suite/diagnostics/stability_sweep.h"
+#include "suite/evidence/cell.h"
 
 namespace physinv {
 namespace {
@@ -17,13 +17,6 @@ SweepStatus status_of(const StageRecord& sweep, SweepCheck check, Index cell) {
 
 Index cells(const StageRecord& sweep) {
   return sweep.arrays.at("status").cols();
-}
-
-Index count(const StageRecord& sweep, SweepCheck check, SweepStatus status) {
-  Index count = 0;
-  for (Index j = 0; j < cells(sweep); ++j)
-    count += status_of(sweep, check, j) == status;
-  return count;
 }
 
 /// 0 fine, 1 float inaccurate, 2 float diverged, 3 both diverged.
@@ -65,6 +58,24 @@ Panel map(const SweepAxis& x,
 
 }  // namespace
 
+Index sweep_count(const StageRecord& sweep,
+                  SweepCheck check,
+                  SweepStatus status) {
+  Index count = 0;
+  for (Index j = 0; j < cells(sweep); ++j)
+    count += status_of(sweep, check, j) == status;
+  return count;
+}
+
+Panel sweep_map(const SweepAxis& x,
+                const SweepAxis& y,
+                const StageRecord& sweep,
+                std::string title) {
+  return map(x, y, sweep, std::move(title), [&](Index cell) {
+    return forward_level(sweep, cell);
+  });
+}
+
 const StageRecord* find_sweep(const Results& results,
                               const std::string& experiment,
                               const std::string& method,
@@ -92,18 +103,18 @@ Table sweep_table(std::string id, std::string title, const StageRecord* sweep) {
     TableRow row{
         .label = std::string(kSweepCheckNames[static_cast<std::size_t>(c)])};
     for (int s = 0; s < 4; ++s) {
-      Cell cell{.text = "not run"};
+      Cell cell{.text = kNotRun};
       if (sweep != nullptr) {
-        const Index n = count(
+        const Index n = sweep_count(
             *sweep, static_cast<SweepCheck>(c), static_cast<SweepStatus>(s));
         cell = {.ours = static_cast<double>(n)};
       }
       row.cells.push_back(cell);
     }
-    Cell error{.text = "not run"};
+    Cell error{.text = kNotRun};
     if (sweep != nullptr) {
       const double largest = sweep->arrays.at("error").row(c).maxCoeff();
-      error.text = largest < 0 ? "–" : fmt::format("{:.1e}", largest);
+      error.text = largest < 0 ? kNothing : fmt::format("{:.1e}", largest);
       if (largest >= 0) error.ours = largest;
     }
     row.cells.push_back(error);
@@ -124,9 +135,7 @@ Figure sweep_maps(std::string id,
                     "diverged, 3 both diverged. Errors are relative; blank "
                     "cells have none."};
   if (sweep == nullptr) return figure;
-  figure.panels.push_back(map(x, y, *sweep, "Where it runs", [&](Index cell) {
-    return forward_level(*sweep, cell);
-  }));
+  figure.panels.push_back(sweep_map(x, y, *sweep, "Where it runs"));
   for (const auto check : {SweepCheck::forward_single,
                            SweepCheck::adjoint,
                            SweepCheck::adjoint_single}) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "suite/diagnostics/stability_sweep.h"
 #include "suite/evidence/claim.h"
 #include "suite/results/record.h"
 #include "suite/results/report_model.h"
@@ -35,6 +36,17 @@ Figure sweep_maps(std::string id,
                   const SweepAxis& x,
                   const SweepAxis& y,
                   const StageRecord* sweep);
+
+/// The first of these maps alone.
+Panel sweep_map(const SweepAxis& x,
+                const SweepAxis& y,
+                const StageRecord& sweep,
+                std::string title);
+
+/// How many points of a sweep came out so.
+Index sweep_count(const StageRecord& sweep,
+                  SweepCheck check,
+                  SweepStatus status);
 
 /// Claim of the method `stability`: in these stages, wherever the double
 /// forward pass is finite, the adjoint agrees with the tangent and with the

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "suite/cases/numerics/half_inverse/sweep.h"
+#include "suite/evidence/cell.h"
 #include "suite/harness/registry.h"
 
 namespace physinv::half_inverse_numerics {
@@ -27,7 +28,7 @@ TableRow ends(const Cells& cells, std::string label, const Choice& chosen) {
   TableRow row{.label = std::move(label)};
   for (const double n : counts) row.cells.push_back({.ours = n});
   row.cells.push_back(
-      {.text = largest < 0 ? "–" : fmt::format("{:.3g}", largest)});
+      {.text = largest < 0 ? kNothing : fmt::format("{:.3g}", largest)});
   return row;
 }
 

@@ -5,6 +5,7 @@
 
 #include "suite/cases/numerics/kuramoto_sivashinsky/sweep.h"
 #include "suite/diagnostics/work_precision.h"
+#include "suite/evidence/cell.h"
 #include "suite/harness/registry.h"
 
 namespace physinv::ks_numerics {
@@ -85,17 +86,17 @@ Table work_table(const Results& results) {
     return WorkPoint{};
   };
   const auto error = [](const WorkPoint& p) {
-    if (p.steps == 0) return Cell{.text = "not run"};
-    if (p.error < 0) return Cell{.text = "diverged"};
+    if (p.steps == 0) return Cell{.text = kNotRun};
+    if (p.error < 0) return Cell{.text = kDiverged};
     return Cell{.ours = p.error, .text = fmt::format("{:.2e}", p.error)};
   };
   const auto time = [](const WorkPoint& p) {
-    if (p.seconds <= 0) return Cell{.text = "not run"};
+    if (p.seconds <= 0) return Cell{.text = kNotRun};
     return Cell{.ours = 1e6 * p.seconds};
   };
   for (const Index steps : kSteps) {
     const WorkPoint fine = at(exact, steps), coarse = at(exact, steps / 2);
-    Cell order{.text = "–"};
+    Cell order{.text = kNothing};
     if (fine.error > 0 && coarse.error > 0)
       order = {.ours = std::log2(coarse.error / fine.error)};
     table.rows.push_back(
@@ -181,7 +182,7 @@ Table growth_table(const Results& results) {
       const auto value = typical(*s, array, k);
       row.cells.push_back(
           {.ours = value,
-           .text = value ? fmt::format("{:.2e}", *value) : "diverged"});
+           .text = value ? fmt::format("{:.2e}", *value) : kDiverged});
     }
     table.rows.push_back(std::move(row));
   }

@@ -6,14 +6,10 @@
 #include <vector>
 
 #include "problems/robotic_arm/robotic_arm.h"
-#include "suite/cases/numerics/common/sweep_report.h"
-#include "suite/diagnostics/stability_sweep.h"
-#include "suite/harness/registry.h"
+#include "suite/cases/numerics/common/atlas.h"
 
 namespace physinv {
 namespace {
-
-constexpr const char* kName = "numerics/robotic-arm";
 
 /// Unknowns of an arm whose links point at these absolute angles.
 Vector<double> pose(double base, const std::array<double, 3>& phi) {
@@ -33,75 +29,33 @@ std::vector<double> bends() {
   return angles;
 }
 
-const SweepAxis kDirection{"direction of the first link", turn()};
-const SweepAxis kBend{"bend of both joints", bends()};
-
-ProblemRecipe arm() { return problem<RoboticArm>("robotic_arm"); }
-
-/// Bends of 0 and pi, where all links lie on one line, are singular: the middle
-/// row of the grid and its ends.
-std::shared_ptr<const Stage> poses() {
-  StabilitySweepOptions options{
-      .name = "poses", .problems = {arm()}, .points = {}};
-  for (const double bend : kBend.values)
-    for (const double a : kDirection.values)
-      options.points.push_back({0, pose(0.25, {a, a + bend, a - bend})});
-  return stability_sweep(options);
+/// Both links bent the same way by `bend`: 0 and pi, where all of them lie on
+/// one line, are singular.
+Vector<double> bent(double base, double direction, double bend) {
+  return pose(base, {direction, direction + bend, direction - bend});
 }
 
-std::vector<double> decades() {
-  std::vector<double> sizes;
-  for (int decade = 0; decade <= 16; ++decade)
-    sizes.push_back(std::pow(10.0, decade));
-  return sizes;
-}
+const ProblemRecipe kArm = problem<RoboticArm>("robotic_arm");
 
-const SweepAxis kSize{"size of the angles", decades(), true};
-const SweepAxis kStretch{"bend of both joints", {0, 0.5, 1}};
-
-/// From a turn to where neighbouring numbers are turns apart.
-std::shared_ptr<const Stage> turns() {
-  StabilitySweepOptions options{
-      .name = "turns", .problems = {arm()}, .points = {}};
-  for (const double bend : kStretch.values)
-    for (const double size : kSize.values)
-      options.points.push_back({0, pose(0, {size, size + bend, size - bend})});
-  return stability_sweep(options);
-}
-
-Section report(const Results& results, const Published&) {
-  const auto* singular = find_sweep(results, kName, "stability", "poses");
-  const auto* large = find_sweep(results, kName, "stability", "turns");
-  return {
-      .tables = {sweep_table("poses", "Singular poses and others", singular),
-                 sweep_table("turns", "Large angles", large)},
-      .figures = {sweep_maps("poses",
-                             "Singular poses (bend 0 and ±pi) and others",
-                             kDirection,
-                             kBend,
-                             singular),
-                  sweep_maps("turns", "Large angles", kSize, kStretch, large)}};
-}
-
-const std::vector<Row> kRows = {
-    {.methods = {"stability"}, .n = {1}, .seeds = {0}}};
-
-/// Nothing is learned here.
-const Setting kNoNetworks;
-
-const auto kRegistered = register_experiment({
-    .name = kName,
-    .title = "Numerics of the robotic arm",
-    .source = {.paper = "jpo", .where = "App. D.5"},
-    .problem = arm(),
-    .setting = kNoNetworks,
-    .profiles = {{.name = "smoke", .rows = kRows},
-                 {.name = "quick", .rows = kRows},
-                 {.name = "paper", .rows = kRows}},
-    .methods = {{"stability", {poses(), turns()}}},
-    .claims = {adjoint_claim("N1", {"poses", "turns"})},
-    .report = report,
-});
+const bool kRegistered = register_atlas(
+    {.name = "numerics/robotic-arm",
+     .title = "Numerics of the robotic arm",
+     .source = {.paper = "jpo", .where = "App. D.5"},
+     .sweeps = {
+         {.id = "poses",
+          .title = "Singular poses (bend 0 and ±pi) and others",
+          .x = {"direction of the first link", turn()},
+          .y = {"bend of both joints", bends()},
+          .point = [](double direction,
+                      double bend) { return bent(0.25, direction, bend); },
+          .problems = {kArm}},
+         // From a turn to where neighbouring numbers are turns apart.
+         {.id = "turns",
+          .title = "Large angles",
+          .x = {"size of the angles", decades(0, 16), true},
+          .y = {"bend of both joints", {0, 0.5, 1}},
+          .point = [](double size, double bend) { return bent(0, size, bend); },
+          .problems = {kArm}}}});
 
 }  // namespace
 }  // namespace physinv

@@ -1,0 +1,48 @@
+/// The stability atlas: of each problem, parameters over their whole range and
+/// beyond it, as sweeps over two axes (suite/diagnostics/stability_sweep.h). A
+/// problem enters it by saying what its axes are.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "suite/cases/numerics/common/sweep_report.h"
+#include "suite/core/recipe.h"
+#include "suite/harness/case.h"
+
+namespace physinv {
+
+struct Sweep {
+  std::string id;     ///< of the stage, table and figure
+  std::string title;  ///< "Aim and speed"
+  SweepAxis x, y;
+  /// Unknowns at a point of the axes.
+  std::function<Vector<double>(double x, double y)> point;
+  /// One for all, or one for each value of y.
+  std::vector<ProblemRecipe> problems;
+  double zero = 1e-30;  ///< see StabilitySweepOptions
+  Index examples = 1;
+};
+
+/// Powers of ten, 10^first, 10^(first + step) .. 10^last.
+std::vector<double> decades(double first, double last, double step = 1);
+std::vector<double> spaced(double first, double last, int count);
+
+struct Atlas {
+  std::string name;   ///< numerics/billiards
+  std::string title;  ///< Numerics of billiards
+  Source source;
+  std::vector<Sweep> sweeps;
+  ProblemRecipe problem = {};  ///< as it is registered; none: that of a sweep
+};
+
+/// An experiment with the method `stability`, a stage per sweep, a table and
+/// maps of each, and the claim N1 about all adjoints. For static
+/// initialisation; returns true.
+bool register_atlas(Atlas atlas);
+
+/// Those registered, in any order.
+const std::vector<Atlas>& atlases();
+
+}  // namespace physinv

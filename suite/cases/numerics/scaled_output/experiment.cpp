@@ -1,0 +1,34 @@
+// The toy's scaled output: any size of the unknowns and of the factor.
+#include "problems/scaled_output/scaled_output.h"
+#include "suite/cases/numerics/common/atlas.h"
+
+namespace physinv {
+namespace {
+
+const SweepAxis kSize{"size", decades(-150, 150, 10), true};
+const SweepAxis kGamma{"gamma", decades(-12, 4, 1), true};
+
+Vector<double> unknowns(double size, double) {
+  return size * Eigen::Vector2d(0.8, -0.6);
+}
+
+std::vector<ProblemRecipe> factors() {
+  std::vector<ProblemRecipe> all;
+  for (const double gamma : kGamma.values)
+    all.push_back(problem<ScaledOutput>("scaled_output", {.gamma = gamma}));
+  return all;
+}
+
+const bool kRegistered = register_atlas(
+    {.name = "numerics/toy",
+     .title = "Numerics of the toy",
+     .source = {.paper = "hig", .where = "Sec. 2.1"},
+     .sweeps = {{.id = "sizes",
+                 .title = "Size of the unknowns and factor of the second",
+                 .x = kSize,
+                 .y = kGamma,
+                 .point = unknowns,
+                 .problems = factors()}}});
+
+}  // namespace
+}  // namespace physinv

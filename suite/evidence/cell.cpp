@@ -1,0 +1,34 @@
+#include "suite/evidence/cell.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "suite/evidence/statistics.h"
+
+namespace physinv {
+
+Cell cell_of(std::optional<double> value, const char* otherwise) {
+  if (!value) return {.text = otherwise};
+  return {.ours = value};
+}
+
+Cell cell_of(std::span<const double> values, const char* otherwise) {
+  const auto found = mean_std(values);
+  if (!found) return {.text = otherwise};
+  return {.ours = found->mean, .spread = found->std};
+}
+
+Cell written(std::optional<double> value,
+             const char* format,
+             const char* otherwise) {
+  if (!value) return {.text = otherwise};
+  if (!std::isfinite(*value)) return {.text = "not finite"};
+  return {.text = fmt::format(fmt::runtime(format), *value)};
+}
+
+Cell written(const Measured& measured, const char* format) {
+  return written(measured.value, format);
+}
+
+}  // namespace physinv

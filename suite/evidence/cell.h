@@ -1,0 +1,32 @@
+/// Cells of tables. What is not there says why, in the same words everywhere.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "suite/evidence/quantity.h"
+#include "suite/results/report_model.h"
+
+namespace physinv {
+
+inline constexpr const char* kNotRun = "not run";
+/// Its stages shared their cores: their times are no times.
+inline constexpr const char* kCrowded = "crowded";
+inline constexpr const char* kDiverged = "diverged";
+/// A question that does not arise.
+inline constexpr const char* kNothing = "–";
+
+/// The number with as many digits as the table shows; `otherwise` without one.
+Cell cell_of(std::optional<double> value, const char* otherwise = kNotRun);
+/// Mean and deviation of one number per seed.
+Cell cell_of(std::span<const double> values, const char* otherwise = kNotRun);
+
+/// The number in words of its own size: fmt's format, "not finite" for what is
+/// not.
+Cell written(std::optional<double> value,
+             const char* format = "{:.3g}",
+             const char* otherwise = kNotRun);
+Cell written(const Measured& measured, const char* format = "{:.3g}");
+
+}  // namespace physinv
