@@ -15,7 +15,7 @@ namespace physinv {
 namespace {
 
 constexpr Index kSteps = 16;
-constexpr double kWidest = 0.1, kRatio = 4;
+constexpr double kWidest = 0.1, kNearby = 1e-7, kRatio = 4;
 constexpr double kBeside = 1e-2;  ///< of a step, beside its direction
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
@@ -62,10 +62,11 @@ Batch<double> central_differences(const Problem<double>& problem,
                                   const Vector<double>& w,
                                   const Vector<double>& v,
                                   const Batch<double>& x_bar,
+                                  double widest,
                                   Workspace& work) {
   Batch<double> d(kSteps, x.cols()), up = x, down = x;
   Batch<double> y_up(w.size(), x.cols()), y_down = y_up;
-  double step = kWidest;
+  double step = widest;
   for (Index k = 0; k < kSteps; ++k, step /= kRatio) {
     for (Index j = 0; j < x.cols(); ++j) {
       up.col(j) = x.col(j) + step * v;
@@ -120,6 +121,17 @@ Finding judge_differences(const Extrapolated& d, double slope, double scale) {
                std::max(kDifferences, 4 * d.uncertainty / scale));
 }
 
+/// By wide steps; where they disagree, by narrow ones, if these decide.
+Finding judge_both(VectorIn<double> wide,
+                   VectorIn<double> narrow,
+                   double slope,
+                   double scale) {
+  const Finding from_afar = judge_differences(extrapolate(wide), slope, scale);
+  if (from_afar.status == SweepStatus::ok) return from_afar;
+  const Finding nearby = judge_differences(extrapolate(narrow), slope, scale);
+  return nearby.status == SweepStatus::undecided ? from_afar : nearby;
+}
+
 class StabilitySweep final : public Diagnostic {
  public:
   explicit StabilitySweep(StabilitySweepOptions options)
@@ -136,7 +148,7 @@ class StabilitySweep final : public Diagnostic {
     for (std::size_t p = 0; p < points.size(); ++p)
       if (points[p] > 0)
         sum += points[p] * options_.problems[p].make<double>()->operations();
-    return (2 * kSteps + 8) * static_cast<double>(options_.examples) * sum;
+    return (4 * kSteps + 8) * static_cast<double>(options_.examples) * sum;
   }
 
  protected:
@@ -202,13 +214,17 @@ class StabilitySweep final : public Diagnostic {
     Workspace work(run.threads);
     const Side exact = evaluate<double>(recipe, x, given, w, run.threads);
     const Side single = evaluate<float>(recipe, x, given, w, run.threads);
-    const auto differences =
-        central_differences(*problem, x, given, w, v, exact.x_bar, work);
+    const auto differences = [&](double widest) {
+      return central_differences(
+          *problem, x, given, w, v, exact.x_bar, widest, work);
+    };
+    const Batch<double> wide = differences(kWidest),
+                        narrow = differences(kNearby);
     const auto* jacobian = dynamic_cast<const Jacobian<double>*>(problem.get());
     Vector<double> tangent;
     if (jacobian != nullptr)
       tangent = tangents(*jacobian, x, given, w, v, work);
-    run.oracle.add(Counter::forward, 2 * kSteps * x.cols());
+    run.oracle.add(Counter::forward, 4 * kSteps * x.cols());
     run.oracle.add(Counter::vjp, 2 * x.cols());
 
     for (Index j = 0; j < x.cols(); ++j) {
@@ -220,8 +236,7 @@ class StabilitySweep final : public Diagnostic {
         const double scale = std::max(options_.zero, exact.x_bar.col(j).norm());
         const double slope = exact.x_bar.col(j).dot(v);
         if (exact.x_bar.col(j).allFinite()) {
-          found[2] =
-              judge_differences(extrapolate(differences.col(j)), slope, scale);
+          found[2] = judge_both(wide.col(j), narrow.col(j), slope, scale);
           found[3] =
               jacobian == nullptr
                   ? Finding{SweepStatus::undecided, -1}

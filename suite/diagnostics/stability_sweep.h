@@ -9,8 +9,10 @@
 ///   adjoint f32      |J^T w in float - in double| <= 1e-2 |J^T w|
 /// Differences take h = 0.1 / 4^k, extrapolated (Richardson) from neighbouring
 /// steps; the value that differs least from both neighbours counts, the
-/// difference is its uncertainty. Discrepancies are relative to
-/// |J^T w|. Nothing is ever NaN: what has no number has a status.
+/// difference is its uncertainty. Where that disagrees, a point next to an edge
+/// may look smooth from afar: h = 1e-7 / 4^k decides if it can. Discrepancies
+/// are relative to |J^T w|. Nothing is ever NaN: what has no number has a
+/// status.
 #pragma once
 
 #include <array>
