@@ -4,9 +4,11 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "suite/core/check.h"
+#include "suite/core/lanes.h"
 
 namespace physinv::hig {
 namespace {
@@ -17,6 +19,27 @@ constexpr Index kJacobi = 64;
 constexpr int kSweeps = 60;
 /// Squared norms below have lost digits to underflow; such columns count as 0.
 constexpr double kNothing = 1e-280;
+
+/// (a, b) <- (c a - s b, s a + c b)
+void rotate(Index n, double c, double s, double* a, double* b) {
+  using Four = Pack<double, 4>;
+  const Four cosine = Four{} + c, sine = Four{} + s;
+  Index i = 0;
+  for (; i + 4 <= n; i += 4) {
+    Four left, right;
+    std::memcpy(&left, a + i, sizeof(Four));
+    std::memcpy(&right, b + i, sizeof(Four));
+    const Four first = fma_lanes(cosine, left, -(sine * right));
+    const Four second = fma_lanes(sine, left, cosine * right);
+    std::memcpy(a + i, &first, sizeof(Four));
+    std::memcpy(b + i, &second, sizeof(Four));
+  }
+  for (; i < n; ++i) {
+    const double left = a[i], right = b[i];
+    a[i] = std::fma(c, left, -(s * right));
+    b[i] = std::fma(s, left, c * right);
+  }
+}
 
 }  // namespace
 
@@ -48,11 +71,7 @@ bool orthogonalize_columns(BatchOut<double> x, VectorOut<double> h) {
         const double t =
             std::copysign(1.0, zeta) / (std::abs(zeta) + std::hypot(1.0, zeta));
         const double c = 1 / std::sqrt(1 + t * t), s = c * t;
-        for (Index i = 0; i < x.rows(); ++i) {
-          const double left = x(i, p), right = x(i, q);
-          x(i, p) = std::fma(c, left, -(s * right));
-          x(i, q) = std::fma(s, left, c * right);
-        }
+        rotate(x.rows(), c, s, x.col(p).data(), x.col(q).data());
         const double left = h(p), right = h(q);
         h(p) = std::fma(c, left, -(s * right));
         h(q) = std::fma(s, left, c * right);

@@ -6,8 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 
-#include "suite/core/batch.h"
+#include "suite/core/lanes.h"
 
 namespace physinv::dense {
 
@@ -17,13 +18,18 @@ inline void add_product(double& sum, double a, double b) {
 
 /// a.b in four interleaved partial sums; the plain order for d <= 3.
 inline double dot(Index d, const double* a, const double* b) {
-  std::array<double, 4> lane{};
+  using Four = Pack<double, 4>;
+  Four sums{};
   Index i = 0;
-  for (; i + 4 <= d; i += 4)
-    for (Index k = 0; k < 4; ++k)
-      add_product(lane[static_cast<std::size_t>(k)], a[i + k], b[i + k]);
-  for (Index k = 0; i < d; ++i, ++k)
-    add_product(lane[static_cast<std::size_t>(k)], a[i], b[i]);
+  for (; i + 4 <= d; i += 4) {
+    Four left, right;
+    std::memcpy(&left, a + i, sizeof(Four));
+    std::memcpy(&right, b + i, sizeof(Four));
+    sums = fma_lanes(left, right, sums);
+  }
+  std::array<double, 4> lane;
+  std::memcpy(lane.data(), &sums, sizeof(Four));
+  for (std::size_t k = 0; i < d; ++i, ++k) add_product(lane[k], a[i], b[i]);
   return (lane[0] + lane[1]) + (lane[2] + lane[3]);
 }
 

@@ -11,7 +11,7 @@ namespace {
 // depths are multiples of 3.
 #ifdef PHYSINV_AVX512
 constexpr int kPanel = 8, kColumns = 3;   ///< outputs x columns
-constexpr int kOutTile = 4, kInTile = 6;  ///< weight gradient
+constexpr int kOutTile = 4, kInTile = 3;  ///< weight gradient
 #else
 constexpr int kPanel = 4, kColumns = 3;
 constexpr int kOutTile = 4, kInTile = 3;
