@@ -19,7 +19,7 @@ string(GENEX_STRIP "${physinv_flags_text}" physinv_flags_text)
 string(REGEX REPLACE " +" " " physinv_flags_text "${physinv_flags_text}")
 string(STRIP "${physinv_flags_text}" physinv_flags_text)
 # Those that decide about bits: the width of registers does not.
-string(REGEX REPLACE " -(march=|U__AVX512F__)[^ ]*" "" physinv_bit_flags
+string(REGEX REPLACE " ?-(march=|U__AVX512F__)[^ ]*" "" physinv_bit_flags
   "${physinv_flags_text}")
 
 set(physinv_info ${PROJECT_BINARY_DIR}/build_info)

@@ -117,11 +117,12 @@ endfunction()
 # [PRECOMPILE headers] SOURCES ... DEPENDS ...): one target per layer. OBJECT
 # keeps registrations that nobody names from the linker's broom. NUMBERS
 # computes what is recorded: physinv_<name>_v3 is the same for AVX2, where that
-# is another build. PRECOMPILE: headers of the project
-# that nearly every source of the layer includes. RECORDS handles numbers and makes none, WORDS does not touch
-# Eigen either: both are joined, words hardly optimized (-O1 comes after the -O3
-# of the build type). Elsewhere -O1 would be dangerous: the linker takes any one
-# copy of an inline function for all, and without contraction its bits differ.
+# is another build. PRECOMPILE: headers of the project that nearly every source
+# of the layer includes. RECORDS handles numbers and makes none, WORDS does not
+# touch Eigen either: both are joined, words hardly optimized (-O1 comes after
+# the -O3 of the build type). Elsewhere -O1 would be dangerous: the linker takes
+# any one copy of an inline function for all, and without contraction its bits
+# differ.
 function(physinv_layer name)
   cmake_parse_arguments(ARG "OBJECT;NUMBERS;RECORDS;WORDS;GROUPED" ""
     "SOURCES;DEPENDS;PRECOMPILE" ${ARGN})

@@ -4,11 +4,10 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
+#include "optimizers/half_inverse/wide.h"
 #include "suite/core/check.h"
-#include "suite/core/lanes.h"
 
 namespace physinv::hig {
 namespace {
@@ -22,17 +21,12 @@ constexpr double kNothing = 1e-280;
 
 /// (a, b) <- (c a - s b, s a + c b)
 void rotate(Index n, double c, double s, double* a, double* b) {
-  using Four = Pack<double, 4>;
-  const Four cosine = Four{} + c, sine = Four{} + s;
+  const Wide cosine = broadcast(c), sine = broadcast(s);
   Index i = 0;
-  for (; i + 4 <= n; i += 4) {
-    Four left, right;
-    std::memcpy(&left, a + i, sizeof(Four));
-    std::memcpy(&right, b + i, sizeof(Four));
-    const Four first = fma_lanes(cosine, left, -(sine * right));
-    const Four second = fma_lanes(sine, left, cosine * right);
-    std::memcpy(a + i, &first, sizeof(Four));
-    std::memcpy(b + i, &second, sizeof(Four));
+  for (; i + kWidth <= n; i += kWidth) {
+    const Wide left = load(a + i), right = load(b + i);
+    store(a + i, fma(cosine, left, -(sine * right)));
+    store(b + i, fma(sine, left, cosine * right));
   }
   for (; i < n; ++i) {
     const double left = a[i], right = b[i];

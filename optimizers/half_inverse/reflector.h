@@ -3,7 +3,6 @@
 
 #include <cmath>
 
-#include "optimizers/half_inverse/eight.h"
 #include "optimizers/half_inverse/tile_product.h"
 
 namespace physinv::hig {
@@ -41,7 +40,7 @@ inline void turn(Index n, double tau, const double* v, double* x) {
   axpy(n, -tau * dot(n, v, x), v, x);
 }
 inline void turn(Index n, double tau, const double* v, Eight* x) {
-  Eight even, odd;  // two sums hide the latency of one
+  Eight even{}, odd{};  // two sums hide the latency of one
   Index i = 0;
   for (; i + 2 <= n; i += 2) {
     even = even + v[i] * x[i];

@@ -3,12 +3,11 @@
 /// who searches with whom, so it is the same everywhere, and so are the bits.
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <limits>
 
-#include "suite/nn/vector.h"
+#include "optimizers/half_inverse/eight.h"
+#include "suite/core/lanes_math.h"
 
 namespace physinv::hig {
 
@@ -22,6 +21,7 @@ using Flags = nn::Simd<std::int64_t, 64>;
 PHYSINV_LANES Wide broadcast(double s) { return nn::broadcast<Wide>(s); }
 PHYSINV_LANES Wide fma(Wide a, Wide b, Wide c) { return fma_lanes(a, b, c); }
 PHYSINV_LANES Wide root(Wide x) { return sqrt_lanes(x); }
+PHYSINV_LANES Wide magnitude(Wide x) { return abs_lanes(x); }
 PHYSINV_LANES Wide masked(Flags keep, Wide x) {
   return (Wide)((Flags)x & keep);
 }
@@ -30,45 +30,11 @@ PHYSINV_LANES bool any_of(Flags f) { return any(f); }
 
 #else
 
-using Half = nn::Simd<double, 32>;
-
-struct Flags {
-  nn::Simd<std::int64_t, 32> low, high;
-};
-
-struct Wide {
-  Half low, high;
-
-  double operator[](Index l) const { return l < 4 ? low[l] : high[l - 4]; }
-#define PHYSINV_WIDE(op)                                                \
-  PHYSINV_LANES friend Wide operator op(const Wide& a, const Wide& b) { \
-    return {a.low op b.low, a.high op b.high};                          \
-  }                                                                     \
-  PHYSINV_LANES friend Wide operator op(double a, const Wide& b) {      \
-    return {a op b.low, a op b.high};                                   \
-  }
-  PHYSINV_WIDE(+)
-  PHYSINV_WIDE(-)
-  PHYSINV_WIDE(*)
-  PHYSINV_WIDE(/)
-#undef PHYSINV_WIDE
-  PHYSINV_LANES friend Wide operator-(const Wide& a) {
-    return {-a.low, -a.high};
-  }
-  PHYSINV_LANES Wide& operator+=(const Wide& b) { return *this = *this + b; }
-#define PHYSINV_WIDE(op)                                                 \
-  PHYSINV_LANES friend Flags operator op(const Wide& a, const Wide& b) { \
-    return {a.low op b.low, a.high op b.high};                           \
-  }
-  PHYSINV_WIDE(<)
-  PHYSINV_WIDE(>)
-  PHYSINV_WIDE(>=)
-  PHYSINV_WIDE(==)
-#undef PHYSINV_WIDE
-};
+using Wide = Eight;
+using Flags = EightFlags;
 
 PHYSINV_LANES Wide broadcast(double s) {
-  const Half v = nn::broadcast<Half>(s);
+  const Four v = nn::broadcast<Four>(s);
   return {v, v};
 }
 PHYSINV_LANES Wide fma(const Wide& a, const Wide& b, const Wide& c) {
@@ -77,13 +43,16 @@ PHYSINV_LANES Wide fma(const Wide& a, const Wide& b, const Wide& c) {
 PHYSINV_LANES Wide root(const Wide& x) {
   return {sqrt_lanes(x.low), sqrt_lanes(x.high)};
 }
+PHYSINV_LANES Wide magnitude(const Wide& x) {
+  return {abs_lanes(x.low), abs_lanes(x.high)};
+}
 PHYSINV_LANES Wide select(const Flags& f, const Wide& a, const Wide& b) {
   return {physinv::select(f.low, a.low, b.low),
           physinv::select(f.high, a.high, b.high)};
 }
 PHYSINV_LANES Wide masked(const Flags& keep, const Wide& x) {
-  return {(Half)((nn::Simd<std::int64_t, 32>)x.low & keep.low),
-          (Half)((nn::Simd<std::int64_t, 32>)x.high & keep.high)};
+  return {(Four)((FourFlags)x.low & keep.low),
+          (Four)((FourFlags)x.high & keep.high)};
 }
 /// In the order of one register of 512 bits.
 PHYSINV_LANES double sum(const Wide& x) { return nn::sum_of(x.low + x.high); }
@@ -106,17 +75,6 @@ PHYSINV_LANES Flags load_flags(const std::int64_t* p) {
   Flags f;
   std::memcpy(&f, p, sizeof(f));
   return f;
-}
-PHYSINV_LANES Wide magnitude(const Wide& x) {
-  alignas(64) static constexpr std::int64_t kAbs[kWidth] = {INT64_MAX,
-                                                            INT64_MAX,
-                                                            INT64_MAX,
-                                                            INT64_MAX,
-                                                            INT64_MAX,
-                                                            INT64_MAX,
-                                                            INT64_MAX,
-                                                            INT64_MAX};
-  return masked(load_flags(kAbs), x);
 }
 
 }  // namespace physinv::hig

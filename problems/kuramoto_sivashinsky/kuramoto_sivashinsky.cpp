@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "problems/kuramoto_sivashinsky/blocks.h"
 #include "problems/kuramoto_sivashinsky/checkpoints.h"
 #include "problems/kuramoto_sivashinsky/etdrk2.h"
 #include "suite/core/check.h"
@@ -52,66 +53,6 @@ void draw_state(const KuramotoSivashinskyOptions& o,
   const double mean = u.mean();
   const double deviation = std::sqrt((u.array() - mean).square().mean());
   for (Index j = 0; j < n; ++j) u(j) = (u(j) - mean) / deviation;
-}
-
-/// Samples first .. first+count-1, one per lane of P; the last one fills what
-/// is left of the pack.
-template <class T, class P>
-struct Block {
-  static constexpr Index kWidth = sizeof(P) / sizeof(T);
-
-  const Etdrk2<T>& k;
-  Index first, count;
-
-  Index column(Index lane) const { return first + std::min(lane, count - 1); }
-
-  void load(BatchIn<T> batch, P* out) const {
-    for (Index r = 0; r < batch.rows(); ++r)
-      for (Index lane = 0; lane < kWidth; ++lane)
-        out[r][lane] = batch(r, column(lane));
-  }
-  void store(const P* in, Index lane, Eigen::Ref<Vector<T>> out) const {
-    for (Index r = 0; r < out.size(); ++r) out(r) = in[r][lane];
-  }
-  /// Last states go out, as NaN unless all of one is finite.
-  void finish(const P* u, BatchOut<T>& y) const {
-    for (Index lane = 0; lane < count; ++lane) {
-      auto column = y.col(first + lane);
-      store(u, lane, column);
-      if (!column.allFinite()) column.setConstant(kNan<T>);
-    }
-  }
-  /// Of unknowns x, in 3 `stride` packs of memory.
-  Etdrk2Run<P> run(BatchIn<T> x, P* memory) const {
-    P unknowns[2];
-    load(x, unknowns);
-    const Index h = k.stride();
-    return {unknowns[0], unknowns[1], memory, memory + h, memory + 2 * h};
-  }
-};
-
-/// Runs body(block, workspace) for all samples, a register of them at a time;
-/// returns the sum of what the bodies return.
-template <class T, class F>
-std::uint64_t sum_blocks(const Etdrk2<T>& k,
-                         Workspace& work,
-                         Index count,
-                         F&& body) {
-  constexpr Index W = kLanes<T>;
-  const bool threaded =
-      work.threads() != nullptr && work.threads()->count() > 1;
-  if (threaded) work.of_thread(0);  // makes all of them, before they run
-  std::atomic<std::uint64_t> sum = 0;
-  for_blocks(work.threads(), (count + W - 1) / W, [&](Index b, int thread) {
-    Workspace& mine = threaded ? work.of_thread(thread) : work;
-    const Workspace::Scope scope(mine);
-    const Index first = b * W, some = std::min(W, count - first);
-    with_pack<T>(some, [&]<class P>(P) {
-      sum +=
-          static_cast<std::uint64_t>(body(Block<T, P>{k, first, some}, mine));
-    });
-  });
-  return sum;
 }
 
 }  // namespace
@@ -219,8 +160,7 @@ void KuramotoSivashinsky<T>::linearize(BatchIn<T> x,
   check_size(y, n, x.cols());
   const Keeping keep(options_, k, x.cols());
   const Index threads = tape.threads() != nullptr ? tape.threads()->count() : 1;
-  const Index blocks = (x.cols() + W - 1) / W;
-  auto states = tape.slot<T>(kStates, keep.rows * W, blocks);
+  auto states = tape.slot<T>(kStates, keep.rows * W, (x.cols() + W - 1) / W);
   auto scratch = tape.slot<T>(kScratch, (3 * k.stride() + 3 * n) * W, threads);
   auto lost = tape.slot<unsigned char>(kLost, 1, x.cols());
   tape.slot<T>(kUnknowns, 2, x.cols()) = x;
@@ -255,12 +195,7 @@ void KuramotoSivashinsky<T>::linearize(BatchIn<T> x,
       lost(0, block.first + i) = !std::isfinite(y(0, block.first + i));
     skipped += static_cast<std::uint64_t>((steps - end) * block.count);
   };
-  for_blocks(tape.threads(), blocks, [&](Index b, int thread) {
-    const Index count = std::min(W, x.cols() - b * W);
-    with_pack<T>(count, [&]<class P>(P) {
-      run(Block<T, P>{k, b * W, count}, thread);
-    });
-  });
+  for_registers(k, tape.threads(), x.cols(), run);
   tape.counts[Counter::skipped_steps] += skipped;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "suite/core/hash.h"
 #include "suite/core/oracle.h"
@@ -121,17 +122,6 @@ Finding judge_differences(const Extrapolated& d, double slope, double scale) {
                std::max(kDifferences, 4 * d.uncertainty / scale));
 }
 
-/// By wide steps; where they disagree, by narrow ones, if these decide.
-Finding judge_both(VectorIn<double> wide,
-                   VectorIn<double> narrow,
-                   double slope,
-                   double scale) {
-  const Finding from_afar = judge_differences(extrapolate(wide), slope, scale);
-  if (from_afar.status == SweepStatus::ok) return from_afar;
-  const Finding nearby = judge_differences(extrapolate(narrow), slope, scale);
-  return nearby.status == SweepStatus::undecided ? from_afar : nearby;
-}
-
 class StabilitySweep final : public Diagnostic {
  public:
   explicit StabilitySweep(StabilitySweepOptions options)
@@ -214,17 +204,40 @@ class StabilitySweep final : public Diagnostic {
     Workspace work(run.threads);
     const Side exact = evaluate<double>(recipe, x, given, w, run.threads);
     const Side single = evaluate<float>(recipe, x, given, w, run.threads);
-    const auto differences = [&](double widest) {
-      return central_differences(
-          *problem, x, given, w, v, exact.x_bar, widest, work);
+    const auto by_differences = [&](const std::vector<Index>& some,
+                                    double widest) {
+      const Batch<double> d = central_differences(*problem,
+                                                  x(Eigen::all, some),
+                                                  given(Eigen::all, some),
+                                                  w,
+                                                  v,
+                                                  exact.x_bar(Eigen::all, some),
+                                                  widest,
+                                                  work);
+      run.oracle.add(Counter::forward, 2 * kSteps * d.cols());
+      std::vector<Finding> found;
+      for (Index k = 0; k < d.cols(); ++k) {
+        const auto bar = exact.x_bar.col(some[static_cast<std::size_t>(k)]);
+        found.push_back(judge_differences(extrapolate(d.col(k)),
+                                          bar.dot(v),
+                                          std::max(options_.zero, bar.norm())));
+      }
+      return found;
     };
-    const Batch<double> wide = differences(kWidest),
-                        narrow = differences(kNearby);
+    std::vector<Index> all(static_cast<std::size_t>(x.cols())), doubtful;
+    std::iota(all.begin(), all.end(), Index{0});
+    std::vector<Finding> adjoint = by_differences(all, kWidest);
+    for (const Index j : all)
+      if (adjoint[static_cast<std::size_t>(j)].status != SweepStatus::ok)
+        doubtful.push_back(j);
+    const auto nearby = by_differences(doubtful, kNearby);
+    for (std::size_t k = 0; k < doubtful.size(); ++k)
+      if (nearby[k].status != SweepStatus::undecided)
+        adjoint[static_cast<std::size_t>(doubtful[k])] = nearby[k];
     const auto* jacobian = dynamic_cast<const Jacobian<double>*>(problem.get());
     Vector<double> tangent;
     if (jacobian != nullptr)
       tangent = tangents(*jacobian, x, given, w, v, work);
-    run.oracle.add(Counter::forward, 4 * kSteps * x.cols());
     run.oracle.add(Counter::vjp, 2 * x.cols());
 
     for (Index j = 0; j < x.cols(); ++j) {
@@ -236,7 +249,7 @@ class StabilitySweep final : public Diagnostic {
         const double scale = std::max(options_.zero, exact.x_bar.col(j).norm());
         const double slope = exact.x_bar.col(j).dot(v);
         if (exact.x_bar.col(j).allFinite()) {
-          found[2] = judge_both(wide.col(j), narrow.col(j), slope, scale);
+          found[2] = adjoint[static_cast<std::size_t>(j)];
           found[3] =
               jacobian == nullptr
                   ? Finding{SweepStatus::undecided, -1}

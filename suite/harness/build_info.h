@@ -23,7 +23,7 @@ struct BuildInfo {
   std::string_view instruction_set;  ///< "x86-64-v3" or "x86-64-v4"
   std::string_view fingerprint;
   std::string_view foundation;  ///< hash of what every stage stands on:
-                                ///< compiler, flags, instruction set, libraries
+                                ///< compiler, flags, libraries
                                 ///< that compute, and run_stage.{h,cpp}
   std::string_view version;     ///< of this suite
   std::string_view eigen, fftw, hdf5, json, fmt, cli11;

@@ -61,23 +61,32 @@ Batch<double> plain_estimates(const Experiment& experiment,
   return x;
 }
 
-bool nearly(double a, double b) {
-  return (!std::isfinite(a) && !std::isfinite(b)) ||
-         std::abs(a - b) <=
-             kPlainTolerance * std::max(std::abs(a), std::abs(b)) + 1e-13;
-}
-
 enum class Match { bitwise, close, none };
 
-Match compare(double a, double b) {
+Match compare(double a, double b, double relative, double absolute = 0) {
   if (std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b) ||
       (!std::isfinite(a) && !std::isfinite(b)))
     return Match::bitwise;
-  return std::abs(a - b) <=
-                 kVerifyTolerance * std::max(std::abs(a), std::abs(b))
-             ? Match::close
-             : Match::none;
+  const double size = std::max(std::abs(a), std::abs(b));
+  return std::abs(a - b) <= relative * size + absolute ? Match::close
+                                                       : Match::none;
 }
+
+/// "case stage example 3: recorded 1, is 2"
+std::string mismatch(const CaseRecord& c,
+                     const StageRecord& stage,
+                     const std::string& what,
+                     double recorded,
+                     double is) {
+  return fmt::format("{} {} {}: recorded {:.17g}, is {:.17g}",
+                     c.info.name,
+                     stage.stage,
+                     what,
+                     recorded,
+                     is);
+}
+
+std::string example(Index i) { return fmt::format("example {}", i); }
 
 /// What is stored of some examples alone, and their mean.
 void verify_by_network(const Experiment& experiment,
@@ -97,17 +106,12 @@ void verify_by_network(const Experiment& experiment,
   const auto expect = [&](const std::string& what, double recorded, double is) {
     ++report.losses;
     ++report.by_network;
-    if (nearly(recorded, is)) return;
-    report.mismatches.push_back(
-        fmt::format("{} {} {}: recorded {:.17g}, is {:.17g} by plain loops",
-                    c.info.name,
-                    stage.stage,
-                    what,
-                    recorded,
-                    is));
+    if (compare(recorded, is, kPlainTolerance, 1e-13) == Match::none)
+      report.mismatches.push_back(mismatch(c, stage, what, recorded, is) +
+                                  " by plain loops");
   };
   for (Index i = stage.x.cols(); i < n; ++i)
-    expect(fmt::format("example {}", i), stage.loss(i), loss(i));
+    expect(example(i), stage.loss(i), loss(i));
   const auto mean = stage.arrays.find("mean_loss");
   if (mean != stage.arrays.end() && mean->second.size() > 0)
     expect("mean_loss", mean->second.reshaped()(Eigen::last), loss.mean());
@@ -134,7 +138,7 @@ void verify_stage(const Experiment& experiment,
   for (Index i = 0; i < stage.x.cols(); ++i) {
     ++report.losses;
     const double again = loss_of(problem, c.data, stage.x, i, work);
-    switch (compare(again, stage.loss(i))) {
+    switch (compare(again, stage.loss(i), kVerifyTolerance)) {
       case Match::bitwise:
         ++report.bitwise;
         break;
@@ -143,12 +147,7 @@ void verify_stage(const Experiment& experiment,
         break;
       case Match::none:
         report.mismatches.push_back(
-            fmt::format("{} {} example {}: recorded {:.17g}, is {:.17g}",
-                        c.info.name,
-                        stage.stage,
-                        i,
-                        stage.loss(i),
-                        again));
+            mismatch(c, stage, example(i), stage.loss(i), again));
     }
   }
   if (stage.x.cols() < n)

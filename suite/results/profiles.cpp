@@ -140,10 +140,12 @@ std::vector<std::string> lowest_of(const Results& results,
     ends.emplace_back(last.empty() ? kInfinity : last[last.size() / 2], m);
   }
   std::sort(ends.begin(), ends.end());
-  std::set<std::size_t> kept;
-  for (std::size_t k = 0; k < most; ++k) kept.insert(ends[k].second);
+  ends.resize(most);
+  std::sort(ends.begin(), ends.end(), [](const auto& a, const auto& b) {
+    return a.second < b.second;
+  });
   std::vector<std::string> some;
-  for (const std::size_t m : kept) some.push_back(all[m]);
+  for (const auto& [end, m] : ends) some.push_back(all[m]);
   return some;
 }
 

@@ -20,11 +20,12 @@ struct QuadraticOptions {
 
 inline Options describe(const QuadraticOptions&) { return {}; }
 
+/// By its gradients alone.
 template <class T>
-class Quadratic final : public Problem<T>, public Vjp<T>, public Jacobian<T> {
+class GradientQuadratic : public Problem<T>, public Vjp<T> {
  public:
   using Options = QuadraticOptions;
-  explicit Quadratic(const Options& options = {}) : options_(options) {}
+  explicit GradientQuadratic(const Options& options = {}) : options_(options) {}
 
   static Eigen::Matrix<T, 2, 2> matrix() {
     return (Eigen::Matrix<T, 2, 2>() << 1, T(0.5), T(-0.25), T(0.75))
@@ -42,7 +43,7 @@ class Quadratic final : public Problem<T>, public Vjp<T>, public Jacobian<T> {
       for (Index j = 0; j < 2; ++j) s.x(j, i) = r.uniform(-1, 1);
       for (Index j = 0; j < 2; ++j) s.given(j, i) = r.uniform(-1, 1);
     }
-    s.y = Quadratic<double>::matrix() * s.x + s.given;
+    s.y = GradientQuadratic<double>::matrix() * s.x + s.given;
     return s;
   }
   void forward(BatchIn<T> x,
@@ -68,21 +69,29 @@ class Quadratic final : public Problem<T>, public Vjp<T>, public Jacobian<T> {
     for (Index i = 0; i < y_bar.cols(); ++i)
       x_bar.col(i) = matrix().transpose() * y_bar.col(i);
   }
+  double operations() const override { return 8; }
+
+ protected:
+  static constexpr T kNan = std::numeric_limits<T>::quiet_NaN();
+  Options options_;
+};
+
+template <class T>
+class Quadratic final : public GradientQuadratic<T>, public Jacobian<T> {
+ public:
+  using GradientQuadratic<T>::GradientQuadratic;
+
   void jacobian(BatchIn<T> x,
                 BatchIn<T>,
                 BatchOut<T> j,
                 Workspace&) const override {
-    const auto a = matrix();
+    const auto a = this->matrix();
     for (Index i = 0; i < x.cols(); ++i) {
       j.col(i) = a.reshaped();
-      if (x(0, i) > T(options_.broken_above)) j.col(i).setConstant(kNan);
+      if (x(0, i) > T(this->options_.broken_above))
+        j.col(i).setConstant(this->kNan);
     }
   }
-  double operations() const override { return 8; }
-
- private:
-  static constexpr T kNan = std::numeric_limits<T>::quiet_NaN();
-  Options options_;
 };
 
 inline ProblemRecipe quadratic(const QuadraticOptions& options = {}) {

@@ -137,46 +137,9 @@ TEST(StabilitySweep, FindsAWrongAdjoint) {
   }
 }
 
-/// The quadratic by its gradients alone.
-template <class T>
-class WithoutJacobian final : public Problem<T>, public Vjp<T> {
- public:
-  using Options = QuadraticOptions;
-  explicit WithoutJacobian(const Options& options) : inner_(options) {}
-  Shape shape() const override { return inner_.shape(); }
-  Vector<double> start() const override { return inner_.start(); }
-  Samples<double> sample(Index first,
-                         Index count,
-                         const Rng& rng) const override {
-    return inner_.sample(first, count, rng);
-  }
-  void forward(BatchIn<T> x,
-               BatchIn<T> given,
-               BatchOut<T> y,
-               Workspace& work) const override {
-    inner_.forward(x, given, y, work);
-  }
-  void linearize(BatchIn<T> x,
-                 BatchIn<T> given,
-                 BatchOut<T> y,
-                 Tape& tape) const override {
-    inner_.linearize(x, given, y, tape);
-  }
-  void pullback(const Tape& tape,
-                BatchIn<T> y_bar,
-                BatchOut<T> x_bar,
-                Workspace& work) const override {
-    inner_.pullback(tape, y_bar, x_bar, work);
-  }
-  double operations() const override { return inner_.operations(); }
-
- private:
-  Quadratic<T> inner_;
-};
-
 TEST(StabilitySweep, DecidesNothingWithoutAJacobian) {
   StabilitySweepOptions options{
-      .problems = {problem<WithoutJacobian>("quadratic")}, .points = {}};
+      .problems = {problem<GradientQuadratic>("quadratic")}, .points = {}};
   options.points.push_back({0, Eigen::Vector2d(1, 2)});
   const auto stage = stability_sweep(options);
   const auto found = StageBench(*stage, 2).run().arrays;

@@ -53,18 +53,17 @@ Table loss_table(const Results& results,
       diverged += s->stop == Stop::diverged;
     }
     if (losses.empty()) continue;
-    const auto number = [](double v) { return written(v); };
     const auto [lowest, highest] =
         std::minmax_element(losses.begin(), losses.end());
     table.rows.push_back(
         {.label = line.label,
-         .cells = {number(median(updates)),
-                   number(median(losses)),
-                   number(*lowest),
-                   number(*highest),
+         .cells = {written(median(updates)),
+                   written(median(losses)),
+                   written(*lowest),
+                   written(*highest),
                    Cell{.text = fmt::format("{}/{}", diverged, losses.size())},
-                   number(1e3 * median(seconds)),
-                   number(1e-6 * median(bytes))}});
+                   written(1e3 * median(seconds)),
+                   written(1e-6 * median(bytes))}});
   }
   return table;
 }

@@ -34,18 +34,17 @@ std::vector<Atlas>& all_atlases() {
 
 const std::vector<Atlas>& atlases() { return all_atlases(); }
 
-std::vector<double> decades(double first, double last, double step) {
-  std::vector<double> values;
-  for (double e = first; e <= last + step / 2; e += step)
-    values.push_back(std::pow(10.0, e));
-  return values;
+std::vector<ProblemRecipe> along(
+    const SweepAxis& axis,
+    const std::function<ProblemRecipe(double)>& problem) {
+  std::vector<ProblemRecipe> all;
+  for (const double value : axis.values) all.push_back(problem(value));
+  return all;
 }
 
-std::vector<double> spaced(double first, double last, int count) {
-  std::vector<double> values;
-  for (int k = 0; k < count; ++k)
-    values.push_back(first + (last - first) * k / (count - 1));
-  return values;
+Vector<double> uneven(Index rows, double size) {
+  return Vector<double>::NullaryExpr(
+      rows, [=](Index k) { return size * std::cos(1.1 * double(k)); });
 }
 
 bool register_atlas(Atlas atlas) {

@@ -25,9 +25,12 @@ struct Sweep {
   Index examples = 1;
 };
 
-/// Powers of ten, 10^first, 10^(first + step) .. 10^last.
-std::vector<double> decades(double first, double last, double step = 1);
-std::vector<double> spaced(double first, double last, int count);
+/// One problem for each value of an axis.
+std::vector<ProblemRecipe> along(
+    const SweepAxis& axis, const std::function<ProblemRecipe(double)>& problem);
+
+/// size cos(1.1 k): alternates in sign and size, so that no symmetry helps.
+Vector<double> uneven(Index rows, double size);
 
 struct Atlas {
   std::string name;   ///< numerics/billiards

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "suite/evidence/cell.h"
@@ -57,6 +58,20 @@ Panel map(const SweepAxis& x,
 }
 
 }  // namespace
+
+std::vector<double> decades(double first, double last, double step) {
+  std::vector<double> values;
+  for (double e = first; e <= last + step / 2; e += step)
+    values.push_back(std::pow(10.0, e));
+  return values;
+}
+
+std::vector<double> spaced(double first, double last, int count) {
+  std::vector<double> values;
+  for (int k = 0; k < count; ++k)
+    values.push_back(first + (last - first) * k / (count - 1));
+  return values;
+}
 
 Index sweep_count(const StageRecord& sweep,
                   SweepCheck check,

@@ -20,6 +20,11 @@ struct SweepAxis {
   bool log = false;
 };
 
+/// Powers of ten, 10^first, 10^(first + step) .. 10^last.
+std::vector<double> decades(double first, double last, double step = 1);
+/// So many values from `first` to `last`.
+std::vector<double> spaced(double first, double last, int count);
+
 /// The stage of the first case that finished it, else null.
 const StageRecord* find_sweep(const Results& results,
                               const std::string& experiment,

@@ -38,7 +38,7 @@ Method work_precision_method() {
 
 Method growth_method() {
   GrowthOptions options;
-  for (const double end : spaced(5, 5, 20))
+  for (const double end : spaced(5, 100, 20))
     options.horizons.push_back({end, until(end)});
   return {"growth", {growth(options)}};
 }

@@ -22,12 +22,6 @@ inline std::string stage_name(Index steps) {
   return fmt::format("steps-{}", steps);
 }
 
-inline std::vector<double> spaced(double first, double step, int count) {
-  std::vector<double> out;
-  for (int i = 0; i < count; ++i) out.push_back(first + step * i);
-  return out;
-}
-
 inline std::vector<double> doubled(double first, int count) {
   std::vector<double> out;
   for (int i = 0; i < count; ++i) out.push_back(std::ldexp(first, i));
@@ -35,9 +29,9 @@ inline std::vector<double> doubled(double first, int count) {
 }
 
 inline const SweepAxis kAlpha{"alpha", doubled(0.25, 13), true};
-inline const SweepAxis kBeta{"beta", spaced(-6, 0.5, 25)};
-inline const SweepAxis kLowBeta{"beta", spaced(0, 0.5, 9)};
-inline const SweepAxis kTime{"end time", spaced(5, 9.5, 11)};
+inline const SweepAxis kBeta{"beta", spaced(-6, 6, 25)};
+inline const SweepAxis kLowBeta{"beta", spaced(0, 4, 9)};
+inline const SweepAxis kTime{"end time", spaced(5, 100, 11)};
 
 /// Relative error of u(25) with so many steps, mean of the samples. Empty if a
 /// sample diverged or the stage of this chain is not there.

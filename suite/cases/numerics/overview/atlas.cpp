@@ -9,6 +9,8 @@
 namespace physinv {
 namespace {
 
+const std::string kPrefix = "numerics/";
+
 struct Column {
   const char* title;
   SweepCheck check;
@@ -44,10 +46,11 @@ Table side_by_side(const Results& results) {
   for (const CaseRecord& c : results.cases()) {
     for (const StageRecord& s : c.stages) {
       const auto status = s.arrays.find("status");
-      if (!c.info.experiment.starts_with("numerics/") ||
-          status == s.arrays.end() || !s.arrays.contains("point"))
+      if (!c.info.experiment.starts_with(kPrefix) || status == s.arrays.end() ||
+          !s.arrays.contains("point"))
         continue;
-      TableRow row{.label = c.info.experiment.substr(9) + ", " + s.stage};
+      TableRow row{.label = c.info.experiment.substr(kPrefix.size()) + ", " +
+                            s.stage};
       row.cells.push_back({.ours = static_cast<double>(status->second.cols())});
       for (const Column& column : kColumns)
         row.cells.push_back({.ours = static_cast<double>(

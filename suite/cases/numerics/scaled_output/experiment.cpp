@@ -12,13 +12,6 @@ Vector<double> unknowns(double size, double) {
   return size * Eigen::Vector2d(0.8, -0.6);
 }
 
-std::vector<ProblemRecipe> factors() {
-  std::vector<ProblemRecipe> all;
-  for (const double gamma : kGamma.values)
-    all.push_back(problem<ScaledOutput>("scaled_output", {.gamma = gamma}));
-  return all;
-}
-
 const bool kRegistered = register_atlas(
     {.name = "numerics/toy",
      .title = "Numerics of the toy",
@@ -28,7 +21,10 @@ const bool kRegistered = register_atlas(
                  .x = kSize,
                  .y = kGamma,
                  .point = unknowns,
-                 .problems = factors()}}});
+                 .problems = along(kGamma, [](double gamma) {
+                   return problem<ScaledOutput>("scaled_output",
+                                                {.gamma = gamma});
+                 })}}});
 
 }  // namespace
 }  // namespace physinv

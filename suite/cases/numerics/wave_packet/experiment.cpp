@@ -27,9 +27,8 @@ std::vector<double> positions() {
 /// Where it cannot be seen, by powers of ten on either side.
 std::vector<double> far_positions() {
   std::vector<double> t0;
-  for (int decade = 3; decade <= 30; ++decade)
-    for (const double side : {-1.0, 1.0})
-      t0.push_back(side * std::pow(10.0, decade));
+  for (const double size : decades(3, 30))
+    for (const double side : {-1.0, 1.0}) t0.push_back(side * size);
   return t0;
 }
 
