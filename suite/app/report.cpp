@@ -10,9 +10,11 @@
 #include "suite/app/installed.h"
 #include "suite/app/load.h"
 #include "suite/app/options.h"
+#include "suite/evidence/frontier.h"
 #include "suite/harness/expected.h"
 #include "suite/harness/judge.h"
 #include "suite/harness/progress.h"
+#include "suite/results/course.h"
 #include "suite/results/file.h"
 #include "suite/results/profiles.h"
 #include "suite/results/published.h"
@@ -67,18 +69,31 @@ std::vector<std::string> papers_of(const std::vector<Section>& sections,
   return papers;
 }
 
+/// Nothing is solved there, so nothing reaches a target.
+bool only_diagnoses(const Experiment& e) {
+  return std::all_of(
+      e.methods.begin(), e.methods.end(), [](const Method& method) {
+        return std::all_of(
+            method.chain.begin(), method.chain.end(), [](const auto& stage) {
+              return is_diagnostic(stage->options());
+            });
+      });
+}
+
 std::vector<Section> sections_of(const Results& results,
                                  const Published& published) {
   std::vector<Section> sections = overviews_of(results, published);
   for (const auto& e : registry().experiments()) {
     if (results.sizes(e->name).empty()) continue;
     Section section = section_of(*e, results, published);
-    for (Figure& figure :
-         profile_figures(results,
-                         e->name,
-                         {.title = section.title,
-                         .method_titles = section.method_titles})) {
-      section.figures.push_back(std::move(figure));
+    if (!only_diagnoses(*e)) {
+      add_frontier(section, results, e->name, section.method_titles);
+      for (Figure& figure :
+           profile_figures(results,
+                           e->name,
+                           {.title = section.title,
+                           .method_titles = section.method_titles}))
+        section.figures.push_back(std::move(figure));
     }
     apply(e->looks, section.figures);
     sections.push_back(std::move(section));

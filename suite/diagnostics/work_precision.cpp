@@ -1,11 +1,173 @@
 #include "suite/diagnostics/work_precision.h"
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "suite/core/check.h"
 #include "suite/core/oracle.h"
 #include "suite/core/probe.h"
 #include "suite/diagnostics/diagnostic.h"
 
 namespace physinv {
 namespace {
+
+Index ratio(Index fine, Index coarse) {
+  SUITE_CHECK(coarse == 0 ? fine == 0 : fine % coarse == 0,
+              "a setting's size is no multiple of the base's");
+  return coarse == 0 ? 1 : fine / coarse;
+}
+
+/// Every row so many times.
+Batch<double> repeated(const Batch<double>& rows, Index times) {
+  Batch<double> out(rows.rows() * times, rows.cols());
+  for (Index r = 0; r < out.rows(); ++r) out.row(r) = rows.row(r / times);
+  return out;
+}
+
+Batch<double> every(const Batch<double>& rows, Index step) {
+  Batch<double> out(rows.rows() / step, rows.cols());
+  for (Index r = 0; r < out.rows(); ++r) out.row(r) = rows.row(r * step);
+  return out;
+}
+
+/// Fields on a periodic grid of an even number of points, on one of so many
+/// times as many: the trigonometric interpolation.
+Batch<double> refined(const Batch<double>& field, Index times) {
+  if (times == 1) return field;
+  const Index n = field.rows();
+  Batch<double> weight(n * times, n);
+  for (Index r = 0; r < weight.rows(); ++r) {
+    for (Index j = 0; j < n; ++j) {
+      const double t = std::numbers::pi *
+                       (double(r) / double(n * times) - double(j) / double(n));
+      weight(r, j) = r == j * times ? 1
+                     : r % times == 0
+                         ? 0
+                         : std::sin(double(n) * t) / (double(n) * std::tan(t));
+    }
+  }
+  return weight.lazyProduct(field);
+}
+
+/// Sums of so many rows each.
+Batch<double> summed(const Batch<double>& rows, Index count) {
+  Batch<double> out = Batch<double>::Zero(rows.rows() / count, rows.cols());
+  for (Index r = 0; r < rows.rows(); ++r) out.row(r / count) += rows.row(r);
+  return out;
+}
+
+/// Column i is column i + 1.
+Batch<double> next_of(const Batch<double>& y) {
+  Batch<double> out(y.rows(), y.cols());
+  for (Index i = 0; i < y.cols(); ++i) out.col(i) = y.col((i + 1) % y.cols());
+  return out;
+}
+
+/// One setting of the problem and its view of the samples.
+template <class T>
+class View {
+ public:
+  View(const ProblemRecipe& recipe, const Samples<double>& drawn)
+      : problem_(recipe.make<T>()) {
+    const Shape shape = problem_->shape();
+    finer_x_ = ratio(shape.unknowns, drawn.x.rows());
+    finer_y_ = ratio(shape.observations, drawn.y.rows());
+    x_ = repeated(drawn.x, finer_x_).template cast<T>();
+    given_ = refined(drawn.given, ratio(shape.given, drawn.given.rows()))
+                 .template cast<T>();
+    y_.resize(shape.observations, x_.cols());
+  }
+
+  /// `wanted` may be of a finer resolution.
+  void set_target(const Batch<double>& wanted) {
+    target_ = every(wanted, ratio(wanted.rows(), y_.rows())).template cast<T>();
+    y_bar_ = y_, x_bar_ = x_;
+  }
+
+  void forward(Index first, Index count, Workspace& work) {
+    const auto part = [&](auto& all) { return all.middleCols(first, count); };
+    problem_->forward(part(x_), part(given_), part(y_), work);
+  }
+
+  void gradient(Index first, Index count, Tape& tape, Workspace& work) {
+    const auto part = [&](auto& all) { return all.middleCols(first, count); };
+    const auto& vjp = dynamic_cast<const Vjp<T>&>(*problem_);
+    vjp.linearize(part(x_), part(given_), part(y_), tape);
+    problem_->loss_gradient(part(y_), part(target_), part(y_bar_));
+    vjp.pullback(tape, part(y_bar_), part(x_bar_), work);
+  }
+
+  Batch<double> y() const { return y_.template cast<double>(); }
+  Batch<double> base_y() const { return every(y(), finer_y_); }
+  Batch<double> base_gradient() const {
+    return summed(x_bar_.template cast<double>(), finer_x_) /
+           static_cast<double>(finer_y_);
+  }
+
+ private:
+  std::unique_ptr<Problem<T>> problem_;
+  Index finer_x_ = 1, finer_y_ = 1;
+  Batch<T> x_, given_, target_, y_, y_bar_, x_bar_;
+};
+
+/// What is right, `y` and the targets at the resolution of the reference.
+struct Answer {
+  Batch<double> base, target;
+};
+
+Answer fine_answer(const ProblemRecipe& reference,
+                   const Samples<double>& drawn,
+                   bool gradient) {
+  View<double> view(reference, drawn);
+  Workspace work;
+  Tape tape;
+  const Index n = drawn.x.cols();
+  view.forward(0, n, work);
+  if (!gradient) return {view.base_y(), {}};
+  const Batch<double> target = next_of(view.y());
+  view.set_target(target);
+  view.gradient(0, n, tape, work);
+  return {view.base_gradient(), target};
+}
+
+Answer exact_answer(const ClosedForm& f,
+                    const Problem<double>& base,
+                    const Samples<double>& drawn,
+                    bool gradient) {
+  constexpr long double kStep = 1e-100L;
+  const Index n = drawn.x.cols();
+  const auto at = [&](Index i, Index moved) {
+    std::vector<Exact> x, y(static_cast<std::size_t>(drawn.y.rows()));
+    for (Index k = 0; k < drawn.x.rows(); ++k)
+      x.emplace_back(drawn.x(k, i), k == moved ? kStep : 0);
+    const Vector<double> given = drawn.given.col(i);
+    f.forward(x, {given.data(), static_cast<std::size_t>(given.size())}, y);
+    return y;
+  };
+  Batch<double> y(drawn.y.rows(), n);
+  for (Index i = 0; i < n; ++i) {
+    const auto column = at(i, -1);
+    for (Index j = 0; j < y.rows(); ++j)
+      y(j, i) = static_cast<double>(column[static_cast<std::size_t>(j)].real());
+  }
+  if (!gradient) return {y, {}};
+  Answer out{Batch<double>(drawn.x.rows(), n), next_of(y)};
+  Batch<double> y_bar = y;
+  base.loss_gradient(y, out.target, y_bar);
+  for (Index i = 0; i < n; ++i) {
+    for (Index k = 0; k < drawn.x.rows(); ++k) {
+      const auto moved = at(i, k);
+      long double sum = 0;
+      for (Index j = 0; j < y.rows(); ++j)
+        sum += moved[static_cast<std::size_t>(j)].imag() / kStep *
+               static_cast<long double>(y_bar(j, i));
+      out.base(k, i) = static_cast<double>(sum);
+    }
+  }
+  return out;
+}
 
 class WorkPrecision final : public Diagnostic {
  public:
@@ -16,21 +178,35 @@ class WorkPrecision final : public Diagnostic {
   Index default_iterations() const override { return options_.repetitions; }
   bool takes_row_iterations() const override { return true; }
   bool has_precision() const override { return true; }
+  Needs needs() const override {
+    return options_.gradient ? Needs::forward | Needs::vjp : Needs::forward;
+  }
+  Sources sources() const override {
+    Sources all = Diagnostic::sources();
+    if (options_.exact.forward) all.roots.emplace_back(options_.exact.source);
+    return all;
+  }
   double operations(const CaseSize& size) const override {
-    const auto n = static_cast<double>(size.n);
-    return n * (static_cast<double>(size.iterations + 1) *
-                    options_.problem.make<double>()->operations() +
-                options_.reference.make<double>()->operations());
+    const Index n = options_.samples > 0 ? options_.samples : size.n;
+    double passes = static_cast<double>(size.iterations + 1) *
+                    options_.problem.make<double>()->operations();
+    if (!options_.exact.forward)
+      passes += options_.reference.make<double>()->operations();
+    return static_cast<double>(n) * (options_.gradient ? 3 : 1) * passes;
   }
 
  protected:
   std::string kind() const override { return "work_precision"; }
   std::vector<ProblemRecipe> problems() const override {
-    return {options_.problem, options_.reference};
+    std::vector<ProblemRecipe> all = {options_.problem, options_.base};
+    if (!options_.exact.forward) all.push_back(options_.reference);
+    return all;
   }
   void describe(Options& options) const override {
-    options.emplace_back("problem", fingerprint({options_.problem}));
-    options.emplace_back("reference", fingerprint({options_.reference}));
+    options.emplace_back("settings", fingerprint(problems()));
+    options.emplace_back("of", options_.gradient ? "gradient" : "forward");
+    options.emplace_back("samples", std::to_string(options_.samples));
+    options.emplace_back("block", std::to_string(options_.block));
   }
   void diagnose(StageRun& run, Outcome& out) const override {
     run.precision == Precision::f32 ? measure<float>(run, out)
@@ -40,26 +216,46 @@ class WorkPrecision final : public Diagnostic {
  private:
   template <class T>
   void measure(StageRun& run, Outcome& out) const {
-    const Index n = run.oracle.count();
-    const Samples<double> exact = options_.reference.make<double>()->sample(
-        0, n, run.batches.child("work_precision"));
-    const auto problem = options_.problem.make<T>();
-    const Samples<T> s = exact.cast<T>();
-    Batch<T> y(exact.y.rows(), n);
+    const Index n =
+        options_.samples > 0 ? options_.samples : run.oracle.count();
+    const auto base = options_.base.make<double>();
+    const Samples<double> drawn =
+        base->sample_labelled(0, n, run.batches.child("work_precision"));
+    const bool gradient = options_.gradient;
+    const Answer right =
+        options_.exact.forward
+            ? exact_answer(options_.exact, *base, drawn, gradient)
+            : fine_answer(options_.reference, drawn, gradient);
+
+    View<T> view(options_.problem, drawn);
+    if (gradient) view.set_target(right.target);
     Workspace work(run.threads);
+    Tape tape(run.threads);
+    const Index block = options_.block > 0 ? options_.block : n;
+    const auto pass = [&] {
+      for (Index first = 0; first < n; first += block) {
+        const Index some = std::min(block, n - first);
+        if (gradient)
+          view.gradient(first, some, tape, work);
+        else
+          view.forward(first, some, work);
+      }
+    };
     run.probe.begin_warmup();
-    problem->forward(s.x, s.given, y, work);
+    pass();
     run.probe.begin();
     while (run.probe.proceed([&](BatchOut<double> x) { x = out.x; })) {
-      problem->forward(s.x, s.given, y, work);
-      run.oracle.add(Counter::forward, n);
+      pass();
+      run.oracle.add(gradient ? Counter::vjp : Counter::forward, n);
     }
+
+    const Batch<double> found = gradient ? view.base_gradient() : view.base_y();
     Batch<double> error(1, n);
     for (Index i = 0; i < n; ++i)
-      error(0, i) = number_or_none(
-          relative_distance(y.col(i).template cast<double>(), exact.y.col(i)));
+      error(0, i) =
+          number_or_none(relative_distance(found.col(i), right.base.col(i)));
     out.arrays = {{"error", error}};
-    out.bytes = work.bytes();
+    out.bytes = work.bytes() + tape.bytes();
   }
 
   WorkPrecisionOptions options_;

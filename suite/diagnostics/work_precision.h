@@ -1,15 +1,23 @@
-/// One point of a work-precision diagram: how far one configuration of a
-/// problem is from a reference, and what a forward pass costs.
+/// One point of a work-precision diagram: how far one setting of a problem is
+/// from what is right, and what a forward pass or a gradient costs.
 ///
-/// Every iteration is one forward pass of all samples, so that the curve's
-/// seconds hold the time of each. Array `error` (1 x samples): |y - y_ref| /
-/// |y_ref|, y_ref the reference's observation in double; -1 where y is not
-/// finite.
+/// Samples and what is given are drawn from `base`, the coarsest setting.
+/// Problems with a multiple of its unknowns see the same function of time,
+/// constant over each of the base's steps, and their gradients are added up
+/// over it. What is given on a multiple of its points is the same periodic
+/// function. Of a multiple of its observations every so-many-th is compared,
+/// and gradients are means over them. The gradient is that of the problem's
+/// own loss; its target is the next sample's observation.
+///
+/// Every iteration is one pass of all samples, so that the curve's seconds hold
+/// the time of each. Array `error` (1 x samples): |y - y_ref| / |y_ref| or the
+/// same of the gradients; -1 where they are not finite.
 #pragma once
 
 #include <memory>
 #include <string>
 
+#include "suite/core/closed_form.h"
 #include "suite/core/curve.h"
 #include "suite/core/method.h"
 
@@ -17,7 +25,13 @@ namespace physinv {
 
 struct WorkPrecisionOptions {
   std::string name;  ///< of the stage
-  ProblemRecipe problem, reference;
+  ProblemRecipe problem, base;
+  /// What is right: the finest setting in double, or a closed form instead.
+  ProblemRecipe reference = {};
+  ClosedForm exact = {};
+  bool gradient = false;  ///< measured instead of the forward pass
+  Index samples = 0;      ///< 0: as many as the case has
+  Index block = 0;        ///< samples per call, 0 for all of them
   Index repetitions = 10;
 };
 

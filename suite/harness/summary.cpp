@@ -9,6 +9,9 @@
 namespace physinv {
 namespace {
 
+/// Chains with more stages than this are not spelled out.
+constexpr std::size_t kMostStages = 6;
+
 struct Group {
   std::string label;
   Index n = 0;
@@ -30,6 +33,9 @@ void add(Group& group, const CaseRecord& c) {
 }
 
 std::string medians(const Group& group) {
+  // Diagnoses: their estimates are the start.
+  if (group.stages.size() > kMostStages)
+    return fmt::format("{} stages", group.stages.size());
   std::string text;
   for (const auto& stage : group.stages) {
     const auto& all = group.losses.at(stage);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "suite/core/oracle.h"
 #include "suite/core/probe.h"
@@ -182,8 +183,10 @@ TEST(Extrapolation, IsExactForCubicsAndSkipsWhatIsNotFinite) {
 }
 
 TEST(WorkPrecision, MeasuresTheDistanceToTheReference) {
-  const auto stage = work_precision(
-      {.name = "same", .problem = quadratic(), .reference = quadratic()});
+  const auto stage = work_precision({.name = "same",
+                                     .problem = quadratic(),
+                                     .base = quadratic(),
+                                     .reference = quadratic()});
   StageBench exact(*stage, 3, 4), rough(*stage, 3, 4);
   const auto error = exact.run(nullptr, Precision::f64).arrays.at("error");
   EXPECT_LT(error.maxCoeff(), 1e-15);
@@ -194,9 +197,113 @@ TEST(WorkPrecision, MeasuresTheDistanceToTheReference) {
   EXPECT_EQ(exact.oracle.counts()[Counter::forward], 12U);
   EXPECT_GT(fastest_repetition(exact.probe.curve()), 0);
 
-  const auto broken = work_precision(
-      {.name = "broken", .problem = quadratic({-2}), .reference = quadratic()});
+  const auto broken = work_precision({.name = "broken",
+                                      .problem = quadratic({-2}),
+                                      .base = quadratic(),
+                                      .reference = quadratic()});
   EXPECT_EQ(StageBench(*broken, 3, 1).run().arrays.at("error").maxCoeff(), -1);
+}
+
+/// The quadratic in long double, its first row times `factor`.
+ClosedForm quadratic_form(long double factor) {
+  return {[=](auto x, auto given, auto y) {
+    const auto a = GradientQuadratic<long double>::matrix();
+    for (std::size_t j = 0; j < 2; ++j) {
+      const auto row = static_cast<Index>(j);
+      y[j] = (j == 0 ? factor : 1) * (a(row, 0) * x[0] + a(row, 1) * x[1]) +
+             static_cast<long double>(given[j]);
+    }
+  }};
+}
+
+TEST(WorkPrecision, MeasuresGradientsAgainstAClosedForm) {
+  const auto error = [](long double factor, Precision precision) {
+    const auto stage = work_precision({.name = "gradient",
+                                       .problem = quadratic(),
+                                       .base = quadratic(),
+                                       .exact = quadratic_form(factor),
+                                       .gradient = true,
+                                       .samples = 5,
+                                       .block = 2,
+                                       .repetitions = 1});
+    StageBench bench(*stage, 3, 1);
+    const auto out = bench.run(nullptr, precision);
+    EXPECT_EQ(bench.oracle.counts()[Counter::vjp], 5U);
+    EXPECT_EQ(out.arrays.at("error").cols(), 5);
+    return out.arrays.at("error").maxCoeff();
+  };
+  EXPECT_LT(error(1, Precision::f64), 1e-15);
+  EXPECT_LT(error(1, Precision::f32), 1e-6);
+  EXPECT_GT(error(1, Precision::f32), 1e-9);
+  EXPECT_GT(error(1.001L, Precision::f64), 1e-5);
+}
+
+/// y = x + given, point by point: given is a wave over one period.
+struct PointwiseOptions {
+  Index steps = 2;
+};
+Options describe(const PointwiseOptions& o) {
+  return {{"steps", std::to_string(o.steps)}};
+}
+template <class T>
+class Pointwise final : public Problem<T>, public Vjp<T> {
+ public:
+  using Options = PointwiseOptions;
+  explicit Pointwise(const Options& o = {}) : n_(o.steps) {}
+  Shape shape() const override { return {n_, n_, n_}; }
+  Vector<double> start() const override { return Vector<double>::Zero(n_); }
+  Samples<double> sample(Index, Index count, const Rng&) const override {
+    Samples<double> s{Batch<double>(n_, count), Batch<double>(n_, count), {}};
+    s.given.resize(n_, count);
+    for (Index i = 0; i < count; ++i)
+      for (Index k = 0; k < n_; ++k) {
+        s.x(k, i) = double(k + 1) + double(i);
+        s.given(k, i) = std::cos(2 * std::numbers::pi * double(k) / double(n_));
+        s.y(k, i) = s.x(k, i) + s.given(k, i);
+      }
+    return s;
+  }
+  void forward(BatchIn<T> x,
+               BatchIn<T> given,
+               BatchOut<T> y,
+               Workspace&) const override {
+    y = x + given;
+  }
+  void linearize(BatchIn<T> x,
+                 BatchIn<T> given,
+                 BatchOut<T> y,
+                 Tape&) const override {
+    y = x + given;
+  }
+  void pullback(const Tape&,
+                BatchIn<T> y_bar,
+                BatchOut<T> x_bar,
+                Workspace&) const override {
+    x_bar = y_bar;
+  }
+  double operations() const override { return 1; }
+
+ private:
+  Index n_;
+};
+
+TEST(WorkPrecision, FinerSettingsSeeTheSameFunctions) {
+  const auto pointwise = [](Index steps) {
+    return problem<Pointwise>("pointwise", {.steps = steps});
+  };
+  // On the points that the settings share they agree exactly; a field that was
+  // not interpolated, unknowns that were not repeated would not.
+  for (const bool gradient : {false, true}) {
+    const auto stage = work_precision({.name = "fine",
+                                       .problem = pointwise(16),
+                                       .base = pointwise(8),
+                                       .reference = pointwise(64),
+                                       .gradient = gradient});
+    const auto error = StageBench(*stage, 3, 1)
+                           .run(nullptr, Precision::f64)
+                           .arrays.at("error");
+    EXPECT_LT(error.maxCoeff(), 1e-14) << gradient;
+  }
 }
 
 TEST(WorkPrecision, TheFastestRepetitionIsPerIteration) {

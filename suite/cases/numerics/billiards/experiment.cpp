@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "problems/billiards/billiards.h"
+#include "problems/billiards/closed_form.h"
 #include "suite/cases/numerics/common/atlas.h"
 
 namespace physinv {
@@ -55,6 +56,8 @@ const bool kRegistered = register_atlas(
                  .y = {"velocity in y", spaced(-3, 3, 25)},
                  .point = velocity,
                  .problems = {kBilliards}}},
+     .knobs = {batch_knob(
+         problem<Billiards>("billiards"), 1024, {}, billiards_closed_form())},
      .problem = problem<Billiards>("billiards")});
 
 }  // namespace

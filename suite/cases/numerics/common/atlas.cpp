@@ -10,6 +10,8 @@ namespace physinv {
 namespace {
 
 constexpr const char* kMethod = "stability";
+/// Of a knob that names no number.
+constexpr Index kSamples = 4;
 
 std::shared_ptr<const Stage> stage_of(const Sweep& sweep) {
   StabilitySweepOptions options{.name = sweep.id,
@@ -34,14 +36,6 @@ std::vector<Atlas>& all_atlases() {
 
 const std::vector<Atlas>& atlases() { return all_atlases(); }
 
-std::vector<ProblemRecipe> along(
-    const SweepAxis& axis,
-    const std::function<ProblemRecipe(double)>& problem) {
-  std::vector<ProblemRecipe> all;
-  for (const double value : axis.values) all.push_back(problem(value));
-  return all;
-}
-
 Vector<double> uneven(Index rows, double size) {
   return Vector<double>::NullaryExpr(
       rows, [=](Index k) { return size * std::cos(1.1 * double(k)); });
@@ -54,8 +48,15 @@ bool register_atlas(Atlas atlas) {
     method.chain.push_back(stage_of(sweep));
     stages.push_back(sweep.id);
   }
-  const std::vector<Row> rows = {
-      {.methods = {kMethod}, .n = {1}, .seeds = {0}}};
+  std::vector<Row> rows = {{.methods = {kMethod}, .n = {1}, .seeds = {0}}};
+  std::vector<Method> methods = {std::move(method)};
+  std::vector<Claim> claims = {adjoint_claim("N1", stages)};
+  if (!atlas.knobs.empty()) {
+    for (const Row& row : accuracy_rows(kSamples)) rows.push_back(row);
+    const auto& knobs = declare_knobs(atlas.name, atlas.knobs);
+    methods.push_back(accuracy_method(knobs));
+    for (Claim& claim : order_claims(knobs)) claims.push_back(std::move(claim));
+  }
   all_atlases().push_back(atlas);
   const ProblemRecipe problem = atlas.problem.make_double
                                     ? atlas.problem
@@ -63,6 +64,7 @@ bool register_atlas(Atlas atlas) {
   const auto report = [name = atlas.name, sweeps = std::move(atlas.sweeps)](
                           const Results& results, const Published&) {
     Section section;
+    add_accuracy(section, results, name);
     for (const Sweep& s : sweeps) {
       const auto* found = find_sweep(results, name, kMethod, s.id);
       section.tables.push_back(sweep_table(s.id, s.title, found));
@@ -80,8 +82,8 @@ bool register_atlas(Atlas atlas) {
                    {.name = "quick", .rows = rows},
                    {.name = "standard", .rows = rows},
                    {.name = "paper", .rows = rows}},
-      .methods = {method},
-      .claims = {adjoint_claim("N1", stages)},
+      .methods = std::move(methods),
+      .claims = std::move(claims),
       .report = report,
   });
 }

@@ -1,12 +1,14 @@
-/// The stability atlas: of each problem, parameters over their whole range and
-/// beyond it, as sweeps over two axes (suite/diagnostics/stability_sweep.h). A
-/// problem enters it by saying what its axes are.
+/// The atlas of all problems: parameters over their whole range and beyond it,
+/// as sweeps over two axes (suite/diagnostics/stability_sweep.h), and what
+/// accuracy costs (accuracy.h). A problem enters it by saying what its axes and
+/// knobs are.
 #pragma once
 
 #include <functional>
 #include <string>
 #include <vector>
 
+#include "suite/cases/numerics/common/accuracy.h"
 #include "suite/cases/numerics/common/sweep_report.h"
 #include "suite/core/recipe.h"
 #include "suite/harness/case.h"
@@ -25,10 +27,6 @@ struct Sweep {
   Index examples = 1;
 };
 
-/// One problem for each value of an axis.
-std::vector<ProblemRecipe> along(
-    const SweepAxis& axis, const std::function<ProblemRecipe(double)>& problem);
-
 /// size cos(1.1 k): alternates in sign and size, so that no symmetry helps.
 Vector<double> uneven(Index rows, double size);
 
@@ -37,11 +35,13 @@ struct Atlas {
   std::string title;  ///< Numerics of billiards
   Source source;
   std::vector<Sweep> sweeps;
+  std::vector<Knob> knobs = {};
   ProblemRecipe problem = {};  ///< as it is registered; none: that of a sweep
 };
 
 /// An experiment with the method `stability`, a stage per sweep, a table and
-/// maps of each, and the claim N1 about all adjoints. For static
+/// maps of each, and the claim N1 about all adjoints; with knobs the method
+/// `work-precision` and claims about observed orders, too. For static
 /// initialisation; returns true.
 bool register_atlas(Atlas atlas);
 

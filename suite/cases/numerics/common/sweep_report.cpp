@@ -73,6 +73,14 @@ std::vector<double> spaced(double first, double last, int count) {
   return values;
 }
 
+std::vector<ProblemRecipe> along(
+    const SweepAxis& axis,
+    const std::function<ProblemRecipe(double)>& problem) {
+  std::vector<ProblemRecipe> all;
+  for (const double value : axis.values) all.push_back(problem(value));
+  return all;
+}
+
 Index sweep_count(const StageRecord& sweep,
                   SweepCheck check,
                   SweepStatus status) {

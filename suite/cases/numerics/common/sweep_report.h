@@ -2,9 +2,11 @@
 /// (suite/diagnostics/stability_sweep.h).
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
+#include "suite/core/recipe.h"
 #include "suite/diagnostics/stability_sweep.h"
 #include "suite/evidence/claim.h"
 #include "suite/results/record.h"
@@ -24,6 +26,10 @@ struct SweepAxis {
 std::vector<double> decades(double first, double last, double step = 1);
 /// So many values from `first` to `last`.
 std::vector<double> spaced(double first, double last, int count);
+
+/// One problem for each value of an axis.
+std::vector<ProblemRecipe> along(
+    const SweepAxis& axis, const std::function<ProblemRecipe(double)>& problem);
 
 /// The stage of the first case that finished it, else null.
 const StageRecord* find_sweep(const Results& results,

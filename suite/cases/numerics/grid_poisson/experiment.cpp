@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "problems/grid_poisson/closed_form.h"
 #include "problems/grid_poisson/grid_poisson.h"
 #include "suite/cases/numerics/common/atlas.h"
 
@@ -20,6 +21,8 @@ Vector<double> potential(double size, double k) {
   });
 }
 
+const ProblemRecipe kPoisson = problem<GridPoisson>("grid_poisson");
+
 const bool kRegistered = register_atlas(
     {.name = "numerics/poisson",
      .title = "Numerics of the Poisson problem",
@@ -29,7 +32,8 @@ const bool kRegistered = register_atlas(
                  .x = {"size", decades(-150, 150, 10), true},
                  .y = {"wave number", {1, 2, 3, 4, 5, 6, 7, 8}},
                  .point = potential,
-                 .problems = {problem<GridPoisson>("grid_poisson")}}}});
+                 .problems = {kPoisson}}},
+     .knobs = {batch_knob(kPoisson, 256, {}, grid_poisson_closed_form())}});
 
 }  // namespace
 }  // namespace physinv

@@ -2,12 +2,10 @@
 /// the axes of its stability sweeps.
 #pragma once
 
-#include <fmt/format.h>
-
 #include <cmath>
-#include <string>
 #include <vector>
 
+#include "suite/cases/numerics/common/accuracy.h"
 #include "suite/cases/numerics/common/sweep_report.h"
 #include "suite/evidence/runs.h"
 
@@ -15,12 +13,6 @@ namespace physinv::ks_numerics {
 
 inline constexpr const char* kName = "numerics/kuramoto-sivashinsky";
 inline constexpr double kEnd = 25;
-inline constexpr Index kReferenceSteps = 6400;
-inline const std::vector<Index> kSteps = {25, 50, 100, 200, 400, 800, 1600};
-
-inline std::string stage_name(Index steps) {
-  return fmt::format("steps-{}", steps);
-}
 
 inline std::vector<double> doubled(double first, int count) {
   std::vector<double> out;
@@ -33,9 +25,8 @@ inline const SweepAxis kBeta{"beta", spaced(-6, 6, 25)};
 inline const SweepAxis kLowBeta{"beta", spaced(0, 4, 9)};
 inline const SweepAxis kTime{"end time", spaced(5, 100, 11)};
 
-/// Relative error of u(25) with so many steps, mean of the samples. Empty if a
-/// sample diverged or the stage of this chain is not there.
-std::optional<double> step_error(const CaseRecord& chain, Index steps);
+/// Steps, grid and samples per call.
+const std::vector<Knob>& knobs();
 
 /// Over the samples that have a number: the geometric mean of a column of an
 /// array of the growth stage, or nothing.

@@ -1,5 +1,7 @@
 // The coupled oscillators under controls from nothing to far beyond what their
 // integrator stands, with steps from fine to coarse.
+#include <cmath>
+
 #include "problems/oscillators/oscillators.h"
 #include "suite/cases/numerics/common/atlas.h"
 
@@ -8,6 +10,17 @@ namespace {
 
 const SweepAxis kSize{"size of the control", decades(-6, 8, 0.5), true};
 const SweepAxis kStep{"time step", decades(-3, 1, 0.25), true};
+
+constexpr double kEnd = 12;
+
+ProblemRecipe stepping(double dt) {
+  return problem<Oscillators>(
+      "oscillators",
+      {.steps = static_cast<Index>(std::lround(kEnd / dt)), .dt = dt});
+}
+
+const SweepAxis kSteps{
+    "time step", {0.5, 0.25, 0.125, 0.0625, 0.03125, 0.015625}, true};
 
 const bool kRegistered = register_atlas(
     {.name = "numerics/oscillators",
@@ -23,7 +36,16 @@ const bool kRegistered = register_atlas(
                                      return problem<Oscillators>("oscillators",
                                                                  {.dt = dt});
                                    }),
-                 .examples = 2}}});
+                 .examples = 2}},
+     .knobs = {{.id = "step",
+                .title = "Time step of the Runge-Kutta method, until t = 12",
+                .axis = kSteps,
+                .problems = along(kSteps, stepping),
+                .reference = stepping(1.0 / 512),
+                .order = 4,
+                .regime = 3,
+                .samples = 64},
+               batch_knob(stepping(0.125), 256, stepping(1.0 / 128))}});
 
 }  // namespace
 }  // namespace physinv

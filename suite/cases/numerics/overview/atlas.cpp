@@ -1,9 +1,13 @@
-// The stability atlas: all problems side by side.
+// The atlas: what accuracy costs and where it ends, all problems side by side.
 #include "suite/cases/numerics/common/atlas.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <string>
 #include <utility>
 
+#include "suite/evidence/cell.h"
 #include "suite/harness/registry.h"
 
 namespace physinv {
@@ -79,13 +83,55 @@ Figure maps(const Results& results) {
   return figure;
 }
 
+/// What accuracy costs, at the fastest setting that reaches it.
+Table times_to_accuracy(const Results& results) {
+  Table table{.id = "accuracy",
+              .title = "Time to an accuracy",
+              .corner = "problem",
+              .columns = {},
+              .note =
+                  "Microseconds per sample of the fastest setting whose median "
+                  "relative error is at most the number on top, and which it "
+                  "is. Dominated: settings that another one beats in time "
+                  "and error; the pages of the problems name them."};
+  const std::vector<double> targets = {1e-3, 1e-6, 1e-9};
+  for (const char* what : {"forward", "gradient"})
+    for (const double target : targets)
+      table.columns.push_back(fmt::format("{} {:.0e}", what, target));
+  table.columns.insert(table.columns.end(), {"settings", "dominated"});
+  for (const auto& [experiment, knobs] : all_knobs()) {
+    const auto all = measurements(results, experiment);
+    TableRow row{.label = experiment.substr(kPrefix.size())};
+    for (const bool gradient : {false, true}) {
+      for (const double target : targets) {
+        const auto* m = fastest_within(all, gradient, target);
+        row.cells.push_back(
+            {.text =
+                 m != nullptr
+                     ? fmt::format("{:.3g} ({})", 1e6 * m->seconds, m->setting)
+                 : all.empty() ? kNotRun
+                               : "not reached"});
+      }
+    }
+    const auto dominated =
+        std::count_if(all.begin(), all.end(), [&](const Measurement& m) {
+          return dominated_by(all, m) != nullptr;
+        });
+    row.cells.push_back({.text = std::to_string(all.size())});
+    row.cells.push_back({.text = std::to_string(dominated)});
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
 Section report(const Results& results, const Published&) {
-  return {.tables = {side_by_side(results)}, .figures = {maps(results)}};
+  return {.tables = {times_to_accuracy(results), side_by_side(results)},
+          .figures = {maps(results)}};
 }
 
 const bool kRegistered =
     register_overview({.paper = "numerics",
-                       .title = "Stability atlas",
+                       .title = "Accuracy and stability of all problems",
                        .profiles = {"smoke", "quick", "standard", "paper"},
                        .claims = {},
                        .report = report});

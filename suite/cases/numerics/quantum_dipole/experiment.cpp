@@ -1,5 +1,9 @@
 // The quantum dipole under controls from nothing to 1e6, with steps from tiny
 // to huge: Cayley's step is unitary for all of them.
+#include <fmt/format.h>
+
+#include <cmath>
+
 #include "problems/quantum_dipole/quantum_dipole.h"
 #include "suite/cases/numerics/common/atlas.h"
 
@@ -8,6 +12,32 @@ namespace {
 
 const SweepAxis kSize{"size of the control", decades(-6, 6, 0.5), true};
 const SweepAxis kStep{"time step", decades(-8, 4, 1), true};
+
+/// The experiment's step of 0.05, halved so many times.
+ProblemRecipe stepping(double end, int halved) {
+  const double dt = std::ldexp(0.05, -halved);
+  return problem<QuantumDipole>(
+      "quantum_dipole",
+      {.steps = static_cast<Index>(std::lround(end / dt)), .dt = dt});
+}
+
+/// Energies reach 225: the phases of the highest states turn right over the
+/// whole time only with steps of 1e-4. The order shows on a shorter one.
+Knob steps(const char* id, double end, int halvings, double order) {
+  Knob knob{.id = id,
+            .title = fmt::format("Time step of Cayley's method, until {}", end),
+            .axis = {"time step", {}, true},
+            .problems = {},
+            .reference = stepping(end, halvings + 3),
+            .order = order,
+            .samples = 16};
+  for (int k = 0; k <= halvings; ++k) {
+    knob.axis.values.push_back(std::ldexp(0.05, -k));
+    knob.problems.push_back(stepping(end, k));
+  }
+  knob.regime = knob.problems.size() - 2;
+  return knob;
+}
 
 const bool kRegistered = register_atlas(
     {.name = "numerics/quantum-dipole",
@@ -25,7 +55,10 @@ const bool kRegistered = register_atlas(
                                    }),
                  // psi has norm 1 and 384 roundings: differences over 0.1 are
                  // known to 1e-12.
-                 .zero = 1e-7}}});
+                 .zero = 1e-7}},
+     .knobs = {steps("step", 19.2, 5, 0),
+               steps("short", 1.2, 8, 2),
+               batch_knob(stepping(19.2, 0), 64, stepping(19.2, 4))}});
 
 }  // namespace
 }  // namespace physinv

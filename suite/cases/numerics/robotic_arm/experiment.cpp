@@ -5,6 +5,7 @@
 #include <numbers>
 #include <vector>
 
+#include "problems/robotic_arm/closed_form.h"
 #include "problems/robotic_arm/robotic_arm.h"
 #include "suite/cases/numerics/common/atlas.h"
 
@@ -41,21 +42,24 @@ const bool kRegistered = register_atlas(
     {.name = "numerics/robotic-arm",
      .title = "Numerics of the robotic arm",
      .source = {.paper = "jpo", .where = "App. D.5"},
-     .sweeps = {
-         {.id = "poses",
-          .title = "Singular poses (bend 0 and ±pi) and others",
-          .x = {"direction of the first link", turn()},
-          .y = {"bend of both joints", bends()},
-          .point = [](double direction,
-                      double bend) { return bent(0.25, direction, bend); },
-          .problems = {kArm}},
-         // From a turn to where neighbouring numbers are turns apart.
-         {.id = "turns",
-          .title = "Large angles",
-          .x = {"size of the angles", decades(0, 16), true},
-          .y = {"bend of both joints", {0, 0.5, 1}},
-          .point = [](double size, double bend) { return bent(0, size, bend); },
-          .problems = {kArm}}}});
+     .sweeps = {{.id = "poses",
+                 .title = "Singular poses (bend 0 and ±pi) and others",
+                 .x = {"direction of the first link", turn()},
+                 .y = {"bend of both joints", bends()},
+                 .point =
+                     [](double direction, double bend) {
+                       return bent(0.25, direction, bend);
+                     },
+                 .problems = {kArm}},
+                // From a turn to where neighbouring numbers are turns apart.
+                {.id = "turns",
+                 .title = "Large angles",
+                 .x = {"size of the angles", decades(0, 16), true},
+                 .y = {"bend of both joints", {0, 0.5, 1}},
+                 .point = [](double size,
+                             double bend) { return bent(0, size, bend); },
+                 .problems = {kArm}}},
+     .knobs = {batch_knob(kArm, 1024, {}, robotic_arm_closed_form())}});
 
 }  // namespace
 }  // namespace physinv

@@ -1,4 +1,5 @@
 // The toy's scaled output: any size of the unknowns and of the factor.
+#include "problems/scaled_output/closed_form.h"
 #include "problems/scaled_output/scaled_output.h"
 #include "suite/cases/numerics/common/atlas.h"
 
@@ -21,10 +22,15 @@ const bool kRegistered = register_atlas(
                  .x = kSize,
                  .y = kGamma,
                  .point = unknowns,
-                 .problems = along(kGamma, [](double gamma) {
-                   return problem<ScaledOutput>("scaled_output",
-                                                {.gamma = gamma});
-                 })}}});
+                 .problems = along(kGamma,
+                                   [](double gamma) {
+                                     return problem<ScaledOutput>(
+                                         "scaled_output", {.gamma = gamma});
+                                   })}},
+     .knobs = {batch_knob(problem<ScaledOutput>("scaled_output"),
+                          4096,
+                          {},
+                          scaled_output_closed_form())}});
 
 }  // namespace
 }  // namespace physinv

@@ -3,7 +3,9 @@
 #include <cmath>
 #include <vector>
 
+#include "problems/wave_packet/closed_form.h"
 #include "problems/wave_packet/wave_packet.h"
+#include "suite/cases/numerics/common/accuracy.h"
 #include "suite/cases/numerics/common/sweep_report.h"
 #include "suite/diagnostics/stability_sweep.h"
 #include "suite/harness/registry.h"
@@ -47,6 +49,16 @@ std::shared_ptr<const Stage> sweep(const char* name,
   return stability_sweep(options);
 }
 
+const std::vector<Knob>& knobs() {
+  static const std::vector<Knob>& all =
+      declare_knobs(kName,
+                    {batch_knob(problem<WavePacket>("wave_packet"),
+                                256,
+                                {},
+                                wave_packet_closed_form())});
+  return all;
+}
+
 /// Errors over the position.
 Figure errors(const StageRecord* sweep) {
   Figure figure{.id = "errors",
@@ -78,13 +90,19 @@ Figure errors(const StageRecord* sweep) {
 Section report(const Results& results, const Published&) {
   const auto* near = find_sweep(results, kName, "stability", "positions");
   const auto* far = find_sweep(results, kName, "stability", "far");
-  return {.tables = {sweep_table("positions", "Packets inside and near", near),
-                     sweep_table("far", "Packets out of sight", far)},
-          .figures = {errors(near)}};
+  Section section{
+      .tables = {sweep_table("positions", "Packets inside and near", near),
+                 sweep_table("far", "Packets out of sight", far)},
+      .figures = {errors(near)}};
+  add_accuracy(section, results, kName);
+  return section;
 }
 
-const std::vector<Row> kRows = {
-    {.methods = {"stability"}, .n = {1}, .seeds = {0}}};
+std::vector<Row> rows() {
+  std::vector<Row> all = accuracy_rows(4);
+  all.push_back({.methods = {"stability"}, .n = {1}, .seeds = {0}});
+  return all;
+}
 
 /// Nothing is learned here.
 const Setting kNoNetworks;
@@ -95,12 +113,13 @@ const auto kRegistered = register_experiment({
     .source = {.paper = "jpo", .where = "App. D.1"},
     .problem = problem<WavePacket>("wave_packet"),
     .setting = kNoNetworks,
-    .profiles = {{.name = "smoke", .rows = kRows},
-                 {.name = "quick", .rows = kRows},
-                 {.name = "paper", .rows = kRows}},
+    .profiles = {{.name = "smoke", .rows = rows()},
+                 {.name = "quick", .rows = rows()},
+                 {.name = "paper", .rows = rows()}},
     .methods = {{"stability",
                  {sweep("positions", positions()),
-                  sweep("far", far_positions())}}},
+                  sweep("far", far_positions())}},
+                accuracy_method(knobs())},
     .claims = {adjoint_claim("N1", {"positions", "far"})},
     .report = report,
 });

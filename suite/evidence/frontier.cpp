@@ -1,0 +1,311 @@
+#include "suite/evidence/frontier.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <tuple>
+
+#include "suite/evidence/cell.h"
+#include "suite/evidence/statistics.h"
+#include "suite/results/course.h"
+
+namespace physinv {
+namespace {
+
+/// Shares of the way from the start to the lowest loss that are left.
+constexpr double kTargets[] = {1e-1, 1e-2, 1e-3};
+
+/// A chain's mean losses over seconds per problem.
+struct MeanCourse {
+  std::vector<double> seconds, loss;
+  std::optional<double> distance;
+  bool crowded = false;
+};
+using SettingKey = std::tuple<std::string, Index, Precision>;
+using BySeed = std::map<std::uint64_t, MeanCourse>;
+
+bool solves(const CaseRecord& c) {
+  return std::none_of(c.stages.begin(), c.stages.end(), [](const auto& s) {
+    return is_diagnostic(s.options);
+  });
+}
+
+std::optional<double> distance_of(const CaseRecord& c) {
+  const Batch<double>& truth = c.data.x;
+  const Batch<double>& x = c.stages.back().x;
+  if (truth.rows() == 0 || x.rows() != truth.rows() || x.cols() == 0 ||
+      x.cols() > truth.cols() || !x.allFinite())
+    return {};
+  std::vector<double> all;
+  for (Index i = 0; i < x.cols(); ++i)
+    all.push_back((x.col(i) - truth.col(i)).norm());
+  return median(std::move(all));
+}
+
+std::map<SettingKey, BySeed> mean_courses(const Results& results,
+                                          const std::string& experiment) {
+  std::map<SettingKey, BySeed> all;
+  for (const CaseRecord& c : results.cases()) {
+    if (c.info.experiment != experiment || !solves(c)) continue;
+    const auto course = course_of(c);
+    if (!course || course->loss.empty()) continue;
+    MeanCourse mean;
+    for (const StageRecord& s : c.stages) mean.crowded |= s.crowded;
+    mean.distance = distance_of(c);
+    const bool run = course->loss.front().size() == 1;
+    const double share = run ? 1 : static_cast<double>(c.info.n);
+    for (std::size_t k = 0; k < course->loss.size(); ++k) {
+      mean.seconds.push_back(course->seconds[k] / share);
+      mean.loss.push_back(course->loss[k].mean());
+    }
+    all[{c.info.method, c.info.n, c.info.precision}][c.info.seed] =
+        std::move(mean);
+  }
+  return all;
+}
+
+/// Of one n: the seeds that all settings have, and the lowest start of each.
+struct Pairing {
+  std::set<std::uint64_t> seeds;
+  std::map<std::uint64_t, double> start;
+};
+
+std::map<Index, Pairing> pairings(const std::map<SettingKey, BySeed>& all) {
+  std::map<Index, Pairing> out;
+  std::set<Index> seen;
+  for (const auto& [key, by_seed] : all) {
+    const Index n = std::get<1>(key);
+    Pairing& p = out[n];
+    std::set<std::uint64_t> mine;
+    for (const auto& [seed, course] : by_seed) {
+      mine.insert(seed);
+      const auto [at, is_new] = p.start.emplace(seed, course.loss.front());
+      if (!is_new) at->second = std::min(at->second, course.loss.front());
+    }
+    if (seen.insert(n).second) {
+      p.seeds = mine;
+    } else {
+      std::erase_if(p.seeds, [&](auto seed) { return !mine.contains(seed); });
+    }
+  }
+  return out;
+}
+
+SettingCourse setting_of(const SettingKey& key,
+                         const BySeed& by_seed,
+                         const Pairing& pairing) {
+  SettingCourse out;
+  std::tie(out.method, out.n, out.precision) = key;
+  out.seeds = pairing.seeds.size();
+  std::size_t points = 0;
+  std::vector<double> distances;
+  for (const auto seed : pairing.seeds) {
+    const MeanCourse& c = by_seed.at(seed);
+    points = std::max(points, c.loss.size());
+    if (c.distance) distances.push_back(*c.distance);
+    out.crowded |= c.crowded;
+  }
+  if (!distances.empty()) out.distance = median(std::move(distances));
+  for (std::size_t k = 0; k < points; ++k) {
+    std::vector<double> seconds, losses;
+    for (const auto seed : pairing.seeds) {
+      // A run that has ended stays where it is.
+      const MeanCourse& c = by_seed.at(seed);
+      const std::size_t at = std::min(k, c.loss.size() - 1);
+      seconds.push_back(c.seconds[at]);
+      losses.push_back(c.loss[at] / pairing.start.at(seed));
+    }
+    const double middle = median(losses);
+    if (std::isfinite(middle) && middle > 0)
+      out.points.push_back({.seconds = median(seconds),
+                            .loss = middle,
+                            .low = quantile(losses, 0.1),
+                            .high = quantile(losses, 0.9)});
+  }
+  return out;
+}
+
+std::string title_of(const std::string& method,
+                     const std::map<std::string, std::string>& titles) {
+  const auto title = titles.find(method);
+  return title == titles.end() ? method : title->second;
+}
+
+Table table_of(const std::vector<SettingCourse>& settings,
+               const std::vector<BudgetPoint>& hull,
+               const std::map<std::string, std::string>& titles) {
+  const double lowest = hull.back().loss;
+  Table table{
+      .id = "run_time_against_loss",
+      .title = "Run time against loss",
+      .digits = 3,
+      .corner = "setting",
+      .columns = {"seeds", "seconds", "loss", "10 %", "90 %", "|x - x*|"}};
+  std::vector<double> levels;
+  for (const double target : kTargets) {
+    levels.push_back(lowest + target * (1 - lowest));
+    table.columns.push_back(fmt::format("s to {:.2g}", levels.back()));
+  }
+  table.columns.emplace_back("on the hull");
+  std::vector<std::string> dominated;
+  bool crowded = false;
+  for (const SettingCourse& s : settings) {
+    const std::string name =
+        fmt::format("{}, n = {}{}",
+                    title_of(s.method, titles),
+                    s.n,
+                    s.precision == Precision::f64 ? ", double" : "");
+    TableRow row{.label = name};
+    row.cells.push_back({.text = std::to_string(s.seeds)});
+    if (s.points.empty()) {
+      row.cells.insert(
+          row.cells.end(),
+          table.columns.size() - 1,
+          Cell{.text = s.seeds == 0 ? "no common seed" : "no ratio"});
+      table.rows.push_back(std::move(row));
+      continue;
+    }
+    const BudgetPoint& end = s.points.back();
+    for (const double v : {end.seconds, end.loss, end.low, end.high})
+      row.cells.push_back(written(v));
+    row.cells.push_back(written(s.distance, "{:.3g}", kNothing));
+    for (const double level : levels) {
+      const double seconds = seconds_to(s, level);
+      row.cells.push_back(std::isfinite(seconds) ? written(seconds)
+                                                 : Cell{.text = "never"});
+    }
+    const bool good = on_frontier(s, hull);
+    row.cells.push_back({.text = good ? "yes" : "dominated"});
+    if (!good) dominated.push_back(name);
+    crowded |= s.crowded;
+    table.rows.push_back(std::move(row));
+  }
+  table.note = fmt::format(
+      "At the end of the budget: medians over the seeds that all settings of "
+      "one n share, 10 % and 90 % quantiles. Seconds per problem (of a network "
+      "judged on a test set: of its training); mean loss over the lowest at "
+      "which any method starts. Targets leave 10, 1 and 0.1 % of the way from "
+      "the start to the lowest loss of all. The hull is the lower left one "
+      "over all budgets. {}{}",
+      dominated.empty() ? "Nothing is dominated."
+                        : fmt::format("Dominated at every budget: {}.",
+                                      fmt::join(dominated, "; ")),
+      crowded ? " Some stages shared their cores: their seconds are too many."
+              : "");
+  return table;
+}
+
+Series hull_series(const std::vector<BudgetPoint>& hull) {
+  Series s{.label = "lower-left hull",
+           .method = "hull",
+           .dashed = true,
+           .look = Look{.hue = Hue::ink}};
+  for (const BudgetPoint& p : hull)
+    s.x.push_back(p.seconds), s.y.push_back(p.loss);
+  return s;
+}
+
+void append(Series& s, const BudgetPoint& p) {
+  if (p.seconds <= 0) return;
+  s.x.push_back(p.seconds), s.y.push_back(p.loss);
+  s.lo.push_back(p.low), s.hi.push_back(p.high);
+}
+
+Figure figure_of(const std::vector<SettingCourse>& settings,
+                 const std::vector<BudgetPoint>& hull,
+                 const std::map<std::string, std::string>& titles) {
+  Index largest = 0;
+  for (const SettingCourse& s : settings) largest = std::max(largest, s.n);
+  const auto panel = [](std::string title) {
+    return Panel{.title = std::move(title),
+                 .x_label = "seconds per problem",
+                 .y_label = "loss over the start's",
+                 .x_log = true,
+                 .y_log = true};
+  };
+  Panel budget = panel(fmt::format("Growing budget, n = {}", largest)),
+        sizes = panel("Whole budget, all n");
+  std::map<std::string, Series> ends;
+  for (const SettingCourse& s : settings) {
+    const std::string label = title_of(s.method, titles) +
+                              (s.precision == Precision::f64 ? ", double" : "");
+    Series line{.label = label,
+                .method = s.method,
+                .dashed = s.precision == Precision::f64};
+    if (s.n == largest) {
+      for (const BudgetPoint& p : s.points) append(line, p);
+      budget.series.push_back(line);
+    }
+    auto [at, is_new] = ends.emplace(label, line);
+    if (is_new)
+      at->second = {.label = label, .method = s.method, .markers = true};
+    if (!s.points.empty()) append(at->second, s.points.back());
+  }
+  for (auto& [label, series] : ends) sizes.series.push_back(std::move(series));
+  for (Panel* p : {&budget, &sizes}) p->series.push_back(hull_series(hull));
+  return {
+      .id = "run_time_against_loss",
+      .title = "Run time against loss",
+      .panels = {std::move(budget), std::move(sizes)},
+      .note =
+          "Medians over seeds with 10 % and 90 % quantiles. A curve cut off "
+          "anywhere is a smaller budget; the hull goes over all settings "
+          "and budgets."};
+}
+
+}  // namespace
+
+std::vector<SettingCourse> setting_courses(const Results& results,
+                                           const std::string& experiment) {
+  const auto all = mean_courses(results, experiment);
+  const auto pairs = pairings(all);
+  std::vector<SettingCourse> out;
+  for (const auto& [key, by_seed] : all)
+    out.push_back(setting_of(key, by_seed, pairs.at(std::get<1>(key))));
+  return out;
+}
+
+std::vector<BudgetPoint> frontier(const std::vector<SettingCourse>& settings) {
+  std::vector<BudgetPoint> all, hull;
+  for (const SettingCourse& s : settings)
+    for (const BudgetPoint& p : s.points)
+      if (p.seconds > 0) all.push_back(p);
+  std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) {
+    return std::pair(a.seconds, a.loss) < std::pair(b.seconds, b.loss);
+  });
+  for (const BudgetPoint& p : all)
+    if (hull.empty() || p.loss < hull.back().loss) hull.push_back(p);
+  return hull;
+}
+
+bool on_frontier(const SettingCourse& setting,
+                 const std::vector<BudgetPoint>& hull) {
+  return std::any_of(
+      setting.points.begin(), setting.points.end(), [&](const auto& p) {
+        return std::any_of(hull.begin(), hull.end(), [&](const auto& h) {
+          return h.seconds == p.seconds && h.loss == p.loss;
+        });
+      });
+}
+
+double seconds_to(const SettingCourse& setting, double loss) {
+  for (const BudgetPoint& p : setting.points)
+    if (p.loss <= loss) return p.seconds;
+  return kInfinite;
+}
+
+void add_frontier(Section& section,
+                  const Results& results,
+                  const std::string& experiment,
+                  const std::map<std::string, std::string>& method_titles) {
+  const auto settings = setting_courses(results, experiment);
+  const auto hull = frontier(settings);
+  if (hull.empty()) return;
+  section.tables.push_back(table_of(settings, hull, method_titles));
+  section.figures.push_back(figure_of(settings, hull, method_titles));
+}
+
+}  // namespace physinv

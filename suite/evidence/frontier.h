@@ -1,0 +1,61 @@
+/// Run time against error of an experiment's methods: a setting is a method at
+/// one n and precision, and where its curve is cut off is its budget.
+///
+/// Losses are means over the examples, divided by the lowest at which any
+/// method starts on the same problems: so different n can stand side by side.
+/// Seconds are the batch's over n; where a method is judged by its network on a
+/// test set, those of the training. Medians over the seeds that all settings
+/// of one n have in common.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "suite/results/report_model.h"
+#include "suite/results/results.h"
+
+namespace physinv {
+
+/// A setting's medians after one budget, and the losses' quantiles.
+struct BudgetPoint {
+  double seconds = 0, loss = 0;
+  double low = 0, high = 0;  ///< 10 % and 90 % of the seeds
+};
+
+struct SettingCourse {
+  std::string method;
+  Index n = 0;
+  Precision precision = Precision::f32;
+  std::size_t seeds = 0;
+  std::vector<BudgetPoint> points;  ///< growing budgets; finite losses alone
+  /// Of the estimates from the true unknowns, where a problem knows them:
+  /// median over the seeds of the examples' median |x - x*|.
+  std::optional<double> distance;
+  bool crowded = false;  ///< its stages shared their cores
+};
+
+/// Settings whose chains are finished. Losses that are not positive have no
+/// ratio: such settings have no points.
+std::vector<SettingCourse> setting_courses(const Results& results,
+                                           const std::string& experiment);
+
+/// The lower-left hull: points that no other one beats in both, by time.
+std::vector<BudgetPoint> frontier(const std::vector<SettingCourse>& settings);
+
+/// Whether one of its points lies on the hull.
+bool on_frontier(const SettingCourse& setting,
+                 const std::vector<BudgetPoint>& hull);
+
+/// Seconds until a loss; infinite if it is never reached.
+double seconds_to(const SettingCourse& setting, double loss);
+
+/// Adds the table `run_time_against_loss`, with the time to three targets, and
+/// the figure of the same name. Nothing where no method solves anything.
+void add_frontier(Section& section,
+                  const Results& results,
+                  const std::string& experiment,
+                  const std::map<std::string, std::string>& method_titles);
+
+}  // namespace physinv

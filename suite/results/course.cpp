@@ -1,0 +1,62 @@
+#include "suite/results/course.h"
+
+#include <algorithm>
+
+namespace physinv {
+namespace {
+
+void add_point(Course& course,
+               double seconds,
+               double simulations,
+               VectorIn<double> loss) {
+  course.seconds.push_back(seconds);
+  course.simulations.push_back(simulations);
+  course.loss.emplace_back(loss);
+}
+
+/// The mean over a test set along the curve, if that is what is known of all.
+const Batch<double>* mean_of(const StageRecord& s) {
+  const auto mean = s.arrays.find("mean_loss");
+  const bool some = s.curve.loss.rows() != s.loss.size();
+  return some && mean != s.arrays.end() ? &mean->second : nullptr;
+}
+
+}  // namespace
+
+std::optional<Course> course_of(const CaseRecord& found) {
+  Course course;
+  double seconds = 0, simulations = 0;
+  bool failed = false;
+  for (const StageRecord& s : found.stages) {
+    failed = s.stop == Stop::failed || s.stop == Stop::skipped;
+    if (failed) break;
+    const Batch<double>* mean = mean_of(s);
+    const Index points = mean == nullptr
+                             ? s.curve.points()
+                             : std::min(mean->cols(), s.curve.points());
+    for (Index k = 0; k < points; ++k) {
+      const auto at = static_cast<std::size_t>(k);
+      add_point(course,
+                seconds + s.curve.seconds[at],
+                simulations + s.curve.evaluations[at],
+                mean == nullptr ? Vector<double>(s.curve.loss.col(k))
+                                : Vector<double>(mean->col(k)));
+    }
+    seconds += s.clocks.solve.wall;
+    simulations += static_cast<double>(s.counts[Counter::forward] +
+                                       s.counts[Counter::vjp]);
+    // The estimate may be better than the end of the curve.
+    if (s.loss.size() > 0 && mean == nullptr)
+      add_point(course, seconds, simulations, s.loss);
+  }
+  if (!failed && found.stages.size() < found.info.stages.size()) return {};
+  return course;
+}
+
+bool is_diagnostic(const Options& options) {
+  return std::any_of(options.begin(), options.end(), [](const auto& option) {
+    return option.first == "algorithm" && option.second == "diagnostic";
+  });
+}
+
+}  // namespace physinv
