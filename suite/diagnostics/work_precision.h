@@ -23,6 +23,10 @@
 
 namespace physinv {
 
+/// What is right, once found, for the stages of one knob that ask for it.
+class Answers;
+std::shared_ptr<Answers> no_answers_yet();
+
 struct WorkPrecisionOptions {
   std::string name;  ///< of the stage
   ProblemRecipe problem, base;
@@ -33,6 +37,9 @@ struct WorkPrecisionOptions {
   Index samples = 0;      ///< 0: as many as the case has
   Index block = 0;        ///< samples per call, 0 for all of them
   Index repetitions = 10;
+  /// Shared by stages of the same base and reference, which then make the
+  /// reference once. Empty: each makes its own.
+  std::shared_ptr<Answers> answers = {};
 };
 
 std::shared_ptr<const Stage> work_precision(WorkPrecisionOptions options);

@@ -128,15 +128,31 @@ SettingCourse setting_of(const SettingKey& key,
   return out;
 }
 
-std::string title_of(const std::string& method,
-                     const std::map<std::string, std::string>& titles) {
-  const auto title = titles.find(method);
-  return title == titles.end() ? method : title->second;
-}
+/// Words of a setting; its precision where its method has both.
+class Names {
+ public:
+  Names(const std::vector<SettingCourse>& settings,
+        const std::map<std::string, std::string>& titles)
+      : titles_(titles) {
+    for (const SettingCourse& s : settings)
+      precisions_[s.method].insert(s.precision);
+  }
+  std::string operator()(const SettingCourse& s) const {
+    const auto title = titles_.find(s.method);
+    std::string name = title == titles_.end() ? s.method : title->second;
+    if (precisions_.at(s.method).size() > 1)
+      name += s.precision == Precision::f64 ? ", double" : ", float";
+    return name;
+  }
+
+ private:
+  const std::map<std::string, std::string>& titles_;
+  std::map<std::string, std::set<Precision>> precisions_;
+};
 
 Table table_of(const std::vector<SettingCourse>& settings,
                const std::vector<BudgetPoint>& hull,
-               const std::map<std::string, std::string>& titles) {
+               const Names& name_of) {
   const double lowest = hull.back().loss;
   Table table{
       .id = "run_time_against_loss",
@@ -153,11 +169,7 @@ Table table_of(const std::vector<SettingCourse>& settings,
   std::vector<std::string> dominated;
   bool crowded = false;
   for (const SettingCourse& s : settings) {
-    const std::string name =
-        fmt::format("{}, n = {}{}",
-                    title_of(s.method, titles),
-                    s.n,
-                    s.precision == Precision::f64 ? ", double" : "");
+    const std::string name = fmt::format("{}, n = {}", name_of(s), s.n);
     TableRow row{.label = name};
     row.cells.push_back({.text = std::to_string(s.seeds)});
     if (s.points.empty()) {
@@ -216,7 +228,7 @@ void append(Series& s, const BudgetPoint& p) {
 
 Figure figure_of(const std::vector<SettingCourse>& settings,
                  const std::vector<BudgetPoint>& hull,
-                 const std::map<std::string, std::string>& titles) {
+                 const Names& name_of) {
   Index largest = 0;
   for (const SettingCourse& s : settings) largest = std::max(largest, s.n);
   const auto panel = [](std::string title) {
@@ -230,11 +242,8 @@ Figure figure_of(const std::vector<SettingCourse>& settings,
         sizes = panel("Whole budget, all n");
   std::map<std::string, Series> ends;
   for (const SettingCourse& s : settings) {
-    const std::string label = title_of(s.method, titles) +
-                              (s.precision == Precision::f64 ? ", double" : "");
-    Series line{.label = label,
-                .method = s.method,
-                .dashed = s.precision == Precision::f64};
+    const std::string label = name_of(s);
+    Series line{.label = label, .method = s.method};
     if (s.n == largest) {
       for (const BudgetPoint& p : s.points) append(line, p);
       budget.series.push_back(line);
@@ -304,8 +313,9 @@ void add_frontier(Section& section,
   const auto settings = setting_courses(results, experiment);
   const auto hull = frontier(settings);
   if (hull.empty()) return;
-  section.tables.push_back(table_of(settings, hull, method_titles));
-  section.figures.push_back(figure_of(settings, hull, method_titles));
+  const Names name_of(settings, method_titles);
+  section.tables.push_back(table_of(settings, hull, name_of));
+  section.figures.push_back(figure_of(settings, hull, name_of));
 }
 
 }  // namespace physinv

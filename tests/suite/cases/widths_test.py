@@ -1,16 +1,17 @@
 """The smoke profile of two builds, for registers of 512 and of 256 bits: every
-trajectory, loss, estimate and metric has the same bits. What hangs on the width
-is left out: times, memory, and work that a whole register skips."""
+trajectory, loss, estimate and metric has the same bits, although one of them
+runs with eight workers and the other in two shards with two threads per case,
+of which the first is interrupted and resumed. What hangs on the width is left
+out: times, memory, and work that a whole register skips."""
 
 import json
-import os
 import pathlib
 import subprocess
 import sys
 import tempfile
 
 OTHER = ("time", "second", "_ms", "bytes", "key", "finished", "revision",
-         "clocks", "crowded", "skipped")
+         "clocks", "crowded", "skipped", "threads")
 
 
 def numbers(value, name=""):
@@ -25,19 +26,39 @@ def numbers(value, name=""):
         yield name, value
 
 
-def run(program, out):
-    subprocess.run(
-        [program, "run", "--profile=smoke", "--trace", f"--out={out}",
-         f"--jobs={os.cpu_count()}"],
-        check=True, stdout=subprocess.DEVNULL)
+def smoke(program, out, *flags, check=True):
+    return subprocess.run(
+        [program, "run", "--profile=smoke", "--trace", f"--out={out}", *flags],
+        check=check, stdout=subprocess.DEVNULL)
+
+
+def at_once(program, out):
+    smoke(program, out, "--jobs=8")
+
+
+def in_parts(program, out):
+    shards = [out.with_name(f"shard{i}") for i in (1, 2)]
+    flags = ["--threads=2", "--jobs=2"]
+    # Ends early, with its own status; the next command goes on.
+    smoke(program, shards[0], "--shard=1/2", "--time-budget=1", *flags,
+          check=False)
+    for i, shard in enumerate(shards, 1):
+        smoke(program, shard, f"--shard={i}/2", *flags)
+    subprocess.run([program, "merge", out, *shards], check=True,
+                   stdout=subprocess.DEVNULL)
+
+
+def read(out):
     results = json.loads((out / "results.json").read_text())
     return {b["name"]: dict(numbers(b)) for b in results["benchmarks"]}
 
 
 def main():
     with tempfile.TemporaryDirectory() as folder:
-        wide, narrow = (run(program, pathlib.Path(folder) / str(i))
-                        for i, program in enumerate(sys.argv[1:3]))
+        outs = [pathlib.Path(folder) / name for name in ("wide", "narrow")]
+        at_once(sys.argv[1], outs[0])
+        in_parts(sys.argv[2], outs[1])
+        wide, narrow = map(read, outs)
     assert wide.keys() == narrow.keys() and len(wide) > 100, len(wide)
     hashes, wrong = 0, []
     for stage, ours in wide.items():

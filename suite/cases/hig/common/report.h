@@ -22,6 +22,16 @@ std::vector<const StageRecord*> trained_stages(const Results& results,
                                                std::string_view experiment,
                                                std::string_view method);
 
+/// The first example of the first seed: what was asked and what a method's
+/// network answers. Empty if it was not run to its end.
+struct Answered {
+  Vector<double> given, wanted, truth;  ///< truth: no entries if not known
+  Vector<double> x;
+};
+std::optional<Answered> first_answer(const Results& results,
+                                     std::string_view experiment,
+                                     std::string_view method);
+
 /// A method as a figure shows it.
 struct MethodLine {
   std::string method, label;

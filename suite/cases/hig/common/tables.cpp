@@ -68,6 +68,21 @@ Table loss_table(const Results& results,
   return table;
 }
 
+std::optional<Answered> first_answer(const Results& results,
+                                     std::string_view experiment,
+                                     std::string_view method) {
+  const auto chains = trained_chains(results, experiment, method);
+  if (chains.empty()) return {};
+  const CaseRecord& c = *chains.front();
+  const Batch<double>& x = c.stages.back().x;
+  if (x.cols() == 0 || c.data.y.cols() == 0 || !x.col(0).allFinite()) return {};
+  const auto first = [](const Batch<double>& all) {
+    return all.size() > 0 ? Vector<double>(all.col(0)) : Vector<double>();
+  };
+  return Answered{
+      first(c.data.given), first(c.data.y), first(c.data.x), first(x)};
+}
+
 Table cost_table(const Results& results,
                  std::string_view experiment,
                  const Published& published,

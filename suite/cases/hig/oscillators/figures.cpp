@@ -1,8 +1,11 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <string>
 #include <vector>
 
+#include "problems/oscillators/oscillators.h"
 #include "suite/cases/hig/common/report.h"
 #include "suite/cases/hig/oscillators/oscillators.h"
 #include "suite/evidence/cell.h"
@@ -76,6 +79,89 @@ Figure grid_figure(const LearningCurves& curves,
   return figure;
 }
 
+/// The pair under the control that a network chose, from the given state back
+/// to it.
+Panel time_evolution(const Answered& answer, std::string title) {
+  const OscillatorsOptions physics;
+  const char* const names[] = {"x1", "x2", "p1", "p2"};
+  Panel panel{.title = std::move(title), .x_label = "time"};
+  Series control{.label = "control u", .method = "u", .dashed = true};
+  std::vector<Series> states;
+  for (const char* name : names)
+    states.push_back({.label = name, .method = name});
+  std::array<double, 4> state{};
+  std::copy_n(answer.given.data(), 4, state.begin());
+  for (Index n = 0; n <= answer.x.size(); ++n) {
+    const double time = physics.dt * static_cast<double>(n);
+    for (std::size_t k = 0; k < 4; ++k) {
+      states[k].x.push_back(time);
+      states[k].y.push_back(state[k]);
+    }
+    if (n == answer.x.size()) break;
+    control.x.push_back(time);
+    control.y.push_back(answer.x(n));
+    state = oscillators_step<double>(state, answer.x(n), physics).y;
+  }
+  panel.series = std::move(states);
+  panel.series.push_back(std::move(control));
+  const double end = physics.dt * static_cast<double>(answer.x.size());
+  for (std::size_t k = 0; k < 4; ++k)
+    panel.series.push_back({.label = std::string(names[k]) + " wanted",
+                            .method = names[k],
+                            .x = {end},
+                            .y = {answer.wanted(static_cast<Index>(k))},
+                            .line = false,
+                            .markers = true});
+  return panel;
+}
+
+Figure evolution_figure(const Results& results,
+                        const std::vector<MethodLine>& lines) {
+  Figure figure{
+      .id = "fig2a",
+      .title = "Time evolution controlled by a network",
+      .source = "Fig. 2a",
+      .note = "First example of the test set; marks: what is wanted."};
+  for (const MethodLine& line : lines)
+    if (const auto answer = first_answer(results, kName, line.method))
+      figure.panels.push_back(time_evolution(*answer, line.label));
+  if (figure.panels.empty()) figure.panels.emplace_back();  // reads "not run"
+  return figure;
+}
+
+/// What the runs were made with, beside the paper's.
+Table hyperparameters(const Results& results, const Published& published) {
+  Table table{.id = "table2",
+              .title = "Hyperparameters of Fig. 2b",
+              .source = "Table 2",
+              .digits = 7,
+              .corner = "method",
+              .columns = {"b", "eta", "tau"}};
+  const auto cell = [&](const StageRecord& s,
+                        const char* option,
+                        const std::string& printed) {
+    Cell out{.text = kNothing};
+    for (const auto& [name, value] : s.options)
+      if (name == option) out = {.ours = std::stod(value)};
+    if (const auto v = published.find(kName, printed)) out.paper = v->value;
+    return out;
+  };
+  for (const MethodLine& line : rules(published)) {
+    const auto stages = trained_stages(results, kName, line.method);
+    TableRow row{.label = line.label};
+    const std::string printed = "table2/" + line.method;
+    if (stages.empty()) {
+      row.cells.assign(3, Cell{.text = kNotRun});
+    } else {
+      row.cells = {cell(*stages.front(), "batch", printed + "/b"),
+                   cell(*stages.front(), "rate", printed + "/eta"),
+                   cell(*stages.front(), "tau", printed + "/tau")};
+    }
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
 Section report(const Results& results, const Published& published) {
   std::vector<MethodLine> all = rules(published);
   for (const char* group : {"adam-b",
@@ -93,6 +179,7 @@ Section report(const Results& results, const Published& published) {
       .paper = "hig",
       .tables = {
           final_losses(results, published),
+          hyperparameters(results, published),
           cost_table(results,
                      kName,
                      published,
@@ -105,6 +192,8 @@ Section report(const Results& results, const Published& published) {
                      "Table 3"),
           loss_table(results, kName, all)}};
   LearningCurves curves(results, section);
+  section.figures.push_back(evolution_figure(
+      results, {{"hig", "HIG"}, {"adam", "Adam"}, {"gn", "Gauss-Newton"}}));
   curves.losses(rules(published), "fig2b", "Learning curves", "Fig. 2b");
   curves.losses({{"hig-b32", "HIG, b = 32", Hue::red},
                  {"kappa-m05", "HIG, b = 64", Hue::green},

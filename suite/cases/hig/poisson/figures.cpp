@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "problems/grid_poisson/grid_poisson.h"
 #include "suite/cases/hig/common/report.h"
 #include "suite/cases/hig/poisson/phases.h"
 #include "suite/evidence/cell.h"
@@ -131,6 +132,37 @@ const std::vector<MethodLine> kReturns = {
     {"long-adam-hig-adam", "Adam, HIG, Adam, later", Hue::red},
     {"chain-smoke", "Adam, HIG, Adam, short"}};
 
+Panel cells(std::string title, const Vector<double>& values) {
+  Panel panel{.title = std::move(title), .field = Field2D{}};
+  for (Index k = 0; k < kPoissonSide; ++k) {
+    panel.field->x.push_back(static_cast<double>(k));
+    panel.field->y.push_back(static_cast<double>(k));
+  }
+  panel.field->values.assign(values.data(), values.data() + values.size());
+  return panel;
+}
+
+/// A source, its potential, and those that networks infer.
+Figure fields(const Results& results, const std::vector<MethodLine>& lines) {
+  Figure figure{.id = "fig3a",
+                .title = "Source and inferred potentials",
+                .source = "Fig. 3a",
+                .columns = 3,
+                .note = "First example of the test set."};
+  for (const MethodLine& line : lines) {
+    const auto answer = first_answer(results, kName, line.method);
+    if (!answer) continue;
+    if (figure.panels.empty()) {
+      figure.panels.push_back(cells("Source", answer->wanted));
+      if (answer->truth.size() > 0)
+        figure.panels.push_back(cells("Potential", answer->truth));
+    }
+    figure.panels.push_back(cells(line.label, answer->x));
+  }
+  if (figure.panels.empty()) figure.panels.emplace_back();  // reads "not run"
+  return figure;
+}
+
 Section report(const Results& results, const Published& published) {
   const auto fresh = learning(published), turned = turns(published);
   std::vector<MethodLine> all = fresh;
@@ -155,6 +187,14 @@ Section report(const Results& results, const Published& published) {
                  spectrum_table(results),
                  crossing_table({results, published, kName})}};
   LearningCurves curves(results, section);
+  section.figures.push_back(
+      fields(results,
+             {{"adam", "Adam"},
+              {"hig-002-b64", "HIG"},
+              {"hig-002-b16", "HIG, b = 16"},
+              {"adam-hig-002-b64", "Adam, then HIG"},
+              {"adam-hig-002-b16", "Adam, then HIG, b = 16"},
+              {"chain-smoke", "Adam, HIG, Adam, short"}}));
   const auto some = [&](std::initializer_list<const char*> ids) {
     std::vector<MethodLine> lines;
     for (const MethodLine& line : fresh)

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "problems/quantum_dipole/quantum_dipole.h"
 #include "suite/cases/hig/common/report.h"
 #include "suite/cases/hig/quantum_dipole/grids.h"
 #include "suite/cases/hig/quantum_dipole/metrics.h"
@@ -105,6 +106,84 @@ std::vector<MethodLine> joined(std::vector<MethodLine> a,
   return a;
 }
 
+/// |psi(t, x)|^2 under the control that a network chose.
+Panel probability(const Answered& answer, std::string title) {
+  constexpr Index kFrame = 8;
+  const Index points = answer.wanted.size() / 2;
+  Panel panel{.title = std::move(title),
+              .x_label = "time",
+              .y_label = "x",
+              .field = Field2D{.label = "|psi|^2"}};
+  Batch<double> frames(points, answer.x.size() / kFrame);
+  Workspace work;
+  for (Index k = 0; k < frames.cols(); ++k) {
+    const Index steps = (k + 1) * kFrame;
+    const QuantumDipole<double> until({.steps = steps});
+    Batch<double> psi(answer.wanted.size(), 1);
+    until.forward(answer.x.head(steps), Batch<double>(0, 1), psi, work);
+    for (Index j = 0; j < points; ++j)
+      frames(j, k) = psi.col(0).segment<2>(2 * j).squaredNorm();
+    panel.field->x.push_back(QuantumDipoleOptions{}.dt *
+                             static_cast<double>(steps));
+  }
+  for (Index j = 0; j < points; ++j) {
+    panel.field->y.push_back(2.0 * static_cast<double>(j + 1) / 15);
+    for (Index k = 0; k < frames.cols(); ++k)
+      panel.field->values.push_back(frames(j, k));
+  }
+  return panel;
+}
+
+/// The probability at the end beside the wanted one.
+Panel at_the_end(const Answered& answer, std::string title) {
+  const QuantumDipole<double> dipole;
+  Workspace work;
+  Batch<double> psi(answer.wanted.size(), 1);
+  dipole.forward(answer.x, Batch<double>(0, 1), psi, work);
+  Series found{.label = "reached", .method = "reached", .markers = true},
+      wanted{.label = "wanted", .method = "wanted", .dashed = true};
+  for (Index j = 0; j < psi.rows() / 2; ++j) {
+    const double x = 2.0 * static_cast<double>(j + 1) / 15;
+    found.x.push_back(x), wanted.x.push_back(x);
+    found.y.push_back(psi.col(0).segment<2>(2 * j).squaredNorm());
+    wanted.y.push_back(answer.wanted.segment<2>(2 * j).squaredNorm());
+  }
+  return {.title = std::move(title) + ", at the end",
+          .x_label = "x",
+          .y_label = "|psi|^2",
+          .series = {std::move(found), std::move(wanted)}};
+}
+
+Panel control(const Answered& answer, std::string title) {
+  Series u{.label = "u", .method = "u"};
+  for (Index n = 0; n < answer.x.size(); ++n) {
+    u.x.push_back(QuantumDipoleOptions{}.dt * static_cast<double>(n));
+    u.y.push_back(answer.x(n));
+  }
+  return {.title = std::move(title) + ", control",
+          .x_label = "time",
+          .y_label = "u",
+          .series = {std::move(u)}};
+}
+
+Figure transitions(const Results& results,
+                   const std::vector<MethodLine>& lines) {
+  Figure figure{.id = "fig4a",
+                .title = "Transition controlled by a network",
+                .source = "Fig. 4a",
+                .columns = 3,
+                .note = "First example of the test set."};
+  for (const MethodLine& line : lines) {
+    const auto answer = first_answer(results, kDense, line.method);
+    if (!answer) continue;
+    figure.panels.push_back(probability(*answer, line.label));
+    figure.panels.push_back(at_the_end(*answer, line.label));
+    figure.panels.push_back(control(*answer, line.label));
+  }
+  if (figure.panels.empty()) figure.panels.emplace_back();  // reads "not run"
+  return figure;
+}
+
 Section dense_report(const Results& results, const Published& published) {
   const auto adam = lines_of(dense_adam(), published),
              hig = lines_of(dense_hig(), published), by_rate = rates(published),
@@ -116,6 +195,8 @@ Section dense_report(const Results& results, const Published& published) {
       .tables = {loss_table(results, kDense, all),
                  cost_table(results, kDense, published, kCosts, "Table 5")}};
   LearningCurves curves(results, section);
+  section.figures.push_back(
+      transitions(results, {{"hig", "HIG"}, {"adam", "Adam"}}));
   curves.losses(
       by_rate, "fig4b", "Learning curves for several rates", "Fig. 4b");
   curves.metric(kMain,

@@ -21,7 +21,8 @@ std::string stage_name(const Knob& knob, std::size_t place, bool gradient) {
 
 std::shared_ptr<const Stage> stage_of(const Knob& knob,
                                       std::size_t place,
-                                      bool gradient) {
+                                      bool gradient,
+                                      const std::shared_ptr<Answers>& answers) {
   return work_precision(
       {.name = stage_name(knob, place, gradient),
        .problem = knob.problems[knob.problems.size() == 1 ? 0 : place],
@@ -31,7 +32,8 @@ std::shared_ptr<const Stage> stage_of(const Knob& knob,
        .gradient = gradient,
        .samples = knob.samples,
        .block = knob.blocks ? static_cast<Index>(knob.axis.values[place]) : 0,
-       .repetitions = knob.repetitions});
+       .repetitions = knob.repetitions,
+       .answers = answers});
 }
 
 /// The median, in which what is not finite is large.
@@ -220,10 +222,12 @@ Knob batch_knob(ProblemRecipe problem,
 
 Method accuracy_method(const std::vector<Knob>& knobs) {
   Method method{kAccuracy, {}};
-  for (const Knob& knob : knobs)
+  for (const Knob& knob : knobs) {
+    const auto answers = no_answers_yet();
     for (const bool gradient : {false, true})
       for (std::size_t k = 0; k < knob.axis.values.size(); ++k)
-        method.chain.push_back(stage_of(knob, k, gradient));
+        method.chain.push_back(stage_of(knob, k, gradient, answers));
+  }
   return method;
 }
 
