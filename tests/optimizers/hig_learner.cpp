@@ -11,15 +11,18 @@
 namespace physinv::test {
 
 Ordered::Ordered(const std::vector<Index>& sizes, nn::Activation activation) {
-  net = nn::mlp({.hidden = {sizes.begin() + 1, sizes.end() - 1},
-                 .activation = activation})
-            .make<double>(sizes.front(), sizes.back());
+  const auto recipe = nn::mlp({.hidden = {sizes.begin() + 1, sizes.end() - 1},
+                               .activation = activation});
+  net = recipe.make<double>(sizes.front(), sizes.back());
+  single = recipe.make<float>(sizes.front(), sizes.back());
   for (std::size_t l = 0; l + 1 < sizes.size(); ++l)
     layers_.push_back({1, sizes[l], sizes[l + 1]});
 }
 
 Ordered::Ordered(const nn::CnnOptions& o, Index outputs) {
-  net = nn::cnn(o).make<double>(o.positions * o.channels, outputs);
+  const auto recipe = nn::cnn(o);
+  net = recipe.make<double>(o.positions * o.channels, outputs);
+  single = recipe.make<float>(o.positions * o.channels, outputs);
   Index in = o.channels, positions = o.positions;
   for (const Index out : o.features) {
     layers_.push_back({o.taps, in, out});
@@ -62,22 +65,20 @@ Vector<double> Ordered::permuted(const Vector<double>& from, bool back) const {
 
 At::At(const Learner& l,
        const Vector<double>& theirs,
-       const Batch<double>& target,
-       const Batch<double>& given)
-    : learner(l), theta(l.network.ours(theirs)) {
+       const Batch<double>& wanted,
+       const Batch<double>& side)
+    : learner(l),
+      theta(l.network.ours(theirs)),
+      in(l.input_is_given ? side : wanted),
+      given(side),
+      target(wanted) {
   const Shape shape = l.problem->shape();
   const Index n = target.cols();
   const Network<double>& net = *l.network.net;
   x.resize(shape.unknowns, n), y.resize(shape.observations, n);
   g.resizeLike(y), loss.resize(n);
   jacobian.resize(y.rows() * x.rows(), n);
-  net.forward(theta,
-              Vector<double>(),
-              l.input_is_given ? given : target,
-              x,
-              tape,
-              work,
-              {.training = true});
+  net.forward(theta, Vector<double>(), in, x, tape, work, {.training = true});
   l.problem->forward(x, given, y, work);
   l.problem->loss(y, target, loss);
   l.problem->loss_gradient(y, target, g);
@@ -92,11 +93,11 @@ At::At(const Learner& l,
 
 At::At(const Learner& l,
        const Vector<double>& theirs,
-       const Batch<double>& target)
+       const Batch<double>& wanted)
     : At(l,
          theirs,
-         target,
-         l.given_is_target ? target : Batch<double>(0, target.cols())) {}
+         wanted,
+         l.given_is_target ? wanted : Batch<double>(0, wanted.cols())) {}
 
 Vector<double> At::gradient() {
   const auto& net = *learner.network.net;
@@ -114,6 +115,29 @@ Vector<double> At::gradient() {
 
 Vector<double> At::update(HalfInverseStep<double>& step) {
   EXPECT_TRUE(step(*learner.network.net, theta, tape, jacobian, g, work));
+  return learner.network.theirs(step.update());
+}
+
+Vector<double> At::update_in_float(
+    const HalfInverseStepOptions& options) const {
+  const Network<float>& net = *learner.network.single;
+  const Problem<float>& solver = *learner.single;
+  Vector<float> weights = theta.cast<float>();
+  Batch<float> x1 = x.cast<float>(), y1 = y.cast<float>(), g1 = y1;
+  Batch<float> j1 = jacobian.cast<float>();
+  const Batch<float> given1 = given.cast<float>(), in1 = in.cast<float>();
+  Tape tape1;
+  Workspace work1;
+  net.forward(
+      weights, Vector<float>(), in1, x1, tape1, work1, {.training = true});
+  solver.forward(x1, given1, y1, work1);
+  solver.loss_gradient(y1, target.cast<float>(), g1);
+  dynamic_cast<const Jacobian<float>&>(solver).jacobian(x1, given1, j1, work1);
+  g1 *= static_cast<float>(learner.factor(x.cols()));
+  if (auto* p = dynamic_cast<const GradientProjection<float>*>(&solver))
+    p->project(y1, g1);
+  HalfInverseStep<float> step(options);
+  EXPECT_TRUE(step(net, weights, tape1, j1, g1, work1));
   return learner.network.theirs(step.update());
 }
 
@@ -163,6 +187,8 @@ void check_update(At& at,
                   const Vector<double>& s,
                   const Json& stored) {
   const Vector<double> before = at.theta;
+  EXPECT_TRUE(TwoNorm(at.learner.in_float, 0)
+                  .summary(at.update_in_float({.power = power}), stored));
   const double cut = power.tau * s(0);
   for (const bool strict : {false, true}) {
     HalfInverseStepOptions options{.power = power};

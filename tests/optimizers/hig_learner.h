@@ -31,6 +31,7 @@ class Ordered {
   Vector<double> start(const Json& in) const;
 
   std::unique_ptr<Network<double>> net;
+  std::unique_ptr<Network<float>> single;
 
  private:
   struct Layer {
@@ -45,10 +46,13 @@ class Ordered {
 /// One experiment of the files.
 struct Learner {
   std::unique_ptr<Problem<double>> problem;
+  std::unique_ptr<Problem<float>> single;
   Ordered network;
   /// g = factor(b) dl/dy
   std::function<double(Index)> factor;
   bool given_is_target = false, input_is_given = false;
+  /// An update in float against the file's, relative in the 2-norm.
+  double in_float = 1e-4;
 };
 
 /// Everything at one set of weights for one batch of observations.
@@ -65,12 +69,14 @@ struct At {
   Vector<double> gradient();
   /// Takes the update off theta.
   Vector<double> update(HalfInverseStep<double>& step);
+  /// The same by network, solver and step in float.
+  Vector<double> update_in_float(const HalfInverseStepOptions& options) const;
   /// Row by row from backward passes, unlike every path of the library.
   Batch<double> stacked_jacobian();
 
   const Learner& learner;
   Vector<double> theta, loss;
-  Batch<double> x, y, g, mean_gradient, jacobian;
+  Batch<double> in, given, target, x, y, g, mean_gradient, jacobian;
   Tape tape;
   Workspace work;
 };

@@ -12,6 +12,7 @@ namespace {
 
 Learner oscillators() {
   return {.problem = std::make_unique<Oscillators<double>>(),
+          .single = std::make_unique<Oscillators<float>>(),
           .network = {{4, 20, 20, 20, 96}, nn::Activation::relu},
           .factor = [](Index b) { return 1.0 / static_cast<double>(b); },
           .given_is_target = true};

@@ -10,6 +10,7 @@ namespace {
 
 Learner poisson() {
   return {.problem = std::make_unique<GridPoisson<double>>(),
+          .single = std::make_unique<GridPoisson<float>>(),
           .network = {{64, 64, 256, 64, 64}, nn::Activation::tanh},
           .factor = [](Index) { return 1.0; }};
 }

@@ -20,6 +20,8 @@ Learner toy(double gamma, double grad_scale = 2) {
   return {
       .problem = std::make_unique<ScaledOutput<double>>(
           ScaledOutputOptions{.gamma = gamma}),
+      .single = std::make_unique<ScaledOutput<float>>(
+          ScaledOutputOptions{.gamma = gamma}),
       .network = {{1, 7, 2}, nn::Activation::tanh},
       .factor = [=](Index b) { return grad_scale / static_cast<double>(b); },
       .input_is_given = true};

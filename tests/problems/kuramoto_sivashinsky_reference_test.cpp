@@ -163,8 +163,7 @@ void check_runs(const Json& entry) {
   }
 }
 
-/// The stage in double; in float its network's gradients are good to 1e-2
-/// (conv_reference_test.cpp), which decides nothing about clipping.
+template <Precision precision>
 void check_jpo(const Json& entry) {
   expect_jpo<KuramotoSivashinsky>(
       entry,
@@ -176,9 +175,10 @@ void check_jpo(const Json& entry) {
        .parameters = 59650,
        .rate = 1e-3,
        .last_matrix = 0.1,
-       .output_scale = 0.25},
+       .output_scale = 0.25,
+       .single = {.loss = 2e-4, .gradient = 1e-2}},
       problems(),
-      Precision::f64);
+      precision);
 }
 
 template <void (*F)(const Json&), void (*D)(const Json&)>
@@ -204,7 +204,8 @@ TEST(KuramotoSivashinskyReference, EveryEntry) {
        in_both<check_gradients<float>, check_gradients<double>>},
       {"special_states", in_both<check_special<float>, check_special<double>>},
       {"bfgs", check_runs},
-      {"jpo_g2s", check_jpo}};
+      {"jpo_g2s",
+       in_both<check_jpo<Precision::f32>, check_jpo<Precision::f64>>}};
   const std::set<std::string> of_networks = {"surrogate_unet"};
   check_entries(kId, checks, of_networks);
 }
