@@ -18,7 +18,8 @@ struct RunOptions {
   std::string revision;  ///< for the record
 };
 
-/// The precision in which most of a case is computed: what an ulp of its data is.
+/// The precision in which most of a case is computed: what an ulp of its data
+/// is.
 Precision working_precision(const Case& c);
 
 /// What is told while a case runs; empty functions are not called.
