@@ -6,7 +6,7 @@
 
 namespace physinv {
 
-double decades(double a, double b) {
+double log_distance(double a, double b) {
   if (std::isfinite(a) != std::isfinite(b))
     return std::copysign(std::numeric_limits<double>::infinity(),
                          std::isfinite(a) ? 1.0 : -1.0);

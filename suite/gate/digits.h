@@ -6,7 +6,7 @@ namespace physinv {
 /// From `a` to `b` in decades, positive if b is larger; where one of them is
 /// not positive, relative to the larger. 0 for two numbers that are not finite,
 /// infinite for one.
-double decades(double a, double b);
+double log_distance(double a, double b);
 
 /// A result moves by up to 10^-digits decades when rounding does. Below zero
 /// for what is noise by orders of magnitude.

@@ -163,7 +163,7 @@ void repeated(StageLine& line, const StageLine& other, Precision precision) {
                       std::pair(line.losses.worst, other.losses.worst)};
   double apart_by = 0;
   for (const auto& [a, b] : pairs)
-    apart_by = std::max(apart_by, std::abs(decades(a, b)));
+    apart_by = std::max(apart_by, std::abs(log_distance(a, b)));
   line.digits = line.trajectory == other.trajectory
                     ? kUnmeasured
                     : stable_digits(apart_by, most);

@@ -46,7 +46,7 @@ void compare_ends(const StageLine& a, const StageLine& b, Findings& found) {
 
 void compare_losses(const StageLine& a, const StageLine& b, Findings& found) {
   const auto compare = [&](const char* which, double before, double now) {
-    const double moved = decades(before, now);
+    const double moved = log_distance(before, now);
     if (!(std::abs(moved) > tolerance(a.digits))) return;
     (moved > 0 ? found.worse : found.better)
         .push_back(fmt::format("{} loss {:.{}e} -> {:.{}e} ({} stable digits)",
