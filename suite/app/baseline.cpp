@@ -9,6 +9,7 @@
 #include "suite/app/gate_flags.h"
 #include "suite/app/load.h"
 #include "suite/app/options.h"
+#include "suite/gate/instructions.h"
 #include "suite/gate/measure.h"
 #include "suite/harness/build_info.h"
 #include "suite/results/file.h"
@@ -56,10 +57,30 @@ std::vector<CaseRecord> records_of(const Results& results,
   return records;
 }
 
+/// physinv-count knows the profiles as they are declared.
+CountTable counts_of(const std::string& regex,
+                     const Chosen& chosen,
+                     const std::vector<Case>& cases) {
+  if (!chosen.sets.empty() || !chosen.seeds.empty())
+    throw UsageError("--count needs a campaign without --set and --seeds");
+  std::vector<std::string> names;
+  for (const Case& c : NameFilter({regex}).apply(cases))
+    names.push_back(c.info.name);
+  if (names.empty())
+    throw ExitError(ExitCode::nothing_matched,
+                    fmt::format("--count={} matches no case there", regex));
+  std::string why;
+  const auto counting = find_counting(counting_program(), &why);
+  if (!counting)
+    throw EnvironmentError("instructions cannot be counted: " + why);
+  return count_instructions(
+      *counting, counting_program(), chosen.profile, names);
+}
+
 }  // namespace
 
 ExitCode baseline_verb(const Arguments& arguments) {
-  std::string given, out;
+  std::string given, out, counted;
   int jobs = 0;
   if (!parse(
           "physinv-bench baseline",
@@ -71,6 +92,11 @@ ExitCode baseline_verb(const Arguments& arguments) {
             "the baseline; default: reports/baselines/<profile>.txt",
             &out,
             "FILE"},
+           {"--count",
+            "count the instructions of the cases whose name matches; profiles "
+            "as they are declared alone",
+            &counted,
+            "REGEX"},
            {"--jobs", "worker processes; default: cores", &jobs}},
           arguments))
     return ExitCode::good;
@@ -86,6 +112,7 @@ ExitCode baseline_verb(const Arguments& arguments) {
       cases,
       {.out = directory, .jobs = jobs_or_cores(jobs), .resume = true},
       Screen::of(stdout));
+  if (!counted.empty()) b.counts = counts_of(counted, b.chosen, cases);
   if (out.empty()) out = "reports/baselines/" + b.chosen.profile + ".txt";
   const std::string text = to_text(b);
   if (const fs::path folder = fs::path(out).parent_path(); !folder.empty())

@@ -7,6 +7,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
@@ -70,8 +71,10 @@ const Case& named(const std::vector<Case>& cases, std::string_view name) {
 void run(std::vector<std::string_view> arguments) {
   const bool perf = !arguments.empty() && arguments.front() == "--perf";
   if (perf) arguments.erase(arguments.begin());
-  if (arguments.empty())
+  if (arguments.empty() && !perf)
     throw std::runtime_error("physinv-count [--perf] PROFILE CASE...");
+  if (perf) PerfCounter();  // says whether there is one
+  if (arguments.empty()) return;
   const auto cases = registry().expand(arguments.front());
   for (std::size_t i = 1; i < arguments.size(); ++i) {
     const Case& c = named(cases, arguments[i]);
@@ -81,7 +84,7 @@ void run(std::vector<std::string_view> arguments) {
     }
     const PerfCounter counter;
     physinv_counted(c);
-    fmt::print("{} {}\n", counter.value(), c.info.name);
+    fmt::print("instructions {} {}\n", counter.value(), c.info.name);
   }
 }
 

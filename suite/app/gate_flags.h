@@ -1,6 +1,7 @@
 /// What `baseline` and `gate` share.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -15,5 +16,8 @@ std::vector<Case> cases_of(const Chosen& chosen,
 
 /// 0: as many as there are cores.
 int jobs_or_cores(int jobs);
+
+/// physinv-count: what PHYSINV_COUNT names, else the one beside this program.
+std::filesystem::path counting_program();
 
 }  // namespace physinv

@@ -48,6 +48,7 @@ environment
   NO_COLOR   no colours
   COLUMNS    width of the live table
   CI, TERM=dumb, or no terminal: plain lines, one per stage
+  PHYSINV_COUNT  the program whose instructions gate counts
   PHYSINV_PUBLISHED_DIR  the papers' numbers (reports/published)
 )";
 
