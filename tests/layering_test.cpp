@@ -93,6 +93,8 @@ std::string library_of(const std::string& header) {
       {"CLI/", "cli11"},
       {"zlib.h", "zlib"},
       {"benchmark/", "benchmark"},
+      {"gnu/", ""},  // the system's, as the pattern below
+      {"linux/", ""},
   };
   for (const auto& [prefix, library] : kPrefixes) {
     if (header.starts_with(prefix)) return library;

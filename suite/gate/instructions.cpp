@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <atomic>
 #include <charconv>
-#include <cstdlib>
+#include <future>
 
 #include "suite/harness/child.h"
+#include "suite/harness/context.h"
 
 namespace physinv {
 namespace {
@@ -47,6 +49,24 @@ std::string last_line(std::string text) {
   return at == std::string::npos ? text : text.substr(at + 1);
 }
 
+std::uint64_t count(Counting counting,
+                    const fs::path& program,
+                    const std::string& profile,
+                    const std::string& name) {
+  const Ended ended = run_child(command(counting, program, profile, name));
+  const auto counted = counting == Counting::perf
+                           ? number_after(ended.output, "instructions")
+                           : number_after(ended.errors, "Collected");
+  if (ended.status != 0 || counted.value_or(0) == 0)
+    throw EnvironmentError(fmt::format(
+        "the instructions of {} cannot be counted: {} ended with {}: {}",
+        name,
+        counter_name(counting),
+        ended.status,
+        last_line(ended.errors)));
+  return *counted;
+}
+
 }  // namespace
 
 std::string counter_name(Counting counting) {
@@ -83,22 +103,18 @@ CountTable count_instructions(Counting counting,
                               const fs::path& program,
                               const std::string& profile,
                               const std::vector<std::string>& cases) {
-  CountTable table{.counter = counter_name(counting), .lines = {}};
-  for (const auto& name : cases) {
-    const Ended ended = run_child(command(counting, program, profile, name));
-    const auto counted = counting == Counting::perf
-                             ? number_after(ended.output, "instructions")
-                             : number_after(ended.errors, "Collected");
-    if (ended.status != 0 || counted.value_or(0) == 0)
-      throw EnvironmentError(
-          fmt::format("the instructions of {} cannot be counted: {} ended with "
-                      "{}: {}",
-                      name,
-                      counter_name(counting),
-                      ended.status,
-                      last_line(ended.errors)));
-    table.lines.push_back({name, *counted});
-  }
+  CountTable table{.counter = counter_name(counting),
+                   .lines = std::vector<CountLine>(cases.size())};
+  // They do not depend on who else runs.
+  std::atomic<std::size_t> next = 0;
+  const auto work = [&] {
+    for (std::size_t i = next++; i < cases.size(); i = next++)
+      table.lines[i] = {cases[i], count(counting, program, profile, cases[i])};
+  };
+  std::vector<std::future<void>> workers;
+  for (int w = 0; w < available_cores(); ++w)
+    workers.push_back(std::async(std::launch::async, work));
+  for (auto& worker : workers) worker.get();
   return table;
 }
 

@@ -11,7 +11,7 @@
 
 #include "suite/core/hash.h"
 #include "suite/gate/digits.h"
-#include "suite/results/curves.h"
+#include "suite/results/checksum.h"
 
 namespace physinv {
 namespace {
@@ -37,6 +37,16 @@ Losses losses_of(const Vector<double>& all) {
   if (finite.empty()) return {kNaN, kNaN, kNaN, nonfinite};
   std::sort(finite.begin(), finite.end());
   return {finite.front(), finite[finite.size() / 2], finite.back(), nonfinite};
+}
+
+/// Of all that another run must reproduce but the work, which is counted apart.
+std::string hash_of(const StageRecord& r) {
+  ArrayHash hash;
+  hash.add(r.x).add(r.loss).add(r.curve.loss).add(r.curve.x);
+  for (const Status s : r.status) hash.add(static_cast<std::uint64_t>(s));
+  for (const auto& [name, array] : r.arrays)
+    hash.add(std::string_view(name)).add(array);
+  return hex64(hash.value());
 }
 
 std::uint64_t apart(std::uint64_t a, std::uint64_t b) {
@@ -140,7 +150,7 @@ std::string join(const std::array<Index, kStatuses>& counts,
 StageLine line_of(const StageRecord& r) {
   StageLine line{.name = r.case_name + "/" + r.stage,
                  .trajectory = r.trajectory,
-                 .results = hex64(results_hash(r)),
+                 .results = hash_of(r),
                  .stop = r.stop,
                  .message = r.message,
                  .losses = losses_of(r.loss)};
@@ -164,13 +174,16 @@ void repeated(StageLine& line, const StageLine& other, Precision precision) {
   double apart_by = 0;
   for (const auto& [a, b] : pairs)
     apart_by = std::max(apart_by, std::abs(log_distance(a, b)));
-  line.digits = line.trajectory == other.trajectory
-                    ? kUnmeasured
-                    : stable_digits(apart_by, most);
+  line.digits =
+      same_bits(line, other) ? kUnmeasured : stable_digits(apart_by, most);
   for (std::size_t i = 0; i < kWork.size(); ++i)
     line.play[i] = apart(line.work[i], other.work[i]);
   line.fastest = std::min(line.fastest, other.fastest);
   line.slowest = std::max(line.slowest, other.slowest);
+}
+
+bool same_bits(const StageLine& a, const StageLine& b) {
+  return a.trajectory == b.trajectory && a.results == b.results;
 }
 
 std::string case_of(std::string_view stage_name) {

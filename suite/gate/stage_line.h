@@ -33,7 +33,7 @@ struct Losses {
 struct StageLine {
   std::string name;        ///< case/stage
   std::string trajectory;  ///< hash of all iterates
-  std::string results;     ///< hash of all that another run must reproduce
+  std::string results;     ///< hash of estimates, losses, curves, findings
   Stop stop = Stop::iterations;
   std::string message;  ///< why it failed; not part of the line
   std::array<Index, kStatuses> statuses{};
@@ -51,6 +51,8 @@ StageLine line_of(const StageRecord& record);
 /// Enters what the same stage did with data one ulp off. Numbers in that
 /// `precision` were computed.
 void repeated(StageLine& line, const StageLine& disturbed, Precision precision);
+
+bool same_bits(const StageLine& a, const StageLine& b);
 
 std::string case_of(std::string_view stage_name);
 

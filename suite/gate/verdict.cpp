@@ -67,6 +67,7 @@ void compare_losses(const StageLine& a, const StageLine& b, Findings& found) {
 void compare_work(const StageLine& a,
                   const StageLine& b,
                   Rules rules,
+                  bool same,
                   Findings& found) {
   for (std::size_t i = 0; i < kWork.size(); ++i) {
     if (a.work[i] == b.work[i]) continue;
@@ -74,12 +75,13 @@ void compare_work(const StageLine& a,
         fmt::format("{} {} -> {}", kWork[i], a.work[i], b.work[i]);
     const std::uint64_t slack = rules.bits ? 0 : 2 * a.play[i];
     const bool grown = b.work[i] > a.work[i] + slack;
-    (grown && !rules.allow_work ? found.worse : found.neutral).push_back(text);
+    // Less work does not make up for bits that were promised.
+    const bool less = b.work[i] + slack < a.work[i] && (same || !rules.bits);
+    (grown && !rules.allow_work ? found.worse
+     : less                     ? found.better
+                                : found.neutral)
+        .push_back(text);
   }
-}
-
-bool same_bits(const StageLine& a, const StageLine& b) {
-  return a.trajectory == b.trajectory && a.results == b.results;
 }
 
 }  // namespace
@@ -95,7 +97,7 @@ Judgement judge(const StageLine& before, const StageLine& now, Rules rules) {
   const bool same = same_bits(before, now);
   compare_ends(before, now, found);
   if (!same) compare_losses(before, now, found);
-  compare_work(before, now, rules, found);
+  compare_work(before, now, rules, same, found);
 
   Judgement j{.stage = now.name, .before = before, .now = now};
   if (!found.worse.empty()) {

@@ -12,7 +12,7 @@ namespace physinv {
 enum class Change {
   same,     ///< the same bits, no more work
   within,   ///< other bits, none promised; losses within the stored digits
-  better,   ///< smaller losses or a better end
+  better,   ///< smaller losses, a better end or less work
   worse,    ///< a worse end, larger losses, more work, or bits that were
             ///< promised and are others
   missing,  ///< the baseline has it, the campaign has not
