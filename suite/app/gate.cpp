@@ -109,8 +109,7 @@ class Gate {
         flags_.results.empty()
             ? measure(cases_, flags_.measuring(), Screen::of(stdout))
             : matching(lines_of(load(flags_.results).results.cases()), filter_);
-    const Rules rules{.bits = before_.build == build_text(),
-                      .allow_work = flags_.allow_work};
+    const Rules rules{.bits = same_build(), .allow_work = flags_.allow_work};
     if (!rules.bits)
       sheet.notes.push_back(fmt::format(
           "{} is from another build ({}): judged within its stable digits",
@@ -126,8 +125,8 @@ class Gate {
     const auto counting = before_.counts.counter == counter_name(Counting::perf)
                               ? Counting::perf
                               : Counting::callgrind;
-    std::string why;
-    if (!can_count(counting, counting_program(), &why)) {
+    std::string why = "the baseline is from another build";
+    if (!same_build() || !can_count(counting, counting_program(), &why)) {
       sheet.findings.push_back(
           {.kind = "instructions",
            .name = fmt::format("{} cases", lines.size()),
@@ -172,6 +171,8 @@ class Gate {
   const std::vector<Case>& cases() const { return cases_; }
 
  private:
+  bool same_build() const { return before_.build == build_text(); }
+
   /// Nothing passes because nothing was judged.
   void require_something() const {
     if (!lines_.empty()) return;

@@ -48,9 +48,9 @@ def crc32c(data):
     return crc ^ 0xffffffff
 
 
-def rewrite(d, name, change):
+def rewrite(d, name, change, base="base.txt"):
     """Another baseline with a right checksum."""
-    body = open(os.path.join(d, "base.txt")).read().rsplit("checksum", 1)[0]
+    body = open(os.path.join(d, base)).read().rsplit("checksum", 1)[0]
     changed = change(body)
     assert changed != body
     with open(os.path.join(d, name), "w") as f:
@@ -165,6 +165,9 @@ def instructions(d):
     expect(0, kernel, d, "instructions: 1 equal")
     p = expect(6, kernel, d, "slower", plant="a kernel slower by 10 %")
     print("\n".join(w for w in p.stdout.splitlines() if "slower" in w))
+    rewrite(d, "other_kernel.txt", lambda t: t.replace("build ", "build X", 1),
+            "kernel.txt")
+    expect(0, ["gate", "--baseline=other_kernel.txt"], d, "another build")
     expect(0, [*kernel, "--no-count"], d, plant="a kernel slower by 10 %")
     for strict, code in ((["--strict"], 8), ([], 0)):
         expect(code, [*kernel, *strict], d, "not counted",
