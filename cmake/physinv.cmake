@@ -57,6 +57,12 @@ foreach(flags physinv_flags physinv_flags_v3)
   target_compile_features(${flags} INTERFACE cxx_std_20)
   target_compile_definitions(${flags} INTERFACE EIGEN_DONT_PARALLELIZE)
 endforeach()
+# Words and records compute nothing, so they take no wide registers: a program
+# whose numbers are from the build for AVX2 then runs under valgrind, which
+# knows no AVX-512. Linked last, as the last -march counts.
+add_library(physinv_narrow INTERFACE)
+target_compile_options(physinv_narrow INTERFACE
+  -march=x86-64-v3 -UPHYSINV_AVX512)
 # Designated initializers name what they set; the rest is default on purpose.
 set(PHYSINV_WARNINGS -Wall -Wextra -Wshadow -Wno-missing-field-initializers)
 
@@ -87,6 +93,7 @@ function(physinv_precompile_headers name)
 endfunction()
 if(PHYSINV_PRECOMPILE)
   physinv_precompile(physinv_precompiled physinv_flags)
+  physinv_precompile(physinv_precompiled_narrow "physinv_flags;physinv_narrow")
   if(physinv_two_widths)
     physinv_precompile(physinv_precompiled_v3 physinv_flags_v3)
     set_target_properties(physinv_precompiled_v3 PROPERTIES
@@ -119,7 +126,7 @@ endfunction()
 # computes what is recorded: physinv_<name>_v3 is the same for AVX2, where that
 # is another build. PRECOMPILE: headers of the project that nearly every source
 # of the layer includes. RECORDS handles numbers and makes none, WORDS does not
-# touch Eigen either: both are joined, words hardly optimized (-O1 comes after
+# touch Eigen either: both are narrow and joined, words hardly optimized (-O1 comes after
 # the -O3 of the build type). Elsewhere -O1 would be dangerous: the linker takes
 # any one copy of an inline function for all, and without contraction its bits
 # differ.
@@ -137,13 +144,20 @@ function(physinv_layer name)
     $<INSTALL_INTERFACE:include/physinv>)
   target_link_libraries(physinv_${name} PUBLIC physinv_flags ${ARG_DEPENDS})
   target_compile_options(physinv_${name} PRIVATE ${PHYSINV_WARNINGS})
+  set(narrow)
+  if(ARG_RECORDS OR ARG_WORDS)
+    set(narrow _narrow)
+    target_link_libraries(physinv_${name} PRIVATE
+      $<BUILD_INTERFACE:physinv_narrow>)
+  endif()
   if(PHYSINV_PRECOMPILE)
     target_link_libraries(physinv_${name} PRIVATE Eigen3::Eigen fmt::fmt)
     if(ARG_PRECOMPILE)
       list(TRANSFORM ARG_PRECOMPILE PREPEND ${PROJECT_SOURCE_DIR}/)
       physinv_precompile_headers(physinv_${name} ${ARG_PRECOMPILE})
     else()
-      target_precompile_headers(physinv_${name} REUSE_FROM physinv_precompiled)
+      target_precompile_headers(physinv_${name}
+        REUSE_FROM physinv_precompiled${narrow})
     endif()
   endif()
   if(ARG_GROUPED AND PHYSINV_PRECOMPILE)

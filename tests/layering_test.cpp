@@ -30,6 +30,8 @@ const std::map<std::string, Layer> kLayers{
     {"suite/evidence", {{"suite/core", "suite/results"}, {}}},
     {"suite/harness",
      {{"suite/core", "suite/nn", "suite/results", "suite/evidence"}, {"json"}}},
+    {"suite/gate",
+     {{"suite/core", "suite/results", "suite/harness"}, {"json"}}},
     {"suite/cases",
      {{"suite/core",
        "suite/nn",
@@ -51,6 +53,7 @@ const std::map<std::string, Layer> kLayers{
        "suite/results",
        "suite/evidence",
        "suite/harness",
+       "suite/gate",
        "suite/cases",
        "reports"},
       {"cli11", "benchmark", "json"}}},
@@ -90,6 +93,8 @@ std::string library_of(const std::string& header) {
       {"CLI/", "cli11"},
       {"zlib.h", "zlib"},
       {"benchmark/", "benchmark"},
+      {"gnu/", ""},  // the system's, as the pattern below
+      {"linux/", ""},
   };
   for (const auto& [prefix, library] : kPrefixes) {
     if (header.starts_with(prefix)) return library;

@@ -28,6 +28,8 @@ physinv-bench report RESULTS     tables, plots and claims of a campaign
 physinv-bench results           a page of all published campaigns
 physinv-bench verify RESULTS     recompute every final loss
 physinv-bench merge OUT SHARD..  join the results of shards
+physinv-bench baseline RESULTS   what a campaign came to, as a text for reviews
+physinv-bench gate [flags]       runs a baseline's cases: worse? slower?
 physinv-bench kernels [flags]    kernel benchmarks (flags of Google Benchmark)
 physinv-bench VERB --help        flags of a verb
 physinv-bench --version          version and build
@@ -46,6 +48,7 @@ environment
   NO_COLOR   no colours
   COLUMNS    width of the live table
   CI, TERM=dumb, or no terminal: plain lines, one per stage
+  PHYSINV_COUNT  the program whose instructions gate counts
   PHYSINV_PUBLISHED_DIR  the papers' numbers (reports/published)
 )";
 
@@ -58,7 +61,9 @@ const std::map<std::string, Verb>& verbs() {
                                                   {"results", results_verb},
                                                   {"verify", verify_verb},
                                                   {"merge", merge_verb},
-                                                  {"kernels", kernels_verb}};
+                                                  {"kernels", kernels_verb},
+                                                  {"baseline", baseline_verb},
+                                                  {"gate", gate_verb}};
   return all;
 }
 

@@ -19,5 +19,7 @@ ExitCode results_verb(const Arguments& arguments);
 ExitCode verify_verb(const Arguments& arguments);
 ExitCode merge_verb(const Arguments& arguments);
 ExitCode kernels_verb(const Arguments& arguments);
+ExitCode baseline_verb(const Arguments& arguments);
+ExitCode gate_verb(const Arguments& arguments);
 
 }  // namespace physinv

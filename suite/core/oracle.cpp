@@ -4,6 +4,8 @@
 #include <numeric>
 #include <utility>
 
+#include "suite/core/disturbance.h"
+
 namespace physinv {
 namespace {
 
@@ -85,7 +87,7 @@ Oracle::Oracle(const ProblemRecipe& recipe,
   const auto problem = recipe_.make<double>();
   shape_ = problem->shape();
   operations_ = problem->operations();
-  data_ = problem->sample(0, count, rng_.child("data/test"));
+  data_ = disturbed(problem->sample(0, count, rng_.child("data/test")));
   std::iota(all_.begin(), all_.end(), Index{0});
 }
 
@@ -197,15 +199,15 @@ const Samples<double>& Oracle::labelled() {
   SUITE_CHECK(contains(allowed_, Needs::labels),
               "the method asked for labels it did not declare");
   if (labelled_.count() == 0) {
-    labelled_ = recipe_.make<double>()->sample_labelled(
-        0, count(), rng_.child("data/train"));
+    labelled_ = disturbed(recipe_.make<double>()->sample_labelled(
+        0, count(), rng_.child("data/train")));
   }
   return labelled_;
 }
 
 Samples<double> Oracle::training(Index first, Index count) const {
-  Samples<double> drawn =
-      recipe_.make<double>()->sample(first, count, rng_.child("data/train"));
+  Samples<double> drawn = disturbed(
+      recipe_.make<double>()->sample(first, count, rng_.child("data/train")));
   drawn.x.resize(0, count);
   return drawn;
 }

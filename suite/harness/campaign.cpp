@@ -10,6 +10,7 @@
 #include <set>
 
 #include "suite/core/clock.h"
+#include "suite/core/disturbance.h"
 #include "suite/harness/context.h"
 #include "suite/harness/keys.h"
 #include "suite/harness/workers.h"
@@ -152,6 +153,7 @@ class Campaign {
                     {.crowded = static_cast<int>(count) * options_.threads >
                                 available_cores(),
                      .trace = options_.trace,
+                     .disturb = options_.disturb,
                      .revision = revision_});
     while (stop_signal == 0) {
       hand_out(workers);
@@ -287,10 +289,13 @@ class Campaign {
 
 }  // namespace
 
-Prepared prepare(std::vector<Case> cases) {
+Prepared prepare(std::vector<Case> cases, bool disturb) {
   Prepared p;
   p.cases = std::move(cases);
-  std::map<std::tuple<std::string, Index, std::uint64_t>, CaseData> drawn;
+  std::map<
+      std::tuple<std::string, Index, std::uint64_t, std::optional<Precision>>,
+      CaseData>
+      drawn;
   std::map<std::pair<const Method*, std::size_t>, std::string> known;
   const auto numerics = [&](const Case& c, std::size_t position) {
     std::string& text = known[{c.method, position}];
@@ -301,7 +306,10 @@ Prepared prepare(std::vector<Case> cases) {
     std::string error;
     CaseData data;
     const auto& info = c.info;
-    const auto id = std::tuple(info.experiment, info.n, info.seed);
+    const auto ulp =
+        disturb ? std::optional(working_precision(c)) : std::nullopt;
+    const auto id = std::tuple(info.experiment, info.n, info.seed, ulp);
+    disturb_data(ulp);
     try {
       auto at = drawn.find(id);
       if (at == drawn.end()) at = drawn.emplace(id, draw_data(c)).first;
@@ -313,6 +321,7 @@ Prepared prepare(std::vector<Case> cases) {
     p.data.push_back(std::move(data));
     p.errors.push_back(std::move(error));
   }
+  disturb_data({});
   return p;
 }
 

@@ -24,17 +24,20 @@ struct CampaignOptions {
   /// holds of these cases, and of no other, is deleted first.
   bool resume = true;
   bool trace = false;  ///< record hashes of all iterates
+  /// Run with data one ulp off, as `prepare` drew them.
+  bool disturb = false;
   /// The unsharded campaign, in order; empty if it is this one.
   std::vector<PlannedCase> campaign;
 };
 
-/// Cases with their data drawn and content keys filled in.
+/// Cases with their data drawn, one ulp off with `disturb`, and content keys
+/// filled in.
 struct Prepared {
   std::vector<Case> cases;
   std::vector<CaseData> data;
   std::vector<std::string> errors;  ///< why data could not be drawn, or empty
 };
-Prepared prepare(std::vector<Case> cases);
+Prepared prepare(std::vector<Case> cases, bool disturb = false);
 
 /// (day, revision) that reused stages come from, and how many.
 using Origins = std::map<std::pair<std::string, std::string>, int>;

@@ -14,14 +14,17 @@ enum class ExitCode : int {
   usage = 2,
   nothing_matched = 3,
   case_failed = 4,
+  accuracy = 5,
+  slower = 6,
   claim = 7,
+  inconclusive = 8,
   environment = 9,
   incomplete = 10,
   interrupted = 130,
 };
 
 /// The same in the words of --help. Where several hold, 130 goes before 4
-/// before 7 before 10.
+/// before 5 and so on to 10.
 inline constexpr std::string_view kExitCodeHelp =
     R"(    0  good, and complete
     1  internal error
@@ -29,14 +32,16 @@ inline constexpr std::string_view kExitCodeHelp =
     3  nothing matched; the nearest names are shown
     4  a case failed (exception, out of memory), or verify found a mismatch;
        divergence is a result
+    5  gate: a stage is worse than the baseline says, or missing
+    6  gate: slower, by instructions or by the clock
     7  a gating claim is not reproduced and not listed as expected to fail
        (report --check)
+    8  gate --strict: the clock came to no verdict within its budget
     9  environment: disk full, unwritable, corrupt store
    10  incomplete: cases not run (--time-budget, shards missing), stages that
        failed or lost their arrays, no plan.json, or nothing to judge (report
        --check); what is there was run, reported, verified or merged
   130  interrupted; what had finished is kept
-  5, 6 and 8 are reserved for accuracy, timing, and inconclusive
 )";
 
 class ExitError : public std::runtime_error {

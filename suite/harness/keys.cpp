@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "suite/core/disturbance.h"
 #include "suite/core/hash.h"
 #include "suite/harness/sources.h"
 
@@ -26,8 +27,9 @@ void append(std::string& text, std::string_view name, const NetworkRole& role) {
 
 CaseData draw_data(const Case& c) {
   const Rng root = Rng::root(c.info.experiment, c.info.seed);
-  Samples<double> samples = c.experiment->problem.make<double>()->sample(
-      0, c.info.n, root.child("data/test"));
+  Samples<double> samples =
+      disturbed(c.experiment->problem.make<double>()->sample(
+          0, c.info.n, root.child("data/test")));
   return {.hash = hex64(content_hash(samples)),
           .x = std::move(samples.x),
           .y = std::move(samples.y),

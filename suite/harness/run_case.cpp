@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "suite/core/clock.h"
+#include "suite/core/disturbance.h"
 #include "suite/core/probe.h"
 #include "suite/harness/run_stage.h"
 
@@ -75,6 +76,15 @@ double median_finite(VectorIn<double> values) {
   return *middle;
 }
 
+Precision working_precision(const Case& c) {
+  const auto& chain = c.method->chain;
+  const bool chosen =
+      std::any_of(chain.begin(), chain.end(), [](const auto& stage) {
+        return stage->has_precision();
+      });
+  return chosen ? c.info.precision : Precision::f64;
+}
+
 StageRecord lost_stage(const Case& c,
                        Index position,
                        Stop stop,
@@ -92,6 +102,8 @@ void run_case(const Case& c,
               const RunOptions& options,
               Threads* threads,
               const CaseHooks& hooks) {
+  disturb_data(options.disturb ? std::optional(working_precision(c))
+                               : std::nullopt);
   const auto stages = static_cast<Index>(c.method->chain.size());
   auto position = static_cast<Index>(earlier.size());
   std::optional<Outcome> previous;

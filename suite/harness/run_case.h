@@ -14,8 +14,13 @@ namespace physinv {
 struct RunOptions {
   bool crowded = false;  ///< more workers x threads than cores
   bool trace = false;    ///< hash every iterate
+  bool disturb = false;  ///< data one ulp off, see `disturb_data`
   std::string revision;  ///< for the record
 };
+
+/// The precision in which most of a case is computed: what an ulp of its data
+/// is.
+Precision working_precision(const Case& c);
 
 /// What is told while a case runs; empty functions are not called.
 struct CaseHooks {

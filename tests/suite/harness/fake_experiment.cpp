@@ -7,6 +7,7 @@
 #include <limits>
 #include <new>
 #include <stdexcept>
+#include <string_view>
 #include <thread>
 
 #include "suite/core/oracle.h"
@@ -14,6 +15,20 @@
 #include "suite/core/threads.h"
 
 namespace physinv::fake {
+namespace {
+
+/// Is this defect asked for?
+bool planted(std::string_view defect) {
+  const char* text = std::getenv("PHYSINV_FAKE_PLANT");
+  return text != nullptr && defect == text;
+}
+
+/// One ulp more, if that is the defect.
+double or_next(double value, std::string_view defect) {
+  return planted(defect) ? std::nextafter(value, 2 * value) : value;
+}
+
+}  // namespace
 
 struct CubicOptions {
   double slope = 1.0;
@@ -42,7 +57,8 @@ class Cubic final : public Problem<T>, public Vjp<T> {
       s.given(0, i) = stream.uniform(-1, 1);
       for (Index j = 0; j < 2; ++j) {
         const double x = s.x(j, i) = stream.uniform(-1, 1);
-        s.y(j, i) = x * x * x + options_.slope * x + s.given(0, i);
+        s.y(j, i) = or_next(x * x * x + options_.slope * x + s.given(0, i),
+                            "ulp in the data");
       }
     }
     return s;
@@ -70,12 +86,21 @@ class Cubic final : public Problem<T>, public Vjp<T> {
                 BatchIn<T> y_bar,
                 BatchOut<T> x_bar,
                 Workspace&) const override {
-    x_bar = tape.view<T>(0).cwiseProduct(y_bar);
+    scale(tape, y_bar, x_bar);
+    if (slow_ && ++calls_ % 10 == 0) scale(tape, y_bar, x_bar);
   }
   double operations() const override { return 8; }
 
  private:
+  [[gnu::noinline]] void scale(const Tape& tape,
+                               BatchIn<T> y_bar,
+                               BatchOut<T> x_bar) const {
+    x_bar = tape.view<T>(0).cwiseProduct(y_bar);
+  }
+
   Options options_;
+  bool slow_ = planted("a kernel slower by 10 %");
+  mutable int calls_ = 0;
 };
 
 namespace {
@@ -113,7 +138,8 @@ class Base : public Stage {
 class Descend final : public Base {
  public:
   Descend(std::string name, double rate)
-      : Base(std::move(name), Needs::vjp), rate_(rate) {}
+      : Base(std::move(name), Needs::vjp),
+        rate_(or_next(rate, "ulp in a constant")) {}
   Options options() const override { return {{"rate", std::to_string(rate_)}}; }
   Outcome run(StageRun& run) const override {
     Batch<double> x =
@@ -121,6 +147,8 @@ class Descend final : public Base {
     Batch<double> gradient(x.rows(), x.cols());
     Vector<double> loss(x.cols());
     run.probe.begin_warmup();
+    if (planted("more work"))
+      run.oracle.evaluate<double>(run.oracle.all(), x, loss, gradient);
     while (run.probe.proceed([&](BatchOut<double> out) { out = x; })) {
       run.oracle.evaluate<double>(run.oracle.all(), x, loss, gradient);
       for_blocks(run.threads, x.cols(), [&](Index i, int) {
@@ -129,6 +157,8 @@ class Descend final : public Base {
       run.probe.trace(x.data(), static_cast<std::size_t>(x.size()) * 8);
       nap(pace());
     }
+    if (planted("NaN in a loss"))
+      x(0, 0) = std::numeric_limits<double>::quiet_NaN();
     return {.x = x,
             .status = {},
             .iterations = {},
@@ -251,13 +281,15 @@ Experiment experiment() {
                chain("broken",
                      {std::make_shared<Ends>("throws"),
                       std::make_shared<Descend>("refine", 0.1)})};
-  const std::vector<std::string> good = {"descend", "walk", "stroll"};
+  std::vector<std::string> good = {"descend", "walk", "stroll"};
+  if (planted("a case removed")) good.pop_back();
   e.profiles = {
       {"smoke", {{good, {4}, {0}, 10}, {{"diverge"}, {4}, {0}, 10}}},
       {"quick", {{good, {4, 9}, {0, 1, 2}, 40}}},
       {"bad",
        {{{"throws", "descend", "exhaust", "die", "broken"}, {4}, {0}, 10}}},
-      {"slow", {{{"descend", "sleep"}, {4}, {0, 1}, 10}}}};
+      {"slow", {{{"descend", "sleep"}, {4}, {0, 1}, 10}}},
+      {"kernel", {{{"descend"}, {512}, {0}, 200}}}};
   e.report = report;
   return e;
 }

@@ -9,7 +9,12 @@ namespace physinv::fake {
 /// Methods: descend (one stage); walk and stroll (fit, refine; the same fit,
 /// threads and random numbers in it); diverge; throws; exhaust (bad_alloc);
 /// die (a signal); sleep (a minute). Profiles: smoke, quick (all that end
-/// well), bad (throws, exhaust, die, and descend between them), slow.
+/// well), bad (throws, exhaust, die, and descend between them), slow, kernel
+/// (most of its time is the physics').
+///
+/// PHYSINV_FAKE_PLANT names one defect to have: "ulp in the data", "ulp in a
+/// constant", "more work", "NaN in a loss", "a case removed", "a kernel slower
+/// by 10 %".
 Experiment experiment();
 
 }  // namespace physinv::fake

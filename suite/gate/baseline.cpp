@@ -1,0 +1,188 @@
+#include "suite/gate/baseline.h"
+
+#include <fmt/format.h>
+#include <gnu/libc-version.h>
+
+#include <charconv>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <stdexcept>
+
+#include "suite/harness/build_info.h"
+#include "suite/harness/context.h"
+#include "suite/results/checksum.h"
+#include "suite/results/file.h"
+
+namespace physinv {
+namespace {
+
+constexpr std::string_view kTitle = "physinv-bench baseline ";
+constexpr std::string_view kSeal = "checksum ";
+constexpr int kVersion = 1;
+constexpr std::string_view kMake = "'baseline' or 'gate --update' writes one";
+
+/// A line and its parts, taken from the front.
+class Lines {
+ public:
+  explicit Lines(std::string_view text) : rest_(text) {}
+  bool empty() const { return rest_.empty(); }
+  std::string_view next() {
+    const auto end = rest_.find('\n');
+    if (end == std::string_view::npos)
+      throw std::runtime_error("it ends too early");
+    const std::string_view line = rest_.substr(0, end);
+    rest_.remove_prefix(end + 1);
+    return line;
+  }
+
+ private:
+  std::string_view rest_;
+};
+
+std::pair<std::string, std::string> two(std::string_view line) {
+  const auto at = line.find(' ');
+  if (at == std::string_view::npos) return {std::string(line), ""};
+  return {std::string(line.substr(0, at)), std::string(line.substr(at + 1))};
+}
+
+std::uint64_t count(std::string_view text) {
+  std::uint64_t value = 0;
+  const char* end = text.data() + text.size();
+  const auto [at, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || at != end)
+    throw std::runtime_error(fmt::format("'{}' is no count", text));
+  return value;
+}
+
+void read_stages(Baseline& b, Lines& lines, const std::string& how_many) {
+  for (auto left = count(how_many); left > 0; --left)
+    b.stages.push_back(stage_line(lines.next()));
+}
+
+void read_counts(Baseline& b, Lines& lines, const std::string& head) {
+  const auto [how_many, counter] = two(head);
+  b.counts.counter = counter;
+  for (auto left = count(how_many); left > 0; --left) {
+    const auto [name, value] = two(lines.next());
+    b.counts.lines.push_back({name, count(value)});
+  }
+}
+
+Baseline parse_body(Lines lines) {
+  Baseline b;
+  while (!lines.empty()) {
+    const auto [key, value] = two(lines.next());
+    if (key == "profile") b.chosen.profile = value;
+    if (key == "seeds") b.chosen.seeds = value;
+    if (key == "filter") b.chosen.filters.push_back(value);
+    if (key == "set") b.chosen.sets.push_back(value);
+    if (key == "build") b.build = value;
+    if (key == "numerics") b.numerics = value;
+    if (key == "machine") b.machine = value;
+    if (key == "revision") b.revision = value;
+    if (key == "date") b.date = value;
+    if (key == "stages") read_stages(b, lines, value);
+    if (key == "instructions") read_counts(b, lines, value);
+  }
+  return b;
+}
+
+/// The text without its last line, which must be its checksum.
+std::string_view unsealed(std::string_view text, const std::string& where) {
+  const auto at = text.rfind(kSeal);
+  const std::string_view body =
+      text.substr(0, at == std::string_view::npos ? 0 : at);
+  if (!body.empty() &&
+      text.substr(at) == fmt::format("{}{:08x}\n", kSeal, crc32c(body)))
+    return body;
+  if (text.starts_with(kTitle))
+    throw StoreError(
+        fmt::format("{} is damaged: it fails its checksum (restore it from "
+                    "the revision control; {})",
+                    where,
+                    kMake));
+  throw UnreadableInput(fmt::format("{} is no baseline; {}", where, kMake));
+}
+
+}  // namespace
+
+std::string build_text() {
+  const BuildInfo& b = build_info();
+  const std::string flags = std::regex_replace(
+      std::string(b.flags), std::regex(" ?-(march=|U__AVX512F__)\\S*"), "");
+  return fmt::format("{} {} {} Eigen-{} FFTW-{} glibc-{}",
+                     b.compiler,
+                     b.compiler_version,
+                     flags,
+                     b.eigen,
+                     b.fftw,
+                     gnu_get_libc_version());
+}
+
+Baseline blank_baseline(Chosen chosen) {
+  const auto context = machine_context(git_revision());
+  return {.chosen = std::move(chosen),
+          .build = build_text(),
+          .numerics = std::string(build_info().fingerprint),
+          .machine = fmt::format("{}, {} cores, {}",
+                                 context.value("cpu_model", ""),
+                                 context.value("num_cpus", 0),
+                                 build_info().instruction_set),
+          .revision = context.value("git_revision", "") +
+                      (context.value("git_dirty", false) ? "+dirty" : ""),
+          .date = context.value("date", ""),
+          .stages = {},
+          .counts = {}};
+}
+
+std::string to_text(const Baseline& b) {
+  std::string text =
+      fmt::format("{}{}\nprofile {}\n", kTitle, kVersion, b.chosen.profile);
+  for (const auto& filter : b.chosen.filters) text += "filter " + filter + '\n';
+  for (const auto& set : b.chosen.sets) text += "set " + set + '\n';
+  if (!b.chosen.seeds.empty()) text += "seeds " + b.chosen.seeds + '\n';
+  text += fmt::format(
+      "build {}\nnumerics {}\nmachine {}\nrevision {}\ndate {}\nstages {}\n",
+      b.build,
+      b.numerics,
+      b.machine,
+      b.revision,
+      b.date,
+      b.stages.size());
+  for (const auto& line : b.stages) text += to_text(line) + '\n';
+  if (!b.counts.counter.empty())
+    text += fmt::format(
+        "instructions {} {}\n", b.counts.lines.size(), b.counts.counter);
+  for (const auto& line : b.counts.lines)
+    text += fmt::format("{} {}\n", line.name, line.instructions);
+  return text + fmt::format("{}{:08x}\n", kSeal, crc32c(text));
+}
+
+Baseline parse_baseline(const std::string& text, const std::string& where) {
+  Lines lines(unsealed(text, where));
+  try {
+    const std::string_view title = lines.next();
+    if (!title.starts_with(kTitle))
+      throw std::runtime_error("its first line is another");
+    if (count(title.substr(kTitle.size())) > kVersion)
+      throw std::runtime_error("its version is newer than this program");
+    Baseline b = parse_body(lines);
+    if (b.stages.empty()) throw std::runtime_error("it holds no stage");
+    return b;
+  } catch (const std::runtime_error& error) {
+    throw UnreadableInput(
+        fmt::format("{} is no baseline for this program: {}; {}",
+                    where,
+                    error.what(),
+                    kMake));
+  }
+}
+
+Baseline read_baseline(const std::filesystem::path& path) {
+  if (!std::filesystem::is_regular_file(path))
+    throw UnreadableInput(
+        fmt::format("there is no baseline '{}'; {}", path.string(), kMake));
+  return parse_baseline(read_file(path), path.string());
+}
+
+}  // namespace physinv

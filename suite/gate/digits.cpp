@@ -1,0 +1,27 @@
+#include "suite/gate/digits.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace physinv {
+
+double log_distance(double a, double b) {
+  if (std::isfinite(a) != std::isfinite(b))
+    return std::copysign(std::numeric_limits<double>::infinity(),
+                         std::isfinite(a) ? 1.0 : -1.0);
+  if (!std::isfinite(a) || a == b) return 0;
+  if (a > 0 && b > 0) return std::log10(b / a);
+  return (b - a) / std::max(std::abs(a), std::abs(b));
+}
+
+double tolerance(int digits) { return std::pow(10.0, -digits); }
+
+int stable_digits(double distance, int most) {
+  if (distance == 0) return most;
+  const double digits = std::floor(-std::log10(std::abs(distance))) - 1;
+  return static_cast<int>(
+      std::clamp(digits, double{kFewestDigits}, double(most)));
+}
+
+}  // namespace physinv

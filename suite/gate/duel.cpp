@@ -1,0 +1,176 @@
+#include "suite/gate/duel.h"
+
+#include <fmt/format.h>
+#include <sched.h>
+
+#include <cmath>
+#include <map>
+
+#include "suite/core/clock.h"
+#include "suite/core/rng.h"
+#include "suite/harness/child.h"
+#include "suite/results/file.h"
+
+namespace physinv {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A filter that matches this name and no other.
+std::string exactly(const std::string& name) {
+  std::string regex = "--filter=^";
+  for (const char c : name) {
+    if (std::string_view(".+*?()[]{}|^$\\").find(c) != std::string_view::npos)
+      regex += '\\';
+    regex += c;
+  }
+  return regex + "$";
+}
+
+/// While it lives, this process and those that it starts have one core, the
+/// `which`-th of those that it may have.
+class OneCore {
+ public:
+  explicit OneCore(std::uint64_t which) {
+    if (sched_getaffinity(0, sizeof(before_), &before_) != 0) return;
+    which %= static_cast<std::uint64_t>(std::max(1, CPU_COUNT(&before_)));
+    for (int core = 0; core < CPU_SETSIZE; ++core) {
+      if (!CPU_ISSET(core, &before_) || which-- != 0) continue;
+      cpu_set_t one;
+      CPU_ZERO(&one);
+      CPU_SET(core, &one);
+      set_ = sched_setaffinity(0, sizeof(one), &one) == 0;
+      return;
+    }
+  }
+  ~OneCore() {
+    if (set_) sched_setaffinity(0, sizeof(before_), &before_);
+  }
+  OneCore(const OneCore&) = delete;
+  OneCore& operator=(const OneCore&) = delete;
+
+ private:
+  cpu_set_t before_{};
+  bool set_ = false;
+};
+
+/// CPU time of solving: on one thread the same as by the wall, without what
+/// others took from the core.
+std::map<std::string, double> times(const fs::path& results) {
+  std::map<std::string, double> sums;
+  const auto json = nlohmann::json::parse(read_file(results));
+  for (const auto& stage : json.at("benchmarks"))
+    sums[case_of(stage.at("name").get<std::string>())] +=
+        stage.at("cpu_time").get<double>();
+  return sums;
+}
+
+std::string percent(double log_ratio) {
+  return std::isfinite(log_ratio)
+             ? fmt::format("{:+.2f} %", 100 * std::expm1(log_ratio))
+             : std::string(log_ratio < 0 ? "-inf" : "+inf");
+}
+
+}  // namespace
+
+Runner timed_run(const DuelOptions& o) {
+  return [&o](const fs::path& program, const std::vector<std::string>& cases) {
+    fs::remove_all(o.out);
+    std::vector<std::string> command = {program.string(),
+                                        "run",
+                                        "--profile=" + o.chosen.profile,
+                                        "--jobs=1",
+                                        "--out=" + o.out.string()};
+    for (const auto& set : o.chosen.sets) command.push_back("--set=" + set);
+    if (!o.chosen.seeds.empty()) command.push_back("--seeds=" + o.chosen.seeds);
+    for (const auto& name : cases) command.push_back(exactly(name));
+    const Ended ended = run_child(command);
+    if (ended.status != 0)
+      throw EnvironmentError(fmt::format("{} ended with {}: {}",
+                                         program.string(),
+                                         ended.status,
+                                         ended.errors));
+    const auto all = times(o.out / "results.json");
+    std::vector<double> of_cases;
+    for (const auto& name : cases) {
+      const auto at = all.find(name);
+      if (at == all.end() || !(at->second > 0))
+        throw EnvironmentError(
+            fmt::format("{} has no time of {}", program.string(), name));
+      of_cases.push_back(at->second);
+    }
+    return of_cases;
+  };
+}
+
+Duel fight(
+    const DuelOptions& o,
+    const Runner& run,
+    const std::function<void(std::size_t pair, std::size_t left)>& tell) {
+  const double begin = now().wall;
+  Stream random = Rng::root("gate/pairs", o.seed).stream();
+  std::vector<MedianWatch> watches(o.cases.size());
+  Duel duel;
+  duel.decisions.resize(o.cases.size());
+  std::vector<std::size_t> left(o.cases.size());
+  for (std::size_t i = 0; i < left.size(); ++i) left[i] = i;
+  // What is decided stays so and is not run again.
+  for (std::size_t pair = 1; !left.empty() && now().wall - begin < o.seconds;
+       ++pair) {
+    std::vector<std::string> names;
+    for (const std::size_t i : left) names.push_back(o.cases[i]);
+    const std::uint64_t draw = random.bits();
+    const OneCore core(draw >> 1);
+    const bool base_first = (draw & 1) != 0;
+    const auto first = run(base_first ? o.base : o.head, names);
+    const auto second = run(base_first ? o.head : o.base, names);
+    for (std::size_t k = 0; k < left.size(); ++k) {
+      const double ratio = std::log(second[k] / first[k]);
+      watches[left[k]].add(base_first ? ratio : -ratio);
+    }
+    const auto decisions = decide(watches, o.alpha, o.margin);
+    for (const std::size_t i : left) duel.decisions[i] = decisions[i];
+    std::erase_if(left, [&](std::size_t i) {
+      return duel.decisions[i].speed != Speed::inconclusive;
+    });
+    if (tell) tell(pair, left.size());
+  }
+  for (const auto& watch : watches) duel.pairs.push_back(watch.count());
+  duel.seconds = now().wall - begin;
+  return duel;
+}
+
+std::vector<Finding> findings_of(const DuelOptions& o,
+                                 const Duel& duel,
+                                 bool strict) {
+  std::vector<Finding> all;
+  for (std::size_t i = 0; i < o.cases.size(); ++i) {
+    const Decision& d = duel.decisions[i];
+    const bool open = d.speed == Speed::inconclusive;
+    all.push_back(
+        {.kind = "clock",
+         .name = o.cases[i],
+         .verdict = std::string(to_string(d.speed)),
+         .detail = fmt::format(
+             "{}, with {:g} % confidence {} to {}, {} pairs; equal is within "
+             "{:g} %",
+             percent(d.median),
+             100 * (1 - d.alpha),
+             percent(d.interval.low),
+             percent(d.interval.high),
+             duel.pairs[i],
+             100 * o.margin),
+         .code = d.speed == Speed::slower ? ExitCode::slower
+                 : open && strict         ? ExitCode::inconclusive
+                                          : ExitCode::good,
+         .numbers = {{"log_ratio", d.median},
+                     {"pairs", duel.pairs[i]},
+                     {"alpha", d.alpha},
+                     {"seed", o.seed}}});
+    if (std::isfinite(d.interval.low) && std::isfinite(d.interval.high))
+      all.back().numbers["interval"] = {d.interval.low, d.interval.high};
+  }
+  return all;
+}
+
+}  // namespace physinv

@@ -1,0 +1,53 @@
+/// Two programs against each other by the clock: pairs of runs, one right after
+/// the other on the same core, in random order, until every case is decided or
+/// the time is up.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "suite/gate/baseline.h"
+#include "suite/gate/sequential.h"
+#include "suite/gate/sheet.h"
+
+namespace physinv {
+
+struct DuelOptions {
+  std::filesystem::path base, head;  ///< programs
+  Chosen chosen;                     ///< profile and what replaces its keys
+  std::vector<std::string> cases;
+  std::filesystem::path out;  ///< where they run
+  double seconds = 300;
+  double alpha = 0.01;
+  double margin = 0.02;    ///< what is equal
+  std::uint64_t seed = 0;  ///< of the order
+};
+
+/// Who runs a program on some cases: milliseconds of solving for each of them.
+using Runner = std::function<std::vector<double>(
+    const std::filesystem::path& program, const std::vector<std::string>&)>;
+
+/// Runs the program's verb `run`, here, on one core. Throws EnvironmentError
+/// if it fails or lacks a case.
+Runner timed_run(const DuelOptions& options);
+
+struct Duel {
+  std::vector<Decision> decisions;  ///< of each case
+  std::vector<std::size_t> pairs;
+  double seconds = 0;
+};
+
+/// `tell`, if not empty, hears how many cases are left after each pair.
+Duel fight(const DuelOptions& options,
+           const Runner& run,
+           const std::function<void(std::size_t pair, std::size_t left)>& tell);
+
+/// With `strict`, what stayed undecided ends the gate with exit code 8.
+std::vector<Finding> findings_of(const DuelOptions& options,
+                                 const Duel& duel,
+                                 bool strict);
+
+}  // namespace physinv

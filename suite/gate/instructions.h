@@ -1,0 +1,43 @@
+/// Instructions that cases execute: nearly the same in every run, so that 1 %
+/// more is seen on a machine that is not quiet. Counted by the processor where
+/// the kernel lets us, else by valgrind's callgrind.
+///
+/// The program physinv-count runs one case on one thread, narrow registers
+/// alone. What a count cannot see: waiting for memory, AVX-512, threads.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "suite/gate/baseline.h"
+#include "suite/gate/sheet.h"
+
+namespace physinv {
+
+enum class Counting { perf, callgrind };
+/// As a baseline calls it: "callgrind x86-64-v3".
+std::string counter_name(Counting counting);
+
+/// Can `program` (physinv-count) be counted so? If not, `why` says it.
+bool can_count(Counting counting,
+               const std::filesystem::path& program,
+               std::string* why);
+
+/// The first that works of perf and callgrind.
+std::optional<Counting> find_counting(const std::filesystem::path& program,
+                                      std::string* why);
+
+/// Throws EnvironmentError if a case cannot be run.
+CountTable count_instructions(Counting counting,
+                              const std::filesystem::path& program,
+                              const std::string& profile,
+                              const std::vector<std::string>& cases);
+
+inline constexpr double kInstructionThreshold = 0.01;
+
+/// Slower by more than the threshold is a failure; names agree.
+Finding judge(const CountLine& before, const CountLine& now);
+
+}  // namespace physinv

@@ -1,0 +1,184 @@
+#include "suite/gate/sheet.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace physinv {
+namespace {
+
+constexpr std::size_t kAnnotations = 10;  // GitHub shows so many of a step
+constexpr std::size_t kMarkdownRows = 200;
+
+bool quiet(const Finding& f) {
+  return f.code == ExitCode::good &&
+         (f.verdict == "same" || f.verdict == "within" ||
+          (f.kind != "clock" && f.verdict == "equal"));
+}
+
+/// Failures first.
+std::vector<const Finding*> loud(const Sheet& sheet) {
+  std::vector<const Finding*> all;
+  for (const auto& f : sheet.findings)
+    if (!quiet(f)) all.push_back(&f);
+  std::stable_sort(all.begin(), all.end(), [](auto* a, auto* b) {
+    return (a->code != ExitCode::good) > (b->code != ExitCode::good);
+  });
+  return all;
+}
+
+/// Of a workflow command: '%' and ends of lines are its own.
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text)
+    out += c == '%'    ? std::string("%25")
+           : c == '\n' ? std::string("%0A")
+           : c == '\r' ? std::string("%0D")
+                       : std::string(1, c);
+  return out;
+}
+
+/// '|' would end a cell.
+std::string cell(const std::string& text) {
+  std::string out;
+  for (const char c : text)
+    out += c == '|' ? std::string("\\|") : std::string(1, c == '\n' ? ' ' : c);
+  return out;
+}
+
+nlohmann::json number(double v) {
+  return std::isfinite(v) ? nlohmann::json(v) : nlohmann::json(nullptr);
+}
+
+nlohmann::json numbers_of(const StageLine& line) {
+  if (line.name.empty()) return nullptr;
+  nlohmann::json work;
+  for (std::size_t i = 0; i < kWork.size(); ++i)
+    work[std::string(kWork[i])] = line.work[i];
+  return {{"trajectory", line.trajectory},
+          {"stop", to_string(line.stop)},
+          {"loss_best", number(line.losses.best)},
+          {"loss_median", number(line.losses.median)},
+          {"loss_worst", number(line.losses.worst)},
+          {"losses_not_finite", line.losses.nonfinite},
+          {"work", std::move(work)},
+          {"ms", number(line.fastest)}};
+}
+
+}  // namespace
+
+Finding finding_of(const Judgement& j) {
+  return {.kind = "accuracy",
+          .name = j.stage,
+          .verdict = std::string(to_string(j.change)),
+          .detail = fmt::format("{}", fmt::join(j.reasons, "; ")),
+          .code = fails(j) ? ExitCode::accuracy : ExitCode::good,
+          .numbers = {{"digits", j.before.digits},
+                      {"before", numbers_of(j.before)},
+                      {"now", numbers_of(j.now)}}};
+}
+
+ExitCode Sheet::code() const {
+  ExitCode gravest = ExitCode::good;
+  for (const auto& f : findings)
+    if (f.code != ExitCode::good &&
+        (gravest == ExitCode::good || f.code < gravest))
+      gravest = f.code;
+  return gravest;
+}
+
+std::string summary_text(const Sheet& sheet) {
+  std::vector<std::pair<std::string, std::map<std::string, int>>> kinds;
+  for (const auto& f : sheet.findings) {
+    if (kinds.empty() || kinds.back().first != f.kind)
+      kinds.emplace_back(f.kind, std::map<std::string, int>());
+    ++kinds.back().second[f.verdict];
+  }
+  std::string text;
+  for (const auto& [kind, verdicts] : kinds) {
+    std::string counts;
+    for (const auto& [verdict, count] : verdicts)
+      counts +=
+          fmt::format("{}{} {}", counts.empty() ? "" : ", ", count, verdict);
+    text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", kind, counts);
+  }
+  return text;
+}
+
+std::string terminal_text(const Sheet& sheet) {
+  std::string text;
+  for (const auto& note : sheet.notes) text += "note: " + note + '\n';
+  const auto shown = loud(sheet);
+  std::size_t width = 4;
+  for (const auto* f : shown) width = std::max(width, f->name.size());
+  if (!shown.empty())
+    text += fmt::format("{:<12}  {:<{}}  {:<12}  {}\n",
+                        "check",
+                        "name",
+                        width,
+                        "verdict",
+                        "why");
+  for (const auto* f : shown)
+    text += fmt::format("{:<12}  {:<{}}  {:<12}  {}\n",
+                        f->kind,
+                        f->name,
+                        width,
+                        f->verdict,
+                        f->detail);
+  return text + summary_text(sheet) + '\n';
+}
+
+std::string markdown_text(const Sheet& sheet) {
+  const bool good = sheet.code() == ExitCode::good;
+  std::string text = fmt::format("### physinv-bench gate: {}\n\n{}\n\n",
+                                 good ? "passed" : "failed",
+                                 summary_text(sheet));
+  for (const auto& note : sheet.notes) text += "- " + note + '\n';
+  const auto shown = loud(sheet);
+  if (!shown.empty())
+    text += "\n| check | name | verdict | why |\n| --- | --- | --- | --- |\n";
+  for (std::size_t i = 0; i < std::min(shown.size(), kMarkdownRows); ++i)
+    text += fmt::format("| {} | `{}` | {} | {} |\n",
+                        shown[i]->kind,
+                        cell(shown[i]->name),
+                        shown[i]->verdict,
+                        cell(shown[i]->detail));
+  if (shown.size() > kMarkdownRows)
+    text += fmt::format("\nand {} more\n", shown.size() - kMarkdownRows);
+  return text + '\n';
+}
+
+std::string annotations(const Sheet& sheet) {
+  std::string text;
+  std::size_t left = kAnnotations;
+  for (const auto* f : loud(sheet)) {
+    if (f->code == ExitCode::good || left-- == 0) break;
+    text += fmt::format("::error title={} {}::{}: {}\n",
+                        f->kind,
+                        f->verdict,
+                        escaped(f->name),
+                        escaped(f->detail));
+  }
+  return text;
+}
+
+nlohmann::json to_json(const Sheet& sheet) {
+  nlohmann::json findings = nlohmann::json::array();
+  for (const auto& f : sheet.findings)
+    findings.push_back({{"check", f.kind},
+                        {"name", f.name},
+                        {"verdict", f.verdict},
+                        {"why", f.detail},
+                        {"exit_code", static_cast<int>(f.code)},
+                        {"numbers", f.numbers}});
+  return {{"schema_version", 1},
+          {"exit_code", static_cast<int>(sheet.code())},
+          {"notes", sheet.notes},
+          {"findings", std::move(findings)}};
+}
+
+}  // namespace physinv

@@ -1,0 +1,43 @@
+/// What a gate found, for the terminal, a pull request's summary, annotations
+/// and machines.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "suite/gate/verdict.h"
+#include "suite/harness/errors.h"
+
+namespace physinv {
+
+/// One thing judged.
+struct Finding {
+  std::string kind;  ///< accuracy, instructions, clock
+  std::string name;  ///< of a stage or a case
+  std::string verdict, detail;
+  ExitCode code = ExitCode::good;  ///< that it alone would end the gate with
+  nlohmann::json numbers;          ///< for machines
+};
+
+Finding finding_of(const Judgement& judgement);
+
+struct Sheet {
+  std::vector<std::string> notes;
+  std::vector<Finding> findings;
+
+  /// The gravest: accuracy before slower before inconclusive.
+  ExitCode code() const;
+};
+
+/// One line: how many of each kind came to each verdict.
+std::string summary_text(const Sheet& sheet);
+/// Notes, everything that is not as it was, and the summary.
+std::string terminal_text(const Sheet& sheet);
+std::string markdown_text(const Sheet& sheet);
+/// One `::error` of GitHub's workflow commands for each finding that fails, up
+/// to ten.
+std::string annotations(const Sheet& sheet);
+nlohmann::json to_json(const Sheet& sheet);
+
+}  // namespace physinv

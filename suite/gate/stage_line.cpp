@@ -1,0 +1,234 @@
+#include "suite/gate/stage_line.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+#include "suite/core/hash.h"
+#include "suite/gate/digits.h"
+#include "suite/results/checksum.h"
+
+namespace physinv {
+namespace {
+
+constexpr int kMost32 = 5, kMost64 = 12;
+/// Of a stage that draws data of its own, so that no disturbance reaches it.
+constexpr int kUnmeasured = 3;
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+constexpr std::array kAllStatuses = {
+    Status::gtol, Status::maxiter, Status::linesearch, Status::nonfinite};
+constexpr std::array kAllStops = {Stop::converged,
+                                  Stop::iterations,
+                                  Stop::diverged,
+                                  Stop::failed,
+                                  Stop::skipped};
+
+Losses losses_of(const Vector<double>& all) {
+  std::vector<double> finite;
+  for (const double loss : all)
+    if (std::isfinite(loss)) finite.push_back(loss);
+  const Index nonfinite = all.size() - static_cast<Index>(finite.size());
+  if (finite.empty()) return {kNaN, kNaN, kNaN, nonfinite};
+  std::sort(finite.begin(), finite.end());
+  return {finite.front(), finite[finite.size() / 2], finite.back(), nonfinite};
+}
+
+/// Of all that another run must reproduce but the work, which is counted apart.
+std::string hash_of(const StageRecord& r) {
+  ArrayHash hash;
+  hash.add(r.x).add(r.loss).add(r.curve.loss).add(r.curve.x);
+  for (const Status s : r.status) hash.add(static_cast<std::uint64_t>(s));
+  for (const auto& [name, array] : r.arrays)
+    hash.add(std::string_view(name)).add(array);
+  return hex64(hash.value());
+}
+
+std::uint64_t apart(std::uint64_t a, std::uint64_t b) {
+  return a > b ? a - b : b - a;
+}
+
+template <class T>
+T number(std::string_view text) {
+  T value{};
+  const char* end = text.data() + text.size();
+  const auto [at, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || at != end)
+    throw std::runtime_error(fmt::format("'{}' is no number", text));
+  return value;
+}
+
+/// Cuts `text` at the first `mark`; what follows it stays in `text`.
+std::string_view cut(std::string_view& text, std::string_view mark) {
+  const auto end = text.find(mark);
+  const std::string_view head = text.substr(0, end);
+  text.remove_prefix(end == std::string_view::npos ? text.size()
+                                                   : end + mark.size());
+  return head;
+}
+
+template <class E, std::size_t kSize>
+E word(std::string_view text, const std::array<E, kSize>& all) {
+  for (const E e : all)
+    if (to_string(e) == text) return e;
+  throw std::runtime_error(fmt::format("unknown word '{}'", text));
+}
+
+std::array<Index, kStatuses> statuses(std::string_view text) {
+  std::array<Index, kStatuses> counts{};
+  while (!text.empty()) {
+    std::string_view part = cut(text, ",");
+    const Status s = word(cut(part, ":"), kAllStatuses);
+    counts[static_cast<std::size_t>(s)] = number<Index>(part);
+  }
+  return counts;
+}
+
+Losses losses(std::string_view text) {
+  Losses l;
+  l.best = number<double>(cut(text, ","));
+  l.median = number<double>(cut(text, ","));
+  l.worst = number<double>(text);
+  return l;
+}
+
+void read_work(StageLine& line, std::string_view key, std::string_view value) {
+  const auto at = std::find(kWork.begin(), kWork.end(), key);
+  if (at == kWork.end())
+    throw std::runtime_error(fmt::format("unknown key '{}'", key));
+  const auto i = static_cast<std::size_t>(at - kWork.begin());
+  line.work[i] = number<std::uint64_t>(cut(value, "~"));
+  if (!value.empty()) line.play[i] = number<std::uint64_t>(value);
+}
+
+void read(StageLine& line, std::string_view key, std::string_view value) {
+  if (key == "trajectory") {
+    line.trajectory = value;
+  } else if (key == "results") {
+    line.results = value;
+  } else if (key == "stop") {
+    line.stop = word(value, kAllStops);
+  } else if (key == "status") {
+    line.statuses = statuses(value);
+  } else if (key == "loss") {
+    const Index nonfinite = line.losses.nonfinite;
+    line.losses = losses(value);
+    line.losses.nonfinite = nonfinite;
+  } else if (key == "nonfinite") {
+    line.losses.nonfinite = number<Index>(value);
+  } else if (key == "digits") {
+    line.digits = number<int>(value);
+  } else if (key == "ms") {
+    line.fastest = number<double>(cut(value, ".."));
+    line.slowest = number<double>(value);
+  } else {
+    read_work(line, key, value);
+  }
+}
+
+std::string join(const std::array<Index, kStatuses>& counts,
+                 std::string_view between,
+                 char mark) {
+  std::string text;
+  for (std::size_t i = 0; i < kStatuses; ++i)
+    if (counts[i] > 0)
+      text += fmt::format("{}{}{}{}",
+                          text.empty() ? "" : between,
+                          to_string(kAllStatuses[i]),
+                          mark,
+                          counts[i]);
+  return text;
+}
+
+}  // namespace
+
+StageLine line_of(const StageRecord& r) {
+  StageLine line{.name = r.case_name + "/" + r.stage,
+                 .trajectory = r.trajectory,
+                 .results = hash_of(r),
+                 .stop = r.stop,
+                 .message = r.message,
+                 .losses = losses_of(r.loss)};
+  for (const Status s : r.status) ++line.statuses[static_cast<std::size_t>(s)];
+  line.work = {static_cast<std::uint64_t>(r.iterations),
+               r.counts[Counter::forward],
+               r.counts[Counter::vjp],
+               r.counts[Counter::jacobian],
+               r.counts[Counter::inverse],
+               r.counts[Counter::network_forward],
+               r.counts[Counter::network_backward]};
+  line.fastest = line.slowest = 1e3 * r.clocks.solve.wall;
+  return line;
+}
+
+void repeated(StageLine& line, const StageLine& other, Precision precision) {
+  const int most = precision == Precision::f32 ? kMost32 : kMost64;
+  const auto pairs = {std::pair(line.losses.best, other.losses.best),
+                      std::pair(line.losses.median, other.losses.median),
+                      std::pair(line.losses.worst, other.losses.worst)};
+  double apart_by = 0;
+  for (const auto& [a, b] : pairs)
+    apart_by = std::max(apart_by, std::abs(log_distance(a, b)));
+  line.digits =
+      same_bits(line, other) ? kUnmeasured : stable_digits(apart_by, most);
+  for (std::size_t i = 0; i < kWork.size(); ++i)
+    line.play[i] = apart(line.work[i], other.work[i]);
+  line.fastest = std::min(line.fastest, other.fastest);
+  line.slowest = std::max(line.slowest, other.slowest);
+}
+
+bool same_bits(const StageLine& a, const StageLine& b) {
+  return a.trajectory == b.trajectory && a.results == b.results;
+}
+
+std::string case_of(std::string_view stage_name) {
+  return std::string(stage_name.substr(0, stage_name.rfind('/')));
+}
+
+std::string status_text(const std::array<Index, kStatuses>& counts) {
+  return join(counts, ", ", ' ');
+}
+
+std::string to_text(const StageLine& l) {
+  const int shown = std::clamp(l.digits + 1, 1, 13);
+  std::string text = fmt::format(
+      "{} trajectory={} results={} stop={} status={} "
+      "loss={:.{}e},{:.{}e},{:.{}e} digits={}",
+      l.name,
+      l.trajectory,
+      l.results,
+      to_string(l.stop),
+      join(l.statuses, ",", ':'),
+      l.losses.best,
+      shown,
+      l.losses.median,
+      shown,
+      l.losses.worst,
+      shown,
+      l.digits);
+  if (l.losses.nonfinite > 0)
+    text += fmt::format(" nonfinite={}", l.losses.nonfinite);
+  for (std::size_t i = 0; i < kWork.size(); ++i) {
+    if (l.work[i] == 0 && l.play[i] == 0) continue;
+    text += fmt::format(" {}={}", kWork[i], l.work[i]);
+    if (l.play[i] > 0) text += fmt::format("~{}", l.play[i]);
+  }
+  return text + fmt::format(" ms={:.3g}..{:.3g}", l.fastest, l.slowest);
+}
+
+StageLine stage_line(std::string_view text) {
+  StageLine line{.name = std::string(cut(text, " "))};
+  while (!text.empty()) {
+    std::string_view value = cut(text, " ");
+    const std::string_view key = cut(value, "=");
+    read(line, key, value);
+  }
+  return line;
+}
+
+}  // namespace physinv

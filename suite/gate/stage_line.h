@@ -1,0 +1,66 @@
+/// What a baseline holds of one stage, on one line:
+///
+///   jpo/billiards/jpo/n=4/seed=0/fit trajectory=9f.. results=04..
+///   stop=iterations status=maxiter:4 loss=1.2e-02,2.6e-02,4.3e-02 digits=5
+///   iterations=50 vjp=200 network_forward=204 ms=9.6..9.9
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "suite/results/record.h"
+
+namespace physinv {
+
+/// What must not grow.
+inline constexpr std::array<std::string_view, 7> kWork = {"iterations",
+                                                          "forward",
+                                                          "vjp",
+                                                          "jacobian",
+                                                          "inverse",
+                                                          "network_forward",
+                                                          "network_backward"};
+inline constexpr std::size_t kStatuses = 4;
+
+/// Final losses of a stage's examples: the finite ones.
+struct Losses {
+  double best = 0, median = 0, worst = 0;
+  Index nonfinite = 0;
+};
+
+struct StageLine {
+  std::string name;        ///< case/stage
+  std::string trajectory;  ///< hash of all iterates
+  std::string results;     ///< hash of estimates, losses, curves, findings
+  Stop stop = Stop::iterations;
+  std::string message;  ///< why it failed; not part of the line
+  std::array<Index, kStatuses> statuses{};
+  Losses losses;
+  int digits = 0;  ///< of the losses, that are stable
+  std::array<std::uint64_t, kWork.size()> work{};
+  /// How far they moved when the data were one ulp off.
+  std::array<std::uint64_t, kWork.size()> play{};
+  double fastest = 0, slowest = 0;  ///< milliseconds of solving, of the runs
+};
+
+/// Of a finished stage; `digits` and `play` are for `repeated`.
+StageLine line_of(const StageRecord& record);
+
+/// Enters what the same stage did with data one ulp off. Numbers in that
+/// `precision` were computed.
+void repeated(StageLine& line, const StageLine& disturbed, Precision precision);
+
+bool same_bits(const StageLine& a, const StageLine& b);
+
+std::string case_of(std::string_view stage_name);
+
+std::string to_text(const StageLine& line);
+/// Throws std::runtime_error.
+StageLine stage_line(std::string_view text);
+
+/// "gtol 3, maxiter 1"
+std::string status_text(const std::array<Index, kStatuses>& statuses);
+
+}  // namespace physinv

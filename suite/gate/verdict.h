@@ -1,0 +1,48 @@
+/// A campaign held against a baseline, stage by stage.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "suite/gate/baseline.h"
+
+namespace physinv {
+
+enum class Change {
+  same,     ///< the same bits, no more work
+  within,   ///< other bits, none promised; losses within the stored digits
+  better,   ///< smaller losses, a better end or less work
+  worse,    ///< a worse end, larger losses, more work, or bits that were
+            ///< promised and are others
+  missing,  ///< the baseline has it, the campaign has not
+  added     ///< the campaign has it, the baseline has not
+};
+std::string_view to_string(Change change);
+
+struct Rules {
+  bool bits = true;         ///< promised: baseline and campaign of one build
+  bool allow_work = false;  ///< counters may grow
+};
+
+struct Judgement {
+  std::string stage;
+  Change change = Change::same;
+  std::vector<std::string> reasons;
+  StageLine before, now;
+};
+
+/// Names agree.
+Judgement judge(const StageLine& before, const StageLine& now, Rules rules);
+
+/// All of both, in the order of the baseline, what was added last.
+std::vector<Judgement> judge(const std::vector<StageLine>& before,
+                             const std::vector<StageLine>& now,
+                             Rules rules);
+
+/// Worse or missing.
+inline bool fails(const Judgement& j) {
+  return j.change == Change::worse || j.change == Change::missing;
+}
+
+}  // namespace physinv

@@ -1,0 +1,188 @@
+"""Defects planted in the program over the fake experiment, its data and its
+baseline: each is caught, with the right exit code."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+
+BENCH = os.path.abspath(sys.argv[1])
+COUNT = os.path.abspath(sys.argv[2]) if len(sys.argv) > 2 else None
+CAN_COUNT = COUNT is not None and shutil.which("valgrind") is not None
+FAILED = []
+
+
+def run(*args, cwd, plant="", **env):
+    quiet = {k: v for k, v in os.environ.items() if not k.startswith("GITHUB")}
+    return subprocess.run(
+        [BENCH, *args], cwd=cwd, text=True, capture_output=True, timeout=300,
+        env={**quiet, "PHYSINV_FAKE_PLANT": plant,
+             "PHYSINV_COUNT": COUNT or "nowhere", **env})
+
+
+def check(condition, what):
+    print("ok  " if condition else "FAIL", what)
+    if not condition:
+        FAILED.append(what)
+
+
+def expect(code, args, cwd, says="", **kwargs):
+    """The exit code, at most one line of errors, and words that are said."""
+    p = run(*args, cwd=cwd, **kwargs)
+    lines = p.stderr.splitlines()
+    good = p.returncode == code and len(lines) == (1 if code else 0)
+    check(good and says in p.stdout + p.stderr,
+          f"{kwargs.get('plant', '')}: {' '.join(args)} -> {p.returncode} "
+          f"{p.stderr.strip()[:150]}")
+    return p
+
+
+def crc32c(data):
+    crc = 0xffffffff
+    for byte in data:
+        crc ^= byte
+        for _ in range(8):
+            crc = crc >> 1 ^ (0x82f63b78 if crc & 1 else 0)
+    return crc ^ 0xffffffff
+
+
+def rewrite(d, name, change, base="base.txt"):
+    """Another baseline with a right checksum."""
+    body = open(os.path.join(d, base)).read().rsplit("checksum", 1)[0]
+    changed = change(body)
+    assert changed != body
+    with open(os.path.join(d, name), "w") as f:
+        f.write(f"{changed}checksum {crc32c(changed.encode()):08x}\n")
+
+
+GATE = ["gate", "--baseline=base.txt"]
+
+
+def made(d):
+    """A baseline is made from a traced campaign of this build alone."""
+    expect(0, ["--profile=smoke", "--out=untraced"], d)
+    expect(2, ["baseline", "untraced", "--out=base.txt"], d, "--trace")
+    expect(2, ["baseline", "nowhere", "--out=base.txt"], d, "no results")
+    expect(0, ["--profile=smoke", "--trace", "--out=r"], d)
+    expect(0, ["baseline", "r/results.json", "--out=base.txt"], d, "6 stages")
+    text = open(os.path.join(d, "base.txt")).read()
+    check(text.count(" digits=3 ") == 1, "an ulp moves all that looks at data")
+    expect(10, ["--profile=quick", "--time-budget=0.000001", "--out=q"], d)
+    expect(10, ["baseline", "q", "--out=q.txt"], d, "not run")
+    check(not os.path.exists(os.path.join(d, "q.txt")), "no half a baseline")
+
+
+def passes(d):
+    p = expect(0, [*GATE, "--json=g.json"], d, "accuracy: 6 same")
+    found = json.load(open(os.path.join(d, "g.json")))
+    check(found["exit_code"] == 0 and len(found["findings"]) == 6, "JSON")
+    check("::error" not in p.stdout, "no annotations outside of GitHub")
+    expect(0, [*GATE, "--filter=walk"], d, "accuracy: 2 same")
+    expect(0, [*GATE, "--results=r"], d, "accuracy: 6 same")
+
+
+def defects(d):
+    for plant, code, says in (
+            ("ulp in a constant", 5, "other bits, and this build promises"),
+            ("ulp in the data", 5, "other bits, and this build promises"),
+            ("more work", 5, "vjp 40 -> 44"),
+            ("NaN in a loss", 5, "losses that are not finite 0 -> 1"),
+            ("a case removed", 5, "missing")):
+        expect(code, GATE, d, says, plant=plant)
+    expect(0, [*GATE, "--allow-work"], d, "6 same", plant="more work")
+    expect(5, [*GATE, "--filter=stroll"], d, "2 missing",
+           plant="a case removed")
+    expect(3, [*GATE, "--filter=no_such"], d, "no case of base.txt matches")
+    summary = os.path.join(d, "summary.md")
+    p = expect(5, GATE, d, plant="NaN in a loss", GITHUB_ACTIONS="true",
+               GITHUB_STEP_SUMMARY=summary)
+    check("::error title=accuracy worse::fake/cubic/descend" in p.stdout,
+          "annotations")
+    check("gate: failed" in open(summary).read(), "Markdown")
+
+
+def other_baselines(d):
+    whole = open(os.path.join(d, "base.txt"), "rb").read()
+    flipped = bytearray(whole)
+    flipped[len(whole) // 2] ^= 4
+    open(os.path.join(d, "flipped.txt"), "wb").write(flipped)
+    expect(9, ["gate", "--baseline=flipped.txt"], d, "fails its checksum")
+    open(os.path.join(d, "cut.txt"), "wb").write(whole[:-100])
+    expect(9, ["gate", "--baseline=cut.txt"], d, "fails its checksum")
+    rewrite(d, "other.txt", lambda t: t.replace("build GNU", "build XNU", 1)
+            .replace("build Clang", "build XNU", 1))
+    other = ["gate", "--baseline=other.txt"]
+    expect(0, other, d, "from another build")
+    expect(0, other, d, "3 within", plant="ulp in a constant")
+    expect(5, other, d, "not finite 0 -> 1", plant="NaN in a loss")
+    rewrite(d, "empty.txt",
+            lambda t: t.split("stages ")[0] + "stages 0\n")
+    expect(2, ["gate", "--baseline=empty.txt"], d, "it holds no stage")
+
+
+def bad_input(d):
+    expect(2, ["gate"], d, "--baseline=FILE")
+    expect(2, ["gate", "--baseline=nowhere"], d, "no baseline 'nowhere'")
+    expect(2, ["gate", "--baseline=r/results.json"], d, "is no baseline")
+    expect(2, [*GATE, "--profile=quick"], d, "is of profile smoke")
+    expect(2, [*GATE, "--results=nowhere"], d, "no results")
+    expect(2, [*GATE, "--against=nowhere"], d, "is no program")
+    expect(2, [*GATE, "--budget=-1"], d)
+    expect(2, ["gate", "--update", "--against=" + BENCH], d, "--baseline")
+    expect(2, [*GATE, "--filter=(x"], d, "regular expression")
+    expect(2, [*GATE, "--no-such"], d, "unknown flag")
+    expect(2, ["baseline"], d)
+    expect(9, ["baseline", "r", "--out=/proc/nowhere/b.txt"], d)
+    expect(3, ["baseline", "r", "--out=x.txt", "--count=no_such"], d)
+
+
+def update(d):
+    shutil.copy(os.path.join(d, "base.txt"), os.path.join(d, "new.txt"))
+    new = ["gate", "--baseline=new.txt"]
+    expect(0, [*new, "--filter=descend", "--update"], d, "-> 44",
+           plant="more work")
+    expect(0, [*new, "--filter=descend"], d, "1 same", plant="more work")
+    expect(0, [*new, "--filter=descend"], d, "vjp 44 -> 40")
+    expect(0, [*new, "--update"], d, "renewed new.txt: 6 stages")
+
+    def lines(name):
+        return [w for w in open(os.path.join(d, name)).read().split("\n")
+                if w.startswith("fake/")]
+    check([w.split(" ms=")[0] for w in lines("new.txt")] ==
+          [w.split(" ms=")[0] for w in lines("base.txt")],
+          "an update back gives the same lines")
+
+
+def instructions(d):
+    kernel = ["gate", "--baseline=kernel.txt"]
+    expect(0, ["--profile=kernel", "--trace", "--out=k"], d)
+    if not CAN_COUNT:
+        print("skip instructions: no valgrind, or no program for it")
+        return
+    expect(0, ["baseline", "k", "--out=kernel.txt", "--count=descend"], d)
+    expect(0, kernel, d, "instructions: 1 equal")
+    p = expect(6, kernel, d, "slower", plant="a kernel slower by 10 %")
+    print("\n".join(w for w in p.stdout.splitlines() if "slower" in w))
+    rewrite(d, "other_kernel.txt", lambda t: t.replace("build ", "build X", 1),
+            "kernel.txt")
+    expect(0, ["gate", "--baseline=other_kernel.txt"], d, "another build")
+    expect(0, [*kernel, "--no-count"], d, plant="a kernel slower by 10 %")
+    for strict, code in ((["--strict"], 8), ([], 0)):
+        expect(code, [*kernel, *strict], d, "not counted",
+               PHYSINV_COUNT="nowhere")
+
+
+def clock(d):
+    """Against itself nothing is slower; without time nothing is decided."""
+    gate = ["gate", "--profile=kernel", "--against=" + BENCH]
+    expect(8, [*gate, "--budget=0.000001", "--strict"], d, "inconclusive")
+    expect(0, [*gate, "--budget=2", "--within=30"], d, "by the clock against")
+
+
+with tempfile.TemporaryDirectory() as directory:
+    for test in (made, passes, defects, other_baselines, bad_input, update,
+                 instructions, clock):
+        test(directory)
+sys.exit(f"{len(FAILED)} failed: {FAILED}" if FAILED else 0)
