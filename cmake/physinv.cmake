@@ -120,18 +120,18 @@ function(physinv_join_group folder)
   set_source_files_properties(${ARGN} PROPERTIES UNITY_GROUP ${group})
 endfunction()
 
-# physinv_layer(<name> [OBJECT] [NUMBERS] [RECORDS | WORDS | GROUPED]
+# physinv_layer(<name> [OBJECT] [NUMBERS | NARROW | RECORDS | WORDS] [GROUPED]
 # [PRECOMPILE headers] SOURCES ... DEPENDS ...): one target per layer. OBJECT
 # keeps registrations that nobody names from the linker's broom. NUMBERS
 # computes what is recorded: physinv_<name>_v3 is the same for AVX2, where that
 # is another build. PRECOMPILE: headers of the project that nearly every source
-# of the layer includes. RECORDS handles numbers and makes none, WORDS does not
-# touch Eigen either: both are narrow and joined, words hardly optimized (-O1 comes after
-# the -O3 of the build type). Elsewhere -O1 would be dangerous: the linker takes
-# any one copy of an inline function for all, and without contraction its bits
-# differ.
+# of the layer includes. NARROW computes nothing itself and serves both widths.
+# RECORDS handles numbers and makes none, WORDS does not touch Eigen either:
+# both are narrow and joined, words hardly optimized (-O1 comes after the -O3 of
+# the build type). Elsewhere -O1 would be dangerous: the linker takes any one
+# copy of an inline function for all, and without contraction its bits differ.
 function(physinv_layer name)
-  cmake_parse_arguments(ARG "OBJECT;NUMBERS;RECORDS;WORDS;GROUPED" ""
+  cmake_parse_arguments(ARG "OBJECT;NUMBERS;NARROW;RECORDS;WORDS;GROUPED" ""
     "SOURCES;DEPENDS;PRECOMPILE" ${ARGN})
   set(kind STATIC)
   if(ARG_OBJECT)
@@ -145,7 +145,7 @@ function(physinv_layer name)
   target_link_libraries(physinv_${name} PUBLIC physinv_flags ${ARG_DEPENDS})
   target_compile_options(physinv_${name} PRIVATE ${PHYSINV_WARNINGS})
   set(narrow)
-  if(ARG_RECORDS OR ARG_WORDS)
+  if(ARG_NARROW OR ARG_RECORDS OR ARG_WORDS)
     set(narrow _narrow)
     target_link_libraries(physinv_${name} PRIVATE
       $<BUILD_INTERFACE:physinv_narrow>)

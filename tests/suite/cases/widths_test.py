@@ -26,6 +26,15 @@ def numbers(value, name=""):
         yield name, value
 
 
+def check_narrow(program):
+    """Nothing in it is from the build for wide registers."""
+    code = subprocess.run(["objdump", "-d", "--no-show-raw-insn", program],
+                          check=True, capture_output=True, text=True).stdout
+    wide = [line for line in code.splitlines()
+            if "%zmm" in line or "%ymm16" in line or "%xmm16" in line]
+    assert len(code) > 1_000_000 and not wide, wide[:5]
+
+
 def smoke(program, out, *flags, check=True):
     return subprocess.run(
         [program, "run", "--profile=smoke", "--trace", f"--out={out}", *flags],
@@ -54,6 +63,7 @@ def read(out):
 
 
 def main():
+    check_narrow(sys.argv[2])
     with tempfile.TemporaryDirectory() as folder:
         outs = [pathlib.Path(folder) / name for name in ("wide", "narrow")]
         at_once(sys.argv[1], outs[0])
