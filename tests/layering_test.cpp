@@ -28,6 +28,8 @@ const std::map<std::string, Layer> kLayers{
      {{"suite/core", "suite/nn", "problems", "optimizers"}, {"eigen"}}},
     {"suite/results", {{"suite/core"}, {"json", "hdf5", "zlib"}}},
     {"suite/evidence", {{"suite/core", "suite/results"}, {}}},
+    {"suite/compare",
+     {{"suite/core", "suite/results", "suite/evidence"}, {"json"}}},
     {"suite/harness",
      {{"suite/core", "suite/nn", "suite/results", "suite/evidence"}, {"json"}}},
     {"suite/cases",
@@ -52,6 +54,7 @@ const std::map<std::string, Layer> kLayers{
        "suite/evidence",
        "suite/harness",
        "suite/cases",
+       "suite/compare",
        "reports"},
       {"cli11", "benchmark", "json"}}},
 };

@@ -28,6 +28,7 @@ physinv-bench report RESULTS     tables, plots and claims of a campaign
 physinv-bench results           a page of all published campaigns
 physinv-bench verify RESULTS     recompute every final loss
 physinv-bench merge OUT SHARD..  join the results of shards
+physinv-bench compare A B..      campaigns side by side, what changed most
 physinv-bench kernels [flags]    kernel benchmarks (flags of Google Benchmark)
 physinv-bench VERB --help        flags of a verb
 physinv-bench --version          version and build
@@ -58,6 +59,7 @@ const std::map<std::string, Verb>& verbs() {
                                                   {"results", results_verb},
                                                   {"verify", verify_verb},
                                                   {"merge", merge_verb},
+                                                  {"compare", compare_verb},
                                                   {"kernels", kernels_verb}};
   return all;
 }

@@ -18,6 +18,7 @@ ExitCode report_verb(const Arguments& arguments);
 ExitCode results_verb(const Arguments& arguments);
 ExitCode verify_verb(const Arguments& arguments);
 ExitCode merge_verb(const Arguments& arguments);
+ExitCode compare_verb(const Arguments& arguments);
 ExitCode kernels_verb(const Arguments& arguments);
 
 }  // namespace physinv

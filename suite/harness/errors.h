@@ -14,6 +14,8 @@ enum class ExitCode : int {
   usage = 2,
   nothing_matched = 3,
   case_failed = 4,
+  accuracy = 5,
+  slower = 6,
   claim = 7,
   environment = 9,
   incomplete = 10,
@@ -29,6 +31,9 @@ inline constexpr std::string_view kExitCodeHelp =
     3  nothing matched; the nearest names are shown
     4  a case failed (exception, out of memory), or verify found a mismatch;
        divergence is a result
+    5  compare --fail-on: losses, statuses, claims or work got worse, or runs
+       are missing
+    6  compare --fail-on: only time got worse
     7  a gating claim is not reproduced and not listed as expected to fail
        (report --check)
     9  environment: disk full, unwritable, corrupt store
@@ -36,7 +41,7 @@ inline constexpr std::string_view kExitCodeHelp =
        failed or lost their arrays, no plan.json, or nothing to judge (report
        --check); what is there was run, reported, verified or merged
   130  interrupted; what had finished is kept
-  5, 6 and 8 are reserved for accuracy, timing, and inconclusive
+  8 is reserved for inconclusive
 )";
 
 class ExitError : public std::runtime_error {
