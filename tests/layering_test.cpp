@@ -32,6 +32,9 @@ const std::map<std::string, Layer> kLayers{
      {{"suite/core", "suite/results", "suite/evidence"}, {"json"}}},
     {"suite/harness",
      {{"suite/core", "suite/nn", "suite/results", "suite/evidence"}, {"json"}}},
+    {"suite/planning",
+     {{"suite/core", "suite/results", "suite/evidence", "suite/harness"},
+      {"json"}}},
     {"suite/cases",
      {{"suite/core",
        "suite/nn",
@@ -55,6 +58,7 @@ const std::map<std::string, Layer> kLayers{
        "suite/harness",
        "suite/cases",
        "suite/compare",
+       "suite/planning",
        "reports"},
       {"cli11", "benchmark", "json"}}},
 };

@@ -24,6 +24,7 @@ constexpr std::string_view kHelp =
 
 physinv-bench [run] [flags]      run cases (the default verb)
 physinv-bench list [flags]       the cases, their stages and estimated work
+physinv-bench plan [flags]       time, memory and disk of a selection
 physinv-bench report RESULTS     tables, plots and claims of a campaign
 physinv-bench results           a page of all published campaigns
 physinv-bench verify RESULTS     recompute every final loss
@@ -60,6 +61,7 @@ const std::map<std::string, Verb>& verbs() {
                                                   {"verify", verify_verb},
                                                   {"merge", merge_verb},
                                                   {"compare", compare_verb},
+                                                  {"plan", plan_verb},
                                                   {"kernels", kernels_verb}};
   return all;
 }

@@ -19,6 +19,7 @@ ExitCode results_verb(const Arguments& arguments);
 ExitCode verify_verb(const Arguments& arguments);
 ExitCode merge_verb(const Arguments& arguments);
 ExitCode compare_verb(const Arguments& arguments);
+ExitCode plan_verb(const Arguments& arguments);
 ExitCode kernels_verb(const Arguments& arguments);
 
 }  // namespace physinv
