@@ -171,6 +171,21 @@ Overrides parse_overrides(const std::vector<std::string>& sets,
   return o;
 }
 
+double parse_duration(const std::string& flag, const std::string& text) {
+  double value{};
+  const char* end = text.data() + text.size();
+  const auto [at, error] = std::from_chars(text.data(), end, value);
+  const std::string_view unit(at, static_cast<std::size_t>(end - at));
+  const double seconds = unit.empty() || unit == "s"    ? 1
+                         : unit == "m" || unit == "min" ? 60
+                         : unit == "h"                  ? 3600
+                                                        : 0;
+  if (error != std::errc() || !(value * seconds > 0) || value > 1e9)
+    throw UsageError(
+        fmt::format("{}={} is no time; 90, 90s, 10m and 2h are", flag, text));
+  return value * seconds;
+}
+
 Shard parse_shard(const std::string& text) {
   if (text.empty()) return {};
   const auto parts = split(text, '/');

@@ -29,6 +29,9 @@ struct Selection {
 Overrides parse_overrides(const std::vector<std::string>& sets,
                           const std::string& seeds);
 
+/// "90", "90s", "10m", "2h" in seconds; throws UsageError.
+double parse_duration(const std::string& flag, const std::string& text);
+
 /// "2/3"; throws UsageError.
 Shard parse_shard(const std::string& text);
 

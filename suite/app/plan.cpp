@@ -4,12 +4,14 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "reports/plot.h"
 #include "suite/app/load.h"
 #include "suite/app/options.h"
 #include "suite/harness/progress.h"
 #include "suite/planning/predict.h"
 #include "suite/planning/split.h"
 #include "suite/results/curves.h"
+#include "suite/results/file.h"
 
 namespace physinv {
 namespace {
@@ -134,6 +136,40 @@ void print_json(const std::vector<Case>& cases,
   fmt::print("{}\n", all.dump(1));
 }
 
+/// Predicted against measured, a point per case.
+Figure scatter(const std::vector<Case>& cases,
+               const std::vector<Cost>& costs,
+               const std::vector<Cost>& beside) {
+  Panel panel{.x_label = "measured seconds",
+              .y_label = "predicted seconds",
+              .x_log = true,
+              .y_log = true};
+  std::map<std::string, Series> series;
+  double least = 1e9, most = 0;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    if (beside[i].stage_seconds.empty()) continue;
+    const std::string& name = cases[i].info.experiment;
+    Series& own = series[name];
+    own.label = own.method = name;
+    own.line = false, own.markers = true;
+    own.x.push_back(beside[i].seconds);
+    own.y.push_back(costs[i].seconds);
+    least = std::min(least, beside[i].seconds);
+    most = std::max(most, beside[i].seconds);
+  }
+  for (auto& [name, own] : series) panel.series.push_back(std::move(own));
+  for (const double factor : {1 / 1.5, 1.5})
+    panel.series.push_back({.label = factor > 1 ? "factor 1.5" : "",
+                            .method = "factor",
+                            .x = {least, most},
+                            .y = {factor * least, factor * most},
+                            .dashed = true});
+  return {.id = "plan",
+          .title = "Time of each case, predicted and measured",
+          .panels = {std::move(panel)},
+          .columns = 1};
+}
+
 /// How long so many workers take, and what share of them works.
 void print_workers(const std::vector<Cost>& costs) {
   std::vector<double> seconds;
@@ -157,7 +193,7 @@ void print_workers(const std::vector<Cost>& costs) {
 
 ExitCode plan_verb(const Arguments& arguments) {
   Selection selection;
-  std::string beside;
+  std::string beside, plot;
   bool json = false, workers = false, from = false;
   if (!parse("physinv-bench plan",
              "What a selection will cost: time, peak memory and disk of each "
@@ -174,14 +210,19 @@ ExitCode plan_verb(const Arguments& arguments) {
                   {"--measured",
                    "take the times of --against themselves, where it has them",
                    &from},
+                  {"--plot",
+                   "draw predicted against measured times there, as SVG",
+                   &plot,
+                   "FILE"},
                   {"--workers",
                    "time and efficiency of 1 to 1000 workers, longest case "
                    "first",
                    &workers}}),
              arguments))
     return ExitCode::good;
-  if (from && beside.empty())
-    throw UsageError("--measured needs results; --against names them");
+  if ((from || !plot.empty()) && beside.empty())
+    throw UsageError(fmt::format("{} needs results; --against names them",
+                                 from ? "--measured" : "--plot"));
   const auto cases = selection.cases();
   const auto known =
       beside.empty() ? std::vector<Cost>() : measured(cases, beside);
@@ -190,6 +231,8 @@ ExitCode plan_verb(const Arguments& arguments) {
     fmt::print(stderr, "measuring {} {}\n", c.info.experiment, c.info.method);
   });
   trials.save();
+  if (!plot.empty())
+    write_atomically(plot, render_svg(scatter(cases, costs, known)));
   if (workers) {
     print_workers(costs);
   } else {

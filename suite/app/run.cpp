@@ -1,20 +1,29 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "suite/app/options.h"
+#include "suite/core/clock.h"
 #include "suite/harness/campaign.h"
 #include "suite/harness/context.h"
+#include "suite/planning/budget.h"
+#include "suite/planning/predict.h"
 #include "suite/results/results.h"
 
 namespace physinv {
 namespace {
 
+/// Shorter budgets are not spent on measuring speeds.
+constexpr double kBudgetForTrials = 60;
+
 struct RunFlags {
   Selection selection;
   CampaignOptions campaign;
-  std::string out;
+  std::string out, budget;
   int jobs = 0;
   bool dry = false;
 
@@ -25,10 +34,12 @@ struct RunFlags {
           "threads inside a case (default 1); results do not change",
           &campaign.threads},
          {"--time-budget",
-          "start no further case after so many seconds; the cases not "
-          "run are named (exit 8), and the next run goes on with them",
-          &campaign.time_budget,
-          "SECONDS"},
+          "start no case that would end later, such as 10m: first every method "
+          "on one seed, then more seeds where the ranking is undecided; what "
+          "is "
+          "left out is named (exit 10), and the next run goes on with it",
+          &budget,
+          "TIME"},
          {"--out", "where to; default: results/<profile>", &out, "DIR"},
          {"--resume,!--fresh",
           "reuse finished stages (default), or run the selected cases again",
@@ -42,6 +53,8 @@ struct RunFlags {
   void complete() {
     if (jobs == 0) jobs = std::max(1, available_cores() / campaign.threads);
     campaign.jobs = jobs;
+    if (!budget.empty())
+      campaign.time_budget = parse_duration("--time-budget", budget);
     campaign.out = out.empty() ? "results/" + selection.profile : out;
   }
 
@@ -69,6 +82,50 @@ std::vector<CaseRecord> own_records(std::vector<CaseRecord> cases,
   return cases;
 }
 
+/// What the cases will take, by short runs where the budget has room for them;
+/// else only in proportion, by their counted operations.
+std::vector<double> seconds_of(const std::vector<Case>& cases, double budget) {
+  std::vector<double> seconds;
+  if (budget < kBudgetForTrials) {
+    for (const Case& c : cases)
+      seconds.push_back(std::accumulate(
+          c.stage_operations.begin(), c.stage_operations.end(), 0.0));
+    return seconds;
+  }
+  Trials trials;
+  for (const Cost& cost : predict(cases, trials))
+    seconds.push_back(cost.seconds);
+  trials.save();
+  return seconds;
+}
+
+/// A coarse pass first; the budget counts from here on.
+void follow_budget(CampaignOptions& campaign, const std::vector<Case>& cases) {
+  const double begin = now().wall;
+  auto seconds = seconds_of(cases, campaign.time_budget);
+  if (campaign.time_budget >= kBudgetForTrials) {
+    campaign.expected_seconds = seconds;
+    campaign.time_budget =
+        std::max(1e-6, campaign.time_budget - (now().wall - begin));
+  }
+  campaign.order = [cases, seconds = std::move(seconds)](
+                       std::vector<std::size_t> queue,
+                       const Finished& finished) {
+    return budget_order(cases, std::move(queue), finished, seconds);
+  };
+}
+
+/// Cases per experiment and n, where the budget left some out.
+void print_left_out(const std::vector<std::string>& names) {
+  std::map<std::string, std::vector<std::string>> seeds;
+  for (const auto& name : names) {
+    const auto at = name.rfind("/seed=");
+    seeds[name.substr(0, at)].push_back(name.substr(at + 6));
+  }
+  for (const auto& [chain, left] : seeds)
+    fmt::print("  {} seeds {}\n", chain, fmt::join(left, ", "));
+}
+
 void print_result(const RunFlags& flags, const CampaignResult& r) {
   fmt::print("{} stages run, {} reused{}; {}, bookkeeping {}{}\n",
              r.stages_run,
@@ -84,7 +141,7 @@ void print_result(const RunFlags& flags, const CampaignResult& r) {
     fmt::print("{}: {} cases not run:\n",
                r.interrupted ? "interrupted" : "out of time",
                r.not_run.size());
-    for (const auto& name : r.not_run) fmt::print("  {}\n", name);
+    print_left_out(r.not_run);
   }
   fmt::print("results: {}\n", flags.campaign.out.string());
 }
@@ -105,6 +162,8 @@ ExitCode run_verb(const Arguments& arguments) {
     dry_run(prepared, flags.campaign, stdout);
     return ExitCode::good;
   }
+  if (flags.campaign.time_budget > 0)
+    follow_budget(flags.campaign, prepared.cases);
   std::vector<std::string> names;
   for (const Case& c : prepared.cases) names.push_back(c.info.name);
   CampaignResult result = run_campaign(
