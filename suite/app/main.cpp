@@ -30,6 +30,8 @@ physinv-bench results           a page of all published campaigns
 physinv-bench verify RESULTS     recompute every final loss
 physinv-bench merge OUT SHARD..  join the results of shards
 physinv-bench compare A B..      campaigns side by side, what changed most
+physinv-bench export RESULTS     for dashboards: Google Benchmark, GitHub, Bencher
+physinv-bench completion SHELL   completion for bash, zsh or fish
 physinv-bench kernels [flags]    kernel benchmarks (flags of Google Benchmark)
 physinv-bench VERB --help        flags of a verb
 physinv-bench --version          version and build
@@ -48,21 +50,28 @@ environment
   NO_COLOR   no colours
   COLUMNS    width of the live table
   CI, TERM=dumb, or no terminal: plain lines, one per stage
+  BENCHMARK_FILTER, BENCHMARK_OUT, BENCHMARK_OUT_FORMAT, BENCHMARK_FORMAT,
+  BENCHMARK_REPETITIONS, BENCHMARK_LIST_TESTS: as the flags of run
+  GTEST_TOTAL_SHARDS, GTEST_SHARD_INDEX (from 0): as --shard
+  XDG_CACHE_HOME  where the speeds of this machine are kept (~/.cache)
   PHYSINV_PUBLISHED_DIR  the papers' numbers (reports/published)
 )";
 
 using Verb = ExitCode (*)(const Arguments&);
 
 const std::map<std::string, Verb>& verbs() {
-  static const std::map<std::string, Verb> all = {{"run", run_verb},
-                                                  {"list", list_verb},
-                                                  {"report", report_verb},
-                                                  {"results", results_verb},
-                                                  {"verify", verify_verb},
-                                                  {"merge", merge_verb},
-                                                  {"compare", compare_verb},
-                                                  {"plan", plan_verb},
-                                                  {"kernels", kernels_verb}};
+  static const std::map<std::string, Verb> all = {
+      {"run", run_verb},
+      {"list", list_verb},
+      {"report", report_verb},
+      {"results", results_verb},
+      {"verify", verify_verb},
+      {"merge", merge_verb},
+      {"compare", compare_verb},
+      {"plan", plan_verb},
+      {"export", export_verb},
+      {"completion", completion_verb},
+      {"kernels", kernels_verb}};
   return all;
 }
 
@@ -75,6 +84,10 @@ ExitCode dispatch(Arguments arguments) {
     }
     if (!arguments.empty() && arguments[0] == "--version") {
       fmt::print("{}\n", version_text());
+      return ExitCode::good;
+    }
+    if (!arguments.empty() && arguments[0] == "--list-verbs") {
+      for (const auto& [name, call] : verbs()) fmt::print("{}\n", name);
       return ExitCode::good;
     }
     return run_verb(arguments);

@@ -19,6 +19,8 @@ ExitCode results_verb(const Arguments& arguments);
 ExitCode verify_verb(const Arguments& arguments);
 ExitCode merge_verb(const Arguments& arguments);
 ExitCode compare_verb(const Arguments& arguments);
+ExitCode export_verb(const Arguments& arguments);
+ExitCode completion_verb(const Arguments& arguments);
 ExitCode plan_verb(const Arguments& arguments);
 ExitCode kernels_verb(const Arguments& arguments);
 
