@@ -9,39 +9,43 @@ namespace {
 constexpr std::string_view kBash =
     R"sh(# source <(physinv-bench completion bash)
 _physinv_bench() {
-  local word=${COMP_WORDS[COMP_CWORD]} verb=run i
-  COMPREPLY=()
+  local program=${COMP_WORDS[0]} word=${COMP_WORDS[COMP_CWORD]} verb=run i words
   for ((i = 1; i < COMP_CWORD; ++i)); do
     [[ ${COMP_WORDS[i]} == -* ]] || { verb=${COMP_WORDS[i]}; break; }
   done
+  COMPREPLY=()
   if [[ $word == -* ]]; then
-    COMPREPLY=($(compgen -W "$("${COMP_WORDS[0]}" "$verb" --list-flags 2>/dev/null)" -- "$word"))
-  elif ((COMP_CWORD == 1));
-then COMPREPLY = ($(compgen -
-                    W "$(" $ {
-                      COMP_WORDS[0]
-                    } " --list-verbs 2>/dev/null)" --"$word")) else COMPREPLY =
-    ($(compgen - f-- "$word")) fi
+    words=$("$program" "$verb" --list-flags 2>/dev/null)
+    COMPREPLY=($(compgen -W "$words" -- "$word"))
+  elif ((COMP_CWORD == 1)); then
+    words=$("$program" --list-verbs 2>/dev/null)
+    COMPREPLY=($(compgen -W "$words" -- "$word"))
+  else
+    COMPREPLY=($(compgen -f -- "$word"))
+  fi
 }
 complete -o filenames -F _physinv_bench physinv-bench bench
 )sh";
 
-constexpr std::string_view kZsh = R"sh(#compdef physinv-bench bench
-# physinv-bench completion zsh > ~/.zfunc/_physinv-bench
+constexpr std::string_view kZsh =
+    R"sh(#compdef physinv-bench bench
+# source <(physinv-bench completion zsh)
 _physinv_bench() {
   local verb=run
   (( CURRENT > 2 )) && [[ $words[2] != -* ]] && verb=$words[2]
   if [[ $PREFIX == -* ]]; then
     compadd -- ${(f)"$($words[1] $verb --list-flags 2>/dev/null)"}
-  elif (( CURRENT == 2 ));
-then compadd-- $ { (f) "$($words[1] --list-verbs 2>/dev/null)" }
-else _files fi
+  elif (( CURRENT == 2 )); then
+    compadd -- ${(f)"$($words[1] --list-verbs 2>/dev/null)"}
+  else
+    _files
+  fi
 }
 compdef _physinv_bench physinv-bench bench
 )sh";
 
 constexpr std::string_view kFish =
-    R"sh(# physinv-bench completion fish > ~/.config/fish/completions/physinv-bench.fish
+    R"sh(# physinv-bench completion fish | source
 function __physinv_bench_flags
   set -l words (commandline -opc)
   set -l verb run
@@ -50,8 +54,10 @@ function __physinv_bench_flags
   end
   $words[1] $verb --list-flags 2>/dev/null
 end
-complete -c physinv-bench -n __fish_use_subcommand -a '(physinv-bench --list-verbs 2>/dev/null)'
-complete -c physinv-bench -n 'string match -q -- "-*" (commandline -ct)' -a '(__physinv_bench_flags)'
+complete -c physinv-bench -n __fish_use_subcommand \
+  -a '(physinv-bench --list-verbs 2>/dev/null)'
+complete -c physinv-bench -n 'string match -q -- "-*" (commandline -ct)' \
+  -a '(__physinv_bench_flags)'
 )sh";
 
 }  // namespace
