@@ -32,6 +32,8 @@ physinv-bench merge OUT SHARD..  join the results of shards
 physinv-bench compare A B..      campaigns side by side, what changed most
 physinv-bench export RESULTS     for dashboards: Google Benchmark, GitHub, Bencher
 physinv-bench completion SHELL   completion for bash, zsh or fish
+physinv-bench submit --slurm DIR  a campaign as an array of Slurm jobs
+physinv-bench status DIR         how it stands
 physinv-bench kernels [flags]    kernel benchmarks (flags of Google Benchmark)
 physinv-bench VERB --help        flags of a verb
 physinv-bench --version          version and build
@@ -70,6 +72,8 @@ const std::map<std::string, Verb>& verbs() {
       {"compare", compare_verb},
       {"plan", plan_verb},
       {"export", export_verb},
+      {"submit", submit_verb},
+      {"status", status_verb},
       {"completion", completion_verb},
       {"kernels", kernels_verb}};
   return all;

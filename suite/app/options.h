@@ -15,7 +15,7 @@ namespace physinv {
 /// Flags that choose cases.
 struct Selection {
   std::vector<std::string> filters, sets;
-  std::string profile = "quick", seeds, shard;
+  std::string profile = "quick", seeds, shard, list;
 
   /// Its flags, followed by a verb's own.
   std::vector<Flag> flags(const std::vector<Flag>& own = {});

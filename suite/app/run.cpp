@@ -73,6 +73,7 @@ struct RunFlags {
             {"set", selection.sets},
             {"seeds", selection.seeds},
             {"shard", selection.shard},
+            {"cases", selection.list},
             {"jobs", campaign.jobs},
             {"threads", campaign.threads},
             {"time_budget", campaign.time_budget},

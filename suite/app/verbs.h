@@ -21,6 +21,8 @@ ExitCode merge_verb(const Arguments& arguments);
 ExitCode compare_verb(const Arguments& arguments);
 ExitCode export_verb(const Arguments& arguments);
 ExitCode completion_verb(const Arguments& arguments);
+ExitCode submit_verb(const Arguments& arguments);
+ExitCode status_verb(const Arguments& arguments);
 ExitCode plan_verb(const Arguments& arguments);
 ExitCode kernels_verb(const Arguments& arguments);
 

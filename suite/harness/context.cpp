@@ -1,10 +1,7 @@
 #include "suite/harness/context.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <sched.h>
-#include <spawn.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
@@ -15,9 +12,8 @@
 #include <vector>
 
 #include "suite/harness/build_info.h"
+#include "suite/harness/process.h"
 #include "suite/harness/run_case.h"
-
-extern char** environ;
 
 namespace physinv {
 namespace {
@@ -31,37 +27,6 @@ std::string first_line(const fs::path& path) {
   std::string line;
   std::getline(file, line);
   return line;
-}
-
-/// Output of a program found in PATH, nothing if it fails.
-std::string output_of(std::vector<std::string> arguments) {
-  int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) return {};
-  std::vector<char*> argv;
-  for (auto& a : arguments) argv.push_back(a.data());
-  argv.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, ends[1], 1);
-  posix_spawn_file_actions_addopen(&actions, 2, "/dev/null", O_WRONLY, 0);
-  pid_t pid = 0;
-  const int error =
-      posix_spawnp(&pid, argv[0], &actions, nullptr, argv.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  close(ends[1]);
-  std::string text;
-  if (error == 0) {
-    std::array<char, 256> chunk;
-    ssize_t got = 0;
-    while ((got = read(ends[0], chunk.data(), chunk.size())) > 0)
-      text.append(chunk.data(), static_cast<std::size_t>(got));
-    int status = 0;
-    waitpid(pid, &status, 0);
-    if (status != 0) text.clear();
-  }
-  close(ends[0]);
-  while (!text.empty() && text.back() == '\n') text.pop_back();
-  return text;
 }
 
 /// Value of the first "key : value" line of /proc/cpuinfo.
@@ -142,15 +107,16 @@ int available_cores() {
 std::string processor_name() { return cpuinfo("model name"); }
 
 std::string git_revision() {
-  const std::string revision = output_of({"git",
-                                          "-C",
-                                          PHYSINV_SOURCE_DIR,
-                                          "describe",
-                                          "--always",
-                                          "--dirty=+dirty",
-                                          "--abbrev=40",
-                                          "--exclude=*"});
-  return revision.empty() ? "unknown" : revision;
+  const ProgramOutput described = run_program({"git",
+                                               "-C",
+                                               PHYSINV_SOURCE_DIR,
+                                               "describe",
+                                               "--always",
+                                               "--dirty=+dirty",
+                                               "--abbrev=40",
+                                               "--exclude=*"});
+  return described.status == 0 && !described.text.empty() ? described.text
+                                                          : "unknown";
 }
 
 json machine_context(const std::string& revision) {
