@@ -361,8 +361,10 @@ std::string report_html(const std::vector<Section>& sections,
   out += kPageCss;
   out +=
       "</style>\n</head>\n<body>\n<div class=\"page\">\n"
-      "<header id=\"top\">\n<h1>Physics inverse problems: what is "
-      "reproduced</h1>\n";
+      "<header id=\"top\">\n<h1>" +
+      html(provenance.value("heading",
+                            "Physics inverse problems: what is reproduced")) +
+      "</h1>\n";
   out += summary_html(provenance) + overview_html(sections, anchors) +
          "</header>\n" + contents_html(sections, anchors) + "<main>\n";
   for (std::size_t k = 0; k < sections.size(); ++k) {

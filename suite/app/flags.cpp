@@ -69,6 +69,11 @@ bool parse(const std::string& program,
   CLI::App app(about, program);
   for (const Flag& flag : flags) add(app, flag);
   app.get_formatter()->column_width(26);
+  if (arguments == Arguments{"--list-flags"}) {  // for completion
+    for (const CLI::Option* option : app.get_options())
+      for (const auto& name : option->get_lnames()) fmt::print("--{}\n", name);
+    return false;
+  }
   try {
     app.parse(Arguments(arguments.rbegin(), arguments.rend()));
   } catch (const CLI::CallForHelp&) {

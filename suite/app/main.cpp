@@ -24,12 +24,18 @@ constexpr std::string_view kHelp =
 
 physinv-bench [run] [flags]      run cases (the default verb)
 physinv-bench list [flags]       the cases, their stages and estimated work
+physinv-bench plan [flags]       time, memory and disk of a selection
 physinv-bench report RESULTS     tables, plots and claims of a campaign
 physinv-bench results           a page of all published campaigns
 physinv-bench verify RESULTS     recompute every final loss
 physinv-bench merge OUT SHARD..  join the results of shards
 physinv-bench baseline RESULTS   what a campaign came to, as a text for reviews
 physinv-bench gate [flags]       runs a baseline's cases: worse? slower?
+physinv-bench compare A B..      campaigns side by side, what changed most
+physinv-bench export RESULTS     for dashboards: Google Benchmark, GitHub, Bencher
+physinv-bench completion SHELL   completion for bash, zsh or fish
+physinv-bench submit --slurm DIR  a campaign as an array of Slurm jobs
+physinv-bench status DIR         how it stands
 physinv-bench kernels [flags]    kernel benchmarks (flags of Google Benchmark)
 physinv-bench VERB --help        flags of a verb
 physinv-bench --version          version and build
@@ -49,21 +55,32 @@ environment
   COLUMNS    width of the live table
   CI, TERM=dumb, or no terminal: plain lines, one per stage
   PHYSINV_COUNT  the program whose instructions gate counts
+  BENCHMARK_FILTER, BENCHMARK_OUT, BENCHMARK_OUT_FORMAT, BENCHMARK_FORMAT,
+  BENCHMARK_REPETITIONS, BENCHMARK_LIST_TESTS: as the flags of run
+  GTEST_TOTAL_SHARDS, GTEST_SHARD_INDEX (from 0): as --shard
+  XDG_CACHE_HOME  where the speeds of this machine are kept (~/.cache)
   PHYSINV_PUBLISHED_DIR  the papers' numbers (reports/published)
 )";
 
 using Verb = ExitCode (*)(const Arguments&);
 
 const std::map<std::string, Verb>& verbs() {
-  static const std::map<std::string, Verb> all = {{"run", run_verb},
-                                                  {"list", list_verb},
-                                                  {"report", report_verb},
-                                                  {"results", results_verb},
-                                                  {"verify", verify_verb},
-                                                  {"merge", merge_verb},
-                                                  {"kernels", kernels_verb},
-                                                  {"baseline", baseline_verb},
-                                                  {"gate", gate_verb}};
+  static const std::map<std::string, Verb> all = {
+      {"run", run_verb},
+      {"list", list_verb},
+      {"plan", plan_verb},
+      {"report", report_verb},
+      {"results", results_verb},
+      {"verify", verify_verb},
+      {"merge", merge_verb},
+      {"baseline", baseline_verb},
+      {"gate", gate_verb},
+      {"compare", compare_verb},
+      {"export", export_verb},
+      {"submit", submit_verb},
+      {"status", status_verb},
+      {"completion", completion_verb},
+      {"kernels", kernels_verb}};
   return all;
 }
 
@@ -76,6 +93,10 @@ ExitCode dispatch(Arguments arguments) {
     }
     if (!arguments.empty() && arguments[0] == "--version") {
       fmt::print("{}\n", version_text());
+      return ExitCode::good;
+    }
+    if (!arguments.empty() && arguments[0] == "--list-verbs") {
+      for (const auto& [name, call] : verbs()) fmt::print("{}\n", name);
       return ExitCode::good;
     }
     return run_verb(arguments);

@@ -5,6 +5,10 @@
 
 #include <algorithm>
 #include <charconv>
+#include <map>
+#include <sstream>
+
+#include "suite/results/file.h"
 
 namespace physinv {
 namespace {
@@ -99,6 +103,30 @@ std::string filter_example(const std::string& profile) {
   return "--filter=-NAME";
 }
 
+/// In the order of the file. All of them must be there: it is part of a whole.
+std::vector<Case> listed(std::vector<Case> cases, const std::string& file) {
+  if (!std::filesystem::is_regular_file(file))
+    throw UsageError(fmt::format(
+        "there is no file '{}'; --cases takes names of cases, one a line",
+        file));
+  std::map<std::string, Case*> by_name;
+  for (Case& c : cases) by_name[c.info.name] = &c;
+  std::istringstream lines(read_file(file));
+  std::vector<Case> own;
+  std::string name;
+  while (std::getline(lines, name)) {
+    if (name.empty()) continue;
+    const auto at = by_name.find(name);
+    if (at == by_name.end())
+      throw UsageError(fmt::format(
+          "{} names {}, which is not in the selection; 'list' shows what is",
+          file,
+          name));
+    own.push_back(*at->second);
+  }
+  return own;
+}
+
 }  // namespace
 
 std::vector<Flag> Selection::flags(const std::vector<Flag>& own) {
@@ -124,7 +152,11 @@ std::vector<Flag> Selection::flags(const std::vector<Flag>& own) {
       {"--shard",
        "part I (from 1) of N: every N-th case of the selection",
        &shard,
-       "I/N"}};
+       "I/N"},
+      {"--cases",
+       "of the selection those whose names stand in this file, one a line",
+       &list,
+       "FILE"}};
   all.insert(all.end(), own.begin(), own.end());
   return all;
 }
@@ -139,6 +171,7 @@ std::vector<Case> Selection::cases(std::vector<PlannedCase>* campaign) const {
   auto chosen = filter.apply(std::move(all));
   if (campaign != nullptr)
     for (const Case& c : chosen) campaign->push_back(planned(c));
+  if (!chosen.empty() && !list.empty()) return listed(std::move(chosen), list);
   if (!chosen.empty()) return part.apply(std::move(chosen));
 
   std::string asked;
@@ -169,6 +202,21 @@ Overrides parse_overrides(const std::vector<std::string>& sets,
   }
   if (!seeds.empty()) set(o, "seeds", seeds);
   return o;
+}
+
+double parse_duration(const std::string& flag, const std::string& text) {
+  double value{};
+  const char* end = text.data() + text.size();
+  const auto [at, error] = std::from_chars(text.data(), end, value);
+  const std::string_view unit(at, static_cast<std::size_t>(end - at));
+  const double seconds = unit.empty() || unit == "s"    ? 1
+                         : unit == "m" || unit == "min" ? 60
+                         : unit == "h"                  ? 3600
+                                                        : 0;
+  if (error != std::errc() || !(value * seconds > 0) || value > 1e9)
+    throw UsageError(
+        fmt::format("{}={} is no time; 90, 90s, 10m and 2h are", flag, text));
+  return value * seconds;
 }
 
 Shard parse_shard(const std::string& text) {

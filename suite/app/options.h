@@ -15,7 +15,7 @@ namespace physinv {
 /// Flags that choose cases.
 struct Selection {
   std::vector<std::string> filters, sets;
-  std::string profile = "quick", seeds, shard;
+  std::string profile = "quick", seeds, shard, list;
 
   /// Its flags, followed by a verb's own.
   std::vector<Flag> flags(const std::vector<Flag>& own = {});
@@ -28,6 +28,9 @@ struct Selection {
 /// "n=8,32" and the like into overrides; throws UsageError.
 Overrides parse_overrides(const std::vector<std::string>& sets,
                           const std::string& seeds);
+
+/// "90", "90s", "10m", "2h" in seconds; throws UsageError.
+double parse_duration(const std::string& flag, const std::string& text);
 
 /// "2/3"; throws UsageError.
 Shard parse_shard(const std::string& text);

@@ -1,47 +1,69 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
-#include "suite/app/options.h"
+#include "suite/app/export.h"
+#include "suite/app/habits.h"
+#include "suite/core/clock.h"
+#include "suite/core/hash.h"
 #include "suite/harness/campaign.h"
 #include "suite/harness/context.h"
+#include "suite/planning/budget.h"
+#include "suite/planning/predict.h"
+#include "suite/results/exports.h"
+#include "suite/results/file.h"
 #include "suite/results/results.h"
 
 namespace physinv {
 namespace {
 
+/// Shorter budgets are not spent on measuring speeds.
+constexpr double kBudgetForTrials = 60;
+
 struct RunFlags {
   Selection selection;
+  Habits habits;
   CampaignOptions campaign;
-  std::string out;
+  std::string out, budget;
   int jobs = 0;
   bool dry = false;
 
   std::vector<Flag> flags() {
-    return selection.flags(
-        {{"--jobs", "worker processes; default: cores / threads", &jobs},
-         {"--threads",
-          "threads inside a case (default 1); results do not change",
-          &campaign.threads},
-         {"--time-budget",
-          "start no further case after so many seconds; the cases not "
-          "run are named (exit 8), and the next run goes on with them",
-          &campaign.time_budget,
-          "SECONDS"},
-         {"--out", "where to; default: results/<profile>", &out, "DIR"},
-         {"--resume,!--fresh",
-          "reuse finished stages (default), or run the selected cases again",
-          &campaign.resume},
-         {"--dry-run", "say what would run and what is reused", &dry},
-         {"--trace",
-          "record a hash of all iterates of the stages that run",
-          &campaign.trace}});
+    std::vector<Flag> own = {
+        {"--jobs", "worker processes; default: cores / threads", &jobs},
+        {"--threads",
+         "threads inside a case (default 1); results do not change",
+         &campaign.threads},
+        {"--time-budget",
+         "start no case that would end later, such as 10m: first every method "
+         "on one seed, then more seeds where the ranking is undecided; what "
+         "is "
+         "left out is named (exit 10), and the next run goes on with it",
+         &budget,
+         "TIME"},
+        {"--out", "where to; default: results/<profile>", &out, "DIR"},
+        {"--resume,!--fresh",
+         "reuse finished stages (default), or run the selected cases again",
+         &campaign.resume},
+        {"--dry-run", "say what would run and what is reused", &dry},
+        {"--trace",
+         "record a hash of all iterates of the stages that run",
+         &campaign.trace}};
+    const auto more = habits.flags();
+    own.insert(own.end(), more.begin(), more.end());
+    return selection.flags(own);
   }
 
   void complete() {
     if (jobs == 0) jobs = std::max(1, available_cores() / campaign.threads);
     campaign.jobs = jobs;
+    habits.apply(selection);
+    if (!budget.empty())
+      campaign.time_budget = parse_duration("--time-budget", budget);
     campaign.out = out.empty() ? "results/" + selection.profile : out;
   }
 
@@ -51,6 +73,7 @@ struct RunFlags {
             {"set", selection.sets},
             {"seeds", selection.seeds},
             {"shard", selection.shard},
+            {"cases", selection.list},
             {"jobs", campaign.jobs},
             {"threads", campaign.threads},
             {"time_budget", campaign.time_budget},
@@ -59,6 +82,14 @@ struct RunFlags {
             {"out", campaign.out.string()}};
   }
 };
+
+/// Losses bit by bit.
+std::string loss_bits(const StageRecord& s) {
+  return hex64(
+      hash_bytes(s.loss.data(),
+                 static_cast<std::size_t>(s.loss.size()) * sizeof(double),
+                 0));
+}
 
 /// The records of these cases, out of all that the store holds.
 std::vector<CaseRecord> own_records(std::vector<CaseRecord> cases,
@@ -69,8 +100,55 @@ std::vector<CaseRecord> own_records(std::vector<CaseRecord> cases,
   return cases;
 }
 
-void print_result(const RunFlags& flags, const CampaignResult& r) {
-  fmt::print("{} stages run, {} reused{}; {}, bookkeeping {}{}\n",
+/// What the cases will take, by short runs where the budget has room for them;
+/// else only in proportion, by their counted operations.
+std::vector<double> seconds_of(const std::vector<Case>& cases, double budget) {
+  std::vector<double> seconds;
+  if (budget < kBudgetForTrials) {
+    for (const Case& c : cases)
+      seconds.push_back(std::accumulate(
+          c.stage_operations.begin(), c.stage_operations.end(), 0.0));
+    return seconds;
+  }
+  Trials trials;
+  for (const Cost& cost : predict(cases, trials))
+    seconds.push_back(cost.seconds);
+  trials.save();
+  return seconds;
+}
+
+/// A coarse pass first; the budget counts from here on.
+void follow_budget(CampaignOptions& campaign, const std::vector<Case>& cases) {
+  const double begin = now().wall;
+  auto seconds = seconds_of(cases, campaign.time_budget);
+  if (campaign.time_budget >= kBudgetForTrials) {
+    campaign.expected_seconds = seconds;
+    campaign.time_budget =
+        std::max(1e-6, campaign.time_budget - (now().wall - begin));
+  }
+  campaign.order = [cases, seconds = std::move(seconds)](
+                       std::vector<std::size_t> queue,
+                       const Finished& finished) {
+    return budget_order(cases, std::move(queue), finished, seconds);
+  };
+}
+
+/// Cases per experiment and n, where the budget left some out.
+void print_left_out(std::FILE* stream, const std::vector<std::string>& names) {
+  std::map<std::string, std::vector<std::string>> seeds;
+  for (const auto& name : names) {
+    const auto at = name.rfind("/seed=");
+    seeds[name.substr(0, at)].push_back(name.substr(at + 6));
+  }
+  for (const auto& [chain, left] : seeds)
+    fmt::print(stream, "  {} seeds {}\n", chain, fmt::join(left, ", "));
+}
+
+void print_result(std::FILE* stream,
+                  const RunFlags& flags,
+                  const CampaignResult& r) {
+  fmt::print(stream,
+             "{} stages run, {} reused{}; {}, bookkeeping {}{}\n",
              r.stages_run,
              r.stages_reused,
              r.origins.empty() ? "" : " (" + to_text(r.origins) + ")",
@@ -81,18 +159,50 @@ void print_result(const RunFlags& flags, const CampaignResult& r) {
                                                (r.bookkeeping + r.stage_cpu))
                              : "");
   if (!r.not_run.empty()) {
-    fmt::print("{}: {} cases not run:\n",
+    fmt::print(stream,
+               "{}: {} cases not run:\n",
                r.interrupted ? "interrupted" : "out of time",
                r.not_run.size());
-    for (const auto& name : r.not_run) fmt::print("  {}\n", name);
+    print_left_out(stream, r.not_run);
   }
-  fmt::print("results: {}\n", flags.campaign.out.string());
+  fmt::print(stream, "results: {}\n", flags.campaign.out.string());
+}
+
+/// Runs the cases again beside the store, only for their times.
+Repetitions repeat(const Prepared& prepared,
+                   const RunFlags& flags,
+                   const std::vector<CaseRecord>& cases,
+                   const Screen& screen) {
+  std::map<std::string, std::string> hashes;
+  for (const CaseRecord& c : cases)
+    for (const StageRecord& s : c.stages)
+      hashes[c.info.name + "/" + s.stage] = loss_bits(s);
+  Repetitions all;
+  CampaignOptions again = flags.campaign;
+  again.out = flags.campaign.out / "repetition";
+  again.resume = false;
+  for (int k = 1; k < flags.habits.repetitions; ++k) {
+    const auto r = run_campaign(prepared, again, flags.json(), screen);
+    for (const CaseRecord& c : r.cases) {
+      for (const StageRecord& s : c.stages) {
+        const std::string name = c.info.name + "/" + s.stage;
+        if (!has_result(s) || !hashes.contains(name)) continue;
+        if (loss_bits(s) != hashes[name])
+          throw std::logic_error(name + " has other results when repeated");
+        all[name].push_back(s.clocks.solve);
+      }
+    }
+    std::filesystem::remove_all(again.out);
+    if (r.interrupted) break;
+  }
+  return all;
 }
 
 }  // namespace
 
 ExitCode run_verb(const Arguments& arguments) {
   RunFlags flags;
+  flags.habits.read_environment();
   if (!parse("physinv-bench run",
              "Runs the cases of a profile and writes their results. The "
              "default verb.\nExit codes and environment: physinv-bench --help",
@@ -100,17 +210,37 @@ ExitCode run_verb(const Arguments& arguments) {
              arguments))
     return ExitCode::good;
   flags.complete();
-  Prepared prepared = prepare(flags.selection.cases(&flags.campaign.campaign));
+  auto cases = flags.selection.cases(&flags.campaign.campaign);
+  if (flags.habits.list) {
+    for (const Case& c : cases) fmt::print("{}\n", c.info.name);
+    return ExitCode::good;
+  }
+  Prepared prepared = prepare(std::move(cases));
   if (flags.dry) {
     dry_run(prepared, flags.campaign, stdout);
     return ExitCode::good;
   }
+  if (flags.campaign.time_budget > 0)
+    follow_budget(flags.campaign, prepared.cases);
   std::vector<std::string> names;
   for (const Case& c : prepared.cases) names.push_back(c.info.name);
-  CampaignResult result = run_campaign(
-      std::move(prepared), flags.campaign, flags.json(), Screen::of(stdout));
-  fmt::print("{}", summary_table(own_records(std::move(result.cases), names)));
-  print_result(flags, result);
+  std::FILE* stream = flags.habits.format == "console" ? stdout : stderr;
+  const Screen screen = Screen::of(stream);
+  const bool repeats = flags.habits.repetitions > 1;
+  CampaignResult result = run_campaign(repeats ? prepared : std::move(prepared),
+                                       flags.campaign,
+                                       flags.json(),
+                                       screen);
+  if (repeats && !result.interrupted)
+    write_repetitions(flags.campaign.out,
+                      repeat(prepared, flags, result.cases, screen));
+  fmt::print(
+      stream, "{}", summary_table(own_records(std::move(result.cases), names)));
+  print_result(stream, flags, result);
+  const std::string& out = flags.campaign.out.string();
+  if (stream != stdout) fmt::print("{}", exported(out, flags.habits.format));
+  if (!flags.habits.out.empty())
+    write_atomically(flags.habits.out, exported(out, flags.habits.out_format));
   if (result.interrupted) return ExitCode::interrupted;
   if (!result.failed.empty()) {
     throw ExitError(

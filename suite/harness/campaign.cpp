@@ -13,6 +13,7 @@
 #include "suite/core/disturbance.h"
 #include "suite/harness/context.h"
 #include "suite/harness/keys.h"
+#include "suite/harness/run_case.h"
 #include "suite/harness/workers.h"
 #include "suite/results/store.h"
 
@@ -123,6 +124,7 @@ class Campaign {
         stored_stages(store_, cases_[i], options_.resume ? nullptr : &names_);
     for (std::size_t k = 0; k < found.size(); ++k) {
       StageRecord& record = found[k];
+      note_end(i, record);
       if (counted_.insert({i, k}).second) {
         ++result_.stages_reused;
         ++result_.origins[{record.finished.substr(0, 10), record.revision}];
@@ -167,16 +169,24 @@ class Campaign {
   }
 
   bool out_of_time() const {
-    return options_.time_budget > 0 &&
-           now().wall - begin_ > options_.time_budget;
+    return options_.time_budget > 0 && spent() > options_.time_budget;
+  }
+
+  double spent() const { return now().wall - begin_; }
+
+  /// Would a case that starts now end within the budget?
+  bool fits(std::size_t i) const {
+    return options_.time_budget <= 0 || options_.expected_seconds.empty() ||
+           spent() + options_.expected_seconds[i] <= options_.time_budget;
   }
 
   void hand_out(Workers& workers) {
     for (std::size_t w = 0; w < workers.count() && !out_of_time(); ++w) {
       if (!workers.idle(w)) continue;
+      if (options_.order) queue_ = options_.order(std::move(queue_), finished_);
       const auto next =
           std::find_if(queue_.begin(), queue_.end(), [&](std::size_t i) {
-            return !shares_running(i);
+            return !shares_running(i) && fits(i);
           });
       if (next == queue_.end()) return;
       const std::size_t i = *next;
@@ -230,10 +240,17 @@ class Campaign {
   void keep(std::size_t i, const StageRecord& record) {
     store_.append(cases_[i].info, data_[i], record);
     ++result_.stages_run;
+    note_end(i, record);
     result_.stage_cpu += record.clocks.total().cpu;
     if (record.stop == Stop::failed)
       result_.failed.push_back(fmt::format(
           "{} {}: {}", record.case_name, record.stage, record.message));
+  }
+
+  void note_end(std::size_t i, const StageRecord& record) {
+    const auto stages = static_cast<Index>(cases_[i].info.stages.size());
+    if (record.position + 1 == stages && has_result(record))
+      finished_[i] = median_finite(record.loss);
   }
 
   /// The stage at `position` failed without a record; those after it are
@@ -284,6 +301,7 @@ class Campaign {
   std::map<std::size_t, std::size_t> running_;  // worker -> case
   std::map<std::size_t, Index> positions_;      // worker -> stage
   std::set<std::pair<std::size_t, std::size_t>> counted_;  // reused stages
+  std::map<std::size_t, double> finished_;  // final median loss of a case
   double overhead_ = 0;  // CPU seconds of workers outside of stages
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -20,6 +21,15 @@ struct CampaignOptions {
   int threads = 1;  ///< inside a case
   /// Seconds after which no further case is started; 0 for none.
   double time_budget = 0;
+  /// With a budget: the queue (indices of cases) as it should go on, given the
+  /// final median losses of the cases that finished.
+  std::function<std::vector<std::size_t>(
+      std::vector<std::size_t> queue,
+      const std::map<std::size_t, double>& finished)>
+      order;
+  /// With a budget, if known: what each case will take. One that would not
+  /// end in time is not started.
+  std::vector<double> expected_seconds;
   /// Reuse finished stages of the same content key; otherwise what the store
   /// holds of these cases, and of no other, is deleted first.
   bool resume = true;

@@ -8,6 +8,9 @@
 
 #include <array>
 #include <cerrno>
+#include <cstdlib>
+#include <filesystem>
+#include <sstream>
 
 extern char** environ;
 
@@ -67,6 +70,16 @@ Ended run_child(std::vector<std::string> arguments) {
   }
   close(out[0]), close(err[0]);
   return ended;
+}
+
+bool has_program(const std::string& name) {
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path == nullptr ? "" : path);
+  std::string folder;
+  while (std::getline(folders, folder, ':'))
+    if (access((std::filesystem::path(folder) / name).c_str(), X_OK) == 0)
+      return true;
+  return false;
 }
 
 }  // namespace physinv

@@ -11,6 +11,9 @@ struct Ended {
   std::string output, errors;
 };
 
+/// Does PATH have it?
+bool has_program(const std::string& name);
+
 /// Finds the program in PATH unless it has a slash. Nothing stands in its
 /// standard input.
 Ended run_child(std::vector<std::string> arguments);

@@ -113,6 +113,8 @@ int available_cores() {
   return std::max(1, CPU_COUNT(&set));
 }
 
+std::string processor_name() { return cpuinfo("model name"); }
+
 std::string git_revision() {
   const std::string revision = output_of({"git",
                                           "-C",
@@ -143,7 +145,7 @@ json machine_context(const std::string& revision) {
        build.build_type == "Release" || build.build_type == "RelWithDebInfo"
            ? "release"
            : "debug"},
-      {"cpu_model", cpuinfo("model name")},
+      {"cpu_model", processor_name()},
       {"instruction_set", build.instruction_set},
       {"compiler",
        fmt::format("{} {}", build.compiler, build.compiler_version)},

@@ -10,6 +10,9 @@ namespace physinv {
 /// Processors this process may use.
 int available_cores();
 
+/// As the processor calls itself; empty if unknown.
+std::string processor_name();
+
 /// Revision of the sources, "+dirty" appended if a tracked file differs;
 /// "unknown" without git. Asks git, so some milliseconds.
 std::string git_revision();

@@ -32,8 +32,11 @@ inline constexpr std::string_view kExitCodeHelp =
     3  nothing matched; the nearest names are shown
     4  a case failed (exception, out of memory), or verify found a mismatch;
        divergence is a result
-    5  gate: a stage is worse than the baseline says, or missing
-    6  gate: slower, by instructions or by the clock
+    5  gate: a stage is worse than the baseline says, or missing; compare
+       --fail-on: losses, statuses, claims or work got worse, or runs are
+       missing
+    6  slower: gate, by instructions or by the clock; compare --fail-on, where
+       nothing else got worse
     7  a gating claim is not reproduced and not listed as expected to fail
        (report --check)
     8  gate --strict: the clock came to no verdict within its budget

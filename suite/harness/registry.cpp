@@ -72,13 +72,28 @@ CaseSize size_of(const Experiment& e) {
   return size;
 }
 
+/// Name and counted work, from everything else.
+void complete(Case& c, CaseSize size) {
+  const CaseInfo& i = c.info;
+  c.info.name = fmt::format("{}/{}/n={}", i.experiment, i.method, i.n);
+  if (has_precision(*c.method) && i.precision == Precision::f64)
+    c.info.name += "/precision=f64";
+  c.info.name += fmt::format("/seed={}", i.seed);
+  size.n = i.n;
+  c.stage_operations.clear();
+  for (std::size_t k = 0; k < c.method->chain.size(); ++k) {
+    size.iterations = c.stage_iterations[k];
+    c.stage_operations.push_back(c.method->chain[k]->operations(size));
+  }
+}
+
 Case make_case(const std::shared_ptr<const Experiment>& e,
                const Method& method,
                const std::string& profile,
                const Row& row,
                Index n,
                std::uint64_t seed,
-               CaseSize size) {
+               const CaseSize& size) {
   Case c;
   c.experiment = e;
   c.method = &method;
@@ -88,19 +103,14 @@ Case make_case(const std::shared_ptr<const Experiment>& e,
   c.info.n = n;
   c.info.seed = seed;
   c.info.precision = has_precision(method) ? row.precision : Precision::f64;
-  c.info.name = fmt::format("{}/{}/n={}", e->name, method.id, n);
-  if (has_precision(method) && row.precision == Precision::f64)
-    c.info.name += "/precision=f64";
-  c.info.name += fmt::format("/seed={}", seed);
-  size.n = n;
   for (const auto& stage : method.chain) {
-    size.iterations = stage->takes_row_iterations() && row.iterations > 0
-                          ? row.iterations
-                          : stage->default_iterations();
     c.info.stages.push_back(stage->name());
-    c.stage_iterations.push_back(size.iterations);
-    c.stage_operations.push_back(stage->operations(size));
+    c.stage_iterations.push_back(stage->takes_row_iterations() &&
+                                         row.iterations > 0
+                                     ? row.iterations
+                                     : stage->default_iterations());
   }
+  complete(c, size);
   return c;
 }
 
@@ -269,6 +279,15 @@ void check_claims(const Registry& registry,
 }
 
 }  // namespace
+
+Case resized(const Case& c, Index n, std::vector<Index> iterations) {
+  Case out = c;
+  out.info.n = n;
+  out.info.keys.clear();
+  out.stage_iterations = std::move(iterations);
+  complete(out, size_of(*c.experiment));
+  return out;
+}
 
 std::string to_text(Needs needs) {
   constexpr std::pair<Needs, std::string_view> kNames[] = {

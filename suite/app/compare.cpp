@@ -1,0 +1,218 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "reports/report.h"
+#include "reports/tables.h"
+#include "suite/app/installed.h"
+#include "suite/app/load.h"
+#include "suite/app/options.h"
+#include "suite/compare/comparison.h"
+#include "suite/compare/pages.h"
+#include "suite/harness/judge.h"
+#include "suite/harness/progress.h"
+
+namespace physinv {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct CompareFlags {
+  std::vector<std::string> sides, fail_on;
+  std::string by = "seed", format = "text", out;
+  double factor = 1.5;
+  int lines = 30;
+};
+
+std::vector<JudgedClaim> claims_of(const Results& results,
+                                   const Published& published) {
+  std::vector<JudgedClaim> all;
+  for (const Overview& o : registry().overviews())
+    for (auto& c : judge(o.claims, {results, published, o.paper}, o.profiles))
+      all.push_back({o.paper, std::move(c)});
+  for (const auto& e : registry().experiments())
+    if (!results.sizes(e->name).empty())
+      for (auto& c : judge(*e, results, published))
+        all.push_back({e->name, std::move(c)});
+  return all;
+}
+
+/// "LABEL=DIR", or a directory that is its own label.
+Side read_side(const std::string& text) {
+  const auto at = text.find('=');
+  const bool labelled = at != std::string::npos && !fs::is_directory(text);
+  return {.label = labelled ? text.substr(0, at) : text,
+          .results = load(labelled ? text.substr(at + 1) : text).results,
+          .claims = {}};
+}
+
+std::vector<Side> read_sides(const CompareFlags& flags) {
+  std::vector<Side> sides;
+  for (const auto& text : flags.sides) sides.push_back(read_side(text));
+  if (flags.by == "commit") sides = sides_by_revision(sides);
+  if (sides.size() < 2)
+    throw UsageError(
+        flags.by == "commit"
+            ? "all stages are of one commit; results of two are compared"
+            : "one folder is no comparison; two or more are, or one of "
+              "several commits with --by=commit");
+  const Published published(published_directory());
+  for (Side& side : sides) side.claims = claims_of(side.results, published);
+  return sides;
+}
+
+By parse_by(const std::string& text) {
+  if (text == "method") return By::method;
+  if (text == "n") return By::n;
+  if (text == "seed" || text == "commit") return By::seed;
+  throw UsageError(fmt::format(
+      "--by={} is unknown; known are method, n, seed, commit", text));
+}
+
+constexpr const char* kFailOn = "loss, status, claims, work, time, missing";
+
+/// What of `what` got worse from the first side to another.
+bool fails(const std::string& what,
+           const Comparison& c,
+           const std::vector<ChangedClaim>& claims,
+           double factor) {
+  const auto any = [&](auto&& worse) {
+    return std::any_of(c.rows.begin(), c.rows.end(), [&](const Compared& row) {
+      return std::any_of(row.sides.begin(), row.sides.end(), [&](auto& side) {
+        return side && row.sides.front() && worse(*row.sides.front(), *side);
+      });
+    });
+  };
+  if (what == "loss")
+    return any([&](auto& a, auto& b) { return loss_ratio(a, b) > factor; });
+  if (what == "status")
+    return any([](auto& a, auto& b) {
+      return a.ends != b.ends || a.states != b.states;
+    });
+  if (what == "work")
+    return any([](auto& a, auto& b) {
+      return b.simulations() > a.simulations() || b.passes() > a.passes();
+    });
+  if (what == "time")
+    return any(
+        [&](auto& a, auto& b) { return b.seconds > factor * a.seconds; });
+  if (what == "claims") return !claims.empty();
+  if (what == "missing")
+    return std::any_of(c.rows.begin(), c.rows.end(), [](const auto& row) {
+      return row.missing();
+    });
+  throw UsageError(
+      fmt::format("--fail-on={} is unknown; known are {}", what, kFailOn));
+}
+
+void print(const CompareFlags& flags,
+           const Comparison& c,
+           const std::vector<ChangedClaim>& claims) {
+  const auto all = c.rows.size();
+  if (flags.format == "json") {
+    fmt::print("{}\n", to_json(c, claims).dump(1));
+  } else if (flags.format == "csv") {
+    fmt::print("{}", to_csv(changes_table(c, all)));
+  } else {
+    const bool markdown = flags.format == "markdown";
+    const auto width = static_cast<std::size_t>(Screen::of(stdout).columns);
+    std::vector<Table> tables = {
+        changes_table(c, static_cast<std::size_t>(flags.lines))};
+    if (!claims.empty()) tables.push_back(claims_table(claims, c.labels));
+    for (const Table& table : tables)
+      fmt::print("{}\n",
+                 markdown ? to_markdown(table) : render_text(table, width));
+    const auto same =
+        std::count_if(c.rows.begin(), c.rows.end(), [](auto& row) {
+          return std::all_of(row.sides.begin(), row.sides.end(), [](auto& r) {
+            return r && r->same_bits == r->stages;
+          });
+        });
+    fmt::print(
+        "{} lines compared, {} with the same bits everywhere; {} claims "
+        "changed their verdict\n",
+        all,
+        same,
+        claims.size());
+  }
+}
+
+}  // namespace
+
+ExitCode compare_verb(const Arguments& arguments) {
+  CompareFlags flags;
+  if (!parse("physinv-bench compare",
+             "Two or more result folders side by side, what changed most "
+             "first: losses, ends, times, work, claims. Runs pair by "
+             "experiment, method, n and seed. Exit 0 whatever changed, unless "
+             "--fail-on.",
+             {{"RESULTS",
+               "directories that 'run' wrote, or LABEL=DIRECTORY; the first "
+               "is what the others are held against",
+               &flags.sides},
+              {"--by",
+               "seed (every run, the default), n (over seeds), method (over n "
+               "and seeds), commit (sides are revisions instead of folders)",
+               &flags.by,
+               "WHAT"},
+              {"--format",
+               "text (default), markdown, csv or json",
+               &flags.format,
+               "FORMAT"},
+              {"--out",
+               "also write a report there: HTML, Markdown, tables as CSV and "
+               "JSON, losses over time, performance profiles",
+               &flags.out,
+               "DIR"},
+              {"--lines", "of the table (default 30)", &flags.lines},
+              {"--fail-on",
+               fmt::format("exit 5 if this got worse, 6 if only time did; "
+                           "repeats unite: {}",
+                           kFailOn),
+               &flags.fail_on,
+               "WHAT"},
+              {"--factor",
+               "by which a loss or time must grow for --fail-on (default 1.5)",
+               &flags.factor}},
+             arguments))
+    return ExitCode::good;
+  const By by = parse_by(flags.by);
+  const std::vector<std::string> formats = {"text", "markdown", "csv", "json"};
+  if (std::find(formats.begin(), formats.end(), flags.format) == formats.end())
+    throw UsageError(
+        fmt::format("--format={} is unknown; known are text, markdown, csv, "
+                    "json",
+                    flags.format));
+  for (const auto& what : flags.fail_on) fails(what, {}, {}, flags.factor);
+  const auto sides = read_sides(flags);
+  const Comparison c = compare(sides, by);
+  if (std::all_of(c.rows.begin(), c.rows.end(), [](const auto& row) {
+        return row.missing();
+      }))
+    throw ExitError(ExitCode::nothing_matched,
+                    "the folders have no run in common; runs pair by "
+                    "experiment, method, n and seed");
+  const auto claims = changed_claims(sides);
+  print(flags, c, claims);
+  if (!flags.out.empty()) {
+    nlohmann::ordered_json origin{{"heading", "Campaigns compared"},
+                                  {"sides", c.labels},
+                                  {"by", flags.by}};
+    write_report(flags.out, compare_sections(c, sides, claims), origin);
+    if (flags.format == "text")
+      fmt::print("report: {}\n", (fs::path(flags.out) / "index.html").string());
+  }
+  std::string worse;
+  for (const auto& what : flags.fail_on)
+    if (fails(what, c, claims, flags.factor))
+      worse += (worse.empty() ? "" : ", ") + what;
+  if (!worse.empty())
+    throw ExitError(
+        worse == "time" ? ExitCode::slower : ExitCode::accuracy,
+        fmt::format("worse than {}: {} (--fail-on)", c.labels.front(), worse));
+  return ExitCode::good;
+}
+
+}  // namespace physinv

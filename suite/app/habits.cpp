@@ -1,0 +1,113 @@
+#include "suite/app/habits.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdlib>
+#include <fstream>
+
+namespace physinv {
+namespace {
+
+std::string variable(const char* name) {
+  const char* value = std::getenv(name);
+  return value == nullptr ? "" : value;
+}
+
+int whole(const char* name, const std::string& text, int least) {
+  int value{};
+  const char* end = text.data() + text.size();
+  const auto [at, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || at != end || value < least || value > 1'000'000)
+    throw UsageError(
+        fmt::format("{}={} is no whole number from {} on", name, text, least));
+  return value;
+}
+
+void check(const char* flag,
+           const std::string& value,
+           const std::vector<std::string>& known) {
+  if (std::find(known.begin(), known.end(), value) != known.end()) return;
+  const std::string near = nearest_word(known, value);
+  throw UsageError(
+      near.empty()
+          ? fmt::format("{}={} is unknown; known are {}",
+                        flag,
+                        value,
+                        fmt::join(known, ", "))
+          : fmt::format(
+                "{}={} is unknown; did you mean {}?", flag, value, near));
+}
+
+/// GoogleTest's protocol: who reads the variables says so by this file.
+std::string shard_of_environment() {
+  const std::string total = variable("GTEST_TOTAL_SHARDS"),
+                    index = variable("GTEST_SHARD_INDEX");
+  if (total.empty() && index.empty()) return "";
+  if (total.empty() || index.empty())
+    throw UsageError(
+        "GTEST_TOTAL_SHARDS and GTEST_SHARD_INDEX go together; one is not set");
+  const int parts = whole("GTEST_TOTAL_SHARDS", total, 1);
+  const int part = whole("GTEST_SHARD_INDEX", index, 0);
+  if (part >= parts)
+    throw UsageError(
+        fmt::format("GTEST_SHARD_INDEX={} is no shard of {}; 0 to {} are",
+                    part,
+                    parts,
+                    parts - 1));
+  if (const std::string file = variable("GTEST_SHARD_STATUS_FILE");
+      !file.empty())
+    std::ofstream{file};
+  return fmt::format("{}/{}", part + 1, parts);
+}
+
+}  // namespace
+
+std::vector<Flag> Habits::flags() {
+  return {
+      {"--benchmark_filter", "the same as --filter", &filter, "REGEX"},
+      {"--benchmark_list_tests", "the names of the cases, and no more", &list},
+      {"--benchmark_repetitions",
+       "measure the times of what runs and of what is reused so many times "
+       "in all; results stay as they are",
+       &repetitions,
+       "N"},
+      {"--benchmark_format",
+       "of standard output: console (default), json or csv",
+       &format,
+       "FORMAT"},
+      {"--benchmark_out",
+       "also write the results there, repetitions and their spread "
+       "included",
+       &out,
+       "FILE"},
+      {"--benchmark_out_format",
+       "json (default) or csv",
+       &out_format,
+       "FORMAT"}};
+}
+
+void Habits::read_environment() {
+  const auto take = [](const char* name, std::string& to) {
+    if (const auto value = variable(name); !value.empty()) to = value;
+  };
+  take("BENCHMARK_FILTER", filter);
+  take("BENCHMARK_OUT", out);
+  take("BENCHMARK_OUT_FORMAT", out_format);
+  take("BENCHMARK_FORMAT", format);
+  if (const auto n = variable("BENCHMARK_REPETITIONS"); !n.empty())
+    repetitions = whole("BENCHMARK_REPETITIONS", n, 1);
+  const auto all = variable("BENCHMARK_LIST_TESTS");
+  list = !all.empty() && all != "0" && all != "false";
+}
+
+void Habits::apply(Selection& selection) const {
+  check("--benchmark_format", format, {"console", "json", "csv"});
+  check("--benchmark_out_format", out_format, {"json", "csv"});
+  if (!filter.empty() && filter != "all") selection.filters.push_back(filter);
+  if (selection.shard.empty()) selection.shard = shard_of_environment();
+}
+
+}  // namespace physinv

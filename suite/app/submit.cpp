@@ -1,0 +1,208 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "suite/app/installed.h"
+#include "suite/app/options.h"
+#include "suite/harness/child.h"
+#include "suite/harness/progress.h"
+#include "suite/planning/predict.h"
+#include "suite/planning/split.h"
+#include "suite/planning/submission.h"
+
+namespace physinv {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct SubmitFlags {
+  Selection selection;
+  std::string directory;
+  int tasks = 16, jobs = 1, threads = 1;
+};
+
+std::vector<std::string> flags_of(const Selection& s) {
+  std::vector<std::string> flags = {"--profile=" + s.profile};
+  for (const auto& f : s.filters) flags.push_back("--filter=" + f);
+  for (const auto& f : s.sets) flags.push_back("--set=" + f);
+  if (!s.seeds.empty()) flags.push_back("--seeds=" + s.seeds);
+  return flags;
+}
+
+/// Predicted by this machine; the nodes' speed is a common factor.
+std::vector<Task> tasks_of(const std::vector<Case>& cases, int count) {
+  Trials trials;
+  std::vector<double> seconds;
+  for (const Cost& cost : predict(cases, trials))
+    seconds.push_back(cost.seconds);
+  trials.save();
+  const Split split =
+      split_longest_first(seconds, static_cast<std::size_t>(count));
+  std::vector<Task> tasks;
+  for (const auto& items : split.tasks) {
+    Task task;
+    for (const std::size_t i : items) {
+      task.cases.push_back(cases[i].info.name);
+      task.seconds += seconds[i];
+    }
+    tasks.push_back(std::move(task));
+  }
+  return tasks;
+}
+
+Submission prepare_submission(const SubmitFlags& flags) {
+  const auto selection = flags_of(flags.selection);
+  if (Submission::exists(flags.directory)) {
+    Submission s = Submission::read(flags.directory);
+    if (selection != s.selection)
+      throw UsageError(fmt::format(
+          "{} was submitted with {}; the same flags run what is missing, "
+          "another directory another campaign",
+          flags.directory,
+          fmt::join(s.selection, " ")));
+    return s;
+  }
+  Submission s{.directory = fs::absolute(flags.directory),
+               .program = fs::read_symlink("/proc/self/exe").string(),
+               .selection = selection,
+               .running = {fmt::format("--jobs={}", flags.jobs),
+                           fmt::format("--threads={}", flags.threads)},
+               .tasks = tasks_of(flags.selection.cases(), flags.tasks),
+               .jobs = {}};
+  make_directory(s.directory);
+  s.write();
+  return s;
+}
+
+std::vector<std::size_t> missing_tasks(const std::vector<TaskState>& states) {
+  std::vector<std::size_t> missing;
+  for (std::size_t k = 0; k < states.size(); ++k)
+    if (!states[k].complete() && states[k].job.empty()) missing.push_back(k);
+  return missing;
+}
+
+void require_slurm() {
+  if (!has_program("sbatch"))
+    throw EnvironmentError(
+        "there is no Slurm here (no sbatch in PATH); run on a login node of "
+        "the cluster, or share the work out with --shard and merge");
+}
+
+}  // namespace
+
+ExitCode submit_verb(const Arguments& arguments) {
+  const auto dashes = std::find(arguments.begin(), arguments.end(), "--");
+  const Arguments own(arguments.begin(), dashes);
+  const std::vector<std::string> sbatch_options(
+      dashes == arguments.end() ? dashes : dashes + 1, arguments.end());
+  SubmitFlags flags;
+  if (!parse("physinv-bench submit",
+             "Splits a campaign by predicted time, longest case first, and "
+             "submits it to Slurm: an array of tasks that go on where they "
+             "were interrupted, and a merge after it. The same command again "
+             "submits what is missing. Options of sbatch follow --.",
+             flags.selection.flags(
+                 {{"--slurm",
+                   "the campaign's directory, on a file system that all nodes "
+                   "share",
+                   &flags.directory,
+                   "DIR"},
+                  {"--tasks",
+                   "of the array (default 16, at most one per case)",
+                   &flags.tasks},
+                  {"--jobs", "worker processes of a task (1)", &flags.jobs},
+                  {"--threads", "inside a case (1)", &flags.threads}}),
+             own))
+    return ExitCode::good;
+  if (flags.directory.empty())
+    throw UsageError("submit needs a directory; --slurm=DIR names it");
+  if (!flags.selection.shard.empty())
+    throw UsageError("submit makes parts by itself; --shard is for run");
+  require_slurm();
+  Submission s = prepare_submission(flags);
+  auto states = states_of(s);
+  ask_queue(s, states);
+  const auto missing = missing_tasks(states);
+  if (missing.empty()) {
+    fmt::print(
+        "nothing is missing that is not in the queue; see "
+        "physinv-bench status {}\n",
+        flags.directory);
+    return ExitCode::good;
+  }
+  double longest = 0, sum = 0;
+  for (const std::size_t k : missing) {
+    longest = std::max(longest, s.tasks[k].seconds);
+    sum += s.tasks[k].seconds;
+  }
+  const std::string job = submit(s, missing, sbatch_options);
+  s.jobs.push_back(job);
+  s.save();
+  fmt::print(
+      "job {}: {} of {} tasks, {} of one core, the longest {}; then a "
+      "merge into {}\n",
+      job,
+      missing.size(),
+      s.tasks.size(),
+      duration_text(sum),
+      duration_text(longest),
+      (s.directory / "merged").string());
+  return ExitCode::good;
+}
+
+ExitCode status_verb(const Arguments& arguments) {
+  std::string directory;
+  if (!parse("physinv-bench status",
+             "How a submitted campaign stands, by what its tasks have stored "
+             "and by Slurm's queue. Exit 0 if all is done, 4 if a case failed, "
+             "10 if some are missing.",
+             {{"DIR", "directory that 'submit' wrote", &directory}},
+             arguments))
+    return ExitCode::good;
+  const Submission s = Submission::read(directory);
+  auto states = states_of(s);
+  ask_queue(s, states);
+  std::size_t cases = 0, done = 0, failed = 0, queued = 0;
+  fmt::print("{:>5}  {:>6}  {:>6}  {:>6}  {}\n",
+             "task",
+             "cases",
+             "done",
+             "failed",
+             "state");
+  for (std::size_t k = 0; k < states.size(); ++k) {
+    const TaskState& t = states[k];
+    fmt::print("{:>5}  {:>6}  {:>6}  {:>6}  {}\n",
+               k,
+               t.cases,
+               t.done,
+               t.failed,
+               !t.job.empty() ? t.job
+               : t.complete() ? "done"
+               : t.failed > 0 ? "failed"
+                              : "missing");
+    cases += t.cases, done += t.done, failed += t.failed;
+    queued += t.job.empty() ? 0 : 1;
+  }
+  fmt::print("{} of {} cases done, {} failed; {} tasks in the queue\n",
+             done,
+             cases,
+             failed,
+             queued);
+  if (failed > 0 && queued == 0)
+    throw ExitError(ExitCode::case_failed,
+                    fmt::format("{} cases failed; their tasks' logs are in {}",
+                                failed,
+                                (s.directory / "log").string()));
+  if (done < cases)
+    throw ExitError(
+        ExitCode::incomplete,
+        fmt::format("incomplete: {} of {} cases are not done; {}",
+                    cases - done,
+                    cases,
+                    queued > 0 ? "tasks are in the queue"
+                               : "the same 'submit' runs what is missing"));
+  return ExitCode::good;
+}
+
+}  // namespace physinv

@@ -1,0 +1,60 @@
+/// A campaign on a cluster: its tasks in files, so that workers and whoever
+/// asks how it goes need nothing but a shared file system.
+///
+///   DIR/submission.json  the command, the tasks' cases and the jobs
+///   DIR/tasks/K.txt      names of the cases of task K
+///   DIR/shards/K/        its store         DIR/log/  output of the jobs
+///   DIR/task.sh, merge.sh                  DIR/merged/  the whole campaign
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "suite/harness/case.h"
+
+namespace physinv {
+
+struct Task {
+  std::vector<std::string> cases;
+  double seconds = 0;  ///< predicted
+};
+
+struct Submission {
+  std::filesystem::path directory;
+  std::string program;                 ///< what runs a task
+  std::vector<std::string> selection;  ///< flags that choose the cases
+  std::vector<std::string> running;    ///< flags such as --threads=2
+  std::vector<Task> tasks;
+  std::vector<std::string> jobs;  ///< ids of the arrays submitted so far
+
+  static bool exists(const std::filesystem::path& directory);
+  /// UsageError if there is none, StoreError if it is damaged.
+  static Submission read(const std::filesystem::path& directory);
+  /// All files but stores and logs.
+  void write() const;
+  /// submission.json alone.
+  void save() const;
+  std::filesystem::path shard(std::size_t task) const;
+};
+
+/// How a task stands, by what its store holds.
+struct TaskState {
+  std::size_t done = 0;    ///< cases all of whose stages have a result
+  std::size_t failed = 0;  ///< cases with a stage that failed
+  std::size_t cases = 0;
+  std::string job;  ///< as the queue says: RUNNING, PENDING; empty: not there
+  bool complete() const { return done == cases; }
+};
+std::vector<TaskState> states_of(const Submission& submission);
+
+/// Asks Slurm's queue; without it the states stay as they are.
+void ask_queue(const Submission& submission, std::vector<TaskState>& states);
+
+/// Submits an array of these tasks, and a merge after it whatever becomes of
+/// it. Returns the array's job id. EnvironmentError if Slurm refuses.
+std::string submit(const Submission& submission,
+                   const std::vector<std::size_t>& tasks,
+                   const std::vector<std::string>& sbatch_options);
+
+}  // namespace physinv

@@ -1,0 +1,200 @@
+#include "suite/planning/trials.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "suite/core/hash.h"
+#include "suite/core/probe.h"
+#include "suite/harness/build_info.h"
+#include "suite/harness/context.h"
+#include "suite/harness/keys.h"
+#include "suite/harness/registry.h"
+#include "suite/harness/run_case.h"
+#include "suite/results/file.h"
+
+namespace physinv {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+/// A trial takes about this long where its iterations can be cut.
+constexpr double kSeconds = 0.15;
+constexpr Index kFirstIterations = 16;
+
+double curve_points(Index iterations) {
+  Index points = 1;
+  for (Index i = 0; i < iterations; i = next_measured(i)) ++points;
+  return static_cast<double>(points);
+}
+
+double bytes(const Batch<double>& b) {
+  return 8.0 * static_cast<double>(b.size());
+}
+
+/// `cut` ran in place of `c`. A stage that did not end by itself would go on
+/// to its last iteration at the same speed.
+StageTrial trial_of(const Case& c, const Case& cut, const StageRecord& r) {
+  const auto at = static_cast<std::size_t>(r.position);
+  const bool ended = r.iterations < cut.stage_iterations[at];
+  const double points = std::max(1.0, static_cast<double>(r.curve.points()));
+  StageTrial t;
+  t.n = static_cast<double>(c.info.n);
+  t.seconds = r.clocks.solve.cpu;
+  if (!ended) t.seconds *= c.stage_operations[at] / cut.stage_operations[at];
+  t.points = ended ? points : curve_points(c.stage_iterations[at]);
+  t.setup = r.clocks.setup.cpu + r.clocks.warmup.cpu;
+  t.measure = r.clocks.measure.cpu * t.points / points;
+  t.memory = static_cast<double>(r.buffer_bytes);
+  t.kept = bytes(r.x) + 32.0 * static_cast<double>(r.loss.size()) +
+           t.points * 24 +
+           (bytes(r.curve.loss) + bytes(r.curve.x)) * t.points / points;
+  for (const auto& [name, array] : r.arrays) t.kept += bytes(array);
+  return t;
+}
+
+/// Fewer stages than the chain has if one failed.
+struct Ran {
+  Trial trial;
+  std::vector<double> each;  ///< seconds of an iteration
+};
+
+Ran run(const Case& c, const Case& cut) {
+  Ran ran;
+  bool good = true;
+  Threads threads(1);
+  const auto keep = [&](const StageRecord& r) {
+    good = good && has_result(r);
+    if (!good) return;
+    ran.trial.push_back(trial_of(c, cut, r));
+    ran.each.push_back(r.clocks.solve.cpu /
+                       std::max(1.0, static_cast<double>(r.iterations)));
+  };
+  run_case(
+      cut, {}, {}, &threads, {.started = {}, .progress = {}, .finished = keep});
+  return ran;
+}
+
+/// Does the counted work of a stage follow its iterations?
+bool follows(const Case& c, std::size_t stage) {
+  auto half = c.stage_iterations;
+  half[stage] = std::max<Index>(1, half[stage] / 2);
+  return resized(c, c.info.n, half).stage_operations[stage] <
+         c.stage_operations[stage];
+}
+
+bool trains(const Case& c) {
+  for (std::size_t k = 0; k < c.info.stages.size(); ++k)
+    if (follows(c, k)) return true;
+  return false;
+}
+
+/// Where the work follows the iterations, at most so many.
+Case cut(const Case& c, const std::vector<Index>& most) {
+  auto iterations = c.stage_iterations;
+  for (std::size_t k = 0; k < iterations.size(); ++k)
+    if (follows(c, k)) iterations[k] = std::min(iterations[k], most[k]);
+  return resized(c, c.info.n, iterations);
+}
+
+/// As many iterations as fit into kSeconds, by a first short run.
+std::vector<Index> fitting(const std::vector<double>& each) {
+  std::vector<Index> most;
+  for (const double seconds : each)
+    most.push_back(static_cast<Index>(
+        std::clamp(kSeconds / std::max(seconds, 1e-9), 1.0, 1e6)));
+  return most;
+}
+
+Trial measure(const Case& c) {
+  const std::size_t stages = c.info.stages.size();
+  const std::vector<Index> few(stages, kFirstIterations);
+  Ran first = run(c, cut(c, few));
+  if (first.trial.size() < stages || !trains(c)) return first.trial;
+  const Case longer = cut(c, fitting(first.each));
+  for (std::size_t k = 0; k < stages; ++k)
+    if (follows(c, k) && longer.stage_iterations[k] > 2 * kFirstIterations)
+      return run(c, longer).trial;
+  return first.trial;
+}
+
+/// The chain up to the last stage whose work follows its iterations.
+std::size_t training_stages(const Case& c) {
+  std::size_t stages = 0;
+  while (stages < c.info.stages.size() && follows(c, stages)) ++stages;
+  return stages;
+}
+
+json to_json(const StageTrial& t) {
+  return {t.n, t.seconds, t.setup, t.measure, t.points, t.memory, t.kept};
+}
+
+StageTrial from_json(const json& j) {
+  const std::vector<double> v = j;
+  return {v.at(0), v.at(1), v.at(2), v.at(3), v.at(4), v.at(5), v.at(6)};
+}
+
+}  // namespace
+
+Trials::Trials(fs::path file) : file_(std::move(file)) {
+  if (!fs::exists(file_)) return;
+  const json all = json::parse(read_file(file_), nullptr, false);
+  try {
+    for (const auto& [key, stages] : all.at("trials").items())
+      for (const json& stage : stages) known_[key].push_back(from_json(stage));
+  } catch (const std::exception&) {
+    known_.clear();
+  }
+}
+
+fs::path Trials::default_file() {
+  const char* cache = std::getenv("XDG_CACHE_HOME");
+  const char* home = std::getenv("HOME");
+  const fs::path root = cache != nullptr && *cache != '\0' ? fs::path(cache)
+                        : home != nullptr ? fs::path(home) / ".cache"
+                                          : fs::temp_directory_path();
+  const BuildInfo& build = build_info();
+  return root / "physinv" /
+         fmt::format("speeds-{}.json",
+                     hex64(hash_text(fmt::format("{} {} {} {}",
+                                                 processor_name(),
+                                                 build.instruction_set,
+                                                 build.build_type,
+                                                 build.fingerprint))));
+}
+
+const Trial& Trials::of(const Case& c, bool training_only) {
+  const std::string key = hex128(recipe_text(c, c.info.stages.size() - 1)) +
+                          (training_only ? "-training" : "");
+  if (const auto at = known_.find(key); at != known_.end()) return at->second;
+  ++ran_;
+  if (!training_only) return known_[key] = measure(c);
+  Method part = *c.method;
+  const std::size_t stages = training_stages(c);
+  part.chain.resize(stages);
+  Case shorter = c;
+  shorter.method = &part;
+  shorter.info.stages.resize(stages);
+  shorter.stage_iterations.resize(stages);
+  shorter.stage_operations.resize(stages);
+  return known_[key] = stages > 0 ? measure(shorter) : Trial{};
+}
+
+void Trials::save() const {
+  if (ran_ == 0) return;
+  json all = json::object();
+  for (const auto& [key, trial] : known_) {
+    all[key] = json::array();
+    for (const StageTrial& t : trial) all[key].push_back(to_json(t));
+  }
+  try {
+    make_directory(file_.parent_path());
+    write_atomically(file_, json{{"trials", std::move(all)}}.dump());
+  } catch (const std::exception&) {
+  }
+}
+
+}  // namespace physinv

@@ -1,0 +1,53 @@
+/// How fast this machine is: short runs of the chains that are to be planned,
+/// kept in the user's cache directory for this processor and build.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "suite/harness/case.h"
+
+namespace physinv {
+
+/// What a short run says of one stage. Times are of the processor, so that
+/// whoever else is busy counts little.
+struct StageTrial {
+  double n = 0;        ///< samples of the trial
+  double seconds = 0;  ///< of solving; of a stage that was cut, as its counted
+                       ///< operations go on
+  double setup = 0;    ///< seconds, warm-up included
+  double measure = 0;  ///< seconds, of the whole curve
+  double points = 0;   ///< of the curve
+  double memory = 0;   ///< bytes of buffers
+  double kept = 0;     ///< bytes of estimates, curve and findings
+};
+
+/// The stages of one chain; fewer if the chain was not run to its end.
+using Trial = std::vector<StageTrial>;
+
+class Trials {
+ public:
+  /// Reads what is known; an unreadable file counts as empty.
+  explicit Trials(std::filesystem::path file = default_file());
+  /// In $XDG_CACHE_HOME or ~/.cache, by processor and build.
+  static std::filesystem::path default_file();
+
+  /// Runs the chain of `c` for a moment, or knows it already. Stages whose
+  /// work does not follow their iterations run whole, on few samples; with
+  /// `training_only` they and all after them are left out.
+  const Trial& of(const Case& c, bool training_only);
+
+  /// Of those that ran now, not those known.
+  std::size_t ran() const { return ran_; }
+  /// Keeps what is new. A cache that cannot be written is no error.
+  void save() const;
+
+ private:
+  std::filesystem::path file_;
+  std::map<std::string, Trial> known_;
+  std::size_t ran_ = 0;
+};
+
+}  // namespace physinv
