@@ -91,7 +91,7 @@ def plan(d):
     p = run("plan", "--profile=quick", cwd=d, env=env)
     check(p.returncode == 0 and "measuring" in p.stderr,
           "speeds that cannot be read are measured again")
-    expect(2, ["--time-budget=3x"], d, "90, 90s, 10m and 2h")
+    expect(2, ["--time-budget=3x"], d, "90, 90s, 10m and 2h are")
 
 
 def habits(d):
