@@ -215,7 +215,9 @@ double parse_duration(const std::string& flag, const std::string& text) {
                                                         : 0;
   if (error != std::errc() || !(value * seconds > 0) || value > 1e9)
     throw UsageError(
-        fmt::format("{}={} is no time; 90, 90s, 10m and 2h are", flag, text));
+        fmt::format("{}={} is not positive and finite; 90, 90s, 10m and 2h are",
+                    flag,
+                    text));
   return value * seconds;
 }
 

@@ -174,7 +174,7 @@ Table changes_table(const Comparison& c, std::size_t most) {
       const auto add = [&](auto&& cell) {
         out.cells.push_back(against(row, s, cell));
       };
-      add([](auto& a, auto& b) { return factor(a.loss, b.loss); });
+      add([](auto& a, auto& b) { return factor(1, loss_ratio(a, b)); });
       add([](auto& a, auto& b) { return factor(a.seconds, b.seconds); });
       add([](auto& a, auto& b) {
         return factor(a.simulations(), b.simulations());

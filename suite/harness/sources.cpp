@@ -29,76 +29,120 @@ SourceGraph::SourceGraph(std::string_view foundation,
                          std::span<const SourceFile> files)
     : foundation_(foundation) {
   for (const SourceFile& file : files) {
-    Node& node = nodes_[std::string(file.path)];
-    node.hash = file.hash;
+    Node node{.path = std::string(file.path), .hash = std::string(file.hash)};
     std::istringstream names{std::string(file.includes)};
     for (std::string name; names >> name;) node.includes.push_back(name);
+    nodes_.push_back(std::move(node));
+  }
+  std::sort(nodes_.begin(), nodes_.end(), [](const Node& a, const Node& b) {
+    return a.path < b.path;
+  });
+  for (Node& node : nodes_) {
+    for (const auto& header : node.includes)
+      node.next.push_back(node_at(header));
+    node.implementation = node.path.ends_with(".h")
+                              ? node_at(implementation(node.path))
+                              : kNowhere;
   }
 }
 
-std::string SourceGraph::find(std::string_view path) const {
+std::size_t SourceGraph::node_at(std::string_view path) const {
+  const auto at = std::lower_bound(
+      nodes_.begin(), nodes_.end(), path, [](const Node& n, auto& p) {
+        return n.path < p;
+      });
+  return at != nodes_.end() && at->path == path
+             ? static_cast<std::size_t>(at - nodes_.begin())
+             : kNowhere;
+}
+
+std::size_t SourceGraph::find_node(std::string_view path) const {
   while (true) {
-    if (const auto at = nodes_.find(path); at != nodes_.end()) return at->first;
+    if (const auto at = node_at(path); at != kNowhere) return at;
     const auto slash = path.find('/');
-    if (slash == std::string_view::npos) return {};
+    if (slash == std::string_view::npos) return kNowhere;
     path.remove_prefix(slash + 1);
   }
 }
 
-std::set<std::string> SourceGraph::closure(const Sources& sources) const {
-  std::set<std::string> found;
-  std::vector<std::string> next;
-  for (const auto& root : sources.roots) next.push_back(find(root));
+std::string SourceGraph::find(std::string_view path) const {
+  const std::size_t at = find_node(path);
+  return at == kNowhere ? std::string() : nodes_[at].path;
+}
+
+void SourceGraph::reach(const Sources& sources,
+                        std::vector<bool>& found) const {
+  const auto counts = [&](const Node& node, std::size_t k) {
+    return std::none_of(
+        sources.unused.begin(), sources.unused.end(), [&](const auto& line) {
+          return line.first == node.path && line.second == node.includes[k];
+        });
+  };
+  std::vector<bool> seen(nodes_.size());
+  std::vector<std::size_t> next;
+  for (const auto& root : sources.roots) next.push_back(find_node(root));
   while (!next.empty()) {
-    const std::string file = std::move(next.back());
+    const std::size_t at = next.back();
     next.pop_back();
-    const auto at = nodes_.find(file);
-    if (at == nodes_.end() || !found.insert(file).second) continue;
-    for (const auto& header : at->second.includes) {
-      const std::pair line(file, header);
-      if (std::find(sources.unused.begin(), sources.unused.end(), line) ==
-          sources.unused.end())
-        next.push_back(header);
-    }
-    if (file.ends_with(".h")) next.push_back(implementation(file));
+    if (at == kNowhere || seen[at]) continue;
+    seen[at] = found[at] = true;
+    const Node& node = nodes_[at];
+    for (std::size_t k = 0; k < node.next.size(); ++k)
+      if (counts(node, k)) next.push_back(node.next[k]);
+    next.push_back(node.implementation);
   }
-  return found;
+}
+
+std::set<std::string> SourceGraph::closure(const Sources& sources) const {
+  return closure(std::vector<Sources>{sources});
 }
 
 std::set<std::string> SourceGraph::closure(
     const std::vector<Sources>& chain) const {
+  std::vector<bool> found(nodes_.size());
+  for (const Sources& sources : chain) reach(sources, found);
   std::set<std::string> all;
-  for (const Sources& sources : chain) all.merge(closure(sources));
+  for (std::size_t i = 0; i < nodes_.size(); ++i)
+    if (found[i]) all.insert(nodes_[i].path);
   return all;
 }
 
 std::vector<std::string> SourceGraph::errors(const Sources& sources) const {
   std::vector<std::string> wrong;
   for (const auto& root : sources.roots)
-    if (find(root).empty())
+    if (find_node(root) == kNowhere)
       wrong.push_back(fmt::format("no source of numbers '{}'", root));
   for (const auto& [file, header] : sources.unused) {
-    const auto at = nodes_.find(file);
-    if (at == nodes_.end() ||
+    const std::size_t at = node_at(file);
+    if (at == kNowhere ||
         !std::count(
-            at->second.includes.begin(), at->second.includes.end(), header))
+            nodes_[at].includes.begin(), nodes_[at].includes.end(), header))
       wrong.push_back(fmt::format("{} does not include {}", file, header));
   }
-  for (const auto& file : closure(sources))
-    for (const auto& header : nodes_.find(file)->second.includes)
-      if (!nodes_.contains(header))
-        wrong.push_back(fmt::format(
-            "numbers come from {}, but changes of {} go unseen", file, header));
+  std::vector<bool> found(nodes_.size());
+  reach(sources, found);
+  for (std::size_t i = 0; i < nodes_.size(); ++i)
+    for (std::size_t k = 0; found[i] && k < nodes_[i].next.size(); ++k)
+      if (nodes_[i].next[k] == kNowhere)
+        wrong.push_back(
+            fmt::format("numbers come from {}, but changes of {} go unseen",
+                        nodes_[i].path,
+                        nodes_[i].includes[k]));
   return wrong;
 }
 
 std::string SourceGraph::fingerprint(const std::vector<Sources>& chain) const {
-  for (const Sources& sources : chain)
+  std::vector<bool> found(nodes_.size());
+  for (const Sources& sources : chain) {
     for (const auto& root : sources.roots)
-      SUITE_CHECK(!find(root).empty(), "no source of numbers '" + root + "'");
+      SUITE_CHECK(find_node(root) != kNowhere,
+                  "no source of numbers '" + root + "'");
+    reach(sources, found);
+  }
   std::string text = foundation_ + '\n';
-  for (const auto& file : closure(chain))
-    text += fmt::format("{} {}\n", file, nodes_.find(file)->second.hash);
+  for (std::size_t i = 0; i < nodes_.size(); ++i)
+    if (found[i])
+      text += fmt::format("{} {}\n", nodes_[i].path, nodes_[i].hash);
   return hex128(text);
 }
 

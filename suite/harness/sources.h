@@ -41,12 +41,20 @@ class SourceGraph {
 
  private:
   struct Node {
-    std::string hash;
+    std::string path, hash;
     std::vector<std::string> includes;
+    std::vector<std::size_t> next;  ///< of each include; kNowhere: no node
+    std::size_t implementation;     ///< of a header
   };
+  static constexpr std::size_t kNowhere = ~std::size_t{0};
+
+  std::size_t node_at(std::string_view path) const;
+  std::size_t find_node(std::string_view path) const;
+  /// Marks what the roots reach.
+  void reach(const Sources& sources, std::vector<bool>& found) const;
 
   std::string foundation_;
-  std::map<std::string, Node, std::less<>> nodes_;
+  std::vector<Node> nodes_;  ///< ascending in their paths
 };
 
 /// Of this build.

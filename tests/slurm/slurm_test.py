@@ -65,7 +65,8 @@ def finished(directory):
         path = os.path.join(shards, shard, "journal.jsonl")
         if os.path.exists(path):
             with open(path) as f:
-                lines |= {(shard, line) for line in f if line.endswith("\n")}
+                lines |= {(shard, line) for line in list(f)[1:]
+                          if line.endswith("\n")}
     return lines
 
 
@@ -75,8 +76,16 @@ def workers_of(directory):
     return [int(p) for p in pids]
 
 
+def logs(directory):
+    text = ""
+    for name in os.listdir(os.path.join(directory, "log")):
+        with open(os.path.join(directory, "log", name)) as f:
+            text += f.read()
+    return text
+
+
 def submit(directory, *more):
-    p = bench("submit", "--slurm", directory, *SELECTION, "--tasks=6", *more)
+    p = bench("submit", "--slurm", directory, *SELECTION, "--tasks=4", *more)
     check(p.returncode == 0, f"submit: {p.stdout.strip()}{p.stderr.strip()}")
     return p.stdout.split(":")[0].removeprefix("job ")
 
@@ -116,6 +125,7 @@ def killed(d, alone):
     for pid in workers_of(d)[:1]:
         os.kill(pid, signal.SIGKILL)
     wait_merged(d)
+    check("status 137" in logs(d), "kill -9: a task was killed")
     check(before <= finished(d), "kill -9: what was finished stays")
     complete(d, alone, "a task killed with -9")
 
@@ -130,6 +140,8 @@ def node_down(d, alone):
     wait_for("requeued tasks", lambda: slurm(
         "squeue", "-h", "-t", "RUNNING", "-o", "%N").find(node) < 0)
     slurm("scontrol", "update", f"nodename={node}", "state=resume")
+    check("Restarts=1" in slurm("scontrol", "show", "job"),
+          "node down: a task was put back into the queue")
     # Slurm lets requeued jobs wait for two minutes, unless told otherwise.
     for job in slurm("squeue", "-h", "-r", "-t", "PENDING", "-o", "%i").split():
         slurm("scontrol", "update", f"jobid={job}", "StartTime=now")
@@ -145,7 +157,8 @@ def cancelled(d, alone):
     wait_merged(d)
     before = finished(d)
     status = bench("status", d)
-    check(status.returncode == 10 and len(status.stderr.splitlines()) == 1,
+    check(before and status.returncode == 10
+          and len(status.stderr.splitlines()) == 1,
           "cancelled: " + status.stderr.strip())
     submit(d)
     wait_merged(d)

@@ -1,0 +1,36 @@
+"""Runs the program for the tests of the command line."""
+
+import os
+import subprocess
+import sys
+
+BENCH = os.path.abspath(sys.argv[1])
+FAILED = []
+
+
+def run(*args, cwd, env=None, **kwargs):
+    published = {"PHYSINV_PUBLISHED_DIR": os.path.join(cwd, "published")}
+    return subprocess.run([BENCH, *args], cwd=cwd, text=True,
+                          capture_output=True, timeout=120,
+                          env={**os.environ, **published, **(env or {})},
+                          **kwargs)
+
+
+def check(condition, what):
+    print("ok  " if condition else "FAIL", what)
+    if not condition:
+        FAILED.append(what)
+
+
+def expect(code, args, cwd, says="", env=None, **kwargs):
+    """The exit code, and for errors exactly one line that `says` it."""
+    p = run(*args, cwd=cwd, env=env, **kwargs)
+    lines = p.stderr.splitlines()
+    good = p.returncode == code
+    if code:
+        good = good and len(lines) == 1 and says in lines[0] \
+            and lines[0].startswith("physinv-bench: ")
+    else:
+        good = good and not lines and says in p.stdout
+    check(good, f"{' '.join(args)} -> {p.returncode} {p.stderr.strip()[:150]}")
+    return p
