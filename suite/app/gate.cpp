@@ -23,7 +23,8 @@ namespace physinv {
 namespace {
 
 struct GateFlags {
-  std::string baseline, profile, results, against, out = "results/gate", json;
+  std::string baseline, profile, results, against, head, out = "results/gate",
+                                                         json;
   std::vector<std::string> filters;
   int jobs = 0, seed = 1;
   double budget = 300, within = 2;
@@ -36,6 +37,10 @@ struct GateFlags {
          "another physinv-bench, or its build directory: compare times by the "
          "clock",
          &against,
+         "PROGRAM"},
+        {"--head",
+         "what --against is compared with; default: this program",
+         &head,
          "PROGRAM"},
         {"--filter", "of the cases, as for 'run'", &filters, "REGEX"},
         {"--profile",
@@ -222,23 +227,29 @@ class Gate {
 };
 
 /// A program, or a build directory with one.
-std::filesystem::path program_in(const std::string& text) {
+std::filesystem::path program_in(const std::string& flag,
+                                 const std::string& text) {
   std::filesystem::path path(text);
   if (std::filesystem::is_directory(path)) path /= "physinv-bench";
   if (access(path.c_str(), X_OK) != 0)
     throw UsageError(fmt::format(
-        "--against={} is no program; a physinv-bench or a directory with one "
-        "is",
+        "{}={} is no program; a physinv-bench or a directory with one is",
+        flag,
         text));
   return std::filesystem::absolute(path);
+}
+
+std::filesystem::path head_of(const GateFlags& flags) {
+  return flags.head.empty() ? std::filesystem::read_symlink("/proc/self/exe")
+                            : program_in("--head", flags.head);
 }
 
 void judge_clock(const GateFlags& flags,
                  const Chosen& chosen,
                  const std::vector<Case>& cases,
                  Sheet& sheet) {
-  DuelOptions options{.base = program_in(flags.against),
-                      .head = std::filesystem::read_symlink("/proc/self/exe"),
+  DuelOptions options{.base = program_in("--against", flags.against),
+                      .head = head_of(flags),
                       .chosen = chosen,
                       .cases = {},
                       .out = flags.out + "/pair",
@@ -303,7 +314,8 @@ ExitCode gate_verb(const Arguments& arguments) {
           arguments))
     return ExitCode::good;
   check(flags);
-  if (!flags.against.empty()) program_in(flags.against);
+  if (!flags.against.empty()) program_in("--against", flags.against);
+  head_of(flags);
   Sheet sheet;
   Chosen chosen{.profile = flags.profile.empty() ? "smoke" : flags.profile};
   std::vector<Case> cases;

@@ -129,6 +129,8 @@ def bad_input(d):
     expect(2, [*GATE, "--profile=quick"], d, "is of profile smoke")
     expect(2, [*GATE, "--results=nowhere"], d, "no results")
     expect(2, [*GATE, "--against=nowhere"], d, "is no program")
+    expect(2, [*GATE, "--against=" + BENCH, "--head=nowhere"], d,
+           "--head=nowhere is no program")
     expect(2, [*GATE, "--budget=-1"], d)
     expect(2, ["gate", "--update", "--against=" + BENCH], d, "--baseline")
     expect(2, [*GATE, "--filter=(x"], d, "regular expression")
