@@ -47,7 +47,21 @@ void judge_clock(const GateFlags& flags,
                       .seconds = flags.budget,
                       .margin = flags.within / 100,
                       .seed = static_cast<std::uint64_t>(flags.seed)};
-  for (const Case& c : cases) options.cases.push_back(c.info.name);
+  const auto before = cases_known_to(options.base, chosen);
+  const auto after = cases_known_to(options.head, chosen);
+  for (const Case& c : cases)
+    if (before.contains(c.info.name) && after.contains(c.info.name))
+      options.cases.push_back(c.info.name);
+  if (options.cases.empty())
+    throw ExitError(ExitCode::nothing_matched,
+                    fmt::format("{} has none of these {} cases",
+                                options.base.string(),
+                                cases.size()));
+  if (options.cases.size() < cases.size())
+    sheet.notes.push_back(
+        fmt::format("{} of {} cases are not in both programs: not timed",
+                    cases.size() - options.cases.size(),
+                    cases.size()));
   const Duel duel = fight(
       options, timed_run(options), [](std::size_t pair, std::size_t left) {
         fmt::print("pair {}: {} cases undecided\n", pair, left);

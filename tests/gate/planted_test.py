@@ -181,6 +181,8 @@ def clock(d):
     gate = ["gate", "--profile=kernel", "--against=" + BENCH]
     expect(8, [*gate, "--budget=0.000001", "--strict"], d, "inconclusive")
     expect(0, [*gate, "--budget=2", "--within=30"], d, "by the clock against")
+    expect(9, [gate[0], "--profile=smoke", "--against=/bin/false"], d,
+           "/bin/false ended with 1")
 
 
 with tempfile.TemporaryDirectory() as directory:
