@@ -8,6 +8,50 @@
 
 namespace physinv {
 
+std::vector<Flag> GateFlags::flags() {
+  return {
+      {"--baseline", "what 'baseline' wrote", &baseline, "FILE"},
+      {"--against",
+       "another physinv-bench, or its build directory: compare times by the "
+       "clock",
+       &against,
+       "PROGRAM"},
+      {"--head",
+       "what --against is compared with; default: this program",
+       &head,
+       "PROGRAM"},
+      {"--filter", "of the cases, as for 'run'", &filters, "REGEX"},
+      {"--profile",
+       "the baseline's; without a baseline smoke",
+       &profile,
+       "NAME"},
+      {"--results",
+       "judge this campaign, run with --trace, instead of running one",
+       &results,
+       "DIR"},
+      {"--out", "where to run; default: results/gate", &out, "DIR"},
+      {"--jobs", "worker processes; default: cores", &jobs},
+      {"--allow-work", "counters of work may grow", &allow_work},
+      {"--count,!--no-count",
+       "count instructions where the baseline has them (default)",
+       &count},
+      {"--budget", "of --against; default: 300 seconds", &budget, "SECONDS"},
+      {"--within",
+       "what --against takes for equal; default: 2 percent",
+       &within,
+       "PERCENT"},
+      {"--seed", "of the order of --against's pairs; default: 1", &seed},
+      {"--strict", "what could not be decided ends with exit code 8", &strict},
+      {"--update",
+       "renew the baseline's lines of these cases and print what changed",
+       &update},
+      {"--json", "the findings as JSON", &json, "FILE"}};
+}
+
+MeasureOptions GateFlags::measuring() const {
+  return {.out = out, .jobs = jobs_or_cores(jobs)};
+}
+
 std::vector<Case> cases_of(const Chosen& chosen,
                            const std::vector<std::string>& filters) {
   registry().validate();

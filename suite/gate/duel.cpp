@@ -65,6 +65,28 @@ std::map<std::string, double> times(const fs::path& results) {
   return sums;
 }
 
+std::vector<std::string> command(const fs::path& program,
+                                 std::string verb,
+                                 const Chosen& chosen,
+                                 std::vector<std::string> flags) {
+  std::vector<std::string> all = {
+      program.string(), std::move(verb), "--profile=" + chosen.profile};
+  for (const auto& set : chosen.sets) all.push_back("--set=" + set);
+  if (!chosen.seeds.empty()) all.push_back("--seeds=" + chosen.seeds);
+  all.insert(all.end(), flags.begin(), flags.end());
+  return all;
+}
+
+std::string output_of(const std::vector<std::string>& arguments) {
+  const Ended ended = run_child(arguments);
+  if (ended.status == static_cast<int>(ExitCode::interrupted))
+    throw ExitError(ExitCode::interrupted, "interrupted; nothing was decided");
+  if (ended.status != 0)
+    throw EnvironmentError(fmt::format(
+        "{} ended with {}: {}", arguments[0], ended.status, ended.errors));
+  return ended.output;
+}
+
 std::string percent(double log_ratio) {
   return std::isfinite(log_ratio)
              ? fmt::format("{:+.2f} %", 100 * std::expm1(log_ratio))
@@ -73,23 +95,22 @@ std::string percent(double log_ratio) {
 
 }  // namespace
 
+std::set<std::string> cases_known_to(const fs::path& program,
+                                     const Chosen& chosen) {
+  const std::string text =
+      output_of(command(program, "list", chosen, {"--json"}));
+  std::set<std::string> names;
+  for (const auto& c : nlohmann::json::parse(text))
+    names.insert(c.at("name").get<std::string>());
+  return names;
+}
+
 Runner timed_run(const DuelOptions& o) {
   return [&o](const fs::path& program, const std::vector<std::string>& cases) {
     fs::remove_all(o.out);
-    std::vector<std::string> command = {program.string(),
-                                        "run",
-                                        "--profile=" + o.chosen.profile,
-                                        "--jobs=1",
-                                        "--out=" + o.out.string()};
-    for (const auto& set : o.chosen.sets) command.push_back("--set=" + set);
-    if (!o.chosen.seeds.empty()) command.push_back("--seeds=" + o.chosen.seeds);
-    for (const auto& name : cases) command.push_back(exactly(name));
-    const Ended ended = run_child(command);
-    if (ended.status != 0)
-      throw EnvironmentError(fmt::format("{} ended with {}: {}",
-                                         program.string(),
-                                         ended.status,
-                                         ended.errors));
+    std::vector<std::string> flags = {"--jobs=1", "--out=" + o.out.string()};
+    for (const auto& name : cases) flags.push_back(exactly(name));
+    output_of(command(program, "run", o.chosen, std::move(flags)));
     const auto all = times(o.out / "results.json");
     std::vector<double> of_cases;
     for (const auto& name : cases) {

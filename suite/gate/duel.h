@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,11 @@ struct DuelOptions {
   double margin = 0.02;    ///< what is equal
   std::uint64_t seed = 0;  ///< of the order
 };
+
+/// The program's cases, so that those which only one of both has can be left
+/// out. Throws EnvironmentError if it cannot list them.
+std::set<std::string> cases_known_to(const std::filesystem::path& program,
+                                     const Chosen& chosen);
 
 /// Who runs a program on some cases: milliseconds of solving for each of them.
 using Runner = std::function<std::vector<double>(

@@ -129,6 +129,8 @@ def bad_input(d):
     expect(2, [*GATE, "--profile=quick"], d, "is of profile smoke")
     expect(2, [*GATE, "--results=nowhere"], d, "no results")
     expect(2, [*GATE, "--against=nowhere"], d, "is no program")
+    expect(2, [*GATE, "--against=" + BENCH, "--head=nowhere"], d,
+           "--head=nowhere is no program")
     expect(2, [*GATE, "--budget=-1"], d)
     expect(2, ["gate", "--update", "--against=" + BENCH], d, "--baseline")
     expect(2, [*GATE, "--filter=(x"], d, "regular expression")
@@ -179,6 +181,8 @@ def clock(d):
     gate = ["gate", "--profile=kernel", "--against=" + BENCH]
     expect(8, [*gate, "--budget=0.000001", "--strict"], d, "inconclusive")
     expect(0, [*gate, "--budget=2", "--within=30"], d, "by the clock against")
+    expect(9, [gate[0], "--profile=smoke", "--against=/bin/false"], d,
+           "/bin/false ended with 1")
 
 
 with tempfile.TemporaryDirectory() as directory:

@@ -3,8 +3,8 @@ faster. Not a test of CI: real clocks, minutes.
 
     python3 tests/gate/real_pairs.py build/release/physinv-bench [GATES] [FLAGS]
 
-FLAGS are of `gate`; by default billiards, wave packet and robotic arm of the
-smoke profile, 20 seconds each."""
+FLAGS are of `gate`; by default six cases of jpo and na of the
+smoke profile, 20 seconds each gate."""
 
 import json
 import os
@@ -12,7 +12,8 @@ import subprocess
 import sys
 import tempfile
 
-DEFAULT = ["--filter=jpo/(billiards|wave-packet|robotic-arm)/", "--budget=20"]
+DEFAULT = ["--filter=jpo/(billiards|robotic-arm|wave-packet)/(jpo|na)/n=4",
+           "--budget=20"]
 
 
 def main():

@@ -1,0 +1,147 @@
+#include "suite/app/against_baseline.h"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <set>
+#include <type_traits>
+
+#include "suite/app/load.h"
+#include "suite/gate/instructions.h"
+#include "suite/gate/verdict.h"
+#include "suite/results/file.h"
+
+namespace physinv {
+namespace {
+
+template <class Line>
+std::string case_name(const Line& line) {
+  if constexpr (std::is_same_v<Line, StageLine>) return case_of(line.name);
+  return line.name;
+}
+
+/// Lines whose case matches.
+template <class Line>
+std::vector<Line> matching(std::vector<Line> lines, const NameFilter& filter) {
+  std::erase_if(lines, [&](const Line& line) {
+    return !filter.matches(case_name(line));
+  });
+  return lines;
+}
+
+}  // namespace
+
+AgainstBaseline::AgainstBaseline(const GateFlags& flags)
+    : flags_(flags),
+      filter_(flags.filters),
+      before_(read_baseline(flags.baseline)) {
+  if (!flags.profile.empty() && flags.profile != before_.chosen.profile)
+    throw UsageError(fmt::format("{} is of profile {}, not {}",
+                                 flags.baseline,
+                                 before_.chosen.profile,
+                                 flags.profile));
+  cases_ = cases_of(before_.chosen, flags.filters);
+  lines_ = matching(before_.stages, filter_);
+  require_something();
+}
+
+void AgainstBaseline::judge_stages(Sheet& sheet) {
+  now_ =
+      flags_.results.empty()
+          ? measure(cases_, flags_.measuring(), Screen::of(stdout))
+          : matching(lines_of(load(flags_.results).results.cases()), filter_);
+  const Rules rules{.bits = same_build(), .allow_work = flags_.allow_work};
+  if (!rules.bits)
+    sheet.notes.push_back(fmt::format(
+        "{} is from another build ({}): judged within its stable digits",
+        flags_.baseline,
+        before_.build));
+  for (const auto& j : judge(lines_, now_, rules))
+    sheet.findings.push_back(finding_of(j));
+}
+
+void AgainstBaseline::judge_instructions(Sheet& sheet) {
+  const auto lines = countable();
+  if (lines.empty() || !flags_.count) return;
+  const auto counting = before_.counts.counter == counter_name(Counting::perf)
+                            ? Counting::perf
+                            : Counting::callgrind;
+  std::string why = "the baseline is from another build";
+  if (!same_build() || !can_count(counting, counting_program(), &why)) {
+    sheet.findings.push_back(
+        {.kind = "instructions",
+         .name = fmt::format("{} cases", lines.size()),
+         .verdict = "not counted",
+         .detail = why,
+         .code = flags_.strict ? ExitCode::inconclusive : ExitCode::good,
+         .numbers = nullptr});
+    return;
+  }
+  std::vector<std::string> names;
+  for (const auto& line : lines) names.push_back(line.name);
+  counts_ = count_instructions(
+      counting, counting_program(), before_.chosen.profile, names);
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    sheet.findings.push_back(judge(lines[i], counts_.lines[i]));
+}
+
+void AgainstBaseline::renew() {
+  measure_digits(now_, cases_, flags_.measuring(), Screen::of(stdout));
+  Baseline renewed = blank_baseline(before_.chosen);
+  std::map<std::string, StageLine> fresh;
+  for (const auto& line : now_) fresh.emplace(line.name, line);
+  for (const auto& line : before_.stages) {
+    const auto at = fresh.find(line.name);
+    if (at != fresh.end()) {
+      renewed.stages.push_back(at->second);
+      fresh.erase(at);
+    } else if (!filter_.matches(case_of(line.name))) {
+      renewed.stages.push_back(line);
+    }
+  }
+  for (const auto& line : now_)
+    if (fresh.contains(line.name)) renewed.stages.push_back(line);
+  renewed.counts = renewed_counts();
+  write_atomically(flags_.baseline, to_text(renewed));
+  fmt::print("renewed {}: {} stages\n", flags_.baseline, renewed.stages.size());
+}
+
+/// Nothing passes because nothing was judged.
+void AgainstBaseline::require_something() const {
+  if (!lines_.empty()) return;
+  std::vector<std::string> names;
+  for (const auto& line : before_.stages) names.push_back(case_of(line.name));
+  std::string asked;
+  for (const auto& f : flags_.filters) asked += (asked.empty() ? "" : " ") + f;
+  const auto near = nearest_names(names, asked);
+  throw ExitError(ExitCode::nothing_matched,
+                  fmt::format("no case of {} matches '{}'; nearest is {}",
+                              flags_.baseline,
+                              asked,
+                              near.empty() ? names.front() : near.front()));
+}
+
+/// Of cases that are gone, their stages tell.
+std::vector<CountLine> AgainstBaseline::countable() const {
+  std::set<std::string> known;
+  for (const Case& c : cases_) known.insert(c.info.name);
+  auto lines = matching(before_.counts.lines, filter_);
+  std::erase_if(lines,
+                [&](const auto& line) { return !known.contains(line.name); });
+  return lines;
+}
+
+CountTable AgainstBaseline::renewed_counts() const {
+  CountTable table = before_.counts;
+  for (CountLine& line : table.lines)
+    for (const CountLine& now : counts_.lines)
+      if (now.name == line.name) line = now;
+  std::set<std::string> registered;
+  for (const Case& c : cases_of(before_.chosen)) registered.insert(c.info.name);
+  std::erase_if(table.lines, [&](const auto& line) {
+    return !registered.contains(line.name);
+  });
+  return table;
+}
+
+}  // namespace physinv

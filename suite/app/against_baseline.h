@@ -1,0 +1,41 @@
+/// The part of `gate` that holds cases against a baseline.
+#pragma once
+
+#include <vector>
+
+#include "suite/app/gate_flags.h"
+#include "suite/gate/sheet.h"
+#include "suite/harness/select.h"
+
+namespace physinv {
+
+class AgainstBaseline {
+ public:
+  /// Throws if there is no such baseline, or nothing of it to judge.
+  explicit AgainstBaseline(const GateFlags& flags);
+
+  /// Runs the cases, or reads a campaign that did.
+  void judge_stages(Sheet& sheet);
+  /// Where the baseline has them and this build can count.
+  void judge_instructions(Sheet& sheet);
+  /// The new lines in the place of the old ones; what is gone goes.
+  void renew();
+
+  const Baseline& before() const { return before_; }
+  const std::vector<Case>& cases() const { return cases_; }
+
+ private:
+  bool same_build() const { return before_.build == build_text(); }
+  void require_something() const;
+  std::vector<CountLine> countable() const;
+  CountTable renewed_counts() const;
+
+  const GateFlags& flags_;
+  NameFilter filter_;
+  Baseline before_;
+  std::vector<Case> cases_;
+  std::vector<StageLine> lines_, now_;  ///< of the baseline that match; of now
+  CountTable counts_;
+};
+
+}  // namespace physinv
