@@ -346,6 +346,16 @@ std::string caption_html(const std::string& id,
                      html(name_of(source, title)));
 }
 
+namespace {
+
+/// Pages that are no report of reproductions bring their own.
+std::string heading_of(const nlohmann::ordered_json& provenance) {
+  const std::string usual = "Physics inverse problems: what is reproduced";
+  return provenance.is_object() ? provenance.value("heading", usual) : usual;
+}
+
+}  // namespace
+
 std::string report_html(const std::vector<Section>& sections,
                         const nlohmann::ordered_json& provenance) {
   const auto anchors = anchors_of(sections);
@@ -362,9 +372,7 @@ std::string report_html(const std::vector<Section>& sections,
   out +=
       "</style>\n</head>\n<body>\n<div class=\"page\">\n"
       "<header id=\"top\">\n<h1>" +
-      html(provenance.value("heading",
-                            "Physics inverse problems: what is reproduced")) +
-      "</h1>\n";
+      html(heading_of(provenance)) + "</h1>\n";
   out += summary_html(provenance) + overview_html(sections, anchors) +
          "</header>\n" + contents_html(sections, anchors) + "<main>\n";
   for (std::size_t k = 0; k < sections.size(); ++k) {
