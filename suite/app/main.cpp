@@ -32,9 +32,9 @@ physinv-bench merge OUT SHARD..  join the results of shards
 physinv-bench baseline RESULTS   what a campaign came to, as a text for reviews
 physinv-bench gate [flags]       runs a baseline's cases: worse? slower?
 physinv-bench compare A B..      campaigns side by side, what changed most
-physinv-bench export RESULTS     for dashboards: Google Benchmark, GitHub, Bencher
+physinv-bench export RESULTS     for dashboards and other programs
 physinv-bench completion SHELL   completion for bash, zsh or fish
-physinv-bench submit --slurm DIR  a campaign as an array of Slurm jobs
+physinv-bench submit [flags]     a campaign as an array of Slurm jobs
 physinv-bench status DIR         how it stands
 physinv-bench kernels [flags]    kernel benchmarks (flags of Google Benchmark)
 physinv-bench VERB --help        flags of a verb

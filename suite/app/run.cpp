@@ -41,8 +41,7 @@ struct RunFlags {
         {"--time-budget",
          "start no case that would end later, such as 10m: first every method "
          "on one seed, then more seeds where the ranking is undecided; what "
-         "is "
-         "left out is named (exit 10), and the next run goes on with it",
+         "is left out is named (exit 10), and the next run goes on with it",
          &budget,
          "TIME"},
         {"--out", "where to; default: results/<profile>", &out, "DIR"},
@@ -189,7 +188,7 @@ Repetitions repeat(const Prepared& prepared,
         if (!has_result(s) || !hashes.contains(name)) continue;
         if (loss_bits(s) != hashes[name])
           throw std::logic_error(name + " has other results when repeated");
-        all[name].push_back(s.clocks.solve);
+        all[name + " " + s.key].push_back(s.clocks.solve);
       }
     }
     std::filesystem::remove_all(again.out);

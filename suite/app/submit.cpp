@@ -10,6 +10,7 @@
 #include "suite/planning/predict.h"
 #include "suite/planning/split.h"
 #include "suite/planning/submission.h"
+#include "suite/results/file.h"
 
 namespace physinv {
 namespace {

@@ -3,6 +3,8 @@
 /// compared. The first side is the one that the others are held against.
 #pragma once
 
+#include <compare>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>

@@ -25,7 +25,9 @@ std::vector<double> times_of(const Json& entry,
       entry.at(clock == &Seconds::wall ? "real_time" : "cpu_time");
   std::vector<double> all;
   if (first.is_number()) all.push_back(first);
-  const auto at = repetitions.find(entry.at("name"));
+  const auto at =
+      repetitions.find(entry.at("name").get<std::string>() + " " +
+                       entry.at("physinv").at("key").get<std::string>());
   if (at != repetitions.end())
     for (const Seconds& s : at->second) all.push_back(1e3 * (s.*clock));
   return all;

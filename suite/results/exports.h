@@ -11,8 +11,9 @@
 
 namespace physinv {
 
-/// Times of solving a stage again, by "case/stage". The results of these runs
-/// were the same and are not kept.
+/// Times of solving a stage again, by "case/stage key", so that those of other
+/// options or sources count for nothing. The results of these runs were the
+/// same and are not kept.
 using Repetitions = std::map<std::string, std::vector<Seconds>>;
 
 /// repetitions.json of a directory of results; empty if there is none.
