@@ -224,6 +224,27 @@ TEST_P(ProblemContract, JacobianAgreesWithPullback) {
   });
 }
 
+TEST_P(ProblemContract, InverseLowersTheLossAndColumnsAreIndependent) {
+  if (!provides(Needs::inverse)) GTEST_SKIP() << "has no inverse";
+  in_both([&](auto t) {
+    using T = decltype(t);
+    Bench<T> b(recipe());
+    const auto& inverse = dynamic_cast<const Inverse<T>&>(*b.problem);
+    const auto l = labelled().template cast<T>();
+    const Batch<T> guess = l.x + directions<T>(l.x.rows(), kCount, 0.3);
+    Batch<T> x(l.x.rows(), kCount), one(l.x.rows(), 1);
+    inverse.invert(l.y, l.given, guess, x, b.work);
+    Vector<double> before(kCount), after(kCount);
+    b.problem->loss(b.forward(guess, l.given), l.y, before);
+    b.problem->loss(b.forward(x, l.given), l.y, after);
+    for (Index i = 0; i < kCount; ++i) {
+      EXPECT_LT(after(i), before(i)) << "sample " << i;
+      inverse.invert(l.y.col(i), l.given.col(i), guess.col(i), one, b.work);
+      EXPECT_TRUE(same_bits(one, Batch<T>(x.col(i))));
+    }
+  });
+}
+
 TEST_P(ProblemContract, LossGradientAgreesWithCentralDifferences) {
   const auto p = recipe().make<double>();
   const auto l = labelled(6);

@@ -1,0 +1,119 @@
+// SIP paper, App. C.2, which prints no accuracy: its main text shows what the
+// networks predict after 10,000 updates. Errors are those of x.
+#include <vector>
+
+#include "suite/cases/sip/exponential/metrics.h"
+#include "suite/harness/registry.h"
+
+namespace physinv::exponential {
+namespace {
+
+RowOfCurve metric(MetricRow row) { return {"metrics", row}; }
+
+Quantity of(const char* method, MetricRow row) {
+  return median({method}, last_of(metric(row)));
+}
+Quantity best(const char* method, MetricRow row) {
+  return lowest({method}, last_of(metric(row)));
+}
+Quantity worst(const char* method, MetricRow row) {
+  return highest({method}, last_of(metric(row)));
+}
+
+/// Share of the mean error that is left of the first network's.
+RunValue left() {
+  return over(last_of(metric(kMean)), value_after(metric(kMean), 0));
+}
+RunValue low_over_high() {
+  return over(last_of(metric(kLow)), last_of(metric(kHigh)));
+}
+/// Of the same seed's run of another method.
+RunValue over_that_of(const char* other, MetricRow row) {
+  return over(last_of(metric(row)), beside({other}, last_of(metric(row))));
+}
+Quantity worst_ratio(const char* a, const char* b, MetricRow row) {
+  return also_asks(highest({a}, over_that_of(b, row)), {{b}});
+}
+
+const std::vector<Claim> kClaimsOfAll = {
+    {.id = "P1",
+     .origin = Origin::paper,
+     .where = "App. C.2",
+     .from = "quick",
+     .says = "SGD converges very slowly",
+     .conditions = {above(
+         "share of the error left", lowest({"sgd"}, left()), 0.1)}},
+    {.id = "P2",
+     .origin = Origin::paper,
+     .where = "App. C.2",
+     .from = "quick",
+     .says = "Adam converges very slowly",
+     .conditions = {above(
+         "share of the error left", lowest({"adam"}, left()), 0.1)}},
+    {.id = "P3",
+     .origin = Origin::paper,
+     .where = "App. C.2",
+     .from = "quick",
+     .says = "The cause: gradients scale with exp x",
+     .conditions = {above("SGD, error below -8 over that above -4",
+                          lowest({"sgd"}, low_over_high()),
+                          2),
+                    above("Adam", lowest({"adam"}, low_over_high()), 2)}},
+    {.id = "P4",
+     .origin = Origin::paper,
+     .where = "App. C.2",
+     .from = "quick",
+     .says = "Normalising the gradient cures it",
+     .conditions = {below("error over Adam's, worst seed",
+                          worst_ratio("norm", "adam", kMean),
+                          1),
+                    below("over SGD's, worst seed",
+                          worst_ratio("norm", "sgd", kMean),
+                          1)}},
+    {.id = "A1",
+     .from = "quick",
+     .says = "Mean errors, every seed in order",
+     .conditions = {below("Adam's over SGD's, worst seed",
+                          worst_ratio("adam", "sgd", kMean),
+                          1),
+                    within("normalised", of("norm", kMean), 0.4, 1.2),
+                    within("Adam", of("adam", kMean), 1.5, 3.2),
+                    within("SGD", of("sgd", kMean), 3.2, 4.6)}},
+    {.id = "A3",
+     .from = "quick",
+     .says = "Below -8 Adam and SGD predict nearly one number",
+     .conditions =
+         {below("normalised over Adam, worst seed",
+                worst_ratio("norm", "adam", kLow),
+                0.4),
+          below(
+              "Adam over SGD, worst seed", worst_ratio("adam", "sgd", kLow), 1),
+          above("Adam's error, best seed", best("adam", kLow), 3.5),
+          above("SGD's, best seed", best("sgd", kLow), 6),
+          below("range of Adam's below -9", worst("adam", kSpread), 0.1),
+          below("of SGD's", worst("sgd", kSpread), 0.1)}},
+    {.id = "A4",
+     .from = "quick",
+     .says = "In y the order is the other way round",
+     .conditions = {below(
+         "Adam's loss over the normalised one's",
+         ratio(median({"adam"}, last_loss()), median({"norm"}, last_loss())),
+         1)}},
+    {.id = "A5",
+     .from = "standard",
+     .says = "The signs of the distances do as well as the distances",
+     .conditions = {within("normalised over distances",
+                           ratio(of("norm", kMean), of("gt", kMean)),
+                           0.5,
+                           2)}},
+    {.id = "A6",
+     .from = "quick",
+     .says = "SGD barely leaves the best constant",
+     .conditions = {below(
+         "estimate at -3 over that at -12", of("sgd", kRise), 0.2)}},
+};
+
+const bool kClaims = register_claims("sip/exponential", kClaimsOfAll);
+
+}  // namespace
+}  // namespace physinv::exponential

@@ -1,0 +1,73 @@
+// SIP paper, App. C.2: a network learns to invert the exponential. Curvature
+// methods are not among these: the optional Newton steps of the authors' script
+// have no published numbers.
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "optimizers/training.h"
+#include "optimizers/training/proxy.h"
+#include "problems/exponential/exponential.h"
+#include "suite/cases/sip/exponential/metrics.h"
+#include "suite/harness/registry.h"
+#include "suite/nn/mlp.h"
+
+namespace physinv::exponential {
+namespace {
+
+constexpr Index kPoints = 1000, kBatch = 100;
+constexpr Index kSmoke = 200, kPaper = 10'000;
+
+// Objectives are sums over the batch, not means. All estimates are recorded:
+// those of a network in single precision are not made again to the last digits.
+Method method(std::string id, StepOptions rule, SignalRecipe signal) {
+  return {.id = std::move(id),
+          .chain = {train({.rule = std::move(rule),
+                           .batch = kBatch,
+                           .iterations = kPaper,
+                           .gradient_scale = double(kBatch),
+                           .fresh = true,
+                           .metrics = metrics(),
+                           .signal = std::move(signal)})}};
+}
+
+/// norm: sign(exp x - y), which is that of x - log y. gt: x - log y.
+std::vector<Method> methods() {
+  constexpr AdamOptions adam{.rate = 1e-3, .eps = 1e-8};
+  return {method("sgd", SgdOptions{.rate = 1e-2}, solver_loss()),
+          method("adam", adam, solver_loss()),
+          method("norm", adam, inverse_proxy(ProxyNorm::absolute)),
+          method("gt", adam, inverse_proxy())};
+}
+
+Row row(std::vector<std::string> ids, std::uint64_t seeds, Index updates) {
+  return {.methods = std::move(ids),
+          .n = {kPoints},
+          .seeds = first_seeds(seeds),
+          .iterations = updates};
+}
+
+const bool kRegistered = [] {
+  const std::vector<std::string> three = {"sgd", "adam", "norm"};
+  register_experiment({
+      .name = "sip/exponential",
+      .title = "Exponential",
+      .source = {.paper = "sip", .where = "App. C.2, Fig. 2"},
+      .problem = problem<Exponential>("exponential", {}),
+      .setting = {.predictor = {{Field::observations},
+                                nn::mlp(
+                                    {.hidden = {16, 64, 16},
+                                     .activation = nn::Activation::sigmoid})}},
+      .profiles = {{.name = "smoke", .rows = {row(three, 1, kSmoke)}},
+                   {.name = "quick", .rows = {row(three, 3, kPaper)}},
+                   {.name = "standard",
+                    .rows = {row(three, 10, kPaper), row({"gt"}, 3, kPaper)}},
+                   {.name = "paper",
+                    .rows = {row(three, 10, kPaper), row({"gt"}, 3, kPaper)}}},
+      .methods = methods(),
+  });
+  return true;
+}();
+
+}  // namespace
+}  // namespace physinv::exponential
