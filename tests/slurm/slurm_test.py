@@ -134,11 +134,16 @@ def node_down(d, alone):
     submit(d)
     wait_for("a task at work", lambda: finished(d) and workers_of(d))
     node = slurm("squeue", "-h", "-t", "RUNNING", "-o", "%N").split()[0]
+    jobs = slurm("squeue", "-h", "-w", node, "-o", "%A").split()
     before = finished(d)
     slurm("scontrol", "update", f"nodename={node}", "state=down",
           "reason=test")
     wait_for("requeued tasks", lambda: slurm(
         "squeue", "-h", "-t", "RUNNING", "-o", "%N").find(node) < 0)
+    # A node that comes back knows nothing of its jobs: a second start beside
+    # what is left of the first would fail in Slurm itself.
+    wait_for("the node without its jobs", lambda: not slurm(
+        "pgrep", "-f", f"slurmstepd: .({'|'.join(jobs)})[.]"))
     slurm("scontrol", "update", f"nodename={node}", "state=resume")
     check("Restarts=1" in slurm("scontrol", "show", "job"),
           "node down: a task was put back into the queue")
