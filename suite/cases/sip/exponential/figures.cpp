@@ -1,0 +1,63 @@
+#include <algorithm>
+#include <vector>
+
+#include "suite/cases/hig/common/report.h"
+#include "suite/cases/sip/exponential/metrics.h"
+#include "suite/harness/registry.h"
+
+namespace physinv::exponential {
+namespace {
+
+constexpr const char* kName = "sip/exponential";
+const std::vector<MethodLine> kLines = {
+    {"sgd", "SGD", Hue::blue},
+    {"adam", "Adam", Hue::purple},
+    {"norm", "Adam, sign of the inverse's step", Hue::orange},
+    {"gt", "Adam, the inverse's step", Hue::green}};
+
+/// What the networks of the first seed answer, over the whole range.
+Figure predictions(const Results& results) {
+  Panel panel{.x_label = "x*", .y_label = "x"};
+  for (const MethodLine& line : kLines) {
+    const auto chains = trained_chains(results, kName, line.method);
+    if (chains.empty()) continue;
+    const auto& truth = chains.front()->data.x;
+    const auto& x = chains.front()->stages.back().x;
+    std::vector<std::pair<double, double>> points;
+    for (Index i = 0; i < std::min(truth.cols(), x.cols()); ++i)
+      points.emplace_back(truth(0, i), x(0, i));
+    std::sort(points.begin(), points.end());
+    Series s{.label = line.label, .method = line.method, .look = look_of(line)};
+    for (const auto& [wanted, answer] : points)
+      s.x.push_back(wanted), s.y.push_back(answer);
+    panel.series.push_back(std::move(s));
+  }
+  if (!panel.series.empty())
+    panel.series.push_back({.label = "x = x*",
+                            .method = "truth",
+                            .x = {-12, 0},
+                            .y = {-12, 0},
+                            .dashed = true,
+                            .look = Look{.hue = Hue::ink}});
+  return {.id = "fig2",
+          .title = "Predictions after training",
+          .source = "Fig. 2",
+          .panels = {std::move(panel)},
+          .columns = 1,
+          .note = "Networks of the first seed on the test set."};
+}
+
+Section report(const Results& results, const Published&) {
+  Section section{.experiment = kName,
+                  .tables = {loss_table(results, kName, kLines)},
+                  .figures = {predictions(results)}};
+  LearningCurves curves(results, section);
+  curves.metric(kLines, kMean, "mean |x - x*|", "errors", "Errors of x", "");
+  curves.losses(kLines, "losses", "Learning curves", "");
+  return section;
+}
+
+const bool kReport = register_report(kName, report);
+
+}  // namespace
+}  // namespace physinv::exponential
