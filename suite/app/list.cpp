@@ -38,12 +38,18 @@ void print_json(const std::vector<Case>& cases) {
   fmt::print("{}\n", all.dump(2));
 }
 
+/// A long chain by its ends.
+std::string stages_of(const Case& c) {
+  const auto& all = c.info.stages;
+  if (all.size() <= 6) return fmt::format("{}", fmt::join(all, " "));
+  return fmt::format("{} .. {} ({})", all.front(), all.back(), all.size());
+}
+
 void print_table(const std::vector<Case>& cases) {
   std::size_t width = 4, stages_width = 6;
   for (const Case& c : cases) {
     width = std::max(width, c.info.name.size());
-    stages_width = std::max(
-        stages_width, fmt::format("{}", fmt::join(c.info.stages, " ")).size());
+    stages_width = std::max(stages_width, stages_of(c).size());
   }
   fmt::print("{:<{}}  {:<{}}  {:>10}\n",
              "case",
@@ -53,11 +59,10 @@ void print_table(const std::vector<Case>& cases) {
              "operations");
   double sum = 0;
   for (const Case& c : cases) {
-    const auto stages = fmt::format("{}", fmt::join(c.info.stages, " "));
     fmt::print("{:<{}}  {:<{}}  {:>10.2g}\n",
                c.info.name,
                width,
-               stages,
+               stages_of(c),
                stages_width,
                work_of(c));
     sum += work_of(c);
