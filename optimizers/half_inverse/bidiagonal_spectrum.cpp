@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "optimizers/half_inverse/reflector.h"
 
 namespace physinv::hig {
 namespace {
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 /// Registers that search at the same time: their divisions overlap.
 constexpr int kGroup = 4;
 constexpr Index kLanes = kGroup * kWidth;

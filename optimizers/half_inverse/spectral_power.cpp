@@ -101,7 +101,8 @@ void SpectralPower::directions(std::span<const Index> which,
   for_blocks(threads_, blocks, [&](Index block, int) {
     const Index first = block * Eight::kCount;
     std::vector<Eight> x(static_cast<std::size_t>(m));
-    Eigen::Map<Batch<double>> columns(&x[0].low[0], Eight::kCount, m);
+    Eigen::Map<Batch<double>> columns(
+        reinterpret_cast<double*>(x.data()), Eight::kCount, m);
     const Index here = std::min(Eight::kCount, count - first);
     Index top = m;
     for (Index k = 0; k < here; ++k) {

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <utility>
 
+#include "suite/results/published.h"
+#include "suite/results/results.h"
+
 namespace physinv {
 namespace {
 

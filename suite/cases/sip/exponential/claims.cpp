@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "suite/cases/sip/exponential/metrics.h"
+#include "suite/evidence/training.h"
 #include "suite/harness/registry.h"
 
 namespace physinv::exponential {
