@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "problems/oscillators/oscillators.h"
-#include "suite/cases/hig/common/report.h"
 #include "suite/cases/hig/oscillators/oscillators.h"
 #include "suite/evidence/cell.h"
 #include "suite/evidence/quantity.h"
 #include "suite/evidence/training.h"
+#include "suite/evidence/training_report.h"
 #include "suite/harness/registry.h"
 #include "suite/results/published.h"
 #include "suite/results/results.h"

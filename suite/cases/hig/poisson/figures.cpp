@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "problems/grid_poisson/grid_poisson.h"
-#include "suite/cases/hig/common/report.h"
 #include "suite/cases/hig/poisson/phases.h"
 #include "suite/evidence/cell.h"
 #include "suite/evidence/quantity.h"
 #include "suite/evidence/training.h"
+#include "suite/evidence/training_report.h"
 #include "suite/harness/registry.h"
 
 namespace physinv::poisson {

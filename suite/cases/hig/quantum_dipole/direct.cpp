@@ -7,11 +7,11 @@
 
 #include "optimizers/half_inverse_direct.h"
 #include "problems/quantum_dipole/quantum_dipole.h"
-#include "suite/cases/hig/common/report.h"
 #include "suite/cases/hig/quantum_dipole/direct_metrics.h"
 #include "suite/cases/hig/quantum_dipole/grids.h"
 #include "suite/evidence/statistics.h"
 #include "suite/evidence/training.h"
+#include "suite/evidence/training_report.h"
 #include "suite/harness/registry.h"
 
 namespace physinv::dipole {

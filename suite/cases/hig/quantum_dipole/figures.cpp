@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "problems/quantum_dipole/quantum_dipole.h"
-#include "suite/cases/hig/common/report.h"
 #include "suite/cases/hig/quantum_dipole/grids.h"
 #include "suite/cases/hig/quantum_dipole/metrics.h"
+#include "suite/evidence/training_report.h"
 #include "suite/harness/registry.h"
 
 namespace physinv::dipole {

@@ -3,10 +3,10 @@
 #include <array>
 #include <cmath>
 
-#include "suite/cases/hig/common/report.h"
 #include "suite/cases/hig/toy/toy.h"
 #include "suite/evidence/cell.h"
 #include "suite/evidence/quantity.h"
+#include "suite/evidence/training_report.h"
 #include "suite/harness/registry.h"
 #include "suite/results/published.h"
 #include "suite/results/results.h"

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "suite/cases/hig/common/report.h"
 #include "suite/cases/sip/exponential/metrics.h"
+#include "suite/evidence/training_report.h"
 #include "suite/harness/registry.h"
 
 namespace physinv::exponential {

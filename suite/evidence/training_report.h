@@ -1,5 +1,5 @@
-/// What the experiments of the half-inverse-gradients paper share: test losses
-/// of training stages over updates, over our time and over the paper's.
+/// What experiments that train one network report: test losses over updates,
+/// over our time and over the paper's.
 #pragma once
 
 #include <optional>

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "suite/cases/hig/common/report.h"
 #include "suite/evidence/cell.h"
 #include "suite/evidence/curve.h"
 #include "suite/evidence/statistics.h"
+#include "suite/evidence/training_report.h"
 
 namespace physinv {
 namespace {

@@ -1,4 +1,4 @@
-#include "suite/cases/hig/common/report.h"
+#include "suite/evidence/training_report.h"
 
 #include <fmt/format.h>
 

@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <span>
 
-#include "suite/cases/hig/common/report.h"
 #include "suite/evidence/curve.h"
 #include "suite/evidence/statistics.h"
+#include "suite/evidence/training_report.h"
 
 namespace physinv {
 namespace {
