@@ -140,7 +140,8 @@ void PanelPlot::draw(Svg& svg, const Rect& cell) const {
                       kTickWidth * static_cast<double>(tick_width);
   const double right = panel_.field ? 74 : 14;
   const double top = panel_.title.empty() ? 10 : 28;
-  const double bottom = panel_.x_label.empty() ? 26 : 44;
+  const bool names = panel_.field && !panel_.field->x_names.empty();
+  const double bottom = panel_.x_label.empty() ? names ? 40 : 26 : 44;
   const Rect box{cell.x + left,
                  cell.y + top,
                  cell.w - left - right,
@@ -198,10 +199,13 @@ void PanelPlot::furniture(Svg& svg, const Rect& box, const Rect& cell) const {
              true);
   }
   if (!run_) return;
+  const bool names = panel_.field && !panel_.field->x_names.empty();
+  double lower = 0;
   for (const Tick& t : x_marks(std::max(2, static_cast<int>(box.w / 60)))) {
     const double x = box.x + box.w * t.value;
     svg.line("grid", x, box.y, x, box.y + box.h);
-    svg.text("tick", x, box.y + box.h + 16, t.label, "middle");
+    svg.text("tick", x, box.y + box.h + 16 + lower, t.label, "middle");
+    if (names) lower = 14 - lower;  // neighbours may be wider than their cells
   }
   for (const Tick& t : y_marks(std::max(2, static_cast<int>(cell.h / 50)))) {
     const double y = box.y + box.h * (1 - t.value);
