@@ -1,0 +1,136 @@
+/// Bilinear lookup in a plane, each sample at a place of its own, with its
+/// slopes and its transpose.
+///
+///   a = floor(x), b = floor(y), wx = x - a, wy = y - b
+///   corners c = f[a][b], f[a][b+1], f[a+1][b], f[a+1][b+1]
+///   low = c0 + wy (c1 - c0), high = c2 + wy (c3 - c2)
+///   value = low + wx (high - low); slopes are those of the right side
+///
+/// Every coordinate is safe, however large: beyond the padding everything is
+/// zero (Edge::zero), or the place is taken modulo the extents.
+#pragma once
+
+#include "problems/fluid/plane.h"
+
+namespace physinv::fluid {
+
+template <class P>
+PHYSINV_LANES P floor_lanes(P x) {
+  const P r = round_lanes(x);
+  return select(r > x, r - 1, r);
+}
+
+/// base[index[k]] in lane k.
+template <class P, class I>
+PHYSINV_LANES P gather(const LaneScalar<P>* base, I index) {
+#ifdef PHYSINV_AVX512
+  if constexpr (sizeof(P) == 64 && sizeof(index[0]) == 8)
+    return _mm512_mask_i64gather_pd(P{}, 0xff, (__m512i)index, base, 8);
+#endif
+#ifdef __AVX2__
+  if constexpr (sizeof(P) == 32 && sizeof(index[0]) == 8)
+    return _mm256_i64gather_pd(base, (__m256i)index, 8);
+  if constexpr (sizeof(P) == 32 && sizeof(index[0]) == 4)
+    return _mm256_i32gather_ps(base, (__m256i)index, 4);
+#endif
+  P out{};
+  for (int k = 0; k < kWidthOf<P>; ++k) out[k] = base[index[k]];
+  return out;
+}
+
+/// A cell of four corners and the place in it.
+template <class P>
+struct Spot {
+  using I = Mask<LaneScalar<P>, kWidthOf<P>>;
+  I corner;  ///< of f[a][b], counted in numbers from f[0][0]
+  P wx, wy;
+};
+
+/// A value and d/dx, d/dy.
+template <class P>
+struct Looked {
+  P value, dx, dy;
+};
+
+template <Edge kEdge, class P>
+class Lookup {
+ public:
+  using T = LaneScalar<P>;
+  using I = typename Spot<P>::I;
+  static constexpr int W = kWidthOf<P>;
+
+  explicit Lookup(const Plane& plane)
+      : origin_(plane.at(0, 0)), stride_(plane.stride) {
+    extent_[0] = static_cast<T>(plane.rows);
+    extent_[1] = static_cast<T>(plane.columns);
+    for (int k = 0; k < W; ++k) lane_[k] = k;
+  }
+
+  PHYSINV_LANES Spot<P> find(P x, P y) const {
+    x = inside(x, extent_[0]), y = inside(y, extent_[1]);
+    const P a = floor_lanes(x), b = floor_lanes(y);
+    const P stride = P{} + static_cast<T>(stride_);
+    const P magic = P{} + kRounder<T>;
+    const I point = (I)(fma_lanes(a, stride, b) + magic) - (I)magic;
+    return {point * W + lane_, x - a, y - b};
+  }
+
+  PHYSINV_LANES void read(const P* f, const Spot<P>& s, P (&c)[4]) const {
+    const T* const p = reinterpret_cast<const T*>(f + origin_);
+    c[0] = gather<P>(p, s.corner), c[1] = gather<P>(p + W, s.corner);
+    c[2] = gather<P>(p + stride_ * W, s.corner);
+    c[3] = gather<P>(p + (stride_ + 1) * W, s.corner);
+  }
+
+  PHYSINV_LANES static Looked<P> look(const P (&c)[4], const Spot<P>& s) {
+    const P left = c[1] - c[0], right = c[3] - c[2];
+    const P low = fma_lanes(s.wy, left, c[0]);
+    const P dx = fma_lanes(s.wy, right, c[2]) - low;
+    return {fma_lanes(s.wx, dx, low), dx, fma_lanes(s.wx, right - left, left)};
+  }
+
+  PHYSINV_LANES Looked<P> look(const P* f, const Spot<P>& s) const {
+    P c[4];
+    read(f, s, c);
+    return look(c, s);
+  }
+
+  /// h times the weights of the corners.
+  PHYSINV_LANES static void weigh(P h, const Spot<P>& s, P (&c)[4]) {
+    const P high = h * s.wx, low = h - high;
+    c[1] = low * s.wy, c[0] = low - c[1];
+    c[3] = high * s.wy, c[2] = high - c[3];
+  }
+
+  /// Adds a number to each corner. Lanes never share one, so that the order
+  /// of the calls is all that the sums depend on.
+  PHYSINV_LANES void add(P* f, const Spot<P>& s, const P (&c)[4]) const {
+    T* const p = reinterpret_cast<T*>(f + origin_);
+    for (int k = 0; k < W; ++k) {
+      T* const at = p + s.corner[k];
+      at[0] += c[0][k], at[W] += c[1][k];
+      at[stride_ * W] += c[2][k], at[(stride_ + 1) * W] += c[3][k];
+    }
+  }
+
+ private:
+  PHYSINV_LANES static P inside(P x, T extent) {
+    const auto clamp = [](P v, T low, T high) {
+      v = select(v > P{} + low, v, P{} + low);
+      return select(v < P{} + high, v, P{} + high);
+    };
+    if constexpr (kEdge == Edge::zero) {
+      return clamp(x, -T(Plane::kPad), extent);
+    } else {
+      constexpr T kTurns = 1 << 20;
+      const P turns = clamp(held(x * (1 / extent)), -kTurns, kTurns);
+      return clamp(fma_lanes(floor_lanes(turns), P{} - extent, x), 0, extent);
+    }
+  }
+
+  Index origin_, stride_;
+  T extent_[2];
+  I lane_{};
+};
+
+}  // namespace physinv::fluid

@@ -1,0 +1,474 @@
+#include "problems/navier_stokes/navier_stokes.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <limits>
+
+#include "problems/fluid/noise.h"
+#include "problems/navier_stokes/blast.h"
+#include "problems/navier_stokes/box_flow.h"
+#include "suite/core/check.h"
+#include "suite/core/threads.h"
+
+namespace physinv {
+namespace {
+
+enum Slot : std::size_t { kUnknowns, kGiven, kStates, kDecisions, kScratch };
+
+/// Samples first .. first+count-1, one per lane; the last one fills the rest.
+/// Lanes whose input is lost compute with zeros.
+template <class T>
+struct Block {
+  using P = fluid::Samples8<T>;
+  static constexpr Index kWidth = fluid::kWidth<T>;
+
+  Index first, count;
+  bool lost[kWidth] = {};
+
+  Block(Index begin, BatchIn<T> x, BatchIn<T> given)
+      : first(begin), count(std::min(kWidth, x.cols() - begin)) {
+    const auto safe = [](const auto& v) {
+      return (v.array().abs() <= T(1e6)).all();  // not so for NaN
+    };
+    for (Index k = 0; k < kWidth; ++k)
+      lost[k] = !safe(x.col(column(k))) || !safe(given.col(column(k)));
+  }
+
+  Index column(Index lane) const { return first + std::min(lane, count - 1); }
+  P load(BatchIn<T> batch, Index row) const {
+    P p{};
+    for (Index k = 0; k < kWidth; ++k)
+      if (!lost[k]) p[k] = batch(row, column(k));
+    return p;
+  }
+  void store(P p, BatchOut<T>& batch, Index row) const {
+    for (Index k = 0; k < count; ++k)
+      batch(row, first + k) =
+          lost[k] ? std::numeric_limits<T>::quiet_NaN() : p[k];
+  }
+};
+
+/// f(first, thread) for every register of samples.
+template <class T, class F>
+void for_registers(Threads* threads, Index samples, F&& f) {
+  constexpr Index W = fluid::kWidth<T>;
+  for_blocks(threads, (samples + W - 1) / W, [&](Index b, int thread) {
+    f(b * W, thread);
+  });
+}
+
+/// The same with a workspace of the thread's own.
+template <class T, class F>
+void for_registers(Workspace& work, Index samples, F&& f) {
+  const bool threaded =
+      work.threads() != nullptr && work.threads()->count() > 1;
+  if (threaded) work.of_thread(0);  // makes all of them, before they run
+  for_registers<T>(work.threads(), samples, [&](Index first, int thread) {
+    Workspace& mine = threaded ? work.of_thread(thread) : work;
+    const Workspace::Scope scope(mine);
+    f(first, mine);
+  });
+}
+
+}  // namespace
+
+template <class T>
+struct NavierStokes<T>::Kernel {
+  using P = fluid::Samples8<T>;
+  static constexpr Index W = fluid::kWidth<T>;
+
+  explicit Kernel(const Options& o)
+      : options(o),
+        projection(fluid::BoxMasks(o.cells, o.obstacles)),
+        faces(projection.faces()),
+        plane(faces.cells.size()),
+        blast(o.cells, o.box, o.height, o.width),
+        flow(projection,
+             o.end_time / double(o.steps) / (o.box / double(o.cells))) {}
+
+  const Options options;
+  const fluid::BoxProjection<T> projection;
+  const fluid::Staggering<fluid::Edge::zero> faces;
+  const Index plane;  ///< packs of a plane
+  const BlastShape<T> blast;
+  const BoxFlow<P> flow;
+
+  /// A step's part of the memory: u, v before it, s of both.
+  Index state_packs() const { return 4 * plane; }
+  Index state_bytes() const { return 2 * flow.decisions(); }
+  Index scratch_packs() const { return fluid::kScratchPlanes * plane; }
+
+  FlowStep<P> step(P* states, std::uint8_t* decisions, Index t) const {
+    P* const p = states + t * state_packs();
+    FlowStep<P> s{p, p + plane, p + 2 * plane, p + 3 * plane};
+    if (decisions != nullptr) {
+      s.u_held = decisions + t * state_bytes();
+      s.v_held = s.u_held + flow.decisions();
+    }
+    return s;
+  }
+
+  /// tanh z0 besides the blast itself.
+  struct Unknowns : Blast<P> {
+    P tanh;
+  };
+  Unknowns unknowns(const Block<T>& block, BatchIn<T> x) const {
+    const P z[3] = {block.load(x, 0), block.load(x, 1), block.load(x, 2)};
+    const T half = static_cast<T>(0.5 * options.box);
+    const T speed = static_cast<T>(options.speed);
+    const P t = tanh_lanes(z[0]), centre = P{} + half;
+    return {{fma_lanes(centre, t, centre),
+             speed * z[1],
+             fma_lanes(P{} + speed, z[2], P{} + speed)},
+            t};
+  }
+  /// Cotangents of the unknowns from those of the blast; also, as the map is
+  /// one by one, how much of each unknown moves the blast.
+  Blast<P> scaled(const Unknowns& b, const Blast<P>& bar) const {
+    const T half = static_cast<T>(0.5 * options.box);
+    const T speed = static_cast<T>(options.speed);
+    const P slope = half * fma_lanes(-b.tanh, b.tanh, T(1) - P{});
+    return {slope * bar.x0, speed * bar.vx, speed * bar.vy};
+  }
+
+  /// Centred velocities of columns j >= from, to the faces.
+  void to_faces(const Block<T>& block, BatchIn<T> centred, P* u, P* v) const {
+    const Index n = options.cells, known = centred.rows() / (2 * n);
+    const Index from = n - known;
+    for (Index i = 0; i < n; ++i)
+      for (Index j = from; j < n; ++j) {
+        const Index row = i * known + j - from, at = faces.cells.at(i, j);
+        const P x = T(0.5) * block.load(centred, row);
+        const P y = T(0.5) * block.load(centred, n * known + row);
+        if (i + 1 < n) u[at] = u[at] + x;
+        if (i > 0) u[at - faces.cells.stride] += x;
+        if (j + 1 < n) v[at] = v[at] + y;
+        if (j > 0) v[at - 1] += y;
+      }
+  }
+
+  /// f(row, a, b): what is observed is half the sum of the faces a and b.
+  template <class F>
+  void for_observed(P* u, P* v, F&& f) const {
+    const Index n = options.cells, half = n / 2;
+    for (Index i = 0; i < n; ++i)
+      for (Index j = half; j < n; ++j) {
+        const Index row = i * half + j - half, at = faces.cells.at(i, j);
+        f(row, u[at - faces.cells.stride], u[at]);
+        f(n * half + row, v[at - 1], v[at]);
+      }
+  }
+
+  /// The first state, in planes of zeros.
+  void begin(const Block<T>& block,
+             BatchIn<T> given,
+             const Blast<P>& b,
+             const FlowStep<P>& s,
+             P* scratch) const {
+    to_faces(block, given, s.u, s.v);
+    blast.add(b, s.u, s.v);
+    projection.project(s.u, s.v, scratch);
+  }
+
+  /// Runs a block: states[t] are those before step t, the last ones follow.
+  /// All planes are in use at once if `keep`, else those of two steps.
+  void run(const Block<T>& block,
+           BatchIn<T> x,
+           BatchIn<T> given,
+           P* states,
+           std::uint8_t* decisions,
+           P* scratch) const {
+    const Index steps = options.steps;
+    const Index kept = decisions != nullptr ? steps : 1;
+    std::fill_n(states, (kept + 1) * state_packs(), P{});
+    begin(block, given, unknowns(block, x), step(states, nullptr, 0), scratch);
+    for (Index t = 0; t < steps; ++t) {
+      const bool keep = decisions != nullptr;
+      const auto s = step(states, decisions, keep ? t : t % 2);
+      const auto next = step(states, nullptr, keep ? t + 1 : (t + 1) % 2);
+      flow.advance(s, next.u, next.v, scratch);
+    }
+  }
+
+  void observe(const Block<T>& block,
+               P* states,
+               Index t,
+               BatchOut<T>& y) const {
+    const auto s = step(states, nullptr, t);
+    for_observed(s.u, s.v, [&](Index row, P a, P b) {
+      block.store(T(0.5) * (a + b), y, row);
+    });
+  }
+
+  /// Runs a block and, beside it, its three tangents (12 planes).
+  void push(const Block<T>& block,
+            BatchIn<T> x,
+            BatchIn<T> given,
+            P* states,
+            std::uint8_t* decisions,
+            P* tangents,
+            P* scratch,
+            BatchOut<T>& j) const {
+    const Index steps = options.steps;
+    const Unknowns b = unknowns(block, x);
+    std::fill_n(states, 2 * state_packs(), P{});
+    std::fill_n(tangents, 12 * plane, P{});
+    const auto u_dot = [=, this](Index k, Index t) {
+      return tangents + (4 * k + t % 2 * 2) * plane;
+    };
+    begin(block, given, b, step(states, nullptr, 0), scratch);
+    for (Index k = 0; k < 3; ++k) {
+      P* const u = u_dot(k, 0);
+      P one[3] = {};
+      one[k] = T(1) - P{};
+      blast.push(b, scaled(b, {one[0], one[1], one[2]}), u, u + plane);
+      projection.project(u, u + plane, scratch);
+    }
+    for (Index t = 0; t < steps; ++t) {
+      const auto s = step(states, decisions, t % 2);
+      const auto next = step(states, nullptr, (t + 1) % 2);
+      flow.advance(s, next.u, next.v, scratch);
+      for (Index k = 0; k < 3; ++k) {
+        P *const u = u_dot(k, t), *const to = u_dot(k, t + 1);
+        flow.push(s, u, u + plane, to, to + plane, scratch);
+      }
+    }
+    for (Index k = 0; k < 3; ++k) {
+      P* const u = u_dot(k, steps);
+      for_observed(u, u + plane, [&](Index row, P a, P c) {
+        block.store(
+            T(0.5) * (a + c), j, k * options.cells * options.cells + row);
+      });
+    }
+  }
+
+  /// From the last states of a kept run back to the unknowns. The planes of s
+  /// of the last states are free.
+  void retreat(const Block<T>& block,
+               BatchIn<T> x,
+               BatchIn<T> y_bar,
+               P* states,
+               std::uint8_t* decisions,
+               P* bars,
+               P* scratch,
+               BatchOut<T>& x_bar) const {
+    P *u = bars, *v = bars + plane, *u_out = bars + 2 * plane,
+      *v_out = bars + 3 * plane;
+    std::fill_n(bars, 2 * plane, P{});
+    for_observed(u, v, [&](Index row, P& a, P& b) {
+      const P half = T(0.5) * block.load(y_bar, row);
+      a += half, b += half;
+    });
+    for (Index t = options.steps; t-- > 0;) {
+      flow.retreat(step(states, decisions, t), u, v, u_out, v_out, scratch);
+      std::swap(u, u_out), std::swap(v, v_out);
+    }
+    projection.pull(u, v, scratch);
+    const Unknowns b = unknowns(block, x);
+    const auto bar = scaled(b, blast.pull(b, u, v));
+    block.store(bar.x0, x_bar, 0);
+    block.store(bar.vx, x_bar, 1);
+    block.store(bar.vy, x_bar, 2);
+  }
+};
+
+Options describe(const NavierStokesOptions& o) {
+  std::vector<Index> boxes;
+  for (const auto& b : o.obstacles)
+    boxes.insert(boxes.end(), {b.i0, b.i1, b.j0, b.j1});
+  return {{"cells", fmt::format("{}", o.cells)},
+          {"box", fmt::format("{}", o.box)},
+          {"end_time", fmt::format("{}", o.end_time)},
+          {"steps", fmt::format("{}", o.steps)},
+          {"obstacles", fmt::format("{}", fmt::join(boxes, ","))},
+          {"height", fmt::format("{}", o.height)},
+          {"width", fmt::format("{}", o.width)},
+          {"speed", fmt::format("{}", o.speed)},
+          {"noise", fmt::format("{}", o.noise)},
+          {"x0", fmt::format("{},{}", o.x0[0], o.x0[1])},
+          {"vx", fmt::format("{},{}", o.vx[0], o.vx[1])},
+          {"vy", fmt::format("{},{}", o.vy[0], o.vy[1])},
+          {"tape_budget", fmt::format("{}", o.tape_budget)}};
+}
+
+template <class T>
+NavierStokes<T>::NavierStokes(const Options& o) : options_(o) {
+  SUITE_CHECK(o.cells >= 4 && o.cells % 2 == 0,
+              "cells must be an even number, at least 4");
+  SUITE_CHECK(o.box > 0 && o.end_time > 0 && o.steps > 0,
+              "box, end time and number of steps must be positive");
+  SUITE_CHECK(o.width > 0 && o.speed > 0 && o.noise >= 0,
+              "width, speed and noise of the blast and the flow");
+  SUITE_CHECK(0 < o.x0[0] && o.x0[0] <= o.x0[1] && o.x0[1] < 1,
+              "the blast is within the box");
+  kernel_ = std::make_shared<const Kernel>(o);
+}
+
+template <class T>
+Samples<double> NavierStokes<T>::sample(Index first,
+                                        Index count,
+                                        const Rng& rng) const {
+  const Index n = options_.cells, half = n / 2;
+  const auto& o = options_;
+  Samples<double> out;
+  out.x.resize(3, count), out.y.resize(n * n, count);
+  out.given.resize(n * n, count);
+  Batch<double> flow(2 * n * n, count);
+  // A mode enters where its wavelength is below box / sqrt(10), in cells of
+  // the generator's scale 10.
+  const auto cut = static_cast<Index>(std::floor(o.box * o.box / 1000));
+  for (Index i = 0; i < count; ++i) {
+    Stream stream = rng.child(static_cast<std::uint64_t>(first + i)).stream();
+    out.x(0, i) = std::atanh(2 * stream.uniform(o.x0[0], o.x0[1]) - 1);
+    out.x(1, i) = stream.uniform(o.vx[0], o.vx[1]);
+    out.x(2, i) = stream.uniform(o.vy[0], o.vy[1]) - 1;
+    flow.col(i) = fluid::smooth_noise(
+        {.cells = n, .components = 2, .cut = cut, .deviation = o.noise},
+        stream);
+    for (Index line = 0; line < 2 * n; ++line)
+      out.given.col(i).segment(line * half, half) =
+          flow.col(i).segment(line * n + half, half);
+  }
+  Workspace work;
+  NavierStokes<double>(options_).forward_of_all(out.x, flow, out.y, work);
+  return out;
+}
+
+template <class T>
+void NavierStokes<T>::forward(BatchIn<T> x,
+                              BatchIn<T> given,
+                              BatchOut<T> y,
+                              Workspace& work) const {
+  check_size(given, options_.cells * options_.cells, x.cols());
+  forward_of_all(x, given, y, work);
+}
+
+template <class T>
+void NavierStokes<T>::forward_of_all(BatchIn<T> x,
+                                     BatchIn<T> flow,
+                                     BatchOut<T> y,
+                                     Workspace& work) const {
+  const Kernel& k = *kernel_;
+  using P = typename Kernel::P;
+  check_size(x, 3, x.cols());
+  check_size(flow, flow.rows(), x.cols());
+  check_size(y, options_.cells * options_.cells, x.cols());
+  for_registers<T>(work, x.cols(), [&](Index first, Workspace& mine) {
+    const Block<T> block(first, x, flow);
+    const Index states = 2 * k.state_packs();
+    auto memory = mine.take<T>(k.W, states + k.scratch_packs());
+    P* const p = reinterpret_cast<P*>(memory.data());
+    k.run(block, x, flow, p, nullptr, p + states);
+    k.observe(block, p, options_.steps % 2, y);
+  });
+}
+
+template <class T>
+void NavierStokes<T>::linearize(BatchIn<T> x,
+                                BatchIn<T> given,
+                                BatchOut<T> y,
+                                Tape& tape) const {
+  const Kernel& k = *kernel_;
+  using P = typename Kernel::P;
+  check_size(x, 3, x.cols());
+  check_size(given, options_.cells * options_.cells, x.cols());
+  check_size(y, options_.cells * options_.cells, x.cols());
+  tape.slot<T>(kUnknowns, 3, x.cols()) = x;
+  tape.slot<T>(kGiven, given.rows(), x.cols()) = given;
+  const Index blocks = (x.cols() + k.W - 1) / k.W;
+  const Index packs = (options_.steps + 1) * k.state_packs();
+  const Index bytes = options_.steps * k.state_bytes();
+  const Index threads = tape.threads() != nullptr ? tape.threads()->count() : 1;
+  const bool all =
+      double(blocks) * (double(packs * k.W) * sizeof(T) + double(bytes)) <=
+      options_.tape_budget;
+  const Index spare = all ? 0 : 2 * k.state_packs();
+  auto states = tape.slot<T>(kStates, packs * k.W, all ? blocks : 0);
+  auto held = tape.slot<std::uint8_t>(kDecisions, bytes, all ? blocks : 0);
+  auto scratch =
+      tape.slot<T>(kScratch, (k.scratch_packs() + spare) * k.W, threads);
+  for_registers<T>(tape.threads(), x.cols(), [&](Index first, int thread) {
+    const Block<T> block(first, x, given);
+    P* const s = reinterpret_cast<P*>(scratch.col(thread).data());
+    P* const p = all ? reinterpret_cast<P*>(states.col(first / k.W).data())
+                     : s + k.scratch_packs();
+    k.run(block, x, given, p, all ? held.col(first / k.W).data() : nullptr, s);
+    k.observe(block, p, all ? options_.steps : options_.steps % 2, y);
+  });
+}
+
+template <class T>
+void NavierStokes<T>::pullback(const Tape& tape,
+                               BatchIn<T> y_bar,
+                               BatchOut<T> x_bar,
+                               Workspace& work) const {
+  const Kernel& k = *kernel_;
+  using P = typename Kernel::P;
+  const auto x = tape.view<T>(kUnknowns);
+  const auto given = tape.view<T>(kGiven);
+  const auto states = tape.view<T>(kStates);
+  const auto held = tape.view<std::uint8_t>(kDecisions);
+  check_size(y_bar, options_.cells * options_.cells, x.cols());
+  check_size(x_bar, 3, x.cols());
+  for_registers<T>(work, x.cols(), [&](Index first, Workspace& mine) {
+    const Block<T> block(first, x, given);
+    const bool kept = states.cols() > 0;
+    const Index bars = 4 * k.plane;
+    auto memory = mine.take<T>(k.W, bars + k.scratch_packs());
+    P* const m = reinterpret_cast<P*>(memory.data());
+    P* p = nullptr;
+    std::uint8_t* decisions = nullptr;
+    if (kept) {
+      p = reinterpret_cast<P*>(const_cast<T*>(states.col(first / k.W).data()));
+      decisions = const_cast<std::uint8_t*>(held.col(first / k.W).data());
+    } else {
+      auto again = mine.take<T>(k.W, (options_.steps + 1) * k.state_packs());
+      auto bytes = mine.take<std::uint8_t>(k.state_bytes(), options_.steps);
+      p = reinterpret_cast<P*>(again.data()), decisions = bytes.data();
+      k.run(block, x, given, p, decisions, m + bars);
+    }
+    k.retreat(block, x, y_bar, p, decisions, m, m + bars, x_bar);
+  });
+}
+
+template <class T>
+void NavierStokes<T>::jacobian(BatchIn<T> x,
+                               BatchIn<T> given,
+                               BatchOut<T> j,
+                               Workspace& work) const {
+  const Kernel& k = *kernel_;
+  using P = typename Kernel::P;
+  const Index cells = options_.cells * options_.cells;
+  check_size(x, 3, x.cols());
+  check_size(given, cells, x.cols());
+  check_size(j, 3 * cells, x.cols());
+  for_registers<T>(work, x.cols(), [&](Index first, Workspace& mine) {
+    const Block<T> block(first, x, given);
+    const Index states = 2 * k.state_packs(), tangents = 12 * k.plane;
+    auto memory = mine.take<T>(k.W, states + tangents + k.scratch_packs());
+    auto held = mine.take<std::uint8_t>(2 * k.state_bytes(), 1);
+    P* const p = reinterpret_cast<P*>(memory.data());
+    k.push(
+        block, x, given, p, held.data(), p + states, p + states + tangents, j);
+  });
+}
+
+template <class T>
+Index NavierStokes<T>::gradient_block() const {
+  return fluid::kWidth<T>;
+}
+
+/// Counted from the formulas: 83 per face for the lookups and the limiter, and
+/// the projection's factor, some 30 per cell.
+template <class T>
+double NavierStokes<T>::operations() const {
+  const double cells = double(options_.cells * options_.cells);
+  return double(options_.steps) * cells * 166;
+}
+
+template class NavierStokes<float>;
+template class NavierStokes<double>;
+
+}  // namespace physinv

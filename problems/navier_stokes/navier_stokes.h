@@ -1,0 +1,111 @@
+/// A blast of air in a closed box with obstacles, seen later in the upper half:
+/// where was it, and how strong? (Joint parameter optimization, Sec. 4, Fig. 6,
+/// App. D.4, Figs. 19 to 24.)
+///
+///   du/dt + u grad u = -grad p,  div u = 0,  numerical diffusion only
+///
+/// Staggered grid, MacCormack advection with a limiter, exact projection
+/// (problems/fluid). A blast exp(-((x-x0)^2 + (y-y0)^2) / (2 width^2)) (vx, vy)
+/// joins a random flow at t = 0.
+///
+/// Unknown x: z (3), x0 = box / 2 (1 + tanh z0), vx = speed z1,
+/// vy = speed (1 + z2). Given: the initial velocity at the centres of the upper
+/// cells, the one below is taken as zero. Observation y: the final velocity
+/// there. Both (component, i, j), j fastest and from cells / 2. The data are
+/// those of the whole initial flow, so the truth has a loss.
+///
+/// vjp: exact discrete adjoint. Jacobian: three tangent runs. The map is
+/// continuous and has kinks everywhere (limiter, cells), some 1e-5 in z apart.
+///
+/// Numbers that are not finite, or beyond 1e6, give NaN in their own column.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "problems/fluid/box_projection.h"
+#include "suite/core/problem.h"
+#include "suite/core/recipe.h"
+
+namespace physinv {
+
+struct NavierStokesOptions {
+  Index cells = 64;  ///< per side, even
+  double box = 100;  ///< length of a side
+  double end_time = 56;
+  Index steps = 28;
+  std::vector<fluid::Obstacle> obstacles = {
+      {12, 22, 24, 29}, {42, 52, 24, 29}, {27, 37, 38, 44}};
+  double height = 20, width = 8;  ///< of the blast: y0 and standard deviation
+  double speed = 5;               ///< of the unknowns' scaling
+  double noise = 0.5;             ///< standard deviation of the initial flow
+  /// Of the truth, uniform: x0 in box times, vx and vy in speed times.
+  std::array<double, 2> x0 = {0.15, 0.85}, vx = {-1, 1}, vy = {0, 2};
+  /// Bytes of states that `linearize` may keep (4e6 per sample in double).
+  /// Larger batches are simulated again, a register of samples at a time, to
+  /// the same bits.
+  double tape_budget = 1.5e8;
+};
+
+Options describe(const NavierStokesOptions& options);
+
+template <class T>
+class NavierStokes final : public Problem<T>,
+                           public Vjp<T>,
+                           public Jacobian<T> {
+ public:
+  using Options = NavierStokesOptions;
+  explicit NavierStokes(const Options& options = {});
+
+  Shape shape() const override {
+    return {
+        3, options_.cells * options_.cells, options_.cells * options_.cells};
+  }
+  Vector<double> start() const override { return Vector<double>::Zero(3); }
+
+  /// z of the truth; y of the whole initial flow.
+  Samples<double> sample(Index first,
+                         Index count,
+                         const Rng& rng) const override;
+
+  void forward(BatchIn<T> x,
+               BatchIn<T> given,
+               BatchOut<T> y,
+               Workspace& work) const override;
+  void linearize(BatchIn<T> x,
+                 BatchIn<T> given,
+                 BatchOut<T> y,
+                 Tape& tape) const override;
+  void pullback(const Tape& tape,
+                BatchIn<T> y_bar,
+                BatchOut<T> x_bar,
+                Workspace& work) const override;
+  void jacobian(BatchIn<T> x,
+                BatchIn<T> given,
+                BatchOut<T> j,
+                Workspace& work) const override;
+
+  /// `forward` of an initial flow known in all cells (2 cells^2 rows).
+  void forward_of_all(BatchIn<T> x,
+                      BatchIn<T> flow,
+                      BatchOut<T> y,
+                      Workspace& work) const;
+
+  /// A register of samples: their states leave the cache soon enough.
+  Index gradient_block() const override;
+  double operations() const override;
+
+  const Options& options() const { return options_; }
+
+ private:
+  struct Kernel;
+
+  Options options_;
+  std::shared_ptr<const Kernel> kernel_;
+};
+
+extern template class NavierStokes<float>;
+extern template class NavierStokes<double>;
+
+}  // namespace physinv
