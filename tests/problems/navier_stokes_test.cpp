@@ -1,0 +1,157 @@
+#include "problems/navier_stokes/navier_stokes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "suite/core/threads.h"
+#include "tests/support/bits.h"
+#include "tests/support/gradient_check.h"
+
+namespace physinv::test {
+namespace {
+
+/// A quarter of the scene's cells and steps.
+NavierStokesOptions small(double tape_budget = 1e9) {
+  return {.cells = 32,
+          .end_time = 14,
+          .steps = 7,
+          .obstacles = {{6, 11, 12, 14}, {13, 18, 19, 22}},
+          .tape_budget = tape_budget};
+}
+
+Samples<double> draw(Index n) {
+  return NavierStokes<double>(small()).sample(
+      0, n, Rng::root("test/navier_stokes", 1));
+}
+
+/// Answers by value, on a given number of threads.
+template <class T>
+struct Bench {
+  explicit Bench(int threads = 1, double budget = 1e9)
+      : problem(small(budget)), pool(threads), tape(&pool), work(&pool) {}
+
+  Batch<T> forward(const Batch<T>& x, const Batch<T>& given) {
+    Batch<T> y(given.rows(), x.cols());
+    problem.forward(x, given, y, work);
+    return y;
+  }
+  /// At a y that has the bits of `forward`.
+  Batch<T> pull(const Batch<T>& x, const Batch<T>& given, const Batch<T>& bar) {
+    Batch<T> y(given.rows(), x.cols()), x_bar(3, x.cols());
+    problem.linearize(x, given, y, tape);
+    problem.pullback(tape, bar, x_bar, work);
+    EXPECT_TRUE(same_bits(y, forward(x, given)));
+    return x_bar;
+  }
+  Batch<T> jacobian(const Batch<T>& x, const Batch<T>& given) {
+    Batch<T> j(3 * given.rows(), x.cols());
+    problem.jacobian(x, given, j, work);
+    return j;
+  }
+
+  NavierStokes<T> problem;
+  Threads pool;
+  Tape tape;
+  Workspace work;
+};
+
+template <class T>
+class NavierStokesIn : public testing::Test {};
+using Scalars = testing::Types<float, double>;
+TYPED_TEST_SUITE(NavierStokesIn, Scalars);
+
+TEST(NavierStokes, SamplesAreWhatTheyShouldBe) {
+  const auto s = draw(12);
+  const auto few = draw(3);
+  EXPECT_TRUE(same_bits(Batch<double>(s.x.leftCols(3)), few.x));
+  EXPECT_TRUE(same_bits(Batch<double>(s.y.leftCols(3)), few.y));
+  EXPECT_TRUE(same_bits(Batch<double>(s.given.leftCols(3)), few.given));
+  EXPECT_LE(s.x.row(0).cwiseAbs().maxCoeff(), std::atanh(0.7));
+  EXPECT_LE(s.x.bottomRows(2).cwiseAbs().maxCoeff(), 1);
+  EXPECT_NEAR(
+      std::sqrt(s.given.squaredNorm() / double(s.given.size())), 0.5, 0.1);
+  // The flow below is hidden: the truth does not fit.
+  const Batch<double> y = Bench<double>().forward(s.x, s.given);
+  EXPECT_GT((y - s.y).colwise().norm().minCoeff(), 0.1);
+}
+
+TYPED_TEST(NavierStokesIn, PullbackIsTheJacobiansTranspose) {
+  using T = TypeParam;
+  const auto s = draw(5).template cast<T>();
+  Bench<T> bench;
+  const Batch<T> bar = s.y.reverse();
+  const Batch<T> x_bar = bench.pull(s.x, s.given, bar);
+  const Batch<double> j = bench.jacobian(s.x, s.given).template cast<double>();
+  for (Index i = 0; i < 5; ++i) {
+    const Vector<double> expected =
+        j.col(i).reshaped(s.y.rows(), 3).transpose() *
+        bar.col(i).template cast<double>();
+    const double off =
+        (x_bar.col(i).template cast<double>() - expected).cwiseAbs().maxCoeff();
+    EXPECT_LE(off,
+              (sizeof(T) == 8 ? 1e-12 : 2e-4) * expected.cwiseAbs().maxCoeff());
+  }
+}
+
+TEST(NavierStokes, JacobianIsTheDerivative) {
+  const auto s = draw(1);
+  Bench<double> bench;
+  const Batch<double> j = bench.jacobian(s.x, s.given).reshaped(s.y.rows(), 3);
+  const Batch<double> expected = difference_jacobian(
+      [&](const Vector<double>& x) -> Vector<double> {
+        return bench.forward(x, s.given).col(0);
+      },
+      s.x.col(0),
+      1e-8);
+  EXPECT_LE((j - expected).norm(), 1e-5 * expected.norm());
+}
+
+TYPED_TEST(NavierStokesIn, BitsDependOnNothingElse) {
+  using T = TypeParam;
+  const auto s = draw(11).template cast<T>();
+  Bench<T> one, two(2), again(2, 0);
+  const Batch<T> y = one.forward(s.x, s.given);
+  const Batch<T> x_bar = one.pull(s.x, s.given, s.y);
+  EXPECT_TRUE(same_bits(two.pull(s.x, s.given, s.y), x_bar));
+  EXPECT_TRUE(same_bits(again.pull(s.x, s.given, s.y), x_bar));
+  const std::vector<Index> some{10, 3, 4};
+  const Batch<T> x = s.x(Eigen::all, some), given = s.given(Eigen::all, some),
+                 bar = s.y(Eigen::all, some);
+  EXPECT_TRUE(same_bits(one.forward(x, given), Batch<T>(y(Eigen::all, some))));
+  EXPECT_TRUE(
+      same_bits(one.pull(x, given, bar), Batch<T>(x_bar(Eigen::all, some))));
+  const Batch<T> j = two.jacobian(s.x, s.given);
+  EXPECT_TRUE(same_bits(one.jacobian(x, given), Batch<T>(j(Eigen::all, some))));
+}
+
+TYPED_TEST(NavierStokesIn, WhatIsLostStaysInItsColumn) {
+  using T = TypeParam;
+  auto s = draw(6).template cast<T>();
+  Bench<T> bench;
+  const Batch<T> y = bench.forward(s.x, s.given);
+  const Batch<T> x_bar = bench.pull(s.x, s.given, s.y);
+  s.x(1, 2) = std::numeric_limits<T>::quiet_NaN();
+  s.x(0, 3) = std::numeric_limits<T>::infinity();
+  s.given(7, 4) = T(1e30);
+  const Batch<T> y2 = bench.forward(s.x, s.given);
+  const Batch<T> x_bar2 = bench.pull(s.x, s.given, s.y);
+  const Batch<T> j = bench.jacobian(s.x, s.given);
+  for (Index i = 0; i < 6; ++i) {
+    const bool lost = i >= 2 && i <= 4;
+    EXPECT_EQ(y2.col(i).array().isNaN().all(), lost);
+    EXPECT_EQ(x_bar2.col(i).array().isNaN().all(), lost);
+    EXPECT_EQ(j.col(i).array().isNaN().all(), lost);
+    if (lost) continue;
+    EXPECT_TRUE(same_bits(Batch<T>(y.col(i)), Batch<T>(y2.col(i))));
+    EXPECT_TRUE(same_bits(Batch<T>(x_bar.col(i)), Batch<T>(x_bar2.col(i))));
+  }
+  // A blast far too strong is still a number.
+  s.x.col(0) << T(-40), T(1e5), T(-1e5);
+  EXPECT_TRUE(bench.forward(s.x, s.given).col(0).allFinite());
+  EXPECT_TRUE(bench.pull(s.x, s.given, s.y).col(0).allFinite());
+}
+
+}  // namespace
+}  // namespace physinv::test
