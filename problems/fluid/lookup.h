@@ -14,26 +14,57 @@
 
 namespace physinv::fluid {
 
+/// The lesser and the greater, a if neither is: what the instructions do.
+template <class P>
+PHYSINV_LANES P least(P a, P b) {
+#ifdef PHYSINV_AVX512
+  if constexpr (sizeof(P) == 64 && sizeof(a[0]) == 8)
+    return _mm512_maskz_min_pd(0xff, b, a);
+#endif
+#ifdef __AVX2__
+  if constexpr (sizeof(P) == 32 && sizeof(a[0]) == 8)
+    return _mm256_min_pd(b, a);
+  if constexpr (sizeof(P) == 32 && sizeof(a[0]) == 4)
+    return _mm256_min_ps(b, a);
+#endif
+  return select(b < a, b, a);
+}
+template <class P>
+PHYSINV_LANES P most(P a, P b) {
+#ifdef PHYSINV_AVX512
+  if constexpr (sizeof(P) == 64 && sizeof(a[0]) == 8)
+    return _mm512_maskz_max_pd(0xff, b, a);
+#endif
+#ifdef __AVX2__
+  if constexpr (sizeof(P) == 32 && sizeof(a[0]) == 8)
+    return _mm256_max_pd(b, a);
+  if constexpr (sizeof(P) == 32 && sizeof(a[0]) == 4)
+    return _mm256_max_ps(b, a);
+#endif
+  return select(b > a, b, a);
+}
+
 template <class P>
 PHYSINV_LANES P floor_lanes(P x) {
+#ifdef PHYSINV_AVX512
+  if constexpr (sizeof(P) == 64 && sizeof(x[0]) == 8)
+    return _mm512_maskz_roundscale_pd(
+        0xff, x, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC);
+#endif
+#ifdef __AVX2__
+  if constexpr (sizeof(P) == 32 && sizeof(x[0]) == 8) return _mm256_floor_pd(x);
+  if constexpr (sizeof(P) == 32 && sizeof(x[0]) == 4) return _mm256_floor_ps(x);
+#endif
   const P r = round_lanes(x);
   return select(r > x, r - 1, r);
 }
 
-/// base[index[k]] in lane k.
+/// base[index[k]] in lane k; one by one, as the processors' own gathers are no
+/// faster.
 template <class P, class I>
-PHYSINV_LANES P gather(const LaneScalar<P>* base, I index) {
-#ifdef PHYSINV_AVX512
-  if constexpr (sizeof(P) == 64 && sizeof(index[0]) == 8)
-    return _mm512_mask_i64gather_pd(P{}, 0xff, (__m512i)index, base, 8);
-#endif
-#ifdef __AVX2__
-  if constexpr (sizeof(P) == 32 && sizeof(index[0]) == 8)
-    return _mm256_i64gather_pd(base, (__m256i)index, 8);
-  if constexpr (sizeof(P) == 32 && sizeof(index[0]) == 4)
-    return _mm256_i32gather_ps(base, (__m256i)index, 4);
-#endif
-  P out{};
+PHYSINV_LANES P gather(const LaneScalar<P>* base, const I& index) {
+  P out;
+#pragma GCC unroll 16
   for (int k = 0; k < kWidthOf<P>; ++k) out[k] = base[index[k]];
   return out;
 }
@@ -106,18 +137,23 @@ class Lookup {
   /// of the calls is all that the sums depend on.
   PHYSINV_LANES void add(P* f, const Spot<P>& s, const P (&c)[4]) const {
     T* const p = reinterpret_cast<T*>(f + origin_);
+    alignas(64) T part[4][W];
+    alignas(64) LaneInt<T> corner[W];
+    std::memcpy(part, c, sizeof(part));
+    std::memcpy(corner, &s.corner, sizeof(corner));
+#pragma GCC unroll 16
     for (int k = 0; k < W; ++k) {
-      T* const at = p + s.corner[k];
-      at[0] += c[0][k], at[W] += c[1][k];
-      at[stride_ * W] += c[2][k], at[(stride_ + 1) * W] += c[3][k];
+      T* const at = p + corner[k];
+      T* const next = at + stride_ * W;
+      at[0] += part[0][k], at[W] += part[1][k];
+      next[0] += part[2][k], next[W] += part[3][k];
     }
   }
 
  private:
   PHYSINV_LANES static P inside(P x, T extent) {
     const auto clamp = [](P v, T low, T high) {
-      v = select(v > P{} + low, v, P{} + low);
-      return select(v < P{} + high, v, P{} + high);
+      return least(P{} + high, most(P{} + low, v));
     };
     if constexpr (kEdge == Edge::zero) {
       return clamp(x, -T(Plane::kPad), extent);

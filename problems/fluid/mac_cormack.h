@@ -175,8 +175,6 @@ class MacCormack {
   }
 
  private:
-  PHYSINV_LANES static P least(P a, P b) { return select(b < a, b, a); }
-  PHYSINV_LANES static P most(P a, P b) { return select(b > a, b, a); }
   PHYSINV_LANES static P shift(const Looked<P>& l, const Velocity<P>& v) {
     return fma_lanes(v.x, l.dx, v.y * l.dy);
   }
