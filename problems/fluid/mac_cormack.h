@@ -105,6 +105,7 @@ class MacCormack {
             P* f_bar,
             P* scratch) const {
     P* const s_bar = scratch;
+    P* moved = scratch + plane_.size();  // the second lookup's, both ways
     std::fill_n(s_bar, plane_.size(), P{});
     const std::uint8_t* decision = decisions;
     plane_.for_points([&](Index i, Index j, Index at) {
@@ -117,11 +118,11 @@ class MacCormack {
       look_.add(s_bar, spot, c);
       const auto r = look_.look(s, spot);
       const P h = lambda_ * -half;
-      velocity.add(at, h * r.dx, h * r.dy);
-      decision += W;
+      moved[0] = h * r.dx, moved[1] = h * r.dy;
+      moved += 2, decision += W;
     });
     if constexpr (kEdge == Edge::periodic) fold(plane_, s_bar);
-    decision = decisions;
+    decision = decisions, moved = scratch + plane_.size();
     plane_.for_points([&](Index i, Index j, Index at) {
       const auto spot = look_.find_from(i, j, -lambda_, velocity(at));
       P c[4], c_bar[4];
@@ -131,8 +132,9 @@ class MacCormack {
       add_held(Decisions<P>::get(decision), g[at], c, c_bar);
       look_.add(f_bar, spot, c_bar);
       const P h = lambda_ * -s_bar[at];
-      velocity.add(at, h * back.dx, h * back.dy);
-      decision += W;
+      velocity.add(
+          at, fma_lanes(h, back.dx, moved[0]), fma_lanes(h, back.dy, moved[1]));
+      moved += 2, decision += W;
     });
     if constexpr (kEdge == Edge::periodic) fold(plane_, f_bar);
   }

@@ -39,7 +39,7 @@ struct Plane {
 };
 
 /// Planes of memory that one call of any kernel needs for itself.
-inline constexpr Index kScratchPlanes = 2;
+inline constexpr Index kScratchPlanes = 3;
 
 /// What stands beyond the border: nothing, or the other end.
 enum class Edge : std::uint8_t { zero, periodic };

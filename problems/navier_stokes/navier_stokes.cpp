@@ -133,15 +133,14 @@ struct NavierStokes<T>::Kernel {
     return {slope * bar.x0, speed * bar.vx, speed * bar.vy};
   }
 
-  /// Centred velocities of columns j >= from, to the faces.
+  /// Centred velocities to the faces, planes of zeros.
   void to_faces(const Block<T>& block, BatchIn<T> centred, P* u, P* v) const {
-    const Index n = options.cells, known = centred.rows() / (2 * n);
-    const Index from = n - known;
+    const Index n = options.cells;
     for (Index i = 0; i < n; ++i)
-      for (Index j = from; j < n; ++j) {
-        const Index row = i * known + j - from, at = faces.cells.at(i, j);
+      for (Index j = 0; j < n; ++j) {
+        const Index row = i * n + j, at = faces.cells.at(i, j);
         const P x = T(0.5) * block.load(centred, row);
-        const P y = T(0.5) * block.load(centred, n * known + row);
+        const P y = T(0.5) * block.load(centred, n * n + row);
         if (i + 1 < n) u[at] = u[at] + x;
         if (i > 0) u[at - faces.cells.stride] += x;
         if (j + 1 < n) v[at] = v[at] + y;
@@ -307,33 +306,45 @@ NavierStokes<T>::NavierStokes(const Options& o) : options_(o) {
 }
 
 template <class T>
-Samples<double> NavierStokes<T>::sample(Index first,
-                                        Index count,
-                                        const Rng& rng) const {
-  const Index n = options_.cells, half = n / 2;
+Samples<double> NavierStokes<T>::sample_labelled(Index first,
+                                                 Index count,
+                                                 const Rng& rng) const {
   const auto& o = options_;
+  const Shape rows = shape();
   Samples<double> out;
-  out.x.resize(3, count), out.y.resize(n * n, count);
-  out.given.resize(n * n, count);
-  Batch<double> flow(2 * n * n, count);
-  // A mode enters where its wavelength is below box / sqrt(10), in cells of
-  // the generator's scale 10.
+  out.x.resize(rows.unknowns, count), out.y.resize(rows.observations, count);
+  out.given.resize(rows.given, count);
+  // The generator's waves are shorter than box / sqrt(10) in its own unit, 10.
   const auto cut = static_cast<Index>(std::floor(o.box * o.box / 1000));
   for (Index i = 0; i < count; ++i) {
     Stream stream = rng.child(static_cast<std::uint64_t>(first + i)).stream();
     out.x(0, i) = std::atanh(2 * stream.uniform(o.x0[0], o.x0[1]) - 1);
     out.x(1, i) = stream.uniform(o.vx[0], o.vx[1]);
     out.x(2, i) = stream.uniform(o.vy[0], o.vy[1]) - 1;
-    flow.col(i) = fluid::smooth_noise(
-        {.cells = n, .components = 2, .cut = cut, .deviation = o.noise},
+    out.given.col(i) = fluid::smooth_noise(
+        {.cells = o.cells, .components = 2, .cut = cut, .deviation = o.noise},
         stream);
-    for (Index line = 0; line < 2 * n; ++line)
-      out.given.col(i).segment(line * half, half) =
-          flow.col(i).segment(line * n + half, half);
   }
   Workspace work;
-  NavierStokes<double>(options_).forward_of_all(out.x, flow, out.y, work);
+  NavierStokes<double>(o).forward(out.x, out.given, out.y, work);
   return out;
+}
+
+template <class T>
+Samples<double> NavierStokes<T>::sample(Index first,
+                                        Index count,
+                                        const Rng& rng) const {
+  Samples<double> out = sample_labelled(first, count, rng);
+  const Index n = options_.cells;
+  for (Index line = 0; line < 2 * n; ++line)
+    out.given.middleRows(line * n, n / 2).setZero();
+  return out;
+}
+
+template <class T>
+void NavierStokes<T>::check_sizes(BatchIn<T> x, BatchIn<T> given) const {
+  check_size(x, shape().unknowns, x.cols());
+  check_size(given, shape().given, x.cols());
 }
 
 template <class T>
@@ -341,26 +352,16 @@ void NavierStokes<T>::forward(BatchIn<T> x,
                               BatchIn<T> given,
                               BatchOut<T> y,
                               Workspace& work) const {
-  check_size(given, options_.cells * options_.cells, x.cols());
-  forward_of_all(x, given, y, work);
-}
-
-template <class T>
-void NavierStokes<T>::forward_of_all(BatchIn<T> x,
-                                     BatchIn<T> flow,
-                                     BatchOut<T> y,
-                                     Workspace& work) const {
   const Kernel& k = *kernel_;
   using P = typename Kernel::P;
-  check_size(x, 3, x.cols());
-  check_size(flow, flow.rows(), x.cols());
-  check_size(y, options_.cells * options_.cells, x.cols());
+  check_sizes(x, given);
+  check_size(y, shape().observations, x.cols());
   for_registers<T>(work, x.cols(), [&](Index first, Workspace& mine) {
-    const Block<T> block(first, x, flow);
+    const Block<T> block(first, x, given);
     const Index states = 2 * k.state_packs();
     auto memory = mine.take<T>(k.W, states + k.scratch_packs());
     P* const p = reinterpret_cast<P*>(memory.data());
-    k.run(block, x, flow, p, nullptr, p + states);
+    k.run(block, x, given, p, nullptr, p + states);
     k.observe(block, p, options_.steps % 2, y);
   });
 }
@@ -372,9 +373,8 @@ void NavierStokes<T>::linearize(BatchIn<T> x,
                                 Tape& tape) const {
   const Kernel& k = *kernel_;
   using P = typename Kernel::P;
-  check_size(x, 3, x.cols());
-  check_size(given, options_.cells * options_.cells, x.cols());
-  check_size(y, options_.cells * options_.cells, x.cols());
+  check_sizes(x, given);
+  check_size(y, shape().observations, x.cols());
   tape.slot<T>(kUnknowns, 3, x.cols()) = x;
   tape.slot<T>(kGiven, given.rows(), x.cols()) = given;
   const Index blocks = (x.cols() + k.W - 1) / k.W;
@@ -410,7 +410,7 @@ void NavierStokes<T>::pullback(const Tape& tape,
   const auto given = tape.view<T>(kGiven);
   const auto states = tape.view<T>(kStates);
   const auto held = tape.view<std::uint8_t>(kDecisions);
-  check_size(y_bar, options_.cells * options_.cells, x.cols());
+  check_size(y_bar, shape().observations, x.cols());
   check_size(x_bar, 3, x.cols());
   for_registers<T>(work, x.cols(), [&](Index first, Workspace& mine) {
     const Block<T> block(first, x, given);
@@ -440,10 +440,8 @@ void NavierStokes<T>::jacobian(BatchIn<T> x,
                                Workspace& work) const {
   const Kernel& k = *kernel_;
   using P = typename Kernel::P;
-  const Index cells = options_.cells * options_.cells;
-  check_size(x, 3, x.cols());
-  check_size(given, cells, x.cols());
-  check_size(j, 3 * cells, x.cols());
+  check_sizes(x, given);
+  check_size(j, 3 * shape().observations, x.cols());
   for_registers<T>(work, x.cols(), [&](Index first, Workspace& mine) {
     const Block<T> block(first, x, given);
     const Index states = 2 * k.state_packs(), tangents = 12 * k.plane;

@@ -9,10 +9,11 @@
 /// joins a random flow at t = 0.
 ///
 /// Unknown x: z (3), x0 = box / 2 (1 + tanh z0), vx = speed z1,
-/// vy = speed (1 + z2). Given: the initial velocity at the centres of the upper
-/// cells, the one below is taken as zero. Observation y: the final velocity
-/// there. Both (component, i, j), j fastest and from cells / 2. The data are
-/// those of the whole initial flow, so the truth has a loss.
+/// vy = speed (1 + z2). Given: the initial velocity at the cells' centres
+/// (component, i, j). Observation y: the final one in the upper half, j from
+/// cells / 2. Index j is the fastest. `sample` hides the initial flow of the
+/// lower half, so that the truth has a loss; `sample_labelled` shows it. Both
+/// draw the same flows from the same stream.
 ///
 /// vjp: exact discrete adjoint. Jacobian: three tangent runs. The map is
 /// continuous and has kinks everywhere (limiter, cells), some 1e-5 in z apart.
@@ -59,15 +60,19 @@ class NavierStokes final : public Problem<T>,
   explicit NavierStokes(const Options& options = {});
 
   Shape shape() const override {
-    return {
-        3, options_.cells * options_.cells, options_.cells * options_.cells};
+    const Index cells = options_.cells * options_.cells;
+    return {3, cells, 2 * cells};
   }
   Vector<double> start() const override { return Vector<double>::Zero(3); }
 
-  /// z of the truth; y of the whole initial flow.
+  /// z of the truth; the flow below is zero in `given`, not in what made y.
   Samples<double> sample(Index first,
                          Index count,
                          const Rng& rng) const override;
+  /// The same with the whole flow as given.
+  Samples<double> sample_labelled(Index first,
+                                  Index count,
+                                  const Rng& rng) const override;
 
   void forward(BatchIn<T> x,
                BatchIn<T> given,
@@ -86,12 +91,6 @@ class NavierStokes final : public Problem<T>,
                 BatchOut<T> j,
                 Workspace& work) const override;
 
-  /// `forward` of an initial flow known in all cells (2 cells^2 rows).
-  void forward_of_all(BatchIn<T> x,
-                      BatchIn<T> flow,
-                      BatchOut<T> y,
-                      Workspace& work) const;
-
   /// A register of samples: their states leave the cache soon enough.
   Index gradient_block() const override;
   double operations() const override;
@@ -100,6 +99,7 @@ class NavierStokes final : public Problem<T>,
 
  private:
   struct Kernel;
+  void check_sizes(BatchIn<T> x, BatchIn<T> given) const;
 
   Options options_;
   std::shared_ptr<const Kernel> kernel_;
