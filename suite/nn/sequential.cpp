@@ -29,7 +29,17 @@ double bound_of(Init init, const TensorInfo& t) {
   return 1.0 / std::sqrt(static_cast<double>(t.fan_in));
 }
 
+/// Matrices and kernels always are, biases by `Init::uniform` alone.
+bool is_drawn(Init init, char kind) {
+  return kind == 'm' || kind == 'k' || (kind == 'b' && init == Init::uniform);
+}
+
 }  // namespace
+
+std::string in_words(Init init) {
+  if (init == Init::fan_in) return "";
+  return init == Init::glorot ? " init=glorot" : " init=uniform";
+}
 
 /// Slot 0: what a later call must know about the last forward pass.
 template <class T>
@@ -101,7 +111,7 @@ void Sequential<T>::initialize(const Rng& rng,
   for (const TensorInfo& t : tensors_) {
     auto part = parameters.segment(t.offset, t.size);
     part.setConstant(t.kind == 's' ? T(1) : T(0));
-    if (t.kind != 'm' && t.kind != 'k') continue;
+    if (!is_drawn(init_, t.kind)) continue;
     Stream stream = rng.child(t.name).stream();
     const double bound = bound_of(init_, t);
     for (T& w : part) w = static_cast<T>(stream.uniform(-bound, bound));

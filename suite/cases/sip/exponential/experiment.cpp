@@ -55,9 +55,9 @@ const bool kRegistered = [] {
       .source = {.paper = "sip", .where = "App. C.2, Fig. 2"},
       .problem = problem<Exponential>("exponential", {}),
       .setting = {.predictor = {{Field::observations},
-                                nn::mlp(
-                                    {.hidden = {16, 64, 16},
-                                     .activation = nn::Activation::sigmoid})}},
+                                nn::mlp({.hidden = {16, 64, 16},
+                                         .activation = nn::Activation::sigmoid,
+                                         .init = nn::Init::uniform})}},
       .profiles = {{.name = "smoke", .rows = {row(three, 1, kSmoke)}},
                    {.name = "quick", .rows = {row(three, 3, kPaper)}},
                    {.name = "standard",
