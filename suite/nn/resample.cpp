@@ -51,11 +51,11 @@ struct Shares {
     const Index last = std::min(m - 1, 2 * i + 4);
     for (Index o = std::max<Index>(0, 2 * i - 2); o <= last; ++o) {
       const Pair s = sources(o, n, m);
-      const double weight =
+      const double share =
           (s.near == i ? s.weight : 0) + (s.far == i ? 1 - s.weight : 0);
-      if (weight == 0) continue;
+      if (share == 0) continue;
       output[count] = o;
-      this->weight[count++] = weight;
+      weight[count++] = share;
     }
   }
   std::array<Index, 7> output{};
