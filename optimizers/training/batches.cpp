@@ -16,12 +16,20 @@ Index drawn_before(const StageRun& run) {
              : static_cast<Index>(found->second(0, 0));
 }
 
+namespace {
+
+Index set_size(const StageRun& run, const BatchOptions& options) {
+  return options.set > 0 ? options.set : run.oracle.count();
+}
+
+}  // namespace
+
 template <class T>
 Batches<T>::Batches(StageRun& run, const BatchOptions& options, Index drawn)
     : run_(run),
       size_(options.fresh ? options.size
-                          : std::min(options.size, run.oracle.count())),
-      slices_(run.oracle.count() / size_),
+                          : std::min(options.size, set_size(run, options))),
+      slices_(set_size(run, options) / size_),
       drawn_(drawn),
       fresh_(options.fresh) {
   if (!fresh_) load(run.oracle.training(0, slices_ * size_));

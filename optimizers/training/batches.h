@@ -1,5 +1,5 @@
 /// Which samples an update sees, when it does not see all: consecutive slices
-/// of a training set as large as the case's, in the same order every epoch, or
+/// of a training set, in the same order every epoch, or
 /// fresh samples for every update, which are drawn while the clock stands
 /// still. Nothing allocates after the first batch, unless every batch is drawn
 /// afresh.
@@ -12,13 +12,14 @@ namespace physinv {
 struct BatchOptions {
   Index size = 128;
   bool fresh = false;
+  Index set = 0;  ///< samples of the training set, 0: as many as the case has
 };
 
 template <class T>
 class Batches {
  public:
-  /// Slices of `size` problems out of as many as the case has (`size` is cut to
-  /// that number, a remainder is left out); with `fresh`, new problems from
+  /// Slices of `size` problems out of the set (`size` is cut to its number, a
+  /// remainder is left out); with `fresh`, new problems from
   /// number `drawn` on for every batch.
   Batches(StageRun& run, const BatchOptions& options, Index drawn);
 
