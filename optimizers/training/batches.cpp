@@ -36,6 +36,12 @@ Batches<T>::Batches(StageRun& run, const BatchOptions& options, Index drawn)
 }
 
 template <class T>
+void Batches<T>::keep_exact() {
+  exact_ = true;
+  if (!fresh_) load(run_.oracle.training(0, slices_ * size_));
+}
+
+template <class T>
 void Batches<T>::next() {
   if (fresh_) {
     run_.probe.pause();
@@ -51,6 +57,7 @@ void Batches<T>::next() {
 template <class T>
 void Batches<T>::load(const Samples<double>& from) {
   target_ = from.y.template cast<T>();
+  if (exact_) exact_target_ = from.y;
   given_ = from.given.template cast<T>();
   const auto& fields = run_.setting.predictor.inputs;
   for (const Field f : fields)
@@ -62,7 +69,8 @@ template <class T>
 std::size_t Batches<T>::bytes() const {
   const Index numbers =
       size_ * (target_.rows() + given_.rows() + input_.rows());
-  return static_cast<std::size_t>(numbers) * sizeof(T);
+  return static_cast<std::size_t>(numbers) * sizeof(T) +
+         static_cast<std::size_t>(exact_target_.size()) * sizeof(double);
 }
 
 template class Batches<float>;

@@ -24,6 +24,7 @@ class Batches {
   Batches(StageRun& run, const BatchOptions& options, Index drawn);
 
   void next();
+  void keep_exact();
 
   Index size() const { return size_; }
   /// Problems used so far, those of earlier stages included.
@@ -41,6 +42,11 @@ class Batches {
     return target_.middleCols(first_ + first, count);
   }
 
+  /// The observations before they were rounded, for those who had them kept.
+  auto exact_target(Index first, Index count) const {
+    return exact_target_.middleCols(first_ + first, count);
+  }
+
   /// Of one batch: the set itself belongs to the problem.
   std::size_t bytes() const;
 
@@ -49,9 +55,10 @@ class Batches {
 
   StageRun& run_;
   Index size_, slices_, drawn_, at_ = 0;
-  bool fresh_;
+  bool fresh_, exact_ = false;
   /// All slices, or a fresh batch; the current one starts at column `first_`.
   Batch<T> target_, given_, input_;
+  Batch<double> exact_target_;
   Index first_ = 0;
 };
 

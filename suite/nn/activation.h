@@ -37,6 +37,8 @@ inline T activate(Activation a, T z) {
       return (z > T(0) ? z : T(0)) + std::log1p(std::exp(-std::abs(z)));
     case Activation::silu:
       return z * sigmoid(z);
+    case Activation::half_tanh:
+      return std::tanh(z / T(2));
   }
   return z;
 }
@@ -59,6 +61,8 @@ inline T derivative(Activation a, T y) {
       const T s = sigmoid(y);
       return s * std::fma(y, T(1) - s, T(1));
     }
+    case Activation::half_tanh:
+      return std::fma(-y, y, T(1)) / T(2);
   }
   return T(1);
 }

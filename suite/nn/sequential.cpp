@@ -26,7 +26,8 @@ Index constant_rows(Lanes<const T> x, Index first, Index step) {
 double bound_of(Init init, const TensorInfo& t) {
   if (init == Init::glorot)
     return std::sqrt(6.0 / static_cast<double>(t.fan_in + t.fan_out));
-  return 1.0 / std::sqrt(static_cast<double>(t.fan_in));
+  const double gain = init == Init::he ? std::sqrt(6.0) : 1.0;
+  return gain / std::sqrt(static_cast<double>(t.fan_in));
 }
 
 /// Matrices and kernels always are, biases by `Init::uniform` alone.
@@ -37,8 +38,9 @@ bool is_drawn(Init init, char kind) {
 }  // namespace
 
 std::string in_words(Init init) {
-  if (init == Init::fan_in) return "";
-  return init == Init::glorot ? " init=glorot" : " init=uniform";
+  constexpr const char* words[] = {
+      "", " init=glorot", " init=uniform", " init=he"};
+  return words[static_cast<std::size_t>(init)];
 }
 
 /// Slot 0: what a later call must know about the last forward pass.

@@ -85,10 +85,13 @@ Outcome train_on(const Json& rule,
                  bool sip,
                  Precision precision) {
   const Batch<double> y = observations();
-  const auto stage = train({.rule = step,
-                            .batch = y.cols(),
-                            .gradient_scale = double(y.cols()),
-                            .signal = sip ? inverse_proxy() : solver_loss()});
+  const auto stage =
+      train({.rule = step,
+             .batch = y.cols(),
+             .gradient_scale = double(y.cols()),
+             .signal = sip ? inverse_proxy(ProxyNorm::square,
+                                           ProxyPrecision::in_double)
+                           : solver_loss()});
   StageBench bench(*stage,
                    y.cols(),
                    updates,
