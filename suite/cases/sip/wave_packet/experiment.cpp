@@ -100,7 +100,7 @@ const bool kJoint = register_experiment({
     .setting = kSetting,
     .profiles = {{.name = "smoke", .rows = {row({"fit"}, 2, 1, 5)}},
                  {.name = "paper",
-                  .rows = {row({"fit"}, 50, 1, kQuick),
+                  .rows = {row({"fit"}, 50, 5, kQuick),
                            row({"fit"}, 1, 50, kQuick)}}},
     .methods = {{"fit", {jpo_fit({.step = kAdam, .iterations = kQuick})}}},
 });

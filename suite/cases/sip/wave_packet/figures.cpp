@@ -9,6 +9,7 @@
 #include "suite/evidence/statistics.h"
 #include "suite/evidence/training_report.h"
 #include "suite/harness/registry.h"
+#include "suite/results/record.h"
 
 namespace physinv::sip_wave_packet {
 namespace {
@@ -40,23 +41,23 @@ Series packet(const MethodLine& line, double x, Index samples) {
 }
 
 /// Example i of the first seed: the data and what the methods make of it.
-Panel example(const Results& results, Index i) {
+Panel example(const Evidence& e, Index i) {
   Panel panel{.x_label = "t", .y_label = "signal"};
   for (const MethodLine& line : {kLines[0], kLines[1]}) {
-    const auto chains = trained_chains(results, kName, line.method);
-    if (chains.empty() || chains.front()->data.y.cols() <= i) continue;
-    const CaseRecord& c = *chains.front();
-    const Index samples = c.data.y.rows();
+    const auto runs = find_runs(e, {line.method});
+    if (runs.empty() || runs.front().stage->x.cols() <= i) continue;
+    const CaseData& data = runs.front().record->data;
+    const Index samples = data.y.rows();
     if (panel.series.empty()) {
-      panel.title = fmt::format("t0 = {:.1f}", kStart + c.data.x(0, i));
-      panel.series.push_back(
-          {.label = "data",
-           .method = "data",
-           .x = axis(samples),
-           .y = {c.data.y.col(i).begin(), c.data.y.col(i).end()},
-           .look = Look{.hue = Hue::ink}});
+      panel.title = fmt::format("t0 = {:.1f}", kStart + data.x(0, i));
+      panel.series.push_back({.label = "data",
+                              .method = "data",
+                              .x = axis(samples),
+                              .y = {data.y.col(i).begin(), data.y.col(i).end()},
+                              .look = Look{.hue = Hue::ink}});
     }
-    panel.series.push_back(packet(line, c.stages.back().x(0, i), samples));
+    panel.series.push_back(packet(line, runs.front().stage->x(0, i), samples));
+    panel.series.back().dashed = panel.series.size() > 2;
   }
   return panel;
 }
@@ -169,7 +170,7 @@ Section report(const Results& results, const Published& published) {
   curves.add({.id = "fig16a",
               .title = "Two examples and their fits",
               .source = "Fig. 16a",
-              .panels = {example(results, 0), example(results, 1)},
+              .panels = {example(e, 0), example(e, 1)},
               .columns = 1,
               .note = "Of the first seed, at the end."});
   Panel loss = curves.panel({kNetLine});
