@@ -1,5 +1,6 @@
 #include "suite/cases/matrix/cells/cells.h"
 
+#include "optimizers/training/newton.h"
 #include "optimizers/training/proxy.h"
 #include "problems/billiards/billiards.h"
 #include "problems/exponential/exponential.h"
@@ -71,6 +72,11 @@ const std::vector<MatrixMethod>& methods() {
                   AdamOptions{},
                   small,
                   inverse_proxy(ProxyNorm::absolute)),
+      first_order("newton",
+                  "Newton, saddle-free, Adam",
+                  AdamOptions{},
+                  small,
+                  newton_proxy()),
       power("hig", "Half-inverse gradients", -0.5),
       power("gn", "Gauss-Newton", -1)};
   return all;
@@ -162,6 +168,7 @@ std::string refusal(const MatrixProblem& problem, const MatrixMethod& method) {
   };
   if (lacks(Needs::inverse)) return "no inverse";
   if (lacks(Needs::jacobian)) return "no Jacobian";
+  if (lacks(Needs::hessian)) return "no Hessian";
   if (lacks(Needs::vjp)) return "no gradient";
   if (method.half_inverse && !problem.rows) return "network without rows";
   return {};
