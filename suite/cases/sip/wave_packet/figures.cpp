@@ -6,6 +6,7 @@
 
 #include "suite/cases/sip/wave_packet/values.h"
 #include "suite/evidence/cell.h"
+#include "suite/evidence/quantity.h"
 #include "suite/evidence/statistics.h"
 #include "suite/evidence/training_report.h"
 #include "suite/harness/registry.h"

@@ -1,6 +1,8 @@
 #include "suite/cases/sip/wave_packet/values.h"
 
 #include <cmath>
+#include <optional>
+#include <vector>
 
 #include "suite/evidence/curve.h"
 #include "suite/results/record.h"

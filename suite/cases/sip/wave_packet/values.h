@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "suite/cases/sip/wave_packet/metrics.h"
+#include "suite/evidence/quantity.h"
 #include "suite/evidence/training.h"
 
 namespace physinv::sip_wave_packet {
