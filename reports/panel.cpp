@@ -25,6 +25,16 @@ bool has_error_bars(const Series& s) {
 
 std::size_t points(const Series& s) { return std::min(s.x.size(), s.y.size()); }
 
+// Names of rows or columns stand at the middle of their cells.
+std::vector<Tick> named(const std::vector<std::string>& names) {
+  std::vector<Tick> ticks;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    ticks.push_back(
+        {(static_cast<double>(i) + 0.5) / static_cast<double>(names.size()),
+         names[i]});
+  return ticks;
+}
+
 // A step of a path: M moves there, L draws a line.
 std::string go(char verb, double x, double y) {
   return fmt::format("{}{} {}", verb, svg_number(x), svg_number(y));
@@ -123,14 +133,15 @@ double PanelPlot::py(const Rect& box, double value) const {
 void PanelPlot::draw(Svg& svg, const Rect& cell) const {
   std::size_t tick_width = 2;
   const int y_ticks = std::max(2, static_cast<int>(cell.h / 50));
-  for (const Tick& t : y_.ticks(y_ticks)) {
+  for (const Tick& t : y_marks(y_ticks)) {
     tick_width = std::max(tick_width, display_width(t.label));
   }
   const double left = (panel_.y_label.empty() ? 10 : 28) +
                       kTickWidth * static_cast<double>(tick_width);
   const double right = panel_.field ? 74 : 14;
   const double top = panel_.title.empty() ? 10 : 28;
-  const double bottom = panel_.x_label.empty() ? 26 : 44;
+  const bool names = panel_.field && !panel_.field->x_names.empty();
+  const double bottom = panel_.x_label.empty() ? names ? 40 : 26 : 44;
   const Rect box{cell.x + left,
                  cell.y + top,
                  cell.w - left - right,
@@ -150,6 +161,22 @@ void PanelPlot::draw(Svg& svg, const Rect& cell) const {
         "label", box.x + box.w / 2, box.y + box.h / 2 + 4, "not run", "middle");
   }
   svg.close();
+}
+
+std::vector<Tick> PanelPlot::x_marks(int wanted) const {
+  if (panel_.field && !panel_.field->x_names.empty())
+    return named(panel_.field->x_names);
+  auto ticks = x_.ticks(wanted);
+  for (Tick& t : ticks) t.value = x_.place(t.value);
+  return ticks;
+}
+
+std::vector<Tick> PanelPlot::y_marks(int wanted) const {
+  if (panel_.field && !panel_.field->y_names.empty())
+    return named(panel_.field->y_names);
+  auto ticks = y_.ticks(wanted);
+  for (Tick& t : ticks) t.value = y_.place(t.value);
+  return ticks;
 }
 
 void PanelPlot::furniture(Svg& svg, const Rect& box, const Rect& cell) const {
@@ -172,13 +199,16 @@ void PanelPlot::furniture(Svg& svg, const Rect& box, const Rect& cell) const {
              true);
   }
   if (!run_) return;
-  for (const Tick& t : x_.ticks(std::max(2, static_cast<int>(box.w / 60)))) {
-    const double x = px(box, t.value);
+  const bool names = panel_.field && !panel_.field->x_names.empty();
+  double lower = 0;
+  for (const Tick& t : x_marks(std::max(2, static_cast<int>(box.w / 60)))) {
+    const double x = box.x + box.w * t.value;
     svg.line("grid", x, box.y, x, box.y + box.h);
-    svg.text("tick", x, box.y + box.h + 16, t.label, "middle");
+    svg.text("tick", x, box.y + box.h + 16 + lower, t.label, "middle");
+    if (names) lower = 14 - lower;  // neighbours may be wider than their cells
   }
-  for (const Tick& t : y_.ticks(std::max(2, static_cast<int>(cell.h / 50)))) {
-    const double y = py(box, t.value);
+  for (const Tick& t : y_marks(std::max(2, static_cast<int>(cell.h / 50)))) {
+    const double y = box.y + box.h * (1 - t.value);
     svg.line("grid", box.x, y, box.x + box.w, y);
     svg.text("tick", box.x - 6, y + 4, t.label, "end");
   }

@@ -30,6 +30,9 @@ class PanelPlot {
 
  private:
   void fit_axes();
+  /// Ticks, their values being shares of the axis.
+  std::vector<Tick> x_marks(int wanted) const;
+  std::vector<Tick> y_marks(int wanted) const;
   void furniture(Svg& svg, const Rect& box, const Rect& cell) const;
   void curves(Svg& svg, const Rect& box) const;
   void band(Svg& svg, const Rect& box, const Series& s, int color) const;

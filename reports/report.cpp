@@ -85,6 +85,8 @@ Json to_json(const Panel& p) {
     out["field"] = {{"label", p.field->label},
                     {"log_scale", p.field->log_scale},
                     {"x", p.field->x},
+                    {"x_names", p.field->x_names},
+                    {"y_names", p.field->y_names},
                     {"y", p.field->y},
                     {"values", p.field->values}};
   }

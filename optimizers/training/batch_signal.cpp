@@ -54,13 +54,28 @@ Vector<T>& BatchSignal<T>::gradient() {
 }
 
 template <class T>
+Jacobians<T> BatchSignal<T>::jacobians() {
+  const Index n = batches_.size();
+  const Batch<T>& x = estimate(0, n);
+  x_bar_.resizeLike(x);
+  push(x, 0, loss_, x_bar_);
+  const Index d = x.rows();
+  identity_.setZero(d * d, n);
+  for (Index k = 0; k < d; ++k) identity_.row(k * (d + 1)).setOnes();
+  map_->pull_back_rows(identity_);
+  note_loss();
+  return {identity_, x_bar_};
+}
+
+template <class T>
 void BatchSignal<T>::leave(Outcome& out) const {
   out.arrays["batch_loss"] = as_row(losses_);
 }
 
 template <class T>
 std::size_t BatchSignal<T>::bytes() const {
-  return static_cast<std::size_t>(x_.size() + x_bar_.size() + sum_.size()) *
+  return static_cast<std::size_t>(x_.size() + x_bar_.size() + identity_.size() +
+                                  sum_.size()) *
          sizeof(T);
 }
 

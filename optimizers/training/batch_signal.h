@@ -20,6 +20,8 @@ class BatchSignal : public Signal<T> {
   explicit BatchSignal(const SignalPlace<T>& place);
 
   Vector<T>& gradient() override;
+  /// As of a solver that hands the estimates on.
+  Jacobians<T> jacobians() override;
   void leave(Outcome& out) const override;
   std::size_t bytes() const override;
 
@@ -46,7 +48,7 @@ class BatchSignal : public Signal<T> {
  private:
   Vector<T>& gradient_of(Index first, Index count);
 
-  Batch<T> x_, x_bar_;
+  Batch<T> x_, x_bar_, identity_;
   Vector<T> sum_;
   std::vector<double> losses_;
 };

@@ -23,20 +23,6 @@ class Proxy final : public BatchSignal<T> {
         inverse_(dynamic_cast<const Inverse<T>&>(*problem_)),
         work_(place.run.threads) {}
 
-  /// As of a solver that hands the estimates on.
-  Jacobians<T> jacobians() override {
-    const Index n = this->batches_.size();
-    const Batch<T>& x = this->estimate(0, n);
-    g_.resizeLike(x);
-    push(x, 0, this->loss_, g_);
-    const Index d = x.rows();
-    solver_.setZero(d * d, n);
-    for (Index k = 0; k < d; ++k) solver_.row(k * (d + 1)).setOnes();
-    this->map_->pull_back_rows(solver_);
-    this->note_loss();
-    return {solver_, g_};
-  }
-
   Counts counts() const override {
     Counts all = counts_;
     all += work_.counts;
@@ -44,10 +30,7 @@ class Proxy final : public BatchSignal<T> {
   }
   std::size_t bytes() const override {
     return BatchSignal<T>::bytes() +
-           static_cast<std::size_t>(wanted_.size() + g_.size() +
-                                    solver_.size()) *
-               sizeof(T) +
-           work_.bytes();
+           static_cast<std::size_t>(wanted_.size()) * sizeof(T) + work_.bytes();
   }
 
  private:
@@ -82,7 +65,7 @@ class Proxy final : public BatchSignal<T> {
 
   std::unique_ptr<Problem<T>> problem_;
   const Inverse<T>& inverse_;
-  Batch<T> wanted_, g_, solver_;
+  Batch<T> wanted_;
   Workspace work_;
   Counts counts_;
 };

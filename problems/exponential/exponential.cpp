@@ -82,6 +82,17 @@ void Exponential<T>::jacobian(BatchIn<T> x,
 }
 
 template <class T>
+void Exponential<T>::hessian(BatchIn<T> x,
+                             BatchIn<T> /*given*/,
+                             BatchIn<T> target,
+                             BatchOut<T> h,
+                             Workspace& /*work*/) const {
+  check_size(target, 1, x.cols());
+  exponentials<T>(x, h);
+  for (Index i = 0; i < x.cols(); ++i) h(0, i) *= 2 * h(0, i) - target(0, i);
+}
+
+template <class T>
 void Exponential<T>::invert(BatchIn<T> y,
                             BatchIn<T> /*given*/,
                             BatchIn<T> x_guess,

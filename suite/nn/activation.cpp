@@ -4,7 +4,7 @@ namespace physinv::nn {
 
 std::string_view to_string(Activation a) {
   constexpr std::string_view names[] = {
-      "identity", "relu", "tanh", "sigmoid", "softplus", "silu"};
+      "identity", "relu", "tanh", "sigmoid", "softplus", "silu", "half_tanh"};
   return names[static_cast<std::size_t>(a)];
 }
 

@@ -37,6 +37,8 @@ inline T activate(Activation a, T z) {
       return (z > T(0) ? z : T(0)) + std::log1p(std::exp(-std::abs(z)));
     case Activation::silu:
       return z * sigmoid(z);
+    case Activation::half_tanh:
+      return std::tanh(z / T(2));
   }
   return z;
 }
@@ -59,6 +61,8 @@ inline T derivative(Activation a, T y) {
       const T s = sigmoid(y);
       return s * std::fma(y, T(1) - s, T(1));
     }
+    case Activation::half_tanh:
+      return std::fma(-y, y, T(1)) / T(2);
   }
   return T(1);
 }
@@ -70,6 +74,7 @@ inline V activate_lanes(Activation a, V z) {
   if (a == Activation::identity) return z;
   if (a == Activation::relu) return z < V{} ? V{} : z;
   if (a == Activation::tanh) return tanh_lanes(z);
+  if (a == Activation::sigmoid) return sigmoid_lanes(z);
   for (std::size_t l = 0; l < sizeof(V) / sizeof(T); ++l)
     z[l] = activate<T>(a, z[l]);
   return z;
@@ -82,6 +87,7 @@ inline V pull_lanes(Activation a, V y, V y_bar) {
   if (a == Activation::relu) return y > V{} ? y_bar : V{};
   if (a == Activation::tanh)
     return y_bar * multiply_add<T>(-y, y, broadcast<V>(T(1)));
+  if (a == Activation::sigmoid) return y_bar * (y * (broadcast<V>(T(1)) - y));
   for (std::size_t l = 0; l < sizeof(V) / sizeof(T); ++l)
     y_bar[l] *= derivative<T>(a, y[l]);
   return y_bar;

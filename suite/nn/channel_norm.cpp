@@ -256,12 +256,17 @@ void dispatch(const NormShape& s, F&& f) {
 }  // namespace
 
 Grid halved(Grid grid) {
-  SUITE_CHECK(grid.columns % 2 == 0 && (grid.flat() || grid.rows % 2 == 0),
-              "pooling by 2 needs an even extent");
+  SUITE_CHECK(grid.columns >= 2 && (grid.flat() || grid.rows >= 2),
+              "pooling by 2 needs two positions per axis");
   return {grid.columns / 2, grid.flat() ? 1 : grid.rows / 2};
 }
 
-Grid NormShape::pooled() const { return pool ? halved(grid) : grid; }
+Grid NormShape::pooled() const {
+  if (!pool) return grid;
+  SUITE_CHECK(grid.columns % 2 == 0 && (grid.flat() || grid.rows % 2 == 0),
+              "pooling inside a block needs an even extent");
+  return halved(grid);
+}
 
 template <class T>
 void block_moments(

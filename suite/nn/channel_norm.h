@@ -22,7 +22,7 @@ struct NormShape {
   Grid pooled() const;
 };
 
-/// Half the extent along every axis that has one.
+/// Half the extent along every axis that has one, rounded down.
 Grid halved(Grid grid);
 
 /// Per-channel constants, as the columns of a tape slot: channels each.

@@ -50,7 +50,7 @@ NetworkRecipe cnn(const CnnOptions& options) {
           fmt::join(options.features, "-"),
           options.taps,
           to_string(options.activation),
-          options.init == Init::glorot ? " init=glorot" : ""),
+          in_words(options.init)),
       .make_float = std::bind_front(make<float>, options),
       .make_double = std::bind_front(make<double>, options)};
 }

@@ -125,7 +125,8 @@ ConvBlock<T>::ConvBlock(const ConvOptions& o, Activation activation, bool pool)
       norm_{.grid = output(o),
             .channels = o.out,
             .activation = activation,
-            .pool = pool} {
+            .pool = pool},
+      batch_statistics_(o.batch_statistics) {
   SUITE_CHECK(from_output(activation), "the activation needs a layer");
 }
 
@@ -140,6 +141,7 @@ std::vector<TensorInfo> ConvBlock<T>::tensors() const {
 
 template <class T>
 void ConvBlock<T>::initialize_state(T* state) const {
+  if (batch_statistics_) return;
   std::fill_n(state, norm_.channels, T(0));
   std::fill_n(state + norm_.channels, norm_.channels, T(1));
 }
@@ -156,7 +158,7 @@ void ConvBlock<T>::forward(const LayerArgs<T>& at,
           .data(),
       channels);
   const Workspace::Scope scope(*at.work);
-  if (at.training) {
+  if (by_batch(at)) {
     T* moments =
         at.work->template take<T>(2 * channels, conv_.blocks(z)).data();
     conv_.forward(at, x, z, [&](Index block, Index begin, Index end) {
@@ -218,12 +220,12 @@ void ConvBlock<T>::backward(const LayerArgs<T>& at,
     for (Index c = 0; c < channels; ++c) {
       offset_bar[c] = means[c], scale_bar[c] = means[channels + c];
       bias_bar[c] =
-          at.training ? T(0) : parameters[c] * kept.inverse[c] * means[c];
+          by_batch(at) ? T(0) : parameters[c] * kept.inverse[c] * means[c];
     }
   }
   // Outside training the statistics are constants.
   const T share =
-      at.training ? T(1) / static_cast<T>(norm_.positions() * samples) : T(0);
+      by_batch(at) ? T(1) / static_cast<T>(norm_.positions() * samples) : T(0);
   for (Index c = 0; c < 2 * channels; ++c) means[c] *= share;
 
   Lanes<T> z_bar(nullptr, z.rows, samples);
@@ -256,6 +258,7 @@ template <class T>
 void ConvBlock<T>::update_state(const Tape& tape,
                                 std::size_t slot,
                                 T* state) const {
+  if (batch_statistics_) return;
   move_state(NormColumns<T>(tape.view<T>(slot + 1).data(), norm_.channels),
              norm_.channels,
              state);

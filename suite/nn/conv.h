@@ -14,6 +14,9 @@ struct ConvOptions {
   Index in = 1, out = 1;  ///< channels
   Taps taps;              ///< {3, 1}; {3, 3} on a plane
   Padding padding = Padding::zero;
+  /// A block's normalisation: the batch's statistics in every pass, running
+  /// ones in none.
+  bool batch_statistics = false;
 };
 
 /// y = f(W * x + b), f an activation taken in (see `fuse`).
@@ -60,7 +63,9 @@ class ConvBlock final : public Layer<T> {
   ConvBlock(const ConvOptions& options, Activation activation, bool pool);
 
   std::vector<TensorInfo> tensors() const override;
-  Index state_count() const override { return 2 * norm_.channels; }
+  Index state_count() const override {
+    return batch_statistics_ ? 0 : 2 * norm_.channels;
+  }
   void initialize_state(T* state) const override;
   std::size_t slots() const override { return 2; }
   void forward(const LayerArgs<T>& at,
@@ -73,8 +78,13 @@ class ConvBlock final : public Layer<T> {
   double operations() const override { return conv_.operations(); }
 
  private:
+  bool by_batch(const LayerArgs<T>& at) const {
+    return at.training || batch_statistics_;
+  }
+
   Convolution<T> conv_;
   NormShape norm_;
+  bool batch_statistics_;
 };
 
 extern template class Conv<float>;

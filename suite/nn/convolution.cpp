@@ -20,9 +20,16 @@ Convolution<T>::Convolution(
       input_positions_(grid.positions()),
       runs_(window_runs(grid, taps, padding)),
       flipped_runs_(flipped_runs(grid, taps, padding)) {
-  for (const Run& run : runs_)
+  const Index positions = shape_.positions();
+  // Circular: the outer rows of a plane see the far side.
+  if (padding == Padding::circular && !grid.flat())
+    edge_ = std::min(taps.y / 2 * grid.columns, positions);
+  for (const Run& run : runs_) {
+    const Index end = run.first + run.count;
+    if (end <= edge_ || run.first >= positions - edge_) continue;
     for (const Segment& s : run.segments)
       reach_ = std::max({reach_, -s.shift, s.shift + s.taps - 1});
+  }
 }
 
 template <class T>

@@ -64,7 +64,9 @@ class Convolution {
   ConvShape shape_;
   Index input_positions_;
   std::vector<Run> runs_, flipped_runs_;
-  Index reach_ = 0;  ///< largest distance between an output and its inputs
+  /// Outputs of this many first and last positions may be far from their
+  /// inputs; the others' largest distance is the reach.
+  Index edge_ = 0, reach_ = 0;
 };
 
 template <class T>
@@ -113,6 +115,10 @@ void Convolution<T>::gradients(const LayerArgs<T>& at,
       convolve<T>(
           flipped, flipped_runs_, packed, nullptr, y_bar, x_bar, begin, end);
   };
+  const Index inner = shape_.positions() - edge_;
+  const auto pull_inner = [&](Index begin, Index end) {
+    pull(std::max(begin, edge_), std::min(end, inner));
+  };
   const Index units = shape_.positions() / unit;
   const Index some = std::max<Index>(1, per_block(y_bar) / unit);
   const auto first = [&](Index part) { return units * part / parts; };
@@ -126,16 +132,17 @@ void Convolution<T>::gradients(const LayerArgs<T>& at,
       if (weights_bar != nullptr)
         accumulate_weights<T>(
             shape_, runs_, x, y_bar, begin, end, sums + part * size);
-      pull(pulled, end - reach_);
+      pull_inner(pulled, end - reach_);
       pulled = std::max(pulled, end - reach_);
     }
   });
   for (Index part = 0; part < parts; ++part) {
     const Index begin = first(part) * unit, end = first(part + 1) * unit;
-    pull(begin, std::min(end, begin + reach_));
-    pull(std::max(begin + reach_, end - reach_), end);
+    pull_inner(begin, std::min(end, begin + reach_));
+    pull_inner(std::max(begin + reach_, end - reach_), end);
   }
-  pull(shape_.positions(), input_positions_);
+  pull(0, std::min(edge_, inner));
+  pull(std::max(inner, Index{0}), input_positions_);
   if (weights_bar != nullptr) {
     T* totals = at.work->template take<T>(shape_.weights(), 1).data();
     finish_weights<T>(shape_, sums, parts, totals, weights_bar);

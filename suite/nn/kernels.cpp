@@ -521,6 +521,15 @@ void ks_unet(benchmark::State& state) {
   field_network<T, step>(
       state, unet({.grid = {128}, .scalars_after = 2}), 130, 128);
 }
+template <class T, Step step>
+void plane_unet(benchmark::State& state) {
+  field_network<T, step>(state,
+                         unet({.grid = {64, 64},
+                               .padding = Padding::circular,
+                               .batch_statistics = true}),
+                         64 * 64,
+                         64 * 64);
+}
 
 #define PHYSINV_FIELD_NETWORK(T, name, step) \
   BENCHMARK((name<T, Step::step>))           \
@@ -537,6 +546,7 @@ PHYSINV_FIELD_NETWORKS(float, packet_vgg)
 PHYSINV_FIELD_NETWORKS(float, ks_vgg)
 PHYSINV_FIELD_NETWORKS(float, packet_unet)
 PHYSINV_FIELD_NETWORKS(float, ks_unet)
+PHYSINV_FIELD_NETWORKS(float, plane_unet)
 PHYSINV_FIELD_NETWORK(double, packet_vgg, training)
 PHYSINV_FIELD_NETWORK(double, packet_unet, training)
 #undef PHYSINV_FIELD_NETWORKS

@@ -31,15 +31,21 @@ enum class Activation : std::uint8_t {
   tanh,
   sigmoid,
   softplus,
-  silu,  ///< z sigma(z)
+  silu,       ///< z sigma(z)
+  half_tanh,  ///< tanh(z / 2) = 2 sigma(z) - 1
 };
 
 /// How weights are drawn, uniform within +-bound; biases and offsets start at
 /// 0, scales at 1.
 enum class Init : std::uint8_t {
-  fan_in,  ///< bound 1 / sqrt(fan_in), PyTorch's default
-  glorot,  ///< bound sqrt(6 / (fan_in + fan_out)), Keras' default
+  fan_in,   ///< bound 1 / sqrt(fan_in)
+  glorot,   ///< bound sqrt(6 / (fan_in + fan_out)), Keras' default
+  uniform,  ///< weights and biases as fan_in, PyTorch's default
+  he,       ///< bound sqrt(6 / fan_in), for ReLU
 };
+
+/// For the description of a network; nothing for fan_in.
+std::string in_words(Init init);
 
 /// Everything a layer uses beside its input and output.
 template <class T>

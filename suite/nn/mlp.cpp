@@ -62,7 +62,7 @@ NetworkRecipe mlp(const MlpOptions& options) {
               to_string(options.activation),
               to_string(options.output),
               options.batch_norm,
-              options.init == Init::glorot ? " init=glorot" : ""),
+              in_words(options.init)),
           .make_float = std::bind_front(make<float>, options),
           .make_double = std::bind_front(make<double>, options),
           .unused = unused(options)};

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
+#include "suite/core/check.h"
 #include "suite/nn/activation.h"
 
 namespace physinv::nn {
@@ -11,8 +13,6 @@ namespace {
 template <class T>
 using V = Simd<T, kNarrow>;
 
-Grid doubled(Grid g) { return {2 * g.columns, g.flat() ? 1 : 2 * g.rows}; }
-
 /// Input positions of a pooling cell.
 struct Cell {
   std::array<Index, 4> position;
@@ -20,21 +20,52 @@ struct Cell {
 };
 
 Cell cell(Grid grid, Index output) {
-  const Index half = grid.columns / 2;
+  const Index half = grid.columns / 2;  // an odd column is in no cell
   if (grid.flat()) return {{2 * output, 2 * output + 1, 0, 0}, 2};
   const Index first = output / half * 2 * grid.columns + output % half * 2;
   return {{first, first + 1, first + grid.columns, first + grid.columns + 1},
           4};
 }
 
-/// The two sources of output i along an axis of n inputs, with 3/4 and 1/4.
+/// The two sources of an output along one axis, the nearer one first.
 struct Pair {
   Index near, far;
+  double weight;  ///< of the nearer one
 };
 
-Pair sources(Index i, Index n) {
-  const Index near = i / 2, far = i % 2 == 0 ? near - 1 : near + 1;
-  return {near, std::clamp<Index>(far, 0, n - 1)};
+/// Of output i of m from n inputs.
+Pair sources(Index i, Index n, Index m) {
+  const double at = (static_cast<double>(i) + 0.5) * static_cast<double>(n) /
+                        static_cast<double>(m) -
+                    0.5;
+  const double below = std::floor(at), w = at - below;
+  const auto j = static_cast<Index>(below);
+  const Index low = std::clamp<Index>(j, 0, n - 1),
+              high = std::clamp<Index>(j + 1, 0, n - 1);
+  return w > 0.5 ? Pair{high, low, w} : Pair{low, high, 1 - w};
+}
+
+/// What an input gives to the outputs it is a source of, in their order.
+struct Shares {
+  Shares(Index i, Index n, Index m) {
+    const Index last = std::min(m - 1, 2 * i + 4);
+    for (Index o = std::max<Index>(0, 2 * i - 2); o <= last; ++o) {
+      const Pair s = sources(o, n, m);
+      const double share =
+          (s.near == i ? s.weight : 0) + (s.far == i ? 1 - s.weight : 0);
+      if (share == 0) continue;
+      output[count] = o;
+      weight[count++] = share;
+    }
+  }
+  std::array<Index, 7> output{};
+  std::array<double, 7> weight{};
+  std::size_t count = 0;
+};
+
+void check_axis(Index n, Index m) {
+  SUITE_CHECK(m == 2 * n || m == 2 * n + 1 || (n == 1 && m == 1),
+              "upsampling doubles an axis, plus one at most");
 }
 
 }  // namespace
@@ -67,6 +98,8 @@ void MaxPool<T>::forward(const LayerArgs<T>&,
 template <class T>
 void MaxPool<T>::backward(const LayerArgs<T>&, const Backward<T>& b) const {
   if (!b.x_bar) return;
+  if (grid_.columns % 2 != 0 || (!grid_.flat() && grid_.rows % 2 != 0))
+    std::fill_n(b.x_bar.data, b.x_bar.rows * b.x_bar.stride, T(0));
   for (Index i = 0; i < b.y.rows; ++i) {
     const Cell to = cell(grid_, i / channels_);
     const Index c = i % channels_;
@@ -85,33 +118,38 @@ void MaxPool<T>::backward(const LayerArgs<T>&, const Backward<T>& b) const {
 }
 
 template <class T>
-Upsample<T>::Upsample(Grid grid, Index channels)
-    : Layer<T>(grid.positions() * channels,
-               doubled(grid).positions() * channels),
-      grid_(grid),
-      channels_(channels) {}
+Upsample<T>::Upsample(Grid from, Grid to, Index channels)
+    : Layer<T>(from.positions() * channels, to.positions() * channels),
+      grid_(from),
+      fine_(to),
+      channels_(channels) {
+  check_axis(from.columns, to.columns);
+  check_axis(from.rows, to.rows);
+}
 
 template <class T>
 void Upsample<T>::forward(const LayerArgs<T>&,
                           Lanes<const T> x,
                           Lanes<T> y) const {
-  const V<T> near = broadcast<V<T>>(T(0.75)), far = broadcast<V<T>>(T(0.25));
-  const Grid fine = doubled(grid_);
   const auto row = [&](Index r, Index c, Index channel, Index j) {
     return load<V<T>>(x.row((r * grid_.columns + c) * channels_ + channel) + j);
   };
-  for (Index p = 0; p < fine.positions(); ++p) {
-    const Pair h = sources(p % fine.columns, grid_.columns);
-    const Pair v = sources(p / fine.columns, grid_.rows);
+  for (Index p = 0; p < fine_.positions(); ++p) {
+    const Pair h = sources(p % fine_.columns, grid_.columns, fine_.columns);
+    const Pair v = sources(p / fine_.columns, grid_.rows, fine_.rows);
+    const auto two = [](const Pair& pair, V<T> near, V<T> far) {
+      return multiply_add<T>(
+          broadcast<V<T>>(static_cast<T>(1 - pair.weight)),
+          far,
+          broadcast<V<T>>(static_cast<T>(pair.weight)) * near);
+    };
     for (Index c = 0; c < channels_; ++c)
       for (Index j = 0; j < x.width; j += kLanes<T>) {
         const auto along = [&](Index r) {
-          return multiply_add<T>(
-              far, row(r, h.far, c, j), near * row(r, h.near, c, j));
+          return two(h, row(r, h.near, c, j), row(r, h.far, c, j));
         };
         V<T> value = along(v.near);
-        if (!grid_.flat())
-          value = multiply_add<T>(far, along(v.far), near * value);
+        if (!grid_.flat()) value = two(v, value, along(v.far));
         store(y.row(p * channels_ + c) + j, value);
       }
   }
@@ -120,40 +158,18 @@ void Upsample<T>::forward(const LayerArgs<T>&,
 template <class T>
 void Upsample<T>::backward(const LayerArgs<T>&, const Backward<T>& b) const {
   if (!b.x_bar) return;
-  const Grid fine = doubled(grid_);
-  // Every input gathers from the at most 4 outputs per axis that it is a
-  // source of, in order.
-  struct Share {
-    Index from;
-    T weight;
-  };
-  const auto shares = [](Index i, Index n, Index extent) {
-    std::array<Share, 4> all{};
-    std::size_t count = 0;
-    for (Index o = std::max<Index>(0, 2 * i - 1);
-         o <= std::min(extent - 1, 2 * i + 2);
-         ++o) {
-      const Pair s = sources(o, n);
-      const T weight =
-          (s.near == i ? T(0.75) : T(0)) + (s.far == i ? T(0.25) : T(0));
-      all[count++] = {o, weight};
-    }
-    return std::pair{all, count};
-  };
-  const auto only =
-      std::pair{std::array<Share, 4>{Share{0, T(1)}}, std::size_t{1}};
+  // Every input gathers from its outputs, in order.
   for (Index p = 0; p < grid_.positions(); ++p) {
-    const auto [h, hs] = shares(p % grid_.columns, grid_.columns, fine.columns);
-    const auto [v, vs] =
-        grid_.flat() ? only : shares(p / grid_.columns, grid_.rows, fine.rows);
+    const Shares h(p % grid_.columns, grid_.columns, fine_.columns);
+    const Shares v(p / grid_.columns, grid_.rows, fine_.rows);
     for (Index c = 0; c < channels_; ++c)
       for (Index j = 0; j < b.x_bar.width; j += kLanes<T>) {
         V<T> sum{};
-        for (std::size_t a = 0; a < vs; ++a)
-          for (std::size_t k = 0; k < hs; ++k) {
-            const Index from = v[a].from * fine.columns + h[k].from;
+        for (std::size_t a = 0; a < v.count; ++a)
+          for (std::size_t k = 0; k < h.count; ++k) {
+            const Index from = v.output[a] * fine_.columns + h.output[k];
             sum = multiply_add<T>(
-                broadcast<V<T>>(v[a].weight * h[k].weight),
+                broadcast<V<T>>(static_cast<T>(v.weight[a] * h.weight[k])),
                 load<V<T>>(b.y_bar.row(from * channels_ + c) + j),
                 sum);
           }

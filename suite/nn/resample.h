@@ -9,7 +9,8 @@
 
 namespace physinv::nn {
 
-/// The largest of each cell; a tie's cotangent goes to the first.
+/// The largest of each cell; a tie's cotangent goes to the first. The last of
+/// an odd number of columns or rows is in no cell.
 template <class T>
 class MaxPool final : public Layer<T> {
  public:
@@ -26,13 +27,19 @@ class MaxPool final : public Layer<T> {
   Index channels_;
 };
 
-/// Half-pixel centres, clamped ends; per axis
+/// Half-pixel centres, clamped ends; per axis of n inputs and m outputs, m = 2
+/// n or 2 n + 1,
+///
+///   y[i] = (1 - w) v[j] + w v[j+1],  j + w = (i + 1/2) n / m - 1/2,  0 <= w <
+///   1
+///
+/// and for m = 2 n
+///
 ///   y[2i] = v[i-1] / 4 + 3 v[i] / 4,  y[2i+1] = 3 v[i] / 4 + v[i+1] / 4.
 template <class T>
 class Upsample final : public Layer<T> {
  public:
-  /// `grid` is that of the input.
-  Upsample(Grid grid, Index channels);
+  Upsample(Grid from, Grid to, Index channels);
 
   void forward(const LayerArgs<T>& at,
                Lanes<const T> x,
@@ -40,7 +47,7 @@ class Upsample final : public Layer<T> {
   void backward(const LayerArgs<T>& at, const Backward<T>& b) const override;
 
  private:
-  Grid grid_;
+  Grid grid_, fine_;
   Index channels_;
 };
 

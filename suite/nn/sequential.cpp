@@ -26,10 +26,22 @@ Index constant_rows(Lanes<const T> x, Index first, Index step) {
 double bound_of(Init init, const TensorInfo& t) {
   if (init == Init::glorot)
     return std::sqrt(6.0 / static_cast<double>(t.fan_in + t.fan_out));
-  return 1.0 / std::sqrt(static_cast<double>(t.fan_in));
+  const double gain = init == Init::he ? std::sqrt(6.0) : 1.0;
+  return gain / std::sqrt(static_cast<double>(t.fan_in));
+}
+
+/// Matrices and kernels always are, biases by `Init::uniform` alone.
+bool is_drawn(Init init, char kind) {
+  return kind == 'm' || kind == 'k' || (kind == 'b' && init == Init::uniform);
 }
 
 }  // namespace
+
+std::string in_words(Init init) {
+  constexpr const char* words[] = {
+      "", " init=glorot", " init=uniform", " init=he"};
+  return words[static_cast<std::size_t>(init)];
+}
 
 /// Slot 0: what a later call must know about the last forward pass.
 template <class T>
@@ -101,7 +113,7 @@ void Sequential<T>::initialize(const Rng& rng,
   for (const TensorInfo& t : tensors_) {
     auto part = parameters.segment(t.offset, t.size);
     part.setConstant(t.kind == 's' ? T(1) : T(0));
-    if (t.kind != 'm' && t.kind != 'k') continue;
+    if (!is_drawn(init_, t.kind)) continue;
     Stream stream = rng.child(t.name).stream();
     const double bound = bound_of(init_, t);
     for (T& w : part) w = static_cast<T>(stream.uniform(-bound, bound));

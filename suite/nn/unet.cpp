@@ -19,30 +19,36 @@ namespace {
 template <class T>
 using Layers = typename Sequential<T>::Layers;
 
-/// D(in -> out)
+/// D(in -> f)
 template <class T>
-void add_double(Layers<T>& to, Grid grid, Index in, Index out) {
-  for (const Index from : {in, out})
+void add_double(Layers<T>& to, const UnetOptions& o, Grid grid, Index in) {
+  for (const Index from : {in, o.features})
     to.push_back(std::make_unique<ConvBlock<T>>(
         ConvOptions{.grid = grid,
                     .in = from,
-                    .out = out,
-                    .taps = {3, grid.flat() ? 1 : 3}},
+                    .out = o.features,
+                    .taps = {3, grid.flat() ? 1 : 3},
+                    .padding = o.padding,
+                    .batch_statistics = o.batch_statistics},
         Activation::relu,
         false));
 }
 
 /// D(in -> f), and below it the coarser levels around a skip connection.
 template <class T>
-void add_level(Layers<T>& to, Grid grid, Index in, Index f, Index levels) {
-  add_double<T>(to, grid, in, f);
+void add_level(
+    Layers<T>& to, const UnetOptions& o, Grid grid, Index in, Index levels) {
+  const Index f = o.features;
+  add_double<T>(to, o, grid, in);
   if (levels == 1) return;
+  SUITE_CHECK(grid.flat() == halved(grid).flat(),
+              "a u-net's coarsest plane has at least two rows");
   Layers<T> inner;
   inner.push_back(std::make_unique<MaxPool<T>>(grid, f));
-  add_level<T>(inner, halved(grid), f, f, levels - 1);
-  inner.push_back(std::make_unique<Upsample<T>>(halved(grid), f));
+  add_level<T>(inner, o, halved(grid), f, levels - 1);
+  inner.push_back(std::make_unique<Upsample<T>>(halved(grid), grid, f));
   to.push_back(std::make_unique<Skip<T>>(grid.positions(), std::move(inner)));
-  add_double<T>(to, grid, 2 * f, f);
+  add_double<T>(to, o, grid, 2 * f);
 }
 
 template <class T>
@@ -62,12 +68,12 @@ std::unique_ptr<Network<T>> make(const UnetOptions& o,
   Layers<T> layers;
   if (input.width() > 1)
     layers.push_back(std::make_unique<FieldInput<T>>(input));
-  add_level<T>(layers, o.grid, input.width(), o.features, o.levels);
+  add_level<T>(layers, o, o.grid, input.width(), o.levels);
   layers.push_back(std::make_unique<Conv<T>>(ConvOptions{
       .grid = o.grid, .in = o.features, .out = o.outputs, .taps = {1, 1}}));
   if (o.outputs > 1)
     layers.push_back(std::make_unique<Flatten<T>>(positions, o.outputs));
-  return std::make_unique<Sequential<T>>(std::move(layers));
+  return std::make_unique<Sequential<T>>(std::move(layers), o.init);
 }
 
 }  // namespace
@@ -75,7 +81,7 @@ std::unique_ptr<Network<T>> make(const UnetOptions& o,
 NetworkRecipe unet(const UnetOptions& options) {
   return {.description = fmt::format(
               "unet grid={}x{} scalars={}+{} shift={} unit={} channels={} "
-              "levels={} features={} outputs={}",
+              "levels={} features={} outputs={}{}{}{}",
               options.grid.columns,
               options.grid.rows,
               options.scalars_before,
@@ -85,7 +91,10 @@ NetworkRecipe unet(const UnetOptions& options) {
               options.channels,
               options.levels,
               options.features,
-              options.outputs),
+              options.outputs,
+              options.padding == Padding::circular ? " circular" : "",
+              options.batch_statistics ? " batch_statistics" : "",
+              in_words(options.init)),
           .make_float = std::bind_front(make<float>, options),
           .make_double = std::bind_front(make<double>, options)};
 }

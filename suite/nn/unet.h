@@ -8,20 +8,28 @@
 /// Rows of the input: `scalars_before` numbers, `channels` fields as
 /// [channel][position], `scalars_after` numbers. A scalar z becomes a field of
 /// constant value (z - scalar_shift) / scalar_unit.
+///
+/// On a plane of 64 x 64 with one channel: 37,697 parameters. (Scale-invariant
+/// physics training, App. B.2.)
 #pragma once
 
 #include "suite/core/network.h"
 #include "suite/nn/grid.h"
+#include "suite/nn/layer.h"
 
 namespace physinv::nn {
 
 struct UnetOptions {
-  Grid grid;  ///< extent divisible by 2^(levels - 1)
+  Grid grid;  ///< extent at least 2^(levels - 1), on a plane 2^levels; pooling
+              ///< rounds down, upsampling returns to the finer level's extent
   Index channels = 1;
   Index scalars_before = 0, scalars_after = 0;
   double scalar_shift = 0, scalar_unit = 1;
   Index levels = 4, features = 16;
   Index outputs = 1;  ///< fields
+  Padding padding = Padding::zero;
+  bool batch_statistics = false;  ///< in every pass, see ConvOptions
+  Init init = Init::fan_in;
 };
 
 NetworkRecipe unet(const UnetOptions& options);

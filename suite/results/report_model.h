@@ -72,6 +72,8 @@ struct Series {
 /// values[j * x.size() + i].
 struct Field2D {
   std::vector<double> x, y, values;
+  /// What stands at the axes instead of numbers, if not empty.
+  std::vector<std::string> x_names = {}, y_names = {};
   bool log_scale = false;
   std::string label;
 };

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "optimizers/rate_search.h"
 #include "suite/core/clock.h"
 #include "suite/core/oracle.h"
 #include "suite/core/probe.h"
@@ -150,6 +151,28 @@ TEST(Training, DrawingFreshSamplesIsOffTheClock) {
   bench.run();
   EXPECT_GT(drawing, 40 * 2e-3);
   EXPECT_LT(bench.probe.clocks().solve.cpu, drawing / 2);
+}
+
+TEST(RateSearch, IsTrainingAtTheRateThatEndsLowest) {
+  const TrainingOptions options{
+      .rule = SgdOptions{}, .batch = kCount, .fresh = true};
+  // The last rate is beyond what the quadratic bears.
+  const auto tuned =
+      train_at_best_rate(options, {.rates = {1e-4, 1e-1, 1e3}, .share = 0.5});
+  StageBench bench(*tuned, kCount, 40);
+  const Outcome out = bench.run();
+  EXPECT_EQ(out.arrays.at("rate")(0, 0), 1e-1);
+  const auto& loss = out.arrays.at("searched_loss");
+  EXPECT_LT(loss(1), loss(0));
+  EXPECT_LT(loss(0), loss(2));
+
+  TrainingOptions plain = options;
+  plain.rule = SgdOptions{.rate = 1e-1};
+  const auto stage = train(plain);
+  StageBench same(*stage, kCount, 40);
+  const Outcome expected = same.run();
+  EXPECT_EQ(out.x, expected.x);
+  EXPECT_EQ(out.arrays.at("parameters"), expected.arrays.at("parameters"));
 }
 
 }  // namespace

@@ -12,7 +12,8 @@ constexpr Activation kAll[] = {Activation::identity,
                                Activation::tanh,
                                Activation::sigmoid,
                                Activation::softplus,
-                               Activation::silu};
+                               Activation::silu,
+                               Activation::half_tanh};
 
 TEST(Activation, DerivativeAgainstCentralDifferences) {
   for (const Activation a : kAll) {
@@ -23,6 +24,12 @@ TEST(Activation, DerivativeAgainstCentralDifferences) {
       EXPECT_NEAR(derivative(a, at), slope, 1e-9) << to_string(a) << " " << z;
     }
   }
+}
+
+TEST(Activation, HalfTanhIsASigmoid) {
+  for (const double z : {-30.0, -2.0, 0.0, 0.3, 5.0})
+    EXPECT_NEAR(
+        activate(Activation::half_tanh, z), 2 * sigmoid(z) - 1, 1e-15);
 }
 
 TEST(Activation, FarOutStaysFinite) {

@@ -58,6 +58,17 @@ std::vector<Built> networks() {
        256,
        256,
        9 * (2 * 4 + 7 * 16 + 2 * 32) + 10 * 12 + 10},
+      // Odd extents: 12 x 9, 6 x 4, 3 x 2.
+      {"circular_plane",
+       unet({.grid = {12, 9},
+             .channels = 2,
+             .levels = 3,
+             .features = 4,
+             .padding = Padding::circular,
+             .init = Init::uniform}),
+       216,
+       108,
+       9 * (2 * 4 + 7 * 16 + 2 * 32) + 10 * 12 + 5},
       {"plane_vgg",
        vgg({.channels = 2, .grid = {16, 8}, .features = {4, 5}, .hidden = {7}}),
        256,
@@ -88,6 +99,31 @@ TEST_P(ConvNetwork, HasTheParametersOfThePaper) {
   EXPECT_THROW(
       GetParam().recipe.make<float>(GetParam().inputs + 1, GetParam().outputs),
       ContractError);
+}
+
+TEST(BatchStatistics, AreThoseOfEveryPass) {
+  const auto built = [](bool every) {
+    return Bench<double>(unet({.grid = {12, 9},
+                               .levels = 3,
+                               .features = 4,
+                               .padding = Padding::circular,
+                               .batch_statistics = every}),
+                         108,
+                         108);
+  };
+  auto every = built(true), training = built(false);
+  EXPECT_EQ(every.net->state_count(), 0);
+  const Batch<double> in = wavy<double>(108, 5),
+                      out_bar = wavy<double>(108, 5, 0.3);
+  expect_same_bits(every.forward(in), training.forward(in, {.training = true}));
+  expect_same_bits(every.parameters_bar(out_bar),
+                   training.parameters_bar(out_bar));
+  expect_same_bits(every.in_bar(out_bar), training.in_bar(out_bar));
+}
+
+TEST(Unet, HasTheParametersOfThePaperOnAPlane) {
+  const auto net = unet({.grid = {64, 64}}).make<float>(64 * 64, 64 * 64);
+  EXPECT_EQ(net->parameter_count(), 37697);
 }
 
 template <class T>

@@ -177,11 +177,47 @@ TYPED_TEST(ConvTest, PoolingTakesTheLargestAndTheFirstOfEquals) {
   expect_same_bits(b.in_bar(bar), expected);
 }
 
+TYPED_TEST(ConvTest, PoolingLeavesAnOddColumnAndRowOut) {
+  using T = TypeParam;
+  auto b = bench<T>(network([](auto& layers) {
+    using U = Number<std::decay_t<decltype(layers)>>;
+    layers.push_back(std::make_unique<MaxPool<U>>(Grid{3, 5}, 1));
+  }));
+  Batch<T> in(15, 1), expected = Batch<T>::Zero(15, 1);
+  for (Index i = 0; i < 15; ++i) in(i) = static_cast<T>(i);
+  const Batch<T> out = b.forward(in);
+  ASSERT_EQ(out.rows(), 2);
+  EXPECT_EQ(out(0), T(4));
+  EXPECT_EQ(out(1), T(10));
+  expected(4) = 2, expected(10) = 3;
+  expect_same_bits(b.in_bar(Batch<T>{{2}, {3}}), expected);
+}
+
+TYPED_TEST(ConvTest, UpsamplingReachesAnOddExtent) {
+  using T = TypeParam;
+  auto b = bench<T>(network([](auto& layers) {
+    using U = Number<std::decay_t<decltype(layers)>>;
+    layers.push_back(std::make_unique<Upsample<U>>(Grid{3}, Grid{7}, 1));
+  }));
+  Batch<T> in(3, 1);
+  in << 14, 28, 0;
+  const Batch<T> out = b.forward(in);
+  // Source of output i: (i + 1/2) 3/7 - 1/2.
+  const std::vector<double> expected = {14, 16, 22, 28, 16, 4, 0};
+  for (Index i = 0; i < 7; ++i)
+    EXPECT_NEAR(
+        out(i), expected[static_cast<std::size_t>(i)], 10 * tolerance(T()));
+  const Batch<T> bar = wavy<T>(7, 1), x_bar = b.in_bar(bar);
+  EXPECT_NEAR((x_bar.array() * in.array()).sum(),
+              (bar.array() * out.array()).sum(),
+              50 * tolerance(T()));
+}
+
 TYPED_TEST(ConvTest, UpsamplingClampsItsEnds) {
   using T = TypeParam;
   auto line = bench<T>(network([](auto& layers) {
     using U = Number<std::decay_t<decltype(layers)>>;
-    layers.push_back(std::make_unique<Upsample<U>>(Grid{3}, 1));
+    layers.push_back(std::make_unique<Upsample<U>>(Grid{3}, Grid{6}, 1));
   }));
   Batch<T> in(3, 1), expected(6, 1);
   in << 4, 8, 0;
@@ -189,14 +225,14 @@ TYPED_TEST(ConvTest, UpsamplingClampsItsEnds) {
   expect_same_bits(line.forward(in), expected);
   auto point = bench<T>(network([](auto& layers) {
     using U = Number<std::decay_t<decltype(layers)>>;
-    layers.push_back(std::make_unique<Upsample<U>>(Grid{1}, 2));
+    layers.push_back(std::make_unique<Upsample<U>>(Grid{1}, Grid{2}, 2));
   }));
   expect_same_bits(point.forward(in.topRows(2)),
                    Batch<T>(in(std::vector<Index>{0, 1, 0, 1}, Eigen::all)));
   // On a plane, a product of lines: exact for a x + b y inside.
   auto plane = bench<T>(network([](auto& layers) {
     using U = Number<std::decay_t<decltype(layers)>>;
-    layers.push_back(std::make_unique<Upsample<U>>(Grid{4, 3}, 1));
+    layers.push_back(std::make_unique<Upsample<U>>(Grid{4, 3}, Grid{8, 6}, 1));
   }));
   const auto slope = [](Index columns, Index rows, double step, double first) {
     return Batch<T>::NullaryExpr(columns * rows, 1, [=](Index i, Index) {
@@ -343,7 +379,7 @@ NetworkRecipe nested(bool plane) {
     L inner;
     inner.push_back(std::make_unique<MaxPool<U>>(grid, 3));
     inner.push_back(block(half, 3, 4, Activation::softplus));
-    inner.push_back(std::make_unique<Upsample<U>>(half, 4));
+    inner.push_back(std::make_unique<Upsample<U>>(half, grid, 4));
     layers.push_back(
         std::make_unique<Skip<U>>(grid.positions(), std::move(inner)));
     layers.push_back(block(grid, 7, 2, Activation::sigmoid));

@@ -1,0 +1,60 @@
+// Every method on every problem that can carry it, which none of the papers
+// has.
+#include "suite/cases/matrix/cells/cells.h"
+#include "suite/harness/registry.h"
+
+namespace physinv::matrix {
+namespace {
+
+constexpr Index kProblems = 128;
+
+Method method(const MatrixMethod& m, const MatrixProblem& p) {
+  TrainingOptions options = m.options;
+  options.batch = p.batch;
+  options.iterations = p.updates;
+  return {.id = m.id,
+          .chain = {train_at_best_rate(options, {.rates = m.rates})}};
+}
+
+Row row(std::vector<std::string> ids,
+        Index n,
+        std::uint64_t seeds,
+        Index updates) {
+  return {.methods = std::move(ids),
+          .n = {n},
+          .seeds = first_seeds(seeds),
+          .iterations = updates};
+}
+
+bool add(const MatrixProblem& p) {
+  std::vector<Method> able;
+  std::vector<std::string> ids, few;
+  for (const MatrixMethod& m : methods()) {
+    if (!refusal(p, m).empty()) continue;
+    able.push_back(method(m, p));
+    ids.push_back(m.id);
+    if (m.id == "adam" || m.id == "sip") few.push_back(m.id);
+  }
+  const auto full = row(ids, kProblems, 3, p.updates);
+  return register_experiment(
+      {.name = p.experiment(),
+       .title = p.title,
+       .source = {},
+       .problem = p.problem,
+       .setting = p.setting,
+       .profiles = {{.name = "smoke", .rows = {row(few, 4, 1, 2)}},
+                    {.name = "quick",
+                     .rows = {row(ids, kProblems, 1, p.updates / 10)}},
+                    {.name = "standard", .rows = {full}},
+                    {.name = "paper", .rows = {full}}},
+       .methods = std::move(able)});
+}
+
+const bool kRegistered = [] {
+  bool all = true;
+  for (const MatrixProblem& p : problems()) all = add(p) && all;
+  return all;
+}();
+
+}  // namespace
+}  // namespace physinv::matrix
