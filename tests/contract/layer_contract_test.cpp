@@ -22,7 +22,8 @@ const std::map<std::string, std::array<Index, 2>> kParameters = {
     {"jpo/billiards", {37506, 37506}},
     {"jpo/kuramoto-sivashinsky", {59650, 13121}},
     {"jpo/robotic-arm", {33924, 33922}},
-    {"jpo/wave-packet", {13921, 13073}}};
+    {"jpo/wave-packet", {13921, 13073}},
+    {"sip/wave-packet", {17489, 0}}};
 
 struct Role {
   ExperimentPtr experiment;
