@@ -76,6 +76,8 @@ inline T second_derivative(Activation a, T y) {
       return T(0);
     case Activation::tanh:
       return T(-2) * y;
+    case Activation::half_tanh:
+      return -y;
     case Activation::sigmoid:
       return T(1) - T(2) * y;
     case Activation::softplus:
