@@ -34,7 +34,7 @@ struct ScalingOptions {
 Options describe(const ScalingOptions& options);
 
 template <class T>
-class Scaling final : public Problem<T>,
+class Scaling : public Problem<T>,
                       public Vjp<T>,
                       public Jacobian<T>,
                       public Hessian<T>,
