@@ -23,15 +23,21 @@ const char* name_of(LocalStep step) {
   return kNames[static_cast<std::size_t>(step)];
 }
 
-Needs needs_of(LocalStep step) {
-  switch (step) {
-    case LocalStep::gradient: return Needs::forward | Needs::vjp;
-    case LocalStep::newton: return Needs::forward | Needs::vjp | Needs::hessian;
-    case LocalStep::inverse_gradient: return Needs::forward | Needs::jacobian;
-    case LocalStep::inverse_simulator: return Needs::forward | Needs::inverse;
-    case LocalStep::inverse_search: break;
+Needs needs_of(const LocalStepsOptions& options) {
+  switch (options.step) {
+    case LocalStep::gradient:
+      return Needs::forward | Needs::vjp;
+    case LocalStep::newton:
+      return Needs::forward | Needs::vjp | Needs::hessian;
+    case LocalStep::inverse_gradient:
+      return Needs::forward | Needs::jacobian;
+    case LocalStep::inverse_simulator:
+      return Needs::forward | Needs::inverse;
+    case LocalStep::inverse_search:
+      break;
   }
-  return Needs::forward | Needs::vjp;
+  return options.search.difference > 0 ? Needs::forward
+                                       : Needs::forward | Needs::vjp;
 }
 
 template <class T>
@@ -227,7 +233,7 @@ class LocalStepsStage final : public Stage {
       : options_(options) {}
 
   std::string name() const override { return "solve"; }
-  Needs needs() const override { return needs_of(options_.step); }
+  Needs needs() const override { return needs_of(options_); }
   Options options() const override {
     const auto text = [](double v) { return fmt::format("{}", v); };
     Options all = {{"algorithm", name_of(options_.step)},

@@ -18,7 +18,7 @@ struct NumericInverseOptions {
 
 class NumericInverse {
  public:
-  /// `problem` has a Vjp and outlives this.
+  /// `problem` outlives this, and has a Vjp if gradients are to be exact.
   NumericInverse(const Problem<double>& problem,
                  const NumericInverseOptions& options,
                  Threads* threads = nullptr);

@@ -167,8 +167,8 @@ void Scaling<T>::hessian(BatchIn<T> x,
   for (Index i = 0; i < x.cols(); ++i) {
     const Point p = at(x, given, i);
     const T bend = options_.power == 2 ? 2 * given(0, i) : T(0);
-    const T second = std::fma(
-        p.slope[1], p.slope[1], (p.y[1] - target(1, i)) * bend);
+    const T second =
+        std::fma(p.slope[1], p.slope[1], (p.y[1] - target(1, i)) * bend);
     h.col(i) << scale() * (p.slope[0] * p.slope[0]), 0, 0, scale() * second;
   }
 }

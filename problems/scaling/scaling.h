@@ -35,11 +35,11 @@ Options describe(const ScalingOptions& options);
 
 template <class T>
 class Scaling : public Problem<T>,
-                      public Vjp<T>,
-                      public Jacobian<T>,
-                      public Hessian<T>,
-                      public Inverse<T>,
-                      public ClosedSteps<T> {
+                public Vjp<T>,
+                public Jacobian<T>,
+                public Hessian<T>,
+                public Inverse<T>,
+                public ClosedSteps<T> {
  public:
   using Options = ScalingOptions;
   explicit Scaling(const Options& options = {});

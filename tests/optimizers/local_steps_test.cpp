@@ -107,7 +107,8 @@ TEST(LocalSteps, TheInverseKeepsItsBranchAndClampsWhatHasNoRoot) {
   EXPECT_LT(path_of<double>(squared(1, -2), kSimulator, 0.3, 1)(1, 1), 0);
   // eta > 1 asks for a negative square.
   for (const double x2 : {2.0, -2.0}) {
-    const double end = path_of<double>(squared(1, x2), kSimulator, 1.5, 1)(1, 1);
+    const double end =
+        path_of<double>(squared(1, x2), kSimulator, 1.5, 1)(1, 1);
     EXPECT_EQ(end, 0);
     EXPECT_EQ(std::signbit(end), std::signbit(x2));
   }
@@ -124,12 +125,11 @@ TEST(LocalSteps, ScalesBeyondTheRootOfTheRange) {
 }
 
 TEST(LocalSteps, WhatOverflowsHasDivergedAndStaysFinite) {
-  const auto run =
-      run_steps(problem<Scaling>("scaling", {.scales = {1e6, 1}}),
-                {.step = kGradient, .rate = 0.03},
-                60,
-                Precision::f64,
-                2);
+  const auto run = run_steps(problem<Scaling>("scaling", {.scales = {1e6, 1}}),
+                             {.step = kGradient, .rate = 0.03},
+                             60,
+                             Precision::f64,
+                             2);
   EXPECT_EQ(run.out.status[0], Status::nonfinite);
   EXPECT_EQ(run.out.status[1], Status::maxiter);
   EXPECT_LT(run.out.iterations(0), 60);
@@ -143,7 +143,8 @@ TEST(LocalSteps, WhatOverflowsHasDivergedAndStaysFinite) {
 }
 
 TEST(LocalSteps, SearchFindsTheInversesPath) {
-  const Batch<double> exact = path_of<double>(squared(3, 3), kSimulator, 0.3, 10);
+  const Batch<double> exact =
+      path_of<double>(squared(3, 3), kSimulator, 0.3, 10);
   const auto mean_distance = [&](const NumericInverseOptions& search) {
     const auto run = run_steps(
         problem<Aimed>("scaling", squared(3, 3)),
@@ -162,12 +163,12 @@ TEST(LocalSteps, SinglePrecisionKeepsWhatIsPrinted) {
         path_of<float>(squared(3, 3), step, rate, 10).col(10));
   };
   const Comparator printed(0, 2e-6);
-  EXPECT_TRUE(printed(end(kGradient, 0.01),
-                      Eigen::Vector2d(2.4512184, 0.96171147)));
-  EXPECT_TRUE(printed(end(kNewton, 1.0 / 3),
-                      Eigen::Vector2d(0.05202458, 0.92383826)));
-  EXPECT_TRUE(printed(end(kSimulator, 0.3),
-                      Eigen::Vector2d(0.08474258, 0.50421)));
+  EXPECT_TRUE(
+      printed(end(kGradient, 0.01), Eigen::Vector2d(2.4512184, 0.96171147)));
+  EXPECT_TRUE(
+      printed(end(kNewton, 1.0 / 3), Eigen::Vector2d(0.05202458, 0.92383826)));
+  EXPECT_TRUE(
+      printed(end(kSimulator, 0.3), Eigen::Vector2d(0.08474258, 0.50421)));
   const Batch<double> x = path_of<float>(squared(3, 3), kSimulator, 0.3, 10);
   EXPECT_LE((x.row(1).cwiseAbs2() - 3 * x.row(0)).cwiseAbs().maxCoeff(), 1e-5);
 }

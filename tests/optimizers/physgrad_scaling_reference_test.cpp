@@ -117,7 +117,9 @@ void check_step(const Json& entry) {
 }
 
 template <class T>
-Batch<double> run(const Json& in, const Json& alpha, const std::string& method) {
+Batch<double> run(const Json& in,
+                  const Json& alpha,
+                  const std::string& method) {
   AimedOptions options = problem_of(
       {{"problem", in.at("problem")}, {"start", in.at("start")}}, "start");
   options.scaling.scales = {alpha.get<double>()};
@@ -133,7 +135,8 @@ void check_trajectory(const Json& entry) {
   const Expect expect(entry, sizeof(T) == 4);
   Json alphas = in.value("alpha", Json(1.0));
   if (!alphas.is_array()) alphas = Json::array({alphas});
-  const Json methods = in.value("methods", Json::array({in.value("method", "")}));
+  const Json methods =
+      in.value("methods", Json::array({in.value("method", "")}));
   for (const Json& alpha : alphas)
     for (const Json& method : methods) {
       SCOPED_TRACE(method.get<std::string>() + " " + alpha.dump());
@@ -153,8 +156,8 @@ void check_trajectory(const Json& entry) {
       const Vector<double> u = x.col(0) - x.col(1);
       expect(u.sum() / u.norm(), want.at("diagonal_length_first_update"));
     }
-  expect_keys(
-      entry, {"x", "y", "loss", "distance", "diagonal_length_first_update"});
+  expect_keys(entry,
+              {"x", "y", "loss", "distance", "diagonal_length_first_update"});
 }
 
 /// The root of z^2 = y.
@@ -203,8 +206,8 @@ void check_linear_loss(const Json& entry) {
   check("gd");
   problem.inverse_gradient_step(zero, given, goal, dx);
   check("ig");
-  expect_keys(
-      entry, {"step_gd", "loss_change_gd", "step_ig", "loss_change_ig"});
+  expect_keys(entry,
+              {"step_gd", "loss_change_gd", "step_ig", "loss_change_ig"});
 }
 
 void check_numeric_inverse(const Json& entry) {

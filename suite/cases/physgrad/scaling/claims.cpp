@@ -131,9 +131,10 @@ const bool kScalingClaims = register_claims(
      {.id = "A1",
       .from = "smoke",
       .says = "x2 / x1 after a step of gradient descent over that before",
-      .conditions = {within("alpha 1", of("gd", ratio_kept), 1 - 1e-12, 1 + 1e-12),
-                     within("alpha 3", of("gd", ratio_kept, kThree), 0.489, 0.490),
-                     within("alpha 5", of("gd", ratio_kept, kFive), -0.532, -0.531)}},
+      .conditions =
+          {within("alpha 1", of("gd", ratio_kept), 1 - 1e-12, 1 + 1e-12),
+           within("alpha 3", of("gd", ratio_kept, kThree), 0.489, 0.490),
+           within("alpha 5", of("gd", ratio_kept, kFive), -0.532, -0.531)}},
      {.id = "A2",
       .from = "smoke",
       .says = "Gradient descent at 0.05 and alpha = 5 grows by half each step",
@@ -145,12 +146,13 @@ const bool kScalingClaims = register_claims(
       .from = "smoke",
       .says = "Steps that undo the scale are as long as rate |x|; gradient "
               "descent creeps along x1",
-      .conditions = {at_most("Newton, off the rate", of("newton", off_the_rate), 1e-12),
-                     at_most("inverse gradients", of("ig", off_the_rate), 1e-12),
-                     at_most("inverse simulator", of("pg", off_the_rate), 1e-12),
-                     at_least("left of x1 by a step of gradient descent, alpha 5",
-                              of("gd", left_of_x1, kFive),
-                              0.92)}}});
+      .conditions = {
+          at_most("Newton, off the rate", of("newton", off_the_rate), 1e-12),
+          at_most("inverse gradients", of("ig", off_the_rate), 1e-12),
+          at_most("inverse simulator", of("pg", off_the_rate), 1e-12),
+          at_least("left of x1 by a step of gradient descent, alpha 5",
+                   of("gd", left_of_x1, kFive),
+                   0.92)}}});
 
 // ---- y = (x1, x2^2) ---------------------------------------------------------
 
@@ -173,9 +175,9 @@ double missed(const Path& p) {
   const Batch<double> y = p.squared();
   double worst = 0;
   for (Index k = 0; k < p.steps(); ++k)
-    worst = std::max(worst,
-                     (y.col(k + 1) - (1 - kRate) * y.col(k)).norm() /
-                         y.col(k).norm());
+    worst = std::max(
+        worst,
+        (y.col(k + 1) - (1 - kRate) * y.col(k)).norm() / y.col(k).norm());
   return worst;
 }
 /// Mean distance of all coordinates from those of PG.
@@ -192,10 +194,8 @@ Condition as_in_notebook(const char* label,
                          const OfPath& value,
                          const char* quantity,
                          double digit) {
-  return within(label,
-                difference(of(method, value), printed(quantity)),
-                -digit,
-                digit);
+  return within(
+      label, difference(of(method, value), printed(quantity)), -digit, digit);
 }
 
 using OfArray = std::function<double(const Batch<double>&)>;
@@ -280,7 +280,8 @@ const bool kComparisonClaims = register_claims(
       .from = "smoke",
       .says = "Of x^2, the root nearest to x0 is a local inverse",
       .conditions = {at_most("off", identity("roots", root_off), kExact),
-                     at_most("wrong ones", identity("roots", wrong_branch), 0)}},
+                     at_most(
+                         "wrong ones", identity("roots", wrong_branch), 0)}},
      {.id = "P10",
       .origin = Origin::paper,
       .where = "notebook of the chapter",
@@ -296,8 +297,7 @@ const bool kComparisonClaims = register_claims(
            as_in_notebook(
                "PG-numeric, x1", "pg_numeric", end(0), "pg-numeric/x1", 5e-6),
            as_in_notebook("x2", "pg_numeric", end(1), "pg-numeric/x2", 5e-6),
-           as_in_notebook(
-               "distance, GD", "gd", distance, "gd/distance", 0.005),
+           as_in_notebook("distance, GD", "gd", distance, "gd/distance", 0.005),
            as_in_notebook(
                "Newton", "newton", distance, "newton/distance", 0.0005),
            as_in_notebook("PG", "pg", distance, "pg/distance", 0.005),
@@ -330,12 +330,10 @@ const bool kComparisonClaims = register_claims(
      {.id = "A3",
       .from = "smoke",
       .says = "An inverse by search takes PG's way",
-      .conditions = {at_most("mean distance, differences",
-                             mean_apart("pg_numeric"),
-                             5e-6),
-                     at_most("exact gradients",
-                             mean_apart("pg_numeric_exact"),
-                             1e-7)}},
+      .conditions =
+          {at_most(
+               "mean distance, differences", mean_apart("pg_numeric"), 5e-6),
+           at_most("exact gradients", mean_apart("pg_numeric_exact"), 1e-7)}},
      {.id = "A4",
       .from = "quick",
       .says = "Newton at 1/2 leaves 3/1024 of x1",

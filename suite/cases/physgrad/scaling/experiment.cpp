@@ -19,9 +19,9 @@ Method method(std::string id,
               LocalStep step,
               double rate,
               NumericInverseOptions search = {}) {
-  return {.id = std::move(id),
-          .chain = {
-              local_steps({.step = step, .rate = rate, .search = search})}};
+  return {
+      .id = std::move(id),
+      .chain = {local_steps({.step = step, .rate = rate, .search = search})}};
 }
 
 Row row(Ids ids, Index n, Index steps) {
@@ -96,8 +96,7 @@ Experiment comparison() {
   return {.name = kComparison,
           .title = "Comparison",
           .source = {.paper = "physgrad", .where = "notebook of the chapter"},
-          .problem =
-              problem<Scaling>("scaling", {.power = 2, .start = {3, 3}}),
+          .problem = problem<Scaling>("scaling", {.power = 2, .start = {3, 3}}),
           .profiles = {{.name = "smoke", .rows = {ten}},
                        {.name = "quick", .rows = all},
                        {.name = "standard", .rows = all},

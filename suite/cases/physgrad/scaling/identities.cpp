@@ -70,9 +70,9 @@ Batch<double> roots() {
   Batch<double> found(3, 6);
   found.row(0) << 2.25, 2.25, 9, 9, 2, 2;
   found.row(1) << -0.3, 0.3, -3, 3, -0.01, 3;
-  found.row(2) = b.invert(found.row(0).replicate(2, 1),
-                          found.row(1).replicate(2, 1))
-                     .row(1);
+  found.row(2) =
+      b.invert(found.row(0).replicate(2, 1), found.row(1).replicate(2, 1))
+          .row(1);
   return found;
 }
 
