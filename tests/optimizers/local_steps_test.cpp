@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "problems/scaling/scaling.h"
+#include "problems/scaling/trajectories.h"
 #include "tests/optimizers/scaling_support.h"
 #include "tests/support/bits.h"
 #include "tests/support/tolerance.h"
@@ -171,6 +172,81 @@ TEST(LocalSteps, SinglePrecisionKeepsWhatIsPrinted) {
       printed(end(kSimulator, 0.3), Eigen::Vector2d(0.08474258, 0.50421)));
   const Batch<double> x = path_of<float>(squared(3, 3), kSimulator, 0.3, 10);
   EXPECT_LE((x.row(1).cwiseAbs2() - 3 * x.row(0)).cwiseAbs().maxCoeff(), 1e-5);
+}
+
+// Registers full and not: 37 problems from one start, alpha of each.
+template <class T>
+void expect_flow_of_stages(double tolerance) {
+  constexpr Index kCount = 37, kSteps = 10;
+  for (const int power : {1, 2})
+    for (const LocalStep step :
+         {kGradient, kNewton, kInverseGradient, kSimulator}) {
+      SCOPED_TRACE(testing::Message() << power << " " << int(step));
+      const double rate = step == kGradient ? 0.003 : 0.3;
+      const ScalingOptions o{.scales = {1}, .power = power, .start = {2, -1.5}};
+      const auto recipe = problem<Scaling>("scaling", o);
+      const auto run =
+          run_steps(recipe,
+                    {.step = step, .rate = rate},
+                    kSteps,
+                    sizeof(T) == 4 ? Precision::f32 : Precision::f64,
+                    kCount);
+      Vector<T> alpha = run.given.row(0).transpose().template cast<T>();
+      Vector<T> x1 = Vector<T>::Constant(kCount, 2),
+                x2 = Vector<T>::Constant(kCount, T(-1.5));
+      advance<T>({.step = static_cast<ScalingStep>(step),
+                  .power = power,
+                  .rate = rate,
+                  .steps = kSteps},
+                 alpha,
+                 x1,
+                 x2);
+      Batch<T> x(2, kCount);
+      x << x1.transpose(), x2.transpose();
+      EXPECT_TRUE(Comparator(tolerance, 0)(x, run.out.x));
+    }
+}
+
+TEST(ScalingTrajectories, AreThoseOfTheStages) {
+  expect_flow_of_stages<double>(1e-13);
+  expect_flow_of_stages<float>(1e-5);
+}
+
+TEST(ScalingTrajectories, BitsOfOneDependOnNoOtherAndNoThread) {
+  constexpr Index kCount = 10'001;
+  const Vector<double> alpha = Vector<double>::LinSpaced(kCount, 1, 5);
+  for (const int power : {1, 2}) {
+    const ScalingFlow flow{.power = power, .rate = 0.003};
+    const Vector<double> start = Vector<double>::LinSpaced(kCount, -2, 3);
+    Vector<double> x1 = start, x2 = start, y1 = start, y2 = start;
+    advance<double>(flow, alpha, x1, x2);
+    Threads threads(3);
+    advance<double>(flow, alpha, y1, y2, &threads);
+    EXPECT_TRUE(same_bits(x1, y1));
+    EXPECT_TRUE(same_bits(x2, y2));
+    for (const Index i : {0, 1, 4095, 4096, 9999, 10'000}) {
+      Vector<double> z1 = start.segment(i, 1), z2 = z1;
+      advance<double>(flow, alpha.segment(i, 1), z1, z2);
+      EXPECT_TRUE(same_bits(z1, Vector<double>(x1.segment(i, 1))));
+      EXPECT_TRUE(same_bits(z2, Vector<double>(x2.segment(i, 1))));
+    }
+  }
+}
+
+TEST(ScalingTrajectories, WithoutARootTheSignStays) {
+  Vector<double> x1(2), x2(2), alpha = Vector<double>::Constant(2, 1e200);
+  x1 << 1, 1, x2 << 2, -2;
+  advance<double>({.step = ScalingStep::inverse_simulator,
+                   .power = 2,
+                   .rate = 1.5,
+                   .steps = 1},
+                  alpha,
+                  x1,
+                  x2);
+  EXPECT_EQ(x1, Vector<double>::Constant(2, -0.5));
+  EXPECT_EQ(x2, Vector<double>::Zero(2));
+  EXPECT_FALSE(std::signbit(x2(0)));
+  EXPECT_TRUE(std::signbit(x2(1)));
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ class Aimed final : public Scaling<T> {
 
 struct StepsRun {
   Outcome out;
-  Counts counts;
+  Batch<double> given;
 };
 
 inline StepsRun run_steps(const ProblemRecipe& problem,
@@ -46,9 +46,7 @@ inline StepsRun run_steps(const ProblemRecipe& problem,
                           Index n = 1) {
   const auto stage = local_steps(options);
   StageBench bench(*stage, n, steps, problem);
-  StepsRun run{bench.run(nullptr, precision), {}};
-  run.counts = bench.oracle.counts();
-  return run;
+  return {bench.run(nullptr, precision), bench.oracle.given()};
 }
 
 /// Iterates of the first problem as columns.

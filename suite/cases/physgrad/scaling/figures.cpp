@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "suite/cases/physgrad/scaling/path.h"
@@ -49,26 +50,30 @@ Series series(const Line& line, const Batch<double>& points) {
 
 constexpr double kScales[] = {1, 3, 5};
 
-/// |P| or its square.
-Field2D landscape(double alpha, bool squared) {
+/// 101 numbers from -below to 1.
+std::vector<double> up_to_one(double below) {
   constexpr int kPoints = 101;
-  Field2D field{.label = squared ? "|P(x)|^2" : "|P(x)|"};
+  std::vector<double> all;
   for (int i = 0; i < kPoints; ++i)
-    field.x.push_back(-0.1 + 1.1 * i / (kPoints - 1));
-  field.y = field.x;
+    all.push_back(-below + (1 + below) * i / (kPoints - 1));
+  return all;
+}
+
+/// |P|, as the chapter's bars say, or the loss |P|^2 as far down as the
+/// trajectories go.
+Panel landscape(double alpha, bool squared) {
+  Field2D field{.x = up_to_one(0.1),
+                .y = up_to_one(squared ? 0.5 : 0.1),
+                .label = squared ? "|P(x)|^2" : "|P(x)|"};
   for (const double x2 : field.y)
     for (const double x1 : field.x) {
       const double r = std::hypot(x1, alpha * x2);
       field.values.push_back(squared ? r * r : r);
     }
-  return field;
-}
-
-Panel over_landscape(double alpha, bool squared) {
   return {.title = fmt::format("alpha = {:g}", alpha),
           .x_label = "x1",
           .y_label = "x2",
-          .field = landscape(alpha, squared)};
+          .field = std::move(field)};
 }
 
 /// The first update as an arrow of one length for all, with its head.
@@ -94,7 +99,7 @@ Figure landscapes(const Results& results) {
                 .columns = 3,
                 .note = "Arrows show directions, not lengths."};
   for (Index i = 0; i < 3; ++i) {
-    Panel panel = over_landscape(kScales[i], false);
+    Panel panel = landscape(kScales[i], false);
     for (const Line& line : {kGd, kNewton})
       if (const auto path = path_of(results, kScaling, line.method, i))
         panel.series.push_back(arrow(line, *path));
@@ -112,7 +117,7 @@ Figure trajectories(const Results& results) {
                     "Newton, inverse gradients and the inverse simulator take "
                     "one way for every alpha."};
   for (Index i = 0; i < 3; ++i) {
-    Panel panel = over_landscape(kScales[i], true);
+    Panel panel = landscape(kScales[i], true);
     for (const Line& line : {kGd, kNewton, kIg, kPg})
       if (const auto path = path_of(results, kScaling, line.method, i)) {
         panel.series.push_back(series(line, path->x()));
