@@ -10,8 +10,9 @@
 namespace physinv {
 namespace {
 
-/// Registers of either coordinate: enough chains to hide what a product takes.
-constexpr int kPacks = 4;
+/// Registers of either coordinate: as many chains as fit, which hides what a
+/// product takes.
+constexpr int kPacks = kVectorBytes == 64 ? 8 : 4;
 /// Trajectories that one thread takes at a time.
 constexpr Index kShare = 4096;
 
@@ -33,20 +34,37 @@ Coefficients coefficients(const ScalingFlow& f) {
       return {left, squared ? 1 - f.rate / 3 : left, 0, false};
     case ScalingStep::inverse_gradient:
       return {left, squared ? 1 - f.rate / 2 : left, 0, false};
-    case ScalingStep::inverse_simulator: break;
+    case ScalingStep::inverse_simulator:
+      break;
   }
   return {left, squared ? std::sqrt(std::max(left, 0.0)) : left, 0, false};
 }
 
+/// One block of trajectories, whole registers.
+template <class T>
+struct Block {
+  const T *alpha, *start1, *start2;
+  T *x1, *x2;
+
+  Block at(Index i) const {
+    return {alpha + i, start1 + i, start2 + i, x1 + i, x2 + i};
+  }
+};
+
 template <bool cubic, class T>
-void run(const Coefficients& c, Index steps, const T* alpha, T* x1, T* x2) {
+void run(const Coefficients& c, Index steps, const Block<T>& block) {
   using P = Pack<T>;
   P u[kPacks], v[kPacks], k[kPacks];
-  std::memcpy(u, x1, sizeof(u)), std::memcpy(v, x2, sizeof(v));
-  std::memcpy(k, alpha, sizeof(k));
-  const T left = T(c.left);
+  std::memcpy(u, block.start1, sizeof(u));
+  std::memcpy(v, block.start2, sizeof(v));
+  std::fill(k, k + kPacks, P{} + T(c.a));
   // Without b, alpha may be too large to be squared.
-  for (P& p : k) p = c.b == 0 ? P{} + T(c.a) : fma_lanes(T(c.b) * p, p, P{} + T(c.a));
+  for (int j = 0; c.b != 0 && j < kPacks; ++j) {
+    P alpha;
+    std::memcpy(&alpha, block.alpha + j * kLanes<T>, sizeof(alpha));
+    k[j] = fma_lanes(T(c.b) * alpha, alpha, k[j]);
+  }
+  const T left = T(c.left);
   for (Index s = 0; s < steps; ++s)
     for (int j = 0; j < kPacks; ++j) {
       u[j] *= left;
@@ -56,30 +74,31 @@ void run(const Coefficients& c, Index steps, const T* alpha, T* x1, T* x2) {
         v[j] *= k[j];
       }
     }
-  std::memcpy(x1, u, sizeof(u)), std::memcpy(x2, v, sizeof(v));
+  std::memcpy(block.x1, u, sizeof(u));
+  std::memcpy(block.x2, v, sizeof(v));
 }
 
 template <class T>
 void run_share(const Coefficients& c,
                Index steps,
                Index count,
-               const T* alpha,
-               T* x1,
-               T* x2) {
+               const Block<T>& all) {
   constexpr Index kBlock = kPacks * kLanes<T>;
-  const auto block = [&](const T* a, T* u, T* v) {
-    c.cubic ? run<true>(c, steps, a, u, v) : run<false>(c, steps, a, u, v);
+  const auto whole = [&](const Block<T>& block) {
+    c.cubic ? run<true>(c, steps, block) : run<false>(c, steps, block);
   };
   Index i = 0;
-  for (; i + kBlock <= count; i += kBlock) block(alpha + i, x1 + i, x2 + i);
+  for (; i + kBlock <= count; i += kBlock) whole(all.at(i));
   if (i == count) return;
-  T a[kBlock] = {}, u[kBlock] = {}, v[kBlock] = {};
-  std::copy(alpha + i, alpha + count, a);
-  std::copy(x1 + i, x1 + count, u);
-  std::copy(x2 + i, x2 + count, v);
-  block(a, u, v);
-  std::copy(u, u + (count - i), x1 + i);
-  std::copy(v, v + (count - i), x2 + i);
+  const Block<T> rest = all.at(i);
+  const Index left = count - i;
+  T alpha[kBlock] = {}, x1[kBlock] = {}, x2[kBlock] = {};
+  std::copy_n(rest.alpha, left, alpha);
+  std::copy_n(rest.start1, left, x1);
+  std::copy_n(rest.start2, left, x2);
+  whole({alpha, x1, x2, x1, x2});
+  std::copy_n(x1, left, rest.x1);
+  std::copy_n(x2, left, rest.x2);
 }
 
 }  // namespace
@@ -87,30 +106,34 @@ void run_share(const Coefficients& c,
 template <class T>
 void advance(const ScalingFlow& flow,
              VectorIn<T> alpha,
+             VectorIn<T> start1,
+             VectorIn<T> start2,
              VectorOut<T> x1,
              VectorOut<T> x2,
              Threads* threads) {
   SUITE_CHECK(flow.power == 1 || flow.power == 2, "power must be 1 or 2");
   const Index n = alpha.size();
-  SUITE_CHECK(x1.size() == n && x2.size() == n, "sizes differ");
+  for (const Index size : {start1.size(), start2.size(), x1.size(), x2.size()})
+    SUITE_CHECK(size == n, "as many starts and ends as alphas");
   const Coefficients c = coefficients(flow);
+  const Block<T> all{
+      alpha.data(), start1.data(), start2.data(), x1.data(), x2.data()};
   for_blocks(threads, (n + kShare - 1) / kShare, [&](Index share, int) {
     const Index first = share * kShare;
-    run_share(c,
-              flow.steps,
-              std::min(kShare, n - first),
-              alpha.data() + first,
-              x1.data() + first,
-              x2.data() + first);
+    run_share(c, flow.steps, std::min(kShare, n - first), all.at(first));
   });
 }
 
 template void advance<float>(const ScalingFlow&,
                              VectorIn<float>,
+                             VectorIn<float>,
+                             VectorIn<float>,
                              VectorOut<float>,
                              VectorOut<float>,
                              Threads*);
 template void advance<double>(const ScalingFlow&,
+                              VectorIn<double>,
+                              VectorIn<double>,
                               VectorIn<double>,
                               VectorOut<double>,
                               VectorOut<double>,

@@ -34,20 +34,26 @@ struct ScalingFlow {
   bool half = false;
 };
 
-/// Moves every (x1, x2) by all steps.
+/// Where every trajectory is after all steps; x1 and x2 may be the starts.
 template <class T>
 void advance(const ScalingFlow& flow,
              VectorIn<T> alpha,
+             VectorIn<T> start1,
+             VectorIn<T> start2,
              VectorOut<T> x1,
              VectorOut<T> x2,
              Threads* threads = nullptr);
 
 extern template void advance<float>(const ScalingFlow&,
                                     VectorIn<float>,
+                                    VectorIn<float>,
+                                    VectorIn<float>,
                                     VectorOut<float>,
                                     VectorOut<float>,
                                     Threads*);
 extern template void advance<double>(const ScalingFlow&,
+                                     VectorIn<double>,
+                                     VectorIn<double>,
                                      VectorIn<double>,
                                      VectorOut<double>,
                                      VectorOut<double>,

@@ -200,6 +200,8 @@ void expect_flow_of_stages(double tolerance) {
                   .steps = kSteps},
                  alpha,
                  x1,
+                 x2,
+                 x1,
                  x2);
       Batch<T> x(2, kCount);
       x << x1.transpose(), x2.transpose();
@@ -218,15 +220,15 @@ TEST(ScalingTrajectories, BitsOfOneDependOnNoOtherAndNoThread) {
   for (const int power : {1, 2}) {
     const ScalingFlow flow{.power = power, .rate = 0.003};
     const Vector<double> start = Vector<double>::LinSpaced(kCount, -2, 3);
-    Vector<double> x1 = start, x2 = start, y1 = start, y2 = start;
-    advance<double>(flow, alpha, x1, x2);
+    Vector<double> x1(kCount), x2(kCount), y1 = start, y2 = start;
+    advance<double>(flow, alpha, start, start, x1, x2);
     Threads threads(3);
-    advance<double>(flow, alpha, y1, y2, &threads);
+    advance<double>(flow, alpha, y1, y2, y1, y2, &threads);
     EXPECT_TRUE(same_bits(x1, y1));
     EXPECT_TRUE(same_bits(x2, y2));
     for (const Index i : {0, 1, 4095, 4096, 9999, 10'000}) {
       Vector<double> z1 = start.segment(i, 1), z2 = z1;
-      advance<double>(flow, alpha.segment(i, 1), z1, z2);
+      advance<double>(flow, alpha.segment(i, 1), z1, z2, z1, z2);
       EXPECT_TRUE(same_bits(z1, Vector<double>(x1.segment(i, 1))));
       EXPECT_TRUE(same_bits(z2, Vector<double>(x2.segment(i, 1))));
     }
@@ -241,6 +243,8 @@ TEST(ScalingTrajectories, WithoutARootTheSignStays) {
                    .rate = 1.5,
                    .steps = 1},
                   alpha,
+                  x1,
+                  x2,
                   x1,
                   x2);
   EXPECT_EQ(x1, Vector<double>::Constant(2, -0.5));
