@@ -32,6 +32,24 @@ Row row(Ids ids, Index n, Index steps) {
           .precision = Precision::f64};
 }
 
+std::vector<Profile> profiles(const std::vector<Row>& smoke,
+                              const std::vector<Row>& all) {
+  const auto with = [](std::vector<Row> rows, const char* id) {
+    rows.push_back(row({id}, 1, 1));
+    return rows;
+  };
+  return {{.name = "smoke", .rows = with(smoke, "batch_1e3")},
+          {.name = "quick", .rows = with(all, "batch_1e5")},
+          {.name = "standard", .rows = with(all, "batch_1e5")},
+          {.name = "paper", .rows = with(all, "batch_1e6")}};
+}
+
+void add_batches(Experiment& e, int power) {
+  e.methods.push_back(batch("batch_1e3", power, 1000));
+  e.methods.push_back(batch("batch_1e5", power, 100'000));
+  e.methods.push_back(batch("batch_1e6", power, 1'000'000));
+}
+
 // ---- y = (x1, alpha x2) -----------------------------------------------------
 
 const Ids kInvariant = {"newton", "ig", "pg"};
@@ -42,20 +60,19 @@ Experiment scaling() {
     return std::vector<Row>{row({"gd", "gd_large"}, 3, steps),
                             row(kInvariant, all, steps)};
   };
-  return {.name = kScaling,
-          .title = "Scaling",
-          .source = {.paper = "physgrad", .where = "Crux of the matter"},
-          .problem = problem<Scaling>("scaling",
-                                      {.scales = {1, 3, 5, 1e-3, 1e3, 1e6}}),
-          .profiles = {{.name = "smoke", .rows = rows(3, 10)},
-                       {.name = "quick", .rows = rows(6, 50)},
-                       {.name = "standard", .rows = rows(6, 50)},
-                       {.name = "paper", .rows = rows(6, 50)}},
-          .methods = {method("gd", gradient, 0.03),
-                      method("gd_large", gradient, 0.05),
-                      method("newton", newton, kRate),
-                      method("ig", inverse_gradient, kRate),
-                      method("pg", inverse_simulator, kRate)}};
+  Experiment e{.name = kScaling,
+               .title = "Scaling",
+               .source = {.paper = "physgrad", .where = "Crux of the matter"},
+               .problem = problem<Scaling>(
+                   "scaling", {.scales = {1, 3, 5, 1e-3, 1e3, 1e6}}),
+               .profiles = profiles(rows(3, 10), rows(6, 50)),
+               .methods = {method("gd", gradient, 0.03),
+                           method("gd_large", gradient, 0.05),
+                           method("newton", newton, kRate),
+                           method("ig", inverse_gradient, kRate),
+                           method("pg", inverse_simulator, kRate)}};
+  add_batches(e, 1);
+  return e;
 }
 
 // ---- y = (x1, x2^2) ---------------------------------------------------------
@@ -93,15 +110,15 @@ Experiment comparison() {
                                 row({"newton_large", "gd_large"}, 1, 10),
                                 row({"newton_small", "pg_small"}, 1, 100),
                                 row({"gd_small"}, 1, 1000)};
-  return {.name = kComparison,
-          .title = "Comparison",
-          .source = {.paper = "physgrad", .where = "notebook of the chapter"},
-          .problem = problem<Scaling>("scaling", {.power = 2, .start = {3, 3}}),
-          .profiles = {{.name = "smoke", .rows = {ten}},
-                       {.name = "quick", .rows = all},
-                       {.name = "standard", .rows = all},
-                       {.name = "paper", .rows = all}},
-          .methods = comparison_methods()};
+  Experiment e{
+      .name = kComparison,
+      .title = "Comparison",
+      .source = {.paper = "physgrad", .where = "notebook of the chapter"},
+      .problem = problem<Scaling>("scaling", {.power = 2, .start = {3, 3}}),
+      .profiles = profiles({ten}, all),
+      .methods = comparison_methods()};
+  add_batches(e, 2);
+  return e;
 }
 
 const bool kRegistered =

@@ -128,8 +128,40 @@ Figure trajectories(const Results& results) {
   return figure;
 }
 
+/// Of the batches that were run.
+Table times(const Results& results, const char* experiment) {
+  Table table{.id = "batch",
+              .title = "A step of one of many trajectories",
+              .unit = "ns",
+              .digits = 4,
+              .corner = "trajectories",
+              .columns = {"GD", "Newton", "IG", "PG"},
+              .note =
+                  "All steps of a batch over their number, one thread "
+                  "unless asked otherwise; each trajectory stays in "
+                  "registers."};
+  const Published none;
+  for (const char* id : {"batch_1e3", "batch_1e5", "batch_1e6"}) {
+    TableRow row{.label = id + 6};
+    for (const char* stage : {"gd", "newton", "ig", "pg"}) {
+      const auto runs = find_runs({results, none, experiment},
+                                  {.method = id, .stage = stage});
+      if (runs.empty()) continue;
+      const StageRecord& s = *runs.front().stage;
+      const double steps = s.arrays.at("batch").prod();
+      row.cells.push_back(
+          s.crowded ? Cell{.text = kCrowded}
+                    : Cell{.ours = 1e9 * s.clocks.solve.wall / steps});
+    }
+    if (row.cells.size() == table.columns.size())
+      table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
 Section scaling(const Results& results, const Published&) {
-  return {.figures = {landscapes(results), trajectories(results)}};
+  return {.tables = {times(results, kScaling)},
+          .figures = {landscapes(results), trajectories(results)}};
 }
 
 // ---- y = (x1, x2^2) ---------------------------------------------------------
@@ -204,7 +236,7 @@ Table ends(const Results& results, const Published& published) {
 }
 
 Section comparison(const Results& results, const Published& published) {
-  return {.tables = {ends(results, published)},
+  return {.tables = {ends(results, published), times(results, kComparison)},
           .figures = {both_spaces(results), long_ways(results)}};
 }
 

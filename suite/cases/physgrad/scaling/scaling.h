@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "suite/core/method.h"
 
@@ -21,5 +22,10 @@ inline constexpr double kRate = 0.3;  ///< of all steps that undo the scale
 ///           IG step that asks for 0.1
 ///   roots   of the local inverse of x^2: y, x0, the root
 std::shared_ptr<const Stage> identities();
+
+/// Stages gd, newton, ig and pg of n random trajectories each, a diagnostic
+/// whose solving time is that of all steps. Arrays `batch` (n, steps) and
+/// `ends` (mean and largest |x|, a column for x1 and one for x2).
+Method batch(std::string id, int power, Index n);
 
 }  // namespace physinv::scaling
