@@ -65,6 +65,7 @@ class LocalSteps {
     if constexpr (std::is_same_v<T, double>)
       search_ = std::make_unique<NumericInverse>(
           *problem_, options.search, run.threads);
+    if (options.rule) rule_.emplace(*options.rule);
   }
 
   Outcome run() {
@@ -97,7 +98,14 @@ class LocalSteps {
     switch (options_.step) {
       case LocalStep::gradient:
         gradient();
-        next_ = x_ - rate_ * next_;
+        if (rule_) {
+          const auto numbers = [](Batch<T>& b) {
+            return Eigen::Map<Vector<T>>(b.data(), b.size());
+          };
+          (*rule_)(numbers(x_), numbers(next_), numbers(next_));
+        } else {
+          next_ = x_ - rate_ * next_;
+        }
         return;
       case LocalStep::newton:
         newton();
@@ -204,9 +212,10 @@ class LocalSteps {
   }
 
   std::size_t bytes() const {
-    const Index numbers = x_.size() + next_.size() + given_.size() +
-                          target_.size() + y_.size() + y_bar_.size() +
-                          matrix_.size();
+    const Index numbers =
+        x_.size() + next_.size() + given_.size() + target_.size() + y_.size() +
+        y_bar_.size() + matrix_.size() +
+        (rule_ ? rule_->numbers_per_parameter() : 0) * x_.size();
     return static_cast<std::size_t>(numbers) * sizeof(T) +
            static_cast<std::size_t>(path_.size()) * sizeof(double) +
            (search_ ? search_->bytes() : 0) + work_.bytes() + tape_.bytes();
@@ -218,6 +227,7 @@ class LocalSteps {
   std::unique_ptr<Problem<T>> problem_;
   const ClosedSteps<T>* closed_;
   std::unique_ptr<NumericInverse> search_;
+  std::optional<UpdateStep<T>> rule_;
   T rate_;
   Batch<T> x_, next_, given_, target_, y_, y_bar_, matrix_;
   Batch<double> path_;
@@ -236,8 +246,13 @@ class LocalStepsStage final : public Stage {
   Needs needs() const override { return needs_of(options_); }
   Options options() const override {
     const auto text = [](double v) { return fmt::format("{}", v); };
-    Options all = {{"algorithm", name_of(options_.step)},
-                   {"rate", text(options_.rate)}};
+    Options all = {{"algorithm", name_of(options_.step)}};
+    if (options_.rule) {
+      for (auto& option : physinv::describe(*options_.rule))
+        all.push_back(std::move(option));
+      return all;
+    }
+    all.emplace_back("rate", text(options_.rate));
     if (!searches()) return all;
     all.emplace_back("difference", text(options_.search.difference));
     all.emplace_back("pgtol", text(options_.search.pgtol));
@@ -245,6 +260,11 @@ class LocalStepsStage final : public Stage {
     return all;
   }
   Index default_iterations() const override { return options_.iterations; }
+  Sources sources() const override {
+    Sources all = Stage::sources();
+    add_sources(options_.rule.value_or(SgdOptions{}), all);
+    return all;
+  }
   bool has_precision() const override { return !searches(); }
   Networks networks() const override { return Networks::none; }
   double operations(const CaseSize& size) const override {

@@ -1,7 +1,7 @@
 /// Plain steps of fixed rate that differ in what they know of the solver
 /// (Physics-based deep learning, chapter "Scale-invariance and inversion"):
 ///
-///   gradient           x -= rate d loss / d x
+///   gradient           x -= rate d loss / d x, or any first-order rule
 ///   newton             x -= rate H^-1 d loss / d x
 ///   inverse_gradient   x += J^-1 dy,        dy = rate (y* - y)
 ///   inverse_simulator  x  = P^-1(y + dy; x)
@@ -19,9 +19,10 @@
 #pragma once
 
 #include <memory>
-#include <string>
+#include <optional>
 
 #include "optimizers/numeric_inverse.h"
+#include "optimizers/steps/rule.h"
 #include "suite/core/method.h"
 
 namespace physinv {
@@ -40,6 +41,8 @@ struct LocalStepsOptions {
   Index iterations = 10;
   Index paths = 6;
   NumericInverseOptions search = {};
+  /// Of gradient steps, instead of `rate`; it goes number by number.
+  std::optional<StepOptions> rule = {};
 };
 
 /// Stage `solve`.

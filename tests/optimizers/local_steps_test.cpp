@@ -157,6 +157,16 @@ TEST(LocalSteps, SearchFindsTheInversesPath) {
   EXPECT_LE(mean_distance({.pgtol = 1e-10, .ftol = 0}), 1e-7);
 }
 
+TEST(LocalSteps, AdamsFirstStepIsAsLongAsItsRate) {
+  const auto run =
+      run_steps(problem<Aimed>("scaling", squared(3, 3)),
+                {.rule = StepOptions(AdamOptions{.rate = 0.1, .eps = 1e-8})},
+                100);
+  const Batch<double>& path = run.out.arrays.at("path");
+  EXPECT_TRUE(Comparator(1e-8, 0)(path.col(1), Eigen::Vector2d(2.9, 2.9)));
+  EXPECT_LT(path.col(100).norm(), 0.5);
+}
+
 // The printed digits, and PG's straight line in y.
 TEST(LocalSteps, SinglePrecisionKeepsWhatIsPrinted) {
   const auto end = [](LocalStep step, double rate) {

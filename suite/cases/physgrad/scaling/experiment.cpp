@@ -24,6 +24,12 @@ Method method(std::string id,
       .chain = {local_steps({.step = step, .rate = rate, .search = search})}};
 }
 
+/// The chapter leaves these to its readers.
+Method ruled(std::string id, StepOptions rule) {
+  return {.id = std::move(id),
+          .chain = {local_steps({.rule = std::move(rule)})}};
+}
+
 Row row(Ids ids, Index n, Index steps) {
   return {.methods = std::move(ids),
           .n = {n},
@@ -93,7 +99,12 @@ std::vector<Method> comparison_methods() {
           method("newton_small", newton, 0.1),
           method("pg_small", inverse_simulator, 0.05),
           method("gd_large", gradient, 0.5 / 36),
-          method("gd_small", gradient, 0.005)};
+          method("gd_small", gradient, 0.005),
+          ruled("adam", AdamOptions{.rate = 0.1, .eps = 1e-8}),
+          ruled("adagrad",
+                AdagradOptions{.rate = 0.1, .accumulator = 0, .eps = 1e-10}),
+          ruled("rmsprop",
+                RmspropOptions{.rate = 0.1, .decay = 0.99, .eps = 1e-8})};
 }
 
 Experiment comparison() {
@@ -106,10 +117,11 @@ Experiment comparison() {
                        "identities"},
                       1,
                       10);
-  const std::vector<Row> all = {ten,
-                                row({"newton_large", "gd_large"}, 1, 10),
-                                row({"newton_small", "pg_small"}, 1, 100),
-                                row({"gd_small"}, 1, 1000)};
+  const std::vector<Row> all = {
+      ten,
+      row({"newton_large", "gd_large"}, 1, 10),
+      row({"newton_small", "pg_small", "adam", "adagrad", "rmsprop"}, 1, 100),
+      row({"gd_small"}, 1, 1000)};
   Experiment e{
       .name = kComparison,
       .title = "Comparison",

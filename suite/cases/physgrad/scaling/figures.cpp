@@ -180,22 +180,44 @@ Figure both_spaces(const Results& results) {
           .panels = {std::move(x), std::move(y)}};
 }
 
-Figure long_ways(const Results& results) {
-  const Line lines[] = {
+Figure ways(const Results& results,
+            std::string id,
+            std::string title,
+            std::string source,
+            const std::vector<Line>& lines) {
+  Panel x{.x_label = "x1", .y_label = "x2"};
+  for (const Line& line : lines)
+    if (const auto path = path_of(results, kComparison, line.method))
+      x.series.push_back(series(line, path->x()));
+  return {.id = std::move(id),
+          .title = std::move(title),
+          .source = std::move(source),
+          .panels = {std::move(x)},
+          .columns = 1};
+}
+
+Figure rates(const Results& results) {
+  const std::vector<Line> lines = {
       {"newton_large", "Newton, rate 0.5", {Hue::orange, Marker::square}},
       {"newton_small", "Newton, 0.1", {Hue::brown, Marker::square}},
       {"pg_small", "inverse simulator, 0.05", {Hue::green, Marker::diamond}},
       {"gd_large", "gradient descent, 0.5 / 36", {Hue::blue, Marker::circle}},
       {"gd_small", "gradient descent, 0.005", {Hue::teal, Marker::circle}}};
-  Panel x{.x_label = "x1", .y_label = "x2"};
-  for (const Line& line : lines)
-    if (const auto path = path_of(results, kComparison, line.method))
-      x.series.push_back(series(line, path->x()));
-  return {.id = "figure1",
-          .title = "Large and small rates",
-          .source = "the authors' script",
-          .panels = {std::move(x)},
-          .columns = 1};
+  return ways(results,
+              "figure1",
+              "Large and small rates",
+              "the authors' script",
+              lines);
+}
+
+Figure rules(const Results& results) {
+  const std::vector<Line> lines = {
+      {"adam", "Adam", {Hue::red, Marker::circle}},
+      {"adagrad", "Adagrad", {Hue::olive, Marker::square}},
+      {"rmsprop", "RMSprop", {Hue::indigo, Marker::triangle}},
+      {"gd_small", "gradient descent, 0.005", {Hue::teal, Marker::circle}},
+      {"pg_small", "inverse simulator, 0.05", {Hue::green, Marker::diamond}}};
+  return ways(results, "rules", "Adaptive rules, rate 0.1", "", lines);
 }
 
 Table ends(const Results& results, const Published& published) {
@@ -237,7 +259,7 @@ Table ends(const Results& results, const Published& published) {
 
 Section comparison(const Results& results, const Published& published) {
   return {.tables = {ends(results, published), times(results, kComparison)},
-          .figures = {both_spaces(results), long_ways(results)}};
+          .figures = {both_spaces(results), rates(results), rules(results)}};
 }
 
 const bool kReports = register_report(kScaling, scaling) &&
