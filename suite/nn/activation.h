@@ -75,6 +75,7 @@ inline V activate_lanes(Activation a, V z) {
   if (a == Activation::relu) return z < V{} ? V{} : z;
   if (a == Activation::tanh) return tanh_lanes(z);
   if (a == Activation::sigmoid) return sigmoid_lanes(z);
+  if (a == Activation::half_tanh) return tanh_lanes(broadcast<V>(T(0.5)) * z);
   for (std::size_t l = 0; l < sizeof(V) / sizeof(T); ++l)
     z[l] = activate<T>(a, z[l]);
   return z;
