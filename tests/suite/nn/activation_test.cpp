@@ -28,6 +28,7 @@ TEST(Activation, DerivativeAgainstCentralDifferences) {
 
 TEST(Activation, SecondDerivativeIsThatOfTheDerivative) {
   for (const Activation a : kAll) {
+    if (a == Activation::relu) continue;  // y = 0 is a kink
     for (const double z : {-3.1, -0.7, 0.2, 1.9, 6.0}) {
       const double h = 1e-5, y = from_output(a) ? activate(a, z) : z;
       const double slope = (derivative(a, y + h) - derivative(a, y - h)) / 2;
