@@ -86,6 +86,8 @@ inline T second_derivative(Activation a, T y) {
       const T s = sigmoid(y), slope = s * (T(1) - s);
       return slope * std::fma(y, T(1) - T(2) * s, T(2));
     }
+    case Activation::half_tanh:
+      return -y;
   }
   return T(0);
 }
@@ -98,6 +100,7 @@ inline V activate_lanes(Activation a, V z) {
   if (a == Activation::relu) return z < V{} ? V{} : z;
   if (a == Activation::tanh) return tanh_lanes(z);
   if (a == Activation::sigmoid) return sigmoid_lanes(z);
+  if (a == Activation::half_tanh) return tanh_lanes(broadcast<V>(T(0.5)) * z);
   for (std::size_t l = 0; l < sizeof(V) / sizeof(T); ++l)
     z[l] = activate<T>(a, z[l]);
   return z;

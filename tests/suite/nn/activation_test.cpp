@@ -26,6 +26,18 @@ TEST(Activation, DerivativeAgainstCentralDifferences) {
   }
 }
 
+TEST(Activation, SecondDerivativeIsThatOfTheDerivative) {
+  for (const Activation a : kAll) {
+    if (a == Activation::relu) continue;  // y = 0 is a kink
+    for (const double z : {-3.1, -0.7, 0.2, 1.9, 6.0}) {
+      const double h = 1e-5, y = from_output(a) ? activate(a, z) : z;
+      const double slope = (derivative(a, y + h) - derivative(a, y - h)) / 2;
+      EXPECT_NEAR(second_derivative(a, y), slope / h, 1e-8)
+          << to_string(a) << " " << z;
+    }
+  }
+}
+
 TEST(Activation, HalfTanhIsASigmoid) {
   for (const double z : {-30.0, -2.0, 0.0, 0.3, 5.0})
     EXPECT_NEAR(activate(Activation::half_tanh, z), 2 * sigmoid(z) - 1, 1e-15);
