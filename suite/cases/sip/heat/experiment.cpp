@@ -25,7 +25,7 @@ constexpr Index kSide = 64, kPaper = 10'000, kStudy = 2'000;
 enum class Push { solver, inverse };
 
 /// Objectives are sums over the batch, not means.
-Method trained(std::string id, Push push, StepOptions rule, const Cell& cell) {
+Method trained(std::string id, Push push, StepOptions rule, const Spot& cell) {
   return {
       .id = std::move(id),
       .chain = {train({.rule = std::move(rule),
@@ -43,14 +43,14 @@ Method trained(std::string id, Push push, StepOptions rule, const Cell& cell) {
 
 std::vector<Method> methods() {
   std::vector<Method> all;
-  const auto both = [&](const Cell& cell) {
+  const auto both = [&](const Spot& cell) {
     const AdamOptions adam{.rate = cell.rate(), .eps = 1e-8};
     all.push_back(trained(cell.id("sip"), Push::inverse, adam, cell));
     all.push_back(trained(cell.id("adam"), Push::solver, adam, cell));
   };
   both({.batch = 8});
-  for (const Cell& cell : rate_cells()) both(cell);
-  for (const Cell& cell : set_cells()) both(cell);
+  for (const Spot& cell : rate_spots()) both(cell);
+  for (const Spot& cell : set_spots()) both(cell);
   const auto sgd = [&](std::string id, Index batch, double rate) {
     all.push_back(trained(std::move(id),
                           Push::solver,
@@ -88,8 +88,8 @@ std::vector<Row> quick() {
 
 std::vector<Row> paper() {
   std::vector<std::string> studies;
-  for (const auto& cells : {rate_cells(), set_cells()})
-    for (const Cell& cell : cells)
+  for (const auto& cells : {rate_spots(), set_spots()})
+    for (const Spot& cell : cells)
       for (const char* method : {"sip", "adam"})
         if (const auto id = cell.id(method); id != method)
           studies.push_back(id);

@@ -13,7 +13,7 @@ namespace physinv::heat {
 inline constexpr const char* kName = "sip/heat";
 
 /// One setting; the paper's own has no suffix.
-struct Cell {
+struct Spot {
   Index batch = 128;
   int decade = 3;  ///< the rate is 10^-decade
   Index set = 0;   ///< samples of the training set; 0: always fresh ones
@@ -28,15 +28,15 @@ struct Cell {
   }
 };
 
-inline std::vector<Cell> rate_cells() {
-  std::vector<Cell> all;
+inline std::vector<Spot> rate_spots() {
+  std::vector<Spot> all;
   for (const int decade : {2, 3, 4})
     for (const Index batch : {4, 32, 128}) all.push_back({batch, decade});
   return all;
 }
 
-inline std::vector<Cell> set_cells() {
-  std::vector<Cell> all;
+inline std::vector<Spot> set_spots() {
+  std::vector<Spot> all;
   for (const Index set : {32, 128, 512, 2048})
     for (const Index batch : {4, 32, 128}) all.push_back({batch, 3, set});
   return all;
