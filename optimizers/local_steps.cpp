@@ -22,10 +22,14 @@ const char* name_of(LocalStep step) {
 /// What one step asks of the problem beyond its forward pass.
 Needs needs_of(LocalStep step) {
   switch (step) {
-    case LocalStep::gradient: return Needs::vjp;
-    case LocalStep::newton: return Needs::vjp | Needs::hessian;
-    case LocalStep::inverse_gradient: return Needs::jacobian;
-    case LocalStep::inverse_simulator: break;
+    case LocalStep::gradient:
+      return Needs::vjp;
+    case LocalStep::newton:
+      return Needs::vjp | Needs::hessian;
+    case LocalStep::inverse_gradient:
+      return Needs::jacobian;
+    case LocalStep::inverse_simulator:
+      break;
   }
   return Needs::inverse;
 }

@@ -17,7 +17,8 @@ inline ClosedForm heat_closed_form(const HeatOptions& options = {}) {
   for (std::size_t d = 0; d < n; ++d)
     for (std::size_t k = 0; k < n; ++k) {
       const long double turn = 2 * std::numbers::pi_v<long double> / n;
-      const long double wave = turn * static_cast<long double>(k < n - k ? k : n - k);
+      const long double wave =
+          turn * static_cast<long double>(k < n - k ? k : n - k);
       c[d] += std::exp(-wave * wave * options.end_time) *
               std::cos(turn * static_cast<long double>(k * d % n)) / n;
     }

@@ -26,8 +26,7 @@ Scaling<T>::Scaling(const Options& options) : options_(options) {
   SUITE_CHECK(
       std::abs(options.alpha) >= 1e-18 && std::abs(options.alpha) <= 1e18,
       "|alpha| must be in 1e-18 .. 1e18");
-  SUITE_CHECK(options.power == 1 || options.power == 2,
-              "power must be 1 or 2");
+  SUITE_CHECK(options.power == 1 || options.power == 2, "power must be 1 or 2");
 }
 
 template <class T>
@@ -65,8 +64,7 @@ typename Scaling<T>::Point Scaling<T>::at(BatchIn<T> x, Index i) const {
   const T zero = (a - a) + (b - b);  // NaN for what is not finite
   if (options_.power == 1)
     return {{a + zero, alpha * b + zero}, {1 + zero, alpha + zero}};
-  return {{a + zero, alpha * (b * b) + zero},
-          {1 + zero, 2 * alpha * b + zero}};
+  return {{a + zero, alpha * (b * b) + zero}, {1 + zero, 2 * alpha * b + zero}};
 }
 
 template <class T>
@@ -168,8 +166,7 @@ void Scaling<T>::hessian(BatchIn<T> x,
   const T bend = options_.power == 2 ? 2 * T(options_.alpha) : T(0);
   for (Index i = 0; i < x.cols(); ++i) {
     const Point p = at(x, i);
-    const T second =
-        p.slope[1] * p.slope[1] + (p.y[1] - target(1, i)) * bend;
+    const T second = p.slope[1] * p.slope[1] + (p.y[1] - target(1, i)) * bend;
     h.col(i) << c * (p.slope[0] * p.slope[0]), 0, 0, c * second;
   }
 }

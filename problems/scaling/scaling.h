@@ -20,9 +20,9 @@
 namespace physinv {
 
 struct ScalingOptions {
-  double alpha = 1;            ///< 1e-18 <= |alpha| <= 1e18: its square is finite
-  int power = 1;               ///< of x2
-  bool half = false;           ///< loss: half the square
+  double alpha = 1;   ///< 1e-18 <= |alpha| <= 1e18: its square is finite
+  int power = 1;      ///< of x2
+  bool half = false;  ///< loss: half the square
   std::array<double, 2> start = {0.5, 0.85};
 };
 

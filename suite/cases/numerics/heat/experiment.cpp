@@ -15,10 +15,9 @@ namespace {
 constexpr Index kSide = 16;
 
 ProblemRecipe until(double end_time, double noise_floor = 0) {
-  return problem<Heat>("heat",
-                       {.resolution = kSide,
-                        .end_time = end_time,
-                        .noise_floor = noise_floor});
+  return problem<Heat>(
+      "heat",
+      {.resolution = kSide, .end_time = end_time, .noise_floor = noise_floor});
 }
 
 /// A wave along the diagonal.
@@ -33,16 +32,16 @@ const SweepAxis kTimes{"end time", {1, 2, 4, 8, 16, 32, 64}, true};
 
 /// What is said of noise, at one end time.
 Knob floor_knob(double end_time) {
-  const SweepAxis floors{"noise floor", decades(-2, -14, -2), true};
-  return {.id = fmt::format("floor-{}", end_time),
-          .title = fmt::format("Noise floor of the inverse, end time {}",
-                               end_time),
-          .axis = floors,
-          .problems = along(
-              floors, [=](double floor) { return until(end_time, floor); }),
-          .exact = heat_closed_form({.resolution = kSide,
-                                     .end_time = end_time}),
-          .samples = 32};
+  const SweepAxis floors{
+      "noise floor", {1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14}, true};
+  return {
+      .id = fmt::format("floor-{}", end_time),
+      .title = fmt::format("Noise floor of the inverse, end time {}", end_time),
+      .axis = floors,
+      .problems =
+          along(floors, [=](double floor) { return until(end_time, floor); }),
+      .exact = heat_closed_form({.resolution = kSide, .end_time = end_time}),
+      .samples = 32};
 }
 
 const bool kRegistered = register_atlas(
@@ -56,13 +55,12 @@ const bool kRegistered = register_atlas(
                  .point = wave,
                  .problems = along(
                      kTimes, [](double end_time) { return until(end_time); })}},
-     .knobs = {floor_knob(1),
-               floor_knob(8),
-               floor_knob(64),
-               batch_knob(until(8),
-                          128,
-                          {},
-                          heat_closed_form({.resolution = kSide}))}});
+     .knobs = {
+         floor_knob(1),
+         floor_knob(8),
+         floor_knob(64),
+         batch_knob(
+             until(8), 128, {}, heat_closed_form({.resolution = kSide}))}});
 
 }  // namespace
 }  // namespace physinv
