@@ -304,6 +304,7 @@ class DirectStage final : public Stage {
     solver->leave(out);
     out.arrays["mean_loss"] = run.probe.curve().loss.colwise().mean();
     out.arrays["metrics"] = recorder.values();
+    keep_finite(out.arrays);
     return out;
   }
 
