@@ -104,7 +104,7 @@ Figure direct(const Results& results) {
   Panel panel{.x_label = "iterations",
               .y_label = "sum |x - x*|",
               .x_log = true,
-              .y_log = true};
+              .y_min = 0};
   for (const MethodLine& line : kDirect) {
     const auto stages = trained_stages(results, kName, line.method);
     if (stages.empty()) continue;
@@ -219,8 +219,8 @@ Section report(const Results& results, const Published& published) {
   curves.metric(
       networks(), kError, "sum |x - x*|", "fig10", "Errors of x", "Fig. 10");
   curves.losses(networks(), "losses", "Losses of y", "");
-  curves.add(direct(results));
-  curves.add(pictures(results));
+  for (Figure figure : {direct(results), pictures(results)})
+    if (!figure.panels.empty()) section.figures.push_back(std::move(figure));
   return section;
 }
 
