@@ -172,7 +172,7 @@ Batch<double> heat_gradient_descent(const Batch<double>& exponents,
                                     Index steps) {
   return exponents.unaryExpr([=](double s) {
     const double damping = std::exp(-s);
-    if (damping == 0) return 0.0;
+    if (damping == 0 || steps == 0) return 0.0;
     return -std::expm1(double(steps) * std::log1p(-damping * damping)) /
            damping;
   });
@@ -316,6 +316,24 @@ void Heat<T>::pullback(const Tape& tape,
   const auto kept = tape.view<T>(kPoison);
   forward(y_bar, y_bar.topRows(0), x_bar, work);
   for (Index i = 0; i < kept.cols(); ++i) x_bar.col(i).array() += kept(0, i);
+}
+
+template <class T>
+void Heat<T>::pushforward(const Tape& tape,
+                          BatchIn<T> x_dot,
+                          BatchOut<T> y_dot,
+                          Workspace& work) const {
+  pullback(tape, x_dot, y_dot, work);
+}
+
+template <class T>
+void Heat<T>::pullback_tangent(const Tape& tape,
+                               BatchIn<T> /*x_dot*/,
+                               BatchIn<T> /*y_bar*/,
+                               BatchIn<T> y_bar_dot,
+                               BatchOut<T> x_bar_dot,
+                               Workspace& work) const {
+  pullback(tape, y_bar_dot, x_bar_dot, work);
 }
 
 template <class T>
