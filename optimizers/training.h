@@ -20,7 +20,9 @@
 
 #include "optimizers/half_inverse_step.h"
 #include "optimizers/metrics.h"
+#include "optimizers/steps/adahessian.h"
 #include "optimizers/steps/rule.h"
+#include "optimizers/training/hessian_free_rule.h"
 #include "optimizers/training/signal_recipe.h"
 #include "optimizers/training/solver_loss.h"
 
@@ -28,7 +30,11 @@ namespace physinv {
 
 struct TrainingOptions {
   std::string stage = "train";
-  std::variant<StepOptions, HalfInverseStepOptions> rule;
+  std::variant<StepOptions,
+               HalfInverseStepOptions,
+               AdaHessianOptions,
+               HessianFreeOptions>
+      rule;
   Index batch = 128;
   Index chunk = 0;  ///< see SignalOptions
   Index iterations = 1000;

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -61,6 +62,9 @@ struct SignalRecipe {
   Make<float> make_float;
   Make<double> make_double;
   const char* source;  ///< where it is written
+  /// What products with second derivatives ask of the problem; none: the
+  /// signal has no such products.
+  std::optional<Needs> hessian = {}, gauss_newton = {};
 
   template <class T>
   std::unique_ptr<Signal<T>> make(const SignalPlace<T>& place) const {

@@ -98,6 +98,9 @@ TEST_P(ProblemContract, ShapesAndAbilitiesAreAsDeclared) {
               provides(Needs::inverse));
     EXPECT_EQ(dynamic_cast<Hessian<T>*>(p.get()) != nullptr,
               provides(Needs::hessian));
+    EXPECT_EQ(dynamic_cast<Jvp<T>*>(p.get()) != nullptr, provides(Needs::jvp));
+    EXPECT_EQ(dynamic_cast<PullbackTangent<T>*>(p.get()) != nullptr,
+              provides(Needs::pullback_tangent));
     for (const auto& set : {p->sample(0, 5, rng_), labelled(5)}) {
       EXPECT_EQ(set.y.rows(), s.observations);
       EXPECT_EQ(set.given.rows(), s.given);
@@ -199,6 +202,65 @@ TEST_P(ProblemContract, PullbackIsTheAdjointOfTheDirectionalDerivative) {
     EXPECT_NEAR(x_bar.col(i).dot(v.col(i)),
                 y_bar.col(i).dot(jv),
                 1e-5 * y_bar.col(i).norm() * jv.norm() + 1e-7);
+  }
+  EXPECT_GE(checked, 12);
+}
+
+TEST_P(ProblemContract, PushforwardIsTheTransposeOfPullback) {
+  if (!provides(Needs::vjp | Needs::jvp)) GTEST_SKIP() << "has no jvp";
+  in_both([&](auto t) {
+    using T = decltype(t);
+    Bench<T> b(recipe());
+    const auto& jvp = dynamic_cast<const Jvp<T>&>(*b.problem);
+    const auto l = labelled().template cast<T>();
+    const Batch<T> x_dot = directions<T>(l.x.rows(), kCount, 0.7);
+    const Batch<T> y_bar = directions<T>(l.y.rows(), kCount, 0.4);
+    const Batch<T> x_bar = b.pull(l.x, l.given, y_bar);
+    Batch<T> y_dot(l.y.rows(), kCount);
+    jvp.pushforward(b.tape, x_dot, y_dot, b.work);
+    for (Index i = 0; i < kCount; ++i)
+      EXPECT_NEAR(double(y_dot.col(i).dot(y_bar.col(i))),
+                  double(x_bar.col(i).dot(x_dot.col(i))),
+                  Tolerance<T>::relative *
+                      double(y_dot.col(i).norm() * y_bar.col(i).norm()));
+    // Who has this has half the squared error as its loss.
+    Batch<T> slope(y_dot), moved(y_dot);
+    b.problem->loss_gradient(l.y, l.y, slope);
+    b.problem->loss_gradient(l.y + y_dot, l.y, moved);
+    EXPECT_TRUE(
+        Comparator(Tolerance<T>::relative, 1e-3 * Tolerance<T>::relative)(
+            moved - slope, (l.y + y_dot) - l.y));
+  });
+}
+
+TEST_P(ProblemContract, PullbackTangentAgreesWithCentralDifferences) {
+  if (!provides(Needs::vjp | Needs::pullback_tangent))
+    GTEST_SKIP() << "has no tangent of the pullback";
+  Bench<double> b(recipe());
+  const auto& tangent =
+      dynamic_cast<const PullbackTangent<double>&>(*b.problem);
+  const auto l = labelled(24);
+  const Batch<double> x_dot = directions<double>(l.x.rows(), 24, 0.7);
+  const Batch<double> y_bar = directions<double>(l.y.rows(), 24, 0.4);
+  const Batch<double> y_bar_dot = directions<double>(l.y.rows(), 24, 1.3);
+  Batch<double> x_bar_dot(l.x.rows(), 24);
+  b.pull(l.x, l.given, y_bar);
+  tangent.pullback_tangent(b.tape, x_dot, y_bar, y_bar_dot, x_bar_dot, b.work);
+  Index checked = 0;
+  for (Index i = 0; i < 24; ++i) {
+    const Batch<double> given = l.given.col(i);
+    const auto difference = [&](double h) {
+      const auto at = [&](double step) {
+        return b.pull(l.x.col(i) + step * x_dot.col(i),
+                      given,
+                      y_bar.col(i) + step * y_bar_dot.col(i));
+      };
+      return Vector<double>((at(h) - at(-h)).col(0) / (2 * h));
+    };
+    Vector<double> d;
+    if (!smooth_derivative(difference, d)) continue;
+    ++checked;
+    EXPECT_TRUE(Comparator(1e-5, 1e-7)(x_bar_dot.col(i), d)) << "sample " << i;
   }
   EXPECT_GE(checked, 12);
 }
