@@ -12,9 +12,9 @@
 ///
 /// xi is not bounded. A packet far from every sample is exactly 0: in double
 /// where exp underflows (38.6 s), in float where the envelope is below 1e-17
-/// (8.85 s). Such an xi has no gradient, and exactly the loss of no packet; in double every xi has that loss once the packet no
-/// longer changes a bit of the target. Samples that are not computed are
-/// counted as `skipped_zeros`.
+/// (8.85 s). Such an xi has no gradient, and exactly the loss of no packet; in
+/// double every xi has that loss once the packet no longer changes a bit of the
+/// target. Samples that are not computed are counted as `skipped_zeros`.
 ///
 /// vjp, Jacobian: exact. Errors below 1e-13 A in double, 1e-6 A in float. An
 /// xi that is not finite gives NaN in its own column only.

@@ -14,19 +14,6 @@ Grid output(const ConvOptions& o) {
 
 Index rows(const NormShape& s) { return s.pooled().positions() * s.channels; }
 
-/// Sums over positions and samples, one per channel.
-template <class T>
-void channel_sums(Workspace& work, Lanes<const T> x, Index channels, T* sums) {
-  const Workspace::Scope scope(work);
-  auto per_row = work.take<T>(x.rows, 1);
-  row_sums<T>(x, per_row.data());
-  for (Index c = 0; c < channels; ++c) {
-    double sum = 0;
-    for (Index i = c; i < x.rows; i += channels) sum += double(per_row(i));
-    sums[c] = static_cast<T>(sum);
-  }
-}
-
 }  // namespace
 
 // ------------------------------------------------------------------- Conv

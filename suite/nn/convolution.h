@@ -11,6 +11,10 @@
 
 namespace physinv::nn {
 
+/// Sums over positions and samples, one per channel.
+template <class T>
+void channel_sums(Workspace& work, Lanes<const T> x, Index channels, T* sums);
+
 template <class T>
 class Convolution {
  public:

@@ -113,8 +113,8 @@ void check_minimum(const Json& entry) {
   const Batch<double> best = columns(want.at("t0_and_loss")), y = signals();
   const Vector<double> t0 = best.row(0).transpose();
   const auto same = tolerance<double>(entry, 0, 0);
-  EXPECT_TRUE(
-      same(Packet<double>(t0, y).loss, Vector<double>(best.row(1).transpose())));
+  EXPECT_TRUE(same(Packet<double>(t0, y).loss,
+                   Vector<double>(best.row(1).transpose())));
   EXPECT_TRUE(Comparator(0, 1e-6)(found_from(t0), t0));
   const auto scan = Vector<double>::LinSpaced(5701, 20, 134);
   for (Index i = 0; i < y.cols(); ++i)
@@ -238,8 +238,8 @@ void check_steps(const Json& entry) {
                         .output_scale = kHalfRange});
       const auto start = reference_entries(kId, "network").front();
       Outcome before;
-      before.arrays["parameters"] = weights(
-          start.at("inputs").at("weights"), *net.make<double>(kSamples, 1));
+      before.arrays["parameters"] = weights(start.at("inputs").at("weights"),
+                                            *net.make<double>(kSamples, 1));
       before.arrays["state"] = Batch<double>(0, 1);
       const Outcome out = bench.run(&before, p);
       EXPECT_TRUE(same((out.x.row(0).transpose().array() + kCentre).matrix(),

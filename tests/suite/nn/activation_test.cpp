@@ -13,7 +13,8 @@ constexpr Activation kAll[] = {Activation::identity,
                                Activation::sigmoid,
                                Activation::softplus,
                                Activation::silu,
-                               Activation::half_tanh};
+                               Activation::half_tanh,
+                               Activation::gelu};
 
 TEST(Activation, DerivativeAgainstCentralDifferences) {
   for (const Activation a : kAll) {
@@ -28,8 +29,7 @@ TEST(Activation, DerivativeAgainstCentralDifferences) {
 
 TEST(Activation, HalfTanhIsASigmoid) {
   for (const double z : {-30.0, -2.0, 0.0, 0.3, 5.0})
-    EXPECT_NEAR(
-        activate(Activation::half_tanh, z), 2 * sigmoid(z) - 1, 1e-15);
+    EXPECT_NEAR(activate(Activation::half_tanh, z), 2 * sigmoid(z) - 1, 1e-15);
 }
 
 TEST(Activation, FarOutStaysFinite) {
