@@ -138,21 +138,34 @@ void SpectralBlock<T>::scatter(
 }
 
 template <class T>
-void SpectralBlock<T>::pack(const T* parameters,
-                            const Mode& m,
-                            T* matrices) const {
-  const Index c = o_.channels, all = 4 * c * c;
-  const T* re = parameters + place(m, 0);
-  const T* im = parameters + place(m, 1);
-  for (Index i = 0; i < c; ++i)
-    for (Index o = 0; o < c; ++o, re += mode_size(), im += mode_size())
-      for (Index l = 0; l < o_.modes; ++l) {
-        const T scale = static_cast<T>(inverse_weight(l));
-        T* to = matrices + l * all + i * 2 * c + o;
-        to[0] = to[(c * 2 + 1) * c] = scale * re[l];
-        to[c] = scale * im[l];
-        to[2 * c * c] = -to[c];
-      }
+void SpectralBlock<T>::unpack(const T* parameters,
+                              const Mode& m,
+                              T* weights) const {
+  const Index c = o_.channels;
+  for (const Index part : {0, 1})
+    transpose(parameters + place(m, part),
+              mode_size(),
+              c * c,
+              o_.modes,
+              weights + part * o_.modes * c * c,
+              c * c);
+}
+
+template <class T>
+void SpectralBlock<T>::real_matrix(const T* weights, Index l, T* matrix) const {
+  const Index c = o_.channels;
+  const T* re = weights + l * c * c;
+  const T* im = re + o_.modes * c * c;
+  const T scale = static_cast<T>(inverse_weight(l));
+  for (Index i = 0; i < c; ++i, re += c, im += c) {
+    T* const of_re = matrix + i * 2 * c;
+    T* const of_im = of_re + c * 2 * c;
+    for (Index o = 0; o < c; ++o) {
+      of_re[o] = of_im[c + o] = scale * re[o];
+      of_re[c + o] = scale * im[o];
+      of_im[o] = -of_re[c + o];
+    }
+  }
 }
 
 namespace {
@@ -180,7 +193,8 @@ void SpectralBlock<T>::mix(const LayerArgs<T>& at, Index samples, T* u) const {
       at.tape->template slot<T>(at.slot, 2 * block, count * o_.modes).data();
   each_block(*at.work, row_count(o_), [&](Index k, Workspace& work) {
     const auto& modes = modes_[static_cast<std::size_t>(k)];
-    T* const matrices = work.take<T>(4 * c * c, o_.modes).data();
+    T* const weights = work.take<T>(2 * c * c, o_.modes).data();
+    T* const matrix = work.take<T>(4 * c * c, 1).data();
     T* const a = work.take<T>(2 * block, 1).data();
     const auto z = [&](const Mode& m, Index l) {
       return tape + (m.number * o_.modes + l) * 2 * block;
@@ -189,12 +203,13 @@ void SpectralBlock<T>::mix(const LayerArgs<T>& at, Index samples, T* u) const {
       for (Index l = 0; l < o_.modes; ++l) gather(u, k, m, l, block, z(m, l));
     clear(in_, k, block, u);
     for (const Mode& m : modes) {
-      pack(at.parameters, m, matrices);
+      unpack(at.parameters, m, weights);
       for (Index l = 0; l < o_.modes; ++l) {
+        real_matrix(weights, l, matrix);
         gemm<T>({.m = 2 * c,
                  .n = width,
                  .k = 2 * c,
-                 .a = matrices + l * 4 * c * c,
+                 .a = matrix,
                  .a_row = 1,
                  .a_k = 2 * c,
                  .b = z(m, l),
@@ -220,7 +235,8 @@ void SpectralBlock<T>::pull_mix(const LayerArgs<T>& at,
     const auto& modes = modes_[static_cast<std::size_t>(k)];
     const Index count = o_.modes * static_cast<Index>(modes.size());
     T* const a_bar = work.take<T>(2 * block, count).data();
-    T* const matrices = work.take<T>(4 * c * c, o_.modes).data();
+    T* const weights = work.take<T>(2 * c * c, o_.modes).data();
+    T* const matrix = work.take<T>(4 * c * c, 1).data();
     T* const z_bar = work.take<T>(2 * block, 1).data();
     T* next = a_bar;
     for (const Mode& m : modes)
@@ -236,12 +252,13 @@ void SpectralBlock<T>::pull_mix(const LayerArgs<T>& at,
                      m,
                      parameters_bar,
                      work);
-      if (wants_u) pack(at.parameters, m, matrices);
+      if (wants_u) unpack(at.parameters, m, weights);
       for (Index l = 0; l < o_.modes && wants_u; ++l) {
+        real_matrix(weights, l, matrix);
         gemm<T>({.m = 2 * c,
                  .n = width,
                  .k = 2 * c,
-                 .a = matrices + l * 4 * c * c,
+                 .a = matrix,
                  .a_row = 2 * c,
                  .a_k = 1,
                  .b = next + l * 2 * block,
@@ -263,34 +280,42 @@ void SpectralBlock<T>::pull_weights(const T* z,
                                     T* parameters_bar,
                                     Workspace& work) const {
   const Index c = o_.channels, width = Lanes<T>(nullptr, 1, samples).width;
-  const Index across = round_up(2 * c, kLanes<T>), all = 2 * c * across;
+  const Index across = round_up(2 * c, kLanes<T>);
   const Workspace::Scope scope(work);
-  T* const z_t = work.take<T>(across, width).data();
-  T* const sums = work.take<T>(all, o_.modes).data();
+  T* const a_t = work.take<T>(across, samples).data();
+  T* const sums = work.take<T>(across, 2 * c).data();
+  T* const weights_bar = work.take<T>(2 * c * c, o_.modes).data();
   for (Index l = 0; l < o_.modes; ++l) {
-    transpose(z + l * 2 * c * width, width, 2 * c, samples, z_t, across);
+    transpose(a_bar + l * 2 * c * width, width, 2 * c, samples, a_t, across);
     gemm<T>({.m = 2 * c,
              .n = 2 * c,
              .k = samples,
-             .a = a_bar + l * 2 * c * width,
+             .a = z + l * 2 * c * width,
              .a_row = width,
              .a_k = 1,
-             .b = z_t,
+             .b = a_t,
              .b_stride = across,
-             .c = sums + l * all,
+             .c = sums,
              .c_stride = across});
-  }
-  T* re = parameters_bar + place(m, 0);
-  T* im = parameters_bar + place(m, 1);
-  for (Index i = 0; i < c; ++i)
-    for (Index o = 0; o < c; ++o, re += mode_size(), im += mode_size())
-      for (Index l = 0; l < o_.modes; ++l) {
-        const T scale = static_cast<T>(inverse_weight(l));
-        const T* real = sums + l * all + o * across + i;  // of A's real part
-        const T* imaginary = real + c * across;
-        re[l] = scale * (real[0] + imaginary[c]);
-        im[l] = scale * (imaginary[0] - real[c]);
+    const T scale = static_cast<T>(inverse_weight(l));
+    T* re = weights_bar + l * c * c;
+    T* im = re + o_.modes * c * c;
+    for (Index i = 0; i < c; ++i, re += c, im += c) {
+      const T* of_re = sums + i * across;
+      const T* of_im = of_re + c * across;
+      for (Index o = 0; o < c; ++o) {
+        re[o] = scale * (of_re[o] + of_im[c + o]);
+        im[o] = scale * (of_re[c + o] - of_im[o]);
       }
+    }
+  }
+  for (const Index part : {0, 1})
+    transpose(weights_bar + part * o_.modes * c * c,
+              c * c,
+              o_.modes,
+              c * c,
+              parameters_bar + place(m, part),
+              mode_size());
 }
 
 // --------------------------------------------------------------- passes

@@ -75,9 +75,11 @@ class SpectralBlock final : public Layer<T> {
       const T* u, Index k, const Mode& m, Index l, Index block, T* z) const;
   void scatter(
       const T* z, Index k, const Mode& m, Index l, Index block, T* u) const;
-  /// [l][in re, in im][out re, out im]: the product with V(k, l) in real
-  /// numbers, with the weight of the inverse transform.
-  void pack(const T* parameters, const Mode& m, T* matrices) const;
+  /// V(k, .) as [real, imaginary][l][in][out].
+  void unpack(const T* parameters, const Mode& m, T* weights) const;
+  /// [in re, in im][out re, out im]: the product with V(k, l) in real numbers,
+  /// with the weight of the inverse transform.
+  void real_matrix(const T* weights, Index l, T* matrix) const;
   double inverse_weight(Index l) const;
 
   /// u <- what the weights make of the modes in u, which go to the tape.
