@@ -44,7 +44,9 @@ Outcome fit(const TrainingOptions& options, StageRun& run) {
       run.setting.predictor, shape, shape.unknowns, run.threads);
   start(model, run);
   Batches<T> batches(
-      run, {.size = options.batch, .fresh = options.fresh}, drawn_before(run));
+      run,
+      {.size = options.batch, .fresh = options.fresh, .set = options.set},
+      drawn_before(run));
   const auto signal = options.signal.make<T>(
       {.run = run,
        .model = model,
@@ -88,6 +90,7 @@ Options in_words(const TrainingOptions& options) {
                  {"metrics", options.metrics.name}};
   if (options.chunk > 0)
     all.push_back({"chunk", fmt::format("{}", options.chunk)});
+  if (options.set > 0) all.push_back({"set", fmt::format("{}", options.set)});
   if (!options.project) all.push_back({"project", "false"});
   const Options rule =
       std::visit([](const auto& o) { return describe(o); }, options.rule);

@@ -35,6 +35,7 @@ struct TrainingOptions {
   bool own_length = false;    ///< `iterations` stands, whatever a row says
   double gradient_scale = 1;  ///< see SignalOptions
   bool fresh = false;         ///< every update draws samples never seen before
+  Index set = 0;              ///< see BatchOptions
   bool project = true;        ///< see SignalOptions
   Metrics metrics = {};
   SignalRecipe signal = solver_loss();

@@ -163,7 +163,7 @@ std::unique_ptr<OutputMap<T>> output_map(OutputForm form,
 template <class T>
 std::unique_ptr<OutputMap<T>> output_map(const Setting& setting,
                                          const Oracle& oracle) {
-  return output_map<T>(OutputForm::linear,
+  return output_map<T>(setting.output_form,
                        setting.output_scale,
                        oracle.recipe().template make<double>()->start());
 }

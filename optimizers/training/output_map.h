@@ -1,11 +1,5 @@
 /// What a network's output o means: an estimate of the unknowns, one column per
-/// sample (OutputForm in suite/core/method.h),
-///
-///   linear                x = start + scale o
-///   box                   x = start + scale tanh(o)
-///   mean_of_observations  x = scale (o - mean o) + mean y
-///
-/// with means over the numbers of one sample.
+/// sample (OutputForm in suite/core/method.h).
 #pragma once
 
 #include <memory>
@@ -13,8 +7,6 @@
 #include "suite/core/method.h"
 
 namespace physinv {
-
-enum class OutputForm : std::uint8_t { linear, box, mean_of_observations };
 
 template <class T>
 class OutputMap {

@@ -74,6 +74,31 @@ inline T derivative(Activation a, T y) {
   return T(1);
 }
 
+/// Derivative of `derivative` by y.
+template <class T>
+inline T second_derivative(Activation a, T y) {
+  switch (a) {
+    case Activation::identity:
+    case Activation::relu:
+      return T(0);
+    case Activation::tanh:
+      return T(-2) * y;
+    case Activation::sigmoid:
+      return T(1) - T(2) * y;
+    case Activation::softplus:
+      return std::exp(-y);
+    case Activation::silu: {
+      const T s = sigmoid(y), slope = s * (T(1) - s);
+      return slope * std::fma(y, T(1) - T(2) * s, T(2));
+    }
+    case Activation::half_tanh:
+      return -y;
+    case Activation::gelu:
+      return normal_density(y) * std::fma(-y, y, T(2));
+  }
+  return T(0);
+}
+
 /// The same for a register. tanh has an absolute, not a relative, error of
 /// about eps.
 template <class T, class V>
@@ -102,10 +127,26 @@ inline V pull_lanes(Activation a, V y, V y_bar) {
   return y_bar;
 }
 
+/// v times the second derivative.
+template <class T, class V>
+inline V bend_lanes(Activation a, V y, V v) {
+  if (a == Activation::identity || a == Activation::relu) return V{};
+  for (std::size_t l = 0; l < sizeof(V) / sizeof(T); ++l)
+    v[l] *= second_derivative<T>(a, y[l]);
+  return v;
+}
+
 /// x_bar *= derivative at `gate`; what a layer does to its input's cotangent
 /// when it has no tile store to fuse it into.
 template <class T>
 void apply_gate(const Gate<T>& gate, Lanes<T> x_bar);
+
+/// The same and its derivative, the gate's y moving along y_dot.
+template <class T>
+void apply_gate_tangent(const Gate<T>& gate,
+                        Lanes<const T> y_dot,
+                        Lanes<T> x_bar,
+                        Lanes<T> x_bar_dot);
 
 /// An activation on its own: behind a layer that cannot take it in, or one
 /// whose derivative needs the input (SiLU, GELU).
@@ -121,6 +162,9 @@ class ActivationLayer final : public Layer<T> {
                Lanes<const T> x,
                Lanes<T> y) const override;
   void backward(const LayerArgs<T>& at, const Backward<T>& b) const override;
+  void tangent(const LayerArgs<T>& at, const Tangent<T>& t) const override;
+  void backward_tangent(const LayerArgs<T>& at,
+                        const BackwardTangent<T>& b) const override;
   bool evaluate_plainly(const double* /*parameters*/,
                         const Vector<double>& x,
                         Vector<double>& y) const override {

@@ -74,14 +74,8 @@ Index Convolution<T>::parts(Index samples) const {
                     std::min(kMostParts, shape_.positions()));
 }
 
-template void channel_sums<float>(Workspace&,
-                                  Lanes<const float>,
-                                  Index,
-                                  float*);
-template void channel_sums<double>(Workspace&,
-                                   Lanes<const double>,
-                                   Index,
-                                   double*);
+template void channel_sums(Workspace&, Lanes<const float>, Index, float*);
+template void channel_sums(Workspace&, Lanes<const double>, Index, double*);
 template class Convolution<float>;
 template class Convolution<double>;
 

@@ -38,6 +38,16 @@ class Convolution {
     return (shape_.positions() + some - 1) / some;
   }
 
+  /// y = bias + weights * x, then `done(block, begin, end)` on each block of
+  /// positions while it is in the cache. No bias: null.
+  template <class F>
+  void product(const LayerArgs<T>& at,
+               const T* weights,
+               const T* bias,
+               Lanes<const T> x,
+               Lanes<T> y,
+               F&& done) const;
+
   /// y = bias + convolution, then `done(block, begin, end)` on each block of
   /// positions while it is in the cache.
   template <class F>
@@ -61,6 +71,18 @@ class Convolution {
                  Lanes<T> x_bar,
                  F&& fill) const;
 
+  /// y_dot of x_dot and at.parameters_dot.
+  void tangent(const LayerArgs<T>& at,
+               Lanes<const T> x,
+               Lanes<const T> x_dot,
+               Lanes<T> y_dot) const;
+  /// `gradients` and their derivatives. parameters_bar may be null, so may the
+  /// pair x_bar, x_bar_dot.
+  void gradients_tangent(const LayerArgs<T>& at,
+                         const BackwardTangent<T>& b,
+                         Lanes<const T> y_bar,
+                         Lanes<const T> y_bar_dot) const;
+
   /// Threads for the pass over this many samples, or null if it is too short.
   Threads* threads(const LayerArgs<T>& at, Index samples) const;
 
@@ -79,10 +101,20 @@ void Convolution<T>::forward(const LayerArgs<T>& at,
                              Lanes<const T> x,
                              Lanes<T> y,
                              F&& done) const {
+  product(at, at.parameters, at.parameters + shape_.weights(), x, y, done);
+}
+
+template <class T>
+template <class F>
+void Convolution<T>::product(const LayerArgs<T>& at,
+                             const T* weights,
+                             const T* bias,
+                             Lanes<const T> x,
+                             Lanes<T> y,
+                             F&& done) const {
   const Workspace::Scope scope(*at.work);
   T* packed = at.work->template take<T>(shape_.weights(), 1).data();
-  pack_weights(shape_, at.parameters, packed);
-  const T* bias = at.parameters + shape_.weights();
+  pack_weights(shape_, weights, packed);
   const Index per_block = this->per_block(y);
   for_blocks(threads(at, x.samples), blocks(y), [&](Index block, int) {
     const Index begin = block * per_block;

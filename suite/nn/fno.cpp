@@ -10,7 +10,7 @@
 #include "suite/core/check.h"
 #include "suite/nn/activation.h"
 #include "suite/nn/conv.h"
-#include "suite/nn/piecewise.h"
+#include "suite/nn/per_piece.h"
 #include "suite/nn/rearrange.h"
 #include "suite/nn/sequential.h"
 #include "suite/nn/spectral.h"
@@ -33,12 +33,12 @@ template <class T>
 std::unique_ptr<Layer<T>> head(const FnoOptions& o) {
   const Index piece = std::gcd(o.grid.positions(), kPiece);
   const Grid some{piece};
-  typename Piecewise<T>::Layers inner;
+  typename PerPiece<T>::Layers inner;
   inner.push_back(pointwise<T>(some, o.width, o.hidden));
   inner.push_back(
       std::make_unique<ActivationLayer<T>>(Activation::gelu, piece * o.hidden));
   inner.push_back(pointwise<T>(some, o.hidden, 1));
-  return std::make_unique<Piecewise<T>>(o.grid.positions() / piece,
+  return std::make_unique<PerPiece<T>>(o.grid.positions() / piece,
                                         std::move(inner));
 }
 

@@ -19,7 +19,7 @@ void copy_row(const T* from, Index width, T* to) {
 
 template <class T>
 FieldInput<T>::FieldInput(const FieldInputOptions& o)
-    : Layer<T>(o.inputs(), o.positions * o.width()), o_(o) {}
+    : PiecewiseLinear<T>(o.inputs(), o.positions * o.width()), o_(o) {}
 
 template <class T>
 void FieldInput<T>::forward(const LayerArgs<T>&,
@@ -66,6 +66,13 @@ void FieldInput<T>::backward(const LayerArgs<T>&, const Backward<T>& b) const {
   for (Index c = 0; c < o_.after; ++c)
     collect(o_.inputs() - o_.after + c, o_.width() - o_.after + c);
   apply_gate(b.gate, b.x_bar);
+}
+
+template <class T>
+void FieldInput<T>::tangent(const LayerArgs<T>& at, const Tangent<T>& t) const {
+  FieldInputOptions linear = o_;
+  linear.shift = 0;
+  FieldInput(linear).forward(at, t.x_dot, t.y_dot);
 }
 
 template <class T>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "suite/nn/grid.h"
-#include "suite/nn/layer.h"
+#include "suite/nn/piecewise_linear.h"
 
 namespace physinv::nn {
 
@@ -19,7 +19,7 @@ struct FieldInputOptions {
 };
 
 template <class T>
-class FieldInput final : public Layer<T> {
+class FieldInput final : public PiecewiseLinear<T> {
  public:
   explicit FieldInput(const FieldInputOptions& options);
 
@@ -27,6 +27,7 @@ class FieldInput final : public Layer<T> {
                Lanes<const T> x,
                Lanes<T> y) const override;
   void backward(const LayerArgs<T>& at, const Backward<T>& b) const override;
+  void tangent(const LayerArgs<T>& at, const Tangent<T>& t) const override;
 
  private:
   FieldInputOptions o_;
@@ -51,10 +52,10 @@ class Coordinates final : public Layer<T> {
 
 /// [position][channel] -> [channel][position].
 template <class T>
-class Flatten final : public Layer<T> {
+class Flatten final : public PiecewiseLinear<T> {
  public:
   Flatten(Index positions, Index channels)
-      : Layer<T>(positions * channels, positions * channels),
+      : PiecewiseLinear<T>(positions * channels, positions * channels),
         positions_(positions),
         channels_(channels) {}
 

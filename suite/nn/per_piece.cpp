@@ -1,4 +1,4 @@
-#include "suite/nn/piecewise.h"
+#include "suite/nn/per_piece.h"
 
 #include <algorithm>
 #include <utility>
@@ -28,7 +28,7 @@ Lanes<T> part_of(Lanes<T> x, Index pieces, Index piece) {
 }  // namespace
 
 template <class T>
-Piecewise<T>::Piecewise(Index pieces, Layers inner)
+PerPiece<T>::PerPiece(Index pieces, Layers inner)
     : Layer<T>(inner.empty() ? 0 : pieces * inner.front()->inputs(),
                all_outputs(pieces, inner)),
       pieces_(pieces),
@@ -46,7 +46,7 @@ Piecewise<T>::Piecewise(Index pieces, Layers inner)
 }
 
 template <class T>
-std::vector<TensorInfo> Piecewise<T>::tensors() const {
+std::vector<TensorInfo> PerPiece<T>::tensors() const {
   std::vector<TensorInfo> all;
   for (const auto& layer : inner_)
     for (TensorInfo& t : layer->tensors()) all.push_back(std::move(t));
@@ -54,7 +54,7 @@ std::vector<TensorInfo> Piecewise<T>::tensors() const {
 }
 
 template <class T>
-LayerArgs<T> Piecewise<T>::args(const LayerArgs<T>& at,
+LayerArgs<T> PerPiece<T>::args(const LayerArgs<T>& at,
                                 std::size_t i,
                                 Workspace& work) const {
   LayerArgs<T> inner = at;
@@ -65,7 +65,7 @@ LayerArgs<T> Piecewise<T>::args(const LayerArgs<T>& at,
 }
 
 template <class T>
-std::vector<Lanes<T>> Piecewise<T>::run(const LayerArgs<T>& at,
+std::vector<Lanes<T>> PerPiece<T>::run(const LayerArgs<T>& at,
                                         Lanes<const T> x,
                                         Lanes<T> y,
                                         Workspace& work) const {
@@ -86,7 +86,7 @@ std::vector<Lanes<T>> Piecewise<T>::run(const LayerArgs<T>& at,
 }
 
 template <class T>
-void Piecewise<T>::forward(const LayerArgs<T>& at,
+void PerPiece<T>::forward(const LayerArgs<T>& at,
                            Lanes<const T> x,
                            Lanes<T> y) const {
   each_block(*at.work, pieces_, [&](Index piece, Workspace& work) {
@@ -95,7 +95,7 @@ void Piecewise<T>::forward(const LayerArgs<T>& at,
 }
 
 template <class T>
-void Piecewise<T>::pull(const LayerArgs<T>& at,
+void PerPiece<T>::pull(const LayerArgs<T>& at,
                         const Backward<T>& b,
                         Workspace& work) const {
   const Workspace::Scope scope(work);
@@ -124,7 +124,7 @@ void Piecewise<T>::pull(const LayerArgs<T>& at,
 }
 
 template <class T>
-void Piecewise<T>::backward(const LayerArgs<T>& at,
+void PerPiece<T>::backward(const LayerArgs<T>& at,
                             const Backward<T>& b) const {
   const Workspace::Scope scope(*at.work);
   const Index parts = std::min(kMostParts, pieces_);
@@ -154,13 +154,13 @@ void Piecewise<T>::backward(const LayerArgs<T>& at,
 }
 
 template <class T>
-double Piecewise<T>::operations() const {
+double PerPiece<T>::operations() const {
   double sum = 0;
   for (const auto& layer : inner_) sum += layer->operations();
   return sum * static_cast<double>(pieces_);
 }
 
-template class Piecewise<float>;
-template class Piecewise<double>;
+template class PerPiece<float>;
+template class PerPiece<double>;
 
 }  // namespace physinv::nn

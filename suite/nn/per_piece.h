@@ -12,13 +12,13 @@
 namespace physinv::nn {
 
 template <class T>
-class Piecewise final : public Layer<T> {
+class PerPiece final : public Layer<T> {
  public:
   using Layers = std::vector<std::unique_ptr<Layer<T>>>;
 
   /// inner: layers one after the other, at least one, on one piece, without
   /// state or tape slots. Their activations stay their own.
-  Piecewise(Index pieces, Layers inner);
+  PerPiece(Index pieces, Layers inner);
 
   std::vector<TensorInfo> tensors() const override;
   void forward(const LayerArgs<T>& at,
@@ -46,7 +46,7 @@ class Piecewise final : public Layer<T> {
   Index parameter_count_ = 0, widest_ = 0;
 };
 
-extern template class Piecewise<float>;
-extern template class Piecewise<double>;
+extern template class PerPiece<float>;
+extern template class PerPiece<double>;
 
 }  // namespace physinv::nn

@@ -1,0 +1,210 @@
+// Forward mode of the convolutional layers, and its reverse.
+#include <algorithm>
+
+#include "suite/nn/activation.h"
+#include "suite/nn/channel_norm_tangent.h"
+#include "suite/nn/conv.h"
+
+namespace physinv::nn {
+namespace {
+
+/// f(begin, end) on blocks of `some` of `count` positions.
+template <class F>
+void for_positions(Threads* threads, Index count, Index some, F&& f) {
+  for_blocks(threads, (count + some - 1) / some, [&](Index block, int) {
+    f(block * some, std::min((block + 1) * some, count));
+  });
+}
+
+}  // namespace
+
+// ------------------------------------------------------------------- Conv
+
+template <class T>
+void Conv<T>::tangent(const LayerArgs<T>& at, const Tangent<T>& t) const {
+  conv_.tangent(at, t.x, t.x_dot, t.y_dot);
+  apply_gate<T>({activation_, t.y}, t.y_dot);
+}
+
+template <class T>
+void Conv<T>::backward_tangent(const LayerArgs<T>& at,
+                               const BackwardTangent<T>& b) const {
+  const ConvShape& shape = conv_.shape();
+  conv_.gradients_tangent(at, b, b.y_bar, b.y_bar_dot);
+  const auto biases = [&](Lanes<const T> y_bar, T* parameters_bar) {
+    if (parameters_bar != nullptr)
+      channel_sums<T>(
+          *at.work, y_bar, shape.out, parameters_bar + shape.weights());
+  };
+  biases(b.y_bar, b.parameters_bar);
+  biases(b.y_bar_dot, b.parameters_bar_dot);
+}
+
+// -------------------------------------------------------------- ConvBlock
+
+/// What the passes of a block's tangents share: the tapes' views and sums over
+/// all samples and positions.
+template <class T>
+struct ConvBlock<T>::Moving {
+  Moving(const ConvBlock& owner, const LayerArgs<T>& args, Lanes<const T> y)
+      : block(owner),
+        at(args),
+        threads(block.conv_.threads(at, y.samples)),
+        z(at.tape->template view<T>(at.slot).data(),
+          block.conv_.outputs(),
+          y.samples),
+        z_dot(at.dots->template view<T>(at.slot).data(), z.rows, z.samples),
+        some(block.conv_.per_block(z)),
+        of{.shape = block.norm_,
+           .at = {at.tape->template view<T>(at.slot + 1).data(),
+                  block.norm_.channels},
+           .dots = {at.dots->template view<T>(at.slot + 1).data(),
+                    block.norm_.channels},
+           .parameters = at.parameters + block.conv_.parameter_count(),
+           .parameters_dot = at.parameters_dot + block.conv_.parameter_count(),
+           .x = z,
+           .x_dot = z_dot,
+           .y = y} {}
+
+  /// Of bar, then of bar (x - mean) inverse: channels each, in `work`.
+  T* sums(const NormColumns<T>& columns,
+          Lanes<const T> x,
+          Lanes<const T> bar) const {
+    const NormShape plain{.grid = of.shape.grid, .channels = of.shape.channels};
+    const Index positions = plain.positions(), two = 2 * plain.channels;
+    const Index blocks = (positions + some - 1) / some;
+    T* totals = at.work->template take<T>(two, 1).data();
+    T* parts = at.work->template take<T>(two, blocks).data();
+    for_positions(threads, positions, some, [&](Index begin, Index end) {
+      block_sums<T>(plain,
+                    columns,
+                    of.parameters,
+                    x,
+                    x,
+                    bar,
+                    begin,
+                    end,
+                    parts + begin / some * two);
+    });
+    combine_sums(parts, blocks, plain.channels, totals);
+    return totals;
+  }
+  /// What a sum is divided by; zero outside training, where the statistics are
+  /// constants.
+  T share() const {
+    if (!block.by_batch(at)) return T(0);
+    return T(1) / static_cast<T>(of.shape.positions() * z.samples);
+  }
+
+  /// Bias, scale and offset's part of a gradient, from the sums; or of its
+  /// derivative, then with the sums of the gradient as `base`.
+  void put(const T* sums, const T* base, T* parameters_bar) const {
+    if (parameters_bar == nullptr) return;
+    const Index channels = of.shape.channels;
+    T* bias_bar = parameters_bar + block.conv_.shape().weights();
+    T *scale_bar = bias_bar + channels, *offset_bar = scale_bar + channels;
+    for (Index c = 0; c < channels; ++c) {
+      offset_bar[c] = sums[c], scale_bar[c] = sums[channels + c];
+      bias_bar[c] = T(0);
+      if (block.by_batch(at)) continue;
+      bias_bar[c] = of.parameters[c] * sums[c];
+      if (base != nullptr) bias_bar[c] += of.parameters_dot[c] * base[c];
+      bias_bar[c] *= of.at.inverse[c];
+    }
+  }
+
+  const ConvBlock& block;
+  const LayerArgs<T>& at;
+  Threads* threads;
+  Lanes<T> z, z_dot;
+  Index some;
+  NormTangent<T> of;
+};
+
+template <class T>
+void ConvBlock<T>::tangent(const LayerArgs<T>& at, const Tangent<T>& t) const {
+  const Index channels = norm_.channels;
+  const Lanes<T> shape(nullptr, conv_.outputs(), t.x.samples);
+  at.dots->template slot<T>(at.slot, shape.stride, shape.rows);
+  at.dots->template slot<T>(at.slot + 1, channels, NormDots<T>::kCount);
+  const Workspace::Scope scope(*at.work);
+  const Moving m(*this, at, t.y);
+  conv_.tangent(at, t.x, t.x_dot, m.z_dot);
+  const T* sums = m.sums(m.of.at, m.z, m.z_dot);
+  for (Index c = 0; c < channels; ++c) {
+    m.of.dots.mean[c] = m.share() * sums[c];
+    m.of.dots.slope[c] = m.share() * sums[channels + c];
+  }
+  for_positions(m.threads,
+                norm_.pooled().positions(),
+                m.some,
+                [&](Index begin, Index end) {
+                  normalise_tangent<T>(m.of, t.y_dot, begin, end);
+                });
+}
+
+template <class T>
+void ConvBlock<T>::backward_tangent(const LayerArgs<T>& at,
+                                    const BackwardTangent<T>& b) const {
+  const Index channels = norm_.channels;
+  const Workspace::Scope scope(*at.work);
+  const Moving m(*this, at, b.y);
+  // First the cotangents of the normalised, then, in place, of z.
+  Lanes<T> bar = m.z, bar_dot = m.z;
+  bar.data = at.work->template take<T>(bar.stride, bar.rows).data();
+  bar_dot.data = at.work->template take<T>(bar.stride, bar.rows).data();
+  for_positions(
+      m.threads,
+      norm_.pooled().positions(),
+      m.some,
+      [&](Index begin, Index end) {
+        open_cells<T>(
+            m.of, b.y_dot, b.y_bar, b.y_bar_dot, bar, bar_dot, begin, end);
+      });
+
+  // (sum of bar n)' = sum of bar' n + bar n', n' = inverse (x' - mean' - n
+  // slope).
+  T* ones = at.work->template take<T>(channels, 1).data();
+  std::fill_n(ones, channels, T(1));
+  NormColumns<T> moved = m.of.at;
+  moved.mean = m.of.dots.mean, moved.inverse = ones;
+  T* const base = m.sums(m.of.at, m.z, bar);
+  T* const dot = m.sums(m.of.at, m.z, bar_dot);
+  const T* const more = m.sums(moved, m.z_dot, bar);
+  for (Index c = 0; c < channels; ++c)
+    dot[channels + c] +=
+        m.of.at.inverse[c] *
+        (more[channels + c] - m.of.dots.slope[c] * base[channels + c]);
+  m.put(base, nullptr, b.parameters_bar);
+  m.put(dot, base, b.parameters_bar_dot);
+  for (T* sum : {base, dot})
+    for (Index c = 0; c < 2 * channels; ++c) sum[c] *= m.share();
+  for_positions(
+      m.threads, norm_.positions(), m.some, [&](Index begin, Index end) {
+        pull_norm_tangent<T>(m.of,
+                             {.sum = base,
+                              .product = base + channels,
+                              .sum_dot = dot,
+                              .product_dot = dot + channels},
+                             bar,
+                             bar_dot,
+                             begin,
+                             end);
+      });
+  conv_.gradients_tangent(at, b, bar, bar_dot);
+}
+
+#define PHYSINV_INSTANTIATE(T)                                                \
+  template void Conv<T>::tangent(const LayerArgs<T>&, const Tangent<T>&)      \
+      const;                                                                  \
+  template void Conv<T>::backward_tangent(const LayerArgs<T>&,                \
+                                          const BackwardTangent<T>&) const;   \
+  template void ConvBlock<T>::tangent(const LayerArgs<T>&, const Tangent<T>&) \
+      const;                                                                  \
+  template void ConvBlock<T>::backward_tangent(                               \
+      const LayerArgs<T>&, const BackwardTangent<T>&) const;
+PHYSINV_INSTANTIATE(float)
+PHYSINV_INSTANTIATE(double)
+#undef PHYSINV_INSTANTIATE
+
+}  // namespace physinv::nn
