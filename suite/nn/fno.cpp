@@ -39,7 +39,7 @@ std::unique_ptr<Layer<T>> head(const FnoOptions& o) {
       std::make_unique<ActivationLayer<T>>(Activation::gelu, piece * o.hidden));
   inner.push_back(pointwise<T>(some, o.hidden, 1));
   return std::make_unique<PerPiece<T>>(o.grid.positions() / piece,
-                                        std::move(inner));
+                                       std::move(inner));
 }
 
 template <class T>

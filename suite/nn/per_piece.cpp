@@ -55,8 +55,8 @@ std::vector<TensorInfo> PerPiece<T>::tensors() const {
 
 template <class T>
 LayerArgs<T> PerPiece<T>::args(const LayerArgs<T>& at,
-                                std::size_t i,
-                                Workspace& work) const {
+                               std::size_t i,
+                               Workspace& work) const {
   LayerArgs<T> inner = at;
   inner.parameters = at.parameters + parameters_[i];
   inner.work = &work;
@@ -66,9 +66,9 @@ LayerArgs<T> PerPiece<T>::args(const LayerArgs<T>& at,
 
 template <class T>
 std::vector<Lanes<T>> PerPiece<T>::run(const LayerArgs<T>& at,
-                                        Lanes<const T> x,
-                                        Lanes<T> y,
-                                        Workspace& work) const {
+                                       Lanes<const T> x,
+                                       Lanes<T> y,
+                                       Workspace& work) const {
   std::vector<Lanes<T>> outputs;
   for (std::size_t i = 0; i < inner_.size(); ++i) {
     if (i + 1 == inner_.size()) {
@@ -87,8 +87,8 @@ std::vector<Lanes<T>> PerPiece<T>::run(const LayerArgs<T>& at,
 
 template <class T>
 void PerPiece<T>::forward(const LayerArgs<T>& at,
-                           Lanes<const T> x,
-                           Lanes<T> y) const {
+                          Lanes<const T> x,
+                          Lanes<T> y) const {
   each_block(*at.work, pieces_, [&](Index piece, Workspace& work) {
     run(at, part_of(x, pieces_, piece), part_of(y, pieces_, piece), work);
   });
@@ -96,8 +96,8 @@ void PerPiece<T>::forward(const LayerArgs<T>& at,
 
 template <class T>
 void PerPiece<T>::pull(const LayerArgs<T>& at,
-                        const Backward<T>& b,
-                        Workspace& work) const {
+                       const Backward<T>& b,
+                       Workspace& work) const {
   const Workspace::Scope scope(work);
   const Index n = b.x.samples;
   const auto outputs = run(at, b.x, {}, work);
@@ -124,8 +124,7 @@ void PerPiece<T>::pull(const LayerArgs<T>& at,
 }
 
 template <class T>
-void PerPiece<T>::backward(const LayerArgs<T>& at,
-                            const Backward<T>& b) const {
+void PerPiece<T>::backward(const LayerArgs<T>& at, const Backward<T>& b) const {
   const Workspace::Scope scope(*at.work);
   const Index parts = std::min(kMostParts, pieces_);
   const Index size = b.parameters_bar != nullptr ? parameter_count_ : 0;

@@ -27,6 +27,18 @@ TEST(Activation, DerivativeAgainstCentralDifferences) {
   }
 }
 
+TEST(Activation, SecondDerivativeAgainstCentralDifferences) {
+  for (const Activation a : kAll) {
+    for (const double y : {-0.9, -0.3, 0.2, 0.8}) {
+      if (a == Activation::softplus && y < 0) continue;  // never an output
+      const double h = 1e-5;
+      const double slope =
+          (derivative(a, y + h) - derivative(a, y - h)) / (2 * h);
+      EXPECT_NEAR(second_derivative(a, y), slope, 1e-9) << to_string(a) << y;
+    }
+  }
+}
+
 TEST(Activation, HalfTanhIsASigmoid) {
   for (const double z : {-30.0, -2.0, 0.0, 0.3, 5.0})
     EXPECT_NEAR(activate(Activation::half_tanh, z), 2 * sigmoid(z) - 1, 1e-15);
