@@ -94,16 +94,6 @@ class Heat : public LinearProblem<T>, public Inverse<T> {
                 BatchIn<T> y_bar,
                 BatchOut<T> x_bar,
                 Workspace& work) const override;
-  void pushforward(const Tape& tape,
-                   BatchIn<T> x_dot,
-                   BatchOut<T> y_dot,
-                   Workspace& work) const override;
-  void pullback_tangent(const Tape& tape,
-                        BatchIn<T> x_dot,
-                        BatchIn<T> y_bar,
-                        BatchIn<T> y_bar_dot,
-                        BatchOut<T> x_bar_dot,
-                        Workspace& work) const override;
   /// `skipped_zeros` counts modes whose S is known to be zero, half of the
   /// plane: their weight is -1, without a likelihood.
   void invert(BatchIn<T> y,
