@@ -85,7 +85,8 @@ Outcome fit(const TrainingOptions& options, StageRun& run) {
        .batches = batches,
        .options = {.gradient_scale = options.gradient_scale,
                    .chunk = options.chunk,
-                   .project = options.project}});
+                   .project = options.project,
+                   .late = options.late}});
   const auto rule = make_rule<T>(options, model, run);
   MetricsRecorder metrics(options.metrics, run);
   Predictions<T> predict(model, run);
@@ -124,6 +125,10 @@ Options in_words(const TrainingOptions& options) {
     all.push_back({"chunk", fmt::format("{}", options.chunk)});
   if (options.set > 0) all.push_back({"set", fmt::format("{}", options.set)});
   if (!options.project) all.push_back({"project", "false"});
+  if (options.late.of) {
+    all.push_back({"late_error", options.late.name});
+    all.push_back({"late_share", fmt::format("{}", options.late.share)});
+  }
   const Options rule =
       std::visit([](const auto& o) { return describe(o); }, options.rule);
   all.insert(all.end(), rule.begin(), rule.end());
@@ -159,6 +164,7 @@ constexpr std::array<std::array<const char*, 2>, 4> kRules = {
 Sources sources(const TrainingOptions& options) {
   Sources all;
   options.metrics.add_to(all);
+  if (options.late.of) all.roots.emplace_back(options.late.source);
   all.roots.emplace_back(options.signal.source);
   const auto unused = [&](const char* file, const char* header) {
     all.unused.emplace_back(file, header);

@@ -10,8 +10,8 @@
 ///
 /// Arrays left: `parameters`, `state` (a later stage of the chain starts from
 /// them), `samples_drawn` (1), `mean_loss` (1 x points of the curve, over the
-/// case's problems), what `metrics` adds, what signal (training/batch_signal.h)
-/// and rule leave.
+/// case's problems), what `metrics` adds, `late_error` (1), what signal
+/// (training/batch_signal.h) and rule leave.
 #pragma once
 
 #include <memory>
@@ -44,6 +44,7 @@ struct TrainingOptions {
   Index set = 0;              ///< see BatchOptions
   bool project = true;        ///< see SignalOptions
   Metrics metrics = {};
+  LateError late = {};
   SignalRecipe signal = solver_loss();
 };
 

@@ -1,9 +1,11 @@
 #include "optimizers/training/batch_signal.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "optimizers/metrics.h"
 #include "suite/core/oracle.h"
+#include "suite/core/probe.h"
 
 namespace physinv {
 
@@ -24,7 +26,24 @@ const Batch<T>& BatchSignal<T>::estimate(Index first, Index count) {
   x_.resizeLike(out);
   (*map_)(out, batches_.target(first, count), x_);
   model_.update_state();
+  if (options_.late.of) note_late(first, count);
   return x_;
+}
+
+template <class T>
+void BatchSignal<T>::note_late(Index first, Index count) {
+  Probe& probe = run_.probe;
+  const auto all = static_cast<double>(probe.iterations());
+  if (static_cast<double>(probe.iteration()) <=
+      all - std::ceil(options_.late.share * all))
+    return;
+  probe.pause();
+  late_ +=
+      static_cast<double>(count) *
+      options_.late.of(x_.template cast<double>(),
+                       batches_.target(first, count).template cast<double>());
+  late_samples_ += count;
+  probe.resume();
 }
 
 template <class T>
@@ -119,6 +138,9 @@ void BatchSignal<T>::weigh(BatchIn<T>, VectorOut<double>) {
 template <class T>
 void BatchSignal<T>::leave(Outcome& out) const {
   out.arrays["batch_loss"] = as_row(losses_);
+  if (late_samples_ > 0)
+    out.arrays["late_error"] = Batch<double>::Constant(
+        1, 1, late_ / static_cast<double>(late_samples_));
 }
 
 template <class T>

@@ -13,7 +13,8 @@
 
 namespace physinv {
 
-/// Leaves `batch_loss` (1 x updates): mean before the update.
+/// Leaves `batch_loss` (1 x updates): mean before the update. With a LateError
+/// `late_error` (1): mean over the last updates' batches.
 template <class T>
 class BatchSignal : public Signal<T> {
  public:
@@ -59,12 +60,15 @@ class BatchSignal : public Signal<T> {
 
  private:
   Vector<T>& gradient_of(Index first, Index count);
+  void note_late(Index first, Index count);
   /// x_bar_dot_ becomes a derivative by the outputs.
   const Batch<T>& moved(const Vector<T>& direction, bool linear);
 
   Batch<T> x_, x_bar_, x_dot_, x_bar_dot_, identity_;
   Vector<T> sum_;
   std::vector<double> losses_;
+  double late_ = 0;
+  Index late_samples_ = 0;
 };
 
 extern template class BatchSignal<float>;

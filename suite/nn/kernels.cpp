@@ -16,6 +16,7 @@
 #include "suite/nn/batch_norm.h"
 #include "suite/nn/conv.h"
 #include "suite/nn/encoding.h"
+#include "suite/nn/fno.h"
 #include "suite/nn/gemm.h"
 #include "suite/nn/linear.h"
 #include "suite/nn/mlp.h"
@@ -546,6 +547,11 @@ void plane_unet(benchmark::State& state) {
                          64 * 64);
 }
 
+template <class T, Step step>
+void plane_fno(benchmark::State& state) {
+  field_network<T, step>(state, fno({.grid = {64, 64}}), 64 * 64, 64 * 64);
+}
+
 #define PHYSINV_FIELD_NETWORK(T, name, step) \
   BENCHMARK((name<T, Step::step>))           \
       ->Name("nn/" #name "<" #T ">/" #step)  \
@@ -564,6 +570,7 @@ PHYSINV_FIELD_NETWORKS(float, ks_unet)
 PHYSINV_FIELD_NETWORKS(float, plane_unet)
 PHYSINV_FIELD_NETWORK(float, plane_unet, gauss_newton)
 PHYSINV_FIELD_NETWORK(float, plane_unet, hessian)
+PHYSINV_FIELD_NETWORKS(float, plane_fno)
 PHYSINV_FIELD_NETWORK(double, packet_vgg, training)
 PHYSINV_FIELD_NETWORK(double, packet_unet, training)
 #undef PHYSINV_FIELD_NETWORKS

@@ -286,6 +286,33 @@ TEST_P(ProblemContract, JacobianAgreesWithPullback) {
   });
 }
 
+TEST_P(ProblemContract, HessianIsSymmetricAndTheGradientsDerivative) {
+  if (!provides(Needs::vjp | Needs::hessian)) GTEST_SKIP() << "has no Hessian";
+  Bench<double> b(recipe());
+  const auto l = labelled(12);
+  const Batch<double> target = l.y + directions<double>(l.y.rows(), 12, 0.3);
+  const Index d = l.x.rows();
+  Batch<double> h(d * d, 12);
+  dynamic_cast<const Hessian<double>&>(*b.problem)
+      .hessian(l.x, l.given, target, h, b.work);
+  for (Index i = 0; i < 12; ++i) {
+    const Batch<double> given = l.given.col(i);
+    const auto gradient = [&](const Vector<double>& x) {
+      Batch<double> y_bar(l.y.rows(), 1);
+      b.problem->loss_gradient(b.forward(x, given), target.col(i), y_bar);
+      return Vector<double>(b.pull(x, given, y_bar));
+    };
+    const Eigen::Map<const Batch<double>> hi(h.col(i).data(), d, d);
+    EXPECT_TRUE(same_bits(Batch<double>(hi), Batch<double>(hi.transpose())));
+    for (Index j = 0; j < d; ++j)
+      EXPECT_TRUE(Comparator(1e-6, 1e-9)(
+          hi.col(j),
+          difference_along(
+              gradient, l.x.col(i), Vector<double>::Unit(d, j), 1e-6)))
+          << "sample " << i << ", unknown " << j;
+  }
+}
+
 TEST_P(ProblemContract, InverseLowersTheLossAndColumnsAreIndependent) {
   if (!provides(Needs::inverse)) GTEST_SKIP() << "has no inverse";
   in_both([&](auto t) {
