@@ -172,7 +172,7 @@ Batch<double> heat_gradient_descent(const Batch<double>& exponents,
                                     Index steps) {
   return exponents.unaryExpr([=](double s) {
     const double damping = std::exp(-s);
-    if (damping == 0) return 0.0;
+    if (damping == 0 || steps == 0) return 0.0;
     return -std::expm1(double(steps) * std::log1p(-damping * damping)) /
            damping;
   });

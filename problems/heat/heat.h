@@ -26,7 +26,7 @@
 #include <array>
 
 #include "problems/heat/plane_fft.h"
-#include "suite/core/problem.h"
+#include "suite/core/linear_problem.h"
 #include "suite/core/recipe.h"
 
 namespace physinv {
@@ -70,7 +70,7 @@ Batch<double> heat_gradient_descent(const Batch<double>& exponents,
                                     Index steps);
 
 template <class T>
-class Heat : public Problem<T>, public Vjp<T>, public Inverse<T> {
+class Heat : public LinearProblem<T>, public Inverse<T> {
  public:
   using Options = HeatOptions;
   explicit Heat(const Options& options = {});

@@ -13,7 +13,8 @@ constexpr Activation kAll[] = {Activation::identity,
                                Activation::sigmoid,
                                Activation::softplus,
                                Activation::silu,
-                               Activation::half_tanh};
+                               Activation::half_tanh,
+                               Activation::gelu};
 
 TEST(Activation, DerivativeAgainstCentralDifferences) {
   for (const Activation a : kAll) {
