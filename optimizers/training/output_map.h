@@ -17,7 +17,14 @@ class OutputMap {
   virtual void operator()(BatchIn<T> out, BatchIn<T> y, BatchOut<T> x) = 0;
 
   /// Gradients by the last x become gradients by its outputs, in place.
+  /// Directions of the outputs become those of x: every form's Jacobian is
+  /// symmetric.
   virtual void pull_back(BatchOut<T> bar) const = 0;
+  /// Adds what the form's own bend does to gradients `bar` by the outputs where
+  /// these move along `dot`.
+  virtual void bend(BatchIn<T> /*bar*/,
+                    BatchIn<T> /*dot*/,
+                    BatchOut<T> /*bar_dot*/) const {}
   /// The same for the rows of Jacobians: column i of `jacobian` is sample i's,
   /// observations x unknowns, column-major.
   virtual void pull_back_rows(BatchOut<T> jacobian) const = 0;

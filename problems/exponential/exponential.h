@@ -27,6 +27,8 @@ Options describe(const ExponentialOptions& options);
 template <class T>
 class Exponential : public Problem<T>,
                     public Vjp<T>,
+                    public Jvp<T>,
+                    public PullbackTangent<T>,
                     public Jacobian<T>,
                     public Hessian<T>,
                     public Inverse<T> {
@@ -54,6 +56,16 @@ class Exponential : public Problem<T>,
                 BatchIn<T> y_bar,
                 BatchOut<T> x_bar,
                 Workspace& work) const override;
+  void pushforward(const Tape& tape,
+                   BatchIn<T> x_dot,
+                   BatchOut<T> y_dot,
+                   Workspace& work) const override;
+  void pullback_tangent(const Tape& tape,
+                        BatchIn<T> x_dot,
+                        BatchIn<T> y_bar,
+                        BatchIn<T> y_bar_dot,
+                        BatchOut<T> x_bar_dot,
+                        Workspace& work) const override;
   void jacobian(BatchIn<T> x,
                 BatchIn<T> given,
                 BatchOut<T> j,

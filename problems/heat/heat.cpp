@@ -319,24 +319,6 @@ void Heat<T>::pullback(const Tape& tape,
 }
 
 template <class T>
-void Heat<T>::pushforward(const Tape& tape,
-                          BatchIn<T> x_dot,
-                          BatchOut<T> y_dot,
-                          Workspace& work) const {
-  pullback(tape, x_dot, y_dot, work);
-}
-
-template <class T>
-void Heat<T>::pullback_tangent(const Tape& tape,
-                               BatchIn<T> /*x_dot*/,
-                               BatchIn<T> /*y_bar*/,
-                               BatchIn<T> y_bar_dot,
-                               BatchOut<T> x_bar_dot,
-                               Workspace& work) const {
-  pullback(tape, y_bar_dot, x_bar_dot, work);
-}
-
-template <class T>
 void Heat<T>::invert(BatchIn<T> y,
                      BatchIn<T> /*given*/,
                      BatchIn<T> x_guess,

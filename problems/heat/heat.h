@@ -26,7 +26,7 @@
 #include <array>
 
 #include "problems/heat/plane_fft.h"
-#include "suite/core/problem.h"
+#include "suite/core/linear_problem.h"
 #include "suite/core/recipe.h"
 
 namespace physinv {
@@ -70,11 +70,7 @@ Batch<double> heat_gradient_descent(const Batch<double>& exponents,
                                     Index steps);
 
 template <class T>
-class Heat : public Problem<T>,
-             public Vjp<T>,
-             public Jvp<T>,
-             public PullbackTangent<T>,
-             public Inverse<T> {
+class Heat : public LinearProblem<T>, public Inverse<T> {
  public:
   using Options = HeatOptions;
   explicit Heat(const Options& options = {});
@@ -98,16 +94,6 @@ class Heat : public Problem<T>,
                 BatchIn<T> y_bar,
                 BatchOut<T> x_bar,
                 Workspace& work) const override;
-  void pushforward(const Tape& tape,
-                   BatchIn<T> x_dot,
-                   BatchOut<T> y_dot,
-                   Workspace& work) const override;
-  void pullback_tangent(const Tape& tape,
-                        BatchIn<T> x_dot,
-                        BatchIn<T> y_bar,
-                        BatchIn<T> y_bar_dot,
-                        BatchOut<T> x_bar_dot,
-                        Workspace& work) const override;
   /// `skipped_zeros` counts modes whose S is known to be zero, half of the
   /// plane: their weight is -1, without a likelihood.
   void invert(BatchIn<T> y,

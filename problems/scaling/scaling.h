@@ -1,28 +1,33 @@
-/// Two numbers that are scaled, and perhaps squared, apart from each other.
-/// (Physics-based deep learning, chapter "Scale-invariance and inversion".)
+/// Two numbers, one of them scaled and perhaps squared. (Physics-based deep
+/// learning, chapter "Scale-invariance and inversion".)
 ///
 ///   y = (x1, alpha x2^power),  power 1 or 2
 ///
-/// Unknown x (2). Given: nothing. Observation y (2), the same for all problems.
-/// Loss: the square |y - y*|^2 or half of it.
+/// Unknown x (2). Given: alpha (1), at first the listed ones, then uniform in
+/// [1, 5). Observation y (2): 0, as the chapter's. Loss: the square |y - y*|^2
+/// or half of it.
+///
 /// vjp, Jacobian, Hessian: exact. invert: the root nearest to the guess, whose
-/// sign decides, that of a zero too; a square that would have to be negative
-/// has none, and 0 comes nearest.
+/// sign decides, that of a zero too; a negative square has none, and 0 comes
+/// nearest. Closed steps: exact for every x2, with power 2 at x2 = 0 too if
+/// y* = 0: -x2 / 3 (Newton) and -x2 / 2 (inverse gradient).
 ///
 /// A column of x that is not finite gives NaN in its own column only.
 #pragma once
 
 #include <array>
+#include <vector>
 
+#include "suite/core/closed_steps.h"
 #include "suite/core/problem.h"
 #include "suite/core/recipe.h"
 
 namespace physinv {
 
 struct ScalingOptions {
-  double alpha = 1;   ///< 1e-18 <= |alpha| <= 1e18: its square is finite
-  int power = 1;      ///< of x2
-  bool half = false;  ///< loss: half the square
+  std::vector<double> scales = {1};  ///< alpha of the first problems, not 0
+  int power = 1;                     ///< of x2
+  bool half = false;                 ///< loss: half the square
   std::array<double, 2> start = {0.5, 0.85};
 };
 
@@ -32,16 +37,16 @@ template <class T>
 class Scaling : public Problem<T>,
                 public Vjp<T>,
                 public Jacobian<T>,
+                public Hessian<T>,
                 public Inverse<T>,
-                public Hessian<T> {
+                public ClosedSteps<T> {
  public:
   using Options = ScalingOptions;
   explicit Scaling(const Options& options = {});
 
-  Shape shape() const override { return {2, 2, 0}; }
+  Shape shape() const override { return {2, 2, 1}; }
   Vector<double> start() const override;
 
-  /// y* = 0, whose solution is 0.
   Samples<double> sample(Index first,
                          Index count,
                          const Rng& rng) const override;
@@ -73,27 +78,40 @@ class Scaling : public Problem<T>,
                 BatchIn<T> given,
                 BatchOut<T> j,
                 Workspace& work) const override;
-  void invert(BatchIn<T> y,
-              BatchIn<T> given,
-              BatchIn<T> x_guess,
-              BatchOut<T> x,
-              Workspace& work) const override;
   void hessian(BatchIn<T> x,
                BatchIn<T> given,
                BatchIn<T> target,
                BatchOut<T> h,
                Workspace& work) const override;
+  void invert(BatchIn<T> y,
+              BatchIn<T> given,
+              BatchIn<T> x_guess,
+              BatchOut<T> x,
+              Workspace& work) const override;
+
+  void newton_step(BatchIn<T> x,
+                   BatchIn<T> given,
+                   BatchIn<T> target,
+                   BatchOut<T> dx) const override;
+  void inverse_gradient_step(BatchIn<T> x,
+                             BatchIn<T> given,
+                             BatchIn<T> target,
+                             BatchOut<T> dx) const override;
 
   double operations() const override { return 2; }
 
   const Options& options() const { return options_; }
 
  private:
-  /// Of column i, and d y / d x, which is diagonal.
+  /// y of column i and d y / d x, which is diagonal.
   struct Point {
     T y[2], slope[2];
   };
-  Point at(BatchIn<T> x, Index i) const;
+  Point at(BatchIn<T> x, BatchIn<T> given, Index i) const;
+  Samples<double> draw(Index first,
+                       Index count,
+                       const Rng& rng,
+                       bool labelled) const;
   T scale() const { return T(options_.half ? 1 : 2); }
 
   Options options_;

@@ -21,10 +21,12 @@ namespace physinv {
 /// One tensor inside the flat parameter vector.
 struct TensorInfo {
   std::string name;  ///< kind and number as in the paper's figures: m1, b1, k1
-  char kind = 'm';   ///< m matrix, k kernel, b bias, s scale, o offset
+  char kind = 'm';   ///< m matrix, k kernel, b bias, s scale, o offset, f modes
   Index offset = 0, size = 0;
   Index fan_in = 0;   ///< inputs x taps of the layer
   Index fan_out = 0;  ///< outputs x taps
+  /// Drawn from U[0, up_to) whatever the network's rule, where that is not 0.
+  double up_to = 0;
 };
 
 /// How a pass is to be run.

@@ -5,8 +5,14 @@
 namespace physinv::nn {
 
 std::string_view to_string(Activation a) {
-  constexpr std::string_view names[] = {
-      "identity", "relu", "tanh", "sigmoid", "softplus", "silu", "half_tanh"};
+  constexpr std::string_view names[] = {"identity",
+                                        "relu",
+                                        "tanh",
+                                        "sigmoid",
+                                        "softplus",
+                                        "silu",
+                                        "half_tanh",
+                                        "gelu"};
   return names[static_cast<std::size_t>(a)];
 }
 

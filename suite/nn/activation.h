@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "suite/core/lanes_math.h"
+#include "suite/nn/gelu.h"
 #include "suite/nn/layer.h"
 #include "suite/nn/vector.h"
 
@@ -15,7 +16,9 @@ std::string_view to_string(Activation a);
 
 /// Whether the derivative follows from the output alone, so that an
 /// activation fused into the layer before it needs no memory of its own.
-constexpr bool from_output(Activation a) { return a != Activation::silu; }
+constexpr bool from_output(Activation a) {
+  return a != Activation::silu && a != Activation::gelu;
+}
 
 template <class T>
 inline T sigmoid(T z) {
@@ -39,11 +42,13 @@ inline T activate(Activation a, T z) {
       return z * sigmoid(z);
     case Activation::half_tanh:
       return std::tanh(z / T(2));
+    case Activation::gelu:
+      return z * normal_cdf(z);
   }
   return z;
 }
 
-/// Derivative, given the output y (SiLU: given the input).
+/// Derivative, given the output y (SiLU, GELU: given the input).
 template <class T>
 inline T derivative(Activation a, T y) {
   switch (a) {
@@ -63,6 +68,8 @@ inline T derivative(Activation a, T y) {
     }
     case Activation::half_tanh:
       return std::fma(-y, y, T(1)) / T(2);
+    case Activation::gelu:
+      return std::fma(y, normal_density(y), normal_cdf(y));
   }
   return T(1);
 }
@@ -76,6 +83,8 @@ inline T second_derivative(Activation a, T y) {
       return T(0);
     case Activation::tanh:
       return T(-2) * y;
+    case Activation::half_tanh:
+      return -y;
     case Activation::sigmoid:
       return T(1) - T(2) * y;
     case Activation::softplus:
@@ -84,6 +93,10 @@ inline T second_derivative(Activation a, T y) {
       const T s = sigmoid(y), slope = s * (T(1) - s);
       return slope * std::fma(y, T(1) - T(2) * s, T(2));
     }
+    case Activation::half_tanh:
+      return -y;
+    case Activation::gelu:
+      return normal_density(y) * std::fma(-y, y, T(2));
   }
   return T(0);
 }
@@ -96,6 +109,8 @@ inline V activate_lanes(Activation a, V z) {
   if (a == Activation::relu) return z < V{} ? V{} : z;
   if (a == Activation::tanh) return tanh_lanes(z);
   if (a == Activation::sigmoid) return sigmoid_lanes(z);
+  if (a == Activation::half_tanh) return tanh_lanes(broadcast<V>(T(0.5)) * z);
+  if (a == Activation::gelu) return gelu_lanes(z);
   for (std::size_t l = 0; l < sizeof(V) / sizeof(T); ++l)
     z[l] = activate<T>(a, z[l]);
   return z;
@@ -109,6 +124,7 @@ inline V pull_lanes(Activation a, V y, V y_bar) {
   if (a == Activation::tanh)
     return y_bar * multiply_add<T>(-y, y, broadcast<V>(T(1)));
   if (a == Activation::sigmoid) return y_bar * (y * (broadcast<V>(T(1)) - y));
+  if (a == Activation::gelu) return y_bar * gelu_slope_lanes(y);
   for (std::size_t l = 0; l < sizeof(V) / sizeof(T); ++l)
     y_bar[l] *= derivative<T>(a, y[l]);
   return y_bar;
@@ -136,7 +152,7 @@ void apply_gate_tangent(const Gate<T>& gate,
                         Lanes<T> x_bar_dot);
 
 /// An activation on its own: behind a layer that cannot take it in, or one
-/// whose derivative needs the input (SiLU).
+/// whose derivative needs the input (SiLU, GELU).
 template <class T>
 class ActivationLayer final : public Layer<T> {
  public:

@@ -88,8 +88,6 @@ class ConvBlock final : public Layer<T> {
     return at.training || batch_statistics_;
   }
 
-  struct Moving;  ///< in conv_tangent.cpp
-
   Convolution<T> conv_;
   NormShape norm_;
   bool batch_statistics_;

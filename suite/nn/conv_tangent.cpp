@@ -1,9 +1,9 @@
-// Forward mode of the convolutional layers, and its reverse.
+#include "suite/nn/conv_tangent.h"
+
 #include <algorithm>
 
-#include "suite/nn/activation.h"
 #include "suite/nn/channel_norm_tangent.h"
-#include "suite/nn/conv.h"
+#include "suite/nn/convolution_tangent.h"
 
 namespace physinv::nn {
 namespace {
@@ -16,52 +16,26 @@ void for_positions(Threads* threads, Index count, Index some, F&& f) {
   });
 }
 
-}  // namespace
-
-// ------------------------------------------------------------------- Conv
-
-template <class T>
-void Conv<T>::tangent(const LayerArgs<T>& at, const Tangent<T>& t) const {
-  conv_.tangent(at, t.x, t.x_dot, t.y_dot);
-  apply_gate<T>({activation_, t.y}, t.y_dot);
-}
-
-template <class T>
-void Conv<T>::backward_tangent(const LayerArgs<T>& at,
-                               const BackwardTangent<T>& b) const {
-  const ConvShape& shape = conv_.shape();
-  conv_.gradients_tangent(at, b, b.y_bar, b.y_bar_dot);
-  const auto biases = [&](Lanes<const T> y_bar, T* parameters_bar) {
-    if (parameters_bar != nullptr)
-      channel_sums<T>(
-          *at.work, y_bar, shape.out, parameters_bar + shape.weights());
-  };
-  biases(b.y_bar, b.parameters_bar);
-  biases(b.y_bar_dot, b.parameters_bar_dot);
-}
-
-// -------------------------------------------------------------- ConvBlock
-
 /// What the passes of a block's tangents share: the tapes' views and sums over
 /// all samples and positions.
 template <class T>
-struct ConvBlock<T>::Moving {
-  Moving(const ConvBlock& owner, const LayerArgs<T>& args, Lanes<const T> y)
+struct Moving {
+  Moving(const BlockParts<T>& owner, const LayerArgs<T>& args, Lanes<const T> y)
       : block(owner),
         at(args),
-        threads(block.conv_.threads(at, y.samples)),
+        threads(block.conv.threads(at, y.samples)),
         z(at.tape->template view<T>(at.slot).data(),
-          block.conv_.outputs(),
+          block.conv.outputs(),
           y.samples),
         z_dot(at.dots->template view<T>(at.slot).data(), z.rows, z.samples),
-        some(block.conv_.per_block(z)),
-        of{.shape = block.norm_,
+        some(block.conv.per_block(z)),
+        of{.shape = block.norm,
            .at = {at.tape->template view<T>(at.slot + 1).data(),
-                  block.norm_.channels},
+                  block.norm.channels},
            .dots = {at.dots->template view<T>(at.slot + 1).data(),
-                    block.norm_.channels},
-           .parameters = at.parameters + block.conv_.parameter_count(),
-           .parameters_dot = at.parameters_dot + block.conv_.parameter_count(),
+                    block.norm.channels},
+           .parameters = at.parameters + block.conv.parameter_count(),
+           .parameters_dot = at.parameters_dot + block.conv.parameter_count(),
            .x = z,
            .x_dot = z_dot,
            .y = y} {}
@@ -92,7 +66,7 @@ struct ConvBlock<T>::Moving {
   /// What a sum is divided by; zero outside training, where the statistics are
   /// constants.
   T share() const {
-    if (!block.by_batch(at)) return T(0);
+    if (!block.by_batch) return T(0);
     return T(1) / static_cast<T>(of.shape.positions() * z.samples);
   }
 
@@ -101,19 +75,19 @@ struct ConvBlock<T>::Moving {
   void put(const T* sums, const T* base, T* parameters_bar) const {
     if (parameters_bar == nullptr) return;
     const Index channels = of.shape.channels;
-    T* bias_bar = parameters_bar + block.conv_.shape().weights();
+    T* bias_bar = parameters_bar + block.conv.shape().weights();
     T *scale_bar = bias_bar + channels, *offset_bar = scale_bar + channels;
     for (Index c = 0; c < channels; ++c) {
       offset_bar[c] = sums[c], scale_bar[c] = sums[channels + c];
       bias_bar[c] = T(0);
-      if (block.by_batch(at)) continue;
+      if (block.by_batch) continue;
       bias_bar[c] = of.parameters[c] * sums[c];
       if (base != nullptr) bias_bar[c] += of.parameters_dot[c] * base[c];
       bias_bar[c] *= of.at.inverse[c];
     }
   }
 
-  const ConvBlock& block;
+  const BlockParts<T>& block;
   const LayerArgs<T>& at;
   Threads* threads;
   Lanes<T> z, z_dot;
@@ -121,22 +95,26 @@ struct ConvBlock<T>::Moving {
   NormTangent<T> of;
 };
 
+}  // namespace
+
 template <class T>
-void ConvBlock<T>::tangent(const LayerArgs<T>& at, const Tangent<T>& t) const {
-  const Index channels = norm_.channels;
-  const Lanes<T> shape(nullptr, conv_.outputs(), t.x.samples);
+void push_block(const BlockParts<T>& block,
+                const LayerArgs<T>& at,
+                const Tangent<T>& t) {
+  const Index channels = block.norm.channels;
+  const Lanes<T> shape(nullptr, block.conv.outputs(), t.x.samples);
   at.dots->template slot<T>(at.slot, shape.stride, shape.rows);
   at.dots->template slot<T>(at.slot + 1, channels, NormDots<T>::kCount);
   const Workspace::Scope scope(*at.work);
-  const Moving m(*this, at, t.y);
-  conv_.tangent(at, t.x, t.x_dot, m.z_dot);
+  const Moving<T> m(block, at, t.y);
+  push_convolution<T>(block.conv, at, t.x, t.x_dot, m.z_dot);
   const T* sums = m.sums(m.of.at, m.z, m.z_dot);
   for (Index c = 0; c < channels; ++c) {
     m.of.dots.mean[c] = m.share() * sums[c];
     m.of.dots.slope[c] = m.share() * sums[channels + c];
   }
   for_positions(m.threads,
-                norm_.pooled().positions(),
+                block.norm.pooled().positions(),
                 m.some,
                 [&](Index begin, Index end) {
                   normalise_tangent<T>(m.of, t.y_dot, begin, end);
@@ -144,18 +122,19 @@ void ConvBlock<T>::tangent(const LayerArgs<T>& at, const Tangent<T>& t) const {
 }
 
 template <class T>
-void ConvBlock<T>::backward_tangent(const LayerArgs<T>& at,
-                                    const BackwardTangent<T>& b) const {
-  const Index channels = norm_.channels;
+void pull_block(const BlockParts<T>& block,
+                const LayerArgs<T>& at,
+                const BackwardTangent<T>& b) {
+  const Index channels = block.norm.channels;
   const Workspace::Scope scope(*at.work);
-  const Moving m(*this, at, b.y);
+  const Moving<T> m(block, at, b.y);
   // First the cotangents of the normalised, then, in place, of z.
   Lanes<T> bar = m.z, bar_dot = m.z;
   bar.data = at.work->template take<T>(bar.stride, bar.rows).data();
   bar_dot.data = at.work->template take<T>(bar.stride, bar.rows).data();
   for_positions(
       m.threads,
-      norm_.pooled().positions(),
+      block.norm.pooled().positions(),
       m.some,
       [&](Index begin, Index end) {
         open_cells<T>(
@@ -180,7 +159,7 @@ void ConvBlock<T>::backward_tangent(const LayerArgs<T>& at,
   for (T* sum : {base, dot})
     for (Index c = 0; c < 2 * channels; ++c) sum[c] *= m.share();
   for_positions(
-      m.threads, norm_.positions(), m.some, [&](Index begin, Index end) {
+      m.threads, block.norm.positions(), m.some, [&](Index begin, Index end) {
         pull_norm_tangent<T>(m.of,
                              {.sum = base,
                               .product = base + channels,
@@ -191,18 +170,14 @@ void ConvBlock<T>::backward_tangent(const LayerArgs<T>& at,
                              begin,
                              end);
       });
-  conv_.gradients_tangent(at, b, bar, bar_dot);
+  pull_convolution<T>(block.conv, at, b, bar, bar_dot);
 }
 
-#define PHYSINV_INSTANTIATE(T)                                                \
-  template void Conv<T>::tangent(const LayerArgs<T>&, const Tangent<T>&)      \
-      const;                                                                  \
-  template void Conv<T>::backward_tangent(const LayerArgs<T>&,                \
-                                          const BackwardTangent<T>&) const;   \
-  template void ConvBlock<T>::tangent(const LayerArgs<T>&, const Tangent<T>&) \
-      const;                                                                  \
-  template void ConvBlock<T>::backward_tangent(                               \
-      const LayerArgs<T>&, const BackwardTangent<T>&) const;
+#define PHYSINV_INSTANTIATE(T)                                       \
+  template void push_block<T>(                                       \
+      const BlockParts<T>&, const LayerArgs<T>&, const Tangent<T>&); \
+  template void pull_block<T>(                                       \
+      const BlockParts<T>&, const LayerArgs<T>&, const BackwardTangent<T>&);
 PHYSINV_INSTANTIATE(float)
 PHYSINV_INSTANTIATE(double)
 #undef PHYSINV_INSTANTIATE

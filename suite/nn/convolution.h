@@ -71,18 +71,6 @@ class Convolution {
                  Lanes<T> x_bar,
                  F&& fill) const;
 
-  /// y_dot of x_dot and at.parameters_dot.
-  void tangent(const LayerArgs<T>& at,
-               Lanes<const T> x,
-               Lanes<const T> x_dot,
-               Lanes<T> y_dot) const;
-  /// `gradients` and their derivatives. parameters_bar may be null, so may the
-  /// pair x_bar, x_bar_dot.
-  void gradients_tangent(const LayerArgs<T>& at,
-                         const BackwardTangent<T>& b,
-                         Lanes<const T> y_bar,
-                         Lanes<const T> y_bar_dot) const;
-
   /// Threads for the pass over this many samples, or null if it is too short.
   Threads* threads(const LayerArgs<T>& at, Index samples) const;
 

@@ -1,61 +1,68 @@
-// A convolution is bilinear in weights and input: the derivative of each of its
-// three products is the sum of two.
-#include "suite/nn/convolution.h"
+#include "suite/nn/convolution_tangent.h"
 
 namespace physinv::nn {
 
 template <class T>
-void Convolution<T>::tangent(const LayerArgs<T>& at,
-                             Lanes<const T> x,
-                             Lanes<const T> x_dot,
-                             Lanes<T> y_dot) const {
+void push_convolution(const Convolution<T>& conv,
+                      const LayerArgs<T>& at,
+                      Lanes<const T> x,
+                      Lanes<const T> x_dot,
+                      Lanes<T> y_dot) {
+  const ConvShape& shape = conv.shape();
   const Workspace::Scope scope(*at.work);
   Lanes<T> more = y_dot;
   more.data = at.work->template take<T>(more.stride, more.rows).data();
   const T* const w_dot = at.parameters_dot;
-  product(at, w_dot, w_dot + shape_.weights(), x, more, [](auto...) {});
+  conv.product(
+      at, w_dot, w_dot + conv.shape().weights(), x, more, [](auto...) {});
   const auto rows = [&](Lanes<T> all, Index begin, Index end) {
-    all.data = all.row(begin * shape_.out);
-    all.rows = (end - begin) * shape_.out;
+    all.data = all.row(begin * shape.out);
+    all.rows = (end - begin) * shape.out;
     return all;
   };
-  product(at,
-          at.parameters,
-          nullptr,
-          x_dot,
-          y_dot,
-          [&](Index, Index begin, Index end) {
-            add_lanes<T>(rows(more, begin, end), rows(y_dot, begin, end));
-          });
+  conv.product(at,
+               at.parameters,
+               nullptr,
+               x_dot,
+               y_dot,
+               [&](Index, Index begin, Index end) {
+                 add_lanes<T>(rows(more, begin, end), rows(y_dot, begin, end));
+               });
 }
 
 template <class T>
-void Convolution<T>::gradients_tangent(const LayerArgs<T>& at,
-                                       const BackwardTangent<T>& b,
-                                       Lanes<const T> y_bar,
-                                       Lanes<const T> y_bar_dot) const {
+void pull_convolution(const Convolution<T>& conv,
+                      const LayerArgs<T>& at,
+                      const BackwardTangent<T>& b,
+                      Lanes<const T> y_bar,
+                      Lanes<const T> y_bar_dot) {
   const auto nothing = [](Index, Index) {};
-  gradients(at, b.x, y_bar, 1, b.parameters_bar, b.x_bar, nothing);
-  gradients(at, b.x, y_bar_dot, 1, b.parameters_bar_dot, b.x_bar_dot, nothing);
+  conv.gradients(at, b.x, y_bar, 1, b.parameters_bar, b.x_bar, nothing);
+  conv.gradients(
+      at, b.x, y_bar_dot, 1, b.parameters_bar_dot, b.x_bar_dot, nothing);
   const Workspace::Scope scope(*at.work);
   LayerArgs<T> cross = at;
   cross.parameters = at.parameters_dot;
-  auto sum = at.work->template take<T>(shape_.weights(), 1);
+  auto sum = at.work->template take<T>(conv.shape().weights(), 1);
   Lanes<T> more = b.x_bar;
   if (b.x_bar)
     more.data = at.work->template take<T>(more.stride, more.rows).data();
-  gradients(cross, b.x_dot, y_bar, 1, sum.data(), more, nothing);
+  conv.gradients(cross, b.x_dot, y_bar, 1, sum.data(), more, nothing);
   for (Index i = 0; i < sum.size(); ++i) b.parameters_bar_dot[i] += sum(i);
   if (b.x_bar) add_lanes<T>(more, b.x_bar_dot);
 }
 
-#define PHYSINV_INSTANTIATE(T)                                               \
-  template void Convolution<T>::tangent(                                     \
-      const LayerArgs<T>&, Lanes<const T>, Lanes<const T>, Lanes<T>) const;  \
-  template void Convolution<T>::gradients_tangent(const LayerArgs<T>&,       \
-                                                  const BackwardTangent<T>&, \
-                                                  Lanes<const T>,            \
-                                                  Lanes<const T>) const;
+#define PHYSINV_INSTANTIATE(T)                                 \
+  template void push_convolution<T>(const Convolution<T>&,     \
+                                    const LayerArgs<T>&,       \
+                                    Lanes<const T>,            \
+                                    Lanes<const T>,            \
+                                    Lanes<T>);                 \
+  template void pull_convolution<T>(const Convolution<T>&,     \
+                                    const LayerArgs<T>&,       \
+                                    const BackwardTangent<T>&, \
+                                    Lanes<const T>,            \
+                                    Lanes<const T>);
 PHYSINV_INSTANTIATE(float)
 PHYSINV_INSTANTIATE(double)
 #undef PHYSINV_INSTANTIATE

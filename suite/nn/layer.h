@@ -35,10 +35,11 @@ enum class Activation : std::uint8_t {
   softplus,
   silu,       ///< z sigma(z)
   half_tanh,  ///< tanh(z / 2) = 2 sigma(z) - 1
+  gelu,       ///< z Phi(z), Phi the normal distribution
 };
 
 /// How weights are drawn, uniform within +-bound; biases and offsets start at
-/// 0, scales at 1.
+/// 0, scales at 1. Tensors with a range of their own (TensorInfo) keep it.
 enum class Init : std::uint8_t {
   fan_in,   ///< bound 1 / sqrt(fan_in)
   glorot,   ///< bound sqrt(6 / (fan_in + fan_out)), Keras' default

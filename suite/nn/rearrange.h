@@ -33,6 +33,23 @@ class FieldInput final : public PiecewiseLinear<T> {
   FieldInputOptions o_;
 };
 
+/// One channel -> [position](value, row, column), the coordinates from 0 to 1
+/// over the grid.
+template <class T>
+class Coordinates final : public Layer<T> {
+ public:
+  explicit Coordinates(Grid grid)
+      : Layer<T>(grid.positions(), 3 * grid.positions()), grid_(grid) {}
+
+  void forward(const LayerArgs<T>& at,
+               Lanes<const T> x,
+               Lanes<T> y) const override;
+  void backward(const LayerArgs<T>& at, const Backward<T>& b) const override;
+
+ private:
+  Grid grid_;
+};
+
 /// [position][channel] -> [channel][position].
 template <class T>
 class Flatten final : public PiecewiseLinear<T> {
@@ -53,6 +70,8 @@ class Flatten final : public PiecewiseLinear<T> {
 
 extern template class FieldInput<float>;
 extern template class FieldInput<double>;
+extern template class Coordinates<float>;
+extern template class Coordinates<double>;
 extern template class Flatten<float>;
 extern template class Flatten<double>;
 

@@ -113,10 +113,12 @@ void Sequential<T>::initialize(const Rng& rng,
   for (const TensorInfo& t : tensors_) {
     auto part = parameters.segment(t.offset, t.size);
     part.setConstant(t.kind == 's' ? T(1) : T(0));
-    if (!is_drawn(init_, t.kind)) continue;
+    const bool own = t.up_to > 0;
+    if (!own && !is_drawn(init_, t.kind)) continue;
     Stream stream = rng.child(t.name).stream();
-    const double bound = bound_of(init_, t);
-    for (T& w : part) w = static_cast<T>(stream.uniform(-bound, bound));
+    const double bound = own ? t.up_to : bound_of(init_, t);
+    const double least = own ? 0 : -bound;
+    for (T& w : part) w = static_cast<T>(stream.uniform(least, bound));
   }
   for (std::size_t i = 0; i < layers_.size(); ++i)
     layers_[i]->initialize_state(state.data() + places_[i].state);

@@ -13,7 +13,8 @@ constexpr Activation kAll[] = {Activation::identity,
                                Activation::sigmoid,
                                Activation::softplus,
                                Activation::silu,
-                               Activation::half_tanh};
+                               Activation::half_tanh,
+                               Activation::gelu};
 
 TEST(Activation, DerivativeAgainstCentralDifferences) {
   for (const Activation a : kAll) {
@@ -22,6 +23,18 @@ TEST(Activation, DerivativeAgainstCentralDifferences) {
       const double slope = (activate(a, z + h) - activate(a, z - h)) / (2 * h);
       const double at = from_output(a) ? activate(a, z) : z;
       EXPECT_NEAR(derivative(a, at), slope, 1e-9) << to_string(a) << " " << z;
+    }
+  }
+}
+
+TEST(Activation, SecondDerivativeIsThatOfTheDerivative) {
+  for (const Activation a : kAll) {
+    if (a == Activation::relu) continue;  // y = 0 is a kink
+    for (const double z : {-3.1, -0.7, 0.2, 1.9, 6.0}) {
+      const double h = 1e-5, y = from_output(a) ? activate(a, z) : z;
+      const double slope = (derivative(a, y + h) - derivative(a, y - h)) / 2;
+      EXPECT_NEAR(second_derivative(a, y), slope / h, 1e-8)
+          << to_string(a) << " " << z;
     }
   }
 }

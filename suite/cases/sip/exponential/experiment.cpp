@@ -17,10 +17,13 @@ namespace {
 
 constexpr Index kPoints = 1000, kBatch = 100;
 constexpr Index kSmoke = 200, kPaper = 10'000;
+constexpr Index kCurvatureSmoke = 3, kCurvature = 200;
 
 // Objectives are sums over the batch, not means. All estimates are recorded:
 // those of a network in single precision are not made again to the last digits.
-Method method(std::string id, StepOptions rule, SignalRecipe signal) {
+Method method(std::string id,
+              decltype(TrainingOptions::rule) rule,
+              SignalRecipe signal) {
   return {.id = std::move(id),
           .chain = {train({.rule = std::move(rule),
                            .batch = kBatch,
@@ -38,6 +41,10 @@ std::vector<Method> methods() {
           method("adam", adam, solver_loss()),
           method("norm", adam, inverse_proxy(ProxyNorm::absolute)),
           method("gt", adam, inverse_proxy()),
+          method("adahessian", AdaHessianOptions{.rate = 1e-3}, solver_loss()),
+          method("hf",
+                 HessianFreeOptions{.solver = {.iterations = 50}},
+                 solver_loss()),
           method("newton", adam, newton_proxy()),
           method("newton-clipped", adam, newton_proxy({.limit = 0.1})),
           method("newton-damped", adam, newton_proxy({.damping = 0.01}))};
@@ -54,7 +61,10 @@ const bool kRegistered = [] {
   const std::vector<std::string> three = {"sgd", "adam", "norm"};
   const std::vector<Row> full = {
       row(three, 10, kPaper),
-      row({"gt", "newton", "newton-clipped", "newton-damped"}, 3, kPaper)};
+      row({"gt", "newton", "newton-clipped", "newton-damped", "adahessian"},
+          3,
+          kPaper),
+      row({"hf"}, 3, kCurvature)};
   register_experiment({
       .name = "sip/exponential",
       .title = "Exponential",
@@ -64,7 +74,9 @@ const bool kRegistered = [] {
                                 nn::mlp({.hidden = {16, 64, 16},
                                          .activation = nn::Activation::sigmoid,
                                          .init = nn::Init::uniform})}},
-      .profiles = {{.name = "smoke", .rows = {row(three, 1, kSmoke)}},
+      .profiles = {{.name = "smoke",
+                    .rows = {row(three, 1, kSmoke),
+                             row({"adahessian", "hf"}, 1, kCurvatureSmoke)}},
                    {.name = "quick", .rows = {row(three, 3, kPaper)}},
                    {.name = "standard", .rows = full},
                    {.name = "paper", .rows = full}},

@@ -1,8 +1,13 @@
 // Fig. 16 of the SIP paper: two examples with their fits, and learning curves.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
+#include <functional>
+#include <iterator>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "suite/cases/sip/wave_packet/values.h"
 #include "suite/evidence/cell.h"
@@ -63,110 +68,111 @@ Panel example(const Evidence& e, Index i) {
   return panel;
 }
 
-/// A horizontal line as long as the panel's curves.
-Series level(const MethodLine& line, double value, const Panel& panel) {
-  Series s{.label = line.label,
-           .method = line.method,
-           .dashed = true,
-           .look = look_of(line)};
-  for (const Series& other : panel.series)
-    if (!other.x.empty()) s.x = {other.x.front(), other.x.back()};
-  s.y.assign(s.x.size(), value);
-  return s;
-}
-
-/// Horizontal lines of what does not learn.
+/// Horizontal lines of what does not learn, as long as the curve is.
 void add_levels(const Evidence& e, const RunRow& row, Panel& panel) {
-  if (panel.series.empty()) return;
-  const Panel learned = panel;
+  if (panel.series.empty() || panel.series.front().x.empty()) return;
+  const auto& x = panel.series.front().x;
+  const double first = x.front(), last = x.back();
   for (const MethodLine& line : {kLines[1], kLines[2]}) {
-    const Measured value = median({line.method}, mean_of(row))(e);
-    if (value.value) panel.series.push_back(level(line, *value.value, learned));
+    const auto value = median({line.method}, mean_of(row))(e).value;
+    if (!value) continue;
+    panel.series.push_back({.label = line.label,
+                            .method = line.method,
+                            .x = {first, last},
+                            .y = {*value, *value},
+                            .dashed = true,
+                            .look = look_of(line)});
   }
 }
 
-Table results_table(const Evidence& e) {
-  Table table{
-      .id = "results",
-      .title = "At the end, medians over seeds",
-      .digits = 3,
-      .corner = "method",
-      .columns = {"mean loss",
-                  "10 %",
-                  "50 %",
-                  "90 %",
-                  "mean error",
-                  "median error",
-                  "within 2",
-                  "within half a period",
-                  "better than L-BFGS-B",
-                  "equal",
-                  "worse"},
-      .note =
-          "Losses of all examples, errors |t0 - t0*| in samples, shares. "
-          "Equal: losses that differ by less than a millionth."};
-  for (const MethodLine& line : kLines) {
-    const Select who{line.method};
-    const auto quantile_of = [](RunRow row, double q) {
-      return [=](const Run& run) -> std::optional<double> {
-        auto values = row(run);
-        if (values.empty()) return {};
-        return quantile(values, q);
-      };
-    };
-    const auto share = [&](RunRow row, auto test) {
-      return written(share_of_examples(who, row, test)(e));
-    };
-    if (find_runs(e, who).empty()) continue;
-    TableRow row{.label = line.label};
-    row.cells.push_back(written(median(who, mean_of(losses()))(e)));
-    for (const double q : {0.1, 0.5, 0.9})
-      row.cells.push_back(written(median(who, quantile_of(losses(), q))(e)));
-    row.cells.push_back(written(median(who, mean_of(errors()))(e)));
-    row.cells.push_back(written(median(who, quantile_of(errors(), 0.5))(e)));
-    row.cells.push_back(share(errors(), [](double v) { return v < 2; }));
-    row.cells.push_back(share(errors(), [](double v) { return v <= kBasin; }));
-    const bool compares = line.method != "lbfgs";
-    const auto beside = [&](auto test) {
-      return compares ? share(loss_over_lbfgs(), test)
-                      : written({}, "", kNothing);
-    };
-    row.cells.push_back(beside([](double v) { return v <= -1e-6; }));
-    row.cells.push_back(beside([](double v) { return std::abs(v) < 1e-6; }));
-    row.cells.push_back(beside([](double v) { return v >= 1e-6; }));
-    table.rows.push_back(std::move(row));
-  }
-  return table;
-}
+/// What a table says of a method.
+struct Column {
+  std::string head;
+  std::function<Quantity(const Select&)> of;
+};
 
-Table by_distance(const Evidence& e) {
-  constexpr double kEdges[] = {0, 2, 6, 15, 40, 1e9};
-  Table table{.id = "distance",
-              .title = "Share of packets found, by distance from the start",
-              .digits = 3,
-              .corner = "method",
-              .note = "Found: |t0 - t0*| < 2. The start is t0 = 76.8."};
-  for (std::size_t k = 0; k + 1 < std::size(kEdges); ++k)
-    table.columns.push_back(
-        kEdges[k + 1] < 1e9 ? fmt::format("{} to {}", kEdges[k], kEdges[k + 1])
-                            : fmt::format("beyond {}", kEdges[k]));
+Table table_of(const Evidence& e, Table table, std::vector<Column> columns) {
+  for (const Column& c : columns) table.columns.push_back(c.head);
   for (const MethodLine& line : kLines) {
     if (find_runs(e, {line.method}).empty()) continue;
     TableRow row{.label = line.label};
-    for (std::size_t k = 0; k + 1 < std::size(kEdges); ++k)
-      row.cells.push_back(written(share_of_examples(
-          {line.method}, errors(kEdges[k], kEdges[k + 1]), [](double v) {
-            return v < 2;
-          })(e)));
+    for (const Column& c : columns)
+      row.cells.push_back(written(c.of({line.method})(e)));
     table.rows.push_back(std::move(row));
   }
   return table;
+}
+
+Column typical(std::string head, RunValue value) {
+  return {std::move(head),
+          [=](const Select& who) { return median(who, value); }};
+}
+Column share(std::string head, RunRow row, std::function<bool(double)> test) {
+  return {std::move(head),
+          [=](const Select& who) { return share_of_examples(who, row, test); }};
+}
+
+RunValue quantile_of(RunRow row, double q) {
+  return [=](const Run& run) -> std::optional<double> {
+    auto values = row(run);
+    if (values.empty()) return {};
+    return quantile(std::move(values), q);
+  };
+}
+
+Table at_the_end(const Evidence& e) {
+  return table_of(
+      e,
+      {.id = "results",
+       .title = "At the end, medians over seeds",
+       .digits = 3,
+       .corner = "method",
+       .note = "Losses and their quantiles over the examples, errors "
+               "|t0 - t0*| in samples, shares. Equal to L-BFGS-B's: within a "
+               "millionth."},
+      {typical("mean loss", mean_of(losses())),
+       typical("10 %", quantile_of(losses(), 0.1)),
+       typical("50 %", quantile_of(losses(), 0.5)),
+       typical("90 %", quantile_of(losses(), 0.9)),
+       typical("mean error", mean_of(errors())),
+       typical("median error", quantile_of(errors(), 0.5)),
+       share("within 2", errors(), [](double v) { return v < 2; }),
+       share("within half a period",
+             errors(),
+             [](double v) { return v <= kBasin; }),
+       share("loss below L-BFGS-B's",
+             loss_over_lbfgs(),
+             [](double v) { return v < -1e-6; }),
+       share("equal", loss_over_lbfgs(), [](double v) {
+         return std::abs(v) <= 1e-6;
+       })});
+}
+
+Table by_distance(const Evidence& e) {
+  constexpr double kEdges[] = {0, 2, 6, 15, 40};
+  std::vector<Column> columns;
+  for (std::size_t k = 0; k < std::size(kEdges); ++k) {
+    const bool last = k + 1 == std::size(kEdges);
+    columns.push_back(
+        share(last ? fmt::format("beyond {}", kEdges[k])
+                   : fmt::format("{} to {}", kEdges[k], kEdges[k + 1]),
+              errors(kEdges[k], last ? kInfinite : kEdges[k + 1]),
+              [](double v) { return v < 2; }));
+  }
+  return table_of(
+      e,
+      {.id = "distance",
+       .title = "Share of packets found, by distance from the start",
+       .digits = 3,
+       .corner = "method",
+       .note = "Found: |t0 - t0*| < 2. The start is t0 = 76.8."},
+      std::move(columns));
 }
 
 Section report(const Results& results, const Published& published) {
   const Evidence e{results, published, kName};
   Section section{.experiment = kName,
-                  .tables = {results_table(e), by_distance(e)}};
+                  .tables = {at_the_end(e), by_distance(e)}};
   LearningCurves curves(results, section);
   curves.add({.id = "fig16a",
               .title = "Two examples and their fits",
@@ -189,8 +195,8 @@ Section report(const Results& results, const Published& published) {
                 "fig16b-error",
                 "Learning curves: distance from the true position",
                 "Fig. 16b");
-  if (section.figures.size() > 2)
-    add_levels(e, errors(), section.figures.back().panels.front());
+  for (Figure& f : section.figures)
+    if (f.id == "fig16b-error") add_levels(e, errors(), f.panels.front());
   curves.metric({kNetLine},
                 kInBasin,
                 "share within half a period",

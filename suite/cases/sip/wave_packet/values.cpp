@@ -86,6 +86,14 @@ RunValue mean_of(RunRow row) {
   };
 }
 
+RunValue in_basin() {
+  return mean_of([](const Run& run) {
+    std::vector<double> flags = errors()(run);
+    for (double& e : flags) e = e <= kBasin ? 1 : 0;
+    return flags;
+  });
+}
+
 RunValue passes_lbfgs() { return time_to(updates(), of_lbfgs(losses())); }
 
 RunValue passes_lbfgs_error() {

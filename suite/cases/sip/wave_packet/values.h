@@ -29,6 +29,8 @@ RunRow loss_over_lbfgs();
 
 /// The mean over the examples.
 RunValue mean_of(RunRow row);
+/// The share of the examples within half a period of the truth.
+RunValue in_basin();
 /// Updates until the mean loss, or the mean error, has fallen below that of
 /// L-BFGS-B; infinite if never.
 RunValue passes_lbfgs();
