@@ -86,7 +86,8 @@ void Conv<T>::backward(const LayerArgs<T>& at, const Backward<T>& b) const {
 
 template <class T>
 void Conv<T>::tangent(const LayerArgs<T>& at, const Tangent<T>& t) const {
-  push_convolution(conv_, at, t.x, t.x_dot, t.y_dot);
+  push_convolution(
+      conv_, at, t.x, t.x_dot, t.y_dot, [](Index, Index, Index) {});
   apply_gate<T>({activation_, t.y}, t.y_dot);
 }
 

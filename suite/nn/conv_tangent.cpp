@@ -40,27 +40,31 @@ struct Moving {
            .x_dot = z_dot,
            .y = y} {}
 
-  /// Of bar, then of bar (x - mean) inverse: channels each, in `work`.
+  Index sums_size() const { return 2 * of.shape.channels; }
+  Index blocks() const { return block.conv.blocks(z); }
+  /// Of bar, then of bar (x - mean) inverse: channels each, at positions
+  /// [begin, end).
+  void add_up(const NormColumns<T>& columns,
+              Lanes<const T> x,
+              Lanes<const T> bar,
+              Index begin,
+              Index end,
+              T* sums) const {
+    const NormShape plain{.grid = of.shape.grid, .channels = of.shape.channels};
+    block_sums<T>(plain, columns, of.parameters, x, x, bar, begin, end, sums);
+  }
+  /// The same at all positions, in `work`.
   T* sums(const NormColumns<T>& columns,
           Lanes<const T> x,
           Lanes<const T> bar) const {
-    const NormShape plain{.grid = of.shape.grid, .channels = of.shape.channels};
-    const Index positions = plain.positions(), two = 2 * plain.channels;
-    const Index blocks = (positions + some - 1) / some;
-    T* totals = at.work->template take<T>(two, 1).data();
-    T* parts = at.work->template take<T>(two, blocks).data();
-    for_positions(threads, positions, some, [&](Index begin, Index end) {
-      block_sums<T>(plain,
-                    columns,
-                    of.parameters,
-                    x,
-                    x,
-                    bar,
-                    begin,
-                    end,
-                    parts + begin / some * two);
-    });
-    combine_sums(parts, blocks, plain.channels, totals);
+    T* totals = at.work->template take<T>(sums_size(), 1).data();
+    T* parts = at.work->template take<T>(sums_size(), blocks()).data();
+    for_positions(
+        threads, of.shape.positions(), some, [&](Index begin, Index end) {
+          T* part = parts + begin / some * sums_size();
+          add_up(columns, x, bar, begin, end, part);
+        });
+    combine_sums(parts, blocks(), of.shape.channels, totals);
     return totals;
   }
   /// What a sum is divided by; zero outside training, where the statistics are
@@ -107,8 +111,18 @@ void push_block(const BlockParts<T>& block,
   at.dots->template slot<T>(at.slot + 1, channels, NormDots<T>::kCount);
   const Workspace::Scope scope(*at.work);
   const Moving<T> m(block, at, t.y);
-  push_convolution<T>(block.conv, at, t.x, t.x_dot, m.z_dot);
-  const T* sums = m.sums(m.of.at, m.z, m.z_dot);
+  T* parts = at.work->template take<T>(m.sums_size(), m.blocks()).data();
+  T* sums = at.work->template take<T>(m.sums_size(), 1).data();
+  push_convolution(block.conv,
+                   at,
+                   t.x,
+                   t.x_dot,
+                   m.z_dot,
+                   [&](Index i, Index begin, Index end) {
+                     T* part = parts + i * m.sums_size();
+                     m.add_up(m.of.at, m.z, m.z_dot, begin, end, part);
+                   });
+  combine_sums(parts, m.blocks(), channels, sums);
   for (Index c = 0; c < channels; ++c) {
     m.of.dots.mean[c] = m.share() * sums[c];
     m.of.dots.slope[c] = m.share() * sums[channels + c];

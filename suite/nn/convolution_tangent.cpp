@@ -3,34 +3,6 @@
 namespace physinv::nn {
 
 template <class T>
-void push_convolution(const Convolution<T>& conv,
-                      const LayerArgs<T>& at,
-                      Lanes<const T> x,
-                      Lanes<const T> x_dot,
-                      Lanes<T> y_dot) {
-  const ConvShape& shape = conv.shape();
-  const Workspace::Scope scope(*at.work);
-  Lanes<T> more = y_dot;
-  more.data = at.work->template take<T>(more.stride, more.rows).data();
-  const T* const w_dot = at.parameters_dot;
-  conv.product(
-      at, w_dot, w_dot + conv.shape().weights(), x, more, [](auto...) {});
-  const auto rows = [&](Lanes<T> all, Index begin, Index end) {
-    all.data = all.row(begin * shape.out);
-    all.rows = (end - begin) * shape.out;
-    return all;
-  };
-  conv.product(at,
-               at.parameters,
-               nullptr,
-               x_dot,
-               y_dot,
-               [&](Index, Index begin, Index end) {
-                 add_lanes<T>(rows(more, begin, end), rows(y_dot, begin, end));
-               });
-}
-
-template <class T>
 void pull_convolution(const Convolution<T>& conv,
                       const LayerArgs<T>& at,
                       const BackwardTangent<T>& b,
@@ -53,11 +25,6 @@ void pull_convolution(const Convolution<T>& conv,
 }
 
 #define PHYSINV_INSTANTIATE(T)                                 \
-  template void push_convolution<T>(const Convolution<T>&,     \
-                                    const LayerArgs<T>&,       \
-                                    Lanes<const T>,            \
-                                    Lanes<const T>,            \
-                                    Lanes<T>);                 \
   template void pull_convolution<T>(const Convolution<T>&,     \
                                     const LayerArgs<T>&,       \
                                     const BackwardTangent<T>&, \

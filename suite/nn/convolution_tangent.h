@@ -6,13 +6,20 @@
 
 namespace physinv::nn {
 
-/// y_dot of x_dot and at.parameters_dot.
-template <class T>
+/// y_dot of x_dot and at.parameters_dot, with `done` as in `forward`.
+template <class T, class F>
 void push_convolution(const Convolution<T>& conv,
                       const LayerArgs<T>& at,
                       Lanes<const T> x,
                       Lanes<const T> x_dot,
-                      Lanes<T> y_dot);
+                      Lanes<T> y_dot,
+                      F&& done) {
+  conv.forward(at,
+               {{at.parameters_dot, x}, {at.parameters, x_dot}},
+               at.parameters_dot + conv.shape().weights(),
+               y_dot,
+               done);
+}
 
 /// The gradients by weights and x, and their derivatives, for these cotangents
 /// (those of `b` may lie behind something else). b.parameters_bar may be null,

@@ -6,6 +6,7 @@
 #include <tuple>
 #include <vector>
 
+#include "suite/core/threads.h"
 #include "suite/nn/activation.h"
 #include "suite/nn/cnn.h"
 #include "suite/nn/conv.h"
@@ -94,8 +95,8 @@ std::vector<Built> networks() {
 
 template <class T>
 struct Moved : Bench<T> {
-  Moved(const Built& built, bool training)
-      : Bench<T>(built.recipe, built.inputs, built.outputs),
+  Moved(const Built& built, bool training, Threads* threads = nullptr)
+      : Bench<T>(built.recipe, built.inputs, built.outputs, threads),
         pass{.training = training},
         in(wavy<T>(built.inputs, kSamples)),
         out(this->forward(in, pass)),
@@ -257,6 +258,23 @@ TEST_P(TangentTest, FloatAgreesWithDouble) {
                 f.product(f.p_dot, f.out_bar, f.out_bar_dot).cast<double>()),
             d.product(d.p_dot, d.out_bar, d.out_bar_dot)),
       1e-3);
+}
+
+// Enough work for blocks, parts and threads.
+TEST(Tangent, BitsDoNotDependOnThreads) {
+  const Built plane{"plane",
+                    unet({.grid = {32, 32},
+                          .levels = 2,
+                          .padding = Padding::circular,
+                          .batch_statistics = true}),
+                    1024,
+                    1024};
+  Threads threads(3);
+  Moved<float> one(plane, true), three(plane, true, &threads);
+  const Batch<float> out_dot = one.tangent(one.p_dot);
+  expect_same_bits(three.tangent(three.p_dot), out_dot);
+  expect_same_bits(three.product(three.p_dot, three.out_bar, out_dot),
+                   one.product(one.p_dot, one.out_bar, out_dot));
 }
 
 INSTANTIATE_TEST_SUITE_P(Networks,
