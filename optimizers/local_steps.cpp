@@ -4,6 +4,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "optimizers/training/newton.h"
@@ -104,16 +105,16 @@ class LocalSteps {
           };
           (*rule_)(numbers(x_), numbers(next_), numbers(next_));
         } else {
-          next_ = x_ - rate_ * next_;
+          go(-rate_);
         }
         return;
       case LocalStep::newton:
         newton();
-        next_ = x_ + rate_ * next_;
+        go(rate_);
         return;
       case LocalStep::inverse_gradient:
         inverse_gradient();
-        next_ = x_ + rate_ * next_;
+        go(rate_);
         return;
       case LocalStep::inverse_simulator:
         closer_observation();
@@ -126,6 +127,14 @@ class LocalSteps {
         if constexpr (std::is_same_v<T, double>)
           search_->invert(y_, given_, x_, next_);
     }
+  }
+
+  /// next_ = x + factor next_.
+  void go(T factor) {
+    BatchOut<T> out = next_;
+    for_numbers<T>(next_, x_, out, [factor](T step, T x) {
+      return std::fma(factor, step, x);
+    });
   }
 
   /// d loss / d x, in next_.
@@ -190,7 +199,10 @@ class LocalSteps {
   /// y + dy, in y_.
   void closer_observation() {
     forward();
-    y_ += rate_ * (target_ - y_);
+    BatchOut<T> out = y_;
+    for_numbers<T>(y_, target_, out, [rate = rate_](T y, T goal) {
+      return std::fma(rate, goal - y, y);
+    });
   }
 
   void accept() {

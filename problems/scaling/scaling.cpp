@@ -203,7 +203,7 @@ void Scaling<T>::newton_step(BatchIn<T> x,
     const T b = x(1, i), goal = target(1, i), rest = goal - p.y[1];
     T step = rest / given(0, i);
     if (options_.power == 2)
-      step = goal == 0 ? -b / 3 : b * (rest / (3 * p.y[1] - goal));
+      step = goal == 0 ? -b / 3 : b * (rest / std::fma(T(3), p.y[1], -goal));
     dx.col(i) << target(0, i) - p.y[0], step;
   }
 }

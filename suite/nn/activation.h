@@ -93,8 +93,6 @@ inline T second_derivative(Activation a, T y) {
       const T s = sigmoid(y), slope = s * (T(1) - s);
       return slope * std::fma(y, T(1) - T(2) * s, T(2));
     }
-    case Activation::half_tanh:
-      return -y;
     case Activation::gelu:
       return normal_density(y) * std::fma(-y, y, T(2));
   }

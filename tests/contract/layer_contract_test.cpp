@@ -25,6 +25,7 @@ const std::map<std::string, std::array<Index, 2>> kParameters = {
     {"jpo/kuramoto-sivashinsky", {59650, 13121}},
     {"jpo/robotic-arm", {33924, 33922}},
     {"jpo/wave-packet", {13921, 13073}},
+    {"sip/heat", {37697, 0}},
     {"sip/wave-packet", {17489, 0}}};
 
 struct Role {
@@ -102,6 +103,8 @@ TEST_P(LayerContract, HasTheParametersOfThePaper) {
 }
 
 TEST_P(LayerContract, GradientsAgreeWithCentralDifferences) {
+  if (net_->operations() > 5e7)
+    GTEST_SKIP() << "its layers are looked at on smaller planes";
   for (const bool training : {false, true}) {
     const Pass pass{.training = training, .fixed_input = training};
     Vector<double> p_bar(p_.size());

@@ -198,7 +198,8 @@ TEST(SourcesContract, EditsMakeStaleWhoUsesThem) {
   edits("optimizers/half_inverse/tridiagonalize.cpp",
         "(hig|numerics/half-inverse).*");
   edits("optimizers/steps/rmsprop.h", "hig/.*rmsprop.*");
-  edits("suite/nn/unet.cpp", "jpo/(kuramoto|wave).*/na/.*");
+  edits("suite/nn/unet.cpp",
+        "(jpo/(kuramoto|wave).*/na|sip/(heat|poisson))/.*");
 }
 
 // ---- the compiler's word ----------------------------------------------------

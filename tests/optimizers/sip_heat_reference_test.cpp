@@ -4,6 +4,7 @@
 #include "optimizers/training/proxy.h"
 #include "problems/heat/heat.h"
 #include "suite/nn/unet.h"
+#include "tests/support/bits.h"
 #include "tests/support/quadratic.h"
 #include "tests/support/reference.h"
 
@@ -173,6 +174,22 @@ void check_two_steps(const Json& entry) {
       EXPECT_TRUE(heat_tolerance(entry, p)(seen, stored)) << k;
       EXPECT_TRUE(heat_tolerance(entry, p)(seen.tail(6), stored.tail(6)));
     }
+}
+
+// Where the network is in double already, nothing is rounded on the way.
+TEST(Proxy, InDoubleIsTheSameForNetworksInDouble) {
+  const auto after = [](ProxyPrecision precision) {
+    const Batch<double> y = observations();
+    const auto stage =
+        train({.rule = SgdOptions{.rate = 1e-3},
+               .batch = 1,
+               .signal = inverse_proxy(ProxyNorm::square, precision)});
+    StageBench bench(
+        *stage, 2, 4, problem<Observed>("heat", {y}), heat_setting());
+    return Batch<double>(bench.run().arrays.at("parameters"));
+  };
+  EXPECT_TRUE(same_bits(after(ProxyPrecision::of_network),
+                        after(ProxyPrecision::in_double)));
 }
 
 TEST(SipHeatReference, Training) {

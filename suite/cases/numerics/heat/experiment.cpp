@@ -32,7 +32,9 @@ const SweepAxis kTimes{"end time", {1, 2, 4, 8, 16, 32, 64}, true};
 
 /// What is said of noise, at one end time; the inverse's error is that of x.
 Knob floor_knob(double end_time) {
-  const SweepAxis floors{"noise floor", {1e-3, 1e-6, 1e-9, 1e-12}, true};
+  const SweepAxis floors{fmt::format("end time {}, noise floor", end_time),
+                         {1e-3, 1e-6, 1e-9, 1e-12},
+                         true};
   return {
       .id = fmt::format("floor-{}", end_time),
       .title = fmt::format("Noise floor of the inverse, end time {}", end_time),

@@ -35,16 +35,21 @@ Batch<double> order() {
   const Batch<double> x = Batch<double>::Constant(2, 6, 3);
   const Batch<double> alpha = Batch<double>::Ones(1, 6);
   const Batch<double> y = b.forward(x, alpha);
-  const Vector<double> rate = Vector<double>::NullaryExpr(
-      6, [](Index k) { return std::ldexp(kStep, -static_cast<int>(k)); });
-  const Batch<double> dy = -y * rate.asDiagonal();
-  const Batch<double> pg = b.invert(y + dy, x);
-  Batch<double> ig(2, 6);
+  Batch<double> dy(2, 6), ig(2, 6), found(3, 6);
   b.problem.inverse_gradient_step(x, alpha, Batch<double>::Zero(2, 6), ig);
-  ig = x + ig * rate.asDiagonal();
-  Batch<double> found(3, 6);
-  found << dy.colwise().norm(), (pg - ig).colwise().norm(),
-      (b.forward(pg, alpha) - (y + dy)).colwise().norm();
+  for (Index k = 0; k < 6; ++k) {
+    const double rate = std::ldexp(kStep, -static_cast<int>(k));
+    dy.col(k) = -rate * y.col(k);
+    ig.col(k) *= rate;
+  }
+  const Batch<double> pg = b.invert(y + dy, x), end = x + ig;
+  const Batch<double> reached = b.forward(pg, alpha), wanted = y + dy;
+  const auto distance = [](const Batch<double>& p, Index k) {
+    return std::hypot(p(0, k), p(1, k));
+  };
+  for (Index k = 0; k < 6; ++k)
+    found.col(k) << distance(dy, k), distance(pg - end, k),
+        distance(reached - wanted, k);
   return found;
 }
 

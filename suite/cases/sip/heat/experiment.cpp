@@ -25,7 +25,10 @@ constexpr Index kSide = 64, kPaper = 10'000, kStudy = 2'000;
 enum class Push { solver, inverse };
 
 /// Objectives are sums over the batch, not means.
-Method trained(std::string id, Push push, StepOptions rule, const Spot& cell) {
+Method trained(std::string id,
+               Push push,
+               decltype(TrainingOptions::rule) rule,
+               const Spot& cell) {
   return {
       .id = std::move(id),
       .chain = {train({.rule = std::move(rule),
@@ -59,6 +62,16 @@ std::vector<Method> methods() {
   };
   sgd("sgd", 128, 2e-6), sgd("sgd-b4", 4, 2e-6);
   sgd("sgd-lr3", 128, 1e-3), sgd("sgd-b8-lr3", 8, 1e-3);
+  all.push_back(trained("adahessian",
+                        Push::solver,
+                        AdaHessianOptions{.rate = 1e-3},
+                        {.batch = 128}));
+  all.push_back(
+      trained("hf", Push::solver, HessianFreeOptions{}, {.batch = 128}));
+  all.push_back(trained("hf-b4",
+                        Push::solver,
+                        HessianFreeOptions{.solver = {.iterations = 30}},
+                        {.batch = 4}));
   all.push_back({"gd-cells", {direct({.solver = Direct::descent})}});
   all.push_back({"gd", {direct({.solver = Direct::descent_modes})}});
   all.push_back({"lbfgsb", {direct({.solver = Direct::lbfgsb_modes})}});
@@ -83,7 +96,8 @@ std::vector<Row> quick() {
           row({"gd-cells", "inverse-physics"}, 64, 1, 100),
           row({"lbfgsb-cells"}, 64, 1, 20),
           row({"sip-b8", "adam-b8"}, 64, 3, 120),
-          row({"sgd-b8-lr3"}, 64, 1, 20)};
+          row({"sgd-b8-lr3"}, 64, 1, 20),
+          row({"hf-b4"}, 64, 1, 9)};
 }
 
 std::vector<Row> paper() {
@@ -95,7 +109,9 @@ std::vector<Row> paper() {
           studies.push_back(id);
   return {row({"gd", "lbfgsb"}, 128, 1, 1000),
           row({"inverse-physics"}, 128, 1, 100),
-          row({"sip", "adam", "sgd"}, 128, 3, kPaper),
+          row({"sip", "adam", "sgd", "adahessian"}, 128, 3, kPaper),
+          row({"hf"}, 128, 1, 30),
+          row({"hf-b4"}, 128, 1, 9),
           row({"sip-b8", "adam-b8"}, 128, 3, 120),
           row({"sgd-lr3", "sgd-b8-lr3"}, 128, 1, 20),
           row(std::move(studies), 128, 1, kStudy)};

@@ -35,6 +35,7 @@ std::vector<MethodLine> networks() {
     all.push_back({"sip" + tail, "SIP" + batch, Hue::orange});
     all.push_back({"adam" + tail, "Adam" + batch, Hue::purple});
   }
+  all.push_back({"hf-b4", "Hessian-free, batch 4", Hue::grey});
   all.push_back({"sgd-b4", "SGD, batch 4", Hue::brown});
   all.push_back({"sgd-b8-lr3", "SGD 1e-3, batch 8", Hue::olive});
   return all;
@@ -67,7 +68,8 @@ Table errors(const Results& results, const Published& published) {
                   "share left, coarse",
                   "share left, fine"},
       .note =
-          "Medians over the seeds of means over the examples. Coarse waves "
+          "Means over the examples and, with their deviation, over the seeds. "
+          "Coarse waves "
           "are those damped to 1/e at most, fine ones those damped to e^-4 "
           "and further, to e^-16; shares are of x*'s energy. The paper's "
           "script clamps networks only."};
