@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <stdexcept>
+#include <string>
 
 #include "optimizers/network_model.h"
 #include "tests/support/gradient_check.h"
@@ -175,7 +177,15 @@ TEST_P(LayerContract, TangentsAgreeWithBackward) {
     Vector<double> p_bar(p_.size());
     VectorOut<double> ref(p_bar);
     net_->backward(p_, tape_, out_bar_, &ref, nullptr, work_);
-    const Batch<double> u_dot = tangent(u);
+    Batch<double> u_dot;
+    try {
+      u_dot = tangent(u);
+    } catch (const std::exception& e) {
+      ASSERT_NE(std::string(e.what()).find("no forward mode"),
+                std::string::npos)
+          << e.what();
+      GTEST_SKIP() << "has layers without forward mode";
+    }
     EXPECT_NEAR((u_dot.array() * out_bar_.array()).sum(),
                 p_bar.dot(u),
                 1e-11 * u_dot.norm() * out_bar_.norm());

@@ -56,6 +56,7 @@ std::vector<Built> networks() {
       {"sigmoid", dense(Activation::sigmoid, true), 4, 3},
       {"softplus", dense(Activation::softplus, false), 4, 3},
       {"silu", dense(Activation::silu, true), 4, 3},
+      {"gelu", dense(Activation::gelu, false), 4, 3},
       {"half_tanh", dense(Activation::half_tanh, false), 4, 3},
       {"encoded",
        mlp({.hidden = {6}, .frequencies = 3, .activation = Activation::tanh}),

@@ -1,5 +1,6 @@
 // SIP paper, App. C.2: a network learns to invert the exponential. The Newton
-// steps are those of the authors' script and have no published numbers.
+// steps are those of the authors' script and have no published numbers, nor
+// have AdaHessian and Hessian-free, which the paper tries on other problems.
 #include <string>
 #include <utility>
 #include <vector>

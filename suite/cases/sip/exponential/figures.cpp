@@ -14,6 +14,8 @@ const std::vector<MethodLine> kLines = {
     {"adam", "Adam", Hue::purple},
     {"norm", "Adam, sign of the inverse's step", Hue::orange},
     {"gt", "Adam, the inverse's step", Hue::green},
+    {"adahessian", "AdaHessian", Hue::olive},
+    {"hf", "Hessian-free", Hue::indigo},
     {"newton", "Adam, Newton's step", Hue::teal},
     {"newton-clipped", "at most 0.1", Hue::pink},
     {"newton-damped", "Hessian + 0.01", Hue::brown}};
