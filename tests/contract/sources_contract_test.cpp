@@ -197,10 +197,10 @@ TEST(SourcesContract, EditsMakeStaleWhoUsesThem) {
         "(jpo|matrix|numerics)/kuramoto-sivashinsky.*");
   edits("optimizers/bfgs.cpp", "jpo/.* (solve|refine)");
   edits("optimizers/half_inverse/tridiagonalize.cpp",
-        "(hig|numerics/half-inverse).*");
+        "(hig|numerics/half-inverse).*|matrix/.*/(gn|hig)/.*");
   edits("optimizers/steps/rmsprop.h", "(hig|matrix|physgrad|sip)/.*rmsprop.*");
   edits("suite/nn/unet.cpp",
-        "(jpo/(kuramoto|wave).*/na|sip/(heat|poisson))/.*");
+        "jpo/(kuramoto|wave).*/na/.*|(sip|matrix)/(heat|poisson).*");
 }
 
 // ---- the compiler's word ----------------------------------------------------
