@@ -135,6 +135,9 @@ Samples<double> SinePlane<T>::sample(Index first,
     put<double>(
         out.x, i, nearest_solution(options_, {0, 0}, column<double>(out.y, i)));
   }
+  // The observation of that very x, to the last bit.
+  Workspace work;
+  SinePlane<double>(options_).forward(out.x, out.given, out.y, work);
   return out;
 }
 
