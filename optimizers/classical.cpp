@@ -8,6 +8,7 @@
 #include "optimizers/bfgs.h"
 #include "optimizers/drive.h"
 #include "optimizers/gradient_descent.h"
+#include "optimizers/lbfgsb.h"
 #include "optimizers/solver_outcome.h"
 #include "suite/core/oracle.h"
 #include "suite/core/probe.h"
@@ -47,9 +48,13 @@ Outcome solve(Solver& solver, StageRun& run, const Batch<double>& x0) {
   return out;
 }
 
-/// Both stages stand here; each has a solver of its own.
-Sources without(Sources sources, std::string header) {
-  sources.unused.emplace_back("optimizers/classical.cpp", std::move(header));
+/// All stages stand here; each has a solver of its own.
+Sources only(const char* used, Sources sources) {
+  for (const std::string header : {"optimizers/bfgs.h",
+                                   "optimizers/gradient_descent.h",
+                                   "optimizers/lbfgsb.h"})
+    if (header != used)
+      sources.unused.emplace_back("optimizers/classical.cpp", header);
   return sources;
 }
 
@@ -66,7 +71,7 @@ class BfgsStage final : public Stage {
   Index default_iterations() const override { return options_.iterations; }
   Networks networks() const override { return Networks::none; }
   Sources sources() const override {
-    return without(Stage::sources(), "optimizers/gradient_descent.h");
+    return only("optimizers/bfgs.h", Stage::sources());
   }
   bool takes_row_iterations() const override { return !refines_; }
   double operations(const CaseSize& size) const override {
@@ -85,6 +90,44 @@ class BfgsStage final : public Stage {
   bool refines_;
 };
 
+class LbfgsbStage final : public Stage {
+ public:
+  explicit LbfgsbStage(const LbfgsbStageOptions& options) : options_(options) {}
+
+  std::string name() const override { return "solve"; }
+  Needs needs() const override { return Needs::forward | Needs::vjp; }
+  Options options() const override {
+    return {{"algorithm", "lbfgsb"},
+            {"memory", fmt::format("{}", options_.memory)},
+            {"ftol", fmt::format("{}", options_.ftol)},
+            {"lower", fmt::format("{}", fmt::join(options_.lower, ","))},
+            {"upper", fmt::format("{}", fmt::join(options_.upper, ","))}};
+  }
+  Index default_iterations() const override { return options_.iterations; }
+  Networks networks() const override { return Networks::none; }
+  Sources sources() const override {
+    return only("optimizers/lbfgsb.h", Stage::sources());
+  }
+  double operations(const CaseSize& size) const override {
+    const double d = static_cast<double>(size.shape.unknowns);
+    const double m = static_cast<double>(options_.memory);
+    return 40.0 * static_cast<double>(size.n) *
+           (3 * size.problem_operations + 500 + 12 * m * d);
+  }
+  Outcome run(StageRun& run) const override {
+    Lbfgsb solver({.memory = options_.memory,
+                   .pgtol = run.setting.gtol,
+                   .ftol = options_.ftol,
+                   .maxiter = run.iterations,
+                   .lower = options_.lower,
+                   .upper = options_.upper});
+    return solve(solver, run, run.oracle.start());
+  }
+
+ private:
+  LbfgsbStageOptions options_;
+};
+
 class GradientDescentStage final : public Stage {
  public:
   explicit GradientDescentStage(const GradientDescentStageOptions& options)
@@ -98,7 +141,7 @@ class GradientDescentStage final : public Stage {
   Index default_iterations() const override { return options_.iterations; }
   Networks networks() const override { return Networks::none; }
   Sources sources() const override {
-    return without(Stage::sources(), "optimizers/bfgs.h");
+    return only("optimizers/gradient_descent.h", Stage::sources());
   }
   double operations(const CaseSize& size) const override {
     return 0.5 * static_cast<double>(size.n * size.iterations) *
@@ -125,6 +168,10 @@ std::shared_ptr<const Stage> bfgs_solve(const BfgsStageOptions& options) {
 
 std::shared_ptr<const Stage> bfgs_refine(const BfgsStageOptions& options) {
   return std::make_shared<BfgsStage>(options, true);
+}
+
+std::shared_ptr<const Stage> lbfgsb_solve(const LbfgsbStageOptions& options) {
+  return std::make_shared<LbfgsbStage>(options);
 }
 
 std::shared_ptr<const Stage> gradient_descent_solve(

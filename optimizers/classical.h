@@ -7,6 +7,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "suite/core/method.h"
 
@@ -22,6 +23,18 @@ std::shared_ptr<const Stage> bfgs_solve(const BfgsStageOptions& options = {});
 /// Stage `refine`: BFGS on the true loss from the previous estimates. One that
 /// cannot start (its loss is not finite) keeps its start and status nonfinite.
 std::shared_ptr<const Stage> bfgs_refine(const BfgsStageOptions& options = {});
+
+struct LbfgsbStageOptions {
+  Index iterations = 15000;
+  Index memory = 10;
+  double ftol = 2.2204460492503131e-09;  ///< as of LbfgsbOptions (lbfgsb.h)
+  std::vector<double> lower = {}, upper = {};
+};
+
+/// Stage `solve`: L-BFGS-B on the true loss from the start, within bounds if
+/// there are any.
+std::shared_ptr<const Stage> lbfgsb_solve(
+    const LbfgsbStageOptions& options = {});
 
 struct GradientDescentStageOptions {
   Index iterations = 1000;

@@ -1,4 +1,4 @@
-/// Runs a batched solver (`Bfgs`, `GradientDescent`) to its end.
+/// Runs a batched solver (`Bfgs`, `Lbfgsb`, `GradientDescent`) to its end.
 #pragma once
 
 #include <concepts>

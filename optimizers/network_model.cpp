@@ -124,6 +124,36 @@ Vector<T>& NetworkModel<T>::backward(BatchIn<T> out_bar) {
 }
 
 template <class T>
+const Batch<T>& NetworkModel<T>::tangent(const Vector<T>& direction) {
+  output_dot_.resizeLike(output_);
+  network_->tangent(parameters_,
+                    tape_,
+                    direction,
+                    Batch<T>(network_->inputs(), 0),
+                    output_dot_,
+                    dots_,
+                    work_);
+  return output_dot_;
+}
+
+template <class T>
+void NetworkModel<T>::backward_tangent(const Vector<T>& direction,
+                                       BatchIn<T> out_bar,
+                                       BatchIn<T> out_bar_dot,
+                                       Vector<T>& product) {
+  product.resize(parameters_.size());
+  network_->backward_tangent(parameters_,
+                             tape_,
+                             direction,
+                             dots_,
+                             out_bar,
+                             out_bar_dot,
+                             nullptr,
+                             product,
+                             work_);
+}
+
+template <class T>
 void NetworkModel<T>::update_state() {
   if (state_.size() > 0) network_->update_state(tape_, state_);
 }
@@ -162,10 +192,10 @@ Batch<double> NetworkModel<T>::change_per_tensor(const Rng& start) const {
 
 template <class T>
 std::size_t NetworkModel<T>::bytes() const {
-  const Index numbers =
-      2 * parameters_.size() + state_.size() + input_.size() + output_.size();
+  const Index numbers = 2 * parameters_.size() + state_.size() + input_.size() +
+                        output_.size() + output_dot_.size();
   return static_cast<std::size_t>(numbers) * sizeof(T) + tape_.bytes() +
-         work_.bytes();
+         dots_.bytes() + work_.bytes();
 }
 
 template class NetworkModel<float>;

@@ -43,6 +43,15 @@ class NetworkModel {
   /// Gradient of the parameters for cotangents of the last `forward`; its
   /// memory is the caller's until the next call.
   Vector<T>& backward(BatchIn<T> out_bar);
+  /// Derivative of the last `forward`'s outputs where the parameters move along
+  /// `direction`: for any number of directions.
+  const Batch<T>& tangent(const Vector<T>& direction);
+  /// Derivative of `backward` along the direction of the last `tangent`, where
+  /// out_bar moves along out_bar_dot.
+  void backward_tangent(const Vector<T>& direction,
+                        BatchIn<T> out_bar,
+                        BatchIn<T> out_bar_dot,
+                        Vector<T>& product);
   /// Running statistics follow the last `forward`.
   void update_state();
   /// One pass forward and back that leaves nothing behind but warm caches.
@@ -65,8 +74,8 @@ class NetworkModel {
  private:
   std::unique_ptr<Network<T>> network_;
   Vector<T> parameters_, state_, gradient_;
-  Batch<T> input_, output_;
-  Tape tape_, prediction_tape_;
+  Batch<T> input_, output_, output_dot_;
+  Tape tape_, dots_, prediction_tape_;
   Workspace work_, prediction_work_;
   bool fresh_ = true;
 };

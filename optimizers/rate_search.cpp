@@ -20,8 +20,12 @@ constexpr double kNotFinite = 1e300;  // JSON and HDF5 keep numbers
 TrainingOptions at_rate(TrainingOptions options, double rate) {
   if (auto* step = std::get_if<StepOptions>(&options.rule)) {
     std::visit([&](auto& o) { o.rate = rate; }, *step);
+  } else if (auto* half = std::get_if<HalfInverseStepOptions>(&options.rule)) {
+    half->rate = rate;
+  } else if (auto* hessian = std::get_if<AdaHessianOptions>(&options.rule)) {
+    hessian->rate = rate;
   } else {
-    std::get<HalfInverseStepOptions>(options.rule).rate = rate;
+    std::get<HessianFreeOptions>(options.rule).rate = rate;
   }
   return options;
 }

@@ -8,7 +8,7 @@
 
 namespace physinv {
 
-/// Estimates, statuses and counts of a `Bfgs` or `GradientDescent` run. The
+/// Estimates, statuses and counts of the run of a batched solver (drive.h). The
 /// evaluations that finished problems did not need are counted as saved.
 template <class Solver>
 Outcome solver_outcome(const Solver& solver, Oracle& oracle) {

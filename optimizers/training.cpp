@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <type_traits>
+
+#include "optimizers/training/adahessian_rule.h"
 #include "optimizers/training/first_order.h"
 #include "optimizers/training/half_inverse_rule.h"
 #include "optimizers/training/loop.h"
@@ -13,18 +17,46 @@
 namespace physinv {
 namespace {
 
-bool first_order(const TrainingOptions& options) {
-  return std::holds_alternative<StepOptions>(options.rule);
+template <class Options>
+bool has_rule(const TrainingOptions& options) {
+  return std::holds_alternative<Options>(options.rule);
 }
 
 template <class T>
 std::unique_ptr<Rule<T>> make_rule(const TrainingOptions& options,
                                    NetworkModel<T>& model,
-                                   Threads* threads) {
-  if (const auto* step = std::get_if<StepOptions>(&options.rule))
-    return std::make_unique<GuardedFirstOrder<T>>(*step, model);
-  return std::make_unique<HalfInverseRule<T>>(
-      std::get<HalfInverseStepOptions>(options.rule), model, threads);
+                                   const StageRun& run) {
+  const auto make = [&](const auto& o) -> std::unique_ptr<Rule<T>> {
+    using Options = std::remove_cvref_t<decltype(o)>;
+    if constexpr (std::is_same_v<Options, StepOptions>) {
+      return std::make_unique<GuardedFirstOrder<T>>(o, model);
+    } else if constexpr (std::is_same_v<Options, AdaHessianOptions>) {
+      return std::make_unique<AdaHessianRule<T>>(o, model, run.method);
+    } else if constexpr (std::is_same_v<Options, HessianFreeOptions>) {
+      return std::make_unique<HessianFreeRule<T>>(o, model);
+    } else {
+      return std::make_unique<HalfInverseRule<T>>(o, model, run.threads);
+    }
+  };
+  return std::visit(make, options.rule);
+}
+
+/// What a rule asks of the signal, and that of the problem.
+Needs needs(const TrainingOptions& options) {
+  const SignalRecipe& signal = options.signal;
+  const auto products = [&](const std::optional<Needs>& asked) {
+    SUITE_CHECK(asked.has_value(),
+                "the signal " + signal.algorithm +
+                    " has no products with second derivatives; rules of "
+                    "curvature take solver_loss()");
+    return *asked | signal.gradient;
+  };
+  if (has_rule<StepOptions>(options)) return signal.gradient;
+  if (has_rule<HalfInverseStepOptions>(options)) return signal.jacobians;
+  SUITE_CHECK(options.chunk == 0,
+              "rules of curvature need the batch in one chunk");
+  return products(has_rule<AdaHessianOptions>(options) ? signal.hessian
+                                                       : signal.gauss_newton);
 }
 
 /// From where the stage before left it, if there is one.
@@ -44,15 +76,18 @@ Outcome fit(const TrainingOptions& options, StageRun& run) {
       run.setting.predictor, shape, shape.unknowns, run.threads);
   start(model, run);
   Batches<T> batches(
-      run, {.size = options.batch, .fresh = options.fresh}, drawn_before(run));
+      run,
+      {.size = options.batch, .fresh = options.fresh, .set = options.set},
+      drawn_before(run));
   const auto signal = options.signal.make<T>(
       {.run = run,
        .model = model,
        .batches = batches,
        .options = {.gradient_scale = options.gradient_scale,
                    .chunk = options.chunk,
-                   .project = options.project}});
-  const auto rule = make_rule<T>(options, model, run.threads);
+                   .project = options.project,
+                   .late = options.late}});
+  const auto rule = make_rule<T>(options, model, run);
   MetricsRecorder metrics(options.metrics, run);
   Predictions<T> predict(model, run);
   const auto estimate = [&](BatchOut<double> x) {
@@ -88,7 +123,12 @@ Options in_words(const TrainingOptions& options) {
                  {"metrics", options.metrics.name}};
   if (options.chunk > 0)
     all.push_back({"chunk", fmt::format("{}", options.chunk)});
+  if (options.set > 0) all.push_back({"set", fmt::format("{}", options.set)});
   if (!options.project) all.push_back({"project", "false"});
+  if (options.late.of) {
+    all.push_back({"late_error", options.late.name});
+    all.push_back({"late_share", fmt::format("{}", options.late.share)});
+  }
   const Options rule =
       std::visit([](const auto& o) { return describe(o); }, options.rule);
   all.insert(all.end(), rule.begin(), rule.end());
@@ -99,31 +139,44 @@ double operations(const TrainingOptions& options, const CaseSize& size) {
   const auto samples = static_cast<double>(options.batch);
   const double passes =
       samples * (3 * size.predictor_operations + 3 * size.problem_operations);
-  // One reduction of J J^T, or of J where that is smaller.
-  const double m = samples * static_cast<double>(size.shape.observations),
-               p = size.predictor_operations / 2;
-  double reduction = 0;
-  if (!first_order(options))
-    reduction = p < m ? 2 * m * p * p : 4 * m * m * m / 3;
-  return static_cast<double>(size.iterations) * (passes + reduction);
+  double more = 0;
+  if (has_rule<HalfInverseStepOptions>(options)) {
+    // One reduction of J J^T, or of J where that is smaller.
+    const double m = samples * static_cast<double>(size.shape.observations),
+                 p = size.predictor_operations / 2;
+    more = p < m ? 2 * m * p * p : 4 * m * m * m / 3;
+  } else if (has_rule<AdaHessianOptions>(options)) {
+    more = 3 * passes;  // forward mode, and its reverse
+  } else if (const auto* o = std::get_if<HessianFreeOptions>(&options.rule)) {
+    more = 1.5 * passes * static_cast<double>(o->solver.iterations);
+  }
+  return static_cast<double>(size.iterations) * (passes + more);
 }
+
+/// Where options and class of a rule are, in the order of the variant.
+constexpr std::array<std::array<const char*, 2>, 4> kRules = {
+    {{"optimizers/steps/rule.h", "optimizers/training/first_order.h"},
+     {"optimizers/half_inverse_step.h",
+      "optimizers/training/half_inverse_rule.h"},
+     {"optimizers/steps/adahessian.h", "optimizers/training/adahessian_rule.h"},
+     {"optimizers/training/hessian_free_rule.h", nullptr}}};
 
 Sources sources(const TrainingOptions& options) {
   Sources all;
   options.metrics.add_to(all);
+  if (options.late.of) all.roots.emplace_back(options.late.source);
   all.roots.emplace_back(options.signal.source);
   const auto unused = [&](const char* file, const char* header) {
     all.unused.emplace_back(file, header);
   };
   unused("optimizers/training.h", "optimizers/training/solver_loss.h");
-  if (const auto* step = std::get_if<StepOptions>(&options.rule)) {
+  if (const auto* step = std::get_if<StepOptions>(&options.rule))
     add_sources(*step, all);
-    unused("optimizers/training.h", "optimizers/half_inverse_step.h");
-    unused("optimizers/training.cpp",
-           "optimizers/training/half_inverse_rule.h");
-  } else {
-    unused("optimizers/training.h", "optimizers/steps/rule.h");
-    unused("optimizers/training.cpp", "optimizers/training/first_order.h");
+  for (std::size_t i = 0; i < kRules.size(); ++i) {
+    if (i == options.rule.index()) continue;
+    unused("optimizers/training.h", kRules[i][0]);
+    if (kRules[i][1] != nullptr)
+      unused("optimizers/training.cpp", kRules[i][1]);
   }
   return all;
 }
@@ -131,11 +184,9 @@ Sources sources(const TrainingOptions& options) {
 }  // namespace
 
 std::shared_ptr<const Stage> train(const TrainingOptions& options) {
-  const auto& signal = options.signal;
   return make_stage(
       {.name = options.stage,
-       .needs = Needs::forward |
-                (first_order(options) ? signal.gradient : signal.jacobians),
+       .needs = Needs::forward | needs(options),
        .options = in_words(options),
        .iterations = options.iterations,
        .own_length = options.own_length,

@@ -10,8 +10,8 @@
 ///
 /// Arrays left: `parameters`, `state` (a later stage of the chain starts from
 /// them), `samples_drawn` (1), `mean_loss` (1 x points of the curve, over the
-/// case's problems), what `metrics` adds, what signal (training/batch_signal.h)
-/// and rule leave.
+/// case's problems), what `metrics` adds, `late_error` (1), what signal
+/// (training/batch_signal.h) and rule leave.
 #pragma once
 
 #include <memory>
@@ -20,7 +20,9 @@
 
 #include "optimizers/half_inverse_step.h"
 #include "optimizers/metrics.h"
+#include "optimizers/steps/adahessian.h"
 #include "optimizers/steps/rule.h"
+#include "optimizers/training/hessian_free_rule.h"
 #include "optimizers/training/signal_recipe.h"
 #include "optimizers/training/solver_loss.h"
 
@@ -28,15 +30,21 @@ namespace physinv {
 
 struct TrainingOptions {
   std::string stage = "train";
-  std::variant<StepOptions, HalfInverseStepOptions> rule;
+  std::variant<StepOptions,
+               HalfInverseStepOptions,
+               AdaHessianOptions,
+               HessianFreeOptions>
+      rule;
   Index batch = 128;
   Index chunk = 0;  ///< see SignalOptions
   Index iterations = 1000;
   bool own_length = false;    ///< `iterations` stands, whatever a row says
   double gradient_scale = 1;  ///< see SignalOptions
   bool fresh = false;         ///< every update draws samples never seen before
+  Index set = 0;              ///< see BatchOptions
   bool project = true;        ///< see SignalOptions
   Metrics metrics = {};
+  LateError late = {};
   SignalRecipe signal = solver_loss();
 };
 

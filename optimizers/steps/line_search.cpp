@@ -95,8 +95,9 @@ Next LineSearch::more_thuente(const LineSearchOptions& options, Point p) {
     modified_ = false;
   if (low && std::abs(p.d) <= -options.curvature * origin_.d)
     return Next::accept;
-  if (hopeless(options, p) || ++round_ >= options.max_evaluations)
-    return start_doubling(options);
+  if (hopeless(options, p))
+    return options.search_1_only ? Next::accept : start_doubling(options);
+  if (++round_ >= options.max_evaluations) return start_doubling(options);
 
   if (modified_ && p.f <= x_.f && !low) {
     // Stage 1 works on psi(a) = phi(a) - c1 a phi'(0) until it has a point
@@ -213,7 +214,7 @@ void LineSearch::interpolate(Point p) {
 // ---- search 2 --------------------------------------------------------------
 
 Next LineSearch::start_doubling(const LineSearchOptions& options) {
-  if (first_step_ == 0) return Next::fail;
+  if (options.search_1_only || first_step_ == 0) return Next::fail;
   step_ = std::min(first_step_, options.max_step);
   if (!std::isfinite(step_) || std::isnan(origin_.d)) return Next::nonfinite;
   phase_ = Phase::doubling;

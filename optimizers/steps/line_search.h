@@ -22,6 +22,9 @@ struct LineSearchOptions {
   int max_evaluations = 99;  ///< of search 1
   int max_doublings = 10;    ///< rounds of search 2
   int max_zooms = 11;        ///< rounds inside its bracket
+  /// Without search 2, as L-BFGS-B has it: where rounding or an end of the
+  /// range leaves search 1 nothing to try, its step is accepted.
+  bool search_1_only = false;
 };
 
 class LineSearch {

@@ -16,15 +16,29 @@ Index drawn_before(const StageRun& run) {
              : static_cast<Index>(found->second(0, 0));
 }
 
+namespace {
+
+Index set_size(const StageRun& run, const BatchOptions& options) {
+  return options.set > 0 ? options.set : run.oracle.count();
+}
+
+}  // namespace
+
 template <class T>
 Batches<T>::Batches(StageRun& run, const BatchOptions& options, Index drawn)
     : run_(run),
       size_(options.fresh ? options.size
-                          : std::min(options.size, run.oracle.count())),
-      slices_(run.oracle.count() / size_),
+                          : std::min(options.size, set_size(run, options))),
+      slices_(set_size(run, options) / size_),
       drawn_(drawn),
       fresh_(options.fresh) {
   if (!fresh_) load(run.oracle.training(0, slices_ * size_));
+}
+
+template <class T>
+void Batches<T>::keep_exact() {
+  exact_ = true;
+  if (!fresh_) load(run_.oracle.training(0, slices_ * size_));
 }
 
 template <class T>
@@ -43,6 +57,7 @@ void Batches<T>::next() {
 template <class T>
 void Batches<T>::load(const Samples<double>& from) {
   target_ = from.y.template cast<T>();
+  if (exact_) exact_target_ = from.y;
   given_ = from.given.template cast<T>();
   const auto& fields = run_.setting.predictor.inputs;
   for (const Field f : fields)
@@ -54,7 +69,8 @@ template <class T>
 std::size_t Batches<T>::bytes() const {
   const Index numbers =
       size_ * (target_.rows() + given_.rows() + input_.rows());
-  return static_cast<std::size_t>(numbers) * sizeof(T);
+  return static_cast<std::size_t>(numbers) * sizeof(T) +
+         static_cast<std::size_t>(exact_target_.size()) * sizeof(double);
 }
 
 template class Batches<float>;

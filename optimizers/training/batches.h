@@ -1,5 +1,5 @@
 /// Which samples an update sees, when it does not see all: consecutive slices
-/// of a training set as large as the case's, in the same order every epoch, or
+/// of a training set, in the same order every epoch, or
 /// fresh samples for every update, which are drawn while the clock stands
 /// still. Nothing allocates after the first batch, unless every batch is drawn
 /// afresh.
@@ -12,17 +12,19 @@ namespace physinv {
 struct BatchOptions {
   Index size = 128;
   bool fresh = false;
+  Index set = 0;  ///< samples of the training set, 0: as many as the case has
 };
 
 template <class T>
 class Batches {
  public:
-  /// Slices of `size` problems out of as many as the case has (`size` is cut to
-  /// that number, a remainder is left out); with `fresh`, new problems from
+  /// Slices of `size` problems out of the set (`size` is cut to its number, a
+  /// remainder is left out); with `fresh`, new problems from
   /// number `drawn` on for every batch.
   Batches(StageRun& run, const BatchOptions& options, Index drawn);
 
   void next();
+  void keep_exact();
 
   Index size() const { return size_; }
   /// Problems used so far, those of earlier stages included.
@@ -40,6 +42,11 @@ class Batches {
     return target_.middleCols(first_ + first, count);
   }
 
+  /// The observations before they were rounded, for those who had them kept.
+  auto exact_target(Index first, Index count) const {
+    return exact_target_.middleCols(first_ + first, count);
+  }
+
   /// Of one batch: the set itself belongs to the problem.
   std::size_t bytes() const;
 
@@ -48,9 +55,10 @@ class Batches {
 
   StageRun& run_;
   Index size_, slices_, drawn_, at_ = 0;
-  bool fresh_;
+  bool fresh_, exact_ = false;
   /// All slices, or a fresh batch; the current one starts at column `first_`.
   Batch<T> target_, given_, input_;
+  Batch<double> exact_target_;
   Index first_ = 0;
 };
 

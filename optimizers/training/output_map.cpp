@@ -89,6 +89,11 @@ class Box final : public OutputMap<T> {
   void pull_back(BatchOut<T> bar) const override {
     bar.array() *= scale_ * (T(1) - tanh_.array().square());
   }
+  void bend(BatchIn<T> bar,
+            BatchIn<T> dot,
+            BatchOut<T> bar_dot) const override {
+    bar_dot.array() -= T(2) * tanh_.array() * dot.array() * bar.array();
+  }
   void pull_back_rows(BatchOut<T> jacobian) const override {
     const Index rows = jacobian.rows() / tanh_.rows();
     for (Index i = 0; i < jacobian.cols(); ++i) {
@@ -163,7 +168,7 @@ std::unique_ptr<OutputMap<T>> output_map(OutputForm form,
 template <class T>
 std::unique_ptr<OutputMap<T>> output_map(const Setting& setting,
                                          const Oracle& oracle) {
-  return output_map<T>(OutputForm::linear,
+  return output_map<T>(setting.output_form,
                        setting.output_scale,
                        oracle.recipe().template make<double>()->start());
 }

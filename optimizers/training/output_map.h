@@ -1,11 +1,5 @@
 /// What a network's output o means: an estimate of the unknowns, one column per
-/// sample (OutputForm in suite/core/method.h),
-///
-///   linear                x = start + scale o
-///   box                   x = start + scale tanh(o)
-///   mean_of_observations  x = scale (o - mean o) + mean y
-///
-/// with means over the numbers of one sample.
+/// sample (OutputForm in suite/core/method.h).
 #pragma once
 
 #include <memory>
@@ -13,8 +7,6 @@
 #include "suite/core/method.h"
 
 namespace physinv {
-
-enum class OutputForm : std::uint8_t { linear, box, mean_of_observations };
 
 template <class T>
 class OutputMap {
@@ -25,7 +17,14 @@ class OutputMap {
   virtual void operator()(BatchIn<T> out, BatchIn<T> y, BatchOut<T> x) = 0;
 
   /// Gradients by the last x become gradients by its outputs, in place.
+  /// Directions of the outputs become those of x: every form's Jacobian is
+  /// symmetric.
   virtual void pull_back(BatchOut<T> bar) const = 0;
+  /// Adds what the form's own bend does to gradients `bar` by the outputs where
+  /// these move along `dot`.
+  virtual void bend(BatchIn<T> /*bar*/,
+                    BatchIn<T> /*dot*/,
+                    BatchOut<T> /*bar_dot*/) const {}
   /// The same for the rows of Jacobians: column i of `jacobian` is sample i's,
   /// observations x unknowns, column-major.
   virtual void pull_back_rows(BatchOut<T> jacobian) const = 0;

@@ -14,27 +14,16 @@ T sign(T v) {
   return v > T(0) ? T(1) : v < T(0) ? T(-1) : v;
 }
 
-template <class T, ProxyNorm norm>
+/// S is the precision of the solver.
+template <class T, ProxyNorm norm, class S = T>
 class Proxy final : public BatchSignal<T> {
  public:
   explicit Proxy(const SignalPlace<T>& place)
       : BatchSignal<T>(place),
-        problem_(place.run.oracle.recipe().template make<T>()),
-        inverse_(dynamic_cast<const Inverse<T>&>(*problem_)),
-        work_(place.run.threads) {}
-
-  /// As of a solver that hands the estimates on.
-  Jacobians<T> jacobians() override {
-    const Index n = this->batches_.size();
-    const Batch<T>& x = this->estimate(0, n);
-    g_.resizeLike(x);
-    push(x, 0, this->loss_, g_);
-    const Index d = x.rows();
-    solver_.setZero(d * d, n);
-    for (Index k = 0; k < d; ++k) solver_.row(k * (d + 1)).setOnes();
-    this->map_->pull_back_rows(solver_);
-    this->note_loss();
-    return {solver_, g_};
+        problem_(place.run.oracle.recipe().template make<S>()),
+        inverse_(dynamic_cast<const Inverse<S>&>(*problem_)),
+        work_(place.run.threads) {
+    if constexpr (!std::is_same_v<S, T>) place.batches.keep_exact();
   }
 
   Counts counts() const override {
@@ -44,10 +33,7 @@ class Proxy final : public BatchSignal<T> {
   }
   std::size_t bytes() const override {
     return BatchSignal<T>::bytes() +
-           static_cast<std::size_t>(wanted_.size() + g_.size() +
-                                    solver_.size()) *
-               sizeof(T) +
-           work_.bytes();
+           static_cast<std::size_t>(wanted_.size()) * sizeof(S) + work_.bytes();
   }
 
  private:
@@ -57,16 +43,22 @@ class Proxy final : public BatchSignal<T> {
             BatchOut<T> x_bar) override {
     const Index n = x.cols();
     wanted_.resize(x.rows(), n);
-    inverse_.invert(this->batches_.target(first, n),
-                    this->batches_.given(first, n),
-                    x,
-                    wanted_,
-                    work_);
+    const auto given = this->batches_.given(first, n);
+    if constexpr (std::is_same_v<S, T>) {
+      const auto target = this->batches_.target(first, n);
+      inverse_.invert(target, given, x, wanted_, work_);
+    } else {
+      inverse_.invert(this->batches_.exact_target(first, n),
+                      given.template cast<S>(),
+                      x.template cast<S>(),
+                      wanted_,
+                      work_);
+    }
     counts_[Counter::inverse] += static_cast<std::uint64_t>(n);
     for (Index i = 0; i < n; ++i) {
       double sum = 0;
       for (Index j = 0; j < x.rows(); ++j) {
-        const T away = x(j, i) - wanted_(j, i);
+        const T away = static_cast<T>(static_cast<S>(x(j, i)) - wanted_(j, i));
         const auto a = static_cast<double>(away);
         if constexpr (norm == ProxyNorm::square) {
           sum = std::fma(0.5 * a, a, sum);
@@ -80,9 +72,9 @@ class Proxy final : public BatchSignal<T> {
     }
   }
 
-  std::unique_ptr<Problem<T>> problem_;
-  const Inverse<T>& inverse_;
-  Batch<T> wanted_, g_, solver_;
+  std::unique_ptr<Problem<S>> problem_;
+  const Inverse<S>& inverse_;
+  Batch<S> wanted_;
   Workspace work_;
   Counts counts_;
 };
@@ -91,14 +83,24 @@ template <class T>
 using SquareProxy = Proxy<T, ProxyNorm::square>;
 template <class T>
 using AbsoluteProxy = Proxy<T, ProxyNorm::absolute>;
+template <class T>
+using ExactSquareProxy = Proxy<T, ProxyNorm::square, double>;
+template <class T>
+using ExactAbsoluteProxy = Proxy<T, ProxyNorm::absolute, double>;
 
 }  // namespace
 
-SignalRecipe inverse_proxy(ProxyNorm norm) {
-  if (norm == ProxyNorm::square)
-    return batch_signal<SquareProxy>("sip", Needs::inverse, Needs::inverse);
-  return batch_signal<AbsoluteProxy>(
-      "sip, absolute", Needs::inverse, Needs::inverse);
+SignalRecipe inverse_proxy(ProxyNorm norm, ProxyPrecision precision) {
+  constexpr auto kNeeds = Needs::inverse;
+  const bool square = norm == ProxyNorm::square;
+  if (precision == ProxyPrecision::of_network) {
+    if (square) return batch_signal<SquareProxy>("sip", kNeeds, kNeeds);
+    return batch_signal<AbsoluteProxy>("sip, absolute", kNeeds, kNeeds);
+  }
+  if (square)
+    return batch_signal<ExactSquareProxy>("sip in double", kNeeds, kNeeds);
+  return batch_signal<ExactAbsoluteProxy>(
+      "sip in double, absolute", kNeeds, kNeeds);
 }
 
 }  // namespace physinv

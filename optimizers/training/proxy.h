@@ -9,6 +9,10 @@
 /// one length, whatever the scale of the problem.
 ///
 /// `batch_loss` is that of the proxy, not of the physics.
+///
+/// In double, the inverse is asked about observations and estimates in double,
+/// whatever the network's precision: for inverses that tell signal from
+/// rounding.
 #pragma once
 
 #include "optimizers/training/signal_recipe.h"
@@ -17,6 +21,10 @@ namespace physinv {
 
 enum class ProxyNorm : std::uint8_t { square, absolute };
 
-SignalRecipe inverse_proxy(ProxyNorm norm = ProxyNorm::square);
+enum class ProxyPrecision : std::uint8_t { of_network, in_double };
+
+SignalRecipe inverse_proxy(
+    ProxyNorm norm = ProxyNorm::square,
+    ProxyPrecision precision = ProxyPrecision::of_network);
 
 }  // namespace physinv

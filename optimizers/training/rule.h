@@ -1,5 +1,6 @@
 /// A rule makes an update of the network's parameters from a signal: from its
-/// gradient (first_order.h), from its Jacobians (half_inverse_rule.h).
+/// gradient (first_order.h), from its Jacobians (half_inverse_rule.h), from
+/// products with second derivatives (adahessian_rule.h, hessian_free_rule.h).
 #pragma once
 
 #include "optimizers/training/signal.h"

@@ -2,7 +2,8 @@
 /// network: the gradient of a loss through the solver, the distance from
 /// labels, the distance from what an inverse solver proposes. It says so as a
 /// gradient of the network's parameters, and, if it can, taken apart into the
-/// Jacobians that half-inverse gradients need.
+/// Jacobians that half-inverse gradients need, or by products with second
+/// derivatives.
 #pragma once
 
 #include "optimizers/network_model.h"
@@ -38,6 +39,17 @@ class Signal {
   /// The same at the last forward pass on the model's tape, taken apart.
   virtual Jacobians<T> jacobians();
 
+  /// product = H direction at the last `gradient`, for any number of
+  /// directions: H the objective's Hessian, or what is left of it (Gauss and
+  /// Newton's matrix) without second derivatives of network and solver.
+  virtual void hessian_product(const Vector<T>& direction, Vector<T>& product);
+  virtual void gauss_newton_product(const Vector<T>& direction,
+                                    Vector<T>& product);
+
+  /// The current batch's objective at the model's parameters, nothing noted.
+  /// The next products need a new gradient.
+  virtual double objective();
+
   /// Adds arrays to what the stage leaves.
   virtual void leave(Outcome&) const {}
   virtual Counts counts() const { return {}; }
@@ -49,6 +61,22 @@ Jacobians<T> Signal<T>::jacobians() {
   SUITE_CHECK(false, "this signal is not known by its Jacobians");
   static const Batch<T> none;
   return {none, none};
+}
+
+template <class T>
+void Signal<T>::hessian_product(const Vector<T>&, Vector<T>&) {
+  SUITE_CHECK(false, "this signal is not known by products with its Hessian");
+}
+
+template <class T>
+void Signal<T>::gauss_newton_product(const Vector<T>&, Vector<T>&) {
+  SUITE_CHECK(false, "this signal is not known by Gauss-Newton products");
+}
+
+template <class T>
+double Signal<T>::objective() {
+  SUITE_CHECK(false, "this signal gives no objective away from its gradient");
+  return 0;
 }
 
 }  // namespace physinv

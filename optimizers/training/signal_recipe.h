@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -19,6 +20,16 @@ class NetworkModel;
 template <class T>
 class Signal;
 
+/// A number of the batches of a training's last updates, before each of them:
+/// steps of constant length never settle, their average does.
+struct LateError {
+  std::string name;    ///< enters the content key; empty: none
+  double share = 0.1;  ///< of the updates, the last ones
+  /// Mean over a batch, of its estimates and observations.
+  std::function<double(BatchIn<double> x, BatchIn<double> y)> of;
+  const char* source = __builtin_FILE();  ///< as that of Metrics
+};
+
 struct SignalOptions {
   /// x_bar_i = gradient_scale / batch * d objective_i / dx_i: 1 is the batch's
   /// mean.
@@ -29,6 +40,7 @@ struct SignalOptions {
   /// Jacobians come with a projected g, if the problem can: the same update of
   /// half-inverse rules but for rounding.
   bool project = true;
+  LateError late = {};
 };
 
 /// Where a signal works.
@@ -50,6 +62,9 @@ struct SignalRecipe {
   Make<float> make_float;
   Make<double> make_double;
   const char* source;  ///< where it is written
+  /// What products with second derivatives ask of the problem; none: the
+  /// signal has no such products.
+  std::optional<Needs> hessian = {}, gauss_newton = {};
 
   template <class T>
   std::unique_ptr<Signal<T>> make(const SignalPlace<T>& place) const {

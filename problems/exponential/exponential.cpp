@@ -74,11 +74,45 @@ void Exponential<T>::pullback(const Tape& tape,
 }
 
 template <class T>
+void Exponential<T>::pushforward(const Tape& tape,
+                                 BatchIn<T> x_dot,
+                                 BatchOut<T> y_dot,
+                                 Workspace& work) const {
+  pullback(tape, x_dot, y_dot, work);
+}
+
+template <class T>
+void Exponential<T>::pullback_tangent(const Tape& tape,
+                                      BatchIn<T> x_dot,
+                                      BatchIn<T> y_bar,
+                                      BatchIn<T> y_bar_dot,
+                                      BatchOut<T> x_bar_dot,
+                                      Workspace& /*work*/) const {
+  const auto kept = tape.view<T>(kExponential);
+  check_size(y_bar_dot, 1, kept.cols());
+  check_size(x_bar_dot, 1, kept.cols());
+  for (Index i = 0; i < kept.cols(); ++i)
+    x_bar_dot(0, i) =
+        kept(0, i) * std::fma(x_dot(0, i), y_bar(0, i), y_bar_dot(0, i));
+}
+
+template <class T>
 void Exponential<T>::jacobian(BatchIn<T> x,
                               BatchIn<T> /*given*/,
                               BatchOut<T> j,
                               Workspace& /*work*/) const {
   exponentials<T>(x, j);
+}
+
+template <class T>
+void Exponential<T>::hessian(BatchIn<T> x,
+                             BatchIn<T> /*given*/,
+                             BatchIn<T> target,
+                             BatchOut<T> h,
+                             Workspace& /*work*/) const {
+  check_size(target, 1, x.cols());
+  exponentials<T>(x, h);
+  for (Index i = 0; i < x.cols(); ++i) h(0, i) *= 2 * h(0, i) - target(0, i);
 }
 
 template <class T>

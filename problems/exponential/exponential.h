@@ -4,8 +4,9 @@
 ///   y = exp(x),  x uniform in (-12, 0]
 ///
 /// Unknown x (1). Given: nothing. Observation y (1). Loss: half the square.
-/// vjp, Jacobian: exact, exp(x). invert: log y, the only solution; a guess that
-/// y already is the exponential of stays, so that nothing pushes it any more.
+/// vjp, Jacobian: exact, exp(x). Hessian: 2 exp(2 x) - y exp(x). invert: log y,
+/// the only solution; a guess that y already is the exponential of stays, so
+/// that nothing pushes it any more.
 ///
 /// exp(x) is infinite beyond x = 88 in float, 709 in double. A column of x that
 /// is not finite gives NaN or infinity in its own column only; y < 0 has no
@@ -26,7 +27,10 @@ Options describe(const ExponentialOptions& options);
 template <class T>
 class Exponential : public Problem<T>,
                     public Vjp<T>,
+                    public Jvp<T>,
+                    public PullbackTangent<T>,
                     public Jacobian<T>,
+                    public Hessian<T>,
                     public Inverse<T> {
  public:
   using Options = ExponentialOptions;
@@ -52,10 +56,25 @@ class Exponential : public Problem<T>,
                 BatchIn<T> y_bar,
                 BatchOut<T> x_bar,
                 Workspace& work) const override;
+  void pushforward(const Tape& tape,
+                   BatchIn<T> x_dot,
+                   BatchOut<T> y_dot,
+                   Workspace& work) const override;
+  void pullback_tangent(const Tape& tape,
+                        BatchIn<T> x_dot,
+                        BatchIn<T> y_bar,
+                        BatchIn<T> y_bar_dot,
+                        BatchOut<T> x_bar_dot,
+                        Workspace& work) const override;
   void jacobian(BatchIn<T> x,
                 BatchIn<T> given,
                 BatchOut<T> j,
                 Workspace& work) const override;
+  void hessian(BatchIn<T> x,
+               BatchIn<T> given,
+               BatchIn<T> target,
+               BatchOut<T> h,
+               Workspace& work) const override;
   void invert(BatchIn<T> y,
               BatchIn<T> given,
               BatchIn<T> x_guess,

@@ -83,7 +83,8 @@ class MacCormack {
       const auto spot = look_.find_from(i, j, lambda_, velocity(at));
       const P r = look_.look(s, spot).value;
       const P n = fma_lanes(P{} + T(0.5), f[at] - r, s[at]);
-      const I below = n<bounds[0], above = n> bounds[1];
+      const I below = n < bounds[0];
+      const I above = n > bounds[1];
       out[at] = select(below, bounds[0], select(above, bounds[1], n));
       if (decisions != nullptr) {
         Decisions<P>::put(decisions, below, above);

@@ -19,7 +19,7 @@
 /// What is not finite stays in its own column.
 #pragma once
 
-#include "suite/core/problem.h"
+#include "suite/core/linear_problem.h"
 #include "suite/core/recipe.h"
 
 namespace physinv {
@@ -38,8 +38,7 @@ Options describe(const GridPoissonOptions& options);
 Vector<double> poisson_potential(const Vector<double>& noise);
 
 template <class T>
-class GridPoisson final : public Problem<T>,
-                          public Vjp<T>,
+class GridPoisson final : public LinearProblem<T>,
                           public Jacobian<T>,
                           public Inverse<T> {
  public:

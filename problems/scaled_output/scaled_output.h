@@ -11,7 +11,7 @@
 /// What is not finite stays in its own column.
 #pragma once
 
-#include "suite/core/problem.h"
+#include "suite/core/linear_problem.h"
 #include "suite/core/recipe.h"
 
 namespace physinv {
@@ -23,9 +23,7 @@ struct ScaledOutputOptions {
 Options describe(const ScaledOutputOptions& options);
 
 template <class T>
-class ScaledOutput final : public Problem<T>,
-                           public Vjp<T>,
-                           public Jacobian<T> {
+class ScaledOutput final : public LinearProblem<T>, public Jacobian<T> {
  public:
   using Options = ScaledOutputOptions;
   explicit ScaledOutput(const Options& options = {});

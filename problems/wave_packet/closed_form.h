@@ -15,7 +15,8 @@ inline ClosedForm wave_packet_closed_form(const WavePacketOptions& o = {}) {
                      static_cast<long double>(o.scale) * x[0];
     for (std::size_t k = 0; k < y.size(); ++k) {
       const Exact d = static_cast<long double>(k + 1) - t0;
-      y[k] = static_cast<long double>(o.amplitude) * std::cos(w * d) *
+      y[k] = static_cast<long double>(o.amplitude) *
+                 std::cos(w * d + static_cast<long double>(o.phase)) *
                  std::exp(-d * d / (2 * width * width)) +
              static_cast<long double>(noise[k]);
     }

@@ -102,11 +102,13 @@ Options describe(const WavePacketOptions& o) {
   return {{"samples", fmt::format("{}", o.samples)},
           {"amplitude", fmt::format("{}", o.amplitude)},
           {"frequency", fmt::format("{}", o.frequency)},
+          {"phase", fmt::format("{}", o.phase)},
           {"width", fmt::format("{}", o.width)},
           {"centre", fmt::format("{}", o.centre)},
           {"scale", fmt::format("{}", o.scale)},
           {"noise", fmt::format("{}", o.noise)},
-          {"range", fmt::format("{},{}", o.range[0], o.range[1])}};
+          {"range", fmt::format("{},{}", o.range[0], o.range[1])},
+          {"half_loss", fmt::format("{}", o.half_loss)}};
 }
 
 template <class T>
@@ -133,7 +135,7 @@ WavePacket<T>::WavePacket(const Options& o) : options_(o) {
 
 /// With c the integer next to t0, f = t0 - c and m = t - c,
 ///   exp(-d^2 / (2 s^2)) = exp(-m^2 / (2 s^2)) exp(m f / s^2 - f^2 / (2 s^2)),
-///   cos(w d) = cos(w m) cos(w f) + sin(w m) sin(w f):
+///   cos(w d + p) = cos(w m) cos(w f - p) + sin(w m) sin(w f - p):
 /// two tables over m and a geometric sequence. Every fused operation is
 /// written out, because forward and linearize must agree to the last bit.
 template <class T>
@@ -146,7 +148,8 @@ template <bool kSlope>
   const double narrow = 1 / (options_.width * options_.width);
   const double c = std::floor(t0 + 0.5), f = t0 - c, rate = f * narrow;
   const double m0 = static_cast<double>(span.first + 1) - c;
-  const double cosine = std::cos(w * f), sine = std::sin(w * f);
+  const double turn = std::fma(w, f, -options_.phase);
+  const double cosine = std::cos(turn), sine = std::sin(turn);
 
   P growth[kPacks];
   powers<T>(std::exp((m0 - 0.5 * f) * rate), std::exp(rate), growth);
@@ -328,6 +331,15 @@ void WavePacket<T>::loss(BatchIn<T> y,
   for (Index i = 0; i < y.cols(); ++i)
     loss(i) =
         half_square(y.col(i).data(), target.col(i).data(), options_.samples);
+  if (!options_.half_loss) loss *= 2;
+}
+
+template <class T>
+void WavePacket<T>::loss_gradient(BatchIn<T> y,
+                                  BatchIn<T> target,
+                                  BatchOut<T> y_bar) const {
+  Problem<T>::loss_gradient(y, target, y_bar);
+  if (!options_.half_loss) y_bar *= T(2);
 }
 
 template class WavePacket<float>;

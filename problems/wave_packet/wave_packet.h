@@ -1,9 +1,9 @@
 /// Wave packet localization: where in a noisy signal is the packet? (Joint
 /// parameter optimization, Sec. 4, Fig. 3, App. D.1.)
 ///
-///   u(t; t0) = A cos(w d) exp(-d^2 / (2 s^2)),  d = t - t0,  t = 1 .. samples
-///   t0 = centre + scale xi,  y = u + eps
-///   du/dt0 = (w sin(w d) + cos(w d) d / s^2) A exp(-d^2 / (2 s^2))
+///   u(t; t0) = A cos(w d + p) exp(-d^2 / (2 s^2)),  d = t - t0,
+///   t = 1 .. samples,  t0 = centre + scale xi,  y = u + eps
+///   du/dt0 = (w sin(w d + p) + cos(w d + p) d / s^2) A exp(-d^2 / (2 s^2))
 ///
 /// Unknown x: xi (1). Given: an additive disturbance eps. Observation y: the
 /// signal. `sample` hides its noise (given = 0), so that the loss of the truth
@@ -12,10 +12,9 @@
 ///
 /// xi is not bounded. A packet far from every sample is exactly 0: in double
 /// where exp underflows (38.6 s), in float where the envelope is below 1e-17
-/// (8.85 s). Such an xi has no gradient, and exactly half the squared norm of
-/// its target as loss; in double every xi has that loss once the packet no
-/// longer changes a bit of the target. Samples that are not computed are
-/// counted as `skipped_zeros`.
+/// (8.85 s). Such an xi has no gradient, and exactly the loss of no packet; in
+/// double every xi has that loss once the packet no longer changes a bit of the
+/// target. Samples that are not computed are counted as `skipped_zeros`.
 ///
 /// vjp, Jacobian: exact. Errors below 1e-13 A in double, 1e-6 A in float. An
 /// xi that is not finite gives NaN in its own column only.
@@ -33,17 +32,19 @@ struct WavePacketOptions {
   Index samples = 256;     ///< length of the signal, a multiple of 64
   double amplitude = 1.0;  ///< A
   double frequency = 1.0;  ///< w, radians per sample
+  double phase = 0.0;      ///< p; -pi / 2 makes a sine of the cosine
   double width = 20.0;     ///< s, samples, at least 1
   double centre = 128.0;   ///< t0 at xi = 0
   double scale = 128.0;    ///< samples per unit of xi
   double noise = 0.1;      ///< standard deviation of eps
   std::array<double, 2> range = {26.0, 230.0};  ///< of the true t0, uniform
+  bool half_loss = true;  ///< half the squared error, or all of it
 };
 
 Options describe(const WavePacketOptions& options);
 
 template <class T>
-class WavePacket final : public Problem<T>, public Vjp<T>, public Jacobian<T> {
+class WavePacket : public Problem<T>, public Vjp<T>, public Jacobian<T> {
  public:
   using Options = WavePacketOptions;
   explicit WavePacket(const Options& options = {});
@@ -80,11 +81,14 @@ class WavePacket final : public Problem<T>, public Vjp<T>, public Jacobian<T> {
                 BatchOut<T> j,
                 Workspace& work) const override;
 
-  /// Half squared error, in lanes of double added up in a fixed order: signals
-  /// with the same bits have the same loss, whoever computed them.
+  /// Squared error or half of it, in lanes of double added up in a fixed order:
+  /// signals with the same bits have the same loss, whoever computed them.
   void loss(BatchIn<T> y,
             BatchIn<T> target,
             VectorOut<double> loss) const override;
+  void loss_gradient(BatchIn<T> y,
+                     BatchIn<T> target,
+                     BatchOut<T> y_bar) const override;
 
   /// Six per sample, and four transcendental functions of 20 each.
   double operations() const override {

@@ -178,4 +178,22 @@ PHYSINV_LANES P tanh_lanes(P x) {
   return one[0];
 }
 
+/// 1 / (1 + e^-x) of N packs, relative error about 3 eps, for x from -87 in
+/// float, -708 in double; below, the value there.
+template <class P, int N>
+PHYSINV_LANES void sigmoid_lanes(P (&x)[N]) {
+#pragma GCC unroll 8
+  for (int i = 0; i < N; ++i) x[i] = -x[i];
+  exp_lanes(x);
+#pragma GCC unroll 8
+  for (int i = 0; i < N; ++i) x[i] = 1 / (1 + x[i]);
+}
+
+template <class P>
+PHYSINV_LANES P sigmoid_lanes(P x) {
+  P one[] = {x};
+  sigmoid_lanes(one);
+  return one[0];
+}
+
 }  // namespace physinv

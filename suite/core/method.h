@@ -45,11 +45,21 @@ struct Sources {
   UnusedIncludes unused;
 };
 
+/// What the output o of a network means as an estimate of the unknowns:
+///
+///   linear                x = start + scale o
+///   box                   x = start + scale tanh(o)
+///   mean_of_observations  x = scale (o - mean o) + mean y
+///
+/// with means over the numbers of one sample.
+enum class OutputForm : std::uint8_t { linear, box, mean_of_observations };
+
 /// Everything an experiment fixes for its methods.
 struct Setting {
-  NetworkRole predictor;  ///< estimates x; x = start + scale * output
+  NetworkRole predictor;  ///< estimates x, from its output by `output_form`
   NetworkRole surrogate;  ///< estimates y
   double output_scale = 1.0;
+  OutputForm output_form = OutputForm::linear;
   double gtol = 1e-5;  ///< of BFGS and gradient descent
   /// Examples whose estimates and curves are recorded, 0 for all. Every
   /// example's final loss is.

@@ -21,10 +21,12 @@ namespace physinv {
 /// One tensor inside the flat parameter vector.
 struct TensorInfo {
   std::string name;  ///< kind and number as in the paper's figures: m1, b1, k1
-  char kind = 'm';   ///< m matrix, k kernel, b bias, s scale, o offset
+  char kind = 'm';   ///< m matrix, k kernel, b bias, s scale, o offset, f modes
   Index offset = 0, size = 0;
   Index fan_in = 0;   ///< inputs x taps of the layer
   Index fan_out = 0;  ///< outputs x taps
+  /// Drawn from U[0, up_to) whatever the network's rule, where that is not 0.
+  double up_to = 0;
 };
 
 /// How a pass is to be run.
@@ -111,6 +113,32 @@ class Network {
                              std::vector<LayerRows<T>>& layers,
                              Workspace& work) const;
 
+  /// Forward mode: the derivative of the output along parameters_dot and in_dot
+  /// (without columns: zero), at the last forward pass on `tape`. The tape
+  /// stays as it is, for any number of directions; each slot of `dots` gets the
+  /// derivative of the tape's. Counted as a forward pass.
+  virtual void tangent(VectorIn<T> parameters,
+                       const Tape& tape,
+                       VectorIn<T> parameters_dot,
+                       BatchIn<T> in_dot,
+                       BatchOut<T> out_dot,
+                       Tape& dots,
+                       Workspace& work) const;
+
+  /// `backward` by the parameters (unless null) and its derivative along the
+  /// direction of the last `tangent` on `dots`, along which out_bar has the
+  /// derivative out_bar_dot: a product with the Hessian. Counted as two
+  /// backward passes.
+  virtual void backward_tangent(VectorIn<T> parameters,
+                                const Tape& tape,
+                                VectorIn<T> parameters_dot,
+                                const Tape& dots,
+                                BatchIn<T> out_bar,
+                                BatchIn<T> out_bar_dot,
+                                VectorOut<T>* parameters_bar,
+                                VectorOut<T> parameters_bar_dot,
+                                Workspace& work) const;
+
   /// One sample by plain loops in double, which share nothing with `forward`:
   /// for checks of what was recorded. False where a layer has no such loops.
   virtual bool evaluate_plainly(VectorIn<double> /*parameters*/,
@@ -133,6 +161,30 @@ void Network<T>::jacobian_rows(VectorIn<T>,
                                std::vector<LayerRows<T>>&,
                                Workspace&) const {
   SUITE_CHECK(false, "this network does not give its Jacobian by rows");
+}
+
+template <class T>
+void Network<T>::tangent(VectorIn<T>,
+                         const Tape&,
+                         VectorIn<T>,
+                         BatchIn<T>,
+                         BatchOut<T>,
+                         Tape&,
+                         Workspace&) const {
+  SUITE_CHECK(false, "this network has no forward mode");
+}
+
+template <class T>
+void Network<T>::backward_tangent(VectorIn<T>,
+                                  const Tape&,
+                                  VectorIn<T>,
+                                  const Tape&,
+                                  BatchIn<T>,
+                                  BatchIn<T>,
+                                  VectorOut<T>*,
+                                  VectorOut<T>,
+                                  Workspace&) const {
+  SUITE_CHECK(false, "this network has no products with its Hessian");
 }
 
 /// Lines `#include` (file, header) that options leave without effect: layers

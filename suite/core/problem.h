@@ -101,6 +101,36 @@ class Vjp {
                         Workspace& work) const = 0;
 };
 
+/// The same derivative forward, at the point of `Vjp::linearize`. Such a
+/// problem's loss is half the squared error: its own second derivative by y is
+/// the identity.
+template <class T>
+class Jvp {
+ public:
+  virtual ~Jvp() = default;
+  /// y_dot = J x_dot at the point of the last `linearize` on this tape.
+  virtual void pushforward(const Tape& tape,
+                           BatchIn<T> x_dot,
+                           BatchOut<T> y_dot,
+                           Workspace& work) const = 0;
+};
+
+/// What products with the Hessian of a loss need beside both derivatives.
+template <class T>
+class PullbackTangent {
+ public:
+  virtual ~PullbackTangent() = default;
+  /// x_bar_dot = J^T y_bar_dot + (dJ/dx x_dot)^T y_bar: the derivative of
+  /// `Vjp::pullback` where x moves along x_dot and y_bar along y_bar_dot, at
+  /// the point of the last `linearize` on this tape.
+  virtual void pullback_tangent(const Tape& tape,
+                                BatchIn<T> x_dot,
+                                BatchIn<T> y_bar,
+                                BatchIn<T> y_bar_dot,
+                                BatchOut<T> x_bar_dot,
+                                Workspace& work) const = 0;
+};
+
 /// Full Jacobians: column i holds sample i's observations x unknowns matrix,
 /// column-major.
 template <class T>
@@ -156,6 +186,8 @@ enum class Needs : std::uint8_t {
   inverse = 8,
   hessian = 16,
   labels = 32,
+  jvp = 64,
+  pullback_tangent = 128,
 };
 
 constexpr Needs operator|(Needs a, Needs b) {
@@ -176,6 +208,9 @@ constexpr Needs provides() {
   if constexpr (std::derived_from<P, Jacobian<T>>) all = all | Needs::jacobian;
   if constexpr (std::derived_from<P, Inverse<T>>) all = all | Needs::inverse;
   if constexpr (std::derived_from<P, Hessian<T>>) all = all | Needs::hessian;
+  if constexpr (std::derived_from<P, Jvp<T>>) all = all | Needs::jvp;
+  if constexpr (std::derived_from<P, PullbackTangent<T>>)
+    all = all | Needs::pullback_tangent;
   return all;
 }
 

@@ -107,6 +107,22 @@ class View {
     vjp.pullback(tape, part(y_bar_), part(x_bar_), work);
   }
 
+  /// From y, of the base's resolution, and the problem's start.
+  void set_observed(const Batch<double>& y) {
+    SUITE_CHECK(finer_x_ == 1 && finer_y_ == 1,
+                "inverses are compared at the base's resolution");
+    y_ = y.template cast<T>();
+    start_ = problem_->start().template cast<T>().replicate(1, y.cols());
+    x_bar_ = x_;
+  }
+
+  void inverse(Index first, Index count, Workspace& work) {
+    const auto part = [&](auto& all) { return all.middleCols(first, count); };
+    dynamic_cast<const Inverse<T>&>(*problem_).invert(
+        part(y_), part(given_), part(start_), part(x_bar_), work);
+  }
+
+  Batch<double> found() const { return x_bar_.template cast<double>(); }
   Batch<double> y() const { return y_.template cast<double>(); }
   Batch<double> base_y() const { return every(y(), finer_y_); }
   Batch<double> base_gradient() const {
@@ -117,7 +133,7 @@ class View {
  private:
   std::unique_ptr<Problem<T>> problem_;
   Index finer_x_ = 1, finer_y_ = 1;
-  Batch<T> x_, given_, target_, y_, y_bar_, x_bar_;
+  Batch<T> x_, given_, target_, y_, y_bar_, x_bar_, start_;
 };
 
 Answer fine_answer(const ProblemRecipe& reference,
@@ -197,11 +213,21 @@ class Answers {
   std::array<Found, 2> found_;
 };
 
+const char* to_string(WorkOf what) {
+  constexpr const char* names[] = {"forward", "gradient", "inverse"};
+  return names[static_cast<std::size_t>(what)];
+}
+
 std::shared_ptr<Answers> no_answers_yet() {
   return std::make_shared<Answers>();
 }
 
 namespace {
+
+Counter counter_of(WorkOf of) {
+  constexpr Counter all[] = {Counter::forward, Counter::vjp, Counter::inverse};
+  return all[static_cast<std::size_t>(of)];
+}
 
 class WorkPrecision final : public Diagnostic {
  public:
@@ -215,7 +241,15 @@ class WorkPrecision final : public Diagnostic {
   bool takes_row_iterations() const override { return true; }
   bool has_precision() const override { return true; }
   Needs needs() const override {
-    return options_.gradient ? Needs::forward | Needs::vjp : Needs::forward;
+    switch (options_.of) {
+      case WorkOf::forward:
+        break;
+      case WorkOf::gradient:
+        return Needs::forward | Needs::vjp;
+      case WorkOf::inverse:
+        return Needs::forward | Needs::inverse;
+    }
+    return Needs::forward;
   }
   Sources sources() const override {
     Sources all = Diagnostic::sources();
@@ -228,7 +262,8 @@ class WorkPrecision final : public Diagnostic {
                     options_.problem.make<double>()->operations();
     if (!options_.exact.forward)
       passes += options_.reference.make<double>()->operations();
-    return static_cast<double>(n) * (options_.gradient ? 3 : 1) * passes;
+    return static_cast<double>(n) * (options_.of == WorkOf::gradient ? 3 : 1) *
+           passes;
   }
 
  protected:
@@ -240,7 +275,7 @@ class WorkPrecision final : public Diagnostic {
   }
   void describe(Options& options) const override {
     options.emplace_back("settings", fingerprint(problems()));
-    options.emplace_back("of", options_.gradient ? "gradient" : "forward");
+    options.emplace_back("of", to_string(options_.of));
     options.emplace_back("samples", std::to_string(options_.samples));
     options.emplace_back("block", std::to_string(options_.block));
   }
@@ -250,6 +285,17 @@ class WorkPrecision final : public Diagnostic {
   }
 
  private:
+  Answer right_for(const Problem<double>& base,
+                   const Samples<double>& drawn) const {
+    if (options_.of == WorkOf::inverse) return {drawn.x, {}};
+    const bool gradient = options_.of == WorkOf::gradient;
+    return options_.answers->find(drawn, gradient, [&] {
+      return options_.exact.forward
+                 ? exact_answer(options_.exact, base, drawn, gradient)
+                 : fine_answer(options_.reference, drawn, gradient);
+    });
+  }
+
   template <class T>
   void measure(StageRun& run, Outcome& out) const {
     const Index n =
@@ -257,25 +303,29 @@ class WorkPrecision final : public Diagnostic {
     const auto base = options_.base.make<double>();
     const Samples<double> drawn =
         base->sample_labelled(0, n, run.batches.child("work_precision"));
-    const bool gradient = options_.gradient;
-    const Answer right = options_.answers->find(drawn, gradient, [&] {
-      return options_.exact.forward
-                 ? exact_answer(options_.exact, *base, drawn, gradient)
-                 : fine_answer(options_.reference, drawn, gradient);
-    });
+    const WorkOf of = options_.of;
+    const Answer right = right_for(*base, drawn);
 
     View<T> view(options_.problem, drawn);
-    if (gradient) view.set_target(right.target);
+    if (of == WorkOf::gradient) view.set_target(right.target);
+    if (of == WorkOf::inverse) view.set_observed(drawn.y);
     Workspace work(run.threads);
     Tape tape(run.threads);
     const Index block = options_.block > 0 ? options_.block : n;
     const auto pass = [&] {
       for (Index first = 0; first < n; first += block) {
         const Index some = std::min(block, n - first);
-        if (gradient)
-          view.gradient(first, some, tape, work);
-        else
-          view.forward(first, some, work);
+        switch (of) {
+          case WorkOf::forward:
+            view.forward(first, some, work);
+            break;
+          case WorkOf::gradient:
+            view.gradient(first, some, tape, work);
+            break;
+          case WorkOf::inverse:
+            view.inverse(first, some, work);
+            break;
+        }
       }
     };
     run.probe.begin_warmup();
@@ -283,10 +333,12 @@ class WorkPrecision final : public Diagnostic {
     run.probe.begin();
     while (run.probe.proceed([&](BatchOut<double> x) { x = out.x; })) {
       pass();
-      run.oracle.add(gradient ? Counter::vjp : Counter::forward, n);
+      run.oracle.add(counter_of(of), n);
     }
 
-    const Batch<double> found = gradient ? view.base_gradient() : view.base_y();
+    const Batch<double> found = of == WorkOf::gradient  ? view.base_gradient()
+                                : of == WorkOf::inverse ? view.found()
+                                                        : view.base_y();
     Batch<double> error(1, n);
     for (Index i = 0; i < n; ++i)
       error(0, i) =

@@ -1,5 +1,5 @@
 /// One point of a work-precision diagram: how far one setting of a problem is
-/// from what is right, and what a forward pass or a gradient costs.
+/// from what is right, and what a forward pass, a gradient or an inverse costs.
 ///
 /// Samples and what is given are drawn from `base`, the coarsest setting.
 /// Problems with a multiple of its unknowns see the same function of time,
@@ -7,13 +7,15 @@
 /// over it. What is given on a multiple of its points is the same periodic
 /// function. Of a multiple of its observations every so-many-th is compared,
 /// and gradients are means over them. The gradient is that of the problem's
-/// own loss; its target is the next sample's observation.
+/// own loss; its target is the next sample's observation. The inverse is asked
+/// for the unknowns of the samples' observations, from the problem's start.
 ///
 /// Every iteration is one pass of all samples, so that the curve's seconds hold
 /// the time of each. Array `error` (1 x samples): |y - y_ref| / |y_ref| or the
-/// same of the gradients; -1 where they are not finite.
+/// same of the gradients or the unknowns; -1 where they are not finite.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -22,6 +24,11 @@
 #include "suite/core/method.h"
 
 namespace physinv {
+
+enum class WorkOf : std::uint8_t { forward, gradient, inverse };
+
+/// "forward"
+const char* to_string(WorkOf what);
 
 /// What is right, once found, for the stages of one knob that ask for it.
 class Answers;
@@ -33,9 +40,9 @@ struct WorkPrecisionOptions {
   /// What is right: the finest setting in double, or a closed form instead.
   ProblemRecipe reference = {};
   ClosedForm exact = {};
-  bool gradient = false;  ///< measured instead of the forward pass
-  Index samples = 0;      ///< 0: as many as the case has
-  Index block = 0;        ///< samples per call, 0 for all of them
+  WorkOf of = WorkOf::forward;
+  Index samples = 0;  ///< 0: as many as the case has
+  Index block = 0;    ///< samples per call, 0 for all of them
   Index repetitions = 10;
   /// Shared by stages of the same base and reference, which then make the
   /// reference once. Empty: each makes its own.

@@ -48,6 +48,9 @@ std::string recipe_text(const Case& c, std::size_t position) {
                       e.setting.gtol,
                       c.info.n,
                       c.info.seed);
+  if (e.setting.output_form != OutputForm::linear)
+    text += fmt::format("output_form={}\n",
+                        static_cast<int>(e.setting.output_form));
   for (std::size_t i = 0; i <= position; ++i) {
     const Stage& stage = *c.method->chain[i];
     text += fmt::format(

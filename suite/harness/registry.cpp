@@ -296,7 +296,9 @@ std::string to_text(Needs needs) {
       {Needs::jacobian, "jacobian"},
       {Needs::inverse, "inverse"},
       {Needs::hessian, "hessian"},
-      {Needs::labels, "labels"}};
+      {Needs::labels, "labels"},
+      {Needs::jvp, "jvp"},
+      {Needs::pullback_tangent, "pullback_tangent"}};
   std::string text;
   for (const auto& [bit, name] : kNames) {
     if (!contains(needs, bit)) continue;

@@ -34,7 +34,9 @@ Batch<double> plain_estimates(const Experiment& experiment,
                               const StageRecord& stage) {
   const NetworkRole& role = experiment.setting.predictor;
   const auto stored = stage.arrays.find("parameters");
-  if (stored == stage.arrays.end() || !role.recipe.make_double) return {};
+  if (stored == stage.arrays.end() || !role.recipe.make_double ||
+      experiment.setting.output_form != OutputForm::linear)
+    return {};
   Index rows = 0;
   for (const Field field : role.inputs) {
     if (field == Field::unknowns) return {};

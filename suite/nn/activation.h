@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "suite/core/lanes_math.h"
+#include "suite/nn/gelu.h"
 #include "suite/nn/layer.h"
 #include "suite/nn/vector.h"
 
@@ -15,7 +16,9 @@ std::string_view to_string(Activation a);
 
 /// Whether the derivative follows from the output alone, so that an
 /// activation fused into the layer before it needs no memory of its own.
-constexpr bool from_output(Activation a) { return a != Activation::silu; }
+constexpr bool from_output(Activation a) {
+  return a != Activation::silu && a != Activation::gelu;
+}
 
 template <class T>
 inline T sigmoid(T z) {
@@ -37,11 +40,15 @@ inline T activate(Activation a, T z) {
       return (z > T(0) ? z : T(0)) + std::log1p(std::exp(-std::abs(z)));
     case Activation::silu:
       return z * sigmoid(z);
+    case Activation::half_tanh:
+      return std::tanh(z / T(2));
+    case Activation::gelu:
+      return z * normal_cdf(z);
   }
   return z;
 }
 
-/// Derivative, given the output y (SiLU: given the input).
+/// Derivative, given the output y (SiLU, GELU: given the input).
 template <class T>
 inline T derivative(Activation a, T y) {
   switch (a) {
@@ -59,8 +66,37 @@ inline T derivative(Activation a, T y) {
       const T s = sigmoid(y);
       return s * std::fma(y, T(1) - s, T(1));
     }
+    case Activation::half_tanh:
+      return std::fma(-y, y, T(1)) / T(2);
+    case Activation::gelu:
+      return std::fma(y, normal_density(y), normal_cdf(y));
   }
   return T(1);
+}
+
+/// Derivative of `derivative` by y.
+template <class T>
+inline T second_derivative(Activation a, T y) {
+  switch (a) {
+    case Activation::identity:
+    case Activation::relu:
+      return T(0);
+    case Activation::tanh:
+      return T(-2) * y;
+    case Activation::half_tanh:
+      return -y;
+    case Activation::sigmoid:
+      return T(1) - T(2) * y;
+    case Activation::softplus:
+      return std::exp(-y);
+    case Activation::silu: {
+      const T s = sigmoid(y), slope = s * (T(1) - s);
+      return slope * std::fma(y, T(1) - T(2) * s, T(2));
+    }
+    case Activation::gelu:
+      return normal_density(y) * std::fma(-y, y, T(2));
+  }
+  return T(0);
 }
 
 /// The same for a register. tanh has an absolute, not a relative, error of
@@ -70,6 +106,9 @@ inline V activate_lanes(Activation a, V z) {
   if (a == Activation::identity) return z;
   if (a == Activation::relu) return z < V{} ? V{} : z;
   if (a == Activation::tanh) return tanh_lanes(z);
+  if (a == Activation::sigmoid) return sigmoid_lanes(z);
+  if (a == Activation::half_tanh) return tanh_lanes(broadcast<V>(T(0.5)) * z);
+  if (a == Activation::gelu) return gelu_lanes(z);
   for (std::size_t l = 0; l < sizeof(V) / sizeof(T); ++l)
     z[l] = activate<T>(a, z[l]);
   return z;
@@ -82,9 +121,20 @@ inline V pull_lanes(Activation a, V y, V y_bar) {
   if (a == Activation::relu) return y > V{} ? y_bar : V{};
   if (a == Activation::tanh)
     return y_bar * multiply_add<T>(-y, y, broadcast<V>(T(1)));
+  if (a == Activation::sigmoid) return y_bar * (y * (broadcast<V>(T(1)) - y));
+  if (a == Activation::gelu) return y_bar * gelu_slope_lanes(y);
   for (std::size_t l = 0; l < sizeof(V) / sizeof(T); ++l)
     y_bar[l] *= derivative<T>(a, y[l]);
   return y_bar;
+}
+
+/// v times the second derivative.
+template <class T, class V>
+inline V bend_lanes(Activation a, V y, V v) {
+  if (a == Activation::identity || a == Activation::relu) return V{};
+  for (std::size_t l = 0; l < sizeof(V) / sizeof(T); ++l)
+    v[l] *= second_derivative<T>(a, y[l]);
+  return v;
 }
 
 /// x_bar *= derivative at `gate`; what a layer does to its input's cotangent
@@ -92,8 +142,15 @@ inline V pull_lanes(Activation a, V y, V y_bar) {
 template <class T>
 void apply_gate(const Gate<T>& gate, Lanes<T> x_bar);
 
+/// The same and its derivative, the gate's y moving along y_dot.
+template <class T>
+void apply_gate_tangent(const Gate<T>& gate,
+                        Lanes<const T> y_dot,
+                        Lanes<T> x_bar,
+                        Lanes<T> x_bar_dot);
+
 /// An activation on its own: behind a layer that cannot take it in, or one
-/// whose derivative needs the input (SiLU).
+/// whose derivative needs the input (SiLU, GELU).
 template <class T>
 class ActivationLayer final : public Layer<T> {
  public:
@@ -106,6 +163,9 @@ class ActivationLayer final : public Layer<T> {
                Lanes<const T> x,
                Lanes<T> y) const override;
   void backward(const LayerArgs<T>& at, const Backward<T>& b) const override;
+  void tangent(const LayerArgs<T>& at, const Tangent<T>& t) const override;
+  void backward_tangent(const LayerArgs<T>& at,
+                        const BackwardTangent<T>& b) const override;
   bool evaluate_plainly(const double* /*parameters*/,
                         const Vector<double>& x,
                         Vector<double>& y) const override {

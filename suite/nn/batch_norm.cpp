@@ -14,6 +14,9 @@ constexpr double kEps = 1e-5, kMomentum = 0.1;
 
 /// Columns of the tape slot, one number per feature each.
 enum Column { kMean, kInverse, kUnbiased, kColumns };
+/// And of its derivative's: n being (x - mean) inverse, the means of x_dot and
+/// of n x_dot; zero outside training.
+enum DotColumn { kMeanDot, kSlope, kDotColumns };
 
 /// Two or three samples leave one dimension of the cotangent or none: what
 /// remains is a difference of nearly equal numbers. Hence double throughout.
@@ -121,6 +124,77 @@ void BatchNorm<T>::backward(const LayerArgs<T>& at,
     for (Index j = n; j < b.x_bar.width; ++j) x_bar[j] = T(0);
   }
   if (b.x_bar) apply_gate(b.gate, b.x_bar);
+}
+
+template <class T>
+void BatchNorm<T>::tangent(const LayerArgs<T>& at, const Tangent<T>& t) const {
+  const Index features = this->inputs(), n = t.x.samples;
+  const auto kept = at.tape->template view<double>(at.slot);
+  auto dots = at.dots->template slot<double>(at.slot, features, kDotColumns);
+  for (Index i = 0; i < features; ++i) {
+    const double m = kept(i, kMean), inverse = kept(i, kInverse);
+    const T *x = t.x.row(i), *x_dot = t.x_dot.row(i);
+    const auto normal = [&](Index j) { return (double(x[j]) - m) * inverse; };
+    Terms<2> means{};
+    if (at.training)
+      means = sum<2>(n, [&](Index j) {
+        const auto d = double(x_dot[j]);
+        return Terms<2>{d, d * normal(j)};
+      });
+    const double mean = means[0] / double(n), slope = means[1] / double(n);
+    dots(i, kMeanDot) = mean, dots(i, kSlope) = slope;
+    const auto scale = double(at.parameters[i]);
+    const auto scale_dot = double(at.parameters_dot[i]);
+    const auto offset_dot = double(at.parameters_dot[features + i]);
+    for (Index j = 0; j < t.y_dot.width; ++j) {
+      const double normal_dot =
+          inverse * (double(x_dot[j]) - mean - normal(j) * slope);
+      t.y_dot.row(i)[j] = static_cast<T>(scale * normal_dot +
+                                         scale_dot * normal(j) + offset_dot);
+    }
+  }
+}
+
+/// The derivative of `backward`, term by term; inverse' = -inverse^2 slope.
+template <class T>
+void BatchNorm<T>::backward_tangent(const LayerArgs<T>& at,
+                                    const BackwardTangent<T>& b) const {
+  backward(at, b.base());
+  const Index features = this->inputs(), n = b.x.samples;
+  const auto kept = at.tape->template view<double>(at.slot);
+  const auto dots = at.dots->template view<double>(at.slot);
+  for (Index i = 0; i < features; ++i) {
+    const double m = kept(i, kMean), inverse = kept(i, kInverse);
+    const double mean = dots(i, kMeanDot), slope = dots(i, kSlope);
+    const T *x = b.x.row(i), *x_dot = b.x_dot.row(i);
+    const T *y_bar = b.y_bar.row(i), *y_bar_dot = b.y_bar_dot.row(i);
+    const auto normal = [&](Index j) { return (double(x[j]) - m) * inverse; };
+    const auto normal_dot = [&](Index j) {
+      return inverse * (double(x_dot[j]) - mean - normal(j) * slope);
+    };
+    const auto sums = sum<4>(n, [&](Index j) {
+      const auto g = double(y_bar[j]), g_dot = double(y_bar_dot[j]);
+      return Terms<4>{
+          g, g * normal(j), g_dot, g_dot * normal(j) + g * normal_dot(j)};
+    });
+    b.parameters_bar_dot[i] = static_cast<T>(sums[3]);
+    b.parameters_bar_dot[features + i] = static_cast<T>(sums[2]);
+    if (!b.x_bar) continue;
+    const double share = at.training ? 1 / double(n) : 0;
+    const double s = sums[0] * share, p = sums[1] * share,
+                 s_dot = sums[2] * share, p_dot = sums[3] * share;
+    const auto scale = double(at.parameters[i]);
+    const double factor = scale * inverse;
+    const double factor_dot =
+        inverse * (double(at.parameters_dot[i]) - scale * inverse * slope);
+    T* to = b.x_bar_dot.row(i);
+    for (Index j = 0; j < n; ++j)
+      to[j] =
+          static_cast<T>(factor_dot * (double(y_bar[j]) - s - normal(j) * p) +
+                         factor * (double(y_bar_dot[j]) - s_dot -
+                                   normal_dot(j) * p - normal(j) * p_dot));
+    for (Index j = n; j < b.x_bar.width; ++j) to[j] = T(0);
+  }
 }
 
 template <class T>

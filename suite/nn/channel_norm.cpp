@@ -1,11 +1,11 @@
 #include "suite/nn/channel_norm.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "suite/core/check.h"
 #include "suite/nn/activation.h"
+#include "suite/nn/norm_lanes.h"
 
 namespace physinv::nn {
 namespace {
@@ -15,59 +15,12 @@ constexpr double kEps = 1e-5, kMomentum = 0.1;
 template <class T>
 using V = Simd<T, kNarrow>;
 
-/// The lanes of a row's last vector that hold samples.
-template <class T>
-struct Mask {
-  explicit Mask(Index samples) : full(samples / kLanes<T> * kLanes<T>) {
-    V<T> lane{};
-    for (Index l = 0; l < kLanes<T>; ++l) lane[l] = static_cast<T>(l);
-    valid = lane < broadcast<V<T>>(static_cast<T>(samples - full));
-  }
-  V<T> operator()(Index j, V<T> v) const {
-    return j < full ? v : (valid ? v : V<T>{});
-  }
-  Index full;
-  decltype(V<T>{} < V<T>{}) valid;
-};
-
 template <class T>
 double total(V<T> v) {
   double sum = 0;
   for (Index l = 0; l < kLanes<T>; ++l) sum += double(v[l]);
   return sum;
 }
-
-/// The positions of a pooling cell, as rows relative to its first one.
-template <int N>
-struct Cell {
-  explicit Cell(const NormShape& s) : grid(s.grid) {
-    for (int i = 0; i < N; ++i)
-      row[static_cast<std::size_t>(i)] =
-          (i % 2 + i / 2 * grid.columns) * s.channels;
-  }
-  Index first(Index output) const {
-    if (N == 1) return output;
-    if (N == 2) return 2 * output;
-    const Index half = grid.columns / 2;
-    return output / half * 2 * grid.columns + output % half * 2;
-  }
-  Grid grid;
-  std::array<Index, N> row;
-};
-
-/// One channel's constants in registers, and its normalisation.
-template <class T>
-struct Channel {
-  Channel(const NormColumns<T>& at, const T* parameters, Index n, Index c)
-      : mean(broadcast<V<T>>(at.mean[c])),
-        inverse(broadcast<V<T>>(at.inverse[c])),
-        factor(broadcast<V<T>>(parameters[c] * at.inverse[c])),
-        offset(broadcast<V<T>>(parameters[n + c])) {}
-  V<T> operator()(V<T> x) const {
-    return multiply_add<T>(x - mean, factor, offset);
-  }
-  V<T> mean, inverse, factor, offset;
-};
 
 /// Keeps NaN from either side.
 template <class T>
@@ -84,9 +37,9 @@ void normalise_cells(const NormShape& s,
                      Index begin,
                      Index end) {
   const Activation f = kRelu ? Activation::relu : s.activation;
-  const Cell<N> cell(s);
+  const NormCell<N> cell(s);
   for (Index c = 0; c < s.channels; ++c) {
-    const Channel<T> u(at, parameters, s.channels, c);
+    const NormChannel<T> u(at, parameters, s.channels, c);
     for (Index p = begin; p < end; ++p) {
       const T* from = x.row(cell.first(p) * s.channels + c);
       T* to = y.row(p * s.channels + c);
@@ -114,10 +67,10 @@ void sum_cells(const NormShape& s,
                Index end,
                T* sums) {
   const Activation f = kRelu ? Activation::relu : s.activation;
-  const Cell<N> cell(s);
-  const Mask<T> mask(x.samples);
+  const NormCell<N> cell(s);
+  const LaneMask<T> mask(x.samples);
   for (Index c = 0; c < s.channels; ++c) {
-    const Channel<T> u(at, parameters, s.channels, c);
+    const NormChannel<T> u(at, parameters, s.channels, c);
     V<T> sum{}, product{};
     for (Index p = begin; p < end; ++p) {
       const T* from = x.row(cell.first(p) * s.channels + c);
@@ -156,10 +109,10 @@ void pull_cells(const NormShape& s,
                 Index begin,
                 Index end) {
   const Activation f = kRelu ? Activation::relu : s.activation;
-  const Cell<N> cell(s);
-  const Mask<T> mask(x.samples);
+  const NormCell<N> cell(s);
+  const LaneMask<T> mask(x.samples);
   for (Index c = 0; c < s.channels; ++c) {
-    const Channel<T> u(at, parameters, s.channels, c);
+    const NormChannel<T> u(at, parameters, s.channels, c);
     const V<T> mean = broadcast<V<T>>(means[c]);
     const V<T> slope = broadcast<V<T>>(means[s.channels + c]);
     for (Index p = begin; p < end; ++p) {
@@ -204,7 +157,7 @@ void moments_of(Lanes<const T> x,
                 Index begin,
                 Index end,
                 T* moments) {
-  const Mask<T> mask(x.samples);
+  const LaneMask<T> mask(x.samples);
   const auto count = static_cast<double>((end - begin) * x.samples);
   V<T> mean[G] = {}, sum[G] = {};
   const auto pass = [&](auto&& add) {
@@ -230,27 +183,6 @@ void moments_of(Lanes<const T> x,
   pass([&](int g, V<T> v) { sum[g] = multiply_add<T>(v, v, sum[g]); });
   for (int g = 0; g < G; ++g)
     moments[channels + g] = static_cast<T>(total<T>(sum[g]));
-}
-
-/// Calls f with the cell size and whether the activation is a ReLU, both known
-/// to the compiler.
-template <class F>
-void dispatch(const NormShape& s, F&& f) {
-  const bool relu = s.activation == Activation::relu;
-  const auto with = [&]<int N>() {
-    if (relu) {
-      f.template operator()<N, true>();
-    } else {
-      f.template operator()<N, false>();
-    }
-  };
-  if (!s.pool) {
-    with.template operator()<1>();
-  } else if (s.grid.flat()) {
-    with.template operator()<2>();
-  } else {
-    with.template operator()<4>();
-  }
 }
 
 }  // namespace
@@ -336,7 +268,7 @@ void normalise(const NormShape& shape,
                Lanes<T> y,
                Index begin,
                Index end) {
-  dispatch(shape, [&]<int N, bool kRelu>() {
+  dispatch_norm(shape, [&]<int N, bool kRelu>() {
     normalise_cells<T, N, kRelu>(shape, at, parameters, x, y, begin, end);
   });
 }
@@ -351,7 +283,7 @@ void block_sums(const NormShape& shape,
                 Index begin,
                 Index end,
                 T* sums) {
-  dispatch(shape, [&]<int N, bool kRelu>() {
+  dispatch_norm(shape, [&]<int N, bool kRelu>() {
     sum_cells<T, N, kRelu>(
         shape, at, parameters, x, y, y_bar, begin, end, sums);
   });
@@ -378,7 +310,7 @@ void pull_norm(const NormShape& shape,
                Lanes<T> x_bar,
                Index begin,
                Index end) {
-  dispatch(shape, [&]<int N, bool kRelu>() {
+  dispatch_norm(shape, [&]<int N, bool kRelu>() {
     pull_cells<T, N, kRelu>(
         shape, at, parameters, means, x, y, y_bar, x_bar, begin, end);
   });

@@ -4,6 +4,8 @@
 
 #include "suite/core/check.h"
 #include "suite/nn/activation.h"
+#include "suite/nn/conv_tangent.h"
+#include "suite/nn/convolution_tangent.h"
 
 namespace physinv::nn {
 namespace {
@@ -13,19 +15,6 @@ Grid output(const ConvOptions& o) {
 }
 
 Index rows(const NormShape& s) { return s.pooled().positions() * s.channels; }
-
-/// Sums over positions and samples, one per channel.
-template <class T>
-void channel_sums(Workspace& work, Lanes<const T> x, Index channels, T* sums) {
-  const Workspace::Scope scope(work);
-  auto per_row = work.take<T>(x.rows, 1);
-  row_sums<T>(x, per_row.data());
-  for (Index c = 0; c < channels; ++c) {
-    double sum = 0;
-    for (Index i = c; i < x.rows; i += channels) sum += double(per_row(i));
-    sums[c] = static_cast<T>(sum);
-  }
-}
 
 }  // namespace
 
@@ -93,6 +82,27 @@ void Conv<T>::backward(const LayerArgs<T>& at, const Backward<T>& b) const {
                     b.y_bar,
                     conv_.shape().out,
                     b.parameters_bar + conv_.shape().weights());
+}
+
+template <class T>
+void Conv<T>::tangent(const LayerArgs<T>& at, const Tangent<T>& t) const {
+  push_convolution(
+      conv_, at, t.x, t.x_dot, t.y_dot, [](Index, Index, Index) {});
+  apply_gate<T>({activation_, t.y}, t.y_dot);
+}
+
+template <class T>
+void Conv<T>::backward_tangent(const LayerArgs<T>& at,
+                               const BackwardTangent<T>& b) const {
+  const ConvShape& shape = conv_.shape();
+  pull_convolution(conv_, at, b, b.y_bar, b.y_bar_dot);
+  const auto biases = [&](Lanes<const T> y_bar, T* parameters_bar) {
+    if (parameters_bar != nullptr)
+      channel_sums<T>(
+          *at.work, y_bar, shape.out, parameters_bar + shape.weights());
+  };
+  biases(b.y_bar, b.parameters_bar);
+  biases(b.y_bar_dot, b.parameters_bar_dot);
 }
 
 template <class T>
@@ -252,6 +262,17 @@ void ConvBlock<T>::backward(const LayerArgs<T>& at,
                                  end / cell);
                   });
   if (b.x_bar) apply_gate(b.gate, b.x_bar);
+}
+
+template <class T>
+void ConvBlock<T>::tangent(const LayerArgs<T>& at, const Tangent<T>& t) const {
+  push_block<T>({conv_, norm_, by_batch(at)}, at, t);
+}
+
+template <class T>
+void ConvBlock<T>::backward_tangent(const LayerArgs<T>& at,
+                                    const BackwardTangent<T>& b) const {
+  pull_block<T>({conv_, norm_, by_batch(at)}, at, b);
 }
 
 template <class T>

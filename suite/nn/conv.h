@@ -33,6 +33,9 @@ class Conv final : public Layer<T> {
                Lanes<const T> x,
                Lanes<T> y) const override;
   void backward(const LayerArgs<T>& at, const Backward<T>& b) const override;
+  void tangent(const LayerArgs<T>& at, const Tangent<T>& t) const override;
+  void backward_tangent(const LayerArgs<T>& at,
+                        const BackwardTangent<T>& b) const override;
   /// Without padding only: the patches then lie in x as they are.
   void add_rows(Lanes<const T> x,
                 Lanes<const T> y_bar,
@@ -72,6 +75,9 @@ class ConvBlock final : public Layer<T> {
                Lanes<const T> x,
                Lanes<T> y) const override;
   void backward(const LayerArgs<T>& at, const Backward<T>& b) const override;
+  void tangent(const LayerArgs<T>& at, const Tangent<T>& t) const override;
+  void backward_tangent(const LayerArgs<T>& at,
+                        const BackwardTangent<T>& b) const override;
   void update_state(const Tape& tape,
                     std::size_t slot,
                     T* state) const override;

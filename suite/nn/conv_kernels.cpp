@@ -34,6 +34,7 @@ struct Product {
   Index in, depth, stride;
   const Segment* segments;
   Index segment_count;
+  Into into;
 };
 
 /// M outputs x N columns in registers.
@@ -49,6 +50,12 @@ template <class T, class V, int M, int N>
 #pragma GCC unroll 8
     for (int c = 0; c < N; ++c)
       acc[r][c] = bias != nullptr ? broadcast<V>(bias[output + r]) : V{};
+  if (g.into == Into::sum)
+#pragma GCC unroll 16
+    for (int r = 0; r < M; ++r)
+#pragma GCC unroll 8
+      for (int c = 0; c < N; ++c)
+        acc[r][c] = load<V>(columns.y[c] + (output + r) * g.stride);
   for (Index s = 0; s < g.segment_count; ++s) {
     const Segment segment = g.segments[s];
     const T* a = panel + segment.tap * g.in * M;
@@ -320,7 +327,8 @@ void convolve(const ConvShape& shape,
               Lanes<const T> x,
               Lanes<T> y,
               Index begin,
-              Index end) {
+              Index end,
+              Into into) {
   using Wide = Simd<T, kWide>;
   using Narrow = Simd<T, kNarrow>;
   const Split<T> split(x.width);
@@ -334,7 +342,8 @@ void convolve(const ConvShape& shape,
                        shape.depth(),
                        x.stride,
                        run.segments.data(),
-                       static_cast<Index>(run.segments.size())};
+                       static_cast<Index>(run.segments.size()),
+                       into};
     const Index x_step = in * x.stride, y_step = out * x.stride;
     const T* from = x.data + first * x_step;
     T* to = y.data + first * y_step;
@@ -412,7 +421,8 @@ Index positions_per_block(Lanes<const T> x, Index channels) {
                             Lanes<const T>,                                   \
                             Lanes<T>,                                         \
                             Index,                                            \
-                            Index);                                           \
+                            Index,                                            \
+                            Into);                                            \
   template Index weight_sums<T>(const ConvShape&);                            \
   template void accumulate_weights<T>(const ConvShape&,                       \
                                       const std::vector<Run>&,                \

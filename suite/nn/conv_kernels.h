@@ -18,6 +18,7 @@
 /// weight gradient's order follows from the shape and the number of samples.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "suite/nn/lanes.h"
@@ -46,8 +47,12 @@ void pack_weights(const ConvShape& shape, const T* weights, T* packed);
 template <class T>
 void pack_flipped(const ConvShape& shape, const T* weights, T* packed);
 
+/// Whether a product replaces what it is stored to or goes on from it.
+enum class Into : std::uint8_t { nothing, sum };
+
 /// y[p][o] = bias[o] + sum over taps t and channels c of
-/// w[o][c][t] x[p + t][c], for output positions [begin, end).
+/// w[o][c][t] x[p + t][c], for output positions [begin, end); into a sum, y in
+/// place of the bias.
 template <class T>
 void convolve(const ConvShape& shape,
               const std::vector<Run>& runs,
@@ -56,7 +61,8 @@ void convolve(const ConvShape& shape,
               Lanes<const T> x,
               Lanes<T> y,
               Index begin,
-              Index end);
+              Index end,
+              Into into = Into::nothing);
 
 /// Number of partial sums that `accumulate_weights` needs.
 template <class T>

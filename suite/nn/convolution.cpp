@@ -11,6 +11,18 @@ constexpr Index kMostParts = 8;
 }  // namespace
 
 template <class T>
+void channel_sums(Workspace& work, Lanes<const T> x, Index channels, T* sums) {
+  const Workspace::Scope scope(work);
+  auto per_row = work.take<T>(x.rows, 1);
+  row_sums<T>(x, per_row.data());
+  for (Index c = 0; c < channels; ++c) {
+    double sum = 0;
+    for (Index i = c; i < x.rows; i += channels) sum += double(per_row(i));
+    sums[c] = static_cast<T>(sum);
+  }
+}
+
+template <class T>
 Convolution<T>::Convolution(
     Grid grid, Index in, Index out, const Taps& taps, Padding padding)
     : shape_{.grid = window_output(grid, taps, padding),
@@ -62,6 +74,8 @@ Index Convolution<T>::parts(Index samples) const {
                     std::min(kMostParts, shape_.positions()));
 }
 
+template void channel_sums(Workspace&, Lanes<const float>, Index, float*);
+template void channel_sums(Workspace&, Lanes<const double>, Index, double*);
 template class Convolution<float>;
 template class Convolution<double>;
 

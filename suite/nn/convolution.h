@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <initializer_list>
 #include <vector>
 
 #include "suite/core/threads.h"
@@ -10,6 +11,10 @@
 #include "suite/nn/layer.h"
 
 namespace physinv::nn {
+
+/// Sums over positions and samples, one per channel.
+template <class T>
+void channel_sums(Workspace& work, Lanes<const T> x, Index channels, T* sums);
 
 template <class T>
 class Convolution {
@@ -34,8 +39,20 @@ class Convolution {
     return (shape_.positions() + some - 1) / some;
   }
 
-  /// y = bias + convolution, then `done(block, begin, end)` on each block of
-  /// positions while it is in the cache.
+  /// One of a sum of products, weights [out][in][tap] with x.
+  struct Term {
+    const T* weights;
+    Lanes<const T> x;
+  };
+  /// y = bias + the terms' convolutions, then `done(block, begin, end)` on each
+  /// block of positions while it is in the cache. No bias: null.
+  template <class F>
+  void forward(const LayerArgs<T>& at,
+               std::initializer_list<Term> terms,
+               const T* bias,
+               Lanes<T> y,
+               F&& done) const;
+  /// Of the layer's own weights and biases.
   template <class F>
   void forward(const LayerArgs<T>& at,
                Lanes<const T> x,
@@ -75,15 +92,35 @@ void Convolution<T>::forward(const LayerArgs<T>& at,
                              Lanes<const T> x,
                              Lanes<T> y,
                              F&& done) const {
+  forward(at, {{at.parameters, x}}, at.parameters + shape_.weights(), y, done);
+}
+
+template <class T>
+template <class F>
+void Convolution<T>::forward(const LayerArgs<T>& at,
+                             std::initializer_list<Term> terms,
+                             const T* bias,
+                             Lanes<T> y,
+                             F&& done) const {
   const Workspace::Scope scope(*at.work);
-  T* packed = at.work->template take<T>(shape_.weights(), 1).data();
-  pack_weights(shape_, at.parameters, packed);
-  const T* bias = at.parameters + shape_.weights();
+  const Index size = shape_.weights();
+  T* const packed =
+      at.work->template take<T>(size, static_cast<Index>(terms.size())).data();
+  T* next = packed;
+  for (const Term& term : terms) {
+    pack_weights(shape_, term.weights, next);
+    next += size;
+  }
   const Index per_block = this->per_block(y);
-  for_blocks(threads(at, x.samples), blocks(y), [&](Index block, int) {
+  for_blocks(threads(at, y.samples), blocks(y), [&](Index block, int) {
     const Index begin = block * per_block;
     const Index end = std::min(begin + per_block, shape_.positions());
-    convolve<T>(shape_, runs_, packed, bias, x, y, begin, end);
+    const T* w = packed;
+    for (const Term& term : terms) {
+      const Into into = w == packed ? Into::nothing : Into::sum;
+      convolve<T>(shape_, runs_, w, bias, term.x, y, begin, end, into);
+      w += size;
+    }
     done(block, begin, end);
   });
 }

@@ -53,6 +53,37 @@ void PositionalEncoding<T>::backward(const LayerArgs<T>&,
   apply_gate(b.gate, b.x_bar);
 }
 
+template <class T>
+void PositionalEncoding<T>::tangent(const LayerArgs<T>&,
+                                    const Tangent<T>& t) const {
+  using V = Simd<T, kNarrow>;
+  for (Index i = 0; i < t.x.rows; ++i)
+    for (Index k = 0; k < frequencies_; ++k) {
+      const Index sine = 2 * frequencies_ * i + k, cosine = sine + frequencies_;
+      const V f = broadcast<V>(static_cast<T>(k + 1));
+      for (Index j = 0; j < t.x.width; j += kLanes<T>) {
+        const V turn = f * load<V>(t.x_dot.row(i) + j);
+        store(t.y_dot.row(sine) + j, turn * load<V>(t.y.row(cosine) + j));
+        store(t.y_dot.row(cosine) + j, -turn * load<V>(t.y.row(sine) + j));
+      }
+    }
+}
+
+/// `backward` is bilinear in y and y_bar.
+template <class T>
+void PositionalEncoding<T>::backward_tangent(
+    const LayerArgs<T>& at, const BackwardTangent<T>& b) const {
+  if (!b.x_bar) return;
+  backward(at, b.base());
+  backward(at,
+           {.x = b.x, .y = b.y, .y_bar = b.y_bar_dot, .x_bar = b.x_bar_dot});
+  const Workspace::Scope scope(*at.work);
+  Lanes<T> more = b.x_bar;
+  more.data = at.work->template take<T>(more.stride, more.rows).data();
+  backward(at, {.x = b.x, .y = b.y_dot, .y_bar = b.y_bar, .x_bar = more});
+  add_lanes<T>(more, b.x_bar_dot);
+}
+
 template class PositionalEncoding<float>;
 template class PositionalEncoding<double>;
 

@@ -21,7 +21,7 @@ constexpr Index kDepth = 256;    ///< k per round: a panel of B stays in the L1
 constexpr Index kRowBlock = 16;  ///< rows of one block of the thread loop
 constexpr Index kPanel = 48;     ///< rows of tiles finished together
 constexpr Index kNear = 16384;   ///< bytes of C that are still in the L1
-constexpr Index kGroup = 4;      ///< vectors whose tanh is taken together
+constexpr Index kGroup = 4;      ///< vectors whose function is taken together
 constexpr double kThreadFlops = 0.5e6;
 
 /// Part of C: rows from i, `valid` columns from j, products k0..k1.
@@ -60,10 +60,11 @@ template <class T, class F>
   }
 }
 
-/// tanh of a panel, several rows at a time. What is missing in the last group
-/// repeats its last row.
-template <class T>
-[[gnu::noinline]] void tanh_panel(T* c, Index stride, Index rows, Index cols) {
+/// A function of a panel, of several rows at a time. What is missing in the
+/// last group repeats its last row.
+template <class T, class F>
+[[gnu::noinline]] void for_groups(
+    T* c, Index stride, Index rows, Index cols, F&& of_group) {
   using V = Simd<T, kNarrow>;
   for (Index j = 0; j < cols; j += kLanes<T>) {
     const Index width = std::min(kLanes<T>, cols - j);
@@ -74,7 +75,7 @@ template <class T>
 #pragma GCC unroll 8
       for (Index q = 0; q < kGroup; ++q)
         v[q] = load_lanes<V>(from + std::min(q, last) * stride, width);
-      tanh_lanes(v);
+      of_group(v);
 #pragma GCC unroll 8
       for (Index q = 0; q < kGroup; ++q)
         if (q <= last) store_lanes(from + q * stride, v[q], width);
@@ -87,8 +88,13 @@ template <class T>
 [[gnu::noinline]] void finish(
     const Gemm<T>& g, Index i, Index end, Index j, Index cols) {
   using V = Simd<T, kNarrow>;
+  T* const panel = g.c + i * g.c_stride + j;
   if (g.activation == Activation::tanh)
-    tanh_panel(g.c + i * g.c_stride + j, g.c_stride, end - i, cols);
+    for_groups(
+        panel, g.c_stride, end - i, cols, [](auto& v) { tanh_lanes(v); });
+  else if (g.activation == Activation::sigmoid)
+    for_groups(
+        panel, g.c_stride, end - i, cols, [](auto& v) { sigmoid_lanes(v); });
   else if (g.activation != Activation::identity)
     for_vectors(g, i, end, j, cols, [&](Index, Index, V v, Index) {
       return activate_lanes<T>(g.activation, v);

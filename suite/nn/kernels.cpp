@@ -16,6 +16,7 @@
 #include "suite/nn/batch_norm.h"
 #include "suite/nn/conv.h"
 #include "suite/nn/encoding.h"
+#include "suite/nn/fno.h"
 #include "suite/nn/gemm.h"
 #include "suite/nn/linear.h"
 #include "suite/nn/mlp.h"
@@ -455,7 +456,7 @@ BENCHMARK(conv_shifted_gemm)
     ->Apply(conv_shapes);
 BENCHMARK(conv_im2col)->Name("nn/conv/forward_by_im2col")->Apply(conv_shapes);
 
-enum class Step { forward, training, input };
+enum class Step { forward, training, input, gauss_newton, hessian };
 
 /// As the experiments train them.
 template <class T, Step step>
@@ -477,7 +478,20 @@ void field_network(benchmark::State& state,
   Pass pass{.training = step != Step::input};
   net->forward(p, s, in, out, tape, work, pass);
   pass.same_input = step == Step::training;
+  // Products at one point: only they are timed.
+  constexpr bool kProduct = step == Step::gauss_newton || step == Step::hessian;
+  const Vector<T> p_dot = Vector<T>::Random(p.size());
+  const Batch<T> no_input(inputs, 0);
+  Batch<T> out_dot(outputs, n);
+  Tape dots;
   for (auto _ : state) {
+    if (kProduct) net->tangent(p, tape, p_dot, no_input, out_dot, dots, work);
+    if (step == Step::gauss_newton)
+      net->backward(p, tape, out_dot, &p_out, nullptr, work);
+    if (step == Step::hessian)
+      net->backward_tangent(
+          p, tape, p_dot, dots, out_bar, out_dot, nullptr, p_bar, work);
+    if (kProduct) continue;
     net->forward(p, s, in, out, tape, work, pass);
     if (step == Step::training)
       net->backward(p, tape, out_bar, &p_out, nullptr, work);
@@ -485,9 +499,11 @@ void field_network(benchmark::State& state,
       net->backward(p, tape, out_bar, nullptr, &in_out, work);
     benchmark::ClobberMemory();
   }
-  const double passes = step == Step::forward    ? 1
-                        : step == Step::training ? 3
-                                                 : 2;
+  const double passes = step == Step::forward        ? 1
+                        : step == Step::training     ? 3
+                        : step == Step::gauss_newton ? 4
+                        : step == Step::hessian      ? 8
+                                                     : 2;
   flops(state, net->operations() * double(n) * passes);
 }
 
@@ -531,6 +547,11 @@ void plane_unet(benchmark::State& state) {
                          64 * 64);
 }
 
+template <class T, Step step>
+void plane_fno(benchmark::State& state) {
+  field_network<T, step>(state, fno({.grid = {64, 64}}), 64 * 64, 64 * 64);
+}
+
 #define PHYSINV_FIELD_NETWORK(T, name, step) \
   BENCHMARK((name<T, Step::step>))           \
       ->Name("nn/" #name "<" #T ">/" #step)  \
@@ -547,6 +568,9 @@ PHYSINV_FIELD_NETWORKS(float, ks_vgg)
 PHYSINV_FIELD_NETWORKS(float, packet_unet)
 PHYSINV_FIELD_NETWORKS(float, ks_unet)
 PHYSINV_FIELD_NETWORKS(float, plane_unet)
+PHYSINV_FIELD_NETWORK(float, plane_unet, gauss_newton)
+PHYSINV_FIELD_NETWORK(float, plane_unet, hessian)
+PHYSINV_FIELD_NETWORKS(float, plane_fno)
 PHYSINV_FIELD_NETWORK(double, packet_vgg, training)
 PHYSINV_FIELD_NETWORK(double, packet_unet, training)
 #undef PHYSINV_FIELD_NETWORKS

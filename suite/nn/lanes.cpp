@@ -134,6 +134,14 @@ void from_lanes(Lanes<const T> from, BatchOut<T> to) {
 }
 
 template <class T>
+void add_lanes(Lanes<const T> more, Lanes<T> to) {
+  using V = Simd<T, kNarrow>;
+  for (Index i = 0; i < to.rows; ++i)
+    for (Index j = 0; j < to.width; j += kLanes<T>)
+      store(to.row(i) + j, load<V>(to.row(i) + j) + load<V>(more.row(i) + j));
+}
+
+template <class T>
 void row_sums(Lanes<const T> x, T* sums) {
   using V = Simd<T, kNarrow>;
   constexpr Index w = kLanes<T>, kRows = 4;
@@ -164,6 +172,7 @@ void row_sums(Lanes<const T> x, T* sums) {
       const T*, Index, Index, Index, T*, Index, Behind);    \
   template void to_lanes<T>(BatchIn<T>, Lanes<T>);          \
   template void from_lanes<T>(Lanes<const T>, BatchOut<T>); \
+  template void add_lanes<T>(Lanes<const T>, Lanes<T>);     \
   template void row_sums<T>(Lanes<const T>, T*);
 PHYSINV_INSTANTIATE(float)
 PHYSINV_INSTANTIATE(double)

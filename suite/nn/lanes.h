@@ -73,6 +73,10 @@ void to_lanes(BatchIn<T> from, Lanes<T> to);
 template <class T>
 void from_lanes(Lanes<const T> from, BatchOut<T> to);
 
+/// to += more, padding included.
+template <class T>
+void add_lanes(Lanes<const T> more, Lanes<T> to);
+
 /// sums[i] = sum of row i over its samples. Lane l adds samples l, l + W, ...;
 /// the lanes are then added pairwise, so the order is that of n alone.
 template <class T>

@@ -8,8 +8,10 @@
 ///    (window.h); everything element-wise works as it is.
 ///  - Composite layers own inner layers, add up their tensors and slots, and
 ///    keep what runs between them in tape slots of their own (skip.h).
-///  - Forward mode: one more virtual `tangent(at, x, y, x_dot, p_dot, y_dot)`
-///    with a default that reports the lack; it reads the same tape.
+///  - Forward mode and its reverse: `tangent` and `backward_tangent`, with
+///    defaults that report the lack; they read the same tape and keep what they
+///    share on one of their own, slot by slot its derivative. A layer that
+///    is linear says so by its base class (piecewise_linear.h).
 ///  - Stacked Jacobians of more layer kinds: `add_rows`; the cotangents
 ///    walking down are those of `backward`, run on each sample's rows at once.
 #pragma once
@@ -31,15 +33,18 @@ enum class Activation : std::uint8_t {
   tanh,
   sigmoid,
   softplus,
-  silu,  ///< z sigma(z)
+  silu,       ///< z sigma(z)
+  half_tanh,  ///< tanh(z / 2) = 2 sigma(z) - 1
+  gelu,       ///< z Phi(z), Phi the normal distribution
 };
 
 /// How weights are drawn, uniform within +-bound; biases and offsets start at
-/// 0, scales at 1.
+/// 0, scales at 1. Tensors with a range of their own (TensorInfo) keep it.
 enum class Init : std::uint8_t {
   fan_in,   ///< bound 1 / sqrt(fan_in)
   glorot,   ///< bound sqrt(6 / (fan_in + fan_out)), Keras' default
   uniform,  ///< weights and biases as fan_in, PyTorch's default
+  he,       ///< bound sqrt(6 / fan_in), for ReLU
 };
 
 /// For the description of a network; nothing for fan_in.
@@ -53,6 +58,8 @@ struct LayerArgs {
   Tape* tape = nullptr;
   std::size_t slot = 0;  ///< first of this layer's `slots()` tape slots
   Workspace* work = nullptr;
+  const T* parameters_dot = nullptr;  ///< in tangents: the direction
+  Tape* dots = nullptr;               ///< derivatives of the tape's slots
   bool training = false;
   /// The first `leading` and last `trailing` input rows are constant over the
   /// batch; a layer may fold them or ignore this.
@@ -75,6 +82,34 @@ struct Backward {
   T* parameters_bar = nullptr;  ///< overwritten; null: not wanted
   Lanes<T> x_bar = {};          ///< overwritten; null: not wanted
   Gate<T> gate = {};
+};
+
+/// One layer's step of forward mode: y_dot = dy/dx x_dot + dy/dp
+/// parameters_dot, the activation taken in included. Padding lanes of x_dot
+/// are finite.
+template <class T>
+struct Tangent {
+  Lanes<const T> x, y, x_dot;
+  Lanes<T> y_dot = {};
+};
+
+/// One layer's step back and its derivative along the direction of the last
+/// tangent. As in `Backward`, but x_bar and x_bar_dot leave without the
+/// derivative of any gate.
+template <class T>
+struct BackwardTangent {
+  Lanes<const T> x, y, x_dot, y_dot, y_bar, y_bar_dot;
+  T* parameters_bar = nullptr;      ///< overwritten; null: not wanted
+  T* parameters_bar_dot = nullptr;  ///< overwritten; there as soon as tensors
+  Lanes<T> x_bar = {}, x_bar_dot = {};  ///< overwritten; null: not wanted
+
+  Backward<T> base() const {
+    return {.x = x,
+            .y = y,
+            .y_bar = y_bar,
+            .parameters_bar = parameters_bar,
+            .x_bar = x_bar};
+  }
 };
 
 template <class T>
@@ -106,6 +141,14 @@ class Layer {
                        Lanes<const T> x,
                        Lanes<T> y) const = 0;
   virtual void backward(const LayerArgs<T>& at, const Backward<T>& b) const = 0;
+  virtual void tangent(const LayerArgs<T>& /*at*/,
+                       const Tangent<T>& /*t*/) const {
+    SUITE_CHECK(false, "this layer has no forward mode");
+  }
+  virtual void backward_tangent(const LayerArgs<T>& /*at*/,
+                                const BackwardTangent<T>& /*b*/) const {
+    SUITE_CHECK(false, "this layer has no products with its Hessian");
+  }
   /// Appends its columns of a stacked Jacobian: see Network::jacobian_rows. x
   /// has the samples, y_bar the rows.
   virtual void add_rows(Lanes<const T> /*x*/,

@@ -166,6 +166,63 @@ void Linear<T>::backward(const LayerArgs<T>& at, const Backward<T>& b) const {
 }
 
 template <class T>
+void Linear<T>::tangent(const LayerArgs<T>& at, const Tangent<T>& t) const {
+  const Index in = this->inputs(), out = this->outputs();
+  const Workspace::Scope scope(*at.work);
+  Lanes<T> more = t.y_dot;
+  more.data = at.work->template take<T>(more.stride, out).data();
+  const auto product =
+      [&](const T* weights, const T* bias, Lanes<const T> x, Lanes<T> y) {
+        gemm<T>({.m = out,
+                 .n = x.width,
+                 .k = in,
+                 .a = weights,
+                 .a_row = in,
+                 .a_k = 1,
+                 .b = x.data,
+                 .b_stride = x.stride,
+                 .c = y.data,
+                 .c_stride = y.stride,
+                 .bias = bias},
+                at.work->threads());
+      };
+  product(at.parameters_dot, at.parameters_dot + in * out, t.x, t.y_dot);
+  product(at.parameters, nullptr, t.x_dot, more);
+  add_lanes<T>(more, t.y_dot);
+  apply_gate<T>({activation_, t.y}, t.y_dot);
+}
+
+/// `backward` is bilinear in (weights, x) and y_bar; the biases' part in y_bar
+/// alone.
+template <class T>
+void Linear<T>::backward_tangent(const LayerArgs<T>& at,
+                                 const BackwardTangent<T>& b) const {
+  const Index weights = this->inputs() * this->outputs();
+  backward(at, b.base());
+  backward(at,
+           {.x = b.x,
+            .y = b.y,
+            .y_bar = b.y_bar_dot,
+            .parameters_bar = b.parameters_bar_dot,
+            .x_bar = b.x_bar_dot});
+  const Workspace::Scope scope(*at.work);
+  LayerArgs<T> cross = at;
+  cross.parameters = at.parameters_dot;
+  auto sum = at.work->template take<T>(weights + this->outputs(), 1);
+  Lanes<T> more = b.x_bar;
+  if (b.x_bar)
+    more.data = at.work->template take<T>(more.stride, more.rows).data();
+  backward(cross,
+           {.x = b.x_dot,
+            .y = b.y,
+            .y_bar = b.y_bar,
+            .parameters_bar = sum.data(),
+            .x_bar = more});
+  for (Index i = 0; i < weights; ++i) b.parameters_bar_dot[i] += sum(i);
+  if (b.x_bar) add_lanes<T>(more, b.x_bar_dot);
+}
+
+template <class T>
 void Linear<T>::add_rows(Lanes<const T> x,
                          Lanes<const T> y_bar,
                          Index offset,

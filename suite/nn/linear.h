@@ -25,6 +25,9 @@ class Linear final : public Layer<T> {
                Lanes<const T> x,
                Lanes<T> y) const override;
   void backward(const LayerArgs<T>& at, const Backward<T>& b) const override;
+  void tangent(const LayerArgs<T>& at, const Tangent<T>& t) const override;
+  void backward_tangent(const LayerArgs<T>& at,
+                        const BackwardTangent<T>& b) const override;
   void add_rows(Lanes<const T> x,
                 Lanes<const T> y_bar,
                 Index offset,

@@ -19,7 +19,7 @@ void copy_row(const T* from, Index width, T* to) {
 
 template <class T>
 FieldInput<T>::FieldInput(const FieldInputOptions& o)
-    : Layer<T>(o.inputs(), o.positions * o.width()), o_(o) {}
+    : PiecewiseLinear<T>(o.inputs(), o.positions * o.width()), o_(o) {}
 
 template <class T>
 void FieldInput<T>::forward(const LayerArgs<T>&,
@@ -69,6 +69,37 @@ void FieldInput<T>::backward(const LayerArgs<T>&, const Backward<T>& b) const {
 }
 
 template <class T>
+void FieldInput<T>::tangent(const LayerArgs<T>& at, const Tangent<T>& t) const {
+  FieldInputOptions linear = o_;
+  linear.shift = 0;
+  FieldInput(linear).forward(at, t.x_dot, t.y_dot);
+}
+
+template <class T>
+void Coordinates<T>::forward(const LayerArgs<T>&,
+                             Lanes<const T> x,
+                             Lanes<T> y) const {
+  const auto share = [](Index i, Index count) {
+    return static_cast<T>(double(i) / double(std::max<Index>(count - 1, 1)));
+  };
+  for (Index p = 0; p < grid_.positions(); ++p) {
+    copy_row(x.row(p), x.width, y.row(3 * p));
+    std::fill_n(
+        y.row(3 * p + 1), x.width, share(p / grid_.columns, grid_.rows));
+    std::fill_n(
+        y.row(3 * p + 2), x.width, share(p % grid_.columns, grid_.columns));
+  }
+}
+
+template <class T>
+void Coordinates<T>::backward(const LayerArgs<T>&, const Backward<T>& b) const {
+  if (!b.x_bar) return;
+  for (Index p = 0; p < grid_.positions(); ++p)
+    copy_row(b.y_bar.row(3 * p), b.x_bar.width, b.x_bar.row(p));
+  apply_gate(b.gate, b.x_bar);
+}
+
+template <class T>
 void Flatten<T>::forward(const LayerArgs<T>&,
                          Lanes<const T> x,
                          Lanes<T> y) const {
@@ -90,6 +121,8 @@ void Flatten<T>::backward(const LayerArgs<T>&, const Backward<T>& b) const {
 
 template class FieldInput<float>;
 template class FieldInput<double>;
+template class Coordinates<float>;
+template class Coordinates<double>;
 template class Flatten<float>;
 template class Flatten<double>;
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "suite/nn/grid.h"
-#include "suite/nn/layer.h"
+#include "suite/nn/piecewise_linear.h"
 
 namespace physinv::nn {
 
@@ -19,7 +19,7 @@ struct FieldInputOptions {
 };
 
 template <class T>
-class FieldInput final : public Layer<T> {
+class FieldInput final : public PiecewiseLinear<T> {
  public:
   explicit FieldInput(const FieldInputOptions& options);
 
@@ -27,17 +27,35 @@ class FieldInput final : public Layer<T> {
                Lanes<const T> x,
                Lanes<T> y) const override;
   void backward(const LayerArgs<T>& at, const Backward<T>& b) const override;
+  void tangent(const LayerArgs<T>& at, const Tangent<T>& t) const override;
 
  private:
   FieldInputOptions o_;
 };
 
+/// One channel -> [position](value, row, column), the coordinates from 0 to 1
+/// over the grid.
+template <class T>
+class Coordinates final : public Layer<T> {
+ public:
+  explicit Coordinates(Grid grid)
+      : Layer<T>(grid.positions(), 3 * grid.positions()), grid_(grid) {}
+
+  void forward(const LayerArgs<T>& at,
+               Lanes<const T> x,
+               Lanes<T> y) const override;
+  void backward(const LayerArgs<T>& at, const Backward<T>& b) const override;
+
+ private:
+  Grid grid_;
+};
+
 /// [position][channel] -> [channel][position].
 template <class T>
-class Flatten final : public Layer<T> {
+class Flatten final : public PiecewiseLinear<T> {
  public:
   Flatten(Index positions, Index channels)
-      : Layer<T>(positions * channels, positions * channels),
+      : PiecewiseLinear<T>(positions * channels, positions * channels),
         positions_(positions),
         channels_(channels) {}
 
@@ -52,6 +70,8 @@ class Flatten final : public Layer<T> {
 
 extern template class FieldInput<float>;
 extern template class FieldInput<double>;
+extern template class Coordinates<float>;
+extern template class Coordinates<double>;
 extern template class Flatten<float>;
 extern template class Flatten<double>;
 

@@ -51,11 +51,11 @@ struct Shares {
     const Index last = std::min(m - 1, 2 * i + 4);
     for (Index o = std::max<Index>(0, 2 * i - 2); o <= last; ++o) {
       const Pair s = sources(o, n, m);
-      const double weight =
+      const double share =
           (s.near == i ? s.weight : 0) + (s.far == i ? 1 - s.weight : 0);
-      if (weight == 0) continue;
+      if (share == 0) continue;
       output[count] = o;
-      this->weight[count++] = weight;
+      weight[count++] = share;
     }
   }
   std::array<Index, 7> output{};
@@ -72,8 +72,8 @@ void check_axis(Index n, Index m) {
 
 template <class T>
 MaxPool<T>::MaxPool(Grid grid, Index channels)
-    : Layer<T>(grid.positions() * channels,
-               halved(grid).positions() * channels),
+    : PiecewiseLinear<T>(grid.positions() * channels,
+                         halved(grid).positions() * channels),
       grid_(grid),
       channels_(channels) {}
 
@@ -118,8 +118,27 @@ void MaxPool<T>::backward(const LayerArgs<T>&, const Backward<T>& b) const {
 }
 
 template <class T>
+void MaxPool<T>::tangent(const LayerArgs<T>&, const Tangent<T>& t) const {
+  for (Index i = 0; i < t.y.rows; ++i) {
+    const Cell from = cell(grid_, i / channels_);
+    const Index c = i % channels_;
+    for (Index j = 0; j < t.x.width; j += kLanes<T>) {
+      const V<T> top = load<V<T>>(t.y.row(i) + j);
+      V<T> dot{};
+      for (std::size_t k = from.count; k-- > 0;) {
+        const Index row = from.position[k] * channels_ + c;
+        const auto here = load<V<T>>(t.x.row(row) + j) == top;
+        dot = here ? load<V<T>>(t.x_dot.row(row) + j) : dot;
+      }
+      store(t.y_dot.row(i) + j, dot);
+    }
+  }
+}
+
+template <class T>
 Upsample<T>::Upsample(Grid from, Grid to, Index channels)
-    : Layer<T>(from.positions() * channels, to.positions() * channels),
+    : PiecewiseLinear<T>(from.positions() * channels,
+                         to.positions() * channels),
       grid_(from),
       fine_(to),
       channels_(channels) {

@@ -5,14 +5,14 @@
 #include <vector>
 
 #include "suite/nn/channel_norm.h"
-#include "suite/nn/layer.h"
+#include "suite/nn/piecewise_linear.h"
 
 namespace physinv::nn {
 
 /// The largest of each cell; a tie's cotangent goes to the first. The last of
 /// an odd number of columns or rows is in no cell.
 template <class T>
-class MaxPool final : public Layer<T> {
+class MaxPool final : public PiecewiseLinear<T> {
  public:
   /// `grid` is that of the input.
   MaxPool(Grid grid, Index channels);
@@ -21,6 +21,7 @@ class MaxPool final : public Layer<T> {
                Lanes<const T> x,
                Lanes<T> y) const override;
   void backward(const LayerArgs<T>& at, const Backward<T>& b) const override;
+  void tangent(const LayerArgs<T>& at, const Tangent<T>& t) const override;
 
  private:
   Grid grid_;
@@ -37,7 +38,7 @@ class MaxPool final : public Layer<T> {
 ///
 ///   y[2i] = v[i-1] / 4 + 3 v[i] / 4,  y[2i+1] = 3 v[i] / 4 + v[i+1] / 4.
 template <class T>
-class Upsample final : public Layer<T> {
+class Upsample final : public PiecewiseLinear<T> {
  public:
   Upsample(Grid from, Grid to, Index channels);
 

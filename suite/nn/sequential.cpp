@@ -26,7 +26,8 @@ Index constant_rows(Lanes<const T> x, Index first, Index step) {
 double bound_of(Init init, const TensorInfo& t) {
   if (init == Init::glorot)
     return std::sqrt(6.0 / static_cast<double>(t.fan_in + t.fan_out));
-  return 1.0 / std::sqrt(static_cast<double>(t.fan_in));
+  const double gain = init == Init::he ? std::sqrt(6.0) : 1.0;
+  return gain / std::sqrt(static_cast<double>(t.fan_in));
 }
 
 /// Matrices and kernels always are, biases by `Init::uniform` alone.
@@ -37,8 +38,9 @@ bool is_drawn(Init init, char kind) {
 }  // namespace
 
 std::string in_words(Init init) {
-  if (init == Init::fan_in) return "";
-  return init == Init::glorot ? " init=glorot" : " init=uniform";
+  constexpr const char* words[] = {
+      "", " init=glorot", " init=uniform", " init=he"};
+  return words[static_cast<std::size_t>(init)];
 }
 
 /// Slot 0: what a later call must know about the last forward pass.
@@ -111,10 +113,12 @@ void Sequential<T>::initialize(const Rng& rng,
   for (const TensorInfo& t : tensors_) {
     auto part = parameters.segment(t.offset, t.size);
     part.setConstant(t.kind == 's' ? T(1) : T(0));
-    if (!is_drawn(init_, t.kind)) continue;
+    const bool own = t.up_to > 0;
+    if (!own && !is_drawn(init_, t.kind)) continue;
     Stream stream = rng.child(t.name).stream();
-    const double bound = bound_of(init_, t);
-    for (T& w : part) w = static_cast<T>(stream.uniform(-bound, bound));
+    const double bound = own ? t.up_to : bound_of(init_, t);
+    const double least = own ? 0 : -bound;
+    for (T& w : part) w = static_cast<T>(stream.uniform(least, bound));
   }
   for (std::size_t i = 0; i < layers_.size(); ++i)
     layers_[i]->initialize_state(state.data() + places_[i].state);
@@ -303,6 +307,114 @@ void Sequential<T>::jacobian_rows(VectorIn<T> parameters,
     at.parameters = parameters.data() + places_[i].parameters;
     layer.backward(at, b);
     y_bar = b.x_bar, y = x;
+  }
+}
+
+template <class T>
+void Sequential<T>::tangent(VectorIn<T> parameters,
+                            const Tape& tape,
+                            VectorIn<T> parameters_dot,
+                            BatchIn<T> in_dot,
+                            BatchOut<T> out_dot,
+                            Tape& dots,
+                            Workspace& work) const {
+  const Header header = Header::read(tape);
+  const Index n = header.samples;
+  SUITE_CHECK(parameters_dot.size() == parameter_count_ &&
+                  out_dot.rows() == outputs() && out_dot.cols() == n,
+              "a direction has the wrong shape");
+  work.counts[Counter::network_forward] += static_cast<std::uint64_t>(n);
+  const std::size_t first = in_dot.cols() > 0 ? 0 : prefix_;
+  const Lanes<T> start = open(dots, first, n);
+  if (in_dot.cols() > 0) {
+    SUITE_CHECK(in_dot.rows() == inputs() && in_dot.cols() == n,
+                "a direction has the wrong shape");
+    to_lanes<T>(in_dot, start);
+  } else {
+    std::fill_n(start.data, start.rows * start.stride, T(0));
+  }
+  for (std::size_t i = first; i < layers_.size(); ++i) {
+    const LayerArgs<T> at =
+        tangent_args(i, header, parameters, tape, parameters_dot, dots, work);
+    layers_[i]->tangent(at,
+                        {.x = features(tape, i, n),
+                         .y = features(tape, i + 1, n),
+                         .x_dot = features(dots, i, n),
+                         .y_dot = open(dots, i + 1, n)});
+  }
+  from_lanes<T>(features(dots, layers_.size(), n), out_dot);
+}
+
+template <class T>
+LayerArgs<T> Sequential<T>::tangent_args(std::size_t i,
+                                         const Header& header,
+                                         VectorIn<T> parameters,
+                                         const Tape& tape,
+                                         VectorIn<T> parameters_dot,
+                                         const Tape& dots,
+                                         Workspace& work) const {
+  LayerArgs<T> at = args(i, header, const_cast<Tape&>(tape), work);
+  at.leading = at.trailing = 0;
+  at.parameters = parameters.data() + places_[i].parameters;
+  at.parameters_dot = parameters_dot.data() + places_[i].parameters;
+  at.dots = const_cast<Tape*>(&dots);
+  return at;
+}
+
+template <class T>
+void Sequential<T>::backward_tangent(VectorIn<T> parameters,
+                                     const Tape& tape,
+                                     VectorIn<T> parameters_dot,
+                                     const Tape& dots,
+                                     BatchIn<T> out_bar,
+                                     BatchIn<T> out_bar_dot,
+                                     VectorOut<T>* parameters_bar,
+                                     VectorOut<T> parameters_bar_dot,
+                                     Workspace& work) const {
+  const Header header = Header::read(tape);
+  const Index n = header.samples;
+  SUITE_CHECK(out_bar.rows() == outputs() && out_bar.cols() == n &&
+                  out_bar_dot.rows() == outputs() && out_bar_dot.cols() == n,
+              "a network's cotangent has the wrong shape");
+  SUITE_CHECK(parameters_bar_dot.size() == parameter_count_,
+              "a network's product has the wrong size");
+  work.counts[Counter::network_backward] += 2 * static_cast<std::uint64_t>(n);
+  const Workspace::Scope scope(work);
+  // Cotangent and derivative of the layer at hand, and of the one below.
+  std::array<Lanes<T>, 4> bars;
+  for (Lanes<T>& bar : bars) {
+    bar = {nullptr, widest_, n};
+    bar.data = work.take<T>(bar.stride, bar.rows).data();
+  }
+  auto& [y_bar, y_bar_dot, x_bar, x_bar_dot] = bars;
+  y_bar.rows = y_bar_dot.rows = outputs();
+  to_lanes<T>(out_bar, y_bar);
+  to_lanes<T>(out_bar_dot, y_bar_dot);
+  const auto gate = [&](std::size_t i, Lanes<T> bar, Lanes<T> bar_dot) {
+    apply_gate_tangent<T>({layers_[i]->fused(), features(tape, i + 1, n)},
+                          features(dots, i + 1, n),
+                          bar,
+                          bar_dot);
+  };
+  gate(layers_.size() - 1, y_bar, y_bar_dot);
+  for (std::size_t i = layers_.size(); i-- > prefix_;) {
+    x_bar.rows = x_bar_dot.rows = layers_[i]->inputs();
+    BackwardTangent<T> b{.x = features(tape, i, n),
+                         .y = features(tape, i + 1, n),
+                         .x_dot = features(dots, i, n),
+                         .y_dot = features(dots, i + 1, n),
+                         .y_bar = y_bar,
+                         .y_bar_dot = y_bar_dot};
+    const Index place = places_[i].parameters;
+    if (parameters_bar != nullptr)
+      b.parameters_bar = parameters_bar->data() + place;
+    b.parameters_bar_dot = parameters_bar_dot.data() + place;
+    if (i > prefix_) b.x_bar = x_bar, b.x_bar_dot = x_bar_dot;
+    layers_[i]->backward_tangent(
+        tangent_args(i, header, parameters, tape, parameters_dot, dots, work),
+        b);
+    if (i > prefix_) gate(i - 1, x_bar, x_bar_dot);
+    std::swap(y_bar, x_bar), std::swap(y_bar_dot, x_bar_dot);
   }
 }
 

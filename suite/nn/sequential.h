@@ -49,6 +49,22 @@ class Sequential final : public Network<T> {
                 VectorOut<T>* parameters_bar,
                 BatchOut<T>* in_bar,
                 Workspace& work) const override;
+  void tangent(VectorIn<T> parameters,
+               const Tape& tape,
+               VectorIn<T> parameters_dot,
+               BatchIn<T> in_dot,
+               BatchOut<T> out_dot,
+               Tape& dots,
+               Workspace& work) const override;
+  void backward_tangent(VectorIn<T> parameters,
+                        const Tape& tape,
+                        VectorIn<T> parameters_dot,
+                        const Tape& dots,
+                        BatchIn<T> out_bar,
+                        BatchIn<T> out_bar_dot,
+                        VectorOut<T>* parameters_bar,
+                        VectorOut<T> parameters_bar_dot,
+                        Workspace& work) const override;
   void jacobian_rows(VectorIn<T> parameters,
                      const Tape& tape,
                      BatchIn<T> out_bar,
@@ -73,6 +89,13 @@ class Sequential final : public Network<T> {
                     const Header& header,
                     Tape& tape,
                     Workspace& work) const;
+  LayerArgs<T> tangent_args(std::size_t layer,
+                            const Header& header,
+                            VectorIn<T> parameters,
+                            const Tape& tape,
+                            VectorIn<T> parameters_dot,
+                            const Tape& dots,
+                            Workspace& work) const;
   void run_prefix(BatchIn<T> in,
                   const Header& header,
                   Tape& tape,

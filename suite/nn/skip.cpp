@@ -1,6 +1,7 @@
 #include "suite/nn/skip.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "suite/core/check.h"
@@ -75,6 +76,8 @@ template <class T>
 LayerArgs<T> Skip<T>::args(const LayerArgs<T>& at, std::size_t i) const {
   LayerArgs<T> inner = at;
   inner.parameters = at.parameters + places_[i].parameters;
+  if (at.parameters_dot != nullptr)
+    inner.parameters_dot = at.parameters_dot + places_[i].parameters;
   if (at.state != nullptr) inner.state = at.state + places_[i].state;
   inner.slot = at.slot + places_[i].slot;
   inner.leading = inner.trailing = 0;
@@ -113,8 +116,7 @@ void Skip<T>::backward(const LayerArgs<T>& at, const Backward<T>& b) const {
   copy_channels<T>(
       from_row(b.y_bar, own), all, y_bar, all - own, all - own, positions_);
   const auto kept = [&](std::size_t i) -> Lanes<const T> {
-    return {
-        at.tape->template view<T>(at.slot + i).data(), inner_[i]->outputs(), n};
+    return this->kept(*at.tape, at.slot, i, n);
   };
   for (std::size_t i = inner_.size(); i-- > 0;) {
     Backward<T> inner{
@@ -135,6 +137,82 @@ void Skip<T>::backward(const LayerArgs<T>& at, const Backward<T>& b) const {
               load<V>(b.y_bar.row(p * all + c) + j) +
                   load<V>(y_bar.row(p * own + c) + j));
   apply_gate(b.gate, b.x_bar);
+}
+
+template <class T>
+Lanes<T> Skip<T>::kept(const Tape& tape,
+                       std::size_t slot,
+                       std::size_t i,
+                       Index samples) const {
+  return {tape.view<T>(slot + i).data(), inner_[i]->outputs(), samples};
+}
+
+template <class T>
+void Skip<T>::tangent(const LayerArgs<T>& at, const Tangent<T>& t) const {
+  const Index own = this->inputs() / positions_, n = t.x.samples;
+  const Index all = this->outputs() / positions_;
+  copy_channels<T>(t.x_dot, own, t.y_dot, all, own, positions_);
+  Tangent<T> inner{.x = t.x, .x_dot = t.x_dot};
+  for (std::size_t i = 0; i < inner_.size(); ++i) {
+    inner.y = kept(*at.tape, at.slot, i, n);
+    at.dots->template slot<T>(at.slot + i, inner.y.stride, inner.y.rows);
+    inner.y_dot = kept(*at.dots, at.slot, i, n);
+    inner_[i]->tangent(args(at, i), inner);
+    inner.x = inner.y, inner.x_dot = inner.y_dot;
+  }
+  copy_channels<T>(inner.x_dot,
+                   all - own,
+                   from_row(t.y_dot, own),
+                   all,
+                   all - own,
+                   positions_);
+}
+
+template <class T>
+void Skip<T>::backward_tangent(const LayerArgs<T>& at,
+                               const BackwardTangent<T>& b) const {
+  const Index own = this->inputs() / positions_, n = b.x.samples;
+  const Index all = this->outputs() / positions_;
+  const Workspace::Scope scope(*at.work);
+  std::array<Lanes<T>, 4> bars;
+  for (Lanes<T>& bar : bars) {
+    bar = {nullptr, widest_, n};
+    bar.data = at.work->template take<T>(bar.stride, bar.rows).data();
+  }
+  auto& [y_bar, y_bar_dot, x_bar, x_bar_dot] = bars;
+  const auto take_in = [&](Lanes<const T> whole, Lanes<T> part) {
+    copy_channels<T>(
+        from_row(whole, own), all, part, all - own, all - own, positions_);
+  };
+  take_in(b.y_bar, y_bar), take_in(b.y_bar_dot, y_bar_dot);
+  for (std::size_t i = inner_.size(); i-- > 0;) {
+    y_bar.rows = y_bar_dot.rows = inner_[i]->outputs();
+    x_bar.rows = x_bar_dot.rows = inner_[i]->inputs();
+    BackwardTangent<T> inner{
+        .x = i > 0 ? kept(*at.tape, at.slot, i - 1, n) : b.x,
+        .y = kept(*at.tape, at.slot, i, n),
+        .x_dot = i > 0 ? kept(*at.dots, at.slot, i - 1, n) : b.x_dot,
+        .y_dot = kept(*at.dots, at.slot, i, n),
+        .y_bar = y_bar,
+        .y_bar_dot = y_bar_dot};
+    const Index place = places_[i].parameters;
+    if (b.parameters_bar != nullptr)
+      inner.parameters_bar = b.parameters_bar + place;
+    inner.parameters_bar_dot = b.parameters_bar_dot + place;
+    if (i > 0 || b.x_bar) inner.x_bar = x_bar, inner.x_bar_dot = x_bar_dot;
+    inner_[i]->backward_tangent(args(at, i), inner);
+    if (i > 0)
+      apply_gate_tangent<T>(
+          {inner_[i - 1]->fused(), inner.x}, inner.x_dot, x_bar, x_bar_dot);
+    std::swap(y_bar, x_bar), std::swap(y_bar_dot, x_bar_dot);
+  }
+  if (!b.x_bar) return;
+  const auto join = [&](Lanes<const T> whole, Lanes<T> part, Lanes<T> to) {
+    copy_channels<T>(whole, all, to, own, own, positions_);
+    part.rows = to.rows;
+    add_lanes<T>(part, to);
+  };
+  join(b.y_bar, y_bar, b.x_bar), join(b.y_bar_dot, y_bar_dot, b.x_bar_dot);
 }
 
 template <class T>

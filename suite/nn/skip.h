@@ -26,6 +26,9 @@ class Skip final : public Layer<T> {
                Lanes<const T> x,
                Lanes<T> y) const override;
   void backward(const LayerArgs<T>& at, const Backward<T>& b) const override;
+  void tangent(const LayerArgs<T>& at, const Tangent<T>& t) const override;
+  void backward_tangent(const LayerArgs<T>& at,
+                        const BackwardTangent<T>& b) const override;
   void update_state(const Tape& tape,
                     std::size_t slot,
                     T* state) const override;
@@ -37,6 +40,11 @@ class Skip final : public Layer<T> {
     Index parameters = 0, state = 0;
     std::size_t slot = 0;
   };
+  /// Output of inner layer i, or its derivative.
+  Lanes<T> kept(const Tape& tape,
+                std::size_t slot,
+                std::size_t i,
+                Index samples) const;
   LayerArgs<T> args(const LayerArgs<T>& at, std::size_t i) const;
 
   Index positions_;

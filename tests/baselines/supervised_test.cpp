@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "baselines/prior_guess.h"
 #include "suite/core/oracle.h"
 #include "suite/core/probe.h"
 #include "tests/support/bits.h"
@@ -27,6 +28,16 @@ TEST(Supervised, LearnsAndGeneralises) {
               0.3 * bench.probe.curve().loss.col(0).mean());
     EXPECT_TRUE((out.iterations.array() == 600).all());
   }
+}
+
+TEST(PriorGuess, IsTheSolutionOfOtherProblems) {
+  const auto stage = prior_guess();
+  StageBench bench(*stage, kCount, 0);
+  const Outcome out = bench.run();
+  EXPECT_TRUE(same_bits(out.x, bench.oracle.labelled().x));
+  EXPECT_FALSE(same_bits(out.x, bench.oracle.data().x));
+  EXPECT_EQ(bench.probe.curve().points(), 1);
+  EXPECT_EQ(bench.oracle.counts()[Counter::forward], 0U);
 }
 
 // The prediction of the last network, be it better or worse than before.

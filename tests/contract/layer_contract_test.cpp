@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <stdexcept>
+#include <string>
 
 #include "optimizers/network_model.h"
 #include "tests/support/gradient_check.h"
@@ -22,7 +24,9 @@ const std::map<std::string, std::array<Index, 2>> kParameters = {
     {"jpo/billiards", {37506, 37506}},
     {"jpo/kuramoto-sivashinsky", {59650, 13121}},
     {"jpo/robotic-arm", {33924, 33922}},
-    {"jpo/wave-packet", {13921, 13073}}};
+    {"jpo/wave-packet", {13921, 13073}},
+    {"sip/heat", {37697, 0}},
+    {"sip/wave-packet", {17489, 0}}};
 
 struct Role {
   ExperimentPtr experiment;
@@ -99,6 +103,8 @@ TEST_P(LayerContract, HasTheParametersOfThePaper) {
 }
 
 TEST_P(LayerContract, GradientsAgreeWithCentralDifferences) {
+  if (net_->operations() > 5e7)
+    GTEST_SKIP() << "its layers are looked at on smaller planes";
   for (const bool training : {false, true}) {
     const Pass pass{.training = training, .fixed_input = training};
     Vector<double> p_bar(p_.size());
@@ -149,6 +155,51 @@ TEST_P(LayerContract, GradientsAgreeWithCentralDifferences) {
     const double pulled =
         p_bar.dot(p_dot) + (in_bar.array() * in_dot.array()).sum();
     EXPECT_NEAR(pulled, pushed, 1e-5 * (1 + std::abs(pushed)));
+  }
+}
+
+// Forward mode is the transpose of backward, its own reverse is symmetric.
+TEST_P(LayerContract, TangentsAgreeWithBackward) {
+  for (const bool training : {false, true}) {
+    const Batch<double> out =
+        forward(p_, in_, {.training = training, .fixed_input = training});
+    const Vector<double> u = Vector<double>::NullaryExpr(
+        p_.size(), [](Index i) { return std::cos(1.3 * double(i)); });
+    const Vector<double> v = Vector<double>::NullaryExpr(
+        p_.size(), [](Index i) { return std::sin(0.7 * double(i) + 1); });
+    Tape dots;
+    const auto tangent = [&](const Vector<double>& p_dot) {
+      Batch<double> out_dot(out.rows(), kCount);
+      net_->tangent(
+          p_, tape_, p_dot, Batch<double>(in_.rows(), 0), out_dot, dots, work_);
+      return out_dot;
+    };
+    Vector<double> p_bar(p_.size());
+    VectorOut<double> ref(p_bar);
+    net_->backward(p_, tape_, out_bar_, &ref, nullptr, work_);
+    Batch<double> u_dot;
+    try {
+      u_dot = tangent(u);
+    } catch (const std::exception& e) {
+      ASSERT_NE(std::string(e.what()).find("no forward mode"),
+                std::string::npos)
+          << e.what();
+      GTEST_SKIP() << "has layers without forward mode";
+    }
+    EXPECT_NEAR((u_dot.array() * out_bar_.array()).sum(),
+                p_bar.dot(u),
+                1e-11 * u_dot.norm() * out_bar_.norm());
+
+    // The Hessian of half the square of the output.
+    const auto product = [&](const Vector<double>& p_dot) {
+      const Batch<double> out_dot = tangent(p_dot);
+      Vector<double> bar(p_.size());
+      net_->backward_tangent(
+          p_, tape_, p_dot, dots, out, out_dot, nullptr, bar, work_);
+      return bar;
+    };
+    const Vector<double> hu = product(u), hv = product(v);
+    EXPECT_NEAR(u.dot(hv), v.dot(hu), 1e-11 * u.norm() * hv.norm());
   }
 }
 

@@ -98,6 +98,9 @@ TEST_P(ProblemContract, ShapesAndAbilitiesAreAsDeclared) {
               provides(Needs::inverse));
     EXPECT_EQ(dynamic_cast<Hessian<T>*>(p.get()) != nullptr,
               provides(Needs::hessian));
+    EXPECT_EQ(dynamic_cast<Jvp<T>*>(p.get()) != nullptr, provides(Needs::jvp));
+    EXPECT_EQ(dynamic_cast<PullbackTangent<T>*>(p.get()) != nullptr,
+              provides(Needs::pullback_tangent));
     for (const auto& set : {p->sample(0, 5, rng_), labelled(5)}) {
       EXPECT_EQ(set.y.rows(), s.observations);
       EXPECT_EQ(set.given.rows(), s.given);
@@ -203,6 +206,65 @@ TEST_P(ProblemContract, PullbackIsTheAdjointOfTheDirectionalDerivative) {
   EXPECT_GE(checked, 12);
 }
 
+TEST_P(ProblemContract, PushforwardIsTheTransposeOfPullback) {
+  if (!provides(Needs::vjp | Needs::jvp)) GTEST_SKIP() << "has no jvp";
+  in_both([&](auto t) {
+    using T = decltype(t);
+    Bench<T> b(recipe());
+    const auto& jvp = dynamic_cast<const Jvp<T>&>(*b.problem);
+    const auto l = labelled().template cast<T>();
+    const Batch<T> x_dot = directions<T>(l.x.rows(), kCount, 0.7);
+    const Batch<T> y_bar = directions<T>(l.y.rows(), kCount, 0.4);
+    const Batch<T> x_bar = b.pull(l.x, l.given, y_bar);
+    Batch<T> y_dot(l.y.rows(), kCount);
+    jvp.pushforward(b.tape, x_dot, y_dot, b.work);
+    for (Index i = 0; i < kCount; ++i)
+      EXPECT_NEAR(double(y_dot.col(i).dot(y_bar.col(i))),
+                  double(x_bar.col(i).dot(x_dot.col(i))),
+                  Tolerance<T>::relative *
+                      double(y_dot.col(i).norm() * y_bar.col(i).norm()));
+    // Who has this has half the squared error as its loss.
+    Batch<T> slope(y_dot), moved(y_dot);
+    b.problem->loss_gradient(l.y, l.y, slope);
+    b.problem->loss_gradient(l.y + y_dot, l.y, moved);
+    EXPECT_TRUE(
+        Comparator(Tolerance<T>::relative, 1e-3 * Tolerance<T>::relative)(
+            moved - slope, (l.y + y_dot) - l.y));
+  });
+}
+
+TEST_P(ProblemContract, PullbackTangentAgreesWithCentralDifferences) {
+  if (!provides(Needs::vjp | Needs::pullback_tangent))
+    GTEST_SKIP() << "has no tangent of the pullback";
+  Bench<double> b(recipe());
+  const auto& tangent =
+      dynamic_cast<const PullbackTangent<double>&>(*b.problem);
+  const auto l = labelled(24);
+  const Batch<double> x_dot = directions<double>(l.x.rows(), 24, 0.7);
+  const Batch<double> y_bar = directions<double>(l.y.rows(), 24, 0.4);
+  const Batch<double> y_bar_dot = directions<double>(l.y.rows(), 24, 1.3);
+  Batch<double> x_bar_dot(l.x.rows(), 24);
+  b.pull(l.x, l.given, y_bar);
+  tangent.pullback_tangent(b.tape, x_dot, y_bar, y_bar_dot, x_bar_dot, b.work);
+  Index checked = 0;
+  for (Index i = 0; i < 24; ++i) {
+    const Batch<double> given = l.given.col(i);
+    const auto difference = [&](double h) {
+      const auto at = [&](double step) {
+        return b.pull(l.x.col(i) + step * x_dot.col(i),
+                      given,
+                      y_bar.col(i) + step * y_bar_dot.col(i));
+      };
+      return Vector<double>((at(h) - at(-h)).col(0) / (2 * h));
+    };
+    Vector<double> d;
+    if (!smooth_derivative(difference, d)) continue;
+    ++checked;
+    EXPECT_TRUE(Comparator(1e-5, 1e-7)(x_bar_dot.col(i), d)) << "sample " << i;
+  }
+  EXPECT_GE(checked, 12);
+}
+
 TEST_P(ProblemContract, JacobianAgreesWithPullback) {
   if (!provides(Needs::vjp | Needs::jacobian))
     GTEST_SKIP() << "has no vjp or no Jacobian";
@@ -222,6 +284,33 @@ TEST_P(ProblemContract, JacobianAgreesWithPullback) {
           x_bar.col(i), ji.transpose() * y_bar.col(i)));
     }
   });
+}
+
+TEST_P(ProblemContract, HessianIsSymmetricAndTheGradientsDerivative) {
+  if (!provides(Needs::vjp | Needs::hessian)) GTEST_SKIP() << "has no Hessian";
+  Bench<double> b(recipe());
+  const auto l = labelled(12);
+  const Batch<double> target = l.y + directions<double>(l.y.rows(), 12, 0.3);
+  const Index d = l.x.rows();
+  Batch<double> h(d * d, 12);
+  dynamic_cast<const Hessian<double>&>(*b.problem)
+      .hessian(l.x, l.given, target, h, b.work);
+  for (Index i = 0; i < 12; ++i) {
+    const Batch<double> given = l.given.col(i);
+    const auto gradient = [&](const Vector<double>& x) {
+      Batch<double> y_bar(l.y.rows(), 1);
+      b.problem->loss_gradient(b.forward(x, given), target.col(i), y_bar);
+      return Vector<double>(b.pull(x, given, y_bar));
+    };
+    const Eigen::Map<const Batch<double>> hi(h.col(i).data(), d, d);
+    EXPECT_TRUE(same_bits(Batch<double>(hi), Batch<double>(hi.transpose())));
+    for (Index j = 0; j < d; ++j)
+      EXPECT_TRUE(Comparator(1e-6, 1e-9)(
+          hi.col(j),
+          difference_along(
+              gradient, l.x.col(i), Vector<double>::Unit(d, j), 1e-6)))
+          << "sample " << i << ", unknown " << j;
+  }
 }
 
 TEST_P(ProblemContract, InverseLowersTheLossAndColumnsAreIndependent) {

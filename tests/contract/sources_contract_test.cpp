@@ -191,14 +191,16 @@ TEST(SourcesContract, EditsMakeStaleWhoUsesThem) {
   const auto edits = [](const std::string& path, const std::string& who) {
     EXPECT_TRUE(all_match(stale_after(path), who)) << path;
   };
-  edits("problems/billiards/billiards.cpp", "(jpo|numerics)/billiards/.*");
+  edits("problems/billiards/billiards.cpp",
+        "(jpo|matrix|numerics)/billiards/.*");
   edits("problems/kuramoto_sivashinsky/etdrk2.cpp",
-        "(jpo|numerics)/kuramoto-sivashinsky.*");
+        "(jpo|matrix|numerics)/kuramoto-sivashinsky.*");
   edits("optimizers/bfgs.cpp", "jpo/.* (solve|refine)");
   edits("optimizers/half_inverse/tridiagonalize.cpp",
-        "(hig|numerics/half-inverse).*");
-  edits("optimizers/steps/rmsprop.h", "hig/.*rmsprop.*");
-  edits("suite/nn/unet.cpp", "jpo/(kuramoto|wave).*/na/.*");
+        "(hig|numerics/half-inverse).*|matrix/.*/(gn|hig)/.*");
+  edits("optimizers/steps/rmsprop.h", "(hig|matrix|physgrad|sip)/.*rmsprop.*");
+  edits("suite/nn/unet.cpp",
+        "jpo/(kuramoto|wave).*/na/.*|(sip|matrix)/(heat|poisson).*");
 }
 
 // ---- the compiler's word ----------------------------------------------------

@@ -14,7 +14,8 @@ namespace {
 constexpr Index kCount = 9;
 
 TEST(Classical, FindsTheOptimumOfAQuadratic) {
-  for (const auto& stage : {bfgs_solve(), gradient_descent_solve()}) {
+  for (const auto& stage :
+       {bfgs_solve(), lbfgsb_solve(), gradient_descent_solve()}) {
     StageBench bench(*stage, kCount, 1000);
     const Outcome out = bench.run();
     SCOPED_TRACE(stage->options().front().second);
@@ -26,7 +27,8 @@ TEST(Classical, FindsTheOptimumOfAQuadratic) {
 }
 
 TEST(Classical, CurvesStartAtTheStartAndEndAtTheResult) {
-  for (const auto& stage : {bfgs_solve(), gradient_descent_solve()}) {
+  for (const auto& stage :
+       {bfgs_solve(), lbfgsb_solve(), gradient_descent_solve()}) {
     StageBench bench(*stage, kCount, 1000);
     const Outcome out = bench.run();
     const Curve& curve = bench.probe.curve();
@@ -47,6 +49,11 @@ TEST(Classical, CountsTheEvaluationsMade) {
   const Outcome out = bench.run();
   EXPECT_EQ(bench.oracle.counts()[Counter::vjp],
             static_cast<std::uint64_t>(out.evaluations.sum()));
+  const auto lbfgsb = lbfgsb_solve();
+  StageBench limited(*lbfgsb, kCount, 1000);
+  const double made = limited.run().evaluations.sum();
+  EXPECT_EQ(static_cast<double>(limited.oracle.counts()[Counter::vjp]), made);
+  EXPECT_GT(limited.oracle.counts()[Counter::skipped_forward], 0U);
   const auto gd = gradient_descent_solve();
   StageBench descent(*gd, kCount, 1000);
   const Outcome end = descent.run();
@@ -94,7 +101,8 @@ TEST(Classical, AStartThatIsNotFiniteStaysWithItsStatus) {
 }
 
 TEST(Classical, ObeysItsIterations) {
-  for (const auto& stage : {bfgs_solve(), gradient_descent_solve()}) {
+  for (const auto& stage :
+       {bfgs_solve(), lbfgsb_solve(), gradient_descent_solve()}) {
     for (const Index most : {0, 1, 2}) {
       StageBench bench(*stage, kCount, most);
       const Outcome out = bench.run();
@@ -111,6 +119,7 @@ TEST(Classical, StagesNameThemselves) {
   EXPECT_TRUE(bfgs_solve()->takes_row_iterations());
   EXPECT_FALSE(bfgs_refine()->takes_row_iterations());
   EXPECT_NE(bfgs_solve()->options(), bfgs_refine()->options());
+  EXPECT_NE(lbfgsb_solve({.lower = {0}})->options(), lbfgsb_solve()->options());
 }
 
 }  // namespace

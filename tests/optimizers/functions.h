@@ -29,6 +29,14 @@ inline double closed_form(const std::string& name,
       f += std::sin(3 * x(i)) + 0.1 * x(i) * x(i);
       g(i) = 3 * std::cos(3 * x(i)) + 0.2 * x(i);
     }
+  } else if (name == "quadratic") {
+    const double sum = x.sum();
+    f = 0.5 * sum * sum;
+    for (Index i = 0; i < x.size(); ++i) {
+      const double k = 1 + static_cast<double>(i), r = x(i) - 1 / k;
+      f += 0.5 * k * r * r;
+      g(i) = k * r + sum;
+    }
   } else if (name == "well") {
     f = -std::exp(-x.squaredNorm());
     g = -2 * f * x;

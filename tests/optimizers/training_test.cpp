@@ -86,6 +86,19 @@ TEST(Training, BatchesAreSlicesInOrder) {
   EXPECT_NE(losses(0), losses(1));
 }
 
+// As if the case had that many problems.
+TEST(Training, ASetMayHaveASizeOfItsOwn) {
+  const auto parameters = [](Index problems, Index set) {
+    auto options = adam(4);
+    options.set = set;
+    const auto stage = train(options);
+    StageBench bench(*stage, problems, 7);
+    return Batch<double>(bench.run().arrays.at("parameters"));
+  };
+  EXPECT_TRUE(same_bits(parameters(3, 8), parameters(8, 0)));
+  EXPECT_FALSE(same_bits(parameters(3, 8), parameters(3, 0)));
+}
+
 TEST(Training, ChainsContinue) {
   const auto stage = train(adam(4));
   StageBench first(*stage, kCount, 5), second(*stage, kCount, 0);

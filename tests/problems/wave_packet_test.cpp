@@ -65,7 +65,7 @@ Vector<double> losses(const Batch<T>& y, const Batch<T>& target) {
 /// u and du/dxi as the formulas stand.
 double formula(double t, double xi, const WavePacketOptions& o = {}) {
   const double d = t - (o.centre + o.scale * xi);
-  return o.amplitude * std::cos(o.frequency * d) *
+  return o.amplitude * std::cos(o.frequency * d + o.phase) *
          std::exp(-d * d / (2 * o.width * o.width));
 }
 double slope(double t, double xi) {
@@ -113,6 +113,7 @@ TEST(WavePacket, OtherConstants) {
   const WavePacketOptions o{.samples = 64,
                             .amplitude = -2.5,
                             .frequency = 2.75,
+                            .phase = 0.4,
                             .width = 1.5,
                             .centre = 30,
                             .scale = 10};
@@ -124,6 +125,18 @@ TEST(WavePacket, OtherConstants) {
   for (Index i = 0; i < 101; ++i)
     for (Index k = 0; k < 64; ++k)
       ASSERT_NEAR(y(k, i), formula(double(k + 1), x(0, i), o), 1e-13);
+}
+
+TEST(WavePacket, WholeSquaredErrorIsTwiceTheHalf) {
+  const WavePacket<double> half, whole({.half_loss = false});
+  const Batch<double> y = draw(3, 1).y, target = draw(3, 2).y;
+  Vector<double> a(3), b(3);
+  Batch<double> slope(y), twice(y);
+  half.loss(y, target, a), whole.loss(y, target, b);
+  half.loss_gradient(y, target, slope);
+  whole.loss_gradient(y, target, twice);
+  EXPECT_EQ(b, 2 * a);
+  EXPECT_EQ(twice, 2 * slope);
 }
 
 TEST(WavePacket, JacobianAgreesWithCentralDifferences) {

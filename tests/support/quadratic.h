@@ -77,9 +77,28 @@ class GradientQuadratic : public Problem<T>, public Vjp<T> {
 };
 
 template <class T>
-class Quadratic final : public GradientQuadratic<T>, public Jacobian<T> {
+class Quadratic final : public GradientQuadratic<T>,
+                        public Jacobian<T>,
+                        public Jvp<T>,
+                        public PullbackTangent<T> {
  public:
   using GradientQuadratic<T>::GradientQuadratic;
+
+  void pushforward(const Tape&,
+                   BatchIn<T> x_dot,
+                   BatchOut<T> y_dot,
+                   Workspace&) const override {
+    for (Index i = 0; i < x_dot.cols(); ++i)
+      y_dot.col(i) = this->matrix() * x_dot.col(i);
+  }
+  void pullback_tangent(const Tape& tape,
+                        BatchIn<T>,
+                        BatchIn<T>,
+                        BatchIn<T> y_bar_dot,
+                        BatchOut<T> x_bar_dot,
+                        Workspace& work) const override {
+    this->pullback(tape, y_bar_dot, x_bar_dot, work);
+  }
 
   void jacobian(BatchIn<T> x,
                 BatchIn<T>,

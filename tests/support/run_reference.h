@@ -1,4 +1,4 @@
-/// One run of BFGS against the record of a reference run.
+/// One run of a batched solver against the record of a reference run.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -20,17 +20,13 @@ struct RecordedRun {
 };
 
 /// Runs the single problem `f(active, x, loss, gradient)` from x0.
-template <class F>
-RecordedRun record_bfgs(F&& f,
-                        const Vector<double>& x0,
-                        double gtol,
-                        Index maxiter = 1000) {
+template <class Solver, class F>
+RecordedRun record(Solver solver, F&& f, const Vector<double>& x0) {
   std::vector<Vector<double>> xs;
   std::vector<double> losses;
-  Bfgs solver({.gtol = gtol, .maxiter = maxiter});
-  drive(solver, f, x0, [&](const Bfgs& b) {
-    xs.emplace_back(b.x().col(0));
-    losses.push_back(b.loss()(0));
+  drive(solver, f, x0, [&](const Solver& s) {
+    xs.emplace_back(s.x().col(0));
+    losses.push_back(s.loss()(0));
   });
   RecordedRun run;
   run.iterates.resize(x0.size(), static_cast<Index>(xs.size()));
@@ -42,6 +38,14 @@ RecordedRun record_bfgs(F&& f,
   run.iterations = solver.iterations()[0];
   run.evaluations = solver.evaluations()[0];
   return run;
+}
+
+template <class F>
+RecordedRun record_bfgs(F&& f,
+                        const Vector<double>& x0,
+                        double gtol,
+                        Index maxiter = 1000) {
+  return record(Bfgs({.gtol = gtol, .maxiter = maxiter}), f, x0);
 }
 
 inline int scipy_status(Status status) {

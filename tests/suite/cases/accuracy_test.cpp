@@ -48,12 +48,12 @@ TEST(Accuracy, SettingsAreMeasuredAndDominated) {
       {run_of(Precision::f64, 2, 1), run_of(Precision::f32, 2, 0.5)});
   const auto all = measurements(results, "numerics/toy-steps");
   ASSERT_EQ(all.size(), 12U);
-  const Measurement* best = fastest_within(all, true, 0.25);
+  const Measurement* best = fastest_within(all, WorkOf::gradient, 0.25);
   ASSERT_NE(best, nullptr);
   EXPECT_EQ(best->setting, "h 0.5, float");
   EXPECT_DOUBLE_EQ(best->seconds, 1);
   EXPECT_DOUBLE_EQ(best->order.value(), 2);
-  EXPECT_EQ(fastest_within(all, true, 1e-3), nullptr);
+  EXPECT_EQ(fastest_within(all, WorkOf::gradient, 1e-3), nullptr);
   for (const Measurement& m : all)
     EXPECT_EQ(dominated_by(all, m) != nullptr, m.precision == Precision::f64);
 }

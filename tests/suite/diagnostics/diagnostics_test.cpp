@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "problems/exponential/exponential.h"
 #include "suite/core/oracle.h"
 #include "suite/core/probe.h"
 #include "suite/diagnostics/diagnostic.h"
@@ -222,7 +223,7 @@ TEST(WorkPrecision, MeasuresGradientsAgainstAClosedForm) {
                                        .problem = quadratic(),
                                        .base = quadratic(),
                                        .exact = quadratic_form(factor),
-                                       .gradient = true,
+                                       .of = WorkOf::gradient,
                                        .samples = 5,
                                        .block = 2,
                                        .repetitions = 1});
@@ -294,15 +295,33 @@ TEST(WorkPrecision, FinerSettingsSeeTheSameFunctions) {
   // On the points that the settings share they agree exactly; a field that was
   // not interpolated, unknowns that were not repeated would not.
   for (const bool gradient : {false, true}) {
-    const auto stage = work_precision({.name = "fine",
-                                       .problem = pointwise(16),
-                                       .base = pointwise(8),
-                                       .reference = pointwise(64),
-                                       .gradient = gradient});
+    const auto stage =
+        work_precision({.name = "fine",
+                        .problem = pointwise(16),
+                        .base = pointwise(8),
+                        .reference = pointwise(64),
+                        .of = gradient ? WorkOf::gradient : WorkOf::forward});
     const auto error = StageBench(*stage, 3, 1)
                            .run(nullptr, Precision::f64)
                            .arrays.at("error");
     EXPECT_LT(error.maxCoeff(), 1e-14) << gradient;
+  }
+}
+
+TEST(WorkPrecision, InversesAreMeasuredAgainstTheUnknowns) {
+  const auto exponential = problem<Exponential>("exponential");
+  const auto stage = work_precision({.name = "inverse",
+                                     .problem = exponential,
+                                     .base = exponential,
+                                     .of = WorkOf::inverse});
+  EXPECT_EQ(stage->needs(), Needs::forward | Needs::inverse);
+  for (const Precision p : {Precision::f64, Precision::f32}) {
+    StageBench bench(*stage, 32, 2, exponential);
+    const auto error = bench.run(nullptr, p).arrays.at("error");
+    EXPECT_EQ(error.cols(), 32);
+    EXPECT_LT(error.maxCoeff(), p == Precision::f64 ? 1e-13 : 1e-4);
+    EXPECT_GT(error.maxCoeff(), 0);
+    EXPECT_EQ(bench.oracle.counts()[Counter::inverse], 64U);
   }
 }
 

@@ -12,7 +12,9 @@ constexpr Activation kAll[] = {Activation::identity,
                                Activation::tanh,
                                Activation::sigmoid,
                                Activation::softplus,
-                               Activation::silu};
+                               Activation::silu,
+                               Activation::half_tanh,
+                               Activation::gelu};
 
 TEST(Activation, DerivativeAgainstCentralDifferences) {
   for (const Activation a : kAll) {
@@ -23,6 +25,23 @@ TEST(Activation, DerivativeAgainstCentralDifferences) {
       EXPECT_NEAR(derivative(a, at), slope, 1e-9) << to_string(a) << " " << z;
     }
   }
+}
+
+TEST(Activation, SecondDerivativeIsThatOfTheDerivative) {
+  for (const Activation a : kAll) {
+    if (a == Activation::relu) continue;  // y = 0 is a kink
+    for (const double z : {-3.1, -0.7, 0.2, 1.9, 6.0}) {
+      const double h = 1e-5, y = from_output(a) ? activate(a, z) : z;
+      const double slope = (derivative(a, y + h) - derivative(a, y - h)) / 2;
+      EXPECT_NEAR(second_derivative(a, y), slope / h, 1e-8)
+          << to_string(a) << " " << z;
+    }
+  }
+}
+
+TEST(Activation, HalfTanhIsASigmoid) {
+  for (const double z : {-30.0, -2.0, 0.0, 0.3, 5.0})
+    EXPECT_NEAR(activate(Activation::half_tanh, z), 2 * sigmoid(z) - 1, 1e-15);
 }
 
 TEST(Activation, FarOutStaysFinite) {

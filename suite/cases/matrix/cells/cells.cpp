@@ -1,16 +1,21 @@
 #include "suite/cases/matrix/cells/cells.h"
 
+#include "optimizers/training/newton.h"
 #include "optimizers/training/proxy.h"
 #include "problems/billiards/billiards.h"
 #include "problems/exponential/exponential.h"
 #include "problems/grid_poisson/grid_poisson.h"
+#include "problems/heat/heat.h"
 #include "problems/kuramoto_sivashinsky/kuramoto_sivashinsky.h"
 #include "problems/oscillators/oscillators.h"
+#include "problems/poisson/poisson.h"
 #include "problems/quantum_dipole/quantum_dipole.h"
 #include "problems/robotic_arm/robotic_arm.h"
 #include "problems/scaled_output/scaled_output.h"
+#include "problems/sine_plane/sine_plane.h"
 #include "problems/wave_packet/wave_packet.h"
 #include "suite/nn/mlp.h"
+#include "suite/nn/unet.h"
 #include "suite/nn/vgg.h"
 
 namespace physinv::matrix {
@@ -29,6 +34,16 @@ MatrixMethod first_order(std::string id,
           .rates = std::move(rates)};
 }
 
+MatrixMethod curved(std::string id,
+                    std::string title,
+                    decltype(TrainingOptions::rule) rule,
+                    std::vector<double> rates) {
+  return {.id = std::move(id),
+          .title = std::move(title),
+          .options = {.rule = std::move(rule), .fresh = true},
+          .rates = std::move(rates)};
+}
+
 MatrixMethod power(std::string id, std::string title, double kappa) {
   return {.id = std::move(id),
           .title = std::move(title),
@@ -41,6 +56,15 @@ MatrixMethod power(std::string id, std::string title, double kappa) {
 
 NetworkRole asks(std::vector<Field> fields, NetworkRecipe recipe) {
   return {std::move(fields), std::move(recipe)};
+}
+
+/// Of the SIP paper's planes, on a grid that leaves time for every method.
+constexpr Index kSide = 32;
+NetworkRecipe plane_unet() {
+  return nn::unet({.grid = {kSide, kSide},
+                   .padding = nn::Padding::circular,
+                   .batch_statistics = true,
+                   .init = nn::Init::uniform});
 }
 
 constexpr Field kGiven = Field::given, kObserved = Field::observations;
@@ -71,6 +95,19 @@ const std::vector<MatrixMethod>& methods() {
                   AdamOptions{},
                   small,
                   inverse_proxy(ProxyNorm::absolute)),
+      first_order("newton",
+                  "Newton, saddle-free, Adam",
+                  AdamOptions{},
+                  small,
+                  newton_proxy()),
+      curved("adahessian",
+             "AdaHessian",
+             AdaHessianOptions{},
+             {1e-5, 1e-4, 1e-3, 1e-2, 1e-1}),
+      curved("hf",
+             "Hessian-free, 10 products",
+             HessianFreeOptions{.solver = {.iterations = 10}},
+             {0.03, 0.1, 0.3, 1, 1.5}),
       power("hig", "Half-inverse gradients", -0.5),
       power("gn", "Gauss-Newton", -1)};
   return all;
@@ -129,6 +166,30 @@ const std::vector<MatrixProblem>& problems() {
        .setting = {.predictor = asks({kObserved}, tanh({20, 20, 20}))},
        .batch = 8,
        .updates = 1000},
+      {.id = "sine",
+       .title = "Sine, xi = 32, 45 degrees",
+       .problem = problem<SinePlane>("sine_plane", {.xi = 32, .degrees = 45}),
+       .setting = {.predictor = asks({kObserved},
+                                     nn::mlp({.hidden = {32, 64, 32},
+                                              .init = nn::Init::uniform}))},
+       .batch = 64,
+       .updates = 4000},
+      {.id = "poisson",
+       .title = "Poisson, 32 x 32",
+       .problem =
+           problem<Poisson>("poisson", {.rows = kSide, .columns = kSide}),
+       .setting = {.predictor = asks({kObserved}, plane_unet())},
+       .batch = 8,
+       .updates = 200,
+       .rows = false},
+      {.id = "heat",
+       .title = "Heat, 32 x 32",
+       .problem = problem<Heat>("heat", {.resolution = kSide}),
+       .setting = {.predictor = asks({kObserved}, plane_unet()),
+                   .output_form = OutputForm::mean_of_observations},
+       .batch = 8,
+       .updates = 200,
+       .rows = false},
       {.id = "wave-packet",
        .title = "Wave packet",
        .problem = problem<WavePacket>("wave_packet"),
@@ -162,6 +223,9 @@ std::string refusal(const MatrixProblem& problem, const MatrixMethod& method) {
   };
   if (lacks(Needs::inverse)) return "no inverse";
   if (lacks(Needs::jacobian)) return "no Jacobian";
+  if (lacks(Needs::hessian)) return "no Hessian";
+  if (lacks(Needs::jvp)) return "no forward mode";
+  if (lacks(Needs::pullback_tangent)) return "no second derivative";
   if (lacks(Needs::vjp)) return "no gradient";
   if (method.half_inverse && !problem.rows) return "network without rows";
   return {};

@@ -13,23 +13,41 @@
 namespace physinv {
 namespace {
 
-std::string stage_name(const Knob& knob, std::size_t place, bool gradient) {
+constexpr WorkOf kBoth[] = {WorkOf::forward, WorkOf::gradient};
+constexpr WorkOf kAll[] = {WorkOf::forward, WorkOf::gradient, WorkOf::inverse};
+
+/// What can be asked of all settings of a knob.
+std::vector<WorkOf> asked(const Knob& knob) {
+  std::vector<WorkOf> all(std::begin(kBoth), std::end(kBoth));
+  if (std::all_of(
+          knob.problems.begin(), knob.problems.end(), [](const auto& problem) {
+            return contains(problem.provided, Needs::inverse);
+          }))
+    all.push_back(WorkOf::inverse);
+  return all;
+}
+
+std::string stage_name(const Knob& knob, std::size_t place, WorkOf of) {
   std::string value = fmt::format("{:g}", knob.axis.values[place]);
   std::replace(value.begin(), value.end(), '.', '_');
-  return fmt::format("{}-{}{}", knob.id, value, gradient ? "-gradient" : "");
+  return fmt::format("{}-{}{}{}",
+                     knob.id,
+                     value,
+                     of == WorkOf::forward ? "" : "-",
+                     of == WorkOf::forward ? "" : to_string(of));
 }
 
 std::shared_ptr<const Stage> stage_of(const Knob& knob,
                                       std::size_t place,
-                                      bool gradient,
+                                      WorkOf of,
                                       const std::shared_ptr<Answers>& answers) {
   return work_precision(
-      {.name = stage_name(knob, place, gradient),
+      {.name = stage_name(knob, place, of),
        .problem = knob.problems[knob.problems.size() == 1 ? 0 : place],
        .base = knob.problems.front(),
        .reference = knob.reference,
        .exact = knob.exact,
-       .gradient = gradient,
+       .of = of,
        .samples = knob.samples,
        .block = knob.blocks ? static_cast<Index>(knob.axis.values[place]) : 0,
        .repetitions = knob.repetitions,
@@ -58,10 +76,10 @@ const StageRecord* find_stage(const CaseRecord& chain,
 std::optional<double> order_of(const CaseRecord& chain,
                                const Knob& knob,
                                std::size_t place,
-                               bool gradient) {
+                               WorkOf of) {
   if (place == 0 || knob.blocks) return {};
-  const auto* before = find_stage(chain, stage_name(knob, place - 1, gradient));
-  const auto* after = find_stage(chain, stage_name(knob, place, gradient));
+  const auto* before = find_stage(chain, stage_name(knob, place - 1, of));
+  const auto* after = find_stage(chain, stage_name(knob, place, of));
   if (before == nullptr || after == nullptr) return {};
   const auto& coarse = before->arrays.at("error");
   const auto& fine = after->arrays.at("error");
@@ -75,12 +93,12 @@ std::optional<double> order_of(const CaseRecord& chain,
   return median(std::move(orders));
 }
 
-/// That of the gradient or of the forward pass in a run of all settings.
-Quantity order_at(const Knob& knob, std::size_t place, bool gradient) {
-  return median({kAccuracy, stage_name(knob, place, gradient)},
+/// In a run of all settings.
+Quantity order_at(const Knob& knob, std::size_t place, WorkOf of) {
+  return median({kAccuracy, stage_name(knob, place, of)},
                 [=](const Run& run) -> std::optional<double> {
                   if (run.record->info.precision != Precision::f64) return {};
-                  return order_of(*run.record, knob, place, gradient);
+                  return order_of(*run.record, knob, place, of);
                 });
 }
 
@@ -99,12 +117,24 @@ const Measurement* find(const std::vector<Measurement>& all,
                         const Knob& knob,
                         std::size_t place,
                         Precision precision,
-                        bool gradient) {
+                        WorkOf of) {
   for (const Measurement& m : all)
     if (m.knob == knob.id && m.place == place && m.precision == precision &&
-        m.gradient == gradient)
+        m.of == of)
       return &m;
   return nullptr;
+}
+
+/// Of which there are measurements.
+std::vector<WorkOf> measured(const std::vector<Measurement>& all) {
+  std::vector<WorkOf> some;
+  for (const WorkOf of : kAll)
+    if (of != WorkOf::inverse ||
+        std::any_of(all.begin(), all.end(), [](const Measurement& m) {
+          return m.of == WorkOf::inverse;
+        }))
+      some.push_back(of);
+  return some;
 }
 
 Table settings_table(const std::vector<Measurement>& all,
@@ -121,8 +151,9 @@ Table settings_table(const std::vector<Measurement>& all,
                   "samples. A setting is dominated by the fastest of its knob "
                   "that is at least as accurate in less than nine tenths of "
                   "its time."};
-  for (const char* what : {"forward", "gradient"}) {
-    table.columns.push_back(fmt::format("{}: error", what));
+  const auto shown = measured(all);
+  for (const WorkOf of : shown) {
+    table.columns.push_back(fmt::format("{}: error", to_string(of)));
     table.columns.insert(table.columns.end(), {"order", "us", "dominated by"});
   }
   for (const Knob& knob : knobs) {
@@ -130,8 +161,8 @@ Table settings_table(const std::vector<Measurement>& all,
       for (std::size_t k = 0; k < knob.axis.values.size(); ++k) {
         TableRow row;
         row.label = setting_name(knob, k, precision);
-        for (const bool gradient : {false, true}) {
-          const auto* m = find(all, knob, k, precision, gradient);
+        for (const WorkOf of : shown) {
+          const auto* m = find(all, knob, k, precision, of);
           if (m == nullptr) {
             row.cells.insert(row.cells.end(), 4, Cell{.text = kNotRun});
             continue;
@@ -164,8 +195,8 @@ Figure knob_figure(const std::vector<Measurement>& all, const Knob& knob) {
                                                  "with the power {:g}.",
                                                  knob.order)
                                    : "")};
-  for (const bool gradient : {false, true}) {
-    Panel panel{.title = gradient ? "Gradient" : "Forward pass",
+  for (const WorkOf of : measured(all)) {
+    Panel panel{.title = to_string(of),
                 .x_label = "seconds per sample",
                 .y_label = "relative error",
                 .x_log = true,
@@ -175,7 +206,7 @@ Figure knob_figure(const std::vector<Measurement>& all, const Knob& knob) {
                .method = precision == Precision::f64 ? "f64" : "f32",
                .markers = true};
       for (std::size_t k = 0; k < knob.axis.values.size(); ++k) {
-        const auto* m = find(all, knob, k, precision, gradient);
+        const auto* m = find(all, knob, k, precision, of);
         if (m == nullptr || m->error < 0 || m->seconds <= 0) continue;
         s.x.push_back(m->seconds);
         s.y.push_back(std::max(m->error, 1e-18));  // exact: on the scale
@@ -224,9 +255,9 @@ Method accuracy_method(const std::vector<Knob>& knobs) {
   Method method{kAccuracy, {}};
   for (const Knob& knob : knobs) {
     const auto answers = no_answers_yet();
-    for (const bool gradient : {false, true})
+    for (const WorkOf of : asked(knob))
       for (std::size_t k = 0; k < knob.axis.values.size(); ++k)
-        method.chain.push_back(stage_of(knob, k, gradient, answers));
+        method.chain.push_back(stage_of(knob, k, of, answers));
   }
   return method;
 }
@@ -250,8 +281,8 @@ std::vector<Measurement> measurements(const Results& results,
     const Precision precision = c.info.precision;
     for (const Knob& knob : knobs) {
       for (std::size_t k = 0; k < knob.axis.values.size(); ++k) {
-        for (const bool gradient : {false, true}) {
-          const std::string stage = stage_name(knob, k, gradient);
+        for (const WorkOf of : kAll) {
+          const std::string stage = stage_name(knob, k, of);
           for (const StageRecord& s : c.stages) {
             if (s.stage != stage || !s.arrays.contains("error")) continue;
             const auto& error = s.arrays.at("error");
@@ -259,9 +290,9 @@ std::vector<Measurement> measurements(const Results& results,
                            .setting = setting_name(knob, k, precision),
                            .place = k,
                            .precision = precision,
-                           .gradient = gradient,
+                           .of = of,
                            .error = typical_error(error),
-                           .order = order_of(c, knob, k, gradient),
+                           .order = order_of(c, knob, k, of),
                            .seconds = fastest_repetition(s.curve) /
                                       static_cast<double>(error.cols())});
           }
@@ -273,12 +304,12 @@ std::vector<Measurement> measurements(const Results& results,
 }
 
 const Measurement* fastest_within(const std::vector<Measurement>& all,
-                                  bool gradient,
+                                  WorkOf of,
                                   double error,
                                   const std::string& knob) {
   const Measurement* best = nullptr;
   for (const Measurement& m : all)
-    if (m.gradient == gradient && m.error >= 0 && m.error <= error &&
+    if (m.of == of && m.error >= 0 && m.error <= error &&
         (knob.empty() || m.knob == knob) &&
         (best == nullptr || m.seconds < best->seconds))
       best = &m;
@@ -288,7 +319,7 @@ const Measurement* fastest_within(const std::vector<Measurement>& all,
 const Measurement* dominated_by(const std::vector<Measurement>& all,
                                 const Measurement& one) {
   const auto* best = fastest_within(
-      all, one.gradient, one.error < 0 ? HUGE_VAL : one.error, one.knob);
+      all, one.of, one.error < 0 ? HUGE_VAL : one.error, one.knob);
   return best != nullptr && best->seconds < 0.9 * one.seconds ? best : nullptr;
 }
 
@@ -309,11 +340,11 @@ std::vector<Claim> order_claims(const std::vector<Knob>& knobs) {
   for (const Knob& knob : knobs) {
     if (knob.order == 0) continue;
     std::vector<Condition> conditions;
-    for (const bool gradient : {false, true}) {
+    for (const WorkOf of : kBoth) {
       std::vector<Quantity> orders;
       for (std::size_t k = knob.regime; k < knob.axis.values.size(); ++k)
-        orders.push_back(order_at(knob, k, gradient));
-      const std::string what = gradient ? "gradient" : "forward";
+        orders.push_back(order_at(knob, k, of));
+      const std::string what = to_string(of);
       conditions.push_back(
           at_least(what + ", lowest order", least(orders), 0.85 * knob.order));
       conditions.push_back(

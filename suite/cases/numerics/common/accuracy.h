@@ -1,5 +1,6 @@
 /// Work against precision: what every knob of a problem does to its error and
-/// to its time, in double and in float, forward pass and gradient
+/// to its time, in double and in float, forward pass, gradient and,
+/// where there is one, inverse
 /// (suite/diagnostics/work_precision.h). A problem enters by saying what can be
 /// turned.
 #pragma once
@@ -49,7 +50,8 @@ const std::map<std::string, std::vector<Knob>>& all_knobs();
 
 inline constexpr const char* kAccuracy = "work-precision";
 
-/// A stage for the forward passes of each value, one for the gradients.
+/// A stage for the forward passes of each value, one for the gradients, one for
+/// the inverses if all settings have one.
 Method accuracy_method(const std::vector<Knob>& knobs);
 /// In double and in float.
 std::vector<Row> accuracy_rows(Index n);
@@ -60,7 +62,7 @@ struct Measurement {
   std::string knob, setting;  ///< "time step 0.25, float"
   std::size_t place = 0;      ///< on the knob's axis
   Precision precision = Precision::f64;
-  bool gradient = false;
+  WorkOf of = WorkOf::forward;
   double error = -1;  ///< -1: half of the samples or more are not finite
   std::optional<double> order = {};  ///< from the value before
   double seconds = 0;
@@ -72,7 +74,7 @@ std::vector<Measurement> measurements(const Results& results,
 /// The fastest of all (or of one knob) with at most this error; null if there
 /// is none.
 const Measurement* fastest_within(const std::vector<Measurement>& all,
-                                  bool gradient,
+                                  WorkOf of,
                                   double error,
                                   const std::string& knob = {});
 

@@ -83,6 +83,11 @@ Figure maps(const Results& results) {
   return figure;
 }
 
+bool asks(const std::vector<Measurement>& all, WorkOf of) {
+  return std::any_of(
+      all.begin(), all.end(), [of](const auto& m) { return m.of == of; });
+}
+
 /// What accuracy costs, at the fastest setting that reaches it.
 Table times_to_accuracy(const Results& results) {
   Table table{.id = "accuracy",
@@ -95,22 +100,25 @@ Table times_to_accuracy(const Results& results) {
                   "is. Dominated: settings that another one beats in time "
                   "and error; the pages of the problems name them."};
   const std::vector<double> targets = {1e-3, 1e-6, 1e-9};
-  for (const char* what : {"forward", "gradient"})
+  constexpr WorkOf kAll[] = {
+      WorkOf::forward, WorkOf::gradient, WorkOf::inverse};
+  for (const WorkOf of : kAll)
     for (const double target : targets)
-      table.columns.push_back(fmt::format("{} {:.0e}", what, target));
+      table.columns.push_back(fmt::format("{} {:.0e}", to_string(of), target));
   table.columns.insert(table.columns.end(), {"settings", "dominated"});
   for (const auto& [experiment, knobs] : all_knobs()) {
     const auto all = measurements(results, experiment);
     TableRow row{.label = experiment.substr(kPrefix.size())};
-    for (const bool gradient : {false, true}) {
+    for (const WorkOf of : kAll) {
       for (const double target : targets) {
-        const auto* m = fastest_within(all, gradient, target);
+        const auto* m = fastest_within(all, of, target);
         row.cells.push_back(
             {.text =
                  m != nullptr
                      ? fmt::format("{:.3g} ({})", 1e6 * m->seconds, m->setting)
-                 : all.empty() ? kNotRun
-                               : "not reached"});
+                 : all.empty()    ? kNotRun
+                 : !asks(all, of) ? "no inverse"
+                                  : "not reached"});
       }
     }
     const auto dominated =

@@ -13,7 +13,12 @@ const std::vector<MethodLine> kLines = {
     {"sgd", "SGD", Hue::blue},
     {"adam", "Adam", Hue::purple},
     {"norm", "Adam, sign of the inverse's step", Hue::orange},
-    {"gt", "Adam, the inverse's step", Hue::green}};
+    {"gt", "Adam, the inverse's step", Hue::green},
+    {"adahessian", "AdaHessian", Hue::olive},
+    {"hf", "Hessian-free", Hue::indigo},
+    {"newton", "Adam, Newton's step", Hue::teal},
+    {"newton-clipped", "at most 0.1", Hue::pink},
+    {"newton-damped", "Hessian + 0.01", Hue::brown}};
 
 /// What the networks of the first seed answer, over the whole range.
 Figure predictions(const Results& results) {

@@ -1,0 +1,100 @@
+/// L-BFGS-B with the semantics of lbfgsb.f 3.0 in SciPy 1.10
+/// `minimize(method="L-BFGS-B", jac=True)`, run for many independent problems
+/// together; used like `Bfgs` (bfgs.h), with `drive` (drive.h).
+///
+/// Byrd, Lu, Nocedal, Zhu: SIAM J. Sci. Comput. 16 (1995); Morales, Nocedal:
+/// ACM TOMS 38 (2011). Steps aim at a minimum of the model inside the bounds
+/// (steps/box_step.h); their length is that of More and Thuente.
+///
+/// A search that fails starts the problem's memory anew, and ends the problem
+/// if there is none. A value that is not finite fails a search; lbfgsb.f would
+/// walk on with NaN.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "optimizers/steps/box_step.h"
+#include "optimizers/steps/limited_memory.h"
+#include "optimizers/steps/line_search.h"
+#include "suite/core/batch.h"
+#include "suite/core/stop.h"
+
+namespace physinv {
+
+struct LbfgsbOptions {
+  Index memory = 10;    ///< pairs of steps and gradient changes kept
+  double pgtol = 1e-5;  ///< done when max|projected gradient| <= pgtol,
+  double ftol = 2.2204460492503131e-09;  ///< or f - f' <= ftol max(|f|,|f'|,1)
+  Index maxiter = 15000;                 ///< accepted steps
+  Index maxfun = 15000;  ///< evaluations, looked at after accepted steps
+  int maxls = 20;        ///< evaluations of one line search
+  /// Bounds on every problem: one number for each unknown, or one for all, or
+  /// none. Infinite where there is no bound.
+  std::vector<double> lower = {}, upper = {};
+};
+
+class Lbfgsb {
+ public:
+  explicit Lbfgsb(LbfgsbOptions options = {}) : options_(std::move(options)) {}
+
+  /// Begins one run per column of x0 (d x n), moved into the bounds.
+  void start(BatchIn<double> x0);
+
+  bool pending() const { return !active_.empty(); }
+  std::span<const Index> active() const { return active_; }
+  Eigen::Ref<const Batch<double>> points() const {
+    return trial_.leftCols(static_cast<Index>(active_.size()));
+  }
+  void supply(VectorIn<double> loss, BatchIn<double> gradient);
+  void halt() { active_.clear(); }
+
+  std::span<const Index> accepted() const { return accepted_; }
+  const Batch<double>& x() const { return x_; }
+  const Vector<double>& loss() const { return loss_; }
+  const Batch<double>& gradient() const { return gradient_; }
+  /// `gtol` for both tests, `linesearch`, `nonfinite`, or `maxiter` (or
+  /// maxfun).
+  const std::vector<Status>& status() const { return status_; }
+  const std::vector<Index>& iterations() const { return iterations_; }
+  const std::vector<Index>& evaluations() const { return evaluations_; }
+
+  Index rounds() const { return rounds_; }
+  std::uint64_t skipped_evaluations() const { return skipped_; }
+
+ private:
+  struct Problem {
+    LimitedMemory memory;
+    LineSearch line;
+    double slope = 0, longest = 0;  // of the search under way
+  };
+
+  void set_box(Index d);
+  bool begin(Index i, double loss, const double* gradient, double* trial);
+  bool advance(
+      Index i, Index at, double loss, const double* gradient, double* trial);
+  bool done(Index i, double loss_before);
+  void remember(Index i, double slope);
+  bool iterate(Index i, double* trial);
+  bool start_search(Index i);
+  bool restart(Index i, Status otherwise, double* trial);
+  bool point(Index i, double* trial) const;
+  bool finish(Index i, Status status);
+  LineSearchOptions search_options(const Problem& problem) const;
+
+  LbfgsbOptions options_;
+  Box box_;
+  bool bounded_ = false, boxed_ = false;
+  BoxStep aim_;
+  Index d_ = 0, rounds_ = 0;
+  std::uint64_t skipped_ = 0;
+  std::vector<Problem> problems_;
+  Batch<double> x_, gradient_, target_, direction_, trial_;
+  Vector<double> loss_, step_, change_;
+  std::vector<Status> status_;
+  std::vector<Index> iterations_, evaluations_, active_, accepted_;
+};
+
+}  // namespace physinv

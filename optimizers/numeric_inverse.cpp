@@ -1,0 +1,72 @@
+#include "optimizers/numeric_inverse.h"
+
+#include "optimizers/drive.h"
+
+namespace physinv {
+
+NumericInverse::NumericInverse(const Problem<double>& problem,
+                               const NumericInverseOptions& options,
+                               Threads* threads)
+    : problem_(problem),
+      options_(options),
+      solver_({.pgtol = options.pgtol, .ftol = options.ftol}),
+      work_(threads),
+      tape_(threads) {}
+
+void NumericInverse::invert(BatchIn<double> y,
+                            BatchIn<double> given,
+                            BatchIn<double> x_guess,
+                            BatchOut<double> x) {
+  drive(
+      solver_,
+      [&](std::span<const Index> active,
+          BatchIn<double> points,
+          VectorOut<double> loss,
+          BatchOut<double> gradient) {
+        given_ = given(Eigen::all, active);
+        target_ = y(Eigen::all, active);
+        if (options_.difference > 0) {
+          differences(points, loss, gradient);
+        } else {
+          exact(points, loss, gradient);
+        }
+      },
+      x_guess);
+  x = solver_.x();
+}
+
+void NumericInverse::losses(BatchIn<double> x, VectorOut<double> loss) {
+  y_.resizeLike(target_);
+  problem_.forward(x, given_, y_, work_);
+  problem_.loss(y_, target_, loss);
+  counts_[Counter::forward] += static_cast<std::uint64_t>(x.cols());
+}
+
+void NumericInverse::exact(BatchIn<double> x,
+                           VectorOut<double> loss,
+                           BatchOut<double> gradient) {
+  const auto& vjp = dynamic_cast<const Vjp<double>&>(problem_);
+  y_.resizeLike(target_), y_bar_.resizeLike(target_);
+  vjp.linearize(x, given_, y_, tape_);
+  problem_.loss(y_, target_, loss);
+  problem_.loss_gradient(y_, target_, y_bar_);
+  vjp.pullback(tape_, y_bar_, gradient, work_);
+  counts_[Counter::vjp] += static_cast<std::uint64_t>(x.cols());
+}
+
+void NumericInverse::differences(BatchIn<double> x,
+                                 VectorOut<double> loss,
+                                 BatchOut<double> gradient) {
+  losses(x, loss);
+  moved_ = x;
+  moved_loss_.resize(x.cols());
+  for (Index j = 0; j < x.rows(); ++j) {
+    moved_.row(j).array() += options_.difference;
+    losses(moved_, moved_loss_);
+    gradient.row(j) = (moved_loss_ - loss).transpose().array() /
+                      (moved_.row(j) - x.row(j)).array();
+    moved_.row(j) = x.row(j);
+  }
+}
+
+}  // namespace physinv

@@ -1,0 +1,53 @@
+/// A local inverse of any problem, by search: the x at which L-BFGS-B ends that
+/// minimizes the problem's loss to y from a guess on.
+///
+/// Gradients are exact, or differences (f(x + h) - f(x)) / h one unknown at a
+/// time, as SciPy's where none are given: these know a minimum to about h.
+#pragma once
+
+#include "optimizers/lbfgsb.h"
+#include "suite/core/problem.h"
+
+namespace physinv {
+
+struct NumericInverseOptions {
+  double difference = 0;  ///< h; 0: exact gradients
+  double pgtol = 1e-5;    ///< of L-BFGS-B, its defaults
+  double ftol = 2.2204460492503131e-09;
+};
+
+class NumericInverse {
+ public:
+  /// `problem` outlives this, and has a Vjp if gradients are to be exact.
+  NumericInverse(const Problem<double>& problem,
+                 const NumericInverseOptions& options,
+                 Threads* threads = nullptr);
+
+  void invert(BatchIn<double> y,
+              BatchIn<double> given,
+              BatchIn<double> x_guess,
+              BatchOut<double> x);
+
+  const Counts& counts() const { return counts_; }
+  std::size_t bytes() const { return work_.bytes() + tape_.bytes(); }
+
+ private:
+  void losses(BatchIn<double> x, VectorOut<double> loss);
+  void exact(BatchIn<double> x,
+             VectorOut<double> loss,
+             BatchOut<double> gradient);
+  void differences(BatchIn<double> x,
+                   VectorOut<double> loss,
+                   BatchOut<double> gradient);
+
+  const Problem<double>& problem_;
+  NumericInverseOptions options_;
+  Lbfgsb solver_;
+  Batch<double> given_, target_, y_, y_bar_, moved_;  // of the active problems
+  Vector<double> moved_loss_;
+  Workspace work_;
+  Tape tape_;
+  Counts counts_;
+};
+
+}  // namespace physinv

@@ -1,0 +1,74 @@
+/// Hessian-free optimization (Martens 2010) with Gauss and Newton's matrix G of
+/// the batch, as the SIP paper's authors use it. An update, f the objective of
+/// the batch and g its gradient at the parameters:
+///
+///  1. (G + damping I) s = -g by conjugate gradients, from 0.95 times where the
+///     last update's ended;
+///  2. rho = (f(s) - f(s_0)) / (m(s) - m(s_0)), m the model, s_0 the start;
+///     damping grows by 1.5 if rho < 1/4, shrinks by as much if rho > 3/4;
+///  3. back through the stored iterates while f falls;
+///  4. along the best one, s: alpha = 1, 0.8, .., up to 20 trials, until
+///     f(alpha s) <= f(0) + 0.01 alpha g.s; else no update.
+///
+/// Vectors of parameters are summed and kept in double. Leaves per update
+/// `cg_iterations`, `damping` (as used), `rho`, `chosen` (iterate), `alpha`,
+/// `objective` (before), `objective_after`.
+#pragma once
+
+#include <vector>
+
+#include "optimizers/conjugate_gradients.h"
+#include "optimizers/training/rule.h"
+#include "suite/core/recipe.h"
+
+namespace physinv {
+
+struct HessianFreeOptions {
+  double rate = 1;     ///< of the update
+  double damping = 1;  ///< to begin with
+  double warm = 0.95;  ///< share of the last result to start from
+  ConjugateGradientOptions solver = {};
+};
+
+Options describe(const HessianFreeOptions& options);
+
+/// What happened in an update.
+struct HessianFreeReport {
+  std::vector<double> model;  ///< m_0, m_1, ..
+  double damping = 0, next_damping = 0, rho = 0, alpha = 0;
+  double before = 0, after = 0;  ///< the objective
+  Index chosen = 0;
+  std::vector<Index> stored;  ///< iterates
+};
+
+template <class T>
+class HessianFreeRule final : public Rule<T> {
+ public:
+  HessianFreeRule(const HessianFreeOptions& options, NetworkModel<T>& model)
+      : options_(options), model_(model), damping_(options.damping) {}
+
+  /// False if objective or gradient are not finite, or what follows from them.
+  bool operator()(Signal<T>& signal) override;
+  void leave(Outcome& out) const override;
+  std::size_t bytes() const override;
+
+  const std::vector<HessianFreeReport>& reports() const { return reports_; }
+
+ private:
+  ConjugateGradientPath solve(Signal<T>& signal, const Vector<double>& g);
+  /// f at theta + s, theta being where the update began.
+  double at(Signal<T>& signal, const Vector<double>& s, double alpha);
+
+  HessianFreeOptions options_;
+  NetworkModel<T>& model_;
+  double damping_;
+  Vector<double> start_;  ///< what the last solve ended with
+  Vector<T> theta_, direction_, product_;
+  std::vector<HessianFreeReport> reports_;
+  std::size_t stored_ = 0;  ///< numbers, at most
+};
+
+extern template class HessianFreeRule<float>;
+extern template class HessianFreeRule<double>;
+
+}  // namespace physinv

@@ -1,0 +1,125 @@
+#include "optimizers/training/newton.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "optimizers/training/batch_signal.h"
+#include "suite/core/oracle.h"
+
+namespace physinv {
+namespace {
+
+/// s of one direction.
+double along(const NewtonOptions& o, double q, double h) {
+  const double bottom = h + o.damping;
+  if (bottom == 0 || q == 0) return 0;
+  const double size = std::min(std::abs(q / bottom), o.limit);
+  const bool down = o.flip || bottom > 0;
+  return std::copysign(size, down ? q : -q);
+}
+
+template <class T>
+class NewtonProxy final : public BatchSignal<T> {
+ public:
+  NewtonProxy(const SignalPlace<T>& place, const NewtonOptions& options)
+      : BatchSignal<T>(place),
+        newton_(options),
+        problem_(place.run.oracle.recipe().template make<T>()),
+        vjp_(dynamic_cast<const Vjp<T>&>(*problem_)),
+        hessian_(dynamic_cast<const Hessian<T>&>(*problem_)),
+        tape_(place.run.threads),
+        work_(place.run.threads) {}
+
+  Counts counts() const override {
+    Counts all = counts_;
+    all += work_.counts;
+    all += tape_.counts;
+    return all;
+  }
+  std::size_t bytes() const override {
+    return BatchSignal<T>::bytes() +
+           static_cast<std::size_t>(y_.size() + y_bar_.size() + h_.size()) *
+               sizeof(T) +
+           tape_.bytes() + work_.bytes();
+  }
+
+ private:
+  void push(BatchIn<T> x,
+            Index first,
+            VectorOut<double> loss,
+            BatchOut<T> x_bar) override {
+    const Index n = x.cols(), d = x.rows();
+    const auto given = this->batches_.given(first, n);
+    const auto target = this->batches_.target(first, n);
+    y_.resize(target.rows(), n);
+    y_bar_.resizeLike(y_);
+    h_.resize(d * d, n);
+    vjp_.linearize(x, given, y_, tape_);
+    problem_->loss_gradient(y_, target, y_bar_);
+    vjp_.pullback(tape_, y_bar_, x_bar, work_);
+    hessian_.hessian(x, given, target, h_, work_);
+    counts_[Counter::vjp] += static_cast<std::uint64_t>(n);
+    counts_[Counter::jacobian] += static_cast<std::uint64_t>(n);
+    for (Index i = 0; i < n; ++i) {
+      const Eigen::Map<const Batch<T>> h(h_.col(i).data(), d, d);
+      const Vector<double> dx =
+          newton_step(newton_,
+                      x_bar.col(i).template cast<double>(),
+                      h.template cast<double>());
+      loss(i) = 0.5 * dx.squaredNorm();
+      x_bar.col(i) = (-double(this->factor_) * dx).template cast<T>();
+    }
+  }
+
+  NewtonOptions newton_;
+  std::unique_ptr<Problem<T>> problem_;
+  const Vjp<T>& vjp_;
+  const Hessian<T>& hessian_;
+  Batch<T> y_, y_bar_, h_;
+  Tape tape_;
+  Workspace work_;
+  Counts counts_;
+};
+
+template <class T>
+SignalRecipe::Make<T> maker(const NewtonOptions& options) {
+  return [options](const SignalPlace<T>& place) {
+    return std::make_unique<NewtonProxy<T>>(place, options);
+  };
+}
+
+}  // namespace
+
+Vector<double> newton_step(const NewtonOptions& options,
+                           const Vector<double>& gradient,
+                           const Batch<double>& hessian) {
+  const Index d = gradient.size();
+  if (d == 1)
+    return Vector<double>::Constant(
+        1, -along(options, gradient(0), hessian(0, 0)));
+  if (!gradient.allFinite() || !hessian.allFinite())
+    return Vector<double>::Constant(d, std::nan(""));
+  const Eigen::SelfAdjointEigenSolver<Batch<double>> parts(hessian);
+  Vector<double> q = parts.eigenvectors().transpose() * gradient;
+  for (Index k = 0; k < d; ++k)
+    q(k) = along(options, q(k), parts.eigenvalues()(k));
+  return -parts.eigenvectors() * q;
+}
+
+SignalRecipe newton_proxy(const NewtonOptions& options) {
+  constexpr Needs needs = Needs::vjp | Needs::hessian;
+  return {.algorithm = fmt::format("newton flip={} damping={} limit={}",
+                                   options.flip,
+                                   options.damping,
+                                   options.limit),
+          .gradient = needs,
+          .jacobians = needs,
+          .make_float = maker<float>(options),
+          .make_double = maker<double>(options),
+          .source = __FILE__};
+}
+
+}  // namespace physinv

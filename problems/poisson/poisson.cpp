@@ -1,0 +1,216 @@
+#include "problems/poisson/poisson.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include "suite/core/check.h"
+#include "suite/core/threads.h"
+
+namespace physinv {
+namespace {
+
+using Complex = std::complex<double>;
+using ComplexBatch = Eigen::MatrixXcd;
+
+Batch<double> sines(Index n) {
+  const auto steps = static_cast<double>(n + 1);
+  return std::sqrt(2 / steps) *
+         Batch<double>::NullaryExpr(n, n, [=](Index i, Index k) {
+           const auto turn =
+               static_cast<double>((i + 1) * (k + 1) % (2 * n + 2));
+           return std::sin(std::numbers::pi * turn / steps);
+         });
+}
+
+double eigenvalue(Index k, Index n) {
+  return 2 * std::cos(std::numbers::pi * static_cast<double>(k + 1) /
+                      static_cast<double>(n + 1)) -
+         2;
+}
+
+/// Frequencies in cycles per cell, the negative ones in the upper half.
+double frequency(Index k, Index n) {
+  return static_cast<double>(2 * k < n ? k : k - n) / static_cast<double>(n);
+}
+
+/// exp(2 pi i j k / n)
+ComplexBatch waves(Index n) {
+  return ComplexBatch::NullaryExpr(n, n, [n](Index j, Index k) {
+    return std::polar(1.0,
+                      2 * std::numbers::pi * static_cast<double>(j * k % n) /
+                          static_cast<double>(n));
+  });
+}
+
+/// Conjugate gradients on L y = x from 0, fields as they lie in memory.
+void iterate(const PoissonOptions& o,
+             const Batch<double>& x,
+             Batch<double>& y) {
+  y.setZero(x.rows(), x.cols());
+  Batch<double> r = x, p = x, lp;
+  const double enough = o.relative * o.relative * x.squaredNorm();
+  double rr = r.squaredNorm();
+  for (Index k = 0; k < o.most && rr > enough; ++k) {
+    lp = laplacian(p);
+    const double alpha = rr / p.cwiseProduct(lp).sum();
+    y += alpha * p;
+    r -= alpha * lp;
+    const double next = r.squaredNorm();
+    p = r + next / rr * p;
+    rr = next;
+  }
+  if (!std::isfinite(rr)) y.setConstant(std::nan(""));
+}
+
+}  // namespace
+
+Options describe(const PoissonOptions& o) {
+  Options all = {{"rows", fmt::format("{}", o.rows)},
+                 {"columns", fmt::format("{}", o.columns)}};
+  if (o.relative > 0) {
+    all.push_back({"relative", fmt::format("{}", o.relative)});
+    all.push_back({"most", fmt::format("{}", o.most)});
+  }
+  return all;
+}
+
+Batch<double> poisson_source(const Batch<double>& re, const Batch<double>& im) {
+  const Index p = re.rows(), q = re.cols();
+  ComplexBatch c(p, q);
+  for (Index l = 0; l < q; ++l) {
+    for (Index k = 0; k < p; ++k) {
+      const double a = 10 * frequency(k, p), b = 10 * frequency(l, q);
+      const double square = a * a + b * b;
+      c(k, l) =
+          square <= 0.1 ? Complex(0, 0) : Complex(re(k, l), im(k, l)) / square;
+    }
+  }
+  const ComplexBatch half = waves(p) * c;
+  Batch<double> x = (half * waves(q)).real();
+  const double mean = x.mean();
+  x /= std::sqrt((x.array() - mean).square().mean());
+  x.array() -= x.mean();
+  return x;
+}
+
+Batch<double> laplacian(const Batch<double>& y) {
+  const Index p = y.rows(), q = y.cols();
+  Batch<double> out = -4 * y;
+  out.topRows(p - 1) += y.bottomRows(p - 1);
+  out.bottomRows(p - 1) += y.topRows(p - 1);
+  out.leftCols(q - 1) += y.rightCols(q - 1);
+  out.rightCols(q - 1) += y.leftCols(q - 1);
+  return out;
+}
+
+template <class T>
+Poisson<T>::Poisson(const Options& options)
+    : options_(options),
+      along_rows_(sines(options.rows)),
+      along_columns_(sines(options.columns)),
+      lambda_(Batch<double>::NullaryExpr(
+          options.columns, options.rows, [&](Index l, Index k) {
+            return eigenvalue(k, options.rows) + eigenvalue(l, options.columns);
+          })) {
+  SUITE_CHECK(options.rows > 0 && options.columns > 0 && options.relative >= 0,
+              "a rectangle has cells, a tolerance is not negative");
+}
+
+template <class T>
+void Poisson<T>::solve(const Batch<double>& x, Batch<double>& y) const {
+  if (options_.relative > 0) return iterate(options_, x, y);
+  Batch<double> modes(x.rows(), x.cols());
+  y.resizeLike(x);
+  y.noalias() = along_columns_ * x;
+  modes.noalias() = y * along_rows_;
+  modes.array() /= lambda_.array();
+  y.noalias() = along_columns_ * modes;
+  modes.noalias() = y * along_rows_;
+  y.swap(modes);
+}
+
+template <class T>
+void Poisson<T>::solve_all(BatchIn<T> x,
+                           BatchOut<T> y,
+                           Threads* threads) const {
+  const Index p = options_.rows, q = options_.columns;
+  check_size(x, p * q, y.cols());
+  check_size(y, p * q, x.cols());
+  for_blocks(threads, x.cols(), [&](Index i, int) {
+    Batch<double> field = Eigen::Map<const Batch<T>>(x.col(i).data(), q, p)
+                              .template cast<double>();
+    Batch<double> found;
+    solve(field, found);
+    y.col(i) = found.reshaped().template cast<T>();
+  });
+}
+
+template <class T>
+Samples<double> Poisson<T>::sample(Index first,
+                                   Index count,
+                                   const Rng& rng) const {
+  const Index p = options_.rows, q = options_.columns;
+  Samples<double> out;
+  out.x.resize(p * q, count), out.y.resize(p * q, count);
+  out.given.resize(0, count);
+  Batch<double> re(p, q), im(p, q), found;
+  for (Index i = 0; i < count; ++i) {
+    Stream stream = rng.child(static_cast<std::uint64_t>(first + i)).stream();
+    for (Index k = 0; k < p; ++k)
+      for (Index l = 0; l < q; ++l)
+        re(k, l) = stream.normal(), im(k, l) = stream.normal();
+    const Batch<double> x = poisson_source(re, im).transpose();
+    solve(x, found);
+    out.x.col(i) = x.reshaped(), out.y.col(i) = found.reshaped();
+  }
+  return out;
+}
+
+template <class T>
+void Poisson<T>::forward(BatchIn<T> x,
+                         BatchIn<T> /*given*/,
+                         BatchOut<T> y,
+                         Workspace& work) const {
+  solve_all(x, y, work.threads());
+}
+
+template <class T>
+void Poisson<T>::linearize(BatchIn<T> x,
+                           BatchIn<T> /*given*/,
+                           BatchOut<T> y,
+                           Tape& tape) const {
+  solve_all(x, y, tape.threads());
+}
+
+template <class T>
+void Poisson<T>::pullback(const Tape& /*tape*/,
+                          BatchIn<T> y_bar,
+                          BatchOut<T> x_bar,
+                          Workspace& work) const {
+  solve_all(y_bar, x_bar, work.threads());
+}
+
+template <class T>
+void Poisson<T>::invert(BatchIn<T> y,
+                        BatchIn<T> /*given*/,
+                        BatchIn<T> /*x_guess*/,
+                        BatchOut<T> x,
+                        Workspace& work) const {
+  const Index p = options_.rows, q = options_.columns;
+  check_size(y, p * q, x.cols());
+  check_size(x, p * q, y.cols());
+  for_blocks(work.threads(), y.cols(), [&](Index i, int) {
+    const Batch<double> field =
+        Eigen::Map<const Batch<T>>(y.col(i).data(), q, p)
+            .template cast<double>();
+    x.col(i) = laplacian(field).reshaped().template cast<T>();
+  });
+}
+
+template class Poisson<float>;
+template class Poisson<double>;
+
+}  // namespace physinv

@@ -1,0 +1,269 @@
+// The chapter's pictures, and its notebook's table with the printed digits.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "suite/cases/physgrad/scaling/path.h"
+#include "suite/cases/physgrad/scaling/scaling.h"
+#include "suite/evidence/cell.h"
+#include "suite/harness/registry.h"
+
+namespace physinv::scaling {
+namespace {
+
+struct Line {
+  const char* method;
+  const char* label;
+  Look look;
+};
+const Line kGd{"gd", "gradient descent", {Hue::blue, Marker::circle}};
+const Line kNewton{"newton", "Newton", {Hue::orange, Marker::square}};
+const Line kIg{"ig", "inverse gradients", {Hue::purple, Marker::triangle}};
+const Line kPg{"pg", "inverse simulator", {Hue::green, Marker::diamond}};
+
+/// The path of a finished run.
+std::optional<Path> path_of(const Results& results,
+                            const char* experiment,
+                            const char* method,
+                            Index problem = 0) {
+  const Published none;
+  const auto runs = find_runs({results, none, experiment}, {.method = method});
+  if (runs.empty() || problem >= Path::count(*runs.front().stage)) return {};
+  return Path(*runs.front().stage, problem);
+}
+
+Series series(const Line& line, const Batch<double>& points) {
+  Series s{.label = line.label,
+           .method = line.method,
+           .markers = points.cols() <= 11,
+           .look = line.look};
+  for (Index k = 0; k < points.cols(); ++k)
+    s.x.push_back(points(0, k)), s.y.push_back(points(1, k));
+  return s;
+}
+
+// ---- y = (x1, alpha x2) -----------------------------------------------------
+
+constexpr double kScales[] = {1, 3, 5};
+
+/// 101 numbers from -below to 1.
+std::vector<double> up_to_one(double below) {
+  constexpr int kPoints = 101;
+  std::vector<double> all;
+  for (int i = 0; i < kPoints; ++i)
+    all.push_back(-below + (1 + below) * i / (kPoints - 1));
+  return all;
+}
+
+/// |P|, as the chapter's bars say, or the loss |P|^2 as far down as the
+/// trajectories go.
+Panel landscape(double alpha, bool squared) {
+  Field2D field{.x = up_to_one(0.1),
+                .y = up_to_one(squared ? 0.5 : 0.1),
+                .label = squared ? "|P(x)|^2" : "|P(x)|"};
+  for (const double x2 : field.y)
+    for (const double x1 : field.x) {
+      const double r = std::hypot(x1, alpha * x2);
+      field.values.push_back(squared ? r * r : r);
+    }
+  return {.title = fmt::format("alpha = {:g}", alpha),
+          .x_label = "x1",
+          .y_label = "x2",
+          .field = std::move(field)};
+}
+
+/// The first update as an arrow of one length for all, with its head.
+Series arrow(const Line& line, const Path& path) {
+  constexpr double kLength = 0.35, kHead = 0.05;
+  const Vector<double> from = path.x().col(0);
+  const Vector<double> way = (path.x().col(1) - from).normalized();
+  const Vector<double> to = from + kLength * way;
+  const Vector<double> across =
+      way.reverse().cwiseProduct(Vector<double>{{-1, 1}});
+  Batch<double> points(2, 5);
+  points << from, to, to - kHead * (way + 0.5 * across), to,
+      to - kHead * (way - 0.5 * across);
+  Series s = series(line, points);
+  s.markers = false;
+  return s;
+}
+
+Figure landscapes(const Results& results) {
+  Figure figure{.id = "fig1",
+                .title = "Landscapes and first updates",
+                .source = "Figs. 1, 2",
+                .columns = 3,
+                .note = "Arrows show directions, not lengths."};
+  for (Index i = 0; i < 3; ++i) {
+    Panel panel = landscape(kScales[i], false);
+    for (const Line& line : {kGd, kNewton})
+      if (const auto path = path_of(results, kScaling, line.method, i))
+        panel.series.push_back(arrow(line, *path));
+    figure.panels.push_back(std::move(panel));
+  }
+  return figure;
+}
+
+Figure trajectories(const Results& results) {
+  Figure figure{.id = "fig2",
+                .title = "Trajectories on the losses",
+                .source = "Figs. 1, 2",
+                .columns = 3,
+                .note =
+                    "Newton, inverse gradients and the inverse simulator take "
+                    "one way for every alpha."};
+  for (Index i = 0; i < 3; ++i) {
+    Panel panel = landscape(kScales[i], true);
+    for (const Line& line : {kGd, kNewton, kIg, kPg})
+      if (const auto path = path_of(results, kScaling, line.method, i)) {
+        panel.series.push_back(series(line, path->x()));
+        panel.series.back().dashed = line.method != kGd.method;
+      }
+    figure.panels.push_back(std::move(panel));
+  }
+  return figure;
+}
+
+/// Of the batches that were run.
+Table times(const Results& results, const char* experiment) {
+  Table table{.id = "batch",
+              .title = "A step of one of many trajectories",
+              .unit = "ns",
+              .digits = 4,
+              .corner = "trajectories",
+              .columns = {"GD", "Newton", "IG", "PG"},
+              .note =
+                  "All steps of a batch over their number, one thread "
+                  "unless asked otherwise; each trajectory stays in "
+                  "registers."};
+  const Published none;
+  for (const char* id : {"batch_1e3", "batch_1e5", "batch_1e6"}) {
+    TableRow row{.label = id + 6};
+    for (const char* stage : {"gd", "newton", "ig", "pg"}) {
+      const auto runs = find_runs({results, none, experiment},
+                                  {.method = id, .stage = stage});
+      if (runs.empty()) continue;
+      const StageRecord& s = *runs.front().stage;
+      const double steps = s.arrays.at("batch").prod();
+      row.cells.push_back(
+          s.crowded ? Cell{.text = kCrowded}
+                    : Cell{.ours = 1e9 * s.clocks.solve.wall / steps});
+    }
+    if (row.cells.size() == table.columns.size())
+      table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+Section scaling(const Results& results, const Published&) {
+  return {.tables = {times(results, kScaling)},
+          .figures = {landscapes(results), trajectories(results)}};
+}
+
+// ---- y = (x1, x2^2) ---------------------------------------------------------
+
+Figure both_spaces(const Results& results) {
+  Panel x{.title = "Unknowns", .x_label = "x1", .y_label = "x2"};
+  Panel y{.title = "Observations", .x_label = "y1", .y_label = "y2"};
+  for (const Line& line : {kGd, kNewton, kIg, kPg})
+    if (const auto path = path_of(results, kComparison, line.method)) {
+      x.series.push_back(series(line, path->x()));
+      y.series.push_back(series(line, path->squared()));
+    }
+  return {.id = "fig3",
+          .title = "Ten steps from (3, 3)",
+          .source = "Figs. 3, 4",
+          .panels = {std::move(x), std::move(y)}};
+}
+
+Figure ways(const Results& results,
+            std::string id,
+            std::string title,
+            std::string source,
+            const std::vector<Line>& lines) {
+  Panel x{.x_label = "x1", .y_label = "x2"};
+  for (const Line& line : lines)
+    if (const auto path = path_of(results, kComparison, line.method))
+      x.series.push_back(series(line, path->x()));
+  return {.id = std::move(id),
+          .title = std::move(title),
+          .source = std::move(source),
+          .panels = {std::move(x)},
+          .columns = 1};
+}
+
+Figure rates(const Results& results) {
+  const std::vector<Line> lines = {
+      {"newton_large", "Newton, rate 0.5", {Hue::orange, Marker::square}},
+      {"newton_small", "Newton, 0.1", {Hue::brown, Marker::square}},
+      {"pg_small", "inverse simulator, 0.05", {Hue::green, Marker::diamond}},
+      {"gd_large", "gradient descent, 0.5 / 36", {Hue::blue, Marker::circle}},
+      {"gd_small", "gradient descent, 0.005", {Hue::teal, Marker::circle}}};
+  return ways(results,
+              "figure1",
+              "Large and small rates",
+              "the authors' script",
+              lines);
+}
+
+Figure rules(const Results& results) {
+  const std::vector<Line> lines = {
+      {"adam", "Adam", {Hue::red, Marker::circle}},
+      {"adagrad", "Adagrad", {Hue::olive, Marker::square}},
+      {"rmsprop", "RMSprop", {Hue::indigo, Marker::triangle}},
+      {"gd_small", "gradient descent, 0.005", {Hue::teal, Marker::circle}},
+      {"pg_small", "inverse simulator, 0.05", {Hue::green, Marker::diamond}}};
+  return ways(results, "rules", "Adaptive rules, rate 0.1", "", lines);
+}
+
+Table ends(const Results& results, const Published& published) {
+  Table table{.id = "comparison",
+              .title = "After ten steps from (3, 3)",
+              .source = "notebook",
+              .digits = 6,
+              .corner = "method",
+              .columns = {"x1", "x2", "distance", "first update on diagonal"},
+              .note =
+                  "The notebook is in single precision. Diagonal: "
+                  "(u1 + u2) / |u| of the first update u."};
+  const struct {
+    Line line;
+    std::string printed;
+  } rows[] = {{kGd, "gd"},
+              {kNewton, "newton"},
+              {kIg, "ig"},
+              {kPg, "pg"},
+              {{"pg_numeric", "inverse by search", {}}, "pg-numeric"},
+              {{"pg_numeric_exact", "by search, exact gradients", {}}, ""}};
+  for (const auto& [line, printed] : rows) {
+    const auto path = path_of(results, kComparison, line.method);
+    TableRow row{.label = line.label};
+    const auto add = [&](const char* quantity, double (*value)(const Path&)) {
+      Cell cell = cell_of(path ? std::optional(value(*path)) : std::nullopt);
+      if (const auto p = published.find(kComparison, printed + "/" + quantity))
+        cell.paper = p->value;
+      row.cells.push_back(std::move(cell));
+    };
+    add("x1", [](const Path& p) { return p.x()(0, p.steps()); });
+    add("x2", [](const Path& p) { return p.x()(1, p.steps()); });
+    add("distance", [](const Path& p) { return p.distance(); });
+    add("diagonal", [](const Path& p) { return p.diagonal(); });
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+Section comparison(const Results& results, const Published& published) {
+  return {.tables = {ends(results, published), times(results, kComparison)},
+          .figures = {both_spaces(results), rates(results), rules(results)}};
+}
+
+const bool kReports = register_report(kScaling, scaling) &&
+                      register_report(kComparison, comparison);
+
+}  // namespace
+}  // namespace physinv::scaling

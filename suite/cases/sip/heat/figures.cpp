@@ -1,0 +1,232 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "suite/cases/sip/heat/grids.h"
+#include "suite/cases/sip/heat/metrics.h"
+#include "suite/evidence/cell.h"
+#include "suite/evidence/curve.h"
+#include "suite/evidence/statistics.h"
+#include "suite/evidence/training_report.h"
+#include "suite/harness/registry.h"
+
+namespace physinv::heat {
+namespace {
+
+const std::vector<MethodLine> kDirect = {
+    {"gd", "gradient descent", Hue::blue},
+    {"lbfgsb", "L-BFGS-B", Hue::green},
+    {"inverse-physics", "inverse physics", Hue::red}};
+
+/// A method's longest training comes first.
+std::vector<MethodLine> networks() {
+  std::vector<MethodLine> all = {{"sgd", "SGD", Hue::brown},
+                                 {"adahessian", "AdaHessian", Hue::teal},
+                                 {"fno", "FNO", Hue::pink},
+                                 {"hf", "Hessian-free", Hue::grey}};
+  for (const char* size : {"", "-b32", "-b8", "-b4"}) {
+    const std::string tail = size;
+    const std::string batch = tail.empty() ? "" : ", batch " + tail.substr(2);
+    all.push_back({"sip" + tail, "SIP" + batch, Hue::orange});
+    all.push_back({"adam" + tail, "Adam" + batch, Hue::purple});
+  }
+  all.push_back({"hf-b4", "Hessian-free, batch 4", Hue::grey});
+  all.push_back({"sgd-b4", "SGD, batch 4", Hue::brown});
+  all.push_back({"sgd-b8-lr3", "SGD 1e-3, batch 8", Hue::olive});
+  return all;
+}
+
+std::vector<double> ends(const Results& results,
+                         const std::string& method,
+                         MetricRow row) {
+  std::vector<double> all;
+  for (const StageRecord* s : trained_stages(results, kName, method))
+    all.push_back(CurveRow{*s, "metrics", row}.last());
+  return all;
+}
+
+std::optional<double> end(const Results& results,
+                          const std::string& method,
+                          MetricRow row) {
+  const auto all = ends(results, method, row);
+  return all.empty() ? std::nullopt : std::optional(median(all));
+}
+
+Table errors(const Results& results, const Published& published) {
+  Table table{
+      .id = "errors",
+      .title = "Errors at the end, sums of |x - x*| over the cells",
+      .source = "Fig. 13",
+      .corner = "method",
+      .columns = {"sum |x - x*|",
+                  "clamped at 0",
+                  "share left, coarse",
+                  "share left, fine"},
+      .note =
+          "Means over the examples and, with their deviation, over the seeds. "
+          "Coarse waves "
+          "are those damped to 1/e at most, fine ones those damped to e^-4 "
+          "and further, to e^-16; shares are of x*'s energy. The paper's "
+          "script clamps networks only."};
+  const auto add = [&](const MethodLine& line) {
+    if (!end(results, line.method, kError)) return;
+    std::vector<Cell> cells;
+    for (const MetricRow row : {kError, kClamped, kCoarse, kFine})
+      cells.push_back(row <= kClamped
+                          ? cell_of(ends(results, line.method, row))
+                          : written(end(results, line.method, row)));
+    if (const auto paper = published.find(kName, "fig13/" + line.method))
+      cells[kClamped].paper = paper->value;
+    table.rows.push_back({.label = line.label, .cells = std::move(cells)});
+  };
+  for (const auto& lines : {networks(), kDirect})
+    for (const MethodLine& line : lines) add(line);
+  if (table.rows.empty()) return table;
+  for (const auto& [row, label] :
+       {std::pair(kOfMean, "mean of y"), std::pair(kOfObserved, "y itself")})
+    for (const char* any : {"gd", "sip", "sip-b8", "sip-b4"})
+      if (const auto error = end(results, any, row)) {
+        table.rows.push_back({.label = label,
+                              .cells = {cell_of(error),
+                                        Cell{.text = kNothing},
+                                        Cell{.text = kNothing},
+                                        Cell{.text = kNothing}}});
+        break;
+      }
+  return table;
+}
+
+/// Fig. 13: what single examples reach, and what networks answer at once.
+Figure direct(const Results& results) {
+  Panel panel{.x_label = "iterations",
+              .y_label = "sum |x - x*|",
+              .x_log = true,
+              .y_min = 0};
+  for (const MethodLine& line : kDirect) {
+    const auto stages = trained_stages(results, kName, line.method);
+    if (stages.empty()) continue;
+    const CurveRow row{*stages.front(), "metrics", kError};
+    Series s{.label = line.label, .method = line.method, .look = look_of(line)};
+    for (Index k = 0; k < row.points(); ++k)
+      if (row.updates(k) > 0)
+        s.x.push_back(row.updates(k)), s.y.push_back(row(k));
+    panel.series.push_back(std::move(s));
+  }
+  if (panel.series.empty()) return {.id = "fig13"};
+  double last = 1;
+  for (const Series& s : panel.series)
+    if (!s.x.empty()) last = std::max(last, s.x.back());
+  for (const MethodLine& line : networks())
+    if (const auto error = end(results, line.method, kClamped);
+        error && line.label.find("1e-3") == std::string::npos)
+      panel.series.push_back({.label = line.label,
+                              .method = line.method,
+                              .x = {1, last},
+                              .y = {*error, *error},
+                              .dashed = true,
+                              .look = look_of(line)});
+  return {.id = "fig13",
+          .title = "Examples by themselves",
+          .source = "Fig. 13",
+          .panels = {std::move(panel)},
+          .columns = 1,
+          .note =
+              "Dashed: networks at the end of their training, clamped at "
+              "zero as in the paper. Means over the same test examples."};
+}
+
+/// Every other cell, as the mean of four.
+Panel picture(std::string title, const Vector<double>& field) {
+  const auto side = static_cast<Index>(std::lround(std::sqrt(field.size())));
+  Panel panel{.title = std::move(title), .field = Field2D{}};
+  for (Index i = 0; i < side; i += 2) {
+    panel.field->x.push_back(double(i) + 1);
+    panel.field->y.push_back(double(i) + 1);
+    for (Index j = 0; j < side; j += 2)
+      panel.field->values.push_back(
+          (field(side * i + j) + field(side * i + j + 1) +
+           field(side * (i + 1) + j) + field(side * (i + 1) + j + 1)) /
+          4);
+  }
+  return panel;
+}
+
+/// The first test example of the first seed.
+Figure pictures(const Results& results) {
+  Figure figure{.id = "fields",
+                .title = "What was there, what is seen, what is found",
+                .source = "Fig. 10",
+                .columns = 3,
+                .note = "First test example. Four cells are one here."};
+  auto lines = networks();
+  lines.insert(lines.end(), kDirect.begin(), kDirect.end());
+  for (const MethodLine& line : lines) {
+    if (line.method == "sgd-b8-lr3") continue;
+    const auto answer = first_answer(results, kName, line.method);
+    if (!answer) continue;
+    if (figure.panels.empty()) {
+      figure.panels.push_back(picture("truth x*", answer->truth));
+      figure.panels.push_back(picture("observed y", answer->wanted));
+    }
+    figure.panels.push_back(picture(line.label, answer->x));
+  }
+  return figure;
+}
+
+/// Figs. 11 and 12: SIP and Adam in every cell.
+Table study(const Results& results,
+            std::string id,
+            std::string title,
+            std::string source,
+            const std::vector<Spot>& spots) {
+  Table table{.id = std::move(id),
+              .title = std::move(title),
+              .source = std::move(source),
+              .corner = "setting",
+              .columns = {"SIP", "Adam"}};
+  for (const Spot& cell : spots) {
+    if (cell.id("") == "") continue;  // has a length of its own
+    const auto sip = end(results, cell.id("sip"), kError),
+               adam = end(results, cell.id("adam"), kError);
+    if (!sip && !adam) continue;
+    table.rows.push_back(
+        {.label =
+             cell.set > 0
+                 ? fmt::format("{} examples, batch {}", cell.set, cell.batch)
+                 : fmt::format("rate 1e-{}, batch {}", cell.decade, cell.batch),
+         .cells = {cell_of(sip), cell_of(adam)}});
+  }
+  return table;
+}
+
+Section report(const Results& results, const Published& published) {
+  Section section{.experiment = kName};
+  section.tables = {
+      errors(results, published),
+      loss_table(results, kName, networks()),
+      study(
+          results, "fig11", "Error by rate and batch", "Fig. 11", rate_spots()),
+      study(results,
+            "fig12",
+            "Error by size of the training set",
+            "Fig. 12",
+            set_spots())};
+  std::erase_if(section.tables, [](const Table& t) { return t.rows.empty(); });
+  LearningCurves curves(results, section);
+  curves.metric(
+      networks(), kError, "sum |x - x*|", "fig10", "Errors of x", "Fig. 10");
+  curves.losses(networks(), "losses", "Losses of y", "");
+  for (Figure figure : {direct(results), pictures(results)})
+    if (!figure.panels.empty()) section.figures.push_back(std::move(figure));
+  return section;
+}
+
+const bool kReport = register_report(kName, report);
+
+}  // namespace
+}  // namespace physinv::heat

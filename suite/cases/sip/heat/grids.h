@@ -1,0 +1,45 @@
+/// The studies of training with SIP and with Adam: batches and rates (Fig. 11),
+/// finite training sets (Fig. 12).
+#pragma once
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "suite/core/batch.h"
+
+namespace physinv::heat {
+
+inline constexpr const char* kName = "sip/heat";
+
+/// One setting; the paper's own has no suffix.
+struct Spot {
+  Index batch = 128;
+  int decade = 3;  ///< the rate is 10^-decade
+  Index set = 0;   ///< samples of the training set; 0: always fresh ones
+
+  double rate() const { return std::pow(10.0, -decade); }
+  /// "sip-t512-b32", "adam-b4-lr2"
+  std::string id(std::string method) const {
+    if (set > 0) method += "-t" + std::to_string(set);
+    if (set > 0 || batch != 128) method += "-b" + std::to_string(batch);
+    if (decade != 3) method += "-lr" + std::to_string(decade);
+    return method;
+  }
+};
+
+inline std::vector<Spot> rate_spots() {
+  std::vector<Spot> all;
+  for (const int decade : {2, 3, 4})
+    for (const Index batch : {4, 32, 128}) all.push_back({batch, decade});
+  return all;
+}
+
+inline std::vector<Spot> set_spots() {
+  std::vector<Spot> all;
+  for (const Index set : {32, 128, 512, 2048})
+    for (const Index batch : {4, 32, 128}) all.push_back({batch, 3, set});
+  return all;
+}
+
+}  // namespace physinv::heat

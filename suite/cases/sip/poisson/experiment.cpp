@@ -1,0 +1,170 @@
+// SIP paper, App. B.2, Figs. 9 and 15: a network finds the source of a
+// potential. The paper's grid is 80 x 60, that of the authors' code 64 x 64.
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "optimizers/local_steps.h"
+#include "optimizers/training.h"
+#include "optimizers/training/proxy.h"
+#include "problems/poisson/poisson.h"
+#include "suite/cases/sip/poisson/metrics.h"
+#include "suite/cases/sip/poisson/poisson.h"
+#include "suite/harness/registry.h"
+#include "suite/nn/fno.h"
+#include "suite/nn/unet.h"
+
+namespace physinv::poisson {
+namespace {
+
+constexpr Index kTest = 128, kPaperUpdates = 10'000, kLong = 12'000;
+const std::vector<Index> kBatches = {128, 8};
+
+/// Objectives are sums over the batch, not means.
+Method trained(const Plane& plane,
+               std::string id,
+               Index batch,
+               decltype(TrainingOptions::rule) rule,
+               SignalRecipe signal = solver_loss()) {
+  if (batch != kBatches.front()) id += "-b" + std::to_string(batch);
+  return {.id = std::move(id),
+          .chain = {train({.rule = std::move(rule),
+                           .batch = batch,
+                           .iterations = kPaperUpdates,
+                           .gradient_scale = double(batch),
+                           .fresh = true,
+                           .metrics = metrics(),
+                           .late = late_error(plane.rows, plane.columns),
+                           .signal = std::move(signal)})}};
+}
+
+std::vector<Method> methods(const Plane& plane) {
+  std::vector<Method> all;
+  const StepOptions adam = AdamOptions{.rate = 1e-3, .eps = 1e-8};
+  for (const Index batch : kBatches) {
+    const auto add = [&](std::string id, auto rule, auto... signal) {
+      all.push_back(trained(
+          plane, std::move(id), batch, std::move(rule), std::move(signal)...));
+    };
+    add("sip", adam, inverse_proxy());
+    add("adam", adam);
+    add("sgd", StepOptions(SgdOptions{.rate = 3e-12, .momentum = 0.9}));
+    add("adahessian", AdaHessianOptions{.rate = 1e-6});
+    add("hf", HessianFreeOptions{});
+    add("hf-40", HessianFreeOptions{.solver = {.iterations = 40}});
+    add("hf-10", HessianFreeOptions{.solver = {.iterations = 10}});
+  }
+  const auto direct = [&](std::string id, LocalStep step, double rate) {
+    all.push_back({.id = std::move(id),
+                   .chain = {local_steps(
+                       {.step = step, .rate = rate, .iterations = 300})}});
+  };
+  direct("gd", LocalStep::gradient, 2e-5);
+  direct("gd-5e-5", LocalStep::gradient, 5e-5);
+  direct("inverse-physics", LocalStep::inverse_simulator, 1);
+  return all;
+}
+
+Row row(std::vector<std::string> ids,
+        Index n,
+        std::uint64_t seeds,
+        Index updates,
+        Precision precision = Precision::f32) {
+  return {.methods = std::move(ids),
+          .n = {n},
+          .seeds = first_seeds(seeds),
+          .iterations = updates,
+          .precision = precision};
+}
+
+std::vector<Row> directly(Index n) {
+  return {row({"gd"}, n, 1, 300, Precision::f64),
+          row({"gd-5e-5"}, n, 1, 200, Precision::f64),
+          row({"inverse-physics"}, n, 1, 1, Precision::f64),
+          row({"inverse-physics"}, n, 1, 1)};
+}
+
+std::vector<Row> joined(std::vector<Row> a, const std::vector<Row>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+std::vector<Profile> profiles(const Plane& plane) {
+  const std::string name = plane.experiment;
+  if (name == kSmall.experiment) {
+    const std::vector<Row> quick = {row({"sip-b8", "adam-b8"}, 32, 1, 160),
+                                    row({"sgd-b8"}, 32, 1, 170),
+                                    row({"adahessian-b8"}, 32, 1, 70),
+                                    row({"hf-40-b8"}, 32, 1, 2)};
+    return {{.name = "smoke",
+             .rows = {row({"sip-b8", "adam-b8", "sgd-b8"}, 8, 1, 10),
+                      row({"hf-10-b8"}, 8, 1, 1),
+                      row({"gd"}, 1, 1, 50, Precision::f64)}},
+            {.name = "quick", .rows = quick},
+            {.name = "standard", .rows = quick},
+            {.name = "paper", .rows = quick}};
+  }
+  if (name == kPaper.experiment) {
+    return {
+        {.name = "quick", .rows = directly(8)},
+        {.name = "standard", .rows = directly(8)},
+        {.name = "paper",
+         .rows = joined(directly(8), {row({"sip", "adam"}, kTest, 1, kLong)})}};
+  }
+  const std::vector<Row> quick =
+      joined(directly(8), {row({"sip-b8", "adam-b8"}, 32, 3, 120)});
+  return {{.name = "quick", .rows = quick},
+          {.name = "standard",
+           .rows = joined(quick, {row({"sip", "adam", "sgd"}, kTest, 1, 100)})},
+          {.name = "paper",
+           .rows = joined(directly(8),
+                          {row({"sip", "adam"}, kTest, 3, kLong),
+                           row({"sgd", "adahessian"}, kTest, 3, kPaperUpdates),
+                           row({"hf"}, kTest, 1, 6),
+                           row({"sip-b8", "adam-b8"}, 32, 3, 120)})}};
+}
+
+Experiment experiment(const Plane& p) {
+  return {.name = p.experiment,
+          .title = p.title,
+          .source = {.paper = "sip", .where = "App. B.2, Figs. 9, 15"},
+          .problem = problem<Poisson>("poisson",
+                                      {.rows = p.rows, .columns = p.columns}),
+          .setting = {.predictor = {{Field::observations},
+                                    nn::unet({.grid = {p.columns, p.rows},
+                                              .padding = nn::Padding::circular,
+                                              .batch_statistics = true,
+                                              .init = nn::Init::uniform})},
+                      .recorded = 8},
+          .profiles = profiles(p),
+          .methods = methods(p)};
+}
+
+/// Fourier neural operator: a network of its own, so an experiment of its own.
+Experiment operator_experiment() {
+  Experiment e = experiment(kFno);
+  e.setting.predictor.recipe = nn::fno({.grid = {64, 64}});
+  e.methods.clear();
+  for (const Index batch : kBatches)
+    e.methods.push_back(
+        trained(kFno,
+                "fno",
+                batch,
+                StepOptions(AdamOptions{.rate = 3e-3, .eps = 1e-8})));
+  const Row quick = row({"fno-b8"}, 32, 1, 40);
+  e.profiles = {
+      {.name = "quick", .rows = {quick}},
+      {.name = "standard", .rows = {quick}},
+      {.name = "paper", .rows = {row({"fno"}, kTest, 3, kPaperUpdates)}}};
+  return e;
+}
+
+const bool kRegistered = [] {
+  bool all = register_experiment(operator_experiment());
+  for (const Plane& p : {kPlane, kSmall, kPaper})
+    all = register_experiment(experiment(p)) && all;
+  return all;
+}();
+
+}  // namespace
+}  // namespace physinv::poisson

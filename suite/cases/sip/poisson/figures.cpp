@@ -1,0 +1,87 @@
+#include <algorithm>
+#include <vector>
+
+#include "suite/cases/sip/poisson/metrics.h"
+#include "suite/cases/sip/poisson/poisson.h"
+#include "suite/evidence/training_report.h"
+#include "suite/harness/registry.h"
+
+namespace physinv::poisson {
+namespace {
+
+const std::vector<MethodLine> kLines = {
+    {"sip", "SIP", Hue::orange},
+    {"adam", "Adam", Hue::purple},
+    {"sgd", "SGD", Hue::blue},
+    {"adahessian", "AdaHessian", Hue::teal},
+    {"hf", "Hessian-free", Hue::grey},
+    {"fno", "FNO, Adam", Hue::pink},
+    {"sip-b8", "SIP, batch 8", Hue::orange},
+    {"adam-b8", "Adam, batch 8", Hue::purple},
+    {"sgd-b8", "SGD, batch 8", Hue::blue},
+    {"adahessian-b8", "AdaHessian, batch 8", Hue::teal},
+    {"hf-40-b8", "Hessian-free, batch 8", Hue::grey},
+    {"hf-10-b8", "Hessian-free, 10 products", Hue::grey},
+    {"fno-b8", "FNO, batch 8", Hue::pink}};
+
+/// Two by two cells as one.
+Panel picture(const Plane& plane, std::string title, const Vector<double>& x) {
+  Panel panel{.title = std::move(title), .field = Field2D{}};
+  for (Index j = 0; j + 1 < plane.columns; j += 2)
+    panel.field->x.push_back(double(j) + 1);
+  for (Index i = 0; i + 1 < plane.rows; i += 2) {
+    panel.field->y.push_back(double(i) + 1);
+    for (Index j = 0; j + 1 < plane.columns; j += 2) {
+      const Index at = plane.columns * i + j;
+      panel.field->values.push_back((x(at) + x(at + 1) + x(at + plane.columns) +
+                                     x(at + plane.columns + 1)) /
+                                    4);
+    }
+  }
+  return panel;
+}
+
+/// The first test example of the first seed.
+Figure pictures(const Plane& plane, const Results& results) {
+  Figure figure{.id = "fields",
+                .title = "What was there, what is seen, what is found",
+                .source = "Fig. 9",
+                .columns = 3,
+                .note = "First test example. Four cells are one here."};
+  for (const MethodLine& line : kLines) {
+    const auto answer = first_answer(results, plane.experiment, line.method);
+    if (!answer) continue;
+    if (figure.panels.empty()) {
+      figure.panels.push_back(picture(plane, "truth x*", answer->truth));
+      figure.panels.push_back(picture(plane, "observed y", answer->wanted));
+    }
+    figure.panels.push_back(picture(plane, line.label, answer->x));
+  }
+  return figure;
+}
+
+Section report(const Plane& plane, const Results& results) {
+  Section section{.experiment = plane.experiment,
+                  .tables = {loss_table(results, plane.experiment, kLines)}};
+  LearningCurves curves(results, section);
+  curves.metric(
+      kLines, kError, "sum |x - x*|", "errors", "Errors of x", "Fig. 9");
+  curves.losses(kLines, "losses", "Losses of y", "");
+  if (Figure fields = pictures(plane, results); !fields.panels.empty())
+    section.figures.push_back(std::move(fields));
+  return section;
+}
+
+const bool kReports = [] {
+  bool all = true;
+  for (const Plane& p : {kPlane, kSmall, kPaper, kFno})
+    all = register_report(p.experiment,
+                          [p](const Results& r, const Published&) {
+                            return report(p, r);
+                          }) &&
+          all;
+  return all;
+}();
+
+}  // namespace
+}  // namespace physinv::poisson

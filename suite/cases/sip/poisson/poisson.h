@@ -1,0 +1,22 @@
+/// The grids of the Poisson experiments: that of the authors' code, that of the
+/// paper, and a small one for methods that take long.
+#pragma once
+
+#include <array>
+
+#include "suite/core/batch.h"
+
+namespace physinv::poisson {
+
+struct Plane {
+  Index rows, columns;
+  const char *experiment, *title;
+};
+
+inline constexpr Plane kPlane{64, 64, "sip/poisson", "Poisson, 64 x 64"};
+inline constexpr Plane kSmall{32, 32, "sip/poisson-32", "Poisson, 32 x 32"};
+inline constexpr Plane kPaper{80, 60, "sip/poisson-80x60", "Poisson, 80 x 60"};
+inline constexpr Plane kFno{
+    64, 64, "sip/poisson-fno", "Poisson, 64 x 64, Fourier neural operator"};
+
+}  // namespace physinv::poisson

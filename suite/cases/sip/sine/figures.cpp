@@ -1,0 +1,185 @@
+#include <cmath>
+#include <vector>
+
+#include "suite/cases/sip/sine/score.h"
+#include "suite/evidence/cell.h"
+#include "suite/evidence/statistics.h"
+#include "suite/evidence/training_report.h"
+#include "suite/harness/registry.h"
+
+namespace physinv::sine {
+namespace {
+
+const std::vector<MethodLine> kLines = {
+    {"sip", "SIP", Hue::orange},
+    {"sip-l2", "SIP, half the square", Hue::red},
+    {"adam", "Adam", Hue::purple},
+    {"sgd", "SGD", Hue::blue},
+    {"adadelta", "Adadelta", Hue::teal},
+    {"adagrad", "Adagrad", Hue::green},
+    {"rmsprop", "RMSprop", Hue::brown}};
+const std::vector<MethodLine> kFinite = {
+    {"sip-finite", "SIP, 1000 samples", Hue::pink},
+    {"adam-finite", "Adam, 1000 samples", Hue::indigo}};
+
+/// What the authors' figure shows, read off to about 10 %.
+std::optional<double> printed_score(const Published& published,
+                                    const Point& p,
+                                    const std::string& method) {
+  const auto v = published.find(p.experiment(), "fig5/" + method);
+  if (!v) return {};
+  return v->value;
+}
+
+std::vector<double> scores(const Evidence& at,
+                           const Point& p,
+                           const std::string& method) {
+  return values_of(sample(at, Select{method}.in(p.experiment()), score()));
+}
+
+/// Medians of each method over points, with those of the paper dashed.
+Panel sweep(const Evidence& at,
+            const std::vector<Point>& points,
+            double (*place)(const Point&),
+            double (*scale)(const Point&)) {
+  Panel panel{.y_log = true};
+  for (const MethodLine& line : kLines) {
+    Series ours{.label = line.label,
+                .method = line.method,
+                .markers = true,
+                .look = look_of(line)};
+    Series theirs{.label = line.label + ", paper",
+                  .method = line.method,
+                  .dashed = true,
+                  .look = look_of(line)};
+    for (const Point& p : points) {
+      if (auto all = scores(at, p, line.method); !all.empty()) {
+        ours.x.push_back(place(p));
+        ours.y.push_back(median(all) * scale(p));
+      }
+      if (const auto v = printed_score(at.published, p, line.method)) {
+        theirs.x.push_back(place(p));
+        theirs.y.push_back(*v * scale(p));
+      }
+    }
+    if (ours.x.empty()) continue;
+    panel.series.push_back(std::move(ours));
+    if (!theirs.x.empty()) panel.series.push_back(std::move(theirs));
+  }
+  return panel;
+}
+
+Figure sweeps(const Evidence& at) {
+  std::vector<Point> stretches, turns;
+  for (const int xi : kStretches) stretches.push_back({xi, 0});
+  for (const int degrees : kTurns) turns.push_back({kStretch, degrees});
+  Panel a = sweep(
+      at,
+      stretches,
+      [](const Point& p) { return double(p.xi); },
+      [](const Point& p) { return 1.0 / p.xi; });
+  a.title = "No turn", a.x_label = "xi", a.y_label = "distance / xi";
+  a.x_log = true;
+  Panel b = sweep(
+      at,
+      turns,
+      [](const Point& p) { return double(p.degrees); },
+      [](const Point&) { return 1.0; });
+  b.title = "xi = 32", b.x_label = "phi in degrees", b.y_label = "distance";
+  return {.id = "fig5-sweeps",
+          .title = "Distance to the nearest solution",
+          .source = "Fig. 5",
+          .panels = {std::move(a), std::move(b)},
+          .note =
+              "Mean over the last tenth of the updates, median over seeds. "
+              "Dashed: read off the authors' figure, to about 10 %."};
+}
+
+/// The loss around the origin, for one observation.
+Figure landscape() {
+  constexpr int kSide = 121;
+  const SinePlaneOptions options{.degrees = 15};
+  const SinePlane<double> problem(options);
+  Field2D field{.log_scale = true, .label = "loss"};
+  for (int k = 0; k < kSide; ++k) field.x.push_back(-1 + 2.0 * k / (kSide - 1));
+  field.y = field.x;
+  Batch<double> x(2, kSide * kSide), y = x, target = x;
+  for (int j = 0; j < kSide; ++j)
+    for (int i = 0; i < kSide; ++i)
+      x.col(j * kSide + i) << field.x[std::size_t(i)], field.y[std::size_t(j)];
+  target.colwise() = Eigen::Vector2d(0.3, -0.5);
+  Workspace work;
+  Vector<double> loss(x.cols());
+  problem.forward(x, Batch<double>(0, x.cols()), y, work);
+  problem.loss(y, target, loss);
+  field.values.assign(loss.begin(), loss.end());
+  return {.id = "landscape",
+          .title = "The loss for y* = (0.3, -0.5), xi = 1, phi = 15 degrees",
+          .panels = {{.x_label = "x_1",
+                      .y_label = "x_2",
+                      .field = std::move(field)}},
+          .columns = 1};
+}
+
+Table score_table(const Evidence& at,
+                  const Point& p,
+                  const std::vector<MethodLine>& lines) {
+  Table table{.id = "scores",
+              .title = "Distance to the nearest solution",
+              .source = "Fig. 5",
+              .corner = "method",
+              .columns = {"distance",
+                          "lowest",
+                          "highest",
+                          "paper's figure",
+                          "distance / xi"},
+              .note =
+                  "Mean over the last tenth of the updates, median and "
+                  "range over seeds. The figure is read to about 10 %."};
+  for (const MethodLine& line : lines) {
+    const auto all = scores(at, p, line.method);
+    if (all.empty()) continue;
+    const auto [low, high] = std::minmax_element(all.begin(), all.end());
+    table.rows.push_back(
+        {.label = line.label,
+         .cells = {written(median(all)),
+                   written(*low),
+                   written(*high),
+                   written(printed_score(at.published, p, line.method),
+                           "{:.3g}",
+                           kNothing),
+                   written(median(all) / p.xi)}});
+  }
+  return table;
+}
+
+Section report(const Point& p,
+               const Results& results,
+               const Published& published) {
+  const Evidence at{results, published, p.experiment()};
+  const bool main = p.experiment() == kHard.experiment();
+  std::vector<MethodLine> lines = kLines;
+  if (main) lines.insert(lines.end(), kFinite.begin(), kFinite.end());
+  Section section{.experiment = p.experiment(),
+                  .tables = {score_table(at, p, lines),
+                             loss_table(results, p.experiment(), lines)}};
+  if (main) section.figures = {sweeps(at), landscape()};
+  LearningCurves curves(results, section);
+  curves.metric(lines, 0, "mean distance", "distances", "Distances", "Fig. 5");
+  curves.losses(lines, "losses", "Learning curves", "");
+  return section;
+}
+
+const bool kReports = [] {
+  bool all = true;
+  for (const Point& p : points())
+    all = register_report(p.experiment(),
+                          [p](const Results& r, const Published& published) {
+                            return report(p, r, published);
+                          }) &&
+          all;
+  return all;
+}();
+
+}  // namespace
+}  // namespace physinv::sine

@@ -1,0 +1,32 @@
+/// The paper's score of a run of the sine.
+#pragma once
+
+#include <optional>
+
+#include "suite/cases/sip/sine/sine.h"
+#include "suite/evidence/training.h"
+#include "suite/results/record.h"
+
+namespace physinv::sine {
+
+/// Mean distance to the nearest solution over the batches of the last tenth of
+/// the updates; infinite if the run diverged.
+inline RunValue score() {
+  return [](const Run& run) -> std::optional<double> {
+    if (run.stage->stop == Stop::diverged)
+      return std::numeric_limits<double>::infinity();
+    const auto found = run.stage->arrays.find("late_error");
+    if (found == run.stage->arrays.end()) return {};
+    return found->second(0, 0);
+  };
+}
+
+/// Of runs of 8000 updates alone.
+inline RunValue at_quick(RunValue value) {
+  return [value](const Run& run) -> std::optional<double> {
+    if (run.stage->iterations != 8000) return {};
+    return value(run);
+  };
+}
+
+}  // namespace physinv::sine

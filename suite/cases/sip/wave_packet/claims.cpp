@@ -1,0 +1,184 @@
+// What App. C.1 of the SIP paper says of wave packets, and the ranges that an
+// independent program showed. The paper prints no number but the iterations
+// after which the network passes L-BFGS-B; "most" is read as more than half.
+#include <vector>
+
+#include "suite/cases/sip/wave_packet/values.h"
+#include "suite/harness/registry.h"
+
+namespace physinv::sip_wave_packet {
+namespace {
+
+const Select kLbfgs{"lbfgs"}, kNet{"net"}, kRandom{"random"};
+
+std::function<bool(double)> up_to(double most) {
+  return [=](double v) { return v <= most; };
+}
+
+/// Share of the searches that find their packet, by its distance from the
+/// start.
+Quantity found(double from, double to = 1e9) {
+  return share_of_examples(
+      kLbfgs, errors(from, to), [](double e) { return e < 2; });
+}
+Quantity mean_loss(const Select& who) { return median(who, mean_of(losses())); }
+Quantity mean_error(const Select& who) {
+  return median(who, mean_of(errors()));
+}
+/// Of the network beside L-BFGS-B on the same examples.
+Quantity beside_lbfgs(RunValue net, RunRow lbfgs) {
+  return also_asks(
+      median(kNet, over(std::move(net), beside(kLbfgs, mean_of(lbfgs)))),
+      {kLbfgs});
+}
+Quantity passes(RunValue when) {
+  return also_asks(median(kNet, std::move(when)), {kLbfgs});
+}
+
+const std::vector<Claim> kClaimsOfAll = {
+    {.id = "P1",
+     .origin = Origin::paper,
+     .where = "App. C.1",
+     .from = "quick",
+     .says = "L-BFGS-B fits perfectly what is very close to the center",
+     .conditions = {at_least(
+         "within 0.5 of the truth, packets nearer than 2",
+         share_of_examples(kLbfgs, errors(0, 2), up_to(0.5)),
+         0.95)}},
+    {.id = "P2",
+     .origin = Origin::paper,
+     .where = "App. C.1",
+     .from = "quick",
+     .says = "Slightly to the side it is off by an integer phase shift",
+     .conditions = {above(
+         "within 2.2 of one period or more, packets at 5 to 20",
+         share_of_examples(kLbfgs, off_missed_period(5, 20), up_to(2.2)),
+         0.5)}},
+    {.id = "P3",
+     .origin = Origin::paper,
+     .where = "App. C.1",
+     .from = "quick",
+     .says = "Farther away it fits the noise near the center",
+     .conditions = {above("ends within a period of it, packets beyond 40",
+                          share_of_examples(kLbfgs, moves(40), up_to(kPeriod)),
+                          0.5)}},
+    {.id = "P4",
+     .origin = Origin::paper,
+     .where = "App. C.1",
+     .from = "paper",
+     .says = "The network learns to localize most wave packets correctly",
+     .conditions = {above("within half a period",
+                          share_of_examples(kNet, errors(), up_to(kBasin)),
+                          0.5)}},
+    {.id = "P5",
+     .origin = Origin::paper,
+     .where = "App. C.1, Fig. 16b",
+     .from = "paper",
+     .says = "It outperforms L-BFGS-B after 30 to 40 training iterations",
+     .conditions = {at_most("updates to its loss, twice as many at most",
+                            passes(passes_lbfgs()),
+                            times(2, printed("crossing/latest"))),
+                    below("loss at the end over L-BFGS-B's",
+                          beside_lbfgs(mean_of(losses()), losses()),
+                          1),
+                    report("updates to its error",
+                           passes(passes_lbfgs_error()))}},
+    {.id = "P6",
+     .origin = Origin::paper,
+     .where = "App. C.1",
+     .from = "paper",
+     .says =
+         "Networks explore the solution space better than iterative solvers",
+     .conditions = {above("within half a period, network over L-BFGS-B, "
+                          "worst seed",
+                          also_asks(lowest(kNet,
+                                           over(in_basin(),
+                                                beside(kLbfgs, in_basin()))),
+                                    {kLbfgs}),
+                          1),
+                    report("of the network", median(kNet, in_basin())),
+                    report("of L-BFGS-B", median(kLbfgs, in_basin()))}},
+    {.id = "A2",
+     .from = "quick",
+     .says = "L-BFGS-B finds packets by their distance from its start",
+     .conditions = {at_least("nearer than 2", found(0, 2), 1),
+                    within("2 to 6", found(2, 6), 0.2, 0.8),
+                    at_most("6 to 15", found(6, 15), 0.02),
+                    at_most("15 to 40", found(15, 40), 0.02),
+                    at_most("beyond 40", found(40), 0.02)}},
+    {.id = "A3",
+     .from = "quick",
+     .says = "It misses by whole periods and hardly moves",
+     .conditions = {at_least(
+                        "within 1.5 of whole periods",
+                        share_of_examples(kLbfgs, off_period(), up_to(1.5)),
+                        0.95),
+                    at_least("ends within 6 of the start",
+                             share_of_examples(kLbfgs, moves(), up_to(6)),
+                             0.95),
+                    report("evaluations",
+                           median(kLbfgs, mean_of(evaluations())))}},
+    {.id = "A4a",
+     .from = "smoke",
+     .says = "Random guesses",
+     .conditions = {within("loss", mean_loss(kRandom), 35.5, 41),
+                    within("error", mean_error(kRandom), 30, 38)}},
+    {.id = "A4b",
+     .from = "quick",
+     .says = "L-BFGS-B",
+     .conditions = {within("loss", mean_loss(kLbfgs), 13.5, 16.8),
+                    within("error", mean_error(kLbfgs), 23, 27.8)}},
+    {.id = "A5",
+     .from = "quick",
+     .says = "The network after 1000 updates comes up to L-BFGS-B",
+     .conditions =
+         {below("loss after 60", median(kNet, loss_after(60)), 25),
+          below("loss over random's",
+                ratio(median(kNet, loss_after(1000)), mean_loss(kRandom)),
+                0.5),
+          at_most("loss over L-BFGS-B's",
+                  beside_lbfgs(loss_after(1000), losses()),
+                  1.15),
+          at_most("error over L-BFGS-B's",
+                  beside_lbfgs(value_after({"metrics", kMeanError}, 1000),
+                               errors()),
+                  1.08),
+          at_least("examples better than L-BFGS-B",
+                   also_asks(share_of_examples(
+                                 kNet, loss_over_lbfgs(), up_to(-1e-6)),
+                             {kLbfgs}),
+                   0.04)}},
+    {.id = "A6",
+     .from = "quick",
+     .says = "Both are far below random guesses",
+     .conditions = {below("network over random",
+                          ratio(mean_loss(kNet), mean_loss(kRandom)),
+                          0.5),
+                    below("L-BFGS-B over random",
+                          ratio(mean_loss(kLbfgs), mean_loss(kRandom)),
+                          0.5)}},
+};
+
+/// One network for so many examples.
+Select fits(Index n) { return Select{"fit"}.of_sizes(n, n); }
+Quantity alone() { return share_of_examples(fits(1), errors(), up_to(kBasin)); }
+
+const std::vector<Claim> kClaimsOfJoint = {
+    {.id = "P7",
+     .origin = Origin::paper,
+     .where = "App. C.1",
+     .from = "paper",
+     .says = "Updates from other examples keep it from local optima",
+     .conditions = {above("within half a period, together over alone, worst "
+                          "seed",
+                          ratio(lowest(fits(50), in_basin()), alone()),
+                          1),
+                    report("together", median(fits(50), in_basin())),
+                    report("alone", alone())}},
+};
+
+const bool kClaims = register_claims("sip/wave-packet", kClaimsOfAll) &&
+                     register_claims("sip/wave-packet-joint", kClaimsOfJoint);
+
+}  // namespace
+}  // namespace physinv::sip_wave_packet

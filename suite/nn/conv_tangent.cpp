@@ -1,0 +1,199 @@
+#include "suite/nn/conv_tangent.h"
+
+#include <algorithm>
+
+#include "suite/nn/channel_norm_tangent.h"
+#include "suite/nn/convolution_tangent.h"
+
+namespace physinv::nn {
+namespace {
+
+/// f(begin, end) on blocks of `some` of `count` positions.
+template <class F>
+void for_positions(Threads* threads, Index count, Index some, F&& f) {
+  for_blocks(threads, (count + some - 1) / some, [&](Index block, int) {
+    f(block * some, std::min((block + 1) * some, count));
+  });
+}
+
+/// What the passes of a block's tangents share: the tapes' views and sums over
+/// all samples and positions.
+template <class T>
+struct Moving {
+  Moving(const BlockParts<T>& owner, const LayerArgs<T>& args, Lanes<const T> y)
+      : block(owner),
+        at(args),
+        threads(block.conv.threads(at, y.samples)),
+        z(at.tape->template view<T>(at.slot).data(),
+          block.conv.outputs(),
+          y.samples),
+        z_dot(at.dots->template view<T>(at.slot).data(), z.rows, z.samples),
+        some(block.conv.per_block(z)),
+        of{.shape = block.norm,
+           .at = {at.tape->template view<T>(at.slot + 1).data(),
+                  block.norm.channels},
+           .dots = {at.dots->template view<T>(at.slot + 1).data(),
+                    block.norm.channels},
+           .parameters = at.parameters + block.conv.parameter_count(),
+           .parameters_dot = at.parameters_dot + block.conv.parameter_count(),
+           .x = z,
+           .x_dot = z_dot,
+           .y = y} {}
+
+  Index sums_size() const { return 2 * of.shape.channels; }
+  Index blocks() const { return block.conv.blocks(z); }
+  /// Of bar, then of bar (x - mean) inverse: channels each, at positions
+  /// [begin, end).
+  void add_up(const NormColumns<T>& columns,
+              Lanes<const T> x,
+              Lanes<const T> bar,
+              Index begin,
+              Index end,
+              T* sums) const {
+    const NormShape plain{.grid = of.shape.grid, .channels = of.shape.channels};
+    block_sums<T>(plain, columns, of.parameters, x, x, bar, begin, end, sums);
+  }
+  /// The same at all positions, in `work`.
+  T* sums(const NormColumns<T>& columns,
+          Lanes<const T> x,
+          Lanes<const T> bar) const {
+    T* totals = at.work->template take<T>(sums_size(), 1).data();
+    T* parts = at.work->template take<T>(sums_size(), blocks()).data();
+    for_positions(
+        threads, of.shape.positions(), some, [&](Index begin, Index end) {
+          T* part = parts + begin / some * sums_size();
+          add_up(columns, x, bar, begin, end, part);
+        });
+    combine_sums(parts, blocks(), of.shape.channels, totals);
+    return totals;
+  }
+  /// What a sum is divided by; zero outside training, where the statistics are
+  /// constants.
+  T share() const {
+    if (!block.by_batch) return T(0);
+    return T(1) / static_cast<T>(of.shape.positions() * z.samples);
+  }
+
+  /// Bias, scale and offset's part of a gradient, from the sums; or of its
+  /// derivative, then with the sums of the gradient as `base`.
+  void put(const T* sums, const T* base, T* parameters_bar) const {
+    if (parameters_bar == nullptr) return;
+    const Index channels = of.shape.channels;
+    T* bias_bar = parameters_bar + block.conv.shape().weights();
+    T *scale_bar = bias_bar + channels, *offset_bar = scale_bar + channels;
+    for (Index c = 0; c < channels; ++c) {
+      offset_bar[c] = sums[c], scale_bar[c] = sums[channels + c];
+      bias_bar[c] = T(0);
+      if (block.by_batch) continue;
+      bias_bar[c] = of.parameters[c] * sums[c];
+      if (base != nullptr) bias_bar[c] += of.parameters_dot[c] * base[c];
+      bias_bar[c] *= of.at.inverse[c];
+    }
+  }
+
+  const BlockParts<T>& block;
+  const LayerArgs<T>& at;
+  Threads* threads;
+  Lanes<T> z, z_dot;
+  Index some;
+  NormTangent<T> of;
+};
+
+}  // namespace
+
+template <class T>
+void push_block(const BlockParts<T>& block,
+                const LayerArgs<T>& at,
+                const Tangent<T>& t) {
+  const Index channels = block.norm.channels;
+  const Lanes<T> shape(nullptr, block.conv.outputs(), t.x.samples);
+  at.dots->template slot<T>(at.slot, shape.stride, shape.rows);
+  at.dots->template slot<T>(at.slot + 1, channels, NormDots<T>::kCount);
+  const Workspace::Scope scope(*at.work);
+  const Moving<T> m(block, at, t.y);
+  T* parts = at.work->template take<T>(m.sums_size(), m.blocks()).data();
+  T* sums = at.work->template take<T>(m.sums_size(), 1).data();
+  push_convolution(block.conv,
+                   at,
+                   t.x,
+                   t.x_dot,
+                   m.z_dot,
+                   [&](Index i, Index begin, Index end) {
+                     T* part = parts + i * m.sums_size();
+                     m.add_up(m.of.at, m.z, m.z_dot, begin, end, part);
+                   });
+  combine_sums(parts, m.blocks(), channels, sums);
+  for (Index c = 0; c < channels; ++c) {
+    m.of.dots.mean[c] = m.share() * sums[c];
+    m.of.dots.slope[c] = m.share() * sums[channels + c];
+  }
+  for_positions(m.threads,
+                block.norm.pooled().positions(),
+                m.some,
+                [&](Index begin, Index end) {
+                  normalise_tangent<T>(m.of, t.y_dot, begin, end);
+                });
+}
+
+template <class T>
+void pull_block(const BlockParts<T>& block,
+                const LayerArgs<T>& at,
+                const BackwardTangent<T>& b) {
+  const Index channels = block.norm.channels;
+  const Workspace::Scope scope(*at.work);
+  const Moving<T> m(block, at, b.y);
+  // First the cotangents of the normalised, then, in place, of z.
+  Lanes<T> bar = m.z, bar_dot = m.z;
+  bar.data = at.work->template take<T>(bar.stride, bar.rows).data();
+  bar_dot.data = at.work->template take<T>(bar.stride, bar.rows).data();
+  for_positions(
+      m.threads,
+      block.norm.pooled().positions(),
+      m.some,
+      [&](Index begin, Index end) {
+        open_cells<T>(
+            m.of, b.y_dot, b.y_bar, b.y_bar_dot, bar, bar_dot, begin, end);
+      });
+
+  // (sum of bar n)' = sum of bar' n + bar n', n' = inverse (x' - mean' - n
+  // slope).
+  T* ones = at.work->template take<T>(channels, 1).data();
+  std::fill_n(ones, channels, T(1));
+  NormColumns<T> moved = m.of.at;
+  moved.mean = m.of.dots.mean, moved.inverse = ones;
+  T* const base = m.sums(m.of.at, m.z, bar);
+  T* const dot = m.sums(m.of.at, m.z, bar_dot);
+  const T* const more = m.sums(moved, m.z_dot, bar);
+  for (Index c = 0; c < channels; ++c)
+    dot[channels + c] +=
+        m.of.at.inverse[c] *
+        (more[channels + c] - m.of.dots.slope[c] * base[channels + c]);
+  m.put(base, nullptr, b.parameters_bar);
+  m.put(dot, base, b.parameters_bar_dot);
+  for (T* sum : {base, dot})
+    for (Index c = 0; c < 2 * channels; ++c) sum[c] *= m.share();
+  for_positions(
+      m.threads, block.norm.positions(), m.some, [&](Index begin, Index end) {
+        pull_norm_tangent<T>(m.of,
+                             {.sum = base,
+                              .product = base + channels,
+                              .sum_dot = dot,
+                              .product_dot = dot + channels},
+                             bar,
+                             bar_dot,
+                             begin,
+                             end);
+      });
+  pull_convolution<T>(block.conv, at, b, bar, bar_dot);
+}
+
+#define PHYSINV_INSTANTIATE(T)                                       \
+  template void push_block<T>(                                       \
+      const BlockParts<T>&, const LayerArgs<T>&, const Tangent<T>&); \
+  template void pull_block<T>(                                       \
+      const BlockParts<T>&, const LayerArgs<T>&, const BackwardTangent<T>&);
+PHYSINV_INSTANTIATE(float)
+PHYSINV_INSTANTIATE(double)
+#undef PHYSINV_INSTANTIATE
+
+}  // namespace physinv::nn

@@ -1,0 +1,84 @@
+#include "suite/nn/fno.h"
+
+#include <fmt/format.h>
+
+#include <functional>
+#include <memory>
+#include <numeric>
+#include <utility>
+
+#include "suite/core/check.h"
+#include "suite/nn/activation.h"
+#include "suite/nn/conv.h"
+#include "suite/nn/per_piece.h"
+#include "suite/nn/rearrange.h"
+#include "suite/nn/sequential.h"
+#include "suite/nn/spectral.h"
+
+namespace physinv::nn {
+namespace {
+
+/// Positions that go through the wide end together: enough for a kernel, few
+/// enough for a cache.
+constexpr Index kPiece = 8;
+
+template <class T>
+std::unique_ptr<Layer<T>> pointwise(Grid grid, Index in, Index out) {
+  return std::make_unique<Conv<T>>(
+      ConvOptions{.grid = grid, .in = in, .out = out, .taps = {1, 1}});
+}
+
+/// width -> hidden, GELU, -> 1.
+template <class T>
+std::unique_ptr<Layer<T>> head(const FnoOptions& o) {
+  const Index piece = std::gcd(o.grid.positions(), kPiece);
+  const Grid some{piece};
+  typename PerPiece<T>::Layers inner;
+  inner.push_back(pointwise<T>(some, o.width, o.hidden));
+  inner.push_back(
+      std::make_unique<ActivationLayer<T>>(Activation::gelu, piece * o.hidden));
+  inner.push_back(pointwise<T>(some, o.hidden, 1));
+  return std::make_unique<PerPiece<T>>(o.grid.positions() / piece,
+                                       std::move(inner));
+}
+
+template <class T>
+std::unique_ptr<Network<T>> make(const FnoOptions& o,
+                                 Index inputs,
+                                 Index outputs) {
+  SUITE_CHECK(inputs == o.grid.positions() && outputs == o.grid.positions(),
+              "the network's grid is not that of its input and output");
+  SUITE_CHECK(o.blocks >= 1, "an operator has at least one block");
+  const Grid period{o.grid.columns + o.padding, o.grid.rows + o.padding};
+  typename Sequential<T>::Layers layers;
+  layers.push_back(std::make_unique<Coordinates<T>>(o.grid));
+  layers.push_back(pointwise<T>(o.grid, 3, o.width));
+  for (Index block = 0; block < o.blocks; ++block)
+    layers.push_back(std::make_unique<SpectralBlock<T>>(SpectralOptions{
+        .from = block == 0 ? o.grid : period,
+        .to = block == o.blocks - 1 ? o.grid : period,
+        .period = period,
+        .channels = o.width,
+        .modes = o.modes,
+        .before = block == 0 ? Activation::identity : Activation::gelu}));
+  layers.push_back(head<T>(o));
+  return std::make_unique<Sequential<T>>(std::move(layers), Init::uniform);
+}
+
+}  // namespace
+
+NetworkRecipe fno(const FnoOptions& options) {
+  return {.description = fmt::format(
+              "fno grid={}x{} padding={} modes={} width={} blocks={} hidden={}",
+              options.grid.columns,
+              options.grid.rows,
+              options.padding,
+              options.modes,
+              options.width,
+              options.blocks,
+              options.hidden),
+          .make_float = std::bind_front(make<float>, options),
+          .make_double = std::bind_front(make<double>, options)};
+}
+
+}  // namespace physinv::nn

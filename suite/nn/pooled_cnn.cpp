@@ -1,0 +1,111 @@
+#include "suite/nn/pooled_cnn.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <functional>
+#include <memory>
+#include <utility>
+
+#include "suite/core/check.h"
+#include "suite/nn/activation.h"
+#include "suite/nn/conv.h"
+#include "suite/nn/linear.h"
+#include "suite/nn/rearrange.h"
+#include "suite/nn/resample.h"
+#include "suite/nn/sequential.h"
+
+namespace physinv::nn {
+namespace {
+
+template <class T>
+class Builder {
+ public:
+  explicit Builder(const PooledCnnOptions& options)
+      : o_(options), grid_{options.positions} {}
+
+  void block(Index width) {
+    if (o_.pool_first) pool();
+    convolve(width);
+    convolve(width);
+    if (!o_.pool_first) pool();
+  }
+  void flatten() {
+    add<Flatten<T>>(grid_.positions(), channels_);
+    channels_ *= grid_.positions();
+  }
+  void dense(Index width, Activation activation) {
+    add<Linear<T>>(channels_, width);
+    if (activation != Activation::identity)
+      add<ActivationLayer<T>>(activation, width);
+    channels_ = width;
+  }
+  std::unique_ptr<Network<T>> network() {
+    return std::make_unique<Sequential<T>>(std::move(layers_), o_.init);
+  }
+
+ private:
+  template <class L, class... Args>
+  void add(Args&&... args) {
+    layers_.push_back(std::make_unique<L>(std::forward<Args>(args)...));
+  }
+  void pool() {
+    add<MaxPool<T>>(grid_, channels_);
+    grid_ = halved(grid_);
+  }
+  void convolve(Index width) {
+    const ConvOptions conv{.grid = grid_,
+                           .in = channels_,
+                           .out = width,
+                           .taps = {3, 1},
+                           .padding = o_.padding,
+                           .batch_statistics = o_.batch_norm};
+    channels_ = width;
+    if (o_.batch_norm) {
+      add<ConvBlock<T>>(conv, Activation::relu, false);
+    } else {
+      add<Conv<T>>(conv);
+      add<ActivationLayer<T>>(Activation::relu, grid_.positions() * width);
+    }
+  }
+
+  const PooledCnnOptions& o_;
+  Grid grid_;
+  Index channels_ = 1;
+  typename Sequential<T>::Layers layers_;
+};
+
+template <class T>
+std::unique_ptr<Network<T>> make(const PooledCnnOptions& o,
+                                 Index inputs,
+                                 Index outputs) {
+  SUITE_CHECK(inputs == o.positions,
+              "the network's grid is not that of its input");
+  Builder<T> net(o);
+  for (const Index width : o.features) net.block(width);
+  net.flatten();
+  for (const Index width : o.hidden) net.dense(width, Activation::relu);
+  net.dense(outputs, o.output);
+  return net.network();
+}
+
+}  // namespace
+
+NetworkRecipe pooled_cnn(const PooledCnnOptions& options) {
+  constexpr const char* paddings[] = {"zero", "circular", "none"};
+  return {.description = fmt::format(
+              "pooled_cnn positions={} features={} hidden={} output={} "
+              "padding={} batch_norm={} pool_first={}{}",
+              options.positions,
+              fmt::join(options.features, "-"),
+              fmt::join(options.hidden, "-"),
+              to_string(options.output),
+              paddings[static_cast<std::size_t>(options.padding)],
+              options.batch_norm,
+              options.pool_first,
+              in_words(options.init)),
+          .make_float = std::bind_front(make<float>, options),
+          .make_double = std::bind_front(make<double>, options)};
+}
+
+}  // namespace physinv::nn

@@ -1,0 +1,492 @@
+#include "suite/nn/spectral.h"
+
+#include <algorithm>
+
+#include "suite/core/check.h"
+#include "suite/nn/activation.h"
+#include "suite/nn/blocks.h"
+#include "suite/nn/convolution.h"
+#include "suite/nn/gemm.h"
+
+namespace physinv::nn {
+namespace {
+
+constexpr Index kMostParts = 8;  ///< partial sums of W's gradient
+
+/// Largest row frequency + 1.
+Index row_count(const SpectralOptions& o) {
+  return std::min(o.modes, o.period.rows / 2) + 1;
+}
+
+template <class T>
+Lanes<T> rows_from(Lanes<T> x, Index first, Index count) {
+  Lanes<T> some(x.data + first * x.stride, count, x.samples);
+  return some;
+}
+
+/// Rows of the lanes one behind the other, without gaps, through f.
+template <class T>
+void pack_rows(Activation f, Lanes<const T> x, T* to) {
+  using V = Simd<T, kNarrow>;
+  for (Index i = 0; i < x.rows; ++i, to += x.width)
+    for (Index j = 0; j < x.width; j += kLanes<T>)
+      store(to + j, activate_lanes<T>(f, load<V>(x.row(i) + j)));
+}
+
+template <class T>
+void add(const T* from, Index count, T* to) {
+  for (Index i = 0; i < count; ++i) to[i] += from[i];
+}
+
+template <class T>
+void subtract(const T* from, Index count, T* to) {
+  for (Index i = 0; i < count; ++i) to[i] -= from[i];
+}
+
+}  // namespace
+
+template <class T>
+SpectralBlock<T>::SpectralBlock(const SpectralOptions& o)
+    : Layer<T>(o.from.positions() * o.channels, o.to.positions() * o.channels),
+      o_(o),
+      shared_{std::min(o.from.columns, o.to.columns),
+              std::min(o.from.rows, o.to.rows)},
+      in_(o.from, o.period, row_count(o), o.modes),
+      out_(o.to, o.period, row_count(o), o.modes),
+      modes_(static_cast<std::size_t>(row_count(o))) {
+  const Index n = o.period.rows;
+  SUITE_CHECK(o.modes <= n && 2 * o.modes <= o.period.columns,
+              "a spectral layer's plane is too small for its modes");
+  Index number = 0;
+  const auto add_mode = [&](Index k, Index last, Index row) {
+    const bool negative = 2 * k > n;
+    modes_[static_cast<std::size_t>(negative ? n - k : k)].push_back(
+        {negative ? -1 : 1, last, row, number++});
+  };
+  for (Index row = 0; row < o.modes; ++row) {
+    if (row < n - o.modes) add_mode(row, 0, row);
+    add_mode(n - o.modes + row, 1, row);
+  }
+}
+
+template <class T>
+std::vector<TensorInfo> SpectralBlock<T>::tensors() const {
+  const Index c = o_.channels;
+  const TensorInfo modes{.kind = 'f',
+                         .size = spectral_size(),
+                         .fan_in = c,
+                         .fan_out = c,
+                         .up_to = 1 / static_cast<double>(c * c)};
+  return {modes,
+          modes,
+          modes,
+          modes,
+          {.kind = 'k', .size = c * c, .fan_in = c, .fan_out = c},
+          {.kind = 'b', .size = c, .fan_in = c, .fan_out = c}};
+}
+
+template <class T>
+double SpectralBlock<T>::operations() const {
+  const auto sums = [&](const PlaneModes<T>& m) {
+    return double(m.grid().rows * m.column_sums()) *
+           double(m.grid().columns + m.row_sums());
+  };
+  const double c = double(o_.channels);
+  double modes = 0;
+  for (const auto& of_k : modes_) modes += double(of_k.size() * o_.modes);
+  return 2 * c * (sums(in_) + sums(out_)) + 8 * c * c * modes +
+         2 * c * c * double(shared_.positions());
+}
+
+template <class T>
+double SpectralBlock<T>::inverse_weight(Index l) const {
+  return (l == 0 ? 1.0 : 2.0) / static_cast<double>(o_.period.positions());
+}
+
+// ---------------------------------------------------------------- modes
+
+/// Z = (cos cos -+ sin sin) - i (+-cos sin + sin cos), columns before rows.
+template <class T>
+void SpectralBlock<T>::gather(
+    const T* u, Index k, const Mode& m, Index l, Index block, T* z) const {
+  const auto at = [&](Index g, Index h) {
+    return u + (g * in_.row_sums() + h) * in_.pitch(block);
+  };
+  T *re = z, *im = z + block;
+  std::copy_n(at(in_.cos_column(l), in_.cos_row(k)), block, re);
+  std::fill_n(im, block, T(0));
+  if (l > 0) subtract(at(in_.sin_column(l), in_.cos_row(k)), block, im);
+  if (k == 0) return;
+  const auto along = m.sign > 0 ? subtract<T> : add<T>;
+  along(at(in_.cos_column(l), in_.sin_row(k)), block, im);
+  if (l > 0) along(at(in_.sin_column(l), in_.sin_row(k)), block, re);
+}
+
+template <class T>
+void SpectralBlock<T>::scatter(
+    const T* z, Index k, const Mode& m, Index l, Index block, T* u) const {
+  const auto at = [&](Index g, Index h) {
+    return u + (g * in_.row_sums() + h) * in_.pitch(block);
+  };
+  const T *re = z, *im = z + block;
+  add(re, block, at(in_.cos_column(l), in_.cos_row(k)));
+  if (l > 0) subtract(im, block, at(in_.sin_column(l), in_.cos_row(k)));
+  if (k == 0) return;
+  const auto along = m.sign > 0 ? subtract<T> : add<T>;
+  along(im, block, at(in_.cos_column(l), in_.sin_row(k)));
+  if (l > 0) along(re, block, at(in_.sin_column(l), in_.sin_row(k)));
+}
+
+template <class T>
+void SpectralBlock<T>::unpack(const T* parameters,
+                              const Mode& m,
+                              T* weights) const {
+  const Index c = o_.channels;
+  for (const Index part : {0, 1})
+    transpose(parameters + place(m, part),
+              mode_size(),
+              c * c,
+              o_.modes,
+              weights + part * o_.modes * c * c,
+              c * c);
+}
+
+template <class T>
+void SpectralBlock<T>::real_matrix(const T* weights, Index l, T* matrix) const {
+  const Index c = o_.channels;
+  const T* re = weights + l * c * c;
+  const T* im = re + o_.modes * c * c;
+  const T scale = static_cast<T>(inverse_weight(l));
+  for (Index i = 0; i < c; ++i, re += c, im += c) {
+    T* const of_re = matrix + i * 2 * c;
+    T* const of_im = of_re + c * 2 * c;
+    for (Index o = 0; o < c; ++o) {
+      of_re[o] = of_im[c + o] = scale * re[o];
+      of_re[c + o] = scale * im[o];
+      of_im[o] = -of_re[c + o];
+    }
+  }
+}
+
+namespace {
+
+/// Sums of frequency k, all columns, <- 0.
+template <class T>
+void clear(const PlaneModes<T>& modes, Index k, Index block, T* u) {
+  for (Index g = 0; g < modes.column_sums(); ++g) {
+    T* const row = u + g * modes.row_sums() * modes.pitch(block);
+    std::fill_n(row + modes.cos_row(k) * modes.pitch(block), block, T(0));
+    if (k > 0)
+      std::fill_n(row + modes.sin_row(k) * modes.pitch(block), block, T(0));
+  }
+}
+
+}  // namespace
+
+template <class T>
+void SpectralBlock<T>::mix(const LayerArgs<T>& at, Index samples, T* u) const {
+  const Index c = o_.channels, width = Lanes<T>(nullptr, 1, samples).width;
+  const Index block = c * width;
+  Index count = 0;
+  for (const auto& of_k : modes_) count += static_cast<Index>(of_k.size());
+  T* const tape =
+      at.tape->template slot<T>(at.slot, 2 * block, count * o_.modes).data();
+  each_block(*at.work, row_count(o_), [&](Index k, Workspace& work) {
+    const auto& modes = modes_[static_cast<std::size_t>(k)];
+    T* const weights = work.take<T>(2 * c * c, o_.modes).data();
+    T* const matrix = work.take<T>(4 * c * c, 1).data();
+    T* const a = work.take<T>(2 * block, 1).data();
+    const auto z = [&](const Mode& m, Index l) {
+      return tape + (m.number * o_.modes + l) * 2 * block;
+    };
+    for (const Mode& m : modes)
+      for (Index l = 0; l < o_.modes; ++l) gather(u, k, m, l, block, z(m, l));
+    clear(in_, k, block, u);
+    for (const Mode& m : modes) {
+      unpack(at.parameters, m, weights);
+      for (Index l = 0; l < o_.modes; ++l) {
+        real_matrix(weights, l, matrix);
+        gemm<T>({.m = 2 * c,
+                 .n = width,
+                 .k = 2 * c,
+                 .a = matrix,
+                 .a_row = 1,
+                 .a_k = 2 * c,
+                 .b = z(m, l),
+                 .b_stride = width,
+                 .c = a,
+                 .c_stride = width});
+        scatter(a, k, m, l, block, u);
+      }
+    }
+  });
+}
+
+template <class T>
+void SpectralBlock<T>::pull_mix(const LayerArgs<T>& at,
+                                Index samples,
+                                T* u,
+                                T* parameters_bar,
+                                bool wants_u) const {
+  const Index c = o_.channels, width = Lanes<T>(nullptr, 1, samples).width;
+  const Index block = c * width;
+  const T* const tape = at.tape->template view<T>(at.slot).data();
+  each_block(*at.work, row_count(o_), [&](Index k, Workspace& work) {
+    const auto& modes = modes_[static_cast<std::size_t>(k)];
+    const Index count = o_.modes * static_cast<Index>(modes.size());
+    T* const a_bar = work.take<T>(2 * block, count).data();
+    T* const weights = work.take<T>(2 * c * c, o_.modes).data();
+    T* const matrix = work.take<T>(4 * c * c, 1).data();
+    T* const z_bar = work.take<T>(2 * block, 1).data();
+    T* next = a_bar;
+    for (const Mode& m : modes)
+      for (Index l = 0; l < o_.modes; ++l, next += 2 * block)
+        gather(u, k, m, l, block, next);
+    clear(in_, k, block, u);
+    next = a_bar;
+    for (const Mode& m : modes) {
+      if (parameters_bar != nullptr)
+        pull_weights(tape + m.number * o_.modes * 2 * block,
+                     next,
+                     samples,
+                     m,
+                     parameters_bar,
+                     work);
+      if (wants_u) unpack(at.parameters, m, weights);
+      for (Index l = 0; l < o_.modes && wants_u; ++l) {
+        real_matrix(weights, l, matrix);
+        gemm<T>({.m = 2 * c,
+                 .n = width,
+                 .k = 2 * c,
+                 .a = matrix,
+                 .a_row = 2 * c,
+                 .a_k = 1,
+                 .b = next + l * 2 * block,
+                 .b_stride = width,
+                 .c = z_bar,
+                 .c_stride = width});
+        scatter(z_bar, k, m, l, block, u);
+      }
+      next += o_.modes * 2 * block;
+    }
+  });
+}
+
+template <class T>
+void SpectralBlock<T>::pull_weights(const T* z,
+                                    const T* a_bar,
+                                    Index samples,
+                                    const Mode& m,
+                                    T* parameters_bar,
+                                    Workspace& work) const {
+  const Index c = o_.channels, width = Lanes<T>(nullptr, 1, samples).width;
+  const Index across = round_up(2 * c, kLanes<T>);
+  const Workspace::Scope scope(work);
+  T* const a_t = work.take<T>(across, samples).data();
+  T* const sums = work.take<T>(across, 2 * c).data();
+  T* const weights_bar = work.take<T>(2 * c * c, o_.modes).data();
+  for (Index l = 0; l < o_.modes; ++l) {
+    transpose(a_bar + l * 2 * c * width, width, 2 * c, samples, a_t, across);
+    gemm<T>({.m = 2 * c,
+             .n = 2 * c,
+             .k = samples,
+             .a = z + l * 2 * c * width,
+             .a_row = width,
+             .a_k = 1,
+             .b = a_t,
+             .b_stride = across,
+             .c = sums,
+             .c_stride = across});
+    const T scale = static_cast<T>(inverse_weight(l));
+    T* re = weights_bar + l * c * c;
+    T* im = re + o_.modes * c * c;
+    for (Index i = 0; i < c; ++i, re += c, im += c) {
+      const T* of_re = sums + i * across;
+      const T* of_im = of_re + c * across;
+      for (Index o = 0; o < c; ++o) {
+        re[o] = scale * (of_re[o] + of_im[c + o]);
+        im[o] = scale * (of_re[c + o] - of_im[o]);
+      }
+    }
+  }
+  for (const Index part : {0, 1})
+    transpose(weights_bar + part * o_.modes * c * c,
+              c * c,
+              o_.modes,
+              c * c,
+              parameters_bar + place(m, part),
+              mode_size());
+}
+
+// --------------------------------------------------------------- passes
+
+template <class T>
+void SpectralBlock<T>::forward(const LayerArgs<T>& at,
+                               Lanes<const T> x,
+                               Lanes<T> y) const {
+  using V = Simd<T, kNarrow>;
+  const Index c = o_.channels, block = c * x.width;
+  const Index pitch = in_.pitch(block), sums = in_.column_sums();
+  const T* const w = local(at.parameters);
+  const T* const bias = w + c * c;
+  const Workspace::Scope scope(*at.work);
+  T* const t =
+      at.work
+          ->template take<T>(pitch, sums * std::max(o_.from.rows, o_.to.rows))
+          .data();
+  T* const u = at.work->template take<T>(pitch, sums * in_.row_sums()).data();
+
+  each_block(*at.work, o_.from.rows, [&](Index r, Workspace& work) {
+    T* const row = work.take<T>(pitch, o_.from.columns).data();
+    for (Index q = 0; q < o_.from.columns; ++q) {
+      T* const f = row + q * pitch;
+      pack_rows<T>(
+          o_.before, rows_from(x, (r * o_.from.columns + q) * c, c), f);
+      if (!meets(r) || q >= shared_.columns) continue;
+      gemm<T>({.m = c,
+               .n = x.width,
+               .k = c,
+               .a = w,
+               .a_row = c,
+               .a_k = 1,
+               .b = f,
+               .b_stride = x.width,
+               .c = y.row((r * o_.to.columns + q) * c),
+               .c_stride = y.stride,
+               .bias = bias});
+    }
+    in_.analyse_row(row, r, block, t);
+  });
+  each_block(*at.work, sums, [&](Index g, Workspace&) {
+    in_.analyse_rows(t, g, block, u);
+  });
+  mix(at, x.samples, u);
+  each_block(*at.work, sums, [&](Index g, Workspace&) {
+    out_.synthesise_rows(u, g, block, t);
+  });
+  each_block(*at.work, o_.to.rows, [&](Index r, Workspace& work) {
+    T* const row = work.take<T>(pitch, o_.to.columns).data();
+    out_.synthesise_row(t, r, block, row);
+    for (Index q = 0; q < o_.to.columns; ++q) {
+      const bool added = meets(r) && q < shared_.columns;
+      for (Index o = 0; o < c; ++o) {
+        T* const to = y.row((r * o_.to.columns + q) * c + o);
+        const T* const from = row + q * pitch + o * x.width;
+        for (Index j = 0; j < x.width; j += kLanes<T>)
+          store(to + j,
+                load<V>(from + j) +
+                    (added ? load<V>(to + j) : broadcast<V>(bias[o])));
+      }
+    }
+  });
+}
+
+template <class T>
+void SpectralBlock<T>::backward(const LayerArgs<T>& at,
+                                const Backward<T>& b) const {
+  const Index c = o_.channels, block = c * b.x.width;
+  const Index pitch = in_.pitch(block), sums = in_.column_sums();
+  const Workspace::Scope scope(*at.work);
+  T* const t =
+      at.work
+          ->template take<T>(pitch, sums * std::max(o_.from.rows, o_.to.rows))
+          .data();
+  T* const u = at.work->template take<T>(pitch, sums * in_.row_sums()).data();
+  each_block(*at.work, o_.to.rows, [&](Index r, Workspace& work) {
+    T* const row = work.take<T>(pitch, o_.to.columns).data();
+    for (Index q = 0; q < o_.to.columns; ++q)
+      pack_rows<T>(Activation::identity,
+                   rows_from(b.y_bar, (r * o_.to.columns + q) * c, c),
+                   row + q * pitch);
+    out_.analyse_row(row, r, block, t);
+  });
+  each_block(*at.work, sums, [&](Index g, Workspace&) {
+    out_.analyse_rows(t, g, block, u);
+  });
+  if (b.parameters_bar != nullptr) {
+    std::fill_n(b.parameters_bar, 4 * spectral_size(), T(0));
+    channel_sums<T>(
+        *at.work, b.y_bar, c, b.parameters_bar + 4 * spectral_size() + c * c);
+  }
+  pull_mix(at, b.x.samples, u, b.parameters_bar, bool(b.x_bar));
+  if (b.x_bar)
+    each_block(*at.work, sums, [&](Index g, Workspace&) {
+      in_.synthesise_rows(u, g, block, t);
+    });
+  pull_rows(at, b, t);
+  if (b.x_bar) apply_gate(b.gate, b.x_bar);
+}
+
+template <class T>
+void SpectralBlock<T>::pull_rows(const LayerArgs<T>& at,
+                                 const Backward<T>& b,
+                                 const T* t) const {
+  using V = Simd<T, kNarrow>;
+  const Index c = o_.channels, block = c * b.x.width, pitch = in_.pitch(block);
+  const Index columns = o_.from.columns;
+  const T* const w = local(at.parameters);
+  // W's gradient, by the kernel of a convolution along the shared columns.
+  const ConvShape shape{{shared_.columns, 1}, c, c, {1, 1}};
+  const auto runs = window_runs(shape.grid, shape.taps, Padding::zero);
+  const Index parts = std::min(kMostParts, o_.from.rows);
+  const Index size = weight_sums<T>(shape);
+  const bool weights = b.parameters_bar != nullptr;
+  T* const totals = at.work->template take<T>(size, parts + 1).data();
+  std::fill_n(totals, size * parts, T(0));
+  const auto pull_row = [&](Index r, T* part, Workspace& work) {
+    const Workspace::Scope scope(work);
+    const Lanes<const T> y_bar =
+        meets(r)
+            ? rows_from(b.y_bar, r * o_.to.columns * c, shared_.columns * c)
+            : Lanes<const T>();
+    const Lanes<const T> x = rows_from(b.x, r * columns * c, columns * c);
+    if (weights && meets(r)) {
+      Lanes<T> f(nullptr, shared_.columns * c, b.x.samples);
+      f.data = work.take<T>(f.stride, f.rows).data();
+      for (Index i = 0; i < f.rows; ++i)
+        pack_rows<T>(o_.before, rows_from(x, i, 1), f.row(i));
+      accumulate_weights<T>(shape, runs, f, y_bar, 0, shape.positions(), part);
+    }
+    if (!b.x_bar) return;
+    T* const row = work.take<T>(pitch, columns).data();
+    in_.synthesise_row(t, r, block, row);
+    const Lanes<T> x_bar = rows_from(b.x_bar, r * columns * c, columns * c);
+    for (Index q = 0; q < columns; ++q) {
+      const bool added = meets(r) && q < shared_.columns;
+      if (added)
+        gemm<T>({.m = c,
+                 .n = x.width,
+                 .k = c,
+                 .a = w,
+                 .a_row = 1,
+                 .a_k = c,
+                 .b = y_bar.row(q * c),
+                 .b_stride = y_bar.stride,
+                 .c = x_bar.row(q * c),
+                 .c_stride = x_bar.stride});
+      for (Index i = q * c; i < (q + 1) * c; ++i)
+        for (Index j = 0; j < x.width; j += kLanes<T>) {
+          V sum = load<V>(row + q * pitch + (i - q * c) * x.width + j);
+          if (added) sum += load<V>(x_bar.row(i) + j);
+          store(x_bar.row(i) + j,
+                pull_lanes<T>(o_.before, load<V>(x.row(i) + j), sum));
+        }
+    }
+  };
+  each_block(*at.work, parts, [&](Index part, Workspace& work) {
+    const Index end = o_.from.rows * (part + 1) / parts;
+    for (Index r = o_.from.rows * part / parts; r < end; ++r)
+      pull_row(r, totals + part * size, work);
+  });
+  if (weights)
+    finish_weights<T>(shape,
+                      totals,
+                      parts,
+                      totals + size * parts,
+                      b.parameters_bar + 4 * spectral_size());
+}
+
+template class SpectralBlock<float>;
+template class SpectralBlock<double>;
+
+}  // namespace physinv::nn

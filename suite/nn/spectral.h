@@ -1,0 +1,113 @@
+/// One block of a Fourier neural operator, on rows laid out position by
+/// position (see window.h):
+///
+///   y = S f(x) + W f(x) + b
+///
+/// f is an activation, W a 1-tap convolution, S a convolution by its modes on
+/// the `period`, to which x is extended by zeros:
+///
+///   Z = FFT f(x),  A[o](k, l) = sum_c V[c][o](k, l) Z[c](k, l),  S f(x) =
+///   Re FFT^-1 A
+///
+/// over the first and last `modes` row frequencies k and the first `modes`
+/// column frequencies l, of which those with l > 0 count twice for their
+/// conjugates. Only the part of y on `to` is computed.
+///
+/// Parameters: V of the first k, V of the last k, real before imaginary part,
+/// [in][out][k][l] each; W [out][in]; b. With fewer than 2 `modes` rows the
+/// last k are taken from where both have them, and the first have no effect
+/// there.
+///
+/// The tape holds Z alone: f(x) is made again in `backward`, where its
+/// derivative needs the same functions.
+#pragma once
+
+#include <vector>
+
+#include "suite/nn/layer.h"
+#include "suite/nn/plane_modes.h"
+
+namespace physinv::nn {
+
+struct SpectralOptions {
+  Grid from, to;  ///< of x and of y
+  Grid period;    ///< at least both; columns at least 2 modes, rows modes
+  Index channels = 32, modes = 12;
+  Activation before = Activation::identity;  ///< f
+};
+
+template <class T>
+class SpectralBlock final : public Layer<T> {
+ public:
+  explicit SpectralBlock(const SpectralOptions& options);
+
+  std::vector<TensorInfo> tensors() const override;
+  std::size_t slots() const override { return 1; }
+  void forward(const LayerArgs<T>& at,
+               Lanes<const T> x,
+               Lanes<T> y) const override;
+  void backward(const LayerArgs<T>& at, const Backward<T>& b) const override;
+  double operations() const override;
+
+ private:
+  /// Row frequency `sign` k, whose weights are row `row` of tensors 2 `last`
+  /// (real) and 2 `last` + 1. Its modes are the `number`-th on the tape.
+  struct Mode {
+    int sign;
+    Index last, row, number;
+  };
+
+  Index mode_size() const { return o_.modes * o_.modes; }
+  Index spectral_size() const {
+    return o_.channels * o_.channels * mode_size();
+  }
+  /// Of the weights of all l, from the first input to the first output.
+  Index place(const Mode& m, Index part) const {
+    return (2 * m.last + part) * spectral_size() + m.row * o_.modes;
+  }
+  const T* local(const T* parameters) const {
+    return parameters + 4 * spectral_size();
+  }
+  bool meets(Index r) const { return r < shared_.rows; }
+
+  /// Modes of frequency (m.sign k, l) from the sums u, and the transpose.
+  void gather(
+      const T* u, Index k, const Mode& m, Index l, Index block, T* z) const;
+  void scatter(
+      const T* z, Index k, const Mode& m, Index l, Index block, T* u) const;
+  /// V(k, .) as [real, imaginary][l][in][out].
+  void unpack(const T* parameters, const Mode& m, T* weights) const;
+  /// [in re, in im][out re, out im]: the product with V(k, l) in real numbers,
+  /// with the weight of the inverse transform.
+  void real_matrix(const T* weights, Index l, T* matrix) const;
+  double inverse_weight(Index l) const;
+
+  /// u <- what the weights make of the modes in u, which go to the tape.
+  void mix(const LayerArgs<T>& at, Index samples, T* u) const;
+  /// u <- cotangent of the modes, from that of what was made of them.
+  void pull_mix(const LayerArgs<T>& at,
+                Index samples,
+                T* u,
+                T* parameters_bar,
+                bool wants_u) const;
+  void pull_weights(const T* z,
+                    const T* a_bar,
+                    Index samples,
+                    const Mode& m,
+                    T* parameters_bar,
+                    Workspace& work) const;
+  /// x_bar and W_bar row by row; t: the sums of x's cotangent, or null.
+  void pull_rows(const LayerArgs<T>& at,
+                 const Backward<T>& b,
+                 const T* t) const;
+
+  SpectralOptions o_;
+  Grid shared_;  ///< positions that both x and y have
+  PlaneModes<T> in_, out_;
+  std::vector<std::vector<Mode>> modes_;  ///< by k
+};
+
+extern template class SpectralBlock<float>;
+extern template class SpectralBlock<double>;
+
+}  // namespace physinv::nn

@@ -1,0 +1,193 @@
+#include "optimizers/lbfgsb.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "suite/core/check.h"
+#include "tests/optimizers/functions.h"
+#include "tests/support/bits.h"
+#include "tests/support/run_reference.h"
+
+namespace physinv {
+namespace {
+
+using test::ClosedForm;
+using test::Json;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// Start j of a batch: spread over [-3, 3]^d.
+Batch<double> starts(Index d, Index n) {
+  Batch<double> x(d, n);
+  for (Index i = 0; i < x.size(); ++i)
+    x(i) = 3 * std::sin(1.3 * static_cast<double>(i * i) + 0.4);
+  return x;
+}
+
+std::vector<double> bounds(const Json& list, double none) {
+  std::vector<double> out;
+  if (list.is_null()) return out;
+  for (const Json& value : list)
+    out.push_back(value.is_null() ? none : value.get<double>());
+  return out;
+}
+
+LbfgsbOptions options_of(const Json& stored) {
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  LbfgsbOptions options;
+  options.lower = bounds(stored.at("lower"), -kInf);
+  options.upper = bounds(stored.at("upper"), kInf);
+  for (const auto& [key, value] : stored.at("options").items()) {
+    if (key == "maxcor")
+      options.memory = value;
+    else if (key == "gtol")
+      options.pgtol = value;
+    else if (key == "ftol")
+      options.ftol = value;
+    else if (key == "maxiter")
+      options.maxiter = value;
+    else if (key == "maxfun")
+      options.maxfun = value;
+    else
+      ADD_FAILURE() << "unknown option " << key;
+  }
+  return options;
+}
+
+/// SciPy does not evaluate a point twice in a row.
+struct CountedOnce {
+  ClosedForm f;
+  Vector<double>* last;
+  Index* count;
+  void operator()(std::span<const Index> active,
+                  BatchIn<double> x,
+                  VectorOut<double> loss,
+                  BatchOut<double> gradient) const {
+    if (last->size() == 0 || x.col(0) != *last) ++*count;
+    *last = x.col(0);
+    f(active, x, loss, gradient);
+  }
+};
+
+TEST(LbfgsbReference, EveryIterateAndCountIsThatOfSciPy) {
+  const auto check = [](const Json& entry) {
+    const auto near = test::EntryTolerance(entry).array();
+    for (const Json& stored : entry.at("runs")) {
+      SCOPED_TRACE(stored.at("function").dump() + stored.at("x0").dump() +
+                   stored.at("lower").dump() + stored.at("options").dump());
+      Vector<double> last;
+      Index evaluations = 0;
+      const CountedOnce f{
+          {stored.at("function").get<std::string>()}, &last, &evaluations};
+      const auto run = test::record(
+          Lbfgsb(options_of(stored)), f, test::vector(stored.at("x0")));
+      EXPECT_EQ(run.iterations, stored.at("iterations").get<Index>());
+      EXPECT_EQ(evaluations, stored.at("evaluations").get<Index>());
+      EXPECT_EQ(test::scipy_status(run.status), stored.at("status").get<int>())
+          << stored.at("message");
+      EXPECT_TRUE(near(run.iterates, test::columns(stored.at("iterates"))));
+      EXPECT_TRUE(near(run.losses, test::vector(stored.at("losses"))));
+    }
+  };
+  test::check_entries("lbfgsb", {{"lbfgsb", check}});
+}
+
+Lbfgsb solve(const std::string& name,
+             BatchIn<double> x0,
+             LbfgsbOptions o = {}) {
+  Lbfgsb solver(std::move(o));
+  drive(solver, ClosedForm{name}, x0);
+  return solver;
+}
+
+TEST(Lbfgsb, BatchEqualsSoloRunsAndPermutationsBitwise) {
+  const Index n = 23;
+  const LbfgsbOptions boxed{.memory = 3, .lower = {-2}, .upper = {0.9}};
+  for (const LbfgsbOptions& options : {LbfgsbOptions{}, boxed}) {
+    for (const Index d : {1, 2, 7}) {
+      for (const char* name : {"wavy", "rosenbrock", "quadratic"}) {
+        const Batch<double> x0 = starts(d, n);
+        const Lbfgsb all = solve(name, x0, options);
+        const Lbfgsb reversed = solve(name, x0.rowwise().reverse(), options);
+        Index made = 0;
+        for (Index i = 0; i < n; ++i) {
+          const auto at = static_cast<std::size_t>(i);
+          const Lbfgsb one = solve(name, x0.col(i), options);
+          const Vector<double> x = all.x().col(i),
+                               mirror = reversed.x().col(n - 1 - i);
+          EXPECT_TRUE(test::same_bits(x, Vector<double>(one.x().col(0))));
+          EXPECT_TRUE(test::same_bits(x, mirror));
+          EXPECT_EQ(all.status()[at], one.status()[0]);
+          EXPECT_EQ(all.evaluations()[at], one.evaluations()[0]);
+          made += all.evaluations()[at];
+        }
+        EXPECT_EQ(static_cast<std::uint64_t>(made) + all.skipped_evaluations(),
+                  static_cast<std::uint64_t>(n * all.rounds()));
+      }
+    }
+  }
+}
+
+TEST(Lbfgsb, IteratesStayInTheBoxAndDescend) {
+  const Index n = 30;
+  Vector<double> last =
+      Vector<double>::Constant(n, std::numeric_limits<double>::infinity());
+  Lbfgsb solver({.lower = {-1, -0.5, 0.2}, .upper = {1.5, 0.4, 0.2}});
+  drive(solver, ClosedForm{"rosenbrock"}, starts(3, n), [&](const Lbfgsb& s) {
+    for (const Index i : s.accepted()) {
+      EXPECT_LE(s.loss()(i), last(i));
+      last(i) = s.loss()(i);
+      EXPECT_GE(s.x()(0, i), -1);
+      EXPECT_LE(s.x()(1, i), 0.4 + 1e-15);
+      EXPECT_EQ(s.x()(2, i), 0.2);
+    }
+  });
+  for (const Status s : solver.status()) EXPECT_EQ(s, Status::gtol);
+}
+
+TEST(Lbfgsb, ValuesThatAreNotFiniteAreNeverAccepted) {
+  const auto walled = [](std::span<const Index>,
+                         BatchIn<double> x,
+                         VectorOut<double> loss,
+                         BatchOut<double> gradient) {
+    for (Index i = 0; i < x.cols(); ++i) {
+      loss(i) = 4 * x(0, i) - std::log(x(0, i));
+      gradient(0, i) = 4 - 1 / x(0, i);
+      if (x(0, i) < 0) loss(i) = kNan;
+    }
+  };
+  Lbfgsb solver;
+  drive(solver, walled, starts(1, 40).cwiseAbs().array() + 0.02);
+  EXPECT_TRUE(solver.x().allFinite());
+  EXPECT_TRUE(solver.loss().allFinite());
+  EXPECT_GT(solver.x().minCoeff(), 0);
+  drive(solver, walled, Batch<double>::Constant(1, 1, -1));
+  EXPECT_EQ(solver.status()[0], Status::nonfinite);
+  EXPECT_EQ(solver.evaluations()[0], 1);
+}
+
+TEST(Lbfgsb, SaysWhatIsWrongWithItsBounds) {
+  EXPECT_THROW(solve("wavy", starts(3, 1), {.lower = {0, 0}}), ContractError);
+  EXPECT_THROW(solve("wavy", starts(3, 1), {.lower = {1}, .upper = {0}}),
+               ContractError);
+  EXPECT_THROW(solve("wavy", starts(3, 1), {.memory = 0}), ContractError);
+}
+
+TEST(SaddleFactor, SolvesItsSystem) {
+  const Index k = 4;
+  Batch<double> p = starts(k, k), r = starts(k, 2 * k).rightCols(k);
+  Batch<double> q = Batch<double>::Identity(k, k), whole(2 * k, 2 * k);
+  p = (p * p.transpose()).eval() + Batch<double>::Identity(k, k);
+  whole << -p, r.transpose(), r, q;
+  SaddleFactor factor;
+  factor.reserve(k + 2);
+  ASSERT_TRUE(factor.factor(k, p, r, q));
+  Vector<double> v = starts(2 * k, 1);
+  const Vector<double> b = v;
+  factor.solve(k, v.data(), v.data());
+  EXPECT_TRUE(test::Comparator(1e-12, 1e-12)(Vector<double>(whole * v), b));
+  EXPECT_FALSE(factor.factor(k, -p, r, q));
+}
+
+}  // namespace
+}  // namespace physinv

@@ -1,0 +1,267 @@
+#include "optimizers/local_steps.h"
+
+#include <cmath>
+#include <limits>
+
+#include "problems/scaling/scaling.h"
+#include "problems/scaling/trajectories.h"
+#include "tests/optimizers/scaling_support.h"
+#include "tests/support/bits.h"
+#include "tests/support/tolerance.h"
+
+namespace physinv::test {
+namespace {
+
+constexpr LocalStep kGradient = LocalStep::gradient;
+constexpr LocalStep kNewton = LocalStep::newton;
+constexpr LocalStep kInverseGradient = LocalStep::inverse_gradient;
+constexpr LocalStep kSimulator = LocalStep::inverse_simulator;
+
+AimedOptions squared(double x1, double x2) {
+  return {.scaling = {.power = 2, .start = {x1, x2}}};
+}
+
+/// The same physics without closed steps.
+template <class T>
+class Open final : public Problem<T>,
+                   public Vjp<T>,
+                   public Jacobian<T>,
+                   public Hessian<T> {
+ public:
+  using Options = AimedOptions;
+  explicit Open(const Options& options = {}) : p_(options) {}
+  Shape shape() const override { return p_.shape(); }
+  Vector<double> start() const override { return p_.start(); }
+  Samples<double> sample(Index a, Index n, const Rng& r) const override {
+    return p_.sample(a, n, r);
+  }
+  void forward(BatchIn<T> x,
+               BatchIn<T> given,
+               BatchOut<T> y,
+               Workspace& work) const override {
+    p_.forward(x, given, y, work);
+  }
+  void linearize(BatchIn<T> x,
+                 BatchIn<T> given,
+                 BatchOut<T> y,
+                 Tape& tape) const override {
+    p_.linearize(x, given, y, tape);
+  }
+  void pullback(const Tape& tape,
+                BatchIn<T> y_bar,
+                BatchOut<T> x_bar,
+                Workspace& work) const override {
+    p_.pullback(tape, y_bar, x_bar, work);
+  }
+  void jacobian(BatchIn<T> x,
+                BatchIn<T> given,
+                BatchOut<T> j,
+                Workspace& work) const override {
+    p_.jacobian(x, given, j, work);
+  }
+  void hessian(BatchIn<T> x,
+               BatchIn<T> given,
+               BatchIn<T> target,
+               BatchOut<T> h,
+               Workspace& work) const override {
+    p_.hessian(x, given, target, h, work);
+  }
+  void loss_gradient(BatchIn<T> y,
+                     BatchIn<T> target,
+                     BatchOut<T> y_bar) const override {
+    p_.loss_gradient(y, target, y_bar);
+  }
+  double operations() const override { return 2; }
+
+ private:
+  Aimed<T> p_;
+};
+
+TEST(LocalSteps, ClosedStepsAreThoseOfTheMatrices) {
+  for (const int power : {1, 2})
+    for (const double goal : {0.0, 0.7})
+      for (const LocalStep step : {kNewton, kInverseGradient}) {
+        const AimedOptions o{
+            .scaling = {.scales = {3}, .power = power, .start = {2, 1.5}},
+            .target = {-0.3, goal}};
+        const auto open = run_steps(
+            problem<Open>("scaling", o), {.step = step, .rate = 0.3}, 5);
+        EXPECT_TRUE(Comparator(1e-12, 0)(open.out.arrays.at("path"),
+                                         path_of<double>(o, step, 0.3, 5)));
+      }
+}
+
+TEST(LocalSteps, SingularPointsHaveTheirLimits) {
+  for (const double x2 : {0.0, 1e-170, -1e-170, 1e-300}) {
+    SCOPED_TRACE(x2);
+    const auto end = [&](LocalStep step) {
+      return path_of<double>(squared(1, x2), step, 0.3, 1)(1, 1);
+    };
+    EXPECT_DOUBLE_EQ(end(kNewton), x2 * (1 - 0.1));
+    EXPECT_DOUBLE_EQ(end(kInverseGradient), x2 * (1 - 0.15));
+    EXPECT_TRUE(std::isfinite(end(kSimulator)));
+    EXPECT_EQ(std::signbit(end(kSimulator)), std::signbit(x2));
+  }
+}
+
+TEST(LocalSteps, TheInverseKeepsItsBranchAndClampsWhatHasNoRoot) {
+  EXPECT_LT(path_of<double>(squared(1, -2), kSimulator, 0.3, 1)(1, 1), 0);
+  // eta > 1 asks for a negative square.
+  for (const double x2 : {2.0, -2.0}) {
+    const double end =
+        path_of<double>(squared(1, x2), kSimulator, 1.5, 1)(1, 1);
+    EXPECT_EQ(end, 0);
+    EXPECT_EQ(std::signbit(end), std::signbit(x2));
+  }
+}
+
+TEST(LocalSteps, ScalesBeyondTheRootOfTheRange) {
+  for (const double alpha : {1e-160, -1e160, 1e200})
+    for (const LocalStep step : {kNewton, kInverseGradient, kSimulator}) {
+      const AimedOptions o{.scaling = {.scales = {alpha}}};
+      const AimedOptions one;
+      EXPECT_TRUE(Comparator(1e-13, 0)(path_of<double>(o, step, 0.3, 50),
+                                       path_of<double>(one, step, 0.3, 50)));
+    }
+}
+
+TEST(LocalSteps, WhatOverflowsHasDivergedAndStaysFinite) {
+  const auto run = run_steps(problem<Scaling>("scaling", {.scales = {1e6, 1}}),
+                             {.step = kGradient, .rate = 0.03},
+                             60,
+                             Precision::f64,
+                             2);
+  EXPECT_EQ(run.out.status[0], Status::nonfinite);
+  EXPECT_EQ(run.out.status[1], Status::maxiter);
+  EXPECT_LT(run.out.iterations(0), 60);
+  EXPECT_EQ(run.out.iterations(1), 60);
+  EXPECT_EQ(run.out.stop, Stop::iterations);
+  EXPECT_TRUE(run.out.x.allFinite());
+  const auto alone = run_steps(problem<Scaling>("scaling", {.scales = {1e6}}),
+                               {.step = kGradient, .rate = 0.03},
+                               60);
+  EXPECT_EQ(alone.out.stop, Stop::diverged);
+}
+
+TEST(LocalSteps, SearchFindsTheInversesPath) {
+  const Batch<double> exact =
+      path_of<double>(squared(3, 3), kSimulator, 0.3, 10);
+  const auto mean_distance = [&](const NumericInverseOptions& search) {
+    const auto run = run_steps(
+        problem<Aimed>("scaling", squared(3, 3)),
+        {.step = LocalStep::inverse_search, .rate = 0.3, .search = search},
+        10);
+    return (run.out.arrays.at("path") - exact).cwiseAbs().mean();
+  };
+  EXPECT_LE(mean_distance({.difference = 1e-8}), 5e-6);
+  EXPECT_LE(mean_distance({.pgtol = 1e-10, .ftol = 0}), 1e-7);
+}
+
+TEST(LocalSteps, AdamsFirstStepIsAsLongAsItsRate) {
+  const auto run =
+      run_steps(problem<Aimed>("scaling", squared(3, 3)),
+                {.rule = StepOptions(AdamOptions{.rate = 0.1, .eps = 1e-8})},
+                100);
+  const Batch<double>& path = run.out.arrays.at("path");
+  EXPECT_TRUE(Comparator(1e-8, 0)(path.col(1), Eigen::Vector2d(2.9, 2.9)));
+  EXPECT_LT(path.col(100).norm(), 0.5);
+}
+
+// The printed digits, and PG's straight line in y.
+TEST(LocalSteps, SinglePrecisionKeepsWhatIsPrinted) {
+  const auto end = [](LocalStep step, double rate) {
+    return Vector<double>(
+        path_of<float>(squared(3, 3), step, rate, 10).col(10));
+  };
+  const Comparator printed(0, 2e-6);
+  EXPECT_TRUE(
+      printed(end(kGradient, 0.01), Eigen::Vector2d(2.4512184, 0.96171147)));
+  EXPECT_TRUE(
+      printed(end(kNewton, 1.0 / 3), Eigen::Vector2d(0.05202458, 0.92383826)));
+  EXPECT_TRUE(
+      printed(end(kSimulator, 0.3), Eigen::Vector2d(0.08474258, 0.50421)));
+  const Batch<double> x = path_of<float>(squared(3, 3), kSimulator, 0.3, 10);
+  EXPECT_LE((x.row(1).cwiseAbs2() - 3 * x.row(0)).cwiseAbs().maxCoeff(), 1e-5);
+}
+
+// Registers full and not: 37 problems from one start, alpha of each.
+template <class T>
+void expect_flow_of_stages(double tolerance) {
+  constexpr Index kCount = 37, kSteps = 10;
+  for (const int power : {1, 2})
+    for (const LocalStep step :
+         {kGradient, kNewton, kInverseGradient, kSimulator}) {
+      SCOPED_TRACE(testing::Message() << power << " " << int(step));
+      const double rate = step == kGradient ? 0.003 : 0.3;
+      const ScalingOptions o{.scales = {1}, .power = power, .start = {2, -1.5}};
+      const auto recipe = problem<Scaling>("scaling", o);
+      const auto run =
+          run_steps(recipe,
+                    {.step = step, .rate = rate},
+                    kSteps,
+                    sizeof(T) == 4 ? Precision::f32 : Precision::f64,
+                    kCount);
+      Vector<T> alpha = run.given.row(0).transpose().template cast<T>();
+      Vector<T> x1 = Vector<T>::Constant(kCount, 2),
+                x2 = Vector<T>::Constant(kCount, T(-1.5));
+      advance<T>({.step = static_cast<ScalingStep>(step),
+                  .power = power,
+                  .rate = rate,
+                  .steps = kSteps},
+                 alpha,
+                 x1,
+                 x2,
+                 x1,
+                 x2);
+      Batch<T> x(2, kCount);
+      x << x1.transpose(), x2.transpose();
+      EXPECT_TRUE(Comparator(tolerance, 0)(x, run.out.x));
+    }
+}
+
+TEST(ScalingTrajectories, AreThoseOfTheStages) {
+  expect_flow_of_stages<double>(1e-13);
+  expect_flow_of_stages<float>(1e-5);
+}
+
+TEST(ScalingTrajectories, BitsOfOneDependOnNoOtherAndNoThread) {
+  constexpr Index kCount = 10'001;
+  const Vector<double> alpha = Vector<double>::LinSpaced(kCount, 1, 5);
+  for (const int power : {1, 2}) {
+    const ScalingFlow flow{.power = power, .rate = 0.003};
+    const Vector<double> start = Vector<double>::LinSpaced(kCount, -2, 3);
+    Vector<double> x1(kCount), x2(kCount), y1 = start, y2 = start;
+    advance<double>(flow, alpha, start, start, x1, x2);
+    Threads threads(3);
+    advance<double>(flow, alpha, y1, y2, y1, y2, &threads);
+    EXPECT_TRUE(same_bits(x1, y1));
+    EXPECT_TRUE(same_bits(x2, y2));
+    for (const Index i : {0, 1, 4095, 4096, 9999, 10'000}) {
+      Vector<double> z1 = start.segment(i, 1), z2 = z1;
+      advance<double>(flow, alpha.segment(i, 1), z1, z2, z1, z2);
+      EXPECT_TRUE(same_bits(z1, Vector<double>(x1.segment(i, 1))));
+      EXPECT_TRUE(same_bits(z2, Vector<double>(x2.segment(i, 1))));
+    }
+  }
+}
+
+TEST(ScalingTrajectories, WithoutARootTheSignStays) {
+  Vector<double> x1(2), x2(2), alpha = Vector<double>::Constant(2, 1e200);
+  x1 << 1, 1, x2 << 2, -2;
+  advance<double>({.step = ScalingStep::inverse_simulator,
+                   .power = 2,
+                   .rate = 1.5,
+                   .steps = 1},
+                  alpha,
+                  x1,
+                  x2,
+                  x1,
+                  x2);
+  EXPECT_EQ(x1, Vector<double>::Constant(2, -0.5));
+  EXPECT_EQ(x2, Vector<double>::Zero(2));
+  EXPECT_FALSE(std::signbit(x2(0)));
+  EXPECT_TRUE(std::signbit(x2(1)));
+}
+
+}  // namespace
+}  // namespace physinv::test
