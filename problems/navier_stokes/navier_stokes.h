@@ -19,6 +19,11 @@
 /// continuous and has kinks everywhere (limiter, cells), some 1e-5 in z apart.
 ///
 /// Numbers that are not finite, or beyond 1e6, give NaN in their own column.
+///
+/// Speed: eight samples side by side, each looking where its own flow takes it;
+/// the pressure by a sparse factor shared by all of them and all steps. A
+/// sample's forward pass takes 1.0 ms in float and 1.2 in double, its gradient
+/// 3.3 and 4.2 (PyTorch, 8 to 32 of them together: 11 and 15, 22 and 37).
 #pragma once
 
 #include <array>
@@ -91,7 +96,7 @@ class NavierStokes final : public Problem<T>,
                 BatchOut<T> j,
                 Workspace& work) const override;
 
-  /// A register of samples: their states leave the cache soon enough.
+  /// A register of samples: the states of more only fill memory.
   Index gradient_block() const override;
   double operations() const override;
 
