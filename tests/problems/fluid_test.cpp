@@ -180,7 +180,7 @@ void expect_adjoint() {
   // The tangent is the derivative: differences far below the kinks.
   const double h = 1e-8;
   const auto moved = [&](double times) {
-    const auto part = [&](const Packs<P>& p) {
+    const auto part = [&](const Packs<P>& p) -> Batch<double> {
       return from_plane(g, p) * times;
     };
     const Advected<double, kEdge> m(
