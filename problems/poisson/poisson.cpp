@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <numbers>
 
 #include "suite/core/check.h"
@@ -11,6 +12,8 @@
 
 namespace physinv {
 namespace {
+
+enum Slot : std::size_t { kFinite };
 
 using Complex = std::complex<double>;
 using ComplexBatch = Eigen::MatrixXcd;
@@ -182,15 +185,22 @@ void Poisson<T>::linearize(BatchIn<T> x,
                            BatchIn<T> /*given*/,
                            BatchOut<T> y,
                            Tape& tape) const {
+  auto finite = tape.slot<T>(kFinite, 1, x.cols());
+  for (Index i = 0; i < x.cols(); ++i)
+    finite(0, i) = x.col(i).allFinite() ? T(1) : T(0);
   solve_all(x, y, tape.threads());
 }
 
 template <class T>
-void Poisson<T>::pullback(const Tape& /*tape*/,
+void Poisson<T>::pullback(const Tape& tape,
                           BatchIn<T> y_bar,
                           BatchOut<T> x_bar,
                           Workspace& work) const {
   solve_all(y_bar, x_bar, work.threads());
+  const auto finite = tape.view<T>(kFinite);
+  for (Index i = 0; i < finite.cols(); ++i)
+    if (finite(0, i) == T(0))
+      x_bar.col(i).setConstant(std::numeric_limits<T>::quiet_NaN());
 }
 
 template <class T>

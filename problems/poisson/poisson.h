@@ -66,7 +66,7 @@ class Poisson : public LinearProblem<T>, public Inverse<T> {
                BatchIn<T> given,
                BatchOut<T> y,
                Workspace& work) const override;
-  /// Keeps nothing.
+  /// Keeps which samples are finite.
   void linearize(BatchIn<T> x,
                  BatchIn<T> given,
                  BatchOut<T> y,

@@ -187,7 +187,8 @@ TEST_P(MethodContract, LowersAQuadratic) {
       GTEST_SKIP() << "looks or guesses instead of solving";
     const std::string rate = option(stage->options(), "rate");
     const std::string step = option(stage->options(), "step");
-    if ((step == "sgd" && std::stod(rate) < 1e-4) ||
+    if (((step == "sgd" || algorithm == "gradient") &&
+         std::stod(rate) < 1e-4) ||
         (step == "adadelta" && std::stod(rate) < 1e-2))
       GTEST_SKIP() << "a rate for gradients of another size";
   }
