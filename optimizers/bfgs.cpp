@@ -27,6 +27,7 @@ void Bfgs::start(BatchIn<double> x0) {
   gradient_.setZero(d_, n);
   direction_.setZero(d_, n);
   hessian_.resize(d_ * d_, n);
+  earlier_.resize(kStallSteps, n);
   loss_.setConstant(n, kNan);
   previous_loss_.setZero(n);
   step_.resize(d_);
@@ -70,6 +71,7 @@ bool Bfgs::begin(Index i, double loss, const double* gradient, double* trial) {
     return finish(i, Status::nonfinite);
   accepted_.push_back(i);
   previous_loss_(i) = loss + dense::norm(d_, gradient) / 2;
+  earlier_(0, i) = loss;
   if (dense::max_abs(d_, gradient) <= options_.gtol)
     return finish(i, Status::gtol);
   dense::set_identity(d_, hessian(i));
@@ -90,6 +92,7 @@ bool Bfgs::advance(
   if (dense::max_abs(d_, gradient) <= options_.gtol)
     return finish(i, Status::gtol);
   if (line.step() * dense::norm(d_, p) == 0) return finish(i, Status::gtol);
+  if (stalls(i)) return finish(i, Status::gtol);
   if (iterations_[static_cast<std::size_t>(i)] < options_.maxiter) {
     dense::bfgs_update(
         d_, step_.data(), change_.data(), hessian(i), scratch_.data());
@@ -144,6 +147,15 @@ bool Bfgs::search(Index i, LineSearch::Next next, double* trial) {
   return finish(i,
                 next == LineSearch::Next::nonfinite ? Status::nonfinite
                                                     : Status::linesearch);
+}
+
+bool Bfgs::stalls(Index i) {
+  const Index k = iterations_[static_cast<std::size_t>(i)];
+  double& before = earlier_(k % kStallSteps, i);
+  const bool stalls =
+      k >= kStallSteps && before - loss_(i) < options_.stall * before;
+  before = loss_(i);
+  return stalls;
 }
 
 bool Bfgs::finish(Index i, Status status) {

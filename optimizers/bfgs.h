@@ -33,8 +33,13 @@ namespace physinv {
 struct BfgsOptions {
   double gtol = 1e-5;    ///< done when max|gradient| <= gtol
   Index maxiter = 1000;  ///< accepted steps
+  /// Beyond SciPy: done when the last kStallSteps steps together lowered the
+  /// loss by less than this share of it. 0: never.
+  double stall = 0;
   LineSearchOptions search = {};
 };
+
+inline constexpr Index kStallSteps = 3;
 
 class Bfgs {
  public:
@@ -64,7 +69,8 @@ class Bfgs {
   const Batch<double>& x() const { return x_; }  ///< last accepted iterate
   const Vector<double>& loss() const { return loss_; }
   const Batch<double>& gradient() const { return gradient_; }
-  /// `gtol`, `linesearch`, `nonfinite`, or `maxiter`, also while running.
+  /// `gtol` (stalled problems, too), `linesearch`, `nonfinite`, or `maxiter`,
+  /// also while running.
   const std::vector<Status>& status() const { return status_; }
   const std::vector<Index>& iterations() const { return iterations_; }
   const std::vector<Index>& evaluations() const { return evaluations_; }
@@ -80,6 +86,7 @@ class Bfgs {
   void move(Index i, const double* to, double loss, const double* gradient);
   bool iterate(Index i, double* trial);
   bool search(Index i, LineSearch::Next next, double* trial);
+  bool stalls(Index i);
   bool finish(Index i, Status status);
 
   double* hessian(Index i) { return hessian_.data() + i * d_ * d_; }
@@ -89,6 +96,7 @@ class Bfgs {
   std::uint64_t skipped_ = 0;
   Batch<double> x_, gradient_, direction_, trial_;
   Batch<double> hessian_;  // inverse Hessians, d*d x n
+  Batch<double> earlier_;  // losses kStallSteps ago and since, a ring
   Vector<double> loss_, previous_loss_, step_, change_, scratch_;
   std::vector<LineSearch> searches_;
   std::vector<Status> status_;

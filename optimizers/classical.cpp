@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "optimizers/bfgs.h"
+#include "optimizers/bold_descent.h"
 #include "optimizers/drive.h"
 #include "optimizers/gradient_descent.h"
 #include "optimizers/lbfgsb.h"
@@ -51,6 +52,7 @@ Outcome solve(Solver& solver, StageRun& run, const Batch<double>& x0) {
 /// All stages stand here; each has a solver of its own.
 Sources only(const char* used, Sources sources) {
   for (const std::string header : {"optimizers/bfgs.h",
+                                   "optimizers/bold_descent.h",
                                    "optimizers/gradient_descent.h",
                                    "optimizers/lbfgsb.h"})
     if (header != used)
@@ -66,7 +68,14 @@ class BfgsStage final : public Stage {
   std::string name() const override { return refines_ ? "refine" : "solve"; }
   Needs needs() const override { return Needs::forward | Needs::vjp; }
   Options options() const override {
-    return {{"algorithm", "bfgs"}, {"from", refines_ ? "previous" : "start"}};
+    Options all = {{"algorithm", "bfgs"},
+                   {"from", refines_ ? "previous" : "start"}};
+    if (options_.stall > 0)
+      all.emplace_back("stall", fmt::format("{}", options_.stall));
+    if (options_.search_evaluations > 0)
+      all.emplace_back("search",
+                       fmt::format("{}", options_.search_evaluations));
+    return all;
   }
   Index default_iterations() const override { return options_.iterations; }
   Networks networks() const override { return Networks::none; }
@@ -81,7 +90,12 @@ class BfgsStage final : public Stage {
            (3 * size.problem_operations + 200 + 4 * d * d);
   }
   Outcome run(StageRun& run) const override {
-    Bfgs solver({.gtol = run.setting.gtol, .maxiter = run.iterations});
+    BfgsOptions options{.gtol = run.setting.gtol,
+                        .maxiter = run.iterations,
+                        .stall = options_.stall};
+    if (options_.search_evaluations > 0)
+      options.search.max_together = options_.search_evaluations;
+    Bfgs solver(options);
     return solve(solver, run, refines_ ? run.previous->x : run.oracle.start());
   }
 
@@ -160,7 +174,38 @@ class GradientDescentStage final : public Stage {
   GradientDescentStageOptions options_;
 };
 
+class BoldDescentStage final : public Stage {
+ public:
+  explicit BoldDescentStage(const BoldDescentStageOptions& options)
+      : options_(options) {}
+
+  std::string name() const override { return "solve"; }
+  Needs needs() const override { return Needs::forward | Needs::vjp; }
+  Options options() const override { return {{"algorithm", "bold_descent"}}; }
+  Index default_iterations() const override { return options_.evaluations; }
+  Networks networks() const override { return Networks::none; }
+  Sources sources() const override {
+    return only("optimizers/bold_descent.h", Stage::sources());
+  }
+  double operations(const CaseSize& size) const override {
+    return static_cast<double>(size.n * size.iterations) *
+           (3 * size.problem_operations + 100);
+  }
+  Outcome run(StageRun& run) const override {
+    BoldDescent solver({.evaluations = run.iterations});
+    return solve(solver, run, run.oracle.start());
+  }
+
+ private:
+  BoldDescentStageOptions options_;
+};
+
 }  // namespace
+
+std::shared_ptr<const Stage> bold_descent_solve(
+    const BoldDescentStageOptions& options) {
+  return std::make_shared<BoldDescentStage>(options);
+}
 
 std::shared_ptr<const Stage> bfgs_solve(const BfgsStageOptions& options) {
   return std::make_shared<BfgsStage>(options, false);

@@ -15,6 +15,8 @@ namespace physinv {
 
 struct BfgsStageOptions {
   Index iterations = 1000;
+  double stall = 0;            ///< as of BfgsOptions (bfgs.h)
+  int search_evaluations = 0;  ///< of a line search at most, 0: as SciPy's
 };
 
 /// Stage `solve`: BFGS on the true loss from the start.
@@ -39,6 +41,14 @@ std::shared_ptr<const Stage> lbfgsb_solve(
 struct GradientDescentStageOptions {
   Index iterations = 1000;
 };
+
+struct BoldDescentStageOptions {
+  Index evaluations = 100;
+};
+
+/// Stage `solve`: gradient descent of a bold driver (bold_descent.h).
+std::shared_ptr<const Stage> bold_descent_solve(
+    const BoldDescentStageOptions& options = {});
 
 /// Stage `solve`: gradient descent with an adaptive step per problem.
 std::shared_ptr<const Stage> gradient_descent_solve(

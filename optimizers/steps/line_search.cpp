@@ -52,7 +52,7 @@ Next LineSearch::start(const LineSearchOptions& options,
                        double first_step) {
   origin_ = {0, f, slope};
   first_step_ = first_step;
-  round_ = 0;
+  round_ = evaluations_ = 0;
   if (!(slope < 0) || !(first_step >= options.min_step) ||
       first_step > options.max_step) {
     return start_doubling(options);
@@ -72,6 +72,14 @@ Next LineSearch::start(const LineSearchOptions& options,
 Next LineSearch::supply(const LineSearchOptions& options,
                         double f,
                         double slope) {
+  const Next next = move_on(options, f, slope);
+  const bool spent = ++evaluations_ >= options.max_together;
+  return spent && next == Next::evaluate ? Next::fail : next;
+}
+
+Next LineSearch::move_on(const LineSearchOptions& options,
+                         double f,
+                         double slope) {
   const bool finite = std::isfinite(f) && std::isfinite(slope);
   const Point p{step_, f, slope};
   switch (phase_) {

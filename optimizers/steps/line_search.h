@@ -22,6 +22,7 @@ struct LineSearchOptions {
   int max_evaluations = 99;  ///< of search 1
   int max_doublings = 10;    ///< rounds of search 2
   int max_zooms = 11;        ///< rounds inside its bracket
+  int max_together = 1000;   ///< evaluations of both searches
   /// Without search 2, as L-BFGS-B has it: where rounding or an end of the
   /// range leaves search 1 nothing to try, its step is accepted.
   bool search_1_only = false;
@@ -51,6 +52,7 @@ class LineSearch {
   };
   enum class Phase : std::uint8_t { more_thuente, doubling, zoom };
 
+  Next move_on(const LineSearchOptions& options, double f, double slope);
   Next more_thuente(const LineSearchOptions& options, Point p);
   bool hopeless(const LineSearchOptions& options, Point p) const;
   void interpolate(Point p);
@@ -65,7 +67,7 @@ class LineSearch {
   Point origin_, x_, y_, old_;
   double first_step_, step_;
   double lower_, upper_, width_, width_before_;
-  int round_;
+  int round_, evaluations_;
   Phase phase_;
   bool bracketed_, modified_;
 };

@@ -1,0 +1,67 @@
+// JPO paper, Sec. 4 "Incompressible Navier-Stokes", Fig. 6, App. D.4: where was
+// the blast that is seen above the obstacles, and how strong?
+#include <vector>
+
+#include "problems/navier_stokes/navier_stokes.h"
+#include "suite/cases/jpo/common/methods.h"
+#include "suite/cases/jpo/common/report.h"
+#include "suite/harness/registry.h"
+#include "suite/nn/unet.h"
+#include "suite/nn/vgg.h"
+
+namespace physinv {
+namespace {
+
+constexpr Index kFitIterations = 1000;
+/// The map has kinks everywhere: BFGS ends where it no longer gets on.
+constexpr BfgsStageOptions kBfgs{
+    .iterations = 100, .stall = 1e-5, .search_evaluations = 20};
+
+const nn::VggOptions kPredictor{.channels = 2,
+                                .grid = {.columns = 32, .rows = 64},
+                                .features = {16, 32, 32, 32},
+                                .hidden = {64, 64}};
+
+std::vector<Method> methods() {
+  return {{"bfgs", {bfgs_solve(kBfgs)}},
+          {"gd", {bold_descent_solve()}},
+          {"jpo",
+           {jpo_fit({.step = AdamOptions{.rate = 1e-3},
+                     .iterations = kFitIterations}),
+            bfgs_refine(kBfgs)}}};
+}
+
+const std::vector<Index> kSizes = {4, 8, 16, 32, 64, 128};
+
+const auto kRegistered = register_experiment({
+    .name = "jpo/navier-stokes",
+    .title = "Incompressible Navier-Stokes",
+    .source = {.paper = "jpo", .where = "Sec. 4, Fig. 6, App. D.4"},
+    .problem = problem<NavierStokes>("navier_stokes"),
+    .setting = {.predictor = {{Field::observations}, nn::vgg(kPredictor)},
+                .gtol = 1e-3},
+    .profiles = {{.name = "smoke",
+                  .rows = {{.methods = {"bfgs", "gd", "jpo"},
+                            .n = {4},
+                            .seeds = {0},
+                            .iterations = 5}}},
+                 {.name = "quick",
+                  .rows = {{.methods = {"bfgs", "gd"}, .n = {16}, .seeds = {0}},
+                           {.methods = {"jpo"},
+                            .n = {16},
+                            .seeds = {0},
+                            .iterations = kFitIterations}}},
+                 {.name = "paper",
+                  .rows = {{.methods = {"bfgs", "gd"},
+                            .n = kSizes,
+                            .seeds = first_seeds(4)},
+                           {.methods = {"jpo"},
+                            .n = kSizes,
+                            .seeds = first_seeds(4),
+                            .iterations = kFitIterations}}}},
+    .methods = methods(),
+    .looks = kJpoLooks,
+});
+
+}  // namespace
+}  // namespace physinv
