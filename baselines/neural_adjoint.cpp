@@ -38,6 +38,7 @@ class Surrogate {
     }
   }
 
+  /// By unknowns as the network reads them.
   void evaluate(std::span<const Index> active,
                 BatchIn<double> x,
                 VectorOut<double> loss,
@@ -128,15 +129,18 @@ template <class T>
 Outcome solve(const NeuralAdjointOptions& options, StageRun& run) {
   Oracle& oracle = run.oracle;
   Surrogate<T> surrogate(run);
-  const BoundaryLoss boundary =
-      BoundaryLoss::over(oracle.labelled().x, options.gamma);
+  const Labelling& labels = run.setting.labels;
+  const BoundaryLoss boundary = BoundaryLoss::over(
+      bounded(oracle.labelled(labels.per_problem).x, labels), options.gamma);
   Batch<double> start = oracle.start(), gradient(start);
   Vector<double> loss(start.cols());
 
   run.probe.begin_warmup();
   oracle.warm_up<double>();
-  surrogate.evaluate(oracle.all(), start, loss, gradient);
-  const double weight = options.weight * median(loss);
+  surrogate.evaluate(oracle.all(), bounded(start, labels), loss, gradient);
+  const double weight = options.fixed_weight != 0
+                            ? options.fixed_weight
+                            : options.weight * median(loss);
 
   Bfgs solver({.gtol = run.setting.gtol, .maxiter = run.iterations});
   BestTrue best(run);
@@ -147,8 +151,11 @@ Outcome solve(const NeuralAdjointOptions& options, StageRun& run) {
           BatchIn<double> x,
           VectorOut<double> l,
           BatchOut<double> g) {
-        surrogate.evaluate(active, x, l, g);
-        boundary.add(x, weight, l, g);
+        const Batch<double> read = bounded(x, labels);
+        surrogate.evaluate(active, read, l, g);
+        boundary.add(read, weight, l, g);
+        g.topRows(labels.bounded).array() *=
+            1 - read.topRows(labels.bounded).array().square();
         run.probe.trace(x.data(),
                         sizeof(double) * static_cast<std::size_t>(x.size()));
       },
@@ -172,9 +179,12 @@ class NeuralAdjointSolve final : public Stage {
   std::string name() const override { return "solve"; }
   Needs needs() const override { return Needs::forward | Needs::labels; }
   Options options() const override {
-    return {{"algorithm", "neural_adjoint"},
-            {"gamma", fmt::format("{}", options_.gamma)},
-            {"weight", fmt::format("{}", options_.weight)}};
+    Options all = {{"algorithm", "neural_adjoint"},
+                   {"gamma", fmt::format("{}", options_.gamma)},
+                   {"weight", fmt::format("{}", options_.weight)}};
+    if (options_.fixed_weight != 0)
+      all.back() = {"fixed_weight", fmt::format("{}", options_.fixed_weight)};
+    return all;
   }
   Index default_iterations() const override { return options_.iterations; }
   bool takes_row_iterations() const override { return false; }

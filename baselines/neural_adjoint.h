@@ -5,8 +5,9 @@
 ///   L~_i(x) = 1/2 |N~(x, given_i) - y_i|^2 + w B(x),
 ///
 /// with the boundary loss B of boundary_loss.h and w = 10 median_i of the
-/// first term at the start. The true loss is evaluated at every accepted
-/// iterate, the start included; the best one is the estimate.
+/// first term at the start, or a number. Bounded unknowns (Labelling) are
+/// tanh x for the network and for B. The true loss is evaluated at every
+/// accepted iterate, the start included; the best one is the estimate.
 ///
 /// Stage `solve`, after the surrogate's `fit` (surrogate.h).
 #pragma once
@@ -18,9 +19,10 @@
 namespace physinv {
 
 struct NeuralAdjointOptions {
-  Index iterations = 300;  ///< of BFGS
-  double gamma = 20;       ///< sharpness of the boundary's softplus
-  double weight = 10;      ///< of the boundary, in median initial losses
+  Index iterations = 300;   ///< of BFGS
+  double gamma = 20;        ///< sharpness of the boundary's softplus
+  double weight = 10;       ///< of the boundary, in median initial losses
+  double fixed_weight = 0;  ///< w itself, if not 0
 };
 
 std::shared_ptr<const Stage> neural_adjoint_solve(

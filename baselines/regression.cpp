@@ -1,5 +1,13 @@
 #include "baselines/regression.h"
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <span>
+#include <utility>
+#include <vector>
+
 #include "optimizers/training/first_order.h"
 #include "optimizers/training/loop.h"
 #include "suite/core/oracle.h"
@@ -8,24 +16,74 @@
 namespace physinv {
 namespace {
 
+/// Samples in a new order every pass, batch by batch.
+class Passes {
+ public:
+  Passes(const Rng& rng, Index samples) : rng_(rng) {
+    order_.resize(static_cast<std::size_t>(samples));
+    std::iota(order_.begin(), order_.end(), Index{0});
+    at_ = order_.size();
+  }
+
+  std::span<const Index> next(std::size_t count) {
+    if (at_ + count > order_.size()) shuffle();
+    at_ += count;
+    return {order_.data() + at_ - count, count};
+  }
+
+ private:
+  void shuffle() {
+    Stream stream = rng_.child(pass_++).stream();
+    for (std::size_t i = order_.size(); i > 1; --i) {
+      const auto other = static_cast<std::size_t>(stream.uniform() * double(i));
+      std::swap(order_[i - 1], order_[other]);
+    }
+    at_ = 0;
+  }
+
+  Rng rng_;
+  std::vector<Index> order_;
+  std::size_t at_;
+  std::uint64_t pass_ = 0;
+};
+
 /// The signal: distance of the outputs from their targets.
 template <class T>
 class Labels final : public Signal<T> {
  public:
-  Labels(const Probe& probe, NetworkModel<T>& model, Batch<T> target)
-      : probe_(probe),
+  Labels(const StageRun& run, NetworkModel<T>& model, Lessons<T> lessons)
+      : probe_(run.probe),
         model_(model),
-        target_(std::move(target)),
-        residual_(target_.rows(), target_.cols()) {}
+        all_(std::move(lessons)),
+        passes_(run.batches.child("labels"), all_.target.cols()) {
+    const Index count = run.oracle.count();
+    in_parts_ = count < all_.target.cols();
+    model_.bind(in_parts_ ? Batch<T>(all_.input.leftCols(count)) : all_.input);
+    residual_.resize(all_.target.rows(), count);
+    if (in_parts_) part_.resize(all_.input.rows(), count);
+  }
 
   void warm_up() override { model_.warm_up(); }
 
   Vector<T>& gradient() override {
-    residual_.noalias() = model_.forward() - target_;
+    if (in_parts_) {
+      const auto some =
+          passes_.next(static_cast<std::size_t>(residual_.cols()));
+      for (Index j = 0; j < residual_.cols(); ++j) {
+        const Index sample = some[static_cast<std::size_t>(j)];
+        part_.col(j) = all_.input.col(sample);
+        residual_.col(j) = -all_.target.col(sample);
+      }
+      residual_ += shown(model_.forward(part_));
+    } else {
+      residual_ = shown(model_.forward()) - all_.target;
+    }
     model_.update_state();
     loss_ = residual_.template cast<double>().squaredNorm();
     probe_.trace(&loss_, sizeof(loss_));
     residual_ *= T(2);
+    if (all_.bounded > 0)
+      residual_.topRows(all_.bounded).array() *= T(1) - tanh_.array().square();
     return model_.backward(residual_);
   }
 
@@ -33,10 +91,29 @@ class Labels final : public Signal<T> {
     out.arrays["training_loss"] = Batch<double>::Constant(1, 1, loss_);
   }
 
+  /// Of the first of them; nothing where every update sees all.
+  void settle() {
+    constexpr Index kSettled = 128;
+    const Index count = std::min(kSettled, all_.input.cols());
+    if (in_parts_) model_.settle(all_.input.leftCols(count));
+  }
+
  private:
+  const Batch<T>& shown(const Batch<T>& out) {
+    if (all_.bounded == 0) return out;
+    shown_ = out;
+    tanh_ =
+        out.topRows(all_.bounded).unaryExpr([](T o) { return std::tanh(o); });
+    shown_.topRows(all_.bounded) = tanh_;
+    return shown_;
+  }
+
   const Probe& probe_;
   NetworkModel<T>& model_;
-  Batch<T> target_, residual_;
+  Lessons<T> all_;
+  Passes passes_;
+  bool in_parts_ = false;
+  Batch<T> part_, residual_, shown_, tanh_;
   double loss_ = 0;
 };
 
@@ -45,11 +122,11 @@ class Labels final : public Signal<T> {
 template <class T>
 Outcome fit_regression(
     NetworkModel<T>& model,
-    Batch<T> target,
+    Lessons<T> lessons,
     const RegressionOptions& options,
     StageRun& run,
     const std::function<void(BatchOut<double> x)>& estimate) {
-  Labels<T> signal(run.probe, model, std::move(target));
+  Labels<T> signal(run, model, std::move(lessons));
   FirstOrder<T> rule(options.step, model);
   Outcome out = run_training<T>({.model = model,
                                  .signal = signal,
@@ -57,6 +134,7 @@ Outcome fit_regression(
                                  .batches = nullptr,
                                  .estimate = estimate},
                                 run);
+  signal.settle();
   out.x.resize(run.oracle.shape().unknowns, run.oracle.count());
   estimate(out.x);
   out.arrays["weight_change"] = model.change_per_tensor(run.network_init);
@@ -64,12 +142,12 @@ Outcome fit_regression(
 }
 
 template Outcome fit_regression(NetworkModel<float>&,
-                                Batch<float>,
+                                Lessons<float>,
                                 const RegressionOptions&,
                                 StageRun&,
                                 const std::function<void(BatchOut<double>)>&);
 template Outcome fit_regression(NetworkModel<double>&,
-                                Batch<double>,
+                                Lessons<double>,
                                 const RegressionOptions&,
                                 StageRun&,
                                 const std::function<void(BatchOut<double>)>&);

@@ -1,5 +1,5 @@
-/// Least-squares training of a network on labelled samples, all of them in
-/// every update: what supervised learning and surrogates share.
+/// Least-squares training of a network on labelled samples: what supervised
+/// learning and surrogates share.
 #pragma once
 
 #include <functional>
@@ -17,12 +17,21 @@ struct RegressionOptions {
   Index iterations = 3000;
 };
 
-/// Minimizes sum |N(input) - target|^2; `model` is bound to the input.
-/// `estimate(x)` fills the true problems' estimates, also those that are left.
-/// Arrays left: `weight_change`, `training_loss` (the last seen in training).
+/// Inputs and targets, a sample per column. The network's first `bounded`
+/// outputs count as tanh of what they say.
+template <class T>
+struct Lessons {
+  Batch<T> input, target;
+  Index bounded = 0;
+};
+
+/// Minimizes sum |N(input) - target|^2 over all samples, or over batches of as
+/// many as there are problems. `estimate(x)` fills the true problems'
+/// estimates, also those that are left. Arrays left: `weight_change`,
+/// `training_loss` (the last seen in training).
 template <class T>
 Outcome fit_regression(NetworkModel<T>& model,
-                       Batch<T> target,
+                       Lessons<T> lessons,
                        const RegressionOptions& options,
                        StageRun& run,
                        const std::function<void(BatchOut<double> x)>& estimate);

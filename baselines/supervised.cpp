@@ -10,18 +10,23 @@ template <class T>
 Outcome fit(const RegressionOptions& options, StageRun& run) {
   Oracle& oracle = run.oracle;
   const NetworkRole& role = run.setting.predictor;
-  const Samples<double>& labelled = oracle.labelled();
+  const Labelling& labels = run.setting.labels;
+  const Samples<double>& labelled = oracle.labelled(labels.per_problem);
   NetworkModel<T> model(
       role, oracle.shape(), oracle.shape().unknowns, run.threads);
   model.initialize(run.network_init);
-  model.bind(assemble<T>(role.inputs, labelled.x, labelled.given, labelled.y));
   Predictions<T> predict(model, run);
   const auto map = output_map<double>(run.setting, oracle);
-  return fit_regression<T>(model,
-                           map->outputs_of(labelled.x).template cast<T>(),
-                           options,
-                           run,
-                           [&](BatchOut<double> x) { predict(x); });
+  return fit_regression<T>(
+      model,
+      {.input =
+           assemble<T>(role.inputs, labelled.x, labelled.given, labelled.y),
+       .target =
+           bounded(map->outputs_of(labelled.x), labels).template cast<T>(),
+       .bounded = labels.bounded},
+      options,
+      run,
+      [&](BatchOut<double> x) { predict(x); });
 }
 
 }  // namespace

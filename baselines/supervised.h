@@ -3,6 +3,7 @@
 ///
 ///   min_theta  sum_j |N(given_j, y_j | theta) - (x_j - x_start) / scale|^2,
 ///
+/// with tanh of both sides for bounded unknowns (Labelling),
 /// then asked for the problems' unknowns. No selection of a best iterate.
 /// Stage `fit`; arrays `weight_change`, `training_loss`.
 #pragma once

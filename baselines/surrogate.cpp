@@ -9,17 +9,22 @@ template <class T>
 Outcome fit(const RegressionOptions& options, StageRun& run) {
   Oracle& oracle = run.oracle;
   const NetworkRole& role = run.setting.surrogate;
-  const Samples<double>& labelled = oracle.labelled();
+  const Labelling& labels = run.setting.labels;
+  const Samples<double>& labelled = oracle.labelled(labels.per_problem);
   NetworkModel<T> model(
       role, oracle.shape(), oracle.shape().observations, run.threads);
   model.initialize(run.network_init);
-  model.bind(assemble<T>(role.inputs, labelled.x, labelled.given, labelled.y));
   const Batch<double> start = oracle.start();
-  Outcome out = fit_regression<T>(model,
-                                  labelled.y.template cast<T>(),
-                                  options,
-                                  run,
-                                  [&](BatchOut<double> x) { x = start; });
+  Outcome out =
+      fit_regression<T>(model,
+                        {.input = assemble<T>(role.inputs,
+                                              bounded(labelled.x, labels),
+                                              labelled.given,
+                                              labelled.y),
+                         .target = labelled.y.template cast<T>()},
+                        options,
+                        run,
+                        [&](BatchOut<double> x) { x = start; });
   model.save(out.arrays);
   return out;
 }

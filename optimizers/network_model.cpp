@@ -1,5 +1,7 @@
 #include "optimizers/network_model.h"
 
+#include <cmath>
+
 namespace physinv {
 namespace {
 
@@ -48,6 +50,12 @@ template Batch<double> assemble(const std::vector<Field>&,
                                 const Batch<double>&,
                                 const Batch<double>&,
                                 const Batch<double>&);
+
+Batch<double> bounded(Batch<double> x, const Labelling& labels) {
+  auto rows = x.topRows(labels.bounded);
+  rows = rows.unaryExpr([](double v) { return std::tanh(v); }).eval();
+  return x;
+}
 
 Index input_rows(const std::vector<Field>& fields, const Shape& shape) {
   Index rows = 0;
@@ -156,6 +164,14 @@ void NetworkModel<T>::backward_tangent(const Vector<T>& direction,
 template <class T>
 void NetworkModel<T>::update_state() {
   if (state_.size() > 0) network_->update_state(tape_, state_);
+}
+
+template <class T>
+void NetworkModel<T>::settle(BatchIn<T> input) {
+  // A move leaves nine tenths of what was there.
+  constexpr int kMoves = 360;
+  forward(input);
+  for (int k = 0; k < kMoves; ++k) update_state();
 }
 
 template <class T>

@@ -16,6 +16,9 @@ Batch<T> assemble(const std::vector<Field>& fields,
                   const Batch<double>& given,
                   const Batch<double>& y);
 
+/// Unknowns as networks learn and read them (Labelling::bounded).
+Batch<double> bounded(Batch<double> x, const Labelling& labels);
+
 /// Rows a role reads.
 Index input_rows(const std::vector<Field>& fields, const Shape& shape);
 
@@ -54,6 +57,8 @@ class NetworkModel {
                         Vector<T>& product);
   /// Running statistics follow the last `forward`.
   void update_state();
+  /// Running statistics become those of these samples.
+  void settle(BatchIn<T> input);
   /// One pass forward and back that leaves nothing behind but warm caches.
   void warm_up();
 

@@ -54,6 +54,15 @@ struct Sources {
 /// with means over the numbers of one sample.
 enum class OutputForm : std::uint8_t { linear, box, mean_of_observations };
 
+/// How networks learn from labelled samples.
+struct Labelling {
+  /// More than one: batches of as many as there are problems, in a new order
+  /// every pass; normalisation ends with the statistics of the set.
+  Index per_problem = 1;
+  /// The first so many unknowns are learnt, and shown to surrogates, as tanh x.
+  Index bounded = 0;
+};
+
 /// Everything an experiment fixes for its methods.
 struct Setting {
   NetworkRole predictor;  ///< estimates x, from its output by `output_form`
@@ -61,6 +70,7 @@ struct Setting {
   double output_scale = 1.0;
   OutputForm output_form = OutputForm::linear;
   double gtol = 1e-5;  ///< of BFGS and gradient descent
+  Labelling labels = {};
   /// Examples whose estimates and curves are recorded, 0 for all. Every
   /// example's final loss is.
   Index recorded = 0;

@@ -195,12 +195,12 @@ void Oracle::warm_up() {
 template void Oracle::warm_up<float>();
 template void Oracle::warm_up<double>();
 
-const Samples<double>& Oracle::labelled() {
+const Samples<double>& Oracle::labelled(Index per_problem) {
   SUITE_CHECK(contains(allowed_, Needs::labels),
               "the method asked for labels it did not declare");
-  if (labelled_.count() == 0) {
+  if (labelled_.count() != per_problem * count()) {
     labelled_ = disturbed(recipe_.make<double>()->sample_labelled(
-        0, count(), rng_.child("data/train")));
+        0, per_problem * count(), rng_.child("data/train")));
   }
   return labelled_;
 }

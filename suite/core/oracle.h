@@ -48,8 +48,8 @@ class Oracle {
   /// Every problem at once: active = 0, 1, .. count-1.
   std::span<const Index> all() const { return all_; }
 
-  /// As many labelled samples as there are problems, from a separate set.
-  const Samples<double>& labelled();
+  /// Labelled samples from a separate set, so many for each problem.
+  const Samples<double>& labelled(Index per_problem = 1);
 
   /// Problems first .. first+count-1 of the same separate set, without their
   /// solutions: for methods that learn from the physics. Whoever simulates

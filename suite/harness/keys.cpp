@@ -51,6 +51,10 @@ std::string recipe_text(const Case& c, std::size_t position) {
   if (e.setting.output_form != OutputForm::linear)
     text += fmt::format("output_form={}\n",
                         static_cast<int>(e.setting.output_form));
+  const Labelling& labels = e.setting.labels;
+  if (labels.per_problem != 1 || labels.bounded != 0)
+    text += fmt::format(
+        "labels={}\nbounded={}\n", labels.per_problem, labels.bounded);
   for (std::size_t i = 0; i <= position; ++i) {
     const Stage& stage = *c.method->chain[i];
     text += fmt::format(

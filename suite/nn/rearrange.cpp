@@ -36,10 +36,14 @@ void FieldInput<T>::forward(const LayerArgs<T>&,
   };
   for (Index c = 0; c < o_.before; ++c) spread(c, c);
   for (Index c = 0; c < o_.channels; ++c)
-    for (Index p = 0; p < o_.positions; ++p)
-      copy_row(x.row(o_.before + c * o_.positions + p),
-               x.width,
-               y.row(p * o_.width() + o_.before + c));
+    for (Index p = 0; p < o_.positions; ++p) {
+      T* const to = y.row(p * o_.width() + o_.before + c);
+      if (p % o_.columns < o_.hidden) {
+        std::fill_n(to, x.width, T(0));
+      } else {
+        copy_row(x.row(o_.before + c * o_.positions + p), x.width, to);
+      }
+    }
   for (Index c = 0; c < o_.after; ++c)
     spread(o_.inputs() - o_.after + c, o_.width() - o_.after + c);
 }
@@ -59,10 +63,14 @@ void FieldInput<T>::backward(const LayerArgs<T>&, const Backward<T>& b) const {
   };
   for (Index c = 0; c < o_.before; ++c) collect(c, c);
   for (Index c = 0; c < o_.channels; ++c)
-    for (Index p = 0; p < o_.positions; ++p)
-      copy_row(b.y_bar.row(p * o_.width() + o_.before + c),
-               width,
-               b.x_bar.row(o_.before + c * o_.positions + p));
+    for (Index p = 0; p < o_.positions; ++p) {
+      T* const to = b.x_bar.row(o_.before + c * o_.positions + p);
+      if (p % o_.columns < o_.hidden) {
+        std::fill_n(to, width, T(0));
+      } else {
+        copy_row(b.y_bar.row(p * o_.width() + o_.before + c), width, to);
+      }
+    }
   for (Index c = 0; c < o_.after; ++c)
     collect(o_.inputs() - o_.after + c, o_.width() - o_.after + c);
   apply_gate(b.gate, b.x_bar);
@@ -103,19 +111,24 @@ template <class T>
 void Flatten<T>::forward(const LayerArgs<T>&,
                          Lanes<const T> x,
                          Lanes<T> y) const {
-  for (Index p = 0; p < positions_; ++p)
+  each_left([&](Index p, Index to) {
     for (Index c = 0; c < channels_; ++c)
-      copy_row(x.row(p * channels_ + c), x.width, y.row(c * positions_ + p));
+      copy_row(x.row(p * channels_ + c), x.width, y.row(c * left() + to));
+  });
 }
 
 template <class T>
 void Flatten<T>::backward(const LayerArgs<T>&, const Backward<T>& b) const {
   if (!b.x_bar) return;
-  for (Index p = 0; p < positions_; ++p)
+  if (hidden_ > 0)
+    for (Index row = 0; row < this->inputs(); ++row)
+      std::fill_n(b.x_bar.row(row), b.x_bar.width, T(0));
+  each_left([&](Index p, Index from) {
     for (Index c = 0; c < channels_; ++c)
-      copy_row(b.y_bar.row(c * positions_ + p),
+      copy_row(b.y_bar.row(c * left() + from),
                b.x_bar.width,
                b.x_bar.row(p * channels_ + c));
+  });
   apply_gate(b.gate, b.x_bar);
 }
 

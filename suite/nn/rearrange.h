@@ -8,11 +8,13 @@ namespace physinv::nn {
 
 /// Rows: `before` numbers, `channels` fields as [channel][position], `after`
 /// numbers -> [position][before, channels, after]. A number z becomes a field
-/// of constant value (z - shift) / unit.
+/// of constant value (z - shift) / unit. Of the fields, which have `columns`,
+/// the first `hidden` are read as zero.
 struct FieldInputOptions {
   Index positions = 1;
   Index before = 0, channels = 1, after = 0;
   double shift = 0, unit = 1;
+  Index columns = 1, hidden = 0;
 
   Index inputs() const { return before + channels * positions + after; }
   Index width() const { return before + channels + after; }
@@ -50,14 +52,18 @@ class Coordinates final : public Layer<T> {
   Grid grid_;
 };
 
-/// [position][channel] -> [channel][position].
+/// [position][channel] -> [channel][position], without the first `hidden` of
+/// the grid's columns.
 template <class T>
 class Flatten final : public PiecewiseLinear<T> {
  public:
-  Flatten(Index positions, Index channels)
-      : PiecewiseLinear<T>(positions * channels, positions * channels),
+  Flatten(Index positions, Index channels, Index columns = 1, Index hidden = 0)
+      : PiecewiseLinear<T>(positions * channels,
+                           positions / columns * (columns - hidden) * channels),
         positions_(positions),
-        channels_(channels) {}
+        channels_(channels),
+        columns_(columns),
+        hidden_(hidden) {}
 
   void forward(const LayerArgs<T>& at,
                Lanes<const T> x,
@@ -65,7 +71,16 @@ class Flatten final : public PiecewiseLinear<T> {
   void backward(const LayerArgs<T>& at, const Backward<T>& b) const override;
 
  private:
-  Index positions_, channels_;
+  /// f(position, place among those that are left).
+  template <class F>
+  void each_left(F&& f) const {
+    Index left = 0;
+    for (Index p = 0; p < positions_; ++p)
+      if (p % columns_ >= hidden_) f(p, left++);
+  }
+  Index left() const { return this->outputs() / channels_; }
+
+  Index positions_, channels_, columns_, hidden_;
 };
 
 extern template class FieldInput<float>;

@@ -61,42 +61,50 @@ std::unique_ptr<Network<T>> make(const UnetOptions& o,
                                 .channels = o.channels,
                                 .after = o.scalars_after,
                                 .shift = o.scalar_shift,
-                                .unit = o.scalar_unit};
-  SUITE_CHECK(inputs == input.inputs() && outputs == o.outputs * positions,
+                                .unit = o.scalar_unit,
+                                .columns = o.grid.columns,
+                                .hidden = o.hidden};
+  SUITE_CHECK(inputs == input.inputs() &&
+                  outputs == o.outputs * (positions - o.hidden * o.grid.rows),
               "the network's grid is not that of its input and output");
+  SUITE_CHECK(o.hidden == 0 || o.outputs > 1,
+              "a u-net hides columns of two fields or more");
   SUITE_CHECK(o.levels >= 1, "a u-net has at least one level");
   Layers<T> layers;
-  if (input.width() > 1)
+  if (input.width() > 1 || o.hidden > 0)
     layers.push_back(std::make_unique<FieldInput<T>>(input));
   add_level<T>(layers, o, o.grid, input.width(), o.levels);
   layers.push_back(std::make_unique<Conv<T>>(ConvOptions{
       .grid = o.grid, .in = o.features, .out = o.outputs, .taps = {1, 1}}));
   if (o.outputs > 1)
-    layers.push_back(std::make_unique<Flatten<T>>(positions, o.outputs));
+    layers.push_back(std::make_unique<Flatten<T>>(
+        positions, o.outputs, o.grid.columns, o.hidden));
   return std::make_unique<Sequential<T>>(std::move(layers), o.init);
 }
 
 }  // namespace
 
 NetworkRecipe unet(const UnetOptions& options) {
-  return {.description = fmt::format(
-              "unet grid={}x{} scalars={}+{} shift={} unit={} channels={} "
-              "levels={} features={} outputs={}{}{}{}",
-              options.grid.columns,
-              options.grid.rows,
-              options.scalars_before,
-              options.scalars_after,
-              options.scalar_shift,
-              options.scalar_unit,
-              options.channels,
-              options.levels,
-              options.features,
-              options.outputs,
-              options.padding == Padding::circular ? " circular" : "",
-              options.batch_statistics ? " batch_statistics" : "",
-              in_words(options.init)),
-          .make_float = std::bind_front(make<float>, options),
-          .make_double = std::bind_front(make<double>, options)};
+  return {
+      .description = fmt::format(
+          "unet grid={}x{} scalars={}+{} shift={} unit={} channels={} "
+          "levels={} features={} outputs={}{}{}{}{}",
+          options.grid.columns,
+          options.grid.rows,
+          options.scalars_before,
+          options.scalars_after,
+          options.scalar_shift,
+          options.scalar_unit,
+          options.channels,
+          options.levels,
+          options.features,
+          options.outputs,
+          options.hidden > 0 ? fmt::format(" hidden={}", options.hidden) : "",
+          options.padding == Padding::circular ? " circular" : "",
+          options.batch_statistics ? " batch_statistics" : "",
+          in_words(options.init)),
+      .make_float = std::bind_front(make<float>, options),
+      .make_double = std::bind_front(make<double>, options)};
 }
 
 }  // namespace physinv::nn

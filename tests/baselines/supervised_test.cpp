@@ -51,6 +51,29 @@ TEST(Supervised, SelectsNoBestIterate) {
   EXPECT_GT((last - curve.rowwise().minCoeff()).maxCoeff(), 0);
 }
 
+// More samples than problems: batches of the training set, all of them seen in
+// every pass, in another order each time.
+TEST(Supervised, GoesThroughItsSetInParts) {
+  const auto stage = supervised_fit({.step = AdamOptions{.rate = 1e-2}});
+  StageBench few(*stage, kCount, 400), many(*stage, kCount, 400);
+  many.setting.labels.per_problem = 4;
+  const Outcome a = few.run(), b = many.run();
+  EXPECT_EQ(many.oracle.labelled(4).count(), 4 * kCount);
+  EXPECT_LT(many.loss(b.x).mean(), many.probe.curve().loss.col(0).mean());
+  EXPECT_FALSE(same_bits(a.x, b.x));
+}
+
+// Bounded unknowns are learnt as tanh x.
+TEST(Supervised, BoundedUnknownsAreLearntAsTheyAreRead) {
+  const auto stage = supervised_fit({.step = AdamOptions{.rate = 1e-2}});
+  StageBench first(*stage, kCount, 1), bench(*stage, kCount, 600);
+  for (StageBench* b : {&first, &bench}) b->setting.labels.bounded = 1;
+  const double before = training_loss(first.run());
+  const Outcome out = bench.run();
+  EXPECT_LT(training_loss(out), 0.1 * before);
+  EXPECT_LT(bench.loss(out.x).mean(), bench.probe.curve().loss.col(0).mean());
+}
+
 // Nothing of the problems it is asked about enters the training: neither
 // simulations nor gradients are made, and other problems leave the weights.
 TEST(Supervised, SeesOnlyTheLabelledSamples) {

@@ -304,5 +304,41 @@ TEST(BfgsUpdate, NoCurvatureAndNegativeCurvature) {
   EXPECT_LT(y.dot(h * y), 0);  // kept, not repaired
 }
 
+// A long valley: every step helps, ever less.
+TEST(Bfgs, StopsWhereThreeStepsLowerTheLossByTooLittle) {
+  const auto valley = single([](const Vector<double>& x, Vector<double>& g) {
+    g(0) = 4 * std::pow(x(0), 3);
+    return 1 + std::pow(x(0), 4);
+  });
+  const BfgsOptions plain{.gtol = 1e-12},
+      stalling{.gtol = 1e-12, .stall = 1e-3};
+  std::vector<double> losses;
+  Bfgs solver(stalling);
+  drive(solver, valley, Batch<double>::Constant(1, 1, 2), [&](const Bfgs& b) {
+    losses.push_back(b.loss()(0));
+  });
+  const std::size_t last = losses.size() - 1;
+  ASSERT_GT(last, 3U);
+  EXPECT_EQ(solver.status()[0], Status::gtol);
+  EXPECT_LT(losses[last - 3] - losses[last], 1e-3 * losses[last - 3]);
+  EXPECT_GE(losses[last - 4] - losses[last - 1], 1e-3 * losses[last - 4]);
+  const Bfgs whole = solve(valley, Batch<double>::Constant(1, 1, 2), plain);
+  EXPECT_GT(whole.iterations()[0], solver.iterations()[0]);
+}
+
+TEST(Bfgs, SearchesTogetherStayWithinTheirEvaluations) {
+  // Falls at 0 and nowhere else.
+  const auto kink = single([](const Vector<double>& x, Vector<double>& g) {
+    g(0) = x(0) == 1 ? 1 : -1;
+    return 1 + std::abs(x(0) - 1);
+  });
+  for (const int most : {5, 20}) {
+    const Bfgs solver = solve(
+        kink, Batch<double>::Ones(1, 1), {.search = {.max_together = most}});
+    EXPECT_EQ(solver.status()[0], Status::linesearch);
+    EXPECT_EQ(solver.evaluations()[0], 1 + most);
+  }
+}
+
 }  // namespace
 }  // namespace physinv

@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "optimizers/bold_descent.h"
 #include "optimizers/drive.h"
 #include "tests/optimizers/functions.h"
 #include "tests/support/reference.h"
@@ -204,6 +205,55 @@ TEST(GradientDescent, NonFiniteStart) {
     EXPECT_EQ(gd.status()[2], Status::nonfinite);
     EXPECT_EQ(gd.x(), Batch<double>::Ones(2, 3));
   }
+}
+
+/// 1/2 |x|^2, and no number left of -1.
+void bowl(std::span<const Index>,
+          BatchIn<double> x,
+          VectorOut<double> loss,
+          BatchOut<double> gradient) {
+  for (Index i = 0; i < x.cols(); ++i) {
+    loss(i) = x(0, i) < -1 ? kNan : 0.5 * x.col(i).squaredNorm();
+    gradient.col(i) = x.col(i);
+  }
+}
+
+TEST(BoldDescent, WalksByItsRule) {
+  BoldDescent gd({.evaluations = 4});
+  drive(gd, bowl, Batch<double>::Constant(1, 1, 4));
+  // Steps are cut to length a where the gradient is longer than 1.
+  double x = 4, a = 0.1;
+  for (int k = 0; k < 4; ++k, a *= 1.5) x -= a;
+  EXPECT_NEAR(gd.x()(0), x, 1e-14);
+  EXPECT_EQ(gd.iterations()[0], 4);
+  EXPECT_EQ(gd.evaluations()[0], 5);
+  EXPECT_EQ(gd.status()[0], Status::maxiter);
+}
+
+TEST(BoldDescent, HalvesWhatDoesNotHelp) {
+  BoldDescent gd({.first_step = 4, .evaluations = 2});
+  drive(gd, bowl, Batch<double>::Constant(1, 1, 1));
+  // To -3, where there is no number; to -1, no better; then to 0.
+  EXPECT_EQ(gd.x()(0), 1);
+  EXPECT_EQ(gd.iterations()[0], 0);
+  BoldDescent further({.first_step = 4, .evaluations = 3});
+  drive(further, bowl, Batch<double>::Constant(1, 1, 1));
+  EXPECT_EQ(further.x()(0), 0);
+  EXPECT_EQ(further.status()[0], Status::gtol);
+}
+
+TEST(BoldDescent, ProblemsDoNotFeelEachOther) {
+  Batch<double> starts(2, 3);
+  starts << 1, -2, 0, 3, 0.5, 0;
+  BoldDescent together;
+  drive(together, bowl, starts);
+  EXPECT_EQ(together.status()[1], Status::nonfinite);
+  EXPECT_EQ(together.status()[2], Status::gtol);
+  EXPECT_GT(together.skipped_evaluations(), 0U);
+  BoldDescent alone;
+  drive(alone, bowl, starts.leftCols(1));
+  EXPECT_EQ(alone.x(), together.x().leftCols(1));
+  EXPECT_LT(alone.loss()(0), 1e-6);
 }
 
 }  // namespace

@@ -2,10 +2,14 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
+#include <string>
+#include <vector>
 
 #include "suite/cases/jpo/common/metrics.h"
 #include "suite/core/check.h"
 #include "tests/suite/evidence/campaigns.h"
+#include "tests/support/reference.h"
 
 namespace physinv {
 namespace {
@@ -33,6 +37,38 @@ TEST(CompareLosses, StrictIsBitwise) {
   EXPECT_EQ(tol.better, 0.25);
   EXPECT_EQ(tol.equal, 0.5);
   EXPECT_EQ(tol.f(), 0.5);
+}
+
+// The scores of the Navier-Stokes experiment, every entry of their oracle.
+TEST(CompareLosses, AgreesWithTheOracle) {
+  const auto entries = test::reference_entries("jpo-navier-stokes", "scores");
+  ASSERT_FALSE(entries.empty());
+  for (const auto& entry : entries) {
+    const auto &in = entry.at("inputs"), &out = entry.at("outputs");
+    const auto column = [&](const char* key) {
+      const auto values = in.at(key).get<std::vector<double>>();
+      return Vector<double>(Eigen::Map<const Vector<double>>(
+          values.data(), static_cast<Index>(values.size())));
+    };
+    const Vector<double> method = column("method"), bfgs = column("bfgs");
+    const Shares strict = compare_losses(method, bfgs, Equality::strict),
+                 band = compare_losses(method, bfgs, Equality::band);
+    const auto share =
+        decrease_share(column("start"), method, column("refined"));
+    ASSERT_TRUE(share);
+    const std::map<std::string, double> found = {{"better", strict.better},
+                                                 {"equal", strict.equal},
+                                                 {"f", strict.f()},
+                                                 {"better_tol", band.better},
+                                                 {"equal_tol", band.equal},
+                                                 {"network_fraction", *share}};
+    EXPECT_EQ(out.size(), found.size());
+    const double rel = entry.at("tolerance").at("rel");
+    for (const auto& [key, value] : found) {
+      const double expected = out.at(key);
+      EXPECT_NEAR(value, expected, rel * expected) << key;
+    }
+  }
 }
 
 TEST(CompareLosses, NonFiniteIsWorse) {

@@ -58,6 +58,17 @@ std::vector<Built> networks() {
        256,
        256,
        9 * (2 * 4 + 7 * 16 + 2 * 32) + 10 * 12 + 10},
+      // Its first columns are not told.
+      {"hidden_columns",
+       unet({.grid = {16, 8},
+             .scalars_after = 1,
+             .levels = 3,
+             .features = 4,
+             .outputs = 2,
+             .hidden = 6}),
+       129,
+       160,
+       9 * (2 * 4 + 7 * 16 + 2 * 32) + 10 * 12 + 10},
       // Odd extents: 12 x 9, 6 x 4, 3 x 2.
       {"circular_plane",
        unet({.grid = {12, 9},
@@ -119,6 +130,40 @@ TEST(BatchStatistics, AreThoseOfEveryPass) {
   expect_same_bits(every.parameters_bar(out_bar),
                    training.parameters_bar(out_bar));
   expect_same_bits(every.in_bar(out_bar), training.in_bar(out_bar));
+}
+
+// As the whole plane with zeros for what is hidden, in and out.
+TEST(Unet, HidesColumns) {
+  constexpr Index kColumns = 8, kHidden = 3, kRows = 4, kCount = 5;
+  const auto built = [](Index hidden) {
+    return Bench<double>(unet({.grid = {kColumns, kRows},
+                               .levels = 2,
+                               .features = 4,
+                               .outputs = 2,
+                               .hidden = hidden}),
+                         kColumns * kRows,
+                         2 * (kColumns - hidden) * kRows);
+  };
+  auto hiding = built(kHidden), whole = built(0);
+  const Batch<double> in = wavy<double>(kColumns * kRows, kCount);
+  Batch<double> zeroed = in;
+  for (Index p = 0; p < in.rows(); ++p)
+    if (p % kColumns < kHidden) zeroed.row(p).setZero();
+  const auto left = [](const Batch<double>& all) {
+    std::vector<Index> rows;
+    for (Index p = 0; p < all.rows(); ++p)
+      if (p % kColumns >= kHidden) rows.push_back(p);
+    return Batch<double>(all(rows, Eigen::all));
+  };
+  expect_same_bits(hiding.forward(in), left(whole.forward(zeroed)));
+  Batch<double> bar = wavy<double>(2 * kColumns * kRows, kCount, 0.3);
+  for (Index p = 0; p < bar.rows(); ++p)
+    if (p % kColumns < kHidden) bar.row(p).setZero();
+  expect_same_bits(hiding.parameters_bar(left(bar)), whole.parameters_bar(bar));
+  Batch<double> in_bar = whole.in_bar(bar);
+  for (Index p = 0; p < in_bar.rows(); ++p)
+    if (p % kColumns < kHidden) in_bar.row(p).setZero();
+  expect_same_bits(hiding.in_bar(left(bar)), in_bar);
 }
 
 TEST(Unet, HasTheParametersOfThePaperOnAPlane) {

@@ -14,7 +14,8 @@ constexpr std::string_view kBfgs = "bfgs", kSolve = "solve", kRefine = "refine";
 
 bool are_equal(double a, double b, Equality equality) {
   if (equality == Equality::strict || !std::isfinite(b)) return a == b;
-  return std::abs(a - b) <= 1e-6 * std::abs(b);
+  const double wide = equality == Equality::band ? 1e-3 : 1e-6;
+  return std::abs(a - b) <= wide * std::abs(b);
 }
 
 std::optional<double> deviation(std::span<const double> values) {
@@ -42,6 +43,23 @@ Shares compare_losses(VectorIn<double> loss,
   return {static_cast<double>(better) / count,
           static_cast<double>(equal) / count,
           static_cast<double>(loss.size() - better - equal) / count};
+}
+
+std::optional<double> decrease_share(VectorIn<double> start,
+                                     VectorIn<double> fit,
+                                     VectorIn<double> refined) {
+  double sum = 0;
+  Index count = 0;
+  for (Index i = 0; i < fit.size(); ++i) {
+    const double end =
+        std::isfinite(refined(i)) ? std::min(fit(i), refined(i)) : fit(i);
+    const double share = (start(i) - fit(i)) / (start(i) - end);
+    if (!std::isfinite(share)) continue;  // no decrease, or no number
+    sum += share;
+    ++count;
+  }
+  if (count == 0) return {};
+  return sum / static_cast<double>(count);
 }
 
 Solved::Solved(double loss)
@@ -141,20 +159,7 @@ std::optional<double> JpoMetrics::share_of_decrease(std::string_view method,
   if (fit == nullptr || refined == nullptr) return {};
   const Curve& curve = fit->curve;
   if (curve.points() == 0 || curve.iteration.front() != 0) return {};
-  double sum = 0;
-  Index count = 0;
-  for (Index i = 0; i < fit->loss.size(); ++i) {
-    const double start = curve.loss(i, 0), after = fit->loss[i];
-    const double end = std::isfinite(refined->loss[i])
-                           ? std::min(after, refined->loss[i])
-                           : after;
-    const double share = (start - after) / (start - end);
-    if (!std::isfinite(share)) continue;  // no decrease, or no number
-    sum += share;
-    ++count;
-  }
-  if (count == 0) return {};
-  return sum / static_cast<double>(count);
+  return decrease_share(curve.loss.col(0), fit->loss, refined->loss);
 }
 
 std::optional<double> JpoMetrics::solved_share(std::string_view method,

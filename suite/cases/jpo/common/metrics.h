@@ -20,8 +20,9 @@
 
 namespace physinv {
 
-/// When two losses count as equal: bitwise, or |a - b| <= 1e-6 |b|.
-enum class Equality { strict, tol };
+/// When two losses count as equal: bitwise, |a - b| <= 1e-6 |b|, or 1e-3 |b|,
+/// which is nothing where solvers end at kinks.
+enum class Equality { strict, tol, band };
 
 /// Shares of problems on which a method ends below, at or above BFGS.
 struct Shares {
@@ -35,6 +36,13 @@ struct Shares {
 Shares compare_losses(VectorIn<double> loss,
                       VectorIn<double> bfgs,
                       Equality equality);
+
+/// Share of the decrease made before the refinement, mean over problems:
+/// (start - fit) / (start - min(fit, refined)). Problems without decrease are
+/// left out; empty if none is left.
+std::optional<double> decrease_share(VectorIn<double> start,
+                                     VectorIn<double> fit,
+                                     VectorIn<double> refined);
 
 /// When a problem counts as solved. A number means a loss below it; any other
 /// test sees the data of the case, so that it may ask for the truth.
@@ -105,9 +113,7 @@ class JpoMetrics {
                                     bool refined,
                                     Equality equality = Equality::strict) const;
 
-  /// Share of the decrease made by the fit, mean over problems:
-  /// (L_start - L_fit) / (L_start - min(L_fit, L_refined)), L_start the fit's
-  /// curve at iteration 0. Problems without decrease are left out.
+  /// decrease_share of the fit, from its curve at iteration 0.
   std::optional<double> share_of_decrease(std::string_view method,
                                           Index n,
                                           std::uint64_t seed) const;

@@ -19,12 +19,12 @@ std::vector<double> list(const V& row) {
   return {row.begin(), row.end()};
 }
 
-RunValue against_bfgs(double (*share)(const Shares&)) {
+RunValue against_bfgs(double (*share)(const Shares&),
+                      Equality equality = Equality::strict) {
   return [=](const Run& run) -> Value {
     const auto other = bfgs_beside(run);
     if (!other) return {};
-    return share(
-        compare_losses(run.stage->loss, other->stage->loss, Equality::strict));
+    return share(compare_losses(run.stage->loss, other->stage->loss, equality));
   };
 }
 
@@ -109,11 +109,11 @@ std::optional<Run> bfgs_beside(const Run& run) {
   return run.beside(bfgs().in(run.record->info.experiment));
 }
 
-RunValue better() {
-  return against_bfgs([](const Shares& s) { return s.better; });
+RunValue better(Equality equality) {
+  return against_bfgs([](const Shares& s) { return s.better; }, equality);
 }
-RunValue equal() {
-  return against_bfgs([](const Shares& s) { return s.equal; });
+RunValue equal(Equality equality) {
+  return against_bfgs([](const Shares& s) { return s.equal; }, equality);
 }
 RunValue f() {
   return against_bfgs([](const Shares& s) { return s.f(); });
@@ -135,6 +135,15 @@ RunValue decrease_before() {
   return [](const Run& run) -> Value {
     return JpoMetrics(run.evidence->results, run.record->info.experiment)
         .share_of_decrease(run.record->info.method, run.n(), run.seed());
+  };
+}
+
+RunValue decrease_from_prior() {
+  return [](const Run& run) -> Value {
+    const auto fit = before(run), other = bfgs_beside(run);
+    if (!fit || !other || other->stage->curve.points() == 0) return {};
+    return decrease_share(
+        other->stage->curve.loss.col(0), fit->stage->loss, run.stage->loss);
   };
 }
 
@@ -314,12 +323,11 @@ std::vector<Condition> table5(const std::string& method) {
   return row_of_table("table5", "refined ", refined(method));
 }
 
-std::vector<Condition> table3() {
+std::vector<Condition> table3(const RunValue& share) {
   std::vector<Condition> out;
   for (const Index n : {4, 8, 32, 128})
     out.push_back(as_printed(fmt::format("made by the network, n = {}, %", n),
-                             percent(mean(at(refined("jpo"), n),  //
-                                          decrease_before())),
+                             percent(mean(at(refined("jpo"), n), share)),
                              fmt::format("table3/n={}", n)));
   return out;
 }

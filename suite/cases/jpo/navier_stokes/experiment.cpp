@@ -1,5 +1,6 @@
 // JPO paper, Sec. 4 "Incompressible Navier-Stokes", Fig. 6, App. D.4: where was
 // the blast that is seen above the obstacles, and how strong?
+#include <string>
 #include <vector>
 
 #include "problems/navier_stokes/navier_stokes.h"
@@ -13,6 +14,7 @@ namespace physinv {
 namespace {
 
 constexpr Index kFitIterations = 1000;
+const std::vector<std::string> kAll = {"bfgs", "gd", "jpo", "supervised", "na"};
 /// The map has kinks everywhere: BFGS ends where it no longer gets on.
 constexpr BfgsStageOptions kBfgs{
     .iterations = 100, .stall = 1e-5, .search_evaluations = 20};
@@ -22,13 +24,27 @@ const nn::VggOptions kPredictor{.channels = 2,
                                 .features = {16, 32, 32, 32},
                                 .hidden = {64, 64}};
 
+/// The flow below is hidden, before and after.
+const nn::UnetOptions kSurrogate{.grid = {.columns = 64, .rows = 64},
+                                 .channels = 2,
+                                 .scalars_after = 3,
+                                 .outputs = 2,
+                                 .hidden = 32};
+
 std::vector<Method> methods() {
-  return {{"bfgs", {bfgs_solve(kBfgs)}},
-          {"gd", {bold_descent_solve()}},
-          {"jpo",
-           {jpo_fit({.step = AdamOptions{.rate = 1e-3},
-                     .iterations = kFitIterations}),
-            bfgs_refine(kBfgs)}}};
+  return {
+      {"bfgs", {bfgs_solve(kBfgs)}},
+      {"gd", {bold_descent_solve()}},
+      {"jpo",
+       {jpo_fit(
+            {.step = AdamOptions{.rate = 1e-3}, .iterations = kFitIterations}),
+        bfgs_refine(kBfgs)}},
+      {"supervised",
+       {supervised_fit({.iterations = kFitIterations}), bfgs_refine(kBfgs)}},
+      {"na",
+       {surrogate_fit({.iterations = kFitIterations}),
+        neural_adjoint_solve({.fixed_weight = 100}),
+        bfgs_refine(kBfgs)}}};
 }
 
 const std::vector<Index> kSizes = {4, 8, 16, 32, 64, 128};
@@ -39,26 +55,27 @@ const auto kRegistered = register_experiment({
     .source = {.paper = "jpo", .where = "Sec. 4, Fig. 6, App. D.4"},
     .problem = problem<NavierStokes>("navier_stokes"),
     .setting = {.predictor = {{Field::observations}, nn::vgg(kPredictor)},
-                .gtol = 1e-3},
-    .profiles = {{.name = "smoke",
-                  .rows = {{.methods = {"bfgs", "gd", "jpo"},
-                            .n = {4},
-                            .seeds = {0},
-                            .iterations = 5}}},
-                 {.name = "quick",
-                  .rows = {{.methods = {"bfgs", "gd"}, .n = {16}, .seeds = {0}},
-                           {.methods = {"jpo"},
-                            .n = {16},
-                            .seeds = {0},
-                            .iterations = kFitIterations}}},
-                 {.name = "paper",
-                  .rows = {{.methods = {"bfgs", "gd"},
-                            .n = kSizes,
-                            .seeds = first_seeds(4)},
-                           {.methods = {"jpo"},
-                            .n = kSizes,
-                            .seeds = first_seeds(4),
-                            .iterations = kFitIterations}}}},
+                .surrogate = {{Field::given, Field::unknowns},
+                              nn::unet(kSurrogate)},
+                .gtol = 1e-3,
+                .labels = {.per_problem = 8, .bounded = 1}},
+    .profiles =
+        {{.name = "smoke",
+          .rows = {{.methods = kAll, .n = {4}, .seeds = {0}, .iterations = 5}}},
+         {.name = "quick",
+          .rows = {{.methods = {"bfgs", "gd"}, .n = {16}, .seeds = {0}},
+                   {.methods = trained_methods(),
+                    .n = {16},
+                    .seeds = {0},
+                    .iterations = kFitIterations}}},
+         {.name = "paper",
+          .rows = {{.methods = {"bfgs", "gd"},
+                    .n = kSizes,
+                    .seeds = first_seeds(4)},
+                   {.methods = trained_methods(),
+                    .n = kSizes,
+                    .seeds = first_seeds(4),
+                    .iterations = kFitIterations}}}},
     .methods = methods(),
     .looks = kJpoLooks,
 });

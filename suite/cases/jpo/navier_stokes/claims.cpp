@@ -1,0 +1,286 @@
+// What the JPO paper says about Navier-Stokes (Sec. 4, App. D.4), and the
+// ranges that independent programs showed.
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "problems/navier_stokes/navier_stokes.h"
+#include "suite/cases/jpo/common/values.h"
+#include "suite/harness/registry.h"
+
+namespace physinv::jpo {
+namespace {
+
+constexpr const char* kName = "jpo/navier-stokes";
+const Select kJpo = plain("jpo"), kRefined = refined("jpo");
+const Select kSupervised = plain("supervised"),
+             kSupervisedRefined = refined("supervised");
+const Select kAdjoint = plain("na"), kAdjointRefined = refined("na");
+
+Quantity percent_better(const Select& runs) {
+  return percent(mean(runs, better()));
+}
+Quantity mean_loss(const Select& runs) {
+  return mean(runs, of_row(losses(), mean_of));
+}
+
+/// A statistic of the losses over the same of BFGS's.
+RunValue over_bfgs(double (*statistic)(std::vector<double>)) {
+  return [=](const Run& run) -> std::optional<double> {
+    const auto other = bfgs_beside(run);
+    if (!other) return {};
+    return statistic(losses()(run)) / statistic(losses()(*other));
+  };
+}
+double median_of(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t m = values.size();
+  return 0.5 * (values[(m - 1) / 2] + values[m / 2]);
+}
+
+/// Mean loss over BFGS's without the tenth of the problems (at least one) of
+/// the highest loss.
+std::optional<double> without_worst(const Run& run) {
+  const auto other = bfgs_beside(run);
+  if (!other) return {};
+  const auto ours = losses()(run), theirs = losses()(*other);
+  std::vector<std::size_t> order(ours.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return ours[a] < ours[b];
+  });
+  order.resize(order.size() - std::max<std::size_t>(1, order.size() / 10));
+  double a = 0, b = 0;
+  for (const std::size_t i : order) a += ours[i], b += theirs[i];
+  return a / b;
+}
+
+/// 1 where a refined network ends at least 1 % below.
+std::vector<double> stuck(const Run& run) {
+  auto found = losses()(run);
+  for (double& loss : found) loss *= 0.99;
+  std::vector<double> flags(found.size(), 0);
+  for (const Select& method : {kRefined, kSupervisedRefined, kAdjointRefined})
+    if (const auto other = run.beside(method)) {
+      const auto theirs = losses()(*other);
+      for (std::size_t i = 0; i < flags.size(); ++i)
+        if (theirs[i] <= found[i]) flags[i] = 1;
+    }
+  return flags;
+}
+
+std::vector<Claim> paper_claims() {
+  return {
+      {.id = "P1",
+       .origin = Origin::paper,
+       .where = "Sec. 4",
+       .from = "paper",
+       .says = "BFGS converges always, usually within 10, sometimes up to 40 "
+               "iterations",
+       .conditions = {above("share within 10",
+                            share_of_examples(bfgs(),
+                                              largest_sets(iterations()),
+                                              [](double k) { return k <= 10; }),
+                            0.5),
+                      at_most("most iterations",
+                              highest(bfgs(), of_row(iterations(), most_of)),
+                              40)},
+       .note = "With the suite's extra stop at kinks."},
+      {.id = "P2",
+       .origin = Origin::paper,
+       .where = "Sec. 4",
+       .from = "paper",
+       .says = "Many BFGS runs get stuck in local optima",
+       .conditions = {at_least("share where a refined network ends 1 % lower",
+                               share_of_examples(bfgs(), stuck, holds),
+                               0.2)}},
+      {.id = "P3",
+       .origin = Origin::paper,
+       .where = "Sec. 4",
+       .from = "paper",
+       .says = "The mean loss of JPO is above that of BFGS for all n, "
+               "especially for small ones",
+       .conditions = {above("lowest mean over n, over BFGS's",
+                            lowest_mean(kJpo, over_bfgs(mean_of)),
+                            1),
+                      above("the same at n = 4, over that at n = 128",
+                            mean(at(kJpo, 4), over_bfgs(mean_of)),
+                            mean(at(kJpo, 128), over_bfgs(mean_of)))}},
+      {.id = "P4",
+       .origin = Origin::paper,
+       .where = "Sec. 4, App. D.4",
+       .from = "paper",
+       .says = "This comes from about 10 % of the examples",
+       .conditions = {at_most("mean L without the tenth of the highest, over "
+                              "BFGS's on the same problems",
+                              mean(kJpo, without_worst),
+                              1)}},
+      {.id = "P5",
+       .origin = Origin::paper,
+       .where = "Sec. 4",
+       .from = "paper",
+       .says = "JPO is better than BFGS in 66.7 % on average for n > 4",
+       .conditions = {either(
+           about("better, %", percent_better(kJpo.of_sizes(8)), 66.7),
+           about("refined", percent_better(kRefined.of_sizes(8)), 66.7))}},
+      {.id = "P6",
+       .origin = Origin::paper,
+       .where = "Tables 4, 5",
+       .from = "paper",
+       .says = "How often JPO is better than BFGS, and equal",
+       .conditions = joined({table4("jpo"), table5("jpo")})},
+      {.id = "P7",
+       .origin = Origin::paper,
+       .where = "Tables 4, 5",
+       .from = "paper",
+       .says = "The same of supervised learning and the neural adjoint",
+       .conditions = joined({table4("supervised"),
+                             table4("na"),
+                             table5("supervised"),
+                             table5("na")}),
+       .note = "The text has the unrefined neural adjoint lose in 98.2 %."},
+      {.id = "P8",
+       .origin = Origin::paper,
+       .where = "App. D.4",
+       .from = "paper",
+       .says = "Refined supervised learning is better in 64, 73 and 72 % for "
+               "n = 16, 64 and 128",
+       .conditions =
+           {about("n = 16, %", percent_better(at(kSupervisedRefined, 16)), 64),
+            about("n = 64", percent_better(at(kSupervisedRefined, 64)), 73),
+            about("n = 128", percent_better(at(kSupervisedRefined, 128)), 72)}},
+      {.id = "P9",
+       .origin = Origin::paper,
+       .where = "App. D.4",
+       .from = "paper",
+       .says = "Its worst losses are about ten times smaller than the worst of "
+               "BFGS, its total loss much smaller for n >= 16",
+       .conditions = {at_most("highest mean over n >= 16: worst L over BFGS's",
+                              highest_mean(kSupervisedRefined.of_sizes(16),
+                                           over_bfgs(most_of)),
+                              1 / 3.2),
+                      below("mean L over BFGS's",
+                            highest_mean(kSupervisedRefined.of_sizes(16),
+                                         over_bfgs(mean_of)),
+                            1)}},
+      {.id = "P10",
+       .origin = Origin::paper,
+       .where = "App. D.4",
+       .from = "paper",
+       .says = "The refined neural adjoint's mean loss hardly depends on n and "
+               "is slightly below that of BFGS",
+       .conditions = {below("mean L over BFGS's",
+                            mean(kAdjointRefined, over_bfgs(mean_of)),
+                            1),
+                      report("mean L at n = 128 over n = 4",
+                             ratio(mean_loss(at(kAdjointRefined, 128)),
+                                   mean_loss(at(kAdjointRefined, 4))))}},
+      {.id = "P11",
+       .origin = Origin::paper,
+       .where = "App. D.4",
+       .from = "paper",
+       .says = "The unrefined neural adjoint has the highest loss, gains far "
+               "more by refinement than JPO, and nearly always stays within "
+               "the training range",
+       .conditions =
+           {above("mean L over JPO's", mean_loss(kAdjoint), mean_loss(kJpo)),
+            above("over that of supervised learning",
+                  mean_loss(kAdjoint),
+                  mean_loss(kSupervised)),
+            above("decrease by refinement, over JPO's",
+                  difference(mean_loss(kAdjoint), mean_loss(kAdjointRefined)),
+                  difference(mean_loss(kJpo), mean_loss(kRefined))),
+            at_most(
+                "share beyond the training range",
+                share_of_examples(
+                    kAdjoint,
+                    beyond_training(problem<NavierStokes>("navier_stokes"), 0),
+                    holds),
+                0.1)}},
+      {.id = "P12",
+       .origin = Origin::paper,
+       .where = "Table 3",
+       .from = "paper",
+       .says = "Share of the decrease that the network makes",
+       .conditions = table3(decrease_from_prior()),
+       .note = "From the loss at the mean of the truths."}};
+}
+
+std::vector<Claim> suite_claims() {
+  const Select large = kJpo.of_sizes(16);
+  const Select supervised = kSupervised.of_sizes(16),
+               supervised_refined = kSupervisedRefined.of_sizes(16);
+  return {
+      {.id = "R3",
+       .from = "paper",
+       .says = "For n >= 8 JPO is better than BFGS on half of the problems or "
+               "more, and refinement does not lower that",
+       .conditions =
+           {within("better", mean(kJpo.of_sizes(8), better()), 0.50, 0.80),
+            at_least("refined",
+                     mean(kRefined.of_sizes(8), better()),
+                     mean(kJpo.of_sizes(8), better())),
+            report("better, beyond a thousandth",
+                   mean(kJpo.of_sizes(8), better(Equality::band))),
+            report("equal within it",
+                   mean(kJpo.of_sizes(8), equal(Equality::band)))}},
+      {.id = "R4",
+       .from = "quick",
+       .says = "JPO's mean loss is above that of BFGS, its median for n >= 16 "
+               "is not far",
+       .conditions = {above("lowest mean L over BFGS's",
+                            lowest_mean(kJpo, over_bfgs(mean_of)),
+                            1),
+                      at_most("highest median L over BFGS's",
+                              highest_mean(large, over_bfgs(median_of)),
+                              1.3)}},
+      {.id = "R5",
+       .from = "quick",
+       .says = "The network makes nearly all of the decrease",
+       .conditions = {within("share of the decrease",
+                             mean(kRefined, decrease_from_prior()),
+                             0.93,
+                             1.0)}},
+      {.id = "R6",
+       .from = "paper",
+       .says = "For n >= 16 supervised learning is better than BFGS only when "
+               "refined, and then has the lower mean loss",
+       .conditions =
+           {at_most("better", mean(supervised, better()), 0.35),
+            within("refined", mean(supervised_refined, better()), 0.45, 0.75),
+            below("mean L over BFGS's",
+                  mean(supervised_refined, over_bfgs(mean_of)),
+                  1)}},
+      {.id = "R7",
+       .from = "paper",
+       .says = "For n >= 16 the neural adjoint is better only when refined",
+       .conditions = {at_most("better",
+                              mean(kAdjoint.of_sizes(16), better()),
+                              0.08),
+                      within("refined",
+                             mean(kAdjointRefined.of_sizes(16), better()),
+                             0.35,
+                             0.75)}},
+      {.id = "R7b",
+       .from = "quick",
+       .says = "The unrefined neural adjoint has a higher mean loss than BFGS",
+       .conditions = {above("lowest mean L over BFGS's",
+                            lowest_mean(kAdjoint, over_bfgs(mean_of)),
+                            1)}},
+      {.id = "R8",
+       .from = "quick",
+       .says = "Gradient descent is better than BFGS on less than half",
+       .conditions = {below("better", mean(gd(), better()), 0.5)}},
+      {.id = "R9",
+       .from = "quick",
+       .says = "Losses are hardly ever equal to BFGS's bit by bit",
+       .conditions = {
+           at_most("highest mean of any n", highest_mean(kJpo, equal()), 0.02),
+           at_most("refined", highest_mean(kRefined, equal()), 0.02)}}};
+}
+
+const bool kClaims = register_claims(kName, paper_claims()) &&
+                     register_claims(kName, suite_claims());
+
+}  // namespace
+}  // namespace physinv::jpo
