@@ -249,7 +249,7 @@ TEST_P(ConvNetwork, NaNEndsItsSampleAlone) {
   auto b = make<float>();
   Batch<float> in = wavy<float>(b.net->inputs(), 5);
   const Batch<float> out = b.forward(in);
-  in(in.rows() / 2, 2) = std::nanf("");
+  in(in.rows() - 1, 2) = std::nanf("");
   const Batch<float> hit = b.forward(in);
   EXPECT_FALSE(hit.col(2).allFinite());
   for (const Index j : {0, 1, 3, 4})
