@@ -58,7 +58,7 @@ double FrequencyLoss::operator()(VectorIn<double> difference,
   const auto turn = [n](Index a, Index b) {
     return static_cast<std::size_t>((a * b % n + n) % n);
   };
-  double loss = floor();
+  double loss = 0;
   Vector<double> out = Vector<double>::Zero(gradient != nullptr ? n * n : 0);
   Vector<double> re(n), im(n);
   for (Index k = 0; k <= reach; ++k) {

@@ -11,7 +11,7 @@
 /// Unknown x: the initial velocity at the cells' centres (component, i, j).
 /// Given: the marker's density at t = 0 (i, j). Observation y: that at the end.
 /// Index j is the fastest. The loss is one of the densities' long waves
-/// (frequency_loss.h), not half the squared error.
+/// (frequency_loss.h), not half the squared error; the authors add a constant.
 ///
 /// vjp: exact discrete adjoint. The map is continuous and has kinks everywhere
 /// (limiter, cells).

@@ -92,7 +92,7 @@ TEST(MarkerFlow, LossGradientIsTheDerivative) {
   EXPECT_NEAR((at(h) - at(-h)) / (2 * h), bar.cwiseProduct(dot).sum(), 1e-6);
   Vector<double> none(2);
   problem.loss(s.y, s.y, none);
-  EXPECT_DOUBLE_EQ(none(0), 256 * std::sqrt(1e-5));
+  EXPECT_EQ(none, Vector<double>::Zero(2));
 }
 
 template <class T>
