@@ -200,7 +200,7 @@ TEST(SourcesContract, EditsMakeStaleWhoUsesThem) {
         "(hig|numerics/half-inverse).*|matrix/.*/(gn|hig)/.*");
   edits("optimizers/steps/rmsprop.h", "(hig|matrix|physgrad|sip)/.*rmsprop.*");
   edits("suite/nn/unet.cpp",
-        "jpo/(kuramoto|wave).*/na/.*|(sip|matrix)/(heat|poisson).*");
+        "jpo/(kuramoto|wave).*/na/.*|(sip|matrix)/(fluid|heat|poisson).*");
 }
 
 // ---- the compiler's word ----------------------------------------------------

@@ -42,8 +42,7 @@ RunValue vortices_found() {
   return [](const Run& run) -> std::optional<double> {
     const Batch<double>&x = run.stage->x, &truth = run.record->data.x;
     const Vortex vortex;
-    if (x.cols() == 0 || truth.cols() != x.cols()) return {};
-    if (x.rows() != 2 * vortex.grid.cells * vortex.grid.cells) return {};
+    if (x.cols() == 0 || truth.cols() < x.cols()) return {};
     Index found = 0;
     for (Index k = 0; k < x.cols(); ++k) {
       const double wanted = vortex.strength(truth.col(k));
