@@ -21,15 +21,15 @@ const std::vector<MethodLine> kLines = {
 
 constexpr Index kCells = MarkerFlowOptions{}.cells, kPlane = kCells * kCells;
 
-/// Two by two cells as one.
+/// Two by two cells as one, x to the right.
 Panel picture(std::string title, const Vector<double>& f) {
   Panel panel{.title = std::move(title), .field = Field2D{}};
   for (Index a = 1; a < kCells; a += 2) {
     panel.field->x.push_back(double(a));
     panel.field->y.push_back(double(a));
   }
-  for (Index i = 0; i < kCells; i += 2)
-    for (Index j = 0; j < kCells; j += 2) {
+  for (Index j = 0; j < kCells; j += 2)
+    for (Index i = 0; i < kCells; i += 2) {
       const Index at = i * kCells + j;
       panel.field->values.push_back(
           (f(at) + f(at + 1) + f(at + kCells) + f(at + kCells + 1)) / 4);
@@ -37,7 +37,7 @@ Panel picture(std::string title, const Vector<double>& f) {
   return panel;
 }
 
-/// The marker after half of the time, and all of it.
+/// The marker after so many steps.
 Vector<double> carried(const Vector<double>& x,
                        const Vector<double>& marker,
                        Index steps) {
@@ -59,7 +59,7 @@ void add_row(const std::string& of,
   const auto add = [&](const char* what, const Vector<double>& f) {
     figure.panels.push_back(picture(of + ", " + what, f));
   };
-  add("v0 across", x.tail(kPlane)), add("v0 along", x.head(kPlane));
+  add("v0, x", x.head(kPlane)), add("v0, y", x.tail(kPlane));
   add("marker at 1", carried(x, marker, 4));
   add("marker at 2", carried(x, marker, 8));
 }
