@@ -66,6 +66,10 @@ target_compile_options(physinv_narrow INTERFACE
 # Designated initializers name what they set; the rest is default on purpose.
 set(PHYSINV_WARNINGS -Wall -Wextra -Wshadow -Wno-missing-field-initializers)
 
+# The compiler collects its garbage less often: a tenth of its time for a tenth
+# more memory.
+add_compile_options("$<$<CXX_COMPILER_ID:GNU>:SHELL:--param ggc-min-heapsize=400000 --param ggc-min-expand=200>")
+
 if(PHYSINV_SANITIZE)
   add_compile_options(-fsanitize=${PHYSINV_SANITIZE}
     -fno-sanitize-recover=all -fno-omit-frame-pointer)
@@ -76,9 +80,9 @@ if(PHYSINV_SANITIZE)
   add_link_options(-fsanitize=${PHYSINV_SANITIZE})
 endif()
 
-# What everybody includes is read once. Not JSON: its templates wait at the end
-# of every source, a second each. The preset `clang` goes without all this, so
-# that a missing #include cannot hide.
+# What everybody includes is read once, and JSON is compiled once (physinv_json).
+# The preset `clang` goes without all this, so that a missing #include cannot
+# hide.
 option(PHYSINV_PRECOMPILE "Precompiled headers, joined sources" ON)
 function(physinv_precompile name flags)
   add_library(${name} OBJECT ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/precompiled.cpp)
@@ -92,8 +96,12 @@ function(physinv_precompile_headers name)
     <variant> <vector> ${ARGN})
 endfunction()
 if(PHYSINV_PRECOMPILE)
+  add_library(physinv_json OBJECT ${CMAKE_CURRENT_LIST_DIR}/json_once.cpp)
+  target_include_directories(physinv_json PRIVATE ${PROJECT_SOURCE_DIR})
+  target_link_libraries(physinv_json PRIVATE physinv_flags physinv_narrow)
   physinv_precompile(physinv_precompiled physinv_flags)
-  physinv_precompile(physinv_precompiled_narrow "physinv_flags;physinv_narrow")
+  physinv_precompile(physinv_precompiled_narrow "physinv_flags;physinv_narrow"
+    ${PROJECT_SOURCE_DIR}/cmake/json_once.h)
   if(physinv_two_widths)
     physinv_precompile(physinv_precompiled_v3 physinv_flags_v3)
     set_target_properties(physinv_precompiled_v3 PROPERTIES

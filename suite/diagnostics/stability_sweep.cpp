@@ -148,7 +148,8 @@ class StabilitySweep final : public Diagnostic {
   }
   void describe(Options& options) const override {
     std::uint64_t points = 0;
-    for (const auto& [problem, x] : options_.points) {
+    for (const auto& [problem, at] : options_.points) {
+      const Vector<double> x = at();
       points = hash_bytes(&problem, sizeof(problem), points);
       points = hash_bytes(x.data(),
                           sizeof(double) * static_cast<std::size_t>(x.size()),
@@ -163,31 +164,42 @@ class StabilitySweep final : public Diagnostic {
 
   void diagnose(StageRun& run, Outcome& out) const override {
     run.probe.begin();
-    const Index rows = options_.points.front().x.size();
     const auto columns =
         static_cast<Index>(options_.points.size()) * options_.examples;
-    Batch<double> point(rows, columns);
+    Batch<double> point = Batch<double>::Zero(kSweepRows, columns);
     Batch<double> status(kSweepChecks, columns), error(kSweepChecks, columns);
-    Index first = 0;
+    Index first = 0, rows = 0;
     for (std::size_t p = 0; p < options_.problems.size(); ++p) {
-      std::vector<const Vector<double>*> xs;
-      for (const auto& at : options_.points)
-        if (at.problem == static_cast<Index>(p)) xs.push_back(&at.x);
-      const Index count = static_cast<Index>(xs.size()) * options_.examples;
-      for (Index j = 0; j < count; ++j)
-        point.col(first + j) =
-            *xs[static_cast<std::size_t>(j / options_.examples)];
+      const Batch<double> x = points_of(static_cast<Index>(p));
+      const Index count = x.cols(), kept = std::min(kSweepRows, x.rows());
+      if (count == 0) continue;
+      point.block(0, first, kept, count) = x.topRows(kept);
+      rows = std::max(rows, kept);
       check(run,
             options_.problems[p],
-            point.middleCols(first, count),
+            x,
             status.middleCols(first, count),
             error.middleCols(first, count));
       first += count;
     }
+    point.conservativeResize(rows, columns);
     out.arrays = {{"point", point}, {"status", status}, {"error", error}};
   }
 
  private:
+  /// Those of one problem, examples side by side.
+  Batch<double> points_of(Index problem) const {
+    std::vector<Vector<double>> xs;
+    for (const auto& at : options_.points)
+      if (at.problem == problem) xs.push_back(at.x());
+    if (xs.empty()) return {};
+    Batch<double> all(xs.front().size(),
+                      static_cast<Index>(xs.size()) * options_.examples);
+    for (Index j = 0; j < all.cols(); ++j)
+      all.col(j) = xs[static_cast<std::size_t>(j / options_.examples)];
+    return all;
+  }
+
   void check(StageRun& run,
              const ProblemRecipe& recipe,
              const Batch<double>& x,

@@ -16,8 +16,10 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "suite/core/method.h"
@@ -50,9 +52,16 @@ inline constexpr std::array<std::string_view, 4> kSweepStatusNames = {
     "ok", "inaccurate", "diverged", "undecided"};
 
 struct SweepPoint {
-  Index problem = 0;  ///< in the list of problems
-  Vector<double> x;
+  SweepPoint(Index of, const Vector<double>& at)
+      : SweepPoint(of, [at] { return at; }) {}
+  SweepPoint(Index of, std::function<Vector<double>()> at)
+      : problem(of), x(std::move(at)) {}
+
+  Index problem;                      ///< in the list of problems
+  std::function<Vector<double>()> x;  ///< made when it is looked at
 };
+
+inline constexpr Index kSweepRows = 1000;
 
 struct StabilitySweepOptions {
   std::string name = "stability";  ///< of the stage
@@ -65,7 +74,8 @@ struct StabilitySweepOptions {
 };
 
 /// Arrays, one column per point, in their order, examples side by side:
-/// `point` (x), `status` and `error` (kSweepChecks rows; -1: no number).
+/// `point` (x, of its first kSweepRows; 0 below a shorter one), `status` and
+/// `error` (kSweepChecks rows; -1: no number).
 std::shared_ptr<const Stage> stability_sweep(StabilitySweepOptions options);
 
 /// A derivative from central differences d(k) with steps h0 / 4^k.

@@ -153,14 +153,17 @@ TEST_P(ProblemContract, SamplesRepeatAndSmallSetsArePrefixes) {
 TEST_P(ProblemContract, PullbackAgreesWithCentralDifferences) {
   if (!provides(Needs::vjp)) GTEST_SKIP() << "has no vjp";
   Bench<double> b(recipe());
-  if (b.problem->operations() * double(b.problem->shape().unknowns) > 4e10)
+  // Each unknown takes two solves.
+  const Index unknowns = b.problem->shape().unknowns;
+  if (b.problem->operations() * double(unknowns) > 4e10)
     GTEST_SKIP() << "looked at on a smaller grid";
-  const auto l = labelled(24);
-  const Batch<double> y_bar = directions<double>(l.y.rows(), 24, 0.4);
+  const Index count = unknowns > 500 ? 4 : 24;
+  const auto l = labelled(count);
+  const Batch<double> y_bar = directions<double>(l.y.rows(), count, 0.4);
   const Batch<double> x_bar = b.pull(l.x, l.given, y_bar);
   EXPECT_TRUE(same_bits(b.y, l.y)) << "linearize differs from forward";
   Index checked = 0, sloping = 0;
-  for (Index i = 0; i < 24; ++i) {
+  for (Index i = 0; i < count; ++i) {
     const Batch<double> given = l.given.col(i);
     const auto pulled = [&](const Vector<double>& x) {
       return y_bar.col(i).dot(b.forward(x, given).col(0));
@@ -176,8 +179,8 @@ TEST_P(ProblemContract, PullbackAgreesWithCentralDifferences) {
     sloping += x_bar.col(i).norm() > 0;
     EXPECT_TRUE(Comparator(1e-5, 1e-7)(x_bar.col(i), g)) << "sample " << i;
   }
-  EXPECT_GE(checked, 12);
-  EXPECT_GE(sloping, 6);
+  EXPECT_GE(checked, count / 2);
+  EXPECT_GE(sloping, count / 4);
 }
 
 TEST_P(ProblemContract, PullbackIsTheAdjointOfTheDirectionalDerivative) {

@@ -160,7 +160,7 @@ TEST(StabilitySweep, ExamplesStandSideBySideAndOptionsTellPointsApart) {
   EXPECT_EQ(found.at("status").row(0),
             Eigen::RowVector4d(
                 double(kOk), double(kOk), double(kGone), double(kGone)));
-  options.points.back().x(1) = 1e-9;
+  options.points.back() = {1, Eigen::Vector2d(1, 1e-9)};
   EXPECT_NE(stability_sweep(options)->options(), stage->options());
 }
 

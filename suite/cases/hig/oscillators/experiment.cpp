@@ -106,7 +106,7 @@ namespace {
 
 constexpr Index kStates = 4096;
 // Updates; the paper trains for an hour, this many by its Table 3.
-constexpr Index kQuick = 320, kStandard = 2000, kPaper = 24'700;
+constexpr Index kQuick = 320, kStandard = 2000, kPaperSteps = 24'700;
 
 constexpr RowOf row{.n = kStates};
 
@@ -155,15 +155,15 @@ const auto kRegistered = register_experiment({
                                1024),
                            row(groups({"grid-"}), {0}, 4000)}},
                  {.name = "paper",
-                  .rows = {row({"hig"}, kFive, kPaper),
-                           row({"gn"}, first_seeds(8), kPaper),
+                  .rows = {row({"hig"}, kFive, kPaperSteps),
+                           row({"gn"}, first_seeds(8), kPaperSteps),
                            row({"adam"}, kFive, 44'400),
                            row(kOthers, kFive, 44'400),
-                           row(groups({"hig-b", "gn-b"}), kFive, kPaper),
+                           row(groups({"hig-b", "gn-b"}), kFive, kPaperSteps),
                            row(groups({"adam-b"}), kFive, 44'400),
                            row(groups({"kappa-", "beta-", "hig-tau", "gn-tau"}),
                                kFive,
-                               kPaper),
+                               kPaperSteps),
                            row(groups({"grid-"}), {0}, 44'400)}}},
     .methods = methods(),
 });

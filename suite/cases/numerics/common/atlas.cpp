@@ -23,7 +23,9 @@ std::shared_ptr<const Stage> stage_of(const Sweep& sweep) {
     for (const double x : sweep.x.values)
       options.points.push_back(
           {sweep.problems.size() == 1 ? 0 : static_cast<Index>(k),
-           sweep.point(x, sweep.y.values[k])});
+           [point = sweep.point, x, y = sweep.y.values[k]] {
+             return point(x, y);
+           }});
   return stability_sweep(options);
 }
 

@@ -159,7 +159,7 @@ Table times(const Results& results, const char* experiment) {
   return table;
 }
 
-Section scaling(const Results& results, const Published&) {
+Section scaling_page(const Results& results, const Published&) {
   return {.tables = {times(results, kScaling)},
           .figures = {landscapes(results), trajectories(results)}};
 }
@@ -257,13 +257,13 @@ Table ends(const Results& results, const Published& published) {
   return table;
 }
 
-Section comparison(const Results& results, const Published& published) {
+Section comparison_page(const Results& results, const Published& published) {
   return {.tables = {ends(results, published), times(results, kComparison)},
           .figures = {both_spaces(results), rates(results), rules(results)}};
 }
 
-const bool kReports = register_report(kScaling, scaling) &&
-                      register_report(kComparison, comparison);
+const bool kReports = register_report(kScaling, scaling_page) &&
+                      register_report(kComparison, comparison_page);
 
 }  // namespace
 }  // namespace physinv::scaling

@@ -26,7 +26,7 @@ RunValue with_floor(RunValue loss) {
     const auto value = loss(run);
     if (!value) return {};
     const MarkerFlowOptions o;
-    return *value + double(o.cells * o.cells) * std::sqrt(o.threshold);
+    return *value + FrequencyLoss(kCells, o.falloff, o.threshold).floor();
   };
 }
 RunValue loss_left() {
@@ -41,7 +41,7 @@ Quantity worst_ratio(const char* a, const char* b, const RunValue& value) {
 RunValue vortices_found() {
   return [](const Run& run) -> std::optional<double> {
     const Batch<double>&x = run.stage->x, &truth = run.record->data.x;
-    const Vortex vortex;
+    const Vortex vortex{.grid = {.cells = kCells}};
     if (x.cols() == 0 || truth.cols() < x.cols()) return {};
     Index found = 0;
     for (Index k = 0; k < x.cols(); ++k) {

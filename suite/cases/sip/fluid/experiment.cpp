@@ -16,7 +16,7 @@
 namespace physinv::fluid_case {
 namespace {
 
-constexpr Index kCells = 64, kTest = 64, kUpdates = 1000;
+constexpr Index kTest = 64, kUpdates = 1000;
 
 Method trained(std::string id, Index batch, SignalRecipe signal) {
   return {.id = std::move(id),

@@ -19,7 +19,7 @@ const std::vector<MethodLine> kLines = {
     {"sip-b4", "SIP, batch 4", Hue::orange},
     {"adam-b4", "Adam, batch 4", Hue::purple}};
 
-constexpr Index kCells = MarkerFlowOptions{}.cells, kPlane = kCells * kCells;
+constexpr Index kPlane = kCells * kCells;
 
 /// Two by two cells as one, x to the right.
 Panel picture(std::string title, const Vector<double>& f) {
@@ -41,7 +41,7 @@ Panel picture(std::string title, const Vector<double>& f) {
 Vector<double> carried(const Vector<double>& x,
                        const Vector<double>& marker,
                        Index steps) {
-  MarkerFlowOptions o;
+  MarkerFlowOptions o{.cells = kCells};
   o.end_time *= double(steps) / double(o.steps);
   o.steps = steps;
   Batch<double> y(kPlane, 1);
@@ -81,7 +81,7 @@ Figure pictures(const Variant& variant, const Results& results) {
   return figure;
 }
 
-Section report(const Variant& variant, const Results& results) {
+Section section_of(const Variant& variant, const Results& results) {
   Section section{.experiment = variant.experiment,
                   .tables = {loss_table(results, variant.experiment, kLines)}};
   LearningCurves curves(results, section);
@@ -100,7 +100,7 @@ const bool kReports = [] {
   for (const Variant& v : {kCode, kTimed})
     all = register_report(v.experiment,
                           [v](const Results& r, const Published&) {
-                            return report(v, r);
+                            return section_of(v, r);
                           }) &&
           all;
   return all;

@@ -2,7 +2,11 @@
 /// the authors' code and by the time itself.
 #pragma once
 
+#include "suite/core/batch.h"
+
 namespace physinv::fluid_case {
+
+inline constexpr Index kCells = 64;  ///< per side
 
 struct Variant {
   const char *experiment, *title;

@@ -20,7 +20,7 @@
 namespace physinv::heat {
 namespace {
 
-constexpr Index kSide = 64, kPaper = 10'000, kStudy = 2'000;
+constexpr Index kSide = 64, kPaperSteps = 10'000, kStudy = 2'000;
 
 enum class Push { solver, inverse };
 
@@ -33,7 +33,7 @@ Method trained(std::string id,
       .id = std::move(id),
       .chain = {train({.rule = std::move(rule),
                        .batch = cell.batch,
-                       .iterations = kPaper,
+                       .iterations = kPaperSteps,
                        .gradient_scale = double(cell.batch),
                        .fresh = cell.set == 0,
                        .set = cell.set,
@@ -109,7 +109,7 @@ std::vector<Row> paper() {
           studies.push_back(id);
   return {row({"gd", "lbfgsb"}, 128, 1, 1000),
           row({"inverse-physics"}, 128, 1, 100),
-          row({"sip", "adam", "sgd", "adahessian"}, 128, 3, kPaper),
+          row({"sip", "adam", "sgd", "adahessian"}, 128, 3, kPaperSteps),
           row({"hf"}, 128, 1, 30),
           row({"hf-b4"}, 128, 1, 9),
           row({"sip-b8", "adam-b8"}, 128, 3, 120),

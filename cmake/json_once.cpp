@@ -1,0 +1,4 @@
+#include "cmake/json_once.h"
+
+#define NOTHING
+PHYSINV_JSON_ONCE(NOTHING);
