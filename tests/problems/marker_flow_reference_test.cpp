@@ -222,14 +222,22 @@ struct SceneTolerance {
     const Json& t = entry.at("tolerance");
     expect_keys(t,
                 {"loss_rel", "grad_rel_to_max", "probe_abs", "sip_rel", "why"});
-    loss = single ? 1e-4 : t.at("loss_rel").get<double>();
-    gradient = single ? 5e-2 : t.at("grad_rel_to_max").get<double>();
-    probe = single ? 1e-3 : t.at("probe_abs").get<double>();
-    sip = single ? 1e-4 : t.at("sip_rel").get<double>();
-    exact = single ? 1e-4 : 1e-9;
-    length = single ? 2e-2 : 1e-7;
+    loss = single ? 1e-5 : t.at("loss_rel").get<double>();
+    gradient = single ? 1e-2 : t.at("grad_rel_to_max").get<double>();
+    sum = single ? 5e-2 : gradient;
+    length = single ? 1e-3 : 1e-7;
+    probe = single ? 2e-5 : t.at("probe_abs").get<double>();
+    mass = single ? 1e-3 : probe;
+    sip = single ? 1e-5 : t.at("sip_rel").get<double>();
+    vortex = single ? 1e-3 : sip;
+    exact = single ? 1e-5 : 1e-9;
+    kept = single ? 1e-5 : 1e-12;
+    divergence = single ? 1e-5 : 1e-11;
   }
-  double loss, gradient, probe, sip, exact, length;
+  double loss, gradient, sum, length;  ///< of the gradient
+  double probe, mass;                  ///< of the marker, its sum
+  double sip, vortex;                  ///< the correction is a small difference
+  double exact, kept, divergence;
 };
 
 /// The problem at a scene's guess.
@@ -299,8 +307,7 @@ void check_scene_in(const Json& entry) {
   };
   place(scene.given.template cast<double>(), want.at("com0"));
   place(target, want.at("com_target"));
-  close(
-      target.sum(), want.at("target_sum"), is.probe * (sizeof(T) == 4 ? 9 : 1));
+  close(target.sum(), want.at("target_sum"), is.mass);
   at_probes(want.at("target_probes"),
             [&](Index a, const Json& p) { close(target(a), p[2], is.probe); });
   at_probes(want.at("final_probes"),
@@ -317,14 +324,8 @@ void check_scene_in(const Json& entry) {
     close(g(kPlane + a), p[3], is.gradient * most);
   });
   relative(g.norm(), want.at("grad_l2"), is.length);
-  // A sum of 4096 numbers, in float without their last digits.
-  const double sums = sizeof(T) == 4 ? 10 : 1;
-  close(g.topRows(kPlane).sum(),
-        want.at("grad_sum")[0],
-        sums * is.gradient * most);
-  close(g.bottomRows(kPlane).sum(),
-        want.at("grad_sum")[1],
-        sums * is.gradient * most);
+  close(g.topRows(kPlane).sum(), want.at("grad_sum")[0], is.sum * most);
+  close(g.bottomRows(kPlane).sum(), want.at("grad_sum")[1], is.sum * most);
 
   StepBench<T> bench(kCells, 0.125);
   bench.set(3, x.topRows(kPlane).reshaped(kCells, kCells).transpose());
@@ -336,10 +337,9 @@ void check_scene_in(const Json& entry) {
     const double before = bench.energy(0);
     bench.flow.advance(bench.step(), bench.state(6), bench.memory.data());
     for (int k = 0; k < 3; ++k) std::swap(bench.planes[k], bench.planes[6 + k]);
-    EXPECT_NEAR(
-        bench.energy(0), before, (sizeof(T) == 4 ? 1e-5 : 1e-12) * before);
+    EXPECT_NEAR(bench.energy(0), before, is.kept * before);
     const double fastest = bench.get(0).cwiseAbs().maxCoeff();
-    EXPECT_LE(bench.divergence(0), (sizeof(T) == 4 ? 1e-5 : 1e-11) * fastest);
+    EXPECT_LE(bench.divergence(0), is.divergence * fastest);
   }
   relative(bench.energy(0), want.at("final_energy"), is.exact);
   const Batch<double> off = x - scene.truth.template cast<double>();
@@ -357,12 +357,10 @@ void check_scene_in(const Json& entry) {
            (vortex(0, 32, 40) - vortex(0, 32, 23));
   };
   relative(vortex.strength(x), sip.at("s_initial"), is.sip);
-  relative(corrected(found),
-           sip.at("s_corrected"),
-           is.sip * (sizeof(T) == 4 ? 50 : 1));
+  relative(corrected(found), sip.at("s_corrected"), is.vortex);
   relative(corrected(scene.inverse(true)),
            sip.at("s_corrected_timed_path"),
-           is.sip * (sizeof(T) == 4 ? 50 : 1));
+           is.vortex);
   const double s = corrected(found);
   for (int c = 0; c < 2; ++c)
     relative(found(c * kPlane) - s * vortex(c, 0, 0),
