@@ -1,5 +1,5 @@
 /// A forward pass takes about 7 million operations per sample, the gradient
-/// about 2.5 times as many; the counter is seconds per sample.
+/// about 3 times as many; the counter is seconds per sample.
 #include "problems/kernels.h"
 
 #include "problems/marker_flow/marker_flow.h"

@@ -26,6 +26,10 @@
 ///
 /// `sample` draws a fill fraction for every example; the authors draw one for
 /// each batch.
+///
+/// Speed: eight samples side by side. A sample's forward pass takes 0.5 ms in
+/// float and 0.6 in double, its gradient 1.6 and 2.1 (PyTorch in float, 16 of
+/// them together: 9 to 11, 14 to 16).
 #pragma once
 
 #include <array>
