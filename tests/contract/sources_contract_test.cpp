@@ -195,6 +195,7 @@ TEST(SourcesContract, EditsMakeStaleWhoUsesThem) {
         "(jpo|matrix|numerics)/billiards/.*");
   edits("problems/kuramoto_sivashinsky/etdrk2.cpp",
         "(jpo|matrix|numerics)/kuramoto-sivashinsky.*");
+  edits("problems/marker_flow/frequency_loss.cpp", "sip/fluid.*");
   edits("optimizers/bfgs.cpp", "jpo/.* (solve|refine)");
   edits("optimizers/half_inverse/tridiagonalize.cpp",
         "(hig|numerics/half-inverse).*|matrix/.*/(gn|hig)/.*");
