@@ -16,11 +16,15 @@ void add_times(double c, const double* from, double* to, Index count) {
 /// Plain sums over the modes, one direction after the other: fields are few.
 struct Transform {
   explicit Transform(Index size)
-      : n(size), cosine(n), sine(n), re(n, n), im(n, n) {
+      : n(size), cosine(n, n), sine(n, n), re(n, n), im(n, n) {
     for (Index j = 0; j < n; ++j) {
       const double angle = 2 * std::numbers::pi * double(j) / double(n);
-      cosine(j) = std::cos(angle), sine(j) = std::sin(angle);
+      cosine(j, 1) = std::cos(angle), sine(j, 1) = std::sin(angle);
     }
+    for (Index k = 0; k < n; ++k)
+      for (Index j = 0; j < n; ++j) {
+        cosine(j, k) = cosine(j * k % n, 1), sine(j, k) = sine(j * k % n, 1);
+      }
   }
 
   /// Real part of the unnormalised inverse transform; arrays by rows.
@@ -28,25 +32,22 @@ struct Transform {
     re.setZero(), im.setZero();  // columns here are rows i, over ky
     for (Index i = 0; i < n; ++i)
       for (Index k = 0; k < n; ++k) {
-        const double c = cosine(i * k % n), s = sine(i * k % n);
+        const double c = cosine(i, k), s = sine(i, k);
         add_times(c, a + k * n, re.col(i).data(), n);
         add_times(-s, b + k * n, re.col(i).data(), n);
         add_times(s, a + k * n, im.col(i).data(), n);
         add_times(c, b + k * n, im.col(i).data(), n);
       }
+    std::fill_n(out, n * n, 0.0);
     for (Index i = 0; i < n; ++i)
-      for (Index j = 0; j < n; ++j) {
-        double sum = 0;
-        for (Index l = 0; l < n; ++l) {
-          sum = std::fma(cosine(j * l % n), re(l, i), sum);
-          sum = std::fma(-sine(j * l % n), im(l, i), sum);
-        }
-        out[i * n + j] = sum;
+      for (Index l = 0; l < n; ++l) {
+        add_times(re(l, i), cosine.col(l).data(), out + i * n, n);
+        add_times(-im(l, i), sine.col(l).data(), out + i * n, n);
       }
   }
 
   Index n;
-  Vector<double> cosine, sine;
+  Batch<double> cosine, sine;  ///< of j k / n turns
   Batch<double> re, im;
 };
 

@@ -4,73 +4,20 @@
 #include <fmt/ranges.h>
 
 #include <cmath>
-#include <limits>
 
 #include "problems/fluid/noise.h"
+#include "problems/fluid/samples.h"
 #include "problems/navier_stokes/blast.h"
 #include "problems/navier_stokes/box_flow.h"
 #include "suite/core/check.h"
-#include "suite/core/threads.h"
 
 namespace physinv {
 namespace {
 
 enum Slot : std::size_t { kUnknowns, kGiven, kStates, kDecisions, kScratch };
 
-/// Samples first .. first+count-1, one per lane; the last one fills the rest.
-/// Lanes whose input is lost compute with zeros.
-template <class T>
-struct Block {
-  using P = fluid::Samples8<T>;
-  static constexpr Index kWidth = fluid::kWidth<T>;
-
-  Index first, count;
-  bool lost[kWidth] = {};
-
-  Block(Index begin, BatchIn<T> x, BatchIn<T> given)
-      : first(begin), count(std::min(kWidth, x.cols() - begin)) {
-    const auto safe = [](const auto& v) {
-      return (v.array().abs() <= T(1e6)).all();  // not so for NaN
-    };
-    for (Index k = 0; k < kWidth; ++k)
-      lost[k] = !safe(x.col(column(k))) || !safe(given.col(column(k)));
-  }
-
-  Index column(Index lane) const { return first + std::min(lane, count - 1); }
-  P load(BatchIn<T> batch, Index row) const {
-    P p{};
-    for (Index k = 0; k < kWidth; ++k)
-      if (!lost[k]) p[k] = batch(row, column(k));
-    return p;
-  }
-  void store(P p, BatchOut<T>& batch, Index row) const {
-    for (Index k = 0; k < count; ++k)
-      batch(row, first + k) =
-          lost[k] ? std::numeric_limits<T>::quiet_NaN() : p[k];
-  }
-};
-
-/// f(first, thread) for every register of samples.
-template <class T, class F>
-void for_registers(Threads* threads, Index samples, F&& f) {
-  constexpr Index W = fluid::kWidth<T>;
-  for_blocks(threads, (samples + W - 1) / W, [&](Index b, int thread) {
-    f(b * W, thread);
-  });
-}
-
-/// The same with a workspace of the thread's own.
-template <class T, class F>
-void for_registers(Workspace& work, Index samples, F&& f) {
-  const bool threaded =
-      work.threads() != nullptr && work.threads()->count() > 1;
-  if (threaded) work.of_thread(0);  // makes all of them, before they run
-  for_registers<T>(work.threads(), samples, [&](Index first, int thread) {
-    Workspace& mine = threaded ? work.of_thread(thread) : work;
-    const Workspace::Scope scope(mine);
-    f(first, mine);
-  });
-}
+using fluid::Block;
+using fluid::for_registers;
 
 }  // namespace
 

@@ -25,6 +25,7 @@ const std::map<std::string, std::array<Index, 2>> kParameters = {
     {"jpo/kuramoto-sivashinsky", {59650, 13121}},
     {"jpo/robotic-arm", {33924, 33922}},
     {"jpo/wave-packet", {13921, 13073}},
+    {"sip/fluid", {49570, 0}},
     {"sip/heat", {37697, 0}},
     {"sip/wave-packet", {17489, 0}}};
 

@@ -195,12 +195,14 @@ TEST(SourcesContract, EditsMakeStaleWhoUsesThem) {
         "(jpo|matrix|numerics)/billiards/.*");
   edits("problems/kuramoto_sivashinsky/etdrk2.cpp",
         "(jpo|matrix|numerics)/kuramoto-sivashinsky.*");
+  edits("problems/marker_flow/frequency_loss.cpp", "sip/fluid.*");
   edits("optimizers/bfgs.cpp", "jpo/.* (solve|refine)");
   edits("optimizers/half_inverse/tridiagonalize.cpp",
         "(hig|numerics/half-inverse).*|matrix/.*/(gn|hig)/.*");
   edits("optimizers/steps/rmsprop.h", "(hig|matrix|physgrad|sip)/.*rmsprop.*");
-  edits("suite/nn/unet.cpp",
-        "jpo/(kuramoto|navier|wave).*/na/.*|(sip|matrix)/(heat|poisson).*");
+  edits(
+      "suite/nn/unet.cpp",
+      "jpo/(kuramoto|navier|wave).*/na/.*|(sip|matrix)/(fluid|heat|poisson).*");
 }
 
 // ---- the compiler's word ----------------------------------------------------

@@ -30,6 +30,8 @@ const std::vector<Claim> kClaims = {
      .conditions = {update(
                         "Poisson, batch 8", "sip/poisson", "sip-b8", "adam-b8"),
                     update("heat, batch 8", "sip/heat", "sip-b8", "adam-b8"),
+                    update(
+                        "fluid, batch 16", "sip/fluid", "sip-b16", "adam-b16"),
                     update("sine", "sip/sine-xi32-phi45", "sip", "adam")},
      .note = "The paper's batches are of 128, its clock that of a GPU.",
      .gates = false},

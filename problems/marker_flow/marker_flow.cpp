@@ -1,0 +1,460 @@
+#include "problems/marker_flow/marker_flow.h"
+
+#include <fmt/format.h>
+
+#include "problems/fluid/noise.h"
+#include "problems/fluid/samples.h"
+#include "problems/marker_flow/periodic_flow.h"
+#include "suite/core/check.h"
+
+namespace physinv {
+namespace {
+
+enum Slot : std::size_t { kUnknowns, kGiven, kStates, kDecisions, kScratch };
+
+using fluid::Block;
+using fluid::for_registers;
+
+}  // namespace
+
+template <class T>
+struct MarkerFlow<T>::Kernel {
+  using P = fluid::Samples8<T>;
+  static constexpr Index W = fluid::kWidth<T>;
+
+  explicit Kernel(const Options& o)
+      : options(o),
+        flow(o.cells, o.end_time / double(o.steps) / (o.box / double(o.cells))),
+        loss(o.cells, o.falloff, o.threshold),
+        plane(flow.plane().size()),
+        vortex{{o.cells, o.box}, o.width, o.moment},
+        swirl(2 * o.cells * o.cells) {
+    for (Index i = 0, a = 0; i < o.cells; ++i) {
+      away.push_back(static_cast<T>(vortex.from_middle(i)));
+      for (Index j = 0; j < o.cells; ++j, ++a)
+        for (int c = 0; c < 2; ++c)
+          swirl(c * o.cells * o.cells + a) = static_cast<T>(vortex(c, i, j));
+    }
+  }
+
+  const Options options;
+  const PeriodicFlow<P> flow;
+  const FrequencyLoss loss;
+  const Index plane;  ///< packs of a plane
+  const Vortex vortex;
+  Vector<T> swirl;      ///< W
+  std::vector<T> away;  ///< r along an axis
+
+  /// A step's part of the memory: u, v, m before it, s of them, two energies.
+  Index state_packs() const { return 6 * plane + 2; }
+  Index state_bytes() const { return 3 * flow.decisions(); }
+  Index scratch_packs() const { return fluid::kScratchPlanes * plane; }
+
+  MarkerStep<P> step(P* states, std::uint8_t* decisions, Index t) const {
+    P* const p = states + t * state_packs();
+    MarkerStep<P> s{p,
+                    p + plane,
+                    p + 2 * plane,
+                    p + 3 * plane,
+                    p + 4 * plane,
+                    p + 5 * plane,
+                    p + 6 * plane};
+    if (decisions != nullptr) {
+      s.u_held = decisions + t * state_bytes();
+      s.v_held = s.u_held + flow.decisions();
+      s.m_held = s.v_held + flow.decisions();
+    }
+    return s;
+  }
+  static MarkerState<P> fields(const MarkerStep<P>& s) {
+    return {s.u, s.v, s.m};
+  }
+
+  /// Rows of a batch from `first` to a plane with its padding, and back.
+  void load(const Block<T>& block, BatchIn<T> batch, Index first, P* f) const {
+    Index row = first;
+    flow.plane().for_points(
+        [&](Index, Index, Index at) { f[at] = block.load(batch, row++); });
+    wrap(flow.plane(), f);
+  }
+  void store(const Block<T>& block,
+             const P* f,
+             BatchOut<T>& batch,
+             Index first) const {
+    Index row = first;
+    flow.plane().for_points(
+        [&](Index, Index, Index at) { block.store(f[at], batch, row++); });
+  }
+
+  /// The first state.
+  void begin(const Block<T>& block,
+             BatchIn<T> x,
+             BatchIn<T> given,
+             const MarkerStep<P>& s,
+             P* scratch) const {
+    load(block, x, 0, s.u_back);
+    load(block, x, options.cells * options.cells, s.v_back);
+    load(block, given, 0, s.m);
+    flow.to_faces(s.u_back, s.v_back, s.u, s.v, scratch);
+  }
+
+  /// Runs on from state 0: states[t] are those before step t, the last ones
+  /// follow. All are in use at once with decisions, else two in turn. Calls
+  /// seen(t, state) after step t.
+  template <class F>
+  void run(P* states, std::uint8_t* decisions, P* scratch, F&& seen) const {
+    const bool keep = decisions != nullptr;
+    for (Index t = 0; t < options.steps; ++t) {
+      const auto s = step(states, decisions, keep ? t : t % 2);
+      const auto next = step(states, nullptr, keep ? t + 1 : (t + 1) % 2);
+      flow.advance(s, fields(next), scratch);
+      seen(t, next);
+    }
+  }
+  void run(P* states, std::uint8_t* decisions, P* scratch) const {
+    run(states, decisions, scratch, [](Index, const MarkerStep<P>&) {});
+  }
+
+  /// From the last states of a kept run back to the unknowns; `bars` are six
+  /// planes.
+  void retreat(const Block<T>& block,
+               BatchIn<T> y_bar,
+               P* states,
+               std::uint8_t* decisions,
+               P* bars,
+               P* scratch,
+               BatchOut<T>& x_bar) const {
+    MarkerState<P> bar{bars, bars + plane, bars + 2 * plane},
+        out{bars + 3 * plane, bars + 4 * plane, bars + 5 * plane};
+    std::fill_n(bars, 2 * plane, P{});
+    load(block, y_bar, 0, bar.m);
+    for (Index t = options.steps; t-- > 0;) {
+      const auto now = fields(step(states, nullptr, t + 1));
+      flow.retreat(step(states, decisions, t), now, bar, out, scratch);
+      std::swap(bar, out);
+    }
+    flow.from_faces(bar.u, bar.v, out.u, out.v, scratch);
+    store(block, out.u, x_bar, 0);
+    store(block, out.v, x_bar, options.cells * options.cells);
+  }
+
+  // ---- the way back ---------------------------------------------------------
+
+  struct Place {
+    P x, y;  ///< from the middle
+    friend Place operator-(const Place& a, const Place& b) {
+      return {a.x - b.x, a.y - b.y};
+    }
+    Place operator*(T times) const { return {times * x, times * y}; }
+  };
+  static P cross(const Place& a, const Place& b) {
+    return fma_lanes(a.x, b.y, -(a.y * b.x));
+  }
+
+  Place centre_of_mass(const P* m) const {
+    const auto& g = flow.plane();
+    P mass{};
+    Place moment{};
+    for (Index i = 0; i < g.rows; ++i) {
+      P row{}, along{};
+      for (Index j = 0; j < g.columns; ++j) {
+        const P here = m[g.at(i, j)];
+        row = row + here;
+        along = fma_lanes(here, P{} + away[std::size_t(j)], along);
+      }
+      mass = mass + row, moment.y = moment.y + along;
+      moment.x = fma_lanes(row, P{} + away[std::size_t(i)], moment.x);
+    }
+    const auto some = mass != P{};
+    const P safe = select(some, mass, T(1) - P{});
+    return {select(some, moment.x / safe, P{}),
+            select(some, moment.y / safe, P{})};
+  }
+
+  /// Vortex::strength of centred velocities.
+  P strength(const P* x, const P* y) const {
+    const auto& g = flow.plane();
+    P sum{};
+    for (Index i = 0; i < g.rows; ++i) {
+      P row{}, across{};
+      for (Index j = 0; j < g.columns; ++j) {
+        row = row + y[g.at(i, j)];
+        across = fma_lanes(x[g.at(i, j)], P{} + away[std::size_t(j)], across);
+      }
+      sum = fma_lanes(row, P{} + away[std::size_t(i)], sum - across);
+    }
+    return sum *
+           static_cast<T>(1 / (double(g.rows * g.columns) * vortex.moment));
+  }
+
+  /// `states` are two, `seen` steps + 1 places.
+  void invert(const Block<T>& block,
+              BatchIn<T> y,
+              BatchIn<T> given,
+              BatchIn<T> guess,
+              P* states,
+              Place* seen,
+              P* scratch,
+              BatchOut<T>& x) const {
+    const Index steps = options.steps, cells = options.cells * options.cells;
+    const auto first = step(states, nullptr, 0);
+    begin(block, guess, given, first, scratch);
+    const P held = strength(first.u_back, first.v_back);
+    seen[0] = centre_of_mass(first.m);
+    run(states, nullptr, scratch, [&](Index t, const MarkerStep<P>& s) {
+      seen[t + 1] = centre_of_mass(s.m);
+    });
+    const auto duration = static_cast<T>(options.end_time);
+    const Place uniform = seen[0] * (-1 / duration);
+
+    const auto apart = [&](Index n, const P* m, T time) {
+      const Place q = centre_of_mass(m);
+      return cross(seen[n] - q, q - uniform * time);
+    };
+    MarkerStep<P> s = step(states, nullptr, steps % 2),
+                  next = step(states, nullptr, (steps + 1) % 2);
+    for (Index a = 0; a < plane; ++a) s.u[a] = -s.u[a], s.v[a] = -s.v[a];
+    load(block, y, 0, s.m);
+    P sum = apart(steps, s.m, duration);
+    const T dt = options.timed_path ? duration / T(steps) : T(1);
+    for (Index n = steps; n-- > 0;) {
+      flow.advance(s, fields(next), scratch);
+      std::swap(s, next);
+      sum = sum + apart(n, s.m, T(n) * dt);
+    }
+    const P corrected =
+        fma_lanes(P{} + static_cast<T>(options.correction / double(steps + 1)),
+                  sum,
+                  held);
+    for (Index row = 0; row < 2 * cells; ++row)
+      block.store(
+          fma_lanes(
+              corrected, P{} + swirl(row), row < cells ? uniform.x : uniform.y),
+          x,
+          row);
+  }
+};
+
+Options describe(const MarkerFlowOptions& o) {
+  Options all = {{"cells", fmt::format("{}", o.cells)},
+                 {"box", fmt::format("{}", o.box)},
+                 {"end_time", fmt::format("{}", o.end_time)},
+                 {"steps", fmt::format("{}", o.steps)},
+                 {"falloff", fmt::format("{}", o.falloff)},
+                 {"threshold", fmt::format("{}", o.threshold)},
+                 {"fill", fmt::format("{},{}", o.fill[0], o.fill[1])},
+                 {"half", fmt::format("{}", o.half)},
+                 {"vortex", fmt::format("{}", o.vortex)},
+                 {"width", fmt::format("{}", o.width)},
+                 {"moment", fmt::format("{}", o.moment)},
+                 {"noise", fmt::format("{}", o.noise)},
+                 {"correction", fmt::format("{}", o.correction)}};
+  if (o.timed_path) all.push_back({"timed_path", "1"});
+  return all;
+}
+
+template <class T>
+MarkerFlow<T>::MarkerFlow(const Options& o) : options_(o) {
+  SUITE_CHECK(o.cells >= 4 && (o.cells & (o.cells - 1)) == 0,
+              "cells must be a power of two, at least 4");
+  SUITE_CHECK(o.box > 0 && o.end_time > 0 && o.steps > 0,
+              "box, end time and number of steps must be positive");
+  SUITE_CHECK(0 < o.fill[0] && o.fill[0] <= o.fill[1] && o.fill[1] <= 1,
+              "the marker fills a part of the square");
+  SUITE_CHECK(o.half > 0 && o.width > 0 && o.moment > 0 && o.noise >= 0,
+              "sizes of the marker, the vortex and the noise");
+  kernel_ = std::make_shared<const Kernel>(o);
+}
+
+template <class T>
+Samples<double> MarkerFlow<T>::sample(Index first,
+                                      Index count,
+                                      const Rng& rng) const {
+  const auto& o = options_;
+  const Index cells = o.cells * o.cells;
+  const Vortex turning = vortex();
+  // The generator's waves are shorter than box / sqrt(10) in its own unit, 10.
+  const auto cut = static_cast<Index>(std::floor(o.box * o.box / 1000));
+  Samples<double> out;
+  out.x.resize(2 * cells, count), out.y.resize(cells, count);
+  out.given.resize(cells, count);
+  for (Index k = 0; k < count; ++k) {
+    Stream stream = rng.child(static_cast<std::uint64_t>(first + k)).stream();
+    const auto anywhere = [&] {
+      return stream.uniform(o.box / 4, o.box * 3 / 4);
+    };
+    do {  // a square without any marker is possible, and of no use
+      const MarkerPatch patch{{anywhere(), anywhere()},
+                              o.half,
+                              stream.uniform(o.fill[0], o.fill[1])};
+      const Vector<double> noise =
+          fluid::smooth_noise({.cells = o.cells, .cut = cut}, stream);
+      out.given.col(k) = marker(grid(), patch, noise);
+    } while (out.given.col(k).isZero(0));
+    const Point mass = centre_of_mass(grid(), out.given.col(k));
+    const double s = stream.uniform(-o.vortex, o.vortex);
+    const Vector<double> small = fluid::smooth_noise(
+        {.cells = o.cells, .components = 2, .cut = cut, .deviation = o.noise},
+        stream);
+    for (int c = 0; c < 2; ++c) {
+      const double uniform =
+          (0.5 * o.box - (c == 0 ? mass.x : mass.y)) / o.end_time;
+      for (Index i = 0; i < o.cells; ++i)
+        for (Index j = 0; j < o.cells; ++j) {
+          const Index row = c * cells + i * o.cells + j;
+          out.x(row, k) = std::fma(s, turning(c, i, j), uniform) + small(row);
+        }
+    }
+  }
+  Workspace work;
+  MarkerFlow<double>(o).forward(out.x, out.given, out.y, work);
+  return out;
+}
+
+template <class T>
+void MarkerFlow<T>::check_sizes(BatchIn<T> x,
+                                BatchIn<T> given,
+                                Index observed) const {
+  check_size(x, shape().unknowns, observed);
+  check_size(given, shape().given, observed);
+}
+
+template <class T>
+void MarkerFlow<T>::forward(BatchIn<T> x,
+                            BatchIn<T> given,
+                            BatchOut<T> y,
+                            Workspace& work) const {
+  const Kernel& k = *kernel_;
+  using P = typename Kernel::P;
+  check_sizes(x, given, y.cols());
+  check_size(y, shape().observations, x.cols());
+  for_registers<T>(work, x.cols(), [&](Index first, Workspace& mine) {
+    const Block<T> block(first, x, given);
+    const Index states = 2 * k.state_packs();
+    auto memory = mine.take<T>(k.W, states + k.scratch_packs());
+    P* const p = reinterpret_cast<P*>(memory.data());
+    k.begin(block, x, given, k.step(p, nullptr, 0), p + states);
+    k.run(p, nullptr, p + states);
+    k.store(block, k.step(p, nullptr, options_.steps % 2).m, y, 0);
+  });
+}
+
+template <class T>
+void MarkerFlow<T>::loss(BatchIn<T> y,
+                         BatchIn<T> target,
+                         VectorOut<double> loss) const {
+  for (Index i = 0; i < y.cols(); ++i)
+    loss(i) = kernel_->loss((y.col(i) - target.col(i)).template cast<double>(),
+                            nullptr);
+}
+
+template <class T>
+void MarkerFlow<T>::loss_gradient(BatchIn<T> y,
+                                  BatchIn<T> target,
+                                  BatchOut<T> y_bar) const {
+  Vector<double> bar(y.rows());
+  for (Index i = 0; i < y.cols(); ++i) {
+    kernel_->loss((y.col(i) - target.col(i)).template cast<double>(),
+                  bar.data());
+    y_bar.col(i) = bar.template cast<T>();
+  }
+}
+
+template <class T>
+void MarkerFlow<T>::linearize(BatchIn<T> x,
+                              BatchIn<T> given,
+                              BatchOut<T> y,
+                              Tape& tape) const {
+  const Kernel& k = *kernel_;
+  using P = typename Kernel::P;
+  check_sizes(x, given, y.cols());
+  check_size(y, shape().observations, x.cols());
+  tape.slot<T>(kUnknowns, x.rows(), x.cols()) = x;
+  tape.slot<T>(kGiven, given.rows(), x.cols()) = given;
+  const Index blocks = (x.cols() + k.W - 1) / k.W;
+  const Index threads = tape.threads() != nullptr ? tape.threads()->count() : 1;
+  auto states = tape.slot<T>(
+      kStates, (options_.steps + 1) * k.state_packs() * k.W, blocks);
+  auto held = tape.slot<std::uint8_t>(
+      kDecisions, options_.steps * k.state_bytes(), blocks);
+  auto scratch = tape.slot<T>(kScratch, k.scratch_packs() * k.W, threads);
+  for_registers<T>(tape.threads(), x.cols(), [&](Index first, int thread) {
+    const Block<T> block(first, x, given);
+    P* const s = reinterpret_cast<P*>(scratch.col(thread).data());
+    P* const p = reinterpret_cast<P*>(states.col(first / k.W).data());
+    k.begin(block, x, given, k.step(p, nullptr, 0), s);
+    k.run(p, held.col(first / k.W).data(), s);
+    k.store(block, k.step(p, nullptr, options_.steps).m, y, 0);
+  });
+}
+
+template <class T>
+void MarkerFlow<T>::pullback(const Tape& tape,
+                             BatchIn<T> y_bar,
+                             BatchOut<T> x_bar,
+                             Workspace& work) const {
+  const Kernel& k = *kernel_;
+  using P = typename Kernel::P;
+  const auto x = tape.view<T>(kUnknowns);
+  const auto given = tape.view<T>(kGiven);
+  auto states = tape.view<T>(kStates);
+  auto held = tape.view<std::uint8_t>(kDecisions);
+  check_size(y_bar, shape().observations, x.cols());
+  check_size(x_bar, shape().unknowns, x.cols());
+  for_registers<T>(work, x.cols(), [&](Index first, Workspace& mine) {
+    const Block<T> block(first, x, given);
+    const Index bars = 6 * k.plane;
+    auto memory = mine.take<T>(k.W, bars + k.scratch_packs());
+    P* const m = reinterpret_cast<P*>(memory.data());
+    k.retreat(block,
+              y_bar,
+              reinterpret_cast<P*>(states.col(first / k.W).data()),
+              held.col(first / k.W).data(),
+              m,
+              m + bars,
+              x_bar);
+  });
+}
+
+template <class T>
+void MarkerFlow<T>::invert(BatchIn<T> y,
+                           BatchIn<T> given,
+                           BatchIn<T> x_guess,
+                           BatchOut<T> x,
+                           Workspace& work) const {
+  const Kernel& k = *kernel_;
+  using P = typename Kernel::P;
+  check_sizes(x_guess, given, x.cols());
+  check_size(y, shape().observations, x.cols());
+  for_registers<T>(work, x.cols(), [&](Index first, Workspace& mine) {
+    const Block<T> block(first, x_guess, given, y);
+    const Index states = 2 * k.state_packs(), places = 2 * options_.steps + 2;
+    auto memory = mine.take<T>(k.W, states + places + k.scratch_packs());
+    P* const p = reinterpret_cast<P*>(memory.data());
+    k.invert(block,
+             y,
+             given,
+             x_guess,
+             p,
+             reinterpret_cast<typename Kernel::Place*>(p + states),
+             p + states + places,
+             x);
+  });
+}
+
+template <class T>
+Index MarkerFlow<T>::gradient_block() const {
+  return fluid::kWidth<T>;
+}
+
+/// Counted from the formulas: 48 per cell for each of three advections, and
+/// some 70 for the two transforms of the projection and the rest.
+template <class T>
+double MarkerFlow<T>::operations() const {
+  return double(options_.steps) * double(options_.cells * options_.cells) * 220;
+}
+
+template class MarkerFlow<float>;
+template class MarkerFlow<double>;
+
+}  // namespace physinv

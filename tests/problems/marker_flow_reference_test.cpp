@@ -1,0 +1,418 @@
+// The vectors of sip-fluid that are physics; kernels of flow, the network and
+// Adam have tests of their own.
+#include <numbers>
+
+#include "problems/marker_flow/marker_flow.h"
+#include "problems/marker_flow/periodic_flow.h"
+#include "tests/support/mac_cormack_reference.h"
+
+namespace physinv::test {
+namespace {
+
+const std::string kFluidId = "sip-fluid";
+
+void expect_keys(const Json& values, const std::set<std::string>& known) {
+  std::set<std::string> found;
+  for (const auto& [key, value] : values.items()) found.insert(key);
+  EXPECT_EQ(found, known);
+}
+
+/// A list of rows as it lies in memory.
+Vector<double> field_of(const Json& list) {
+  return Batch<double>(rows(list).transpose()).reshaped();
+}
+
+/// One number, by the file's tolerance.
+void expect_one(const Json& entry,
+                double got,
+                const Json& expected,
+                const char* what) {
+  const FileTolerance<double> near(entry);
+  near(Vector<double>::Constant(1, got),
+       Vector<double>::Constant(1, number(expected)),
+       what);
+}
+
+/// Planes of a step and of what it makes, and back.
+template <class T>
+struct StepBench {
+  using P = fluid::Samples8<T>;
+
+  StepBench(Index cells, double lambda)
+      : flow(cells, lambda), memory(fluid::kScratchPlanes * size()) {
+    for (auto& f : planes) f = blank<P>(flow.plane());
+    for (auto& h : held) h.resize(std::size_t(flow.decisions()));
+  }
+  std::size_t size() const { return std::size_t(flow.plane().size()); }
+  void set(int plane, const Batch<double>& a) {
+    planes[plane] = to_plane<P>(flow.plane(), a);
+    wrap(flow.plane(), planes[plane].data());
+  }
+  MarkerStep<P> step() {
+    return {at(0),
+            at(1),
+            at(2),
+            at(3),
+            at(4),
+            at(5),
+            energies,
+            held[0].data(),
+            held[1].data(),
+            held[2].data()};
+  }
+  MarkerState<P> state(int first) {
+    return {at(first), at(first + 1), at(first + 2)};
+  }
+  P* at(int plane) { return planes[plane].data(); }
+  Batch<double> get(int plane) const {
+    return from_plane(flow.plane(), planes[plane]);
+  }
+  double energy(int first) {
+    return double(flow.energy(at(first), at(first + 1))[0]);
+  }
+  double divergence(int first) {
+    const Batch<double> u = get(first), v = get(first + 1);
+    const Index n = u.rows();
+    double most = 0;
+    for (Index i = 0; i < n; ++i)
+      for (Index j = 0; j < n; ++j)
+        most = std::max(most,
+                        std::abs(u((i + 1) % n, j) - u(i, j) +
+                                 v(i, (j + 1) % n) - v(i, j)));
+    return most;
+  }
+
+  PeriodicFlow<P> flow;
+  Packs<P> planes[15], memory;
+  P energies[2];
+  std::vector<std::uint8_t> held[3];
+};
+
+template <class T>
+void check_step_in(const Json& entry) {
+  const Json &in = entry.at("inputs"), &want = entry.at("outputs");
+  const FileTolerance<T> near(entry, 1e-4);
+  StepBench<T> bench(Index(in.at("m").size()), in.at("lambda_"));
+  const char* names[] = {"u", "v", "m"};
+  for (int k = 0; k < 3; ++k) {
+    bench.set(k, rows(in.at(names[k])));
+    bench.planes[9 + k] = to_plane<fluid::Samples8<T>>(
+        bench.flow.plane(), rows(in.at(std::string("cot_") + names[k])));
+  }
+  bench.flow.advance(bench.step(), bench.state(6), bench.memory.data());
+  EXPECT_NEAR(bench.energy(0),
+              want.at("energy_in").template get<double>(),
+              near.abs + 10 * near.rel);
+  EXPECT_NEAR(bench.energy(6),
+              want.at("energy_out").template get<double>(),
+              near.abs + 10 * near.rel);
+  bench.flow.retreat(bench.step(),
+                     bench.state(6),
+                     bench.state(9),
+                     bench.state(12),
+                     bench.memory.data());
+  for (int k = 0; k < 3; ++k) {
+    near(bench.get(6 + k), rows(want.at(names[k])), names[k]);
+    const std::string bar = std::string(names[k]) + "_bar";
+    near(bench.get(12 + k), rows(want.at(bar)), bar.c_str());
+  }
+}
+
+void check_step(const Json& entry) {
+  expect_keys(
+      entry.at("outputs"),
+      {"m", "u", "v", "energy_in", "energy_out", "m_bar", "u_bar", "v_bar"});
+  check_step_in<double>(entry);
+  check_step_in<float>(entry);
+}
+
+void check_loss(const Json& entry) {
+  const Json &in = entry.at("inputs"), &want = entry.at("outputs");
+  expect_keys(want, {"value", "floor", "grad"});
+  const FileTolerance<double> near(entry);
+  const Vector<double> difference = field_of(in.at("difference"));
+  const auto cells = Index(in.at("difference").size());
+  const FrequencyLoss loss(cells, in.at("falloff"), in.at("threshold"));
+  Vector<double> gradient(difference.size());
+  expect_one(entry,
+             loss(difference, gradient.data()) + loss.floor(),
+             want.at("value"),
+             "value");
+  expect_one(entry, loss.floor(), want.at("floor"), "floor");
+  near(gradient, field_of(want.at("grad")), "grad");
+}
+
+void check_vortex(const Json& entry) {
+  const Json& want = entry.at("outputs");
+  expect_keys(want, {"value", "swirl_probes", "loss_weight_probes"});
+  const auto one = [&](auto... all) { expect_one(entry, all...); };
+  const MarkerFlow<double> problem;
+  const Vortex vortex = problem.vortex();
+  Vector<double> field(2 * 4096);
+  for (Index row = 0; row < field.size(); ++row)
+    field(row) = vortex(int(row / 4096), row % 4096 / 64, row % 64);
+  one(vortex.strength(field) * vortex.moment, want.at("value"), "moment");
+  for (const Json& probe : want.at("swirl_probes"))
+    for (int c = 0; c < 2; ++c)
+      one(vortex(c, probe[0], probe[1]), probe[std::size_t(2 + c)], "swirl");
+  const auto& o = problem.options();
+  const FrequencyLoss loss(o.cells, o.falloff, o.threshold);
+  const auto wave = [](Index k) { return k < 32 ? k : k - 64; };
+  for (const Json& probe : want.at("loss_weight_probes"))
+    one(loss.weight(wave(probe[0]), wave(probe[1])), probe[2], "weight");
+}
+
+void check_discretise(const Json& entry) {
+  const Json &in = entry.at("inputs"), &want = entry.at("outputs");
+  expect_keys(want, {"rank_count", "marker", "com"});
+  const Index n = in.at("N");
+  const MarkerGrid grid{n, 2.0 * double(n)};
+  const double fill = in.at("fill_fraction");
+  EXPECT_EQ(marked_cells(grid, fill), want.at("rank_count").get<Index>());
+  const MarkerPatch patch{
+      {in.at("centre")[0], in.at("centre")[1]}, in.at("half"), fill};
+  const Vector<double> found = marker(grid, patch, field_of(in.at("noise")));
+  EXPECT_EQ(found, field_of(want.at("marker")));
+  const Point mass = centre_of_mass(grid, found);
+  const FileTolerance<double> near(entry);
+  near(Eigen::Vector2d(mass.x, mass.y), vector(want.at("com")), "com");
+}
+
+// ---- scenes -----------------------------------------------------------------
+
+constexpr Index kCells = 64, kPlane = kCells * kCells;
+
+Vector<double> scene_marker(const Json& rule) {
+  const MarkerGrid grid;
+  const auto of = [&](const char* key) { return rule.at(key).get<double>(); };
+  Vector<double> m = Vector<double>::Zero(kPlane);
+  for (Index i = 0; i < kCells; ++i)
+    for (Index j = 0; j < kCells; ++j) {
+      const double x = grid.at(i), y = grid.at(j), p = of("phase");
+      const bool near = std::abs(x - of("cx")) <= of("half") &&
+                        std::abs(y - of("cy")) <= of("half");
+      const double wave = std::sin(of("a") * x + p) * std::cos(of("b") * y - p);
+      m(i * kCells + j) = near && wave > of("threshold") ? 1 : 0;
+    }
+  return m;
+}
+
+Vector<double> scene_velocity(const Json& rule) {
+  const Vortex vortex;
+  Vector<double> c(2 * kPlane);
+  for (Index row = 0; row < c.size(); ++row) {
+    const Index k = row / kPlane, i = row % kPlane / kCells, j = row % kCells;
+    c(row) = rule.at("uniform")[std::size_t(k)].get<double>() +
+             rule.at("vortex").get<double>() * vortex(int(k), i, j);
+    for (const Json& mode : rule.at("modes")) {
+      if (mode[0].get<Index>() != k) continue;
+      const double turns = mode[2].get<double>() * (double(i) + 0.5) +
+                           mode[3].get<double>() * (double(j) + 0.5);
+      c(row) +=
+          mode[1].get<double>() *
+          std::sin(2 * std::numbers::pi * turns / 64 + mode[4].get<double>());
+    }
+  }
+  return c;
+}
+
+/// Tolerances of a scene: the file's in double, float's own otherwise.
+struct SceneTolerance {
+  SceneTolerance(const Json& entry, bool single) {
+    const Json& t = entry.at("tolerance");
+    expect_keys(t,
+                {"loss_rel", "grad_rel_to_max", "probe_abs", "sip_rel", "why"});
+    loss = single ? 1e-5 : t.at("loss_rel").get<double>();
+    gradient = single ? 1e-2 : t.at("grad_rel_to_max").get<double>();
+    sum = single ? 5e-2 : gradient;
+    length = single ? 1e-3 : 1e-7;
+    probe = single ? 2e-5 : t.at("probe_abs").get<double>();
+    mass = single ? 1e-3 : probe;
+    sip = single ? 1e-5 : t.at("sip_rel").get<double>();
+    vortex = single ? 1e-3 : sip;
+    exact = single ? 1e-5 : 1e-9;
+    kept = single ? 1e-5 : 1e-12;
+    divergence = single ? 1e-5 : 1e-11;
+  }
+  double loss, gradient, sum, length;  ///< of the gradient
+  double probe, mass;                  ///< of the marker, its sum
+  double sip, vortex;                  ///< the correction is a small difference
+  double exact, kept, divergence;
+};
+
+/// The problem at a scene's guess.
+template <class T>
+struct Scene {
+  explicit Scene(const Json& in)
+      : given(scene_marker(in.at("marker")).cast<T>()),
+        truth(scene_velocity(in.at("truth")).cast<T>()),
+        guess(scene_velocity(in.at("guess")).cast<T>()) {
+    target = at(truth);
+    y = Batch<T>(kPlane, 1), gradient = guess, bar = y;
+    problem.linearize(guess, given, y, tape);
+    problem.loss(y, target, loss);
+    problem.loss_gradient(y, target, bar);
+    problem.pullback(tape, bar, gradient, work);
+  }
+  Batch<T> at(const Batch<T>& x, Index steps = 8) {
+    Batch<T> end(kPlane, 1);
+    const MarkerFlow<T> until(
+        {.end_time = 0.25 * double(steps), .steps = steps});
+    until.forward(x, given, end, work);
+    return end;
+  }
+  Vector<double> inverse(bool timed) {
+    Batch<T> x(guess);
+    const MarkerFlow<T> other({.timed_path = timed});
+    other.invert(target, given, guess, x, work);
+    return x.template cast<double>();
+  }
+
+  MarkerFlow<T> problem;
+  Batch<T> given, truth, guess, target, y, bar, gradient;
+  Vector<double> loss = Vector<double>(1);
+  Workspace work;
+  Tape tape;
+};
+
+Vector<double> mass_of(const Batch<double>& m) {
+  const Point p = centre_of_mass({}, m.col(0));
+  return Eigen::Vector2d(p.x, p.y);
+}
+
+template <class T>
+void check_scene_in(const Json& entry) {
+  const Json &want = entry.at("outputs"), &sip = want.at("sip");
+  const SceneTolerance is(entry, sizeof(T) == 4);
+  Scene<T> scene(entry.at("inputs"));
+  const auto close = [](double got, const Json& expected, double by) {
+    EXPECT_LE(std::abs(got - expected.get<double>()), by) << expected;
+  };
+  const auto relative = [&](double got, const Json& expected, double by) {
+    close(got, expected, by * std::abs(expected.get<double>()));
+  };
+  const auto at_probes = [&](const Json& probes, auto&& check) {
+    for (const Json& p : probes)
+      check(p[0].get<Index>() * kCells + p[1].get<Index>(), p);
+  };
+  const Batch<double> target = scene.target.template cast<double>(),
+                      seen = scene.y.template cast<double>(),
+                      g = scene.gradient.template cast<double>(),
+                      x = scene.guess.template cast<double>();
+  EXPECT_EQ(double(scene.given.sum()), want.at("cells_set").get<double>());
+  const auto place = [&](const Batch<double>& m, const Json& expected) {
+    const Vector<double> got = mass_of(m);
+    for (int c = 0; c < 2; ++c)
+      close(got(c), expected[std::size_t(c)], is.probe);
+  };
+  place(scene.given.template cast<double>(), want.at("com0"));
+  place(target, want.at("com_target"));
+  close(target.sum(), want.at("target_sum"), is.mass);
+  at_probes(want.at("target_probes"),
+            [&](Index a, const Json& p) { close(target(a), p[2], is.probe); });
+  at_probes(want.at("final_probes"),
+            [&](Index a, const Json& p) { close(seen(a), p[2], is.probe); });
+  for (Index t = 1; t <= 8; ++t)
+    place(scene.at(scene.guess, t).template cast<double>(),
+          want.at("com_forward")[std::size_t(t - 1)]);
+  const double floor = FrequencyLoss(kCells, 80, 1e-5).floor();
+  relative(scene.loss(0) + floor, want.at("loss"), is.loss);
+
+  const double most = g.cwiseAbs().maxCoeff();
+  at_probes(want.at("grad_probes"), [&](Index a, const Json& p) {
+    close(g(a), p[2], is.gradient * most);
+    close(g(kPlane + a), p[3], is.gradient * most);
+  });
+  relative(g.norm(), want.at("grad_l2"), is.length);
+  close(g.topRows(kPlane).sum(), want.at("grad_sum")[0], is.sum * most);
+  close(g.bottomRows(kPlane).sum(), want.at("grad_sum")[1], is.sum * most);
+
+  StepBench<T> bench(kCells, 0.125);
+  bench.set(3, x.topRows(kPlane).reshaped(kCells, kCells).transpose());
+  bench.set(4, x.bottomRows(kPlane).reshaped(kCells, kCells).transpose());
+  bench.flow.to_faces(
+      bench.at(3), bench.at(4), bench.at(0), bench.at(1), bench.memory.data());
+  relative(bench.energy(0), want.at("final_energy"), is.exact);
+  for (int t = 0; t < 8; ++t) {
+    const double before = bench.energy(0);
+    bench.flow.advance(bench.step(), bench.state(6), bench.memory.data());
+    for (int k = 0; k < 3; ++k) std::swap(bench.planes[k], bench.planes[6 + k]);
+    EXPECT_NEAR(bench.energy(0), before, is.kept * before);
+    const double fastest = bench.get(0).cwiseAbs().maxCoeff();
+    EXPECT_LE(bench.divergence(0), is.divergence * fastest);
+  }
+  relative(bench.energy(0), want.at("final_energy"), is.exact);
+  const Batch<double> off = x - scene.truth.template cast<double>();
+  relative((off.topRows(kPlane).array().square() +
+            off.bottomRows(kPlane).array().square())
+               .sqrt()
+               .mean(),
+           want.at("x_mae"),
+           is.exact);
+
+  const Vortex vortex;
+  const Vector<double> found = scene.inverse(false);
+  const auto corrected = [&](const Vector<double>& c) {  // uniform + s1 W
+    return (c(32 * kCells + 40) - c(32 * kCells + 23)) /
+           (vortex(0, 32, 40) - vortex(0, 32, 23));
+  };
+  relative(vortex.strength(x), sip.at("s_initial"), is.sip);
+  relative(corrected(found), sip.at("s_corrected"), is.vortex);
+  relative(corrected(scene.inverse(true)),
+           sip.at("s_corrected_timed_path"),
+           is.vortex);
+  const double s = corrected(found);
+  for (int c = 0; c < 2; ++c)
+    relative(found(c * kPlane) - s * vortex(c, 0, 0),
+             sip.at("uniform")[std::size_t(c)],
+             is.sip);
+  at_probes(sip.at("target_probes"), [&](Index a, const Json& p) {
+    relative(found(a), p[2], is.sip);
+    relative(found(kPlane + a), p[3], is.sip);
+  });
+  relative(0.5 * (x - found).squaredNorm(), sip.at("nn_loss"), is.sip);
+}
+
+void check_scene(const Json& entry) {
+  expect_keys(entry.at("outputs"),
+              {"cells_set",
+               "com0",
+               "com_target",
+               "target_sum",
+               "target_probes",
+               "loss",
+               "com_forward",
+               "final_probes",
+               "grad_probes",
+               "grad_l2",
+               "grad_sum",
+               "final_energy",
+               "x_mae",
+               "sip"});
+  expect_keys(entry.at("outputs").at("sip"),
+              {"s_initial",
+               "s_corrected",
+               "s_corrected_timed_path",
+               "uniform",
+               "target_probes",
+               "nn_loss"});
+  {
+    SCOPED_TRACE("double");
+    check_scene_in<double>(entry);
+  }
+  SCOPED_TRACE("float");
+  check_scene_in<float>(entry);
+}
+
+TEST(MarkerFlowReference, Physics) {
+  check_entries(kFluidId,
+                {{"step", check_step},
+                 {"frequency_loss", check_loss},
+                 {"vortex_moment", check_vortex},
+                 {"scene", check_scene},
+                 {"discretise", check_discretise}},
+                {"mac_cormack_periodic", "stagger_project", "u_net", "adam"});
+}
+
+}  // namespace
+}  // namespace physinv::test
