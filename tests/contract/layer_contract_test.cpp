@@ -23,6 +23,7 @@ const std::map<std::string, std::array<Index, 2>> kParameters = {
     {"hig/quantum-dipole-cnn", {21984, 0}},
     {"jpo/billiards", {37506, 37506}},
     {"jpo/kuramoto-sivashinsky", {59650, 13121}},
+    {"jpo/navier-stokes", {44723, 38290}},
     {"jpo/robotic-arm", {33924, 33922}},
     {"jpo/wave-packet", {13921, 13073}},
     {"sip/fluid", {49570, 0}},

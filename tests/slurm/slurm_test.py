@@ -90,14 +90,24 @@ def submit(directory, *more):
     return p.stdout.split(":")[0].removeprefix("job ")
 
 
+def queue_is_empty():
+    p = subprocess.run(["squeue", "-h"], text=True, capture_output=True,
+                       timeout=60)
+    return p.returncode == 0 and not p.stdout.strip()
+
+
 def wait_merged(directory):
-    return wait_for("an empty queue", lambda: slurm("squeue", "-h") == "")
+    # Twice: a controller at work may say nothing for a moment.
+    return wait_for("an empty queue", lambda: queue_is_empty() and (
+        time.sleep(0.5) or queue_is_empty()))
 
 
 def complete(directory, alone, what):
     status = bench("status", directory)
     check(status.returncode == 0,
           f"{what}: {status.stdout.splitlines()[-1]} {status.stderr.strip()}")
+    if status.returncode != 0:
+        print(logs(directory), flush=True)
     merged = os.path.join(directory, "merged")
     if os.path.exists(merged):
         check(numbers(merged) == alone, f"{what}: the bits of one machine")

@@ -1,0 +1,86 @@
+// A marker in a periodic flow: any speed, end time and grid, and what its time
+// steps cost.
+#include <cmath>
+#include <numbers>
+
+#include "problems/marker_flow/marker_flow.h"
+#include "suite/cases/numerics/common/atlas.h"
+
+namespace physinv {
+namespace {
+
+ProblemRecipe of_steps(Index steps) {
+  return problem<MarkerFlow>("marker_flow", {.cells = 32, .steps = steps});
+}
+
+/// Two waves for each component, of which no two neighbours have one value: the
+/// limiter would stand on a kink there.
+Vector<double> flow(double speed, Index cells) {
+  const Index plane = cells * cells;
+  return Vector<double>::NullaryExpr(2 * plane, [=](Index at) {
+    const double turn = 2 * std::numbers::pi / double(cells);
+    const double i = turn * double(at % plane / cells),
+                 j = turn * double(at % cells);
+    return speed * (at < plane
+                        ? std::cos(2 * i + j + 0.2) + 0.3 * std::sin(3 * i - j)
+                        : std::sin(i + j + 0.5) + 0.4 * std::cos(2 * j - i));
+  });
+}
+
+/// At speed 1 on 64 cells a step crosses an eighth of a cell. Air at rest is a
+/// kink of the limiter, where the adjoint is that of one side; beyond
+/// speed 100 kinks stand closer than differences can step.
+const SweepAxis kSpeeds{"speed", {1e-3, 0.1, 1, 10, 100, 1e7}, true};
+const SweepAxis kGrids{"cells a side", {16, 32, 64, 128}, true};
+const SweepAxis kTimes{"end time", {0.25, 1, 4, 16}, true};
+
+const SweepAxis kTimeSteps{"time step", {1, 0.5, 0.25, 0.125}, true};
+
+const bool kRegistered = register_atlas(
+    {.name = "numerics/marker-flow",
+     .title = "Numerics of a marker in a flow",
+     .source = {.paper = "sip", .where = "App. B.4"},
+     .sweeps = {{.id = "grids",
+                 .title = "Speed and grid, one step",
+                 .x = kSpeeds,
+                 .y = kGrids,
+                 .point =
+                     [](double speed, double cells) {
+                       return flow(speed, static_cast<Index>(cells));
+                     },
+                 .problems = along(kGrids,
+                                   [](double cells) {
+                                     return problem<MarkerFlow>(
+                                         "marker_flow",
+                                         {.cells = static_cast<Index>(cells),
+                                          .end_time = 0.25,
+                                          .steps = 1});
+                                   })},
+                {.id = "times",
+                 .title = "Speed and end time",
+                 .x = kSpeeds,
+                 .y = kTimes,
+                 .point = [](double speed, double) { return flow(speed, 32); },
+                 .problems = along(kTimes,
+                                   [](double end_time) {
+                                     return problem<MarkerFlow>(
+                                         "marker_flow",
+                                         {.cells = 32,
+                                          .end_time = end_time,
+                                          .steps = static_cast<Index>(
+                                              4 * end_time)});
+                                   })}},
+     .knobs = {{.id = "steps",
+                .title = "Time steps, 32 x 32 cells",
+                .axis = kTimeSteps,
+                .problems = along(kTimeSteps,
+                                  [](double step) {
+                                    return of_steps(
+                                        static_cast<Index>(2 / step));
+                                  }),
+                .reference = of_steps(32),
+                .samples = 4,
+                .repetitions = 3}}});
+
+}  // namespace
+}  // namespace physinv
