@@ -99,6 +99,7 @@ if(PHYSINV_PRECOMPILE)
   add_library(physinv_json OBJECT ${CMAKE_CURRENT_LIST_DIR}/json_once.cpp)
   target_include_directories(physinv_json PRIVATE ${PROJECT_SOURCE_DIR})
   target_link_libraries(physinv_json PRIVATE physinv_flags physinv_narrow)
+  target_compile_options(physinv_json PRIVATE $<$<CONFIG:Release>:-O1>)
   physinv_precompile(physinv_precompiled physinv_flags)
   physinv_precompile(physinv_precompiled_narrow "physinv_flags;physinv_narrow"
     ${PROJECT_SOURCE_DIR}/cmake/json_once.h)

@@ -4,6 +4,10 @@
 
 #include <cmath>
 #include <numeric>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "tests/support/bits.h"
 #include "tests/support/gradient_check.h"
@@ -456,9 +460,19 @@ TEST_P(ProblemContract, FloatAgreesWithDouble) {
   EXPECT_GE(close, 122);
 }
 
+/// One experiment of each problem and setting.
+std::vector<ExperimentPtr> distinct_problems() {
+  std::vector<ExperimentPtr> all;
+  std::set<std::pair<std::string, Options>> seen;
+  for (const auto& e : registry().experiments())
+    if (seen.emplace(e->problem.name, e->problem.options).second)
+      all.push_back(e);
+  return all;
+}
+
 INSTANTIATE_TEST_SUITE_P(Registered,
                          ProblemContract,
-                         testing::ValuesIn(registry().experiments()),
+                         testing::ValuesIn(distinct_problems()),
                          ExperimentName());
 
 TEST(Registered, IsValidAndNotEmpty) {

@@ -195,10 +195,11 @@ TEST(SourcesContract, EditsMakeStaleWhoUsesThem) {
         "(jpo|matrix|numerics)/billiards/.*");
   edits("problems/kuramoto_sivashinsky/etdrk2.cpp",
         "(jpo|matrix|numerics)/kuramoto-sivashinsky.*");
-  edits("problems/marker_flow/frequency_loss.cpp", "sip/fluid.*");
+  edits("problems/marker_flow/frequency_loss.cpp",
+        "sip/fluid.*|numerics/marker-flow/.*");
   edits("optimizers/bfgs.cpp", "jpo/.* (solve|refine)");
   edits("optimizers/half_inverse/tridiagonalize.cpp",
-        "(hig|numerics/half-inverse).*|matrix/.*/(gn|hig)/.*");
+        "(hig|numerics/half-inverse).*|(jpo|matrix)/.*/(gn|hig)/.*");
   edits("optimizers/steps/rmsprop.h", "(hig|matrix|physgrad|sip)/.*rmsprop.*");
   edits(
       "suite/nn/unet.cpp",

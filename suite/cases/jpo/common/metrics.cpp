@@ -153,11 +153,13 @@ std::optional<JpoMetrics::Pooled> JpoMetrics::mean_shares(
 
 std::optional<double> JpoMetrics::share_of_decrease(std::string_view method,
                                                     Index n,
-                                                    std::uint64_t seed) const {
+                                                    std::uint64_t seed,
+                                                    bool from_prior) const {
   const StageRecord* fit = ending(method, n, seed, false);
   const StageRecord* refined = ending(method, n, seed, true);
-  if (fit == nullptr || refined == nullptr) return {};
-  const Curve& curve = fit->curve;
+  const StageRecord* begins = from_prior ? stage(kBfgs, n, seed, kSolve) : fit;
+  if (fit == nullptr || refined == nullptr || begins == nullptr) return {};
+  const Curve& curve = begins->curve;
   if (curve.points() == 0 || curve.iteration.front() != 0) return {};
   return decrease_share(curve.loss.col(0), fit->loss, refined->loss);
 }

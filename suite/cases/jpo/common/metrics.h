@@ -113,10 +113,12 @@ class JpoMetrics {
                                     bool refined,
                                     Equality equality = Equality::strict) const;
 
-  /// decrease_share of the fit, from its curve at iteration 0.
+  /// decrease_share of the fit, from its curve at iteration 0 or from that of
+  /// plain BFGS.
   std::optional<double> share_of_decrease(std::string_view method,
                                           Index n,
-                                          std::uint64_t seed) const;
+                                          std::uint64_t seed,
+                                          bool from_prior = false) const;
 
   /// Share of problems solved at the end of a chain.
   std::optional<double> solved_share(std::string_view method,

@@ -31,6 +31,7 @@ struct JpoReportOptions {
   std::vector<Index> curve_sizes;  ///< of fig. 12; default: four present
   Index trajectory_size = 0;       ///< of fig. 13; default: the largest
   std::vector<Index> table3_sizes = {4, 8, 32, 128};
+  bool from_prior = false;  ///< Table 3, see JpoMetrics::share_of_decrease
   std::vector<std::string> unknowns;  ///< names of the unknowns, for axes
   std::vector<std::string> tensors;   ///< m1, b1, ... in the order of the rows
   /// What trajectories should reach, unknowns x examples; data.x if empty.

@@ -107,7 +107,7 @@ Table JpoReport::fit_share() const {
   for (const Index n : options_.table3_sizes) {
     table.columns.push_back(fmt::format("n = {}", n));
     Cell cell = over_seeds(n, [&](Index, std::uint64_t seed) {
-      return metrics_.share_of_decrease("jpo", n, seed);
+      return metrics_.share_of_decrease("jpo", n, seed, options_.from_prior);
     });
     if (cell.ours) cell.ours = 100 * *cell.ours;
     if (cell.spread) cell.spread = 100 * *cell.spread;

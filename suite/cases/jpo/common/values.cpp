@@ -131,19 +131,11 @@ RunValue gain(const Solved& solved) {
   };
 }
 
-RunValue decrease_before() {
-  return [](const Run& run) -> Value {
+RunValue decrease_before(bool from_prior) {
+  return [=](const Run& run) -> Value {
     return JpoMetrics(run.evidence->results, run.record->info.experiment)
-        .share_of_decrease(run.record->info.method, run.n(), run.seed());
-  };
-}
-
-RunValue decrease_from_prior() {
-  return [](const Run& run) -> Value {
-    const auto fit = before(run), other = bfgs_beside(run);
-    if (!fit || !other || other->stage->curve.points() == 0) return {};
-    return decrease_share(
-        other->stage->curve.loss.col(0), fit->stage->loss, run.stage->loss);
+        .share_of_decrease(
+            run.record->info.method, run.n(), run.seed(), from_prior);
   };
 }
 
@@ -323,12 +315,13 @@ std::vector<Condition> table5(const std::string& method) {
   return row_of_table("table5", "refined ", refined(method));
 }
 
-std::vector<Condition> table3(const RunValue& share) {
+std::vector<Condition> table3(bool from_prior) {
   std::vector<Condition> out;
   for (const Index n : {4, 8, 32, 128})
-    out.push_back(as_printed(fmt::format("made by the network, n = {}, %", n),
-                             percent(mean(at(refined("jpo"), n), share)),
-                             fmt::format("table3/n={}", n)));
+    out.push_back(as_printed(
+        fmt::format("made by the network, n = {}, %", n),
+        percent(mean(at(refined("jpo"), n), decrease_before(from_prior))),
+        fmt::format("table3/n={}", n)));
   return out;
 }
 

@@ -41,9 +41,9 @@ RunValue solved(const Solved& solved);
 /// Share that it solves less the share that BFGS solves.
 RunValue gain(const Solved& solved);
 /// Of a refined run: mean share of the decrease that was made before.
-RunValue decrease_before();
-/// The same from the loss where BFGS starts.
-RunValue decrease_from_prior();
+/// With `from_prior` from the loss where BFGS starts, else from the untrained
+/// network's.
+RunValue decrease_before(bool from_prior = false);
 /// Of a refined run: how many losses it increased.
 RunValue worsened();
 /// Any statistic of a row.
@@ -101,7 +101,7 @@ Quantity problems_of(const Select& select);
 std::vector<Condition> table4(const std::string& method);
 std::vector<Condition> table5(const std::string& method);
 /// Table 3 at n = 4, 8, 32, 128.
-std::vector<Condition> table3(const RunValue& share = decrease_before());
+std::vector<Condition> table3(bool from_prior = false);
 std::vector<Condition> joined(
     std::initializer_list<std::vector<Condition>> parts);
 

@@ -128,6 +128,7 @@ Section report(const Results& results, const Published& published) {
   const JpoReportOptions options{.experiment = kName,
                                  .title = "Incompressible Navier-Stokes",
                                  .paper = "jpo",
+                                 .from_prior = true,
                                  .unknowns = {"z0", "z1", "z2"},
                                  .tensors = tensor_names(kName),
                                  .fraction = {"fig6d", "Fig. 6d"},

@@ -73,7 +73,7 @@ auto growth_of_f(const Select& runs) {
 }
 
 RunValue share_of(const Main& e) {
-  return e.name == kBox.name ? decrease_from_prior() : decrease_before();
+  return decrease_before(e.name == kBox.name);
 }
 Quantity share_at(const Main& e, Index n) {
   return mean(at(refined("jpo").in(e.name), n), share_of(e));

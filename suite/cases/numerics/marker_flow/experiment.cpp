@@ -80,7 +80,8 @@ const bool kRegistered = register_atlas(
                                   }),
                 .reference = of_steps(32),
                 .samples = 4,
-                .repetitions = 3}}});
+                .repetitions = 3}},
+     .problem = problem<MarkerFlow>("marker_flow")});
 
 }  // namespace
 }  // namespace physinv

@@ -75,7 +75,8 @@ const bool kRegistered =
                                .problems = along(kTimeSteps, stepping),
                                .reference = stepping(0.5),
                                .samples = 2,
-                               .repetitions = 2}}});
+                               .repetitions = 2}},
+                    .problem = problem<NavierStokes>("navier_stokes")});
 
 }  // namespace
 }  // namespace physinv

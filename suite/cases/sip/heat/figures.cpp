@@ -27,7 +27,6 @@ const std::vector<MethodLine> kDirect = {
 std::vector<MethodLine> networks() {
   std::vector<MethodLine> all = {{"sgd", "SGD", Hue::brown},
                                  {"adahessian", "AdaHessian", Hue::teal},
-                                 {"fno", "FNO", Hue::pink},
                                  {"hf", "Hessian-free", Hue::grey}};
   for (const char* size : {"", "-b32", "-b8", "-b4"}) {
     const std::string tail = size;
@@ -226,7 +225,23 @@ Section report(const Results& results, const Published& published) {
   return section;
 }
 
-const bool kReport = register_report(kName, report);
+Section operators(const Results& results, const Published&) {
+  const std::vector<MethodLine> lines = {
+      {"fno", "FNO", Hue::pink},
+      {"fno-lr4", "FNO, rate 1e-4", Hue::red},
+      {"fno-b8", "FNO, batch 8", Hue::pink},
+      {"fno-b8-lr4", "FNO, batch 8, rate 1e-4", Hue::red}};
+  Section section{.experiment = kOperator,
+                  .tables = {loss_table(results, kOperator, lines)}};
+  LearningCurves curves(results, section);
+  curves.metric(
+      lines, kError, "sum |x - x*|", "fig10", "Errors of x", "Fig. 10");
+  curves.losses(lines, "losses", "Losses of y", "");
+  return section;
+}
+
+const bool kReport =
+    register_report(kName, report) && register_report(kOperator, operators);
 
 }  // namespace
 }  // namespace physinv::heat

@@ -11,6 +11,8 @@
 namespace physinv::heat {
 
 inline constexpr const char* kName = "sip/heat";
+/// The same with a Fourier neural operator.
+inline constexpr const char* kOperator = "sip/heat-fno";
 
 /// One setting; the paper's own has no suffix.
 struct Spot {
