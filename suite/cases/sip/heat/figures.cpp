@@ -225,7 +225,7 @@ Section report(const Results& results, const Published& published) {
   return section;
 }
 
-Section operators(const Results& results, const Published&) {
+Section operator_page(const Results& results, const Published&) {
   const std::vector<MethodLine> lines = {
       {"fno", "FNO", Hue::pink},
       {"fno-lr4", "FNO, rate 1e-4", Hue::red},
@@ -241,7 +241,7 @@ Section operators(const Results& results, const Published&) {
 }
 
 const bool kReport =
-    register_report(kName, report) && register_report(kOperator, operators);
+    register_report(kName, report) && register_report(kOperator, operator_page);
 
 }  // namespace
 }  // namespace physinv::heat
