@@ -4,6 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <cmath>
+#include <memory>
+#include <mutex>
 
 #include "problems/fluid/noise.h"
 #include "problems/fluid/samples.h"
@@ -220,6 +222,12 @@ struct NavierStokes<T>::Kernel {
   }
 };
 
+template <class T>
+struct NavierStokes<T>::Lazy {
+  std::once_flag made;
+  std::unique_ptr<const Kernel> kernel;
+};
+
 Options describe(const NavierStokesOptions& o) {
   std::vector<Index> boxes;
   for (const auto& b : o.obstacles)
@@ -240,7 +248,8 @@ Options describe(const NavierStokesOptions& o) {
 }
 
 template <class T>
-NavierStokes<T>::NavierStokes(const Options& o) : options_(o) {
+NavierStokes<T>::NavierStokes(const Options& o)
+    : options_(o), lazy_(std::make_shared<Lazy>()) {
   SUITE_CHECK(o.cells >= 4 && o.cells % 2 == 0,
               "cells must be an even number, at least 4");
   SUITE_CHECK(o.box > 0 && o.end_time > 0 && o.steps > 0,
@@ -249,7 +258,6 @@ NavierStokes<T>::NavierStokes(const Options& o) : options_(o) {
               "width, speed and noise of the blast and the flow");
   SUITE_CHECK(0 < o.x0[0] && o.x0[0] <= o.x0[1] && o.x0[1] < 1,
               "the blast is within the box");
-  kernel_ = std::make_shared<const Kernel>(o);
 }
 
 template <class T>
@@ -299,7 +307,7 @@ void NavierStokes<T>::forward(BatchIn<T> x,
                               BatchIn<T> given,
                               BatchOut<T> y,
                               Workspace& work) const {
-  const Kernel& k = *kernel_;
+  const Kernel& k = kernel();
   using P = typename Kernel::P;
   check_sizes(x, given);
   check_size(y, shape().observations, x.cols());
@@ -318,7 +326,7 @@ void NavierStokes<T>::linearize(BatchIn<T> x,
                                 BatchIn<T> given,
                                 BatchOut<T> y,
                                 Tape& tape) const {
-  const Kernel& k = *kernel_;
+  const Kernel& k = kernel();
   using P = typename Kernel::P;
   check_sizes(x, given);
   check_size(y, shape().observations, x.cols());
@@ -351,7 +359,7 @@ void NavierStokes<T>::pullback(const Tape& tape,
                                BatchIn<T> y_bar,
                                BatchOut<T> x_bar,
                                Workspace& work) const {
-  const Kernel& k = *kernel_;
+  const Kernel& k = kernel();
   using P = typename Kernel::P;
   const auto x = tape.view<T>(kUnknowns);
   const auto given = tape.view<T>(kGiven);
@@ -385,7 +393,7 @@ void NavierStokes<T>::jacobian(BatchIn<T> x,
                                BatchIn<T> given,
                                BatchOut<T> j,
                                Workspace& work) const {
-  const Kernel& k = *kernel_;
+  const Kernel& k = kernel();
   using P = typename Kernel::P;
   check_sizes(x, given);
   check_size(j, 3 * shape().observations, x.cols());
@@ -407,6 +415,15 @@ Index NavierStokes<T>::gradient_block() const {
 
 /// Counted from the formulas: 83 per face for the lookups and the limiter, and
 /// the projection's factor, some 30 per cell.
+/// A problem that nobody asks for a flow factors nothing.
+template <class T>
+const typename NavierStokes<T>::Kernel& NavierStokes<T>::kernel() const {
+  std::call_once(lazy_->made, [&] {
+    lazy_->kernel = std::make_unique<const Kernel>(options_);
+  });
+  return *lazy_->kernel;
+}
+
 template <class T>
 double NavierStokes<T>::operations() const {
   const double cells = double(options_.cells * options_.cells);

@@ -104,10 +104,12 @@ class NavierStokes final : public Problem<T>,
 
  private:
   struct Kernel;
+  struct Lazy;
+  const Kernel& kernel() const;
   void check_sizes(BatchIn<T> x, BatchIn<T> given) const;
 
   Options options_;
-  std::shared_ptr<const Kernel> kernel_;
+  std::shared_ptr<Lazy> lazy_;  ///< the factor of the pressure, when needed
 };
 
 extern template class NavierStokes<float>;
