@@ -43,7 +43,7 @@ ProctrackType=proctrack/linuxproc
 TaskPlugin=task/none
 SelectType=select/cons_tres
 SelectTypeParameters=CR_CPU
-ReturnToService=2
+ReturnToService=1
 MpiDefault=none
 KillWait=2
 SchedulerParameters=sched_interval=2,batch_sched_delay=0

@@ -150,17 +150,18 @@ def node_down(d, alone):
           "reason=test")
     wait_for("requeued tasks", lambda: slurm(
         "squeue", "-h", "-t", "RUNNING", "-o", "%N").find(node) < 0)
-    # A node that comes back knows nothing of its jobs: a second start beside
-    # what is left of the first would fail in Slurm itself.
+    # What is left of the first starts holds their shards.
     wait_for("the node without its jobs", lambda: not slurm(
         "pgrep", "-f", f"slurmstepd: .({'|'.join(jobs)})[.]"))
-    slurm("scontrol", "update", f"nodename={node}", "state=resume")
     check("Restarts=1" in slurm("scontrol", "show", "job"),
           "node down: a task was put back into the queue")
     # Slurm lets requeued jobs wait for two minutes, unless told otherwise.
     for job in slurm("squeue", "-h", "-r", "-t", "PENDING", "-o", "%i").split():
         slurm("scontrol", "update", f"jobid={job}", "StartTime=now")
     wait_merged(d)
+    # Only now: a second start on the node within the second that revoked the
+    # first is refused by Slurm itself ("credential revoked").
+    slurm("scontrol", "update", f"nodename={node}", "state=resume")
     check(before <= finished(d), "node down: what was finished stays")
     complete(d, alone, "a node taken down")
 
@@ -203,6 +204,9 @@ def main():
                 print(f"     {test.__name__}: {time.time() - begin:.1f} s",
                       flush=True)
         finally:
+            if FAILED:
+                with open(os.path.join(cluster, "log/slurmctld.txt")) as f:
+                    print(f.read(), flush=True)
             subprocess.run([script, "stop", cluster])
     sys.exit(1 if FAILED else 0)
 
