@@ -1,6 +1,7 @@
 #include "suite/nn/per_piece.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "suite/core/check.h"
@@ -59,6 +60,8 @@ LayerArgs<T> PerPiece<T>::args(const LayerArgs<T>& at,
                                Workspace& work) const {
   LayerArgs<T> inner = at;
   inner.parameters = at.parameters + parameters_[i];
+  if (at.parameters_dot != nullptr)
+    inner.parameters_dot = at.parameters_dot + parameters_[i];
   inner.work = &work;
   inner.leading = inner.trailing = 0;
   return inner;
@@ -124,32 +127,147 @@ void PerPiece<T>::pull(const LayerArgs<T>& at,
 }
 
 template <class T>
-void PerPiece<T>::backward(const LayerArgs<T>& at, const Backward<T>& b) const {
-  const Workspace::Scope scope(*at.work);
+template <class F>
+void PerPiece<T>::sum_pieces(Workspace& work,
+                             Index size,
+                             T* bars,
+                             F&& step) const {
+  const Workspace::Scope scope(work);
   const Index parts = std::min(kMostParts, pieces_);
-  const Index size = b.parameters_bar != nullptr ? parameter_count_ : 0;
-  T* const sums = at.work->template take<T>(size, parts).data();
+  T* const sums = work.take<T>(size, parts).data();
   std::fill_n(sums, size * parts, T(0));
-  each_block(*at.work, parts, [&](Index part, Workspace& work) {
-    T* const own = work.take<T>(size, 1).data();
+  each_block(work, parts, [&](Index part, Workspace& some) {
+    T* const own = some.take<T>(size, 1).data();
     const Index end = pieces_ * (part + 1) / parts;
     for (Index piece = pieces_ * part / parts; piece < end; ++piece) {
-      Backward<T> some{.x = part_of(b.x, pieces_, piece),
-                       .y = part_of(b.y, pieces_, piece),
-                       .y_bar = part_of(b.y_bar, pieces_, piece)};
-      if (size > 0) some.parameters_bar = own;
-      if (b.x_bar) some.x_bar = part_of(b.x_bar, pieces_, piece);
-      if (b.gate.activation != Activation::identity)
-        some.gate = {b.gate.activation, part_of(b.gate.y, pieces_, piece)};
-      pull(at, some, work);
+      step(piece, own, some);
       for (Index i = 0; i < size; ++i) sums[part * size + i] += own[i];
     }
   });
   if (size == 0) return;
-  std::copy_n(sums, size, b.parameters_bar);
+  std::copy_n(sums, size, bars);
   for (Index part = 1; part < parts; ++part)
-    for (Index i = 0; i < size; ++i)
-      b.parameters_bar[i] += sums[part * size + i];
+    for (Index i = 0; i < size; ++i) bars[i] += sums[part * size + i];
+}
+
+template <class T>
+void PerPiece<T>::backward(const LayerArgs<T>& at, const Backward<T>& b) const {
+  const Index size = b.parameters_bar != nullptr ? parameter_count_ : 0;
+  sum_pieces(
+      *at.work,
+      size,
+      b.parameters_bar,
+      [&](Index piece, T* own, Workspace& work) {
+        Backward<T> some{.x = part_of(b.x, pieces_, piece),
+                         .y = part_of(b.y, pieces_, piece),
+                         .y_bar = part_of(b.y_bar, pieces_, piece)};
+        if (size > 0) some.parameters_bar = own;
+        if (b.x_bar) some.x_bar = part_of(b.x_bar, pieces_, piece);
+        if (b.gate.activation != Activation::identity)
+          some.gate = {b.gate.activation, part_of(b.gate.y, pieces_, piece)};
+        pull(at, some, work);
+      });
+}
+
+template <class T>
+std::vector<Lanes<T>> PerPiece<T>::push(const LayerArgs<T>& at,
+                                        const std::vector<Lanes<T>>& outputs,
+                                        Tangent<T> t,
+                                        Workspace& work) const {
+  std::vector<Lanes<T>> dots;
+  const Lanes<const T> y = t.y;
+  const Lanes<T> last = t.y_dot;
+  for (std::size_t i = 0; i < inner_.size(); ++i) {
+    const bool end = i + 1 == inner_.size();
+    t.y = end ? y : Lanes<const T>(outputs[i]);
+    t.y_dot = last;
+    if (!end) {
+      t.y_dot = {nullptr, inner_[i]->outputs(), t.x.samples};
+      t.y_dot.data = work.take<T>(t.y_dot.stride, t.y_dot.rows).data();
+    }
+    if (t.y_dot) inner_[i]->tangent(args(at, i, work), t);
+    dots.push_back(t.y_dot);
+    t.x = t.y, t.x_dot = t.y_dot;
+  }
+  return dots;
+}
+
+template <class T>
+void PerPiece<T>::tangent(const LayerArgs<T>& at, const Tangent<T>& t) const {
+  each_block(*at.work, pieces_, [&](Index piece, Workspace& work) {
+    const Lanes<const T> x = part_of(t.x, pieces_, piece);
+    push(at,
+         run(at, x, {}, work),
+         {.x = x,
+          .y = part_of(t.y, pieces_, piece),
+          .x_dot = part_of(t.x_dot, pieces_, piece),
+          .y_dot = part_of(t.y_dot, pieces_, piece)},
+         work);
+  });
+}
+
+template <class T>
+void PerPiece<T>::pull_tangent(const LayerArgs<T>& at,
+                               const BackwardTangent<T>& b,
+                               Workspace& work) const {
+  const Workspace::Scope scope(work);
+  const auto outputs = run(at, b.x, {}, work);
+  const auto dots =
+      push(at, outputs, {.x = b.x, .y = b.y, .x_dot = b.x_dot}, work);
+  std::array<Lanes<T>, 4> bars;
+  for (Lanes<T>& bar : bars) {
+    bar = {nullptr, widest_, b.x.samples};
+    bar.data = work.take<T>(bar.stride, bar.rows).data();
+  }
+  auto& [y_bar, y_bar_dot, x_bar, x_bar_dot] = bars;
+  BackwardTangent<T> inner = b;
+  for (std::size_t i = inner_.size(); i-- > 0;) {
+    inner.x = i > 0 ? Lanes<const T>(outputs[i - 1]) : b.x;
+    inner.x_dot = i > 0 ? Lanes<const T>(dots[i - 1]) : b.x_dot;
+    if (b.parameters_bar != nullptr)
+      inner.parameters_bar = b.parameters_bar + parameters_[i];
+    inner.parameters_bar_dot = b.parameters_bar_dot + parameters_[i];
+    x_bar.rows = x_bar_dot.rows = inner_[i]->inputs();
+    inner.x_bar = i > 0 ? x_bar : b.x_bar;
+    inner.x_bar_dot = i > 0 ? x_bar_dot : b.x_bar_dot;
+    inner_[i]->backward_tangent(args(at, i, work), inner);
+    if (i > 0)
+      apply_gate_tangent<T>(
+          {inner_[i - 1]->fused(), inner.x}, inner.x_dot, x_bar, x_bar_dot);
+    std::swap(y_bar, x_bar), std::swap(y_bar_dot, x_bar_dot);
+    inner.y = inner.x, inner.y_dot = inner.x_dot;
+    inner.y_bar = y_bar, inner.y_bar_dot = y_bar_dot;
+  }
+}
+
+template <class T>
+void PerPiece<T>::backward_tangent(const LayerArgs<T>& at,
+                                   const BackwardTangent<T>& b) const {
+  const Index size = parameter_count_;
+  const Workspace::Scope scope(*at.work);
+  T* const sums = at.work->template take<T>(2 * size, 1).data();
+  const bool first = b.parameters_bar != nullptr;
+  sum_pieces(
+      *at.work, 2 * size, sums, [&](Index piece, T* own, Workspace& work) {
+        const auto part = [&](auto lanes) {
+          return lanes ? part_of(lanes, pieces_, piece) : lanes;
+        };
+        std::fill_n(own, size, T(0));
+        pull_tangent(at,
+                     {.x = part(b.x),
+                      .y = part(b.y),
+                      .x_dot = part(b.x_dot),
+                      .y_dot = part(b.y_dot),
+                      .y_bar = part(b.y_bar),
+                      .y_bar_dot = part(b.y_bar_dot),
+                      .parameters_bar = first ? own : nullptr,
+                      .parameters_bar_dot = own + size,
+                      .x_bar = part(b.x_bar),
+                      .x_bar_dot = part(b.x_bar_dot)},
+                     work);
+      });
+  if (first) std::copy_n(sums, size, b.parameters_bar);
+  std::copy_n(sums + size, size, b.parameters_bar_dot);
 }
 
 template <class T>

@@ -25,6 +25,9 @@ class PerPiece final : public Layer<T> {
                Lanes<const T> x,
                Lanes<T> y) const override;
   void backward(const LayerArgs<T>& at, const Backward<T>& b) const override;
+  void tangent(const LayerArgs<T>& at, const Tangent<T>& t) const override;
+  void backward_tangent(const LayerArgs<T>& at,
+                        const BackwardTangent<T>& b) const override;
   double operations() const override;
 
  private:
@@ -39,6 +42,19 @@ class PerPiece final : public Layer<T> {
   void pull(const LayerArgs<T>& at,
             const Backward<T>& b,
             Workspace& work) const;
+  /// Derivatives of all layers' outputs, the last one's in t.y_dot; without
+  /// it, of all but the last. `outputs` are those of `run`.
+  std::vector<Lanes<T>> push(const LayerArgs<T>& at,
+                             const std::vector<Lanes<T>>& outputs,
+                             Tangent<T> t,
+                             Workspace& work) const;
+  void pull_tangent(const LayerArgs<T>& at,
+                    const BackwardTangent<T>& b,
+                    Workspace& work) const;
+  /// step(piece, bars, workspace) for every piece; bars, one after the other,
+  /// are what it leaves in its array of the same size, summed.
+  template <class F>
+  void sum_pieces(Workspace& work, Index size, T* bars, F&& step) const;
 
   Index pieces_;
   Layers inner_;

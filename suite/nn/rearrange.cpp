@@ -108,6 +108,23 @@ void Coordinates<T>::backward(const LayerArgs<T>&, const Backward<T>& b) const {
 }
 
 template <class T>
+void Coordinates<T>::tangent(const LayerArgs<T>&, const Tangent<T>& t) const {
+  for (Index p = 0; p < grid_.positions(); ++p) {
+    copy_row(t.x_dot.row(p), t.x.width, t.y_dot.row(3 * p));
+    for (const Index place : {1, 2})
+      std::fill_n(t.y_dot.row(3 * p + place), t.x.width, T(0));
+  }
+}
+
+template <class T>
+void Coordinates<T>::backward_tangent(const LayerArgs<T>& at,
+                                      const BackwardTangent<T>& b) const {
+  if (!b.x_bar) return;
+  backward(at, b.base());
+  backward(at, {.x = b.x, .y_bar = b.y_bar_dot, .x_bar = b.x_bar_dot});
+}
+
+template <class T>
 void Flatten<T>::forward(const LayerArgs<T>&,
                          Lanes<const T> x,
                          Lanes<T> y) const {

@@ -184,20 +184,19 @@ void clear(const PlaneModes<T>& modes, Index k, Index block, T* u) {
 }  // namespace
 
 template <class T>
-void SpectralBlock<T>::mix(const LayerArgs<T>& at, Index samples, T* u) const {
+void SpectralBlock<T>::mix(const Product& at,
+                           Index samples,
+                           T* u,
+                           Workspace& all) const {
   const Index c = o_.channels, width = Lanes<T>(nullptr, 1, samples).width;
   const Index block = c * width;
-  Index count = 0;
-  for (const auto& of_k : modes_) count += static_cast<Index>(of_k.size());
-  T* const tape =
-      at.tape->template slot<T>(at.slot, 2 * block, count * o_.modes).data();
-  each_block(*at.work, row_count(o_), [&](Index k, Workspace& work) {
+  each_block(all, row_count(o_), [&](Index k, Workspace& work) {
     const auto& modes = modes_[static_cast<std::size_t>(k)];
     T* const weights = work.take<T>(2 * c * c, o_.modes).data();
     T* const matrix = work.take<T>(4 * c * c, 1).data();
     T* const a = work.take<T>(2 * block, 1).data();
     const auto z = [&](const Mode& m, Index l) {
-      return tape + (m.number * o_.modes + l) * 2 * block;
+      return at.modes + (m.number * o_.modes + l) * 2 * block;
     };
     for (const Mode& m : modes)
       for (Index l = 0; l < o_.modes; ++l) gather(u, k, m, l, block, z(m, l));
@@ -223,15 +222,15 @@ void SpectralBlock<T>::mix(const LayerArgs<T>& at, Index samples, T* u) const {
 }
 
 template <class T>
-void SpectralBlock<T>::pull_mix(const LayerArgs<T>& at,
+void SpectralBlock<T>::pull_mix(const Product& at,
                                 Index samples,
                                 T* u,
                                 T* parameters_bar,
-                                bool wants_u) const {
+                                bool wants_u,
+                                Workspace& all) const {
   const Index c = o_.channels, width = Lanes<T>(nullptr, 1, samples).width;
   const Index block = c * width;
-  const T* const tape = at.tape->template view<T>(at.slot).data();
-  each_block(*at.work, row_count(o_), [&](Index k, Workspace& work) {
+  each_block(all, row_count(o_), [&](Index k, Workspace& work) {
     const auto& modes = modes_[static_cast<std::size_t>(k)];
     const Index count = o_.modes * static_cast<Index>(modes.size());
     T* const a_bar = work.take<T>(2 * block, count).data();
@@ -246,7 +245,7 @@ void SpectralBlock<T>::pull_mix(const LayerArgs<T>& at,
     next = a_bar;
     for (const Mode& m : modes) {
       if (parameters_bar != nullptr)
-        pull_weights(tape + m.number * o_.modes * 2 * block,
+        pull_weights(at.modes + m.number * o_.modes * 2 * block,
                      next,
                      samples,
                      m,
@@ -321,27 +320,44 @@ void SpectralBlock<T>::pull_weights(const T* z,
 // --------------------------------------------------------------- passes
 
 template <class T>
+T* SpectralBlock<T>::open_modes(const Lanes<const T>& x,
+                                Tape& tape,
+                                std::size_t slot) const {
+  return tape.slot<T>(slot, 2 * o_.channels * x.width, mode_count()).data();
+}
+
+template <class T>
 void SpectralBlock<T>::forward(const LayerArgs<T>& at,
                                Lanes<const T> x,
                                Lanes<T> y) const {
+  apply({.parameters = at.parameters,
+         .bias = bias(at.parameters),
+         .f = o_.before,
+         .modes = open_modes(x, *at.tape, at.slot)},
+        x,
+        y,
+        *at.work);
+}
+
+template <class T>
+void SpectralBlock<T>::apply(const Product& at,
+                             Lanes<const T> x,
+                             Lanes<T> y,
+                             Workspace& all) const {
   using V = Simd<T, kNarrow>;
   const Index c = o_.channels, block = c * x.width;
   const Index pitch = in_.pitch(block), sums = in_.column_sums();
   const T* const w = local(at.parameters);
-  const T* const bias = w + c * c;
-  const Workspace::Scope scope(*at.work);
+  const Workspace::Scope scope(all);
   T* const t =
-      at.work
-          ->template take<T>(pitch, sums * std::max(o_.from.rows, o_.to.rows))
-          .data();
-  T* const u = at.work->template take<T>(pitch, sums * in_.row_sums()).data();
+      all.take<T>(pitch, sums * std::max(o_.from.rows, o_.to.rows)).data();
+  T* const u = all.take<T>(pitch, sums * in_.row_sums()).data();
 
-  each_block(*at.work, o_.from.rows, [&](Index r, Workspace& work) {
+  each_block(all, o_.from.rows, [&](Index r, Workspace& work) {
     T* const row = work.take<T>(pitch, o_.from.columns).data();
     for (Index q = 0; q < o_.from.columns; ++q) {
       T* const f = row + q * pitch;
-      pack_rows<T>(
-          o_.before, rows_from(x, (r * o_.from.columns + q) * c, c), f);
+      pack_rows<T>(at.f, rows_from(x, (r * o_.from.columns + q) * c, c), f);
       if (!meets(r) || q >= shared_.columns) continue;
       gemm<T>({.m = c,
                .n = x.width,
@@ -353,29 +369,28 @@ void SpectralBlock<T>::forward(const LayerArgs<T>& at,
                .b_stride = x.width,
                .c = y.row((r * o_.to.columns + q) * c),
                .c_stride = y.stride,
-               .bias = bias});
+               .bias = at.bias});
     }
     in_.analyse_row(row, r, block, t);
   });
-  each_block(*at.work, sums, [&](Index g, Workspace&) {
+  each_block(all, sums, [&](Index g, Workspace&) {
     in_.analyse_rows(t, g, block, u);
   });
-  mix(at, x.samples, u);
-  each_block(*at.work, sums, [&](Index g, Workspace&) {
+  mix(at, x.samples, u, all);
+  each_block(all, sums, [&](Index g, Workspace&) {
     out_.synthesise_rows(u, g, block, t);
   });
-  each_block(*at.work, o_.to.rows, [&](Index r, Workspace& work) {
+  each_block(all, o_.to.rows, [&](Index r, Workspace& work) {
     T* const row = work.take<T>(pitch, o_.to.columns).data();
     out_.synthesise_row(t, r, block, row);
     for (Index q = 0; q < o_.to.columns; ++q) {
       const bool added = meets(r) && q < shared_.columns;
       for (Index o = 0; o < c; ++o) {
+        const V alone = broadcast<V>(at.bias != nullptr ? at.bias[o] : T(0));
         T* const to = y.row((r * o_.to.columns + q) * c + o);
         const T* const from = row + q * pitch + o * x.width;
         for (Index j = 0; j < x.width; j += kLanes<T>)
-          store(to + j,
-                load<V>(from + j) +
-                    (added ? load<V>(to + j) : broadcast<V>(bias[o])));
+          store(to + j, load<V>(from + j) + (added ? load<V>(to + j) : alone));
       }
     }
   });
@@ -384,15 +399,26 @@ void SpectralBlock<T>::forward(const LayerArgs<T>& at,
 template <class T>
 void SpectralBlock<T>::backward(const LayerArgs<T>& at,
                                 const Backward<T>& b) const {
+  pull({.parameters = at.parameters,
+        .f = o_.before,
+        .gate = o_.before,
+        .modes = at.tape->template view<T>(at.slot).data()},
+       b,
+       *at.work);
+  if (b.x_bar) apply_gate(b.gate, b.x_bar);
+}
+
+template <class T>
+void SpectralBlock<T>::pull(const Product& at,
+                            const Backward<T>& b,
+                            Workspace& all) const {
   const Index c = o_.channels, block = c * b.x.width;
   const Index pitch = in_.pitch(block), sums = in_.column_sums();
-  const Workspace::Scope scope(*at.work);
+  const Workspace::Scope scope(all);
   T* const t =
-      at.work
-          ->template take<T>(pitch, sums * std::max(o_.from.rows, o_.to.rows))
-          .data();
-  T* const u = at.work->template take<T>(pitch, sums * in_.row_sums()).data();
-  each_block(*at.work, o_.to.rows, [&](Index r, Workspace& work) {
+      all.take<T>(pitch, sums * std::max(o_.from.rows, o_.to.rows)).data();
+  T* const u = all.take<T>(pitch, sums * in_.row_sums()).data();
+  each_block(all, o_.to.rows, [&](Index r, Workspace& work) {
     T* const row = work.take<T>(pitch, o_.to.columns).data();
     for (Index q = 0; q < o_.to.columns; ++q)
       pack_rows<T>(Activation::identity,
@@ -400,27 +426,27 @@ void SpectralBlock<T>::backward(const LayerArgs<T>& at,
                    row + q * pitch);
     out_.analyse_row(row, r, block, t);
   });
-  each_block(*at.work, sums, [&](Index g, Workspace&) {
+  each_block(all, sums, [&](Index g, Workspace&) {
     out_.analyse_rows(t, g, block, u);
   });
   if (b.parameters_bar != nullptr) {
     std::fill_n(b.parameters_bar, 4 * spectral_size(), T(0));
     channel_sums<T>(
-        *at.work, b.y_bar, c, b.parameters_bar + 4 * spectral_size() + c * c);
+        all, b.y_bar, c, b.parameters_bar + 4 * spectral_size() + c * c);
   }
-  pull_mix(at, b.x.samples, u, b.parameters_bar, bool(b.x_bar));
+  pull_mix(at, b.x.samples, u, b.parameters_bar, bool(b.x_bar), all);
   if (b.x_bar)
-    each_block(*at.work, sums, [&](Index g, Workspace&) {
+    each_block(all, sums, [&](Index g, Workspace&) {
       in_.synthesise_rows(u, g, block, t);
     });
-  pull_rows(at, b, t);
-  if (b.x_bar) apply_gate(b.gate, b.x_bar);
+  pull_rows(at, b, t, all);
 }
 
 template <class T>
-void SpectralBlock<T>::pull_rows(const LayerArgs<T>& at,
+void SpectralBlock<T>::pull_rows(const Product& at,
                                  const Backward<T>& b,
-                                 const T* t) const {
+                                 const T* t,
+                                 Workspace& all) const {
   using V = Simd<T, kNarrow>;
   const Index c = o_.channels, block = c * b.x.width, pitch = in_.pitch(block);
   const Index columns = o_.from.columns;
@@ -431,7 +457,7 @@ void SpectralBlock<T>::pull_rows(const LayerArgs<T>& at,
   const Index parts = std::min(kMostParts, o_.from.rows);
   const Index size = weight_sums<T>(shape);
   const bool weights = b.parameters_bar != nullptr;
-  T* const totals = at.work->template take<T>(size, parts + 1).data();
+  T* const totals = all.take<T>(size, parts + 1).data();
   std::fill_n(totals, size * parts, T(0));
   const auto pull_row = [&](Index r, T* part, Workspace& work) {
     const Workspace::Scope scope(work);
@@ -444,7 +470,7 @@ void SpectralBlock<T>::pull_rows(const LayerArgs<T>& at,
       Lanes<T> f(nullptr, shared_.columns * c, b.x.samples);
       f.data = work.take<T>(f.stride, f.rows).data();
       for (Index i = 0; i < f.rows; ++i)
-        pack_rows<T>(o_.before, rows_from(x, i, 1), f.row(i));
+        pack_rows<T>(at.f, rows_from(x, i, 1), f.row(i));
       accumulate_weights<T>(shape, runs, f, y_bar, 0, shape.positions(), part);
     }
     if (!b.x_bar) return;
@@ -469,11 +495,11 @@ void SpectralBlock<T>::pull_rows(const LayerArgs<T>& at,
           V sum = load<V>(row + q * pitch + (i - q * c) * x.width + j);
           if (added) sum += load<V>(x_bar.row(i) + j);
           store(x_bar.row(i) + j,
-                pull_lanes<T>(o_.before, load<V>(x.row(i) + j), sum));
+                pull_lanes<T>(at.gate, load<V>(x.row(i) + j), sum));
         }
     }
   };
-  each_block(*at.work, parts, [&](Index part, Workspace& work) {
+  each_block(all, parts, [&](Index part, Workspace& work) {
     const Index end = o_.from.rows * (part + 1) / parts;
     for (Index r = o_.from.rows * part / parts; r < end; ++r)
       pull_row(r, totals + part * size, work);

@@ -47,9 +47,22 @@ class SpectralBlock final : public Layer<T> {
                Lanes<const T> x,
                Lanes<T> y) const override;
   void backward(const LayerArgs<T>& at, const Backward<T>& b) const override;
+  void tangent(const LayerArgs<T>& at, const Tangent<T>& t) const override;
+  void backward_tangent(const LayerArgs<T>& at,
+                        const BackwardTangent<T>& b) const override;
   double operations() const override;
 
  private:
+  /// One product (S + W) f(x), bilinear in weights and f(x).
+  struct Product {
+    const T* parameters;  ///< S and W
+    const T* bias = nullptr;
+    Activation f = Activation::identity;
+    /// Its derivative multiplies x_bar, which else is f(x)'s cotangent.
+    Activation gate = Activation::identity;
+    T* modes;  ///< Z, written on the way up, read on the way down
+  };
+
   /// Row frequency `sign` k, whose weights are row `row` of tensors 2 `last`
   /// (real) and 2 `last` + 1. Its modes are the `number`-th on the tape.
   struct Mode {
@@ -57,7 +70,20 @@ class SpectralBlock final : public Layer<T> {
     Index last, row, number;
   };
 
+  T* open_modes(const Lanes<const T>& x, Tape& tape, std::size_t slot) const;
+  void apply(const Product& at,
+             Lanes<const T> x,
+             Lanes<T> y,
+             Workspace& all) const;
+  /// Leaves x_bar without b.gate.
+  void pull(const Product& at, const Backward<T>& b, Workspace& all) const;
+
   Index mode_size() const { return o_.modes * o_.modes; }
+  Index mode_count() const {
+    Index count = 0;
+    for (const auto& of_k : modes_) count += static_cast<Index>(of_k.size());
+    return count * o_.modes;
+  }
   Index spectral_size() const {
     return o_.channels * o_.channels * mode_size();
   }
@@ -67,6 +93,9 @@ class SpectralBlock final : public Layer<T> {
   }
   const T* local(const T* parameters) const {
     return parameters + 4 * spectral_size();
+  }
+  const T* bias(const T* parameters) const {
+    return local(parameters) + o_.channels * o_.channels;
   }
   bool meets(Index r) const { return r < shared_.rows; }
 
@@ -82,14 +111,15 @@ class SpectralBlock final : public Layer<T> {
   void real_matrix(const T* weights, Index l, T* matrix) const;
   double inverse_weight(Index l) const;
 
-  /// u <- what the weights make of the modes in u, which go to the tape.
-  void mix(const LayerArgs<T>& at, Index samples, T* u) const;
+  /// u <- what the weights make of the modes in u, which go to at.modes.
+  void mix(const Product& at, Index samples, T* u, Workspace& all) const;
   /// u <- cotangent of the modes, from that of what was made of them.
-  void pull_mix(const LayerArgs<T>& at,
+  void pull_mix(const Product& at,
                 Index samples,
                 T* u,
                 T* parameters_bar,
-                bool wants_u) const;
+                bool wants_u,
+                Workspace& all) const;
   void pull_weights(const T* z,
                     const T* a_bar,
                     Index samples,
@@ -97,9 +127,10 @@ class SpectralBlock final : public Layer<T> {
                     T* parameters_bar,
                     Workspace& work) const;
   /// x_bar and W_bar row by row; t: the sums of x's cotangent, or null.
-  void pull_rows(const LayerArgs<T>& at,
+  void pull_rows(const Product& at,
                  const Backward<T>& b,
-                 const T* t) const;
+                 const T* t,
+                 Workspace& all) const;
 
   SpectralOptions o_;
   Grid shared_;  ///< positions that both x and y have

@@ -10,6 +10,7 @@
 #include "suite/nn/activation.h"
 #include "suite/nn/cnn.h"
 #include "suite/nn/conv.h"
+#include "suite/nn/fno.h"
 #include "suite/nn/mlp.h"
 #include "suite/nn/sequential.h"
 #include "suite/nn/unet.h"
@@ -90,6 +91,15 @@ std::vector<Built> networks() {
              .init = Init::uniform}),
        108,
        216},
+      {"operator",
+       fno({.grid = {6, 5},
+            .padding = 2,
+            .modes = 3,
+            .width = 3,
+            .blocks = 2,
+            .hidden = 5}),
+       30,
+       30},
       {"cnn", cnn({.positions = 8, .channels = 2, .features = {5, 4}}), 16, 8},
   };
 }
@@ -263,19 +273,26 @@ TEST_P(TangentTest, FloatAgreesWithDouble) {
 
 // Enough work for blocks, parts and threads.
 TEST(Tangent, BitsDoNotDependOnThreads) {
-  const Built plane{"plane",
-                    unet({.grid = {32, 32},
-                          .levels = 2,
-                          .padding = Padding::circular,
-                          .batch_statistics = true}),
-                    1024,
-                    1024};
+  const std::vector<Built> planes = {
+      {"plane_unet",
+       unet({.grid = {32, 32},
+             .levels = 2,
+             .padding = Padding::circular,
+             .batch_statistics = true}),
+       1024,
+       1024},
+      {"plane_operator",
+       fno({.grid = {32, 32}, .width = 8, .blocks = 2}),
+       1024,
+       1024}};
   Threads threads(3);
-  Moved<float> one(plane, true), three(plane, true, &threads);
-  const Batch<float> out_dot = one.tangent(one.p_dot);
-  expect_same_bits(three.tangent(three.p_dot), out_dot);
-  expect_same_bits(three.product(three.p_dot, three.out_bar, out_dot),
-                   one.product(one.p_dot, one.out_bar, out_dot));
+  for (const Built& plane : planes) {
+    Moved<float> one(plane, true), three(plane, true, &threads);
+    const Batch<float> out_dot = one.tangent(one.p_dot);
+    expect_same_bits(three.tangent(three.p_dot), out_dot);
+    expect_same_bits(three.product(three.p_dot, three.out_bar, out_dot),
+                     one.product(one.p_dot, one.out_bar, out_dot));
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Networks,
