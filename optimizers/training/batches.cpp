@@ -32,20 +32,26 @@ Batches<T>::Batches(StageRun& run, const BatchOptions& options, Index drawn)
       slices_(set_size(run, options) / size_),
       drawn_(drawn),
       fresh_(options.fresh) {
-  if (!fresh_) load(run.oracle.training(0, slices_ * size_));
+  if (!fresh_) load(0, slices_ * size_);
 }
 
 template <class T>
 void Batches<T>::keep_exact() {
   exact_ = true;
-  if (!fresh_) load(run_.oracle.training(0, slices_ * size_));
+  if (!fresh_) load(0, slices_ * size_);
+}
+
+template <class T>
+void Batches<T>::keep_labels() {
+  labelled_ = true;
+  if (!fresh_) load(0, slices_ * size_);
 }
 
 template <class T>
 void Batches<T>::next() {
   if (fresh_) {
     run_.probe.pause();
-    load(run_.oracle.training(drawn_, size_));
+    load(drawn_, size_);
     run_.probe.resume();
   } else {
     first_ = at_ * size_;
@@ -55,9 +61,12 @@ void Batches<T>::next() {
 }
 
 template <class T>
-void Batches<T>::load(const Samples<double>& from) {
+void Batches<T>::load(Index first, Index count) {
+  const Samples<double> from = labelled_ ? run_.oracle.labelled(first, count)
+                                         : run_.oracle.training(first, count);
   target_ = from.y.template cast<T>();
   if (exact_) exact_target_ = from.y;
+  if (labelled_) label_ = from.x.template cast<T>();
   given_ = from.given.template cast<T>();
   const auto& fields = run_.setting.predictor.inputs;
   for (const Field f : fields)
@@ -68,7 +77,7 @@ void Batches<T>::load(const Samples<double>& from) {
 template <class T>
 std::size_t Batches<T>::bytes() const {
   const Index numbers =
-      size_ * (target_.rows() + given_.rows() + input_.rows());
+      size_ * (target_.rows() + given_.rows() + input_.rows() + label_.rows());
   return static_cast<std::size_t>(numbers) * sizeof(T) +
          static_cast<std::size_t>(exact_target_.size()) * sizeof(double);
 }

@@ -25,6 +25,8 @@ class Batches {
 
   void next();
   void keep_exact();
+  /// From now on labelled samples, with their solutions.
+  void keep_labels();
 
   Index size() const { return size_; }
   /// Problems used so far, those of earlier stages included.
@@ -42,6 +44,11 @@ class Batches {
     return target_.middleCols(first_ + first, count);
   }
 
+  /// The solutions, for those who had them kept.
+  auto label(Index first, Index count) const {
+    return label_.middleCols(first_ + first, count);
+  }
+
   /// The observations before they were rounded, for those who had them kept.
   auto exact_target(Index first, Index count) const {
     return exact_target_.middleCols(first_ + first, count);
@@ -51,13 +58,13 @@ class Batches {
   std::size_t bytes() const;
 
  private:
-  void load(const Samples<double>& from);
+  void load(Index first, Index count);
 
   StageRun& run_;
   Index size_, slices_, drawn_, at_ = 0;
-  bool fresh_, exact_ = false;
+  bool fresh_, exact_ = false, labelled_ = false;
   /// All slices, or a fresh batch; the current one starts at column `first_`.
-  Batch<T> target_, given_, input_;
+  Batch<T> target_, given_, input_, label_;
   Batch<double> exact_target_;
   Index first_ = 0;
 };

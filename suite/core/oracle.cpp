@@ -196,13 +196,16 @@ template void Oracle::warm_up<float>();
 template void Oracle::warm_up<double>();
 
 const Samples<double>& Oracle::labelled(Index per_problem) {
+  if (labelled_.count() != per_problem * count())
+    labelled_ = labelled(0, per_problem * count());
+  return labelled_;
+}
+
+Samples<double> Oracle::labelled(Index first, Index count) const {
   SUITE_CHECK(contains(allowed_, Needs::labels),
               "the method asked for labels it did not declare");
-  if (labelled_.count() != per_problem * count()) {
-    labelled_ = disturbed(recipe_.make<double>()->sample_labelled(
-        0, per_problem * count(), rng_.child("data/train")));
-  }
-  return labelled_;
+  return disturbed(recipe_.make<double>()->sample_labelled(
+      first, count, rng_.child("data/train")));
 }
 
 Samples<double> Oracle::training(Index first, Index count) const {

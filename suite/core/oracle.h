@@ -12,7 +12,7 @@ namespace physinv {
 
 class Oracle {
  public:
-  /// `labelled` is drawn on first use and only if `allowed` has labels.
+  /// `labelled` is given only if `allowed` has labels.
   Oracle(const ProblemRecipe& recipe,
          Index count,
          const Rng& data,
@@ -48,8 +48,11 @@ class Oracle {
   /// Every problem at once: active = 0, 1, .. count-1.
   std::span<const Index> all() const { return all_; }
 
-  /// Labelled samples from a separate set, so many for each problem.
+  /// Labelled samples from a separate set, so many for each problem; drawn on
+  /// first use.
   const Samples<double>& labelled(Index per_problem = 1);
+  /// Samples first .. first+count-1 of that set.
+  Samples<double> labelled(Index first, Index count) const;
 
   /// Problems first .. first+count-1 of the same separate set, without their
   /// solutions: for methods that learn from the physics. Whoever simulates

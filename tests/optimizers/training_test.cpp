@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "optimizers/rate_search.h"
+#include "optimizers/training/label_loss.h"
 #include "suite/core/clock.h"
 #include "suite/core/oracle.h"
 #include "suite/core/probe.h"
@@ -73,6 +74,38 @@ TEST(Training, WholeBatchesAreGradientDescentOnTheMeanLoss) {
     SCOPED_TRACE(chunk);
     expect_gradient_descent(chunk);
   }
+}
+
+// By hand, too; no simulation is made.
+TEST(Training, LabelsPullTheEstimatesToTheSolutions) {
+  const auto stage = train({.rule = SgdOptions{.rate = 0.1},
+                            .batch = kCount,
+                            .signal = label_loss()});
+  EXPECT_TRUE(contains(stage->needs(), Needs::labels));
+  EXPECT_FALSE(contains(stage->needs(), Needs::vjp));
+  StageBench bench(*stage, kCount, 3);
+  const Outcome out = bench.run();
+  EXPECT_EQ(bench.oracle.counts()[Counter::vjp], 0U);
+  EXPECT_EQ(bench.oracle.counts()[Counter::forward], 0U);
+
+  const Setting setting = quadratic_setting();
+  Oracle oracle(quadratic(), kCount, bench.root, stage->needs());
+  NetworkModel<double> model(setting.predictor, oracle.shape(), 2, nullptr);
+  model.initialize(bench.root.child("network/init"));
+  const Samples<double> data = oracle.labelled(0, kCount);
+  const Batch<double> start = oracle.start();
+  const Batch<double> input =
+      assemble<double>(setting.predictor.inputs, start, data.given, data.y);
+  for (int k = 0; k < 3; ++k) {
+    const Batch<double> away = start + model.forward(input) - data.x;
+    EXPECT_NEAR(out.arrays.at("batch_loss")(0, k),
+                0.5 * away.squaredNorm() / kCount,
+                1e-12);
+    model.parameters() -= 0.1 * model.backward(Batch<double>(away / kCount));
+  }
+  EXPECT_TRUE(Comparator(1e-12, 1e-14)(
+      Vector<double>(out.arrays.at("parameters").col(0)),
+      Vector<double>(model.parameters())));
 }
 
 TEST(Training, BatchesAreSlicesInOrder) {

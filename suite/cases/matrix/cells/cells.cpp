@@ -1,5 +1,6 @@
 #include "suite/cases/matrix/cells/cells.h"
 
+#include "optimizers/training/label_loss.h"
 #include "optimizers/training/newton.h"
 #include "optimizers/training/proxy.h"
 #include "problems/billiards/billiards.h"
@@ -7,6 +8,8 @@
 #include "problems/grid_poisson/grid_poisson.h"
 #include "problems/heat/heat.h"
 #include "problems/kuramoto_sivashinsky/kuramoto_sivashinsky.h"
+#include "problems/marker_flow/marker_flow.h"
+#include "problems/navier_stokes/navier_stokes.h"
 #include "problems/oscillators/oscillators.h"
 #include "problems/poisson/poisson.h"
 #include "problems/quantum_dipole/quantum_dipole.h"
@@ -85,6 +88,7 @@ const std::vector<MatrixMethod>& methods() {
           "adadelta", "Adadelta", AdadeltaOptions{}, {1e-2, 3e-2, 0.1, 0.3, 1}),
       first_order("rmsprop", "RMSprop", RmspropOptions{}, small),
       first_order("adam", "Adam", AdamOptions{}, small),
+      first_order("labels", "Labels, Adam", AdamOptions{}, small, label_loss()),
       first_order("sip",
                   "SIP, Adam",
                   AdamOptions{},
@@ -212,6 +216,31 @@ const std::vector<MatrixProblem>& problems() {
                    .output_scale = 0.25},
        .batch = 32,
        .updates = 300,
+       .rows = false},
+      {.id = "navier-stokes",
+       .title = "Navier-Stokes",
+       .problem = problem<NavierStokes>("navier_stokes"),
+       .setting = {.predictor =
+                       asks({kObserved},
+                            nn::vgg({.channels = 2,
+                                     .grid = {.columns = 32, .rows = 64},
+                                     .features = {16, 32, 32, 32},
+                                     .hidden = {64, 64}}))},
+       .batch = 8,
+       .updates = 100,
+       .rows = false},
+      {.id = "fluid",
+       .title = "Marker flow, 32 x 32",
+       .problem = problem<MarkerFlow>("marker_flow", {.cells = kSide}),
+       .setting = {.predictor = asks({kGiven, kObserved},
+                                     nn::unet({.grid = {kSide, kSide},
+                                               .channels = 2,
+                                               .outputs = 2,
+                                               .padding = nn::Padding::circular,
+                                               .batch_statistics = true,
+                                               .init = nn::Init::uniform}))},
+       .batch = 8,
+       .updates = 200,
        .rows = false}};
   return all;
 }
