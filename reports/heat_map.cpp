@@ -3,23 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <string>
-#include <vector>
+#include <cstdint>
 
 #include "reports/axis.h"
 #include "reports/palette.h"
+#include "reports/png.h"
 
 namespace physinv {
 namespace {
 
-constexpr std::size_t kMostCells = 160;  // a side
-
-struct Cells {
-  std::size_t nx = 0, ny = 0;
-  std::vector<int> color;  // -1: blank
-};
+constexpr std::size_t kMostCells = 512;  // a side
 
 // Mean of what can be shown in a block of the grid; NaN if nothing.
 double block_mean(const Field2D& f,
@@ -42,12 +36,12 @@ double block_mean(const Field2D& f,
   return f.log_scale ? std::pow(10.0, mean) : mean;
 }
 
-Cells color_cells(const Field2D& f, const Axis& scale) {
+Raster color_cells(const Field2D& f, const Axis& scale) {
   const std::size_t sx = 1 + (f.x.size() - 1) / kMostCells;
   const std::size_t sy = 1 + (f.y.size() - 1) / kMostCells;
-  Cells cells{(f.x.size() + sx - 1) / sx, (f.y.size() + sy - 1) / sy, {}};
-  for (std::size_t j = 0; j < cells.ny; ++j) {
-    for (std::size_t i = 0; i < cells.nx; ++i) {
+  Raster cells{(f.x.size() + sx - 1) / sx, (f.y.size() + sy - 1) / sy, {}};
+  for (std::size_t j = cells.height; j-- > 0;) {
+    for (std::size_t i = 0; i < cells.width; ++i) {
       const double v = block_mean(f,
                                   scale,
                                   i * sx,
@@ -55,32 +49,16 @@ Cells color_cells(const Field2D& f, const Axis& scale) {
                                   j * sy,
                                   std::min((j + 1) * sy, f.y.size()));
       if (!scale.shows(v)) {
-        cells.color.push_back(-1);
+        cells.pixels.push_back(0);
         continue;
       }
       const double u = std::clamp(scale.place(v), 0.0, 1.0);
-      cells.color.push_back(
-          std::min(static_cast<int>(u * kFieldColors), kFieldColors - 1));
+      const int color = static_cast<int>(u * kFieldColors);
+      cells.pixels.push_back(
+          static_cast<std::uint8_t>(1 + std::min(color, kFieldColors - 1)));
     }
   }
   return cells;
-}
-
-std::array<std::string, kFieldColors> runs_by_color(const Cells& cells) {
-  std::array<std::string, kFieldColors> paths;
-  for (std::size_t j = 0; j < cells.ny; ++j) {
-    const int* row = cells.color.data() + j * cells.nx;
-    for (std::size_t i = 0; i < cells.nx;) {
-      std::size_t end = i + 1;
-      while (end < cells.nx && row[end] == row[i]) ++end;
-      if (row[i] >= 0) {
-        paths[static_cast<std::size_t>(row[i])] +=
-            fmt::format("M{} {}h{}", i, cells.ny - 1 - j, end - i);
-      }
-      i = end;
-    }
-  }
-  return paths;
 }
 
 void color_bar(Svg& svg,
@@ -114,26 +92,18 @@ void draw_heat_map(
   if (field.values.size() != field.x.size() * field.y.size()) return;
   Axis scale(field.log_scale);
   for (const double v : field.values) scale.include(v);
+  for (const auto& end : {field.min, field.max})
+    if (end) scale.include(*end);
   scale.finish_tight();
-  const Cells cells = color_cells(field, scale);
-  const double cx = w / static_cast<double>(cells.nx);
-  const double cy = h / static_cast<double>(cells.ny);
-  svg.open("g",
-           {{"transform",
-             fmt::format("translate({:.4f} {:.4f}) scale({:.6f} {:.6f})",
-                         x,
-                         y + 0.5 * cy,
-                         cx,
-                         cy)},
-            {"stroke-width", "1.04"},
-            {"shape-rendering", "crispEdges"},
-            {"fill", "none"}});
-  const auto paths = runs_by_color(cells);
-  for (std::size_t k = 0; k < paths.size(); ++k) {
-    if (paths[k].empty()) continue;
-    svg.leaf("path", {{"stroke", field_colors()[k]}, {"d", paths[k]}});
-  }
-  svg.close();
+  svg.leaf(
+      "image",
+      {{"x", svg_number(x)},
+       {"y", svg_number(y)},
+       {"width", svg_number(w)},
+       {"height", svg_number(h)},
+       {"preserveAspectRatio", "none"},
+       {"style", "image-rendering:pixelated"},
+       {"href", data_url(png_of(color_cells(field, scale), field_colors()))}});
   color_bar(svg, field, scale, x + w + 14, y, h);
 }
 

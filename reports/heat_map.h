@@ -6,9 +6,9 @@
 
 namespace physinv {
 
-/// Fills the box with the field, y upwards, and draws its bar to the right
-/// (74 units). Cells of one colour in a row become one stroke, so that a file
-/// stays below about 300 kB. Values that cannot be shown stay blank.
+/// Fills the box with the field, y upwards, as a PNG inside the drawing, a
+/// pixel a cell, and draws its bar to the right (74 units). More than 512 cells
+/// a side are averaged. Values that cannot be shown stay blank.
 void draw_heat_map(
     Svg& svg, const Field2D& field, double x, double y, double w, double h);
 

@@ -365,7 +365,8 @@ std::string report_html(const std::vector<Section>& sections,
       "<meta name=\"viewport\" content=\"width=device-width, "
       "initial-scale=1\"/>\n"
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src "
-      "'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'\"/>\n"
+      "'none'; img-src data:; style-src 'unsafe-inline'; script-src "
+      "'unsafe-inline'\"/>\n"
       "<title>Physics inverse problems: report</title>\n<style>\n";
   out += page_style_sheet();
   out += kPageCss;

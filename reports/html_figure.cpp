@@ -69,13 +69,15 @@ std::string figure_html(const Figure& figure, const std::string& id) {
   const auto legend = legend_of(figure);
   std::string out = fmt::format(
       "<figure id=\"{}\">\n<figcaption>{}</figcaption>\n{}"
-      "<div class=\"panels c{}\">\n",
+      "<div class=\"panels c{}\"{}>\n",
       id,
       caption_html(id, figure.source, figure.title),
       legend_html(legend, palette),
       std::clamp(figure.columns,
                  1,
-                 std::clamp(static_cast<int>(figure.panels.size()), 1, 4)));
+                 std::clamp(static_cast<int>(figure.panels.size()), 1, 4)),
+      figure.moment > 0 ? fmt::format(" data-moment=\"{}\"", figure.moment)
+                        : "");
   for (std::size_t i = 0; i < figure.panels.size(); ++i) {
     const std::string panel_id = fmt::format("{}-panel{}", id, i);
     out += panel_html(figure.panels[i], figure, panel_id, legend, palette);

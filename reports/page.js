@@ -39,6 +39,41 @@
     });
   }
 
+  // ---- films: one moment at a time -----------------------------------------
+  for (const film of document.querySelectorAll('.panels[data-moment]')) {
+    const panels = [...film.children], each = Number(film.dataset.moment);
+    const last = Math.ceil(panels.length / each) - 1;
+    if (last < 1) continue;
+    const bar = document.createElement('p');
+    bar.className = 'film';
+    const play = document.createElement('button');
+    play.type = 'button';
+    const at = document.createElement('input');
+    Object.assign(at, {type: 'range', min: 0, max: last, value: 0});
+    at.setAttribute('aria-label', 'moment');
+    bar.append(play, at);
+    film.before(bar);
+    let timer = 0;
+    const show = (moment) => {
+      at.value = moment;
+      panels.forEach((panel, k) => {
+        panel.style.display =
+          Math.floor(k / each) === Number(at.value) ? '' : 'none';
+      });
+    };
+    const run = (on) => {
+      clearInterval(timer);
+      timer = on ? setInterval(
+        () => show(Number(at.value) === last ? 0 : Number(at.value) + 1),
+        600) : 0;
+      play.textContent = on ? 'Pause' : 'Play';
+    };
+    play.addEventListener('click', () => run(!timer));
+    at.addEventListener('input', () => { run(false); show(at.value); });
+    run(false);
+    show(0);
+  }
+
   // ---- the point next to the pointer --------------------------------------
   const tip = document.createElement('div');
   tip.className = 'tip';

@@ -44,6 +44,7 @@ constexpr std::string_view kFurniture =
     ".m{stroke-width:1.3;stroke-linejoin:round}"
     ".o{stroke-width:1.6;stroke-linejoin:round}"
     ".x{stroke-width:2.2;fill:none}"
+    ".arrow{fill:none;stroke:#fff;stroke-width:1.1;stroke-linecap:round}"
     ".halo{fill:none;stroke-width:4.2;stroke-linejoin:round;opacity:.75}"
     ".grid{stroke-width:.8}.frame{fill:none;stroke-width:1}";
 

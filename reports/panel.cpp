@@ -154,6 +154,7 @@ void PanelPlot::draw(Svg& svg, const Rect& cell) const {
   if (panel_.field && !panel_.field->values.empty()) {
     draw_heat_map(svg, *panel_.field, box.x, box.y, box.w, box.h);
   }
+  if (panel_.arrows) arrows(svg, box, *panel_.arrows);
   curves(svg, box);
   svg.rect("frame", box.x, box.y, box.w, box.h);
   if (!run_) {
@@ -240,6 +241,36 @@ void PanelPlot::curves(Svg& svg, const Rect& box) const {
     if (s.markers || !s.line) markers(svg, dodged(box, s), s, ink);
     close_series(svg);
   }
+}
+
+/// Shafts with two strokes as their heads, in one path; dots where nothing
+/// moves.
+void PanelPlot::arrows(Svg& svg, const Rect& box, const Arrows& of) const {
+  double longest = 0;
+  for (std::size_t i = 0; i < of.u.size(); ++i)
+    longest = std::max(longest, std::hypot(of.u[i], of.v[i]));
+  const double unit =
+      longest > 0 && std::isfinite(longest)
+          ? std::abs(px(box, x_.lo() + of.length) - px(box, x_.lo())) / longest
+          : 0;
+  std::string d;
+  for (std::size_t i = 0; i < of.u.size(); ++i) {
+    const double x = px(box, of.x[i]), y = py(box, of.y[i]);
+    const double u = unit * of.u[i], v = -unit * of.v[i];
+    if (!std::isfinite(u + v + x + y)) continue;
+    d += fmt::format("M{} {}l{} {}",
+                     svg_number(x - u / 2),
+                     svg_number(y - v / 2),
+                     svg_number(u),
+                     svg_number(v));
+    for (const double side : {1.0, -1.0})
+      d += fmt::format("M{} {}l{} {}",
+                       svg_number(x + u / 2),
+                       svg_number(y + v / 2),
+                       svg_number(-0.3 * u + side * 0.15 * v),
+                       svg_number(-0.3 * v - side * 0.15 * u));
+  }
+  svg.path("arrow", d);
 }
 
 // Both axes as "from to log start length": what a script needs to turn places

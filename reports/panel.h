@@ -35,6 +35,7 @@ class PanelPlot {
   std::vector<Tick> y_marks(int wanted) const;
   void furniture(Svg& svg, const Rect& box, const Rect& cell) const;
   void curves(Svg& svg, const Rect& box) const;
+  void arrows(Svg& svg, const Rect& box, const Arrows& of) const;
   void band(Svg& svg, const Rect& box, const Series& s, int color) const;
   void error_bars(Svg& svg, const Rect& box, const Series& s, int color) const;
   void markers(Svg& svg, const Rect& box, const Series& s, Ink ink) const;

@@ -12,8 +12,7 @@ namespace physinv {
 /// Points that are not finite, or not positive on a log axis, leave a gap; a
 /// panel without points reads "not run". Few points with `lo`, `hi` and
 /// markers get error bars, all others a band.
-/// Fields are drawn as if their grid were even along the (log) axes; more
-/// than 160 cells a side are averaged.
+/// Fields are drawn as if their grid were even along the (log) axes.
 std::string render_svg(const Figure& figure);
 
 }  // namespace physinv

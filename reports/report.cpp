@@ -79,7 +79,8 @@ Json to_json(const Panel& p) {
            {"y_min", optional_number(p.y_min)},
            {"y_max", optional_number(p.y_max)},
            {"series", Json::array()},
-           {"field", nullptr}};
+           {"field", nullptr},
+           {"arrows", nullptr}};
   for (const Series& s : p.series) out["series"].push_back(to_json(s));
   if (p.field) {
     out["field"] = {{"label", p.field->label},
@@ -88,7 +89,16 @@ Json to_json(const Panel& p) {
                     {"x_names", p.field->x_names},
                     {"y_names", p.field->y_names},
                     {"y", p.field->y},
+                    {"min", optional_number(p.field->min)},
+                    {"max", optional_number(p.field->max)},
                     {"values", p.field->values}};
+  }
+  if (p.arrows) {
+    out["arrows"] = {{"x", p.arrows->x},
+                     {"y", p.arrows->y},
+                     {"u", p.arrows->u},
+                     {"v", p.arrows->v},
+                     {"length", p.arrows->length}};
   }
   return out;
 }
@@ -244,6 +254,7 @@ nlohmann::ordered_json to_json(const Figure& figure) {
            {"title", figure.title},
            {"source", figure.source},
            {"columns", figure.columns},
+           {"moment", figure.moment},
            {"panels", Json::array()},
            {"note", figure.note}};
   for (const Panel& p : figure.panels) out["panels"].push_back(to_json(p));

@@ -76,6 +76,15 @@ struct Field2D {
   std::vector<std::string> x_names = {}, y_names = {};
   bool log_scale = false;
   std::string label;
+  /// Colours reach at least so far: fields that are compared share a scale.
+  std::optional<double> min = {}, max = {};
+};
+
+/// Vectors (u, v) at points (x, y), drawn over a field; the longest has that
+/// length in units of x.
+struct Arrows {
+  std::vector<double> x, y, u, v;
+  double length = 1;
 };
 
 struct Panel {
@@ -83,6 +92,7 @@ struct Panel {
   bool x_log = false, y_log = false;
   std::vector<Series> series;
   std::optional<Field2D> field;  ///< drawn below the series
+  std::optional<Arrows> arrows = {};
   std::optional<double> y_min, y_max;
 };
 
@@ -93,6 +103,8 @@ struct Figure {
   std::vector<Panel> panels;
   int columns = 2;  ///< panels per row
   std::string note;
+  /// So many panels after each other are one moment of a film; 0: no film.
+  int moment = 0;
 };
 
 /// Whose claim it is: a sentence, number or figure of the paper, or a range

@@ -120,7 +120,7 @@ TEST(ReportHtml, AsksNobodyForAnything) {
   EXPECT_EQ(count(text, "src="), 0U);
   EXPECT_EQ(count(text, "@import"), 0U);
   EXPECT_EQ(count(text, "<link"), 0U);
-  EXPECT_EQ(count(text, "default-src 'none'"), 1U);
+  EXPECT_EQ(count(text, "default-src 'none'; img-src data:;"), 1U);
   static const std::regex kUrl("url\\(([^)]*)\\)");
   for (std::sregex_iterator at(text.begin(), text.end(), kUrl), end; at != end;
        ++at) {
@@ -237,6 +237,19 @@ TEST(ReportHtml, FiguresShareOneStyleAndMarkTheirSeries) {
   EXPECT_NE(between(text, "<figure id=\"jpo-toy-fig2\">", "</figure>")
                 .find("not run"),
             text.npos);
+}
+
+TEST(ReportHtml, FilmsSayHowManyPanelsAreAMoment) {
+  Section films = section("jpo/film");
+  films.figures = {{.id = "film", .panels = {4, Panel{}}, .moment = 2},
+                   {.id = "still", .panels = {4, Panel{}}}};
+  const std::string text = report_html({films}, provenance());
+  EXPECT_EQ(count(text, "data-moment=\"2\""), 1U);
+  EXPECT_EQ(count(text, "data-moment"), 2U);  // and once in the script
+  // Without the script everything can be seen.
+  EXPECT_EQ(count(between(text, "<figure id=\"jpo-film-film\">", "</figure>"),
+                  "<svg viewBox"),
+            4U);
 }
 
 TEST(ReportHtml, NothingIsTakenForMarkup) {

@@ -1,10 +1,15 @@
 #include "reports/plot.h"
 
 #include <gtest/gtest.h>
+#include <png.h>
 
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
+#include <vector>
 
+#include "reports/palette.h"
 #include "tests/reports/xml_check.h"
 
 namespace physinv {
@@ -94,6 +99,95 @@ TEST(RenderSvg, LargeFieldsStaySmall) {
   const std::string svg = render_svg(one_panel(panel));
   EXPECT_EQ(xml_error(svg), "");
   EXPECT_LT(svg.size(), 300'000U);
+}
+
+/// The bytes behind "base64," up to the next quotation mark.
+std::string from_base64(const std::string& svg) {
+  const std::string digits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  const auto begin = svg.find("data:image/png;base64,") + 22;
+  std::string out;
+  unsigned bits = 0, held = 0;
+  for (const char c : svg.substr(begin, svg.find('"', begin) - begin)) {
+    if (c == '=') break;
+    bits = bits << 6U | static_cast<unsigned>(digits.find(c));
+    held += 6;
+    if (held < 8) continue;
+    held -= 8;
+    out += static_cast<char>(bits >> held & 255U);
+  }
+  return out;
+}
+
+struct Pixels {
+  unsigned width = 0, height = 0;
+  std::vector<std::array<std::uint8_t, 4>> rgba;  ///< row by row, from the top
+};
+
+Pixels decoded(const std::string& png) {
+  png_image image = {};
+  image.version = PNG_IMAGE_VERSION;
+  EXPECT_NE(png_image_begin_read_from_memory(&image, png.data(), png.size()), 0)
+      << image.message;
+  image.format = PNG_FORMAT_RGBA;
+  Pixels out{image.width, image.height, {}};
+  out.rgba.resize(std::size_t{image.width} * image.height);
+  EXPECT_NE(png_image_finish_read(&image, nullptr, out.rgba.data(), 0, nullptr),
+            0)
+      << image.message;
+  return out;
+}
+
+std::array<std::uint8_t, 4> color(int k) {
+  const auto rgb = std::stoul(
+      field_colors()[static_cast<std::size_t>(k)].substr(1), nullptr, 16);
+  return {static_cast<std::uint8_t>(rgb >> 16U),
+          static_cast<std::uint8_t>(rgb >> 8U),
+          static_cast<std::uint8_t>(rgb),
+          255};
+}
+
+// A pixel a cell, y upwards; what cannot be shown is transparent.
+TEST(RenderSvg, FieldsArePixels) {
+  Panel panel;
+  panel.field =
+      Field2D{.x = {0, 1, 2}, .y = {0, 1}, .values = {0, 1, kNaN, 0.5, 1, 0}};
+  const Pixels is = decoded(from_base64(render_svg(one_panel(panel))));
+  ASSERT_EQ(is.width, 3U);
+  ASSERT_EQ(is.height, 2U);
+  EXPECT_EQ(is.rgba[0], color(kFieldColors / 2));
+  EXPECT_EQ(is.rgba[1], color(kFieldColors - 1));
+  EXPECT_EQ(is.rgba[2], color(0));
+  EXPECT_EQ(is.rgba[3], color(0));
+  EXPECT_EQ(is.rgba[4], color(kFieldColors - 1));
+  EXPECT_EQ(is.rgba[5][3], 0);
+}
+
+TEST(RenderSvg, FieldsMayShareAScale) {
+  Panel panel;
+  panel.field =
+      Field2D{.x = {0, 1}, .y = {0}, .values = {0, 1}, .min = -1.0, .max = 3.0};
+  const Pixels is = decoded(from_base64(render_svg(one_panel(panel))));
+  EXPECT_EQ(is.rgba[0], color(kFieldColors / 4));
+  EXPECT_EQ(is.rgba[1], color(kFieldColors / 2));
+}
+
+TEST(RenderSvg, ArrowsAreShaftsWithHeads) {
+  Panel panel;
+  panel.field = Field2D{.x = {0, 1}, .y = {0, 1}, .values = {1, 1, 1, 1}};
+  panel.arrows =
+      Arrows{.x = {0, 1, 1}, .y = {0, 1, 0}, .u = {1, 0, kNaN}, .v = {0, 2, 0}};
+  const std::string svg = render_svg(one_panel(panel));
+  EXPECT_EQ(xml_error(svg), "");
+  const auto at = svg.find("class=\"arrow\"");
+  ASSERT_NE(at, svg.npos);
+  const std::string d = svg.substr(at, svg.find("/>", at) - at);
+  EXPECT_EQ(count(d, "M"), 6U);  // of two; the third cannot be shown
+  // The longest points straight up, over its length; the other is half of it,
+  // to the right.
+  EXPECT_EQ(count(d, "l0 -"), 1U);
+  panel.arrows->u = panel.arrows->v = {0, 0, 0};
+  EXPECT_EQ(xml_error(render_svg(one_panel(panel))), "");
 }
 
 TEST(RenderSvg, FieldsOfOneValueOrNoneDoNotCrash) {

@@ -148,16 +148,16 @@ Table hyperparameters(const Results& results, const Published& published) {
   };
   for (const MethodLine& line : rules(published)) {
     const auto stages = trained_stages(results, kName, line.method);
-    TableRow row{.label = line.label};
+    TableRow shown{.label = line.label};
     const std::string printed = "table2/" + line.method;
     if (stages.empty()) {
-      row.cells.assign(3, Cell{.text = kNotRun});
+      shown.cells.assign(3, Cell{.text = kNotRun});
     } else {
-      row.cells = {cell(*stages.front(), "batch", printed + "/b"),
-                   cell(*stages.front(), "rate", printed + "/eta"),
-                   cell(*stages.front(), "tau", printed + "/tau")};
+      shown.cells = {cell(*stages.front(), "batch", printed + "/b"),
+                     cell(*stages.front(), "rate", printed + "/eta"),
+                     cell(*stages.front(), "tau", printed + "/tau")};
     }
-    table.rows.push_back(std::move(row));
+    table.rows.push_back(std::move(shown));
   }
   return table;
 }

@@ -1,4 +1,5 @@
 // Fig. 6 and Figs. 19 to 24 of the JPO paper.
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -7,6 +8,7 @@
 #include "problems/navier_stokes/navier_stokes.h"
 #include "suite/cases/jpo/common/networks.h"
 #include "suite/cases/jpo/common/report.h"
+#include "suite/evidence/plane.h"
 #include "suite/harness/registry.h"
 
 namespace physinv {
@@ -15,57 +17,91 @@ namespace {
 constexpr const char* kName = "jpo/navier-stokes";
 const std::vector<std::string> kChains = {"jpo", "supervised", "na"};
 
-/// Speed in the observed half, two by two cells as one.
-Panel speed(std::string title, const Vector<double>& y) {
+/// The observed half of a flow; obstacles are blank.
+Panel observed(std::string title, const Vector<double>& y) {
   const NavierStokesOptions o;
-  const Index rows = o.cells / 2, plane = o.cells * rows;
+  const Index below = o.cells / 2, rows = o.cells - below;
   const double width = o.box / double(o.cells);
-  const auto at = [&](Index i, Index j) {
-    double sum = 0;
-    for (const Index k : {i * rows + j,
-                          i * rows + j + 1,
-                          (i + 1) * rows + j,
-                          (i + 1) * rows + j + 1})
-      sum += std::hypot(y(k), y(plane + k)) / 4;
-    return sum;
-  };
-  Panel panel{.title = std::move(title), .field = Field2D{.label = "speed"}};
-  for (Index i = 0; i < o.cells; i += 2)
-    panel.field->x.push_back(double(i + 1) * width);
-  for (Index j = 0; j < rows; j += 2) {
-    panel.field->y.push_back(o.box / 2 + double(j + 1) * width);
-    for (Index i = 0; i < o.cells; i += 2)
-      panel.field->values.push_back(at(i, j));
-  }
-  return panel;
+  const PlaneLayout layout{
+      o.cells, rows, rows, 1, width, 0, double(below) * width};
+  const Index half = o.cells * rows;
+  Vector<double> u = y.head(half), v = y.tail(half);
+  for (const fluid::Obstacle& b : o.obstacles)
+    for (Index i = b.i0; i < b.i1; ++i)
+      for (Index j = std::max(b.j0, below); j < b.j1; ++j)
+        u(i * rows + j - below) = std::nan("");
+  return flow(std::move(title), layout, u, v, 4);
 }
 
-/// Fig. 6a, b: what was seen of the first problem, and what estimates make.
-Figure pictures(const JpoMetrics& metrics, const Results& results, Index n) {
-  Figure figure{.id = "fig6ab",
-                .title = "Final flow above the obstacles",
-                .source = "Fig. 6b",
-                .columns = 3,
-                .note =
-                    "Speed, first problem of the largest set of seed 0; "
-                    "four cells are one here."};
-  const CaseRecord* bfgs = results.find_case(kName, "bfgs", n, 0);
-  if (bfgs == nullptr || bfgs->data.y.cols() == 0) return figure;
-  figure.panels.push_back(speed("observed", bfgs->data.y.col(0)));
-  const NavierStokes<double> physics;
-  const auto add = [&](const std::string& title, const StageRecord* stage) {
-    if (stage == nullptr || stage->x.cols() == 0) return;
-    Batch<double> y(bfgs->data.y.rows(), 1);
-    Workspace work;
-    physics.forward(
-        stage->x.leftCols(1), bfgs->data.given.leftCols(1), y, work);
-    figure.panels.push_back(speed(title, y.col(0)));
+/// Estimates of the first problem of seed 0, truth first.
+struct Said {
+  std::string who;
+  Batch<double> x;
+};
+std::vector<Said> said(const JpoMetrics& metrics,
+                       const CaseRecord& first,
+                       Index n) {
+  std::vector<Said> all = {{"truth", first.data.x.leftCols(1)}};
+  const auto add = [&](const std::string& who, const StageRecord* stage) {
+    if (stage != nullptr && stage->x.cols() > 0)
+      all.push_back({who, stage->x.leftCols(1)});
   };
   add("BFGS", metrics.stage("bfgs", n, 0, "solve"));
   for (const auto& method : kChains)
     for (const bool refined : {false, true})
       add(method_title(method) + (refined ? ", refined" : ""),
           metrics.ending(method, n, 0, refined));
+  return all;
+}
+
+/// What an estimate makes of the flow that was given, after so many steps.
+Vector<double> blown(const Batch<double>& x,
+                     const Batch<double>& given,
+                     Index steps) {
+  NavierStokesOptions o;
+  o.end_time *= double(steps) / double(o.steps);
+  o.steps = steps;
+  const NavierStokes<double> physics(o);
+  Batch<double> y(physics.shape().observations, 1);
+  Workspace work;
+  physics.forward(x, given, y, work);
+  return y;
+}
+
+/// Fig. 6a, b: what was seen of the first problem, and what estimates make.
+Figure pictures(const CaseRecord& first, const std::vector<Said>& all) {
+  Figure figure{.id = "fig6ab",
+                .title = "Final flow above the obstacles",
+                .source = "Fig. 6b",
+                .columns = 3,
+                .note =
+                    "Speed, first problem of the largest set of seed 0. "
+                    "The truth blows into the flow that is given, whose "
+                    "lower half is hidden."};
+  figure.panels.push_back(observed("observed", first.data.y.col(0)));
+  const Index steps = NavierStokesOptions{}.steps;
+  for (const auto& [who, x] : all)
+    figure.panels.push_back(
+        observed(who, blown(x, first.data.given.leftCols(1), steps)));
+  share_scale(figure.panels);
+  return figure;
+}
+
+/// The same on its way, for the networks' unrefined answers.
+Figure film(const CaseRecord& first, std::vector<Said> all) {
+  std::erase_if(all, [](const Said& s) { return s.who.ends_with("refined"); });
+  Figure figure{.id = "film",
+                .title = "The blast on its way",
+                .source = "Fig. 6b",
+                .columns = 3,
+                .note = "Every fourth step.",
+                .moment = int(all.size())};
+  for (Index steps = 4; steps <= NavierStokesOptions{}.steps; steps += 4)
+    for (const auto& [who, x] : all)
+      figure.panels.push_back(
+          observed(who + ", step " + std::to_string(steps),
+                   blown(x, first.data.given.leftCols(1), steps)));
+  share_scale(figure.panels);
   return figure;
 }
 
@@ -140,11 +176,15 @@ Section report(const Results& results, const Published& published) {
   const JpoMetrics metrics(results, kName);
   const auto sizes = metrics.sizes();
   if (sizes.empty()) return section;
-  section.figures.insert(
-      section.figures.begin(),
-      {pictures(metrics, results, sizes.back()),
-       curves_with_descent(options, results, published, sizes.back()),
-       over_truth(metrics, results, sizes.front(), "fig19", "Fig. 19")});
+  std::vector<Figure> before = {
+      curves_with_descent(options, results, published, sizes.back()),
+      over_truth(metrics, results, sizes.front(), "fig19", "Fig. 19")};
+  const CaseRecord* first = results.find_case(kName, "bfgs", sizes.back(), 0);
+  if (first != nullptr && first->data.y.cols() > 0) {
+    const auto all = said(metrics, *first, sizes.back());
+    before.insert(before.begin(), {pictures(*first, all), film(*first, all)});
+  }
+  section.figures.insert(section.figures.begin(), before.begin(), before.end());
   if (sizes.size() > 1)
     section.figures.push_back(
         over_truth(metrics, results, sizes.back(), "fig20", "Fig. 20"));

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -5,6 +6,7 @@
 #include "problems/marker_flow/marker_flow.h"
 #include "suite/cases/sip/fluid/fluid.h"
 #include "suite/cases/sip/fluid/metrics.h"
+#include "suite/evidence/plane.h"
 #include "suite/evidence/training_report.h"
 #include "suite/harness/registry.h"
 
@@ -21,21 +23,7 @@ const std::vector<MethodLine> kLines = {
 
 constexpr Index kPlane = kCells * kCells;
 
-/// Two by two cells as one, x to the right.
-Panel picture(std::string title, const Vector<double>& f) {
-  Panel panel{.title = std::move(title), .field = Field2D{}};
-  for (Index a = 1; a < kCells; a += 2) {
-    panel.field->x.push_back(double(a));
-    panel.field->y.push_back(double(a));
-  }
-  for (Index j = 0; j < kCells; j += 2)
-    for (Index i = 0; i < kCells; i += 2) {
-      const Index at = i * kCells + j;
-      panel.field->values.push_back(
-          (f(at) + f(at + 1) + f(at + kCells) + f(at + kCells + 1)) / 4);
-    }
-  return panel;
-}
+constexpr PlaneLayout kLayout{kCells, kCells, kCells, 1};
 
 /// The marker after so many steps.
 Vector<double> carried(const Vector<double>& x,
@@ -50,34 +38,55 @@ Vector<double> carried(const Vector<double>& x,
   return y;
 }
 
-/// A row of Fig. 14: v0, and where it takes the marker.
-void add_row(const std::string& of,
-             const Vector<double>& x,
-             const Vector<double>& marker,
-             Figure& figure) {
-  if (x.size() != 2 * kPlane) return;
-  const auto add = [&](const char* what, const Vector<double>& f) {
-    figure.panels.push_back(picture(of + ", " + what, f));
-  };
-  add("v0, x", x.head(kPlane)), add("v0, y", x.tail(kPlane));
-  add("marker at 1", carried(x, marker, 4));
-  add("marker at 2", carried(x, marker, 8));
+/// First test example of the first seed: who says what, truth first.
+struct Said {
+  std::string who;
+  Vector<double> x, marker;
+};
+std::vector<Said> said(const Variant& variant, const Results& results) {
+  std::vector<Said> all;
+  for (const MethodLine& line : kLines) {
+    const auto answer = first_answer(results, variant.experiment, line.method);
+    if (!answer || answer->x.size() != 2 * kPlane) continue;
+    if (all.empty()) all.push_back({"truth", answer->truth, answer->given});
+    all.push_back({line.label, answer->x, answer->given});
+  }
+  return all;
 }
 
-/// The first test example of the first seed.
-Figure pictures(const Variant& variant, const Results& results) {
+/// A row for each: v0, and where it takes the marker.
+Figure pictures(const std::vector<Said>& all) {
   Figure figure{.id = "fig14",
                 .title = "Velocities found, and where they take the marker",
                 .source = "Fig. 14",
-                .columns = 4,
-                .note = "First test example. Four cells are one here."};
-  for (const MethodLine& line : kLines) {
-    const auto answer = first_answer(results, variant.experiment, line.method);
-    if (!answer) continue;
-    if (figure.panels.empty())
-      add_row("truth", answer->truth, answer->given, figure);
-    add_row(line.label, answer->x, answer->given, figure);
+                .columns = 3,
+                .note = "First test example. Arrows: every fourth cell."};
+  for (const auto& [who, x, marker] : all) {
+    figure.panels.push_back(
+        flow(who + ", v0", kLayout, x.head(kPlane), x.tail(kPlane), 4));
+    for (const Index time : {1, 2})
+      figure.panels.push_back(plane(who + ", marker at " + std::to_string(time),
+                                    kLayout,
+                                    carried(x, marker, 4 * time)));
   }
+  return figure;
+}
+
+/// The same, step by step.
+Figure film(const std::vector<Said>& all) {
+  Figure figure{.id = "film",
+                .title = "The marker on its way",
+                .source = "Fig. 14",
+                .columns = int(std::min<std::size_t>(all.size(), 4)),
+                .note = "First test example, after 0 to 8 steps.",
+                .moment = int(all.size())};
+  for (Index step = 0; step <= 8; ++step)
+    for (const auto& [who, x, marker] : all)
+      figure.panels.push_back(
+          plane(who + ", step " + std::to_string(step),
+                kLayout,
+                step == 0 ? marker : carried(x, marker, step)));
+  share_scale(figure.panels);
   return figure;
 }
 
@@ -90,8 +99,10 @@ Section section_of(const Variant& variant, const Results& results) {
   curves.metric(
       kLines, kVortex, "|s - s*|", "vortex", "Errors of the vortex", "");
   curves.losses(kLines, "losses", "Losses of the marker", "");
-  if (Figure fields = pictures(variant, results); !fields.panels.empty())
-    section.figures.push_back(std::move(fields));
+  if (const auto all = said(variant, results); !all.empty()) {
+    section.figures.push_back(pictures(all));
+    section.figures.push_back(film(all));
+  }
   return section;
 }
 

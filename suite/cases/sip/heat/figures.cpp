@@ -11,6 +11,7 @@
 #include "suite/cases/sip/heat/metrics.h"
 #include "suite/evidence/cell.h"
 #include "suite/evidence/curve.h"
+#include "suite/evidence/plane.h"
 #include "suite/evidence/statistics.h"
 #include "suite/evidence/training_report.h"
 #include "suite/harness/registry.h"
@@ -139,20 +140,10 @@ Figure direct(const Results& results) {
               "zero as in the paper. Means over the same test examples."};
 }
 
-/// Every other cell, as the mean of four.
+/// Row by row, from below.
 Panel picture(std::string title, const Vector<double>& field) {
   const auto side = static_cast<Index>(std::lround(std::sqrt(field.size())));
-  Panel panel{.title = std::move(title), .field = Field2D{}};
-  for (Index i = 0; i < side; i += 2) {
-    panel.field->x.push_back(double(i) + 1);
-    panel.field->y.push_back(double(i) + 1);
-    for (Index j = 0; j < side; j += 2)
-      panel.field->values.push_back(
-          (field(side * i + j) + field(side * i + j + 1) +
-           field(side * (i + 1) + j) + field(side * (i + 1) + j + 1)) /
-          4);
-  }
-  return panel;
+  return plane(std::move(title), {side, side, 1, side}, field);
 }
 
 /// The first test example of the first seed.
@@ -161,7 +152,7 @@ Figure pictures(const Results& results) {
                 .title = "What was there, what is seen, what is found",
                 .source = "Fig. 10",
                 .columns = 3,
-                .note = "First test example. Four cells are one here."};
+                .note = "First test example."};
   auto lines = networks();
   lines.insert(lines.end(), kDirect.begin(), kDirect.end());
   for (const MethodLine& line : lines) {

@@ -3,6 +3,7 @@
 
 #include "suite/cases/sip/poisson/metrics.h"
 #include "suite/cases/sip/poisson/poisson.h"
+#include "suite/evidence/plane.h"
 #include "suite/evidence/training_report.h"
 #include "suite/harness/registry.h"
 
@@ -24,38 +25,24 @@ const std::vector<MethodLine> kLines = {
     {"hf-10-b8", "Hessian-free, 10 products", Hue::grey},
     {"fno-b8", "FNO, batch 8", Hue::pink}};
 
-/// Two by two cells as one.
-Panel picture(const Plane& plane, std::string title, const Vector<double>& x) {
-  Panel panel{.title = std::move(title), .field = Field2D{}};
-  for (Index j = 0; j + 1 < plane.columns; j += 2)
-    panel.field->x.push_back(double(j) + 1);
-  for (Index i = 0; i + 1 < plane.rows; i += 2) {
-    panel.field->y.push_back(double(i) + 1);
-    for (Index j = 0; j + 1 < plane.columns; j += 2) {
-      const Index at = plane.columns * i + j;
-      panel.field->values.push_back((x(at) + x(at + 1) + x(at + plane.columns) +
-                                     x(at + plane.columns + 1)) /
-                                    4);
-    }
-  }
-  return panel;
-}
-
 /// The first test example of the first seed.
 Figure pictures(const Plane& plane, const Results& results) {
   Figure figure{.id = "fields",
                 .title = "What was there, what is seen, what is found",
                 .source = "Fig. 9",
                 .columns = 3,
-                .note = "First test example. Four cells are one here."};
+                .note = "First test example."};
+  const PlaneLayout layout{plane.columns, plane.rows, 1, plane.columns};
   for (const MethodLine& line : kLines) {
     const auto answer = first_answer(results, plane.experiment, line.method);
     if (!answer) continue;
     if (figure.panels.empty()) {
-      figure.panels.push_back(picture(plane, "truth x*", answer->truth));
-      figure.panels.push_back(picture(plane, "observed y", answer->wanted));
+      figure.panels.push_back(
+          physinv::plane("truth x*", layout, answer->truth));
+      figure.panels.push_back(
+          physinv::plane("observed y", layout, answer->wanted));
     }
-    figure.panels.push_back(picture(plane, line.label, answer->x));
+    figure.panels.push_back(physinv::plane(line.label, layout, answer->x));
   }
   return figure;
 }
