@@ -196,7 +196,7 @@ TEST(SourcesContract, EditsMakeStaleWhoUsesThem) {
   edits("problems/kuramoto_sivashinsky/etdrk2.cpp",
         "(jpo|matrix|numerics)/kuramoto-sivashinsky.*");
   edits("problems/marker_flow/frequency_loss.cpp",
-        "(sip|matrix)/fluid.*|numerics/marker-flow/.*");
+        "(sip|matrix)/fluid.*|numerics/(marker-flow|transport)/.*");
   edits("optimizers/bfgs.cpp", "jpo/.* (solve|refine)");
   edits("optimizers/half_inverse/tridiagonalize.cpp",
         "(hig|numerics/half-inverse).*|(jpo|matrix)/.*/(gn|hig)/.*");
