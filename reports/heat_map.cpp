@@ -14,6 +14,8 @@ namespace physinv {
 namespace {
 
 constexpr std::size_t kMostCells = 512;  // a side
+/// Pixels a side at least, several for a cell: some programs smooth pictures.
+constexpr std::size_t kPixels = 256;
 
 // Mean of what can be shown in a block of the grid; NaN if nothing.
 double block_mean(const Field2D& f,
@@ -61,6 +63,16 @@ Raster color_cells(const Field2D& f, const Axis& scale) {
   return cells;
 }
 
+/// Every pixel as a block of `times` by `times`.
+Raster enlarged(const Raster& cells, std::size_t times) {
+  Raster out{cells.width * times, cells.height * times, {}};
+  out.pixels.reserve(out.width * out.height);
+  for (std::size_t j = 0; j < out.height; ++j)
+    for (std::size_t i = 0; i < out.width; ++i)
+      out.pixels.push_back(cells.pixels[j / times * cells.width + i / times]);
+  return out;
+}
+
 void color_bar(Svg& svg,
                const Field2D& field,
                const Axis& scale,
@@ -95,6 +107,9 @@ void draw_heat_map(
   for (const auto& end : {field.min, field.max})
     if (end) scale.include(*end);
   scale.finish_tight();
+  const Raster cells = color_cells(field, scale);
+  const std::size_t times =
+      1 + (kPixels - 1) / std::max(cells.width, cells.height);
   svg.leaf(
       "image",
       {{"x", svg_number(x)},
@@ -103,7 +118,7 @@ void draw_heat_map(
        {"height", svg_number(h)},
        {"preserveAspectRatio", "none"},
        {"style", "image-rendering:pixelated"},
-       {"href", data_url(png_of(color_cells(field, scale), field_colors()))}});
+       {"href", data_url(png_of(enlarged(cells, times), field_colors()))}});
   color_bar(svg, field, scale, x + w + 14, y, h);
 }
 

@@ -7,8 +7,8 @@
 namespace physinv {
 
 /// Fills the box with the field, y upwards, as a PNG inside the drawing, a
-/// pixel a cell, and draws its bar to the right (74 units). More than 512 cells
-/// a side are averaged. Values that cannot be shown stay blank.
+/// block of pixels a cell, and draws its bar to the right (74 units). More than
+/// 512 cells a side are averaged. Values that cannot be shown stay blank.
 void draw_heat_map(
     Svg& svg, const Field2D& field, double x, double y, double w, double h);
 

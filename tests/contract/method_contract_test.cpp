@@ -213,7 +213,8 @@ TEST_P(MethodContract, KeepsTheBestWhereItPromisesTo) {
 
 // The same method on a problem with a known optimum.
 TEST_P(MethodContract, LowersAQuadratic) {
-  for (const auto& stage : make(3, 1).method->chain) {
+  const Case own = make(3, 1);  // keeps its experiment
+  for (const auto& stage : own.method->chain) {
     const auto algorithm = option(stage->options(), "algorithm");
     if (algorithm == "diagnostic" || algorithm == "prior_guess")
       GTEST_SKIP() << "looks or guesses instead of solving";
@@ -232,7 +233,7 @@ TEST_P(MethodContract, LowersAQuadratic) {
   experiment->setting.surrogate = {{Field::unknowns, Field::given}, net};
   experiment->setting.output_form = OutputForm::linear;
   experiment->setting.gtol = Setting{}.gtol;  // that of others is their loss's
-  if (!contains(experiment->problem.provided, make(3, 1).method->needs()))
+  if (!contains(experiment->problem.provided, own.method->needs()))
     GTEST_SKIP() << "needs what the quadratic does not provide";
   const Case c =
       small_case(experiment, GetParam().method, 16, 600, Precision::f64);

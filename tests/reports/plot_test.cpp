@@ -138,6 +138,24 @@ Pixels decoded(const std::string& png) {
   return out;
 }
 
+/// The middle of each block, of which there are nx x ny; blocks have one
+/// colour.
+Pixels decoded(const std::string& png, unsigned nx, unsigned ny) {
+  const Pixels fine = decoded(png);
+  const unsigned times = fine.width / nx;
+  EXPECT_EQ(fine.width, nx * times);
+  EXPECT_EQ(fine.height, ny * times);
+  Pixels out{nx, ny, {}};
+  for (unsigned j = 0; j < ny; ++j)
+    for (unsigned i = 0; i < nx; ++i)
+      out.rgba.push_back(fine.rgba[(j * times + times / 2) * fine.width +
+                                   i * times + times / 2]);
+  for (std::size_t at = 0; at < fine.rgba.size(); ++at)
+    EXPECT_EQ(fine.rgba[at],
+              out.rgba[at / fine.width / times * nx + at % fine.width / times]);
+  return out;
+}
+
 std::array<std::uint8_t, 4> color(int k) {
   const auto rgb = std::stoul(
       field_colors()[static_cast<std::size_t>(k)].substr(1), nullptr, 16);
@@ -147,14 +165,12 @@ std::array<std::uint8_t, 4> color(int k) {
           255};
 }
 
-// A pixel a cell, y upwards; what cannot be shown is transparent.
+// A block a cell, y upwards; what cannot be shown is transparent.
 TEST(RenderSvg, FieldsArePixels) {
   Panel panel;
   panel.field =
       Field2D{.x = {0, 1, 2}, .y = {0, 1}, .values = {0, 1, kNaN, 0.5, 1, 0}};
-  const Pixels is = decoded(from_base64(render_svg(one_panel(panel))));
-  ASSERT_EQ(is.width, 3U);
-  ASSERT_EQ(is.height, 2U);
+  const Pixels is = decoded(from_base64(render_svg(one_panel(panel))), 3, 2);
   EXPECT_EQ(is.rgba[0], color(kFieldColors / 2));
   EXPECT_EQ(is.rgba[1], color(kFieldColors - 1));
   EXPECT_EQ(is.rgba[2], color(0));
@@ -167,7 +183,7 @@ TEST(RenderSvg, FieldsMayShareAScale) {
   Panel panel;
   panel.field =
       Field2D{.x = {0, 1}, .y = {0}, .values = {0, 1}, .min = -1.0, .max = 3.0};
-  const Pixels is = decoded(from_base64(render_svg(one_panel(panel))));
+  const Pixels is = decoded(from_base64(render_svg(one_panel(panel))), 2, 1);
   EXPECT_EQ(is.rgba[0], color(kFieldColors / 4));
   EXPECT_EQ(is.rgba[1], color(kFieldColors / 2));
 }
