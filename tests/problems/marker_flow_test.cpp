@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <complex>
+#include <numbers>
 
 #include "suite/core/threads.h"
 #include "tests/support/bits.h"
@@ -93,6 +96,52 @@ TEST(MarkerFlow, LossGradientIsTheDerivative) {
   Vector<double> none(2);
   problem.loss(s.y, s.y, none);
   EXPECT_EQ(none, Vector<double>::Zero(2));
+}
+
+/// L over all modes, by plain sums, without its floor.
+double loss_of_all_modes(const FrequencyLoss& loss,
+                         const Vector<double>& difference,
+                         Index n,
+                         double threshold) {
+  const Vector<double> d = difference.array() - difference.mean();
+  double sum = 0;
+  for (Index k = -n / 2; k < n / 2; ++k)
+    for (Index l = -n / 2; l < n / 2; ++l) {
+      std::complex<double> mode = 0;
+      for (Index i = 0; i < n; ++i)
+        for (Index j = 0; j < n; ++j)
+          mode +=
+              d(i * n + j) * std::polar(1.0,
+                                        -2 * std::numbers::pi *
+                                            double(k * i + l * j) / double(n));
+      const double at = loss.weight(k, l) * std::abs(mode);
+      sum += std::sqrt(std::max(at * at, threshold));
+    }
+  return sum - loss.floor();
+}
+
+// Modes too small to count are left out: the same loss, whatever the size.
+TEST(FrequencyLoss, LeavesOutWhatCannotCount) {
+  const Index n = 16;
+  const double threshold = 1e-5;
+  const FrequencyLoss loss(n, 20, threshold);
+  for (const double size : {1e-3, 1.0, 1e6}) {
+    const Vector<double> difference = size * rough(n * n, 1, 11).col(0);
+    const double all = loss_of_all_modes(loss, difference, n, threshold);
+    EXPECT_NEAR(loss(difference, nullptr), all, 1e-12 * all) << size;
+  }
+}
+
+// Of densities between 0 and 1 on the experiment's grid.
+TEST(FrequencyLoss, TransformsFewModes) {
+  const MarkerFlowOptions o;
+  const FrequencyLoss loss(o.cells, o.falloff, o.threshold);
+  const double most = double(o.cells * o.cells);
+  Index count = 0;
+  for (Index k = -o.cells / 2; k < o.cells / 2; ++k)
+    for (Index l = -o.cells / 2; l < o.cells / 2; ++l)
+      count += loss.weight(k, l) * most > std::sqrt(o.threshold) ? 1 : 0;
+  EXPECT_EQ(count, 61);
 }
 
 template <class T>
