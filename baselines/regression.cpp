@@ -30,6 +30,7 @@ class Passes {
     at_ += count;
     return {order_.data() + at_ - count, count};
   }
+  void keep(Archive& archive) { archive(order_, at_, pass_); }
 
  private:
   void shuffle() {
@@ -87,6 +88,8 @@ class Labels final : public Signal<T> {
     return model_.backward(residual_);
   }
 
+  void keep(Archive& archive) override { archive(passes_, loss_); }
+
   void leave(Outcome& out) const override {
     out.arrays["training_loss"] = Batch<double>::Constant(1, 1, loss_);
   }
@@ -108,7 +111,7 @@ class Labels final : public Signal<T> {
     return shown_;
   }
 
-  const Probe& probe_;
+  Probe& probe_;
   NetworkModel<T>& model_;
   Lessons<T> all_;
   Passes passes_;

@@ -56,6 +56,9 @@ class JointLoss final : public Signal<T> {
     return model_.backward(gradient_);
   }
 
+  /// The next look makes the rest.
+  void keep(Archive& archive) override { archive(best_); }
+
   const Batch<T>& x() const { return x_; }
   const Batch<T>& best() const { return best_.x(); }
 

@@ -39,6 +39,7 @@ class MetricsRecorder {
   bool empty() const { return values_.rows() == 0; }
   /// The estimates x (n columns) as they stand now.
   void operator()(VectorIn<double> parameters, BatchIn<double> x);
+  void keep(Archive& archive) { archive(values_); }
   /// Rows x points of the curve.
   const Batch<double>& values() const { return values_; }
 

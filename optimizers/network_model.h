@@ -66,6 +66,9 @@ class NetworkModel {
   /// counted work.
   void predict(BatchIn<T> input, BatchOut<T> output);
 
+  /// After `warm_up`, if the input is bound.
+  void keep(Archive& archive) { archive(parameters_, state_, fresh_); }
+
   const Tape& tape() const { return tape_; }
   Workspace& workspace() { return work_; }
   Vector<T>& parameters() { return parameters_; }

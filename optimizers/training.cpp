@@ -100,7 +100,8 @@ Outcome fit(const TrainingOptions& options, StageRun& run) {
                                  .signal = *signal,
                                  .rule = *rule,
                                  .batches = &batches,
-                                 .estimate = estimate},
+                                 .estimate = estimate,
+                                 .keep = [&](Archive& a) { a(metrics); }},
                                 run);
 
   out.x.resize(shape.unknowns, run.oracle.count());

@@ -8,6 +8,7 @@
 #pragma once
 
 #include "optimizers/steps/simd.h"
+#include "suite/core/archive.h"
 #include "suite/core/batch.h"
 #include "suite/core/check.h"
 
@@ -58,6 +59,7 @@ class Adadelta {
 
   /// Forgets both means.
   void reset() { started_ = false; }
+  void keep(Archive& archive) { archive(a_, c_, started_); }
 
  private:
   Options options_;

@@ -11,6 +11,7 @@
 
 #include <vector>
 
+#include "suite/core/archive.h"
 #include "suite/core/network.h"
 #include "suite/core/recipe.h"
 
@@ -39,6 +40,8 @@ class AdaHessian {
             VectorIn<T> gradient,
             VectorOut<T> curvature,
             VectorOut<T> to);
+
+  void keep(Archive& archive) { archive(m_, v_, steps_); }
 
  private:
   AdaHessianOptions options_;

@@ -12,6 +12,7 @@
 #include <limits>
 
 #include "optimizers/steps/simd.h"
+#include "suite/core/archive.h"
 #include "suite/core/batch.h"
 #include "suite/core/check.h"
 
@@ -38,6 +39,7 @@ class Adam {
 
   /// Forgets the moments; the next step is a first one.
   void reset() { steps_ = 0; }
+  void keep(Archive& archive) { archive(m_, v_, steps_); }
 
  private:
   Options options_;

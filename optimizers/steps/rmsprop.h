@@ -6,6 +6,7 @@
 #pragma once
 
 #include "optimizers/steps/simd.h"
+#include "suite/core/archive.h"
 #include "suite/core/batch.h"
 #include "suite/core/check.h"
 
@@ -51,6 +52,7 @@ class Rmsprop {
 
   /// Forgets the mean square.
   void reset() { started_ = false; }
+  void keep(Archive& archive) { archive(a_, started_); }
 
  private:
   Options options_;

@@ -42,6 +42,10 @@ class UpdateStep {
     std::visit([&](auto& rule) { rule.step(x, gradient, to); }, rule_);
   }
 
+  void keep(Archive& archive) {
+    std::visit([&](auto& rule) { rule.keep(archive); }, rule_);
+  }
+
   /// That the rule keeps.
   Index numbers_per_parameter() const {
     return std::visit(

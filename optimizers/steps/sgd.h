@@ -3,6 +3,7 @@
 #pragma once
 
 #include "optimizers/steps/simd.h"
+#include "suite/core/archive.h"
 #include "suite/core/batch.h"
 #include "suite/core/check.h"
 
@@ -45,6 +46,7 @@ class Sgd {
 
   /// Forgets the momentum.
   void reset() { started_ = false; }
+  void keep(Archive& archive) { archive(u_, started_); }
 
  private:
   Options options_;

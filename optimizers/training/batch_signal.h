@@ -27,6 +27,9 @@ class BatchSignal : public Signal<T> {
   void gauss_newton_product(const Vector<T>& direction,
                             Vector<T>& product) override;
   double objective() override;
+  void keep(Archive& archive) override {
+    archive(losses_, late_, late_samples_);
+  }
   void leave(Outcome& out) const override;
   std::size_t bytes() const override;
 

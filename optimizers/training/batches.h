@@ -28,6 +28,9 @@ class Batches {
   /// From now on labelled samples, with their solutions.
   void keep_labels();
 
+  /// Which batch is next; the samples follow from the case.
+  void keep(Archive& archive) { archive(drawn_, at_); }
+
   Index size() const { return size_; }
   /// Problems used so far, those of earlier stages included.
   Index drawn() const { return drawn_; }

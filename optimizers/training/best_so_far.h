@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "suite/core/batch.h"
+#include "suite/core/archive.h"
 
 namespace physinv {
 
@@ -32,6 +32,7 @@ class BestSoFar {
   }
 
   const Batch<T>& x() const { return x_; }
+  void keep(Archive& archive) { archive(x_, loss_); }
 
  private:
   Batch<T> x_;

@@ -14,6 +14,7 @@ class FirstOrder : public Rule<T> {
       : model_(model), step_(options) {}
 
   bool operator()(Signal<T>& signal) override;
+  void keep(Archive& archive) override { step_.keep(archive); }
   std::size_t bytes() const override;
 
  protected:

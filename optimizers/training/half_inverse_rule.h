@@ -20,6 +20,9 @@ class HalfInverseRule final : public Rule<T> {
       : model_(model), step_(options, threads) {}
 
   bool operator()(Signal<T>& signal) override;
+  void keep(Archive& archive) override {
+    archive(kept_, smallest_, path_, unproven_);
+  }
   void leave(Outcome& out) const override;
   std::size_t bytes() const override { return step_.bytes(); }
 

@@ -39,6 +39,11 @@ struct HessianFreeReport {
   double before = 0, after = 0;  ///< the objective
   Index chosen = 0;
   std::vector<Index> stored;  ///< iterates
+
+  void keep(Archive& archive) {
+    archive(model, damping, next_damping, rho, alpha, before, after);
+    archive(chosen, stored);
+  }
 };
 
 template <class T>
@@ -49,6 +54,9 @@ class HessianFreeRule final : public Rule<T> {
 
   /// False if objective or gradient are not finite, or what follows from them.
   bool operator()(Signal<T>& signal) override;
+  void keep(Archive& archive) override {
+    archive(damping_, start_, reports_, stored_);
+  }
   void leave(Outcome& out) const override;
   std::size_t bytes() const override;
 

@@ -7,6 +7,61 @@
 
 namespace physinv {
 
+namespace {
+
+/// Everything that the updates to come depend on, and what was found so far,
+/// between an update and the look after it.
+template <class T>
+class State {
+ public:
+  State(const Training<T>& training, StageRun& run)
+      : training_(training), run_(run) {}
+
+  void take_up() {
+    if (run_.checkpoint == nullptr) return;
+    auto last = run_.checkpoint->last();
+    if (!last) return;
+    keep(*last);
+    SUITE_CHECK(last->at_end(), "a state of another training");
+  }
+
+  void lay_down() {
+    Probe& probe = run_.probe;
+    if (run_.checkpoint == nullptr || !run_.checkpoint->due() ||
+        probe.iteration() == probe.iterations())
+      return;
+    probe.pause();
+    Archive archive;
+    keep(archive);
+    run_.checkpoint->lay_down(probe.iteration(), archive);
+    probe.resume();
+  }
+
+  /// Of model and signal, wherever they ran.
+  Counts counts() const {
+    Counts all = earlier_;
+    all += training_.model.counts();
+    all += training_.signal.counts();
+    return all;
+  }
+
+ private:
+  void keep(Archive& archive) {
+    Counts all = counts();
+    archive(all, run_.probe, run_.oracle);
+    archive(training_.model, training_.signal, training_.rule);
+    if (training_.batches != nullptr) archive(*training_.batches);
+    if (training_.keep) training_.keep(archive);
+    if (archive.reading()) earlier_ = all;
+  }
+
+  const Training<T>& training_;
+  StageRun& run_;
+  Counts earlier_;
+};
+
+}  // namespace
+
 template <class T>
 Outcome run_training(const Training<T>& training, StageRun& run) {
   Signal<T>& signal = training.signal;
@@ -24,6 +79,8 @@ Outcome run_training(const Training<T>& training, StageRun& run) {
 
   probe.begin_warmup();
   signal.warm_up();
+  State<T> state(training, run);
+  state.take_up();
   probe.begin();
   look();
   while (probe.proceed(training.estimate)) {
@@ -33,6 +90,7 @@ Outcome run_training(const Training<T>& training, StageRun& run) {
     const Vector<T>& theta = training.model.parameters();
     probe.trace(theta.data(),
                 sizeof(T) * static_cast<std::size_t>(theta.size()));
+    if (!probe.stopped()) state.lay_down();
     look();
   }
 
@@ -41,8 +99,7 @@ Outcome run_training(const Training<T>& training, StageRun& run) {
   out.bytes = training.model.bytes();
   signal.leave(out);
   training.rule.leave(out);
-  run.oracle.add(training.model.counts());
-  run.oracle.add(signal.counts());
+  run.oracle.add(state.counts());
   return out;
 }
 

@@ -23,8 +23,13 @@ struct Training {
   Batches<T>* batches;  ///< null: the signal sees all samples every time
   /// Estimates of the case's problems, when a point of the curve is due.
   std::function<void(BatchOut<double> x)> estimate;
+  /// What `estimate` collects, if it does.
+  std::function<void(Archive& archive)> keep = {};
 };
 
+/// With a checkpoint, goes on from the state that is there and lays one down
+/// when due: same bits as without.
+///
 /// Leaves everything but the estimates. Ends with status diverged when the
 /// signal has nothing to learn from, or the rule refuses an update.
 template <class T>

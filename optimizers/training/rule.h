@@ -15,6 +15,8 @@ class Rule {
   /// False if the update was not taken, and nothing changed.
   virtual bool operator()(Signal<T>& signal) = 0;
 
+  /// What the next update depends on, and what is left at the end.
+  virtual void keep(Archive& archive) = 0;
   /// Adds arrays to what the stage leaves.
   virtual void leave(Outcome&) const {}
   virtual std::size_t bytes() const = 0;

@@ -50,6 +50,9 @@ class Signal {
   /// The next products need a new gradient.
   virtual double objective();
 
+  /// Between two updates: what later ones depend on, and what is left at the
+  /// end; counts are kept by the loop.
+  virtual void keep(Archive& archive) = 0;
   /// Adds arrays to what the stage leaves.
   virtual void leave(Outcome&) const {}
   virtual Counts counts() const { return {}; }

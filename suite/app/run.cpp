@@ -28,7 +28,7 @@ struct RunFlags {
   Selection selection;
   Habits habits;
   CampaignOptions campaign;
-  std::string out, budget;
+  std::string out, budget, checkpoint;
   int jobs = 0;
   bool dry = false;
 
@@ -48,6 +48,11 @@ struct RunFlags {
         {"--resume,!--fresh",
          "reuse finished stages (default), or run the selected cases again",
          &campaign.resume},
+        {"--checkpoint",
+         "how often a stage under way lays its state down, to go on from there "
+         "should it be killed (default 60 s)",
+         &checkpoint,
+         "TIME"},
         {"--dry-run", "say what would run and what is reused", &dry},
         {"--trace",
          "record a hash of all iterates of the stages that run",
@@ -63,6 +68,9 @@ struct RunFlags {
     habits.apply(selection);
     if (!budget.empty())
       campaign.time_budget = parse_duration("--time-budget", budget);
+    if (!checkpoint.empty())
+      campaign.checkpoint_seconds =
+          parse_duration("--checkpoint", checkpoint);
     campaign.out = out.empty() ? "results/" + selection.profile : out;
   }
 

@@ -3,6 +3,8 @@
 
 #include <ctime>
 
+#include "suite/core/archive.h"
+
 namespace physinv {
 
 struct Seconds {
@@ -39,6 +41,12 @@ class Stopwatch {
     running_ = false;
   }
   bool running() const { return running_; }
+  /// What was taken up counts too.
+  void keep(Archive& archive) {
+    Seconds sum = total();
+    archive(sum);
+    if (archive.reading()) total_ += sum;
+  }
   Seconds total() const {
     Seconds sum = total_;
     if (running_) sum += now() - since_;

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "suite/core/batch.h"
+#include "suite/core/archive.h"
 
 namespace physinv {
 
@@ -16,6 +16,9 @@ struct Curve {
   Batch<double> x;     ///< (unknowns * tracked examples) x points
 
   Index points() const { return static_cast<Index>(iteration.size()); }
+  void keep(Archive& archive) {
+    archive(iteration, seconds, evaluations, loss, x);
+  }
 };
 
 }  // namespace physinv

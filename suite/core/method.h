@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "suite/core/checkpoint.h"
 #include "suite/core/recipe.h"
 #include "suite/core/stop.h"
 
@@ -102,6 +103,7 @@ struct StageRun {
   Index iterations;
   Precision precision;
   Threads* threads;
+  Checkpoint* checkpoint = nullptr;  ///< for stages that lay their state down
 };
 
 /// Size of a case, for estimates of work.

@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 
+#include "suite/core/archive.h"
 #include "suite/core/problem.h"
 #include "suite/core/recipe.h"
 
@@ -65,6 +66,11 @@ class Oracle {
   void measure(BatchIn<double> x, VectorOut<double> loss);
 
   const Counts& counts() const;
+  /// What was counted; everything else follows from the case.
+  void keep(Archive& archive) {
+    counts();
+    archive(counts_);
+  }
   /// Adds counts a method keeps itself (network passes, work it skipped).
   void add(Counter counter, Index n);
   void add(const Counts& counts) { counts_ += counts; }

@@ -123,6 +123,12 @@ const Curve& Probe::curve() {
   return curve_;
 }
 
+void Probe::keep(Archive& archive) {
+  curve();  // the points alone, without room for more
+  archive(iteration_, next_, trajectory_, curve_);
+  archive(setup_, warmup_, solve_, measure_);
+}
+
 Clocks Probe::clocks() const {
   return {setup_.total(), warmup_.total(), solve_.total(), measure_.total()};
 }

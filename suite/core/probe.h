@@ -9,6 +9,7 @@
 
 #include "suite/core/clock.h"
 #include "suite/core/curve.h"
+#include "suite/core/hash.h"
 
 namespace physinv {
 
@@ -55,6 +56,7 @@ class Probe {
 
   /// No more iterations: the next `proceed` measures and ends.
   void stop() { stopped_ = true; }
+  bool stopped() const { return stopped_; }
   void end();
 
   void pause() { solve_.stop(); }
@@ -64,14 +66,20 @@ class Probe {
   Index iterations() const { return iterations_; }
   const Curve& curve();
   Clocks clocks() const;
+  /// Not of solvers that go example by example.
+  void keep(Archive& archive);
 
   /// Told of every point of the curve, the clock stopped meanwhile.
   using Observer = std::function<void(Index iteration, VectorIn<double> loss)>;
   void set_observer(Observer observer) { observer_ = std::move(observer); }
 
   void set_trace(Trace trace) { trace_ = std::move(trace); }
-  bool traced() const { return static_cast<bool>(trace_); }
-  void trace(const void* data, std::size_t bytes) const {
+  /// Hashes what is traced.
+  void follow() { follows_ = true; }
+  std::uint64_t trajectory() const { return trajectory_; }
+  bool traced() const { return follows_ || trace_; }
+  void trace(const void* data, std::size_t bytes) {
+    if (follows_) trajectory_ = hash_bytes(data, bytes, trajectory_);
     if (trace_) trace_(data, bytes);
   }
 
@@ -90,6 +98,8 @@ class Probe {
   Vector<double> loss_;
   std::vector<Index> reached_;  ///< points each example has, with `accept`
   Curve curve_;
+  bool follows_ = false;
+  std::uint64_t trajectory_ = hash_text("trajectory");
   Trace trace_;
   Observer observer_;
 };

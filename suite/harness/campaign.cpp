@@ -15,6 +15,7 @@
 #include "suite/harness/keys.h"
 #include "suite/harness/run_case.h"
 #include "suite/harness/workers.h"
+#include "suite/results/errors.h"
 #include "suite/results/store.h"
 
 namespace physinv {
@@ -99,7 +100,7 @@ class Campaign {
  private:
   /// Sorts the cases into those to run and those the store already holds.
   void plan() {
-    if (!options_.resume) store_.forget(names_);
+    if (!options_.resume) forget();
     std::vector<CaseInfo> infos;
     std::vector<PlannedCase> campaign = options_.campaign;
     for (const Case& c : cases_) {
@@ -113,7 +114,32 @@ class Campaign {
         continue;
       }
       const std::size_t stages = take_stored(i).size();
-      if (stages < cases_[i].info.stages.size()) queue_.push_back(i);
+      if (stages == cases_[i].info.stages.size()) continue;
+      queue_.push_back(i);
+      find_state(i, stages);
+    }
+  }
+
+  void forget() {
+    store_.forget(names_);
+    for (const Case& c : cases_)
+      for (const auto& key : c.info.keys) store_.drop_state(key);
+  }
+
+  /// Is the next stage of a case half done? What is damaged goes.
+  void find_state(std::size_t i, std::size_t stage) {
+    const CaseInfo& info = cases_[i].info;
+    try {
+      const auto state = store_.state(info.keys[stage]);
+      if (!state) return;
+      ++result_.stages_continued;
+      progress_.say(fmt::format("going on with {} {} from iteration {}",
+                                info.name,
+                                info.stages[stage],
+                                state->iteration));
+    } catch (const StoreError& error) {
+      progress_.say(error.what());
+      store_.drop_state(info.keys[stage]);
     }
   }
 
@@ -156,7 +182,9 @@ class Campaign {
                                 available_cores(),
                      .trace = options_.trace,
                      .disturb = options_.disturb,
-                     .revision = revision_});
+                     .revision = revision_,
+                     .checkpoints = {.store = options_.out,
+                                     .seconds = options_.checkpoint_seconds}});
     while (stop_signal == 0) {
       hand_out(workers);
       if (running_.empty()) break;

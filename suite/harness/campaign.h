@@ -34,6 +34,8 @@ struct CampaignOptions {
   /// holds of these cases, and of no other, is deleted first.
   bool resume = true;
   bool trace = false;  ///< record hashes of all iterates
+  /// Seconds between the states that a stage under way lays down.
+  double checkpoint_seconds = 60;
   /// Run with data one ulp off, as `prepare` drew them.
   bool disturb = false;
   /// The unsharded campaign, in order; empty if it is this one.
@@ -57,6 +59,7 @@ struct CampaignResult {
   std::size_t stages_run = 0, stages_reused = 0;
   std::vector<std::string> failed;   ///< "case: why"
   std::vector<std::string> not_run;  ///< names, out of time or interrupted
+  std::size_t stages_continued = 0;  ///< from a checkpoint
   Origins origins;
   std::vector<CaseRecord> cases;  ///< all of the store, without curves
   bool interrupted = false;

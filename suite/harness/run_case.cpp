@@ -118,12 +118,14 @@ void run_case(const Case& c,
       if (hooks.started) hooks.started(position);
       try {
         record = blank(c, position, options.revision);
+        CheckpointFile checkpoint(options.checkpoints, record);
         run_stage(c,
                   static_cast<std::size_t>(position),
                   previous,
                   options.trace,
                   observer(hooks),
                   threads,
+                  options.checkpoints.store.empty() ? nullptr : &checkpoint,
                   record);
         record.crowded = options.crowded;
         record.finished = utc_now();

@@ -8,6 +8,7 @@
 
 #include "suite/core/threads.h"
 #include "suite/harness/case.h"
+#include "suite/harness/checkpoint_file.h"
 
 namespace physinv {
 
@@ -16,6 +17,7 @@ struct RunOptions {
   bool trace = false;    ///< hash every iterate
   bool disturb = false;  ///< data one ulp off, see `disturb_data`
   std::string revision;  ///< for the record
+  CheckpointOptions checkpoints = {};
 };
 
 /// The precision in which most of a case is computed: what an ulp of its data

@@ -78,6 +78,7 @@ void run_stage(const Case& c,
                bool trace,
                const Probe::Observer& observer,
                Threads* threads,
+               Checkpoint* checkpoint,
                StageRecord& record) {
   const Stage& stage = *c.method->chain[position];
   const Setting setting = setting_for(stage, c.experiment->setting);
@@ -86,12 +87,7 @@ void run_stage(const Case& c,
   Probe probe(oracle,
               c.stage_iterations[position],
               tracked_examples(oracle.shape().unknowns));
-  std::uint64_t trajectory = hash_text("trajectory");
-  if (trace) {
-    probe.set_trace([&trajectory](const void* data, std::size_t bytes) {
-      trajectory = hash_bytes(data, bytes, trajectory);
-    });
-  }
+  if (trace) probe.follow();
   if (observer) probe.set_observer(observer);
   StageRun run{.oracle = oracle,
                .probe = probe,
@@ -103,12 +99,13 @@ void run_stage(const Case& c,
                                     hex64(hash_text(recipe_text(c, position)))),
                .iterations = c.stage_iterations[position],
                .precision = c.info.precision,
-               .threads = threads};
+               .threads = threads,
+               .checkpoint = checkpoint};
   Outcome out = stage.run(run);
   probe.end();
   check_outcome(out, oracle);
   fill(record, c, out, oracle, probe);
-  if (trace) record.trajectory = hex64(trajectory);
+  if (trace) record.trajectory = hex64(probe.trajectory());
   previous = std::move(out);
 }
 

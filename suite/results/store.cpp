@@ -32,6 +32,8 @@ Store::Store(const fs::path& directory) : catalog_(directory) {
   make_directory(directory / "cases");
   remove_leftovers(directory);
   remove_leftovers(directory / "cases");
+  if (fs::exists(directory / "checkpoints"))
+    remove_leftovers(directory / "checkpoints");
   if (exists(directory)) {
     catalog_ = Catalog::read(directory);
     journal_ = Journal::resume(catalog_.journal_path(), catalog_.journal());
@@ -94,6 +96,7 @@ void Store::append(const CaseInfo& info,
                      .data_hash = data.hash,
                      .arrays_hash = hash};
   journal_.append(entry);
+  if (has_result(record)) drop_state(record.key);
   entry.stage.x = record.x;
   entry.stage.loss = record.loss;
   entry.stage.status = record.status;
@@ -107,6 +110,14 @@ CaseFile& Store::open_case(const std::string& name, const fs::path& path) {
   const bool there = catalog_.knows_case(name) && fs::exists(path);
   return open_.emplace(name, there ? CaseFile(path, name) : CaseFile(name))
       .first->second;
+}
+
+std::optional<StageState> Store::state(const std::string& key) const {
+  return read_state(state_path(catalog_.directory(), key));
+}
+
+void Store::drop_state(const std::string& key) {
+  remove_file(state_path(catalog_.directory(), key));
 }
 
 void Store::set_plan(const std::vector<CaseInfo>& cases,

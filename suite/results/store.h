@@ -2,7 +2,7 @@
 ///
 ///   journal.jsonl  what has finished (the truth)   cases/<case>.h5  its arrays
 ///   plan.json      what was asked for              results.json     derived
-///   lock           held by the writer
+///   lock           held by the writer     checkpoints/  see stage_state.h
 ///
 /// A stage's arrays are on disk before its line, so that the process may be
 /// killed at any moment: what `append` returned for is there, complete, once.
@@ -18,6 +18,7 @@
 
 #include "suite/results/catalog.h"
 #include "suite/results/plan.h"
+#include "suite/results/stage_state.h"
 
 namespace physinv {
 
@@ -49,6 +50,11 @@ class Store {
   void append(const CaseInfo& info,
               const CaseData& data,
               const StageRecord& record);
+
+  /// The state of a stage under way; nothing if there is none. StoreError if
+  /// it is damaged.
+  std::optional<StageState> state(const std::string& key) const;
+  void drop_state(const std::string& key);
 
   /// What is asked for, see plan.h, beside what was asked for earlier.
   void set_plan(const std::vector<CaseInfo>& cases,

@@ -11,8 +11,10 @@
 #include <vector>
 
 #include "problems/navier_stokes/navier_stokes.h"
+#include "suite/harness/run_stage.h"
 #include "suite/nn/mlp.h"
 #include "tests/support/bits.h"
+#include "tests/support/memory_checkpoint.h"
 #include "tests/support/quadratic.h"
 #include "tests/support/registered.h"
 
@@ -55,6 +57,43 @@ ExperimentPtr brief(const ExperimentPtr& experiment) {
 /// What learns from other problems may overflow on these.
 bool own_losses(const StageRecord& r) {
   return option(r.options, "algorithm") != "training";
+}
+
+/// Both runs of every stage: one that lays its state down after `update`
+/// updates, and, where it did, one that goes on from there.
+struct Continued {
+  std::vector<StageRecord> first, second;
+  std::vector<bool> taken_up;
+};
+
+Continued run_twice(const Case& c, Index update) {
+  Continued both;
+  std::optional<Outcome> previous;
+  Threads pool(1);
+  for (std::size_t i = 0; i < c.method->chain.size(); ++i) {
+    MemoryCheckpoint checkpoint(update);
+    const auto one = [&](std::vector<StageRecord>& to) {
+      std::optional<Outcome> from = previous;
+      StageRecord record;
+      record.case_name = c.info.name;
+      record.stage = c.info.stages[i];
+      run_stage(c, i, from, true, {}, &pool, &checkpoint, record);
+      to.push_back(std::move(record));
+      return from;
+    };
+    auto outcome = one(both.first);
+    if (checkpoint.state) outcome = one(both.second);
+    if (!checkpoint.state) both.second.push_back(both.first.back());
+    both.taken_up.push_back(checkpoint.taken_up);
+    previous = std::move(outcome);
+  }
+  return both;
+}
+
+/// Trainings can be long: they go on from the middle.
+bool trains(const StageRecord& r) {
+  return r.stage == "fit" && r.iterations == 5 &&
+         option(r.options, "step") != "";
 }
 
 class MethodContract : public testing::TestWithParam<Cell> {
@@ -150,12 +189,17 @@ TEST_P(MethodContract, CurvesHoldEveryExampleAtEveryPoint) {
 TEST_P(MethodContract, RepeatsItselfForAnyThreadsAndWhenResumed) {
   for (const auto precision : precisions()) {
     const Case c = make(3, 5, precision);
-    const auto once = run(c), again = run(c), threaded = run(c, {}, 3);
-    ASSERT_EQ(once.size(), again.size());
+    const auto once = run(c), threaded = run(c, {}, 3);
+    const Continued again = run_twice(c, 2);
+    ASSERT_EQ(once.size(), again.first.size());
     ASSERT_EQ(once.size(), threaded.size());
     for (std::size_t i = 0; i < once.size(); ++i) {
-      expect_same(once[i], again[i]);
+      expect_same(once[i], again.first[i]);
+      expect_same(once[i], again.second[i]);
       expect_same(once[i], threaded[i]);
+      if (trains(once[i])) {
+        EXPECT_TRUE(again.taken_up[i]);
+      }
     }
     if (once.size() < 2) continue;
     const auto rest = run(c, {once.front()});

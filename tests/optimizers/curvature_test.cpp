@@ -6,6 +6,7 @@
 #include "optimizers/training/proxy.h"
 #include "problems/exponential/exponential.h"
 #include "suite/nn/mlp.h"
+#include "tests/support/memory_checkpoint.h"
 #include "tests/support/quadratic.h"
 
 namespace physinv::test {
@@ -62,13 +63,18 @@ TEST(CurvatureRules, HessianFreeNeverRaisesTheObjective) {
   EXPECT_LE(iterations.maxCoeff(), 20);
 }
 
-TEST(CurvatureRules, RepeatThemselves) {
+TEST(CurvatureRules, RepeatThemselvesAlsoFromTheMiddle) {
   const auto expect_same = [](const auto& stage) {
-    const auto parameters = [&] {
-      StageBench bench = bench_of(*stage, 4);
-      return bench.run(nullptr, Precision::f32).arrays.at("parameters");
+    const auto found = [&](Checkpoint* checkpoint) {
+      StageBench bench = bench_of(*stage, 5);
+      bench.checkpoint = checkpoint;
+      return bench.run(nullptr, Precision::f32).arrays;
     };
-    EXPECT_EQ(parameters(), parameters());
+    MemoryCheckpoint after_two(2);
+    const auto once = found(nullptr);
+    EXPECT_EQ(once, found(&after_two));
+    EXPECT_EQ(once, found(&after_two));
+    EXPECT_TRUE(after_two.taken_up);
   };
   expect_same(stage_of(kAdaHessian));
   expect_same(stage_of(kHessianFree));

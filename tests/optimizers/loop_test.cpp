@@ -33,6 +33,8 @@ class Falling final : public Signal<double> {
     return gradient_;
   }
 
+  void keep(Archive&) override {}
+
   Index patience = 100, gradients = 0;
   double pull = 1;
   std::vector<bool> looks;

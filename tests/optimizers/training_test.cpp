@@ -8,6 +8,7 @@
 #include "suite/core/oracle.h"
 #include "suite/core/probe.h"
 #include "tests/support/bits.h"
+#include "tests/support/memory_checkpoint.h"
 #include "tests/support/quadratic.h"
 #include "tests/support/tolerance.h"
 
@@ -139,6 +140,53 @@ TEST(Training, ChainsContinue) {
   const Outcome after = second.run(&before);
   EXPECT_TRUE(same_bits(before.x, after.x));
   EXPECT_EQ(after.arrays.at("samples_drawn")(0, 0), 20);
+}
+
+TEST(Training, GoesOnFromTheMiddle) {
+  std::vector<TrainingOptions> all;
+  for (const StepOptions& step : std::initializer_list<StepOptions>{
+           AdamOptions{.rate = 1e-2},
+           SgdOptions{.rate = 1e-2, .momentum = 0.9},
+           AdagradOptions{.rate = 1e-2},
+           AdadeltaOptions{.rate = 1},
+           RmspropOptions{.rate = 1e-2}})
+    all.push_back({.rule = step, .batch = 4});
+  all.push_back({.rule = HalfInverseStepOptions{}, .batch = 4});
+  TrainingOptions fresh = adam(5);
+  fresh.fresh = true;
+  fresh.chunk = 2;
+  fresh.late = {.name = "late", .share = 0.9, .of = [](auto x, auto) {
+                  return x.squaredNorm();
+                }};
+  all.push_back(fresh);
+  for (const TrainingOptions& options : all) {
+    const auto stage = train(options);
+    SCOPED_TRACE(stage->options()[5].second);
+    for (const auto precision : {Precision::f32, Precision::f64}) {
+      const auto found = [&](Checkpoint* checkpoint) {
+        StageBench bench(*stage, kCount, 20);
+        bench.checkpoint = checkpoint;
+        auto arrays = bench.run(nullptr, precision).arrays;
+        arrays["curve"] = bench.probe.curve().x;
+        return arrays;
+      };
+      MemoryCheckpoint after(11);
+      const auto once = found(nullptr);
+      EXPECT_EQ(once, found(&after));
+      EXPECT_EQ(after.at, 11);
+      EXPECT_EQ(once, found(&after));
+      EXPECT_TRUE(after.taken_up);
+    }
+  }
+}
+
+TEST(Training, ALaidDownStateOfAnotherTrainingIsRefused) {
+  MemoryCheckpoint after(1);
+  const auto one = train(adam(4)), other = train({.rule = SgdOptions{}});
+  StageBench first(*one, kCount, 3), second(*other, kCount, 3);
+  first.checkpoint = second.checkpoint = &after;
+  first.run();
+  EXPECT_THROW(second.run(), ContractError);
 }
 
 TEST(Training, MetricsAreTakenAtEveryPointOfTheCurve) {

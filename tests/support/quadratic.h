@@ -155,7 +155,8 @@ struct StageBench {
                  .method = root.child("method"),
                  .iterations = probe.iterations(),
                  .precision = precision,
-                 .threads = nullptr};
+                 .threads = nullptr,
+                 .checkpoint = checkpoint};
     return stage_.run(run);
   }
 
@@ -185,6 +186,7 @@ struct StageBench {
   Oracle oracle;
   Probe probe;
   std::vector<std::vector<char>> trace;
+  Checkpoint* checkpoint = nullptr;
 
  private:
   const Stage& stage_;

@@ -134,7 +134,8 @@ class Base : public Stage {
   Needs needs_;
 };
 
-/// Gradient descent in double from the start, or from the stage before.
+/// Gradient descent in double from the start, or from the stage before, or from
+/// where it was.
 class Descend final : public Base {
  public:
   Descend(std::string name, double rate)
@@ -146,6 +147,11 @@ class Descend final : public Base {
         run.previous != nullptr ? run.previous->x : run.oracle.start();
     Batch<double> gradient(x.rows(), x.cols());
     Vector<double> loss(x.cols());
+    const auto keep = [&](Archive& archive) {
+      archive(x, gradient, run.probe, run.oracle);
+    };
+    if (run.checkpoint != nullptr)
+      if (auto last = run.checkpoint->last()) keep(*last);
     run.probe.begin_warmup();
     if (planted("more work"))
       run.oracle.evaluate<double>(run.oracle.all(), x, loss, gradient);
@@ -155,6 +161,11 @@ class Descend final : public Base {
         x.col(i) -= rate_ * gradient.col(i);
       });
       run.probe.trace(x.data(), static_cast<std::size_t>(x.size()) * 8);
+      if (run.checkpoint != nullptr && run.checkpoint->due()) {
+        Archive archive;
+        keep(archive);
+        run.checkpoint->lay_down(run.probe.iteration(), archive);
+      }
       nap(pace());
     }
     if (planted("NaN in a loss"))

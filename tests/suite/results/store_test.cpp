@@ -43,6 +43,33 @@ TEST(CaseFile, KeepsEveryBit) {
   }
 }
 
+TEST(StageState, ComesBackOrIsNamedAsDamaged) {
+  TemporaryDirectory out;
+  const fs::path path = state_path(out / "store", "abc");
+  EXPECT_FALSE(read_state(path));
+  const StageState state{"a/case", "fit", 12, std::string("\0b\ny\0te", 7)};
+  write_state(path, state);
+  const auto back = read_state(path);
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->case_name, state.case_name);
+  EXPECT_EQ(back->stage, state.stage);
+  EXPECT_EQ(back->iteration, state.iteration);
+  EXPECT_EQ(back->bytes, state.bytes);
+
+  const auto bytes = read_file(path);
+  const auto is_damaged = [&](const std::string& wrong) {
+    write_file(path, wrong);
+    return contains(message_of<StoreError>([&] { read_state(path); }),
+                    "abc is damaged");
+  };
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    auto wrong = bytes;
+    wrong[i] = static_cast<char>(wrong[i] ^ (1 << (i % 8)));
+    ASSERT_TRUE(is_damaged(wrong)) << i;
+    ASSERT_TRUE(is_damaged(bytes.substr(0, i))) << i;
+  }
+}
+
 TEST(CaseFile, EveryFlippedBitIsFound) {
   TemporaryDirectory out;
   const auto info = sample_case("jpo", 2, 3);

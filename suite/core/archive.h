@@ -1,0 +1,85 @@
+/// The state of something under way as bytes, and back. Each part says once
+/// what it keeps, for both ways:
+///
+///   void keep(Archive& archive) { archive(m_, v_, steps_); }
+///
+/// Numbers stand as they lie in memory: for the build that wrote them.
+#pragma once
+
+#include <cstring>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "suite/core/batch.h"
+#include "suite/core/check.h"
+
+namespace physinv {
+
+class Archive {
+ public:
+  /// Collects.
+  Archive() = default;
+  /// Gives back what another collected.
+  explicit Archive(std::string bytes)
+      : bytes_(std::move(bytes)), reading_(true) {}
+
+  template <class... Parts>
+  void operator()(Parts&... parts) {
+    (one(parts), ...);
+  }
+
+  bool reading() const { return reading_; }
+  const std::string& bytes() const { return bytes_; }
+  /// Everything was given back.
+  bool at_end() const { return at_ == bytes_.size(); }
+
+ private:
+  template <class Part>
+  void one(Part& part) {
+    if constexpr (requires { part.keep(*this); }) {
+      part.keep(*this);
+    } else {
+      static_assert(std::is_trivially_copyable_v<Part>);
+      raw(&part, sizeof(Part));
+    }
+  }
+
+  template <class T, int rows, int cols, int options>
+  void one(Eigen::Matrix<T, rows, cols, options>& matrix) {
+    Index r = matrix.rows(), c = matrix.cols();
+    (*this)(r, c);
+    matrix.resize(r, c);
+    raw(matrix.data(), sizeof(T) * static_cast<std::size_t>(matrix.size()));
+  }
+
+  template <class T>
+  void one(std::vector<T>& list) {
+    std::size_t size = list.size();
+    one(size);
+    list.resize(size);
+    if constexpr (std::is_arithmetic_v<T>) {
+      raw(list.data(), sizeof(T) * size);
+    } else {
+      for (T& entry : list) one(entry);
+    }
+  }
+
+  void raw(void* data, std::size_t size) {
+    if (size == 0) return;
+    if (!reading_) {
+      bytes_.append(static_cast<const char*>(data), size);
+      return;
+    }
+    SUITE_CHECK(size <= bytes_.size() - at_, "a state is too short");
+    std::memcpy(data, bytes_.data() + at_, size);
+    at_ += size;
+  }
+
+  std::string bytes_;
+  std::size_t at_ = 0;
+  bool reading_ = false;
+};
+
+}  // namespace physinv

@@ -1,0 +1,32 @@
+/// Checkpoints of a worker: states in files (suite/results/stage_state.h).
+#pragma once
+
+#include <filesystem>
+
+#include "suite/core/checkpoint.h"
+#include "suite/results/record.h"
+
+namespace physinv {
+
+struct CheckpointOptions {
+  std::filesystem::path store;  ///< empty: no checkpoints
+  double seconds = 60;          ///< between two of a stage
+};
+
+class CheckpointFile final : public Checkpoint {
+ public:
+  /// Of the stage whose record this will be.
+  CheckpointFile(const CheckpointOptions& options, const StageRecord& stage);
+
+  std::optional<Archive> last() override;
+  bool due() override;
+  /// A disk that is full costs the checkpoint, not the stage.
+  void lay_down(Index iteration, const Archive& state) override;
+
+ private:
+  std::filesystem::path path_;
+  double seconds_, last_;
+  const StageRecord& stage_;
+};
+
+}  // namespace physinv

@@ -1,0 +1,32 @@
+/// The state of a stage under way, in a file of a campaign's directory:
+///
+///   checkpoints/<content key>   <8 hexadecimal digits: CRC-32C of the rest>
+///                               <compact JSON>\n<bytes>
+///
+/// Written by the one who runs the stage, deleted once its record is there.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "suite/core/batch.h"
+
+namespace physinv {
+
+struct StageState {
+  std::string case_name, stage;
+  Index iteration = 0;
+  std::string bytes;  ///< as the stage's Archive has them
+};
+
+std::filesystem::path state_path(const std::filesystem::path& store,
+                                 const std::string& key);
+
+/// On disk when it returns, in place of what was there.
+void write_state(const std::filesystem::path& path, const StageState& state);
+
+/// Nothing if there is no such file; StoreError if it is damaged.
+std::optional<StageState> read_state(const std::filesystem::path& path);
+
+}  // namespace physinv

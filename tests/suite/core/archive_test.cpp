@@ -1,0 +1,79 @@
+// Bytes in, the same state out.
+
+#include "suite/core/archive.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "tests/support/bits.h"
+
+namespace physinv::test {
+namespace {
+
+struct Inner {
+  std::vector<double> values;
+  bool on = false;
+  void keep(Archive& archive) { archive(values, on); }
+};
+
+struct Outer {
+  Batch<float> matrix;
+  Vector<double> vector;
+  std::vector<Inner> parts;
+  long count = 0;
+  void keep(Archive& archive) { archive(matrix, vector, parts, count); }
+};
+
+Outer example() {
+  Outer o;
+  o.matrix.setRandom(3, 5);
+  o.matrix(1, 2) = std::numeric_limits<float>::quiet_NaN();
+  o.vector.setRandom(7);
+  o.parts = {{{1, 2, 3}, true}, {}};
+  o.count = -4;
+  return o;
+}
+
+TEST(Archive, GivesBackWhatItCollected) {
+  Outer from = example();
+  Archive collected;
+  collected(from);
+  EXPECT_FALSE(collected.reading());
+
+  Outer to;
+  to.vector.setOnes(2);
+  Archive archive(collected.bytes());
+  EXPECT_TRUE(archive.reading());
+  EXPECT_FALSE(archive.at_end());
+  archive(to);
+  EXPECT_TRUE(archive.at_end());
+  EXPECT_TRUE(same_bits(from.matrix, to.matrix));
+  EXPECT_TRUE(same_bits(from.vector, to.vector));
+  ASSERT_EQ(to.parts.size(), 2U);
+  EXPECT_EQ(to.parts[0].values, from.parts[0].values);
+  EXPECT_TRUE(to.parts[0].on);
+  EXPECT_TRUE(to.parts[1].values.empty());
+  EXPECT_EQ(to.count, -4);
+}
+
+TEST(Archive, EmptyMatricesKeepTheirShapes) {
+  Batch<double> from(4, 0), to;
+  Archive collected;
+  collected(from);
+  Archive(collected.bytes())(to);
+  EXPECT_EQ(to.rows(), 4);
+  EXPECT_EQ(to.cols(), 0);
+}
+
+TEST(Archive, RefusesAStateThatIsTooShort) {
+  Outer from = example();
+  Archive collected;
+  collected(from);
+  Archive archive(collected.bytes().substr(0, collected.bytes().size() - 1));
+  Outer to;
+  EXPECT_THROW(archive(to), std::logic_error);
+}
+
+}  // namespace
+}  // namespace physinv::test
