@@ -69,8 +69,7 @@ struct RunFlags {
     if (!budget.empty())
       campaign.time_budget = parse_duration("--time-budget", budget);
     if (!checkpoint.empty())
-      campaign.checkpoint_seconds =
-          parse_duration("--checkpoint", checkpoint);
+      campaign.checkpoint_seconds = parse_duration("--checkpoint", checkpoint);
     campaign.out = out.empty() ? "results/" + selection.profile : out;
   }
 

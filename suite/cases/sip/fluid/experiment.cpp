@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "optimizers/classical.h"
 #include "optimizers/local_steps.h"
 #include "optimizers/training.h"
 #include "optimizers/training/proxy.h"
@@ -29,6 +30,7 @@ Method trained(std::string id, Index batch, SignalRecipe signal) {
 }
 
 /// The authors' batch is 64. inverse: the analytic estimate, fed with itself.
+/// lbfgsb, gd: every example by itself, from no velocity.
 std::vector<Method> methods() {
   std::vector<Method> all;
   for (const Index batch : {64, 16, 4}) {
@@ -40,6 +42,8 @@ std::vector<Method> methods() {
       {.id = "inverse",
        .chain = {local_steps(
            {.step = LocalStep::inverse_simulator, .rate = 1, .paths = 0})}});
+  all.push_back({.id = "lbfgsb", .chain = {lbfgsb_solve()}});
+  all.push_back({.id = "gd", .chain = {gradient_descent_solve()}});
   return all;
 }
 
@@ -60,14 +64,20 @@ std::vector<Profile> profiles(const Variant& variant) {
         {.name = "quick", .rows = {inverse}},
         {.name = "standard", .rows = {inverse}},
         {.name = "paper", .rows = {row({"sip"}, kTest, 2, kUpdates), inverse}}};
-  const Row small = row({"sip-b16", "adam-b16"}, 32, 1, 300);
+  // The script's L-BFGS-B makes 16 iterations.
+  const std::vector<Row> small = {row({"sip-b16", "adam-b16"}, 32, 1, 300),
+                                  row({"lbfgsb"}, 32, 1, 16),
+                                  row({"gd"}, 32, 1, 100),
+                                  inverse};
+  std::vector<Row> whole = small;
+  whole.push_back(row({"sip", "adam"}, kTest, 2, kUpdates));
   return {{.name = "smoke",
            .rows = {row({"sip-b4", "adam-b4"}, 4, 1, 5),
-                    row({"inverse"}, 4, 1, 2)}},
-          {.name = "quick", .rows = {small, inverse}},
-          {.name = "standard", .rows = {small, inverse}},
-          {.name = "paper",
-           .rows = {row({"sip", "adam"}, kTest, 2, kUpdates), small, inverse}}};
+                    row({"inverse", "lbfgsb", "gd"}, 4, 1, 2)}},
+          {.name = "quick", .rows = small},
+          {.name = "standard", .rows = small},
+          {.name = "paper", .rows = whole},
+          {.name = "long", .rows = {row({"sip", "adam"}, kTest, 1, kLong)}}};
 }
 
 Experiment experiment(const Variant& variant) {

@@ -6,7 +6,8 @@
 
 namespace physinv::fluid_case {
 
-inline constexpr Index kCells = 64;  ///< per side
+inline constexpr Index kCells = 64;    ///< per side
+inline constexpr Index kLong = 20000;  ///< updates of the authors' plots
 
 struct Variant {
   const char *experiment, *title;
