@@ -35,6 +35,11 @@ struct Counted {
   Verdicts paper, suite;
 };
 
+/// What was decided counts before what was only reported.
+int weight(std::string_view verdict) {
+  return verdict == "not judged" ? 0 : verdict == "reported" ? 1 : 2;
+}
+
 void count(const Json& section, std::map<std::string, Counted>& papers) {
   const std::string experiment = section.at("experiment");
   for (const Json& claim : section.at("claims")) {
@@ -43,7 +48,7 @@ void count(const Json& section, std::map<std::string, Counted>& papers) {
         claim.at("origin") == "paper" ? counted.paper : counted.suite;
     const std::string verdict = claim.at("verdict");
     auto& entry = verdicts[{experiment, claim.at("id").get<std::string>()}];
-    if (entry.empty() || verdict != "not judged") entry = verdict;
+    if (entry.empty() || weight(verdict) >= weight(entry)) entry = verdict;
   }
 }
 

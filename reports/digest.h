@@ -27,8 +27,9 @@ struct NamedDigest {
 
 /// Markdown: how many of each paper's claims are reproduced, then every
 /// campaign with its machine, build, date and command, its claims and tables.
-/// Where campaigns judge the same claim, the last one that could decides the
-/// count. std::runtime_error if a digest lacks what it should have.
+/// Where campaigns judge the same claim, the last one that decided it counts,
+/// and what was decided before what was only reported. std::runtime_error if a
+/// digest lacks what it should have.
 std::string results_markdown(const std::vector<NamedDigest>& campaigns);
 
 }  // namespace physinv

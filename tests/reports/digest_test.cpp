@@ -54,7 +54,7 @@ TEST(Digest, PageSaysWhereItsNumbersComeFrom) {
     EXPECT_NE(page.find(words), page.npos) << words << "\n" << page;
 }
 
-TEST(Digest, TheLastCampaignThatCouldJudgeCounts) {
+TEST(Digest, TheLastCampaignThatDecidedCounts) {
   const auto page = [](Verdict first, Verdict second) {
     return results_markdown({named("a", first, Verdict::reproduced),
                              named("b", second, Verdict::reproduced)});
@@ -68,6 +68,10 @@ TEST(Digest, TheLastCampaignThatCouldJudgeCounts) {
                      "| jpo | 0 | 1 | 0 | 0 | 1 |"));
   EXPECT_TRUE(counts(page(Verdict::not_judged, Verdict::not_judged),
                      "| jpo | 0 | 0 | 1 | 0 | 1 |"));
+  EXPECT_TRUE(counts(page(Verdict::not_reproduced, Verdict::reported),
+                     "| jpo | 0 | 1 | 0 | 0 | 1 |"));
+  EXPECT_TRUE(counts(page(Verdict::reported, Verdict::not_judged),
+                     "| jpo | 0 | 0 | 0 | 1 | 1 |"));
 }
 
 TEST(Digest, WhatIsNotJudgedIsNamedByWhatIsMissing) {
