@@ -132,7 +132,6 @@ class Campaign {
     try {
       const auto state = store_.state(info.keys[stage]);
       if (!state) return;
-      ++result_.stages_continued;
       progress_.say(fmt::format("going on with {} {} from iteration {}",
                                 info.name,
                                 info.stages[stage],

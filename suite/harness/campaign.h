@@ -59,7 +59,6 @@ struct CampaignResult {
   std::size_t stages_run = 0, stages_reused = 0;
   std::vector<std::string> failed;   ///< "case: why"
   std::vector<std::string> not_run;  ///< names, out of time or interrupted
-  std::size_t stages_continued = 0;  ///< from a checkpoint
   Origins origins;
   std::vector<CaseRecord> cases;  ///< all of the store, without curves
   bool interrupted = false;
