@@ -27,9 +27,9 @@ class State {
 
   void lay_down() {
     Probe& probe = run_.probe;
-    if (run_.checkpoint == nullptr || !run_.checkpoint->due() ||
-        probe.iteration() == probe.iterations())
-      return;
+    const bool ends =
+        probe.stopped() || probe.iteration() == probe.iterations();
+    if (run_.checkpoint == nullptr || ends || !run_.checkpoint->due()) return;
     probe.pause();
     Archive archive;
     keep(archive);
@@ -90,7 +90,7 @@ Outcome run_training(const Training<T>& training, StageRun& run) {
     const Vector<T>& theta = training.model.parameters();
     probe.trace(theta.data(),
                 sizeof(T) * static_cast<std::size_t>(theta.size()));
-    if (!probe.stopped()) state.lay_down();
+    state.lay_down();
     look();
   }
 

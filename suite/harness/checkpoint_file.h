@@ -10,7 +10,7 @@ namespace physinv {
 
 struct CheckpointOptions {
   std::filesystem::path store;  ///< empty: no checkpoints
-  double seconds = 60;          ///< between two of a stage
+  double seconds = 0;           ///< between two of a stage
 };
 
 class CheckpointFile final : public Checkpoint {

@@ -14,8 +14,8 @@ namespace physinv {
 
 /// The stage at `position` of a chain; `previous` is the outcome of the stage
 /// before it, if there is one, and becomes this one's. With `trace`, the record
-/// gets a hash of every iterate. `observer` may be empty,
-/// `checkpoint` null.
+/// gets a hash of every iterate. `observer` may be empty, `checkpoint`
+/// null.
 void run_stage(const Case& c,
                std::size_t position,
                std::optional<Outcome>& previous,

@@ -93,7 +93,7 @@ Continued run_twice(const Case& c, Index update) {
 /// Trainings can be long: they go on from the middle.
 bool trains(const StageRecord& r) {
   return r.stage == "fit" && r.iterations == 5 &&
-         option(r.options, "step") != "";
+         !option(r.options, "step").empty();
 }
 
 class MethodContract : public testing::TestWithParam<Cell> {

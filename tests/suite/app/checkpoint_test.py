@@ -1,7 +1,6 @@
 """Stages that go on from the middle: killed, damaged, run again."""
 
 import glob
-import json
 import os
 import signal
 import subprocess
@@ -9,10 +8,7 @@ import sys
 import tempfile
 import time
 
-from program import BENCH, FAILED, check
-
-TIMES = ("time", "date", "seconds", "_ms", "finished", "rss", "crowded",
-         "clocks", "warmup", "setup", "revision", "out")
+from program import BENCH, FAILED, check, results
 
 
 def start(out, *flags, pace="40"):
@@ -44,18 +40,6 @@ def killed_inside(out):
     process.communicate()
     check(len(states(out)) == 1, "one stage is half done")
     return states(out)[0]
-
-
-def clean(v):
-    if isinstance(v, dict):
-        return {k: clean(w) for k, w in v.items()
-                if not any(t in k for t in TIMES)}
-    return [clean(w) for w in v] if isinstance(v, list) else v
-
-
-def results(out):
-    with open(os.path.join(out, "results.json")) as f:
-        return clean(json.load(f)["benchmarks"])
 
 
 with tempfile.TemporaryDirectory() as d:

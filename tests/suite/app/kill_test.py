@@ -15,12 +15,11 @@ import sys
 import tempfile
 import time
 
-BENCH = os.path.abspath(sys.argv[1])
+from program import BENCH, TIMES, results
+
 COUNT = int(sys.argv[2]) if len(sys.argv) > 2 else 5
 FLAGS = sys.argv[3:] or ["--profile=smoke", "--jobs=2"]
 PACE = {**os.environ, "PHYSINV_FAKE_PACE_MS": "5"}
-TIMES = ("time", "date", "seconds", "_ms", "finished", "rss", "crowded",
-         "clocks", "warmup", "setup", "bytes", "revision")
 
 
 def start(out):
@@ -49,25 +48,13 @@ def journal(out):
     return found
 
 
-def clean(v):
-    if isinstance(v, dict):
-        return {k: clean(w) for k, w in v.items()
-                if not any(t in k for t in TIMES)}
-    return [clean(w) for w in v] if isinstance(v, list) else v
-
-
-def results(out):
-    with open(os.path.join(out, "results.json")) as f:
-        return clean(json.load(f)["benchmarks"])
-
-
 random.seed(int(os.environ.get("PHYSINV_KILL_SEED", "1")))
 with tempfile.TemporaryDirectory() as d:
     whole = os.path.join(d, "whole")
     begin = time.time()
     finish(start(whole), "uninterrupted")
     duration = time.time() - begin
-    expected = results(whole)
+    expected = results(whole, (*TIMES, "bytes"))
     midway = 0
     for i in range(COUNT):
         out = os.path.join(d, f"killed{i}")
@@ -84,7 +71,7 @@ with tempfile.TemporaryDirectory() as d:
             sys.exit(f"lost a stage, killed after {moment:.3f} s")
         if len(set(after)) != len(after):
             sys.exit(f"ran a stage twice, killed after {moment:.3f} s")
-        if results(out) != expected:
+        if results(out, (*TIMES, "bytes")) != expected:
             sys.exit(f"other results, killed after {moment:.3f} s: {out}")
     print(f"{COUNT} kills within {duration:.2f} s, {midway} with some stages "
           "done: nothing lost, nothing twice, results equal")

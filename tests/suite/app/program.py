@@ -1,5 +1,6 @@
 """Runs the program for the tests of the command line."""
 
+import json
 import os
 import subprocess
 import sys
@@ -34,3 +35,20 @@ def expect(code, args, cwd, says="", env=None, **kwargs):
         good = good and not lines and says in p.stdout
     check(good, f"{' '.join(args)} -> {p.returncode} {p.stderr.strip()[:150]}")
     return p
+
+TIMES = ("time", "date", "seconds", "_ms", "finished", "rss", "crowded",
+         "clocks", "warmup", "setup", "revision")
+
+
+def without(v, names):
+    """What is left of a JSON value without the keys that hold such a name."""
+    if isinstance(v, dict):
+        return {k: without(w, names) for k, w in v.items()
+                if not any(n in k for n in names)}
+    return [without(w, names) for w in v] if isinstance(v, list) else v
+
+
+def results(out, but=TIMES):
+    """What a campaign came to, times apart."""
+    with open(os.path.join(out, "results.json")) as f:
+        return without(json.load(f)["benchmarks"], but)

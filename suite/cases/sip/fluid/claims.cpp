@@ -58,12 +58,7 @@ RunValue vortices_found() {
 std::optional<double> recorded_error(const Run& run) {
   const Batch<double>& x = run.stage->x;
   if (x.cols() == 0) return {};
-  const Batch<double> off = x - run.record->data.x.leftCols(x.cols());
-  const Index cells = kCells * kCells;
-  return (off.topRows(cells).array().square() +
-          off.bottomRows(cells).array().square())
-      .sqrt()
-      .mean();
+  return mean_length(x - run.record->data.x.leftCols(x.cols()));
 }
 
 /// Energy of what each cell differs in from the mean of its four neighbours.

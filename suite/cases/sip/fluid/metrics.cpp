@@ -6,15 +6,6 @@
 namespace physinv::fluid_case {
 namespace {
 
-/// Mean over cells and examples of the length of a field (component, cell).
-double mean_length(const Batch<double>& field) {
-  const Index cells = field.rows() / 2;
-  return (field.topRows(cells).array().square() +
-          field.bottomRows(cells).array().square())
-      .sqrt()
-      .mean();
-}
-
 void evaluate(const Snapshot& s, VectorOut<double> values) {
   values.setZero();
   const auto problem = s.oracle.recipe().make<double>();
@@ -41,6 +32,14 @@ void evaluate(const Snapshot& s, VectorOut<double> values) {
 }
 
 }  // namespace
+
+double mean_length(BatchIn<double> field) {
+  const Index cells = field.rows() / 2;
+  return (field.topRows(cells).array().square() +
+          field.bottomRows(cells).array().square())
+      .sqrt()
+      .mean();
+}
 
 Metrics metrics() {
   return {.name = "marker_flow",

@@ -15,4 +15,7 @@ enum MetricRow : Index { kError, kVortex, kLarge, kMetricRows };
 
 Metrics metrics();
 
+/// Mean over cells and examples of the length of a field (component, cell).
+double mean_length(BatchIn<double> field);
+
 }  // namespace physinv::fluid_case
