@@ -11,7 +11,7 @@ namespace {
 // depths are multiples of 3.
 #ifdef PHYSINV_AVX512
 constexpr int kPanel = 8, kColumns = 3;   ///< outputs x columns
-constexpr int kOutTile = 4, kInTile = 3;  ///< weight gradient
+constexpr int kOutTile = 8, kInTile = 6;  ///< weight gradient
 #else
 constexpr int kPanel = 4, kColumns = 3;
 constexpr int kOutTile = 4, kInTile = 3;
@@ -148,6 +148,31 @@ void convolve_run(const Product<T>& g,
     all_outputs<T, V>(g, packed, bias, out, walk.template next<1>());
 }
 
+/// Inputs k of a tile whose narrow vectors share a register: their sums are
+/// those of single vectors, in half the instructions.
+template <class T, class V, int Q>
+struct Inputs {
+  static constexpr int kShared = kWide > kNarrow && Q % 2 == 0 ? 2 : 1;
+  static constexpr int kCount = Q / kShared;
+  using Wide = Simd<T, kShared * static_cast<int>(sizeof(V))>;
+
+  static Wide of(const T* x, Index stride) {
+    if constexpr (kShared == 1) {
+      return load<V>(x);
+    } else {
+      return side_by_side(load<V>(x), load<V>(x + stride));
+    }
+  }
+  static Wide each(const T* y) {
+    const V v = load<V>(y);
+    if constexpr (kShared == 1) {
+      return v;
+    } else {
+      return side_by_side(v, v);
+    }
+  }
+};
+
 /// R outputs x Q inputs, each a vector of partial sums.
 template <class T, class V, int R, int Q>
 [[gnu::noinline]] void weight_tile(const T* x,
@@ -159,23 +184,26 @@ template <class T, class V, int R, int Q>
                                    Index vectors,
                                    T* sums,
                                    Index sums_step) {
-  constexpr Index w = sizeof(V) / sizeof(T);
-  V acc[R][Q];
+  using In = Inputs<T, V, Q>;
+  using W = typename In::Wide;
+  constexpr Index w = sizeof(V) / sizeof(T), wide = sizeof(W) / sizeof(T);
+  W acc[R][In::kCount];
 #pragma GCC unroll 8
   for (int r = 0; r < R; ++r)
 #pragma GCC unroll 8
-    for (int q = 0; q < Q; ++q)
-      acc[r][q] = load<V>(sums + r * sums_step + q * w);
+    for (int q = 0; q < In::kCount; ++q)
+      acc[r][q] = load<W>(sums + r * sums_step + q * wide);
   for (Index p = 0; p < positions; ++p, x += x_step, y += y_step) {
     for (Index v = 0; v < vectors * w; v += w) {
-      V xv[Q];
+      W xv[In::kCount];
 #pragma GCC unroll 8
-      for (int q = 0; q < Q; ++q) xv[q] = held(load<V>(x + q * stride + v));
+      for (int q = 0; q < In::kCount; ++q)
+        xv[q] = held(In::of(x + q * In::kShared * stride + v, stride));
 #pragma GCC unroll 8
       for (int r = 0; r < R; ++r) {
-        const V yv = held(load<V>(y + r * stride + v));
+        const W yv = held(In::each(y + r * stride + v));
 #pragma GCC unroll 8
-        for (int q = 0; q < Q; ++q)
+        for (int q = 0; q < In::kCount; ++q)
           acc[r][q] = multiply_add<T>(yv, xv[q], acc[r][q]);
       }
     }
@@ -183,7 +211,8 @@ template <class T, class V, int R, int Q>
 #pragma GCC unroll 8
   for (int r = 0; r < R; ++r)
 #pragma GCC unroll 8
-    for (int q = 0; q < Q; ++q) store(sums + r * sums_step + q * w, acc[r][q]);
+    for (int q = 0; q < In::kCount; ++q)
+      store(sums + r * sums_step + q * wide, acc[r][q]);
 }
 
 template <class T, class V, int Q>
@@ -211,6 +240,8 @@ void weight_rows(const T* x,
     o += R;
   };
   while (o + kOutTile <= out) step.template operator()<kOutTile>();
+  if constexpr (kOutTile > 4)
+    while (o + 4 <= out) step.template operator()<4>();
   while (o < out) step.template operator()<1>();
 }
 

@@ -42,6 +42,18 @@ inline V broadcast(T s) {
   return s - V{};  // unlike V{} + s, keeps the sign of a zero
 }
 
+/// A vector of twice as many lanes.
+template <class V>
+inline auto side_by_side(V a, V b) {
+  if constexpr (sizeof(V) == 8 * sizeof(a[0])) {
+    return __builtin_shufflevector(
+        a, b, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+  } else {
+    static_assert(sizeof(V) == 4 * sizeof(a[0]));
+    return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
+  }
+}
+
 /// a * b + c with one rounding. Written out, because whether the compiler
 /// contracts the plain expression differs from one tile size to the next.
 template <class T, class V>
