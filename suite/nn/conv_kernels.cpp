@@ -1,6 +1,7 @@
 #include "suite/nn/conv_kernels.h"
 
 #include <algorithm>
+#include <cstring>
 
 #include "suite/nn/vector.h"
 
@@ -21,11 +22,53 @@ constexpr Index kBlockBytes = 16384;
 template <class T>
 constexpr Index kWideLanes = kWide / static_cast<Index>(sizeof(T));
 
-/// One column = one vector of samples at one position.
-template <class T, int N>
+/// Two narrow vectors share a wide register: what is computed of each stays as
+/// it is, in half the instructions.
+template <class T, class V, bool kPair>
+struct Register {
+  static constexpr int kVectors = kPair ? 2 : 1;
+  using Whole = Simd<T, kVectors* static_cast<int>(sizeof(V))>;
+
+  /// a, and b if there is room for it.
+  static Whole of(const T* a, const T* b) {
+    if constexpr (kPair) {
+      return side_by_side(load<V>(a), load<V>(b));
+    } else {
+      return load<V>(a);
+    }
+  }
+  static void put(Whole v, T* a, T* b) {
+    if constexpr (kPair) {
+      V halves[2];
+      std::memcpy(halves, &v, sizeof(v));
+      store(a, halves[0]), store(b, halves[1]);
+    } else {
+      store(a, v);
+    }
+  }
+};
+template <class T, class V>
+constexpr bool kPairs = 2 * sizeof(V) <= kWide;
+
+/// One column = one vector of samples at one position; N registers of them.
+template <class T, class V, int N, bool kPair>
 struct Columns {
-  const T* x[N];
-  T* y[N];
+  using Reg = Register<T, V, kPair>;
+  using Whole = typename Reg::Whole;
+  static constexpr int kCount = N * Reg::kVectors;
+  const T* x[kCount];
+  T* y[kCount];
+
+  template <class P>
+  static Whole at(const P* of, int c, Index offset) {
+    return Reg::of(of[c * Reg::kVectors] + offset,
+                   of[(c + 1) * Reg::kVectors - 1] + offset);
+  }
+  void put(Whole v, int c, Index offset) const {
+    Reg::put(v,
+             y[c * Reg::kVectors] + offset,
+             y[(c + 1) * Reg::kVectors - 1] + offset);
+  }
 };
 
 /// What all tiles of one run share.
@@ -37,13 +80,14 @@ struct Product {
   Into into;
 };
 
-/// M outputs x N columns in registers.
-template <class T, class V, int M, int N>
+/// M outputs x N registers of columns.
+template <class T, int M, int N, class C>
 [[gnu::noinline]] void tile(const Product<T>& g,
                             const T* panel,
                             const T* bias,
                             Index output,
-                            const Columns<T, N>& columns) {
+                            const C& columns) {
+  using V = typename C::Whole;
   V acc[M][N];
 #pragma GCC unroll 16
   for (int r = 0; r < M; ++r)
@@ -55,18 +99,20 @@ template <class T, class V, int M, int N>
     for (int r = 0; r < M; ++r)
 #pragma GCC unroll 8
       for (int c = 0; c < N; ++c)
-        acc[r][c] = load<V>(columns.y[c] + (output + r) * g.stride);
+        acc[r][c] = columns.at(columns.y, c, (output + r) * g.stride);
   for (Index s = 0; s < g.segment_count; ++s) {
     const Segment segment = g.segments[s];
     const T* a = panel + segment.tap * g.in * M;
-    const T* x[N];
+    const T* x[C::kCount];
 #pragma GCC unroll 8
-    for (int c = 0; c < N; ++c)
+    for (int c = 0; c < C::kCount; ++c)
       x[c] = columns.x[c] + segment.shift * g.in * g.stride;
     for (Index k = segment.taps * g.in; k > 0; --k, a += M) {
       V b[N];
 #pragma GCC unroll 8
-      for (int c = 0; c < N; ++c) b[c] = held(load<V>(x[c])), x[c] += g.stride;
+      for (int c = 0; c < N; ++c) b[c] = held(columns.at(x, c, 0));
+#pragma GCC unroll 8
+      for (int c = 0; c < C::kCount; ++c) x[c] += g.stride;
 #pragma GCC unroll 16
       for (int r = 0; r < M; ++r) {
         const V w = broadcast<V>(a[r]);
@@ -80,36 +126,36 @@ template <class T, class V, int M, int N>
   for (int r = 0; r < M; ++r)
 #pragma GCC unroll 8
     for (int c = 0; c < N; ++c)
-      store(columns.y[c] + (output + r) * g.stride, acc[r][c]);
+      columns.put(acc[r][c], c, (output + r) * g.stride);
 }
 
 /// The last outputs, fewer than a panel.
-template <class T, class V, int M, int N>
+template <class T, int M, int N, class C>
 void last_panel(const Product<T>& g,
                 const T* panel,
                 const T* bias,
                 Index output,
                 Index outputs,
-                const Columns<T, N>& columns) {
+                const C& columns) {
   if constexpr (M > 0) {
     if (outputs == M) {
-      tile<T, V, M, N>(g, panel, bias, output, columns);
+      tile<T, M, N>(g, panel, bias, output, columns);
     } else {
-      last_panel<T, V, M - 1, N>(g, panel, bias, output, outputs, columns);
+      last_panel<T, M - 1, N>(g, panel, bias, output, outputs, columns);
     }
   }
 }
 
-template <class T, class V, int N>
+template <class T, class V, int N, bool kPair>
 void all_outputs(const Product<T>& g,
                  const T* packed,
                  const T* bias,
                  Index out,
-                 const Columns<T, N>& columns) {
+                 const Columns<T, V, N, kPair>& columns) {
   Index i = 0;
   for (; i + kPanel <= out; i += kPanel)
-    tile<T, V, kPanel, N>(g, packed + i * g.depth, bias, i, columns);
-  last_panel<T, V, kPanel - 1, N>(
+    tile<T, kPanel, N>(g, packed + i * g.depth, bias, i, columns);
+  last_panel<T, kPanel - 1, N>(
       g, packed + i * g.depth, bias, i, out - i, columns);
 }
 
@@ -121,11 +167,11 @@ struct Walk {
   T* y;
   Index position = 0, vector = 0;
 
-  template <int N>
-  Columns<T, N> next() {
+  template <int N, bool kPair>
+  Columns<T, V, N, kPair> next() {
     constexpr Index w = sizeof(V) / sizeof(T);
-    Columns<T, N> c;
-    for (int i = 0; i < N; ++i) {
+    Columns<T, V, N, kPair> c;
+    for (int i = 0; i < c.kCount; ++i) {
       const Index lane = lane0 + vector * w;
       c.x[i] = x + position * x_step + lane;
       c.y[i] = y + position * y_step + lane;
@@ -142,36 +188,16 @@ void convolve_run(const Product<T>& g,
                   Index out,
                   Walk<T, V> walk,
                   Index columns) {
-  for (; columns >= kColumns; columns -= kColumns)
-    all_outputs<T, V>(g, packed, bias, out, walk.template next<kColumns>());
-  for (; columns > 0; --columns)
-    all_outputs<T, V>(g, packed, bias, out, walk.template next<1>());
+  const auto by = [&]<int N, bool kPair>() {
+    constexpr Index kSome = Columns<T, V, N, kPair>::kCount;
+    for (; columns >= kSome; columns -= kSome)
+      all_outputs(g, packed, bias, out, walk.template next<N, kPair>());
+  };
+  constexpr bool kPair = kPairs<T, V>;
+  by.template operator()<kColumns, kPair>();
+  if constexpr (kPair) by.template operator()<1, true>();
+  by.template operator()<1, false>();
 }
-
-/// Inputs k of a tile whose narrow vectors share a register: their sums are
-/// those of single vectors, in half the instructions.
-template <class T, class V, int Q>
-struct Inputs {
-  static constexpr int kShared = kWide > kNarrow && Q % 2 == 0 ? 2 : 1;
-  static constexpr int kCount = Q / kShared;
-  using Wide = Simd<T, kShared * static_cast<int>(sizeof(V))>;
-
-  static Wide of(const T* x, Index stride) {
-    if constexpr (kShared == 1) {
-      return load<V>(x);
-    } else {
-      return side_by_side(load<V>(x), load<V>(x + stride));
-    }
-  }
-  static Wide each(const T* y) {
-    const V v = load<V>(y);
-    if constexpr (kShared == 1) {
-      return v;
-    } else {
-      return side_by_side(v, v);
-    }
-  }
-};
 
 /// R outputs x Q inputs, each a vector of partial sums.
 template <class T, class V, int R, int Q>
@@ -184,26 +210,30 @@ template <class T, class V, int R, int Q>
                                    Index vectors,
                                    T* sums,
                                    Index sums_step) {
-  using In = Inputs<T, V, Q>;
-  using W = typename In::Wide;
+  using Reg = Register<T, V, kPairs<T, V> && Q % 2 == 0>;
+  using W = typename Reg::Whole;
   constexpr Index w = sizeof(V) / sizeof(T), wide = sizeof(W) / sizeof(T);
-  W acc[R][In::kCount];
+  constexpr int kInputs = Q / Reg::kVectors;
+  W acc[R][kInputs];
 #pragma GCC unroll 8
   for (int r = 0; r < R; ++r)
 #pragma GCC unroll 8
-    for (int q = 0; q < In::kCount; ++q)
+    for (int q = 0; q < kInputs; ++q)
       acc[r][q] = load<W>(sums + r * sums_step + q * wide);
   for (Index p = 0; p < positions; ++p, x += x_step, y += y_step) {
     for (Index v = 0; v < vectors * w; v += w) {
-      W xv[In::kCount];
+      W xv[kInputs];
 #pragma GCC unroll 8
-      for (int q = 0; q < In::kCount; ++q)
-        xv[q] = held(In::of(x + q * In::kShared * stride + v, stride));
+      for (int q = 0; q < kInputs; ++q) {
+        const T* const first = x + q * Reg::kVectors * stride + v;
+        xv[q] = held(Reg::of(first, first + stride));
+      }
 #pragma GCC unroll 8
       for (int r = 0; r < R; ++r) {
-        const W yv = held(In::each(y + r * stride + v));
+        const T* const each = y + r * stride + v;
+        const W yv = held(Reg::of(each, each));
 #pragma GCC unroll 8
-        for (int q = 0; q < In::kCount; ++q)
+        for (int q = 0; q < kInputs; ++q)
           acc[r][q] = multiply_add<T>(yv, xv[q], acc[r][q]);
       }
     }
@@ -211,7 +241,7 @@ template <class T, class V, int R, int Q>
 #pragma GCC unroll 8
   for (int r = 0; r < R; ++r)
 #pragma GCC unroll 8
-    for (int q = 0; q < In::kCount; ++q)
+    for (int q = 0; q < kInputs; ++q)
       store(sums + r * sums_step + q * wide, acc[r][q]);
 }
 
