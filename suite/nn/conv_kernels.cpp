@@ -196,6 +196,7 @@ void convolve_run(const Product<T>& g,
   constexpr bool kPair = kPairs<T, V>;
   by.template operator()<kColumns, kPair>();
   if constexpr (kPair) by.template operator()<1, true>();
+  by.template operator()<2, false>();
   by.template operator()<1, false>();
 }
 
