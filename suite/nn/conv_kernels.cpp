@@ -17,7 +17,7 @@ constexpr int kOutTile = 8, kInTile = 6;  ///< weight gradient
 constexpr int kPanel = 4, kColumns = 3;
 constexpr int kOutTile = 4, kInTile = 3;
 #endif
-constexpr Index kBlockBytes = 16384;
+constexpr Index kBlockBytes = 16384, kWeightBytes = 32768;
 
 template <class T>
 constexpr Index kWideLanes = kWide / static_cast<Index>(sizeof(T));
@@ -295,7 +295,7 @@ void weight_run(const ConvShape& shape,
   // y_bar's part stays in the L1 while all inputs pass by; with many outputs
   // in the L2, as a tile's sums must not come and go too often.
   const Index budget = std::max<Index>(
-      16, kBlockBytes / (shape.out * static_cast<Index>(sizeof(V))));
+      16, kWeightBytes / (shape.out * static_cast<Index>(sizeof(V))));
   const Index per_row = std::min(vectors, budget);
   const Index per_block = std::max<Index>(1, budget / per_row);
   for (Index p = first; p < last; p += per_block) {
