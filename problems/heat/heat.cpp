@@ -79,6 +79,30 @@ void for_registers(const PlaneFft& fft,
 /// |Z| beyond so many times n e^-s leaves nothing of S.
 constexpr double kVanishes = 39;
 
+/// `HeatMode::of`, lane by lane: 1 / expected and 1 / uncertainty for the
+/// scales, e^-s for a mode without signal.
+struct Modes {
+  P probability, gain;
+
+  PHYSINV_LANES static Modes of(P amplitude,
+                                double s,
+                                double damping,
+                                double per_expected,
+                                P per_uncertainty) {
+    P z[] = {amplitude * per_expected, amplitude * per_uncertainty};
+    // As squares of roots, which reach down to zero.
+    for (P& v : z) v *= -0.25 * v;
+    exp_lanes(z);
+    for (P& v : z) v = held(0.5 * v * v);
+    const P zero{}, signal = select(z[0] == z[0], z[0], zero);
+    const P all = signal + z[1];
+    const P p = select(all == zero, zero, signal / all);
+    const P w = select((p <= 0.5) | (p >= 0.68), 2 * (p - 0.5), zero);
+    const P root = exp_lanes(0.5 * s * w);
+    return {p, select(w == -1 - zero, damping - zero, root * root)};
+  }
+};
+
 /// What one mode of dy is multiplied by. Adds to `skipped` the lanes that
 /// cannot hold a signal.
 PHYSINV_LANES P gain_of(P re,
@@ -86,20 +110,18 @@ PHYSINV_LANES P gain_of(P re,
                         double s,
                         double expected,
                         double damping,
-                        P uncertainty,
+                        P per_uncertainty,
                         Mask<double>& skipped) {
   const P squares = fma_lanes(re, re, im * im);
   const double vanishes = kVanishes * expected;
   const auto noise = beyond<double>(squares, vanishes * vanishes);
   skipped -= noise;
-  P gain = P{} + damping;
-  if (count_set(noise) == kWidth) return gain;
-  for (Index k = 0; k < kWidth; ++k)
-    if (noise[k] == 0)
-      gain[k] =
-          HeatMode::of(std::hypot(re[k], im[k]), s, expected, uncertainty[k])
-              .gain;
-  return gain;
+  const P nothing = damping - P{};
+  if (count_set(noise) == kWidth) return nothing;
+  const P found =
+      Modes::of(sqrt_lanes(squares), s, damping, 1 / expected, per_uncertainty)
+          .gain;
+  return select(noise, nothing, found);
 }
 
 /// sqrt sum (1e-6 |dy| + floor)^2
@@ -155,16 +177,12 @@ HeatMode HeatMode::of(double amplitude,
                       double exponent,
                       double expected,
                       double uncertainty) {
-  const auto likelihood = [&](double scale) {
-    const double z = amplitude / scale;
-    return 0.5 * std::exp(-0.5 * (z * z));
-  };
-  double signal = likelihood(expected);
-  if (!std::isfinite(signal)) signal = 0;
-  const double all = signal + likelihood(uncertainty);
-  const double p = all == 0 ? 0 : signal / all;
-  const double w = p <= 0.5 || p >= 0.68 ? 2 * (p - 0.5) : 0;
-  return {p, std::exp(exponent * w)};
+  const Modes all = Modes::of(amplitude - P{},
+                              exponent,
+                              std::exp(-exponent),
+                              1 / expected,
+                              1 / uncertainty - P{});
+  return {all.probability[0], all.gain[0]};
 }
 
 /// Without the subtraction, and without e^s where nothing is left of e^-s.
@@ -340,13 +358,13 @@ void Heat<T>::invert(BatchIn<T> y,
     fft_.inverse(f.z, f.u, f.scratch);
     block.load<T>(y, f.v);
     for (Index r = 0; r < cells; ++r) f.v[r] -= f.u[r];
-    const P noise = uncertainty_of(f.v, cells, options_.noise_floor);
+    const P per_noise = 1 / uncertainty_of(f.v, cells, options_.noise_floor);
 
     fft_.forward(f.v, f.z, f.scratch);
     Mask<double> none{};
     fft_.scale_modes(f.z, [&](Index p, Index q, P re, P im) {
       const double e = expected_(p, q);
-      return gain_of(re, im, s_(p, q), e, e / side, noise, none);
+      return gain_of(re, im, s_(p, q), e, e / side, per_noise, none);
     });
     fft_.inverse(f.z, f.u, f.scratch);
     block.load<T>(x_guess, f.v);
