@@ -7,132 +7,16 @@
 #include <cmath>
 #include <numbers>
 
+#include "problems/heat/likelihood.h"
+#include "problems/heat/registers.h"
 #include "suite/core/check.h"
-#include "suite/core/lanes_math.h"
-#include "suite/core/threads.h"
 
 namespace physinv {
 namespace {
 
-using P = Pack<double>;
-constexpr Index kWidth = kLanes<double>;
+using namespace heat_lanes;
 
 enum Slot : std::size_t { kPoison, kScratch };
-
-/// Fields first .. first+count-1, one per lane; the last one fills what is left
-/// of the register.
-struct Block {
-  Index first, count;
-
-  template <class T>
-  void load(BatchIn<T> batch, P* out) const {
-    const T* column[kWidth];
-    for (Index k = 0; k < kWidth; ++k)
-      column[k] = batch.col(first + std::min(k, count - 1)).data();
-    for (Index r = 0; r < batch.rows(); ++r)
-      for (Index k = 0; k < kWidth; ++k)
-        out[r][k] = static_cast<double>(column[k][r]);
-  }
-  template <class T>
-  void store(const P* in, BatchOut<T>& batch) const {
-    for (Index k = 0; k < count; ++k) {
-      T* const column = batch.col(first + k).data();
-      for (Index r = 0; r < batch.rows(); ++r)
-        column[r] = static_cast<T>(in[r][k]);
-    }
-  }
-};
-
-/// The parts of a thread's memory.
-struct Fields {
-  P *u, *v, *z, *scratch;
-
-  static Index numbers(const PlaneFft& fft) {
-    return kWidth * (2 * fft.field() + fft.spectrum() + fft.scratch());
-  }
-  Fields(const PlaneFft& fft, double* memory)
-      : u(reinterpret_cast<P*>(memory)),
-        v(u + fft.field()),
-        z(v + fft.field()),
-        scratch(z + fft.spectrum()) {}
-};
-
-Index count_of(const Threads* threads) {
-  return threads != nullptr ? threads->count() : 1;
-}
-
-/// f(block, fields) for all samples, a register of them at a time.
-template <class F>
-void for_registers(const PlaneFft& fft,
-                   Scratch<double> memory,
-                   Threads* threads,
-                   Index samples,
-                   F&& f) {
-  const Index blocks = (samples + kWidth - 1) / kWidth;
-  for_blocks(threads, blocks, [&](Index b, int thread) {
-    const Index first = b * kWidth;
-    f(Block{first, std::min(kWidth, samples - first)},
-      Fields(fft, memory.col(thread).data()));
-  });
-}
-
-/// |Z| beyond so many times n e^-s leaves nothing of S.
-constexpr double kVanishes = 39;
-
-/// `HeatMode::of`, lane by lane: 1 / expected and 1 / uncertainty for the
-/// scales, e^-s for a mode without signal.
-struct Modes {
-  P probability, gain;
-
-  PHYSINV_LANES static Modes of(P amplitude,
-                                double s,
-                                double damping,
-                                double per_expected,
-                                P per_uncertainty) {
-    P z[] = {amplitude * per_expected, amplitude * per_uncertainty};
-    // As squares of roots, which reach down to zero.
-    for (P& v : z) v *= -0.25 * v;
-    exp_lanes(z);
-    for (P& v : z) v = held(0.5 * v * v);
-    const P zero{}, signal = select(z[0] == z[0], z[0], zero);
-    const P all = signal + z[1];
-    const P p = select(all == zero, zero, signal / all);
-    const P w = select((p <= 0.5) | (p >= 0.68), 2 * (p - 0.5), zero);
-    const P root = exp_lanes(0.5 * s * w);
-    return {p, select(w == -1 - zero, damping - zero, root * root)};
-  }
-};
-
-/// What one mode of dy is multiplied by. Adds to `skipped` the lanes that
-/// cannot hold a signal.
-PHYSINV_LANES P gain_of(P re,
-                        P im,
-                        double s,
-                        double expected,
-                        double damping,
-                        P per_uncertainty,
-                        Mask<double>& skipped) {
-  const P squares = fma_lanes(re, re, im * im);
-  const double vanishes = kVanishes * expected;
-  const auto noise = beyond<double>(squares, vanishes * vanishes);
-  skipped -= noise;
-  const P nothing = damping - P{};
-  if (count_set(noise) == kWidth) return nothing;
-  const P found =
-      Modes::of(sqrt_lanes(squares), s, damping, 1 / expected, per_uncertainty)
-          .gain;
-  return select(noise, nothing, found);
-}
-
-/// sqrt sum (1e-6 |dy| + floor)^2
-P uncertainty_of(const P* dy, Index cells, double floor) {
-  P sum{};
-  for (Index r = 0; r < cells; ++r) {
-    const P e = fma_lanes(abs_lanes(dy[r]), P{} + 1e-6, P{} + floor);
-    sum = fma_lanes(e, e, sum);
-  }
-  return sqrt_lanes(sum);
-}
 
 /// 0, or NaN if some entry is not finite: P knows no point, but a derivative
 /// taken at such a point must say so.
@@ -180,6 +64,7 @@ HeatMode HeatMode::of(double amplitude,
   const Modes all = Modes::of(amplitude - P{},
                               exponent,
                               std::exp(-exponent),
+                              std::exp(exponent),
                               1 / expected,
                               1 / uncertainty - P{});
   return {all.probability[0], all.gain[0]};
@@ -196,28 +81,32 @@ Batch<double> heat_gradient_descent(const Batch<double>& exponents,
   });
 }
 
+HeatTable::HeatTable(const HeatOptions& o, const PlaneFft& fft) {
+  const auto n = static_cast<double>(o.resolution);
+  const Index m = fft.positions();
+  const auto along = [&](Index p) {
+    const double angle = 2 * std::numbers::pi * (double(fft.mode(p)) / n);
+    return angle * angle * o.end_time;
+  };
+  s = Batch<double>::NullaryExpr(
+      m, m, [&](Index p, Index q) { return along(p) + along(q); });
+  damping = s.unaryExpr([](double e) { return std::exp(-e); });
+  amplification = s.unaryExpr([](double e) { return std::exp(e); });
+  expected = n * damping;
+}
+
 template <class T>
-Heat<T>::Heat(const Options& o) : options_(o), fft_(o.resolution) {
+Heat<T>::Heat(const Options& o)
+    : options_(o), fft_(o.resolution), table_(o, fft_) {
   SUITE_CHECK(o.resolution >= 8, "resolution must be at least 8");
   SUITE_CHECK(o.end_time > 0, "end_time must be positive");
   SUITE_CHECK(o.noise_floor >= 0, "noise_floor must not be negative");
-  const auto n = static_cast<double>(o.resolution);
   const Index m = fft_.positions();
-  exponents_.resize(m, m), s_.resize(m, m), expected_.resize(m, m);
-  const Vector<double> along = Vector<double>::NullaryExpr(m, [&](Index k) {
-    const double angle = 2 * std::numbers::pi * (double(k) / n);
-    return angle * angle * o.end_time;
-  });
-  for (Index l = 0; l < m; ++l)
-    for (Index k = 0; k < m; ++k) exponents_(k, l) = along(k) + along(l);
-  const Batch<double> damping =
-      exponents_.unaryExpr([](double s) { return std::exp(-s); });
+  exponents_.resize(m, m);
   for (Index q = 0; q < m; ++q)
-    for (Index p = 0; p < m; ++p) {
-      s_(p, q) = exponents_(fft_.mode(p), fft_.mode(q));
-      expected_(p, q) = n * damping(fft_.mode(p), fft_.mode(q));
-    }
-  damping_ = scaled(damping);
+    for (Index p = 0; p < m; ++p)
+      exponents_(fft_.mode(p), fft_.mode(q)) = table_.s(p, q);
+  damping_ = table_.damping / static_cast<double>(fft_.field());
 }
 
 /// By position, with the scale of the inverse transform.
@@ -343,7 +232,6 @@ void Heat<T>::invert(BatchIn<T> y,
                      BatchOut<T> x,
                      Workspace& work) const {
   const Index cells = fft_.field();
-  const auto side = static_cast<double>(fft_.size());
   for (const auto* b : {&y, &x_guess}) check_size(*b, cells, x.cols());
   check_size(x, cells, x.cols());
   const Workspace::Scope scope(work);
@@ -358,13 +246,13 @@ void Heat<T>::invert(BatchIn<T> y,
     fft_.inverse(f.z, f.u, f.scratch);
     block.load<T>(y, f.v);
     for (Index r = 0; r < cells; ++r) f.v[r] -= f.u[r];
-    const P per_noise = 1 / uncertainty_of(f.v, cells, options_.noise_floor);
+    const Uncertainty uncertainty(
+        uncertainty_of(f.v, cells, 1, options_.noise_floor));
 
     fft_.forward(f.v, f.z, f.scratch);
-    Mask<double> none{};
+    Mask<double> known{};
     fft_.scale_modes(f.z, [&](Index p, Index q, P re, P im) {
-      const double e = expected_(p, q);
-      return gain_of(re, im, s_(p, q), e, e / side, per_noise, none);
+      return gain_of(re, im, table_, p, q, uncertainty, known);
     });
     fft_.inverse(f.z, f.u, f.scratch);
     block.load<T>(x_guess, f.v);
@@ -372,7 +260,7 @@ void Heat<T>::invert(BatchIn<T> y,
       f.u[r] = fma_lanes(f.u[r], P{} + scale, f.v[r]);
     block.store<T>(f.u, x);
     for (Index k = 0; k < block.count; ++k)
-      skipped += static_cast<std::uint64_t>(none[k]);
+      skipped += static_cast<std::uint64_t>(known[k]);
   };
   for_registers(fft_, memory, work.threads(), x.cols(), run);
   work.counts[Counter::skipped_zeros] += skipped;

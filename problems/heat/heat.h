@@ -64,6 +64,12 @@ struct HeatMode {
                      double uncertainty);
 };
 
+/// By position of the spectrum: s, n e^-s (what a mode could show), e^-s, e^s.
+struct HeatTable {
+  HeatTable(const HeatOptions& options, const PlaneFft& fft);
+  Batch<double> s, expected, damping, amplification;
+};
+
 /// What `steps` steps of gradient descent (rate 1, from zero) make of y, mode
 /// by mode: (1 - (1 - e^-2s)^steps) e^s, of `exponents` s.
 Batch<double> heat_gradient_descent(const Batch<double>& exponents,
@@ -94,8 +100,8 @@ class Heat : public LinearProblem<T>, public Inverse<T> {
                 BatchIn<T> y_bar,
                 BatchOut<T> x_bar,
                 Workspace& work) const override;
-  /// `skipped_zeros` counts modes whose S is known to be zero, half of the
-  /// plane: their weight is -1, without a likelihood.
+  /// `skipped_zeros` counts modes whose probability is known without their
+  /// likelihoods, more than half of the plane.
   void invert(BatchIn<T> y,
               BatchIn<T> given,
               BatchIn<T> x_guess,
@@ -104,6 +110,7 @@ class Heat : public LinearProblem<T>, public Inverse<T> {
 
   /// s(k, l), k, l = 0 .. n/2.
   const Batch<double>& exponents() const { return exponents_; }
+  const HeatTable& table() const { return table_; }
   /// out = F^-1 (gain F in); gain as `exponents`.
   void filter(BatchIn<T> in,
               const Batch<double>& gain,
@@ -124,9 +131,9 @@ class Heat : public LinearProblem<T>, public Inverse<T> {
 
   Options options_;
   PlaneFft fft_;
+  HeatTable table_;
   Batch<double> exponents_;
-  /// By position: s, n e^-s, e^-s / n^2.
-  Batch<double> s_, expected_, damping_;
+  Batch<double> damping_;  ///< by position, e^-s / n^2
 };
 
 extern template class Heat<float>;

@@ -10,6 +10,8 @@
 /// `scale_modes` puts together what stands for one mode.
 #pragma once
 
+#include <array>
+
 #include "suite/core/lanes_fft.h"
 
 namespace physinv {
@@ -50,37 +52,50 @@ class PlaneFft {
     }
   }
 
-  /// z <- g(p, q) z
-  template <class P, class F>
-  void scale(P* z, F&& g) const {
+  /// f(p, q, i) of all positions, i[0..3] being where its four numbers are.
+  template <class F>
+  void for_positions(F&& f) const {
     const Index m = fft_.spectrum();
     for (Index p = 0; p < positions(); ++p)
       for (Index q = 0; q < positions(); ++q) {
-        const double factor = g(p, q);
-        P* const at = z + m * 2 * p + 2 * q;
-        at[0] *= factor, at[1] *= factor;
-        at[m] *= factor, at[m + 1] *= factor;
+        const Index at = m * 2 * p + 2 * q;
+        f(p, q, std::array{at, at + 1, at + m, at + m + 1});
       }
   }
 
-  /// z <- g z, mode by mode: g(p, q, re, im) is asked about the modes (k, l)
-  /// and (-k, l), l = mode(p), k = mode(q), one after the other, the latter as
-  /// its conjugate. A k that is its own negative comes twice.
+  /// z <- g(p, q) z
+  template <class P, class F>
+  void scale(P* z, F&& g) const {
+    for_positions([&](Index p, Index q, const auto& at) {
+      const double factor = g(p, q);
+      for (const Index i : at) z[i] *= factor;
+    });
+  }
+
+  /// The four numbers at a position, times g(re, im) of the modes (k, l) and
+  /// (-k, l) there, one after the other, the latter as its conjugate. A k that
+  /// is its own negative comes twice.
+  template <class P, class F>
+  static void scale_modes_at(std::array<P, 4>& z, F&& g) {
+    const P plus[] = {z[0] - z[3], z[1] + z[2]};
+    const P minus[] = {z[0] + z[3], z[1] - z[2]};
+    const P up = 0.5 * g(plus[0], plus[1]);
+    const P down = 0.5 * g(minus[0], minus[1]);
+    z[0] = fma_lanes(up, plus[0], down * minus[0]);
+    z[1] = fma_lanes(up, plus[1], down * minus[1]);
+    z[2] = fma_lanes(up, plus[1], -(down * minus[1]));
+    z[3] = fma_lanes(down, minus[0], -(up * plus[0]));
+  }
+
+  /// z <- g z, g(p, q, re, im) being asked about every mode, l = mode(p), k =
+  /// mode(q).
   template <class P, class F>
   void scale_modes(P* z, F&& g) const {
-    const Index m = fft_.spectrum();
-    for (Index p = 0; p < positions(); ++p)
-      for (Index q = 0; q < positions(); ++q) {
-        P *const a = z + m * 2 * p + 2 * q, *const b = a + m;
-        const P plus[] = {a[0] - b[1], a[1] + b[0]};
-        const P minus[] = {a[0] + b[1], a[1] - b[0]};
-        const P up = 0.5 * g(p, q, plus[0], plus[1]);
-        const P down = 0.5 * g(p, q, minus[0], minus[1]);
-        for (int t = 0; t < 2; ++t)
-          a[t] = fma_lanes(up, plus[t], down * minus[t]);
-        b[0] = fma_lanes(up, plus[1], -(down * minus[1]));
-        b[1] = fma_lanes(down, minus[0], -(up * plus[0]));
-      }
+    for_positions([&](Index p, Index q, const auto& at) {
+      std::array here{z[at[0]], z[at[1]], z[at[2]], z[at[3]]};
+      scale_modes_at(here, [&](P re, P im) { return g(p, q, re, im); });
+      for (std::size_t i = 0; i < 4; ++i) z[at[i]] = here[i];
+    });
   }
 
  private:

@@ -1,5 +1,7 @@
 #include "problems/heat/heat.h"
 
+#include "problems/heat/inversion.h"
+#include "problems/heat/likelihood.h"
 #include "suite/core/threads.h"
 #include "tests/support/bits.h"
 #include "tests/support/gradient_check.h"
@@ -166,7 +168,7 @@ TEST(Heat, ModesWithoutSignalAreSkippedToTheSameBits) {
   using Lane = Pack<double, 2>;
   std::vector<Lane> u(4096), z(std::size_t(fft.spectrum())),
       scratch(std::size_t(fft.scratch()));
-  std::uint64_t none = 0;
+  std::uint64_t known = 0;
   for (Index i = 0; i < 3; ++i) {
     double sum = 0;
     for (Index r = 0; r < 4096; ++r) {
@@ -180,14 +182,75 @@ TEST(Heat, ModesWithoutSignalAreSkippedToTheSameBits) {
       const double amplitude = std::sqrt(std::fma(re[0], re[0], im[0] * im[0]));
       const auto mode =
           HeatMode::of(amplitude, e, 64 * std::exp(-e), std::sqrt(sum));
-      none += amplitude > 39 * 64 * std::exp(-e);
+      const double expected = 64 * std::exp(-e), noise = std::sqrt(sum);
+      known += amplitude >= 39 * expected ||
+               (amplitude > 39 * noise && amplitude < 37 * expected) ||
+               amplitude < 0x1p-28 * std::min(noise, expected);
       return Lane{} + mode.gain;
     });
     fft.inverse(z.data(), u.data(), scratch.data());
     for (Index r = 0; r < 4096; ++r)
       ASSERT_EQ(x(r, i), u[std::size_t(r)][0] / 4096) << r;
   }
-  EXPECT_EQ(none, skipped);
+  EXPECT_EQ(known, skipped);
+}
+
+// Without a floor, the second step amplifies what rounding has left.
+TEST(Heat, InversionOnSpectraIsThatOfCells) {
+  for (const double floor : {0.0, 1e-8, 1e-3}) {
+    const Heat<double> heat({.noise_floor = floor});
+    const auto s = heat.sample(0, 11, kHeatRng);
+    Workspace work, of_cells;
+    HeatInversion inversion(heat, s.y, work);
+    Batch<double> x = Batch<double>::Zero(4096, 11), seen = x;
+    for (int k = 0; k < (floor > 0 ? 12 : 1); ++k) {
+      heat.invert(s.y, s.given, x, x, of_cells);
+      inversion.step(work);
+      inversion.estimate(seen, work);
+      for (Index i = 0; i < 11; ++i)
+        EXPECT_LT((seen - x).col(i).norm(), 1e-9 * x.col(i).norm())
+            << floor << " step " << k << " example " << i;
+    }
+    const auto skipped = work.counts[Counter::skipped_zeros],
+               there = of_cells.counts[Counter::skipped_zeros];
+    EXPECT_GT(there, 0);
+    EXPECT_GT(double(skipped), 0.99 * double(there));
+  }
+}
+
+/// Amplitudes and uncertainties of every size, with and without likelihoods.
+TEST(Heat, WhatIsKnownOfAModeHasTheBitsOfItsLikelihoods) {
+  using namespace heat_lanes;
+  const Heat<double> heat;
+  const HeatTable& table = heat.table();
+  const auto gain_by_itself = [&](double z, Index p, double u) {
+    return Modes::of(P{} + std::sqrt(z * z),
+                     table.s(p, p),
+                     table.damping(p, p),
+                     table.amplification(p, p),
+                     1 / table.expected(p, p),
+                     P{} + 1 / u)
+        .gain[0];
+  };
+  Mask<double> known{};
+  Index asked = 0;
+  for (Index p = 0; p < 33; p += 4)
+    for (int scale = -24; scale <= 3; ++scale)
+      for (int size = -24; size <= 24; ++size) {
+        const double u = table.expected(p, p) * std::pow(10.0, scale);
+        P z{};
+        for (Index k = 0; k < kWidth; ++k)
+          z[k] = u * std::pow(10.0, size) * (1 + 0.9 * double(k));
+        const P alone =
+            gain_of(P{} + z[0], P{}, table, p, p, Uncertainty(P{} + u), known);
+        const P gain =
+            gain_of(z, P{}, table, p, p, Uncertainty(P{} + u), known);
+        EXPECT_EQ(alone[0], gain[0]);
+        for (Index k = 0; k < kWidth; ++k, ++asked)
+          EXPECT_EQ(gain[k], gain_by_itself(z[k], p, u))
+              << p << " " << scale << " " << size;
+      }
+  for (Index k = 0; k < kWidth; ++k) EXPECT_GT(known[k], asked / kWidth);
 }
 
 TEST(Heat, RectanglesAreAsManyAndAsHotAsInThePaper) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "optimizers/lbfgsb.h"
+#include "problems/heat/inversion.h"
 #include "suite/cases/sip/heat/metrics.h"
 #include "suite/core/oracle.h"
 #include "suite/core/probe.h"
@@ -18,8 +19,11 @@ namespace {
 constexpr double kDamped = 35;  ///< s above which an eigenspace is not moved
 
 const char* name_of(Direct solver) {
-  constexpr const char* kNames[] = {
-      "descent", "descent_modes", "lbfgsb_modes", "inverse_physics"};
+  constexpr const char* kNames[] = {"descent",
+                                    "descent_modes",
+                                    "lbfgsb_modes",
+                                    "inverse_physics",
+                                    "inverse_physics_modes"};
   return kNames[static_cast<std::size_t>(solver)];
 }
 
@@ -101,6 +105,28 @@ class InversePhysics final : public Solver {
   Heat<double> heat_;
   Batch<double> x_;
   Workspace work_;
+};
+
+class InversePhysicsOfModes final : public Solver {
+ public:
+  InversePhysicsOfModes(StageRun& run, double noise_floor)
+      : oracle_(run.oracle),
+        heat_(heat_of(run, noise_floor)),
+        work_(run.threads),
+        inversion_(heat_, oracle_.observations(), work_) {}
+
+  void step() override {
+    inversion_.step(work_);
+    oracle_.add(Counter::inverse, oracle_.count());
+  }
+  void estimate(BatchOut<double> x) override { inversion_.estimate(x, work_); }
+  void leave(Outcome&) const override { oracle_.add(work_.counts); }
+
+ private:
+  Oracle& oracle_;
+  Heat<double> heat_;
+  Workspace work_;
+  HeatInversion inversion_;
 };
 
 /// Eigenspaces of the diffusion: |k|^2, and how much of y each of them has.
@@ -240,6 +266,8 @@ std::unique_ptr<Solver> make(const DirectOptions& options, StageRun& run) {
       return std::make_unique<LbfgsbOfModes>(run);
     case Direct::inverse_physics:
       return std::make_unique<InversePhysics>(run, options.noise_floor);
+    case Direct::inverse_physics_modes:
+      return std::make_unique<InversePhysicsOfModes>(run, options.noise_floor);
   }
   return std::make_unique<Descent>(run);
 }
@@ -258,7 +286,8 @@ class DirectStage final : public Stage {
   Options options() const override {
     Options all = {{"algorithm", name_of(options_.solver)},
                    {"metrics", metrics_.name}};
-    if (options_.solver == Direct::inverse_physics)
+    if (options_.solver == Direct::inverse_physics ||
+        options_.solver == Direct::inverse_physics_modes)
       all.push_back({"noise_floor", fmt::format("{}", options_.noise_floor)});
     return all;
   }

@@ -6,7 +6,9 @@
 /// may be one number per eigenspace, which is a rotation: every step has the
 /// same length and loss. By `modes`, gradient descent is a closed form and
 /// L-BFGS-B has 130 unknowns instead of 4096 (those with s <= 35, below which
-/// gradients are rounding); by cells, all steps are made.
+/// gradients are rounding); by cells, all steps are made. The steps of the
+/// local inverse are the same on spectra, where they need one transform of
+/// four.
 ///
 /// Arrays left: `mean_loss` (1 x points of the curve), `metrics`.
 #pragma once
@@ -19,10 +21,11 @@
 namespace physinv::heat {
 
 enum class Direct : std::uint8_t {
-  descent,          ///< x -= P (P x - y*)
-  descent_modes,    ///< the same at once
-  lbfgsb_modes,     ///< see above
-  inverse_physics,  ///< x += dx of the local inverse
+  descent,                ///< x -= P (P x - y*)
+  descent_modes,          ///< the same at once
+  lbfgsb_modes,           ///< see above
+  inverse_physics,        ///< x += dx of the local inverse
+  inverse_physics_modes,  ///< the same on spectra
 };
 
 struct DirectOptions {

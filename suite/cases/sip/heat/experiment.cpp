@@ -78,7 +78,9 @@ std::vector<Method> methods() {
   all.push_back({"lbfgsb", {direct({.solver = Direct::lbfgsb_modes})}});
   all.push_back({"lbfgsb-cells", {lbfgsb_solve({.ftol = 1e-14})}});
   all.push_back(
-      {"inverse-physics", {direct({.solver = Direct::inverse_physics})}});
+      {"inverse-physics", {direct({.solver = Direct::inverse_physics_modes})}});
+  all.push_back(
+      {"inverse-physics-cells", {direct({.solver = Direct::inverse_physics})}});
   return all;
 }
 
@@ -93,12 +95,13 @@ Row row(std::vector<std::string> ids,
 }
 
 std::vector<Row> quick() {
-  return {row({"gd", "lbfgsb"}, 64, 1, 1000),
-          row({"gd-cells", "inverse-physics"}, 64, 1, 100),
-          row({"lbfgsb-cells"}, 64, 1, 20),
-          row({"sip-b8", "adam-b8"}, 64, 3, 120),
-          row({"sgd-b8-lr3"}, 64, 1, 20),
-          row({"hf-b4"}, 64, 1, 9)};
+  return {
+      row({"gd", "lbfgsb"}, 64, 1, 1000),
+      row({"gd-cells", "inverse-physics", "inverse-physics-cells"}, 64, 1, 100),
+      row({"lbfgsb-cells"}, 64, 1, 20),
+      row({"sip-b8", "adam-b8"}, 64, 3, 120),
+      row({"sgd-b8-lr3"}, 64, 1, 20),
+      row({"hf-b4"}, 64, 1, 9)};
 }
 
 std::vector<Row> paper() {
@@ -161,14 +164,19 @@ const bool kRegistered = [] {
                   .output_form = OutputForm::mean_of_observations,
                   .gtol = 1e-14,
                   .recorded = 4},
-      .profiles =
-          {{.name = "smoke",
-            .rows =
-                {row({"gd", "gd-cells", "lbfgsb", "inverse-physics"}, 4, 1, 10),
-                 row({"sip-b4", "adam-b4", "sgd-b4"}, 4, 1, 10)}},
-           {.name = "quick", .rows = quick()},
-           {.name = "standard", .rows = std::move(standard)},
-           {.name = "paper", .rows = paper()}},
+      .profiles = {{.name = "smoke",
+                    .rows = {row({"gd",
+                                  "gd-cells",
+                                  "lbfgsb",
+                                  "inverse-physics",
+                                  "inverse-physics-cells"},
+                                 4,
+                                 1,
+                                 10),
+                             row({"sip-b4", "adam-b4", "sgd-b4"}, 4, 1, 10)}},
+                   {.name = "quick", .rows = quick()},
+                   {.name = "standard", .rows = std::move(standard)},
+                   {.name = "paper", .rows = paper()}},
       .methods = methods(),
   };
   return register_experiment(heat) && register_experiment(with_operator(heat));
