@@ -141,16 +141,19 @@ Experiment with_operator(Experiment e) {
   e.setting.predictor.recipe = nn::fno({.grid = {kSide, kSide}});
   e.methods = operators();
   const Row few = row({"fno-b8", "fno-b8-lr4"}, 64, 1, 26);
-  e.profiles = {{.name = "quick", .rows = {few}},
-                {.name = "standard", .rows = {few}},
-                {.name = "paper",
-                 .rows = {row({"fno", "fno-lr4"}, 128, 3, kPaperSteps)}}};
+  e.profiles = {
+      {.name = "quick", .rows = {few}},
+      {.name = "standard", .rows = {few, row({"fno", "fno-lr4"}, 128, 1, 20)}},
+      {.name = "paper",
+       .rows = {row({"fno", "fno-lr4"}, 128, 3, kPaperSteps)}}};
   return e;
 }
 
 const bool kRegistered = [] {
   auto standard = quick();
   standard.push_back(row({"sip-b32", "adam-b32"}, 64, 1, 1000));
+  standard.push_back(row({"adahessian"}, 128, 1, 20));
+  standard.push_back(row({"hf"}, 128, 1, 2));
   const Experiment heat = {
       .name = kName,
       .title = "Heat",

@@ -115,7 +115,10 @@ std::vector<Profile> profiles(const Plane& plane) {
       joined(directly(8), {row({"sip-b8", "adam-b8"}, 32, 3, 120)});
   return {{.name = "quick", .rows = quick},
           {.name = "standard",
-           .rows = joined(quick, {row({"sip", "adam", "sgd"}, kTest, 1, 100)})},
+           .rows = joined(quick,
+                          {row({"sip", "adam", "sgd"}, kTest, 1, 100),
+                           row({"adahessian"}, kTest, 1, 20),
+                           row({"hf"}, kTest, 1, 2)})},
           {.name = "paper",
            .rows = joined(directly(8),
                           {row({"sip", "adam"}, kTest, 3, kLong),
@@ -154,7 +157,7 @@ Experiment operator_experiment() {
   const Row quick = row({"fno-b8"}, 32, 1, 40);
   e.profiles = {
       {.name = "quick", .rows = {quick}},
-      {.name = "standard", .rows = {quick}},
+      {.name = "standard", .rows = {quick, row({"fno"}, kTest, 1, 20)}},
       {.name = "paper", .rows = {row({"fno"}, kTest, 3, kPaperUpdates)}}};
   return e;
 }
