@@ -19,10 +19,11 @@ namespace {
 /// Samples in a new order every pass, batch by batch.
 class Passes {
  public:
-  Passes(const Rng& rng, Index samples) : rng_(rng) {
-    order_.resize(static_cast<std::size_t>(samples));
+  Passes(const Rng& rng, Index samples)
+      : rng_(rng),
+        order_(static_cast<std::size_t>(samples)),
+        at_(order_.size()) {
     std::iota(order_.begin(), order_.end(), Index{0});
-    at_ = order_.size();
   }
 
   std::span<const Index> next(std::size_t count) {

@@ -6,7 +6,6 @@
 #include <optional>
 #include <string>
 #include <type_traits>
-#include <utility>
 
 #include "suite/core/problem.h"
 
@@ -78,11 +77,11 @@ struct SignalRecipe {
 
 /// batch_signal<Proxy>("sip", Needs::inverse, Needs::inverse)
 template <template <class> class S>
-SignalRecipe batch_signal(std::string algorithm,
+SignalRecipe batch_signal(const std::string& algorithm,
                           Needs gradient,
                           Needs jacobians,
                           const char* source = __builtin_FILE()) {
-  return {.algorithm = std::move(algorithm),
+  return {.algorithm = algorithm,
           .gradient = gradient,
           .jacobians = jacobians,
           .make_float =

@@ -25,7 +25,7 @@ struct Obstacle {
 };
 
 struct BoxMasks {
-  BoxMasks(Index cells, const std::vector<Obstacle>& obstacles);
+  BoxMasks(Index n, const std::vector<Obstacle>& obstacles);
 
   Batch<double> fluid;           ///< 1 or 0 per cell, (i, j)
   Batch<double> open_u, open_v;  ///< M

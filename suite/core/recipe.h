@@ -6,7 +6,6 @@
 #include <memory>
 #include <string>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
 #include "suite/core/network.h"
@@ -37,16 +36,15 @@ struct ProblemRecipe {
 /// problem<Heat>("heat", options): reads abilities from the base-class list.
 /// The name is that of the problem's folder.
 template <template <class> class P>
-ProblemRecipe problem(std::string name,
+ProblemRecipe problem(const std::string& name,
                       typename P<double>::Options options = {}) {
-  std::string source = "problems/" + name + '/' + name + ".h";
   return {
-      .name = std::move(name),
+      .name = name,
       .options = describe(options),
       .provided = provides<P<double>, double>(),
       .make_float = [options] { return std::make_unique<P<float>>(options); },
       .make_double = [options] { return std::make_unique<P<double>>(options); },
-      .source = std::move(source)};
+      .source = "problems/" + name + '/' + name + ".h"};
 }
 
 }  // namespace physinv
