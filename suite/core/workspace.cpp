@@ -1,5 +1,7 @@
 #include "suite/core/workspace.h"
 
+#include <sys/mman.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <new>
@@ -9,11 +11,22 @@
 namespace physinv {
 namespace {
 
-std::size_t round_up(std::size_t bytes) {
-  return (bytes + kAlignment - 1) / kAlignment * kAlignment;
+constexpr std::size_t kFirstChunk = std::size_t{64} << 10;
+constexpr std::size_t kHugePage = std::size_t{2} << 20;
+
+std::size_t round_up(std::size_t bytes, std::size_t to = kAlignment) {
+  return (bytes + to - 1) / to * to;
 }
 
-constexpr std::size_t kFirstChunk = std::size_t{64} << 10;
+/// On huge pages where there is room for some: fewer faults, fewer misses of
+/// the address cache. A system without them ignores the advice.
+void* allocate_pages(std::size_t bytes) {
+  if (bytes < 2 * kHugePage) return std::aligned_alloc(kAlignment, bytes);
+  const std::size_t whole = round_up(bytes, kHugePage);
+  void* p = std::aligned_alloc(kHugePage, whole);
+  if (p != nullptr) ::madvise(p, whole, MADV_HUGEPAGE);
+  return p;
+}
 
 }  // namespace
 
@@ -24,7 +37,7 @@ void* Buffer::reserve(std::size_t bytes) {
     const std::size_t size = std::max(round_up(bytes), kAlignment);
     data_.reset();
     bytes_ = 0;
-    data_.reset(std::aligned_alloc(kAlignment, size));
+    data_.reset(allocate_pages(size));
     if (!data_) throw std::bad_alloc();
     bytes_ = size;
   }
