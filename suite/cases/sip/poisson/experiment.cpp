@@ -18,6 +18,7 @@ namespace physinv::poisson {
 namespace {
 
 constexpr Index kTest = 128, kPaperUpdates = 10'000, kLong = 12'000;
+constexpr Index kStudy = 2000;  ///< what the order of the methods needs
 const std::vector<Index> kBatches = {128, 8};
 
 /// Objectives are sums over the batch, not means.
@@ -116,7 +117,7 @@ std::vector<Profile> profiles(const Plane& plane) {
   return {{.name = "quick", .rows = quick},
           {.name = "standard",
            .rows = joined(quick,
-                          {row({"sip", "adam", "sgd"}, kTest, 1, 100),
+                          {row({"sip", "adam", "sgd"}, kTest, 1, kStudy),
                            row({"adahessian"}, kTest, 1, 20),
                            row({"hf"}, kTest, 1, 2)})},
           {.name = "paper",
