@@ -7,7 +7,7 @@ namespace physinv {
 namespace {
 
 template <class T>
-Outcome fit(const RegressionOptions& options, StageRun& run) {
+Outcome fit_predictor(const RegressionOptions& options, StageRun& run) {
   Oracle& oracle = run.oracle;
   const NetworkRole& role = run.setting.predictor;
   const Labelling& labels = run.setting.labels;
@@ -32,12 +32,13 @@ Outcome fit(const RegressionOptions& options, StageRun& run) {
 }  // namespace
 
 std::shared_ptr<const Stage> supervised_fit(const RegressionOptions& options) {
-  return make_stage(
-      regression_facts("supervised",
-                       Needs::forward | Needs::labels,
-                       Networks::predictor,
-                       options),
-      [options]<class T>(StageRun& run) { return fit<T>(options, run); });
+  return make_stage(regression_facts("supervised",
+                                     Needs::forward | Needs::labels,
+                                     Networks::predictor,
+                                     options),
+                    [options]<class T>(StageRun& run) {
+                      return fit_predictor<T>(options, run);
+                    });
 }
 
 }  // namespace physinv

@@ -6,7 +6,7 @@ namespace physinv {
 namespace {
 
 template <class T>
-Outcome fit(const RegressionOptions& options, StageRun& run) {
+Outcome fit_surrogate(const RegressionOptions& options, StageRun& run) {
   Oracle& oracle = run.oracle;
   const NetworkRole& role = run.setting.surrogate;
   const Labelling& labels = run.setting.labels;
@@ -35,7 +35,9 @@ std::shared_ptr<const Stage> surrogate_fit(const RegressionOptions& options) {
   return make_stage(
       regression_facts(
           "surrogate", Needs::labels, Networks::surrogate, options),
-      [options]<class T>(StageRun& run) { return fit<T>(options, run); });
+      [options]<class T>(StageRun& run) {
+        return fit_surrogate<T>(options, run);
+      });
 }
 
 }  // namespace physinv

@@ -110,14 +110,18 @@ if(PHYSINV_PRECOMPILE)
   endif()
 endif()
 
-# physinv_join(<target> [<sources per compilation>]): for records, pages and
-# tests, whose compilation is all headers. A name of an unnamed namespace then
-# stands for one thing in the whole target. Nothing that computes a stage's
-# numbers is joined: what those depend on is known source by source.
+# physinv_join(<target> [<sources per compilation>]): for sources whose
+# compilation is mostly headers. A name of an unnamed namespace then stands for
+# one thing in the whole target. What a stage's numbers depend on is read from
+# the #include lines source by source: the preset `clang`, and the second width,
+# compile each alone, so that none can lean on a neighbour's.
 function(physinv_join name)
   if(PHYSINV_PRECOMPILE)
     set_target_properties(${name} PROPERTIES UNITY_BUILD ON
       UNITY_BUILD_BATCH_SIZE "${ARGN}")
+    # A source's own types are in no header here either.
+    target_compile_options(${name} PRIVATE
+      $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
   endif()
 endfunction()
 
@@ -130,7 +134,7 @@ function(physinv_join_group folder)
 endfunction()
 
 # physinv_layer(<name> [OBJECT] [NUMBERS | NARROW | RECORDS | WORDS] [GROUPED]
-# [PRECOMPILE headers] SOURCES ... DEPENDS ...): one target per layer. OBJECT
+# [JOIN n] [PRECOMPILE headers] SOURCES ... DEPENDS ...): one target per layer. OBJECT
 # keeps registrations that nobody names from the linker's broom. NUMBERS
 # computes what is recorded: physinv_<name>_v3 is the same for AVX2, where that
 # is another build. PRECOMPILE: headers of the project that nearly every source
@@ -140,8 +144,8 @@ endfunction()
 # the build type). Elsewhere -O1 would be dangerous: the linker takes any one
 # copy of an inline function for all, and without contraction its bits differ.
 function(physinv_layer name)
-  cmake_parse_arguments(ARG "OBJECT;NUMBERS;NARROW;RECORDS;WORDS;GROUPED" ""
-    "SOURCES;DEPENDS;PRECOMPILE" ${ARGN})
+  cmake_parse_arguments(ARG "OBJECT;NUMBERS;NARROW;RECORDS;WORDS;GROUPED"
+    "JOIN" "SOURCES;DEPENDS;PRECOMPILE" ${ARGN})
   set(kind STATIC)
   if(ARG_OBJECT)
     set(kind OBJECT)
@@ -174,7 +178,10 @@ function(physinv_layer name)
       UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
   endif()
   if(ARG_RECORDS OR ARG_WORDS)
-    physinv_join(physinv_${name} 8)
+    set(ARG_JOIN 8)
+  endif()
+  if(ARG_JOIN)
+    physinv_join(physinv_${name} ${ARG_JOIN})
   endif()
   if(ARG_WORDS)
     target_compile_options(physinv_${name} PRIVATE $<$<CONFIG:Release>:-O1>)

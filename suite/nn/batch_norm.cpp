@@ -6,11 +6,10 @@
 
 #include "suite/core/check.h"
 #include "suite/nn/activation.h"
+#include "suite/nn/norm_constants.h"
 
 namespace physinv::nn {
 namespace {
-
-constexpr double kEps = 1e-5, kMomentum = 0.1;
 
 /// Columns of the tape slot, one number per feature each.
 enum Column { kMean, kInverse, kUnbiased, kColumns };
@@ -87,7 +86,7 @@ void BatchNorm<T>::forward(const LayerArgs<T>& at,
     } else {
       mean = double(at.state[i]), variance = double(at.state[features + i]);
     }
-    const double inverse = 1.0 / std::sqrt(variance + kEps);
+    const double inverse = 1.0 / std::sqrt(variance + kNormEps);
     kept(i, kMean) = mean, kept(i, kInverse) = inverse;
     const auto s = double(scale[i]), o = double(offset[i]);
     T* to = y.row(i);
@@ -204,7 +203,8 @@ void BatchNorm<T>::update_state(const Tape& tape,
   const Index features = this->inputs();
   const auto kept = tape.view<double>(slot);
   const auto move = [](T& to, double from) {
-    to = static_cast<T>((1 - kMomentum) * double(to) + kMomentum * from);
+    to =
+        static_cast<T>((1 - kNormMomentum) * double(to) + kNormMomentum * from);
   };
   for (Index i = 0; i < features; ++i) {
     move(state[i], kept(i, kMean));

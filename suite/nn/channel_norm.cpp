@@ -5,12 +5,11 @@
 
 #include "suite/core/check.h"
 #include "suite/nn/activation.h"
+#include "suite/nn/norm_constants.h"
 #include "suite/nn/norm_lanes.h"
 
 namespace physinv::nn {
 namespace {
-
-constexpr double kEps = 1e-5, kMomentum = 0.1;
 
 template <class T>
 using V = Simd<T, kNarrow>;
@@ -236,7 +235,7 @@ void combine_moments(const T* moments,
       squares += double(m[channels]) + some * off * off;
     }
     to.mean[c] = static_cast<T>(mean);
-    to.inverse[c] = static_cast<T>(1.0 / std::sqrt(squares / count + kEps));
+    to.inverse[c] = static_cast<T>(1.0 / std::sqrt(squares / count + kNormEps));
     to.unbiased[c] = static_cast<T>(squares / (count - 1));
   }
 }
@@ -246,14 +245,15 @@ void use_state(const T* state, Index channels, NormColumns<T> to) {
   for (Index c = 0; c < channels; ++c) {
     to.mean[c] = state[c];
     to.inverse[c] =
-        static_cast<T>(1.0 / std::sqrt(double(state[channels + c]) + kEps));
+        static_cast<T>(1.0 / std::sqrt(double(state[channels + c]) + kNormEps));
     to.unbiased[c] = T(0);
   }
 }
 
 template <class T>
 void move_state(NormColumns<T> batch, Index channels, T* state) {
-  const T f = static_cast<T>(kMomentum), keep = static_cast<T>(1 - kMomentum);
+  const T f = static_cast<T>(kNormMomentum),
+          keep = static_cast<T>(1 - kNormMomentum);
   for (Index c = 0; c < channels; ++c) {
     state[c] = keep * state[c] + f * batch.mean[c];
     state[channels + c] = keep * state[channels + c] + f * batch.unbiased[c];

@@ -32,11 +32,11 @@ void fold_bias(const T* weights,
                const Constants<T>& x,
                Index outputs,
                T* folded) {
-  constexpr Index kGroup = 8;
+  constexpr Index kSums = 8;
   const Index in = x.values.rows();
-  for (Index i = 0; i < outputs; i += kGroup) {
-    const Index rows = std::min(kGroup, outputs - i);
-    T sum[kGroup] = {};
+  for (Index i = 0; i < outputs; i += kSums) {
+    const Index rows = std::min(kSums, outputs - i);
+    T sum[kSums] = {};
     for (Index r = 0; r < rows; ++r) sum[r] = bias[i + r];
     const auto add = [&](Index begin, Index end) {
       for (Index j = begin; j < end; ++j)

@@ -52,9 +52,9 @@ void add_level(
 }
 
 template <class T>
-std::unique_ptr<Network<T>> make(const UnetOptions& o,
-                                 Index inputs,
-                                 Index outputs) {
+std::unique_ptr<Network<T>> make_unet(const UnetOptions& o,
+                                      Index inputs,
+                                      Index outputs) {
   const Index positions = o.grid.positions();
   const FieldInputOptions input{.positions = positions,
                                 .before = o.scalars_before,
@@ -103,8 +103,8 @@ NetworkRecipe unet(const UnetOptions& options) {
           options.padding == Padding::circular ? " circular" : "",
           options.batch_statistics ? " batch_statistics" : "",
           in_words(options.init)),
-      .make_float = std::bind_front(make<float>, options),
-      .make_double = std::bind_front(make<double>, options)};
+      .make_float = std::bind_front(make_unet<float>, options),
+      .make_double = std::bind_front(make_unet<double>, options)};
 }
 
 }  // namespace physinv::nn

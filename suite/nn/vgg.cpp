@@ -19,9 +19,9 @@ namespace physinv::nn {
 namespace {
 
 template <class T>
-std::unique_ptr<Network<T>> make(const VggOptions& o,
-                                 Index inputs,
-                                 Index outputs) {
+std::unique_ptr<Network<T>> make_vgg(const VggOptions& o,
+                                     Index inputs,
+                                     Index outputs) {
   typename Sequential<T>::Layers layers;
   const auto add = [&](auto layer) { layers.push_back(std::move(layer)); };
   Grid grid = o.grid;
@@ -64,8 +64,8 @@ NetworkRecipe vgg(const VggOptions& options) {
                                      options.grid.rows,
                                      fmt::join(options.features, "-"),
                                      fmt::join(options.hidden, "-")),
-          .make_float = std::bind_front(make<float>, options),
-          .make_double = std::bind_front(make<double>, options)};
+          .make_float = std::bind_front(make_vgg<float>, options),
+          .make_double = std::bind_front(make_vgg<double>, options)};
 }
 
 }  // namespace physinv::nn
