@@ -8,6 +8,7 @@
 #include "optimizers/training.h"
 #include "optimizers/training/newton.h"
 #include "optimizers/training/proxy.h"
+#include "optimizers/training/update_cosine.h"
 #include "problems/exponential/exponential.h"
 #include "suite/cases/sip/exponential/metrics.h"
 #include "suite/harness/registry.h"
@@ -42,6 +43,7 @@ std::vector<Method> methods() {
           method("adam", adam, solver_loss()),
           method("norm", adam, inverse_proxy(ProxyNorm::absolute)),
           method("gt", adam, inverse_proxy()),
+          method("norm-cosines", adam, proxy_with_cosines(ProxyNorm::absolute)),
           method("adahessian", AdaHessianOptions{.rate = 1e-3}, solver_loss()),
           method("hf",
                  HessianFreeOptions{.solver = {.iterations = 50}},
@@ -60,12 +62,16 @@ Row row(std::vector<std::string> ids, std::uint64_t seeds, Index updates) {
 
 const bool kRegistered = [] {
   const std::vector<std::string> three = {"sgd", "adam", "norm"};
-  const std::vector<Row> full = {
-      row(three, 10, kPaper),
-      row({"gt", "newton", "newton-clipped", "newton-damped", "adahessian"},
-          3,
-          kPaper),
-      row({"hf"}, 3, kCurvature)};
+  const std::vector<Row> full = {row(three, 10, kPaper),
+                                 row({"gt",
+                                      "newton",
+                                      "newton-clipped",
+                                      "newton-damped",
+                                      "adahessian",
+                                      "norm-cosines"},
+                                     3,
+                                     kPaper),
+                                 row({"hf"}, 3, kCurvature)};
   register_experiment({
       .name = "sip/exponential",
       .title = "Exponential",

@@ -10,6 +10,7 @@
 #include "optimizers/classical.h"
 #include "optimizers/training.h"
 #include "optimizers/training/proxy.h"
+#include "optimizers/training/update_cosine.h"
 #include "problems/heat/heat.h"
 #include "suite/cases/sip/heat/direct.h"
 #include "suite/cases/sip/heat/grids.h"
@@ -23,26 +24,30 @@ namespace {
 
 constexpr Index kSide = 64, kPaperSteps = 10'000, kStudy = 2'000;
 
-enum class Push { solver, inverse };
+enum class Push { solver, inverse, watched_inverse };
+
+SignalRecipe signal(Push push) {
+  constexpr auto kNorm = ProxyNorm::square;
+  constexpr auto kPrecision = ProxyPrecision::in_double;
+  if (push == Push::solver) return solver_loss();
+  return push == Push::inverse ? inverse_proxy(kNorm, kPrecision)
+                               : proxy_with_cosines(kNorm, kPrecision);
+}
 
 /// Objectives are sums over the batch, not means.
 Method trained(std::string id,
                Push push,
                decltype(TrainingOptions::rule) rule,
                const Spot& cell) {
-  return {
-      .id = std::move(id),
-      .chain = {train({.rule = std::move(rule),
-                       .batch = cell.batch,
-                       .iterations = kPaperSteps,
-                       .gradient_scale = double(cell.batch),
-                       .fresh = cell.set == 0,
-                       .set = cell.set,
-                       .metrics = metrics(),
-                       .signal = push == Push::inverse
-                                     ? inverse_proxy(ProxyNorm::square,
-                                                     ProxyPrecision::in_double)
-                                     : solver_loss()})}};
+  return {.id = std::move(id),
+          .chain = {train({.rule = std::move(rule),
+                           .batch = cell.batch,
+                           .iterations = kPaperSteps,
+                           .gradient_scale = double(cell.batch),
+                           .fresh = cell.set == 0,
+                           .set = cell.set,
+                           .metrics = metrics(),
+                           .signal = signal(push)})}};
 }
 
 std::vector<Method> methods() {
@@ -53,6 +58,10 @@ std::vector<Method> methods() {
     all.push_back(trained(cell.id("adam"), Push::solver, adam, cell));
   };
   both({.batch = 8});
+  all.push_back(trained("sip-cosines-b8",
+                        Push::watched_inverse,
+                        AdamOptions{.rate = 1e-3, .eps = 1e-8},
+                        {.batch = 8}));
   for (const Spot& cell : rate_spots()) both(cell);
   for (const Spot& cell : set_spots()) both(cell);
   const auto sgd = [&](std::string id, Index batch, double rate) {
@@ -117,6 +126,7 @@ std::vector<Row> paper() {
           row({"hf"}, 128, 1, 30),
           row({"hf-b4"}, 128, 1, 9),
           row({"sip-b8", "adam-b8"}, 128, 3, 120),
+          row({"sip-cosines-b8"}, 64, 3, 120),
           row({"sgd-lr3", "sgd-b8-lr3"}, 128, 1, 20),
           row(std::move(studies), 128, 1, kStudy)};
 }
@@ -154,6 +164,7 @@ const bool kRegistered = [] {
   standard.push_back(row({"sip-b32", "adam-b32"}, 64, 1, 1000));
   standard.push_back(row({"adahessian"}, 128, 1, 20));
   standard.push_back(row({"hf"}, 128, 1, 2));
+  standard.push_back(row({"sip-cosines-b8"}, 64, 3, 120));
   const Experiment heat = {
       .name = kName,
       .title = "Heat",

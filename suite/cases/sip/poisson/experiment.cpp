@@ -7,6 +7,7 @@
 #include "optimizers/local_steps.h"
 #include "optimizers/training.h"
 #include "optimizers/training/proxy.h"
+#include "optimizers/training/update_cosine.h"
 #include "problems/poisson/poisson.h"
 #include "suite/cases/sip/poisson/metrics.h"
 #include "suite/cases/sip/poisson/poisson.h"
@@ -48,6 +49,7 @@ std::vector<Method> methods(const Plane& plane) {
           plane, std::move(id), batch, std::move(rule), std::move(signal)...));
     };
     add("sip", adam, inverse_proxy());
+    add("sip-cosines", adam, proxy_with_cosines());
     add("adam", adam);
     add("sgd", StepOptions(SgdOptions{.rate = 3e-12, .momentum = 0.9}));
     add("adahessian", AdaHessianOptions{.rate = 1e-6});
@@ -114,18 +116,21 @@ std::vector<Profile> profiles(const Plane& plane) {
   }
   const std::vector<Row> quick =
       joined(directly(8), {row({"sip-b8", "adam-b8"}, 32, 3, 120)});
+  const Row cosines = row({"sip-cosines-b8"}, 32, 3, 120);
   return {{.name = "quick", .rows = quick},
           {.name = "standard",
            .rows = joined(quick,
                           {row({"sip", "adam", "sgd"}, kTest, 1, kStudy),
                            row({"adahessian"}, kTest, 1, 20),
-                           row({"hf"}, kTest, 1, 2)})},
+                           row({"hf"}, kTest, 1, 2),
+                           cosines})},
           {.name = "paper",
            .rows = joined(directly(8),
                           {row({"sip", "adam"}, kTest, 3, kLong),
                            row({"sgd", "adahessian"}, kTest, 3, kPaperUpdates),
                            row({"hf"}, kTest, 1, 6),
-                           row({"sip-b8", "adam-b8"}, 32, 3, 120)})}};
+                           row({"sip-b8", "adam-b8"}, 32, 3, 120),
+                           cosines})}};
 }
 
 Experiment experiment(const Plane& p) {

@@ -7,6 +7,7 @@
 
 #include "optimizers/training.h"
 #include "optimizers/training/proxy.h"
+#include "optimizers/training/update_cosine.h"
 #include "suite/cases/sip/sine/metrics.h"
 #include "suite/cases/sip/sine/sine.h"
 #include "suite/harness/registry.h"
@@ -17,10 +18,6 @@ namespace {
 
 constexpr Index kProblems = 1000, kBatch = 100;
 constexpr Index kSmoke = 200, kQuick = 8000, kSip = 15'000, kPlain = 50'000;
-
-SinePlaneOptions options_of(const Point& p) {
-  return {.xi = double(p.xi), .degrees = double(p.degrees)};
-}
 
 struct Maker {
   SinePlaneOptions problem;
@@ -41,26 +38,41 @@ struct Maker {
   }
 };
 
-/// Rates of App. B.1, the other constants are PyTorch's defaults.
+struct Setup {
+  std::string id;
+  StepOptions rule;
+  SignalRecipe signal = solver_loss();
+};
+
+/// Rates of App. B.1 times a factor; the other constants are PyTorch's
+/// defaults.
+std::vector<Setup> setups(double xi, double factor = 1) {
+  const StepOptions adam = AdamOptions{.rate = factor * 1e-3, .eps = 1e-8};
+  return {
+      {"sip", adam, inverse_proxy(ProxyNorm::absolute)},
+      {"adam", adam},
+      {"sgd", SgdOptions{.rate = factor * 1e-2 / (xi * xi)}},
+      {"adadelta",
+       AdadeltaOptions{.rate = factor * 3e-3, .decay = 0.9, .eps = 1e-6}},
+      {"adagrad",
+       AdagradOptions{.rate = factor * 3e-3, .accumulator = 0, .eps = 1e-10}},
+      {"rmsprop",
+       RmspropOptions{.rate = factor * 3e-5, .decay = 0.99, .eps = 1e-8}}};
+}
+
 std::vector<Method> methods(const Point& p) {
   const Maker make{options_of(p)};
-  const double xi = p.xi;
+  std::vector<Method> all;
+  for (const Setup& s : setups(p.xi))
+    all.push_back(make(s.id, s.rule, s.signal));
   const StepOptions adam = AdamOptions{.rate = 1e-3, .eps = 1e-8};
-  std::vector<Method> all = {
-      make("sip", adam, inverse_proxy(ProxyNorm::absolute)),
-      make("sip-l2", adam, inverse_proxy(ProxyNorm::square)),
-      make("adam", adam),
-      make("sgd", SgdOptions{.rate = 1e-2 / (xi * xi)}),
-      make("adadelta",
-           AdadeltaOptions{.rate = 3e-3, .decay = 0.9, .eps = 1e-6}),
-      make("adagrad",
-           AdagradOptions{.rate = 3e-3, .accumulator = 0, .eps = 1e-10}),
-      make("rmsprop",
-           RmspropOptions{.rate = 3e-5, .decay = 0.99, .eps = 1e-8})};
+  all.push_back(make("sip-l2", adam, inverse_proxy(ProxyNorm::square)));
   // The finite set of App. B: 1000 samples, again and again.
   all.push_back(
       make("sip-finite", adam, inverse_proxy(ProxyNorm::absolute), kProblems));
   all.push_back(make("adam-finite", adam, solver_loss(), kProblems));
+  all.push_back(
+      make("sip-cosines", adam, proxy_with_cosines(ProxyNorm::absolute)));
   return all;
 }
 
@@ -84,6 +96,7 @@ std::vector<Profile> profiles(const Point& p) {
             {.name = "standard"},
             {.name = "paper", .rows = full}};
   std::vector<Row> hard = full;
+  hard.push_back(row({"sip-cosines"}, 3, kQuick));
   hard.push_back(row({"sip-finite"}, 3, kSip));
   hard.push_back(row({"adam-finite"}, 3, kPlain));
   return {{.name = "smoke",
@@ -94,22 +107,72 @@ std::vector<Profile> profiles(const Point& p) {
           {.name = "paper", .rows = hard}};
 }
 
+Experiment experiment(std::string name,
+                      std::string title,
+                      const SinePlaneOptions& options) {
+  return {.name = std::move(name),
+          .title = std::move(title),
+          .source = {.paper = "sip", .where = "App. B.1, Fig. 5"},
+          .problem = problem<SinePlane>("sine_plane", options),
+          .setting = {.predictor = {{Field::observations},
+                                    nn::mlp({.hidden = {32, 64, 32},
+                                             .init = nn::Init::uniform})}}};
+}
+
+Experiment sweep_point(const Point& p) {
+  Experiment e = experiment(
+      p.experiment(),
+      fmt::format("Sine, xi = {}, phi = {} degrees", p.xi, p.degrees),
+      options_of(p));
+  e.profiles = profiles(p);
+  e.methods = methods(p);
+  return e;
+}
+
+/// All its methods, from the profile `standard` on.
+Experiment study(Experiment e, std::vector<Method> methods) {
+  e.source.where = "App. B.1";
+  std::vector<std::string> ids;
+  for (const Method& m : methods) ids.push_back(m.id);
+  const Row all = row(std::move(ids), 3, kQuick);
+  e.profiles = {{.name = "smoke"},
+                {.name = "quick"},
+                {.name = "standard", .rows = {all}},
+                {.name = "paper", .rows = {all}}};
+  e.methods = std::move(methods);
+  return e;
+}
+
+Experiment study_of_gamma(int xi, int gamma) {
+  const SinePlaneOptions options{.gamma = double(gamma), .xi = double(xi)};
+  return study(
+      experiment(gamma_study(xi, gamma),
+                 fmt::format("Sine, xi = {}, gamma = {}", xi, gamma),
+                 options),
+      {Maker{options}("adam", AdamOptions{.rate = 1e-3, .eps = 1e-8})});
+}
+
+Experiment study_of_rates(int xi) {
+  const SinePlaneOptions options{.xi = double(xi)};
+  std::vector<Method> methods;
+  for (const RateFactor& f : kFactors)
+    for (const Setup& s : setups(xi, f.value))
+      methods.push_back(
+          Maker{options}(at_rate(s.id, f.name), s.rule, s.signal));
+  return study(experiment(rate_study(xi),
+                          fmt::format("Sine, xi = {}, learning rates", xi),
+                          options),
+               std::move(methods));
+}
+
 const bool kRegistered = [] {
-  bool all = true;
-  for (const Point& p : points())
-    all = register_experiment(
-              {.name = p.experiment(),
-               .title = fmt::format(
-                   "Sine, xi = {}, phi = {} degrees", p.xi, p.degrees),
-               .source = {.paper = "sip", .where = "App. B.1, Fig. 5"},
-               .problem = problem<SinePlane>("sine_plane", options_of(p)),
-               .setting = {.predictor = {{Field::observations},
-                                         nn::mlp({.hidden = {32, 64, 32},
-                                                  .init = nn::Init::uniform})}},
-               .profiles = profiles(p),
-               .methods = methods(p)}) &&
-          all;
-  return all;
+  for (const Point& p : points()) register_experiment(sweep_point(p));
+  for (const int xi : kStudied) {
+    register_experiment(study_of_rates(xi));
+    for (const int gamma : kGammas)
+      register_experiment(study_of_gamma(xi, gamma));
+  }
+  return true;
 }();
 
 }  // namespace

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <cmath>
 #include <vector>
 
@@ -153,6 +155,40 @@ Table score_table(const Evidence& at,
   return table;
 }
 
+Table rate_table(const Evidence& at) {
+  Table table{.id = "rates",
+              .title = "Distance to the nearest solution, by learning rate",
+              .source = "App. B.1",
+              .corner = "method",
+              .note = "No turn, 8000 updates, median over seeds."};
+  for (const RateFactor& f : kFactors) table.columns.push_back(f.label);
+  for (const int xi : kStudied)
+    for (const MethodName& m : kSix) {
+      TableRow row{.label = fmt::format("{}, xi = {}", m.label, xi)};
+      for (const RateFactor& f : kFactors)
+        row.cells.push_back(written(score_at_rate(xi, m.id, f.name)(at)));
+      table.rows.push_back(std::move(row));
+    }
+  return table;
+}
+
+Table gamma_table(const Evidence& at) {
+  Table table{.id = "gamma",
+              .title = "Adam's test loss, by gamma",
+              .source = "App. B.1",
+              .corner = "xi",
+              .note = "No turn, 8000 updates, median over seeds."};
+  for (const int gamma : kGammas)
+    table.columns.push_back(fmt::format("gamma = {}", gamma));
+  for (const int xi : kStudied) {
+    TableRow row{.label = fmt::format("{}", xi)};
+    for (const int gamma : kGammas)
+      row.cells.push_back(written(loss_of_gamma(xi, gamma)(at)));
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
 Section report(const Point& p,
                const Results& results,
                const Published& published) {
@@ -163,7 +199,11 @@ Section report(const Point& p,
   Section section{.experiment = p.experiment(),
                   .tables = {score_table(at, p, lines),
                              loss_table(results, p.experiment(), lines)}};
-  if (main) section.figures = {sweeps(at), landscape()};
+  if (main) {
+    section.tables.push_back(rate_table(at));
+    section.tables.push_back(gamma_table(at));
+    section.figures = {sweeps(at), landscape()};
+  }
   LearningCurves curves(results, section);
   curves.metric(lines, 0, "mean distance", "distances", "Distances", "Fig. 5");
   curves.losses(lines, "losses", "Learning curves", "");

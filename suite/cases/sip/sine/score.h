@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "suite/cases/sip/sine/sine.h"
+#include "suite/evidence/quantity.h"
 #include "suite/evidence/training.h"
 #include "suite/results/record.h"
 
@@ -19,6 +20,15 @@ inline RunValue score() {
     if (found == run.stage->arrays.end()) return {};
     return found->second(0, 0);
   };
+}
+
+/// Of a study of rates.
+inline Quantity score_at_rate(int xi, const char* method, const char* factor) {
+  return median(Select{at_rate(method, factor)}.in(rate_study(xi)), score());
+}
+/// Adam's last loss: distances scale with gamma, losses do not.
+inline Quantity loss_of_gamma(int xi, int gamma) {
+  return median(Select{"adam"}.in(gamma_study(xi, gamma)), last_loss());
 }
 
 /// Of runs of 8000 updates alone.
