@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "problems/kuramoto_sivashinsky/kuramoto_sivashinsky.h"
-#include "suite/cases/jpo/common/networks.h"
 #include "suite/cases/jpo/common/report.h"
 #include "suite/cases/jpo/common/values.h"
 #include "suite/evidence/cell.h"
+#include "suite/harness/networks.h"
 #include "suite/harness/registry.h"
 
 namespace physinv {

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "problems/navier_stokes/navier_stokes.h"
-#include "suite/cases/jpo/common/networks.h"
 #include "suite/cases/jpo/common/report.h"
 #include "suite/evidence/plane.h"
+#include "suite/harness/networks.h"
 #include "suite/harness/registry.h"
 
 namespace physinv {

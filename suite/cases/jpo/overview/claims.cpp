@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "suite/cases/jpo/common/networks.h"
 #include "suite/cases/jpo/common/values.h"
+#include "suite/harness/networks.h"
 #include "suite/harness/registry.h"
 
 namespace physinv::jpo {
@@ -103,14 +103,6 @@ std::optional<double> falling_back(const Run& run) {
   return mean_of(mixed) / mean_of(jpo);
 }
 
-Quantity parameters(const char* experiment, NetworkRole Setting::*role) {
-  return {
-      [=](const Evidence&) {
-        return Measured{.value = static_cast<double>(
-                            network_of(experiment, role)->parameter_count())};
-      },
-      {}};
-}
 Condition exactly(std::string label, const Quantity& q, double count) {
   return within(std::move(label), q, count, count);
 }

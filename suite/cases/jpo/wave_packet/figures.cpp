@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "problems/wave_packet/wave_packet.h"
-#include "suite/cases/jpo/common/networks.h"
 #include "suite/cases/jpo/common/report.h"
+#include "suite/harness/networks.h"
 #include "suite/harness/registry.h"
 
 namespace physinv {

@@ -9,6 +9,7 @@
 
 #include "optimizers/classical.h"
 #include "optimizers/training.h"
+#include "optimizers/training/late_loss.h"
 #include "optimizers/training/proxy.h"
 #include "optimizers/training/update_cosine.h"
 #include "problems/heat/heat.h"
@@ -24,6 +25,8 @@ namespace {
 
 constexpr Index kSide = 64, kPaperSteps = 10'000, kStudy = 2'000;
 
+const ProblemRecipe kProblem = problem<Heat>("heat", {.resolution = kSide});
+
 enum class Push { solver, inverse, watched_inverse };
 
 SignalRecipe signal(Push push) {
@@ -38,7 +41,8 @@ SignalRecipe signal(Push push) {
 Method trained(std::string id,
                Push push,
                decltype(TrainingOptions::rule) rule,
-               const Spot& cell) {
+               const Spot& cell,
+               const LateError& late = {}) {
   return {.id = std::move(id),
           .chain = {train({.rule = std::move(rule),
                            .batch = cell.batch,
@@ -47,15 +51,16 @@ Method trained(std::string id,
                            .fresh = cell.set == 0,
                            .set = cell.set,
                            .metrics = metrics(),
+                           .late = late,
                            .signal = signal(push)})}};
 }
 
 std::vector<Method> methods() {
   std::vector<Method> all;
-  const auto both = [&](const Spot& cell) {
+  const auto both = [&](const Spot& cell, const LateError& late = {}) {
     const AdamOptions adam{.rate = cell.rate(), .eps = 1e-8};
-    all.push_back(trained(cell.id("sip"), Push::inverse, adam, cell));
-    all.push_back(trained(cell.id("adam"), Push::solver, adam, cell));
+    all.push_back(trained(cell.id("sip"), Push::inverse, adam, cell, late));
+    all.push_back(trained(cell.id("adam"), Push::solver, adam, cell, late));
   };
   both({.batch = 8});
   all.push_back(trained("sip-cosines-b8",
@@ -64,6 +69,7 @@ std::vector<Method> methods() {
                         {.batch = 8}));
   for (const Spot& cell : rate_spots()) both(cell);
   for (const Spot& cell : set_spots()) both(cell);
+  both(kGap, late_loss(kProblem));
   const auto sgd = [&](std::string id, Index batch, double rate) {
     all.push_back(trained(std::move(id),
                           Push::solver,
@@ -72,10 +78,12 @@ std::vector<Method> methods() {
   };
   sgd("sgd", 128, 2e-6), sgd("sgd-b4", 4, 2e-6);
   sgd("sgd-lr3", 128, 1e-3), sgd("sgd-b8-lr3", 8, 1e-3);
-  all.push_back(trained("adahessian",
-                        Push::solver,
-                        AdaHessianOptions{.rate = 1e-3},
-                        {.batch = 128}));
+  sgd("sgd-b8-lr4", 8, 1e-4), sgd("sgd-b8-lr2", 8, 1e-2);
+  for (const Spot& cell : rates_with({128, 8}))
+    all.push_back(trained(cell.id("adahessian"),
+                          Push::solver,
+                          AdaHessianOptions{.rate = cell.rate()},
+                          cell));
   all.push_back(
       trained("hf", Push::solver, HessianFreeOptions{}, {.batch = 128}));
   all.push_back(trained("hf-b4",
@@ -113,6 +121,22 @@ std::vector<Row> quick() {
       row({"hf-b4"}, 64, 1, 9)};
 }
 
+/// The paper's questions about rates and about small sets, with batches of 8.
+std::vector<Row> small_batches() {
+  return {row({kGap.id("sip"), kGap.id("adam")}, 64, 3, 400),
+          row({"adahessian-b8-lr2", "adahessian-b8", "adahessian-b8-lr4"},
+              64,
+              3,
+              120),
+          row({"sgd-b8-lr4"}, 64, 3, 120),
+          row({"sgd-b8-lr2"}, 64, 1, 20)};
+}
+
+std::vector<Row> joined(std::vector<Row> a, const std::vector<Row>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
 std::vector<Row> paper() {
   std::vector<std::string> studies;
   for (const auto& cells : {rate_spots(), set_spots()})
@@ -121,27 +145,29 @@ std::vector<Row> paper() {
         if (const auto id = cell.id(method); id != method)
           studies.push_back(id);
   return {row({"gd", "lbfgsb"}, 128, 1, 1000),
-          row({"inverse-physics"}, 128, 1, 100),
+          row({"inverse-physics", "gd-cells"}, 128, 1, 100),
+          row({"lbfgsb-cells"}, 128, 1, 20),
           row({"sip", "adam", "sgd", "adahessian"}, 128, 3, kPaperSteps),
           row({"hf"}, 128, 1, 30),
           row({"hf-b4"}, 128, 1, 9),
           row({"sip-b8", "adam-b8"}, 128, 3, 120),
           row({"sip-cosines-b8"}, 64, 3, 120),
           row({"sgd-lr3", "sgd-b8-lr3"}, 128, 1, 20),
+          row({"adahessian-lr2", "adahessian-lr4"}, 128, 3, kStudy),
           row(std::move(studies), 128, 1, kStudy)};
 }
 
 /// Paper, text: rate 1e-3; plotted runs of the authors' script: 1e-4.
 std::vector<Method> operators() {
   std::vector<Method> all;
-  for (const Index batch : {128, 8})
-    for (const int decade : {3, 4}) {
-      const Spot cell{batch, decade};
-      all.push_back(trained(cell.id("fno"),
-                            Push::solver,
-                            AdamOptions{.rate = cell.rate(), .eps = 1e-8},
-                            cell));
-    }
+  const auto add = [&](const char* id, const Spot& cell) {
+    all.push_back(trained(cell.id(id),
+                          Push::solver,
+                          AdamOptions{.rate = cell.rate(), .eps = 1e-8},
+                          cell));
+  };
+  for (const Spot& cell : rates_with({128, 8})) add("fno", cell);
+  for (const Spot& cell : rates_with({8})) add("fno-long", cell);
   return all;
 }
 
@@ -150,17 +176,23 @@ Experiment with_operator(Experiment e) {
   e.title = "Heat, Fourier neural operator";
   e.setting.predictor.recipe = nn::fno({.grid = {kSide, kSide}});
   e.methods = operators();
-  const Row few = row({"fno-b8", "fno-b8-lr4"}, 64, 1, 26);
-  e.profiles = {
-      {.name = "quick", .rows = {few}},
-      {.name = "standard", .rows = {few, row({"fno", "fno-lr4"}, 128, 1, 20)}},
-      {.name = "paper",
-       .rows = {row({"fno", "fno-lr4"}, 128, 3, kPaperSteps)}}};
+  const Row few = row({"fno-b8", "fno-b8-lr4"}, 64, 1, 26),
+            rates = row({"fno-long-b8-lr2", "fno-long-b8", "fno-long-b8-lr4"},
+                        64,
+                        3,
+                        100);
+  e.profiles = {{.name = "quick", .rows = {few}},
+                {.name = "standard",
+                 .rows = {few, rates, row({"fno", "fno-lr4"}, 128, 1, 20)}},
+                {.name = "paper",
+                 .rows = {rates,
+                          row({"fno", "fno-lr4"}, 128, 3, kPaperSteps),
+                          row({"fno-lr2"}, 128, 3, kStudy)}}};
   return e;
 }
 
 const bool kRegistered = [] {
-  auto standard = quick();
+  auto standard = joined(quick(), small_batches());
   standard.push_back(row({"sip-b32", "adam-b32"}, 64, 1, 1000));
   standard.push_back(row({"adahessian"}, 128, 1, 20));
   standard.push_back(row({"hf"}, 128, 1, 2));
@@ -169,7 +201,7 @@ const bool kRegistered = [] {
       .name = kName,
       .title = "Heat",
       .source = {.paper = "sip", .where = "App. B.3, Figs. 10 to 13"},
-      .problem = problem<Heat>("heat", {.resolution = kSide}),
+      .problem = kProblem,
       .setting = {.predictor = {{Field::observations},
                                 nn::unet({.grid = {kSide, kSide},
                                           .padding = nn::Padding::circular,
@@ -190,7 +222,7 @@ const bool kRegistered = [] {
                              row({"sip-b4", "adam-b4", "sgd-b4"}, 4, 1, 10)}},
                    {.name = "quick", .rows = quick()},
                    {.name = "standard", .rows = std::move(standard)},
-                   {.name = "paper", .rows = paper()}},
+                   {.name = "paper", .rows = joined(paper(), small_batches())}},
       .methods = methods(),
   };
   return register_experiment(heat) && register_experiment(with_operator(heat));

@@ -221,7 +221,10 @@ Section operator_page(const Results& results, const Published&) {
       {"fno", "FNO", Hue::pink},
       {"fno-lr4", "FNO, rate 1e-4", Hue::red},
       {"fno-b8", "FNO, batch 8", Hue::pink},
-      {"fno-b8-lr4", "FNO, batch 8, rate 1e-4", Hue::red}};
+      {"fno-b8-lr4", "FNO, batch 8, rate 1e-4", Hue::red},
+      {"fno-long-b8-lr2", "FNO, batch 8, rate 1e-2, longer", Hue::brown},
+      {"fno-long-b8", "FNO, batch 8, longer", Hue::pink},
+      {"fno-long-b8-lr4", "FNO, batch 8, rate 1e-4, longer", Hue::red}};
   Section section{.experiment = kOperator,
                   .tables = {loss_table(results, kOperator, lines)}};
   LearningCurves curves(results, section);

@@ -30,12 +30,15 @@ struct Spot {
   }
 };
 
-inline std::vector<Spot> rate_spots() {
+/// Rates of 1e-2, 1e-3 and 1e-4 with each batch.
+inline std::vector<Spot> rates_with(const std::vector<Index>& batches) {
   std::vector<Spot> all;
   for (const int decade : {2, 3, 4})
-    for (const Index batch : {4, 32, 128}) all.push_back({batch, decade});
+    for (const Index batch : batches) all.push_back({batch, decade});
   return all;
 }
+
+inline std::vector<Spot> rate_spots() { return rates_with({4, 32, 128}); }
 
 inline std::vector<Spot> set_spots() {
   std::vector<Spot> all;
@@ -43,5 +46,8 @@ inline std::vector<Spot> set_spots() {
     for (const Index batch : {4, 32, 128}) all.push_back({batch, 3, set});
   return all;
 }
+
+/// The smallest set, whose training error is recorded, too.
+inline constexpr Spot kGap{.batch = 8, .set = 32};
 
 }  // namespace physinv::heat

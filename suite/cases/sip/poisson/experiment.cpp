@@ -20,6 +20,8 @@ namespace {
 
 constexpr Index kTest = 128, kPaperUpdates = 10'000, kLong = 12'000;
 constexpr Index kStudy = 2000;  ///< what the order of the methods needs
+constexpr Index kHessians = 500;
+constexpr double kSgd = 3e-12, kAdam = 1e-3, kHessian = 1e-6;
 const std::vector<Index> kBatches = {128, 8};
 
 /// Objectives are sums over the batch, not means.
@@ -42,21 +44,39 @@ Method trained(const Plane& plane,
 
 std::vector<Method> methods(const Plane& plane) {
   std::vector<Method> all;
-  const StepOptions adam = AdamOptions{.rate = 1e-3, .eps = 1e-8};
+  const auto adam = [](double rate) {
+    return StepOptions(AdamOptions{.rate = rate, .eps = 1e-8});
+  };
+  const auto sgd = [](double rate) {
+    return StepOptions(SgdOptions{.rate = rate, .momentum = 0.9});
+  };
   for (const Index batch : kBatches) {
     const auto add = [&](std::string id, auto rule, auto... signal) {
       all.push_back(trained(
           plane, std::move(id), batch, std::move(rule), std::move(signal)...));
     };
-    add("sip", adam, inverse_proxy());
-    add("sip-cosines", adam, proxy_with_cosines());
-    add("adam", adam);
-    add("sgd", StepOptions(SgdOptions{.rate = 3e-12, .momentum = 0.9}));
-    add("adahessian", AdaHessianOptions{.rate = 1e-6});
+    add("sip", adam(kAdam), inverse_proxy());
+    add("sip-cosines", adam(kAdam), proxy_with_cosines());
+    add("sip-10x", adam(10 * kAdam), inverse_proxy());
+    add("adam", adam(kAdam));
+    add("adam-10x", adam(10 * kAdam));
+    add("sgd", sgd(kSgd));
+    add("sgd-10x", sgd(10 * kSgd));
+    add("adahessian", AdaHessianOptions{.rate = kHessian});
+    add("adahessian-lr7", AdaHessianOptions{.rate = 1e-7});
+    add("adahessian-lr5", AdaHessianOptions{.rate = 1e-5});
+    add("adahessian-lr4", AdaHessianOptions{.rate = 1e-4});
+    add("adahessian-power1", AdaHessianOptions{.rate = kHessian, .power = 1});
     add("hf", HessianFreeOptions{});
     add("hf-40", HessianFreeOptions{.solver = {.iterations = 40}});
     add("hf-10", HessianFreeOptions{.solver = {.iterations = 10}});
   }
+  const Index few = kBatches.back();
+  for (const int times : {16, 160})
+    all.push_back(trained(
+        plane, "sgd-" + std::to_string(times) + 'x', few, sgd(times * kSgd)));
+  all.push_back(trained(plane, "sip-long", few, adam(kAdam), inverse_proxy()));
+  all.push_back(trained(plane, "adam-long", few, adam(kAdam)));
   const auto direct = [&](std::string id, LocalStep step, double rate) {
     all.push_back({.id = std::move(id),
                    .chain = {local_steps(
@@ -65,6 +85,15 @@ std::vector<Method> methods(const Plane& plane) {
   direct("gd", LocalStep::gradient, 2e-5);
   direct("gd-5e-5", LocalStep::gradient, 5e-5);
   direct("inverse-physics", LocalStep::inverse_simulator, 1);
+  direct("inverse-physics-300", LocalStep::inverse_simulator, 1);
+  const auto direct_adam = [&](std::string id, double rate) {
+    all.push_back(
+        {.id = std::move(id),
+         .chain = {local_steps({.iterations = 300, .rule = adam(rate)})}});
+  };
+  direct_adam("direct-adam-lr3", 1e-3);
+  direct_adam("direct-adam-lr2", 1e-2);
+  direct_adam("direct-adam-lr1", 1e-1);
   return all;
 }
 
@@ -83,6 +112,12 @@ Row row(std::vector<std::string> ids,
 std::vector<Row> directly(Index n) {
   return {row({"gd"}, n, 1, 300, Precision::f64),
           row({"gd-5e-5"}, n, 1, 200, Precision::f64),
+          row({"direct-adam-lr3", "direct-adam-lr2", "direct-adam-lr1"},
+              n,
+              1,
+              300,
+              Precision::f64),
+          row({"inverse-physics-300"}, n, 1, 300, Precision::f64),
           row({"inverse-physics"}, n, 1, 1, Precision::f64),
           row({"inverse-physics"}, n, 1, 1)};
 }
@@ -91,6 +126,28 @@ std::vector<Row> joined(std::vector<Row> a, const std::vector<Row>& b) {
   a.insert(a.end(), b.begin(), b.end());
   return a;
 }
+
+/// The paper's questions about rates, with batches of 8.
+const std::vector<Row> kRates = {row({"sgd-16x-b8", "sgd-160x-b8"}, 32, 3, 200),
+                                 row({"adahessian-b8",
+                                      "adahessian-lr7-b8",
+                                      "adahessian-lr5-b8",
+                                      "adahessian-lr4-b8",
+                                      "adahessian-power1-b8"},
+                                     32,
+                                     3,
+                                     150)};
+const std::vector<Row> kSmallRates = {row(
+    {"sip-long-b8", "adam-long-b8", "sip-10x-b8", "adam-10x-b8"}, 64, 3, 600)};
+const std::vector<Row> kFullRates = {
+    row({"sip-10x", "adam-10x", "sgd-10x"}, kTest, 3, kStudy),
+    row({"adahessian-lr7",
+         "adahessian-lr5",
+         "adahessian-lr4",
+         "adahessian-power1"},
+        kTest,
+        3,
+        kHessians)};
 
 std::vector<Profile> profiles(const Plane& plane) {
   const std::string name = plane.experiment;
@@ -104,8 +161,8 @@ std::vector<Profile> profiles(const Plane& plane) {
                       row({"hf-10-b8"}, 8, 1, 1),
                       row({"gd"}, 1, 1, 50, Precision::f64)}},
             {.name = "quick", .rows = quick},
-            {.name = "standard", .rows = quick},
-            {.name = "paper", .rows = quick}};
+            {.name = "standard", .rows = joined(quick, kSmallRates)},
+            {.name = "paper", .rows = joined(quick, kSmallRates)}};
   }
   if (name == kPaper.experiment) {
     return {
@@ -119,13 +176,13 @@ std::vector<Profile> profiles(const Plane& plane) {
   const Row cosines = row({"sip-cosines-b8"}, 32, 3, 120);
   return {{.name = "quick", .rows = quick},
           {.name = "standard",
-           .rows = joined(quick,
+           .rows = joined(joined(quick, kRates),
                           {row({"sip", "adam", "sgd"}, kTest, 1, kStudy),
                            row({"adahessian"}, kTest, 1, 20),
                            row({"hf"}, kTest, 1, 2),
                            cosines})},
           {.name = "paper",
-           .rows = joined(directly(8),
+           .rows = joined(joined(directly(8), joined(kRates, kFullRates)),
                           {row({"sip", "adam"}, kTest, 3, kLong),
                            row({"sgd", "adahessian"}, kTest, 3, kPaperUpdates),
                            row({"hf"}, kTest, 1, 6),
@@ -150,26 +207,44 @@ Experiment experiment(const Plane& p) {
 }
 
 /// Fourier neural operator: a network of its own, so an experiment of its own.
-Experiment operator_experiment() {
-  Experiment e = experiment(kFno);
-  e.setting.predictor.recipe = nn::fno({.grid = {64, 64}});
+Experiment operator_experiment(const Plane& plane, Index width) {
+  Experiment e = experiment(plane);
+  e.setting.predictor.recipe = nn::fno({.grid = {64, 64}, .width = width});
   e.methods.clear();
-  for (const Index batch : kBatches)
-    e.methods.push_back(
-        trained(kFno,
-                "fno",
-                batch,
-                StepOptions(AdamOptions{.rate = 3e-3, .eps = 1e-8})));
-  const Row quick = row({"fno-b8"}, 32, 1, 40);
+  const auto add = [&](const char* id, Index batch) {
+    e.methods.push_back(trained(
+        plane, id, batch, StepOptions(AdamOptions{.rate = 3e-3, .eps = 1e-8})));
+  };
+  for (const Index batch : kBatches) add("fno", batch);
+  add("fno-long", kBatches.back());
+  return e;
+}
+
+Experiment wide_operator() {
+  Experiment e = operator_experiment(kFno, 32);
+  const Row quick = row({"fno-b8"}, 32, 1, 40),
+            longer = row({"fno-long-b8"}, 64, 3, 100);
   e.profiles = {
       {.name = "quick", .rows = {quick}},
-      {.name = "standard", .rows = {quick, row({"fno"}, kTest, 1, 20)}},
-      {.name = "paper", .rows = {row({"fno"}, kTest, 3, kPaperUpdates)}}};
+      {.name = "standard", .rows = {quick, longer, row({"fno"}, kTest, 1, 20)}},
+      {.name = "paper",
+       .rows = {longer, row({"fno"}, kTest, 3, kPaperUpdates)}}};
+  return e;
+}
+
+/// A smaller version, to be compared after the same time.
+Experiment narrow_operator() {
+  Experiment e = operator_experiment(kNarrow, 16);
+  const Row longer = row({"fno-long-b8"}, 64, 3, 300);
+  e.profiles = {{.name = "standard", .rows = {longer}},
+                {.name = "paper",
+                 .rows = {longer, row({"fno"}, kTest, 3, 2 * kPaperUpdates)}}};
   return e;
 }
 
 const bool kRegistered = [] {
-  bool all = register_experiment(operator_experiment());
+  bool all = register_experiment(wide_operator()) &&
+             register_experiment(narrow_operator());
   for (const Plane& p : {kPlane, kSmall, kPaper})
     all = register_experiment(experiment(p)) && all;
   return all;

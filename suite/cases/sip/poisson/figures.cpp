@@ -23,7 +23,10 @@ const std::vector<MethodLine> kLines = {
     {"adahessian-b8", "AdaHessian, batch 8", Hue::teal},
     {"hf-40-b8", "Hessian-free, batch 8", Hue::grey},
     {"hf-10-b8", "Hessian-free, 10 products", Hue::grey},
-    {"fno-b8", "FNO, batch 8", Hue::pink}};
+    {"fno-b8", "FNO, batch 8", Hue::pink},
+    {"sip-long-b8", "SIP, batch 8, longer", Hue::orange},
+    {"adam-long-b8", "Adam, batch 8, longer", Hue::purple},
+    {"fno-long-b8", "FNO, batch 8, longer", Hue::pink}};
 
 /// The first test example of the first seed.
 Figure pictures(const Plane& plane, const Results& results) {
@@ -61,7 +64,7 @@ Section report(const Plane& plane, const Results& results) {
 
 const bool kReports = [] {
   bool all = true;
-  for (const Plane& p : {kPlane, kSmall, kPaper, kFno})
+  for (const Plane& p : {kPlane, kSmall, kPaper, kFno, kNarrow})
     all = register_report(p.experiment,
                           [p](const Results& r, const Published&) {
                             return report(p, r);
