@@ -2,6 +2,7 @@
 // networks predict after 10,000 updates. Errors are those of x.
 #include <vector>
 
+#include "suite/cases/sip/common/pairs.h"
 #include "suite/cases/sip/exponential/metrics.h"
 #include "suite/evidence/training.h"
 #include "suite/harness/registry.h"
@@ -28,12 +29,8 @@ RunValue left() {
 RunValue low_over_high() {
   return over(last_of(metric(kLow)), last_of(metric(kHigh)));
 }
-/// Of the same seed's run of another method.
-RunValue over_that_of(const char* other, MetricRow row) {
-  return over(last_of(metric(row)), beside({other}, last_of(metric(row))));
-}
 Quantity worst_ratio(const char* a, const char* b, MetricRow row) {
-  return also_asks(highest({a}, over_that_of(b, row)), {{b}});
+  return physinv::worst_ratio({a}, {b}, last_of(metric(row)));
 }
 
 const std::vector<Claim> kClaimsOfAll = {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "problems/marker_flow/marker_flow.h"
+#include "suite/cases/sip/common/pairs.h"
 #include "suite/cases/sip/fluid/fluid.h"
 #include "suite/cases/sip/fluid/metrics.h"
 #include "suite/evidence/training.h"
@@ -33,9 +34,6 @@ RunValue with_floor(RunValue loss) {
 }
 RunValue loss_left() {
   return over(with_floor(last_loss()), with_floor(first_loss()));
-}
-Quantity worst_ratio(const char* a, const char* b, const RunValue& value) {
-  return also_asks(highest({a}, over(value, beside({b}, value))), {{b}});
 }
 
 /// Share of the recorded examples whose vortex is nearer to the truth's than
@@ -136,7 +134,7 @@ const std::vector<Claim> kTrained = {
      .from = "paper",
      .says = "SIP finds a much better v0 than the regular gradient",
      .conditions = {below("error over Adam's, worst seed",
-                          worst_ratio("sip", "adam", end()),
+                          worst_ratio({"sip"}, {"adam"}, end()),
                           1)}},
     {.id = "P2",
      .origin = Origin::paper,
@@ -193,14 +191,13 @@ const std::vector<Claim> kRanges = {
     {.id = "A1",
      .from = "quick",
      .says = "Error of v0 over Adam's, batches of 16",
-     .conditions = {at_most(
-                        "after 150",
-                        worst_ratio("sip-b16", "adam-b16", error_after(150)),
-                        0.9),
-                    at_most(
-                        "after 300",
-                        worst_ratio("sip-b16", "adam-b16", error_after(300)),
-                        0.8)}},
+     .conditions =
+         {at_most("after 150",
+                  worst_ratio({"sip-b16"}, {"adam-b16"}, error_after(150)),
+                  0.9),
+          at_most("after 300",
+                  worst_ratio({"sip-b16"}, {"adam-b16"}, error_after(300)),
+                  0.8)}},
     {.id = "A2",
      .from = "quick",
      .says = "Adam fits the markers and not v0, batches of 16",
