@@ -134,8 +134,8 @@ function(physinv_join_group folder)
 endfunction()
 
 # physinv_layer(<name> [OBJECT] [NUMBERS | NARROW | RECORDS | WORDS] [GROUPED]
-# [JOIN n] [PRECOMPILE headers] SOURCES ... DEPENDS ...): one target per layer. OBJECT
-# keeps registrations that nobody names from the linker's broom. NUMBERS
+# [JOIN n] [PRECOMPILE headers] SOURCES ... DEPENDS ...): one target per layer.
+# OBJECT keeps registrations that nobody names from the linker's broom. NUMBERS
 # computes what is recorded: physinv_<name>_v3 is the same for AVX2, where that
 # is another build. PRECOMPILE: headers of the project that nearly every source
 # of the layer includes. NARROW computes nothing itself and serves both widths.
