@@ -63,6 +63,12 @@ endforeach()
 add_library(physinv_narrow INTERFACE)
 target_compile_options(physinv_narrow INTERFACE
   -march=x86-64-v3 -UPHYSINV_AVX512)
+# Nor do they take long optimizing; products and sums are fused all the same, as
+# the linker takes any one copy of an inline function for all. A header that is
+# compiled with -O3 would bring -O3 along.
+add_library(physinv_records INTERFACE)
+target_compile_options(physinv_records INTERFACE
+  $<$<CONFIG:Release>:-O1$<$<CXX_COMPILER_ID:GNU>: -fexpensive-optimizations>>)
 # Designated initializers name what they set; the rest is default on purpose.
 set(PHYSINV_WARNINGS -Wall -Wextra -Wshadow -Wno-missing-field-initializers)
 
@@ -98,10 +104,11 @@ endfunction()
 if(PHYSINV_PRECOMPILE)
   add_library(physinv_json OBJECT ${CMAKE_CURRENT_LIST_DIR}/json_once.cpp)
   target_include_directories(physinv_json PRIVATE ${PROJECT_SOURCE_DIR})
-  target_link_libraries(physinv_json PRIVATE physinv_flags physinv_narrow)
-  target_compile_options(physinv_json PRIVATE $<$<CONFIG:Release>:-O1>)
+  target_link_libraries(physinv_json PRIVATE
+    physinv_flags physinv_narrow physinv_records)
   physinv_precompile(physinv_precompiled physinv_flags)
-  physinv_precompile(physinv_precompiled_narrow "physinv_flags;physinv_narrow"
+  physinv_precompile(physinv_precompiled_records
+    "physinv_flags;physinv_narrow;physinv_records"
     ${PROJECT_SOURCE_DIR}/cmake/json_once.h)
   if(physinv_two_widths)
     physinv_precompile(physinv_precompiled_v3 physinv_flags_v3)
@@ -125,26 +132,15 @@ function(physinv_join name)
   endif()
 endfunction()
 
-# physinv_join_group(<folder> <sources>): the same for some sources of a folder,
-# in a target that is GROUPED.
-function(physinv_join_group folder)
-  list(TRANSFORM ARGN PREPEND ${folder}/)
-  string(MAKE_C_IDENTIFIER ${folder} group)
-  set_source_files_properties(${ARGN} PROPERTIES UNITY_GROUP ${group})
-endfunction()
-
-# physinv_layer(<name> [OBJECT] [NUMBERS | NARROW | RECORDS | WORDS] [GROUPED]
-# [JOIN n] [PRECOMPILE headers] SOURCES ... DEPENDS ...): one target per layer.
-# OBJECT keeps registrations that nobody names from the linker's broom. NUMBERS
-# computes what is recorded: physinv_<name>_v3 is the same for AVX2, where that
-# is another build. PRECOMPILE: headers of the project that nearly every source
-# of the layer includes. NARROW computes nothing itself and serves both widths.
-# RECORDS handles numbers and makes none, WORDS does not touch Eigen either:
-# both are narrow and joined, words hardly optimized (-O1 comes after the -O3 of
-# the build type). Elsewhere -O1 would be dangerous: the linker takes any one
-# copy of an inline function for all, and without contraction its bits differ.
+# physinv_layer(<name> [OBJECT] [NUMBERS | NARROW | RECORDS] [JOIN n]
+# [PRECOMPILE headers] SOURCES ... DEPENDS ...): one target per layer. OBJECT
+# keeps registrations that nobody names from the linker's broom. NUMBERS computes
+# what is recorded: physinv_<name>_v3 is the same for AVX2, where that is another
+# build. PRECOMPILE: headers of the project that nearly every source of the layer
+# includes. NARROW computes nothing itself and serves both widths. RECORDS
+# handles numbers and makes none: narrow, joined, hardly optimized.
 function(physinv_layer name)
-  cmake_parse_arguments(ARG "OBJECT;NUMBERS;NARROW;RECORDS;WORDS;GROUPED"
+  cmake_parse_arguments(ARG "OBJECT;NUMBERS;NARROW;RECORDS"
     "JOIN" "SOURCES;DEPENDS;PRECOMPILE" ${ARGN})
   set(kind STATIC)
   if(ARG_OBJECT)
@@ -157,11 +153,16 @@ function(physinv_layer name)
     $<INSTALL_INTERFACE:include/physinv>)
   target_link_libraries(physinv_${name} PUBLIC physinv_flags ${ARG_DEPENDS})
   target_compile_options(physinv_${name} PRIVATE ${PHYSINV_WARNINGS})
-  set(narrow)
-  if(ARG_NARROW OR ARG_RECORDS OR ARG_WORDS)
-    set(narrow _narrow)
+  set(precompiled physinv_precompiled)
+  if(ARG_NARROW OR ARG_RECORDS)
     target_link_libraries(physinv_${name} PRIVATE
       $<BUILD_INTERFACE:physinv_narrow>)
+  endif()
+  if(ARG_RECORDS)
+    set(precompiled physinv_precompiled_records)
+    target_link_libraries(physinv_${name} PRIVATE
+      $<BUILD_INTERFACE:physinv_records>)
+    set(ARG_JOIN 8)
   endif()
   if(PHYSINV_PRECOMPILE)
     target_link_libraries(physinv_${name} PRIVATE Eigen3::Eigen fmt::fmt)
@@ -170,21 +171,11 @@ function(physinv_layer name)
       physinv_precompile_headers(physinv_${name} ${ARG_PRECOMPILE})
     else()
       target_precompile_headers(physinv_${name}
-        REUSE_FROM physinv_precompiled${narrow})
+        REUSE_FROM ${precompiled})
     endif()
-  endif()
-  if(ARG_GROUPED AND PHYSINV_PRECOMPILE)
-    set_target_properties(physinv_${name} PROPERTIES
-      UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
-  endif()
-  if(ARG_RECORDS OR ARG_WORDS)
-    set(ARG_JOIN 8)
   endif()
   if(ARG_JOIN)
     physinv_join(physinv_${name} ${ARG_JOIN})
-  endif()
-  if(ARG_WORDS)
-    target_compile_options(physinv_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   endif()
   if(ARG_NUMBERS AND physinv_two_widths)
     physinv_layer_v3(${name} ${kind} "${ARG_SOURCES}" "${ARG_DEPENDS}")

@@ -281,8 +281,11 @@ class LocalStepsStage final : public Stage {
   Networks networks() const override { return Networks::none; }
   double operations(const CaseSize& size) const override {
     const auto d = static_cast<double>(size.shape.unknowns);
+    const bool solves = options_.step == LocalStep::newton ||
+                        options_.step == LocalStep::inverse_gradient;
     return static_cast<double>(size.n * size.iterations) *
-           ((searches() ? 100 : 3) * size.problem_operations + d * d * d);
+           ((searches() ? 100 : 3) * size.problem_operations +
+            (solves ? d * d * d : 0));
   }
   Outcome run(StageRun& run) const override {
     if (run.precision == Precision::f32 && !searches())

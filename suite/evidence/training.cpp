@@ -150,6 +150,14 @@ RunValue value_after(RowOfCurve which, Index count) {
                 });
 }
 
+RunValue late_training_error() {
+  return [](const Run& run) -> std::optional<double> {
+    const auto found = run.stage->arrays.find("late_error");
+    if (found == run.stage->arrays.end()) return {};
+    return found->second(0, 0);
+  };
+}
+
 RunValue diverged() {
   return [](const Run& run) {
     return std::optional(run.stage->stop == Stop::diverged ? 1.0 : 0.0);

@@ -55,6 +55,10 @@ RunValue first_below(double level, RowOfCurve row = {});
 RunValue last_of(RowOfCurve row);
 RunValue value_after(RowOfCurve row, Index updates);
 
+/// Mean error of the samples seen near the end (a LateError); empty where it
+/// was not asked for.
+RunValue late_training_error();
+
 /// Whether the run diverged: 1 or 0.
 RunValue diverged();
 RunValue seconds_per_update();

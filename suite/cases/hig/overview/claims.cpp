@@ -6,7 +6,7 @@
 #include "suite/evidence/training.h"
 #include "suite/harness/registry.h"
 
-namespace physinv {
+namespace physinv::hig::overview {
 namespace {
 
 const std::string kOscillators = "hig/oscillators", kPoisson = "hig/poisson",
@@ -132,4 +132,4 @@ const bool kRegistered =
                        .claims = kClaims});
 
 }  // namespace
-}  // namespace physinv
+}  // namespace physinv::hig::overview

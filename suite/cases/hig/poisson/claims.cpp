@@ -10,7 +10,7 @@
 #include "suite/evidence/training.h"
 #include "suite/harness/registry.h"
 
-namespace physinv::poisson {
+namespace physinv::hig::poisson {
 namespace {
 
 constexpr Index kCells = 64;
@@ -465,4 +465,4 @@ const bool kClaims =
     register_claims(kName, kSuite) && register_claims(kName, kPaper);
 
 }  // namespace
-}  // namespace physinv::poisson
+}  // namespace physinv::hig::poisson

@@ -10,7 +10,7 @@
 #include "suite/harness/registry.h"
 #include "suite/nn/mlp.h"
 
-namespace physinv {
+namespace physinv::hig::poisson {
 namespace {
 
 constexpr Index kEvaluation = 1024, kBatch = 64;
@@ -156,4 +156,4 @@ const auto kRegistered = register_experiment({
 });
 
 }  // namespace
-}  // namespace physinv
+}  // namespace physinv::hig::poisson

@@ -13,7 +13,7 @@
 #include "suite/evidence/training_report.h"
 #include "suite/harness/registry.h"
 
-namespace physinv::poisson {
+namespace physinv::hig::poisson {
 namespace {
 
 /// Since when the smaller rate leads, up to the end of the larger one's curve.
@@ -233,4 +233,4 @@ Section report(const Results& results, const Published& published) {
 const bool kReport = register_report(kName, report);
 
 }  // namespace
-}  // namespace physinv::poisson
+}  // namespace physinv::hig::poisson

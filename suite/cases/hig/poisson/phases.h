@@ -7,7 +7,7 @@
 
 #include "suite/results/results.h"
 
-namespace physinv::poisson {
+namespace physinv::hig::poisson {
 
 inline constexpr const char* kName = "hig/poisson";
 
@@ -22,4 +22,4 @@ struct Phase {
 /// Of every method whose records say how many singular values were kept.
 std::vector<Phase> phases(const Results& results);
 
-}  // namespace physinv::poisson
+}  // namespace physinv::hig::poisson

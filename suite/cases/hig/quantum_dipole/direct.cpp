@@ -129,7 +129,7 @@ std::vector<Row> all(std::uint64_t seeds, Index updates) {
               {"hig-f32", "gn-f32", "hig-f32-tau7"});
 }
 
-const auto kRegistered = register_experiment({
+const auto kRegisteredDirect = register_experiment({
     .name = kDirect,
     .title = "Quantum dipole, control without a network",
     .source = {.paper = "hig", .where = "Sec. 3.3, Fig. 4b"},

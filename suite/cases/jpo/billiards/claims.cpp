@@ -8,7 +8,7 @@
 #include "suite/cases/jpo/common/values.h"
 #include "suite/harness/registry.h"
 
-namespace physinv::jpo {
+namespace physinv::jpo::billiards {
 namespace {
 
 constexpr double kClose = 1e-2, kSolved = 1e-6;
@@ -280,4 +280,4 @@ const bool kClaims = register_claims("jpo/billiards", paper_claims()) &&
                      register_claims("jpo/billiards", suite_claims());
 
 }  // namespace
-}  // namespace physinv::jpo
+}  // namespace physinv::jpo::billiards

@@ -6,7 +6,7 @@
 #include "suite/harness/registry.h"
 #include "suite/nn/mlp.h"
 
-namespace physinv {
+namespace physinv::jpo::billiards {
 namespace {
 
 const auto kTrained = trained_methods();
@@ -50,4 +50,4 @@ const auto kRegistered = register_experiment({
 });
 
 }  // namespace
-}  // namespace physinv
+}  // namespace physinv::jpo::billiards

@@ -7,7 +7,7 @@
 #include "suite/cases/jpo/common/report.h"
 #include "suite/harness/registry.h"
 
-namespace physinv {
+namespace physinv::jpo::billiards {
 namespace {
 
 /// Fig. 4a: the loss over the cue ball's velocity, for one position.
@@ -77,4 +77,4 @@ Section report(const Results& results, const Published& published) {
 const bool kReport = register_report("jpo/billiards", report);
 
 }  // namespace
-}  // namespace physinv
+}  // namespace physinv::jpo::billiards

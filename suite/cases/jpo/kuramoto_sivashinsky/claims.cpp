@@ -5,10 +5,9 @@
 #include "suite/cases/jpo/common/values.h"
 #include "suite/harness/registry.h"
 
-namespace physinv::jpo {
+namespace physinv::jpo::kuramoto_sivashinsky {
 namespace {
 
-constexpr const char* kName = "jpo/kuramoto-sivashinsky";
 /// From here on the paper's statements hold; small sets can be memorised.
 constexpr Index kMany = 32;
 
@@ -283,8 +282,9 @@ std::vector<Claim> suite_claims() {
                     0.3)}}};
 }
 
-const bool kClaims = register_claims(kName, paper_claims()) &&
-                     register_claims(kName, suite_claims());
+const bool kClaims =
+    register_claims("jpo/kuramoto-sivashinsky", paper_claims()) &&
+    register_claims("jpo/kuramoto-sivashinsky", suite_claims());
 
 }  // namespace
-}  // namespace physinv::jpo
+}  // namespace physinv::jpo::kuramoto_sivashinsky

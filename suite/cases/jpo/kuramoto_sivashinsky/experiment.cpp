@@ -10,7 +10,7 @@
 #include "suite/nn/unet.h"
 #include "suite/nn/vgg.h"
 
-namespace physinv {
+namespace physinv::jpo::kuramoto_sivashinsky {
 namespace {
 
 constexpr Index kFitIterations = 1000;
@@ -70,4 +70,4 @@ const auto kRegistered = register_experiment({
 });
 
 }  // namespace
-}  // namespace physinv
+}  // namespace physinv::jpo::kuramoto_sivashinsky

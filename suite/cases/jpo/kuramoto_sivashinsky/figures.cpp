@@ -13,11 +13,11 @@
 #include "suite/harness/networks.h"
 #include "suite/harness/registry.h"
 
-namespace physinv {
+namespace physinv::jpo::kuramoto_sivashinsky {
 namespace {
 
 constexpr const char* kName = "jpo/kuramoto-sivashinsky";
-const Solved kSolved = within_of_truth(1e-3);
+const Solved kNear = within_of_truth(1e-3);
 
 /// The first problem of seed 0.
 Samples<double> example(const KuramotoSivashinsky<double>& physics) {
@@ -88,7 +88,7 @@ Table in_words(const Evidence& evidence) {
   };
   const auto solved = [](const Select& runs) {
     return percent(share_of_examples(
-        runs.of_sizes(32), jpo::if_solved(kSolved), jpo::holds));
+        runs.of_sizes(32), jpo::if_solved(kNear), jpo::holds));
   };
   const RunValue iterations = jpo::of_row(jpo::iterations(), jpo::mean_of);
   const Select bfgs = jpo::bfgs(), refined = jpo::refined("jpo"),
@@ -164,7 +164,7 @@ Section report(const Results& results, const Published& published) {
   const JpoReportOptions options{.experiment = kName,
                                  .title = "Kuramoto-Sivashinsky equation",
                                  .paper = "jpo",
-                                 .solved = kSolved,
+                                 .solved = kNear,
                                  .trajectory_size = 128,
                                  .unknowns = {"alpha", "beta"},
                                  .tensors = tensor_names(kName),
@@ -185,4 +185,4 @@ Section report(const Results& results, const Published& published) {
 const bool kReport = register_report(kName, report);
 
 }  // namespace
-}  // namespace physinv
+}  // namespace physinv::jpo::kuramoto_sivashinsky

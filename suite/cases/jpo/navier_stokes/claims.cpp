@@ -8,10 +8,9 @@
 #include "suite/cases/jpo/common/values.h"
 #include "suite/harness/registry.h"
 
-namespace physinv::jpo {
+namespace physinv::jpo::navier_stokes {
 namespace {
 
-constexpr const char* kName = "jpo/navier-stokes";
 const Select kJpo = plain("jpo"), kRefined = refined("jpo");
 const Select kSupervised = plain("supervised"),
              kSupervisedRefined = refined("supervised");
@@ -279,8 +278,8 @@ std::vector<Claim> suite_claims() {
            at_most("refined", highest_mean(kRefined, equal()), 0.02)}}};
 }
 
-const bool kClaims = register_claims(kName, paper_claims()) &&
-                     register_claims(kName, suite_claims());
+const bool kClaims = register_claims("jpo/navier-stokes", paper_claims()) &&
+                     register_claims("jpo/navier-stokes", suite_claims());
 
 }  // namespace
-}  // namespace physinv::jpo
+}  // namespace physinv::jpo::navier_stokes

@@ -12,7 +12,7 @@
 #include "suite/nn/unet.h"
 #include "suite/nn/vgg.h"
 
-namespace physinv {
+namespace physinv::jpo::navier_stokes {
 namespace {
 
 constexpr Index kFitIterations = 1000;
@@ -97,4 +97,4 @@ const auto kRegistered = register_experiment({
 });
 
 }  // namespace
-}  // namespace physinv
+}  // namespace physinv::jpo::navier_stokes

@@ -11,7 +11,7 @@
 #include "suite/harness/networks.h"
 #include "suite/harness/registry.h"
 
-namespace physinv {
+namespace physinv::jpo::navier_stokes {
 namespace {
 
 constexpr const char* kName = "jpo/navier-stokes";
@@ -194,4 +194,4 @@ Section report(const Results& results, const Published& published) {
 const bool kReport = register_report(kName, report);
 
 }  // namespace
-}  // namespace physinv
+}  // namespace physinv::jpo::navier_stokes

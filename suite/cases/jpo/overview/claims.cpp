@@ -10,7 +10,7 @@
 #include "suite/harness/networks.h"
 #include "suite/harness/registry.h"
 
-namespace physinv::jpo {
+namespace physinv::jpo::overview {
 namespace {
 
 struct Main {
@@ -309,4 +309,4 @@ const bool kRegistered =
                        .claims = claims()});
 
 }  // namespace
-}  // namespace physinv::jpo
+}  // namespace physinv::jpo::overview

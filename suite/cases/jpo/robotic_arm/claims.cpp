@@ -8,7 +8,7 @@
 #include "suite/cases/jpo/common/values.h"
 #include "suite/harness/registry.h"
 
-namespace physinv::jpo {
+namespace physinv::jpo::robotic_arm {
 namespace {
 
 constexpr double kSolved = 1e-12;
@@ -193,4 +193,4 @@ const bool kClaims = register_claims("jpo/robotic-arm", paper_claims()) &&
                      register_claims("jpo/robotic-arm", suite_claims());
 
 }  // namespace
-}  // namespace physinv::jpo
+}  // namespace physinv::jpo::robotic_arm

@@ -6,7 +6,7 @@
 #include "suite/harness/registry.h"
 #include "suite/nn/mlp.h"
 
-namespace physinv {
+namespace physinv::jpo::robotic_arm {
 namespace {
 
 constexpr Index kFitIterations = 2000;
@@ -52,4 +52,4 @@ const auto kRegistered = register_experiment({
 });
 
 }  // namespace
-}  // namespace physinv
+}  // namespace physinv::jpo::robotic_arm

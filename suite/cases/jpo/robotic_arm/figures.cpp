@@ -11,7 +11,7 @@
 #include "suite/cases/jpo/common/report.h"
 #include "suite/harness/registry.h"
 
-namespace physinv {
+namespace physinv::jpo::robotic_arm {
 namespace {
 
 constexpr std::array<double, 2> kTarget = {1.4, 0.6};
@@ -113,4 +113,4 @@ Section report(const Results& results, const Published& published) {
 const bool kReport = register_report("jpo/robotic-arm", report);
 
 }  // namespace
-}  // namespace physinv
+}  // namespace physinv::jpo::robotic_arm

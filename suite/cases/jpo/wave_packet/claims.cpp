@@ -8,7 +8,7 @@
 #include "suite/cases/jpo/common/values.h"
 #include "suite/harness/registry.h"
 
-namespace physinv::jpo {
+namespace physinv::jpo::wave_packet {
 namespace {
 
 constexpr const char* kName = "jpo/wave-packet";
@@ -300,4 +300,4 @@ const bool kClaims = register_claims(kName, paper_claims()) &&
                      register_claims(kName, suite_claims());
 
 }  // namespace
-}  // namespace physinv::jpo
+}  // namespace physinv::jpo::wave_packet

@@ -9,7 +9,7 @@
 #include "suite/nn/unet.h"
 #include "suite/nn/vgg.h"
 
-namespace physinv {
+namespace physinv::jpo::wave_packet {
 namespace {
 
 constexpr Index kFitIterations = 3000, kQuickIterations = 1000;
@@ -109,4 +109,4 @@ const auto kRegisteredHead = register_experiment({
 });
 
 }  // namespace
-}  // namespace physinv
+}  // namespace physinv::jpo::wave_packet

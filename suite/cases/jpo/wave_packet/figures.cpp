@@ -10,7 +10,7 @@
 #include "suite/harness/networks.h"
 #include "suite/harness/registry.h"
 
-namespace physinv {
+namespace physinv::jpo::wave_packet {
 namespace {
 
 /// One signal of the problem, and what its loss looks like.
@@ -146,4 +146,4 @@ const bool kReport = register_report("jpo/wave-packet", report) &&
                      register_report("jpo/wave-packet-head", report_head);
 
 }  // namespace
-}  // namespace physinv
+}  // namespace physinv::jpo::wave_packet

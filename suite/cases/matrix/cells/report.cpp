@@ -135,7 +135,7 @@ Section report(const Results& results, const Published& published) {
       .figures = {heat_map(lines)}};
 }
 
-const bool kRegistered =
+const bool kReport =
     register_overview({.paper = "matrix",
                        .title = "Every method on every problem",
                        .profiles = {"smoke", "quick", "standard", "paper"},

@@ -7,7 +7,7 @@
 #include "problems/billiards/closed_form.h"
 #include "suite/cases/numerics/common/atlas.h"
 
-namespace physinv {
+namespace physinv::numerics::billiards {
 namespace {
 
 /// The other ball one unit straight ahead.
@@ -61,4 +61,4 @@ const bool kRegistered = register_atlas(
      .problem = problem<Billiards>("billiards")});
 
 }  // namespace
-}  // namespace physinv
+}  // namespace physinv::numerics::billiards

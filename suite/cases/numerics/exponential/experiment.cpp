@@ -3,7 +3,7 @@
 #include "problems/exponential/exponential.h"
 #include "suite/cases/numerics/common/atlas.h"
 
-namespace physinv {
+namespace physinv::numerics::exponential {
 namespace {
 
 const SweepAxis kPlace{"x", spaced(-760, 720, 75), false};
@@ -28,4 +28,4 @@ const bool kRegistered = register_atlas(
                           exponential_closed_form())}});
 
 }  // namespace
-}  // namespace physinv
+}  // namespace physinv::numerics::exponential

@@ -7,7 +7,7 @@
 #include "problems/grid_poisson/grid_poisson.h"
 #include "suite/cases/numerics/common/atlas.h"
 
-namespace physinv {
+namespace physinv::numerics::grid_poisson {
 namespace {
 
 /// The eigenvector of wave numbers (k, k), which L shrinks or stretches.
@@ -36,4 +36,4 @@ const bool kRegistered = register_atlas(
      .knobs = {batch_knob(kPoisson, 256, {}, grid_poisson_closed_form())}});
 
 }  // namespace
-}  // namespace physinv
+}  // namespace physinv::numerics::grid_poisson

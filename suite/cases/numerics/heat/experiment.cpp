@@ -9,7 +9,7 @@
 #include "problems/heat/heat.h"
 #include "suite/cases/numerics/common/atlas.h"
 
-namespace physinv {
+namespace physinv::numerics::heat {
 namespace {
 
 constexpr Index kSide = 16;
@@ -67,4 +67,4 @@ const bool kRegistered = register_atlas(
              problem<Heat>("heat", kFew), 32, {}, heat_closed_form(kFew))}});
 
 }  // namespace
-}  // namespace physinv
+}  // namespace physinv::numerics::heat

@@ -6,7 +6,7 @@
 #include "problems/marker_flow/marker_flow.h"
 #include "suite/cases/numerics/common/atlas.h"
 
-namespace physinv {
+namespace physinv::numerics::marker_flow {
 namespace {
 
 ProblemRecipe of_steps(Index steps) {
@@ -84,4 +84,4 @@ const bool kRegistered = register_atlas(
      .problem = problem<MarkerFlow>("marker_flow")});
 
 }  // namespace
-}  // namespace physinv
+}  // namespace physinv::numerics::marker_flow

@@ -6,7 +6,7 @@
 #include "problems/navier_stokes/navier_stokes.h"
 #include "suite/cases/numerics/common/atlas.h"
 
-namespace physinv {
+namespace physinv::numerics::navier_stokes {
 namespace {
 
 /// Blasts from still air to far beyond what the paper draws, two steps long;
@@ -79,4 +79,4 @@ const bool kRegistered =
                     .problem = problem<NavierStokes>("navier_stokes")});
 
 }  // namespace
-}  // namespace physinv
+}  // namespace physinv::numerics::navier_stokes

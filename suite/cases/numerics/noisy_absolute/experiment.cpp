@@ -6,7 +6,7 @@
 #include "problems/noisy_absolute/noisy_absolute.h"
 #include "suite/cases/numerics/common/atlas.h"
 
-namespace physinv {
+namespace physinv::numerics::noisy_absolute {
 namespace {
 
 const SweepAxis kPlace{"place", decades(-12, 6), true};
@@ -30,4 +30,4 @@ const bool kRegistered = register_atlas(
      .knobs = {batch_knob(noisy(1), 1024, {}, noisy_absolute_closed_form())}});
 
 }  // namespace
-}  // namespace physinv
+}  // namespace physinv::numerics::noisy_absolute

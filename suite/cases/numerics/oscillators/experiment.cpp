@@ -5,7 +5,7 @@
 #include "problems/oscillators/oscillators.h"
 #include "suite/cases/numerics/common/atlas.h"
 
-namespace physinv {
+namespace physinv::numerics::oscillators {
 namespace {
 
 const SweepAxis kSize{"size of the control", decades(-6, 8, 0.5), true};
@@ -48,4 +48,4 @@ const bool kRegistered = register_atlas(
                batch_knob(stepping(0.125), 256, stepping(1.0 / 128))}});
 
 }  // namespace
-}  // namespace physinv
+}  // namespace physinv::numerics::oscillators

@@ -10,7 +10,7 @@
 #include "suite/evidence/cell.h"
 #include "suite/harness/registry.h"
 
-namespace physinv {
+namespace physinv::numerics::overview {
 namespace {
 
 const std::string kPrefix = "numerics/";
@@ -145,4 +145,4 @@ const bool kRegistered =
                        .report = report});
 
 }  // namespace
-}  // namespace physinv
+}  // namespace physinv::numerics::overview

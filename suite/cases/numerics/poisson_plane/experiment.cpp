@@ -6,7 +6,7 @@
 #include "problems/poisson/poisson.h"
 #include "suite/cases/numerics/common/atlas.h"
 
-namespace physinv {
+namespace physinv::numerics::poisson_plane {
 namespace {
 
 ProblemRecipe plane(double side) {
@@ -62,4 +62,4 @@ const bool kRegistered = register_atlas(
                batch_knob(plane(64), 32, iterated(1e-13))}});
 
 }  // namespace
-}  // namespace physinv
+}  // namespace physinv::numerics::poisson_plane

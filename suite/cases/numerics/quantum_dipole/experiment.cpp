@@ -7,7 +7,7 @@
 #include "problems/quantum_dipole/quantum_dipole.h"
 #include "suite/cases/numerics/common/atlas.h"
 
-namespace physinv {
+namespace physinv::numerics::quantum_dipole {
 namespace {
 
 const SweepAxis kSize{"size of the control", decades(-6, 6, 0.5), true};
@@ -61,4 +61,4 @@ const bool kRegistered = register_atlas(
                batch_knob(stepping(19.2, 0), 64, stepping(19.2, 4))}});
 
 }  // namespace
-}  // namespace physinv
+}  // namespace physinv::numerics::quantum_dipole

@@ -9,7 +9,7 @@
 #include "problems/robotic_arm/robotic_arm.h"
 #include "suite/cases/numerics/common/atlas.h"
 
-namespace physinv {
+namespace physinv::numerics::robotic_arm {
 namespace {
 
 /// Unknowns of an arm whose links point at these absolute angles.
@@ -62,4 +62,4 @@ const bool kRegistered = register_atlas(
      .knobs = {batch_knob(kArm, 1024, {}, robotic_arm_closed_form())}});
 
 }  // namespace
-}  // namespace physinv
+}  // namespace physinv::numerics::robotic_arm

@@ -3,7 +3,7 @@
 #include "problems/scaled_output/scaled_output.h"
 #include "suite/cases/numerics/common/atlas.h"
 
-namespace physinv {
+namespace physinv::numerics::scaled_output {
 namespace {
 
 const SweepAxis kSize{"size", decades(-150, 150, 10), true};
@@ -33,4 +33,4 @@ const bool kRegistered = register_atlas(
                           scaled_output_closed_form())}});
 
 }  // namespace
-}  // namespace physinv
+}  // namespace physinv::numerics::scaled_output

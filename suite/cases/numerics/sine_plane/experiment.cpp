@@ -6,7 +6,7 @@
 #include "problems/sine_plane/sine_plane.h"
 #include "suite/cases/numerics/common/atlas.h"
 
-namespace physinv {
+namespace physinv::numerics::sine_plane {
 namespace {
 
 ProblemRecipe stretched(double xi) {
@@ -41,4 +41,4 @@ const bool kRegistered = register_atlas(
      .knobs = {batch_knob(stretched(4), 1024, stretched(4))}});
 
 }  // namespace
-}  // namespace physinv
+}  // namespace physinv::numerics::sine_plane

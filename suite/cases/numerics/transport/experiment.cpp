@@ -11,7 +11,7 @@
 #include "suite/evidence/quantity.h"
 #include "suite/harness/registry.h"
 
-namespace physinv {
+namespace physinv::numerics::transport {
 namespace {
 
 constexpr const char* kName = "numerics/transport";
@@ -148,4 +148,4 @@ const bool kReport =
     });
 
 }  // namespace
-}  // namespace physinv
+}  // namespace physinv::numerics::transport

@@ -10,7 +10,7 @@
 #include "suite/diagnostics/stability_sweep.h"
 #include "suite/harness/registry.h"
 
-namespace physinv {
+namespace physinv::numerics::wave_packet {
 namespace {
 
 constexpr const char* kName = "numerics/wave-packet";
@@ -125,4 +125,4 @@ const auto kRegistered = register_experiment({
 });
 
 }  // namespace
-}  // namespace physinv
+}  // namespace physinv::numerics::wave_packet

@@ -9,6 +9,7 @@
 #include "optimizers/training.h"
 #include "optimizers/training/proxy.h"
 #include "problems/marker_flow/marker_flow.h"
+#include "suite/cases/sip/common/rows.h"
 #include "suite/cases/sip/fluid/fluid.h"
 #include "suite/cases/sip/fluid/metrics.h"
 #include "suite/harness/registry.h"
@@ -45,16 +46,6 @@ std::vector<Method> methods() {
   all.push_back({.id = "lbfgsb", .chain = {lbfgsb_solve()}});
   all.push_back({.id = "gd", .chain = {gradient_descent_solve()}});
   return all;
-}
-
-Row row(std::vector<std::string> ids,
-        Index n,
-        std::uint64_t seeds,
-        Index updates) {
-  return {.methods = std::move(ids),
-          .n = {n},
-          .seeds = first_seeds(seeds),
-          .iterations = updates};
 }
 
 std::vector<Profile> profiles(const Variant& variant) {

@@ -78,13 +78,7 @@ Quantity best_cell_ratio(const char* method) {
 }
 
 /// Loss on the test set over that on the training set, of the observations.
-RunValue gap() {
-  return over(last_loss(), [](const Run& run) -> std::optional<double> {
-    const auto found = run.stage->arrays.find("late_error");
-    if (found == run.stage->arrays.end()) return {};
-    return found->second(0, 0);
-  });
-}
+RunValue gap() { return over(last_loss(), late_training_error()); }
 
 /// One method with the rates of Fig. 11; the ids of `at` depend on the rate.
 class Rates {

@@ -13,6 +13,7 @@
 #include "optimizers/training/proxy.h"
 #include "optimizers/training/update_cosine.h"
 #include "problems/heat/heat.h"
+#include "suite/cases/sip/common/rows.h"
 #include "suite/cases/sip/heat/direct.h"
 #include "suite/cases/sip/heat/grids.h"
 #include "suite/cases/sip/heat/metrics.h"
@@ -101,16 +102,6 @@ std::vector<Method> methods() {
   return all;
 }
 
-Row row(std::vector<std::string> ids,
-        Index n,
-        std::uint64_t seeds,
-        Index steps) {
-  return {.methods = std::move(ids),
-          .n = {n},
-          .seeds = first_seeds(seeds),
-          .iterations = steps};
-}
-
 std::vector<Row> quick() {
   return {
       row({"gd", "lbfgsb"}, 64, 1, 1000),
@@ -130,11 +121,6 @@ std::vector<Row> small_batches() {
               120),
           row({"sgd-b8-lr4"}, 64, 3, 120),
           row({"sgd-b8-lr2"}, 64, 1, 20)};
-}
-
-std::vector<Row> joined(std::vector<Row> a, const std::vector<Row>& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
 }
 
 std::vector<Row> paper() {

@@ -6,7 +6,7 @@
 #include "suite/harness/registry.h"
 #include "suite/results/record.h"
 
-namespace physinv {
+namespace physinv::sip::overview {
 namespace {
 
 Condition update(const std::string& what,
@@ -76,4 +76,4 @@ const bool kRegistered =
                        .claims = kClaims});
 
 }  // namespace
-}  // namespace physinv
+}  // namespace physinv::sip::overview

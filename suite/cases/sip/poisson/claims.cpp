@@ -29,14 +29,6 @@ RunValue left(const RunValue& error = end()) {
 RunValue over_start(const RunValue& error) {
   return over(error, value_after({"metrics", kError}, 0));
 }
-/// Mean over the batches of the last quarter of the updates.
-RunValue tail() {
-  return [](const Run& run) -> std::optional<double> {
-    const auto found = run.stage->arrays.find("late_error");
-    if (found == run.stage->arrays.end()) return {};
-    return found->second(0, 0);
-  };
-}
 /// The first trains with every seed; the second, with ten times its rate, does
 /// not, or ends worse.
 std::vector<Condition> largest_rate(const std::string& label,
@@ -209,8 +201,8 @@ const std::vector<Claim> kTrained = {
      .from = "standard",
      .says = "Batches of 8, 200 updates: SGD's rate is the largest, 16 times "
              "the printed one for sums over a sixteenth of the batch",
-     .conditions =
-         largest_rate("SGD", {"sgd-16x-b8"}, {"sgd-160x-b8"}, tail())},
+     .conditions = largest_rate(
+         "SGD", {"sgd-16x-b8"}, {"sgd-160x-b8"}, late_training_error())},
     {.id = "P6",
      .origin = Origin::paper,
      .where = "App. B.2",
@@ -221,7 +213,7 @@ const std::vector<Claim> kTrained = {
     {.id = "A6",
      .from = "standard",
      .says = "The same with batches of 8, 150 updates",
-     .conditions = adahessian("-b8", tail())},
+     .conditions = adahessian("-b8", late_training_error())},
     {.id = "P10",
      .origin = Origin::paper,
      .where = "App. B.2",
@@ -255,11 +247,13 @@ const std::vector<Claim> kTrained = {
     {.id = "A3",
      .from = "quick",
      .says = "Batches of 8, the last 30 of 120 updates",
-     .conditions = {at_most("SIP over Adam, worst seed",
-                            worst_ratio({"sip-b8"}, {"adam-b8"}, tail()),
-                            0.65),
-                    at_most("SIP", highest({"sip-b8"}, tail()), 1100),
-                    within("Adam", median({"adam-b8"}, tail()), 1500, 2300)}},
+     .conditions =
+         {at_most("SIP over Adam, worst seed",
+                  worst_ratio({"sip-b8"}, {"adam-b8"}, late_training_error()),
+                  0.65),
+          at_most("SIP", highest({"sip-b8"}, late_training_error()), 1100),
+          within(
+              "Adam", median({"adam-b8"}, late_training_error()), 1500, 2300)}},
     {.id = "A4",
      .from = "standard",
      .says = "Batches of 128, after 2000 updates",
@@ -280,23 +274,24 @@ const std::vector<Claim> kOnSmall = {
     {.id = "A3",
      .from = "quick",
      .says = "Batches of 8 on a small grid",
-     .conditions = {at_most("SIP over Adam after 160 updates",
-                            worst_ratio({"sip-b8"}, {"adam-b8"}, tail()),
-                            0.7),
-                    above("AdaHessian, error left after 70",
-                          median({"adahessian-b8"}, left()),
-                          0.8),
-                    above("SGD, after 170", median({"sgd-b8"}, left()), 0.85),
-                    below("Hessian-free, after 2",
-                          median({"hf-40-b8"}, left()),
-                          0.8)}},
+     .conditions =
+         {at_most("SIP over Adam after 160 updates",
+                  worst_ratio({"sip-b8"}, {"adam-b8"}, late_training_error()),
+                  0.7),
+          above("AdaHessian, error left after 70",
+                median({"adahessian-b8"}, left()),
+                0.8),
+          above("SGD, after 170", median({"sgd-b8"}, left()), 0.85),
+          below("Hessian-free, after 2", median({"hf-40-b8"}, left()), 0.8)}},
     {.id = "A5",
      .from = "standard",
      .says = "Batches of 8 on a small grid, 600 updates: 1e-3 is the largest "
              "rate that trains consistently",
      .conditions =
-         largest_rate("Adam", {"adam-long-b8"}, {"adam-10x-b8"}, tail()) +
-         largest_rate("SIP", {"sip-long-b8"}, {"sip-10x-b8"}, tail())}};
+         largest_rate(
+             "Adam", {"adam-long-b8"}, {"adam-10x-b8"}, late_training_error()) +
+         largest_rate(
+             "SIP", {"sip-long-b8"}, {"sip-10x-b8"}, late_training_error())}};
 
 const std::vector<Claim> kOperators = {
     {.id = "P9",

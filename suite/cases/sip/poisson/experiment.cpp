@@ -9,6 +9,7 @@
 #include "optimizers/training/proxy.h"
 #include "optimizers/training/update_cosine.h"
 #include "problems/poisson/poisson.h"
+#include "suite/cases/sip/common/rows.h"
 #include "suite/cases/sip/poisson/metrics.h"
 #include "suite/cases/sip/poisson/poisson.h"
 #include "suite/harness/registry.h"
@@ -97,18 +98,6 @@ std::vector<Method> methods(const Plane& plane) {
   return all;
 }
 
-Row row(std::vector<std::string> ids,
-        Index n,
-        std::uint64_t seeds,
-        Index updates,
-        Precision precision = Precision::f32) {
-  return {.methods = std::move(ids),
-          .n = {n},
-          .seeds = first_seeds(seeds),
-          .iterations = updates,
-          .precision = precision};
-}
-
 std::vector<Row> directly(Index n) {
   return {row({"gd"}, n, 1, 300, Precision::f64),
           row({"gd-5e-5"}, n, 1, 200, Precision::f64),
@@ -120,11 +109,6 @@ std::vector<Row> directly(Index n) {
           row({"inverse-physics-300"}, n, 1, 300, Precision::f64),
           row({"inverse-physics"}, n, 1, 1, Precision::f64),
           row({"inverse-physics"}, n, 1, 1)};
-}
-
-std::vector<Row> joined(std::vector<Row> a, const std::vector<Row>& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
 }
 
 /// The paper's questions about rates, with batches of 8.

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "suite/cases/sip/common/pairs.h"
 #include "suite/cases/sip/sine/sine.h"
 #include "suite/evidence/quantity.h"
 #include "suite/evidence/training.h"
@@ -12,15 +13,7 @@ namespace physinv::sine {
 
 /// Mean distance to the nearest solution over the batches of the last tenth of
 /// the updates; infinite if the run diverged.
-inline RunValue score() {
-  return [](const Run& run) -> std::optional<double> {
-    if (run.stage->stop == Stop::diverged)
-      return std::numeric_limits<double>::infinity();
-    const auto found = run.stage->arrays.find("late_error");
-    if (found == run.stage->arrays.end()) return {};
-    return found->second(0, 0);
-  };
-}
+inline RunValue score() { return or_infinite(late_training_error()); }
 
 /// Of a study of rates.
 inline Quantity score_at_rate(int xi, const char* method, const char* factor) {

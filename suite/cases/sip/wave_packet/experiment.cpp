@@ -14,6 +14,7 @@
 #include "optimizers/jpo.h"
 #include "optimizers/training.h"
 #include "problems/wave_packet/wave_packet.h"
+#include "suite/cases/sip/common/rows.h"
 #include "suite/cases/sip/wave_packet/metrics.h"
 #include "suite/harness/registry.h"
 #include "suite/nn/pooled_cnn.h"
@@ -58,16 +59,6 @@ std::vector<Method> methods() {
                    .gradient_scale = double(kBatch),
                    .fresh = true,
                    .metrics = metrics()})}}};
-}
-
-Row row(std::vector<std::string> ids,
-        Index n,
-        std::uint64_t seeds,
-        Index updates = 0) {
-  return {.methods = std::move(ids),
-          .n = {n},
-          .seeds = first_seeds(seeds),
-          .iterations = updates};
 }
 
 const std::vector<std::string> kWithoutNetwork = {"lbfgs", "random"};
