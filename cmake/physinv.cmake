@@ -68,7 +68,8 @@ target_compile_options(physinv_narrow INTERFACE
 # compiled with -O3 would bring -O3 along.
 add_library(physinv_records INTERFACE)
 target_compile_options(physinv_records INTERFACE
-  $<$<CONFIG:Release>:-O1$<$<CXX_COMPILER_ID:GNU>: -fexpensive-optimizations>>)
+  $<$<CONFIG:Release>:-O1>
+  $<$<AND:$<CONFIG:Release>,$<CXX_COMPILER_ID:GNU>>:-fexpensive-optimizations>)
 # Designated initializers name what they set; the rest is default on purpose.
 set(PHYSINV_WARNINGS -Wall -Wextra -Wshadow -Wno-missing-field-initializers)
 
