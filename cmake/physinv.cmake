@@ -121,8 +121,8 @@ endif()
 # physinv_join(<target> [<sources per compilation>]): for sources whose
 # compilation is mostly headers. A name of an unnamed namespace then stands for
 # one thing in the whole target. What a stage's numbers depend on is read from
-# the #include lines source by source: the preset `clang`, and the second width,
-# compile each alone, so that none can lean on a neighbour's.
+# the #include lines source by source: the preset `clang` compiles each alone, so
+# that none can lean on a neighbour's.
 function(physinv_join name)
   if(PHYSINV_PRECOMPILE)
     set_target_properties(${name} PROPERTIES UNITY_BUILD ON
@@ -180,6 +180,9 @@ function(physinv_layer name)
   endif()
   if(ARG_NUMBERS AND physinv_two_widths)
     physinv_layer_v3(${name} ${kind} "${ARG_SOURCES}" "${ARG_DEPENDS}")
+    if(ARG_JOIN)
+      physinv_join(physinv_${name}_v3 ${ARG_JOIN})
+    endif()
   endif()
 endfunction()
 

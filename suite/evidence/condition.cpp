@@ -175,6 +175,14 @@ Condition about(std::string label, Quantity percent, double x) {
       });
 }
 
+std::vector<Condition> joined(
+    std::initializer_list<std::vector<Condition>> parts) {
+  std::vector<Condition> all;
+  for (const auto& part : parts)
+    all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
 Condition near(std::string label, Quantity q, double v) {
   return within(std::move(label), std::move(q), v / 3.2, 3.2 * v);
 }

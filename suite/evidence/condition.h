@@ -6,6 +6,7 @@
 #pragma once
 
 #include <functional>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,8 @@ Condition within(std::string label, Quantity q, double lowest, double highest);
 Condition report(std::string label, Quantity q);
 /// Holds if one of them does.
 Condition either(Condition a, Condition b);
+std::vector<Condition> joined(
+    std::initializer_list<std::vector<Condition>> parts);
 
 /// Whether our number is the printed one. Without a printed spread,
 /// |m - p| <= max(0.05, 2.83 s) with s our deviation over at least three seeds

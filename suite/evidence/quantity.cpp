@@ -138,16 +138,24 @@ Quantity share(Select select,
       });
 }
 
-Quantity median_ratio(Select a, Select b, RunValue value) {
-  const auto pair = [=](const Run& run) -> std::optional<double> {
-    const auto other = run.beside(b);
-    if (!other) return {};
-    const auto x = value(run), y = value(*other);
+namespace {
+RunValue pair_ratio(Select other, RunValue value) {
+  return [=](const Run& run) -> std::optional<double> {
+    const auto there = run.beside(other);
+    if (!there) return {};
+    const auto x = value(run), y = value(*there);
     if (!x || !y || std::isnan(*x / *y)) return {};
     return *x / *y;
   };
-  const Quantity ratios = median(a, pair);
-  return {[ratios](const Evidence& e) { return ratios(e); }, {a, b}};
+}
+}  // namespace
+
+Quantity median_ratio(Select a, Select b, RunValue value) {
+  return also_asks(median(std::move(a), pair_ratio(b, std::move(value))), {b});
+}
+
+Quantity worst_ratio(Select a, Select b, RunValue value) {
+  return also_asks(highest(std::move(a), pair_ratio(b, std::move(value))), {b});
 }
 
 Quantity median_of_examples(Select select, RunRow row) {

@@ -57,6 +57,7 @@ Quantity share(Select select, RunValue value, std::function<bool(double)> test);
 Quantity count(Select select, RunValue value, std::function<bool(double)> test);
 /// Of value(a) / value(b) over pairs of runs of one n and seed.
 Quantity median_ratio(Select a, Select b, RunValue value);
+Quantity worst_ratio(Select a, Select b, RunValue value);
 
 /// Values of a run's examples, joined over all runs.
 using RunRow = std::function<std::vector<double>(const Run&)>;

@@ -182,6 +182,13 @@ RunValue if_ran(double count, RunValue value) {
   };
 }
 
+RunValue or_infinite(RunValue value) {
+  return [value = std::move(value)](const Run& run) {
+    return run.stage->stop == Stop::diverged ? std::optional(kInfinite)
+                                             : value(run);
+  };
+}
+
 RunValue beside(Select other, RunValue value) {
   return [=](const Run& run) -> std::optional<double> {
     const auto found = run.beside(other);

@@ -66,6 +66,8 @@ RunValue seconds_per_update();
 /// Of runs of at least so many updates only: in shorter ones fast seeds alone
 /// would show. A run that diverged counts as long.
 RunValue if_ran(double updates, RunValue value);
+/// Of runs that diverged: infinite, whatever they had reached.
+RunValue or_infinite(RunValue value);
 /// Of the run of another method, or of another stage of the same chain, on the
 /// same n and seed.
 RunValue beside(Select other, RunValue value);

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "suite/core/method.h"
@@ -37,6 +38,24 @@ inline std::vector<std::uint64_t> first_seeds(std::uint64_t count) {
   std::vector<std::uint64_t> seeds(count);
   std::iota(seeds.begin(), seeds.end(), std::uint64_t{0});
   return seeds;
+}
+
+/// Methods on the first seeds, each for so many updates or steps.
+inline Row row(std::vector<std::string> methods,
+               Index n,
+               std::uint64_t seeds,
+               Index iterations = 0,
+               Precision precision = Precision::f32) {
+  return {.methods = std::move(methods),
+          .n = {n},
+          .seeds = first_seeds(seeds),
+          .iterations = iterations,
+          .precision = precision};
+}
+
+inline std::vector<Row> joined(std::vector<Row> a, const std::vector<Row>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
 }
 
 struct Profile {

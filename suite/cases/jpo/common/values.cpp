@@ -325,12 +325,4 @@ std::vector<Condition> table3(bool from_prior) {
   return out;
 }
 
-std::vector<Condition> joined(
-    std::initializer_list<std::vector<Condition>> parts) {
-  std::vector<Condition> all;
-  for (const auto& part : parts)
-    all.insert(all.end(), part.begin(), part.end());
-  return all;
-}
-
 }  // namespace physinv::jpo

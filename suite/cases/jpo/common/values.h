@@ -102,7 +102,5 @@ std::vector<Condition> table4(const std::string& method);
 std::vector<Condition> table5(const std::string& method);
 /// Table 3 at n = 4, 8, 32, 128.
 std::vector<Condition> table3(bool from_prior = false);
-std::vector<Condition> joined(
-    std::initializer_list<std::vector<Condition>> parts);
 
 }  // namespace physinv::jpo

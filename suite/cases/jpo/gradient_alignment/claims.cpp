@@ -210,12 +210,6 @@ std::vector<Condition> both(std::vector<Condition> (*of)(const Noisy&)) {
   return all;
 }
 
-template <class... More>
-std::vector<Condition> joined(std::vector<Condition> all, More... more) {
-  (all.push_back(std::move(more)), ...);
-  return all;
-}
-
 // ---- quantities that several claims use -------------------------------------
 
 const Quantity kSumOff = fig2(
@@ -528,15 +522,15 @@ const std::vector<Claim> kPaper = {
      .from = "paper",
      .says = "The aligned share falls from 1 to a limit in [1/2, 1] that does "
              "not depend on the noise",
-     .conditions = joined(both(keeps_the_limit),
-                          at_least("rho(1)", kFirstShare, 1),
-                          within("noise-free share at the largest N",
-                                 fig2({"sine"},
-                                      [](const Fig2& f) {
-                                        return Number(f.free->share.back());
-                                      }),
-                                 0.5,
-                                 1))},
+     .conditions = joined({both(keeps_the_limit),
+                           {at_least("rho(1)", kFirstShare, 1),
+                            within("noise-free share at the largest N",
+                                   fig2({"sine"},
+                                        [](const Fig2& f) {
+                                          return Number(f.free->share.back());
+                                        }),
+                                   0.5,
+                                   1)}})},
     {.id = "P10",
      .origin = Origin::paper,
      .where = "Fig. 2c, d",

@@ -16,16 +16,6 @@ Method method(const MatrixMethod& m, const MatrixProblem& p) {
           .chain = {train_at_best_rate(options, {.rates = m.rates})}};
 }
 
-Row row(std::vector<std::string> ids,
-        Index n,
-        std::uint64_t seeds,
-        Index updates) {
-  return {.methods = std::move(ids),
-          .n = {n},
-          .seeds = first_seeds(seeds),
-          .iterations = updates};
-}
-
 bool add(const MatrixProblem& p) {
   std::vector<Method> able;
   std::vector<std::string> ids, few;

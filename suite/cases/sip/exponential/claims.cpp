@@ -2,7 +2,6 @@
 // networks predict after 10,000 updates. Errors are those of x.
 #include <vector>
 
-#include "suite/cases/sip/common/pairs.h"
 #include "suite/cases/sip/exponential/metrics.h"
 #include "suite/evidence/training.h"
 #include "suite/harness/registry.h"

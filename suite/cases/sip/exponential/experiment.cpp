@@ -53,25 +53,19 @@ std::vector<Method> methods() {
           method("newton-damped", adam, newton_proxy({.damping = 0.01}))};
 }
 
-Row row(std::vector<std::string> ids, std::uint64_t seeds, Index updates) {
-  return {.methods = std::move(ids),
-          .n = {kPoints},
-          .seeds = first_seeds(seeds),
-          .iterations = updates};
-}
-
 const bool kRegistered = [] {
   const std::vector<std::string> three = {"sgd", "adam", "norm"};
-  const std::vector<Row> full = {row(three, 10, kPaper),
+  const std::vector<Row> full = {row(three, kPoints, 10, kPaper),
                                  row({"gt",
                                       "newton",
                                       "newton-clipped",
                                       "newton-damped",
                                       "adahessian",
                                       "norm-cosines"},
+                                     kPoints,
                                      3,
                                      kPaper),
-                                 row({"hf"}, 3, kCurvature)};
+                                 row({"hf"}, kPoints, 3, kCurvature)};
   register_experiment({
       .name = "sip/exponential",
       .title = "Exponential",
@@ -81,12 +75,13 @@ const bool kRegistered = [] {
                                 nn::mlp({.hidden = {16, 64, 16},
                                          .activation = nn::Activation::sigmoid,
                                          .init = nn::Init::uniform})}},
-      .profiles = {{.name = "smoke",
-                    .rows = {row(three, 1, kSmoke),
-                             row({"adahessian", "hf"}, 1, kCurvatureSmoke)}},
-                   {.name = "quick", .rows = {row(three, 3, kPaper)}},
-                   {.name = "standard", .rows = full},
-                   {.name = "paper", .rows = full}},
+      .profiles =
+          {{.name = "smoke",
+            .rows = {row(three, kPoints, 1, kSmoke),
+                     row({"adahessian", "hf"}, kPoints, 1, kCurvatureSmoke)}},
+           {.name = "quick", .rows = {row(three, kPoints, 3, kPaper)}},
+           {.name = "standard", .rows = full},
+           {.name = "paper", .rows = full}},
       .methods = methods(),
   });
   return true;

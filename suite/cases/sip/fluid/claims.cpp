@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "problems/marker_flow/marker_flow.h"
-#include "suite/cases/sip/common/pairs.h"
 #include "suite/cases/sip/fluid/fluid.h"
 #include "suite/cases/sip/fluid/metrics.h"
 #include "suite/evidence/training.h"

@@ -9,7 +9,6 @@
 #include "optimizers/training.h"
 #include "optimizers/training/proxy.h"
 #include "problems/marker_flow/marker_flow.h"
-#include "suite/cases/sip/common/rows.h"
 #include "suite/cases/sip/fluid/fluid.h"
 #include "suite/cases/sip/fluid/metrics.h"
 #include "suite/harness/registry.h"

@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "suite/cases/sip/common/pairs.h"
 #include "suite/cases/sip/heat/grids.h"
 #include "suite/cases/sip/heat/metrics.h"
 #include "suite/evidence/training.h"

@@ -13,7 +13,6 @@
 #include "optimizers/training/proxy.h"
 #include "optimizers/training/update_cosine.h"
 #include "problems/heat/heat.h"
-#include "suite/cases/sip/common/rows.h"
 #include "suite/cases/sip/heat/direct.h"
 #include "suite/cases/sip/heat/grids.h"
 #include "suite/cases/sip/heat/metrics.h"

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "suite/cases/sip/common/pairs.h"
 #include "suite/cases/sip/poisson/metrics.h"
 #include "suite/cases/sip/poisson/poisson.h"
 #include "suite/evidence/training.h"
@@ -60,12 +59,6 @@ std::vector<Condition> adahessian(const std::string& batch,
           below("power 0.5, error over that of power 1",
                 ratio(of(""), of("-power1")),
                 1)};
-}
-
-std::vector<Condition> operator+(std::vector<Condition> a,
-                                 const std::vector<Condition>& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
 }
 
 /// At the last measured point up to there.
@@ -194,9 +187,10 @@ const std::vector<Claim> kTrained = {
      .from = "paper",
      .says = "The rates are the largest that train consistently, after 2000 "
              "updates",
-     .conditions = largest_rate("SGD", {"sgd"}, {"sgd-10x"}, after_study()) +
-                   largest_rate("Adam", {"adam"}, {"adam-10x"}, after_study()) +
-                   largest_rate("SIP", {"sip"}, {"sip-10x"}, after_study())},
+     .conditions =
+         joined({largest_rate("SGD", {"sgd"}, {"sgd-10x"}, after_study()),
+                 largest_rate("Adam", {"adam"}, {"adam-10x"}, after_study()),
+                 largest_rate("SIP", {"sip"}, {"sip-10x"}, after_study())})},
     {.id = "A5",
      .from = "standard",
      .says = "Batches of 8, 200 updates: SGD's rate is the largest, 16 times "
@@ -287,11 +281,13 @@ const std::vector<Claim> kOnSmall = {
      .from = "standard",
      .says = "Batches of 8 on a small grid, 600 updates: 1e-3 is the largest "
              "rate that trains consistently",
-     .conditions =
-         largest_rate(
-             "Adam", {"adam-long-b8"}, {"adam-10x-b8"}, late_training_error()) +
-         largest_rate(
-             "SIP", {"sip-long-b8"}, {"sip-10x-b8"}, late_training_error())}};
+     .conditions = joined(
+         {largest_rate(
+              "Adam", {"adam-long-b8"}, {"adam-10x-b8"}, late_training_error()),
+          largest_rate("SIP",
+                       {"sip-long-b8"},
+                       {"sip-10x-b8"},
+                       late_training_error())})}};
 
 const std::vector<Claim> kOperators = {
     {.id = "P9",

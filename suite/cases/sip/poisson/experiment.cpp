@@ -9,7 +9,6 @@
 #include "optimizers/training/proxy.h"
 #include "optimizers/training/update_cosine.h"
 #include "problems/poisson/poisson.h"
-#include "suite/cases/sip/common/rows.h"
 #include "suite/cases/sip/poisson/metrics.h"
 #include "suite/cases/sip/poisson/poisson.h"
 #include "suite/harness/registry.h"

@@ -80,29 +80,24 @@ const std::vector<std::string> kInverse = {"sip", "sip-l2"};
 const std::vector<std::string> kPlainOnes = {
     "adam", "sgd", "adadelta", "adagrad", "rmsprop"};
 
-Row row(std::vector<std::string> ids, std::uint64_t seeds, Index updates) {
-  return {.methods = std::move(ids),
-          .n = {kProblems},
-          .seeds = first_seeds(seeds),
-          .iterations = updates};
-}
-
 std::vector<Profile> profiles(const Point& p) {
-  const std::vector<Row> full = {row(kInverse, 3, kSip),
-                                 row(kPlainOnes, 3, kPlain)};
+  const std::vector<Row> full = {row(kInverse, kProblems, 3, kSip),
+                                 row(kPlainOnes, kProblems, 3, kPlain)};
   if (p.experiment() != kHard.experiment())
     return {{.name = "smoke"},
             {.name = "quick"},
             {.name = "standard"},
             {.name = "paper", .rows = full}};
   std::vector<Row> hard = full;
-  hard.push_back(row({"sip-cosines"}, 3, kQuick));
-  hard.push_back(row({"sip-finite"}, 3, kSip));
-  hard.push_back(row({"adam-finite"}, 3, kPlain));
+  hard.push_back(row({"sip-cosines"}, kProblems, 3, kQuick));
+  hard.push_back(row({"sip-finite"}, kProblems, 3, kSip));
+  hard.push_back(row({"adam-finite"}, kProblems, 3, kPlain));
   return {{.name = "smoke",
-           .rows = {row(kInverse, 1, kSmoke), row(kPlainOnes, 1, kSmoke)}},
+           .rows = {row(kInverse, kProblems, 1, kSmoke),
+                    row(kPlainOnes, kProblems, 1, kSmoke)}},
           {.name = "quick",
-           .rows = {row(kInverse, 3, kQuick), row(kPlainOnes, 3, kQuick)}},
+           .rows = {row(kInverse, kProblems, 3, kQuick),
+                    row(kPlainOnes, kProblems, 3, kQuick)}},
           {.name = "standard", .rows = hard},
           {.name = "paper", .rows = hard}};
 }
@@ -134,7 +129,7 @@ Experiment study(Experiment e, std::vector<Method> methods) {
   e.source.where = "App. B.1";
   std::vector<std::string> ids;
   for (const Method& m : methods) ids.push_back(m.id);
-  const Row all = row(std::move(ids), 3, kQuick);
+  const Row all = row(std::move(ids), kProblems, 3, kQuick);
   e.profiles = {{.name = "smoke"},
                 {.name = "quick"},
                 {.name = "standard", .rows = {all}},

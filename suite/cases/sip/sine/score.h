@@ -3,7 +3,6 @@
 
 #include <optional>
 
-#include "suite/cases/sip/common/pairs.h"
 #include "suite/cases/sip/sine/sine.h"
 #include "suite/evidence/quantity.h"
 #include "suite/evidence/training.h"

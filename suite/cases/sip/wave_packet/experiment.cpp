@@ -14,7 +14,6 @@
 #include "optimizers/jpo.h"
 #include "optimizers/training.h"
 #include "problems/wave_packet/wave_packet.h"
-#include "suite/cases/sip/common/rows.h"
 #include "suite/cases/sip/wave_packet/metrics.h"
 #include "suite/harness/registry.h"
 #include "suite/nn/pooled_cnn.h"
