@@ -32,8 +32,12 @@ class Comparator {
   double atol() const { return atol_; }
 
   template <class A, class B>
-  testing::AssertionResult operator()(const Eigen::MatrixBase<A>& a,
-                                      const Eigen::MatrixBase<B>& b) const {
+  testing::AssertionResult operator()(
+      const Eigen::MatrixBase<A>& found,
+      const Eigen::MatrixBase<B>& wanted) const {
+    // Entry by entry, a product would be computed anew for each.
+    const auto& a = found.eval();
+    const auto& b = wanted.eval();
     if (a.rows() != b.rows() || a.cols() != b.cols()) {
       return testing::AssertionFailure()
              << "shape " << a.rows() << "x" << a.cols() << ", expected "
