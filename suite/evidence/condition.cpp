@@ -145,6 +145,14 @@ Condition either(Condition a, Condition b) {
           }};
 }
 
+std::vector<Condition> joined(
+    std::initializer_list<std::vector<Condition>> parts) {
+  std::vector<Condition> all;
+  for (const auto& part : parts)
+    all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
 Condition as_printed(std::string label, Quantity q, std::string quantity) {
   return agree(
       std::move(label),
@@ -173,14 +181,6 @@ Condition about(std::string label, Quantity percent, double x) {
             std::sqrt(std::max<double>(1, static_cast<double>(m.runs)));
         return std::max(5.0, 2 * error);
       });
-}
-
-std::vector<Condition> joined(
-    std::initializer_list<std::vector<Condition>> parts) {
-  std::vector<Condition> all;
-  for (const auto& part : parts)
-    all.insert(all.end(), part.begin(), part.end());
-  return all;
 }
 
 Condition near(std::string label, Quantity q, double v) {

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "suite/evidence/statistics.h"
+#include "suite/evidence/training.h"
 #include "suite/results/published.h"
 #include "suite/results/record.h"
 
@@ -138,24 +139,19 @@ Quantity share(Select select,
       });
 }
 
-namespace {
-RunValue pair_ratio(Select other, RunValue value) {
-  return [=](const Run& run) -> std::optional<double> {
-    const auto there = run.beside(other);
-    if (!there) return {};
-    const auto x = value(run), y = value(*there);
+Quantity median_ratio(Select a, Select b, RunValue value) {
+  const auto pair = [=](const Run& run) -> std::optional<double> {
+    const auto other = run.beside(b);
+    if (!other) return {};
+    const auto x = value(run), y = value(*other);
     if (!x || !y || std::isnan(*x / *y)) return {};
     return *x / *y;
   };
-}
-}  // namespace
-
-Quantity median_ratio(Select a, Select b, RunValue value) {
-  return also_asks(median(std::move(a), pair_ratio(b, std::move(value))), {b});
+  return also_asks(median(std::move(a), pair), {b});
 }
 
 Quantity worst_ratio(Select a, Select b, RunValue value) {
-  return also_asks(highest(std::move(a), pair_ratio(b, std::move(value))), {b});
+  return also_asks(highest(std::move(a), over(value, beside(b, value))), {b});
 }
 
 Quantity median_of_examples(Select select, RunRow row) {

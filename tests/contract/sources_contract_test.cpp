@@ -1,16 +1,14 @@
 // What the registered stages say about their sources, against the files as
 // they are, and against what the compiler sees.
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <memory>
 #include <regex>
 #include <sstream>
 
+#include "suite/harness/child.h"
 #include "suite/harness/keys.h"
 #include "suite/harness/sources.h"
 #include "tests/support/registered.h"
@@ -211,22 +209,25 @@ TEST(SourcesContract, EditsMakeStaleWhoUsesThem) {
 /// Headers of this project that the compiler's preprocessor reads for each
 /// source alone. Others it neither finds nor needs (-MG).
 std::map<std::string, Names> compiled_dependencies(const Names& sources) {
-  const std::string command = fmt::format(
-      "cd '{}' && '{}' -std=c++20 -MM -MG -nostdinc -nostdinc++ -I. {}",
-      PHYSINV_SOURCE_DIR,
-      PHYSINV_COMPILER,
-      fmt::join(sources, " "));
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> pipe(
-      popen(command.c_str(), "r"), pclose);
-  std::string text;
-  for (int c = 0; pipe && (c = std::fgetc(pipe.get())) != EOF;)
-    if (c != '\\') text += static_cast<char>(c);
-  std::istringstream words(text);
+  std::vector<std::string> command = {"env",
+                                      "-C",
+                                      PHYSINV_SOURCE_DIR,
+                                      PHYSINV_COMPILER,
+                                      "-std=c++20",
+                                      "-MM",
+                                      "-MG",
+                                      "-nostdinc",
+                                      "-nostdinc++",
+                                      "-I."};
+  command.insert(command.end(), sources.begin(), sources.end());
+  std::istringstream words(run_child(std::move(command)).output);
   std::map<std::string, Names> all;
   Names* headers = nullptr;
   for (std::string word; words >> word;) {
     if (word.ends_with(":"))
       headers = nullptr;
+    else if (word == "\\")  // the line goes on
+      continue;
     else if (headers == nullptr)
       headers = &all[word];
     else if (project_sources().find(word) == word)

@@ -107,16 +107,8 @@ std::vector<Row> rows(std::uint64_t seeds,
                       Index updates,
                       const std::vector<std::string>& in_double,
                       const std::vector<std::string>& in_float) {
-  return {{.methods = in_double,
-           .n = {16},
-           .seeds = first_seeds(seeds),
-           .iterations = updates,
-           .precision = Precision::f64},
-          {.methods = in_float,
-           .n = {16},
-           .seeds = first_seeds(seeds),
-           .iterations = updates,
-           .precision = Precision::f32}};
+  return {row(in_double, 16, seeds, updates, Precision::f64),
+          row(in_float, 16, seeds, updates, Precision::f32)};
 }
 
 std::vector<Row> few(std::uint64_t seeds, Index updates) {

@@ -205,9 +205,7 @@ std::vector<Condition> keeps_the_limit(const Noisy& noisy) {
 }
 
 std::vector<Condition> both(std::vector<Condition> (*of)(const Noisy&)) {
-  std::vector<Condition> all = of(kSum);
-  for (Condition& c : of(kVote)) all.push_back(std::move(c));
-  return all;
+  return joined({of(kSum), of(kVote)});
 }
 
 // ---- quantities that several claims use -------------------------------------

@@ -31,11 +31,7 @@ Method ruled(std::string id, StepOptions rule) {
 }
 
 Row row(Ids ids, Index n, Index steps) {
-  return {.methods = std::move(ids),
-          .n = {n},
-          .seeds = {0},
-          .iterations = steps,
-          .precision = Precision::f64};
+  return physinv::row(std::move(ids), n, 1, steps, Precision::f64);
 }
 
 std::vector<Profile> profiles(const std::vector<Row>& smoke,
