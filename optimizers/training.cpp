@@ -185,6 +185,7 @@ Sources sources(const TrainingOptions& options) {
 }  // namespace
 
 std::shared_ptr<const Stage> train(const TrainingOptions& options) {
+  const auto shared = std::make_shared<const TrainingOptions>(options);
   return make_stage(
       {.name = options.stage,
        .needs = Needs::forward | needs(options),
@@ -192,11 +193,9 @@ std::shared_ptr<const Stage> train(const TrainingOptions& options) {
        .iterations = options.iterations,
        .own_length = options.own_length,
        .operations =
-           [options](const CaseSize& size) {
-             return operations(options, size);
-           },
+           [shared](const CaseSize& size) { return operations(*shared, size); },
        .sources = sources(options)},
-      [options]<class T>(StageRun& run) { return fit<T>(options, run); });
+      [shared]<class T>(StageRun& run) { return fit<T>(*shared, run); });
 }
 
 }  // namespace physinv

@@ -4,18 +4,12 @@
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <numeric>
 
 #include "suite/app/options.h"
 #include "suite/harness/sources.h"
 
 namespace physinv {
 namespace {
-
-double work_of(const Case& c) {
-  return std::accumulate(
-      c.stage_operations.begin(), c.stage_operations.end(), 0.0);
-}
 
 void print_json(const std::vector<Case>& cases) {
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
@@ -24,7 +18,7 @@ void print_json(const std::vector<Case>& cases) {
     for (std::size_t k = 0; k < c.info.stages.size(); ++k) {
       stages.push_back({{"name", c.info.stages[k]},
                         {"iterations", c.stage_iterations[k]},
-                        {"operations", c.stage_operations[k]}});
+                        {"operations", c.operations(k)}});
     }
     all.push_back({{"name", c.info.name},
                    {"experiment", c.info.experiment},
@@ -64,8 +58,8 @@ void print_table(const std::vector<Case>& cases) {
                width,
                stages_of(c),
                stages_width,
-               work_of(c));
-    sum += work_of(c);
+               c.operations());
+    sum += c.operations();
   }
   fmt::print(
       "{} cases, about {:.2g} floating-point operations\n", cases.size(), sum);

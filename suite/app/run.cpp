@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <numeric>
 
 #include "suite/app/export.h"
 #include "suite/app/habits.h"
@@ -111,9 +110,7 @@ std::vector<CaseRecord> own_records(std::vector<CaseRecord> cases,
 std::vector<double> seconds_of(const std::vector<Case>& cases, double budget) {
   std::vector<double> seconds;
   if (budget < kBudgetForTrials) {
-    for (const Case& c : cases)
-      seconds.push_back(std::accumulate(
-          c.stage_operations.begin(), c.stage_operations.end(), 0.0));
+    for (const Case& c : cases) seconds.push_back(c.operations());
     return seconds;
   }
   Trials trials;

@@ -79,14 +79,14 @@ Quantity extreme(const std::vector<Quantity>& of, bool largest) {
 Measured missing(std::string why) { return {.missing = std::move(why)}; }
 
 Quantity::Quantity(double constant)
-    : measure_([=](const Evidence&) { return Measured{.value = constant}; }) {}
+    : Quantity([=](const Evidence&) { return Measured{.value = constant}; },
+               {}) {}
 
 Quantity::Quantity(Measure measure,
                    std::vector<Select> runs,
                    std::vector<std::string> printed)
-    : measure_(std::move(measure)),
-      runs_(std::move(runs)),
-      printed_(std::move(printed)) {}
+    : body_(std::make_shared<const Body>(
+          Body{std::move(measure), std::move(runs), std::move(printed)})) {}
 
 Quantity median(Select select, RunValue value) {
   return of_values(std::move(select), std::move(value), [](auto values) {

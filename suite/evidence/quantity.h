@@ -6,6 +6,7 @@
 
 #include <functional>
 #include <initializer_list>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,16 +35,20 @@ class Quantity {
            std::vector<std::string> printed = {});
 
   Measured operator()(const Evidence& evidence) const {
-    return measure_(evidence);
+    return body_->measure(evidence);
   }
   /// What registration looks up.
-  const std::vector<Select>& runs() const { return runs_; }
-  const std::vector<std::string>& printed() const { return printed_; }
+  const std::vector<Select>& runs() const { return body_->runs; }
+  const std::vector<std::string>& printed() const { return body_->printed; }
 
  private:
-  Measure measure_;
-  std::vector<Select> runs_;
-  std::vector<std::string> printed_;
+  struct Body {
+    Measure measure;
+    std::vector<Select> runs;
+    std::vector<std::string> printed;
+  };
+  /// Shared, as claims are made of copies of copies.
+  std::shared_ptr<const Body> body_;
 };
 
 /// Over all runs selected, whatever their n.

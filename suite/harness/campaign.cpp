@@ -383,15 +383,15 @@ void dry_run(const Prepared& prepared,
         store ? stored_stages(*store, c) : std::vector<StageRecord>();
     for (std::size_t k = 0; k < c.info.stages.size(); ++k) {
       const bool have = k < found.size();
-      all += c.stage_operations[k];
-      have ? ++reused : (left += c.stage_operations[k], ++run);
+      all += c.operations(k);
+      have ? ++reused : (left += c.operations(k), ++run);
       fmt::print(
           stream,
           "{:<5} {} {}  {:.2g} operations{}\n",
           have ? "reuse" : "run",
           c.info.name,
           c.info.stages[k],
-          c.stage_operations[k],
+          c.operations(k),
           have ? fmt::format(", {} at {}", found[k].finished, found[k].revision)
                : "");
     }

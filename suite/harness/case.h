@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <future>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -96,7 +97,13 @@ struct Case {
   std::shared_ptr<const Experiment> experiment;
   const Method* method = nullptr;
   std::vector<Index> stage_iterations;
-  std::vector<double> stage_operations;  ///< declared work, for the ETA
+  /// Of the experiment, found out when first asked for, as networks are made
+  /// for it.
+  std::shared_future<CaseSize> size;
+
+  /// Declared work of a stage, and of all, for the ETA.
+  double operations(std::size_t stage) const;
+  double operations() const;
 };
 
 }  // namespace physinv

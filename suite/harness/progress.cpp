@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <numeric>
 #include <string_view>
 
 #include "suite/core/clock.h"
@@ -91,8 +90,7 @@ Progress::Progress(const Screen& screen,
   for (const Case& c : cases) {
     done_.emplace_back(c.info.stages.size(), false);
     stages_ += c.info.stages.size();
-    operations_ = std::accumulate(
-        c.stage_operations.begin(), c.stage_operations.end(), operations_);
+    operations_ += c.operations();
   }
 }
 
@@ -101,7 +99,7 @@ void Progress::reused(std::size_t case_index, Index position) {
   if (done_[case_index][at]) return;
   done_[case_index][at] = true;
   ++stages_done_;
-  operations_done_ += cases_[case_index].stage_operations[at];
+  operations_done_ += cases_[case_index].operations(at);
 }
 
 void Progress::started(std::size_t worker,
@@ -131,7 +129,7 @@ void Progress::finished(std::size_t worker,
   reused(case_index, record.position);
   const double seconds = seconds_of(record.clocks);
   if (record.stop != Stop::failed && record.stop != Stop::skipped)
-    rates_.add(record.stage, cases_[case_index].stage_operations[at], seconds);
+    rates_.add(record.stage, cases_[case_index].operations(at), seconds);
   idle(worker);
   const std::string line = finished_row(record);
   if (screen_.live) {
@@ -164,8 +162,8 @@ double Progress::remaining() const {
   for (std::size_t i = 0; i < cases_.size(); ++i) {
     for (std::size_t k = 0; k < done_[i].size(); ++k) {
       if (done_[i][k]) continue;
-      const double s = rates_.seconds(cases_[i].info.stages[k],
-                                      cases_[i].stage_operations[k]);
+      const double s =
+          rates_.seconds(cases_[i].info.stages[k], cases_[i].operations(k));
       if (s < 0) return -1;
       sum += s;
     }
@@ -176,7 +174,7 @@ double Progress::remaining() const {
     const auto at = static_cast<std::size_t>(r.position);
     const Case& c = cases_[r.case_index];
     sum -= std::min(t - r.since,
-                    rates_.seconds(c.info.stages[at], c.stage_operations[at]));
+                    rates_.seconds(c.info.stages[at], c.operations(at)));
   }
   return std::max(0.0, sum) / jobs_;
 }

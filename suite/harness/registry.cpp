@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <future>
 #include <iterator>
 #include <map>
 #include <set>
@@ -72,19 +73,13 @@ CaseSize size_of(const Experiment& e) {
   return size;
 }
 
-/// Name and counted work, from everything else.
-void complete(Case& c, CaseSize size) {
+/// The name, from everything else.
+void complete(Case& c) {
   const CaseInfo& i = c.info;
   c.info.name = fmt::format("{}/{}/n={}", i.experiment, i.method, i.n);
   if (has_precision(*c.method) && i.precision == Precision::f64)
     c.info.name += "/precision=f64";
   c.info.name += fmt::format("/seed={}", i.seed);
-  size.n = i.n;
-  c.stage_operations.clear();
-  for (std::size_t k = 0; k < c.method->chain.size(); ++k) {
-    size.iterations = c.stage_iterations[k];
-    c.stage_operations.push_back(c.method->chain[k]->operations(size));
-  }
 }
 
 Case make_case(const std::shared_ptr<const Experiment>& e,
@@ -93,8 +88,9 @@ Case make_case(const std::shared_ptr<const Experiment>& e,
                const Row& row,
                Index n,
                std::uint64_t seed,
-               const CaseSize& size) {
+               const std::shared_future<CaseSize>& size) {
   Case c;
+  c.size = size;
   c.experiment = e;
   c.method = &method;
   c.info.experiment = e->name;
@@ -110,7 +106,7 @@ Case make_case(const std::shared_ptr<const Experiment>& e,
                                      ? row.iterations
                                      : stage->default_iterations());
   }
-  complete(c, size);
+  complete(c);
   return c;
 }
 
@@ -285,8 +281,21 @@ Case resized(const Case& c, Index n, std::vector<Index> iterations) {
   out.info.n = n;
   out.info.keys.clear();
   out.stage_iterations = std::move(iterations);
-  complete(out, size_of(*c.experiment));
+  complete(out);
   return out;
+}
+
+double Case::operations(std::size_t stage) const {
+  CaseSize of_stage = size.get();
+  of_stage.n = info.n;
+  of_stage.iterations = stage_iterations[stage];
+  return method->chain[stage]->operations(of_stage);
+}
+
+double Case::operations() const {
+  double all = 0;
+  for (std::size_t k = 0; k < method->chain.size(); ++k) all += operations(k);
+  return all;
 }
 
 std::string to_text(Needs needs) {
@@ -440,7 +449,9 @@ std::vector<Case> Registry::expand(std::string_view profile,
   for (const auto& e : experiments_) {
     for (const Profile& p : e->profiles) {
       if (p.name != profile) continue;
-      const CaseSize size = size_of(*e);
+      const auto size = std::async(std::launch::deferred, [e] {
+                          return size_of(*e);
+                        }).share();
       for (const Row& declared : p.rows) {
         const Row row = overridden(declared, overrides);
         for (const Index n : row.n) {

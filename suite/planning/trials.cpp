@@ -44,7 +44,7 @@ StageTrial trial_of(const Case& c, const Case& cut, const StageRecord& r) {
   StageTrial t;
   t.n = static_cast<double>(c.info.n);
   t.seconds = r.clocks.solve.cpu;
-  if (!ended) t.seconds *= c.stage_operations[at] / cut.stage_operations[at];
+  if (!ended) t.seconds *= c.operations(at) / cut.operations(at);
   t.points = ended ? points : curve_points(c.stage_iterations[at]);
   t.setup = r.clocks.setup.cpu + r.clocks.warmup.cpu;
   t.measure = r.clocks.measure.cpu * t.points / points;
@@ -82,8 +82,7 @@ Ran run(const Case& c, const Case& cut) {
 bool follows(const Case& c, std::size_t stage) {
   auto half = c.stage_iterations;
   half[stage] = std::max<Index>(1, half[stage] / 2);
-  return resized(c, c.info.n, half).stage_operations[stage] <
-         c.stage_operations[stage];
+  return resized(c, c.info.n, half).operations(stage) < c.operations(stage);
 }
 
 bool trains(const Case& c) {
@@ -179,7 +178,6 @@ const Trial& Trials::of(const Case& c, bool training_only) {
   shorter.method = &part;
   shorter.info.stages.resize(stages);
   shorter.stage_iterations.resize(stages);
-  shorter.stage_operations.resize(stages);
   return known_[key] = stages > 0 ? measure(shorter) : Trial{};
 }
 

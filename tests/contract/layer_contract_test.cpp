@@ -34,6 +34,7 @@ struct Role {
   ExperimentPtr experiment;
   bool surrogate;
 };
+void PrintTo(const Role& r, std::ostream* out) { *out << r.experiment->name; }
 
 std::vector<Role> roles() {
   std::vector<Role> all;

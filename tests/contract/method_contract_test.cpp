@@ -25,6 +25,9 @@ struct Cell {
   ExperimentPtr experiment;
   std::string method;
 };
+void PrintTo(const Cell& c, std::ostream* out) {
+  *out << c.experiment->name << ' ' << c.method;
+}
 
 /// The methods of the smoke profiles: sweeps elsewhere are the same code with
 /// other numbers.
@@ -96,6 +99,22 @@ bool trains(const StageRecord& r) {
          !option(r.options, "step").empty();
 }
 
+/// Abilities of the problem that a stage did not ask for, and one that it did.
+void expect_untouched(const StageRecord& r, Needs needs) {
+  const auto check = [&](Needs need, Counter counter) {
+    if (contains(needs, need)) return;
+    EXPECT_EQ(r.counts[counter], 0U)
+        << kCounterNames[static_cast<std::size_t>(counter)];
+  };
+  check(Needs::forward, Counter::forward);
+  check(Needs::vjp, Counter::vjp);
+  check(Needs::jacobian, Counter::jacobian);
+  check(Needs::inverse, Counter::inverse);
+  if (contains(needs, Needs::vjp)) {
+    EXPECT_GT(r.counts[Counter::vjp], 0U);
+  }
+}
+
 class MethodContract : public testing::TestWithParam<Cell> {
  protected:
   static Case make(Index n,
@@ -157,11 +176,15 @@ TEST_P(MethodContract, ObeysItsBudgetAndLeavesFiniteEstimates) {
   }
 }
 
-TEST_P(MethodContract, CurvesHoldEveryExampleAtEveryPoint) {
+TEST_P(MethodContract, CurvesAreWholeAndOnlyWhatIsDeclaredIsTouched) {
   const Case c = make(3, 12);
   const Index unknowns = c.experiment->problem.make<double>()->shape().unknowns;
+  EXPECT_TRUE(contains(c.experiment->problem.provided, c.method->needs()));
   for (const StageRecord& r : run(c)) {
     SCOPED_TRACE(r.stage);
+    const Needs needs = stage(c, r).needs();
+    EXPECT_TRUE(contains(c.method->needs(), needs));
+    expect_untouched(r, needs);
     const Curve& curve = r.curve;
     const Index points = curve.points();
     ASSERT_GT(points, 0);
@@ -209,43 +232,29 @@ TEST_P(MethodContract, RepeatsItselfForAnyThreadsAndWhenResumed) {
   }
 }
 
-TEST_P(MethodContract, TouchesOnlyWhatItDeclares) {
-  const Case c = make(3, 5);
-  for (const StageRecord& r : run(c)) {
-    SCOPED_TRACE(r.stage);
-    const Needs needs = stage(c, r).needs();
-    const auto check = [&](Needs need, Counter counter) {
-      if (contains(needs, need)) return;
-      EXPECT_EQ(r.counts[counter], 0U)
-          << kCounterNames[static_cast<std::size_t>(counter)];
-    };
-    check(Needs::forward, Counter::forward);
-    check(Needs::vjp, Counter::vjp);
-    check(Needs::jacobian, Counter::jacobian);
-    check(Needs::inverse, Counter::inverse);
-    if (contains(needs, Needs::vjp)) {
-      EXPECT_GT(r.counts[Counter::vjp], 0U);
-    }
-    EXPECT_TRUE(contains(c.experiment->problem.provided, needs));
-    EXPECT_TRUE(contains(c.method->needs(), needs));
-  }
-}
-
 // Estimates that are chosen by their loss are no worse than any on the way.
 TEST_P(MethodContract, KeepsTheBestWhereItPromisesTo) {
   const Case c = make(8, 12, Precision::f64);
+  const std::set<std::string> ends_there = {
+      "bfgs", "lbfgsb", "gradient_descent"};
+  std::set<std::string> promise = {"jpo", "neural_adjoint"};
+  promise.insert(ends_there.begin(), ends_there.end());
+  if (std::ranges::none_of(c.method->chain, [&](const auto& s) {
+        return s->name() == "refine" ||
+               promise.contains(option(s->options(), "algorithm"));
+      }))
+    GTEST_SKIP() << "promises nothing";
   Vector<double> before;
   for (const StageRecord& r : run(c)) {
     const auto algorithm = option(r.options, "algorithm");
     SCOPED_TRACE(algorithm);
     for (Index i = 0; i < 8; ++i) {
-      const auto curve = r.curve.loss.row(i);
-      if (algorithm == "jpo" || algorithm == "neural_adjoint") {
-        EXPECT_LE(r.loss(i), curve.minCoeff());
+      const double best = r.curve.loss.row(i).minCoeff();
+      if (promise.contains(algorithm)) {
+        EXPECT_LE(r.loss(i), best);
       }
-      if (algorithm == "bfgs" || algorithm == "lbfgsb" ||
-          algorithm == "gradient_descent") {
-        EXPECT_EQ(r.loss(i), curve.minCoeff());
+      if (ends_there.contains(algorithm)) {
+        EXPECT_EQ(r.loss(i), best);
       }
       if (r.stage == "refine") {
         EXPECT_LE(r.loss(i), before(i));

@@ -5,11 +5,17 @@
 
 #include <algorithm>
 #include <memory>
+#include <ostream>
 #include <string>
 #include <vector>
 
 #include "suite/harness/registry.h"
 #include "suite/harness/run_case.h"
+
+namespace physinv {
+/// What GoogleTest shows of one, instead of its bytes.
+inline void PrintTo(const Case& c, std::ostream* out) { *out << c.info.name; }
+}  // namespace physinv
 
 namespace physinv::test {
 

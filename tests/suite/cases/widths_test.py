@@ -1,8 +1,10 @@
 """The smoke profile of two builds, for registers of 512 and of 256 bits: every
 trajectory, loss, estimate and metric has the same bits, although one of them
-runs with eight workers and the other in two shards with two threads per case,
-of which the first is interrupted and resumed. What hangs on the width is left
-out: times, memory, and work that a whole register skips."""
+ran with eight workers and the other runs in two shards with two threads per
+case, of which the first is interrupted and resumed. What hangs on the width is
+left out: times, memory, and work that a whole register skips.
+
+WIDE (with its campaign RESULTS), NARROW, BASELINE"""
 
 import json
 import pathlib
@@ -41,10 +43,6 @@ def smoke(program, out, *flags, check=True):
         check=check, stdout=subprocess.DEVNULL)
 
 
-def at_once(program, out):
-    smoke(program, out, "--jobs=8")
-
-
 def in_parts(program, out):
     shards = [out.with_name(f"shard{i}") for i in (1, 2)]
     flags = ["--threads=2", "--jobs=2"]
@@ -63,15 +61,16 @@ def read(out):
 
 
 def main():
-    check_narrow(sys.argv[2])
+    program, results, other, baseline = sys.argv[1:]
+    check_narrow(other)
+    wide = read(pathlib.Path(results))
     with tempfile.TemporaryDirectory() as folder:
-        outs = [pathlib.Path(folder) / name for name in ("wide", "narrow")]
-        at_once(sys.argv[1], outs[0])
-        in_parts(sys.argv[2], outs[1])
-        wide, narrow = map(read, outs)
+        out = pathlib.Path(folder) / "narrow"
+        in_parts(other, out)
+        narrow = read(out)
         # The hashes of all arrays, too, which results.json does not have.
-        subprocess.run([sys.argv[1], "gate", f"--baseline={sys.argv[3]}",
-                        f"--results={outs[1]}", "--no-count"], check=True,
+        subprocess.run([program, "gate", f"--baseline={baseline}",
+                        f"--results={out}", "--no-count"], check=True,
                        stdout=subprocess.DEVNULL)
     assert wide.keys() == narrow.keys() and len(wide) > 100, len(wide)
     hashes, wrong = 0, []

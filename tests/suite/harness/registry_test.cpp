@@ -123,7 +123,7 @@ TEST(Registry, ExpandsInDeclaredOrder) {
   EXPECT_EQ(cases[9].info.name, "fake/cubic/descend/n=9/seed=0");
   EXPECT_EQ(cases[3].info.stages, (std::vector<std::string>{"fit", "refine"}));
   EXPECT_EQ(cases[3].stage_iterations, (std::vector<Index>{40, 40}));
-  EXPECT_GT(cases[3].stage_operations[0], 0);
+  EXPECT_GT(cases[3].operations(0), 0);
 }
 
 TEST(Registry, CollapsesDuplicates) {
