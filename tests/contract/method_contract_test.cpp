@@ -7,6 +7,8 @@
 #include <cmath>
 #include <memory>
 #include <set>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -29,7 +31,26 @@ void PrintTo(const Cell& c, std::ostream* out) {
   *out << c.experiment->name << ' ' << c.method;
 }
 
-/// The methods of the smoke profiles: sweeps elsewhere are the same code with
+/// What decides which code a method runs: the problem, the networks and the
+/// options, all without their numbers.
+std::string code_of(const Experiment& e, const Method& method) {
+  std::string code, text = e.problem.name + ' ' +
+                           e.setting.predictor.recipe.description + ' ' +
+                           e.setting.surrogate.recipe.description;
+  for (const auto& stage : method.chain)
+    for (const auto& [name, value] : stage->options())
+      text += ' ' + name + '=' + value;
+  bool number = false;
+  for (const char c : text) {
+    number =
+        (c >= '0' && c <= '9') ||
+        (number && std::string_view(".e+-").find(c) != std::string_view::npos);
+    if (!number) code += c;
+  }
+  return code;
+}
+
+/// The methods of the smoke profiles, one of those that are the same code with
 /// other numbers.
 std::vector<Cell> cells() {
   std::vector<Cell> all;
@@ -37,9 +58,11 @@ std::vector<Cell> cells() {
   for (const auto& e : registry().experiments())
     for (const Profile& profile : e->profiles)
       for (const Row& row : profile.rows)
-        for (const std::string& id : row.methods)
-          if (profile.name == "smoke" && seen.insert(e->name + "/" + id).second)
-            all.push_back({e, id});
+        for (const Method& m : e->methods)
+          if (profile.name == "smoke" &&
+              std::ranges::count(row.methods, m.id) > 0 &&
+              seen.insert(code_of(*e, m)).second)
+            all.push_back({e, m.id});
   return all;
 }
 
