@@ -133,15 +133,15 @@ function(physinv_join name)
   endif()
 endfunction()
 
-# physinv_layer(<name> [OBJECT] [NUMBERS | NARROW | RECORDS] [JOIN n]
+# physinv_layer(<name> [OBJECT] [NUMBERS | RECORDS] [JOIN n]
 # [PRECOMPILE headers] SOURCES ... DEPENDS ...): one target per layer. OBJECT
 # keeps registrations that nobody names from the linker's broom. NUMBERS computes
 # what is recorded: physinv_<name>_v3 is the same for AVX2, where that is another
 # build. PRECOMPILE: headers of the project that nearly every source of the layer
-# includes. NARROW computes nothing itself and serves both widths. RECORDS
-# handles numbers and makes none: narrow, joined, hardly optimized.
+# includes, or a layer that has them precompiled. RECORDS handles numbers and
+# makes none: narrow, as it serves both widths, joined, hardly optimized.
 function(physinv_layer name)
-  cmake_parse_arguments(ARG "OBJECT;NUMBERS;NARROW;RECORDS"
+  cmake_parse_arguments(ARG "OBJECT;NUMBERS;RECORDS"
     "JOIN" "SOURCES;DEPENDS;PRECOMPILE" ${ARGN})
   set(kind STATIC)
   if(ARG_OBJECT)
@@ -155,18 +155,18 @@ function(physinv_layer name)
   target_link_libraries(physinv_${name} PUBLIC physinv_flags ${ARG_DEPENDS})
   target_compile_options(physinv_${name} PRIVATE ${PHYSINV_WARNINGS})
   set(precompiled physinv_precompiled)
-  if(ARG_NARROW OR ARG_RECORDS)
-    target_link_libraries(physinv_${name} PRIVATE
-      $<BUILD_INTERFACE:physinv_narrow>)
-  endif()
   if(ARG_RECORDS)
     set(precompiled physinv_precompiled_records)
     target_link_libraries(physinv_${name} PRIVATE
-      $<BUILD_INTERFACE:physinv_records>)
+      $<BUILD_INTERFACE:physinv_narrow> $<BUILD_INTERFACE:physinv_records>)
     set(ARG_JOIN 8)
   endif()
   if(PHYSINV_PRECOMPILE)
     target_link_libraries(physinv_${name} PRIVATE Eigen3::Eigen fmt::fmt)
+    if(TARGET "${ARG_PRECOMPILE}")
+      set(precompiled ${ARG_PRECOMPILE})
+      set(ARG_PRECOMPILE)
+    endif()
     if(ARG_PRECOMPILE)
       list(TRANSFORM ARG_PRECOMPILE PREPEND ${PROJECT_SOURCE_DIR}/)
       physinv_precompile_headers(physinv_${name} ${ARG_PRECOMPILE})
