@@ -54,14 +54,14 @@ std::string code_of(const Experiment& e, const Method& method) {
 /// other numbers.
 std::vector<Cell> cells() {
   std::vector<Cell> all;
-  std::set<std::string> seen;
+  std::set<std::pair<std::string, OutputForm>> seen;
   for (const auto& e : registry().experiments())
     for (const Profile& profile : e->profiles)
       for (const Row& row : profile.rows)
         for (const Method& m : e->methods)
           if (profile.name == "smoke" &&
               std::ranges::count(row.methods, m.id) > 0 &&
-              seen.insert(code_of(*e, m)).second)
+              seen.emplace(code_of(*e, m), e->setting.output_form).second)
             all.push_back({e, m.id});
   return all;
 }
