@@ -8,6 +8,7 @@
 #include <numeric>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -105,5 +106,24 @@ struct Case {
   double operations(std::size_t stage) const;
   double operations() const;
 };
+
+/// Null if the experiment has none of this id.
+const Method* find_method(const Experiment& e, std::string_view id);
+
+/// Sizes of an experiment that do not change from case to case.
+CaseSize size_of(const Experiment& e);
+
+/// A row's case on n samples; without content keys.
+Case declared_case(const std::shared_ptr<const Experiment>& e,
+                   const Method& method,
+                   const std::string& profile,
+                   const Row& row,
+                   Index n,
+                   std::uint64_t seed,
+                   const std::shared_future<CaseSize>& size);
+
+/// The same chain on n samples, with so many iterations for each stage;
+/// without content keys.
+Case resized(const Case& c, Index n, std::vector<Index> iterations);
 
 }  // namespace physinv

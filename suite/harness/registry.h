@@ -76,10 +76,6 @@ bool register_overview(Overview overview);
 bool register_claims(const std::string& experiment, std::vector<Claim> claims);
 bool register_report(const std::string& experiment, Report report);
 
-/// The same chain on n samples, with so many iterations for each stage;
-/// without content keys.
-Case resized(const Case& c, Index n, std::vector<Index> iterations);
-
 /// "forward|vjp"
 std::string to_text(Needs needs);
 

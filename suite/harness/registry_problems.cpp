@@ -1,0 +1,212 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <exception>
+#include <set>
+
+#include "suite/harness/judge.h"
+#include "suite/harness/registry.h"
+#include "suite/harness/sources.h"
+
+namespace physinv {
+namespace {
+
+bool is_word(std::string_view text, std::string_view extra = "") {
+  return !text.empty() && std::all_of(text.begin(), text.end(), [&](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-' || extra.find(c) != std::string_view::npos;
+  });
+}
+
+bool is_path(std::string_view text) {
+  return is_word(text, "/") && text.front() != '/' && text.back() != '/' &&
+         text.find("//") == std::string_view::npos;
+}
+
+std::string method_ids(const Experiment& e) {
+  std::vector<std::string> ids;
+  for (const Method& m : e.methods) ids.push_back(m.id);
+  return fmt::format("{}", fmt::join(ids, ", "));
+}
+
+/// What the stages of an experiment say about their sources and is not so.
+std::set<std::string> unknown_sources(const Experiment& e) {
+  std::set<std::string> wrong;
+  for (const Method& m : e.methods) {
+    if (m.chain.empty()) continue;
+    for (const Sources& sources : chain_sources(e, m, m.chain.size() - 1))
+      for (auto& text : project_sources().errors(sources))
+        wrong.insert(std::move(text));
+  }
+  return wrong;
+}
+
+std::vector<std::string> problems_of(const Experiment& e) {
+  std::vector<std::string> wrong;
+  const auto add = [&](const std::string& text) {
+    wrong.push_back(e.name + ": " + text);
+  };
+  if (!is_path(e.name)) add("the name is no path of [a-z0-9_-]");
+  if (!e.problem.make_float || !e.problem.make_double)
+    add("there is no problem");
+  std::set<std::string> seen;
+  for (const Method& m : e.methods) {
+    if (!is_word(m.id)) add("method '" + m.id + "' is not in [a-z0-9_-]");
+    if (!seen.insert(m.id).second) add("method " + m.id + " appears twice");
+    if (m.chain.empty()) add("method " + m.id + " has no stages");
+    std::set<std::string> stages;
+    for (const auto& stage : m.chain) {
+      if (!is_word(stage->name()))
+        add("stage '" + stage->name() + "' is not in [a-z0-9_-]");
+      if (!stages.insert(stage->name()).second)
+        add("method " + m.id + " has two stages " + stage->name());
+    }
+    if (!contains(e.problem.provided, m.needs()))
+      add(fmt::format("method {} needs {}, problem {} provides {}",
+                      m.id,
+                      to_text(m.needs()),
+                      e.problem.name,
+                      to_text(e.problem.provided)));
+  }
+  for (const auto& text : unknown_sources(e)) add(text);
+  seen.clear();
+  for (const Profile& p : e.profiles) {
+    if (!is_word(p.name)) add("profile '" + p.name + "' is not in [a-z0-9_-]");
+    if (!seen.insert(p.name).second)
+      add("profile " + p.name + " appears twice");
+    for (const Row& row : p.rows) {
+      for (const auto& id : row.methods) {
+        if (find_method(e, id) == nullptr)
+          add(fmt::format("profile {} names method {}, known are {}",
+                          p.name,
+                          id,
+                          method_ids(e)));
+      }
+      for (const Index n : row.n)
+        if (n < 1) add(fmt::format("profile {} has n={}", p.name, n));
+      if (row.methods.empty() || row.n.empty() || row.seeds.empty())
+        add("profile " + p.name + " has a row without cases");
+    }
+  }
+  return wrong;
+}
+
+/// Whether `profile`, or a later one, runs the method on a size selected.
+bool runs_from(const Experiment& e,
+               const std::string& profile,
+               const Select& select) {
+  bool reached = false;
+  for (const Profile& p : e.profiles) {
+    reached = reached || p.name == profile;
+    if (!reached) continue;
+    for (const Row& row : p.rows) {
+      const bool size = std::any_of(row.n.begin(), row.n.end(), [&](Index n) {
+        return n >= select.first && n <= select.last;
+      });
+      if (size &&
+          std::find(row.methods.begin(), row.methods.end(), select.method) !=
+              row.methods.end())
+        return true;
+    }
+  }
+  return false;
+}
+
+/// What is wrong with the runs that a claim asks for, "" if nothing.
+std::string objection(const Registry& registry,
+                      const std::string& experiment,
+                      const Claim& claim,
+                      const Select& select) {
+  const std::string& name =
+      select.experiment.empty() ? experiment : select.experiment;
+  const auto e = registry.find(name);
+  if (!e) return fmt::format("the unknown experiment '{}'", name);
+  const Method* m = find_method(*e, select.method);
+  if (m == nullptr)
+    return fmt::format("the unknown method '{}' of {}", select.method, name);
+  const bool stage =
+      std::any_of(m->chain.begin(), m->chain.end(), [&](const auto& s) {
+        return select.stage.empty() || s->name() == select.stage;
+      });
+  if (!stage)
+    return fmt::format("the unknown stage '{}' of {}", select.stage, m->id);
+  if (!runs_from(*e, claim.from, select))
+    return fmt::format(
+        "'{}', which no profile from {} on runs", select.text(), claim.from);
+  return "";
+}
+
+void check_claims(const Registry& registry,
+                  const std::string& experiment,
+                  const std::vector<Claim>& claims,
+                  const std::vector<std::string>& profiles,
+                  std::vector<std::string>& wrong) {
+  std::set<std::string> ids;
+  for (const Claim& claim : claims) {
+    if (!ids.insert(claim.id).second)
+      wrong.push_back(experiment + ": claim " + claim.id + " appears twice");
+    for (const auto& problem : problems_of(claim, profiles))
+      wrong.push_back(experiment + ": " + problem);
+    for (const Condition& c : claim.conditions) {
+      for (const Quantity& q : c.quantities) {
+        for (const Select& select : q.runs()) {
+          const auto why = objection(registry, experiment, claim, select);
+          if (!why.empty())
+            wrong.push_back(fmt::format(
+                "{}: claim {} asks for {}", experiment, claim.id, why));
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+
+std::string to_text(Needs needs) {
+  constexpr std::pair<Needs, std::string_view> kNames[] = {
+      {Needs::forward, "forward"},
+      {Needs::vjp, "vjp"},
+      {Needs::jacobian, "jacobian"},
+      {Needs::inverse, "inverse"},
+      {Needs::hessian, "hessian"},
+      {Needs::labels, "labels"},
+      {Needs::jvp, "jvp"},
+      {Needs::pullback_tangent, "pullback_tangent"}};
+  std::string text;
+  for (const auto& [bit, name] : kNames) {
+    if (!contains(needs, bit)) continue;
+    if (!text.empty()) text += '|';
+    text += name;
+  }
+  return text;
+}
+
+std::vector<std::string> Registry::problems() const {
+  std::vector<std::string> wrong;
+  std::set<std::string> names;
+  for (const auto& e : experiments_) {
+    if (!names.insert(e->name).second)
+      wrong.push_back(e->name + ": registered twice");
+    const auto own = problems_of(*e);
+    wrong.insert(wrong.end(), own.begin(), own.end());
+    check_claims(*this, e->name, e->claims, profile_names(*e), wrong);
+  }
+  for (const auto& [name, claims] : claims_)
+    wrong.push_back("claims of the unknown experiment " + name);
+  for (const auto& [name, report] : reports_)
+    wrong.push_back("a report of the unknown experiment " + name);
+  for (const Overview& o : overviews_)
+    check_claims(*this, o.paper, o.claims, o.profiles, wrong);
+  if (!wrong.empty()) return wrong;
+  for (const auto& profile : profiles()) {
+    try {
+      expand(profile);
+    } catch (const std::exception& error) {
+      wrong.push_back(error.what());
+    }
+  }
+  return wrong;
+}
+
+}  // namespace physinv
