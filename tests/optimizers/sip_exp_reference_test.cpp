@@ -4,6 +4,7 @@
 #include "optimizers/training/newton.h"
 #include "optimizers/training/proxy.h"
 #include "problems/exponential/exponential.h"
+#include "suite/nn/mlp.h"
 #include "tests/support/quadratic.h"
 #include "tests/support/reference.h"
 

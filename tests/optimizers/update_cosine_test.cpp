@@ -4,6 +4,7 @@
 
 #include "optimizers/training.h"
 #include "problems/sine_plane/sine_plane.h"
+#include "suite/nn/mlp.h"
 #include "tests/support/bits.h"
 #include "tests/support/memory_checkpoint.h"
 #include "tests/support/quadratic.h"

@@ -10,6 +10,7 @@
 #include "suite/nn/mlp.h"
 #include "tests/support/jpo_entries.h"
 #include "tests/support/jpo_reference.h"
+#include "tests/support/run_reference.h"
 
 namespace physinv::test {
 namespace {

@@ -11,6 +11,7 @@
 #include "suite/nn/vgg.h"
 #include "tests/support/jpo_entries.h"
 #include "tests/support/jpo_reference.h"
+#include "tests/support/run_reference.h"
 
 namespace physinv::test {
 namespace {

@@ -2,19 +2,13 @@
 /// itself: a network and a problem that write down what passes through them.
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <memory>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "optimizers/jpo.h"
-#include "optimizers/steps/clip_percentile.h"
-#include "suite/core/oracle.h"
-#include "tests/support/formula_weights.h"
-#include "tests/support/quadratic.h"
+#include "suite/core/method.h"
+#include "suite/core/problem.h"
 #include "tests/support/reference.h"
 
 namespace physinv::test {
@@ -24,61 +18,7 @@ struct Notes {
   std::vector<Batch<double>> outputs, clipped, xi, gradients;
   std::vector<Vector<double>> weights;
 };
-inline Notes* notes = nullptr;
-
-/// A network with formula weights, the last matrix times `last`.
-template <class T>
-class Noting final : public Network<T> {
- public:
-  Noting(std::unique_ptr<Network<T>> net, double shift, double last)
-      : net_(std::move(net)), shift_(shift), last_(last) {}
-
-  Index inputs() const override { return net_->inputs(); }
-  Index outputs() const override { return net_->outputs(); }
-  Index parameter_count() const override { return net_->parameter_count(); }
-  Index state_count() const override { return net_->state_count(); }
-  const std::vector<TensorInfo>& tensors() const override {
-    return net_->tensors();
-  }
-  void initialize(const Rng& rng,
-                  VectorOut<T> parameters,
-                  VectorOut<T> state) const override {
-    net_->initialize(rng, parameters, state);
-    formula_weights<T>(tensors(),
-                       numbers_in_order(tensors().size()),
-                       shift_,
-                       last_,
-                       parameters);
-  }
-  void forward(VectorIn<T> parameters,
-               VectorIn<T> state,
-               BatchIn<T> in,
-               BatchOut<T> out,
-               Tape& tape,
-               Workspace& work,
-               Pass pass) const override {
-    net_->forward(parameters, state, in, out, tape, work, pass);
-    notes->outputs.emplace_back(out.template cast<double>());
-  }
-  void backward(VectorIn<T> parameters,
-                const Tape& tape,
-                BatchIn<T> out_bar,
-                VectorOut<T>* parameters_bar,
-                BatchOut<T>* in_bar,
-                Workspace& work) const override {
-    net_->backward(parameters, tape, out_bar, parameters_bar, in_bar, work);
-    notes->clipped.emplace_back(out_bar.template cast<double>());
-    notes->weights.emplace_back(parameters_bar->template cast<double>());
-  }
-  void update_state(const Tape& tape, VectorOut<T> state) const override {
-    net_->update_state(tape, state);
-  }
-  double operations() const override { return net_->operations(); }
-
- private:
-  std::unique_ptr<Network<T>> net_;
-  double shift_, last_;
-};
+extern Notes* notes;
 
 /// P with given samples.
 template <template <class> class P, class T>
@@ -132,32 +72,20 @@ struct JpoEntry {
   } single = {};
 };
 
-/// Every number of a step is read below.
-inline void expect_known_keys(const Json& step) {
-  static const std::set<std::string> known = {"step",
-                                              "net_output",
-                                              "xi",
-                                              "loss",
-                                              "grad_xi",
-                                              "grad_norm",
-                                              "clip_threshold",
-                                              "grad_clipped",
-                                              "weight_grad_norm_per_tensor",
-                                              "weight_grad_first_entries"};
-  for (const auto& [key, value] : step.items())
-    EXPECT_TRUE(known.contains(key)) << "no test reads " << key;
-}
+/// The stage on such problems, against every step of the entry; in float,
+/// against the first.
+void expect_jpo(const Json& entry,
+                const JpoEntry& about,
+                const ProblemRecipe& fixed,
+                Index problems,
+                Precision precision);
 
-/// The stage on problems P with these observations, against every step of the
-/// entry; in float, against the first.
+/// The same on problems P with these observations.
 template <template <class> class P>
 void expect_jpo(const Json& entry,
                 const JpoEntry& about,
                 const Samples<double>& samples,
                 Precision precision) {
-  Notes seen;
-  notes = &seen;
-  const double shift = entry.value("shift", 0.0);
   const ProblemRecipe fixed{
       .name = "fixed",
       .options = {},
@@ -165,93 +93,7 @@ void expect_jpo(const Json& entry,
       .make_float = [=] { return std::make_unique<Fixed<P, float>>(samples); },
       .make_double =
           [=] { return std::make_unique<Fixed<P, double>>(samples); }};
-  const double last = about.last_matrix;
-  const NetworkRecipe net{
-      .description = "noting",
-      .make_float =
-          [=](Index in, Index out) {
-            return std::make_unique<Noting<float>>(
-                about.network.make<float>(in, out), shift, last);
-          },
-      .make_double =
-          [=](Index in, Index out) {
-            return std::make_unique<Noting<double>>(
-                about.network.make<double>(in, out), shift, last);
-          }};
-  const auto jpo = jpo_fit({.step = AdamOptions{.rate = about.rate}});
-  const Json& steps = entry.at("steps");
-  const auto count = static_cast<Index>(steps.size());
-  ASSERT_GE(count, 3);  // two steps or more, and what they led to
-  StageBench bench(*jpo,
-                   samples.count(),
-                   count,
-                   fixed,
-                   {.predictor = {about.inputs, net},
-                    .surrogate = {},
-                    .output_scale = about.output_scale});
-  const Shape shape = P<double>().shape();
-  const Index in = input_rows(about.inputs, shape), out = shape.unknowns;
-  const auto plain = about.network.make<double>(in, out);
-  ASSERT_EQ(plain->parameter_count(), about.parameters);
-  bench.run(nullptr, precision);
-  const Batch<double> losses = bench.traced<double>(samples.count());
-
-  const bool single = precision == Precision::f32;
-  const Comparator exact = EntryTolerance(entry).array();
-  const auto limit = [&](double in_float) {
-    return single ? Comparator(in_float, 0) : exact;
-  };
-  const Comparator same = limit(about.single.output),
-                   same_loss = limit(about.single.loss),
-                   follows = limit(about.single.gradient);
-  const auto& tensors = plain->tensors();
-  for (Index k = 0; k < (single ? 1 : count); ++k) {
-    const auto at = static_cast<std::size_t>(k);
-    const Json& step = steps.at(at);
-    SCOPED_TRACE("step " + step.at("step").dump());
-    EXPECT_TRUE(same(seen.outputs.at(at + 1), columns(step.at("net_output"))));
-    EXPECT_TRUE(same(seen.xi.at(at + 1), columns(step.at("xi"))));
-    EXPECT_TRUE(same_loss(losses.col(k), vector(step.at("loss"))));
-    expect_known_keys(step);
-    if (!step.contains("grad_xi")) {
-      EXPECT_EQ(k + 1, count) << "only the last state has no gradient";
-      continue;
-    }
-    const Batch<double>& g = seen.gradients.at(at + 1);
-    EXPECT_TRUE(follows(g, columns(step.at("grad_xi"))));
-    EXPECT_TRUE(
-        follows(g.colwise().norm().transpose(), vector(step.at("grad_norm"))));
-    Batch<double> again = g;
-    EXPECT_TRUE(follows(ClipPercentile(0.9).operator()<double>(again),
-                        step.at("clip_threshold").get<double>()));
-    EXPECT_TRUE(follows(seen.clipped.at(at + 1),
-                        about.output_scale * columns(step.at("grad_clipped"))));
-
-    const Vector<double>& w = seen.weights.at(at + 1);
-    const Json& first = step.at("weight_grad_first_entries");
-    const Vector<double> stored_norms =
-        vector(step.at("weight_grad_norm_per_tensor"));
-    const double largest = stored_norms.maxCoeff();
-    Vector<double> norms(static_cast<Index>(tensors.size()));
-    ASSERT_EQ(norms.size(), stored_norms.size());
-    for (std::size_t t = 0; t < tensors.size(); ++t) {
-      const auto part = w.segment(tensors[t].offset, tensors[t].size);
-      norms(static_cast<Index>(t)) = part.norm();
-      if (stored_norms(static_cast<Index>(t)) <= 1e-8 * largest) {
-        // Exactly zero, as of a bias in front of a normalisation; what is
-        // stored is rounding noise.
-        EXPECT_LE(part.norm(), (single ? 1e-6 : 1e-8) * largest)
-            << tensors[t].name;
-        continue;
-      }
-      const Vector<double> stored = vector(first.at(t));
-      // Relative to the whole tensor, of which these are the first entries.
-      EXPECT_TRUE(Comparator(0, follows.rtol() * part.cwiseAbs().maxCoeff())(
-          part.head(stored.size()), stored))
-          << tensors[t].name;
-    }
-    EXPECT_TRUE(follows(norms, stored_norms));
-  }
+  expect_jpo(entry, about, fixed, samples.count(), precision);
 }
 
 }  // namespace physinv::test

@@ -3,14 +3,12 @@
 
 #include <cstring>
 #include <limits>
-#include <utility>
 #include <vector>
 
 #include "optimizers/network_model.h"
 #include "suite/core/method.h"
 #include "suite/core/oracle.h"
 #include "suite/core/probe.h"
-#include "suite/nn/mlp.h"
 
 namespace physinv::test {
 
@@ -113,59 +111,29 @@ class Quadratic final : public GradientQuadratic<T>,
   }
 };
 
-inline ProblemRecipe quadratic(const QuadraticOptions& options = {}) {
-  return problem<Quadratic>("quadratic", options);
-}
+extern template class GradientQuadratic<float>;
+extern template class GradientQuadratic<double>;
+extern template class Quadratic<float>;
+extern template class Quadratic<double>;
+
+ProblemRecipe quadratic(const QuadraticOptions& options = {});
 
 /// Small networks for it.
-inline Setting quadratic_setting(double output_scale = 1) {
-  const auto net =
-      nn::mlp({.hidden = {16, 16}, .activation = nn::Activation::tanh});
-  return {.predictor = {{Field::given, Field::observations}, net},
-          .surrogate = {{Field::unknowns, Field::given}, net},
-          .output_scale = output_scale,
-          .gtol = 1e-7};
-}
+Setting quadratic_setting(double output_scale = 1);
 
 /// A stage by itself, with everything a test may want to see afterwards.
 struct StageBench {
   explicit StageBench(const Stage& stage,
                       Index n = 8,
                       Index iterations = 10,
-                      ProblemRecipe recipe = quadratic(),
-                      Setting a_setting = quadratic_setting())
-      : setting(std::move(a_setting)),
-        oracle(recipe, n, root, stage.needs()),
-        probe(oracle, iterations),
-        stage_(stage) {
-    probe.set_trace([this](const void* data, std::size_t bytes) {
-      const auto* p = static_cast<const char*>(data);
-      trace.emplace_back(p, p + bytes);
-    });
-  }
+                      const ProblemRecipe& recipe = quadratic(),
+                      Setting a_setting = quadratic_setting());
 
   Outcome run(const Outcome* previous = nullptr,
-              Precision precision = Precision::f64) {
-    StageRun run{.oracle = oracle,
-                 .probe = probe,
-                 .setting = setting,
-                 .previous = previous,
-                 .network_init = root.child("network/init"),
-                 .batches = root.child("batches"),
-                 .method = root.child("method"),
-                 .iterations = probe.iterations(),
-                 .precision = precision,
-                 .threads = nullptr,
-                 .checkpoint = checkpoint};
-    return stage_.run(run);
-  }
+              Precision precision = Precision::f64);
 
   /// True losses of any estimates.
-  Vector<double> loss(const Batch<double>& x) {
-    Vector<double> l(x.cols());
-    oracle.measure(x, l);
-    return l;
-  }
+  Vector<double> loss(const Batch<double>& x);
   /// Traced blocks of `bytes` bytes as columns.
   template <class T>
   Batch<T> traced(Index rows) const {

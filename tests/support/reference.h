@@ -4,15 +4,10 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cstdlib>
-#include <fstream>
 #include <functional>
-#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -24,112 +19,41 @@ namespace physinv::test {
 using Json = nlohmann::json;
 
 /// The environment may point the same tests at another folder.
-inline std::string reference_dir() {
-  const char* dir = std::getenv("PHYSINV_REFERENCE_DIR");
-  return dir != nullptr && *dir != '\0' ? dir : PHYSINV_REFERENCE_DIR;
-}
-
-inline Json load_reference(const std::string& id) {
-  const std::string path = reference_dir() + "/" + id + ".json";
-  std::ifstream file(path);
-  if (!file) throw std::runtime_error("cannot read " + path);
-  return Json::parse(file);
-}
+std::string reference_dir();
+Json load_reference(const std::string& id);
 
 /// All entries of this name; a file may hold several.
-inline std::vector<Json> reference_entries(const std::string& id,
-                                           const std::string& name) {
-  std::vector<Json> found;
-  const Json file = load_reference(id);
-  for (const Json& entry : file.at("entries"))
-    if (entry.at("name") == name) found.push_back(entry);
-  return found;
-}
+std::vector<Json> reference_entries(const std::string& id,
+                                    const std::string& name);
 
 /// JSON has no NaN: null stands for a number that is not finite.
-inline double number(const Json& value) {
-  return value.is_null() ? std::numeric_limits<double>::quiet_NaN()
-                         : value.get<double>();
-}
-
-inline Vector<double> vector(const Json& list) {
-  Vector<double> v(static_cast<Index>(list.size()));
-  Index i = 0;
-  for (const Json& value : list) v(i++) = number(value);
-  return v;
-}
-
+double number(const Json& value);
+Vector<double> vector(const Json& list);
 /// A list of samples becomes features x samples.
-inline Batch<double> columns(const Json& samples) {
-  if (samples.empty()) return {};
-  Batch<double> batch(static_cast<Index>(samples.front().size()),
-                      static_cast<Index>(samples.size()));
-  Index i = 0;
-  for (const Json& sample : samples) batch.col(i++) = vector(sample);
-  return batch;
-}
-
+Batch<double> columns(const Json& samples);
 /// A list of rows becomes a matrix with those rows.
-inline Batch<double> rows(const Json& list) {
-  return columns(list).transpose();
-}
+Batch<double> rows(const Json& list);
 
 /// The tolerance forms of one entry. A form nobody here knows is an error, so
 /// that no comparison is silently loosened or dropped. A `tolerance_note` (or
 /// `note`) beside `rtol` is a formula for the test of that entry.
 class EntryTolerance {
  public:
-  explicit EntryTolerance(const Json& entry) : entry_(entry) {
-    static const std::vector<std::string> known = {"rtol",
-                                                   "atol",
-                                                   "rtol_first",
-                                                   "atol_final_loss",
-                                                   "rtol_final_loss",
-                                                   "gtol",
-                                                   "final_loss_below",
-                                                   "tolerance_note"};
-    for (const auto& [key, value] : entry.items()) {
-      if (key.find("tol") == std::string::npos && key != "final_loss_below")
-        continue;
-      if (std::find(known.begin(), known.end(), key) == known.end())
-        throw std::runtime_error("unknown tolerance form " + key);
-    }
-  }
+  explicit EntryTolerance(const Json& entry);
 
   /// Arrays and scalars: `rtol`, `atol`; `scale` multiplies rtol where a note
   /// asks for it.
-  Comparator array(double scale = 1) const {
-    if (!entry_.contains("rtol") && !entry_.contains("atol"))
-      throw std::runtime_error("entry without rtol or atol");
-    return {scale * entry_.value("rtol", 0.0), entry_.value("atol", 0.0)};
-  }
+  Comparator array(double scale = 1) const;
 
   /// The iterates an optimizer's path can be compared at.
-  Comparator iterates() const {
-    return {entry_.value("rtol_first", entry_.value("rtol", 0.0)),
-            entry_.value("atol", 0.0)};
-  }
-  bool first_only() const { return entry_.contains("rtol_first"); }
+  Comparator iterates() const;
+  bool first_only() const;
 
   /// The final loss of a run against the stored one, by whichever of the
   /// forms the entry has; `otherwise` (relative to max(1, |stored|)) if none.
   testing::AssertionResult final_loss(double loss,
                                       double stored,
-                                      double otherwise) const {
-    if (entry_.contains("final_loss_below")) {
-      const double bound =
-          std::max(entry_.at("final_loss_below").get<double>(), 10 * stored);
-      if (loss <= bound) return testing::AssertionSuccess();
-      return testing::AssertionFailure()
-             << "final loss " << loss << " above " << bound;
-    }
-    if (entry_.contains("atol_final_loss") ||
-        entry_.contains("rtol_final_loss")) {
-      return Comparator(entry_.value("rtol_final_loss", 0.0),
-                        entry_.value("atol_final_loss", 0.0))(loss, stored);
-    }
-    return Comparator(otherwise, otherwise)(loss, stored);
-  }
+                                      double otherwise) const;
 
  private:
   Json entry_;
@@ -139,32 +63,13 @@ using EntryCheck = std::function<void(const Json&)>;
 
 /// Runs the check of every entry's name. Entries `elsewhere` are read by
 /// another test of the file; one that nobody reads is an error.
-inline void check_entries(const std::string& id,
-                          const std::map<std::string, EntryCheck>& checks,
-                          const std::set<std::string>& elsewhere = {}) {
-  const Json file = load_reference(id);
-  std::size_t seen = 0;
-  for (const Json& entry : file.at("entries")) {
-    const auto name = entry.at("name").get<std::string>();
-    SCOPED_TRACE(name);
-    if (elsewhere.contains(name)) continue;
-    ASSERT_TRUE(checks.contains(name)) << "no test reads this entry";
-    checks.at(name)(entry);
-    ++seen;
-  }
-  EXPECT_GE(seen, checks.size());
-}
+void check_entries(const std::string& id,
+                   const std::map<std::string, EntryCheck>& checks,
+                   const std::set<std::string>& elsewhere = {});
 
 /// Visits the entries whose names `check` knows; the rest must be known to
 /// another test of the same file (`others`), or the test fails.
-inline void expect_known_entries(const std::string& id,
-                                 const std::vector<std::string>& known) {
-  const Json file = load_reference(id);
-  for (const Json& entry : file.at("entries")) {
-    const auto name = entry.at("name").get<std::string>();
-    EXPECT_NE(std::find(known.begin(), known.end(), name), known.end())
-        << "no test reads the entry " << name << " of " << id;
-  }
-}
+void expect_known_entries(const std::string& id,
+                          const std::vector<std::string>& known);
 
 }  // namespace physinv::test

@@ -4,9 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "suite/core/batch.h"
 
 namespace physinv::test {
@@ -35,40 +32,15 @@ class Comparator {
   testing::AssertionResult operator()(
       const Eigen::MatrixBase<A>& found,
       const Eigen::MatrixBase<B>& wanted) const {
-    // Entry by entry, a product would be computed anew for each.
-    const auto& a = found.eval();
-    const auto& b = wanted.eval();
-    if (a.rows() != b.rows() || a.cols() != b.cols()) {
-      return testing::AssertionFailure()
-             << "shape " << a.rows() << "x" << a.cols() << ", expected "
-             << b.rows() << "x" << b.cols();
-    }
-    double largest = 0;
-    for (Index j = 0; j < b.cols(); ++j)
-      for (Index i = 0; i < b.rows(); ++i) {
-        const auto v = static_cast<double>(b(i, j));
-        if (std::isfinite(v)) largest = std::max(largest, std::abs(v));
-      }
-    const double allowed = atol_ + rtol_ * largest;
-    for (Index j = 0; j < b.cols(); ++j)
-      for (Index i = 0; i < b.rows(); ++i) {
-        const auto u = static_cast<double>(a(i, j));
-        const auto v = static_cast<double>(b(i, j));
-        if (u == v || (std::isnan(u) && std::isnan(v))) continue;
-        if (std::abs(u - v) <= allowed && std::isfinite(v)) continue;
-        return testing::AssertionFailure()
-               << "(" << i << ", " << j << "): " << u << ", expected " << v
-               << ", off by " << std::abs(u - v) << ", allowed " << allowed;
-      }
-    return testing::AssertionSuccess();
+    return compare(found.template cast<double>(),
+                   wanted.template cast<double>());
   }
-
-  testing::AssertionResult operator()(double a, double b) const {
-    return (*this)(Vector<double>::Constant(1, a),
-                   Vector<double>::Constant(1, b));
-  }
+  testing::AssertionResult operator()(double a, double b) const;
 
  private:
+  testing::AssertionResult compare(const Batch<double>& found,
+                                   const Batch<double>& wanted) const;
+
   double rtol_, atol_;
 };
 

@@ -8,6 +8,7 @@
 
 #include "optimizers/half_inverse/half_inverse.h"
 #include "problems/scaled_output/scaled_output.h"
+#include "suite/nn/mlp.h"
 #include "tests/support/quadratic.h"
 
 namespace physinv::test {

@@ -1,10 +1,9 @@
 // The network's part of the independent vectors of jpo-billiards.
 
+#include "tests/support/reference.h"
+
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "suite/nn/encoding.h"
@@ -16,16 +15,10 @@
 namespace physinv::nn {
 namespace {
 
-using Json = nlohmann::json;
+using test::Json;
 
 Json entry(const std::string& name) {
-  const char* folder = std::getenv("PHYSINV_REFERENCE_DIR");
-  std::ifstream file(std::string(folder ? folder : PHYSINV_REFERENCE_DIR) +
-                     "/jpo-billiards.json");
-  const Json all = Json::parse(file);
-  for (const Json& e : all.at("entries"))
-    if (e.at("name") == name) return e;
-  throw std::runtime_error("no entry " + name);
+  return test::reference_entries("jpo-billiards", name).at(0);
 }
 
 /// Rows of the file are samples: columns here.

@@ -1,0 +1,49 @@
+#include "tests/support/run_reference.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace physinv::test {
+int scipy_status(Status status) {
+  return status == Status::gtol ? 0 : status == Status::maxiter ? 1 : 2;
+}
+
+void expect_run(const Json& entry,
+                const Json& stored,
+                const RecordedRun& run,
+                Index compared) {
+  const EntryTolerance tolerance(entry);
+  const Batch<double> iterates = columns(stored.at("iterates"));
+  const Index count =
+      std::min({compared + 1, iterates.cols(), run.iterates.cols()});
+  ASSERT_GE(run.iterates.cols(), std::min(compared + 1, iterates.cols()));
+  const auto near = tolerance.iterates();
+  if (tolerance.first_only()) {
+    for (Index k = 0; k < count; ++k)
+      EXPECT_TRUE(near(run.iterates.col(k), iterates.col(k))) << "at " << k;
+  } else {
+    EXPECT_TRUE(near(run.iterates.leftCols(count), iterates.leftCols(count)));
+  }
+
+  const int status = stored.at("status").get<int>();
+  const auto iterations = stored.at("iterations").get<Index>();
+  const bool short_run = status == 0 && iterations < 30;
+  if (status != 2) {
+    EXPECT_EQ(scipy_status(run.status), status);
+  }
+  if (short_run) {
+    EXPECT_NEAR(static_cast<double>(run.iterations),
+                static_cast<double>(iterations),
+                1);
+    EXPECT_NEAR(static_cast<double>(run.evaluations),
+                stored.at("evaluations").get<double>(),
+                2);
+  }
+  if (status != 2) {
+    const double last = run.losses(run.losses.size() - 1);
+    EXPECT_TRUE(tolerance.final_loss(last, number(stored.at("loss")), 1e-6));
+  }
+}
+
+}  // namespace physinv::test
