@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "optimizers/training/newton.h"
 #include "suite/core/closed_steps.h"
+#include "suite/core/decompositions.h"
 #include "suite/core/oracle.h"
 #include "suite/core/probe.h"
 
@@ -185,9 +185,7 @@ class LocalSteps {
         next_.col(i).setConstant(std::numeric_limits<T>::quiet_NaN());
         continue;
       }
-      lu_.setThreshold(T(0));
-      lu_.compute(j);
-      next_.col(i) = lu_.solve(target_.col(i) - y_.col(i));
+      next_.col(i) = solve_fully_pivoted<T>(j, target_.col(i) - y_.col(i));
     }
   }
 
@@ -243,7 +241,6 @@ class LocalSteps {
   T rate_;
   Batch<T> x_, next_, given_, target_, y_, y_bar_, matrix_;
   Batch<double> path_;
-  Eigen::FullPivLU<Batch<T>> lu_;
   Workspace work_;
   Tape tape_;
   Outcome out_;

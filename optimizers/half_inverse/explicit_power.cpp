@@ -1,13 +1,13 @@
 #include "optimizers/half_inverse/explicit_power.h"
 
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "optimizers/half_inverse/wide.h"
 #include "suite/core/check.h"
+#include "suite/core/decompositions.h"
 
 namespace physinv::hig {
 namespace {
@@ -120,12 +120,11 @@ Ending ExplicitPower::factor(BatchIn<double> jacobian, VectorIn<double> g) {
       if (s > 0) x.col(i) /= s;
     }
   } else {
-    const Eigen::BDCSVD<Batch<double>> svd(
-        x, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    if (svd.info() != Eigen::Success) return ending_ = Ending::stalled;
-    spectrum_.lambda = svd.singularValues().array().square();
-    spectrum_.c = svd.matrixV().transpose() * h;
-    x = svd.matrixU();
+    const SingularValues svd = singular_values(x);
+    if (!svd.found) return ending_ = Ending::stalled;
+    spectrum_.lambda = svd.s.array().square();
+    spectrum_.c = svd.v.transpose() * h;
+    x = svd.u;
   }
   if (tall) {
     right_ = qr.colsPermutation() * x;

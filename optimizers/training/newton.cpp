@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "optimizers/training/batch_signal.h"
+#include "suite/core/decompositions.h"
 #include "suite/core/oracle.h"
 
 namespace physinv {
@@ -102,11 +102,10 @@ Vector<double> newton_step(const NewtonOptions& options,
         1, -along(options, gradient(0), hessian(0, 0)));
   if (!gradient.allFinite() || !hessian.allFinite())
     return Vector<double>::Constant(d, std::nan(""));
-  const Eigen::SelfAdjointEigenSolver<Batch<double>> parts(hessian);
-  Vector<double> q = parts.eigenvectors().transpose() * gradient;
-  for (Index k = 0; k < d; ++k)
-    q(k) = along(options, q(k), parts.eigenvalues()(k));
-  return -parts.eigenvectors() * q;
+  const SymmetricEigen parts = symmetric_eigen(hessian);
+  Vector<double> q = parts.vectors.transpose() * gradient;
+  for (Index k = 0; k < d; ++k) q(k) = along(options, q(k), parts.values(k));
+  return -parts.vectors * q;
 }
 
 SignalRecipe newton_proxy(const NewtonOptions& options) {

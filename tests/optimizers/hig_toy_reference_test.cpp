@@ -1,7 +1,6 @@
 // hig-toy, whose Jacobian is tall, and the same network at its extremes.
 #include <gtest/gtest.h>
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -12,6 +11,7 @@
 #include "problems/scaled_output/scaled_output.h"
 #include "suite/nn/mlp.h"
 #include "tests/optimizers/hig_learner.h"
+#include "tests/support/singular_values.h"
 
 namespace physinv::test {
 namespace {
@@ -204,14 +204,13 @@ TEST(HigReference, Toy) {
 Vector<double> defined_update(const Batch<double>& j,
                               const Vector<double>& g,
                               const hig::Power& power) {
-  const Eigen::JacobiSVD<Batch<double>> svd(
-      j, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const Vector<double>& s = svd.singularValues();
+  const SingularValues svd = jacobi_singular_values(j);
+  const Vector<double>& s = svd.s;
   const double cut = power.absolute ? power.tau : power.tau * s(0);
-  Vector<double> c = svd.matrixU().transpose() * g;
+  Vector<double> c = svd.u.transpose() * g;
   for (Index i = 0; i < s.size(); ++i)
     c(i) *= s(i) > cut ? std::pow(s(i), power.kappa) : 0;
-  return svd.matrixV() * c;
+  return svd.v * c;
 }
 
 constexpr hig::Power kGaussNewton{.kappa = -1, .tau = 1e-4};
