@@ -1,11 +1,11 @@
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <malloc.h>
 #include <unistd.h>
 
 #include <cstdio>
 #include <exception>
-#include <map>
 #include <new>
 #include <string_view>
 #include <system_error>
@@ -62,28 +62,6 @@ environment
   PHYSINV_PUBLISHED_DIR  the papers' numbers (reports/published)
 )";
 
-using Verb = ExitCode (*)(const Arguments&);
-
-const std::map<std::string, Verb>& verbs() {
-  static const std::map<std::string, Verb> all = {
-      {"run", run_verb},
-      {"list", list_verb},
-      {"plan", plan_verb},
-      {"report", report_verb},
-      {"results", results_verb},
-      {"verify", verify_verb},
-      {"merge", merge_verb},
-      {"baseline", baseline_verb},
-      {"gate", gate_verb},
-      {"compare", compare_verb},
-      {"export", export_verb},
-      {"submit", submit_verb},
-      {"status", status_verb},
-      {"completion", completion_verb},
-      {"kernels", kernels_verb}};
-  return all;
-}
-
 ExitCode dispatch(Arguments arguments) {
   if (arguments.empty() || arguments[0].starts_with('-')) {
     if (!arguments.empty() &&
@@ -112,7 +90,7 @@ ExitCode dispatch(Arguments arguments) {
   throw UsageError(fmt::format(
       "unknown verb '{}'; {}",
       arguments[0],
-      near.empty() ? "run, list, report, verify, merge and kernels are known"
+      near.empty() ? fmt::format("known are {}", fmt::join(known, ", "))
                    : "did you mean " + near + "?"));
 }
 

@@ -2,6 +2,7 @@
 /// throw ExitError for what ends them early.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,10 @@ namespace physinv {
 
 /// What follows the verb.
 using Arguments = std::vector<std::string>;
+
+/// What a program has of them, by name.
+using Verb = ExitCode (*)(const Arguments&);
+const std::map<std::string, Verb>& verbs();
 
 ExitCode run_verb(const Arguments& arguments);
 ExitCode list_verb(const Arguments& arguments);
