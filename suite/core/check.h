@@ -1,11 +1,9 @@
 /// SUITE_CHECK(condition, message): a broken contract throws, also in release.
 #pragma once
 
-#include <fmt/format.h>
-
 #include <cstddef>
 #include <stdexcept>
-#include <string>
+#include <string_view>
 
 namespace physinv {
 
@@ -15,13 +13,10 @@ class ContractError : public std::logic_error {
   using std::logic_error::logic_error;
 };
 
-[[noreturn]] inline void fail_check(const char* file,
-                                    int line,
-                                    const char* condition,
-                                    const std::string& message) {
-  throw ContractError(
-      fmt::format("{}:{}: {} ({})", file, line, message, condition));
-}
+[[noreturn]] void fail_check(const char* file,
+                             int line,
+                             const char* condition,
+                             std::string_view message);
 
 }  // namespace physinv
 

@@ -44,6 +44,11 @@ void* Buffer::reserve(std::size_t bytes) {
   return data_.get();
 }
 
+Workspace::Workspace(Threads* threads) : threads_(threads) {}
+Workspace::Workspace(Workspace&&) noexcept = default;
+Workspace& Workspace::operator=(Workspace&&) noexcept = default;
+Workspace::~Workspace() = default;
+
 void* Workspace::allocate(std::size_t bytes) {
   const std::size_t size = round_up(bytes);
   while (chunk_ < chunks_.size() && used_ + size > chunks_[chunk_].bytes())
@@ -81,6 +86,18 @@ Workspace& Workspace::of_thread(int thread) {
     for (auto& w : per_thread_) w = std::make_unique<Workspace>();
   }
   return *per_thread_[i];
+}
+
+Tape::Tape(Threads* threads) : threads_(threads) {}
+Tape::Tape(Tape&&) noexcept = default;
+Tape& Tape::operator=(Tape&&) noexcept = default;
+Tape::~Tape() = default;
+
+void* Tape::open(std::size_t i, Index rows, Index cols, std::size_t bytes) {
+  if (i >= slots_.size()) slots_.resize(i + 1);
+  Slot& s = slots_[i];
+  s.rows = rows, s.cols = cols;
+  return s.buffer.reserve(static_cast<std::size_t>(rows * cols) * bytes);
 }
 
 std::size_t Tape::bytes() const {

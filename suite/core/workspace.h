@@ -39,7 +39,10 @@ using Scratch = Eigen::Map<Batch<T>, Eigen::Aligned64>;
 /// when it ends. Not shared between threads: `of_thread(i)` is thread i's own.
 class Workspace {
  public:
-  explicit Workspace(Threads* threads = nullptr) : threads_(threads) {}
+  explicit Workspace(Threads* threads = nullptr);
+  Workspace(Workspace&&) noexcept;
+  Workspace& operator=(Workspace&&) noexcept;
+  ~Workspace();
 
   class Scope {
    public:
@@ -88,18 +91,17 @@ class Workspace {
 /// memory is kept from call to call. The writer defines what a slot means.
 class Tape {
  public:
-  explicit Tape(Threads* threads = nullptr) : threads_(threads) {}
+  explicit Tape(Threads* threads = nullptr);
+  Tape(Tape&&) noexcept;
+  Tape& operator=(Tape&&) noexcept;
+  ~Tape();
 
   Threads* threads() const { return threads_; }
 
   /// Opens slot i for writing; old contents are lost if the size changed.
   template <class T>
   Scratch<T> slot(std::size_t i, Index rows, Index cols) {
-    if (i >= slots_.size()) slots_.resize(i + 1);
-    Slot& s = slots_[i];
-    s.rows = rows, s.cols = cols;
-    const auto count = static_cast<std::size_t>(rows * cols);
-    return {static_cast<T*>(s.buffer.reserve(count * sizeof(T))), rows, cols};
+    return {static_cast<T*>(open(i, rows, cols, sizeof(T))), rows, cols};
   }
 
   /// Reads slot i, which must have been opened with the same T.
@@ -119,6 +121,8 @@ class Tape {
     Buffer buffer;
     Index rows = 0, cols = 0;
   };
+  void* open(std::size_t i, Index rows, Index cols, std::size_t bytes);
+
   std::vector<Slot> slots_;
   Threads* threads_;
 };

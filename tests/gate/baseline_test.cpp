@@ -1,5 +1,6 @@
 #include "suite/gate/baseline.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>

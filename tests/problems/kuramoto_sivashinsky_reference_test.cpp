@@ -1,5 +1,6 @@
 // Every entry of jpo-kuramoto-sivashinsky that is physics or a solver's.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <functional>

@@ -1,4 +1,5 @@
 // Full disks and processes killed while they write.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sched.h>
 #include <sys/mount.h>

@@ -1,5 +1,6 @@
 #include "suite/results/hdf5.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "tests/suite/results/results_testing.h"

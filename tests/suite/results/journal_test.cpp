@@ -1,5 +1,6 @@
 #include "suite/results/journal.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>

@@ -1,5 +1,6 @@
 #include "suite/results/results_json.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>

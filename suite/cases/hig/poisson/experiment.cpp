@@ -1,5 +1,7 @@
 // HIG paper, Sec. 3.2, App. B.3 and C, Figs. 3, 7, Table 4: a network learns
 // the potentials of sources on an 8 x 8 grid, with fresh data at every update.
+#include <fmt/format.h>
+
 #include <cmath>
 #include <string>
 #include <vector>

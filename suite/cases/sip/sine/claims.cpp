@@ -1,5 +1,7 @@
 // SIP paper, App. B.1. The ranking of Fig. 5 stands in the main text; what is
 // read off that figure makes the suite's own ranges.
+#include <fmt/format.h>
+
 #include <vector>
 
 #include "suite/cases/sip/sine/problems.h"

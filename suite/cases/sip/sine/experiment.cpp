@@ -1,6 +1,8 @@
 // SIP paper, App. B.1: networks learn to find where a stretched and turned sine
 // has a value. All estimates are recorded: those of a network in single
 // precision are not made again to the last digits.
+#include <fmt/format.h>
+
 #include <string>
 #include <utility>
 #include <vector>
