@@ -40,6 +40,21 @@ Quantity of_values(Select select, RunValue value, F statistic) {
                    });
 }
 
+/// A statistic of the order of values, which they lack if one is no number.
+template <class F>
+Quantity of_ordered(Select select, RunValue value, F statistic) {
+  return over_runs(std::move(select),
+                   std::move(value),
+                   [=](const std::vector<Sample>& samples) {
+                     const auto values = values_of(samples);
+                     for (const double v : values)
+                       if (std::isnan(v)) return missing("no finite value");
+                     return Measured{
+                         .value = statistic(values),
+                         .runs = static_cast<Index>(samples.size())};
+                   });
+}
+
 std::vector<Select> joined(std::vector<Select> a,
                            const std::vector<Select>& b) {
   a.insert(a.end(), b.begin(), b.end());
@@ -89,21 +104,23 @@ Quantity::Quantity(Measure measure,
           Body{std::move(measure), std::move(runs), std::move(printed)})) {}
 
 Quantity median(Select select, RunValue value) {
-  return of_values(std::move(select), std::move(value), [](auto values) {
+  return of_ordered(std::move(select), std::move(value), [](auto values) {
     return median(std::move(values));
   });
 }
 
 Quantity lowest(Select select, RunValue value) {
-  return of_values(std::move(select), std::move(value), [](const auto& values) {
-    return *std::min_element(values.begin(), values.end());
-  });
+  return of_ordered(
+      std::move(select), std::move(value), [](const auto& values) {
+        return *std::min_element(values.begin(), values.end());
+      });
 }
 
 Quantity highest(Select select, RunValue value) {
-  return of_values(std::move(select), std::move(value), [](const auto& values) {
-    return *std::max_element(values.begin(), values.end());
-  });
+  return of_ordered(
+      std::move(select), std::move(value), [](const auto& values) {
+        return *std::max_element(values.begin(), values.end());
+      });
 }
 
 Quantity mean(Select select, RunValue value) {

@@ -51,7 +51,7 @@ class Quantity {
   std::shared_ptr<const Body> body_;
 };
 
-/// Over all runs selected, whatever their n.
+/// Over all runs selected, whatever their n; missing if one is not a number.
 Quantity median(Select select, RunValue value);
 Quantity lowest(Select select, RunValue value);
 Quantity highest(Select select, RunValue value);
@@ -60,7 +60,8 @@ Quantity mean(Select select, RunValue value);
 /// Share of the runs that have a value and pass; their number.
 Quantity share(Select select, RunValue value, std::function<bool(double)> test);
 Quantity count(Select select, RunValue value, std::function<bool(double)> test);
-/// Of value(a) / value(b) over pairs of runs of one n and seed.
+/// Of value(a) / value(b) over pairs of runs of one n and seed; the median over
+/// those that have a ratio.
 Quantity median_ratio(Select a, Select b, RunValue value);
 Quantity worst_ratio(Select a, Select b, RunValue value);
 

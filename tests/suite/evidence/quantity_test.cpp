@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "suite/results/published.h"
 #include "tests/suite/evidence/campaigns.h"
@@ -52,6 +53,26 @@ TEST_F(QuantityTest, StatisticsOverRuns) {
   const auto above2 = [](double v) { return v > 2; };
   EXPECT_EQ(value(count({"a"}, first_loss(), above2)), 2);
   EXPECT_DOUBLE_EQ(value(share({"a"}, first_loss(), above2)), 2.0 / 3);
+}
+
+/// Infinite over infinite is no ratio, in whatever order the pairs come.
+TEST_F(QuantityTest, TheWorstOfPairsThatBothDivergedIsNotKnown) {
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  for (const std::uint64_t diverged : {0, 1}) {
+    const auto one = [&](const char* method, std::uint64_t seed, double v) {
+      return case_of(method,
+                     2,
+                     seed,
+                     {"solve"},
+                     {stage_of("solve", {seed == diverged ? kInfinite : v})});
+    };
+    const Results results(
+        {one("a", 0, 1), one("a", 1, 1), one("b", 0, 4), one("b", 1, 4)});
+    const Evidence evidence{results, published_, "toy"};
+    EXPECT_EQ(worst_ratio({"a"}, {"b"}, first_loss())(evidence).missing,
+              "no finite value");
+    EXPECT_EQ(median_ratio({"a"}, {"b"}, first_loss())(evidence).value, 0.25);
+  }
 }
 
 TEST_F(QuantityTest, AMeanIsOverSeedsOfMeansOverSizes) {
