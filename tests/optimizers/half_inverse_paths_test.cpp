@@ -1,5 +1,11 @@
 // Each path to a power of J against the definition.
+#include <gtest/gtest.h>
+
+#include <cmath>
 #include <limits>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "optimizers/half_inverse/half_inverse.h"
 #include "tests/optimizers/half_inverse_truth.h"

@@ -1,8 +1,12 @@
 // The choice among the paths, and what they do with unusual input.
 #include "optimizers/half_inverse/half_inverse.h"
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
 #include <limits>
 #include <span>
+#include <vector>
 
 #include "suite/core/check.h"
 #include "tests/optimizers/half_inverse_truth.h"

@@ -1,6 +1,11 @@
 // J J^T of a network without J.
 #include "optimizers/half_inverse/structured_gram.h"
 
+#include <gtest/gtest.h>
+
+#include <utility>
+#include <vector>
+
 #include "suite/core/check.h"
 #include "tests/optimizers/half_inverse_truth.h"
 

@@ -1,6 +1,9 @@
 // Powers of tall Jacobians without a Gram matrix, and their parts.
 #include "optimizers/half_inverse/tall_power.h"
 
+#include <gtest/gtest.h>
+
+#include <cmath>
 #include <limits>
 
 #include "tests/optimizers/half_inverse_truth.h"

@@ -1,4 +1,6 @@
 // The reduction to tridiagonal form and the rotations behind it.
+#include <gtest/gtest.h>
+
 #include "optimizers/half_inverse/spectral_power.h"
 #include "suite/core/threads.h"
 #include "tests/optimizers/half_inverse_truth.h"

@@ -1,6 +1,11 @@
 // A second level for the directions that J J^T does not tell apart.
 #include "optimizers/half_inverse/two_level.h"
 
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
 #include "suite/core/threads.h"
 #include "tests/optimizers/half_inverse_truth.h"
 

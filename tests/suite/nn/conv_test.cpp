@@ -145,7 +145,7 @@ TYPED_TEST(ConvTest, AgreesWithTheDirectSum) {
       x_bar.row(from) += double(b.p(w)) * y_bar.row(to);
       p_bar(w) += y_bar.row(to).dot(x.row(from));
     });
-    const auto expect_near = [&](const auto& a, const auto& expected) {
+    const auto expect_near = [&, n = n](const auto& a, const auto& expected) {
       EXPECT_LE((a.template cast<double>() - expected).cwiseAbs().maxCoeff(),
                 tolerance(T()) * (1 + expected.cwiseAbs().maxCoeff()))
           << o.grid.columns << "x" << o.grid.rows << " taps " << o.taps.x << "x"

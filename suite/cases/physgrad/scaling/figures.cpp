@@ -239,12 +239,14 @@ Table ends(const Results& results, const Published& published) {
               {kPg, "pg"},
               {{"pg_numeric", "inverse by search", {}}, "pg-numeric"},
               {{"pg_numeric_exact", "by search, exact gradients", {}}, ""}};
-  for (const auto& [line, printed] : rows) {
+  for (const auto& shown : rows) {
+    const Line& line = shown.line;
     const auto path = path_of(results, kComparison, line.method);
     TableRow row{.label = line.label};
     const auto add = [&](const char* quantity, double (*value)(const Path&)) {
       Cell cell = cell_of(path ? std::optional(value(*path)) : std::nullopt);
-      if (const auto p = published.find(kComparison, printed + "/" + quantity))
+      if (const auto p =
+              published.find(kComparison, shown.printed + "/" + quantity))
         cell.paper = p->value;
       row.cells.push_back(std::move(cell));
     };
