@@ -185,7 +185,7 @@ class LocalSteps {
         next_.col(i).setConstant(std::numeric_limits<T>::quiet_NaN());
         continue;
       }
-      next_.col(i) = solve_fully_pivoted<T>(j, target_.col(i) - y_.col(i));
+      lu_.solve(j, target_.col(i) - y_.col(i), next_.col(i));
     }
   }
 
@@ -241,6 +241,7 @@ class LocalSteps {
   T rate_;
   Batch<T> x_, next_, given_, target_, y_, y_bar_, matrix_;
   Batch<double> path_;
+  FullyPivoted<T> lu_;
   Workspace work_;
   Tape tape_;
   Outcome out_;

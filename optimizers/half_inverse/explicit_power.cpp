@@ -120,11 +120,11 @@ Ending ExplicitPower::factor(BatchIn<double> jacobian, VectorIn<double> g) {
       if (s > 0) x.col(i) /= s;
     }
   } else {
-    const SingularValues svd = singular_values(x);
+    SingularValues svd = singular_values(x);
     if (!svd.found) return ending_ = Ending::stalled;
     spectrum_.lambda = svd.s.array().square();
     spectrum_.c = svd.v.transpose() * h;
-    x = svd.u;
+    x.swap(svd.u);
   }
   if (tall) {
     right_ = qr.colsPermutation() * x;

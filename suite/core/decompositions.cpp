@@ -21,16 +21,24 @@ SingularValues singular_values(const Batch<double>& a) {
 }
 
 template <class T>
-Batch<T> solve_fully_pivoted(const Batch<T>& a, const Batch<T>& b) {
-  Eigen::FullPivLU<Batch<T>> lu;
-  lu.setThreshold(T(0));
-  lu.compute(a);
-  return lu.solve(b);
+struct FullyPivoted<T>::Lu {
+  Eigen::FullPivLU<Batch<T>> of;
+};
+
+template <class T>
+FullyPivoted<T>::FullyPivoted() : lu_(std::make_unique<Lu>()) {
+  lu_->of.setThreshold(T(0));
 }
 
-template Batch<float> solve_fully_pivoted(const Batch<float>&,
-                                          const Batch<float>&);
-template Batch<double> solve_fully_pivoted(const Batch<double>&,
-                                           const Batch<double>&);
+template <class T>
+FullyPivoted<T>::~FullyPivoted() = default;
+
+template <class T>
+void FullyPivoted<T>::solve(BatchIn<T> a, VectorIn<T> b, VectorOut<T> x) {
+  x = lu_->of.compute(a).solve(b);
+}
+
+template class FullyPivoted<float>;
+template class FullyPivoted<double>;
 
 }  // namespace physinv

@@ -2,6 +2,8 @@
 /// any width: half a minute in the compiler, and the same code for all.
 #pragma once
 
+#include <memory>
+
 #include "suite/core/batch.h"
 
 namespace physinv {
@@ -22,14 +24,21 @@ struct SingularValues {
 };
 SingularValues singular_values(const Batch<double>& a);
 
-/// X with A X = B by an LU decomposition with full pivoting; pivots that are
-/// zero alone count as zero, and their unknowns are.
+/// x with A x = b by an LU decomposition with full pivoting; pivots that are
+/// zero alone count as zero, and their unknowns are. Keeps its memory.
 template <class T>
-Batch<T> solve_fully_pivoted(const Batch<T>& a, const Batch<T>& b);
+class FullyPivoted {
+ public:
+  FullyPivoted();
+  ~FullyPivoted();
+  void solve(BatchIn<T> a, VectorIn<T> b, VectorOut<T> x);
 
-extern template Batch<float> solve_fully_pivoted(const Batch<float>&,
-                                                 const Batch<float>&);
-extern template Batch<double> solve_fully_pivoted(const Batch<double>&,
-                                                  const Batch<double>&);
+ private:
+  struct Lu;
+  std::unique_ptr<Lu> lu_;
+};
+
+extern template class FullyPivoted<float>;
+extern template class FullyPivoted<double>;
 
 }  // namespace physinv

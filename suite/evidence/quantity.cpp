@@ -34,8 +34,10 @@ Quantity of_values(Select select, RunValue value, F statistic) {
   return over_runs(std::move(select),
                    std::move(value),
                    [=](const std::vector<Sample>& samples) {
+                     const double found = statistic(values_of(samples));
+                     if (std::isnan(found)) return missing("no finite value");
                      return Measured{
-                         .value = statistic(values_of(samples)),
+                         .value = found,
                          .runs = static_cast<Index>(samples.size())};
                    });
 }
@@ -43,16 +45,12 @@ Quantity of_values(Select select, RunValue value, F statistic) {
 /// A statistic of the order of values, which they lack if one is no number.
 template <class F>
 Quantity of_ordered(Select select, RunValue value, F statistic) {
-  return over_runs(std::move(select),
-                   std::move(value),
-                   [=](const std::vector<Sample>& samples) {
-                     const auto values = values_of(samples);
-                     for (const double v : values)
-                       if (std::isnan(v)) return missing("no finite value");
-                     return Measured{
-                         .value = statistic(values),
-                         .runs = static_cast<Index>(samples.size())};
-                   });
+  return of_values(
+      std::move(select), std::move(value), [=](const auto& values) {
+        for (const double v : values)
+          if (std::isnan(v)) return v;
+        return statistic(values);
+      });
 }
 
 std::vector<Select> joined(std::vector<Select> a,

@@ -45,8 +45,7 @@ inline Case small_case(ExperimentPtr experiment,
                        Precision precision = Precision::f32) {
   Case c;
   c.experiment = std::move(experiment);
-  for (const Method& m : c.experiment->methods)
-    if (m.id == method) c.method = &m;
+  c.method = find_method(*c.experiment, method);
   if (c.method == nullptr) throw std::runtime_error("no method " + method);
   c.info = {.name = c.experiment->name + "/" + method,
             .experiment = c.experiment->name,
