@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "suite/core/check.h"
+#include "suite/core/math.h"
 
 namespace physinv {
 
@@ -36,8 +37,8 @@ void BoundaryLoss::add(BatchIn<double> x,
       const double width = hi_(j) - lo_(j);
       const double above = x(j, i) - hi_(j), below = lo_(j) - x(j, i);
       const double t = gamma_ * (std::max(above, below) / width);
-      const double e = std::exp(-std::abs(t));  // never overflows
-      sum += std::max(t, 0.0) + std::log1p(e);
+      const double e = math::exp(-std::abs(t));  // never overflows
+      sum += std::max(t, 0.0) + math::log1p(e);
       const double sigma = (t < 0 ? e : 1.0) / (1.0 + e);
       // In the exact middle both walls pull alike.
       const double side = above > below ? 1 : above < below ? -1 : 0;

@@ -1,7 +1,6 @@
 #include "baselines/regression.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <numeric>
 #include <span>
@@ -10,6 +9,7 @@
 
 #include "optimizers/training/first_order.h"
 #include "optimizers/training/loop.h"
+#include "suite/core/math.h"
 #include "suite/core/oracle.h"
 #include "suite/core/probe.h"
 
@@ -107,7 +107,7 @@ class Labels final : public Signal<T> {
     if (all_.bounded == 0) return out;
     shown_ = out;
     tanh_ =
-        out.topRows(all_.bounded).unaryExpr([](T o) { return std::tanh(o); });
+        out.topRows(all_.bounded).unaryExpr([](T o) { return math::tanh(o); });
     shown_.topRows(all_.bounded) = tanh_;
     return shown_;
   }

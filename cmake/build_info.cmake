@@ -1,7 +1,7 @@
 # physinv_build_info: what this build is made of (suite/harness/build_info.h),
 # with hash and #include lines of every source that numbers can come from, read
 # at build time. The file is rewritten only when its content changes.
-# The bits of exp and sin are the C library's.
+# The bits of exp and sin are SLEEF's, those of hypot the C library's.
 execute_process(COMMAND getconf GNU_LIBC_VERSION
   OUTPUT_VARIABLE physinv_libc OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
 
@@ -18,9 +18,13 @@ string(CONCAT physinv_flags_text "${CMAKE_CXX_FLAGS} "
 string(GENEX_STRIP "${physinv_flags_text}" physinv_flags_text)
 string(REGEX REPLACE " +" " " physinv_flags_text "${physinv_flags_text}")
 string(STRIP "${physinv_flags_text}" physinv_flags_text)
-# Those that decide about bits: the width of registers does not.
-string(REGEX REPLACE " ?-(march=|U__AVX512F__)[^ ]*" "" physinv_bit_flags
-  "${physinv_flags_text}")
+# Those that may decide about bits. Optimization, registers, sanitizers and the
+# compiler itself do not (the tests of bits hold it).
+string(REGEX REPLACE
+  "(^| )-(O[0-3]|g|DNDEBUG|march=[^ ]*|U__AVX512F__|fpch-preprocess|fno-omit-frame-pointer|f(no-)?sanitize[^ ]*)" ""
+  physinv_bit_flags "${physinv_flags_text}")
+string(REGEX REPLACE " +" " " physinv_bit_flags "${physinv_bit_flags}")
+string(STRIP "${physinv_bit_flags}" physinv_bit_flags)
 
 set(physinv_info ${PROJECT_BINARY_DIR}/build_info)
 file(CONFIGURE OUTPUT ${physinv_info}/values.cmake @ONLY CONTENT [[
@@ -33,6 +37,7 @@ set(instruction_set "@physinv_arch@")
 set(version "@PROJECT_VERSION@")
 set(eigen "@Eigen3_VERSION@")
 set(fftw "@FFTW3_VERSION@")
+set(sleef "@SLEEF_VERSION@")
 set(hdf5 "@HDF5_VERSION@")
 set(json "@nlohmann_json_VERSION@")
 set(fmt "@fmt_VERSION@")

@@ -11,9 +11,10 @@ endif()
 
 # Flags every target shares. They change Eigen's alignment and the bits of the
 # results, so they are part of the ABI and travel with the exported target.
-# No -ffast-math; -ffp-contract stays at the compiler's default (GCC: fast, so
-# a * b + c becomes one fused operation), as that is a property of the build
-# and therefore of the fingerprint.
+# Bits are a property of the source: no -ffast-math, and products and sums fuse
+# where the source says fma and nowhere else. Left to itself, GCC fuses
+# a * b + c as inlining and vectorizing offer it, so that two copies of one
+# template round differently and the linker takes whichever comes first.
 add_library(physinv_flags INTERFACE)
 #
 # Registers of 256 bits (x86-64-v3) or of 512 (v4): what this machine has, as
@@ -55,6 +56,7 @@ add_library(physinv_flags_v3 INTERFACE)
 target_compile_options(physinv_flags_v3 INTERFACE -march=x86-64-v3)
 foreach(flags physinv_flags physinv_flags_v3)
   target_compile_features(${flags} INTERFACE cxx_std_20)
+  target_compile_options(${flags} INTERFACE -ffp-contract=off)
   target_compile_definitions(${flags} INTERFACE EIGEN_DONT_PARALLELIZE)
 endforeach()
 # Words and records compute nothing, so they take no wide registers: a program
@@ -63,13 +65,10 @@ endforeach()
 add_library(physinv_narrow INTERFACE)
 target_compile_options(physinv_narrow INTERFACE
   -march=x86-64-v3 -UPHYSINV_AVX512)
-# Nor do they take long optimizing; products and sums are fused all the same, as
-# the linker takes any one copy of an inline function for all. A header that is
-# compiled with -O3 would bring -O3 along.
+# Nor do they take long optimizing. A header that is compiled with -O3 would
+# bring -O3 along.
 add_library(physinv_records INTERFACE)
-target_compile_options(physinv_records INTERFACE
-  $<$<CONFIG:Release>:-O1>
-  $<$<AND:$<CONFIG:Release>,$<CXX_COMPILER_ID:GNU>>:-fexpensive-optimizations>)
+target_compile_options(physinv_records INTERFACE $<$<CONFIG:Release>:-O1>)
 # Designated initializers name what they set; the rest is default on purpose.
 set(PHYSINV_WARNINGS -Wall -Wextra -Wshadow -Wno-missing-field-initializers)
 

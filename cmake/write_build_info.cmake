@@ -35,9 +35,7 @@ function(physinv_digest result text)
   set(${result} ${digest} PARENT_SCOPE)
 endfunction()
 
-string(CONCAT build "${compiler} ${compiler_version} ${bit_flags} "
-  "${libc} ${eigen} ${fftw} ${hdf5}")
-physinv_digest(foundation "${build}" ${everywhere})
+physinv_digest(foundation "${bit_flags} ${libc} ${eigen} ${sleef}" ${everywhere})
 physinv_digest(fingerprint ${foundation} ${numerics})
 
 set(table)
@@ -68,8 +66,8 @@ file(WRITE ${info}/build_info.d "${depfile}\n")
 
 # In the order of the struct's members.
 set(members)
-foreach(member compiler compiler_version flags build_type instruction_set
-               fingerprint foundation version eigen fftw hdf5 json fmt cli11)
+foreach(member compiler compiler_version flags bit_flags build_type
+               instruction_set fingerprint foundation version eigen sleef fftw hdf5 json fmt cli11)
   string(REPLACE "\"" "\\\"" value "${${member}}")
   string(APPEND members "    .${member} = \"${value}\",\n")
 endforeach()

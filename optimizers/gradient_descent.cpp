@@ -7,6 +7,7 @@
 
 #include "optimizers/steps/bfgs_update.h"
 #include "suite/core/check.h"
+#include "suite/core/math.h"
 
 namespace physinv {
 namespace {
@@ -140,7 +141,7 @@ void GradientDescent::adapt(Index i) {
     const double predicted = step * dense::dot(d_, g, g);  // -g.(b - x)
     const double ratio =
         predicted == 0 ? 0 : (loss_(i) - best_loss_(i)) / predicted;
-    factor = std::max(std::exp(3 * (ratio - 0.5)), 0.1);
+    factor = std::max(math::exp(3 * (ratio - 0.5)), 0.1);
   } else if (-step * dense::dot(d_, best_gradient_.col(i).data(), g) < 0) {
     factor = 2;
   }

@@ -1,6 +1,6 @@
 #include "optimizers/network_model.h"
 
-#include <cmath>
+#include "suite/core/math.h"
 
 namespace physinv {
 namespace {
@@ -53,7 +53,7 @@ template Batch<double> assemble(const std::vector<Field>&,
 
 Batch<double> bounded(Batch<double> x, const Labelling& labels) {
   auto rows = x.topRows(labels.bounded);
-  rows = rows.unaryExpr([](double v) { return std::tanh(v); }).eval();
+  rows = rows.unaryExpr([](double v) { return math::tanh(v); }).eval();
   return x;
 }
 

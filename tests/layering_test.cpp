@@ -19,7 +19,7 @@ struct Layer {
 };
 
 const std::map<std::string, Layer> kLayers{
-    {"suite/core", {{}, {"eigen", "fftw", "hdf5", "random123"}}},
+    {"suite/core", {{}, {"eigen", "fftw", "hdf5", "random123", "sleef"}}},
     {"suite/nn", {{"suite/core"}, {"eigen"}}},
     {"problems", {{"suite/core"}, {"eigen"}}},
     {"optimizers", {{"suite/core", "suite/nn"}, {"eigen"}}},
@@ -92,6 +92,7 @@ std::string library_of(const std::string& header) {
       {"Eigen/", "eigen"},
       {"unsupported/Eigen/", "eigen"},
       {"fftw3", "fftw"},
+      {"sleef.h", "sleef"},
       {"hdf5", "hdf5"},
       {"H5", "hdf5"},
       {"Random123/", "random123"},

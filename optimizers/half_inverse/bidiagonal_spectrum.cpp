@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "optimizers/half_inverse/reflector.h"
+#include "suite/core/math.h"
 
 namespace physinv::hig {
 namespace {
@@ -56,11 +57,11 @@ void BidiagonalSpectrum::isolate(double floor2, double top) {
   double* const x = residual_;
   double* const counts = x + lanes;
   // A first look with shifts spread over all decades.
-  const double ratio = std::log(floor2 / top);
+  const double ratio = math::log(floor2 / top);
   for (Index l = 0; l < lanes; ++l)
     x[l] = l + 1 == lanes ? floor2
-                          : top * std::exp(ratio * static_cast<double>(l + 1) /
-                                           static_cast<double>(lanes));
+                          : top * math::exp(ratio * static_cast<double>(l + 1) /
+                                            static_cast<double>(lanes));
   count_above(x, counts, groups_);
   count_ = static_cast<Index>(counts[lanes - 1]);
   Index at = 0;

@@ -10,7 +10,6 @@
 namespace physinv::hig {
 namespace {
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr int kRounds = 30;
 
 /// Upper bound of the largest eigenvalue: the Frobenius norm.

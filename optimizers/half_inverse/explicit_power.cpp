@@ -3,16 +3,15 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "optimizers/half_inverse/wide.h"
 #include "suite/core/check.h"
 #include "suite/core/decompositions.h"
+#include "suite/core/eigen_caches.h"
 
 namespace physinv::hig {
 namespace {
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 /// Up to here Jacobi is as fast as bidiagonalisation, and more accurate.
 constexpr Index kJacobi = 64;
 constexpr int kSweeps = 60;
@@ -81,6 +80,7 @@ Ending ExplicitPower::factor(BatchIn<double> jacobian, VectorIn<double> g) {
   SUITE_CHECK(n > 0 && g.size() == m, "g has a number for each row of J");
   spectrum_.lambda.setZero(n), spectrum_.c.setZero(n);
   spectrum_.scale = 1;
+  state_caches();
   if (!g.allFinite() || !jacobian.allFinite())
     return ending_ = Ending::nonfinite;
   const double largest = jacobian.cwiseAbs().maxCoeff();

@@ -5,12 +5,12 @@
 #include <limits>
 
 #include "suite/core/check.h"
+#include "suite/core/math.h"
 
 namespace physinv::hig {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 /// Standard deviations of a sum that one pair (i, j) may dominate.
 constexpr double kSafety = 4;
 
@@ -19,7 +19,7 @@ constexpr double kSafety = 4;
 double raised(double s, double exponent) {
   if (exponent == -1.5) return 1 / (s * std::sqrt(s));
   if (exponent == -2) return 1 / (s * s);
-  return std::pow(s, exponent);
+  return math::pow(s, exponent);
 }
 
 /// Kept and dropped directions, in units of lambda_max = s_max = 1.
@@ -63,7 +63,7 @@ double first_order(const Spectrum::Noise& noise,
             .sum();
   }
   // A value that may lie on the other side takes its component with it.
-  const double f_cut = std::pow(cut, kappa - 1);
+  const double f_cut = math::pow(cut, kappa - 1);
   for (const Side* side : {&kept, &dropped})
     for (Index i = 0; i < side->s.size(); ++i) {
       const double own = noise.entry(side->tail(i) > 0, side->s(i));
@@ -77,7 +77,7 @@ double first_order(const Spectrum::Noise& noise,
 }  // namespace
 
 double entry_noise(Index m, double matrix_noise) {
-  const double solver = 0.75 * std::pow(static_cast<double>(m), 0.25);
+  const double solver = 0.75 * math::pow(static_cast<double>(m), 0.25);
   return kEpsilon * (matrix_noise + solver) / norm_factor(m);
 }
 
@@ -112,7 +112,7 @@ PowerReport power_weights(const Spectrum& spectrum,
   report.cut = power.cut(report.s_max);
   weights.setZero();
   const double prefactor =
-      power.beta == 0 ? 1 : std::pow(report.s_max, power.beta);
+      power.beta == 0 ? 1 : math::pow(report.s_max, power.beta);
   double square = 0, v2 = 0, s_kappa_max = 0;
   report.smallest_kept = kInfinity;
   report.margin = kInfinity;
@@ -172,7 +172,7 @@ PowerReport power_weights(const Spectrum& spectrum,
     ++at;
   }
   const double unit =
-      report.norm / (prefactor * std::pow(report.s_max, power.kappa));
+      report.norm / (prefactor * math::pow(report.s_max, power.kappa));
   const double leaked =
       first_order(noise, power.kappa, report.cut / report.s_max, kept, dropped);
   // v itself, and J^T v, carry rounding of size eps s_max |v|.

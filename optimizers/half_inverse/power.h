@@ -10,11 +10,14 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 #include <string_view>
 
 #include "suite/core/batch.h"
 
 namespace physinv::hig {
+
+inline constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 struct Power {
   double kappa = -0.5;    ///< in [-1, 1]

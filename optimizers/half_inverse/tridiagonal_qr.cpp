@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "optimizers/half_inverse/power.h"
 #include "optimizers/half_inverse/sweep_lanes.h"
 
 namespace physinv::hig {
 namespace {
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr Index kSweepsPerRow = 60;
 /// Shorter blocks go sweep by sweep, as does a block that this many rounds
 /// have not shortened.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "suite/core/check.h"
+#include "suite/core/math.h"
 
 namespace physinv {
 namespace {
@@ -47,7 +48,7 @@ void AdaHessian<T>::step(VectorIn<T> x,
   average<T>(tensors_, curvature);
   const auto t = static_cast<double>(steps_);
   const auto& o = options_;
-  const double c1 = 1 - std::pow(o.beta1, t), c2 = 1 - std::pow(o.beta2, t);
+  const double c1 = 1 - math::pow(o.beta1, t), c2 = 1 - math::pow(o.beta2, t);
   // The product with H takes a thousand times as long: numbers one by one.
   for (Index i = 0; i < x.size(); ++i) {
     const auto g = double(gradient(i)), h = double(curvature(i));
@@ -55,7 +56,7 @@ void AdaHessian<T>::step(VectorIn<T> x,
     v_(i) = static_cast<T>(o.beta2 * double(v_(i)) + (1 - o.beta2) * (h * h));
     const double root = std::sqrt(double(v_(i)) / c2);
     const double size =
-        o.power == 0.5 ? std::sqrt(root) : std::pow(root, o.power);
+        o.power == 0.5 ? std::sqrt(root) : math::pow(root, o.power);
     to(i) = static_cast<T>(double(x(i)) -
                            o.rate * (double(m_(i)) / c1) / (size + o.eps));
   }

@@ -15,6 +15,7 @@
 #include "suite/core/archive.h"
 #include "suite/core/batch.h"
 #include "suite/core/check.h"
+#include "suite/core/math.h"
 
 namespace physinv {
 
@@ -56,7 +57,7 @@ void Adam<T>::step(VectorIn<T> x, VectorIn<T> gradient, VectorOut<T> to) {
   ++steps_;
   const auto t = static_cast<double>(steps_);
   const Options& o = options_;
-  const double c1 = 1 - std::pow(o.beta1, t), c2 = 1 - std::pow(o.beta2, t);
+  const double c1 = 1 - math::pow(o.beta1, t), c2 = 1 - math::pow(o.beta2, t);
   const bool before = o.eps_before_correction;
   const T rate = static_cast<T>(o.rate / c1 * (before ? std::sqrt(c2) : 1.0));
   const T correct = static_cast<T>(before ? 1.0 : 1 / c2);

@@ -1,8 +1,8 @@
 #include "optimizers/training/output_map.h"
 
 #include <algorithm>
-#include <cmath>
 
+#include "suite/core/math.h"
 #include "suite/core/oracle.h"
 
 namespace physinv {
@@ -82,7 +82,7 @@ class Box final : public OutputMap<T> {
       : scale_(static_cast<T>(scale)), start_(start) {}
 
   void operator()(BatchIn<T> out, BatchIn<T>, BatchOut<T> x) override {
-    tanh_ = out.unaryExpr([](T o) { return std::tanh(o); });
+    tanh_ = out.unaryExpr([](T o) { return math::tanh(o); });
     x = scale_ * tanh_;
     start_.add_to(x);
   }

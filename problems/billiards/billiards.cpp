@@ -8,6 +8,7 @@
 
 #include "suite/core/check.h"
 #include "suite/core/lanes.h"
+#include "suite/core/math.h"
 
 namespace physinv {
 namespace {
@@ -51,13 +52,11 @@ struct Contact {
   Mask<T> hit, broken;  // broken: some input is not finite
 };
 
-// Compiled once, because the compiler fuses products and sums differently in
-// each inlined copy: forward and linearize must agree to the last bit.
 template <class T>
-[[gnu::noinline, gnu::noclone]] void find_contact(const Constants<T>& k,
-                                                  const Pack<T> (&velocity)[2],
-                                                  const Pack<T> (&ball)[2],
-                                                  Contact<T>& out) {
+void find_contact(const Constants<T>& k,
+                  const Pack<T> (&velocity)[2],
+                  const Pack<T> (&ball)[2],
+                  Contact<T>& out) {
   using P = Pack<T>;
   using K = Constants<T>;
   const P zero = P{} + T(0), one = P{} + T(1);
@@ -203,7 +202,7 @@ Collision<T> collide(const std::array<T, 2>& velocity,
   out.final_ball = {at.y[0][0], at.y[1][0]};
   if (!out.hit) return out;
   out.s = at.s[0];
-  out.time = -std::log1p(-k.mu * out.s) / k.mu;
+  out.time = -math::log1p(-k.mu * out.s) / k.mu;
   out.normal_speed = at.keep[0] * at.a[0];
   const T kick = T(0.5 * (1 + o.elasticity)) * out.normal_speed;
   for (int i = 0; i < 2; ++i) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "suite/core/check.h"
+#include "suite/core/math.h"
 
 namespace physinv {
 namespace {
@@ -15,7 +16,7 @@ template <class T>
 void exponentials(BatchIn<T> x, BatchOut<T> y) {
   check_size(x, 1, x.cols());
   check_size(y, 1, x.cols());
-  for (Index i = 0; i < x.cols(); ++i) y(0, i) = std::exp(x(0, i));
+  for (Index i = 0; i < x.cols(); ++i) y(0, i) = math::exp(x(0, i));
 }
 
 }  // namespace
@@ -126,7 +127,7 @@ void Exponential<T>::invert(BatchIn<T> y,
   check_size(x, 1, x.cols());
   for (Index i = 0; i < y.cols(); ++i) {
     const T guess = x_guess(0, i);
-    x(0, i) = std::exp(guess) == y(0, i) ? guess : std::log(y(0, i));
+    x(0, i) = math::exp(guess) == y(0, i) ? guess : math::log(y(0, i));
   }
 }
 

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "suite/core/check.h"
+#include "suite/core/math.h"
 
 namespace physinv::fluid {
 namespace {
@@ -19,7 +20,7 @@ struct Transform {
       : n(size), cosine(n, n), sine(n, n), re(n, n), im(n, n) {
     for (Index j = 0; j < n; ++j) {
       const double angle = 2 * std::numbers::pi * double(j) / double(n);
-      cosine(j, 1) = std::cos(angle), sine(j, 1) = std::sin(angle);
+      cosine(j, 1) = math::cos(angle), sine(j, 1) = math::sin(angle);
     }
     for (Index k = 0; k < n; ++k)
       for (Index j = 0; j < n; ++j) {

@@ -3,12 +3,12 @@
 /// x: the Laplacian's eigenvalues are real and even, so neither needs more.
 #pragma once
 
-#include <cmath>
 #include <numbers>
 #include <vector>
 
 #include "problems/fluid/staggered.h"
 #include "suite/core/lanes_fft.h"
+#include "suite/core/math.h"
 
 namespace physinv::fluid {
 
@@ -19,8 +19,8 @@ class PeriodicProjection {
   explicit PeriodicProjection(Index cells)
       : faces_(cells, cells), fft_(cells), value_(cells / 2 + 1) {
     for (Index p = 0; p <= cells / 2; ++p)
-      value_[p] = 2 - 2 * std::cos(2 * std::numbers::pi * double(fft_.mode(p)) /
-                                   double(cells));
+      value_[p] = 2 - 2 * math::cos(2 * std::numbers::pi *
+                                    double(fft_.mode(p)) / double(cells));
   }
 
   const Staggering<Edge::periodic>& faces() const { return faces_; }

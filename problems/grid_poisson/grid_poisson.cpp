@@ -8,6 +8,7 @@
 
 #include "suite/core/check.h"
 #include "suite/core/lanes.h"
+#include "suite/core/math.h"
 #include "suite/core/threads.h"
 
 namespace physinv {
@@ -28,10 +29,9 @@ struct Row {
   }
 };
 
-/// out = L in. Compiled once: forward and linearize must agree to the last
-/// bit.
+/// out = L in.
 template <class T>
-[[gnu::noinline, gnu::noclone]] void apply(const T* in, T* out) {
+void apply(const T* in, T* out) {
   using Half = typename Row<T>::Half;
   constexpr T kZeros[kSide] = {};
   const Half none = T(-0.0) - Half{};  // added to anything, changes nothing
@@ -96,7 +96,7 @@ Batch<double> waves() {
   double cosine[kSide], sine[kSide];
   for (Index k = 0; k < kSide; ++k) {
     const double angle = 2 * std::numbers::pi * double(k) / kSide;
-    cosine[k] = std::cos(angle), sine[k] = std::sin(angle);
+    cosine[k] = math::cos(angle), sine[k] = math::sin(angle);
   }
   Batch<double> out = Batch<double>::Zero(kCells, 2 * kCells);
   for (Index f = 1; f < kCells; ++f) {
@@ -141,9 +141,9 @@ GridPoisson<T>::GridPoisson(const Options& options)
   for (Index i = 0; i < kSide; ++i)
     for (Index k = 0; k < kSide; ++k) {
       const auto a = static_cast<double>(i + 1), b = static_cast<double>(k + 1);
-      sines_(i, k) = T(std::sqrt(2.0 / (kSide + 1)) * std::sin(a * b * turn));
+      sines_(i, k) = T(std::sqrt(2.0 / (kSide + 1)) * math::sin(a * b * turn));
       inverse_eigenvalues_(i, k) =
-          T(1 / (-4 + 2 * std::cos(a * turn) + 2 * std::cos(b * turn)));
+          T(1 / (-4 + 2 * math::cos(a * turn) + 2 * math::cos(b * turn)));
     }
   const Batch<T> unit = Batch<T>::Identity(kCells, kCells);
   for (Index r = 0; r < kCells; ++r)

@@ -10,6 +10,7 @@
 #include "problems/heat/likelihood.h"
 #include "problems/heat/registers.h"
 #include "suite/core/check.h"
+#include "suite/core/math.h"
 
 namespace physinv {
 namespace {
@@ -63,8 +64,8 @@ HeatMode HeatMode::of(double amplitude,
                       double uncertainty) {
   const Modes all = Modes::of(amplitude - P{},
                               exponent,
-                              std::exp(-exponent),
-                              std::exp(exponent),
+                              math::exp(-exponent),
+                              math::exp(exponent),
                               1 / expected,
                               1 / uncertainty - P{});
   return {all.probability[0], all.gain[0]};
@@ -74,9 +75,9 @@ HeatMode HeatMode::of(double amplitude,
 Batch<double> heat_gradient_descent(const Batch<double>& exponents,
                                     Index steps) {
   return exponents.unaryExpr([=](double s) {
-    const double damping = std::exp(-s);
+    const double damping = math::exp(-s);
     if (damping == 0 || steps == 0) return 0.0;
-    return -std::expm1(double(steps) * std::log1p(-damping * damping)) /
+    return -math::expm1(double(steps) * math::log1p(-damping * damping)) /
            damping;
   });
 }
@@ -90,8 +91,8 @@ HeatTable::HeatTable(const HeatOptions& o, const PlaneFft& fft) {
   };
   s = Batch<double>::NullaryExpr(
       m, m, [&](Index p, Index q) { return along(p) + along(q); });
-  damping = s.unaryExpr([](double e) { return std::exp(-e); });
-  amplification = s.unaryExpr([](double e) { return std::exp(e); });
+  damping = s.unaryExpr([](double e) { return math::exp(-e); });
+  amplification = s.unaryExpr([](double e) { return math::exp(e); });
   expected = n * damping;
 }
 
@@ -133,7 +134,7 @@ Vector<double> Heat<T>::start() const {
 template <class T>
 double Heat<T>::operations() const {
   const auto cells = static_cast<double>(fft_.field());
-  return cells * (5 * std::log2(cells) + 1);
+  return cells * (5 * math::log2(cells) + 1);
 }
 
 template <class T>

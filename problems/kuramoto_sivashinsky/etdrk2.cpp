@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "suite/core/lanes_math.h"
+#include "suite/core/math.h"
 #include "suite/core/workspace.h"
 
 namespace physinv {
@@ -14,7 +15,7 @@ namespace {
 /// cancel near 0, where the series to z^5 is exact to rounding.
 std::array<double, 2> phi(double z) {
   if (std::abs(z) >= 1e-2) {
-    const double e = std::expm1(z);
+    const double e = math::expm1(z);
     return {e / z, (e - z) / (z * z)};
   }
   double one = 1, two = 1;
@@ -24,8 +25,8 @@ std::array<double, 2> phi(double z) {
 }
 
 double forcing_at(double x) {
-  return 0.1 * std::cos(x) -
-         0.01 * std::cos(x / 16) * (1 - 2 * std::sin(x / 16));
+  return 0.1 * math::cos(x) -
+         0.01 * math::cos(x / 16) * (1 - 2 * math::sin(x / 16));
 }
 
 /// s := s + scale (-i c) z, and z := s, which transforms may destroy.
@@ -53,7 +54,7 @@ KuramotoSivashinskyOperators operators(const KuramotoSivashinskyOptions& o) {
     const double k = double(m) / o.box, l = k * k - k * k * k * k;
     const auto [phi1, phi2] = phi(l * o.time_step);
     op.k(m) = k, op.linear(m) = l;
-    op.exp(m) = std::exp(l * o.time_step);
+    op.exp(m) = math::exp(l * o.time_step);
     op.dt_phi1(m) = o.time_step * phi1;
     op.dt_phi2(m) = o.time_step * phi2;
   }

@@ -12,6 +12,7 @@
 #include "problems/kuramoto_sivashinsky/checkpoints.h"
 #include "problems/kuramoto_sivashinsky/etdrk2.h"
 #include "suite/core/check.h"
+#include "suite/core/math.h"
 #include "suite/core/threads.h"
 
 namespace physinv {
@@ -27,7 +28,7 @@ struct Circle {
   explicit Circle(Index n) : cos(n), sin(n) {
     for (Index j = 0; j < n; ++j) {
       const double angle = 2 * std::numbers::pi * double(j) / double(n);
-      cos(j) = std::cos(angle), sin(j) = std::sin(angle);
+      cos(j) = math::cos(angle), sin(j) = math::sin(angle);
     }
   }
   Vector<double> cos, sin;
@@ -91,7 +92,7 @@ Vector<double> KuramotoSivashinsky<T>::start() const {
 template <class T>
 double KuramotoSivashinsky<T>::operations() const {
   const double n = double(options_.cells);
-  return double(options_.steps) * n * (4 * 2.5 * std::log2(n) + 12);
+  return double(options_.steps) * n * (4 * 2.5 * math::log2(n) + 12);
 }
 
 template <class T>

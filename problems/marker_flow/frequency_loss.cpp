@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "suite/core/check.h"
+#include "suite/core/math.h"
 
 namespace physinv {
 namespace {
@@ -26,13 +27,13 @@ FrequencyLoss::FrequencyLoss(Index cells, double falloff, double threshold)
               "falloff and threshold of the loss are positive");
   for (std::size_t j = 0; j < cosine_.size(); ++j) {
     const double turn = double(j) / double(cells);
-    cosine_[j] = std::cos(2 * std::numbers::pi * turn);
-    sine_[j] = std::sin(2 * std::numbers::pi * turn);
+    cosine_[j] = math::cos(2 * std::numbers::pi * turn);
+    sine_[j] = math::sin(2 * std::numbers::pi * turn);
   }
 }
 
 double FrequencyLoss::weight(Index k, Index l) const {
-  return std::exp(exponent_ * double(k * k + l * l));
+  return math::exp(exponent_ * double(k * k + l * l));
 }
 
 double FrequencyLoss::floor() const { return double(cells_ * cells_) * least_; }

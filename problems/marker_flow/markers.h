@@ -2,9 +2,8 @@
 /// the fastest, centres at (i + 1/2) dx.
 #pragma once
 
-#include <cmath>
-
 #include "suite/core/batch.h"
+#include "suite/core/math.h"
 
 namespace physinv {
 
@@ -49,7 +48,7 @@ struct Vortex {
   /// Component 0 or 1 of W in cell (i, j).
   double operator()(int component, Index i, Index j) const {
     const double x = from_middle(i), y = from_middle(j);
-    return std::exp(-0.5 * (x * x + y * y) / (width * width)) *
+    return math::exp(-0.5 * (x * x + y * y) / (width * width)) *
            (component == 0 ? -y : x);
   }
   double from_middle(Index i) const { return grid.at(i) - 0.5 * grid.box; }

@@ -3,10 +3,10 @@
 ///   w = exp(-((x - x0)^2 + (y - y0)^2) / (2 width^2)),  u += w vx, v += w vy
 #pragma once
 
-#include <cmath>
 #include <vector>
 
 #include "problems/fluid/staggered.h"
+#include "suite/core/math.h"
 
 namespace physinv {
 
@@ -24,7 +24,7 @@ class BlastShape {
         narrow_(1 / (width * width)) {
     for (Index k = 0; k < 2 * cells; ++k) {
       const double d = 0.5 * double(k + 1) * cell_ - height;
-      along_y_.push_back(static_cast<T>(std::exp(-0.5 * d * d * narrow_)));
+      along_y_.push_back(static_cast<T>(math::exp(-0.5 * d * d * narrow_)));
     }
   }
 

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <numbers>
 
 #include "suite/core/check.h"
 #include "suite/core/lanes_math.h"
+#include "suite/core/math.h"
 
 namespace physinv {
 namespace {
@@ -28,10 +28,9 @@ struct Block {
   }
 };
 
-/// Loss and its derivative. Compiled once, because the compiler fuses
-/// products and sums differently in each inlined copy.
+/// Loss and its derivative.
 template <class T>
-[[gnu::noinline, gnu::noclone]] void evaluate(
+void evaluate(
     Index terms, Block<T> given, Block<T> at, Pack<T>& y, Pack<T>& slope) {
   constexpr T kTurn = T(0.5) * std::numbers::inv_pi_v<T>;
   const Pack<T> x = at.row(0), away = x - given.row(kSolution);
@@ -69,7 +68,7 @@ void for_columns(Index terms, BatchIn<T> x, BatchIn<T> given, F&& body) {
 
 double solution_at(Solution solution, double gamma) {
   if (solution == Solution::zero) return 0;
-  return solution == Solution::linear ? 10 * gamma : std::sin(2 * gamma);
+  return solution == Solution::linear ? 10 * gamma : math::sin(2 * gamma);
 }
 
 }  // namespace
@@ -116,7 +115,7 @@ Samples<double> NoisyAbsolute<T>::draw(Index first,
     given(kSolution) = solution_at(options_.solution, given(kGamma));
     const double level =
         options_.level *
-        std::pow(10, options_.decades * stream.uniform(-1.0, 1.0));
+        math::pow(10, options_.decades * stream.uniform(-1.0, 1.0));
     given(kLambda) = options_.snr * level;
     out.x(0, i) = given(kSolution) + spread * stream.uniform(-1.0, 1.0);
     auto a = given.segment(kNoise, m), w = given.segment(kNoise + m, m);

@@ -45,7 +45,15 @@ struct Four {
 
 template <class S, class V>
 PHYSINV_LANES Four<V> add(const Four<V>& a, S s, const Four<V>& b) {
-  return {a.x1 + s * b.x1, a.x2 + s * b.x2, a.p1 + s * b.p1, a.p2 + s * b.p2};
+  return {fma_lanes(s, b.x1, a.x1),
+          fma_lanes(s, b.x2, a.x2),
+          fma_lanes(s, b.p1, a.p1),
+          fma_lanes(s, b.p2, a.p2)};
+}
+
+template <class V>
+PHYSINV_LANES Four<V> operator+(const Four<V>& a, const Four<V>& b) {
+  return {a.x1 + b.x1, a.x2 + b.x2, a.p1 + b.p1, a.p2 + b.p2};
 }
 
 template <class S, class V>
@@ -61,8 +69,7 @@ PHYSINV_LANES Four<V> rate(const Constants<T>& k,
                            V& w) {
   const V d = s.x2 - s.x1;
   w = k.g * (d * d);
-  const V pull = w * d;
-  return {s.p1, s.p2, pull - s.x1, (force - s.x2) - pull};
+  return {s.p1, s.p2, fma_lanes(w, d, -s.x1), fma_lanes(-w, d, force - s.x2)};
 }
 
 template <class T, class V>
@@ -79,15 +86,13 @@ PHYSINV_LANES Four<V> runge_kutta(const Constants<T>& k,
   return add(add(end, k.third, k2), k.third, k3);
 }
 
-/// All steps of one group; `kept` (or null) takes w of every stage. Compiled
-/// once, because the compiler fuses products and sums differently in each
-/// inlined copy: forward and linearize must agree to the last bit.
+/// All steps of one group; `kept` (or null) takes w of every stage.
 template <class T>
-[[gnu::noinline, gnu::noclone]] void integrate(const Constants<T>& constants,
-                                               BatchIn<T> x,
-                                               Index first,
-                                               Four<Group<T>>& state,
-                                               Group<T>* kept) {
+void integrate(const Constants<T>& constants,
+               BatchIn<T> x,
+               Index first,
+               Four<Group<T>>& state,
+               Group<T>* kept) {
   const Constants<T> k = constants;  // stores through `kept` cannot touch it
   Four<Group<T>> s = state;
   for (Index n = 0; n < k.steps; n += kChunk) {
@@ -106,8 +111,11 @@ template <class T>
 /// Cotangent of one stage's state, from that of its rate.
 template <class T, class E, class V>
 PHYSINV_LANES Four<V> rate_transposed(const E& w, const Four<V>& k_bar) {
-  const V m = w * (k_bar.p1 - k_bar.p2);
-  return {-k_bar.p1 - m, m - k_bar.p2, k_bar.x1, k_bar.x2};
+  const V away = k_bar.p1 - k_bar.p2;
+  return {fma_lanes(-w, away, -k_bar.p1),
+          fma_lanes(w, away, -k_bar.p2),
+          k_bar.x1,
+          k_bar.x2};
 }
 
 template <class T>
@@ -135,7 +143,7 @@ PHYSINV_LANES V step_transposed(const Constants<T>& k,
   const Four<V> s2 = rate_transposed<T>(w(1), k2);
   const Four<V> k1 = add(sixth, k.half, s2);
   const Four<V> s1 = rate_transposed<T>(w(0), k1);
-  bar = add(add(add(add(bar, T(1), s4), T(1), s3), T(1), s2), T(1), s1);
+  bar = (((bar + s4) + s3) + s2) + s1;
   return k.c * ((k1.p2 + k4.p2) + (k2.p2 + k3.p2));
 }
 

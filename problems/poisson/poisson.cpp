@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <complex>
 #include <limits>
 #include <numbers>
 
 #include "suite/core/check.h"
+#include "suite/core/math.h"
 #include "suite/core/threads.h"
 
 namespace physinv {
@@ -15,8 +15,6 @@ namespace {
 
 enum Slot : std::size_t { kFinite };
 
-using Complex = std::complex<double>;
-using ComplexBatch = Eigen::MatrixXcd;
 
 Batch<double> sines(Index n) {
   const auto steps = static_cast<double>(n + 1);
@@ -24,13 +22,13 @@ Batch<double> sines(Index n) {
          Batch<double>::NullaryExpr(n, n, [=](Index i, Index k) {
            const auto turn =
                static_cast<double>((i + 1) * (k + 1) % (2 * n + 2));
-           return std::sin(std::numbers::pi * turn / steps);
+           return math::sin(std::numbers::pi * turn / steps);
          });
 }
 
 double eigenvalue(Index k, Index n) {
-  return 2 * std::cos(std::numbers::pi * static_cast<double>(k + 1) /
-                      static_cast<double>(n + 1)) -
+  return 2 * math::cos(std::numbers::pi * static_cast<double>(k + 1) /
+                       static_cast<double>(n + 1)) -
          2;
 }
 
@@ -39,14 +37,19 @@ double frequency(Index k, Index n) {
   return static_cast<double>(2 * k < n ? k : k - n) / static_cast<double>(n);
 }
 
-/// exp(2 pi i j k / n)
-ComplexBatch waves(Index n) {
-  return ComplexBatch::NullaryExpr(n, n, [n](Index j, Index k) {
-    return std::polar(1.0,
-                      2 * std::numbers::pi * static_cast<double>(j * k % n) /
-                          static_cast<double>(n));
-  });
-}
+/// exp(2 pi i j k / n), real and imaginary parts.
+struct Waves {
+  explicit Waves(Index n) : cosine(n, n), sine(n, n) {
+    for (Index k = 0; k < n; ++k)
+      for (Index j = 0; j < n; ++j) {
+        const auto [s, c] =
+            math::sincos(2 * std::numbers::pi * static_cast<double>(j * k % n) /
+                         static_cast<double>(n));
+        cosine(j, k) = c, sine(j, k) = s;
+      }
+  }
+  Batch<double> cosine, sine;
+};
 
 /// Conjugate gradients on L y = x from 0, fields as they lie in memory.
 void iterate(const PoissonOptions& o,
@@ -82,17 +85,20 @@ Options describe(const PoissonOptions& o) {
 
 Batch<double> poisson_source(const Batch<double>& re, const Batch<double>& im) {
   const Index p = re.rows(), q = re.cols();
-  ComplexBatch c(p, q);
+  Batch<double> a(p, q), b(p, q);  // amplitudes a + i b
   for (Index l = 0; l < q; ++l) {
     for (Index k = 0; k < p; ++k) {
-      const double a = 10 * frequency(k, p), b = 10 * frequency(l, q);
-      const double square = a * a + b * b;
-      c(k, l) =
-          square <= 0.1 ? Complex(0, 0) : Complex(re(k, l), im(k, l)) / square;
+      const double u = 10 * frequency(k, p), v = 10 * frequency(l, q);
+      const double square = u * u + v * v;
+      const bool mean = square <= 0.1;
+      a(k, l) = mean ? 0 : re(k, l) / square;
+      b(k, l) = mean ? 0 : im(k, l) / square;
     }
   }
-  const ComplexBatch half = waves(p) * c;
-  Batch<double> x = (half * waves(q)).real();
+  const Waves left(p), right(q);
+  const Batch<double> half = left.cosine * a - left.sine * b;
+  const Batch<double> turned = left.cosine * b + left.sine * a;
+  Batch<double> x = half * right.cosine - turned * right.sine;
   const double mean = x.mean();
   x /= std::sqrt((x.array() - mean).square().mean());
   x.array() -= x.mean();

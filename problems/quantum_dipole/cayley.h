@@ -40,25 +40,25 @@ template <class E, class V>
 PHYSINV_LANES Complex<V> multiply_add(const Complex<E>& a,
                                       const Complex<V>& b,
                                       const Complex<V>& c) {
-  return {(a.re * b.re + c.re) - a.im * b.im,
-          (a.re * b.im + c.im) + a.im * b.re};
+  return {fma_lanes(-a.im, b.im, fma_lanes(a.re, b.re, c.re)),
+          fma_lanes(a.im, b.re, fma_lanes(a.re, b.im, c.im))};
 }
 
 template <class E, class V>
 PHYSINV_LANES Complex<V> multiply(const Complex<E>& a, const Complex<V>& b) {
-  return {a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
+  return {fma_lanes(a.re, b.re, -(a.im * b.im)),
+          fma_lanes(a.re, b.im, a.im * b.re)};
 }
 
 /// e_j = i r p_j of `count` lanes of (step, sample): e[k * kPoints + j] for
-/// control u[k]. 1 / e_j = 2 + slope_j u - i / r - e_{j -+ 1}. Compiled once,
-/// as is everything here that forward and linearize share.
+/// control u[k]. 1 / e_j = 2 + slope_j u - i / r - e_{j -+ 1}.
 template <class T>
-[[gnu::noinline, gnu::noclone]] void factor(const Constants<T>& k,
-                                            const Pack<T>* u,
-                                            int count,
-                                            Complex<Pack<T>>* e) {
+void factor(const Constants<T>& k,
+            const Pack<T>* u,
+            int count,
+            Complex<Pack<T>>* e) {
   using P = Pack<T>;
-  const P zero = P{} + T(0);
+  const P zero{}, two = P{} + T(2);
   const T inverse_r = k.inverse_r;
   // One division for the two chains: 1 / a = b / (a b).
   for (int j = 0; j + 1 < kMiddle; ++j) {
@@ -68,11 +68,11 @@ template <class T>
       Complex<P>* at = e + n * kPoints;
       const Complex<P> before = j > 0 ? at[j - 1] : Complex<P>{zero, zero};
       const Complex<P> after = j > 0 ? at[l + 1] : Complex<P>{zero, zero};
-      const P ar = (left * u[n] + T(2)) - before.re;
+      const P ar = fma_lanes(left, u[n], two) - before.re;
       const P ai = inverse_r + before.im;
-      const P br = (right * u[n] + T(2)) - after.re;
+      const P br = fma_lanes(right, u[n], two) - after.re;
       const P bi = inverse_r + after.im;
-      const P a2 = ar * ar + ai * ai, b2 = br * br + bi * bi;
+      const P a2 = fma_lanes(ar, ar, ai * ai), b2 = fma_lanes(br, br, bi * bi);
       const P shared = T(1) / (a2 * b2);
       const P a = b2 * shared, b = a2 * shared;
       at[j] = {ar * a, ai * a};
@@ -83,10 +83,10 @@ template <class T>
     const T slope = k.slope[j];
     for (int n = 0; n < count; ++n) {
       Complex<P>* at = e + n * kPoints;
-      P re = (slope * u[n] + T(2)) - at[j - 1].re;
+      P re = fma_lanes(slope, u[n], two) - at[j - 1].re;
       P im = inverse_r + at[j - 1].im;
       if (j == kMiddle) re = re - at[j + 1].re, im = im + at[j + 1].im;
-      const P scale = T(1) / (re * re + im * im);
+      const P scale = T(1) / fma_lanes(re, re, im * im);
       at[j] = {re * scale, im * scale};
     }
   }
@@ -100,6 +100,11 @@ PHYSINV_LANES void advance(const Constants<T>& k,
                            Complex<V>* c,
                            Sink&& sink) {
   const T s = k.twice_inverse_r;
+  // y - i s c
+  const auto right_side = [s](const Complex<V>& y, const Complex<V>& c)
+      __attribute__((always_inline)) {
+    return Complex<V>{fma_lanes(s, c.im, y.re), fma_lanes(-s, c.re, y.im)};
+  };
   Complex<V> y[kPoints];
   y[0] = multiply(e(0), Complex<V>{s * c[0].im, -(s * c[0].re)});
   y[kPoints - 1] =
@@ -108,16 +113,14 @@ PHYSINV_LANES void advance(const Constants<T>& k,
 #pragma GCC unroll 8
   for (int j = 1; j < kMiddle; ++j) {
     const int l = kPoints - 1 - j;
-    y[j] = multiply(
-        e(j), Complex<V>{y[j - 1].re + s * c[j].im, y[j - 1].im - s * c[j].re});
+    y[j] = multiply(e(j), right_side(y[j - 1], c[j]));
     if (l == kMiddle) continue;
-    y[l] = multiply(
-        e(l), Complex<V>{y[l + 1].re + s * c[l].im, y[l + 1].im - s * c[l].re});
+    y[l] = multiply(e(l), right_side(y[l + 1], c[l]));
   }
   constexpr int m = kMiddle;
-  y[m] = multiply(e(m),
-                  Complex<V>{(y[m - 1].re + y[m + 1].re) + s * c[m].im,
-                             (y[m - 1].im + y[m + 1].im) - s * c[m].re});
+  y[m] = multiply(
+      e(m),
+      right_side({y[m - 1].re + y[m + 1].re, y[m - 1].im + y[m + 1].im}, c[m]));
   const auto leave = [&](int j) __attribute__((always_inline)) {
     sink(j, y[j]);
     c[j] = {y[j].re - c[j].re, y[j].im - c[j].im};

@@ -9,6 +9,7 @@
 
 #include "problems/quantum_dipole/cayley.h"
 #include "suite/core/check.h"
+#include "suite/core/math.h"
 #include "suite/core/threads.h"
 
 namespace physinv {
@@ -33,13 +34,12 @@ constexpr Index block_count(Index samples, Index width) {
   return (samples + width - 1) / width;
 }
 
-/// All steps of one group, from the ground state. Compiled once: forward and
-/// linearize must agree to the last bit.
+/// All steps of one group, from the ground state.
 template <class T>
-[[gnu::noinline, gnu::noclone]] void propagate(const Constants<T>& k,
-                                               BatchIn<T> x,
-                                               Index first,
-                                               BatchOut<T>& psi_end) {
+void propagate(const Constants<T>& k,
+               BatchIn<T> x,
+               Index first,
+               BatchOut<T>& psi_end) {
   static const Vector<double> ground = quantum_eigenstate(1);
   Complex<Group<T>> psi[kPoints];
   const Group<T> zero = Group<T>::make([](int) { return Pack<T>{}; });
@@ -117,7 +117,9 @@ template <class T>
     P even{}, odd{};
     advance(k, e, c, [&](int j, const Complex<Two>& y) {
       P& sum = j % 2 == 0 ? even : odd;
-      sum += k.pull[j] * (y.im.r[1] * y.re.r[0] - y.re.r[1] * y.im.r[0]);
+      sum = fma_lanes(k.pull[j],
+                      fma_lanes(y.im.r[1], y.re.r[0], -(y.re.r[1] * y.im.r[0])),
+                      sum);
     });
     gathered[n % kChunk] = even + odd;
     if (n % kChunk != 0) return;
@@ -175,8 +177,8 @@ std::complex<double> inner(const A& a, const B& b) {
   for (Index j = 0; j < kPoints; ++j) {
     const double ar = a(2 * j), ai = a(2 * j + 1);
     const double br = b(2 * j), bi = b(2 * j + 1);
-    re += ar * br + ai * bi;
-    im += ar * bi - ai * br;
+    re = std::fma(ar, br, std::fma(ai, bi, re));
+    im = std::fma(ar, bi, std::fma(-ai, br, im));
   }
   return {re, im};
 }
@@ -198,14 +200,14 @@ Vector<double> quantum_eigenstate(int k) {
   SUITE_CHECK(k >= 1 && k <= kPoints, "there are 14 eigenstates");
   Vector<double> psi(kPoints);
   for (int j = 1; j <= kPoints; ++j)
-    psi(j - 1) = std::sin(std::numbers::pi * k * j / (kPoints + 1));
+    psi(j - 1) = math::sin(std::numbers::pi * k * j / (kPoints + 1));
   return psi / std::sqrt(0.5 * (kPoints + 1));
 }
 
 double quantum_energy(int k) {
   SUITE_CHECK(k >= 1 && k <= kPoints, "there are 14 eigenstates");
   const double dx = 2.0 / (kPoints + 1);
-  const double s = std::sin(std::numbers::pi * k / (2 * (kPoints + 1)));
+  const double s = math::sin(std::numbers::pi * k / (2 * (kPoints + 1)));
   return 4 / (dx * dx) * s * s;
 }
 
@@ -245,7 +247,7 @@ Samples<double> QuantumDipole<T>::sample(Index first,
     double f1 = stream.normal(), f2 = stream.normal();
     if (const auto k = static_cast<std::size_t>(first + i);
         k < options_.angles.size())
-      f1 = std::cos(options_.angles[k]), f2 = std::sin(options_.angles[k]);
+      f1 = math::cos(options_.angles[k]), f2 = math::sin(options_.angles[k]);
     out.y.col(i) = (f1 * psi2 + f2 * psi3) / std::hypot(f1, f2);
   }
   return out;
@@ -354,10 +356,11 @@ void QuantumDipole<T>::loss_gradient(BatchIn<T> y,
   for (Index i = 0; i < y.cols(); ++i) {
     const auto t = target.col(i);
     const std::complex<double> ip = inner(t, y.col(i));
+    const double a = -2 * ip.real(), b = -2 * ip.imag();
     for (Index j = 0; j < kPoints; ++j) {
-      const auto g = -2.0 * (ip * std::complex<double>(t(2 * j), t(2 * j + 1)));
-      y_bar(2 * j, i) = T(g.real());
-      y_bar(2 * j + 1, i) = T(g.imag());
+      const double re = t(2 * j), im = t(2 * j + 1);
+      y_bar(2 * j, i) = T(std::fma(a, re, -(b * im)));
+      y_bar(2 * j + 1, i) = T(std::fma(a, im, b * re));
     }
   }
 }

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "suite/core/check.h"
+#include "suite/core/math.h"
 
 namespace physinv {
 namespace {
@@ -13,21 +15,28 @@ namespace {
 constexpr Index kTurns = 6;  // d_1, d_2, d_3 of one sample
 enum Slot : std::size_t { kDerivatives };
 
-/// Tip of one arm, and d[2 k], d[2 k + 1] = d_k. Compiled once, because the
-/// compiler fuses products and sums differently in each inlined copy: forward
-/// and linearize must agree to the last bit.
 template <class T>
-[[gnu::noinline, gnu::noclone]] void reach(const T (&links)[3],
-                                           const T* x,
-                                           T* y,
-                                           T* d) {
-  const T phi[3] = {x[1], x[2] - x[1], x[3] - x[2] - x[1]};
-  y[0] = 0, y[1] = x[0];
+constexpr int kArms = math::kTogether<T>;  ///< that bend together
+
+/// Tips of some arms, and d[2 k], d[2 k + 1] = d_k.
+template <class T>
+void reach(const T (&links)[3],
+           const T (&x)[4][kArms<T>],
+           T (&y)[2][kArms<T>],
+           T (&d)[kTurns][kArms<T>]) {
+  for (int i = 0; i < kArms<T>; ++i) y[0][i] = 0, y[1][i] = x[0][i];
   for (int k = 0; k < 3; ++k) {
-    const T across = links[k] * std::cos(phi[k]);
-    const T up = links[k] * std::sin(phi[k]);
-    y[0] += across, y[1] += up;
-    d[2 * k] = -up, d[2 * k + 1] = across;
+    T phi[kArms<T>], sine[kArms<T>], cosine[kArms<T>];
+    for (int i = 0; i < kArms<T>; ++i)
+      phi[i] = k == 0   ? x[1][i]
+               : k == 1 ? x[2][i] - x[1][i]
+                        : x[3][i] - x[2][i] - x[1][i];
+    math::sincos(phi, sine, cosine);
+    for (int i = 0; i < kArms<T>; ++i) {
+      const T across = links[k] * cosine[i], up = links[k] * sine[i];
+      y[0][i] += across, y[1][i] += up;
+      d[2 * k][i] = -up, d[2 * k + 1][i] = across;
+    }
   }
 }
 
@@ -36,10 +45,20 @@ template <class T, class F>
 void for_arms(const RoboticArmOptions& options, BatchIn<T> x, F&& body) {
   const T links[3] = {
       T(options.links[0]), T(options.links[1]), T(options.links[2])};
-  for (Index i = 0; i < x.cols(); ++i) {
-    T y[2], d[kTurns];
-    reach(links, x.col(i).data(), y, d);
-    body(i, y, d);
+  constexpr Index kWidth = kArms<T>;
+  for (Index first = 0; first < x.cols(); first += kWidth) {
+    T in[4][kWidth], y[2][kWidth], d[kTurns][kWidth];
+    const Index count = std::min(kWidth, x.cols() - first);
+    for (Index i = 0; i < kWidth; ++i)
+      for (Index j = 0; j < 4; ++j)
+        in[j][i] = x(j, first + std::min(i, count - 1));
+    reach<T>(links, in, y, d);
+    for (Index i = 0; i < count; ++i) {
+      const T tip[2] = {y[0][i], y[1][i]};
+      T turns[kTurns];
+      for (Index k = 0; k < kTurns; ++k) turns[k] = d[k][i];
+      body(first + i, tip, turns);
+    }
   }
 }
 
@@ -57,12 +76,13 @@ Options describe(const RoboticArmOptions& o) {
 std::array<std::array<double, 2>, 4> arm_joints(const std::array<double, 4>& x,
                                                 const RoboticArmOptions& o) {
   const double links[3] = {o.links[0], o.links[1], o.links[2]};
-  double y[2], d[kTurns];
-  reach(links, x.data(), y, d);
+  double in[4][kArms<double>], y[2][kArms<double>], d[kTurns][kArms<double>];
+  for (std::size_t j = 0; j < 4; ++j) std::fill_n(in[j], kArms<double>, x[j]);
+  reach<double>(links, in, y, d);
   std::array<std::array<double, 2>, 4> at{};
   at[0] = {0, x[0]};
   for (std::size_t k = 0; k < 3; ++k)
-    at[k + 1] = {at[k][0] + d[2 * k + 1], at[k][1] - d[2 * k]};
+    at[k + 1] = {at[k][0] + d[2 * k + 1][0], at[k][1] - d[2 * k][0]};
   return at;
 }
 
@@ -134,7 +154,7 @@ void RoboticArm<T>::pullback(const Tape& tape,
     const T r0 = y_bar(0, i), r1 = y_bar(1, i);
     T t[3];
     for (Index k = 0; k < 3; ++k)
-      t[k] = kept(2 * k, i) * r0 + kept(2 * k + 1, i) * r1;
+      t[k] = std::fma(kept(2 * k, i), r0, kept(2 * k + 1, i) * r1);
     x_bar(0, i) = r1;
     x_bar(1, i) = t[0] - t[1] - t[2];
     x_bar(2, i) = t[1] - t[2];

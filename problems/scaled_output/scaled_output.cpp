@@ -2,9 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "suite/core/check.h"
+#include "suite/core/math.h"
 
 namespace physinv {
 namespace {
@@ -56,7 +55,7 @@ Samples<double> ScaledOutput<T>::sample(Index first,
     Stream stream = rng.child(static_cast<std::uint64_t>(first + i)).stream();
     const double t = stream.uniform(-1, 1);
     out.given(0, i) = t;
-    out.y.col(i) << std::sin(6 * t), std::cos(9 * t);
+    out.y.col(i) << math::sin(6 * t), math::cos(9 * t);
     out.x.col(i) << out.y(0, i), out.y(1, i) / options_.gamma;
   }
   return out;

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "suite/core/check.h"
+#include "suite/core/math.h"
 
 namespace physinv {
 namespace {
@@ -18,8 +19,8 @@ struct Frame {
   explicit Frame(const SinePlaneOptions& o)
       : a(o.gamma / o.xi),
         b(o.gamma * o.xi),
-        c(std::cos(o.degrees * std::numbers::pi / 180)),
-        s(std::sin(o.degrees * std::numbers::pi / 180)) {}
+        c(math::cos(o.degrees * std::numbers::pi / 180)),
+        s(math::sin(o.degrees * std::numbers::pi / 180)) {}
 
   /// R v and R^T v.
   Pair turned(double x, double y) const {
@@ -41,7 +42,7 @@ struct Frame {
 struct Model {
   Model(const Frame& f, const Pair& x, const Pair& target) {
     const Pair u = f.scaled(x[0], x[1]);
-    const double sine = std::sin(u[0]), cosine = std::cos(u[0]);
+    const auto [sine, cosine] = math::sincos(u[0]);
     const double r = sine - target[0];
     q = {f.a * r * cosine, f.b * (u[1] - target[1])};
     curvature = {f.a * f.a * std::fma(cosine, cosine, -r * sine), f.b * f.b};
@@ -100,7 +101,7 @@ Pair nearest_solution(const SinePlaneOptions& options,
   constexpr double kTurn = 2 * std::numbers::pi;
   const Frame f(options);
   const Pair u = f.scaled(x[0], x[1]);
-  const double s = std::asin(std::clamp(y[0], -1.0, 1.0));
+  const double s = math::asin(std::clamp(y[0], -1.0, 1.0));
   const auto next = [&](double root) {
     return root + kTurn * std::round((u[0] - root) / kTurn);
   };
@@ -151,7 +152,7 @@ void SinePlane<T>::forward(BatchIn<T> x,
   const Frame f(options_);
   for (Index i = 0; i < x.cols(); ++i) {
     const Pair at = column<T>(x, i), u = f.scaled(at[0], at[1]);
-    put<T>(y, i, {std::sin(u[0]), u[1]});
+    put<T>(y, i, {math::sin(u[0]), u[1]});
   }
 }
 
@@ -166,8 +167,9 @@ void SinePlane<T>::linearize(BatchIn<T> x,
   auto cosine = tape.slot<double>(kCosine, 1, x.cols());
   for (Index i = 0; i < x.cols(); ++i) {
     const Pair at = column<T>(x, i), u = f.scaled(at[0], at[1]);
-    put<T>(y, i, {std::sin(u[0]), u[1]});
-    cosine(0, i) = std::cos(u[0]);
+    const auto [sine, slope] = math::sincos(u[0]);
+    put<T>(y, i, {sine, u[1]});
+    cosine(0, i) = slope;
   }
 }
 
@@ -195,7 +197,7 @@ void SinePlane<T>::jacobian(BatchIn<T> x,
   const Frame f(options_);
   for (Index i = 0; i < x.cols(); ++i) {
     const Pair at = column<T>(x, i), u = f.scaled(at[0], at[1]);
-    const double slope = f.a * std::cos(u[0]);
+    const double slope = f.a * math::cos(u[0]);
     const Pair first = f.back(slope, 0), second = f.back(0, f.b);
     for (Index k = 0; k < 2; ++k) {
       j(2 * k, i) = static_cast<T>(first[static_cast<std::size_t>(k)]);

@@ -9,6 +9,7 @@
 
 #include "suite/core/check.h"
 #include "suite/core/lanes.h"
+#include "suite/core/math.h"
 
 namespace physinv {
 namespace {
@@ -68,9 +69,9 @@ PHYSINV_LANES void powers(double first, double ratio, Pack<T> (&out)[kPacks]) {
   std::memcpy(out, rounded, sizeof(out));
 }
 
-/// Sum of a(i) b(i). One copy for all callers.
+/// Sum of a(i) b(i).
 template <class T>
-[[gnu::noinline, gnu::noclone]] T dot(const T* a, const T* b, Index count) {
+T dot(const T* a, const T* b, Index count) {
   Pack<T> sums[kPacks] = {};
   for (Index i = 0; i < count; i += kBlock<T>)
     for (int k = 0; k < kPacks; ++k)
@@ -81,9 +82,7 @@ template <class T>
 }
 
 template <class T>
-[[gnu::noinline, gnu::noclone]] double half_square(const T* y,
-                                                   const T* target,
-                                                   Index count) {
+double half_square(const T* y, const T* target, Index count) {
   constexpr int W = kLanes<double>;
   Pack<double> sums[kPacks] = {};
   for (Index i = 0; i < count; i += kPacks * W)
@@ -126,10 +125,10 @@ WavePacket<T>::WavePacket(const Options& o) : options_(o) {
   tables_.cosine.assign(size, T(0)), tables_.sine.assign(size, T(0));
   for (Index m = -tables_.reach; m <= tables_.reach; ++m) {
     const auto d = static_cast<double>(m);
-    const double envelope = o.amplitude * std::exp(-d * d / (2 * s * s));
+    const double envelope = o.amplitude * math::exp(-d * d / (2 * s * s));
     const auto at = static_cast<std::size_t>(m - first);
-    tables_.cosine[at] = static_cast<T>(envelope * std::cos(o.frequency * d));
-    tables_.sine[at] = static_cast<T>(envelope * std::sin(o.frequency * d));
+    tables_.cosine[at] = static_cast<T>(envelope * math::cos(o.frequency * d));
+    tables_.sine[at] = static_cast<T>(envelope * math::sin(o.frequency * d));
   }
 }
 
@@ -149,12 +148,12 @@ template <bool kSlope>
   const double c = std::floor(t0 + 0.5), f = t0 - c, rate = f * narrow;
   const double m0 = static_cast<double>(span.first + 1) - c;
   const double turn = std::fma(w, f, -options_.phase);
-  const double cosine = std::cos(turn), sine = std::sin(turn);
+  const auto [sine, cosine] = math::sincos(turn);
 
   P growth[kPacks];
-  powers<T>(std::exp((m0 - 0.5 * f) * rate), std::exp(rate), growth);
+  powers<T>(math::exp((m0 - 0.5 * f) * rate), math::exp(rate), growth);
   const P per_block =
-      P{} + static_cast<T>(std::exp(static_cast<double>(kBlock<T>) * rate));
+      P{} + static_cast<T>(math::exp(static_cast<double>(kBlock<T>) * rate));
   const P a = P{} + static_cast<T>(cosine), b = P{} + static_cast<T>(sine);
   const P wa = P{} + static_cast<T>(w * cosine);
   const P wb = P{} - static_cast<T>(w * sine);

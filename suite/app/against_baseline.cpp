@@ -50,12 +50,13 @@ void AgainstBaseline::judge_stages(Sheet& sheet) {
       flags_.results.empty()
           ? measure(cases_, flags_.measuring(), Screen::of(stdout))
           : matching(lines_of(load(flags_.results).results.cases()), filter_);
-  const Rules rules{.bits = same_build(), .allow_work = flags_.allow_work};
+  const Rules rules{.bits = same_bits(), .allow_work = flags_.allow_work};
   if (!rules.bits)
     sheet.notes.push_back(fmt::format(
-        "{} is from another build ({}): judged within its stable digits",
+        "{} is of other libraries or flags ({}): judged within its stable "
+        "digits",
         flags_.baseline,
-        before_.build));
+        before_.bits));
   for (const auto& j : judge(lines_, now_, rules))
     sheet.findings.push_back(finding_of(j));
 }

@@ -25,7 +25,10 @@ class AgainstBaseline {
   const std::vector<Case>& cases() const { return cases_; }
 
  private:
-  bool same_build() const { return before_.build == build_text(); }
+  bool same_bits() const { return before_.bits == bits_text(); }
+  bool same_build() const {
+    return same_bits() && before_.build == build_text();
+  }
   void require_something() const;
   std::vector<CountLine> countable() const;
   CountTable renewed_counts() const;

@@ -4,14 +4,18 @@
 #include <Eigen/LU>
 #include <Eigen/SVD>
 
+#include "suite/core/eigen_caches.h"
+
 namespace physinv {
 
 SymmetricEigen symmetric_eigen(const Batch<double>& a) {
+  state_caches();
   const Eigen::SelfAdjointEigenSolver<Batch<double>> parts(a);
   return {parts.eigenvalues(), parts.eigenvectors()};
 }
 
 SingularValues singular_values(const Batch<double>& a) {
+  state_caches();
   const Eigen::BDCSVD<Batch<double>> svd(
       a, Eigen::ComputeThinU | Eigen::ComputeThinV);
   return {svd.matrixU(),
@@ -35,6 +39,7 @@ FullyPivoted<T>::~FullyPivoted() = default;
 
 template <class T>
 void FullyPivoted<T>::solve(BatchIn<T> a, VectorIn<T> b, VectorOut<T> x) {
+  state_caches();
   x = lu_->of.compute(a).solve(b);
 }
 

@@ -90,8 +90,8 @@ PHYSINV_LANES P sqrt_lanes(P x) {
   return root;
 }
 
-/// a b + c, rounded once. The compiler fuses products and sums as it sees fit
-/// in each copy of a function; written out, two copies have the same bits.
+/// a b + c, rounded once. Products and sums fuse here and where std::fma is
+/// written, nowhere else (-ffp-contract=off).
 template <class P>
 PHYSINV_LANES P fma_lanes(P a, P b, P c) {
 #ifdef PHYSINV_AVX512
@@ -110,6 +110,12 @@ PHYSINV_LANES P fma_lanes(P a, P b, P c) {
   for (std::size_t k = 0; k < sizeof(P) / sizeof(a[0]); ++k)
     out[k] = std::fma(a[k], b[k], c[k]);
   return out;
+}
+
+/// The same with one factor for all lanes.
+template <class P>
+PHYSINV_LANES P fma_lanes(std::remove_cvref_t<decltype(P{}[0])> a, P b, P c) {
+  return fma_lanes(a - P{}, b, c);
 }
 
 /// Is any lane set?

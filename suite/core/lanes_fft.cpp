@@ -1,10 +1,10 @@
 #include "suite/core/lanes_fft.h"
 
-#include <cmath>
 #include <numbers>
 #include <utility>
 
 #include "suite/core/check.h"
+#include "suite/core/math.h"
 
 namespace physinv {
 
@@ -14,8 +14,8 @@ LanesFft<T>::LanesFft(Index size) : half_(size / 2), mode_(half_) {
               "the size must be a power of two, at least 4");
   const auto turn = [](T* w, double part, double scale, int sign) {
     const double angle = 2 * std::numbers::pi * part;
-    w[0] = static_cast<T>(scale * std::cos(angle));
-    w[1] = static_cast<T>(-sign * scale * std::sin(angle));
+    w[0] = static_cast<T>(scale * math::cos(angle));
+    w[1] = static_cast<T>(-sign * scale * math::sin(angle));
   };
   Index length = half_;
   for (; length >= 4; length /= 4) {

@@ -26,7 +26,8 @@ PHYSINV_LANES void polynomials(P (&x)[N], const LaneScalar<P> (&c)[C]) {
 #pragma GCC unroll 16
   for (std::size_t k = 1; k < C; ++k)
 #pragma GCC unroll 8
-    for (int i = 0; i < N; ++i) sum[i] = sum[i] * x[i] + c[C - 1 - k];
+    for (int i = 0; i < N; ++i)
+      sum[i] = fma_lanes(sum[i], x[i], c[C - 1 - k] - P{});
 #pragma GCC unroll 8
   for (int i = 0; i < N; ++i) x[i] = sum[i];
 }
@@ -118,9 +119,10 @@ PHYSINV_LANES void exp_lanes(P (&x)[N]) {
 #pragma GCC unroll 8
   for (int i = 0; i < N; ++i) {
     const P in = x[i] > kEnd ? kEnd - P{} : x[i] < -kEnd ? -kEnd - P{} : x[i];
-    const P shifted = in * std::numbers::log2e_v<T> + kRounder<T>;
+    const P shifted =
+        fma_lanes(std::numbers::log2e_v<T>, in, kRounder<T> - P{});
     const P n = shifted - kRounder<T>;
-    x[i] = (in - n * kHigh) - n * kLow;
+    x[i] = fma_lanes(-kLow, n, fma_lanes(-kHigh, n, in));
     scale[i] = (P)(((I)shifted << kMantissa) + (kBias << kMantissa));
   }
   if constexpr (kSingle) {

@@ -5,15 +5,14 @@
 #include <utility>
 
 #include "suite/core/disturbance.h"
+#include "suite/core/eigen_caches.h"
 
 namespace physinv {
 namespace {
 
-/// Eigen cuts its products into blocks by the caches of the processor that it
-/// finds itself on, and sums by block: before the first product, and before
-/// threads, the same caches for everybody.
+/// Before the first product, and before threads.
 [[maybe_unused]] const bool kBlocksFixed = [] {
-  Eigen::setCpuCacheSizes(32 << 10, 512 << 10, 4 << 20);
+  state_caches();
   return true;
 }();
 

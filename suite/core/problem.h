@@ -63,7 +63,7 @@ class Problem {
       double sum = 0;
       for (Index j = 0; j < y.rows(); ++j) {
         const double r = static_cast<double>(y(j, i) - target(j, i));
-        sum = std::fma(r, r, sum);  // whatever the compiler makes of the loop
+        sum = std::fma(r, r, sum);
       }
       loss(i) = 0.5 * sum;
     }

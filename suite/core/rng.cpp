@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "suite/core/hash.h"
+#include "suite/core/math.h"
 
 namespace physinv {
 
@@ -29,11 +30,12 @@ double Stream::normal() {
     has_spare_ = false;
     return spare_;
   }
-  const double r = std::sqrt(-2.0 * std::log1p(-uniform()));
+  const double r = std::sqrt(-2.0 * math::log1p(-uniform()));
   const double angle = 2.0 * std::numbers::pi * uniform();
-  spare_ = r * std::sin(angle);
+  const auto [sine, cosine] = math::sincos(angle);
+  spare_ = r * sine;
   has_spare_ = true;
-  return r * std::cos(angle);
+  return r * cosine;
 }
 
 Rng Rng::root(std::string_view experiment, std::uint64_t seed) {

@@ -45,6 +45,18 @@ struct Wide {
   PHYSINV_LANES friend Wide operator-(const Wide& a) {
     return make([&](int k) { return -a.r[k]; });
   }
+  /// a b + c, rounded once.
+  PHYSINV_LANES friend Wide fma_lanes(const Wide& a,
+                                      const Wide& b,
+                                      const Wide& c) {
+    return make([&](int k) { return fma_lanes(a.r[k], b.r[k], c.r[k]); });
+  }
+  PHYSINV_LANES friend Wide fma_lanes(P a, const Wide& b, const Wide& c) {
+    return make([&](int k) { return fma_lanes(a, b.r[k], c.r[k]); });
+  }
+  PHYSINV_LANES friend Wide fma_lanes(T a, const Wide& b, const Wide& c) {
+    return make([&](int k) { return fma_lanes(a, b.r[k], c.r[k]); });
+  }
 };
 
 namespace detail {

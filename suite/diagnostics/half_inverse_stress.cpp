@@ -8,6 +8,7 @@
 
 #include "optimizers/half_inverse_step.h"
 #include "optimizers/network_model.h"
+#include "suite/core/math.h"
 #include "suite/core/probe.h"
 #include "suite/diagnostics/diagnostic.h"
 
@@ -119,7 +120,7 @@ class Trial {
     if (norm == 0) return;
     const double g = g_.template cast<double>().norm();
     const auto over = [&](double s) {
-      return norm / (std::pow(s, setup_.power.kappa) * g);
+      return norm / (math::pow(s, setup_.power.kappa) * g);
     };
     found.of_kept = std::max(found.of_kept, over(report.smallest_kept));
     if (report.cut > 0) found.of_cut = std::max(found.of_cut, over(report.cut));

@@ -8,6 +8,7 @@
 
 #include "suite/core/check.h"
 #include "suite/core/lanes_math.h"
+#include "suite/core/math.h"
 #include "suite/core/workspace.h"
 
 namespace physinv {
@@ -107,7 +108,7 @@ class HingeStep final : public OneStep<T> {
     for (Index i = 0; i < n_; ++i) {
       P sum = x[i];
       for (Index k = 0; k < kUnits; ++k)
-        sum += v[k] * relu<T>(w[k] * gamma_[i] + b[k]);
+        sum = fma_lanes(v[k], relu<T>(fma_lanes(w[k], gamma_[i], b[k])), sum);
       x[i] = sum;
     }
   }
@@ -123,7 +124,7 @@ class HingeStep final : public OneStep<T> {
     for (Index i = 0; i < n_; ++i) {
       const P gi = g[i], moment = gi * gamma_[i];
       for (Index k = 0; k < kUnits; ++k) {
-        const auto active = w[k] * gamma_[i] + b[k] > P{};
+        const auto active = fma_lanes(w[k], gamma_[i], b[k]) > P{};
         zeroth[k] += select(active, gi, P{});
         first[k] += select(active, moment, P{});
       }
@@ -191,7 +192,8 @@ PHYSINV_LANES void product_tile(const Pack<T>* a,
     for (Index j = 0; j < kQ; ++j) right[j] = held(b[(q + j) * bq + k * bk]);
     for (Index i = 0; i < kP; ++i) {
       const Pack<T> left = held(a[(p + i) * ap + k * ak]);
-      for (Index j = 0; j < kQ; ++j) sum[i][j] += left * right[j];
+      for (Index j = 0; j < kQ; ++j)
+        sum[i][j] = fma_lanes(left, right[j], sum[i][j]);
     }
   }
   for (Index i = 0; i < kP; ++i)
@@ -236,10 +238,11 @@ class Nodes {
     for (Index m = 0; m < kCount; ++m) {
       const double angle =
           std::numbers::pi * (static_cast<double>(m) + 0.5) / kCount;
-      at_[m] = static_cast<T>(range * std::cos(angle));
+      at_[m] = static_cast<T>(range * math::cos(angle));
       for (Index k = 0; k < kCount; ++k)
-        basis_[k][m] = static_cast<T>((k == 0 ? 1.0 : 2.0) / kCount *
-                                      std::cos(static_cast<double>(k) * angle));
+        basis_[k][m] =
+            static_cast<T>((k == 0 ? 1.0 : 2.0) / kCount *
+                           math::cos(static_cast<double>(k) * angle));
     }
   }
 
@@ -250,16 +253,17 @@ class Nodes {
     P c[kCount];
     for (Index k = 0; k < kCount; ++k) {
       c[k] = P{};
-      for (Index m = 0; m < kCount; ++m) c[k] += basis_[k][m] * values[m];
+      for (Index m = 0; m < kCount; ++m)
+        c[k] = fma_lanes(basis_[k][m], values[m], c[k]);
     }
     for (Index i = 0; i < n; ++i) {
       const P z = inverse_ * gamma[i], twice = z + z;
       P b1{}, b2{};
       for (Index k = kCount - 1; k > 0; --k) {
-        const P b0 = twice * b1 + (c[k] - b2);
+        const P b0 = fma_lanes(twice, b1, c[k] - b2);
         b2 = b1, b1 = b0;
       }
-      out[i] = z * b1 + (c[0] - b2);
+      out[i] = fma_lanes(z, b1, c[0] - b2);
     }
   }
 
@@ -272,13 +276,14 @@ class Nodes {
       moment[0] += last;
       for (Index k = 1; k < kCount; ++k) {
         moment[k] += now;
-        const P next = twice * now - last;
+        const P next = fma_lanes(twice, now, -last);
         last = now, now = next;
       }
     }
     for (Index m = 0; m < kCount; ++m) {
       weights[m] = P{};
-      for (Index k = 0; k < kCount; ++k) weights[m] += basis_[k][m] * moment[k];
+      for (Index k = 0; k < kCount; ++k)
+        weights[m] = fma_lanes(basis_[k][m], moment[k], weights[m]);
     }
   }
 
@@ -403,7 +408,7 @@ class SmoothStep final : public OneStep<T> {
       const P* w = theta_.data() + weights(l);
       P* w_moved = moved_.data() + weights(l);
       product<T>(y_bar, n, 1, out, a, n, 1, in, n, [=](Index p, Index q, P s) {
-        w_moved[p * in + q] = w[p * in + q] - rate * s;
+        w_moved[p * in + q] = fma_lanes(-rate, s, w[p * in + q]);
       });
       for (Index p = 0; p < out; ++p) {
         P sum{};
@@ -414,7 +419,7 @@ class SmoothStep final : public OneStep<T> {
       P* x_bar = bar(l).take(in * n);
       product<T>(w, 1, in, in, y_bar, 1, n, n, out, [=](Index p, Index q, P s) {
         const P y = a[p * n + q];
-        x_bar[p * n + q] = s * (1 - y * y);
+        x_bar[p * n + q] = s * fma_lanes(-y, y, 1 - P{});
       });
     }
   }

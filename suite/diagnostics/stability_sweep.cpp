@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "suite/core/hash.h"
+#include "suite/core/math.h"
 #include "suite/core/oracle.h"
 #include "suite/core/probe.h"
 #include "suite/diagnostics/diagnostic.h"
@@ -28,7 +29,7 @@ constexpr double kUseless = 1e-2;
 /// Fixed, with no symmetry that could hide an error.
 Vector<double> unit(Index rows, double shift) {
   return Vector<double>::NullaryExpr(
-             rows, [=](Index i) { return std::cos(1.3 * double(i) + shift); })
+             rows, [=](Index i) { return math::cos(1.3 * double(i) + shift); })
       .normalized();
 }
 

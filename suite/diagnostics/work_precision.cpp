@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <mutex>
 #include <numbers>
 #include <vector>
 
 #include "suite/core/check.h"
+#include "suite/core/math.h"
 #include "suite/core/oracle.h"
 #include "suite/core/probe.h"
 #include "suite/diagnostics/diagnostic.h"
@@ -50,10 +50,10 @@ Batch<double> refined(const Batch<double>& field, Index times) {
     for (Index j = 0; j < n; ++j) {
       const double t = std::numbers::pi *
                        (double(r) / double(n * times) - double(j) / double(n));
-      weight(r, j) = r == j * times ? 1
-                     : r % times == 0
-                         ? 0
-                         : std::sin(double(n) * t) / (double(n) * std::tan(t));
+      weight(r, j) = r == j * times   ? 1
+                     : r % times == 0 ? 0
+                                      : math::sin(double(n) * t) /
+                                            (double(n) * math::tan(t));
     }
   }
   return weight.lazyProduct(field);

@@ -76,6 +76,7 @@ Baseline parse_body(Lines lines) {
     if (key == "seeds") b.chosen.seeds = value;
     if (key == "filter") b.chosen.filters.push_back(value);
     if (key == "set") b.chosen.sets.push_back(value);
+    if (key == "bits") b.bits = value;
     if (key == "build") b.build = value;
     if (key == "numerics") b.numerics = value;
     if (key == "machine") b.machine = value;
@@ -106,22 +107,26 @@ std::string_view unsealed(std::string_view text, const std::string& where) {
 
 }  // namespace
 
+std::string bits_text() {
+  const BuildInfo& b = build_info();
+  return fmt::format("Eigen-{} SLEEF-{} glibc-{} {}",
+                     b.eigen,
+                     b.sleef,
+                     gnu_get_libc_version(),
+                     b.bit_flags);
+}
+
 std::string build_text() {
   const BuildInfo& b = build_info();
   const std::string flags = std::regex_replace(
       std::string(b.flags), std::regex(" ?-(march=|U__AVX512F__)\\S*"), "");
-  return fmt::format("{} {} {} Eigen-{} FFTW-{} glibc-{}",
-                     b.compiler,
-                     b.compiler_version,
-                     flags,
-                     b.eigen,
-                     b.fftw,
-                     gnu_get_libc_version());
+  return fmt::format("{} {} {}", b.compiler, b.compiler_version, flags);
 }
 
 Baseline blank_baseline(Chosen chosen) {
   const auto context = machine_context(git_revision());
   return {.chosen = std::move(chosen),
+          .bits = bits_text(),
           .build = build_text(),
           .numerics = std::string(build_info().fingerprint),
           .machine = fmt::format("{}, {} cores, {}",
@@ -142,7 +147,9 @@ std::string to_text(const Baseline& b) {
   for (const auto& set : b.chosen.sets) text += "set " + set + '\n';
   if (!b.chosen.seeds.empty()) text += "seeds " + b.chosen.seeds + '\n';
   text += fmt::format(
-      "build {}\nnumerics {}\nmachine {}\nrevision {}\ndate {}\nstages {}\n",
+      "bits {}\nbuild {}\nnumerics {}\nmachine {}\nrevision {}\ndate {}\n"
+      "stages {}\n",
+      b.bits,
       b.build,
       b.numerics,
       b.machine,

@@ -4,6 +4,7 @@
 ///
 ///   physinv-bench baseline 1
 ///   profile smoke
+///   bits Eigen-3.4.0 SLEEF-3.5.1 ...
 ///   build GNU 12.2.0 -O3 ...
 ///   stages 157
 ///   jpo/billiards/bfgs/n=4/seed=0/solve trajectory=...
@@ -41,7 +42,8 @@ struct CountTable {
 
 struct Baseline {
   Chosen chosen;
-  std::string build;     ///< for the same, the same bits are promised
+  std::string bits;      ///< for the same, the same bits are promised
+  std::string build;     ///< for the same, instructions compare
   std::string numerics;  ///< fingerprint of the sources
   std::string machine, revision, date;
   std::vector<StageLine> stages;
@@ -51,8 +53,11 @@ struct Baseline {
 /// Header of this build on this machine, today.
 Baseline blank_baseline(Chosen chosen);
 
-/// Compiler, flags and libraries that decide about bits; the width of
-/// registers does not.
+/// Libraries, and flags if any, that decide about bits. Compiler, optimization
+/// and width of registers do not.
+std::string bits_text();
+
+/// Compiler, flags and libraries that decide about instructions of one width.
 std::string build_text();
 
 std::string to_text(const Baseline& baseline);

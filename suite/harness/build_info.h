@@ -19,14 +19,16 @@ struct SourceFile {
 /// baselines. It does not change with reports, cases or the command line. What
 /// decides whether a stage is stale is its own part of it (sources.h).
 struct BuildInfo {
-  std::string_view compiler, compiler_version, flags, build_type;
+  std::string_view compiler, compiler_version, flags;
+  std::string_view bit_flags;  ///< those that may change a bit of a result
+  std::string_view build_type;
   std::string_view instruction_set;  ///< "x86-64-v3" or "x86-64-v4"
   std::string_view fingerprint;
   std::string_view foundation;  ///< hash of what every stage stands on:
-                                ///< compiler, flags, libraries
-                                ///< that compute, and run_stage.{h,cpp}
+                                ///< bit_flags, libraries that
+                                ///< compute, and run_stage.{h,cpp}
   std::string_view version;     ///< of this suite
-  std::string_view eigen, fftw, hdf5, json, fmt, cli11;
+  std::string_view eigen, sleef, fftw, hdf5, json, fmt, cli11;
   std::span<const SourceFile> sources;  ///< and those of the cases
 };
 

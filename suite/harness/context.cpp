@@ -155,6 +155,7 @@ json machine_context(const std::string& revision) {
       {"version", build.version},
       {"libraries",
        {{"eigen", build.eigen},
+        {"sleef", build.sleef},
         {"fftw", build.fftw},
         {"hdf5", build.hdf5},
         {"nlohmann_json", build.json},
@@ -174,8 +175,8 @@ std::string version_text() {
       "flags            {}\n"
       "instruction set  {}\n"
       "numerics         {}\n"
-      "libraries        Eigen {}, FFTW {}, HDF5 {}, nlohmann-json {}, fmt {}, "
-      "CLI11 {}",
+      "libraries        Eigen {}, SLEEF {}, FFTW {}, HDF5 {}, nlohmann-json {}, "
+      "fmt {}, CLI11 {}",
       b.version,
       b.compiler,
       b.compiler_version,
@@ -184,6 +185,7 @@ std::string version_text() {
       b.instruction_set,
       b.fingerprint,
       b.eigen,
+      b.sleef,
       b.fftw,
       b.hdf5,
       b.json,

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "suite/core/lanes_math.h"
+#include "suite/core/math.h"
 #include "suite/nn/gelu.h"
 #include "suite/nn/layer.h"
 #include "suite/nn/vector.h"
@@ -22,7 +23,7 @@ constexpr bool from_output(Activation a) {
 
 template <class T>
 inline T sigmoid(T z) {
-  return T(1) / (T(1) + std::exp(-z));
+  return T(1) / (T(1) + math::exp(-z));
 }
 
 template <class T>
@@ -33,15 +34,15 @@ inline T activate(Activation a, T z) {
     case Activation::relu:
       return z < T(0) ? T(0) : z;  // keeps NaN
     case Activation::tanh:
-      return std::tanh(z);
+      return math::tanh(z);
     case Activation::sigmoid:
       return sigmoid(z);
     case Activation::softplus:
-      return (z > T(0) ? z : T(0)) + std::log1p(std::exp(-std::abs(z)));
+      return (z > T(0) ? z : T(0)) + math::log1p(math::exp(-std::abs(z)));
     case Activation::silu:
       return z * sigmoid(z);
     case Activation::half_tanh:
-      return std::tanh(z / T(2));
+      return math::tanh(z / T(2));
     case Activation::gelu:
       return z * normal_cdf(z);
   }
@@ -61,7 +62,7 @@ inline T derivative(Activation a, T y) {
     case Activation::sigmoid:
       return y * (T(1) - y);
     case Activation::softplus:
-      return -std::expm1(-y);
+      return -math::expm1(-y);
     case Activation::silu: {
       const T s = sigmoid(y);
       return s * std::fma(y, T(1) - s, T(1));
@@ -88,7 +89,7 @@ inline T second_derivative(Activation a, T y) {
     case Activation::sigmoid:
       return T(1) - T(2) * y;
     case Activation::softplus:
-      return std::exp(-y);
+      return math::exp(-y);
     case Activation::silu: {
       const T s = sigmoid(y), slope = s * (T(1) - s);
       return slope * std::fma(y, T(1) - T(2) * s, T(2));
@@ -108,6 +109,7 @@ inline V activate_lanes(Activation a, V z) {
   if (a == Activation::tanh) return tanh_lanes(z);
   if (a == Activation::sigmoid) return sigmoid_lanes(z);
   if (a == Activation::half_tanh) return tanh_lanes(broadcast<V>(T(0.5)) * z);
+  if (a == Activation::silu) return z * sigmoid_lanes(z);
   if (a == Activation::gelu) return gelu_lanes(z);
   for (std::size_t l = 0; l < sizeof(V) / sizeof(T); ++l)
     z[l] = activate<T>(a, z[l]);

@@ -1,7 +1,9 @@
 #include "suite/nn/encoding.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "suite/core/math.h"
 #include "suite/nn/activation.h"
 
 namespace physinv::nn {
@@ -10,20 +12,23 @@ template <class T>
 void PositionalEncoding<T>::forward(const LayerArgs<T>&,
                                     Lanes<const T> x,
                                     Lanes<T> y) const {
+  constexpr Index kWidth = math::kTogether<double>;
   for (Index i = 0; i < x.rows; ++i) {
     const T* a = x.row(i);
     T* out = y.row(2 * frequencies_ * i);
-    for (Index j = 0; j < x.width; ++j) {
-      // The padding is not worth a sine.
-      const double s1 = j < x.samples ? std::sin(double(a[j])) : 0.0;
-      const double c1 = j < x.samples ? std::cos(double(a[j])) : 1.0;
-      double s = s1, c = c1;
-      for (Index k = 0; k < frequencies_; ++k) {
-        out[k * y.stride + j] = static_cast<T>(s);
-        out[(frequencies_ + k) * y.stride + j] = static_cast<T>(c);
-        const double next = s * c1 + c * s1;
-        c = c * c1 - s * s1, s = next;
-      }
+    for (Index j = 0; j < x.width; j += kWidth) {
+      double at[kWidth], s1[kWidth], c1[kWidth], s[kWidth], c[kWidth];
+      for (Index l = 0; l < kWidth; ++l)
+        at[l] = j + l < x.samples ? double(a[j + l]) : 0.0;
+      math::sincos(at, s1, c1);
+      std::copy_n(s1, kWidth, s), std::copy_n(c1, kWidth, c);
+      for (Index k = 0; k < frequencies_; ++k)
+        for (Index l = 0; l < kWidth; ++l) {
+          out[k * y.stride + j + l] = static_cast<T>(s[l]);
+          out[(frequencies_ + k) * y.stride + j + l] = static_cast<T>(c[l]);
+          const double next = std::fma(s[l], c1[l], c[l] * s1[l]);
+          c[l] = std::fma(c[l], c1[l], -(s[l] * s1[l])), s[l] = next;
+        }
     }
   }
 }

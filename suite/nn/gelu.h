@@ -8,32 +8,22 @@
 /// in double, the exponential stays at its smallest normal number.
 #pragma once
 
-#include <cmath>
 #include <numbers>
 
 #include "suite/core/lanes_math.h"
+#include "suite/core/math.h"
 
 namespace physinv::nn {
 
 template <class T>
 inline T normal_cdf(T x) {
-  return std::erfc(-x / std::numbers::sqrt2_v<T>) / T(2);
+  return math::erfc(-x / std::numbers::sqrt2_v<T>) / T(2);
 }
 
 template <class T>
 inline T normal_density(T x) {
   constexpr T scale = std::numbers::inv_sqrtpi_v<T> / std::numbers::sqrt2_v<T>;
-  return scale * std::exp(-x * x / T(2));
-}
-
-/// c[0] + c[1] t + ..., every step rounded once.
-template <class P, std::size_t C>
-PHYSINV_LANES P fused_polynomial(P t, const LaneScalar<P> (&c)[C]) {
-  P sum = c[C - 1] - P{};
-#pragma GCC unroll 24
-  for (std::size_t k = 1; k < C; ++k)
-    sum = fma_lanes(sum, t, c[C - 1 - k] - P{});
-  return sum;
+  return scale * math::exp(-x * x / T(2));
 }
 
 /// Phi(x); `bell` becomes e^(-x^2 / 2).
@@ -58,7 +48,7 @@ PHYSINV_LANES P normal_cdf_lanes(P x, P& bell) {
                                         -0.0001333173852F,
                                         3.386683744e-5F,
                                         1.012706601e-5F};
-    p = fused_polynomial(t, kSeries);
+    p = polynomial(t, kSeries);
   } else {
     static constexpr double kSeries[] = {
         0.53700345354416983932,     -0.44169722658494182503,
@@ -73,7 +63,7 @@ PHYSINV_LANES P normal_cdf_lanes(P x, P& bell) {
         2.5006600921456185211e-8,   2.5834073809492270205e-8,
         -1.795680558580547638e-9,   -4.4439224457584736858e-9,
         5.5795619496251920717e-12,  4.2239263921614753975e-10};
-    p = fused_polynomial(t, kSeries);
+    p = polynomial(t, kSeries);
   }
   p = p * s;
   return x > P{} ? fma_lanes(-p, bell, 1 - P{}) : p * bell;

@@ -1,9 +1,9 @@
 #include "suite/nn/plane_modes.h"
 
-#include <cmath>
 #include <numbers>
 
 #include "suite/core/check.h"
+#include "suite/core/math.h"
 #include "suite/nn/gemm.h"
 
 namespace physinv::nn {
@@ -18,10 +18,10 @@ std::vector<T> waves(Index count, Index period, Index extent) {
   };
   for (Index k = 0; k < count; ++k)
     for (Index i = 0; i < extent; ++i)
-      all.push_back(static_cast<T>(std::cos(angle(k, i))));
+      all.push_back(static_cast<T>(math::cos(angle(k, i))));
   for (Index k = 1; k < count; ++k)
     for (Index i = 0; i < extent; ++i)
-      all.push_back(static_cast<T>(std::sin(angle(k, i))));
+      all.push_back(static_cast<T>(math::sin(angle(k, i))));
   return all;
 }
 

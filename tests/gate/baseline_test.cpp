@@ -30,6 +30,7 @@ TEST(Baseline, ReadsWhatItWrote) {
   const Baseline read = parse_baseline(text, "here");
   EXPECT_EQ(to_text(read), text);
   EXPECT_EQ(read.chosen.filters, b.chosen.filters);
+  EXPECT_EQ(read.bits, bits_text());
   EXPECT_EQ(read.build, build_text());
   ASSERT_EQ(read.stages.size(), 2u);
   EXPECT_EQ(read.stages[0].work, b.stages[0].work);

@@ -111,10 +111,13 @@ def other_baselines(d):
     expect(9, ["gate", "--baseline=flipped.txt"], d, "fails its checksum")
     open(os.path.join(d, "cut.txt"), "wb").write(whole[:-100])
     expect(9, ["gate", "--baseline=cut.txt"], d, "fails its checksum")
-    rewrite(d, "other.txt", lambda t: t.replace("build GNU", "build XNU", 1)
-            .replace("build Clang", "build XNU", 1))
+    rewrite(d, "compiler.txt", lambda t: t.replace("\nbuild ", "\nbuild X", 1))
+    compiler = ["gate", "--baseline=compiler.txt"]
+    expect(0, compiler, d, "3 same")
+    expect(5, compiler, d, "promises the same", plant="ulp in a constant")
+    rewrite(d, "other.txt", lambda t: t.replace("\nbits ", "\nbits X", 1))
     other = ["gate", "--baseline=other.txt"]
-    expect(0, other, d, "from another build")
+    expect(0, other, d, "of other libraries or flags")
     expect(0, other, d, "3 within", plant="ulp in a constant")
     expect(5, other, d, "not finite 0 -> 1", plant="NaN in a loss")
     rewrite(d, "empty.txt",

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "suite/core/check.h"
+#include "suite/core/math.h"
 
 namespace physinv {
 namespace {
@@ -14,20 +15,20 @@ double root(Index n) { return std::sqrt(static_cast<double>(n)); }
 
 /// 1/2 + erf(sqrt(n) e / sqrt(factor (1/4 - e^2))) / 2.
 double vote_normal(Index n, double snr, double factor) {
-  const double e = 0.5 * std::erf(snr);
+  const double e = 0.5 * math::erf(snr);
   const double variance = factor * (0.25 - e * e);
   if (!(variance > 0)) return e > 0 ? 1 : 0;
-  return 0.5 + 0.5 * std::erf(root(n) * e / std::sqrt(variance));
+  return 0.5 + 0.5 * math::erf(root(n) * e / std::sqrt(variance));
 }
 
 }  // namespace
 
 double align_single_sine(double lambda, double a) {
   if (lambda >= a) return 1;
-  return 0.5 + std::asin(lambda / a) / std::numbers::pi;
+  return 0.5 + math::asin(lambda / a) / std::numbers::pi;
 }
 
-double align_one(double snr) { return 0.5 + 0.5 * std::erf(snr); }
+double align_one(double snr) { return 0.5 + 0.5 * math::erf(snr); }
 
 double align_one_first_order(double snr) {
   return 0.5 + snr * std::numbers::inv_sqrtpi;
@@ -41,16 +42,16 @@ double align_sum_first_order(Index n, double snr) {
 
 double align_vote(Index n, double snr) {
   SUITE_CHECK(n > 0, "somebody votes");
-  const double p = 0.5 * std::erfc(-snr), q = 0.5 * std::erfc(snr);
+  const double p = 0.5 * math::erfc(-snr), q = 0.5 * math::erfc(snr);
   if (q == 0) return 1;
   if (p == 0) return 0;
   const auto total = static_cast<double>(n);
-  const double log_p = std::log(p), log_q = std::log(q);
+  const double log_p = math::log(p), log_q = math::log(q);
   const auto term = [&](Index right) {
     const auto k = static_cast<double>(right);
-    return std::exp(std::lgamma(total + 1) - std::lgamma(k + 1) -
-                    std::lgamma(total - k + 1) + k * log_p +
-                    (total - k) * log_q);
+    return math::exp(math::lgamma(total + 1) - math::lgamma(k + 1) -
+                     math::lgamma(total - k + 1) + k * log_p +
+                     (total - k) * log_q);
   };
   double sum = n % 2 == 0 ? 0.5 * term(n / 2) : 0;
   for (Index right = n / 2 + 1; right <= n; ++right) sum += term(right);
@@ -67,7 +68,7 @@ std::vector<double> response_curve(Index n, const Response& response) {
   SUITE_CHECK(n > 0 && response.plasticity > 0, "a network and its examples");
   std::vector<double> rho{1};
   rho.reserve(static_cast<std::size_t>(n));
-  const double decay = std::exp(-1 / response.plasticity);
+  const double decay = math::exp(-1 / response.plasticity);
   double e = 1;
   for (Index i = 2; i <= n; ++i) {
     const auto N = static_cast<double>(i);

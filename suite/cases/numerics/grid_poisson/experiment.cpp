@@ -1,11 +1,11 @@
 // Poisson's equation with potentials of any size, from the smoothest to the
 // roughest.
-#include <cmath>
 #include <numbers>
 
 #include "problems/grid_poisson/closed_form.h"
 #include "problems/grid_poisson/grid_poisson.h"
 #include "suite/cases/numerics/common/atlas.h"
+#include "suite/core/math.h"
 
 namespace physinv::numerics::grid_poisson {
 namespace {
@@ -14,8 +14,8 @@ namespace {
 Vector<double> potential(double size, double k) {
   return Vector<double>::NullaryExpr(kPoissonCells, [=](Index at) {
     const auto wave = [=](Index i) {
-      return std::sin(double(i + 1) * k * std::numbers::pi /
-                      double(kPoissonSide + 1));
+      return math::sin(double(i + 1) * k * std::numbers::pi /
+                       double(kPoissonSide + 1));
     };
     return size * wave(at / kPoissonSide) * wave(at % kPoissonSide);
   });

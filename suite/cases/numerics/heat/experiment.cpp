@@ -2,12 +2,12 @@
 // from rounding, and what the local inverse makes of it.
 #include <fmt/format.h>
 
-#include <cmath>
 #include <numbers>
 
 #include "problems/heat/closed_form.h"
 #include "problems/heat/heat.h"
 #include "suite/cases/numerics/common/atlas.h"
+#include "suite/core/math.h"
 
 namespace physinv::numerics::heat {
 namespace {
@@ -24,7 +24,7 @@ ProblemRecipe until(double end_time, double noise_floor = 0) {
 Vector<double> wave(double k, double /*end_time*/) {
   return Vector<double>::NullaryExpr(kSide * kSide, [=](Index at) {
     const auto place = double((at / kSide + at % kSide) % kSide);
-    return std::cos(2 * std::numbers::pi * k * place / kSide + 0.3);
+    return math::cos(2 * std::numbers::pi * k * place / kSide + 0.3);
   });
 }
 

@@ -5,6 +5,7 @@
 
 #include "problems/marker_flow/marker_flow.h"
 #include "suite/cases/numerics/common/atlas.h"
+#include "suite/core/math.h"
 
 namespace physinv::numerics::marker_flow {
 namespace {
@@ -20,14 +21,13 @@ Vector<double> flow(double speed, Index cells) {
   const double turn = 2 * std::numbers::pi / double(cells);
   return Vector<double>::NullaryExpr(2 * plane, [=](Index at) {
     const Index i = at % plane / cells, j = at % cells;
-    // Whole multiples: of a sum of two products the compiler would fuse either.
     const auto angle = [=](Index a, Index b, double shift) {
       return std::fma(turn, double(a * i + b * j), shift);
     };
-    return speed *
-           (at < plane
-                ? std::cos(angle(2, 1, 0.2)) + 0.3 * std::sin(angle(3, -1, 0))
-                : std::sin(angle(1, 1, 0.5)) + 0.4 * std::cos(angle(-1, 2, 0)));
+    return speed * (at < plane ? math::cos(angle(2, 1, 0.2)) +
+                                     0.3 * math::sin(angle(3, -1, 0))
+                               : math::sin(angle(1, 1, 0.5)) +
+                                     0.4 * math::cos(angle(-1, 2, 0)));
   });
 }
 

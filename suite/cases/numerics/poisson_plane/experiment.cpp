@@ -1,10 +1,10 @@
 // Poisson's equation on planes of 8 to 256 cells a side: sources of any size,
 // and what conjugate gradients, which the authors took, make of it.
-#include <cmath>
 #include <numbers>
 
 #include "problems/poisson/poisson.h"
 #include "suite/cases/numerics/common/atlas.h"
+#include "suite/core/math.h"
 
 namespace physinv::numerics::poisson_plane {
 namespace {
@@ -23,7 +23,7 @@ ProblemRecipe iterated(double relative) {
 /// The eigenvector of wave numbers (k, k).
 Vector<double> wave(double size, Index side, Index k) {
   const Vector<double> line = Vector<double>::NullaryExpr(side, [=](Index i) {
-    return std::sin(double((i + 1) * k) * std::numbers::pi / double(side + 1));
+    return math::sin(double((i + 1) * k) * std::numbers::pi / double(side + 1));
   });
   return (size * line * line.transpose()).reshaped();
 }

@@ -1,5 +1,4 @@
 // How fluids are carried: energy over a thousand steps, order of the advection.
-#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
@@ -7,6 +6,7 @@
 
 #include "problems/marker_flow/marker_flow.h"
 #include "suite/cases/numerics/transport/transport.h"
+#include "suite/core/math.h"
 #include "suite/evidence/claim.h"
 #include "suite/evidence/quantity.h"
 #include "suite/harness/registry.h"
@@ -49,7 +49,7 @@ Quantity order(const char* array) {
                 [=](const Run& run) -> std::optional<double> {
                   const auto& e = run.stage->arrays.at(array);
                   const Index last = e.cols() - 1;
-                  return std::log2(e(0, last - 1) / e(0, last));
+                  return math::log2(e(0, last - 1) / e(0, last));
                 });
 }
 

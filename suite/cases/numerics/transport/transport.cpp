@@ -9,6 +9,7 @@
 #include "problems/fluid/mac_cormack.h"
 #include "problems/marker_flow/marker_flow.h"
 #include "problems/marker_flow/periodic_flow.h"
+#include "suite/core/math.h"
 #include "suite/core/probe.h"
 #include "suite/diagnostics/diagnostic.h"
 
@@ -137,9 +138,9 @@ constexpr double kTurn = 2 * std::numbers::pi, kEnd = 0.5, kCells = 0.5;
 constexpr double kX = 0.7, kY = 0.4;  ///< the constant velocity
 
 double wave(double x, double y) {
-  return std::sin(kTurn * x) + std::cos(kTurn * (x + y));
+  return math::sin(kTurn * x) + math::cos(kTurn * (x + y));
 }
-double shear(double y) { return std::sin(kTurn * y); }
+double shear(double y) { return math::sin(kTurn * y); }
 
 template <class P>
 struct GivenVelocity {

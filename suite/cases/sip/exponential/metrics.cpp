@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "suite/core/math.h"
 #include "suite/core/oracle.h"
 
 namespace physinv::exponential {
@@ -23,7 +24,7 @@ void evaluate(const Snapshot& s, VectorOut<double> values) {
          to = -from;
   Index lowest = 0, three = 0;
   const Batch<double>& y = s.oracle.observations();
-  const auto wanted = [&](Index i) { return std::log(y(0, i)); };
+  const auto wanted = [&](Index i) { return math::log(y(0, i)); };
   for (Index i = 0; i < s.x.cols(); ++i) {
     const double x = s.x(0, i), w = wanted(i), error = std::abs(x - w);
     all += error;

@@ -10,6 +10,7 @@
 #include "optimizers/lbfgsb.h"
 #include "problems/heat/inversion.h"
 #include "suite/cases/sip/heat/metrics.h"
+#include "suite/core/math.h"
 #include "suite/core/oracle.h"
 #include "suite/core/probe.h"
 
@@ -140,7 +141,7 @@ class Eigenspaces {
       if (e > kDamped) return -1;
       const auto square = static_cast<Index>(std::llround(e / s(1, 0)));
       const auto [space, added] = found.try_emplace(square, count());
-      if (added) damping_.push_back(std::exp(-e));
+      if (added) damping_.push_back(math::exp(-e));
       return space->second;
     });
   }

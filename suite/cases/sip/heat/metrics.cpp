@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "problems/heat/heat.h"
+#include "suite/core/math.h"
 #include "suite/core/oracle.h"
 
 namespace physinv::heat {
@@ -48,7 +49,7 @@ void evaluate(const Snapshot& s, VectorOut<double> values) {
   const auto fine = [](double e) { return e > 4 && e <= 16 ? 1.0 : 0.0; };
   values(kCoarse) = band(error, coarse) / band(truth, coarse);
   values(kFine) = band(error, fine) / band(truth, fine);
-  const auto raw = [](double e) { return std::exp(e); };
+  const auto raw = [](double e) { return math::exp(e); };
   values(kOfInverse) = std::sqrt(band(y, raw)) / truth.norm();
 }
 

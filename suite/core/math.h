@@ -1,0 +1,82 @@
+/// Elementary functions with the same bits on every processor. The C library
+/// has several versions of exp, sin, log and pow, chooses among them by the
+/// processor and changes them from release to release; here they are SLEEF's
+/// deterministic ones (https://sleef.org, "finz": fused operations, same bits
+/// for every length of vector). Errors below 1 ulp, erfc below 1.5 ulp; NaN and
+/// infinities as in the C standard; errno stays as it is.
+///
+/// What computes numbers takes these. What IEEE 754 rounds exactly (sqrt, fma,
+/// floor, remainder, ...) is taken from the standard library.
+#pragma once
+
+#include <sleef.h>
+
+#include "suite/core/batch.h"
+
+namespace physinv::math {
+
+#define PHYSINV_FUNCTION(name, accuracy)                  \
+  inline double name(double x) {                          \
+    return Sleef_finz_##name##d1_##accuracy##purecfma(x); \
+  }                                                       \
+  inline float name(float x) {                            \
+    return Sleef_finz_##name##f1_##accuracy##purecfma(x); \
+  }
+PHYSINV_FUNCTION(exp, u10)
+PHYSINV_FUNCTION(expm1, u10)
+PHYSINV_FUNCTION(log, u10)
+PHYSINV_FUNCTION(log1p, u10)
+PHYSINV_FUNCTION(log2, u10)
+PHYSINV_FUNCTION(log10, u10)
+PHYSINV_FUNCTION(sin, u10)
+PHYSINV_FUNCTION(cos, u10)
+PHYSINV_FUNCTION(tan, u10)
+PHYSINV_FUNCTION(asin, u10)
+PHYSINV_FUNCTION(tanh, u10)
+PHYSINV_FUNCTION(erf, u10)
+PHYSINV_FUNCTION(erfc, u15)
+PHYSINV_FUNCTION(lgamma, u10)
+#undef PHYSINV_FUNCTION
+
+/// x^y
+inline double pow(double x, double y) {
+  return Sleef_finz_powd1_u10purecfma(x, y);
+}
+inline float pow(float x, float y) {
+  return Sleef_finz_powf1_u10purecfma(x, y);
+}
+
+template <class T>
+struct SinCos {
+  T sine, cosine;
+};
+
+/// In the time of one, but not with the bits of `sin` and `cos`.
+inline SinCos<double> sincos(double x) {
+  const auto both = Sleef_finz_sincosd1_u10purecfma(x);
+  return {both.x, both.y};
+}
+inline SinCos<float> sincos(float x) {
+  const auto both = Sleef_finz_sincosf1_u10purecfma(x);
+  return {both.x, both.y};
+}
+
+/// Numbers that `sincos` takes at once: a register of 256 bits.
+template <class T>
+inline constexpr int kTogether = 32 / sizeof(T);
+
+/// Of several numbers, with the bits of each alone.
+inline void sincos(const double (&x)[4],
+                   double (&sine)[4],
+                   double (&cosine)[4]) {
+  const auto both = Sleef_finz_sincosd4_u10avx2(_mm256_loadu_pd(x));
+  _mm256_storeu_pd(sine, both.x);
+  _mm256_storeu_pd(cosine, both.y);
+}
+inline void sincos(const float (&x)[8], float (&sine)[8], float (&cosine)[8]) {
+  const auto both = Sleef_finz_sincosf8_u10avx2(_mm256_loadu_ps(x));
+  _mm256_storeu_ps(sine, both.x);
+  _mm256_storeu_ps(cosine, both.y);
+}
+
+}  // namespace physinv::math
