@@ -166,7 +166,7 @@ std::vector<ExpectedFailure> expected_failures(
 }
 
 /// Says how the gating claims stand; ExitError if one fails unexpectedly.
-void check_claims(const Judgement& j) {
+void check_claims(const ClaimTally& j) {
   fmt::print("{} gating claims judged: {} hold, {} fail as expected, {} fail\n",
              j.judged,
              j.judged - j.known_misses.size() - j.misses.size(),

@@ -71,7 +71,7 @@ nlohmann::json numbers_of(const StageLine& line) {
 
 }  // namespace
 
-Finding finding_of(const Judgement& j) {
+Finding finding_of(const StageVerdict& j) {
   return {.kind = "accuracy",
           .name = j.stage,
           .verdict = std::string(to_string(j.change)),

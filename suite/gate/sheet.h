@@ -20,7 +20,7 @@ struct Finding {
   nlohmann::json numbers;          ///< for machines
 };
 
-Finding finding_of(const Judgement& judgement);
+Finding finding_of(const StageVerdict& judgement);
 
 struct Sheet {
   std::vector<std::string> notes;

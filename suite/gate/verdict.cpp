@@ -92,14 +92,14 @@ std::string_view to_string(Change change) {
   return names[static_cast<std::size_t>(change)];
 }
 
-Judgement judge(const StageLine& before, const StageLine& now, Rules rules) {
+StageVerdict judge(const StageLine& before, const StageLine& now, Rules rules) {
   Findings found;
   const bool same = same_bits(before, now);
   compare_ends(before, now, found);
   if (!same) compare_losses(before, now, found);
   compare_work(before, now, rules, same, found);
 
-  Judgement j{.stage = now.name, .before = before, .now = now};
+  StageVerdict j{.stage = now.name, .before = before, .now = now};
   if (!found.worse.empty()) {
     j.change = Change::worse;
   } else if (!found.better.empty()) {
@@ -115,12 +115,12 @@ Judgement judge(const StageLine& before, const StageLine& now, Rules rules) {
   return j;
 }
 
-std::vector<Judgement> judge(const std::vector<StageLine>& before,
-                             const std::vector<StageLine>& now,
-                             Rules rules) {
+std::vector<StageVerdict> judge(const std::vector<StageLine>& before,
+                                const std::vector<StageLine>& now,
+                                Rules rules) {
   std::map<std::string, const StageLine*> have;
   for (const auto& line : now) have[line.name] = &line;
-  std::vector<Judgement> all;
+  std::vector<StageVerdict> all;
   for (const auto& line : before) {
     const auto at = have.find(line.name);
     if (at == have.end()) {

@@ -25,7 +25,7 @@ struct Rules {
   bool allow_work = false;  ///< counters may grow
 };
 
-struct Judgement {
+struct StageVerdict {
   std::string stage;
   Change change = Change::same;
   std::vector<std::string> reasons;
@@ -33,15 +33,15 @@ struct Judgement {
 };
 
 /// Names agree.
-Judgement judge(const StageLine& before, const StageLine& now, Rules rules);
+StageVerdict judge(const StageLine& before, const StageLine& now, Rules rules);
 
 /// All of both, in the order of the baseline, what was added last.
-std::vector<Judgement> judge(const std::vector<StageLine>& before,
-                             const std::vector<StageLine>& now,
-                             Rules rules);
+std::vector<StageVerdict> judge(const std::vector<StageLine>& before,
+                                const std::vector<StageLine>& now,
+                                Rules rules);
 
 /// Worse or missing.
-inline bool fails(const Judgement& j) {
+inline bool fails(const StageVerdict& j) {
   return j.change == Change::worse || j.change == Change::missing;
 }
 

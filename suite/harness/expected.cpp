@@ -60,10 +60,10 @@ void check_expected(const std::vector<ExpectedFailure>& expected,
   }
 }
 
-Judgement compare(const std::vector<Section>& sections,
-                  const std::vector<ExpectedFailure>& expected,
-                  const std::string& profile) {
-  Judgement judgement;
+ClaimTally compare(const std::vector<Section>& sections,
+                   const std::vector<ExpectedFailure>& expected,
+                   const std::string& profile) {
+  ClaimTally judgement;
   for (const Section& s : sections) {
     for (const ClaimResult& c : s.claims) {
       const bool holds = c.verdict == Verdict::reproduced;

@@ -29,13 +29,13 @@ void check_expected(const std::vector<ExpectedFailure>& expected,
                     const std::filesystem::path& path);
 
 /// Gating claims, as "experiment id: sentence"; for known misses the reason.
-struct Judgement {
+struct ClaimTally {
   std::size_t judged = 0;
   std::vector<std::string> misses, known_misses;
   std::vector<std::string> surprises;  ///< listed, and hold
 };
-Judgement compare(const std::vector<Section>& sections,
-                  const std::vector<ExpectedFailure>& expected,
-                  const std::string& profile);
+ClaimTally compare(const std::vector<Section>& sections,
+                   const std::vector<ExpectedFailure>& expected,
+                   const std::string& profile);
 
 }  // namespace physinv

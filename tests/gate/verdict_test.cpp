@@ -14,7 +14,8 @@ namespace {
 constexpr Rules kBits{.bits = true}, kDigits{.bits = false};
 
 /// What becomes of a stage that differs like this; its trajectory does, too.
-Judgement changed(Rules rules, const std::function<void(StageLine&)>& change) {
+StageVerdict changed(Rules rules,
+                     const std::function<void(StageLine&)>& change) {
   StageLine now = line("c/s");
   now.trajectory = "ffffffffffffffff";
   change(now);
