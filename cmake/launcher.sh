@@ -4,6 +4,9 @@
 # fault: packages missing, configuring failed, the code does not compile.
 # When all is up to date only flock and ninja are started.
 : "${root:?set by the launcher}"
+# cmake and ctest take a checkout's path from it, where it is the same folder:
+# through a symbolic link they would see another one, and build all anew.
+export -n PWD
 
 say() { printf '%s: %s\n' "${0##*/}" "$*" >&2; }
 die() { say "$*"; exit 9; }

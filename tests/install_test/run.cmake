@@ -1,6 +1,9 @@
 # Installs ${build} into ${work}, builds and runs the consumer there, then moves
 # the tree and runs the programs: they use what was installed alone.
+cmake_minimum_required(VERSION 3.25)
 file(REMOVE_RECURSE ${work})
+file(MAKE_DIRECTORY ${work})
+file(REAL_PATH ${work} work)  # as programs name it
 function(run)
   execute_process(COMMAND ${ARGV} COMMAND_ERROR_IS_FATAL ANY)
 endfunction()

@@ -11,7 +11,7 @@ import sys
 import tempfile
 import time
 
-BENCH = os.path.abspath(sys.argv[1])
+BENCH = os.path.realpath(sys.argv[1])  # as the program names itself
 HERE = os.path.dirname(os.path.abspath(__file__))
 FAILED = []
 SELECTION = ["--profile=quick", "--filter=jpo/billiards/(jpo|na|supervised)/",

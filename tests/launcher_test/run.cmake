@@ -1,0 +1,57 @@
+# The launchers on a little project, by its path and through a symbolic link: one
+# build serves both.
+# Usage: cmake -D source=... -D compiler=... -D work=... -P run.cmake
+cmake_minimum_required(VERSION 3.25)
+file(REMOVE_RECURSE ${work})
+file(MAKE_DIRECTORY ${work}/checkout/cmake)
+file(REAL_PATH ${work}/checkout checkout)
+file(COPY ${source}/bench ${source}/check ${source}/CMakePresets.json
+  DESTINATION ${checkout})
+file(COPY ${source}/cmake/launcher.sh DESTINATION ${checkout}/cmake)
+file(WRITE ${checkout}/apt-packages.txt "[bench]\n[test]\n[dev]\n")
+file(WRITE ${checkout}/main.cpp "int main() {}\n")
+file(WRITE ${checkout}/CMakeLists.txt [[
+cmake_minimum_required(VERSION 3.25)
+project(little LANGUAGES CXX)
+add_executable(physinv-run ${CMAKE_SOURCE_DIR}/main.cpp)
+if(PHYSINV_TESTS)
+  enable_testing()
+  add_test(NAME where COMMAND ${CMAKE_COMMAND} -E echo at ${CMAKE_BINARY_DIR})
+endif()
+]])
+file(CREATE_LINK ${checkout} ${work}/link SYMBOLIC)
+
+# The launcher, run in a folder as a shell would.
+function(launch folder)
+  list(JOIN ARGN " " command)
+  execute_process(
+    COMMAND bash -c "cd '${folder}' && CXX='${compiler}' ./${command} 2>&1"
+    OUTPUT_VARIABLE output RESULT_VARIABLE status)
+  if(NOT status EQUAL 0)
+    message(FATAL_ERROR "${command} in ${folder}: ${status}\n${output}")
+  endif()
+  set(output "${output}" PARENT_SCOPE)
+endfunction()
+
+set(program ${checkout}/build/release/physinv-run)
+macro(expect_one_build how)
+  string(FIND "${output}" "building" at)
+  if(NOT at EQUAL -1)
+    message(SEND_ERROR "${how}: built again\n${output}")
+  endif()
+endmacro()
+
+launch(${checkout} bench run)
+if(NOT EXISTS ${program})
+  message(FATAL_ERROR "no ${program}")
+endif()
+launch(${work}/link bench run)
+expect_one_build("the link after the path")
+launch(${work}/link check -V)  # configures again, with tests
+expect_one_build("tests through the link")
+string(FIND "${output}" "at ${checkout}/build/release" at)
+if(at EQUAL -1)
+  message(SEND_ERROR "tests see the link's path:\n${output}")
+endif()
+launch(${checkout} check)
+expect_one_build("tests by the path")
