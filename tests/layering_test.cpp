@@ -184,7 +184,7 @@ TEST(Layering, ArrowsThatMustNotBe) {
   EXPECT_TRUE(quoted("problems/heat/heat.h", "suite/nn/linear.h"));
   EXPECT_TRUE(quoted("reports/tables.cpp", "suite/harness/runner.h"));
   EXPECT_TRUE(quoted("suite/cases/hig/toy/claims.cpp",
-                     "suite/cases/jpo/common/metrics.h"));
+                     "suite/cases/jpo/common/shares.h"));
   EXPECT_TRUE(quoted("suite/harness/runner.cpp", "optimizers/jpo.h"));
   EXPECT_TRUE(quoted("optimizers/jpo.cpp", "jpo.h"));
   EXPECT_TRUE(quoted("elsewhere/a.cpp", "suite/core/rng.h"));

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "suite/cases/jpo/common/metrics.h"
+#include "suite/cases/jpo/common/shares.h"
 #include "suite/results/published.h"
 #include "suite/results/report_model.h"
 #include "suite/results/results.h"

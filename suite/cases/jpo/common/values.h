@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "suite/cases/jpo/common/metrics.h"
+#include "suite/cases/jpo/common/shares.h"
 #include "suite/core/recipe.h"
 #include "suite/evidence/condition.h"
 

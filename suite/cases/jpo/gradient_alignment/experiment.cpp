@@ -1,14 +1,13 @@
 // JPO paper, Secs. 2-3, Fig. 2: how often do noisy gradients, and the updates
 // of a network trained with them, point the right way?
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "problems/noisy_absolute/noise_lanes.h"
+#include "problems/noisy_absolute/noisy_absolute.h"
+#include "suite/cases/jpo/gradient_alignment/measurement.h"
 #include "suite/cases/jpo/gradient_alignment/shares.h"
-#include "suite/diagnostics/alignment.h"
 #include "suite/harness/registry.h"
 
 namespace physinv::alignment {
@@ -32,10 +31,7 @@ Method measure(std::string id,
                const NoisyAbsoluteOptions& data,
                std::optional<TinyNetOptions> network = {}) {
   return {.id = std::move(id),
-          .chain = {std::make_shared<MeasureAlignment<NoiseLanes>>(
-              AlignmentOptions<NoiseLanes>{.data = data,
-                                           .network = std::move(network),
-                                           .repetitions = kFull})}};
+          .chain = {measurement(data, std::move(network), kFull)}};
 }
 
 Profile profile(std::string name, std::vector<Index> n, Index repetitions) {

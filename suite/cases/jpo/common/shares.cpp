@@ -1,4 +1,4 @@
-#include "suite/cases/jpo/common/metrics.h"
+#include "suite/cases/jpo/common/shares.h"
 
 #include <fmt/format.h>
 

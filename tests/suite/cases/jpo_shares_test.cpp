@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "suite/cases/jpo/common/metrics.h"
+#include "suite/cases/jpo/common/shares.h"
 #include "suite/core/check.h"
 #include "tests/suite/evidence/campaigns.h"
 #include "tests/support/reference.h"
