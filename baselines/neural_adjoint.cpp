@@ -1,7 +1,5 @@
 #include "baselines/neural_adjoint.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -178,14 +176,7 @@ class NeuralAdjointSolve final : public Stage {
 
   std::string name() const override { return "solve"; }
   Needs needs() const override { return Needs::forward | Needs::labels; }
-  Options options() const override {
-    Options all = {{"algorithm", "neural_adjoint"},
-                   {"gamma", fmt::format("{}", options_.gamma)},
-                   {"weight", fmt::format("{}", options_.weight)}};
-    if (options_.fixed_weight != 0)
-      all.back() = {"fixed_weight", fmt::format("{}", options_.fixed_weight)};
-    return all;
-  }
+  Options options() const override { return describe(options_); }
   Index default_iterations() const override { return options_.iterations; }
   bool takes_row_iterations() const override { return false; }
   bool has_precision() const override { return true; }

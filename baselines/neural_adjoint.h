@@ -23,6 +23,14 @@ struct NeuralAdjointOptions {
   double gamma = 20;        ///< sharpness of the boundary's softplus
   double weight = 10;       ///< of the boundary, in median initial losses
   double fixed_weight = 0;  ///< w itself, if not 0
+
+  auto fields() const {
+    return std::tuple{word("algorithm", "neural_adjoint"),
+                      field("gamma", gamma),
+                      field("weight", weight),
+                      if_changed(field("fixed_weight", fixed_weight)),
+                      implied(iterations)};
+  }
 };
 
 std::shared_ptr<const Stage> neural_adjoint_solve(

@@ -161,8 +161,6 @@ StageFacts regression_facts(std::string algorithm,
                             Networks network,
                             const RegressionOptions& options,
                             const char* source) {
-  Options all = {{"algorithm", std::move(algorithm)}};
-  for (auto& option : describe(options.step)) all.push_back(option);
   Sources sources;
   add_sources(options.step, sources);
   const auto pass = network == Networks::surrogate
@@ -170,7 +168,8 @@ StageFacts regression_facts(std::string algorithm,
                         : &CaseSize::predictor_operations;
   return {.name = "fit",
           .needs = needs,
-          .options = std::move(all),
+          .options =
+              chained({{"algorithm", std::move(algorithm)}}, describe(options)),
           .iterations = options.iterations,
           .networks = network,
           .operations =

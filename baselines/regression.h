@@ -15,6 +15,10 @@ namespace physinv {
 struct RegressionOptions {
   StepOptions step = AdamOptions{.rate = 1e-3};
   Index iterations = 3000;
+
+  auto fields() const {
+    return std::tuple{field("step", step), implied(iterations)};
+  }
 };
 
 /// Inputs and targets, a sample per column. The network's first `bounded`

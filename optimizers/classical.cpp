@@ -1,7 +1,5 @@
 #include "optimizers/classical.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <utility>
 
@@ -68,14 +66,9 @@ class BfgsStage final : public Stage {
   std::string name() const override { return refines_ ? "refine" : "solve"; }
   Needs needs() const override { return Needs::forward | Needs::vjp; }
   Options options() const override {
-    Options all = {{"algorithm", "bfgs"},
-                   {"from", refines_ ? "previous" : "start"}};
-    if (options_.stall > 0)
-      all.emplace_back("stall", fmt::format("{}", options_.stall));
-    if (options_.search_evaluations > 0)
-      all.emplace_back("search",
-                       fmt::format("{}", options_.search_evaluations));
-    return all;
+    return chained(
+        {{"algorithm", "bfgs"}, {"from", refines_ ? "previous" : "start"}},
+        describe(options_));
   }
   Index default_iterations() const override { return options_.iterations; }
   Networks networks() const override { return Networks::none; }
@@ -110,13 +103,7 @@ class LbfgsbStage final : public Stage {
 
   std::string name() const override { return "solve"; }
   Needs needs() const override { return Needs::forward | Needs::vjp; }
-  Options options() const override {
-    return {{"algorithm", "lbfgsb"},
-            {"memory", fmt::format("{}", options_.memory)},
-            {"ftol", fmt::format("{}", options_.ftol)},
-            {"lower", fmt::format("{}", fmt::join(options_.lower, ","))},
-            {"upper", fmt::format("{}", fmt::join(options_.upper, ","))}};
-  }
+  Options options() const override { return describe(options_); }
   Index default_iterations() const override { return options_.iterations; }
   Networks networks() const override { return Networks::none; }
   Sources sources() const override {
@@ -149,9 +136,7 @@ class GradientDescentStage final : public Stage {
 
   std::string name() const override { return "solve"; }
   Needs needs() const override { return Needs::forward | Needs::vjp; }
-  Options options() const override {
-    return {{"algorithm", "gradient_descent"}};
-  }
+  Options options() const override { return describe(options_); }
   Index default_iterations() const override { return options_.iterations; }
   Networks networks() const override { return Networks::none; }
   Sources sources() const override {
@@ -181,7 +166,7 @@ class BoldDescentStage final : public Stage {
 
   std::string name() const override { return "solve"; }
   Needs needs() const override { return Needs::forward | Needs::vjp; }
-  Options options() const override { return {{"algorithm", "bold_descent"}}; }
+  Options options() const override { return describe(options_); }
   Index default_iterations() const override { return options_.evaluations; }
   Networks networks() const override { return Networks::none; }
   Sources sources() const override {

@@ -17,6 +17,12 @@ struct BfgsStageOptions {
   Index iterations = 1000;
   double stall = 0;            ///< as of BfgsOptions (bfgs.h)
   int search_evaluations = 0;  ///< of a line search at most, 0: as SciPy's
+
+  auto fields() const {
+    return std::tuple{if_changed(field("stall", stall)),
+                      if_changed(field("search", search_evaluations)),
+                      implied(iterations)};
+  }
 };
 
 /// Stage `solve`: BFGS on the true loss from the start.
@@ -31,6 +37,15 @@ struct LbfgsbStageOptions {
   Index memory = 10;
   double ftol = 2.2204460492503131e-09;  ///< as of LbfgsbOptions (lbfgsb.h)
   std::vector<double> lower = {}, upper = {};
+
+  auto fields() const {
+    return std::tuple{word("algorithm", "lbfgsb"),
+                      field("memory", memory),
+                      field("ftol", ftol),
+                      field("lower", lower),
+                      field("upper", upper),
+                      implied(iterations)};
+  }
 };
 
 /// Stage `solve`: L-BFGS-B on the true loss from the start, within bounds if
@@ -40,10 +55,19 @@ std::shared_ptr<const Stage> lbfgsb_solve(
 
 struct GradientDescentStageOptions {
   Index iterations = 1000;
+
+  auto fields() const {
+    return std::tuple{word("algorithm", "gradient_descent"),
+                      implied(iterations)};
+  }
 };
 
 struct BoldDescentStageOptions {
   Index evaluations = 100;
+
+  auto fields() const {
+    return std::tuple{word("algorithm", "bold_descent"), implied(evaluations)};
+  }
 };
 
 /// Stage `solve`: gradient descent of a bold driver (bold_descent.h).

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "suite/core/batch.h"
+#include "suite/core/options.h"
 
 namespace physinv {
 
@@ -23,6 +24,12 @@ struct ConjugateGradientOptions {
   Index iterations = 250;
   double progress = 5e-4;
   double residual = 1e-5;  ///< |r| < residual |b|
+
+  auto fields() const {
+    return std::tuple{field("cg_iterations", iterations),
+                      field("cg_progress", progress),
+                      field("cg_residual", residual)};
+  }
 };
 
 struct ConjugateGradientPath {

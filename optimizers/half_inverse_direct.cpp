@@ -1,7 +1,5 @@
 #include "optimizers/half_inverse_direct.h"
 
-#include <fmt/format.h>
-
 #include "optimizers/half_inverse/explicit_power.h"
 #include "suite/core/oracle.h"
 #include "suite/core/probe.h"
@@ -109,13 +107,7 @@ class DirectStage final : public Stage {
 
   std::string name() const override { return options_.stage; }
   Needs needs() const override { return Needs::forward | Needs::jacobian; }
-  Options options() const override {
-    Options all = {{"algorithm", "half_inverse_direct"}};
-    for (const auto& option : describe(options_.power)) all.push_back(option);
-    all.push_back({"rate", fmt::format("{}", options_.rate)});
-    all.push_back({"metrics", options_.metrics.name});
-    return all;
-  }
+  Options options() const override { return describe(options_); }
   Index default_iterations() const override { return options_.iterations; }
   bool has_precision() const override { return true; }
   Networks networks() const override { return Networks::none; }

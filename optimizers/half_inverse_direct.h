@@ -27,6 +27,14 @@ struct HalfInverseDirectOptions {
   double rate = 1;
   Index iterations = 100;
   Metrics metrics = {};
+
+  auto fields() const {
+    return std::tuple{word("algorithm", "half_inverse_direct"),
+                      field("power", power),
+                      field("rate", rate),
+                      field("metrics", metrics),
+                      implied(stage, iterations)};
+  }
 };
 
 std::shared_ptr<const Stage> half_inverse_direct(

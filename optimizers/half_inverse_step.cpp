@@ -1,7 +1,5 @@
 #include "optimizers/half_inverse_step.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <limits>
 #include <type_traits>
@@ -71,21 +69,6 @@ void pull_back(const std::vector<LayerRows<T>>& layers,
 }
 
 }  // namespace
-
-Options describe(const hig::Power& power) {
-  return {{"kappa", fmt::format("{}", power.kappa)},
-          {"tau", fmt::format("{}", power.tau)},
-          {"beta", fmt::format("{}", power.beta)},
-          {"cut", power.absolute ? "absolute" : "relative"}};
-}
-
-Options describe(const HalfInverseStepOptions& o) {
-  Options all = {{"step", "half_inverse"}};
-  for (const auto& option : describe(o.power)) all.push_back(option);
-  all.push_back({"rate", fmt::format("{}", o.rate)});
-  all.push_back({"tolerance", fmt::format("{}", o.numerics.tolerance)});
-  return all;
-}
 
 template <class T>
 void HalfInverseStep<T>::power_of_gram(const Network<T>& network,

@@ -16,6 +16,7 @@
 #include "optimizers/half_inverse/structured_gram.h"
 #include "optimizers/half_inverse/tall_power.h"
 #include "suite/core/network.h"
+#include "suite/core/options.h"
 #include "suite/core/recipe.h"
 
 namespace physinv {
@@ -24,10 +25,14 @@ struct HalfInverseStepOptions {
   hig::Power power = {};
   double rate = 1;
   hig::HalfInverseOptions numerics = {};
-};
 
-Options describe(const hig::Power& power);
-Options describe(const HalfInverseStepOptions& options);
+  auto fields() const {
+    return std::tuple{word("step", "half_inverse"),
+                      field("power", power),
+                      field("rate", rate),
+                      field("numerics", numerics)};
+  }
+};
 
 template <class T>
 class HalfInverseStep {

@@ -1,7 +1,5 @@
 #include "optimizers/jpo.h"
 
-#include <fmt/format.h>
-
 #include "optimizers/steps/clip_percentile.h"
 #include "optimizers/training/best_so_far.h"
 #include "optimizers/training/first_order.h"
@@ -100,13 +98,6 @@ Outcome fit(const JpoOptions& options, StageRun& run) {
   return out;
 }
 
-Options in_words(const JpoOptions& options) {
-  Options all = {{"algorithm", "jpo"},
-                 {"clip", fmt::format("{}", options.clip)}};
-  for (auto& option : describe(options.step)) all.push_back(option);
-  return all;
-}
-
 }  // namespace
 
 std::shared_ptr<const Stage> jpo_fit(const JpoOptions& options) {
@@ -119,7 +110,7 @@ std::shared_ptr<const Stage> jpo_fit(const JpoOptions& options) {
   return make_stage(
       {.name = "fit",
        .needs = Needs::forward | Needs::vjp,
-       .options = in_words(options),
+       .options = describe(options),
        .iterations = options.iterations,
        .operations = operations,
        .sources = sources},

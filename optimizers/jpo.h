@@ -23,6 +23,13 @@ struct JpoOptions {
   StepOptions step = AdamOptions{.rate = 1e-4};
   double clip = 0.9;  ///< quantile of the gradient norms
   Index iterations = 3000;
+
+  auto fields() const {
+    return std::tuple{word("algorithm", "jpo"),
+                      field("clip", clip),
+                      field("step", step),
+                      implied(iterations)};
+  }
 };
 
 std::shared_ptr<const Stage> jpo_fit(const JpoOptions& options = {});

@@ -1,7 +1,5 @@
 #include "optimizers/local_steps.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,15 +12,6 @@
 
 namespace physinv {
 namespace {
-
-const char* name_of(LocalStep step) {
-  constexpr const char* kNames[] = {"gradient",
-                                    "newton",
-                                    "inverse_gradient",
-                                    "inverse_simulator",
-                                    "inverse_search"};
-  return kNames[static_cast<std::size_t>(step)];
-}
 
 Needs needs_of(const LocalStepsOptions& options) {
   switch (options.step) {
@@ -254,21 +243,7 @@ class LocalStepsStage final : public Stage {
 
   std::string name() const override { return "solve"; }
   Needs needs() const override { return needs_of(options_); }
-  Options options() const override {
-    const auto text = [](double v) { return fmt::format("{}", v); };
-    Options all = {{"algorithm", name_of(options_.step)}};
-    if (options_.rule) {
-      for (auto& option : physinv::describe(*options_.rule))
-        all.push_back(std::move(option));
-      return all;
-    }
-    all.emplace_back("rate", text(options_.rate));
-    if (!searches()) return all;
-    all.emplace_back("difference", text(options_.search.difference));
-    all.emplace_back("pgtol", text(options_.search.pgtol));
-    all.emplace_back("ftol", text(options_.search.ftol));
-    return all;
-  }
+  Options options() const override { return describe(options_); }
   Index default_iterations() const override { return options_.iterations; }
   Sources sources() const override {
     Sources all = Stage::sources();
@@ -299,7 +274,18 @@ class LocalStepsStage final : public Stage {
 
 }  // namespace
 
+std::string_view to_string(LocalStep step) {
+  constexpr std::string_view kNames[] = {"gradient",
+                                         "newton",
+                                         "inverse_gradient",
+                                         "inverse_simulator",
+                                         "inverse_search"};
+  return kNames[static_cast<std::size_t>(step)];
+}
+
 std::shared_ptr<const Stage> local_steps(const LocalStepsOptions& options) {
+  SUITE_CHECK(!options.rule || options.rate == LocalStepsOptions{}.rate,
+              "a rule of steps has its rate among its own options");
   return std::make_shared<LocalStepsStage>(options);
 }
 

@@ -34,6 +34,7 @@ enum class LocalStep : std::uint8_t {
   inverse_simulator,
   inverse_search
 };
+std::string_view to_string(LocalStep step);
 
 struct LocalStepsOptions {
   LocalStep step = LocalStep::gradient;
@@ -43,6 +44,15 @@ struct LocalStepsOptions {
   NumericInverseOptions search = {};
   /// Of gradient steps, instead of `rate`; it goes number by number.
   std::optional<StepOptions> rule = {};
+
+  auto fields() const {
+    return std::tuple{field("algorithm", step),
+                      only_if(!rule, field("rate", rate)),
+                      field("search", search),
+                      if_changed(field("paths", paths)),
+                      field("rule", rule),
+                      implied(iterations)};
+  }
 };
 
 /// Stage `solve`.

@@ -29,6 +29,9 @@ struct Metrics {
   void add_to(Sources& sources) const {
     if (!name.empty()) sources.roots.emplace_back(source);
   }
+  auto fields() const {
+    return std::tuple{field("metrics", name), implied(rows, evaluate, source)};
+  }
 };
 
 /// Evaluates them as a stage runs.

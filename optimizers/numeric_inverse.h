@@ -6,6 +6,7 @@
 #pragma once
 
 #include "optimizers/lbfgsb.h"
+#include "suite/core/options.h"
 #include "suite/core/problem.h"
 
 namespace physinv {
@@ -14,6 +15,12 @@ struct NumericInverseOptions {
   double difference = 0;  ///< h; 0: exact gradients
   double pgtol = 1e-5;    ///< of L-BFGS-B, its defaults
   double ftol = 2.2204460492503131e-09;
+
+  auto fields() const {
+    return std::tuple{field("difference", difference),
+                      field("pgtol", pgtol),
+                      field("ftol", ftol)};
+  }
 };
 
 class NumericInverse {

@@ -1,7 +1,5 @@
 #include "optimizers/training.h"
 
-#include <fmt/format.h>
-
 #include <array>
 #include <type_traits>
 
@@ -116,26 +114,6 @@ Outcome fit(const TrainingOptions& options, StageRun& run) {
   return out;
 }
 
-Options in_words(const TrainingOptions& options) {
-  Options all = {{"algorithm", options.signal.algorithm},
-                 {"batch", fmt::format("{}", options.batch)},
-                 {"gradient_scale", fmt::format("{}", options.gradient_scale)},
-                 {"fresh", fmt::format("{}", options.fresh)},
-                 {"metrics", options.metrics.name}};
-  if (options.chunk > 0)
-    all.push_back({"chunk", fmt::format("{}", options.chunk)});
-  if (options.set > 0) all.push_back({"set", fmt::format("{}", options.set)});
-  if (!options.project) all.push_back({"project", "false"});
-  if (options.late.of) {
-    all.push_back({"late_error", options.late.name});
-    all.push_back({"late_share", fmt::format("{}", options.late.share)});
-  }
-  const Options rule =
-      std::visit([](const auto& o) { return describe(o); }, options.rule);
-  all.insert(all.end(), rule.begin(), rule.end());
-  return all;
-}
-
 double operations(const TrainingOptions& options, const CaseSize& size) {
   const auto samples = static_cast<double>(options.batch);
   const double passes =
@@ -189,7 +167,7 @@ std::shared_ptr<const Stage> train(const TrainingOptions& options) {
   return make_stage(
       {.name = options.stage,
        .needs = Needs::forward | needs(options),
-       .options = in_words(options),
+       .options = describe(options),
        .iterations = options.iterations,
        .own_length = options.own_length,
        .operations =

@@ -46,6 +46,20 @@ struct TrainingOptions {
   Metrics metrics = {};
   LateError late = {};
   SignalRecipe signal = solver_loss();
+
+  auto fields() const {
+    return std::tuple{field("algorithm", signal),
+                      field("batch", batch),
+                      field("gradient_scale", gradient_scale),
+                      field("fresh", fresh),
+                      field("metrics", metrics),
+                      if_changed(field("chunk", chunk)),
+                      if_changed(field("set", set)),
+                      if_changed(field("project", project)),
+                      if_changed(field("late", late)),
+                      field("rule", rule),
+                      implied(stage, iterations, own_length)};
+  }
 };
 
 std::shared_ptr<const Stage> train(const TrainingOptions& options);

@@ -21,6 +21,7 @@
 #include "optimizers/half_inverse/explicit_power.h"
 #include "optimizers/half_inverse/spectral_power.h"
 #include "optimizers/half_inverse/two_level.h"
+#include "suite/core/options.h"
 
 namespace physinv::hig {
 
@@ -34,6 +35,13 @@ struct HalfInverseOptions {
   double gram_noise = 1;  ///< see SpectralPower::factor
   /// Largest explicit Jacobian, in numbers; beyond it two levels are the end.
   Index largest_jacobian = 64'000'000;
+
+  auto fields() const {
+    return std::tuple{field("tolerance", tolerance),
+                      if_changed(field("shortcut", shortcut)),
+                      if_changed(field("gram_noise", gram_noise)),
+                      if_changed(field("largest_jacobian", largest_jacobian))};
+  }
 };
 
 struct HalfInverseReport : PowerReport {

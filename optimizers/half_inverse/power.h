@@ -14,6 +14,7 @@
 #include <string_view>
 
 #include "suite/core/batch.h"
+#include "suite/core/options.h"
 
 namespace physinv::hig {
 
@@ -26,6 +27,14 @@ struct Power {
   bool absolute = false;  ///< cut = tau instead of tau s_max
 
   double cut(double s_max) const { return absolute ? tau : tau * s_max; }
+
+  auto fields() const {
+    return std::tuple{
+        field("kappa", kappa),
+        field("tau", tau),
+        field("beta", beta),
+        word("cut", absolute ? "absolute" : "relative", absolute)};
+  }
 };
 
 enum class Ending {

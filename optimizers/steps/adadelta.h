@@ -11,6 +11,7 @@
 #include "suite/core/archive.h"
 #include "suite/core/batch.h"
 #include "suite/core/check.h"
+#include "suite/core/options.h"
 
 namespace physinv {
 
@@ -18,6 +19,13 @@ struct AdadeltaOptions {
   double rate = 1.0;
   double decay = 0.95;
   double eps = 1e-7;
+
+  auto fields() const {
+    return std::tuple{word("step", "adadelta"),
+                      field("rate", rate),
+                      field("decay", decay),
+                      field("eps", eps)};
+  }
 };
 
 template <class T>

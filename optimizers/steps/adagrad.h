@@ -9,6 +9,7 @@
 #include "suite/core/archive.h"
 #include "suite/core/batch.h"
 #include "suite/core/check.h"
+#include "suite/core/options.h"
 
 namespace physinv {
 
@@ -16,6 +17,13 @@ struct AdagradOptions {
   double rate = 1e-2;
   double accumulator = 0.1;  ///< a before the first step; PyTorch has 0
   double eps = 1e-7;
+
+  auto fields() const {
+    return std::tuple{word("step", "adagrad"),
+                      field("rate", rate),
+                      field("accumulator", accumulator),
+                      field("eps", eps)};
+  }
 };
 
 template <class T>

@@ -1,7 +1,5 @@
 #include "optimizers/steps/adahessian.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
 
 #include "suite/core/check.h"
@@ -25,15 +23,6 @@ void average(const std::vector<TensorInfo>& tensors, VectorOut<T> h) {
 }
 
 }  // namespace
-
-Options describe(const AdaHessianOptions& o) {
-  return {{"step", "adahessian"},
-          {"rate", fmt::format("{}", o.rate)},
-          {"power", fmt::format("{}", o.power)},
-          {"beta1", fmt::format("{}", o.beta1)},
-          {"beta2", fmt::format("{}", o.beta2)},
-          {"eps", fmt::format("{}", o.eps)}};
-}
 
 template <class T>
 void AdaHessian<T>::step(VectorIn<T> x,

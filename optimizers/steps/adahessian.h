@@ -13,6 +13,7 @@
 
 #include "suite/core/archive.h"
 #include "suite/core/network.h"
+#include "suite/core/options.h"
 #include "suite/core/recipe.h"
 
 namespace physinv {
@@ -22,9 +23,16 @@ struct AdaHessianOptions {
   double power = 0.5;
   double beta1 = 0.9, beta2 = 0.999;
   double eps = 1e-4;
-};
 
-Options describe(const AdaHessianOptions& options);
+  auto fields() const {
+    return std::tuple{word("step", "adahessian"),
+                      field("rate", rate),
+                      field("power", power),
+                      field("beta1", beta1),
+                      field("beta2", beta2),
+                      field("eps", eps)};
+  }
+};
 
 template <class T>
 class AdaHessian {

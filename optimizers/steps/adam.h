@@ -16,6 +16,7 @@
 #include "suite/core/batch.h"
 #include "suite/core/check.h"
 #include "suite/core/math.h"
+#include "suite/core/options.h"
 
 namespace physinv {
 
@@ -25,6 +26,15 @@ struct AdamOptions {
   double eps = 1e-7;  ///< as in the authors' framework; PyTorch has 1e-8
   /// Keras' form: eps is added to the root of the uncorrected v.
   bool eps_before_correction = false;
+
+  auto fields() const {
+    return std::tuple{word("step", "adam"),
+                      field("rate", rate),
+                      field("beta1", beta1),
+                      field("beta2", beta2),
+                      field("eps", eps),
+                      field("eps_before_correction", eps_before_correction)};
+  }
 };
 
 template <class T>

@@ -9,6 +9,7 @@
 #include "suite/core/archive.h"
 #include "suite/core/batch.h"
 #include "suite/core/check.h"
+#include "suite/core/options.h"
 
 namespace physinv {
 
@@ -16,6 +17,13 @@ struct RmspropOptions {
   double rate = 1e-3;
   double decay = 0.9;
   double eps = 1e-7;
+
+  auto fields() const {
+    return std::tuple{word("step", "rmsprop"),
+                      field("rate", rate),
+                      field("decay", decay),
+                      field("eps", eps)};
+  }
 };
 
 template <class T>

@@ -21,9 +21,6 @@ using StepOptions = std::variant<AdamOptions,
                                  AdadeltaOptions,
                                  RmspropOptions>;
 
-/// As text for records, the rule's name first.
-Options describe(const StepOptions& options);
-
 /// Of these rules, only the chosen one matters to a stage.
 void add_sources(const StepOptions& options, Sources& sources);
 

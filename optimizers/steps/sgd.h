@@ -6,12 +6,18 @@
 #include "suite/core/archive.h"
 #include "suite/core/batch.h"
 #include "suite/core/check.h"
+#include "suite/core/options.h"
 
 namespace physinv {
 
 struct SgdOptions {
   double rate = 1e-2;
   double momentum = 0.0;
+
+  auto fields() const {
+    return std::tuple{
+        word("step", "sgd"), field("rate", rate), field("momentum", momentum)};
+  }
 };
 
 template <class T>

@@ -1,7 +1,5 @@
 #include "optimizers/training/hessian_free_rule.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -16,16 +14,6 @@ constexpr double kShorter = 0.8, kDescent = 0.01;
 constexpr int kTrials = 20;
 
 }  // namespace
-
-Options describe(const HessianFreeOptions& o) {
-  return {{"step", "hessian_free"},
-          {"rate", fmt::format("{}", o.rate)},
-          {"damping", fmt::format("{}", o.damping)},
-          {"warm", fmt::format("{}", o.warm)},
-          {"cg_iterations", fmt::format("{}", o.solver.iterations)},
-          {"cg_progress", fmt::format("{}", o.solver.progress)},
-          {"cg_residual", fmt::format("{}", o.solver.residual)}};
-}
 
 template <class T>
 ConjugateGradientPath HessianFreeRule<T>::solve(Signal<T>& signal,

@@ -19,6 +19,7 @@
 
 #include "optimizers/conjugate_gradients.h"
 #include "optimizers/training/rule.h"
+#include "suite/core/options.h"
 #include "suite/core/recipe.h"
 
 namespace physinv {
@@ -28,9 +29,15 @@ struct HessianFreeOptions {
   double damping = 1;  ///< to begin with
   double warm = 0.95;  ///< share of the last result to start from
   ConjugateGradientOptions solver = {};
-};
 
-Options describe(const HessianFreeOptions& options);
+  auto fields() const {
+    return std::tuple{word("step", "hessian_free"),
+                      field("rate", rate),
+                      field("damping", damping),
+                      field("warm", warm),
+                      field("solver", solver)};
+  }
+};
 
 /// What happened in an update.
 struct HessianFreeReport {

@@ -7,6 +7,7 @@
 #include <string>
 #include <type_traits>
 
+#include "suite/core/options.h"
 #include "suite/core/problem.h"
 
 namespace physinv {
@@ -22,11 +23,17 @@ class Signal;
 /// A number of the batches of a training's last updates, before each of them:
 /// steps of constant length never settle, their average does.
 struct LateError {
-  std::string name;    ///< enters the content key; empty: none
+  std::string name;    ///< enters the content key
   double share = 0.1;  ///< of the updates, the last ones
   /// Mean over a batch, of its estimates and observations.
   std::function<double(BatchIn<double> x, BatchIn<double> y)> of;
   const char* source = __builtin_FILE();  ///< as that of Metrics
+
+  auto fields() const {
+    return std::tuple{field("late_error", name),
+                      field("late_share", share),
+                      implied(of, source)};
+  }
 };
 
 struct SignalOptions {
@@ -64,6 +71,13 @@ struct SignalRecipe {
   /// What products with second derivatives ask of the problem; none: the
   /// signal has no such products.
   std::optional<Needs> hessian = {}, gauss_newton = {};
+
+  auto fields() const {
+    return std::tuple{
+        field("algorithm", algorithm),
+        implied(gradient, jacobians, make_float, make_double, source),
+        implied(hessian, gauss_newton)};
+  }
 
   template <class T>
   std::unique_ptr<Signal<T>> make(const SignalPlace<T>& place) const {

@@ -1,7 +1,5 @@
 #include "problems/billiards/billiards.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
 #include <limits>
 #include <type_traits>
@@ -252,21 +250,6 @@ BilliardsPath simulate_events(const Point& velocity,
     path.final_ball[i] = p[1][i] + v[1][i] / o.drag;
   }
   return path;
-}
-
-Options describe(const BilliardsOptions& o) {
-  const auto pair = [](const std::array<double, 2>& p) {
-    return fmt::format("{},{}", p[0], p[1]);
-  };
-  return {{"radius", fmt::format("{}", o.radius)},
-          {"elasticity", fmt::format("{}", o.elasticity)},
-          {"drag", fmt::format("{}", o.drag)},
-          {"cue", pair(o.cue)},
-          {"ball_x", fmt::format("{}", o.ball_x)},
-          {"ball_y", pair(o.ball_y)},
-          {"target", pair(o.target)},
-          {"start", pair(o.start)},
-          {"velocity_spread", fmt::format("{}", o.velocity_spread)}};
 }
 
 std::array<double, 2> exact_velocity(const Point& ball,

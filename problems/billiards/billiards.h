@@ -44,9 +44,19 @@ struct BilliardsOptions {
   std::array<double, 2> start = {1.0, 0.0};   ///< first guess of the velocity
   /// Labelled samples have velocity start + U(-spread, spread)^2.
   double velocity_spread = 0.5;
-};
 
-Options describe(const BilliardsOptions& options);
+  auto fields() const {
+    return std::tuple{field("radius", radius),
+                      field("elasticity", elasticity),
+                      field("drag", drag),
+                      field("cue", cue),
+                      field("ball_x", ball_x),
+                      field("ball_y", ball_y),
+                      field("target", target),
+                      field("start", start),
+                      field("velocity_spread", velocity_spread)};
+  }
+};
 
 /// One collision, as the kernels see it.
 template <class T>

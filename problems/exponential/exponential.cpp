@@ -1,7 +1,5 @@
 #include "problems/exponential/exponential.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
 
 #include "suite/core/check.h"
@@ -20,10 +18,6 @@ void exponentials(BatchIn<T> x, BatchOut<T> y) {
 }
 
 }  // namespace
-
-Options describe(const ExponentialOptions& o) {
-  return {{"lowest", fmt::format("{}", o.lowest)}};
-}
 
 template <class T>
 Exponential<T>::Exponential(const Options& options) : options_(options) {

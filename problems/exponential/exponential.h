@@ -20,9 +20,9 @@ namespace physinv {
 
 struct ExponentialOptions {
   double lowest = -12;  ///< of the unknowns, the highest is 0
-};
 
-Options describe(const ExponentialOptions& options);
+  auto fields() const { return std::tuple{field("lowest", lowest)}; }
+};
 
 template <class T>
 class Exponential : public Problem<T>,

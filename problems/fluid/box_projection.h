@@ -16,12 +16,18 @@
 #include "problems/fluid/plane.h"
 #include "problems/fluid/sparse_cholesky.h"
 #include "problems/fluid/staggered.h"
+#include "suite/core/options.h"
 
 namespace physinv::fluid {
 
 /// Cells i0 .. i1-1 by j0 .. j1-1.
 struct Obstacle {
   Index i0, i1, j0, j1;
+
+  auto fields() const {
+    return std::tuple{
+        field("i0", i0), field("i1", i1), field("j0", j0), field("j1", j1)};
+  }
 };
 
 struct BoxMasks {

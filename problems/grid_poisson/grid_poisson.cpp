@@ -115,8 +115,6 @@ enum Slot : std::size_t { kPoison };
 
 }  // namespace
 
-Options describe(const GridPoissonOptions& /*options*/) { return {}; }
-
 Vector<double> poisson_potential(const Vector<double>& noise) {
   SUITE_CHECK(noise.size() == 2 * kCells, "noise of 64 complex numbers");
   static const Batch<double> kWaves = waves();

@@ -27,9 +27,9 @@ namespace physinv {
 inline constexpr Index kPoissonSide = 8;
 inline constexpr Index kPoissonCells = kPoissonSide * kPoissonSide;
 
-struct GridPoissonOptions {};
-
-Options describe(const GridPoissonOptions& options);
+struct GridPoissonOptions {
+  auto fields() const { return std::tuple{}; }
+};
 
 /// Smooth random potential: with complex noise c (real parts, then imaginary
 /// parts, 64 each, frequency 8 k + l) the real part of the inverse Fourier

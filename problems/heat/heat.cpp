@@ -1,7 +1,5 @@
 #include "problems/heat/heat.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -29,12 +27,6 @@ T poison(const T* x, Index cells) {
 }
 
 }  // namespace
-
-Options describe(const HeatOptions& o) {
-  return {{"resolution", fmt::format("{}", o.resolution)},
-          {"end_time", fmt::format("{}", o.end_time)},
-          {"noise_floor", fmt::format("{}", o.noise_floor)}};
-}
 
 void add_rectangle(HeatRectangle r, Index n, double* field) {
   const auto side = static_cast<double>(n);

@@ -35,9 +35,13 @@ struct HeatOptions {
   Index resolution = 64;   ///< n, cells per side: a power of two, at least 8
   double end_time = 8;     ///< diffusivity times time, in squared cells
   double noise_floor = 0;  ///< of every y, taken as uncertain by `invert`
-};
 
-Options describe(const HeatOptions& options);
+  auto fields() const {
+    return std::tuple{field("resolution", resolution),
+                      field("end_time", end_time),
+                      field("noise_floor", noise_floor)};
+  }
+};
 
 struct HeatRectangle {
   std::array<double, 2> centre;     ///< (row, column), in cells

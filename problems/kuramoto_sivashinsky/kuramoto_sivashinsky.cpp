@@ -1,7 +1,5 @@
 #include "problems/kuramoto_sivashinsky/kuramoto_sivashinsky.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -57,17 +55,6 @@ void draw_state(const KuramotoSivashinskyOptions& o,
 }
 
 }  // namespace
-
-Options describe(const KuramotoSivashinskyOptions& o) {
-  return {{"cells", fmt::format("{}", o.cells)},
-          {"box", fmt::format("{}", o.box)},
-          {"time_step", fmt::format("{}", o.time_step)},
-          {"steps", fmt::format("{}", o.steps)},
-          {"prior_low", fmt::format("{}", o.prior_low)},
-          {"prior_high", fmt::format("{}", o.prior_high)},
-          {"start", fmt::format("{},{}", o.start[0], o.start[1])},
-          {"tape_budget", fmt::format("{}", o.tape_budget)}};
-}
 
 template <class T>
 KuramotoSivashinsky<T>::KuramotoSivashinsky(const Options& o) : options_(o) {

@@ -54,9 +54,18 @@ struct KuramotoSivashinskyOptions {
   /// between: less than a fifth of the memory, up to half as much time again,
   /// the same bits.
   double tape_budget = 1e8;
-};
 
-Options describe(const KuramotoSivashinskyOptions& options);
+  auto fields() const {
+    return std::tuple{field("cells", cells),
+                      field("box", box),
+                      field("time_step", time_step),
+                      field("steps", steps),
+                      field("prior_low", prior_low),
+                      field("prior_high", prior_high),
+                      field("start", start),
+                      field("tape_budget", tape_budget)};
+  }
+};
 
 /// The step's multipliers for the modes m = 0 .. cells/2, and G at the cells.
 struct KuramotoSivashinskyOperators {

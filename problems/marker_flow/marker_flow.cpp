@@ -1,7 +1,5 @@
 #include "problems/marker_flow/marker_flow.h"
 
-#include <fmt/format.h>
-
 #include "problems/fluid/noise.h"
 #include "problems/fluid/samples.h"
 #include "problems/marker_flow/periodic_flow.h"
@@ -234,24 +232,6 @@ struct MarkerFlow<T>::Kernel {
           row);
   }
 };
-
-Options describe(const MarkerFlowOptions& o) {
-  Options all = {{"cells", fmt::format("{}", o.cells)},
-                 {"box", fmt::format("{}", o.box)},
-                 {"end_time", fmt::format("{}", o.end_time)},
-                 {"steps", fmt::format("{}", o.steps)},
-                 {"falloff", fmt::format("{}", o.falloff)},
-                 {"threshold", fmt::format("{}", o.threshold)},
-                 {"fill", fmt::format("{},{}", o.fill[0], o.fill[1])},
-                 {"half", fmt::format("{}", o.half)},
-                 {"vortex", fmt::format("{}", o.vortex)},
-                 {"width", fmt::format("{}", o.width)},
-                 {"moment", fmt::format("{}", o.moment)},
-                 {"noise", fmt::format("{}", o.noise)},
-                 {"correction", fmt::format("{}", o.correction)}};
-  if (o.timed_path) all.push_back({"timed_path", "1"});
-  return all;
-}
 
 template <class T>
 MarkerFlow<T>::MarkerFlow(const Options& o) : options_(o) {

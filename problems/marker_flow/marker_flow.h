@@ -58,9 +58,24 @@ struct MarkerFlowOptions {
   /// Where the vortex is thought to be on the way back: after the time itself,
   /// or after the number of steps as in the authors' code.
   bool timed_path = false;
-};
 
-Options describe(const MarkerFlowOptions& options);
+  auto fields() const {
+    return std::tuple{field("cells", cells),
+                      field("box", box),
+                      field("end_time", end_time),
+                      field("steps", steps),
+                      field("falloff", falloff),
+                      field("threshold", threshold),
+                      field("fill", fill),
+                      field("half", half),
+                      field("vortex", vortex),
+                      field("width", width),
+                      field("moment", moment),
+                      field("noise", noise),
+                      field("correction", correction),
+                      field("timed_path", timed_path)};
+  }
+};
 
 template <class T>
 class MarkerFlow final : public Problem<T>, public Vjp<T>, public Inverse<T> {

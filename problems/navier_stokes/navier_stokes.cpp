@@ -1,8 +1,5 @@
 #include "problems/navier_stokes/navier_stokes.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <cmath>
 #include <memory>
 #include <mutex>
@@ -227,25 +224,6 @@ struct NavierStokes<T>::Lazy {
   std::once_flag made;
   std::unique_ptr<const Kernel> kernel;
 };
-
-Options describe(const NavierStokesOptions& o) {
-  std::vector<Index> boxes;
-  for (const auto& b : o.obstacles)
-    boxes.insert(boxes.end(), {b.i0, b.i1, b.j0, b.j1});
-  return {{"cells", fmt::format("{}", o.cells)},
-          {"box", fmt::format("{}", o.box)},
-          {"end_time", fmt::format("{}", o.end_time)},
-          {"steps", fmt::format("{}", o.steps)},
-          {"obstacles", fmt::format("{}", fmt::join(boxes, ","))},
-          {"height", fmt::format("{}", o.height)},
-          {"width", fmt::format("{}", o.width)},
-          {"speed", fmt::format("{}", o.speed)},
-          {"noise", fmt::format("{}", o.noise)},
-          {"x0", fmt::format("{},{}", o.x0[0], o.x0[1])},
-          {"vx", fmt::format("{},{}", o.vx[0], o.vx[1])},
-          {"vy", fmt::format("{},{}", o.vy[0], o.vy[1])},
-          {"tape_budget", fmt::format("{}", o.tape_budget)}};
-}
 
 template <class T>
 NavierStokes<T>::NavierStokes(const Options& o)

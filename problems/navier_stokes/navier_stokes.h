@@ -52,9 +52,23 @@ struct NavierStokesOptions {
   /// Larger batches are simulated again, a register of samples at a time, to
   /// the same bits.
   double tape_budget = 1.5e8;
-};
 
-Options describe(const NavierStokesOptions& options);
+  auto fields() const {
+    return std::tuple{field("cells", cells),
+                      field("box", box),
+                      field("end_time", end_time),
+                      field("steps", steps),
+                      field("obstacles", obstacles),
+                      field("height", height),
+                      field("width", width),
+                      field("speed", speed),
+                      field("noise", noise),
+                      field("x0", x0),
+                      field("vx", vx),
+                      field("vy", vy),
+                      field("tape_budget", tape_budget)};
+  }
+};
 
 template <class T>
 class NavierStokes final : public Problem<T>,

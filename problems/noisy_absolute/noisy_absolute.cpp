@@ -1,7 +1,6 @@
 #include "problems/noisy_absolute/noisy_absolute.h"
 
-#include <fmt/format.h>
-
+#include <cmath>
 #include <numbers>
 
 #include "suite/core/check.h"
@@ -72,18 +71,6 @@ double solution_at(Solution solution, double gamma) {
 }
 
 }  // namespace
-
-Options describe(const NoisyAbsoluteOptions& o) {
-  constexpr std::string_view kNames[] = {"zero", "10*gamma", "sin(2*gamma)"};
-  return {
-      {"solution", std::string(kNames[static_cast<std::size_t>(o.solution)])},
-      {"gamma", fmt::format("{}", o.gamma)},
-      {"terms", fmt::format("{}", o.terms)},
-      {"omega", fmt::format("{},{}", o.omega_min, o.omega_max)},
-      {"level", fmt::format("{}", o.level)},
-      {"decades", fmt::format("{}", o.decades)},
-      {"snr", fmt::format("{}", o.snr)}};
-}
 
 double noise_level(VectorIn<double> amplitude, VectorIn<double> omega) {
   return amplitude.cwiseProduct(omega).norm();

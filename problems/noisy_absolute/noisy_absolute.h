@@ -29,6 +29,11 @@ enum class Solution : std::uint8_t {
   sine,    ///< sin(2 gamma)
 };
 
+constexpr std::string_view to_string(Solution solution) {
+  constexpr std::string_view kNames[] = {"zero", "10*gamma", "sin(2*gamma)"};
+  return kNames[static_cast<std::size_t>(solution)];
+}
+
 struct NoisyAbsoluteOptions {
   Solution solution = Solution::sine;
   double gamma = 2;  ///< gamma ~ U(-gamma, gamma)
@@ -37,9 +42,17 @@ struct NoisyAbsoluteOptions {
   double level = 1;    ///< a; A ~ U(0, 1), then rescaled to this level
   double decades = 0;  ///< a = level 10^U(-decades, decades)
   double snr = 1;      ///< lambda = snr a
-};
 
-Options describe(const NoisyAbsoluteOptions& options);
+  auto fields() const {
+    return std::tuple{field("solution", solution),
+                      field("gamma", gamma),
+                      field("terms", terms),
+                      field("omega", omega_min, omega_max),
+                      field("level", level),
+                      field("decades", decades),
+                      field("snr", snr)};
+  }
+};
 
 /// sqrt(sum_j (A_j w_j)^2).
 double noise_level(VectorIn<double> amplitude, VectorIn<double> omega);

@@ -1,7 +1,5 @@
 #include "problems/oscillators/oscillators.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "suite/core/check.h"
@@ -210,14 +208,6 @@ Four<Wide<T, 4>> differentiate(const Constants<T>& k,
 enum Slot : std::size_t { kKept, kCount };
 
 }  // namespace
-
-Options describe(const OscillatorsOptions& o) {
-  return {{"steps", fmt::format("{}", o.steps)},
-          {"dt", fmt::format("{}", o.dt)},
-          {"coupling", fmt::format("{}", o.coupling)},
-          {"control", fmt::format("{}", o.control)},
-          {"deviation", fmt::format("{}", o.deviation)}};
-}
 
 template <class T>
 OscillatorsStep oscillators_step(const std::array<double, 4>& state,

@@ -32,9 +32,15 @@ struct OscillatorsOptions {
   double control = 3.0;   ///< C
   /// Controls of labelled samples are N(0, deviation^2).
   double deviation = 0.3;
-};
 
-Options describe(const OscillatorsOptions& options);
+  auto fields() const {
+    return std::tuple{field("steps", steps),
+                      field("dt", dt),
+                      field("coupling", coupling),
+                      field("control", control),
+                      field("deviation", deviation)};
+  }
+};
 
 /// One time step: y = state after it, a = dy / d state (4 x 4), b = dy / du.
 struct OscillatorsStep {

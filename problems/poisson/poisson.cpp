@@ -1,7 +1,5 @@
 #include "problems/poisson/poisson.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -72,16 +70,6 @@ void iterate(const PoissonOptions& o,
 }
 
 }  // namespace
-
-Options describe(const PoissonOptions& o) {
-  Options all = {{"rows", fmt::format("{}", o.rows)},
-                 {"columns", fmt::format("{}", o.columns)}};
-  if (o.relative > 0) {
-    all.push_back({"relative", fmt::format("{}", o.relative)});
-    all.push_back({"most", fmt::format("{}", o.most)});
-  }
-  return all;
-}
 
 Batch<double> poisson_source(const Batch<double>& re, const Batch<double>& im) {
   const Index p = re.rows(), q = re.cols();

@@ -31,9 +31,14 @@ struct PoissonOptions {
   Index rows = 64, columns = 64;  ///< p, q
   double relative = 0;            ///< 0: the exact solution
   Index most = 1000;              ///< iterations of conjugate gradients
-};
 
-Options describe(const PoissonOptions& options);
+  auto fields() const {
+    return std::tuple{field("rows", rows),
+                      field("columns", columns),
+                      if_changed(field("relative", relative)),
+                      if_changed(field("most", most))};
+  }
+};
 
 /// Smooth random source of zero mean and unit variance (population): the real
 /// part of the inverse Fourier transform of c / k^2 for complex noise c = re +

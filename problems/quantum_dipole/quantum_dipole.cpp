@@ -1,8 +1,5 @@
 #include "problems/quantum_dipole/quantum_dipole.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -186,15 +183,6 @@ std::complex<double> inner(const A& a, const B& b) {
 enum Slot : std::size_t { kControls, kEnd };
 
 }  // namespace
-
-Options describe(const QuantumDipoleOptions& o) {
-  return {{"steps", fmt::format("{}", o.steps)},
-          {"dt", fmt::format("{}", o.dt)},
-          {"accurate_loss", fmt::format("{}", o.accurate_loss)},
-          {"deviation", fmt::format("{}", o.deviation)},
-          {"zero_start", fmt::format("{}", o.zero_start)},
-          {"angles", fmt::format("{}", fmt::join(o.angles, " "))}};
-}
 
 Vector<double> quantum_eigenstate(int k) {
   SUITE_CHECK(k >= 1 && k <= kPoints, "there are 14 eigenstates");

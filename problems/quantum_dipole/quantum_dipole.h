@@ -54,9 +54,16 @@ struct QuantumDipoleOptions {
   bool zero_start = false;
   /// Angles of the first targets, (f1, f2) = (cos, sin); the rest is drawn.
   std::vector<double> angles = {};
-};
 
-Options describe(const QuantumDipoleOptions& options);
+  auto fields() const {
+    return std::tuple{field("steps", steps),
+                      field("dt", dt),
+                      field("accurate_loss", accurate_loss),
+                      field("deviation", deviation),
+                      field("zero_start", zero_start),
+                      field("angles", angles)};
+  }
+};
 
 /// psi_k at the inner points, k = 1 .. 14, of norm 1: sin(pi k j / 15) scaled.
 Vector<double> quantum_eigenstate(int k);

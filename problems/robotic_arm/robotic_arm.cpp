@@ -1,8 +1,5 @@
 #include "problems/robotic_arm/robotic_arm.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -63,15 +60,6 @@ void for_arms(const RoboticArmOptions& options, BatchIn<T> x, F&& body) {
 }
 
 }  // namespace
-
-Options describe(const RoboticArmOptions& o) {
-  const auto text = [](const auto& list) {
-    return fmt::format("{}", fmt::join(list, ","));
-  };
-  return {{"links", text(o.links)},
-          {"mean", text(o.mean)},
-          {"deviation", text(o.deviation)}};
-}
 
 std::array<std::array<double, 2>, 4> arm_joints(const std::array<double, 4>& x,
                                                 const RoboticArmOptions& o) {

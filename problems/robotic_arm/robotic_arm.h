@@ -32,9 +32,13 @@ struct RoboticArmOptions {
   /// Prior of the unknowns, normal; its mean is the first guess.
   std::array<double, 4> mean = {0.0, 0.0, 0.0, 0.0};
   std::array<double, 4> deviation = {0.25, 0.5, 0.5, 0.5};
-};
 
-Options describe(const RoboticArmOptions& options);
+  auto fields() const {
+    return std::tuple{field("links", links),
+                      field("mean", mean),
+                      field("deviation", deviation)};
+  }
+};
 
 /// Base, the two joints between the links, and the tip. For plots and checks.
 std::array<std::array<double, 2>, 4> arm_joints(

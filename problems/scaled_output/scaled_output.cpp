@@ -1,6 +1,6 @@
 #include "problems/scaled_output/scaled_output.h"
 
-#include <fmt/format.h>
+#include <cmath>
 
 #include "suite/core/check.h"
 #include "suite/core/math.h"
@@ -35,10 +35,6 @@ T poison(T a, T b) {
 enum Slot : std::size_t { kPoison };
 
 }  // namespace
-
-Options describe(const ScaledOutputOptions& o) {
-  return {{"gamma", fmt::format("{}", o.gamma)}};
-}
 
 template <class T>
 ScaledOutput<T>::ScaledOutput(const Options& options) : options_(options) {

@@ -18,9 +18,9 @@ namespace physinv {
 
 struct ScaledOutputOptions {
   double gamma = 0.01;  ///< 1 is well, 0.01 ill conditioned
-};
 
-Options describe(const ScaledOutputOptions& options);
+  auto fields() const { return std::tuple{field("gamma", gamma)}; }
+};
 
 template <class T>
 class ScaledOutput final : public LinearProblem<T>, public Jacobian<T> {

@@ -1,8 +1,5 @@
 #include "problems/scaling/scaling.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -14,13 +11,6 @@ namespace {
 enum Slot : std::size_t { kSlopes };
 
 }  // namespace
-
-Options describe(const ScalingOptions& o) {
-  return {{"scales", fmt::format("{}", fmt::join(o.scales, " "))},
-          {"power", fmt::format("{}", o.power)},
-          {"half", fmt::format("{}", o.half)},
-          {"start", fmt::format("{} {}", o.start[0], o.start[1])}};
-}
 
 template <class T>
 Scaling<T>::Scaling(const Options& options) : options_(options) {

@@ -29,9 +29,14 @@ struct ScalingOptions {
   int power = 1;                     ///< of x2
   bool half = false;                 ///< loss: half the square
   std::array<double, 2> start = {0.5, 0.85};
-};
 
-Options describe(const ScalingOptions& options);
+  auto fields() const {
+    return std::tuple{field("scales", scales),
+                      field("power", power),
+                      field("half", half),
+                      field("start", start)};
+  }
+};
 
 template <class T>
 class Scaling : public Problem<T>,

@@ -15,6 +15,7 @@
 #pragma once
 
 #include "suite/core/batch.h"
+#include "suite/core/options.h"
 #include "suite/core/threads.h"
 
 namespace physinv {
@@ -26,12 +27,26 @@ enum class ScalingStep : std::uint8_t {
   inverse_simulator
 };
 
+constexpr std::string_view to_string(ScalingStep step) {
+  constexpr std::string_view kNames[] = {
+      "gradient", "newton", "inverse_gradient", "inverse_simulator"};
+  return kNames[static_cast<std::size_t>(step)];
+}
+
 struct ScalingFlow {
   ScalingStep step = ScalingStep::gradient;
   int power = 1;
   double rate = 0.03;
   Index steps = 50;
   bool half = false;
+
+  auto fields() const {
+    return std::tuple{field("power", power),
+                      field("rate", rate),
+                      field("steps", steps),
+                      field("flow", step),
+                      if_changed(field("half", half))};
+  }
 };
 
 /// Where every trajectory is after all steps; x1 and x2 may be the starts.

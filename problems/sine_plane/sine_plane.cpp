@@ -1,7 +1,5 @@
 #include "problems/sine_plane/sine_plane.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -84,13 +82,6 @@ void put(BatchOut<T> to, Index i, const Pair& v) {
 }
 
 }  // namespace
-
-Options describe(const SinePlaneOptions& o) {
-  return {{"gamma", fmt::format("{}", o.gamma)},
-          {"xi", fmt::format("{}", o.xi)},
-          {"degrees", fmt::format("{}", o.degrees)},
-          {"limit", fmt::format("{}", o.limit)}};
-}
 
 // Each family of solutions repeats with the period of the sine; in the turned
 // frame the two unknowns are independent of each other, so that the nearest of

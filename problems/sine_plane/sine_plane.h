@@ -36,9 +36,14 @@ struct SinePlaneOptions {
   double xi = 1;       ///< stretches one axis, squeezes the other
   double degrees = 0;  ///< phi
   double limit = 0.2;  ///< of the decrease that one axis of a step promises
-};
 
-Options describe(const SinePlaneOptions& options);
+  auto fields() const {
+    return std::tuple{field("gamma", gamma),
+                      field("xi", xi),
+                      field("degrees", degrees),
+                      field("limit", limit)};
+  }
+};
 
 using Pair = std::array<double, 2>;
 

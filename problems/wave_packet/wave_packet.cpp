@@ -1,7 +1,5 @@
 #include "problems/wave_packet/wave_packet.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -96,19 +94,6 @@ double half_square(const T* y, const T* target, Index count) {
 }
 
 }  // namespace
-
-Options describe(const WavePacketOptions& o) {
-  return {{"samples", fmt::format("{}", o.samples)},
-          {"amplitude", fmt::format("{}", o.amplitude)},
-          {"frequency", fmt::format("{}", o.frequency)},
-          {"phase", fmt::format("{}", o.phase)},
-          {"width", fmt::format("{}", o.width)},
-          {"centre", fmt::format("{}", o.centre)},
-          {"scale", fmt::format("{}", o.scale)},
-          {"noise", fmt::format("{}", o.noise)},
-          {"range", fmt::format("{},{}", o.range[0], o.range[1])},
-          {"half_loss", fmt::format("{}", o.half_loss)}};
-}
 
 template <class T>
 WavePacket<T>::WavePacket(const Options& o) : options_(o) {

@@ -39,9 +39,20 @@ struct WavePacketOptions {
   double noise = 0.1;      ///< standard deviation of eps
   std::array<double, 2> range = {26.0, 230.0};  ///< of the true t0, uniform
   bool half_loss = true;  ///< half the squared error, or all of it
-};
 
-Options describe(const WavePacketOptions& options);
+  auto fields() const {
+    return std::tuple{field("samples", samples),
+                      field("amplitude", amplitude),
+                      field("frequency", frequency),
+                      field("phase", phase),
+                      field("width", width),
+                      field("centre", centre),
+                      field("scale", scale),
+                      field("noise", noise),
+                      field("range", range),
+                      field("half_loss", half_loss)};
+  }
+};
 
 template <class T>
 class WavePacket : public Problem<T>, public Vjp<T>, public Jacobian<T> {

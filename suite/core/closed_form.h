@@ -8,6 +8,8 @@
 #include <functional>
 #include <span>
 
+#include "suite/core/options.h"
+
 namespace physinv {
 
 using Exact = std::complex<long double>;
@@ -19,6 +21,11 @@ struct ClosedForm {
                      std::span<Exact> y)>
       forward;
   const char* source = __builtin_FILE();  ///< where it is written
+
+  auto fields() const {
+    return std::tuple{word("right", forward ? "closed form" : "", forward),
+                      implied(source)};
+  }
 };
 
 }  // namespace physinv

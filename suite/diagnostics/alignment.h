@@ -35,6 +35,14 @@ struct AlignmentOptions {
   typename Noise<double>::Options data;
   std::optional<TinyNetOptions> network;
   Index repetitions = 1000;
+
+  auto fields() const {
+    return std::tuple{word("algorithm", "diagnostic"),
+                      word("measures", "alignment"),
+                      field("data", data),
+                      field("network", network),
+                      implied(repetitions)};
+  }
 };
 
 /// One block of lanes of repetitions, and its scratch.
@@ -132,13 +140,7 @@ class MeasureAlignment final : public Stage {
 
   std::string name() const override { return "measure"; }
   Needs needs() const override { return Needs::forward | Needs::vjp; }
-  Options options() const override {
-    Options all = {{"algorithm", "diagnostic"}, {"measures", "alignment"}};
-    for (auto& option : describe(options_.data)) all.push_back(option);
-    if (!options_.network) return all;
-    for (auto& option : describe(*options_.network)) all.push_back(option);
-    return all;
-  }
+  Options options() const override { return describe(options_); }
   Index default_iterations() const override { return options_.repetitions; }
   bool has_precision() const override { return true; }
   Networks networks() const override { return Networks::none; }

@@ -9,9 +9,8 @@
 namespace physinv {
 
 Options Diagnostic::options() const {
-  Options all = {{"algorithm", "diagnostic"}, {"diagnostic", kind()}};
-  describe(all);
-  return all;
+  return chained({{"algorithm", "diagnostic"}, {"diagnostic", kind()}},
+                 settings());
 }
 
 Sources Diagnostic::sources() const {

@@ -20,7 +20,7 @@ class Diagnostic : public Stage {
 
  protected:
   virtual std::string kind() const = 0;
-  virtual void describe(Options& options) const = 0;
+  virtual Options settings() const = 0;
   /// Those it looks at, beside the experiment's.
   virtual std::vector<ProblemRecipe> problems() const { return {}; }
   /// Fills `out.arrays`, every number finite, and starts the solving clock.

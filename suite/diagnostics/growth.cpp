@@ -1,7 +1,5 @@
 #include "suite/diagnostics/growth.h"
 
-#include <fmt/format.h>
-
 #include "suite/core/oracle.h"
 #include "suite/core/probe.h"
 #include "suite/diagnostics/diagnostic.h"
@@ -63,17 +61,9 @@ class GrowthStage final : public Diagnostic {
  protected:
   std::string kind() const override { return "growth"; }
   std::vector<ProblemRecipe> problems() const override {
-    std::vector<ProblemRecipe> all;
-    for (const auto& h : options_.horizons) all.push_back(h.problem);
-    return all;
+    return options_.problems();
   }
-  void describe(Options& options) const override {
-    std::string times;
-    for (const auto& h : options_.horizons)
-      times += fmt::format("{}{}", times.empty() ? "" : ",", h.time);
-    options.emplace_back("times", times);
-    options.emplace_back("problems", fingerprint(problems()));
-  }
+  Options settings() const override { return describe(options_); }
   void diagnose(StageRun& run, Outcome& out) const override {
     run.probe.begin();
     const Index n = run.oracle.count();
@@ -118,6 +108,12 @@ class GrowthStage final : public Diagnostic {
 };
 
 }  // namespace
+
+std::vector<ProblemRecipe> GrowthOptions::problems() const {
+  std::vector<ProblemRecipe> all;
+  for (const auto& h : horizons) all.push_back(h.problem);
+  return all;
+}
 
 std::shared_ptr<const Stage> growth(GrowthOptions options) {
   return std::make_shared<GrowthStage>(std::move(options));

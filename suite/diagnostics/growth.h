@@ -13,18 +13,29 @@
 #include <memory>
 #include <vector>
 
-#include "suite/core/method.h"
+#include "suite/diagnostics/diagnostic.h"
 
 namespace physinv {
 
 struct Horizon {
   double time = 0;
   ProblemRecipe problem;  ///< that ends at `time`
+
+  auto fields() const {
+    return std::tuple{field("time", time), implied(problem)};
+  }
 };
 
 struct GrowthOptions {
   std::string name = "growth";  ///< of the stage
   std::vector<Horizon> horizons;
+
+  auto fields() const {
+    return std::tuple{field("times", horizons),
+                      word("problems", fingerprint(problems())),
+                      implied(name)};
+  }
+  std::vector<ProblemRecipe> problems() const;
 };
 
 std::shared_ptr<const Stage> growth(GrowthOptions options);

@@ -1,8 +1,5 @@
 #include "suite/diagnostics/half_inverse_stress.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -151,22 +148,7 @@ class HalfInverseStress final : public Diagnostic {
   std::vector<ProblemRecipe> problems() const override {
     return options_.problems;
   }
-  void describe(Options& options) const override {
-    std::string starts;
-    for (const StressStart& s : options_.starts)
-      starts +=
-          fmt::format("{} {}{}, ", s.name, s.gain, s.blind ? " blind" : "");
-    options.emplace_back("problems", fingerprint(problems()));
-    options.emplace_back("taus",
-                         fmt::format("{}", fmt::join(options_.taus, " ")));
-    options.emplace_back("kappas",
-                         fmt::format("{}", fmt::join(options_.kappas, " ")));
-    options.emplace_back("starts", starts);
-    options.emplace_back("samples",
-                         fmt::format("{}", fmt::join(options_.samples, " ")));
-    options.emplace_back("updates", fmt::format("{}", options_.updates));
-    options.emplace_back("rate", fmt::format("{}", options_.rate));
-  }
+  Options settings() const override { return describe(options_); }
 
   void diagnose(StageRun& run, Outcome& out) const override {
     run.probe.begin();

@@ -18,7 +18,7 @@
 #include <string_view>
 #include <vector>
 
-#include "suite/core/method.h"
+#include "suite/diagnostics/diagnostic.h"
 
 namespace physinv {
 
@@ -36,6 +36,11 @@ struct StressStart {
   std::string name;
   double gain = 1;
   bool blind = false;
+
+  auto fields() const {
+    return std::tuple{
+        field("name", name), field("gain", gain), field("blind", blind)};
+  }
 };
 
 struct HalfInverseStressOptions {
@@ -46,6 +51,17 @@ struct HalfInverseStressOptions {
   std::vector<Index> samples;  ///< different ones of a batch
   Index updates = 3;
   double rate = 1;
+
+  auto fields() const {
+    return std::tuple{word("problems", fingerprint(problems), problems),
+                      field("taus", taus),
+                      field("kappas", kappas),
+                      field("starts", starts),
+                      field("samples", samples),
+                      field("updates", updates),
+                      field("rate", rate),
+                      implied(name)};
+  }
 };
 
 /// Axes of the cells, the first varying fastest.

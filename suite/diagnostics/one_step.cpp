@@ -436,15 +436,9 @@ class SmoothStep final : public OneStep<T> {
 
 }  // namespace
 
-Options describe(const TinyNetOptions& o) {
-  const bool relu = o.activation == TinyActivation::relu;
-  return {{"network",
-           fmt::format(
-               "1-{}-1 {}", fmt::join(o.hidden, "-"), relu ? "relu" : "tanh")},
-          {"scale", fmt::format("{}", o.scale)},
-          {"rate", fmt::format("{}", o.rate)},
-          {"range", fmt::format("{}", o.range)},
-          {"nodes", fmt::format("{}", o.nodes)}};
+std::string TinyNetOptions::layers() const {
+  return fmt::format(
+      "1-{}-1 {}", fmt::join(hidden, "-"), to_string(activation));
 }
 
 template <class T>

@@ -21,6 +21,10 @@ namespace physinv {
 
 enum class TinyActivation : std::uint8_t { tanh, relu };
 
+constexpr std::string_view to_string(TinyActivation a) {
+  return a == TinyActivation::relu ? "relu" : "tanh";
+}
+
 struct TinyNetOptions {
   std::vector<Index> hidden = {64};
   TinyActivation activation = TinyActivation::relu;
@@ -30,9 +34,17 @@ struct TinyNetOptions {
   /// are seen through polynomials, see `one_step`.
   double range = 2;
   bool nodes = true;  ///< false: a pass per example, however many
-};
 
-Options describe(const TinyNetOptions& options);
+  auto fields() const {
+    return std::tuple{word("network", layers(), hidden, activation),
+                      field("scale", scale),
+                      field("rate", rate),
+                      field("range", range),
+                      field("nodes", nodes)};
+  }
+  /// "1-64-1 relu"
+  std::string layers() const;
+};
 
 template <class T>
 class OneStep {

@@ -147,21 +147,7 @@ class StabilitySweep final : public Diagnostic {
   std::vector<ProblemRecipe> problems() const override {
     return options_.problems;
   }
-  void describe(Options& options) const override {
-    std::uint64_t points = 0;
-    for (const auto& [problem, at] : options_.points) {
-      const Vector<double> x = at();
-      points = hash_bytes(&problem, sizeof(problem), points);
-      points = hash_bytes(x.data(),
-                          sizeof(double) * static_cast<std::size_t>(x.size()),
-                          points);
-    }
-    options.emplace_back("problems", fingerprint(problems()));
-    options.emplace_back(
-        "points", fmt::format("{} {}", options_.points.size(), hex64(points)));
-    options.emplace_back("zero", fmt::format("{}", options_.zero));
-    options.emplace_back("examples", fmt::format("{}", options_.examples));
-  }
+  Options settings() const override { return describe(options_); }
 
   void diagnose(StageRun& run, Outcome& out) const override {
     run.probe.begin();
@@ -303,6 +289,17 @@ Extrapolated extrapolate(VectorIn<double> d) {
     best = {.value = value, .uncertainty = change, .found = true};
   }
   return best;
+}
+
+std::string fingerprint(const std::vector<SweepPoint>& points) {
+  std::uint64_t hash = 0;
+  for (const auto& [problem, at] : points) {
+    const Vector<double> x = at();
+    hash = hash_bytes(&problem, sizeof(problem), hash);
+    hash = hash_bytes(
+        x.data(), sizeof(double) * static_cast<std::size_t>(x.size()), hash);
+  }
+  return fmt::format("{} {}", points.size(), hex64(hash));
 }
 
 std::shared_ptr<const Stage> stability_sweep(StabilitySweepOptions options) {

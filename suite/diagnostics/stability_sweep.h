@@ -22,7 +22,7 @@
 #include <utility>
 #include <vector>
 
-#include "suite/core/method.h"
+#include "suite/diagnostics/diagnostic.h"
 
 namespace physinv {
 
@@ -63,6 +63,9 @@ struct SweepPoint {
 
 inline constexpr Index kSweepRows = 1000;
 
+/// Their number and the hash of all.
+std::string fingerprint(const std::vector<SweepPoint>& points);
+
 struct StabilitySweepOptions {
   std::string name = "stability";  ///< of the stage
   std::vector<ProblemRecipe> problems;
@@ -71,6 +74,14 @@ struct StabilitySweepOptions {
   /// cut-off tails have no relative accuracy.
   double zero = 1e-30;
   Index examples = 1;  ///< side inputs drawn per point, if the problem has any
+
+  auto fields() const {
+    return std::tuple{word("problems", fingerprint(problems), problems),
+                      word("points", fingerprint(points), points),
+                      field("zero", zero),
+                      field("examples", examples),
+                      implied(name)};
+  }
 };
 
 /// Arrays, one column per point, in their order, examples side by side:

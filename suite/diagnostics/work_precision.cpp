@@ -218,6 +218,12 @@ const char* to_string(WorkOf what) {
   return names[static_cast<std::size_t>(what)];
 }
 
+std::vector<ProblemRecipe> WorkPrecisionOptions::problems() const {
+  std::vector<ProblemRecipe> all = {problem, base};
+  if (!exact.forward) all.push_back(reference);
+  return all;
+}
+
 std::shared_ptr<Answers> no_answers_yet() {
   return std::make_shared<Answers>();
 }
@@ -269,16 +275,9 @@ class WorkPrecision final : public Diagnostic {
  protected:
   std::string kind() const override { return "work_precision"; }
   std::vector<ProblemRecipe> problems() const override {
-    std::vector<ProblemRecipe> all = {options_.problem, options_.base};
-    if (!options_.exact.forward) all.push_back(options_.reference);
-    return all;
+    return options_.problems();
   }
-  void describe(Options& options) const override {
-    options.emplace_back("settings", fingerprint(problems()));
-    options.emplace_back("of", to_string(options_.of));
-    options.emplace_back("samples", std::to_string(options_.samples));
-    options.emplace_back("block", std::to_string(options_.block));
-  }
+  Options settings() const override { return describe(options_); }
   void diagnose(StageRun& run, Outcome& out) const override {
     run.precision == Precision::f32 ? measure<float>(run, out)
                                     : measure<double>(run, out);

@@ -21,7 +21,7 @@
 
 #include "suite/core/closed_form.h"
 #include "suite/core/curve.h"
-#include "suite/core/method.h"
+#include "suite/diagnostics/diagnostic.h"
 
 namespace physinv {
 
@@ -47,6 +47,18 @@ struct WorkPrecisionOptions {
   /// Shared by stages of the same base and reference, which then make the
   /// reference once. Empty: each makes its own.
   std::shared_ptr<Answers> answers = {};
+
+  /// Those it looks at.
+  std::vector<ProblemRecipe> problems() const;
+  auto fields() const {
+    return std::tuple{
+        word("settings", fingerprint(problems()), problem, base, reference),
+        field("of", of),
+        field("samples", samples),
+        field("block", block),
+        if_changed(field("right", exact)),
+        implied(name, repetitions, answers)};
+  }
 };
 
 std::shared_ptr<const Stage> work_precision(WorkPrecisionOptions options);

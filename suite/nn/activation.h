@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <string_view>
 
 #include "suite/core/lanes_math.h"
 #include "suite/core/math.h"
@@ -12,8 +11,6 @@
 #include "suite/nn/vector.h"
 
 namespace physinv::nn {
-
-std::string_view to_string(Activation a);
 
 /// Whether the derivative follows from the output alone, so that an
 /// activation fused into the layer before it needs no memory of its own.

@@ -1,8 +1,5 @@
 #include "suite/nn/cnn.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <functional>
 #include <memory>
 #include <utility>
@@ -42,17 +39,9 @@ std::unique_ptr<Network<T>> make(const CnnOptions& o,
 }  // namespace
 
 NetworkRecipe cnn(const CnnOptions& options) {
-  return {
-      .description = fmt::format(
-          "cnn positions={} channels={} features={} taps={} activation={}{}",
-          options.positions,
-          options.channels,
-          fmt::join(options.features, "-"),
-          options.taps,
-          to_string(options.activation),
-          in_words(options.init)),
-      .make_float = std::bind_front(make<float>, options),
-      .make_double = std::bind_front(make<double>, options)};
+  return {.description = "cnn " + in_line(describe(options)),
+          .make_float = std::bind_front(make<float>, options),
+          .make_double = std::bind_front(make<double>, options)};
 }
 
 }  // namespace physinv::nn

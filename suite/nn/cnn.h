@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "suite/core/network.h"
+#include "suite/core/options.h"
 #include "suite/nn/layer.h"
 
 namespace physinv::nn {
@@ -22,6 +23,15 @@ struct CnnOptions {
   Index taps = 3;
   Activation activation = Activation::tanh;  ///< behind each convolution
   Init init = Init::glorot;
+
+  auto fields() const {
+    return std::tuple{field("positions", positions),
+                      field("channels", channels),
+                      field("features", features),
+                      field("taps", taps),
+                      field("activation", activation),
+                      field("init", init)};
+  }
 };
 
 NetworkRecipe cnn(const CnnOptions& options);

@@ -1,7 +1,5 @@
 #include "suite/nn/fno.h"
 
-#include <fmt/format.h>
-
 #include <functional>
 #include <memory>
 #include <numeric>
@@ -68,15 +66,7 @@ std::unique_ptr<Network<T>> make(const FnoOptions& o,
 }  // namespace
 
 NetworkRecipe fno(const FnoOptions& options) {
-  return {.description = fmt::format(
-              "fno grid={}x{} padding={} modes={} width={} blocks={} hidden={}",
-              options.grid.columns,
-              options.grid.rows,
-              options.padding,
-              options.modes,
-              options.width,
-              options.blocks,
-              options.hidden),
+  return {.description = "fno " + in_line(describe(options)),
           .make_float = std::bind_front(make<float>, options),
           .make_double = std::bind_front(make<double>, options)};
 }

@@ -19,6 +19,15 @@ struct FnoOptions {
   Grid grid;          ///< the row frequencies are those of both signs
   Index padding = 9;  ///< grid.columns + padding is at least 2 modes
   Index modes = 12, width = 32, blocks = 4, hidden = 128;
+
+  auto fields() const {
+    return std::tuple{field("grid", grid),
+                      field("padding", padding),
+                      field("modes", modes),
+                      field("width", width),
+                      field("blocks", blocks),
+                      field("hidden", hidden)};
+  }
 };
 
 NetworkRecipe fno(const FnoOptions& options);

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "suite/core/batch.h"
+#include "suite/core/options.h"
 
 namespace physinv::nn {
 
@@ -13,6 +14,9 @@ struct Grid {
 
   Index positions() const { return columns * rows; }
   bool flat() const { return rows == 1; }
+  auto fields() const {
+    return std::tuple{field("columns", columns), field("rows", rows)};
+  }
 };
 
 enum class Padding : std::uint8_t {
@@ -20,5 +24,10 @@ enum class Padding : std::uint8_t {
   circular,
   none,  ///< only where all taps are inside; one dimension
 };
+
+constexpr std::string_view to_string(Padding padding) {
+  constexpr std::string_view kNames[] = {"zero", "circular", "none"};
+  return kNames[static_cast<std::size_t>(padding)];
+}
 
 }  // namespace physinv::nn

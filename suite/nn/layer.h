@@ -19,6 +19,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "suite/core/check.h"
@@ -37,6 +38,7 @@ enum class Activation : std::uint8_t {
   half_tanh,  ///< tanh(z / 2) = 2 sigma(z) - 1
   gelu,       ///< z Phi(z), Phi the normal distribution
 };
+std::string_view to_string(Activation a);
 
 /// How weights are drawn, uniform within +-bound; biases and offsets start at
 /// 0, scales at 1. Tensors with a range of their own (TensorInfo) keep it.
@@ -47,8 +49,7 @@ enum class Init : std::uint8_t {
   he,       ///< bound sqrt(6 / fan_in), for ReLU
 };
 
-/// For the description of a network; nothing for fan_in.
-std::string in_words(Init init);
+std::string_view to_string(Init init);
 
 /// Everything a layer uses beside its input and output.
 template <class T>

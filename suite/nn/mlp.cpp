@@ -1,8 +1,5 @@
 #include "suite/nn/mlp.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <functional>
 #include <memory>
 #include <utility>
@@ -54,15 +51,7 @@ UnusedIncludes unused(const MlpOptions& o) {
 }  // namespace
 
 NetworkRecipe mlp(const MlpOptions& options) {
-  return {.description = fmt::format(
-              "mlp hidden={} frequencies={} activation={} output={} "
-              "batch_norm={}{}",
-              fmt::join(options.hidden, "-"),
-              options.frequencies,
-              to_string(options.activation),
-              to_string(options.output),
-              options.batch_norm,
-              in_words(options.init)),
+  return {.description = "mlp " + in_line(describe(options)),
           .make_float = std::bind_front(make<float>, options),
           .make_double = std::bind_front(make<double>, options),
           .unused = unused(options)};

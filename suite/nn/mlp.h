@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "suite/core/network.h"
+#include "suite/core/options.h"
 #include "suite/nn/layer.h"
 
 namespace physinv::nn {
@@ -20,6 +21,15 @@ struct MlpOptions {
   Activation output = Activation::identity;
   bool batch_norm = false;  ///< behind each hidden activation
   Init init = Init::fan_in;
+
+  auto fields() const {
+    return std::tuple{field("hidden", hidden),
+                      field("frequencies", frequencies),
+                      field("activation", activation),
+                      field("output", output),
+                      field("batch_norm", batch_norm),
+                      field("init", init)};
+  }
 };
 
 NetworkRecipe mlp(const MlpOptions& options);

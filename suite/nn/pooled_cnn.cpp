@@ -1,8 +1,5 @@
 #include "suite/nn/pooled_cnn.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <functional>
 #include <memory>
 #include <utility>
@@ -92,18 +89,7 @@ std::unique_ptr<Network<T>> make(const PooledCnnOptions& o,
 }  // namespace
 
 NetworkRecipe pooled_cnn(const PooledCnnOptions& options) {
-  constexpr const char* paddings[] = {"zero", "circular", "none"};
-  return {.description = fmt::format(
-              "pooled_cnn positions={} features={} hidden={} output={} "
-              "padding={} batch_norm={} pool_first={}{}",
-              options.positions,
-              fmt::join(options.features, "-"),
-              fmt::join(options.hidden, "-"),
-              to_string(options.output),
-              paddings[static_cast<std::size_t>(options.padding)],
-              options.batch_norm,
-              options.pool_first,
-              in_words(options.init)),
+  return {.description = "pooled_cnn " + in_line(describe(options)),
           .make_float = std::bind_front(make<float>, options),
           .make_double = std::bind_front(make<double>, options)};
 }

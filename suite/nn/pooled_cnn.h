@@ -32,6 +32,17 @@ struct PooledCnnOptions {
   bool batch_norm = false;
   bool pool_first = true;
   Init init = Init::glorot;
+
+  auto fields() const {
+    return std::tuple{field("positions", positions),
+                      field("features", features),
+                      field("hidden", hidden),
+                      field("output", output),
+                      field("padding", padding),
+                      field("batch_norm", batch_norm),
+                      field("pool_first", pool_first),
+                      field("init", init)};
+  }
 };
 
 NetworkRecipe pooled_cnn(const PooledCnnOptions& options);

@@ -37,10 +37,9 @@ bool is_drawn(Init init, char kind) {
 
 }  // namespace
 
-std::string in_words(Init init) {
-  constexpr const char* words[] = {
-      "", " init=glorot", " init=uniform", " init=he"};
-  return words[static_cast<std::size_t>(init)];
+std::string_view to_string(Init init) {
+  constexpr std::string_view kNames[] = {"fan_in", "glorot", "uniform", "he"};
+  return kNames[static_cast<std::size_t>(init)];
 }
 
 /// Slot 0: what a later call must know about the last forward pass.

@@ -1,7 +1,5 @@
 #include "suite/nn/unet.h"
 
-#include <fmt/format.h>
-
 #include <functional>
 #include <memory>
 #include <utility>
@@ -85,26 +83,9 @@ std::unique_ptr<Network<T>> make_unet(const UnetOptions& o,
 }  // namespace
 
 NetworkRecipe unet(const UnetOptions& options) {
-  return {
-      .description = fmt::format(
-          "unet grid={}x{} scalars={}+{} shift={} unit={} channels={} "
-          "levels={} features={} outputs={}{}{}{}{}",
-          options.grid.columns,
-          options.grid.rows,
-          options.scalars_before,
-          options.scalars_after,
-          options.scalar_shift,
-          options.scalar_unit,
-          options.channels,
-          options.levels,
-          options.features,
-          options.outputs,
-          options.hidden > 0 ? fmt::format(" hidden={}", options.hidden) : "",
-          options.padding == Padding::circular ? " circular" : "",
-          options.batch_statistics ? " batch_statistics" : "",
-          in_words(options.init)),
-      .make_float = std::bind_front(make_unet<float>, options),
-      .make_double = std::bind_front(make_unet<double>, options)};
+  return {.description = "unet " + in_line(describe(options)),
+          .make_float = std::bind_front(make_unet<float>, options),
+          .make_double = std::bind_front(make_unet<double>, options)};
 }
 
 }  // namespace physinv::nn

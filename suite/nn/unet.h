@@ -33,6 +33,21 @@ struct UnetOptions {
   Padding padding = Padding::zero;
   bool batch_statistics = false;  ///< in every pass, see ConvOptions
   Init init = Init::fan_in;
+
+  auto fields() const {
+    return std::tuple{field("grid", grid),
+                      field("channels", channels),
+                      field("scalars", scalars_before, scalars_after),
+                      field("shift", scalar_shift),
+                      field("unit", scalar_unit),
+                      field("levels", levels),
+                      field("features", features),
+                      field("outputs", outputs),
+                      field("hidden", hidden),
+                      field("padding", padding),
+                      field("batch_statistics", batch_statistics),
+                      field("init", init)};
+  }
 };
 
 NetworkRecipe unet(const UnetOptions& options);

@@ -1,8 +1,5 @@
 #include "suite/nn/vgg.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <functional>
 #include <memory>
 #include <utility>
@@ -57,13 +54,7 @@ std::unique_ptr<Network<T>> make_vgg(const VggOptions& o,
 }  // namespace
 
 NetworkRecipe vgg(const VggOptions& options) {
-  return {.description = fmt::format("vgg channels={} grid={}x{} features={} "
-                                     "hidden={}",
-                                     options.channels,
-                                     options.grid.columns,
-                                     options.grid.rows,
-                                     fmt::join(options.features, "-"),
-                                     fmt::join(options.hidden, "-")),
+  return {.description = "vgg " + in_line(describe(options)),
           .make_float = std::bind_front(make_vgg<float>, options),
           .make_double = std::bind_front(make_vgg<double>, options)};
 }

@@ -18,6 +18,13 @@ struct VggOptions {
   Grid grid;                    ///< extent divisible by 2^blocks
   std::vector<Index> features;  ///< channels after each block
   std::vector<Index> hidden;    ///< widths of the dense layers
+
+  auto fields() const {
+    return std::tuple{field("channels", channels),
+                      field("grid", grid),
+                      field("features", features),
+                      field("hidden", hidden)};
+  }
 };
 
 NetworkRecipe vgg(const VggOptions& options);

@@ -12,8 +12,10 @@ namespace physinv::test {
 struct AimedOptions {
   ScalingOptions scaling = {};
   std::array<double, 2> target = {0, 0};
+  auto fields() const {
+    return std::tuple{field("scaling", scaling), field("target", target)};
+  }
 };
-inline Options describe(const AimedOptions&) { return {}; }
 
 template <class T>
 class Aimed final : public Scaling<T> {

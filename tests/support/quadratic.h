@@ -14,9 +14,10 @@ namespace physinv::test {
 
 struct QuadraticOptions {
   double broken_above = 1e300;  ///< y is NaN where x(0) is larger
+  auto fields() const {
+    return std::tuple{field("broken_above", broken_above)};
+  }
 };
-
-inline Options describe(const QuadraticOptions&) { return {}; }
 
 /// By its gradients alone.
 template <class T>

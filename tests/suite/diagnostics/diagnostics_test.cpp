@@ -22,11 +22,8 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 struct ToyOptions {
   double slope_error = 0;  ///< added to the pullback's first entry
+  auto fields() const { return std::tuple{field("slope_error", slope_error)}; }
 };
-
-Options describe(const ToyOptions& o) {
-  return {{"slope_error", std::to_string(o.slope_error)}};
-}
 
 /// y = (exp(x0), sqrt(x1^2 + 1e8^2) - 1e8): overflows in float before double,
 /// and float loses the second entry altogether.
@@ -242,10 +239,8 @@ TEST(WorkPrecision, MeasuresGradientsAgainstAClosedForm) {
 /// y = x + given, point by point: given is a wave over one period.
 struct PointwiseOptions {
   Index steps = 2;
+  auto fields() const { return std::tuple{field("steps", steps)}; }
 };
-Options describe(const PointwiseOptions& o) {
-  return {{"steps", std::to_string(o.steps)}};
-}
 template <class T>
 class Pointwise final : public Problem<T>, public Vjp<T> {
  public:

@@ -32,10 +32,8 @@ double or_next(double value, std::string_view defect) {
 
 struct CubicOptions {
   double slope = 1.0;
+  auto fields() const { return std::tuple{field("slope", slope)}; }
 };
-Options describe(const CubicOptions& options) {
-  return {{"slope", std::to_string(options.slope)}};
-}
 
 /// y_j = x_j^3 + slope x_j + given, two unknowns.
 template <class T>

@@ -109,9 +109,8 @@ class EnergyDrift final : public Diagnostic {
   std::vector<ProblemRecipe> problems() const override {
     return {problem<MarkerFlow>("marker_flow", flow())};
   }
-  void describe(Options& options) const override {
-    options.emplace_back("problems", fingerprint(problems()));
-    options.emplace_back("steps", std::to_string(kSteps));
+  Options settings() const override {
+    return {{"problems", fingerprint(problems())}, {"steps", text_of(kSteps)}};
   }
   void diagnose(StageRun& run, Outcome& out) const override {
     run.probe.begin();
@@ -238,9 +237,7 @@ class AdvectionOrder final : public Diagnostic {
 
  protected:
   std::string kind() const override { return "advection_order"; }
-  void describe(Options& options) const override {
-    options.emplace_back("grids", std::to_string(std::size(kGrids)));
-  }
+  Options settings() const override { return {{"grids", text_of(kGrids)}}; }
   void diagnose(StageRun& run, Outcome& out) const override {
     run.probe.begin();
     const auto array = [&](const char* name) -> Batch<double>& {

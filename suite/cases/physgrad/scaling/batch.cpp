@@ -1,4 +1,3 @@
-#include <fmt/format.h>
 
 #include "problems/scaling/trajectories.h"
 #include "suite/cases/physgrad/scaling/scaling.h"
@@ -21,11 +20,8 @@ class BatchOfTrajectories final : public Diagnostic {
 
  protected:
   std::string kind() const override { return "trajectories"; }
-  void describe(Options& options) const override {
-    options.emplace_back("trajectories", fmt::format("{}", n_));
-    options.emplace_back("power", fmt::format("{}", flow_.power));
-    options.emplace_back("rate", fmt::format("{}", flow_.rate));
-    options.emplace_back("steps", fmt::format("{}", flow_.steps));
+  Options settings() const override {
+    return chained({{"trajectories", text_of(n_)}}, describe(flow_));
   }
   /// What the first call pays for, memory above all, is not timed.
   void diagnose(StageRun& run, Outcome& out) const override {

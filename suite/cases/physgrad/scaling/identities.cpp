@@ -88,7 +88,7 @@ class Identities final : public Diagnostic {
 
  protected:
   std::string kind() const override { return "identities"; }
-  void describe(Options&) const override {}
+  Options settings() const override { return {}; }
   void diagnose(StageRun& run, Outcome& out) const override {
     run.probe.begin();
     out.arrays = {{"order", order()}, {"linear", linear()}, {"roots", roots()}};

@@ -1,7 +1,5 @@
 #include "suite/cases/sip/heat/direct.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -18,15 +16,6 @@ namespace physinv::heat {
 namespace {
 
 constexpr double kDamped = 35;  ///< s above which an eigenspace is not moved
-
-const char* name_of(Direct solver) {
-  constexpr const char* kNames[] = {"descent",
-                                    "descent_modes",
-                                    "lbfgsb_modes",
-                                    "inverse_physics",
-                                    "inverse_physics_modes"};
-  return kNames[static_cast<std::size_t>(solver)];
-}
 
 /// All examples, step by step.
 class Solver {
@@ -285,12 +274,7 @@ class DirectStage final : public Stage {
            (options_.solver == Direct::descent ? Needs::vjp : Needs::inverse);
   }
   Options options() const override {
-    Options all = {{"algorithm", name_of(options_.solver)},
-                   {"metrics", metrics_.name}};
-    if (options_.solver == Direct::inverse_physics ||
-        options_.solver == Direct::inverse_physics_modes)
-      all.push_back({"noise_floor", fmt::format("{}", options_.noise_floor)});
-    return all;
+    return chained(describe(options_), describe(metrics_));
   }
   Index default_iterations() const override { return options_.iterations; }
   Networks networks() const override { return Networks::none; }
@@ -344,6 +328,15 @@ class DirectStage final : public Stage {
 };
 
 }  // namespace
+
+std::string_view to_string(Direct solver) {
+  constexpr std::string_view kNames[] = {"descent",
+                                         "descent_modes",
+                                         "lbfgsb_modes",
+                                         "inverse_physics",
+                                         "inverse_physics_modes"};
+  return kNames[static_cast<std::size_t>(solver)];
+}
 
 std::shared_ptr<const Stage> direct(const DirectOptions& options) {
   return std::make_shared<DirectStage>(options);

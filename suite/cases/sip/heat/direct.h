@@ -33,7 +33,15 @@ struct DirectOptions {
   Index iterations = 1000;
   /// What the local inverse takes for noise, instead of the problem's.
   double noise_floor = 1e-8;
+
+  auto fields() const {
+    return std::tuple{field("algorithm", solver),
+                      field("noise_floor", noise_floor),
+                      implied(iterations)};
+  }
 };
+
+std::string_view to_string(Direct solver);
 
 std::shared_ptr<const Stage> direct(const DirectOptions& options);
 
