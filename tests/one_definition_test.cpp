@@ -1,6 +1,6 @@
-// Reads every source: a type, an inline function or a template that is defined
-// twice under one name is two for the compiler and one for the linker, which
-// takes either. The sources of one directory tree stand in one set of programs.
+// Reads every source: a type, a template, an inline function or variable that
+// is defined twice under one name is two for the compiler and one for the
+// linker, which takes either.
 #include <gtest/gtest.h>
 
 #include <cctype>
@@ -177,14 +177,35 @@ std::string defined_by(const Tokens& head) {
          types_of(head, open + 1, behind(head, open) - 1) + ')' + constraint;
 }
 
+/// The variable that the tokens before a '{' or ';' define for all objects.
+std::string inline_variable(const Tokens& head) {
+  const bool is_template =
+      head.size() > 1 && head[0] == "template" && head[1] == "<";
+  std::size_t end = is_template ? behind(head, 1) : 0;
+  bool shared = false;
+  for (; end < head.size() && head[end] != "=" && head[end] != "["; ++end) {
+    if (head[end] == "(" || head[end] == "namespace") return "";
+    shared = shared || head[end] == "inline";
+  }
+  return shared && end > 0 ? head[end - 1] : "";
+}
+
 /// Namespace and name of all that a source defines so, outside unnamed
 /// namespaces; `unnamed` counts those.
 std::set<std::string> definitions(const Tokens& t, int* unnamed = nullptr) {
   std::set<std::string> all;
   std::vector<std::string> scopes;
   Tokens head;
+  const auto add = [&](const std::string& name) {
+    bool hidden = name.empty();
+    std::string path;
+    for (const auto& scope : scopes)
+      hidden = hidden || scope.empty(), path += scope + "::";
+    if (!hidden) all.insert(path + name);
+  };
   for (std::size_t i = 0; i < t.size(); ++i) {
     if (t[i] == ";" || t[i] == "}") {
+      if (t[i] == ";") add(inline_variable(head));
       if (t[i] == "}" && !scopes.empty()) scopes.pop_back();
       head.clear();
     } else if (t[i] == "(") {  // with the braces of its defaults
@@ -202,12 +223,8 @@ std::set<std::string> definitions(const Tokens& t, int* unnamed = nullptr) {
     } else if (head.size() == 2 && head[0] == "extern") {
       scopes.emplace_back("C"), head.clear();
     } else {
-      const std::string name = defined_by(head);
-      bool hidden = name.empty();
-      std::string path;
-      for (const auto& scope : scopes)
-        hidden = hidden || scope.empty(), path += scope + "::";
-      if (!hidden) all.insert(path + name);
+      add(defined_by(head));
+      add(inline_variable(head));
       // A function's initializers in braces go on.
       i = behind(t, i) - 1;
       if (i + 1 >= t.size() || (t[i + 1] != "," && t[i + 1] != "{"))
@@ -219,7 +236,7 @@ std::set<std::string> definitions(const Tokens& t, int* unnamed = nullptr) {
 
 using Definitions = std::map<std::string, std::set<std::string>>;
 
-TEST(OneDefinition, NoNameIsDefinedInTwoFiles) {
+TEST(OneDefinition, NothingIsDefinedInTwoFiles) {
   const fs::path root = PHYSINV_SOURCE_DIR;
   Definitions files_of;
   for (const char* top :
@@ -273,7 +290,7 @@ TEST(OneDefinition, LiteralsAndCommentsDefineNothing) {
   EXPECT_TRUE(read("void f() { struct Local {}; }").empty());
 }
 
-TEST(OneDefinition, InlineFunctionsAndTemplatesByTheirParameters) {
+TEST(OneDefinition, InlineFunctionsAndVariables) {
   const auto same = [](std::string_view a, std::string_view b) {
     EXPECT_EQ(read(a).size(), 1U) << a;
     return read(a) == read(b);
@@ -292,6 +309,10 @@ TEST(OneDefinition, InlineFunctionsAndTemplatesByTheirParameters) {
       read("template <class T> void S<T>::f(T (*g)(int)) const {}").size(), 1U);
   EXPECT_EQ(read("inline A operator+(A a, A b) { return a; }"),
             std::set<std::string>{"operator+(A,A,)"});
+  EXPECT_EQ(read("inline constexpr std::array<int, 2> kA = {1, 2};\n"
+                 "template <class T> inline constexpr int kB = 1;\n"
+                 "inline constexpr int kC[] = {1}; inline constexpr S kD{2};"),
+            (std::set<std::string>{"kA", "kB", "kC", "kD"}));
   // The linker refuses the others itself.
   EXPECT_TRUE(read("int f(int a) { return a; }").empty());
   EXPECT_TRUE(read("static const std::vector<int> v = {f(1)};").empty());
