@@ -5,6 +5,7 @@
 
 #include <bit>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <regex>
@@ -437,7 +438,7 @@ TEST(OptionsContract, OptionsOfAStageHaveNamesOfTheirOwn) {
 
 TEST(OptionsContract, NumbersAreWrittenToTheLastBit) {
   for (const double number : {0.1, 1.0 / 3, 5e-324, -0.0, 1e308, 0.1 + 1e-17}) {
-    const double read = std::stod(text_of(number));
+    const double read = std::strtod(text_of(number).c_str(), nullptr);
     EXPECT_EQ(std::bit_cast<std::uint64_t>(read),
               std::bit_cast<std::uint64_t>(number))
         << text_of(number);
