@@ -17,6 +17,7 @@
 
 #include "suite/core/batch.h"
 #include "suite/core/options.h"
+#include "suite/core/unit_of.h"
 
 namespace physinv {
 
@@ -55,6 +56,15 @@ ConjugateGradientPath conjugate_gradients(
     Vector<double> s,
     const ConjugateGradientOptions& options) {
   ConjugateGradientPath path;
+  if (b.size() == 0) return path;
+  const double unit =
+      unit_of(std::max(b.cwiseAbs().maxCoeff(), s.cwiseAbs().maxCoeff()));
+  if (unit != 1) {
+    path = conjugate_gradients(product, b / unit, s / unit, options);
+    for (double& m : path.model) m = m * unit * unit;
+    for (auto& [i, iterate] : path.stored) iterate *= unit;
+    return path;
+  }
   Vector<double> r(b.size()), a_d(b.size());
   if (s.isZero(0)) {
     r = -b;

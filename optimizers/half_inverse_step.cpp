@@ -4,6 +4,9 @@
 #include <limits>
 #include <type_traits>
 
+#include "optimizers/half_inverse/units.h"
+#include "suite/core/unit_of.h"
+
 namespace physinv {
 namespace {
 
@@ -145,6 +148,9 @@ bool HalfInverseStep<T>::operator()(const Network<T>& network,
     for (Index c = 0; c < per; ++c)
       for (Index u = 0; u < rows_.rows(); ++u) *to++ = from[u * per + c];
   }
+  // J is linear in S.
+  const T unit = unit_of(solver.cwiseAbs().maxCoeff());
+  if (unit != 1) rows_ /= unit;
   layers_.clear();
   network.jacobian_rows(parameters, tape, rows_, layers_, work);
   g_.resize(samples * per);
@@ -152,11 +158,15 @@ bool HalfInverseStep<T>::operator()(const Network<T>& network,
     for (Index c = 0; c < per; ++c)
       g_(i * per + c) = static_cast<double>(g(c, i));
   update_.resize(parameters.size(), 1);
+  const hig::Power power = options_.power;
+  options_.power = hig::in_units(power, double(unit));
   if (parameters.size() < g_.size()) {
     power_of_jacobian(parameters, samples);
   } else {
     power_of_gram(network, parameters, tape, samples, work);
   }
+  options_.power = power;
+  hig::leave_units(power, double(unit), report_, update_.col(0));
   column_ = parameters - (options_.rate * update_.col(0)).template cast<T>();
   const bool finite = column_.allFinite();
   if (finite) parameters = column_;

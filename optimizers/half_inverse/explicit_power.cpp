@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "optimizers/half_inverse/units.h"
 #include "optimizers/half_inverse/wide.h"
 #include "suite/core/check.h"
 #include "suite/core/decompositions.h"
 #include "suite/core/eigen_caches.h"
+#include "suite/core/unit_of.h"
 
 namespace physinv::hig {
 namespace {
@@ -87,6 +89,7 @@ Ending ExplicitPower::factor(BatchIn<double> jacobian, VectorIn<double> g) {
   if (largest == 0 || g.isZero(0)) return ending_ = Ending::zero;
   int exponent;
   std::frexp(largest, &exponent);
+  exponent = std::clamp(exponent, -1022, 1022);  // what has an inverse
   spectrum_.scale = std::ldexp(1.0, exponent);
   const double unscale = std::ldexp(1.0, -exponent);
 
@@ -147,9 +150,13 @@ PowerReport ExplicitPower::apply(const Power& power,
   report.ending = ending_;
   if (ending_ != Ending::ok) return report;
   Vector<double> w(spectrum_.c.size());
-  report = power_weights(spectrum_, power, w);
-  for (Index i = 0; i < w.size(); ++i) w(i) *= spectrum_.s(i);
+  const double unit = unit_of(spectrum_.scale);
+  Spectrum scaled = spectrum_;
+  scaled.scale /= unit;
+  report = power_weights(scaled, in_units(power, unit), w);
+  for (Index i = 0; i < w.size(); ++i) w(i) *= scaled.s(i);
   update.noalias() = right_ * w;
+  leave_units(power, unit, report, update);
   return report;
 }
 

@@ -33,13 +33,28 @@ inline double dot(Index d, const double* a, const double* b) {
   return (lane[0] + lane[1]) + (lane[2] + lane[3]);
 }
 
-inline double norm(Index d, const double* a) { return std::sqrt(dot(d, a, a)); }
-
 /// Largest magnitude; NaN entries are passed over.
 inline double max_abs(Index d, const double* a) {
   double m = 0;
   for (Index i = 0; i < d; ++i) m = std::max(m, std::abs(a[i]));
   return m;
+}
+
+/// |a|; squares that overflow or vanish are summed again, scaled.
+inline double norm(Index d, const double* a) {
+  constexpr double kLost = 1e-280;
+  const double square = dot(d, a, a);
+  if (square > kLost && std::isfinite(square)) return std::sqrt(square);
+  const double largest = max_abs(d, a);
+  if (largest == 0 || !std::isfinite(largest)) return std::sqrt(square);
+  int exponent;
+  std::frexp(largest, &exponent);
+  double sum = 0;
+  for (Index i = 0; i < d; ++i) {
+    const double part = std::ldexp(a[i], -exponent);
+    add_product(sum, part, part);
+  }
+  return std::ldexp(std::sqrt(sum), exponent);
 }
 
 inline bool all_finite(Index d, const double* a) {

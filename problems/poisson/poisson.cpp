@@ -6,13 +6,14 @@
 
 #include "suite/core/check.h"
 #include "suite/core/math.h"
+#include "suite/core/option_check.h"
 #include "suite/core/threads.h"
+#include "suite/core/unit_of.h"
 
 namespace physinv {
 namespace {
 
 enum Slot : std::size_t { kFinite };
-
 
 Batch<double> sines(Index n) {
   const auto steps = static_cast<double>(n + 1);
@@ -53,6 +54,11 @@ struct Waves {
 void iterate(const PoissonOptions& o,
              const Batch<double>& x,
              Batch<double>& y) {
+  if (const double unit = unit_of(x.cwiseAbs().maxCoeff()); unit != 1) {
+    iterate(o, x / unit, y);
+    y *= unit;
+    return;
+  }
   y.setZero(x.rows(), x.cols());
   Batch<double> r = x, p = x, lp;
   const double enough = o.relative * o.relative * x.squaredNorm();
@@ -67,6 +73,14 @@ void iterate(const PoissonOptions& o,
     rr = next;
   }
   if (!std::isfinite(rr)) y.setConstant(std::nan(""));
+}
+
+const PoissonOptions& checked(const PoissonOptions& o) {
+  check_numbers<double>({{"relative", o.relative}});
+  SUITE_CHECK(o.rows > 0 && o.columns > 0 && o.relative >= 0,
+              "a rectangle has cells, a tolerance is not negative");
+  SUITE_CHECK(o.most > 0, "conjugate gradients may take an iteration");
+  return o;
 }
 
 }  // namespace
@@ -105,16 +119,13 @@ Batch<double> laplacian(const Batch<double>& y) {
 
 template <class T>
 Poisson<T>::Poisson(const Options& options)
-    : options_(options),
+    : options_(checked(options)),
       along_rows_(sines(options.rows)),
       along_columns_(sines(options.columns)),
       lambda_(Batch<double>::NullaryExpr(
           options.columns, options.rows, [&](Index l, Index k) {
             return eigenvalue(k, options.rows) + eigenvalue(l, options.columns);
-          })) {
-  SUITE_CHECK(options.rows > 0 && options.columns > 0 && options.relative >= 0,
-              "a rectangle has cells, a tolerance is not negative");
-}
+          })) {}
 
 template <class T>
 void Poisson<T>::solve(const Batch<double>& x, Batch<double>& y) const {

@@ -6,6 +6,7 @@
 #include "optimizers/training/proxy.h"
 #include "problems/exponential/exponential.h"
 #include "suite/nn/mlp.h"
+#include "tests/support/bits.h"
 #include "tests/support/memory_checkpoint.h"
 #include "tests/support/quadratic.h"
 
@@ -159,6 +160,29 @@ TEST(ConjugateGradients, SolveAndStoreBySchedule) {
   EXPECT_EQ(ended.stored.back().first, 11);
   // Nothing to solve.
   EXPECT_EQ(conjugate_gradients(product, 0 * b, 0 * b, {}).iterations(), 0);
+}
+
+TEST(ConjugateGradients, PowersOfTwoChangeNoBit) {
+  constexpr Index n = 20;
+  Vector<double> diagonal(n), b(n);
+  for (Index i = 0; i < n; ++i)
+    diagonal(i) = 1 + double(i), b(i) = std::sin(double(i) + 1);
+  const auto product = [&](const Vector<double>& d, Vector<double>& a_d) {
+    a_d = diagonal.cwiseProduct(d);
+  };
+  const auto path = conjugate_gradients(product, b, 0.1 * b, {});
+  ASSERT_GT(path.iterations(), 3);
+  for (const int e : {-900, -560, -100, 100, 560, 900}) {
+    const double size = std::ldexp(1.0, e);
+    const auto far = conjugate_gradients(product, size * b, size * 0.1 * b, {});
+    ASSERT_EQ(far.iterations(), path.iterations()) << e;
+    ASSERT_EQ(far.stored.size(), path.stored.size());
+    for (std::size_t k = 0; k < path.stored.size(); ++k) {
+      EXPECT_EQ(far.stored[k].first, path.stored[k].first);
+      EXPECT_TRUE(same_bits(far.stored[k].second,
+                            Vector<double>(size * path.stored[k].second)));
+    }
+  }
 }
 
 }  // namespace

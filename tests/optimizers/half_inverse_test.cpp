@@ -64,6 +64,45 @@ TEST(HalfInverse, GradientsAtExtremesOfScale) {
   }
 }
 
+TEST(HalfInverse, JacobiansAtExtremesOfScale) {
+  const Vector<double> g = noise(12, 1, 52);
+  ExplicitPower one, other;
+  for (const Batch<double>& j : {graded(12, 20, 3, 51), graded(12, 7, 3, 51)})
+    for (const Power power : {Power{.kappa = -0.5, .tau = 1e-2},
+                              Power{.kappa = -1, .tau = 1e-2},
+                              Power{.kappa = 0.25, .tau = 1e-6, .beta = -0.5},
+                              Power{.kappa = 1, .tau = 0}}) {
+      Vector<double> update(j.cols()), far(j.cols());
+      ASSERT_EQ(one.factor(j, g), Ending::ok);
+      const PowerReport expected = one.apply(power, update);
+      for (const double size : {1e-300, 1e-200, 1e-100, 1e100, 1e200, 1e300}) {
+        ASSERT_EQ(other.factor(size * j, g), Ending::ok);
+        const PowerReport report = other.apply(power, far);
+        const double factor = std::pow(size, power.kappa + power.beta);
+        if (!std::isfinite(factor * update.norm()) ||
+            factor * update.norm() < 1e-290)
+          continue;
+        const double near = 1e-11;
+        EXPECT_LE((far / factor - update).norm(), near * update.norm()) << size;
+        EXPECT_EQ(report.kept, expected.kept);
+        EXPECT_NEAR(report.s_max / size, expected.s_max, near * expected.s_max);
+        EXPECT_NEAR(report.norm / factor, expected.norm, near * expected.norm);
+        EXPECT_NEAR(report.cut / size, expected.cut, near * expected.cut);
+      }
+    }
+  // An absolute cut is one in units of J.
+  const Batch<double> j = graded(12, 20, 3, 51);
+  Vector<double> update(20), far(20);
+  one.factor(j, g), other.factor(1e-200 * j, g);
+  const Index kept =
+      one.apply({.kappa = -1, .tau = 3e-2, .absolute = true}, update).kept;
+  EXPECT_GT(kept, 0);
+  EXPECT_LT(kept, 12);
+  EXPECT_EQ(
+      other.apply({.kappa = -1, .tau = 3e-202, .absolute = true}, far).kept,
+      kept);
+}
+
 TEST(HalfInverse, OneByOne) {
   SpectralPower spectral;
   Vector<double> v(1);
