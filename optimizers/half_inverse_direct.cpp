@@ -1,6 +1,8 @@
 #include "optimizers/half_inverse_direct.h"
 
 #include "optimizers/half_inverse/explicit_power.h"
+#include "suite/core/check.h"
+#include "suite/core/option_check.h"
 #include "suite/core/oracle.h"
 #include "suite/core/probe.h"
 
@@ -136,6 +138,11 @@ class DirectStage final : public Stage {
 
 std::shared_ptr<const Stage> half_inverse_direct(
     const HalfInverseDirectOptions& options) {
+  check_numbers<double>({{"kappa", options.power.kappa},
+                         {"tau", options.power.tau},
+                         {"beta", options.power.beta},
+                         {"rate", options.rate}});
+  SUITE_CHECK(options.iterations >= 0, "iterations are a number from 0 on");
   return std::make_shared<DirectStage>(options);
 }
 

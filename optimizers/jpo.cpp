@@ -1,11 +1,13 @@
 #include "optimizers/jpo.h"
 
 #include "optimizers/steps/clip_percentile.h"
+#include "optimizers/steps/rule_check.h"
 #include "optimizers/training/best_so_far.h"
 #include "optimizers/training/first_order.h"
 #include "optimizers/training/loop.h"
 #include "optimizers/training/output_map.h"
 #include "optimizers/training/stage.h"
+#include "suite/core/check.h"
 #include "suite/core/oracle.h"
 #include "suite/core/probe.h"
 
@@ -101,6 +103,10 @@ Outcome fit(const JpoOptions& options, StageRun& run) {
 }  // namespace
 
 std::shared_ptr<const Stage> jpo_fit(const JpoOptions& options) {
+  check_rule<double>(options.step);
+  SUITE_CHECK(0 <= options.clip && options.clip <= 1,
+              "clip is a quantile, in [0, 1]");
+  SUITE_CHECK(options.iterations >= 0, "iterations are a number from 0 on");
   const auto operations = [](const CaseSize& size) {
     return static_cast<double>(size.n * size.iterations) *
            (3 * size.predictor_operations + 3 * size.problem_operations);

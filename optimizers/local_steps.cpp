@@ -4,9 +4,12 @@
 #include <cmath>
 #include <limits>
 
+#include "optimizers/steps/rule_check.h"
 #include "optimizers/training/newton.h"
+#include "suite/core/check.h"
 #include "suite/core/closed_steps.h"
 #include "suite/core/decompositions.h"
+#include "suite/core/option_check.h"
 #include "suite/core/oracle.h"
 #include "suite/core/probe.h"
 
@@ -50,12 +53,16 @@ class LocalSteps {
               run.iterations + 1),
         work_(run.threads),
         tape_(run.threads) {
+    check_numbers<T>({{"rate", options.rate}});
     out_.status.assign(static_cast<std::size_t>(x_.cols()), Status::maxiter);
     out_.iterations.setZero(x_.cols());
     if constexpr (std::is_same_v<T, double>)
       search_ = std::make_unique<NumericInverse>(
           *problem_, options.search, run.threads);
-    if (options.rule) rule_.emplace(*options.rule);
+    if (options.rule) {
+      check_rule<T>(*options.rule);
+      rule_.emplace(*options.rule);
+    }
   }
 
   Outcome run() {
@@ -239,7 +246,11 @@ class LocalSteps {
 class LocalStepsStage final : public Stage {
  public:
   explicit LocalStepsStage(const LocalStepsOptions& options)
-      : options_(options) {}
+      : options_(options) {
+    check_numbers<double>({{"rate", options.rate}});
+    SUITE_CHECK(options.iterations >= 0 && options.paths >= 0,
+                "iterations and paths are numbers from 0 on");
+  }
 
   std::string name() const override { return "solve"; }
   Needs needs() const override { return needs_of(options_); }

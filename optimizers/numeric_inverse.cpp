@@ -1,6 +1,11 @@
 #include "optimizers/numeric_inverse.h"
 
+#include <cmath>
+#include <limits>
+
 #include "optimizers/drive.h"
+#include "suite/core/check.h"
+#include "suite/core/option_check.h"
 
 namespace physinv {
 
@@ -11,7 +16,10 @@ NumericInverse::NumericInverse(const Problem<double>& problem,
       options_(options),
       solver_({.pgtol = options.pgtol, .ftol = options.ftol}),
       work_(threads),
-      tape_(threads) {}
+      tape_(threads) {
+  check_numbers<double>({{"difference", options.difference}});
+  SUITE_CHECK(options.difference >= 0, "a difference is not negative");
+}
 
 void NumericInverse::invert(BatchIn<double> y,
                             BatchIn<double> given,
@@ -33,6 +41,9 @@ void NumericInverse::invert(BatchIn<double> y,
       },
       x_guess);
   x = solver_.x();
+  for (Index i = 0; i < x.cols(); ++i)
+    if (!std::isfinite(solver_.loss()(i)))
+      x.col(i).setConstant(std::numeric_limits<double>::quiet_NaN());
 }
 
 void NumericInverse::losses(BatchIn<double> x, VectorOut<double> loss) {

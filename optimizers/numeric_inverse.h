@@ -3,6 +3,7 @@
 ///
 /// Gradients are exact, or differences (f(x + h) - f(x)) / h one unknown at a
 /// time, as SciPy's where none are given: these know a minimum to about h.
+/// From a guess that is not finite, or its loss, there is none: x is NaN.
 #pragma once
 
 #include "optimizers/lbfgsb.h"

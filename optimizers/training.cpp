@@ -1,14 +1,18 @@
 #include "optimizers/training.h"
 
 #include <array>
+#include <cmath>
 #include <type_traits>
 
+#include "optimizers/steps/rule_check.h"
 #include "optimizers/training/adahessian_rule.h"
 #include "optimizers/training/first_order.h"
 #include "optimizers/training/half_inverse_rule.h"
 #include "optimizers/training/loop.h"
 #include "optimizers/training/predictions.h"
 #include "optimizers/training/stage.h"
+#include "suite/core/check.h"
+#include "suite/core/option_check.h"
 #include "suite/core/oracle.h"
 #include "suite/core/probe.h"
 
@@ -18,6 +22,45 @@ namespace {
 template <class Options>
 bool has_rule(const TrainingOptions& options) {
   return std::holds_alternative<Options>(options.rule);
+}
+
+void check(const StepOptions& o) { check_rule<double>(o); }
+
+void check(const HalfInverseStepOptions& o) {
+  check_numbers<double>({{"kappa", o.power.kappa},
+                         {"tau", o.power.tau},
+                         {"beta", o.power.beta},
+                         {"rate", o.rate}});
+  SUITE_CHECK(std::abs(o.power.kappa) <= 1, "kappa lies in [-1, 1]");
+  SUITE_CHECK(o.power.tau >= 0, "tau is not negative");
+  SUITE_CHECK(o.numerics.tolerance >= 0 && o.numerics.gram_noise >= 0 &&
+                  o.numerics.largest_jacobian >= 0,
+              "tolerance, gram_noise, largest_jacobian are numbers from 0 on");
+}
+
+void check(const AdaHessianOptions& o) {
+  check_numbers<double>({{"rate", o.rate}, {"power", o.power}, {"eps", o.eps}});
+  SUITE_CHECK(o.rate >= 0 && o.power >= 0 && o.eps >= 0,
+              "rate, power and eps are not negative");
+  SUITE_CHECK(0 <= o.beta1 && o.beta1 < 1 && 0 <= o.beta2 && o.beta2 < 1,
+              "betas lie in [0, 1)");
+}
+
+void check(const HessianFreeOptions& o) {
+  check_numbers<double>(
+      {{"rate", o.rate}, {"damping", o.damping}, {"warm", o.warm}});
+  SUITE_CHECK(o.damping >= 0, "damping is not negative");
+  SUITE_CHECK(o.solver.iterations > 0 && o.solver.progress >= 0 &&
+                  o.solver.residual >= 0,
+              "conjugate gradients take iterations, to tolerances from 0 on");
+}
+
+void check(const TrainingOptions& o) {
+  SUITE_CHECK(o.batch > 0, "a batch has a sample");
+  SUITE_CHECK(o.chunk >= 0 && o.set >= 0 && o.iterations >= 0,
+              "chunk, set and iterations are numbers from 0 on");
+  check_numbers<double>({{"gradient_scale", o.gradient_scale}});
+  std::visit([](const auto& rule) { check(rule); }, o.rule);
 }
 
 template <class T>
@@ -163,6 +206,7 @@ Sources sources(const TrainingOptions& options) {
 }  // namespace
 
 std::shared_ptr<const Stage> train(const TrainingOptions& options) {
+  check(options);
   const auto shared = std::make_shared<const TrainingOptions>(options);
   return make_stage(
       {.name = options.stage,

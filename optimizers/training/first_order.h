@@ -1,7 +1,7 @@
 /// Update rules that want nothing but the gradient.
 #pragma once
 
-#include "optimizers/steps/rule.h"
+#include "optimizers/steps/rule_check.h"
 #include "optimizers/training/rule.h"
 
 namespace physinv {
@@ -11,7 +11,9 @@ template <class T>
 class FirstOrder : public Rule<T> {
  public:
   FirstOrder(const StepOptions& options, NetworkModel<T>& model)
-      : model_(model), step_(options) {}
+      : model_(model), step_(options) {
+    check_rule<T>(options);
+  }
 
   bool operator()(Signal<T>& signal) override;
   void keep(Archive& archive) override { step_.keep(archive); }

@@ -6,7 +6,9 @@
 #include <cmath>
 
 #include "optimizers/training/batch_signal.h"
+#include "suite/core/check.h"
 #include "suite/core/decompositions.h"
+#include "suite/core/option_check.h"
 #include "suite/core/oracle.h"
 
 namespace physinv {
@@ -97,11 +99,11 @@ Vector<double> newton_step(const NewtonOptions& options,
                            const Vector<double>& gradient,
                            const Batch<double>& hessian) {
   const Index d = gradient.size();
+  if (!gradient.allFinite() || !hessian.allFinite())
+    return Vector<double>::Constant(d, std::nan(""));
   if (d == 1)
     return Vector<double>::Constant(
         1, -along(options, gradient(0), hessian(0, 0)));
-  if (!gradient.allFinite() || !hessian.allFinite())
-    return Vector<double>::Constant(d, std::nan(""));
   const SymmetricEigen parts = symmetric_eigen(hessian);
   Vector<double> q = parts.vectors.transpose() * gradient;
   for (Index k = 0; k < d; ++k) q(k) = along(options, q(k), parts.values(k));
@@ -109,6 +111,8 @@ Vector<double> newton_step(const NewtonOptions& options,
 }
 
 SignalRecipe newton_proxy(const NewtonOptions& options) {
+  check_numbers<double>({{"damping", options.damping}});
+  SUITE_CHECK(options.limit > 0, "a step's limit is above 0, inf for none");
   constexpr Needs needs = Needs::vjp | Needs::hessian;
   return {.algorithm = fmt::format("newton flip={} damping={} limit={}",
                                    options.flip,

@@ -7,6 +7,7 @@
 #include "suite/core/check.h"
 #include "suite/core/lanes.h"
 #include "suite/core/math.h"
+#include "suite/core/option_check.h"
 
 namespace physinv {
 namespace {
@@ -152,12 +153,28 @@ void check_output(const M& out, Index rows, Index cols) {
               "output has the wrong size");
 }
 
+template <class T>
 void check_options(const BilliardsOptions& o) {
+  check_numbers<T>({{"radius", o.radius},
+                    {"elasticity", o.elasticity},
+                    {"drag", o.drag},
+                    {"cue", o.cue[0]},
+                    {"cue", o.cue[1]},
+                    {"ball_x", o.ball_x},
+                    {"ball_y", o.ball_y[0]},
+                    {"ball_y", o.ball_y[1]},
+                    {"target", o.target[0]},
+                    {"target", o.target[1]},
+                    {"start", o.start[0]},
+                    {"start", o.start[1]},
+                    {"velocity_spread", o.velocity_spread}});
   SUITE_CHECK(o.radius > 0 && o.drag > 0, "radius and drag must be positive");
   SUITE_CHECK(o.elasticity >= 0 && o.elasticity <= 1,
               "elasticity must be in [0, 1]");
   SUITE_CHECK(std::abs(o.ball_x - o.cue[0]) > 2 * o.radius,
               "the balls must start apart");
+  SUITE_CHECK(o.ball_y[0] <= o.ball_y[1] && o.velocity_spread >= 0,
+              "ball_y is a range, velocity_spread is not negative");
 }
 
 /// Travelled fraction until two balls a distance d apart, of relative speed u,
@@ -267,7 +284,7 @@ std::array<double, 2> exact_velocity(const Point& ball,
 
 template <class T>
 Billiards<T>::Billiards(const Options& options) : options_(options) {
-  check_options(options);
+  check_options<T>(options);
 }
 
 template <class T>

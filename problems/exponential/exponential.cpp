@@ -4,6 +4,7 @@
 
 #include "suite/core/check.h"
 #include "suite/core/math.h"
+#include "suite/core/option_check.h"
 
 namespace physinv {
 namespace {
@@ -21,6 +22,7 @@ void exponentials(BatchIn<T> x, BatchOut<T> y) {
 
 template <class T>
 Exponential<T>::Exponential(const Options& options) : options_(options) {
+  check_numbers<T>({{"lowest", options.lowest}});
   SUITE_CHECK(options.lowest < 0, "lowest must be negative");
 }
 

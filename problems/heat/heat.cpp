@@ -9,6 +9,7 @@
 #include "problems/heat/registers.h"
 #include "suite/core/check.h"
 #include "suite/core/math.h"
+#include "suite/core/option_check.h"
 
 namespace physinv {
 namespace {
@@ -88,12 +89,22 @@ HeatTable::HeatTable(const HeatOptions& o, const PlaneFft& fft) {
   expected = n * damping;
 }
 
+namespace {
+
 template <class T>
-Heat<T>::Heat(const Options& o)
-    : options_(o), fft_(o.resolution), table_(o, fft_) {
+const HeatOptions& checked(const HeatOptions& o) {
+  check_numbers<T>({{"end_time", o.end_time}, {"noise_floor", o.noise_floor}});
   SUITE_CHECK(o.resolution >= 8, "resolution must be at least 8");
   SUITE_CHECK(o.end_time > 0, "end_time must be positive");
   SUITE_CHECK(o.noise_floor >= 0, "noise_floor must not be negative");
+  return o;
+}
+
+}  // namespace
+
+template <class T>
+Heat<T>::Heat(const Options& o)
+    : options_(checked<T>(o)), fft_(o.resolution), table_(o, fft_) {
   const Index m = fft_.positions();
   exponents_.resize(m, m);
   for (Index q = 0; q < m; ++q)

@@ -11,6 +11,7 @@
 #include "problems/kuramoto_sivashinsky/etdrk2.h"
 #include "suite/core/check.h"
 #include "suite/core/math.h"
+#include "suite/core/option_check.h"
 #include "suite/core/threads.h"
 
 namespace physinv {
@@ -58,6 +59,13 @@ void draw_state(const KuramotoSivashinskyOptions& o,
 
 template <class T>
 KuramotoSivashinsky<T>::KuramotoSivashinsky(const Options& o) : options_(o) {
+  check_numbers<T>({{"box", o.box},
+                    {"time_step", o.time_step},
+                    {"prior_low", o.prior_low},
+                    {"prior_high", o.prior_high},
+                    {"start", o.start[0]},
+                    {"start", o.start[1]}});
+  SUITE_CHECK(o.tape_budget >= 0, "tape_budget is a number of bytes");
   SUITE_CHECK(o.cells >= 16 && (o.cells & (o.cells - 1)) == 0,
               "cells must be a power of two, at least 16");
   SUITE_CHECK(o.box > 0 && o.time_step > 0 && o.steps > 0,

@@ -4,6 +4,7 @@
 #include "problems/fluid/samples.h"
 #include "problems/marker_flow/periodic_flow.h"
 #include "suite/core/check.h"
+#include "suite/core/option_check.h"
 
 namespace physinv {
 namespace {
@@ -235,6 +236,18 @@ struct MarkerFlow<T>::Kernel {
 
 template <class T>
 MarkerFlow<T>::MarkerFlow(const Options& o) : options_(o) {
+  check_numbers<T>({{"box", o.box},
+                    {"end_time", o.end_time},
+                    {"falloff", o.falloff},
+                    {"threshold", o.threshold},
+                    {"fill", o.fill[0]},
+                    {"fill", o.fill[1]},
+                    {"half", o.half},
+                    {"vortex", o.vortex},
+                    {"width", o.width},
+                    {"moment", o.moment},
+                    {"noise", o.noise},
+                    {"correction", o.correction}});
   SUITE_CHECK(o.cells >= 4 && (o.cells & (o.cells - 1)) == 0,
               "cells must be a power of two, at least 4");
   SUITE_CHECK(o.box > 0 && o.end_time > 0 && o.steps > 0,

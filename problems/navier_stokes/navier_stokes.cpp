@@ -9,6 +9,7 @@
 #include "problems/navier_stokes/blast.h"
 #include "problems/navier_stokes/box_flow.h"
 #include "suite/core/check.h"
+#include "suite/core/option_check.h"
 
 namespace physinv {
 namespace {
@@ -228,6 +229,20 @@ struct NavierStokes<T>::Lazy {
 template <class T>
 NavierStokes<T>::NavierStokes(const Options& o)
     : options_(o), lazy_(std::make_shared<Lazy>()) {
+  check_numbers<T>({{"box", o.box},
+                    {"end_time", o.end_time},
+                    {"height", o.height},
+                    {"width", o.width},
+                    {"speed", o.speed},
+                    {"noise", o.noise},
+                    {"x0", o.x0[0]},
+                    {"x0", o.x0[1]},
+                    {"vx", o.vx[0]},
+                    {"vx", o.vx[1]},
+                    {"vy", o.vy[0]},
+                    {"vy", o.vy[1]}});
+  SUITE_CHECK(o.tape_budget >= 0, "tape_budget is a number of bytes");
+  SUITE_CHECK(o.vx[0] <= o.vx[1] && o.vy[0] <= o.vy[1], "vx and vy are ranges");
   SUITE_CHECK(o.cells >= 4 && o.cells % 2 == 0,
               "cells must be an even number, at least 4");
   SUITE_CHECK(o.box > 0 && o.end_time > 0 && o.steps > 0,

@@ -6,6 +6,7 @@
 #include "suite/core/check.h"
 #include "suite/core/lanes_math.h"
 #include "suite/core/math.h"
+#include "suite/core/option_check.h"
 
 namespace physinv {
 namespace {
@@ -78,6 +79,12 @@ double noise_level(VectorIn<double> amplitude, VectorIn<double> omega) {
 
 template <class T>
 NoisyAbsolute<T>::NoisyAbsolute(const Options& options) : options_(options) {
+  check_numbers<T>({{"gamma", options.gamma},
+                    {"omega_min", options.omega_min},
+                    {"omega_max", options.omega_max},
+                    {"level", options.level},
+                    {"decades", options.decades},
+                    {"snr", options.snr}});
   SUITE_CHECK(options.terms >= 0, "the number of terms is not negative");
   SUITE_CHECK(options.gamma > 0, "gamma has a range");
   SUITE_CHECK(options.level >= 0 && options.decades >= 0 && options.snr >= 0,

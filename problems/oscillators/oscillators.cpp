@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "suite/core/check.h"
+#include "suite/core/option_check.h"
 #include "suite/core/threads.h"
 #include "suite/core/wide.h"
 
@@ -246,8 +247,13 @@ template OscillatorsStep oscillators_step<double>(const std::array<double, 4>&,
 
 template <class T>
 Oscillators<T>::Oscillators(const Options& options) : options_(options) {
+  check_numbers<T>({{"dt", options.dt},
+                    {"coupling", options.coupling},
+                    {"control", options.control},
+                    {"deviation", options.deviation}});
   SUITE_CHECK(options.steps > 0 && options.dt > 0,
               "there must be steps, forward in time");
+  SUITE_CHECK(options.deviation >= 0, "deviation must not be negative");
 }
 
 template <class T>

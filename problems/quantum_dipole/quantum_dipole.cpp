@@ -7,6 +7,7 @@
 #include "problems/quantum_dipole/cayley.h"
 #include "suite/core/check.h"
 #include "suite/core/math.h"
+#include "suite/core/option_check.h"
 #include "suite/core/threads.h"
 
 namespace physinv {
@@ -208,8 +209,11 @@ Vector<double> quantum_observation(const Vector<double>& real_state) {
 
 template <class T>
 QuantumDipole<T>::QuantumDipole(const Options& options) : options_(options) {
+  check_numbers<T>({{"dt", options.dt}, {"deviation", options.deviation}});
+  check_numbers<double>("angles", options.angles);
   SUITE_CHECK(options.steps > 0 && options.dt > 0,
               "there must be steps, forward in time");
+  SUITE_CHECK(options.deviation >= 0, "deviation must not be negative");
 }
 
 template <class T>

@@ -5,6 +5,7 @@
 
 #include "suite/core/check.h"
 #include "suite/core/math.h"
+#include "suite/core/option_check.h"
 
 namespace physinv {
 namespace {
@@ -76,8 +77,12 @@ std::array<std::array<double, 2>, 4> arm_joints(const std::array<double, 4>& x,
 
 template <class T>
 RoboticArm<T>::RoboticArm(const Options& options) : options_(options) {
-  for (const double l : options.links)
+  for (const double l : options.links) {
+    check_numbers<T>({{"links", l}});
     SUITE_CHECK(l > 0, "links must have a length");
+  }
+  for (const double m : options.mean) check_numbers<T>({{"mean", m}});
+  for (const double s : options.deviation) check_numbers<T>({{"deviation", s}});
   for (const double s : options.deviation)
     SUITE_CHECK(s >= 0, "deviations must not be negative");
 }

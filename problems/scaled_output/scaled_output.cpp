@@ -4,6 +4,7 @@
 
 #include "suite/core/check.h"
 #include "suite/core/math.h"
+#include "suite/core/option_check.h"
 
 namespace physinv {
 namespace {
@@ -38,6 +39,7 @@ enum Slot : std::size_t { kPoison };
 
 template <class T>
 ScaledOutput<T>::ScaledOutput(const Options& options) : options_(options) {
+  check_numbers<T>({{"gamma", options.gamma}});
   SUITE_CHECK(options.gamma > 0, "gamma must be positive");
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "suite/core/check.h"
+#include "suite/core/option_check.h"
 
 namespace physinv {
 namespace {
@@ -15,9 +16,10 @@ enum Slot : std::size_t { kSlopes };
 template <class T>
 Scaling<T>::Scaling(const Options& options) : options_(options) {
   SUITE_CHECK(options.power == 1 || options.power == 2, "power must be 1 or 2");
+  check_numbers<T>("scales", options.scales);
   for (const double alpha : options.scales)
-    SUITE_CHECK(std::isfinite(alpha) && alpha != 0,
-                "a scale must be finite and not 0");
+    SUITE_CHECK(alpha != 0, "a scale must not be 0");
+  check_numbers<T>({{"start", options.start[0]}, {"start", options.start[1]}});
 }
 
 template <class T>

@@ -6,6 +6,7 @@
 
 #include "suite/core/check.h"
 #include "suite/core/math.h"
+#include "suite/core/option_check.h"
 
 namespace physinv {
 namespace {
@@ -110,6 +111,9 @@ Pair limited_newton_step(const SinePlaneOptions& options,
 
 template <class T>
 SinePlane<T>::SinePlane(const Options& options) : options_(options) {
+  check_numbers<T>({{"gamma", options.gamma},
+                    {"xi", options.xi},
+                    {"degrees", options.degrees}});
   SUITE_CHECK(options.gamma > 0 && options.xi > 0 && options.limit > 0,
               "gamma, xi and limit must be positive");
 }

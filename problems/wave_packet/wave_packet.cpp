@@ -8,6 +8,7 @@
 #include "suite/core/check.h"
 #include "suite/core/lanes.h"
 #include "suite/core/math.h"
+#include "suite/core/option_check.h"
 
 namespace physinv {
 namespace {
@@ -97,6 +98,15 @@ double half_square(const T* y, const T* target, Index count) {
 
 template <class T>
 WavePacket<T>::WavePacket(const Options& o) : options_(o) {
+  check_numbers<T>({{"amplitude", o.amplitude},
+                    {"frequency", o.frequency},
+                    {"phase", o.phase},
+                    {"width", o.width},
+                    {"centre", o.centre},
+                    {"scale", o.scale},
+                    {"noise", o.noise},
+                    {"range", o.range[0]},
+                    {"range", o.range[1]}});
   SUITE_CHECK(o.samples > 0 && o.samples % 64 == 0,
               "signals come in blocks of 64 samples");
   // Below, the correction for the fraction of t0 would leave float's range.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "suite/core/check.h"
+#include "suite/core/option_check.h"
 #include "suite/nn/activation.h"
 #include "suite/nn/conv.h"
 #include "suite/nn/linear.h"
@@ -17,6 +18,10 @@ template <class T>
 std::unique_ptr<Network<T>> make(const CnnOptions& o,
                                  Index inputs,
                                  Index outputs) {
+  SUITE_CHECK(o.positions > 0 && o.channels > 0,
+              "the input has positions and channels");
+  SUITE_CHECK(all_positive(o.features), "a convolution has at least 1 feature");
+  SUITE_CHECK(o.taps > 0, "a convolution has taps");
   SUITE_CHECK(inputs == o.positions * o.channels,
               "the network's grid is not that of its input");
   typename Sequential<T>::Layers layers;

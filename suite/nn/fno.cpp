@@ -44,9 +44,14 @@ template <class T>
 std::unique_ptr<Network<T>> make(const FnoOptions& o,
                                  Index inputs,
                                  Index outputs) {
+  SUITE_CHECK(o.grid.columns > 0 && o.grid.rows > 0, "a grid has positions");
   SUITE_CHECK(inputs == o.grid.positions() && outputs == o.grid.positions(),
               "the network's grid is not that of its input and output");
   SUITE_CHECK(o.blocks >= 1, "an operator has at least one block");
+  SUITE_CHECK(o.modes >= 1, "an operator keeps at least one mode");
+  SUITE_CHECK(o.width >= 1 && o.hidden >= 1,
+              "width and hidden are numbers of channels, at least 1");
+  SUITE_CHECK(o.padding >= 0, "padding is not negative");
   const Grid period{o.grid.columns + o.padding, o.grid.rows + o.padding};
   typename Sequential<T>::Layers layers;
   layers.push_back(std::make_unique<Coordinates<T>>(o.grid));

@@ -4,6 +4,8 @@
 #include <memory>
 #include <utility>
 
+#include "suite/core/check.h"
+#include "suite/core/option_check.h"
 #include "suite/nn/activation.h"
 #include "suite/nn/batch_norm.h"
 #include "suite/nn/encoding.h"
@@ -17,6 +19,8 @@ template <class T>
 std::unique_ptr<Network<T>> make(const MlpOptions& o,
                                  Index inputs,
                                  Index outputs) {
+  SUITE_CHECK(all_positive(o.hidden), "a hidden layer has at least 1 feature");
+  SUITE_CHECK(o.frequencies >= 0, "frequencies are a number from 0 on");
   typename Sequential<T>::Layers layers;
   Index size = inputs;
   const auto add = [&](auto layer) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "suite/core/check.h"
+#include "suite/core/option_check.h"
 #include "suite/nn/activation.h"
 #include "suite/nn/conv.h"
 #include "suite/nn/linear.h"
@@ -76,6 +77,9 @@ template <class T>
 std::unique_ptr<Network<T>> make(const PooledCnnOptions& o,
                                  Index inputs,
                                  Index outputs) {
+  SUITE_CHECK(o.positions > 0, "the input has positions");
+  SUITE_CHECK(all_positive(o.features) && all_positive(o.hidden),
+              "a block and a hidden layer have at least 1 feature");
   SUITE_CHECK(inputs == o.positions,
               "the network's grid is not that of its input");
   Builder<T> net(o);

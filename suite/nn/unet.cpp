@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "suite/core/check.h"
+#include "suite/core/option_check.h"
 #include "suite/nn/conv.h"
 #include "suite/nn/rearrange.h"
 #include "suite/nn/resample.h"
@@ -53,6 +54,16 @@ template <class T>
 std::unique_ptr<Network<T>> make_unet(const UnetOptions& o,
                                       Index inputs,
                                       Index outputs) {
+  SUITE_CHECK(o.grid.columns > 0 && o.grid.rows > 0, "a grid has positions");
+  SUITE_CHECK(o.channels > 0 && o.features > 0 && o.outputs > 0,
+              "channels, features and outputs are at least 1");
+  SUITE_CHECK(o.scalars_before >= 0 && o.scalars_after >= 0,
+              "scalars are numbers from 0 on");
+  SUITE_CHECK(o.hidden >= 0 && o.hidden < o.grid.columns,
+              "hidden is a number of columns, from 0 to less than all");
+  check_numbers<T>(
+      {{"scalar_shift", o.scalar_shift}, {"scalar_unit", o.scalar_unit}});
+  SUITE_CHECK(o.scalar_unit != 0, "scalar_unit is not 0");
   const Index positions = o.grid.positions();
   const FieldInputOptions input{.positions = positions,
                                 .before = o.scalars_before,

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "suite/core/check.h"
+#include "suite/core/option_check.h"
 #include "suite/nn/activation.h"
 #include "suite/nn/batch_norm.h"
 #include "suite/nn/conv.h"
@@ -23,6 +24,10 @@ std::unique_ptr<Network<T>> make_vgg(const VggOptions& o,
   const auto add = [&](auto layer) { layers.push_back(std::move(layer)); };
   Grid grid = o.grid;
   Index channels = o.channels;
+  SUITE_CHECK(channels > 0 && grid.columns > 0 && grid.rows > 0,
+              "the input has channels and positions");
+  SUITE_CHECK(all_positive(o.features) && all_positive(o.hidden),
+              "a block and a hidden layer have at least 1 feature");
   SUITE_CHECK(inputs == channels * grid.positions(),
               "the network's grid is not that of its input");
   if (channels > 1)

@@ -3,8 +3,10 @@
 #include <cmath>
 #include <limits>
 
+#include "optimizers/training/newton.h"
 #include "problems/scaling/scaling.h"
 #include "problems/scaling/trajectories.h"
+#include "suite/core/check.h"
 #include "tests/optimizers/scaling_support.h"
 #include "tests/support/bits.h"
 #include "tests/support/tolerance.h"
@@ -155,6 +157,57 @@ TEST(LocalSteps, SearchFindsTheInversesPath) {
   };
   EXPECT_LE(mean_distance({.difference = 1e-8}), 5e-6);
   EXPECT_LE(mean_distance({.pgtol = 1e-10, .ftol = 0}), 1e-7);
+}
+
+TEST(NumericInverse, HasNoneFromWhatIsNotFinite) {
+  const Scaling<double> problem({.power = 2});
+  NumericInverse search(problem, {});
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  Batch<double> y(2, 4), guess(2, 4), x(2, 4);
+  y << 1, 1, 1, kNan, 4, 4, 4, 4;
+  guess << 2, kNan, 2, 2, 3, 3, -kInf, 3;
+  search.invert(y, Batch<double>::Ones(1, 4), guess, x);
+  EXPECT_TRUE(Comparator(1e-4, 0)(x.col(0), Eigen::Vector2d(1, 2)));
+  EXPECT_TRUE(x.rightCols(3).array().isNaN().all());
+}
+
+TEST(NewtonStep, OfOneUnknownIsNoNumberEither) {
+  const auto one = [](double v) { return Batch<double>::Constant(1, 1, v); };
+  for (const double bad : {std::nan(""), HUGE_VAL})
+    for (const double good : {0.0, 2.0}) {
+      EXPECT_TRUE(std::isnan(newton_step({}, one(good), one(bad))(0)));
+      EXPECT_TRUE(std::isnan(newton_step({}, one(bad), one(good))(0)));
+    }
+}
+
+TEST(LocalSteps, AStartOfNoUseEndsItsProblemAtOnce) {
+  // Beyond 0.4 there are no numbers; the start is at 0.5.
+  const auto broken = quadratic({.broken_above = 0.4});
+  for (const LocalStep step : {kGradient, LocalStep::inverse_search}) {
+    const auto run = run_steps(broken, {.step = step, .rate = 0.1}, 5);
+    EXPECT_EQ(run.out.status[0], Status::nonfinite);
+    EXPECT_EQ(run.out.stop, Stop::diverged);
+    EXPECT_EQ(run.out.iterations(0), 0);
+    EXPECT_EQ(run.out.x(0, 0), 0.5);
+  }
+}
+
+TEST(LocalSteps, RefusesOptionsThatAreNoNumbers) {
+  const double nan = std::nan("");
+  EXPECT_THROW(local_steps({.rate = nan}), ContractError);
+  EXPECT_THROW(local_steps({.iterations = -1}), ContractError);
+  EXPECT_THROW(local_steps({.paths = -1}), ContractError);
+  const Scaling<double> physics;
+  for (const NumericInverseOptions& bad :
+       {NumericInverseOptions{.difference = nan},
+        NumericInverseOptions{.difference = -1}})
+    EXPECT_THROW(NumericInverse(physics, bad), ContractError);
+  // A rate that is 0 in float.
+  EXPECT_THROW(
+      run_steps(
+          problem<Scaling>("scaling"), {.rate = 1e-60}, 1, Precision::f32),
+      ContractError);
 }
 
 TEST(LocalSteps, AdamsFirstStepIsAsLongAsItsRate) {
