@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "optimizers/steps/bfgs_update.h"
 #include "suite/core/check.h"
@@ -13,84 +12,58 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
+void check(const BfgsOptions& o) {
+  SUITE_CHECK(o.gtol >= 0 && o.stall >= 0 && o.maxiter >= 0,
+              "BFGS: gtol, stall and maxiter are numbers from 0 on");
+  const LineSearchOptions& s = o.search;
+  SUITE_CHECK(0 < s.decrease && s.decrease < s.curvature && s.curvature < 1,
+              "a line search has 0 < decrease < curvature < 1");
+  SUITE_CHECK(s.xtol >= 0 && 0 <= s.min_step && s.min_step <= s.max_step,
+              "a line search has xtol from 0 on and 0 <= min_step <= max_step");
+  SUITE_CHECK(s.max_evaluations > 0 && s.max_doublings >= 0 &&
+                  s.max_zooms > 0 && s.max_together > 0,
+              "a line search may evaluate something");
+}
+
 }  // namespace
 
 void Bfgs::start(BatchIn<double> x0) {
+  check(options_);
+  open(x0);
   const Index n = x0.cols();
-  const auto count = static_cast<std::size_t>(n);
-  d_ = x0.rows();
-  SUITE_CHECK(d_ > 0, "BFGS needs unknowns");
-  rounds_ = 0;
-  skipped_ = 0;
-  x_ = x0;
-  trial_ = x0;
-  gradient_.setZero(d_, n);
   direction_.setZero(d_, n);
   hessian_.resize(d_ * d_, n);
   earlier_.resize(kStallSteps, n);
-  loss_.setConstant(n, kNan);
   previous_loss_.setZero(n);
   step_.resize(d_);
   change_.resize(d_);
   scratch_.resize(d_);
-  searches_.resize(count);
-  status_.assign(count, Status::maxiter);
-  iterations_.assign(count, 0);
-  evaluations_.assign(count, 0);
-  accepted_.clear();
-  accepted_.reserve(count);
-  active_.resize(count);
-  std::iota(active_.begin(), active_.end(), Index{0});
+  searches_.resize(static_cast<std::size_t>(n));
 }
 
-void Bfgs::supply(VectorIn<double> loss, BatchIn<double> gradient) {
-  const auto m = static_cast<Index>(active_.size());
-  SUITE_CHECK(loss.size() == m && gradient.cols() == m && gradient.rows() == d_,
-              "one loss and one gradient per active problem");
-  skipped_ += static_cast<std::uint64_t>(x_.cols() - m);
-  accepted_.clear();
-  std::size_t kept = 0;
-  for (Index at = 0; at < m; ++at) {
-    const Index i = active_[static_cast<std::size_t>(at)];
-    // Never ahead of `at`: this column's point has been used by then.
-    double* trial = trial_.col(static_cast<Index>(kept)).data();
-    ++evaluations_[static_cast<std::size_t>(i)];
-    const double* g = gradient.col(at).data();
-    const bool goes_on = rounds_ == 0 ? begin(i, loss(at), g, trial)
-                                      : advance(i, at, loss(at), g, trial);
-    if (goes_on) active_[kept++] = i;
-  }
-  active_.resize(kept);
-  ++rounds_;
-}
-
-bool Bfgs::begin(Index i, double loss, const double* gradient, double* trial) {
-  loss_(i) = loss;
-  std::copy(gradient, gradient + d_, gradient_.col(i).data());
-  if (!std::isfinite(loss) || !dense::all_finite(d_, gradient))
-    return finish(i, Status::nonfinite);
-  accepted_.push_back(i);
-  previous_loss_(i) = loss + dense::norm(d_, gradient) / 2;
-  earlier_(0, i) = loss;
-  if (dense::max_abs(d_, gradient) <= options_.gtol)
-    return finish(i, Status::gtol);
+bool Bfgs::begin(Index i, double* trial) {
+  const double* g = gradient_.col(i).data();
+  previous_loss_(i) = loss_(i) + dense::norm(d_, g) / 2;
+  earlier_(0, i) = loss_(i);
+  if (dense::max_abs(d_, g) <= options_.gtol) return finish(i, Status::gtol);
   dense::set_identity(d_, hessian(i));
   return iterate(i, trial);
 }
 
-/// An evaluation came back: one move of the line search, perhaps the last.
-bool Bfgs::advance(
-    Index i, Index at, double loss, const double* gradient, double* trial) {
+/// One move of the line search, perhaps the last.
+bool Bfgs::advance(Index i, const Point& at, double* trial) {
   LineSearch& line = searches_[static_cast<std::size_t>(i)];
   const double* p = direction_.col(i).data();
   const auto next =
-      line.supply(options_.search, loss, dense::dot(d_, gradient, p));
+      line.supply(options_.search, at.loss, dense::dot(d_, at.gradient, p));
   if (next != LineSearch::Next::accept) return search(i, next, trial);
 
+  const double* g = gradient_.col(i).data();
   for (Index j = 0; j < d_; ++j) step_(j) = line.step() * p[j];
-  move(i, trial_.col(at).data(), loss, gradient);
-  if (dense::max_abs(d_, gradient) <= options_.gtol)
-    return finish(i, Status::gtol);
+  for (Index j = 0; j < d_; ++j) change_(j) = at.gradient[j] - g[j];
+  previous_loss_(i) = loss_(i);
+  accept(i, at);
+  if (dense::max_abs(d_, g) <= options_.gtol) return finish(i, Status::gtol);
   if (line.step() * dense::norm(d_, p) == 0) return finish(i, Status::gtol);
   if (stalls(i)) return finish(i, Status::gtol);
   if (iterations_[static_cast<std::size_t>(i)] < options_.maxiter) {
@@ -98,22 +71,6 @@ bool Bfgs::advance(
         d_, step_.data(), change_.data(), hessian(i), scratch_.data());
   }
   return iterate(i, trial);
-}
-
-/// Takes over the accepted point; change_ becomes g' - g.
-void Bfgs::move(Index i,
-                const double* to,
-                double loss,
-                const double* gradient) {
-  double* x = x_.col(i).data();
-  double* g = gradient_.col(i).data();
-  for (Index j = 0; j < d_; ++j) change_(j) = gradient[j] - g[j];
-  std::copy(to, to + d_, x);
-  std::copy(gradient, gradient + d_, g);
-  previous_loss_(i) = loss_(i);
-  loss_(i) = loss;
-  ++iterations_[static_cast<std::size_t>(i)];
-  accepted_.push_back(i);
 }
 
 /// Starts the next iteration: direction, first step, first trial point.
@@ -156,11 +113,6 @@ bool Bfgs::stalls(Index i) {
       k >= kStallSteps && before - loss_(i) < options_.stall * before;
   before = loss_(i);
   return stalls;
-}
-
-bool Bfgs::finish(Index i, Status status) {
-  status_[static_cast<std::size_t>(i)] = status;
-  return false;
 }
 
 }  // namespace physinv

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "optimizers/steps/bfgs_update.h"
 #include "suite/core/check.h"
@@ -11,6 +10,14 @@
 namespace physinv {
 
 void BoldDescent::start(BatchIn<double> x0) {
+  const BoldDescentOptions& o = options_;
+  SUITE_CHECK(std::isfinite(o.first_step) && o.first_step > 0,
+              "a bold driver: the first step has a length");
+  SUITE_CHECK(0 < o.shorter && o.shorter < 1 && 1 <= o.longer &&
+                  std::isfinite(o.longer),
+              "a bold driver: 0 < shorter < 1 <= longer");
+  SUITE_CHECK(o.evaluations >= 0,
+              "a bold driver: evaluations is a number from 0 on");
   const Index n = x0.cols();
   const auto count = static_cast<std::size_t>(n);
   skipped_ = 0;
@@ -24,8 +31,16 @@ void BoldDescent::start(BatchIn<double> x0) {
   evaluations_.assign(count, 0);
   accepted_.clear();
   accepted_.reserve(count);
-  active_.resize(count);
-  std::iota(active_.begin(), active_.end(), Index{0});
+  active_.clear();
+  active_.reserve(count);
+  for (Index i = 0; i < n; ++i) {
+    if (dense::all_finite(x_.rows(), x_.col(i).data())) {
+      trial_.col(static_cast<Index>(active_.size())) = x_.col(i);
+      active_.push_back(i);
+    } else {
+      status_[static_cast<std::size_t>(i)] = Status::nonfinite;
+    }
+  }
 }
 
 void BoldDescent::supply(VectorIn<double> loss, BatchIn<double> gradient) {
@@ -57,7 +72,8 @@ bool BoldDescent::take(Index i,
   const auto k = static_cast<std::size_t>(i);
   const bool first = evaluations_[k]++ == 0;
   const bool usable = std::isfinite(loss) &&
-                      dense::all_finite(gradient.size(), gradient.data());
+                      dense::all_finite(gradient.size(), gradient.data()) &&
+                      dense::all_finite(x_.rows(), trial_.col(at).data());
   if (usable && loss < loss_(i)) {
     x_.col(i) = trial_.col(at);
     gradient_.col(i) = gradient;

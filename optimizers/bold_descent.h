@@ -6,7 +6,8 @@
 ///   trial = x - a g / max(1, |g|)
 ///   L falls: x = trial, a *= longer    otherwise: a *= shorter
 ///
-/// A loss or gradient that is not finite does not fall. Driven like `Bfgs`;
+/// Where trial, loss or gradient are not finite, nothing falls; a start that is
+/// not finite ends at once, as it is. Driven like `Bfgs`;
 /// the bits of a problem do not depend on the others in the batch.
 #pragma once
 

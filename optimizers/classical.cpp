@@ -9,6 +9,7 @@
 #include "optimizers/gradient_descent.h"
 #include "optimizers/lbfgsb.h"
 #include "optimizers/solver_outcome.h"
+#include "suite/core/check.h"
 #include "suite/core/oracle.h"
 #include "suite/core/probe.h"
 
@@ -61,7 +62,10 @@ Sources only(const char* used, Sources sources) {
 class BfgsStage final : public Stage {
  public:
   BfgsStage(const BfgsStageOptions& options, bool refines)
-      : options_(options), refines_(refines) {}
+      : options_(options), refines_(refines) {
+    SUITE_CHECK(options.stall >= 0 && options.search_evaluations >= 0,
+                "stall and search_evaluations are numbers from 0 on");
+  }
 
   std::string name() const override { return refines_ ? "refine" : "solve"; }
   Needs needs() const override { return Needs::forward | Needs::vjp; }
@@ -149,10 +153,7 @@ class GradientDescentStage final : public Stage {
   Outcome run(StageRun& run) const override {
     GradientDescent solver(
         {.step_tolerance = run.setting.gtol, .maxiter = run.iterations});
-    Outcome out = solve(solver, run, run.oracle.start());
-    run.oracle.add(Counter::skipped_trials,
-                   static_cast<Index>(solver.skipped_trials()));
-    return out;
+    return solve(solver, run, run.oracle.start());
   }
 
  private:

@@ -29,18 +29,23 @@ void drive(Solver& solver,
   Vector<double> loss(x0.cols());
   Batch<double> gradient(x0.rows(), x0.cols());
   solver.start(x0);
-  while (solver.pending()) {
-    const auto m = static_cast<Index>(solver.active().size());
-    objective(
-        solver.active(), solver.points(), loss.head(m), gradient.leftCols(m));
-    solver.supply(loss.head(m), gradient.leftCols(m));
-    if (solver.accepted().empty()) continue;
+  const auto observe = [&] {
+    if (solver.accepted().empty()) return;
     using Answer = std::invoke_result_t<Observer&, const Solver&>;
     if constexpr (std::convertible_to<Answer, bool>) {
       if (!observer(static_cast<const Solver&>(solver))) solver.halt();
     } else {
       observer(static_cast<const Solver&>(solver));
     }
+  };
+  while (solver.pending()) {
+    const auto m = static_cast<Index>(solver.active().size());
+    objective(
+        solver.active(), solver.points(), loss.head(m), gradient.leftCols(m));
+    solver.supply(loss.head(m), gradient.leftCols(m));
+    observe();
+    if constexpr (requires { solver.supply_known(); })
+      while (solver.supply_known()) observe();
   }
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "optimizers/steps/bfgs_update.h"
 #include "suite/core/check.h"
@@ -16,13 +15,22 @@ constexpr double kInf = std::numeric_limits<double>::infinity();
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
+void check(const GradientDescentOptions& o) {
+  SUITE_CHECK(o.first_step > 0 && o.first_step < kInf,
+              "gradient descent: the first step has a length");
+  SUITE_CHECK(
+      o.step_tolerance >= 0 && o.maxiter >= 0,
+      "gradient descent: step_tolerance, maxiter are numbers from 0 on");
+  SUITE_CHECK(o.substeps > 0, "an iteration needs a sub-step");
+}
+
 }  // namespace
 
 void GradientDescent::start(BatchIn<double> x0) {
   const Index n = x0.cols();
   d_ = x0.rows();
   SUITE_CHECK(d_ > 0, "gradient descent needs unknowns");
-  SUITE_CHECK(options_.substeps > 0, "an iteration needs a sub-step");
+  check(options_);
   rounds_ = iteration_ = substep_ = 0;
   skipped_ = skipped_trials_ = 0;
   starting_ = true;
@@ -43,8 +51,16 @@ void GradientDescent::start(BatchIn<double> x0) {
   flat_.reserve(at(n));
   accepted_.clear();
   accepted_.reserve(at(n));
-  active_.resize(at(n));
-  std::iota(active_.begin(), active_.end(), Index{0});
+  active_.clear();
+  active_.reserve(at(n));
+  for (Index i = 0; i < n; ++i) {
+    if (dense::all_finite(d_, x_.col(i).data())) {
+      trial_.col(static_cast<Index>(active_.size())) = x_.col(i);
+      active_.push_back(i);
+    } else {
+      status_[at(i)] = Status::nonfinite;
+    }
+  }
 }
 
 void GradientDescent::supply(VectorIn<double> loss, BatchIn<double> gradient) {
@@ -61,7 +77,8 @@ void GradientDescent::supply(VectorIn<double> loss, BatchIn<double> gradient) {
     const Index i = active_[at(k)];
     const double* g = gradient.col(k).data();
     double l = loss(k);
-    if (!std::isfinite(l) || !dense::all_finite(d_, g))
+    if (!std::isfinite(l) || !dense::all_finite(d_, g) ||
+        !dense::all_finite(d_, trial_.col(k).data()))
       l = kInf, g = zero_.data();
     ++evaluations_[at(i)];
     if (starting_) {

@@ -9,7 +9,7 @@
 /// improved on L or converged, so a problem's path does depend on the others
 /// in its batch.
 ///
-/// A trial with a loss or gradient that is not finite counts as L = +inf, g =
+/// A trial that is not finite, or its loss or gradient, counts as L = +inf, g =
 /// 0. Driven like `Bfgs`: start, then active/points/supply while pending, or
 /// drive() of drive.h, whose observer is called after every iteration.
 #pragma once
@@ -38,7 +38,8 @@ class GradientDescent {
   explicit GradientDescent(const GradientDescentOptions& options = {})
       : options_(options) {}
 
-  /// Begins one run per column of x0 (d x n).
+  /// Begins one run per column of x0 (d x n). A column that is not finite ends
+  /// at once, as it is.
   void start(BatchIn<double> x0);
 
   bool pending() const { return !active_.empty(); }
@@ -53,8 +54,8 @@ class GradientDescent {
   void halt() { active_.clear(); }
 
   /// Problems for which an iteration ended in the last round, moved or not
-  /// (all after the first round, none inside an iteration). An iteration that
-  /// was skipped because the gradient is zero is not announced.
+  /// (after the first round all that began, none inside an iteration). An
+  /// iteration that was skipped because the gradient is zero is not announced.
   std::span<const Index> accepted() const { return accepted_; }
 
   const Batch<double>& x() const { return x_; }

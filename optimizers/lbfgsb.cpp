@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "optimizers/steps/bfgs_update.h"
 #include "suite/core/check.h"
@@ -24,14 +23,23 @@ Vector<double> each(const std::vector<double>& given, Index d, double none) {
   return Eigen::Map<const Vector<double>>(given.data(), d);
 }
 
+void check(const LbfgsbOptions& o) {
+  SUITE_CHECK(o.memory > 0, "L-BFGS-B needs a memory of 1 pair at least");
+  SUITE_CHECK(o.pgtol >= 0 && o.ftol >= 0 && o.maxiter >= 0 && o.maxfun >= 0,
+              "L-BFGS-B: pgtol, ftol, maxiter, maxfun are numbers from 0 on");
+  SUITE_CHECK(o.maxls > 0, "L-BFGS-B: a line search evaluates something");
+}
+
 }  // namespace
 
 void Lbfgsb::set_box(Index d) {
   constexpr double kInf = std::numeric_limits<double>::infinity();
   box_ = {each(options_.lower, d, -kInf), each(options_.upper, d, kInf)};
   for (Index i = 0; i < d; ++i)
-    SUITE_CHECK(box_.lower(i) <= box_.upper(i),
-                fmt::format("unknown {}: lower bound {} above upper bound {}",
+    SUITE_CHECK(box_.lower(i) <= box_.upper(i) && box_.lower(i) < kInf &&
+                    box_.upper(i) > -kInf,
+                fmt::format("unknown {}: no number lies between the bounds {} "
+                            "and {}; -inf and inf are for none",
                             i,
                             box_.lower(i),
                             box_.upper(i)));
@@ -41,92 +49,46 @@ void Lbfgsb::set_box(Index d) {
 }
 
 void Lbfgsb::start(BatchIn<double> x0) {
-  const Index n = x0.cols();
-  const auto count = static_cast<std::size_t>(n);
-  d_ = x0.rows();
-  SUITE_CHECK(d_ > 0, "L-BFGS-B needs unknowns");
-  SUITE_CHECK(options_.memory > 0,
-              "L-BFGS-B needs a memory of 1 pair at least");
+  check(options_);
+  open(x0);
   set_box(d_);
-  rounds_ = 0;
-  skipped_ = 0;
-  x_ = x0;
-  for (Index j = 0; j < n; ++j)
+  for (std::size_t at = 0; at < active_.size(); ++at) {
+    const Index j = active_[at];
     for (Index i = 0; i < d_; ++i) x_(i, j) = box_.project(i, x_(i, j));
-  trial_ = x_;
-  gradient_.setZero(d_, n);
+    trial_.col(static_cast<Index>(at)) = x_.col(j);
+  }
+  const Index n = x0.cols();
   target_.setZero(d_, n);
   direction_.setZero(d_, n);
-  loss_.setConstant(n, std::numeric_limits<double>::quiet_NaN());
   step_.resize(d_);
   change_.resize(d_);
-  problems_.resize(count);
+  problems_.resize(static_cast<std::size_t>(n));
   for (Problem& p : problems_) p.memory.start(d_, options_.memory);
-  status_.assign(count, Status::maxiter);
-  iterations_.assign(count, 0);
-  evaluations_.assign(count, 0);
-  accepted_.clear();
-  accepted_.reserve(count);
-  active_.resize(count);
-  std::iota(active_.begin(), active_.end(), Index{0});
 }
 
-void Lbfgsb::supply(VectorIn<double> loss, BatchIn<double> gradient) {
-  const auto m = static_cast<Index>(active_.size());
-  SUITE_CHECK(loss.size() == m && gradient.cols() == m && gradient.rows() == d_,
-              "one loss and one gradient per active problem");
-  skipped_ += static_cast<std::uint64_t>(x_.cols() - m);
-  accepted_.clear();
-  std::size_t kept = 0;
-  for (Index at = 0; at < m; ++at) {
-    const Index i = active_[static_cast<std::size_t>(at)];
-    // Never ahead of `at`: this column's point has been used by then.
-    double* trial = trial_.col(static_cast<Index>(kept)).data();
-    ++evaluations_[static_cast<std::size_t>(i)];
-    const double* g = gradient.col(at).data();
-    const bool goes_on = rounds_ == 0 ? begin(i, loss(at), g, trial)
-                                      : advance(i, at, loss(at), g, trial);
-    if (goes_on) active_[kept++] = i;
-  }
-  active_.resize(kept);
-  ++rounds_;
-}
-
-bool Lbfgsb::begin(Index i,
-                   double loss,
-                   const double* gradient,
-                   double* trial) {
-  loss_(i) = loss;
-  std::copy(gradient, gradient + d_, gradient_.col(i).data());
-  if (!std::isfinite(loss) || !dense::all_finite(d_, gradient))
-    return finish(i, Status::nonfinite);
-  accepted_.push_back(i);
-  if (box_.gradient_norm(x_.col(i).data(), gradient) <= options_.pgtol)
+bool Lbfgsb::begin(Index i, double* trial) {
+  if (box_.gradient_norm(x_.col(i).data(), gradient_.col(i).data()) <=
+      options_.pgtol)
     return finish(i, Status::gtol);
   if (options_.maxiter <= 0) return finish(i, Status::maxiter);
   return iterate(i, trial);
 }
 
-/// An evaluation came back: one move of the line search, perhaps the last.
-bool Lbfgsb::advance(
-    Index i, Index at, double loss, const double* gradient, double* trial) {
+/// One move of the line search, perhaps the last.
+bool Lbfgsb::advance(Index i, const Point& at, double* trial) {
   Problem& p = problems_[static_cast<std::size_t>(i)];
-  const double slope = dense::dot(d_, gradient, direction_.col(i).data());
-  const auto next = p.line.supply(search_options(p), loss, slope);
+  const double slope = dense::dot(d_, at.gradient, direction_.col(i).data());
+  const auto next = p.line.supply(search_options(p), at.loss, slope);
   if (next == LineSearch::Next::evaluate && point(i, trial)) return true;
   if (next != LineSearch::Next::accept) {
-    const bool finite = std::isfinite(loss) && std::isfinite(slope);
+    const bool finite = std::isfinite(at.loss) && std::isfinite(slope);
     return restart(i, finite ? Status::linesearch : Status::nonfinite, trial);
   }
 
   const double loss_before = loss_(i);
-  double* g = gradient_.col(i).data();
-  for (Index j = 0; j < d_; ++j) change_(j) = gradient[j] - g[j];
-  std::copy(gradient, gradient + d_, g);
-  x_.col(i) = trial_.col(at);
-  loss_(i) = loss;
-  ++iterations_[static_cast<std::size_t>(i)];
-  accepted_.push_back(i);
+  const double* g = gradient_.col(i).data();
+  for (Index j = 0; j < d_; ++j) change_(j) = at.gradient[j] - g[j];
+  accept(i, at);
   if (done(i, loss_before)) return false;
   remember(i, slope);
   return iterate(i, trial);
@@ -217,11 +179,6 @@ LineSearchOptions Lbfgsb::search_options(const Problem& problem) const {
           .max_step = problem.longest,
           .max_evaluations = options_.maxls,
           .search_1_only = true};
-}
-
-bool Lbfgsb::finish(Index i, Status status) {
-  status_[static_cast<std::size_t>(i)] = status;
-  return false;
 }
 
 }  // namespace physinv

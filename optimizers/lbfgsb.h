@@ -1,6 +1,6 @@
 /// L-BFGS-B with the semantics of lbfgsb.f 3.0 in SciPy 1.10
 /// `minimize(method="L-BFGS-B", jac=True)`, run for many independent problems
-/// together; used like `Bfgs` (bfgs.h), with `drive` (drive.h).
+/// together (batched_solver.h).
 ///
 /// Byrd, Lu, Nocedal, Zhu: SIAM J. Sci. Comput. 16 (1995); Morales, Nocedal:
 /// ACM TOMS 38 (2011). Steps aim at a minimum of the model inside the bounds
@@ -11,16 +11,13 @@
 /// walk on with NaN.
 #pragma once
 
-#include <cstdint>
-#include <span>
 #include <utility>
 #include <vector>
 
+#include "optimizers/batched_solver.h"
 #include "optimizers/steps/box_step.h"
 #include "optimizers/steps/limited_memory.h"
 #include "optimizers/steps/line_search.h"
-#include "suite/core/batch.h"
-#include "suite/core/stop.h"
 
 namespace physinv {
 
@@ -36,33 +33,15 @@ struct LbfgsbOptions {
   std::vector<double> lower = {}, upper = {};
 };
 
-class Lbfgsb {
+/// Ends as `gtol` for both tests, `linesearch`, `nonfinite`, or `maxiter` (or
+/// maxfun).
+class Lbfgsb final : public BatchedSolver {
  public:
   explicit Lbfgsb(LbfgsbOptions options = {}) : options_(std::move(options)) {}
 
-  /// Begins one run per column of x0 (d x n), moved into the bounds.
+  /// Begins one run per column of x0 (d x n), moved into the bounds; what is
+  /// not finite is not moved.
   void start(BatchIn<double> x0);
-
-  bool pending() const { return !active_.empty(); }
-  std::span<const Index> active() const { return active_; }
-  Eigen::Ref<const Batch<double>> points() const {
-    return trial_.leftCols(static_cast<Index>(active_.size()));
-  }
-  void supply(VectorIn<double> loss, BatchIn<double> gradient);
-  void halt() { active_.clear(); }
-
-  std::span<const Index> accepted() const { return accepted_; }
-  const Batch<double>& x() const { return x_; }
-  const Vector<double>& loss() const { return loss_; }
-  const Batch<double>& gradient() const { return gradient_; }
-  /// `gtol` for both tests, `linesearch`, `nonfinite`, or `maxiter` (or
-  /// maxfun).
-  const std::vector<Status>& status() const { return status_; }
-  const std::vector<Index>& iterations() const { return iterations_; }
-  const std::vector<Index>& evaluations() const { return evaluations_; }
-
-  Index rounds() const { return rounds_; }
-  std::uint64_t skipped_evaluations() const { return skipped_; }
 
  private:
   struct Problem {
@@ -72,29 +51,23 @@ class Lbfgsb {
   };
 
   void set_box(Index d);
-  bool begin(Index i, double loss, const double* gradient, double* trial);
-  bool advance(
-      Index i, Index at, double loss, const double* gradient, double* trial);
+  bool begin(Index i, double* trial) override;
+  bool advance(Index i, const Point& at, double* trial) override;
   bool done(Index i, double loss_before);
   void remember(Index i, double slope);
   bool iterate(Index i, double* trial);
   bool start_search(Index i);
   bool restart(Index i, Status otherwise, double* trial);
   bool point(Index i, double* trial) const;
-  bool finish(Index i, Status status);
   LineSearchOptions search_options(const Problem& problem) const;
 
   LbfgsbOptions options_;
   Box box_;
   bool bounded_ = false, boxed_ = false;
   BoxStep aim_;
-  Index d_ = 0, rounds_ = 0;
-  std::uint64_t skipped_ = 0;
   std::vector<Problem> problems_;
-  Batch<double> x_, gradient_, target_, direction_, trial_;
-  Vector<double> loss_, step_, change_;
-  std::vector<Status> status_;
-  std::vector<Index> iterations_, evaluations_, active_, accepted_;
+  Batch<double> target_, direction_;
+  Vector<double> step_, change_;
 };
 
 }  // namespace physinv

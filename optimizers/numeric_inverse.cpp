@@ -44,6 +44,7 @@ void NumericInverse::invert(BatchIn<double> y,
   for (Index i = 0; i < x.cols(); ++i)
     if (!std::isfinite(solver_.loss()(i)))
       x.col(i).setConstant(std::numeric_limits<double>::quiet_NaN());
+  counts_[Counter::skipped_trials] += solver_.skipped_trials();
 }
 
 void NumericInverse::losses(BatchIn<double> x, VectorOut<double> loss) {

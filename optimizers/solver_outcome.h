@@ -9,7 +9,8 @@
 namespace physinv {
 
 /// Estimates, statuses and counts of the run of a batched solver (drive.h). The
-/// evaluations that finished problems did not need are counted as saved.
+/// evaluations that finished problems did not need are counted as saved, and so
+/// are trials of a known end.
 template <class Solver>
 Outcome solver_outcome(const Solver& solver, Oracle& oracle) {
   const auto n = static_cast<Index>(solver.status().size());
@@ -29,6 +30,9 @@ Outcome solver_outcome(const Solver& solver, Oracle& oracle) {
   out.stop = converged ? Stop::converged : Stop::iterations;
   oracle.add(Counter::skipped_forward,
              static_cast<Index>(solver.skipped_evaluations()));
+  if constexpr (requires { solver.skipped_trials(); })
+    oracle.add(Counter::skipped_trials,
+               static_cast<Index>(solver.skipped_trials()));
   return out;
 }
 

@@ -9,7 +9,9 @@
 
 #include "optimizers/drive.h"
 #include "optimizers/steps/bfgs_update.h"
+#include "suite/core/check.h"
 #include "tests/optimizers/functions.h"
+#include "tests/support/bits.h"
 #include "tests/support/gradient_check.h"
 #include "tests/support/reference.h"
 #include "tests/support/run_reference.h"
@@ -218,6 +220,101 @@ TEST(Bfgs, NonFiniteStart) {
   }
 }
 
+TEST(Bfgs, AStartThatIsNotFiniteIsLeftAsItIs) {
+  // An objective that would find it acceptable.
+  const auto blind = single([](const Vector<double>& x, Vector<double>& g) {
+    EXPECT_TRUE(x.allFinite());
+    g(0) = 2 * x(0);
+    return x(0) * x(0);
+  });
+  const Batch<double> good = starts(2, 3);
+  const Bfgs alone = solve(blind, good);
+  for (const double bad : {kNan, kInf, -kInf}) {
+    Batch<double> x0(2, 5);
+    x0 << good.leftCols(1), good;
+    x0.col(0) << 0.5, bad;
+    x0.col(4) << bad, bad;
+    x0.middleCols(1, 3) = good;
+    const Bfgs b = solve(blind, x0);
+    for (const std::size_t i : {std::size_t{0}, std::size_t{4}}) {
+      EXPECT_EQ(b.status()[i], Status::nonfinite);
+      EXPECT_EQ(b.evaluations()[i], 0);
+      EXPECT_EQ(b.iterations()[i], 0);
+    }
+    EXPECT_TRUE(test::same_bits(Batch<double>(b.x()(Eigen::all, {0, 4})),
+                                Batch<double>(x0(Eigen::all, {0, 4}))));
+    EXPECT_TRUE(
+        test::same_bits(Batch<double>(b.x().middleCols(1, 3)), alone.x()));
+    EXPECT_EQ(b.status()[2], alone.status()[1]);
+    EXPECT_EQ(solve(blind, Batch<double>::Constant(2, 2, bad)).rounds(), 0);
+  }
+}
+
+/// Counts what is evaluated, and what of it was the point before, per problem.
+template <class F>
+struct Watched {
+  F f;
+  std::vector<Vector<double>> last;
+  std::vector<Index> made;
+  Index repeated = 0;
+
+  Watched(F objective, Index n)
+      : f(objective),
+        last(static_cast<std::size_t>(n)),
+        made(static_cast<std::size_t>(n)) {}
+  void operator()(std::span<const Index> active,
+                  BatchIn<double> x,
+                  VectorOut<double> loss,
+                  BatchOut<double> gradient) {
+    for (Index k = 0; k < x.cols(); ++k) {
+      const auto i = static_cast<std::size_t>(active[std::size_t(k)]);
+      const Vector<double> at = x.col(k);
+      if (last[i].size() > 0 && test::same_bits(last[i], at)) ++repeated;
+      last[i] = at;
+      ++made[i];
+    }
+    f(active, x, loss, gradient);
+  }
+};
+
+TEST(Bfgs, HandsBackWhatIsKnown) {
+  // The first steps do not leave the start: they are lost in rounding.
+  const auto flat = single([](const Vector<double>&, Vector<double>& g) {
+    g.setConstant(1e-15);
+    return 1.0;
+  });
+  const auto cliff = single([](const Vector<double>& x, Vector<double>& g) {
+    g(0) = -1;
+    return x(0) > 1 ? kNan : -x(0);
+  });
+  const auto check = [](auto objective, const Batch<double>& x0, double gtol) {
+    const Index n = x0.cols();
+    Watched watched(objective, n);
+    Bfgs solver({.gtol = gtol});
+    std::vector<Index> seen(static_cast<std::size_t>(n), 0);
+    drive(solver, watched, x0, [&](const Bfgs& b) {
+      for (const Index i : b.accepted())
+        EXPECT_EQ(b.iterations()[std::size_t(i)], seen[std::size_t(i)]++);
+    });
+    EXPECT_EQ(watched.repeated, 0);
+    EXPECT_EQ(watched.made, solver.evaluations());
+    for (Index i = 0; i < n; ++i) {
+      // Alone, so that batches may be of different lengths.
+      const Bfgs one = solve(objective, x0.col(i), {.gtol = gtol});
+      EXPECT_TRUE(test::same_bits(Vector<double>(one.x().col(0)),
+                                  Vector<double>(solver.x().col(i))));
+      EXPECT_EQ(one.evaluations()[0], solver.evaluations()[std::size_t(i)]);
+    }
+    return solver.skipped_trials();
+  };
+  EXPECT_GT(check(flat, Batch<double>::Constant(2, 3, 1e3), 1e-30), 2U);
+  EXPECT_GT(check(cliff, Batch<double>::Constant(1, 4, 1), 1e-5), 0U);
+  std::uint64_t skipped = 0;
+  for (const char* name : {"abs", "rough", "wavy", "rosenbrock"})
+    skipped += check(ClosedForm{name}, starts(2, 30), 1e-14);
+  EXPECT_GT(skipped, 0U);
+}
+
 TEST(Bfgs, NonFiniteRegionIsNeverEntered) {
   // The logarithm's wall at 0 is in reach of the extrapolating search.
   const auto walled = single([](const Vector<double>& x, Vector<double>& g) {
@@ -243,7 +340,9 @@ TEST(Bfgs, NonFiniteRegionIsNeverEntered) {
   EXPECT_EQ(c.status()[0], Status::nonfinite);
   EXPECT_EQ(c.x()(0), 1);
   EXPECT_EQ(c.loss()(0), -1);
-  EXPECT_EQ(c.evaluations()[0], 3);
+  // The second search begins where the first one ended.
+  EXPECT_EQ(c.evaluations()[0], 2);
+  EXPECT_EQ(c.skipped_trials(), 1U);
 }
 
 TEST(Bfgs, OverflowingPointsAreNotEvaluated) {
@@ -289,6 +388,22 @@ TEST(BfgsUpdate, EqualsTheMatrixProduct) {
   }
 }
 
+TEST(BfgsUpdate, NormsOfAnySize) {
+  Vector<double> a(7);
+  a << 3, -1, 0, 4, 1e-3, -2, 0.5;
+  const double norm = dense::norm(7, a.data());
+  EXPECT_EQ(norm, std::sqrt(dense::dot(7, a.data(), a.data())));
+  for (const double size : {1e-300, 1e-200, 1e-150, 1e150, 1e200, 1e307}) {
+    const Vector<double> b = size * a;
+    EXPECT_NEAR(dense::norm(7, b.data()) / size, norm, 1e-14 * norm) << size;
+  }
+  EXPECT_EQ(dense::norm(3, Vector<double>::Zero(3).eval().data()), 0);
+  a(2) = kInf;
+  EXPECT_EQ(dense::norm(7, a.data()), kInf);
+  a(2) = kNan;
+  EXPECT_TRUE(std::isnan(dense::norm(7, a.data())));
+}
+
 TEST(BfgsUpdate, NoCurvatureAndNegativeCurvature) {
   const Vector<double> s = (Vector<double>(2) << 1, 1).finished();
   Vector<double> y = (Vector<double>(2) << 1, -1).finished(), scratch(2);
@@ -302,6 +417,22 @@ TEST(BfgsUpdate, NoCurvatureAndNegativeCurvature) {
   EXPECT_TRUE(test::Comparator(1e-12, 0)(
       h, product_form(Batch<double>::Identity(2, 2), s, y, -1)));
   EXPECT_LT(y.dot(h * y), 0);  // kept, not repaired
+}
+
+TEST(Bfgs, RefusesOptionsThatAreNoNumbers) {
+  const Batch<double> x0 = starts(2, 1);
+  for (const BfgsOptions& bad :
+       {BfgsOptions{.gtol = kNan},
+        BfgsOptions{.gtol = -1},
+        BfgsOptions{.maxiter = -1},
+        BfgsOptions{.stall = kNan},
+        BfgsOptions{.search = {.decrease = kNan}},
+        BfgsOptions{.search = {.decrease = 0.95}},
+        BfgsOptions{.search = {.curvature = 1}},
+        BfgsOptions{.search = {.min_step = 2, .max_step = 1}},
+        BfgsOptions{.search = {.max_evaluations = 0}},
+        BfgsOptions{.search = {.max_together = 0}}})
+    EXPECT_THROW(solve(ClosedForm{"wavy"}, x0, bad), ContractError);
 }
 
 // A long valley: every step helps, ever less.
@@ -336,7 +467,9 @@ TEST(Bfgs, SearchesTogetherStayWithinTheirEvaluations) {
     const Bfgs solver = solve(
         kink, Batch<double>::Ones(1, 1), {.search = {.max_together = most}});
     EXPECT_EQ(solver.status()[0], Status::linesearch);
-    EXPECT_EQ(solver.evaluations()[0], 1 + most);
+    EXPECT_EQ(
+        solver.evaluations()[0] + static_cast<Index>(solver.skipped_trials()),
+        1 + most);
   }
 }
 

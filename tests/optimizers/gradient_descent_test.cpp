@@ -9,7 +9,9 @@
 
 #include "optimizers/bold_descent.h"
 #include "optimizers/drive.h"
+#include "suite/core/check.h"
 #include "tests/optimizers/functions.h"
+#include "tests/support/bits.h"
 #include "tests/support/reference.h"
 
 namespace physinv {
@@ -17,6 +19,7 @@ namespace {
 
 using test::Billiards;
 using test::ClosedForm;
+using test::same_bits;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 TEST(GradientDescentReference, Billiards) {
@@ -205,6 +208,75 @@ TEST(GradientDescent, NonFiniteStart) {
     EXPECT_EQ(gd.status()[2], Status::nonfinite);
     EXPECT_EQ(gd.x(), Batch<double>::Ones(2, 3));
   }
+}
+
+/// Finite everywhere, at infinity too, where it is lowest.
+void slope_to_infinity(std::span<const Index>,
+                       BatchIn<double> x,
+                       VectorOut<double> loss,
+                       BatchOut<double> gradient) {
+  for (Index i = 0; i < x.cols(); ++i) {
+    loss(i) = std::isnan(x(0, i)) ? 0 : std::tanh(-x(0, i));
+    gradient.col(i).setConstant(-1e300);
+  }
+}
+
+template <class Solver>
+void expect_finite_paths() {
+  for (const double bad : {kNan, HUGE_VAL, -HUGE_VAL}) {
+    Batch<double> x0(2, 3);
+    x0 << 0.5, bad, 1, bad, 0.25, 1.7e308;
+    Solver solver;
+    drive(
+        solver,
+        [](std::span<const Index> active,
+           BatchIn<double> x,
+           VectorOut<double> loss,
+           BatchOut<double> gradient) {
+          for (const Index i : active) EXPECT_EQ(i, 2);
+          slope_to_infinity(active, x, loss, gradient);
+        },
+        x0);
+    for (std::size_t i = 0; i < 2; ++i) {
+      EXPECT_EQ(solver.status()[i], Status::nonfinite);
+      EXPECT_EQ(solver.evaluations()[i], 0);
+    }
+    EXPECT_TRUE(same_bits(Batch<double>(solver.x().leftCols(2)),
+                          Batch<double>(x0.leftCols(2))));
+    EXPECT_TRUE(solver.x().col(2).allFinite());
+    EXPECT_TRUE(std::isfinite(solver.loss()(2)));
+  }
+}
+
+TEST(GradientDescent, NeitherStartNorStepIsBeyondTheNumbers) {
+  expect_finite_paths<GradientDescent>();
+}
+
+TEST(BoldDescent, NeitherStartNorStepIsBeyondTheNumbers) {
+  expect_finite_paths<BoldDescent>();
+}
+
+TEST(GradientDescent, RefusesOptionsThatAreNoNumbers) {
+  for (const GradientDescentOptions& bad :
+       {GradientDescentOptions{.first_step = 0},
+        GradientDescentOptions{.first_step = kNan},
+        GradientDescentOptions{.first_step = HUGE_VAL},
+        GradientDescentOptions{.step_tolerance = kNan},
+        GradientDescentOptions{.step_tolerance = -1},
+        GradientDescentOptions{.maxiter = -1},
+        GradientDescentOptions{.substeps = 0}})
+    EXPECT_THROW(GradientDescent(bad).start(Batch<double>::Ones(1, 1)),
+                 ContractError);
+  for (const BoldDescentOptions& bad : {BoldDescentOptions{.first_step = -1},
+                                        BoldDescentOptions{.first_step = kNan},
+                                        BoldDescentOptions{.longer = 0.9},
+                                        BoldDescentOptions{.longer = kNan},
+                                        BoldDescentOptions{.shorter = 0},
+                                        BoldDescentOptions{.shorter = 1},
+                                        BoldDescentOptions{.shorter = kNan},
+                                        BoldDescentOptions{.evaluations = -1}})
+    EXPECT_THROW(BoldDescent(bad).start(Batch<double>::Ones(1, 1)),
+                 ContractError);
 }
 
 /// 1/2 |x|^2, and no number left of -1.

@@ -15,6 +15,7 @@ namespace {
 using test::ClosedForm;
 using test::Json;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInf = std::numeric_limits<double>::infinity();
 
 /// Start j of a batch: spread over [-3, 3]^d.
 Batch<double> starts(Index d, Index n) {
@@ -33,7 +34,6 @@ std::vector<double> bounds(const Json& list, double none) {
 }
 
 LbfgsbOptions options_of(const Json& stored) {
-  constexpr double kInf = std::numeric_limits<double>::infinity();
   LbfgsbOptions options;
   options.lower = bounds(stored.at("lower"), -kInf);
   options.upper = bounds(stored.at("upper"), kInf);
@@ -54,35 +54,17 @@ LbfgsbOptions options_of(const Json& stored) {
   return options;
 }
 
-/// SciPy does not evaluate a point twice in a row.
-struct CountedOnce {
-  ClosedForm f;
-  Vector<double>* last;
-  Index* count;
-  void operator()(std::span<const Index> active,
-                  BatchIn<double> x,
-                  VectorOut<double> loss,
-                  BatchOut<double> gradient) const {
-    if (last->size() == 0 || x.col(0) != *last) ++*count;
-    *last = x.col(0);
-    f(active, x, loss, gradient);
-  }
-};
-
 TEST(LbfgsbReference, EveryIterateAndCountIsThatOfSciPy) {
   const auto check = [](const Json& entry) {
     const auto near = test::EntryTolerance(entry).array();
     for (const Json& stored : entry.at("runs")) {
       SCOPED_TRACE(stored.at("function").dump() + stored.at("x0").dump() +
                    stored.at("lower").dump() + stored.at("options").dump());
-      Vector<double> last;
-      Index evaluations = 0;
-      const CountedOnce f{
-          {stored.at("function").get<std::string>()}, &last, &evaluations};
+      const ClosedForm f{stored.at("function").get<std::string>()};
       const auto run = test::record(
           Lbfgsb(options_of(stored)), f, test::vector(stored.at("x0")));
       EXPECT_EQ(run.iterations, stored.at("iterations").get<Index>());
-      EXPECT_EQ(evaluations, stored.at("evaluations").get<Index>());
+      EXPECT_EQ(run.evaluations, stored.at("evaluations").get<Index>());
       EXPECT_EQ(test::scipy_status(run.status), stored.at("status").get<int>())
           << stored.at("message");
       EXPECT_TRUE(near(run.iterates, test::columns(stored.at("iterates"))));
@@ -166,11 +148,87 @@ TEST(Lbfgsb, ValuesThatAreNotFiniteAreNeverAccepted) {
   EXPECT_EQ(solver.evaluations()[0], 1);
 }
 
+TEST(Lbfgsb, AStartThatIsNotFiniteIsLeftAsItIs) {
+  const auto blind = [](std::span<const Index>,
+                        BatchIn<double> x,
+                        VectorOut<double> loss,
+                        BatchOut<double> gradient) {
+    EXPECT_TRUE(x.allFinite());
+    gradient.setZero();
+    for (Index i = 0; i < x.cols(); ++i) {
+      loss(i) = x(0, i) * x(0, i);
+      gradient(0, i) = 2 * x(0, i);
+    }
+  };
+  const LbfgsbOptions boxed{.lower = {-2}, .upper = {0.9}};
+  const LbfgsbOptions below{.lower = {-2}};
+  const Batch<double> good = starts(2, 3);
+  for (const LbfgsbOptions& options : {LbfgsbOptions{}, boxed, below}) {
+    Lbfgsb alone(options);
+    drive(alone, blind, good);
+    for (const double bad : {kNan, kInf, -kInf}) {
+      Batch<double> x0(2, 4);
+      x0.col(0) << 0.5, bad;
+      x0.rightCols(3) = good;
+      Lbfgsb solver(options);
+      drive(solver, blind, x0);
+      EXPECT_EQ(solver.status()[0], Status::nonfinite);
+      EXPECT_EQ(solver.evaluations()[0], 0);
+      EXPECT_EQ(solver.iterations()[0], 0);
+      EXPECT_TRUE(test::same_bits(Vector<double>(solver.x().col(0)),
+                                  Vector<double>(x0.col(0))));
+      EXPECT_TRUE(
+          test::same_bits(Batch<double>(solver.x().rightCols(3)), alone.x()));
+      EXPECT_EQ(solver.status()[1], alone.status()[0]);
+    }
+  }
+}
+
+TEST(Lbfgsb, EvaluatesNoPointTwiceInARow) {
+  // At the bound already: the step has no length, its point is the start.
+  const auto flat = [](std::span<const Index>,
+                       BatchIn<double> x,
+                       VectorOut<double> loss,
+                       BatchOut<double> gradient) {
+    for (Index i = 0; i < x.cols(); ++i) {
+      loss(i) = 1 + 1e-20 * x(0, i);
+      gradient(0, i) = 1;
+    }
+  };
+  Lbfgsb solver({.lower = {-1e-30}});
+  std::vector<Index> seen;
+  Vector<double> last;
+  drive(
+      solver,
+      [&](std::span<const Index> active,
+          BatchIn<double> x,
+          VectorOut<double> loss,
+          BatchOut<double> gradient) {
+        EXPECT_FALSE(last.size() > 0 && test::same_bits(last, x.col(0).eval()));
+        last = x.col(0);
+        flat(active, x, loss, gradient);
+      },
+      Batch<double>::Ones(1, 1),
+      [&](const Lbfgsb& s) { seen.push_back(s.iterations()[0]); });
+  for (std::size_t k = 0; k < seen.size(); ++k)
+    EXPECT_EQ(seen[k], static_cast<Index>(k));
+}
+
 TEST(Lbfgsb, SaysWhatIsWrongWithItsBounds) {
   EXPECT_THROW(solve("wavy", starts(3, 1), {.lower = {0, 0}}), ContractError);
   EXPECT_THROW(solve("wavy", starts(3, 1), {.lower = {1}, .upper = {0}}),
                ContractError);
-  EXPECT_THROW(solve("wavy", starts(3, 1), {.memory = 0}), ContractError);
+  for (const LbfgsbOptions& bad : {LbfgsbOptions{.lower = {kNan}},
+                                   LbfgsbOptions{.upper = {kNan}},
+                                   LbfgsbOptions{.lower = {kInf}},
+                                   LbfgsbOptions{.upper = {-kInf}},
+                                   LbfgsbOptions{.memory = 0},
+                                   LbfgsbOptions{.pgtol = kNan},
+                                   LbfgsbOptions{.ftol = kNan},
+                                   LbfgsbOptions{.ftol = -1},
+                                   LbfgsbOptions{.maxiter = -1},
+                                   LbfgsbOptions{.maxls = 0}})
+    EXPECT_THROW(solve("wavy", starts(3, 1), bad), ContractError);
 }
 
 TEST(SaddleFactor, SolvesItsSystem) {

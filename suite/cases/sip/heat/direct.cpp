@@ -228,12 +228,14 @@ class LbfgsbOfModes final : public Solver {
     Lbfgsb& solver = at(i);
     Vector<double> loss(1), gradient(spaces_.count());
     while (solver.pending()) {
-      const auto q = spaces_.damping().array();
-      const Vector<double> away =
-          q * solver.points().col(0).array() - lengths_.col(i).array();
-      loss(0) = 0.5 * away.squaredNorm();
-      gradient = q * away.array();
-      solver.supply(loss, gradient);
+      if (!solver.supply_known()) {
+        const auto q = spaces_.damping().array();
+        const Vector<double> away =
+            q * solver.points().col(0).array() - lengths_.col(i).array();
+        loss(0) = 0.5 * away.squaredNorm();
+        gradient = q * away.array();
+        solver.supply(loss, gradient);
+      }
       if (!solver.accepted().empty()) return;
     }
   }
