@@ -3,6 +3,7 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <type_traits>
 
 #include "problems/quantum_dipole/cayley.h"
 #include "suite/core/check.h"
@@ -309,18 +310,44 @@ void QuantumDipole<T>::pullback(const Tape& tape,
 
 template <class T>
 void QuantumDipole<T>::jacobian(BatchIn<T> x,
-                                BatchIn<T> given,
+                                BatchIn<T> /*given*/,
                                 BatchOut<T> j,
                                 Workspace& work) const {
+  check_size(x, options_.steps, x.cols());
   check_size(j, kRows * options_.steps, x.cols());
-  const Workspace::Scope scope(work);
-  auto psi = work.take<T>(kRows, x.cols());
-  forward(x, given, psi, work);
-  const Constants<T> k(options_);
-  for_blocks(
-      work.threads(), block_count<T>(x.cols(), kLanes<T>), [&](Index b, int) {
-        differentiate_block<T>(k, x, psi, b * kLanes<T>, j);
-      });
+  const Constants<double> k(options_);
+  constexpr Index kWidth = Group<double>::kSamples;
+  const auto differentiate =
+      [&](BatchIn<double> u, Workspace& own, BatchOut<double> out) {
+        auto psi = own.take<double>(kRows, u.cols());
+        BatchOut<double> end(psi);
+        propagate<double>(k, u, 0, end);
+        for (Index i = 0; i < u.cols(); i += kLanes<double>)
+          differentiate_block<double>(k, u, psi, i, out);
+      };
+  Threads* const threads = work.threads();
+  if (threads != nullptr) work.of_thread(0);  // makes them all
+  const Index blocks = block_count<double>(x.cols(), kWidth);
+  for_blocks(threads, blocks, [&](Index b, int thread) {
+    Workspace& own = threads != nullptr ? work.of_thread(thread) : work;
+    const Workspace::Scope scope(own);
+    const Index first = b * kWidth;
+    const Index some = std::min(kWidth, x.cols() - first);
+    const auto u = x.middleCols(first, some);
+    auto out = j.middleCols(first, some);
+    if constexpr (std::is_same_v<T, double>) {
+      differentiate(u, own, out);
+    } else {
+      auto wide = own.take<double>(u.rows(), some);
+      auto exact = own.take<double>(j.rows(), some);
+      // As forward, which knows no number where the square overflows.
+      wide = u.unaryExpr([](T v) {
+                return std::isfinite(v * v) ? v : v * v;
+              }).template cast<double>();
+      differentiate(wide, own, exact);
+      out = exact.template cast<T>();
+    }
+  });
 }
 
 template <class T>

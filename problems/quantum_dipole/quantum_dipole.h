@@ -24,7 +24,9 @@
 /// Unknown x: the controls u_0 .. u_{steps-1}. Given: nothing. Observation y:
 /// psi at the end, row 2 point + part (real, imaginary); wanted is a target
 /// state t. Loss: 1 - |<t, psi>|^2. Inner products have no dx. vjp, Jacobian:
-/// exact. project: norm conservation, J^T psi = 0.
+/// exact; Jacobians are computed in double whatever T is, as an inverse power
+/// multiplies what so many steps would leave of float. project: norm
+/// conservation, J^T psi = 0.
 ///
 /// Controls that are not finite, or whose square overflows, give non-finite
 /// numbers in their own column only.

@@ -3,6 +3,7 @@
 #include <complex>
 
 #include "tests/problems/physics_checks.h"
+#include "tests/support/bits.h"
 
 namespace physinv::test {
 namespace {
@@ -206,6 +207,19 @@ TEST(QuantumDipole, NoControlCannotReachTheThirdLevelAtFirstOrder) {
           .norm(),
       1e-3 * j.norm());
   EXPECT_GT(box.start().norm(), 1);
+}
+
+// An inverse power multiplies what is lost here.
+TEST(QuantumDipole, JacobiansInFloatAreThoseOfDoubleRounded) {
+  const Batch<float> x = controls(384, 21, 0.3).cast<float>();
+  const QuantumDipole<float> single;
+  const QuantumDipole<double> box;
+  Batch<float> j(28 * 384, 21);
+  Batch<double> exact(28 * 384, 21);
+  Workspace work;
+  single.jacobian(x, none<float>(21), j, work);
+  box.jacobian(x.cast<double>(), none<double>(21), exact, work);
+  EXPECT_TRUE(same_bits(j, Batch<float>(exact.cast<float>())));
 }
 
 TEST(QuantumDipole, TakesLittleMemory) {
