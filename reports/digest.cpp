@@ -9,6 +9,7 @@
 
 #include "reports/report.h"
 #include "reports/tables.h"
+#include "suite/results/markdown.h"
 
 namespace physinv {
 namespace {
@@ -19,12 +20,6 @@ std::string text_of(const Json& object, const char* key) {
   const auto found = object.find(key);
   if (found == object.end() || found->is_null()) return "";
   return found->is_string() ? found->get<std::string>() : found->dump();
-}
-
-std::string cell(std::string text) {
-  for (std::size_t at = 0; (at = text.find('|', at)) != text.npos; at += 2)
-    text.insert(at, 1, '\\');
-  return text;
 }
 
 /// Verdicts of the claims, one for each experiment and id.
@@ -68,7 +63,7 @@ std::string overview(const std::vector<NamedDigest>& campaigns) {
       "| --- | --- | --- | --- | --- | --- | --- | --- |\n";
   for (const auto& [paper, c] : papers) {
     out += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} |\n",
-                       paper.empty() ? "(none)" : paper,
+                       paper.empty() ? "(none)" : markdown(paper),
                        count_of(c.paper, "reproduced"),
                        count_of(c.paper, "not reproduced"),
                        count_of(c.paper, "not judged"),
@@ -83,7 +78,7 @@ std::string overview(const std::vector<NamedDigest>& campaigns) {
          c.digest.at("provenance").value("papers", Json::array()))
       publications.insert(paper.get<std::string>());
   out += '\n';
-  for (const auto& text : publications) out += "- " + text + '\n';
+  for (const auto& text : publications) out += "- " + markdown(text) + '\n';
   return out;
 }
 
@@ -102,12 +97,12 @@ std::string claims_of(const Json& section, const char* origin) {
       continue;
     }
     rows += fmt::format("| {} | {}{} | {} | {}{} |\n",
-                        text_of(claim, "id"),
-                        cell(text_of(claim, "says")),
-                        where.empty() ? "" : " (" + cell(where) + ")",
-                        text_of(claim, "verdict"),
-                        cell(evidence),
-                        note.empty() ? "" : " *" + cell(note) + "*");
+                        markdown(text_of(claim, "id")),
+                        markdown(text_of(claim, "says")),
+                        where.empty() ? "" : " (" + markdown(where) + ")",
+                        markdown(text_of(claim, "verdict")),
+                        markdown(evidence),
+                        note.empty() ? "" : " *" + markdown(note) + "*");
   }
   if (rows.empty() && waiting.empty()) return "";
   const bool paper = std::string_view(origin) == "paper";
@@ -119,27 +114,30 @@ std::string claims_of(const Json& section, const char* origin) {
         rows;
   if (!waiting.empty()) out += "\nNot judged by this campaign:\n\n";
   for (const auto& [why, ids] : waiting)
-    out += fmt::format("- {}: {}\n", ids, why);
+    out += fmt::format("- {}: {}\n", markdown(ids), markdown(why));
   return out;
 }
 
 std::string campaign_markdown(const NamedDigest& campaign) {
   const Json& p = campaign.digest.at("provenance");
+  const auto word = [&](const char* key, std::size_t most = std::string::npos) {
+    return markdown(text_of(p, key).substr(0, most));
+  };
   std::string out = fmt::format(
-      "\n## Campaign {}\n\n`{}`\n\n{}, {} ({} cores), {}, {} {}, revision {}\n",
-      campaign.name,
-      campaign_command(p),
-      text_of(p, "date").substr(0, 10),
-      text_of(p, "cpu_model"),
-      text_of(p, "num_cpus"),
-      text_of(p, "instruction_set"),
-      text_of(p, "compiler"),
-      text_of(p, "compiler_flags"),
-      text_of(p, "git_revision").substr(0, 12));
+      "\n## Campaign {}\n\n{}\n\n{}, {} ({} cores), {}, {} {}, revision {}\n",
+      markdown(campaign.name),
+      markdown_code(campaign_command(p)),
+      word("date", 10),
+      word("cpu_model"),
+      word("num_cpus"),
+      word("instruction_set"),
+      word("compiler"),
+      word("compiler_flags"),
+      word("git_revision", 12));
   for (const Json& section : campaign.digest.at("sections")) {
-    out += fmt::format("\n### {} (`{}`)\n",
-                       text_of(section, "title"),
-                       text_of(section, "experiment"));
+    out += fmt::format("\n### {} ({})\n",
+                       markdown(text_of(section, "title")),
+                       markdown_code(text_of(section, "experiment")));
     for (const char* origin : {"paper", "suite"})
       out += claims_of(section, origin);
     for (const Json& table : section.at("tables"))

@@ -52,7 +52,7 @@ Table turned(const Table& table) {
 
 // 2.2e-04 reads 2.2·10⁻⁴.
 std::string powers_of_ten(const std::string& text) {
-  static const std::regex kPower("([0-9])e([+-]?[0-9]+)");
+  static const std::regex kPower("([0-9])e([+-]?[0-9]{1,3})(?![0-9])");
   std::string out;
   auto rest = text.begin();
   for (std::sregex_iterator at(text.begin(), text.end(), kPower), end;

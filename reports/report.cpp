@@ -10,6 +10,7 @@
 #include "reports/tables.h"
 #include "reports/text.h"
 #include "suite/results/file.h"
+#include "suite/results/markdown.h"
 
 namespace physinv {
 namespace {
@@ -17,9 +18,14 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
+/// A name of its own below the report, and one that needs no escapes.
 std::string folder_of(const Section& section) {
+  constexpr std::string_view kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.";
   std::string name = section.experiment;
-  std::replace(name.begin(), name.end(), '/', '-');
+  for (char& c : name)
+    if (kPlain.find(c) == std::string_view::npos) c = '-';
+  if (name.empty() || name.front() == '.') name.insert(0, "_");
   return name;
 }
 
@@ -43,15 +49,6 @@ class Writer {
 
 std::string dump(const Json& json, int indent = 1) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace) + '\n';
-}
-
-std::string one_line(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '|') out += '\\';
-    out += c == '\n' ? ' ' : c;
-  }
-  return out;
 }
 
 Json optional_number(std::optional<double> value) {
@@ -140,29 +137,29 @@ std::string claims_markdown(const Section& section, Origin origin) {
           "| id | claim | verdict | judged from | gates | evidence |\n"
           "| -- | ----- | ------- | ----------- | ----- | -------- |\n";
     const std::string place =
-        c.where.empty() ? "" : fmt::format(" ({})", one_line(c.where));
+        c.where.empty() ? "" : fmt::format(" ({})", markdown(c.where));
     const std::string note =
-        c.note.empty() ? "" : fmt::format(" *{}*", one_line(c.note));
+        c.note.empty() ? "" : fmt::format(" *{}*", markdown(c.note));
     out += fmt::format("| {} | {}{} | {} {} | {} | {} | {}{} |\n",
-                       c.id,
-                       one_line(c.says),
+                       markdown(c.id),
+                       markdown(c.says),
                        place,
                        verdict_mark(c.verdict),
                        words_of(c.verdict, origin),
-                       c.from,
+                       markdown(c.from),
                        c.gates ? "yes" : "no",
-                       one_line(c.evidence),
+                       markdown(c.evidence),
                        note);
   }
   return out;
 }
 
 std::string section_markdown(const Section& section) {
-  std::string out =
-      fmt::format("\n## {} (`{}`)\n", section.title, section.experiment);
-  if (!section.paper.empty()) {
-    out += fmt::format("\nPaper: {}\n", section.paper);
-  }
+  std::string out = fmt::format("\n## {} ({})\n",
+                                markdown(section.title),
+                                markdown_code(section.experiment));
+  if (!section.paper.empty())
+    out += fmt::format("\nPaper: {}\n", markdown(section.paper));
   for (const Origin origin : {Origin::paper, Origin::suite})
     out += claims_markdown(section, origin);
   if (!section.tables.empty()) out += "\n### Tables\n";
@@ -171,9 +168,11 @@ std::string section_markdown(const Section& section) {
   for (const Figure& f : section.figures) {
     const std::string name =
         f.source.empty() ? f.title : f.source + " · " + f.title;
-    out += fmt::format(
-        "\n![{}]({}/figures/{}.svg)\n", name, folder_of(section), f.id);
-    if (!f.note.empty()) out += '\n' + f.note + '\n';
+    out += fmt::format("\n![{}]({}/figures/{}.svg)\n",
+                       markdown(name),
+                       folder_of(section),
+                       f.id);
+    if (!f.note.empty()) out += '\n' + markdown(f.note) + '\n';
   }
   return out;
 }
@@ -185,8 +184,8 @@ std::string provenance_markdown(const Json& provenance) {
     if (value.is_structured() || value.is_null()) continue;
     out += fmt::format(
         "- {}: {}\n",
-        key,
-        value.is_string() ? value.get<std::string>() : value.dump());
+        markdown(key),
+        markdown(value.is_string() ? value.get<std::string>() : value.dump()));
   }
   return out.empty() ? out : "\n" + out;
 }

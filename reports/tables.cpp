@@ -7,9 +7,11 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "reports/text.h"
+#include "suite/results/markdown.h"
 
 namespace physinv {
 namespace {
@@ -38,11 +40,21 @@ std::string ours(const Cell& cell, int digits) {
   return cell.ours ? show(cell.ours, cell.spread, digits) : "–";
 }
 
-std::string headline(const Table& table) {
-  std::string text = table.source;
+// Its words as `shown` writes them.
+template <class F>
+std::string headline(const Table& table, F&& shown) {
+  std::string text = shown(table.source);
   if (!text.empty() && !table.title.empty()) text += " · ";
-  text += table.title;
-  return table.unit.empty() ? text : fmt::format("{} [{}]", text, table.unit);
+  text += shown(table.title);
+  return table.unit.empty() ? text
+                            : fmt::format("{} [{}]", text, shown(table.unit));
+}
+
+// Control characters would move a terminal's cursor.
+std::string printable(std::string text) {
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+  return text;
 }
 
 Words words_of(const Table& table) {
@@ -61,6 +73,8 @@ Words words_of(const Table& table) {
       }
     }
   }
+  for (auto& line : words)
+    for (std::string& word : line) word = printable(std::move(word));
   return words;
 }
 
@@ -90,15 +104,6 @@ std::string csv_text(std::string_view text) {
 
 std::string csv_number(Number value) {
   return value && std::isfinite(*value) ? fmt::format("{}", *value) : "";
-}
-
-std::string markdown_text(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '|') out += '\\';
-    out += c == '\n' ? ' ' : c;
-  }
-  return out;
 }
 
 // A column and the paper's beside it stay together.
@@ -183,10 +188,10 @@ std::string to_csv(const Table& table) {
 std::string to_markdown(const Table& table) {
   Words words = words_of(table);
   for (auto& line : words) {
-    for (std::string& word : line) word = markdown_text(word);
+    for (std::string& word : line) word = markdown(word);
   }
   const auto widths = widths_of(words, 3);
-  std::string out = fmt::format("**{}**\n\n", headline(table));
+  std::string out = fmt::format("**{}**\n\n", headline(table, markdown));
   for (std::size_t r = 0; r < words.size(); ++r) {
     for (std::size_t c = 0; c < words[r].size(); ++c) {
       out += "| " + aligned(words[r][c], widths[c], c == 0) + ' ';
@@ -199,7 +204,7 @@ std::string to_markdown(const Table& table) {
     }
     out += "|\n";
   }
-  if (!table.note.empty()) out += '\n' + table.note + '\n';
+  if (!table.note.empty()) out += '\n' + markdown(table.note) + '\n';
   return out;
 }
 
@@ -208,7 +213,7 @@ std::string render_text(const Table& table, std::size_t width) {
   const auto widths = widths_of(words, 1);
   const auto starts = block_starts(words, widths, width);
   std::string out;
-  for (const std::string& line : wrap(headline(table), width)) {
+  for (const std::string& line : wrap(headline(table, printable), width)) {
     out += line + '\n';
   }
   for (std::size_t b = 0; b + 1 < starts.size(); ++b) {
@@ -226,7 +231,8 @@ std::string render_text(const Table& table, std::size_t width) {
       }
     }
   }
-  for (const std::string& line : wrap(table.note, width)) out += line + '\n';
+  for (const std::string& line : wrap(printable(table.note), width))
+    out += line + '\n';
   return out;
 }
 

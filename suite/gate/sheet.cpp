@@ -8,6 +8,8 @@
 #include <map>
 #include <utility>
 
+#include "suite/results/markdown.h"
+
 namespace physinv {
 namespace {
 
@@ -39,14 +41,6 @@ std::string escaped(const std::string& text) {
            : c == '\n' ? std::string("%0A")
            : c == '\r' ? std::string("%0D")
                        : std::string(1, c);
-  return out;
-}
-
-/// '|' would end a cell.
-std::string cell(const std::string& text) {
-  std::string out;
-  for (const char c : text)
-    out += c == '|' ? std::string("\\|") : std::string(1, c == '\n' ? ' ' : c);
   return out;
 }
 
@@ -137,16 +131,16 @@ std::string markdown_text(const Sheet& sheet) {
   std::string text = fmt::format("### physinv-bench gate: {}\n\n{}\n\n",
                                  good ? "passed" : "failed",
                                  summary_text(sheet));
-  for (const auto& note : sheet.notes) text += "- " + note + '\n';
+  for (const auto& note : sheet.notes) text += "- " + markdown(note) + '\n';
   const auto shown = loud(sheet);
   if (!shown.empty())
     text += "\n| check | name | verdict | why |\n| --- | --- | --- | --- |\n";
   for (std::size_t i = 0; i < std::min(shown.size(), kMarkdownRows); ++i)
-    text += fmt::format("| {} | `{}` | {} | {} |\n",
+    text += fmt::format("| {} | {} | {} | {} |\n",
                         shown[i]->kind,
-                        cell(shown[i]->name),
+                        markdown(shown[i]->name),
                         shown[i]->verdict,
-                        cell(shown[i]->detail));
+                        markdown(shown[i]->detail));
   if (shown.size() > kMarkdownRows)
     text += fmt::format("\nand {} more\n", shown.size() - kMarkdownRows);
   return text + '\n';
