@@ -36,6 +36,7 @@ write_basic_package_version_file(
 install(FILES
     ${PROJECT_SOURCE_DIR}/cmake/physinv-config.cmake
     ${PROJECT_SOURCE_DIR}/cmake/FindFFTW3.cmake
+    ${PROJECT_SOURCE_DIR}/cmake/FindRE2.cmake
     ${PROJECT_SOURCE_DIR}/cmake/FindSLEEF.cmake
     ${PROJECT_BINARY_DIR}/physinv-config-version.cmake
   DESTINATION ${physinv_package} COMPONENT development)

@@ -31,7 +31,8 @@ const std::map<std::string, Layer> kLayers{
     {"suite/compare",
      {{"suite/core", "suite/results", "suite/evidence"}, {"json"}}},
     {"suite/harness",
-     {{"suite/core", "suite/nn", "suite/results", "suite/evidence"}, {"json"}}},
+     {{"suite/core", "suite/nn", "suite/results", "suite/evidence"},
+      {"json", "re2"}}},
     {"suite/gate",
      {{"suite/core", "suite/results", "suite/harness"}, {"json"}}},
     {"suite/planning",
@@ -99,6 +100,7 @@ std::string library_of(const std::string& header) {
       {"fmt/", ""},  // the messages of SUITE_CHECK, so everybody's
       {"nlohmann/", "json"},
       {"CLI/", "cli11"},
+      {"re2/", "re2"},
       {"zlib.h", "zlib"},
       {"benchmark/", "benchmark"},
       {"gnu/", ""},  // the system's, as the pattern below

@@ -1,6 +1,7 @@
 #include "suite/harness/select.h"
 
 #include <fmt/format.h>
+#include <re2/re2.h>
 
 #include <algorithm>
 #include <map>
@@ -10,28 +11,62 @@
 
 namespace physinv {
 
-NameFilter::NameFilter(const std::vector<std::string>& patterns) {
+namespace {
+
+/// What a pattern may take of memory, in bytes.
+constexpr std::int64_t kPatternMemory = 1 << 20;
+
+std::shared_ptr<const RE2> compiled(const std::string& pattern,
+                                    const std::string& text,
+                                    std::string_view whose) {
+  if (text.size() > kLongestPattern)
+    throw UsageError(
+        fmt::format("{} is a regular expression of {} characters; up to {} are "
+                    "searched in case names",
+                    whose,
+                    text.size(),
+                    kLongestPattern));
+  RE2::Options options;
+  options.set_log_errors(false);
+  options.set_max_mem(kPatternMemory);
+  auto compiled = std::make_shared<const RE2>(text, options);
+  if (!compiled->ok())
+    throw UsageError(fmt::format(
+        "{}='{}' is no regular expression ({}); it is searched in case names, "
+        "e.g. --filter='billiards/(jpo|bfgs)/'",
+        whose,
+        pattern,
+        compiled->error()));
+  return compiled;
+}
+
+}  // namespace
+
+NameFilter::NameFilter(const std::vector<std::string>& patterns,
+                       std::string_view whose) {
   for (const auto& pattern : patterns) {
     const bool negative = pattern.starts_with('-');
-    const std::string text = negative ? pattern.substr(1) : pattern;
-    try {
-      (negative ? unwanted_ : wanted_).emplace_back(text);
-    } catch (const std::regex_error&) {
-      throw UsageError(
-          fmt::format("--filter='{}' is no regular expression; it is searched "
-                      "in case names, e.g. --filter='billiards/(jpo|bfgs)/'",
-                      pattern));
-    }
+    (negative ? unwanted_ : wanted_)
+        .push_back(
+            compiled(pattern, negative ? pattern.substr(1) : pattern, whose));
   }
 }
 
 bool NameFilter::matches(const std::string& name) const {
-  const auto hit = [&](const std::regex& r) {
-    return std::regex_search(name, r);
-  };
+  const auto hit = [&](const auto& r) { return RE2::PartialMatch(name, *r); };
   return (wanted_.empty() ||
           std::any_of(wanted_.begin(), wanted_.end(), hit)) &&
          std::none_of(unwanted_.begin(), unwanted_.end(), hit);
+}
+
+std::string exactly(std::string_view name) {
+  std::string pattern = "^";
+  for (const char c : name) {
+    if (std::string_view(".+*?()[]{}|^$\\").find(c) != std::string_view::npos)
+      pattern += '\\';
+    pattern += c;
+  }
+  return pattern + "$";
 }
 
 std::vector<Case> NameFilter::apply(std::vector<Case> cases) const {
@@ -57,6 +92,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 std::vector<std::string> nearest_names(const std::vector<std::string>& names,
                                        std::string_view pattern,
                                        std::size_t count) {
+  constexpr std::size_t kLongestWord = 64;  // its distance is quadratic
+  pattern = pattern.substr(0, kLongestWord);
   std::map<std::string, std::size_t> score;  // of a path's beginning
   for (const auto& name : names) {
     std::size_t begin = 0;

@@ -1,30 +1,42 @@
 /// Choosing cases: by name, and by shard.
 #pragma once
 
-#include <regex>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "suite/harness/case.h"
 
+namespace re2 {
+class RE2;
+}
+
 namespace physinv {
 
-/// Regular expressions (ECMAScript, searched anywhere in the name). A leading
-/// '-' negates. A name passes if it matches any positive pattern (or there is
-/// none) and no negative one.
+inline constexpr std::size_t kLongestPattern = 4096;
+
+/// Regular expressions (RE2, searched anywhere in the name), whose time is
+/// linear in pattern and name. A leading '-' negates. A name passes if it
+/// matches any positive pattern (or there is none) and no negative one.
 class NameFilter {
  public:
   NameFilter() = default;
-  /// Throws UsageError naming the pattern that is no regular expression.
-  explicit NameFilter(const std::vector<std::string>& patterns);
+  /// Throws UsageError naming the pattern that is no regular expression, or
+  /// too long, and `whose` it is.
+  explicit NameFilter(const std::vector<std::string>& patterns,
+                      std::string_view whose = "--filter");
 
   bool matches(const std::string& name) const;
   std::vector<Case> apply(std::vector<Case> cases) const;
 
  private:
-  std::vector<std::regex> wanted_, unwanted_;
+  using Patterns = std::vector<std::shared_ptr<const re2::RE2>>;
+  Patterns wanted_, unwanted_;
 };
+
+/// The pattern that matches this name and no other.
+std::string exactly(std::string_view name);
 
 /// Up to `count` beginnings of names whose last part reads most like
 /// `pattern`, best first.

@@ -30,12 +30,49 @@ TEST(NameFilter, NamesABadPattern) {
   }
 }
 
+TEST(NameFilter, IsLinearAndLimited) {
+  const std::string name(2000, 'x');
+  for (const char* slow : {"(.*)*(.*)*(.*)*QQ", "(x+x+)+y", "((a|x)*)*$b"})
+    EXPECT_FALSE(NameFilter({slow}).matches(name)) << slow;
+  EXPECT_TRUE(NameFilter({std::string(kLongestPattern, 'x')})
+                  .matches(name + name + name));
+  EXPECT_TRUE(NameFilter({std::string(2000, '(') + std::string(2000, ')')})
+                  .matches(name));
+  for (const std::string& bad :
+       {std::string(kLongestPattern + 1, 'x'),
+        std::string(10'000, '(') + std::string(10'000, ')'),
+        std::string("(((x{1000}){1000}){1000})"),
+        std::string("\xff"),
+        std::string("(?<=a)b"),
+        std::string("(a)\\1")})
+    EXPECT_THROW(NameFilter({bad}), UsageError) << bad.substr(0, 20);
+}
+
+TEST(NameFilter, SaysWhoseThePatternIs) {
+  try {
+    NameFilter({"(bad"}, "--count");
+    FAIL();
+  } catch (const UsageError& error) {
+    EXPECT_TRUE(std::string(error.what()).starts_with("--count='(bad'"));
+  }
+}
+
+TEST(NameFilter, ExactlyMatchesOneName) {
+  const std::vector<std::string> names = {
+      "a/b+c/n=4", "a/bbc/n=4", "machine/fma<float>", "x.y", "xzy", "a|b", "a"};
+  for (const auto& name : names)
+    for (const auto& other : names)
+      EXPECT_EQ(NameFilter({exactly(name)}).matches(other), name == other)
+          << name << " " << other;
+}
+
 TEST(Nearest, FindsTheTypo) {
   const std::vector<std::string> names = {"jpo/billiards/bfgs/n=8/seed=0",
                                           "jpo/waves/bfgs/n=8/seed=0"};
   EXPECT_EQ(nearest_names(names, "biliards").front(), "jpo/billiards");
   EXPECT_EQ(nearest_names(names, "jpo/wave").front(), "jpo/waves");
   EXPECT_TRUE(nearest_names({}, "x").empty());
+  EXPECT_FALSE(nearest_names(names, std::string(1'000'000, 'x')).empty());
   EXPECT_EQ(edit_distance("kitten", "sitting"), 3u);
   EXPECT_EQ(nearest_word({"--jobs", "--out"}, "--job"), "--jobs");
   EXPECT_EQ(nearest_word({"--jobs", "--out"}, "--completely-else"), "");
