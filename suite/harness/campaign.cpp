@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <csignal>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -14,6 +13,7 @@
 #include "suite/harness/context.h"
 #include "suite/harness/keys.h"
 #include "suite/harness/run_case.h"
+#include "suite/harness/stop_signal.h"
 #include "suite/harness/workers.h"
 #include "suite/results/errors.h"
 #include "suite/results/store.h"
@@ -21,31 +21,15 @@
 namespace physinv {
 namespace {
 
-volatile std::sig_atomic_t stop_signal = 0;
-
 constexpr auto kNobody = std::numeric_limits<std::size_t>::max();
 
-/// While it lives, SIGINT and SIGTERM only set a flag and end waits.
-class SignalWatch {
- public:
-  SignalWatch() {
-    stop_signal = 0;
-    struct sigaction action {};
-    action.sa_handler = [](int s) { stop_signal = s; };
-    sigaction(SIGINT, &action, &old_int_);
-    sigaction(SIGTERM, &action, &old_term_);
-  }
-  ~SignalWatch() {
-    sigaction(SIGINT, &old_int_, nullptr);
-    sigaction(SIGTERM, &old_term_, nullptr);
-  }
-  SignalWatch(const SignalWatch&) = delete;
-  SignalWatch& operator=(const SignalWatch&) = delete;
+/// How long a signal to stop waits for stages to lay their state down.
+constexpr double kPatience = 3;
 
- private:
-  struct sigaction old_int_ {
-  }, old_term_{};
-};
+/// How often a case is started whose worker is killed.
+constexpr int kTries = 3;
+
+constexpr std::string_view kGoingOn = "going on with {} {} from iteration {}";
 
 /// The beginning of the chain that the store holds. Stages that failed or
 /// were skipped are run again. With `among`, only stages that these cases ran.
@@ -84,13 +68,13 @@ class Campaign {
   }
 
   CampaignResult run() {
-    const SignalWatch watch;
+    const StopSignalWatch watch;
     plan();
     if (!store_.warning().empty()) progress_.say(store_.warning());
     say_reused();
-    if (!queue_.empty() && stop_signal == 0) work();
+    if (!queue_.empty() && stop_signals() == 0) work();
     progress_.clear();
-    result_.interrupted = stop_signal != 0;
+    result_.interrupted = stop_signals() != 0;
     for (const std::size_t i : queue_)
       result_.not_run.push_back(cases_[i].info.name);
     finish();
@@ -116,7 +100,7 @@ class Campaign {
       const std::size_t stages = take_stored(i).size();
       if (stages == cases_[i].info.stages.size()) continue;
       queue_.push_back(i);
-      find_state(i, stages);
+      find_state(i, static_cast<Index>(stages), kGoingOn);
     }
   }
 
@@ -126,13 +110,16 @@ class Campaign {
       for (const auto& key : c.info.keys) store_.drop_state(key);
   }
 
-  /// Is the next stage of a case half done? What is damaged goes.
-  void find_state(std::size_t i, std::size_t stage) {
+  /// Is the next stage of a case half done? `words` say so. What is damaged
+  /// goes.
+  void find_state(std::size_t i, Index position, std::string_view words) {
     const CaseInfo& info = cases_[i].info;
+    const auto stage = static_cast<std::size_t>(position);
+    if (stage >= info.stages.size()) return;
     try {
       const auto state = store_.state(info.keys[stage]);
       if (!state) return;
-      progress_.say(fmt::format("going on with {} {} from iteration {}",
+      progress_.say(fmt::format(fmt::runtime(words),
                                 info.name,
                                 info.stages[stage],
                                 state->iteration));
@@ -184,15 +171,26 @@ class Campaign {
                      .revision = revision_,
                      .checkpoints = {.store = options_.out,
                                      .seconds = options_.checkpoint_seconds}});
-    while (stop_signal == 0) {
+    while (stop_signals() == 0) {
       hand_out(workers);
       if (running_.empty()) break;
       for (auto& event : workers.wait(0.1)) handle(event);
       progress_.draw();
     }
-    if (stop_signal != 0)  // what has arrived is kept
-      for (auto& event : workers.wait(0)) handle(event);
+    if (stop_signals() != 0) wind_up(workers);
     for (const auto& [worker, index] : running_) queue_.push_back(index);
+  }
+
+  /// What arrives is kept. A second signal does not wait.
+  void wind_up(Workers& workers) {
+    const auto under_way = running_;
+    workers.dismiss();
+    const double end = now().wall + kPatience;
+    do {
+      for (auto& event : workers.wait(0.1)) handle(event);
+    } while (workers.busy() && now().wall < end && stop_signals() == 1);
+    for (const auto& [worker, index] : under_way)
+      find_state(index, positions_[worker], "laid down {} {} at iteration {}");
   }
 
   bool out_of_time() const {
@@ -258,14 +256,28 @@ class Campaign {
       case Kind::died:
         progress_.idle(event.worker);
         running_.erase(event.worker);
-        if (stop_signal == 0)
+        if (stop_signals() != 0) {
+          queue_.push_back(event.case_index);
+        } else if (event.killed && ++tries_[event.case_index] < kTries) {
+          try_again(event);
+        } else {
           lose(event.case_index, positions_[event.worker], event.message);
+        }
         break;
     }
   }
 
+  void try_again(const WorkerEvent& event) {
+    progress_.say(fmt::format("{}: {}; trying again",
+                              cases_[event.case_index].info.name,
+                              event.message));
+    find_state(event.case_index, positions_[event.worker], kGoingOn);
+    queue_.insert(queue_.begin(), event.case_index);
+  }
+
   void keep(std::size_t i, const StageRecord& record) {
     store_.append(cases_[i].info, data_[i], record);
+    counted_.insert({i, static_cast<std::size_t>(record.position)});
     ++result_.stages_run;
     note_end(i, record);
     result_.stage_cpu += record.clocks.total().cpu;
@@ -328,6 +340,7 @@ class Campaign {
   std::map<std::size_t, std::size_t> running_;  // worker -> case
   std::map<std::size_t, Index> positions_;      // worker -> stage
   std::set<std::pair<std::size_t, std::size_t>> counted_;  // reused stages
+  std::map<std::size_t, int> tries_;        // of cases whose worker was killed
   std::map<std::size_t, double> finished_;  // final median loss of a case
   double overhead_ = 0;  // CPU seconds of workers outside of stages
 };

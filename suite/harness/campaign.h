@@ -69,7 +69,9 @@ struct CampaignResult {
 
 /// Runs what the store does not hold. Only this process writes to it; each
 /// finished stage is durable before the next is looked at. SIGINT and SIGTERM
-/// end the campaign with what has finished. `options_json` enters the context.
+/// end the campaign with what has finished; stages under way that can lay their
+/// state down. A case whose worker is killed from outside is tried again.
+/// `options_json` enters the context.
 CampaignResult run_campaign(Prepared prepared,
                             const CampaignOptions& options,
                             const nlohmann::json& options_json,

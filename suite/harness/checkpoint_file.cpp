@@ -14,6 +14,7 @@ CheckpointFile::CheckpointFile(const CheckpointOptions& options,
     : path_(state_path(options.store, stage.key)),
       seconds_(options.seconds),
       last_(now().wall),
+      leaving_(options.leaving),
       stage_(stage) {}
 
 std::optional<Archive> CheckpointFile::last() {
@@ -22,7 +23,9 @@ std::optional<Archive> CheckpointFile::last() {
   return Archive(std::move(state->bytes));
 }
 
-bool CheckpointFile::due() { return now().wall - last_ >= seconds_; }
+bool CheckpointFile::due() {
+  return leaving() || now().wall - last_ >= seconds_;
+}
 
 void CheckpointFile::lay_down(Index iteration, const Archive& state) {
   try {
@@ -34,6 +37,7 @@ void CheckpointFile::lay_down(Index iteration, const Archive& state) {
   } catch (const StoreError&) {
     seconds_ = std::numeric_limits<double>::infinity();
   }
+  if (leaving()) throw StageLeft();
   last_ = now().wall;
 }
 

@@ -11,7 +11,12 @@ namespace physinv {
 struct CheckpointOptions {
   std::filesystem::path store;  ///< empty: no checkpoints
   double seconds = 0;           ///< between two of a stage
+  /// True: a stage lays its state down as soon as it can, and ends there.
+  bool (*leaving)() = nullptr;
 };
+
+/// A stage was left where it laid its state down.
+struct StageLeft {};
 
 class CheckpointFile final : public Checkpoint {
  public:
@@ -20,13 +25,17 @@ class CheckpointFile final : public Checkpoint {
 
   std::optional<Archive> last() override;
   bool due() override;
-  /// A disk that is full costs the checkpoint, not the stage.
+  /// A disk that is full costs the checkpoint, not the stage. Throws StageLeft
+  /// where the stage is to be left.
   void lay_down(Index iteration, const Archive& state) override;
 
  private:
   std::filesystem::path path_;
   double seconds_, last_;
+  bool (*leaving_)();
   const StageRecord& stage_;
+
+  bool leaving() const { return leaving_ != nullptr && leaving_(); }
 };
 
 }  // namespace physinv

@@ -1,44 +1,66 @@
 #include "suite/harness/child.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <poll.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstdlib>
+#include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <sstream>
+
+#include "suite/core/clock.h"
+#include "suite/harness/context.h"
 
 extern char** environ;
 
 namespace physinv {
 namespace {
 
-/// Reads both until both have ended, so that neither fills up.
-void drain(std::array<pollfd, 2> ends, std::array<std::string*, 2> texts) {
+/// Milliseconds for poll: -1 waits for ever, 0 is over.
+int milliseconds_until(double end) {
+  const double left = 1e3 * (end - now().wall);
+  return std::isinf(left) ? -1 : static_cast<int>(std::clamp(left, 0.0, 1e6));
+}
+
+/// Reads both until both have ended, so that neither fills up. Returns the
+/// limit that they exceed, if one.
+std::string drain(std::array<pollfd, 2> ends,
+                  std::array<std::string*, 2> texts,
+                  const ChildLimits& limits) {
+  const double last = now().wall + limits.seconds;
   std::array<char, 4096> chunk{};
   int open = 2;
   while (open > 0) {
-    if (poll(ends.data(), ends.size(), -1) < 0 && errno != EINTR) return;
-    for (std::size_t i = 0; i < ends.size(); ++i) {
+    const int ready = poll(ends.data(), ends.size(), milliseconds_until(last));
+    if (ready < 0 && errno != EINTR) return "its output cannot be read";
+    if (ready <= 0 && milliseconds_until(last) == 0)
+      return fmt::format("no end within {:g} s", limits.seconds);
+    for (std::size_t i = 0; ready > 0 && i < ends.size(); ++i) {
       if (ends[i].fd < 0 || ends[i].revents == 0) continue;
       const ssize_t got = read(ends[i].fd, chunk.data(), chunk.size());
       if (got > 0) {
         texts[i]->append(chunk.data(), static_cast<std::size_t>(got));
+        if (texts[i]->size() > limits.bytes)
+          return fmt::format("more than {} bytes of output", limits.bytes);
       } else if (got == 0 || errno != EINTR) {
         ends[i].fd = -1;
         --open;
       }
     }
   }
+  return "";
 }
 
 }  // namespace
 
-Ended run_child(std::vector<std::string> arguments) {
+Ended run_child(std::vector<std::string> arguments, const ChildLimits& limits) {
   Ended ended;
   int out[2], err[2];
   if (pipe2(out, O_CLOEXEC) != 0) return ended;
@@ -60,8 +82,11 @@ Ended run_child(std::vector<std::string> arguments) {
   posix_spawn_file_actions_destroy(&actions);
   close(out[1]), close(err[1]);
   if (error == 0) {
-    drain({pollfd{out[0], POLLIN, 0}, pollfd{err[0], POLLIN, 0}},
-          {&ended.output, &ended.errors});
+    ended.exceeded =
+        drain({pollfd{out[0], POLLIN, 0}, pollfd{err[0], POLLIN, 0}},
+              {&ended.output, &ended.errors},
+              limits);
+    if (!ended.exceeded.empty()) kill(pid, SIGKILL);
     int status = 0;
     while (waitpid(pid, &status, 0) < 0 && errno == EINTR) {
     }
@@ -73,8 +98,7 @@ Ended run_child(std::vector<std::string> arguments) {
 }
 
 bool has_program(const std::string& name) {
-  const char* path = std::getenv("PATH");
-  std::istringstream folders(path == nullptr ? "" : path);
+  std::istringstream folders(variable("PATH"));
   std::string folder;
   while (std::getline(folders, folder, ':'))
     if (access((std::filesystem::path(folder) / name).c_str(), X_OK) == 0)

@@ -31,7 +31,8 @@ std::string first_line(const fs::path& path) {
 
 /// Output of a program found in PATH, nothing if it fails.
 std::string output_of(std::vector<std::string> arguments) {
-  Ended ended = run_child(std::move(arguments));
+  constexpr double kLongestAnswer = 10;
+  Ended ended = run_child(std::move(arguments), {.seconds = kLongestAnswer});
   if (ended.status != 0) return {};
   std::string& text = ended.output;
   while (!text.empty() && text.back() == '\n') text.pop_back();
@@ -105,6 +106,11 @@ std::string host_name() {
 }
 
 }  // namespace
+
+std::string variable(const char* name) {
+  const char* value = std::getenv(name);
+  return value == nullptr ? "" : value;
+}
 
 int available_cores() {
   cpu_set_t set;

@@ -7,6 +7,9 @@
 
 namespace physinv {
 
+/// Of the environment. One that is empty counts as one that is not set.
+std::string variable(const char* name);
+
 /// Processors this process may use.
 int available_cores();
 

@@ -10,6 +10,8 @@
 #include <string_view>
 
 #include "suite/core/clock.h"
+#include "suite/harness/context.h"
+#include "suite/harness/output.h"
 #include "suite/harness/run_case.h"
 
 namespace physinv {
@@ -17,10 +19,7 @@ namespace {
 
 constexpr std::size_t kRecent = 5;
 
-std::string_view variable(const char* name) {
-  const char* value = std::getenv(name);
-  return value == nullptr ? std::string_view() : value;
-}
+constexpr int kMostColumns = 10'000;
 
 /// Rows of the live table and plain lines have the same columns.
 std::string row(std::string_view name,
@@ -47,6 +46,9 @@ double seconds_of(const Clocks& c) {
 }  // namespace
 
 std::string duration_text(double seconds) {
+  constexpr double kCountable = 3600e6;
+  if (!std::isfinite(seconds)) return "?";
+  if (seconds > kCountable) return fmt::format("{:.1e} h", seconds / 3600);
   if (seconds < 0.0995) return fmt::format("{:.1f} ms", 1e3 * seconds);
   if (seconds < 59.95) return fmt::format("{:.1f} s", seconds);
   const auto s = static_cast<long>(std::lround(seconds));
@@ -65,8 +67,9 @@ Screen Screen::of(std::FILE* stream) {
   if (terminal && ioctl(fileno(stream), TIOCGWINSZ, &size) == 0 &&
       size.ws_col > 0)
     s.columns = size.ws_col;
-  const int wanted = std::atoi(std::string(variable("COLUMNS")).c_str());
-  if (wanted > 0) s.columns = wanted;
+  const long wanted = std::strtol(variable("COLUMNS").c_str(), nullptr, 10);
+  if (wanted > 0)
+    s.columns = static_cast<int>(std::min<long>(wanted, kMostColumns));
   s.columns = std::max(s.columns, 40);
   return s;
 }
@@ -272,8 +275,7 @@ void Progress::clear() {
 }
 
 void Progress::put(const std::string& text) const {
-  std::fputs(text.c_str(), screen_.stream);
-  std::fflush(screen_.stream);
+  physinv::put(screen_.stream, text);
 }
 
 }  // namespace physinv

@@ -92,7 +92,7 @@ class Progress {
   int lines_ = 0;
 };
 
-/// "3.4 s", "2 min 5 s", "1 h 10 min".
+/// "3.4 s", "2 min 5 s", "1 h 10 min"; "?" if it is not finite.
 std::string duration_text(double seconds);
 
 }  // namespace physinv

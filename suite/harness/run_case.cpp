@@ -129,6 +129,8 @@ void run_case(const Case& c,
                   record);
         record.crowded = options.crowded;
         record.finished = utc_now();
+      } catch (const StageLeft&) {
+        throw;
       } catch (...) {
         record = lost_stage(
             c, position, Stop::failed, exception_text(), options.revision);

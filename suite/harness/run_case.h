@@ -35,7 +35,8 @@ struct CaseHooks {
 /// Runs the stages that `earlier` (a beginning of the chain) does not hold.
 /// Every random stream comes from hash(experiment, seed); the stream
 /// `method/<id>` has the content of the chain up to the stage as its id, so
-/// that chains sharing a beginning share its results.
+/// that chains sharing a beginning share its results. Throws StageLeft where
+/// options.checkpoints says so.
 void run_case(const Case& c,
               std::vector<StageRecord> earlier,
               const RunOptions& options,

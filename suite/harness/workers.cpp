@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -18,6 +19,8 @@
 
 namespace physinv {
 namespace {
+
+constexpr int kDismissal = SIGUSR1;
 
 enum Kind : std::uint32_t {
   kRun,
@@ -77,12 +80,19 @@ std::unique_ptr<Threads> start_threads(int socket, int count) {
   }
 }
 
+/// Set by the signal that dismisses a worker.
+volatile std::sig_atomic_t dismissed = 0;
+
 /// SIGINT and SIGTERM are the parent's to handle, and its files its own.
 void become_worker(int socket, pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(0);  // it died before the line above
   std::signal(SIGINT, SIG_IGN);
   std::signal(SIGTERM, SIG_IGN);
+  struct sigaction action {};
+  action.sa_handler = [](int) { dismissed = 1; };
+  action.sa_flags = SA_RESTART;
+  sigaction(kDismissal, &action, nullptr);
   const auto s = static_cast<unsigned>(socket);
   if (s > 3) close_range(3, s - 1, 0);
   close_range(s + 1, ~0U, 0);
@@ -139,6 +149,7 @@ Workers::Workers(const std::vector<Case>& cases,
       threads_(threads),
       options_(std::move(options)),
       workers_(count) {
+  options_.checkpoints.leaving = [] { return dismissed != 0; };
   try {
     for (Worker& worker : workers_) start(worker);
   } catch (...) {
@@ -175,6 +186,7 @@ void Workers::start(Worker& worker) {
     try {
       const auto threads = start_threads(pair[1], threads_);
       serve(pair[1], cases_, *threads, options_);
+    } catch (const StageLeft&) {
     } catch (...) {
       _exit(static_cast<int>(ExitCode::internal));
     }
@@ -188,13 +200,25 @@ void Workers::start(Worker& worker) {
             .inbox = std::make_unique<Inbox>()};
 }
 
-std::string Workers::collect(Worker& worker) {
+int Workers::collect(Worker& worker) {
   int status = 0;
   while (waitpid(worker.pid, &status, 0) < 0 && errno == EINTR) {
   }
   close(worker.socket);
   worker.pid = -1, worker.socket = -1;
-  return death_text(status);
+  return status;
+}
+
+void Workers::dismiss() {
+  dismissed_ = true;
+  for (const Worker& worker : workers_)
+    if (worker.pid > 0) kill(worker.pid, kDismissal);
+}
+
+bool Workers::busy() const {
+  return std::any_of(workers_.begin(), workers_.end(), [](const Worker& w) {
+    return w.pid > 0 && w.busy;
+  });
 }
 
 void Workers::submit(std::size_t worker,
@@ -233,13 +257,15 @@ std::vector<WorkerEvent> Workers::wait(double seconds) {
     event.kind = WorkerEvent::Kind::died;
     event.worker = i;
     event.case_index = w.case_index;
-    event.message = collect(w);
+    const int status = collect(w);
+    event.message = death_text(status);
+    event.killed = WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL;
     if (w.busy) {
       events.push_back(std::move(event));
     } else if (++idle_deaths_ > 3) {
       throw EnvironmentError(event.message + " while idle, again and again");
     }
-    start(w);
+    if (!dismissed_) start(w);
   }
   return events;
 }

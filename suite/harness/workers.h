@@ -25,6 +25,7 @@ struct WorkerEvent {
   double overhead = 0;  ///< case_done: CPU seconds in no stage
   StageRecord record;   ///< stage_done
   std::string message;  ///< died: how
+  bool killed = false;  ///< died: by SIGKILL, so from outside
 };
 
 class Workers {
@@ -48,6 +49,12 @@ class Workers {
               std::size_t case_index,
               const std::vector<StageRecord>& earlier);
 
+  /// Stages under way lay their state down where they can, and their workers
+  /// leave: they die, and none takes their place.
+  void dismiss();
+  /// Has one a case at hand?
+  bool busy() const;
+
   /// Waits up to `seconds` (or a signal) and returns what arrived. Throws
   /// EnvironmentError if a worker has not the threads it needs.
   std::vector<WorkerEvent> wait(double seconds);
@@ -62,13 +69,15 @@ class Workers {
   };
   void start(Worker& worker);
   void end();
-  std::string collect(Worker& worker);
+  /// Its status, as waitpid gives it.
+  int collect(Worker& worker);
 
   const std::vector<Case>& cases_;
   int threads_;
   RunOptions options_;
   std::vector<Worker> workers_;
   int idle_deaths_ = 0;
+  bool dismissed_ = false;
 };
 
 }  // namespace physinv

@@ -22,7 +22,8 @@ std::string_view advice(int error_number) {
     case EDQUOT:
       return "make space or choose another --out; finished stages are kept";
     case EFBIG:
-      return "raise the limit on file sizes; finished stages are kept";
+      return "raise the limit on file sizes (ulimit -f); finished stages are "
+             "kept";
     case EACCES:
     case EPERM:
       return "allow this user to write there or choose another --out";

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "suite/harness/output.h"
 #include "suite/harness/registry.h"
 #include "tests/suite/harness/fake_experiment.h"
 
@@ -44,6 +47,25 @@ TEST(Duration, Reads) {
   EXPECT_EQ(duration_text(3.44), "3.4 s");
   EXPECT_EQ(duration_text(125), "2 min 5 s");
   EXPECT_EQ(duration_text(4200), "1 h 10 min");
+  EXPECT_EQ(duration_text(1e30), "2.8e+26 h");
+  for (const double none : {std::nan(""), HUGE_VAL, -HUGE_VAL})
+    EXPECT_EQ(duration_text(none), "?");
+}
+
+TEST(Output, OneLineOfUtf8) {
+  EXPECT_EQ(one_line("a\nb\tc ± é"), "a b c ± é");
+  EXPECT_EQ(one_line("\x1b[2J\x7f\r\xff\xc3(\xe0\x80\x80\xed\xa0\x80"),
+            "?[2J???"
+            "?("
+            "??????");
+  EXPECT_EQ(one_line("\xc2\x9b\xf5\x80\xf0\x9f\x98\x80"),
+            "????\xf0\x9f\x98\x80");
+  std::string text;
+  for (int i = 0; i < 5000; ++i) text += "é";
+  const std::string line = one_line("begin " + text + " end");
+  EXPECT_LT(line.size(), 2100U);
+  EXPECT_TRUE(line.starts_with("begin é") && line.ends_with("é end"));
+  EXPECT_EQ(line.find('?'), std::string::npos);
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "suite/harness/keys.h"
 #include "suite/harness/registry.h"
 #include "suite/harness/verify.h"
@@ -133,6 +135,37 @@ TEST_F(RunCase, VerifyFindsAWrongLoss) {
   record.stages[0].loss(2) *= 1 + 1e-9;
   report = verify_results(Results({record}), registry_);
   EXPECT_EQ(report.mismatches.size(), 1u);
+}
+
+TEST_F(RunCase, IsLeftWithItsStateLaidDown) {
+  const auto store =
+      std::filesystem::path(testing::TempDir()) / "physinv_left_case";
+  std::filesystem::remove_all(store);
+  const Case c = make("descend");
+  const auto whole = run(c);
+  RunOptions options{.trace = true, .revision = "r"};
+  options.checkpoints = {
+      .store = store, .seconds = 1e9, .leaving = [] { return true; }};
+  std::size_t finished = 0;
+  const CaseHooks count{.started = {},
+                        .progress = {},
+                        .finished = [&](const auto&) { ++finished; }};
+  // Each start goes one iteration further.
+  for (int start = 0; start < 3; ++start)
+    EXPECT_THROW(run_case(c, {}, options, nullptr, count), StageLeft);
+  EXPECT_EQ(finished, 0U);
+  options.checkpoints.leaving = nullptr;
+  std::vector<StageRecord> records;
+  run_case(c,
+           {},
+           options,
+           nullptr,
+           {.started = {}, .progress = {}, .finished = [&](const auto& r) {
+              records.push_back(r);
+            }});
+  ASSERT_EQ(records.size(), whole.size());
+  expect_same(records.front(), whole.front());
+  std::filesystem::remove_all(store);
 }
 
 }  // namespace
