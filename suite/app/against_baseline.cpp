@@ -40,7 +40,7 @@ AgainstBaseline::AgainstBaseline(const GateFlags& flags)
                                  flags.baseline,
                                  before_.chosen.profile,
                                  flags.profile));
-  cases_ = cases_of(before_.chosen, flags.filters);
+  cases_ = cases_of(before_.chosen, flags.filters, flags.baseline + ": filter");
   lines_ = matching(before_.stages, filter_);
   require_something();
 }

@@ -64,7 +64,7 @@ CountTable counts_of(const std::string& regex,
   if (!chosen.sets.empty() || !chosen.seeds.empty())
     throw UsageError("--count needs a campaign without --set and --seeds");
   std::vector<std::string> names;
-  for (const Case& c : NameFilter({regex}).apply(cases))
+  for (const Case& c : NameFilter({regex}, "--count").apply(cases))
     names.push_back(c.info.name);
   if (names.empty())
     throw ExitError(ExitCode::nothing_matched,
@@ -83,7 +83,7 @@ ExitCode baseline_verb(const Arguments& arguments) {
   std::string given, out, counted;
   int jobs = 0;
   if (!parse(
-          "physinv-bench baseline",
+          "baseline",
           "Writes what a campaign, run with --trace, came to: a line per stage "
           "with hashes, end, losses, work and times. Runs its cases once more "
           "with data one ulp off, to see which digits are stable.",

@@ -2,7 +2,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -11,6 +10,7 @@
 #include "suite/app/options.h"
 #include "suite/gate/duel.h"
 #include "suite/gate/sheet.h"
+#include "suite/harness/context.h"
 #include "suite/harness/progress.h"
 #include "suite/results/file.h"
 
@@ -87,9 +87,8 @@ void append(const std::string& path, const std::string& text) {
 
 void tell(const Sheet& sheet, const GateFlags& flags) {
   fmt::print("{}", terminal_text(sheet));
-  if (std::getenv("GITHUB_ACTIONS") != nullptr)
-    fmt::print("{}", annotations(sheet));
-  if (const char* path = std::getenv("GITHUB_STEP_SUMMARY"); path != nullptr)
+  if (!variable("GITHUB_ACTIONS").empty()) fmt::print("{}", annotations(sheet));
+  if (const auto path = variable("GITHUB_STEP_SUMMARY"); !path.empty())
     append(path, markdown_text(sheet));
   if (!flags.json.empty())
     write_atomically(flags.json, to_json(sheet).dump(1) + "\n");
@@ -110,7 +109,7 @@ void check(const GateFlags& flags) {
 ExitCode gate_verb(const Arguments& arguments) {
   GateFlags flags;
   if (!parse(
-          "physinv-bench gate",
+          "gate",
           "Runs the cases of a baseline and holds each stage against it: the "
           "same bits where compiler, flags and libraries are the baseline's, "
           "elsewhere its stable digits. Exit 5 if a stage is worse or missing, "

@@ -24,9 +24,11 @@ struct GateFlags {
   MeasureOptions measuring() const;
 };
 
-/// The registered cases of a baseline that match `filters`, too.
+/// The registered cases of a baseline that match `filters`, too. `whose` its
+/// own filters are is said where one is wrong.
 std::vector<Case> cases_of(const Chosen& chosen,
-                           const std::vector<std::string>& filters = {});
+                           const std::vector<std::string>& filters = {},
+                           const std::string& whose = "filter of the campaign");
 
 /// 0: as many as there are cores.
 int jobs_or_cores(int jobs);

@@ -2,8 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <cstdlib>
-
+#include "suite/harness/context.h"
 #include "suite/harness/errors.h"
 
 namespace physinv {
@@ -18,10 +17,10 @@ fs::path program_directory() {
 }
 
 fs::path published_directory() {
-  const char* named = std::getenv("PHYSINV_PUBLISHED_DIR");
+  const fs::path named = variable("PHYSINV_PUBLISHED_DIR");
   const fs::path installed =
       (program_directory() / PHYSINV_INSTALLED_PUBLISHED).lexically_normal();
-  const fs::path chosen = named != nullptr              ? fs::path(named)
+  const fs::path chosen = !named.empty()                ? named
                           : fs::is_directory(installed) ? installed
                                                         : PHYSINV_PUBLISHED_DIR;
   if (!fs::is_directory(chosen))

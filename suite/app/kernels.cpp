@@ -1,26 +1,80 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
+#include <sstream>
 
 #include "suite/app/installed.h"
 #include "suite/app/verbs.h"
+#include "suite/harness/child.h"
+#include "suite/harness/context.h"
+#include "suite/harness/select.h"
 
 namespace physinv {
+namespace {
 
-ExitCode kernels_verb(const Arguments& arguments) {
-  std::string name = (program_directory() / "physinv-kernels").string();
-  Arguments copies = arguments;
-  std::vector<char*> argv = {name.data()};
-  for (auto& a : copies) argv.push_back(a.data());
-  argv.push_back(nullptr);
-  execv(name.c_str(), argv.data());
+constexpr std::string_view kFilter = "--benchmark_filter=";
+
+[[noreturn]] void refuse_kernels(const std::string& name, const char* why) {
   throw EnvironmentError(
       fmt::format("cannot start {} ({}); build the target physinv-kernels, or "
                   "install it",
                   name,
-                  std::strerror(errno)));
+                  why));
+}
+
+/// Google Benchmark's own expressions may take for ever. It gets the names
+/// that match, each as it is.
+std::string by_names(const std::string& program,
+                     const std::string& pattern,
+                     std::string_view whose) {
+  const NameFilter filter({pattern}, whose);
+  const Ended listed = run_child(
+      {program, "--benchmark_list_tests", std::string(kFilter) + "all"});
+  if (listed.status != 0)
+    refuse_kernels(program,
+                   listed.status < 0 ? "it is not there" : "it cannot list");
+  std::vector<std::string> names;
+  std::istringstream lines(listed.output);
+  for (std::string name; std::getline(lines, name);)
+    if (!name.empty() && filter.matches(name)) names.push_back(exactly(name));
+  if (names.empty())
+    throw ExitError(ExitCode::nothing_matched,
+                    fmt::format("no kernel matches '{}'; kernels "
+                                "--benchmark_list_tests shows what there is",
+                                pattern));
+  return fmt::format("{}{}", kFilter, fmt::join(names, "|"));
+}
+
+/// The last filter counts, as with any of its flags; a flag goes before the
+/// variable.
+Arguments with_names(const std::string& program, Arguments arguments) {
+  std::string pattern = variable("BENCHMARK_FILTER");
+  std::string_view whose = "BENCHMARK_FILTER";
+  for (const auto& argument : arguments) {
+    if (!argument.starts_with(kFilter)) continue;
+    pattern = argument.substr(kFilter.size());
+    whose = kFilter.substr(0, kFilter.size() - 1);
+  }
+  if (pattern.empty() || pattern == "all") return arguments;
+  std::erase_if(arguments,
+                [](const auto& a) { return a.starts_with(kFilter); });
+  arguments.push_back(by_names(program, pattern, whose));
+  return arguments;
+}
+
+}  // namespace
+
+ExitCode kernels_verb(const Arguments& arguments) {
+  std::string name = (program_directory() / "physinv-kernels").string();
+  Arguments copies = with_names(name, arguments);
+  std::vector<char*> argv = {name.data()};
+  for (auto& a : copies) argv.push_back(a.data());
+  argv.push_back(nullptr);
+  execv(name.c_str(), argv.data());
+  refuse_kernels(name, std::strerror(errno));
 }
 
 }  // namespace physinv

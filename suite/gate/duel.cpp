@@ -9,23 +9,13 @@
 #include "suite/core/clock.h"
 #include "suite/core/rng.h"
 #include "suite/harness/child.h"
+#include "suite/harness/select.h"
 #include "suite/results/file.h"
 
 namespace physinv {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A filter that matches this name and no other.
-std::string exactly(const std::string& name) {
-  std::string regex = "--filter=^";
-  for (const char c : name) {
-    if (std::string_view(".+*?()[]{}|^$\\").find(c) != std::string_view::npos)
-      regex += '\\';
-    regex += c;
-  }
-  return regex + "$";
-}
 
 /// While it lives, this process and those that it starts have one core, the
 /// `which`-th of those that it may have.
@@ -56,13 +46,16 @@ class OneCore {
 
 /// CPU time of solving: on one thread the same as by the wall, without what
 /// others took from the core.
-std::map<std::string, double> times(const fs::path& results) {
+std::map<std::string, double> times(const fs::path& results) try {
   std::map<std::string, double> sums;
   const auto json = nlohmann::json::parse(read_file(results));
   for (const auto& stage : json.at("benchmarks"))
     sums[case_of(stage.at("name").get<std::string>())] +=
         stage.at("cpu_time").get<double>();
   return sums;
+} catch (const nlohmann::json::exception&) {
+  throw EnvironmentError(
+      fmt::format("{} holds no times that can be read", results.string()));
 }
 
 std::vector<std::string> command(const fs::path& program,
@@ -77,14 +70,28 @@ std::vector<std::string> command(const fs::path& program,
   return all;
 }
 
+/// A sentence about a program that does not do what is asked of it.
+std::string ending_of(const std::string& program, const Ended& ended) {
+  if (!ended.exceeded.empty())
+    return fmt::format("{} is killed: {}", program, ended.exceeded);
+  if (ended.status < 0) return program + " cannot be started";
+  return fmt::format("{} ended with {}: {}",
+                     program,
+                     ended.status,
+                     ended.errors.substr(0, ended.errors.find('\n')));
+}
+
 std::string output_of(const std::vector<std::string>& arguments) {
   const Ended ended = run_child(arguments);
   if (ended.status == static_cast<int>(ExitCode::interrupted))
     throw ExitError(ExitCode::interrupted, "interrupted; nothing was decided");
-  if (ended.status != 0)
-    throw EnvironmentError(fmt::format(
-        "{} ended with {}: {}", arguments[0], ended.status, ended.errors));
+  if (ended.status != 0) throw EnvironmentError(ending_of(arguments[0], ended));
   return ended.output;
+}
+
+[[noreturn]] void refuse_program(const std::string& why) {
+  throw EnvironmentError(
+      why + "; a physinv-bench or a directory with one lists its cases");
 }
 
 std::string percent(double log_ratio) {
@@ -97,19 +104,25 @@ std::string percent(double log_ratio) {
 
 std::set<std::string> cases_known_to(const fs::path& program,
                                      const Chosen& chosen) {
-  const std::string text =
-      output_of(command(program, "list", chosen, {"--json"}));
-  std::set<std::string> names;
-  for (const auto& c : nlohmann::json::parse(text))
-    names.insert(c.at("name").get<std::string>());
-  return names;
+  constexpr double kLongestList = 20;
+  const Ended listed = run_child(command(program, "list", chosen, {"--json"}),
+                                 {.seconds = kLongestList});
+  if (listed.status != 0) refuse_program(ending_of(program.string(), listed));
+  try {
+    std::set<std::string> names;
+    for (const auto& c : nlohmann::json::parse(listed.output))
+      names.insert(c.at("name").get<std::string>());
+    return names;
+  } catch (const nlohmann::json::exception&) {
+    refuse_program(program.string() + " prints no list of cases as JSON");
+  }
 }
 
 Runner timed_run(const DuelOptions& o) {
   return [&o](const fs::path& program, const std::vector<std::string>& cases) {
     fs::remove_all(o.out);
     std::vector<std::string> flags = {"--jobs=1", "--out=" + o.out.string()};
-    for (const auto& name : cases) flags.push_back(exactly(name));
+    for (const auto& name : cases) flags.push_back("--filter=" + exactly(name));
     output_of(command(program, "run", o.chosen, std::move(flags)));
     const auto all = times(o.out / "results.json");
     std::vector<double> of_cases;

@@ -97,6 +97,14 @@ Losses losses(std::string_view text) {
   return l;
 }
 
+int digits(std::string_view text) {
+  const int value = number<int>(text);
+  if (value < kFewestDigits || value > kMost64)
+    throw std::runtime_error(fmt::format(
+        "digits={} is not from {} to {}", text, kFewestDigits, kMost64));
+  return value;
+}
+
 void read_work(StageLine& line, std::string_view key, std::string_view value) {
   const auto at = std::find(kWork.begin(), kWork.end(), key);
   if (at == kWork.end())
@@ -122,7 +130,7 @@ void read(StageLine& line, std::string_view key, std::string_view value) {
   } else if (key == "nonfinite") {
     line.losses.nonfinite = number<Index>(value);
   } else if (key == "digits") {
-    line.digits = number<int>(value);
+    line.digits = digits(value);
   } else if (key == "ms") {
     line.fastest = number<double>(cut(value, ".."));
     line.slowest = number<double>(value);

@@ -3,6 +3,7 @@ baseline: each is caught, with the right exit code."""
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -179,6 +180,27 @@ def instructions(d):
                PHYSINV_COUNT="nowhere")
 
 
+def hostile_baselines(d):
+    """Sealed, and yet of what no baseline holds."""
+    def with_digits(digits):
+        return lambda body: re.sub(r"digits=-?\d+", f"digits={digits}", body,
+                                   count=1)
+    for digits in (2147483647, -2147483648, 13, -4):
+        rewrite(d, "digits.txt", with_digits(digits))
+        expect(2, ["gate", "--baseline=digits.txt"], d, "is not from -3 to 12")
+    for pattern, says in (("(" * 10000 + ")" * 10000, "of 20000 characters"),
+                          ("(x", "filter='(x' is no regular expression"),
+                          ("(.*)*(.*)*(.*)*QQ", "")):
+        rewrite(d, "filter.txt", lambda body: body.replace(
+            "\nbuild ", f"\nfilter {pattern}\nbuild ", 1))
+        p = run("gate", "--baseline=filter.txt", cwd=d)
+        check(p.returncode in ((2,) if says else (0, 3, 5)) and says in p.stderr
+              and len(p.stderr.splitlines()) <= 1,
+              f"filter {pattern[:9]} -> {p.returncode} {p.stderr[:200]}")
+    expect(2, ["baseline", "r", "--out=c.txt", "--count=(x"], d,
+           "--count='(x' is no regular expression")
+
+
 def clock(d):
     """Against itself nothing is slower; without time nothing is decided."""
     gate = ["gate", "--profile=kernel", "--against=" + BENCH]
@@ -186,10 +208,29 @@ def clock(d):
     expect(0, [*gate, "--budget=2", "--within=30"], d, "by the clock against")
     expect(9, [gate[0], "--profile=smoke", "--against=/bin/false"], d,
            "/bin/false ended with 1")
+    endless = os.path.join(d, "endless")
+    with open(endless, "w") as f:
+        f.write("#!/bin/sh\nexec yes\n")
+    os.chmod(endless, 0o755)
+    for flag in ("--against=", "--head="):
+        other = [] if flag == "--against=" else ["--against=" + BENCH]
+        for program, says in (("/bin/true", "/bin/true prints no list of cases"),
+                              (endless, "is killed: more than"),
+                              ("/bin/sleep", "ended with 1")):
+            expect(9, [*gate[:2], *other, flag + program], d, says)
+    other = os.path.join(d, "other")
+    with open(other, "w") as f:
+        f.write(f"""#!/bin/bash
+[[ $1 != list ]] || exec {BENCH} "$@"
+for a; do [[ $a != --out=* ]] || out=${{a#--out=}}; done
+mkdir -p "$out" && echo '{{"benchmarks": 5}}' >"$out/results.json"
+""")
+    os.chmod(other, 0o755)
+    expect(9, [*gate[:2], "--against=" + other], d, "no times that can be read")
 
 
 with tempfile.TemporaryDirectory() as directory:
     for test in (made, passes, defects, other_baselines, bad_input, update,
-                 instructions, clock):
+                 instructions, hostile_baselines, clock):
         test(directory)
 sys.exit(f"{len(FAILED)} failed: {FAILED}" if FAILED else 0)
