@@ -7,6 +7,7 @@
 #include "reports/plot.h"
 #include "suite/app/load.h"
 #include "suite/app/options.h"
+#include "suite/app/speeds.h"
 #include "suite/harness/progress.h"
 #include "suite/planning/predict.h"
 #include "suite/planning/split.h"
@@ -30,6 +31,7 @@ Cost measured(const CaseRecord* record, const fs::path& directory) {
   if (record == nullptr || record->stages.size() < record->info.stages.size())
     return cost;
   for (const StageRecord& s : record->stages) {
+    if (!(s.clocks.total().cpu >= 0)) return {};  // not known
     cost.stage_seconds.push_back(s.clocks.total().cpu);
     cost.seconds += cost.stage_seconds.back();
     cost.memory = std::max(cost.memory, static_cast<double>(s.rss_bytes));
@@ -195,7 +197,7 @@ ExitCode plan_verb(const Arguments& arguments) {
   Selection selection;
   std::string beside, plot;
   bool json = false, workers = false, from = false;
-  if (!parse("physinv-bench plan",
+  if (!parse("plan",
              "What a selection will cost: time, peak memory and disk of each "
              "case and in sum, from counted operations and the speeds of this "
              "machine, which short runs measure once and the user's cache "
@@ -226,7 +228,7 @@ ExitCode plan_verb(const Arguments& arguments) {
   const auto cases = selection.cases();
   const auto known =
       beside.empty() ? std::vector<Cost>() : measured(cases, beside);
-  Trials trials;
+  Trials trials = known_speeds();
   auto costs = from ? known : predict(cases, trials, [](const Case& c) {
     fmt::print(stderr, "measuring {} {}\n", c.info.experiment, c.info.method);
   });

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "suite/core/hash.h"
 #include "suite/core/probe.h"
@@ -131,15 +131,28 @@ json to_json(const StageTrial& t) {
   return {t.n, t.seconds, t.setup, t.measure, t.points, t.memory, t.kept};
 }
 
+/// More than any trial comes to, and little enough that sums stay in bounds.
+constexpr double kMost = 1e15;
+
+/// std::exception if it is none that a trial comes to.
 StageTrial from_json(const json& j) {
   const std::vector<double> v = j;
+  const bool sound = std::all_of(
+      v.begin(), v.end(), [](double a) { return a >= 0 && a <= kMost; });
+  if (!sound || v.at(0) < 1) throw std::out_of_range("no trial");
   return {v.at(0), v.at(1), v.at(2), v.at(3), v.at(4), v.at(5), v.at(6)};
+}
+
+/// Named by a variable; a relative one means another place for each start.
+fs::path named_directory(const char* name) {
+  const fs::path path = variable(name);
+  return path.is_absolute() ? path : fs::path();
 }
 
 }  // namespace
 
 Trials::Trials(fs::path file) : file_(std::move(file)) {
-  if (!fs::exists(file_)) return;
+  if (file_.empty() || !fs::exists(file_)) return;
   const json all = json::parse(read_file(file_), nullptr, false);
   try {
     for (const auto& [key, stages] : all.at("trials").items())
@@ -150,13 +163,11 @@ Trials::Trials(fs::path file) : file_(std::move(file)) {
 }
 
 fs::path Trials::default_file() {
-  const char* cache = std::getenv("XDG_CACHE_HOME");
-  const char* home = std::getenv("HOME");
-  const fs::path root = cache != nullptr && *cache != '\0' ? fs::path(cache)
-                        : home != nullptr ? fs::path(home) / ".cache"
-                                          : fs::temp_directory_path();
+  const fs::path cache = named_directory("XDG_CACHE_HOME");
+  const fs::path home = named_directory("HOME");
+  if (cache.empty() && home.empty()) return {};
   const BuildInfo& build = build_info();
-  return root / "physinv" /
+  return (cache.empty() ? home / ".cache" : cache) / "physinv" /
          fmt::format("speeds-{}.json",
                      hex64(hash_text(fmt::format("{} {} {} {}",
                                                  processor_name(),
@@ -165,10 +176,18 @@ fs::path Trials::default_file() {
                                                  build.fingerprint))));
 }
 
+std::string Trials::warning() const {
+  return file_.empty() ? "speeds are measured and not kept: neither "
+                         "XDG_CACHE_HOME nor HOME is an absolute path"
+                       : "";
+}
+
 const Trial& Trials::of(const Case& c, bool training_only) {
   const std::string key = hex128(recipe_text(c, c.info.stages.size() - 1)) +
                           (training_only ? "-training" : "");
-  if (const auto at = known_.find(key); at != known_.end()) return at->second;
+  const auto known = known_.find(key);
+  if (known != known_.end() && known->second.size() <= c.info.stages.size())
+    return known->second;
   ++ran_;
   if (!training_only) return known_[key] = measure(c);
   Method part = *c.method;
@@ -182,7 +201,7 @@ const Trial& Trials::of(const Case& c, bool training_only) {
 }
 
 void Trials::save() const {
-  if (ran_ == 0) return;
+  if (ran_ == 0 || file_.empty()) return;
   json all = json::object();
   for (const auto& [key, trial] : known_) {
     all[key] = json::array();

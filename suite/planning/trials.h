@@ -29,10 +29,14 @@ using Trial = std::vector<StageTrial>;
 
 class Trials {
  public:
-  /// Reads what is known; an unreadable file counts as empty.
+  /// Reads what is known; a file that cannot be read, or that holds what no
+  /// trial comes to, counts as empty. Without a file all is forgotten.
   explicit Trials(std::filesystem::path file = default_file());
-  /// In $XDG_CACHE_HOME or ~/.cache, by processor and build.
+  /// In $XDG_CACHE_HOME or ~/.cache, by processor and build; empty if neither
+  /// is named by an absolute path.
   static std::filesystem::path default_file();
+  /// That there is no file, and why; else empty.
+  std::string warning() const;
 
   /// Runs the chain of `c` for a moment, or knows it already. Stages whose
   /// work does not follow their iterations run whole, on few samples; with
