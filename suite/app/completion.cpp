@@ -64,7 +64,7 @@ complete -c physinv-bench -n 'string match -q -- "-*" (commandline -ct)' \
 
 ExitCode completion_verb(const Arguments& arguments) {
   std::string shell;
-  if (!parse("physinv-bench completion",
+  if (!parse("completion",
              "Prints the completion of verbs, flags and files for a shell.",
              {{"SHELL", "bash, zsh or fish", &shell}},
              arguments))

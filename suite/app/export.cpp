@@ -12,17 +12,11 @@
 
 namespace physinv {
 
-std::string exported(const std::string& directory, const std::string& format) {
-  const std::filesystem::path from = results_directory(directory);
-  if (!std::filesystem::exists(from / "results.json"))
-    throw UsageError(fmt::format(
-        "'{}' holds no results.json; 'run' and 'merge' write one", directory));
-  const auto results = nlohmann::ordered_json::parse(
-      read_file(from / "results.json"), nullptr, false);
-  if (results.is_discarded() || !results.contains("benchmarks"))
-    throw UnreadableInput((from / "results.json").string() +
-                          " is damaged ('run' as before writes it again)");
-  const Repetitions repetitions = read_repetitions(from);
+namespace {
+
+std::string text_in(const std::string& format,
+                    const nlohmann::ordered_json& results,
+                    const Repetitions& repetitions) {
   if (format == "json")
     return benchmark_json(results, repetitions).dump(1) + "\n";
   if (format == "csv")
@@ -35,10 +29,28 @@ std::string exported(const std::string& directory, const std::string& format) {
       "--format={} is unknown; known are json, csv, github, bencher", format));
 }
 
+}  // namespace
+
+std::string exported(const std::string& directory, const std::string& format) {
+  const std::filesystem::path from = results_directory(directory);
+  const std::filesystem::path file = from / "results.json";
+  if (!std::filesystem::exists(file))
+    throw UsageError(fmt::format(
+        "'{}' holds no results.json; 'run' and 'merge' write one", directory));
+  const Repetitions repetitions = read_repetitions(from);
+  try {
+    return text_in(
+        format, nlohmann::ordered_json::parse(read_file(file)), repetitions);
+  } catch (const nlohmann::json::exception&) {
+    throw UnreadableInput(file.string() +
+                          " is damaged ('run' as before writes it again)");
+  }
+}
+
 ExitCode export_verb(const Arguments& arguments) {
   std::string directory, format = "json", out;
   if (!parse(
-          "physinv-bench export",
+          "export",
           "Results for dashboards, with the spread of repetitions "
           "(run --benchmark_repetitions).",
           {{"RESULTS", "directory that 'run' wrote", &directory},

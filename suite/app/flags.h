@@ -20,9 +20,14 @@ struct Flag {
   std::string type;  ///< of the value, for the help; empty: by `to`
 };
 
+/// UsageError for an empty argument or a flag without the value that its '='
+/// promises: a variable of a script that is not set must not choose another
+/// action. What follows `--` is for another program.
+void refuse_empty(const Arguments& arguments);
+
 /// Parses; prints the help and returns false if that was asked for. Throws
 /// UsageError, with the nearest flag for an unknown one.
-bool parse(const std::string& program,
+bool parse(const std::string& verb,
            const std::string& about,
            const std::vector<Flag>& flags,
            const Arguments& arguments);

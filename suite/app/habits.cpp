@@ -5,16 +5,12 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cstdlib>
 #include <fstream>
+
+#include "suite/harness/context.h"
 
 namespace physinv {
 namespace {
-
-std::string variable(const char* name) {
-  const char* value = std::getenv(name);
-  return value == nullptr ? "" : value;
-}
 
 int whole(const char* name, const std::string& text, int least) {
   int value{};
@@ -59,8 +55,26 @@ std::string shard_of_environment() {
                     parts - 1));
   if (const std::string file = variable("GTEST_SHARD_STATUS_FILE");
       !file.empty())
-    std::ofstream{file};
+    std::ofstream(file, std::ios::app);  // what stands there stays
   return fmt::format("{}/{}", part + 1, parts);
+}
+
+/// What a flag left empty is what the variable says, else `usual`.
+void take(std::string& to, const char* name, const char* usual) {
+  if (to.empty()) to = variable(name);
+  if (to.empty()) to = usual;
+}
+
+/// The variable gives way to --filter, too, which --benchmark_filter is the
+/// same as.
+void take_filter(const std::string& flag, Selection& selection) {
+  const bool from_variable = flag.empty() && selection.filters.empty();
+  const std::string filter =
+      from_variable ? variable("BENCHMARK_FILTER") : flag;
+  if (filter.empty() || filter == "all") return;
+  NameFilter({filter},
+             from_variable ? "BENCHMARK_FILTER" : "--benchmark_filter");
+  selection.filters.push_back(filter);
 }
 
 }  // namespace
@@ -89,24 +103,23 @@ std::vector<Flag> Habits::flags() {
        "FORMAT"}};
 }
 
-void Habits::read_environment() {
-  const auto take = [](const char* name, std::string& to) {
-    if (const auto value = variable(name); !value.empty()) to = value;
-  };
-  take("BENCHMARK_FILTER", filter);
-  take("BENCHMARK_OUT", out);
-  take("BENCHMARK_OUT_FORMAT", out_format);
-  take("BENCHMARK_FORMAT", format);
-  if (const auto n = variable("BENCHMARK_REPETITIONS"); !n.empty())
-    repetitions = whole("BENCHMARK_REPETITIONS", n, 1);
+Habits::Habits() {
   const auto all = variable("BENCHMARK_LIST_TESTS");
   list = !all.empty() && all != "0" && all != "false";
 }
 
-void Habits::apply(Selection& selection) const {
+void Habits::complete(Selection& selection) {
+  take_filter(filter, selection);
+  take(out, "BENCHMARK_OUT", "");
+  take(out_format, "BENCHMARK_OUT_FORMAT", "json");
+  take(format, "BENCHMARK_FORMAT", "console");
+  if (repetitions == 0) {
+    std::string times;
+    take(times, "BENCHMARK_REPETITIONS", "1");
+    repetitions = whole("BENCHMARK_REPETITIONS", times, 1);
+  }
   check("--benchmark_format", format, {"console", "json", "csv"});
   check("--benchmark_out_format", out_format, {"json", "csv"});
-  if (!filter.empty() && filter != "all") selection.filters.push_back(filter);
   if (selection.shard.empty()) selection.shard = shard_of_environment();
 }
 

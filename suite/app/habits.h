@@ -10,16 +10,17 @@
 namespace physinv {
 
 struct Habits {
-  std::string filter, out, out_format = "json", format = "console";
-  int repetitions = 1;
-  bool list = false;
+  std::string filter, out, out_format, format;
+  int repetitions = 0;
+  bool list = false;  ///< from the start as BENCHMARK_LIST_TESTS says
 
+  Habits();
   std::vector<Flag> flags();
-  /// BENCHMARK_FILTER and so on become the defaults. Before the command line.
-  void read_environment();
-  /// Into the selection: the filter, and GTEST_TOTAL_SHARDS and
-  /// GTEST_SHARD_INDEX if no shard is asked for. UsageError for what cannot be.
-  void apply(Selection& selection) const;
+  /// After the command line: what it leaves open is as BENCHMARK_FILTER and so
+  /// on say, or as always. Then into the selection: the filter, and
+  /// GTEST_TOTAL_SHARDS and GTEST_SHARD_INDEX if no shard is asked for.
+  /// UsageError for what cannot be.
+  void complete(Selection& selection);
 };
 
 }  // namespace physinv

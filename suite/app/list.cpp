@@ -150,7 +150,7 @@ ExitCode list_verb(const Arguments& arguments) {
   std::string edited;
   bool json = false, methods = false, claims = false;
   if (!parse(
-          "physinv-bench list",
+          "list",
           "The cases of a profile, with estimated work.",
           selection.flags(
               {{"--json", "as JSON", &json},

@@ -4,94 +4,99 @@
 #include <malloc.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
 #include <string_view>
 #include <system_error>
 
+#include "suite/app/flags.h"
 #include "suite/app/verbs.h"
 #include "suite/harness/build_info.h"
 #include "suite/harness/context.h"
+#include "suite/harness/output.h"
 #include "suite/harness/select.h"
 #include "suite/results/errors.h"
 
 namespace physinv {
 namespace {
 
-constexpr std::string_view kHelp =
-    R"(Physics inverse problems: benchmarks of the papers, reproduced and timed.
-
-physinv-bench [run] [flags]      run cases (the default verb)
-physinv-bench list [flags]       the cases, their stages and estimated work
-physinv-bench plan [flags]       time, memory and disk of a selection
-physinv-bench report RESULTS     tables, plots and claims of a campaign
-physinv-bench results           a page of all published campaigns
-physinv-bench verify RESULTS     recompute every final loss
-physinv-bench merge OUT SHARD..  join the results of shards
-physinv-bench baseline RESULTS   what a campaign came to, as a text for reviews
-physinv-bench gate [flags]       runs a baseline's cases: worse? slower?
-physinv-bench compare A B..      campaigns side by side, what changed most
-physinv-bench export RESULTS     for dashboards and other programs
-physinv-bench completion SHELL   completion for bash, zsh or fish
-physinv-bench submit [flags]     a campaign as an array of Slurm jobs
-physinv-bench status DIR         how it stands
-physinv-bench kernels [flags]    kernel benchmarks (flags of Google Benchmark)
-physinv-bench VERB --help        flags of a verb
-physinv-bench --version          version and build
-
-examples
-  physinv-bench --filter=billiards
-  physinv-bench --profile=paper --filter=billiards --out=results/paper
-  physinv-bench list --profile=smoke
-  physinv-bench report results/quick
-
-exit codes
-)";
+constexpr std::string_view kTitle =
+    "Physics inverse problems: benchmarks of the papers, reproduced and "
+    "timed.\n\n";
 
 constexpr std::string_view kEnvironmentHelp = R"(
-environment
+environment; a variable that is empty counts as one that is not set
   NO_COLOR   no colours
   COLUMNS    width of the live table
   CI, TERM=dumb, or no terminal: plain lines, one per stage
-  PHYSINV_COUNT  the program whose instructions gate counts
   BENCHMARK_FILTER, BENCHMARK_OUT, BENCHMARK_OUT_FORMAT, BENCHMARK_FORMAT,
-  BENCHMARK_REPETITIONS, BENCHMARK_LIST_TESTS: as the flags of run
+  BENCHMARK_REPETITIONS, BENCHMARK_LIST_TESTS: as the flags of run, which go
+             before them
   GTEST_TOTAL_SHARDS, GTEST_SHARD_INDEX (from 0): as --shard
   XDG_CACHE_HOME  where the speeds of this machine are kept (~/.cache)
-  PHYSINV_PUBLISHED_DIR  the papers' numbers (reports/published)
 )";
 
-ExitCode dispatch(Arguments arguments) {
-  if (arguments.empty() || arguments[0].starts_with('-')) {
-    if (!arguments.empty() &&
-        (arguments[0] == "--help" || arguments[0] == "-h")) {
-      fmt::print("{}{}{}", kHelp, kExitCodeHelp, kEnvironmentHelp);
-      return ExitCode::good;
-    }
-    if (!arguments.empty() && arguments[0] == "--version") {
-      fmt::print("{}\n", version_text());
-      return ExitCode::good;
-    }
-    if (!arguments.empty() && arguments[0] == "--list-verbs") {
-      for (const auto& [name, call] : verbs()) fmt::print("{}\n", name);
-      return ExitCode::good;
-    }
-    return run_verb(arguments);
+std::string help_line(std::string_view usage, std::string_view about) {
+  return fmt::format(
+      "{:<32} {}\n", fmt::format("{} {}", program().name, usage), about);
+}
+
+std::string help_text() {
+  std::string text(kTitle);
+  for (const Verb& verb : program().verbs)
+    text += help_line(
+        fmt::format("{} {}",
+                    verb.name == "run" ? "[run]" : std::string(verb.name),
+                    verb.takes),
+        verb.about);
+  text += help_line("VERB --help", "flags of a verb");
+  text += help_line("--version", "version and build");
+  text += "\nexamples\n";
+  for (const auto& example : program().examples)
+    text += fmt::format("  {} {}\n", program().name, example);
+  text += fmt::format("\nexit codes\n{}", kExitCodeHelp);
+  return text + std::string(kEnvironmentHelp) +
+         std::string(program().environment);
+}
+
+/// Of the program itself. False if it is none of those.
+bool answered(const std::string& flag) {
+  if (flag == "--help" || flag == "-h") {
+    fmt::print("{}", help_text());
+  } else if (flag == "--version") {
+    fmt::print("{}\n", version_text());
+  } else if (flag == "--list-verbs") {
+    for (const Verb& verb : program().verbs) fmt::print("{}\n", verb.name);
+  } else {
+    return false;
   }
-  const auto verb = verbs().find(arguments[0]);
-  if (verb != verbs().end()) {
-    arguments.erase(arguments.begin());
-    return verb->second(arguments);
-  }
+  return true;
+}
+
+[[noreturn]] void refuse_verb(const std::string& word) {
   std::vector<std::string> known;
-  for (const auto& [name, call] : verbs()) known.push_back(name);
-  const std::string near = nearest_word(known, arguments[0]);
+  for (const Verb& verb : program().verbs) known.emplace_back(verb.name);
+  const std::string near = nearest_word(known, word);
   throw UsageError(fmt::format(
       "unknown verb '{}'; {}",
-      arguments[0],
+      word,
       near.empty() ? fmt::format("known are {}", fmt::join(known, ", "))
                    : "did you mean " + near + "?"));
+}
+
+ExitCode dispatch(Arguments arguments) {
+  refuse_empty(arguments);
+  if (arguments.empty() || arguments[0].starts_with('-'))
+    return !arguments.empty() && answered(arguments[0]) ? ExitCode::good
+                                                        : run_verb(arguments);
+  for (const Verb& verb : program().verbs) {
+    if (verb.name != arguments[0]) continue;
+    arguments.erase(arguments.begin());
+    return verb.call(arguments);
+  }
+  refuse_verb(arguments[0]);
 }
 
 /// Whoever starts us may have closed 0, 1 or 2. The next file that opens would
@@ -112,15 +117,12 @@ bool can_run_here() {
 }
 
 constexpr const char* kUnwritable =
-    "standard output cannot be written; a disk may be full";
+    "standard output cannot be written; a disk may be full, or the limit on "
+    "file sizes (ulimit -f) too low";
 
-/// One line, whatever the exception says.
-ExitCode complain(ExitCode code, std::string text) {
-  for (char& c : text)
-    if (c == '\n') c = ' ';
+ExitCode complain(ExitCode code, std::string_view text) {
   std::fflush(stdout);
-  // fmt::print would throw where standard error cannot be written either.
-  std::fputs(fmt::format("physinv-bench: {}\n", text).c_str(), stderr);
+  put(stderr, fmt::format("{}: {}\n", program().name, one_line(text)));
   return code;
 }
 
@@ -158,6 +160,8 @@ ExitCode guarded(Arguments arguments) {
 
 int main(int argc, char** argv) {
   physinv::open_standard_streams();
+  // A write beyond the limit on file sizes then fails with EFBIG and is told.
+  std::signal(SIGXFSZ, SIG_IGN);
   // Records of some 100 kB come and go; the default hands each back to the
   // system and pays for its pages again.
   mallopt(M_MMAP_THRESHOLD, 64 << 20);

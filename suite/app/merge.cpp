@@ -10,7 +10,7 @@ namespace physinv {
 ExitCode merge_verb(const Arguments& arguments) {
   std::string out;
   std::vector<std::string> shards;
-  if (!parse("physinv-bench merge",
+  if (!parse("merge",
              "Joins the results of shards into what an unsharded run gives, "
              "times apart.",
              {{"OUT", "directory to write", &out},

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <map>
+#include <set>
 #include <sstream>
 
 #include "suite/results/file.h"
@@ -113,9 +114,11 @@ std::vector<Case> listed(std::vector<Case> cases, const std::string& file) {
   for (Case& c : cases) by_name[c.info.name] = &c;
   std::istringstream lines(read_file(file));
   std::vector<Case> own;
+  std::set<std::string> taken;
   std::string name;
   while (std::getline(lines, name)) {
-    if (name.empty()) continue;
+    if (name.ends_with('\r')) name.pop_back();
+    if (name.empty() || !taken.insert(name).second) continue;
     const auto at = by_name.find(name);
     if (at == by_name.end())
       throw UsageError(fmt::format(

@@ -189,7 +189,7 @@ ExitCode report_verb(const Arguments& arguments) {
   std::string results, out, expected, publish;
   bool check = false;
   if (!parse(
-          "physinv-bench report",
+          "report",
           "Writes tables, plots and claims of a finished campaign. Exit 8 if "
           "the campaign is incomplete.",
           {{"RESULTS", "directory that 'run' wrote", &results},

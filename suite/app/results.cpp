@@ -43,7 +43,7 @@ std::vector<NamedDigest> digests(const fs::path& directory) {
 
 ExitCode results_verb(const Arguments& arguments) {
   std::string campaigns = "reports/campaigns", out = "RESULTS.md";
-  if (!parse("physinv-bench results",
+  if (!parse("results",
              "Writes a page of all published campaigns: claims and tables, "
              "each with machine, build, date and command.",
              {{"--campaigns",

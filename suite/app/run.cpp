@@ -7,10 +7,13 @@
 
 #include "suite/app/export.h"
 #include "suite/app/habits.h"
+#include "suite/app/speeds.h"
 #include "suite/core/clock.h"
 #include "suite/core/hash.h"
 #include "suite/harness/campaign.h"
 #include "suite/harness/context.h"
+#include "suite/harness/output.h"
+#include "suite/harness/stop_signal.h"
 #include "suite/planning/budget.h"
 #include "suite/planning/predict.h"
 #include "suite/results/exports.h"
@@ -64,7 +67,7 @@ struct RunFlags {
   void complete() {
     if (jobs == 0) jobs = std::max(1, available_cores() / campaign.threads);
     campaign.jobs = jobs;
-    habits.apply(selection);
+    habits.complete(selection);
     if (!budget.empty())
       campaign.time_budget = parse_duration("--time-budget", budget);
     if (!checkpoint.empty())
@@ -78,13 +81,13 @@ struct RunFlags {
             {"set", selection.sets},
             {"seeds", selection.seeds},
             {"shard", selection.shard},
-            {"cases", selection.list},
+            {"cases", one_line(selection.list)},
             {"jobs", campaign.jobs},
             {"threads", campaign.threads},
             {"time_budget", campaign.time_budget},
             {"resume", campaign.resume},
             {"trace", campaign.trace},
-            {"out", campaign.out.string()}};
+            {"out", one_line(campaign.out.string())}};
   }
 };
 
@@ -113,7 +116,7 @@ std::vector<double> seconds_of(const std::vector<Case>& cases, double budget) {
     for (const Case& c : cases) seconds.push_back(c.operations());
     return seconds;
   }
-  Trials trials;
+  Trials trials = known_speeds();
   for (const Cost& cost : predict(cases, trials))
     seconds.push_back(cost.seconds);
   trials.save();
@@ -137,38 +140,43 @@ void follow_budget(CampaignOptions& campaign, const std::vector<Case>& cases) {
 }
 
 /// Cases per experiment and n, where the budget left some out.
-void print_left_out(std::FILE* stream, const std::vector<std::string>& names) {
+std::string left_out_text(const std::vector<std::string>& names) {
   std::map<std::string, std::vector<std::string>> seeds;
   for (const auto& name : names) {
     const auto at = name.rfind("/seed=");
     seeds[name.substr(0, at)].push_back(name.substr(at + 6));
   }
+  std::string text;
   for (const auto& [chain, left] : seeds)
-    fmt::print(stream, "  {} seeds {}\n", chain, fmt::join(left, ", "));
+    text += fmt::format("  {} seeds {}\n", chain, fmt::join(left, ", "));
+  return text;
 }
 
-void print_result(std::FILE* stream,
-                  const RunFlags& flags,
-                  const CampaignResult& r) {
-  fmt::print(stream,
-             "{} stages run, {} reused{}; {}, bookkeeping {}{}\n",
-             r.stages_run,
-             r.stages_reused,
-             r.origins.empty() ? "" : " (" + to_text(r.origins) + ")",
-             duration_text(r.seconds),
-             duration_text(r.bookkeeping),
-             r.stage_cpu > 0 ? fmt::format(" ({:.2f} % of CPU)",
-                                           100 * r.bookkeeping /
-                                               (r.bookkeeping + r.stage_cpu))
-                             : "");
-  if (!r.not_run.empty()) {
-    fmt::print(stream,
-               "{}: {} cases not run:\n",
-               r.interrupted ? "interrupted" : "out of time",
-               r.not_run.size());
-    print_left_out(stream, r.not_run);
-  }
-  fmt::print(stream, "results: {}\n", flags.campaign.out.string());
+std::string result_text(const RunFlags& flags, const CampaignResult& r) {
+  std::string text = fmt::format(
+      "{} stages run, {} reused{}; {}, bookkeeping {}{}\n",
+      r.stages_run,
+      r.stages_reused,
+      r.origins.empty() ? "" : " (" + to_text(r.origins) + ")",
+      duration_text(r.seconds),
+      duration_text(r.bookkeeping),
+      r.stage_cpu > 0
+          ? fmt::format(" ({:.2f} % of CPU)",
+                        100 * r.bookkeeping / (r.bookkeeping + r.stage_cpu))
+          : "");
+  if (!r.not_run.empty())
+    text += fmt::format("{}: {} cases not run:\n{}",
+                        r.interrupted ? "interrupted" : "out of time",
+                        r.not_run.size(),
+                        left_out_text(r.not_run));
+  return text + fmt::format("results: {}\n", flags.campaign.out.string());
+}
+
+/// What a campaign that did not come to its end says last.
+std::string go_on_text(const RunFlags& flags) {
+  return flags.campaign.resume
+             ? "the same command goes on with them"
+             : "the same command without --fresh goes on with them";
 }
 
 /// Runs the cases again beside the store, only for their times.
@@ -205,10 +213,9 @@ Repetitions repeat(const Prepared& prepared,
 
 ExitCode run_verb(const Arguments& arguments) {
   RunFlags flags;
-  flags.habits.read_environment();
-  if (!parse("physinv-bench run",
+  if (!parse("run",
              "Runs the cases of a profile and writes their results. The "
-             "default verb.\nExit codes and environment: physinv-bench --help",
+             "default verb.\nExit codes and environment: --help without verb.",
              flags.flags(),
              arguments))
     return ExitCode::good;
@@ -237,14 +244,20 @@ ExitCode run_verb(const Arguments& arguments) {
   if (repeats && !result.interrupted)
     write_repetitions(flags.campaign.out,
                       repeat(prepared, flags, result.cases, screen));
-  fmt::print(
-      stream, "{}", summary_table(own_records(std::move(result.cases), names)));
-  print_result(stream, flags, result);
+  result.interrupted = result.interrupted || stop_signals() > 0;
+  put(stream, summary_table(own_records(std::move(result.cases), names)));
+  put(stream, result_text(flags, result));
   const std::string& out = flags.campaign.out.string();
-  if (stream != stdout) fmt::print("{}", exported(out, flags.habits.format));
+  if (stream != stdout) put(stdout, exported(out, flags.habits.format));
   if (!flags.habits.out.empty())
     write_atomically(flags.habits.out, exported(out, flags.habits.out_format));
-  if (result.interrupted) return ExitCode::interrupted;
+  if (result.interrupted)
+    throw ExitError(ExitCode::interrupted,
+                    fmt::format("interrupted: {} of {} cases not run; what had "
+                                "finished is kept, {}",
+                                result.not_run.size(),
+                                names.size(),
+                                go_on_text(flags)));
   if (!result.failed.empty()) {
     throw ExitError(
         ExitCode::case_failed,
@@ -256,9 +269,10 @@ ExitCode run_verb(const Arguments& arguments) {
   if (!result.not_run.empty())
     throw ExitError(ExitCode::incomplete,
                     fmt::format("incomplete: {} of {} cases not run, out of "
-                                "time; the same command goes on with them",
+                                "time; {}",
                                 result.not_run.size(),
-                                names.size()));
+                                names.size(),
+                                go_on_text(flags)));
   return ExitCode::good;
 }
 

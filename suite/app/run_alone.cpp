@@ -1,10 +1,15 @@
-// The verbs of physinv-run.
+// What physinv-run has.
 #include "suite/app/verbs.h"
 
 namespace physinv {
 
-const std::map<std::string, Verb>& verbs() {
-  static const std::map<std::string, Verb> run = {{"run", run_verb}};
+const Program& program() {
+  static const Program run{
+      .name = "physinv-run",
+      .verbs = {{"run", "[flags]", "run cases (the default verb)", run_verb}},
+      .examples = {"--filter=billiards",
+                   "--profile=paper --filter=billiards --out=results/paper"},
+      .environment = ""};
   return run;
 }
 

@@ -2,24 +2,65 @@
 
 namespace physinv {
 
-const std::map<std::string, Verb>& verbs() {
-  static const std::map<std::string, Verb> all = {
-      {"run", run_verb},
-      {"list", list_verb},
-      {"plan", plan_verb},
-      {"report", report_verb},
-      {"results", results_verb},
-      {"verify", verify_verb},
-      {"merge", merge_verb},
-      {"baseline", baseline_verb},
-      {"gate", gate_verb},
-      {"compare", compare_verb},
-      {"export", export_verb},
-      {"submit", submit_verb},
-      {"status", status_verb},
-      {"completion", completion_verb},
-      {"kernels", kernels_verb}};
-  return all;
+const Program& program() {
+  static const Program bench{
+      .name = "physinv-bench",
+      .verbs =
+          {{"run", "[flags]", "run cases (the default verb)", run_verb},
+           {"list",
+            "[flags]",
+            "the cases, their stages and estimated work",
+            list_verb},
+           {"plan",
+            "[flags]",
+            "time, memory and disk of a selection",
+            plan_verb},
+           {"report",
+            "RESULTS",
+            "tables, plots and claims of a campaign",
+            report_verb},
+           {"results", "", "a page of all published campaigns", results_verb},
+           {"verify", "RESULTS", "recompute every final loss", verify_verb},
+           {"merge", "OUT SHARD..", "join the results of shards", merge_verb},
+           {"baseline",
+            "RESULTS",
+            "what a campaign came to, as a text for reviews",
+            baseline_verb},
+           {"gate",
+            "[flags]",
+            "runs a baseline's cases: worse? slower?",
+            gate_verb},
+           {"compare",
+            "A B..",
+            "campaigns side by side, what changed most",
+            compare_verb},
+           {"export",
+            "RESULTS",
+            "for dashboards and other programs",
+            export_verb},
+           {"completion",
+            "SHELL",
+            "completion for bash, zsh or fish",
+            completion_verb},
+           {"submit",
+            "[flags]",
+            "a campaign as an array of Slurm jobs",
+            submit_verb},
+           {"status", "DIR", "how it stands", status_verb},
+           {"kernels",
+            "[flags]",
+            "kernel benchmarks (flags of Google Benchmark)",
+            kernels_verb}},
+      .examples = {"--filter=billiards",
+                   "--profile=paper --filter=billiards --out=results/paper",
+                   "list --profile=smoke",
+                   "report results/quick"},
+      .environment =
+          R"(  PHYSINV_COUNT  the program whose instructions gate counts
+  PHYSINV_PUBLISHED_DIR  the papers' numbers (reports/published)
+  PHYSINV_SLURM_SECONDS  how long sbatch and squeue may take to answer (30)
+)"};
+  return bench;
 }
 
 }  // namespace physinv

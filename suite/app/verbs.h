@@ -2,8 +2,8 @@
 /// throw ExitError for what ends them early.
 #pragma once
 
-#include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "suite/harness/errors.h"
@@ -13,9 +13,21 @@ namespace physinv {
 /// What follows the verb.
 using Arguments = std::vector<std::string>;
 
-/// What a program has of them, by name.
-using Verb = ExitCode (*)(const Arguments&);
-const std::map<std::string, Verb>& verbs();
+struct Verb {
+  std::string_view name, takes, about;
+  ExitCode (*call)(const Arguments&);
+};
+
+/// What stands in a program's help, besides what all programs have.
+struct Program {
+  std::string_view name;
+  std::vector<Verb> verbs;
+  std::vector<std::string_view> examples;
+  std::string_view environment;  ///< variables of its verbs
+};
+
+/// The one that was started.
+const Program& program();
 
 ExitCode run_verb(const Arguments& arguments);
 ExitCode list_verb(const Arguments& arguments);

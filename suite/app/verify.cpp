@@ -39,7 +39,7 @@ void print(const VerifyReport& r, const Shortfall& lacks) {
 
 ExitCode verify_verb(const Arguments& arguments) {
   std::string directory;
-  if (!parse("physinv-bench verify",
+  if (!parse("verify",
              "Recomputes every final loss from the stored solutions, one "
              "example at a time in double, and compares bitwise or within "
              "1e-12 relative. Solutions that are not stored are made again "
