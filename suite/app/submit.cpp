@@ -5,6 +5,7 @@
 
 #include "suite/app/installed.h"
 #include "suite/app/options.h"
+#include "suite/app/speeds.h"
 #include "suite/harness/child.h"
 #include "suite/harness/progress.h"
 #include "suite/planning/predict.h"
@@ -33,7 +34,7 @@ std::vector<std::string> flags_of(const Selection& s) {
 
 /// Predicted by this machine; the nodes' speed is a common factor.
 std::vector<Task> tasks_of(const std::vector<Case>& cases, int count) {
-  Trials trials;
+  Trials trials = known_speeds();
   std::vector<double> seconds;
   for (const Cost& cost : predict(cases, trials))
     seconds.push_back(cost.seconds);
@@ -70,7 +71,8 @@ Submission prepare_submission(const SubmitFlags& flags) {
                .running = {fmt::format("--jobs={}", flags.jobs),
                            fmt::format("--threads={}", flags.threads)},
                .tasks = tasks_of(flags.selection.cases(), flags.tasks),
-               .jobs = {}};
+               .jobs = {},
+               .merges_after = {}};
   make_directory(s.directory);
   s.write();
   return s;
@@ -90,6 +92,51 @@ void require_slurm() {
         "the cluster, or share the work out with --shard and merge");
 }
 
+/// The array's id is kept before anything else can go wrong: what is in the
+/// queue is not submitted again.
+void submit_missing(Submission& s,
+                    const std::vector<std::size_t>& missing,
+                    const std::vector<std::string>& sbatch_options) {
+  double longest = 0, sum = 0;
+  for (const std::size_t k : missing) {
+    longest = std::max(longest, s.tasks[k].seconds);
+    sum += s.tasks[k].seconds;
+  }
+  s.jobs.push_back(submit_array(s, missing, sbatch_options));
+  s.save();
+  fmt::print(
+      "job {}: {} of {} tasks, {} of one core, the longest {}; then a "
+      "merge into {}\n",
+      s.jobs.back(),
+      missing.size(),
+      s.tasks.size(),
+      duration_text(sum),
+      duration_text(longest),
+      (s.directory / "merged").string());
+}
+
+bool in_queue(const std::vector<TaskState>& states) {
+  return std::any_of(states.begin(), states.end(), [](const TaskState& t) {
+    return !t.job.empty();
+  });
+}
+
+/// One merge for each array; if it still runs, after it.
+void merge_after_last(Submission& s, bool runs) {
+  if (s.jobs.empty() || s.merges_after == s.jobs.back()) return;
+  try {
+    submit_merge(s, runs ? s.jobs.back() : "");
+  } catch (const EnvironmentError& error) {
+    throw EnvironmentError(
+        fmt::format("job {} is submitted, the merge after it is not: {}; the "
+                    "same command submits it",
+                    s.jobs.back(),
+                    error.what()));
+  }
+  s.merges_after = s.jobs.back();
+  s.save();
+}
+
 }  // namespace
 
 ExitCode submit_verb(const Arguments& arguments) {
@@ -98,7 +145,7 @@ ExitCode submit_verb(const Arguments& arguments) {
   const std::vector<std::string> sbatch_options(
       dashes == arguments.end() ? dashes : dashes + 1, arguments.end());
   SubmitFlags flags;
-  if (!parse("physinv-bench submit",
+  if (!parse("submit",
              "Splits a campaign by predicted time, longest case first, and "
              "submits it to Slurm: an array of tasks that go on where they "
              "were interrupted, and a merge after it. The same command again "
@@ -123,38 +170,28 @@ ExitCode submit_verb(const Arguments& arguments) {
   require_slurm();
   Submission s = prepare_submission(flags);
   auto states = states_of(s);
-  ask_queue(s, states);
+  if (const auto unknown = ask_queue(s, states); !unknown.empty())
+    throw EnvironmentError(fmt::format(
+        "{}; without the queue, tasks that are in it would be submitted twice",
+        unknown));
   const auto missing = missing_tasks(states);
-  if (missing.empty()) {
+  if (!missing.empty())
+    submit_missing(s, missing, sbatch_options);
+  else if (!s.jobs.empty() && s.merges_after != s.jobs.back())
+    fmt::print("the merge that is missing is submitted\n");
+  else
     fmt::print(
         "nothing is missing that is not in the queue; see "
-        "physinv-bench status {}\n",
+        "{} status {}\n",
+        program().name,
         flags.directory);
-    return ExitCode::good;
-  }
-  double longest = 0, sum = 0;
-  for (const std::size_t k : missing) {
-    longest = std::max(longest, s.tasks[k].seconds);
-    sum += s.tasks[k].seconds;
-  }
-  const std::string job = submit(s, missing, sbatch_options);
-  s.jobs.push_back(job);
-  s.save();
-  fmt::print(
-      "job {}: {} of {} tasks, {} of one core, the longest {}; then a "
-      "merge into {}\n",
-      job,
-      missing.size(),
-      s.tasks.size(),
-      duration_text(sum),
-      duration_text(longest),
-      (s.directory / "merged").string());
+  merge_after_last(s, !missing.empty() || in_queue(states));
   return ExitCode::good;
 }
 
 ExitCode status_verb(const Arguments& arguments) {
   std::string directory;
-  if (!parse("physinv-bench status",
+  if (!parse("status",
              "How a submitted campaign stands, by what its tasks have stored "
              "and by Slurm's queue. Exit 0 if all is done, 4 if a case failed, "
              "10 if some are missing.",
@@ -163,7 +200,7 @@ ExitCode status_verb(const Arguments& arguments) {
     return ExitCode::good;
   const Submission s = Submission::read(directory);
   auto states = states_of(s);
-  ask_queue(s, states);
+  const std::string unknown = ask_queue(s, states);
   std::size_t cases = 0, done = 0, failed = 0, queued = 0;
   fmt::print("{:>5}  {:>6}  {:>6}  {:>6}  {}\n",
              "task",
@@ -185,11 +222,13 @@ ExitCode status_verb(const Arguments& arguments) {
     cases += t.cases, done += t.done, failed += t.failed;
     queued += t.job.empty() ? 0 : 1;
   }
-  fmt::print("{} of {} cases done, {} failed; {} tasks in the queue\n",
+  fmt::print("{} of {} cases done, {} failed; {}\n",
              done,
              cases,
              failed,
-             queued);
+             unknown.empty()
+                 ? fmt::format("{} tasks in the queue", queued)
+                 : "whether tasks are in the queue is not known: " + unknown);
   if (failed > 0 && queued == 0)
     throw ExitError(ExitCode::case_failed,
                     fmt::format("{} cases failed; their tasks' logs are in {}",
@@ -201,8 +240,9 @@ ExitCode status_verb(const Arguments& arguments) {
         fmt::format("incomplete: {} of {} cases are not done; {}",
                     cases - done,
                     cases,
-                    queued > 0 ? "tasks are in the queue"
-                               : "the same 'submit' runs what is missing"));
+                    !unknown.empty() ? unknown
+                    : queued > 0     ? "tasks are in the queue"
+                                 : "the same 'submit' runs what is missing"));
   return ExitCode::good;
 }
 

@@ -4,11 +4,16 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
 
 #include "suite/harness/child.h"
+#include "suite/harness/context.h"
 #include "suite/harness/errors.h"
+#include "suite/harness/output.h"
 #include "suite/results/catalog.h"
 #include "suite/results/file.h"
 
@@ -68,20 +73,111 @@ std::string state_of(const Catalog& catalog, const std::string& name) {
   return "done";
 }
 
+/// PHYSINV_SLURM_SECONDS, and what anyone could read of an answer.
+ChildLimits slurm_limits() {
+  constexpr double kUsual = 30, kLongest = 3600;
+  constexpr const char* kName = "PHYSINV_SLURM_SECONDS";
+  const std::string text = variable(kName);
+  ChildLimits limits{.seconds = kUsual, .bytes = 16 << 20};
+  if (text.empty()) return limits;
+  const char* end = text.data() + text.size();
+  const auto [at, error] = std::from_chars(text.data(), end, limits.seconds);
+  if (error != std::errc() || at != end ||
+      !(limits.seconds > 0 && limits.seconds <= kLongest))
+    throw UsageError(fmt::format(
+        "{}={} is no number of seconds up to {:g}", kName, text, kLongest));
+  return limits;
+}
+
+bool is_number(std::string_view text) {
+  return !text.empty() &&
+         text.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+/// Could this program have written it?
+bool sound(const Submission& s) {
+  return std::all_of(s.jobs.begin(), s.jobs.end(), is_number) &&
+         (s.merges_after.empty() || is_number(s.merges_after)) &&
+         std::all_of(s.tasks.begin(), s.tasks.end(), [](const Task& t) {
+           return t.seconds >= 0 && std::isfinite(t.seconds);
+         });
+}
+
+/// The id in what sbatch prints: warnings may stand before it, a cluster's
+/// name after it.
+std::string job_id(const std::string& output) {
+  constexpr std::size_t kLongestId = 20;
+  std::istringstream lines(output);
+  std::string id;
+  for (std::string line; std::getline(lines, line);) id = line;
+  id = id.substr(0, id.find(';'));
+  if (!is_number(id) || id.size() > kLongestId)
+    throw EnvironmentError(fmt::format(
+        "sbatch answers '{}', which is no id of a job; squeue shows whether it "
+        "took one",
+        id.substr(0, 100)));
+  return id;
+}
+
 std::string sbatch(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), {"sbatch", "--parsable"});
-  const Ended r = run_child(arguments);
+  const Ended r = run_child(arguments, slurm_limits());
+  if (!r.exceeded.empty())
+    throw EnvironmentError(fmt::format(
+        "sbatch does not answer ({}); squeue shows whether it took a job, and "
+        "PHYSINV_SLURM_SECONDS gives it more time",
+        r.exceeded));
   if (r.status != 0) {
-    std::string text = r.output + r.errors;
-    std::replace(text.begin(), text.end(), '\n', ' ');
+    const std::string text = r.output + r.errors;
     throw EnvironmentError(
         fmt::format("sbatch refuses: {}", text.empty() ? "no answer" : text));
   }
-  // Warnings may stand before the id, a cluster's name after it.
-  std::istringstream lines(r.output);
-  std::string id;
-  for (std::string line; std::getline(lines, line);) id = line;
-  return id.substr(0, id.find(';'));
+  return job_id(r.output);
+}
+
+/// A line of the queue; nothing if it is none.
+struct QueueLine {
+  std::string job, task, state;
+};
+std::optional<QueueLine> queue_line(const std::string& text) {
+  constexpr std::string_view kStates = "ABCDEFGHIJKLMNOPQRSTUVWXYZ_";
+  constexpr std::size_t kLongestState = 32;
+  std::istringstream words(text);
+  QueueLine line;
+  std::string more;
+  words >> line.job >> line.task >> line.state;
+  if (line.state.empty() || line.state.size() > kLongestState ||
+      words >> more || !is_number(line.job) ||
+      line.state.find_first_not_of(kStates) != std::string::npos)
+    return {};
+  return line;
+}
+
+/// Of a campaign's tasks; others, and "N/A" for a job that is no array, are
+/// none.
+std::optional<std::size_t> task_number(const std::string& text,
+                                       std::size_t tasks) {
+  std::size_t value{};
+  const char* end = text.data() + text.size();
+  const auto [at, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || at != end || value >= tasks) return {};
+  return value;
+}
+
+/// The lines of an answer. Banners are passed over, but an answer of nothing
+/// else is none.
+std::optional<std::vector<QueueLine>> queue_lines(const std::string& output) {
+  std::vector<QueueLine> found;
+  bool others = false;
+  std::istringstream lines(output);
+  for (std::string text; std::getline(lines, text);) {
+    if (auto line = queue_line(text))
+      found.push_back(std::move(*line));
+    else
+      others = others || !text.empty();
+  }
+  if (found.empty() && others) return {};
+  return found;
 }
 
 }  // namespace
@@ -104,15 +200,17 @@ Submission Submission::read(const fs::path& directory) {
     s.selection = all.at("selection").get<std::vector<std::string>>();
     s.running = all.at("running").get<std::vector<std::string>>();
     s.jobs = all.at("jobs").get<std::vector<std::string>>();
+    s.merges_after =
+        all.value("merges_after", s.jobs.empty() ? "" : s.jobs.back());
     for (const json& t : all.at("tasks"))
       s.tasks.push_back({t.at("cases").get<std::vector<std::string>>(),
                          t.at("seconds").get<double>()});
+    if (sound(s)) return s;
   } catch (const json::exception&) {
-    throw StoreError(fmt::format(
-        "{} is damaged (delete it and submit again: finished stages are kept)",
-        (directory / "submission.json").string()));
   }
-  return s;
+  throw StoreError(fmt::format(
+      "{} is damaged (delete it and submit again: finished stages are kept)",
+      (directory / "submission.json").string()));
 }
 
 void Submission::save() const {
@@ -120,6 +218,7 @@ void Submission::save() const {
            {"selection", selection},
            {"running", running},
            {"jobs", jobs},
+           {"merges_after", merges_after},
            {"tasks", json::array()}};
   for (const Task& t : tasks)
     all["tasks"].push_back({{"cases", t.cases}, {"seconds", t.seconds}});
@@ -169,41 +268,51 @@ std::vector<TaskState> states_of(const Submission& s) {
   return states;
 }
 
-void ask_queue(const Submission& s, std::vector<TaskState>& states) {
-  if (s.jobs.empty() || !has_program("squeue")) return;
-  const Ended queue = run_child({"squeue", "-h", "-r", "-o", "%F %K %T"});
-  std::istringstream lines(queue.output);
-  std::string job, task, state;
-  while (lines >> job >> task >> state) {
-    const bool ours =
-        std::find(s.jobs.begin(), s.jobs.end(), job) != s.jobs.end();
-    if (!ours || task.find_first_not_of("0123456789") != std::string::npos)
-      continue;
-    const std::size_t k = std::stoul(task);
-    if (k < states.size()) states[k].job = state;
+std::string ask_queue(const Submission& s, std::vector<TaskState>& states) {
+  if (s.jobs.empty()) return "";
+  if (!has_program("squeue")) return "there is no squeue in PATH";
+  const Ended queue =
+      run_child({"squeue", "-h", "-r", "-o", "%F %K %T"}, slurm_limits());
+  if (!queue.exceeded.empty())
+    return fmt::format("squeue does not answer ({})", queue.exceeded);
+  if (queue.status != 0)
+    return fmt::format(
+        "squeue ends with status {} {}", queue.status, one_line(queue.errors));
+  const auto lines = queue_lines(queue.output);
+  if (!lines) return "squeue answers something that is no queue";
+  for (const QueueLine& line : *lines) {
+    const auto task = task_number(line.task, states.size());
+    if (task &&
+        std::find(s.jobs.begin(), s.jobs.end(), line.job) != s.jobs.end())
+      states[*task].job = line.state;
   }
+  return "";
 }
 
-std::string submit(const Submission& s,
-                   const std::vector<std::size_t>& tasks,
-                   const std::vector<std::string>& sbatch_options) {
-  const fs::path log = s.directory / "log";
+std::string submit_array(const Submission& s,
+                         const std::vector<std::size_t>& tasks,
+                         const std::vector<std::string>& sbatch_options) {
   std::vector<std::string> array = {
       fmt::format("--array={}", fmt::join(tasks, ",")),
       "--requeue",
       "--open-mode=append",
       "--job-name=physinv",
-      "--output=" + (log / "task-%a.txt").string()};
+      "--output=" + (s.directory / "log" / "task-%a.txt").string()};
   array.insert(array.end(), sbatch_options.begin(), sbatch_options.end());
   array.push_back((s.directory / "task.sh").string());
-  const std::string id = sbatch(array);
-  sbatch({"--dependency=afterany:" + id,
-          "--requeue",
-          "--open-mode=append",
-          "--job-name=physinv-merge",
-          "--output=" + (log / "merge.txt").string(),
-          (s.directory / "merge.sh").string()});
-  return id;
+  return sbatch(array);
+}
+
+void submit_merge(const Submission& s, const std::string& after) {
+  std::vector<std::string> merge = {
+      "--requeue",
+      "--open-mode=append",
+      "--job-name=physinv-merge",
+      "--output=" + (s.directory / "log" / "merge.txt").string(),
+      (s.directory / "merge.sh").string()};
+  if (!after.empty())
+    merge.insert(merge.begin(), "--dependency=afterany:" + after);
+  sbatch(std::move(merge));
 }
 
 }  // namespace physinv

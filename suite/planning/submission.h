@@ -27,6 +27,7 @@ struct Submission {
   std::vector<std::string> running;    ///< flags such as --threads=2
   std::vector<Task> tasks;
   std::vector<std::string> jobs;  ///< ids of the arrays submitted so far
+  std::string merges_after;  ///< id of the last array with a merge after it
 
   static bool exists(const std::filesystem::path& directory);
   /// UsageError if there is none, StoreError if it is damaged.
@@ -48,13 +49,20 @@ struct TaskState {
 };
 std::vector<TaskState> states_of(const Submission& submission);
 
-/// Asks Slurm's queue; without it the states stay as they are.
-void ask_queue(const Submission& submission, std::vector<TaskState>& states);
+/// Asks Slurm's queue for the states of tasks. Returns why it is not known, or
+/// an empty text; the states then stay as they are.
+std::string ask_queue(const Submission& submission,
+                      std::vector<TaskState>& states);
 
-/// Submits an array of these tasks, and a merge after it whatever becomes of
-/// it. Returns the array's job id. EnvironmentError if Slurm refuses.
-std::string submit(const Submission& submission,
-                   const std::vector<std::size_t>& tasks,
-                   const std::vector<std::string>& sbatch_options);
+/// Submits an array of these tasks and returns its job id. EnvironmentError if
+/// Slurm refuses, or answers within PHYSINV_SLURM_SECONDS with nothing that is
+/// an id.
+std::string submit_array(const Submission& submission,
+                         const std::vector<std::size_t>& tasks,
+                         const std::vector<std::string>& sbatch_options);
+
+/// Submits a merge; with `after`, once that array has ended, whatever becomes
+/// of it.
+void submit_merge(const Submission& submission, const std::string& after);
 
 }  // namespace physinv

@@ -1,0 +1,171 @@
+"""submit and status with a Slurm that refuses, hangs, prints without end or
+answers what is no answer."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+from program import FAILED, check, expect, results, run
+
+SELECTION = ["--profile=quick", "--filter=descend", "--tasks=3"]
+LOG = 'echo "$@" >>"$(dirname "$0")/log"\n'
+
+
+class Slurm:
+    """Its programs are what a test makes of them."""
+
+    def __init__(self, d):
+        self.bin = os.path.join(d, "bin")
+        self.env = {"PATH": self.bin + ":" + os.environ["PATH"],
+                    "XDG_CACHE_HOME": os.path.join(d, "cache"),
+                    "PHYSINV_SLURM_SECONDS": "1"}
+        os.makedirs(self.bin, exist_ok=True)
+
+    def put(self, **scripts):
+        for name, script in scripts.items():
+            path = os.path.join(self.bin, name)
+            with open(path, "w") as f:
+                f.write("#!/bin/bash\n" + script + "\n")
+            os.chmod(path, 0o755)
+
+    def log(self):
+        with open(os.path.join(self.bin, "log")) as f:
+            return f.read().splitlines()
+
+
+def refused_merge(d):
+    """The array is not submitted twice; the merge follows."""
+    s = Slurm(d)
+    s.put(sbatch=LOG + "[[ $* != *merge.sh ]] || { echo no >&2; exit 1; }\n"
+          "echo warning; echo '77;local'", squeue="exit 0")
+    submit = ["submit", "--slurm=m", *SELECTION]
+    expect(9, submit, d, "job 77 is submitted, the merge after it is not",
+           env=s.env)
+    with open(os.path.join(d, "m", "submission.json")) as f:
+        check(json.load(f)["jobs"] == ["77"], "the array's id is kept")
+    queued = "for k in 0 1 2; do echo 77 $k PENDING; done; echo 5 N/A RUNNING"
+    s.put(squeue=queued)
+    expect(9, submit, d, "the same command submits it", env=s.env)
+    expect(10, ["status", "m"], d, "tasks are in the queue", env=s.env)
+    s.put(sbatch=LOG + "echo 78")
+    expect(0, submit, d, "the merge that is missing", env=s.env)
+    expect(0, submit, d, "nothing is missing", env=s.env)
+    arrays = [line for line in s.log() if "--array=" in line]
+    merges = [line for line in s.log() if "merge.sh" in line]
+    check(len(arrays) == 1, f"one array: {arrays}")
+    check(len(merges) == 3 and all("afterany:77" in m for m in merges),
+          f"three tries of a merge: {merges}")
+
+
+def bad_queues(d):
+    """Tasks that may be in the queue are not submitted again."""
+    s = Slurm(d)
+    s.put(sbatch=LOG + "echo 9", squeue="exit 0")
+    submit = ["submit", "--slurm=q", *SELECTION]
+    expect(0, submit, d, "job 9", env=s.env)
+    before = s.log()
+    for script, says in (
+            ("sleep 60", "no end within 1 s"),
+            ("sleep 60 & exit 0", "no end within 1 s"),
+            ("trap '' TERM; while :; do sleep 1; done", "no end within 1 s"),
+            ("yes", "bytes of output"),
+            ("yes >&2", "bytes of output"),
+            ("head -c 100000 /dev/urandom", "no queue"),
+            ("echo '<html>'; echo busy", "no queue"),
+            ("echo unable to contact >&2; exit 1", "status 1 unable"),
+            ("kill -9 $$", "status 137")):
+        s.put(squeue=script)
+        begin = time.time()
+        expect(10, ["status", "q"], d, says, env=s.env)
+        expect(9, submit, d, "would be submitted twice", env=s.env)
+        check(time.time() - begin < 8, f"squeue that does {script}")
+    for lines, queued in (("9 99999999999999999999999 RUNNING", 0),
+                          ("9 -1 RUNNING", 0), ("9 3 RUNNING", 0),
+                          ("9 1 RUNNING", 1), ("9 1_2 RUNNING", 0),
+                          ("banner of the site\n9 2 PENDING", 1),
+                          ("999999999999999999999999 1 RUNNING", 0),
+                          ("8 1 RUNNING", 0), ("", 0)):
+        s.put(squeue=f"printf '%s\\n' '{lines}'")
+        p = expect(10, ["status", "q"], d, "incomplete", env=s.env)
+        check(f"{queued} tasks in the queue" in p.stdout, f"queue of {lines}")
+    check(s.log() == before, "nothing was submitted meanwhile")
+    os.remove(os.path.join(s.bin, "squeue"))
+    expect(10, ["status", "q"], d, "no squeue in PATH",
+           env={**s.env, "PATH": s.bin})
+
+
+def bad_sbatch(d):
+    s = Slurm(d)
+    s.put(squeue="exit 0")
+    for k, (script, says) in enumerate((
+            ("sleep 60", "no end within 1 s"), ("yes", "bytes of output"),
+            ("head -c 1000 /dev/urandom", "no id"), ("exit 0", "no id"),
+            ("echo hello", "no id"), ("echo -1", "no id"),
+            ("echo --wrap=x", "no id"), ("printf '%0400d' 1", "no id"),
+            ("echo down >&2; exit 3", "refuses: down"),
+            ("exit 1", "no answer"))):
+        s.put(sbatch=script)
+        begin = time.time()
+        expect(9, ["submit", f"--slurm=b{k}", *SELECTION], d, says, env=s.env)
+        check(time.time() - begin < 5, f"sbatch that does {script}")
+        expect(10, ["status", f"b{k}"], d, "submit", env=s.env)
+    for seconds in ("x", "-1", "0", "nan", "inf", "1e9", "1s"):
+        expect(2, ["submit", "--slurm=b0", *SELECTION], d,
+               "PHYSINV_SLURM_SECONDS=",
+               env={**s.env, "PHYSINV_SLURM_SECONDS": seconds})
+
+
+def damaged(d):
+    """Nothing in the file becomes an argument that it should not."""
+    path = os.path.join(d, "q", "submission.json")
+    with open(path) as f:
+        good = json.load(f)
+    for key, value in (("jobs", ["--wrap=touch x"]), ("jobs", [1]),
+                       ("jobs", "9"), ("merges_after", "9 or so"),
+                       ("tasks", [{"cases": ["a"], "seconds": -1}]),
+                       ("tasks", [{"cases": "a", "seconds": 1}]),
+                       ("tasks", 3), ("selection", {}), ("program", None)):
+        with open(path, "w") as f:
+            json.dump({**good, key: value}, f)
+        expect(9, ["status", "q"], d, "submission.json is damaged")
+    del good["merges_after"]  # as an earlier version wrote it
+    with open(path, "w") as f:
+        json.dump(good, f)
+    expect(10, ["status", "q"], d, "incomplete")
+
+
+def killed_in_a_task(d):
+    """A killed worker inside a task is tried again."""
+    s = Slurm(d)
+    s.put(sbatch="echo 5", squeue="exit 0")
+    pace = {"PHYSINV_FAKE_PACE_MS": "10"}
+    selection = ["--profile=smoke", "--filter=descend", "--set=iterations=200"]
+    expect(0, ["submit", "--slurm=k", *selection], d, "job 5", env=s.env)
+    expect(0, [*selection, "--out=alone"], d)
+    p = subprocess.Popen(["bash", os.path.join(d, "k", "task.sh")],
+                         env={**os.environ, **pace, "SLURM_ARRAY_TASK_ID": "0"},
+                         stdout=subprocess.PIPE, text=True)
+    time.sleep(1)
+    for pid in subprocess.run(["pgrep", "-P", str(p.pid)], text=True,
+                              capture_output=True).stdout.split():
+        for worker in subprocess.run(["pgrep", "-P", pid], text=True,
+                                     capture_output=True).stdout.split():
+            os.kill(int(worker), signal.SIGKILL)
+    text, _ = p.communicate(timeout=60)
+    check(p.returncode == 0 and "trying again" in text,
+          f"the task goes on: {p.returncode} {text}")
+    check(results(os.path.join(d, "k", "shards", "0"))
+          == results(os.path.join(d, "alone")), "same results")
+    expect(0, ["status", "k"], d, "1 of 1 cases done", env=s.env)
+
+
+with tempfile.TemporaryDirectory() as directory:
+    os.mkdir(os.path.join(directory, "published"))
+    for test in (refused_merge, bad_queues, bad_sbatch, damaged,
+                 killed_in_a_task):
+        test(directory)
+sys.exit(f"{len(FAILED)} failed: {FAILED}" if FAILED else 0)
