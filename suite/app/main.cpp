@@ -4,6 +4,7 @@
 #include <malloc.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -121,7 +122,7 @@ constexpr const char* kUnwritable =
     "file sizes (ulimit -f) too low";
 
 ExitCode complain(ExitCode code, std::string_view text) {
-  std::fflush(stdout);
+  put(stdout, "");  // what was said before
   put(stderr, fmt::format("{}: {}\n", program().name, one_line(text)));
   return code;
 }
@@ -166,6 +167,6 @@ int main(int argc, char** argv) {
   // system and pays for its pages again.
   mallopt(M_MMAP_THRESHOLD, 64 << 20);
   mallopt(M_TRIM_THRESHOLD, 256 << 20);
-  return static_cast<int>(
-      physinv::guarded(physinv::Arguments(argv + 1, argv + argc)));
+  return static_cast<int>(physinv::guarded(
+      physinv::Arguments(argv + std::min(1, argc), argv + argc)));
 }

@@ -8,6 +8,7 @@
 #include <map>
 #include <utility>
 
+#include "suite/harness/output.h"
 #include "suite/results/markdown.h"
 
 namespace physinv {
@@ -119,10 +120,10 @@ std::string terminal_text(const Sheet& sheet) {
   for (const auto* f : shown)
     text += fmt::format("{:<12}  {:<{}}  {:<12}  {}\n",
                         f->kind,
-                        f->name,
+                        one_line(f->name),
                         width,
                         f->verdict,
-                        f->detail);
+                        one_line(f->detail));
   return text + summary_text(sheet) + '\n';
 }
 

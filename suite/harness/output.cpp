@@ -69,6 +69,8 @@ std::size_t whole_characters(std::string_view text, std::size_t at) {
 void put(std::FILE* stream, std::string_view text) {
   const int fd = fileno(stream);
   if (fd < 0) return put_blindly(stream, text);
+  if (!wait_for_reader(fd)) return;
+  std::fflush(stream);  // no more than a pipe can take
   while (!text.empty()) {
     if (!wait_for_reader(fd)) return;
     const ssize_t written =

@@ -7,9 +7,9 @@
 
 namespace physinv {
 
-/// Writes to a stream nothing of which is buffered. Waits for whoever reads
-/// it; after a signal to stop (suite/harness/stop_signal.h) not for long: the
-/// rest is dropped then. An error stays in the stream.
+/// Writes what the stream holds back, and the text. Waits for whoever reads it;
+/// after a signal to stop (suite/harness/stop_signal.h) not for long: the rest
+/// is dropped then. An error stays in the stream.
 void put(std::FILE* stream, std::string_view text);
 
 /// One line of UTF-8 without control characters, a very long one without its

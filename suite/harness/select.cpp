@@ -44,7 +44,15 @@ std::shared_ptr<const RE2> compiled(const std::string& pattern,
 
 NameFilter::NameFilter(const std::vector<std::string>& patterns,
                        std::string_view whose) {
+  std::size_t all = 0;
   for (const auto& pattern : patterns) {
+    all += pattern.size();
+    if (all > kLongestPatterns)
+      throw UsageError(
+          fmt::format("{} has regular expressions of more than {} characters "
+                      "together; --cases takes names from a file",
+                      whose,
+                      kLongestPatterns));
     const bool negative = pattern.starts_with('-');
     (negative ? unwanted_ : wanted_)
         .push_back(

@@ -15,6 +15,7 @@ class RE2;
 namespace physinv {
 
 inline constexpr std::size_t kLongestPattern = 4096;
+inline constexpr std::size_t kLongestPatterns = 1 << 18;  ///< in sum
 
 /// Regular expressions (RE2, searched anywhere in the name), whose time is
 /// linear in pattern and name. A leading '-' negates. A name passes if it

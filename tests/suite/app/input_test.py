@@ -344,6 +344,7 @@ def hostile_lines():
                   ["--help", "--help"], ["--version", "--dry-run"]):
         yield flags
     yield ["list", "--seeds=0-99999", "--set=n=1-1000"]
+    yield ["list", *["--filter=" + "(a|b)*.{9}" * 400] * 400]
     yield ["list", "--edit=/dev/zero"]
     yield ["compare", "=", "="]
     yield ["compare", "a=b=c", "=d"]

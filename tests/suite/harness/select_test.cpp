@@ -48,6 +48,14 @@ TEST(NameFilter, IsLinearAndLimited) {
     EXPECT_THROW(NameFilter({bad}), UsageError) << bad.substr(0, 20);
 }
 
+TEST(NameFilter, IsLimitedInSum) {
+  std::vector<std::string> patterns(kLongestPatterns / 64,
+                                    std::string(64, 'x'));
+  EXPECT_FALSE(NameFilter(patterns).matches("y"));
+  patterns.emplace_back("x");
+  EXPECT_THROW(NameFilter{patterns}, UsageError);
+}
+
 TEST(NameFilter, SaysWhoseThePatternIs) {
   try {
     NameFilter({"(bad"}, "--count");
