@@ -100,6 +100,7 @@ ExitCode baseline_verb(const Arguments& arguments) {
            {"--jobs", "worker processes; default: cores", &jobs}},
           arguments))
     return ExitCode::good;
+  if (!counted.empty()) NameFilter({counted}, "--count");  // before any run
   const std::string directory = campaign_directory(given);
   const Loaded loaded = load(directory);
   require_complete(loaded.lacks, kRunAgain);

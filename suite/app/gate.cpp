@@ -1,8 +1,9 @@
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <fstream>
+#include <cerrno>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -78,11 +79,16 @@ void judge_clock(const GateFlags& flags,
     sheet.findings.push_back(std::move(finding));
 }
 
-/// For GITHUB_STEP_SUMMARY, which several steps write to.
+/// For GITHUB_STEP_SUMMARY, which several steps write to. A pipe must have a
+/// reader.
 void append(const std::string& path, const std::string& text) {
-  std::ofstream file(path, std::ios::app);
-  if (!(file << text << std::flush))
-    throw EnvironmentError("cannot write " + path);
+  const FileDescriptor file(
+      open(path.c_str(),
+           O_WRONLY | O_CREAT | O_APPEND | O_NONBLOCK | O_CLOEXEC,
+           0644));
+  if (file.get() < 0) fail_file("write", path, errno);
+  fcntl(file.get(), F_SETFL, O_APPEND);
+  write_all(file, text, path);
 }
 
 void tell(const Sheet& sheet, const GateFlags& flags) {

@@ -29,19 +29,22 @@ int milliseconds_until(double end) {
   return std::isinf(left) ? -1 : static_cast<int>(std::clamp(left, 0.0, 1e6));
 }
 
+std::string too_long(const ChildLimits& limits) {
+  return fmt::format("no end within {:g} s", limits.seconds);
+}
+
 /// Reads both until both have ended, so that neither fills up. Returns the
 /// limit that they exceed, if one.
 std::string drain(std::array<pollfd, 2> ends,
                   std::array<std::string*, 2> texts,
-                  const ChildLimits& limits) {
-  const double last = now().wall + limits.seconds;
+                  const ChildLimits& limits,
+                  double last) {
   std::array<char, 4096> chunk{};
   int open = 2;
   while (open > 0) {
     const int ready = poll(ends.data(), ends.size(), milliseconds_until(last));
     if (ready < 0 && errno != EINTR) return "its output cannot be read";
-    if (ready <= 0 && milliseconds_until(last) == 0)
-      return fmt::format("no end within {:g} s", limits.seconds);
+    if (ready <= 0 && milliseconds_until(last) == 0) return too_long(limits);
     for (std::size_t i = 0; ready > 0 && i < ends.size(); ++i) {
       if (ends[i].fd < 0 || ends[i].revents == 0) continue;
       const ssize_t got = read(ends[i].fd, chunk.data(), chunk.size());
@@ -56,6 +59,23 @@ std::string drain(std::array<pollfd, 2> ends,
     }
   }
   return "";
+}
+
+/// Its status as waitpid gives it; kills it if it goes on until `last`, which
+/// it may do without any output.
+int wait_until(pid_t pid, double last, bool& killed) {
+  int status = 0;
+  while (true) {
+    const bool for_ever = std::isinf(last) || killed;
+    const pid_t ended = waitpid(pid, &status, for_ever ? 0 : WNOHANG);
+    if (ended == pid || (ended < 0 && errno != EINTR)) return status;
+    if (!for_ever && milliseconds_until(last) == 0) {
+      kill(pid, SIGKILL);
+      killed = true;
+    } else if (!for_ever) {
+      poll(nullptr, 0, 1);
+    }
+  }
 }
 
 }  // namespace
@@ -82,14 +102,16 @@ Ended run_child(std::vector<std::string> arguments, const ChildLimits& limits) {
   posix_spawn_file_actions_destroy(&actions);
   close(out[1]), close(err[1]);
   if (error == 0) {
+    const double last = now().wall + limits.seconds;
     ended.exceeded =
         drain({pollfd{out[0], POLLIN, 0}, pollfd{err[0], POLLIN, 0}},
               {&ended.output, &ended.errors},
-              limits);
-    if (!ended.exceeded.empty()) kill(pid, SIGKILL);
-    int status = 0;
-    while (waitpid(pid, &status, 0) < 0 && errno == EINTR) {
-    }
+              limits,
+              last);
+    bool killed = !ended.exceeded.empty();
+    if (killed) kill(pid, SIGKILL);
+    const int status = wait_until(pid, last, killed);
+    if (killed && ended.exceeded.empty()) ended.exceeded = too_long(limits);
     ended.status =
         WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   }

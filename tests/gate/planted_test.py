@@ -197,8 +197,12 @@ def hostile_baselines(d):
         check(p.returncode in ((2,) if says else (0, 3, 5)) and says in p.stderr
               and len(p.stderr.splitlines()) <= 1,
               f"filter {pattern[:9]} -> {p.returncode} {p.stderr[:200]}")
-    expect(2, ["baseline", "r", "--out=c.txt", "--count=(x"], d,
-           "--count='(x' is no regular expression")
+    p = expect(2, ["baseline", "r", "--out=c.txt", "--count=(x"], d,
+               "--count='(x' is no regular expression")
+    check(not p.stdout, "before anything is run")
+    os.mkfifo(os.path.join(d, "fifo"))
+    expect(9, GATE, d, "cannot write",
+           GITHUB_STEP_SUMMARY=os.path.join(d, "fifo"))
 
 
 def clock(d):

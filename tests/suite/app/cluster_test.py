@@ -72,6 +72,7 @@ def bad_queues(d):
             ("sleep 60", "no end within 1 s"),
             ("sleep 60 & exit 0", "no end within 1 s"),
             ("trap '' TERM; while :; do sleep 1; done", "no end within 1 s"),
+            ("exec >&- 2>&-; sleep 60", "no end within 1 s"),
             ("yes", "bytes of output"),
             ("yes >&2", "bytes of output"),
             ("head -c 100000 /dev/urandom", "no queue"),
@@ -103,6 +104,7 @@ def bad_sbatch(d):
     s.put(squeue="exit 0")
     for k, (script, says) in enumerate((
             ("sleep 60", "no end within 1 s"), ("yes", "bytes of output"),
+            ("exec >&- 2>&-; sleep 60", "no end within 1 s"),
             ("head -c 1000 /dev/urandom", "no id"), ("exit 0", "no id"),
             ("echo hello", "no id"), ("echo -1", "no id"),
             ("echo --wrap=x", "no id"), ("printf '%0400d' 1", "no id"),

@@ -164,6 +164,11 @@ def variables(d):
                             "GTEST_SHARD_STATUS_FILE": kept})
     with open(kept) as f:
         check(f.read() == "mine", "a status file that was there is kept")
+    os.mkfifo(os.path.join(d, "fifo"))
+    p = run(*smoke, cwd=d, env={"GTEST_TOTAL_SHARDS": "1",
+                                "GTEST_SHARD_INDEX": "0",
+                                "GTEST_SHARD_STATUS_FILE": d + "/fifo"})
+    check(p.returncode == 0, "a status file that is a pipe")
 
 
 def cases_of_windows(d):

@@ -24,7 +24,8 @@ TEST(Child, StatusAndBothStreams) {
 TEST(Child, HasLimits) {
   const double begin = now().wall;
   // The second leaves its output open to one that it does not wait for.
-  for (const char* script : {"exec sleep 60", "sleep 60 & exit 0"}) {
+  for (const char* script :
+       {"exec sleep 60", "sleep 60 & exit 0", "exec >&- 2>&-; exec sleep 60"}) {
     const Ended slow = shell(script, {.seconds = 0.2});
     EXPECT_EQ(slow.exceeded, "no end within 0.2 s") << script;
   }
