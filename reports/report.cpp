@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "reports/html.h"
 #include "reports/plot.h"
@@ -11,6 +12,7 @@
 #include "reports/text.h"
 #include "suite/results/file.h"
 #include "suite/results/markdown.h"
+#include "suite/results/folder.h"
 
 namespace physinv {
 namespace {
@@ -31,19 +33,23 @@ std::string folder_of(const Section& section) {
 
 class Writer {
  public:
-  explicit Writer(fs::path dir) : dir_(std::move(dir)) {}
+  explicit Writer(const fs::path& dir) {
+    make_directory(dir);
+    folder_ = Folder(dir);
+  }
 
   void write(const fs::path& name, const std::string& text) {
-    const fs::path path = dir_ / name;
-    make_directory(path.parent_path());
-    write_atomically(path, text);
-    files_.push_back(path);
+    std::optional<Folder> below;
+    for (const auto& part : name.parent_path())
+      below = (below ? *below : folder_).make(part);
+    (below ? *below : folder_).write(name.filename(), text);
+    files_.push_back(folder_.path() / name);
   }
 
   std::vector<fs::path> files() && { return std::move(files_); }
 
  private:
-  fs::path dir_;
+  Folder folder_;
   std::vector<fs::path> files_;
 };
 

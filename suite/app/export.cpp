@@ -8,10 +8,10 @@
 #include "suite/app/load.h"
 #include "suite/app/options.h"
 #include "suite/results/exports.h"
-#include "suite/results/file.h"
+#include "suite/results/folder.h"
+#include "suite/results/results_json.h"
 
 namespace physinv {
-
 namespace {
 
 std::string text_in(const std::string& format,
@@ -33,18 +33,10 @@ std::string text_in(const std::string& format,
 
 std::string exported(const std::string& directory, const std::string& format) {
   const std::filesystem::path from = results_directory(directory);
-  const std::filesystem::path file = from / "results.json";
-  if (!std::filesystem::exists(file))
+  if (!Folder(from).has("results.json"))
     throw UsageError(fmt::format(
         "'{}' holds no results.json; 'run' and 'merge' write one", directory));
-  const Repetitions repetitions = read_repetitions(from);
-  try {
-    return text_in(
-        format, nlohmann::ordered_json::parse(read_file(file)), repetitions);
-  } catch (const nlohmann::json::exception&) {
-    throw UnreadableInput(file.string() +
-                          " is damaged ('run' as before writes it again)");
-  }
+  return text_in(format, read_results(from), read_repetitions(from));
 }
 
 ExitCode export_verb(const Arguments& arguments) {

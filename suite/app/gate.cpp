@@ -1,9 +1,6 @@
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -44,7 +41,7 @@ void judge_clock(const GateFlags& flags,
                       .head = head_of(flags),
                       .chosen = chosen,
                       .cases = {},
-                      .out = flags.out + "/pair",
+                      .out = flags.out,
                       .seconds = flags.budget,
                       .margin = flags.within / 100,
                       .seed = static_cast<std::uint64_t>(flags.seed)};
@@ -79,23 +76,11 @@ void judge_clock(const GateFlags& flags,
     sheet.findings.push_back(std::move(finding));
 }
 
-/// For GITHUB_STEP_SUMMARY, which several steps write to. A pipe must have a
-/// reader.
-void append(const std::string& path, const std::string& text) {
-  const FileDescriptor file(
-      open(path.c_str(),
-           O_WRONLY | O_CREAT | O_APPEND | O_NONBLOCK | O_CLOEXEC,
-           0644));
-  if (file.get() < 0) fail_file("write", path, errno);
-  fcntl(file.get(), F_SETFL, O_APPEND);
-  write_all(file, text, path);
-}
-
 void tell(const Sheet& sheet, const GateFlags& flags) {
   fmt::print("{}", terminal_text(sheet));
   if (!variable("GITHUB_ACTIONS").empty()) fmt::print("{}", annotations(sheet));
   if (const auto path = variable("GITHUB_STEP_SUMMARY"); !path.empty())
-    append(path, markdown_text(sheet));
+    append_to(path, markdown_text(sheet));
   if (!flags.json.empty())
     write_atomically(flags.json, to_json(sheet).dump(1) + "\n");
 }

@@ -10,16 +10,18 @@ namespace physinv {
 ExitCode merge_verb(const Arguments& arguments) {
   std::string out;
   std::vector<std::string> shards;
+  LockOptions lock;
   if (!parse("merge",
              "Joins the results of shards into what an unsharded run gives, "
              "times apart.",
              {{"OUT", "directory to write", &out},
-              {"SHARD", "directories that 'run' wrote", &shards}},
+              {"SHARD", "directories that 'run' wrote", &shards},
+              {"--break-lock", "as of run, for OUT", &lock.break_lock}},
              arguments))
     return ExitCode::good;
   std::vector<std::filesystem::path> paths;
   for (const auto& s : shards) paths.push_back(results_directory(s));
-  const Merged merged = merge(paths, out);
+  const Merged merged = merge(paths, out, lock);
   for (const auto& warning : merged.warnings)
     fmt::print("warning: {}\n", warning);
   fmt::print("merged {} into {}\n", shards.size(), out);

@@ -15,9 +15,11 @@
 #include "suite/harness/judge.h"
 #include "suite/harness/progress.h"
 #include "suite/results/course.h"
-#include "suite/results/file.h"
+#include "suite/results/folder.h"
+#include "suite/results/json.h"
 #include "suite/results/profiles.h"
 #include "suite/results/published.h"
+#include "suite/results/results_json.h"
 
 namespace physinv {
 namespace {
@@ -134,16 +136,18 @@ void publish_campaign(const fs::path& target,
                       const std::vector<Section>& sections,
                       nlohmann::ordered_json provenance) {
   const auto forget_place = [](auto& context) {
-    if (context.contains("options")) context["options"].erase("out");
+    if (context.contains("options") && context["options"].is_object())
+      context["options"].erase("out");
   };
-  auto results =
-      nlohmann::ordered_json::parse(read_file(directory / "results.json"));
+  auto results = read_results(directory);
   forget_place(results["context"]);
   forget_place(provenance);
   make_directory(target);
-  write_atomically(target / "results.json.gz", gzipped(results.dump(1)));
-  write_atomically(target / "digest.json",
-                   digest_json(sections, provenance).dump(1) + '\n');
+  const Folder folder(target);
+  folder.write("results.json.gz", gzipped(results.dump(1)));
+  auto digest = digest_json(sections, provenance);
+  digest["checksum"] = checksum_of(digest);
+  folder.write("digest.json", digest.dump(1) + '\n');
 }
 
 /// The list named by the flag, else the one beside the published numbers.
@@ -213,7 +217,9 @@ ExitCode report_verb(const Arguments& arguments) {
   const fs::path published = published_directory();
   const Published numbers(published);
   if (const auto wrong = registry().unknown_printed(numbers); !wrong.empty())
-    throw std::logic_error(fmt::format("{}", fmt::join(wrong, "; ")));
+    throw StoreError(fmt::format("{} lacks numbers (restore its files): {}",
+                                 published.string(),
+                                 fmt::join(wrong, "; ")));
   const auto sections = sections_of(loaded.results, numbers);
   if (sections.empty()) {
     require_complete(loaded.lacks, kRunAgain);
@@ -225,7 +231,7 @@ ExitCode report_verb(const Arguments& arguments) {
                           ? expected_failures(expected, published, sections)
                           : std::vector<ExpectedFailure>();
   const fs::path target =
-      out.empty() ? fs::path(results) / "report" : fs::path(out);
+      out.empty() ? Folder(results).make("report").path() : fs::path(out);
   auto origin = provenance(loaded);
   origin["papers"] = papers_of(sections, numbers);
   try {

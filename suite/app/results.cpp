@@ -6,11 +6,29 @@
 #include "reports/digest.h"
 #include "suite/app/options.h"
 #include "suite/results/file.h"
+#include "suite/results/json.h"
 
 namespace physinv {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// That can be shown; StoreError with the file's name if it cannot.
+nlohmann::ordered_json digest_in(const fs::path& folder) {
+  const fs::path path = folder / "digest.json";
+  const std::string bytes = read_file(path);
+  try {
+    auto digest = parse_json<nlohmann::ordered_json>(bytes);
+    if (!is_intact(digest)) throw std::runtime_error("it fails its checksum");
+    results_markdown({{folder.filename().string(), digest}});
+    return digest;
+  } catch (const std::exception& error) {
+    throw StoreError(
+        fmt::format("{} is damaged: {} (write it again with report --publish)",
+                    path.string(),
+                    error.what()));
+  }
+}
 
 /// The folders of `directory` that hold a digest, by name.
 std::vector<NamedDigest> digests(const fs::path& directory) {
@@ -23,13 +41,7 @@ std::vector<NamedDigest> digests(const fs::path& directory) {
   std::sort(paths.begin(), paths.end());
   std::vector<NamedDigest> found;
   for (const auto& path : paths) {
-    auto digest = nlohmann::ordered_json::parse(
-        read_file(path / "digest.json"), nullptr, false);
-    if (digest.is_discarded())
-      throw UnreadableInput((path / "digest.json").string() +
-                            " is no JSON (write it again with report "
-                            "--publish)");
-    found.push_back({path.filename().string(), std::move(digest)});
+    found.push_back({path.filename().string(), digest_in(path)});
   }
   if (found.empty())
     throw ExitError(ExitCode::nothing_matched,
@@ -56,13 +68,7 @@ ExitCode results_verb(const Arguments& arguments) {
              arguments))
     return ExitCode::good;
   const auto found = digests(campaigns);
-  try {
-    write_atomically(out, results_markdown(found));
-  } catch (const StoreError&) {
-    throw;
-  } catch (const std::runtime_error& error) {
-    throw UnreadableInput(campaigns + ": " + error.what());
-  }
+  write_atomically(out, results_markdown(found));
   fmt::print("{} campaigns: {}\n", found.size(), out);
   return ExitCode::good;
 }

@@ -19,6 +19,7 @@
 #include "suite/results/exports.h"
 #include "suite/results/file.h"
 #include "suite/results/results.h"
+#include "suite/results/store.h"
 
 namespace physinv {
 namespace {
@@ -55,6 +56,10 @@ struct RunFlags {
          "should it be killed (default 60 s)",
          &checkpoint,
          "TIME"},
+        {"--break-lock",
+         "where the file system has no locks: take over from a process of "
+         "another machine that has ended; its name is shown",
+         &campaign.break_lock},
         {"--dry-run", "say what would run and what is reused", &dry},
         {"--trace",
          "record a hash of all iterates of the stages that run",
@@ -190,9 +195,10 @@ Repetitions repeat(const Prepared& prepared,
       hashes[c.info.name + "/" + s.stage] = loss_bits(s);
   Repetitions all;
   CampaignOptions again = flags.campaign;
-  again.out = flags.campaign.out / "repetition";
   again.resume = false;
   for (int k = 1; k < flags.habits.repetitions; ++k) {
+    const PassingStore passing(flags.campaign.out);
+    again.out = passing.path();
     const auto r = run_campaign(prepared, again, flags.json(), screen);
     for (const CaseRecord& c : r.cases) {
       for (const StageRecord& s : c.stages) {
@@ -203,7 +209,6 @@ Repetitions repeat(const Prepared& prepared,
         all[name + " " + s.key].push_back(s.clocks.solve);
       }
     }
-    std::filesystem::remove_all(again.out);
     if (r.interrupted) break;
   }
   return all;

@@ -50,6 +50,12 @@ class Archive {
   void one(Eigen::Matrix<T, rows, cols, options>& matrix) {
     Index r = matrix.rows(), c = matrix.cols();
     (*this)(r, c);
+    constexpr Index kLargest = Index{1} << 40;
+    SUITE_CHECK(r >= 0 && c >= 0 && r <= kLargest && c <= kLargest &&
+                    (rows == Eigen::Dynamic || r == rows) &&
+                    (cols == Eigen::Dynamic || c == cols),
+                "a state has no such shape");
+    require(r, require(c, sizeof(T)));
     matrix.resize(r, c);
     raw(matrix.data(), sizeof(T) * static_cast<std::size_t>(matrix.size()));
   }
@@ -58,12 +64,22 @@ class Archive {
   void one(std::vector<T>& list) {
     std::size_t size = list.size();
     one(size);
+    require(static_cast<Index>(size), 1);
     list.resize(size);
     if constexpr (std::is_arithmetic_v<T>) {
       raw(list.data(), sizeof(T) * size);
     } else {
       for (T& entry : list) one(entry);
     }
+  }
+
+  /// Bytes of so many parts, which are there: a size is only a claim.
+  std::size_t require(Index count, std::size_t each) const {
+    std::size_t size = 0;
+    SUITE_CHECK(!__builtin_mul_overflow(count, each, &size) &&
+                    (!reading_ || size <= bytes_.size() - at_),
+                "a state is too short");
+    return size;
   }
 
   void raw(void* data, std::size_t size) {

@@ -126,6 +126,16 @@ const Curve& Probe::curve() {
 void Probe::keep(Archive& archive) {
   curve();  // the points alone, without room for more
   archive(iteration_, next_, trajectory_, curve_);
+  const auto points = static_cast<std::size_t>(curve_.points());
+  SUITE_CHECK(iteration_ >= 0 && iteration_ <= iterations_ &&
+                  next_ <= next_measured(iteration_) &&
+                  curve_.seconds.size() == points &&
+                  curve_.evaluations.size() == points,
+              "a state of another stage");
+  if (points > 0) {
+    check_size(curve_.loss, loss_.size(), curve_.points());
+    check_size(curve_.x, tracked_ * x_.rows(), curve_.points());
+  }
   archive(setup_, warmup_, solve_, measure_);
 }
 

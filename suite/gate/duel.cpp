@@ -11,6 +11,8 @@
 #include "suite/harness/child.h"
 #include "suite/harness/select.h"
 #include "suite/results/file.h"
+#include "suite/results/results_json.h"
+#include "suite/results/store.h"
 
 namespace physinv {
 namespace {
@@ -46,16 +48,16 @@ class OneCore {
 
 /// CPU time of solving: on one thread the same as by the wall, without what
 /// others took from the core.
-std::map<std::string, double> times(const fs::path& results) try {
+std::map<std::string, double> times(const fs::path& directory) try {
   std::map<std::string, double> sums;
-  const auto json = nlohmann::json::parse(read_file(results));
-  for (const auto& stage : json.at("benchmarks"))
-    sums[case_of(stage.at("name").get<std::string>())] +=
-        stage.at("cpu_time").get<double>();
+  const auto results = read_results(directory);
+  for (const auto& stage : results.at("benchmarks"))
+    if (const auto& time = stage.at("cpu_time"); time.is_number())
+      sums[case_of(stage.at("name").get<std::string>())] += time.get<double>();
   return sums;
 } catch (const nlohmann::json::exception&) {
   throw EnvironmentError(
-      fmt::format("{} holds no times that can be read", results.string()));
+      fmt::format("{} holds no times that can be read", directory.string()));
 }
 
 std::vector<std::string> command(const fs::path& program,
@@ -120,11 +122,12 @@ std::set<std::string> cases_known_to(const fs::path& program,
 
 Runner timed_run(const DuelOptions& o) {
   return [&o](const fs::path& program, const std::vector<std::string>& cases) {
-    fs::remove_all(o.out);
-    std::vector<std::string> flags = {"--jobs=1", "--out=" + o.out.string()};
+    const PassingStore passing(o.out);
+    const fs::path& out = passing.path();
+    std::vector<std::string> flags = {"--jobs=1", "--out=" + out.string()};
     for (const auto& name : cases) flags.push_back("--filter=" + exactly(name));
     output_of(command(program, "run", o.chosen, std::move(flags)));
-    const auto all = times(o.out / "results.json");
+    const auto all = times(out);
     std::vector<double> of_cases;
     for (const auto& name : cases) {
       const auto at = all.find(name);

@@ -60,7 +60,7 @@ class Campaign {
         data_(std::move(prepared.data)),
         errors_(std::move(prepared.errors)),
         revision_(git_revision()),
-        store_(options.out),
+        store_(options.out, {.break_lock = options.break_lock}),
         progress_(screen, cases_, options.jobs) {
     context_ = machine_context(revision_);
     context_["options"] = options_json;
@@ -123,6 +123,7 @@ class Campaign {
                                 info.name,
                                 info.stages[stage],
                                 state->iteration));
+      taken_up_[i] = static_cast<Index>(stage);
     } catch (const StoreError& error) {
       progress_.say(error.what());
       store_.drop_state(info.keys[stage]);
@@ -258,6 +259,8 @@ class Campaign {
         running_.erase(event.worker);
         if (stop_signals() != 0) {
           queue_.push_back(event.case_index);
+        } else if (starts_again(event)) {
+          // In the queue, without its state.
         } else if (event.killed && ++tries_[event.case_index] < kTries) {
           try_again(event);
         } else {
@@ -290,6 +293,27 @@ class Campaign {
     const auto stages = static_cast<Index>(cases_[i].info.stages.size());
     if (record.position + 1 == stages && has_result(record))
       finished_[i] = median_finite(record.loss);
+  }
+
+  /// A stage that crashed when it went on from a state tries without, once.
+  bool starts_again(const WorkerEvent& event) {
+    const std::size_t i = event.case_index;
+    const auto at = taken_up_.find(i);
+    if (at == taken_up_.end() || !event.crashed ||
+        at->second != positions_[event.worker])
+      return false;
+    const CaseInfo& info = cases_[i].info;
+    const auto stage = static_cast<std::size_t>(at->second);
+    progress_.say(
+        fmt::format("{} {} cannot go on from its state ({}); it "
+                    "starts again",
+                    info.name,
+                    info.stages[stage],
+                    event.message));
+    store_.drop_state(info.keys[stage]);
+    taken_up_.erase(at);
+    queue_.push_back(i);
+    return true;
   }
 
   /// The stage at `position` failed without a record; those after it are
@@ -339,6 +363,7 @@ class Campaign {
   std::vector<std::size_t> queue_;              // cases not handed out yet
   std::map<std::size_t, std::size_t> running_;  // worker -> case
   std::map<std::size_t, Index> positions_;      // worker -> stage
+  std::map<std::size_t, Index> taken_up_;       // case -> stage with a state
   std::set<std::pair<std::size_t, std::size_t>> counted_;  // reused stages
   std::map<std::size_t, int> tries_;        // of cases whose worker was killed
   std::map<std::size_t, double> finished_;  // final median loss of a case

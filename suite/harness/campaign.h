@@ -36,6 +36,8 @@ struct CampaignOptions {
   bool trace = false;  ///< record hashes of all iterates
   /// Seconds between the states that a stage under way lays down.
   double checkpoint_seconds = 60;
+  /// Take the lock of the store from whoever has it, where there is no flock.
+  bool break_lock = false;
   /// Run with data one ulp off, as `prepare` drew them.
   bool disturb = false;
   /// The unsharded campaign, in order; empty if it is this one.

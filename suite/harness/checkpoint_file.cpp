@@ -11,16 +11,32 @@ namespace physinv {
 
 CheckpointFile::CheckpointFile(const CheckpointOptions& options,
                                const StageRecord& stage)
-    : path_(state_path(options.store, stage.key)),
+    : store_(options.store),
       seconds_(options.seconds),
       last_(now().wall),
       leaving_(options.leaving),
       stage_(stage) {}
 
 std::optional<Archive> CheckpointFile::last() {
-  auto state = read_state(path_);
-  if (!state) return {};
-  return Archive(std::move(state->bytes));
+  if (dropped_) return {};
+  try {
+    auto state = read_state(store_, stage_.key);
+    if (!state) return {};
+    taken_up_ = true;
+    return Archive(std::move(state->bytes));
+  } catch (const StoreError&) {
+    drop();
+    return {};
+  }
+}
+
+void CheckpointFile::drop() {
+  taken_up_ = false;
+  dropped_ = true;
+  try {
+    remove_state(store_, stage_.key);
+  } catch (const StoreError&) {  // the campaign says so when it ends
+  }
 }
 
 bool CheckpointFile::due() {
@@ -29,7 +45,8 @@ bool CheckpointFile::due() {
 
 void CheckpointFile::lay_down(Index iteration, const Archive& state) {
   try {
-    write_state(path_,
+    write_state(store_,
+                stage_.key,
                 {.case_name = stage_.case_name,
                  .stage = stage_.stage,
                  .iteration = iteration,

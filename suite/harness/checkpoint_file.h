@@ -23,16 +23,22 @@ class CheckpointFile final : public Checkpoint {
   /// Of the stage whose record this will be.
   CheckpointFile(const CheckpointOptions& options, const StageRecord& stage);
 
+  /// What is damaged goes: the stage starts again.
   std::optional<Archive> last() override;
+  /// Has the stage gone on from a state?
+  bool taken_up() const { return taken_up_; }
+  /// The stage cannot go on from there.
+  void drop();
   bool due() override;
   /// A disk that is full costs the checkpoint, not the stage. Throws StageLeft
   /// where the stage is to be left.
   void lay_down(Index iteration, const Archive& state) override;
 
  private:
-  std::filesystem::path path_;
+  std::filesystem::path store_;
   double seconds_, last_;
   bool (*leaving_)();
+  bool taken_up_ = false, dropped_ = false;
   const StageRecord& stage_;
 
   bool leaving() const { return leaving_ != nullptr && leaving_(); }

@@ -181,7 +181,8 @@ std::string version_text() {
       "flags            {}\n"
       "instruction set  {}\n"
       "numerics         {}\n"
-      "libraries        Eigen {}, SLEEF {}, FFTW {}, HDF5 {}, nlohmann-json {}, "
+      "libraries        Eigen {}, SLEEF {}, FFTW {}, HDF5 {}, nlohmann-json "
+      "{}, "
       "fmt {}, CLI11 {}",
       b.version,
       b.compiler,

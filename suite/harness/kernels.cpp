@@ -1,5 +1,6 @@
 // Bookkeeping: what a campaign pays beside its stages.
 #include <benchmark/benchmark.h>
+#include <fmt/format.h>
 
 #include <filesystem>
 #include <string>
@@ -38,10 +39,8 @@ BENCHMARK(bm_wire)->Name("harness/record_over_pipe");
 
 /// A finished stage on disk: arrays, journal line, three flushes.
 void bm_append(benchmark::State& state) {
-  const auto directory =
-      std::filesystem::temp_directory_path() / "physinv-kernels-store";
-  std::filesystem::remove_all(directory);
-  Store store(directory);
+  const PassingStore passing(std::filesystem::temp_directory_path());
+  Store store(passing.path());
   StageRecord record = typical_record();
   CaseInfo info{.name = record.case_name,
                 .experiment = "jpo/billiards",
@@ -53,11 +52,10 @@ void bm_append(benchmark::State& state) {
   CaseData data{.hash = "0", .x = record.x, .y = record.x, .given = record.x};
   int i = 0;
   for (auto _ : state) {
-    record.key = info.keys[0] = std::to_string(i++);
+    record.key = info.keys[0] = fmt::format("{:032x}", i++);
     record.case_name = info.name = "case-" + record.key;
     store.append(info, data, record);
   }
-  std::filesystem::remove_all(directory);
 }
 BENCHMARK(bm_append)->Name("harness/store_append")->Iterations(200);
 

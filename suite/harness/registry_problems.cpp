@@ -8,21 +8,10 @@
 #include "suite/harness/judge.h"
 #include "suite/harness/registry.h"
 #include "suite/harness/sources.h"
+#include "suite/results/names.h"
 
 namespace physinv {
 namespace {
-
-bool is_word(std::string_view text, std::string_view extra = "") {
-  return !text.empty() && std::all_of(text.begin(), text.end(), [&](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' ||
-           c == '-' || extra.find(c) != std::string_view::npos;
-  });
-}
-
-bool is_path(std::string_view text) {
-  return is_word(text, "/") && text.front() != '/' && text.back() != '/' &&
-         text.find("//") == std::string_view::npos;
-}
 
 std::string method_ids(const Experiment& e) {
   std::vector<std::string> ids;

@@ -119,14 +119,25 @@ void run_case(const Case& c,
       try {
         record = blank(c, position, options.revision);
         CheckpointFile checkpoint(options.checkpoints, record);
-        run_stage(c,
-                  static_cast<std::size_t>(position),
-                  previous,
-                  options.trace,
-                  observer(hooks),
-                  threads,
-                  options.checkpoints.store.empty() ? nullptr : &checkpoint,
-                  record);
+        const auto run = [&] {
+          run_stage(c,
+                    static_cast<std::size_t>(position),
+                    previous,
+                    options.trace,
+                    observer(hooks),
+                    threads,
+                    options.checkpoints.store.empty() ? nullptr : &checkpoint,
+                    record);
+        };
+        try {
+          run();
+        } catch (...) {
+          // A state that leads nowhere would do so every time.
+          if (!checkpoint.taken_up()) throw;
+          checkpoint.drop();
+          record = blank(c, position, options.revision);
+          run();
+        }
         record.crowded = options.crowded;
         record.finished = utc_now();
       } catch (const StageLeft&) {

@@ -127,8 +127,11 @@ void verify_stage(const Experiment& experiment,
                   VerifyReport& report) {
   ++report.stages;
   const Index n = c.data.y.cols();
+  const Shape shape = problem.shape();
   if (stage.x.cols() > n || stage.x.cols() == 0 || stage.loss.size() != n ||
-      stage.x.rows() != problem.shape().unknowns) {
+      stage.x.rows() != shape.unknowns ||
+      c.data.y.rows() != shape.observations ||
+      c.data.given.rows() != shape.given || c.data.given.cols() != n) {
     report.mismatches.push_back(
         fmt::format("{} {}: solutions of {} examples stored, data of {}",
                     c.info.name,

@@ -260,6 +260,7 @@ std::vector<WorkerEvent> Workers::wait(double seconds) {
     const int status = collect(w);
     event.message = death_text(status);
     event.killed = WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL;
+    event.crashed = WIFSIGNALED(status) && WTERMSIG(status) != SIGKILL;
     if (w.busy) {
       events.push_back(std::move(event));
     } else if (++idle_deaths_ > 3) {

@@ -19,13 +19,14 @@ struct WorkerEvent {
   enum class Kind { stage_started, progress, stage_done, case_done, died };
   Kind kind{};
   std::size_t worker = 0, case_index = 0;
-  Index position = 0;   ///< of the stage
-  Index iteration = 0;  ///< progress
-  double loss = 0;      ///< progress: median of the examples
-  double overhead = 0;  ///< case_done: CPU seconds in no stage
-  StageRecord record;   ///< stage_done
-  std::string message;  ///< died: how
-  bool killed = false;  ///< died: by SIGKILL, so from outside
+  Index position = 0;    ///< of the stage
+  Index iteration = 0;   ///< progress
+  double loss = 0;       ///< progress: median of the examples
+  double overhead = 0;   ///< case_done: CPU seconds in no stage
+  StageRecord record;    ///< stage_done
+  std::string message;   ///< died: how
+  bool killed = false;   ///< died: by SIGKILL, so from outside
+  bool crashed = false;  ///< died: by a signal of its own making
 };
 
 class Workers {
@@ -69,7 +70,7 @@ class Workers {
   };
   void start(Worker& worker);
   void end();
-  /// Its status, as waitpid gives it.
+  /// How it ended, as waitpid has it.
   int collect(Worker& worker);
 
   const std::vector<Case>& cases_;

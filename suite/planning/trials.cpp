@@ -13,7 +13,8 @@
 #include "suite/harness/keys.h"
 #include "suite/harness/registry.h"
 #include "suite/harness/run_case.h"
-#include "suite/results/file.h"
+#include "suite/results/folder.h"
+#include "suite/results/json.h"
 
 namespace physinv {
 namespace {
@@ -24,6 +25,8 @@ using nlohmann::json;
 /// A trial takes about this long where its iterations can be cut.
 constexpr double kSeconds = 0.15;
 constexpr Index kFirstIterations = 16;
+/// Seconds and bytes beyond all reason.
+constexpr double kLargest = 1e15;
 
 double curve_points(Index iterations) {
   Index points = 1;
@@ -131,16 +134,15 @@ json to_json(const StageTrial& t) {
   return {t.n, t.seconds, t.setup, t.measure, t.points, t.memory, t.kept};
 }
 
-/// More than any trial comes to, and little enough that sums stay in bounds.
-constexpr double kMost = 1e15;
-
-/// std::exception if it is none that a trial comes to.
+/// std::exception if no trial comes to it.
 StageTrial from_json(const json& j) {
   const std::vector<double> v = j;
-  const bool sound = std::all_of(
-      v.begin(), v.end(), [](double a) { return a >= 0 && a <= kMost; });
-  if (!sound || v.at(0) < 1) throw std::out_of_range("no trial");
-  return {v.at(0), v.at(1), v.at(2), v.at(3), v.at(4), v.at(5), v.at(6)};
+  for (const double value : v)
+    if (!(value >= 0 && value < kLargest))
+      throw std::runtime_error("a time or size that cannot be");
+  StageTrial t{v.at(0), v.at(1), v.at(2), v.at(3), v.at(4), v.at(5), v.at(6)};
+  if (t.n < 1) throw std::runtime_error("a trial without samples");
+  return t;
 }
 
 /// Named by a variable; a relative one means another place for each start.
@@ -151,15 +153,37 @@ fs::path named_directory(const char* name) {
 
 }  // namespace
 
-Trials::Trials(fs::path file) : file_(std::move(file)) {
-  if (file_.empty() || !fs::exists(file_)) return;
-  const json all = json::parse(read_file(file_), nullptr, false);
+std::map<std::string, Trial> parse_trials(std::string_view bytes,
+                                          const fs::path& path) {
+  std::map<std::string, Trial> known;
+  json all;
   try {
-    for (const auto& [key, stages] : all.at("trials").items())
-      for (const json& stage : stages) known_[key].push_back(from_json(stage));
+    all = parse_json(bytes);
   } catch (const std::exception&) {
-    known_.clear();
+    return known;
   }
+  try {
+    for (const auto& [key, stages] : all.at("trials").items()) {
+      if (!stages.is_array()) throw std::runtime_error("no list of stages");
+      for (const json& stage : stages) known[key].push_back(from_json(stage));
+    }
+    return known;
+  } catch (const std::exception& e) {
+    throw StoreError(fmt::format(
+        "{} holds what no run measures: {} (delete it: the speeds are "
+        "measured again)",
+        path.string(),
+        e.what()));
+  }
+}
+
+Trials::Trials(fs::path file) : file_(std::move(file)) {
+  std::error_code error;
+  const fs::path folder = file_.parent_path();
+  if (folder.empty() || !fs::is_directory(folder, error)) return;
+  const Folder cache(folder);
+  if (cache.has(file_.filename()))
+    known_ = parse_trials(cache.read(file_.filename(), kLargestText), file_);
 }
 
 fs::path Trials::default_file() {
@@ -185,9 +209,9 @@ std::string Trials::warning() const {
 const Trial& Trials::of(const Case& c, bool training_only) {
   const std::string key = hex128(recipe_text(c, c.info.stages.size() - 1)) +
                           (training_only ? "-training" : "");
-  const auto known = known_.find(key);
-  if (known != known_.end() && known->second.size() <= c.info.stages.size())
-    return known->second;
+  if (const auto at = known_.find(key);
+      at != known_.end() && at->second.size() <= c.info.stages.size())
+    return at->second;
   ++ran_;
   if (!training_only) return known_[key] = measure(c);
   Method part = *c.method;
@@ -209,7 +233,8 @@ void Trials::save() const {
   }
   try {
     make_directory(file_.parent_path());
-    write_atomically(file_, json{{"trials", std::move(all)}}.dump());
+    Folder(file_.parent_path())
+        .write(file_.filename(), json{{"trials", std::move(all)}}.dump());
   } catch (const std::exception&) {
   }
 }

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "suite/harness/case.h"
@@ -27,10 +28,14 @@ struct StageTrial {
 /// The stages of one chain; fewer if the chain was not run to its end.
 using Trial = std::vector<StageTrial>;
 
+/// What a cache holds, by recipe: nothing if it is no JSON, StoreError with
+/// `path` if it is of other types or values.
+std::map<std::string, Trial> parse_trials(std::string_view bytes,
+                                          const std::filesystem::path& path);
+
 class Trials {
  public:
-  /// Reads what is known; a file that cannot be read, or that holds what no
-  /// trial comes to, counts as empty. Without a file all is forgotten.
+  /// Reads what is known, see parse_trials. Without a file all is forgotten.
   explicit Trials(std::filesystem::path file = default_file());
   /// In $XDG_CACHE_HOME or ~/.cache, by processor and build; empty if neither
   /// is named by an absolute path.

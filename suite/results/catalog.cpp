@@ -17,8 +17,8 @@ Catalog Catalog::read(const fs::path& directory) {
   Catalog catalog(directory);
   const fs::path path = catalog.journal_path();
   std::error_code error;
-  const bool there = fs::exists(path, error);
-  if (!there && (!error || error.value() == ENOTDIR))
+  if (!fs::is_directory(directory, error) ||
+      !Folder(directory).has(path.filename()))
     throw UnreadableInput(fmt::format(
         "{}: no results there (there is no {}; give the --out of a run)",
         directory.string(),
@@ -37,6 +37,12 @@ fs::path Catalog::journal_path() const { return directory_ / "journal.jsonl"; }
 
 fs::path Catalog::case_path(const std::string& case_name) const {
   return directory_ / "cases" / case_file_name(case_name);
+}
+
+std::optional<CaseFile> Catalog::case_file(const std::string& name) const {
+  const auto cases = Folder(directory_).find("cases");
+  if (!cases || !cases->has(case_file_name(name))) return std::nullopt;
+  return CaseFile(*cases, name);
 }
 
 void Catalog::add(JournalEntry entry) {
@@ -90,14 +96,13 @@ std::optional<StageRecord> Catalog::find(
 }
 
 std::optional<StageRecord> Catalog::load(const JournalEntry& entry) const {
-  const fs::path path = case_path(entry.info.name);
   // Gone, or replaced by a run that was killed before its journal line: the
   // stage counts as not run.
-  if (!fs::exists(path)) return std::nullopt;
-  const CaseFile file(path, entry.info.name);
-  if (!file.has_stage(entry.stage, entry.arrays_hash)) return std::nullopt;
+  const auto file = case_file(entry.info.name);
+  if (!file || !file->has_stage(entry.stage, entry.arrays_hash))
+    return std::nullopt;
   StageRecord record = entry.stage;
-  file.read_stage(record, entry.arrays_hash);
+  file->read_stage(record, entry.arrays_hash);
   return record;
 }
 
@@ -120,18 +125,17 @@ CaseInfo Catalog::info_of(const std::string& case_name) const {
 CaseRecord Catalog::case_record(const std::string& name) const {
   CaseRecord record;
   record.info = info_of(name);
-  const fs::path path = case_path(name);
-  if (!fs::exists(path)) return record;
-  const CaseFile file(path, name);
-  record.data = file.data();
+  const auto file = case_file(name);
+  if (!file) return record;
+  record.data = file->data();
   const auto& keys = record.info.keys;
   for (std::size_t k = 0; k < keys.size(); ++k) {
     const JournalEntry* own = at(name, static_cast<Index>(k));
     if (own == nullptr || own->stage.key != keys[k] ||
-        !file.has_stage(own->stage, own->arrays_hash))
+        !file->has_stage(own->stage, own->arrays_hash))
       continue;
     record.stages.push_back(own->stage);
-    file.read_stage(record.stages.back(), own->arrays_hash);
+    file->read_stage(record.stages.back(), own->arrays_hash);
   }
   return record;
 }

@@ -66,6 +66,8 @@ class Catalog {
   nlohmann::json plan;
 
  private:
+  /// Its arrays, if they are there.
+  std::optional<CaseFile> case_file(const std::string& name) const;
   CaseRecord summary(const std::string& name) const;
   std::vector<CaseRecord> collect(
       CaseRecord (Catalog::*read_case)(const std::string&) const) const;

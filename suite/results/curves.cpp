@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "suite/results/checksum.h"
-#include "suite/results/file.h"
 
 namespace physinv {
 namespace {
@@ -14,6 +13,36 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kTrailer = "physinv:";
 constexpr std::size_t kTrailerBytes = 16;
+
+Vector<double> read_vector(hid_t group, const std::string& name) {
+  Batch<double> column = hdf5::read_batch(group, name);
+  if (column.cols() != 1 && column.size() > 0)
+    throw StoreError(fmt::format("array {} is no list of examples", name));
+  return column.reshaped();
+}
+
+Status status_of(std::uint8_t byte) {
+  if (byte > static_cast<std::uint8_t>(Status::nonfinite))
+    throw StoreError("an array status holds what is no status");
+  return static_cast<Status>(byte);
+}
+
+/// Arrays that are read together have one length.
+void require_fitting(const StageRecord& r) {
+  const Index n = r.loss.size();
+  const auto points = r.curve.iteration.size();
+  const bool fits = static_cast<Index>(r.status.size()) == n &&
+                    r.example_iterations.size() == n &&
+                    r.example_evaluations.size() == n && r.x.cols() <= n &&
+                    r.curve.seconds.size() == points &&
+                    r.curve.evaluations.size() == points &&
+                    r.curve.loss.cols() == r.curve.points() &&
+                    r.curve.x.cols() == r.curve.points();
+  if (!fits)
+    throw StoreError(fmt::format(
+        "the arrays of stage {} do not fit together (restore the file)",
+        r.stage));
+}
 
 std::string group_name(const StageRecord& r) {
   return fmt::format("{}_{}", r.position, r.stage);
@@ -38,8 +67,7 @@ ArrayHash hash_results(const StageRecord& r) {
 }
 
 /// The bytes without the trailer, once it agrees with them.
-std::string verified(const fs::path& path) {
-  std::string bytes = read_file(path);
+std::string verified(std::string bytes, const fs::path& path) {
   if (bytes.size() > kTrailerBytes) {
     const std::size_t size = bytes.size() - kTrailerBytes;
     const std::string_view all = bytes;
@@ -84,14 +112,23 @@ auto CaseFile::named(F&& body) const {
 }
 
 CaseFile::CaseFile(const std::string& case_name)
-    : file_(hdf5::new_file()), where_(case_file_name(case_name)) {
+    : file_(hdf5::new_file()),
+      case_name_(case_name),
+      where_(case_file_name(case_name)) {
   hdf5::write_attribute(file_, "case", case_name);
   hdf5::create_group(file_, "stages");
 }
 
-CaseFile::CaseFile(const fs::path& path, const std::string& case_name)
-    : where_(path.string()) {
-  std::string bytes = verified(path);
+CaseFile::CaseFile(const Folder& folder, const std::string& case_name)
+    : CaseFile(folder.read(case_file_name(case_name), kLargestData),
+               folder.path() / case_file_name(case_name),
+               case_name) {}
+
+CaseFile::CaseFile(std::string bytes,
+                   const fs::path& path,
+                   const std::string& case_name)
+    : case_name_(case_name), where_(path.string()) {
+  bytes = verified(std::move(bytes), path);
   named([&] {
     file_ = hdf5::open_image(std::move(bytes));
     const std::string name = hdf5::read_attribute(file_, "case");
@@ -168,12 +205,12 @@ void CaseFile::read_stage(StageRecord& r, const std::string& hash) const {
     const auto stages = hdf5::open_group(file_, "stages");
     const auto group = hdf5::open_group(stages, group_name(r));
     r.x = hdf5::read_batch(group, "x");
-    r.loss = hdf5::read_batch(group, "loss");
+    r.loss = read_vector(group, "loss");
     r.status.clear();
     for (const auto s : hdf5::read_bytes(group, "status"))
-      r.status.push_back(static_cast<Status>(s));
-    r.example_iterations = hdf5::read_batch(group, "iterations");
-    r.example_evaluations = hdf5::read_batch(group, "evaluations");
+      r.status.push_back(status_of(s));
+    r.example_iterations = read_vector(group, "iterations");
+    r.example_evaluations = read_vector(group, "evaluations");
     const auto curve = hdf5::open_group(group, "curve");
     r.curve = {.iteration = hdf5::read_list(curve, "iteration"),
                .seconds = hdf5::read_list(curve, "seconds"),
@@ -184,6 +221,7 @@ void CaseFile::read_stage(StageRecord& r, const std::string& hash) const {
     r.arrays.clear();
     for (const auto& name : hdf5::names(arrays))
       r.arrays[name] = hdf5::read_batch(arrays, name);
+    require_fitting(r);
     if (hex64(arrays_hash(r)) != hash)
       throw StoreError(fmt::format(
           "stage {} does not have the hash of its journal line (delete the "
@@ -192,10 +230,10 @@ void CaseFile::read_stage(StageRecord& r, const std::string& hash) const {
   });
 }
 
-void CaseFile::save(const fs::path& path) const {
+void CaseFile::save(const Folder& folder) const {
   std::string bytes = named([&] { return hdf5::image(file_); });
   bytes += fmt::format("{}{:08x}", kTrailer, crc32c(bytes));
-  write_atomically(path, bytes);
+  folder.write(case_file_name(case_name_), bytes);
 }
 
 }  // namespace physinv

@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <string>
 
+#include "suite/results/folder.h"
 #include "suite/results/hdf5.h"
 #include "suite/results/record.h"
 
@@ -31,9 +32,13 @@ class CaseFile {
  public:
   /// An empty one, in memory.
   explicit CaseFile(const std::string& case_name);
-  /// Reads and verifies; StoreError if it is missing, damaged or of another
-  /// case.
-  CaseFile(const std::filesystem::path& path, const std::string& case_name);
+  /// Reads and verifies what stands in the folder of case files; StoreError if
+  /// it is missing, damaged or of another case.
+  CaseFile(const Folder& folder, const std::string& case_name);
+  /// The same of a file's bytes; `path` is for messages.
+  CaseFile(std::string bytes,
+           const std::filesystem::path& path,
+           const std::string& case_name);
 
   void put_data(const CaseData& data);
   CaseData data() const;
@@ -46,13 +51,14 @@ class CaseFile {
   /// Fills in the arrays of a record; StoreError if they lack the hash.
   void read_stage(StageRecord& record, const std::string& hash) const;
 
-  void save(const std::filesystem::path& path) const;
+  void save(const Folder& folder) const;
 
  private:
   template <class F>
   auto named(F&& body) const;
 
   hdf5::Handle file_;
+  std::string case_name_;
   std::string where_;  ///< for messages
 };
 

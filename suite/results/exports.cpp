@@ -7,7 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "suite/results/file.h"
+#include "suite/results/folder.h"
+#include "suite/results/json.h"
 
 namespace physinv {
 namespace {
@@ -94,18 +95,24 @@ std::string quoted(const std::string& text) {
 }  // namespace
 
 Repetitions read_repetitions(const fs::path& directory) {
-  if (!fs::exists(directory / kFile)) return {};
-  const Json all = Json::parse(read_file(directory / kFile), nullptr, false);
+  const Folder folder(directory);
+  if (!folder.has(kFile)) return {};
+  return parse_repetitions(folder.read(kFile, kLargestText), directory / kFile);
+}
+
+Repetitions parse_repetitions(std::string_view bytes, const fs::path& path) {
   Repetitions repetitions;
   try {
+    const Json all = parse_json<Json>(bytes);
+    if (!is_intact(all)) throw std::runtime_error("checksum");
     for (const auto& [name, times] : all.at("times").items())
       for (const Json& t : times)
         repetitions[name].push_back({t.at(0), t.at(1)});
   } catch (const std::exception&) {
-    throw UnreadableInput(
+    throw StoreError(
         fmt::format("{} is damaged (delete it, or run --benchmark_repetitions "
                     "again)",
-                    (directory / kFile).string()));
+                    path.string()));
   }
   return repetitions;
 }
@@ -117,8 +124,9 @@ void write_repetitions(const fs::path& directory,
     times[name] = Json::array();
     for (const Seconds& s : seconds) times[name].push_back({s.wall, s.cpu});
   }
-  write_atomically(directory / kFile,
-                   Json{{"times", std::move(times)}}.dump(1) + "\n");
+  Json all{{"times", std::move(times)}};
+  all["checksum"] = checksum_of(all);
+  Folder(directory).write(kFile, all.dump(1) + "\n");
 }
 
 Json benchmark_json(Json results, const Repetitions& repetitions) {

@@ -5,6 +5,7 @@
 #include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "suite/results/record.h"
@@ -18,6 +19,10 @@ using Repetitions = std::map<std::string, std::vector<Seconds>>;
 
 /// repetitions.json of a directory of results; empty if there is none.
 Repetitions read_repetitions(const std::filesystem::path& directory);
+/// The same of a file's bytes; `path` is for messages. StoreError if they are
+/// damaged.
+Repetitions parse_repetitions(std::string_view bytes,
+                              const std::filesystem::path& path);
 void write_repetitions(const std::filesystem::path& directory,
                        const Repetitions& repetitions);
 

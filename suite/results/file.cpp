@@ -2,14 +2,18 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 #include <zlib.h>
 
 #include <cerrno>
+#include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <new>
+#include <optional>
+
+#include "suite/results/folder.h"
 
 namespace physinv {
 namespace {
@@ -46,21 +50,78 @@ auto retry(F&& call) {
   return result;
 }
 
+std::optional<struct stat> look(const fs::path& path) {
+  struct stat info {};
+  if (::stat(path.c_str(), &info) < 0) return {};
+  return info;
+}
+
+fs::path folder_of(const fs::path& path) {
+  return path.has_parent_path() ? path.parent_path() : ".";
+}
+
+std::string_view kind(unsigned mode) {
+  switch (mode & S_IFMT) {
+    case S_IFLNK:
+      return "a link";
+    case S_IFDIR:
+      return "a directory";
+    case S_IFIFO:
+      return "a FIFO";
+    case S_IFSOCK:
+      return "a socket";
+    case S_IFREG:
+      return "a file";
+    default:
+      return "a device";
+  }
+}
+
 FileDescriptor open_file(const fs::path& path,
                          int flags,
                          std::string_view what) {
-  FileDescriptor fd(
-      retry([&] { return ::open(path.c_str(), flags | O_CLOEXEC, 0644); }));
-  if (fd.get() < 0) fail_file(what, path, errno);
-  return fd;
+  flags |= O_CLOEXEC | O_NOCTTY | O_NONBLOCK;
+  FileDescriptor fd(retry([&] { return ::open(path.c_str(), flags, 0644); }));
+  if (fd.get() >= 0) return fd;
+  const int error = errno;
+  if (const auto info = look(path);
+      error == ENXIO && info && S_ISSOCK(info->st_mode))
+    fail_kind(what, path, info->st_mode);
+  fail_file(what, path, error);
 }
 
-void write_aside(const fs::path& aside,
-                 std::string_view bytes,
-                 const fs::path& path) {
-  const auto fd = open_file(aside, O_WRONLY | O_CREAT | O_TRUNC, "write");
+/// Where links lead to in the end, whether it is there or not. /proc's own,
+/// to what a process has open, are no paths.
+fs::path followed(fs::path path) {
+  std::error_code error;
+  for (int links = 0; links < 40; ++links) {
+    const fs::path target = fs::read_symlink(path, error);
+    if (error ||
+        fs::canonical(folder_of(path), error).native().starts_with("/proc/"))
+      return path;
+    path = folder_of(path) / target;
+  }
+  return path;
+}
+
+/// The descriptor of this process that /dev/stdout, /dev/fd/3 and the like
+/// stand for; its position counts, not that of a file opened anew.
+FileDescriptor own_descriptor(const fs::path& path) {
+  std::error_code error;
+  const auto own = fs::path("/proc") / std::to_string(::getpid()) / "fd";
+  if (fs::canonical(folder_of(path), error) != own) return {};
+  const std::string name = path.filename();
+  if (name.find_first_not_of("0123456789") != std::string::npos) return {};
+  std::fflush(nullptr);  // what was printed before comes first
+  return FileDescriptor(::fcntl(std::atoi(name.c_str()), F_DUPFD_CLOEXEC, 0));
+}
+
+/// Waits for a slow reader, but not for one that may never come.
+void write_into(const FileDescriptor& fd,
+                std::string_view bytes,
+                const fs::path& path) {
+  ::fcntl(fd.get(), F_SETFL, ::fcntl(fd.get(), F_GETFL) & ~O_NONBLOCK);
   write_all(fd, bytes, path);
-  sync(fd, path);
 }
 
 }  // namespace
@@ -71,6 +132,18 @@ void fail_file(std::string_view what, const fs::path& path, int error_number) {
                                path.string(),
                                std::strerror(error_number),
                                advice(error_number)));
+}
+
+void fail_kind(std::string_view what,
+               const fs::path& path,
+               unsigned mode,
+               std::string_view wanted) {
+  throw StoreError(fmt::format(
+      "cannot {} {}: it is {}, not {} (move it away or choose another path)",
+      what,
+      path.string(),
+      kind(mode),
+      wanted));
 }
 
 FileDescriptor::~FileDescriptor() {
@@ -93,33 +166,37 @@ void sync(const FileDescriptor& fd, const fs::path& path) {
     fail_file("write", path, errno);
 }
 
-void sync_directory(const fs::path& directory) {
-  const auto fd = open_file(directory, O_RDONLY | O_DIRECTORY, "open");
-  // Some network file systems cannot sync directories and say EINVAL.
-  if (retry([&] { return ::fsync(fd.get()); }) < 0 && errno != EINVAL)
-    fail_file("write", directory, errno);
+void write_atomically(const fs::path& named, std::string_view bytes) {
+  const fs::path path = followed(named);
+  if (const auto own = own_descriptor(path); own.get() >= 0)
+    return write_all(own, bytes, named);
+  const auto info = look(path);
+  if (info && S_ISDIR(info->st_mode)) fail_kind("write", named, info->st_mode);
+  if (info && !S_ISREG(info->st_mode))
+    return write_into(open_file(path, O_WRONLY, "write"), bytes, named);
+  Folder(folder_of(path)).write(path.filename(), bytes);
 }
 
-void write_atomically(const fs::path& path, std::string_view bytes) {
-  fs::path aside = path;
-  aside += ".tmp";
-  try {
-    write_aside(aside, bytes, path);
-    if (::rename(aside.c_str(), path.c_str()) < 0)
-      fail_file("write", path, errno);
-  } catch (...) {
-    ::unlink(aside.c_str());
-    throw;
-  }
-  sync_directory(path.parent_path().empty() ? "." : path.parent_path());
+void append_to(const fs::path& path, std::string_view bytes) {
+  write_into(
+      open_file(path, O_WRONLY | O_APPEND | O_CREAT, "write"), bytes, path);
 }
 
-std::string read_file(const fs::path& path) {
-  const auto fd = open_file(path, O_RDONLY, "read");
+std::string read_all(const FileDescriptor& fd,
+                     const fs::path& path,
+                     std::uint64_t limit) {
   struct stat info {};
   if (::fstat(fd.get(), &info) < 0) fail_file("read", path, errno);
-  if (S_ISDIR(info.st_mode)) fail_file("read", path, EISDIR);
-  std::string bytes(static_cast<std::size_t>(info.st_size), '\0');
+  if (!S_ISREG(info.st_mode)) fail_kind("read", path, info.st_mode);
+  const auto size = static_cast<std::uint64_t>(info.st_size);
+  if (size > limit)
+    throw StoreError(
+        fmt::format("cannot read {}: it has {} bytes, and such a file at most "
+                    "{} (restore it or choose another path)",
+                    path.string(),
+                    size,
+                    limit));
+  std::string bytes(size, '\0');
   std::size_t used = 0;
   while (used < bytes.size()) {
     const auto n = retry([&] {
@@ -131,6 +208,10 @@ std::string read_file(const fs::path& path) {
   }
   bytes.resize(used);
   return bytes;
+}
+
+std::string read_file(const fs::path& path, std::uint64_t limit) {
+  return read_all(open_file(path, O_RDONLY, "read"), path, limit);
 }
 
 std::string gzipped(std::string_view bytes) {
@@ -156,22 +237,6 @@ void make_directory(const fs::path& directory) {
   if (error) fail_file("create directory", directory, error.value());
   if (!fs::is_directory(directory, error))
     fail_file("create directory", directory, ENOTDIR);
-}
-
-DirectoryLock::DirectoryLock(const fs::path& directory) {
-  const fs::path path = directory / "lock";
-  fd_ = open_file(path, O_RDWR | O_CREAT, "lock");
-  if (::flock(fd_.get(), LOCK_EX | LOCK_NB) < 0) {
-    if (errno != EWOULDBLOCK) fail_file("lock", path, errno);
-    throw StoreError(fmt::format(
-        "cannot write to {}: process {} is running a campaign there (wait for "
-        "it, end it, or choose another --out)",
-        directory.string(),
-        read_file(path)));
-  }
-  const std::string pid = std::to_string(::getpid());
-  if (::ftruncate(fd_.get(), 0) < 0) fail_file("lock", path, errno);
-  write_all(fd_, pid, path);
 }
 
 }  // namespace physinv

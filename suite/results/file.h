@@ -1,4 +1,5 @@
-/// Files that are either complete and on disk, or not there.
+/// Files that are either complete and on disk, or not there. Those of a store
+/// are reached through its folder, see folder.h.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +12,20 @@
 
 namespace physinv {
 
+/// What is larger is not read: a document, which takes some twenty times its
+/// size in memory, and lines or arrays. Nothing the suite writes comes near.
+inline constexpr std::uint64_t kLargestText = std::uint64_t{32} << 20;
+inline constexpr std::uint64_t kLargestData = std::uint64_t{512} << 20;
+
 /// Throws StoreError "cannot <what> <path>: <reason> (<what to do>)".
 [[noreturn]] void fail_file(std::string_view what,
                             const std::filesystem::path& path,
                             int error_number);
+/// The same for what is "a link", "a FIFO" and so on, and no `wanted`.
+[[noreturn]] void fail_kind(std::string_view what,
+                            const std::filesystem::path& path,
+                            unsigned mode,
+                            std::string_view wanted = "a file");
 
 /// Owns a file descriptor.
 class FileDescriptor {
@@ -37,35 +48,31 @@ class FileDescriptor {
 void write_all(const FileDescriptor& fd,
                std::string_view bytes,
                const std::filesystem::path& path);
+/// All of a regular file; StoreError if it is anything else, or has more bytes
+/// than `limit`.
+std::string read_all(const FileDescriptor& fd,
+                     const std::filesystem::path& path,
+                     std::uint64_t limit);
 
 /// Data and size are on disk when it returns.
 void sync(const FileDescriptor& fd, const std::filesystem::path& path);
-/// So are names made or removed in a directory.
-void sync_directory(const std::filesystem::path& directory);
 
-/// Writes aside (`path`.tmp), syncs, renames, syncs the directory: whatever
-/// happens, `path` holds either the old bytes or the new.
+/// For a file that a user names: links are followed. Whatever happens, it
+/// holds either the old bytes or the new. What is there and no regular file
+/// (a terminal, a pipe, /dev/null) is written into as it is.
 void write_atomically(const std::filesystem::path& path,
                       std::string_view bytes);
+/// Adds to what others write there, too.
+void append_to(const std::filesystem::path& path, std::string_view bytes);
 
-std::string read_file(const std::filesystem::path& path);
+/// Of a file that a user names, or of the suite's own.
+std::string read_file(const std::filesystem::path& path,
+                      std::uint64_t limit = kLargestText);
 
 /// In gzip's format, without name and time: same bytes in, same bytes out.
 std::string gzipped(std::string_view bytes);
 
 /// Creates it and its parents, durably enough for a store.
 void make_directory(const std::filesystem::path& directory);
-
-/// Held while somebody writes to a directory. Dies with its process; a forked
-/// child keeps it too.
-class DirectoryLock {
- public:
-  DirectoryLock() = default;
-  /// Throws StoreError if another process holds it.
-  explicit DirectoryLock(const std::filesystem::path& directory);
-
- private:
-  FileDescriptor fd_;
-};
 
 }  // namespace physinv

@@ -79,10 +79,33 @@ void write_array(hid_t parent,
           "write array " + name);
 }
 
+/// A name may stand for something elsewhere, also in another file.
+void require_own(hid_t parent, const std::string& name) {
+  H5L_info_t info;
+  check(H5Lget_info(parent, name.c_str(), &info, H5P_DEFAULT), "find " + name);
+  if (info.type != H5L_TYPE_HARD)
+    throw StoreError(fmt::format("{} is a link to something elsewhere", name));
+}
+
+/// As the suite writes them: one block in this file, without filters, which
+/// HDF5 would load programs for.
+void require_plain(const Handle& set, const std::string& name) {
+  const Handle made(
+      H5Dget_create_plist(set), H5Pclose, "read how it is stored: " + name);
+  const H5D_layout_t layout = H5Pget_layout(made);
+  if ((layout != H5D_CONTIGUOUS && layout != H5D_COMPACT) ||
+      H5Pget_external_count(made) != 0 || H5Pget_nfilters(made) != 0)
+    throw StoreError(
+        fmt::format("array {} is not stored as the suite stores it", name));
+}
+
 Handle open_array(hid_t parent, const std::string& name) {
-  return {H5Dopen2(parent, name.c_str(), H5P_DEFAULT),
-          H5Dclose,
-          "open array " + name};
+  require_own(parent, name);
+  Handle set(H5Dopen2(parent, name.c_str(), H5P_DEFAULT),
+             H5Dclose,
+             "open array " + name);
+  require_plain(set, name);
+  return set;
 }
 
 hsize_t file_size(hid_t object) {
@@ -96,9 +119,11 @@ hsize_t file_size(hid_t object) {
 bool holds_all(const Handle& set,
                std::size_t element,
                const std::vector<hsize_t>& shape) {
+  constexpr hsize_t kLongest = hsize_t{1} << 40;
   hsize_t bytes = element;
   for (const hsize_t count : shape)
-    if (__builtin_mul_overflow(bytes, count, &bytes)) return false;
+    if (count > kLongest || __builtin_mul_overflow(bytes, count, &bytes))
+      return false;
   return bytes == H5Dget_storage_size(set) && bytes <= file_size(set);
 }
 
@@ -177,6 +202,7 @@ Handle create_group(hid_t parent, const std::string& name) {
 }
 
 Handle open_group(hid_t parent, const std::string& name) {
+  require_own(parent, name);
   return {H5Gopen2(parent, name.c_str(), H5P_DEFAULT),
           H5Gclose,
           "open group " + name};

@@ -2,14 +2,17 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <ctime>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "suite/results/checksum.h"
+#include "suite/results/names.h"
 
 namespace physinv {
 namespace {
@@ -18,6 +21,9 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr std::size_t kPrefix = 9;  // digits and a space
+constexpr const char* kNoKey = "a key is not 32 hexadecimal digits";
+constexpr const char* kNoWord =
+    "method, profile or a stage is not in [a-z0-9_-]";
 
 std::string to_line(const json& content) {
   // A message may hold any bytes; those that are not UTF-8 are replaced.
@@ -62,12 +68,17 @@ bool hides_line(std::string_view line) {
 }
 
 json parse_line(std::string_view line) {
-  return json::parse(line.substr(kPrefix));
+  return parse_json(line.substr(kPrefix));
+}
+
+/// Files of a store are in its folder itself, which no link leads out of.
+Folder folder_of(const fs::path& path) {
+  return Folder(path.has_parent_path() ? path.parent_path() : ".");
 }
 
 void check_header(const fs::path& path, std::string_view line) {
   const json header = parse_line(line);
-  const int version = header.value("schema_version", 0);
+  const auto version = whole(header.at("schema_version"));
   if (version > kSchemaVersion) {
     throw UnreadableInput(fmt::format(
         "{}: its results have schema version {}, this program reads up to {} "
@@ -87,12 +98,34 @@ json to_json(const JournalEntry& e) {
           {"arrays_hash", e.arrays_hash}};
 }
 
+void require(bool good, const char* what) {
+  if (!good) throw std::runtime_error(what);
+}
+
+void check_stage(const StageRecord& r, const CaseInfo& info) {
+  require(r.case_name == info.name, "a stage is of another case");
+  require(is_key(r.key), kNoKey);
+  require(is_word(r.stage), kNoWord);
+  require(
+      r.position >= 0 && r.position < static_cast<Index>(info.stages.size()),
+      "a stage is not in its chain");
+}
+
 JournalEntry entry_from_json(const json& j) {
-  return {.info = case_from_json(j.at("info")),
-          .stage = stage_from_json(j.at("record")),
-          .file = j.at("file"),
-          .data_hash = j.at("data_hash"),
-          .arrays_hash = j.at("arrays_hash")};
+  JournalEntry entry{.info = case_from_json(j.at("info")),
+                     .stage = stage_from_json(j.at("record")),
+                     .file = j.at("file"),
+                     .data_hash = j.at("data_hash"),
+                     .arrays_hash = j.at("arrays_hash")};
+  check_case(entry.info);
+  check_stage(entry.stage, entry.info);
+  return entry;
+}
+
+struct stat file_of(const FileDescriptor& fd) {
+  struct stat info {};
+  ::fstat(fd.get(), &info);
+  return info;
 }
 
 std::string utc() {
@@ -110,15 +143,28 @@ std::string utc() {
 
 }  // namespace
 
+void check_case(const CaseInfo& c) {
+  require(is_case_name(c.name) && is_path(c.experiment),
+          "its name is no path of [a-z0-9_.=+-] of at most 250 characters");
+  require(is_word(c.method) && is_word(c.profile), kNoWord);
+  for (const auto& stage : c.stages) require(is_word(stage), kNoWord);
+  for (const auto& key : c.keys) require(is_key(key), kNoKey);
+  require(c.keys.size() == c.stages.size(), "a stage has no key");
+  require(c.n > 0, "n is not positive");
+}
+
 JournalText read_journal(const fs::path& path) {
-  const std::string bytes = read_file(path);
+  return parse_journal(folder_of(path).read(path.filename(), kLargestData),
+                       path);
+}
+
+JournalText parse_journal(std::string_view bytes, const fs::path& path) {
   JournalText text;
   std::size_t number = 0;
   for (std::size_t begin = 0; begin < bytes.size(); ++number) {
     const std::size_t end = bytes.find('\n', begin);
-    const bool ended = end != std::string::npos;
-    const std::string_view line =
-        std::string_view(bytes).substr(begin, ended ? end - begin : end);
+    const bool ended = end != std::string_view::npos;
+    const auto line = bytes.substr(begin, ended ? end - begin : end);
     if (!ended || !intact(line)) {
       if (number == 0 || ended || hides_line(line))
         fail_line(path, number + 1, begin, line, "fails its checksum");
@@ -136,8 +182,16 @@ JournalText read_journal(const fs::path& path) {
       } else {
         text.entries.push_back(entry_from_json(parse_line(line)));
       }
-    } catch (const json::exception& e) {
-      fail_line(path, number + 1, begin, line, e.what());
+    } catch (const UnreadableInput&) {
+      throw;
+    } catch (const CorruptJournal&) {
+      throw;
+    } catch (const std::exception& e) {
+      fail_line(path,
+                number + 1,
+                begin,
+                line,
+                fmt::format("is not what the suite writes: {}", e.what()));
     }
     begin = end + 1;
     text.good_bytes = begin;
@@ -148,8 +202,9 @@ JournalText read_journal(const fs::path& path) {
 }
 
 void forget_cases(const fs::path& path, const std::set<std::string>& names) {
-  const auto entries = read_journal(path).entries;
-  const std::string bytes = read_file(path);
+  const Folder store = folder_of(path);
+  const std::string bytes = store.read(path.filename(), kLargestData);
+  const auto entries = parse_journal(bytes, path).entries;
   std::size_t begin = bytes.find('\n') + 1;
   std::string kept = bytes.substr(0, begin);
   for (const auto& entry : entries) {
@@ -158,13 +213,14 @@ void forget_cases(const fs::path& path, const std::set<std::string>& names) {
       kept.append(bytes, begin, end - begin);
     begin = end;
   }
-  write_atomically(path, kept);
+  store.write(path.filename(), kept);
 }
 
 Journal Journal::create(const fs::path& path) {
   // Complete or not there at all, so that a first line is never torn.
-  write_atomically(
-      path, to_line({{"schema_version", kSchemaVersion}, {"created", utc()}}));
+  folder_of(path).write(
+      path.filename(),
+      to_line({{"schema_version", kSchemaVersion}, {"created", utc()}}));
   return resume(path, read_journal(path));
 }
 
@@ -172,9 +228,16 @@ Journal Journal::resume(const fs::path& path, const JournalText& text) {
   Journal journal;
   journal.path_ = path;
   journal.size_ = text.good_bytes;
-  journal.fd_ =
-      FileDescriptor(::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC));
-  if (journal.fd_.get() < 0) fail_file("write", path, errno);
+  const Folder store = folder_of(path);
+  const auto open = [&] {
+    return store.open(path.filename(), O_WRONLY | O_APPEND, "write");
+  };
+  journal.fd_ = open();
+  // A backup made of links keeps the lines that it has.
+  if (file_of(journal.fd_).st_nlink > 1) {
+    store.write(path.filename(), store.read(path.filename(), kLargestData));
+    journal.fd_ = open();
+  }
   if (!text.warning.empty()) {
     if (::ftruncate(journal.fd_.get(), static_cast<off_t>(text.good_bytes)) < 0)
       fail_file("write", path, errno);
@@ -183,7 +246,19 @@ Journal Journal::resume(const fs::path& path, const JournalText& text) {
   return journal;
 }
 
+void Journal::require_there() const {
+  const struct stat own = file_of(fd_);
+  struct stat named {};
+  const bool there = ::lstat(path_.c_str(), &named) == 0 &&
+                     named.st_ino == own.st_ino && named.st_dev == own.st_dev;
+  if (!there)
+    throw StoreError(fmt::format(
+        "{} was removed or replaced during the run (run the campaign again)",
+        path_.string()));
+}
+
 void Journal::append(const JournalEntry& entry) {
+  require_there();
   const std::string line = to_line(to_json(entry));
   try {
     write_all(fd_, line, path_);

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "suite/results/file.h"
+#include "suite/results/folder.h"
 #include "suite/results/json.h"
 #include "suite/results/record.h"
 
@@ -32,10 +32,18 @@ struct JournalText {
   std::string warning;           ///< about a torn line, or empty
 };
 
-/// Reads and verifies every line. A last line without its end was torn by a
+/// Names and keys become parts of paths: std::runtime_error if they are not
+/// such as a registry makes.
+void check_case(const CaseInfo& info);
+
+/// Reads and verifies every line; its names and keys are such as the suite
+/// makes. A last line without its end was torn by a
 /// kill: it is left out and named in the warning. Throws CorruptJournal for
 /// any other damage, UnreadableInput for a newer schema.
 JournalText read_journal(const std::filesystem::path& path);
+/// The same of a file's bytes; `path` is for messages.
+JournalText parse_journal(std::string_view bytes,
+                          const std::filesystem::path& path);
 
 /// Takes out the lines of these cases, all or none of them; the other lines
 /// stay byte by byte.
@@ -53,6 +61,8 @@ class Journal {
 
   /// The line is on disk when it returns; if it throws, it is not there.
   void append(const JournalEntry& entry);
+  /// StoreError if somebody removed the journal, or put another in its place.
+  void require_there() const;
 
  private:
   std::filesystem::path path_;

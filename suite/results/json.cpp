@@ -1,10 +1,14 @@
 #include "suite/results/json.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <cstring>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+
+#include "suite/results/checksum.h"
 
 namespace physinv {
 namespace {
@@ -24,6 +28,30 @@ double number(const json& j) {
                      : j.get<double>();
 }
 
+/// Brackets that are open at once. Copies and texts of JSON are made by
+/// functions that call themselves.
+bool is_shallow(std::string_view text) {
+  constexpr int kDeepest = 64;
+  int depth = 0;
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '"') quoted = !quoted;
+    if (quoted && c == '\\') ++i;  // whatever follows is no end
+    if (quoted) continue;
+    if (c == '[' || c == '{') ++depth;
+    if (c == ']' || c == '}') --depth;
+    if (depth > kDeepest) return false;
+  }
+  return true;
+}
+
+std::uint64_t count(const json& j) {
+  if (!j.is_number_unsigned() && whole(j) < 0)
+    throw std::runtime_error("a count is negative");
+  return j;
+}
+
 json to_json(Seconds s) { return json::array({s.wall, s.cpu}); }
 Seconds seconds(const json& j) { return {number(j.at(0)), number(j.at(1))}; }
 
@@ -38,7 +66,7 @@ Counts counts_from_json(const json& j) {
   Counts counts;
   for (std::size_t i = 0; i < kCounters; ++i) {
     const auto at = j.find(kCounterNames[i]);
-    if (at != j.end()) counts[static_cast<Counter>(i)] = *at;
+    if (at != j.end()) counts[static_cast<Counter>(i)] = count(*at);
   }
   return counts;
 }
@@ -115,6 +143,41 @@ void arrays_from_json(const json& j, StageRecord& r) {
 
 }  // namespace
 
+template <class Json>
+Json parse_json(std::string_view text) {
+  if (!is_shallow(text)) throw std::runtime_error("it is nested too deep");
+  return Json::parse(text);
+}
+template json parse_json(std::string_view);
+template nlohmann::ordered_json parse_json(std::string_view);
+
+template <class Json>
+std::string checksum_of(Json document) {
+  document.erase("checksum");
+  return fmt::format(
+      "{:08x}",
+      crc32c(document.dump(-1, ' ', false, Json::error_handler_t::replace)));
+}
+template std::string checksum_of(json);
+template std::string checksum_of(nlohmann::ordered_json);
+
+template <class Json>
+bool is_intact(const Json& document) {
+  return !document.is_object() || !document.contains("checksum") ||
+         document.at("checksum") == checksum_of(document);
+}
+template bool is_intact(const json&);
+template bool is_intact(const nlohmann::ordered_json&);
+
+std::int64_t whole(const json& j) {
+  const bool fits =
+      j.is_number_integer() &&
+      (!j.is_number_unsigned() ||
+       j.get<std::uint64_t>() <= std::numeric_limits<std::int64_t>::max());
+  if (!fits) throw std::runtime_error("a number is not whole");
+  return j;
+}
+
 json to_json(const StageRecord& r) {
   json options = json::array();
   for (const auto& [name, value] : r.options)
@@ -146,7 +209,7 @@ StageRecord stage_from_json(const json& j) {
   r.case_name = j.at("case");
   r.stage = j.at("stage");
   r.key = j.at("key");
-  r.position = j.at("position");
+  r.position = whole(j.at("position"));
   for (const auto& o : j.at("options"))
     r.options.emplace_back(o.at(0), o.at(1));
   r.stop = parse(j.at("stop").get<std::string>(),
@@ -156,15 +219,15 @@ StageRecord stage_from_json(const json& j) {
                   Stop::failed,
                   Stop::skipped});
   r.message = j.at("message");
-  r.iterations = j.at("iterations");
+  r.iterations = whole(j.at("iterations"));
   const json& clocks = j.at("clocks");
   r.clocks = {.setup = seconds(clocks.at("setup")),
               .warmup = seconds(clocks.at("warmup")),
               .solve = seconds(clocks.at("solve")),
               .measure = seconds(clocks.at("measure"))};
   r.counts = counts_from_json(j.at("counts"));
-  r.buffer_bytes = j.at("buffer_bytes");
-  r.rss_bytes = j.at("rss_bytes");
+  r.buffer_bytes = count(j.at("buffer_bytes"));
+  r.rss_bytes = count(j.at("rss_bytes"));
   r.crowded = j.at("crowded");
   r.finished = j.at("finished");
   r.revision = j.at("revision");
@@ -189,8 +252,8 @@ CaseInfo case_from_json(const json& j) {
           .experiment = j.at("experiment"),
           .method = j.at("method"),
           .profile = j.at("profile"),
-          .n = j.at("n"),
-          .seed = j.at("seed"),
+          .n = whole(j.at("n")),
+          .seed = count(j.at("seed")),
           .precision = parse(j.at("precision").get<std::string>(),
                              {Precision::f32, Precision::f64}),
           .stages = j.at("stages"),

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "suite/results/record.h"
@@ -14,7 +16,23 @@ namespace physinv {
 /// what is newer.
 inline constexpr int kSchemaVersion = 1;
 
+/// What a file holds. Throws std::exception for what is no JSON, or nested
+/// deeper than anything the suite writes.
+template <class Json = nlohmann::json>
+Json parse_json(std::string_view text);
+
+/// CRC-32C of a document, compact, its own "checksum" left out.
+template <class Json>
+std::string checksum_of(Json document);
+/// Its "checksum", if it has one, is that: what was written without has none.
+template <class Json>
+bool is_intact(const Json& document);
+
+/// A whole number; std::runtime_error for anything else.
+std::int64_t whole(const nlohmann::json& json);
+
 /// All scalars of a stage; its arrays stay behind. Doubles round-trip.
+/// `_from_json` throw std::exception for what `to_json` does not write.
 nlohmann::json to_json(const StageRecord& record);
 StageRecord stage_from_json(const nlohmann::json& json);
 

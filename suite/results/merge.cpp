@@ -167,11 +167,13 @@ void merge_case(Store& store,
 
 }  // namespace
 
-Merged merge(const std::vector<fs::path>& paths, const fs::path& out) {
+Merged merge(const std::vector<fs::path>& paths,
+             const fs::path& out,
+             const LockOptions& lock) {
   const auto shards = read_shards(paths);
   for (const auto& shard : shards) check_same_campaign(shards.front(), shard);
   check_out(paths, out);
-  Store store(out);
+  Store store(out, lock);
   json plan = merged_plan(shards);
   if (store.catalog().plan.is_object()) {
     check_same_campaign(store.catalog(), shards.front());
@@ -179,6 +181,7 @@ Merged merge(const std::vector<fs::path>& paths, const fs::path& out) {
   }
   store.set_plan(std::move(plan));
   Merged merged;
+  if (!store.warning().empty()) merged.warnings.push_back(store.warning());
   for (const auto& shard : shards)
     merged.warnings.insert(merged.warnings.end(),
                            shard.warnings().begin(),

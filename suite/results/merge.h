@@ -5,13 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "suite/results/lock.h"
 #include "suite/results/shortfall.h"
 
 namespace physinv {
 
 struct Merged {
   Shortfall lacks;                    ///< what the whole campaign still lacks
-  std::vector<std::string> warnings;  ///< about shards
+  std::vector<std::string> warnings;  ///< about shards, and OUT's lock
 };
 
 /// Writes to `out` what the unsharded campaign would have left there, apart
@@ -22,6 +23,7 @@ struct Merged {
 /// What an earlier merge left in `out` takes part like a shard, so that merges
 /// can be repeated and continued.
 Merged merge(const std::vector<std::filesystem::path>& shards,
-             const std::filesystem::path& out);
+             const std::filesystem::path& out,
+             const LockOptions& lock = {});
 
 }  // namespace physinv

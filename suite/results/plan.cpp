@@ -6,8 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "suite/results/checksum.h"
-#include "suite/results/file.h"
+#include "suite/results/folder.h"
+#include "suite/results/json.h"
+#include "suite/results/names.h"
 
 namespace physinv {
 namespace {
@@ -19,36 +20,81 @@ constexpr int kPlanVersion = 2;
 constexpr std::string_view kRenew =
     "run the campaign's command there again: finished stages are kept";
 
-std::string checksum(json plan) {
-  plan.erase("checksum");
-  return fmt::format(
-      "{:08x}",
-      crc32c(plan.dump(-1, ' ', false, json::error_handler_t::replace)));
+bool is_text(const json& j) { return j.is_string(); }
+bool is_name(const json& j) {
+  return is_text(j) && is_case_name(j.get_ref<const std::string&>());
+}
+bool is_key_text(const json& j) {
+  return is_text(j) && is_key(j.get_ref<const std::string&>());
+}
+
+template <class Is>
+bool is_list(const json& j, Is&& is) {
+  return j.is_array() && std::all_of(j.begin(), j.end(), is);
+}
+
+/// By the name of a case.
+template <class Is>
+bool is_table(const json& j, Is&& is) {
+  if (!j.is_object()) return false;
+  for (const auto& [name, value] : j.items())
+    if (!is_case_name(name) || !is(value)) return false;
+  return true;
+}
+
+/// What is there of an object has its type.
+template <class Is>
+bool may_hold(const json& object, const char* key, Is&& is) {
+  const auto at = object.find(key);
+  return at == object.end() || is(*at);
+}
+
+/// The flags of the run that are read again.
+bool are_options(const json& j) {
+  const auto texts = [](const json& all) { return is_list(all, is_text); };
+  if (j.is_null()) return true;
+  if (!j.is_object() || !may_hold(j, "filter", texts) ||
+      !may_hold(j, "set", texts))
+    return false;
+  for (const char* key : {"profile", "seeds", "shard", "cases", "out"})
+    if (!may_hold(j, key, is_text)) return false;
+  return true;
 }
 
 bool well_formed(const json& plan) {
+  if (!plan.is_object()) return false;
   const auto holds = [&](const char* key, auto&& is) {
-    const auto at = plan.find(key);
-    return at != plan.end() && is(*at);
+    return plan.contains(key) && may_hold(plan, key, is);
   };
-  const auto object = [](const json& j) { return j.is_object(); };
-  const auto text = [](const json& j) { return j.is_string(); };
-  return plan.is_object() &&
-         holds("cases",
-               [&](const json& j) {
-                 return j.is_array() && std::all_of(j.begin(), j.end(), text);
+  return holds("cases", [](const json& j) { return is_list(j, is_name); }) &&
+         holds("context",
+               [](const json& j) {
+                 return j.is_object() && may_hold(j, "options", are_options) &&
+                        may_hold(j, "physinv", [](const json& own) {
+                          return own.is_object();
+                        });
                }) &&
-         holds("context", object) && holds("profile", text) &&
-         holds("fingerprint", text) && holds("schema_version", [](auto& j) {
-           return j.is_number_integer() && j > 0;
-         });
+         holds("profile", is_text) && holds("fingerprint", is_text) &&
+         holds("schema_version",
+               [](const json& j) { return j.is_number_integer() && j > 0; }) &&
+         may_hold(plan,
+                  "recipes",
+                  [](const json& j) { return is_table(j, is_text); }) &&
+         may_hold(plan,
+                  "keys",
+                  [](const json& j) {
+                    return is_table(j, [](const json& keys) {
+                      return is_list(keys, is_key_text);
+                    });
+                  }) &&
+         may_hold(plan, "merged", [](const json& j) { return j.is_boolean(); });
 }
 
 bool intact(const json& plan) {
   if (!well_formed(plan)) return false;
   // One wrong byte cannot turn a plan with a checksum into one without.
   if (plan["schema_version"] == 1 && !plan.contains("checksum")) return true;
-  return plan.value("checksum", json()) == checksum(plan);
+  return plan.value("checksum", json()) == checksum_of(plan);
 }
 
 }  // namespace
@@ -99,31 +145,45 @@ json extend_plan(const json& earlier, json plan) {
 
 std::string plan_text(json plan) {
   plan["schema_version"] = kPlanVersion;
-  plan["checksum"] = checksum(plan);
+  plan["checksum"] = checksum_of(plan);
   return plan.dump(1, ' ', false, json::error_handler_t::replace) + "\n";
 }
 
 json read_plan(const fs::path& path, std::string* warning) {
-  if (!fs::exists(path)) {
+  const Folder store(path.has_parent_path() ? path.parent_path() : ".");
+  if (!store.has(path.filename())) {
     *warning =
         fmt::format("{} is missing, so what was asked for is not known ({})",
                     path.string(),
                     kRenew);
     return nullptr;
   }
-  json plan = json::parse(read_file(path), nullptr, false);
-  if (plan.is_object() && plan.value("schema_version", json()) > kPlanVersion)
+  return parse_plan(store.read(path.filename(), kLargestText), path, warning);
+}
+
+json parse_plan(std::string_view bytes,
+                const fs::path& path,
+                std::string* warning) {
+  json plan;
+  try {
+    plan = parse_json(bytes);
+  } catch (const std::exception&) {  // as damaged as one of wrong types
+  }
+  const json version =
+      plan.is_object() ? plan.value("schema_version", json()) : json();
+  if (version.is_number_integer() && version > kPlanVersion)
     throw UnreadableInput(
         fmt::format("{} has a newer schema than this program reads, {} (use "
                     "the program that wrote it or a newer one)",
                     path.string(),
                     kPlanVersion));
   if (!intact(plan))
-    throw StoreError(
-        fmt::format("{} is damaged: it fails its checksum (delete it and {})",
-                    path.string(),
-                    kRenew));
-  if (plan["schema_version"] == 1)
+    throw StoreError(fmt::format(
+        "{} is damaged: it fails its checksum, or holds what no plan does "
+        "(delete it and {})",
+        path.string(),
+        kRenew));
+  if (version == 1)
     *warning = fmt::format(
         "{} was written by an older version, without a checksum ({})",
         path.string(),

@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "suite/results/record.h"
@@ -40,6 +41,10 @@ std::string plan_text(nlohmann::json plan);
 /// StoreError if it is damaged, UnreadableInput if it is of a newer version.
 nlohmann::json read_plan(const std::filesystem::path& path,
                          std::string* warning);
+/// The same of a file's bytes; `path` is for messages.
+nlohmann::json parse_plan(std::string_view bytes,
+                          const std::filesystem::path& path,
+                          std::string* warning);
 
 /// The content keys that the plan names for a case, or `otherwise`.
 std::vector<std::string> planned_keys(const nlohmann::json& plan,

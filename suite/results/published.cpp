@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "suite/results/file.h"
+#include "suite/results/json.h"
 
 namespace physinv {
 namespace {
@@ -23,9 +24,22 @@ Publication publication_from(const nlohmann::json& j) {
   return {.key = j.at("key"),
           .title = j.at("title"),
           .authors = j.at("authors"),
-          .year = j.at("year"),
+          .year = static_cast<int>(whole(j.at("year"))),
           .venue = j.at("venue"),
           .arxiv = j.value("arxiv", "")};
+}
+
+double real(const nlohmann::json& j) {
+  if (!j.is_number()) throw std::runtime_error("a value is no number");
+  return j;
+}
+
+PublishedValue value_from(const nlohmann::json& j) {
+  PublishedValue value{
+      .value = real(j.at("value")), .spread = {}, .where = j.at("where")};
+  const auto& spread = j.at("spread");
+  if (!spread.is_null()) value.spread = real(spread);
+  return value;
 }
 
 std::vector<fs::path> json_files(const fs::path& directory) {
@@ -34,8 +48,8 @@ std::vector<fs::path> json_files(const fs::path& directory) {
   for (const auto& f : fs::directory_iterator(directory, error))
     if (f.path().extension() == ".json") files.push_back(f.path());
   if (error)
-    throw std::runtime_error(
-        fmt::format("{}: {}", directory.string(), error.message()));
+    throw StoreError(
+        fmt::format("cannot read {}: {}", directory.string(), error.message()));
   std::sort(files.begin(), files.end());
   return files;
 }
@@ -52,22 +66,19 @@ std::string Publication::text() const {
 }
 
 Published::Published(const fs::path& directory) {
-  for (const auto& path : json_files(directory)) {
-    try {
-      const auto file = nlohmann::json::parse(read_file(path));
-      publications_.push_back(publication_from(file.at("publication")));
-      for (const auto& v : file.at("values")) {
-        PublishedValue value;
-        value.value = v.at("value");
-        value.where = v.at("where");
-        const auto& spread = v.at("spread");
-        if (!spread.is_null()) value.spread = spread.get<double>();
-        values_[key(v.at("experiment").get<std::string>(),
-                    v.at("quantity").get<std::string>())] = std::move(value);
-      }
-    } catch (const std::exception& e) {
-      throw std::runtime_error(fmt::format("{}: {}", path.string(), e.what()));
-    }
+  for (const auto& path : json_files(directory)) add(read_file(path), path);
+}
+
+void Published::add(std::string_view bytes, const fs::path& path) {
+  try {
+    const auto file = parse_json(bytes);
+    publications_.push_back(publication_from(file.at("publication")));
+    for (const auto& v : file.at("values"))
+      values_[key(v.at("experiment").get<std::string>(),
+                  v.at("quantity").get<std::string>())] = value_from(v);
+  } catch (const std::exception& e) {
+    throw StoreError(
+        fmt::format("{} is damaged: {} (restore it)", path.string(), e.what()));
   }
 }
 

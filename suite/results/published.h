@@ -34,9 +34,11 @@ struct PublishedValue {
 class Published {
  public:
   Published() = default;
-  /// Reads every *.json of the directory; throws std::runtime_error with file
-  /// and reason if one is malformed.
+  /// Reads every *.json of the directory; StoreError with file and reason if
+  /// one is malformed.
   explicit Published(const std::filesystem::path& directory);
+  /// The bytes of one more file; `path` is for messages.
+  void add(std::string_view bytes, const std::filesystem::path& path);
 
   std::optional<PublishedValue> find(std::string_view experiment,
                                      std::string_view quantity) const;

@@ -1,17 +1,22 @@
 #include "suite/results/results_json.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "suite/results/folder.h"
 #include "suite/results/json.h"
 
 namespace physinv {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr const char* kFile = "results.json";
 
 Json number(double v) { return std::isfinite(v) ? Json(v) : Json(nullptr); }
 
@@ -128,7 +133,81 @@ int threads_of(const nlohmann::json& context) {
              : 1;
 }
 
+bool has_all(const Json& object,
+             std::initializer_list<const char*> keys,
+             bool (*is)(const Json&)) {
+  return object.is_object() &&
+         std::all_of(keys.begin(), keys.end(), [&](const char* key) {
+           const auto at = object.find(key);
+           return at != object.end() && is(*at);
+         });
+}
+
+bool is_text(const Json& j) { return j.is_string(); }
+bool is_number(const Json& j) { return j.is_number(); }
+bool is_number_or_null(const Json& j) { return j.is_number() || j.is_null(); }
+
+bool is_entry(const Json& j) {
+  return has_all(j, {"name", "run_name", "time_unit"}, is_text) &&
+         has_all(j,
+                 {"family_index",
+                  "per_family_instance_index",
+                  "threads",
+                  "iterations",
+                  "forward",
+                  "vjp",
+                  "jacobian",
+                  "inverse"},
+                 is_number) &&
+         has_all(
+             j, {"real_time", "cpu_time", "loss_median"}, is_number_or_null) &&
+         j.at("real_time").is_null() == j.at("cpu_time").is_null() &&
+         j.contains("physinv") && has_all(j.at("physinv"), {"key"}, is_text);
+}
+
+bool are_results(const Json& j) {
+  return j.is_object() && j.contains("context") &&
+         j.at("context").is_object() && j.contains("benchmarks") &&
+         j.at("benchmarks").is_array() &&
+         std::all_of(
+             j.at("benchmarks").begin(), j.at("benchmarks").end(), is_entry);
+}
+
+/// Takes out the checksum; false if there is another.
+bool unseal(Json& results) {
+  Json& context = results["context"];
+  const auto own = context.find("physinv");
+  if (own == context.end() || !own->is_object() || !own->contains("checksum"))
+    return true;
+  const Json sum = own->at("checksum");
+  own->erase("checksum");
+  return sum == checksum_of(results);
+}
+
 }  // namespace
+
+Json sealed(Json results) {
+  const auto sum = checksum_of(results);
+  results["context"]["physinv"]["checksum"] = sum;
+  return results;
+}
+
+Json read_results(const std::filesystem::path& directory) {
+  return parse_results(Folder(directory).read(kFile, kLargestData),
+                       directory / kFile);
+}
+
+Json parse_results(std::string_view bytes, const std::filesystem::path& path) {
+  Json results;
+  try {
+    results = parse_json<Json>(bytes);
+  } catch (const std::exception&) {  // as damaged as one of wrong types
+  }
+  if (!are_results(results) || !unseal(results))
+    throw StoreError(fmt::format(
+        "{} is damaged ('run' as before writes it again)", path.string()));
+  return results;
+}
 
 Json results_json(const std::vector<CaseRecord>& cases,
                   const std::vector<std::string>& order,

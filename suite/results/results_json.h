@@ -2,8 +2,10 @@
 /// under "physinv". Described by reports/schema/results-1.schema.json.
 #pragma once
 
+#include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "suite/results/record.h"
@@ -20,5 +22,15 @@ nlohmann::ordered_json results_json(const std::vector<CaseRecord>& cases,
 
 /// As it stands in the file.
 std::string results_text(const nlohmann::ordered_json& results);
+
+/// With a checksum in the context.
+nlohmann::ordered_json sealed(nlohmann::ordered_json results);
+
+/// results.json of a directory. Every entry has what exports.h reads;
+/// StoreError if not.
+nlohmann::ordered_json read_results(const std::filesystem::path& directory);
+/// The same of a file's bytes; `path` is for messages.
+nlohmann::ordered_json parse_results(std::string_view bytes,
+                                     const std::filesystem::path& path);
 
 }  // namespace physinv

@@ -2,11 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "suite/results/checksum.h"
-#include "suite/results/file.h"
+#include "suite/results/folder.h"
+#include "suite/results/json.h"
+#include "suite/results/names.h"
 
 namespace physinv {
 namespace {
@@ -15,37 +16,70 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr std::size_t kSum = 8;
+constexpr const char* kFolder = "checkpoints";
+
+const std::string& checked(const std::string& key) {
+  if (!is_key(key))
+    throw StoreError(fmt::format(
+        "'{}' is no content key, which has 32 hexadecimal digits", key));
+  return key;
+}
+
+std::optional<Folder> states_of(const fs::path& store) {
+  std::error_code error;
+  if (!fs::exists(store, error)) return {};
+  return Folder(store).find(kFolder);
+}
+
+StageState parsed(std::string_view text) {
+  const auto end = text.find('\n');
+  if (end == std::string_view::npos) throw std::runtime_error("no header");
+  const json head = parse_json(text.substr(0, end));
+  const Index iteration = whole(head.at("iteration"));
+  if (iteration < 0) throw std::runtime_error("no iteration");
+  return {.case_name = head.at("case"),
+          .stage = head.at("stage"),
+          .iteration = iteration,
+          .bytes = std::string(text.substr(end + 1))};
+}
 
 }  // namespace
 
-fs::path state_path(const fs::path& store, const std::string& key) {
-  return store / "checkpoints" / key;
-}
-
-void write_state(const fs::path& path, const StageState& state) {
-  make_directory(path.parent_path());
+void write_state(const fs::path& store,
+                 const std::string& key,
+                 const StageState& state) {
   const json head = {{"case", state.case_name},
                      {"stage", state.stage},
                      {"iteration", state.iteration}};
   const std::string text = fmt::format(" {}\n{}", head.dump(), state.bytes);
-  write_atomically(path, fmt::format("{:08x}{}", crc32c(text), text));
+  Folder(store).make(kFolder).write(
+      checked(key), fmt::format("{:08x}{}", crc32c(text), text));
 }
 
-std::optional<StageState> read_state(const fs::path& path) {
-  std::error_code error;
-  if (!fs::exists(path, error)) return {};
-  const std::string all = read_file(path);
-  const std::string_view text(all.data() + std::min(kSum, all.size()),
-                              all.size() - std::min(kSum, all.size()));
-  if (fmt::format("{:08x}", crc32c(text)) != all.substr(0, kSum))
+std::optional<StageState> read_state(const fs::path& store,
+                                     const std::string& key) {
+  checked(key);
+  const auto states = states_of(store);
+  if (!states || !states->has(key)) return {};
+  return parse_state(states->read(key, kLargestData), states->path() / key);
+}
+
+StageState parse_state(std::string_view bytes, const fs::path& path) {
+  const auto sum = bytes.substr(0, kSum);
+  const auto text = bytes.substr(sum.size());
+  try {
+    if (fmt::format("{:08x}", crc32c(text)) != sum)
+      throw std::runtime_error("checksum");
+    return parsed(text);
+  } catch (const std::exception&) {
     throw StoreError(
         fmt::format("{} is damaged (its stage starts again)", path.string()));
-  const auto end = text.find('\n');
-  const json head = json::parse(text.substr(0, end));
-  return StageState{.case_name = head.at("case"),
-                    .stage = head.at("stage"),
-                    .iteration = head.at("iteration"),
-                    .bytes = std::string(text.substr(end + 1))};
+  }
+}
+
+void remove_state(const fs::path& store, const std::string& key) {
+  checked(key);
+  if (const auto states = states_of(store)) states->remove(key);
 }
 
 }  // namespace physinv

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "suite/core/batch.h"
 
@@ -20,13 +21,19 @@ struct StageState {
   std::string bytes;  ///< as the stage's Archive has them
 };
 
-std::filesystem::path state_path(const std::filesystem::path& store,
-                                 const std::string& key);
-
 /// On disk when it returns, in place of what was there.
-void write_state(const std::filesystem::path& path, const StageState& state);
+void write_state(const std::filesystem::path& store,
+                 const std::string& key,
+                 const StageState& state);
 
-/// Nothing if there is no such file; StoreError if it is damaged.
-std::optional<StageState> read_state(const std::filesystem::path& path);
+/// Nothing if there is none; StoreError if it is damaged.
+std::optional<StageState> read_state(const std::filesystem::path& store,
+                                     const std::string& key);
+/// The same of a file's bytes; `path` is for messages.
+StageState parse_state(std::string_view bytes,
+                       const std::filesystem::path& path);
+
+/// Nothing is done if there is none.
+void remove_state(const std::filesystem::path& store, const std::string& key);
 
 }  // namespace physinv

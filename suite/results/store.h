@@ -4,6 +4,9 @@
 ///   plan.json      what was asked for              results.json     derived
 ///   lock           held by the writer     checkpoints/  see stage_state.h
 ///
+/// All of it is reached through the directory's Folder (folder.h). What else
+/// stands there is the user's.
+///
 /// A stage's arrays are on disk before its line, so that the process may be
 /// killed at any moment: what `append` returned for is there, complete, once.
 #pragma once
@@ -17,6 +20,7 @@
 #include <vector>
 
 #include "suite/results/catalog.h"
+#include "suite/results/lock.h"
 #include "suite/results/plan.h"
 #include "suite/results/stage_state.h"
 
@@ -26,12 +30,13 @@ class Store {
  public:
   /// Opens for writing, creating what is missing. StoreError if another
   /// process writes there, the disk does not let us, or something is damaged.
-  explicit Store(const std::filesystem::path& directory);
+  explicit Store(const std::filesystem::path& directory,
+                 const LockOptions& lock = {});
   /// Opens an existing store for `find` and `cases`.
   static Store read_only(const std::filesystem::path& directory);
   static bool exists(const std::filesystem::path& directory);
 
-  /// A torn line that was cut off, or empty.
+  /// A torn line that was cut off, a file that stands for a lock, or empty.
   const std::string& warning() const { return warning_; }
 
   /// Deletes what the store holds of these cases, and of no other.
@@ -54,6 +59,7 @@ class Store {
   /// The state of a stage under way; nothing if there is none. StoreError if
   /// it is damaged.
   std::optional<StageState> state(const std::string& key) const;
+  /// Nothing is done if there is none.
   void drop_state(const std::string& key);
 
   /// What is asked for, see plan.h, beside what was asked for earlier.
@@ -73,14 +79,29 @@ class Store {
 
  private:
   Store() = default;
-  CaseFile& open_case(const std::string& name,
-                      const std::filesystem::path& path);
+  CaseFile& open_case(const std::string& name);
 
+  Folder folder_, cases_;
   DirectoryLock lock_;
   std::string warning_;
   Catalog catalog_;
   Journal journal_;
   std::map<std::string, CaseFile> open_;  ///< of cases with stages to come
+};
+
+/// A new store beside the files of another, of a name that only the suite
+/// makes; it goes with all that a store holds. What a kill leaves of it goes
+/// when the other is opened for writing.
+class PassingStore {
+ public:
+  explicit PassingStore(const std::filesystem::path& beside);
+  ~PassingStore();
+  PassingStore(const PassingStore&) = delete;
+  PassingStore& operator=(const PassingStore&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
 };
 
 }  // namespace physinv

@@ -1,21 +1,24 @@
 """Stages that go on from the middle: killed, damaged, run again."""
 
 import glob
+import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
 import tempfile
 import time
 
-from program import BENCH, FAILED, check, results
+from program import BENCH, FAILED, check, crc32c, results
 
 
-def start(out, *flags, pace="40"):
+def start(out, *flags, pace="40", plant=""):
     return subprocess.Popen(
         [BENCH, "run", "--profile=smoke", "--filter=/descend/", "--jobs=1",
          "--trace", "--checkpoint=0.001", *flags, "--out", out],
-        env={**os.environ, "PHYSINV_FAKE_PACE_MS": pace},
+        env={**os.environ, "PHYSINV_FAKE_PACE_MS": pace,
+             "PHYSINV_FAKE_PLANT": plant},
         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
 
 
@@ -42,6 +45,67 @@ def killed_inside(out):
     return states(out)[0]
 
 
+def matrix(rows, columns):
+    numbers = [rows.to_bytes(8, "little"), columns.to_bytes(8, "little")]
+    return b"".join(numbers + [b"\0" * 8] * rows * columns)
+
+
+def forgeries(state):
+    """Headers of wrong types, and states whose parts are of other sizes."""
+    with open(state, "rb") as f:
+        head, parts = f.read()[8:].split(b"\n", 1)
+    whole = json.loads(head)
+    for key in whole:
+        for other in (None, -1, 1e300, [], {}):
+            yield json.dumps({**whole, key: other}).encode() + b"\n" + parts
+    yield json.dumps({**whole, "iteration": "x"}).encode() + b"\n" + parts
+    for other in (b"", b"[]", b"7", b"{", b"[" * 100000):
+        yield other + b"\n" + parts
+    yield head  # without an end
+    for size in (0, 1, 7, 8, len(parts) // 2, len(parts) - 1):
+        yield head + b"\n" + parts[:size]
+    # Estimates and gradients stand first, 2 x 4 each.
+    rest = parts[2 * len(matrix(2, 4)):]
+    for rows, columns in ((2, 3), (2, 5), (1, 4), (0, 0), (2, 0)):
+        yield head + b"\n" + 2 * matrix(rows, columns) + rest
+    for number in (-1, 1 << 62, 1 << 40):
+        for at in (0, 8):
+            yield head + b"\n" + parts[:at] + \
+                number.to_bytes(8, "little", signed=True) + parts[at + 8:]
+
+
+def forged(d, whole):
+    """Each is given up, and the stage comes to what it should."""
+    out = os.path.join(d, "forged")
+    state = killed_inside(out)
+    original = os.path.join(d, "original")
+    shutil.copytree(out, original)
+    count = 0
+    for text in forgeries(state):
+        shutil.rmtree(out)
+        shutil.copytree(original, out)
+        text = b" " + text.lstrip(b" ")
+        with open(state, "wb") as f:
+            f.write(crc32c(text) + text)
+        process = start(out, pace="0")
+        process.communicate(timeout=60)
+        if process.returncode != 0 or states(out) or \
+                results(out) != results(whole):
+            check(False, f"{text[:60]} -> {process.returncode}")
+        count += 1
+    check(count > 30, f"{count} forged states end well")
+
+
+def crash(d, whole):
+    """A state that ends its worker does so once."""
+    out = os.path.join(d, "crash")
+    killed_inside(out)
+    text = finish(start(out, pace="0", plant="a crash when going on"))
+    check("cannot go on from its state" in text and "it starts again" in text,
+          "says so")
+    check(results(out) == results(whole), "same results as uninterrupted")
+
+
 with tempfile.TemporaryDirectory() as d:
     whole = os.path.join(d, "whole")
     finish(start(whole, pace="0"))
@@ -65,6 +129,9 @@ with tempfile.TemporaryDirectory() as d:
     check("is damaged (its stage starts again)" in text, "damage is said")
     check("going on with" not in text, "nothing goes on from it")
     check(results(out) == results(whole), "same results as uninterrupted")
+
+    forged(d, whole)
+    crash(d, whole)
 
     out = os.path.join(d, "fresh")
     state = killed_inside(out)

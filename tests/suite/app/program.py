@@ -36,6 +36,17 @@ def expect(code, args, cwd, says="", env=None, **kwargs):
     check(good, f"{' '.join(args)} -> {p.returncode} {p.stderr.strip()[:150]}")
     return p
 
+
+def crc32c(data):
+    """As the suite seals its files."""
+    r = 0xffffffff
+    for byte in data:
+        r ^= byte
+        for _ in range(8):
+            r = (r >> 1) ^ (0x82f63b78 if r & 1 else 0)
+    return b"%08x" % (r ^ 0xffffffff)
+
+
 TIMES = ("time", "date", "seconds", "_ms", "finished", "rss", "crowded",
          "clocks", "warmup", "setup", "revision")
 

@@ -4,7 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <cstring>
 #include <limits>
+#include <stdexcept>
 
 #include "tests/support/bits.h"
 
@@ -73,6 +76,30 @@ TEST(Archive, RefusesAStateThatIsTooShort) {
   Archive archive(collected.bytes().substr(0, collected.bytes().size() - 1));
   Outer to;
   EXPECT_THROW(archive(to), std::logic_error);
+}
+
+/// A size is only a claim: nothing is made for what is not there.
+TEST(Archive, RefusesSizesThatCannotBe) {
+  Outer from = example();
+  Archive collected;
+  collected(from);
+  const std::string& bytes = collected.bytes();
+  for (std::size_t at = 0; at + 8 <= bytes.size(); ++at) {
+    for (const std::int64_t size : {std::int64_t{-1},
+                                    std::int64_t{1} << 30,
+                                    std::int64_t{1} << 60,
+                                    std::numeric_limits<std::int64_t>::max(),
+                                    std::numeric_limits<std::int64_t>::min()}) {
+      auto wrong = bytes;
+      std::memcpy(wrong.data() + at, &size, 8);
+      Archive archive(wrong);
+      Outer to;
+      try {
+        archive(to);  // a number, not a size
+      } catch (const std::logic_error&) {
+      }
+    }
+  }
 }
 
 }  // namespace

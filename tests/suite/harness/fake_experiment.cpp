@@ -107,6 +107,11 @@ void nap(double seconds) {
   std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
 }
 
+void crash() {
+  std::signal(SIGSEGV, SIG_DFL);
+  std::raise(SIGSEGV);
+}
+
 /// Milliseconds per iteration, so that tests can stop a campaign midway.
 double pace() {
   const char* text = std::getenv("PHYSINV_FAKE_PACE_MS");
@@ -148,8 +153,12 @@ class Descend final : public Base {
     const auto keep = [&](Archive& archive) {
       archive(x, gradient, run.probe, run.oracle);
     };
-    if (run.checkpoint != nullptr)
-      if (auto last = run.checkpoint->last()) keep(*last);
+    if (run.checkpoint != nullptr) {
+      if (auto last = run.checkpoint->last()) {
+        if (planted("a crash when going on")) crash();
+        keep(*last);
+      }
+    }
     run.probe.begin_warmup();
     if (planted("more work"))
       run.oracle.evaluate<double>(run.oracle.all(), x, loss, gradient);
@@ -225,10 +234,7 @@ class Ends final : public Base {
   Outcome run(StageRun& run) const override {
     if (how_ == "throws") throw std::runtime_error("no solution today");
     if (how_ == "exhaust") throw std::bad_alloc();
-    if (how_ == "die") {
-      std::signal(SIGSEGV, SIG_DFL);
-      std::raise(SIGSEGV);
-    }
+    if (how_ == "die") crash();
     if (how_ == "sleep") nap(60);
     Outcome out;
     out.x = run.oracle.start();

@@ -143,7 +143,7 @@ TEST_F(MergeTest, OtherOptionsOfOldPlansAreRefused) {
 
 TEST_F(MergeTest, OtherContentKeysAreRefused) {
   run("a", all);
-  cases_[3].keys[0] = "of other data";
+  cases_[3].keys[0] = hex128("of other data");
   run("b", all);
   const auto message = message_of<UnreadableInput>([&] {
     merge({out_ / "a", out_ / "b"}, out_ / "merged");
@@ -154,7 +154,7 @@ TEST_F(MergeTest, OtherContentKeysAreRefused) {
 TEST_F(MergeTest, StagesOutsideThePlanStayOut) {
   run("even", even);
   const auto keys = cases_[1].keys;
-  cases_[1].keys = {"earlier fit", "earlier refine"};
+  cases_[1].keys = {hex128("earlier fit"), hex128("earlier refine")};
   run("odd", odd);
   cases_[1].keys = keys;  // planned again with other options, and not run
   std::vector<PlannedCase> campaign;

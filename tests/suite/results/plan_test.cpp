@@ -91,7 +91,7 @@ TEST_F(PlanTest, PartOfACampaignLeavesTheRestPlanned) {
 
 TEST_F(PlanTest, LatestKeysCount) {
   const json all = plan({a_, b_});
-  b_.keys = {"new fit", "new refine"};
+  b_.keys = {hex128("new fit"), hex128("new refine")};
   const json now = extend_plan(all, plan({b_}));
   EXPECT_EQ(planned_keys(now, a_.name, {}), a_.keys);
   EXPECT_EQ(planned_keys(now, b_.name, {}), b_.keys);
@@ -104,7 +104,7 @@ TEST_F(PlanTest, StagesOfOtherKeysThanPlannedAreLeftOut) {
     store.append(a_, sample_data(a_), sample_stage(a_, k));
   store.set_plan({a_}, json::object());
   EXPECT_EQ(Catalog::read(out_.path()).cases().at(0).stages.size(), 2U);
-  a_.keys[1] = "of other options";
+  a_.keys[1] = hex128("of other options");
   store.set_plan({a_}, json::object());
   EXPECT_EQ(Catalog::read(out_.path()).cases().at(0).stages.size(), 1U);
 }

@@ -8,8 +8,11 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "suite/results/checksum.h"
 #include "suite/results/curves.h"
@@ -55,8 +58,51 @@ inline CaseInfo sample_case(const std::string& method,
   info.name = fmt::format("jpo/sample/{}/n={}/seed={}", method, n, seed);
   info.stages = {"fit", "refine"};
   for (const auto& stage : info.stages)
-    info.keys.push_back(hex64(hash_text(info.name + stage)));
+    info.keys.push_back(hex128(info.name + stage));
   return info;
+}
+
+/// What `body` is given: JSON of the same shape in which one value is of
+/// another type or size, or is gone; one after the other.
+template <class Json, class F>
+void for_each_wrong(const Json& good, F&& body) {
+  const Json others[] = {nullptr,
+                         true,
+                         -7,
+                         1e300,
+                         18446744073709551615U,
+                         "../../text",
+                         Json::array(),
+                         Json::array({3}),
+                         Json::object(),
+                         Json::object({{"a", 3}})};
+  std::vector<std::string> places;
+  const std::function<void(const Json&, const std::string&)> collect =
+      [&](const Json& value, const std::string& at) {
+        places.push_back(at);
+        if (!value.is_structured()) return;
+        const auto items = value.items();
+        for (auto item = items.begin(); item != items.end(); ++item) {
+          std::string name = item.key();
+          for (std::size_t k = 0; (k = name.find('/', k)) != name.npos; k += 2)
+            name.replace(k, 1, "~1");
+          collect(item.value(), at + "/" + name);
+        }
+      };
+  collect(good, "");
+  for (const auto& place : places) {
+    const typename Json::json_pointer pointer(place);
+    for (const Json& other : others) {
+      Json wrong = good;
+      wrong[pointer] = other;
+      body(wrong);
+    }
+    if (place.empty()) continue;
+    Json wrong = good;
+    Json& parent = wrong[pointer.parent_pointer()];
+    if (parent.is_object()) parent.erase(pointer.back());
+    body(wrong);
+  }
 }
 
 /// Numbers in [0, 1) that differ with the salt.

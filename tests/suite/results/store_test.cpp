@@ -28,9 +28,10 @@ TEST(CaseFile, KeepsEveryBit) {
   CaseFile file(info.name);
   file.put_data(data);
   for (Index k = 0; k < 2; ++k) put(file, sample_stage(info, k));
-  file.save(out / "a.h5");
+  const Folder folder(out.path());
+  file.save(folder);
 
-  const CaseFile back(out / "a.h5", info.name);
+  const CaseFile back(folder, info.name);
   EXPECT_EQ(back.data().hash, data.hash);
   EXPECT_TRUE(same_bits(back.data().x, data.x));
   EXPECT_TRUE(same_bits(back.data().y, data.y));
@@ -46,22 +47,23 @@ TEST(CaseFile, KeepsEveryBit) {
 
 TEST(StageState, ComesBackOrIsNamedAsDamaged) {
   TemporaryDirectory out;
-  const fs::path path = state_path(out / "store", "abc");
-  EXPECT_FALSE(read_state(path));
+  const std::string key = hex128("a stage");
+  EXPECT_FALSE(read_state(out / "nowhere", key));
+  EXPECT_FALSE(read_state(out.path(), key));
   const StageState state{"a/case", "fit", 12, std::string("\0b\ny\0te", 7)};
-  write_state(path, state);
-  const auto back = read_state(path);
+  write_state(out.path(), key, state);
+  const auto back = read_state(out.path(), key);
   ASSERT_TRUE(back);
   EXPECT_EQ(back->case_name, state.case_name);
   EXPECT_EQ(back->stage, state.stage);
   EXPECT_EQ(back->iteration, state.iteration);
   EXPECT_EQ(back->bytes, state.bytes);
 
+  const fs::path path = out / "checkpoints" / key;
   const auto bytes = read_file(path);
   const auto is_damaged = [&](const std::string& wrong) {
-    write_file(path, wrong);
-    return contains(message_of<StoreError>([&] { read_state(path); }),
-                    "abc is damaged");
+    return contains(message_of<StoreError>([&] { parse_state(wrong, path); }),
+                    key + " is damaged");
   };
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     auto wrong = bytes;
@@ -69,6 +71,8 @@ TEST(StageState, ComesBackOrIsNamedAsDamaged) {
     ASSERT_TRUE(is_damaged(wrong)) << i;
     ASSERT_TRUE(is_damaged(bytes.substr(0, i))) << i;
   }
+  remove_state(out.path(), key);
+  EXPECT_FALSE(read_state(out.path(), key));
 }
 
 TEST(CaseFile, EveryFlippedBitIsFound) {
@@ -77,17 +81,17 @@ TEST(CaseFile, EveryFlippedBitIsFound) {
   CaseFile file(info.name);
   file.put_data(sample_data(info));
   put(file, sample_stage(info, 0));
-  file.save(out / "a.h5");
-  const auto bytes = read_file(out / "a.h5");
+  const fs::path path = out / case_file_name(info.name);
+  file.save(Folder(out.path()));
+  const auto bytes = read_file(path);
   for (std::size_t i = 0; i < bytes.size(); i += 1 + bytes.size() / 199) {
     auto wrong = bytes;
     wrong[i] = static_cast<char>(wrong[i] ^ (1 << (i % 8)));
-    write_file(out / "b.h5", wrong);
     const auto message =
-        message_of<StoreError>([&] { CaseFile(out / "b.h5", info.name); });
-    ASSERT_TRUE(contains(message, "b.h5 is damaged")) << i;
-    write_file(out / "b.h5", bytes.substr(0, i));
-    ASSERT_THROW(CaseFile(out / "b.h5", info.name), StoreError) << i;
+        message_of<StoreError>([&] { CaseFile(wrong, path, info.name); });
+    ASSERT_TRUE(contains(message, path.string() + " is damaged")) << i;
+    ASSERT_THROW(CaseFile(bytes.substr(0, i), path, info.name), StoreError)
+        << i;
   }
 }
 
@@ -140,14 +144,14 @@ TEST_F(StoreTest, ChangedKeyReplacesAndItsFollowersAreOutdated) {
   Store store(out_.path());
   append(store, a_, 0), append(store, a_, 1);
   const auto old = a_.keys;
-  a_.keys = {"new fit", "new refine"};
-  EXPECT_FALSE(store.find("new fit"));
+  a_.keys = {hex128("new fit"), hex128("new refine")};
+  EXPECT_FALSE(store.find(hex128("new fit")));
   append(store, a_, 0);
   EXPECT_FALSE(store.find(old[0]));
   const auto results = load_results(out_.path());
   ASSERT_EQ(results.cases().size(), 1U);
   ASSERT_EQ(results.cases()[0].stages.size(), 1U);
-  EXPECT_EQ(results.cases()[0].stages[0].key, "new fit");
+  EXPECT_EQ(results.cases()[0].stages[0].key, hex128("new fit"));
 }
 
 TEST_F(StoreTest, CasesShareStagesByKey) {
