@@ -6,25 +6,14 @@
 
 #include "suite/core/check.h"
 #include "tests/support/gradient_check.h"
-#include "tests/support/reference.h"
+#include "tests/support/jpo_entries.h"
 
 namespace physinv {
 namespace {
 
 TEST(BoundaryLossReference, Entry) {
-  for (const auto& entry :
-       test::reference_entries("jpo-billiards", "boundary_loss")) {
-    const auto near = test::EntryTolerance(entry).array();
-    const Batch<double> x = test::columns(entry.at("xi"));
-    const BoundaryLoss wall(test::vector(entry.at("lo")),
-                            test::vector(entry.at("hi")),
-                            entry.value("gamma", 20.0));
-    Vector<double> loss = Vector<double>::Zero(x.cols());
-    Batch<double> g = Batch<double>::Zero(x.rows(), x.cols());
-    wall.add(x, 1, loss, g);
-    EXPECT_TRUE(near(loss, test::vector(entry.at("value"))));
-    EXPECT_TRUE(near(g, test::columns(entry.at("gradient"))));
-  }
+  test::check_entries_named(
+      "jpo-billiards", "boundary_loss", test::check_boundary);
 }
 
 BoundaryLoss wall() {

@@ -5,25 +5,14 @@
 #include <cmath>
 #include <limits>
 
-#include "tests/support/reference.h"
+#include "tests/support/jpo_entries.h"
 
 namespace physinv {
 namespace {
 
 TEST(ClipPercentileReference, Entry) {
-  for (const auto& entry :
-       test::reference_entries("jpo-billiards", "clip_percentile_90")) {
-    const auto near = test::EntryTolerance(entry).array();
-    Batch<double> g = test::columns(entry.at("input"));
-    ClipPercentile clip;
-    const double tau = clip.operator()<double>(g);
-    EXPECT_TRUE(near(tau, test::number(entry.at("threshold"))));
-    EXPECT_TRUE(
-        near(Eigen::Map<const Vector<double>>(
-                 clip.norms().data(), static_cast<Index>(clip.norms().size())),
-             test::vector(entry.at("norms"))));
-    EXPECT_TRUE(near(g, test::columns(entry.at("output"))));
-  }
+  test::check_entries_named(
+      "jpo-billiards", "clip_percentile_*", test::check_clip);
 }
 
 template <class T>

@@ -12,6 +12,7 @@
 #include "suite/core/check.h"
 #include "tests/optimizers/functions.h"
 #include "tests/support/bits.h"
+#include "tests/support/jpo_entries.h"
 #include "tests/support/reference.h"
 
 namespace physinv {
@@ -23,41 +24,12 @@ using test::same_bits;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 TEST(GradientDescentReference, Billiards) {
-  for (const auto& entry :
-       test::reference_entries("jpo-billiards", "gd_adaptive")) {
-    const auto near = test::EntryTolerance(entry).array();
-    const auto& xs = entry.at("x_after_iteration");
-    const auto& losses = entry.at("loss_after_iteration");
-    const auto steps = static_cast<Index>(xs.size()) - 1;
-    std::vector<Batch<double>> x;
-    std::vector<Vector<double>> loss;
-    GradientDescent gd({.maxiter = steps});
-    drive(gd,
-          Billiards{test::columns(entry.at("balls"))},
-          test::columns(xs.at(0)),
-          [&](const GradientDescent& g) {
-            x.push_back(g.x());
-            loss.push_back(g.loss());
-          });
-    for (std::size_t k = 0; k < xs.size(); ++k) {
-      const std::size_t at = std::min(k, x.size() - 1);
-      EXPECT_TRUE(near(x[at], test::columns(xs[k]))) << "iteration " << k;
-      EXPECT_TRUE(near(loss[at], test::vector(losses[k])));
-    }
-    const Vector<double> evaluations = test::vector(entry.at("evaluations"));
-    for (Index i = 0; i < evaluations.size(); ++i) {
-      // Where the loss stands still, the last bit decides when to stop.
-      const auto n = losses.size();
-      const double before = losses[n - 2][static_cast<std::size_t>(i)];
-      const double after = losses[n - 1][static_cast<std::size_t>(i)];
-      const bool still = std::abs(after - before) <= 1e-12 * std::abs(after) &&
-                         evaluations(i) > 3;
-      EXPECT_NEAR(
-          static_cast<double>(gd.evaluations()[static_cast<std::size_t>(i)]),
-          evaluations(i),
-          still ? 11 : 0);
-    }
-  }
+  test::check_entries_named(
+      "jpo-billiards", "gd_adaptive", [](const test::Json& entry) {
+        const Billiards problems{test::columns(entry.at("balls"), 2)};
+        // Section 2: gtol.
+        test::check_descent(entry, problems, 2, problems.balls.cols(), 1e-5);
+      });
 }
 
 /// The batch of problems whose aiming angles reach from plateau to centre.

@@ -1,9 +1,11 @@
 #include "tests/optimizers/hig_learner.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <regex>
+#include <stdexcept>
 
 #include "suite/core/decompositions.h"
 #include "suite/nn/mlp.h"
@@ -49,6 +51,7 @@ Vector<double> Ordered::start(const Json& in) const {
 
 Vector<double> Ordered::permuted(const Vector<double>& from, bool back) const {
   Vector<double> to = from;
+  if (from.size() != net->parameter_count()) return to;  // `At` says so
   Index at = 0;
   for (const auto& [taps, in, out] : layers_) {
     for (Index t = 0; t < taps; ++t)
@@ -74,6 +77,14 @@ At::At(const Learner& l,
       target(wanted) {
   const Shape shape = l.problem->shape();
   const Index n = target.cols();
+  if (target.rows() != shape.observations ||
+      theta.size() != l.network.net->parameter_count())
+    throw std::runtime_error(
+        fmt::format("targets of {} numbers, {} weights; the test has {} and {}",
+                    target.rows(),
+                    theta.size(),
+                    shape.observations,
+                    l.network.net->parameter_count()));
   const Network<double>& net = *l.network.net;
   x.resize(shape.unknowns, n), y.resize(shape.observations, n);
   g.resizeLike(y), loss.resize(n);
@@ -163,6 +174,9 @@ Batch<double> At::stacked_jacobian() {
 Batch<double> flat_columns(const Json& list) {
   const Vector<double> all = flat(list);
   const auto n = static_cast<Index>(list.size());
+  if (n == 0 || all.size() % n != 0)
+    throw std::runtime_error(fmt::format(
+        "{} has {} numbers in {} items", list.path(), all.size(), n));
   return Eigen::Map<const Batch<double>>(all.data(), all.size() / n, n);
 }
 
@@ -197,12 +211,13 @@ void check_update(At& at,
     EXPECT_TRUE(tolerance.delta(strict).summary(at.update(step), stored));
     at.theta = before;
     // Where no value is so close to its cut that rounding decides.
+    const Index kept = stored.at("kept");
     const double doubt =
         strict ? 1e-14 / power.tau : 1e-15 / (power.tau * power.tau);
     const bool clear =
         power.tau == 0 || ((s.array() - cut).abs() > doubt * cut).all();
     if (clear && power.kappa != 1) {
-      EXPECT_EQ(step.report().kept, stored.at("kept").get<Index>());
+      EXPECT_EQ(step.report().kept, kept);
       // Without a spectrum it is a bound.
       EXPECT_GE(step.report().s_max, (1 - 1e-10) * s(0));
       if (step.report().path != hig::Path::shortcut) {
@@ -214,20 +229,18 @@ void check_update(At& at,
 
 }  // namespace
 
-void check_batch(const Learner& l,
-                 const char* targets,
-                 const Json& entry,
-                 Expected& out) {
-  const Json& in = entry.at("input");
+void check_batch(const Learner& l, const char* targets, const Json& entry) {
+  const Json in = entry.at("input"), out = entry.at("expected");
   const HigTolerance tolerance(entry);
   const auto same = tolerance.array();
   At at(l, l.network.start(in), flat_columns(in.at(targets)));
+  ASSERT_EQ(at.target.cols(), in.at("batch").get<Index>());
   if (out.contains("loss")) {
-    EXPECT_TRUE(same(at.loss.mean(), out.at("loss")));
+    EXPECT_TRUE(same(at.loss.mean(), number(out.at("loss"))));
   }
   if (out.contains("loss_sum")) {
-    EXPECT_TRUE(same(at.loss.sum(), out.at("loss_sum")));
-    EXPECT_TRUE(same(at.loss.mean(), out.at("loss_mean")));
+    EXPECT_TRUE(same(at.loss.sum(), number(out.at("loss_sum"))));
+    EXPECT_TRUE(same(at.loss.mean(), number(out.at("loss_mean"))));
   }
   for (const char* state : {"y", "psi"}) {
     if (out.contains(state)) {
@@ -259,18 +272,18 @@ void check_batch(const Learner& l,
     check_update(at, tolerance, power, expected, out.at(key));
     ++updates;
   }
-  EXPECT_GE(updates, 2);
+  EXPECT_GE(updates, 1);
 }
 
 void check_sequence(const Learner& l,
                     const char* targets,
                     Index batch,
                     const Json& entry) {
-  const Json& in = entry.at("input");
-  Expected out(entry);
+  const Json in = entry.at("input"), out = entry.at("expected");
   const HigTolerance tolerance(entry);
   const auto same = tolerance.array();
   const Batch<double> all = flat_columns(in.at(targets));
+  ASSERT_TRUE(1 <= batch && batch <= all.cols()) << "batch " << batch;
   const Vector<double> start = l.network.start(in);
   const bool before = out.contains("losses_before");
   const Vector<double> losses =

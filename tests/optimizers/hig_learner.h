@@ -89,10 +89,7 @@ bool parse_power(const std::string& key, hig::Power& power);
 
 /// Estimates, loss, gradient, singular values and updates of an entry, in
 /// double; `targets` is its input's name.
-void check_batch(const Learner& l,
-                 const char* targets,
-                 const Json& entry,
-                 Expected& out);
+void check_batch(const Learner& l, const char* targets, const Json& entry);
 
 /// Consecutive minibatches in fixed order, by the strictest path and, as far as
 /// the entry allows updates to differ, by the library's own.

@@ -8,33 +8,37 @@
 namespace physinv::test {
 namespace {
 
-void run_entries(Precision precision) {
-  const auto entries = reference_entries("jpo-billiards", "jpo_mlp");
-  ASSERT_FALSE(entries.empty());
-  for (const Json& entry : entries) {
-    const Batch<double> balls = columns(entry.at("balls"));
-    const auto target = BilliardsOptions{}.target;
-    Samples<double> s{{}, Batch<double>(2, balls.cols()), balls};
-    s.y.colwise() = Eigen::Vector2d(target[0], target[1]);
-    expect_jpo<Billiards>(
-        entry,
-        {.inputs = {Field::given, Field::observations},
-         .network = nn::mlp({.hidden = {128, 128, 128}, .frequencies = 4}),
-         .parameters = 37506,
-         .rate = 1e-4,
-         .last_matrix = 0.05},
-        s,
-        precision);
-  }
+const std::string kId = "jpo-billiards";
+
+void check_in(const Json& entry, Precision precision) {
+  const auto sizes = layer_sizes(entry, {32, 128, 128, 128, 2});
+  const Batch<double> balls = columns(entry.at("balls"), 2);
+  const auto target = BilliardsOptions{}.target;
+  Samples<double> s{{}, Batch<double>(2, balls.cols()), balls};
+  s.y.colwise() = Eigen::Vector2d(target[0], target[1]);
+  expect_jpo<Billiards>(
+      kId,
+      entry,
+      {.inputs = {Field::given, Field::observations},
+       .network = nn::mlp({.hidden = {sizes.begin() + 1, sizes.end() - 1},
+                           .frequencies = sizes.front() / 8}),
+       .rate = 1e-4,
+       .last_matrix = 0.05},
+      s,
+      precision);
 }
 
-TEST(JpoReference, Double) { run_entries(Precision::f64); }
-
-TEST(JpoReference, FirstStepInFloat) { run_entries(Precision::f32); }
+TEST(JpoReference, InBothPrecisions) {
+  check_entries_named(
+      kId,
+      "jpo_mlp",
+      in_both([](const Json& e) { check_in(e, Precision::f32); },
+              [](const Json& e) { check_in(e, Precision::f64); }));
+}
 
 TEST(JpoReference, EveryEntryOfTheFileHasATest) {
-  expect_known_entries("jpo-billiards",
-                       {"clip_percentile_90",
+  expect_known_entries(kId,
+                       {"clip_percentile_*",
                         "boundary_loss",
                         "bfgs_test_functions",
                         "simulate",

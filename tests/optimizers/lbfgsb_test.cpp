@@ -29,7 +29,7 @@ std::vector<double> bounds(const Json& list, double none) {
   std::vector<double> out;
   if (list.is_null()) return out;
   for (const Json& value : list)
-    out.push_back(value.is_null() ? none : value.get<double>());
+    out.push_back(value.is_null() ? none : test::number(value));
   return out;
 }
 
@@ -59,18 +59,20 @@ TEST(LbfgsbReference, EveryIterateAndCountIsThatOfSciPy) {
     const auto near = test::EntryTolerance(entry).array();
     for (const Json& stored : entry.at("runs")) {
       SCOPED_TRACE(stored.at("function").dump() + stored.at("x0").dump() +
-                   stored.at("lower").dump() + stored.at("options").dump());
+                   stored.at("lower").dump() + stored.at("options").dump() +
+                   stored.at("message").dump());
       const ClosedForm f{stored.at("function").get<std::string>()};
       const auto run = test::record(
           Lbfgsb(options_of(stored)), f, test::vector(stored.at("x0")));
       EXPECT_EQ(run.iterations, stored.at("iterations").get<Index>());
       EXPECT_EQ(run.evaluations, stored.at("evaluations").get<Index>());
-      EXPECT_EQ(test::scipy_status(run.status), stored.at("status").get<int>())
-          << stored.at("message");
+      EXPECT_EQ(test::scipy_status(run.status), stored.at("status").get<int>());
       EXPECT_TRUE(near(run.iterates, test::columns(stored.at("iterates"))));
       EXPECT_TRUE(near(run.losses, test::vector(stored.at("losses"))));
     }
   };
+  if (!test::has_reference("lbfgsb"))
+    GTEST_SKIP() << "no lbfgsb.json in " << test::reference_dir();
   test::check_entries("lbfgsb", {{"lbfgsb", check}});
 }
 

@@ -1,24 +1,29 @@
 // The vectors of sip-wave-packet: signals, losses and gradients of the problem,
 // searches by L-BFGS-B, and the network, trained through the stage itself.
+#include <algorithm>
 #include <numbers>
+#include <regex>
+#include <stdexcept>
+#include <string>
 
 #include "optimizers/drive.h"
 #include "optimizers/lbfgsb.h"
 #include "optimizers/training.h"
 #include "problems/wave_packet/wave_packet.h"
 #include "suite/nn/pooled_cnn.h"
-#include "tests/support/hig_reference.h"
 #include "tests/support/quadratic.h"
+#include "tests/support/reference.h"
 
 namespace physinv::test {
 namespace {
 
 const std::string kId = "sip-wave-packet";
-constexpr Index kSamples = 256;
 constexpr double kCentre = 76.8, kHalfRange = 51.2;
 
-WavePacketOptions sine() {
-  return {.frequency = 0.7,
+/// The problem of the specification, on as many samples as the signals have.
+WavePacketOptions sine(Index samples) {
+  return {.samples = samples,
+          .frequency = 0.7,
           .phase = -std::numbers::pi / 2,
           .width = 20,
           .centre = kCentre,
@@ -27,30 +32,60 @@ WavePacketOptions sine() {
           .half_loss = false};
 }
 
-/// The signals that all other entries are about.
+/// The signals that `words` speak about: lists of numbers, "the signals of
+/// loss-and-gradient", "first four of loss-and-gradient".
+Batch<double> signals_of(const Json& words) {
+  if (words.is_array()) return columns(words);
+  static const std::regex form("(?:the signals|first (\\w+)) of (\\S+)");
+  static const std::vector<std::string> kNumbers = {"zero",
+                                                    "one",
+                                                    "two",
+                                                    "three",
+                                                    "four",
+                                                    "five",
+                                                    "six",
+                                                    "seven",
+                                                    "eight",
+                                                    "nine",
+                                                    "ten"};
+  const std::string said = words;
+  std::smatch found;
+  if (!std::regex_match(said, found, form))
+    throw std::runtime_error(words.path() + " is \"" + said +
+                             "\", expected \"first four of NAME\"");
+  const Batch<double> all =
+      columns(spoken_of(kId, found[2]).at("inputs").at("y"));
+  if (!found[1].matched) return all;
+  const std::string number = found[1];
+  const auto at = std::find(kNumbers.begin(), kNumbers.end(), number);
+  const Index count =
+      at == kNumbers.end() ? std::stol(number) : at - kNumbers.begin();
+  if (count < 1 || count > all.cols())
+    throw std::runtime_error(words.path() + " is \"" + said + "\" of " +
+                             std::to_string(all.cols()));
+  return all.leftCols(count);
+}
+/// Of an entry that does not say which.
 Batch<double> signals() {
-  const auto found = reference_entries(kId, "loss-and-gradient");
-  if (found.size() != 1) throw std::runtime_error("which signals?");
-  return columns(found.front().at("inputs").at("y"));
+  return columns(spoken_of(kId, "loss-and-gradient").at("inputs").at("y"));
 }
 
 /// Single precision has its own rounding to lose.
 template <class T>
 Comparator tolerance(const Json& entry, double rtol, double atol) {
-  const Json& t = entry.at("tolerance");
   if (sizeof(T) == 4) return {rtol, atol};
-  return {t.at("rtol").get<double>(), t.at("atol").get<double>()};
+  return EntryTolerance(entry.at("tolerance")).array();
 }
 
 /// Signals, losses and slopes at t0 (columns), against the same columns of y.
 template <class T>
 struct Packet {
   Packet(const Vector<double>& t0, const Batch<double>& target)
-      : y(kSamples, t0.size()), slope(1, t0.size()), loss(t0.size()) {
-    const WavePacket<T> packet(sine());
+      : y(target.rows(), t0.size()), slope(1, t0.size()), loss(t0.size()) {
+    const WavePacket<T> packet(sine(target.rows()));
     const Batch<T> xi = (t0.array() - kCentre).matrix().transpose().cast<T>();
     const Batch<T> seen = target.cast<T>();
-    Batch<T> y_bar(y), given = Batch<T>::Zero(kSamples, t0.size());
+    Batch<T> y_bar(y), given = Batch<T>::Zero(y.rows(), y.cols());
     Tape tape;
     Workspace work;
     packet.linearize(xi, given, y, tape);
@@ -63,21 +98,23 @@ struct Packet {
 };
 
 template <class T>
-void check_signal_in(const Json& entry) {
-  Expected want(entry);
+void check_signal(const Json& entry) {
+  const Json want = entry.at("expected");
   const Batch<double> y = columns(want.at("y"));
-  const Vector<double> t0 = vector(entry.at("inputs").at("t0"));
+  const Vector<double> t0 = vector(entry.at("inputs").at("t0"), y.cols());
   EXPECT_TRUE(tolerance<T>(entry, 0, 2e-6)(Packet<T>(t0, y).y, y));
 }
 
 template <class T>
-void check_loss_in(const Json& entry) {
-  Expected want(entry);
-  const Json& in = entry.at("inputs");
+void check_loss(const Json& entry) {
+  const Json want = entry.at("expected");
+  const Json in = entry.at("inputs");
   const Vector<double> query = vector(in.at("query"));
-  const Batch<double> y = signals(), loss = columns(want.at("loss")),
-                      slope = columns(want.at("gradient"));
-  ASSERT_EQ(y.cols(), vector(in.at("t0_true")).size());
+  const Batch<double> y = signals_of(in.at("y")),
+                      loss = columns(want.at("loss"), query.size(), y.cols()),
+                      slope =
+                          columns(want.at("gradient"), query.size(), y.cols());
+  vector(in.at("t0_true"), y.cols());
   for (Index i = 0; i < y.cols(); ++i) {
     const Packet<T> at(query, y.col(i).replicate(1, query.size()));
     EXPECT_TRUE(tolerance<T>(entry, 2e-5, 0)(at.loss, loss.col(i)));
@@ -88,13 +125,12 @@ void check_loss_in(const Json& entry) {
 }
 
 /// Where the search ends from t0, one for each signal.
-Vector<double> found_from(const Vector<double>& t0) {
-  const Batch<double> y = signals();
+Vector<double> found_from(const Vector<double>& t0, const Batch<double>& y) {
   const auto objective = [&](std::span<const Index> active,
                              BatchIn<double> x,
                              VectorOut<double> loss,
                              BatchOut<double> gradient) {
-    Batch<double> target(kSamples, x.cols());
+    Batch<double> target(y.rows(), x.cols());
     for (Index k = 0; k < x.cols(); ++k)
       target.col(k) = y.col(active[static_cast<std::size_t>(k)]);
     const Packet<double> at(x.row(0).transpose(), target);
@@ -109,13 +145,14 @@ Vector<double> found_from(const Vector<double>& t0) {
 
 /// The search stays there, and no place of a dense scan is better.
 void check_minimum(const Json& entry) {
-  Expected want(entry);
-  const Batch<double> best = columns(want.at("t0_and_loss")), y = signals();
+  const Json want = entry.at("expected");
+  const Batch<double> y = signals_of(entry.at("inputs").at("y")),
+                      best = columns(want.at("t0_and_loss"), 2, y.cols());
   const Vector<double> t0 = best.row(0).transpose();
   const auto same = tolerance<double>(entry, 0, 0);
   EXPECT_TRUE(same(Packet<double>(t0, y).loss,
                    Vector<double>(best.row(1).transpose())));
-  EXPECT_TRUE(Comparator(0, 1e-6)(found_from(t0), t0));
+  EXPECT_TRUE(Comparator(0, 1e-6)(found_from(t0, y), t0));
   const auto scan = Vector<double>::LinSpaced(5701, 20, 134);
   for (Index i = 0; i < y.cols(); ++i)
     EXPECT_GE(Packet<double>(scan, y.col(i).replicate(1, scan.size()))
@@ -124,53 +161,37 @@ void check_minimum(const Json& entry) {
 }
 
 void check_search(const Json& entry) {
-  Expected want(entry);
-  const Batch<double> starts = rows(entry.at("inputs").at("starts")),
-                      t0 = rows(want.at("t0"));
+  const Json want = entry.at("expected");
+  const Batch<double> y = signals(),
+                      starts = rows(entry.at("inputs").at("starts"), y.cols()),
+                      t0 = rows(want.at("t0"), y.cols(), starts.cols());
   for (Index k = 0; k < starts.cols(); ++k)
-    EXPECT_TRUE(tolerance<double>(entry, 0, 0)(found_from(starts.col(k)),
+    EXPECT_TRUE(tolerance<double>(entry, 0, 0)(found_from(starts.col(k), y),
                                                Vector<double>(t0.col(k))));
 }
 
-NetworkRecipe network(bool batch_norm) {
-  return nn::pooled_cnn({.positions = kSamples,
+NetworkRecipe network(Index samples, bool batch_norm) {
+  return nn::pooled_cnn({.positions = samples,
                          .features = {16, 16, 16, 16, 16},
                          .hidden = {64, 32},
                          .output = nn::Activation::half_tanh,
                          .batch_norm = batch_norm});
 }
 
-/// u(k) s / sqrt(fan_in) by the number of the parameter; of a normalisation
-/// 1 + u / 10 and u / 10.
 template <class T>
-Vector<T> weights(const Json& rule, const Network<T>& net) {
-  const auto at = [&](const char* key) { return rule.at(key).get<Index>(); };
-  Vector<T> all(net.parameter_count());
-  for (const TensorInfo& tensor : net.tensors()) {
-    const double scale = rule.at("s").get<double>() /
-                         std::sqrt(static_cast<double>(tensor.fan_in));
-    for (Index k = tensor.offset; k < tensor.offset + tensor.size; ++k) {
-      const Index n = (at("a") * k * k + at("b") * k + at("c")) % at("m");
-      const double u = 2.0 * double(n) / double(at("m") - 1) - 1;
-      all(k) = static_cast<T>(tensor.kind == 's'   ? 1 + 0.1 * u
-                              : tensor.kind == 'o' ? 0.1 * u
-                                                   : u * scale);
-    }
-  }
-  return all;
-}
-
-template <class T>
-void check_network_in(const Json& entry) {
+void check_network(const Json& entry) {
   const bool batch_norm = entry.at("name") == "network-bn";
-  Expected want(entry);
-  const auto net = network(batch_norm).make<T>(kSamples, 1);
-  EXPECT_EQ(net->parameter_count(), want.at("parameter_count").get<Index>());
-  const Vector<T> p = weights(entry.at("inputs").at("weights"), *net);
+  const Json want = entry.at("expected");
+  const Json inputs = entry.at("inputs");
+  const Batch<double> y = signals_of(inputs.at("signals"));
+  const auto net = network(y.rows(), batch_norm).make<T>(y.rows(), 1);
+  EXPECT_EQ(net->parameter_count(),
+            want.at("parameter_count").template get<Index>());
+  const Vector<T> p = recurrence_weights(inputs.at("weights"), net->tensors())
+                          .template cast<T>();
   Vector<T> state(net->state_count()), gradient(p.size());
-  const Batch<double> y = signals().leftCols(4);
   const Batch<T> in = y.cast<T>();
-  Batch<T> out(1, 4);
+  Batch<T> out(1, y.cols());
   Tape tape;
   Workspace work;
   net->forward(p, state, in, out, tape, work, {.training = true});
@@ -180,15 +201,15 @@ void check_network_in(const Json& entry) {
   const auto same = tolerance<T>(entry, 1e-4, 0);
   EXPECT_TRUE(same(t0, vector(want.at("t0"))));
   const Packet<T> packet(t0, y);
-  EXPECT_TRUE(tolerance<T>(entry, 1e-3, 0)(packet.loss.sum(),
-                                           want.at("loss").get<double>()));
+  EXPECT_TRUE(
+      tolerance<T>(entry, 1e-3, 0)(packet.loss.sum(), number(want.at("loss"))));
 
   const Batch<T> out_bar = T(kHalfRange) * packet.slope;
   VectorOut<T> bar(gradient);
   net->backward(p, tape, out_bar, &bar, nullptr, work);
-  const Vector<double> norms = vector(want.at("gradient_norms"));
   const auto& tensors = net->tensors();
-  ASSERT_EQ(static_cast<Index>(tensors.size()), norms.size());
+  const Vector<double> norms =
+      vector(want.at("gradient_norms"), static_cast<Index>(tensors.size()));
   const auto part = [&](const TensorInfo& t) {
     return gradient.segment(t.offset, t.size).template cast<double>().eval();
   };
@@ -205,42 +226,65 @@ void check_network_in(const Json& entry) {
                    vector(want.at("last_layer_gradient"))));
 }
 
-/// The signals of the file, whatever set is asked for.
+struct ListedPacketOptions {
+  Batch<double> y;
+};
+Options describe(const ListedPacketOptions&) { return {}; }
+
+/// These signals, whatever set is asked for.
 template <class T>
 class Listed final : public WavePacket<T> {
  public:
-  using Options = WavePacketOptions;
-  explicit Listed(const Options& options = {}) : WavePacket<T>(options) {}
+  using Options = ListedPacketOptions;
+  explicit Listed(const Options& options)
+      : WavePacket<T>(sine(options.y.rows())), y_(options.y) {}
 
   Samples<double> sample(Index first, Index count, const Rng&) const override {
     return {Batch<double>::Zero(1, count),
-            signals().middleCols(first, count),
-            Batch<double>::Zero(kSamples, count)};
+            y_.middleCols(first, count),
+            Batch<double>::Zero(y_.rows(), count)};
   }
+
+ private:
+  Batch<double> y_;
 };
 
+/// The network, weights and signals of another entry.
+Json start_of(const Json& entry) {
+  static const std::string kWords = "weights of entry ";
+  const std::string said = entry.at("inputs").at("start");
+  if (!said.starts_with(kWords))
+    throw std::runtime_error("inputs.start is \"" + said + "\", expected \"" +
+                             kWords + "NAME\"");
+  return spoken_of(kId, said.substr(kWords.size()));
+}
+
 void check_steps(const Json& entry) {
-  Expected want(entry);
-  const Batch<double> t0 = columns(want.at("t0"));
-  const auto net = network(false);
-  const auto stage = train({.rule = AdamOptions{.rate = 1e-3, .eps = 1e-8},
-                            .batch = 4,
-                            .gradient_scale = 4});
+  const Json want = entry.at("expected"), start = start_of(entry);
+  const Batch<double> t0 = columns(want.at("t0")),
+                      y = signals_of(start.at("inputs").at("signals"));
+  ASSERT_EQ(t0.rows(), y.cols());
+  const auto net =
+      network(y.rows(), start.at("name").get<std::string>().ends_with("-bn"));
+  const auto plain = net.make<double>(y.rows(), 1);
+  const double rate = setting(entry, "lr", "lr ", 1e-3);
+  const auto stage = train({.rule = AdamOptions{.rate = rate, .eps = 1e-8},
+                            .batch = y.cols(),
+                            .gradient_scale = double(y.cols())});
   for (const Precision p : {Precision::f64, Precision::f32}) {
     const auto same = p == Precision::f64 ? tolerance<double>(entry, 0, 0)
                                           : Comparator(1e-3, 0);
     for (Index k = 0; k < t0.cols(); ++k) {
       StageBench bench(*stage,
-                       4,
+                       y.cols(),
                        k + 1,
-                       problem<Listed>("wave_packet", sine()),
+                       problem<Listed>("wave_packet", {y}),
                        {.predictor = {{Field::observations}, net},
                         .output_scale = kHalfRange});
-      const auto start = reference_entries(kId, "network").front();
       Outcome before;
-      before.arrays["parameters"] = weights(start.at("inputs").at("weights"),
-                                            *net.make<double>(kSamples, 1));
-      before.arrays["state"] = Batch<double>(0, 1);
+      before.arrays["parameters"] = recurrence_weights(
+          start.at("inputs").at("weights"), plain->tensors());
+      before.arrays["state"] = Batch<double>::Zero(plain->state_count(), 1);
       const Outcome out = bench.run(&before, p);
       EXPECT_TRUE(same((out.x.row(0).transpose().array() + kCentre).matrix(),
                        t0.col(k)))
@@ -250,19 +294,15 @@ void check_steps(const Json& entry) {
 }
 
 TEST(SipWavePacketReference, AllEntries) {
-  const auto both = [](auto in_double, auto in_float) {
-    return [=](const Json& entry) { in_double(entry), in_float(entry); };
-  };
   check_entries(
       kId,
-      {{"signal", both(check_signal_in<double>, check_signal_in<float>)},
-       {"loss-and-gradient", both(check_loss_in<double>, check_loss_in<float>)},
+      {{"signal", in_both(check_signal<float>, check_signal<double>)},
+       {"loss-and-gradient", in_both(check_loss<float>, check_loss<double>)},
        {"global-minimum", check_minimum},
        {"local-search", check_search},
-       {"network", both(check_network_in<double>, check_network_in<float>)},
+       {"network", in_both(check_network<float>, check_network<double>)},
        {"three-adam-steps", check_steps},
-       {"network-bn",
-        both(check_network_in<double>, check_network_in<float>)}});
+       {"network-bn", in_both(check_network<float>, check_network<double>)}});
 }
 
 }  // namespace

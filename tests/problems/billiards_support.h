@@ -20,14 +20,16 @@ struct Result {
 template <class T>
 Result<T> evaluate(const Batch<T>& x,
                    const Batch<T>& given,
-                   const Batch<T>* y_bar = nullptr) {
-  const Billiards<T> problem;
+                   const Batch<T>* y_bar = nullptr,
+                   const BilliardsOptions& options = {}) {
+  const Billiards<T> problem(options);
   const Index n = x.cols();
   Result<T> r;
   r.y.resize(2, n), r.x_bar.resize(2, n), r.jacobian.resize(4, n);
   r.y_forward.resize(2, n), r.loss.resize(n);
   Batch<T> target(2, n), g(2, n);
-  target.row(0).setConstant(T(2)), target.row(1).setConstant(T(0.5));
+  for (Index k = 0; k < 2; ++k)
+    target.row(k).setConstant(T(options.target[std::size_t(k)]));
   Tape tape;
   Workspace work, other;
   problem.linearize(x, given, r.y, tape);
@@ -45,11 +47,13 @@ Result<T> evaluate(const Batch<T>& x,
 }
 
 template <class T>
-Result<T> evaluate_one(Point v, Point ball) {
+Result<T> evaluate_one(Point v,
+                       Point ball,
+                       const BilliardsOptions& options = {}) {
   Batch<T> x(2, 1), given(2, 1);
   x << T(v[0]), T(v[1]);
   given << T(ball[0]), T(ball[1]);
-  return evaluate<T>(x, given);
+  return evaluate<T>(x, given, nullptr, options);
 }
 
 }  // namespace physinv::test

@@ -223,11 +223,11 @@ TYPED_TEST(FluidIn, PlacesFarAwayAreSafe) {
 template <class T>
 void check_stagger_project(const Json& entry) {
   using P = fluid::Samples8<T>;
-  const Json& out = entry.at("outputs");
+  const Json out = entry.at("outputs"),
+             centred = entry.at("inputs").at("centred");
   const FileTolerance<T> near(entry);
-  const Batch<double> cx = rows(entry.at("inputs").at("centred")[0]),
-                      cy = rows(entry.at("inputs").at("centred")[1]);
-  const Index n = cx.rows();
+  const auto n = static_cast<Index>(centred[0].size());
+  const Batch<double> cx = rows(centred[0], n, n), cy = rows(centred[1], n, n);
   Batch<double> u(n, n), v(n, n);
   for (Index i = 0; i < n; ++i)
     for (Index j = 0; j < n; ++j) {

@@ -3,9 +3,7 @@
 #pragma once
 
 #include <cstdint>
-#include <set>
-#include <string>
-#include <vector>
+#include <map>
 
 #include "tests/support/reference.h"
 
@@ -17,10 +15,14 @@ double hig_hash(std::uint32_t k);
 /// v_i = 2 hash(offset + i) - 1
 Vector<double> hig_probe(Index size, std::uint32_t offset);
 
-/// Nested lists in the order of their numbers.
-Vector<double> flat(const Json& value);
+/// Nested lists in the order of their numbers; of so many, or it throws.
+Vector<double> flat(const Json& value, Index size = kAny);
 
-/// |a - b| <= rel |b| + abs in the 2-norm.
+/// The states after_1, after_48, ... of an entry, by their steps.
+std::map<Index, Vector<double>> states_after(const Json& expected);
+
+/// |a - b| <= rel |b| + abs in the 2-norm, whatever the size of the numbers.
+/// Entries that are not finite must be the same and are left out.
 class TwoNorm {
  public:
   TwoNorm(double rel, double abs) : rel_(rel), abs_(abs) {}
@@ -49,23 +51,6 @@ class TwoNorm {
   testing::AssertionResult within(double difference, double size) const;
 
   double rel_, abs_;
-};
-
-/// What an entry expects. A key that is never asked for fails the test.
-class Expected {
- public:
-  explicit Expected(const Json& entry);
-  ~Expected();
-  Expected(const Expected&) = delete;
-  Expected& operator=(const Expected&) = delete;
-
-  bool contains(const std::string& key) const;
-  const Json& at(const std::string& key);
-  std::vector<std::string> keys() const;
-
- private:
-  Json values_;
-  std::set<std::string> read_;
 };
 
 /// The limits of one entry; forms nobody here knows are an error.

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <vector>
 
@@ -18,12 +20,13 @@ namespace physinv::test {
 template <template <class> class P>
 struct Matching {
   Batch<double> targets;
+  typename P<double>::Options options = {};
 
   void operator()(std::span<const Index> active,
                   BatchIn<double> x,
                   VectorOut<double> loss,
                   BatchOut<double> gradient) const {
-    const P<double> problem;
+    const P<double> problem(options);
     const Index n = x.cols(), m = targets.rows();
     const Batch<double> given = Batch<double>::Zero(problem.shape().given, n);
     Batch<double> y(m, n), target(m, n), y_bar(m, n);
@@ -38,45 +41,51 @@ struct Matching {
   }
 };
 
+/// The percentile is the number at the end of the entry's name.
 void check_clip(const Json& entry);
 void check_boundary(const Json& entry);
 void check_test_functions(const Json& entry);
 
-/// Every iterate and loss of gradient descent on problems P.
-template <template <class> class P>
+/// Every iterate and loss of gradient descent on so many problems.
+/// `step_tolerance` is the specification's gtol, where the entry has none.
+template <class F>
 void check_descent(const Json& entry,
-                   const Batch<double>& targets,
+                   const F& problems,
+                   Index unknowns,
+                   Index count,
                    double step_tolerance) {
   const auto near = EntryTolerance(entry).array();
-  const Json& xs = entry.at("x_after_iteration");
-  const Json& losses = entry.at("loss_after_iteration");
+  const Json xs = entry.at("x_after_iteration"),
+             losses = entry.at("loss_after_iteration");
+  ASSERT_EQ(xs.size(), losses.size());
+  ASSERT_FALSE(xs.empty());
   std::vector<Batch<double>> x;
   std::vector<Vector<double>> loss;
   const GradientDescentOptions options{
-      .step_tolerance = step_tolerance,
+      .step_tolerance = setting(entry, "gtol", "gtol", step_tolerance),
       .maxiter = static_cast<Index>(xs.size()) - 1};
   GradientDescent gd(options);
-  drive(gd,
-        Matching<P>{targets},
-        columns(xs.at(0)),
-        [&](const GradientDescent& g) {
-          if (g.accepted().empty()) return;
-          x.push_back(g.x());
-          loss.push_back(g.loss());
-        });
-  ASSERT_EQ(x.size(), xs.size());
+  const Batch<double> start = columns(xs.at(0), unknowns, count);
+  drive(gd, problems, start, [&](const GradientDescent& g) {
+    if (g.accepted().empty()) return;
+    x.push_back(g.x());
+    loss.push_back(g.loss());
+  });
+  ASSERT_FALSE(x.empty());
   for (std::size_t k = 0; k < xs.size(); ++k) {
-    EXPECT_TRUE(near(x[k], columns(xs[k]))) << "iteration " << k;
-    EXPECT_TRUE(near(loss[k], vector(losses[k]))) << "iteration " << k;
+    // Stopped problems stay where they are.
+    const std::size_t at = std::min(k, x.size() - 1);
+    EXPECT_TRUE(near(x[at], columns(xs[k]))) << "iteration " << k;
+    EXPECT_TRUE(near(loss[at], vector(losses[k]))) << "iteration " << k;
   }
-  const Vector<double> evaluations = vector(entry.at("evaluations"));
+  const Vector<double> evaluations = vector(entry.at("evaluations"), count);
+  const Batch<double> stored = columns(losses, count);
   for (Index i = 0; i < evaluations.size(); ++i) {
     // Where the loss no longer changes, the last bit decides about one more.
     bool free = false;
     for (std::size_t k = 1; k < xs.size(); ++k) {
-      const double now = vector(losses[k])(i),
-                   before = vector(losses[k - 1])(i);
-      free = free || std::abs(now - before) <= 1e-12 * before;
+      const double now = stored(i, Index(k)), before = stored(i, Index(k) - 1);
+      free = free || std::abs(now - before) <= 1e-12 * std::abs(before);
     }
     EXPECT_NEAR(
         static_cast<double>(gd.evaluations()[static_cast<std::size_t>(i)]),

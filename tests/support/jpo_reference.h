@@ -24,7 +24,8 @@ extern Notes* notes;
 template <template <class> class P, class T>
 class Fixed final : public Problem<T>, public Vjp<T> {
  public:
-  explicit Fixed(Samples<double> samples) : samples_(std::move(samples)) {}
+  Fixed(Samples<double> samples, const typename P<T>::Options& options)
+      : inner_(options), samples_(std::move(samples)) {}
 
   Shape shape() const override { return inner_.shape(); }
   Vector<double> start() const override { return inner_.start(); }
@@ -58,11 +59,11 @@ class Fixed final : public Problem<T>, public Vjp<T> {
   Samples<double> samples_;
 };
 
-/// What the file says about the network and its training.
+/// What the specification says about the network and its training; an entry
+/// may state other rates and factors.
 struct JpoEntry {
   std::vector<Field> inputs;
   NetworkRecipe network;
-  Index parameters;
   double rate;
   double last_matrix = 1;   ///< factor of its formula weights
   double output_scale = 1;  ///< estimates = start + scale * output
@@ -74,26 +75,30 @@ struct JpoEntry {
 
 /// The stage on such problems, against every step of the entry; in float,
 /// against the first.
-void expect_jpo(const Json& entry,
-                const JpoEntry& about,
+void expect_jpo(const std::string& id,
+                const Json& entry,
+                JpoEntry about,
                 const ProblemRecipe& fixed,
                 Index problems,
                 Precision precision);
 
 /// The same on problems P with these observations.
 template <template <class> class P>
-void expect_jpo(const Json& entry,
+void expect_jpo(const std::string& id,
+                const Json& entry,
                 const JpoEntry& about,
                 const Samples<double>& samples,
-                Precision precision) {
+                Precision precision,
+                const typename P<double>::Options& options = {}) {
   const ProblemRecipe fixed{
       .name = "fixed",
       .options = {},
       .provided = Needs::forward | Needs::vjp,
-      .make_float = [=] { return std::make_unique<Fixed<P, float>>(samples); },
+      .make_float =
+          [=] { return std::make_unique<Fixed<P, float>>(samples, options); },
       .make_double =
-          [=] { return std::make_unique<Fixed<P, double>>(samples); }};
-  expect_jpo(entry, about, fixed, samples.count(), precision);
+          [=] { return std::make_unique<Fixed<P, double>>(samples, options); }};
+  expect_jpo(id, entry, about, fixed, samples.count(), precision);
 }
 
 }  // namespace physinv::test

@@ -41,34 +41,29 @@ TEST(CompareLosses, StrictIsBitwise) {
 
 // The scores of the Navier-Stokes experiment, every entry of their oracle.
 TEST(CompareLosses, AgreesWithTheOracle) {
-  const auto entries = test::reference_entries("jpo-navier-stokes", "scores");
-  ASSERT_FALSE(entries.empty());
-  for (const auto& entry : entries) {
-    const auto &in = entry.at("inputs"), &out = entry.at("outputs");
-    const auto column = [&](const char* key) {
-      const auto values = in.at(key).get<std::vector<double>>();
-      return Vector<double>(Eigen::Map<const Vector<double>>(
-          values.data(), static_cast<Index>(values.size())));
-    };
-    const Vector<double> method = column("method"), bfgs = column("bfgs");
-    const Shares strict = compare_losses(method, bfgs, Equality::strict),
-                 band = compare_losses(method, bfgs, Equality::band);
-    const auto share =
-        decrease_share(column("start"), method, column("refined"));
-    ASSERT_TRUE(share);
-    const std::map<std::string, double> found = {{"better", strict.better},
-                                                 {"equal", strict.equal},
-                                                 {"f", strict.f()},
-                                                 {"better_tol", band.better},
-                                                 {"equal_tol", band.equal},
-                                                 {"network_fraction", *share}};
-    EXPECT_EQ(out.size(), found.size());
-    const double rel = entry.at("tolerance").at("rel");
-    for (const auto& [key, value] : found) {
-      const double expected = out.at(key);
-      EXPECT_NEAR(value, expected, rel * expected) << key;
-    }
-  }
+  test::check_entries_named(
+      "jpo-navier-stokes", "scores", [](const test::Json& entry) {
+        const test::Json in = entry.at("inputs"), out = entry.at("outputs");
+        const Vector<double> method = test::vector(in.at("method")),
+                             bfgs = test::vector(in.at("bfgs"));
+        const Shares strict = compare_losses(method, bfgs, Equality::strict),
+                     band = compare_losses(method, bfgs, Equality::band);
+        const auto share = decrease_share(test::vector(in.at("start")),
+                                          method,
+                                          test::vector(in.at("refined")));
+        ASSERT_TRUE(share);
+        const std::map<std::string, double> found = {
+            {"better", strict.better},
+            {"equal", strict.equal},
+            {"f", strict.f()},
+            {"better_tol", band.better},
+            {"equal_tol", band.equal},
+            {"network_fraction", *share}};
+        const test::Json t = entry.at("tolerance");
+        const test::Comparator near(t.at("rel"), t.at("abs"));
+        for (const auto& [key, value] : found)
+          EXPECT_TRUE(near(value, test::number(out.at(key)))) << key;
+      });
 }
 
 TEST(CompareLosses, NonFiniteIsWorse) {
