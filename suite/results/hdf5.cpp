@@ -6,6 +6,7 @@
 #include <span>
 
 #include "suite/results/errors.h"
+#include "suite/results/hdf5_form.h"
 
 namespace physinv::hdf5 {
 namespace {
@@ -42,6 +43,9 @@ Handle memory_access() {
   be_quiet();
   Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "make a property list");
   check(H5Pset_fapl_core(access, 1 << 18, false), "use memory");
+  // The form that is checked when it is read.
+  check(H5Pset_libver_bounds(access, H5F_LIBVER_EARLIEST, H5F_LIBVER_LATEST),
+        "choose a form");
   return access;
 }
 
@@ -177,6 +181,7 @@ Handle new_file() {
 }
 
 Handle open_image(std::string bytes) {
+  check_form(bytes);
   const Handle access = memory_access();
   check(H5Pset_file_image(access, bytes.data(), bytes.size()), "use memory");
   return {H5Fopen(unique_name().c_str(), H5F_ACC_RDWR, access),

@@ -38,7 +38,8 @@ class Handle {
 /// Throws StoreError with HDF5's reason if `result` is negative.
 void check(herr_t result, std::string_view what);
 
-/// An empty file in memory, or one with these bytes.
+/// An empty file in memory, or one with these bytes; StoreError if they are of
+/// another form than what is written here (hdf5_form.h).
 Handle new_file();
 Handle open_image(std::string bytes);
 /// The bytes that would stand on disk.
