@@ -1,0 +1,24 @@
+// The HDF5 file of one case, its checksum taken as right: what is read is what
+// stands in front of it.
+#include <fmt/format.h>
+
+#include "suite/results/curves.h"
+#include "tests/fuzz/inputs.h"
+#include "tests/fuzz/readers.h"
+
+namespace physinv::fuzz {
+
+void hdf5(std::string_view bytes) {
+  const std::string name = "jpo/billiards/bfgs/n=4/seed=0";
+  const auto sealed = fmt::format("{}physinv:{}", bytes, checksum(bytes));
+  StageRecord stage;
+  stage.stage = "solve";
+  documented([&] {
+    const CaseFile file(sealed, "case.h5", name);
+    documented([&] { file.data(); });
+    documented([&] { file.has_stage(stage, "hash"); });
+    documented([&] { file.read_stage(stage, "hash"); });
+  });
+}
+
+}  // namespace physinv::fuzz

@@ -1,0 +1,20 @@
+#!/usr/bin/env bash
+# run.sh PROGRAM FOLDER READER: feeds a fuzzer PHYSINV_FUZZ_RUNS inputs, made of
+# the corpus of its reader. What leads on is kept in inputs/READER beside the
+# program, for the next time; what should be mended, in found. An input may take
+# 5 s and a gigabyte.
+set -euo pipefail
+program=$1 folder=$2 reader=$3
+beside=${program%/*}
+mkdir -p "$beside/inputs/$reader" "$beside/found"
+dictionary=$folder/$reader.dict
+[[ -e $dictionary ]] || dictionary=$folder/json.dict
+# HDF5 forgets memory when it refuses a file.
+printf 'leak:libhdf5\n' >"$beside/inputs/leaks.$reader"
+export LSAN_OPTIONS=suppressions=$beside/inputs/leaks.$reader:print_suppressions=0
+export ASAN_OPTIONS=quarantine_size_mb=16
+exec "$program" -runs="${PHYSINV_FUZZ_RUNS:-20000}" -dict="$dictionary" \
+  -timeout=5 -rss_limit_mb=1024 -malloc_limit_mb=1024 \
+  -close_fd_mask=1 -print_final_stats=1 \
+  -artifact_prefix="$beside/found/$reader-" \
+  "$beside/inputs/$reader" "$folder/corpus/$reader"

@@ -1,0 +1,25 @@
+// A directory of journal and plan, divided by a line "--", without arrays.
+#include <nlohmann/json.hpp>
+
+#include "suite/results/catalog.h"
+#include "suite/results/results_json.h"
+#include "suite/results/shortfall.h"
+#include "tests/fuzz/readers.h"
+#include "tests/fuzz/sealed.h"
+
+namespace physinv::fuzz {
+
+void store(std::string_view bytes) {
+  const auto [lines, asked] = halves(bytes, "\n--\n");
+  put("store/journal.jsonl", sealed_lines(std::string(lines) + '\n'));
+  put("store/plan.json", sealed_plan(asked));
+  documented([&] {
+    const Catalog catalog = Catalog::read(folder() / "store");
+    const auto context = catalog.plan.value("context", nlohmann::json());
+    results_text(results_json(catalog.summaries(), catalog.order(), context));
+    to_text(shortfall(catalog, catalog.cases()));
+    for (const auto& entry : catalog.entries()) catalog.find(entry.stage.key);
+  });
+}
+
+}  // namespace physinv::fuzz
