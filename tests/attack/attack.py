@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Attacks the program: accidents, damage and hostile input.
 
-  attack.py PROGRAM                      all of it, some twenty minutes
+  attack.py PROGRAM                      all of it, half an hour
   attack.py PROGRAM --short              a part of each kind, a minute
   attack.py PROGRAM --only KIND          one kind
   attack.py PROGRAM --only KIND --seed N one attempt, told in full
@@ -24,25 +24,27 @@ import files
 import kills
 import lines
 import links
+import locks
 import shards
 import special
 import stores
 from world import Attempt, World, say
 
-# name -> function, attempts, attempts of --short
+# name -> function, attempts or hits, the same of --short
 KINDS = {
-    "kills": (kills.kills, 70, 2),
-    "signals": (kills.signals, 110, 5),
-    "disks": (disks.disks, 70, 8),
-    "flips": (files.flips, 1000, 80),
-    "resealed": (files.reseal, 1000, 80),
-    "lines": (lines.lines, 300, 60),
-    "cluster": (cluster.cluster, len(cluster.ALL), 8),
-    "shards": (shards.shards, len(shards.ALL), 40),
-    "links": (links.links, len(links.ALL_LINKS), 40),
-    "strangers": (links.strangers, 100, 20),
-    "special": (special.inputs, len(special.INPUTS), 40),
-    "targets": (special.outputs, len(special.OUTPUTS), 20),
+    "kills": (kills.kills, 300, 6),
+    "signals": (kills.signals, 100, 4),
+    "disks": (disks.disks, 80, 5),
+    "locks": (locks.locks, 15, 2),
+    "flips": (files.flips, 1000, 48),
+    "resealed": (files.reseal, 1000, 48),
+    "lines": (lines.lines, 300, 48),
+    "cluster": (cluster.cluster, len(cluster.ALL), 6),
+    "shards": (shards.shards, len(shards.ALL), 24),
+    "links": (links.links, len(links.ALL_LINKS), 24),
+    "strangers": (links.strangers, 100, 12),
+    "special": (special.inputs, len(special.INPUTS), 24),
+    "targets": (special.outputs, len(special.OUTPUTS), 12),
 }
 HERE = os.path.dirname(os.path.abspath(__file__))
 
@@ -93,6 +95,8 @@ def attack(world, kind, arguments):
     row = {"tries": 0, "hits": 0, "survived": 0, "findings": 0, "skipped": 0}
     reasons = set()
     for seed in seeds_of(kind, count, arguments):
+        if row["hits"] >= count:  # kills hit several times each
+            break
         attempt = one(world, kind, function, seed)
         tell(attempt, arguments)
         row["tries"] += 1

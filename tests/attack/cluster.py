@@ -29,6 +29,8 @@ CALLS = [("squeue", ["status", "cluster"]),
          ("sbatch", ["submit", "--slurm=cluster", *stores.SMALL,
                      "--tasks=2"])]
 ALL = list(itertools.product(CALLS, ANSWERS))
+# Seconds that a program of the cluster may take; a submission asks three.
+PATIENCE = {**stores.CACHE, "PHYSINV_SLURM_SECONDS": "1"}
 
 
 def cluster(attempt):
@@ -50,7 +52,7 @@ def answered(attempt):
     attempt.world.fake(name, ANSWERS[answer])
     attempt.note(f"{name}: {answer}")
     before = sandbox.snapshot(attempt.path("cluster"))
-    ended = attempt.run(*arguments, env=stores.CACHE)
+    ended = attempt.run(*arguments, env=PATIENCE)
     attempt.expect(ended.code in (0, 9, 10), f"{name} {answer}: {ended.code}")
     if name == "sbatch" and ended.code == 0:
         attempt.expect(answer in ("23 digits", "negative", "a list",
@@ -68,11 +70,11 @@ def merge_refused(attempt):
     attempt.world.fake("sbatch", f'echo "$@" >> {log}; ' + SECOND.format(
         mark=attempt.path("mark")))
     submit = CALLS[2][1]
-    ended = attempt.run(*submit, env=stores.CACHE)
+    ended = attempt.run(*submit, env=PATIENCE)
     attempt.expect(ended.code == 9, f"a refused merge: {ended.code}")
     os.remove(attempt.path("mark"))
     attempt.world.fake("sbatch", f'echo "$@" >> {log}; echo 4712')
     attempt.world.fake("squeue", "echo 4711 0 PENDING; echo 4711 1 PENDING")
-    attempt.run(*submit, env=stores.CACHE)
+    attempt.run(*submit, env=PATIENCE)
     arrays = sandbox.read(log).decode().count("--array=")
     attempt.expect(arrays == 1, f"the array was submitted {arrays} times")

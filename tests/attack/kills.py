@@ -12,8 +12,8 @@ import stores
 
 IN_A_ROW = 5  # accidents of a campaign before it may end
 # Enough that a training takes seconds and has checkpoints of a second.
-LONG = {"iterations": 50_000, "checkpoint": "1"}
-BRIEF = {"iterations": 8_000, "checkpoint": "0.1"}
+LONG = {"iterations": 40_000, "checkpoint": "1"}
+BRIEF = {"iterations": 4_000, "checkpoint": "0.05"}
 OWN = re.compile(r"(lock|journal\.jsonl|plan\.json|results\.json|cases"
                  r"|cases/[^/]*\.h5|checkpoints)?")
 STOPS = (signal.SIGINT, signal.SIGTERM)
@@ -128,7 +128,9 @@ def kills(attempt):
         return ended
 
     for _ in range(IN_A_ROW):
-        campaign.accident(attempt.rng.choice((parent, worker)))
+        ended = campaign.accident(attempt.rng.choice((parent, worker)))
+        if ended.code == 0:
+            break
     campaign.finish()
 
 
@@ -141,7 +143,7 @@ def trains(process):
         except OSError:
             return 0
     while process.alive():
-        if any(ticks(p) > 10 for p in process.workers()):
+        if any(ticks(p) > 5 for p in process.workers()):
             return True
         time.sleep(0.005)
     return False

@@ -108,7 +108,14 @@ class Running:
         return self.usage is None
 
     def workers(self):
-        return children(self.pid)
+        """Its children that are the same program, forked."""
+        def image(pid):
+            try:
+                return os.readlink(f"/proc/{pid}/exe")
+            except OSError:
+                return None
+        own = image(self.pid)
+        return [p for p in children(self.pid) if own and image(p) == own]
 
     def signal(self, number, to=None):
         """True if it was still there."""

@@ -15,7 +15,7 @@ SMALL = ["--profile=smoke", "--filter=physgrad/comparison/(gd|pg_numeric)/",
          "--filter=jpo/billiards/(jpo|bfgs)/n=4/"]
 TRAINING = ["--profile=smoke", "--filter=jpo/billiards/(jpo|supervised)/"]
 SHORT = [*TRAINING, "--set=iterations=4000"]
-CACHE = {"XDG_CACHE_HOME": "cache"}
+CACHE = {"XDG_CACHE_HOME": "{here}/cache"}
 PUBLISHED = {"PHYSINV_PUBLISHED_DIR": "published"}
 SBATCH = 'echo "$@" >> "${FAKE_LOG:-/dev/null}"; echo 4711'
 # In the queue is nothing.
@@ -147,6 +147,9 @@ def make(world):
                     os.path.join(world.golden, "published"))
     shutil.copy(os.path.join(reports, "expected_failures.json"),
                 os.path.join(world.golden, "expected.json"))
+    for kind in TARGETS:
+        if not files(world.golden, kind):
+            raise SystemExit(f"there is no file of the kind {kind} to attack")
 
 
 def made(attempt, reader):
@@ -154,12 +157,12 @@ def made(attempt, reader):
     found = {}
     for name in reader.makes:
         path = attempt.path(name)
-        if os.path.exists(os.path.join(path, "results.json")):
+        if os.path.isfile(os.path.join(path, "results.json")):
             found[name] = results(path)
         elif os.path.isdir(path):
             found[name] = {k: v[2] for k, v in sandbox.snapshot(path).items()}
-        elif os.path.exists(path):
-            found[name] = sandbox.read(path)
+        elif os.path.isfile(path):
+            found[name] = sandbox.state(path)[1:3]
     return found
 
 

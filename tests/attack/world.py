@@ -5,7 +5,6 @@ import json
 import os
 import random
 import shutil
-import sys
 
 import sandbox
 from program import Running
@@ -27,11 +26,11 @@ def without_times(value):
 
 def results(store):
     """What a campaign came to; nothing if it did not end."""
-    try:
-        with open(os.path.join(store, "results.json")) as f:
-            return without_times(json.load(f)["benchmarks"])
-    except OSError:
+    path = os.path.join(store, "results.json")
+    if not os.path.isfile(path):
         return None
+    with open(path) as f:
+        return without_times(json.load(f)["benchmarks"])
 
 
 class World:
@@ -45,16 +44,17 @@ class World:
             os.makedirs(path)
         self.sandbox = sandbox.Sandbox(box)
         self.truths = {}
-        self.slow = 1.0  # of this build against a release
 
-    def environment(self, more=None):
+    def environment(self, cwd, more=None):
+        """A small one; {here} in it stands for the folder."""
+        more = {k: v.replace("{here}", cwd) for k, v in (more or {}).items()}
         own = {"PATH": f"{self.bin}:/usr/bin:/bin", "LC_ALL": "C.UTF-8",
                "HOME": self.sandbox.home, "CI": "1", "TMPDIR": self.scratch}
-        return {**own, **(more or {})}
+        return {**own, **more}
 
     def start(self, arguments, cwd, env=None, **kwargs):
         return Running([self.program, *arguments], self.scratch, cwd=cwd,
-                       env=self.environment(env), **kwargs)
+                       env=self.environment(cwd, env), **kwargs)
 
     def fake(self, name, script):
         """A program of this name, found before all others."""
@@ -114,8 +114,7 @@ class Attempt:
         return ended
 
     def run(self, *arguments, limit=5.0, **kwargs):
-        return self.ended(self.start(*arguments, **kwargs).wait(
-            limit * self.world.slow))
+        return self.ended(self.start(*arguments, **kwargs).wait(limit))
 
     def same_results(self, store, whole):
         """Bit by bit, as merge compares; and in results.json."""
@@ -133,7 +132,3 @@ class Attempt:
 
 def say(text):
     print(text, flush=True)
-
-
-def tell(text):
-    print(text, file=sys.stderr, flush=True)
