@@ -14,7 +14,7 @@ from world import SOURCE, results
 SMALL = ["--profile=smoke", "--filter=physgrad/comparison/(gd|pg_numeric)/",
          "--filter=jpo/billiards/(jpo|bfgs)/n=4/"]
 TRAINING = ["--profile=smoke", "--filter=jpo/billiards/(jpo|supervised)/"]
-SHORT = [*TRAINING, "--set=iterations=4000"]
+SHORT = [*TRAINING, "--set=iterations=2000"]
 CACHE = {"XDG_CACHE_HOME": "{here}/cache"}
 PUBLISHED = {"PHYSINV_PUBLISHED_DIR": "published"}
 SBATCH = 'echo "$@" >> "${FAKE_LOG:-/dev/null}"; echo 4711'
