@@ -95,9 +95,15 @@ def family(value):
 
 
 VALUES = [None, True, -1, 0, 7, 2**31, 2**63, HUGE, 10**30, "", "x", "..",
-          "../../../outside/data.h5", "/", "a\nb", "a\0b", "\ud800", "x" * 70000,
-          "<script>alert(1)</script>", "|", "\x1b[31m", [], {}, [[]], [None],
+          "../../../outside/data.h5", "/", "a\nb", "a\0b", "\ud800",
+          "x" * 70000, "<script>alert(1)</script>", "|", "\x1b[31m", [], {}, [[]], [None],
           {"a": 1}, ["x"], [1, 2], {"": {}}]
+
+
+def deepened(rng, text):
+    """The text of a JSON object with a member of very many levels."""
+    left, right = rng.choice(("[]", ('{"a":', "}")))
+    return '{"deep":' + left * DEEP + "1" + right * DEEP + "," + text[1:]
 
 
 def change(rng, value):

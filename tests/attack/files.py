@@ -110,9 +110,8 @@ def changed(rng, part, form, at):
                           damage.grow))
         return (*how(rng, part), False)
     if rng.random() < 0.03:
-        left, right = rng.choice(("[]", ('{"a":', "}")))
-        deep = left * damage.DEEP + "1" + right * damage.DEEP
-        return deep.encode(), f"part {at}: {damage.DEEP} levels", False
+        text = damage.deepened(rng, seals.dump(part))
+        return text.encode(), f"part {at}: {damage.DEEP} levels", False
     value, path, before, after = damage.change(rng, part)
     words = f"part {at}: {'/'.join(map(str, path))}: {before} -> {after}"
     typed = after not in ("doubled", "one more", before)

@@ -106,7 +106,8 @@ class Attempt:
     def ended(self, ended, sent=0):
         """What holds for every end of the program, but by a signal sent."""
         words = [a if isinstance(a, str) else repr(a) for a in ended.arguments]
-        line = " ".join(w if len(w) < 200 else w[:80] + "..." for w in words[1:])
+        line = " ".join(w if len(w) < 200 else w[:80] + "..."
+                        for w in words[1:])
         said = [s for s in ended.err.splitlines() if s.startswith("physinv")]
         self.note(f"{line} -> {ended.code} {' '.join(said)[:300]}")
         for what in ended.wrong() if not sent or ended.code != -sent else ():
