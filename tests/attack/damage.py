@@ -96,8 +96,8 @@ def family(value):
 
 VALUES = [None, True, -1, 0, 7, 2**31, 2**63, HUGE, 10**30, "", "x", "..",
           "../../../outside/data.h5", "/", "a\nb", "a\0b", "\ud800",
-          "x" * 70000, "<script>alert(1)</script>", "|", "\x1b[31m", [], {}, [[]], [None],
-          {"a": 1}, ["x"], [1, 2], {"": {}}]
+          "x" * 70000, "<script>alert(1)</script>", "|", "\x1b[31m", [], {},
+          [[]], [None], {"a": 1}, ["x"], [1, 2], {"": {}}]
 
 
 def deepened(rng, text):
