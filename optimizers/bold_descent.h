@@ -7,8 +7,8 @@
 ///   L falls: x = trial, a *= longer    otherwise: a *= shorter
 ///
 /// Where trial, loss or gradient are not finite, nothing falls; a start that is
-/// not finite ends at once, as it is. Driven like `Bfgs`;
-/// the bits of a problem do not depend on the others in the batch.
+/// not finite ends at once, as it is. Driven like `Bfgs`; the bits of a problem
+/// do not depend on the others in the batch.
 #pragma once
 
 #include <cstdint>
