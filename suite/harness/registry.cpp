@@ -139,13 +139,21 @@ std::vector<Case> Registry::expand(std::string_view profile,
                            !overrides.precision;
   std::vector<Case> cases;
   std::map<std::string, std::size_t> by_name;
-  std::size_t made = 0;
-  const auto add = [&](Case c) {
-    if (++made > kMostCases)
+  std::size_t count = 0;
+  // Before any is made, which takes longer than to count.
+  const auto add_count = [&](const Experiment& e, const Row& row) {
+    const auto there = std::count_if(
+        row.methods.begin(), row.methods.end(), [&](const auto& id) {
+          return find_method(e, id) != nullptr;
+        });
+    count += row.n.size() * row.seeds.size() * static_cast<std::size_t>(there);
+    if (count > kMostCases)
       throw UsageError(fmt::format(
           "profile {} has more than {} cases so; fewer n or seeds are right",
           profile,
           kMostCases));
+  };
+  const auto add = [&](Case c) {
     const auto [at, is_new] = by_name.emplace(c.info.name, cases.size());
     if (is_new) {
       cases.push_back(std::move(c));
@@ -164,6 +172,7 @@ std::vector<Case> Registry::expand(std::string_view profile,
                         }).share();
       for (const Row& declared : p.rows) {
         const Row row = overridden(declared, overrides);
+        add_count(*e, row);
         for (const Index n : row.n) {
           for (const auto& id : row.methods) {
             const Method* method = find_method(*e, id);
