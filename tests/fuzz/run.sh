@@ -14,7 +14,7 @@ printf 'leak:libhdf5\n' >"$beside/inputs/leaks.$reader"
 export LSAN_OPTIONS=suppressions=$beside/inputs/leaks.$reader:print_suppressions=0
 export ASAN_OPTIONS=quarantine_size_mb=16
 exec "$program" -runs="${PHYSINV_FUZZ_RUNS:-20000}" -dict="$dictionary" \
-  -timeout=5 -rss_limit_mb=1024 -malloc_limit_mb=1024 \
+  -max_len=16384 -timeout=5 -rss_limit_mb=1024 -malloc_limit_mb=1024 \
   -close_fd_mask=1 -print_final_stats=1 \
   -artifact_prefix="$beside/found/$reader-" \
   "$beside/inputs/$reader" "$folder/corpus/$reader"
