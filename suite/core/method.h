@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "suite/core/checkpoint.h"
-#include "suite/core/options.h"
 #include "suite/core/recipe.h"
 #include "suite/core/stop.h"
 
@@ -21,20 +20,10 @@ class Probe;
 /// A part of a network's input, row blocks stacked in the order listed.
 enum class Field : std::uint8_t { unknowns, given, observations };
 
-constexpr std::string_view to_string(Field field) {
-  constexpr std::string_view kNames[] = {"unknowns", "given", "observations"};
-  return kNames[static_cast<std::size_t>(field)];
-}
-
 /// A network in its place: what it reads, what it is.
 struct NetworkRole {
   std::vector<Field> inputs;
   NetworkRecipe recipe;
-
-  auto fields() const {
-    return std::tuple{field("inputs", inputs),
-                      word("network", recipe.description, recipe)};
-  }
 };
 
 /// Networks of the setting that a stage may use; the others are empty to it.
@@ -66,12 +55,6 @@ struct Sources {
 /// with means over the numbers of one sample.
 enum class OutputForm : std::uint8_t { linear, box, mean_of_observations };
 
-constexpr std::string_view to_string(OutputForm form) {
-  constexpr std::string_view kNames[] = {
-      "linear", "box", "mean_of_observations"};
-  return kNames[static_cast<std::size_t>(form)];
-}
-
 /// How networks learn from labelled samples.
 struct Labelling {
   /// More than one: batches of as many as there are problems, in a new order
@@ -79,10 +62,6 @@ struct Labelling {
   Index per_problem = 1;
   /// The first so many unknowns are learnt, and shown to surrogates, as tanh x.
   Index bounded = 0;
-
-  auto fields() const {
-    return std::tuple{field("labels", per_problem), field("bounded", bounded)};
-  }
 };
 
 /// Everything an experiment fixes for its methods.
@@ -96,16 +75,6 @@ struct Setting {
   /// Examples whose estimates and curves are recorded, 0 for all. Every
   /// example's final loss is.
   Index recorded = 0;
-
-  auto fields() const {
-    return std::tuple{word("predictor", text_of(predictor), predictor),
-                      word("surrogate", text_of(surrogate), surrogate),
-                      field("output_scale", output_scale),
-                      field("output_form", output_form),
-                      field("gtol", gtol),
-                      field("labels", labels),
-                      implied(recorded)};
-  }
 };
 
 /// What a stage leaves for the next one and for the record.

@@ -14,16 +14,17 @@ std::string in_line(const Options& options) {
   for (const auto& [name, text] : options) {
     if (!line.empty()) line += ' ';
     line += name;
-    line += '=';
+    if (!name.empty()) line += '=';
     line += text;
   }
   return line;
 }
 
-std::string with_commas(const std::vector<std::string>& texts) {
+std::string joined(const std::vector<std::string>& texts,
+                   std::string_view separator) {
   std::string line;
   for (const auto& text : texts) {
-    if (&text != &texts.front()) line += ',';
+    if (&text != &texts.front()) line += separator;
     line += text;
   }
   return line;

@@ -58,9 +58,10 @@ Options describe(const O& o);
 
 /// `a`, then `b`.
 Options chained(Options a, const Options& b);
-/// "a=1 b=2"
+/// "a=1 b=2"; of a word without a name, its text.
 std::string in_line(const Options& options);
-std::string with_commas(const std::vector<std::string>& texts);
+std::string joined(const std::vector<std::string>& texts,
+                   std::string_view separator = ",");
 /// The shortest text that is read as the same number.
 std::string text_of(double number);
 
@@ -83,8 +84,16 @@ std::string text_of(const T& value) {
     } else {
       for (const auto& entry : value) all.push_back(text_of(entry));
     }
-    return with_commas(all);
+    return joined(all);
   }
+}
+
+/// "64-32", "64x64"
+template <class T>
+std::string text_of(const T& values, std::string_view separator) {
+  std::vector<std::string> all;
+  for (const auto& value : values) all.push_back(text_of(value));
+  return joined(all, separator);
 }
 
 /// One word under its name; of what lists its own fields, those. Of a variant
@@ -114,7 +123,7 @@ Listed<1> field(std::string_view name, const T& member) {
 template <class... T>
 requires(sizeof...(T) > 1) Listed<sizeof...(T)> field(std::string_view name,
                                                       const T&... each) {
-  return {.words = {{std::string(name), with_commas({text_of(each)...})}}};
+  return {.words = {{std::string(name), joined({text_of(each)...})}}};
 }
 
 /// Members in words of their own; without members, a constant.

@@ -16,6 +16,13 @@ void append(std::string& text, const Options& options) {
     text += fmt::format("  {}={}\n", name, value);
 }
 
+void append(std::string& text, std::string_view name, const NetworkRole& role) {
+  text += fmt::format("{}=", name);
+  for (const Field f : role.inputs)
+    text += fmt::format("{},", static_cast<int>(f));
+  text += role.recipe.description + '\n';
+}
+
 }  // namespace
 
 CaseData draw_data(const Case& c) {
@@ -34,8 +41,20 @@ std::string recipe_text(const Case& c, std::size_t position) {
   std::string text =
       fmt::format("experiment={}\nproblem={}\n", e.name, e.problem.name);
   append(text, e.problem.options);
-  append(text, describe(e.setting));
-  text += fmt::format("n={}\nseed={}\n", c.info.n, c.info.seed);
+  append(text, "predictor", e.setting.predictor);
+  append(text, "surrogate", e.setting.surrogate);
+  text += fmt::format("output_scale={}\ngtol={}\nn={}\nseed={}\n",
+                      e.setting.output_scale,
+                      e.setting.gtol,
+                      c.info.n,
+                      c.info.seed);
+  if (e.setting.output_form != OutputForm::linear)
+    text += fmt::format("output_form={}\n",
+                        static_cast<int>(e.setting.output_form));
+  const Labelling& labels = e.setting.labels;
+  if (labels.per_problem != 1 || labels.bounded != 0)
+    text += fmt::format(
+        "labels={}\nbounded={}\n", labels.per_problem, labels.bounded);
   for (std::size_t i = 0; i <= position; ++i) {
     const Stage& stage = *c.method->chain[i];
     text += fmt::format(

@@ -27,10 +27,10 @@ struct CnnOptions {
   auto fields() const {
     return std::tuple{field("positions", positions),
                       field("channels", channels),
-                      field("features", features),
+                      word("features", text_of(features, "-"), features),
                       field("taps", taps),
                       field("activation", activation),
-                      field("init", init)};
+                      if_changed(field("init", init))};
   }
 };
 

@@ -21,7 +21,7 @@ struct FnoOptions {
   Index modes = 12, width = 32, blocks = 4, hidden = 128;
 
   auto fields() const {
-    return std::tuple{field("grid", grid),
+    return std::tuple{word("grid", grid.text(), grid),
                       field("padding", padding),
                       field("modes", modes),
                       field("width", width),

@@ -1,7 +1,9 @@
 /// Extent of a field inside a network.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <string>
 
 #include "suite/core/batch.h"
 #include "suite/core/options.h"
@@ -17,6 +19,8 @@ struct Grid {
   auto fields() const {
     return std::tuple{field("columns", columns), field("rows", rows)};
   }
+  /// "64x64"
+  std::string text() const { return text_of(std::array{columns, rows}, "x"); }
 };
 
 enum class Padding : std::uint8_t {

@@ -23,12 +23,12 @@ struct MlpOptions {
   Init init = Init::fan_in;
 
   auto fields() const {
-    return std::tuple{field("hidden", hidden),
+    return std::tuple{word("hidden", text_of(hidden, "-"), hidden),
                       field("frequencies", frequencies),
                       field("activation", activation),
                       field("output", output),
                       field("batch_norm", batch_norm),
-                      field("init", init)};
+                      if_changed(field("init", init))};
   }
 };
 

@@ -35,13 +35,13 @@ struct PooledCnnOptions {
 
   auto fields() const {
     return std::tuple{field("positions", positions),
-                      field("features", features),
-                      field("hidden", hidden),
+                      word("features", text_of(features, "-"), features),
+                      word("hidden", text_of(hidden, "-"), hidden),
                       field("output", output),
                       field("padding", padding),
                       field("batch_norm", batch_norm),
                       field("pool_first", pool_first),
-                      field("init", init)};
+                      if_changed(field("init", init))};
   }
 };
 

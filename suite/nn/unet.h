@@ -35,18 +35,23 @@ struct UnetOptions {
   Init init = Init::fan_in;
 
   auto fields() const {
-    return std::tuple{field("grid", grid),
-                      field("channels", channels),
-                      field("scalars", scalars_before, scalars_after),
-                      field("shift", scalar_shift),
-                      field("unit", scalar_unit),
-                      field("levels", levels),
-                      field("features", features),
-                      field("outputs", outputs),
-                      field("hidden", hidden),
-                      field("padding", padding),
-                      field("batch_statistics", batch_statistics),
-                      field("init", init)};
+    return std::tuple{
+        word("grid", grid.text(), grid),
+        word("scalars",
+             text_of(std::array{scalars_before, scalars_after}, "+"),
+             scalars_before,
+             scalars_after),
+        field("shift", scalar_shift),
+        field("unit", scalar_unit),
+        field("channels", channels),
+        field("levels", levels),
+        field("features", features),
+        field("outputs", outputs),
+        if_changed(field("hidden", hidden)),
+        if_changed(word("", to_string(padding), padding)),
+        if_changed(word(
+            "", batch_statistics ? "batch_statistics" : "", batch_statistics)),
+        if_changed(field("init", init))};
   }
 };
 

@@ -21,9 +21,9 @@ struct VggOptions {
 
   auto fields() const {
     return std::tuple{field("channels", channels),
-                      field("grid", grid),
-                      field("features", features),
-                      field("hidden", hidden)};
+                      word("grid", grid.text(), grid),
+                      word("features", text_of(features, "-"), features),
+                      word("hidden", text_of(hidden, "-"), hidden)};
   }
 };
 

@@ -131,10 +131,6 @@ struct Others {
     all[0].name += "x", all[1].options.emplace_back("x", "1");
     return all;
   }
-  std::vector<NetworkRecipe> operator()(NetworkRecipe value) const {
-    value.description += "x";
-    return {value};
-  }
   std::vector<ClosedForm> operator()(const ClosedForm&) const {
     return {{.forward = [](auto, auto, auto) {}}};
   }
@@ -244,16 +240,6 @@ void networks() {
            nn::pooled_cnn);
   distinct("UnetOptions", nn::UnetOptions{}, nn::unet);
   distinct("VggOptions", nn::VggOptions{.features = {4}}, nn::vgg);
-}
-
-void settings() {
-  const NetworkRole role{{Field::given}, nn::mlp({.hidden = {64}})};
-  expect_distinct("Setting",
-                  Setting{.predictor = role, .surrogate = role},
-                  [](const Setting& s) {
-                    return fmt::format(
-                        "{} {}", in_line(describe(s)), s.recorded);
-                  });
 }
 
 void stages() {
@@ -392,7 +378,6 @@ std::set<std::string> structs_of_options() {
 TEST(OptionsContract, TwoThatDifferInAnyFieldHaveDifferentKeys) {
   problems();
   networks();
-  settings();
   stages();
   rules_of_curvature();
   diagnostics();
