@@ -100,10 +100,10 @@ PHYSINV_LANES void advance(const Constants<T>& k,
                            Complex<V>* c,
                            Sink&& sink) {
   const T s = k.twice_inverse_r;
-  // y - i s c
-  const auto right_side = [s](const Complex<V>& y, const Complex<V>& c)
+  // sum - i s v
+  const auto right_side = [s](const Complex<V>& sum, const Complex<V>& v)
       __attribute__((always_inline)) {
-    return Complex<V>{fma_lanes(s, c.im, y.re), fma_lanes(-s, c.re, y.im)};
+    return Complex<V>{fma_lanes(s, v.im, sum.re), fma_lanes(-s, v.re, sum.im)};
   };
   Complex<V> y[kPoints];
   y[0] = multiply(e(0), Complex<V>{s * c[0].im, -(s * c[0].re)});
