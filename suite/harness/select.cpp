@@ -97,11 +97,15 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
+// A distance takes time in proportion to both lengths.
+constexpr std::size_t kMostCompared = 2000, kLongestCompared = 256;
+
 std::vector<std::string> nearest_names(const std::vector<std::string>& names,
                                        std::string_view pattern,
                                        std::size_t count) {
   constexpr std::size_t kLongestWord = 64;  // its distance is quadratic
   pattern = pattern.substr(0, kLongestWord);
+  pattern = pattern.substr(0, kLongestCompared);
   std::map<std::string, std::size_t> score;  // of a path's beginning
   for (const auto& name : names) {
     std::size_t begin = 0;
@@ -109,11 +113,13 @@ std::vector<std::string> nearest_names(const std::vector<std::string>& names,
       const std::size_t end = std::min(name.find('/', begin), name.size());
       const auto part = std::string_view(name).substr(begin, end - begin);
       const auto head = std::string_view(name).substr(0, end);
-      const std::size_t d =
-          std::min(edit_distance(part, pattern), edit_distance(head, pattern));
-      score.try_emplace(std::string(head), d);
+      const auto [at, is_new] = score.try_emplace(std::string(head), 0);
+      if (is_new)
+        at->second = std::min(edit_distance(part, pattern),
+                              edit_distance(head, pattern));
       begin = end + 1;
     }
+    if (score.size() >= kMostCompared) break;
   }
   std::vector<std::pair<std::size_t, std::string>> order;
   for (const auto& [head, d] : score) order.emplace_back(d, head);
