@@ -16,7 +16,7 @@ KEYS = ["{box}/home/precious.txt", TREE + "../home/precious.txt",
 NAMES = [TREE + "../outside/data", "{box}/outside/data", "..", "", "/",
          "a/../b", "jpo/billiards/bfgs/n=4/seed=0/..", "a\nb", "a\0b",
          "x" * 5000, "<script>alert(1)</script>", "a|b", "a`b`", "\x1b[2J",
-         "jpo/billiards/bfgs/n=4/seed=0 ", "physgrad\\comparison", "é", "-x"]
+         "jpo/billiards/bfgs/n=4/seed=0 ", "physgrad\\comparison", "é"]
 STAGES = ["../data", "a/b", "..", "", ".", "\n", "solve/../../data", "<b>"]
 FILES = [TREE + "../outside/data.h5", "{box}/outside/data.h5", "cases/../lock",
          "", "cases/x.h5"]
@@ -96,7 +96,7 @@ def forgeries():
         yield "file", name, lambda s, v, line: forge_record(s, put(v, "file"))
 
 
-# Keys lead from checkpoints/ to where they point if that folder is there.
+# Export reads results.json alone.
 CALLS = {
     "merge": ["merge", "joined", "part1", "part2"],
     "verify": ["verify", "part1"],
@@ -121,6 +121,7 @@ def shards(attempt):
     line = seals.SEALS["journal"].parts(
         sandbox.read(store + "/journal.jsonl"))[1]
     forge(store, value, line)
+    # Keys lead from there to where they point.
     os.makedirs(attempt.path("joined/checkpoints"))
     attempt.hits += 1
     attempt.note(f"{what}: {value[:80]!r}")
@@ -128,7 +129,7 @@ def shards(attempt):
     ended = attempt.run(*CALLS[call], limit=15 if call == "again" else 5)
     # A plan's name that no line has is a case that is missing: 10.
     allowed = (2, 9, 10) if "plan" in what or what == "file" else (2, 9)
-    if what not in ("file", "name of the plan"):
+    if call != "export" and what not in ("file", "name of the plan"):
         attempt.expect(ended.code in allowed,
                        f"{what} {value[:60]!r} is read as good by {call}")
     if ended.code in allowed:

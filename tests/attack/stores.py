@@ -60,8 +60,7 @@ READERS = {
                      ("half",), whole="whole", store="half"),
 }
 
-# Kind of file -> where it is, who reads it. Files of the last three are
-# written by hand and without a seal.
+# Kind of file -> where it is, who reads it.
 TARGETS = {
     "journal": ("done/journal.jsonl",
                 ("verify", "report", "export", "compare", "again")),
@@ -82,7 +81,6 @@ TARGETS = {
     "expected": ("expected.json", ("expected",)),
     "names": ("names.txt", ("list",)),
 }
-BY_HAND = ("published", "expected", "names")
 
 
 def form_of(kind):
