@@ -15,7 +15,7 @@ namespace physinv::test {
 struct QuadraticOptions {
   double broken_above = 1e300;  ///< y is NaN where x(0) is larger
   auto fields() const {
-    return std::tuple{field("broken_above", broken_above)};
+    return std::tuple{physinv::field("broken_above", broken_above)};
   }
 };
 

@@ -21,8 +21,8 @@ std::string case_image() {
     const StageRecord stage = sample_stage(info, position);
     file.put_stage(stage, hex64(arrays_hash(stage)));
   }
-  file.save(directory / "case.h5");
-  std::string bytes = read_file(directory / "case.h5");
+  file.save(Folder(directory.path()));
+  std::string bytes = read_file(directory / case_file_name(info.name));
   bytes.resize(bytes.size() - 16);
   return bytes;
 }
