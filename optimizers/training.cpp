@@ -194,6 +194,8 @@ Sources sources(const TrainingOptions& options) {
   unused("optimizers/training.h", "optimizers/training/solver_loss.h");
   if (const auto* step = std::get_if<StepOptions>(&options.rule))
     add_sources(*step, all);
+  else
+    unused("optimizers/training.cpp", "optimizers/steps/rule_check.h");
   for (std::size_t i = 0; i < kRules.size(); ++i) {
     if (i == options.rule.index()) continue;
     unused("optimizers/training.h", kRules[i][0]);

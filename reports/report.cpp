@@ -11,8 +11,8 @@
 #include "reports/tables.h"
 #include "reports/text.h"
 #include "suite/results/file.h"
-#include "suite/results/markdown.h"
 #include "suite/results/folder.h"
+#include "suite/results/markdown.h"
 
 namespace physinv {
 namespace {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "optimizers/half_inverse/power.h"
+#include "suite/core/math.h"
 
 namespace physinv::hig {
 
@@ -19,7 +20,7 @@ inline void leave_units(const Power& power,
                         PowerReport& report,
                         VectorOut<double> update) {
   if (unit == 1) return;
-  const double factor = std::pow(unit, power.kappa + power.beta);
+  const double factor = math::pow(unit, power.kappa + power.beta);
   update *= factor;
   for (double* size : {&report.norm, &report.norm_bound}) *size *= factor;
   for (double* value : {&report.s_max,

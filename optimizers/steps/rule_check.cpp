@@ -21,7 +21,6 @@ void check(const AdamOptions& o) {
 template <class T>
 void check(const SgdOptions& o) {
   check_numbers<T>({{"rate", o.rate}, {"momentum", o.momentum}});
-  SUITE_CHECK(o.rate >= 0, "a rate is not negative");
   SUITE_CHECK(decays(o.momentum), "momentum lies in [0, 1)");
 }
 

@@ -5,7 +5,8 @@
 
 namespace physinv {
 
-/// Numbers that T can hold, decays in [0, 1), nothing negative.
+/// Numbers that T can hold, decays in [0, 1), nothing negative but the rate of
+/// SGD, which then ascends.
 template <class T>
 void check_rule(const StepOptions& options);
 

@@ -147,7 +147,7 @@ void SinePlane<T>::forward(BatchIn<T> x,
   const Frame f(options_);
   for (Index i = 0; i < x.cols(); ++i) {
     const Pair at = column<T>(x, i), u = f.scaled(at[0], at[1]);
-    put<T>(y, i, {math::sin(u[0]), u[1]});
+    put<T>(y, i, {math::sincos(u[0]).sine, u[1]});
   }
 }
 
@@ -192,7 +192,7 @@ void SinePlane<T>::jacobian(BatchIn<T> x,
   const Frame f(options_);
   for (Index i = 0; i < x.cols(); ++i) {
     const Pair at = column<T>(x, i), u = f.scaled(at[0], at[1]);
-    const double slope = f.a * math::cos(u[0]);
+    const double slope = f.a * math::sincos(u[0]).cosine;
     const Pair first = f.back(slope, 0), second = f.back(0, f.b);
     for (Index k = 0; k < 2; ++k) {
       j(2 * k, i) = static_cast<T>(first[static_cast<std::size_t>(k)]);

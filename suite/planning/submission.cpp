@@ -115,7 +115,7 @@ std::string job_id(const std::string& output) {
     throw EnvironmentError(fmt::format(
         "sbatch answers '{}', which is no id of a job; squeue shows whether it "
         "took one",
-        id.substr(0, 100)));
+        one_line(id.substr(0, 100))));
   return id;
 }
 

@@ -60,7 +60,9 @@ struct Others {
   std::vector<bool> operator()(bool value) const { return {!value}; }
   template <std::floating_point T>
   std::vector<T> operator()(T value) const {
-    return {std::nextafter(value, T(1e9)), 3 * value + 7};
+    // Decays stay below 1, exponents above -1.
+    const T other = std::isfinite(value) ? value / 2 + T(0.03) : T(7);
+    return {std::nextafter(value, T(1e9)), other};
   }
   template <std::integral T>
   std::vector<T> operator()(T value) const {

@@ -230,7 +230,7 @@ for a; do [[ $a != --out=* ]] || out=${{a#--out=}}; done
 mkdir -p "$out" && echo '{{"benchmarks": 5}}' >"$out/results.json"
 """)
     os.chmod(other, 0o755)
-    expect(9, [*gate[:2], "--against=" + other], d, "no times that can be read")
+    expect(9, [*gate[:2], "--against=" + other], d, "is damaged")
 
 
 with tempfile.TemporaryDirectory() as directory:

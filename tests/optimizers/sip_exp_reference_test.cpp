@@ -9,6 +9,7 @@
 #include "optimizers/training/newton.h"
 #include "optimizers/training/proxy.h"
 #include "problems/exponential/exponential.h"
+#include "suite/core/math.h"
 #include "suite/nn/mlp.h"
 #include "tests/support/quadratic.h"
 #include "tests/support/reference.h"
@@ -282,7 +283,7 @@ void expect_same_signs() {
   Batch<T> x(1, kPairs), y(1, kPairs);
   for (Index i = 0; i < kPairs; ++i) {
     x(0, i) = T(-13) * T(i % 200) / T(199);
-    y(0, i) = std::exp(T(-12) * T(i / 200) / T(199));
+    y(0, i) = math::exp(T(-12) * T(i / 200) / T(199));
   }
   const Adjoints<T> a(x, y);
   EXPECT_EQ((a.norm.array() != a.direct.array()).count(), 0);

@@ -106,6 +106,7 @@ def bad_sbatch(d):
             ("sleep 60", "no end within 1 s"), ("yes", "bytes of output"),
             ("exec >&- 2>&-; sleep 60", "no end within 1 s"),
             ("head -c 1000 /dev/urandom", "no id"), ("exit 0", "no id"),
+            ("printf 'a\\0b\\303'", "no id"),
             ("echo hello", "no id"), ("echo -1", "no id"),
             ("echo --wrap=x", "no id"), ("printf '%0400d' 1", "no id"),
             ("echo down >&2; exit 3", "refuses: down"),

@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-
 #include "suite/nn/encoding.h"
 #include "suite/nn/mlp.h"
 #include "suite/nn/sequential.h"

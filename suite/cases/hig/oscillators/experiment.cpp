@@ -2,7 +2,6 @@
 // network learns to bring two coupled oscillators back to where they started.
 #include <fmt/format.h>
 
-#include <cmath>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -12,6 +11,7 @@
 #include "problems/oscillators/oscillators.h"
 #include "suite/cases/hig/common/methods.h"
 #include "suite/cases/hig/oscillators/oscillators.h"
+#include "suite/core/power_of_ten.h"
 #include "suite/harness/registry.h"
 #include "suite/nn/mlp.h"
 #include "suite/results/record.h"
@@ -56,7 +56,7 @@ std::vector<Method> methods() {
   for (const Exponent& e : kExponents)
     all.push_back(by_power(e.id, 64, {.kappa = e.kappa, .tau = 1e-6}));
   for (const int digits : {5, 7, 8, 9, 10}) {
-    const double tau = std::pow(10.0, -digits);
+    const double tau = math::power_of_ten(-digits);
     all.push_back(by_power(
         fmt::format("hig-tau{}", digits), 64, {.kappa = -0.5, .tau = tau}));
     all.push_back(by_power(

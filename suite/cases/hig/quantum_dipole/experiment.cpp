@@ -2,7 +2,6 @@
 // which control steers a quantum state in a box to a given superposition, with
 // dense layers and with convolutions.
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "suite/cases/hig/common/methods.h"
 #include "suite/cases/hig/quantum_dipole/grids.h"
 #include "suite/cases/hig/quantum_dipole/metrics.h"
+#include "suite/core/power_of_ten.h"
 #include "suite/harness/registry.h"
 #include "suite/nn/cnn.h"
 #include "suite/nn/mlp.h"
@@ -68,7 +68,7 @@ std::vector<Method> dense_methods() {
   for (const double rate : {3e-4, 3e-3})
     all.push_back(one(adam_id(16, rate), by_adam(16, rate)));
   for (const FloatPoint& p : in_float()) {
-    TrainingOptions options = by_power(16, 0.5, std::pow(10.0, -p.digits));
+    TrainingOptions options = by_power(16, 0.5, math::power_of_ten(-p.digits));
     options.project = p.project;
     all.push_back(one(p.id, options));
   }

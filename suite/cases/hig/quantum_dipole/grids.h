@@ -2,11 +2,11 @@
 /// paper, Figs. 8 to 11).
 #pragma once
 
-#include <cmath>
 #include <string>
 #include <vector>
 
 #include "suite/core/batch.h"
+#include "suite/core/power_of_ten.h"
 
 namespace physinv::dipole {
 
@@ -27,7 +27,7 @@ struct HigPoint {
   int digits;  ///< tau = 10^-digits
   std::string id;
 
-  double tau() const { return std::pow(10.0, -digits); }
+  double tau() const { return math::power_of_ten(-digits); }
 };
 
 /// HIG in float, with the gradient projected or raw: once trained, most of g

@@ -1,5 +1,5 @@
-/// The stage that measures gradients and updates (suite/diagnostics/alignment.h)
-/// on this experiment's noise.
+/// The stage that measures gradients and updates
+/// (suite/diagnostics/alignment.h) on this experiment's noise.
 #pragma once
 
 #include <memory>

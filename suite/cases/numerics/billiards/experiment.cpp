@@ -6,6 +6,7 @@
 #include "problems/billiards/billiards.h"
 #include "problems/billiards/closed_form.h"
 #include "suite/cases/numerics/common/atlas.h"
+#include "suite/core/power_of_ten.h"
 
 namespace physinv::numerics::billiards {
 namespace {
@@ -17,9 +18,9 @@ const BilliardsOptions kAhead{.ball_y = {0.5, 0.5}};
 /// head-on, 1 grazes. From either side as close as numbers come.
 std::vector<double> offsets() {
   std::vector<double> all = {0, 0.5, 0.9};
-  for (int k = 2; k <= 16; k += 2) all.push_back(1 - std::pow(10.0, -k));
+  for (int k = 2; k <= 16; k += 2) all.push_back(1 - math::power_of_ten(-k));
   all.push_back(1);
-  for (int k = 15; k >= 1; k -= 2) all.push_back(1 + std::pow(10.0, -k));
+  for (int k = 15; k >= 1; k -= 2) all.push_back(1 + math::power_of_ten(-k));
   return all;
 }
 

@@ -1,12 +1,11 @@
 // The atlas: what accuracy costs and where it ends, all problems side by side.
-#include "suite/cases/numerics/common/atlas.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <string>
 #include <utility>
 
+#include "suite/cases/numerics/common/atlas.h"
 #include "suite/evidence/cell.h"
 #include "suite/harness/registry.h"
 

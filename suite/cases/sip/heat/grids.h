@@ -2,11 +2,11 @@
 /// finite training sets (Fig. 12).
 #pragma once
 
-#include <cmath>
 #include <string>
 #include <vector>
 
 #include "suite/core/batch.h"
+#include "suite/core/power_of_ten.h"
 
 namespace physinv::heat {
 
@@ -20,7 +20,7 @@ struct Spot {
   int decade = 3;  ///< the rate is 10^-decade
   Index set = 0;   ///< samples of the training set; 0: always fresh ones
 
-  double rate() const { return std::pow(10.0, -decade); }
+  double rate() const { return math::power_of_ten(-decade); }
   /// "sip-t512-b32", "adam-b4-lr2"
   std::string id(std::string method) const {
     if (set > 0) method += "-t" + std::to_string(set);
