@@ -44,10 +44,12 @@ PHYSINV_LANES Complex<V> multiply_add(const Complex<E>& a,
           fma_lanes(a.im, b.re, fma_lanes(a.re, b.im, c.im))};
 }
 
+/// a b. Imaginary parts of e are the larger ones for small steps: theirs are
+/// the products that are not rounded.
 template <class E, class V>
 PHYSINV_LANES Complex<V> multiply(const Complex<E>& a, const Complex<V>& b) {
-  return {fma_lanes(a.re, b.re, -(a.im * b.im)),
-          fma_lanes(a.re, b.im, a.im * b.re)};
+  return {fma_lanes(-a.im, b.im, a.re * b.re),
+          fma_lanes(a.im, b.re, a.re * b.im)};
 }
 
 /// e_j = i r p_j of `count` lanes of (step, sample): e[k * kPoints + j] for
@@ -72,7 +74,7 @@ void factor(const Constants<T>& k,
       const P ai = inverse_r + before.im;
       const P br = fma_lanes(right, u[n], two) - after.re;
       const P bi = inverse_r + after.im;
-      const P a2 = fma_lanes(ar, ar, ai * ai), b2 = fma_lanes(br, br, bi * bi);
+      const P a2 = fma_lanes(ai, ai, ar * ar), b2 = fma_lanes(bi, bi, br * br);
       const P shared = T(1) / (a2 * b2);
       const P a = b2 * shared, b = a2 * shared;
       at[j] = {ar * a, ai * a};
@@ -86,7 +88,7 @@ void factor(const Constants<T>& k,
       P re = fma_lanes(slope, u[n], two) - at[j - 1].re;
       P im = inverse_r + at[j - 1].im;
       if (j == kMiddle) re = re - at[j + 1].re, im = im + at[j + 1].im;
-      const P scale = T(1) / fma_lanes(re, re, im * im);
+      const P scale = T(1) / fma_lanes(im, im, re * re);
       at[j] = {re * scale, im * scale};
     }
   }

@@ -9,15 +9,16 @@
 #include <utility>
 #include <vector>
 
+#include "suite/core/power_of_ten.h"
 #include "suite/harness/case.h"
 
 namespace physinv {
 
 /// Rates are a digit times a power of ten: 3e-4, 1e1.
 inline std::string rate_id(double rate) {
-  const double exponent = std::floor(std::log10(rate) + 1e-9);
+  const int exponent = static_cast<int>(std::floor(std::log10(rate) + 1e-9));
   return fmt::format(
-      "{:.0f}e{:.0f}", rate / std::pow(10.0, exponent), exponent);
+      "{:.0f}e{}", rate / math::power_of_ten(exponent), exponent);
 }
 
 /// Makes the rows of an experiment: one n and one precision.
