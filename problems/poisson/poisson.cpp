@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "suite/core/check.h"
+#include "suite/core/eigen_caches.h"
 #include "suite/core/math.h"
 #include "suite/core/option_check.h"
 #include "suite/core/threads.h"
@@ -97,6 +98,7 @@ Batch<double> poisson_source(const Batch<double>& re, const Batch<double>& im) {
       b(k, l) = mean ? 0 : im(k, l) / square;
     }
   }
+  state_caches();
   const Waves left(p), right(q);
   const Batch<double> half = left.cosine * a - left.sine * b;
   const Batch<double> turned = left.cosine * b + left.sine * a;

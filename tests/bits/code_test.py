@@ -31,11 +31,13 @@ def found(program):
 
 
 def chosen(library):
-    """Functions that glibc has in several versions and the library asks for."""
+    """Functions whose bits glibc lets the processor decide, in itself or in
+    what it calls, and the library asks for."""
     symbols = subprocess.run(["nm", "--undefined-only", library], check=True,
                              capture_output=True, text=True).stdout
     return set(re.findall(r" U ((?:exp|log|pow|sin|cos|tan|sincos|atan|atan2|"
-                          r"exp2|log2)f?)$", symbols, re.MULTILINE))
+                          r"exp2|log2|sinh|cosh|tanh|expm1|log1p|erf|erfc|"
+                          r"lgamma|tgamma)f?)$", symbols, re.MULTILINE))
 
 
 def main():

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "suite/core/math.h"
 #include "suite/core/oracle.h"
 
 namespace physinv::toy {
@@ -23,7 +24,9 @@ struct Weights {
 
   /// Neurons x points.
   Batch<double> hidden(const Batch<double>& x) const {
-    return ((first * x).colwise() + bias).array().tanh();
+    return ((first * x).colwise() + bias).unaryExpr([](double z) {
+      return math::tanh(z);
+    });
   }
 
   Vector<double> first, bias;
