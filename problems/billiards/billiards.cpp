@@ -74,25 +74,28 @@ void find_contact(const Constants<T>& k,
   const P vx = select(outside, zero, vx0), vy = select(outside, zero, vy0);
   const P bx = select(outside, zero, bx0), by = select(outside, zero, by0);
   const P dx = bx - k.cue[0], dy = by - k.cue[1];
-  const P along = dx * vx + dy * vy, across = dx * vy - dy * vx;
-  const P vv = vx * vx + vy * vy;
-  const P disc = (k.gap2 * vv - across * across) + k.gap2_rest * vv;
+  const P along = fma_lanes(dx, vx, dy * vy);
+  const P across = fma_lanes(dx, vy, -(dy * vx));
+  const P vv = fma_lanes(vx, vx, vy * vy);
+  const P disc =
+      fma_lanes(k.gap2_rest, vv, fma_lanes(-across, across, k.gap2 * vv));
   const Mask<T> meets = (along > zero) & (disc > K::kGrazing * (along * along));
 
   const P root = sqrt_lanes(select(meets, disc, one));
-  const P s = (dx * dx + dy * dy - k.gap2) / select(meets, along + root, one);
-  out.hit = meets & (one - k.mu * s > K::kStopping);
+  const P s = fma_lanes(dx, dx, fma_lanes(dy, dy, -k.gap2 - zero)) /
+              select(meets, along + root, one);
+  out.hit = meets & (fma_lanes(-k.mu, s, one) > K::kStopping);
 
   out.s = select(out.hit, s, zero);
   out.a = select(out.hit, root * k.per_gap, one);
-  out.keep = one - k.mu * out.s;
+  out.keep = fma_lanes(-k.mu, out.s, one);
   out.v[0] = vx, out.v[1] = vy;
-  out.n[0] = (dx - vx * out.s) * k.per_gap;
-  out.n[1] = (dy - vy * out.s) * k.per_gap;
+  out.n[0] = fma_lanes(-vx, out.s, dx) * k.per_gap;
+  out.n[1] = fma_lanes(-vy, out.s, dy) * k.per_gap;
   const P way = k.c * (out.keep * out.a);
   const P nan = P{} + std::numeric_limits<T>::quiet_NaN();
-  out.y[0] = select(out.hit, bx + way * out.n[0], bx0);
-  out.y[1] = select(out.hit, by + way * out.n[1], by0);
+  out.y[0] = select(out.hit, fma_lanes(way, out.n[0], bx), bx0);
+  out.y[1] = select(out.hit, fma_lanes(way, out.n[1], by), by0);
   for (P& y : out.y) y = select(out.broken, nan, y);
 }
 
@@ -104,16 +107,17 @@ PHYSINV_LANES void differentiate(const Constants<T>& k,
   using P = Pack<T>;
   const P zero = P{} + T(0);
   const P nan = P{} + std::numeric_limits<T>::quiet_NaN();
-  const P vv = at.v[0] * at.v[0] + at.v[1] * at.v[1];
+  const P vv = fma_lanes(at.v[0], at.v[0], at.v[1] * at.v[1]);
   const P ratio = at.s / at.a, speed = at.keep * at.a;
   for (int c = 0; c < 2; ++c) {
     const P s_c = -ratio * at.n[c];
-    const P a_c = at.n[c] - (at.s * at.v[c] + vv * s_c) * k.per_gap;
-    const P speed_c = at.keep * a_c - k.mu * at.a * s_c;
+    const P along_c = fma_lanes(vv, s_c, at.s * at.v[c]);
+    const P a_c = fma_lanes(-k.per_gap, along_c, at.n[c]);
+    const P speed_c = fma_lanes(at.keep, a_c, -(k.mu * at.a * s_c));
     for (int r = 0; r < 2; ++r) {
       const P moved = at.v[r] * s_c;
       const P n_c = (r == c ? at.s + moved : moved) * -k.per_gap;
-      const P full = k.c * (at.n[r] * speed_c + speed * n_c);
+      const P full = k.c * fma_lanes(at.n[r], speed_c, speed * n_c);
       j[r + 2 * c] = select(at.broken, nan, select(at.hit, full, zero));
     }
   }
@@ -383,8 +387,8 @@ void Billiards<T>::pullback(const Tape& tape,
       Lanes<T>(g, 2).load(y_bar, b * kLanes<T>);
       // A miss ignores its cotangent, were it infinite: 0 * inf is no 0.
       for (P& row : g) row = select(mask[b], row, P{});
-      out[0] = j[0] * g[0] + j[1] * g[1];
-      out[1] = j[2] * g[0] + j[3] * g[1];
+      out[0] = fma_lanes(j[0], g[0], j[1] * g[1]);
+      out[1] = fma_lanes(j[2], g[0], j[3] * g[1]);
       computed += mask[b];
     }
     Lanes<T>(out, 2).store(x_bar, b * kLanes<T>);

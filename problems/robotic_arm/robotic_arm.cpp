@@ -1,73 +1,57 @@
 #include "problems/robotic_arm/robotic_arm.h"
 
-#include <algorithm>
-#include <cmath>
+#include <cstring>
 
 #include "suite/core/check.h"
+#include "suite/core/lanes.h"
 #include "suite/core/math.h"
 #include "suite/core/option_check.h"
 
 namespace physinv {
 namespace {
 
-constexpr Index kTurns = 6;  // d_1, d_2, d_3 of one sample
-enum Slot : std::size_t { kDerivatives };
+/// One block of arms: tips and d[2 k], d[2 k + 1] = d_k.
+template <class T>
+struct Reach {
+  Pack<T> y[2], d[6];
+};
 
 template <class T>
-constexpr int kArms = math::kTogether<T>;  ///< that bend together
-
-/// Tips of some arms, and d[2 k], d[2 k + 1] = d_k.
-template <class T>
-void reach(const T (&links)[3],
-           const T (&x)[4][kArms<T>],
-           T (&y)[2][kArms<T>],
-           T (&d)[kTurns][kArms<T>]) {
-  for (int i = 0; i < kArms<T>; ++i) y[0][i] = 0, y[1][i] = x[0][i];
-  for (int k = 0; k < 3; ++k) {
-    T phi[kArms<T>], sine[kArms<T>], cosine[kArms<T>];
-    for (int i = 0; i < kArms<T>; ++i)
-      phi[i] = k == 0   ? x[1][i]
-               : k == 1 ? x[2][i] - x[1][i]
-                        : x[3][i] - x[2][i] - x[1][i];
-    math::sincos(phi, sine, cosine);
-    for (int i = 0; i < kArms<T>; ++i) {
-      const T across = links[k] * cosine[i], up = links[k] * sine[i];
-      y[0][i] += across, y[1][i] += up;
-      d[2 * k][i] = -up, d[2 * k + 1][i] = across;
-    }
+Reach<T> reach(const RoboticArmOptions& o, const Pack<T> (&x)[4]) {
+  Reach<T> out;
+  auto& [y, d] = out;
+  y[0] = Pack<T>{}, y[1] = x[0];
+  const Pack<T> phi[3] = {x[1], x[2] - x[1], x[3] - x[2] - x[1]};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto [sine, cosine] = math::sincos(phi[k]);
+    const T link = static_cast<T>(o.links[k]);
+    const Pack<T> across = link * cosine, up = link * sine;
+    y[0] += across, y[1] += up;
+    d[2 * k] = -up, d[2 * k + 1] = across;
   }
+  return out;
 }
 
-/// Runs body(i, tip, derivatives) for every column of x.
+/// Runs body(block, reach) for every block of columns of x.
 template <class T, class F>
 void for_arms(const RoboticArmOptions& options, BatchIn<T> x, F&& body) {
-  const T links[3] = {
-      T(options.links[0]), T(options.links[1]), T(options.links[2])};
-  constexpr Index kWidth = kArms<T>;
-  for (Index first = 0; first < x.cols(); first += kWidth) {
-    T in[4][kWidth], y[2][kWidth], d[kTurns][kWidth];
-    const Index count = std::min(kWidth, x.cols() - first);
-    for (Index i = 0; i < kWidth; ++i)
-      for (Index j = 0; j < 4; ++j)
-        in[j][i] = x(j, first + std::min(i, count - 1));
-    reach<T>(links, in, y, d);
-    for (Index i = 0; i < count; ++i) {
-      const T tip[2] = {y[0][i], y[1][i]};
-      T turns[kTurns];
-      for (Index k = 0; k < kTurns; ++k) turns[k] = d[k][i];
-      body(first + i, tip, turns);
-    }
+  for (Index b = 0; b < Lanes<T>::blocks(x.cols()); ++b) {
+    Pack<T> in[4];
+    Lanes<T>(in, 4).load(x, b * kLanes<T>);
+    Reach<T> arms = reach<T>(options, in);
+    body(b, arms);
   }
 }
+
+enum Slot : std::size_t { kDerivatives, kCount };
 
 }  // namespace
 
 std::array<std::array<double, 2>, 4> arm_joints(const std::array<double, 4>& x,
                                                 const RoboticArmOptions& o) {
-  const double links[3] = {o.links[0], o.links[1], o.links[2]};
-  double in[4][kArms<double>], y[2][kArms<double>], d[kTurns][kArms<double>];
-  for (std::size_t j = 0; j < 4; ++j) std::fill_n(in[j], kArms<double>, x[j]);
-  reach<double>(links, in, y, d);
+  Pack<double> in[4]{};
+  for (int j = 0; j < 4; ++j) in[j][0] = x[static_cast<std::size_t>(j)];
+  const auto [y, d] = reach<double>(o, in);
   std::array<std::array<double, 2>, 4> at{};
   at[0] = {0, x[0]};
   for (std::size_t k = 0; k < 3; ++k)
@@ -116,8 +100,8 @@ void RoboticArm<T>::forward(BatchIn<T> x,
                             Workspace& /*work*/) const {
   check_size(x, 4, x.cols());
   check_size(y, 2, x.cols());
-  for_arms<T>(options_, x, [&](Index i, const T* tip, const T*) {
-    y(0, i) = tip[0], y(1, i) = tip[1];
+  for_arms<T>(options_, x, [&](Index b, Reach<T>& arms) {
+    Lanes<T>(arms.y, 2).store(y, b * kLanes<T>);
   });
 }
 
@@ -128,10 +112,12 @@ void RoboticArm<T>::linearize(BatchIn<T> x,
                               Tape& tape) const {
   check_size(x, 4, x.cols());
   check_size(y, 2, x.cols());
-  auto kept = tape.slot<T>(kDerivatives, kTurns, x.cols());
-  for_arms<T>(options_, x, [&](Index i, const T* tip, const T* d) {
-    y(0, i) = tip[0], y(1, i) = tip[1];
-    for (Index k = 0; k < kTurns; ++k) kept(k, i) = d[k];
+  const Index blocks = Lanes<T>::blocks(x.cols());
+  auto kept = tape.slot<T>(kDerivatives, 6 * kLanes<T>, blocks);
+  tape.slot<Index>(kCount, 1, 1)(0, 0) = x.cols();
+  for_arms<T>(options_, x, [&](Index b, Reach<T>& arms) {
+    Lanes<T>(arms.y, 2).store(y, b * kLanes<T>);
+    std::memcpy(kept.col(b).data(), arms.d, sizeof(arms.d));
   });
 }
 
@@ -140,18 +126,19 @@ void RoboticArm<T>::pullback(const Tape& tape,
                              BatchIn<T> y_bar,
                              BatchOut<T> x_bar,
                              Workspace& /*work*/) const {
+  using P = Pack<T>;
+  const Index count = tape.view<Index>(kCount)(0, 0);
   const auto kept = tape.view<T>(kDerivatives);
-  check_size(y_bar, 2, kept.cols());
-  check_size(x_bar, 4, kept.cols());
-  for (Index i = 0; i < kept.cols(); ++i) {
-    const T r0 = y_bar(0, i), r1 = y_bar(1, i);
-    T t[3];
-    for (Index k = 0; k < 3; ++k)
-      t[k] = std::fma(kept(2 * k, i), r0, kept(2 * k + 1, i) * r1);
-    x_bar(0, i) = r1;
-    x_bar(1, i) = t[0] - t[1] - t[2];
-    x_bar(2, i) = t[1] - t[2];
-    x_bar(3, i) = t[2];
+  check_size(y_bar, 2, count);
+  check_size(x_bar, 4, count);
+  for (Index b = 0; b < kept.cols(); ++b) {
+    P d[6], r[2], t[3];
+    std::memcpy(d, kept.col(b).data(), sizeof(d));
+    Lanes<T>(r, 2).load(y_bar, b * kLanes<T>);
+    for (int k = 0; k < 3; ++k)
+      t[k] = fma_lanes(d[2 * k], r[0], d[2 * k + 1] * r[1]);
+    P out[4] = {r[1], t[0] - t[1] - t[2], t[1] - t[2], t[2]};
+    Lanes<T>(out, 4).store(x_bar, b * kLanes<T>);
   }
 }
 
@@ -162,13 +149,16 @@ void RoboticArm<T>::jacobian(BatchIn<T> x,
                              Workspace& /*work*/) const {
   check_size(x, 4, x.cols());
   check_size(j, 8, x.cols());
-  for_arms<T>(options_, x, [&](Index i, const T*, const T* d) {
-    for (Index r = 0; r < 2; ++r) {
-      j(r, i) = T(r);
-      j(2 + r, i) = d[r] - d[2 + r] - d[4 + r];
-      j(4 + r, i) = d[2 + r] - d[4 + r];
-      j(6 + r, i) = d[4 + r];
+  for_arms<T>(options_, x, [&](Index b, Reach<T>& arms) {
+    const auto& d = arms.d;
+    Pack<T> columns[8];
+    for (int r = 0; r < 2; ++r) {
+      columns[r] = Pack<T>{} + T(r);
+      columns[2 + r] = d[r] - d[2 + r] - d[4 + r];
+      columns[4 + r] = d[2 + r] - d[4 + r];
+      columns[6 + r] = d[4 + r];
     }
+    Lanes<T>(columns, 8).store(j, b * kLanes<T>);
   });
 }
 

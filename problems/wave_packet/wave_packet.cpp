@@ -146,9 +146,10 @@ template <bool kSlope>
   const auto [sine, cosine] = math::sincos(turn);
 
   P growth[kPacks];
-  powers<T>(math::exp((m0 - 0.5 * f) * rate), math::exp(rate), growth);
-  const P per_block =
-      P{} + static_cast<T>(math::exp(static_cast<double>(kBlock<T>) * rate));
+  const auto steps = math::exp(Pack<double, 4>{
+      (m0 - 0.5 * f) * rate, rate, static_cast<double>(kBlock<T>) * rate});
+  powers<T>(steps[0], steps[1], growth);
+  const P per_block = P{} + static_cast<T>(steps[2]);
   const P a = P{} + static_cast<T>(cosine), b = P{} + static_cast<T>(sine);
   const P wa = P{} + static_cast<T>(w * cosine);
   const P wb = P{} - static_cast<T>(w * sine);

@@ -165,7 +165,12 @@ class Lanes {
     const Index stride = batch.outerStride();
     const Index count = std::min<Index>(W, batch.cols() - first);
     const T* p = batch.data() + first * stride;
-    if (rows_ == 2 && stride == 2 && count == W) return load_pairs(p, kAll);
+    if (rows_ == 2 && stride == 2 && count == W) {
+      P pairs[2];
+      std::memcpy(pairs, p, sizeof(pairs));
+      return part(pairs[0], pairs[1], packs_[0], packs_[1], kAll);
+    }
+    if (rows_ == 4 && stride == 4 && count == W) return load_fours(p);
     for (Index r = 0; r < rows_; ++r) {
       alignas(sizeof(P)) T lane[W];
       for (Index k = 0; k < W; ++k)
@@ -179,7 +184,12 @@ class Lanes {
     const Index stride = batch.outerStride();
     const Index count = std::min<Index>(W, batch.cols() - first);
     T* p = batch.data() + first * stride;
-    if (rows_ == 2 && stride == 2 && count == W) return store_pairs(p, kAll);
+    if (rows_ == 2 && stride == 2 && count == W) {
+      P pairs[2];
+      join(packs_[0], packs_[1], pairs[0], pairs[1], kAll);
+      return static_cast<void>(std::memcpy(p, pairs, sizeof(pairs)));
+    }
+    if (rows_ == 4 && stride == 4 && count == W) return store_fours(p);
     for (Index r = 0; r < rows_; ++r) {
       alignas(sizeof(P)) T lane[W];
       std::memcpy(lane, &packs_[r], sizeof(P));
@@ -190,23 +200,39 @@ class Lanes {
  private:
   static constexpr auto kAll = std::make_integer_sequence<int, W>();
 
+  /// The numbers of even and of odd place of a, b.
   template <int... I>
-  PHYSINV_LANES void load_pairs(const T* p, std::integer_sequence<int, I...>) {
-    P low, high;
-    std::memcpy(&low, p, sizeof(P));
-    std::memcpy(&high, p + W, sizeof(P));
-    packs_[0] = __builtin_shufflevector(low, high, (2 * I)...);
-    packs_[1] = __builtin_shufflevector(low, high, (2 * I + 1)...);
+  PHYSINV_LANES static void part(
+      P a, P b, P& even, P& odd, std::integer_sequence<int, I...>) {
+    even = __builtin_shufflevector(a, b, (2 * I)...);
+    odd = __builtin_shufflevector(a, b, (2 * I + 1)...);
   }
 
+  /// The reverse.
   template <int... I>
-  PHYSINV_LANES void store_pairs(T* p, std::integer_sequence<int, I...>) const {
-    const P low =
-        __builtin_shufflevector(packs_[0], packs_[1], (I / 2 + I % 2 * W)...);
-    const P high = __builtin_shufflevector(
-        packs_[0], packs_[1], (W / 2 + I / 2 + I % 2 * W)...);
-    std::memcpy(p, &low, sizeof(P));
-    std::memcpy(p + W, &high, sizeof(P));
+  PHYSINV_LANES static void join(
+      P even, P odd, P& a, P& b, std::integer_sequence<int, I...>) {
+    a = __builtin_shufflevector(even, odd, (I / 2 + I % 2 * W)...);
+    b = __builtin_shufflevector(even, odd, (W / 2 + I / 2 + I % 2 * W)...);
+  }
+
+  /// Rows 0 and 2 alternate in `even`, 1 and 3 in `odd`.
+  PHYSINV_LANES void load_fours(const T* p) {
+    P in[4], even[2], odd[2];
+    std::memcpy(in, p, sizeof(in));
+    part(in[0], in[1], even[0], odd[0], kAll);
+    part(in[2], in[3], even[1], odd[1], kAll);
+    part(even[0], even[1], packs_[0], packs_[2], kAll);
+    part(odd[0], odd[1], packs_[1], packs_[3], kAll);
+  }
+
+  PHYSINV_LANES void store_fours(T* p) const {
+    P out[4], even[2], odd[2];
+    join(packs_[0], packs_[2], even[0], even[1], kAll);
+    join(packs_[1], packs_[3], odd[0], odd[1], kAll);
+    join(even[0], odd[0], out[0], out[1], kAll);
+    join(even[1], odd[1], out[2], out[3], kAll);
+    std::memcpy(p, out, sizeof(out));
   }
 
   P* packs_;

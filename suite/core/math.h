@@ -11,7 +11,7 @@
 
 #include <sleef.h>
 
-#include "suite/core/batch.h"
+#include "suite/core/lanes.h"
 
 namespace physinv::math {
 
@@ -61,22 +61,21 @@ inline SinCos<float> sincos(float x) {
   return {both.x, both.y};
 }
 
-/// Numbers that `sincos` takes at once: a register of 256 bits.
-template <class T>
-inline constexpr int kTogether = 32 / sizeof(T);
-
-/// Of several numbers, with the bits of each alone.
-inline void sincos(const double (&x)[4],
-                   double (&sine)[4],
-                   double (&cosine)[4]) {
-  const auto both = Sleef_finz_sincosd4_u10avx2(_mm256_loadu_pd(x));
-  _mm256_storeu_pd(sine, both.x);
-  _mm256_storeu_pd(cosine, both.y);
-}
-inline void sincos(const float (&x)[8], float (&sine)[8], float (&cosine)[8]) {
-  const auto both = Sleef_finz_sincosf8_u10avx2(_mm256_loadu_ps(x));
-  _mm256_storeu_ps(sine, both.x);
-  _mm256_storeu_ps(cosine, both.y);
-}
+/// Of a register of numbers, with the bits of each alone.
+#define PHYSINV_FUNCTIONS(T, W, kind, width)                   \
+  inline Pack<T, W> exp(Pack<T, W> x) {                        \
+    return Sleef_finz_exp##kind##_u10##width(x);               \
+  }                                                            \
+  inline SinCos<Pack<T, W>> sincos(Pack<T, W> x) {             \
+    const auto both = Sleef_finz_sincos##kind##_u10##width(x); \
+    return {both.x, both.y};                                   \
+  }
+PHYSINV_FUNCTIONS(double, 4, d4, avx2)
+PHYSINV_FUNCTIONS(float, 8, f8, avx2)
+#ifdef PHYSINV_AVX512
+PHYSINV_FUNCTIONS(double, 8, d8, avx512f)
+PHYSINV_FUNCTIONS(float, 16, f16, avx512f)
+#endif
+#undef PHYSINV_FUNCTIONS
 
 }  // namespace physinv::math

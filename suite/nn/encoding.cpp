@@ -12,16 +12,16 @@ template <class T>
 void PositionalEncoding<T>::forward(const LayerArgs<T>&,
                                     Lanes<const T> x,
                                     Lanes<T> y) const {
-  constexpr Index kWidth = math::kTogether<double>;
+  constexpr Index kWidth = 4;
   for (Index i = 0; i < x.rows; ++i) {
     const T* a = x.row(i);
     T* out = y.row(2 * frequencies_ * i);
     for (Index j = 0; j < x.width; j += kWidth) {
-      double at[kWidth], s1[kWidth], c1[kWidth], s[kWidth], c[kWidth];
+      double at[kWidth], s[kWidth], c[kWidth];
       for (Index l = 0; l < kWidth; ++l)
         at[l] = j + l < x.samples ? double(a[j + l]) : 0.0;
-      math::sincos(at, s1, c1);
-      std::copy_n(s1, kWidth, s), std::copy_n(c1, kWidth, c);
+      const auto [s1, c1] = math::sincos(Pack<double, 4>(_mm256_loadu_pd(at)));
+      _mm256_storeu_pd(s, s1), _mm256_storeu_pd(c, c1);
       for (Index k = 0; k < frequencies_; ++k)
         for (Index l = 0; l < kWidth; ++l) {
           out[k * y.stride + j + l] = static_cast<T>(s[l]);

@@ -54,8 +54,7 @@ inline auto side_by_side(V a, V b) {
   }
 }
 
-/// a * b + c with one rounding. Written out, because whether the compiler
-/// contracts the plain expression differs from one tile size to the next.
+/// a * b + c with one rounding.
 template <class T, class V>
 inline V multiply_add(V a, V b, V c) {
   return fma_lanes(a, b, c);

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <limits>
 
+#include "suite/core/lanes.h"
 #include "suite/core/rng.h"
 
 namespace physinv {
@@ -59,19 +61,31 @@ TYPED_TEST(Math, IsWithinAnUlpOfLongDouble) {
   EXPECT_LE(worst_erfc, 1.5);
 }
 
+template <class T, int W>
+void expect_bits_of_each_alone(Stream& stream) {
+  alignas(64) T x[W], exps[W], sines[W], cosines[W];
+  for (T& value : x) value = static_cast<T>(stream.uniform() - 0.5);
+  for (int k = 0; k < W; ++k) x[k] = std::ldexp(x[k], 5 * k % 40);
+  Pack<T, W> pack;
+  std::memcpy(&pack, x, sizeof(x));
+  const auto exp = math::exp(pack);
+  const auto [sine, cosine] = math::sincos(pack);
+  std::memcpy(exps, &exp, sizeof(exps));
+  std::memcpy(sines, &sine, sizeof(sines));
+  std::memcpy(cosines, &cosine, sizeof(cosines));
+  for (int k = 0; k < W; ++k) {
+    EXPECT_EQ(exps[k], math::exp(x[k])) << x[k];
+    EXPECT_EQ(sines[k], math::sincos(x[k]).sine) << x[k];
+    EXPECT_EQ(cosines[k], math::sincos(x[k]).cosine) << x[k];
+  }
+}
+
 TYPED_TEST(Math, SeveralAtOnceHaveTheBitsOfEachAlone) {
   using T = TypeParam;
   Stream stream = Rng::root("math", 1).stream();
   for (int i = 0; i < kTries; ++i) {
-    constexpr int kCount = math::kTogether<T>;
-    T x[kCount], sine[kCount], cosine[kCount];
-    for (T& value : x)
-      value = static_cast<T>(std::ldexp(stream.uniform() - 0.5, i % 40));
-    math::sincos(x, sine, cosine);
-    for (int k = 0; k < kCount; ++k) {
-      EXPECT_EQ(sine[k], math::sincos(x[k]).sine) << x[k];
-      EXPECT_EQ(cosine[k], math::sincos(x[k]).cosine) << x[k];
-    }
+    expect_bits_of_each_alone<T, 32 / sizeof(T)>(stream);
+    expect_bits_of_each_alone<T, kLanes<T>>(stream);
   }
 }
 
