@@ -1,0 +1,112 @@
+#!/usr/bin/env python3
+"""docs_test.py PROGRAM SOURCES: what the pages say of files and commands.
+
+README is short, every link leads to a file, commands have the verbs and flags
+of the program, counts are the program's and verdicts those of RESULTS.md.
+"""
+
+import functools
+import glob
+import os
+import re
+import subprocess
+import sys
+
+PROGRAM, SOURCES = sys.argv[1:3]
+LINES_OF_README = 150
+PAGES = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "docs/**/*.md"]
+
+
+def read(name):
+    with open(os.path.join(SOURCES, name)) as f:
+        return f.read()
+
+
+def pages():
+    for pattern in PAGES:
+        for path in glob.glob(os.path.join(SOURCES, pattern), recursive=True):
+            name = os.path.relpath(path, SOURCES)
+            yield name, read(name)
+
+
+def output(*arguments):
+    done = subprocess.run([PROGRAM, *arguments], capture_output=True, text=True)
+    return done.stdout
+
+
+@functools.cache
+def help_of(verb):
+    return output(verb, "--help")
+
+
+def dead_links(name, text):
+    for target in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", text):
+        if re.match(r"https?:", target):
+            continue
+        path = os.path.join(SOURCES, os.path.dirname(name), target)
+        if not os.path.exists(path):
+            yield f"{name}: the link '{target}' leads nowhere"
+
+
+def commands(text):
+    """Arguments of each ./bench line of the fenced blocks."""
+    for block in re.findall(r"^```(?:sh|yaml)\n(.*?)^```", text, re.S | re.M):
+        for line in block.splitlines():
+            found = re.search(r"(?:^|\s)\S*/bench\s+(.*)", line)
+            if found:
+                yield found[1].split("#")[0].split(" -- ")[0].split()
+
+
+def unknown_words(name, text):
+    verbs = set(re.findall(r"^physinv-bench (\w+) ", output("--help"), re.M))
+    for arguments in commands(text):
+        verb = arguments[0] if arguments and arguments[0][0] != "-" else "run"
+        if verb not in verbs | {"run"}:
+            yield f"{name}: './bench {' '.join(arguments)}' names no verb"
+            continue
+        flags = [a.split("=")[0] for a in arguments if a.startswith("--")]
+        for flag in flags:
+            known = help_of(verb) + ("--help --version" if verb == "run" else "")
+            if not re.search(re.escape(flag) + r"(?![\w-])", known):
+                yield f"{name}: './bench {verb}' has no flag {flag}"
+
+
+def wrong_counts():
+    """The table of profiles: | `smoke` | 233, 165 | ..."""
+    rows = re.findall(r"^\| `(\w+)`[^|]*\| (\d+), (\d+) \|", read("README.md"),
+                      re.M)
+    if not rows:
+        yield "README.md: no table of profiles"
+    for profile, *said in rows:
+        names = re.findall(r"^\S+/\S+", output("list", "--profile=" + profile),
+                           re.M)
+        papers = [n for n in names if not re.match("matrix/|numerics/", n)]
+        found = [str(len(names)), str(len(papers))]
+        if found != said:
+            yield f"README.md: profile {profile} has {', '.join(found)} cases"
+
+
+def wrong_verdicts():
+    rows = re.findall(r"^\| (?:hig|jpo|physgrad|sip) \| \d+ \|.*$",
+                      read("RESULTS.md"), re.M)
+    for row in rows or ["(none)"]:
+        if row not in read("README.md"):
+            yield f"README.md lacks the verdicts of RESULTS.md: {row}"
+
+
+def main():
+    wrong = [*wrong_counts(), *wrong_verdicts()]
+    lines = read("README.md").count("\n")
+    if lines > LINES_OF_README:
+        wrong.append(f"README.md has {lines} lines, of {LINES_OF_README}")
+    checked = 0
+    for name, text in pages():
+        wrong += [*dead_links(name, text), *unknown_words(name, text)]
+        checked += len(list(commands(text)))
+    if checked < 20:
+        wrong.append(f"only {checked} commands found")
+    print("\n".join(wrong) or f"{checked} commands: all right")
+    sys.exit(1 if wrong else 0)
+
+
+main()
