@@ -8,6 +8,7 @@
 #include "optimizers/drive.h"
 #include "optimizers/network_model.h"
 #include "optimizers/solver_outcome.h"
+#include "suite/core/median.h"
 #include "suite/core/oracle.h"
 #include "suite/core/probe.h"
 
@@ -76,12 +77,6 @@ class Surrogate {
   Index unknown_row_ = 0;
 };
 
-double median(Vector<double> v) {
-  std::sort(v.begin(), v.end());
-  const Index m = v.size();
-  return 0.5 * (v((m - 1) / 2) + v(m / 2));
-}
-
 /// Keeps the best true loss over the accepted iterates of each example.
 class BestTrue {
  public:
@@ -136,9 +131,10 @@ Outcome solve(const NeuralAdjointOptions& options, StageRun& run) {
   run.probe.begin_warmup();
   oracle.warm_up<double>();
   surrogate.evaluate(oracle.all(), bounded(start, labels), loss, gradient);
-  const double weight = options.fixed_weight != 0
-                            ? options.fixed_weight
-                            : options.weight * median(loss);
+  const double weight =
+      options.fixed_weight != 0
+          ? options.fixed_weight
+          : options.weight * median({loss.begin(), loss.end()});
 
   Bfgs solver({.gtol = run.setting.gtol, .maxiter = run.iterations});
   BestTrue best(run);

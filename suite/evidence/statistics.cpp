@@ -5,13 +5,6 @@
 
 namespace physinv {
 
-double median(std::vector<double> values) {
-  const auto middle = values.size() / 2;
-  std::sort(values.begin(), values.end());
-  return values.size() % 2 == 1 ? values[middle]
-                                : 0.5 * (values[middle - 1] + values[middle]);
-}
-
 double quantile(std::vector<double> values, double q) {
   std::sort(values.begin(), values.end());
   const double at = q * static_cast<double>(values.size() - 1);

@@ -6,13 +6,11 @@
 #include <span>
 #include <vector>
 
+#include "suite/core/median.h"
+
 namespace physinv {
 
 inline constexpr double kInfinite = std::numeric_limits<double>::infinity();
-
-/// Of a list that is not empty; of an even number the mean of the two in the
-/// middle. Infinities are numbers here.
-double median(std::vector<double> values);
 
 /// The value with a share q of the others below it, linear between two.
 /// Of a list that is not empty.

@@ -5,6 +5,8 @@
 #include <limits>
 #include <numeric>
 
+#include "suite/core/median.h"
+
 namespace physinv {
 namespace {
 
@@ -39,9 +41,7 @@ void MedianWatch::add(double number) {
 }
 
 double MedianWatch::median() const {
-  const std::size_t n = count();
-  if (n == 0) return 0;
-  return 0.5 * (sorted_[(n - 1) / 2] + sorted_[n / 2]);
+  return sorted_.empty() ? 0 : physinv::median(sorted_);
 }
 
 double MedianWatch::p_value() const { return std::exp(-most_); }

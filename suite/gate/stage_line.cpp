@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "suite/core/hash.h"
+#include "suite/core/median.h"
 #include "suite/gate/digits.h"
 #include "suite/results/checksum.h"
 
@@ -35,8 +36,8 @@ Losses losses_of(const Vector<double>& all) {
     if (std::isfinite(loss)) finite.push_back(loss);
   const Index nonfinite = all.size() - static_cast<Index>(finite.size());
   if (finite.empty()) return {kNaN, kNaN, kNaN, nonfinite};
-  std::sort(finite.begin(), finite.end());
-  return {finite.front(), finite[finite.size() / 2], finite.back(), nonfinite};
+  const auto [least, most] = std::minmax_element(finite.begin(), finite.end());
+  return {*least, median_high(finite), *most, nonfinite};
 }
 
 /// Of all that another run must reproduce but the work, which is counted apart.

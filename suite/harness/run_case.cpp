@@ -12,6 +12,7 @@
 
 #include "suite/core/clock.h"
 #include "suite/core/disturbance.h"
+#include "suite/core/median.h"
 #include "suite/core/probe.h"
 #include "suite/harness/run_stage.h"
 
@@ -71,9 +72,7 @@ double median_finite(VectorIn<double> values) {
   for (Index i = 0; i < values.size(); ++i)
     if (std::isfinite(values(i))) v.push_back(values(i));
   if (v.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
-  std::nth_element(v.begin(), middle, v.end());
-  return *middle;
+  return median(std::move(v));
 }
 
 Precision working_precision(const Case& c) {

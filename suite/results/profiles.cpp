@@ -10,6 +10,7 @@
 #include <set>
 #include <utility>
 
+#include "suite/core/median.h"
 #include "suite/results/course.h"
 
 namespace physinv {
@@ -85,8 +86,7 @@ std::vector<std::string> lowest_of(const Results& results,
             last.push_back(course->loss.back().mean());
     for (double& loss : last)
       if (!std::isfinite(loss)) loss = kInfinity;
-    std::sort(last.begin(), last.end());
-    ends.emplace_back(last.empty() ? kInfinity : last[last.size() / 2], m);
+    ends.emplace_back(last.empty() ? kInfinity : median(std::move(last)), m);
   }
   std::sort(ends.begin(), ends.end());
   ends.resize(most);

@@ -7,7 +7,9 @@
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <utility>
 
+#include "suite/core/median.h"
 #include "suite/results/folder.h"
 #include "suite/results/json.h"
 
@@ -23,19 +25,17 @@ Json number(double v) { return std::isfinite(v) ? Json(v) : Json(nullptr); }
 double milliseconds(double seconds) { return 1e3 * seconds; }
 
 /// Middle of the losses; those that are not finite count as largest.
-double median(const Vector<double>& loss) {
+double median_loss(const Vector<double>& loss) {
   std::vector<double> v(loss.data(), loss.data() + loss.size());
   for (double& a : v)
     if (!std::isfinite(a)) a = std::numeric_limits<double>::infinity();
-  std::sort(v.begin(), v.end());
-  const std::size_t n = v.size();
-  return n % 2 == 1 ? v[n / 2] : 0.5 * (v[n / 2 - 1] + v[n / 2]);
+  return median(std::move(v));
 }
 
 void add_accuracy(Json& j, const Vector<double>& loss) {
   const bool any = loss.size() > 0;
   j["loss_mean"] = any ? number(loss.mean()) : nullptr;
-  j["loss_median"] = any ? number(median(loss)) : nullptr;
+  j["loss_median"] = any ? number(median_loss(loss)) : nullptr;
   j["loss_max"] = any ? number(loss.maxCoeff<Eigen::PropagateNaN>()) : nullptr;
   const auto solved = static_cast<double>((loss.array() < 1e-6).count());
   j["solved_1e-6"] =

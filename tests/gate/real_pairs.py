@@ -8,6 +8,7 @@ smoke profile, 20 seconds each gate."""
 
 import json
 import os
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -38,10 +39,9 @@ def main():
             print(f"gate {i + 1}: " + ("; ".join(
                 f"{f['name']} {f['verdict']}: {f['why']}" for f in moved)
                 or "no alarm"), flush=True)
-    noise.sort()
     print(f"{alarms} of {gates} gates with an alarm; verdicts {verdicts}")
     if noise:
-        print(f"median width of an interval {100 * noise[len(noise) // 2]:.1f}"
+        print(f"median width of an interval {100 * statistics.median(noise):.1f}"
               f" %, of {len(noise)}")
     sys.exit(bool(alarms))
 

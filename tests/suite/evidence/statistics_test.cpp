@@ -7,12 +7,6 @@
 namespace physinv {
 namespace {
 
-TEST(Statistics, MiddleOfOddAndEvenLists) {
-  EXPECT_EQ(median({3, 1, 2}), 2);
-  EXPECT_EQ(median({4, 1, 2, 3}), 2.5);
-  EXPECT_EQ(median({1, kInfinite, kInfinite}), kInfinite);
-}
-
 TEST(Statistics, QuantilesAreLinearBetweenValues) {
   EXPECT_EQ(quantile({0, 10, 20}, 0), 0);
   EXPECT_EQ(quantile({20, 0, 10}, 1), 20);

@@ -6,6 +6,7 @@
 
 #include "problems/navier_stokes/navier_stokes.h"
 #include "suite/cases/jpo/common/values.h"
+#include "suite/evidence/statistics.h"
 #include "suite/harness/registry.h"
 
 namespace physinv::jpo::navier_stokes {
@@ -30,11 +31,6 @@ RunValue over_bfgs(double (*statistic)(std::vector<double>)) {
     if (!other) return {};
     return statistic(losses()(run)) / statistic(losses()(*other));
   };
-}
-double median_of(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t m = values.size();
-  return 0.5 * (values[(m - 1) / 2] + values[m / 2]);
 }
 
 /// Mean loss over BFGS's without the tenth of the problems (at least one) of
@@ -231,7 +227,7 @@ std::vector<Claim> suite_claims() {
                             lowest_mean(kJpo, over_bfgs(mean_of)),
                             1),
                       at_most("highest median L over BFGS's",
-                              highest_mean(large, over_bfgs(median_of)),
+                              highest_mean(large, over_bfgs(median)),
                               1.3)}},
       {.id = "R5",
        .from = "quick",

@@ -56,11 +56,10 @@ std::shared_ptr<const Stage> stage_of(const Knob& knob,
 
 /// The median, in which what is not finite is large.
 double typical_error(const Batch<double>& error) {
-  std::vector<double> sorted(error.data(), error.data() + error.size());
-  for (double& e : sorted)
+  std::vector<double> all(error.data(), error.data() + error.size());
+  for (double& e : all)
     if (e < 0) e = HUGE_VAL;
-  std::sort(sorted.begin(), sorted.end());
-  const double middle = sorted[sorted.size() / 2];
+  const double middle = median(std::move(all));
   return std::isfinite(middle) ? middle : -1;
 }
 

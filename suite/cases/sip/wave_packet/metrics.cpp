@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "suite/core/median.h"
 #include "suite/core/oracle.h"
 
 namespace physinv::sip_wave_packet {
@@ -18,7 +19,8 @@ void evaluate(const Snapshot& s, VectorOut<double> values) {
     const auto end = std::lower_bound(error.begin(), error.end(), within);
     return static_cast<double>(end - error.begin()) / n;
   };
-  values << sum / n, error(error.size() / 2), share(2), share(kBasin);
+  values << sum / n, median_high({error.begin(), error.end()}), share(2),
+      share(kBasin);
 }
 
 }  // namespace
