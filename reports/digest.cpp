@@ -23,7 +23,7 @@ std::string text_of(const Json& object, const char* key) {
 }
 
 /// Verdicts of the claims, one for each experiment and id.
-using Verdicts = std::map<std::pair<std::string, std::string>, std::string>;
+using Verdicts = std::map<std::pair<std::string, std::string>, Verdict>;
 
 struct Counted {
   std::string title;
@@ -31,8 +31,24 @@ struct Counted {
 };
 
 /// What was decided counts before what was only reported.
-int weight(std::string_view verdict) {
-  return verdict == "not judged" ? 0 : verdict == "reported" ? 1 : 2;
+int weight(Verdict verdict) {
+  return verdict == Verdict::not_judged ? 0
+         : verdict == Verdict::reported ? 1
+                                        : 2;
+}
+
+Origin origin_of(const Json& claim) {
+  return claim.at("origin") == "paper" ? Origin::paper : Origin::suite;
+}
+
+/// That a claim of a digest came to.
+Verdict verdict_in(const Json& claim) {
+  const std::string words = claim.at("verdict");
+  const auto verdict = verdict_of(words);
+  if (!verdict)
+    throw std::runtime_error(
+        fmt::format("no digest of a campaign: '{}' is no verdict", words));
+  return *verdict;
 }
 
 void count(const Json& section, std::map<std::string, Counted>& papers) {
@@ -40,14 +56,16 @@ void count(const Json& section, std::map<std::string, Counted>& papers) {
   for (const Json& claim : section.at("claims")) {
     Counted& counted = papers[section.at("paper").get<std::string>()];
     auto& verdicts =
-        claim.at("origin") == "paper" ? counted.paper : counted.suite;
-    const std::string verdict = claim.at("verdict");
-    auto& entry = verdicts[{experiment, claim.at("id").get<std::string>()}];
-    if (entry.empty() || weight(verdict) >= weight(entry)) entry = verdict;
+        origin_of(claim) == Origin::paper ? counted.paper : counted.suite;
+    const Verdict verdict = verdict_in(claim);
+    const auto [entry, first] = verdicts.try_emplace(
+        {experiment, claim.at("id").get<std::string>()}, verdict);
+    if (!first && weight(verdict) >= weight(entry->second))
+      entry->second = verdict;
   }
 }
 
-int count_of(const Verdicts& verdicts, std::string_view verdict) {
+int count_of(const Verdicts& verdicts, Verdict verdict) {
   int count = 0;
   for (const auto& [id, v] : verdicts) count += v == verdict;
   return count;
@@ -57,20 +75,22 @@ std::string overview(const std::vector<NamedDigest>& campaigns) {
   std::map<std::string, Counted> papers;
   for (const auto& c : campaigns)
     for (const Json& section : c.digest.at("sections")) count(section, papers);
-  std::string out =
-      "| paper | reproduced | not reproduced | not judged | reported | ranges "
-      "of the suite: hold | fail | not judged |\n"
-      "| --- | --- | --- | --- | --- | --- | --- | --- |\n";
+  std::string out = "| paper |", line = "\n| --- |";
+  for (const Origin origin : {Origin::paper, Origin::suite})
+    for (const Verdict v : kVerdicts) {
+      const bool first_range = origin == Origin::suite && v == kVerdicts[0];
+      out += fmt::format(" {}{} |",
+                         first_range ? "ranges of the suite: " : "",
+                         words_of(v, origin));
+      line += " --- |";
+    }
+  out += line + '\n';
   for (const auto& [paper, c] : papers) {
-    out += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} |\n",
-                       paper.empty() ? "(none)" : markdown(paper),
-                       count_of(c.paper, "reproduced"),
-                       count_of(c.paper, "not reproduced"),
-                       count_of(c.paper, "not judged"),
-                       count_of(c.paper, "reported"),
-                       count_of(c.suite, "holds"),
-                       count_of(c.suite, "fails"),
-                       count_of(c.suite, "not judged"));
+    out += fmt::format("| {} |", paper.empty() ? "(none)" : markdown(paper));
+    for (const Verdicts* verdicts : {&c.paper, &c.suite})
+      for (const Verdict v : kVerdicts)
+        out += fmt::format(" {} |", count_of(*verdicts, v));
+    out += '\n';
   }
   std::set<std::string> publications;
   for (const auto& c : campaigns)
@@ -91,7 +111,7 @@ std::string claims_of(const Json& section, const char* origin) {
     const std::string where = text_of(claim, "where");
     const std::string note = text_of(claim, "note");
     const std::string evidence = text_of(claim, "evidence");
-    if (text_of(claim, "verdict") == "not judged") {
+    if (verdict_in(claim) == Verdict::not_judged) {
       std::string& ids = waiting[evidence.empty() ? note : evidence];
       ids += (ids.empty() ? "" : ", ") + text_of(claim, "id");
       continue;
@@ -100,7 +120,7 @@ std::string claims_of(const Json& section, const char* origin) {
                         markdown(text_of(claim, "id")),
                         markdown(text_of(claim, "says")),
                         where.empty() ? "" : " (" + markdown(where) + ")",
-                        markdown(text_of(claim, "verdict")),
+                        words_of(verdict_in(claim), origin_of(claim)),
                         markdown(evidence),
                         note.empty() ? "" : " *" + markdown(note) + "*");
   }

@@ -17,27 +17,19 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Look {
-  std::string_view css, mark;
-};
-
-Look look_of(Verdict verdict) {
+/// Class of a verdict in the page's style sheet.
+std::string_view css_of(Verdict verdict) {
   switch (verdict) {
     case Verdict::reproduced:
-      return {"yes", "✓"};
+      return "yes";
     case Verdict::not_reproduced:
-      return {"no", "✗"};
+      return "no";
     case Verdict::not_judged:
     case Verdict::reported:
       break;
   }
-  return {"open", "–"};
+  return "open";
 }
-
-constexpr Verdict kVerdicts[] = {Verdict::reproduced,
-                                 Verdict::not_reproduced,
-                                 Verdict::not_judged,
-                                 Verdict::reported};
 
 /// Ids of everything that can be linked to, in the order of a section.
 struct Anchors {
@@ -106,7 +98,7 @@ std::string totals_html(const std::vector<Section>& sections) {
   for (const Verdict v : kVerdicts) {
     const int count = papers[static_cast<std::size_t>(v)];
     out += fmt::format("<li class=\"{}\"><strong>{}</strong> {}</li>\n",
-                       count == 0 ? "open" : look_of(v).css,
+                       count == 0 ? "open" : css_of(v),
                        count,
                        words_of(v, Origin::paper));
   }
@@ -128,15 +120,14 @@ std::string chips_html(const Section& section,
   for (std::size_t k = 0; k < section.claims.size(); ++k) {
     const ClaimResult& c = section.claims[k];
     if (c.origin != origin) continue;
-    const Look look = look_of(c.verdict);
     out += fmt::format(
         "{}<a class=\"chip {}\" href=\"#{}\" title=\"{}: {}\">{} {}{}</a>",
         out.empty() ? "" : " ",
-        look.css,
+        css_of(c.verdict),
         anchors.claims[k],
         words_of(c.verdict, origin),
         html(c.says),
-        look.mark,
+        mark_of(c.verdict),
         html(c.id),
         c.gates ? " •" : "");
   }
@@ -202,14 +193,13 @@ std::string contents_html(const std::vector<Section>& sections,
 // ---- an experiment --------------------------------------------------------
 
 std::string claim_html(const ClaimResult& claim, const std::string& id) {
-  const Look look = look_of(claim.verdict);
   std::string out = fmt::format(
       "<tr id=\"{0}\"><th scope=\"row\"><a class=\"self\" href=\"#{0}\">{1}</a>"
       "</th><td class=\"verdict {2}\">{3} {4}</td><td><p>{5}</p>",
       id,
       html(claim.id),
-      look.css,
-      look.mark,
+      css_of(claim.verdict),
+      mark_of(claim.verdict),
       words_of(claim.verdict, claim.origin),
       html(claim.says));
   if (!claim.evidence.empty()) {

@@ -106,20 +106,6 @@ Json to_json(const Panel& p) {
   return out;
 }
 
-std::string_view verdict_mark(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::reproduced:
-      return "✅";
-    case Verdict::not_reproduced:
-      return "❌";
-    case Verdict::not_judged:
-      return "➖";
-    case Verdict::reported:
-      return "ℹ️";
-  }
-  return "";
-}
-
 std::string summary(const std::vector<Section>& sections) {
   std::string text =
       fmt::format("claims of the papers {}",
@@ -150,7 +136,7 @@ std::string claims_markdown(const Section& section, Origin origin) {
                        markdown(c.id),
                        markdown(c.says),
                        place,
-                       verdict_mark(c.verdict),
+                       mark_of(c.verdict),
                        words_of(c.verdict, origin),
                        markdown(c.from),
                        c.gates ? "yes" : "no",
@@ -213,21 +199,6 @@ void write_section(Writer& writer, const Section& section) {
 
 }  // namespace
 
-std::string_view words_of(Verdict verdict, Origin origin) {
-  const bool paper = origin == Origin::paper;
-  switch (verdict) {
-    case Verdict::reproduced:
-      return paper ? "reproduced" : "holds";
-    case Verdict::not_reproduced:
-      return paper ? "not reproduced" : "fails";
-    case Verdict::not_judged:
-      return "not judged";
-    case Verdict::reported:
-      return "reported";
-  }
-  return "";
-}
-
 Tally tally(const Section& section, Origin origin) {
   Tally counts{};
   for (const ClaimResult& c : section.claims)
@@ -246,11 +217,11 @@ Tally tally(const std::vector<Section>& sections, Origin origin) {
 
 std::string tally_text(const Tally& tally, Origin origin) {
   std::string text;
-  for (int k = 0; k < kVerdictCount; ++k)
+  for (const Verdict v : kVerdicts)
     text += fmt::format("{}{} {}",
-                        k == 0 ? "" : ", ",
-                        tally[static_cast<std::size_t>(k)],
-                        words_of(static_cast<Verdict>(k), origin));
+                        text.empty() ? "" : ", ",
+                        tally[static_cast<std::size_t>(v)],
+                        words_of(v, origin));
   return text;
 }
 

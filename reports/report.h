@@ -8,16 +8,12 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "suite/results/report_model.h"
+#include "suite/results/verdict_words.h"
 
 namespace physinv {
-
-/// Of the paper's claims `reproduced`, `not reproduced`, of the suite's ranges
-/// `holds`, `fails`; of both `not judged`, `reported`.
-std::string_view words_of(Verdict verdict, Origin origin);
 
 /// How many claims of an origin came to which verdict.
 using Tally = std::array<int, kVerdictCount>;

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "suite/results/profiles.h"
+#include "suite/results/verdict_words.h"
 
 namespace physinv {
 namespace {
@@ -148,10 +149,8 @@ Json to_json(const Reading& r) {
           {"counts", std::move(counts)}};
 }
 
-std::string_view word(Verdict v) {
-  constexpr std::string_view kWords[] = {
-      "reproduced", "not_reproduced", "not_judged", "reported"};
-  return kWords[static_cast<int>(v)];
+std::string word(const ClaimResult& claim) {
+  return std::string(words_of(claim.verdict, claim.origin));
 }
 
 }  // namespace
@@ -234,8 +233,7 @@ Table claims_table(const std::vector<ChangedClaim>& changed,
       if (side && row.label.empty())
         row.label =
             fmt::format("{} {}: {}", c.experiment, side->id, side->says);
-      row.cells.push_back(
-          {.text = side ? std::string(word(side->verdict)) : "not judged"});
+      row.cells.push_back({.text = word(side.value_or(ClaimResult{}))});
     }
     table.rows.push_back(std::move(row));
   }
@@ -284,7 +282,7 @@ Json to_json(const Comparison& c, const std::vector<ChangedClaim>& changed) {
     std::string id;
     for (const auto& side : claim.sides) {
       if (side) id = side->id;
-      verdicts.push_back(side ? Json(word(side->verdict)) : Json(nullptr));
+      verdicts.push_back(side ? Json(word(*side)) : Json(nullptr));
     }
     claims.push_back({{"experiment", claim.experiment},
                       {"id", id},

@@ -50,7 +50,7 @@ TEST(Digest, PageSaysWhereItsNumbersComeFrom) {
         "| R1 | range | fails |",
         "A table",
         "- jpo: A. Author: A title. A venue, 2024.",
-        "| jpo | 1 | 0 | 0 | 0 | 0 | 1 | 0 |"})
+        "| jpo | 1 | 0 | 0 | 0 | 0 | 1 | 0 | 0 |"})
     EXPECT_NE(page.find(words), page.npos) << words << "\n" << page;
 }
 
@@ -87,6 +87,9 @@ TEST(Digest, SomethingElseIsNoDigest) {
   EXPECT_THROW(results_markdown({{"a", Json{{"sections", Json::array()}}}}),
                std::runtime_error);
   EXPECT_THROW(results_markdown({{"a", Json::array()}}), std::runtime_error);
+  auto strange = named("a", Verdict::reproduced, Verdict::reported);
+  strange.digest["sections"][0]["claims"][0]["verdict"] = "not_reproduced";
+  EXPECT_THROW(results_markdown({strange}), std::runtime_error);
 }
 
 TEST(Digest, CompressedBytesComeBack) {

@@ -106,7 +106,7 @@ TEST(Report, OverviewNamesVerdictsAndLinks) {
       text.npos);
   EXPECT_NE(
       text.find(
-          "| R1 | a \\| b (Fig. 1) | ✅ reproduced | quick | yes | 0.98 |"),
+          "| R1 | a \\| b (Fig. 1) | ✓ reproduced | quick | yes | 0.98 |"),
       text.npos);
   EXPECT_NE(text.find("(jpo-toy/figures/fig1.svg)"), text.npos);
   EXPECT_NE(text.find("- revision: abc"), text.npos);

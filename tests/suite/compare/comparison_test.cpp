@@ -100,7 +100,7 @@ TEST(Compare, ClaimsThatChangeTheirVerdict) {
   ASSERT_EQ(changed.size(), 1U);
   EXPECT_EQ(changed[0].sides[1]->id, "R1");
   EXPECT_EQ(claims_table(changed, {"a", "b"}).rows[0].cells[1].text,
-            "not_reproduced");
+            "fails");
 }
 
 TEST(Compare, SidesOfRevisions) {

@@ -1,0 +1,69 @@
+// A verdict has one word in every output, whoever made it.
+#include <gtest/gtest.h>
+
+#include "reports/digest.h"
+#include "reports/html.h"
+#include "reports/report.h"
+#include "suite/compare/pages.h"
+
+namespace physinv {
+namespace {
+
+class WordsOf : public testing::TestWithParam<std::tuple<Verdict, Origin>> {
+ protected:
+  Verdict verdict_ = std::get<0>(GetParam());
+  Origin origin_ = std::get<1>(GetParam());
+  std::string words_{words_of(verdict_, origin_)};
+  ClaimResult claim_{.id = "R1",
+                     .says = "a",
+                     .from = "quick",
+                     .verdict = verdict_,
+                     .evidence = "runs",
+                     .origin = origin_};
+  std::vector<Section> sections_{{.experiment = "jpo/toy",
+                                  .title = "Toy",
+                                  .paper = "jpo",
+                                  .claims = {claim_}}};
+};
+
+TEST_P(WordsOf, StandInTheReport) {
+  const std::string mark(mark_of(verdict_));
+  const std::string text = report_markdown(sections_, {});
+  EXPECT_NE(text.find("| R1 | a | " + mark + " " + words_ + " |"), text.npos)
+      << text;
+  const std::string page = report_html(sections_, {});
+  EXPECT_NE(page.find(">" + mark + " " + words_ + "</td>"), page.npos);
+  EXPECT_NE(render_claims_text(sections_, 80).find("R1   " + words_),
+            std::string::npos);
+  EXPECT_EQ(to_json(claim_)["verdict"], words_);
+}
+
+TEST_P(WordsOf, StandInThePageOfCampaigns) {
+  const std::string page =
+      results_markdown({{"a", digest_json(sections_, {{"profile", "quick"}})}});
+  EXPECT_NE(page.find(" " + words_ + " |"), page.npos) << page;
+  const std::string row = verdict_ == Verdict::not_judged
+                              ? "- R1: runs"
+                              : "| R1 | a | " + words_ + " |";
+  EXPECT_NE(page.find(row), page.npos) << row << "\n" << page;
+}
+
+TEST_P(WordsOf, StandInAComparison) {
+  const std::vector<ChangedClaim> changed{
+      {.experiment = "jpo/toy", .sides = {claim_, std::nullopt}}};
+  const Table table = claims_table(changed, {"a", "b"});
+  EXPECT_EQ(table.rows[0].cells[0].text, words_);
+  EXPECT_EQ(table.rows[0].cells[1].text,
+            words_of(Verdict::not_judged, Origin::suite));
+  EXPECT_EQ(to_json(Comparison{}, changed)["changed_claims"][0]["verdicts"][0],
+            words_);
+}
+
+INSTANTIATE_TEST_SUITE_P(VerdictWords,
+                         WordsOf,
+                         testing::Combine(testing::ValuesIn(kVerdicts),
+                                          testing::Values(Origin::paper,
+                                                          Origin::suite)));
+
+}  // namespace
+}  // namespace physinv

@@ -1,0 +1,25 @@
+#include "suite/results/verdict_words.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace physinv {
+namespace {
+
+TEST(VerdictWords, SayOneVerdictEach) {
+  std::set<std::string_view> marks;
+  for (const Origin origin : {Origin::paper, Origin::suite})
+    for (const Verdict v : kVerdicts)
+      EXPECT_EQ(verdict_of(words_of(v, origin)), v) << words_of(v, origin);
+  for (const Verdict v : kVerdicts) marks.insert(mark_of(v));
+  EXPECT_EQ(marks.size(), kVerdicts.size());
+}
+
+TEST(VerdictWords, OtherWordsAreNone) {
+  for (const char* word : {"", "hold", "not_reproduced", "Reproduced"})
+    EXPECT_FALSE(verdict_of(word)) << word;
+}
+
+}  // namespace
+}  // namespace physinv
