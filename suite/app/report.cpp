@@ -194,7 +194,7 @@ ExitCode report_verb(const Arguments& arguments) {
   bool check = false;
   if (!parse(
           "report",
-          "Writes tables, plots and claims of a finished campaign. Exit 8 if "
+          "Writes tables, plots and claims of a finished campaign. Exit 10 if "
           "the campaign is incomplete.",
           {{"RESULTS", "directory that 'run' wrote", &results},
            {"--out", "where to; default: RESULTS/report", &out, "DIR"},

@@ -69,6 +69,7 @@ class Cubic final : public Problem<T>, public Vjp<T> {
     for (Index i = 0; i < x.cols(); ++i)
       for (Index j = 0; j < 2; ++j)
         y(j, i) = x(j, i) * x(j, i) * x(j, i) + slope * x(j, i) + given(0, i);
+    if (other_) y *= 2;
   }
   void linearize(BatchIn<T> x,
                  BatchIn<T> given,
@@ -98,6 +99,7 @@ class Cubic final : public Problem<T>, public Vjp<T> {
 
   Options options_;
   bool slow_ = planted("a kernel slower by 10 %");
+  bool other_ = planted("another forward");
   mutable int calls_ = 0;
 };
 
