@@ -1,5 +1,5 @@
-"""Exit codes: every one that the help of a verb or the README names for it is
-seen to come, and the README names those that the help does."""
+"""Exit codes: every one that the help of a verb or a page of docs names for it is
+seen to come, and the pages name those that the help does."""
 
 import json
 import os
@@ -9,7 +9,7 @@ import tempfile
 
 from program import BENCH, FAILED, check, expect, run
 
-README = os.path.abspath(sys.argv[2])
+DOCS = os.path.abspath(sys.argv[2])
 
 SELECTION = ["--profile=quick", "--filter=descend", "--tasks=2"]
 
@@ -120,10 +120,12 @@ def in_help(verb, d):
     return codes
 
 
-def in_readme():
-    """Its table, and what it says of the gate."""
-    with open(README) as f:
-        text = f.read()
+def in_pages():
+    """The table of docs/running.md, and what docs/gate.md says of the gate."""
+    text = ""
+    for page in ("running.md", "gate.md"):
+        with open(os.path.join(DOCS, page)) as f:
+            text += f.read()
     rows = text.split("| verb | exit codes beside 0 |")[1].split("\n\n")[0]
     said = {}
     for verbs, cell in re.findall(r"^\| ([a-z, ]+) \| (.*) \|$", rows, re.M):
@@ -147,21 +149,21 @@ def main():
         for verb, codes in shown.items():
             for code, (args, *env) in codes.items():
                 expect(code, args, d, env=env[0] if env else None)
-        readme = in_readme()
+        pages = in_pages()
         named = {verb: in_help(verb, d)
                  for verb in run("--list-verbs", cwd=d).stdout.split()
                  if verb != "kernels"}
         check(sum(map(len, named.values())) > 10, f"the help names {named}")
-        for verb, codes in {**named, **readme}.items():
+        for verb, codes in {**named, **pages}.items():
             seen = set(shown.get(verb, ()))
             codes = codes | named.get(verb, set())
-            check(codes <= seen, f"{verb}: {codes} of help and README come")
-        for verb, codes in readme.items():
+            check(codes <= seen, f"{verb}: {codes} of help and pages come")
+        for verb, codes in pages.items():
             check(named.get(verb, set()) - {0} <= codes,
-                  f"{verb}: the README names {named.get(verb)}")
+                  f"{verb}: the pages name {named.get(verb)}")
         listed = {int(c) for c in re.findall(
             r"^ +(\d+)  ", run("--help", cwd=d).stdout, re.M)}
-        check(set().union(*readme.values(), *named.values()) <= listed,
+        check(set().union(*pages.values(), *named.values()) <= listed,
               f"--help lists {listed}")
     sys.exit(1 if FAILED else 0)
 

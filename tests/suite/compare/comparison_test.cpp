@@ -99,8 +99,7 @@ TEST(Compare, ClaimsThatChangeTheirVerdict) {
   const auto changed = changed_claims(sides);
   ASSERT_EQ(changed.size(), 1U);
   EXPECT_EQ(changed[0].sides[1]->id, "R1");
-  EXPECT_EQ(claims_table(changed, {"a", "b"}).rows[0].cells[1].text,
-            "fails");
+  EXPECT_EQ(claims_table(changed, {"a", "b"}).rows[0].cells[1].text, "fails");
 }
 
 TEST(Compare, SidesOfRevisions) {
