@@ -3,6 +3,7 @@
 #include "suite/app/installed.h"
 #include "suite/app/options.h"
 #include "suite/harness/context.h"
+#include "suite/harness/registry_problems.h"
 
 namespace physinv {
 
@@ -53,11 +54,12 @@ MeasureOptions GateFlags::measuring() const {
 std::vector<Case> cases_of(const Chosen& chosen,
                            const std::vector<std::string>& filters,
                            const std::string& whose) {
-  registry().validate();
   auto all = registry().expand(chosen.profile,
                                parse_overrides(chosen.sets, chosen.seeds));
-  return NameFilter(filters).apply(
+  auto cases = NameFilter(filters).apply(
       NameFilter(chosen.filters, whose).apply(std::move(all)));
+  validate(registry(), cases);
+  return cases;
 }
 
 int jobs_or_cores(int jobs) { return jobs > 0 ? jobs : available_cores(); }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "suite/app/options.h"
 #include "suite/harness/sources.h"
@@ -39,7 +40,23 @@ std::string stages_of(const Case& c) {
   return fmt::format("{} .. {} ({})", all.front(), all.back(), all.size());
 }
 
+/// Declared work of a whole chain: the same for every seed, and its problems
+/// and networks are made for it.
+class Operations {
+ public:
+  double of(const Case& c) {
+    const auto [at, is_new] =
+        known_.try_emplace({c.method, c.info.n, c.stage_iterations});
+    if (is_new) at->second = c.operations();
+    return at->second;
+  }
+
+ private:
+  std::map<std::tuple<const Method*, Index, std::vector<Index>>, double> known_;
+};
+
 void print_table(const std::vector<Case>& cases) {
+  Operations operations;
   std::size_t width = 4, stages_width = 6;
   for (const Case& c : cases) {
     width = std::max(width, c.info.name.size());
@@ -58,8 +75,8 @@ void print_table(const std::vector<Case>& cases) {
                width,
                stages_of(c),
                stages_width,
-               c.operations());
-    sum += c.operations();
+               operations.of(c));
+    sum += operations.of(c);
   }
   fmt::print(
       "{} cases, about {:.2g} floating-point operations\n", cases.size(), sum);
@@ -83,6 +100,17 @@ void print_stale(const std::vector<Case>& cases, const std::string& path) {
     }
   }
   fmt::print("an edit of {} makes {} of {} stages stale\n", path, stale, all);
+}
+
+/// All that is registered, not only what a selection takes.
+void print_validity() {
+  registry().validate();
+  std::size_t methods = 0;
+  for (const auto& e : registry().experiments()) methods += e->methods.size();
+  fmt::print(
+      "{} experiments with {} methods are registered as they should be\n",
+      registry().experiments().size(),
+      methods);
 }
 
 /// '|' would end a cell of a Markdown table.
@@ -148,7 +176,7 @@ void print_claims() {
 ExitCode list_verb(const Arguments& arguments) {
   Selection selection;
   std::string edited;
-  bool json = false, methods = false, claims = false;
+  bool json = false, methods = false, claims = false, validate = false;
   if (!parse(
           "list",
           "The cases of a profile, with estimated work.",
@@ -162,9 +190,16 @@ ExitCode list_verb(const Arguments& arguments) {
                {"--claims",
                 "what is claimed, whose it is and what decides "
                 "it, as Markdown",
-                &claims}}),
+                &claims},
+               {"--validate",
+                "is everything registered as it should be?",
+                &validate}}),
           arguments))
     return ExitCode::good;
+  if (validate) {
+    print_validity();
+    return ExitCode::good;
+  }
   if (methods) {
     print_methods();
     return ExitCode::good;

@@ -9,6 +9,7 @@
 #include <set>
 #include <sstream>
 
+#include "suite/harness/registry_problems.h"
 #include "suite/results/file.h"
 
 namespace physinv {
@@ -165,15 +166,15 @@ std::vector<Flag> Selection::flags(const std::vector<Flag>& own) {
 }
 
 std::vector<Case> Selection::cases(std::vector<PlannedCase>* campaign) const {
-  registry().validate();
   const NameFilter filter(filters);
   const Shard part = parse_shard(shard);
   auto all = registry().expand(profile, parse_overrides(sets, seeds));
   std::vector<std::string> names;
   for (const Case& c : all) names.push_back(c.info.name);
   auto chosen = filter.apply(std::move(all));
-  if (campaign != nullptr)
-    for (const Case& c : chosen) campaign->push_back(planned(c));
+  // What is wrong may be why nothing is chosen.
+  chosen.empty() ? registry().validate() : validate(registry(), chosen);
+  if (campaign != nullptr) *campaign = planned(chosen);
   if (!chosen.empty() && !list.empty()) return listed(std::move(chosen), list);
   if (!chosen.empty()) return part.apply(std::move(chosen));
 

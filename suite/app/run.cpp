@@ -225,11 +225,12 @@ ExitCode run_verb(const Arguments& arguments) {
              arguments))
     return ExitCode::good;
   flags.complete();
-  auto cases = flags.selection.cases(&flags.campaign.campaign);
   if (flags.habits.list) {
-    for (const Case& c : cases) fmt::print("{}\n", c.info.name);
+    for (const Case& c : flags.selection.cases())
+      fmt::print("{}\n", c.info.name);
     return ExitCode::good;
   }
+  auto cases = flags.selection.cases(&flags.campaign.campaign);
   Prepared prepared = prepare(std::move(cases));
   if (flags.dry) {
     dry_run(prepared, flags.campaign, stdout);

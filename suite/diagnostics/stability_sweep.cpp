@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <numeric>
 
 #include "suite/core/hash.h"
@@ -147,7 +148,11 @@ class StabilitySweep final : public Diagnostic {
   std::vector<ProblemRecipe> problems() const override {
     return options_.problems;
   }
-  Options settings() const override { return describe(options_); }
+  /// Words of all points, which are many: made once.
+  Options settings() const override {
+    std::call_once(described_, [&] { settings_ = describe(options_); });
+    return settings_;
+  }
 
   void diagnose(StageRun& run, Outcome& out) const override {
     run.probe.begin();
@@ -267,6 +272,8 @@ class StabilitySweep final : public Diagnostic {
   }
 
   StabilitySweepOptions options_;
+  mutable std::once_flag described_;
+  mutable Options settings_;
 };
 
 }  // namespace

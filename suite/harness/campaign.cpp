@@ -86,12 +86,11 @@ class Campaign {
   void plan() {
     if (!options_.resume) forget();
     std::vector<CaseInfo> infos;
-    std::vector<PlannedCase> campaign = options_.campaign;
-    for (const Case& c : cases_) {
-      infos.push_back(c.info);
-      if (options_.campaign.empty()) campaign.push_back(planned(c));
-    }
-    store_.set_plan(infos, context_, std::move(campaign));
+    for (const Case& c : cases_) infos.push_back(c.info);
+    store_.set_plan(
+        infos,
+        context_,
+        options_.campaign.empty() ? planned(cases_) : options_.campaign);
     for (std::size_t i = 0; i < cases_.size(); ++i) {
       if (!errors_[i].empty()) {
         lose(i, 0, "data: " + errors_[i]);
@@ -379,12 +378,7 @@ Prepared prepare(std::vector<Case> cases, bool disturb) {
       std::tuple<std::string, Index, std::uint64_t, std::optional<Precision>>,
       CaseData>
       drawn;
-  std::map<std::pair<const Method*, std::size_t>, std::string> known;
-  const auto numerics = [&](const Case& c, std::size_t position) {
-    std::string& text = known[{c.method, position}];
-    if (text.empty()) text = numerics_of_build(c, position);
-    return text;
-  };
+  const Numerics numerics = remembered_numerics();
   for (Case& c : p.cases) {
     std::string error;
     CaseData data;

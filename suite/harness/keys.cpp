@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <map>
+#include <memory>
 #include <utility>
 
 #include "suite/core/disturbance.h"
@@ -85,10 +87,25 @@ std::string numerics_of_build(const Case& c, std::size_t position) {
       chain_sources(*c.experiment, *c.method, position));
 }
 
-PlannedCase planned(const Case& c) {
-  const std::size_t last = c.method->chain.size() - 1;
-  return {.name = c.info.name,
-          .recipe = hex128(recipe_text(c, last) + numerics_of_build(c, last))};
+Numerics remembered_numerics() {
+  using Known = std::map<std::pair<const Method*, std::size_t>, std::string>;
+  return
+      [known = std::make_shared<Known>()](const Case& c, std::size_t position) {
+        std::string& text = (*known)[{c.method, position}];
+        if (text.empty()) text = numerics_of_build(c, position);
+        return text;
+      };
+}
+
+std::vector<PlannedCase> planned(const std::vector<Case>& cases) {
+  const Numerics numerics = remembered_numerics();
+  std::vector<PlannedCase> all;
+  for (const Case& c : cases) {
+    const std::size_t last = c.method->chain.size() - 1;
+    all.push_back({.name = c.info.name,
+                   .recipe = hex128(recipe_text(c, last) + numerics(c, last))});
+  }
+  return all;
 }
 
 }  // namespace physinv

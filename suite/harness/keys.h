@@ -31,8 +31,10 @@ std::vector<std::string> content_keys(const Case& c,
 
 /// Fingerprint of this build's sources.
 std::string numerics_of_build(const Case& c, std::size_t position);
+/// The same, found out once for each method, all of which must stay.
+Numerics remembered_numerics();
 
-/// What a plan says of a case that it may not have drawn data for.
-PlannedCase planned(const Case& c);
+/// What a plan says of cases that it may not have drawn data for.
+std::vector<PlannedCase> planned(const std::vector<Case>& cases);
 
 }  // namespace physinv

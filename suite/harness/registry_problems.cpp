@@ -1,12 +1,15 @@
+#include "suite/harness/registry_problems.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <exception>
 #include <set>
+#include <stdexcept>
+#include <utility>
 
 #include "suite/harness/judge.h"
-#include "suite/harness/registry.h"
 #include "suite/harness/sources.h"
 #include "suite/results/names.h"
 
@@ -21,12 +24,15 @@ std::string method_ids(const Experiment& e) {
 
 /// What the stages of an experiment say about their sources and is not so.
 std::set<std::string> unknown_sources(const Experiment& e) {
+  std::set<std::pair<std::vector<std::string>, UnusedIncludes>> seen;
   std::set<std::string> wrong;
   for (const Method& m : e.methods) {
     if (m.chain.empty()) continue;
-    for (const Sources& sources : chain_sources(e, m, m.chain.size() - 1))
+    for (const Sources& sources : chain_sources(e, m, m.chain.size() - 1)) {
+      if (!seen.emplace(sources.roots, sources.unused).second) continue;
       for (auto& text : project_sources().errors(sources))
         wrong.insert(std::move(text));
+    }
   }
   return wrong;
 }
@@ -150,7 +156,33 @@ void check_claims(const Registry& registry,
   }
 }
 
+/// Of those experiments that are `chosen`, and of the names of all.
+template <class F>
+std::vector<std::string> problems_of_experiments(const Registry& registry,
+                                                 const F& chosen) {
+  std::vector<std::string> wrong;
+  std::set<std::string> names;
+  for (const auto& e : registry.experiments()) {
+    if (!names.insert(e->name).second)
+      wrong.push_back(e->name + ": registered twice");
+    if (!chosen(*e)) continue;
+    const auto own = problems_of(*e);
+    wrong.insert(wrong.end(), own.begin(), own.end());
+    check_claims(registry, e->name, e->claims, profile_names(*e), wrong);
+  }
+  return wrong;
+}
+
 }  // namespace
+
+void validate(const Registry& registry, const std::vector<Case>& cases) {
+  std::set<const Experiment*> chosen;
+  for (const Case& c : cases) chosen.insert(c.experiment.get());
+  const auto wrong = problems_of_experiments(
+      registry, [&](const Experiment& e) { return chosen.contains(&e); });
+  if (!wrong.empty())
+    throw std::logic_error(fmt::format("{}", fmt::join(wrong, "; ")));
+}
 
 std::string to_text(Needs needs) {
   constexpr std::pair<Needs, std::string_view> kNames[] = {
@@ -172,15 +204,8 @@ std::string to_text(Needs needs) {
 }
 
 std::vector<std::string> Registry::problems() const {
-  std::vector<std::string> wrong;
-  std::set<std::string> names;
-  for (const auto& e : experiments_) {
-    if (!names.insert(e->name).second)
-      wrong.push_back(e->name + ": registered twice");
-    const auto own = problems_of(*e);
-    wrong.insert(wrong.end(), own.begin(), own.end());
-    check_claims(*this, e->name, e->claims, profile_names(*e), wrong);
-  }
+  auto wrong =
+      problems_of_experiments(*this, [](const Experiment&) { return true; });
   for (const auto& [name, claims] : claims_)
     wrong.push_back("claims of the unknown experiment " + name);
   for (const auto& [name, report] : reports_)

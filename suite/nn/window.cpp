@@ -66,14 +66,17 @@ std::vector<Run> window_runs(Grid grid, Taps taps, Padding padding) {
   if (padding == Padding::none)
     return row_runs(
         window_output(grid, taps, padding).columns, grid.columns, taps.x, 0);
+  // Between the edges of a row all windows are the same.
+  const Index edge = taps.x / 2, last_inside = grid.columns - edge - 1;
   std::vector<Run> runs;
-  for (Index p = 0; p < grid.positions(); ++p) {
-    auto segments =
-        segments_at(grid, taps, padding, p % grid.columns, p / grid.columns);
+  for (Index p = 0, count = 1; p < grid.positions(); p += count) {
+    const Index column = p % grid.columns;
+    count = column == edge ? std::max<Index>(1, last_inside - edge + 1) : 1;
+    auto segments = segments_at(grid, taps, padding, column, p / grid.columns);
     if (!runs.empty() && runs.back().segments == segments) {
-      ++runs.back().count;
+      runs.back().count += count;
     } else {
-      runs.push_back({p, 1, std::move(segments)});
+      runs.push_back({p, count, std::move(segments)});
     }
   }
   return runs;

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "problems/navier_stokes/navier_stokes.h"
+#include "suite/diagnostics/diagnostic.h"
 #include "suite/harness/run_stage.h"
 #include "suite/nn/mlp.h"
 #include "tests/support/bits.h"
@@ -37,9 +38,15 @@ std::string code_of(const Experiment& e, const Method& method) {
   std::string code, text = e.problem.name + ' ' +
                            e.setting.predictor.recipe.description + ' ' +
                            e.setting.surrogate.recipe.description;
-  for (const auto& stage : method.chain)
+  for (const auto& stage : method.chain) {
+    if (dynamic_cast<const Diagnostic*>(stage.get()) != nullptr) {
+      // Its options are a hash of all points that it looks at.
+      text += ' ' + e.name + ' ' + stage->name();
+      continue;
+    }
     for (const auto& [name, value] : stage->options())
       text += ' ' + name + '=' + value;
+  }
   bool number = false;
   for (const char c : text) {
     number =

@@ -15,6 +15,10 @@
 namespace physinv {
 /// What GoogleTest shows of one, instead of its bytes.
 inline void PrintTo(const Case& c, std::ostream* out) { *out << c.info.name; }
+inline void PrintTo(const std::shared_ptr<const Experiment>& e,
+                    std::ostream* out) {
+  *out << e->name;
+}
 }  // namespace physinv
 
 namespace physinv::test {

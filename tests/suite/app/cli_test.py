@@ -64,6 +64,7 @@ def good_input(d):
     expect(0, ["--version"], d, "compiler")
     expect(0, ["run", "--help"], d, "--time-budget")
     expect(0, ["list", "--profile=smoke"], d, "fake/cubic/walk/n=4/seed=0")
+    expect(0, ["list", "--validate"], d, "registered as they should be")
     for edited, stale in (("suite/core/method.h", 6), ("problems/new.cpp", 0)):
         expect(0, ["list", "--profile=smoke", "--edit=" + edited], d,
                f"an edit of {edited} makes {stale} of 6 stages stale")

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "suite/harness/errors.h"
+#include "suite/harness/registry_problems.h"
 #include "tests/suite/harness/fake_experiment.h"
 
 namespace physinv {
@@ -62,6 +63,30 @@ TEST(Registry, FindsWhatIsWrong) {
   Registry twice = fake_registry();
   twice.add(fake::experiment());
   EXPECT_THROW(twice.validate(), std::logic_error);
+}
+
+TEST(Registry, AStartLooksAtTheExperimentsOfItsCases) {
+  Experiment broken = fake::experiment();
+  broken.name = "fake/broken";
+  broken.problem.provided = Needs::forward;
+  Registry r = fake_registry();
+  r.add(std::move(broken));
+  std::vector<Case> sound, all = r.expand("smoke");
+  for (const Case& c : all)
+    if (c.info.experiment == "fake/cubic") sound.push_back(c);
+  ASSERT_LT(sound.size(), all.size());
+  EXPECT_NO_THROW(validate(r, sound));
+  try {
+    validate(r, all);
+    ADD_FAILURE() << "what cannot work is run";
+  } catch (const std::logic_error& e) {
+    EXPECT_TRUE(std::string(e.what()).starts_with(
+        "fake/broken: method descend needs forward|vjp, problem cubic provides "
+        "forward"))
+        << e.what();
+  }
+  r.add(fake::experiment());  // a name that two have is nobody's
+  EXPECT_THROW(validate(r, sound), std::logic_error);
 }
 
 Claim claim_on(Select select) {

@@ -40,7 +40,7 @@ StepOptions first_order(std::string_view rule, double rate) {
   return AdamOptions{.rate = rate, .eps_before_correction = true};
 }
 
-std::vector<Method> methods() {
+std::vector<Method> made_methods() {
   std::vector<Method> all = {
       by_power("hig", 128, {.kappa = -0.5, .tau = 1e-6}),
       by_power("gn", 128, {.kappa = -1, .tau = 1e-6}),
@@ -75,6 +75,12 @@ std::vector<Method> methods() {
                               batch,
                               first_order(grid.rule, rate)));
   return all;
+}
+
+/// Safe to use while statics are initialised.
+const std::vector<Method>& methods() {
+  static const auto kMethods = made_methods();
+  return kMethods;
 }
 
 }  // namespace
