@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -12,6 +11,7 @@
 #include "suite/app/options.h"
 #include "suite/compare/comparison.h"
 #include "suite/compare/pages.h"
+#include "suite/compare/regressions.h"
 #include "suite/harness/judge.h"
 #include "suite/harness/progress.h"
 
@@ -40,13 +40,25 @@ std::vector<JudgedClaim> claims_of(const Results& results,
   return all;
 }
 
+/// Inside of its cases.
+int threads_of(const nlohmann::json& plan) {
+  const nlohmann::json::json_pointer at("/context/options/threads");
+  return plan.contains(at) && plan.at(at).is_number_integer()
+             ? plan.at(at).get<int>()
+             : 1;
+}
+
 /// "LABEL=DIR", or a directory that is its own label.
 Side read_side(const std::string& text) {
   const auto at = text.find('=');
   const bool labelled = at != std::string::npos && !fs::is_directory(text);
+  const std::string directory = labelled ? text.substr(at + 1) : text;
+  Loaded loaded = load(directory);
   return {.label = labelled ? text.substr(0, at) : text,
-          .results = load(labelled ? text.substr(at + 1) : text).results,
-          .claims = {}};
+          .results = std::move(loaded.results),
+          .claims = {},
+          .repetitions = read_repetitions(results_directory(directory)),
+          .threads = threads_of(loaded.catalog.plan)};
 }
 
 std::vector<Side> read_sides(const CompareFlags& flags) {
@@ -72,54 +84,38 @@ By parse_by(const std::string& text) {
       "--by={} is unknown; known are method, n, seed, commit", text));
 }
 
-bool is_known(double seconds) { return std::isfinite(seconds) && seconds > 0; }
-
-/// A time that is lost is not as good as one that was measured.
-bool slower(double a, double b, double factor) {
-  return is_known(a) && !(is_known(b) && b <= factor * a);
+std::vector<Aspect> parse_fail_on(const std::vector<std::string>& words) {
+  std::vector<Aspect> all;
+  for (const auto& word : words) {
+    const auto aspect = aspect_of(word);
+    if (!aspect)
+      throw UsageError(
+          fmt::format("--fail-on={} is unknown; known are {}", word, kAspects));
+    all.push_back(*aspect);
+  }
+  return all;
 }
 
-bool times_compare(const Comparison& c) {
-  return std::any_of(c.rows.begin(), c.rows.end(), [](const Compared& row) {
-    return row.sides.front() && is_known(row.sides.front()->seconds);
-  });
-}
-
-constexpr const char* kFailOn = "loss, status, claims, work, time, missing";
-
-/// What of `what` got worse from the first side to another.
-bool fails(const std::string& what,
-           const Comparison& c,
-           const std::vector<ChangedClaim>& claims,
-           double factor) {
-  const auto any = [&](auto&& worse) {
-    return std::any_of(c.rows.begin(), c.rows.end(), [&](const Compared& row) {
-      return std::any_of(row.sides.begin(), row.sides.end(), [&](auto& side) {
-        return side && row.sides.front() && worse(*row.sides.front(), *side);
-      });
-    });
-  };
-  if (what == "loss")
-    return any([&](auto& a, auto& b) { return loss_ratio(a, b) > factor; });
-  if (what == "status")
-    return any([](auto& a, auto& b) {
-      return a.ends != b.ends || a.states != b.states;
-    });
-  if (what == "work")
-    return any([](auto& a, auto& b) {
-      return b.simulations() > a.simulations() || b.passes() > a.passes();
-    });
-  if (what == "time")
-    return !times_compare(c) || any([&](auto& a, auto& b) {
-      return slower(a.seconds, b.seconds, factor);
-    });
-  if (what == "claims") return !claims.empty();
-  if (what == "missing")
-    return std::any_of(c.rows.begin(), c.rows.end(), [](const auto& row) {
-      return row.missing();
-    });
-  throw UsageError(
-      fmt::format("--fail-on={} is unknown; known are {}", what, kFailOn));
+/// Ends the program if anything of --fail-on got worse.
+void refuse_worse(const CompareFlags& flags,
+                  const std::vector<Aspect>& aspects,
+                  const Comparison& c,
+                  const std::vector<ChangedClaim>& claims) {
+  std::string worse;
+  bool of_time = true;
+  for (std::size_t i = 0; i < aspects.size(); ++i) {
+    const auto found = regression(aspects[i], c, claims, flags.factor);
+    if (!found) continue;
+    of_time = of_time && found->of_time;
+    worse += fmt::format("{}{} ({})",
+                         worse.empty() ? "" : ", ",
+                         flags.fail_on[i],
+                         found->text());
+  }
+  if (!worse.empty())
+    throw ExitError(
+        of_time ? ExitCode::slower : ExitCode::accuracy,
+        fmt::format("worse than {}: {} (--fail-on)", c.labels.front(), worse));
 }
 
 /// Labels come from the command line, in whatever characters.
@@ -151,6 +147,7 @@ void print(const CompareFlags& flags,
             return r && r->same_bits == r->stages;
           });
         });
+    fmt::print("{}\n", pairs_text(c));
     fmt::print(
         "{} lines compared, {} with the same bits everywhere; {} claims "
         "changed their verdict\n",
@@ -167,15 +164,20 @@ ExitCode compare_verb(const Arguments& arguments) {
   if (!parse("compare",
              "Two or more result folders side by side, what changed most "
              "first: losses, ends, times, work, claims. Runs pair by "
-             "experiment, method, n and seed. Exit 0 whatever changed, unless "
-             "--fail-on.",
+             "experiment, method, n and seed. Times and work compare between "
+             "stages that both converged or ran their iterations: who fails, "
+             "is skipped or diverges has none. CPU time where both ran on one "
+             "thread, else wall time unless one was crowded; medians over "
+             "repetitions (run --benchmark_repetitions). Exit 0 whatever "
+             "changed, unless --fail-on.",
              {{"RESULTS",
                "directories that 'run' wrote, or LABEL=DIRECTORY; the first "
                "is what the others are held against",
                &flags.sides},
               {"--by",
                "seed (every run, the default), n (over seeds), method (over n "
-               "and seeds), commit (sides are revisions instead of folders)",
+               "and seeds): ratios are medians over pairs of runs, with the "
+               "worst pair; commit (sides are revisions instead of folders)",
                &flags.by,
                "WHAT"},
               {"--format",
@@ -189,13 +191,18 @@ ExitCode compare_verb(const Arguments& arguments) {
                "DIR"},
               {"--lines", "of the table (default 30)", &flags.lines},
               {"--fail-on",
-               fmt::format("exit 5 if this got worse, 6 if only time did; "
-                           "repeats unite: {}",
-                           kFailOn),
+               fmt::format("exit 5 if this got worse in any pair of runs, 6 if "
+                           "only time did; a stage that ends worse counts for "
+                           "time and work, too; repeats unite: {}",
+                           kAspects),
                &flags.fail_on,
                "WHAT"},
               {"--factor",
-               "by which a loss or time must grow for --fail-on (default 1.5)",
+               fmt::format("by which a loss or time must grow for --fail-on "
+                           "(default 1.5); losses below {:g} and times below "
+                           "{:g} ms are equal",
+                           kSolvedLoss,
+                           1e3 * kShortTime),
                &flags.factor}},
              arguments))
     return ExitCode::good;
@@ -206,7 +213,7 @@ ExitCode compare_verb(const Arguments& arguments) {
         fmt::format("--format={} is unknown; known are text, markdown, csv, "
                     "json",
                     flags.format));
-  for (const auto& what : flags.fail_on) fails(what, {}, {}, flags.factor);
+  const auto aspects = parse_fail_on(flags.fail_on);
   const auto sides = read_sides(flags);
   const Comparison c = compare(sides, by);
   if (std::all_of(c.rows.begin(), c.rows.end(), [](const auto& row) {
@@ -225,19 +232,7 @@ ExitCode compare_verb(const Arguments& arguments) {
     if (flags.format == "text")
       fmt::print("report: {}\n", (fs::path(flags.out) / "index.html").string());
   }
-  std::string worse;
-  for (const auto& what : flags.fail_on)
-    if (fails(what, c, claims, flags.factor))
-      worse += (worse.empty() ? "" : ", ") + what;
-  if (!worse.empty())
-    throw ExitError(
-        worse == "time" ? ExitCode::slower : ExitCode::accuracy,
-        fmt::format("worse than {}: {} (--fail-on){}",
-                    c.labels.front(),
-                    worse,
-                    times_compare(c) ? ""
-                                     : "; it has no times to be held "
-                                       "against"));
+  refuse_worse(flags, aspects, c, claims);
   return ExitCode::good;
 }
 

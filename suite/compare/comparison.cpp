@@ -4,9 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-
-#include "suite/evidence/statistics.h"
-#include "suite/results/curves.h"
+#include <map>
+#include <tuple>
 
 namespace physinv {
 namespace {
@@ -32,91 +31,99 @@ Paired pair_stages(const std::vector<Side>& sides) {
   return paired;
 }
 
-double median_loss(const StageRecord& s) {
-  std::vector<double> loss;
-  for (const double a : s.loss)
-    loss.push_back(std::isfinite(a) ? a : kInfinite);
-  return loss.empty() ? kInfinite : median(std::move(loss));
-}
-
-void add(Reading& reading, const StageRecord& s, const StageRecord* first) {
-  ++reading.stages;
-  if (first != nullptr && has_result(s) &&
-      results_hash(s) == results_hash(*first))
-    ++reading.same_bits;
-  ++reading.ends[std::string(to_string(s.stop))];
-  for (const Status status : s.status)
-    ++reading.states[std::string(to_string(status))];
-  reading.seconds += s.clocks.solve.wall;
-  reading.iterations += s.iterations;
-  reading.counts += s.counts;
-}
-
-Reading reading_of(const std::vector<const StageRecord*>& stages,
-                   const std::vector<const StageRecord*>& first) {
-  Reading reading;
-  std::vector<double> losses;
-  for (std::size_t i = 0; i < stages.size(); ++i) {
-    add(reading, *stages[i], first.empty() ? nullptr : first[i]);
-    losses.push_back(median_loss(*stages[i]));
-  }
-  reading.loss = median(std::move(losses));
-  return reading;
-}
-
-StageId group_of(StageId id, By by) {
+StageId group_id(StageId id, By by) {
   if (by != By::seed) id.seed = -1;
   if (by == By::method) id.n = -1;
   return id;
 }
 
-bool everywhere(const std::vector<const StageRecord*>& stages) {
-  return std::find(stages.begin(), stages.end(), nullptr) == stages.end();
-}
-
-/// Those that all sides have; if there are none, those that each side has.
-Compared compared(const StageId& id,
-                  const std::vector<std::vector<const StageRecord*>>& group,
-                  std::size_t sides) {
-  const bool shared = std::any_of(group.begin(), group.end(), everywhere);
-  Compared row{.id = id, .sides = {}};
-  std::vector<const StageRecord*> first;
-  for (std::size_t s = 0; s < sides; ++s) {
-    std::vector<const StageRecord*> own;
-    for (const auto& stages : group)
-      if (stages[s] != nullptr && (!shared || everywhere(stages)))
-        own.push_back(stages[s]);
-    if (s == 0 && shared) first = own;
-    row.sides.push_back(own.empty()
-                            ? std::nullopt
-                            : std::optional<Reading>(reading_of(own, first)));
+/// What every side says of one stage.
+Compared stage_of(const StageId& id,
+                  const std::vector<const StageRecord*>& stages,
+                  const std::vector<Side>& sides) {
+  Compared line{.id = id, .sides = {}, .members = {}};
+  for (std::size_t s = 0; s < sides.size(); ++s) {
+    line.sides.emplace_back();
+    if (stages[s] != nullptr)
+      line.sides.back() = reading_of(
+          *stages[s], sides[s].repetitions, sides[s].threads, stages.front());
   }
-  return row;
+  return line;
 }
 
-double decades(double a, double b) {
-  return a > 0 && b > 0 ? std::abs(std::log10(b / a)) : 0;
+/// Of the stages that all sides have; if there are none, of those that each
+/// side has.
+Compared group_of(const StageId& id, std::vector<Compared> stages) {
+  const bool shared = std::any_of(
+      stages.begin(), stages.end(), [](auto& s) { return !s.missing(); });
+  Compared line{.id = id, .sides = {}, .members = std::move(stages)};
+  for (std::size_t s = 0; s < line.members.front().sides.size(); ++s) {
+    std::vector<const Reading*> own;
+    for (const Compared& stage : line.members)
+      if (stage.sides[s] && (!shared || !stage.missing()))
+        own.push_back(&*stage.sides[s]);
+    line.sides.emplace_back();
+    if (!own.empty()) line.sides.back() = reading_of(own);
+  }
+  return line;
 }
+
+double decades(double ratio) {
+  return ratio > 0 && std::isfinite(ratio) ? std::abs(std::log10(ratio)) : 0;
+}
+
+/// b over a; 1 if both are 0.
+std::optional<double> ratio_of(double a, double b) {
+  if (a == b) return 1;
+  return a > 0 ? std::optional(b / a) : std::nullopt;
+}
+
+std::optional<double> ratio_of_work(const Reading& a,
+                                    const Reading& b,
+                                    double (Reading::*work)() const) {
+  return costs_compare(a, b) ? ratio_of((a.*work)(), (b.*work)())
+                             : std::nullopt;
+}
+
+double change_of(const Reading& a, const Reading& b) {
+  constexpr double kMost = 100;  // to a loss that is not finite, or from one
+  const double loss = loss_ratio(a, b);
+  double most = std::isfinite(loss) && loss > 0 ? decades(loss) : kMost;
+  for (const auto& ratio : {ratio_of_work(a, b, &Reading::simulations),
+                            ratio_of_work(a, b, &Reading::passes),
+                            time_ratio(a, b).value})
+    most = std::max(most, decades(ratio.value_or(1)));
+  return most;
+}
+
+/// Larger is worse.
+using Badness = std::tuple<int, double, double>;
+Badness badness(const Compared& stage, std::size_t side) {
+  const auto& a = stage.sides.front();
+  const auto& b = stage.sides[side];
+  if (!a) return {-1, 0, 0};
+  if (!b) return {2, 0, 0};
+  return {end_direction(*a, *b) == Direction::worse ? 1 : 0,
+          loss_ratio(*a, *b),
+          time_ratio(*a, *b).value.value_or(0)};
+}
+
+/// Ratios of a side's pairs.
+class Ratios {
+ public:
+  void add(std::optional<double> ratio) {
+    if (ratio) all_.push_back(*ratio);
+  }
+  std::size_t count() const { return all_.size(); }
+  std::optional<Quartiles> quartiles() const {
+    return all_.empty() ? std::nullopt : std::optional(quartiles_of(all_));
+  }
+
+ private:
+  std::vector<double> all_;
+};
 
 }  // namespace
-
-double Reading::simulations() const {
-  double sum = 0;
-  for (const Counter c :
-       {Counter::forward, Counter::vjp, Counter::jacobian, Counter::inverse})
-    sum += static_cast<double>(counts[c]);
-  return sum;
-}
-
-double Reading::passes() const {
-  return static_cast<double>(counts[Counter::network_forward] +
-                             counts[Counter::network_backward]);
-}
-
-double loss_ratio(const Reading& a, const Reading& b) {
-  if (std::isinf(a.loss) && std::isinf(b.loss)) return 1;
-  return std::max(b.loss, kSolvedLoss) / std::max(a.loss, kSolvedLoss);
-}
 
 std::string StageId::text() const {
   std::string out = experiment + "/" + method;
@@ -125,46 +132,88 @@ std::string StageId::text() const {
   return out + " " + stage;
 }
 
+std::span<const Compared> Compared::stages() const {
+  return members.empty() ? std::span(this, 1) : std::span(members);
+}
+
 bool Compared::missing() const {
   return std::find(sides.begin(), sides.end(), std::nullopt) != sides.end();
 }
 
 bool Compared::ends_changed() const {
-  return std::any_of(sides.begin(), sides.end(), [&](const auto& r) {
-    return r && sides.front() && r->ends != sides.front()->ends;
-  });
+  const auto changed = [](const Compared& stage) {
+    const auto& a = stage.sides.front();
+    return std::any_of(
+        stage.sides.begin(), stage.sides.end(), [&](const auto& b) {
+          return a && b && a->ends != b->ends;
+        });
+  };
+  return std::any_of(stages().begin(), stages().end(), changed);
 }
 
 double Compared::change() const {
   double most = 0;
-  for (const auto& r : sides) {
-    if (!r || !sides.front()) continue;
-    const Reading& a = *sides.front();
-    const double ratio = loss_ratio(a, *r);
-    const double loss =
-        ratio > 0 && std::isfinite(ratio) ? std::abs(std::log10(ratio)) : 100;
-    most = std::max({most,
-                     loss,
-                     decades(a.simulations(), r->simulations()),
-                     decades(a.passes(), r->passes()),
-                     decades(a.seconds, r->seconds)});
-  }
+  for (const Compared& stage : members) most = std::max(most, stage.change());
+  if (!members.empty()) return most;
+  for (const auto& b : sides)
+    if (b && sides.front())
+      most = std::max(most, change_of(*sides.front(), *b));
   return most + (ends_changed() ? 1e3 : 0) + (missing() ? 1e6 : 0);
+}
+
+Against against(const Compared& line, std::size_t side) {
+  Against sum;
+  Ratios loss, time, simulations, passes;
+  for (const Compared& stage : line.stages()) {
+    const auto& a = stage.sides.front();
+    const auto& b = stage.sides[side];
+    if (a && (sum.worst == nullptr ||
+              badness(stage, side) > badness(*sum.worst, side)))
+      sum.worst = &stage;
+    if (!a || !b) continue;
+    ++sum.pairs;
+    const double ratio = loss_ratio(*a, *b);
+    sum.wins += ratio < 1;
+    sum.worse += end_direction(*a, *b) == Direction::worse;
+    loss.add(ratio);
+    const TimeRatio times = time_ratio(*a, *b);
+    if (!times.why.empty()) sum.no_time = times.why;
+    time.add(times.value);
+    simulations.add(ratio_of_work(*a, *b, &Reading::simulations));
+    passes.add(ratio_of_work(*a, *b, &Reading::passes));
+  }
+  sum.timed = time.count();
+  sum.loss = loss.quartiles();
+  sum.time = time.quartiles();
+  sum.simulations = simulations.quartiles();
+  sum.passes = passes.quartiles();
+  return sum;
 }
 
 Comparison compare(const std::vector<Side>& sides, By by) {
   Comparison out;
   for (const Side& s : sides) out.labels.push_back(s.label);
-  std::map<StageId, std::vector<std::vector<const StageRecord*>>> groups;
-  for (auto& [id, stages] : pair_stages(sides))
-    groups[group_of(id, by)].push_back(stages);
-  for (const auto& [id, group] : groups)
-    out.rows.push_back(compared(id, group, sides.size()));
+  std::map<StageId, std::vector<Compared>> groups;
+  for (const auto& [id, stages] : pair_stages(sides))
+    groups[group_id(id, by)].push_back(stage_of(id, stages, sides));
+  for (auto& [id, stages] : groups)
+    out.rows.push_back(by == By::seed ? std::move(stages.front())
+                                      : group_of(id, std::move(stages)));
   std::stable_sort(
       out.rows.begin(), out.rows.end(), [](const auto& a, const auto& b) {
         return a.change() > b.change();
       });
   return out;
+}
+
+std::string ChangedClaim::id() const {
+  for (const auto& side : sides)
+    if (side) return side->id;
+  return "";
+}
+
+Verdict ChangedClaim::verdict(std::size_t side) const {
+  return sides[side] ? sides[side]->verdict : Verdict::not_judged;
 }
 
 std::vector<ChangedClaim> changed_claims(const std::vector<Side>& sides) {
@@ -178,23 +227,23 @@ std::vector<ChangedClaim> changed_claims(const std::vector<Side>& sides) {
     }
   }
   std::vector<ChangedClaim> changed;
-  for (auto& [id, claim] : all) {
-    const auto verdict = [](const std::optional<ClaimResult>& c) {
-      return c ? c->verdict : Verdict::not_judged;
-    };
-    const auto first = verdict(claim.sides.front());
-    if (std::any_of(claim.sides.begin(), claim.sides.end(), [&](const auto& c) {
-          return verdict(c) != first;
-        }))
-      changed.push_back(std::move(claim));
-  }
+  for (auto& [id, claim] : all)
+    for (std::size_t s = 1; s < sides.size(); ++s)
+      if (claim.verdict(s) != claim.verdict(0)) {
+        changed.push_back(std::move(claim));
+        break;
+      }
   return changed;
 }
 
 std::vector<Side> sides_by_revision(const std::vector<Side>& sides) {
   std::vector<std::string> order;
   std::map<std::string, std::vector<CaseRecord>> cases;
+  Repetitions repetitions;
+  int threads = 1;
   for (const Side& side : sides) {
+    repetitions.insert(side.repetitions.begin(), side.repetitions.end());
+    threads = std::max(threads, side.threads);
     for (const CaseRecord& c : side.results.cases()) {
       std::map<std::string, CaseRecord> parts;
       for (const StageRecord& s : c.stages) {
@@ -213,7 +262,9 @@ std::vector<Side> sides_by_revision(const std::vector<Side>& sides) {
   for (const auto& revision : order)
     out.push_back({.label = revision.substr(0, 12),
                    .results = Results(std::move(cases[revision])),
-                   .claims = {}});
+                   .claims = {},
+                   .repetitions = repetitions,
+                   .threads = threads});
   return out;
 }
 

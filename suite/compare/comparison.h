@@ -5,11 +5,12 @@
 
 #include <compare>
 #include <cstdint>
-#include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "suite/compare/reading.h"
 #include "suite/results/report_model.h"
 #include "suite/results/results.h"
 
@@ -25,28 +26,9 @@ struct Side {
   std::string label;
   Results results;
   std::vector<JudgedClaim> claims;  ///< paper and suite, judged on it
+  Repetitions repetitions = {};
+  int threads = 1;  ///< inside of its cases
 };
-
-/// What one side says of one stage, or of a group of them.
-struct Reading {
-  std::size_t stages = 0;
-  std::size_t same_bits = 0;            ///< as on the first side
-  std::map<std::string, Index> ends;    ///< of the stages: converged, ...
-  std::map<std::string, Index> states;  ///< of the examples: gtol, ...
-  double loss = 0;     ///< median; infinite where it is not finite
-  double seconds = 0;  ///< of solving
-  Index iterations = 0;
-  Counts counts;
-
-  double simulations() const;
-  double passes() const;  ///< of networks
-};
-
-/// Losses below this are solved: that they differ counts for nothing.
-inline constexpr double kSolvedLoss = 1e-12;
-
-/// b over a, both raised to kSolvedLoss.
-double loss_ratio(const Reading& a, const Reading& b);
 
 struct StageId {
   std::string experiment, method;
@@ -61,13 +43,34 @@ struct StageId {
 struct Compared {
   StageId id;
   std::vector<std::optional<Reading>> sides;
+  std::vector<Compared> members;  ///< of a group: its stages
 
+  /// Those of a group; else this one alone. What is judged is judged of them:
+  /// in a median, one that is lost would not be seen.
+  std::span<const Compared> stages() const;
   bool missing() const;
   bool ends_changed() const;
   /// How much: decades of loss, work and time, whichever is most; a changed
-  /// end counts before any of them, a missing side before that.
+  /// end counts before any of them, a missing side before that. That of a
+  /// group is the most of its stages.
   double change() const;
 };
+
+/// A side held against the first, over the pairs of a line: the stages that
+/// both have.
+struct Against {
+  std::size_t pairs = 0;
+  std::size_t wins = 0;   ///< pairs with a lower loss
+  std::size_t worse = 0;  ///< pairs with a worse end
+  std::size_t timed = 0;  ///< pairs that have a ratio of times
+  /// Ratios over the pairs, absent if there are none.
+  std::optional<Quartiles> loss, time, simulations, passes;
+  std::string no_time;  ///< why there is none
+  /// One that the side lacks, else of the worst end, else of the largest ratio
+  /// of losses, else of times. Null if the line has no stage on the first side.
+  const Compared* worst = nullptr;
+};
+Against against(const Compared& line, std::size_t side);
 
 enum class By { seed, n, method };
 
@@ -77,13 +80,17 @@ struct Comparison {
 };
 
 /// By seed: every stage. By n: over seeds. By method: over n and seeds. A
-/// group counts only the runs that all sides have.
+/// group's readings are of the runs that all sides have.
 Comparison compare(const std::vector<Side>& sides, By by);
 
-/// A claim whose verdict is not the same on all sides.
+/// A claim whose verdict is not the same on all sides; where a side lacks it,
+/// it is not judged.
 struct ChangedClaim {
   std::string experiment;
   std::vector<std::optional<ClaimResult>> sides;
+
+  std::string id() const;
+  Verdict verdict(std::size_t side) const;
 };
 std::vector<ChangedClaim> changed_claims(const std::vector<Side>& sides);
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "suite/results/profiles.h"
@@ -12,8 +11,6 @@
 
 namespace physinv {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Cell number(double value, const char* format) {
   return std::isfinite(value)
@@ -23,24 +20,34 @@ Cell number(double value, const char* format) {
 }
 
 /// As a factor, with every digit for programs.
-Cell factor(double a, double b) {
-  if (a == b) return {.ours = 1.0, .text = "="};
-  if (!(a > 0) || !std::isfinite(b / a)) return {.text = "–"};
-  const double r = b / a;
-  return number(r, r >= 0.01 && r < 1000 ? "×{:.3g}" : "×{:.1e}");
+std::string factor_text(double r) {
+  return r == 1 ? "="
+                : fmt::format(fmt::runtime(r >= 0.01 && r < 1000 ? "×{:.3g}"
+                                                                 : "×{:.1e}"),
+                              r);
 }
 
-std::string joined(const std::map<std::string, Index>& counts) {
-  std::string out;
-  for (const auto& [word, count] : counts)
-    if (count > 0)
-      out += fmt::format("{}{} {}", out.empty() ? "" : ", ", count, word);
-  return out;
+/// The median of its pairs, and how far apart its quartiles are.
+Cell factor(const std::optional<Quartiles>& ratios, const std::string& why) {
+  if (!ratios) return {.text = why.empty() ? "–" : why};
+  Cell cell{.text = std::isfinite(ratios->median) ? factor_text(ratios->median)
+                                                  : "not finite"};
+  if (std::isfinite(ratios->median)) cell.ours = ratios->median;
+  return cell;
+}
+
+void spread(Cell& cell, double range) {
+  if (cell.ours && std::isfinite(range)) cell.spread = range;
 }
 
 /// The word alone if all agree.
 std::string ends_text(const Reading& r) {
-  return r.ends.size() == 1 ? r.ends.begin()->first : joined(r.ends);
+  if (r.ends.size() == 1) return std::string(to_string(r.ends.begin()->first));
+  std::string out;
+  for (const auto& [end, count] : r.ends)
+    out +=
+        fmt::format("{}{} {}", out.empty() ? "" : ", ", count, to_string(end));
+  return out;
 }
 
 Cell bits(const Reading& r) {
@@ -49,13 +56,51 @@ Cell bits(const Reading& r) {
                       : fmt::format("{} of {}", r.same_bits, r.stages)};
 }
 
-Cell ends_cell(const Compared& row, std::size_t s) {
+Cell ends_cell(const Compared& row, std::size_t s, std::size_t worse) {
   const auto& a = row.sides.front();
   const auto& b = row.sides[s];
   if (!b) return {.text = "missing"};
-  return {.text = !a || a->ends == b->ends
-                      ? ends_text(*b)
-                      : ends_text(*a) + " → " + ends_text(*b)};
+  std::string text = !a || a->ends == b->ends
+                         ? ends_text(*b)
+                         : ends_text(*a) + " → " + ends_text(*b);
+  if (worse > 0 && !row.members.empty())
+    text += fmt::format(" ({} worse)", worse);
+  return {.text = std::move(text)};
+}
+
+/// What sets a stage of a group apart from the others, and how it fared.
+std::string pair_text(const Compared& group,
+                      const Compared& stage,
+                      std::size_t s) {
+  std::string text;
+  if (group.id.n < 0) text += fmt::format("n={}/", stage.id.n);
+  text += fmt::format("seed={} ", stage.id.seed);
+  const auto& a = stage.sides.front();
+  const auto& b = stage.sides[s];
+  if (!b) return text + "missing";
+  if (a->ends != b->ends) return text + ends_text(*a) + " → " + ends_text(*b);
+  const double ratio = loss_ratio(*a, *b);
+  return text + (std::isfinite(ratio) ? factor_text(ratio) : "not finite");
+}
+
+/// Seconds as they are compared: of CPU where one thread ran.
+const Quartiles& seconds_of(const Times& times) {
+  return times.threads == 1 ? times.cpu : times.wall;
+}
+
+Cell time_cell(const Reading& r) {
+  if (!r.times) return {.text = ends_text(r)};
+  const Quartiles& seconds = seconds_of(*r.times);
+  Cell cell = number(1e3 * seconds.median, "{:.4g}");
+  if (r.times->threads > 1 && r.times->crowded) cell.text += " (crowded)";
+  spread(cell, 1e3 * seconds.range());
+  return cell;
+}
+
+Cell loss_cell(const Reading& r) {
+  Cell cell = number(r.loss.median, "{:.2e}");
+  spread(cell, r.loss.range());
+  return cell;
 }
 
 /// One cell per side.
@@ -65,11 +110,27 @@ void add_sides(TableRow& row, const Compared& c, F&& cell) {
     row.cells.push_back(r ? cell(*r) : Cell{.text = "missing"});
 }
 
-/// A side's reading against the first's.
-template <class F>
-Cell against(const Compared& c, std::size_t s, F&& cell) {
-  return c.sides.front() && c.sides[s] ? cell(*c.sides.front(), *c.sides[s])
-                                       : Cell{.text = "–"};
+/// Of a side against the first: ratios, end and bits; of a group how many
+/// pairs it wins, and the worst.
+void add_against(TableRow& out, const Compared& row, std::size_t s) {
+  const Against sum = against(row, s);
+  const auto ratio = [&](const auto& ratios, const std::string& why = "") {
+    out.cells.push_back(factor(ratios, why));
+    if (ratios && !row.members.empty())
+      spread(out.cells.back(), ratios->range());
+  };
+  ratio(sum.loss);
+  ratio(sum.time, sum.no_time);
+  if (sum.time && sum.timed < sum.pairs)
+    out.cells.back().text += fmt::format(" ({} of {})", sum.timed, sum.pairs);
+  ratio(sum.simulations);
+  ratio(sum.passes);
+  out.cells.push_back(ends_cell(row, s, sum.worse));
+  out.cells.push_back(sum.pairs > 0 ? bits(*row.sides[s]) : Cell{.text = "–"});
+  if (row.members.empty()) return;
+  out.cells.push_back({.text = fmt::format("{} of {}", sum.wins, sum.pairs)});
+  out.cells.push_back(
+      {.text = sum.worst ? pair_text(row, *sum.worst, s) : "–"});
 }
 
 template <class F>
@@ -110,13 +171,13 @@ Figure overlay(const Comparison& c) {
   std::map<std::string, Series> series;
   for (const Compared& row : c.rows) {
     for (std::size_t s = 0; s < row.sides.size(); ++s) {
-      if (!row.sides[s]) continue;
+      if (!row.sides[s] || !row.sides[s]->times) continue;
       const std::string label = row.id.method + ", " + c.labels[s];
       Series& own = series[label];
       own.label = own.method = label;
       own.line = false, own.markers = true;
-      own.x.push_back(row.sides[s]->seconds);
-      own.y.push_back(row.sides[s]->loss);
+      own.x.push_back(seconds_of(*row.sides[s]->times).median);
+      own.y.push_back(row.sides[s]->loss.median);
     }
   }
   for (auto& [label, own] : series) panel.series.push_back(std::move(own));
@@ -134,21 +195,6 @@ Section overview(const Comparison& c,
   return section;
 }
 
-Json to_json(const Reading& r) {
-  Json counts = Json::object();
-  for (std::size_t i = 0; i < kCounters; ++i)
-    counts[std::string(kCounterNames[i])] = r.counts[static_cast<Counter>(i)];
-  const Json loss = std::isfinite(r.loss) ? Json(r.loss) : Json(nullptr);
-  return {{"stages", r.stages},
-          {"same_bits", r.same_bits},
-          {"loss_median", loss},
-          {"seconds", r.seconds},
-          {"iterations", r.iterations},
-          {"ends", r.ends},
-          {"statuses", r.states},
-          {"counts", std::move(counts)}};
-}
-
 std::string word(const ClaimResult& claim) {
   return std::string(words_of(claim.verdict, claim.origin));
 }
@@ -157,48 +203,38 @@ std::string word(const ClaimResult& claim) {
 
 Table changes_table(const Comparison& c, std::size_t most) {
   Table table{.id = "changes", .title = "What changed most", .corner = "stage"};
+  const bool groups = !c.rows.empty() && !c.rows.front().members.empty();
+  std::vector<const char*> heads = {
+      "loss", "time", "simulations", "passes", "end", "bits"};
+  if (groups) heads.insert(heads.end(), {"wins", "worst pair"});
   for (const auto& label : c.labels) table.columns.push_back("loss " + label);
   for (std::size_t s = 1; s < c.labels.size(); ++s)
-    for (const char* what :
-         {"loss", "time", "simulations", "passes", "end", "bits"})
+    for (const char* what : heads)
       table.columns.push_back(c.labels.size() == 2
                                   ? std::string(what)
                                   : fmt::format("{} {}", what, c.labels[s]));
   for (const Compared& row : c.rows) {
     if (table.rows.size() == most) break;
     TableRow out{row.id.text(), {}};
-    add_sides(
-        out, row, [](const Reading& r) { return number(r.loss, "{:.2e}"); });
-    for (std::size_t s = 1; s < c.labels.size(); ++s) {
-      const auto add = [&](auto&& cell) {
-        out.cells.push_back(against(row, s, cell));
-      };
-      add([](auto& a, auto& b) { return factor(1, loss_ratio(a, b)); });
-      add([](auto& a, auto& b) { return factor(a.seconds, b.seconds); });
-      add([](auto& a, auto& b) {
-        return factor(a.simulations(), b.simulations());
-      });
-      add([](auto& a, auto& b) { return factor(a.passes(), b.passes()); });
-      out.cells.push_back(ends_cell(row, s));
-      add([](auto&, auto& b) { return bits(b); });
-    }
+    add_sides(out, row, loss_cell);
+    for (std::size_t s = 1; s < c.labels.size(); ++s) add_against(out, row, s);
     table.rows.push_back(std::move(out));
   }
-  if (c.rows.size() > most)
+  if (groups)
     table.note =
+        "Medians over pairs of runs; wins are pairs with a lower loss. ";
+  if (c.rows.size() > most)
+    table.note +=
         fmt::format("{} more lines changed less", c.rows.size() - most);
   return table;
 }
 
 std::vector<Table> detail_tables(const Comparison& c) {
   std::vector<Table> tables;
-  tables.push_back(
-      per_side(c, "times", "Times of solving", "ms", [](const Reading& r) {
-        return number(1e3 * r.seconds, "{:.4g}");
-      }));
+  tables.push_back(per_side(c, "times", "Times of solving", "ms", time_cell));
   tables.push_back(
       per_side(c, "statuses", "How examples ended", "", [](const Reading& r) {
-        return Cell{.text = joined(r.states)};
+        return Cell{.text = status_text(r.statuses)};
       }));
   tables.push_back(
       per_side(c, "iterations", "Iterations", "", [](const Reading& r) {
@@ -229,12 +265,12 @@ Table claims_table(const std::vector<ChangedClaim>& changed,
               .columns = labels};
   for (const ChangedClaim& c : changed) {
     TableRow row;
-    for (const auto& side : c.sides) {
+    for (const auto& side : c.sides)
       if (side && row.label.empty())
         row.label =
             fmt::format("{} {}: {}", c.experiment, side->id, side->says);
-      row.cells.push_back({.text = word(side.value_or(ClaimResult{}))});
-    }
+    for (std::size_t s = 0; s < c.sides.size(); ++s)
+      row.cells.push_back({.text = word(c.sides[s].value_or(ClaimResult{}))});
     table.rows.push_back(std::move(row));
   }
   return table;
@@ -261,36 +297,6 @@ std::vector<Section> compare_sections(
     sections.push_back(std::move(section));
   }
   return sections;
-}
-
-Json to_json(const Comparison& c, const std::vector<ChangedClaim>& changed) {
-  Json rows = Json::array(), claims = Json::array();
-  for (const Compared& row : c.rows) {
-    Json sides = Json::array();
-    for (const auto& r : row.sides)
-      sides.push_back(r ? to_json(*r) : Json(nullptr));
-    Json out{{"experiment", row.id.experiment},
-             {"method", row.id.method},
-             {"stage", row.id.stage},
-             {"n", row.id.n < 0 ? Json(nullptr) : Json(row.id.n)},
-             {"seed", row.id.seed < 0 ? Json(nullptr) : Json(row.id.seed)},
-             {"sides", std::move(sides)}};
-    rows.push_back(std::move(out));
-  }
-  for (const ChangedClaim& claim : changed) {
-    Json verdicts = Json::array();
-    std::string id;
-    for (const auto& side : claim.sides) {
-      if (side) id = side->id;
-      verdicts.push_back(side ? Json(word(*side)) : Json(nullptr));
-    }
-    claims.push_back({{"experiment", claim.experiment},
-                      {"id", id},
-                      {"verdicts", std::move(verdicts)}});
-  }
-  return {{"labels", c.labels},
-          {"rows", std::move(rows)},
-          {"changed_claims", std::move(claims)}};
 }
 
 }  // namespace physinv

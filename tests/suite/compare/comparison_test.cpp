@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "suite/compare/pages.h"
+#include "suite/compare/regressions.h"
 
 namespace physinv {
 namespace {
@@ -15,7 +16,7 @@ StageRecord stage_with(const std::string& name, double loss, double seconds) {
   s.stop = Stop::converged;
   s.loss = Vector<double>::Constant(3, loss);
   s.status.assign(3, Status::gtol);
-  s.clocks.solve.wall = seconds;
+  s.clocks.solve = {.wall = seconds, .cpu = seconds};
   s.counts[Counter::vjp] = 10;
   return s;
 }
@@ -69,9 +70,9 @@ TEST(Compare, WhatChangedMostComesFirst) {
 
 TEST(Compare, SolvedLossesAreEqual) {
   Reading a, b;
-  a.loss = 1e-15, b.loss = 1e-20;
+  a.loss.median = 1e-15, b.loss.median = 1e-20;
   EXPECT_DOUBLE_EQ(loss_ratio(a, b), 1);
-  b.loss = kSolvedLoss * 10;
+  b.loss.median = kSolvedLoss * 10;
   EXPECT_DOUBLE_EQ(loss_ratio(a, b), 10);
 }
 
@@ -84,8 +85,10 @@ TEST(Compare, AGroupCountsOnlyWhatAllSidesHave) {
               By::method);
   ASSERT_EQ(c.rows.size(), 1U);
   EXPECT_EQ(c.rows[0].sides[0]->stages, 1U);
-  EXPECT_DOUBLE_EQ(c.rows[0].sides[0]->loss, 1);
-  EXPECT_DOUBLE_EQ(c.rows[0].sides[0]->seconds, 1);
+  EXPECT_DOUBLE_EQ(c.rows[0].sides[0]->loss.median, 1);
+  EXPECT_DOUBLE_EQ(c.rows[0].sides[0]->times->cpu.median, 1);
+  EXPECT_TRUE(regression(Aspect::missing, c, {}, 1.5))
+      << "a group without one of its runs";
 }
 
 TEST(Compare, ClaimsThatChangeTheirVerdict) {
@@ -100,6 +103,123 @@ TEST(Compare, ClaimsThatChangeTheirVerdict) {
   ASSERT_EQ(changed.size(), 1U);
   EXPECT_EQ(changed[0].sides[1]->id, "R1");
   EXPECT_EQ(claims_table(changed, {"a", "b"}).rows[0].cells[1].text, "fails");
+}
+
+StageRecord ended(Stop stop, double loss = std::nan("")) {
+  StageRecord s =
+      stage_with("solve", loss, has_result(StageRecord{.stop = stop}) ? 1 : 0);
+  s.stop = stop;
+  if (stop == Stop::failed) s.loss.resize(0), s.status.clear();
+  return s;
+}
+
+Comparison of_two(StageRecord a, StageRecord b) {
+  return compare({side("a", {case_with("m", 0, std::move(a))}),
+                  side("b", {case_with("m", 0, std::move(b))})},
+                 By::seed);
+}
+
+std::optional<Regression> found(Aspect aspect, StageRecord a, StageRecord b) {
+  return regression(aspect, of_two(std::move(a), std::move(b)), {}, 1.5);
+}
+
+TEST(Compare, AStageThatFailedHasNoTime) {
+  const auto good = stage_with("solve", 1e-3, 1);
+  for (const Stop stop : {Stop::diverged, Stop::failed, Stop::skipped}) {
+    const auto lost = ended(stop);
+    for (const Aspect cost : {Aspect::time, Aspect::work}) {
+      const auto worse = found(cost, good, lost);
+      ASSERT_TRUE(worse) << to_string(stop);
+      EXPECT_FALSE(worse->of_time);
+      EXPECT_NE(worse->worst.find(to_string(stop)), std::string::npos);
+      EXPECT_FALSE(found(cost, lost, good)) << to_string(stop);
+      EXPECT_FALSE(found(cost, lost, lost)) << to_string(stop);
+    }
+    const auto table = changes_table(of_two(good, lost), 1);
+    EXPECT_EQ(table.rows[0].cells[3].text, to_string(stop));
+    EXPECT_FALSE(table.rows[0].cells[3].ours);
+  }
+}
+
+TEST(Compare, EndsAreOrdered) {
+  const std::vector<StageRecord> best_first = {ended(Stop::converged, 1e-3),
+                                               ended(Stop::iterations, 1e-3),
+                                               ended(Stop::diverged),
+                                               ended(Stop::failed)};
+  for (std::size_t i = 0; i < best_first.size(); ++i)
+    for (std::size_t k = 0; k < best_first.size(); ++k)
+      EXPECT_EQ(found(Aspect::status, best_first[i], best_first[k]).has_value(),
+                k > i)
+          << i << " " << k;
+}
+
+TEST(Compare, OneOfFourRunsIsSeenInAPool) {
+  std::vector<CaseRecord> before, after;
+  for (const std::uint64_t seed : {0, 1, 2, 3}) {
+    before.push_back(case_with("m", seed, stage_with("solve", 4.5e-12, 1)));
+    after.push_back(case_with(
+        "m", seed, stage_with("solve", seed == 2 ? 2.5e-1 : 4e-12, 1)));
+  }
+  const auto c = compare({side("a", before), side("b", after)}, By::method);
+  ASSERT_EQ(c.rows.size(), 1U);
+  const auto worse = regression(Aspect::loss, c, {}, 1.5);
+  ASSERT_TRUE(worse);
+  EXPECT_EQ(worse->worse, 1U);
+  EXPECT_EQ(worse->judged, 4U);
+  EXPECT_NE(worse->worst.find("seed=2"), std::string::npos);
+  EXPECT_FALSE(regression(Aspect::time, c, {}, 1.5));
+  const auto table = changes_table(c, 1);
+  const auto& cells = table.rows[0].cells;
+  EXPECT_EQ(table.columns[cells.size() - 2], "wins");
+  EXPECT_EQ(cells[cells.size() - 2].text, "3 of 4");
+  EXPECT_EQ(cells.back().text, "n=4/seed=2 ×5.6e+10");
+  EXPECT_TRUE(cells[0].spread && cells[2].spread && cells[3].spread);
+  EXPECT_GT(c.rows[0].change(), 10) << "not first of what changed";
+}
+
+TEST(Compare, OnOneThreadCpuTimeIsCompared) {
+  auto quiet = stage_with("solve", 1e-3, 1), busy = quiet;
+  busy.clocks.solve = {.wall = 9, .cpu = 1.1};
+  busy.crowded = true;
+  EXPECT_FALSE(found(Aspect::time, quiet, busy));
+  std::vector<Side> sides = {side("a", {case_with("m", 0, quiet)}),
+                             side("b", {case_with("m", 0, busy)})};
+  for (Side& s : sides) s.threads = 2;
+  const auto c = compare(sides, By::seed);
+  EXPECT_EQ(changes_table(c, 1).rows[0].cells[3].text, "crowded");
+  const auto undecided = regression(Aspect::time, c, {}, 1.5);
+  ASSERT_TRUE(undecided) << "nothing passes because nothing was judged";
+  EXPECT_NE(undecided->text().find("1 crowded"), std::string::npos);
+}
+
+TEST(Compare, RepetitionsAreRead) {
+  const auto stage = stage_with("solve", 1e-3, 5);  // the first, cold
+  std::vector<Side> sides = {side("a", {case_with("m", 0, stage)}),
+                             side("b", {case_with("m", 0, stage)})};
+  sides[1].repetitions["/solve "] = {{1, 1}, {1.1, 1.1}, {1.2, 1.2}};
+  const auto c = compare(sides, By::seed);
+  EXPECT_DOUBLE_EQ(c.rows[0].sides[1]->times->cpu.median, 1.15);
+  EXPECT_TRUE(detail_tables(c)[0].rows[0].cells[1].spread);
+  EXPECT_FALSE(regression(Aspect::time, c, {}, 1.5));
+  std::swap(sides[0], sides[1]);
+  EXPECT_TRUE(regression(Aspect::time, compare(sides, By::seed), {}, 1.5));
+}
+
+TEST(Compare, ClaimsGetWorseInOneDirection) {
+  const auto worse = [](Verdict from, Verdict to) {
+    auto sides = planted();
+    sides[0].claims = {{"e", {.id = "R", .verdict = from}}};
+    sides[1].claims = {{"e", {.id = "R", .verdict = to}}};
+    return regression(Aspect::claims, {}, changed_claims(sides), 1.5)
+        .has_value();
+  };
+  using enum Verdict;
+  EXPECT_TRUE(worse(reproduced, not_judged));
+  EXPECT_TRUE(worse(reproduced, not_reproduced));
+  EXPECT_TRUE(worse(not_judged, not_reproduced));
+  EXPECT_FALSE(worse(not_reproduced, not_judged));
+  EXPECT_FALSE(worse(not_reproduced, reproduced));
+  EXPECT_FALSE(worse(not_judged, reproduced));
 }
 
 TEST(Compare, SidesOfRevisions) {

@@ -1,0 +1,94 @@
+/// What one side of a comparison says of one stage, or of a group of them.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "suite/results/ends.h"
+#include "suite/results/exports.h"
+#include "suite/results/record.h"
+
+namespace physinv {
+
+/// Median and quartiles.
+struct Quartiles {
+  double low = 0, median = 0, high = 0;
+  double range() const { return high - low; }
+};
+/// Of a list that is not empty; infinities are numbers.
+Quartiles quartiles_of(const std::vector<double>& values);
+
+/// Seconds of solving a stage, over its repetitions. A clock that came to no
+/// number makes them infinite.
+struct Times {
+  Quartiles wall, cpu;
+  int threads = 1;
+  bool crowded = false;
+};
+
+struct Reading {
+  std::size_t stages = 0;
+  std::size_t same_bits = 0;  ///< as on the first side
+  std::map<Stop, Index> ends;
+  StatusCounts statuses{};
+  Index nonfinite = 0;  ///< losses
+  std::string message;  ///< of a stage: why it failed or was skipped
+  /// Over the examples of a stage, over the stages of a group; infinite where
+  /// it is not finite.
+  Quartiles loss;
+  /// Of a stage that converged or ran its iterations; of a group its stages'
+  /// seconds.
+  std::optional<Times> times;
+  Index iterations = 0;
+  Counts counts;
+
+  double simulations() const;
+  double passes() const;  ///< of networks
+};
+
+/// `first` is the same stage on the first side, if that has it.
+Reading reading_of(const StageRecord& stage,
+                   const Repetitions& repetitions,
+                   int threads,
+                   const StageRecord* first);
+/// Of the readings of its stages; one at least.
+Reading reading_of(const std::vector<const Reading*>& stages);
+
+/// How the end of a stage changed: that of the stage before those of its
+/// examples, and one worse thing outweighs a better one.
+Direction end_direction(const Reading& from, const Reading& to);
+/// "converged -> failed: out of memory"; empty if the ends are the same.
+std::string end_text(const Reading& from, const Reading& to);
+
+/// Losses below this are solved: that they differ counts for nothing.
+inline constexpr double kSolvedLoss = 1e-12;
+/// b over a, both raised to kSolvedLoss; 1 if neither is finite.
+double loss_ratio(const Reading& a, const Reading& b);
+
+/// Costs, time and work, compare between stages that both converged or ran
+/// their iterations, with as many losses that are finite: who fails, is skipped
+/// or diverges spends less and gains nothing.
+bool costs_compare(const Reading& a, const Reading& b);
+
+/// Of two stages whose costs compare. Held against each other is CPU time
+/// where both ran on one thread, as others on the machine add little to it;
+/// else wall time, unless one of both was crowded.
+struct TimeRatio {
+  std::optional<double> value;  ///< b over a
+  std::string why;              ///< there is none: "failed", "crowded", ...
+  bool compares = false;        ///< `a` and `b` hold what is compared, seconds
+  Quartiles a, b;
+  /// One of both should have a time, and its clock has no number.
+  bool a_unknown = false, b_unknown = false;
+};
+TimeRatio time_ratio(const Reading& a, const Reading& b);
+
+/// Seconds below this are short: that they differ counts for nothing.
+inline constexpr double kShortTime = 1e-2;
+/// By more than this factor, both raised to kShortTime: all but a quarter of
+/// b's repetitions against all but a quarter of a's.
+bool is_slower(const TimeRatio& times, double factor);
+
+}  // namespace physinv

@@ -1,0 +1,72 @@
+#include "suite/results/ends.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace physinv {
+namespace {
+
+constexpr std::size_t at(Status s) { return static_cast<std::size_t>(s); }
+
+/// A larger number is worse.
+template <class T>
+Direction by(T from, T to) {
+  return from == to  ? Direction::same
+         : to > from ? Direction::worse
+                     : Direction::better;
+}
+
+}  // namespace
+
+std::string_view to_string(Direction direction) {
+  constexpr std::string_view names[] = {"same", "better", "worse", "other"};
+  return names[static_cast<std::size_t>(direction)];
+}
+
+Direction direction(Stop from, Stop to) {
+  if (from == to) return Direction::same;
+  const auto badness = [](Stop s) {
+    return std::min(static_cast<int>(s), static_cast<int>(Stop::failed));
+  };
+  const Direction found = by(badness(from), badness(to));
+  return found == Direction::same ? Direction::other : found;
+}
+
+StatusCounts count(const std::vector<Status>& statuses) {
+  StatusCounts counts{};
+  for (const Status s : statuses) ++counts[at(s)];
+  return counts;
+}
+
+std::string status_text(const StatusCounts& counts) {
+  std::string text;
+  for (std::size_t i = 0; i < counts.size(); ++i)
+    if (counts[i] > 0)
+      text += fmt::format("{}{} {}",
+                          text.empty() ? "" : ", ",
+                          to_string(static_cast<Status>(i)),
+                          counts[i]);
+  return text;
+}
+
+Direction direction(const StatusCounts& from, const StatusCounts& to) {
+  if (from == to) return Direction::same;
+  constexpr auto kBad = at(Status::nonfinite), kGood = at(Status::gtol);
+  if (from[kBad] != to[kBad]) return by(from[kBad], to[kBad]);
+  const Direction found = by(-from[kGood], -to[kGood]);
+  return found == Direction::same ? Direction::other : found;
+}
+
+Direction direction(Verdict from, Verdict to) {
+  if (from == to) return Direction::same;
+  if (from == Verdict::reported || to == Verdict::reported ||
+      (from == Verdict::not_reproduced && to == Verdict::not_judged))
+    return Direction::other;
+  const auto badness = [](Verdict v) {
+    return v == Verdict::reproduced ? 0 : v == Verdict::not_judged ? 1 : 2;
+  };
+  return by(badness(from), badness(to));
+}
+
+}  // namespace physinv
