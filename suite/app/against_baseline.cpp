@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <set>
 #include <type_traits>
 
 #include "suite/app/load.h"
+#include "suite/gate/digits.h"
 #include "suite/gate/instructions.h"
 #include "suite/gate/verdict.h"
 #include "suite/results/file.h"
@@ -54,9 +56,14 @@ void AgainstBaseline::judge_stages(Sheet& sheet) {
   if (!rules.bits)
     sheet.notes.push_back(fmt::format(
         "{} is of other libraries or flags ({}): judged within its stable "
-        "digits",
+        "digits, which {} of {} stages do not have: their losses decide "
+        "nothing",
         flags_.baseline,
-        before_.bits));
+        before_.bits,
+        std::count_if(lines_.begin(),
+                      lines_.end(),
+                      [](auto& line) { return line.digits == kNoDigits; }),
+        lines_.size()));
   for (const auto& j : judge(lines_, now_, rules))
     sheet.findings.push_back(finding_of(j));
 }

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 #include <gnu/libc-version.h>
 
+#include <array>
 #include <charconv>
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <set>
 #include <stdexcept>
 
 #include "suite/harness/build_info.h"
@@ -55,8 +57,12 @@ std::uint64_t count(std::string_view text) {
 }
 
 void read_stages(Baseline& b, Lines& lines, const std::string& how_many) {
-  for (auto left = count(how_many); left > 0; --left)
+  std::set<std::string> names;
+  for (auto left = count(how_many); left > 0; --left) {
     b.stages.push_back(stage_line(lines.next()));
+    if (!names.insert(b.stages.back().name).second)
+      throw std::runtime_error(b.stages.back().name + " stands twice");
+  }
 }
 
 void read_counts(Baseline& b, Lines& lines, const std::string& head) {
@@ -68,10 +74,26 @@ void read_counts(Baseline& b, Lines& lines, const std::string& head) {
   }
 }
 
+/// What every baseline says, once.
+constexpr std::array<std::string_view, 8> kHeader = {"profile",
+                                                     "bits",
+                                                     "build",
+                                                     "numerics",
+                                                     "machine",
+                                                     "revision",
+                                                     "date",
+                                                     "stages"};
+
 Baseline parse_body(Lines lines) {
   Baseline b;
+  std::set<std::string> seen;
   while (!lines.empty()) {
     const auto [key, value] = two(lines.next());
+    const bool repeats = key == "filter" || key == "set";
+    const bool may_be_empty = key == "revision";  // outside of git
+    if (!value.empty() || may_be_empty)
+      if (!seen.insert(key).second && !repeats)
+        throw std::runtime_error(fmt::format("'{}' stands twice", key));
     if (key == "profile") b.chosen.profile = value;
     if (key == "seeds") b.chosen.seeds = value;
     if (key == "filter") b.chosen.filters.push_back(value);
@@ -85,6 +107,9 @@ Baseline parse_body(Lines lines) {
     if (key == "stages") read_stages(b, lines, value);
     if (key == "instructions") read_counts(b, lines, value);
   }
+  for (const auto field : kHeader)
+    if (!seen.contains(std::string(field)))
+      throw std::runtime_error(fmt::format("it has no {}", field));
   return b;
 }
 

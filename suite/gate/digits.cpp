@@ -15,13 +15,15 @@ double log_distance(double a, double b) {
   return (b - a) / std::max(std::abs(a), std::abs(b));
 }
 
-double tolerance(int digits) { return std::pow(10.0, -digits); }
+double tolerance(int digits) {
+  return digits == kNoDigits ? std::numeric_limits<double>::infinity()
+                             : std::pow(10.0, -digits);
+}
 
 int stable_digits(double distance, int most) {
   if (distance == 0) return most;
   const double digits = std::floor(-std::log10(std::abs(distance))) - 1;
-  return static_cast<int>(
-      std::clamp(digits, double{kFewestDigits}, double(most)));
+  return static_cast<int>(std::clamp(digits, double{kNoDigits}, double(most)));
 }
 
 }  // namespace physinv

@@ -8,9 +8,10 @@ namespace physinv {
 /// infinite for one.
 double log_distance(double a, double b);
 
-/// A result moves by up to 10^-digits decades when rounding does. Below zero
-/// for what is noise by orders of magnitude.
-inline constexpr int kFewestDigits = -3;
+/// Of a loss that rounding moves by a tenth of a decade and more.
+inline constexpr int kNoDigits = -1;
+/// A result moves by up to 10^-digits decades when rounding does; without a
+/// stable digit no distance says anything.
 double tolerance(int digits);
 
 /// From a distance seen when the data were one ulp off. One digit is left for

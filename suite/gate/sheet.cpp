@@ -1,7 +1,6 @@
 #include "suite/gate/sheet.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -64,17 +63,42 @@ nlohmann::json numbers_of(const StageLine& line) {
           {"ms", number(line.fastest)}};
 }
 
+std::string text_of(const Distance& d) {
+  return d.size > 0
+             ? fmt::format("largest relative change {:.1e} in {}", d.size, d.of)
+             : "x and losses are the same to the digits held";
+}
+
+/// The finding that is farthest from the baseline; null if none tells.
+const Finding* farthest(const Sheet& sheet) {
+  const Finding* most = nullptr;
+  for (const auto& f : sheet.findings)
+    if (f.distance && f.distance->size > 0 &&
+        (most == nullptr || f.distance->size > most->distance->size))
+      most = &f;
+  return most;
+}
+
+nlohmann::json to_json(const std::optional<Distance>& d) {
+  if (!d) return nullptr;
+  return {{"size", d->size}, {"of", d->of}};
+}
+
 }  // namespace
 
 Finding finding_of(const StageVerdict& j) {
+  std::string detail = j.reasons.text();
+  if (j.distance) detail += (detail.empty() ? "" : "; ") + text_of(*j.distance);
   return {.kind = "accuracy",
           .name = j.stage,
           .verdict = std::string(to_string(j.change)),
-          .detail = fmt::format("{}", fmt::join(j.reasons, "; ")),
+          .detail = std::move(detail),
           .code = fails(j) ? ExitCode::accuracy : ExitCode::good,
           .numbers = {{"digits", j.before.digits},
                       {"before", numbers_of(j.before)},
-                      {"now", numbers_of(j.now)}}};
+                      {"now", numbers_of(j.now)}},
+          .reasons = j.reasons,
+          .distance = j.distance};
 }
 
 ExitCode Sheet::code() const {
@@ -104,6 +128,27 @@ std::string summary_text(const Sheet& sheet) {
   return text;
 }
 
+std::string undecided_text(const Sheet& sheet) {
+  std::size_t asked = 0, decided = 0;
+  for (const auto& f : sheet.findings) {
+    if (f.kind != "clock") continue;
+    ++asked;
+    decided += f.verdict != "inconclusive";
+  }
+  if (asked == 0 || decided > 0) return "";
+  return fmt::format(
+      "the clock decided 0 of {} cases: nothing is known about their times; "
+      "fewer cases (--filter), more seconds (--budget) or a wider --within "
+      "decide",
+      asked);
+}
+
+std::string largest_text(const Sheet& sheet) {
+  const Finding* f = farthest(sheet);
+  return f == nullptr ? ""
+                      : fmt::format("{} of {}", text_of(*f->distance), f->name);
+}
+
 std::string terminal_text(const Sheet& sheet) {
   std::string text;
   for (const auto& note : sheet.notes) text += "note: " + note + '\n';
@@ -124,14 +169,23 @@ std::string terminal_text(const Sheet& sheet) {
                         width,
                         f->verdict,
                         one_line(f->detail));
+  if (const auto largest = largest_text(sheet); !largest.empty())
+    text += one_line(largest) + '\n';
+  if (const auto undecided = undecided_text(sheet); !undecided.empty())
+    text += "warning: " + undecided + '\n';
   return text + summary_text(sheet) + '\n';
 }
 
 std::string markdown_text(const Sheet& sheet) {
   const bool good = sheet.code() == ExitCode::good;
-  std::string text = fmt::format("### physinv-bench gate: {}\n\n{}\n\n",
-                                 good ? "passed" : "failed",
-                                 summary_text(sheet));
+  const std::string undecided = undecided_text(sheet);
+  std::string text =
+      fmt::format("### physinv-bench gate: {}{}\n\n{}\n\n",
+                  good ? "passed" : "failed",
+                  undecided.empty() ? "" : ", the clock decided nothing",
+                  summary_text(sheet));
+  for (const auto& line : {undecided, largest_text(sheet)})
+    if (!line.empty()) text += "- " + markdown(line) + '\n';
   for (const auto& note : sheet.notes) text += "- " + markdown(note) + '\n';
   const auto shown = loud(sheet);
   if (!shown.empty())
@@ -149,6 +203,9 @@ std::string markdown_text(const Sheet& sheet) {
 
 std::string annotations(const Sheet& sheet) {
   std::string text;
+  if (const auto undecided = undecided_text(sheet); !undecided.empty())
+    text += fmt::format("::warning title=clock undecided::{}\n",
+                        escaped(undecided));
   std::size_t left = kAnnotations;
   for (const auto* f : loud(sheet)) {
     if (f->code == ExitCode::good || left-- == 0) break;
@@ -168,11 +225,17 @@ nlohmann::json to_json(const Sheet& sheet) {
                         {"name", f.name},
                         {"verdict", f.verdict},
                         {"why", f.detail},
+                        {"worse", f.reasons.worse},
+                        {"better", f.reasons.better},
+                        {"other", f.reasons.other},
+                        {"relative_change", to_json(f.distance)},
                         {"exit_code", static_cast<int>(f.code)},
                         {"numbers", f.numbers}});
   return {{"schema_version", 1},
           {"exit_code", static_cast<int>(sheet.code())},
           {"notes", sheet.notes},
+          {"warning", undecided_text(sheet)},
+          {"largest_change", largest_text(sheet)},
           {"findings", std::move(findings)}};
 }
 

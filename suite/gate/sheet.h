@@ -3,6 +3,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,8 @@ struct Finding {
   std::string verdict, detail;
   ExitCode code = ExitCode::good;  ///< that it alone would end the gate with
   nlohmann::json numbers;          ///< for machines
+  Reasons reasons = {};            ///< of a stage
+  std::optional<Distance> distance = {};
 };
 
 Finding finding_of(const StageVerdict& judgement);
@@ -32,11 +35,16 @@ struct Sheet {
 
 /// One line: how many of each kind came to each verdict.
 std::string summary_text(const Sheet& sheet);
+/// Where the clock was asked and decided nothing; else empty.
+std::string undecided_text(const Sheet& sheet);
+/// "largest relative change 2e-16 in x of jpo/.../solve"; empty if no stage
+/// changed by what its line tells.
+std::string largest_text(const Sheet& sheet);
 /// Notes, everything that is not as it was, and the summary.
 std::string terminal_text(const Sheet& sheet);
 std::string markdown_text(const Sheet& sheet);
 /// One `::error` of GitHub's workflow commands for each finding that fails, up
-/// to ten.
+/// to ten, and a `::warning` where the clock decided nothing.
 std::string annotations(const Sheet& sheet);
 nlohmann::json to_json(const Sheet& sheet);
 

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <stdexcept>
 #include <vector>
 
@@ -18,6 +19,7 @@ namespace physinv {
 namespace {
 
 constexpr int kMost32 = 5, kMost64 = 12;
+constexpr std::string_view kNone = "none";
 /// Of a stage that draws data of its own, so that no disturbance reaches it.
 constexpr int kUnmeasured = 3;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -80,8 +82,8 @@ E word(std::string_view text, const std::array<E, kSize>& all) {
   throw std::runtime_error(fmt::format("unknown word '{}'", text));
 }
 
-std::array<Index, kStatuses> statuses(std::string_view text) {
-  std::array<Index, kStatuses> counts{};
+StatusCounts statuses(std::string_view text) {
+  StatusCounts counts{};
   while (!text.empty()) {
     std::string_view part = cut(text, ",");
     const Status s = word(cut(part, ":"), kAllStatuses);
@@ -99,10 +101,11 @@ Losses losses(std::string_view text) {
 }
 
 int digits(std::string_view text) {
+  if (text == kNone) return kNoDigits;
   const int value = number<int>(text);
-  if (value < kFewestDigits || value > kMost64)
+  if (value < 0 || value > kMost64)
     throw std::runtime_error(fmt::format(
-        "digits={} is not from {} to {}", text, kFewestDigits, kMost64));
+        "digits={} is not from 0 to {}, nor {}", text, kMost64, kNone));
   return value;
 }
 
@@ -130,6 +133,8 @@ void read(StageLine& line, std::string_view key, std::string_view value) {
     line.losses.nonfinite = nonfinite;
   } else if (key == "nonfinite") {
     line.losses.nonfinite = number<Index>(value);
+  } else if (key == "x") {
+    line.x = number<double>(value);
   } else if (key == "digits") {
     line.digits = digits(value);
   } else if (key == "ms") {
@@ -140,21 +145,46 @@ void read(StageLine& line, std::string_view key, std::string_view value) {
   }
 }
 
-std::string join(const std::array<Index, kStatuses>& counts,
-                 std::string_view between,
-                 char mark) {
+/// "gtol:3,maxiter:1"
+std::string packed(const StatusCounts& counts) {
   std::string text;
-  for (std::size_t i = 0; i < kStatuses; ++i)
+  for (std::size_t i = 0; i < counts.size(); ++i)
     if (counts[i] > 0)
-      text += fmt::format("{}{}{}{}",
-                          text.empty() ? "" : between,
+      text += fmt::format("{}{}:{}",
+                          text.empty() ? "" : ",",
                           to_string(kAllStatuses[i]),
-                          mark,
                           counts[i]);
   return text;
 }
 
+/// As exact as a double can say it, whatever cancels.
+double sum_of(const Batch<double>& x) {
+  long double sum = 0;
+  for (Index i = 0; i < x.size(); ++i) {
+    const double v = x.data()[i];
+    if (!std::isfinite(v)) continue;
+    const std::uint64_t place = static_cast<std::uint64_t>(i) + 1;
+    sum += (place * 0x9e3779b97f4a7c15) >> 63 == 0 ? v : -v;
+  }
+  return static_cast<double>(sum);
+}
+
+double norm_of(const Batch<double>& x) {
+  double sum = 0;
+  for (const double v : x.reshaped())
+    if (std::isfinite(v)) sum += v * v;
+  return std::sqrt(sum);
+}
+
+/// What every line has.
+constexpr std::array<std::string_view, 7> kStageFields = {
+    "trajectory", "results", "stop", "status", "loss", "digits", "ms"};
+
 }  // namespace
+
+int shown_digits(const StageLine& line) {
+  return std::clamp(line.digits + 1, 1, kMost64 + 1);
+}
 
 StageLine line_of(const StageRecord& r) {
   StageLine line{.name = r.case_name + "/" + r.stage,
@@ -162,8 +192,9 @@ StageLine line_of(const StageRecord& r) {
                  .results = hash_of(r),
                  .stop = r.stop,
                  .message = r.message,
+                 .statuses = count(r.status),
                  .losses = losses_of(r.loss)};
-  for (const Status s : r.status) ++line.statuses[static_cast<std::size_t>(s)];
+  if (has_result(r)) line.x = sum_of(r.x), line.x_norm = norm_of(r.x);
   line.work = {static_cast<std::uint64_t>(r.iterations),
                r.counts[Counter::forward],
                r.counts[Counter::vjp],
@@ -199,27 +230,25 @@ std::string case_of(std::string_view stage_name) {
   return std::string(stage_name.substr(0, stage_name.rfind('/')));
 }
 
-std::string status_text(const std::array<Index, kStatuses>& counts) {
-  return join(counts, ", ", ' ');
-}
-
 std::string to_text(const StageLine& l) {
-  const int shown = std::clamp(l.digits + 1, 1, 13);
+  const int shown = shown_digits(l);
   std::string text = fmt::format(
       "{} trajectory={} results={} stop={} status={} "
-      "loss={:.{}e},{:.{}e},{:.{}e} digits={}",
+      "loss={:.{}e},{:.{}e},{:.{}e}",
       l.name,
       l.trajectory,
       l.results,
       to_string(l.stop),
-      join(l.statuses, ",", ':'),
+      packed(l.statuses),
       l.losses.best,
       shown,
       l.losses.median,
       shown,
       l.losses.worst,
-      shown,
-      l.digits);
+      shown);
+  if (l.x) text += fmt::format(" x={}", *l.x);
+  text += l.digits == kNoDigits ? fmt::format(" digits={}", kNone)
+                                : fmt::format(" digits={}", l.digits);
   if (l.losses.nonfinite > 0)
     text += fmt::format(" nonfinite={}", l.losses.nonfinite);
   for (std::size_t i = 0; i < kWork.size(); ++i) {
@@ -232,11 +261,17 @@ std::string to_text(const StageLine& l) {
 
 StageLine stage_line(std::string_view text) {
   StageLine line{.name = std::string(cut(text, " "))};
+  std::set<std::string_view> seen;
   while (!text.empty()) {
     std::string_view value = cut(text, " ");
     const std::string_view key = cut(value, "=");
+    if (!seen.insert(key).second)
+      throw std::runtime_error(fmt::format("{}: {} twice", line.name, key));
     read(line, key, value);
   }
+  for (const auto field : kStageFields)
+    if (!seen.contains(field))
+      throw std::runtime_error(fmt::format("{} has no {}", line.name, field));
   return line;
 }
 

@@ -1,15 +1,18 @@
 /// What a baseline holds of one stage, on one line:
 ///
 ///   jpo/billiards/jpo/n=4/seed=0/fit trajectory=9f.. results=04..
-///   stop=iterations status=maxiter:4 loss=1.2e-02,2.6e-02,4.3e-02 digits=5
-///   iterations=50 vjp=200 network_forward=204 ms=9.6..9.9
+///   stop=iterations status=maxiter:4 loss=1.2e-02,2.6e-02,4.3e-02
+///   x=-1.8072345 digits=5 iterations=50 vjp=200 network_forward=204
+///   ms=9.6..9.9
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
+#include "suite/results/ends.h"
 #include "suite/results/record.h"
 
 namespace physinv {
@@ -22,7 +25,6 @@ inline constexpr std::array<std::string_view, 7> kWork = {"iterations",
                                                           "inverse",
                                                           "network_forward",
                                                           "network_backward"};
-inline constexpr std::size_t kStatuses = 4;
 
 /// Final losses of a stage's examples: the finite ones.
 struct Losses {
@@ -36,9 +38,13 @@ struct StageLine {
   std::string results;     ///< hash of estimates, losses, curves, findings
   Stop stop = Stop::iterations;
   std::string message;  ///< why it failed; not part of the line
-  std::array<Index, kStatuses> statuses{};
+  StatusCounts statuses{};
   Losses losses;
-  int digits = 0;  ///< of the losses, that are stable
+  /// Sum of the estimates, each with a sign that its place decides: tells how
+  /// far those of two runs are apart. Absent in lines of older versions.
+  std::optional<double> x;
+  double x_norm = 0;  ///< of the estimates; not part of the line
+  int digits = 0;     ///< of the losses, that are stable; or kNoDigits
   std::array<std::uint64_t, kWork.size()> work{};
   /// How far they moved when the data were one ulp off.
   std::array<std::uint64_t, kWork.size()> play{};
@@ -52,15 +58,15 @@ StageLine line_of(const StageRecord& record);
 /// `precision` were computed.
 void repeated(StageLine& line, const StageLine& disturbed, Precision precision);
 
+/// Digits after the point of its losses, as the line has them.
+int shown_digits(const StageLine& line);
+
 bool same_bits(const StageLine& a, const StageLine& b);
 
 std::string case_of(std::string_view stage_name);
 
 std::string to_text(const StageLine& line);
-/// Throws std::runtime_error.
+/// Throws std::runtime_error; also if a field is missing or stands twice.
 StageLine stage_line(std::string_view text);
-
-/// "gtol 3, maxiter 1"
-std::string status_text(const std::array<Index, kStatuses>& statuses);
 
 }  // namespace physinv

@@ -1,50 +1,60 @@
 #include "suite/gate/verdict.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
+#include <utility>
 
 #include "suite/gate/digits.h"
+#include "suite/results/ends.h"
 
 namespace physinv {
 namespace {
 
-/// How bad an end is; who failed and who was skipped have no result.
-int rank(Stop stop) { return std::min(static_cast<int>(stop), 3); }
+std::vector<std::string>& side(Reasons& reasons, Direction direction) {
+  return direction == Direction::worse    ? reasons.worse
+         : direction == Direction::better ? reasons.better
+                                          : reasons.other;
+}
 
-/// What speaks for and against a stage.
-struct Findings {
-  std::vector<std::string> worse, better, neutral;
-};
+/// Rounding decides how many examples meet a tolerance: it speaks against a
+/// stage only where the same bits are promised, and never for it.
+Direction direction_of_examples(const StageLine& a,
+                                const StageLine& b,
+                                Rules rules) {
+  constexpr auto kBad = static_cast<std::size_t>(Status::nonfinite);
+  const Direction found = direction(a.statuses, b.statuses);
+  const bool counts = rules.bits || a.statuses[kBad] != b.statuses[kBad];
+  return found == Direction::worse && counts ? found : Direction::other;
+}
 
-void compare_ends(const StageLine& a, const StageLine& b, Findings& found) {
-  if (a.stop != b.stop) {
-    auto& side = rank(b.stop) > rank(a.stop) ? found.worse : found.better;
-    side.push_back(fmt::format("{} -> {}{}{}",
+void compare_ends(const StageLine& a,
+                  const StageLine& b,
+                  Rules rules,
+                  Reasons& found) {
+  if (a.stop != b.stop)
+    side(found, direction(a.stop, b.stop))
+        .push_back(fmt::format("{} -> {}{}{}",
                                to_string(a.stop),
                                to_string(b.stop),
                                b.message.empty() ? "" : ": ",
                                b.message));
-  }
-  constexpr auto kBad = static_cast<std::size_t>(Status::nonfinite);
-  if (a.statuses != b.statuses) {
-    auto& side =
-        b.statuses[kBad] > a.statuses[kBad] ? found.worse : found.neutral;
-    side.push_back(fmt::format(
-        "{} -> {}", status_text(a.statuses), status_text(b.statuses)));
-  }
-  if (a.losses.nonfinite != b.losses.nonfinite) {
-    auto& side =
-        b.losses.nonfinite > a.losses.nonfinite ? found.worse : found.better;
-    side.push_back(fmt::format("losses that are not finite {} -> {}",
+  if (a.statuses != b.statuses)
+    side(found, direction_of_examples(a, b, rules))
+        .push_back(fmt::format(
+            "{} -> {}", status_text(a.statuses), status_text(b.statuses)));
+  if (a.losses.nonfinite != b.losses.nonfinite)
+    (b.losses.nonfinite > a.losses.nonfinite ? found.worse : found.better)
+        .push_back(fmt::format("losses that are not finite {} -> {}",
                                a.losses.nonfinite,
                                b.losses.nonfinite));
-  }
 }
 
-void compare_losses(const StageLine& a, const StageLine& b, Findings& found) {
+void compare_losses(const StageLine& a, const StageLine& b, Reasons& found) {
   const auto compare = [&](const char* which, double before, double now) {
     const double moved = log_distance(before, now);
     if (!(std::abs(moved) > tolerance(a.digits))) return;
@@ -62,13 +72,19 @@ void compare_losses(const StageLine& a, const StageLine& b, Findings& found) {
   compare("worst", a.losses.worst, b.losses.worst);
 }
 
+/// Do the costs of both compare? Who ended worse spent less.
+bool costs_compare(const StageLine& a, const StageLine& b) {
+  return a.losses.nonfinite == b.losses.nonfinite &&
+         (a.stop == b.stop || (completes(a.stop) && completes(b.stop)));
+}
+
 /// With the same bits promised, no more than before; otherwise what one ulp in
 /// the data moved is left, twice.
 void compare_work(const StageLine& a,
                   const StageLine& b,
                   Rules rules,
                   bool same,
-                  Findings& found) {
+                  Reasons& found) {
   for (std::size_t i = 0; i < kWork.size(); ++i) {
     if (a.work[i] == b.work[i]) continue;
     const std::string text =
@@ -77,11 +93,42 @@ void compare_work(const StageLine& a,
     const bool grown = b.work[i] > a.work[i] + slack;
     // Less work does not make up for bits that were promised.
     const bool less = b.work[i] + slack < a.work[i] && (same || !rules.bits);
-    (grown && !rules.allow_work ? found.worse
-     : less                     ? found.better
-                                : found.neutral)
+    (!costs_compare(a, b)         ? found.other
+     : grown && !rules.allow_work ? found.worse
+     : less                       ? found.better
+                                  : found.other)
         .push_back(text);
   }
+}
+
+/// 0 if the baseline's digits do not tell them apart.
+double loss_change(double before, double now, int shown) {
+  if (!std::isfinite(before) || !std::isfinite(now) ||
+      fmt::format("{:.{}e}", before, shown) ==
+          fmt::format("{:.{}e}", now, shown))
+    return 0;
+  return std::abs(now - before) / std::max(std::abs(now), std::abs(before));
+}
+
+double estimate_change(const StageLine& before, const StageLine& now) {
+  if (!before.x || !now.x || *before.x == *now.x) return 0;
+  return std::abs(*now.x - *before.x) /
+         std::max(now.x_norm, std::abs(*before.x));
+}
+
+Distance distance(const StageLine& before, const StageLine& now) {
+  const int shown = shown_digits(before);
+  const auto& a = before.losses;
+  const auto& b = now.losses;
+  const Distance all[] = {
+      {estimate_change(before, now), "x"},
+      {loss_change(a.best, b.best, shown), "best loss"},
+      {loss_change(a.median, b.median, shown), "median loss"},
+      {loss_change(a.worst, b.worst, shown), "worst loss"}};
+  return *std::max_element(
+      std::begin(all), std::end(all), [](const auto& p, const auto& q) {
+        return p.size < q.size;
+      });
 }
 
 }  // namespace
@@ -92,26 +139,44 @@ std::string_view to_string(Change change) {
   return names[static_cast<std::size_t>(change)];
 }
 
+std::string Reasons::text() const {
+  std::string text;
+  const bool several = (worse.empty() ? 0 : 1) + (better.empty() ? 0 : 1) +
+                           (other.empty() ? 0 : 1) >
+                       1;
+  for (const auto& [word, all] : {std::pair("worse", &worse),
+                                  std::pair("better", &better),
+                                  std::pair("other", &other)}) {
+    if (all->empty()) continue;
+    text += fmt::format("{}{}{}{}",
+                        text.empty() ? "" : "; ",
+                        several ? word : "",
+                        several ? ": " : "",
+                        fmt::join(*all, "; "));
+  }
+  return text;
+}
+
 StageVerdict judge(const StageLine& before, const StageLine& now, Rules rules) {
-  Findings found;
+  StageVerdict j{.stage = now.name, .before = before, .now = now};
+  Reasons& found = j.reasons;
   const bool same = same_bits(before, now);
-  compare_ends(before, now, found);
+  compare_ends(before, now, rules, found);
   if (!same) compare_losses(before, now, found);
   compare_work(before, now, rules, same, found);
 
-  StageVerdict j{.stage = now.name, .before = before, .now = now};
+  if (!same) j.distance = distance(before, now);
+
   if (!found.worse.empty()) {
     j.change = Change::worse;
   } else if (!found.better.empty()) {
     j.change = Change::better;
   } else if (!same && rules.bits) {
     j.change = Change::worse;
-    j.reasons.emplace_back("other bits, and this build promises the same");
+    found.worse.emplace_back("other bits, and this build promises the same");
   } else if (!same) {
     j.change = Change::within;
   }
-  for (auto* side : {&found.worse, &found.better, &found.neutral})
-    j.reasons.insert(j.reasons.end(), side->begin(), side->end());
   return j;
 }
 
@@ -126,7 +191,8 @@ std::vector<StageVerdict> judge(const std::vector<StageLine>& before,
     if (at == have.end()) {
       all.push_back({.stage = line.name,
                      .change = Change::missing,
-                     .reasons = {"not run, or not registered any more"},
+                     .reasons = {.worse = {"not run, or not registered any "
+                                           "more"}},
                      .before = line,
                      .now = {}});
       continue;
@@ -138,7 +204,7 @@ std::vector<StageVerdict> judge(const std::vector<StageLine>& before,
     if (have.contains(line.name))
       all.push_back({.stage = line.name,
                      .change = Change::added,
-                     .reasons = {"the baseline does not hold it"},
+                     .reasons = {.other = {"the baseline does not hold it"}},
                      .before = {},
                      .now = line});
   return all;

@@ -1,6 +1,7 @@
 /// A campaign held against a baseline, stage by stage.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,10 +26,26 @@ struct Rules {
   bool allow_work = false;  ///< counters may grow
 };
 
+/// What speaks against a stage and for it, and what else is not as it was.
+struct Reasons {
+  std::vector<std::string> worse, better, other;
+  /// "a; b", or "worse: a; better: b" where there are several kinds.
+  std::string text() const;
+};
+
+/// How far a stage is from the baseline's: the largest relative change of what
+/// its line tells. Estimates count as a whole, by their norm.
+struct Distance {
+  double size = 0;
+  std::string_view of;  ///< "x", "best loss", ...
+};
+
 struct StageVerdict {
   std::string stage;
   Change change = Change::same;
-  std::vector<std::string> reasons;
+  Reasons reasons;
+  /// Of other bits. Size 0: less than the line tells.
+  std::optional<Distance> distance;
   StageLine before, now;
 };
 

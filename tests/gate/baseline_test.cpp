@@ -77,9 +77,11 @@ TEST(Digits, AreWhatOneUlpLeaves) {
   EXPECT_EQ(stable_digits(2e-5, 12), 3);
   EXPECT_EQ(stable_digits(-2e-5, 12), 3);
   EXPECT_EQ(stable_digits(1e-17, 12), 12);
-  EXPECT_EQ(stable_digits(4, 12), -2);
+  EXPECT_EQ(stable_digits(0.2, 12), kNoDigits);
+  EXPECT_EQ(stable_digits(0.05, 12), 0);
+  EXPECT_EQ(stable_digits(4, 12), kNoDigits);
   EXPECT_EQ(stable_digits(std::numeric_limits<double>::infinity(), 12),
-            kFewestDigits);
+            kNoDigits);
   EXPECT_DOUBLE_EQ(log_distance(1, 100), 2);
   EXPECT_DOUBLE_EQ(log_distance(-1, -3), -2.0 / 3);
   EXPECT_EQ(log_distance(std::nan(""), std::nan("")), 0);

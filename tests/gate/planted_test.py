@@ -185,9 +185,26 @@ def hostile_baselines(d):
     def with_digits(digits):
         return lambda body: re.sub(r"digits=-?\d+", f"digits={digits}", body,
                                    count=1)
-    for digits in (2147483647, -2147483648, 13, -4):
+    for digits in (2147483647, -2147483648, 13, -1):
         rewrite(d, "digits.txt", with_digits(digits))
-        expect(2, ["gate", "--baseline=digits.txt"], d, "is not from -3 to 12")
+        expect(2, ["gate", "--baseline=digits.txt"], d,
+               f"digits={digits} is not from 0 to 12, nor none")
+    for field in ("trajectory", "results", "stop", "status", "loss", "digits",
+                  "ms"):
+        rewrite(d, "lacks.txt",
+                lambda t: re.sub(rf" {field}=\S*", "", t, count=1))
+        expect(2, ["gate", "--baseline=lacks.txt"], d, f"has no {field}")
+        rewrite(d, "twice.txt", lambda t: re.sub(
+            rf" ({field}=\S*)", r" \1 \1", t, count=1))
+        expect(2, ["gate", "--baseline=twice.txt"], d, f"{field} twice")
+    for field in ("profile", "bits", "build", "numerics", "machine", "date"):
+        rewrite(d, "lacks.txt",
+                lambda t: re.sub(rf"\n{field} .*", "", t, count=1))
+        expect(2, ["gate", "--baseline=lacks.txt"], d, f"it has no {field}")
+    stage = re.search("fake/.*\n", open(os.path.join(d, "base.txt")).read())
+    rewrite(d, "twice.txt", lambda t: t.replace(
+        stage[0], stage[0] * 2).replace("stages 6", "stages 7"))
+    expect(2, ["gate", "--baseline=twice.txt"], d, "stands twice")
     for pattern, says in (("(" * 10000 + ")" * 10000, "of 20000 characters"),
                           ("(x", "filter='(x' is no regular expression"),
                           ("(.*)*(.*)*(.*)*QQ", "")):

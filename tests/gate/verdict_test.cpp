@@ -42,7 +42,8 @@ TEST(Verdict, LossesAreJudgedByTheirDigits) {
   EXPECT_EQ(by(1.0002).change, Change::within);
   EXPECT_EQ(by(1.0005).change, Change::worse);
   EXPECT_EQ(by(0.9995).change, Change::better);
-  EXPECT_NE(by(1.0005).reasons.at(0).find("median loss"), std::string::npos);
+  EXPECT_NE(by(1.0005).reasons.worse.at(0).find("median loss"),
+            std::string::npos);
 }
 
 TEST(Verdict, OneWorseThingOutweighsABetterOne) {
@@ -59,12 +60,12 @@ TEST(Verdict, ChangesOfEndsAreNamed) {
   const auto j =
       changed(kDigits, [](StageLine& l) { l.stop = Stop::diverged; });
   EXPECT_EQ(j.change, Change::worse);
-  EXPECT_EQ(j.reasons.at(0), "converged -> diverged");
+  EXPECT_EQ(j.reasons.worse.at(0), "converged -> diverged");
   EXPECT_EQ(changed(kDigits,
                     [](StageLine& l) {
                       l.statuses = {4, 0, 0, 0};
                     })
-                .reasons.at(0),
+                .reasons.other.at(0),
             "gtol 3, maxiter 1 -> gtol 4");
   EXPECT_EQ(changed(kDigits,
                     [](StageLine& l) {
