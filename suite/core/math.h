@@ -9,9 +9,16 @@
 /// floor, remainder, ...) is taken from the standard library.
 #pragma once
 
-#include <sleef.h>
-
 #include "suite/core/lanes.h"
+
+// Eigen is not to see AVX-512 (cmake/physinv.cmake), SLEEF is.
+#pragma push_macro("__AVX512F__")
+#undef __AVX512F__
+#ifdef PHYSINV_AVX512
+#define __AVX512F__ 1
+#endif
+#include <sleef.h>
+#pragma pop_macro("__AVX512F__")
 
 namespace physinv::math {
 
