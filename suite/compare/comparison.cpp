@@ -91,7 +91,7 @@ double change_of(const Reading& a, const Reading& b) {
   double most = std::isfinite(loss) && loss > 0 ? decades(loss) : kMost;
   for (const auto& ratio : {ratio_of_work(a, b, &Reading::simulations),
                             ratio_of_work(a, b, &Reading::passes),
-                            time_ratio(a, b).value})
+                            raised_ratio(time_ratio(a, b))})
     most = std::max(most, decades(ratio.value_or(1)));
   return most;
 }
@@ -105,7 +105,7 @@ Badness badness(const Compared& stage, std::size_t side) {
   if (!b) return {2, 0, 0};
   return {end_direction(*a, *b) == Direction::worse ? 1 : 0,
           loss_ratio(*a, *b),
-          time_ratio(*a, *b).value.value_or(0)};
+          raised_ratio(time_ratio(*a, *b)).value_or(0)};
 }
 
 /// Ratios of a side's pairs.
@@ -174,6 +174,7 @@ Against against(const Compared& line, std::size_t side) {
     ++sum.pairs;
     const double ratio = loss_ratio(*a, *b);
     sum.wins += ratio < 1;
+    sum.ties += ratio == 1;
     sum.worse += end_direction(*a, *b) == Direction::worse;
     loss.add(ratio);
     const TimeRatio times = time_ratio(*a, *b);

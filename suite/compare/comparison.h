@@ -61,6 +61,7 @@ struct Compared {
 struct Against {
   std::size_t pairs = 0;
   std::size_t wins = 0;   ///< pairs with a lower loss
+  std::size_t ties = 0;   ///< pairs with the same
   std::size_t worse = 0;  ///< pairs with a worse end
   std::size_t timed = 0;  ///< pairs that have a ratio of times
   /// Ratios over the pairs, absent if there are none.

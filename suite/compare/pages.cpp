@@ -36,8 +36,10 @@ Cell factor(const std::optional<Quartiles>& ratios, const std::string& why) {
   return cell;
 }
 
-void spread(Cell& cell, double range) {
-  if (cell.ours && std::isfinite(range)) cell.spread = range;
+/// `unit` of the cell in units of the quartiles.
+void spread(Cell& cell, const Quartiles& quartiles, double unit = 1) {
+  const auto range = quartiles.range();
+  if (cell.ours && range && std::isfinite(*range)) cell.spread = *range / unit;
 }
 
 /// The word alone if all agree.
@@ -79,8 +81,11 @@ std::string pair_text(const Compared& group,
   const auto& b = stage.sides[s];
   if (!b) return text + "missing";
   if (a->ends != b->ends) return text + ends_text(*a) + " → " + ends_text(*b);
-  const double ratio = loss_ratio(*a, *b);
-  return text + (std::isfinite(ratio) ? factor_text(ratio) : "not finite");
+  const double loss = loss_ratio(*a, *b);
+  const double time = raised_ratio(time_ratio(*a, *b)).value_or(1);
+  return text + (std::isinf(loss)         ? "not finite"
+                 : loss == 1 && time != 1 ? "time " + factor_text(time)
+                                          : factor_text(loss));
 }
 
 /// Seconds as they are compared: of CPU where one thread ran.
@@ -93,13 +98,13 @@ Cell time_cell(const Reading& r) {
   const Quartiles& seconds = seconds_of(*r.times);
   Cell cell = number(1e3 * seconds.median, "{:.4g}");
   if (r.times->threads > 1 && r.times->crowded) cell.text += " (crowded)";
-  spread(cell, 1e3 * seconds.range());
+  spread(cell, seconds, 1e-3);
   return cell;
 }
 
 Cell loss_cell(const Reading& r) {
   Cell cell = number(r.loss.median, "{:.2e}");
-  spread(cell, r.loss.range());
+  spread(cell, r.loss);
   return cell;
 }
 
@@ -116,11 +121,14 @@ void add_against(TableRow& out, const Compared& row, std::size_t s) {
   const Against sum = against(row, s);
   const auto ratio = [&](const auto& ratios, const std::string& why = "") {
     out.cells.push_back(factor(ratios, why));
-    if (ratios && !row.members.empty())
-      spread(out.cells.back(), ratios->range());
+    if (ratios) spread(out.cells.back(), *ratios);
   };
   ratio(sum.loss);
   ratio(sum.time, sum.no_time);
+  if (row.members.empty() && sum.time) {  // over repetitions
+    const TimeRatio t = time_ratio(*row.sides.front(), *row.sides[s]);
+    spread(out.cells.back(), t.b, t.a.median);
+  }
   if (sum.time && sum.timed < sum.pairs)
     out.cells.back().text += fmt::format(" ({} of {})", sum.timed, sum.pairs);
   ratio(sum.simulations);
@@ -128,7 +136,9 @@ void add_against(TableRow& out, const Compared& row, std::size_t s) {
   out.cells.push_back(ends_cell(row, s, sum.worse));
   out.cells.push_back(sum.pairs > 0 ? bits(*row.sides[s]) : Cell{.text = "–"});
   if (row.members.empty()) return;
-  out.cells.push_back({.text = fmt::format("{} of {}", sum.wins, sum.pairs)});
+  out.cells.push_back(
+      {.text = fmt::format("{} of {}", sum.wins, sum.pairs) +
+               (sum.ties > 0 ? fmt::format(", {} equal", sum.ties) : "")});
   out.cells.push_back(
       {.text = sum.worst ? pair_text(row, *sum.worst, s) : "–"});
 }
@@ -221,11 +231,11 @@ Table changes_table(const Comparison& c, std::size_t most) {
     table.rows.push_back(std::move(out));
   }
   if (groups)
-    table.note =
-        "Medians over pairs of runs; wins are pairs with a lower loss. ";
+    table.note = "Medians over pairs of runs; wins are pairs with a lower loss";
   if (c.rows.size() > most)
-    table.note +=
-        fmt::format("{} more lines changed less", c.rows.size() - most);
+    table.note += fmt::format("{}{} more lines changed less",
+                              table.note.empty() ? "" : "; ",
+                              c.rows.size() - most);
   return table;
 }
 

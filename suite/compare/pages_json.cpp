@@ -13,6 +13,10 @@ Json finite(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
+Json number_or_null(const std::optional<double>& value) {
+  return value ? finite(*value) : Json(nullptr);
+}
+
 Json to_json(const Quartiles& q) {
   return {{"median", finite(q.median)},
           {"low", finite(q.low)},
@@ -68,11 +72,14 @@ Json against_json(const Compared& row, std::size_t s) {
         {"n", sum.worst->id.n},
         {"seed", sum.worst->id.seed},
         {"loss_ratio", b ? finite(loss_ratio(*a, *b)) : Json(nullptr)},
+        {"raised_time_ratio",
+         b ? number_or_null(raised_ratio(time_ratio(*a, *b))) : Json(nullptr)},
         {"end", b ? Json(to_string(end_direction(*a, *b))) : Json("missing")},
         {"ends", b ? Json(end_text(*a, *b)) : Json(nullptr)}};
   }
   return {{"pairs", sum.pairs},
           {"wins", sum.wins},
+          {"ties", sum.ties},
           {"worse_ends", sum.worse},
           {"timed", sum.timed},
           {"no_time", sum.no_time},

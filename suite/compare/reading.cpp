@@ -61,7 +61,10 @@ bool is_known(const Quartiles& seconds) {
 }  // namespace
 
 Quartiles quartiles_of(const std::vector<double>& values) {
-  return {quantile(values, 0.25), median(values), quantile(values, 0.75)};
+  return {quantile(values, 0.25),
+          median(values),
+          quantile(values, 0.75),
+          values.size()};
 }
 
 double Reading::simulations() const {
@@ -175,6 +178,11 @@ TimeRatio time_ratio(const Reading& a, const Reading& b) {
       ratio.why = "0 s";
   }
   return ratio;
+}
+
+std::optional<double> raised_ratio(const TimeRatio& t) {
+  if (!t.compares) return {};
+  return std::max(t.b.median, kShortTime) / std::max(t.a.median, kShortTime);
 }
 
 bool is_slower(const TimeRatio& t, double factor) {

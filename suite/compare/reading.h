@@ -12,10 +12,14 @@
 
 namespace physinv {
 
-/// Median and quartiles.
+/// Median and quartiles of so many numbers.
 struct Quartiles {
   double low = 0, median = 0, high = 0;
-  double range() const { return high - low; }
+  std::size_t count = 0;
+  /// From one quartile to the other; of one number nothing is known.
+  std::optional<double> range() const {
+    return count > 1 ? std::optional(high - low) : std::nullopt;
+  }
 };
 /// Of a list that is not empty; infinities are numbers.
 Quartiles quartiles_of(const std::vector<double>& values);
@@ -87,6 +91,8 @@ TimeRatio time_ratio(const Reading& a, const Reading& b);
 
 /// Seconds below this are short: that they differ counts for nothing.
 inline constexpr double kShortTime = 1e-2;
+/// b over a, both raised to kShortTime; empty if they do not compare.
+std::optional<double> raised_ratio(const TimeRatio& times);
 /// By more than this factor, both raised to kShortTime: all but a quarter of
 /// b's repetitions against all but a quarter of a's.
 bool is_slower(const TimeRatio& times, double factor);
