@@ -63,25 +63,35 @@ nlohmann::json numbers_of(const StageLine& line) {
           {"ms", number(line.fastest)}};
 }
 
-std::string text_of(const Distance& d) {
-  return d.size > 0
-             ? fmt::format("largest relative change {:.1e} in {}", d.size, d.of)
-             : "x and losses are the same to the digits held";
+std::string loss_text(const Distance& d) {
+  return fmt::format("{:.1e} in the {} loss", d.loss, d.which);
 }
 
-/// The finding that is farthest from the baseline; null if none tells.
-const Finding* farthest(const Sheet& sheet) {
+std::string text_of(const Distance& d) {
+  std::string text;
+  if (d.x.value_or(0) > 0) text = fmt::format("{:.1e} in x", *d.x);
+  if (d.loss > 0) text += (text.empty() ? "" : ", ") + loss_text(d);
+  return text.empty() ? fmt::format("{}losses are the same to the digits held",
+                                    d.x ? "x and " : "")
+                      : "relative change " + text;
+}
+
+/// The finding that is farthest from the baseline in this; null if none is.
+template <class F>
+const Finding* farthest(const Sheet& sheet, F&& size) {
   const Finding* most = nullptr;
   for (const auto& f : sheet.findings)
-    if (f.distance && f.distance->size > 0 &&
-        (most == nullptr || f.distance->size > most->distance->size))
+    if (f.distance && size(*f.distance) > 0 &&
+        (most == nullptr || size(*f.distance) > size(*most->distance)))
       most = &f;
   return most;
 }
 
 nlohmann::json to_json(const std::optional<Distance>& d) {
   if (!d) return nullptr;
-  return {{"size", d->size}, {"of", d->of}};
+  return {{"x", d->x ? nlohmann::json(*d->x) : nlohmann::json(nullptr)},
+          {"loss", d->loss},
+          {"of_loss", d->which}};
 }
 
 }  // namespace
@@ -144,9 +154,18 @@ std::string undecided_text(const Sheet& sheet) {
 }
 
 std::string largest_text(const Sheet& sheet) {
-  const Finding* f = farthest(sheet);
-  return f == nullptr ? ""
-                      : fmt::format("{} of {}", text_of(*f->distance), f->name);
+  const auto* x =
+      farthest(sheet, [](const Distance& d) { return d.x.value_or(0); });
+  const auto* loss = farthest(sheet, [](const Distance& d) { return d.loss; });
+  std::string text;
+  if (x != nullptr)
+    text = fmt::format("{:.1e} in x of {}", *x->distance->x, x->name);
+  if (loss != nullptr)
+    text += fmt::format("{}{} of {}",
+                        text.empty() ? "" : ", ",
+                        loss_text(*loss->distance),
+                        loss->name);
+  return text.empty() ? "" : "largest relative change " + text;
 }
 
 std::string terminal_text(const Sheet& sheet) {

@@ -12,6 +12,7 @@
 
 #include "suite/core/hash.h"
 #include "suite/core/median.h"
+#include "suite/core/rng.h"
 #include "suite/gate/digits.h"
 #include "suite/results/checksum.h"
 
@@ -157,14 +158,15 @@ std::string packed(const StatusCounts& counts) {
   return text;
 }
 
-/// As exact as a double can say it, whatever cancels.
-double sum_of(const Batch<double>& x) {
+/// Weights of variance 1: the sum of a difference is about as large as its
+/// norm. As exact as a double can say it, whatever cancels.
+double projection_of(const Batch<double>& x) {
+  Stream weights = Rng::root("gate/projection", 0).stream();
+  const double range = std::sqrt(3.0);
   long double sum = 0;
-  for (Index i = 0; i < x.size(); ++i) {
-    const double v = x.data()[i];
-    if (!std::isfinite(v)) continue;
-    const std::uint64_t place = static_cast<std::uint64_t>(i) + 1;
-    sum += (place * 0x9e3779b97f4a7c15) >> 63 == 0 ? v : -v;
+  for (const double v : x.reshaped()) {
+    const long double weight = weights.uniform(-range, range);
+    if (std::isfinite(v)) sum += weight * v;
   }
   return static_cast<double>(sum);
 }
@@ -194,7 +196,7 @@ StageLine line_of(const StageRecord& r) {
                  .message = r.message,
                  .statuses = count(r.status),
                  .losses = losses_of(r.loss)};
-  if (has_result(r)) line.x = sum_of(r.x), line.x_norm = norm_of(r.x);
+  if (has_result(r)) line.x = projection_of(r.x), line.x_norm = norm_of(r.x);
   line.work = {static_cast<std::uint64_t>(r.iterations),
                r.counts[Counter::forward],
                r.counts[Counter::vjp],

@@ -40,8 +40,8 @@ struct StageLine {
   std::string message;  ///< why it failed; not part of the line
   StatusCounts statuses{};
   Losses losses;
-  /// Sum of the estimates, each with a sign that its place decides: tells how
-  /// far those of two runs are apart. Absent in lines of older versions.
+  /// Projection of the estimates on a random vector: that of two runs differs
+  /// by about the norm of their difference. Absent in lines of older versions.
   std::optional<double> x;
   double x_norm = 0;  ///< of the estimates; not part of the line
   int digits = 0;     ///< of the losses, that are stable; or kNoDigits

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <map>
 #include <utility>
 
@@ -54,22 +53,31 @@ void compare_ends(const StageLine& a,
                                b.losses.nonfinite));
 }
 
+/// They are of the finite ones: where one more or less is, the others' median
+/// and the worst of them say nothing.
 void compare_losses(const StageLine& a, const StageLine& b, Reasons& found) {
-  const auto compare = [&](const char* which, double before, double now) {
-    const double moved = log_distance(before, now);
-    if (!(std::abs(moved) > tolerance(a.digits))) return;
-    (moved > 0 ? found.worse : found.better)
-        .push_back(fmt::format("{} loss {:.{}e} -> {:.{}e} ({} stable digits)",
-                               which,
-                               before,
-                               std::clamp(a.digits, 1, 12),
-                               now,
-                               std::clamp(a.digits, 1, 12),
-                               a.digits));
-  };
-  compare("best", a.losses.best, b.losses.best);
-  compare("median", a.losses.median, b.losses.median);
-  compare("worst", a.losses.worst, b.losses.worst);
+  const bool same_examples = a.losses.nonfinite == b.losses.nonfinite;
+  const auto compare =
+      [&](const char* which, double before, double now, bool counts) {
+        const double moved = log_distance(before, now);
+        if (!(std::abs(moved) > tolerance(a.digits))) return;
+        const int shown = std::clamp(a.digits, 1, 12);
+        side(found,
+             !counts     ? Direction::other
+             : moved > 0 ? Direction::worse
+                         : Direction::better)
+            .push_back(fmt::format("{} loss {:.{}e} -> {:.{}e} ({} stable "
+                                   "digits)",
+                                   which,
+                                   before,
+                                   shown,
+                                   now,
+                                   shown,
+                                   a.digits));
+      };
+  compare("best", a.losses.best, b.losses.best, true);
+  compare("median", a.losses.median, b.losses.median, same_examples);
+  compare("worst", a.losses.worst, b.losses.worst, same_examples);
 }
 
 /// Do the costs of both compare? Who ended worse spent less.
@@ -110,25 +118,24 @@ double loss_change(double before, double now, int shown) {
   return std::abs(now - before) / std::max(std::abs(now), std::abs(before));
 }
 
-double estimate_change(const StageLine& before, const StageLine& now) {
-  if (!before.x || !now.x || *before.x == *now.x) return 0;
+std::optional<double> estimate_change(const StageLine& before,
+                                      const StageLine& now) {
+  if (!before.x || !now.x) return {};
+  if (*before.x == *now.x) return 0;
   return std::abs(*now.x - *before.x) /
          std::max(now.x_norm, std::abs(*before.x));
 }
 
 Distance distance(const StageLine& before, const StageLine& now) {
-  const int shown = shown_digits(before);
-  const auto& a = before.losses;
-  const auto& b = now.losses;
-  const Distance all[] = {
-      {estimate_change(before, now), "x"},
-      {loss_change(a.best, b.best, shown), "best loss"},
-      {loss_change(a.median, b.median, shown), "median loss"},
-      {loss_change(a.worst, b.worst, shown), "worst loss"}};
-  return *std::max_element(
-      std::begin(all), std::end(all), [](const auto& p, const auto& q) {
-        return p.size < q.size;
-      });
+  Distance d{.x = estimate_change(before, now)};
+  const auto look = [&](std::string_view which, double a, double b) {
+    const double change = loss_change(a, b, shown_digits(before));
+    if (change > d.loss) d.loss = change, d.which = which;
+  };
+  look("best", before.losses.best, now.losses.best);
+  look("median", before.losses.median, now.losses.median);
+  look("worst", before.losses.worst, now.losses.worst);
+  return d;
 }
 
 }  // namespace

@@ -33,19 +33,19 @@ struct Reasons {
   std::string text() const;
 };
 
-/// How far a stage is from the baseline's: the largest relative change of what
-/// its line tells. Estimates count as a whole, by their norm.
+/// How far a stage of other bits is from the baseline's, as relative changes of
+/// what its line tells; 0 where that is the same to the digits held.
 struct Distance {
-  double size = 0;
-  std::string_view of;  ///< "x", "best loss", ...
+  std::optional<double> x;  ///< of the estimates by their norm, if it tells
+  double loss = 0;          ///< the largest of the three
+  std::string_view which;   ///< "best", "median", "worst"
 };
 
 struct StageVerdict {
   std::string stage;
   Change change = Change::same;
   Reasons reasons;
-  /// Of other bits. Size 0: less than the line tells.
-  std::optional<Distance> distance;
+  std::optional<Distance> distance;  ///< if the bits are others
   StageLine before, now;
 };
 

@@ -20,6 +20,8 @@ Baseline example() {
   b.stages = {line("a/b/m/n=4/seed=0/fit"), line("a/b/m/n=4/seed=0/refine")};
   b.stages[1].losses = {std::nan(""), std::nan(""), std::nan(""), 4};
   b.stages[1].stop = Stop::diverged;
+  b.stages[1].digits = kNoDigits;
+  b.stages[0].x = -0.1;
   b.counts = {"callgrind x86-64-v3", {{"a/b/m/n=4/seed=0", 123456789}}};
   return b;
 }
@@ -36,6 +38,9 @@ TEST(Baseline, ReadsWhatItWrote) {
   EXPECT_EQ(read.stages[0].work, b.stages[0].work);
   EXPECT_EQ(read.stages[0].play, b.stages[0].play);
   EXPECT_EQ(read.stages[0].statuses, b.stages[0].statuses);
+  EXPECT_EQ(read.stages[0].x, b.stages[0].x);
+  EXPECT_FALSE(read.stages[1].x);
+  EXPECT_EQ(read.stages[1].digits, kNoDigits);
   EXPECT_EQ(read.stages[1].losses.nonfinite, 4);
   EXPECT_TRUE(std::isnan(read.stages[1].losses.median));
   EXPECT_EQ(read.counts.lines.at(0).instructions, 123456789u);

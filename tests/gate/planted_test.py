@@ -226,6 +226,8 @@ def clock(d):
     """Against itself nothing is slower; without time nothing is decided."""
     gate = ["gate", "--profile=kernel", "--against=" + BENCH]
     expect(8, [*gate, "--budget=0.000001", "--strict"], d, "inconclusive")
+    expect(0, [*gate, "--budget=0.000001"], d,
+           "warning: the clock decided 0 of 1 cases")
     expect(0, [*gate, "--budget=2", "--within=30"], d, "by the clock against")
     expect(9, [gate[0], "--profile=smoke", "--against=/bin/false"], d,
            "/bin/false ended with 1")

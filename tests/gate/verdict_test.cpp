@@ -56,6 +56,50 @@ TEST(Verdict, OneWorseThingOutweighsABetterOne) {
             Change::worse);
 }
 
+TEST(Verdict, ReasonsForAndAgainstAreApart) {
+  const auto j = changed(kDigits, [](StageLine& l) {
+    l.losses.median /= 10;
+    l.losses.worst *= 10;
+  });
+  EXPECT_EQ(j.reasons.worse.size(), 1u);
+  EXPECT_EQ(j.reasons.better.size(), 1u);
+  const std::string text = j.reasons.text();
+  EXPECT_EQ(text.find("worse: worst loss"), 0u) << text;
+  EXPECT_NE(text.find("; better: median loss"), std::string::npos) << text;
+  const auto json = to_json(Sheet{{}, {finding_of(j)}}).at("findings").at(0);
+  EXPECT_EQ(json.at("worse").size(), 1u);
+  EXPECT_EQ(json.at("better").size(), 1u);
+}
+
+TEST(Verdict, TheSizeOfAChangeIsNamed) {
+  StageLine before = line("c/s"), now = before;
+  before.x = 3.0;
+  now.x = 3.0 * (1 + 3e-16), now.x_norm = 2.0;
+  now.results = "0";
+  const auto said = [&](const StageLine& stage) {
+    return largest_text(Sheet{{}, {finding_of(judge(before, stage, kBits))}});
+  };
+  EXPECT_EQ(said(now), "largest relative change 3.0e-16 in x of c/s");
+  now.losses.worst *= 1.5;
+  EXPECT_NE(said(now).find("3.3e-01 in the worst loss"), std::string::npos);
+  now = before, now.results = "0";
+  now.losses.worst *= 1 + 1e-9;  // beyond the four digits of the line
+  EXPECT_EQ(said(now), "");
+  EXPECT_NE(finding_of(judge(before, now, kBits)).detail.find("to the digits"),
+            std::string::npos);
+}
+
+TEST(Verdict, WhoFailsSavesNoWork) {
+  StageLine failed = line("c/s");
+  failed.stop = Stop::failed;
+  failed.results = "0";
+  failed.work = {};
+  const auto worse = judge(line("c/s"), failed, kBits);
+  EXPECT_EQ(worse.change, Change::worse);
+  EXPECT_TRUE(worse.reasons.better.empty());
+  EXPECT_EQ(judge(failed, line("c/s"), kBits).change, Change::better);
+}
+
 TEST(Verdict, ChangesOfEndsAreNamed) {
   const auto j =
       changed(kDigits, [](StageLine& l) { l.stop = Stop::diverged; });
@@ -80,6 +124,13 @@ TEST(Verdict, ALossThatIsNotFiniteIsWorse) {
     EXPECT_EQ(
         changed(rules, [](StageLine& l) { l.losses.nonfinite = 1; }).change,
         Change::worse);
+  StageLine before = line("c/s"), now = before;
+  before.losses.nonfinite = 1;
+  now.results = "0";
+  now.losses.worst *= 10;  // of one more
+  EXPECT_EQ(judge(before, now, kBits).change, Change::better);
+  now.losses.best *= 10;
+  EXPECT_EQ(judge(before, now, kBits).change, Change::worse);
 }
 
 TEST(Verdict, WorkMustNotGrow) {
@@ -116,6 +167,19 @@ TEST(Instructions, OnePercentIsTheLimit) {
   EXPECT_EQ(judge({"c", 100000}, {"c", 100999}).code, ExitCode::good);
   EXPECT_EQ(judge({"c", 100000}, {"c", 101001}).code, ExitCode::slower);
   EXPECT_EQ(judge({"c", 100000}, {"c", 90000}).verdict, "faster");
+}
+
+TEST(Sheet, AClockThatDecidesNothingIsLoud) {
+  Sheet sheet;
+  EXPECT_EQ(undecided_text(sheet), "");
+  sheet.findings = {{.kind = "clock", .name = "c", .verdict = "inconclusive"}};
+  EXPECT_EQ(undecided_text(sheet).find("the clock decided 0 of 1 cases"), 0u);
+  EXPECT_NE(terminal_text(sheet).find("warning: the clock"), std::string::npos);
+  EXPECT_EQ(annotations(sheet).find("::warning title="), 0u);
+  EXPECT_NE(markdown_text(sheet).find("passed, the clock decided nothing"),
+            std::string::npos);
+  sheet.findings.push_back({.kind = "clock", .name = "d", .verdict = "equal"});
+  EXPECT_EQ(undecided_text(sheet), "");
 }
 
 TEST(Sheet, TheGravestCodeCounts) {

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <thread>
 
+#include "suite/core/clock.h"
 #include "suite/core/oracle.h"
 #include "suite/core/probe.h"
 #include "suite/core/threads.h"
@@ -139,6 +140,22 @@ class Base : public Stage {
   Needs needs_;
 };
 
+/// On a core for so long.
+void burn(double seconds) {
+  const double end = physinv::now().cpu + seconds;
+  while (physinv::now().cpu < end) {
+  }
+}
+
+/// Estimates that the defect asked for makes others.
+void spoil(Batch<double>& x) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  if (planted("NaN in a loss")) x(0, 0) = kNaN;
+  if (planted("no finite loss")) x.setConstant(kNaN);
+  if (planted("larger losses")) x.array() += 3;
+  if (planted("an ulp in x")) x.array() *= 1 + 2e-16;
+}
+
 /// Gradient descent in double from the start, or from the stage before, or from
 /// where it was.
 class Descend final : public Base {
@@ -161,6 +178,7 @@ class Descend final : public Base {
         keep(*last);
       }
     }
+    if (planted("an exception")) throw std::runtime_error("planted");
     run.probe.begin_warmup();
     if (planted("more work"))
       run.oracle.evaluate<double>(run.oracle.all(), x, loss, gradient);
@@ -176,15 +194,18 @@ class Descend final : public Base {
         run.checkpoint->lay_down(run.probe.iteration(), archive);
       }
       nap(pace());
+      if (planted("slower")) burn(0.001);
     }
-    if (planted("NaN in a loss"))
-      x(0, 0) = std::numeric_limits<double>::quiet_NaN();
-    return {.x = x,
-            .status = {},
-            .iterations = {},
-            .evaluations = {},
-            .message = {},
-            .arrays = {{"gradient", gradient}}};
+    spoil(x);
+    return {
+        .x = x,
+        .status =
+            std::vector(planted("gtol") ? run.oracle.count() : 0, Status::gtol),
+        .iterations = {},
+        .evaluations = {},
+        .stop = planted("it converges") ? Stop::converged : Stop::iterations,
+        .message = {},
+        .arrays = {{"gradient", gradient}}};
   }
 
  private:

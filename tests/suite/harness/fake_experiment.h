@@ -14,7 +14,8 @@ namespace physinv::fake {
 ///
 /// PHYSINV_FAKE_PLANT names one defect to have: "ulp in the data", "ulp in a
 /// constant", "more work", "NaN in a loss", "a case removed", "a kernel slower
-/// by 10 %".
+/// by 10 %"; of descend and refine alone "larger losses", "an ulp in x", "no
+/// finite loss", "an exception", "it converges", "gtol", "slower".
 Experiment experiment();
 
 }  // namespace physinv::fake
