@@ -19,6 +19,28 @@ Cell number(double value, const char* format) {
              : Cell{.text = "not finite"};
 }
 
+/// Up to `most` characters of UTF-8: the beginning, and as much of the end.
+std::string shortened(const std::string& text, std::size_t most) {
+  std::vector<std::size_t> starts;
+  for (std::size_t i = 0; i < text.size(); ++i)
+    if ((static_cast<unsigned char>(text[i]) & 0xc0) != 0x80)
+      starts.push_back(i);
+  if (starts.size() <= most) return text;
+  const std::size_t half = (most - 1) / 2;
+  return text.substr(0, starts[half]) + "…" +
+         text.substr(starts[starts.size() - half]);
+}
+
+/// Labels are folders as they were typed: no column is as wide as a path,
+/// unless that is what tells two of them apart.
+std::vector<std::string> heads_of(const std::vector<std::string>& labels) {
+  std::vector<std::string> heads;
+  for (const auto& label : labels) heads.push_back(shortened(label, 24));
+  const std::set<std::string> different(heads.begin(), heads.end());
+  const std::set<std::string> wanted(labels.begin(), labels.end());
+  return different.size() == wanted.size() ? heads : labels;
+}
+
 /// As a factor, with every digit for programs.
 std::string factor_text(double r) {
   return r == 1 ? "="
@@ -154,7 +176,7 @@ Table per_side(const Comparison& c,
               .unit = unit,
               .digits = 3,
               .corner = "stage",
-              .columns = c.labels};
+              .columns = heads_of(c.labels)};
   for (const Compared& row : c.rows) {
     table.rows.push_back({row.id.text(), {}});
     add_sides(table.rows.back(), row, cell);
@@ -217,12 +239,13 @@ Table changes_table(const Comparison& c, std::size_t most) {
   std::vector<const char*> heads = {
       "loss", "time", "simulations", "passes", "end", "bits"};
   if (groups) heads.insert(heads.end(), {"wins", "worst pair"});
-  for (const auto& label : c.labels) table.columns.push_back("loss " + label);
-  for (std::size_t s = 1; s < c.labels.size(); ++s)
+  const auto labels = heads_of(c.labels);
+  for (const auto& label : labels) table.columns.push_back("loss " + label);
+  for (std::size_t s = 1; s < labels.size(); ++s)
     for (const char* what : heads)
-      table.columns.push_back(c.labels.size() == 2
+      table.columns.push_back(labels.size() == 2
                                   ? std::string(what)
-                                  : fmt::format("{} {}", what, c.labels[s]));
+                                  : fmt::format("{} {}", what, labels[s]));
   for (const Compared& row : c.rows) {
     if (table.rows.size() == most) break;
     TableRow out{row.id.text(), {}};
@@ -272,13 +295,13 @@ Table claims_table(const std::vector<ChangedClaim>& changed,
   Table table{.id = "claims",
               .title = "Claims whose verdict changed",
               .corner = "claim",
-              .columns = labels};
+              .columns = heads_of(labels)};
   for (const ChangedClaim& c : changed) {
     TableRow row;
     for (const auto& side : c.sides)
       if (side && row.label.empty())
-        row.label =
-            fmt::format("{} {}: {}", c.experiment, side->id, side->says);
+        row.label = fmt::format(
+            "{} {}: {}", c.experiment, side->id, shortened(side->says, 60));
     for (std::size_t s = 0; s < c.sides.size(); ++s)
       row.cells.push_back({.text = word(c.sides[s].value_or(ClaimResult{}))});
     table.rows.push_back(std::move(row));

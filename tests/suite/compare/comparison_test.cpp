@@ -222,6 +222,20 @@ TEST(Compare, ClaimsGetWorseInOneDirection) {
   EXPECT_FALSE(worse(not_judged, reproduced));
 }
 
+TEST(Compare, NoColumnIsAsWideAsAPath) {
+  const std::string long_path(200, 'p');
+  auto sides = planted();
+  sides[1].label = long_path + "/é";
+  const auto head = [&] {
+    return changes_table(compare(sides, By::seed), 1).columns[1];
+  };
+  EXPECT_LT(head().size(), 40U);
+  EXPECT_NE(head().find("…"), std::string::npos);
+  EXPECT_TRUE(head().ends_with("p/é"));
+  sides[0].label = long_path + "p/é";  // the same when shortened
+  EXPECT_EQ(head(), "loss " + sides[1].label);
+}
+
 TEST(Compare, SidesOfRevisions) {
   auto old = stage_with("solve", 1, 1), now = stage_with("solve", 2, 1);
   old.revision = "abc", now.revision = "def";
