@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "suite/core/hash.h"
-#include "suite/core/median.h"
 #include "suite/core/rng.h"
 #include "suite/gate/digits.h"
 #include "suite/results/checksum.h"
