@@ -2,9 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
-#include <condition_variable>
 #include <cstdint>
+#include <ctime>
 #include <exception>
 #include <mutex>
 #include <system_error>
@@ -16,24 +17,57 @@
 namespace physinv {
 namespace {
 
-/// Rounds of spinning before a waiting thread sleeps: a step of a small
-/// network is shorter than a wake-up.
-constexpr int kSpins = 20000;
+/// Seconds that a thread stays awake for at most: about what it takes to wake
+/// one that sleeps.
+constexpr double kLongest = 100e-6, kShortest = 1e-6;
+
+double seconds_now() {
+  timespec t{};
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+/// Waits until a number changes: briefly awake, then asleep (a futex). To stay
+/// awake is worth it where that is sooner than a wake-up, as between the steps
+/// of a small network. On a core that others share it only keeps them, and who
+/// is waited for, from going on. How long the last waits were decides.
+class Waiting {
+ public:
+  template <class T>
+  void until_not(const std::atomic<T>& number, T old) {
+    const double begin = seconds_now();
+    do {
+      for (int i = 0; i < 32; ++i) {
+        if (number.load(std::memory_order_acquire) != old) return;
+        __builtin_ia32_pause();
+      }
+    } while (seconds_now() - begin < awake_);
+    number.wait(old, std::memory_order_acquire);
+    const bool brief = seconds_now() - begin < 2 * kLongest;
+    awake_ = std::clamp(brief ? 2 * awake_ : awake_ / 2, kShortest, kLongest);
+  }
+
+ private:
+  double awake_ = kLongest;  ///< seconds
+};
 
 }  // namespace
 
 struct Threads::Pool {
+  /// Nobody else comes in; below it, how many workers are inside.
+  static constexpr int kClosed = 1 << 30;
+
   std::vector<std::thread> workers;
-  std::mutex mutex;
-  std::condition_variable wake;
-  std::atomic<std::uint64_t> generation{0};
+  std::atomic<int> generation{0};  // one more for every run
+  std::atomic<int> inside{kClosed};
   std::atomic<bool> stop{false};
   std::atomic<Index> next{0};
-  std::atomic<int> running{0};
   Index blocks = 0;
   Call call = nullptr;
   void* body = nullptr;
+  std::mutex mutex;
   std::exception_ptr error;
+  Waiting waiting;  // of the one who runs
 
   ~Pool() {
     stop = true;
@@ -59,27 +93,40 @@ struct Threads::Pool {
   }
 
   void loop(int thread) {
-    for (std::uint64_t seen = 0;;) {
-      for (int i = 0; i < kSpins && generation.load() == seen; ++i) {
-        __builtin_ia32_pause();
-      }
-      if (generation.load() == seen) {
-        std::unique_lock lock(mutex);
-        wake.wait(lock, [&] { return generation.load() != seen; });
-      }
+    Waiting own;
+    for (int seen = 0;;) {
+      own.until_not(generation, seen);
       seen = generation.load();
       if (stop.load()) return;
+      if (!enter()) continue;
       work(thread);
-      running.fetch_sub(1);
+      if (inside.fetch_sub(1) - 1 == kClosed) inside.notify_one();
     }
   }
 
+  /// Who comes too late is not waited for.
+  bool enter() {
+    int now = inside.load();
+    while ((now & kClosed) == 0)
+      if (inside.compare_exchange_weak(now, now + 1)) return true;
+    return false;
+  }
+
+  void open() {
+    next = 0;
+    inside = 0;
+    start_generation();
+  }
+
+  void close() {
+    int left = inside.fetch_or(kClosed) | kClosed;
+    for (; left != kClosed; left = inside.load())
+      waiting.until_not(inside, left);
+  }
+
   void start_generation() {
-    {
-      const std::lock_guard lock(mutex);
-      generation.fetch_add(1);
-    }
-    wake.notify_all();
+    generation.fetch_add(1);
+    generation.notify_all();
   }
 };
 
@@ -106,11 +153,9 @@ void Threads::run(Index blocks, Call call, void* body) {
   }
   Pool& p = *pool_;
   p.blocks = blocks, p.call = call, p.body = body, p.error = nullptr;
-  p.next = 0;
-  p.running = count_ - 1;
-  p.start_generation();
+  p.open();
   p.work(0);
-  while (p.running.load() > 0) __builtin_ia32_pause();
+  p.close();
   if (p.error) std::rethrow_exception(p.error);
 }
 

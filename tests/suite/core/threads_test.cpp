@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <ctime>
 #include <stdexcept>
 #include <thread>
 #include <vector>
@@ -91,6 +92,21 @@ TEST_P(ThreadsTest, ForBlocksIsTheSameLoop) {
     for (std::size_t b = 0; b < out.size(); ++b)
       EXPECT_EQ(out[b], static_cast<double>(b * b));
   }
+}
+
+double cpu_seconds() {
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+TEST_P(ThreadsTest, WhoWaitsIsAsleep) {
+  Threads threads(GetParam());
+  const double begin = cpu_seconds();
+  // The caller has nothing left to do long before the others have.
+  threads.run(GetParam(), [](Index, int thread) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(thread ? 300 : 30));
+  });
+  std::this_thread::sleep_for(std::chrono::milliseconds(30));
+  EXPECT_LT(cpu_seconds() - begin, 0.1);
 }
 
 INSTANTIATE_TEST_SUITE_P(Counts, ThreadsTest, testing::Values(1, 2, 3, 7));
