@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "reports/digest.h"
@@ -103,6 +104,20 @@ std::vector<Section> sections_of(const Results& results,
   return sections;
 }
 
+/// CPU of all stages and, of that, what went to curves, metrics and final
+/// losses. Writing them down is no part of it.
+void add_cpu(const Results& results, nlohmann::ordered_json& picked) {
+  double stages = 0, evaluation = 0;
+  for (const CaseRecord& c : results.cases()) {
+    for (const StageRecord& s : c.stages) {
+      stages += s.clocks.total().cpu;
+      evaluation += s.clocks.measure.cpu;
+    }
+  }
+  picked["stages_cpu_ms"] = std::round(1e3 * stages);
+  picked["evaluation_ms"] = std::round(1e3 * evaluation);
+}
+
 /// Context of the campaign as far as a report states it.
 nlohmann::ordered_json provenance(const Loaded& loaded) {
   const auto& plan = loaded.catalog.plan;
@@ -126,6 +141,7 @@ nlohmann::ordered_json provenance(const Loaded& loaded) {
                           "options"}) {
     if (context.contains(key)) picked[key] = context[key];
   }
+  add_cpu(loaded.results, picked);
   return picked;
 }
 

@@ -158,17 +158,25 @@ std::string left_out_text(const std::vector<std::string>& names) {
 }
 
 std::string result_text(const RunFlags& flags, const CampaignResult& r) {
+  const double cpu = r.bookkeeping + r.data_cpu + r.stage_cpu;
+  const auto share = [&](double of) {
+    return r.stage_cpu > 0 ? fmt::format(" ({:.2f} % of CPU)", 100 * of / cpu)
+                           : "";
+  };
   std::string text = fmt::format(
-      "{} stages run, {} reused{}; {}, bookkeeping {}{}\n",
+      "{} stages run, {} reused{}; {}, data {}{}, evaluation {}{}, "
+      "bookkeeping {}{}, waiting for the disk {}\n",
       r.stages_run,
       r.stages_reused,
       r.origins.empty() ? "" : " (" + to_text(r.origins) + ")",
       duration_text(r.seconds),
+      duration_text(r.data_cpu),
+      share(r.data_cpu),
+      duration_text(r.evaluation),
+      share(r.evaluation),
       duration_text(r.bookkeeping),
-      r.stage_cpu > 0
-          ? fmt::format(" ({:.2f} % of CPU)",
-                        100 * r.bookkeeping / (r.bookkeeping + r.stage_cpu))
-          : "");
+      share(r.bookkeeping),
+      duration_text(r.waiting));
   if (!r.not_run.empty())
     text += fmt::format("{}: {} cases not run:\n{}",
                         r.interrupted ? "interrupted" : "out of time",

@@ -26,6 +26,9 @@ constexpr auto kNobody = std::numeric_limits<std::size_t>::max();
 /// How long a signal to stop waits for stages to lay their state down.
 constexpr double kPatience = 3;
 
+/// How long a finished stage waits at most for others to go to the disk with.
+constexpr double kCommitSeconds = 2;
+
 /// How often a case is started whose worker is killed.
 constexpr int kTries = 3;
 
@@ -62,6 +65,7 @@ class Campaign {
         revision_(git_revision()),
         store_(options.out, {.break_lock = options.break_lock}),
         progress_(screen, cases_, options.jobs) {
+    result_.data_cpu = prepared.data_cpu;
     context_ = machine_context(revision_);
     context_["options"] = options_json;
     for (const Case& c : cases_) names_.insert(c.info.name);
@@ -72,7 +76,12 @@ class Campaign {
     plan();
     if (!store_.warning().empty()) progress_.say(store_.warning());
     say_reused();
-    if (!queue_.empty() && stop_signals() == 0) work();
+    try {
+      if (!queue_.empty() && stop_signals() == 0) work();
+    } catch (...) {
+      store_.commit();  // what has finished is kept
+      throw;
+    }
     progress_.clear();
     result_.interrupted = stop_signals() != 0;
     for (const std::size_t i : queue_)
@@ -143,7 +152,7 @@ class Campaign {
         progress_.reused(i, static_cast<Index>(k));
         if (record.case_name != cases_[i].info.name) {
           record.case_name = cases_[i].info.name;
-          store_.append(cases_[i].info, data_[i], record);
+          store_.add(cases_[i].info, data_[i], record);
         }
       }
     }
@@ -174,6 +183,9 @@ class Campaign {
     while (stop_signals() == 0) {
       hand_out(workers);
       if (running_.empty()) break;
+      // Workers are at work meanwhile.
+      if (store_.is_due(std::min(kCommitSeconds, options_.checkpoint_seconds)))
+        store_.commit();
       for (auto& event : workers.wait(0.1)) handle(event);
       progress_.draw();
     }
@@ -278,11 +290,12 @@ class Campaign {
   }
 
   void keep(std::size_t i, const StageRecord& record) {
-    store_.append(cases_[i].info, data_[i], record);
+    store_.add(cases_[i].info, data_[i], record);
     counted_.insert({i, static_cast<std::size_t>(record.position)});
     ++result_.stages_run;
     note_end(i, record);
     result_.stage_cpu += record.clocks.total().cpu;
+    result_.evaluation += record.clocks.measure.cpu;
     if (record.stop == Stop::failed)
       result_.failed.push_back(fmt::format(
           "{} {}: {}", record.case_name, record.stage, record.message));
@@ -334,18 +347,28 @@ class Campaign {
   }
 
   void finish() {
-    // What this process does is bookkeeping; waiting, also for the disk, costs
-    // the workers nothing.
-    result_.bookkeeping = now().cpu + overhead_;
+    store_.commit();
+    note_bookkeeping();
     context_["bookkeeping_ms"] = 1e3 * result_.bookkeeping;
+    context_["data_ms"] = 1e3 * result_.data_cpu;
+    context_["waiting_ms"] = 1e3 * result_.waiting;
+    context_["evaluation_ms"] = 1e3 * result_.evaluation;
     context_["stages_cpu_ms"] = 1e3 * result_.stage_cpu;
     context_["wall_ms"] = 1e3 * (now().wall - begin_);
     context_["stages_run"] = result_.stages_run;
     context_["stages_reused"] = result_.stages_reused;
     store_.set_context(context_);
     result_.cases = store_.finish();
-    result_.bookkeeping = now().cpu + overhead_;
+    note_bookkeeping();
     result_.seconds = now().wall - begin_;
+  }
+
+  /// What this process does beside drawing data is bookkeeping. Waiting for the
+  /// disk costs no CPU, and the workers nothing unless they have nothing to do.
+  void note_bookkeeping() {
+    const Seconds commits = store_.commit_time();
+    result_.bookkeeping = now().cpu - result_.data_cpu + overhead_;
+    result_.waiting = commits.wall - commits.cpu;
   }
 
   double begin_;
@@ -387,6 +410,7 @@ Prepared prepare(std::vector<Case> cases, bool disturb) {
         disturb ? std::optional(working_precision(c)) : std::nullopt;
     const auto id = std::tuple(info.experiment, info.n, info.seed, ulp);
     disturb_data(ulp);
+    const double begin = now().cpu;
     try {
       auto at = drawn.find(id);
       if (at == drawn.end()) at = drawn.emplace(id, draw_data(c)).first;
@@ -394,6 +418,7 @@ Prepared prepare(std::vector<Case> cases, bool disturb) {
     } catch (const std::exception& e) {
       error = e.what();
     }
+    p.data_cpu += now().cpu - begin;
     c.info.keys = content_keys(c, data.hash, numerics);
     p.data.push_back(std::move(data));
     p.errors.push_back(std::move(error));

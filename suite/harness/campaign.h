@@ -50,6 +50,7 @@ struct Prepared {
   std::vector<Case> cases;
   std::vector<CaseData> data;
   std::vector<std::string> errors;  ///< why data could not be drawn, or empty
+  double data_cpu = 0;              ///< CPU seconds of drawing them
 };
 Prepared prepare(std::vector<Case> cases, bool disturb = false);
 
@@ -64,13 +65,18 @@ struct CampaignResult {
   Origins origins;
   std::vector<CaseRecord> cases;  ///< all of the store, without curves
   bool interrupted = false;
-  double seconds = 0;      ///< wall, all of it
-  double stage_cpu = 0;    ///< CPU seconds in stages
-  double bookkeeping = 0;  ///< CPU seconds of all processes outside of stages
+  double seconds = 0;    ///< wall, all of it
+  double data_cpu = 0;   ///< CPU seconds of drawing the cases' data
+  double stage_cpu = 0;  ///< CPU seconds in stages
+  /// Of these, for curves, metrics and final losses: what methods do not do.
+  double evaluation = 0;
+  double bookkeeping = 0;  ///< CPU seconds of all processes for all else
+  double waiting = 0;      ///< wall seconds for the disk, without CPU
 };
 
-/// Runs what the store does not hold. Only this process writes to it; each
-/// finished stage is durable before the next is looked at. SIGINT and SIGTERM
+/// Runs what the store does not hold. Only this process writes to it; finished
+/// stages go to the disk together, every two seconds (or as often as stages
+/// under way lay their state down, if that is more often). SIGINT and SIGTERM
 /// end the campaign with what has finished; stages under way that can lay their
 /// state down. A case whose worker is killed from outside is tried again.
 /// `options_json` enters the context.

@@ -230,10 +230,13 @@ void CaseFile::read_stage(StageRecord& r, const std::string& hash) const {
   });
 }
 
+std::string CaseFile::bytes() const {
+  std::string all = named([&] { return hdf5::image(file_); });
+  return all += fmt::format("{}{:08x}", kTrailer, crc32c(all));
+}
+
 void CaseFile::save(const Folder& folder) const {
-  std::string bytes = named([&] { return hdf5::image(file_); });
-  bytes += fmt::format("{}{:08x}", kTrailer, crc32c(bytes));
-  folder.write(case_file_name(case_name_), bytes);
+  folder.write(case_file_name(case_name_), bytes());
 }
 
 }  // namespace physinv

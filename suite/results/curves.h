@@ -51,6 +51,8 @@ class CaseFile {
   /// Fills in the arrays of a record; StoreError if they lack the hash.
   void read_stage(StageRecord& record, const std::string& hash) const;
 
+  /// The whole file, as it stands on disk.
+  std::string bytes() const;
   void save(const Folder& folder) const;
 
  private:

@@ -133,31 +133,77 @@ std::string Folder::read(const std::string& name, std::uint64_t limit) const {
   return read_all(open(name, O_RDONLY, "read"), path_ / name, limit);
 }
 
-void Folder::write(const std::string& name, std::string_view bytes) const {
+std::pair<std::string, FileDescriptor> Folder::write_aside(
+    const std::string& name, std::string_view bytes) const {
   const fs::path path = path_ / name;
   if (const mode_t mode = mode_at(fd_.get(), name); mode != 0 && !S_ISREG(mode))
     fail_kind("write", path, mode);
-  const std::string aside = new_name(kEnd);
-  const auto fd = [&] {
-    FileDescriptor made(::openat(
-        fd_.get(), aside.c_str(), O_WRONLY | O_CREAT | O_EXCL | kLook, 0644));
-    if (made.get() < 0) fail_file("write", path, errno);
-    return made;
-  }();
+  std::string aside = new_name(kEnd);
+  FileDescriptor fd(::openat(
+      fd_.get(), aside.c_str(), O_WRONLY | O_CREAT | O_EXCL | kLook, 0644));
+  if (fd.get() < 0) fail_file("write", path, errno);
   try {
     write_all(fd, bytes, path);
-    sync(fd, path);
-    if (::renameat(fd_.get(), aside.c_str(), fd_.get(), name.c_str()) < 0)
-      fail_file("write", path, errno);
   } catch (...) {
-    ::unlinkat(fd_.get(), aside.c_str(), 0);
+    drop(aside);
     throw;
   }
+  return {std::move(aside), std::move(fd)};
+}
+
+void Folder::drop(const std::string& aside) const noexcept {
+  ::unlinkat(fd_.get(), aside.c_str(), 0);
+}
+
+void Folder::put_in_place(const std::string& aside,
+                          const std::string& name) const {
+  if (::renameat(fd_.get(), aside.c_str(), fd_.get(), name.c_str()) < 0)
+    fail_file("write", path_ / name, errno);
+}
+
+void Folder::sync_names() const {
   // Some network file systems cannot sync directories and say EINVAL.
   while (::fsync(fd_.get()) < 0) {
     if (errno == EINVAL) break;
     if (errno != EINTR) fail_file("write", path_, errno);
   }
+}
+
+void Folder::write(const std::string& name, std::string_view bytes) const {
+  const auto [aside, fd] = write_aside(name, bytes);
+  try {
+    sync(fd, path_ / name);
+    put_in_place(aside, name);
+  } catch (...) {
+    drop(aside);
+    throw;
+  }
+  sync_names();
+}
+
+FileGroup::~FileGroup() {
+  for (const auto& [aside, name] : files_) folder_.drop(aside);
+}
+
+void FileGroup::add(const std::string& name, std::string_view bytes) {
+  files_.emplace_back(folder_.write_aside(name, bytes).first, name);
+}
+
+void FileGroup::sync_contents() const {
+  // A file system at once takes as long as one of its files.
+  if (files_.size() > 1 && ::syncfs(folder_.fd_.get()) == 0) return;
+  for (const auto& [aside, name] : files_)
+    sync(folder_.open(aside, O_WRONLY, "write"), folder_.path() / name);
+}
+
+void FileGroup::put_in_place() {
+  if (files_.empty()) return;
+  sync_contents();
+  while (!files_.empty()) {
+    folder_.put_in_place(files_.back().first, files_.back().second);
+    files_.pop_back();
+  }
+  folder_.sync_names();
 }
 
 bool Folder::create(const std::string& name, std::string_view bytes) const {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "suite/results/file.h"
@@ -53,8 +54,38 @@ class Folder {
   void remove_leftovers() const;
 
  private:
+  friend class FileGroup;
+  /// A new file beside `name`, which it may replace: its name, and itself open.
+  std::pair<std::string, FileDescriptor> write_aside(
+      const std::string& name, std::string_view bytes) const;
+  void put_in_place(const std::string& aside, const std::string& name) const;
+  void drop(const std::string& aside) const noexcept;
+  void sync_names() const;
+
   FileDescriptor fd_;
   std::filesystem::path path_;
+};
+
+/// Files of a folder that are replaced together: each holds either the old
+/// bytes or the new, and all of them are on disk for the price of one.
+class FileGroup {
+ public:
+  explicit FileGroup(const Folder& folder) : folder_(folder) {}
+  /// What was not put in place goes.
+  ~FileGroup();
+  FileGroup(const FileGroup&) = delete;
+  FileGroup& operator=(const FileGroup&) = delete;
+
+  /// Writes aside. Replaces regular files only.
+  void add(const std::string& name, std::string_view bytes);
+  /// One sync for all contents, one for all names.
+  void put_in_place();
+
+ private:
+  void sync_contents() const;
+
+  const Folder& folder_;
+  std::vector<std::pair<std::string, std::string>> files_;  ///< aside, name
 };
 
 /// A name that `Folder` gives to files aside, or to new folders.

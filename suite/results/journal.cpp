@@ -257,11 +257,12 @@ void Journal::require_there() const {
         path_.string()));
 }
 
-void Journal::append(const JournalEntry& entry) {
+void Journal::append(std::span<const JournalEntry> entries) {
   require_there();
-  const std::string line = to_line(to_json(entry));
+  std::string lines;
+  for (const JournalEntry& entry : entries) lines += to_line(to_json(entry));
   try {
-    write_all(fd_, line, path_);
+    write_all(fd_, lines, path_);
     sync(fd_, path_);
   } catch (...) {
     // If this fails as well, the next reader sees a torn line.
@@ -269,7 +270,7 @@ void Journal::append(const JournalEntry& entry) {
         ::ftruncate(fd_.get(), static_cast<off_t>(size_));
     throw;
   }
-  size_ += line.size();
+  size_ += lines.size();
 }
 
 }  // namespace physinv

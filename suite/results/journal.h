@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -59,8 +60,9 @@ class Journal {
   static Journal resume(const std::filesystem::path& path,
                         const JournalText& text);
 
-  /// The line is on disk when it returns; if it throws, it is not there.
-  void append(const JournalEntry& entry);
+  /// The lines are on disk when it returns; if it throws, none is there.
+  void append(std::span<const JournalEntry> entries);
+  void append(const JournalEntry& entry) { append({&entry, 1}); }
   /// StoreError if somebody removed the journal, or put another in its place.
   void require_there() const;
 

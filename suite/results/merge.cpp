@@ -13,6 +13,8 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
+constexpr double kCommitSeconds = 2;
+
 using Origins = std::map<std::pair<std::string, Index>, fs::path>;
 
 std::vector<Catalog> read_shards(const std::vector<fs::path>& paths) {
@@ -160,7 +162,7 @@ void merge_case(Store& store,
             name));
       if (first) continue;
     }
-    store.append(c.info, c.data, stage);
+    store.add(c.info, c.data, stage);
     origins[slot] = shard.directory();
   }
 }
@@ -188,9 +190,13 @@ Merged merge(const std::vector<fs::path>& paths,
                            shard.warnings().end());
   Origins origins;
   for (const std::string name : shards.front().plan.at("cases")) {
-    for (const auto& shard : shards)
-      if (shard.knows_case(name))
-        merge_case(store, shard, name, origins, merged.warnings);
+    std::size_t from = 0;
+    for (const auto& shard : shards) {
+      if (!shard.knows_case(name)) continue;
+      if (from++ > 0) store.commit();  // what is there is looked at
+      merge_case(store, shard, name, origins, merged.warnings);
+    }
+    if (store.is_due(kCommitSeconds)) store.commit();
   }
   merged.lacks = shortfall(store.catalog(), store.finish());
   return merged;

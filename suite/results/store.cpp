@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "suite/core/check.h"
 #include "suite/core/hash.h"
 #include "suite/results/names.h"
@@ -65,6 +68,27 @@ void check_cases(const std::vector<CaseInfo>& cases) {
   }
 }
 
+/// More is not kept in memory for a commit.
+constexpr std::size_t kMostWaiting = std::size_t{64} << 20;
+
+std::size_t bytes_of(const StageRecord& r) {
+  Index numbers = r.x.size() + r.curve.loss.size() + r.curve.x.size();
+  for (const auto& [name, array] : r.arrays) numbers += array.size();
+  return static_cast<std::size_t>(numbers) * sizeof(double);
+}
+
+bool by_case(const JournalEntry& a, const JournalEntry& b) {
+  return a.info.name < b.info.name;
+}
+
+/// Estimates, losses and statuses; the other arrays are in the case's file.
+void keep_what_results_need(StageRecord& r) {
+  r.example_iterations.resize(0);
+  r.example_evaluations.resize(0);
+  r.curve = {};
+  r.arrays.clear();
+}
+
 }  // namespace
 
 PassingStore::PassingStore(const fs::path& beside) {
@@ -114,6 +138,7 @@ bool Store::exists(const fs::path& directory) {
 }
 
 void Store::forget(const std::set<std::string>& names) {
+  commit();
   // The lines go first: a file that no line names counts for nothing.
   forget_cases(catalog_.journal_path(), names);
   for (const auto& name : names) {
@@ -125,41 +150,111 @@ void Store::forget(const std::set<std::string>& names) {
   if (folder_.has(kResults)) finish();
 }
 
+std::optional<StageRecord> Store::find(
+    const std::string& key, const std::set<std::string>* among) const {
+  auto found = catalog_.find(key, among);
+  for (const JournalEntry& e : waiting_) {
+    if (found && has_result(*found)) break;
+    const bool asked = e.stage.key == key &&
+                       (among == nullptr || among->contains(e.info.name));
+    if (asked && (!found || has_result(e.stage))) found = e.stage;
+  }
+  return found;
+}
+
+bool Store::has(const CaseInfo& info, const StageRecord& record) {
+  const bool waits =
+      std::any_of(waiting_.begin(), waiting_.end(), [&](const auto& e) {
+        return e.info.name == info.name && e.stage.key == record.key &&
+               e.stage.position == record.position && has_result(e.stage);
+      });
+  if (waits) return true;
+  const JournalEntry* old = catalog_.at(info.name, record.position);
+  return old != nullptr && old->stage.key == record.key &&
+         has_result(old->stage) &&
+         open_case(info.name).has_stage(old->stage, old->arrays_hash);
+}
+
+void Store::add(const CaseInfo& info,
+                const CaseData& data,
+                StageRecord record) {
+  SUITE_CHECK(record.case_name == info.name && is_key(record.key),
+              "a stage of another case, or without a content key");
+  if (has(info, record)) return;
+  if (waiting_.empty()) waiting_since_ = now().wall;
+  waiting_bytes_ += bytes_of(record);
+  if (CaseData& own = data_[info.name]; own.hash != data.hash) own = data;
+  std::string hash = hex64(arrays_hash(record));
+  waiting_.push_back({.info = info,
+                      .stage = std::move(record),
+                      .file = "cases/" + case_file_name(info.name),
+                      .data_hash = data.hash,
+                      .arrays_hash = std::move(hash)});
+}
+
 void Store::append(const CaseInfo& info,
                    const CaseData& data,
                    const StageRecord& record) {
-  SUITE_CHECK(record.case_name == info.name && is_key(record.key),
-              "a stage of another case, or without a content key");
-  CaseFile& file = open_case(info.name);
+  add(info, data, record);
+  commit();
+}
 
-  const JournalEntry* old = catalog_.at(info.name, record.position);
-  if (old != nullptr && old->stage.key == record.key &&
-      has_result(old->stage) && file.has_stage(old->stage, old->arrays_hash))
-    return;
+bool Store::is_due(double seconds) const {
+  return !waiting_.empty() && (now().wall - waiting_since_ >= seconds ||
+                               waiting_bytes_ > kMostWaiting);
+}
 
-  const std::string hash = hex64(arrays_hash(record));
+void Store::commit() {
+  if (waiting_.empty()) return;
+  const Seconds begin = now();
+  auto entries = std::exchange(waiting_, {});
+  waiting_bytes_ = 0;
   try {
-    file.put_data(data);
-    file.put_stage(record, hash);
-    file.save(cases_);
-  } catch (...) {
-    open_.erase(info.name);  // it no longer is what the disk has
-    throw;
+    write(entries);
+  } catch (const StoreError&) {
+    if (data_.size() == 1) throw;
+    std::stable_sort(entries.begin(), entries.end(), by_case);
+    for (auto first = entries.begin(); first != entries.end();) {
+      const auto last = std::upper_bound(first, entries.end(), *first, by_case);
+      write({first, last});
+      first = last;
+    }
   }
-  const auto stages = static_cast<Index>(info.stages.size());
-  if (record.position + 1 >= stages) open_.erase(info.name);
+  data_.clear();
+  commit_time_ += now() - begin;
+}
 
-  JournalEntry entry{.info = info,
-                     .stage = stage_from_json(to_json(record)),
-                     .file = "cases/" + case_file_name(info.name),
-                     .data_hash = data.hash,
-                     .arrays_hash = hash};
-  journal_.append(entry);
-  if (has_result(record)) drop_state(record.key);
-  entry.stage.x = record.x;
-  entry.stage.loss = record.loss;
-  entry.stage.status = record.status;
-  catalog_.add(std::move(entry));
+void Store::write(std::span<JournalEntry> entries) {
+  try {
+    write_files(entries);
+  } catch (...) {
+    for (const auto& e : entries) open_.erase(e.info.name);
+    throw;  // they no longer are what the disk has
+  }
+  journal_.append(entries);
+  for (JournalEntry& e : entries) {
+    const auto stages = static_cast<Index>(e.info.stages.size());
+    if (e.stage.position + 1 >= stages) open_.erase(e.info.name);
+    if (has_result(e.stage)) drop_state(e.stage.key);
+    keep_what_results_need(e.stage);
+    catalog_.add(std::move(e));
+  }
+}
+
+void Store::write_files(std::span<const JournalEntry> entries) {
+  std::map<std::string, CaseFile*> cases;
+  for (const auto& e : entries) {
+    CaseFile*& file = cases[e.info.name];
+    if (file == nullptr) {
+      file = &open_case(e.info.name);
+      file->put_data(data_.at(e.info.name));
+    }
+    file->put_stage(e.stage, e.arrays_hash);
+  }
+  FileGroup files(cases_);
+  for (const auto& [name, file] : cases)
+    files.add(case_file_name(name), file->bytes());
+  files.put_in_place();
 }
 
 CaseFile& Store::open_case(const std::string& name) {
@@ -198,6 +293,7 @@ void Store::set_context(const json& context) {
 }
 
 std::vector<CaseRecord> Store::finish() {
+  commit();
   const json& plan = catalog_.plan;
   const json context =
       plan.is_object() ? plan.value("context", json::object()) : json::object();

@@ -8,7 +8,7 @@
 /// stands there is the user's.
 ///
 /// A stage's arrays are on disk before its line, so that the process may be
-/// killed at any moment: what `append` returned for is there, complete, once.
+/// killed at any moment: what `commit` returned for is there, complete, once.
 #pragma once
 
 #include <filesystem>
@@ -16,9 +16,11 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "suite/core/clock.h"
 #include "suite/results/catalog.h"
 #include "suite/results/lock.h"
 #include "suite/results/plan.h"
@@ -46,15 +48,23 @@ class Store {
   /// skipped stages are found too, unless the same key also has a result.
   std::optional<StageRecord> find(
       const std::string& key,
-      const std::set<std::string>* among = nullptr) const {
-    return catalog_.find(key, among);
-  }
+      const std::set<std::string>* among = nullptr) const;
 
-  /// On disk when it returns. A stage that the case already has with a result
-  /// is left as it is.
+  /// Takes a stage up, which is on disk after the next `commit`. One that the
+  /// case already has with a result is left as it is.
+  void add(const CaseInfo& info, const CaseData& data, StageRecord record);
+  /// All that was added is on disk when it returns: the files of its cases,
+  /// each written once and all synced together, then their lines. If there is
+  /// no room for all of it, what there is room for.
+  void commit();
+  /// Has something waited for so long, or is it too much to be kept in memory?
+  bool is_due(double seconds) const;
+  /// Both at once.
   void append(const CaseInfo& info,
               const CaseData& data,
               const StageRecord& record);
+  /// What commits took, most of its wall time waiting for the disk.
+  Seconds commit_time() const { return commit_time_; }
 
   /// The state of a stage under way; nothing if there is none. StoreError if
   /// it is damaged.
@@ -80,6 +90,10 @@ class Store {
  private:
   Store() = default;
   CaseFile& open_case(const std::string& name);
+  bool has(const CaseInfo& info, const StageRecord& record);
+  /// Of these, in this order.
+  void write(std::span<JournalEntry> entries);
+  void write_files(std::span<const JournalEntry> entries);
 
   Folder folder_, cases_;
   DirectoryLock lock_;
@@ -87,6 +101,11 @@ class Store {
   Catalog catalog_;
   Journal journal_;
   std::map<std::string, CaseFile> open_;  ///< of cases with stages to come
+  std::vector<JournalEntry> waiting_;     ///< for `commit`, with their arrays
+  std::map<std::string, CaseData> data_;  ///< of their cases
+  double waiting_since_ = 0;
+  std::size_t waiting_bytes_ = 0;
+  Seconds commit_time_;
 };
 
 /// A new store beside the files of another, of a name that only the suite

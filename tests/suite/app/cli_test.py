@@ -89,6 +89,26 @@ def good_input(d):
         expect(10, [*args, "results/quick"], d, "18 cases not run")
 
 
+def accounts(d):
+    """Data, evaluation, bookkeeping and waiting are told apart."""
+    p = expect(0, ["--profile=smoke", "--out=accounts"], d)
+    parts = ("data ", "evaluation ", "bookkeeping ", "waiting for the disk ")
+    line = next(x for x in p.stdout.splitlines() if " stages run, " in x)
+    check(all(part in line for part in parts), line)
+    with open(os.path.join(d, "accounts/results.json")) as f:
+        context = json.load(f)["context"]
+    names = ("data_ms", "evaluation_ms", "bookkeeping_ms", "waiting_ms")
+    check(all(0 <= context[name] < context["wall_ms"] * os.cpu_count()
+              for name in names), str({n: context[n] for n in names}))
+    check(0 < context["evaluation_ms"] < context["stages_cpu_ms"],
+          "evaluation is a part of the stages")
+    expect(0, ["report", "accounts"], d)
+    with open(os.path.join(d, "accounts/report/index.html")) as f:
+        page = f.read()
+    check("evaluation ms" in page and "stages cpu ms" in page,
+          "the report tells evaluation")
+
+
 def damaged(d):
     """A corrupt journal is named, a torn last line does no harm."""
     journal = os.path.join(d, "results/smoke/journal.jsonl")
@@ -261,8 +281,8 @@ def no_space(d):
 
 with tempfile.TemporaryDirectory() as directory:
     os.mkdir(os.path.join(directory, "published"))
-    for test in (bad_input, good_input, damaged, damaged_plan, fresh,
-                 incomplete, expected_failures, same_bits, interrupted,
+    for test in (bad_input, good_input, accounts, damaged, damaged_plan,
+                 fresh, incomplete, expected_failures, same_bits, interrupted,
                  no_space):
         test(directory)
 sys.exit(f"{len(FAILED)} failed: {FAILED}" if FAILED else 0)

@@ -52,6 +52,32 @@ TEST_F(FolderTest, KeepsWhatIsWritten) {
   EXPECT_EQ(count(), 1U);
 }
 
+TEST_F(FolderTest, FilesOfAGroupAreReplacedTogether) {
+  folder_.write("a", "old");
+  for (const std::string bytes : {"new", "newer"}) {
+    FileGroup group(folder_);
+    for (const char* name : {"a", "b", "c"}) group.add(name, name + bytes);
+    EXPECT_NE(folder_.read("a", 9), "a" + bytes);
+    group.put_in_place();
+    for (const std::string name : {"a", "b", "c"})
+      EXPECT_EQ(folder_.read(name, 9), name + bytes);
+  }
+  EXPECT_EQ(count(), 3U);
+}
+
+TEST_F(FolderTest, OfAGroupThatIsGivenUpNothingIsLeft) {
+  folder_.write("a", "old");
+  fs::create_symlink(out_ / "precious", out_ / "store" / "link");
+  {
+    FileGroup group(folder_);
+    group.add("a", "new"), group.add("b", "new");
+    EXPECT_THROW(group.add("link", "new"), StoreError);
+  }
+  EXPECT_EQ(folder_.read("a", 9), "old");
+  EXPECT_EQ(outside(), "kept");
+  EXPECT_EQ(count(), 2U);
+}
+
 TEST_F(FolderTest, NamesLeadNowhereElse) {
   for (const std::string name :
        {"../precious", "b/../../precious", "", ".", ".."}) {

@@ -121,6 +121,75 @@ TEST_F(StoreTest, FindsWhatWasAppendedAlsoLater) {
                 sample_stage(a_, k));
 }
 
+TEST_F(StoreTest, WhatWasAddedIsFoundAtOnceAndThereAfterACommit) {
+  Store store(out_.path());
+  for (Index k = 0; k < 2; ++k)
+    for (const auto& info : {a_, b_})
+      store.add(info, sample_data(info), sample_stage(info, k));
+  expect_same(*store.find(b_.keys[1]), sample_stage(b_, 1));
+  const std::set<std::string> only_b = {b_.name};
+  EXPECT_FALSE(store.find(a_.keys[0], &only_b));
+  EXPECT_TRUE(Store::read_only(out_.path()).catalog().entries().empty());
+  EXPECT_TRUE(store.is_due(0));
+  EXPECT_FALSE(store.is_due(60));
+  store.commit();
+  EXPECT_FALSE(store.is_due(0));
+  const auto read = Store::read_only(out_.path());
+  EXPECT_EQ(read.catalog().entries().size(), 4U);
+  for (const auto& info : {a_, b_})
+    for (Index k = 0; k < 2; ++k)
+      expect_same(*read.find(info.keys[static_cast<std::size_t>(k)]),
+                  sample_stage(info, k));
+}
+
+TEST_F(StoreTest, OfOneStageAddedTwiceTheFirstCounts) {
+  Store store(out_.path());
+  for (const std::uint64_t run : {1U, 2U})
+    store.add(a_, sample_data(a_), sample_stage(a_, 0, run));
+  store.finish();
+  EXPECT_EQ(store.catalog().entries().size(), 1U);
+  expect_same(*store.find(a_.keys[0]), sample_stage(a_, 0, 1));
+}
+
+TEST_F(StoreTest, AResultAddedAfterAFailureReplacesIt) {
+  Store store(out_.path());
+  auto failed = sample_stage(a_, 0);
+  failed.stop = Stop::failed;
+  store.add(a_, sample_data(a_), failed);
+  EXPECT_EQ(store.find(a_.keys[0])->stop, Stop::failed);
+  store.add(a_, sample_data(a_), sample_stage(a_, 0));
+  EXPECT_TRUE(has_result(*store.find(a_.keys[0])));
+  store.commit();
+  expect_same(*Store::read_only(out_.path()).find(a_.keys[0]),
+              sample_stage(a_, 0));
+}
+
+/// Bytes that this process gave to write() so far.
+std::uint64_t bytes_written() {
+  std::ifstream io("/proc/self/io");
+  std::string name;
+  std::uint64_t count = 0;
+  while (io >> name >> count && name != "wchar:") {
+  }
+  return count;
+}
+
+TEST_F(StoreTest, ACommitWritesTheFileOfACaseOnce) {
+  a_.stages.clear(), a_.keys.clear();
+  for (int k = 0; k < 20; ++k) {
+    a_.stages.push_back(fmt::format("stage{}", k));
+    a_.keys.push_back(hex128(a_.stages.back()));
+  }
+  Store store(out_.path());
+  const auto before = bytes_written();
+  for (Index k = 0; k < 20; ++k)
+    store.add(a_, sample_data(a_), sample_stage(a_, k, 0, 2000));
+  store.commit();
+  const auto there = fs::file_size(store.catalog().case_path(a_.name)) +
+                     fs::file_size(out_ / "journal.jsonl");
+  EXPECT_LT(bytes_written() - before, there + there / 10);
+}
+
 TEST_F(StoreTest, StageIsKeptOnceAndTheFirstCounts) {
   Store store(out_.path());
   append(store, a_, 0, 1);
