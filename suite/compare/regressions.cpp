@@ -216,7 +216,8 @@ std::string pairs_text(const Comparison& c) {
       worse,
       better,
       timed.compared,
-      timed.without.empty() ? "" : ", not of " + reasons(timed.without));
+      timed.without.empty() ? ""
+                            : "; of the others: " + reasons(timed.without));
 }
 
 }  // namespace physinv

@@ -153,6 +153,19 @@ TEST(Compare, EndsAreOrdered) {
           << i << " " << k;
 }
 
+TEST(Compare, ExamplesAreOrdered) {
+  using Counts = StatusCounts;  // gtol, maxiter, linesearch, nonfinite
+  EXPECT_EQ(direction(Counts{3, 1, 0, 0}, Counts{4, 0, 0, 0}),
+            Direction::better);
+  EXPECT_EQ(direction(Counts{4, 0, 0, 0}, Counts{3, 0, 1, 0}),
+            Direction::worse);
+  EXPECT_EQ(direction(Counts{3, 1, 0, 0}, Counts{3, 0, 1, 0}),
+            Direction::other);
+  EXPECT_EQ(direction(Counts{2, 2, 0, 0}, Counts{3, 0, 0, 1}),
+            Direction::worse);
+  EXPECT_EQ(direction(Stop::failed, Stop::skipped), Direction::other);
+}
+
 TEST(Compare, OneOfFourRunsIsSeenInAPool) {
   std::vector<CaseRecord> before, after;
   for (const std::uint64_t seed : {0, 1, 2, 3}) {
