@@ -16,6 +16,7 @@
 #include "suite/harness/judge.h"
 #include "suite/harness/progress.h"
 #include "suite/results/course.h"
+#include "suite/results/crowded.h"
 #include "suite/results/folder.h"
 #include "suite/results/json.h"
 #include "suite/results/profiles.h"
@@ -250,6 +251,8 @@ ExitCode report_verb(const Arguments& arguments) {
       out.empty() ? Folder(results).make("report").path() : fs::path(out);
   auto origin = provenance(loaded);
   origin["papers"] = papers_of(sections, numbers);
+  const auto crowded = crowded_text(loaded.results.cases());
+  if (!crowded.empty()) origin["crowded"] = crowded;
   try {
     write_report(target, sections, origin);
     if (!publish.empty()) publish_campaign(publish, results, sections, origin);
@@ -261,6 +264,7 @@ ExitCode report_verb(const Arguments& arguments) {
       render_claims_text(sections,
                          static_cast<std::size_t>(Screen::of(stdout).columns)),
       (target / "index.html").string());
+  if (!crowded.empty()) fmt::print("{}\n", crowded);
   const auto judgement = compare(sections, listed, origin.value("profile", ""));
   if (check) check_claims(judgement);
   require_complete(loaded.lacks, kRunAgain);

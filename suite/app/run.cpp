@@ -16,6 +16,7 @@
 #include "suite/harness/stop_signal.h"
 #include "suite/planning/budget.h"
 #include "suite/planning/predict.h"
+#include "suite/results/crowded.h"
 #include "suite/results/exports.h"
 #include "suite/results/file.h"
 #include "suite/results/results.h"
@@ -259,7 +260,10 @@ ExitCode run_verb(const Arguments& arguments) {
     write_repetitions(flags.campaign.out,
                       repeat(prepared, flags, result.cases, screen));
   result.interrupted = result.interrupted || stop_signals() > 0;
-  put(stream, summary_table(own_records(std::move(result.cases), names)));
+  const auto own = own_records(std::move(result.cases), names);
+  put(stream, summary_table(own));
+  if (const auto text = crowded_text(own); !text.empty())
+    put(stream, text + '\n');
   put(stream, result_text(flags, result));
   const std::string& out = flags.campaign.out.string();
   if (stream != stdout) put(stdout, exported(out, flags.habits.format));

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "suite/evidence/statistics.h"
+#include "suite/results/crowded.h"
 
 namespace physinv {
 
@@ -29,6 +30,24 @@ Cell written(std::optional<double> value,
 
 Cell written(const Measured& measured, const char* format) {
   return written(measured.value, format);
+}
+
+std::optional<double> TimedStages::seconds(const StageRecord& stage) {
+  ++stages_;
+  crowded_ += stage.crowded;
+  return seconds_to_tell(stage);
+}
+
+std::string TimedStages::note() const {
+  std::string text =
+      "Times are CPU time of solving, wall time where several threads ran.";
+  if (crowded_ > 0)
+    text += fmt::format(
+        " {} of {} stages shared their cores (crowded); those of several "
+        "threads are left out.",
+        crowded_,
+        stages_);
+  return text;
 }
 
 }  // namespace physinv

@@ -11,7 +11,8 @@
 namespace physinv {
 
 inline constexpr const char* kNotRun = "not run";
-/// Its stages shared their cores: their times are no times.
+/// Its stages, of several threads, shared their cores: their times are no
+/// times.
 inline constexpr const char* kCrowded = "crowded";
 inline constexpr const char* kDiverged = "diverged";
 /// A question that does not arise.
@@ -28,5 +29,17 @@ Cell written(std::optional<double> value,
              const char* format = "{:.3g}",
              const char* otherwise = kNotRun);
 Cell written(const Measured& measured, const char* format = "{:.3g}");
+
+/// Which stages a table of times is of. Its note says which clock they are from
+/// and how many were crowded.
+class TimedStages {
+ public:
+  /// What solving took, if that can be told (suite/results/crowded.h).
+  std::optional<double> seconds(const StageRecord& stage);
+  std::string note() const;
+
+ private:
+  int stages_ = 0, crowded_ = 0;
+};
 
 }  // namespace physinv

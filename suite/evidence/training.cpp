@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "suite/evidence/statistics.h"
+#include "suite/results/crowded.h"
 #include "suite/results/published.h"
 
 namespace physinv {
@@ -166,9 +167,9 @@ RunValue diverged() {
 
 RunValue seconds_per_update() {
   return [](const Run& run) -> std::optional<double> {
-    if (run.stage->iterations == 0) return {};
-    return run.stage->clocks.solve.wall /
-           static_cast<double>(run.stage->iterations);
+    const auto seconds = seconds_to_tell(*run.stage);
+    if (run.stage->iterations == 0 || !seconds) return {};
+    return *seconds / static_cast<double>(run.stage->iterations);
   };
 }
 

@@ -11,16 +11,16 @@
 namespace physinv {
 namespace {
 
-/// What an update took, and the bytes that the stage holds.
-struct Cost {
-  double seconds, bytes;
-};
+/// What updates took, and the bytes that stages hold.
+struct Costs {
+  void add(const StageRecord& s, TimedStages& timed) {
+    if (const auto all = timed.seconds(s))
+      seconds.push_back(*all / std::max(1.0, s.curve.iteration.back()));
+    bytes.push_back(static_cast<double>(s.buffer_bytes));
+  }
 
-Cost cost_of(const StageRecord& s) {
-  return {
-      .seconds = s.clocks.solve.wall / std::max(1.0, s.curve.iteration.back()),
-      .bytes = static_cast<double>(s.buffer_bytes)};
-}
+  std::vector<double> seconds, bytes;
+};
 
 }  // namespace
 
@@ -36,20 +36,17 @@ Table loss_table(const Results& results,
                           "lowest",
                           "highest",
                           "diverged",
-                          "ms / update",
-                          "MB"},
-              .note =
-                  "Memory: buffers the stage holds. Times on this machine, "
-                  "one thread per case."};
+                          "CPU ms / update",
+                          "MB"}};
+  TimedStages timed;
   for (const MethodLine& line : lines) {
-    std::vector<double> losses, seconds, updates, bytes;
+    std::vector<double> losses, updates;
+    Costs costs;
     int diverged = 0;
     for (const auto* s : trained_stages(results, experiment, line.method)) {
       losses.push_back(CurveRow{*s}.last());
       updates.push_back(s->curve.iteration.back());
-      const Cost cost = cost_of(*s);
-      seconds.push_back(cost.seconds);
-      bytes.push_back(cost.bytes);
+      costs.add(*s, timed);
       diverged += s->stop == Stop::diverged;
     }
     if (losses.empty()) continue;
@@ -62,9 +59,11 @@ Table loss_table(const Results& results,
                    written(*lowest),
                    written(*highest),
                    Cell{.text = fmt::format("{}/{}", diverged, losses.size())},
-                   written(1e3 * median(seconds)),
-                   written(1e-6 * median(bytes))}});
+                   costs.seconds.empty() ? Cell{.text = kCrowded}
+                                         : written(1e3 * median(costs.seconds)),
+                   written(1e-6 * median(costs.bytes))}});
   }
+  table.note = "Memory: buffers the stage holds. " + timed.note();
   return table;
 }
 
@@ -93,33 +92,31 @@ Table cost_table(const Results& results,
               .source = std::move(source),
               .digits = 2,
               .corner = "method",
-              .columns = {"MB", "ms / update"},
-              .note =
-                  "Ours: bytes of the buffers the stage holds, one thread, "
-                  "median over seeds. The paper's machine had a GPU."};
+              .columns = {"MB", "CPU ms / update"}};
+  TimedStages timed;
   for (const CostLine& line : lines) {
-    std::vector<double> seconds, bytes;
-    for (const auto* s : trained_stages(results, experiment, line.method)) {
-      const Cost cost = cost_of(*s);
-      bytes.push_back(cost.bytes);
-      if (!s->crowded) seconds.push_back(cost.seconds);
-    }
+    Costs costs;
+    for (const auto* s : trained_stages(results, experiment, line.method))
+      costs.add(*s, timed);
     Cell megabytes, duration;
     if (const auto v = published.find(experiment, line.published + "/memory"))
       megabytes.paper = v->value;
     if (const auto v = paper_update(published, experiment, line.published))
       duration.paper = 1e3 * *v;
-    if (bytes.empty()) {
+    if (costs.bytes.empty()) {
       megabytes.text = duration.text = kNotRun;
     } else {
-      megabytes.ours = 1e-6 * median(bytes);
-      if (seconds.empty())
+      megabytes.ours = 1e-6 * median(costs.bytes);
+      if (costs.seconds.empty())
         duration.text = kCrowded;
       else
-        duration.ours = 1e3 * median(seconds);
+        duration.ours = 1e3 * median(costs.seconds);
     }
     table.rows.push_back({.label = line.label, .cells = {megabytes, duration}});
   }
+  table.note =
+      "Ours: bytes of the buffers the stage holds, median over seeds. " +
+      timed.note() + " The paper's machine had a GPU.";
   return table;
 }
 

@@ -15,6 +15,7 @@
 #include "suite/core/median.h"
 #include "suite/core/probe.h"
 #include "suite/harness/run_stage.h"
+#include "suite/results/crowded.h"
 
 namespace physinv {
 namespace {
@@ -137,7 +138,8 @@ void run_case(const Case& c,
           record = blank(c, position, options.revision);
           run();
         }
-        record.crowded = options.crowded;
+        record.crowded =
+            options.crowded || shared_its_core(record.clocks.solve);
         record.finished = utc_now();
       } catch (const StageLeft&) {
         throw;

@@ -13,7 +13,7 @@
 namespace physinv {
 
 struct RunOptions {
-  bool crowded = false;  ///< more workers x threads than cores
+  bool crowded = false;  ///< every stage: more workers x threads than cores
   bool trace = false;    ///< hash every iterate
   bool disturb = false;  ///< data one ulp off, see `disturb_data`
   std::string revision;  ///< for the record

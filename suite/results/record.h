@@ -41,9 +41,9 @@ struct StageRecord {
   Counts counts;
   std::uint64_t buffer_bytes = 0;  ///< peak bytes of the stage's buffers
   std::uint64_t rss_bytes = 0;     ///< peak resident set of its process
-  bool crowded = false;  ///< more workers x threads than cores: no speed table
-  std::string finished;  ///< UTC date and time, ISO 8601
-  std::string revision;  ///< git revision it ran from, "+dirty" if so
+  bool crowded = false;    ///< others had its cores as well (crowded.h tells)
+  std::string finished;    ///< UTC date and time, ISO 8601
+  std::string revision;    ///< git revision it ran from, "+dirty" if so
   std::string trajectory;  ///< hash of all iterates, if traced
 
   Batch<double> x;             ///< unknowns x examples

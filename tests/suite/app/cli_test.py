@@ -261,6 +261,22 @@ def interrupted(d):
                "2 reused")
 
 
+def crowded(d):
+    """Who waits for a core has more wall time than CPU time; it is said once,
+    and kept."""
+    env = {"PHYSINV_FAKE_PACE_MS": "5"}
+    p = expect(0, ["--profile=smoke", "--out=crowded", "--filter=descend"], d,
+               "1 of 1 stages were crowded", env=env)
+    check(p.stdout.count("crowded (") == 1, "once")
+    with open(os.path.join(d, "crowded", "results.json")) as f:
+        entries = json.load(f)["benchmarks"]
+    check([e["physinv"]["crowded"] for e in entries] == [True],
+          "results.json marks it")
+    expect(0, ["report", "crowded"], d, "1 of 1 stages were crowded")
+    with open(os.path.join(d, "crowded", "report", "report.md")) as f:
+        check("- crowded: 1 of 1 stages" in f.read(), "the report marks it")
+
+
 def no_space(d):
     """A full disk (a small tmpfs, if we may mount one)."""
     disk = os.path.join(d, "disk")
@@ -283,6 +299,6 @@ with tempfile.TemporaryDirectory() as directory:
     os.mkdir(os.path.join(directory, "published"))
     for test in (bad_input, good_input, accounts, damaged, damaged_plan,
                  fresh, incomplete, expected_failures, same_bits, interrupted,
-                 no_space):
+                 crowded, no_space):
         test(directory)
 sys.exit(f"{len(FAILED)} failed: {FAILED}" if FAILED else 0)

@@ -30,6 +30,9 @@ Results some_results() {
   fit.arrays["weight_change"] = Batch<double>::Constant(2, 1, 0.125);
   StageRecord crowded = stage_of("refine", {1e-9, 0.5});
   crowded.crowded = true;
+  crowded.clocks.solve = {2, 3.5};  // of several threads
+  fit.crowded = true;
+  fit.clocks.solve = {20, 1.5};
   return Results(
       {case_of(
            "bfgs", 2, 0, {"solve"}, {stage_of("solve", {0.5, 0.5}, {1, 1})}),
@@ -55,6 +58,11 @@ TEST(JpoReport, TablesHoldMeansAndSpreads) {
   ASSERT_EQ(seconds.columns.size(), 8U);
   EXPECT_EQ(*seconds.rows[0].cells[0].ours, 2);
   EXPECT_EQ(*seconds.rows[0].cells[0].spread, 0);
+  EXPECT_EQ(seconds.unit, "CPU s");
+  EXPECT_EQ(*seconds.rows[0].cells[1].ours, 1.5);
+  EXPECT_NE(seconds.note.find("2 of 4 stages shared their cores (crowded)"),
+            std::string::npos)
+      << seconds.note;
   EXPECT_EQ(seconds.rows[0].cells[2].text, "crowded");
   EXPECT_FALSE(seconds.rows[0].cells[2].ours);
   EXPECT_EQ(seconds.rows[0].cells[3].text, "not run");

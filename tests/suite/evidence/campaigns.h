@@ -22,7 +22,7 @@ inline StageRecord stage_of(const std::string& name,
   s.loss = losses(loss);
   s.x = Batch<double>::Ones(2, s.loss.size());
   s.iterations = 5;
-  s.clocks.solve.wall = 2;
+  s.clocks.solve = {2, 2};
   if (!start.empty()) {
     s.curve.iteration = {0, 5};
     s.curve.loss.resize(s.loss.size(), 2);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "suite/cases/jpo/common/shares.h"
+#include "suite/evidence/cell.h"
 #include "suite/results/published.h"
 #include "suite/results/report_model.h"
 #include "suite/results/results.h"
@@ -99,9 +100,13 @@ class JpoReport {
 
   Cell seconds_cell(const std::string& method,
                     const std::string& stage,
-                    Index n) const;
+                    Index n,
+                    TimedStages& timed) const;
   Cell over_seeds(Index n, const PerCase& value) const;
-  TableRow results_row(const std::string& method, Index n, bool refined) const;
+  TableRow results_row(const std::string& method,
+                       Index n,
+                       bool refined,
+                       TimedStages& timed) const;
   Cell with_paper(Cell cell, const std::string& quantity) const;
 
   const JpoReportOptions& options_;

@@ -9,6 +9,8 @@
 #include <numeric>
 #include <utility>
 
+#include "suite/results/crowded.h"
+
 namespace physinv::jpo {
 namespace {
 
@@ -168,10 +170,7 @@ double most_of(std::vector<double> values) {
 }
 
 RunValue seconds() {
-  return [](const Run& run) -> Value {
-    if (run.stage->crowded) return {};
-    return run.stage->clocks.solve.wall;
-  };
+  return [](const Run& run) -> Value { return seconds_to_tell(*run.stage); };
 }
 
 RunRow losses() {

@@ -1,0 +1,52 @@
+#include "suite/results/crowded.h"
+
+#include <gtest/gtest.h>
+
+namespace physinv {
+namespace {
+
+StageRecord of(Seconds solve, bool crowded = false) {
+  StageRecord s;
+  s.clocks.solve = solve;
+  s.crowded = crowded;
+  return s;
+}
+
+TEST(Crowded, IsWhoWaitsForACore) {
+  EXPECT_FALSE(shared_its_core({1, 1}));
+  EXPECT_FALSE(shared_its_core({1.2, 1}));
+  EXPECT_TRUE(shared_its_core({1.3, 1}));
+  EXPECT_TRUE(shared_its_core({7.3, 0.1}));
+  EXPECT_FALSE(shared_its_core({1, 1.9})) << "two threads";
+  EXPECT_FALSE(shared_its_core({}));
+}
+
+TEST(Crowded, OfAShortStageTheResolutionCounts) {
+  EXPECT_FALSE(shared_its_core({9e-5, 1e-5}));
+  EXPECT_FALSE(shared_its_core({4e-4, 3.1e-4}));
+  EXPECT_TRUE(shared_its_core({3e-3, 1e-5})) << "others had a time slice";
+}
+
+TEST(Crowded, OneThreadTellsItsCpuTime) {
+  EXPECT_EQ(seconds_to_tell(of({1, 0.99})), 0.99);
+  EXPECT_EQ(seconds_to_tell(of({20, 1.5}, true)), 1.5);
+  EXPECT_EQ(seconds_to_tell(of({1, 1 + 1e-7}, true)), 1) << "clocks are read "
+                                                            "in turn";
+}
+
+TEST(Crowded, SeveralThreadsTellWallTimeUnlessCrowded) {
+  EXPECT_EQ(seconds_to_tell(of({1, 1.9})), 1);
+  EXPECT_FALSE(seconds_to_tell(of({1, 1.9}, true)));
+}
+
+TEST(Crowded, StagesAreCounted) {
+  std::vector<CaseRecord> cases(2);
+  cases[0].stages = {of({1, 1}), of({2, 1}, true)};
+  cases[1].stages = {of({1, 1})};
+  EXPECT_EQ(crowded_text(cases).find("1 of 3 stages were crowded"), 0U);
+  cases[0].stages.pop_back();
+  EXPECT_EQ(crowded_text(cases), "");
+}
+
+}  // namespace
+}  // namespace physinv
