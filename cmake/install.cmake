@@ -28,14 +28,14 @@ install(EXPORT physinv NAMESPACE physinv:: FILE physinv-targets.cmake
 install(DIRECTORY suite problems optimizers baselines
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/physinv COMPONENT development
   FILES_MATCHING PATTERN *.h
-  PATTERN app EXCLUDE PATTERN cases EXCLUDE PATTERN kernels.h EXCLUDE)
+  PATTERN app EXCLUDE PATTERN cases EXCLUDE PATTERN kernels.h EXCLUDE
+  PATTERN real_fft.h EXCLUDE)
 
 write_basic_package_version_file(
   ${PROJECT_BINARY_DIR}/physinv-config-version.cmake
   COMPATIBILITY SameMinorVersion)
 install(FILES
     ${PROJECT_SOURCE_DIR}/cmake/physinv-config.cmake
-    ${PROJECT_SOURCE_DIR}/cmake/FindFFTW3.cmake
     ${PROJECT_SOURCE_DIR}/cmake/FindRE2.cmake
     ${PROJECT_SOURCE_DIR}/cmake/FindSLEEF.cmake
     ${PROJECT_BINARY_DIR}/physinv-config-version.cmake

@@ -2,7 +2,6 @@ include(CMakeFindDependencyMacro)
 list(APPEND CMAKE_MODULE_PATH ${CMAKE_CURRENT_LIST_DIR})
 enable_language(C)  # FindHDF5 asks the C compiler
 find_dependency(Eigen3 3.4)
-find_dependency(FFTW3)
 find_dependency(SLEEF)
 find_dependency(fmt)
 find_dependency(nlohmann_json)

@@ -9,7 +9,8 @@ function(physinv_sources result)
       ${source_dir}/${directory}/*.h ${source_dir}/${directory}/*.cpp)
     list(APPEND all ${found})
   endforeach()
-  list(FILTER all EXCLUDE REGEX "/kernels\\.(cpp|h)$")
+  # No number comes from those.
+  list(FILTER all EXCLUDE REGEX "/(kernels|real_fft)\\.(cpp|h)$")
   list(SORT all)
   set(${result} ${all} PARENT_SCOPE)
 endfunction()
@@ -67,7 +68,7 @@ file(WRITE ${info}/build_info.d "${depfile}\n")
 # In the order of the struct's members.
 set(members)
 foreach(member compiler compiler_version flags bit_flags build_type
-               instruction_set fingerprint foundation version eigen sleef fftw hdf5 json fmt cli11)
+               instruction_set fingerprint foundation version eigen sleef hdf5 json fmt cli11)
   string(REPLACE "\"" "\\\"" value "${${member}}")
   string(APPEND members "    .${member} = \"${value}\",\n")
 endforeach()

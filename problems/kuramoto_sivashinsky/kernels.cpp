@@ -4,7 +4,6 @@
 #include "problems/kernels.h"
 
 #include "problems/kuramoto_sivashinsky/kuramoto_sivashinsky.h"
-#include "suite/core/real_fft.h"
 
 namespace physinv {
 namespace {
@@ -51,26 +50,7 @@ void BM_kuramoto_sivashinsky_gradient(benchmark::State& state) {
   report(state, static_cast<double>(state.range(0)), f.steps());
 }
 
-/// The transforms of one step, two there and two back.
-template <class T>
-void BM_kuramoto_sivashinsky_bare_transforms(benchmark::State& state) {
-  const RealFft<T> fft(kCells);
-  Workspace work;
-  auto u = work.take<T>(fft.signal_stride(), 1);
-  auto y = work.take<T>(fft.spectrum_stride(), 1);
-  u.setZero();
-  for (auto _ : state) {
-    for (int i = 0; i < 2; ++i) {
-      fft.forward(u.data(), y.data());
-      fft.inverse(y.data(), u.data());
-    }
-    benchmark::ClobberMemory();
-  }
-  report(state, 1, 1);
-}
-
 #define PHYSINV_KS(T)                                                      \
-  BENCHMARK(BM_kuramoto_sivashinsky_bare_transforms<T>);                   \
   BENCHMARK(BM_kuramoto_sivashinsky_forward<T>)->Arg(1)->Arg(8)->Arg(128); \
   BENCHMARK(BM_kuramoto_sivashinsky_gradient<T>)                           \
       ->ArgsProduct({{1, 8, 128}, {0, 4, 1000}})

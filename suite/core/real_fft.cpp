@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <mutex>
-#include <utility>
+#include <tuple>
 
 #include "suite/core/check.h"
 #include "suite/core/workspace.h"
@@ -60,7 +60,9 @@ void check_aligned(const T* a, const T* b) {
 
 template <class T>
 struct RealFft<T>::Plans {
-  Plans(int size, int count) {
+  Plans(int size, int count, Codelets codelets) {
+    const unsigned how =
+        FFTW_ESTIMATE | (codelets == Codelets::scalar ? FFTW_NO_SIMD : 0);
     const Index modes = size / 2 + 1;
     const auto signal = static_cast<int>(aligned<T>(size));
     const auto spectrum = static_cast<int>(aligned<T>(2 * modes) / 2);
@@ -69,9 +71,9 @@ struct RealFft<T>::Plans {
     auto* y = complex(work.take<T>(2 * spectrum, count).data());
     // clang-format off
     forward = Fftw<T>::plan_forward(1, &size, count, u, nullptr, 1, signal,
-                                    y, nullptr, 1, spectrum, FFTW_ESTIMATE);
+                                    y, nullptr, 1, spectrum, how);
     inverse = Fftw<T>::plan_inverse(1, &size, count, y, nullptr, 1, spectrum,
-                                    u, nullptr, 1, signal, FFTW_ESTIMATE);
+                                    u, nullptr, 1, signal, how);
     // clang-format on
     SUITE_CHECK(forward != nullptr && inverse != nullptr, "FFTW has no plan");
   }
@@ -83,25 +85,27 @@ struct RealFft<T>::Plans {
 };
 
 template <class T>
-auto RealFft<T>::plans(Index size, Index count)
+auto RealFft<T>::plans(Index size, Index count, Codelets codelets)
     -> std::shared_ptr<const Plans> {
   // FFTW's planner is not for several threads at once.
   static std::mutex mutex;
-  static std::map<std::pair<Index, Index>, std::shared_ptr<const Plans>> all;
+  static std::map<std::tuple<Index, Index, Codelets>,
+                  std::shared_ptr<const Plans>>
+      all;
   const std::scoped_lock lock(mutex);
-  auto& found = all[{size, count}];
+  auto& found = all[{size, count, codelets}];
   if (!found)
-    found = std::make_shared<const Plans>(static_cast<int>(size),
-                                          static_cast<int>(count));
+    found = std::make_shared<const Plans>(
+        static_cast<int>(size), static_cast<int>(count), codelets);
   return found;
 }
 
 template <class T>
-RealFft<T>::RealFft(Index size, Index count)
+RealFft<T>::RealFft(Index size, Index count, Codelets codelets)
     : signal_stride_(aligned<T>(size)),
       spectrum_stride_(aligned<T>(2 * (size / 2 + 1))) {
   SUITE_CHECK(size >= 1 && count >= 1, "a transform of nothing");
-  plans_ = plans(size, count);
+  plans_ = plans(size, count, codelets);
 }
 
 template <class T>

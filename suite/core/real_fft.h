@@ -1,8 +1,11 @@
-/// Discrete Fourier transforms of real signals, by FFTW.
+/// Discrete Fourier transforms of real signals of any size, by FFTW: what tests
+/// and kernels hold the suite's own transforms against. Who links it (target
+/// physinv_fftw) is under the GPL as a whole; no program that runs cases does.
 ///
 /// Plans are made once per process and size with FFTW_ESTIMATE, which times
 /// nothing, and run on arrays of one alignment: the bits of a transform depend
-/// only on its input. Any number of threads may share an object.
+/// only on its input and, with SIMD codelets, on the processor. Any number of
+/// threads may share an object.
 #pragma once
 
 #include <memory>
@@ -11,11 +14,17 @@
 
 namespace physinv {
 
+/// FFTW chooses its SIMD codelets by the processor; scalar ones round alike on
+/// all.
+enum class Codelets { scalar, simd };
+
 template <class T>
 class RealFft {
  public:
   /// `count` independent signals of `size` >= 1 points per call.
-  explicit RealFft(Index size, Index count = 1);
+  explicit RealFft(Index size,
+                   Index count = 1,
+                   Codelets codelets = Codelets::scalar);
 
   /// Reals from one signal, and from one spectrum, to the next of a call: the
   /// least that keeps each at a multiple of 64 bytes.
@@ -34,7 +43,9 @@ class RealFft {
 
  private:
   struct Plans;
-  static std::shared_ptr<const Plans> plans(Index size, Index count);
+  static std::shared_ptr<const Plans> plans(Index size,
+                                            Index count,
+                                            Codelets codelets);
 
   Index signal_stride_, spectrum_stride_;
   std::shared_ptr<const Plans> plans_;

@@ -28,7 +28,7 @@ struct BuildInfo {
                                 ///< bit_flags, libraries that
                                 ///< compute, and run_stage.{h,cpp}
   std::string_view version;     ///< of this suite
-  std::string_view eigen, sleef, fftw, hdf5, json, fmt, cli11;
+  std::string_view eigen, sleef, hdf5, json, fmt, cli11;
   std::span<const SourceFile> sources;  ///< and those of the cases
 };
 

@@ -162,7 +162,6 @@ json machine_context(const std::string& revision) {
       {"libraries",
        {{"eigen", build.eigen},
         {"sleef", build.sleef},
-        {"fftw", build.fftw},
         {"hdf5", build.hdf5},
         {"nlohmann_json", build.json},
         {"fmt", build.fmt},
@@ -181,7 +180,7 @@ std::string version_text() {
       "flags            {}\n"
       "instruction set  {}\n"
       "numerics         {}\n"
-      "libraries        Eigen {}, SLEEF {}, FFTW {}, HDF5 {}, nlohmann-json "
+      "libraries        Eigen {}, SLEEF {}, HDF5 {}, nlohmann-json "
       "{}, "
       "fmt {}, CLI11 {}",
       b.version,
@@ -193,7 +192,6 @@ std::string version_text() {
       b.fingerprint,
       b.eigen,
       b.sleef,
-      b.fftw,
       b.hdf5,
       b.json,
       b.fmt,

@@ -3,7 +3,6 @@
 // machine/gemm<T> is Eigen's product, which stays with 256 bits.
 
 #include <benchmark/benchmark.h>
-#include <fftw3.h>
 
 #include <Eigen/Core>
 #include <cstring>
@@ -81,32 +80,6 @@ void machine_copy(benchmark::State& state) {
                           state.iterations());
 }
 
-void machine_fft(benchmark::State& state) {
-  int n = 1024;
-  const int batch = 64, half = n / 2 + 1;
-  Vector<double> in = Vector<double>::Random(n * batch);
-  Eigen::VectorXcd out(half * batch);
-  fftw_plan plan =
-      fftw_plan_many_dft_r2c(1,
-                             &n,
-                             batch,
-                             in.data(),
-                             nullptr,
-                             1,
-                             n,
-                             reinterpret_cast<fftw_complex*>(out.data()),
-                             nullptr,
-                             1,
-                             half,
-                             FFTW_ESTIMATE);
-  for (auto _ : state) {
-    fftw_execute(plan);
-    benchmark::ClobberMemory();
-  }
-  fftw_destroy_plan(plan);
-  flops(state, 2.5 * n * 10 * batch);
-}
-
 BENCHMARK(machine_fma<float>)->Name("machine/fma<float>");
 BENCHMARK(machine_fma<double>)->Name("machine/fma<double>");
 BENCHMARK(machine_gemm<float>)
@@ -120,7 +93,6 @@ BENCHMARK(machine_gemm<double>)
     ->Args({128, 128, 128})
     ->Args({128, 8, 128});
 BENCHMARK(machine_copy)->Name("machine/copy_64MiB");
-BENCHMARK(machine_fft)->Name("machine/fft_real_1024x64");
 
 // --------------------------------------------------------------- products
 

@@ -103,11 +103,8 @@ TEST(SourcesContract, FilesOfMetricsAreReached) {
 
 /// An implementation that has not its header's name would be forgotten.
 TEST(SourcesContract, NoSourceIsForgotten) {
-  // FFTW, which tests and kernels compare with: no number comes from it. Powers
-  // of ten are settings of experiments and stand in the keys themselves.
-  const Names exceptions = {"suite/core/power_of_ten.h",
-                            "suite/core/real_fft.cpp",
-                            "suite/core/real_fft.h"};
+  // Powers of ten are settings of experiments and stand in the keys themselves.
+  const Names exceptions = {"suite/core/power_of_ten.h"};
   Names forgotten;
   for (const SourceFile& file : build_info().sources) {
     const std::string path(file.path);
