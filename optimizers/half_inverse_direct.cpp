@@ -35,10 +35,12 @@ class Direct {
     Probe& probe = run_.probe;
     probe.begin_warmup();
     probe.begin();
-    while (probe.proceed([&](BatchOut<double> x) {
-      x = x_.template cast<double>();
-      if (!metrics_.empty()) metrics_(Vector<double>(), x);
-    })) {
+    const auto measured = [&](BatchIn<double> x, BatchIn<double> y) {
+      if (!metrics_.empty()) metrics_(Vector<double>(), x, y);
+    };
+    while (probe.proceed(
+        [&](BatchOut<double> x) { x = x_.template cast<double>(); },
+        measured)) {
       update();
       probe.trace(x_.data(), sizeof(T) * static_cast<std::size_t>(x_.size()));
     }

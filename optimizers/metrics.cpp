@@ -14,14 +14,12 @@ MetricsRecorder::MetricsRecorder(const Metrics& metrics, const StageRun& run)
       values_(static_cast<Index>(metrics.rows.size()), 0) {}
 
 void MetricsRecorder::operator()(VectorIn<double> parameters,
-                                 BatchIn<double> x) {
-  const Oracle& oracle = run_.oracle;
-  Batch<double> y(oracle.shape().observations, oracle.count());
-  Workspace work(run_.threads);
-  oracle.recipe().make<double>()->forward(x, oracle.given(), y, work);
+                                 BatchIn<double> x,
+                                 BatchIn<double> y) {
   values_.conservativeResize(Eigen::NoChange, values_.cols() + 1);
   Vector<double> now(values_.rows());
-  metrics_.evaluate({run_.probe.iteration(), parameters, x, y, oracle}, now);
+  metrics_.evaluate({run_.probe.iteration(), parameters, x, y, run_.oracle},
+                    now);
   values_.rightCols(1) = now;
 }
 

@@ -40,8 +40,10 @@ class MetricsRecorder {
   MetricsRecorder(const Metrics& metrics, const StageRun& run);
 
   bool empty() const { return values_.rows() == 0; }
-  /// The estimates x (n columns) as they stand now.
-  void operator()(VectorIn<double> parameters, BatchIn<double> x);
+  /// The estimates x (n columns) as they stand now, and y(x).
+  void operator()(VectorIn<double> parameters,
+                  BatchIn<double> x,
+                  BatchIn<double> y);
   void keep(Archive& archive) { archive(values_); }
   /// Rows x points of the curve.
   const Batch<double>& values() const { return values_; }

@@ -131,19 +131,20 @@ Outcome fit(const TrainingOptions& options, StageRun& run) {
   const auto rule = make_rule<T>(options, model, run);
   MetricsRecorder metrics(options.metrics, run);
   Predictions<T> predict(model, run);
-  const auto estimate = [&](BatchOut<double> x) {
-    predict(x);
+  const auto measured = [&](BatchIn<double> x, BatchIn<double> y) {
     if (!metrics.empty())
-      metrics(model.parameters().template cast<double>(), x);
+      metrics(model.parameters().template cast<double>(), x, y);
   };
 
-  Outcome out = run_training<T>({.model = model,
-                                 .signal = *signal,
-                                 .rule = *rule,
-                                 .batches = &batches,
-                                 .estimate = estimate,
-                                 .keep = [&](Archive& a) { a(metrics); }},
-                                run);
+  Outcome out =
+      run_training<T>({.model = model,
+                       .signal = *signal,
+                       .rule = *rule,
+                       .batches = &batches,
+                       .estimate = [&](BatchOut<double> x) { predict(x); },
+                       .measured = measured,
+                       .keep = [&](Archive& a) { a(metrics); }},
+                      run);
 
   out.x.resize(shape.unknowns, run.oracle.count());
   predict(out.x);

@@ -23,7 +23,9 @@ struct Training {
   Batches<T>* batches;  ///< null: the signal sees all samples every time
   /// Estimates of the case's problems, when a point of the curve is due.
   std::function<void(BatchOut<double> x)> estimate;
-  /// What `estimate` collects, if it does.
+  /// Told of each point's estimates and of their observations.
+  std::function<void(BatchIn<double> x, BatchIn<double> y)> measured = {};
+  /// What the two collect, if they do.
   std::function<void(Archive& archive)> keep = {};
 };
 

@@ -215,9 +215,16 @@ Samples<double> Oracle::training(Index first, Index count) const {
 }
 
 void Oracle::measure(BatchIn<double> x, VectorOut<double> loss) {
-  Side<double>& s = side<double>();
   Workspace::Scope scope(*measuring_);
   auto y = measuring_->take<double>(shape_.observations, count());
+  measure(x, y, loss);
+}
+
+void Oracle::measure(BatchIn<double> x,
+                     BatchOut<double> y,
+                     VectorOut<double> loss) {
+  Side<double>& s = side<double>();
+  Workspace::Scope scope(*measuring_);
   s.problem->forward(x, s.given, y, *measuring_);
   s.problem->loss(y, s.y, loss);
 }

@@ -64,6 +64,8 @@ class Oracle {
   /// Losses in double for curves and records; not counted, not part of a
   /// method's work.
   void measure(BatchIn<double> x, VectorOut<double> loss);
+  /// The same, with the observations y(x) that the losses are of.
+  void measure(BatchIn<double> x, BatchOut<double> y, VectorOut<double> loss);
 
   const Counts& counts() const;
   /// What was counted; everything else follows from the case.

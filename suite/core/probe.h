@@ -1,5 +1,6 @@
 /// The watch over a running stage: counts iterations, keeps the clock and
-/// measures the curve while the clock stands still.
+/// measures the curve while the clock stands still. What that takes, and what
+/// comes after the end, is measuring.
 ///
 ///   while (probe.proceed([&](BatchOut<double> x) { predict(x); })) step();
 #pragma once
@@ -29,14 +30,18 @@ class Probe {
   void begin();
 
   /// True while iterations are left. When a point of the curve is due, stops
-  /// the clock, asks `estimate` to fill x and measures its true loss.
-  template <class F>
-  bool proceed(F&& estimate) {
+  /// the clock, asks `estimate` to fill x, measures its true loss and tells
+  /// `measured` x and the observations y(x).
+  template <class F, class G>
+  bool proceed(F&& estimate, G&& measured) {
     if (!begun_) begin();
     if (due()) {
       pause();
+      measure_.start();
       estimate(BatchOut<double>(x_));
       measure();
+      measured(BatchIn<double>(x_), BatchIn<double>(y_));
+      measure_.stop();
       resume();
     }
     if (iteration_ >= iterations_ || stopped_) {
@@ -45,6 +50,10 @@ class Probe {
     }
     ++iteration_;
     return true;
+  }
+  template <class F>
+  bool proceed(F&& estimate) {
+    return proceed(estimate, [](BatchIn<double>, BatchIn<double>) {});
   }
 
   /// For solvers that advance example by example and know their losses:
@@ -65,6 +74,8 @@ class Probe {
   Index iteration() const { return iteration_; }
   Index iterations() const { return iterations_; }
   const Curve& curve();
+  /// The losses of x, if they are what was measured last.
+  bool knows_losses(BatchIn<double> x, VectorOut<double> loss) const;
   Clocks clocks() const;
   /// Not of solvers that go example by example.
   void keep(Archive& archive);
@@ -92,9 +103,9 @@ class Probe {
 
   Oracle& oracle_;
   Index iterations_, iteration_ = 0, next_ = 0, tracked_;
-  bool begun_ = false, stopped_ = false;
+  bool begun_ = false, stopped_ = false, measured_ = false;
   Stopwatch setup_, warmup_, solve_, measure_;
-  Batch<double> x_;
+  Batch<double> x_, y_;
   Vector<double> loss_;
   std::vector<Index> reached_;  ///< points each example has, with `accept`
   Curve curve_;

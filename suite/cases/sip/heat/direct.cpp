@@ -303,12 +303,14 @@ class DirectStage final : public Stage {
     run.oracle.warm_up<double>();
     run.probe.begin();
     Batch<double> x(run.oracle.shape().unknowns, run.oracle.count());
-    while (run.probe.proceed([&](BatchOut<double> at) {
+    const auto estimate = [&](BatchOut<double> at) {
       solver->estimate(x);
       at = x;
-      recorder(Vector<double>(), x);
-    }))
-      solver->step();
+    };
+    const auto measured = [&](BatchIn<double> at, BatchIn<double> y) {
+      recorder(Vector<double>(), at, y);
+    };
+    while (run.probe.proceed(estimate, measured)) solver->step();
 
     Outcome out;
     const auto steps = static_cast<double>(run.probe.iteration());
