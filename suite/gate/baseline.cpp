@@ -21,7 +21,7 @@ namespace {
 constexpr std::string_view kTitle = "physinv-bench baseline ";
 constexpr std::string_view kSeal = "checksum ";
 constexpr int kVersion = 1;
-constexpr std::string_view kMake = "'baseline' or 'gate --update' writes one";
+constexpr std::string_view kMake = "'baseline' writes one";
 
 /// A line and its parts, taken from the front.
 class Lines {

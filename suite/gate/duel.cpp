@@ -99,6 +99,30 @@ std::string percent(double log_ratio) {
              : std::string(log_ratio < 0 ? "-inf" : "+inf");
 }
 
+std::string detail_of(const Decision& d, std::size_t pairs, double margin) {
+  if (pairs == 0) return "no pair of runs within the budget";
+  return fmt::format(
+      "{}, with {:g} % confidence {} to {}, {} pairs; equal is within {:g} %",
+      percent(d.median),
+      100 * (1 - d.alpha),
+      percent(d.interval.low),
+      percent(d.interval.high),
+      pairs,
+      100 * margin);
+}
+
+nlohmann::json numbers_of(const Decision& d,
+                          std::size_t pairs,
+                          std::uint64_t seed) {
+  nlohmann::json numbers{{"pairs", pairs}, {"seed", seed}};
+  if (pairs == 0) return numbers;
+  numbers["log_ratio"] = d.median;
+  numbers["alpha"] = d.alpha;
+  if (std::isfinite(d.interval.low) && std::isfinite(d.interval.high))
+    numbers["interval"] = {d.interval.low, d.interval.high};
+  return numbers;
+}
+
 }  // namespace
 
 std::set<std::string> cases_known_to(const fs::path& program,
@@ -181,28 +205,14 @@ std::vector<Finding> findings_of(const DuelOptions& o,
   for (std::size_t i = 0; i < o.cases.size(); ++i) {
     const Decision& d = duel.decisions[i];
     const bool open = d.speed == Speed::inconclusive;
-    all.push_back(
-        {.kind = "clock",
-         .name = o.cases[i],
-         .verdict = std::string(to_string(d.speed)),
-         .detail = fmt::format(
-             "{}, with {:g} % confidence {} to {}, {} pairs; equal is within "
-             "{:g} %",
-             percent(d.median),
-             100 * (1 - d.alpha),
-             percent(d.interval.low),
-             percent(d.interval.high),
-             duel.pairs[i],
-             100 * o.margin),
-         .code = d.speed == Speed::slower ? ExitCode::slower
-                 : open && strict         ? ExitCode::inconclusive
-                                          : ExitCode::good,
-         .numbers = {{"log_ratio", d.median},
-                     {"pairs", duel.pairs[i]},
-                     {"alpha", d.alpha},
-                     {"seed", o.seed}}});
-    if (std::isfinite(d.interval.low) && std::isfinite(d.interval.high))
-      all.back().numbers["interval"] = {d.interval.low, d.interval.high};
+    all.push_back({.kind = "clock",
+                   .name = o.cases[i],
+                   .verdict = std::string(to_string(d.speed)),
+                   .detail = detail_of(d, duel.pairs[i], o.margin),
+                   .code = d.speed == Speed::slower ? ExitCode::slower
+                           : open && strict         ? ExitCode::inconclusive
+                                                    : ExitCode::good,
+                   .numbers = numbers_of(d, duel.pairs[i], o.seed)});
   }
   return all;
 }

@@ -186,7 +186,10 @@ TEST(Duel, StaysOpenWhereTheTimeIsUp) {
   const Duel duel = fight(options, {}, {});
   EXPECT_EQ(findings_of(options, duel, false)[0].code, ExitCode::good);
   EXPECT_EQ(findings_of(options, duel, true)[0].code, ExitCode::inconclusive);
-  EXPECT_EQ(findings_of(options, duel, true)[0].verdict, "inconclusive");
+  const Finding open = findings_of(options, duel, true)[0];
+  EXPECT_EQ(open.verdict, "inconclusive");
+  EXPECT_EQ(open.detail, "no pair of runs within the budget");
+  EXPECT_FALSE(open.numbers.contains("interval"));
 }
 
 }  // namespace
