@@ -4,6 +4,7 @@
 #include <sched.h>
 
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "suite/core/clock.h"
@@ -47,13 +48,22 @@ class OneCore {
 };
 
 /// CPU time of solving: on one thread the same as by the wall, without what
-/// others took from the core.
+/// others took from the core. No number where a stage failed or diverged, which
+/// costs less and is no gain.
 std::map<std::string, double> times(const fs::path& directory) {
   std::map<std::string, double> sums;
   const auto results = read_results(directory);
-  for (const auto& stage : results.at("benchmarks"))
-    if (const auto& time = stage.at("cpu_time"); time.is_number())
-      sums[case_of(stage.at("name").get<std::string>())] += time.get<double>();
+  for (const auto& stage : results.at("benchmarks")) {
+    const auto time = stage.find("cpu_time");
+    const auto stop = stage.at("physinv").find("stop");
+    const bool ends_well = stop != stage.at("physinv").end() &&
+                           (*stop == to_string(Stop::converged) ||
+                            *stop == to_string(Stop::iterations));
+    sums[case_of(stage.at("name").get<std::string>())] +=
+        ends_well && time != stage.end() && time->is_number()
+            ? time->get<double>()
+            : std::numeric_limits<double>::quiet_NaN();
+  }
   return sums;
 }
 
@@ -111,6 +121,23 @@ std::string detail_of(const Decision& d, std::size_t pairs, double margin) {
       100 * margin);
 }
 
+Finding untimed_case(const std::string& name,
+                     Duel::Untimed untimed,
+                     bool strict) {
+  const bool lost = untimed.head && !untimed.base;
+  return {.kind = "clock",
+          .name = name,
+          .verdict = lost ? "lost" : "not timed",
+          .detail = lost ? "a stage of the head came to no end that has a time"
+                    : untimed.head
+                        ? "a stage came to no end that has a time"
+                        : "a stage of the base came to no end that has a time",
+          .code = lost     ? ExitCode::accuracy
+                  : strict ? ExitCode::inconclusive
+                           : ExitCode::good,
+          .numbers = nullptr};
+}
+
 nlohmann::json numbers_of(const Decision& d,
                           std::size_t pairs,
                           std::uint64_t seed) {
@@ -152,10 +179,9 @@ Runner timed_run(const DuelOptions& o) {
     std::vector<double> of_cases;
     for (const auto& name : cases) {
       const auto at = all.find(name);
-      if (at == all.end() || !(at->second > 0))
-        throw EnvironmentError(
-            fmt::format("{} has no time of {}", program.string(), name));
-      of_cases.push_back(at->second);
+      of_cases.push_back(at == all.end()
+                             ? std::numeric_limits<double>::quiet_NaN()
+                             : at->second);
     }
     return of_cases;
   };
@@ -170,6 +196,7 @@ Duel fight(
   std::vector<MedianWatch> watches(o.cases.size());
   Duel duel;
   duel.decisions.resize(o.cases.size());
+  duel.untimed.resize(o.cases.size());
   std::vector<std::size_t> left(o.cases.size());
   for (std::size_t i = 0; i < left.size(); ++i) left[i] = i;
   // What is decided stays so and is not run again.
@@ -182,14 +209,19 @@ Duel fight(
     const bool base_first = (draw & 1) != 0;
     const auto first = run(base_first ? o.base : o.head, names);
     const auto second = run(base_first ? o.head : o.base, names);
+    const auto& base = base_first ? first : second;
+    const auto& head = base_first ? second : first;
     for (std::size_t k = 0; k < left.size(); ++k) {
-      const double ratio = std::log(second[k] / first[k]);
-      watches[left[k]].add(base_first ? ratio : -ratio);
+      Duel::Untimed& untimed = duel.untimed[left[k]];
+      untimed = {.base = !(base[k] > 0), .head = !(head[k] > 0)};
+      if (!untimed.base && !untimed.head)
+        watches[left[k]].add(std::log(head[k] / base[k]));
     }
     const auto decisions = decide(watches, o.alpha, o.margin);
     for (const std::size_t i : left) duel.decisions[i] = decisions[i];
     std::erase_if(left, [&](std::size_t i) {
-      return duel.decisions[i].speed != Speed::inconclusive;
+      return duel.decisions[i].speed != Speed::inconclusive ||
+             duel.untimed[i].base || duel.untimed[i].head;
     });
     if (tell) tell(pair, left.size());
   }
@@ -205,6 +237,10 @@ std::vector<Finding> findings_of(const DuelOptions& o,
   for (std::size_t i = 0; i < o.cases.size(); ++i) {
     const Decision& d = duel.decisions[i];
     const bool open = d.speed == Speed::inconclusive;
+    if (duel.untimed[i].base || duel.untimed[i].head) {
+      all.push_back(untimed_case(o.cases[i], duel.untimed[i], strict));
+      continue;
+    }
     all.push_back({.kind = "clock",
                    .name = o.cases[i],
                    .verdict = std::string(to_string(d.speed)),

@@ -32,16 +32,22 @@ struct DuelOptions {
 std::set<std::string> cases_known_to(const std::filesystem::path& program,
                                      const Chosen& chosen);
 
-/// Who runs a program on some cases: milliseconds of solving for each of them.
+/// Who runs a program on some cases: milliseconds of solving for each of them;
+/// no number where a stage came to no end that has a time.
 using Runner = std::function<std::vector<double>(
     const std::filesystem::path& program, const std::vector<std::string>&)>;
 
 /// Runs the program's verb `run`, here, on one core. Throws EnvironmentError
-/// if it fails or lacks a case.
+/// if it fails.
 Runner timed_run(const DuelOptions& options);
 
 struct Duel {
   std::vector<Decision> decisions;  ///< of each case
+  /// Who has no time of a case, so that it is not run again.
+  struct Untimed {
+    bool base = false, head = false;
+  };
+  std::vector<Untimed> untimed;
   std::vector<std::size_t> pairs;
   double seconds = 0;
 };
@@ -51,7 +57,8 @@ Duel fight(const DuelOptions& options,
            const Runner& run,
            const std::function<void(std::size_t pair, std::size_t left)>& tell);
 
-/// With `strict`, what stayed undecided ends the gate with exit code 8.
+/// With `strict`, what stayed undecided ends the gate with exit code 8. A case
+/// that has a time in the base alone ends worse.
 std::vector<Finding> findings_of(const DuelOptions& options,
                                  const Duel& duel,
                                  bool strict);

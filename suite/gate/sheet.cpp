@@ -143,7 +143,7 @@ std::string undecided_text(const Sheet& sheet) {
   for (const auto& f : sheet.findings) {
     if (f.kind != "clock") continue;
     ++asked;
-    decided += f.verdict != "inconclusive";
+    decided += f.verdict != "inconclusive" && f.verdict != "not timed";
   }
   if (asked == 0 || decided > 0) return "";
   return fmt::format(

@@ -229,6 +229,9 @@ def clock(d):
     expect(0, [*gate, "--budget=0.000001"], d,
            "warning: the clock decided 0 of 1 cases")
     expect(0, [*gate, "--budget=2", "--within=30"], d, "by the clock against")
+    p = expect(0, [gate[0], "--profile=smoke", "--filter=diverge|descend",
+                   "--against=" + BENCH, "--budget=0.2"], d, "1 not timed")
+    check("came to no end that has a time" in p.stdout, "who diverges")
     expect(9, [gate[0], "--profile=smoke", "--against=/bin/false"], d,
            "/bin/false ended with 1")
     endless = os.path.join(d, "endless")

@@ -176,6 +176,32 @@ TEST(Duel, TellsWhoIsSlower) {
   EXPECT_EQ(findings[1].code, ExitCode::good);
 }
 
+TEST(Duel, WhoHasNoTimeIsNotFaster) {
+  const DuelOptions options{.base = "base",
+                            .head = "head",
+                            .chosen = {},
+                            .cases = {"neither", "lost", "gained"},
+                            .out = {},
+                            .seconds = 60};
+  std::size_t runs = 0;
+  const Runner run = [&](const std::filesystem::path& program,
+                         const std::vector<std::string>& cases) {
+    ++runs;
+    std::vector<double> times;
+    for (const auto& name : cases)
+      times.push_back(name == (program == "base" ? "lost" : "gained") ? 1.0
+                                                                      : NAN);
+    return times;
+  };
+  const auto found = findings_of(options, fight(options, run, {}), false);
+  EXPECT_EQ(runs, 2u) << "what has no time is not run again";
+  EXPECT_EQ(found[0].verdict, "not timed");
+  EXPECT_EQ(found[0].code, ExitCode::good);
+  EXPECT_EQ(found[1].verdict, "lost");
+  EXPECT_EQ(found[1].code, ExitCode::accuracy);
+  EXPECT_EQ(found[2].code, ExitCode::good);
+}
+
 TEST(Duel, StaysOpenWhereTheTimeIsUp) {
   const DuelOptions options{.base = "base",
                             .head = "head",
