@@ -134,6 +134,12 @@ CaseRecord Catalog::case_record(const std::string& name) const {
     if (own == nullptr || own->stage.key != keys[k] ||
         !file->has_stage(own->stage, own->arrays_hash))
       continue;
+    if (own->data_hash != record.data.hash)
+      throw StoreError(fmt::format(
+          "{}: its data are not those of the journal's line of stage {} "
+          "(restore it, or delete it to run the stages of this case again)",
+          case_path(name).string(),
+          own->stage.stage));
     record.stages.push_back(own->stage);
     file->read_stage(record.stages.back(), own->arrays_hash);
   }

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "suite/core/dataset.h"
 #include "suite/results/checksum.h"
 
 namespace physinv {
@@ -27,21 +29,82 @@ Status status_of(std::uint8_t byte) {
   return static_cast<Status>(byte);
 }
 
+std::string shape_text(const Batch<double>& b) {
+  return fmt::format("{} x {}", b.cols(), b.rows());
+}
+
 /// Arrays that are read together have one length.
-void require_fitting(const StageRecord& r) {
-  const Index n = r.loss.size();
-  const auto points = r.curve.iteration.size();
-  const bool fits = static_cast<Index>(r.status.size()) == n &&
-                    r.example_iterations.size() == n &&
-                    r.example_evaluations.size() == n && r.x.cols() <= n &&
-                    r.curve.seconds.size() == points &&
-                    r.curve.evaluations.size() == points &&
-                    r.curve.loss.cols() == r.curve.points() &&
-                    r.curve.x.cols() == r.curve.points();
-  if (!fits)
+void require_count(Index count, Index expected, const std::string& name) {
+  if (count != expected)
     throw StoreError(fmt::format(
-        "the arrays of stage {} do not fit together (restore the file)",
-        r.stage));
+        "array {} has {} entries where {} are expected (restore the file)",
+        name,
+        count,
+        expected));
+}
+
+void require_fitting(const StageRecord& r, const std::string& group) {
+  const Index n = r.loss.size(), points = r.curve.points();
+  const auto name = [&](const char* array) { return group + "/" + array; };
+  require_count(static_cast<Index>(r.status.size()), n, name("status"));
+  require_count(r.example_iterations.size(), n, name("iterations"));
+  require_count(r.example_evaluations.size(), n, name("evaluations"));
+  if (r.x.cols() > n) require_count(r.x.cols(), n, name("x"));
+  const auto times = static_cast<Index>(r.curve.seconds.size());
+  const auto work = static_cast<Index>(r.curve.evaluations.size());
+  require_count(times, points, name("curve/seconds"));
+  require_count(work, points, name("curve/evaluations"));
+  require_count(r.curve.loss.cols(), points, name("curve/loss"));
+  require_count(r.curve.x.cols(), points, name("curve/x"));
+}
+
+/// As curves.h says.
+void require_finite(const StageRecord& r, const std::string& group) {
+  const auto require = [&](bool good, const char* array) {
+    if (!good)
+      throw StoreError(fmt::format(
+          "array {}/{} holds what is no number of a stage that ended as '{}' "
+          "(restore the file)",
+          group,
+          array,
+          to_string(r.stop)));
+  };
+  const auto all = [](const auto& list) {
+    return std::all_of(list.begin(), list.end(), [](double v) {
+      return std::isfinite(v) && v >= 0;
+    });
+  };
+  require(all(r.example_iterations), "iterations");
+  require(all(r.example_evaluations), "evaluations");
+  require(all(r.curve.iteration), "curve/iteration");
+  require(all(r.curve.seconds), "curve/seconds");
+  require(all(r.curve.evaluations), "curve/evaluations");
+  if (r.stop == Stop::converged) require(r.loss.allFinite(), "loss");
+  if (r.stop == Stop::diverged) return;
+  for (Index i = 0; i < r.x.cols(); ++i)
+    require(!std::isfinite(r.loss(i)) || r.x.col(i).allFinite(), "x");
+}
+
+/// Whole, and finite.
+void require_sound(const CaseData& data) {
+  for (const auto& [name, array] :
+       {std::pair("x", &data.x), {"y", &data.y}, {"given", &data.given}}) {
+    if (array->rows() > 0 && array->cols() != data.y.cols())
+      throw StoreError(fmt::format(
+          "array data/{} has the shape {} where {} examples are expected "
+          "(restore the file)",
+          name,
+          shape_text(*array),
+          data.y.cols()));
+    if (!array->allFinite())
+      throw StoreError(fmt::format(
+          "array data/{} holds what is no number (restore the file)", name));
+  }
+  const bool none = data.hash.empty() && data.y.size() == 0;  // not drawn
+  if (!none && hex64(content_hash({data.x, data.y, data.given})) != data.hash)
+    throw StoreError(
+        "the arrays of data do not have their hash (restore the file, or "
+        "delete it to run the stages of this case again)");
 }
 
 std::string group_name(const StageRecord& r) {
@@ -142,7 +205,10 @@ void CaseFile::put_data(const CaseData& data) {
   named([&] {
     if (hdf5::has(file_, "data")) {
       const auto old = hdf5::open_group(file_, "data");
-      if (hdf5::read_attribute(old, "hash") == data.hash) return;
+      if (hdf5::read_attribute(old, "hash") == data.hash) {
+        read_data();
+        return;
+      }
       hdf5::remove(file_, "data");
     }
     const auto group = hdf5::create_group(file_, "data");
@@ -154,13 +220,17 @@ void CaseFile::put_data(const CaseData& data) {
 }
 
 CaseData CaseFile::data() const {
-  return named([&] {
-    const auto group = hdf5::open_group(file_, "data");
-    return CaseData{.hash = hdf5::read_attribute(group, "hash"),
-                    .x = hdf5::read_batch(group, "x"),
-                    .y = hdf5::read_batch(group, "y"),
-                    .given = hdf5::read_batch(group, "given")};
-  });
+  return named([&] { return read_data(); });
+}
+
+CaseData CaseFile::read_data() const {
+  const auto group = hdf5::open_group(file_, "data");
+  CaseData data{.hash = hdf5::read_attribute(group, "hash"),
+                .x = hdf5::read_batch(group, "x"),
+                .y = hdf5::read_batch(group, "y"),
+                .given = hdf5::read_batch(group, "given")};
+  require_sound(data);
+  return data;
 }
 
 void CaseFile::put_stage(const StageRecord& r, const std::string& hash) {
@@ -221,12 +291,13 @@ void CaseFile::read_stage(StageRecord& r, const std::string& hash) const {
     r.arrays.clear();
     for (const auto& name : hdf5::names(arrays))
       r.arrays[name] = hdf5::read_batch(arrays, name);
-    require_fitting(r);
+    require_fitting(r, "stages/" + group_name(r));
     if (hex64(arrays_hash(r)) != hash)
       throw StoreError(fmt::format(
           "stage {} does not have the hash of its journal line (delete the "
           "file to run the stages of this case again)",
           r.stage));
+    if (has_result(r)) require_finite(r, "stages/" + group_name(r));
   });
 }
 

@@ -6,6 +6,19 @@
 ///                             x} /arrays/<name>             attributes key,
 ///                             hash
 ///
+/// What is read back has the types, shapes and hashes that it was written
+/// with, and is finite where it must be:
+///
+///   data                               all of it
+///   iterations, evaluations; the       of every stage
+///   curve's iteration, seconds,
+///   evaluations
+///   x and loss, whole                  of a stage that converged
+///   x of an example of finite loss     of one that ran its iterations
+///
+/// Losses of a stage that ran its iterations or diverged, losses and unknowns
+/// along curves, and arrays may hold anything.
+///
 /// Arrays are (samples, features). Sixteen bytes after the end of the HDF5
 /// data hold a checksum of the whole file; HDF5 tools do not mind them.
 #pragma once
@@ -41,6 +54,7 @@ class CaseFile {
            const std::string& case_name);
 
   void put_data(const CaseData& data);
+  /// StoreError, with the array's name, unless all of it has the hash.
   CaseData data() const;
 
   /// Replaces what stands at the record's position.
@@ -58,6 +72,7 @@ class CaseFile {
  private:
   template <class F>
   auto named(F&& body) const;
+  CaseData read_data() const;
 
   hdf5::Handle file_;
   std::string case_name_;

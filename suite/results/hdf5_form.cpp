@@ -6,6 +6,7 @@
 #include <cstring>
 #include <optional>
 #include <set>
+#include <string>
 #include <vector>
 
 #include "suite/results/errors.h"
@@ -34,9 +35,14 @@ constexpr auto kByte = "\x10\0\0\0\x1\0\0\0\0\0\x8\0\0\0\0\0"sv;
 constexpr auto kFillValue = "\x2\x2\x2\x1\0\0\0\0"sv;
 constexpr auto kScalar = "\x1\0\0\0\0\0\0\0"sv;
 
+/// A structure of another form than this suite writes.
+struct Refused {
+  std::string what;
+  std::string path = {};  ///< of the group or array, from the root
+};
+
 [[noreturn]] void refuse(std::string_view what) {
-  throw StoreError(fmt::format(
-      "{} is not of the form that this suite writes (restore it)", what));
+  throw Refused{std::string(what)};
 }
 
 void require(bool good, std::string_view what) {
@@ -107,7 +113,18 @@ class Walk {
   void entry(std::string_view bytes,
              std::optional<std::string_view> heap,
              int depth) {
-    if (heap) name(*heap, number(bytes, 0));
+    if (!heap) return object(bytes, depth);
+    const std::string_view own = name(*heap, number(bytes, 0));
+    try {
+      object(bytes, depth);
+    } catch (Refused& refused) {
+      refused.path = fmt::format(
+          "{}{}{}", own, refused.path.empty() ? "" : "/", refused.path);
+      throw;
+    }
+  }
+
+  void object(std::string_view bytes, int depth) {
     const Object object = header(number(bytes, 8));
     const auto cached = number(bytes, 16, 4);
     require(cached == 0 || (cached == 1 && object.table &&
@@ -124,9 +141,10 @@ class Walk {
     }
   }
 
-  static void name(std::string_view heap, std::uint64_t at) {
-    require(at < heap.size() && heap.find('\0', at) != std::string_view::npos,
-            "a name");
+  static std::string_view name(std::string_view heap, std::uint64_t at) {
+    const auto end = at < heap.size() ? heap.find('\0', at) : heap.npos;
+    require(end != heap.npos, "a name");
+    return heap.substr(at, end - at);
   }
 
   static void array(const Object& object) {
@@ -273,6 +291,15 @@ class Walk {
 
 }  // namespace
 
-void check_form(std::string_view image) { Walk(image).file(); }
+void check_form(std::string_view image) {
+  try {
+    Walk(image).file();
+  } catch (const Refused& refused) {
+    throw StoreError(fmt::format(
+        "{}{} is not of the form that this suite writes (restore it)",
+        refused.path.empty() ? "" : refused.path + ": ",
+        refused.what));
+  }
+}
 
 }  // namespace physinv::hdf5

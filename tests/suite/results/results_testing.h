@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "suite/core/dataset.h"
 #include "suite/results/checksum.h"
 #include "suite/results/curves.h"
 #include "suite/results/file.h"
@@ -122,7 +123,7 @@ inline CaseData sample_data(const CaseInfo& info) {
   data.x = sample_batch(2, info.n, info.seed);
   data.y = sample_batch(3, info.n, info.seed + 1000);
   data.given = Batch<double>(0, info.n);
-  data.hash = hex64(ArrayHash().add(data.x).add(data.y).value());
+  data.hash = hex64(content_hash({data.x, data.y, data.given}));
   return data;
 }
 
