@@ -9,42 +9,40 @@
 #include "suite/app/options.h"
 #include "suite/results/exports.h"
 #include "suite/results/folder.h"
-#include "suite/results/results_json.h"
 
 namespace physinv {
 namespace {
 
-std::string text_in(const std::string& format,
-                    const nlohmann::ordered_json& results,
-                    const Repetitions& repetitions) {
-  if (format == "json")
-    return benchmark_json(results, repetitions).dump(1) + "\n";
-  if (format == "csv")
-    return benchmark_csv(benchmark_json(results, repetitions));
-  if (format == "github")
-    return smaller_is_better(results, repetitions).dump(1) + "\n";
-  if (format == "bencher")
-    return bencher_metrics(results, repetitions).dump(1) + "\n";
+using Json = nlohmann::ordered_json;
+
+std::string text_in(const std::string& format, const Json& results) {
+  if (format == "json") return benchmark_json(results).dump(1) + "\n";
+  if (format == "csv") return benchmark_csv(benchmark_json(results));
+  if (format == "github") return smaller_is_better(results).dump(1) + "\n";
+  if (format == "bencher") return bencher_metrics(results).dump(1) + "\n";
   throw UsageError(fmt::format(
       "--format={} is unknown; known are json, csv, github, bencher", format));
 }
 
 }  // namespace
 
-std::string exported(const std::string& directory, const std::string& format) {
-  const std::filesystem::path from = results_directory(directory);
-  if (!Folder(from).has("results.json"))
-    throw UsageError(fmt::format(
-        "'{}' holds no results.json; 'run' and 'merge' write one", directory));
-  return text_in(format, read_results(from), read_repetitions(from));
+std::string exported(const Loaded& loaded, const std::string& format) {
+  auto results = results_of(loaded);
+  add_not_run(results, stages_not_run(loaded.catalog, loaded.lacks));
+  return text_in(format, results);
 }
 
 ExitCode export_verb(const Arguments& arguments) {
   std::string directory, format = "json", out;
   if (!parse(
           "export",
-          "Results for dashboards, with the spread of repetitions "
-          "(run --benchmark_repetitions).",
+          "Results for dashboards, made from the journal and the case files, "
+          "with the spread of repetitions (run --benchmark_repetitions). A "
+          "stage that failed, was skipped, diverged or was not run has no time "
+          "and no loss. It is an error: error_occurred in json and csv, in "
+          "github and bencher the measure error, 1 instead of 0, which every "
+          "stage has, so that a series of it alarms. Exit 10 if stages failed, "
+          "were skipped or not run; what there is is written all the same.",
           {{"RESULTS", "directory that 'run' wrote", &directory},
            {"--format",
             "json or csv (Google Benchmark's), github (customSmallerIsBetter "
@@ -54,12 +52,14 @@ ExitCode export_verb(const Arguments& arguments) {
            {"--out", "default: standard output", &out, "FILE"}},
           arguments))
     return ExitCode::good;
-  const std::string text = exported(directory, format);
+  const Loaded loaded = load(directory, stderr);
+  const std::string text = exported(loaded, format);
   if (out.empty()) {
     fmt::print("{}", text);
   } else {
     write_atomically(out, text);
   }
+  require_complete(loaded.lacks, kRunAgain);
   return ExitCode::good;
 }
 

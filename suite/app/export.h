@@ -3,10 +3,12 @@
 
 #include <string>
 
+#include "suite/app/load.h"
+
 namespace physinv {
 
-/// A stored campaign as `json`, `csv`, `github` or `bencher`. UsageError for
-/// another format or no results.
-std::string exported(const std::string& directory, const std::string& format);
+/// A stored campaign as `json`, `csv`, `github` or `bencher`, with an error for
+/// each stage that was not run. UsageError for another format.
+std::string exported(const Loaded& loaded, const std::string& format);
 
 }  // namespace physinv

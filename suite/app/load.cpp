@@ -2,18 +2,35 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "suite/app/options.h"
+#include "suite/results/repetitions.h"
+#include "suite/results/results_file.h"
+#include "suite/results/results_json.h"
 
 namespace physinv {
 
-Loaded load(const std::string& directory) {
+Loaded load(const std::string& directory, std::FILE* warnings) {
   Loaded loaded{.catalog = Catalog::read(results_directory(directory))};
-  for (const auto& warning : loaded.catalog.warnings())
-    fmt::print("warning: {}\n", warning);
   auto cases = loaded.catalog.cases();
+  add_repetitions(cases, read_repetitions(directory));
+  check_results(loaded.catalog, cases);
   loaded.lacks = shortfall(loaded.catalog, cases);
+  // What lacks is said at the end, in the one line of an error.
+  if (warnings == stdout || !loaded.lacks.any())
+    for (const auto& warning : loaded.catalog.warnings())
+      fmt::print(warnings, "warning: {}\n", warning);
   loaded.results = Results(std::move(cases));
   return loaded;
+}
+
+nlohmann::ordered_json results_of(const Loaded& loaded) {
+  const auto& plan = loaded.catalog.plan;
+  const auto none = nlohmann::json::object();
+  return results_json(loaded.results.cases(),
+                      loaded.catalog.order(),
+                      plan.is_object() ? plan.value("context", none) : none);
 }
 
 void require_complete(const Shortfall& lacks, std::string_view advice) {

@@ -1,6 +1,8 @@
 /// A stored campaign as the verbs read it.
 #pragma once
 
+#include <cstdio>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 
@@ -16,8 +18,13 @@ struct Loaded {
   Shortfall lacks;
 };
 
-/// Prints what the catalog warns of. UsageError if there is no directory.
-Loaded load(const std::string& directory);
+/// Prints what the catalog warns of; to another stream than standard output
+/// only where nothing lacks. UsageError if there is no directory, StoreError if
+/// something is damaged: results.json is held against what it is made from.
+Loaded load(const std::string& directory, std::FILE* warnings = stdout);
+
+/// What results.json says, made again.
+nlohmann::ordered_json results_of(const Loaded& loaded);
 
 inline constexpr std::string_view kRunAgain =
     "'run' as before makes up for it and keeps the rest; a merge, all shards";

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 
 #include "reports/digest.h"
 #include "suite/app/installed.h"
@@ -21,7 +22,6 @@
 #include "suite/results/json.h"
 #include "suite/results/profiles.h"
 #include "suite/results/published.h"
-#include "suite/results/results_json.h"
 
 namespace physinv {
 namespace {
@@ -119,6 +119,19 @@ void add_cpu(const Results& results, nlohmann::ordered_json& picked) {
   picked["evaluation_ms"] = std::round(1e3 * evaluation);
 }
 
+/// "quick: 6 stages, smoke: 2 stages", where stages of several profiles are
+/// there; empty if not.
+std::string profiles_text(const Results& results) {
+  std::map<std::string, int> stages;
+  for (const CaseRecord& c : results.cases())
+    for (const StageRecord& s : c.stages) ++stages[profile_of(c, s)];
+  std::string text;
+  for (const auto& [profile, count] : stages)
+    text += fmt::format(
+        "{}{}: {} stages", text.empty() ? "" : ", ", profile, count);
+  return stages.size() > 1 ? text : "";
+}
+
 /// Context of the campaign as far as a report states it.
 nlohmann::ordered_json provenance(const Loaded& loaded) {
   const auto& plan = loaded.catalog.plan;
@@ -126,6 +139,8 @@ nlohmann::ordered_json provenance(const Loaded& loaded) {
   const auto context = plan.is_object() ? plan.value("context", none) : none;
   nlohmann::ordered_json picked;
   if (plan.contains("profile")) picked["profile"] = plan["profile"];
+  if (const auto text = profiles_text(loaded.results); !text.empty())
+    picked["profiles"] = text;
   if (loaded.lacks.any()) picked["incomplete"] = to_text(loaded.lacks);
   for (const char* key : {"date",
                           "host_name",
@@ -149,14 +164,14 @@ nlohmann::ordered_json provenance(const Loaded& loaded) {
 /// What a later campaign, and the page of results, can be made from; without
 /// the directory that it lay in.
 void publish_campaign(const fs::path& target,
-                      const fs::path& directory,
+                      const Loaded& loaded,
                       const std::vector<Section>& sections,
                       nlohmann::ordered_json provenance) {
   const auto forget_place = [](auto& context) {
     if (context.contains("options") && context["options"].is_object())
       context["options"].erase("out");
   };
-  auto results = read_results(directory);
+  auto results = results_of(loaded);
   forget_place(results["context"]);
   forget_place(provenance);
   make_directory(target);
@@ -211,8 +226,8 @@ ExitCode report_verb(const Arguments& arguments) {
   bool check = false;
   if (!parse(
           "report",
-          "Writes tables, plots and claims of a finished campaign. Exit 10 if "
-          "the campaign is incomplete.",
+          "Writes tables, plots and claims of a finished campaign. Exit 10 "
+          "if the campaign is incomplete.",
           {{"RESULTS", "directory that 'run' wrote", &results},
            {"--out", "where to; default: RESULTS/report", &out, "DIR"},
            {"--publish",
@@ -255,7 +270,7 @@ ExitCode report_verb(const Arguments& arguments) {
   if (!crowded.empty()) origin["crowded"] = crowded;
   try {
     write_report(target, sections, origin);
-    if (!publish.empty()) publish_campaign(publish, results, sections, origin);
+    if (!publish.empty()) publish_campaign(publish, loaded, sections, origin);
   } catch (const std::runtime_error& error) {
     throw EnvironmentError(error.what());
   }

@@ -17,8 +17,8 @@
 #include "suite/planning/budget.h"
 #include "suite/planning/predict.h"
 #include "suite/results/crowded.h"
-#include "suite/results/exports.h"
 #include "suite/results/file.h"
+#include "suite/results/repetitions.h"
 #include "suite/results/results.h"
 #include "suite/results/store.h"
 
@@ -223,6 +223,16 @@ Repetitions repeat(const Prepared& prepared,
   return all;
 }
 
+/// In the formats of Google Benchmark's flags.
+void write_exports(const RunFlags& flags, bool to_screen) {
+  const Habits& habits = flags.habits;
+  if (!to_screen && habits.out.empty()) return;
+  const Loaded loaded = load(flags.campaign.out.string(), stderr);
+  if (to_screen) put(stdout, exported(loaded, habits.format));
+  if (!habits.out.empty())
+    write_atomically(habits.out, exported(loaded, habits.out_format));
+}
+
 }  // namespace
 
 ExitCode run_verb(const Arguments& arguments) {
@@ -257,18 +267,16 @@ ExitCode run_verb(const Arguments& arguments) {
                                        flags.json(),
                                        screen);
   if (repeats && !result.interrupted)
-    write_repetitions(flags.campaign.out,
-                      repeat(prepared, flags, result.cases, screen));
+    keep_repetitions(flags.campaign.out,
+                     repeat(prepared, flags, result.cases, screen),
+                     {.break_lock = flags.campaign.break_lock});
   result.interrupted = result.interrupted || stop_signals() > 0;
   const auto own = own_records(std::move(result.cases), names);
   put(stream, summary_table(own));
   if (const auto text = crowded_text(own); !text.empty())
     put(stream, text + '\n');
   put(stream, result_text(flags, result));
-  const std::string& out = flags.campaign.out.string();
-  if (stream != stdout) put(stdout, exported(out, flags.habits.format));
-  if (!flags.habits.out.empty())
-    write_atomically(flags.habits.out, exported(out, flags.habits.out_format));
+  write_exports(flags, stream != stdout);
   if (result.interrupted)
     throw ExitError(ExitCode::interrupted,
                     fmt::format("interrupted: {} of {} cases not run; what had "

@@ -289,7 +289,17 @@ class Campaign {
     queue_.insert(queue_.begin(), event.case_index);
   }
 
-  void keep(std::size_t i, const StageRecord& record) {
+  RunContext run_context(std::size_t i) const {
+    return {.profile = cases_[i].info.profile,
+            .host = context_.value("host_name", ""),
+            .processor = context_.value("cpu_model", ""),
+            .instruction_set = context_.value("instruction_set", ""),
+            .threads = options_.threads,
+            .jobs = options_.jobs};
+  }
+
+  void keep(std::size_t i, StageRecord& record) {
+    record.run = run_context(i);
     store_.add(cases_[i].info, data_[i], record);
     counted_.insert({i, static_cast<std::size_t>(record.position)});
     ++result_.stages_run;
@@ -336,11 +346,11 @@ class Campaign {
     for (Index k = position; k < stages; ++k) {
       const bool first = k == position;
       const auto& cause = c.info.stages[static_cast<std::size_t>(position)];
-      const auto record = lost_stage(c,
-                                     k,
-                                     first ? Stop::failed : Stop::skipped,
-                                     first ? message : cause + " failed",
-                                     revision_);
+      auto record = lost_stage(c,
+                               k,
+                               first ? Stop::failed : Stop::skipped,
+                               first ? message : cause + " failed",
+                               revision_);
       progress_.finished(kNobody, i, record);
       keep(i, record);
     }
@@ -442,15 +452,17 @@ void dry_run(const Prepared& prepared,
       const bool have = k < found.size();
       all += c.operations(k);
       have ? ++reused : (left += c.operations(k), ++run);
-      fmt::print(
-          stream,
-          "{:<5} {} {}  {:.2g} operations{}\n",
-          have ? "reuse" : "run",
-          c.info.name,
-          c.info.stages[k],
-          c.operations(k),
-          have ? fmt::format(", {} at {}", found[k].finished, found[k].revision)
-               : "");
+      fmt::print(stream,
+                 "{:<5} {} {}  {:.2g} operations{}\n",
+                 have ? "reuse" : "run",
+                 c.info.name,
+                 c.info.stages[k],
+                 c.operations(k),
+                 have ? fmt::format(", {} at {}, profile {}",
+                                    found[k].finished,
+                                    found[k].revision,
+                                    profile_of({.info = c.info}, found[k]))
+                      : "");
     }
   }
   fmt::print(stream,

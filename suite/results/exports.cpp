@@ -7,42 +7,26 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "suite/results/folder.h"
-#include "suite/results/json.h"
+#include "suite/core/median.h"
+#include "suite/results/catalog.h"
+#include "suite/results/results_json.h"
+#include "suite/results/shortfall.h"
 
 namespace physinv {
 namespace {
 
-namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kFile = "repetitions.json";
+bool is_error(const Json& entry) { return entry.contains("error_occurred"); }
 
-/// Milliseconds of all repetitions, the recorded run first.
-std::vector<double> times_of(const Json& entry,
-                             const Repetitions& repetitions,
-                             double Seconds::*clock) {
-  const Json& first =
-      entry.at(clock == &Seconds::wall ? "real_time" : "cpu_time");
-  std::vector<double> all;
-  if (first.is_number()) all.push_back(first);
-  const auto at =
-      repetitions.find(entry.at("name").get<std::string>() + " " +
-                       entry.at("physinv").at("key").get<std::string>());
-  if (at != repetitions.end())
-    for (const Seconds& s : at->second) all.push_back(1e3 * (s.*clock));
-  return all;
+/// Nanoseconds of all repetitions by "wall" or "cpu", the recorded run first.
+std::vector<double> times_of(const Json& entry, const char* clock) {
+  return entry.at("physinv").at("times").at(clock);
 }
 
 double mean(const std::vector<double>& v) {
   return std::accumulate(v.begin(), v.end(), 0.0) /
          static_cast<double>(v.size());
-}
-
-double middle(std::vector<double> v) {
-  std::sort(v.begin(), v.end());
-  const std::size_t n = v.size();
-  return n % 2 == 1 ? v[n / 2] : 0.5 * (v[n / 2 - 1] + v[n / 2]);
 }
 
 double deviation(const std::vector<double>& v) {
@@ -62,7 +46,7 @@ struct Aggregate {
 };
 constexpr Aggregate kAggregates[] = {
     {"mean", "time", mean},
-    {"median", "time", [](const std::vector<double>& v) { return middle(v); }},
+    {"median", "time", [](const std::vector<double>& v) { return median(v); }},
     {"stddev", "time", deviation},
     {"cv", "percentage", variation}};
 
@@ -94,55 +78,44 @@ std::string quoted(const std::string& text) {
 
 }  // namespace
 
-Repetitions read_repetitions(const fs::path& directory) {
-  const Folder folder(directory);
-  if (!folder.has(kFile)) return {};
-  return parse_repetitions(folder.read(kFile, kLargestText), directory / kFile);
-}
-
-Repetitions parse_repetitions(std::string_view bytes, const fs::path& path) {
-  Repetitions repetitions;
-  try {
-    const Json all = parse_json<Json>(bytes);
-    if (!is_intact(all)) throw std::runtime_error("checksum");
-    for (const auto& [name, times] : all.at("times").items())
-      for (const Json& t : times)
-        repetitions[name].push_back({t.at(0), t.at(1)});
-  } catch (const std::exception&) {
-    throw StoreError(
-        fmt::format("{} is damaged (delete it, or run --benchmark_repetitions "
-                    "again)",
-                    path.string()));
+std::vector<std::string> stages_not_run(const Catalog& catalog,
+                                        const Shortfall& lacks) {
+  std::vector<std::string> names;
+  for (const auto& name : lacks.unrun_cases) {
+    const auto stages = planned_stages(catalog.plan, name);
+    for (const auto& stage : stages) names.push_back(name + "/" + stage);
+    if (stages.empty()) names.push_back(name);
   }
-  return repetitions;
-}
-
-void write_repetitions(const fs::path& directory,
-                       const Repetitions& repetitions) {
-  Json times = Json::object();
-  for (const auto& [name, seconds] : repetitions) {
-    times[name] = Json::array();
-    for (const Seconds& s : seconds) times[name].push_back({s.wall, s.cpu});
+  for (const auto* some : {&lacks.unrun_stages, &lacks.lost}) {
+    for (std::string name : *some) {
+      name[name.rfind(' ')] = '/';
+      names.push_back(std::move(name));
+    }
   }
-  Json all{{"times", std::move(times)}};
-  all["checksum"] = checksum_of(all);
-  Folder(directory).write(kFile, all.dump(1) + "\n");
+  return names;
 }
 
-Json benchmark_json(Json results, const Repetitions& repetitions) {
+void add_not_run(Json& results, const std::vector<std::string>& names) {
+  for (const auto& name : names)
+    results["benchmarks"].push_back(error_entry(name, "not run"));
+}
+
+Json benchmark_json(Json results) {
   Json all = Json::array();
   for (const Json& entry : results.at("benchmarks")) {
-    const auto wall = times_of(entry, repetitions, &Seconds::wall);
-    const auto cpu = times_of(entry, repetitions, &Seconds::cpu);
-    const std::size_t count = std::max<std::size_t>(1, wall.size());
-    for (std::size_t i = 0; i < count; ++i) {
+    if (is_error(entry)) {
+      all.push_back(entry);
+      continue;
+    }
+    const auto wall = times_of(entry, "wall"), cpu = times_of(entry, "cpu");
+    for (std::size_t i = 0; i < wall.size(); ++i) {
       Json own = entry;
-      own["repetitions"] = count;
+      own["repetitions"] = wall.size();
       own["repetition_index"] = i;
-      if (i < wall.size()) own["real_time"] = wall[i], own["cpu_time"] = cpu[i];
+      own["real_time"] = wall[i], own["cpu_time"] = cpu[i];
       all.push_back(std::move(own));
     }
-    if (count < 2) continue;
+    if (wall.size() < 2) continue;
     for (const Aggregate& a : kAggregates)
       all.push_back(aggregate(entry, a, wall, cpu));
   }
@@ -154,29 +127,43 @@ std::string benchmark_csv(const Json& benchmarks) {
   std::string out =
       "name,iterations,real_time,cpu_time,time_unit,bytes_per_second,"
       "items_per_second,label,error_occurred,error_message\n";
-  for (const Json& b : benchmarks.at("benchmarks"))
-    out += fmt::format("{},{},{},{},{},,,,,\n",
-                       quoted(b.at("name")),
-                       b.at("iterations").dump(),
-                       b.at("real_time").dump(),
-                       b.at("cpu_time").dump(),
-                       b.at("time_unit").get<std::string>());
+  for (const Json& b : benchmarks.at("benchmarks")) {
+    const std::string name = quoted(b.at("name"));
+    out += is_error(b)
+               ? fmt::format(
+                     "{},,,,,,,,true,{}\n", name, quoted(b.at("error_message")))
+               : fmt::format("{},{},{},{},{},,,,,\n",
+                             name,
+                             b.at("iterations").dump(),
+                             b.at("real_time").dump(),
+                             b.at("cpu_time").dump(),
+                             b.at("time_unit").get<std::string>());
+  }
   return out;
 }
 
-Json smaller_is_better(const Json& results, const Repetitions& repetitions) {
+Json smaller_is_better(const Json& results) {
   Json out = Json::array();
   for (const Json& entry : results.at("benchmarks")) {
     const std::string name = entry.at("name");
-    const auto wall = times_of(entry, repetitions, &Seconds::wall);
-    if (!wall.empty()) {
-      Json time{
-          {"name", name + " time"}, {"unit", "ms"}, {"value", middle(wall)}};
-      if (wall.size() > 1)
-        time["range"] = fmt::format("{:.6g}", deviation(wall));
-      time["extra"] = fmt::format("repetitions: {}", wall.size());
-      out.push_back(std::move(time));
-    }
+    Json error{{"name", name + " error"},
+               {"unit", "0 or 1"},
+               {"value", is_error(entry) ? 1 : 0}};
+    if (is_error(entry)) error["extra"] = entry.at("error_message");
+    out.push_back(std::move(error));
+    if (is_error(entry)) continue;
+    const auto wall = times_of(entry, "wall");
+    Json time{{"name", name + " time"},
+              {"unit", "ms"},
+              {"value", 1e-6 * median(wall)}};
+    if (wall.size() > 1)
+      time["range"] = fmt::format("{:.6g}", 1e-6 * deviation(wall));
+    time["extra"] = fmt::format("repetitions: {}{}",
+                                wall.size(),
+                                entry.at("physinv").value("crowded", false)
+                                    ? ", crowded: no measure of speed"
+                                    : "");
+    out.push_back(std::move(time));
     if (const Json& loss = entry.at("loss_median"); loss.is_number())
       out.push_back(
           {{"name", name + " loss"}, {"unit", "loss"}, {"value", loss}});
@@ -184,23 +171,23 @@ Json smaller_is_better(const Json& results, const Repetitions& repetitions) {
   return out;
 }
 
-Json bencher_metrics(const Json& results, const Repetitions& repetitions) {
+Json bencher_metrics(const Json& results) {
   Json out = Json::object();
   for (const Json& entry : results.at("benchmarks")) {
-    Json measures = Json::object();
-    const auto wall = times_of(entry, repetitions, &Seconds::wall);
-    if (!wall.empty()) {
+    Json measures{{"error", {{"value", is_error(entry) ? 1 : 0}}}};
+    if (!is_error(entry)) {
+      const auto wall = times_of(entry, "wall");
       const auto [low, high] = std::minmax_element(wall.begin(), wall.end());
-      measures["latency"] = {{"value", 1e6 * middle(wall)},
-                             {"lower_value", 1e6 * *low},
-                             {"upper_value", 1e6 * *high}};
+      measures["latency"] = {{"value", median(wall)},
+                             {"lower_value", *low},
+                             {"upper_value", *high}};
+      if (const Json& loss = entry.at("loss_median"); loss.is_number())
+        measures["loss"] = {{"value", loss}};
+      double simulations = 0;
+      for (const char* counter : {"forward", "vjp", "jacobian", "inverse"})
+        simulations += entry.at(counter).get<double>();
+      measures["simulations"] = {{"value", simulations}};
     }
-    if (const Json& loss = entry.at("loss_median"); loss.is_number())
-      measures["loss"] = {{"value", loss}};
-    double simulations = 0;
-    for (const char* counter : {"forward", "vjp", "jacobian", "inverse"})
-      simulations += entry.at(counter).get<double>();
-    measures["simulations"] = {{"value", simulations}};
     out[entry.at("name").get<std::string>()] = std::move(measures);
   }
   return out;

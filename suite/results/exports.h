@@ -1,46 +1,40 @@
-/// results.json and repeated times for other programs.
+/// results.json for other programs. What failed, was skipped, diverged or was
+/// not run is an error in each of them, without a time: a series that ends, or
+/// falls to zero, alarms nobody.
 #pragma once
 
-#include <filesystem>
-#include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
-#include <string_view>
 #include <vector>
-
-#include "suite/results/record.h"
 
 namespace physinv {
 
-/// Times of solving a stage again, by "case/stage key", so that those of other
-/// options or sources count for nothing. The results of these runs were the
-/// same and are not kept.
-using Repetitions = std::map<std::string, std::vector<Seconds>>;
+class Catalog;
+struct Shortfall;
 
-/// repetitions.json of a directory of results; empty if there is none.
-Repetitions read_repetitions(const std::filesystem::path& directory);
-/// The same of a file's bytes; `path` is for messages. StoreError if they are
-/// damaged.
-Repetitions parse_repetitions(std::string_view bytes,
-                              const std::filesystem::path& path);
-void write_repetitions(const std::filesystem::path& directory,
-                       const Repetitions& repetitions);
+/// Names, as those of entries, of stages that were asked for and have no
+/// record; of cases where a plan of an older version does not name stages.
+std::vector<std::string> stages_not_run(const Catalog& catalog,
+                                        const Shortfall& lacks);
+
+/// An error for each.
+void add_not_run(nlohmann::ordered_json& results,
+                 const std::vector<std::string>& names);
 
 /// Google Benchmark's JSON: `results` as results.json has it, an entry for
 /// each repetition, and mean, median, stddev and cv of what was repeated.
-nlohmann::ordered_json benchmark_json(nlohmann::ordered_json results,
-                                      const Repetitions& repetitions);
+nlohmann::ordered_json benchmark_json(nlohmann::ordered_json results);
 
 /// Google Benchmark's CSV of the same.
 std::string benchmark_csv(const nlohmann::ordered_json& benchmarks);
 
-/// github-action-benchmark's customSmallerIsBetter: time of solving and median
-/// loss of each stage, the median of repetitions with their range.
-nlohmann::ordered_json smaller_is_better(const nlohmann::ordered_json& results,
-                                         const Repetitions& repetitions);
+/// github-action-benchmark's customSmallerIsBetter: of each stage `error`, 0 or
+/// 1, time of solving, the median of repetitions with their range, and median
+/// loss. The service compares with the commit before: 1 after 0 is an alert.
+nlohmann::ordered_json smaller_is_better(const nlohmann::ordered_json& results);
 
-/// Bencher Metric Format: latency in nanoseconds, loss, simulations.
-nlohmann::ordered_json bencher_metrics(const nlohmann::ordered_json& results,
-                                       const Repetitions& repetitions);
+/// Bencher Metric Format: error, latency in nanoseconds, loss, simulations. A
+/// threshold of error that alerts is static, with an upper boundary of 0.
+nlohmann::ordered_json bencher_metrics(const nlohmann::ordered_json& results);
 
 }  // namespace physinv

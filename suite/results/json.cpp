@@ -22,12 +22,6 @@ E parse(std::string_view text, std::initializer_list<E> all) {
   throw std::runtime_error("unknown word '" + std::string(text) + "'");
 }
 
-/// JSON has no NaN: it becomes null.
-double number(const json& j) {
-  return j.is_null() ? std::numeric_limits<double>::quiet_NaN()
-                     : j.get<double>();
-}
-
 /// Brackets that are open at once. Copies and texts of JSON are made by
 /// functions that call themselves.
 bool is_shallow(std::string_view text) {
@@ -53,7 +47,14 @@ std::uint64_t count(const json& j) {
 }
 
 json to_json(Seconds s) { return json::array({s.wall, s.cpu}); }
-Seconds seconds(const json& j) { return {number(j.at(0)), number(j.at(1))}; }
+double time_from(const json& j) {
+  if (!j.is_number() || !std::isfinite(j.get<double>()) || j.get<double>() < 0)
+    throw std::runtime_error("a time is no number of seconds");
+  return j;
+}
+Seconds seconds(const json& j) {
+  return {time_from(j.at(0)), time_from(j.at(1))};
+}
 
 json to_json(const Counts& counts) {
   json j = json::object();
@@ -69,6 +70,31 @@ Counts counts_from_json(const json& j) {
     if (at != j.end()) counts[static_cast<Counter>(i)] = count(*at);
   }
   return counts;
+}
+
+json to_json(const RunContext& run) {
+  return {{"profile", run.profile},
+          {"host", run.host},
+          {"processor", run.processor},
+          {"instruction_set", run.instruction_set},
+          {"threads", run.threads},
+          {"jobs", run.jobs}};
+}
+
+int workers(const json& j) {
+  const auto number = whole(j);
+  if (number < 0 || number > 1'000'000)
+    throw std::runtime_error("threads or jobs are not 0 to 1000000");
+  return static_cast<int>(number);
+}
+
+RunContext run_from_json(const json& j) {
+  return {.profile = j.at("profile"),
+          .host = j.at("host"),
+          .processor = j.at("processor"),
+          .instruction_set = j.at("instruction_set"),
+          .threads = workers(j.at("threads")),
+          .jobs = workers(j.at("jobs"))};
 }
 
 json binary(const double* data, Index rows, Index cols) {
@@ -201,7 +227,8 @@ json to_json(const StageRecord& r) {
           {"crowded", r.crowded},
           {"finished", r.finished},
           {"revision", r.revision},
-          {"trajectory", r.trajectory}};
+          {"trajectory", r.trajectory},
+          {"run", to_json(r.run)}};
 }
 
 StageRecord stage_from_json(const json& j) {
@@ -232,6 +259,7 @@ StageRecord stage_from_json(const json& j) {
   r.finished = j.at("finished");
   r.revision = j.at("revision");
   r.trajectory = j.at("trajectory");
+  if (j.contains("run")) r.run = run_from_json(j.at("run"));
   return r;
 }
 

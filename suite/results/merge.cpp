@@ -5,6 +5,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "suite/results/repetitions.h"
+#include "suite/results/results_file.h"
 #include "suite/results/store.h"
 
 namespace physinv {
@@ -115,7 +117,7 @@ void check_out(const std::vector<fs::path>& shards, const fs::path& out) {
 json merged_plan(const std::vector<Catalog>& shards) {
   json plan = shards.front().plan;
   for (const auto& shard : shards) {
-    for (const char* what : {"recipes", "keys"})
+    for (const char* what : {"recipes", "keys", "stages"})
       plan[what].update(shard.plan.value(what, json::object()));
     for (const char* what : {"profile", "fingerprint"})
       if (plan[what] == "") plan[what] = shard.plan.at(what);
@@ -175,6 +177,11 @@ Merged merge(const std::vector<fs::path>& paths,
   const auto shards = read_shards(paths);
   for (const auto& shard : shards) check_same_campaign(shards.front(), shard);
   check_out(paths, out);
+  for (const auto& shard : shards) {
+    auto cases = shard.cases();
+    add_repetitions(cases, read_repetitions(shard.directory()));
+    check_results(shard, cases);
+  }
   Store store(out, lock);
   json plan = merged_plan(shards);
   if (store.catalog().plan.is_object()) {

@@ -24,6 +24,9 @@ bool is_text(const json& j) { return j.is_string(); }
 bool is_name(const json& j) {
   return is_text(j) && is_case_name(j.get_ref<const std::string&>());
 }
+bool is_stage(const json& j) {
+  return is_text(j) && physinv::is_word(j.get_ref<const std::string&>());
+}
 bool is_key_text(const json& j) {
   return is_text(j) && is_key(j.get_ref<const std::string&>());
 }
@@ -87,6 +90,13 @@ bool well_formed(const json& plan) {
                       return is_list(keys, is_key_text);
                     });
                   }) &&
+         may_hold(plan,
+                  "stages",
+                  [](const json& j) {
+                    return is_table(j, [](const json& stages) {
+                      return is_list(stages, is_stage);
+                    });
+                  }) &&
          may_hold(plan, "merged", [](const json& j) { return j.is_boolean(); });
 }
 
@@ -104,16 +114,21 @@ json make_plan(const std::vector<CaseInfo>& cases,
                std::vector<PlannedCase> campaign) {
   if (campaign.empty())
     for (const auto& info : cases) campaign.push_back({info.name, ""});
-  json names = json::array(), recipes = json::object(), keys = json::object();
+  json names = json::array(), recipes = json::object();
+  json keys = json::object(), stages = json::object();
   for (const auto& c : campaign) {
     names.push_back(c.name);
     if (!c.recipe.empty()) recipes[c.name] = c.recipe;
   }
-  for (const auto& info : cases) keys[info.name] = info.keys;
+  for (const auto& info : cases) {
+    keys[info.name] = info.keys;
+    stages[info.name] = info.stages;
+  }
   return {{"schema_version", kPlanVersion},
           {"cases", std::move(names)},
           {"recipes", std::move(recipes)},
           {"keys", std::move(keys)},
+          {"stages", std::move(stages)},
           {"profile", cases.empty() ? "" : cases.front().profile},
           {"fingerprint", context.value("fingerprint", "")},
           {"context", context}};
@@ -135,9 +150,9 @@ json extend_plan(const json& earlier, json plan) {
       if (!seen.contains(name)) names.push_back(name);
     plan["cases"] = std::move(names);
   }
-  for (const char* what : {"recipes", "keys"}) {
+  for (const char* what : {"recipes", "keys", "stages"}) {
     json all = earlier.value(what, json::object());
-    all.update(plan.at(what));
+    all.update(plan.value(what, json::object()));
     plan[what] = std::move(all);
   }
   return plan;
@@ -195,9 +210,14 @@ std::vector<std::string> planned_keys(const json& plan,
                                       const std::string& case_name,
                                       std::vector<std::string> otherwise) {
   if (!plan.is_object() || !plan.contains("keys")) return otherwise;
-  const auto at = plan["keys"].find(case_name);
-  return at == plan["keys"].end() ? otherwise
-                                  : at->get<std::vector<std::string>>();
+  return plan["keys"].value(case_name, std::move(otherwise));
+}
+
+std::vector<std::string> planned_stages(const json& plan,
+                                        const std::string& case_name) {
+  const std::vector<std::string> none;
+  if (!plan.is_object() || !plan.contains("stages")) return none;
+  return plan["stages"].value(case_name, none);
 }
 
 }  // namespace physinv

@@ -3,6 +3,7 @@
 ///   cases     names of the whole campaign in order, shards included
 ///   recipes   of each case: what it runs, apart from data and numerics
 ///   keys      content keys of the cases asked for here
+///   stages    names of their stages
 ///   profile, fingerprint, context   as for results.json
 ///   checksum  CRC-32C of the rest, compact and sorted
 ///
@@ -50,5 +51,9 @@ nlohmann::json parse_plan(std::string_view bytes,
 std::vector<std::string> planned_keys(const nlohmann::json& plan,
                                       const std::string& case_name,
                                       std::vector<std::string> otherwise);
+
+/// Names of a case's stages; none if the plan does not tell them.
+std::vector<std::string> planned_stages(const nlohmann::json& plan,
+                                        const std::string& case_name);
 
 }  // namespace physinv

@@ -28,6 +28,14 @@ struct CaseInfo {
   std::vector<std::string> keys;    ///< content key of each stage
 };
 
+/// Where and how a stage ran: what its times depend on, and its numbers do not.
+struct RunContext {
+  std::string profile;  ///< quick; empty in records of older versions
+  std::string host, processor, instruction_set;
+  int threads = 0, jobs = 0;  ///< 0: not known
+  bool operator==(const RunContext&) const = default;
+};
+
 /// One finished stage.
 struct StageRecord {
   std::string case_name, stage, key;
@@ -45,6 +53,7 @@ struct StageRecord {
   std::string finished;    ///< UTC date and time, ISO 8601
   std::string revision;    ///< git revision it ran from, "+dirty" if so
   std::string trajectory;  ///< hash of all iterates, if traced
+  RunContext run;
 
   Batch<double> x;             ///< unknowns x examples
   Vector<double> loss;         ///< of x, evaluated again in double
@@ -52,11 +61,20 @@ struct StageRecord {
   Vector<double> example_iterations, example_evaluations;
   Curve curve;
   std::map<std::string, Batch<double>> arrays;  ///< method's own findings
+
+  /// Solving again, only for its times, see exports.h; not in the journal.
+  std::vector<Seconds> repeated;
 };
 
 /// Did it run to an end of its own? A divergence is a result, too.
 inline bool has_result(const StageRecord& stage) {
   return stage.stop != Stop::failed && stage.stop != Stop::skipped;
+}
+
+/// Did it come to an end that its time can be told for? A time until it
+/// diverged or failed is no gain.
+inline bool has_time(const StageRecord& stage) {
+  return has_result(stage) && stage.stop != Stop::diverged;
 }
 
 /// Problem data of a case, so that results can be verified alone.
@@ -70,5 +88,11 @@ struct CaseRecord {
   CaseData data;
   std::vector<StageRecord> stages;  ///< finished ones, in chain order
 };
+
+/// Which profile a stage ran for; one of an older version has its case's.
+inline const std::string& profile_of(const CaseRecord& c,
+                                     const StageRecord& stage) {
+  return stage.run.profile.empty() ? c.info.profile : stage.run.profile;
+}
 
 }  // namespace physinv

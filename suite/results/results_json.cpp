@@ -10,19 +10,19 @@
 #include <utility>
 
 #include "suite/core/median.h"
-#include "suite/results/folder.h"
 #include "suite/results/json.h"
+#include "suite/results/repetitions.h"
 
 namespace physinv {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kFile = "results.json";
+constexpr const char* kTimeUnit = "ns";
 
 Json number(double v) { return std::isfinite(v) ? Json(v) : Json(nullptr); }
 
-double milliseconds(double seconds) { return 1e3 * seconds; }
+double nanoseconds(double seconds) { return 1e9 * seconds; }
 
 /// Middle of the losses; those that are not finite count as largest.
 double median_loss(const Vector<double>& loss) {
@@ -55,13 +55,38 @@ Json statuses(const std::vector<Status>& status) {
   return j;
 }
 
+Json run_context(const RunContext& run) {
+  if (run.threads == 0) return nullptr;
+  return {{"host_name", run.host},
+          {"cpu_model", run.processor},
+          {"instruction_set", run.instruction_set},
+          {"threads", run.threads},
+          {"jobs", run.jobs}};
+}
+
+Json times(const StageRecord& s) {
+  if (!has_time(s)) return nullptr;
+  Json all;
+  for (const auto& [name, clock] :
+       {std::pair("wall", &Seconds::wall), {"cpu", &Seconds::cpu}}) {
+    Json list = Json::array();
+    for (const double t : solving_times(s, clock))
+      list.push_back(number(nanoseconds(t)));
+    all[name] = std::move(list);
+  }
+  return all;
+}
+
 Json details(const CaseRecord& c, const StageRecord& s) {
   Json options = Json::object(), counts = Json::object();
   for (const auto& [name, value] : s.options) options[name] = value;
   add_counts(counts, s.counts);
+  const auto spent = [&](Seconds seconds) {
+    return has_result(s) ? number(1e3 * seconds.wall) : Json(nullptr);
+  };
   return {{"experiment", c.info.experiment},
           {"method", c.info.method},
-          {"profile", c.info.profile},
+          {"profile", profile_of(c, s)},
           {"n", c.info.n},
           {"seed", c.info.seed},
           {"precision", to_string(c.info.precision)},
@@ -70,10 +95,12 @@ Json details(const CaseRecord& c, const StageRecord& s) {
           {"key", s.key},
           {"stop", to_string(s.stop)},
           {"message", s.message},
-          {"setup_ms", number(milliseconds(s.clocks.setup.wall))},
-          {"warmup_ms", number(milliseconds(s.clocks.warmup.wall))},
-          {"measure_ms", number(milliseconds(s.clocks.measure.wall))},
-          {"counts", std::move(counts)},
+          {"setup_ms", spent(s.clocks.setup)},
+          {"warmup_ms", spent(s.clocks.warmup)},
+          {"measure_ms", spent(s.clocks.measure)},
+          {"times", times(s)},
+          {"timed_on", run_context(s.run)},
+          {"counts", has_result(s) ? std::move(counts) : Json(nullptr)},
           {"peak_buffer_bytes", s.buffer_bytes},
           {"rss_bytes", s.rss_bytes},
           {"crowded", s.crowded},
@@ -85,25 +112,37 @@ Json details(const CaseRecord& c, const StageRecord& s) {
           {"options", std::move(options)}};
 }
 
-Json entry(const CaseRecord& c,
-           const StageRecord& s,
-           std::size_t family,
-           int threads) {
-  const std::string name = c.info.name + "/" + s.stage;
+Json measured_entry(const std::string& name,
+                    const StageRecord& s,
+                    int threads) {
   Json j{{"name", name},
-         {"family_index", family},
+         {"family_index", 0},
          {"per_family_instance_index", s.position},
          {"run_name", name},
          {"run_type", "iteration"},
-         {"repetitions", 1},
+         {"repetitions", 1 + s.repeated.size()},
          {"repetition_index", 0},
          {"threads", threads},
          {"iterations", s.iterations},
-         {"real_time", number(milliseconds(s.clocks.solve.wall))},
-         {"cpu_time", number(milliseconds(s.clocks.solve.cpu))},
-         {"time_unit", "ms"}};
+         {"real_time", number(nanoseconds(solving_time(s).wall))},
+         {"cpu_time", number(nanoseconds(solving_time(s).cpu))},
+         {"time_unit", kTimeUnit}};
   add_accuracy(j, s.loss);
   add_counts(j, s.counts);
+  return j;
+}
+
+Json entry(const CaseRecord& c, const StageRecord& s, std::size_t family) {
+  const std::string name = c.info.name + "/" + s.stage;
+  Json j = has_time(s)
+               ? measured_entry(name, s, std::max(1, s.run.threads))
+               : error_entry(
+                     name,
+                     s.message.empty()
+                         ? std::string(to_string(s.stop))
+                         : fmt::format("{}: {}", to_string(s.stop), s.message));
+  j["family_index"] = family;
+  j["per_family_instance_index"] = s.position;
   j["physinv"] = details(c, s);
   return j;
 }
@@ -121,92 +160,24 @@ Json full_context(const nlohmann::json& given) {
                {"library_build_type", "release"},
                {"physinv", Json::object()}};
   for (const auto& [key, value] : given.items()) context[key] = value;
-  context["physinv"]["schema_version"] = kSchemaVersion;
+  context["physinv"]["schema_version"] = kResultsVersion;
   return context;
-}
-
-int threads_of(const nlohmann::json& context) {
-  const auto at = context.find("options");
-  return at != context.end() && at->is_object() && at->contains("threads") &&
-                 at->at("threads").is_number_integer()
-             ? at->at("threads").get<int>()
-             : 1;
-}
-
-bool has_all(const Json& object,
-             std::initializer_list<const char*> keys,
-             bool (*is)(const Json&)) {
-  return object.is_object() &&
-         std::all_of(keys.begin(), keys.end(), [&](const char* key) {
-           const auto at = object.find(key);
-           return at != object.end() && is(*at);
-         });
-}
-
-bool is_text(const Json& j) { return j.is_string(); }
-bool is_number(const Json& j) { return j.is_number(); }
-bool is_number_or_null(const Json& j) { return j.is_number() || j.is_null(); }
-
-bool is_entry(const Json& j) {
-  return has_all(j, {"name", "run_name", "time_unit"}, is_text) &&
-         has_all(j,
-                 {"family_index",
-                  "per_family_instance_index",
-                  "threads",
-                  "iterations",
-                  "forward",
-                  "vjp",
-                  "jacobian",
-                  "inverse"},
-                 is_number) &&
-         has_all(
-             j, {"real_time", "cpu_time", "loss_median"}, is_number_or_null) &&
-         j.at("real_time").is_null() == j.at("cpu_time").is_null() &&
-         j.contains("physinv") && has_all(j.at("physinv"), {"key"}, is_text);
-}
-
-bool are_results(const Json& j) {
-  return j.is_object() && j.contains("context") &&
-         j.at("context").is_object() && j.contains("benchmarks") &&
-         j.at("benchmarks").is_array() &&
-         std::all_of(
-             j.at("benchmarks").begin(), j.at("benchmarks").end(), is_entry);
-}
-
-/// Takes out the checksum; false if there is another.
-bool unseal(Json& results) {
-  Json& context = results["context"];
-  const auto own = context.find("physinv");
-  if (own == context.end() || !own->is_object() || !own->contains("checksum"))
-    return true;
-  const Json sum = own->at("checksum");
-  own->erase("checksum");
-  return sum == checksum_of(results);
 }
 
 }  // namespace
 
-Json sealed(Json results) {
-  const auto sum = checksum_of(results);
-  results["context"]["physinv"]["checksum"] = sum;
-  return results;
-}
-
-Json read_results(const std::filesystem::path& directory) {
-  return parse_results(Folder(directory).read(kFile, kLargestData),
-                       directory / kFile);
-}
-
-Json parse_results(std::string_view bytes, const std::filesystem::path& path) {
-  Json results;
-  try {
-    results = parse_json<Json>(bytes);
-  } catch (const std::exception&) {  // as damaged as one of wrong types
-  }
-  if (!are_results(results) || !unseal(results))
-    throw StoreError(fmt::format(
-        "{} is damaged ('run' as before writes it again)", path.string()));
-  return results;
+Json error_entry(const std::string& name, const std::string& message) {
+  // compare.py takes the times of whatever is no aggregate, and pairs entries
+  // of one unit.
+  return {{"name", name},
+          {"family_index", 0},
+          {"per_family_instance_index", 0},
+          {"run_name", name},
+          {"run_type", "aggregate"},
+          {"aggregate_name", "error"},
+          {"error_occurred", true},
+          {"error_message", message},
+          {"time_unit", "none"}};
 }
 
 Json results_json(const std::vector<CaseRecord>& cases,
@@ -219,7 +190,7 @@ Json results_json(const std::vector<CaseRecord>& cases,
     const auto at = by_name.find(order[i]);
     if (at == by_name.end()) continue;
     for (const auto& stage : at->second->stages)
-      entries.push_back(entry(*at->second, stage, i, threads_of(context)));
+      entries.push_back(entry(*at->second, stage, i));
   }
   return {{"context", full_context(context)},
           {"benchmarks", std::move(entries)}};

@@ -8,6 +8,8 @@
 #include "suite/core/check.h"
 #include "suite/core/hash.h"
 #include "suite/results/names.h"
+#include "suite/results/repetitions.h"
+#include "suite/results/results_file.h"
 #include "suite/results/results_json.h"
 
 namespace physinv {
@@ -87,6 +89,24 @@ void keep_what_results_need(StageRecord& r) {
   r.example_evaluations.resize(0);
   r.curve = {};
   r.arrays.clear();
+}
+
+/// Unless it is damaged: then it is written again.
+std::optional<nlohmann::ordered_json> known_results(const fs::path& directory) {
+  try {
+    return read_results(directory);
+  } catch (const StoreError&) {
+    return {};
+  }
+}
+
+/// Damaged ones are for those to name who read them.
+Repetitions known_repetitions(const fs::path& directory) {
+  try {
+    return read_repetitions(directory);
+  } catch (const StoreError&) {
+    return {};
+  }
 }
 
 }  // namespace
@@ -236,6 +256,7 @@ void Store::write(std::span<JournalEntry> entries) {
     const auto stages = static_cast<Index>(e.info.stages.size());
     if (e.stage.position + 1 >= stages) open_.erase(e.info.name);
     if (has_result(e.stage)) drop_state(e.stage.key);
+    appended_.insert(e.info.name + "/" + e.stage.stage);
     keep_what_results_need(e.stage);
     catalog_.add(std::move(e));
   }
@@ -292,12 +313,35 @@ void Store::set_context(const json& context) {
   catalog_.plan["context"] = context;
 }
 
+void keep_repetitions(const fs::path& directory,
+                      const Repetitions& repetitions,
+                      const LockOptions& lock) {
+  Store store(directory, lock);
+  if (const auto results = known_results(directory))
+    store.set_context(results->at("context"));
+  // Never beside repetitions that it does not tell of.
+  Folder(directory).remove(kResults);
+  write_repetitions(directory, repetitions);
+  store.finish();
+}
+
 std::vector<CaseRecord> Store::finish() {
   commit();
   const json& plan = catalog_.plan;
   const json context =
       plan.is_object() ? plan.value("context", json::object()) : json::object();
   auto cases = catalog_.summaries();
+  add_repetitions(cases, known_repetitions(catalog_.directory()));
+  // What was altered is not written down as true; what ran here is new.
+  if (auto earlier = known_results(catalog_.directory())) {
+    auto& entries = earlier->at("benchmarks");
+    std::erase_if(
+        entries.get_ref<nlohmann::ordered_json::array_t&>(),
+        [&](const nlohmann::ordered_json& entry) {
+          return appended_.contains(entry.at("name").get<std::string>());
+        });
+    check_entries(catalog_, *earlier, cases);
+  }
   journal_.require_there();
   folder_.write(
       kResults,

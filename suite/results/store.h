@@ -24,6 +24,7 @@
 #include "suite/results/catalog.h"
 #include "suite/results/lock.h"
 #include "suite/results/plan.h"
+#include "suite/results/repetitions.h"
 #include "suite/results/stage_state.h"
 
 namespace physinv {
@@ -106,7 +107,13 @@ class Store {
   double waiting_since_ = 0;
   std::size_t waiting_bytes_ = 0;
   Seconds commit_time_;
+  std::set<std::string> appended_;  ///< entries of results.json, by name
 };
+
+/// Writes repetitions.json, and results.json again.
+void keep_repetitions(const std::filesystem::path& directory,
+                      const Repetitions& repetitions,
+                      const LockOptions& lock = {});
 
 /// A new store beside the files of another, of a name that only the suite
 /// makes; it goes with all that a store holds. What a kill leaves of it goes

@@ -1,13 +1,21 @@
-#include "suite/app/export.h"
+#include <nlohmann/json.hpp>
+
+#include "suite/results/exports.h"
+#include "suite/results/results_file.h"
+#include "suite/results/results_json.h"
 #include "tests/fuzz/inputs.h"
 #include "tests/fuzz/readers.h"
 
 namespace physinv::fuzz {
 
 void results(std::string_view bytes) {
-  const auto path = put("results/results.json", bytes);
-  for (const char* format : {"json", "csv", "github", "bencher"})
-    documented([&] { exported(path.parent_path().string(), format); });
+  documented([&] {
+    const auto all = parse_results(bytes, "results.json");
+    if (results_version(all) < kResultsVersion) return;
+    benchmark_csv(benchmark_json(all));
+    smaller_is_better(all);
+    bencher_metrics(all);
+  });
 }
 
 }  // namespace physinv::fuzz

@@ -14,8 +14,10 @@ def seconds_of_cases(paths):
         with opened(path) as f:
             for b in json.load(f)["benchmarks"]:
                 p = b["physinv"]
-                ms = [b["real_time"], p["setup_ms"], p["warmup_ms"],
-                      p["measure_ms"]]
+                # Version 1 had milliseconds, and a time where none counted.
+                solving = (b.get("real_time") or 0) * \
+                    (1e-6 if b["time_unit"] == "ns" else 1)
+                ms = [solving, p["setup_ms"], p["warmup_ms"], p["measure_ms"]]
                 name = path + b["name"].rsplit("/", 1)[0]
                 cases[name] = cases.get(name, 0) + sum(m or 0 for m in ms) / 1e3
     return sorted(cases.values(), reverse=True)

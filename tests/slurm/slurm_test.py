@@ -49,10 +49,10 @@ def numbers(directory):
     with open(os.path.join(directory, "results.json")) as f:
         entries = json.load(f)["benchmarks"]
     for e in entries:
-        for key in ("real_time", "cpu_time", "family_index"):
-            e.pop(key)
-        for key in ("setup_ms", "warmup_ms", "measure_ms", "rss_bytes",
-                    "crowded", "finished", "revision"):
+        for key in ("real_time", "cpu_time", "family_index", "threads"):
+            e.pop(key, None)
+        for key in ("setup_ms", "warmup_ms", "measure_ms", "times", "timed_on",
+                    "rss_bytes", "crowded", "finished", "revision"):
             e["physinv"].pop(key)
     return entries
 

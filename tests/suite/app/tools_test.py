@@ -117,7 +117,7 @@ def habits(d):
     own = [e for e in entries if e["run_type"] == "iteration"]
     check({e["repetition_index"] for e in own} == {0, 1, 2}, "repetitions")
     check({e.get("aggregate_name") for e in entries}
-          == {None, "mean", "median", "stddev", "cv"}, "their spread")
+          == {None, "mean", "median", "stddev", "cv", "error"}, "their spread")
     expect(0, ["--profile=smoke", "--out=s"], d)
     p = expect(0, ["compare", "r", "s"], d)
     rows = p.stdout.splitlines()[-1].split()

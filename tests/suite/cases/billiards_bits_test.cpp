@@ -85,6 +85,8 @@ class BilliardsBits : public testing::Test {
                               "setup_ms",
                               "warmup_ms",
                               "measure_ms",
+                              "times",
+                              "timed_on",
                               "peak_buffer_bytes",
                               "rss_bytes",
                               "crowded",

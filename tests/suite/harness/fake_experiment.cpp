@@ -224,6 +224,7 @@ class Walk final : public Base {
  private:
   template <class T>
   Outcome go(StageRun& run) const {
+    if (planted("a fit that throws")) throw std::runtime_error("no fit today");
     Stream noise = run.method.stream(), order = run.batches.stream();
     Batch<T> x = run.oracle.start().template cast<T>();
     x.array() += static_cast<T>(0.1 * run.network_init.stream().normal());
@@ -244,6 +245,8 @@ class Walk final : public Base {
     }
     Outcome out;
     out.x = x.template cast<double>();
+    if (planted("a fit that diverges"))
+      out.x.setConstant(std::numeric_limits<double>::quiet_NaN());
     return out;
   }
 };

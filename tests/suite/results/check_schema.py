@@ -11,6 +11,10 @@ except ImportError:
     sys.exit(77)
 
 
+def error_in(results):
+    return next(b for b in results["benchmarks"] if "error_occurred" in b)
+
+
 def spoiled(results):
     """Copies of the results with one thing wrong each."""
 
@@ -24,8 +28,13 @@ def spoiled(results):
     yield change(lambda r: r["benchmarks"][0].pop("loss_median"))
     yield change(lambda r: r["benchmarks"][0].update(unknown=1))
     yield change(lambda r: r["benchmarks"][0].update(time_unit="s"))
+    yield change(lambda r: r["benchmarks"][0].update(real_time=None))
+    yield change(lambda r: r["benchmarks"][0].update(error_occurred=True))
+    yield change(lambda r: error_in(r).update(real_time=0.0))
+    yield change(lambda r: error_in(r).update(loss_median=0.0))
+    yield change(lambda r: error_in(r).pop("error_message"))
     yield change(lambda r: r["benchmarks"][0]["physinv"].update(stop="tired"))
-    yield change(lambda r: r["context"]["physinv"].update(schema_version=2))
+    yield change(lambda r: r["context"]["physinv"].update(schema_version=1))
 
 
 with open(sys.argv[1], encoding="utf-8") as file:

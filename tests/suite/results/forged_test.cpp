@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-
 #include "suite/results/results.h"
 #include "suite/results/store.h"
 #include "tests/suite/results/results_testing.h"

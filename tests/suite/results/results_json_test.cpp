@@ -106,12 +106,63 @@ TEST(ResultsJson, ContextIsKeptAndCompleted) {
                               {c.info.name},
                               {{"host_name", "here"},
                                {"physinv", {{"note", "kept"}}},
-                               {"options", {{"threads", 2}}}});
+                               {"options", {{"threads", 7}}}});
   EXPECT_EQ(context["context"]["host_name"], "here");
   EXPECT_EQ(context["context"]["physinv"]["note"], "kept");
-  EXPECT_EQ(context["context"]["physinv"]["schema_version"], 1);
+  EXPECT_EQ(context["context"]["physinv"]["schema_version"], 2);
   EXPECT_EQ(context["context"]["num_cpus"], 0);
-  EXPECT_EQ(context["benchmarks"][0]["threads"], 2);
+}
+
+TEST(ResultsJson, StagesTellTheirOwnRun) {
+  auto c = sample_record("jpo", 4);
+  c.info.profile = "quick";
+  c.stages[0].run = {.profile = "smoke",
+                     .host = "there",
+                     .processor = "p",
+                     .instruction_set = "i",
+                     .threads = 5,
+                     .jobs = 2};
+  c.stages[1].run = {};  // of an older version
+  const json entries = parsed({c}, {c.info.name})["benchmarks"];
+  EXPECT_EQ(entries[0]["threads"], 5);
+  EXPECT_EQ(entries[0]["physinv"]["profile"], "smoke");
+  EXPECT_EQ(entries[0]["physinv"]["timed_on"],
+            (json{{"host_name", "there"},
+                  {"cpu_model", "p"},
+                  {"instruction_set", "i"},
+                  {"threads", 5},
+                  {"jobs", 2}}));
+  EXPECT_EQ(entries[1]["threads"], 1);
+  EXPECT_EQ(entries[1]["physinv"]["profile"], "quick");
+  EXPECT_TRUE(entries[1]["physinv"]["timed_on"].is_null());
+}
+
+TEST(ResultsJson, TimesAreTheMedianOfAllRuns) {
+  auto c = sample_record("jpo", 4);
+  c.stages[0].clocks.solve = {9e-3, 8e-3};  // cold
+  c.stages[0].repeated = {{2e-3, 1e-3}, {3e-3, 2e-3}};
+  const json entry = parsed({c}, {c.info.name})["benchmarks"][0];
+  EXPECT_DOUBLE_EQ(entry["real_time"], 3e6);
+  EXPECT_DOUBLE_EQ(entry["cpu_time"], 2e6);
+  EXPECT_EQ(entry["repetitions"], 3);
+  EXPECT_EQ(entry["physinv"]["times"]["wall"].size(), 3U);
+  EXPECT_DOUBLE_EQ(entry["physinv"]["times"]["wall"][0], 9e6);
+}
+
+TEST(ResultsJson, WhatEndedWithoutAResultHasNoNumbers) {
+  for (const Stop stop : {Stop::diverged, Stop::failed, Stop::skipped}) {
+    auto c = sample_record("jpo", 4);
+    c.stages[0].stop = stop;
+    c.stages[0].message = "says why";
+    const json entry = parsed({c}, {c.info.name})["benchmarks"][0];
+    EXPECT_EQ(entry["error_occurred"], true);
+    EXPECT_EQ(entry["error_message"],
+              std::string(to_string(stop)) + ": says why");
+    for (const auto& [key, value] : entry.items())
+      EXPECT_TRUE(!value.is_number() || key.ends_with("_index")) << key;
+    EXPECT_TRUE(entry["physinv"]["times"].is_null());
+    EXPECT_EQ(entry["physinv"]["setup_ms"].is_null(), stop != Stop::diverged);
+  }
 }
 
 }  // namespace

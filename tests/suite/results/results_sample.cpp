@@ -22,9 +22,16 @@ int main(int argc, char** argv) {
     for (const char* method : {"bfgs", "jpo"})
       for (const Index n : {1, 8}) cases.push_back(sample_case(method, n, 0));
     store.set_plan(cases, context);
-    for (const auto& info : cases)
-      for (Index k = 0; k < 2; ++k)
-        store.append(info, sample_data(info), sample_stage(info, k, ++run));
+    for (const auto& info : cases) {
+      for (Index k = 0; k < 2; ++k) {
+        auto stage = sample_stage(info, k, ++run);
+        // Of each end a stage, well in the other campaign.
+        if (run == 4) stage.stop = Stop::diverged;
+        if (run == 13) stage.stop = Stop::failed;
+        if (run == 14) stage.stop = Stop::skipped;
+        store.append(info, sample_data(info), stage);
+      }
+    }
     store.finish();
   }
 }

@@ -152,6 +152,12 @@ inline StageRecord sample_stage(const CaseInfo& info,
   r.finished = "2024-01-02T03:04:05Z";
   r.revision = "abcdef+dirty";
   r.trajectory = "0123456789abcdef";
+  r.run = {.profile = "smoke",
+           .host = "here",
+           .processor = "a processor",
+           .instruction_set = "x86-64-v4",
+           .threads = 2,
+           .jobs = 3};
   r.x = sample_batch(2, info.n, salt);
   r.loss = sample_batch(info.n, 1, salt + 1);
   r.loss(0) = std::numeric_limits<double>::quiet_NaN();
@@ -189,6 +195,7 @@ inline void expect_same(const StageRecord& a, const StageRecord& b) {
   EXPECT_EQ(a.buffer_bytes, b.buffer_bytes);
   EXPECT_EQ(a.rss_bytes, b.rss_bytes);
   EXPECT_EQ(a.crowded, b.crowded);
+  EXPECT_EQ(a.run, b.run);
   EXPECT_EQ(a.finished, b.finished);
   EXPECT_EQ(a.revision, b.revision);
   EXPECT_EQ(a.curve.seconds, b.curve.seconds);
