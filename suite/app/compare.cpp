@@ -40,25 +40,13 @@ std::vector<JudgedClaim> claims_of(const Results& results,
   return all;
 }
 
-/// Inside of its cases.
-int threads_of(const nlohmann::json& plan) {
-  const nlohmann::json::json_pointer at("/context/options/threads");
-  return plan.contains(at) && plan.at(at).is_number_integer()
-             ? plan.at(at).get<int>()
-             : 1;
-}
-
 /// "LABEL=DIR", or a directory that is its own label.
 Side read_side(const std::string& text) {
   const auto at = text.find('=');
   const bool labelled = at != std::string::npos && !fs::is_directory(text);
-  const std::string directory = labelled ? text.substr(at + 1) : text;
-  Loaded loaded = load(directory);
   return {.label = labelled ? text.substr(0, at) : text,
-          .results = std::move(loaded.results),
-          .claims = {},
-          .repetitions = read_repetitions(results_directory(directory)),
-          .threads = threads_of(loaded.catalog.plan)};
+          .results = load(labelled ? text.substr(at + 1) : text).results,
+          .claims = {}};
 }
 
 std::vector<Side> read_sides(const CompareFlags& flags) {

@@ -45,8 +45,7 @@ Compared stage_of(const StageId& id,
   for (std::size_t s = 0; s < sides.size(); ++s) {
     line.sides.emplace_back();
     if (stages[s] != nullptr)
-      line.sides.back() = reading_of(
-          *stages[s], sides[s].repetitions, sides[s].threads, stages.front());
+      line.sides.back() = reading_of(*stages[s], stages.front());
   }
   return line;
 }
@@ -240,11 +239,7 @@ std::vector<ChangedClaim> changed_claims(const std::vector<Side>& sides) {
 std::vector<Side> sides_by_revision(const std::vector<Side>& sides) {
   std::vector<std::string> order;
   std::map<std::string, std::vector<CaseRecord>> cases;
-  Repetitions repetitions;
-  int threads = 1;
   for (const Side& side : sides) {
-    repetitions.insert(side.repetitions.begin(), side.repetitions.end());
-    threads = std::max(threads, side.threads);
     for (const CaseRecord& c : side.results.cases()) {
       std::map<std::string, CaseRecord> parts;
       for (const StageRecord& s : c.stages) {
@@ -263,9 +258,7 @@ std::vector<Side> sides_by_revision(const std::vector<Side>& sides) {
   for (const auto& revision : order)
     out.push_back({.label = revision.substr(0, 12),
                    .results = Results(std::move(cases[revision])),
-                   .claims = {},
-                   .repetitions = repetitions,
-                   .threads = threads});
+                   .claims = {}});
   return out;
 }
 

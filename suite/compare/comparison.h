@@ -26,8 +26,6 @@ struct Side {
   std::string label;
   Results results;
   std::vector<JudgedClaim> claims;  ///< paper and suite, judged on it
-  Repetitions repetitions = {};
-  int threads = 1;  ///< inside of its cases
 };
 
 struct StageId {

@@ -110,16 +110,16 @@ std::string pair_text(const Compared& group,
                                           : factor_text(loss));
 }
 
-/// Seconds as they are compared: of CPU where one thread ran.
+/// Seconds as they are compared.
 const Quartiles& seconds_of(const Times& times) {
-  return times.threads == 1 ? times.cpu : times.wall;
+  return times.of_one_core() ? times.cpu : times.wall;
 }
 
 Cell time_cell(const Reading& r) {
   if (!r.times) return {.text = ends_text(r)};
   const Quartiles& seconds = seconds_of(*r.times);
   Cell cell = number(1e3 * seconds.median, "{:.4g}");
-  if (r.times->threads > 1 && r.times->crowded) cell.text += " (crowded)";
+  if (!r.times->of_one_core() && r.times->crowded) cell.text += " (crowded)";
   spread(cell, seconds, 1e-3);
   return cell;
 }

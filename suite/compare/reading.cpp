@@ -6,7 +6,9 @@
 #include <cmath>
 
 #include "suite/evidence/statistics.h"
+#include "suite/results/crowded.h"
 #include "suite/results/curves.h"
+#include "suite/results/repetitions.h"
 
 namespace physinv {
 namespace {
@@ -15,20 +17,18 @@ double or_infinite(double value) {
   return std::isfinite(value) ? value : kInfinite;
 }
 
-std::optional<Times> times_of(const StageRecord& s,
-                              const Repetitions& repetitions,
-                              int threads) {
-  if (!completes(s.stop)) return {};
-  std::vector<double> wall = {or_infinite(s.clocks.solve.wall)};
-  std::vector<double> cpu = {or_infinite(s.clocks.solve.cpu)};
-  const auto at = repetitions.find(s.case_name + "/" + s.stage + " " + s.key);
-  if (at != repetitions.end()) {
-    for (const Seconds& again : at->second) {
-      wall.push_back(or_infinite(again.wall));
-      cpu.push_back(or_infinite(again.cpu));
-    }
-  }
-  return Times{quartiles_of(wall), quartiles_of(cpu), threads, s.crowded};
+Quartiles solving(const StageRecord& s, double Seconds::*clock) {
+  std::vector<double> seconds = solving_times(s, clock);
+  for (double& value : seconds) value = or_infinite(value);
+  return quartiles_of(seconds);
+}
+
+std::optional<Times> times_of(const StageRecord& s) {
+  if (!has_time(s)) return {};
+  return Times{solving(s, &Seconds::wall),
+               solving(s, &Seconds::cpu),
+               s.run.threads,
+               s.crowded};
 }
 
 /// Of all stages' medians.
@@ -46,7 +46,7 @@ std::optional<Times> times_of(std::vector<const Reading*> stages) {
       over(stages, [](const Reading& r) { return r.times->wall.median; }),
       over(stages, [](const Reading& r) { return r.times->cpu.median; })};
   for (const Reading* r : stages) {
-    times.threads = std::max(times.threads, r->times->threads);
+    if (r->times->threads != 1) times.threads = r->times->threads;
     times.crowded = times.crowded || r->times->crowded;
   }
   return times;
@@ -67,6 +67,11 @@ Quartiles quartiles_of(const std::vector<double>& values) {
           values.size()};
 }
 
+bool Times::of_one_core() const {
+  return threads == 1 ||
+         (threads == 0 && cpu.median <= wall.median + kClockResolution);
+}
+
 double Reading::simulations() const {
   double sum = 0;
   for (const Counter c :
@@ -80,10 +85,7 @@ double Reading::passes() const {
                              counts[Counter::network_backward]);
 }
 
-Reading reading_of(const StageRecord& s,
-                   const Repetitions& repetitions,
-                   int threads,
-                   const StageRecord* first) {
+Reading reading_of(const StageRecord& s, const StageRecord* first) {
   std::vector<double> losses;
   for (const double loss : s.loss) losses.push_back(or_infinite(loss));
   Reading r{
@@ -93,7 +95,7 @@ Reading reading_of(const StageRecord& s,
       .nonfinite = std::count(losses.begin(), losses.end(), kInfinite),
       .message = s.message,
       .loss = quartiles_of(losses.empty() ? std::vector{kInfinite} : losses),
-      .times = times_of(s, repetitions, threads),
+      .times = times_of(s),
       .iterations = s.iterations,
       .counts = s.counts};
   if (first != nullptr && has_result(s) &&
@@ -159,7 +161,7 @@ TimeRatio time_ratio(const Reading& a, const Reading& b) {
   for (const Reading* r : {&a, &b})
     if (!r->times) ratio.why = to_string(end_of(*r));
   if (!ratio.why.empty()) return ratio;
-  const bool alone = a.times->threads == 1 && b.times->threads == 1;
+  const bool alone = a.times->of_one_core() && b.times->of_one_core();
   ratio.a = alone ? a.times->cpu : a.times->wall;
   ratio.b = alone ? b.times->cpu : b.times->wall;
   if (!costs_compare(a, b)) {

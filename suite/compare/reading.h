@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "suite/results/ends.h"
-#include "suite/results/exports.h"
 #include "suite/results/record.h"
 
 namespace physinv {
@@ -28,8 +27,12 @@ Quartiles quartiles_of(const std::vector<double>& values);
 /// number makes them infinite.
 struct Times {
   Quartiles wall, cpu;
-  int threads = 1;
+  int threads = 1;  ///< 0: not known
   bool crowded = false;
+
+  /// Where one thread ran, or, if nobody knows how many, no more than one core
+  /// was at work: others on the machine add little to CPU time.
+  bool of_one_core() const;
 };
 
 struct Reading {
@@ -53,10 +56,7 @@ struct Reading {
 };
 
 /// `first` is the same stage on the first side, if that has it.
-Reading reading_of(const StageRecord& stage,
-                   const Repetitions& repetitions,
-                   int threads,
-                   const StageRecord* first);
+Reading reading_of(const StageRecord& stage, const StageRecord* first);
 /// Of the readings of its stages; one at least.
 Reading reading_of(const std::vector<const Reading*>& stages);
 
@@ -76,9 +76,8 @@ double loss_ratio(const Reading& a, const Reading& b);
 /// or diverges spends less and gains nothing.
 bool costs_compare(const Reading& a, const Reading& b);
 
-/// Of two stages whose costs compare. Held against each other is CPU time
-/// where both ran on one thread, as others on the machine add little to it;
-/// else wall time, unless one of both was crowded.
+/// Of two stages whose costs compare. Held against each other is CPU time where
+/// both are of one core; else wall time, unless one of both was crowded.
 struct TimeRatio {
   std::optional<double> value;  ///< b over a
   std::string why;              ///< there is none: "failed", "crowded", ...

@@ -17,6 +17,7 @@ StageRecord stage_with(const std::string& name, double loss, double seconds) {
   s.loss = Vector<double>::Constant(3, loss);
   s.status.assign(3, Status::gtol);
   s.clocks.solve = {.wall = seconds, .cpu = seconds};
+  s.run.threads = 1;
   s.counts[Counter::vjp] = 10;
   return s;
 }
@@ -195,10 +196,8 @@ TEST(Compare, OnOneThreadCpuTimeIsCompared) {
   busy.clocks.solve = {.wall = 9, .cpu = 1.1};
   busy.crowded = true;
   EXPECT_FALSE(found(Aspect::time, quiet, busy));
-  std::vector<Side> sides = {side("a", {case_with("m", 0, quiet)}),
-                             side("b", {case_with("m", 0, busy)})};
-  for (Side& s : sides) s.threads = 2;
-  const auto c = compare(sides, By::seed);
+  quiet.run.threads = busy.run.threads = 2;
+  const auto c = of_two(quiet, busy);
   EXPECT_EQ(changes_table(c, 1).rows[0].cells[3].text, "crowded");
   const auto undecided = regression(Aspect::time, c, {}, 1.5);
   ASSERT_TRUE(undecided) << "nothing passes because nothing was judged";
@@ -207,9 +206,10 @@ TEST(Compare, OnOneThreadCpuTimeIsCompared) {
 
 TEST(Compare, RepetitionsAreRead) {
   const auto stage = stage_with("solve", 1e-3, 5);  // the first, cold
+  auto again = stage;
+  again.repeated = {{1, 1}, {1.1, 1.1}, {1.2, 1.2}};
   std::vector<Side> sides = {side("a", {case_with("m", 0, stage)}),
-                             side("b", {case_with("m", 0, stage)})};
-  sides[1].repetitions["/solve "] = {{1, 1}, {1.1, 1.1}, {1.2, 1.2}};
+                             side("b", {case_with("m", 0, again)})};
   const auto c = compare(sides, By::seed);
   EXPECT_DOUBLE_EQ(c.rows[0].sides[1]->times->cpu.median, 1.15);
   EXPECT_TRUE(detail_tables(c)[0].rows[0].cells[1].spread);
