@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "suite/results/record.h"
+#include "suite/results/repetitions.h"
 
 namespace physinv {
 
@@ -24,11 +25,12 @@ inline bool shared_its_core(Seconds solve) {
          solve.wall - solve.cpu > kClockResolution;
 }
 
-/// Seconds of solving as tables tell them: CPU time where no more than one core
-/// was at work, as others on the machine add little to it; else wall time, and
-/// nothing of a stage of several threads that was crowded.
+/// Seconds of solving as tables tell them, the median of repetitions: CPU time
+/// where no more than one core was at work, as others on the machine add little
+/// to it; else wall time, and nothing of a stage of several threads that was
+/// crowded.
 inline std::optional<double> seconds_to_tell(const StageRecord& stage) {
-  const auto [wall, cpu] = stage.clocks.solve;
+  const auto [wall, cpu] = solving_time(stage);
   if (cpu <= wall + kClockResolution) return std::min(wall, cpu);
   if (stage.crowded) return {};
   return wall;

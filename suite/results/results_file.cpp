@@ -44,6 +44,7 @@ bool has_all(const Json& object,
 }
 
 bool is_text(const Json& j) { return j.is_string(); }
+bool is_object(const Json& j) { return j.is_object(); }
 bool is_boolean(const Json& j) { return j.is_boolean(); }
 bool is_number(const Json& j) { return j.is_number(); }
 bool is_number_or_null(const Json& j) { return j.is_number() || j.is_null(); }
@@ -91,7 +92,8 @@ bool is_entry(const Json& j) {
 /// What is read of files of older programs.
 bool is_old_entry(const Json& j) {
   return has_all(j, {"name", "time_unit"}, is_text) &&
-         has_all(j, {"real_time", "cpu_time"}, is_number_or_null);
+         has_all(j, {"real_time", "cpu_time"}, is_number_or_null) &&
+         has_all(j, {"physinv"}, is_object);
 }
 
 bool are_results(const Json& j) {
