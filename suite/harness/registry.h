@@ -3,8 +3,9 @@
 ///   const auto kRegistered = register_experiment({.name = "jpo/billiards",
 ///   ...});
 ///
-/// Registering stores a recipe and judges nothing; `main` and a test call
-/// `validate`, so nothing throws before `main`.
+/// Registering stores a recipe and judges nothing, so nothing throws before
+/// `main`. A test and `list --validate` call `validate`; a run looks at its own
+/// experiments (registry_problems.h).
 #pragma once
 
 #include <map>
