@@ -35,7 +35,7 @@ TEST_P(CaseContract, GivesARecordWithFiniteNumbers) {
   Case c = GetParam();
   const CaseData data = draw_data(c);
   c.info.keys = content_keys(c, data.hash, numerics_of_build);
-  const auto records = run(c);
+  auto records = run(c);
   ASSERT_EQ(records.size(), c.method->chain.size());
   for (const StageRecord& r : records) {
     ASSERT_NE(r.stop, Stop::failed) << r.message;
@@ -50,6 +50,13 @@ TEST_P(CaseContract, GivesARecordWithFiniteNumbers) {
     EXPECT_EQ(to_json(back), json);
   }
   expect_finite(to_json(c.info), "case");
+  for (StageRecord& r : records)  // as a campaign does
+    r.run = {.profile = "smoke",
+             .host = "host",
+             .processor = "processor",
+             .instruction_set = "set",
+             .threads = 1,
+             .jobs = 1};
   const CaseRecord whole{c.info, data, records};
   const auto results = results_json({whole}, {c.info.name}, {});
   ASSERT_EQ(results.at("benchmarks").size(), records.size());

@@ -94,7 +94,7 @@ def scenarios(d, env):
                     3: (["compare", "walk", "stroll"],),
                     5: ([*longer, "--fail-on=work"],),
                     6: ([*longer, "--fail-on=time"],)},
-        "export": {2: (["export", "nowhere"],)},
+        "export": {2: (["export", "nowhere"],), 10: (["export", "part"],)},
         "completion": {2: (["completion", "csh"],)},
         "submit": {2: (["submit"],),
                    3: (["submit", "--slurm=none", "--filter=cubik"],),

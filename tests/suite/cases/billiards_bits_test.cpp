@@ -166,7 +166,8 @@ TEST_F(BilliardsBits, InterruptedAndResumed) {
   std::size_t midway = 0;
   for (const int signal : {SIGINT, SIGKILL, SIGTERM}) {
     const std::string out = "stopped" + std::to_string(signal);
-    const pid_t child = start(campaign(out, {"--jobs=1"}));
+    // Finished stages go to the disk as often as that.
+    const pid_t child = start(campaign(out, {"--jobs=1", "--checkpoint=0.02"}));
     for (int i = 0; i < 5000 && stages(out) < 4 * (midway + 1); ++i)
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     kill(child, signal);
