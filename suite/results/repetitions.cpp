@@ -17,11 +17,10 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kRepetitionsFile = "repetitions.json";
 
-double time_from(const Json& json) {
-  if (!json.is_number() || !std::isfinite(json.get<double>()) ||
-      json.get<double>() < 0)
+double time_from(const Json& j) {
+  if (!j.is_number() || !std::isfinite(j.get<double>()) || j.get<double>() < 0)
     throw std::runtime_error("a time is no number of seconds");
-  return json;
+  return j;
 }
 
 }  // namespace
