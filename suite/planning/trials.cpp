@@ -232,8 +232,12 @@ void Trials::save() const {
     for (const StageTrial& t : trial) all[key].push_back(to_json(t));
   }
   try {
-    make_directory(file_.parent_path());
-    Folder(file_.parent_path())
+    // The cache is the user's and may be a link, the folder in it is the
+    // suite's and may not.
+    const fs::path folder = file_.parent_path();
+    make_directory(folder.parent_path());
+    Folder(folder.parent_path())
+        .make(folder.filename())
         .write(file_.filename(), json{{"trials", std::move(all)}}.dump());
   } catch (const std::exception&) {
   }

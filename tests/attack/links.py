@@ -53,7 +53,7 @@ LINKS = {  # entry of the folder -> what it leads to
     "{s}/cases/*.h5.tmp": "home/cases/a+b.h5",
     "{s}/checkpoints/*": "outside/data.h5",
     "{s}/checkpoints/*.tmp": "outside/data.h5",
-    "cache": "outside/notes", "cache/physinv": "outside/notes",
+    "cache/physinv": "outside/notes",
     "cache/physinv/*.json": "outside/data.h5",
     "cache/physinv/*.json.tmp": "outside/data.h5",
 }

@@ -12,7 +12,7 @@ from program import Running
 SOURCE = os.path.dirname(os.path.dirname(os.path.dirname(
     os.path.abspath(__file__))))
 TIMES = ("time", "date", "seconds", "_ms", "finished", "rss", "crowded",
-         "family_index", "clocks", "warmup", "setup", "revision")
+         "family_index", "clocks", "warmup", "setup", "revision", "repetition")
 
 
 def without_times(value):
