@@ -83,10 +83,7 @@ Outcome run_training(const Training<T>& training, StageRun& run) {
   state.take_up();
   probe.begin();
   look();
-  const auto measured = [&](BatchIn<double> x, BatchIn<double> y) {
-    if (training.measured) training.measured(x, y);
-  };
-  while (probe.proceed(training.estimate, measured)) {
+  while (probe.proceed(training.estimate, training.measured)) {
     if (training.batches != nullptr) training.batches->next();
     if (!training.rule(signal))
       end("update {} makes a parameter infinite; it was not taken");

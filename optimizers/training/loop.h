@@ -24,7 +24,8 @@ struct Training {
   /// Estimates of the case's problems, when a point of the curve is due.
   std::function<void(BatchOut<double> x)> estimate;
   /// Told of each point's estimates and of their observations.
-  std::function<void(BatchIn<double> x, BatchIn<double> y)> measured = {};
+  std::function<void(BatchIn<double> x, BatchIn<double> y)> measured =
+      [](BatchIn<double>, BatchIn<double>) {};
   /// What the two collect, if they do.
   std::function<void(Archive& archive)> keep = {};
 };

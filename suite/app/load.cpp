@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include "suite/app/options.h"
-#include "suite/results/repetitions.h"
 #include "suite/results/results_file.h"
 #include "suite/results/results_json.h"
 
@@ -13,9 +12,7 @@ namespace physinv {
 
 Loaded load(const std::string& directory, std::FILE* warnings) {
   Loaded loaded{.catalog = Catalog::read(results_directory(directory))};
-  auto cases = loaded.catalog.cases();
-  add_repetitions(cases, read_repetitions(directory));
-  check_results(loaded.catalog, cases);
+  auto cases = checked_cases(loaded.catalog);
   loaded.lacks = shortfall(loaded.catalog, cases);
   // What lacks is said at the end, in the one line of an error.
   if (warnings == stdout || !loaded.lacks.any())

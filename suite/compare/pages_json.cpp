@@ -27,20 +27,16 @@ Json to_json(const std::optional<Quartiles>& q) {
   return q ? to_json(*q) : Json(nullptr);
 }
 
-template <class Count, class Word>
-Json counted(const Count& counts, Word&& word) {
-  Json out = Json::object();
-  for (std::size_t i = 0; i < counts.size(); ++i)
-    if (counts[i] > 0) out[std::string(word(i))] = counts[i];
-  return out;
-}
-
 Json to_json(const Reading& r) {
   Json counts = Json::object(), ends = Json::object();
+  Json statuses = Json::object();
   for (std::size_t i = 0; i < kCounters; ++i)
     counts[std::string(kCounterNames[i])] = r.counts[static_cast<Counter>(i)];
   for (const auto& [end, count] : r.ends)
     ends[std::string(to_string(end))] = count;
+  for (std::size_t i = 0; i < r.statuses.size(); ++i)
+    if (r.statuses[i] > 0)
+      statuses[std::string(to_string(static_cast<Status>(i)))] = r.statuses[i];
   return {{"stages", r.stages},
           {"same_bits", r.same_bits},
           {"loss_median", finite(r.loss.median)},
@@ -54,11 +50,7 @@ Json to_json(const Reading& r) {
           {"iterations", r.iterations},
           {"ends", std::move(ends)},
           {"message", r.message},
-          {"statuses",
-           counted(r.statuses,
-                   [](std::size_t i) {
-                     return to_string(static_cast<Status>(i));
-                   })},
+          {"statuses", std::move(statuses)},
           {"counts", std::move(counts)}};
 }
 

@@ -18,15 +18,18 @@ struct Seconds {
   }
 };
 
+inline double seconds_of(clockid_t clock) {
+  timespec t{};
+  clock_gettime(clock, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+/// Monotonic wall time, without the system call that CPU time takes.
+inline double wall_now() { return seconds_of(CLOCK_MONOTONIC); }
+
 /// Monotonic wall time and the CPU time of all threads.
 inline Seconds now() {
-  const auto read = [](clockid_t id) {
-    timespec t{};
-    clock_gettime(id, &t);
-    return static_cast<double>(t.tv_sec) +
-           1e-9 * static_cast<double>(t.tv_nsec);
-  };
-  return {read(CLOCK_MONOTONIC), read(CLOCK_PROCESS_CPUTIME_ID)};
+  return {wall_now(), seconds_of(CLOCK_PROCESS_CPUTIME_ID)};
 }
 
 /// Sums the time between start and stop; starts stopped.

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
-#include <ctime>
 #include <exception>
 #include <mutex>
 #include <system_error>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "suite/core/check.h"
+#include "suite/core/clock.h"
 
 namespace physinv {
 namespace {
@@ -20,12 +20,6 @@ namespace {
 /// Seconds that a thread stays awake for at most: about what it takes to wake
 /// one that sleeps.
 constexpr double kLongest = 100e-6, kShortest = 1e-6;
-
-double seconds_now() {
-  timespec t{};
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 /// Waits until a number changes: briefly awake, then asleep (a futex). To stay
 /// awake is worth it where that is sooner than a wake-up, as between the steps
@@ -35,15 +29,15 @@ class Waiting {
  public:
   template <class T>
   void until_not(const std::atomic<T>& number, T old) {
-    const double begin = seconds_now();
+    const double begin = wall_now();
     do {
       for (int i = 0; i < 32; ++i) {
         if (number.load(std::memory_order_acquire) != old) return;
         __builtin_ia32_pause();
       }
-    } while (seconds_now() - begin < awake_);
+    } while (wall_now() - begin < awake_);
     number.wait(old, std::memory_order_acquire);
-    const bool brief = seconds_now() - begin < 2 * kLongest;
+    const bool brief = wall_now() - begin < 2 * kLongest;
     awake_ = std::clamp(brief ? 2 * awake_ : awake_ / 2, kShortest, kLongest);
   }
 

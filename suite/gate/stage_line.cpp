@@ -145,18 +145,6 @@ void read(StageLine& line, std::string_view key, std::string_view value) {
   }
 }
 
-/// "gtol:3,maxiter:1"
-std::string packed(const StatusCounts& counts) {
-  std::string text;
-  for (std::size_t i = 0; i < counts.size(); ++i)
-    if (counts[i] > 0)
-      text += fmt::format("{}{}:{}",
-                          text.empty() ? "" : ",",
-                          to_string(kAllStatuses[i]),
-                          counts[i]);
-  return text;
-}
-
 /// Weights of variance 1: the sum of a difference is about as large as its
 /// norm. As exact as a double can say it, whatever cancels.
 double projection_of(const Batch<double>& x) {
@@ -240,7 +228,7 @@ std::string to_text(const StageLine& l) {
       l.trajectory,
       l.results,
       to_string(l.stop),
-      packed(l.statuses),
+      status_text(l.statuses, ",", ':'),
       l.losses.best,
       shown,
       l.losses.median,

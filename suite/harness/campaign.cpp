@@ -9,7 +9,6 @@
 #include <set>
 
 #include "suite/core/clock.h"
-#include "suite/core/disturbance.h"
 #include "suite/harness/context.h"
 #include "suite/harness/keys.h"
 #include "suite/harness/run_case.h"
@@ -25,9 +24,6 @@ constexpr auto kNobody = std::numeric_limits<std::size_t>::max();
 
 /// How long a signal to stop waits for stages to lay their state down.
 constexpr double kPatience = 3;
-
-/// How long a finished stage waits at most for others to go to the disk with.
-constexpr double kCommitSeconds = 2;
 
 /// How often a case is started whose worker is killed.
 constexpr int kTries = 3;
@@ -403,39 +399,6 @@ class Campaign {
 };
 
 }  // namespace
-
-Prepared prepare(std::vector<Case> cases, bool disturb) {
-  Prepared p;
-  p.cases = std::move(cases);
-  std::map<
-      std::tuple<std::string, Index, std::uint64_t, std::optional<Precision>>,
-      CaseData>
-      drawn;
-  const Numerics numerics = remembered_numerics();
-  for (Case& c : p.cases) {
-    std::string error;
-    CaseData data;
-    const auto& info = c.info;
-    const auto ulp =
-        disturb ? std::optional(working_precision(c)) : std::nullopt;
-    const auto id = std::tuple(info.experiment, info.n, info.seed, ulp);
-    disturb_data(ulp);
-    const double begin = now().cpu;
-    try {
-      auto at = drawn.find(id);
-      if (at == drawn.end()) at = drawn.emplace(id, draw_data(c)).first;
-      data = at->second;
-    } catch (const std::exception& e) {
-      error = e.what();
-    }
-    p.data_cpu += now().cpu - begin;
-    c.info.keys = content_keys(c, data.hash, numerics);
-    p.data.push_back(std::move(data));
-    p.errors.push_back(std::move(error));
-  }
-  disturb_data({});
-  return p;
-}
 
 void dry_run(const Prepared& prepared,
              const CampaignOptions& options,

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "suite/harness/case.h"
+#include "suite/harness/prepare.h"
 #include "suite/harness/progress.h"
 #include "suite/results/plan.h"
 
@@ -43,16 +44,6 @@ struct CampaignOptions {
   /// The unsharded campaign, in order; empty if it is this one.
   std::vector<PlannedCase> campaign;
 };
-
-/// Cases with their data drawn, one ulp off with `disturb`, and content keys
-/// filled in.
-struct Prepared {
-  std::vector<Case> cases;
-  std::vector<CaseData> data;
-  std::vector<std::string> errors;  ///< why data could not be drawn, or empty
-  double data_cpu = 0;              ///< CPU seconds of drawing them
-};
-Prepared prepare(std::vector<Case> cases, bool disturb = false);
 
 /// (day, revision) that reused stages come from, and how many.
 using Origins = std::map<std::pair<std::string, std::string>, int>;

@@ -11,9 +11,8 @@ std::string crowded_text(const std::vector<CaseRecord>& cases) {
   if (crowded == 0) return "";
   return fmt::format(
       "{} of {} stages were crowded (wall time above {} times CPU time, or "
-      "more "
-      "workers x threads than cores): their wall times are too long, tables "
-      "take CPU time",
+      "more workers x threads than cores): their wall times are too long, "
+      "tables take CPU time",
       crowded,
       all,
       kCrowdedFactor);

@@ -206,7 +206,8 @@ void CaseFile::put_data(const CaseData& data) {
     if (hdf5::has(file_, "data")) {
       const auto old = hdf5::open_group(file_, "data");
       if (hdf5::read_attribute(old, "hash") == data.hash) {
-        read_data();
+        if (!data_are_sound_) read_data();
+        data_are_sound_ = true;
         return;
       }
       hdf5::remove(file_, "data");
@@ -216,6 +217,7 @@ void CaseFile::put_data(const CaseData& data) {
     hdf5::write(group, "x", data.x);
     hdf5::write(group, "y", data.y);
     hdf5::write(group, "given", data.given);
+    data_are_sound_ = true;
   });
 }
 

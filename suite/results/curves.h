@@ -76,7 +76,8 @@ class CaseFile {
 
   hdf5::Handle file_;
   std::string case_name_;
-  std::string where_;  ///< for messages
+  bool data_are_sound_ = false;  ///< written here, or looked at
+  std::string where_;            ///< for messages
 };
 
 }  // namespace physinv

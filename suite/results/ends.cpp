@@ -39,13 +39,16 @@ StatusCounts count(const std::vector<Status>& statuses) {
   return counts;
 }
 
-std::string status_text(const StatusCounts& counts) {
+std::string status_text(const StatusCounts& counts,
+                        std::string_view between,
+                        char mark) {
   std::string text;
   for (std::size_t i = 0; i < counts.size(); ++i)
     if (counts[i] > 0)
-      text += fmt::format("{}{} {}",
-                          text.empty() ? "" : ", ",
+      text += fmt::format("{}{}{}{}",
+                          text.empty() ? "" : between,
                           to_string(static_cast<Status>(i)),
+                          mark,
                           counts[i]);
   return text;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -20,17 +21,13 @@ std::string_view to_string(Direction direction);
 /// skipped, neither of which is better.
 Direction direction(Stop from, Stop to);
 
-/// Did it do what it was asked for? Who failed, was skipped or diverged spent
-/// less and gained nothing: its costs, time and work, are no costs.
-constexpr bool completes(Stop stop) {
-  return stop == Stop::converged || stop == Stop::iterations;
-}
-
 /// Examples of a stage by status.
 using StatusCounts = std::array<Index, 4>;
 StatusCounts count(const std::vector<Status>& statuses);
 /// "gtol 3, maxiter 1"
-std::string status_text(const StatusCounts& counts);
+std::string status_text(const StatusCounts& counts,
+                        std::string_view between = ", ",
+                        char mark = ' ');
 
 /// The more examples are `nonfinite`, the worse; with as many of them, the
 /// fewer end with `gtol`. Of maxiter and linesearch neither is better.

@@ -46,14 +46,10 @@ std::uint64_t count(const json& j) {
   return j;
 }
 
-json to_json(Seconds s) { return json::array({s.wall, s.cpu}); }
 double time_from(const json& j) {
   if (!j.is_number() || !std::isfinite(j.get<double>()) || j.get<double>() < 0)
     throw std::runtime_error("a time is no number of seconds");
   return j;
-}
-Seconds seconds(const json& j) {
-  return {time_from(j.at(0)), time_from(j.at(1))};
 }
 
 json to_json(const Counts& counts) {
@@ -204,6 +200,12 @@ std::int64_t whole(const json& j) {
   return j;
 }
 
+json to_json(Seconds s) { return json::array({s.wall, s.cpu}); }
+
+Seconds seconds_from_json(const json& j) {
+  return {time_from(j.at(0)), time_from(j.at(1))};
+}
+
 json to_json(const StageRecord& r) {
   json options = json::array();
   for (const auto& [name, value] : r.options)
@@ -248,10 +250,10 @@ StageRecord stage_from_json(const json& j) {
   r.message = j.at("message");
   r.iterations = whole(j.at("iterations"));
   const json& clocks = j.at("clocks");
-  r.clocks = {.setup = seconds(clocks.at("setup")),
-              .warmup = seconds(clocks.at("warmup")),
-              .solve = seconds(clocks.at("solve")),
-              .measure = seconds(clocks.at("measure"))};
+  r.clocks = {.setup = seconds_from_json(clocks.at("setup")),
+              .warmup = seconds_from_json(clocks.at("warmup")),
+              .solve = seconds_from_json(clocks.at("solve")),
+              .measure = seconds_from_json(clocks.at("measure"))};
   r.counts = counts_from_json(j.at("counts"));
   r.buffer_bytes = count(j.at("buffer_bytes"));
   r.rss_bytes = count(j.at("rss_bytes"));

@@ -31,6 +31,10 @@ bool is_intact(const Json& document);
 /// A whole number; std::runtime_error for anything else.
 std::int64_t whole(const nlohmann::json& json);
 
+/// Wall and CPU time, both finite and not negative.
+nlohmann::json to_json(Seconds seconds);
+Seconds seconds_from_json(const nlohmann::json& json);
+
 /// All scalars of a stage; its arrays stay behind. Doubles round-trip.
 /// `_from_json` throw std::exception for what `to_json` does not write.
 nlohmann::json to_json(const StageRecord& record);

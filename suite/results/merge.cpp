@@ -5,7 +5,6 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "suite/results/repetitions.h"
 #include "suite/results/results_file.h"
 #include "suite/results/store.h"
 
@@ -14,8 +13,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-constexpr double kCommitSeconds = 2;
 
 using Origins = std::map<std::pair<std::string, Index>, fs::path>;
 
@@ -177,11 +174,7 @@ Merged merge(const std::vector<fs::path>& paths,
   const auto shards = read_shards(paths);
   for (const auto& shard : shards) check_same_campaign(shards.front(), shard);
   check_out(paths, out);
-  for (const auto& shard : shards) {
-    auto cases = shard.cases();
-    add_repetitions(cases, read_repetitions(shard.directory()));
-    check_results(shard, cases);
-  }
+  for (const auto& shard : shards) checked_cases(shard);
   Store store(out, lock);
   json plan = merged_plan(shards);
   if (store.catalog().plan.is_object()) {

@@ -45,6 +45,11 @@ bool is_table(const json& j, Is&& is) {
   return true;
 }
 
+template <bool (*is)(const json&)>
+bool is_table_of_lists(const json& j) {
+  return is_table(j, [](const json& list) { return is_list(list, is); });
+}
+
 /// What is there of an object has its type.
 template <class Is>
 bool may_hold(const json& object, const char* key, Is&& is) {
@@ -83,20 +88,8 @@ bool well_formed(const json& plan) {
          may_hold(plan,
                   "recipes",
                   [](const json& j) { return is_table(j, is_text); }) &&
-         may_hold(plan,
-                  "keys",
-                  [](const json& j) {
-                    return is_table(j, [](const json& keys) {
-                      return is_list(keys, is_key_text);
-                    });
-                  }) &&
-         may_hold(plan,
-                  "stages",
-                  [](const json& j) {
-                    return is_table(j, [](const json& stages) {
-                      return is_list(stages, is_stage);
-                    });
-                  }) &&
+         may_hold(plan, "keys", is_table_of_lists<is_key_text>) &&
+         may_hold(plan, "stages", is_table_of_lists<is_stage>) &&
          may_hold(plan, "merged", [](const json& j) { return j.is_boolean(); });
 }
 

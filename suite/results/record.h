@@ -62,7 +62,7 @@ struct StageRecord {
   Curve curve;
   std::map<std::string, Batch<double>> arrays;  ///< method's own findings
 
-  /// Solving again, only for its times, see exports.h; not in the journal.
+  /// Solving again, only for its times, see repetitions.h; not in the journal.
   std::vector<Seconds> repeated;
 };
 
@@ -71,11 +71,13 @@ inline bool has_result(const StageRecord& stage) {
   return stage.stop != Stop::failed && stage.stop != Stop::skipped;
 }
 
-/// Did it come to an end that its time can be told for? A time until it
-/// diverged or failed is no gain.
-inline bool has_time(const StageRecord& stage) {
-  return has_result(stage) && stage.stop != Stop::diverged;
+/// Did it do what it was asked for? Who failed, was skipped or diverged spent
+/// less and gained nothing: its costs, time and work, are no costs.
+constexpr bool completes(Stop stop) {
+  return stop == Stop::converged || stop == Stop::iterations;
 }
+/// So has an end that its time can be told for.
+inline bool has_time(const StageRecord& stage) { return completes(stage.stop); }
 
 /// Problem data of a case, so that results can be verified alone.
 struct CaseData {

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "suite/core/median.h"
@@ -16,12 +15,6 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kRepetitionsFile = "repetitions.json";
-
-double time_from(const Json& j) {
-  if (!j.is_number() || !std::isfinite(j.get<double>()) || j.get<double>() < 0)
-    throw std::runtime_error("a time is no number of seconds");
-  return j;
-}
 
 }  // namespace
 
@@ -39,7 +32,7 @@ Repetitions parse_repetitions(std::string_view bytes, const fs::path& path) {
     if (!is_intact(all)) throw std::runtime_error("checksum");
     for (const auto& [name, times] : all.at("times").items())
       for (const Json& t : times)
-        repetitions[name].push_back({time_from(t.at(0)), time_from(t.at(1))});
+        repetitions[name].push_back(seconds_from_json(t));
   } catch (const std::exception&) {
     throw StoreError(
         fmt::format("{} is damaged (delete it, or run --benchmark_repetitions "
@@ -54,7 +47,7 @@ void write_repetitions(const fs::path& directory,
   Json times = Json::object();
   for (const auto& [name, seconds] : repetitions) {
     times[name] = Json::array();
-    for (const Seconds& s : seconds) times[name].push_back({s.wall, s.cpu});
+    for (const Seconds& s : seconds) times[name].push_back(Json(to_json(s)));
   }
   Json all{{"times", std::move(times)}};
   all["checksum"] = checksum_of(all);

@@ -7,6 +7,7 @@
 
 #include "suite/results/catalog.h"
 #include "suite/results/json.h"
+#include "suite/results/repetitions.h"
 #include "suite/results/results_json.h"
 
 namespace physinv {
@@ -143,10 +144,9 @@ std::string run_of(const Json& entry) {
 /// By run, what the journal and the case files say of it.
 using Truth = std::map<std::string, Json>;
 
-Truth truth_of(const Catalog& catalog, const std::vector<CaseRecord>& cases) {
+Truth truth_of(const Json& own) {
   Truth truth;
-  const Json results = results_json(cases, catalog.order(), Json::object());
-  for (const Json& entry : results.at("benchmarks"))
+  for (const Json& entry : own.at("benchmarks"))
     truth.emplace(run_of(entry), own_part(entry));
   return truth;
 }
@@ -189,12 +189,26 @@ std::string differing_key(const Json& context, const nlohmann::json& plan) {
 }
 
 /// Is no stage newer than the file? Then its context is the plan's, too.
-bool tells_all(const Json& results, const Truth& truth) {
+bool tells_all(const Json& results, const Json& own) {
   std::set<std::string> told;
   for (const Json& entry : results.at("benchmarks")) told.insert(run_of(entry));
-  return std::all_of(truth.begin(), truth.end(), [&](const auto& own) {
-    return told.contains(own.first);
+  const Json& all = own.at("benchmarks");
+  return std::all_of(all.begin(), all.end(), [&](const Json& entry) {
+    return told.contains(run_of(entry));
   });
+}
+
+/// As checked_cases says.
+void check_results(const Catalog& catalog,
+                   const std::vector<CaseRecord>& cases) {
+  if (!Folder(catalog.directory()).has(kResultsFile)) return;
+  const Json results = read_results(catalog.directory());
+  const Json own = results_json(cases, catalog.order(), Json::object());
+  check_entries(catalog, results, own);
+  const auto key = differing_key(results.at("context"), catalog.plan);
+  if (results_version(results) == kResultsVersion && !key.empty() &&
+      tells_all(results, own))
+    contradict(catalog, fmt::format("the context's {}", key));
 }
 
 }  // namespace
@@ -233,24 +247,20 @@ Json parse_results(std::string_view bytes, const std::filesystem::path& path) {
 
 void check_entries(const Catalog& catalog,
                    const Json& results,
-                   const std::vector<CaseRecord>& cases) {
+                   const Json& own) {
   if (results_version(results) < kResultsVersion) return;
-  const Truth truth = truth_of(catalog, cases);
+  const Truth truth = truth_of(own);
   const auto known = known_runs(catalog);
   for (const Json& entry : results.at("benchmarks"))
     if (!agrees(entry, truth, known))
       contradict(catalog, entry.at("name").get<std::string>());
 }
 
-void check_results(const Catalog& catalog,
-                   const std::vector<CaseRecord>& cases) {
-  if (!Folder(catalog.directory()).has(kResultsFile)) return;
-  const Json results = read_results(catalog.directory());
-  check_entries(catalog, results, cases);
-  const auto key = differing_key(results.at("context"), catalog.plan);
-  if (results_version(results) == kResultsVersion && !key.empty() &&
-      tells_all(results, truth_of(catalog, cases)))
-    contradict(catalog, fmt::format("the context's {}", key));
+std::vector<CaseRecord> checked_cases(const Catalog& catalog) {
+  auto cases = catalog.cases();
+  add_repetitions(cases, read_repetitions(catalog.directory()));
+  check_results(catalog, cases);
+  return cases;
 }
 
 }  // namespace physinv

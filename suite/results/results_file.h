@@ -25,15 +25,14 @@ nlohmann::ordered_json read_results(const std::filesystem::path& directory);
 nlohmann::ordered_json parse_results(std::string_view bytes,
                                      const std::filesystem::path& path);
 
-/// Holds results.json, if there is one, against what it is made from: plan,
-/// journal, case files and repetitions; `cases` are all of them. StoreError if
-/// it tells of a stage what they do not. It may be older than they are, as
-/// after a kill, and tell of runs that others have replaced.
-void check_results(const Catalog& catalog,
-                   const std::vector<CaseRecord>& cases);
-/// The same of the entries of `results` alone.
+/// All cases with their repetitions. results.json, if there is one, is held
+/// against what it is made from: plan, journal, case files and repetitions.
+/// StoreError if it tells of a stage what they do not. It may be older than
+/// they are, as after a kill, and tell of runs that others have replaced.
+std::vector<CaseRecord> checked_cases(const Catalog& catalog);
+/// The same of the entries of `results` alone; `own` is what is made now.
 void check_entries(const Catalog& catalog,
                    const nlohmann::ordered_json& results,
-                   const std::vector<CaseRecord>& cases);
+                   const nlohmann::ordered_json& own);
 
 }  // namespace physinv

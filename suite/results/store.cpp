@@ -332,6 +332,7 @@ std::vector<CaseRecord> Store::finish() {
       plan.is_object() ? plan.value("context", json::object()) : json::object();
   auto cases = catalog_.summaries();
   add_repetitions(cases, known_repetitions(catalog_.directory()));
+  auto results = results_json(cases, catalog_.order(), context);
   // What was altered is not written down as true; what ran here is new.
   if (auto earlier = known_results(catalog_.directory())) {
     auto& entries = earlier->at("benchmarks");
@@ -340,12 +341,10 @@ std::vector<CaseRecord> Store::finish() {
         [&](const nlohmann::ordered_json& entry) {
           return appended_.contains(entry.at("name").get<std::string>());
         });
-    check_entries(catalog_, *earlier, cases);
+    check_entries(catalog_, *earlier, results);
   }
   journal_.require_there();
-  folder_.write(
-      kResults,
-      results_text(sealed(results_json(cases, catalog_.order(), context))));
+  folder_.write(kResults, results_text(sealed(std::move(results))));
   return cases;
 }
 

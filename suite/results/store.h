@@ -29,6 +29,9 @@
 
 namespace physinv {
 
+/// How long a finished stage waits at most for others to go to the disk with.
+inline constexpr double kCommitSeconds = 2;
+
 class Store {
  public:
   /// Opens for writing, creating what is missing. StoreError if another
