@@ -82,7 +82,7 @@ class LocalSteps {
     const auto ended = [](Status s) { return s == Status::nonfinite; };
     if (std::all_of(out_.status.begin(), out_.status.end(), ended))
       out_.stop = Stop::diverged;
-    out_.arrays["path"] = path_;
+    if (path_.rows() > 0) out_.arrays["path"] = path_;
     out_.bytes = bytes();
     if (search_) oracle_.add(search_->counts());
     oracle_.add(work_.counts);

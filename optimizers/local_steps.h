@@ -40,7 +40,7 @@ struct LocalStepsOptions {
   LocalStep step = LocalStep::gradient;
   double rate = 0.1;
   Index iterations = 10;
-  Index paths = 6;
+  Index paths = 0;  ///< none unless somebody reads them
   NumericInverseOptions search = {};
   /// Of gradient steps, instead of `rate`; it goes number by number.
   std::optional<StepOptions> rule = {};

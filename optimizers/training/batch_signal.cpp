@@ -32,18 +32,17 @@ const Batch<T>& BatchSignal<T>::estimate(Index first, Index count) {
 
 template <class T>
 void BatchSignal<T>::note_late(Index first, Index count) {
-  Probe& probe = run_.probe;
+  const Probe& probe = run_.probe;
   const auto all = static_cast<double>(probe.iterations());
   if (static_cast<double>(probe.iteration()) <=
       all - std::ceil(options_.late.share * all))
     return;
-  probe.pause();
+  const Probe::Aside aside = run_.probe.measuring();
   late_ +=
       static_cast<double>(count) *
       options_.late.of(x_.template cast<double>(),
                        batches_.target(first, count).template cast<double>());
   late_samples_ += count;
-  probe.resume();
 }
 
 template <class T>

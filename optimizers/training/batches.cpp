@@ -50,9 +50,8 @@ void Batches<T>::keep_labels() {
 template <class T>
 void Batches<T>::next() {
   if (fresh_) {
-    run_.probe.pause();
+    const Probe::Aside aside = run_.probe.drawing();
     load(drawn_, size_);
-    run_.probe.resume();
   } else {
     first_ = at_ * size_;
     at_ = (at_ + 1) % slices_;

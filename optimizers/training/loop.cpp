@@ -26,15 +26,14 @@ class State {
   }
 
   void lay_down() {
-    Probe& probe = run_.probe;
+    const Probe& probe = run_.probe;
     const bool ends =
         probe.stopped() || probe.iteration() == probe.iterations();
     if (run_.checkpoint == nullptr || ends || !run_.checkpoint->due()) return;
-    probe.pause();
+    const Probe::Aside aside = run_.probe.recording();
     Archive archive;
     keep(archive);
     run_.checkpoint->lay_down(probe.iteration(), archive);
-    probe.resume();
   }
 
   /// Of model and signal, wherever they ran.

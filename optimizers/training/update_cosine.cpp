@@ -63,7 +63,7 @@ class WatchedProxy final : public Signal<T> {
   bool waits() const { return input_.cols() > 0; }
 
   void look_ahead() {
-    run_.probe.pause();
+    const Probe::Aside aside = run_.probe.measuring();
     const Index n = batches_.size();
     input_ = batches_.input(0, n), target_ = batches_.target(0, n);
     before_ = mean_estimate();
@@ -74,14 +74,12 @@ class WatchedProxy final : public Signal<T> {
                     there,
                     work_);
     wanted_ = there.rowwise().mean() - before_;
-    run_.probe.resume();
   }
 
   void look_behind() {
-    run_.probe.pause();
+    const Probe::Aside aside = run_.probe.measuring();
     cosines_.push_back(cosine(mean_estimate() - before_, wanted_));
     input_.resize(input_.rows(), 0);
-    run_.probe.resume();
   }
 
   Vector<double> mean_estimate() {

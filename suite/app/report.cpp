@@ -22,6 +22,7 @@
 #include "suite/results/json.h"
 #include "suite/results/profiles.h"
 #include "suite/results/published.h"
+#include "suite/results/results_file.h"
 
 namespace physinv {
 namespace {
@@ -176,9 +177,12 @@ void publish_campaign(const fs::path& target,
   forget_place(provenance);
   make_directory(target);
   const Folder folder(target);
-  folder.write("results.json.gz", gzipped(results.dump(1)));
   auto digest = digest_json(sections, provenance);
+  // Neither is altered alone.
+  digest["results"] = checksum_of(results);
   digest["checksum"] = checksum_of(digest);
+  results["context"]["physinv"]["digest"] = digest["checksum"];
+  folder.write("results.json.gz", gzipped(sealed(std::move(results)).dump(1)));
   folder.write("digest.json", digest.dump(1) + '\n');
 }
 

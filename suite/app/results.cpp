@@ -7,20 +7,36 @@
 #include "suite/app/options.h"
 #include "suite/results/file.h"
 #include "suite/results/json.h"
+#include "suite/results/results_file.h"
 
 namespace physinv {
 namespace {
 
 namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+/// A digest and results.json.gz beside it tell of each other, unless both are
+/// of before they did.
+void require_one_campaign(const fs::path& folder, const Json& digest) {
+  const fs::path path = folder / "results.json.gz";
+  Json results = parse_results(gunzipped(read_file(path), kLargestData), path);
+  Json& own = results.at("context")["physinv"];
+  const std::string told = own.value("digest", "");
+  own.erase("digest");
+  if (told != digest.value("checksum", "") ||
+      (!told.empty() && digest.value("results", "") != checksum_of(results)))
+    throw std::runtime_error("results.json.gz beside it is of another");
+}
 
 /// That can be shown; StoreError with the file's name if it cannot.
-nlohmann::ordered_json digest_in(const fs::path& folder) {
+Json digest_in(const fs::path& folder) {
   const fs::path path = folder / "digest.json";
   const std::string bytes = read_file(path);
   try {
-    auto digest = parse_json<nlohmann::ordered_json>(bytes);
+    auto digest = parse_json<Json>(bytes);
     if (!is_intact(digest)) throw std::runtime_error("it fails its checksum");
     results_markdown({{folder.filename().string(), digest}});
+    require_one_campaign(folder, digest);
     return digest;
   } catch (const std::exception& error) {
     throw StoreError(

@@ -159,9 +159,8 @@ std::string left_out_text(const std::vector<std::string>& names) {
 }
 
 std::string result_text(const RunFlags& flags, const CampaignResult& r) {
-  const double cpu = r.bookkeeping + r.data_cpu + r.stage_cpu;
   const auto share = [&](double of) {
-    return r.stage_cpu > 0 ? fmt::format(" ({:.2f} % of CPU)", 100 * of / cpu)
+    return r.stage_cpu > 0 ? fmt::format(" ({:.2f} % of CPU)", 100 * of / r.cpu)
                            : "";
   };
   std::string text = fmt::format(

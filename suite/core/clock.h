@@ -61,14 +61,15 @@ class Stopwatch {
   bool running_ = false;
 };
 
-/// Clocks of a stage. Setup and warm-up are apart from solving; measuring is
-/// the time spent on curves, in none of the others.
+/// Clocks of a stage. Setup and warm-up are apart from solving; so is drawing
+/// training examples while it solves. Measuring is the time spent on curves, in
+/// none of the others.
 struct Clocks {
-  Seconds setup, warmup, solve, measure;
+  Seconds setup, warmup, data, solve, measure;
 
   Seconds total() const {
     Seconds sum = setup;
-    return ((sum += warmup) += solve) += measure;
+    return (((sum += warmup) += data) += solve) += measure;
   }
 };
 

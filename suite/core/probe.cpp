@@ -110,10 +110,9 @@ void Probe::accept(Index example,
   measured_ = false;  // but told
   iteration_ = std::max(iteration_, iteration);
   if (iteration >= next_) {
-    pause();
+    const Aside aside = measuring();
     open_point(iteration);
     if (observer_) observer_(iteration, loss_);
-    resume();
   }
   if (reached < curve_.points() &&
       curve_.iteration[static_cast<std::size_t>(reached)] ==
@@ -155,7 +154,11 @@ void Probe::keep(Archive& archive) {
 }
 
 Clocks Probe::clocks() const {
-  return {setup_.total(), warmup_.total(), solve_.total(), measure_.total()};
+  return {.setup = setup_.total(),
+          .warmup = warmup_.total(),
+          .data = data_.total(),
+          .solve = solve_.total(),
+          .measure = measure_.total()};
 }
 
 }  // namespace physinv

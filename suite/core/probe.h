@@ -36,13 +36,10 @@ class Probe {
   bool proceed(F&& estimate, G&& measured) {
     if (!begun_) begin();
     if (due()) {
-      pause();
-      measure_.start();
+      const Aside aside = measuring();
       estimate(BatchOut<double>(x_));
       measure();
       measured(BatchIn<double>(x_), BatchIn<double>(y_));
-      measure_.stop();
-      resume();
     }
     if (iteration_ >= iterations_ || stopped_) {
       end();
@@ -68,8 +65,32 @@ class Probe {
   bool stopped() const { return stopped_; }
   void end();
 
-  void pause() { solve_.stop(); }
-  void resume() { solve_.start(); }
+  /// Work beside solving: while it stands, another clock runs for the solving
+  /// clock, or none. Before the beginning it is part of set-up.
+  class Aside {
+   public:
+    Aside(Stopwatch& solve, Stopwatch* other)
+        : solve_(solve.running() ? &solve : nullptr), other_(other) {
+      if (solve_ == nullptr) return;
+      solve_->stop();
+      if (other_ != nullptr) other_->start();
+    }
+    ~Aside() {
+      if (solve_ == nullptr) return;
+      if (other_ != nullptr) other_->stop();
+      solve_->start();
+    }
+    Aside(const Aside&) = delete;
+    Aside& operator=(const Aside&) = delete;
+
+   private:
+    Stopwatch *solve_, *other_;
+  };
+  [[nodiscard]] Aside measuring() { return {solve_, &measure_}; }
+  /// Training examples.
+  [[nodiscard]] Aside drawing() { return {solve_, &data_}; }
+  /// No part of the stage: its state is written down.
+  [[nodiscard]] Aside recording() { return {solve_, nullptr}; }
 
   Index iteration() const { return iteration_; }
   Index iterations() const { return iterations_; }
@@ -104,7 +125,7 @@ class Probe {
   Oracle& oracle_;
   Index iterations_, iteration_ = 0, next_ = 0, tracked_;
   bool begun_ = false, stopped_ = false, measured_ = false;
-  Stopwatch setup_, warmup_, solve_, measure_;
+  Stopwatch setup_, warmup_, data_, solve_, measure_;
   Batch<double> x_, y_;
   Vector<double> loss_;
   std::vector<Index> reached_;  ///< points each example has, with `accept`

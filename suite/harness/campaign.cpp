@@ -61,7 +61,7 @@ class Campaign {
         revision_(git_revision()),
         store_(options.out, {.break_lock = options.break_lock}),
         progress_(screen, cases_, options.jobs) {
-    result_.data_cpu = prepared.data_cpu;
+    data_cpu_ = result_.data_cpu = prepared.data_cpu;
     context_ = machine_context(revision_);
     context_["options"] = options_json;
     for (const Case& c : cases_) names_.insert(c.info.name);
@@ -302,6 +302,7 @@ class Campaign {
     note_end(i, record);
     result_.stage_cpu += record.clocks.total().cpu;
     result_.evaluation += record.clocks.measure.cpu;
+    result_.data_cpu += record.clocks.data.cpu;
     if (record.stop == Stop::failed)
       result_.failed.push_back(fmt::format(
           "{} {}: {}", record.case_name, record.stage, record.message));
@@ -369,11 +370,13 @@ class Campaign {
     result_.seconds = now().wall - begin_;
   }
 
-  /// What this process does beside drawing data is bookkeeping. Waiting for the
-  /// disk costs no CPU, and the workers nothing unless they have nothing to do.
+  /// What this process does beside drawing data is bookkeeping, and what the
+  /// workers do outside of stages. Waiting for the disk costs no CPU, and the
+  /// workers nothing unless they have nothing to do.
   void note_bookkeeping() {
     const Seconds commits = store_.commit_time();
-    result_.bookkeeping = now().cpu - result_.data_cpu + overhead_;
+    result_.bookkeeping = now().cpu - data_cpu_ + overhead_;
+    result_.cpu = result_.bookkeeping + data_cpu_ + result_.stage_cpu;
     result_.waiting = commits.wall - commits.cpu;
   }
 
@@ -395,6 +398,7 @@ class Campaign {
   std::set<std::pair<std::size_t, std::size_t>> counted_;  // reused stages
   std::map<std::size_t, int> tries_;        // of cases whose worker was killed
   std::map<std::size_t, double> finished_;  // final median loss of a case
+  double data_cpu_ = 0;  // CPU seconds of drawing the cases' data
   double overhead_ = 0;  // CPU seconds of workers outside of stages
 };
 

@@ -57,11 +57,13 @@ struct CampaignResult {
   std::vector<CaseRecord> cases;  ///< all of the store, without curves
   bool interrupted = false;
   double seconds = 0;    ///< wall, all of it
-  double data_cpu = 0;   ///< CPU seconds of drawing the cases' data
-  double stage_cpu = 0;  ///< CPU seconds in stages
-  /// Of these, for curves, metrics and final losses: what methods do not do.
+  double cpu = 0;        ///< CPU seconds of all processes
+  double stage_cpu = 0;  ///< of these, in stages
+  /// Of drawing the cases' data and, in stages, training examples.
+  double data_cpu = 0;
+  /// In stages, for curves, metrics and final losses: what methods do not do.
   double evaluation = 0;
-  double bookkeeping = 0;  ///< CPU seconds of all processes for all else
+  double bookkeeping = 0;  ///< CPU seconds for all but stages and data
   double waiting = 0;      ///< wall seconds for the disk, without CPU
 };
 

@@ -46,7 +46,7 @@ StageTrial trial_of(const Case& c, const Case& cut, const StageRecord& r) {
   const double points = std::max(1.0, static_cast<double>(r.curve.points()));
   StageTrial t;
   t.n = static_cast<double>(c.info.n);
-  t.seconds = r.clocks.solve.cpu;
+  t.seconds = r.clocks.solve.cpu + r.clocks.data.cpu;
   if (!ended) t.seconds *= c.operations(at) / cut.operations(at);
   t.points = ended ? points : curve_points(c.stage_iterations[at]);
   t.setup = r.clocks.setup.cpu + r.clocks.warmup.cpu;

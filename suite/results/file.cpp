@@ -20,6 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr int kGzip = 15 + 16;  // zlib's largest window, gzip's header
+
 std::string_view advice(int error_number) {
   switch (error_number) {
     case ENOSPC:
@@ -215,7 +217,6 @@ std::string read_file(const fs::path& path, std::uint64_t limit) {
 }
 
 std::string gzipped(std::string_view bytes) {
-  constexpr int kGzip = 15 + 16;  // largest window, gzip's header
   z_stream z{};
   if (deflateInit2(&z, 9, Z_DEFLATED, kGzip, 9, Z_DEFAULT_STRATEGY) != Z_OK)
     throw std::bad_alloc();
@@ -228,6 +229,27 @@ std::string gzipped(std::string_view bytes) {
   out.resize(z.total_out);
   deflateEnd(&z);
   if (end != Z_STREAM_END) throw std::runtime_error("cannot compress");
+  return out;
+}
+
+std::string gunzipped(std::string_view bytes, std::uint64_t limit) {
+  z_stream z{};
+  if (inflateInit2(&z, kGzip) != Z_OK) throw std::bad_alloc();
+  z.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+  z.avail_in = static_cast<uInt>(bytes.size());
+  std::string out;
+  int end = Z_OK;
+  while (end == Z_OK && out.size() < limit) {
+    constexpr std::size_t kStep = 1 << 20;
+    out.resize(std::min<std::uint64_t>(out.size() + kStep, limit));
+    z.next_out = reinterpret_cast<Bytef*>(out.data() + z.total_out);
+    z.avail_out = static_cast<uInt>(out.size() - z.total_out);
+    end = inflate(&z, Z_NO_FLUSH);
+  }
+  out.resize(z.total_out);
+  const bool all = end == Z_STREAM_END && z.avail_in == 0;
+  inflateEnd(&z);
+  if (!all) throw std::runtime_error("it is damaged, or too long");
   return out;
 }
 

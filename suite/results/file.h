@@ -71,6 +71,9 @@ std::string read_file(const std::filesystem::path& path,
 
 /// In gzip's format, without name and time: same bytes in, same bytes out.
 std::string gzipped(std::string_view bytes);
+/// Of one such file; runtime_error if it is damaged or gives more than `limit`.
+std::string gunzipped(std::string_view bytes,
+                      std::uint64_t limit = kLargestText);
 
 /// Creates it and its parents, durably enough for a store.
 void make_directory(const std::filesystem::path& directory);

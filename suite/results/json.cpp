@@ -221,6 +221,7 @@ json to_json(const StageRecord& r) {
           {"clocks",
            {{"setup", to_json(r.clocks.setup)},
             {"warmup", to_json(r.clocks.warmup)},
+            {"data", to_json(r.clocks.data)},
             {"solve", to_json(r.clocks.solve)},
             {"measure", to_json(r.clocks.measure)}}},
           {"counts", to_json(r.counts)},
@@ -250,10 +251,13 @@ StageRecord stage_from_json(const json& j) {
   r.message = j.at("message");
   r.iterations = whole(j.at("iterations"));
   const json& clocks = j.at("clocks");
-  r.clocks = {.setup = seconds_from_json(clocks.at("setup")),
-              .warmup = seconds_from_json(clocks.at("warmup")),
-              .solve = seconds_from_json(clocks.at("solve")),
-              .measure = seconds_from_json(clocks.at("measure"))};
+  r.clocks = {
+      .setup = seconds_from_json(clocks.at("setup")),
+      .warmup = seconds_from_json(clocks.at("warmup")),
+      // Journals of before it was told apart do not have it.
+      .data = seconds_from_json(clocks.value("data", json::array({0.0, 0.0}))),
+      .solve = seconds_from_json(clocks.at("solve")),
+      .measure = seconds_from_json(clocks.at("measure"))};
   r.counts = counts_from_json(j.at("counts"));
   r.buffer_bytes = count(j.at("buffer_bytes"));
   r.rss_bytes = count(j.at("rss_bytes"));

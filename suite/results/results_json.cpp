@@ -97,6 +97,7 @@ Json details(const CaseRecord& c, const StageRecord& s) {
           {"message", s.message},
           {"setup_ms", spent(s.clocks.setup)},
           {"warmup_ms", spent(s.clocks.warmup)},
+          {"data_ms", spent(s.clocks.data)},
           {"measure_ms", spent(s.clocks.measure)},
           {"times", times(s)},
           {"timed_on", run_context(s.run)},

@@ -145,6 +145,19 @@ TEST(LocalSteps, WhatOverflowsHasDivergedAndStaysFinite) {
   EXPECT_EQ(alone.out.stop, Stop::diverged);
 }
 
+TEST(LocalSteps, PathsAreKeptWhereTheyAreAskedFor) {
+  const auto rows = [](Index paths) {
+    const auto stage = local_steps({.paths = paths});
+    StageBench bench(*stage, 3, 5, problem<Scaling>("scaling"));
+    const Outcome out = bench.run();
+    const auto path = out.arrays.find("path");
+    return path == out.arrays.end() ? 0 : path->second.rows();
+  };
+  EXPECT_EQ(rows(0), 0);
+  EXPECT_EQ(rows(2), 2 * 2);
+  EXPECT_EQ(rows(9), 3 * 2) << "no more than there are problems";
+}
+
 TEST(LocalSteps, SearchFindsTheInversesPath) {
   const Batch<double> exact =
       path_of<double>(squared(3, 3), kSimulator, 0.3, 10);

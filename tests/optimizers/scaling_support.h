@@ -41,11 +41,13 @@ struct StepsRun {
   Batch<double> given;
 };
 
+/// With the path of every problem.
 inline StepsRun run_steps(const ProblemRecipe& problem,
-                          const LocalStepsOptions& options,
+                          LocalStepsOptions options,
                           Index steps,
                           Precision precision = Precision::f64,
                           Index n = 1) {
+  options.paths = n;
   const auto stage = local_steps(options);
   StageBench bench(*stage, n, steps, problem);
   return {bench.run(nullptr, precision), bench.oracle.given()};

@@ -17,7 +17,8 @@ def seconds_of_cases(paths):
                 # Version 1 had milliseconds, and a time where none counted.
                 solving = (b.get("real_time") or 0) * \
                     (1e-6 if b["time_unit"] == "ns" else 1)
-                ms = [solving, p["setup_ms"], p["warmup_ms"], p["measure_ms"]]
+                ms = [solving, p["setup_ms"], p["warmup_ms"],
+                      p.get("data_ms"), p["measure_ms"]]
                 name = path + b["name"].rsplit("/", 1)[0]
                 cases[name] = cases.get(name, 0) + sum(m or 0 for m in ms) / 1e3
     return sorted(cases.values(), reverse=True)

@@ -51,8 +51,9 @@ def numbers(directory):
     for e in entries:
         for key in ("real_time", "cpu_time", "family_index", "threads"):
             e.pop(key, None)
-        for key in ("setup_ms", "warmup_ms", "measure_ms", "times", "timed_on",
-                    "rss_bytes", "crowded", "finished", "revision"):
+        for key in ("setup_ms", "warmup_ms", "data_ms", "measure_ms", "times",
+                    "timed_on", "rss_bytes", "crowded", "finished",
+                    "revision"):
             e["physinv"].pop(key)
     return entries
 

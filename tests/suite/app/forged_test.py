@@ -30,17 +30,22 @@ def write(path, data):
         f.write(data)
 
 
-class Results:
-    """results.json: its keys stay in order, the checksum is in the context."""
+class Ordered:
+    """A file whose keys stay in order; the checksum is in the part `where`."""
+
+    def __init__(self, *where):
+        self.where = where
 
     def parts(self, data):
         return [seals.load(data)]
 
     def join(self, parts):
         value = copy.deepcopy(parts[0])
-        value["context"]["physinv"].pop("checksum", None)
-        sum_ = seals.digits(compact(value).encode()).decode()
-        value["context"]["physinv"]["checksum"] = sum_
+        part = value
+        for key in self.where:
+            part = part[key]
+        part.pop("checksum", None)
+        part["checksum"] = seals.digits(compact(value).encode()).decode()
         return compact(value).encode()
 
 
@@ -57,7 +62,7 @@ def compact(value):
 
 
 SEALS = {"journal.jsonl": seals.Lines(), "plan.json": seals.Json(),
-         "repetitions.json": seals.Json(), "results.json": Results(),
+         "repetitions.json": seals.Json(), "results.json": Ordered("context", "physinv"),
          CASE: seals.Trailer()}
 
 
@@ -255,8 +260,63 @@ def published(d):
     check(kept == own, "the same entries")
 
 
+def published_altered(d):
+    """Of what report --publish keeps, no file is altered alone."""
+    out, one = os.path.join(d, "store"), os.path.join(d, "kept", "one")
+    expect(0, [*SMOKE, "--out=" + out], d, "stages run")
+    expect(0, ["report", out, "--publish=kept/one"], d, "report")
+    expect(0, ["results", "--campaigns=kept", "--out=page.md"], d, "page.md")
+
+    def digest(data, edit):
+        seal = Ordered()
+        parts = seal.parts(data)
+        edit(parts[0])
+        return seal.join(parts)
+
+    def results(data, edit):
+        seal = Ordered("context", "physinv")
+        parts = seal.parts(gzip.decompress(data))
+        edit(parts[0])
+        return gzip.compress(seal.join(parts))
+
+    def verdict(value):
+        claim = value["sections"][0]["claims"][0]
+        claim["verdict"] = "not reproduced" \
+            if claim["verdict"] == "reproduced" else "reproduced"
+
+    def loss(value):
+        value["benchmarks"][0]["loss_median"] = 1e-9
+
+    def nothing(value):
+        pass
+
+    for name, sealed, edit, code in (
+            ("digest.json", digest, nothing, 0),
+            ("digest.json", digest, verdict, 9),
+            ("digest.json", digest, lambda v: v.pop("results"), 9),
+            ("digest.json", lambda data, _: compact(
+                {k: v for k, v in seals.load(data).items()
+                 if k != "checksum"}).encode(), nothing, 9),
+            ("results.json.gz", results, nothing, 0),
+            ("results.json.gz", results, loss, 9),
+            ("results.json.gz", lambda data, _: data[:-9], nothing, 9),
+            ("results.json.gz", lambda *_: b"", nothing, 9)):
+        path = os.path.join(one, name)
+        kept = read(path)
+        write(path, sealed(kept, edit))
+        if os.path.exists(os.path.join(d, "page.md")):
+            os.remove(os.path.join(d, "page.md"))
+        p = run("results", "--campaigns=kept", "--out=page.md", cwd=d)
+        check(p.returncode == code and
+              os.path.exists(os.path.join(d, "page.md")) == (code == 0) and
+              len(p.stderr.splitlines()) == (code != 0),
+              f"{name} {edit.__name__}: {p.returncode} {p.stderr[:200]}")
+        write(path, kept)
+
+
 def main():
-    for test in (every_leaf, every_verb, published):
+    for test in (every_leaf, every_verb, published,
+                 published_altered):
         with tempfile.TemporaryDirectory() as d:
             os.mkdir(os.path.join(d, "published"))
             test(d)

@@ -84,6 +84,7 @@ class BilliardsBits : public testing::Test {
                               "cpu_time",
                               "setup_ms",
                               "warmup_ms",
+                              "data_ms",
                               "measure_ms",
                               "times",
                               "timed_on",

@@ -229,6 +229,33 @@ TEST_F(ProbeTest, SetUpAndWarmUpHaveTheirOwnClocks) {
   EXPECT_EQ(probe.clocks().solve.wall, solved) << "the end stops the clock";
 }
 
+TEST_F(ProbeTest, WorkAsideHasItsOwnClockOrNone) {
+  Probe probe(oracle, 1);
+  {
+    const Probe::Aside aside = probe.drawing();  // still set-up
+    nap();
+  }
+  EXPECT_EQ(probe.clocks().data.wall, 0);
+  EXPECT_GE(probe.clocks().setup.wall, 0.05);
+  probe.begin();
+  {
+    const Probe::Aside aside = probe.drawing();
+    nap();
+  }
+  {
+    const Probe::Aside aside = probe.measuring();
+    nap(), nap();
+  }
+  {
+    const Probe::Aside aside = probe.recording();
+    nap(), nap(), nap();
+  }
+  const Clocks clocks = probe.clocks();
+  EXPECT_GE(clocks.data.wall, 0.05);
+  EXPECT_GE(clocks.measure.wall, 2 * 0.05);
+  EXPECT_LT(clocks.solve.wall, clocks.data.wall) << "it stood still";
+}
+
 TEST_F(ProbeTest, ObserversSeeEveryPoint) {
   Probe probe(oracle, 9);
   std::vector<double> seen;

@@ -143,6 +143,7 @@ inline StageRecord sample_stage(const CaseInfo& info,
   r.message = "says \"so\"\n\xc3\xa9";
   r.iterations = 3000;
   r.clocks.setup = {sample_number(run), 1e-3};
+  r.clocks.data = {0.2, 0.1};
   r.clocks.solve = {0.1 + sample_number(run + 1), 1.0 / 3.0};
   r.counts[Counter::forward] = 12345678901234567ULL;
   r.counts[Counter::skipped_rows] = 3;
@@ -190,6 +191,7 @@ inline void expect_same(const StageRecord& a, const StageRecord& b) {
   EXPECT_EQ(a.position, b.position);
   EXPECT_EQ(a.options, b.options);
   EXPECT_EQ(a.clocks.setup.wall, b.clocks.setup.wall);
+  EXPECT_EQ(a.clocks.data.wall, b.clocks.data.wall);
   EXPECT_EQ(a.clocks.solve.wall, b.clocks.solve.wall);
   EXPECT_EQ(a.clocks.solve.cpu, b.clocks.solve.cpu);
   EXPECT_EQ(a.buffer_bytes, b.buffer_bytes);

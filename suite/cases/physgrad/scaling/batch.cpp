@@ -31,7 +31,7 @@ class BatchOfTrajectories final : public Diagnostic {
     advance<double>(flow_, alpha, start1, start2, x1, x2, run.threads);
     run.probe.begin();
     advance<double>(flow_, alpha, start1, start2, x1, x2, run.threads);
-    run.probe.pause();
+    run.probe.end();
     out.arrays["batch"] =
         Vector<double>{{static_cast<double>(n_), double(flow_.steps)}};
     out.arrays["ends"] = ends(x1, x2);

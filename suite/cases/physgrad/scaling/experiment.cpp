@@ -15,19 +15,23 @@ namespace {
 using enum LocalStep;
 using Ids = std::vector<std::string>;
 
+/// Problems whose paths the figures draw.
+constexpr Index kPaths = 6;
+
 Method method(std::string id,
               LocalStep step,
               double rate,
               NumericInverseOptions search = {}) {
   return {
       .id = std::move(id),
-      .chain = {local_steps({.step = step, .rate = rate, .search = search})}};
+      .chain = {local_steps(
+          {.step = step, .rate = rate, .paths = kPaths, .search = search})}};
 }
 
 /// The chapter leaves these to its readers.
 Method ruled(std::string id, StepOptions rule) {
   return {.id = std::move(id),
-          .chain = {local_steps({.rule = std::move(rule)})}};
+          .chain = {local_steps({.paths = kPaths, .rule = std::move(rule)})}};
 }
 
 Row row(Ids ids, Index n, Index steps) {

@@ -38,10 +38,9 @@ std::vector<Method> methods() {
     all.push_back(trained("sip" + size, batch, inverse_proxy()));
     all.push_back(trained("adam" + size, batch, solver_loss()));
   }
-  all.push_back(
-      {.id = "inverse",
-       .chain = {local_steps(
-           {.step = LocalStep::inverse_simulator, .rate = 1, .paths = 0})}});
+  all.push_back({.id = "inverse",
+                 .chain = {local_steps(
+                     {.step = LocalStep::inverse_simulator, .rate = 1})}});
   all.push_back({.id = "lbfgsb", .chain = {lbfgsb_solve()}});
   all.push_back({.id = "gd", .chain = {gradient_descent_solve()}});
   return all;
