@@ -1,14 +1,9 @@
 /// RMSprop (Tieleman and Hinton 2012) as Keras has it, without momentum:
 ///
 ///   a = decay a + (1 - decay) g^2          x -= rate g / (sqrt(a) + eps)
-///
-/// An object belongs to one vector.
 #pragma once
 
-#include "optimizers/steps/simd.h"
-#include "suite/core/archive.h"
-#include "suite/core/batch.h"
-#include "suite/core/check.h"
+#include "optimizers/steps/elementwise.h"
 #include "suite/core/options.h"
 
 namespace physinv {
@@ -27,45 +22,26 @@ struct RmspropOptions {
 };
 
 template <class T>
-class Rmsprop {
+class Rmsprop : public ElementwiseStep<T, Rmsprop<T>, 1> {
  public:
   using Options = RmspropOptions;
-  static constexpr Index kNumbersPerParameter = 1;
   explicit Rmsprop(const Options& options = {}) : options_(options) {}
 
-  void step(VectorOut<T> x, VectorIn<T> gradient) { step(x, gradient, x); }
-  /// Leaves x and writes the new one to `to`, which may be the gradient.
-  void step(VectorIn<T> x, VectorIn<T> gradient, VectorOut<T> to) {
-    SUITE_CHECK(x.size() == gradient.size() && x.size() == to.size(),
-                "vectors of another size");
-    if (!started_) a_.setZero(x.size());
-    SUITE_CHECK(x.size() == a_.size(), "the vector changed its size");
-    started_ = true;
+  auto update(long /*step*/) const {
+    using R = steps::Register<T>;
+    using V = typename R::V;
     const T rate = static_cast<T>(options_.rate);
     const T decay = static_cast<T>(options_.decay);
     const T fresh = static_cast<T>(1 - options_.decay);
     const T eps = static_cast<T>(options_.eps);
-    T *const out = to.data(), *const pa = a_.data();
-    const T *const px = x.data(), *const pg = gradient.data();
-    using R = steps::Register<T>;
-    steps::for_registers<T>(x.size(), [=](Index i, auto lanes) {
-      const auto g = R::load(pg + i, lanes);
-      const auto a = R::multiply_add(
-          R::all(decay), R::load(pa + i, lanes), fresh * (g * g));
-      R::store(pa + i, a, lanes);
-      const auto step = rate * g / (R::root(a) + eps);
-      R::store(out + i, R::load(px + i, lanes) - step, lanes);
-    });
+    return [=](V x, V g, V & a) __attribute__((always_inline)) {
+      a = R::multiply_add(R::all(decay), a, fresh * (g * g));
+      return x - rate * g / (R::root(a) + eps);
+    };
   }
-
-  /// Forgets the mean square.
-  void reset() { started_ = false; }
-  void keep(Archive& archive) { archive(a_, started_); }
 
  private:
   Options options_;
-  Vector<T> a_;
-  bool started_ = false;
 };
 
 }  // namespace physinv
