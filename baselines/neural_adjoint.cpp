@@ -6,8 +6,8 @@
 #include "baselines/boundary_loss.h"
 #include "optimizers/bfgs.h"
 #include "optimizers/drive.h"
+#include "optimizers/minimize.h"
 #include "optimizers/network_model.h"
-#include "optimizers/solver_outcome.h"
 #include "suite/core/median.h"
 #include "suite/core/oracle.h"
 #include "suite/core/probe.h"
@@ -157,7 +157,7 @@ Outcome solve(const NeuralAdjointOptions& options, StageRun& run) {
       best);
   run.probe.finish();
 
-  Outcome out = solver_outcome(solver, oracle);
+  Outcome out = outcome_of(solver, oracle);
   out.x = best.x();
   out.bytes = surrogate.bytes();
   out.arrays["boundary_weight"] = Batch<double>::Constant(1, 1, weight);
@@ -165,36 +165,24 @@ Outcome solve(const NeuralAdjointOptions& options, StageRun& run) {
   return out;
 }
 
-class NeuralAdjointSolve final : public Stage {
- public:
-  explicit NeuralAdjointSolve(const NeuralAdjointOptions& options)
-      : options_(options) {}
-
-  std::string name() const override { return "solve"; }
-  Needs needs() const override { return Needs::forward | Needs::labels; }
-  Options options() const override { return describe(options_); }
-  Index default_iterations() const override { return options_.iterations; }
-  bool takes_row_iterations() const override { return false; }
-  bool has_precision() const override { return true; }
-  Networks networks() const override { return Networks::surrogate; }
-  double operations(const CaseSize& size) const override {
-    return 60.0 * static_cast<double>(size.n) *
-           (2 * size.surrogate_operations + size.problem_operations + 200);
-  }
-  Outcome run(StageRun& run) const override {
-    if (run.precision == Precision::f32) return solve<float>(options_, run);
-    return solve<double>(options_, run);
-  }
-
- private:
-  NeuralAdjointOptions options_;
-};
-
 }  // namespace
 
 std::shared_ptr<const Stage> neural_adjoint_solve(
     const NeuralAdjointOptions& options) {
-  return std::make_shared<NeuralAdjointSolve>(options);
+  return make_stage(
+      {.name = "solve",
+       .needs = Needs::forward | Needs::labels,
+       .options = describe(options),
+       .iterations = options.iterations,
+       .own_length = true,
+       .networks = Networks::surrogate,
+       .operations =
+           [](const CaseSize& size) {
+             return 60.0 * static_cast<double>(size.n) *
+                    (2 * size.surrogate_operations + size.problem_operations +
+                     200);
+           }},
+      [options]<class T>(StageRun& run) { return solve<T>(options, run); });
 }
 
 }  // namespace physinv

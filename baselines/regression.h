@@ -7,8 +7,8 @@
 #include <string>
 
 #include "optimizers/network_model.h"
+#include "optimizers/stage.h"
 #include "optimizers/steps/rule.h"
-#include "optimizers/training/stage.h"
 
 namespace physinv {
 

@@ -1,6 +1,6 @@
-/// What line-search solvers share that run many independent problems together:
-/// every round collects one trial point of each unfinished problem, so that
-/// the objective sees them as one batch.
+/// What solvers share that run many independent problems together: they ask for
+/// a batch of evaluations, one trial point of each unfinished problem, and are
+/// told losses and gradients.
 ///
 ///   Bfgs solver(options);
 ///   solver.start(x0);                       // d x n, one problem per column
@@ -10,14 +10,14 @@
 ///     while (solver.supply_known()) {}
 ///   }
 ///
-/// or, in one call, drive(solver, objective, x0, observer) of drive.h.
+/// or, in one call, drive(solver, objective, x0, observer) of drive.h, or as a
+/// stage of a method, minimize(solver, run, x0) of minimize.h.
 ///
-/// A finished problem costs nothing more. The bits of a problem do not depend
-/// on the others in the batch. A start that is not finite stays as it is with
-/// status `nonfinite`, and is never shown to the objective.
+/// A finished problem costs nothing more. A start that is not finite stays as
+/// it is with status `nonfinite`, and is never shown to the objective.
 ///
-/// As in SciPy, a trial point that is the last one evaluated, to the bit, is
-/// not evaluated again: its search goes on with what is known of it.
+/// A new solver overrides `start`, which calls `open`, and `take`; one whose
+/// problems do not wait for each other derives from IndependentSolver.
 #pragma once
 
 #include <cstdint>
@@ -31,6 +31,12 @@ namespace physinv {
 
 class BatchedSolver {
  public:
+  virtual ~BatchedSolver() = default;
+
+  /// Begins one run per column of x0 (d x n). Nothing allocates after it, nor
+  /// in it if the size is that of an earlier run.
+  virtual void start(BatchIn<double> x0) = 0;
+
   bool pending() const { return !active_.empty(); }
   /// Problems that wait for an evaluation, ascending.
   std::span<const Index> active() const { return active_; }
@@ -39,14 +45,14 @@ class BatchedSolver {
     return trial_.leftCols(static_cast<Index>(active_.size()));
   }
   /// Losses and gradients at `points()`. A loss or gradient that is not finite
-  /// marks a place no search may accept.
+  /// marks a place that no problem moves to.
   void supply(VectorIn<double> loss, BatchIn<double> gradient);
-  /// Problems whose new iterate is their next trial point as well go on with
-  /// its loss and gradient. False if there are none; what they accept is
+  /// Problems whose next trial point is their iterate, which is known, go on
+  /// without an evaluation. False if there are none; what they accept is
   /// `accepted` then. Without the call they are evaluated once more.
-  bool supply_known();
+  virtual bool supply_known() { return false; }
   /// Ends what is still pending, with status `maxiter`.
-  void halt() { active_.clear(), known_ = 0; }
+  void halt() { active_.clear(); }
 
   /// Problems that accepted a new iterate in the last round; in the first
   /// round those whose start is usable (iteration 0).
@@ -59,59 +65,39 @@ class BatchedSolver {
   /// See the solver; `maxiter` also while running.
   const std::vector<Status>& status() const { return status_; }
   const std::vector<Index>& iterations() const { return iterations_; }
-  /// Those made, as SciPy counts them.
+  /// As the algorithm counts them.
   const std::vector<Index>& evaluations() const { return evaluations_; }
 
   Index rounds() const { return rounds_; }
   /// Evaluations a fixed batch would have made of finished problems.
   std::uint64_t skipped_evaluations() const { return skipped_; }
-  /// Trials that were not evaluated, as their point was known.
+  /// Trials that were not evaluated, as their result was known.
   std::uint64_t skipped_trials() const { return skipped_trials_; }
 
  protected:
-  /// An evaluated point.
-  struct Point {
-    const double* x;
-    double loss;
-    const double* gradient;
-  };
-
   BatchedSolver() = default;
   BatchedSolver(const BatchedSolver&) = default;
   BatchedSolver& operator=(const BatchedSolver&) = default;
   BatchedSolver(BatchedSolver&&) = default;
   BatchedSolver& operator=(BatchedSolver&&) = default;
-  ~BatchedSolver() = default;
 
-  /// Problem i has its start, usable, as its iterate: the first trial point,
-  /// or false if it ends.
-  virtual bool begin(Index i, double* trial) = 0;
-  /// An evaluation came back: the next trial point, or false if it ends.
-  virtual bool advance(Index i, const Point& at, double* trial) = 0;
+  /// The evaluations of the active problems came back: moves the problems,
+  /// names those that `accepted_` has to list, and leaves in `active_` and
+  /// `trial_` what is to be evaluated next.
+  virtual void take(VectorIn<double> loss, BatchIn<double> gradient) = 0;
 
-  /// Opens one run per column of x0.
+  /// Opens one run per column of x0: those that are finite are active, and
+  /// wait at their start.
   void open(BatchIn<double> x0);
-  /// The point becomes the iterate.
-  void accept(Index i, const Point& at);
+  /// Ends problem i; false, so that it can be returned.
   bool finish(Index i, Status status);
 
-  Index d_ = 0;
+  Index d_ = 0, rounds_ = 0;
   Batch<double> x_, gradient_, trial_;
   Vector<double> loss_;
   std::vector<Status> status_;
-  std::vector<Index> iterations_, evaluations_, active_;
-
- private:
-  template <class F>
-  void keep_active(F&& goes_on);
-  bool answer(Index i, const Point& at, double* trial);
-  bool open_run(Index i, const Point& at, double* trial);
-
-  Index rounds_ = 0, known_ = 0;
+  std::vector<Index> iterations_, evaluations_, active_, accepted_;
   std::uint64_t skipped_ = 0, skipped_trials_ = 0;
-  std::vector<char> knows_;              // whose trial point is the new iterate
-  Vector<double> last_, last_gradient_;  // of the problem at hand
-  std::vector<Index> accepted_;
 };
 
 }  // namespace physinv

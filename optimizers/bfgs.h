@@ -1,15 +1,14 @@
 /// BFGS with the semantics of SciPy 1.10 `minimize(method="BFGS", jac=True,
 /// tol=gtol)`, run for many independent problems together.
 ///
-/// How it is used: batched_solver.h. Nothing allocates between `start` and the
-/// end, nor in `start` if the size is that of an earlier run. Where SciPy would
-/// walk on with NaN, a search fails (see line_search.h): results are finite if
-/// the start and its loss are.
+/// How it is used: batched_solver.h. Where SciPy would walk on with NaN, a
+/// search fails (see line_search.h): results are finite if the start and its
+/// loss are.
 #pragma once
 
 #include <vector>
 
-#include "optimizers/batched_solver.h"
+#include "optimizers/independent_solver.h"
 #include "optimizers/steps/line_search.h"
 
 namespace physinv {
@@ -27,12 +26,12 @@ inline constexpr Index kStallSteps = 3;
 
 /// Ends as `gtol` (stalled problems, too), `linesearch`, `nonfinite`, or
 /// `maxiter`.
-class Bfgs final : public BatchedSolver {
+class Bfgs final : public IndependentSolver {
  public:
-  explicit Bfgs(const BfgsOptions& options = {}) : options_(options) {}
+  explicit Bfgs(const BfgsOptions& options = {})
+      : IndependentSolver(KnownPoint::reuse), options_(options) {}
 
-  /// Begins one run per column of x0 (d x n).
-  void start(BatchIn<double> x0);
+  void start(BatchIn<double> x0) override;
 
  private:
   bool begin(Index i, double* trial) override;

@@ -6,17 +6,11 @@
 ///   trial = x - a g / max(1, |g|)
 ///   L falls: x = trial, a *= longer    otherwise: a *= shorter
 ///
-/// Where trial, loss or gradient are not finite, nothing falls; a start that is
-/// not finite ends at once, as it is. Driven like `Bfgs`; the bits of a problem
-/// do not depend on the others in the batch.
+/// Where trial, loss or gradient are not finite, nothing falls. How it is used:
+/// batched_solver.h.
 #pragma once
 
-#include <cstdint>
-#include <span>
-#include <vector>
-
-#include "suite/core/batch.h"
-#include "suite/core/stop.h"
+#include "optimizers/independent_solver.h"
 
 namespace physinv {
 
@@ -26,46 +20,20 @@ struct BoldDescentOptions {
   Index evaluations = 100;  ///< trials
 };
 
-class BoldDescent {
+/// Ends as `gtol` (a gradient of zero), `nonfinite`, or `maxiter`.
+class BoldDescent final : public IndependentSolver {
  public:
   explicit BoldDescent(const BoldDescentOptions& options = {})
-      : options_(options) {}
+      : IndependentSolver(KnownPoint::evaluate), options_(options) {}
 
-  /// Begins one run per column of x0 (d x n).
-  void start(BatchIn<double> x0);
-
-  bool pending() const { return !active_.empty(); }
-  /// Problems that wait for an evaluation, ascending.
-  std::span<const Index> active() const { return active_; }
-  /// Where they want it, d x active().size(), in the same order.
-  Eigen::Ref<const Batch<double>> points() const {
-    return trial_.leftCols(static_cast<Index>(active_.size()));
-  }
-  void supply(VectorIn<double> loss, BatchIn<double> gradient);
-  /// Ends what is still pending, with status `maxiter`.
-  void halt() { active_.clear(); }
-
-  /// Problems that moved in the last round; in the first those whose start is
-  /// usable.
-  std::span<const Index> accepted() const { return accepted_; }
-
-  const Batch<double>& x() const { return x_; }
-  const Vector<double>& loss() const { return loss_; }
-  /// `gtol`: a gradient of zero; `nonfinite`: no usable start; `maxiter`.
-  const std::vector<Status>& status() const { return status_; }
-  const std::vector<Index>& iterations() const { return iterations_; }
-  const std::vector<Index>& evaluations() const { return evaluations_; }
-  std::uint64_t skipped_evaluations() const { return skipped_; }
+  void start(BatchIn<double> x0) override;
 
  private:
-  bool take(Index i, Index at, double loss, VectorIn<double> gradient);
+  bool begin(Index i, double* trial) override;
+  bool advance(Index i, const Point& at, double* trial) override;
 
   BoldDescentOptions options_;
-  std::uint64_t skipped_ = 0;
-  Batch<double> x_, gradient_, trial_;
-  Vector<double> loss_, step_;
-  std::vector<Status> status_;
-  std::vector<Index> iterations_, evaluations_, active_, accepted_;
+  Vector<double> step_;
 };
 
 }  // namespace physinv

@@ -1,9 +1,10 @@
-/// Runs a batched solver (`Bfgs`, `Lbfgsb`, `GradientDescent`) to its end.
+/// Runs a batched solver to its end.
 #pragma once
 
 #include <concepts>
 #include <type_traits>
 
+#include "optimizers/batched_solver.h"
 #include "suite/core/batch.h"
 #include "suite/core/objective.h"
 
@@ -21,7 +22,9 @@ struct NoObserver {
 /// the start included: solver.accepted() says which problems moved, x(),
 /// loss() and iterations() where to. One that returns a value convertible to
 /// bool ends the run with `false`; what is pending then ends as `maxiter`.
-template <class Solver, BatchObjective Objective, class Observer = NoObserver>
+template <std::derived_from<BatchedSolver> Solver,
+          BatchObjective Objective,
+          class Observer = NoObserver>
 void drive(Solver& solver,
            Objective&& objective,
            BatchIn<double> x0,
@@ -44,8 +47,7 @@ void drive(Solver& solver,
         solver.active(), solver.points(), loss.head(m), gradient.leftCols(m));
     solver.supply(loss.head(m), gradient.leftCols(m));
     observe();
-    if constexpr (requires { solver.supply_known(); })
-      while (solver.supply_known()) observe();
+    while (solver.supply_known()) observe();
   }
 }
 

@@ -27,16 +27,10 @@ void check(const GradientDescentOptions& o) {
 }  // namespace
 
 void GradientDescent::start(BatchIn<double> x0) {
-  const Index n = x0.cols();
-  d_ = x0.rows();
-  SUITE_CHECK(d_ > 0, "gradient descent needs unknowns");
   check(options_);
-  rounds_ = iteration_ = substep_ = 0;
-  skipped_ = skipped_trials_ = 0;
-  starting_ = true;
-  x_ = x0;
-  trial_ = x0;
-  gradient_.setZero(d_, n);
+  open(x0);
+  const Index n = x0.cols();
+  iteration_ = substep_ = 0;
   best_gradient_.setZero(d_, n);
   zero_.setZero(d_);
   loss_.setConstant(n, kInf);
@@ -44,65 +38,48 @@ void GradientDescent::start(BatchIn<double> x0) {
   eta_.setConstant(n, options_.first_step);
   test_ = best_step_ = eta_;
   converged_.assign(at(n), 0);
-  status_.assign(at(n), Status::maxiter);
-  iterations_.assign(at(n), 0);
-  evaluations_.assign(at(n), 0);
   flat_.clear();
   flat_.reserve(at(n));
-  accepted_.clear();
-  accepted_.reserve(at(n));
-  active_.clear();
-  active_.reserve(at(n));
-  for (Index i = 0; i < n; ++i) {
-    if (dense::all_finite(d_, x_.col(i).data())) {
-      trial_.col(static_cast<Index>(active_.size())) = x_.col(i);
-      active_.push_back(i);
-    } else {
-      status_[at(i)] = Status::nonfinite;
-    }
-  }
 }
 
-void GradientDescent::supply(VectorIn<double> loss, BatchIn<double> gradient) {
-  const auto m = static_cast<Index>(active_.size());
-  SUITE_CHECK(loss.size() == m && gradient.cols() == m && gradient.rows() == d_,
-              "one loss and one gradient per active problem");
-  ++rounds_;
-  skipped_ += at(x_.cols() - m) - flat_.size();
+void GradientDescent::take(VectorIn<double> loss, BatchIn<double> gradient) {
+  skipped_ -= flat_.size();
   skipped_trials_ += flat_.size();
   for (const Index i : flat_) ++evaluations_[at(i)];
-  accepted_.clear();
-  bool done = true;
-  for (Index k = 0; k < m; ++k) {
-    const Index i = active_[at(k)];
-    const double* g = gradient.col(k).data();
-    double l = loss(k);
-    if (!std::isfinite(l) || !dense::all_finite(d_, g) ||
-        !dense::all_finite(d_, trial_.col(k).data()))
-      l = kInf, g = zero_.data();
-    ++evaluations_[at(i)];
-    if (starting_) {
-      loss_(i) = l;
-      std::copy(g, g + d_, gradient_.col(i).data());
-    } else if (substep_ == 0) {
-      first_trial(i, l, g);
-    } else {
-      substep(i, l, g);
-    }
-    done &= settled(i);
-  }
-  if (starting_) {
+  judge(loss, gradient);
+  const bool done = std::all_of(
+      active_.begin(), active_.end(), [this](Index i) { return settled(i); });
+  if (rounds_ == 0) {
     accepted_ = active_;
-    starting_ = false;
     begin_iteration();
   } else if (substep_ > 0 && (done || substep_ == options_.substeps)) {
     end_iteration();
     begin_iteration();
   } else {
     ++substep_;
-    for (Index k = 0; k < m; ++k) {
-      adapt(active_[at(k)]);
-      propose(active_[at(k)], k);
+    for (std::size_t k = 0; k < active_.size(); ++k) {
+      adapt(active_[k]);
+      propose(active_[k], static_cast<Index>(k));
+    }
+  }
+}
+
+/// Notes what came back: of the start, a first trial or a sub-step.
+void GradientDescent::judge(VectorIn<double> loss, BatchIn<double> gradient) {
+  for (std::size_t k = 0; k < active_.size(); ++k) {
+    const Index i = active_[k], column = static_cast<Index>(k);
+    const double* g = gradient.col(column).data();
+    double l = loss(column);
+    if (!std::isfinite(l) || !dense::all_finite(d_, g) ||
+        !dense::all_finite(d_, trial_.col(column).data()))
+      l = kInf, g = zero_.data();
+    if (rounds_ == 0) {
+      loss_(i) = l;
+      std::copy(g, g + d_, gradient_.col(i).data());
+    } else if (substep_ == 0) {
+      first_trial(i, l, g);
+    } else {
+      substep(i, l, g);
     }
   }
 }

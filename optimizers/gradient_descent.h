@@ -10,16 +10,16 @@
 /// in its batch.
 ///
 /// A trial that is not finite, or its loss or gradient, counts as L = +inf, g =
-/// 0. Driven like `Bfgs`: start, then active/points/supply while pending, or
-/// drive() of drive.h, whose observer is called after every iteration.
+/// 0. How it is used: batched_solver.h. `accepted` lists the problems for which
+/// an iteration ended in the last round, moved or not (after the first round
+/// all that began, none inside an iteration); an iteration that was skipped
+/// because the gradient is zero is not announced. `evaluations` are those of
+/// the algorithm as it is written, skipped ones included.
 #pragma once
 
-#include <cstdint>
-#include <span>
 #include <vector>
 
-#include "suite/core/batch.h"
-#include "suite/core/stop.h"
+#include "optimizers/batched_solver.h"
 
 namespace physinv {
 
@@ -33,47 +33,19 @@ struct GradientDescentOptions {
   bool skip_zero_gradient = true;
 };
 
-class GradientDescent {
+/// Ends as `gtol` (converged), `linesearch` (diverged: no step lowers the
+/// loss), `nonfinite` (no usable start), or `maxiter`. A loss that is not
+/// finite is +inf.
+class GradientDescent final : public BatchedSolver {
  public:
   explicit GradientDescent(const GradientDescentOptions& options = {})
       : options_(options) {}
 
-  /// Begins one run per column of x0 (d x n). A column that is not finite ends
-  /// at once, as it is.
-  void start(BatchIn<double> x0);
-
-  bool pending() const { return !active_.empty(); }
-  /// Problems that wait for an evaluation, ascending.
-  std::span<const Index> active() const { return active_; }
-  /// Where they want it, d x active().size(), in the same order.
-  Eigen::Ref<const Batch<double>> points() const {
-    return trial_.leftCols(static_cast<Index>(active_.size()));
-  }
-  void supply(VectorIn<double> loss, BatchIn<double> gradient);
-  /// Ends what is still pending, with status `maxiter`.
-  void halt() { active_.clear(); }
-
-  /// Problems for which an iteration ended in the last round, moved or not
-  /// (after the first round all that began, none inside an iteration). An
-  /// iteration that was skipped because the gradient is zero is not announced.
-  std::span<const Index> accepted() const { return accepted_; }
-
-  const Batch<double>& x() const { return x_; }
-  const Vector<double>& loss() const { return loss_; }  ///< +inf: not finite
-  /// `gtol` = converged, `linesearch` = diverged (no step lowers the loss),
-  /// `nonfinite` = no usable start, `maxiter`.
-  const std::vector<Status>& status() const { return status_; }
-  const std::vector<Index>& iterations() const { return iterations_; }
-  /// As the algorithm is written, skipped ones included.
-  const std::vector<Index>& evaluations() const { return evaluations_; }
-
-  Index rounds() const { return rounds_; }
-  /// Evaluations of zero gradients that were not made.
-  std::uint64_t skipped_trials() const { return skipped_trials_; }
-  /// Evaluations a fixed batch would have made of finished problems.
-  std::uint64_t skipped_evaluations() const { return skipped_; }
+  void start(BatchIn<double> x0) override;
 
  private:
+  void take(VectorIn<double> loss, BatchIn<double> gradient) override;
+  void judge(VectorIn<double> loss, BatchIn<double> gradient);
   void begin_iteration();
   void propose(Index i, Index at);
   void first_trial(Index i, double loss, const double* gradient);
@@ -84,14 +56,11 @@ class GradientDescent {
   void end_iteration();
 
   GradientDescentOptions options_;
-  Index d_ = 0, rounds_ = 0, iteration_ = 0, substep_ = 0;
-  bool starting_ = true;
-  std::uint64_t skipped_ = 0, skipped_trials_ = 0;
-  Batch<double> x_, gradient_, best_gradient_, trial_;
-  Vector<double> loss_, eta_, test_, best_step_, best_loss_, zero_;
+  Index iteration_ = 0, substep_ = 0;
+  Batch<double> best_gradient_;
+  Vector<double> eta_, test_, best_step_, best_loss_, zero_;
   std::vector<char> converged_;  // within this iteration
-  std::vector<Status> status_;
-  std::vector<Index> iterations_, evaluations_, active_, flat_, accepted_;
+  std::vector<Index> flat_;      // whose gradient is zero
 };
 
 }  // namespace physinv

@@ -1,6 +1,8 @@
 #include "optimizers/half_inverse_direct.h"
 
 #include "optimizers/half_inverse/explicit_power.h"
+#include "optimizers/stage.h"
+#include "optimizers/stepwise.h"
 #include "suite/core/check.h"
 #include "suite/core/option_check.h"
 #include "suite/core/oracle.h"
@@ -10,11 +12,11 @@ namespace physinv {
 namespace {
 
 template <class T>
-class Direct {
+class Direct final : public StepwiseSolver {
  public:
   Direct(const HalfInverseDirectOptions& options, StageRun& run)
       : options_(options),
-        run_(run),
+        probe_(run.probe),
         oracle_(run.oracle),
         problem_(oracle_.recipe().make<T>()),
         projection_(dynamic_cast<const GradientProjection<T>*>(problem_.get())),
@@ -25,33 +27,18 @@ class Direct {
         g_(y_),
         jacobian_(y_.rows() * x_.rows(), x_.cols()),
         update_(x_.rows()),
-        metrics_(options.metrics, run),
-        work_(run.threads) {
-    out_.status.assign(static_cast<std::size_t>(x_.cols()), Status::maxiter);
-    out_.iterations.setZero(x_.cols());
-  }
+        examples_(x_.cols()),
+        work_(run.threads) {}
 
-  Outcome run() {
-    Probe& probe = run_.probe;
-    probe.begin_warmup();
-    probe.begin();
-    const auto measured = [&](BatchIn<double> x, BatchIn<double> y) {
-      if (!metrics_.empty()) metrics_(Vector<double>(), x, y);
-    };
-    while (probe.proceed(
-        [&](BatchOut<double> x) { x = x_.template cast<double>(); },
-        measured)) {
-      update();
-      probe.trace(x_.data(), sizeof(T) * static_cast<std::size_t>(x_.size()));
-    }
-    out_.x = x_.template cast<double>();
-    out_.evaluations = out_.iterations;
-    out_.arrays["mean_loss"] = probe.curve().loss.colwise().mean();
-    if (!metrics_.empty()) out_.arrays["metrics"] = metrics_.values();
-    keep_finite(out_.arrays);
-    out_.bytes = bytes();
+  void step() override {
+    update();
+    probe_.trace(x_.data(), sizeof(T) * static_cast<std::size_t>(x_.size()));
+  }
+  void estimate(BatchOut<double> x) override { x = x_.template cast<double>(); }
+  void leave(Outcome& out) override {
+    examples_.leave(out);
+    out.bytes = bytes();
     oracle_.add(work_.counts);
-    return std::move(out_);
   }
 
  private:
@@ -63,8 +50,7 @@ class Direct {
         x_, given_, jacobian_, work_);
     oracle_.add(Counter::jacobian, x_.cols());
     for (Index i = 0; i < x_.cols(); ++i) {
-      Status& status = out_.status[static_cast<std::size_t>(i)];
-      if (status == Status::nonfinite) continue;
+      if (!examples_.running(i)) continue;
       s_ = Eigen::Map<const Batch<T>>(
                jacobian_.col(i).data(), y_.rows(), x_.rows())
                .template cast<double>();
@@ -73,11 +59,11 @@ class Direct {
       next_ = x_.col(i) - (options_.rate * update_).template cast<T>();
       if ((ending != hig::Ending::ok && ending != hig::Ending::zero) ||
           !next_.allFinite()) {
-        status = Status::nonfinite;
+        examples_.end(i);
         continue;
       }
       x_.col(i) = next_;
-      ++out_.iterations(i);
+      examples_.count(i);
     }
   }
 
@@ -90,7 +76,7 @@ class Direct {
   }
 
   const HalfInverseDirectOptions& options_;
-  StageRun& run_;
+  Probe& probe_;
   Oracle& oracle_;
   std::unique_ptr<Problem<T>> problem_;
   const GradientProjection<T>* projection_;
@@ -98,42 +84,9 @@ class Direct {
   Vector<T> next_;
   Batch<double> s_;
   Vector<double> update_;
-  MetricsRecorder metrics_;
   hig::ExplicitPower power_;
+  Examples examples_;
   Workspace work_;
-  Outcome out_;
-};
-
-class DirectStage final : public Stage {
- public:
-  explicit DirectStage(const HalfInverseDirectOptions& options)
-      : options_(options) {}
-
-  std::string name() const override { return options_.stage; }
-  Needs needs() const override { return Needs::forward | Needs::jacobian; }
-  Options options() const override { return describe(options_); }
-  Index default_iterations() const override { return options_.iterations; }
-  bool has_precision() const override { return true; }
-  Networks networks() const override { return Networks::none; }
-  Sources sources() const override {
-    Sources all = Stage::sources();
-    options_.metrics.add_to(all);
-    return all;
-  }
-  double operations(const CaseSize& size) const override {
-    const auto rows = static_cast<double>(size.shape.observations);
-    const auto columns = static_cast<double>(size.shape.unknowns);
-    return static_cast<double>(size.n * size.iterations) *
-           (rows * size.problem_operations + 8 * rows * rows * columns);
-  }
-  Outcome run(StageRun& run) const override {
-    if (run.precision == Precision::f32)
-      return Direct<float>(options_, run).run();
-    return Direct<double>(options_, run).run();
-  }
-
- private:
-  HalfInverseDirectOptions options_;
 };
 
 }  // namespace
@@ -145,7 +98,25 @@ std::shared_ptr<const Stage> half_inverse_direct(
                          {"beta", options.power.beta},
                          {"rate", options.rate}});
   SUITE_CHECK(options.iterations >= 0, "iterations are a number from 0 on");
-  return std::make_shared<DirectStage>(options);
+  Sources sources;
+  options.metrics.add_to(sources);
+  const auto operations = [](const CaseSize& size) {
+    const auto rows = static_cast<double>(size.shape.observations);
+    const auto columns = static_cast<double>(size.shape.unknowns);
+    return static_cast<double>(size.n * size.iterations) *
+           (rows * size.problem_operations + 8 * rows * rows * columns);
+  };
+  return make_stage({.name = options.stage,
+                     .needs = Needs::forward | Needs::jacobian,
+                     .options = describe(options),
+                     .iterations = options.iterations,
+                     .networks = Networks::none,
+                     .operations = operations,
+                     .sources = sources},
+                    [options]<class T>(StageRun& run) {
+                      Direct<T> solver(options, run);
+                      return run_steps(solver, run, options.metrics);
+                    });
 }
 
 }  // namespace physinv

@@ -1,12 +1,12 @@
 #include "optimizers/jpo.h"
 
+#include "optimizers/stage.h"
 #include "optimizers/steps/clip_percentile.h"
 #include "optimizers/steps/rule_check.h"
 #include "optimizers/training/best_so_far.h"
 #include "optimizers/training/first_order.h"
 #include "optimizers/training/loop.h"
 #include "optimizers/training/output_map.h"
-#include "optimizers/training/stage.h"
 #include "suite/core/check.h"
 #include "suite/core/oracle.h"
 #include "suite/core/probe.h"

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "optimizers/batched_solver.h"
+#include "optimizers/independent_solver.h"
 #include "optimizers/steps/box_step.h"
 #include "optimizers/steps/limited_memory.h"
 #include "optimizers/steps/line_search.h"
@@ -35,13 +35,13 @@ struct LbfgsbOptions {
 
 /// Ends as `gtol` for both tests, `linesearch`, `nonfinite`, or `maxiter` (or
 /// maxfun).
-class Lbfgsb final : public BatchedSolver {
+class Lbfgsb final : public IndependentSolver {
  public:
-  explicit Lbfgsb(LbfgsbOptions options = {}) : options_(std::move(options)) {}
+  explicit Lbfgsb(LbfgsbOptions options = {})
+      : IndependentSolver(KnownPoint::reuse), options_(std::move(options)) {}
 
-  /// Begins one run per column of x0 (d x n), moved into the bounds; what is
-  /// not finite is not moved.
-  void start(BatchIn<double> x0);
+  /// From x0 moved into the bounds; what is not finite is not moved.
+  void start(BatchIn<double> x0) override;
 
  private:
   struct Problem {

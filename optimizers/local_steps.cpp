@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "optimizers/stage.h"
 #include "optimizers/steps/rule_check.h"
+#include "optimizers/stepwise.h"
 #include "optimizers/training/newton.h"
 #include "suite/core/check.h"
 #include "suite/core/closed_steps.h"
@@ -34,11 +36,11 @@ Needs needs_of(const LocalStepsOptions& options) {
 }
 
 template <class T>
-class LocalSteps {
+class LocalSteps final : public StepwiseSolver {
  public:
   LocalSteps(const LocalStepsOptions& options, StageRun& run)
       : options_(options),
-        run_(run),
+        probe_(run.probe),
         oracle_(run.oracle),
         problem_(oracle_.recipe().make<T>()),
         closed_(dynamic_cast<const ClosedSteps<T>*>(problem_.get())),
@@ -51,11 +53,10 @@ class LocalSteps {
         y_bar_(y_),
         path_(x_.rows() * std::min(options.paths, x_.cols()),
               run.iterations + 1),
+        examples_(x_.cols()),
         work_(run.threads),
         tape_(run.threads) {
     check_numbers<T>({{"rate", options.rate}});
-    out_.status.assign(static_cast<std::size_t>(x_.cols()), Status::maxiter);
-    out_.iterations.setZero(x_.cols());
     if constexpr (std::is_same_v<T, double>)
       search_ = std::make_unique<NumericInverse>(
           *problem_, options.search, run.threads);
@@ -65,28 +66,21 @@ class LocalSteps {
     }
   }
 
-  Outcome run() {
-    Probe& probe = run_.probe;
-    probe.begin_warmup();
-    probe.begin();
+  void warm_up() override { keep_path(); }
+  void step() override {
+    propose();
+    accept();
     keep_path();
-    while (probe.proceed(
-        [&](BatchOut<double> x) { x = x_.template cast<double>(); })) {
-      propose();
-      accept();
-      keep_path();
-      probe.trace(x_.data(), sizeof(T) * static_cast<std::size_t>(x_.size()));
-    }
-    out_.x = x_.template cast<double>();
-    out_.evaluations = out_.iterations;
-    const auto ended = [](Status s) { return s == Status::nonfinite; };
-    if (std::all_of(out_.status.begin(), out_.status.end(), ended))
-      out_.stop = Stop::diverged;
-    if (path_.rows() > 0) out_.arrays["path"] = path_;
-    out_.bytes = bytes();
+    probe_.trace(x_.data(), sizeof(T) * static_cast<std::size_t>(x_.size()));
+  }
+  void estimate(BatchOut<double> x) override { x = x_.template cast<double>(); }
+  void leave(Outcome& out) override {
+    examples_.leave(out);
+    if (examples_.none_running()) out.stop = Stop::diverged;
+    if (path_.rows() > 0) out.arrays["path"] = path_;
+    out.bytes = bytes();
     if (search_) oracle_.add(search_->counts());
     oracle_.add(work_.counts);
-    return std::move(out_);
   }
 
  private:
@@ -201,19 +195,18 @@ class LocalSteps {
 
   void accept() {
     for (Index i = 0; i < x_.cols(); ++i) {
-      Status& status = out_.status[static_cast<std::size_t>(i)];
-      if (status == Status::nonfinite) continue;
+      if (!examples_.running(i)) continue;
       if (next_.col(i).allFinite()) {
         x_.col(i) = next_.col(i);
-        ++out_.iterations(i);
+        examples_.count(i);
       } else {
-        status = Status::nonfinite;
+        examples_.end(i);
       }
     }
   }
 
   void keep_path() {
-    path_.col(run_.probe.iteration()) =
+    path_.col(probe_.iteration()) =
         x_.reshaped().head(path_.rows()).template cast<double>();
   }
 
@@ -228,7 +221,7 @@ class LocalSteps {
   }
 
   const LocalStepsOptions& options_;
-  StageRun& run_;
+  Probe& probe_;
   Oracle& oracle_;
   std::unique_ptr<Problem<T>> problem_;
   const ClosedSteps<T>* closed_;
@@ -238,50 +231,29 @@ class LocalSteps {
   Batch<T> x_, next_, given_, target_, y_, y_bar_, matrix_;
   Batch<double> path_;
   FullyPivoted<T> lu_;
+  Examples examples_;
   Workspace work_;
   Tape tape_;
-  Outcome out_;
 };
 
-class LocalStepsStage final : public Stage {
- public:
-  explicit LocalStepsStage(const LocalStepsOptions& options)
-      : options_(options) {
-    check_numbers<double>({{"rate", options.rate}});
-    SUITE_CHECK(options.iterations >= 0 && options.paths >= 0,
-                "iterations and paths are numbers from 0 on");
-  }
+bool searches(const LocalStepsOptions& options) {
+  return options.step == LocalStep::inverse_search;
+}
 
-  std::string name() const override { return "solve"; }
-  Needs needs() const override { return needs_of(options_); }
-  Options options() const override { return describe(options_); }
-  Index default_iterations() const override { return options_.iterations; }
-  Sources sources() const override {
-    Sources all = Stage::sources();
-    add_sources(options_.rule.value_or(SgdOptions{}), all);
-    return all;
-  }
-  bool has_precision() const override { return !searches(); }
-  Networks networks() const override { return Networks::none; }
-  double operations(const CaseSize& size) const override {
-    const auto d = static_cast<double>(size.shape.unknowns);
-    const bool solves = options_.step == LocalStep::newton ||
-                        options_.step == LocalStep::inverse_gradient;
-    return static_cast<double>(size.n * size.iterations) *
-           ((searches() ? 100 : 3) * size.problem_operations +
-            (solves ? d * d * d : 0));
-  }
-  Outcome run(StageRun& run) const override {
-    if (run.precision == Precision::f32 && !searches())
-      return LocalSteps<float>(options_, run).run();
-    return LocalSteps<double>(options_, run).run();
-  }
+double operations(const LocalStepsOptions& options, const CaseSize& size) {
+  const auto d = static_cast<double>(size.shape.unknowns);
+  const bool solves = options.step == LocalStep::newton ||
+                      options.step == LocalStep::inverse_gradient;
+  return static_cast<double>(size.n * size.iterations) *
+         ((searches(options) ? 100 : 3) * size.problem_operations +
+          (solves ? d * d * d : 0));
+}
 
- private:
-  bool searches() const { return options_.step == LocalStep::inverse_search; }
-
-  LocalStepsOptions options_;
-};
+template <class T>
+Outcome run_in(const LocalStepsOptions& options, StageRun& run) {
+  LocalSteps<T> solver(options, run);
+  return run_steps(solver, run);
+}
 
 }  // namespace
 
@@ -297,7 +269,25 @@ std::string_view to_string(LocalStep step) {
 std::shared_ptr<const Stage> local_steps(const LocalStepsOptions& options) {
   SUITE_CHECK(!options.rule || options.rate == LocalStepsOptions{}.rate,
               "a rule of steps has its rate among its own options");
-  return std::make_shared<LocalStepsStage>(options);
+  check_numbers<double>({{"rate", options.rate}});
+  SUITE_CHECK(options.iterations >= 0 && options.paths >= 0,
+              "iterations and paths are numbers from 0 on");
+  StageFacts facts{.name = "solve",
+                   .needs = needs_of(options),
+                   .options = describe(options),
+                   .iterations = options.iterations,
+                   .networks = Networks::none,
+                   .operations = [options](const CaseSize& size) {
+                     return operations(options, size);
+                   }};
+  add_sources(options.rule.value_or(SgdOptions{}), facts.sources);
+  if (searches(options))
+    return make_stage(std::move(facts), [options](StageRun& run) {
+      return run_in<double>(options, run);
+    });
+  return make_stage(std::move(facts), [options]<class T>(StageRun& run) {
+    return run_in<T>(options, run);
+  });
 }
 
 }  // namespace physinv

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "optimizers/training/stage.h"
+#include "optimizers/stage.h"
 #include "suite/core/check.h"
 #include "suite/core/oracle.h"
 #include "suite/core/probe.h"

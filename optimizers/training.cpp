@@ -4,13 +4,13 @@
 #include <cmath>
 #include <type_traits>
 
+#include "optimizers/stage.h"
 #include "optimizers/steps/rule_check.h"
 #include "optimizers/training/adahessian_rule.h"
 #include "optimizers/training/first_order.h"
 #include "optimizers/training/half_inverse_rule.h"
 #include "optimizers/training/loop.h"
 #include "optimizers/training/predictions.h"
-#include "optimizers/training/stage.h"
 #include "suite/core/check.h"
 #include "suite/core/option_check.h"
 #include "suite/core/oracle.h"

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "optimizers/minimize.h"
 #include "suite/core/oracle.h"
 #include "suite/core/probe.h"
 #include "tests/support/bits.h"
@@ -120,6 +121,58 @@ TEST(Classical, StagesNameThemselves) {
   EXPECT_FALSE(bfgs_refine()->takes_row_iterations());
   EXPECT_NE(bfgs_solve()->options(), bfgs_refine()->options());
   EXPECT_NE(lbfgsb_solve({.lower = {0}})->options(), lbfgsb_solve()->options());
+}
+
+/// x -= g / 2 until no problem has a gradient left.
+class HalfSteps final : public BatchedSolver {
+ public:
+  void start(BatchIn<double> x0) override { open(x0); }
+
+ private:
+  void take(VectorIn<double> loss, BatchIn<double> gradient) override {
+    std::size_t kept = 0;
+    for (std::size_t at = 0; at < active_.size(); ++at) {
+      const Index i = active_[at];
+      const auto g = gradient.col(static_cast<Index>(at));
+      x_.col(i) = trial_.col(static_cast<Index>(at));
+      loss_(i) = loss(static_cast<Index>(at));
+      gradient_.col(i) = g;
+      iterations_[static_cast<std::size_t>(i)] = rounds_;
+      accepted_.push_back(i);
+      if (g.lpNorm<Eigen::Infinity>() <= 1e-6) {
+        finish(i, Status::gtol);
+      } else {
+        trial_.col(static_cast<Index>(kept)) = x_.col(i) - g / 2;
+        active_[kept++] = i;
+      }
+    }
+    active_.resize(kept);
+  }
+};
+
+TEST(Classical, ASolverFromOutsideIsAStage) {
+  const auto stage = make_stage(
+      {.name = "solve",
+       .needs = Needs::forward | Needs::vjp,
+       .options = {{"algorithm", "half steps"}},
+       .iterations = 100,
+       .networks = Networks::none,
+       .operations =
+           [](const CaseSize& size) { return size.problem_operations; }},
+      [](StageRun& run) {
+        HalfSteps solver;
+        return minimize(solver, run, run.oracle.start());
+      });
+  EXPECT_FALSE(stage->has_precision());
+  StageBench bench(*stage, kCount, 100);
+  const Outcome out = bench.run();
+  EXPECT_EQ(out.stop, Stop::converged);
+  EXPECT_TRUE(Comparator(0, 1e-4)(out.x, bench.oracle.data().x));
+  EXPECT_EQ(bench.oracle.counts()[Counter::vjp],
+            static_cast<std::uint64_t>(out.evaluations.sum()));
+  EXPECT_EQ(bench.probe.curve().iteration.back(), out.iterations.maxCoeff());
+  EXPECT_TRUE((out.arrays.at("first_step").array() >= 0).all());
+  EXPECT_GT(out.arrays.at("first_step").maxCoeff(), 0);
 }
 
 }  // namespace

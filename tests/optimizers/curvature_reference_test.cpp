@@ -1,10 +1,10 @@
 // The vectors of sip-poisson that are second derivatives: products, AdaHessian
 // and Hessian-free, through signal and rules, on the listed batch and from the
 // listed weights.
+#include "optimizers/stage.h"
 #include "optimizers/training.h"
 #include "optimizers/training/adahessian_rule.h"
 #include "optimizers/training/batches.h"
-#include "optimizers/training/stage.h"
 #include "suite/core/linear_problem.h"
 #include "suite/nn/unet.h"
 #include "tests/support/quadratic.h"

@@ -1,4 +1,4 @@
-#include "optimizers/training/stage.h"
+#include "optimizers/stage.h"
 
 namespace physinv {
 namespace {
@@ -16,7 +16,7 @@ class FactualStage final : public Stage {
   Options options() const override { return facts_.options; }
   Index default_iterations() const override { return facts_.iterations; }
   bool takes_row_iterations() const override { return !facts_.own_length; }
-  bool has_precision() const override { return true; }
+  bool has_precision() const override { return in_float_ != nullptr; }
   Networks networks() const override { return facts_.networks; }
   Sources sources() const override {
     Sources all = Stage::sources();
@@ -30,7 +30,8 @@ class FactualStage final : public Stage {
     return facts_.operations(size);
   }
   Outcome run(StageRun& run) const override {
-    return run.precision == Precision::f32 ? in_float_(run) : in_double_(run);
+    const bool single = has_precision() && run.precision == Precision::f32;
+    return single ? in_float_(run) : in_double_(run);
   }
 
  private:

@@ -1,11 +1,15 @@
-/// A stage of a training: its facts, and a function of the precision.
+/// A stage of a method from its facts and a function that runs it.
 ///
 ///   make_stage({.name = "fit", ...},
 ///              [options]<class T>(StageRun& run) {
 ///                return fit<T>(options, run);
 ///              });
+///
+/// The function is a template on the precision, or, where the stage is in
+/// double whatever the case's precision, takes the run alone.
 #pragma once
 
+#include <concepts>
 #include <functional>
 #include <memory>
 #include <string>
@@ -30,16 +34,21 @@ struct StageFacts {
 
 using RunStage = std::function<Outcome(StageRun& run)>;
 
+/// In double alone if `in_float` is empty.
 std::shared_ptr<const Stage> make_stage(StageFacts facts,
                                         RunStage in_float,
                                         RunStage in_double);
 
 template <class Run>
 std::shared_ptr<const Stage> make_stage(StageFacts facts, Run run) {
-  return make_stage(
-      std::move(facts),
-      [run](StageRun& r) { return run.template operator()<float>(r); },
-      [run](StageRun& r) { return run.template operator()<double>(r); });
+  if constexpr (std::invocable<const Run&, StageRun&>) {
+    return make_stage(std::move(facts), nullptr, std::move(run));
+  } else {
+    return make_stage(
+        std::move(facts),
+        [run](StageRun& r) { return run.template operator()<float>(r); },
+        [run](StageRun& r) { return run.template operator()<double>(r); });
+  }
 }
 
 }  // namespace physinv
