@@ -97,7 +97,7 @@ ExitCode baseline_verb(const Arguments& arguments) {
             "as they are declared alone",
             &counted,
             "REGEX"},
-           {"--jobs", "worker processes; default: cores", &jobs}},
+           {"-j,--jobs", "worker processes; default: cores", &jobs}},
           arguments))
     return ExitCode::good;
   if (!counted.empty()) NameFilter({counted}, "--count");  // before any run

@@ -8,8 +8,13 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
+#include <iterator>
+#include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
+#include <sstream>
 #include <type_traits>
 #include <utility>
 
@@ -93,7 +98,93 @@ void check_switches(const std::vector<Flag>& flags,
   }
 }
 
+/// What a campaign's file may hold at most.
+constexpr std::size_t kLongestFile = 1 << 16;
+
+std::string text_of(const nlohmann::json& value) {
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+/// TOML as CLI11 reads it, or JSON: an object of flags without their dashes;
+/// lists for flags that repeat.
+class CampaignFile final : public CLI::ConfigTOML {
+ public:
+  explicit CampaignFile(const std::vector<Flag>& flags) : flags_(flags) {}
+
+  std::vector<CLI::ConfigItem> from_config(std::istream& input) const override {
+    const std::string text(std::istreambuf_iterator<char>(input), {});
+    const auto begin = text.find_first_not_of(" \t\r\n");
+    const bool is_json = begin != std::string::npos && text[begin] == '{';
+    std::istringstream again(text);
+    const auto items =
+        is_json ? from_json(text) : CLI::ConfigTOML::from_config(again);
+    for (const auto& item : items) check(item);
+    return items;
+  }
+
+ private:
+  static std::vector<CLI::ConfigItem> from_json(const std::string& text) {
+    nlohmann::json all;
+    try {
+      all = nlohmann::json::parse(text);
+    } catch (const nlohmann::json::exception&) {
+      throw UsageError("the file of --config is no JSON");
+    }
+    std::vector<CLI::ConfigItem> items;
+    for (const auto& [name, value] : all.items()) {
+      CLI::ConfigItem item;
+      item.name = name;
+      if (value.is_object() || value.is_null())
+        throw UsageError(fmt::format(
+            "{} in the file of --config is neither text, number, yes or no, "
+            "nor a list of them",
+            name));
+      if (value.is_array()) {
+        for (const auto& one : value) item.inputs.push_back(text_of(one));
+      } else {
+        item.inputs.push_back(text_of(value));
+      }
+      items.push_back(std::move(item));
+    }
+    return items;
+  }
+
+  void check(const CLI::ConfigItem& item) const {
+    Arguments as_typed;
+    for (const auto& input : item.inputs)
+      as_typed.push_back(fmt::format("--{}={}", item.name, input));
+    refuse_empty(as_typed);
+    check_switches(flags_, as_typed);
+  }
+
+  const std::vector<Flag>& flags_;
+};
+
+/// The file that --config names has to be one, and of a size that is read.
+void check_file(const Arguments& arguments) {
+  constexpr std::string_view kFlag = "--config";
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const std::string& a = arguments[i];
+    const bool apart = a == kFlag && i + 1 < arguments.size();
+    if (!apart && !a.starts_with(std::string(kFlag) + "=")) continue;
+    const std::string path = apart ? arguments[i + 1] : a.substr(9);
+    std::error_code none;
+    if (!std::filesystem::is_regular_file(path, none) ||
+        std::filesystem::file_size(path, none) > kLongestFile)
+      throw UsageError(fmt::format(
+          "--config={} is no file of at most {} bytes; flags without their "
+          "dashes as TOML or JSON are",
+          path,
+          kLongestFile));
+  }
+}
+
 void add(CLI::App& app, const Flag& flag) {
+  if (flag.name == "--config") {
+    app.set_config(flag.name, "", flag.help)->type_name("FILE");
+    app.allow_config_extras(CLI::config_extras_mode::error);
+    return;
+  }
   CLI::Option* option = std::visit(
       [&](auto* to) {
         if constexpr (std::is_same_v<decltype(to), bool*>) {
@@ -109,7 +200,7 @@ void add(CLI::App& app, const Flag& flag) {
   if (flag.name.starts_with('-')) {
     option->allow_extra_args(false);
   } else {
-    option->required();
+    option->required(!flag.optional);
   }
 }
 
@@ -144,6 +235,8 @@ bool parse(const std::string& verb,
     return false;
   }
   check_switches(flags, arguments);
+  check_file(arguments);
+  app.config_formatter(std::make_shared<CampaignFile>(flags));
   try {
     app.parse(Arguments(arguments.rbegin(), arguments.rend()));
   } catch (const CLI::CallForHelp&) {
@@ -154,6 +247,10 @@ bool parse(const std::string& verb,
   } catch (const CLI::ParseError& error) {
     throw UsageError(first_line(error.what()) + "; see --help");
   }
+  for (const Flag& flag : flags)
+    if (flag.name == "--config" && app.get_config_ptr()->count() > 0)
+      *std::get<std::string*>(flag.to) =
+          app.get_config_ptr()->as<std::string>();
   return true;
 }
 

@@ -10,14 +10,16 @@
 
 namespace physinv {
 
-/// A flag; if the name has no dashes, an argument that must be there.
+/// A flag; if the name has no dashes, an argument that must be there unless it
+/// is optional.
 struct Flag {
   std::string name, help;
   /// An int is from 1 to 1024, a double positive; a list takes one value each
   /// time its flag is repeated, or all remaining arguments.
   std::variant<bool*, int*, double*, std::string*, std::vector<std::string>*>
       to;
-  std::string type;  ///< of the value, for the help; empty: by `to`
+  std::string type = {};  ///< of the value, for the help; empty: by `to`
+  bool optional = false;
 };
 
 /// UsageError for an empty argument or a flag without the value that its '='

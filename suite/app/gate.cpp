@@ -124,6 +124,7 @@ ExitCode gate_verb(const Arguments& arguments) {
   } else {
     Selection selection;
     selection.filters = flags.filters;
+    selection.plain = true;
     selection.profile = chosen.profile;
     cases = selection.cases();
   }

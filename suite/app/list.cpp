@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <tuple>
 
 #include "suite/app/options.h"
+#include "suite/harness/columns.h"
+#include "suite/harness/progress.h"
 #include "suite/harness/sources.h"
+#include "suite/planning/kinds.h"
 
 namespace physinv {
 namespace {
@@ -40,46 +42,19 @@ std::string stages_of(const Case& c) {
   return fmt::format("{} .. {} ({})", all.front(), all.back(), all.size());
 }
 
-/// Declared work of a whole chain: the same for every seed, and its problems
-/// and networks are made for it.
-class Operations {
- public:
-  double of(const Case& c) {
-    const auto [at, is_new] =
-        known_.try_emplace({c.method, c.info.n, c.stage_iterations});
-    if (is_new) at->second = c.operations();
-    return at->second;
-  }
-
- private:
-  std::map<std::tuple<const Method*, Index, std::vector<Index>>, double> known_;
-};
-
 void print_table(const std::vector<Case>& cases) {
   Operations operations;
-  std::size_t width = 4, stages_width = 6;
-  for (const Case& c : cases) {
-    width = std::max(width, c.info.name.size());
-    stages_width = std::max(stages_width, stages_of(c).size());
-  }
-  fmt::print("{:<{}}  {:<{}}  {:>10}\n",
-             "case",
-             width,
-             "stages",
-             stages_width,
-             "operations");
+  Columns table({"<case", "<stages", "operations"});
   double sum = 0;
   for (const Case& c : cases) {
-    fmt::print("{:<{}}  {:<{}}  {:>10.2g}\n",
-               c.info.name,
-               width,
-               stages_of(c),
-               stages_width,
-               operations.of(c));
+    table.add(
+        {c.info.name, stages_of(c), fmt::format("{:.2g}", operations.of(c))});
     sum += operations.of(c);
   }
-  fmt::print(
-      "{} cases, about {:.2g} floating-point operations\n", cases.size(), sum);
+  fmt::print("{}{} cases, about {:.2g} floating-point operations\n",
+             table.text(Screen::of(stdout).room()),
+             cases.size(),
+             sum);
 }
 
 /// The stages whose numbers an edit of a source can change.
@@ -161,6 +136,37 @@ void print_claims(const std::string& of, const std::vector<Claim>& claims) {
   }
 }
 
+nlohmann::ordered_json claims_json(const std::string& of,
+                                   const std::vector<Claim>& claims) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  for (const Claim& c : claims) {
+    nlohmann::ordered_json conditions = nlohmann::ordered_json::array();
+    for (const Condition& condition : c.conditions)
+      conditions.push_back(
+          {{"label", condition.label}, {"bounds", condition.bounds}});
+    all.push_back({{"of", of},
+                   {"id", c.id},
+                   {"origin", c.origin == Origin::paper ? "paper" : "suite"},
+                   {"where", c.where},
+                   {"from", c.from},
+                   {"says", c.says},
+                   {"conditions", std::move(conditions)},
+                   {"note", c.note},
+                   {"gates", c.gates}});
+  }
+  return all;
+}
+
+void print_claims_json() {
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  const auto add = [&](const auto& of, const auto& claims) {
+    for (auto& claim : claims_json(of, claims)) all.push_back(std::move(claim));
+  };
+  for (const Overview& o : registry().overviews()) add(o.paper, o.claims);
+  for (const auto& e : registry().experiments()) add(e->name, e->claims);
+  fmt::print("{}\n", all.dump(1));
+}
+
 void print_claims() {
   fmt::print(
       "| of | id | whose | where | judged from | says | conditions |\n"
@@ -171,17 +177,33 @@ void print_claims() {
     print_claims(e->name, e->claims);
 }
 
+/// What --json and --format ask for.
+bool is_json(bool json, const std::string& format, bool claims) {
+  const std::string usual = claims ? "markdown" : "text";
+  if (!format.empty() && format != usual && format != "json")
+    throw UsageError(fmt::format(
+        "--format={} is unknown here; known are {}, json", format, usual));
+  if (json && format == usual)
+    throw UsageError("--json and --format=" + format + " exclude each other");
+  return json || format == "json";
+}
+
 }  // namespace
 
 ExitCode list_verb(const Arguments& arguments) {
   Selection selection;
-  std::string edited;
+  std::string edited, format;
   bool json = false, methods = false, claims = false, validate = false;
   if (!parse(
           "list",
           "The cases of a profile, with estimated work.",
           selection.flags(
-              {{"--json", "as JSON", &json},
+              {selection.arguments(),
+               {"--json", "the same as --format=json", &json},
+               {"--format",
+                "text, of --claims markdown (both as a rule), or json",
+                &format,
+                "FORMAT"},
                {"--edit",
                 "the stages that an edit of this source makes stale",
                 &edited,
@@ -189,13 +211,14 @@ ExitCode list_verb(const Arguments& arguments) {
                {"--methods", "experiments and methods, as Markdown", &methods},
                {"--claims",
                 "what is claimed, whose it is and what decides "
-                "it, as Markdown",
+                "it",
                 &claims},
                {"--validate",
                 "is everything registered as it should be?",
                 &validate}}),
           arguments))
     return ExitCode::good;
+  json = is_json(json, format, claims);
   if (validate) {
     print_validity();
     return ExitCode::good;
@@ -205,7 +228,7 @@ ExitCode list_verb(const Arguments& arguments) {
     return ExitCode::good;
   }
   if (claims) {
-    print_claims();
+    json ? print_claims_json() : print_claims();
     return ExitCode::good;
   }
   const auto cases = selection.cases();

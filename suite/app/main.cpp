@@ -52,8 +52,8 @@ std::string help_text() {
                     verb.name == "run" ? "[run]" : std::string(verb.name),
                     verb.takes),
         verb.about);
-  text += help_line("VERB --help", "flags of a verb");
-  text += help_line("--version", "version and build");
+  text += help_line("VERB --help", "flags of a verb; also: help VERB");
+  text += help_line("--version, -V", "version and build");
   text += "\nexamples\n";
   for (const auto& example : program().examples)
     text += fmt::format("  {} {}\n", program().name, example);
@@ -64,9 +64,9 @@ std::string help_text() {
 
 /// Of the program itself. False if it is none of those.
 bool answered(const std::string& flag) {
-  if (flag == "--help" || flag == "-h") {
+  if (flag == "--help" || flag == "-h" || flag == "help") {
     fmt::print("{}", help_text());
-  } else if (flag == "--version") {
+  } else if (flag == "--version" || flag == "-V") {
     fmt::print("{}\n", version_text());
   } else if (flag == "--list-verbs") {
     for (const Verb& verb : program().verbs) fmt::print("{}\n", verb.name);
@@ -83,15 +83,24 @@ bool answered(const std::string& flag) {
   throw UsageError(fmt::format(
       "unknown verb '{}'; {}",
       word,
-      near.empty() ? fmt::format("known are {}", fmt::join(known, ", "))
-                   : "did you mean " + near + "?"));
+      near.empty()
+          ? fmt::format("known are {}; 'run {}' runs the cases of that "
+                        "name",
+                        fmt::join(known, ", "),
+                        word)
+          : "did you mean " + near + "?"));
 }
 
 ExitCode dispatch(Arguments arguments) {
   refuse_empty(arguments);
-  if (arguments.empty() || arguments[0].starts_with('-'))
-    return !arguments.empty() && answered(arguments[0]) ? ExitCode::good
-                                                        : run_verb(arguments);
+  if (arguments.empty()) return run_verb(arguments);
+  if (arguments[0] == "help" && arguments.size() > 1) {
+    if (arguments.size() > 2)
+      throw UsageError("help is of one verb; 'help run' is right");
+    arguments = {arguments[1], "--help"};
+  }
+  if (answered(arguments[0])) return ExitCode::good;
+  if (arguments[0].starts_with('-')) return run_verb(arguments);
   for (const Verb& verb : program().verbs) {
     if (verb.name != arguments[0]) continue;
     arguments.erase(arguments.begin());

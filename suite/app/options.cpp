@@ -8,14 +8,17 @@
 #include <map>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include "suite/harness/registry_problems.h"
+#include "suite/harness/words.h"
 #include "suite/results/file.h"
 
 namespace physinv {
 namespace {
 
 constexpr std::string_view kKeys = "n, seeds, iterations, precision, methods";
+constexpr std::size_t kNearest = 5;
 
 std::vector<std::string> split(std::string_view text, char at) {
   std::vector<std::string> parts;
@@ -134,13 +137,19 @@ std::vector<Case> listed(std::vector<Case> cases, const std::string& file) {
 }  // namespace
 
 std::vector<Flag> Selection::flags(const std::vector<Flag>& own) {
-  std::vector<Flag> all = {
+  std::vector<Flag> chosen = {
       {"--filter",
-       fmt::format("cases whose name matches this regular expression; a "
-                   "leading - negates ({}), repeats unite",
+       fmt::format("cases whose name matches: a word, such as billiards, is a "
+                   "whole part of the names of papers' experiments if there is "
+                   "one; anything else a regular expression; a leading - "
+                   "negates ({}), repeats unite",
                    filter_example(profile)),
        &filters,
        "REGEX"},
+      {"--all",
+       "a word is searched in all experiments, those of no paper (matrix, "
+       "numerics) too",
+       &all},
       {"--profile",
        fmt::format(
            "{}; default: {}", fmt::join(registry().profiles(), ", "), profile),
@@ -161,26 +170,47 @@ std::vector<Flag> Selection::flags(const std::vector<Flag>& own) {
        "of the selection those whose names stand in this file, one a line",
        &list,
        "FILE"}};
-  all.insert(all.end(), own.begin(), own.end());
-  return all;
+  chosen.insert(chosen.end(), own.begin(), own.end());
+  return chosen;
 }
 
-std::vector<Case> Selection::cases(std::vector<PlannedCase>* campaign) const {
-  const NameFilter filter(filters);
+Flag Selection::arguments() {
+  return {.name = "FILTER",
+          .help = "the same as --filter=FILTER; has to match a case",
+          .to = &words,
+          .optional = true};
+}
+
+std::vector<Case> Selection::cases(std::vector<PlannedCase>* campaign) {
+  for (const auto* texts : {&filters, &words}) NameFilter{*texts};
   const Shard part = parse_shard(shard);
-  auto all = registry().expand(profile, parse_overrides(sets, seeds));
-  std::vector<std::string> names;
-  for (const Case& c : all) names.push_back(c.info.name);
-  auto chosen = filter.apply(std::move(all));
+  const auto everything =
+      registry().expand(profile, parse_overrides(sets, seeds));
+  read_words(everything);
+  auto chosen = NameFilter(filters).apply(everything);
   // What is wrong may be why nothing is chosen.
   chosen.empty() ? registry().validate() : validate(registry(), chosen);
   if (campaign != nullptr) *campaign = planned(chosen);
-  if (!chosen.empty() && !list.empty()) return listed(std::move(chosen), list);
-  if (!chosen.empty()) return part.apply(std::move(chosen));
+  if (chosen.empty())
+    refuse(everything, fmt::format("{}", fmt::join(filters, " ")));
+  return list.empty() ? part.apply(std::move(chosen))
+                      : listed(std::move(chosen), list);
+}
 
-  std::string asked;
-  for (const auto& f : filters) asked += (asked.empty() ? "" : " ") + f;
-  const auto near = nearest_names(names, asked);
+void Selection::read_words(const std::vector<Case>& all_cases) {
+  if (!plain) filters = expressions_of(filters, all_cases, all);
+  for (const auto& word : std::exchange(words, {})) {
+    filters.push_back(expressions_of({word}, all_cases, all).front());
+    if (NameFilter({filters.back()}).apply(all_cases).empty())
+      refuse(all_cases, word);
+  }
+}
+
+void Selection::refuse(const std::vector<Case>& all_cases,
+                       const std::string& asked) const {
+  std::vector<std::string> names;
+  for (const Case& c : all_cases) names.push_back(c.info.name);
+  const auto near = nearest_names(names, asked, kNearest);
   throw ExitError(
       ExitCode::nothing_matched,
       near.empty()

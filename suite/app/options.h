@@ -15,14 +15,25 @@ namespace physinv {
 /// Flags that choose cases.
 struct Selection {
   std::vector<std::string> filters, sets;
+  std::vector<std::string> words;  ///< filters without --filter
   std::string profile = "quick", seeds, shard, list;
+  bool all = false;    ///< words are searched in all experiments at once
+  bool plain = false;  ///< no words: filters are regular expressions
 
   /// Its flags, followed by a verb's own.
   std::vector<Flag> flags(const std::vector<Flag>& own = {});
+  /// The filters that follow a verb without a flag.
+  Flag arguments();
   /// The chosen cases in declared order, of this shard; `campaign` gets those
-  /// of all shards. Throws UsageError, or ExitError with
-  /// the nearest names if nothing matched.
-  std::vector<Case> cases(std::vector<PlannedCase>* campaign = nullptr) const;
+  /// of all shards. From then on `filters` are regular expressions, of `words`
+  /// too. Throws UsageError, or ExitError with the nearest names if nothing
+  /// matched, or one of `words` matches nothing.
+  std::vector<Case> cases(std::vector<PlannedCase>* campaign = nullptr);
+
+ private:
+  void read_words(const std::vector<Case>& all_cases);
+  [[noreturn]] void refuse(const std::vector<Case>& all_cases,
+                           const std::string& asked) const;
 };
 
 /// "n=8,32" and the like into overrides; throws UsageError.

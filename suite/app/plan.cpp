@@ -1,15 +1,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
-#include <numeric>
 
 #include "reports/plot.h"
 #include "suite/app/load.h"
 #include "suite/app/options.h"
 #include "suite/app/speeds.h"
+#include "suite/harness/columns.h"
+#include "suite/harness/context.h"
 #include "suite/harness/progress.h"
-#include "suite/planning/predict.h"
+#include "suite/planning/forecast.h"
 #include "suite/planning/split.h"
 #include "suite/results/curves.h"
 #include "suite/results/file.h"
@@ -56,65 +58,102 @@ std::vector<Cost> measured(const std::vector<Case>& cases,
 
 struct Sum {
   double seconds = 0, memory = 0, disk = 0;
+
+  void add(const Cost& c) {
+    seconds += c.seconds;
+    memory = std::max(memory, c.memory);
+    disk += c.disk;
+  }
 };
 
 Sum sum_of(const std::vector<Cost>& costs) {
   Sum sum;
-  for (const Cost& c : costs) {
-    sum.seconds += c.seconds;
-    sum.memory = std::max(sum.memory, c.memory);
-    sum.disk += c.disk;
-  }
+  for (const Cost& c : costs) sum.add(c);
   return sum;
 }
 
-void print_table(const std::vector<Case>& cases,
-                 const std::vector<Cost>& costs,
-                 const std::vector<Cost>& beside) {
-  std::size_t width = 4;
-  for (const Case& c : cases) width = std::max(width, c.info.name.size());
-  fmt::print("{:<{}}  {:>10}  {:>9}  {:>9}{}\n",
-             "case",
-             width,
-             "time",
-             "memory",
-             "disk",
-             beside.empty() ? "" : "   measured  factor");
-  std::size_t compared = 0, close = 0;
+/// One line of the table: a case, or all of an experiment.
+struct Line {
+  std::string name;
+  std::size_t cases = 0, compared = 0;
+  Sum sum;
+  double predicted = 0, measured = 0;  ///< seconds of those compared
+};
+
+std::vector<Line> lines_of(const std::vector<Case>& cases,
+                           const std::vector<Cost>& costs,
+                           const std::vector<Cost>& beside,
+                           bool each) {
+  std::vector<Line> lines;
+  std::map<std::string, std::size_t> index;
   for (std::size_t i = 0; i < cases.size(); ++i) {
-    const Cost& c = costs[i];
-    std::string more;
-    if (!beside.empty() && !beside[i].stage_seconds.empty()) {
-      const double factor = c.seconds / beside[i].seconds;
-      ++compared;
-      if (factor <= 1.5 && factor >= 1 / 1.5) ++close;
-      more = fmt::format(
-          "  {:>9}  {:>6.2f}", duration_text(beside[i].seconds), factor);
-    }
-    fmt::print("{:<{}}  {:>10}  {:>9}  {:>9}{}\n",
-               cases[i].info.name,
-               width,
-               duration_text(c.seconds),
-               bytes_text(c.memory),
-               bytes_text(c.disk),
-               more);
+    const auto& info = cases[i].info;
+    const auto& name = each ? info.name : info.experiment;
+    const auto [at, is_new] = index.emplace(name, lines.size());
+    if (is_new) lines.push_back({.name = name});
+    Line& line = lines[at->second];
+    ++line.cases;
+    line.sum.add(costs[i]);
+    if (beside.empty() || beside[i].stage_seconds.empty()) continue;
+    ++line.compared;
+    line.predicted += costs[i].seconds;
+    line.measured += beside[i].seconds;
   }
+  return lines;
+}
+
+void print_table(const std::vector<Line>& lines, bool compares) {
+  std::vector<std::string> heads = {"<name", "cases", "time", "memory", "disk"};
+  if (compares) heads.insert(heads.end(), {"measured", "factor"});
+  Columns table(heads);
+  for (const Line& line : lines) {
+    std::vector<std::string> row = {line.name,
+                                    std::to_string(line.cases),
+                                    duration_text(line.sum.seconds),
+                                    bytes_text(line.sum.memory),
+                                    bytes_text(line.sum.disk)};
+    if (compares && line.compared > 0)
+      row.insert(row.end(),
+                 {duration_text(line.measured),
+                  fmt::format("{:.2f}", line.predicted / line.measured)});
+    table.add(std::move(row));
+  }
+  fmt::print("{}", table.text(Screen::of(stdout).room()));
+}
+
+void print_sum(const std::vector<Cost>& costs) {
   const Sum sum = sum_of(costs);
-  fmt::print("{} cases: {} of one core, {} on disk, at most {} per worker\n",
-             cases.size(),
-             duration_text(sum.seconds),
-             bytes_text(sum.disk),
-             bytes_text(sum.memory));
-  if (compared > 0)
-    fmt::print(
-        "{} of {} cases within a factor 1.5 of what was measured ({:.0f} %); "
-        "in "
-        "sum {} predicted, {} measured\n",
-        close,
-        compared,
-        100.0 * static_cast<double>(close) / static_cast<double>(compared),
-        duration_text(sum.seconds),
-        duration_text(sum_of(beside).seconds));
+  const int cores = available_cores();
+  fmt::print(
+      "{} cases: {} of one core, {} with {} workers; {} on disk, at "
+      "most {} per worker\n",
+      costs.size(),
+      duration_text(sum.seconds),
+      duration_text(seconds_with(costs, cores)),
+      cores,
+      bytes_text(sum.disk),
+      bytes_text(sum.memory));
+}
+
+/// How close the prediction was, case by case.
+void print_factors(const std::vector<Cost>& costs,
+                   const std::vector<Cost>& beside) {
+  std::size_t compared = 0, close = 0;
+  for (std::size_t i = 0; i < beside.size(); ++i) {
+    if (beside[i].stage_seconds.empty()) continue;
+    const double factor = costs[i].seconds / beside[i].seconds;
+    ++compared;
+    if (factor <= 1.5 && factor >= 1 / 1.5) ++close;
+  }
+  if (compared == 0) return;
+  fmt::print(
+      "{} of {} cases within a factor 1.5 of what was measured ({:.0f} %); in "
+      "sum {} predicted, {} measured\n",
+      close,
+      compared,
+      100.0 * static_cast<double>(close) / static_cast<double>(compared),
+      duration_text(sum_of(costs).seconds),
+      duration_text(sum_of(beside).seconds));
 }
 
 void print_json(const std::vector<Case>& cases,
@@ -191,36 +230,68 @@ void print_workers(const std::vector<Cost>& costs) {
              duration_text(*std::max_element(seconds.begin(), seconds.end())));
 }
 
+/// Of all chains however long that takes, or soon.
+std::vector<Cost> costs_of(const std::vector<Case>& cases, bool exact) {
+  constexpr double kSeconds = 12;
+  Trials trials = known_speeds();
+  if (exact) {
+    auto costs = predict(cases, trials, [](const Case& c) {
+      fmt::print(stderr, "measuring {} {}\n", c.info.experiment, c.info.method);
+    });
+    trials.save();
+    return costs;
+  }
+  const auto cache = Trials::default_file();
+  Forecast f = forecast(cases, 0, cache);
+  if (f.measured < f.chains) {
+    fmt::print(stderr,
+               "measuring chains whose speed is not known, for at most {}\n",
+               duration_text(kSeconds));
+    f = forecast(cases, kSeconds, cache);
+  }
+  if (f.measured < f.chains)
+    fmt::print(stderr,
+               "{} of {} chains are measured, the others follow from counted "
+               "operations; the same again measures more, --exact all\n",
+               f.measured,
+               f.chains);
+  return std::move(f.costs);
+}
+
 }  // namespace
 
 ExitCode plan_verb(const Arguments& arguments) {
   Selection selection;
   std::string beside, plot;
-  bool json = false, workers = false, from = false;
-  if (!parse("plan",
-             "What a selection will cost: time, peak memory and disk of each "
-             "case and in sum, from counted operations and the speeds of this "
-             "machine, which short runs measure once and the user's cache "
-             "directory keeps.",
-             selection.flags(
-                 {{"--json", "as JSON", &json},
-                  {"--against",
-                   "results of this selection: shows what was measured beside "
-                   "what is predicted",
-                   &beside,
-                   "RESULTS"},
-                  {"--measured",
-                   "take the times of --against themselves, where it has them",
-                   &from},
-                  {"--plot",
-                   "draw predicted against measured times there, as SVG",
-                   &plot,
-                   "FILE"},
-                  {"--workers",
-                   "time and efficiency of 1 to 1000 workers, longest case "
-                   "first",
-                   &workers}}),
-             arguments))
+  bool json = false, workers = false, from = false, each = false, exact = false;
+  if (!parse(
+          "plan",
+          "What a selection will cost: time, peak memory and disk of each "
+          "experiment and in sum, from counted operations and the speeds of "
+          "this machine, which short runs measure and the user's cache "
+          "directory keeps. Answers within 20 seconds.",
+          selection.flags(
+              {selection.arguments(),
+               {"--each", "a line for each case", &each},
+               {"--exact", "measure all chains, however long it takes", &exact},
+               {"--json", "each case as JSON", &json},
+               {"--against",
+                "results of this selection: shows what was measured beside "
+                "what is predicted",
+                &beside,
+                "RESULTS"},
+               {"--measured",
+                "take the times of --against themselves, where it has them",
+                &from},
+               {"--plot",
+                "draw predicted against measured times there, as SVG",
+                &plot,
+                "FILE"},
+               {"--workers",
+                "time and efficiency of 1 to 1000 workers, longest case "
+                "first",
+                &workers}}),
+          arguments))
     return ExitCode::good;
   if ((from || !plot.empty()) && beside.empty())
     throw UsageError(fmt::format("{} needs results; --against names them",
@@ -228,17 +299,17 @@ ExitCode plan_verb(const Arguments& arguments) {
   const auto cases = selection.cases();
   const auto known =
       beside.empty() ? std::vector<Cost>() : measured(cases, beside);
-  Trials trials = known_speeds();
-  auto costs = from ? known : predict(cases, trials, [](const Case& c) {
-    fmt::print(stderr, "measuring {} {}\n", c.info.experiment, c.info.method);
-  });
-  trials.save();
+  const auto costs = from ? known : costs_of(cases, exact);
   if (!plot.empty())
     write_atomically(plot, render_svg(scatter(cases, costs, known)));
   if (workers) {
     print_workers(costs);
+  } else if (json) {
+    print_json(cases, costs, known);
   } else {
-    json ? print_json(cases, costs, known) : print_table(cases, costs, known);
+    print_table(lines_of(cases, costs, known, each), !known.empty());
+    print_sum(costs);
+    print_factors(costs, known);
   }
   return ExitCode::good;
 }

@@ -4,18 +4,20 @@
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
 
+#include "suite/app/conclude.h"
 #include "suite/app/export.h"
 #include "suite/app/habits.h"
-#include "suite/app/speeds.h"
-#include "suite/core/clock.h"
+#include "suite/app/run_budget.h"
 #include "suite/core/hash.h"
 #include "suite/harness/campaign.h"
 #include "suite/harness/context.h"
 #include "suite/harness/output.h"
 #include "suite/harness/stop_signal.h"
-#include "suite/planning/budget.h"
-#include "suite/planning/predict.h"
+#include "suite/planning/forecast.h"
+#include "suite/planning/kinds.h"
 #include "suite/results/crowded.h"
 #include "suite/results/file.h"
 #include "suite/results/repetitions.h"
@@ -25,20 +27,27 @@
 namespace physinv {
 namespace {
 
-/// Shorter budgets are not spent on measuring speeds.
-constexpr double kBudgetForTrials = 60;
+namespace fs = std::filesystem;
+
+/// UTF-8, with a sign in the place of what is none.
+std::string valid_text(const std::string& text) {
+  constexpr auto kReplace = nlohmann::json::error_handler_t::replace;
+  return nlohmann::json::parse(
+      nlohmann::json(text).dump(-1, ' ', false, kReplace));
+}
 
 struct RunFlags {
   Selection selection;
   Habits habits;
   CampaignOptions campaign;
-  std::string out, budget, checkpoint;
+  std::string out, budget, checkpoint, config;
   int jobs = 0;
-  bool dry = false;
+  bool dry = false, quiet = false, report = true;
 
   std::vector<Flag> flags() {
     std::vector<Flag> own = {
-        {"--jobs", "worker processes; default: cores / threads", &jobs},
+        selection.arguments(),
+        {"-j,--jobs", "worker processes; default: cores / threads", &jobs},
         {"--threads",
          "threads inside a case (default 1); results do not change",
          &campaign.threads},
@@ -61,7 +70,16 @@ struct RunFlags {
          "where the file system has no locks: take over from a process of "
          "another machine that has ended; its name is shown",
          &campaign.break_lock},
+        {"--config",
+         "flags from this file, as TOML or JSON, those of the command line "
+         "go before them; its text is recorded with the results",
+         &config},
         {"--dry-run", "say what would run and what is reused", &dry},
+        {"-q,--quiet", "no word until the end", &quiet},
+        {"--report,!--no-report",
+         "write a page and say what was measured beside what the papers have "
+         "(default; a shard and --cases do not)",
+         &report},
         {"--trace",
          "record a hash of all iterates of the stages that run",
          &campaign.trace}};
@@ -79,6 +97,9 @@ struct RunFlags {
     if (!checkpoint.empty())
       campaign.checkpoint_seconds = parse_duration("--checkpoint", checkpoint);
     campaign.out = out.empty() ? "results/" + selection.profile : out;
+    report = report && program().conclude != nullptr &&
+             selection.shard.empty() && selection.list.empty() &&
+             variable("PHYSINV_NO_REPORT").empty();
   }
 
   nlohmann::json json() const {
@@ -93,6 +114,7 @@ struct RunFlags {
             {"time_budget", campaign.time_budget},
             {"resume", campaign.resume},
             {"trace", campaign.trace},
+            {"config", config.empty() ? "" : valid_text(read_file(config))},
             {"out", one_line(campaign.out.string())}};
   }
 };
@@ -112,50 +134,6 @@ std::vector<CaseRecord> own_records(std::vector<CaseRecord> cases,
     return std::find(names.begin(), names.end(), c.info.name) == names.end();
   });
   return cases;
-}
-
-/// What the cases will take, by short runs where the budget has room for them;
-/// else only in proportion, by their counted operations.
-std::vector<double> seconds_of(const std::vector<Case>& cases, double budget) {
-  std::vector<double> seconds;
-  if (budget < kBudgetForTrials) {
-    for (const Case& c : cases) seconds.push_back(c.operations());
-    return seconds;
-  }
-  Trials trials = known_speeds();
-  for (const Cost& cost : predict(cases, trials))
-    seconds.push_back(cost.seconds);
-  trials.save();
-  return seconds;
-}
-
-/// A coarse pass first; the budget counts from here on.
-void follow_budget(CampaignOptions& campaign, const std::vector<Case>& cases) {
-  const double begin = now().wall;
-  auto seconds = seconds_of(cases, campaign.time_budget);
-  if (campaign.time_budget >= kBudgetForTrials) {
-    campaign.expected_seconds = seconds;
-    campaign.time_budget =
-        std::max(1e-6, campaign.time_budget - (now().wall - begin));
-  }
-  campaign.order = [cases, seconds = std::move(seconds)](
-                       std::vector<std::size_t> queue,
-                       const Finished& finished) {
-    return budget_order(cases, std::move(queue), finished, seconds);
-  };
-}
-
-/// Cases per experiment and n, where the budget left some out.
-std::string left_out_text(const std::vector<std::string>& names) {
-  std::map<std::string, std::vector<std::string>> seeds;
-  for (const auto& name : names) {
-    const auto at = name.rfind("/seed=");
-    seeds[name.substr(0, at)].push_back(name.substr(at + 6));
-  }
-  std::string text;
-  for (const auto& [chain, left] : seeds)
-    text += fmt::format("  {} seeds {}\n", chain, fmt::join(left, ", "));
-  return text;
 }
 
 std::string result_text(const RunFlags& flags, const CampaignResult& r) {
@@ -232,6 +210,147 @@ void write_exports(const RunFlags& flags, bool to_screen) {
     write_atomically(habits.out, exported(loaded, habits.out_format));
 }
 
+Screen screen_of(const RunFlags& flags) {
+  Screen screen =
+      Screen::of(flags.habits.format == "console" ? stdout : stderr);
+  screen.quiet = flags.quiet;
+  screen.live = screen.live && !flags.quiet;
+  return screen;
+}
+
+/// Experiments by name, or how many.
+std::string experiments_text(const std::vector<Case>& cases) {
+  constexpr std::size_t kNamed = 3;
+  std::vector<std::string> names;
+  for (const Case& c : cases)
+    if (std::find(names.begin(), names.end(), c.info.experiment) == names.end())
+      names.push_back(c.info.experiment);
+  return names.size() <= kNamed ? fmt::format("{}", fmt::join(names, ", "))
+                                : fmt::format("{} experiments", names.size());
+}
+
+/// How long they will take; what is little is not measured first.
+std::string expected_text(const std::vector<Case>& cases, int jobs) {
+  constexpr double kLittle = 1e8, kSeconds = 1;
+  Operations operations;
+  double sum = 0;
+  for (const Case& c : cases) sum += operations.of(c);
+  if (sum < kLittle) return "";
+  const Forecast f = forecast(cases, kSeconds, Trials::default_file());
+  const double seconds = seconds_with(f.costs, jobs);
+  return seconds >= 0 ? ", about " + duration_text(seconds) : "";
+}
+
+/// What will run, at once.
+std::string begin_text(const RunFlags& flags, const std::vector<Case>& cases) {
+  const fs::path& out = flags.campaign.out;
+  std::vector<Case> left = cases;
+  if (flags.campaign.resume && Store::exists(out)) {
+    const Store store = Store::read_only(out);
+    std::erase_if(left, [&](const Case& c) {
+      return store.catalog().knows_case(c.info.name);
+    });
+  }
+  return fmt::format("{}: {} cases of profile {}{}, {} workers{}\n",
+                     experiments_text(cases),
+                     cases.size(),
+                     flags.selection.profile,
+                     left.size() < cases.size()
+                         ? fmt::format(" ({} have results in {})",
+                                       cases.size() - left.size(),
+                                       one_line(out.string()))
+                         : "",
+                     flags.campaign.jobs,
+                     expected_text(left, flags.campaign.jobs));
+}
+
+/// With keys only where something may be reused: the data of experiments that
+/// the store does not know are not drawn.
+Prepared prepared_to_look(std::vector<Case> cases, const CampaignOptions& o) {
+  std::set<std::string> known;
+  if (o.resume && Store::exists(o.out)) {
+    const Store store = Store::read_only(o.out);
+    for (const Case& c : cases)
+      if (store.catalog().knows_case(c.info.name))
+        known.insert(c.info.experiment);
+  }
+  const auto at =
+      std::stable_partition(cases.begin(), cases.end(), [&](const Case& c) {
+        return known.contains(c.info.experiment);
+      });
+  Prepared p = prepare({cases.begin(), at});
+  p.cases.insert(p.cases.end(), at, cases.end());
+  return p;
+}
+
+/// Why a run was not good or not complete.
+std::optional<ExitError> ending_of(const RunFlags& flags,
+                                   const CampaignResult& result,
+                                   std::size_t cases) {
+  if (result.interrupted)
+    return ExitError(ExitCode::interrupted,
+                     fmt::format("interrupted: {} of {} cases not run; what "
+                                 "had finished is kept, {}",
+                                 result.not_run.size(),
+                                 cases,
+                                 go_on_text(flags)));
+  if (!result.failed.empty())
+    return ExitError(
+        ExitCode::case_failed,
+        fmt::format("{} stages failed, first {}; the others are kept, and the "
+                    "next run tries these again",
+                    result.failed.size(),
+                    result.failed.front()));
+  if (!result.not_run.empty())
+    return ExitError(ExitCode::incomplete,
+                     fmt::format("incomplete: {} of {} cases not run, out of "
+                                 "time; {}",
+                                 result.not_run.size(),
+                                 cases,
+                                 go_on_text(flags)));
+  return {};
+}
+
+CampaignResult run_all(Prepared prepared,
+                       const RunFlags& flags,
+                       const Screen& screen) {
+  const BudgetAlarm alarm(flags.campaign.time_budget);
+  const bool repeats = flags.habits.repetitions > 1;
+  CampaignResult result = run_campaign(repeats ? prepared : std::move(prepared),
+                                       flags.campaign,
+                                       flags.json(),
+                                       screen);
+  if (repeats && !result.interrupted)
+    keep_repetitions(flags.campaign.out,
+                     repeat(prepared, flags, result.cases, screen),
+                     {.break_lock = flags.campaign.break_lock});
+  result.interrupted =
+      (result.interrupted || stop_signals() > 0) && !alarm.ended_it();
+  return result;
+}
+
+/// Pages and lines; what a run came to goes before what they came to.
+void end_with(const RunFlags& flags,
+              const std::vector<CaseRecord>& own,
+              const Screen& screen,
+              const std::optional<ExitError>& ending) {
+  if (flags.report && !own.empty() &&
+      !(ending && ending->code() == ExitCode::interrupted)) {
+    RunEnd end{.out = flags.campaign.out.string(),
+               .selection = flags.selection,
+               .experiments = {},
+               .jobs = flags.campaign.jobs,
+               .screen = screen};
+    for (const CaseRecord& c : own) end.experiments.insert(c.info.experiment);
+    try {
+      program().conclude(end);
+    } catch (const std::exception&) {
+      if (!ending) throw;
+    }
+  }
+  if (ending) throw ExitError(*ending);
+}
+
 }  // namespace
 
 ExitCode run_verb(const Arguments& arguments) {
@@ -249,55 +368,27 @@ ExitCode run_verb(const Arguments& arguments) {
     return ExitCode::good;
   }
   auto cases = flags.selection.cases(&flags.campaign.campaign);
-  Prepared prepared = prepare(std::move(cases));
+  const Screen screen = screen_of(flags);
   if (flags.dry) {
-    dry_run(prepared, flags.campaign, stdout);
+    dry_run(prepared_to_look(std::move(cases), flags.campaign),
+            flags.campaign,
+            Screen::of(stdout));
     return ExitCode::good;
   }
+  if (!flags.quiet) put(screen.stream, begin_text(flags, cases));
+  Prepared prepared = prepare(std::move(cases));
   if (flags.campaign.time_budget > 0)
     follow_budget(flags.campaign, prepared.cases);
   std::vector<std::string> names;
   for (const Case& c : prepared.cases) names.push_back(c.info.name);
-  std::FILE* stream = flags.habits.format == "console" ? stdout : stderr;
-  const Screen screen = Screen::of(stream);
-  const bool repeats = flags.habits.repetitions > 1;
-  CampaignResult result = run_campaign(repeats ? prepared : std::move(prepared),
-                                       flags.campaign,
-                                       flags.json(),
-                                       screen);
-  if (repeats && !result.interrupted)
-    keep_repetitions(flags.campaign.out,
-                     repeat(prepared, flags, result.cases, screen),
-                     {.break_lock = flags.campaign.break_lock});
-  result.interrupted = result.interrupted || stop_signals() > 0;
+  CampaignResult result = run_all(std::move(prepared), flags, screen);
   const auto own = own_records(std::move(result.cases), names);
-  put(stream, summary_table(own));
+  put(screen.stream, summary_table(own, screen.room()));
   if (const auto text = crowded_text(own); !text.empty())
-    put(stream, text + '\n');
-  put(stream, result_text(flags, result));
-  write_exports(flags, stream != stdout);
-  if (result.interrupted)
-    throw ExitError(ExitCode::interrupted,
-                    fmt::format("interrupted: {} of {} cases not run; what had "
-                                "finished is kept, {}",
-                                result.not_run.size(),
-                                names.size(),
-                                go_on_text(flags)));
-  if (!result.failed.empty()) {
-    throw ExitError(
-        ExitCode::case_failed,
-        fmt::format("{} stages failed, first {}; the others are kept, and the "
-                    "next run tries these again",
-                    result.failed.size(),
-                    result.failed.front()));
-  }
-  if (!result.not_run.empty())
-    throw ExitError(ExitCode::incomplete,
-                    fmt::format("incomplete: {} of {} cases not run, out of "
-                                "time; {}",
-                                result.not_run.size(),
-                                names.size(),
-                                go_on_text(flags)));
+    put(screen.stream, text + '\n');
+  put(screen.stream, result_text(flags, result));
+  write_exports(flags, screen.stream != stdout);
+  end_with(flags, own, screen, ending_of(flags, result, names.size()));
   return ExitCode::good;
 }
 

@@ -6,7 +6,7 @@ namespace physinv {
 const Program& program() {
   static const Program run{
       .name = "physinv-run",
-      .verbs = {{"run", "[flags]", "run cases (the default verb)", run_verb}},
+      .verbs = {{"run", "[FILTER]", "run cases (the default verb)", run_verb}},
       .examples = {"--filter=billiards",
                    "--profile=paper --filter=billiards --out=results/paper"},
       .environment = ""};

@@ -29,6 +29,7 @@ std::vector<std::string> flags_of(const Selection& s) {
   for (const auto& f : s.filters) flags.push_back("--filter=" + f);
   for (const auto& f : s.sets) flags.push_back("--set=" + f);
   if (!s.seeds.empty()) flags.push_back("--seeds=" + s.seeds);
+  if (s.all) flags.emplace_back("--all");
   return flags;
 }
 
@@ -53,7 +54,7 @@ std::vector<Task> tasks_of(const std::vector<Case>& cases, int count) {
   return tasks;
 }
 
-Submission prepare_submission(const SubmitFlags& flags) {
+Submission prepare_submission(SubmitFlags& flags) {
   const auto selection = flags_of(flags.selection);
   if (Submission::exists(flags.directory)) {
     Submission s = Submission::read(flags.directory);
@@ -159,7 +160,7 @@ ExitCode submit_verb(const Arguments& arguments) {
                   {"--tasks",
                    "of the array (default 16, at most one per case)",
                    &flags.tasks},
-                  {"--jobs", "worker processes of a task (1)", &flags.jobs},
+                  {"-j,--jobs", "worker processes of a task (1)", &flags.jobs},
                   {"--threads", "inside a case (1)", &flags.threads}}),
              own))
     return ExitCode::good;

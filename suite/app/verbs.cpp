@@ -1,18 +1,20 @@
 #include "suite/app/verbs.h"
 
+#include "suite/app/conclude.h"
+
 namespace physinv {
 
 const Program& program() {
   static const Program bench{
       .name = "physinv-bench",
       .verbs =
-          {{"run", "[flags]", "run cases (the default verb)", run_verb},
+          {{"run", "[FILTER]", "run cases (the default verb)", run_verb},
            {"list",
-            "[flags]",
+            "[FILTER]",
             "the cases, their stages and estimated work",
             list_verb},
            {"plan",
-            "[flags]",
+            "[FILTER]",
             "time, memory and disk of a selection",
             plan_verb},
            {"report",
@@ -51,7 +53,7 @@ const Program& program() {
             "[flags]",
             "kernel benchmarks (flags of Google Benchmark)",
             kernels_verb}},
-      .examples = {"--filter=billiards",
+      .examples = {"run billiards",
                    "--profile=paper --filter=billiards --out=results/paper",
                    "list --profile=smoke",
                    "report results/quick"},
@@ -59,7 +61,9 @@ const Program& program() {
           R"(  PHYSINV_COUNT  the program whose instructions gate counts
   PHYSINV_PUBLISHED_DIR  the papers' numbers (reports/published)
   PHYSINV_SLURM_SECONDS  how long sbatch and squeue may take to answer (30)
-)"};
+  PHYSINV_NO_REPORT  run ends without a page, as with --no-report
+)",
+      .conclude = conclude};
   return bench;
 }
 

@@ -18,12 +18,16 @@ struct Verb {
   ExitCode (*call)(const Arguments&);
 };
 
+struct RunEnd;
+
 /// What stands in a program's help, besides what all programs have.
 struct Program {
   std::string_view name;
   std::vector<Verb> verbs;
   std::vector<std::string_view> examples;
   std::string_view environment;  ///< variables of its verbs
+  /// What a run ends with (conclude.h); null: with its results alone.
+  void (*conclude)(const RunEnd&) = nullptr;
 };
 
 /// The one that was started.

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "suite/core/clock.h"
+#include "suite/harness/columns.h"
 #include "suite/harness/context.h"
 #include "suite/harness/keys.h"
 #include "suite/harness/run_case.h"
@@ -406,12 +407,13 @@ class Campaign {
 
 void dry_run(const Prepared& prepared,
              const CampaignOptions& options,
-             std::FILE* stream) {
+             const Screen& screen) {
   std::optional<Store> store;
   if (options.resume && Store::exists(options.out))
     store.emplace(Store::read_only(options.out));
   double all = 0, left = 0;
   std::size_t run = 0, reused = 0;
+  Columns table({"<", "<case", "<stage", "operations", "<has run"});
   for (const Case& c : prepared.cases) {
     const auto found =
         store ? stored_stages(*store, c) : std::vector<StageRecord>();
@@ -419,22 +421,21 @@ void dry_run(const Prepared& prepared,
       const bool have = k < found.size();
       all += c.operations(k);
       have ? ++reused : (left += c.operations(k), ++run);
-      fmt::print(stream,
-                 "{:<5} {} {}  {:.2g} operations{}\n",
-                 have ? "reuse" : "run",
+      table.add({have ? "reuse" : "run",
                  c.info.name,
                  c.info.stages[k],
-                 c.operations(k),
-                 have ? fmt::format(", {} at {}, profile {}",
+                 fmt::format("{:.2g}", c.operations(k)),
+                 have ? fmt::format("{} at {}, profile {}",
                                     found[k].finished,
                                     found[k].revision,
                                     profile_of({.info = c.info}, found[k]))
-                      : "");
+                      : ""});
     }
   }
-  fmt::print(stream,
-             "{} cases: {} stages to run, {} to reuse; {:.3g} of {:.3g} "
+  fmt::print(screen.stream,
+             "{}{} cases: {} stages to run, {} to reuse; {:.3g} of {:.3g} "
              "declared operations to do\n",
+             table.text(screen.room()),
              prepared.cases.size(),
              run,
              reused,

@@ -78,13 +78,15 @@ CampaignResult run_campaign(Prepared prepared,
                             const nlohmann::json& options_json,
                             const Screen& screen);
 
-/// What `run_campaign` would do: one line per stage and a sum.
+/// What `run_campaign` would do: one line per stage and a sum. A case without
+/// content keys has not run.
 void dry_run(const Prepared& prepared,
              const CampaignOptions& options,
-             std::FILE* stream);
+             const Screen& screen);
 
-/// Table: per experiment, method and n the cases, median final loss of each
-/// stage, and time.
-std::string summary_table(const std::vector<CaseRecord>& cases);
+/// Table: per experiment its methods, cases and stages, how many of these
+/// diverged or failed, and the time of all.
+std::string summary_table(const std::vector<CaseRecord>& cases,
+                          std::size_t room);
 
 }  // namespace physinv

@@ -13,6 +13,7 @@
 #include "suite/harness/context.h"
 #include "suite/harness/output.h"
 #include "suite/harness/run_case.h"
+#include "suite/results/course.h"
 
 namespace physinv {
 namespace {
@@ -60,6 +61,7 @@ Screen Screen::of(std::FILE* stream) {
   Screen s{.stream = stream};
   const bool terminal = isatty(fileno(stream)) == 1;
   const auto ci = variable("CI");
+  s.terminal = terminal;
   s.live = terminal && variable("TERM") != "dumb" &&
            (ci.empty() || ci == "false" || ci == "0");
   s.color = s.live && variable("NO_COLOR").empty();
@@ -134,7 +136,7 @@ void Progress::finished(std::size_t worker,
   if (record.stop != Stop::failed && record.stop != Stop::skipped)
     rates_.add(record.stage, cases_[case_index].operations(at), seconds);
   idle(worker);
-  const std::string line = finished_row(record);
+  const std::string line = finished_row(record, cases_[case_index]);
   if (screen_.live) {
     recent_.push_back(line);
     if (recent_.size() > kRecent) recent_.pop_front();
@@ -224,12 +226,17 @@ std::string Progress::running_row(const Running& r, double t) const {
              t - r.since);
 }
 
-std::string Progress::finished_row(const StageRecord& record) const {
+std::string Progress::finished_row(const StageRecord& record,
+                                   const Case& c) const {
+  // A diagnosis solves nothing: its loss is that of the start.
+  const auto at = static_cast<std::size_t>(record.position);
+  const bool solves = c.method == nullptr || at >= c.method->chain.size() ||
+                      !is_diagnostic(c.method->chain[at]->options());
   return row(record.case_name,
              name_width(),
              record.stage,
              to_string(record.stop),
-             median_finite(record.loss),
+             solves ? median_finite(record.loss) : std::nan(""),
              seconds_of(record.clocks));
 }
 
@@ -275,6 +282,7 @@ void Progress::clear() {
 }
 
 void Progress::put(const std::string& text) const {
+  if (screen_.quiet) return;
   physinv::put(screen_.stream, text);
 }
 

@@ -8,6 +8,7 @@
 #include <deque>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "suite/harness/case.h"
@@ -19,8 +20,15 @@ namespace physinv {
 struct Screen {
   std::FILE* stream = stdout;
   bool live = false, color = false;
+  bool terminal = false;
+  bool quiet = false;  ///< nothing while a campaign runs
   int columns = 80;
 
+  /// Of a table's lines: what is no terminal takes all of them.
+  std::size_t room() const {
+    return terminal ? static_cast<std::size_t>(columns)
+                    : std::string_view::npos;
+  }
   static Screen of(std::FILE* stream);
 };
 
@@ -73,7 +81,7 @@ class Progress {
   };
   std::string bar() const;
   std::string running_row(const Running& r, double now) const;
-  std::string finished_row(const StageRecord& record) const;
+  std::string finished_row(const StageRecord& record, const Case& c) const;
   std::size_t name_width() const;
   /// A campaign does not end because nobody can read how it goes: an error
   /// stays in the stream, for whoever prints the result.

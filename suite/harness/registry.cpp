@@ -12,6 +12,7 @@
 
 #include "suite/harness/errors.h"
 #include "suite/harness/judge.h"
+#include "suite/harness/select.h"
 
 namespace physinv {
 namespace {
@@ -42,7 +43,10 @@ void check_overrides(const Overrides& o,
       for (const Method& m : e->methods) known.insert(m.id);
     if (!known.contains(id))
       throw UsageError(fmt::format(
-          "unknown method '{}'; known are {}", id, fmt::join(known, ", ")));
+          "unknown method '{}'; of {} the nearest are {}",
+          id,
+          known.size(),
+          fmt::join(nearest_words({known.begin(), known.end()}, id), ", ")));
   }
 }
 

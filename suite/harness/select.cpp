@@ -130,6 +130,19 @@ std::vector<std::string> nearest_names(const std::vector<std::string>& names,
   return best;
 }
 
+std::vector<std::string> nearest_words(std::vector<std::string> known,
+                                       std::string_view word,
+                                       std::size_t count) {
+  word = word.substr(0, kLongestCompared);
+  std::map<std::string, std::size_t> distance;
+  for (const auto& k : known) distance[k] = edit_distance(k, word);
+  std::stable_sort(known.begin(), known.end(), [&](auto& a, auto& b) {
+    return distance[a] < distance[b];
+  });
+  known.resize(std::min(count, known.size()));
+  return known;
+}
+
 std::string nearest_word(const std::vector<std::string>& known,
                          std::string_view word) {
   std::string best;

@@ -48,6 +48,11 @@ std::vector<std::string> nearest_names(const std::vector<std::string>& names,
 /// Levenshtein distance.
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
+/// Up to `count` of `known`, the one that reads most like `word` first.
+std::vector<std::string> nearest_words(std::vector<std::string> known,
+                                       std::string_view word,
+                                       std::size_t count = 5);
+
 /// The word of `known` nearest to `word`, empty if none is near.
 std::string nearest_word(const std::vector<std::string>& known,
                          std::string_view word);

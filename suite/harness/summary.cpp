@@ -1,48 +1,32 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "suite/harness/campaign.h"
-#include "suite/harness/run_case.h"
+#include "suite/harness/columns.h"
 
 namespace physinv {
 namespace {
 
-/// Chains with more stages than this are not spelled out.
-constexpr std::size_t kMostStages = 6;
-
+/// What the cases of one experiment came to.
 struct Group {
-  std::string label;
-  Index n = 0;
-  std::set<std::string> cases;
-  std::vector<std::string> stages;
-  std::map<std::string, std::vector<double>> losses;  // by stage
+  std::string experiment;
+  std::set<std::string> methods;
+  std::size_t cases = 0, stages = 0, diverged = 0, failed = 0;
   double seconds = 0;
 };
 
 void add(Group& group, const CaseRecord& c) {
-  group.cases.insert(c.info.name);
+  ++group.cases;
+  group.methods.insert(c.info.method);
   for (const StageRecord& s : c.stages) {
-    if (!group.losses.contains(s.stage)) group.stages.push_back(s.stage);
-    auto& all = group.losses[s.stage];
-    all.insert(all.end(), s.loss.data(), s.loss.data() + s.loss.size());
+    ++group.stages;
+    if (s.stop == Stop::diverged) ++group.diverged;
+    if (s.stop == Stop::failed || s.stop == Stop::skipped) ++group.failed;
     group.seconds += s.clocks.total().wall;
   }
-}
-
-std::string medians(const Group& group) {
-  // Diagnoses: their estimates are the start.
-  if (group.stages.size() > kMostStages)
-    return fmt::format("{} stages", group.stages.size());
-  std::string text;
-  for (const auto& stage : group.stages) {
-    const auto& all = group.losses.at(stage);
-    const double median = median_finite(Eigen::Map<const Vector<double>>(
-        all.data(), static_cast<Index>(all.size())));
-    text += fmt::format("{}{} {:.2e}", text.empty() ? "" : ", ", stage, median);
-  }
-  return text;
 }
 
 /// A revision as people read it.
@@ -54,43 +38,31 @@ std::string brief(const std::string& revision) {
 
 }  // namespace
 
-std::string summary_table(const std::vector<CaseRecord>& cases) {
+std::string summary_table(const std::vector<CaseRecord>& cases,
+                          std::size_t room) {
   std::vector<Group> groups;
-  std::map<std::pair<std::string, Index>, std::size_t> index;
-  std::size_t width = 6, loss_width = 17;
+  std::map<std::string, std::size_t> index;
   for (const CaseRecord& c : cases) {
-    const std::string label = c.info.experiment + "/" + c.info.method;
-    const auto [at, is_new] =
-        index.emplace(std::pair(label, c.info.n), groups.size());
-    if (is_new) {
-      groups.emplace_back();
-      groups.back().label = label;
-      groups.back().n = c.info.n;
-    }
+    const auto [at, is_new] = index.emplace(c.info.experiment, groups.size());
+    if (is_new) groups.push_back({.experiment = c.info.experiment});
     add(groups[at->second], c);
-    width = std::max(width, label.size());
   }
+  Columns table({"<experiment",
+                 "methods",
+                 "cases",
+                 "stages",
+                 "diverged",
+                 "failed",
+                 "time"});
   for (const Group& g : groups)
-    loss_width = std::max(loss_width, medians(g).size());
-  std::string text = fmt::format("{:<{}}  {:>5}  {:>5}  {:<{}}  {:>9}\n",
-                                 "method",
-                                 width,
-                                 "n",
-                                 "cases",
-                                 "median final loss",
-                                 loss_width,
-                                 "time");
-  for (const Group& g : groups) {
-    text += fmt::format("{:<{}}  {:>5}  {:>5}  {:<{}}  {:>9}\n",
-                        g.label,
-                        width,
-                        g.n,
-                        g.cases.size(),
-                        medians(g),
-                        loss_width,
-                        duration_text(g.seconds));
-  }
-  return text;
+    table.add({g.experiment,
+               std::to_string(g.methods.size()),
+               std::to_string(g.cases),
+               std::to_string(g.stages),
+               std::to_string(g.diverged),
+               std::to_string(g.failed),
+               duration_text(g.seconds)});
+  return table.text(room);
 }
 
 std::string to_text(const Origins& origins) {

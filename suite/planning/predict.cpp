@@ -1,10 +1,9 @@
-#include "suite/planning/predict.h"
-
 #include <algorithm>
+#include <limits>
 #include <map>
-#include <tuple>
 
 #include "suite/harness/registry.h"
+#include "suite/planning/kinds.h"
 
 namespace physinv {
 namespace {
@@ -24,30 +23,6 @@ double on_line(double a, double b, double from, double to, double n) {
   if (from == to) return a * n / from;
   const double slope = std::max(0.0, (b - a) / (to - from));
   return std::max(a + slope * (n - from), 0.1 * a);
-}
-
-/// Chains that differ in n and seed alone.
-using Kind =
-    std::tuple<std::string, std::string, Precision, std::vector<Index>>;
-
-Kind kind_of(const Case& c) {
-  return {
-      c.info.experiment, c.info.method, c.info.precision, c.stage_iterations};
-}
-
-struct Sizes {
-  const Case* smallest = nullptr;
-  const Case* largest = nullptr;
-};
-
-std::map<Kind, Sizes> sizes_of(const std::vector<Case>& cases) {
-  std::map<Kind, Sizes> all;
-  for (const Case& c : cases) {
-    Sizes& s = all[kind_of(c)];
-    if (s.smallest == nullptr || c.info.n < s.smallest->info.n) s.smallest = &c;
-    if (s.largest == nullptr || c.info.n > s.largest->info.n) s.largest = &c;
-  }
-  return all;
 }
 
 /// Of a stage, the trials with few and with many samples.
@@ -84,12 +59,13 @@ double seconds_of(const Trial& trial) {
   return sum;
 }
 
-/// The trials of a kind, from few samples to many.
-std::vector<Trial> trials_of(const Sizes& s, Trials& trials) {
+/// What is known of a kind, and `next` for each trial that is asked for; until
+/// one has no stage.
+template <class Next>
+std::vector<Trial> collect(const Sizes& s, Next&& next) {
   const Index least = s.smallest->info.n, most = s.largest->info.n;
   const auto whole = [&](Index n) {
-    return trials.of(resized(*s.smallest, n, s.smallest->stage_iterations),
-                     false);
+    return next(resized(*s.smallest, n, s.smallest->stage_iterations), false);
   };
   const Index few = std::min(least, kFewSamples);
   std::vector<Trial> all = {whole(few)};
@@ -97,7 +73,7 @@ std::vector<Trial> trials_of(const Sizes& s, Trials& trials) {
   const auto fits = static_cast<Index>(
       std::min(static_cast<double>(few) * room, static_cast<double>(most)));
   if (fits >= 2 * few || fits == most) all.push_back(whole(fits));
-  if (fits < most) all.push_back(trials.of(*s.largest, true));
+  if (fits < most) all.push_back(next(*s.largest, true));
   return all;
 }
 
@@ -111,24 +87,83 @@ const StageTrial* last_with(const std::vector<Trial>& all, std::size_t k) {
 
 }  // namespace
 
+Kind kind_of(const Case& c) {
+  return {
+      c.info.experiment, c.info.method, c.info.precision, c.stage_iterations};
+}
+
+Kinds kinds_of(const std::vector<Case>& cases) {
+  Kinds all;
+  for (const Case& c : cases) {
+    Sizes& s = all[kind_of(c)];
+    if (s.smallest == nullptr || c.info.n < s.smallest->info.n) s.smallest = &c;
+    if (s.largest == nullptr || c.info.n > s.largest->info.n) s.largest = &c;
+  }
+  return all;
+}
+
+std::vector<Trial> trials_of(const Sizes& s, Trials& trials) {
+  return collect(s, [&](const Case& c, bool training_only) {
+    return trials.of(c, training_only);
+  });
+}
+
+std::vector<Trial> known_trials(const Sizes& s, const Trials& trials) {
+  auto all = collect(s, [&](const Case& c, bool training_only) {
+    const Trial* known = trials.known(c, training_only);
+    return known == nullptr ? Trial() : *known;
+  });
+  // Without the first there is nothing to go by.
+  if (all.front().empty()) return {};
+  std::erase_if(all, [](const Trial& trial) { return trial.empty(); });
+  return all;
+}
+
+Case brief_case(const Sizes& s) {
+  constexpr Index kBriefIterations = 2, kBriefSamples = 64;
+  auto iterations = s.largest->stage_iterations;
+  for (Index& k : iterations) k = std::min(k, kBriefIterations);
+  return resized(
+      *s.largest, std::min(s.largest->info.n, kBriefSamples), iterations);
+}
+
+std::optional<double> rate_of(const Case& brief, const Trial& trial) {
+  double seconds = 0, operations = 0;
+  for (std::size_t k = 0; k < trial.size(); ++k) {
+    seconds += trial[k].seconds;
+    operations += brief.operations(k);
+  }
+  if (!(operations > 0 && seconds > 0)) return {};
+  return seconds / operations;
+}
+
+Cost unmeasured_cost(const Case& c) {
+  return {.seconds = std::numeric_limits<double>::quiet_NaN(),
+          .memory = kBaseMemory,
+          .disk = kCaseDisk + data_bytes(c) +
+                  kStageDisk * static_cast<double>(c.info.stages.size()),
+          .stage_seconds = {}};
+}
+
+Cost cost_of(const Case& c, const std::vector<Trial>& all) {
+  Cost cost{.disk = kCaseDisk + data_bytes(c)};
+  for (std::size_t k = 0; k < all.front().size(); ++k)
+    add_stage(cost, c.info.n, {&all.front()[k], last_with(all, k)});
+  cost.memory += kBaseMemory;
+  return cost;
+}
+
 std::vector<Cost> predict(const std::vector<Case>& cases,
                           Trials& trials,
                           const std::function<void(const Case&)>& say) {
   std::map<Kind, std::vector<Trial>> known;
-  for (const auto& [kind, sizes] : sizes_of(cases)) {
+  for (const auto& [kind, sizes] : kinds_of(cases)) {
     const std::size_t ran = trials.ran();
     known[kind] = trials_of(sizes, trials);
     if (say && trials.ran() > ran) say(*sizes.smallest);
   }
   std::vector<Cost> costs;
-  for (const Case& c : cases) {
-    const std::vector<Trial>& all = known.at(kind_of(c));
-    Cost cost{.disk = kCaseDisk + data_bytes(c)};
-    for (std::size_t k = 0; k < all.front().size(); ++k)
-      add_stage(cost, c.info.n, {&all.front()[k], last_with(all, k)});
-    cost.memory += kBaseMemory;
-    costs.push_back(std::move(cost));
-  }
+  for (const Case& c : cases) costs.push_back(cost_of(c, known.at(kind_of(c))));
   return costs;
 }
 

@@ -145,6 +145,11 @@ StageTrial from_json(const json& j) {
   return t;
 }
 
+std::string key_of(const Case& c, bool training_only) {
+  return hex128(recipe_text(c, c.info.stages.size() - 1)) +
+         (training_only ? "-training" : "");
+}
+
 /// Named by a variable; a relative one means another place for each start.
 fs::path named_directory(const char* name) {
   const fs::path path = variable(name);
@@ -206,12 +211,16 @@ std::string Trials::warning() const {
                        : "";
 }
 
+const Trial* Trials::known(const Case& c, bool training_only) const {
+  const auto at = known_.find(key_of(c, training_only));
+  return at != known_.end() && at->second.size() <= c.info.stages.size()
+             ? &at->second
+             : nullptr;
+}
+
 const Trial& Trials::of(const Case& c, bool training_only) {
-  const std::string key = hex128(recipe_text(c, c.info.stages.size() - 1)) +
-                          (training_only ? "-training" : "");
-  if (const auto at = known_.find(key);
-      at != known_.end() && at->second.size() <= c.info.stages.size())
-    return at->second;
+  if (const Trial* found = known(c, training_only)) return *found;
+  const std::string key = key_of(c, training_only);
   ++ran_;
   if (!training_only) return known_[key] = measure(c);
   Method part = *c.method;

@@ -48,6 +48,9 @@ class Trials {
   /// `training_only` they and all after them are left out.
   const Trial& of(const Case& c, bool training_only);
 
+  /// What is known of the same; null if nothing is.
+  const Trial* known(const Case& c, bool training_only) const;
+
   /// Of those that ran now, not those known.
   std::size_t ran() const { return ran_; }
   /// Keeps what is new. A cache that cannot be written is no error.

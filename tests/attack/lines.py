@@ -41,7 +41,7 @@ VALUES = ["-", "--", "nan", "inf", "-1", "0", "1e999", "9" * 25, "\n", "a\nb",
 # Each has to end with 2 and to make nothing.
 REFUSED = [
     ["run", "--out=", "--dry-run"], ["run", *SMALL, "--out", "", "--dry-run"],
-    ["run", "--filter=", "--dry-run"], ["run", *SMALL, "--out=out", "x"],
+    ["run", "--filter=", "--dry-run"], ["verify", "done", "x"],
     ["run", *SMALL, "--profile="], ["run", *SMALL, "--out=out", "--set="],
     ["run", *SMALL, "--out=out", "--set=n"], ["", *SMALL], ["nothing"],
     ["run", *SMALL, "--out=out", "--set==8"], ["-"], ["--out"],

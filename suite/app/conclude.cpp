@@ -1,0 +1,159 @@
+#include "suite/app/conclude.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "reports/report.h"
+#include "suite/app/load.h"
+#include "suite/app/sections.h"
+#include "suite/app/statements.h"
+#include "suite/harness/columns.h"
+#include "suite/harness/output.h"
+#include "suite/planning/forecast.h"
+#include "suite/results/folder.h"
+#include "suite/results/verdict_words.h"
+
+namespace physinv {
+namespace {
+
+/// More experiments than this have a line each.
+constexpr std::size_t kMostInFull = 6;
+/// Of an experiment, its name and the heads included.
+constexpr std::size_t kMostLines = 8;
+
+/// The sections of the run's experiments.
+std::vector<const Section*> own_sections(const std::vector<Section>& sections,
+                                         const RunEnd& end) {
+  std::vector<const Section*> own;
+  for (const Section& s : sections)
+    if (end.experiments.contains(s.experiment)) own.push_back(&s);
+  return own;
+}
+
+std::string in_full(const Section& section, std::size_t room) {
+  const auto statements = statements_of(section, kMostLines - 2);
+  std::string text =
+      fmt::format("{} ({})\n", section.title, section.experiment);
+  if (statements.empty()) return text;
+  Columns table({"<", "<  statement", "here", "paper", "<verdict"});
+  for (const Statement& s : statements)
+    table.add({std::string(mark_of(s.verdict)),
+               s.what,
+               s.here,
+               s.paper,
+               std::string(words_of(s.verdict, s.origin))});
+  return shortened(text.substr(0, text.size() - 1), room) + '\n' +
+         table.text(room);
+}
+
+/// A line for each: how many claims came to which verdict.
+std::string in_brief(const std::vector<const Section*>& sections,
+                     std::size_t room) {
+  std::vector<std::string> heads = {"<experiment"};
+  for (const Origin origin : {Origin::paper, Origin::suite})
+    for (const Verdict v : kVerdicts)
+      if (v != Verdict::not_judged && v != Verdict::reported)
+        heads.emplace_back(words_of(v, origin));
+  heads.emplace_back(words_of(Verdict::not_judged, Origin::paper));
+  Columns table(heads);
+  for (const Section* s : sections) {
+    std::vector<std::string> row = {s->experiment};
+    int open = 0;
+    for (const Origin origin : {Origin::paper, Origin::suite}) {
+      const Tally counts = tally(*s, origin);
+      for (const Verdict v : kVerdicts)
+        if (v != Verdict::not_judged && v != Verdict::reported)
+          row.push_back(std::to_string(counts[static_cast<std::size_t>(v)]));
+      open += counts[static_cast<std::size_t>(Verdict::not_judged)];
+    }
+    row.push_back(std::to_string(open));
+    table.add(std::move(row));
+  }
+  return table.text(room);
+}
+
+/// Of statements that are not judged, how many need a later profile, and which
+/// decides them all; and how many need runs that were left out.
+struct Undecided {
+  std::size_t later = 0, left_out = 0;
+  std::string profile;
+};
+
+Undecided undecided_in(const std::vector<const Section*>& sections,
+                       const std::string& profile) {
+  const auto profiles = registry().profiles();
+  const auto rank = [&](const std::string& name) {
+    return std::find(profiles.begin(), profiles.end(), name) - profiles.begin();
+  };
+  Undecided u{.profile = profile};
+  for (const Section* s : sections) {
+    for (const ClaimResult& c : s->claims) {
+      if (c.origin != Origin::paper || c.verdict != Verdict::not_judged)
+        continue;
+      const bool later = rank(c.from) > rank(profile);
+      ++(later ? u.later : u.left_out);
+      if (later && rank(c.from) > rank(u.profile)) u.profile = c.from;
+    }
+  }
+  return u;
+}
+
+/// What another profile of the same selection takes; nothing if not known.
+std::string seconds_text(const RunEnd& end, const std::string& profile) {
+  constexpr double kSeconds = 1;
+  Selection selection = end.selection;
+  selection.profile = profile;
+  selection.shard.clear();
+  auto cases = selection.cases();
+  std::erase_if(cases, [&](const Case& c) {
+    return !end.experiments.contains(c.info.experiment);
+  });
+  const Forecast f = forecast(cases, kSeconds, Trials::default_file());
+  const double seconds = seconds_with(f.costs, end.jobs);
+  return seconds >= 0 ? ", about " + duration_text(seconds) : "";
+}
+
+std::string undecided_text(const RunEnd& end,
+                           const std::vector<const Section*>& sections) {
+  const Undecided u = undecided_in(sections, end.selection.profile);
+  std::string text;
+  if (u.later > 0)
+    text += fmt::format(
+        "to decide the other {} statements of the papers: "
+        "--profile={}{}\n",
+        u.later,
+        u.profile,
+        seconds_text(end, u.profile));
+  if (u.left_out > 0)
+    text += fmt::format(
+        "{} statements of the papers need runs that this "
+        "selection leaves out\n",
+        u.left_out);
+  return text;
+}
+
+}  // namespace
+
+void conclude(const RunEnd& end) {
+  const Loaded loaded = load(end.out, end.screen.stream);
+  const Published numbers = printed_numbers();
+  const auto sections = sections_of(loaded.results, numbers);
+  const auto own = own_sections(sections, end);
+  if (own.empty()) return;
+  const auto page = Folder(end.out).make("report").path();
+  write_report(page, sections, provenance(loaded, sections, numbers));
+  std::string text;
+  if (own.size() > kMostInFull) {
+    text = in_brief(own, end.screen.room());
+  } else {
+    for (const Section* s : own) text += in_full(*s, end.screen.room());
+  }
+  text += fmt::format("page: {}\n", (page / "index.html").string());
+  put(end.screen.stream, text + undecided_text(end, own));
+}
+
+}  // namespace physinv

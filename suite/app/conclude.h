@@ -1,0 +1,25 @@
+/// What a run ends with.
+#pragma once
+
+#include <set>
+#include <string>
+
+#include "suite/app/options.h"
+#include "suite/harness/progress.h"
+
+namespace physinv {
+
+struct RunEnd {
+  std::string out;      ///< the store
+  Selection selection;  ///< its filters are regular expressions by now
+  std::set<std::string> experiments;  ///< that the run was about
+  int jobs = 1;
+  Screen screen;
+};
+
+/// Writes the page of the store. Prints for each experiment what was measured
+/// beside what the paper has, where this profile can decide it, in at most
+/// eight lines; the page; and what decides the paper's other statements.
+void conclude(const RunEnd& end);
+
+}  // namespace physinv

@@ -1,0 +1,35 @@
+/// A run within a time budget.
+#pragma once
+
+#include <csignal>
+#include <string>
+#include <vector>
+
+#include "suite/harness/campaign.h"
+
+namespace physinv {
+
+/// A coarse pass first; the budget counts from here on.
+void follow_budget(CampaignOptions& campaign, const std::vector<Case>& cases);
+
+/// Ends the campaign that runs while it lives as a signal to stop would, once
+/// the budget is spent and a little more: stages under way lay their state
+/// down. Nothing without a budget.
+class BudgetAlarm {
+ public:
+  explicit BudgetAlarm(double budget);
+  ~BudgetAlarm();
+  BudgetAlarm(const BudgetAlarm&) = delete;
+  BudgetAlarm& operator=(const BudgetAlarm&) = delete;
+  /// It rang, and nobody else asked to stop.
+  bool ended_it() const;
+
+ private:
+  bool set_ = false;
+  struct sigaction old_ {};
+};
+
+/// Cases per experiment and n, where the budget left some out.
+std::string left_out_text(const std::vector<std::string>& names);
+
+}  // namespace physinv

@@ -1,0 +1,171 @@
+#include "suite/app/sections.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "suite/app/installed.h"
+#include "suite/evidence/frontier.h"
+#include "suite/harness/judge.h"
+#include "suite/harness/registry.h"
+#include "suite/results/course.h"
+#include "suite/results/crowded.h"
+#include "suite/results/profiles.h"
+
+namespace physinv {
+namespace {
+
+Section section_of(const Experiment& e,
+                   const Results& results,
+                   const Published& published) {
+  Section section;
+  if (e.report) section = e.report(results, published);
+  section.experiment = e.name;
+  section.title = e.title;
+  section.paper = e.source.paper;
+  for (auto& claim : judge(e, results, published))
+    section.claims.push_back(std::move(claim));
+  return section;
+}
+
+/// What a paper says about its experiments together, if one of them was run.
+std::vector<Section> overviews_of(const Results& results,
+                                  const Published& published) {
+  std::vector<Section> sections;
+  for (const Overview& o : registry().overviews()) {
+    const auto& cases = results.cases();
+    if (std::none_of(cases.begin(), cases.end(), [&](const CaseRecord& c) {
+          return c.info.experiment.starts_with(o.paper + "/");
+        }))
+      continue;
+    Section section;
+    if (o.report) section = o.report(results, published);
+    section.experiment = section.paper = o.paper;
+    section.title = o.title;
+    section.claims = judge(o.claims, {results, published, o.paper}, o.profiles);
+    sections.push_back(std::move(section));
+  }
+  return sections;
+}
+
+/// Where the sections' experiments were published.
+std::vector<std::string> papers_of(const std::vector<Section>& sections,
+                                   const Published& published) {
+  std::vector<std::string> papers;
+  for (const Publication& p : published.publications())
+    if (std::any_of(sections.begin(), sections.end(), [&](const Section& s) {
+          return s.paper == p.key;
+        }))
+      papers.push_back(p.key + ": " + p.text());
+  return papers;
+}
+
+/// Nothing is solved there, so nothing reaches a target.
+bool only_diagnoses(const Experiment& e) {
+  return std::all_of(
+      e.methods.begin(), e.methods.end(), [](const Method& method) {
+        return std::all_of(
+            method.chain.begin(), method.chain.end(), [](const auto& stage) {
+              return is_diagnostic(stage->options());
+            });
+      });
+}
+
+/// CPU of all stages and, of that, what went to curves, metrics and final
+/// losses. Writing them down is no part of it.
+void add_cpu(const Results& results, nlohmann::ordered_json& picked) {
+  double stages = 0, evaluation = 0;
+  for (const CaseRecord& c : results.cases()) {
+    for (const StageRecord& s : c.stages) {
+      stages += s.clocks.total().cpu;
+      evaluation += s.clocks.measure.cpu;
+    }
+  }
+  picked["stages_cpu_ms"] = std::round(1e3 * stages);
+  picked["evaluation_ms"] = std::round(1e3 * evaluation);
+}
+
+/// "quick: 6 stages, smoke: 2 stages", where stages of several profiles are
+/// there; empty if not.
+std::string profiles_text(const Results& results) {
+  std::map<std::string, int> stages;
+  for (const CaseRecord& c : results.cases())
+    for (const StageRecord& s : c.stages) ++stages[profile_of(c, s)];
+  std::string text;
+  for (const auto& [profile, count] : stages)
+    text += fmt::format(
+        "{}{}: {} stages", text.empty() ? "" : ", ", profile, count);
+  return stages.size() > 1 ? text : "";
+}
+
+}  // namespace
+
+Published printed_numbers() {
+  const auto directory = published_directory();
+  Published numbers(directory);
+  if (const auto wrong = registry().unknown_printed(numbers); !wrong.empty())
+    throw StoreError(fmt::format("{} lacks numbers (restore its files): {}",
+                                 directory.string(),
+                                 fmt::join(wrong, "; ")));
+  return numbers;
+}
+
+std::vector<Section> sections_of(const Results& results,
+                                 const Published& published) {
+  std::vector<Section> sections = overviews_of(results, published);
+  for (const auto& e : registry().experiments()) {
+    if (results.sizes(e->name).empty()) continue;
+    Section section = section_of(*e, results, published);
+    if (!only_diagnoses(*e)) {
+      add_frontier(section, results, e->name, section.method_titles);
+      for (Figure& figure :
+           profile_figures(results,
+                           e->name,
+                           {.title = section.title,
+                           .method_titles = section.method_titles}))
+        section.figures.push_back(std::move(figure));
+    }
+    apply(e->looks, section.figures);
+    sections.push_back(std::move(section));
+  }
+  return sections;
+}
+
+nlohmann::ordered_json provenance(const Loaded& loaded,
+                                  const std::vector<Section>& sections,
+                                  const Published& published) {
+  const auto& plan = loaded.catalog.plan;
+  const auto none = nlohmann::json::object();
+  const auto context = plan.is_object() ? plan.value("context", none) : none;
+  nlohmann::ordered_json picked;
+  if (plan.contains("profile")) picked["profile"] = plan["profile"];
+  if (const auto text = profiles_text(loaded.results); !text.empty())
+    picked["profiles"] = text;
+  if (loaded.lacks.any()) picked["incomplete"] = to_text(loaded.lacks);
+  for (const char* key : {"date",
+                          "host_name",
+                          "cpu_model",
+                          "num_cpus",
+                          "instruction_set",
+                          "compiler",
+                          "compiler_flags",
+                          "build_type",
+                          "fingerprint",
+                          "version",
+                          "git_revision",
+                          "git_dirty",
+                          "options"}) {
+    if (context.contains(key)) picked[key] = context[key];
+  }
+  add_cpu(loaded.results, picked);
+  picked["papers"] = papers_of(sections, published);
+  if (const auto text = crowded_text(loaded.results.cases()); !text.empty())
+    picked["crowded"] = text;
+  return picked;
+}
+
+}  // namespace physinv

@@ -1,0 +1,24 @@
+/// The numbers of a section that stand beside the paper's.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "suite/results/report_model.h"
+
+namespace physinv {
+
+struct Statement {
+  std::string what, here, paper;
+  Verdict verdict = Verdict::not_judged;
+  Origin origin = Origin::paper;
+};
+
+/// At most so many, in this order: the paper's statements that are decided,
+/// those that do not hold first; the suite's ranges that fail; cells of tables
+/// beside which the paper printed a number, of each table in turn. Tables of
+/// times are left out: the paper's machine was another one.
+std::vector<Statement> statements_of(const Section& section, std::size_t most);
+
+}  // namespace physinv
