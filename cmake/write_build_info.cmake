@@ -1,5 +1,6 @@
 # Writes ${info}/build_info.cpp, and build_info.d naming every source that it
-# hashed and the folders they are in, so that a new one is seen.
+# hashed and the folders they are in, so that a new one is seen. What programs
+# and plug-ins on the installed suite need to know goes to physinv-build.cmake.
 include(${info}/values.cmake)
 
 function(physinv_sources result)
@@ -21,6 +22,15 @@ physinv_sources(cases suite/cases)  # for the metrics among them
 set(everywhere suite/harness/run_stage.cpp suite/harness/run_stage.h)
 set(sources ${numerics} ${cases} ${everywhere})
 
+# What a plug-in sees of the suite.
+file(GLOB_RECURSE interfaces RELATIVE ${source_dir} ${source_dir}/suite/*.h
+  ${source_dir}/problems/*.h ${source_dir}/optimizers/*.h
+  ${source_dir}/baselines/*.h)
+list(FILTER interfaces EXCLUDE REGEX "^suite/(app|cases)/|/(kernels|real_fft)\\.h$")
+list(SORT interfaces)
+list(APPEND sources ${interfaces})
+list(REMOVE_DUPLICATES sources)
+
 foreach(source IN LISTS sources)
   file(SHA256 "${source_dir}/${source}" hash)
   string(SUBSTRING ${hash} 0 32 hash_${source})
@@ -38,6 +48,8 @@ endfunction()
 
 physinv_digest(foundation "${bit_flags} ${libc} ${eigen} ${sleef}" ${everywhere})
 physinv_digest(fingerprint ${foundation} ${numerics})
+physinv_digest(interfaces "${compiler} ${compiler_version} ${flags}"
+  ${interfaces})
 
 set(table)
 foreach(source IN LISTS numerics cases)
@@ -68,7 +80,7 @@ file(WRITE ${info}/build_info.d "${depfile}\n")
 # In the order of the struct's members.
 set(members)
 foreach(member compiler compiler_version flags bit_flags build_type
-               instruction_set fingerprint foundation version eigen sleef hdf5 json fmt cli11)
+               instruction_set fingerprint interfaces foundation version eigen sleef hdf5 json fmt cli11)
   string(REPLACE "\"" "\\\"" value "${${member}}")
   string(APPEND members "    .${member} = \"${value}\",\n")
 endforeach()
@@ -91,4 +103,9 @@ const BuildInfo& build_info() {
 }
 
 }  // namespace physinv
+]])
+file(CONFIGURE OUTPUT ${info}/physinv-build.cmake @ONLY CONTENT [[
+set(physinv_build "@interfaces@")
+set(physinv_compiler "@compiler@ @compiler_version@")
+set(physinv_number_sources "@numerics@")
 ]])

@@ -9,9 +9,10 @@ namespace physinv {
 std::filesystem::path program_directory();
 
 /// The papers' numbers: what PHYSINV_PUBLISHED_DIR names, else what was
-/// installed with the program, else the sources that it was built from. The
-/// sources come last, so that an installed program never depends on what
-/// stands there by now. Throws UsageError if there are none.
+/// installed with the program, else the sources that it was built from, or the
+/// installed suite that it was built on. The sources come last, so that an
+/// installed program never depends on what stands there by now. Throws
+/// UsageError if there are none.
 std::filesystem::path published_directory();
 
 }  // namespace physinv

@@ -1,10 +1,12 @@
 #include "reports/report.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "reports/digest.h"
 #include "suite/app/installed.h"
@@ -12,6 +14,7 @@
 #include "suite/app/options.h"
 #include "suite/app/sections.h"
 #include "suite/harness/expected.h"
+#include "suite/harness/outside.h"
 #include "suite/harness/progress.h"
 #include "suite/results/folder.h"
 #include "suite/results/json.h"
@@ -21,6 +24,14 @@ namespace physinv {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// Experiments of the results that this program does not have, with commas.
+std::string unknown_text(const Results& results) {
+  std::set<std::string> unknown;
+  for (const CaseRecord& c : results.cases())
+    if (!registry().find(c.info.experiment)) unknown.insert(c.info.experiment);
+  return fmt::format("{}", fmt::join(unknown, ", "));
+}
 
 /// What a later campaign, and the page of results, can be made from; without
 /// the directory that it lay in.
@@ -61,6 +72,8 @@ std::vector<ExpectedFailure> expected_failures(
         " claim and reason is expected",
         path.string()));
   auto expected = read_expected(path);
+  if (named.empty() && outside_program() != nullptr)
+    expected = known_to(registry(), std::move(expected));
   check_expected(expected, registry(), sections, path);
   return expected;
 }
@@ -112,8 +125,14 @@ ExitCode report_verb(const Arguments& arguments) {
   const Loaded loaded = load(results);
   const Published numbers = printed_numbers();
   const auto sections = sections_of(loaded.results, numbers);
+  const auto unknown = unknown_text(loaded.results);
   if (sections.empty()) {
     require_complete(loaded.lacks, kRunAgain);
+    if (!unknown.empty())
+      throw ExitError(ExitCode::nothing_matched,
+                      fmt::format("this program does not know {}; report with "
+                                  "the one that ran it",
+                                  unknown));
     throw ExitError(ExitCode::nothing_matched,
                     "no experiment that declares a report has results in '" +
                         results + "'; run cases first");
@@ -138,6 +157,8 @@ ExitCode report_verb(const Arguments& arguments) {
       (target / "index.html").string());
   if (origin.contains("crowded"))
     fmt::print("{}\n", origin["crowded"].get<std::string>());
+  if (!unknown.empty())
+    fmt::print("not reported: this program does not know {}\n", unknown);
   const auto judgement = compare(sections, listed, origin.value("profile", ""));
   if (check) check_claims(judgement);
   require_complete(loaded.lacks, kRunAgain);

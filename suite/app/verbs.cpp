@@ -1,12 +1,14 @@
 #include "suite/app/verbs.h"
 
 #include "suite/app/conclude.h"
+#include "suite/harness/outside.h"
 
 namespace physinv {
 
 const Program& program() {
   static const Program bench{
-      .name = "physinv-bench",
+      .name = outside_program() == nullptr ? "physinv-bench"
+                                           : outside_program()->name,
       .verbs =
           {{"run", "[FILTER]", "run cases (the default verb)", run_verb},
            {"list",

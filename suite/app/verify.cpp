@@ -60,7 +60,7 @@ ExitCode verify_verb(const Arguments& arguments) {
   require_complete(
       loaded.lacks,
       "the same 'run' command makes up for it, and keeps the rest");
-  if (r.stages == 0)
+  if (r.stages == 0 && r.unknown.empty())
     throw ExitError(ExitCode::nothing_matched,
                     "there is nothing to verify in '" + directory + "'");
   if (!r.unknown.empty())

@@ -24,6 +24,8 @@ struct BuildInfo {
   std::string_view build_type;
   std::string_view instruction_set;  ///< "x86-64-v3" or "x86-64-v4"
   std::string_view fingerprint;
+  std::string_view interfaces;  ///< hash of compiler, flags and headers: what
+                                ///< plug-ins must be built with
   std::string_view foundation;  ///< hash of what every stage stands on:
                                 ///< bit_flags, libraries that
                                 ///< compute, and run_stage.{h,cpp}

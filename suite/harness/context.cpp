@@ -13,6 +13,7 @@
 
 #include "suite/harness/build_info.h"
 #include "suite/harness/child.h"
+#include "suite/harness/outside.h"
 #include "suite/harness/run_case.h"
 
 namespace physinv {
@@ -99,6 +100,29 @@ json load() {
   return all;
 }
 
+/// Of the sources in a folder.
+std::string revision_of(std::string_view folder) {
+  const std::string revision = output_of({"git",
+                                          "-C",
+                                          std::string(folder),
+                                          "describe",
+                                          "--always",
+                                          "--dirty=+dirty",
+                                          "--abbrev=40",
+                                          "--exclude=*"});
+  return revision.empty() ? "unknown" : revision;
+}
+
+/// Who else wrote what ran: the program, if it is not the suite's, and what it
+/// loaded.
+void add_outsides(json& context) {
+  if (const Outside* own = outside_program()) context["program"] = own->name;
+  for (const Outside& o : outsides())
+    if (o.plugin)
+      context["plugins"].push_back(
+          {{"name", o.name}, {"git_revision", revision_of(o.root)}});
+}
+
 std::string host_name() {
   std::array<char, 256> name{};
   gethostname(name.data(), name.size() - 1);
@@ -122,15 +146,8 @@ int available_cores() {
 std::string processor_name() { return cpuinfo("model name"); }
 
 std::string git_revision() {
-  const std::string revision = output_of({"git",
-                                          "-C",
-                                          PHYSINV_SOURCE_DIR,
-                                          "describe",
-                                          "--always",
-                                          "--dirty=+dirty",
-                                          "--abbrev=40",
-                                          "--exclude=*"});
-  return revision.empty() ? "unknown" : revision;
+  const Outside* own = outside_program();
+  return revision_of(own == nullptr ? PHYSINV_SOURCE_DIR : own->root);
 }
 
 json machine_context(const std::string& revision) {
@@ -138,7 +155,7 @@ json machine_context(const std::string& revision) {
   const std::string governor =
       first_line("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor");
   const bool dirty = revision.ends_with("+dirty");
-  return {
+  json context = {
       {"date", utc_now()},
       {"host_name", host_name()},
       {"num_cpus", available_cores()},
@@ -170,32 +187,36 @@ json machine_context(const std::string& revision) {
        dirty ? revision.substr(0, revision.size() - 6) : revision},
       {"git_dirty", dirty},
   };
+  add_outsides(context);
+  return context;
 }
 
 std::string version_text() {
   const BuildInfo& b = build_info();
-  return fmt::format(
-      "physinv-bench {}\n"
-      "compiler         {} {} ({})\n"
-      "flags            {}\n"
-      "instruction set  {}\n"
-      "numerics         {}\n"
-      "libraries        Eigen {}, SLEEF {}, HDF5 {}, nlohmann-json "
-      "{}, "
-      "fmt {}, CLI11 {}",
-      b.version,
-      b.compiler,
-      b.compiler_version,
-      b.build_type,
-      b.flags,
-      b.instruction_set,
-      b.fingerprint,
-      b.eigen,
-      b.sleef,
-      b.hdf5,
-      b.json,
-      b.fmt,
-      b.cli11);
+  const Outside* own = outside_program();
+  return (own == nullptr ? "" : fmt::format("{}, built on\n", own->name)) +
+         fmt::format(
+             "physinv-bench {}\n"
+             "compiler         {} {} ({})\n"
+             "flags            {}\n"
+             "instruction set  {}\n"
+             "numerics         {}\n"
+             "libraries        Eigen {}, SLEEF {}, HDF5 {}, nlohmann-json "
+             "{}, "
+             "fmt {}, CLI11 {}",
+             b.version,
+             b.compiler,
+             b.compiler_version,
+             b.build_type,
+             b.flags,
+             b.instruction_set,
+             b.fingerprint,
+             b.eigen,
+             b.sleef,
+             b.hdf5,
+             b.json,
+             b.fmt,
+             b.cli11);
 }
 
 }  // namespace physinv

@@ -16,8 +16,8 @@ int available_cores();
 /// As the processor calls itself; empty if unknown.
 std::string processor_name();
 
-/// Revision of the sources, "+dirty" appended if a tracked file differs;
-/// "unknown" without git. Asks git, so some milliseconds.
+/// Revision of the program's own sources, "+dirty" appended if a tracked file
+/// differs; "unknown" without git. Asks git, so some milliseconds.
 std::string git_revision();
 
 /// Machine and build: date, host, processor, caches, load, compiler, flags,

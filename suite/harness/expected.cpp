@@ -34,6 +34,19 @@ std::vector<ExpectedFailure> read_expected(const std::filesystem::path& path) {
   return all;
 }
 
+std::vector<ExpectedFailure> known_to(const Registry& registry,
+                                      std::vector<ExpectedFailure> expected) {
+  std::erase_if(expected, [&](const ExpectedFailure& e) {
+    const auto& overviews = registry.overviews();
+    return !registry.find(e.experiment) &&
+           std::none_of(
+               overviews.begin(), overviews.end(), [&](const Overview& o) {
+                 return o.paper == e.experiment;
+               });
+  });
+  return expected;
+}
+
 void check_expected(const std::vector<ExpectedFailure>& expected,
                     const Registry& registry,
                     const std::vector<Section>& sections,

@@ -21,6 +21,11 @@ struct ExpectedFailure {
 /// UsageError, naming the file and the entry, if it is malformed.
 std::vector<ExpectedFailure> read_expected(const std::filesystem::path& path);
 
+/// Those of experiments and papers that are registered: the suite's list serves
+/// programs that have other experiments.
+std::vector<ExpectedFailure> known_to(const Registry& registry,
+                                      std::vector<ExpectedFailure> expected);
+
 /// UsageError if an entry names no claim. An experiment that declares none
 /// may make its claims while it reports: they are known once it has run.
 void check_expected(const std::vector<ExpectedFailure>& expected,

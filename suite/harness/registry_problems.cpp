@@ -9,7 +9,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "suite/harness/errors.h"
 #include "suite/harness/judge.h"
+#include "suite/harness/outside.h"
 #include "suite/harness/sources.h"
 #include "suite/results/names.h"
 
@@ -34,6 +36,28 @@ std::set<std::string> unknown_sources(const Experiment& e) {
         wrong.insert(std::move(text));
     }
   }
+  return wrong;
+}
+
+/// Sources from outside whose numbers no stage owns up to: an edit of them
+/// would go unseen.
+std::vector<std::string> unreached_sources(const Registry& registry) {
+  std::vector<std::string> wrong = outside_problems();
+  if (outsides().empty()) return wrong;
+  std::set<std::string> reached;
+  for (const auto& e : registry.experiments())
+    for (const Method& m : e->methods)
+      if (!m.chain.empty())
+        reached.merge(project_sources().closure(
+            chain_sources(*e, m, m.chain.size() - 1)));
+  for (const Outside& o : outsides())
+    for (const std::string_view path : o.computing)
+      if (!reached.contains(std::string(path)))
+        wrong.push_back(fmt::format(
+            "{}: no stage's numbers come from it, so that its edits would go "
+            "unseen; name it as the header that it implements, or in sources() "
+            "of its stage",
+            path));
   return wrong;
 }
 
@@ -160,7 +184,7 @@ void check_claims(const Registry& registry,
 template <class F>
 std::vector<std::string> problems_of_experiments(const Registry& registry,
                                                  const F& chosen) {
-  std::vector<std::string> wrong;
+  std::vector<std::string> wrong = unreached_sources(registry);
   std::set<std::string> names;
   for (const auto& e : registry.experiments()) {
     if (!names.insert(e->name).second)
@@ -180,8 +204,11 @@ void validate(const Registry& registry, const std::vector<Case>& cases) {
   for (const Case& c : cases) chosen.insert(c.experiment.get());
   const auto wrong = problems_of_experiments(
       registry, [&](const Experiment& e) { return chosen.contains(&e); });
-  if (!wrong.empty())
-    throw std::logic_error(fmt::format("{}", fmt::join(wrong, "; ")));
+  if (wrong.empty()) return;
+  const auto text = fmt::format("{}", fmt::join(wrong, "; "));
+  // A mistake of the suite, or of who built on it.
+  if (outsides().empty()) throw std::logic_error(text);
+  throw UsageError(text);
 }
 
 std::string to_text(Needs needs) {

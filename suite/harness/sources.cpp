@@ -1,6 +1,7 @@
 #include "suite/harness/sources.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <sstream>
@@ -26,23 +27,36 @@ std::string implementation(std::string_view header) {
 }  // namespace
 
 SourceGraph::SourceGraph(std::string_view foundation,
-                         std::span<const SourceFile> files)
+                         std::span<const SourceFile> files,
+                         std::span<const Outside> outsides)
     : foundation_(foundation) {
-  for (const SourceFile& file : files) {
-    Node node{.path = std::string(file.path), .hash = std::string(file.hash)};
-    std::istringstream names{std::string(file.includes)};
-    for (std::string name; names >> name;) node.includes.push_back(name);
-    nodes_.push_back(std::move(node));
+  add(files);
+  for (const Outside& o : outsides) {
+    add(o.sources);
+    places_.push_back({std::string(o.root), std::string(o.project)});
   }
   std::sort(nodes_.begin(), nodes_.end(), [](const Node& a, const Node& b) {
     return a.path < b.path;
   });
+  const auto same = [](const Node& a, const Node& b) {
+    return a.path == b.path;  // of a program and a plug-in from one project
+  };
+  nodes_.erase(std::unique(nodes_.begin(), nodes_.end(), same), nodes_.end());
   for (Node& node : nodes_) {
     for (const auto& header : node.includes)
       node.next.push_back(node_at(header));
     node.implementation = node.path.ends_with(".h")
                               ? node_at(implementation(node.path))
                               : kNowhere;
+  }
+}
+
+void SourceGraph::add(std::span<const SourceFile> files) {
+  for (const SourceFile& file : files) {
+    Node node{.path = std::string(file.path), .hash = std::string(file.hash)};
+    std::istringstream names{std::string(file.includes)};
+    for (std::string name; names >> name;) node.includes.push_back(name);
+    nodes_.push_back(std::move(node));
   }
 }
 
@@ -56,13 +70,44 @@ std::size_t SourceGraph::node_at(std::string_view path) const {
              : kNowhere;
 }
 
-std::size_t SourceGraph::find_node(std::string_view path) const {
+std::size_t SourceGraph::node_in(const Place& place,
+                                 std::string_view path) const {
+  const auto root = place.root + '/';
+  const auto inside = path.starts_with(root) ? path.substr(root.size()) : path;
+  return node_at(fmt::format("{}/{}", place.project, inside));
+}
+
+std::set<std::size_t> SourceGraph::candidates(std::string_view path) const {
+  std::set<std::size_t> found;
   while (true) {
-    if (const auto at = node_at(path); at != kNowhere) return at;
+    found.insert(node_at(path));
+    for (const Place& place : places_) found.insert(node_in(place, path));
+    found.erase(kNowhere);
     const auto slash = path.find('/');
-    if (slash == std::string_view::npos) return kNowhere;
+    if (!found.empty() || slash == std::string_view::npos) return found;
     path.remove_prefix(slash + 1);
   }
+}
+
+std::size_t SourceGraph::find_node(std::string_view path) const {
+  const auto found = candidates(path);
+  return found.size() == 1 ? *found.begin() : kNowhere;
+}
+
+/// Why there is no one file of a root.
+std::string SourceGraph::why_not(const std::string& root) const {
+  std::vector<std::string> names;
+  for (const std::size_t at : candidates(root))
+    names.push_back(nodes_[at].path);
+  if (!names.empty())
+    return fmt::format("'{}' may be {}; name one of them in full",
+                       root,
+                       fmt::join(names, " or "));
+  return fmt::format("no source of numbers '{}'", root) +
+         (places_.empty() ? ""
+                          : "; its file is to stand in SOURCES, the class of a "
+                            "problem in <name>.h or in what its recipe calls "
+                            "its source");
 }
 
 std::string SourceGraph::find(std::string_view path) const {
@@ -110,8 +155,7 @@ std::set<std::string> SourceGraph::closure(
 std::vector<std::string> SourceGraph::errors(const Sources& sources) const {
   std::vector<std::string> wrong;
   for (const auto& root : sources.roots)
-    if (find_node(root) == kNowhere)
-      wrong.push_back(fmt::format("no source of numbers '{}'", root));
+    if (find_node(root) == kNowhere) wrong.push_back(why_not(root));
   for (const auto& [file, header] : sources.unused) {
     const std::size_t at = node_at(file);
     if (at == kNowhere ||
@@ -135,8 +179,7 @@ std::string SourceGraph::fingerprint(const std::vector<Sources>& chain) const {
   std::vector<bool> found(nodes_.size());
   for (const Sources& sources : chain) {
     for (const auto& root : sources.roots)
-      SUITE_CHECK(find_node(root) != kNowhere,
-                  "no source of numbers '" + root + "'");
+      SUITE_CHECK(find_node(root) != kNowhere, why_not(root));
     reach(sources, found);
   }
   std::string text = foundation_ + '\n';
@@ -147,8 +190,8 @@ std::string SourceGraph::fingerprint(const std::vector<Sources>& chain) const {
 }
 
 const SourceGraph& project_sources() {
-  static const SourceGraph kGraph(build_info().foundation,
-                                  build_info().sources);
+  static const SourceGraph kGraph(
+      build_info().foundation, build_info().sources, outsides());
   return kGraph;
 }
 

@@ -11,6 +11,7 @@
 
 #include "suite/harness/build_info.h"
 #include "suite/harness/case.h"
+#include "suite/harness/outside.h"
 
 namespace physinv {
 
@@ -20,11 +21,14 @@ namespace physinv {
 /// that nothing reaches.
 class SourceGraph {
  public:
-  /// `foundation` enters every fingerprint.
-  SourceGraph(std::string_view foundation, std::span<const SourceFile> files);
+  /// `foundation` enters every fingerprint. Sources from outside stand beside
+  /// the suite's, under the names of their projects.
+  SourceGraph(std::string_view foundation,
+              std::span<const SourceFile> files,
+              std::span<const Outside> outsides = {});
 
   /// The file that a path ends in, "" if there is none; compilers name files
-  /// in full.
+  /// in full. A project's own files go by their path inside of it, too.
   std::string find(std::string_view path) const;
 
   /// Everything that the roots reach; of a chain, what any of its stages do.
@@ -48,13 +52,25 @@ class SourceGraph {
   };
   static constexpr std::size_t kNowhere = ~std::size_t{0};
 
+  /// Where the files of a project are, and what their paths begin with.
+  struct Place {
+    std::string root, project;
+  };
+
+  void add(std::span<const SourceFile> files);
   std::size_t node_at(std::string_view path) const;
+  /// In full, or by its path inside of a project that is not the suite.
+  std::size_t node_in(const Place& place, std::string_view path) const;
+  /// More than one if projects have files of one name.
+  std::set<std::size_t> candidates(std::string_view path) const;
+  std::string why_not(const std::string& root) const;
   std::size_t find_node(std::string_view path) const;
   /// Marks what the roots reach.
   void reach(const Sources& sources, std::vector<bool>& found) const;
 
   std::string foundation_;
   std::vector<Node> nodes_;  ///< ascending in their paths
+  std::vector<Place> places_;
 };
 
 /// Of this build.

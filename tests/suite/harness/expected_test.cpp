@@ -51,6 +51,19 @@ TEST(Expected, ClaimThatHoldsIsNamed) {
   EXPECT_EQ(j.surprises, Names{"a/b R1: R1 is so"});
 }
 
+TEST(Expected, OtherProgramsTakeWhatTheyKnow) {
+  Registry some;
+  some.add(Experiment{.name = "a/b"});
+  some.add(Overview{.paper = "c"});
+  const auto known = known_to(some,
+                              {{"a/b", "R9", "why", ""},
+                               {"other/b", "R1", "why", ""},
+                               {"c", "P1", "why", ""}});
+  ASSERT_EQ(known.size(), 2U);
+  EXPECT_EQ(known[0].claim, "R9");
+  EXPECT_EQ(known[1].experiment, "c");
+}
+
 TEST(Expected, EntryWithoutAClaimIsAnError) {
   const Registry none;
   EXPECT_NO_THROW(

@@ -159,5 +159,95 @@ TEST(Sources, WhatIsWrongIsNamed) {
                std::logic_error);
 }
 
+// ---- from outside -----------------------------------------------------------
+
+/// A problem of one's own by a method of the suite and one's own rule.
+struct Project {
+  std::vector<SourceFile> files{
+      {"mine/drop.h", "1", "core/batch.h mine/src/drop.cpp "},
+      {"mine/src/drop.cpp", "1", "mine/drop.h "},
+      {"mine/rule.cpp", "1", "core/method.h "},
+      {"mine/heat.h", "1", ""}};
+  std::string root = "/home/me/mine";
+
+  SourceGraph graph() const {
+    std::vector<SourceFile> suite;
+    for (const auto& [path, file] : kSuite)
+      suite.push_back({path, file.first, file.second});
+    const Outside outside{.name = "drops",
+                          .project = "mine",
+                          .root = root,
+                          .plugin = false,
+                          .sources = files};
+    return SourceGraph("gcc", suite, std::span(&outside, 1));
+  }
+  std::string after_edit(std::size_t which, const Chain& chain) {
+    files[which].hash = "2";
+    const auto text = graph().fingerprint(chain);
+    files[which].hash = "1";
+    return text;
+  }
+};
+
+const Chain kDrop{{.roots = {"/home/me/mine/rule.cpp", "problems/drop/drop.h"},
+                   .unused = {}}};
+
+TEST(Sources, OfProjectsAreFoundByPlaceAndByName) {
+  const SourceGraph g = Project().graph();
+  EXPECT_EQ(g.closure(kDrop),
+            (Names{"core/batch.h",
+                   "core/method.h",
+                   "core/oracle.cpp",
+                   "core/oracle.h",
+                   "core/rng.cpp",
+                   "core/rng.h",
+                   "mine/drop.h",
+                   "mine/rule.cpp",
+                   "mine/src/drop.cpp"}));
+  EXPECT_EQ(g.find("/home/me/mine/src/drop.cpp"), "mine/src/drop.cpp");
+  EXPECT_EQ(g.find("/prefix/methods/bfgs.cpp"), "methods/bfgs.cpp");
+  EXPECT_EQ(g.find("/home/me/mine"), "");
+  EXPECT_EQ(g.find("/home/me/mine2/src/none.cpp"), "");
+  EXPECT_TRUE(g.errors(kDrop.front()).empty());
+  // The suite's come first.
+  EXPECT_EQ(g.find("problems/heat/heat.h"), "problems/heat/heat.h");
+}
+
+TEST(Sources, EditsOutsideMakeStaleWhoUsesThem) {
+  Project p;
+  const auto drop = p.graph().fingerprint(kDrop);
+  const auto bfgs = p.graph().fingerprint({kBfgs});
+  EXPECT_EQ(bfgs, graph(kSuite).fingerprint({kBfgs}));
+  for (const std::size_t used : {0U, 1U, 2U})
+    EXPECT_NE(p.after_edit(used, kDrop), drop) << used;
+  EXPECT_EQ(p.after_edit(3, kDrop), drop);
+  EXPECT_EQ(p.after_edit(0, {kBfgs}), bfgs);
+  p.root = "/elsewhere";  // a moved checkout
+  const Chain moved{
+      {.roots = {"/elsewhere/rule.cpp", "problems/drop/drop.h"}, .unused = {}}};
+  EXPECT_EQ(p.graph().fingerprint(moved), drop);
+}
+
+TEST(Sources, WhatIsMissingOutsideSaysWhereItBelongs) {
+  const auto wrong = Project().graph().errors(
+      {.roots = {"problems/rain/rain.h"}, .unused = {}});
+  ASSERT_EQ(wrong.size(), 1U);
+  EXPECT_NE(wrong[0].find("is to stand in SOURCES"), std::string::npos);
+}
+
+TEST(Sources, TwoProjectsWithOneNameAreToldApart) {
+  const std::vector<SourceFile> a{{"a/drop.h", "1", ""}},
+      b{{"b/drop.h", "1", ""}};
+  const std::vector<Outside> both{
+      {.name = "a", .project = "a", .root = "/a", .sources = a},
+      {.name = "b", .project = "b", .root = "/b", .sources = b}};
+  const SourceGraph g("gcc", {}, both);
+  EXPECT_EQ(g.find("/b/drop.h"), "b/drop.h");
+  EXPECT_EQ(g.find("b/drop.h"), "b/drop.h");
+  EXPECT_EQ(g.errors({.roots = {"problems/drop/drop.h"}, .unused = {}}),
+            std::vector<std::string>{"'problems/drop/drop.h' may be a/drop.h "
+                                     "or b/drop.h; name one of them in full"});
+}
+
 }  // namespace
 }  // namespace physinv
