@@ -21,7 +21,7 @@ string(STRIP "${physinv_flags_text}" physinv_flags_text)
 # Those that may decide about bits. Optimization, registers, sanitizers and the
 # compiler itself do not (the tests of bits hold it).
 string(REGEX REPLACE
-  "(^| )-(O[0-3]|g|DNDEBUG|march=[^ ]*|U__AVX512F__|fpch-preprocess|fno-omit-frame-pointer|f(no-)?sanitize[^ ]*)" ""
+  "(^| )-(O[0-3]|g|DNDEBUG|march=[^ ]*|U__AVX512F__|fpch-preprocess|fno-omit-frame-pointer|fPIC|fno-semantic-interposition|f(no-)?sanitize[^ ]*)" ""
   physinv_bit_flags "${physinv_flags_text}")
 string(REGEX REPLACE " +" " " physinv_bit_flags "${physinv_bit_flags}")
 string(STRIP "${physinv_bit_flags}" physinv_bit_flags)
@@ -46,6 +46,7 @@ set(libc "@physinv_libc@")
 
 add_custom_command(
   OUTPUT ${physinv_info}/build_info.cpp
+  BYPRODUCTS ${physinv_info}/physinv-build.cmake
   DEPFILE ${physinv_info}/build_info.d
   DEPENDS ${physinv_info}/values.cmake
     ${CMAKE_CURRENT_LIST_DIR}/write_build_info.cmake

@@ -86,6 +86,11 @@ if(PHYSINV_SANITIZE)
   add_link_options(-fsanitize=${PHYSINV_SANITIZE})
 endif()
 
+# The archives also become part of shared objects (plug-ins load into a program,
+# the Python module). Nobody replaces a function of theirs, so that calls stay
+# direct: the same bits and the same speed as without.
+add_compile_options(-fPIC -fno-semantic-interposition)
+
 # What everybody includes is read once, and JSON is compiled once (physinv_json).
 # The preset `clang` goes without all this, so that a missing #include cannot
 # hide.
