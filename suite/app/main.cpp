@@ -13,6 +13,7 @@
 #include <system_error>
 
 #include "suite/app/flags.h"
+#include "suite/app/plugins.h"
 #include "suite/app/verbs.h"
 #include "suite/harness/build_info.h"
 #include "suite/harness/context.h"
@@ -35,6 +36,7 @@ environment; a variable that is empty counts as one that is not set
   BENCHMARK_FILTER, BENCHMARK_OUT, BENCHMARK_OUT_FORMAT, BENCHMARK_FORMAT,
   BENCHMARK_REPETITIONS, BENCHMARK_LIST_TESTS: as the flags of run, which go
              before them
+  PHYSINV_PLUGINS  plug-ins to load, as --plugin, with colons between them
   GTEST_TOTAL_SHARDS, GTEST_SHARD_INDEX (from 0): as --shard
   XDG_CACHE_HOME  where the speeds of this machine are kept (~/.cache)
 )";
@@ -53,6 +55,7 @@ std::string help_text() {
                     verb.takes),
         verb.about);
   text += help_line("VERB --help", "flags of a verb; also: help VERB");
+  text += help_line("--plugin=FILE ..", "with a plug-in, before or after VERB");
   text += help_line("--version, -V", "version and build");
   text += "\nexamples\n";
   for (const auto& example : program().examples)
@@ -93,6 +96,7 @@ bool answered(const std::string& flag) {
 
 ExitCode dispatch(Arguments arguments) {
   refuse_empty(arguments);
+  load_plugins(arguments);
   if (arguments.empty()) return run_verb(arguments);
   if (arguments[0] == "help" && arguments.size() > 1) {
     if (arguments.size() > 2)
