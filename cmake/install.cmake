@@ -1,6 +1,7 @@
 # Component `programs`: those that are built. ./bench builds one of them, and
 # with it every layer of the component `development`: find_package(physinv) gives
 # physinv::physinv, all below the cases, with the flags that they were built with.
+# physinv::app, the verbs, is there where physinv-bench was built, too.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -23,6 +24,18 @@ endforeach()
 
 set(physinv_package ${CMAKE_INSTALL_LIBDIR}/cmake/physinv)
 install(TARGETS ${physinv_exported} EXPORT physinv COMPONENT development)
+set(physinv_verbs)
+foreach(layer app_run app gate compare planning reports)
+  list(APPEND physinv_verbs physinv_${layer})
+endforeach()
+install(TARGETS ${physinv_verbs} EXPORT physinv-verbs
+  ARCHIVE COMPONENT development OPTIONAL)
+# Their main, which stands in the sources of a program.
+install(TARGETS physinv_main EXPORT physinv
+  OBJECTS DESTINATION ${CMAKE_INSTALL_LIBDIR}/physinv COMPONENT development)
+install(EXPORT physinv-verbs NAMESPACE physinv::
+  FILE physinv-verbs-targets.cmake
+  DESTINATION ${physinv_package} COMPONENT development)
 install(EXPORT physinv NAMESPACE physinv:: FILE physinv-targets.cmake
   DESTINATION ${physinv_package} COMPONENT development)
 install(DIRECTORY suite problems optimizers baselines
@@ -31,6 +44,21 @@ install(DIRECTORY suite problems optimizers baselines
   PATTERN app EXCLUDE PATTERN cases EXCLUDE PATTERN kernels.h EXCLUDE
   PATTERN real_fft.h EXCLUDE)
 
+# Contract tests, which users compile over what they register.
+set(contract tests/contract)
+install(FILES ${contract}/problem_contract_test.cpp
+    ${contract}/method_contract_test.cpp ${contract}/case_contract_test.cpp
+    ${contract}/claim_contract_test.cpp
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/physinv/sources/${contract}
+  COMPONENT development)
+set(support tests/support)
+install(FILES ${support}/bits.h ${support}/bits.cpp ${support}/gradient_check.h
+    ${support}/memory_checkpoint.h ${support}/quadratic.h
+    ${support}/quadratic.cpp ${support}/registered.h ${support}/tolerance.h
+    ${support}/tolerance.cpp
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/physinv/sources/${support}
+  COMPONENT development)
+
 write_basic_package_version_file(
   ${PROJECT_BINARY_DIR}/physinv-config-version.cmake
   COMPATIBILITY SameMinorVersion)
@@ -38,6 +66,9 @@ install(FILES
     ${PROJECT_SOURCE_DIR}/cmake/physinv-config.cmake
     ${PROJECT_SOURCE_DIR}/cmake/FindRE2.cmake
     ${PROJECT_SOURCE_DIR}/cmake/FindSLEEF.cmake
+    ${PROJECT_SOURCE_DIR}/cmake/outside_sources.cmake
+    ${PROJECT_SOURCE_DIR}/cmake/physinv-outside.cmake
+    ${physinv_info}/physinv-build.cmake
     ${PROJECT_BINARY_DIR}/physinv-config-version.cmake
   DESTINATION ${physinv_package} COMPONENT development)
 foreach(program physinv-bench physinv-run physinv-kernels)
@@ -45,7 +76,9 @@ foreach(program physinv-bench physinv-run physinv-kernels)
     install(TARGETS ${program} COMPONENT programs OPTIONAL)
   endif()
 endforeach()
-install(DIRECTORY reports/published
-  DESTINATION ${CMAKE_INSTALL_DATADIR}/physinv COMPONENT programs)
-install(FILES ${PROJECT_SOURCE_DIR}/reports/expected_failures.json
-  DESTINATION ${CMAKE_INSTALL_DATADIR}/physinv COMPONENT programs)
+foreach(component programs development)
+  install(DIRECTORY reports/published
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/physinv COMPONENT ${component})
+  install(FILES ${PROJECT_SOURCE_DIR}/reports/expected_failures.json
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/physinv COMPONENT ${component})
+endforeach()

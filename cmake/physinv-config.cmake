@@ -11,3 +11,18 @@ find_dependency(HDF5 COMPONENTS C)
 find_dependency(ZLIB)
 find_dependency(PNG)
 include(${CMAKE_CURRENT_LIST_DIR}/physinv-targets.cmake)
+
+# Where things are, seen from here: an installed tree may move.
+set(PHYSINV_PACKAGE ${CMAKE_CURRENT_LIST_DIR})
+get_target_property(PHYSINV_HEADERS physinv::core INTERFACE_INCLUDE_DIRECTORIES)
+list(FILTER PHYSINV_HEADERS INCLUDE REGEX "/include/physinv$")
+list(GET PHYSINV_HEADERS 0 PHYSINV_HEADERS)
+cmake_path(SET PHYSINV_DATA NORMALIZE
+  "${PHYSINV_HEADERS}/../../share/physinv")
+# The verbs, where they were built (./bench alone builds `run`).
+file(GLOB physinv_verbs ${CMAKE_CURRENT_LIST_DIR}/../../libphysinv_app.a)
+if(physinv_verbs)
+  find_dependency(CLI11)
+  include(${CMAKE_CURRENT_LIST_DIR}/physinv-verbs-targets.cmake)
+endif()
+include(${CMAKE_CURRENT_LIST_DIR}/physinv-outside.cmake)

@@ -15,7 +15,7 @@ TEST(ClaimContract, NamesWhatIsRegistered) {
 }
 
 TEST(ClaimContract, NamesWhatThePapersPrint) {
-  const Published published(PHYSINV_SOURCE_DIR "/reports/published");
+  const Published published(PHYSINV_PUBLISHED_DIR);
   const auto wrong = registry().unknown_printed(published);
   EXPECT_TRUE(wrong.empty()) << fmt::format("{}", fmt::join(wrong, "\n"));
 }

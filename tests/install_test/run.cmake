@@ -48,7 +48,8 @@ if(status EQUAL 0 OR place EQUAL -1 OR EXISTS ${work}/no)
 endif()
 execute_process(COMMAND ninja -C ${alone} -t inputs physinv-run
   OUTPUT_VARIABLE inputs COMMAND_ERROR_IS_FATAL ANY)
-string(REGEX MATCHALL "[^\n ]*libphysinv_[^\n ]*[.]a" libraries "${inputs}")
+string(REGEX MATCHALL
+  "[^\n ]*(libphysinv_[^\n ]*[.]a|physinv_main[^\n ]*[.]o)" libraries "${inputs}")
 foreach(path physinv-run ${libraries})
   cmake_path(GET path PARENT_PATH folder)
   file(COPY ${build}/${path} DESTINATION ${alone}/${folder})

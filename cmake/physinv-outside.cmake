@@ -1,0 +1,138 @@
+# What find_package(physinv) gives beside its libraries (docs/extending.md):
+#
+#   physinv_add_program(<name> SOURCES <source>...)
+#     a program with all verbs of physinv-bench over what SOURCES register
+#   physinv_add_plugin(<name> SOURCES <source>...)
+#     <name>.so, the same for physinv-bench --plugin=<name>.so
+#   physinv_add_contract_tests(<name>)
+#     <name>_contract_test: the suite's contract tests over what SOURCES of a
+#     program or plug-in register
+#
+# SOURCES and the headers that they include enter the content keys: an edit makes
+# stale what is computed from them, and nothing else.
+
+# physinv_own_sources(<target> <plugin: true | false>)
+function(physinv_own_sources target plugin)
+  get_target_property(sources ${target} SOURCES)
+  list(FILTER sources EXCLUDE REGEX "^\\$<")
+  list(TRANSFORM sources PREPEND "${CMAKE_CURRENT_SOURCE_DIR}/"
+    REGEX "^[^/]")
+  string(REGEX REPLACE "[^A-Za-z0-9_.-]" "_" project "${PROJECT_NAME}")
+  set(info ${CMAKE_CURRENT_BINARY_DIR}/physinv_${target})
+  file(GENERATE OUTPUT ${info}/values.cmake CONTENT
+"set(target \"${target}\")
+set(project \"${project}\")
+set(plugin ${plugin})
+set(root \"${PROJECT_SOURCE_DIR}\")
+set(binary \"${PROJECT_BINARY_DIR}\")
+set(headers \"${PHYSINV_HEADERS}\")
+set(package \"${PHYSINV_PACKAGE}\")
+set(data \"${PHYSINV_DATA}\")
+set(sources \"${sources}\")
+set(include_folders \"$<TARGET_PROPERTY:${target},INCLUDE_DIRECTORIES>\")
+")
+  add_custom_command(
+    OUTPUT ${info}/sources.cpp
+    DEPFILE ${info}/sources.d
+    DEPENDS ${info}/values.cmake ${sources}
+      ${PHYSINV_PACKAGE}/outside_sources.cmake
+      ${PHYSINV_PACKAGE}/physinv-build.cmake
+    COMMAND ${CMAKE_COMMAND} -D info=${info}
+      -P ${PHYSINV_PACKAGE}/outside_sources.cmake
+    COMMENT "Sources of ${target}"
+    VERBATIM)
+  target_sources(${target} PRIVATE ${info}/sources.cpp)
+  # Designated initializers name what they set; the rest is default on purpose.
+  target_compile_options(${target} PRIVATE -Wno-missing-field-initializers)
+endfunction()
+
+function(physinv_check_sources function target sources rest)
+  if(NOT sources OR rest)
+    message(FATAL_ERROR "${function}(${target} ${rest}): what is expected is "
+      "${function}(<name> SOURCES <source>...)")
+  endif()
+endfunction()
+
+function(physinv_add_program name)
+  cmake_parse_arguments(PARSE_ARGV 1 ARG "" "" "SOURCES")
+  physinv_check_sources(physinv_add_program ${name} "${ARG_SOURCES}"
+    "${ARG_UNPARSED_ARGUMENTS}")
+  if(NOT TARGET physinv::app)
+    message(FATAL_ERROR "physinv_add_program(${name}): the suite was installed "
+      "from a tree that holds physinv-run alone; build physinv-bench there and "
+      "install it again")
+  endif()
+  add_executable(${name} ${ARG_SOURCES})
+  set_target_properties(${name} PROPERTIES ENABLE_EXPORTS ON)
+  physinv_own_sources(${name} false)
+  set_property(TARGET ${name} PROPERTY physinv_sources ${ARG_SOURCES})
+  target_sources(${name} PRIVATE $<TARGET_OBJECTS:physinv::main>)
+  target_link_libraries(${name} PRIVATE physinv::app physinv::physinv)
+endfunction()
+
+# The suite's functions are those of the program that loads it.
+function(physinv_add_plugin name)
+  cmake_parse_arguments(PARSE_ARGV 1 ARG "" "" "SOURCES")
+  physinv_check_sources(physinv_add_plugin ${name} "${ARG_SOURCES}"
+    "${ARG_UNPARSED_ARGUMENTS}")
+  set(compiler "${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}")
+  include(${PHYSINV_PACKAGE}/physinv-build.cmake)
+  if(NOT compiler STREQUAL physinv_compiler)
+    message(FATAL_ERROR "physinv_add_plugin(${name}): the suite was built with "
+      "${physinv_compiler}, this is ${compiler}; a plug-in takes the same")
+  endif()
+  add_library(${name} MODULE ${ARG_SOURCES})
+  set_target_properties(${name} PROPERTIES PREFIX "")
+  physinv_own_sources(${name} true)
+  set_property(TARGET ${name} PROPERTY physinv_sources ${ARG_SOURCES})
+  target_include_directories(${name} SYSTEM PRIVATE ${PHYSINV_HEADERS})
+  target_link_libraries(${name} PRIVATE physinv::flags Eigen3::Eigen
+    SLEEF::sleef fmt::fmt nlohmann_json::nlohmann_json)
+endfunction()
+
+# The tests alone, once for a project. They spend their time in the libraries.
+function(physinv_contract_objects)
+  if(TARGET physinv_contract_objects)
+    return()
+  endif()
+  set(tests ${PHYSINV_DATA}/sources/tests)
+  add_library(physinv_contract_objects OBJECT EXCLUDE_FROM_ALL)
+  foreach(kind problem method case claim)
+    target_sources(physinv_contract_objects PRIVATE
+      ${tests}/contract/${kind}_contract_test.cpp)
+  endforeach()
+  foreach(name bits quadratic tolerance)
+    target_sources(physinv_contract_objects PRIVATE ${tests}/support/${name}.cpp)
+  endforeach()
+  target_include_directories(physinv_contract_objects SYSTEM PRIVATE
+    ${PHYSINV_DATA}/sources)
+  target_compile_definitions(physinv_contract_objects PRIVATE
+    PHYSINV_PUBLISHED_DIR="${PHYSINV_DATA}/published")
+  target_compile_options(physinv_contract_objects PRIVATE -w -O1)
+  target_link_libraries(physinv_contract_objects PRIVATE
+    physinv::physinv GTest::gtest)
+endfunction()
+
+# With the include folders and libraries of the program or plug-in.
+function(physinv_add_contract_tests name)
+  if(ARGN OR NOT TARGET ${name})
+    message(FATAL_ERROR "physinv_add_contract_tests(${name} ${ARGN}): what is "
+      "expected is the name of a program or plug-in of physinv")
+  endif()
+  find_package(GTest REQUIRED)
+  physinv_contract_objects()
+  set(target ${name}_contract_test)
+  get_target_property(sources ${name} physinv_sources)
+  add_executable(${target} ${sources})
+  physinv_own_sources(${target} false)
+  foreach(property INCLUDE_DIRECTORIES COMPILE_DEFINITIONS)
+    set_property(TARGET ${target} PROPERTY ${property}
+      $<TARGET_PROPERTY:${name},${property}>)
+  endforeach()
+  set(libraries $<TARGET_PROPERTY:${name},LINK_LIBRARIES>)
+  target_link_libraries(${target} PRIVATE
+    $<FILTER:${libraries},EXCLUDE,^physinv::>)
+  target_sources(${target} PRIVATE $<TARGET_OBJECTS:physinv_contract_objects>)
+  target_link_libraries(${target} PRIVATE physinv::physinv
+    GTest::gtest GTest::gtest_main)
+endfunction()

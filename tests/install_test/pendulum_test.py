@@ -1,0 +1,190 @@
+#!/usr/bin/env python3
+"""pendulum_test.py SOURCES BUILD WORK COMPILER: examples/pendulum on the
+installed suite, as a stranger would have it: its own repository, a prefix that
+moved, warnings that are errors. What an edit makes stale, report, verify, gate,
+the contract tests, and what the stock program says of its results.
+"""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import unittest
+
+SOURCES, BUILD, WORK, COMPILER = sys.argv[1:5]
+PREFIX, PROJECT = WORK + "/moved", WORK + "/pendulum"
+TREE, RESULTS = WORK + "/tree", WORK + "/results"
+GIT = ["git", "-C", PROJECT, "-c", "user.name=a", "-c", "user.email=a@b.c"]
+
+
+def run(*command, status=0):
+    done = subprocess.run(
+        command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    if done.returncode != status:
+        raise AssertionError(f"{command}: {done.returncode}\n{done.stdout}")
+    return done.stdout
+
+
+def pendulum(*arguments, status=0):
+    return run(TREE + "/pendulum", *arguments, status=status)
+
+
+def build(*targets, status=0):
+    return run("ninja", "-C", TREE, *targets, status=status)
+
+
+def edit(name, text="// edited\n"):
+    with open(f"{PROJECT}/{name}", "a") as f:
+        f.write(text)
+
+
+class Pendulum(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        shutil.rmtree(WORK, ignore_errors=True)
+        os.makedirs(WORK)
+        run("cmake", "--install", BUILD, "--prefix", WORK + "/prefix")
+        os.rename(WORK + "/prefix", PREFIX)
+        shutil.copytree(SOURCES + "/examples/pendulum", PROJECT)
+        run("git", "init", "-q", PROJECT)
+        run(*GIT, "add", ".")
+        run(*GIT, "commit", "-q", "-m", "A pendulum")
+        run("cmake", "-S", PROJECT, "-B", TREE, "-G", "Ninja",
+            "-D", "CMAKE_CXX_COMPILER=" + COMPILER,
+            "-D", "CMAKE_CXX_FLAGS=-Wall -Wextra -Werror",
+            "-D", "CMAKE_PREFIX_PATH=" + PREFIX)
+        build("pendulum")
+
+    def run_smoke(self):
+        out = pendulum("--profile=smoke", "--out=" + RESULTS)
+        line = next(s for s in out.splitlines() if " stages run, " in s)
+        words = line.split()
+        return int(words[0]), int(words[3])
+
+    def test_1_records_whose_it_is(self):
+        self.assertEqual(self.run_smoke(), (2, 0))
+        with open(RESULTS + "/results.json") as f:
+            context = json.load(f)["context"]
+        head = run(*GIT, "rev-parse", "HEAD").strip()
+        self.assertEqual(context["program"], "pendulum")
+        self.assertEqual(context["git_revision"], head)
+        self.assertFalse(context["git_dirty"])
+        self.assertIn("pendulum, built on", pendulum("--version"))
+        self.assertIn("pendulum list", pendulum("--help"))
+
+    def test_2_an_edit_makes_its_stages_stale(self):
+        self.assertEqual(self.run_smoke(), (0, 2))
+        for name, stale in (("momentum.cpp", 1), ("momentum.h", 1),
+                            ("pendulum.cpp", 2), ("pendulum.h", 2),
+                            ("experiment.cpp", 0)):
+            edit(name)
+            build("pendulum")
+            self.assertEqual(self.run_smoke(), (stale, 2 - stale), name)
+        with open(RESULTS + "/results.json") as f:
+            self.assertTrue(json.load(f)["context"]["git_dirty"])
+
+    def test_3_what_would_go_unseen_is_refused(self):
+        edit("drift.cpp", "double drift() { return 1; }\n")
+        lists = PROJECT + "/CMakeLists.txt"
+        with open(lists) as f:
+            before = f.read()
+        for name, why in (("drift.cpp", "no stage's numbers come from it"),
+                          ("optimizers/bfgs.cpp", "the suite has a source")):
+            os.makedirs(os.path.dirname(f"{PROJECT}/{name}"), exist_ok=True)
+            edit(name, "")
+            with open(lists, "w") as f:
+                f.write(before.replace("pendulum.cpp", "pendulum.cpp " + name))
+            if name == "drift.cpp":
+                build("pendulum")
+                self.assertIn(why, pendulum("--profile=smoke", status=2))
+            else:
+                self.assertIn(why, build("pendulum", status=1))
+        with open(lists, "w") as f:
+            f.write(before)
+        build("pendulum")
+
+    def test_4_report_verify_gate(self):
+        quick, baseline = WORK + "/quick", WORK + "/baseline.txt"
+        pendulum("--profile=quick", "--out=" + quick)
+        self.assertIn("1 hold", pendulum("report", quick, "--check"))
+        self.assertTrue(os.path.exists(quick + "/report/index.html"))
+        self.assertIn("0 mismatches", pendulum("verify", quick))
+        traced = WORK + "/traced"
+        pendulum("--profile=smoke", "--trace", "--out=" + traced)
+        with open(baseline, "w") as f:
+            f.write(pendulum("baseline", traced))
+        self.assertIn("0 worse",
+                      pendulum("gate", "--baseline=" + baseline))
+
+    def test_5_the_stock_program_says_what_it_cannot(self):
+        bench = PREFIX + "/bin/physinv-bench"
+        self.run_smoke()
+        self.assertIn("does not know pendulum",
+                      run(bench, "verify", RESULTS, status=10))
+        self.assertIn("does not know pendulum",
+                      run(bench, "report", RESULTS, status=3))
+
+    def test_6_a_plug_in_does_the_same(self):
+        bench, plugin = PREFIX + "/bin/physinv-bench", TREE + "/pendulum_plugin.so"
+        build("pendulum_plugin")
+        out = WORK + "/plugged"
+        flags = ("--profile=smoke", "--filter=^pendulum/", "--out=" + out)
+        run(bench, *flags, "--plugin=" + plugin)
+        with open(out + "/results.json") as f:
+            theirs = json.load(f)
+        self.assertEqual(theirs["context"]["plugins"][0]["name"],
+                         "pendulum_plugin")
+        pendulum("--profile=smoke", "--out=" + RESULTS)
+        with open(RESULTS + "/results.json") as f:
+            ours = json.load(f)
+
+        def numbers(results):
+            return [(e["name"], e["loss_mean"], e["physinv"]["key"])
+                    for e in results["benchmarks"]]
+        self.assertEqual(numbers(theirs), numbers(ours))
+        self.assertIn("8 bitwise equal",
+                      run(bench, "verify", out, "--plugin=" + plugin))
+        run(bench, "report", out, "--plugin", plugin)
+        os.environ["PHYSINV_PLUGINS"] = plugin
+        try:
+            self.assertIn("pendulum/momentum",
+                          run(bench, "list", "--profile=smoke"))
+        finally:
+            del os.environ["PHYSINV_PLUGINS"]
+
+    def test_7_what_is_no_plug_in_is_refused(self):
+        bench, plugin = PREFIX + "/bin/physinv-bench", TREE + "/pendulum_plugin.so"
+
+        def refused(file, why):
+            out = run(bench, "list", "--profile=smoke", "--plugin=" + file,
+                      status=2)
+            self.assertEqual(out.count("\n"), 1)
+            self.assertIn(why, out)
+        refused(WORK + "/none.so", "there is no plug-in")
+        refused(PREFIX + "/lib/libphysinv_core.a", "is no plug-in")
+        refused("", "--plugin needs a file")
+        with open(plugin, "rb") as f:
+            code = f.read()
+        mark = b"physinv plug-in of build "
+        at = code.index(mark) + len(mark)
+        with open(WORK + "/older.so", "wb") as f:
+            f.write(code[:at] + b"0" * 16 + code[at + 16:])
+        refused(WORK + "/older.so", "was built on build 0000000000000000")
+        shutil.copy(plugin, WORK + "/twice.so")
+        os.environ["PHYSINV_PLUGINS"] = plugin
+        try:
+            refused(WORK + "/twice.so", "there are two plug-ins")
+        finally:
+            del os.environ["PHYSINV_PLUGINS"]
+
+    def test_8_keeps_the_contracts(self):
+        build("pendulum_contract_test")
+        out = run(TREE + "/pendulum_contract_test")
+        self.assertIn("[  PASSED  ]", out)
+        self.assertIn("ProblemContract", out)
+        self.assertIn("pendulum_momentum", out)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=2, failfast=True)
