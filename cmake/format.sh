@@ -5,6 +5,6 @@ here=$(readlink -f "${BASH_SOURCE[0]}")
 cd "${here%/*}/.."
 action=(--dry-run --Werror --ferror-limit=1)
 [[ ${1:-} != --fix ]] || action=(-i)
-find suite problems optimizers baselines reports tests examples \
+find suite problems optimizers baselines reports tests python examples \
   \( -name '*.h' -o -name '*.cpp' \) -print0 |
   xargs -0 -P "$(nproc)" -n 8 clang-format-14 "${action[@]}" || exit 1

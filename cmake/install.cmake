@@ -82,3 +82,12 @@ foreach(component programs development)
   install(FILES ${PROJECT_SOURCE_DIR}/reports/expected_failures.json
     DESTINATION ${CMAKE_INSTALL_DATADIR}/physinv COMPONENT ${component})
 endforeach()
+
+# Component `python`, where it is built.
+if(TARGET physinv_python)
+  set(package ${CMAKE_INSTALL_LIBDIR}/physinv/python/physinv)
+  install(TARGETS physinv_python
+    LIBRARY DESTINATION ${package} COMPONENT python OPTIONAL)
+  install(DIRECTORY python/physinv/ DESTINATION ${package} COMPONENT python
+    FILES_MATCHING PATTERN *.py PATTERN *.pyi PATTERN py.typed)
+endif()

@@ -50,6 +50,9 @@ const std::map<std::string, Layer> kLayers{
        "suite/harness"},
       {"eigen", "json"}}},
     {"reports", {{"suite/results"}, {"json"}}},
+    {"python",
+     {{"suite/core", "suite/results", "suite/harness", "suite/app"},
+      {"eigen", "pybind11"}}},
     {"suite/app",
      {{"suite/core",
        "suite/nn",
@@ -103,6 +106,7 @@ std::string library_of(const std::string& header) {
       {"re2/", "re2"},
       {"zlib.h", "zlib"},
       {"benchmark/", "benchmark"},
+      {"pybind11/", "pybind11"},
       {"gnu/", ""},  // the system's, as the pattern below
       {"linux/", ""},
   };
@@ -152,7 +156,7 @@ TEST(Layering, EveryIncludeFollowsTheLayers) {
   const fs::path root = PHYSINV_SOURCE_DIR;
   int files = 0;
   for (const char* top :
-       {"suite", "problems", "optimizers", "baselines", "reports"}) {
+       {"suite", "problems", "optimizers", "baselines", "reports", "python"}) {
     for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
       const auto extension = entry.path().extension();
       if (extension != ".h" && extension != ".cpp") continue;

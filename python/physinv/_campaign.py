@@ -1,0 +1,116 @@
+"""Campaigns: run by the program physinv-bench, read by the suite's own code."""
+
+import os
+import pathlib
+import shutil
+import subprocess
+
+from physinv import _core, _methods
+
+
+class ProgramError(RuntimeError):
+    """The program ended with another status than 0; `status` is its exit code,
+    the message its last words."""
+
+    def __init__(self, status, words):
+        super().__init__(words)
+        self.status = status
+
+
+def program():
+    """Where physinv-bench is: what PHYSINV_BENCH names, else the one of this
+    build or installation, else the one in PATH."""
+    named = os.environ.get("PHYSINV_BENCH")
+    if named:
+        return named
+    for folder in pathlib.Path(_core.__file__).absolute().parents:
+        for path in (folder / "physinv-bench", folder / "bin/physinv-bench"):
+            if path.is_file():
+                return str(path)
+    found = shutil.which("physinv-bench")
+    if found is None:
+        raise FileNotFoundError(
+            "there is no program physinv-bench; PHYSINV_BENCH names it")
+    return found
+
+
+def _words(arguments, flags):
+    words = [str(one) for one in arguments]
+    for key, value in flags.items():
+        flag = "--" + key.replace("_", "-")
+        for one in value if isinstance(value, (list, tuple)) else [value]:
+            if one is not False:
+                words.append(flag if one is True else f"{flag}={one}")
+    return words
+
+
+def verb(name, *arguments, **flags):
+    """Calls a verb of physinv-bench and returns what it prints; flags as
+    keywords: verb("compare", "a", "b"), verb("list", profile="smoke")."""
+    command = [program(), name, *_words(arguments, flags)]
+    done = subprocess.run(command, capture_output=True, text=True)
+    if done.returncode != 0:
+        lines = done.stderr.strip().splitlines() or [f"{name} failed"]
+        raise ProgramError(done.returncode, lines[-1])
+    return done.stdout
+
+
+def run(profile="quick", out=None, **flags):
+    """Runs a profile (flags of `run`, such as filter="jpo/billiards", jobs=2)
+    and opens its results. With methods in Python, in workers of this
+    process."""
+    out = out or f"results/{profile}"
+    flags = dict(profile=profile, out=out, **flags)
+    if _methods.registered():
+        status, words = _core.run(_words([], flags))
+        if status != 0:
+            raise ProgramError(status, words)
+    else:
+        verb("run", **flags)
+    return open(out)
+
+
+def open(directory):
+    """Results of a campaign, which may be under way."""
+    return Results(str(directory))
+
+
+class Results:
+    """A campaign's results."""
+
+    def __init__(self, directory):
+        self.directory = directory
+        self._results = _core.load_results(directory)
+
+    def stages(self):
+        """A dict for every finished stage: case, experiment, method, n, seed,
+        stage, stop, iterations, seconds (None where it came to no result)."""
+        return self._results._stages()
+
+    def examples(self, case, stage=""):
+        """Of a stage (default: the case's last): loss, status, iterations and
+        evaluations per example, x (samples, unknowns), the problem's data and
+        the method's own arrays."""
+        return self._results._examples(case, stage)
+
+    def curve(self, case, stage=""):
+        """Along a stage: iteration, seconds, evaluations per point; loss
+        (points, examples); x (points, unknowns of the first examples)."""
+        return self._results._curve(case, stage)
+
+    def plot(self, figure):
+        """A figure of the report as SVG text, by its id ("fig4"); the report is
+        made if it is not there."""
+        return _figure(self.directory, figure)
+
+
+def _figure(directory, name):
+    report = pathlib.Path(directory) / "report"
+    if not report.is_dir():
+        verb("report", directory)
+    found = sorted(report.rglob(f"{name}.svg"))
+    if not found:
+        known = sorted({path.stem for path in report.rglob("*.svg")})
+        raise ValueError(f"there is no figure '{name}'; known are "
+                         f"{', '.join(known)}")
+    return found[0].read_text()

@@ -1,0 +1,105 @@
+#!/usr/bin/env python3
+"""campaign_test.py WORK: a campaign run and read from Python, and SciPy's BFGS
+beside ours on 128 problems of billiards."""
+
+import json
+import os
+import shutil
+import sys
+import unittest
+
+try:
+    import numpy as np
+except ImportError:
+    print("skipped: numpy is missing")
+    sys.exit(77)
+try:
+    from scipy.optimize import minimize
+except ImportError:
+    minimize = None
+
+import physinv
+
+WORK = sys.argv[1]
+BFGS = "jpo/billiards/bfgs/n=128/seed=0"
+GTOL = 1e-5  # of the experiment
+
+
+class Campaign(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        shutil.rmtree(WORK, ignore_errors=True)
+        os.makedirs(WORK)
+        cls.results = physinv.run("smoke", filter=f"^{BFGS}$", jobs=1,
+                                  out=WORK + "/smoke")
+
+    def test_stages_are_those_of_results_json(self):
+        rows = self.results.stages()
+        with open(WORK + "/smoke/results.json") as f:
+            entries = json.load(f)["benchmarks"]
+        self.assertEqual([f"{r['case']}/{r['stage']}" for r in rows],
+                         [e["name"] for e in entries])
+        self.assertEqual(rows[0]["n"], 128)
+        self.assertEqual(rows[0]["stop"], "converged")
+        self.assertGreater(rows[0]["seconds"], 0)
+
+    def test_examples_and_curves(self):
+        e = self.results.examples(BFGS)
+        p = physinv.problem("jpo/billiards")
+        s = p.sample(seed=0, n=128)
+        for mine, its in zip(s, (e["problem"][k] for k in ("x", "y", "given"))):
+            self.assertTrue(np.array_equal(mine, its))
+        again = p.loss(p.forward(e["x"], s.given), s.y)
+        self.assertTrue(np.array_equal(again, e["loss"]))
+        c = self.results.curve(BFGS)
+        self.assertEqual(c["loss"].shape, (len(c["iteration"]), 128))
+        self.assertTrue(np.array_equal(c["loss"][-1], e["loss"]))
+
+    def test_what_is_not_there_is_said(self):
+        with self.assertRaisesRegex(ValueError, "there is no case"):
+            self.results.curve("jpo/billiards/bfgs")
+        with self.assertRaisesRegex(ValueError, "no finished stage 'fit'"):
+            self.results.examples(BFGS, "fit")
+        with self.assertRaisesRegex(physinv.ProgramError, "nearest are") as e:
+            physinv.run("smoke", filter="biliards", out=WORK + "/none")
+        self.assertEqual(e.exception.status, 3)
+        with self.assertRaisesRegex(RuntimeError, "none"):
+            physinv.open(WORK + "/nowhere/none")
+
+    def test_figures(self):
+        with self.assertRaisesRegex(ValueError, "known are "):
+            self.results.plot("no-such")
+        with self.assertRaisesRegex(ValueError, "known are ") as e:
+            self.results.plot("no-such")
+        name = str(e.exception).split("known are ")[1].split(",")[0]
+        self.assertIn("<svg", self.results.plot(name))
+
+    @unittest.skipIf(minimize is None, "scipy is missing")
+    def test_scipy_does_as_ours(self):
+        ours = self.results.examples(BFGS)
+        p = physinv.problem("jpo/billiards")
+        s = p.sample(seed=0, n=128)
+        same, worst, counts = 0, 0.0, 0
+        for i in range(128):
+            target, given = s.y[i:i + 1], s.given[i:i + 1]
+
+            def loss(x):
+                y, tape = p.linearize(x[None], given)
+                return (p.loss(y, target)[0],
+                        tape.pullback(p.loss_gradient(y, target))[0])
+
+            r = minimize(loss, p.start, jac=True, method="BFGS",
+                         options={"gtol": GTOL, "maxiter": 1000})
+            counts += (r.nit == ours["iterations"][i] and
+                       r.nfev == ours["evaluations"][i])
+            same += r.fun == ours["loss"][i]
+            worst = max(worst, abs(r.fun - ours["loss"][i]))
+        print(f"counts equal in {counts}, losses bit-identical in {same}, "
+              f"largest difference {worst:.1e}")
+        self.assertEqual(counts, 128)
+        self.assertGreater(same, 64)
+        self.assertLess(worst, 1e-18)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=2)

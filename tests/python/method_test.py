@@ -1,0 +1,151 @@
+#!/usr/bin/env python3
+"""method_test.py WORK: methods written in Python, as cases of a campaign:
+recorded, reused, verified, reported; what fails, fails alone."""
+
+import importlib.util
+import os
+import shutil
+import subprocess
+import sys
+import unittest
+
+try:
+    import numpy as np
+except ImportError:
+    print("skipped: numpy is missing")
+    sys.exit(77)
+
+import physinv
+
+WORK = sys.argv[1]
+FILTER = "^jpo/robotic-arm/(bfgs|py-.*)/"
+METHODS = '''
+import physinv
+
+@physinv.method("py-momentum", experiments="jpo/robotic-*", iterations=RATE)
+def momentum(run):
+    assert not hasattr(run, "x") and run.observations.shape == (run.n, 2)
+    x, v, rounds = run.start, 0, 0
+    while run.proceed(x):
+        loss, gradient = run.loss_and_gradient(x)
+        v = 0.9 * v - 0.05 * gradient
+        x = x + v
+    return x
+
+@physinv.method("py-fails", experiments="jpo/robotic-*")
+def fails(run):
+    raise ArithmeticError("not today")
+
+@physinv.method("py-silent", experiments="jpo/robotic-*")
+def silent(run):
+    return run.start
+
+@physinv.method("py-single", experiments="jpo/robotic-*", iterations=3)
+def single(run):
+    x = run.start
+    for i in range(run.n):
+        for k in range(run.iterations + 1):
+            loss, gradient = run.loss_and_gradient(x[i:i + 1], [i])
+            run.accept(i, k, x[i], loss[0])
+            if k < run.iterations:
+                x[i] -= 0.1 * gradient[0]
+    return x, {"status": ["gtol"] * run.n, "iterations": [3] * run.n}
+'''
+
+
+def define(text):
+    """The methods of a file of its own."""
+    path = WORK + "/methods.py"
+    with open(path, "w") as f:
+        f.write(text)
+    spec = importlib.util.spec_from_file_location("methods", path)
+    spec.loader.exec_module(importlib.util.module_from_spec(spec))
+
+
+def run(**flags):
+    with_failure = None
+    try:
+        results = physinv.run("smoke", filter=FILTER, out=WORK + "/smoke",
+                              jobs=2, **flags)
+    except physinv.ProgramError as error:
+        with_failure = error
+        results = physinv.open(WORK + "/smoke")
+    return {r["method"]: r for r in results.stages()}, results, with_failure
+
+
+class Methods(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        shutil.rmtree(WORK, ignore_errors=True)
+        os.makedirs(WORK)
+        define(METHODS.replace("RATE", "60"))
+        cls.rows, cls.results, cls.error = run()
+
+    def test_cases_like_any_other(self):
+        row = self.rows["py-momentum"]
+        self.assertEqual(row["case"], "jpo/robotic-arm/py-momentum/n=4/seed=0")
+        self.assertEqual((row["stop"], row["iterations"]), ("iterations", 60))
+        c = self.results.curve(row["case"])
+        self.assertEqual(c["iteration"][0], 0)
+        self.assertEqual(c["iteration"][-1], 60)
+        self.assertLess(c["loss"][-1].sum(), 0.1 * c["loss"][0].sum())
+        # The same again by hand.
+        p = physinv.problem("jpo/robotic-arm")
+        s = p.sample(seed=0, n=4)
+        x, v = np.repeat(p.start[None], 4, 0), 0
+        for _ in range(60):
+            y, tape = p.linearize(x)
+            v = 0.9 * v - 0.05 * tape.pullback(p.loss_gradient(y, s.y))
+            x = x + v
+        self.assertTrue(np.array_equal(
+            self.results.examples(row["case"])["x"], x))
+
+    def test_examples_may_go_one_by_one(self):
+        row = self.rows["py-single"]
+        self.assertEqual((row["stop"], row["iterations"]), ("converged", 3))
+        e = self.results.examples(row["case"])
+        self.assertEqual(e["status"], ["gtol"] * 4)
+        self.assertEqual(list(e["iterations"]), [3] * 4)
+        c = self.results.curve(row["case"])
+        self.assertTrue(np.array_equal(c["loss"][-1], e["loss"]))
+
+    def test_what_fails_fails_alone(self):
+        self.assertEqual(self.error.status, 4)
+        self.assertEqual(self.rows["py-fails"]["stop"], "failed")
+        self.assertEqual(self.rows["py-fails"]["message"],
+                         "ArithmeticError: not today")
+        self.assertIsNone(self.rows["py-fails"]["seconds"])
+        self.assertIn("neither run.proceed", self.rows["py-silent"]["message"])
+        self.assertEqual(self.rows["bfgs"]["stop"], "converged")
+
+    def test_the_program_verifies_and_reports_them(self):
+        program = physinv.program()
+        done = subprocess.run([program, "verify", WORK + "/smoke"],
+                              capture_output=True, text=True)
+        self.assertIn(" 0 mismatches", done.stdout + done.stderr)
+        subprocess.run([program, "report", WORK + "/smoke"],
+                       capture_output=True)
+        with open(WORK + "/smoke/report/report.md") as f:
+            self.assertIn("py-momentum", f.read())
+
+    def test_zz_an_edit_makes_it_stale(self):
+        before = {m: r["key"] for m, r in self.rows.items()}
+        again, _, _ = run()
+        self.assertEqual({m: r["key"] for m, r in again.items()}, before)
+        define(METHODS.replace("RATE", "60") + "# edited\n")
+        edited, _, _ = run()
+        for method, row in edited.items():
+            same = row["key"] == before[method]
+            self.assertEqual(same, method == "bfgs", method)
+
+    def test_errors_have_words(self):
+        with self.assertRaisesRegex(ValueError, "has a method bfgs"):
+            physinv.method("bfgs", experiments="jpo/*")(lambda run: run.start)
+        with self.assertRaisesRegex(ValueError, "no experiment that matches"):
+            physinv.method("py-x", experiments="none/*")(lambda run: run.start)
+        with self.assertRaisesRegex(ValueError, "no ability 'gradients'"):
+            physinv.method("py-x", needs="gradients")(lambda run: run.start)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=2)
