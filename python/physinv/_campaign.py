@@ -98,6 +98,26 @@ class Results:
         (points, examples); x (points, unknowns of the first examples)."""
         return self._results._curve(case, stage)
 
+    def tidy(self):
+        """A row for every example of every stage, as columns (a dict of lists)
+        that pandas.DataFrame takes: case, experiment, method, n, seed, stage,
+        example, loss, status, iterations, evaluations. Stages that came to no
+        result have none."""
+        keys = ("case", "experiment", "method", "n", "seed", "stage")
+        own = ("loss", "status", "iterations", "evaluations")
+        columns = {key: [] for key in (*keys, "example", *own)}
+        for stage in self.stages():
+            if stage["stop"] in ("failed", "skipped"):
+                continue
+            e = self.examples(stage["case"], stage["stage"])
+            count = len(e["loss"])
+            for key in keys:
+                columns[key] += [stage[key]] * count
+            columns["example"] += range(count)
+            for key in own:
+                columns[key] += list(e[key])
+        return columns
+
     def plot(self, figure):
         """A figure of the report as SVG text, by its id ("fig4"); the report is
         made if it is not there."""

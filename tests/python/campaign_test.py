@@ -55,6 +55,15 @@ class Campaign(unittest.TestCase):
         self.assertEqual(c["loss"].shape, (len(c["iteration"]), 128))
         self.assertTrue(np.array_equal(c["loss"][-1], e["loss"]))
 
+    def test_tidy_columns(self):
+        columns = self.results.tidy()
+        e = self.results.examples(BFGS)
+        self.assertEqual({len(c) for c in columns.values()}, {128})
+        self.assertEqual(columns["example"], list(range(128)))
+        self.assertEqual(columns["loss"], list(e["loss"]))
+        self.assertEqual(columns["status"], e["status"])
+        self.assertEqual(set(columns["case"]), {BFGS})
+
     def test_what_is_not_there_is_said(self):
         with self.assertRaisesRegex(ValueError, "there is no case"):
             self.results.curve("jpo/billiards/bfgs")
