@@ -97,7 +97,8 @@ void load_plugins(Arguments& arguments) {
   std::vector<std::string> files;
   std::istringstream named(variable("PHYSINV_PLUGINS"));
   for (std::string file; std::getline(named, file, ':');)
-    if (!file.empty()) files.push_back(file);
+    if (!file.empty())
+      files.push_back(std::filesystem::absolute(file).string());
   for (auto& file : named_by_flags(arguments))
     if (std::find(files.begin(), files.end(), file) == files.end())
       files.push_back(std::move(file));

@@ -20,7 +20,8 @@ GIT = ["git", "-C", PROJECT, "-c", "user.name=a", "-c", "user.email=a@b.c"]
 
 def run(*command, status=0):
     done = subprocess.run(
-        command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+        cwd=WORK)
     if done.returncode != status:
         raise AssertionError(f"{command}: {done.returncode}\n{done.stdout}")
     return done.stdout
@@ -112,8 +113,7 @@ class Pendulum(unittest.TestCase):
         self.assertIn("0 mismatches", pendulum("verify", quick))
         traced = WORK + "/traced"
         pendulum("--profile=smoke", "--trace", "--out=" + traced)
-        with open(baseline, "w") as f:
-            f.write(pendulum("baseline", traced))
+        pendulum("baseline", traced, "--out=" + baseline)
         self.assertIn("0 worse",
                       pendulum("gate", "--baseline=" + baseline))
 
