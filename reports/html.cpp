@@ -13,11 +13,7 @@
 #include "reports/svg.h"
 
 namespace physinv {
-namespace {
 
-using Json = nlohmann::ordered_json;
-
-/// Class of a verdict in the page's style sheet.
 std::string_view css_of(Verdict verdict) {
   switch (verdict) {
     case Verdict::reproduced:
@@ -35,6 +31,16 @@ std::string_view css_of(Verdict verdict) {
   }
   return "open";
 }
+
+std::string name_of(std::string_view source, std::string_view title) {
+  if (source.empty()) return std::string(title);
+  return title.empty() ? std::string(source)
+                       : fmt::format("{} · {}", source, title);
+}
+
+namespace {
+
+using Json = nlohmann::ordered_json;
 
 /// Ids of everything that can be linked to, in the order of a section.
 struct Anchors {
@@ -75,12 +81,6 @@ std::vector<Anchors> anchors_of(const std::vector<Section>& sections) {
     all.push_back(std::move(a));
   }
   return all;
-}
-
-std::string name_of(std::string_view source, std::string_view title) {
-  if (source.empty()) return std::string(title);
-  return title.empty() ? std::string(source)
-                       : fmt::format("{} · {}", source, title);
 }
 
 std::string link(const std::string& id, const std::string& words) {
@@ -247,7 +247,26 @@ std::string claims_html(const Section& section,
          rows + "</tbody>\n</table>\n</div>\n";
 }
 
-std::string section_html(const Section& section, const Anchors& anchors) {
+/// Links to the files of a table or figure.
+std::string data_html(const char* folder,
+                      const std::string& id,
+                      std::initializer_list<const char*> kinds) {
+  std::string out;
+  for (const std::string kind : kinds)
+    out += fmt::format("{}<a href=\"{}/{}.{}\">{}</a>",
+                       out.empty() ? "" : " · ",
+                       folder,
+                       html(id),
+                       kind,
+                       kind);
+  return "<p class=\"remark data\">" + out + "</p>\n";
+}
+
+/// With `files`, links to the data beside the page.
+std::string section_html(const Section& section,
+                         const Anchors& anchors,
+                         const Palette& palette,
+                         bool files) {
   std::string out = fmt::format(
       "<section id=\"{0}\" aria-labelledby=\"{0}-title\">\n"
       "<h2 id=\"{0}-title\"><a class=\"self\" href=\"#{0}\">{1}</a></h2>\n"
@@ -262,10 +281,14 @@ std::string section_html(const Section& section, const Anchors& anchors) {
   if (!section.tables.empty()) out += "<h3>Tables</h3>\n";
   for (std::size_t k = 0; k < section.tables.size(); ++k) {
     out += table_html(section.tables[k], anchors.tables[k]);
+    if (files)
+      out += data_html("tables", section.tables[k].id, {"csv", "json", "md"});
   }
   if (!section.figures.empty()) out += "<h3>Figures</h3>\n";
   for (std::size_t k = 0; k < section.figures.size(); ++k) {
-    out += figure_html(section.figures[k], anchors.figures[k]);
+    out += figure_html(section.figures[k], anchors.figures[k], palette);
+    if (files)
+      out += data_html("figures", section.figures[k].id, {"svg", "json"});
   }
   return out + "</section>\n";
 }
@@ -280,46 +303,6 @@ std::string plain(const Json& value) {
 std::string words_of(std::string key) {
   std::replace(key.begin(), key.end(), '_', ' ');
   return key;
-}
-
-std::string provenance_html(const Json& provenance) {
-  std::string out = "<footer id=\"provenance\">\n<h2>Provenance</h2>\n<dl>\n",
-              more;
-  if (provenance.is_object()) {
-    for (const auto& [key, value] : provenance.items()) {
-      if (value.is_null()) continue;
-      if (value.is_structured()) {
-        more += fmt::format(
-            "<details>\n<summary>{}</summary>\n<pre>{}</pre>\n</details>\n",
-            html(words_of(key)),
-            html(plain(value)));
-        continue;
-      }
-      out += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n",
-                         html(words_of(key)),
-                         html(plain(value)));
-    }
-  }
-  return out + "</dl>\n" + more + "</footer>\n";
-}
-
-// Profile, date and processor, as far as they are known.
-std::string summary_html(const Json& provenance) {
-  std::string out;
-  if (!provenance.is_object()) return out;
-  for (const auto& [key, before] :
-       {std::pair{"profile", "profile "}, {"date", ""}, {"cpu_model", ""}}) {
-    if (!provenance.contains(key)) continue;
-    if (!out.empty()) out += " · ";
-    std::string words = plain(provenance[key]);
-    if (std::string_view(key) == "date") words = words.substr(0, 10);
-    out += before + html(words);
-  }
-  out = "<p class=\"remark\">" + out + "</p>\n";
-  if (provenance.contains("papers"))
-    for (const Json& paper : provenance["papers"])
-      out += "<p class=\"remark\">" + html(plain(paper)) + "</p>\n";
-  return out;
 }
 
 }  // namespace
@@ -355,9 +338,46 @@ std::string heading_of(const nlohmann::ordered_json& provenance) {
 
 }  // namespace
 
-std::string report_html(const std::vector<Section>& sections,
-                        const nlohmann::ordered_json& provenance) {
-  const auto anchors = anchors_of(sections);
+std::string provenance_html(const Json& provenance) {
+  std::string out = "<footer id=\"provenance\">\n<h2>Provenance</h2>\n<dl>\n",
+              more;
+  if (provenance.is_object()) {
+    for (const auto& [key, value] : provenance.items()) {
+      if (value.is_null()) continue;
+      if (value.is_structured()) {
+        more += fmt::format(
+            "<details>\n<summary>{}</summary>\n<pre>{}</pre>\n</details>\n",
+            html(words_of(key)),
+            html(plain(value)));
+        continue;
+      }
+      out += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n",
+                         html(words_of(key)),
+                         html(plain(value)));
+    }
+  }
+  return out + "</dl>\n" + more + "</footer>\n";
+}
+
+std::string summary_html(const Json& provenance) {
+  std::string out;
+  if (!provenance.is_object()) return out;
+  for (const auto& [key, before] :
+       {std::pair{"profile", "profile "}, {"date", ""}, {"cpu_model", ""}}) {
+    if (!provenance.contains(key)) continue;
+    if (!out.empty()) out += " · ";
+    std::string words = plain(provenance[key]);
+    if (std::string_view(key) == "date") words = words.substr(0, 10);
+    out += before + html(words);
+  }
+  out = "<p class=\"remark\">" + out + "</p>\n";
+  if (provenance.contains("papers"))
+    for (const Json& paper : provenance["papers"])
+      out += "<p class=\"remark\">" + html(plain(paper)) + "</p>\n";
+  return out;
+}
+
+std::string page_html(const PageParts& parts) {
   std::string out =
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n"
       "<meta charset=\"utf-8\"/>\n"
@@ -366,21 +386,44 @@ std::string report_html(const std::vector<Section>& sections,
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src "
       "'none'; img-src data:; style-src 'unsafe-inline'; script-src "
       "'unsafe-inline'\"/>\n"
-      "<title>Physics inverse problems: report</title>\n<style>\n";
+      "<title>" +
+      html(parts.title) + "</title>\n<style>\n";
   out += page_style_sheet();
   out += kPageCss;
   out +=
       "</style>\n</head>\n<body>\n<div class=\"page\">\n"
-      "<header id=\"top\">\n<h1>" +
-      html(heading_of(provenance)) + "</h1>\n";
-  out += summary_html(provenance) + overview_html(sections, anchors) +
-         "</header>\n" + contents_html(sections, anchors) + "<main>\n";
-  for (std::size_t k = 0; k < sections.size(); ++k) {
-    out += section_html(sections[k], anchors[k]);
-  }
-  out += "</main>\n" + provenance_html(provenance) + "</div>\n<script>\n";
+      "<header id=\"top\">\n";
+  out += parts.header + "</header>\n" + parts.contents + "<main>\n" +
+         parts.main + "</main>\n" + parts.footer + "</div>\n<script>\n";
   out += kPageJs;
   return out + "</script>\n</body>\n</html>\n";
+}
+
+std::string report_html(const std::vector<Section>& sections,
+                        const nlohmann::ordered_json& provenance) {
+  const auto anchors = anchors_of(sections);
+  const Palette palette(sections);
+  PageParts parts{.title = "Physics inverse problems: report"};
+  parts.header = "<h1>" + html(heading_of(provenance)) + "</h1>\n" +
+                 summary_html(provenance) + overview_html(sections, anchors);
+  parts.contents = contents_html(sections, anchors);
+  for (std::size_t k = 0; k < sections.size(); ++k)
+    parts.main += section_html(sections[k], anchors[k], palette, false);
+  parts.footer = provenance_html(provenance);
+  return page_html(parts);
+}
+
+std::string section_page_html(const Section& section,
+                              const nlohmann::ordered_json& provenance,
+                              const Palette& palette) {
+  const auto anchors = anchors_of({section});
+  PageParts parts{.title = section.title + ": physics inverse problems"};
+  parts.header = "<p><a href=\"../index.html\">← All experiments</a></p>\n" +
+                 summary_html(provenance);
+  parts.contents = contents_html({section}, anchors);
+  parts.main = section_html(section, anchors[0], palette, true);
+  parts.footer = provenance_html(provenance);
+  return page_html(parts);
 }
 
 }  // namespace physinv

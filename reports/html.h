@@ -1,5 +1,5 @@
-/// The whole report as one HTML page that needs nothing but itself: style,
-/// script and figures are inside, and its policy forbids it to fetch anything.
+/// The report as HTML pages that need nothing but themselves: style, script and
+/// figures are inside, and their policy forbids them to fetch anything.
 /// Everything can be read without the script, which adds read-outs of points,
 /// switching series by the legend, and the choice of light or dark.
 #pragma once
@@ -8,14 +8,23 @@
 #include <string>
 #include <vector>
 
+#include "reports/report.h"
 #include "suite/results/report_model.h"
 
 namespace physinv {
 
-/// Same sections and provenance, same bytes. Ids of claims, tables and
-/// figures are <experiment>-<id> with '-' for what is no letter or digit;
-/// a number follows where that would repeat.
+/// All of it as one page. Same sections and provenance, same bytes. Ids of
+/// claims, tables and figures are <experiment>-<id> with '-' for what is no
+/// letter or digit; a number follows where that would repeat.
 std::string report_html(const std::vector<Section>& sections,
                         const nlohmann::ordered_json& provenance);
+
+/// What leads to the pages of experiments, <folder>/index.html: of each paper
+/// its experiments with the numbers that stand beside the paper's, statements
+/// that do not hold as sentences, and how many are not judged.
+std::string index_html(const std::vector<Section>& sections,
+                       const std::vector<std::string>& folders,
+                       const std::vector<Group>& groups,
+                       const nlohmann::ordered_json& provenance);
 
 }  // namespace physinv

@@ -64,8 +64,10 @@ std::string panel_html(const Panel& panel,
 
 }  // namespace
 
-std::string figure_html(const Figure& figure, const std::string& id) {
-  Palette palette = palette_of(figure);
+std::string figure_html(const Figure& figure,
+                        const std::string& id,
+                        const Palette& report) {
+  Palette palette = palette_of(figure, report);
   const auto legend = legend_of(figure);
   std::string out = fmt::format(
       "<figure id=\"{}\">\n<figcaption>{}</figcaption>\n{}"

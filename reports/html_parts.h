@@ -1,9 +1,11 @@
 /// Pieces of the HTML report. All text arguments are plain and are escaped.
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 
+#include "reports/palette.h"
 #include "suite/results/report_model.h"
 
 namespace physinv {
@@ -23,8 +25,34 @@ std::string caption_html(const std::string& id,
 /// that is wide and flat is turned.
 std::string table_html(const Table& table, const std::string& id);
 
+/// "Table 4 · Title".
+std::string name_of(std::string_view source, std::string_view title);
+
+/// Class of a verdict in the page's style sheet.
+std::string_view css_of(Verdict verdict);
+
+/// What stands on a page; all of it is HTML.
+struct PageParts {
+  std::string title;  ///< plain, of the window
+  std::string header, contents, main, footer;
+};
+/// A page that needs nothing but itself.
+std::string page_html(const PageParts& parts);
+
+/// Profile, date and processor, as far as they are known.
+std::string summary_html(const nlohmann::ordered_json& provenance);
+/// All that is known of a campaign.
+std::string provenance_html(const nlohmann::ordered_json& provenance);
+/// A page of one experiment: claims, tables and figures, with links to their
+/// data, which stand in the page's folder, and to the index above it.
+std::string section_page_html(const Section& section,
+                              const nlohmann::ordered_json& provenance,
+                              const Palette& palette);
+
 /// Panels as in the SVG file, each a drawing of its own so that they flow on
 /// narrow screens; title, legend and note are HTML.
-std::string figure_html(const Figure& figure, const std::string& id);
+std::string figure_html(const Figure& figure,
+                        const std::string& id,
+                        const Palette& report);
 
 }  // namespace physinv

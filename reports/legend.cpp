@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "reports/panel.h"
 
@@ -40,10 +41,45 @@ int legend_index(const std::vector<const Series*>& legend,
   return at == legend.end() ? -1 : static_cast<int>(at - legend.begin());
 }
 
-Palette palette_of(const Figure& figure) {
-  Palette palette;
-  for (const Panel& p : figure.panels) {
-    for (const Series& s : p.series) palette.of(s);
+DrawnLook drawn_look(const Series& series, Ink ink) {
+  DrawnLook look{.color = ink.color};
+  if (series.markers || !series.line)
+    look.marker = 2 * static_cast<int>(ink.marker) + (series.dashed ? 1 : 0);
+  if (series.line) look.pattern = 2 * ink.dash + (series.dashed ? 1 : 0);
+  return look;
+}
+
+namespace {
+
+/// All inks, the nearest to `ink` first: other dashes and markers of its
+/// colour, then other colours.
+Ink varied(Ink ink, int step) {
+  constexpr int kMarkers = static_cast<int>(Marker::cross) + 1;
+  constexpr int kColors = static_cast<int>(Hue::indigo) + 1;
+  const int dash = step % kDashes, marker = step / kDashes % kMarkers,
+            color = step / kDashes / kMarkers;
+  return {
+      (ink.color + color) % kColors,
+      static_cast<Marker>((static_cast<int>(ink.marker) + marker) % kMarkers),
+      (ink.dash + dash) % kDashes};
+}
+
+constexpr int kVariations = 288;
+
+}  // namespace
+
+Palette palette_of(const Figure& figure, const Palette& report) {
+  Palette palette = report;
+  std::set<DrawnLook> taken;
+  for (const Series* entry : legend_of(figure)) {
+    const Ink usual = palette.of(*entry);
+    Ink ink = usual;
+    for (int step = 1;
+         taken.contains(drawn_look(*entry, ink)) && step < kVariations;
+         ++step)
+      ink = varied(usual, step);
+    taken.insert(drawn_look(*entry, ink));
+    palette.set(*entry, ink);
   }
   return palette;
 }
@@ -51,7 +87,7 @@ Palette palette_of(const Figure& figure) {
 void draw_sample(
     Svg& svg, const Series& series, Ink ink, double left, double middle) {
   if (series.line) {
-    svg.line(fmt::format("l s{}{}", ink.color, series.dashed ? " d" : ""),
+    svg.line(fmt::format("l s{}{}", ink.color, dash_css(ink, series.dashed)),
              left,
              middle,
              left + 28,

@@ -2,6 +2,7 @@
 /// panels.
 #pragma once
 
+#include <compare>
 #include <vector>
 
 #include "reports/palette.h"
@@ -18,9 +19,17 @@ std::vector<const Series*> legend_of(const Figure& figure);
 int legend_index(const std::vector<const Series*>& legend,
                  const Series& series);
 
-/// Numbers the methods in the order of the legend, not of drawing: panels may
-/// show different looks under one name.
-Palette palette_of(const Figure& figure);
+/// What an entry of a legend is told apart by: what of its ink is drawn.
+struct DrawnLook {
+  int color = 0, marker = -1, pattern = -1;  ///< -1: none
+  auto operator<=>(const DrawnLook&) const = default;
+};
+DrawnLook drawn_look(const Series& series, Ink ink);
+
+/// The inks of a figure: those of the report, unless two entries of its legend
+/// would look alike; then the later one gets the next dash, marker or colour
+/// that is free.
+Palette palette_of(const Figure& figure, const Palette& report = {});
 
 /// A sample of the line, 28 units wide, and of the marker.
 void draw_sample(

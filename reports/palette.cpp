@@ -40,6 +40,10 @@ constexpr std::string_view kFurniture =
     ".l{fill:none;stroke-width:1.9;stroke-linejoin:round;"
     "stroke-linecap:round}"
     ".d{stroke-dasharray:6 4;stroke-linecap:butt}"
+    ".d2{stroke-dasharray:.1 4}.d3{stroke-dasharray:.1 8}"
+    ".d4{stroke-dasharray:11 4 .1 4}.d5{stroke-dasharray:11 4 .1 4 .1 4}"
+    ".d6{stroke-dasharray:16 4;stroke-linecap:butt}"
+    ".d7{stroke-dasharray:16 10;stroke-linecap:butt}"
     ".e{fill:none;stroke-width:1.2}.b{stroke:none;opacity:.2}"
     ".m{stroke-width:1.3;stroke-linejoin:round}"
     ".o{stroke-width:1.6;stroke-linejoin:round}"
@@ -87,15 +91,64 @@ std::string page_variables(bool dark) {
 
 }  // namespace
 
-Ink Palette::of(const Series& series) {
-  if (series.look)
-    return {static_cast<int>(series.look->hue), series.look->marker};
-  auto at = std::find(others_.begin(), others_.end(), series.method);
-  if (at == others_.end()) at = others_.emplace(at, series.method);
-  const auto order = static_cast<int>(at - others_.begin());
-  const int free = order % (kColorCount - kFirstFree);
+std::string dash_css(Ink ink, bool dashed) {
+  const int pattern = 2 * ink.dash + (dashed ? 1 : 0);
+  return pattern == 0 ? "" : pattern == 1 ? " d" : fmt::format(" d{}", pattern);
+}
+
+Palette::Palette(const std::vector<Section>& sections) {
+  const auto each = [&](auto&& visit) {
+    for (const Section& section : sections)
+      for (const Figure& figure : section.figures)
+        for (const Panel& panel : figure.panels)
+          for (const Series& series : panel.series) visit(series);
+  };
+  each([&](const Series& s) {
+    if (s.look)
+      methods_.try_emplace(s.method,
+                           Ink{static_cast<int>(s.look->hue), s.look->marker});
+  });
+  each([&](const Series& s) { of(s); });
+}
+
+Palette::Entry Palette::entry_of(const Series& series) {
+  return {series.label, series.method, series.dashed};
+}
+
+Ink Palette::next_free() {
   constexpr int kMarkers = static_cast<int>(Marker::cross);
-  return {kFirstFree + free, static_cast<Marker>(free % kMarkers)};
+  constexpr int kFree = kColorCount - kFirstFree;
+  Ink ink;
+  for (int tries = 0; tries < kFree * kMarkers * kDashes; ++tries) {
+    const int order = others_++, round = order / kFree;
+    ink = {kFirstFree + order % kFree,
+           static_cast<Marker>((order % kFree + round / kDashes) % kMarkers),
+           round % kDashes};
+    if (std::none_of(methods_.begin(), methods_.end(), [&](const auto& known) {
+          return known.second == ink;
+        }))
+      break;
+  }
+  return ink;
+}
+
+Ink Palette::of(const Series& series) {
+  if (const auto at = entries_.find(entry_of(series)); at != entries_.end())
+    return at->second;
+  if (series.label.empty())
+    if (const auto at = unnamed_.find(series.method); at != unnamed_.end())
+      return at->second;
+  if (const auto at = methods_.find(series.method); at != methods_.end())
+    return at->second;
+  const Ink ink =
+      series.look ? Ink{static_cast<int>(series.look->hue), series.look->marker}
+                  : next_free();
+  return methods_[series.method] = ink;
+}
+
+void Palette::set(const Series& entry, Ink ink) {
+  entries_[entry_of(entry)] = ink;
+  unnamed_.try_emplace(entry.method, ink);
 }
 
 std::string style_sheet() {

@@ -4,28 +4,54 @@
 #pragma once
 
 #include <array>
+#include <compare>
+#include <map>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "suite/results/report_model.h"
 
 namespace physinv {
 
-/// How a series is drawn: a number of the style sheet's colours, and a marker.
+/// How a series is drawn: a number of the style sheet's colours, a marker, and
+/// one of kDashes patterns.
 struct Ink {
   int color = 0;
   Marker marker = Marker::circle;
+  int dash = 0;
+  auto operator<=>(const Ink&) const = default;
 };
+inline constexpr int kDashes = 4;
 
-/// The inks of one figure. A series with a look has that; others get the
-/// colours that looks seldom use, one for each method, in order.
+/// Classes of a line: " d" and its like, after a space; empty if it is whole.
+std::string dash_css(Ink ink, bool dashed);
+
+/// The inks of methods. A series with a look has that; others get the colours
+/// that looks seldom use, one for each method, in order; then other dashes and
+/// markers, so that none is given twice.
 class Palette {
  public:
+  Palette() = default;
+  /// Of a whole report: a method looks the same in every figure, as where it
+  /// first has a look.
+  explicit Palette(const std::vector<Section>& sections);
+
   Ink of(const Series& series);
+  /// The entry of a figure's legend, and all series like it, get this ink.
+  void set(const Series& entry, Ink ink);
 
  private:
-  std::vector<std::string> others_;
+  /// What tells entries of a legend apart.
+  using Entry = std::tuple<std::string, std::string, bool>;
+  static Entry entry_of(const Series& series);
+  Ink next_free();
+
+  std::map<std::string, Ink> methods_;
+  std::map<Entry, Ink> entries_;
+  std::map<std::string, Ink> unnamed_;  ///< of the first entry of a method
+  int others_ = 0;
 };
 
 /// The style sheet of a figure: classes s<i> (stroke), f<i> (fill), and the

@@ -227,10 +227,10 @@ void PanelPlot::curves(Svg& svg, const Rect& box) const {
   for (const Series& s : panel_.series) {
     if (!s.line) continue;
     const std::string d = line_path(dodged(box, s), s);
-    const int color = palette_.of(s).color;
+    const Ink ink = palette_.of(s);
     open_series(svg, box, s);
     if (panel_.field) svg.path("halo", d);
-    svg.path(fmt::format("l s{}{}", color, s.dashed ? " d" : ""), d);
+    svg.path(fmt::format("l s{}{}", ink.color, dash_css(ink, s.dashed)), d);
     close_series(svg);
   }
   svg.close();

@@ -76,7 +76,7 @@ std::string describe(const Figure& figure) {
 
 }  // namespace
 
-std::string render_svg(const Figure& figure) {
+std::string render_svg(const Figure& figure, const Palette& report) {
   const Grid grid = grid_of(figure);
   const double inner = grid.columns * grid.cell_w;
   const auto chars = [&](double each) {
@@ -87,7 +87,7 @@ std::string render_svg(const Figure& figure) {
                                : figure.source + " · " + figure.title;
   const auto title = wrap(head, chars(8.2));
   const auto note = wrap(figure.note, chars(5.9));
-  Palette palette = palette_of(figure);
+  Palette palette = palette_of(figure, report);
   std::vector<Key> keys = legend_keys(figure);
   const double legend = lay_out(keys, inner);
 

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "reports/palette.h"
 #include "suite/results/report_model.h"
 
 namespace physinv {
@@ -13,6 +14,7 @@ namespace physinv {
 /// panel without points reads "not run". Few points with `lo`, `hi` and
 /// markers get error bars, all others a band.
 /// Fields are drawn as if their grid were even along the (log) axes.
-std::string render_svg(const Figure& figure);
+/// Methods have the inks of `report`.
+std::string render_svg(const Figure& figure, const Palette& report = {});
 
 }  // namespace physinv

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "reports/html.h"
+#include "reports/html_parts.h"
 #include "reports/plot.h"
 #include "reports/tables.h"
 #include "reports/text.h"
@@ -186,7 +187,9 @@ std::string provenance_markdown(const Json& provenance) {
   return out.empty() ? out : "\n" + out;
 }
 
-void write_section(Writer& writer, const Section& section) {
+void write_section(Writer& writer,
+                   const Section& section,
+                   const Palette& palette) {
   const fs::path folder = folder_of(section);
   for (const Table& t : section.tables) {
     const fs::path base = folder / "tables";
@@ -197,7 +200,7 @@ void write_section(Writer& writer, const Section& section) {
   for (const Figure& f : section.figures) {
     const fs::path base = folder / "figures";
     writer.write(base / (f.id + ".json"), dump(to_json(f), -1));
-    writer.write(base / (f.id + ".svg"), render_svg(f));
+    writer.write(base / (f.id + ".svg"), render_svg(f, palette));
   }
 }
 
@@ -322,11 +325,16 @@ ClaimResult claim_from(const Json& claim) {
 
 std::vector<fs::path> write_report(const fs::path& dir,
                                    const std::vector<Section>& sections,
-                                   const nlohmann::ordered_json& provenance) {
+                                   const nlohmann::ordered_json& provenance,
+                                   const Pages& pages) {
   Writer writer(dir);
+  const Palette palette(sections);
   Json claims{{"provenance", provenance}, {"sections", Json::array()}};
   for (const Section& s : sections) {
-    write_section(writer, s);
+    write_section(writer, s, palette);
+    if (!pages.one_file)
+      writer.write(fs::path(folder_of(s)) / "index.html",
+                   section_page_html(s, provenance, palette));
     Json one{{"experiment", s.experiment},
              {"title", s.title},
              {"paper", s.paper},
@@ -336,7 +344,12 @@ std::vector<fs::path> write_report(const fs::path& dir,
   }
   writer.write("claims.json", dump(claims));
   writer.write("report.md", report_markdown(sections, provenance));
-  writer.write("index.html", report_html(sections, provenance));
+  std::vector<std::string> folders;
+  for (const Section& s : sections) folders.push_back(folder_of(s));
+  writer.write("index.html",
+               pages.one_file
+                   ? report_html(sections, provenance)
+                   : index_html(sections, folders, pages.groups, provenance));
   return std::move(writer).files();
 }
 

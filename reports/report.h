@@ -28,8 +28,22 @@ nlohmann::ordered_json to_json(const ClaimResult& claim);
 /// none.
 ClaimResult claim_from(const nlohmann::ordered_json& claim);
 
+/// Experiments that stand together: those whose name begins with the key.
+struct Group {
+  std::string key;    ///< jpo
+  std::string title;  ///< of the paper
+  std::string text;   ///< authors, venue
+  std::string link;   ///< where to read it; may be empty
+};
+
+/// How a report is cut into pages.
+struct Pages {
+  bool one_file = true;       ///< index.html has everything
+  std::vector<Group> groups;  ///< of the index, in order
+};
+
 /// Files below `dir`, where jpo/billiards becomes jpo-billiards:
-///   index.html, report.md,
+///   index.html, report.md, and with several pages <experiment>/index.html,
 ///   claims.json ({provenance, sections: [{..., claims}]}),
 ///   <experiment>/tables/<id>.{json,csv,md},
 ///   <experiment>/figures/<id>.{json,svg}.
@@ -39,7 +53,8 @@ ClaimResult claim_from(const nlohmann::ordered_json& claim);
 std::vector<std::filesystem::path> write_report(
     const std::filesystem::path& dir,
     const std::vector<Section>& sections,
-    const nlohmann::ordered_json& provenance);
+    const nlohmann::ordered_json& provenance,
+    const Pages& pages = {});
 
 /// The overview alone, with links relative to report.md.
 std::string report_markdown(const std::vector<Section>& sections,

@@ -12,6 +12,7 @@
 
 #include "reports/text.h"
 #include "suite/results/markdown.h"
+#include "suite/results/shortened.h"
 
 namespace physinv {
 namespace {
@@ -208,8 +209,21 @@ std::string to_markdown(const Table& table) {
   return out;
 }
 
+namespace {
+
+// A label leaves half of the room to its row, and so does a word.
+void shorten(Words& words, std::size_t width) {
+  constexpr std::size_t kLeast = 12;
+  const std::size_t most = std::max(kLeast, width / 2 - 1);
+  for (auto& line : words)
+    for (std::string& word : line) word = shortened(word, most);
+}
+
+}  // namespace
+
 std::string render_text(const Table& table, std::size_t width) {
-  const Words words = words_of(table);
+  Words words = words_of(table);
+  shorten(words, width);
   const auto widths = widths_of(words, 1);
   const auto starts = block_starts(words, widths, width);
   std::string out;

@@ -112,37 +112,51 @@ std::string json_text(const nlohmann::ordered_json& json) {
       1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
+/// Of claims, those that both sides judge; how many only one does is said.
+void print_counts(const Comparison& own,
+                  const std::vector<ChangedClaim>& changed,
+                  std::size_t judged) {
+  const auto same =
+      std::count_if(own.rows.begin(), own.rows.end(), [](auto& row) {
+        return std::all_of(row.sides.begin(), row.sides.end(), [](auto& r) {
+          return r && r->same_bits == r->stages;
+        });
+      });
+  if (changed.size() > judged)
+    fmt::print("{} claims are judged on one side and not on another\n",
+               changed.size() - judged);
+  fmt::print("{}\n", pairs_text(own));
+  fmt::print(
+      "{} lines compared, {} with the same bits everywhere; {} claims "
+      "changed their verdict\n",
+      own.rows.size(),
+      same,
+      judged);
+}
+
 void print(const CompareFlags& flags,
            const Comparison& c,
-           const std::vector<ChangedClaim>& claims) {
-  const auto all = c.rows.size();
+           const std::vector<ChangedClaim>& changed) {
+  const Comparison own = common(c);
   if (flags.format == "json") {
-    fmt::print("{}\n", json_text(to_json(c, claims)));
-  } else if (flags.format == "csv") {
-    fmt::print("{}", to_csv(changes_table(c, all)));
-  } else {
-    const bool markdown = flags.format == "markdown";
-    const auto width = static_cast<std::size_t>(Screen::of(stdout).columns);
-    std::vector<Table> tables = {
-        changes_table(c, static_cast<std::size_t>(flags.lines))};
-    if (!claims.empty()) tables.push_back(claims_table(claims, c.labels));
-    for (const Table& table : tables)
-      fmt::print("{}\n",
-                 markdown ? to_markdown(table) : render_text(table, width));
-    const auto same =
-        std::count_if(c.rows.begin(), c.rows.end(), [](auto& row) {
-          return std::all_of(row.sides.begin(), row.sides.end(), [](auto& r) {
-            return r && r->same_bits == r->stages;
-          });
-        });
-    fmt::print("{}\n", pairs_text(c));
-    fmt::print(
-        "{} lines compared, {} with the same bits everywhere; {} claims "
-        "changed their verdict\n",
-        all,
-        same,
-        claims.size());
+    fmt::print("{}\n", json_text(to_json(c, changed)));
+    return;
   }
+  if (flags.format == "csv") {
+    fmt::print("{}", to_csv(changes_table(c, c.rows.size())));
+    return;
+  }
+  const bool markdown = flags.format == "markdown";
+  const auto claims = judged_everywhere(changed);
+  for (const Table& table :
+       {changes_table(own, static_cast<std::size_t>(flags.lines)),
+        missing_table(c),
+        claims_table(claims, c.labels)})
+    if (!table.rows.empty())
+      fmt::print("{}\n",
+                 markdown ? to_markdown(table)
+                          : render_text(table, Screen::of(stdout).room()));
+  print_counts(own, changed, claims.size());
 }
 
 }  // namespace

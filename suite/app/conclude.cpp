@@ -8,13 +8,14 @@
 #include <nlohmann/json.hpp>
 
 #include "reports/report.h"
+#include "reports/statements.h"
 #include "suite/app/load.h"
 #include "suite/app/sections.h"
-#include "suite/app/statements.h"
 #include "suite/harness/columns.h"
 #include "suite/harness/output.h"
 #include "suite/planning/forecast.h"
 #include "suite/results/folder.h"
+#include "suite/results/shortened.h"
 #include "suite/results/verdict_words.h"
 
 namespace physinv {
@@ -145,7 +146,10 @@ void conclude(const RunEnd& end) {
   const auto own = own_sections(sections, end);
   if (own.empty()) return;
   const auto page = Folder(end.out).make("report").path();
-  write_report(page, sections, provenance(loaded, sections, numbers));
+  write_report(page,
+               sections,
+               provenance(loaded, sections, numbers),
+               {.one_file = false, .groups = groups_of(numbers)});
   std::string text;
   if (own.size() > kMostInFull) {
     text = in_brief(own, end.screen.room());

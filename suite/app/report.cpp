@@ -108,13 +108,14 @@ void check_claims(const ClaimTally& j) {
 
 ExitCode report_verb(const Arguments& arguments) {
   std::string results, out, expected, publish;
-  bool check = false;
+  bool check = false, one_file = false;
   if (!parse(
           "report",
           "Writes tables, plots and claims of a finished campaign. Exit 10 "
           "if the campaign is incomplete.",
           {{"RESULTS", "directory that 'run' wrote", &results},
            {"--out", "where to; default: RESULTS/report", &out, "DIR"},
+           {"--one-file", "one page that has everything", &one_file},
            {"--publish",
             "also keep results.json (compressed) and a digest of claims and "
             "tables there, for the verb 'results'",
@@ -153,7 +154,10 @@ ExitCode report_verb(const Arguments& arguments) {
       out.empty() ? Folder(results).make("report").path() : fs::path(out);
   const auto origin = provenance(loaded, sections, numbers);
   try {
-    write_report(target, sections, origin);
+    write_report(target,
+                 sections,
+                 origin,
+                 {.one_file = one_file, .groups = groups_of(numbers)});
     if (!publish.empty()) publish_campaign(publish, loaded, sections, origin);
   } catch (const std::runtime_error& error) {
     throw EnvironmentError(error.what());

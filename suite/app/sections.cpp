@@ -104,6 +104,31 @@ std::string profiles_text(const Results& results) {
 
 }  // namespace
 
+std::vector<Group> groups_of(const Published& published) {
+  std::vector<Group> groups;
+  const auto add = [&](const Publication& p) {
+    groups.push_back(
+        {.key = p.key,
+         .title = p.title,
+         .text = p.text(),
+         .link = p.arxiv.empty() ? "" : "https://arxiv.org/abs/" + p.arxiv});
+  };
+  // The latest first; those that were built on come after.
+  for (const std::string_view key : {"jpo", "hig", "sip", "physgrad"})
+    if (const Publication* p = published.publication(key)) add(*p);
+  for (const Publication& p : published.publications())
+    if (std::none_of(groups.begin(), groups.end(), [&](const Group& g) {
+          return g.key == p.key;
+        }))
+      add(p);
+  std::map<std::string, std::string> others;
+  for (const Overview& o : registry().overviews())
+    if (published.publication(o.paper) == nullptr) others[o.paper] = o.title;
+  for (const auto& [key, title] : others)
+    groups.push_back({.key = key, .title = title, .text = {}, .link = {}});
+  return groups;
+}
+
 Published printed_numbers() {
   const auto directory = published_directory();
   Published numbers(directory);

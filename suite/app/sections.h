@@ -4,6 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <vector>
 
+#include "reports/report.h"
 #include "suite/app/load.h"
 #include "suite/results/published.h"
 #include "suite/results/report_model.h"
@@ -17,6 +18,9 @@ Published printed_numbers();
 /// which they are registered, each paper's overview first.
 std::vector<Section> sections_of(const Results& results,
                                  const Published& published);
+
+/// The papers in the order in which a report has them, then what no paper has.
+std::vector<Group> groups_of(const Published& published);
 
 /// Context of the campaign as far as a report states it, and where the
 /// sections' experiments were published.

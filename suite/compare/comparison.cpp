@@ -157,7 +157,7 @@ double Compared::change() const {
   for (const auto& b : sides)
     if (b && sides.front())
       most = std::max(most, change_of(*sides.front(), *b));
-  return most + (ends_changed() ? 1e3 : 0) + (missing() ? 1e6 : 0);
+  return most + (ends_changed() ? 1e3 : 0);
 }
 
 Against against(const Compared& line, std::size_t side) {
@@ -201,9 +201,17 @@ Comparison compare(const std::vector<Side>& sides, By by) {
                                       : group_of(id, std::move(stages)));
   std::stable_sort(
       out.rows.begin(), out.rows.end(), [](const auto& a, const auto& b) {
-        return a.change() > b.change();
+        return std::pair(a.missing(), -a.change()) <
+               std::pair(b.missing(), -b.change());
       });
   return out;
+}
+
+Comparison common(const Comparison& all) {
+  Comparison own{all.labels, {}};
+  for (const Compared& row : all.rows)
+    if (!row.missing()) own.rows.push_back(row);
+  return own;
 }
 
 std::string ChangedClaim::id() const {
@@ -234,6 +242,18 @@ std::vector<ChangedClaim> changed_claims(const std::vector<Side>& sides) {
         break;
       }
   return changed;
+}
+
+std::vector<ChangedClaim> judged_everywhere(
+    const std::vector<ChangedClaim>& changed) {
+  std::vector<ChangedClaim> judged;
+  for (const ChangedClaim& claim : changed) {
+    bool all = true;
+    for (std::size_t s = 0; s < claim.sides.size(); ++s)
+      all = all && claim.verdict(s) != Verdict::not_judged;
+    if (all) judged.push_back(claim);
+  }
+  return judged;
 }
 
 std::vector<Side> sides_by_revision(const std::vector<Side>& sides) {

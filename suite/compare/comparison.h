@@ -49,8 +49,7 @@ struct Compared {
   bool missing() const;
   bool ends_changed() const;
   /// How much: decades of loss, work and time, whichever is most; a changed
-  /// end counts before any of them, a missing side before that. That of a
-  /// group is the most of its stages.
+  /// end counts before any of them. That of a group is the most of its stages.
   double change() const;
 };
 
@@ -75,8 +74,11 @@ enum class By { seed, n, method };
 
 struct Comparison {
   std::vector<std::string> labels;
-  std::vector<Compared> rows;  ///< what changed most first
+  /// What all sides have, what changed most first; then what one lacks.
+  std::vector<Compared> rows;
 };
+/// What all sides have.
+Comparison common(const Comparison& all);
 
 /// By seed: every stage. By n: over seeds. By method: over n and seeds. A
 /// group's readings are of the runs that all sides have.
@@ -92,6 +94,10 @@ struct ChangedClaim {
   Verdict verdict(std::size_t side) const;
 };
 std::vector<ChangedClaim> changed_claims(const std::vector<Side>& sides);
+/// Without those that a side does not judge, which says of nothing that it
+/// changed.
+std::vector<ChangedClaim> judged_everywhere(
+    const std::vector<ChangedClaim>& changed);
 
 /// The stages of all sides, sorted by the revision they ran from: a side for
 /// each, in order of appearance.

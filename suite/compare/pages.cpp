@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "suite/results/profiles.h"
+#include "suite/results/shortened.h"
 #include "suite/results/verdict_words.h"
 
 namespace physinv {
@@ -17,18 +19,6 @@ Cell number(double value, const char* format) {
              ? Cell{.ours = value,
                     .text = fmt::format(fmt::runtime(format), value)}
              : Cell{.text = "not finite"};
-}
-
-/// Up to `most` characters of UTF-8: the beginning, and as much of the end.
-std::string shortened(const std::string& text, std::size_t most) {
-  std::vector<std::size_t> starts;
-  for (std::size_t i = 0; i < text.size(); ++i)
-    if ((static_cast<unsigned char>(text[i]) & 0xc0) != 0x80)
-      starts.push_back(i);
-  if (starts.size() <= most) return text;
-  const std::size_t half = (most - 1) / 2;
-  return text.substr(0, starts[half]) + "…" +
-         text.substr(starts[starts.size() - half]);
 }
 
 /// Labels are folders as they were typed: no column is as wide as a path,
@@ -221,9 +211,11 @@ Section overview(const Comparison& c,
                  const std::vector<ChangedClaim>& changed) {
   Section section{.experiment = "compare",
                   .title = fmt::format("What changed from {}", c.labels[0])};
-  section.tables.push_back(changes_table(c, 40));
-  if (!changed.empty())
-    section.tables.push_back(claims_table(changed, c.labels));
+  section.tables.push_back(changes_table(common(c), 40));
+  if (auto table = missing_table(c); !table.rows.empty())
+    section.tables.push_back(std::move(table));
+  if (const auto claims = judged_everywhere(changed); !claims.empty())
+    section.tables.push_back(claims_table(claims, c.labels));
   return section;
 }
 
@@ -290,6 +282,30 @@ std::vector<Table> detail_tables(const Comparison& c) {
   return tables;
 }
 
+Table missing_table(const Comparison& c) {
+  std::map<std::string, std::vector<std::size_t>> lacks;
+  for (const Compared& row : c.rows) {
+    for (const Compared& stage : row.stages()) {
+      if (!stage.missing()) continue;
+      auto& counts = lacks[stage.id.experiment];
+      counts.resize(c.labels.size());
+      for (std::size_t s = 0; s < stage.sides.size(); ++s)
+        if (!stage.sides[s]) ++counts[s];
+    }
+  }
+  Table table{.id = "missing",
+              .title = "Stages that a side lacks",
+              .digits = 0,
+              .corner = "experiment",
+              .columns = heads_of(c.labels)};
+  for (const auto& [experiment, counts] : lacks) {
+    table.rows.push_back({experiment, {}});
+    for (const std::size_t count : counts)
+      table.rows.back().cells.push_back({.ours = static_cast<double>(count)});
+  }
+  return table;
+}
+
 Table claims_table(const std::vector<ChangedClaim>& changed,
                    const std::vector<std::string>& labels) {
   Table table{.id = "claims",
@@ -318,7 +334,8 @@ std::vector<Section> compare_sections(
   for (const auto& row : c.rows) names.insert(row.id.experiment);
   const Results all = pooled(sides);
   for (const auto& name : names) {
-    const Comparison own = of_experiment(c, name);
+    const Comparison own = common(of_experiment(c, name));
+    if (own.rows.empty()) continue;
     Section section{.experiment = name, .title = name};
     section.tables.push_back(changes_table(own, own.rows.size()));
     for (auto& table : detail_tables(own))

@@ -13,6 +13,9 @@ namespace physinv {
 /// stages ended. Of many lines the first `most`.
 Table changes_table(const Comparison& comparison, std::size_t most);
 
+/// Per experiment how many stages each side lacks that another has.
+Table missing_table(const Comparison& comparison);
+
 /// Per side: what the examples ended as; times; counters.
 std::vector<Table> detail_tables(const Comparison& comparison);
 

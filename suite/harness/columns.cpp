@@ -1,26 +1,20 @@
 #include "suite/harness/columns.h"
 
 #include <algorithm>
+#include <string_view>
+
+#include "suite/results/shortened.h"
 
 namespace physinv {
 namespace {
 
 constexpr std::size_t kGap = 2, kNarrowest = 4;
-constexpr std::string_view kCut = "…";
 
 bool begins(char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }
 
 std::size_t width_of(std::string_view text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), begins));
-}
-
-/// Where its character of this number begins.
-std::size_t offset_of(std::string_view text, std::size_t character) {
-  std::size_t at = 0;
-  for (; at < text.size(); ++at)
-    if (begins(text[at]) && character-- == 0) break;
-  return at;
 }
 
 /// Widths that fit: the widest becomes as narrow as the next, and so on.
@@ -37,16 +31,6 @@ std::vector<std::size_t> fitted(std::vector<std::size_t> widths,
 }
 
 }  // namespace
-
-std::string shortened(std::string_view text, std::size_t width) {
-  const std::size_t have = width_of(text);
-  if (have <= width) return std::string(text);
-  if (width == 0) return "";
-  const std::size_t tail = (width - 1) / 2, head = width - 1 - tail;
-  std::string out(text.substr(0, offset_of(text, head)));
-  out += kCut;
-  return out.append(text.substr(offset_of(text, have - tail)));
-}
 
 Columns::Columns(std::vector<std::string> heads) {
   for (std::string& head : heads) {

@@ -3,13 +3,9 @@
 
 #include <cstddef>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace physinv {
-
-/// At most so many characters of UTF-8, a longer text without its middle.
-std::string shortened(std::string_view text, std::size_t width);
 
 /// Words in aligned columns. Where they do not fit, the widest columns give way
 /// first; no line is longer than the room.

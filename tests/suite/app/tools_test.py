@@ -41,8 +41,14 @@ def compare(d):
     expect(5, ["compare", "c", "a", "--fail-on=missing"], d, "missing")
     rows = json_of(expect(0, ["compare", "a", "c", "--format=json"], d))["rows"]
     missing = [None in r["sides"] for r in rows]
-    check(any(missing) and missing == sorted(missing, reverse=True),
-          "what is missing comes first")
+    check(any(missing) and missing == sorted(missing),
+          "what is missing comes last")
+    p = expect(0, ["compare", "a", "c"], d, "Stages that a side lacks")
+    lines = p.stdout.splitlines()
+    at = next(k for k, x in enumerate(lines) if x.startswith("Stages that"))
+    check(lines[at + 3].split()[0] == "fake/cubic" and
+          not any("missing" in x for x in lines[:at]),
+          "in one line per experiment, after the common runs")
     for by, seeds in (("method", {None}), ("n", {None}), ("seed", {0, 1})):
         rows = json_of(expect(0, ["compare", "a", "c", "--by=" + by,
                                   "--format=json"], d))["rows"]

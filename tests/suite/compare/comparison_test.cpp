@@ -61,12 +61,39 @@ TEST(Compare, WhatChangedMostComesFirst) {
   for (const auto& row : c.rows) order.push_back(row.id.method);
   EXPECT_EQ(
       order,
-      (std::vector<std::string>{"gone", "ends", "worse", "slower", "still"}));
-  EXPECT_TRUE(c.rows[0].missing());
-  EXPECT_TRUE(c.rows[1].ends_changed());
-  EXPECT_DOUBLE_EQ(loss_ratio(*c.rows[2].sides[0], *c.rows[2].sides[1]), 100);
-  EXPECT_EQ(c.rows[4].sides[1]->same_bits, 1U);
-  EXPECT_EQ(c.rows[2].sides[1]->same_bits, 0U);
+      (std::vector<std::string>{"ends", "worse", "slower", "still", "gone"}));
+  EXPECT_TRUE(c.rows[4].missing());
+  EXPECT_TRUE(c.rows[0].ends_changed());
+  EXPECT_DOUBLE_EQ(loss_ratio(*c.rows[1].sides[0], *c.rows[1].sides[1]), 100);
+  EXPECT_EQ(c.rows[3].sides[1]->same_bits, 1U);
+  EXPECT_EQ(c.rows[1].sides[1]->same_bits, 0U);
+}
+
+TEST(Compare, WhatASideLacksIsALinePerExperiment) {
+  const Comparison c = compare(planted(), By::seed);
+  EXPECT_EQ(common(c).rows.size(), 4U);
+  const Table table = missing_table(c);
+  ASSERT_EQ(table.rows.size(), 1U);
+  EXPECT_EQ(table.rows[0].label, c.rows[4].id.experiment);
+  EXPECT_EQ(table.rows[0].cells[0].ours, 0);
+  EXPECT_EQ(table.rows[0].cells[1].ours, 1);
+  EXPECT_TRUE(missing_table(common(c)).rows.empty());
+  for (const Section& s : compare_sections(c, planted(), {}))
+    for (const Table& t : s.tables) EXPECT_NE(t.id, "claims") << "no claim";
+}
+
+TEST(Compare, WhatASideDoesNotJudgeDidNotChange) {
+  const auto judged = [](Verdict a, Verdict b) {
+    ClaimResult one{.id = "P1", .verdict = a}, other{.id = "P1", .verdict = b};
+    return judged_everywhere({{.experiment = "e", .sides = {one, other}}})
+        .size();
+  };
+  EXPECT_EQ(judged(Verdict::reproduced, Verdict::not_reproduced), 1U);
+  EXPECT_EQ(judged(Verdict::reproduced, Verdict::not_judged), 0U);
+  EXPECT_EQ(judged(Verdict::not_judged, Verdict::reproduced), 0U);
+  EXPECT_TRUE(judged_everywhere(
+                  {{.experiment = "e", .sides = {ClaimResult{.id = "P1"}, {}}}})
+                  .empty());
 }
 
 TEST(Compare, SolvedLossesAreEqual) {

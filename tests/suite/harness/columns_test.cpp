@@ -4,6 +4,8 @@
 
 #include <sstream>
 
+#include "suite/results/shortened.h"
+
 namespace physinv {
 namespace {
 

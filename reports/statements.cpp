@@ -1,15 +1,23 @@
-#include "suite/app/statements.h"
+#include "reports/statements.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "reports/tables.h"
 #include "reports/text.h"
-#include "suite/evidence/condition.h"
 
 namespace physinv {
 namespace {
+
+/// Counts as they are, all else with three digits.
+std::string value_text(double value) {
+  constexpr double kCounts = 1e6;
+  return value == std::round(value) && std::abs(value) < kCounts
+             ? fmt::format("{:.0f}", value)
+             : fmt::format("{:.3g}", value);
+}
 
 bool is_decided(const ClaimResult& c) {
   return c.verdict != Verdict::not_judged && c.verdict != Verdict::reported;
@@ -36,7 +44,7 @@ Statement statement_of(const ClaimResult& c) {
               .verdict = c.verdict,
               .origin = c.origin};
   if (const ConditionResult* condition = telling(c)) {
-    if (condition->value) f.here = number_text(*condition->value);
+    if (condition->value) f.here = value_text(*condition->value);
     f.paper = condition->bounds;
   }
   return f;

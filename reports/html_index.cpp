@@ -1,0 +1,196 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "reports/html.h"
+#include "reports/html_parts.h"
+#include "reports/statements.h"
+#include "suite/results/verdict_words.h"
+
+namespace physinv {
+namespace {
+
+/// Beside the paper's, of an experiment; statements that fail do not count.
+constexpr std::size_t kNumbers = 3;
+
+std::string key_of(const Section& section) {
+  return section.experiment.substr(0, section.experiment.find('/'));
+}
+
+bool is_open(const ClaimResult& claim) {
+  return claim.verdict == Verdict::not_judged;
+}
+
+/// "✓ 3 reproduced, ✗ 1 not reproduced"; nothing where nothing is decided.
+std::string verdicts_html(const Section& section, Origin origin) {
+  const Tally counts = tally(section, origin);
+  std::string out;
+  for (const Verdict v : kVerdicts) {
+    const int count = counts[static_cast<std::size_t>(v)];
+    if (count == 0 || v == Verdict::not_judged) continue;
+    out += fmt::format("{}<span class=\"{}\">{} {} {}</span>",
+                       out.empty() ? "" : ", ",
+                       css_of(v),
+                       mark_of(v),
+                       count,
+                       words_of(v, origin));
+  }
+  return out;
+}
+
+std::string numbers_html(const Section& section) {
+  std::string rows;
+  for (const Statement& s : statements_of(section, kNumbers)) {
+    if (s.here.empty() || s.verdict == Verdict::not_reproduced) continue;
+    rows += fmt::format(
+        "<tr><th scope=\"row\">{}</th><td>{}</td><td class=\"paper\">{}</td>"
+        "<td class=\"{}\">{} {}</td></tr>\n",
+        html(s.what),
+        html(s.here),
+        html(s.paper),
+        css_of(s.verdict),
+        mark_of(s.verdict),
+        words_of(s.verdict, s.origin));
+  }
+  if (rows.empty()) return "";
+  return "<div class=\"scroll\">\n<table class=\"numbers\">\n<thead>\n<tr>"
+         "<th scope=\"col\">statement</th><th scope=\"col\">here</th>"
+         "<th scope=\"col\">paper</th><th scope=\"col\">verdict</th></tr>\n"
+         "</thead>\n<tbody>\n" +
+         rows + "</tbody>\n</table>\n</div>\n";
+}
+
+/// Statements that do not hold, with what was measured and why.
+std::string failing_html(const Section& section) {
+  std::string items;
+  for (const ClaimResult& c : section.claims) {
+    if (c.verdict != Verdict::not_reproduced) continue;
+    items += fmt::format(
+        "<li><strong>{}</strong> {}{}: {}{} <span "
+        "class=\"no\">{} {}</span></li>\n",
+        html(c.id),
+        html(c.says),
+        c.where.empty() ? "" : " (" + html(c.where) + ")",
+        html(c.evidence),
+        c.note.empty() ? "" : ". " + html(c.note),
+        mark_of(c.verdict),
+        words_of(c.verdict, c.origin));
+  }
+  return items.empty() ? "" : "<ul class=\"failing\">\n" + items + "</ul>\n";
+}
+
+/// One line for all that nobody could judge.
+std::string open_html(const Section& section) {
+  std::set<std::string> profiles;
+  int count = 0;
+  for (const ClaimResult& c : section.claims)
+    if (is_open(c)) ++count, profiles.insert(c.from);
+  if (count == 0) return "";
+  std::string from;
+  for (const auto& profile : profiles)
+    from += (from.empty() ? "" : ", ") + html(profile);
+  return fmt::format("<p class=\"remark\">{} {}; decided by profile {}</p>\n",
+                     count,
+                     words_of(Verdict::not_judged, Origin::paper),
+                     from);
+}
+
+std::string experiment_html(const Section& section, const std::string& folder) {
+  const std::string papers = verdicts_html(section, Origin::paper);
+  const std::string ranges = verdicts_html(section, Origin::suite);
+  std::string out = fmt::format(
+      "<article>\n<h3><a href=\"{}/index.html\">{}</a> <code>{}</code></h3>\n",
+      html(folder),
+      html(section.title),
+      html(section.experiment));
+  if (!papers.empty()) out += "<p>The paper: " + papers + "</p>\n";
+  if (!ranges.empty())
+    out += "<p class=\"remark\">Ranges of the suite: " + ranges + "</p>\n";
+  return out + numbers_html(section) + failing_html(section) +
+         open_html(section) + "</article>\n";
+}
+
+std::string group_html(const Group& group,
+                       const std::vector<Section>& sections,
+                       const std::vector<std::string>& folders) {
+  std::string own;
+  for (std::size_t k = 0; k < sections.size(); ++k)
+    if (key_of(sections[k]) == group.key)
+      own += experiment_html(sections[k], folders[k]);
+  if (own.empty()) return "";
+  std::string out = fmt::format(
+      "<section id=\"{0}\" aria-labelledby=\"{0}-title\">\n"
+      "<h2 id=\"{0}-title\">{1}</h2>\n",
+      html(group.key),
+      html(group.title));
+  if (!group.text.empty())
+    out += fmt::format(
+        "<p class=\"remark\">{}{}</p>\n",
+        html(group.text),
+        group.link.empty()
+            ? ""
+            : fmt::format(" <a href=\"{0}\">{0}</a>", html(group.link)));
+  return out + own + "</section>\n";
+}
+
+/// The groups asked for, then one for each key that none of them has.
+std::vector<Group> all_groups(std::vector<Group> groups,
+                              const std::vector<Section>& sections) {
+  for (const Section& s : sections) {
+    const std::string key = key_of(s);
+    if (std::none_of(groups.begin(), groups.end(), [&](const Group& g) {
+          return g.key == key;
+        }))
+      groups.push_back({.key = key, .title = key, .text = {}, .link = {}});
+  }
+  return groups;
+}
+
+std::string contents_html(const std::vector<Group>& groups,
+                          const std::vector<Section>& sections,
+                          const std::vector<std::string>& folders) {
+  std::string out = "<nav id=\"contents\" aria-label=\"Contents\">\n";
+  for (const Group& group : groups) {
+    std::string items;
+    for (std::size_t k = 0; k < sections.size(); ++k)
+      if (key_of(sections[k]) == group.key)
+        items += fmt::format("<li><a href=\"{}/index.html\">{}</a></li>\n",
+                             html(folders[k]),
+                             html(sections[k].title));
+    if (!items.empty())
+      out += fmt::format(
+          "<details>\n<summary>{}</summary>\n<ul>\n{}</ul>\n</details>\n",
+          html(group.key),
+          items);
+  }
+  return out + "<p><a href=\"#provenance\">Provenance</a></p>\n</nav>\n";
+}
+
+std::string tallies_html(const std::vector<Section>& sections) {
+  return fmt::format(
+      "<p>What the papers say: {}. Ranges of the suite: {}.</p>\n",
+      tally_text(tally(sections, Origin::paper), Origin::paper),
+      tally_text(tally(sections, Origin::suite), Origin::suite));
+}
+
+}  // namespace
+
+std::string index_html(const std::vector<Section>& sections,
+                       const std::vector<std::string>& folders,
+                       const std::vector<Group>& groups,
+                       const nlohmann::ordered_json& provenance) {
+  const auto all = all_groups(groups, sections);
+  PageParts parts{.title = "Physics inverse problems: report"};
+  nlohmann::ordered_json brief = provenance;
+  if (brief.is_object()) brief.erase("papers");  // the groups name them
+  parts.header = "<h1>Physics inverse problems: what is reproduced</h1>\n" +
+                 summary_html(brief) + tallies_html(sections);
+  parts.contents = contents_html(all, sections, folders);
+  for (const Group& group : all)
+    parts.main += group_html(group, sections, folders);
+  parts.footer = provenance_html(brief);
+  return page_html(parts);
+}
+
+}  // namespace physinv

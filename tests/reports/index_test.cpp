@@ -1,0 +1,108 @@
+#include <gtest/gtest.h>
+
+#include "reports/html.h"
+#include "reports/html_parts.h"
+#include "reports/statements.h"
+
+namespace physinv {
+namespace {
+
+ClaimResult claim(const char* id, Verdict verdict, double value) {
+  return {.id = id,
+          .says = std::string(id) + " is <so>",
+          .from = "paper",
+          .verdict = verdict,
+          .evidence = "measured",
+          .origin = Origin::paper,
+          .where = "Fig. 1",
+          .note = "as it is",
+          .conditions = {{.label = "x",
+                          .bounds = "> 2",
+                          .value = value,
+                          .holds = verdict == Verdict::reproduced}}};
+}
+
+std::vector<Section> sections() {
+  Section one{.experiment = "jpo/toy", .title = "Toy"};
+  one.claims = {claim("P1", Verdict::reproduced, 3),
+                claim("P2", Verdict::not_reproduced, 1.25),
+                claim("P3", Verdict::not_judged, 0),
+                claim("P4", Verdict::not_judged, 0)};
+  one.tables = {{.id = "t1",
+                 .title = "T",
+                 .source = "Table 1",
+                 .unit = "%",
+                 .columns = {"a"},
+                 .rows = {{"row", {{.ours = 5, .paper = 7}}}}},
+                {.id = "t2",
+                 .title = "Times",
+                 .source = "Table 2",
+                 .unit = "CPU s",
+                 .columns = {"a"},
+                 .rows = {{"row", {{.ours = 5, .paper = 7}}}}}};
+  return {one,
+          {.experiment = "matrix/toy", .title = "Every method"},
+          {.experiment = "sip/toy", .title = "Third"}};
+}
+
+std::string index() {
+  return index_html(
+      sections(),
+      {"jpo-toy", "matrix-toy", "sip-toy"},
+      {{.key = "sip",
+        .title = "SIP paper",
+        .text = "A. Author",
+        .link = "https://arxiv.org/abs/1"},
+       {.key = "jpo", .title = "JPO paper", .text = "", .link = ""},
+       {.key = "hig", .title = "HIG paper", .text = "", .link = ""}},
+      {{"date", "2026-01-01"}});
+}
+
+TEST(Index, GroupsAreInTheOrderAskedFor) {
+  const std::string page = index();
+  const auto at = [&](const char* text) { return page.find(text); };
+  EXPECT_LT(at(">SIP paper</h2>"), at(">JPO paper</h2>"));
+  EXPECT_LT(at(">JPO paper</h2>"), at(">matrix</h2>"));
+  EXPECT_NE(at(">matrix</h2>"), page.npos) << "what no group has comes last";
+  EXPECT_EQ(at("HIG paper"), page.npos) << "a group without experiments";
+  EXPECT_NE(at("href=\"https://arxiv.org/abs/1\""), page.npos);
+  for (const char* folder : {"jpo-toy", "matrix-toy", "sip-toy"})
+    EXPECT_NE(at(("href=\"" + std::string(folder) + "/index.html\"").c_str()),
+              page.npos);
+}
+
+TEST(Index, FailingStatementsAreSentencesAndOpenOnesALine) {
+  const std::string page = index();
+  EXPECT_NE(
+      page.find("<strong>P2</strong> P2 is &lt;so&gt; (Fig. 1): measured. "
+                "as it is"),
+      page.npos);
+  EXPECT_EQ(page.find("P3 is"), page.npos);
+  EXPECT_NE(page.find("2 not judged; decided by profile paper"), page.npos);
+  EXPECT_LT(page.size(), 40'000U);
+}
+
+TEST(Index, APageOfAnExperimentLinksItsData) {
+  const auto all = sections();
+  const std::string page = section_page_html(all[0], {}, Palette(all));
+  for (const char* link : {"../index.html", "tables/t1.csv", "tables/t2.json"})
+    EXPECT_NE(page.find("href=\"" + std::string(link) + "\""), page.npos)
+        << link;
+}
+
+TEST(Statements, DecidedOnesThenTablesWithoutTimes) {
+  const auto all = statements_of(sections()[0], 8);
+  ASSERT_EQ(all.size(), 3U);
+  EXPECT_EQ(all[0].what.substr(0, 2), "P2");
+  EXPECT_EQ(all[0].here, "1.25");
+  EXPECT_EQ(all[0].paper, "> 2");
+  EXPECT_EQ(all[1].here, "3");
+  EXPECT_EQ(all[2].what, "Table 1: a, row");
+  EXPECT_EQ(all[2].here, "5.0 %");
+  EXPECT_EQ(all[2].paper, "7.0 %");
+  EXPECT_EQ(all[2].verdict, Verdict::not_judged);
+  EXPECT_EQ(statements_of(sections()[0], 1).size(), 1U);
+}
+
+}  // namespace
+}  // namespace physinv
