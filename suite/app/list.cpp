@@ -10,6 +10,7 @@
 #include "suite/harness/progress.h"
 #include "suite/harness/sources.h"
 #include "suite/planning/kinds.h"
+#include "suite/results/verdict_words.h"
 
 namespace physinv {
 namespace {
@@ -148,6 +149,11 @@ nlohmann::ordered_json claims_json(const std::string& of,
     for (const Condition& condition : c.conditions)
       conditions.push_back(
           {{"label", condition.label}, {"bounds", condition.bounds}});
+    const auto cause = c.cause.why.empty()
+                           ? nlohmann::ordered_json(nullptr)
+                           : nlohmann::ordered_json{
+                                 {"verdict", words_of(c.cause.as, c.origin)},
+                                 {"why", c.cause.why}};
     all.push_back({{"of", of},
                    {"id", c.id},
                    {"origin", c.origin == Origin::paper ? "paper" : "suite"},
@@ -155,6 +161,7 @@ nlohmann::ordered_json claims_json(const std::string& of,
                    {"from", c.from},
                    {"says", c.says},
                    {"conditions", std::move(conditions)},
+                   {"cause", cause},
                    {"note", c.note},
                    {"gates", c.gates}});
   }
