@@ -225,26 +225,44 @@ std::string claim_html(const ClaimResult& claim, const std::string& id) {
                                              html(claim.from)));
 }
 
-std::string claims_html(const Section& section,
-                        const Anchors& anchors,
-                        Origin origin) {
-  std::string rows;
-  for (std::size_t k = 0; k < section.claims.size(); ++k)
-    if (section.claims[k].origin == origin)
-      rows += claim_html(section.claims[k], anchors.claims[k]);
-  if (rows.empty()) return "";
-  const char* title =
-      origin == Origin::paper ? "What the paper says" : "Ranges of the suite";
+std::string claims_table_html(const std::string& title,
+                              const Section& section,
+                              const std::string& rows) {
   return fmt::format(
-             "<h3>{0}</h3>\n<div class=\"scroll\">\n"
-             "<table class=\"claims\">\n<caption class=\"hidden\">{0}: {1}"
-             "</caption>\n",
+             "<div class=\"scroll\">\n<table class=\"claims\">\n"
+             "<caption class=\"hidden\">{}: {}</caption>\n",
              title,
              html(section.title)) +
          "<thead class=\"hidden\">\n<tr><th scope=\"col\">id</th>"
          "<th scope=\"col\">verdict</th><th scope=\"col\">claim and "
          "evidence</th></tr>\n</thead>\n<tbody>\n" +
          rows + "</tbody>\n</table>\n</div>\n";
+}
+
+/// Those that are not judged stand behind one line.
+std::string claims_html(const Section& section,
+                        const Anchors& anchors,
+                        Origin origin) {
+  std::string judged, open;
+  int count = 0;
+  for (std::size_t k = 0; k < section.claims.size(); ++k) {
+    const ClaimResult& c = section.claims[k];
+    if (c.origin != origin) continue;
+    const bool is_open = c.verdict == Verdict::not_judged;
+    count += is_open ? 1 : 0;
+    (is_open ? open : judged) += claim_html(c, anchors.claims[k]);
+  }
+  if (judged.empty() && open.empty()) return "";
+  const std::string title =
+      origin == Origin::paper ? "What the paper says" : "Ranges of the suite";
+  std::string out = fmt::format("<h3>{}</h3>\n", title);
+  if (!judged.empty()) out += claims_table_html(title, section, judged);
+  if (!open.empty())
+    out += fmt::format("<details>\n<summary>{} {}</summary>\n{}</details>\n",
+                       count,
+                       words_of(Verdict::not_judged, origin),
+                       claims_table_html(title, section, open));
+  return out;
 }
 
 /// Links to the files of a table or figure.
@@ -413,16 +431,32 @@ std::string report_html(const std::vector<Section>& sections,
   return page_html(parts);
 }
 
+namespace {
+
+/// Of "jpo: Ann Ames: Title", those of this key.
+Json papers_of(const Json& papers, const std::string& key) {
+  Json own = Json::array();
+  for (const Json& paper : papers)
+    if (paper.is_string() && paper.get<std::string>().starts_with(key + ": "))
+      own.push_back(paper);
+  return own;
+}
+
+}  // namespace
+
 std::string section_page_html(const Section& section,
                               const nlohmann::ordered_json& provenance,
                               const Palette& palette) {
   const auto anchors = anchors_of({section});
   PageParts parts{.title = section.title + ": physics inverse problems"};
+  Json own = provenance;
+  if (own.is_object() && own.contains("papers"))
+    own["papers"] = papers_of(own["papers"], section.paper);
   parts.header = "<p><a href=\"../index.html\">← All experiments</a></p>\n" +
-                 summary_html(provenance);
+                 summary_html(own);
   parts.contents = contents_html({section}, anchors);
   parts.main = section_html(section, anchors[0], palette, true);
-  parts.footer = provenance_html(provenance);
+  parts.footer = provenance_html(own);
   return page_html(parts);
 }
 

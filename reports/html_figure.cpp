@@ -62,6 +62,37 @@ std::string panel_html(const Panel& panel,
   return std::move(svg).str();
 }
 
+/// Panels without a point are words: which they are, or that none was run. The
+/// moments of a film stay together.
+std::string panels_html(const Figure& figure,
+                        const std::string& id,
+                        const std::vector<const Series*>& legend,
+                        Palette& palette) {
+  std::string out, empty;
+  bool any = false;
+  for (std::size_t i = 0; i < figure.panels.size(); ++i) {
+    const Panel& panel = figure.panels[i];
+    if (figure.moment == 0 && !has_points(panel)) {
+      empty += (empty.empty() ? "" : ", ") + html(panel.title);
+      continue;
+    }
+    any = true;
+    out += panel_html(
+        panel, figure, fmt::format("{}-panel{}", id, i), legend, palette);
+  }
+  if (!any) return "<p class=\"nil\">not run</p>\n";
+  out = fmt::format(
+      "<div class=\"panels c{}\"{}>\n{}</div>\n",
+      std::clamp(figure.columns,
+                 1,
+                 std::clamp(static_cast<int>(figure.panels.size()), 1, 4)),
+      figure.moment > 0 ? fmt::format(" data-moment=\"{}\"", figure.moment)
+                        : "",
+      out);
+  return empty.empty() ? out
+                       : out + "<p class=\"nil\">not run: " + empty + "</p>\n";
+}
+
 }  // namespace
 
 std::string figure_html(const Figure& figure,
@@ -69,23 +100,14 @@ std::string figure_html(const Figure& figure,
                         const Palette& report) {
   Palette palette = palette_of(figure, report);
   const auto legend = legend_of(figure);
-  std::string out = fmt::format(
-      "<figure id=\"{}\">\n<figcaption>{}</figcaption>\n{}"
-      "<div class=\"panels c{}\"{}>\n",
-      id,
-      caption_html(id, figure.source, figure.title),
-      legend_html(legend, palette),
-      std::clamp(figure.columns,
-                 1,
-                 std::clamp(static_cast<int>(figure.panels.size()), 1, 4)),
-      figure.moment > 0 ? fmt::format(" data-moment=\"{}\"", figure.moment)
-                        : "");
-  for (std::size_t i = 0; i < figure.panels.size(); ++i) {
-    const std::string panel_id = fmt::format("{}-panel{}", id, i);
-    out += panel_html(figure.panels[i], figure, panel_id, legend, palette);
-  }
-  if (figure.panels.empty()) out += "<p class=\"nil\">not run</p>\n";
-  out += "</div>\n";
+  const bool any =
+      std::any_of(figure.panels.begin(), figure.panels.end(), has_points);
+  std::string out =
+      fmt::format("<figure id=\"{}\">\n<figcaption>{}</figcaption>\n{}{}",
+                  id,
+                  caption_html(id, figure.source, figure.title),
+                  any ? legend_html(legend, palette) : "",
+                  panels_html(figure, id, legend, palette));
   if (!figure.note.empty()) {
     out += fmt::format("<p class=\"remark\">{}</p>\n", html(figure.note));
   }

@@ -81,6 +81,17 @@ void draw_marker(
   }
 }
 
+bool has_points(const Panel& panel) {
+  if (panel.field && !panel.field->values.empty()) return true;
+  const Axis x(panel.x_log), y(panel.y_log);
+  return std::any_of(
+      panel.series.begin(), panel.series.end(), [&](const Series& s) {
+        for (std::size_t i = 0; i < points(s); ++i)
+          if (x.shows(s.x[i]) && y.shows(s.y[i])) return true;
+        return false;
+      });
+}
+
 PanelPlot::PanelPlot(const Panel& panel, std::string id, Palette& palette)
     : panel_(panel),
       id_(std::move(id)),

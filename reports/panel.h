@@ -16,6 +16,9 @@ struct Rect {
   double x = 0, y = 0, w = 0, h = 0;
 };
 
+/// Is there anything to draw?
+bool has_points(const Panel& panel);
+
 class PanelPlot {
  public:
   /// `id` is unique in the document: it names the clip path.

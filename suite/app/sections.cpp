@@ -7,6 +7,8 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <utility>
 
 #include "suite/app/installed.h"
 #include "suite/evidence/frontier.h"
@@ -102,6 +104,22 @@ std::string profiles_text(const Results& results) {
   return stages.size() > 1 ? text : "";
 }
 
+/// A method that its experiment's own figures call by one name has that name
+/// everywhere.
+void learn_titles(const Experiment& e, Section& section) {
+  std::map<std::string, std::set<std::string>> labels;
+  for (const Figure& figure : section.figures)
+    for (const Panel& panel : figure.panels)
+      for (const Series& s : panel.series)
+        if (!s.dashed && !s.label.empty() &&
+            s.label.find('=') == std::string::npos &&
+            find_method(e, s.method) != nullptr)
+          labels[s.method].insert(s.label);
+  for (const auto& [method, names] : labels)
+    if (names.size() == 1)
+      section.method_titles.try_emplace(method, *names.begin());
+}
+
 }  // namespace
 
 std::vector<Group> groups_of(const Published& published) {
@@ -142,9 +160,19 @@ Published printed_numbers() {
 std::vector<Section> sections_of(const Results& results,
                                  const Published& published) {
   std::vector<Section> sections = overviews_of(results, published);
+  std::vector<std::pair<const Experiment*, std::size_t>> own;
+  std::map<std::string, std::string> titles;
   for (const auto& e : registry().experiments()) {
     if (results.sizes(e->name).empty()) continue;
-    Section section = section_of(*e, results, published);
+    own.emplace_back(e.get(), sections.size());
+    sections.push_back(section_of(*e, results, published));
+    learn_titles(*e, sections.back());
+    titles.insert(sections.back().method_titles.begin(),
+                  sections.back().method_titles.end());
+  }
+  for (const auto& [e, at] : own) {
+    Section& section = sections[at];
+    section.method_titles.insert(titles.begin(), titles.end());
     if (!only_diagnoses(*e)) {
       add_frontier(section, results, e->name, section.method_titles);
       for (Figure& figure :
@@ -155,7 +183,6 @@ std::vector<Section> sections_of(const Results& results,
         section.figures.push_back(std::move(figure));
     }
     apply(e->looks, section.figures);
-    sections.push_back(std::move(section));
   }
   return sections;
 }

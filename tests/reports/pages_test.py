@@ -1,0 +1,113 @@
+"""pages_test.py PROGRAM STORE: the pages of a real campaign, and in Chromium if
+there is one.
+
+The index is small, links and fragments lead somewhere, no two entries of a
+legend look alike, and nothing is wider than the window at 390, 800 and 1400
+pixels.
+"""
+
+import glob
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+PROGRAM, STORE = (os.path.abspath(p) for p in sys.argv[1:3])
+LARGEST_INDEX = 150_000
+WIDTHS = (390, 800, 1400)
+FLAGS = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic",
+         "--no-first-run", "--disable-background-networking",
+         "--disable-component-update", "--disable-sync"]
+FAILED = []
+
+
+def check(condition, what):
+    if not condition:
+        print("FAIL", what)
+        FAILED.append(what)
+
+
+def read(path):
+    with open(path) as f:
+        return f.read()
+
+
+def links(path):
+    """Files and fragments that are there."""
+    text = read(path)
+    ids = set(re.findall(r' id="([^"]+)"', text))
+    count = 0
+    for target in re.findall(r'<a[^>]* href="([^"]+)"', text):
+        count += 1
+        if target.startswith("#"):
+            check(target[1:] in ids, f"{path}: no {target}")
+        elif not target.startswith("https://"):
+            there = os.path.join(os.path.dirname(path), target)
+            check(os.path.exists(there), f"{path}: no {target}")
+    return count
+
+
+def legends(path):
+    """Samples beside the names differ."""
+    count = 0
+    for legend in re.findall(r'<ul class="legend">.*?</ul>', read(path), re.S):
+        entries = re.findall(r"<li[^>]*>(.*?</svg>)(.*?)</li>", legend, re.S)
+        samples = [sample for sample, _ in entries]
+        names = [name for _, name in entries]
+        check(len(set(samples)) == len(samples), f"{path}: alike in {names}")
+        count += len(entries)
+    return count
+
+
+def too_wide(chromium, path, width, d):
+    """Pixels by which the page is wider than the window."""
+    probe = os.path.join(d, "probe.html")
+    shutil.copy(path, probe)
+    with open(probe, "a") as f:
+        f.write("<script>document.body.innerHTML = 'wide ' + "
+                "(document.documentElement.scrollWidth - innerWidth) + ' end'"
+                "</script>")
+    p = subprocess.run([chromium, *FLAGS, "--dump-dom",
+                        "--user-data-dir=" + tempfile.mkdtemp(dir=d),
+                        f"--window-size={width},900", "file://" + probe],
+                       capture_output=True, text=True, timeout=120)
+    found = re.search(r"wide (-?\d+) end", p.stdout)
+    return int(found[1]) if found else None
+
+
+def main():
+    with tempfile.TemporaryDirectory() as d:
+        out = os.path.join(d, "report")
+        for flags in ([], ["--one-file"]):
+            p = subprocess.run([PROGRAM, "report", STORE, "--out=" + out,
+                                *flags], capture_output=True, text=True)
+            check(p.returncode == 0, p.stderr)
+            index = os.path.join(out, "index.html")
+            pages = sorted(glob.glob(os.path.join(out, "*", "index.html")))
+            if not flags:
+                check(os.path.getsize(index) < LARGEST_INDEX,
+                      f"the index has {os.path.getsize(index)} bytes")
+            if not flags:
+                check(len(pages) > 40, f"{len(pages)} pages")
+            looked_at = [index] + ([] if flags else pages)
+            found = sum(links(path) for path in looked_at)
+            entries = sum(legends(path) for path in looked_at)
+            check(found > 500 and entries > 100,
+                  f"{found} links, {entries} entries of legends")
+            print(f"{len(looked_at)} pages, {found} links, {entries} entries "
+                  f"of legends, {os.path.getsize(index)} bytes of index")
+            chromium = shutil.which("chromium")
+            if not chromium or flags:
+                continue
+            largest = sorted(pages, key=os.path.getsize)[-3:]
+            for path in [index, *largest]:
+                for width in WIDTHS:
+                    wide = too_wide(chromium, path, width, d)
+                    check(wide is not None and wide <= 0,
+                          f"{path} is {wide} too wide for {width}")
+    sys.exit(f"{len(FAILED)} failed" if FAILED else 0)
+
+
+main()
