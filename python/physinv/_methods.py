@@ -42,14 +42,14 @@ def method(name, experiments="*", needs="vjp", iterations=1000, **options):
     calls counted, its budget. It returns x, or x and a dict of status,
     iterations and evaluations per example. An exception fails its stage, and
     the campaign goes on. `physinv.run` has it in every profile, on the n and
-    seeds of its rows. The key of its results has the hash of its file, the
-    options, and Python's version; `version=scipy.__version__` adds another."""
+    seeds of its rows. The key of its results has its name, the hash of its
+    file, the options, and Python's version; `version=scipy.__version__` adds another."""
     needs = [needs] if isinstance(needs, str) else list(needs)
 
     def add(function):
         matching = fnmatch.filter(_core.problems(), experiments)
         text = hashlib.sha256(_source(function).encode()).hexdigest()[:32]
-        words = [("source", text),
+        words = [("method", name), ("source", text),
                  ("python", "%d.%d" % sys.version_info[:2])]
         words += [(key, str(value)) for key, value in options.items()]
         added = _core.add_method(name, function, matching, needs, words,

@@ -114,7 +114,7 @@ class Pendulum(unittest.TestCase):
         traced = WORK + "/traced"
         pendulum("--profile=smoke", "--trace", "--out=" + traced)
         pendulum("baseline", traced, "--out=" + baseline)
-        self.assertIn("0 worse",
+        self.assertIn("accuracy: 2 same",
                       pendulum("gate", "--baseline=" + baseline))
 
     def test_5_the_stock_program_says_what_it_cannot(self):

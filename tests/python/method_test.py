@@ -5,8 +5,10 @@ recorded, reused, verified, reported; what fails, fails alone."""
 import importlib.util
 import os
 import shutil
+import signal
 import subprocess
 import sys
+import time
 import unittest
 
 try:
@@ -50,6 +52,28 @@ def single(run):
             if k < run.iterations:
                 x[i] -= 0.1 * gradient[0]
     return x, {"status": ["gtol"] * run.n, "iterations": [3] * run.n}
+'''
+
+KILLED = '''
+import os, sys, time
+import physinv
+
+def stay(run, seconds):
+    x = run.start
+    while run.proceed(x):
+        time.sleep(seconds)
+    return x
+
+@physinv.method("py-first", experiments="jpo/robotic-arm", iterations=1)
+def first(run):
+    return stay(run, 0)
+
+@physinv.method("py-last", experiments="jpo/robotic-arm", iterations=1)
+def last(run):
+    return stay(run, 60 * int(os.environ["STAYS"]))
+
+physinv.run("smoke", filter="^jpo/robotic-arm/py-(first|last)/", jobs=2,
+            out=sys.argv[1])
 '''
 
 
@@ -128,6 +152,10 @@ class Methods(unittest.TestCase):
         with open(WORK + "/smoke/report/report.md") as f:
             self.assertIn("py-momentum", f.read())
 
+    def test_no_two_share_a_key(self):
+        keys = [r["key"] for r in self.rows.values()]
+        self.assertEqual(len(set(keys)), len(keys))
+
     def test_zz_an_edit_makes_it_stale(self):
         before = {m: r["key"] for m, r in self.rows.items()}
         again, _, _ = run()
@@ -137,6 +165,35 @@ class Methods(unittest.TestCase):
         for method, row in edited.items():
             same = row["key"] == before[method]
             self.assertEqual(same, method == "bfgs", method)
+
+    def test_killed_and_taken_up_again(self):
+        script, out = WORK + "/killed.py", WORK + "/killed"
+        with open(script, "w") as f:
+            f.write(KILLED)
+
+        def start(stays):
+            return subprocess.Popen(
+                [sys.executable, script, out], text=True, stdout=subprocess.PIPE,
+                env=dict(os.environ, STAYS=str(stays)), start_new_session=True)
+        process = start(1)
+        self.wait_for_a_stage(out)
+        os.killpg(process.pid, signal.SIGKILL)
+        process.communicate()
+        again, _ = start(0).communicate()
+        rows = physinv.open(out).stages()
+        self.assertEqual({r["method"]: r["stop"] for r in rows},
+                         {"py-first": "iterations", "py-last": "iterations"})
+        self.assertIn("1 stages run, 1 reused", again)
+
+    def wait_for_a_stage(self, out):
+        for _ in range(300):
+            try:
+                if physinv.open(out).stages():
+                    return
+            except RuntimeError:
+                pass  # nothing there yet
+            time.sleep(0.1)
+        self.fail("no stage finished")
 
     def test_errors_have_words(self):
         with self.assertRaisesRegex(ValueError, "has a method bfgs"):
