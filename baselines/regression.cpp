@@ -9,6 +9,7 @@
 
 #include "optimizers/training/first_order.h"
 #include "optimizers/training/loop.h"
+#include "suite/core/check.h"
 #include "suite/core/math.h"
 #include "suite/core/oracle.h"
 #include "suite/core/probe.h"
@@ -31,7 +32,17 @@ class Passes {
     at_ += count;
     return {order_.data() + at_ - count, count};
   }
-  void keep(Archive& archive) { archive(order_, at_, pass_); }
+  void keep(Archive& archive) {
+    const std::size_t all = order_.size();
+    archive(order_, at_, pass_);
+    std::vector<bool> seen(all, false);
+    for (const Index i : order_)
+      if (i >= 0 && static_cast<std::size_t>(i) < all)
+        seen[static_cast<std::size_t>(i)] = true;
+    SUITE_CHECK(order_.size() == all && at_ <= all &&
+                    std::find(seen.begin(), seen.end(), false) == seen.end(),
+                "a state of other examples");
+  }
 
  private:
   void shuffle() {

@@ -33,6 +33,8 @@ void AdaHessian<T>::step(VectorIn<T> x,
                   x.size() == to.size(),
               "vectors of another size");
   if (steps_ == 0) m_.setZero(x.size()), v_.setZero(x.size());
+  SUITE_CHECK(m_.size() == x.size() && v_.size() == x.size(),
+              "the vector changed its size");
   ++steps_;
   average<T>(tensors_, curvature);
   const auto t = static_cast<double>(steps_);

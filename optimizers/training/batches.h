@@ -5,6 +5,7 @@
 /// afresh.
 #pragma once
 
+#include "suite/core/check.h"
 #include "suite/core/method.h"
 
 namespace physinv {
@@ -29,7 +30,11 @@ class Batches {
   void keep_labels();
 
   /// Which batch is next; the samples follow from the case.
-  void keep(Archive& archive) { archive(drawn_, at_); }
+  void keep(Archive& archive) {
+    archive(drawn_, at_);
+    SUITE_CHECK(drawn_ >= 0 && at_ >= 0 && at_ < slices_,
+                "a state of other batches");
+  }
 
   Index size() const { return size_; }
   /// Problems used so far, those of earlier stages included.

@@ -19,6 +19,7 @@
 
 #include "optimizers/conjugate_gradients.h"
 #include "optimizers/training/rule.h"
+#include "suite/core/check.h"
 #include "suite/core/options.h"
 #include "suite/core/recipe.h"
 
@@ -63,6 +64,9 @@ class HessianFreeRule final : public Rule<T> {
   bool operator()(Signal<T>& signal) override;
   void keep(Archive& archive) override {
     archive(damping_, start_, reports_, stored_);
+    SUITE_CHECK(
+        start_.size() == 0 || start_.size() == model_.parameters().size(),
+        "a state of another network");
   }
   void leave(Outcome& out) const override;
   std::size_t bytes() const override;

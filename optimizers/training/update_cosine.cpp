@@ -4,6 +4,7 @@
 #include "optimizers/training/batches.h"
 #include "optimizers/training/output_map.h"
 #include "optimizers/training/signal.h"
+#include "suite/core/check.h"
 #include "suite/core/oracle.h"
 #include "suite/core/probe.h"
 
@@ -46,6 +47,12 @@ class WatchedProxy final : public Signal<T> {
 
   void keep(Archive& archive) override {
     archive(*proxy_, input_, target_, before_, wanted_, cosines_, next_);
+    const Index unknowns = run_.oracle.shape().unknowns;
+    SUITE_CHECK(
+        !waits() || (input_.cols() == batches_.size() &&
+                     target_.cols() == batches_.size() &&
+                     before_.size() == unknowns && wanted_.size() == unknowns),
+        "a state of other batches");
   }
   void leave(Outcome& out) const override {
     proxy_->leave(out);

@@ -3,7 +3,9 @@
 ///
 ///   void keep(Archive& archive) { archive(m_, v_, steps_); }
 ///
-/// Numbers stand as they lie in memory: for the build that wrote them.
+/// Numbers stand as they lie in memory: for the build that wrote them. What is
+/// given back may be anything: matrices that have rows, or numbers, keep their
+/// shape; whatever else must fit, its part checks.
 #pragma once
 
 #include <cstring>
@@ -46,6 +48,13 @@ class Archive {
     }
   }
 
+  void one(bool& part) {
+    auto byte = static_cast<unsigned char>(part);
+    one(byte);
+    SUITE_CHECK(byte <= 1, "a state holds neither true nor false");
+    part = byte == 1;
+  }
+
   template <class T, int rows, int cols, int options>
   void one(Eigen::Matrix<T, rows, cols, options>& matrix) {
     Index r = matrix.rows(), c = matrix.cols();
@@ -55,6 +64,9 @@ class Archive {
                     (rows == Eigen::Dynamic || r == rows) &&
                     (cols == Eigen::Dynamic || c == cols),
                 "a state has no such shape");
+    SUITE_CHECK((matrix.rows() == 0 || r == matrix.rows()) &&
+                    (matrix.size() == 0 || c == matrix.cols()),
+                "a state of another shape");
     require(r, require(c, sizeof(T)));
     matrix.resize(r, c);
     raw(matrix.data(), sizeof(T) * static_cast<std::size_t>(matrix.size()));

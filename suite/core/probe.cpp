@@ -150,7 +150,7 @@ void Probe::keep(Archive& archive) {
     check_size(curve_.loss, loss_.size(), curve_.points());
     check_size(curve_.x, tracked_ * x_.rows(), curve_.points());
   }
-  archive(setup_, warmup_, solve_, measure_);
+  archive(setup_, warmup_, data_, solve_, measure_);
 }
 
 Clocks Probe::clocks() const {

@@ -45,7 +45,7 @@ TEST(Archive, GivesBackWhatItCollected) {
   EXPECT_FALSE(collected.reading());
 
   Outer to;
-  to.vector.setOnes(2);
+  to.vector.setOnes(7);
   Archive archive(collected.bytes());
   EXPECT_TRUE(archive.reading());
   EXPECT_FALSE(archive.at_end());
@@ -67,6 +67,36 @@ TEST(Archive, EmptyMatricesKeepTheirShapes) {
   Archive(collected.bytes())(to);
   EXPECT_EQ(to.rows(), 4);
   EXPECT_EQ(to.cols(), 0);
+}
+
+TEST(Archive, WhatHasAShapeKeepsIt) {
+  Batch<double> from = Batch<double>::Ones(3, 5);
+  Archive collected;
+  collected(from);
+  const auto into = [&](Index rows, Index cols) {
+    Batch<double> to = Batch<double>::Zero(rows, cols);
+    Archive(collected.bytes())(to);
+    return to == from;
+  };
+  EXPECT_TRUE(into(3, 5));
+  EXPECT_TRUE(into(3, 0)) << "columns may come";
+  EXPECT_TRUE(into(0, 0));
+  EXPECT_THROW(into(4, 0), ContractError);
+  EXPECT_THROW(into(3, 4), ContractError);
+  EXPECT_THROW(into(5, 3), ContractError);
+}
+
+TEST(Archive, ABoolIsTrueOrFalse) {
+  for (const char byte : {0, 1, 2, -1}) {
+    Archive archive(std::string(1, byte));
+    bool on = false;
+    if (byte == 0 || byte == 1) {
+      archive(on);
+      EXPECT_EQ(on, byte == 1);
+    } else {
+      EXPECT_THROW(archive(on), ContractError);
+    }
+  }
 }
 
 TEST(Archive, RefusesAStateThatIsTooShort) {
