@@ -163,7 +163,7 @@ class Pendulum(unittest.TestCase):
             self.assertIn(why, out)
         refused(WORK + "/none.so", "there is no plug-in")
         refused(PREFIX + "/lib/libphysinv_core.a", "is no plug-in")
-        refused("", "--plugin needs a file")
+        refused("", "--plugin= is empty")
         with open(plugin, "rb") as f:
             code = f.read()
         mark = b"physinv plug-in of build "
