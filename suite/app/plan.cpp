@@ -232,7 +232,7 @@ void print_workers(const std::vector<Cost>& costs) {
 
 /// Of all chains however long that takes, or soon.
 std::vector<Cost> costs_of(const std::vector<Case>& cases, bool exact) {
-  constexpr double kSeconds = 12;
+  constexpr double kSeconds = 8;
   Trials trials = known_speeds();
   if (exact) {
     auto costs = predict(cases, trials, [](const Case& c) {

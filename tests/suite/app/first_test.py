@@ -168,6 +168,23 @@ def a_budget_is_kept(d):
            "[6/6]")
 
 
+def a_plan_soon(d):
+    """Whatever a method does when it is tried, there is an answer, and soon."""
+    for profile in ("bad", "slow", "quick"):
+        begin = time.time()
+        p = run("plan", "--profile=" + profile, cwd=d,
+                env={"XDG_CACHE_HOME": os.path.join(d, "new")})
+        seconds = time.time() - begin
+        check(p.returncode == 0 and seconds < 20,
+              f"plan of {profile}: {p.returncode} after {seconds:.1f} s")
+        check(re.search(r"^fake/cubic .*\n\d+ cases: ", p.stdout, re.M),
+              "by experiment, with a sum")
+    p = run("plan", "--profile=quick", "--exact", "--each", cwd=d,
+            env={"XDG_CACHE_HOME": os.path.join(d, "new")})
+    check(p.stdout.count("/seed=") == 18 and "?" not in p.stdout,
+          "--each and --exact")
+
+
 def nearest(d):
     p = expect(2, ["--set=methods=walc"], d, "unknown method 'walc'")
     words = p.stderr.strip().split("nearest are ")[1].split(", ")
@@ -218,7 +235,7 @@ with tempfile.TemporaryDirectory() as directory:
     os.mkdir(os.path.join(directory, "published"))
     for test in (says_what_it_does, says_less, a_page_that_fails,
                  filters_without_a_flag, recorded, a_campaign_file,
-                 a_budget_is_kept, nearest, help_and_version,
+                 a_budget_is_kept, a_plan_soon, nearest, help_and_version,
                  as_wide_as_the_terminal, claims):
         test(directory)
 sys.exit(f"{len(FAILED)} failed: {FAILED}" if FAILED else 0)
