@@ -329,6 +329,18 @@ CampaignResult run_all(Prepared prepared,
   return result;
 }
 
+/// A reader that sleeps keeps nobody from ending it.
+void say_what_runs(const RunFlags& flags,
+                   const std::vector<Case>& cases,
+                   const Screen& screen) {
+  const std::string text = begin_text(flags, cases);
+  const StopSignalWatch watch;
+  put(screen.stream, text);
+  if (stop_signals() > 0)
+    throw ExitError(ExitCode::interrupted,
+                    "interrupted before the first case; nothing was run");
+}
+
 /// Pages and lines; what a run came to goes before what they came to.
 void end_with(const RunFlags& flags,
               const std::vector<CaseRecord>& own,
@@ -375,7 +387,7 @@ ExitCode run_verb(const Arguments& arguments) {
             Screen::of(stdout));
     return ExitCode::good;
   }
-  if (!flags.quiet) put(screen.stream, begin_text(flags, cases));
+  if (!flags.quiet) say_what_runs(flags, cases, screen);
   Prepared prepared = prepare(std::move(cases));
   if (flags.campaign.time_budget > 0)
     follow_budget(flags.campaign, prepared.cases);

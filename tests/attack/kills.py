@@ -15,7 +15,7 @@ IN_A_ROW = 5  # accidents of a campaign before it may end
 LONG = {"iterations": 40_000, "checkpoint": "1"}
 BRIEF = {"iterations": 4_000, "checkpoint": "0.05"}
 OWN = re.compile(r"(lock|journal\.jsonl|plan\.json|results\.json|cases"
-                 r"|cases/[^/]*\.h5|checkpoints)?")
+                 r"|cases/[^/]*\.h5|checkpoints|report(/.*)?)?")
 STOPS = (signal.SIGINT, signal.SIGTERM)
 OTHERS = (signal.SIGHUP, signal.SIGQUIT, signal.SIGUSR1, signal.SIGALRM,
           signal.SIGXFSZ, signal.SIGPIPE, signal.SIGWINCH)
