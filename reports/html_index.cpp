@@ -61,6 +61,19 @@ std::string numbers_html(const Section& section) {
          rows + "</tbody>\n</table>\n</div>\n";
 }
 
+/// What was measured where a condition does not hold; else all the evidence.
+std::string failure_of(const ClaimResult& claim) {
+  std::string text;
+  for (const ConditionResult& c : claim.conditions)
+    if (c.holds && !*c.holds && c.value)
+      text += fmt::format("{}{} {}, not {}",
+                          text.empty() ? "" : "; ",
+                          c.label,
+                          value_text(*c.value),
+                          c.bounds);
+  return text.empty() ? claim.evidence : text;
+}
+
 /// Statements that do not hold, with what was measured and why.
 std::string failing_html(const Section& section) {
   std::string items;
@@ -72,7 +85,7 @@ std::string failing_html(const Section& section) {
         html(c.id),
         html(c.says),
         c.where.empty() ? "" : " (" + html(c.where) + ")",
-        html(c.evidence),
+        html(failure_of(c)),
         c.note.empty() ? "" : ". " + html(c.note),
         mark_of(c.verdict),
         words_of(c.verdict, c.origin));

@@ -11,14 +11,6 @@
 namespace physinv {
 namespace {
 
-/// Counts as they are, all else with three digits.
-std::string value_text(double value) {
-  constexpr double kCounts = 1e6;
-  return value == std::round(value) && std::abs(value) < kCounts
-             ? fmt::format("{:.0f}", value)
-             : fmt::format("{:.3g}", value);
-}
-
 bool is_decided(const ClaimResult& c) {
   return c.verdict != Verdict::not_judged && c.verdict != Verdict::reported;
 }
@@ -112,6 +104,13 @@ void add_cells(std::vector<Statement>& all,
 }
 
 }  // namespace
+
+std::string value_text(double value) {
+  constexpr double kCounts = 1e6;
+  return value == std::round(value) && std::abs(value) < kCounts
+             ? fmt::format("{:.0f}", value)
+             : fmt::format("{:.3g}", value);
+}
 
 std::vector<Statement> statements_of(const Section& section, std::size_t most) {
   std::vector<Statement> all;

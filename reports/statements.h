@@ -15,6 +15,9 @@ struct Statement {
   Origin origin = Origin::paper;
 };
 
+/// Counts as they are, all else with three digits.
+std::string value_text(double value);
+
 /// At most so many, in this order: the paper's statements that are decided,
 /// those that do not hold first; the suite's ranges that fail; cells of tables
 /// beside which the paper printed a number, of each table in turn. Tables of

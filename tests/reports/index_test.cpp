@@ -74,8 +74,9 @@ TEST(Index, GroupsAreInTheOrderAskedFor) {
 TEST(Index, FailingStatementsAreSentencesAndOpenOnesALine) {
   const std::string page = index();
   EXPECT_NE(
-      page.find("<strong>P2</strong> P2 is &lt;so&gt; (Fig. 1): measured. "
-                "as it is"),
+      page.find(
+          "<strong>P2</strong> P2 is &lt;so&gt; (Fig. 1): x 1.25, not &gt; 2. "
+          "as it is"),
       page.npos);
   EXPECT_EQ(page.find("P3 is"), page.npos);
   EXPECT_NE(page.find("2 not judged; decided by profile paper"), page.npos);
