@@ -45,7 +45,7 @@ TEST_P(WordsOf, StandInTheReport) {
 TEST_P(WordsOf, ComeWithTheirCause) {
   EXPECT_NE(report_markdown(sections_, {}).find(cause_), std::string::npos);
   EXPECT_NE(report_html(sections_, {}).find(cause_), std::string::npos);
-  EXPECT_NE(render_claims_text(sections_, 80).find(cause_), std::string::npos);
+  EXPECT_NE(render_claims_text(sections_, 200).find(cause_), std::string::npos);
   EXPECT_EQ(claim_from(to_json(claim_)).cause, "a choice");
   const std::string page =
       results_markdown({{"a", digest_json(sections_, {{"profile", "quick"}})}});

@@ -220,6 +220,8 @@ def expected_failures(d):
     expect(0, args, d, "holds, although listed as expected to fail: fake/cub")
     listed("list.json", {**entry, "claim": "R2"})
     expect(2, args, d, "no claim R2 of fake/cubic")
+    listed("list.json", {"experiment": "fake/cubic", "claim": "R1"})
+    expect(2, args, d, "has no reason, and its claim no cause", env=doubt)
     listed("list.json")
     expect(7, args, d, "R1", env=doubt)
     listed("expected_failures.json", entry)
