@@ -18,8 +18,7 @@ class Direct final : public StepwiseSolver {
       : options_(options),
         probe_(run.probe),
         oracle_(run.oracle),
-        problem_(oracle_.recipe().make<T>()),
-        projection_(dynamic_cast<const GradientProjection<T>*>(problem_.get())),
+        problem_(oracle_.problem<T>()),
         x_(oracle_.start().template cast<T>()),
         given_(oracle_.given().template cast<T>()),
         target_(oracle_.observations().template cast<T>()),
@@ -27,8 +26,7 @@ class Direct final : public StepwiseSolver {
         g_(y_),
         jacobian_(y_.rows() * x_.rows(), x_.cols()),
         update_(x_.rows()),
-        examples_(x_.cols()),
-        work_(run.threads) {}
+        examples_(x_.cols()) {}
 
   void step() override {
     update();
@@ -38,17 +36,14 @@ class Direct final : public StepwiseSolver {
   void leave(Outcome& out) override {
     examples_.leave(out);
     out.bytes = bytes();
-    oracle_.add(work_.counts);
+    oracle_.add(problem_.counts());
   }
 
  private:
   void update() {
-    problem_->forward(x_, given_, y_, work_);
-    problem_->loss_gradient(y_, target_, g_);
-    if (projection_ != nullptr) projection_->project(y_, g_);
-    dynamic_cast<const Jacobian<T>&>(*problem_).jacobian(
-        x_, given_, jacobian_, work_);
-    oracle_.add(Counter::jacobian, x_.cols());
+    problem_.jacobian(x_, given_, y_, jacobian_);
+    problem_.loss_gradient(y_, target_, g_);
+    problem_.project(y_, g_);
     for (Index i = 0; i < x_.cols(); ++i) {
       if (!examples_.running(i)) continue;
       s_ = Eigen::Map<const Batch<T>>(
@@ -72,21 +67,20 @@ class Direct final : public StepwiseSolver {
                           y_.size() + g_.size() + jacobian_.size();
     const Index doubles = 2 * s_.size() + update_.size();  // s_ and its powers
     return static_cast<std::size_t>(numbers) * sizeof(T) +
-           static_cast<std::size_t>(doubles) * sizeof(double) + work_.bytes();
+           static_cast<std::size_t>(doubles) * sizeof(double) +
+           problem_.bytes();
   }
 
   const HalfInverseDirectOptions& options_;
   Probe& probe_;
   Oracle& oracle_;
-  std::unique_ptr<Problem<T>> problem_;
-  const GradientProjection<T>* projection_;
+  CountedProblem<T> problem_;
   Batch<T> x_, given_, target_, y_, g_, jacobian_;
   Vector<T> next_;
   Batch<double> s_;
   Vector<double> update_;
   hig::ExplicitPower power_;
   Examples examples_;
-  Workspace work_;
 };
 
 }  // namespace

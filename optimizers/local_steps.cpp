@@ -9,7 +9,6 @@
 #include "optimizers/stepwise.h"
 #include "optimizers/training/newton.h"
 #include "suite/core/check.h"
-#include "suite/core/closed_steps.h"
 #include "suite/core/decompositions.h"
 #include "suite/core/option_check.h"
 #include "suite/core/oracle.h"
@@ -42,8 +41,7 @@ class LocalSteps final : public StepwiseSolver {
       : options_(options),
         probe_(run.probe),
         oracle_(run.oracle),
-        problem_(oracle_.recipe().make<T>()),
-        closed_(dynamic_cast<const ClosedSteps<T>*>(problem_.get())),
+        problem_(oracle_.problem<T>()),
         rate_(static_cast<T>(options.rate)),
         x_(oracle_.start().template cast<T>()),
         next_(x_),
@@ -53,13 +51,11 @@ class LocalSteps final : public StepwiseSolver {
         y_bar_(y_),
         path_(x_.rows() * std::min(options.paths, x_.cols()),
               run.iterations + 1),
-        examples_(x_.cols()),
-        work_(run.threads),
-        tape_(run.threads) {
+        examples_(x_.cols()) {
     check_numbers<T>({{"rate", options.rate}});
     if constexpr (std::is_same_v<T, double>)
-      search_ = std::make_unique<NumericInverse>(
-          *problem_, options.search, run.threads);
+      search_ = std::make_unique<NumericInverse>(oracle_.problem<double>(),
+                                                 options.search);
     if (options.rule) {
       check_rule<T>(*options.rule);
       rule_.emplace(*options.rule);
@@ -80,7 +76,7 @@ class LocalSteps final : public StepwiseSolver {
     if (path_.rows() > 0) out.arrays["path"] = path_;
     out.bytes = bytes();
     if (search_) oracle_.add(search_->counts());
-    oracle_.add(work_.counts);
+    oracle_.add(problem_.counts());
   }
 
  private:
@@ -108,9 +104,7 @@ class LocalSteps final : public StepwiseSolver {
         return;
       case LocalStep::inverse_simulator:
         closer_observation();
-        dynamic_cast<const Inverse<T>&>(*problem_).invert(
-            y_, given_, x_, next_, work_);
-        oracle_.add(Counter::inverse, x_.cols());
+        problem_.invert(y_, given_, x_, next_);
         return;
       case LocalStep::inverse_search:
         closer_observation();
@@ -129,25 +123,19 @@ class LocalSteps final : public StepwiseSolver {
 
   /// d loss / d x, in next_.
   void gradient() {
-    const auto& vjp = dynamic_cast<const Vjp<T>&>(*problem_);
-    vjp.linearize(x_, given_, y_, tape_);
-    problem_->loss_gradient(y_, target_, y_bar_);
-    vjp.pullback(tape_, y_bar_, next_, work_);
-    oracle_.add(Counter::vjp, x_.cols());
+    problem_.linearize(x_, given_, y_);
+    problem_.loss_gradient(y_, target_, y_bar_);
+    problem_.pullback(y_bar_, next_);
   }
 
   /// -H^-1 d loss / d x, in next_.
   void newton() {
-    if (closed_ != nullptr) {
-      closed_->newton_step(x_, given_, target_, next_);
-      oracle_.add(Counter::vjp, x_.cols());
-      return;
-    }
+    if (problem_.has_closed_steps())
+      return problem_.newton_step(x_, given_, target_, next_);
     gradient();
     const Index d = x_.rows();
     matrix_.resize(d * d, x_.cols());
-    dynamic_cast<const Hessian<T>&>(*problem_).hessian(
-        x_, given_, target_, matrix_, work_);
+    problem_.hessian(x_, given_, target_, matrix_);
     for (Index i = 0; i < x_.cols(); ++i) {
       const Eigen::Map<const Batch<T>> h(matrix_.col(i).data(), d, d);
       next_.col(i) = newton_step({.flip = false},
@@ -159,15 +147,10 @@ class LocalSteps final : public StepwiseSolver {
 
   /// J^-1 (y* - y), in next_.
   void inverse_gradient() {
-    oracle_.add(Counter::jacobian, x_.cols());
-    if (closed_ != nullptr) {
-      closed_->inverse_gradient_step(x_, given_, target_, next_);
-      return;
-    }
-    forward();
+    if (problem_.has_closed_steps())
+      return problem_.inverse_gradient_step(x_, given_, target_, next_);
     matrix_.resize(y_.rows() * x_.rows(), x_.cols());
-    dynamic_cast<const Jacobian<T>&>(*problem_).jacobian(
-        x_, given_, matrix_, work_);
+    problem_.jacobian(x_, given_, y_, matrix_);
     for (Index i = 0; i < x_.cols(); ++i) {
       const Eigen::Map<const Batch<T>> j(
           matrix_.col(i).data(), y_.rows(), x_.rows());
@@ -179,14 +162,9 @@ class LocalSteps final : public StepwiseSolver {
     }
   }
 
-  void forward() {
-    problem_->forward(x_, given_, y_, work_);
-    oracle_.add(Counter::forward, x_.cols());
-  }
-
   /// y + dy, in y_.
   void closer_observation() {
-    forward();
+    problem_.forward(x_, given_, y_);
     BatchOut<T> out = y_;
     for_numbers<T>(y_, target_, out, [rate = rate_](T y, T goal) {
       return std::fma(rate, goal - y, y);
@@ -217,14 +195,13 @@ class LocalSteps final : public StepwiseSolver {
         (rule_ ? rule_->numbers_per_parameter() : 0) * x_.size();
     return static_cast<std::size_t>(numbers) * sizeof(T) +
            static_cast<std::size_t>(path_.size()) * sizeof(double) +
-           (search_ ? search_->bytes() : 0) + work_.bytes() + tape_.bytes();
+           (search_ ? search_->bytes() : 0) + problem_.bytes();
   }
 
   const LocalStepsOptions& options_;
   Probe& probe_;
   Oracle& oracle_;
-  std::unique_ptr<Problem<T>> problem_;
-  const ClosedSteps<T>* closed_;
+  CountedProblem<T> problem_;
   std::unique_ptr<NumericInverse> search_;
   std::optional<UpdateStep<T>> rule_;
   T rate_;
@@ -232,8 +209,6 @@ class LocalSteps final : public StepwiseSolver {
   Batch<double> path_;
   FullyPivoted<T> lu_;
   Examples examples_;
-  Workspace work_;
-  Tape tape_;
 };
 
 bool searches(const LocalStepsOptions& options) {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "optimizers/drive.h"
 #include "suite/core/check.h"
@@ -9,14 +10,11 @@
 
 namespace physinv {
 
-NumericInverse::NumericInverse(const Problem<double>& problem,
-                               const NumericInverseOptions& options,
-                               Threads* threads)
-    : problem_(problem),
+NumericInverse::NumericInverse(CountedProblem<double> problem,
+                               const NumericInverseOptions& options)
+    : problem_(std::move(problem)),
       options_(options),
-      solver_({.pgtol = options.pgtol, .ftol = options.ftol}),
-      work_(threads),
-      tape_(threads) {
+      solver_({.pgtol = options.pgtol, .ftol = options.ftol}) {
   check_numbers<double>({{"difference", options.difference}});
   SUITE_CHECK(options.difference >= 0, "a difference is not negative");
 }
@@ -44,26 +42,29 @@ void NumericInverse::invert(BatchIn<double> y,
   for (Index i = 0; i < x.cols(); ++i)
     if (!std::isfinite(solver_.loss()(i)))
       x.col(i).setConstant(std::numeric_limits<double>::quiet_NaN());
-  counts_[Counter::skipped_trials] += solver_.skipped_trials();
+  saved_[Counter::skipped_trials] += solver_.skipped_trials();
+}
+
+Counts NumericInverse::counts() const {
+  Counts all = problem_.counts();
+  all += saved_;
+  return all;
 }
 
 void NumericInverse::losses(BatchIn<double> x, VectorOut<double> loss) {
   y_.resizeLike(target_);
-  problem_.forward(x, given_, y_, work_);
+  problem_.forward(x, given_, y_);
   problem_.loss(y_, target_, loss);
-  counts_[Counter::forward] += static_cast<std::uint64_t>(x.cols());
 }
 
 void NumericInverse::exact(BatchIn<double> x,
                            VectorOut<double> loss,
                            BatchOut<double> gradient) {
-  const auto& vjp = dynamic_cast<const Vjp<double>&>(problem_);
   y_.resizeLike(target_), y_bar_.resizeLike(target_);
-  vjp.linearize(x, given_, y_, tape_);
+  problem_.linearize(x, given_, y_);
   problem_.loss(y_, target_, loss);
   problem_.loss_gradient(y_, target_, y_bar_);
-  vjp.pullback(tape_, y_bar_, gradient, work_);
-  counts_[Counter::vjp] += static_cast<std::uint64_t>(x.cols());
+  problem_.pullback(y_bar_, gradient);
 }
 
 void NumericInverse::differences(BatchIn<double> x,

@@ -7,8 +7,8 @@
 #pragma once
 
 #include "optimizers/lbfgsb.h"
+#include "suite/core/counted_problem.h"
 #include "suite/core/options.h"
-#include "suite/core/problem.h"
 
 namespace physinv {
 
@@ -26,18 +26,17 @@ struct NumericInverseOptions {
 
 class NumericInverse {
  public:
-  /// `problem` outlives this, and has a Vjp if gradients are to be exact.
-  NumericInverse(const Problem<double>& problem,
-                 const NumericInverseOptions& options,
-                 Threads* threads = nullptr);
+  /// `problem` has a Vjp if gradients are to be exact.
+  NumericInverse(CountedProblem<double> problem,
+                 const NumericInverseOptions& options);
 
   void invert(BatchIn<double> y,
               BatchIn<double> given,
               BatchIn<double> x_guess,
               BatchOut<double> x);
 
-  const Counts& counts() const { return counts_; }
-  std::size_t bytes() const { return work_.bytes() + tape_.bytes(); }
+  Counts counts() const;
+  std::size_t bytes() const { return problem_.bytes(); }
 
  private:
   void losses(BatchIn<double> x, VectorOut<double> loss);
@@ -48,14 +47,12 @@ class NumericInverse {
                    VectorOut<double> loss,
                    BatchOut<double> gradient);
 
-  const Problem<double>& problem_;
+  CountedProblem<double> problem_;
   NumericInverseOptions options_;
   Lbfgsb solver_;
   Batch<double> given_, target_, y_, y_bar_, moved_;  // of the active problems
   Vector<double> moved_loss_;
-  Workspace work_;
-  Tape tape_;
-  Counts counts_;
+  Counts saved_;
 };
 
 }  // namespace physinv

@@ -33,8 +33,7 @@ TrainingOptions at_rate(TrainingOptions options, double rate) {
 /// Mean loss after a training on the search's own data.
 double searched(const Stage& stage, const RateSearch& search, StageRun& run) {
   const Rng own = run.batches.child("rate_search");
-  Oracle oracle(
-      run.oracle.recipe(), search.problems, own, stage.needs(), run.threads);
+  Oracle oracle = run.oracle.sibling(search.problems, own, stage.needs());
   const auto updates = std::max<Index>(
       1, std::llround(search.share * static_cast<double>(run.iterations)));
   Probe probe(oracle, updates);

@@ -29,23 +29,14 @@ class NewtonProxy final : public BatchSignal<T> {
   NewtonProxy(const SignalPlace<T>& place, const NewtonOptions& options)
       : BatchSignal<T>(place),
         newton_(options),
-        problem_(place.run.oracle.recipe().template make<T>()),
-        vjp_(dynamic_cast<const Vjp<T>&>(*problem_)),
-        hessian_(dynamic_cast<const Hessian<T>&>(*problem_)),
-        tape_(place.run.threads),
-        work_(place.run.threads) {}
+        problem_(place.run.oracle.template problem<T>()) {}
 
-  Counts counts() const override {
-    Counts all = counts_;
-    all += work_.counts;
-    all += tape_.counts;
-    return all;
-  }
+  Counts counts() const override { return problem_.counts(); }
   std::size_t bytes() const override {
     return BatchSignal<T>::bytes() +
            static_cast<std::size_t>(y_.size() + y_bar_.size() + h_.size()) *
                sizeof(T) +
-           tape_.bytes() + work_.bytes();
+           problem_.bytes();
   }
 
  private:
@@ -59,12 +50,10 @@ class NewtonProxy final : public BatchSignal<T> {
     y_.resize(target.rows(), n);
     y_bar_.resizeLike(y_);
     h_.resize(d * d, n);
-    vjp_.linearize(x, given, y_, tape_);
-    problem_->loss_gradient(y_, target, y_bar_);
-    vjp_.pullback(tape_, y_bar_, x_bar, work_);
-    hessian_.hessian(x, given, target, h_, work_);
-    counts_[Counter::vjp] += static_cast<std::uint64_t>(n);
-    counts_[Counter::jacobian] += static_cast<std::uint64_t>(n);
+    problem_.linearize(x, given, y_);
+    problem_.loss_gradient(y_, target, y_bar_);
+    problem_.pullback(y_bar_, x_bar);
+    problem_.hessian(x, given, target, h_);
     for (Index i = 0; i < n; ++i) {
       const Eigen::Map<const Batch<T>> h(h_.col(i).data(), d, d);
       const Vector<double> dx =
@@ -77,13 +66,8 @@ class NewtonProxy final : public BatchSignal<T> {
   }
 
   NewtonOptions newton_;
-  std::unique_ptr<Problem<T>> problem_;
-  const Vjp<T>& vjp_;
-  const Hessian<T>& hessian_;
+  CountedProblem<T> problem_;
   Batch<T> y_, y_bar_, h_;
-  Tape tape_;
-  Workspace work_;
-  Counts counts_;
 };
 
 template <class T>

@@ -168,9 +168,8 @@ std::unique_ptr<OutputMap<T>> output_map(OutputForm form,
 template <class T>
 std::unique_ptr<OutputMap<T>> output_map(const Setting& setting,
                                          const Oracle& oracle) {
-  return output_map<T>(setting.output_form,
-                       setting.output_scale,
-                       oracle.recipe().template make<double>()->start());
+  return output_map<T>(
+      setting.output_form, setting.output_scale, oracle.look().start());
 }
 
 template class OutputMap<float>;

@@ -20,20 +20,15 @@ class Proxy final : public BatchSignal<T> {
  public:
   explicit Proxy(const SignalPlace<T>& place)
       : BatchSignal<T>(place),
-        problem_(place.run.oracle.recipe().template make<S>()),
-        inverse_(dynamic_cast<const Inverse<S>&>(*problem_)),
-        work_(place.run.threads) {
+        problem_(place.run.oracle.template problem<S>()) {
     if constexpr (!std::is_same_v<S, T>) place.batches.keep_exact();
   }
 
-  Counts counts() const override {
-    Counts all = counts_;
-    all += work_.counts;
-    return all;
-  }
+  Counts counts() const override { return problem_.counts(); }
   std::size_t bytes() const override {
     return BatchSignal<T>::bytes() +
-           static_cast<std::size_t>(wanted_.size()) * sizeof(S) + work_.bytes();
+           static_cast<std::size_t>(wanted_.size()) * sizeof(S) +
+           problem_.bytes();
   }
 
  private:
@@ -46,15 +41,13 @@ class Proxy final : public BatchSignal<T> {
     const auto given = this->batches_.given(first, n);
     if constexpr (std::is_same_v<S, T>) {
       const auto target = this->batches_.target(first, n);
-      inverse_.invert(target, given, x, wanted_, work_);
+      problem_.invert(target, given, x, wanted_);
     } else {
-      inverse_.invert(this->batches_.exact_target(first, n),
+      problem_.invert(this->batches_.exact_target(first, n),
                       given.template cast<S>(),
                       x.template cast<S>(),
-                      wanted_,
-                      work_);
+                      wanted_);
     }
-    counts_[Counter::inverse] += static_cast<std::uint64_t>(n);
     for (Index i = 0; i < n; ++i) {
       double sum = 0;
       for (Index j = 0; j < x.rows(); ++j) {
@@ -72,11 +65,8 @@ class Proxy final : public BatchSignal<T> {
     }
   }
 
-  std::unique_ptr<Problem<S>> problem_;
-  const Inverse<S>& inverse_;
+  CountedProblem<S> problem_;
   Batch<S> wanted_;
-  Workspace work_;
-  Counts counts_;
 };
 
 template <class T>

@@ -24,8 +24,7 @@ class WatchedProxy final : public Signal<T> {
         model_(place.model),
         batches_(place.batches),
         proxy_(proxy.make<T>(place)),
-        problem_(run_.oracle.recipe().template make<double>()),
-        inverse_(dynamic_cast<const Inverse<double>&>(*problem_)),
+        inverse_(dynamic_cast<const Inverse<double>&>(run_.oracle.look())),
         map_(output_map<T>(run_.setting, run_.oracle)),
         work_(run_.threads) {
     batches_.keep_exact();
@@ -100,7 +99,6 @@ class WatchedProxy final : public Signal<T> {
   NetworkModel<T>& model_;
   Batches<T>& batches_;
   std::unique_ptr<Signal<T>> proxy_;
-  std::unique_ptr<Problem<double>> problem_;
   const Inverse<double>& inverse_;
   std::unique_ptr<OutputMap<T>> map_;
   Workspace work_;

@@ -34,6 +34,7 @@
 
 #include <vector>
 
+#include "suite/core/gradient_projection.h"
 #include "suite/core/problem.h"
 #include "suite/core/recipe.h"
 

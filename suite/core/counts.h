@@ -11,7 +11,7 @@ namespace physinv {
 enum class Counter : std::uint8_t {
   forward,           ///< simulations
   vjp,               ///< simulations with a gradient (forward included)
-  jacobian,          ///< full Jacobians
+  jacobian,          ///< full Jacobians and Hessians (forward included)
   inverse,           ///< local inverses
   network_forward,   ///< network passes forward
   network_backward,  ///< network passes backward

@@ -77,16 +77,16 @@ Oracle::Oracle(const ProblemRecipe& recipe,
                Needs allowed,
                Threads* threads)
     : recipe_(recipe),
+      problem_(recipe_.make<double>()),
       rng_(data),
       allowed_(allowed),
       all_(static_cast<std::size_t>(count)),
       work_(std::make_unique<Workspace>(threads)),
       measuring_(std::make_unique<Workspace>(threads)) {
   SUITE_CHECK(count > 0, "a case has at least one problem");
-  const auto problem = recipe_.make<double>();
-  shape_ = problem->shape();
-  operations_ = problem->operations();
-  data_ = disturbed(problem->sample(0, count, rng_.child("data/test")));
+  shape_ = problem_->shape();
+  operations_ = problem_->operations();
+  data_ = disturbed(problem_->sample(0, count, rng_.child("data/test")));
   std::iota(all_.begin(), all_.end(), Index{0});
 }
 
@@ -107,7 +107,7 @@ Oracle::Side<double>& Oracle::side<double>() {
 }
 
 Batch<double> Oracle::start() const {
-  return recipe_.make<double>()->start().replicate(1, count());
+  return problem_->start().replicate(1, count());
 }
 
 template <class T>
@@ -203,15 +203,27 @@ const Samples<double>& Oracle::labelled(Index per_problem) {
 Samples<double> Oracle::labelled(Index first, Index count) const {
   SUITE_CHECK(contains(allowed_, Needs::labels),
               "the method asked for labels it did not declare");
-  return disturbed(recipe_.make<double>()->sample_labelled(
-      first, count, rng_.child("data/train")));
+  return disturbed(
+      problem_->sample_labelled(first, count, rng_.child("data/train")));
 }
 
 Samples<double> Oracle::training(Index first, Index count) const {
-  Samples<double> drawn = disturbed(
-      recipe_.make<double>()->sample(first, count, rng_.child("data/train")));
+  Samples<double> drawn =
+      disturbed(problem_->sample(first, count, rng_.child("data/train")));
   drawn.x.resize(0, count);
   return drawn;
+}
+
+template <class T>
+CountedProblem<T> Oracle::problem() const {
+  return {recipe_.make<T>(), allowed_, work_->threads()};
+}
+
+template CountedProblem<float> Oracle::problem() const;
+template CountedProblem<double> Oracle::problem() const;
+
+Oracle Oracle::sibling(Index count, const Rng& data, Needs allowed) const {
+  return {recipe_, count, data, allowed, work_->threads()};
 }
 
 void Oracle::measure(BatchIn<double> x, VectorOut<double> loss) {

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "suite/core/archive.h"
+#include "suite/core/counted_problem.h"
 #include "suite/core/problem.h"
 #include "suite/core/recipe.h"
 
@@ -56,10 +57,19 @@ class Oracle {
   Samples<double> labelled(Index first, Index count) const;
 
   /// Problems first .. first+count-1 of the same separate set, without their
-  /// solutions: for methods that learn from the physics. Whoever simulates
-  /// them with `recipe` adds the counts.
+  /// solutions: for methods that learn from the physics.
   Samples<double> training(Index first, Index count) const;
-  const ProblemRecipe& recipe() const { return recipe_; }
+
+  /// The problem in the precision T, to be run anywhere and on any data. Who
+  /// runs it adds its counts.
+  template <class T>
+  CountedProblem<T> problem() const;
+  /// Other problems of the same kind and configuration, from another stream.
+  Oracle sibling(Index count, const Rng& data, Needs allowed) const;
+
+  /// The problem for metrics and whoever else looks on: what it is, and runs
+  /// that are not part of a method's work. Not counted.
+  const Problem<double>& look() const { return *problem_; }
 
   /// Losses in double for curves and records; not counted, not part of a
   /// method's work.
@@ -92,6 +102,7 @@ class Oracle {
   struct Packed;
 
   ProblemRecipe recipe_;
+  std::unique_ptr<const Problem<double>> problem_;
   Rng rng_;
   Needs allowed_;
   Shape shape_;

@@ -173,8 +173,7 @@ TEST(LocalSteps, SearchFindsTheInversesPath) {
 }
 
 TEST(NumericInverse, HasNoneFromWhatIsNotFinite) {
-  const Scaling<double> problem({.power = 2});
-  NumericInverse search(problem, {});
+  NumericInverse search(counted_scaling({.power = 2}), {});
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInf = std::numeric_limits<double>::infinity();
   Batch<double> y(2, 4), guess(2, 4), x(2, 4);
@@ -211,11 +210,10 @@ TEST(LocalSteps, RefusesOptionsThatAreNoNumbers) {
   EXPECT_THROW(local_steps({.rate = nan}), ContractError);
   EXPECT_THROW(local_steps({.iterations = -1}), ContractError);
   EXPECT_THROW(local_steps({.paths = -1}), ContractError);
-  const Scaling<double> physics;
   for (const NumericInverseOptions& bad :
        {NumericInverseOptions{.difference = nan},
         NumericInverseOptions{.difference = -1}})
-    EXPECT_THROW(NumericInverse(physics, bad), ContractError);
+    EXPECT_THROW(NumericInverse(counted_scaling(), bad), ContractError);
   // A rate that is 0 in float.
   EXPECT_THROW(
       run_steps(

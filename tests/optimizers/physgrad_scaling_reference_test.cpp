@@ -259,9 +259,8 @@ void check_linear_loss(const Json& entry) {
 
 void check_numeric_inverse(const Json& entry) {
   const Json in = entry.at("inputs");
-  const Scaling<double> problem({.power = 2});
   for (const double h : {1e-8, 0.0}) {
-    NumericInverse search(problem, {.difference = h});
+    NumericInverse search(counted_scaling({.power = 2}), {.difference = h});
     Batch<double> x(2, 1);
     search.invert(vector(in.at("target"), 2),
                   Batch<double>::Ones(1, 1),

@@ -36,6 +36,12 @@ class Aimed final : public Scaling<T> {
   std::array<double, 2> target_;
 };
 
+inline CountedProblem<double> counted_scaling(
+    const ScalingOptions& options = {}) {
+  return {std::make_unique<Scaling<double>>(options),
+          Needs::forward | Needs::vjp};
+}
+
 struct StepsRun {
   Outcome out;
   Batch<double> given;

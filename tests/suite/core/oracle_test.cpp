@@ -99,6 +99,47 @@ TEST(Oracle, RefusesWhatWasNotDeclared) {
   EXPECT_NO_THROW(oracle.evaluate<double>(oracle.all(), oracle.start(), loss));
 }
 
+TEST(Oracle, HandsOutItsProblemCounted) {
+  Oracle oracle = make();
+  auto problem = oracle.problem<double>();
+  const Batch<double> x = oracle.start();
+  Batch<double> y(2, kCount), y_bar(2, kCount), gradient(2, kCount);
+  Vector<double> loss(kCount), expected_loss(kCount);
+  problem.linearize(x, oracle.given(), y);
+  problem.loss(y, oracle.observations(), loss);
+  problem.loss_gradient(y, oracle.observations(), y_bar);
+  EXPECT_EQ(problem.counts(), Counts{});
+  problem.pullback(y_bar, gradient);
+  problem.forward(x.leftCols(3), oracle.given().leftCols(3), y.leftCols(3));
+  Counts made;
+  made[Counter::vjp] = kCount;
+  made[Counter::forward] = 3;
+  EXPECT_EQ(problem.counts(), made);
+  EXPECT_EQ(oracle.counts(), Counts{}) << "until they are given back";
+  oracle.add(problem.counts());
+  EXPECT_EQ(oracle.counts(), made);
+  Batch<double> expected(2, kCount);
+  oracle.evaluate<double>(oracle.all(), x, expected_loss, expected);
+  EXPECT_TRUE(same_bits(loss, expected_loss));
+  EXPECT_TRUE(same_bits(gradient, expected));
+  // What the problem lacks, and what was not declared.
+  EXPECT_THROW(problem.invert(y, oracle.given(), x, gradient), ContractError);
+  auto forward_only = make(Needs::forward).problem<double>();
+  EXPECT_THROW(forward_only.linearize(x, oracle.given(), y), ContractError);
+}
+
+TEST(Oracle, SiblingsHaveOtherProblemsAndTheirOwnCounts) {
+  Oracle oracle = make();
+  Oracle other = oracle.sibling(4, kData.child("other"), Needs::forward);
+  EXPECT_EQ(other.count(), 4);
+  EXPECT_FALSE(same_bits(other.observations(),
+                         Batch<double>(oracle.observations().leftCols(4))));
+  Vector<double> loss(4);
+  other.evaluate<double>(other.all(), other.start(), loss);
+  EXPECT_EQ(other.counts()[Counter::forward], 4U);
+  EXPECT_EQ(oracle.counts(), Counts{});
+}
+
 TEST(Oracle, RefusesWrongShapes) {
   Oracle oracle = make();
   Vector<double> loss(kCount);

@@ -42,8 +42,8 @@ class Descent final : public Solver {
 
 /// The case's problem, with another noise floor if one is named.
 Heat<double> heat_of(const StageRun& run, double noise_floor = 0) {
-  const auto problem = run.oracle.recipe().make<double>();
-  HeatOptions options = dynamic_cast<const Heat<double>&>(*problem).options();
+  HeatOptions options =
+      dynamic_cast<const Heat<double>&>(run.oracle.look()).options();
   options.noise_floor = noise_floor;
   return Heat<double>(options);
 }
