@@ -80,11 +80,9 @@ void HalfInverseStep<T>::power_of_gram(const Network<T>& network,
                                        Index samples,
                                        Workspace& work) {
   const Index rows = g_.size(), per = rows / samples;
-  blocks_.clear();
-  for (const LayerRows<T>& l : layers_) blocks_.push_back(hig::gram_layer(l));
   gram_.resize(rows, rows);
   form_gram_.template operator()<T>(
-      blocks_, samples, per, gram_, work.threads());
+      layers_, samples, per, gram_, work.threads());
 
   out_bar_.resize(rows_.rows(), samples);
   column_.resize(parameters.size());
@@ -152,7 +150,7 @@ bool HalfInverseStep<T>::operator()(const Network<T>& network,
   const T unit = unit_of(solver.cwiseAbs().maxCoeff());
   if (unit != 1) rows_ /= unit;
   layers_.clear();
-  network.jacobian_rows(parameters, tape, rows_, layers_, work);
+  by_rows(network).jacobian_rows(parameters, tape, rows_, layers_, work);
   g_.resize(samples * per);
   for (Index i = 0; i < samples; ++i)
     for (Index c = 0; c < per; ++c)

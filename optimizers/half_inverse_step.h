@@ -73,7 +73,6 @@ class HalfInverseStep {
   hig::StructuredGram form_gram_;
   hig::HalfInverseReport report_;
   std::vector<LayerRows<T>> layers_;
-  std::vector<hig::GramLayer<T>> blocks_;
   Batch<T> rows_, out_bar_;
   Batch<double> gram_, update_;
   Vector<double> g_, reordered_;

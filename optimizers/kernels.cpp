@@ -144,13 +144,11 @@ struct Update {
 
   void rows() {
     layers.clear();
-    net->jacobian_rows(theta, tape, cotangents, layers, work);
+    by_rows(*net).jacobian_rows(theta, tape, cotangents, layers, work);
   }
   void form_gram() {
-    std::vector<GramLayer<double>> blocks;
-    for (const auto& l : layers) blocks.push_back(gram_layer(l));
     gram.resize(samples * per, samples * per);
-    form.operator()<double>(blocks, samples, per, gram);
+    form.operator()<double>(layers, samples, per, gram);
   }
   void pull_back() {
     column.resize(theta.size());

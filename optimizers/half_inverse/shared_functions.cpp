@@ -27,6 +27,110 @@ bool seen_alike(const LayerRows<T>& output,
 
 }  // namespace
 
+struct SharedFunctions::Sizes {
+  Index functions, samples, units, inputs;
+
+  Index shared() const { return units + 1; }
+  Index own() const { return units * (inputs + 1); }
+  /// Columns of the output layer, which come first.
+  Index outer() const { return functions * shared(); }
+  Index unit_of(Index e) const {
+    return e < units * inputs ? e / inputs : e - units * inputs;
+  }
+  template <class T>
+  bool fit(const LayerRows<T>& output, const LayerRows<T>& hidden) const {
+    return output.positions == 1 && hidden.positions == 1 &&
+           output.outputs == functions && output.inputs == units &&
+           samples >= shared() + own() + functions;
+  }
+};
+
+/// The function that sees the unit best; the others see it so much less.
+template <class T>
+Index SharedFunctions::best_function(const Sizes& n,
+                                     const T* weights,
+                                     Index unit) {
+  const auto factor = [&](Index c) {
+    return seen_[static_cast<std::size_t>(c)] *
+           static_cast<double>(weights[c * n.units + unit]);
+  };
+  Index best = 0;
+  for (Index c = 1; c < n.functions; ++c)
+    if (std::abs(factor(c)) > std::abs(factor(best))) best = c;
+  const double most = factor(best);
+  for (Index c = 0; c < n.functions; ++c)
+    ratio_[static_cast<std::size_t>(c * n.units + unit)] =
+        most == 0 ? 0 : factor(c) / most;
+  return best;
+}
+
+/// Columns d (outer) (x, 1) of a hidden unit.
+template <class T>
+void SharedFunctions::write_unit(const Sizes& n,
+                                 const LayerRows<T>& hidden,
+                                 Index unit,
+                                 Index function) {
+  const T* b = hidden.b + unit * hidden.b_stride + function;
+  double* const d = features_.column(n.shared() + n.units * n.inputs + unit);
+  for (Index i = 0; i < n.samples; ++i)
+    d[i] = static_cast<double>(b[i * n.functions]);
+  for (Index j = 0; j < n.inputs; ++j) {
+    const T* x = hidden.a + j * hidden.a_stride;
+    double* to = features_.column(n.shared() + unit * n.inputs + j);
+    for (Index i = 0; i < n.samples; ++i)
+      to[i] = d[i] * static_cast<double>(x[i]);
+  }
+}
+
+/// [F, g_1, g_2..]
+template <class T>
+void SharedFunctions::write_features(const Sizes& n,
+                                     const LayerRows<T>& output,
+                                     const LayerRows<T>& hidden,
+                                     VectorIn<T> parameters,
+                                     VectorIn<double> g) {
+  ratio_.resize(static_cast<std::size_t>(n.functions * n.units));
+  features_.open(n.samples, n.shared() + n.own() + n.functions);
+  for (Index k = 0; k < n.units; ++k) {
+    const T* a = output.a + k * output.a_stride;
+    double* to = features_.column(k);
+    for (Index i = 0; i < n.samples; ++i) to[i] = static_cast<double>(a[i]);
+  }
+  std::fill_n(features_.column(n.units), n.samples, 1.0);
+  const T* const weights = parameters.data() + output.offset;
+  for (Index k = 0; k < n.units; ++k)
+    write_unit(n, hidden, k, best_function(n, weights, k));
+  for (Index c = 0; c < n.functions; ++c) {
+    double* to = features_.column(n.shared() + n.own() + c);
+    for (Index i = 0; i < n.samples; ++i) to[i] = g(i * n.functions + c);
+  }
+}
+
+/// A function's rows of the result, and of what still has to become a triangle.
+void SharedFunctions::put_function(const Sizes& n,
+                                   Index function,
+                                   Index offset) {
+  const Index c = function, shared = n.shared(), own = n.own();
+  const Index at = c * shared, outer = n.outer(), h = outer + own;
+  const double s = seen_[static_cast<std::size_t>(c)];
+  for (Index k = 0; k < shared; ++k) {
+    place_[static_cast<std::size_t>(at + k)] =
+        offset + (k < n.units ? c * n.units + k : n.functions * n.units + c);
+    for (Index i = 0; i <= k; ++i) r_(at + i, at + k) = s * top_(i, k);
+    r_(at + k, h) = top_(k, shared + own + c);
+  }
+  for (Index e = 0; e < own; ++e) {
+    const double q =
+        ratio_[static_cast<std::size_t>(c * n.units + n.unit_of(e))];
+    for (Index i = 0; i < shared; ++i)
+      r_(at + i, outer + e) = q * top_(i, shared + e);
+    double* to = rest_.column(e) + c * own;
+    for (Index i = 0; i < own; ++i) to[i] = q * top_(shared + i, shared + e);
+  }
+  double* to = rest_.column(own) + c * own;
+  for (Index i = 0; i < own; ++i) to[i] = top_(shared + i, shared + own + c);
+}
+
 template <class T>
 bool SharedFunctions::triangle(std::span<const LayerRows<T>> layers,
                                VectorIn<T> parameters,
@@ -34,83 +138,25 @@ bool SharedFunctions::triangle(std::span<const LayerRows<T>> layers,
                                Index per_sample) {
   if (layers.size() != 2) return false;
   const LayerRows<T>&output = layers[0], &hidden = layers[1];
-  const Index functions = per_sample, rows = g.size();
-  const Index samples = rows / functions;
-  const Index units = hidden.outputs, inputs = hidden.inputs;
-  const Index shared = units + 1, own = units * (inputs + 1);
-  if (output.positions != 1 || hidden.positions != 1) return false;
-  if (output.outputs != functions || output.inputs != units) return false;
-  if (samples < shared + own + functions) return false;
-  if (!seen_alike(output, rows, seen_)) return false;
+  const Sizes n{.functions = per_sample,
+                .samples = g.size() / per_sample,
+                .units = hidden.outputs,
+                .inputs = hidden.inputs};
+  if (!n.fit(output, hidden)) return false;
+  if (!seen_alike(output, g.size(), seen_)) return false;
 
-  // d_k up to a factor from the function that sees unit k best.
-  const T* const weights = parameters.data() + output.offset;
-  const auto factor = [&](Index c, Index k) {
-    return seen_[static_cast<std::size_t>(c)] *
-           static_cast<double>(weights[c * units + k]);
-  };
-  ratio_.resize(static_cast<std::size_t>(functions * units));
-  features_.open(samples, shared + own + functions);
-  for (Index k = 0; k < units; ++k) {
-    const T* a = output.a + k * output.a_stride;
-    double* to = features_.column(k);
-    for (Index i = 0; i < samples; ++i) to[i] = static_cast<double>(a[i]);
-  }
-  std::fill_n(features_.column(units), samples, 1.0);
-  for (Index k = 0; k < units; ++k) {
-    Index best = 0;
-    for (Index c = 1; c < functions; ++c)
-      if (std::abs(factor(c, k)) > std::abs(factor(best, k))) best = c;
-    const double most = factor(best, k);
-    for (Index c = 0; c < functions; ++c)
-      ratio_[static_cast<std::size_t>(c * units + k)] =
-          most == 0 ? 0 : factor(c, k) / most;
-    const T* b = hidden.b + k * hidden.b_stride + best;
-    double* const d = features_.column(shared + units * inputs + k);
-    for (Index i = 0; i < samples; ++i)
-      d[i] = static_cast<double>(b[i * functions]);
-    for (Index j = 0; j < inputs; ++j) {
-      const T* x = hidden.a + j * hidden.a_stride;
-      double* to = features_.column(shared + k * inputs + j);
-      for (Index i = 0; i < samples; ++i)
-        to[i] = d[i] * static_cast<double>(x[i]);
-    }
-  }
-  for (Index c = 0; c < functions; ++c) {
-    double* to = features_.column(shared + own + c);
-    for (Index i = 0; i < samples; ++i) to[i] = g(i * functions + c);
-  }
-  top_.resize(shared + own, shared + own + functions);
+  const Index shared = n.shared(), own = n.own(), outer = n.outer();
+  write_features(n, output, hidden, parameters, g);
+  top_.resize(shared + own, shared + own + n.functions);
   triangularize(features_, shared + own, top_);
 
   // Column order: the output layer's, function by function, then the hidden
   // layer's as its parameters lie.
-  const Index outer = functions * shared, p = outer + own;
+  const Index p = outer + own;
   r_.setZero(p, p + 1);
-  rest_.open(functions * own, own + 1);
+  rest_.open(n.functions * own, own + 1);
   place_.resize(static_cast<std::size_t>(p));
-  const auto unit_of = [&](Index e) {
-    return e < units * inputs ? e / inputs : e - units * inputs;
-  };
-  for (Index c = 0; c < functions; ++c) {
-    const Index at = c * shared;
-    const double s = seen_[static_cast<std::size_t>(c)];
-    for (Index k = 0; k < shared; ++k) {
-      place_[static_cast<std::size_t>(at + k)] =
-          output.offset + (k < units ? c * units + k : functions * units + c);
-      for (Index i = 0; i <= k; ++i) r_(at + i, at + k) = s * top_(i, k);
-      r_(at + k, p) = top_(k, shared + own + c);
-    }
-    for (Index e = 0; e < own; ++e) {
-      const double q = ratio_[static_cast<std::size_t>(c * units + unit_of(e))];
-      for (Index i = 0; i < shared; ++i)
-        r_(at + i, outer + e) = q * top_(i, shared + e);
-      double* to = rest_.column(e) + c * own;
-      for (Index i = 0; i < own; ++i) to[i] = q * top_(shared + i, shared + e);
-    }
-    double* to = rest_.column(own) + c * own;
-    for (Index i = 0; i < own; ++i) to[i] = top_(shared + i, shared + own + c);
-  }
+  for (Index c = 0; c < n.functions; ++c) put_function(n, c, output.offset);
   for (Index e = 0; e < own; ++e)
     place_[static_cast<std::size_t>(outer + e)] = hidden.offset + e;
   corner_.resize(own, own + 1);

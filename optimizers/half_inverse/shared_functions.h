@@ -23,7 +23,7 @@
 #include <span>
 
 #include "optimizers/half_inverse/tall_qr.h"
-#include "suite/core/network.h"
+#include "suite/nn/layer_rows.h"
 
 namespace physinv::hig {
 
@@ -31,7 +31,7 @@ class SharedFunctions {
  public:
   /// [R h] (p x p + 1) with columns in the order `place` tells: parameter
   /// place(j) is column j. False if the network or its solver is of another
-  /// kind, or there are too few samples. `layers` as Network::jacobian_rows
+  /// kind, or there are too few samples. `layers` as RowJacobian
   /// gives them, g and rows sample-major, `per_sample` functions.
   template <class T>
   bool triangle(std::span<const LayerRows<T>> layers,
@@ -44,6 +44,22 @@ class SharedFunctions {
   std::size_t bytes() const { return features_.bytes() + rest_.bytes(); }
 
  private:
+  struct Sizes;
+  template <class T>
+  Index best_function(const Sizes& n, const T* weights, Index unit);
+  template <class T>
+  void write_unit(const Sizes& n,
+                  const LayerRows<T>& hidden,
+                  Index unit,
+                  Index function);
+  template <class T>
+  void write_features(const Sizes& n,
+                      const LayerRows<T>& output,
+                      const LayerRows<T>& hidden,
+                      VectorIn<T> parameters,
+                      VectorIn<double> g);
+  void put_function(const Sizes& n, Index function, Index offset);
+
   TallColumns features_, rest_;
   Batch<double> top_, corner_, r_;
   std::vector<double> seen_, ratio_;

@@ -25,10 +25,16 @@ void grow(std::vector<double>& v, Index size) {
 /// Features packed at once: the columns of a block stay in the L2.
 constexpr Index kMostFeatures = 1280;
 
+/// Whether a convolution's own columns are cheaper than pairs of positions.
 template <class T>
-Index packed_features(const GramLayer<T>& layer) {
-  return layer.written_out() ? layer.columns()
-                             : layer.positions * layer.outputs;
+bool written_out(const LayerRows<T>& layer) {
+  const Index pairs = layer.positions * layer.positions * layer.outputs;
+  return layer.positions > 1 && layer.columns() <= pairs;
+}
+
+template <class T>
+Index packed_features(const LayerRows<T>& layer) {
+  return written_out(layer) ? layer.columns() : layer.positions * layer.outputs;
 }
 
 /// One feature of all rows, in groups of kTileColumns rows,
@@ -46,7 +52,7 @@ void pack_feature(
 
 /// Features of A at one position, `stride` samples apart.
 template <class T>
-void widen(const GramLayer<T>& layer,
+void widen(const LayerRows<T>& layer,
            Index position,
            Index samples,
            Index stride,
@@ -65,7 +71,7 @@ void widen(const GramLayer<T>& layer,
 /// Features of B from `first` on, and per pair of positions the factors
 /// A_p^T A_q + 1.
 template <class T>
-void StructuredGram::pack(const GramLayer<T>& layer,
+void StructuredGram::pack(const LayerRows<T>& layer,
                           Index samples,
                           Index rows,
                           Index first) {
@@ -95,8 +101,7 @@ void StructuredGram::pack(const GramLayer<T>& layer,
                           stride,
                           factor,
                           stride);
-      if (layer.bias)
-        for (Index i = 0; i < size; ++i) factor[i] += 1;
+      for (Index i = 0; i < size; ++i) factor[i] += 1;
       terms_.push_back({first + p * layer.outputs,
                         first + q * layer.outputs,
                         layer.outputs});
@@ -106,7 +111,7 @@ void StructuredGram::pack(const GramLayer<T>& layer,
 
 /// The layer's columns of J, with the factor 1.
 template <class T>
-void StructuredGram::pack_columns(const GramLayer<T>& layer,
+void StructuredGram::pack_columns(const LayerRows<T>& layer,
                                   Index rows_per_sample,
                                   Index rows,
                                   Index first) {
@@ -141,7 +146,7 @@ void StructuredGram::pack_columns(const GramLayer<T>& layer,
 }
 
 template <class T>
-void StructuredGram::operator()(std::span<const GramLayer<T>> layers,
+void StructuredGram::operator()(std::span<const LayerRows<T>> layers,
                                 Index samples,
                                 Index rows_per_sample,
                                 BatchOut<double> gram,
@@ -171,13 +176,139 @@ std::size_t StructuredGram::bytes() const {
   return numbers * sizeof(double);
 }
 
+/// Blocks of G from what is packed: memory row r of G (its column r) from
+/// c = r on.
+class StructuredGram::Sweep {
+ public:
+  Sweep(StructuredGram& of,
+        Index samples,
+        Index rows_per_sample,
+        bool set,
+        BatchOut<double>& gram,
+        Threads* threads)
+      : of_(of),
+        samples_(samples),
+        per_(rows_per_sample),
+        m_(samples * rows_per_sample),
+        count_(static_cast<Index>(of.terms_.size())),
+        stride_(round_up(samples, kTileColumns)),
+        set_(set),
+        gram_(gram) {
+    of_.expanded_.resize(
+        static_cast<std::size_t>(threads == nullptr ? 1 : threads->count()));
+    for (auto& e : of_.expanded_) grow(e, kRows * count_ * kBlock);
+  }
+
+  /// The largest blocks first.
+  void run(Threads* threads) const {
+    const Index blocks = (m_ + kBlock - 1) / kBlock;
+    for_blocks(threads, blocks, [&](Index reversed, int thread) {
+      block((blocks - 1 - reversed) * kBlock,
+            of_.expanded_[static_cast<std::size_t>(thread)].data());
+    });
+  }
+
+ private:
+  using Tile = Wide[kRows][2];
+
+  void block(Index begin, double* expanded) const {
+    const Index end = std::min(begin + kBlock, m_);
+    Index from = -1, to = -1;  // samples whose factors are in `expanded`
+    for (Index r0 = 0; r0 < end; r0 += kRows) {
+      const Index first = r0 / per_, last = std::min(r0 + kRows, m_) - 1;
+      if (first != from || last / per_ > to) {
+        from = first, to = last / per_;
+        expand(from, to, begin, expanded);
+      }
+      const double* of_row[kRows];
+      for (Index r = 0; r < kRows; ++r)
+        of_row[r] =
+            expanded + (std::min(r0 + r, last) / per_ - from) * count_ * kBlock;
+      Index c = std::max(begin, r0 / kTileColumns * kTileColumns);
+      for (; c < end; c += kTileColumns) {
+        Tile total = {};
+        sum(r0, c, c - begin, of_row, total);
+        if (c >= r0 + kRows - 1 && c + kTileColumns <= m_) {
+          put(r0, c, total);
+        } else {
+          put_part(r0, last, c, total);
+        }
+      }
+    }
+  }
+
+  /// Factors of samples from..to with those of the rows of a block.
+  void expand(Index from, Index to, Index begin, double* expanded) const {
+    for (Index s = from; s <= to; ++s)
+      for (Index l = 0; l < count_; ++l) {
+        const double* factor = at(of_.factors_, (l * samples_ + s) * stride_);
+        double* e = expanded + ((s - from) * count_ + l) * kBlock;
+        Index other = begin / per_, k = begin % per_;
+        for (Index c = 0; c < kBlock; ++c) {
+          e[c] = begin + c < m_ ? factor[other] : 0.0;
+          if (++k == per_) k = 0, ++other;
+        }
+      }
+  }
+
+  [[gnu::always_inline]] void sum(Index r0,
+                                  Index c,
+                                  Index in_block,
+                                  const double* const* of_row,
+                                  Tile& total) const {
+    const Index features = of_.features_;
+    const double* const row_pack =
+        at(of_.packed_, r0 / kTileColumns * features * kTileColumns) +
+        r0 % kTileColumns;
+    const double* const column_pack = at(of_.packed_, c * features);
+    for (Index l = 0; l < count_; ++l) {
+      const Term& term = of_.terms_[static_cast<std::size_t>(l)];
+      tile<kRows>(term.depth,
+                  {row_pack + term.row * kTileColumns, 1, kTileColumns},
+                  column_pack + term.column * kTileColumns,
+                  kTileColumns,
+                  [&](int r, Wide x, Wide y) {
+                    const double* e = of_row[r] + l * kBlock + in_block;
+                    total[r][0] = fma(x, load(e), total[r][0]);
+                    total[r][1] = fma(y, load(e + kWidth), total[r][1]);
+                  });
+    }
+  }
+
+  [[gnu::always_inline]] void put(Index r0, Index c, Tile& total) const {
+#pragma GCC unroll 8
+    for (int r = 0; r < kRows; ++r) {
+      double* out = &gram_(c, r0 + r);
+      if (!set_) {
+        total[r][0] += load(out);
+        total[r][1] += load(out + kWidth);
+      }
+      store(out, total[r][0]);
+      store(out + kWidth, total[r][1]);
+    }
+  }
+
+  /// Of a tile across the diagonal, or beyond the end.
+  void put_part(Index r0, Index last, Index c, const Tile& total) const {
+    for (Index r = r0; r <= last; ++r) {
+      double row[kTileColumns];
+      store(row, total[r - r0][0]);
+      store(row + kWidth, total[r - r0][1]);
+      for (Index i = std::max(c, r); i < std::min(c + kTileColumns, m_); ++i)
+        gram_(i, r) = set_ ? row[i - c] : gram_(i, r) + row[i - c];
+    }
+  }
+
+  StructuredGram& of_;
+  Index samples_, per_, m_, count_, stride_;
+  bool set_;
+  BatchOut<double>& gram_;
+};
+
 template <class T>
-void StructuredGram::add(std::span<const GramLayer<T>> layers,
-                         Index samples,
-                         Index rows_per_sample,
-                         bool set,
-                         BatchOut<double> gram,
-                         Threads* threads) {
+void StructuredGram::pack_all(std::span<const LayerRows<T>> layers,
+                              Index samples,
+                              Index rows_per_sample) {
   const Index m = samples * rows_per_sample;
   features_ = 0;
   for (const auto& layer : layers) features_ += packed_features(layer);
@@ -185,101 +316,34 @@ void StructuredGram::add(std::span<const GramLayer<T>> layers,
   grow(packed_, round_up(m, kTileColumns) * features_);
   Index packed = 0;
   for (const auto& layer : layers) {
-    if (layer.written_out()) {
+    if (written_out(layer)) {
       pack_columns(layer, rows_per_sample, m, packed);
     } else {
       pack(layer, samples, m, packed);
     }
     packed += packed_features(layer);
   }
-  const Index features = features_;
-  const auto count = static_cast<Index>(terms_.size());
-  const Index stride = round_up(samples, kTileColumns);
-  const Index blocks = (m + kBlock - 1) / kBlock;
-  expanded_.resize(
-      static_cast<std::size_t>(threads == nullptr ? 1 : threads->count()));
-  for (auto& e : expanded_) grow(e, kRows * count * kBlock);
+}
 
-  // Memory row r of G (its column r) from c = r on; the largest blocks first.
-  for_blocks(threads, blocks, [&](Index reversed, int thread) {
-    double* const expanded = expanded_[static_cast<std::size_t>(thread)].data();
-    const Index begin = (blocks - 1 - reversed) * kBlock;
-    const Index end = std::min(begin + kBlock, m);
-    Index from = -1, to = -1;  // samples whose factors are in `expanded`
-    for (Index r0 = 0; r0 < end; r0 += kRows) {
-      const Index first = r0 / rows_per_sample;
-      const Index last = std::min(r0 + kRows, m) - 1;
-      if (first != from || last / rows_per_sample > to) {
-        from = first, to = last / rows_per_sample;
-        for (Index s = from; s <= to; ++s)
-          for (Index l = 0; l < count; ++l) {
-            const double* factor = at(factors_, (l * samples + s) * stride);
-            double* e = expanded + ((s - from) * count + l) * kBlock;
-            Index other = begin / rows_per_sample;
-            Index k = begin % rows_per_sample;
-            for (Index c = 0; c < kBlock; ++c) {
-              e[c] = begin + c < m ? factor[other] : 0.0;
-              if (++k == rows_per_sample) k = 0, ++other;
-            }
-          }
-      }
-      const double* of_row[kRows];
-      for (Index r = 0; r < kRows; ++r)
-        of_row[r] =
-            expanded +
-            (std::min(r0 + r, last) / rows_per_sample - from) * count * kBlock;
-      const double* const row_pack =
-          at(packed_, r0 / kTileColumns * features * kTileColumns) +
-          r0 % kTileColumns;
-      Index c = std::max(begin, r0 / kTileColumns * kTileColumns);
-      for (; c < end; c += kTileColumns) {
-        const double* const column_pack = at(packed_, c * features);
-        Wide total[kRows][2] = {};
-        for (Index l = 0; l < count; ++l) {
-          const Term& term = terms_[static_cast<std::size_t>(l)];
-          tile<kRows>(term.depth,
-                      {row_pack + term.row * kTileColumns, 1, kTileColumns},
-                      column_pack + term.column * kTileColumns,
-                      kTileColumns,
-                      [&](int r, Wide x, Wide y) {
-                        const double* e = of_row[r] + l * kBlock + c - begin;
-                        total[r][0] = fma(x, load(e), total[r][0]);
-                        total[r][1] = fma(y, load(e + kWidth), total[r][1]);
-                      });
-        }
-        if (c >= r0 + kRows - 1 && c + kTileColumns <= m) {
-#pragma GCC unroll 8
-          for (int r = 0; r < kRows; ++r) {
-            double* out = &gram(c, r0 + r);
-            if (!set) {
-              total[r][0] += load(out);
-              total[r][1] += load(out + kWidth);
-            }
-            store(out, total[r][0]);
-            store(out + kWidth, total[r][1]);
-          }
-          continue;
-        }
-        for (Index r = r0; r <= last; ++r) {
-          double row[kTileColumns];
-          store(row, total[r - r0][0]);
-          store(row + kWidth, total[r - r0][1]);
-          for (Index i = std::max(c, r); i < std::min(c + kTileColumns, m); ++i)
-            gram(i, r) = set ? row[i - c] : gram(i, r) + row[i - c];
-        }
-      }
-    }
-  });
+template <class T>
+void StructuredGram::add(std::span<const LayerRows<T>> layers,
+                         Index samples,
+                         Index rows_per_sample,
+                         bool set,
+                         BatchOut<double> gram,
+                         Threads* threads) {
+  pack_all(layers, samples, rows_per_sample);
+  Sweep(*this, samples, rows_per_sample, set, gram, threads).run(threads);
 }
 
 template void StructuredGram::operator()<float>(
-    std::span<const GramLayer<float>>,
+    std::span<const LayerRows<float>>,
     Index,
     Index,
     BatchOut<double>,
     Threads*);
 template void StructuredGram::operator()<double>(
-    std::span<const GramLayer<double>>,
+    std::span<const LayerRows<double>>,
     Index,
     Index,
     BatchOut<double>,

@@ -19,47 +19,17 @@
 #include <span>
 #include <vector>
 
-#include "suite/core/network.h"
 #include "suite/core/threads.h"
+#include "suite/nn/layer_rows.h"
 
 namespace physinv::hig {
-
-template <class T>
-struct GramLayer {
-  const T* a = nullptr;  ///< A(i, sample) = a[i * a_stride + sample]
-  Index inputs = 0, a_stride = 0;
-  const T* b = nullptr;  ///< B(o, row) = b[o * b_stride + row]
-  Index outputs = 0, b_stride = 0;
-  bool bias = true;              ///< the layer has a bias: the + 1
-  Index positions = 1;           ///< of a convolution
-  Index a_step = 0, b_step = 0;  ///< features from a position to the next
-
-  Index columns() const { return (inputs + (bias ? 1 : 0)) * outputs; }
-  /// Whether its own columns are cheaper than pairs of positions.
-  bool written_out() const {
-    return positions > 1 && columns() <= positions * positions * outputs;
-  }
-};
-
-template <class T>
-GramLayer<T> gram_layer(const LayerRows<T>& l) {
-  return {.a = l.a,
-          .inputs = l.inputs,
-          .a_stride = l.a_stride,
-          .b = l.b,
-          .outputs = l.outputs,
-          .b_stride = l.b_stride,
-          .positions = l.positions,
-          .a_step = l.a_step,
-          .b_step = l.b_step};
-}
 
 class StructuredGram {
  public:
   /// The lower triangle of `gram` (m x m, m = samples rows_per_sample); what
   /// is above keeps its contents. Bits do not depend on threads.
   template <class T>
-  void operator()(std::span<const GramLayer<T>> layers,
+  void operator()(std::span<const LayerRows<T>> layers,
                   Index samples,
                   Index rows_per_sample,
                   BatchOut<double> gram,
@@ -74,17 +44,23 @@ class StructuredGram {
     Index row, column, depth;
   };
 
+  class Sweep;
+
   template <class T>
-  void add(std::span<const GramLayer<T>> layers,
+  void pack_all(std::span<const LayerRows<T>> layers,
+                Index samples,
+                Index rows_per_sample);
+  template <class T>
+  void add(std::span<const LayerRows<T>> layers,
            Index samples,
            Index rows_per_sample,
            bool first,
            BatchOut<double> gram,
            Threads* threads);
   template <class T>
-  void pack(const GramLayer<T>& layer, Index samples, Index rows, Index first);
+  void pack(const LayerRows<T>& layer, Index samples, Index rows, Index first);
   template <class T>
-  void pack_columns(const GramLayer<T>& layer,
+  void pack_columns(const LayerRows<T>& layer,
                     Index rows_per_sample,
                     Index rows,
                     Index first);
@@ -96,13 +72,13 @@ class StructuredGram {
 };
 
 extern template void StructuredGram::operator()<float>(
-    std::span<const GramLayer<float>>,
+    std::span<const LayerRows<float>>,
     Index,
     Index,
     BatchOut<double>,
     Threads*);
 extern template void StructuredGram::operator()<double>(
-    std::span<const GramLayer<double>>,
+    std::span<const LayerRows<double>>,
     Index,
     Index,
     BatchOut<double>,

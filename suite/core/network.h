@@ -41,31 +41,6 @@ struct Pass {
   bool fixed_input = false;
 };
 
-/// One layer's columns of a stacked Jacobian. Row r belongs to sample
-/// r / per_sample; its entries are b_r (outer) a_sample, outputs x inputs, then
-/// b_r, added up over the positions of a convolution. Features are rows of
-/// memory, samples contiguous.
-template <class T>
-struct LayerRows {
-  Index offset;           ///< of the layer's parameters
-  Index inputs, outputs;  ///< features of a and b, at one position
-  const T* a;             ///< inputs x samples
-  Index a_stride;
-  const T* b;  ///< outputs x rows
-  Index b_stride;
-  Index positions = 1;
-  Index a_step = 0, b_step = 0;  ///< features from a position to the next
-  /// Input i = tap (inputs / taps) + channel has the weight channel taps + tap
-  /// of its output.
-  Index taps = 1;
-
-  /// Place of the weight from input i to output o, from `offset` on.
-  Index weight(Index i, Index o) const {
-    const Index channels = inputs / taps;
-    return o * inputs + i % channels * taps + i / channels;
-  }
-};
-
 template <class T>
 class Network {
  public:
@@ -100,18 +75,6 @@ class Network {
                         VectorOut<T>* parameters_bar,
                         BatchOut<T>* in_bar,
                         Workspace& work) const = 0;
-
-  /// The Jacobian of several functions of each sample's output, at the last
-  /// forward pass on this tape: columns [i * per_sample, (i + 1) * per_sample)
-  /// of `out_bar` are the cotangents of sample i's functions. Appends its
-  /// layers from the last to the first; their arrays live on the tape and in
-  /// `work`, until the scope there ends. Networks with other layers than dense
-  /// ones and convolutions without padding refuse.
-  virtual void jacobian_rows(VectorIn<T> parameters,
-                             const Tape& tape,
-                             BatchIn<T> out_bar,
-                             std::vector<LayerRows<T>>& layers,
-                             Workspace& work) const;
 
   /// Forward mode: the derivative of the output along parameters_dot and in_dot
   /// (without columns: zero), at the last forward pass on `tape`. The tape
@@ -153,15 +116,6 @@ class Network {
   /// Rough floating-point operations of one forward pass of one sample.
   virtual double operations() const = 0;
 };
-
-template <class T>
-void Network<T>::jacobian_rows(VectorIn<T>,
-                               const Tape&,
-                               BatchIn<T>,
-                               std::vector<LayerRows<T>>&,
-                               Workspace&) const {
-  SUITE_CHECK(false, "this network does not give its Jacobian by rows");
-}
 
 template <class T>
 void Network<T>::tangent(VectorIn<T>,

@@ -25,6 +25,7 @@
 #include "suite/core/check.h"
 #include "suite/core/network.h"
 #include "suite/nn/lanes.h"
+#include "suite/nn/layer_rows.h"
 
 namespace physinv::nn {
 
@@ -150,7 +151,7 @@ class Layer {
                                 const BackwardTangent<T>& /*b*/) const {
     SUITE_CHECK(false, "this layer has no products with its Hessian");
   }
-  /// Appends its columns of a stacked Jacobian: see Network::jacobian_rows. x
+  /// Appends its columns of a stacked Jacobian: see RowJacobian. x
   /// has the samples, y_bar the rows.
   virtual void add_rows(Lanes<const T> /*x*/,
                         Lanes<const T> /*y_bar*/,

@@ -14,11 +14,12 @@
 
 #include "suite/core/network.h"
 #include "suite/nn/layer.h"
+#include "suite/nn/layer_rows.h"
 
 namespace physinv::nn {
 
 template <class T>
-class Sequential final : public Network<T> {
+class Sequential final : public Network<T>, public RowJacobian<T> {
  public:
   using Layers = std::vector<std::unique_ptr<Layer<T>>>;
 

@@ -65,7 +65,8 @@ void check_toy_forward(const Json& entry) {
 
   const Workspace::Scope scope(at.work);
   std::vector<LayerRows<double>> layers;
-  l.network.net->jacobian_rows(at.theta, at.tape, at.x, layers, at.work);
+  by_rows(*l.network.net)
+      .jacobian_rows(at.theta, at.tape, at.x, layers, at.work);
   ASSERT_EQ(layers.size(), 2U);
   const Batch<double> hidden = flat_columns(out.at("hidden"));
   ASSERT_EQ(layers[0].inputs, hidden.rows());

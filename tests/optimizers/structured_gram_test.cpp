@@ -17,22 +17,21 @@ template <class T>
 void structured_gram(Index samples, Index rows) {
   struct Layer {
     Index in, out;
-    bool bias;
     Index positions = 1, channels = 0;  ///< a patch moves by so many inputs
     Index all_in() const { return (positions - 1) * channels + in; }
   };
   // The convolutions: one by its columns, one by pairs, and one so wide that
   // the layers are taken in several groups.
-  const std::vector<Layer> shape = {{3, 20, true},
-                                    {6, 5, true, 9, 2},
-                                    {12, 5, true, 2, 4},
-                                    {20, 7, false},
-                                    {60, 21, true, 8, 20},
-                                    {6, 5, false, 3, 2},
-                                    {1, 1, true}};
+  const std::vector<Layer> shape = {{3, 20},
+                                    {6, 5, 9, 2},
+                                    {12, 5, 2, 4},
+                                    {20, 7},
+                                    {60, 21, 8, 20},
+                                    {6, 5, 3, 2},
+                                    {1, 1}};
   const Index m = samples * rows;
   std::vector<Batch<T>> data;
-  std::vector<GramLayer<T>> layers;
+  std::vector<LayerRows<T>> layers;
   Batch<double> j(m, 0);
   for (const Layer& l : shape) {
     data.push_back(noise(samples + 3, l.all_in(), 130).template cast<T>());
@@ -40,17 +39,17 @@ void structured_gram(Index samples, Index rows) {
   }
   for (std::size_t i = 0; i < shape.size(); ++i) {
     const Batch<T>&a = data[2 * i], &b = data[2 * i + 1];
-    layers.push_back({.a = a.data(),
+    layers.push_back({.offset = 0,
                       .inputs = shape[i].in,
+                      .outputs = shape[i].out,
+                      .a = a.data(),
                       .a_stride = a.rows(),
                       .b = b.data(),
-                      .outputs = shape[i].out,
                       .b_stride = b.rows(),
-                      .bias = shape[i].bias,
                       .positions = shape[i].positions,
                       .a_step = shape[i].channels,
                       .b_step = shape[i].out});
-    for (Index in = 0; in < shape[i].in + (shape[i].bias ? 1 : 0); ++in)
+    for (Index in = 0; in < shape[i].in + 1; ++in)
       for (Index out = 0; out < shape[i].out; ++out) {
         j.conservativeResize(m, j.cols() + 1);
         for (Index r = 0; r < m; ++r) {

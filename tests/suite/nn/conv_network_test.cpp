@@ -298,7 +298,7 @@ TEST(Cnn, RowsAreBackwardPasses) {
     const Batch<double> out_bar = wavy<double>(6, n * per, 0.7);
     const Workspace::Scope scope(b.work);
     std::vector<LayerRows<double>> layers;
-    b.net->jacobian_rows(b.p, b.tape, out_bar, layers, b.work);
+    by_rows(*b.net).jacobian_rows(b.p, b.tape, out_bar, layers, b.work);
     ASSERT_EQ(layers.size(), 3U);
     const Batch<double> j = assembled(layers, per, n * per, b.p.size());
     for (Index r = 0; r < j.rows(); ++r) {

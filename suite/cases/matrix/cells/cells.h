@@ -25,7 +25,7 @@ struct MatrixProblem {
   ProblemRecipe problem;
   Setting setting;
   Index batch, updates;
-  /// Its network gives its Jacobian by rows (Network::jacobian_rows).
+  /// Its network gives its Jacobian by rows (RowJacobian).
   bool rows = true;
 
   std::string experiment() const { return "matrix/" + id; }
