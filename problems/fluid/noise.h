@@ -4,6 +4,8 @@
 /// given standard deviation.
 #pragma once
 
+#include <cmath>
+
 #include "suite/core/batch.h"
 #include "suite/core/rng.h"
 
@@ -15,6 +17,12 @@ struct NoiseOptions {
   Index cut = 10;
   double deviation = 1;
 };
+
+/// `cut` of the papers' generator in a box of this size: its waves are shorter
+/// than box / sqrt(10) in its own unit, 10.
+inline Index noise_cut(double box) {
+  return static_cast<Index>(std::floor(box * box / 1000));
+}
 
 /// Modes (component, kx, ky), ky fastest, in the order 0, 1, .., -1 of discrete
 /// transforms; the field (component, i, j) likewise.

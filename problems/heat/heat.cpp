@@ -174,7 +174,7 @@ void Heat<T>::apply(BatchIn<T> in,
                     Threads* threads) const {
   check_size(in, fft_.field(), in.cols());
   check_size(out, fft_.field(), in.cols());
-  for_registers(
+  for_fields(
       fft_, memory, threads, in.cols(), [&](const Block& block, Fields f) {
         block.load<T>(in, f.u);
         fft_.forward(f.u, f.z, f.scratch);
@@ -266,7 +266,7 @@ void Heat<T>::invert(BatchIn<T> y,
     for (Index k = 0; k < block.count; ++k)
       skipped += static_cast<std::uint64_t>(known[k]);
   };
-  for_registers(fft_, memory, work.threads(), x.cols(), run);
+  for_fields(fft_, memory, work.threads(), x.cols(), run);
   work.counts[Counter::skipped_zeros] += skipped;
 }
 

@@ -18,7 +18,7 @@ HeatInversion::HeatInversion(const Heat<double>& heat,
       samples_(y.cols()),
       places_(places()),
       y_(kept_.take<double>(4 * kWidth * Index(places_.size()),
-                            registers(samples_))),
+                            registers(samples_, kWidth))),
       x_(kept_.take<double>(y_.rows(), y_.cols())) {
   check_size(y, fft_.field(), samples_);
   x_.setZero();
@@ -46,7 +46,7 @@ void HeatInversion::for_spectra(Workspace& work, F&& f) {
   const auto packs = [](Scratch<double>& of, const Block& block) {
     return reinterpret_cast<P*>(of.col(block.first / kWidth).data());
   };
-  for_registers(
+  for_fields(
       fft_, memory, work.threads(), samples_, [&](const Block& b, Fields s) {
         f(b, s, packs(y_, b), packs(x_, b));
       });

@@ -1,38 +1,29 @@
 /// Fields a register at a time, and a thread's memory for it.
 #pragma once
 
-#include <algorithm>
-
 #include "problems/heat/plane_fft.h"
 #include "suite/core/batch.h"
-#include "suite/core/threads.h"
-#include "suite/core/workspace.h"
+#include "suite/core/blocks.h"
 
 namespace physinv::heat_lanes {
 
 using P = Pack<double>;
 inline constexpr Index kWidth = kLanes<double>;
 
-/// Fields first .. first+count-1, one per lane; the last one fills what is left
-/// of the register.
-struct Block {
-  Index first, count;
-
+struct Block : SampleBlock {
   template <class T>
   void load(BatchIn<T> batch, P* out) const {
-    const T* column[kWidth];
-    for (Index k = 0; k < kWidth; ++k)
-      column[k] = batch.col(first + std::min(k, count - 1)).data();
+    const T* from[kWidth];
+    for (Index k = 0; k < kWidth; ++k) from[k] = batch.col(column(k)).data();
     for (Index r = 0; r < batch.rows(); ++r)
       for (Index k = 0; k < kWidth; ++k)
-        out[r][k] = static_cast<double>(column[k][r]);
+        out[r][k] = static_cast<double>(from[k][r]);
   }
   template <class T>
   void store(const P* in, BatchOut<T>& batch) const {
     for (Index k = 0; k < count; ++k) {
-      T* const column = batch.col(first + k).data();
-      for (Index r = 0; r < batch.rows(); ++r)
-        column[r] = static_cast<T>(in[r][k]);
+      T* const to = batch.col(first + k).data();
+      for (Index r = 0; r < batch.rows(); ++r) to[r] = static_cast<T>(in[r][k]);
     }
   }
 };
@@ -51,25 +42,15 @@ struct Fields {
         scratch(z + fft.spectrum()) {}
 };
 
-inline Index count_of(const Threads* threads) {
-  return threads != nullptr ? threads->count() : 1;
-}
-
-inline Index registers(Index samples) {
-  return (samples + kWidth - 1) / kWidth;
-}
-
 /// f(block, fields) for all samples, a register of them at a time.
 template <class F>
-void for_registers(const PlaneFft& fft,
-                   Scratch<double> memory,
-                   Threads* threads,
-                   Index samples,
-                   F&& f) {
-  for_blocks(threads, registers(samples), [&](Index b, int thread) {
-    const Index first = b * kWidth;
-    f(Block{first, std::min(kWidth, samples - first)},
-      Fields(fft, memory.col(thread).data()));
+void for_fields(const PlaneFft& fft,
+                Scratch<double> memory,
+                Threads* threads,
+                Index samples,
+                F&& f) {
+  for_registers(threads, samples, kWidth, [&](SampleBlock at, int thread) {
+    f(Block{at}, Fields(fft, memory.col(thread).data()));
   });
 }
 

@@ -2,27 +2,20 @@
 /// all of them.
 #pragma once
 
-#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <limits>
 
 #include "problems/kuramoto_sivashinsky/etdrk2.h"
-#include "suite/core/threads.h"
-#include "suite/core/workspace.h"
+#include "suite/core/blocks.h"
 
 namespace physinv {
 
-/// Samples first .. first+count-1, one per lane of P; the last one fills what
-/// is left of the pack.
 template <class T, class P>
-struct Block {
+struct Block : SampleBlock {
   static constexpr Index kWidth = sizeof(P) / sizeof(T);
 
   const Etdrk2<T>& k;
-  Index first, count;
-
-  Index column(Index lane) const { return first + std::min(lane, count - 1); }
 
   void load(BatchIn<T> batch, P* out) const {
     for (Index r = 0; r < batch.rows(); ++r)
@@ -50,15 +43,12 @@ struct Block {
   }
 };
 
-/// Calls f(block, thread) for all samples, a register of them at a time.
-template <class T, class F>
-void for_registers(const Etdrk2<T>& k, Threads* threads, Index count, F&& f) {
-  constexpr Index W = kLanes<T>;
-  for_blocks(threads, (count + W - 1) / W, [&](Index b, int thread) {
-    const Index first = b * W, some = std::min(W, count - first);
-    with_pack<T>(some, [&]<class P>(P) {
-      f(Block<T, P>{k, first, some}, thread);
-    });
+/// Calls f(block, own) for all samples, a register of them at a time: `own` is
+/// the thread, or its workspace, as `work` is Threads* or a Workspace.
+template <class T, class Work, class F>
+void for_packs(const Etdrk2<T>& k, Work&& work, Index samples, F&& f) {
+  for_registers(work, samples, kLanes<T>, [&](SampleBlock at, auto&& own) {
+    with_pack<T>(at.count, [&]<class P>(P) { f(Block<T, P>{at, k}, own); });
   });
 }
 
@@ -67,16 +57,11 @@ void for_registers(const Etdrk2<T>& k, Threads* threads, Index count, F&& f) {
 template <class T, class F>
 std::uint64_t sum_blocks(const Etdrk2<T>& k,
                          Workspace& work,
-                         Index count,
+                         Index samples,
                          F&& body) {
-  const bool threaded =
-      work.threads() != nullptr && work.threads()->count() > 1;
-  if (threaded) work.of_thread(0);  // makes all of them, before they run
   std::atomic<std::uint64_t> sum = 0;
-  for_registers(k, work.threads(), count, [&](const auto& block, int thread) {
-    Workspace& mine = threaded ? work.of_thread(thread) : work;
-    const Workspace::Scope scope(mine);
-    sum += static_cast<std::uint64_t>(body(block, mine));
+  for_packs(k, work, samples, [&](const auto& block, Workspace& own) {
+    sum += static_cast<std::uint64_t>(body(block, own));
   });
   return sum;
 }

@@ -55,6 +55,39 @@ void draw_state(const KuramotoSivashinskyOptions& o,
   for (Index j = 0; j < n; ++j) u(j) = (u(j) - mean) / deviation;
 }
 
+/// Cotangents of a block's unknowns and initial states.
+template <class T, class P>
+void pull_block(const KuramotoSivashinskyOptions& o,
+                const Etdrk2<T>& k,
+                const Block<T, P>& block,
+                const Tape& tape,
+                BatchIn<T> y_bar,
+                BatchOut<T>& x_bar,
+                BatchOut<T>* given_bar,
+                Workspace& work) {
+  const auto x = tape.view<T>(kUnknowns);
+  const auto states = tape.view<T>(kStates);
+  const Keeping keep(o, k, x.cols());
+  const Index n = k.cells(), h = k.stride();
+  P* const lambda = take_packs<P>(work, n);
+  P* const sum = take_packs<P>(work, 2 * h);
+  const auto r = block.run(x, take_packs<P>(work, 3 * h));
+  const Etdrk2Sums<P> sums{sum, sum + h};
+  std::fill_n(sum, 2 * h, P{});
+  block.load(y_bar, lambda);
+  k.begin(r, lambda);
+  const T* const kept = states.col(block.first / kLanes<T>).data();
+  pull_steps(k, r, sums, o.steps, keep, reinterpret_cast<const P*>(kept), work);
+  const P alpha_bar = k.alpha_bar(sums), beta_bar = k.beta_bar(sums);
+  if (given_bar != nullptr) k.restore(r, lambda);
+  for (Index i = 0; i < block.count; ++i) {
+    x_bar(0, block.first + i) = alpha_bar[i];
+    x_bar(1, block.first + i) = beta_bar[i];
+    if (given_bar != nullptr)
+      block.store(lambda, i, given_bar->col(block.first + i));
+  }
+}
+
 }  // namespace
 
 template <class T>
@@ -191,7 +224,7 @@ void KuramotoSivashinsky<T>::linearize(BatchIn<T> x,
       lost(0, block.first + i) = !std::isfinite(y(0, block.first + i));
     skipped += static_cast<std::uint64_t>((steps - end) * block.count);
   };
-  for_registers(k, tape.threads(), x.cols(), run);
+  for_packs(k, tape.threads(), x.cols(), run);
   tape.counts[Counter::skipped_steps] += skipped;
 }
 
@@ -221,12 +254,9 @@ void KuramotoSivashinsky<T>::pull(const Tape& tape,
                                   Workspace& work) const {
   const Etdrk2<T>& k = *kernel_;
   const auto x = tape.view<T>(kUnknowns);
-  const auto states = tape.view<T>(kStates);
   const auto lost = tape.view<unsigned char>(kLost);
-  const Index n = k.cells(), h = k.stride();
-  check_size(y_bar, n, x.cols());
+  check_size(y_bar, k.cells(), x.cols());
   check_size(x_bar, 2, x.cols());
-  const Keeping keep(options_, k, x.cols());
 
   // What is lost ends as NaN whatever is done, zeros remain zeros. A block of
   // nothing else needs no way back.
@@ -245,31 +275,8 @@ void KuramotoSivashinsky<T>::pull(const Tape& tape,
       [&]<class P>(const Block<T, P>& block, Workspace& mine) -> Index {
         Index live = 0;
         for (Index i = 0; i < block.count; ++i) live += !known(block.first + i);
-        if (live > 0) {
-          P* const lambda = take_packs<P>(mine, n);
-          P* const sum = take_packs<P>(mine, 2 * h);
-          const auto r = block.run(x, take_packs<P>(mine, 3 * h));
-          const Etdrk2Sums<P> sums{sum, sum + h};
-          std::fill_n(sum, 2 * h, P{});
-          block.load(y_bar, lambda);
-          k.begin(r, lambda);
-          const T* const kept = states.col(block.first / kLanes<T>).data();
-          pull_steps(k,
-                     r,
-                     sums,
-                     options_.steps,
-                     keep,
-                     reinterpret_cast<const P*>(kept),
-                     mine);
-          const P alpha_bar = k.alpha_bar(sums), beta_bar = k.beta_bar(sums);
-          if (given_bar != nullptr) k.restore(r, lambda);
-          for (Index i = 0; i < block.count; ++i) {
-            x_bar(0, block.first + i) = alpha_bar[i];
-            x_bar(1, block.first + i) = beta_bar[i];
-            if (given_bar != nullptr)
-              block.store(lambda, i, given_bar->col(block.first + i));
-          }
-        }
+        if (live > 0)
+          pull_block(options_, k, block, tape, y_bar, x_bar, given_bar, mine);
         for (Index i = block.first; i < block.first + block.count; ++i)
           if (known(i)) finish(i);
         return live > 0 ? 0 : block.count;
@@ -339,7 +346,7 @@ Batch<T> KuramotoSivashinsky<T>::trajectory(VectorIn<T> x,
   Workspace work;
   Batch<T> out(n, steps + 1);
   with_pack<T>(1, [&]<class P>(P) {
-    const Block<T, P> block{k, 0, 1};
+    const Block<T, P> block{{0, 1}, k};
     P* const u = take_packs<P>(work, (steps + 2) * n);  // and the middle stage
     const auto r = block.run(x, take_packs<P>(work, 3 * k.stride()));
     const auto state = [=](Index t) { return u + t * n; };

@@ -1,7 +1,7 @@
 #include "problems/marker_flow/marker_flow.h"
 
 #include "problems/fluid/noise.h"
-#include "problems/fluid/samples.h"
+#include "problems/fluid/run_tape.h"
 #include "problems/marker_flow/periodic_flow.h"
 #include "suite/core/check.h"
 #include "suite/core/option_check.h"
@@ -9,10 +9,8 @@
 namespace physinv {
 namespace {
 
-enum Slot : std::size_t { kUnknowns, kGiven, kStates, kDecisions, kScratch };
-
 using fluid::Block;
-using fluid::for_registers;
+using fluid::RunTape;
 
 }  // namespace
 
@@ -102,13 +100,15 @@ struct MarkerFlow<T>::Kernel {
   /// seen(t, state) after step t.
   template <class F>
   void run(P* states, std::uint8_t* decisions, P* scratch, F&& seen) const {
-    const bool keep = decisions != nullptr;
-    for (Index t = 0; t < options.steps; ++t) {
-      const auto s = step(states, decisions, keep ? t : t % 2);
-      const auto next = step(states, nullptr, keep ? t + 1 : (t + 1) % 2);
-      flow.advance(s, fields(next), scratch);
-      seen(t, next);
-    }
+    Index t = 0;
+    fluid::for_steps(*this,
+                     options.steps,
+                     states,
+                     decisions,
+                     [&](const MarkerStep<P>& s, const MarkerStep<P>& next) {
+                       flow.advance(s, fields(next), scratch);
+                       seen(t++, next);
+                     });
   }
   void run(P* states, std::uint8_t* decisions, P* scratch) const {
     run(states, decisions, scratch, [](Index, const MarkerStep<P>&) {});
@@ -266,8 +266,7 @@ Samples<double> MarkerFlow<T>::sample(Index first,
   const auto& o = options_;
   const Index cells = o.cells * o.cells;
   const Vortex turning = vortex();
-  // The generator's waves are shorter than box / sqrt(10) in its own unit, 10.
-  const auto cut = static_cast<Index>(std::floor(o.box * o.box / 1000));
+  const Index cut = fluid::noise_cut(o.box);
   Samples<double> out;
   out.x.resize(2 * cells, count), out.y.resize(cells, count);
   out.given.resize(cells, count);
@@ -321,8 +320,8 @@ void MarkerFlow<T>::forward(BatchIn<T> x,
   using P = typename Kernel::P;
   check_sizes(x, given, y.cols());
   check_size(y, shape().observations, x.cols());
-  for_registers<T>(work, x.cols(), [&](Index first, Workspace& mine) {
-    const Block<T> block(first, x, given);
+  for_registers(work, x.cols(), k.W, [&](SampleBlock at, Workspace& mine) {
+    const Block<T> block(at, x, given);
     const Index states = 2 * k.state_packs();
     auto memory = mine.take<T>(k.W, states + k.scratch_packs());
     P* const p = reinterpret_cast<P*>(memory.data());
@@ -362,21 +361,12 @@ void MarkerFlow<T>::linearize(BatchIn<T> x,
   using P = typename Kernel::P;
   check_sizes(x, given, y.cols());
   check_size(y, shape().observations, x.cols());
-  tape.slot<T>(kUnknowns, x.rows(), x.cols()) = x;
-  tape.slot<T>(kGiven, given.rows(), x.cols()) = given;
-  const Index blocks = (x.cols() + k.W - 1) / k.W;
-  const Index threads = tape.threads() != nullptr ? tape.threads()->count() : 1;
-  auto states = tape.slot<T>(
-      kStates, (options_.steps + 1) * k.state_packs() * k.W, blocks);
-  auto held = tape.slot<std::uint8_t>(
-      kDecisions, options_.steps * k.state_bytes(), blocks);
-  auto scratch = tape.slot<T>(kScratch, k.scratch_packs() * k.W, threads);
-  for_registers<T>(tape.threads(), x.cols(), [&](Index first, int thread) {
-    const Block<T> block(first, x, given);
-    P* const s = reinterpret_cast<P*>(scratch.col(thread).data());
-    P* const p = reinterpret_cast<P*>(states.col(first / k.W).data());
+  auto kept = RunTape<T>::write(tape, x, given, {k, options_.steps});
+  for_registers(tape.threads(), x.cols(), k.W, [&](SampleBlock at, int thread) {
+    const Block<T> block(at, x, given);
+    P *const s = kept.scratch(thread), *const p = kept.states(block);
     k.begin(block, x, given, k.step(p, nullptr, 0), s);
-    k.run(p, held.col(first / k.W).data(), s);
+    k.run(p, kept.decisions(block), s);
     k.store(block, k.step(p, nullptr, options_.steps).m, y, 0);
   });
 }
@@ -388,21 +378,19 @@ void MarkerFlow<T>::pullback(const Tape& tape,
                              Workspace& work) const {
   const Kernel& k = *kernel_;
   using P = typename Kernel::P;
-  const auto x = tape.view<T>(kUnknowns);
-  const auto given = tape.view<T>(kGiven);
-  auto states = tape.view<T>(kStates);
-  auto held = tape.view<std::uint8_t>(kDecisions);
-  check_size(y_bar, shape().observations, x.cols());
-  check_size(x_bar, shape().unknowns, x.cols());
-  for_registers<T>(work, x.cols(), [&](Index first, Workspace& mine) {
-    const Block<T> block(first, x, given);
+  RunTape<T> kept(tape);
+  const Index samples = kept.x.cols();
+  check_size(y_bar, shape().observations, samples);
+  check_size(x_bar, shape().unknowns, samples);
+  for_registers(work, samples, k.W, [&](SampleBlock at, Workspace& mine) {
+    const Block<T> block(at, kept.x, kept.given);
     const Index bars = 6 * k.plane;
     auto memory = mine.take<T>(k.W, bars + k.scratch_packs());
     P* const m = reinterpret_cast<P*>(memory.data());
     k.retreat(block,
               y_bar,
-              reinterpret_cast<P*>(states.col(first / k.W).data()),
-              held.col(first / k.W).data(),
+              kept.states(block),
+              kept.decisions(block),
               m,
               m + bars,
               x_bar);
@@ -419,8 +407,8 @@ void MarkerFlow<T>::invert(BatchIn<T> y,
   using P = typename Kernel::P;
   check_sizes(x_guess, given, x.cols());
   check_size(y, shape().observations, x.cols());
-  for_registers<T>(work, x.cols(), [&](Index first, Workspace& mine) {
-    const Block<T> block(first, x_guess, given, y);
+  for_registers(work, x.cols(), k.W, [&](SampleBlock at, Workspace& mine) {
+    const Block<T> block(at, x_guess, given, y);
     const Index states = 2 * k.state_packs(), places = 2 * options_.steps + 2;
     auto memory = mine.take<T>(k.W, states + places + k.scratch_packs());
     P* const p = reinterpret_cast<P*>(memory.data());

@@ -5,7 +5,7 @@
 #include <mutex>
 
 #include "problems/fluid/noise.h"
-#include "problems/fluid/samples.h"
+#include "problems/fluid/run_tape.h"
 #include "problems/navier_stokes/blast.h"
 #include "problems/navier_stokes/box_flow.h"
 #include "suite/core/check.h"
@@ -14,10 +14,8 @@
 namespace physinv {
 namespace {
 
-enum Slot : std::size_t { kUnknowns, kGiven, kStates, kDecisions, kScratch };
-
 using fluid::Block;
-using fluid::for_registers;
+using fluid::RunTape;
 
 }  // namespace
 
@@ -130,12 +128,13 @@ struct NavierStokes<T>::Kernel {
     const Index kept = decisions != nullptr ? steps : 1;
     std::fill_n(states, (kept + 1) * state_packs(), P{});
     begin(block, given, unknowns(block, x), step(states, nullptr, 0), scratch);
-    for (Index t = 0; t < steps; ++t) {
-      const bool keep = decisions != nullptr;
-      const auto s = step(states, decisions, keep ? t : t % 2);
-      const auto next = step(states, nullptr, keep ? t + 1 : (t + 1) % 2);
-      flow.advance(s, next.u, next.v, scratch);
-    }
+    fluid::for_steps(*this,
+                     steps,
+                     states,
+                     decisions,
+                     [&](const FlowStep<P>& s, const FlowStep<P>& next) {
+                       flow.advance(s, next.u, next.v, scratch);
+                     });
   }
 
   void observe(const Block<T>& block,
@@ -262,8 +261,7 @@ Samples<double> NavierStokes<T>::sample_labelled(Index first,
   Samples<double> out;
   out.x.resize(rows.unknowns, count), out.y.resize(rows.observations, count);
   out.given.resize(rows.given, count);
-  // The generator's waves are shorter than box / sqrt(10) in its own unit, 10.
-  const auto cut = static_cast<Index>(std::floor(o.box * o.box / 1000));
+  const Index cut = fluid::noise_cut(o.box);
   for (Index i = 0; i < count; ++i) {
     Stream stream = rng.child(static_cast<std::uint64_t>(first + i)).stream();
     out.x(0, i) = std::atanh(2 * stream.uniform(o.x0[0], o.x0[1]) - 1);
@@ -304,8 +302,8 @@ void NavierStokes<T>::forward(BatchIn<T> x,
   using P = typename Kernel::P;
   check_sizes(x, given);
   check_size(y, shape().observations, x.cols());
-  for_registers<T>(work, x.cols(), [&](Index first, Workspace& mine) {
-    const Block<T> block(first, x, given);
+  for_registers(work, x.cols(), k.W, [&](SampleBlock at, Workspace& mine) {
+    const Block<T> block(at, x, given);
     const Index states = 2 * k.state_packs();
     auto memory = mine.take<T>(k.W, states + k.scratch_packs());
     P* const p = reinterpret_cast<P*>(memory.data());
@@ -323,26 +321,15 @@ void NavierStokes<T>::linearize(BatchIn<T> x,
   using P = typename Kernel::P;
   check_sizes(x, given);
   check_size(y, shape().observations, x.cols());
-  tape.slot<T>(kUnknowns, 3, x.cols()) = x;
-  tape.slot<T>(kGiven, given.rows(), x.cols()) = given;
-  const Index blocks = (x.cols() + k.W - 1) / k.W;
-  const Index packs = (options_.steps + 1) * k.state_packs();
-  const Index bytes = options_.steps * k.state_bytes();
-  const Index threads = tape.threads() != nullptr ? tape.threads()->count() : 1;
-  const bool all =
-      double(blocks) * (double(packs * k.W) * sizeof(T) + double(bytes)) <=
-      options_.tape_budget;
-  const Index spare = all ? 0 : 2 * k.state_packs();
-  auto states = tape.slot<T>(kStates, packs * k.W, all ? blocks : 0);
-  auto held = tape.slot<std::uint8_t>(kDecisions, bytes, all ? blocks : 0);
-  auto scratch =
-      tape.slot<T>(kScratch, (k.scratch_packs() + spare) * k.W, threads);
-  for_registers<T>(tape.threads(), x.cols(), [&](Index first, int thread) {
-    const Block<T> block(first, x, given);
-    P* const s = reinterpret_cast<P*>(scratch.col(thread).data());
-    P* const p = all ? reinterpret_cast<P*>(states.col(first / k.W).data())
-                     : s + k.scratch_packs();
-    k.run(block, x, given, p, all ? held.col(first / k.W).data() : nullptr, s);
+  const fluid::RunSize size(k, options_.steps);
+  const double blocks = double(registers(x.cols(), k.W));
+  const bool all = blocks * size.bytes<T>() <= options_.tape_budget;
+  auto kept = RunTape<T>::write(tape, x, given, size, all);
+  for_registers(tape.threads(), x.cols(), k.W, [&](SampleBlock at, int thread) {
+    const Block<T> block(at, x, given);
+    P* const s = kept.scratch(thread);
+    P* const p = all ? kept.states(block) : s + k.scratch_packs();
+    k.run(block, x, given, p, kept.decisions(block), s);
     k.observe(block, p, all ? options_.steps : options_.steps % 2, y);
   });
 }
@@ -354,24 +341,18 @@ void NavierStokes<T>::pullback(const Tape& tape,
                                Workspace& work) const {
   const Kernel& k = kernel();
   using P = typename Kernel::P;
-  const auto x = tape.view<T>(kUnknowns);
-  const auto given = tape.view<T>(kGiven);
-  const auto states = tape.view<T>(kStates);
-  const auto held = tape.view<std::uint8_t>(kDecisions);
+  RunTape<T> kept(tape);
+  const auto &x = kept.x, &given = kept.given;
   check_size(y_bar, shape().observations, x.cols());
   check_size(x_bar, 3, x.cols());
-  for_registers<T>(work, x.cols(), [&](Index first, Workspace& mine) {
-    const Block<T> block(first, x, given);
-    const bool kept = states.cols() > 0;
+  for_registers(work, x.cols(), k.W, [&](SampleBlock at, Workspace& mine) {
+    const Block<T> block(at, x, given);
     const Index bars = 4 * k.plane;
     auto memory = mine.take<T>(k.W, bars + k.scratch_packs());
     P* const m = reinterpret_cast<P*>(memory.data());
-    P* p = nullptr;
-    std::uint8_t* decisions = nullptr;
-    if (kept) {
-      p = reinterpret_cast<P*>(const_cast<T*>(states.col(first / k.W).data()));
-      decisions = const_cast<std::uint8_t*>(held.col(first / k.W).data());
-    } else {
+    P* p = kept.keeps() ? kept.states(block) : nullptr;
+    std::uint8_t* decisions = kept.decisions(block);
+    if (!kept.keeps()) {
       auto again = mine.take<T>(k.W, (options_.steps + 1) * k.state_packs());
       auto bytes = mine.take<std::uint8_t>(k.state_bytes(), options_.steps);
       p = reinterpret_cast<P*>(again.data()), decisions = bytes.data();
@@ -390,8 +371,8 @@ void NavierStokes<T>::jacobian(BatchIn<T> x,
   using P = typename Kernel::P;
   check_sizes(x, given);
   check_size(j, 3 * shape().observations, x.cols());
-  for_registers<T>(work, x.cols(), [&](Index first, Workspace& mine) {
-    const Block<T> block(first, x, given);
+  for_registers(work, x.cols(), k.W, [&](SampleBlock at, Workspace& mine) {
+    const Block<T> block(at, x, given);
     const Index states = 2 * k.state_packs(), tangents = 12 * k.plane;
     auto memory = mine.take<T>(k.W, states + tangents + k.scratch_packs());
     auto held = mine.take<std::uint8_t>(2 * k.state_bytes(), 1);

@@ -4,9 +4,9 @@
 #include <array>
 #include <utility>
 
+#include "suite/core/blocks.h"
 #include "suite/core/check.h"
 #include "suite/nn/activation.h"
-#include "suite/nn/blocks.h"
 
 namespace physinv::nn {
 namespace {
@@ -92,7 +92,7 @@ template <class T>
 void PerPiece<T>::forward(const LayerArgs<T>& at,
                           Lanes<const T> x,
                           Lanes<T> y) const {
-  each_block(*at.work, pieces_, [&](Index piece, Workspace& work) {
+  for_blocks(*at.work, pieces_, [&](Index piece, Workspace& work) {
     run(at, part_of(x, pieces_, piece), part_of(y, pieces_, piece), work);
   });
 }
@@ -136,7 +136,7 @@ void PerPiece<T>::sum_pieces(Workspace& work,
   const Index parts = std::min(kMostParts, pieces_);
   T* const sums = work.take<T>(size, parts).data();
   std::fill_n(sums, size * parts, T(0));
-  each_block(work, parts, [&](Index part, Workspace& some) {
+  for_blocks(work, parts, [&](Index part, Workspace& some) {
     T* const own = some.take<T>(size, 1).data();
     const Index end = pieces_ * (part + 1) / parts;
     for (Index piece = pieces_ * part / parts; piece < end; ++piece) {
@@ -194,7 +194,7 @@ std::vector<Lanes<T>> PerPiece<T>::push(const LayerArgs<T>& at,
 
 template <class T>
 void PerPiece<T>::tangent(const LayerArgs<T>& at, const Tangent<T>& t) const {
-  each_block(*at.work, pieces_, [&](Index piece, Workspace& work) {
+  for_blocks(*at.work, pieces_, [&](Index piece, Workspace& work) {
     const Lanes<const T> x = part_of(t.x, pieces_, piece);
     push(at,
          run(at, x, {}, work),

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "suite/core/blocks.h"
 #include "suite/core/check.h"
 #include "suite/nn/activation.h"
-#include "suite/nn/blocks.h"
 #include "suite/nn/convolution.h"
 #include "suite/nn/gemm.h"
 
@@ -190,7 +190,7 @@ void SpectralBlock<T>::mix(const Product& at,
                            Workspace& all) const {
   const Index c = o_.channels, width = Lanes<T>(nullptr, 1, samples).width;
   const Index block = c * width;
-  each_block(all, row_count(o_), [&](Index k, Workspace& work) {
+  for_blocks(all, row_count(o_), [&](Index k, Workspace& work) {
     const auto& modes = modes_[static_cast<std::size_t>(k)];
     T* const weights = work.take<T>(2 * c * c, o_.modes).data();
     T* const matrix = work.take<T>(4 * c * c, 1).data();
@@ -230,7 +230,7 @@ void SpectralBlock<T>::pull_mix(const Product& at,
                                 Workspace& all) const {
   const Index c = o_.channels, width = Lanes<T>(nullptr, 1, samples).width;
   const Index block = c * width;
-  each_block(all, row_count(o_), [&](Index k, Workspace& work) {
+  for_blocks(all, row_count(o_), [&](Index k, Workspace& work) {
     const auto& modes = modes_[static_cast<std::size_t>(k)];
     const Index count = o_.modes * static_cast<Index>(modes.size());
     T* const a_bar = work.take<T>(2 * block, count).data();
@@ -353,7 +353,7 @@ void SpectralBlock<T>::apply(const Product& at,
       all.take<T>(pitch, sums * std::max(o_.from.rows, o_.to.rows)).data();
   T* const u = all.take<T>(pitch, sums * in_.row_sums()).data();
 
-  each_block(all, o_.from.rows, [&](Index r, Workspace& work) {
+  for_blocks(all, o_.from.rows, [&](Index r, Workspace& work) {
     T* const row = work.take<T>(pitch, o_.from.columns).data();
     for (Index q = 0; q < o_.from.columns; ++q) {
       T* const f = row + q * pitch;
@@ -373,14 +373,14 @@ void SpectralBlock<T>::apply(const Product& at,
     }
     in_.analyse_row(row, r, block, t);
   });
-  each_block(all, sums, [&](Index g, Workspace&) {
+  for_blocks(all, sums, [&](Index g, Workspace&) {
     in_.analyse_rows(t, g, block, u);
   });
   mix(at, x.samples, u, all);
-  each_block(all, sums, [&](Index g, Workspace&) {
+  for_blocks(all, sums, [&](Index g, Workspace&) {
     out_.synthesise_rows(u, g, block, t);
   });
-  each_block(all, o_.to.rows, [&](Index r, Workspace& work) {
+  for_blocks(all, o_.to.rows, [&](Index r, Workspace& work) {
     T* const row = work.take<T>(pitch, o_.to.columns).data();
     out_.synthesise_row(t, r, block, row);
     for (Index q = 0; q < o_.to.columns; ++q) {
@@ -418,7 +418,7 @@ void SpectralBlock<T>::pull(const Product& at,
   T* const t =
       all.take<T>(pitch, sums * std::max(o_.from.rows, o_.to.rows)).data();
   T* const u = all.take<T>(pitch, sums * in_.row_sums()).data();
-  each_block(all, o_.to.rows, [&](Index r, Workspace& work) {
+  for_blocks(all, o_.to.rows, [&](Index r, Workspace& work) {
     T* const row = work.take<T>(pitch, o_.to.columns).data();
     for (Index q = 0; q < o_.to.columns; ++q)
       pack_rows<T>(Activation::identity,
@@ -426,7 +426,7 @@ void SpectralBlock<T>::pull(const Product& at,
                    row + q * pitch);
     out_.analyse_row(row, r, block, t);
   });
-  each_block(all, sums, [&](Index g, Workspace&) {
+  for_blocks(all, sums, [&](Index g, Workspace&) {
     out_.analyse_rows(t, g, block, u);
   });
   if (b.parameters_bar != nullptr) {
@@ -436,10 +436,64 @@ void SpectralBlock<T>::pull(const Product& at,
   }
   pull_mix(at, b.x.samples, u, b.parameters_bar, bool(b.x_bar), all);
   if (b.x_bar)
-    each_block(all, sums, [&](Index g, Workspace&) {
+    for_blocks(all, sums, [&](Index g, Workspace&) {
       in_.synthesise_rows(u, g, block, t);
     });
   pull_rows(at, b, t, all);
+}
+
+namespace {
+
+/// W's gradient of one row, by the kernel of a convolution along the shared
+/// columns.
+template <class T>
+void pull_local(const ConvShape& shape,
+                const std::vector<Run>& runs,
+                Activation f,
+                Lanes<const T> x,
+                Lanes<const T> y_bar,
+                T* sums,
+                Workspace& work) {
+  Lanes<T> active(nullptr, y_bar.rows, x.samples);
+  active.data = work.take<T>(active.stride, active.rows).data();
+  for (Index i = 0; i < active.rows; ++i)
+    pack_rows<T>(f, rows_from(x, i, 1), active.row(i));
+  accumulate_weights<T>(shape, runs, active, y_bar, 0, shape.positions(), sums);
+}
+
+}  // namespace
+
+/// Cotangents of a row's inputs: W's part, if the rows meet, and the modes'.
+template <class T>
+void SpectralBlock<T>::pull_inputs(const Product& at,
+                                   bool meets,
+                                   const T* row,
+                                   Lanes<const T> x,
+                                   Lanes<const T> y_bar,
+                                   Lanes<T> x_bar) const {
+  using V = Simd<T, kNarrow>;
+  const Index c = o_.channels, pitch = in_.pitch(c * x.width);
+  for (Index q = 0; q < o_.from.columns; ++q) {
+    const bool added = meets && q < shared_.columns;
+    if (added)
+      gemm<T>({.m = c,
+               .n = x.width,
+               .k = c,
+               .a = local(at.parameters),
+               .a_row = 1,
+               .a_k = c,
+               .b = y_bar.row(q * c),
+               .b_stride = y_bar.stride,
+               .c = x_bar.row(q * c),
+               .c_stride = x_bar.stride});
+    for (Index i = q * c; i < (q + 1) * c; ++i)
+      for (Index j = 0; j < x.width; j += kLanes<T>) {
+        V sum = load<V>(row + q * pitch + (i - q * c) * x.width + j);
+        if (added) sum += load<V>(x_bar.row(i) + j);
+        store(x_bar.row(i) + j,
+              pull_lanes<T>(at.gate, load<V>(x.row(i) + j), sum));
+      }
+  }
 }
 
 template <class T>
@@ -447,11 +501,8 @@ void SpectralBlock<T>::pull_rows(const Product& at,
                                  const Backward<T>& b,
                                  const T* t,
                                  Workspace& all) const {
-  using V = Simd<T, kNarrow>;
   const Index c = o_.channels, block = c * b.x.width, pitch = in_.pitch(block);
   const Index columns = o_.from.columns;
-  const T* const w = local(at.parameters);
-  // W's gradient, by the kernel of a convolution along the shared columns.
   const ConvShape shape{{shared_.columns, 1}, c, c, {1, 1}};
   const auto runs = window_runs(shape.grid, shape.taps, Padding::zero);
   const Index parts = std::min(kMostParts, o_.from.rows);
@@ -466,40 +517,19 @@ void SpectralBlock<T>::pull_rows(const Product& at,
             ? rows_from(b.y_bar, r * o_.to.columns * c, shared_.columns * c)
             : Lanes<const T>();
     const Lanes<const T> x = rows_from(b.x, r * columns * c, columns * c);
-    if (weights && meets(r)) {
-      Lanes<T> f(nullptr, shared_.columns * c, b.x.samples);
-      f.data = work.take<T>(f.stride, f.rows).data();
-      for (Index i = 0; i < f.rows; ++i)
-        pack_rows<T>(at.f, rows_from(x, i, 1), f.row(i));
-      accumulate_weights<T>(shape, runs, f, y_bar, 0, shape.positions(), part);
-    }
+    if (weights && meets(r))
+      pull_local(shape, runs, at.f, x, y_bar, part, work);
     if (!b.x_bar) return;
     T* const row = work.take<T>(pitch, columns).data();
     in_.synthesise_row(t, r, block, row);
-    const Lanes<T> x_bar = rows_from(b.x_bar, r * columns * c, columns * c);
-    for (Index q = 0; q < columns; ++q) {
-      const bool added = meets(r) && q < shared_.columns;
-      if (added)
-        gemm<T>({.m = c,
-                 .n = x.width,
-                 .k = c,
-                 .a = w,
-                 .a_row = 1,
-                 .a_k = c,
-                 .b = y_bar.row(q * c),
-                 .b_stride = y_bar.stride,
-                 .c = x_bar.row(q * c),
-                 .c_stride = x_bar.stride});
-      for (Index i = q * c; i < (q + 1) * c; ++i)
-        for (Index j = 0; j < x.width; j += kLanes<T>) {
-          V sum = load<V>(row + q * pitch + (i - q * c) * x.width + j);
-          if (added) sum += load<V>(x_bar.row(i) + j);
-          store(x_bar.row(i) + j,
-                pull_lanes<T>(at.gate, load<V>(x.row(i) + j), sum));
-        }
-    }
+    pull_inputs(at,
+                meets(r),
+                row,
+                x,
+                y_bar,
+                rows_from(b.x_bar, r * columns * c, columns * c));
   };
-  each_block(all, parts, [&](Index part, Workspace& work) {
+  for_blocks(all, parts, [&](Index part, Workspace& work) {
     const Index end = o_.from.rows * (part + 1) / parts;
     for (Index r = o_.from.rows * part / parts; r < end; ++r)
       pull_row(r, totals + part * size, work);

@@ -126,6 +126,12 @@ class SpectralBlock final : public Layer<T> {
                     const Mode& m,
                     T* parameters_bar,
                     Workspace& work) const;
+  void pull_inputs(const Product& at,
+                   bool meets,
+                   const T* row,
+                   Lanes<const T> x,
+                   Lanes<const T> y_bar,
+                   Lanes<T> x_bar) const;
   /// x_bar and W_bar row by row; t: the sums of x's cotangent, or null.
   void pull_rows(const Product& at,
                  const Backward<T>& b,
