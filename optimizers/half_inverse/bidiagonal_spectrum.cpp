@@ -102,109 +102,146 @@ void BidiagonalSpectrum::isolate(double floor2, double top) {
   }
 }
 
-/// Values and vectors of the lanes from `lane` on, kTwin registers at a time,
-/// so that their divisions overlap.
-void BidiagonalSpectrum::refine(Index lane) {
-  constexpr Index kStep = kTwin * kWidth;
-  auto* const down = static_cast<double*>(vectors_.data());
-  double* const up = down + n_ * kStep;
-  double* const s_of = up + n_ * kStep;
-  double* const z = s_of + n_ * kStep;
-  Wide x[kTwin], low[kTwin], high[kTwin], close[kTwin], length2[kTwin],
-      twist[kTwin], gamma[kTwin];
+/// kTwin registers of lanes, so that their divisions overlap, and what is kept
+/// of them for each row.
+struct BidiagonalSpectrum::Twins {
+  static constexpr Index kStep = kTwin * kWidth;
+  Twins(double* memory, Index rows)
+      : down(memory),
+        up(down + rows * kStep),
+        s_of(up + rows * kStep),
+        z(s_of + rows * kStep) {}
+
+  static Wide index(Index i) { return broadcast(static_cast<double>(i)); }
+
+  double *down, *up;  ///< multipliers of the factorisations from both ends
+  double* s_of;       ///< what the one from the top leaves of the pivots
+  double* z;          ///< vectors
+  Wide x[kTwin], low[kTwin], high[kTwin], close[kTwin];
+  Wide length2[kTwin], twist[kTwin], gamma[kTwin];
+};
+
+inline void BidiagonalSpectrum::bracket(Twins& t, Index lane) const {
 #pragma GCC unroll 2
   for (int r = 0; r < kTwin; ++r) {
-    low[r] = load(low_ + lane + r * kWidth);
-    high[r] = load(high_ + lane + r * kWidth);
-    x[r] = 0.5 * (low[r] + high[r]);
+    t.low[r] = load(low_ + lane + r * kWidth);
+    t.high[r] = load(high_ + lane + r * kWidth);
+    t.x[r] = 0.5 * (t.low[r] + t.high[r]);
     // Cubic convergence: the next error is far below rounding.
-    close[r] =
-        fma(broadcast(1e-6), high[r] - low[r], broadcast(1e-11) * low[r]);
+    t.close[r] =
+        fma(broadcast(1e-6), t.high[r] - t.low[r], broadcast(1e-11) * t.low[r]);
   }
-  bool last = false;
-  for (int round = 0; round < kRefinements; ++round) {
-    Wide s[kTwin], p[kTwin];
+}
+
+inline void BidiagonalSpectrum::factor_down(Twins& t) const {
+  Wide s[kTwin];
 #pragma GCC unroll 2
-    for (int r = 0; r < kTwin; ++r) s[r] = -x[r];
-    for (Index i = 0; i < n_; ++i) {
-#pragma GCC unroll 2
-      for (int r = 0; r < kTwin; ++r) {
-        store(s_of + i * kStep + r * kWidth, s[r]);
-        const Wide inverse = 1 / guarded(q_[i] + s[r]);
-        store(down + i * kStep + r * kWidth, off_[i] * inverse);
-        s[r] = fma(e_[i] * s[r], inverse, -x[r]);
-      }
-    }
-    // Bottom up; the twist is where gamma is smallest.
-    const auto index = [](Index i) {
-      return broadcast(static_cast<double>(i));
-    };
+  for (int r = 0; r < kTwin; ++r) s[r] = -t.x[r];
+  for (Index i = 0; i < n_; ++i) {
 #pragma GCC unroll 2
     for (int r = 0; r < kTwin; ++r) {
-      p[r] = q_[n_ - 1] - x[r];
-      gamma[r] = load(s_of + (n_ - 1) * kStep + r * kWidth) + p[r] + x[r];
-      twist[r] = index(n_ - 1);
+      store(t.s_of + i * t.kStep + r * kWidth, s[r]);
+      const Wide inverse = 1 / guarded(q_[i] + s[r]);
+      store(t.down + i * t.kStep + r * kWidth, off_[i] * inverse);
+      s[r] = fma(e_[i] * s[r], inverse, -t.x[r]);
     }
-    for (Index i = n_ - 2; i >= 0; --i) {
+  }
+}
+
+/// The twist is where gamma is smallest.
+inline void BidiagonalSpectrum::factor_up(Twins& t) const {
+  Wide p[kTwin];
 #pragma GCC unroll 2
-      for (int r = 0; r < kTwin; ++r) {
-        const Wide inverse = 1 / guarded(e_[i] + p[r]);
-        store(up + i * kStep + r * kWidth, off_[i] * inverse);
-        p[r] = fma(q_[i] * p[r], inverse, -x[r]);
-        const Wide here = load(s_of + i * kStep + r * kWidth) + p[r] + x[r];
-        const auto smaller = magnitude(here) < magnitude(gamma[r]);
-        gamma[r] = select(smaller, here, gamma[r]);
-        twist[r] = select(smaller, index(i), twist[r]);
-      }
+  for (int r = 0; r < kTwin; ++r) {
+    p[r] = q_[n_ - 1] - t.x[r];
+    t.gamma[r] = load(t.s_of + (n_ - 1) * t.kStep + r * kWidth) + p[r] + t.x[r];
+    t.twist[r] = t.index(n_ - 1);
+  }
+  for (Index i = n_ - 2; i >= 0; --i) {
+#pragma GCC unroll 2
+    for (int r = 0; r < kTwin; ++r) {
+      const Wide inverse = 1 / guarded(e_[i] + p[r]);
+      store(t.up + i * t.kStep + r * kWidth, off_[i] * inverse);
+      p[r] = fma(q_[i] * p[r], inverse, -t.x[r]);
+      const Wide here = load(t.s_of + i * t.kStep + r * kWidth) + p[r] + t.x[r];
+      const auto smaller = magnitude(here) < magnitude(t.gamma[r]);
+      t.gamma[r] = select(smaller, here, t.gamma[r]);
+      t.twist[r] = select(smaller, t.index(i), t.twist[r]);
     }
-    Wide entry[kTwin];
+  }
+}
+
+/// The vector from its twist, where it is 1, to the top.
+inline void BidiagonalSpectrum::solve_up(Twins& t) const {
+  Wide entry[kTwin];
 #pragma GCC unroll 2
-    for (int r = 0; r < kTwin; ++r) entry[r] = length2[r] = Wide{};
-    for (Index i = n_ - 1; i >= 0; --i) {
-      const Wide here = index(i);
+  for (int r = 0; r < kTwin; ++r) entry[r] = t.length2[r] = Wide{};
+  for (Index i = n_ - 1; i >= 0; --i) {
+    const Wide here = t.index(i);
 #pragma GCC unroll 2
-      for (int r = 0; r < kTwin; ++r) {
-        const Wide next = -load(down + i * kStep + r * kWidth) * entry[r];
-        entry[r] = select(here == twist[r],
-                          broadcast(1),
-                          select(here < twist[r], next, Wide{}));
-        store(z + i * kStep + r * kWidth, entry[r]);
-        length2[r] = fma(entry[r], entry[r], length2[r]);
-      }
+    for (int r = 0; r < kTwin; ++r) {
+      const Wide next = -load(t.down + i * t.kStep + r * kWidth) * entry[r];
+      entry[r] = select(here == t.twist[r],
+                        broadcast(1),
+                        select(here < t.twist[r], next, Wide{}));
+      store(t.z + i * t.kStep + r * kWidth, entry[r]);
+      t.length2[r] = fma(entry[r], entry[r], t.length2[r]);
     }
+  }
+}
+
+/// And to the bottom.
+inline void BidiagonalSpectrum::solve_down(Twins& t) const {
+  Wide entry[kTwin];
 #pragma GCC unroll 2
-    for (int r = 0; r < kTwin; ++r) entry[r] = load(z + r * kWidth);
-    for (Index i = 1; i < n_; ++i) {
-      const Wide here = index(i);
+  for (int r = 0; r < kTwin; ++r) entry[r] = load(t.z + r * kWidth);
+  for (Index i = 1; i < n_; ++i) {
+    const Wide here = t.index(i);
 #pragma GCC unroll 2
-      for (int r = 0; r < kTwin; ++r) {
-        const auto below = here > twist[r];
-        const Wide next = -load(up + (i - 1) * kStep + r * kWidth) * entry[r];
-        entry[r] = select(below, next, load(z + i * kStep + r * kWidth));
-        length2[r] += select(below, entry[r] * entry[r], Wide{});
-        store(z + i * kStep + r * kWidth, entry[r]);
-      }
+    for (int r = 0; r < kTwin; ++r) {
+      const auto below = here > t.twist[r];
+      const Wide next = -load(t.up + (i - 1) * t.kStep + r * kWidth) * entry[r];
+      entry[r] = select(below, next, load(t.z + i * t.kStep + r * kWidth));
+      t.length2[r] += select(below, entry[r] * entry[r], Wide{});
+      store(t.z + i * t.kStep + r * kWidth, entry[r]);
     }
+  }
+}
+
+void BidiagonalSpectrum::keep(const Twins& t, Index lane) {
+  for (Index j = lane; j < std::min(lane + t.kStep, count_); ++j) {
+    const Index r = (j - lane) / kWidth, l = (j - lane) % kWidth;
+    const double scale = 1 / std::sqrt(t.length2[r][l]);
+    lambda_(j) = t.x[r][l];
+    residual_[j] = std::abs(t.gamma[r][l]) * scale / t.x[r][l];
+    double* const to = v_.col(j).data();
+    for (Index i = 0; i < n_; ++i) to[i] = t.z[i * t.kStep + j - lane] * scale;
+    first_(j) = to[n_ - 1];
+  }
+}
+
+/// Values and vectors of the lanes from `lane` on, by Rayleigh quotients.
+void BidiagonalSpectrum::refine(Index lane) {
+  Twins t(static_cast<double*>(vectors_.data()), n_);
+  bracket(t, lane);
+  bool last = false;
+  for (int round = 0; round < kRefinements; ++round) {
+    factor_down(t);
+    factor_up(t);
+    solve_up(t);
+    solve_down(t);
     if (last) break;
     last = true;
 #pragma GCC unroll 2
     for (int r = 0; r < kTwin; ++r) {
-      Wide next = x[r] + gamma[r] / length2[r];
-      next =
-          select(next < low[r], low[r], select(next > high[r], high[r], next));
-      last = last && !any_of(magnitude(next - x[r]) > close[r]);
-      x[r] = next;
+      const Wide low = t.low[r], high = t.high[r];
+      Wide next = t.x[r] + t.gamma[r] / t.length2[r];
+      next = select(next < low, low, select(next > high, high, next));
+      last = last && !any_of(magnitude(next - t.x[r]) > t.close[r]);
+      t.x[r] = next;
     }
   }
-  for (Index j = lane; j < std::min(lane + kStep, count_); ++j) {
-    const Index r = (j - lane) / kWidth, l = (j - lane) % kWidth;
-    const double scale = 1 / std::sqrt(length2[r][l]);
-    lambda_(j) = x[r][l];
-    residual_[j] = std::abs(gamma[r][l]) * scale / x[r][l];
-    double* const to = v_.col(j).data();
-    for (Index i = 0; i < n_; ++i) to[i] = z[i * kStep + j - lane] * scale;
-    first_(j) = to[n_ - 1];
-  }
+  keep(t, lane);
 }
 
 bool BidiagonalSpectrum::orthogonal() {

@@ -33,6 +33,14 @@ class BidiagonalSpectrum {
  private:
   void count_above(const double* x, double* counts, Index groups) const;
   void isolate(double floor2, double top);
+  /// Values that are refined together.
+  struct Twins;
+  [[gnu::always_inline]] void bracket(Twins& t, Index lane) const;
+  [[gnu::always_inline]] void factor_down(Twins& t) const;
+  [[gnu::always_inline]] void factor_up(Twins& t) const;
+  [[gnu::always_inline]] void solve_up(Twins& t) const;
+  [[gnu::always_inline]] void solve_down(Twins& t) const;
+  void keep(const Twins& t, Index lane);
   void refine(Index lane);
   bool orthogonal();
 

@@ -77,6 +77,26 @@ bool orthogonalize_columns(BatchOut<double> x, VectorOut<double> h) {
   return false;
 }
 
+bool ExplicitPower::decompose(Batch<double>& x, Vector<double>& h) {
+  const Index n = x.cols();
+  if (n > kJacobi) {
+    SingularValues svd = singular_values(x);
+    if (!svd.found) return false;
+    spectrum_.lambda = svd.s.array().square();
+    spectrum_.c = svd.v.transpose() * h;
+    x.swap(svd.u);
+    return true;
+  }
+  if (!orthogonalize_columns(x, h)) return false;
+  spectrum_.c = h;
+  for (Index i = 0; i < n; ++i) {
+    const double s = x.col(i).stableNorm();
+    spectrum_.lambda(i) = s * s;
+    if (s > 0) x.col(i) /= s;
+  }
+  return true;
+}
+
 Ending ExplicitPower::factor(BatchIn<double> jacobian, VectorIn<double> g) {
   const Index m = jacobian.rows(), p = jacobian.cols(), n = std::min(m, p);
   SUITE_CHECK(n > 0 && g.size() == m, "g has a number for each row of J");
@@ -114,21 +134,7 @@ Ending ExplicitPower::factor(BatchIn<double> jacobian, VectorIn<double> g) {
   // Tall: R^T = V diag(s) U^T, c = U^T h. Wide: J = P R^T Q^T, so that with
   // R = V diag(s) U^T the same c, and the update is Q V.
   Batch<double> x = tall ? Batch<double>(r.transpose()) : r;
-  if (n <= kJacobi) {
-    if (!orthogonalize_columns(x, h)) return ending_ = Ending::stalled;
-    spectrum_.c = h;
-    for (Index i = 0; i < n; ++i) {
-      const double s = x.col(i).stableNorm();
-      spectrum_.lambda(i) = s * s;
-      if (s > 0) x.col(i) /= s;
-    }
-  } else {
-    SingularValues svd = singular_values(x);
-    if (!svd.found) return ending_ = Ending::stalled;
-    spectrum_.lambda = svd.s.array().square();
-    spectrum_.c = svd.v.transpose() * h;
-    x.swap(svd.u);
-  }
+  if (!decompose(x, h)) return ending_ = Ending::stalled;
   if (tall) {
     right_ = qr.colsPermutation() * x;
   } else {

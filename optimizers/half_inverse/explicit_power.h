@@ -20,6 +20,9 @@ class ExplicitPower {
   const Spectrum& spectrum() const { return spectrum_; }
 
  private:
+  /// x <- V, for the singular values and c = U^T h of x = V diag(s) U^T.
+  bool decompose(Batch<double>& x, Vector<double>& h);
+
   Spectrum spectrum_;
   Ending ending_ = Ending::zero;
   Batch<double> right_;  ///< V (p x min(m, p))

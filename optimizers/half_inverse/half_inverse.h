@@ -76,6 +76,18 @@ class HalfInverse {
 
  private:
   bool settled(std::size_t i, Path path, bool last);
+  void try_shortcut(BatchIn<double> gram,
+                    VectorIn<double> g,
+                    const Pullback& pullback,
+                    std::span<const Power> powers,
+                    BatchOut<double> updates);
+  template <class Apply>
+  bool attempt(Path path,
+               bool last,
+               const Pullback& pullback,
+               std::span<const Power> powers,
+               BatchOut<double> updates,
+               Apply&& apply);
 
   Options options_;
   SpectralPower spectral_;

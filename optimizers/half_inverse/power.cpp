@@ -74,6 +74,78 @@ double first_order(const Spectrum::Noise& noise,
   return total;
 }
 
+/// Sizes of the weights.
+struct Weighed {
+  double square = 0;       ///< |update|^2
+  double v2 = 0;           ///< |v|^2
+  double s_kappa_max = 0;  ///< largest s^kappa that is kept
+};
+
+/// Fills the weights of what is kept, and the report's account of it.
+Weighed weigh(const Spectrum& spectrum,
+              const Power& power,
+              double prefactor,
+              PowerReport& report,
+              VectorOut<double> weights) {
+  Weighed sizes;
+  weights.setZero();
+  report.smallest_kept = kInfinity;
+  report.margin = kInfinity;
+  for (Index i = 0; i < spectrum.lambda.size(); ++i) {
+    const double s = spectrum.s(i);
+    if (report.cut > 0)
+      report.margin =
+          std::min(report.margin, std::abs(s - report.cut) / report.cut);
+    if (!(s > report.cut)) {
+      report.largest_dropped = std::max(report.largest_dropped, s);
+      continue;
+    }
+    ++report.kept;
+    report.smallest_kept = std::min(report.smallest_kept, s);
+    const double w = prefactor * raised(s, power.kappa - 1);
+    weights(i) = w * spectrum.c(i);
+    sizes.square += s * weights(i) * (s * weights(i));
+    sizes.v2 += weights(i) * weights(i);
+    sizes.s_kappa_max = std::max(sizes.s_kappa_max, w * s);
+  }
+  return sizes;
+}
+
+/// Kept and dropped directions apart; false if a value that is kept could have
+/// been made by noise: it is not proven to exist.
+bool take_apart(const Spectrum& spectrum,
+                double kappa,
+                const PowerReport& report,
+                Side& kept,
+                Side& dropped) {
+  const double top = report.s_max / spectrum.scale, lambda_max = top * top;
+  const Spectrum::Noise& noise = spectrum.noise;
+  const Index n = spectrum.lambda.size();
+  for (Side* side : {&kept, &dropped}) {
+    const Index size = side == &kept ? report.kept : n - report.kept;
+    side->lambda.resize(size), side->s.resize(size), side->f.resize(size);
+    side->c2.resize(size), side->tail.resize(size);
+  }
+  Index k = 0, d = 0;
+  for (Index i = 0; i < n; ++i) {
+    const bool tail = i >= noise.tail_begin;
+    const double lambda = spectrum.lambda(i) / lambda_max;
+    const double size =
+        noise.norm_factor * noise.entry(tail, std::sqrt(std::max(lambda, 0.0)));
+    Side& side = spectrum.s(i) > report.cut ? kept : dropped;
+    Index& at = &side == &kept ? k : d;
+    if (&side == &kept && lambda <= 2 * size) return false;
+    side.lambda(at) = lambda;
+    side.s(at) =
+        std::sqrt(&side == &kept ? lambda : std::max(lambda, 0.0) + size);
+    side.f(at) = raised(side.s(at), kappa - 1);
+    side.c2(at) = spectrum.c(i) * spectrum.c(i);
+    side.tail(at) = tail;
+    ++at;
+  }
+  return true;
+}
+
 }  // namespace
 
 double entry_noise(Index m, double matrix_noise) {
@@ -104,79 +176,35 @@ double Spectrum::s_max() const {
 PowerReport power_weights(const Spectrum& spectrum,
                           const Power& power,
                           VectorOut<double> weights) {
-  const Index n = spectrum.lambda.size();
   SUITE_CHECK(std::abs(power.kappa) <= 1, "kappa lies in [-1, 1]");
   SUITE_CHECK(power.tau >= 0, "tau is not negative");
   PowerReport report;
   report.s_max = spectrum.s_max();
   report.cut = power.cut(report.s_max);
-  weights.setZero();
   const double prefactor =
       power.beta == 0 ? 1 : math::pow(report.s_max, power.beta);
-  double square = 0, v2 = 0, s_kappa_max = 0;
-  report.smallest_kept = kInfinity;
-  report.margin = kInfinity;
-  for (Index i = 0; i < n; ++i) {
-    const double s = spectrum.s(i);
-    if (report.cut > 0)
-      report.margin =
-          std::min(report.margin, std::abs(s - report.cut) / report.cut);
-    if (!(s > report.cut)) {
-      report.largest_dropped = std::max(report.largest_dropped, s);
-      continue;
-    }
-    ++report.kept;
-    report.smallest_kept = std::min(report.smallest_kept, s);
-    const double w = prefactor * raised(s, power.kappa - 1);
-    weights(i) = w * spectrum.c(i);
-    square += s * weights(i) * (s * weights(i));
-    v2 += weights(i) * weights(i);
-    s_kappa_max = std::max(s_kappa_max, w * s);
-  }
+  const Weighed sizes = weigh(spectrum, power, prefactor, report, weights);
   if (report.kept == 0) {
     report.smallest_kept = 0;
     report.ending = Ending::zero;
     return report;
   }
-  report.norm = std::sqrt(square);
-  report.norm_bound = s_kappa_max * spectrum.c.norm();
+  report.norm = std::sqrt(sizes.square);
+  report.norm_bound = sizes.s_kappa_max * spectrum.c.norm();
   if (report.norm == 0) return report;
 
-  const double top = report.s_max / spectrum.scale, lambda_max = top * top;
-  const Spectrum::Noise& noise = spectrum.noise;
   Side kept, dropped;
-  for (Side* side : {&kept, &dropped}) {
-    const Index size = side == &kept ? report.kept : n - report.kept;
-    side->lambda.resize(size), side->s.resize(size), side->f.resize(size);
-    side->c2.resize(size), side->tail.resize(size);
-  }
-  Index k = 0, d = 0;
-  for (Index i = 0; i < n; ++i) {
-    const bool tail = i >= noise.tail_begin;
-    const double lambda = spectrum.lambda(i) / lambda_max;
-    const double size =
-        noise.norm_factor * noise.entry(tail, std::sqrt(std::max(lambda, 0.0)));
-    Side& side = spectrum.s(i) > report.cut ? kept : dropped;
-    Index& at = &side == &kept ? k : d;
-    // A value that noise could have made is not proven to exist.
-    if (&side == &kept && lambda <= 2 * size) {
-      report.error = kInfinity;
-      return report;
-    }
-    side.lambda(at) = lambda;
-    side.s(at) =
-        std::sqrt(&side == &kept ? lambda : std::max(lambda, 0.0) + size);
-    side.f(at) = raised(side.s(at), power.kappa - 1);
-    side.c2(at) = spectrum.c(i) * spectrum.c(i);
-    side.tail(at) = tail;
-    ++at;
+  if (!take_apart(spectrum, power.kappa, report, kept, dropped)) {
+    report.error = kInfinity;
+    return report;
   }
   const double unit =
       report.norm / (prefactor * math::pow(report.s_max, power.kappa));
-  const double leaked =
-      first_order(noise, power.kappa, report.cut / report.s_max, kept, dropped);
+  const double leaked = first_order(
+      spectrum.noise, power.kappa, report.cut / report.s_max, kept, dropped);
   // v itself, and J^T v, carry rounding of size eps s_max |v|.
-  const double direct = kEpsilon * report.s_max * std::sqrt(v2) / report.norm;
+  const double direct =
+      kEpsilon * report.s_max * std::sqrt(sizes.v2) / report.norm;
   report.error = kSafety * (std::sqrt(leaked) / unit + direct);
   return report;
 }

@@ -88,6 +88,57 @@ bool TallColumns::finite() const {
   return sum(zero) == 0;
 }
 
+namespace {
+
+/// Reflectors of columns first .. first+count-1, on rows [begin, end); what is
+/// above their heads moves to R.
+void factor_panel(TallColumns& a,
+                  Index first,
+                  int count,
+                  Index begin,
+                  Index end,
+                  BatchOut<double>& r,
+                  Panel& p,
+                  double* tau) {
+  for (int k = 0; k < count; ++k) {
+    const Index at = first + k;
+    double* x = a.column(at);
+    // What is above the head belongs to R already; V has zeros there.
+    for (Index i = 0; i < at; ++i) {
+      r(i, at) = x[i];
+      x[i] = 0;
+    }
+    tau[k] = reflect(a.rows() - at, x + at, r(at, at));
+    p.v[k] = x;
+    if (tau[k] == 0) x[at] = 0;
+    for (int c = k + 1; c < count; ++c) {
+      double* y = a.column(first + c);
+      axpy(end - begin,
+           -tau[k] * dot(end - begin, x + begin, y + begin),
+           x + begin,
+           y + begin);
+    }
+  }
+}
+
+/// S of the panel.
+void form_factor(
+    int count, Index begin, Index end, const double* tau, Panel& p) {
+  for (int k = 0; k < count; ++k) {
+    p.s[k][k] = tau[k];
+    double inner[kPanel];
+    for (int l = 0; l < k; ++l)
+      inner[l] = dot(end - begin, p.v[l] + begin, p.v[k] + begin);
+    for (int l = 0; l < k; ++l) {
+      double total = 0;
+      for (int m = l; m < k; ++m) total = std::fma(p.s[l][m], inner[m], total);
+      p.s[l][k] = -tau[k] * total;
+    }
+  }
+}
+
+}  // namespace
+
 void triangularize(TallColumns& a, Index pivots, BatchOut<double> r) {
   const Index rows = a.rows(), columns = a.columns();
   SUITE_CHECK(rows >= pivots && columns >= pivots && r.rows() == pivots &&
@@ -105,37 +156,8 @@ void triangularize(TallColumns& a, Index pivots, BatchOut<double> r) {
     Panel p{};
     for (int k = 0; k < kPanel; ++k) p.v[k] = a.column(columns);
     double tau[kPanel] = {};
-    for (int k = 0; k < count; ++k) {
-      const Index at = first + k;
-      double* x = a.column(at);
-      // What is above the head belongs to R already; V has zeros there.
-      for (Index i = 0; i < at; ++i) {
-        r(i, at) = x[i];
-        x[i] = 0;
-      }
-      tau[k] = reflect(rows - at, x + at, r(at, at));
-      p.v[k] = x;
-      if (tau[k] == 0) x[at] = 0;
-      for (int c = k + 1; c < count; ++c) {
-        double* y = a.column(first + c);
-        axpy(end - begin,
-             -tau[k] * dot(end - begin, x + begin, y + begin),
-             x + begin,
-             y + begin);
-      }
-    }
-    for (int k = 0; k < count; ++k) {
-      p.s[k][k] = tau[k];
-      double inner[kPanel];
-      for (int l = 0; l < k; ++l)
-        inner[l] = dot(end - begin, p.v[l] + begin, p.v[k] + begin);
-      for (int l = 0; l < k; ++l) {
-        double total = 0;
-        for (int m = l; m < k; ++m)
-          total = std::fma(p.s[l][m], inner[m], total);
-        p.s[l][k] = -tau[k] * total;
-      }
-    }
+    factor_panel(a, first, count, begin, end, r, p, tau);
+    form_factor(count, begin, end, tau, p);
     Index j = first + count;
     for (; j + 2 <= columns; j += 2) {
       double* const y[] = {a.column(j), a.column(j + 1)};

@@ -128,22 +128,14 @@ void Tridiagonalize::factor_panel(Index first, Index start) {
   }
 }
 
-/// A <- Q^T A Q behind `start` with Q = I - V S V^T, the V of the last panel
-/// in v_ (memory rows) and in x_ (row-major).
-void Tridiagonalize::update_behind(Index start) {
+/// S of the product I - V S V^T of a panel's reflectors (kBand x kBand).
+void Tridiagonalize::triangular_factor(Index start,
+                                       const double* v,
+                                       double* s) const {
   constexpr Index b = kBand;
-  const Index n = a_.n, stride = a_.stride, rest = n - start;
-  const double* const vt = data(v_);
-  double* const v = reserve(x_, 4 * n * b);
-  double* const av = v + n * b;
-  double* const y = av + n * b;
-  for (Index c = start; c < n; ++c)
-    for (Index i = 0; i < b; ++i) v[c * b + i] = vt[i * stride + c];
-
-  // S: the triangular factor of the product of the reflectors.
-  alignas(64) double s[b * b] = {}, inner[b * b] = {}, half[b * b] = {};
+  alignas(64) double inner[b * b] = {};
   multiply<Into::set>(
-      b, b, rest, {v + start * b, 1, b}, v + start * b, b, inner, b);
+      b, b, a_.n - start, {v + start * b, 1, b}, v + start * b, b, inner, b);
   const double* const tau = tau_.data() + start - b;
   for (Index k = 0; k < b; ++k) {
     s[k * b + k] = tau[k];
@@ -154,10 +146,14 @@ void Tridiagonalize::update_behind(Index start) {
       s[i * b + k] = -tau[k] * z;
     }
   }
+}
 
-  // A V from one triangle: every square block is used as itself and mirrored.
-  // Parts of equal area sum in their own copies, added up in order.
-  const Index squares = (rest + kSquare - 1) / kSquare;
+/// A V from one triangle: every square block is used as itself and mirrored.
+/// Parts of equal area sum in their own copies, added up in order.
+void Tridiagonalize::multiply_panel(Index start, const double* v, double* av) {
+  constexpr Index b = kBand;
+  const Index n = a_.n, stride = a_.stride;
+  const Index squares = (n - start + kSquare - 1) / kSquare;
   const Index parts = std::clamp<Index>(squares / 4, 1, kMaxParts);
   const auto begin = [&](Index p) {
     if (p == parts) return squares;
@@ -198,8 +194,25 @@ void Tridiagonalize::update_behind(Index start) {
     for (Index i = (start + begin(p) * kSquare) * b; i < n * b; ++i)
       av[i] += part[i];
   }
+}
 
-  // Y = A V S, W = Y - V (S^T V^T Y) / 2, A -= V W^T + W V^T.
+/// A <- Q^T A Q behind `start` with Q = I - V S V^T, the V of the last panel
+/// in v_ (memory rows) and in x_ (row-major):
+///
+///   Y = A V S,  W = Y - V (S^T V^T Y) / 2,  A -= V W^T + W V^T
+void Tridiagonalize::update_behind(Index start) {
+  constexpr Index b = kBand;
+  const Index n = a_.n, stride = a_.stride, rest = n - start;
+  const double* const vt = data(v_);
+  double* const v = reserve(x_, 4 * n * b);
+  double* const av = v + n * b;
+  double* const y = av + n * b;
+  for (Index c = start; c < n; ++c)
+    for (Index i = 0; i < b; ++i) v[c * b + i] = vt[i * stride + c];
+
+  alignas(64) double s[b * b] = {}, inner[b * b] = {}, half[b * b] = {};
+  triangular_factor(start, v, s);
+  multiply_panel(start, v, av);
   multiply<Into::set>(
       rest, b, b, {av + start * b, b, 1}, s, b, y + start * b, b);
   multiply<Into::set>(

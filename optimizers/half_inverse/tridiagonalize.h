@@ -43,6 +43,8 @@ class Tridiagonalize {
   void two_stage();
   void panel(Index first, Index count);
   void factor_panel(Index first, Index start);
+  void triangular_factor(Index start, const double* v, double* s) const;
+  void multiply_panel(Index start, const double* v, double* av);
   void update_behind(Index start);
 
   Threads* threads_;

@@ -154,69 +154,100 @@ bool LineSearch::hopeless(const LineSearchOptions& options, Point p) const {
   return p.a == options.min_step && (!low || p.d >= descent);
 }
 
+namespace {
+
+/// Of the cubic through values and slopes of two points.
+template <class Point>
+double theta_of(const Point& x, const Point& p) {
+  return 3 * (x.f - p.f) / (p.a - x.a) + x.d + p.d;
+}
+
+template <class Point>
+double secant(const Point& x, const Point& p) {
+  return p.a + p.d / (p.d - x.d) * (x.a - p.a);
+}
+
+}  // namespace
+
+/// Case 1, higher: the minimum is bracketed.
+double LineSearch::step_from_higher(Point p) const {
+  const Point x = x_;
+  const double ahead = p.a - x.a;  // signed distance from the best point
+  const double theta = theta_of(x, p);
+  double gamma = cubic_gamma(theta, x.d, p.d, false);
+  if (p.a < x.a) gamma = -gamma;
+  const double r = ((gamma - x.d) + theta) / (((gamma - x.d) + gamma) + p.d);
+  const double cubic = x.a + r * ahead;
+  const double quadratic = x.a + x.d / ((x.f - p.f) / ahead + x.d) / 2 * ahead;
+  return std::abs(cubic - x.a) <= std::abs(quadratic - x.a)
+             ? cubic
+             : cubic + (quadratic - cubic) / 2;
+}
+
+/// Case 2, lower, the slope changed sign: bracketed, too.
+double LineSearch::step_from_turned(Point p) const {
+  const Point x = x_;
+  const double theta = theta_of(x, p);
+  double gamma = cubic_gamma(theta, x.d, p.d, false);
+  if (p.a > x.a) gamma = -gamma;
+  const double r = ((gamma - p.d) + theta) / (((gamma - p.d) + gamma) + x.d);
+  const double cubic = p.a + r * (x.a - p.a);
+  const double quadratic = secant(x, p);
+  return std::abs(cubic - p.a) > std::abs(quadratic - p.a) ? cubic : quadratic;
+}
+
+/// Case 3, lower, flatter.
+double LineSearch::step_from_flatter(Point p) const {
+  const Point x = x_, y = y_;
+  const double theta = theta_of(x, p);
+  double gamma = cubic_gamma(theta, x.d, p.d, true);
+  if (p.a > x.a) gamma = -gamma;
+  const double r = ((gamma - p.d) + theta) / ((gamma + (x.d - p.d)) + gamma);
+  double cubic = p.a > x.a ? upper_ : lower_;
+  if (r < 0 && gamma != 0) cubic = p.a + r * (x.a - p.a);
+  const double quadratic = secant(x, p);
+  const bool cubic_closer = std::abs(cubic - p.a) < std::abs(quadratic - p.a);
+  const bool cubic_farther = std::abs(cubic - p.a) > std::abs(quadratic - p.a);
+  if (bracketed_) {
+    const double limit = p.a + 0.66 * (y.a - p.a);
+    const double next = cubic_closer ? cubic : quadratic;
+    return p.a > x.a ? std::min(limit, next) : std::max(limit, next);
+  }
+  const double next = cubic_farther ? cubic : quadratic;
+  return std::min(std::max(next, lower_), upper_);
+}
+
+/// Case 4, lower, not flatter.
+double LineSearch::step_from_steep(Point p) const {
+  const Point x = x_, y = y_;
+  if (!bracketed_) return p.a > x.a ? upper_ : lower_;
+  const double theta = 3 * (p.f - y.f) / (y.a - p.a) + y.d + p.d;
+  double gamma = cubic_gamma(theta, y.d, p.d, false);
+  if (p.a > y.a) gamma = -gamma;
+  const double r = ((gamma - p.d) + theta) / (((gamma - p.d) + gamma) + y.d);
+  return p.a + r * (y.a - p.a);
+}
+
 /// One safeguarded step (MINPACK-2 dcstep): moves x_, y_, step_, bracketed_.
 void LineSearch::interpolate(Point p) {
-  const Point x = x_, y = y_;
-  const double ahead = p.a - x.a;  // signed distance from the best point
-  const double theta = 3 * (x.f - p.f) / ahead + x.d + p.d;
+  const Point x = x_;
   const double turn = p.d * ((x.d > 0) - (x.d < 0));
-  const auto secant = [&] { return p.a + p.d / (p.d - x.d) * (x.a - p.a); };
-
-  if (p.f > x.f) {  // 1: higher, the minimum is bracketed
-    double gamma = cubic_gamma(theta, x.d, p.d, false);
-    if (p.a < x.a) gamma = -gamma;
-    const double r = ((gamma - x.d) + theta) / (((gamma - x.d) + gamma) + p.d);
-    const double cubic = x.a + r * ahead;
-    const double quadratic =
-        x.a + x.d / ((x.f - p.f) / ahead + x.d) / 2 * ahead;
-    step_ = std::abs(cubic - x.a) <= std::abs(quadratic - x.a)
-                ? cubic
-                : cubic + (quadratic - cubic) / 2;
-    bracketed_ = true;
-  } else if (turn < 0) {  // 2: lower, the slope changed sign
-    double gamma = cubic_gamma(theta, x.d, p.d, false);
-    if (p.a > x.a) gamma = -gamma;
-    const double r = ((gamma - p.d) + theta) / (((gamma - p.d) + gamma) + x.d);
-    const double cubic = p.a + r * (x.a - p.a);
-    const double quadratic = secant();
-    step_ =
-        std::abs(cubic - p.a) > std::abs(quadratic - p.a) ? cubic : quadratic;
-    bracketed_ = true;
-  } else if (std::abs(p.d) < std::abs(x.d)) {  // 3: lower, flatter
-    double gamma = cubic_gamma(theta, x.d, p.d, true);
-    if (p.a > x.a) gamma = -gamma;
-    const double r = ((gamma - p.d) + theta) / ((gamma + (x.d - p.d)) + gamma);
-    double cubic = p.a > x.a ? upper_ : lower_;
-    if (r < 0 && gamma != 0) cubic = p.a + r * (x.a - p.a);
-    const double quadratic = secant();
-    const bool cubic_closer = std::abs(cubic - p.a) < std::abs(quadratic - p.a);
-    const bool cubic_farther =
-        std::abs(cubic - p.a) > std::abs(quadratic - p.a);
-    if (bracketed_) {
-      const double limit = p.a + 0.66 * (y.a - p.a);
-      const double next = cubic_closer ? cubic : quadratic;
-      step_ = p.a > x.a ? std::min(limit, next) : std::max(limit, next);
-    } else {
-      const double next = cubic_farther ? cubic : quadratic;
-      step_ = std::min(std::max(next, lower_), upper_);
-    }
-  } else if (bracketed_) {  // 4: lower, not flatter
-    const double theta_y = 3 * (p.f - y.f) / (y.a - p.a) + y.d + p.d;
-    double gamma = cubic_gamma(theta_y, y.d, p.d, false);
-    if (p.a > y.a) gamma = -gamma;
-    const double r =
-        ((gamma - p.d) + theta_y) / (((gamma - p.d) + gamma) + y.d);
-    step_ = p.a + r * (y.a - p.a);
-  } else {
-    step_ = p.a > x.a ? upper_ : lower_;
-  }
-
   if (p.f > x.f) {
+    step_ = step_from_higher(p);
+    bracketed_ = true;
     y_ = p;
-  } else {
-    if (turn < 0) y_ = x;
-    x_ = p;
+    return;
   }
+  if (turn < 0) {
+    step_ = step_from_turned(p);
+    bracketed_ = true;
+    y_ = x;
+  } else if (std::abs(p.d) < std::abs(x.d)) {
+    step_ = step_from_flatter(p);
+  } else {
+    step_ = step_from_steep(p);
+  }
+  x_ = p;
 }
 
 // ---- search 2 --------------------------------------------------------------

@@ -56,6 +56,10 @@ class LineSearch {
   Next more_thuente(const LineSearchOptions& options, Point p);
   bool hopeless(const LineSearchOptions& options, Point p) const;
   void interpolate(Point p);
+  double step_from_higher(Point p) const;
+  double step_from_turned(Point p) const;
+  double step_from_flatter(Point p) const;
+  double step_from_steep(Point p) const;
   Next start_doubling(const LineSearchOptions& options);
   Next doubling(const LineSearchOptions& options, Point p);
   Next start_zoom(Point lo, Point hi);

@@ -196,22 +196,18 @@ void ConvBlock<T>::forward(const LayerArgs<T>& at,
              });
 }
 
+/// And the gradients by bias, scale and offset, which are their sums.
 template <class T>
-void ConvBlock<T>::backward(const LayerArgs<T>& at,
-                            const Backward<T>& b) const {
+const T* ConvBlock<T>::pulled_means(const LayerArgs<T>& at,
+                                    const Backward<T>& b,
+                                    const NormColumns<T>& kept,
+                                    Lanes<const T> z) const {
   const Index channels = norm_.channels, samples = b.x.samples;
-  const Lanes<const T> z(
-      at.tape->template view<T>(at.slot).data(), conv_.outputs(), samples);
-  const NormColumns<T> kept(at.tape->template view<T>(at.slot + 1).data(),
-                            channels);
   const T* parameters = at.parameters + conv_.parameter_count();
   const Index outputs = norm_.pooled().positions();
   const Index some = conv_.per_block(z), blocks = (outputs + some - 1) / some;
-  Threads* const threads = conv_.threads(at, samples);
-  const Workspace::Scope scope(*at.work);
-
   T* sums = at.work->template take<T>(2 * channels, blocks).data();
-  for_blocks(threads, blocks, [&](Index block, int) {
+  for_blocks(conv_.threads(at, samples), blocks, [&](Index block, int) {
     block_sums<T>(norm_,
                   kept,
                   parameters,
@@ -237,11 +233,25 @@ void ConvBlock<T>::backward(const LayerArgs<T>& at,
   const T share =
       by_batch(at) ? T(1) / static_cast<T>(norm_.positions() * samples) : T(0);
   for (Index c = 0; c < 2 * channels; ++c) means[c] *= share;
+  return means;
+}
+
+template <class T>
+void ConvBlock<T>::backward(const LayerArgs<T>& at,
+                            const Backward<T>& b) const {
+  const Index samples = b.x.samples;
+  const Lanes<const T> z(
+      at.tape->template view<T>(at.slot).data(), conv_.outputs(), samples);
+  const NormColumns<T> kept(at.tape->template view<T>(at.slot + 1).data(),
+                            norm_.channels);
+  const T* parameters = at.parameters + conv_.parameter_count();
+  const Workspace::Scope scope(*at.work);
+  const T* const means = pulled_means(at, b, kept, z);
 
   Lanes<T> z_bar(nullptr, z.rows, samples);
   z_bar.data = at.work->template take<T>(z.stride, z.rows).data();
   // Cells of whole rows, where pooling joins rows.
-  const Index cell = norm_.positions() / outputs;
+  const Index cell = norm_.positions() / norm_.pooled().positions();
   const Index unit = cell == 4 ? 2 * norm_.grid.columns : cell;
   conv_.gradients(at,
                   b.x,

@@ -84,6 +84,12 @@ class ConvBlock final : public Layer<T> {
   double operations() const override { return conv_.operations(); }
 
  private:
+  /// Means over samples and positions that the cotangent of a normalisation
+  /// needs (2 x channels).
+  const T* pulled_means(const LayerArgs<T>& at,
+                        const Backward<T>& b,
+                        const NormColumns<T>& kept,
+                        Lanes<const T> z) const;
   bool by_batch(const LayerArgs<T>& at) const {
     return at.training || batch_statistics_;
   }

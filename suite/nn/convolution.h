@@ -78,6 +78,20 @@ class Convolution {
   Threads* threads(const LayerArgs<T>& at, Index samples) const;
 
  private:
+  struct Pull {
+    ConvShape flipped;
+    const T* packed;
+    Lanes<const T> y_bar;
+    Lanes<T> x_bar;
+  };
+  void pull(const Pull& at, Index begin, Index end) const;
+  void pull_inner(const Pull& at, Index begin, Index end) const;
+  template <class First>
+  void pull_borders(const Pull& at,
+                    Index unit,
+                    Index parts,
+                    First&& first) const;
+
   ConvShape shape_;
   Index input_positions_;
   std::vector<Run> runs_, flipped_runs_;
@@ -125,6 +139,42 @@ void Convolution<T>::forward(const LayerArgs<T>& at,
   });
 }
 
+/// x_bar at some positions: a convolution of y_bar with the flipped weights.
+template <class T>
+void Convolution<T>::pull(const Pull& at, Index begin, Index end) const {
+  if (at.x_bar && begin < end)
+    convolve<T>(at.flipped,
+                flipped_runs_,
+                at.packed,
+                nullptr,
+                at.y_bar,
+                at.x_bar,
+                begin,
+                end);
+}
+
+template <class T>
+void Convolution<T>::pull_inner(const Pull& at, Index begin, Index end) const {
+  pull(at, std::max(begin, edge_), std::min(end, shape_.positions() - edge_));
+}
+
+/// What more than one part's outputs have seen, and both ends.
+template <class T>
+template <class First>
+void Convolution<T>::pull_borders(const Pull& at,
+                                  Index unit,
+                                  Index parts,
+                                  First&& first) const {
+  for (Index part = 0; part < parts; ++part) {
+    const Index begin = first(part) * unit, end = first(part + 1) * unit;
+    pull_inner(at, begin, std::min(end, begin + reach_));
+    pull_inner(at, std::max(begin + reach_, end - reach_), end);
+  }
+  const Index inner = shape_.positions() - edge_;
+  pull(at, 0, std::min(edge_, inner));
+  pull(at, std::max(inner, Index{0}), input_positions_);
+}
+
 template <class T>
 template <class F>
 void Convolution<T>::gradients(const LayerArgs<T>& at,
@@ -146,16 +196,7 @@ void Convolution<T>::gradients(const LayerArgs<T>& at,
     packed = at.work->template take<T>(shape_.weights(), 1).data();
     pack_flipped(shape_, at.parameters, packed);
   }
-  const ConvShape flipped = shape_.flipped();
-  const auto pull = [&](Index begin, Index end) {
-    if (x_bar && begin < end)
-      convolve<T>(
-          flipped, flipped_runs_, packed, nullptr, y_bar, x_bar, begin, end);
-  };
-  const Index inner = shape_.positions() - edge_;
-  const auto pull_inner = [&](Index begin, Index end) {
-    pull(std::max(begin, edge_), std::min(end, inner));
-  };
+  const Pull down{shape_.flipped(), packed, y_bar, x_bar};
   const Index units = shape_.positions() / unit;
   // In the L2: the weights' sums come and go less often. No bits depend on it.
   const Index some = std::max<Index>(1, 4 * per_block(y_bar) / unit);
@@ -170,17 +211,11 @@ void Convolution<T>::gradients(const LayerArgs<T>& at,
       if (weights_bar != nullptr)
         accumulate_weights<T>(
             shape_, runs_, x, y_bar, begin, end, sums + part * size);
-      pull_inner(pulled, end - reach_);
+      pull_inner(down, pulled, end - reach_);
       pulled = std::max(pulled, end - reach_);
     }
   });
-  for (Index part = 0; part < parts; ++part) {
-    const Index begin = first(part) * unit, end = first(part + 1) * unit;
-    pull_inner(begin, std::min(end, begin + reach_));
-    pull_inner(std::max(begin + reach_, end - reach_), end);
-  }
-  pull(0, std::min(edge_, inner));
-  pull(std::max(inner, Index{0}), input_positions_);
+  pull_borders(down, unit, parts, first);
   if (weights_bar != nullptr) {
     T* totals = at.work->template take<T>(shape_.weights(), 1).data();
     finish_weights<T>(shape_, sums, parts, totals, weights_bar);

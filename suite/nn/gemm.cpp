@@ -106,32 +106,93 @@ template <class T>
   });
 }
 
-/// M rows x N vectors in registers. kUnit: a_row is 1, known to the compiler.
-template <class T, class V, int M, int N, bool kUnit, bool kWhole>
-[[gnu::noinline]] void tile(const Gemm<T>& g, const Part& p) {
-  constexpr Index w = sizeof(V) / sizeof(T);
-  const Index a_row = kUnit ? 1 : g.a_row;
-  const Index count = kWhole ? w : p.valid;
-  const auto get = [count](const T* from) {
+/// Numbers of a vector, fewer than it holds if not kWhole.
+template <class T, class V, bool kWhole>
+struct Vectors {
+  static constexpr Index w = sizeof(V) / sizeof(T);
+  Index count;
+
+  [[gnu::always_inline]] V get(const T* from) const {
     return kWhole ? load<V>(from) : load_some<V>(from, count);
-  };
-  V acc[M][N];
+  }
+  [[gnu::always_inline]] void put(T* to, V v) const {
+    if constexpr (kWhole) {
+      store(to, v);
+    } else {
+      store_some(to, v, count);
+    }
+  }
+};
+
+/// The sums of a tile before its products: what is there, the bias, or zero.
+template <class T, class V, int M, int N, bool kWhole>
+[[gnu::always_inline]] inline void begin_sums(const Gemm<T>& g,
+                                              const Part& p,
+                                              Vectors<T, V, kWhole> vectors,
+                                              V (&acc)[M][N]) {
 #pragma GCC unroll 16
   for (int r = 0; r < M; ++r)
 #pragma GCC unroll 2
     for (int c = 0; c < N; ++c) acc[r][c] = V{};
-  T* const to = g.c + p.i * g.c_stride + p.j;
+  const T* const from = g.c + p.i * g.c_stride + p.j;
   if (p.k0 > 0) {
 #pragma GCC unroll 16
     for (int r = 0; r < M; ++r)
 #pragma GCC unroll 2
-      for (int c = 0; c < N; ++c) acc[r][c] = get(to + r * g.c_stride + c * w);
+      for (int c = 0; c < N; ++c)
+        acc[r][c] = vectors.get(from + r * g.c_stride + c * vectors.w);
   } else if (g.bias != nullptr) {
 #pragma GCC unroll 16
     for (int r = 0; r < M; ++r)
 #pragma GCC unroll 2
       for (int c = 0; c < N; ++c) acc[r][c] = broadcast<V>(g.bias[p.i + r]);
   }
+}
+
+/// What is done to the finished sums in registers, and the sums to memory.
+template <class T, class V, int M, int N, bool kWhole>
+[[gnu::always_inline]] inline void end_sums(const Gemm<T>& g,
+                                            const Part& p,
+                                            Vectors<T, V, kWhole> vectors,
+                                            V (&acc)[M][N]) {
+  constexpr Index w = vectors.w;
+  const auto gate = [&](Activation kind) {
+    const T* y = g.gate + p.i * g.gate_stride + p.j;
+#pragma GCC unroll 16
+    for (int r = 0; r < M; ++r)
+#pragma GCC unroll 2
+      for (int c = 0; c < N; ++c)
+        acc[r][c] = pull_lanes<T>(
+            kind, vectors.get(y + r * g.gate_stride + c * w), acc[r][c]);
+  };
+  const Store how = p.k1 == g.k ? store_of(g) : Store::plain;
+  if (how == Store::relu) {
+#pragma GCC unroll 16
+    for (int r = 0; r < M; ++r)
+#pragma GCC unroll 2
+      for (int c = 0; c < N; ++c)
+        acc[r][c] = activate_lanes<T>(Activation::relu, acc[r][c]);
+  } else if (how == Store::relu_gate) {
+    gate(Activation::relu);
+  } else if (how == Store::tanh_gate) {
+    gate(Activation::tanh);
+  }
+  T* const to = g.c + p.i * g.c_stride + p.j;
+#pragma GCC unroll 16
+  for (int r = 0; r < M; ++r)
+#pragma GCC unroll 2
+    for (int c = 0; c < N; ++c)
+      vectors.put(to + r * g.c_stride + c * w, acc[r][c]);
+}
+
+/// M rows x N vectors in registers. kUnit: a_row is 1, known to the compiler.
+template <class T, class V, int M, int N, bool kUnit, bool kWhole>
+[[gnu::noinline]] void tile(const Gemm<T>& g, const Part& p) {
+  constexpr Index w = sizeof(V) / sizeof(T);
+  const Index a_row = kUnit ? 1 : g.a_row;
+  const Vectors<T, V, kWhole> vectors{p.valid};
+  V acc[M][N];
+  begin_sums(g, p, vectors, acc);
   constexpr int groups = (M + 3) / 4;
   const T* a[groups];
 #pragma GCC unroll 4
@@ -152,38 +213,7 @@ template <class T, class V, int M, int N, bool kUnit, bool kWhole>
 #pragma GCC unroll 4
     for (int q = 0; q < groups; ++q) a[q] += g.a_k;
   }
-  const auto gate = [&](Activation kind) {
-    const T* y = g.gate + p.i * g.gate_stride + p.j;
-#pragma GCC unroll 16
-    for (int r = 0; r < M; ++r)
-#pragma GCC unroll 2
-      for (int c = 0; c < N; ++c)
-        acc[r][c] =
-            pull_lanes<T>(kind, get(y + r * g.gate_stride + c * w), acc[r][c]);
-  };
-  const Store how = p.k1 == g.k ? store_of(g) : Store::plain;
-  if (how == Store::relu) {
-#pragma GCC unroll 16
-    for (int r = 0; r < M; ++r)
-#pragma GCC unroll 2
-      for (int c = 0; c < N; ++c)
-        acc[r][c] = activate_lanes<T>(Activation::relu, acc[r][c]);
-  } else if (how == Store::relu_gate) {
-    gate(Activation::relu);
-  } else if (how == Store::tanh_gate) {
-    gate(Activation::tanh);
-  }
-#pragma GCC unroll 16
-  for (int r = 0; r < M; ++r) {
-#pragma GCC unroll 2
-    for (int c = 0; c < N; ++c) {
-      if constexpr (kWhole) {
-        store(to + r * g.c_stride + c * w, acc[r][c]);
-      } else {
-        store_some(to + r * g.c_stride + c * w, acc[r][c], count);
-      }
-    }
-  }
+  end_sums(g, p, vectors, acc);
 }
 
 /// All rows of one column of tiles, the remainder by smaller ones.
