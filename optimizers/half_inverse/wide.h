@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <cstring>
 
 #include "optimizers/half_inverse/eight.h"
 #include "suite/core/lanes_math.h"
@@ -27,6 +26,11 @@ PHYSINV_LANES Wide masked(Flags keep, Wide x) {
 }
 PHYSINV_LANES double sum(Wide x) { return nn::sum_of(x); }
 PHYSINV_LANES bool any_of(Flags f) { return any(f); }
+PHYSINV_LANES Wide load(const double* p) { return nn::load<Wide>(p); }
+PHYSINV_LANES void store(double* p, Wide v) { nn::store(p, v); }
+PHYSINV_LANES Flags load_flags(const std::int64_t* p) {
+  return nn::load<Flags>(p);
+}
 
 #else
 
@@ -60,21 +64,19 @@ PHYSINV_LANES bool any_of(const Flags& f) { return any(f.low | f.high); }
 PHYSINV_LANES Wide held(const Wide& x) {
   return {physinv::held(x.low), physinv::held(x.high)};
 }
-
-#endif
-
+/// Register by register: GCC copies more bytes than a register holds through
+/// memory, half a register at a time, and the load behind that waits.
 PHYSINV_LANES Wide load(const double* p) {
-  Wide v;
-  std::memcpy(&v, p, sizeof(v));
-  return v;
+  return {nn::load<Four>(p), nn::load<Four>(p + 4)};
 }
 PHYSINV_LANES void store(double* p, const Wide& v) {
-  std::memcpy(p, &v, sizeof(v));
+  nn::store(p, v.low);
+  nn::store(p + 4, v.high);
 }
 PHYSINV_LANES Flags load_flags(const std::int64_t* p) {
-  Flags f;
-  std::memcpy(&f, p, sizeof(f));
-  return f;
+  return {nn::load<FourFlags>(p), nn::load<FourFlags>(p + 4)};
 }
+
+#endif
 
 }  // namespace physinv::hig
