@@ -72,7 +72,7 @@ TEST(Accuracy, ClaimsJudgeTheOrder) {
         .verdict;
   };
   EXPECT_EQ(verdict(2, 0), Verdict::reproduced);
-  EXPECT_EQ(verdict(2, 1), Verdict::not_judged);
+  EXPECT_EQ(verdict(2, 1), Verdict::partly_judged);
   EXPECT_EQ(verdict(1.5, 0), Verdict::not_reproduced);
 }
 
