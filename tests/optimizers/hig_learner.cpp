@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "suite/core/decompositions.h"
+#include "suite/core/gradient_projection.h"
 #include "suite/nn/mlp.h"
 
 namespace physinv::test {
