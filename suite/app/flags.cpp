@@ -116,10 +116,10 @@ class CampaignFile final : public CLI::ConfigTOML {
     const auto begin = text.find_first_not_of(" \t\r\n");
     const bool is_json = begin != std::string::npos && text[begin] == '{';
     std::istringstream again(text);
-    const auto items =
+    auto named =
         is_json ? from_json(text) : CLI::ConfigTOML::from_config(again);
-    for (const auto& item : items) check(item);
-    return items;
+    for (const auto& item : named) check(item);
+    return named;
   }
 
  private:
