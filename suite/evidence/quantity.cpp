@@ -22,14 +22,14 @@ Quantity over_runs(Select select, RunValue value, F statistic) {
   return {[=](const Evidence& e) {
             const auto samples = sample(e, select, value);
             if (samples.empty()) {
-              const auto runs = find_runs(e, select);
+              const auto found = find_runs(e, select);
               const bool crowded =
-                  std::all_of(runs.begin(), runs.end(), [](const Run& run) {
+                  std::all_of(found.begin(), found.end(), [](const Run& run) {
                     return is_crowded(*run.stage);
                   });
-              return missing(select.text() + (runs.empty() ? " not run"
-                                              : crowded    ? " crowded"
-                                                           : " too short"));
+              return missing(select.text() + (found.empty() ? " not run"
+                                              : crowded     ? " crowded"
+                                                            : " too short"));
             }
             return statistic(samples);
           },

@@ -80,10 +80,11 @@ TEST(Legend, PatternsOfLinesDiffer) {
       patterns.insert(dash_css({.dash = dash}, dashed));
   EXPECT_EQ(patterns.size(), 2U * kDashes);
   for (const auto& css : patterns)
-    if (!css.empty())
+    if (!css.empty()) {
       EXPECT_NE(style_sheet().find("." + css.substr(1) + "{stroke-dasharray"),
                 std::string::npos)
           << css;
+    }
 }
 
 }  // namespace

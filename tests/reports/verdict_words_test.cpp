@@ -53,8 +53,9 @@ TEST_P(WordsOf, ComeWithTheirCause) {
       fmt::format("| jpo/toy R1 | a | {} | a choice | a |", words_);
   EXPECT_EQ(page.find(row) == page.npos, verdict_ == Verdict::reproduced)
       << page;
-  if (verdict_ != Verdict::not_judged)
+  if (verdict_ != Verdict::not_judged) {
     EXPECT_NE(page.find(cause_), page.npos) << page;
+  }
 }
 
 TEST_P(WordsOf, StandInThePageOfCampaigns) {
