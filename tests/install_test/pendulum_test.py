@@ -178,6 +178,8 @@ class Pendulum(unittest.TestCase):
         finally:
             del os.environ["PHYSINV_PLUGINS"]
 
+    @unittest.skipUnless(os.environ.get("PHYSINV_FULL"),
+                         "minutes of compiling: ./check --full")
     def test_8_keeps_the_contracts(self):
         build("pendulum_contract_test")
         out = run(TREE + "/pendulum_contract_test")

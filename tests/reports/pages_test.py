@@ -98,8 +98,12 @@ def main():
                   f"{found} links, {entries} entries of legends")
             print(f"{len(looked_at)} pages, {found} links, {entries} entries "
                   f"of legends, {os.path.getsize(index)} bytes of index")
+            if flags:
+                continue
             chromium = shutil.which("chromium")
-            if not chromium or flags:
+            if not chromium or not os.environ.get("PHYSINV_FULL"):
+                print("widths are not looked at: ./check --full does, with "
+                      "chromium")
                 continue
             largest = sorted(pages, key=os.path.getsize)[-3:]
             for path in [index, *largest]:
