@@ -231,7 +231,7 @@ std::string experiments_text(const std::vector<Case>& cases) {
 
 /// How long they will take; what is little is not measured first.
 std::string expected_text(const std::vector<Case>& cases, int jobs) {
-  constexpr double kLittle = 1e8, kSeconds = 1;
+  constexpr double kLittle = 1e10, kSeconds = 1;
   Operations operations;
   double sum = 0;
   for (const Case& c : cases) sum += operations.of(c);
