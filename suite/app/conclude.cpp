@@ -105,7 +105,6 @@ Undecided undecided_in(const std::vector<const Section*>& sections,
 
 /// What another profile of the same selection takes; nothing if not known.
 std::string seconds_text(const RunEnd& end, const std::string& profile) {
-  constexpr double kSeconds = 1;
   Selection selection = end.selection;
   selection.profile = profile;
   selection.shard.clear();
@@ -113,9 +112,7 @@ std::string seconds_text(const RunEnd& end, const std::string& profile) {
   std::erase_if(cases, [&](const Case& c) {
     return !end.experiments.contains(c.info.experiment);
   });
-  const Forecast f = forecast(cases, kSeconds, Trials::default_file());
-  const double seconds = seconds_with(f.costs, end.jobs);
-  return seconds >= 0 ? ", about " + duration_text(seconds) : "";
+  return about_text(cases, end.jobs, end.screen.terminal);
 }
 
 std::string undecided_text(const RunEnd& end,

@@ -17,7 +17,6 @@
 #include "suite/harness/output.h"
 #include "suite/harness/stop_signal.h"
 #include "suite/planning/forecast.h"
-#include "suite/planning/kinds.h"
 #include "suite/results/crowded.h"
 #include "suite/results/file.h"
 #include "suite/results/repetitions.h"
@@ -229,20 +228,10 @@ std::string experiments_text(const std::vector<Case>& cases) {
                                 : fmt::format("{} experiments", names.size());
 }
 
-/// How long they will take; what is little is not measured first.
-std::string expected_text(const std::vector<Case>& cases, int jobs) {
-  constexpr double kLittle = 1e10, kSeconds = 1;
-  Operations operations;
-  double sum = 0;
-  for (const Case& c : cases) sum += operations.of(c);
-  if (sum < kLittle) return "";
-  const Forecast f = forecast(cases, kSeconds, Trials::default_file());
-  const double seconds = seconds_with(f.costs, jobs);
-  return seconds >= 0 ? ", about " + duration_text(seconds) : "";
-}
-
 /// What will run, at once.
-std::string begin_text(const RunFlags& flags, const std::vector<Case>& cases) {
+std::string begin_text(const RunFlags& flags,
+                       const std::vector<Case>& cases,
+                       bool watched) {
   const fs::path& out = flags.campaign.out;
   std::vector<Case> left = cases;
   if (flags.campaign.resume && Store::exists(out)) {
@@ -261,7 +250,7 @@ std::string begin_text(const RunFlags& flags, const std::vector<Case>& cases) {
                                        one_line(out.string()))
                          : "",
                      flags.campaign.jobs,
-                     expected_text(left, flags.campaign.jobs));
+                     about_text(left, flags.campaign.jobs, watched));
 }
 
 /// With keys only where something may be reused: the data of experiments that
@@ -333,7 +322,7 @@ CampaignResult run_all(Prepared prepared,
 void say_what_runs(const RunFlags& flags,
                    const std::vector<Case>& cases,
                    const Screen& screen) {
-  const std::string text = begin_text(flags, cases);
+  const std::string text = begin_text(flags, cases, screen.terminal);
   const StopSignalWatch watch;
   put(screen.stream, text);
   if (stop_signals() > 0)

@@ -17,8 +17,10 @@
 #include <utility>
 
 #include "suite/core/clock.h"
+#include "suite/harness/progress.h"
 #include "suite/planning/kinds.h"
 #include "suite/planning/split.h"
+#include "suite/results/errors.h"
 
 namespace physinv {
 namespace {
@@ -194,6 +196,24 @@ Forecast forecast(const std::vector<Case>& cases,
   if (child == 0) measure(kinds, file);
   wait_for(child, seconds);
   return by_known(cases, kinds, Trials(file));
+}
+
+std::string about_text(const std::vector<Case>& cases,
+                       int workers,
+                       bool watched) {
+  constexpr double kLittle = 1e10, kSeconds = 1;
+  Operations operations;
+  double sum = 0;
+  for (const Case& c : cases) sum += operations.of(c);
+  if (sum < kLittle) return "";
+  try {
+    const Forecast f =
+        forecast(cases, watched ? kSeconds : 0, Trials::default_file());
+    const double seconds = seconds_with(f.costs, workers);
+    return seconds >= 0 ? ", about " + duration_text(seconds) : "";
+  } catch (const StoreError&) {  // a cache that is none; plan says so
+    return "";
+  }
 }
 
 double seconds_with(const std::vector<Cost>& costs, int workers) {

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "suite/planning/predict.h"
@@ -26,6 +27,13 @@ struct Forecast {
 Forecast forecast(const std::vector<Case>& cases,
                   double seconds,
                   const std::filesystem::path& cache);
+
+/// ", about 12 s" with so many workers; nothing if not known. For somebody who
+/// watches it is measured, for a second, unless the work is one of seconds;
+/// others are told what is known.
+std::string about_text(const std::vector<Case>& cases,
+                       int workers,
+                       bool watched);
 
 /// Wall seconds of so many workers, longest case first; not finite if a case's
 /// are not.

@@ -39,15 +39,13 @@ class Campaign:
             store = os.path.join(self.world.golden, "undisturbed")
             begin = time.monotonic()
             ended = self.world.start([*self.flags, store],
-                                     cwd=self.world.golden,
-                                     env=stores.CACHE).wait(300)
+                                     cwd=self.world.golden).wait(300)
             if ended.code != 0:
                 raise SystemExit("an undisturbed campaign: " + ended.err)
             self.world.truths["campaign"] = store, time.monotonic() - begin
         return self.world.truths["campaign"]
 
     def start(self, **kwargs):
-        kwargs.setdefault("env", stores.CACHE)  # of speeds, for its first line
         return self.attempt.start(*self.flags, self.store, **kwargs)
 
     def lines(self):
