@@ -168,6 +168,9 @@ def stopped(attempt, campaign, process, number, unread=False):
     if not attempt.expect(ended.code == 130,
                           f"{signal.Signals(number).name}: {ended.code}"):
         return ended
+    if "before the first case" in ended.err:
+        attempt.expect(not campaign.lines(), "something was run")
+        return ended
     attempt.expect(campaign.states(), "no state is laid down")
     if not unread:
         attempt.expect(re.search("same command|again|goes? on|continue",
