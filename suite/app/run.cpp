@@ -17,6 +17,7 @@
 #include "suite/harness/output.h"
 #include "suite/harness/stop_signal.h"
 #include "suite/planning/forecast.h"
+#include "suite/results/catalog.h"
 #include "suite/results/crowded.h"
 #include "suite/results/file.h"
 #include "suite/results/repetitions.h"
@@ -228,18 +229,21 @@ std::string experiments_text(const std::vector<Case>& cases) {
                                 : fmt::format("{} experiments", names.size());
 }
 
+/// What is stored and may be reused.
+std::optional<Catalog> reusable(const CampaignOptions& o) {
+  if (!o.resume || !Store::exists(o.out)) return {};
+  return Catalog::read(o.out);
+}
+
 /// What will run, at once.
 std::string begin_text(const RunFlags& flags,
                        const std::vector<Case>& cases,
                        bool watched) {
   const fs::path& out = flags.campaign.out;
   std::vector<Case> left = cases;
-  if (flags.campaign.resume && Store::exists(out)) {
-    const Store store = Store::read_only(out);
-    std::erase_if(left, [&](const Case& c) {
-      return store.catalog().knows_case(c.info.name);
-    });
-  }
+  if (const auto stored = reusable(flags.campaign))
+    std::erase_if(
+        left, [&](const Case& c) { return stored->knows_case(c.info.name); });
   return fmt::format("{}: {} cases of profile {}{}, {} workers{}\n",
                      experiments_text(cases),
                      cases.size(),
@@ -257,12 +261,9 @@ std::string begin_text(const RunFlags& flags,
 /// the store does not know are not drawn.
 Prepared prepared_to_look(std::vector<Case> cases, const CampaignOptions& o) {
   std::set<std::string> known;
-  if (o.resume && Store::exists(o.out)) {
-    const Store store = Store::read_only(o.out);
+  if (const auto stored = reusable(o))
     for (const Case& c : cases)
-      if (store.catalog().knows_case(c.info.name))
-        known.insert(c.info.experiment);
-  }
+      if (stored->knows_case(c.info.name)) known.insert(c.info.experiment);
   const auto at =
       std::stable_partition(cases.begin(), cases.end(), [&](const Case& c) {
         return known.contains(c.info.experiment);

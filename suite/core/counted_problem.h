@@ -72,13 +72,20 @@ class CountedProblem {
   std::size_t bytes() const { return tape_.bytes() + work_.bytes(); }
 
  private:
-  template <class Ability>
-  const Ability& as(Needs needs) const;
+  const ClosedSteps<T>& closed_for(Needs needs) const;
   void count(Counter counter, Index n) {
     counts_[counter] += static_cast<std::uint64_t>(n);
   }
 
   std::unique_ptr<const Problem<T>> problem_;
+  // The abilities that may be used; null if the problem lacks one or the
+  // method did not declare it.
+  const Vjp<T>* vjp_;
+  const Jvp<T>* jvp_;
+  const PullbackTangent<T>* pullback_tangent_;
+  const Jacobian<T>* jacobian_;
+  const Hessian<T>* hessian_;
+  const Inverse<T>* inverse_;
   const ClosedSteps<T>* closed_;
   const GradientProjection<T>* projection_;
   Needs allowed_;

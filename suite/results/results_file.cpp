@@ -174,11 +174,12 @@ bool agrees(const Json& entry,
             const std::map<std::string, std::set<std::string>>& known) {
   const std::string run = run_of(entry);
   if (const auto own = truth.find(run); own != truth.end()) {
-    Json expected = own->second;
+    if (entry.at("physinv").contains("data_ms"))
+      return own->second == own_part(entry);
     // Earlier files of this version do not tell of it.
-    if (!entry.at("physinv").contains("data_ms"))
-      expected.at("physinv").erase("data_ms");
-    return expected == own_part(entry);
+    Json earlier = own->second;
+    earlier.at("physinv").erase("data_ms");
+    return earlier == own_part(entry);
   }
   const auto runs = known.find(entry.at("name").get<std::string>());
   return runs == known.end() || runs->second.contains(run);
