@@ -247,15 +247,17 @@ std::shared_ptr<const Stage> local_steps(const LocalStepsOptions& options) {
   check_numbers<double>({{"rate", options.rate}});
   SUITE_CHECK(options.iterations >= 0 && options.paths >= 0,
               "iterations and paths are numbers from 0 on");
-  StageFacts facts{.name = "solve",
-                   .needs = needs_of(options),
-                   .options = describe(options),
-                   .iterations = options.iterations,
-                   .networks = Networks::none,
-                   .operations = [options](const CaseSize& size) {
-                     return operations(options, size);
-                   }};
-  add_sources(options.rule.value_or(SgdOptions{}), facts.sources);
+  Sources sources;
+  add_sources(options.rule.value_or(SgdOptions{}), sources);
+  StageFacts facts{
+      .name = "solve",
+      .needs = needs_of(options),
+      .options = describe(options),
+      .iterations = options.iterations,
+      .networks = Networks::none,
+      .operations =
+          [options](const CaseSize& size) { return operations(options, size); },
+      .sources = std::move(sources)};
   if (searches(options))
     return make_stage(std::move(facts), [options](StageRun& run) {
       return run_in<double>(options, run);

@@ -1,5 +1,8 @@
 #include "optimizers/stage.h"
 
+#include <algorithm>
+#include <iterator>
+
 namespace physinv {
 namespace {
 
@@ -13,17 +16,17 @@ class FactualStage final : public Stage {
 
   std::string name() const override { return facts_.name; }
   Needs needs() const override { return facts_.needs; }
-  Options options() const override { return facts_.options; }
+  Options options() const override { return facts_.options(); }
   Index default_iterations() const override { return facts_.iterations; }
   bool takes_row_iterations() const override { return !facts_.own_length; }
   bool has_precision() const override { return in_float_ != nullptr; }
   Networks networks() const override { return facts_.networks; }
   Sources sources() const override {
     Sources all = Stage::sources();
-    all.roots.insert(all.roots.end(),
-                     facts_.sources.roots.begin(),
-                     facts_.sources.roots.end());
-    all.unused = facts_.sources.unused;
+    Sources own = facts_.sources();
+    std::move(
+        own.roots.begin(), own.roots.end(), std::back_inserter(all.roots));
+    all.unused = std::move(own.unused);
     return all;
   }
   double operations(const CaseSize& size) const override {

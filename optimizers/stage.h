@@ -19,16 +19,30 @@
 
 namespace physinv {
 
+/// A value, or a function that makes it when it is asked for: of a program's
+/// stages most are never looked at.
+template <class T>
+class Deferred {
+ public:
+  Deferred(T value = {}) : make_([v = std::move(value)] { return v; }) {}
+  template <std::invocable Make>
+  Deferred(Make make) : make_(std::move(make)) {}
+  T operator()() const { return make_(); }
+
+ private:
+  std::function<T()> make_;
+};
+
 struct StageFacts {
   std::string name;
   Needs needs;
-  Options options;
+  Deferred<Options> options;
   Index iterations;
   bool own_length = false;  ///< `iterations` stands, whatever a row says
   Networks networks = Networks::predictor;
   std::function<double(const CaseSize& size)> operations;
   /// What the options bring in, and leave without effect.
-  Sources sources = {};
+  Deferred<Sources> sources = {};
   const char* source = __builtin_FILE();  ///< where the stage is written
 };
 

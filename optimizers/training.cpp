@@ -214,12 +214,12 @@ std::shared_ptr<const Stage> train(const TrainingOptions& options) {
   return make_stage(
       {.name = options.stage,
        .needs = Needs::forward | needs(options),
-       .options = describe(options),
+       .options = [shared] { return describe(*shared); },
        .iterations = options.iterations,
        .own_length = options.own_length,
        .operations =
            [shared](const CaseSize& size) { return operations(*shared, size); },
-       .sources = sources(options)},
+       .sources = [shared] { return sources(*shared); }},
       [shared]<class T>(StageRun& run) { return fit<T>(*shared, run); });
 }
 

@@ -65,32 +65,24 @@ void Registry::add(Experiment experiment) {
               std::back_inserter(experiment.claims));
   if (auto report = reports_.extract(experiment.name))
     experiment.report = std::move(report.mapped());
-  experiments_.push_back(
-      std::make_shared<const Experiment>(std::move(experiment)));
+  experiments_.push_back(std::make_shared<Experiment>(std::move(experiment)));
+}
+
+Experiment* Registry::registered(const std::string& name) {
+  const auto e = find(name);
+  return std::const_pointer_cast<Experiment>(e).get();
 }
 
 void Registry::add_claims(const std::string& experiment,
                           std::vector<Claim> claims) {
-  for (auto& e : experiments_) {
-    if (e->name != experiment) continue;
-    Experiment with = *e;
-    std::move(claims.begin(), claims.end(), std::back_inserter(with.claims));
-    e = std::make_shared<const Experiment>(std::move(with));
-    return;
-  }
-  auto& waiting = claims_[experiment];
-  std::move(claims.begin(), claims.end(), std::back_inserter(waiting));
+  Experiment* there = registered(experiment);
+  auto& all = there != nullptr ? there->claims : claims_[experiment];
+  std::move(claims.begin(), claims.end(), std::back_inserter(all));
 }
 
 void Registry::add_report(const std::string& experiment, Report report) {
-  for (auto& e : experiments_) {
-    if (e->name != experiment) continue;
-    Experiment with = *e;
-    with.report = std::move(report);
-    e = std::make_shared<const Experiment>(std::move(with));
-    return;
-  }
-  reports_[experiment] = std::move(report);
+  Experiment* there = registered(experiment);
+  (there != nullptr ? there->report : reports_[experiment]) = std::move(report);
 }
 
 void Registry::add(Overview overview) {

@@ -61,6 +61,9 @@ class Registry {
                            const Overrides& overrides = {}) const;
 
  private:
+  /// To add what stands elsewhere; null if there is none of this name.
+  Experiment* registered(const std::string& name);
+
   Experiments experiments_;
   std::vector<Overview> overviews_;
   /// Of experiments that are not there yet.

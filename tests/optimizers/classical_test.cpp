@@ -154,7 +154,7 @@ TEST(Classical, ASolverFromOutsideIsAStage) {
   const auto stage = make_stage(
       {.name = "solve",
        .needs = Needs::forward | Needs::vjp,
-       .options = {{"algorithm", "half steps"}},
+       .options = Options{{"algorithm", "half steps"}},
        .iterations = 100,
        .networks = Networks::none,
        .operations =
