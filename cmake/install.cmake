@@ -15,7 +15,8 @@ install(CODE "
 add_library(physinv INTERFACE)
 set(physinv_exported physinv physinv_flags)
 set_target_properties(physinv_flags PROPERTIES EXPORT_NAME flags)
-foreach(layer core decompositions nn problems optimizers baselines diagnostics results evidence build_info harness)
+foreach(layer core decompositions linalg nn problems optimizers baselines
+               diagnostics results evidence build_info harness)
   if(TARGET physinv_${layer})
     target_link_libraries(physinv INTERFACE physinv_${layer})
     list(APPEND physinv_exported physinv_${layer})

@@ -16,8 +16,8 @@ function(physinv_sources result)
   set(${result} ${all} PARENT_SCOPE)
 endfunction()
 
-physinv_sources(numerics suite/core suite/nn problems optimizers baselines
-  suite/diagnostics)
+physinv_sources(numerics suite/core suite/linalg suite/nn problems optimizers
+  baselines suite/diagnostics)
 physinv_sources(cases suite/cases)  # for the metrics among them
 set(everywhere suite/harness/run_stage.cpp suite/harness/run_stage.h)
 set(sources ${numerics} ${cases} ${everywhere})

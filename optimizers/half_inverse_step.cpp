@@ -14,7 +14,7 @@ namespace {
 template <class T>
 void write_out(const std::vector<LayerRows<T>>& layers,
                Index per_sample,
-               hig::TallColumns& columns) {
+               linalg::TallColumns& columns) {
   const Index rows = columns.rows();
   for (const LayerRows<T>& l : layers) {
     for (Index o = 0; o < l.outputs; ++o) {

@@ -69,7 +69,7 @@ class HalfInverseStep {
   hig::HalfInverse power_;
   hig::SharedFunctions shared_;
   hig::TallPower tall_;
-  hig::TallColumns columns_;
+  linalg::TallColumns columns_;
   hig::StructuredGram form_gram_;
   hig::HalfInverseReport report_;
   std::vector<LayerRows<T>> layers_;

@@ -9,10 +9,10 @@
 #include "optimizers/stepwise.h"
 #include "optimizers/training/newton.h"
 #include "suite/core/check.h"
-#include "suite/core/decompositions.h"
 #include "suite/core/option_check.h"
 #include "suite/core/oracle.h"
 #include "suite/core/probe.h"
+#include "suite/linalg/decompositions.h"
 
 namespace physinv {
 namespace {
@@ -207,7 +207,7 @@ class LocalSteps final : public StepwiseSolver {
   T rate_;
   Batch<T> x_, next_, given_, target_, y_, y_bar_, matrix_;
   Batch<double> path_;
-  FullyPivoted<T> lu_;
+  linalg::FullyPivoted<T> lu_;
   Examples examples_;
 };
 

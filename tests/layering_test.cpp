@@ -20,9 +20,10 @@ struct Layer {
 
 const std::map<std::string, Layer> kLayers{
     {"suite/core", {{}, {"eigen", "fftw", "hdf5", "random123", "sleef"}}},
+    {"suite/linalg", {{"suite/core"}, {"eigen"}}},
     {"suite/nn", {{"suite/core"}, {"eigen"}}},
     {"problems", {{"suite/core"}, {"eigen"}}},
-    {"optimizers", {{"suite/core", "suite/nn"}, {"eigen"}}},
+    {"optimizers", {{"suite/core", "suite/linalg", "suite/nn"}, {"eigen"}}},
     {"baselines", {{"suite/core", "suite/nn", "optimizers"}, {"eigen"}}},
     {"suite/diagnostics",
      {{"suite/core", "suite/nn", "problems", "optimizers"}, {"eigen"}}},

@@ -8,6 +8,8 @@
 #include "optimizers/half_inverse/spectral_power.h"
 
 namespace physinv::hig {
+
+using namespace linalg;
 namespace {
 
 constexpr int kRounds = 30;

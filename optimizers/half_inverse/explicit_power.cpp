@@ -5,13 +5,15 @@
 #include <cmath>
 
 #include "optimizers/half_inverse/units.h"
-#include "optimizers/half_inverse/wide.h"
 #include "suite/core/check.h"
-#include "suite/core/decompositions.h"
 #include "suite/core/eigen_caches.h"
 #include "suite/core/unit_of.h"
+#include "suite/linalg/decompositions.h"
+#include "suite/linalg/eight.h"
 
 namespace physinv::hig {
+
+using namespace linalg;
 namespace {
 
 /// Up to here Jacobi is as fast as bidiagonalisation, and more accurate.
@@ -22,12 +24,12 @@ constexpr double kNothing = 1e-280;
 
 /// (a, b) <- (c a - s b, s a + c b)
 void rotate(Index n, double c, double s, double* a, double* b) {
-  const Wide cosine = broadcast(c), sine = broadcast(s);
+  const Pack8 cosine = broadcast(c), sine = broadcast(s);
   Index i = 0;
   for (; i + kWidth <= n; i += kWidth) {
-    const Wide left = load(a + i), right = load(b + i);
-    store(a + i, fma(cosine, left, -(sine * right)));
-    store(b + i, fma(sine, left, cosine * right));
+    const Pack8 left = load(a + i), right = load(b + i);
+    store(a + i, fma_lanes(cosine, left, -(sine * right)));
+    store(b + i, fma_lanes(sine, left, cosine * right));
   }
   for (; i < n; ++i) {
     const double left = a[i], right = b[i];

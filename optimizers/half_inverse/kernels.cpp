@@ -40,6 +40,8 @@ void dsyevd_(const char*,
 #endif
 
 namespace physinv::hig {
+
+using namespace linalg;
 namespace {
 
 /// J J^T with singular values over six decades, and a g.

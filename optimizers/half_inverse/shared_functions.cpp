@@ -3,6 +3,8 @@
 #include <cmath>
 
 namespace physinv::hig {
+
+using namespace linalg;
 namespace {
 
 /// The factor s_c that each function sees its output with; false if functions

@@ -22,7 +22,7 @@
 
 #include <span>
 
-#include "optimizers/half_inverse/tall_qr.h"
+#include "suite/linalg/tall_qr.h"
 #include "suite/nn/layer_rows.h"
 
 namespace physinv::hig {
@@ -60,7 +60,7 @@ class SharedFunctions {
                       VectorIn<double> g);
   void put_function(const Sizes& n, Index function, Index offset);
 
-  TallColumns features_, rest_;
+  linalg::TallColumns features_, rest_;
   Batch<double> top_, corner_, r_;
   std::vector<double> seen_, ratio_;
   std::vector<Index> place_;

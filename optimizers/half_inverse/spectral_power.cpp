@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "optimizers/half_inverse/reflector.h"
 #include "suite/core/check.h"
+#include "suite/linalg/householder.h"
 
 namespace physinv::hig {
+
+using namespace linalg;
 
 bool finite_lower(BatchIn<double> a, double& largest) {
   largest = 0;

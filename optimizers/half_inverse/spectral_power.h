@@ -13,8 +13,8 @@
 #include <span>
 
 #include "optimizers/half_inverse/power.h"
-#include "optimizers/half_inverse/tridiagonal_qr.h"
-#include "optimizers/half_inverse/tridiagonalize.h"
+#include "suite/linalg/tridiagonal_qr.h"
+#include "suite/linalg/tridiagonalize.h"
 
 namespace physinv::hig {
 
@@ -29,7 +29,7 @@ class SpectralPower {
   Ending factor(BatchIn<double> gram,
                 VectorIn<double> g,
                 double gram_noise = 1,
-                Stages stages = Stages::automatic);
+                linalg::Stages stages = linalg::Stages::automatic);
 
   /// v of power.h for the matrix factored last; zero unless that ended ok.
   PowerReport apply(const Power& power, VectorOut<double> v) const;
@@ -46,9 +46,9 @@ class SpectralPower {
 
  private:
   Threads* threads_;
-  Tridiagonalize reduction_;
-  TridiagonalQr qr_;
-  SymmetricProduct product_;
+  linalg::Tridiagonalize reduction_;
+  linalg::TridiagonalQr qr_;
+  linalg::SymmetricProduct product_;
   Spectrum spectrum_;
   Ending ending_ = Ending::zero;
   Vector<double> u_, gu_, e_;  // padded; P = I - 2 u u^T

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <utility>
 
-#include "optimizers/half_inverse/tile_product.h"
 #include "suite/core/check.h"
+#include "suite/linalg/tile_product.h"
 
 namespace physinv::hig {
+
+using namespace linalg;
 namespace {
 
 /// Rows of a tile; a divisor of kTileColumns, so that a packed group serves as
@@ -209,7 +211,7 @@ class StructuredGram::Sweep {
   }
 
  private:
-  using Tile = Wide[kRows][2];
+  using Tile = Pack8[kRows][2];
 
   void block(Index begin, double* expanded) const {
     const Index end = std::min(begin + kBlock, m_);
@@ -267,10 +269,10 @@ class StructuredGram::Sweep {
                   {row_pack + term.row * kTileColumns, 1, kTileColumns},
                   column_pack + term.column * kTileColumns,
                   kTileColumns,
-                  [&](int r, Wide x, Wide y) {
+                  [&](int r, Pack8 x, Pack8 y) {
                     const double* e = of_row[r] + l * kBlock + in_block;
-                    total[r][0] = fma(x, load(e), total[r][0]);
-                    total[r][1] = fma(y, load(e + kWidth), total[r][1]);
+                    total[r][0] = fma_lanes(x, load(e), total[r][0]);
+                    total[r][1] = fma_lanes(y, load(e + kWidth), total[r][1]);
                   });
     }
   }

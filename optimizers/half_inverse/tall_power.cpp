@@ -7,6 +7,8 @@
 #include "suite/core/check.h"
 
 namespace physinv::hig {
+
+using namespace linalg;
 namespace {
 
 /// Values are looked for down to a part of the cut, so that one just below is

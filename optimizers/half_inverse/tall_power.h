@@ -9,10 +9,10 @@
 /// good for, ExplicitPower takes the triangle.
 #pragma once
 
-#include "optimizers/half_inverse/bidiagonal.h"
-#include "optimizers/half_inverse/bidiagonal_spectrum.h"
 #include "optimizers/half_inverse/explicit_power.h"
-#include "optimizers/half_inverse/tall_qr.h"
+#include "suite/linalg/bidiagonal.h"
+#include "suite/linalg/bidiagonal_spectrum.h"
+#include "suite/linalg/tall_qr.h"
 
 namespace physinv::hig {
 
@@ -20,7 +20,7 @@ class TallPower {
  public:
   /// a = [J g] with as many columns as `update` and one more, rows >= columns
   /// of J; it is used up.
-  PowerReport operator()(TallColumns& a,
+  PowerReport operator()(linalg::TallColumns& a,
                          const Power& power,
                          VectorOut<double> update);
 
@@ -41,8 +41,8 @@ class TallPower {
   Batch<double> top_, r_;
   Vector<double> h_, weights_;
   double scale_ = 1;
-  Bidiagonal bidiagonal_;
-  BidiagonalSpectrum lanes_;
+  linalg::Bidiagonal bidiagonal_;
+  linalg::BidiagonalSpectrum lanes_;
   Spectrum spectrum_;
   ExplicitPower explicit_;
   Index fallbacks_ = 0;

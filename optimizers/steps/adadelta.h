@@ -30,17 +30,16 @@ class Adadelta : public ElementwiseStep<T, Adadelta<T>, 2> {
   explicit Adadelta(const Options& options = {}) : options_(options) {}
 
   auto update(long /*step*/) const {
-    using R = steps::Register<T>;
-    using V = typename R::V;
+    using V = NarrowPack<T>;
     const T rate = static_cast<T>(options_.rate);
     const T decay = static_cast<T>(options_.decay);
     const T fresh = static_cast<T>(1 - options_.decay);
     const T eps = static_cast<T>(options_.eps);
     return [=](V x, V g, V & a, V & c) __attribute__((always_inline)) {
-      a = R::multiply_add(R::all(decay), a, fresh * (g * g));
-      const V d = R::root(c + eps) / R::root(a + eps) * g;
-      c = R::multiply_add(R::all(decay), c, fresh * (d * d));
-      return R::multiply_add(R::all(-rate), d, x);
+      a = fma_lanes(decay, a, fresh * (g * g));
+      const V d = sqrt_lanes(c + eps) / sqrt_lanes(a + eps) * g;
+      c = fma_lanes(decay, c, fresh * (d * d));
+      return fma_lanes(-rate, d, x);
     };
   }
 

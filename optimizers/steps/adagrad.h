@@ -30,13 +30,12 @@ class Adagrad : public ElementwiseStep<T, Adagrad<T>, 1> {
         options_(options) {}
 
   auto update(long /*step*/) const {
-    using R = steps::Register<T>;
-    using V = typename R::V;
+    using V = NarrowPack<T>;
     const T rate = static_cast<T>(options_.rate);
     const T eps = static_cast<T>(options_.eps);
     return [=](V x, V g, V & a) __attribute__((always_inline)) {
-      a = R::multiply_add(g, g, a);
-      return x - rate * g / (R::root(a) + eps);
+      a = fma_lanes(g, g, a);
+      return x - rate * g / (sqrt_lanes(a) + eps);
     };
   }
 

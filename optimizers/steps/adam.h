@@ -40,8 +40,7 @@ class Adam : public ElementwiseStep<T, Adam<T>, 2> {
   explicit Adam(const Options& options = {}) : options_(options) {}
 
   auto update(long step) const {
-    using R = steps::Register<T>;
-    using V = typename R::V;
+    using V = NarrowPack<T>;
     const auto t = static_cast<double>(step);
     const Options& o = options_;
     const double c1 = 1 - math::pow(o.beta1, t), c2 = 1 - math::pow(o.beta2, t);
@@ -56,10 +55,14 @@ class Adam : public ElementwiseStep<T, Adam<T>, 2> {
     const T tiny =
         std::numeric_limits<T>::min() / std::numeric_limits<T>::epsilon();
     return [=](V x, V g, V & m, V & v) __attribute__((always_inline)) {
-      m = R::without_tiny(R::multiply_add(R::all(b1), m, a1 * g), tiny);
-      v = R::without_tiny(R::multiply_add(R::all(b2), v, a2 * (g * g)), tiny);
+      // NaN stays.
+      const auto without_tiny = [=](V moment) {
+        return select((moment < tiny) & (moment > -tiny), V{}, moment);
+      };
+      m = without_tiny(fma_lanes(b1, m, a1 * g));
+      v = without_tiny(fma_lanes(b2, v, a2 * (g * g)));
       const V scaled = v * correct;
-      return x - rate * m / (R::root(scaled) + eps);
+      return x - rate * m / (sqrt_lanes(scaled) + eps);
     };
   }
 

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "suite/core/lanes.h"
+#include "suite/core/simd/pack.h"
 
 namespace physinv::dense {
 

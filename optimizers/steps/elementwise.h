@@ -18,10 +18,10 @@
 #include <cstddef>
 #include <utility>
 
-#include "optimizers/steps/simd.h"
 #include "suite/core/archive.h"
 #include "suite/core/batch.h"
 #include "suite/core/check.h"
+#include "suite/core/simd/pack.h"
 
 namespace physinv {
 
@@ -64,16 +64,17 @@ class ElementwiseStep {
              VectorIn<T> gradient,
              VectorOut<T> to,
              std::index_sequence<k...>) {
-    using R = steps::Register<T>;
+    using V = NarrowPack<T>;
     T* const out = to.data();
     const T *const px = x.data(), *const pg = gradient.data();
     const std::array<T*, kKept> p = {kept_[k].data()...};
-    steps::for_registers<T>(x.size(), [=](Index i, auto lanes) {
-      std::array<typename R::V, kKept> kept = {R::load(p[k] + i, lanes)...};
-      const auto next =
-          update(R::load(px + i, lanes), R::load(pg + i, lanes), kept[k]...);
-      (R::store(p[k] + i, kept[k], lanes), ...);
-      R::store(out + i, next, lanes);
+    for_narrow_packs<T>(x.size(), [=](Index i, auto lanes) {
+      std::array<V, kKept> kept = {load_lanes<V>(p[k] + i, lanes)...};
+      const auto next = update(load_lanes<V>(px + i, lanes),
+                               load_lanes<V>(pg + i, lanes),
+                               kept[k]...);
+      (store_lanes(p[k] + i, kept[k], lanes), ...);
+      store_lanes(out + i, next, lanes);
     });
   }
 

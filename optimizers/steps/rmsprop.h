@@ -28,15 +28,14 @@ class Rmsprop : public ElementwiseStep<T, Rmsprop<T>, 1> {
   explicit Rmsprop(const Options& options = {}) : options_(options) {}
 
   auto update(long /*step*/) const {
-    using R = steps::Register<T>;
-    using V = typename R::V;
+    using V = NarrowPack<T>;
     const T rate = static_cast<T>(options_.rate);
     const T decay = static_cast<T>(options_.decay);
     const T fresh = static_cast<T>(1 - options_.decay);
     const T eps = static_cast<T>(options_.eps);
     return [=](V x, V g, V & a) __attribute__((always_inline)) {
-      a = R::multiply_add(R::all(decay), a, fresh * (g * g));
-      return x - rate * g / (R::root(a) + eps);
+      a = fma_lanes(decay, a, fresh * (g * g));
+      return x - rate * g / (sqrt_lanes(a) + eps);
     };
   }
 

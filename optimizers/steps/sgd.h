@@ -24,13 +24,12 @@ class Sgd : public ElementwiseStep<T, Sgd<T>, 1> {
   explicit Sgd(const Options& options = {}) : options_(options) {}
 
   auto update(long /*step*/) const {
-    using R = steps::Register<T>;
-    using V = typename R::V;
+    using V = NarrowPack<T>;
     const T rate = static_cast<T>(options_.rate);
     const T momentum = static_cast<T>(options_.momentum);
     return [=](V x, V g, V & u) __attribute__((always_inline)) {
-      u = R::multiply_add(R::all(momentum), u, g);
-      return R::multiply_add(R::all(-rate), u, x);
+      u = fma_lanes(momentum, u, g);
+      return fma_lanes(-rate, u, x);
     };
   }
 

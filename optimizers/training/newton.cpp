@@ -7,9 +7,9 @@
 
 #include "optimizers/training/batch_signal.h"
 #include "suite/core/check.h"
-#include "suite/core/decompositions.h"
 #include "suite/core/option_check.h"
 #include "suite/core/oracle.h"
+#include "suite/linalg/decompositions.h"
 
 namespace physinv {
 namespace {
@@ -88,7 +88,7 @@ Vector<double> newton_step(const NewtonOptions& options,
   if (d == 1)
     return Vector<double>::Constant(
         1, -along(options, gradient(0), hessian(0, 0)));
-  const SymmetricEigen parts = symmetric_eigen(hessian);
+  const linalg::SymmetricEigen parts = linalg::symmetric_eigen(hessian);
   Vector<double> q = parts.vectors.transpose() * gradient;
   for (Index k = 0; k < d; ++k) q(k) = along(options, q(k), parts.values(k));
   return -parts.vectors * q;

@@ -5,9 +5,9 @@
 #include <type_traits>
 
 #include "suite/core/check.h"
-#include "suite/core/lanes.h"
 #include "suite/core/math.h"
 #include "suite/core/option_check.h"
+#include "suite/core/simd/samples.h"
 
 namespace physinv {
 namespace {

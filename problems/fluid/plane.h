@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "suite/core/lanes_math.h"
+#include "suite/core/simd/math.h"
 
 namespace physinv::fluid {
 

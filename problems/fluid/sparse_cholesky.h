@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "suite/core/lanes.h"
+#include "suite/core/simd/pack.h"
 
 namespace physinv::fluid {
 

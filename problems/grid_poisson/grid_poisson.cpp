@@ -7,8 +7,8 @@
 #include <numeric>
 
 #include "suite/core/check.h"
-#include "suite/core/lanes.h"
 #include "suite/core/math.h"
+#include "suite/core/simd/pack.h"
 #include "suite/core/threads.h"
 
 namespace physinv {

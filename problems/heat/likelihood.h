@@ -3,7 +3,7 @@
 
 #include "problems/heat/heat.h"
 #include "problems/heat/registers.h"
-#include "suite/core/lanes_math.h"
+#include "suite/core/simd/math.h"
 
 namespace physinv::heat_lanes {
 

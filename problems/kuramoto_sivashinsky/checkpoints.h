@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "problems/kuramoto_sivashinsky/etdrk2.h"
-#include "suite/core/lanes_math.h"
+#include "suite/core/simd/math.h"
 #include "suite/core/workspace.h"
 
 namespace physinv {

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "suite/core/lanes_math.h"
 #include "suite/core/math.h"
+#include "suite/core/simd/math.h"
 #include "suite/core/workspace.h"
 
 namespace physinv {

@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "problems/noisy_absolute/noisy_absolute.h"
-#include "suite/core/lanes_math.h"
 #include "suite/core/rng_lanes.h"
+#include "suite/core/simd/math.h"
 
 namespace physinv {
 

@@ -4,9 +4,9 @@
 #include <numbers>
 
 #include "suite/core/check.h"
-#include "suite/core/lanes_math.h"
 #include "suite/core/math.h"
 #include "suite/core/option_check.h"
+#include "suite/core/simd/math.h"
 
 namespace physinv {
 namespace {

@@ -4,8 +4,8 @@
 
 #include "suite/core/check.h"
 #include "suite/core/option_check.h"
+#include "suite/core/simd/samples.h"
 #include "suite/core/threads.h"
-#include "suite/core/wide.h"
 
 namespace physinv {
 namespace {
@@ -19,7 +19,7 @@ using Group = Wide<T, kGroups>;
 
 template <class T>
 constexpr Index group_count(Index samples) {
-  return (samples + Group<T>::kSamples - 1) / Group<T>::kSamples;
+  return (samples + Group<T>::kCount - 1) / Group<T>::kCount;
 }
 
 template <class T>
@@ -117,13 +117,9 @@ PHYSINV_LANES Four<V> rate_transposed(const E& w, const Four<V>& k_bar) {
           k_bar.x2};
 }
 
-template <class T>
-PHYSINV_LANES Pack<T> tripled(Pack<T> w) {
-  return T(3) * w;
-}
-template <class T, int N>
-PHYSINV_LANES Wide<T, N> tripled(const Wide<T, N>& w) {
-  return T(3) * w;
+template <class V>
+PHYSINV_LANES V tripled(const V& w) {
+  return LaneScalar<V>(3) * w;
 }
 
 /// One step backwards: the cotangent of its start replaces that of its end;
@@ -200,8 +196,8 @@ Four<Wide<T, 4>> differentiate(const Constants<T>& k,
   for (Index n = k.steps; n-- > 0;) {
     const Group<T>* w = kept + n * kStages;
     const Wide<T, 4> column =
-        step_transposed(k, bar, [&](int i) { return tripled<T>(w[i].r[g]); });
-    store_rows<T>(column.r, 1, j, 4 * n, 4, first);
+        step_transposed(k, bar, [&](int i) { return tripled(w[i].r[g]); });
+    store_rows(column.r, 1, j, 4 * n, 4, first);
   }
   return bar;
 }
@@ -304,7 +300,7 @@ void Oscillators<T>::forward(BatchIn<T> x,
   check_size(y, 4, samples);
   const Constants<T> k(options_);
   for_blocks(work.threads(), group_count<T>(samples), [&](Index b, int) {
-    const Index first = b * Group<T>::kSamples;
+    const Index first = b * Group<T>::kCount;
     auto s = load_state<T>(given, first);
     integrate<T>(k, x, first, s, nullptr);
     store_state<T>(s, y, first);
@@ -322,10 +318,10 @@ void Oscillators<T>::linearize(BatchIn<T> x,
   check_size(y, 4, samples);
   const Constants<T> k(options_);
   tape.slot<Index>(kCount, 1, 1)(0, 0) = samples;
-  auto kept = tape.slot<T>(
-      kKept, options_.steps * kStages * Group<T>::kSamples, groups);
+  auto kept =
+      tape.slot<T>(kKept, options_.steps * kStages * Group<T>::kCount, groups);
   for_blocks(tape.threads(), groups, [&](Index b, int) {
-    const Index first = b * Group<T>::kSamples;
+    const Index first = b * Group<T>::kCount;
     auto s = load_state<T>(given, first);
     integrate<T>(
         k, x, first, s, reinterpret_cast<Group<T>*>(kept.col(b).data()));
@@ -344,7 +340,7 @@ void Oscillators<T>::pullback(const Tape& tape,
   const auto kept = tape.view<T>(kKept);
   const Constants<T> k(options_);
   for_blocks(work.threads(), kept.cols(), [&](Index b, int) {
-    const Index first = b * Group<T>::kSamples;
+    const Index first = b * Group<T>::kCount;
     pull_group<T>(k,
                   reinterpret_cast<const Group<T>*>(kept.col(b).data()),
                   load_state<T>(y_bar, first),
@@ -369,8 +365,8 @@ void Oscillators<T>::jacobian(BatchIn<T> x,
     Workspace& own = threads != nullptr ? work.of_thread(thread) : work;
     const Workspace::Scope scope(own);
     auto* kept = reinterpret_cast<Group<T>*>(
-        own.take<T>(steps * kStages * Group<T>::kSamples, 1).data());
-    const Index first = b * Group<T>::kSamples;
+        own.take<T>(steps * kStages * Group<T>::kCount, 1).data());
+    const Index first = b * Group<T>::kCount;
     auto s = load_state<T>(given, first);
     integrate<T>(k, x, first, s, kept);
     for (int g = 0; g < kGroups && first + g * kLanes<T> < samples; ++g)

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "problems/quantum_dipole/quantum_dipole.h"
-#include "suite/core/wide.h"
+#include "suite/core/simd/samples.h"
 
 namespace physinv::quantum {
 

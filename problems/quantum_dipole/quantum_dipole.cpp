@@ -81,7 +81,7 @@ PHYSINV_LANES void backwards(const Constants<T>& k,
     const Index begin = (end - 1) / kChunk * kChunk;
     Pack<T> u[kChunk];
     Complex<Pack<T>> factors[kChunk * kPoints];
-    load_rows<T>(x, begin, end - begin, first, u);
+    load_rows(x, begin, end - begin, first, u);
     factor(k, u, static_cast<int>(end - begin), factors);
     for (Index n = end; n-- > begin;) {
       const auto* e = factors + (n - begin) * kPoints;
@@ -104,8 +104,8 @@ template <class T>
   using P = Pack<T>;
   using Two = Wide<T, 2>;  // conj(psi), c
   P end[kRows], bar[kRows];
-  load_rows<T>(psi, 0, kRows, first, end);
-  load_rows<T>(y_bar, 0, kRows, first, bar);
+  load_rows(psi, 0, kRows, first, end);
+  load_rows(y_bar, 0, kRows, first, bar);
   Complex<Two> c[kPoints];
   for (int j = 0; j < kPoints; ++j) {
     c[j].re = {{end[2 * j], bar[2 * j]}};
@@ -122,7 +122,7 @@ template <class T>
     });
     gathered[n % kChunk] = even + odd;
     if (n % kChunk != 0) return;
-    store_rows<T>(gathered, 1, x_bar, n, std::min(kChunk, k.steps - n), first);
+    store_rows(gathered, 1, x_bar, n, std::min(kChunk, k.steps - n), first);
   });
 }
 
@@ -136,7 +136,7 @@ template <class T>
   using P = Pack<T>;
   using Rows = Wide<T, kRowsOfCs>;
   P end[kRows];
-  load_rows<T>(psi, 0, kRows, first, end);
+  load_rows(psi, 0, kRows, first, end);
   Complex<Wide<T, 1>> back[kPoints];
   for (int j = 0; j < kPoints; ++j)
     back[j] = {{{end[2 * j]}}, {{-end[2 * j + 1]}}};
@@ -165,7 +165,7 @@ template <class T>
         column[2 * (b * kRowsOfCs + row) + 1] = sum.im.r[row];
       }
     }
-    store_rows<T>(column, 1, jacobian, kRows * n, kRows, first);
+    store_rows(column, 1, jacobian, kRows * n, kRows, first);
   });
 }
 
@@ -271,7 +271,7 @@ void QuantumDipole<T>::forward(BatchIn<T> x,
   check_size(x, options_.steps, x.cols());
   check_size(y, kRows, x.cols());
   const Constants<T> k(options_);
-  constexpr Index kWidth = Group<T>::kSamples;
+  constexpr Index kWidth = Group<T>::kCount;
   for_blocks(work.threads(),
              block_count<T>(x.cols(), kWidth),
              [&](Index b, int) { propagate<T>(k, x, b * kWidth, y); });
@@ -285,7 +285,7 @@ void QuantumDipole<T>::linearize(BatchIn<T> x,
   check_size(x, options_.steps, x.cols());
   check_size(y, kRows, x.cols());
   const Constants<T> k(options_);
-  constexpr Index kWidth = Group<T>::kSamples;
+  constexpr Index kWidth = Group<T>::kCount;
   for_blocks(tape.threads(),
              block_count<T>(x.cols(), kWidth),
              [&](Index b, int) { propagate<T>(k, x, b * kWidth, y); });
@@ -316,7 +316,7 @@ void QuantumDipole<T>::jacobian(BatchIn<T> x,
   check_size(x, options_.steps, x.cols());
   check_size(j, kRows * options_.steps, x.cols());
   const Constants<double> k(options_);
-  constexpr Index kWidth = Group<double>::kSamples;
+  constexpr Index kWidth = Group<double>::kCount;
   const auto differentiate =
       [&](BatchIn<double> u, Workspace& own, BatchOut<double> out) {
         auto psi = own.take<double>(kRows, u.cols());

@@ -3,9 +3,9 @@
 #include <cstring>
 
 #include "suite/core/check.h"
-#include "suite/core/lanes.h"
 #include "suite/core/math.h"
 #include "suite/core/option_check.h"
+#include "suite/core/simd/samples.h"
 
 namespace physinv {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "suite/core/check.h"
-#include "suite/core/lanes.h"
+#include "suite/core/simd/pack.h"
 
 namespace physinv {
 namespace {

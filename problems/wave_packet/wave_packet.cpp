@@ -6,9 +6,9 @@
 #include <limits>
 
 #include "suite/core/check.h"
-#include "suite/core/lanes.h"
 #include "suite/core/math.h"
 #include "suite/core/option_check.h"
+#include "suite/core/simd/pack.h"
 
 namespace physinv {
 namespace {
@@ -28,18 +28,6 @@ template <class T>
 constexpr double kReach = 38.61;
 template <>
 constexpr double kReach<float> = 8.85;
-
-template <class P, class T>
-PHYSINV_LANES P load(const T* p) {
-  P pack;
-  std::memcpy(&pack, p, sizeof(P));
-  return pack;
-}
-
-template <class P, class T>
-PHYSINV_LANES void store(T* p, P pack) {
-  std::memcpy(p, &pack, sizeof(P));
-}
 
 /// Of all numbers of a block: four parts side by side, then one by one.
 template <class T>

@@ -10,7 +10,7 @@
 
 #include <vector>
 
-#include "suite/core/lanes.h"
+#include "suite/core/simd/pack.h"
 
 namespace physinv {
 

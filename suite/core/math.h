@@ -9,7 +9,7 @@
 /// floor, remainder, ...) is taken from the standard library.
 #pragma once
 
-#include "suite/core/lanes.h"
+#include "suite/core/simd/pack.h"
 
 // Eigen is not to see AVX-512 (cmake/physinv.cmake), SLEEF is.
 #pragma push_macro("__AVX512F__")

@@ -6,8 +6,8 @@
 
 #include <cstdint>
 
-#include "suite/core/lanes.h"
 #include "suite/core/rng.h"
+#include "suite/core/simd/pack.h"
 
 namespace physinv {
 

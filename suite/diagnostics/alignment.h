@@ -20,10 +20,10 @@
 #include <optional>
 #include <vector>
 
-#include "suite/core/lanes_math.h"
 #include "suite/core/method.h"
 #include "suite/core/oracle.h"
 #include "suite/core/probe.h"
+#include "suite/core/simd/math.h"
 #include "suite/core/threads.h"
 #include "suite/diagnostics/one_step.h"
 

@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "suite/core/check.h"
-#include "suite/core/lanes_math.h"
 #include "suite/core/math.h"
+#include "suite/core/simd/math.h"
 #include "suite/core/workspace.h"
 
 namespace physinv {

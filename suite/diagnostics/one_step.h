@@ -13,9 +13,9 @@
 #include <span>
 #include <vector>
 
-#include "suite/core/lanes.h"
 #include "suite/core/recipe.h"
 #include "suite/core/rng_lanes.h"
+#include "suite/core/simd/pack.h"
 
 namespace physinv {
 

@@ -4,8 +4,10 @@
 #include <re2/re2.h>
 
 #include <algorithm>
-#include <map>
+#include <initializer_list>
+#include <iterator>
 #include <numeric>
+#include <set>
 
 #include "suite/harness/errors.h"
 
@@ -82,65 +84,95 @@ std::vector<Case> NameFilter::apply(std::vector<Case> cases) const {
   return cases;
 }
 
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
+std::size_t edit_distance(std::string_view a,
+                          std::string_view b,
+                          std::size_t most) {
+  if (std::max(a.size(), b.size()) - std::min(a.size(), b.size()) > most)
+    return most + 1;
+  std::vector<std::size_t> rows(b.size() + 1);
+  std::iota(rows.begin(), rows.end(), std::size_t{0});
+  std::size_t* const row = rows.data();
   for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
+    std::size_t diagonal = row[0], left = i, least = i;
     row[0] = i;
     for (std::size_t j = 1; j <= b.size(); ++j) {
       const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
       diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
+      left = std::min({diagonal + 1, left + 1, replaced});
+      row[j] = left;
+      least = std::min(least, left);
     }
+    if (least > most) return most + 1;
   }
   return row[b.size()];
 }
 
+namespace {
+
 // A distance takes time in proportion to both lengths.
-constexpr std::size_t kMostCompared = 2000, kLongestCompared = 256;
+constexpr std::size_t kMostCompared = 2000, kLongestCompared = 64;
+
+/// The `count` nearest of what is offered, the nearest first; of those at the
+/// same distance in the order of their names, each once.
+class Nearest {
+ public:
+  Nearest(std::string_view word, std::size_t count)
+      : word_(word.substr(0, kLongestCompared)), count_(count) {}
+
+  /// `name` is as near as the nearest of `texts`.
+  void offer(std::string_view name,
+             std::initializer_list<std::string_view> texts) {
+    std::size_t least = most();
+    for (const auto text : texts)
+      least = std::min(least, edit_distance(text, word_, least));
+    best_.emplace(least, name);
+    if (best_.size() > count_) best_.erase(std::prev(best_.end()));
+  }
+  std::vector<std::string> names() const {
+    std::vector<std::string> all;
+    for (const auto& [distance, name] : best_) all.emplace_back(name);
+    return all;
+  }
+
+ private:
+  /// One beyond what still has a place.
+  std::size_t most() const {
+    return best_.size() < count_ ? 2 * kLongestCompared * kMostCompared
+                                 : best_.rbegin()->first + 1;
+  }
+
+  std::string_view word_;
+  std::size_t count_;
+  std::set<std::pair<std::size_t, std::string>> best_;
+};
+
+}  // namespace
 
 std::vector<std::string> nearest_names(const std::vector<std::string>& names,
                                        std::string_view pattern,
                                        std::size_t count) {
-  constexpr std::size_t kLongestWord = 64;  // its distance is quadratic
-  pattern = pattern.substr(0, kLongestWord);
-  pattern = pattern.substr(0, kLongestCompared);
-  std::map<std::string, std::size_t> score;  // of a path's beginning
+  Nearest nearest(pattern, count);
+  std::set<std::string_view> seen;  // beginnings of paths
   for (const auto& name : names) {
     std::size_t begin = 0;
     while (begin <= name.size()) {
       const std::size_t end = std::min(name.find('/', begin), name.size());
-      const auto part = std::string_view(name).substr(begin, end - begin);
       const auto head = std::string_view(name).substr(0, end);
-      const auto [at, is_new] = score.try_emplace(std::string(head), 0);
-      if (is_new)
-        at->second = std::min(edit_distance(part, pattern),
-                              edit_distance(head, pattern));
+      if (seen.insert(head).second)
+        nearest.offer(head, {head.substr(begin), head});
       begin = end + 1;
     }
-    if (score.size() >= kMostCompared) break;
+    if (seen.size() >= kMostCompared) break;
   }
-  std::vector<std::pair<std::size_t, std::string>> order;
-  for (const auto& [head, d] : score) order.emplace_back(d, head);
-  std::sort(order.begin(), order.end());
-  std::vector<std::string> best;
-  for (std::size_t i = 0; i < std::min(count, order.size()); ++i)
-    best.push_back(order[i].second);
-  return best;
+  return nearest.names();
 }
 
-std::vector<std::string> nearest_words(std::vector<std::string> known,
+std::vector<std::string> nearest_words(const std::vector<std::string>& known,
                                        std::string_view word,
                                        std::size_t count) {
-  word = word.substr(0, kLongestCompared);
-  std::map<std::string, std::size_t> distance;
-  for (const auto& k : known) distance[k] = edit_distance(k, word);
-  std::stable_sort(known.begin(), known.end(), [&](auto& a, auto& b) {
-    return distance[a] < distance[b];
-  });
-  known.resize(std::min(count, known.size()));
-  return known;
+  Nearest nearest(word, count);
+  for (const auto& k : known) nearest.offer(k, {k});
+  return nearest.names();
 }
 
 std::string nearest_word(const std::vector<std::string>& known,
@@ -148,7 +180,7 @@ std::string nearest_word(const std::vector<std::string>& known,
   std::string best;
   std::size_t least = std::max<std::size_t>(2, word.size() / 2) + 1;
   for (const auto& k : known) {
-    const std::size_t d = edit_distance(k, word);
+    const std::size_t d = edit_distance(k, word, least);
     if (d < least) least = d, best = k;
   }
   return best;

@@ -45,11 +45,13 @@ std::vector<std::string> nearest_names(const std::vector<std::string>& names,
                                        std::string_view pattern,
                                        std::size_t count = 3);
 
-/// Levenshtein distance.
-std::size_t edit_distance(std::string_view a, std::string_view b);
+/// Levenshtein distance, or more than `most` if it is.
+std::size_t edit_distance(std::string_view a,
+                          std::string_view b,
+                          std::size_t most = 1'000'000);
 
 /// Up to `count` of `known`, the one that reads most like `word` first.
-std::vector<std::string> nearest_words(std::vector<std::string> known,
+std::vector<std::string> nearest_words(const std::vector<std::string>& known,
                                        std::string_view word,
                                        std::size_t count = 5);
 

@@ -18,12 +18,12 @@ std::string_view to_string(Activation a) {
 
 template <class T>
 void apply_gate(const Gate<T>& gate, Lanes<T> x_bar) {
-  using V = Simd<T, kNarrow>;
+  using V = NarrowPack<T>;
   if (gate.activation == Activation::identity) return;
   for (Index i = 0; i < x_bar.rows; ++i) {
     const T* y = gate.y.row(i);
     T* bar = x_bar.row(i);
-    for (Index j = 0; j < x_bar.width; j += kLanes<T>)
+    for (Index j = 0; j < x_bar.width; j += kNarrowLanes<T>)
       store(bar + j,
             pull_lanes<T>(gate.activation, load<V>(y + j), load<V>(bar + j)));
   }
@@ -34,11 +34,11 @@ void apply_gate_tangent(const Gate<T>& gate,
                         Lanes<const T> y_dot,
                         Lanes<T> x_bar,
                         Lanes<T> x_bar_dot) {
-  using V = Simd<T, kNarrow>;
+  using V = NarrowPack<T>;
   const Activation a = gate.activation;
   if (a == Activation::identity) return;
   for (Index i = 0; i < x_bar.rows; ++i)
-    for (Index j = 0; j < x_bar.width; j += kLanes<T>) {
+    for (Index j = 0; j < x_bar.width; j += kNarrowLanes<T>) {
       const V y = load<V>(gate.y.row(i) + j);
       const V bar = load<V>(x_bar.row(i) + j);
       store(x_bar_dot.row(i) + j,
@@ -52,9 +52,9 @@ template <class T>
 void ActivationLayer<T>::forward(const LayerArgs<T>&,
                                  Lanes<const T> x,
                                  Lanes<T> y) const {
-  using V = Simd<T, kNarrow>;
+  using V = NarrowPack<T>;
   for (Index i = 0; i < x.rows; ++i)
-    for (Index j = 0; j < x.width; j += kLanes<T>)
+    for (Index j = 0; j < x.width; j += kNarrowLanes<T>)
       store(y.row(i) + j,
             activate_lanes<T>(activation_, load<V>(x.row(i) + j)));
 }
@@ -62,11 +62,11 @@ void ActivationLayer<T>::forward(const LayerArgs<T>&,
 template <class T>
 void ActivationLayer<T>::backward(const LayerArgs<T>&,
                                   const Backward<T>& b) const {
-  using V = Simd<T, kNarrow>;
+  using V = NarrowPack<T>;
   if (!b.x_bar) return;
   const Lanes<const T> at = from_output(activation_) ? b.y : b.x;
   for (Index i = 0; i < at.rows; ++i)
-    for (Index j = 0; j < at.width; j += kLanes<T>)
+    for (Index j = 0; j < at.width; j += kNarrowLanes<T>)
       store(b.x_bar.row(i) + j,
             pull_lanes<T>(activation_,
                           load<V>(at.row(i) + j),

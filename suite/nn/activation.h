@@ -4,11 +4,11 @@
 #include <cmath>
 #include <cstdint>
 
-#include "suite/core/lanes_math.h"
 #include "suite/core/math.h"
+#include "suite/core/simd/math.h"
+#include "suite/core/simd/pack.h"
 #include "suite/nn/gelu.h"
 #include "suite/nn/layer.h"
-#include "suite/nn/vector.h"
 
 namespace physinv::nn {
 
@@ -119,7 +119,7 @@ inline V pull_lanes(Activation a, V y, V y_bar) {
   if (a == Activation::identity) return y_bar;
   if (a == Activation::relu) return y > V{} ? y_bar : V{};
   if (a == Activation::tanh)
-    return y_bar * multiply_add<T>(-y, y, broadcast<V>(T(1)));
+    return y_bar * fma_lanes(-y, y, broadcast<V>(T(1)));
   if (a == Activation::sigmoid) return y_bar * (y * (broadcast<V>(T(1)) - y));
   if (a == Activation::gelu) return y_bar * gelu_slope_lanes(y);
   for (std::size_t l = 0; l < sizeof(V) / sizeof(T); ++l)

@@ -12,12 +12,12 @@ namespace physinv::nn {
 namespace {
 
 template <class T>
-using V = Simd<T, kNarrow>;
+using V = NarrowPack<T>;
 
 template <class T>
 double total(V<T> v) {
   double sum = 0;
-  for (Index l = 0; l < kLanes<T>; ++l) sum += double(v[l]);
+  for (Index l = 0; l < kNarrowLanes<T>; ++l) sum += double(v[l]);
   return sum;
 }
 
@@ -42,7 +42,7 @@ void normalise_cells(const NormShape& s,
     for (Index p = begin; p < end; ++p) {
       const T* from = x.row(cell.first(p) * s.channels + c);
       T* to = y.row(p * s.channels + c);
-      for (Index j = 0; j < x.width; j += kLanes<T>) {
+      for (Index j = 0; j < x.width; j += kNarrowLanes<T>) {
         V<T> top = u(load<V<T>>(from + j));
         for (std::size_t i = 1; i < N; ++i)
           top =
@@ -74,7 +74,7 @@ void sum_cells(const NormShape& s,
     for (Index p = begin; p < end; ++p) {
       const T* from = x.row(cell.first(p) * s.channels + c);
       const Index row = p * s.channels + c;
-      for (Index j = 0; j < x.width; j += kLanes<T>) {
+      for (Index j = 0; j < x.width; j += kNarrowLanes<T>) {
         V<T> best = load<V<T>>(from + j), top = u(best);
         for (std::size_t i = 1; i < N; ++i) {
           const V<T> v = load<V<T>>(from + cell.row[i] * x.stride + j);
@@ -119,7 +119,7 @@ void pull_cells(const NormShape& s,
       const T* from = x.row(at_cell);
       T* to = x_bar.row(at_cell);
       const Index row = p * s.channels + c;
-      for (Index j = 0; j < x.width; j += kLanes<T>) {
+      for (Index j = 0; j < x.width; j += kNarrowLanes<T>) {
         V<T> v[N];
         V<T> top{};
         for (std::size_t i = 0; i < N; ++i) {
@@ -162,7 +162,7 @@ void moments_of(Lanes<const T> x,
   const auto pass = [&](auto&& add) {
     for (Index p = begin; p < end; ++p) {
       const T* row = x.row(p * channels + channel);
-      for (Index j = 0; j < mask.full; j += kLanes<T>)
+      for (Index j = 0; j < mask.full; j += kNarrowLanes<T>)
 #pragma GCC unroll 4
         for (int g = 0; g < G; ++g)
           add(g, load<V<T>>(row + g * x.stride + j) - mean[g]);
@@ -179,7 +179,7 @@ void moments_of(Lanes<const T> x,
     moments[g] = static_cast<T>(total<T>(sum[g]) / count);
     mean[g] = broadcast<V<T>>(moments[g]), sum[g] = V<T>{};
   }
-  pass([&](int g, V<T> v) { sum[g] = multiply_add<T>(v, v, sum[g]); });
+  pass([&](int g, V<T> v) { sum[g] = fma_lanes(v, v, sum[g]); });
   for (int g = 0; g < G; ++g)
     moments[channels + g] = static_cast<T>(total<T>(sum[g]));
 }

@@ -7,7 +7,7 @@ namespace physinv::nn {
 namespace {
 
 template <class T>
-using V = Simd<T, kNarrow>;
+using V = NarrowPack<T>;
 
 /// One channel's constants and their derivatives in registers.
 template <class T>
@@ -21,13 +21,12 @@ struct ChannelTangent : NormChannel<T> {
   V<T> normal(V<T> x) const { return (x - this->mean) * this->inverse; }
   /// n' / inverse
   V<T> moved(V<T> n, V<T> x_dot) const {
-    return multiply_add<T>(-n, slope, x_dot - mean_dot);
+    return fma_lanes(-n, slope, x_dot - mean_dot);
   }
   V<T> u_dot(V<T> x, V<T> x_dot) const {
     const V<T> n = normal(x);
-    return multiply_add<T>(this->factor,
-                           moved(n, x_dot),
-                           multiply_add<T>(scale_dot, n, offset_dot));
+    return fma_lanes(
+        this->factor, moved(n, x_dot), fma_lanes(scale_dot, n, offset_dot));
   }
   V<T> mean_dot, slope, scale_dot, offset_dot;
 };
@@ -45,7 +44,7 @@ void normalise_cells(const NormTangent<T>& of,
     for (Index p = begin; p < end; ++p) {
       const Index first = cell.first(p) * channels + c;
       const Index row = p * channels + c;
-      for (Index j = 0; j < of.x.width; j += kLanes<T>) {
+      for (Index j = 0; j < of.x.width; j += kNarrowLanes<T>) {
         V<T> best = load<V<T>>(of.x.row(first) + j), top = u(best);
         V<T> dot = load<V<T>>(of.x_dot.row(first) + j);
         for (std::size_t i = 1; i < N; ++i) {
@@ -82,7 +81,7 @@ void open(const NormTangent<T>& of,
     for (Index p = begin; p < end; ++p) {
       const Index first = cell.first(p) * channels + c;
       const Index row = p * channels + c;
-      for (Index j = 0; j < of.x.width; j += kLanes<T>) {
+      for (Index j = 0; j < of.x.width; j += kNarrowLanes<T>) {
         V<T> w[N], top{};
         for (std::size_t i = 0; i < N; ++i) {
           w[i] = u(load<V<T>>(of.x.row(first + cell.row[i]) + j));
@@ -152,21 +151,21 @@ void pull_norm_tangent(const NormTangent<T>& of,
     const V<T> product_dot = broadcast<V<T>>(means.product_dot[c]);
     // (scale inverse)'
     const V<T> factor_dot =
-        u.inverse * multiply_add<T>(-u.factor, u.slope, u.scale_dot);
+        u.inverse * fma_lanes(-u.factor, u.slope, u.scale_dot);
     for (Index p = begin; p < end; ++p) {
       const Index row = p * channels + c;
-      for (Index j = 0; j < of.x.width; j += kLanes<T>) {
+      for (Index j = 0; j < of.x.width; j += kNarrowLanes<T>) {
         const V<T> n = u.normal(load<V<T>>(of.x.row(row) + j));
         const V<T> n_dot =
             u.inverse * u.moved(n, load<V<T>>(of.x_dot.row(row) + j));
         const V<T> own =
-            multiply_add<T>(-n, product, load<V<T>>(bar.row(row) + j) - sum);
+            fma_lanes(-n, product, load<V<T>>(bar.row(row) + j) - sum);
         V<T> own_dot = load<V<T>>(bar_dot.row(row) + j) - sum_dot;
-        own_dot = multiply_add<T>(-n_dot, product, own_dot);
-        own_dot = multiply_add<T>(-n, product_dot, own_dot);
+        own_dot = fma_lanes(-n_dot, product, own_dot);
+        own_dot = fma_lanes(-n, product_dot, own_dot);
         store(bar.row(row) + j, mask(j, u.factor * own));
         store(bar_dot.row(row) + j,
-              mask(j, multiply_add<T>(factor_dot, own, u.factor * own_dot)));
+              mask(j, fma_lanes(factor_dot, own, u.factor * own_dot)));
       }
     }
   }

@@ -42,12 +42,12 @@ template <class T>
 void Conv<T>::forward(const LayerArgs<T>& at,
                       Lanes<const T> x,
                       Lanes<T> y) const {
-  using V = Simd<T, kNarrow>;
+  using V = NarrowPack<T>;
   const Index out = conv_.shape().out;
   conv_.forward(at, x, y, [&](Index, Index begin, Index end) {
     if (activation_ == Activation::identity) return;
     for (Index i = begin * out; i < end * out; ++i)
-      for (Index j = 0; j < y.width; j += kLanes<T>)
+      for (Index j = 0; j < y.width; j += kNarrowLanes<T>)
         store(y.row(i) + j,
               activate_lanes<T>(activation_, load<V>(y.row(i) + j)));
   });

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "suite/nn/vector.h"
+#include "suite/core/simd/pack.h"
 
 namespace physinv::nn {
 namespace {
@@ -19,15 +19,12 @@ constexpr int kOutTile = 4, kInTile = 3;
 #endif
 constexpr Index kBlockBytes = 16384, kWeightBytes = 32768;
 
-template <class T>
-constexpr Index kWideLanes = kWide / static_cast<Index>(sizeof(T));
-
 /// Two narrow vectors share a wide register: what is computed of each stays as
 /// it is, in half the instructions.
 template <class T, class V, bool kPair>
 struct Register {
   static constexpr int kVectors = kPair ? 2 : 1;
-  using Whole = Simd<T, kVectors* static_cast<int>(sizeof(V))>;
+  using Whole = Pack<T, kVectors* static_cast<int>(sizeof(V) / sizeof(T))>;
 
   /// a, and b if there is room for it.
   static Whole of(const T* a, const T* b) {
@@ -48,7 +45,7 @@ struct Register {
   }
 };
 template <class T, class V>
-constexpr bool kPairs = 2 * sizeof(V) <= kWide;
+constexpr bool kPairs = 2 * sizeof(V) <= kVectorBytes;
 
 /// One column = one vector of samples at one position; N registers of them.
 template <class T, class V, int N, bool kPair>
@@ -117,8 +114,7 @@ template <class T, int M, int N, class C>
       for (int r = 0; r < M; ++r) {
         const V w = broadcast<V>(a[r]);
 #pragma GCC unroll 8
-        for (int c = 0; c < N; ++c)
-          acc[r][c] = multiply_add<T>(w, b[c], acc[r][c]);
+        for (int c = 0; c < N; ++c) acc[r][c] = fma_lanes(w, b[c], acc[r][c]);
       }
     }
   }
@@ -235,7 +231,7 @@ template <class T, class V, int R, int Q>
         const W yv = held(Reg::of(each, each));
 #pragma GCC unroll 8
         for (int q = 0; q < kInputs; ++q)
-          acc[r][q] = multiply_add<T>(yv, xv[q], acc[r][q]);
+          acc[r][q] = fma_lanes(yv, xv[q], acc[r][q]);
       }
     }
   }
@@ -335,8 +331,8 @@ void weight_run(const ConvShape& shape,
 template <class T>
 struct Split {
   explicit Split(Index width)
-      : wide(width / kWideLanes<T>),
-        narrow((width - wide * kWideLanes<T>) / kLanes<T>) {}
+      : wide(width / kLanes<T>),
+        narrow((width - wide * kLanes<T>) / kNarrowLanes<T>) {}
   Index wide, narrow;
 };
 
@@ -391,8 +387,8 @@ void convolve(const ConvShape& shape,
               Index begin,
               Index end,
               Into into) {
-  using Wide = Simd<T, kWide>;
-  using Narrow = Simd<T, kNarrow>;
+  using Wide = Pack<T>;
+  using Narrow = NarrowPack<T>;
   const Split<T> split(x.width);
   const Index wide = split.wide, narrow = split.narrow;
   const Index in = shape.in, out = shape.out;
@@ -422,7 +418,7 @@ void convolve(const ConvShape& shape,
           packed,
           bias,
           out,
-          {x_step, y_step, wide * kWideLanes<T>, narrow, from, to},
+          {x_step, y_step, wide * kLanes<T>, narrow, from, to},
           narrow * count);
   }
 }
@@ -431,7 +427,7 @@ void convolve(const ConvShape& shape,
 // the order: that of the narrow registers on every machine.
 template <class T>
 Index weight_sums(const ConvShape& shape) {
-  return shape.weights() * kLanes<T>;
+  return shape.weights() * kNarrowLanes<T>;
 }
 
 template <class T>
@@ -446,8 +442,8 @@ void accumulate_weights(const ConvShape& shape,
     const Index first = std::max(begin, run.first);
     const Index last = std::min(end, run.first + run.count);
     if (first >= last) continue;
-    weight_run<T, Simd<T, kNarrow>>(
-        shape, run, x, y_bar, first, last, 0, x.width / kLanes<T>, sums);
+    weight_run<T, NarrowPack<T>>(
+        shape, run, x, y_bar, first, last, 0, x.width / kNarrowLanes<T>, sums);
   }
 }
 
@@ -460,7 +456,7 @@ void finish_weights(const ConvShape& shape,
   const Index taps = shape.taps.count(), in = shape.in, depth = shape.depth();
   std::fill_n(totals, shape.weights(), T(0));
   for (Index part = 0; part < parts; ++part, sums += weight_sums<T>(shape))
-    add_lanes(sums, kLanes<T>, shape.weights(), totals);
+    add_lanes(sums, kNarrowLanes<T>, shape.weights(), totals);
   for (Index o = 0; o < shape.out; ++o)
     for (Index t = 0; t < taps; ++t)
       for (Index c = 0; c < in; ++c)

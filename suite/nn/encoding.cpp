@@ -36,7 +36,7 @@ void PositionalEncoding<T>::forward(const LayerArgs<T>&,
 template <class T>
 void PositionalEncoding<T>::backward(const LayerArgs<T>&,
                                      const Backward<T>& b) const {
-  using V = Simd<T, kNarrow>;
+  using V = NarrowPack<T>;
   if (!b.x_bar) return;
   const Index n = frequencies_;
   for (Index i = 0; i < b.x.rows; ++i) {
@@ -47,11 +47,10 @@ void PositionalEncoding<T>::backward(const LayerArgs<T>&,
       const T *s = b.y.row(sine), *c = b.y.row(cosine);
       const T *s_bar = b.y_bar.row(sine), *c_bar = b.y_bar.row(cosine);
       const V f = broadcast<V>(static_cast<T>(k + 1));
-      for (Index j = 0; j < b.x.width; j += kLanes<T>) {
+      for (Index j = 0; j < b.x.width; j += kNarrowLanes<T>) {
         const V cross = load<V>(s + j) * load<V>(c_bar + j);
-        const V slope =
-            multiply_add<T>(load<V>(c + j), load<V>(s_bar + j), -cross);
-        store(bar + j, multiply_add<T>(f, slope, load<V>(bar + j)));
+        const V slope = fma_lanes(load<V>(c + j), load<V>(s_bar + j), -cross);
+        store(bar + j, fma_lanes(f, slope, load<V>(bar + j)));
       }
     }
   }
@@ -61,12 +60,12 @@ void PositionalEncoding<T>::backward(const LayerArgs<T>&,
 template <class T>
 void PositionalEncoding<T>::tangent(const LayerArgs<T>&,
                                     const Tangent<T>& t) const {
-  using V = Simd<T, kNarrow>;
+  using V = NarrowPack<T>;
   for (Index i = 0; i < t.x.rows; ++i)
     for (Index k = 0; k < frequencies_; ++k) {
       const Index sine = 2 * frequencies_ * i + k, cosine = sine + frequencies_;
       const V f = broadcast<V>(static_cast<T>(k + 1));
-      for (Index j = 0; j < t.x.width; j += kLanes<T>) {
+      for (Index j = 0; j < t.x.width; j += kNarrowLanes<T>) {
         const V turn = f * load<V>(t.x_dot.row(i) + j);
         store(t.y_dot.row(sine) + j, turn * load<V>(t.y.row(cosine) + j));
         store(t.y_dot.row(cosine) + j, -turn * load<V>(t.y.row(sine) + j));

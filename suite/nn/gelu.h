@@ -10,8 +10,8 @@
 
 #include <numbers>
 
-#include "suite/core/lanes_math.h"
 #include "suite/core/math.h"
+#include "suite/core/simd/math.h"
 
 namespace physinv::nn {
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "suite/core/simd/pack.h"
 #include "suite/nn/activation.h"
 #include "suite/nn/thin_product.h"
-#include "suite/nn/vector.h"
 
 namespace physinv::nn {
 namespace {
@@ -49,12 +49,12 @@ Store store_of(const Gemm<T>& g) {
 template <class T, class F>
 [[gnu::always_inline]] inline void for_vectors(
     const Gemm<T>& g, Index i, Index end, Index j, Index cols, F&& f) {
-  using V = Simd<T, kNarrow>;
+  using V = NarrowPack<T>;
   for (Index r = i; r < end; ++r) {
     T* const row = g.c + r * g.c_stride;
     Index c = j;
-    for (; c + kLanes<T> <= j + cols; c += kLanes<T>)
-      store(row + c, f(r, c, load<V>(row + c), kLanes<T>));
+    for (; c + kNarrowLanes<T> <= j + cols; c += kNarrowLanes<T>)
+      store(row + c, f(r, c, load<V>(row + c), kNarrowLanes<T>));
     if (const Index some = j + cols - c; some > 0)
       store_some(row + c, f(r, c, load_some<V>(row + c, some), some), some);
   }
@@ -65,9 +65,9 @@ template <class T, class F>
 template <class T, class F>
 [[gnu::noinline]] void for_groups(
     T* c, Index stride, Index rows, Index cols, F&& of_group) {
-  using V = Simd<T, kNarrow>;
-  for (Index j = 0; j < cols; j += kLanes<T>) {
-    const Index width = std::min(kLanes<T>, cols - j);
+  using V = NarrowPack<T>;
+  for (Index j = 0; j < cols; j += kNarrowLanes<T>) {
+    const Index width = std::min(kNarrowLanes<T>, cols - j);
     for (Index r = 0; r < rows; r += kGroup) {
       const Index last = std::min(kGroup, rows - r) - 1;
       T* const from = c + r * stride + j;
@@ -87,7 +87,7 @@ template <class T, class F>
 template <class T>
 [[gnu::noinline]] void finish(
     const Gemm<T>& g, Index i, Index end, Index j, Index cols) {
-  using V = Simd<T, kNarrow>;
+  using V = NarrowPack<T>;
   T* const panel = g.c + i * g.c_stride + j;
   if (g.activation == Activation::tanh)
     for_groups(
@@ -207,8 +207,7 @@ template <class T, class V, int M, int N, bool kUnit, bool kWhole>
     for (int r = 0; r < M; ++r) {
       const V s = broadcast<V>(a[r / 4][(r % 4) * a_row]);
 #pragma GCC unroll 2
-      for (int c = 0; c < N; ++c)
-        acc[r][c] = multiply_add<T>(s, bv[c], acc[r][c]);
+      for (int c = 0; c < N; ++c) acc[r][c] = fma_lanes(s, bv[c], acc[r][c]);
     }
 #pragma GCC unroll 4
     for (int q = 0; q < groups; ++q) a[q] += g.a_k;
@@ -245,8 +244,8 @@ void panels(const Gemm<T>& g, Part p, Index end) {
 
 template <class T, bool kUnit>
 void rows(const Gemm<T>& g, Index begin, Index end) {
-  using Wide = Simd<T, kWide>;
-  using Narrow = Simd<T, kNarrow>;
+  using Wide = Pack<T>;
+  using Narrow = NarrowPack<T>;
   constexpr Index wide = sizeof(Wide) / sizeof(T);
   constexpr Index narrow = sizeof(Narrow) / sizeof(T);
   Index k0 = 0;

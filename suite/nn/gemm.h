@@ -30,7 +30,7 @@ struct Gemm {
   Index m = 0, n = 0, k = 0;
   const T* a = nullptr;
   Index a_row = 0, a_k = 0;  ///< A(i, k) = a[i * a_row + k * a_k]
-  const T* b = nullptr;      ///< rows readable up to n rounded to kLanes
+  const T* b = nullptr;      ///< rows readable up to n rounded to kNarrowLanes
   Index b_stride = 0;
   T* c = nullptr;  ///< n numbers of each row are written, none beyond
   Index c_stride = 0;

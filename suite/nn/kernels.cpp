@@ -11,6 +11,7 @@
 
 #include "optimizers/steps/adam.h"
 #include "suite/core/network.h"
+#include "suite/core/simd/pack.h"
 #include "suite/nn/activation.h"
 #include "suite/nn/batch_norm.h"
 #include "suite/nn/conv.h"
@@ -20,7 +21,6 @@
 #include "suite/nn/linear.h"
 #include "suite/nn/mlp.h"
 #include "suite/nn/unet.h"
-#include "suite/nn/vector.h"
 #include "suite/nn/vgg.h"
 
 namespace physinv::nn {
@@ -52,7 +52,7 @@ void machine_gemm(benchmark::State& state) {
 
 template <class T>
 void machine_fma(benchmark::State& state) {
-  using V = Simd<T, kWide>;
+  using V = Pack<T>;
   constexpr int kChains = 24, kSteps = 1000;  // more than latency x ports
   V chain[kChains];
   for (int i = 0; i < kChains; ++i) chain[i] = broadcast<V>(T(i));
@@ -62,11 +62,10 @@ void machine_fma(benchmark::State& state) {
   for (auto _ : state) {
     for (int k = 0; k < kSteps; ++k)
 #pragma GCC unroll 24
-      for (int i = 0; i < kChains; ++i)
-        chain[i] = multiply_add<T, V>(chain[i], a, b);
+      for (int i = 0; i < kChains; ++i) chain[i] = fma_lanes(chain[i], a, b);
     for (V& v : chain) benchmark::DoNotOptimize(v);
   }
-  flops(state, 2.0 * kSteps * kChains * kWide / sizeof(T));
+  flops(state, 2.0 * kSteps * kChains * kVectorBytes / sizeof(T));
 }
 
 void machine_copy(benchmark::State& state) {

@@ -3,13 +3,13 @@
 #include <algorithm>
 
 #include "suite/core/check.h"
-#include "suite/nn/vector.h"
+#include "suite/core/simd/pack.h"
 
 namespace physinv::nn {
 namespace {
 
-using F = Simd<float, kNarrow>;
-using D = Simd<double, kNarrow>;
+using F = NarrowPack<float>;
+using D = NarrowPack<double>;
 
 /// One vector per row: rows and columns change places.
 [[gnu::always_inline]] inline void turn(D (&v)[4]) {
@@ -51,8 +51,8 @@ using D = Simd<double, kNarrow>;
 template <bool kWhole, class T>
 void transpose_square(
     const T* from, Index from_stride, T* to, Index to_stride, Index rows) {
-  using V = Simd<T, kNarrow>;
-  constexpr int w = static_cast<int>(kLanes<T>);
+  using V = NarrowPack<T>;
+  constexpr int w = static_cast<int>(kNarrowLanes<T>);
   V v[w];
 #pragma GCC unroll 8
   for (int i = 0; i < w; ++i)
@@ -70,7 +70,7 @@ void transpose_squares(const T* from,
                        T* to,
                        Index to_stride,
                        Index rows) {
-  for (Index j = 0; j + kLanes<T> <= cols; j += kLanes<T>)
+  for (Index j = 0; j + kNarrowLanes<T> <= cols; j += kNarrowLanes<T>)
     transpose_square<kWhole>(
         from + j, from_stride, to + j * to_stride, to_stride, rows);
 }
@@ -85,7 +85,7 @@ void transpose(const T* from,
                T* to,
                Index to_stride,
                Behind behind) {
-  constexpr Index w = kLanes<T>;
+  constexpr Index w = kNarrowLanes<T>;
   const bool zeros = behind == Behind::zeros;
   Index i = 0;
   for (; i + w <= rows; i += w)
@@ -135,16 +135,16 @@ void from_lanes(Lanes<const T> from, BatchOut<T> to) {
 
 template <class T>
 void add_lanes(Lanes<const T> more, Lanes<T> to) {
-  using V = Simd<T, kNarrow>;
+  using V = NarrowPack<T>;
   for (Index i = 0; i < to.rows; ++i)
-    for (Index j = 0; j < to.width; j += kLanes<T>)
+    for (Index j = 0; j < to.width; j += kNarrowLanes<T>)
       store(to.row(i) + j, load<V>(to.row(i) + j) + load<V>(more.row(i) + j));
 }
 
 template <class T>
 void row_sums(Lanes<const T> x, T* sums) {
-  using V = Simd<T, kNarrow>;
-  constexpr Index w = kLanes<T>, kRows = 4;
+  using V = NarrowPack<T>;
+  constexpr Index w = kNarrowLanes<T>, kRows = 4;
   const Index full = x.samples / w * w;
   // The last lanes are there, but padding: a comparison masks what they hold.
   V lane{};

@@ -1,5 +1,5 @@
 /// Lanes: how activations lie inside a network. Row = feature, columns =
-/// samples, contiguous and padded to a multiple of 32 bytes. Batches (one
+/// samples, contiguous and padded to whole narrow packs. Batches (one
 /// sample = one column) are transposed only at the network's boundary.
 ///
 /// The padding holds finite garbage in activations and zeros in cotangents;
@@ -9,16 +9,9 @@
 #include <type_traits>
 
 #include "suite/core/batch.h"
+#include "suite/core/simd/pack.h"
 
 namespace physinv::nn {
-
-/// Lanes of one narrow vector; widths are multiples of it.
-template <class T>
-inline constexpr Index kLanes = 32 / static_cast<Index>(sizeof(T));
-
-constexpr Index round_up(Index n, Index multiple) {
-  return (n + multiple - 1) / multiple * multiple;
-}
 
 /// Distance between rows of `width` lanes. From three cache lines on an odd
 /// number of them: with 512-byte rows a column of 128 features would fall into
@@ -26,7 +19,7 @@ constexpr Index round_up(Index n, Index multiple) {
 /// saved.
 template <class T>
 constexpr Index lane_stride(Index width) {
-  constexpr Index line = 2 * kLanes<T>;
+  constexpr Index line = 2 * kNarrowLanes<T>;
   if (width <= line) return width;
   const Index lines = (width + line - 1) / line;
   return (lines <= 2 ? lines : lines | 1) * line;
@@ -43,7 +36,7 @@ struct Lanes {
       : data(d),
         rows(r),
         samples(n),
-        width(round_up(n, kLanes<std::remove_const_t<T>>)),
+        width(round_up(n, kNarrowLanes<std::remove_const_t<T>>)),
         stride(lane_stride<std::remove_const_t<T>>(width)) {}
 
   T* row(Index i) const { return data + i * stride; }

@@ -122,7 +122,7 @@ void Linear<T>::weight_gradient(const LayerArgs<T>& at,
     x.data = x.row(first), x.rows = end - first;
     return row_products(b.y_bar, x, b.parameters_bar + first, in, Index{1});
   }
-  const Index stride = lane_stride<T>(round_up(end - first, kLanes<T>));
+  const Index stride = lane_stride<T>(round_up(end - first, kNarrowLanes<T>));
   auto xt = at.work->template take<T>(stride, b.x.samples);
   // The columns behind the last feature are multiplied, never stored.
   transpose(b.x.row(first),

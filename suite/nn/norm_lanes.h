@@ -5,18 +5,19 @@
 #include <array>
 #include <cstddef>
 
+#include "suite/core/simd/pack.h"
 #include "suite/nn/channel_norm.h"
-#include "suite/nn/vector.h"
 
 namespace physinv::nn {
 
 /// The lanes of a row's last vector that hold samples.
 template <class T>
 struct LaneMask {
-  using V = Simd<T, kNarrow>;
-  explicit LaneMask(Index samples) : full(samples / kLanes<T> * kLanes<T>) {
+  using V = NarrowPack<T>;
+  explicit LaneMask(Index samples)
+      : full(samples / kNarrowLanes<T> * kNarrowLanes<T>) {
     V lane{};
-    for (Index l = 0; l < kLanes<T>; ++l) lane[l] = static_cast<T>(l);
+    for (Index l = 0; l < kNarrowLanes<T>; ++l) lane[l] = static_cast<T>(l);
     valid = lane < broadcast<V>(static_cast<T>(samples - full));
   }
   V operator()(Index j, V v) const { return j < full ? v : (valid ? v : V{}); }
@@ -45,13 +46,13 @@ struct NormCell {
 /// One channel's constants in registers, and its normalisation.
 template <class T>
 struct NormChannel {
-  using V = Simd<T, kNarrow>;
+  using V = NarrowPack<T>;
   NormChannel(const NormColumns<T>& at, const T* parameters, Index n, Index c)
       : mean(broadcast<V>(at.mean[c])),
         inverse(broadcast<V>(at.inverse[c])),
         factor(broadcast<V>(parameters[c] * at.inverse[c])),
         offset(broadcast<V>(parameters[n + c])) {}
-  V operator()(V x) const { return multiply_add<T>(x - mean, factor, offset); }
+  V operator()(V x) const { return fma_lanes(x - mean, factor, offset); }
   V mean, inverse, factor, offset;
 };
 

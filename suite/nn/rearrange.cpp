@@ -8,7 +8,7 @@ namespace physinv::nn {
 namespace {
 
 template <class T>
-using V = Simd<T, kNarrow>;
+using V = NarrowPack<T>;
 
 template <class T>
 void copy_row(const T* from, Index width, T* to) {
@@ -29,7 +29,7 @@ void FieldInput<T>::forward(const LayerArgs<T>&,
   const V<T> unit = broadcast<V<T>>(static_cast<T>(o_.unit));
   const auto spread = [&](Index from, Index channel) {
     T* const first = y.row(channel);
-    for (Index j = 0; j < x.width; j += kLanes<T>)
+    for (Index j = 0; j < x.width; j += kNarrowLanes<T>)
       store(first + j, (load<V<T>>(x.row(from) + j) - shift) / unit);
     for (Index p = 1; p < o_.positions; ++p)
       copy_row(first, x.width, y.row(p * o_.width() + channel));
@@ -54,7 +54,7 @@ void FieldInput<T>::backward(const LayerArgs<T>&, const Backward<T>& b) const {
   const V<T> unit = broadcast<V<T>>(static_cast<T>(o_.unit));
   const Index width = b.x_bar.width;
   const auto collect = [&](Index to, Index channel) {
-    for (Index j = 0; j < width; j += kLanes<T>) {
+    for (Index j = 0; j < width; j += kNarrowLanes<T>) {
       V<T> sum{};
       for (Index p = 0; p < o_.positions; ++p)
         sum += load<V<T>>(b.y_bar.row(p * o_.width() + channel) + j);

@@ -11,7 +11,7 @@ namespace physinv::nn {
 namespace {
 
 template <class T>
-using V = Simd<T, kNarrow>;
+using V = NarrowPack<T>;
 
 /// Input positions of a pooling cell.
 struct Cell {
@@ -84,7 +84,7 @@ void MaxPool<T>::forward(const LayerArgs<T>&,
   for (Index i = 0; i < y.rows; ++i) {
     const Cell from = cell(grid_, i / channels_);
     const Index c = i % channels_;
-    for (Index j = 0; j < x.width; j += kLanes<T>) {
+    for (Index j = 0; j < x.width; j += kNarrowLanes<T>) {
       V<T> top = load<V<T>>(x.row(from.position[0] * channels_ + c) + j);
       for (std::size_t k = 1; k < from.count; ++k) {
         const V<T> v = load<V<T>>(x.row(from.position[k] * channels_ + c) + j);
@@ -103,7 +103,7 @@ void MaxPool<T>::backward(const LayerArgs<T>&, const Backward<T>& b) const {
   for (Index i = 0; i < b.y.rows; ++i) {
     const Cell to = cell(grid_, i / channels_);
     const Index c = i % channels_;
-    for (Index j = 0; j < b.x.width; j += kLanes<T>) {
+    for (Index j = 0; j < b.x.width; j += kNarrowLanes<T>) {
       const V<T> top = load<V<T>>(b.y.row(i) + j);
       V<T> rest = load<V<T>>(b.y_bar.row(i) + j);
       for (std::size_t k = 0; k < to.count; ++k) {
@@ -122,7 +122,7 @@ void MaxPool<T>::tangent(const LayerArgs<T>&, const Tangent<T>& t) const {
   for (Index i = 0; i < t.y.rows; ++i) {
     const Cell from = cell(grid_, i / channels_);
     const Index c = i % channels_;
-    for (Index j = 0; j < t.x.width; j += kLanes<T>) {
+    for (Index j = 0; j < t.x.width; j += kNarrowLanes<T>) {
       const V<T> top = load<V<T>>(t.y.row(i) + j);
       V<T> dot{};
       for (std::size_t k = from.count; k-- > 0;) {
@@ -157,13 +157,12 @@ void Upsample<T>::forward(const LayerArgs<T>&,
     const Pair h = sources(p % fine_.columns, grid_.columns, fine_.columns);
     const Pair v = sources(p / fine_.columns, grid_.rows, fine_.rows);
     const auto two = [](const Pair& pair, V<T> near, V<T> far) {
-      return multiply_add<T>(
-          broadcast<V<T>>(static_cast<T>(1 - pair.weight)),
-          far,
-          broadcast<V<T>>(static_cast<T>(pair.weight)) * near);
+      return fma_lanes(broadcast<V<T>>(static_cast<T>(1 - pair.weight)),
+                       far,
+                       broadcast<V<T>>(static_cast<T>(pair.weight)) * near);
     };
     for (Index c = 0; c < channels_; ++c)
-      for (Index j = 0; j < x.width; j += kLanes<T>) {
+      for (Index j = 0; j < x.width; j += kNarrowLanes<T>) {
         const auto along = [&](Index r) {
           return two(h, row(r, h.near, c, j), row(r, h.far, c, j));
         };
@@ -182,12 +181,12 @@ void Upsample<T>::backward(const LayerArgs<T>&, const Backward<T>& b) const {
     const Shares h(p % grid_.columns, grid_.columns, fine_.columns);
     const Shares v(p / grid_.columns, grid_.rows, fine_.rows);
     for (Index c = 0; c < channels_; ++c)
-      for (Index j = 0; j < b.x_bar.width; j += kLanes<T>) {
+      for (Index j = 0; j < b.x_bar.width; j += kNarrowLanes<T>) {
         V<T> sum{};
         for (std::size_t a = 0; a < v.count; ++a)
           for (std::size_t k = 0; k < h.count; ++k) {
             const Index from = v.output[a] * fine_.columns + h.output[k];
-            sum = multiply_add<T>(
+            sum = fma_lanes(
                 broadcast<V<T>>(static_cast<T>(v.weight[a] * h.weight[k])),
                 load<V<T>>(b.y_bar.row(from * channels_ + c) + j),
                 sum);

@@ -104,7 +104,7 @@ void Skip<T>::forward(const LayerArgs<T>& at,
 
 template <class T>
 void Skip<T>::backward(const LayerArgs<T>& at, const Backward<T>& b) const {
-  using V = Simd<T, kNarrow>;
+  using V = NarrowPack<T>;
   const Index own = this->inputs() / positions_;
   const Index all = this->outputs() / positions_;
   const Index n = b.x.samples, stride = b.x.stride;
@@ -132,7 +132,7 @@ void Skip<T>::backward(const LayerArgs<T>& at, const Backward<T>& b) const {
   if (!b.x_bar) return;
   for (Index p = 0; p < positions_; ++p)
     for (Index c = 0; c < own; ++c)
-      for (Index j = 0; j < b.x_bar.width; j += kLanes<T>)
+      for (Index j = 0; j < b.x_bar.width; j += kNarrowLanes<T>)
         store(b.x_bar.row(p * own + c) + j,
               load<V>(b.y_bar.row(p * all + c) + j) +
                   load<V>(y_bar.row(p * own + c) + j));

@@ -27,9 +27,9 @@ Lanes<T> rows_from(Lanes<T> x, Index first, Index count) {
 /// Rows of the lanes one behind the other, without gaps, through f.
 template <class T>
 void pack_rows(Activation f, Lanes<const T> x, T* to) {
-  using V = Simd<T, kNarrow>;
+  using V = NarrowPack<T>;
   for (Index i = 0; i < x.rows; ++i, to += x.width)
-    for (Index j = 0; j < x.width; j += kLanes<T>)
+    for (Index j = 0; j < x.width; j += kNarrowLanes<T>)
       store(to + j, activate_lanes<T>(f, load<V>(x.row(i) + j)));
 }
 
@@ -279,7 +279,7 @@ void SpectralBlock<T>::pull_weights(const T* z,
                                     T* parameters_bar,
                                     Workspace& work) const {
   const Index c = o_.channels, width = Lanes<T>(nullptr, 1, samples).width;
-  const Index across = round_up(2 * c, kLanes<T>);
+  const Index across = round_up(2 * c, kNarrowLanes<T>);
   const Workspace::Scope scope(work);
   T* const a_t = work.take<T>(across, samples).data();
   T* const sums = work.take<T>(across, 2 * c).data();
@@ -344,7 +344,7 @@ void SpectralBlock<T>::apply(const Product& at,
                              Lanes<const T> x,
                              Lanes<T> y,
                              Workspace& all) const {
-  using V = Simd<T, kNarrow>;
+  using V = NarrowPack<T>;
   const Index c = o_.channels, block = c * x.width;
   const Index pitch = in_.pitch(block), sums = in_.column_sums();
   const T* const w = local(at.parameters);
@@ -389,7 +389,7 @@ void SpectralBlock<T>::apply(const Product& at,
         const V alone = broadcast<V>(at.bias != nullptr ? at.bias[o] : T(0));
         T* const to = y.row((r * o_.to.columns + q) * c + o);
         const T* const from = row + q * pitch + o * x.width;
-        for (Index j = 0; j < x.width; j += kLanes<T>)
+        for (Index j = 0; j < x.width; j += kNarrowLanes<T>)
           store(to + j, load<V>(from + j) + (added ? load<V>(to + j) : alone));
       }
     }
@@ -471,7 +471,7 @@ void SpectralBlock<T>::pull_inputs(const Product& at,
                                    Lanes<const T> x,
                                    Lanes<const T> y_bar,
                                    Lanes<T> x_bar) const {
-  using V = Simd<T, kNarrow>;
+  using V = NarrowPack<T>;
   const Index c = o_.channels, pitch = in_.pitch(c * x.width);
   for (Index q = 0; q < o_.from.columns; ++q) {
     const bool added = meets && q < shared_.columns;
@@ -487,7 +487,7 @@ void SpectralBlock<T>::pull_inputs(const Product& at,
                .c = x_bar.row(q * c),
                .c_stride = x_bar.stride});
     for (Index i = q * c; i < (q + 1) * c; ++i)
-      for (Index j = 0; j < x.width; j += kLanes<T>) {
+      for (Index j = 0; j < x.width; j += kNarrowLanes<T>) {
         V sum = load<V>(row + q * pitch + (i - q * c) * x.width + j);
         if (added) sum += load<V>(x_bar.row(i) + j);
         store(x_bar.row(i) + j,

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "suite/core/simd/pack.h"
 #include "suite/nn/activation.h"
 #include "suite/nn/gemm.h"
-#include "suite/nn/vector.h"
 
 namespace physinv::nn {
 
@@ -26,8 +26,8 @@ bool is_thin(const Gemm<T>& g) {
 template <bool kWhole, class T, class F>
 [[gnu::always_inline]] inline void thin_group(
     const Gemm<T>& g, Index i, Index j, Index last, F&& f) {
-  using V = Simd<T, kNarrow>;
-  constexpr Index w = kLanes<T>;
+  using V = NarrowPack<T>;
+  constexpr Index w = kNarrowLanes<T>;
   const auto at = [=](Index q) { return (kWhole ? q : std::min(q, last)) * w; };
   V v[4];
 #pragma GCC unroll 4
@@ -38,8 +38,7 @@ template <bool kWhole, class T, class F>
   for (Index k = 0; k < g.k; ++k, a += g.a_k, b += g.b_stride) {
     const V s = broadcast<V>(*a);
 #pragma GCC unroll 4
-    for (Index q = 0; q < 4; ++q)
-      v[q] = multiply_add<T>(s, load<V>(b + at(q)), v[q]);
+    for (Index q = 0; q < 4; ++q) v[q] = fma_lanes(s, load<V>(b + at(q)), v[q]);
   }
   f(v, i, j);
   T* const to = g.c + i * g.c_stride + j;
@@ -55,7 +54,7 @@ template <bool kWhole, class T, class F>
 
 template <class T, class F>
 [[gnu::noinline]] void thin_rows(const Gemm<T>& g, F f) {
-  constexpr Index w = kLanes<T>, four = 4 * w;
+  constexpr Index w = kNarrowLanes<T>, four = 4 * w;
   for (Index i = 0; i < g.m; ++i) {
     Index j = 0;
     for (; j + four <= g.n; j += four) thin_group<true>(g, i, j, 3, f);
@@ -66,16 +65,17 @@ template <class T, class F>
 /// As gemm, with its bits.
 template <class T>
 void thin_product(const Gemm<T>& g) {
-  using V = Simd<T, kNarrow>;
+  using V = NarrowPack<T>;
   const bool free = g.activation == Activation::identity;
   const auto gate = [&](Activation kind, V(&v)[4], Index i, Index j) {
     const T* const y = g.gate + i * g.gate_stride + j;
 #pragma GCC unroll 4
     for (Index q = 0; q < 4; ++q) {
-      const Index some = std::min(kLanes<T>, g.n - j - q * kLanes<T>);
+      const Index some =
+          std::min(kNarrowLanes<T>, g.n - j - q * kNarrowLanes<T>);
       if (some > 0)
-        v[q] =
-            pull_lanes<T>(kind, load_lanes<V>(y + q * kLanes<T>, some), v[q]);
+        v[q] = pull_lanes<T>(
+            kind, load_lanes<V>(y + q * kNarrowLanes<T>, some), v[q]);
     }
   };
   if (g.gate == nullptr && free)
@@ -104,8 +104,8 @@ inline bool are_thin(Index x_rows, Index y_rows) {
 template <class T>
 void row_products(
     Lanes<const T> x, Lanes<const T> y, T* out, Index x_step, Index y_step) {
-  using V = Simd<T, kNarrow>;
-  constexpr Index w = kLanes<T>;
+  using V = NarrowPack<T>;
+  constexpr Index w = kNarrowLanes<T>;
   if (y.rows < x.rows) std::swap(x, y), std::swap(x_step, y_step);
   for (Index i = 0; i < x.rows; ++i)
     for (Index j = 0; j < y.rows; j += kRowGroup) {
@@ -121,15 +121,14 @@ void row_products(
         const V second = held(load<V>(x.row(i) + c + w));
 #pragma GCC unroll 4
         for (Index q = 0; q < kRowGroup; ++q) {
-          even[q] = multiply_add<T>(first, load<V>(rows[q] + c), even[q]);
-          odd[q] = multiply_add<T>(second, load<V>(rows[q] + c + w), odd[q]);
+          even[q] = fma_lanes(first, load<V>(rows[q] + c), even[q]);
+          odd[q] = fma_lanes(second, load<V>(rows[q] + c + w), odd[q]);
         }
       }
       for (Index q = 0; q <= last; ++q) {
         V sum = even[q] + odd[q];
         if (c < x.width)
-          sum =
-              multiply_add<T>(load<V>(x.row(i) + c), load<V>(rows[q] + c), sum);
+          sum = fma_lanes(load<V>(x.row(i) + c), load<V>(rows[q] + c), sum);
         out[i * x_step + (j + q) * y_step] = sum_of(sum);
       }
     }

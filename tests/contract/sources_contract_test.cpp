@@ -196,7 +196,7 @@ TEST(SourcesContract, EditsMakeStaleWhoUsesThem) {
   edits("problems/marker_flow/frequency_loss.cpp",
         "(sip|matrix)/fluid.*|numerics/(marker-flow|transport)/.*");
   edits("optimizers/bfgs.cpp", "jpo/.* (solve|refine)");
-  edits("optimizers/half_inverse/tridiagonalize.cpp",
+  edits("suite/linalg/tridiagonalize.cpp",
         "(hig|numerics/half-inverse).*|(jpo|matrix)/.*/(gn|hig)/.*");
   edits("optimizers/steps/rmsprop.h", "(hig|matrix|physgrad|sip)/.*rmsprop.*");
   edits(

@@ -2,7 +2,8 @@
 # run.sh PROGRAM FOLDER READER: feeds a fuzzer PHYSINV_FUZZ_RUNS inputs, made of
 # the corpus of its reader. What leads on is kept in inputs/READER beside the
 # program, for the next time; what should be mended, in found. An input may take
-# 5 s and a gigabyte.
+# 5 s (PHYSINV_FUZZ_SECONDS, for a machine that does other things) and a
+# gigabyte.
 set -euo pipefail
 program=$1 folder=$2 reader=$3
 beside=${program%/*}
@@ -14,7 +15,8 @@ printf 'leak:libhdf5\n' >"$beside/inputs/leaks.$reader"
 export LSAN_OPTIONS=suppressions=$beside/inputs/leaks.$reader:print_suppressions=0
 export ASAN_OPTIONS=quarantine_size_mb=16
 exec "$program" -runs="${PHYSINV_FUZZ_RUNS:-20000}" -dict="$dictionary" \
-  -max_len=16384 -timeout=5 -rss_limit_mb=1024 -malloc_limit_mb=1024 \
+  -max_len=16384 -timeout="${PHYSINV_FUZZ_SECONDS:-5}" \
+  -rss_limit_mb=1024 -malloc_limit_mb=1024 \
   -close_fd_mask=1 -print_final_stats=1 \
   -artifact_prefix="$beside/found/$reader-" \
   "$beside/inputs/$reader" "$folder/corpus/$reader"

@@ -11,6 +11,9 @@
 #include "tests/optimizers/half_inverse_truth.h"
 
 namespace physinv::hig {
+
+using namespace linalg;
+
 namespace {
 
 const std::vector<double> kKappas = {1, 0.5, 0, -0.25, -0.5, -0.75, -1};

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "optimizers/half_inverse/two_level.h"
-#include "suite/core/decompositions.h"
+#include "suite/linalg/decompositions.h"
 
 namespace physinv::hig {
 
@@ -18,7 +18,7 @@ Batch<double> graded(Index m, Index p, double decades, std::uint32_t seed);
 
 /// The definition, by Eigen's two-sided Jacobi SVD of J.
 struct Definition {
-  SingularValues svd;
+  linalg::SingularValues svd;
   Vector<double> c;
   Definition(const Batch<double>& j, const Vector<double>& g);
 

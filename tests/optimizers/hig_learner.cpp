@@ -7,8 +7,8 @@
 #include <regex>
 #include <stdexcept>
 
-#include "suite/core/decompositions.h"
 #include "suite/core/gradient_projection.h"
+#include "suite/linalg/decompositions.h"
 #include "suite/nn/mlp.h"
 
 namespace physinv::test {
@@ -261,7 +261,7 @@ void check_batch(const Learner& l, const char* targets, const Json& entry) {
 
   const Vector<double> expected = flat(out.at("singular_values"));
   const Batch<double> j = at.stacked_jacobian();
-  const Vector<double> s = singular_values(j).s;
+  const Vector<double> s = linalg::singular_values(j).s;
   ASSERT_EQ(s.size(), expected.size());
   EXPECT_LE((s - expected).cwiseAbs().maxCoeff(), 1e-12 * expected(0));
 

@@ -195,7 +195,7 @@ TEST(HigReference, Toy) {
 Vector<double> defined_update(const Batch<double>& j,
                               const Vector<double>& g,
                               const hig::Power& power) {
-  const SingularValues svd = jacobi_singular_values(j);
+  const linalg::SingularValues svd = jacobi_singular_values(j);
   const Vector<double>& s = svd.s;
   const double cut = power.absolute ? power.tau : power.tau * s(0);
   Vector<double> c = svd.u.transpose() * g;

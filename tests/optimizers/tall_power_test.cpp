@@ -9,6 +9,9 @@
 #include "tests/optimizers/half_inverse_truth.h"
 
 namespace physinv::hig {
+
+using namespace linalg;
+
 namespace {
 
 Batch<double> with_values(Index rows, const Vector<double>& s) {

@@ -6,6 +6,9 @@
 #include "tests/optimizers/half_inverse_truth.h"
 
 namespace physinv::hig {
+
+using namespace linalg;
+
 namespace {
 
 TEST(Tridiagonalize, SimilarAndLeavesTheFirstCoordinate) {

@@ -10,6 +10,9 @@
 #include "tests/optimizers/half_inverse_truth.h"
 
 namespace physinv::hig {
+
+using namespace linalg;
+
 namespace {
 
 /// Values a thousandth apart on both sides of the cut: the Gram matrix cannot

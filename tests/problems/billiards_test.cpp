@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "suite/core/lanes.h"
+#include "suite/core/simd/samples.h"
 #include "tests/problems/billiards_support.h"
 
 namespace physinv {

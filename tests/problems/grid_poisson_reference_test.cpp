@@ -4,7 +4,7 @@
 #include <string>
 
 #include "problems/grid_poisson/grid_poisson.h"
-#include "suite/core/decompositions.h"
+#include "suite/linalg/decompositions.h"
 #include "tests/problems/physics_checks.h"
 #include "tests/support/hig_reference.h"
 
@@ -44,7 +44,7 @@ void check_laplacian(const Json& entry) {
   const Batch<double> j =
       at.jacobian(Batch<double>::Zero(kPoissonCells, 1), Batch<double>(0, 1));
   EXPECT_TRUE(HigTolerance(entry).array()(
-      symmetric_eigen(at.matrix(j, 0)).values,
+      linalg::symmetric_eigen(at.matrix(j, 0)).values,
       flat(entry.at("expected").at("eigenvalues_sorted"))));
 }
 

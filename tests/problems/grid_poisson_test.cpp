@@ -1,6 +1,6 @@
 #include "problems/grid_poisson/grid_poisson.h"
 
-#include "suite/core/decompositions.h"
+#include "suite/linalg/decompositions.h"
 #include "tests/problems/physics_checks.h"
 
 namespace physinv::test {
@@ -21,7 +21,7 @@ TEST(GridPoisson, TheOperatorIsSymmetricAndNegative) {
       at.jacobian(Batch<double>::Zero(64, 1), Batch<double>(0, 1));
   const Batch<double> l = at.matrix(j, 0);
   EXPECT_TRUE(same_bits(l, Batch<double>(l.transpose())));
-  const Vector<double> lambda = symmetric_eigen(l).values;
+  const Vector<double> lambda = linalg::symmetric_eigen(l).values;
   EXPECT_NEAR(lambda(0), -4 + 4 * std::cos(8 * M_PI / 9), 1e-12);
   EXPECT_NEAR(lambda(63), -4 + 4 * std::cos(M_PI / 9), 1e-12);
 }

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "suite/core/check.h"
-#include "suite/core/lanes.h"
+#include "suite/core/simd/pack.h"
 #include "suite/core/threads.h"
 #include "tests/support/bits.h"
 #include "tests/support/gradient_check.h"

@@ -4,7 +4,7 @@
 
 namespace physinv::test {
 
-SingularValues jacobi_singular_values(const Batch<double>& a) {
+linalg::SingularValues jacobi_singular_values(const Batch<double>& a) {
   const Eigen::JacobiSVD<Batch<double>> svd(
       a, Eigen::ComputeThinU | Eigen::ComputeThinV);
   return {svd.matrixU(), svd.matrixV(), svd.singularValues(), true};

@@ -1,11 +1,11 @@
 /// What tests hold decompositions against, by another algorithm than theirs.
 #pragma once
 
-#include "suite/core/decompositions.h"
+#include "suite/linalg/decompositions.h"
 
 namespace physinv::test {
 
 /// Thin U and V of any matrix, by Eigen's two-sided Jacobi rotations.
-SingularValues jacobi_singular_values(const Batch<double>& a);
+linalg::SingularValues jacobi_singular_values(const Batch<double>& a);
 
 }  // namespace physinv::test

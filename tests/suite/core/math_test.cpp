@@ -6,8 +6,8 @@
 #include <cstring>
 #include <limits>
 
-#include "suite/core/lanes.h"
 #include "suite/core/rng.h"
+#include "suite/core/simd/pack.h"
 
 namespace physinv {
 namespace {

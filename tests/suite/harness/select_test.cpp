@@ -82,6 +82,9 @@ TEST(Nearest, FindsTheTypo) {
   EXPECT_TRUE(nearest_names({}, "x").empty());
   EXPECT_FALSE(nearest_names(names, std::string(1'000'000, 'x')).empty());
   EXPECT_EQ(edit_distance("kitten", "sitting"), 3u);
+  EXPECT_EQ(edit_distance("kitten", "sitting", 3), 3u);
+  EXPECT_GT(edit_distance("kitten", "sitting", 2), 2u);
+  EXPECT_GT(edit_distance("kitten", "a kitten's", 3), 3u);
   EXPECT_EQ(nearest_word({"--jobs", "--out"}, "--job"), "--jobs");
   EXPECT_EQ(nearest_word({"--jobs", "--out"}, "--completely-else"), "");
 }

@@ -28,7 +28,7 @@ FnoOptions small() {
 TEST(Gelu, LanesAgreeWithTheLibrary) {
   const auto check = [](auto one, double tolerance) {
     using T = decltype(one);
-    using V = Simd<T, kNarrow>;
+    using V = NarrowPack<T>;
     for (double z = -12; z < 12; z += 0.0137) {
       const V v = broadcast<V>(static_cast<T>(z));
       const double x = double(v[0]);

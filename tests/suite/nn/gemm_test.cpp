@@ -48,7 +48,7 @@ TYPED_TEST(GemmTest, EqualsTheSequentialSumBitwise) {
   for (const Index m : {1, 2, 5, 7, 17, 40}) {
     for (const Index n : {1, 3, 8, 13, 16, 24, 37, 64}) {
       for (const Index k : {0, 1, 2, 19, 300, 520}) {
-        const Index stride = lane_stride<T>(round_up(n, kLanes<T>));
+        const Index stride = lane_stride<T>(round_up(n, kNarrowLanes<T>));
         const Batch<T> a = wavy<T>(k, m), b = wavy<T>(stride, k, 0.3);
         const Vector<T> bias = wavy<T>(m, 1, 0.7);
         // One more column: nothing may be written behind the last.
@@ -113,7 +113,7 @@ TYPED_TEST(GemmTest, ThinProductsHaveTheBitsOfTiles) {
   const Vector<T> bias = wavy<T>(many, 1, 0.7);
   for (const Activation f : {Activation::tanh, Activation::sigmoid}) {
     for (const Index n : {3, 8, 37, 64}) {
-      const Index stride = lane_stride<T>(round_up(n, kLanes<T>));
+      const Index stride = lane_stride<T>(round_up(n, kNarrowLanes<T>));
       const Batch<T> b = wavy<T>(stride, k, 0.3);
       Batch<T> thin = Batch<T>::Constant(n + 1, few, T(9));
       Batch<T> tiles = Batch<T>::Constant(n + 1, many, T(9));
@@ -167,7 +167,7 @@ TYPED_TEST(GemmTest, LanesTransposeBothWays) {
           ASSERT_EQ(x.row(i)[j], j < n ? in(i, j) : T(0));
       from_lanes<T>(x, out);
       expect_same_bits(in, out);
-      const Index up = round_up(n, kLanes<T>);
+      const Index up = round_up(n, kNarrowLanes<T>);
       Batch<T> padded = Batch<T>::Constant(up + 1, rows, T(7));
       transpose(in.data(), rows, n, rows, padded.data(), up + 1, Behind::zeros);
       for (Index i = 0; i < rows; ++i)

@@ -1,12 +1,12 @@
-#include "optimizers/half_inverse/band.h"
+#include "suite/linalg/band.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 
-#include "optimizers/half_inverse/reflector.h"
+#include "suite/linalg/householder.h"
 
-namespace physinv::hig {
+namespace physinv::linalg {
 namespace {
 
 constexpr Index kRegisters = kBand / kWidth;
@@ -21,8 +21,8 @@ struct Masks {
 };
 constexpr Masks kMasks;
 
-inline Wide from_lane(const Wide& v, Index first) {
-  return masked(load_flags(kMasks.keep[first]), v);
+inline Pack8 from_lane(const Pack8& v, Index first) {
+  return masked(physinv::load<Flags>(kMasks.keep[first]), v);
 }
 
 /// D <- H D H for the symmetric block whose columns start at `d`, `step`
@@ -32,26 +32,26 @@ void turn_diagonal(double* d, Index step, double tau, const double* v) {
   for (Index c = 0; c < kBand; ++c) {
     const double* column = d + c * step;
     const Index g = c / kWidth * kWidth;
-    const Wide s = broadcast(v[c]);
+    const Pack8 s = broadcast(v[c]);
     // The diagonal entry once: it comes in with the product along the column.
-    Wide x = from_lane(load(column + g), c - g);
-    store(w + g, fma(x, s, load(w + g)));
-    Wide mirrored = from_lane(load(v + g), c - g) * x;
+    Pack8 x = from_lane(load(column + g), c - g);
+    store(w + g, fma_lanes(x, s, load(w + g)));
+    Pack8 mirrored = from_lane(load(v + g), c - g) * x;
     for (Index i = g + kWidth; i < kBand; i += kWidth) {
       x = load(column + i);
-      store(w + i, fma(x, s, load(w + i)));
-      mirrored = fma(x, load(v + i), mirrored);
+      store(w + i, fma_lanes(x, s, load(w + i)));
+      mirrored = fma_lanes(x, load(v + i), mirrored);
     }
-    w[c] += std::fma(-column[c], v[c], sum(mirrored));
+    w[c] += std::fma(-column[c], v[c], sum_of(mirrored));
   }
   for (Index i = 0; i < kBand; ++i) w[i] *= tau;
   axpy(kBand, -0.5 * tau * dot(kBand, w, v), v, w);
   for (Index c = 0; c < kBand; ++c) {
     double* column = d + c * step;
     const Index g = c / kWidth * kWidth;
-    const Wide sv = broadcast(-v[c]), sw = broadcast(-w[c]);
+    const Pack8 sv = broadcast(-v[c]), sw = broadcast(-w[c]);
     const auto change = [&](Index i) {
-      return fma(sv, load(w + i), sw * load(v + i));
+      return fma_lanes(sv, load(w + i), sw * load(v + i));
     };
     store(column + g, load(column + g) + from_lane(change(g), c - g));
     for (Index i = g + kWidth; i < kBand; i += kWidth)
@@ -63,20 +63,20 @@ void turn_diagonal(double* d, Index step, double tau, const double* v) {
 /// the first column of the result, which goes to `next`; returns its tau.
 double turn_below(
     double* block, Index step, double tau, const double* v, double* next) {
-  Wide z[kRegisters] = {};
+  Pack8 z[kRegisters] = {};
   for (Index c = 0; c < kBand; ++c) {
-    const Wide s = broadcast(-tau * v[c]);
+    const Pack8 s = broadcast(-tau * v[c]);
 #pragma GCC unroll 8
     for (Index i = 0; i < kRegisters; ++i)
-      z[i] = fma(load(block + c * step + i * kWidth), s, z[i]);
+      z[i] = fma_lanes(load(block + c * step + i * kWidth), s, z[i]);
   }
-  const auto after = [&](Index c, Wide* x) {
-    const Wide s = broadcast(v[c]);
+  const auto after = [&](Index c, Pack8* x) {
+    const Pack8 s = broadcast(v[c]);
 #pragma GCC unroll 8
     for (Index i = 0; i < kRegisters; ++i)
-      x[i] = fma(z[i], s, load(block + c * step + i * kWidth));
+      x[i] = fma_lanes(z[i], s, load(block + c * step + i * kWidth));
   };
-  Wide x[kRegisters], u[kRegisters];
+  Pack8 x[kRegisters], u[kRegisters];
   after(0, x);
 #pragma GCC unroll 8
   for (Index i = 0; i < kRegisters; ++i) store(next + i * kWidth, x[i]);
@@ -85,18 +85,18 @@ double turn_below(
 #pragma GCC unroll 8
   for (Index i = 0; i < kRegisters; ++i) {
     u[i] = load(next + i * kWidth);
-    store(block + i * kWidth, Wide{});
+    store(block + i * kWidth, Pack8{});
   }
   block[0] = beta;
   for (Index c = 1; c < kBand; ++c) {
     after(c, x);
-    Wide along{};
+    Pack8 along{};
 #pragma GCC unroll 8
-    for (Index i = 0; i < kRegisters; ++i) along = fma(u[i], x[i], along);
-    const Wide s = broadcast(-next_tau * sum(along));
+    for (Index i = 0; i < kRegisters; ++i) along = fma_lanes(u[i], x[i], along);
+    const Pack8 s = broadcast(-next_tau * sum_of(along));
 #pragma GCC unroll 8
     for (Index i = 0; i < kRegisters; ++i)
-      store(block + c * step + i * kWidth, fma(s, u[i], x[i]));
+      store(block + c * step + i * kWidth, fma_lanes(s, u[i], x[i]));
   }
   return next_tau;
 }
@@ -157,4 +157,4 @@ void BandReduction::apply(X* x) const {
 template void BandReduction::apply(double*) const;
 template void BandReduction::apply(Eight*) const;
 
-}  // namespace physinv::hig
+}  // namespace physinv::linalg

@@ -1,10 +1,10 @@
-#include "optimizers/half_inverse/bidiagonal.h"
+#include "suite/linalg/bidiagonal.h"
 
 #include <algorithm>
 
-#include "optimizers/half_inverse/reflector.h"
+#include "suite/linalg/householder.h"
 
-namespace physinv::hig {
+namespace physinv::linalg {
 namespace {
 
 double* reserve(Buffer& buffer, Index count) {
@@ -37,32 +37,32 @@ void run(const Step& s, Index k, Index n, double* row) {
       axpy(length, row[j], x, s.z + s.begin);
     }
   } else {
-    Wide u[K], y[K], z[K];
+    Pack8 u[K], y[K], z[K];
 #pragma GCC unroll 8
     for (int i = 0; i < K; ++i) {
       u[i] = load(s.u + s.begin + i * kWidth);
       y[i] = load(s.y + s.begin + i * kWidth);
-      z[i] = Wide{};
+      z[i] = Pack8{};
     }
     for (Index j = k; j < n; ++j) {
       double* const at = s.m + j * s.stride + s.begin;
-      const Wide off = broadcast(s.v != nullptr ? -s.v[j] : 0.0);
-      Wide x[K], along{};
+      const Pack8 off = broadcast(s.v != nullptr ? -s.v[j] : 0.0);
+      Pack8 x[K], along{};
 #pragma GCC unroll 8
       for (int i = 0; i < K; ++i) {
-        x[i] = fma(off, y[i], load(at + i * kWidth));
-        along = fma(u[i], x[i], along);
+        x[i] = fma_lanes(off, y[i], load(at + i * kWidth));
+        along = fma_lanes(u[i], x[i], along);
       }
-      const Wide left = broadcast(-s.left_tau * sum(along));
+      const Pack8 left = broadcast(-s.left_tau * sum_of(along));
 #pragma GCC unroll 8
       for (int i = 0; i < K; ++i) {
-        x[i] = fma(left, u[i], x[i]);
+        x[i] = fma_lanes(left, u[i], x[i]);
         store(at + i * kWidth, x[i]);
       }
       row[j] = at[k - s.begin];
-      const Wide entry = broadcast(row[j]);
+      const Pack8 entry = broadcast(row[j]);
 #pragma GCC unroll 8
-      for (int i = 0; i < K; ++i) z[i] = fma(entry, x[i], z[i]);
+      for (int i = 0; i < K; ++i) z[i] = fma_lanes(entry, x[i], z[i]);
     }
 #pragma GCC unroll 8
     for (int i = 0; i < K; ++i) store(s.z + s.begin + i * kWidth, z[i]);
@@ -162,4 +162,4 @@ void Bidiagonal::apply(VectorOut<double> x) const {
   }
 }
 
-}  // namespace physinv::hig
+}  // namespace physinv::linalg

@@ -8,7 +8,7 @@
 #include "suite/core/batch.h"
 #include "suite/core/workspace.h"
 
-namespace physinv::hig {
+namespace physinv::linalg {
 
 inline constexpr Index kBand = 32;
 
@@ -39,4 +39,4 @@ class BandReduction {
   std::vector<double> tau_;
 };
 
-}  // namespace physinv::hig
+}  // namespace physinv::linalg

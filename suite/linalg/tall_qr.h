@@ -4,7 +4,7 @@
 #include "suite/core/batch.h"
 #include "suite/core/workspace.h"
 
-namespace physinv::hig {
+namespace physinv::linalg {
 
 /// Columns of a tall matrix, padded and aligned for `triangularize`.
 class TallColumns {
@@ -32,4 +32,4 @@ class TallColumns {
 /// finite.
 void triangularize(TallColumns& a, Index pivots, BatchOut<double> r);
 
-}  // namespace physinv::hig
+}  // namespace physinv::linalg

@@ -1,13 +1,13 @@
-#include "optimizers/half_inverse/tall_qr.h"
+#include "suite/linalg/tall_qr.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "optimizers/half_inverse/reflector.h"
 #include "suite/core/check.h"
+#include "suite/linalg/householder.h"
 
-namespace physinv::hig {
+namespace physinv::linalg {
 namespace {
 
 constexpr int kPanel = 4;
@@ -21,28 +21,28 @@ struct Panel {
 /// N columns y <- (I - V S V^T)^T y on rows [begin, end), multiples of kWidth.
 template <int N>
 void reflect_columns(const Panel& p, double* const* y, Index begin, Index end) {
-  Wide w[kPanel][N];
+  Pack8 w[kPanel][N];
 #pragma GCC unroll 8
   for (int k = 0; k < kPanel; ++k)
 #pragma GCC unroll 4
-    for (int c = 0; c < N; ++c) w[k][c] = Wide{};
+    for (int c = 0; c < N; ++c) w[k][c] = Pack8{};
   for (Index i = begin; i < end; i += kWidth) {
-    Wide at[N];
+    Pack8 at[N];
 #pragma GCC unroll 4
     for (int c = 0; c < N; ++c) at[c] = held(load(y[c] + i));
 #pragma GCC unroll 8
     for (int k = 0; k < kPanel; ++k) {
-      const Wide v = held(load(p.v[k] + i));
+      const Pack8 v = held(load(p.v[k] + i));
 #pragma GCC unroll 4
-      for (int c = 0; c < N; ++c) w[k][c] = fma(v, at[c], w[k][c]);
+      for (int c = 0; c < N; ++c) w[k][c] = fma_lanes(v, at[c], w[k][c]);
     }
   }
-  Wide f[kPanel][N];
+  Pack8 f[kPanel][N];
 #pragma GCC unroll 4
   for (int c = 0; c < N; ++c) {
     double along[kPanel];
 #pragma GCC unroll 8
-    for (int k = 0; k < kPanel; ++k) along[k] = sum(w[k][c]);
+    for (int k = 0; k < kPanel; ++k) along[k] = sum_of(w[k][c]);
 #pragma GCC unroll 8
     for (int k = 0; k < kPanel; ++k) {
       double total = 0;
@@ -51,14 +51,14 @@ void reflect_columns(const Panel& p, double* const* y, Index begin, Index end) {
     }
   }
   for (Index i = begin; i < end; i += kWidth) {
-    Wide at[N];
+    Pack8 at[N];
 #pragma GCC unroll 4
     for (int c = 0; c < N; ++c) at[c] = load(y[c] + i);
 #pragma GCC unroll 8
     for (int k = 0; k < kPanel; ++k) {
-      const Wide v = held(load(p.v[k] + i));
+      const Pack8 v = held(load(p.v[k] + i));
 #pragma GCC unroll 4
-      for (int c = 0; c < N; ++c) at[c] = fma(v, f[k][c], at[c]);
+      for (int c = 0; c < N; ++c) at[c] = fma_lanes(v, f[k][c], at[c]);
     }
 #pragma GCC unroll 4
     for (int c = 0; c < N; ++c) store(y[c] + i, at[c]);
@@ -80,12 +80,12 @@ void TallColumns::open(Index rows, Index columns) {
 
 bool TallColumns::finite() const {
   // 0 x is 0 for what is finite, and NaN for all else.
-  Wide zero{};
+  Pack8 zero{};
   const Index end = round_up(rows_, kWidth);
   for (Index j = 0; j < columns_; ++j)
     for (Index i = 0; i < end; i += kWidth)
-      zero = fma(load(column(j) + i), Wide{}, zero);
-  return sum(zero) == 0;
+      zero = fma_lanes(load(column(j) + i), Pack8{}, zero);
+  return sum_of(zero) == 0;
 }
 
 namespace {
@@ -172,4 +172,4 @@ void triangularize(TallColumns& a, Index pivots, BatchOut<double> r) {
     for (Index i = 0; i < pivots; ++i) r(i, j) = a.column(j)[i];
 }
 
-}  // namespace physinv::hig
+}  // namespace physinv::linalg

@@ -3,9 +3,9 @@
 /// rounded up to whole registers, so rows and vectors are padded.
 #pragma once
 
-#include "optimizers/half_inverse/tile_product.h"
+#include "suite/linalg/tile_product.h"
 
-namespace physinv::hig {
+namespace physinv::linalg {
 
 /// f.operator()<kRows>(k) for groups of kMost, 2 and 1 rows that cover `count`.
 template <int kMost = 8, class F>
@@ -27,17 +27,17 @@ inline void subtract_combinations(Index n,
                                   double* z) {
   for_row_groups<4>(count, [&]<int kRows>(Index k) {
     const double* const from = x + k * stride;
-    Wide by_s[kRows], by_t[kRows];
+    Pack8 by_s[kRows], by_t[kRows];
 #pragma GCC unroll 4
     for (int i = 0; i < kRows; ++i)
       by_s[i] = broadcast(-s[k + i]), by_t[i] = broadcast(-t[k + i]);
     for (Index c = 0; c < n; c += kWidth) {
-      Wide to_y = load(y + c), to_z = load(z + c);
+      Pack8 to_y = load(y + c), to_z = load(z + c);
 #pragma GCC unroll 4
       for (int i = 0; i < kRows; ++i) {
-        const Wide v = held(load(from + i * stride + c));
-        to_y = fma(by_s[i], v, to_y);
-        to_z = fma(by_t[i], v, to_z);
+        const Pack8 v = held(load(from + i * stride + c));
+        to_y = fma_lanes(by_s[i], v, to_y);
+        to_z = fma_lanes(by_t[i], v, to_z);
       }
       store(y + c, to_y), store(z + c, to_z);
     }
@@ -53,16 +53,16 @@ inline void project(Index n,
                     double* s) {
   for_row_groups(count, [&]<int kRows>(Index k) {
     const double* const from = x + k * stride;
-    Wide dots[kRows] = {};
+    Pack8 dots[kRows] = {};
     for (Index c = 0; c < n; c += kWidth) {
-      const Wide vc = held(load(v + c));
+      const Pack8 vc = held(load(v + c));
 #pragma GCC unroll 8
       for (int i = 0; i < kRows; ++i)
-        dots[i] = fma(load(from + i * stride + c), vc, dots[i]);
+        dots[i] = fma_lanes(load(from + i * stride + c), vc, dots[i]);
     }
 #pragma GCC unroll 8
-    for (int i = 0; i < kRows; ++i) s[k + i] = sum(dots[i]);
+    for (int i = 0; i < kRows; ++i) s[k + i] = sum_of(dots[i]);
   });
 }
 
-}  // namespace physinv::hig
+}  // namespace physinv::linalg

@@ -6,18 +6,14 @@
 
 #include <utility>
 
-#include "optimizers/half_inverse/wide.h"
+#include "suite/linalg/eight.h"
 
-namespace physinv::hig {
+namespace physinv::linalg {
 
 inline constexpr Index kTileColumns = 2 * kWidth;  ///< of one tile
 /// With two vectors each, accumulators for 32 registers of 512 bits, or, as a
 /// vector takes two of them, for 16 of 256.
-inline constexpr int kTileRows = nn::kWide == 64 ? 8 : 3;
-
-constexpr Index round_up(Index n, Index multiple) {
-  return (n + multiple - 1) / multiple * multiple;
-}
+inline constexpr int kTileRows = kVectorBytes == 64 ? 8 : 3;
 
 /// a[r * row + k * step], read as single numbers.
 struct Scalars {
@@ -30,17 +26,17 @@ struct Scalars {
 template <int M, class Finish>
 [[gnu::always_inline]] inline void tile(
     Index depth, Scalars a, const double* b, Index b_step, Finish&& finish) {
-  Wide acc[M][2];
+  Pack8 acc[M][2];
 #pragma GCC unroll 8
-  for (int r = 0; r < M; ++r) acc[r][0] = acc[r][1] = Wide{};
+  for (int r = 0; r < M; ++r) acc[r][0] = acc[r][1] = Pack8{};
   const double* at = a.data;
   for (Index k = 0; k < depth; ++k, at += a.step, b += b_step) {
-    const Wide first = held(load(b)), second = held(load(b + kWidth));
+    const Pack8 first = held(load(b)), second = held(load(b + kWidth));
 #pragma GCC unroll 8
     for (int r = 0; r < M; ++r) {
-      const Wide s = broadcast(at[r * a.row]);
-      acc[r][0] = fma(s, first, acc[r][0]);
-      acc[r][1] = fma(s, second, acc[r][1]);
+      const Pack8 s = broadcast(at[r * a.row]);
+      acc[r][0] = fma_lanes(s, first, acc[r][0]);
+      acc[r][1] = fma_lanes(s, second, acc[r][1]);
     }
   }
 #pragma GCC unroll 8
@@ -61,7 +57,7 @@ inline void tile_rows(Index rows,
             {a.data + i * a.row, a.row, a.step},
             b,
             b_step,
-            [&](int r, Wide x, Wide y) { finish(i + r, x, y); });
+            [&](int r, Pack8 x, Pack8 y) { finish(i + r, x, y); });
   if constexpr (M > 1) {
     if (i < rows)
       tile_rows<M - 1>(rows - i,
@@ -69,7 +65,7 @@ inline void tile_rows(Index rows,
                        {a.data + i * a.row, a.row, a.step},
                        b,
                        b_step,
-                       [&](Index r, Wide x, Wide y) { finish(i + r, x, y); });
+                       [&](Index r, Pack8 x, Pack8 y) { finish(i + r, x, y); });
   }
 }
 
@@ -87,7 +83,7 @@ void multiply(Index rows,
               double* c,
               Index c_row) {
   for (Index j = 0; j < columns; j += kTileColumns)
-    tile_rows(rows, depth, a, b + j, b_step, [&](Index r, Wide x, Wide y) {
+    tile_rows(rows, depth, a, b + j, b_step, [&](Index r, Pack8 x, Pack8 y) {
       double* to = c + r * c_row + j;
       if constexpr (kInto == Into::add) x += load(to), y += load(to + kWidth);
       store(to, x);
@@ -95,4 +91,4 @@ void multiply(Index rows,
     });
 }
 
-}  // namespace physinv::hig
+}  // namespace physinv::linalg

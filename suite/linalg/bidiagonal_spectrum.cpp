@@ -1,12 +1,12 @@
-#include "optimizers/half_inverse/bidiagonal_spectrum.h"
+#include "suite/linalg/bidiagonal_spectrum.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "optimizers/half_inverse/reflector.h"
 #include "suite/core/math.h"
+#include "suite/linalg/householder.h"
 
-namespace physinv::hig {
+namespace physinv::linalg {
 namespace {
 
 /// Registers that search at the same time: their divisions overlap.
@@ -19,8 +19,8 @@ constexpr int kRounds = 64, kRefinements = 8;
 /// Cosine between two vectors, and residual over value, that are put up with.
 constexpr double kCosine = 1e-11, kResidual = 1e-12;
 
-inline Wide guarded(const Wide& pivot) {
-  return select(magnitude(pivot) < broadcast(kTiny), broadcast(-kTiny), pivot);
+inline Pack8 guarded(const Pack8& pivot) {
+  return select(abs_lanes(pivot) < broadcast(kTiny), broadcast(-kTiny), pivot);
 }
 
 }  // namespace
@@ -30,20 +30,20 @@ void BidiagonalSpectrum::count_above(const double* x,
                                      double* counts,
                                      Index groups) const {
   for (Index g = 0; g < groups; ++g, x += kLanes, counts += kLanes) {
-    Wide at[kGroup], s[kGroup], above[kGroup];
+    Pack8 at[kGroup], s[kGroup], above[kGroup];
 #pragma GCC unroll 4
     for (int r = 0; r < kGroup; ++r) {
       at[r] = load(x + r * kWidth);
       s[r] = -at[r];
-      above[r] = Wide{};
+      above[r] = Pack8{};
     }
     for (Index i = 0; i < n_; ++i) {
-      const Wide q = broadcast(q_[i]), e = broadcast(e_[i]);
+      const Pack8 q = broadcast(q_[i]), e = broadcast(e_[i]);
 #pragma GCC unroll 4
       for (int r = 0; r < kGroup; ++r) {
-        const Wide pivot = guarded(s[r] + q);
-        above[r] += select(pivot > Wide{}, broadcast(1), Wide{});
-        s[r] = fma(e, s[r] / pivot, -at[r]);
+        const Pack8 pivot = guarded(s[r] + q);
+        above[r] += select(pivot > Pack8{}, broadcast(1), Pack8{});
+        s[r] = fma_lanes(e, s[r] / pivot, -at[r]);
       }
     }
 #pragma GCC unroll 4
@@ -84,9 +84,9 @@ void BidiagonalSpectrum::isolate(double floor2, double top) {
     }
     if (alone) break;
     for (Index j = 0; j < active; j += kWidth) {
-      const Wide lo = load(low_ + j), hi = load(high_ + j);
-      const Wide middle =
-          select(hi > 4 * lo, root(lo) * root(hi), 0.5 * (lo + hi));
+      const Pack8 lo = load(low_ + j), hi = load(high_ + j);
+      const Pack8 middle =
+          select(hi > 4 * lo, sqrt_lanes(lo) * sqrt_lanes(hi), 0.5 * (lo + hi));
       store(x + j, middle);
     }
     count_above(x, counts, groups_);
@@ -95,7 +95,7 @@ void BidiagonalSpectrum::isolate(double floor2, double top) {
       for (Index l = 0; l < kWidth; ++l)
         rank[l] = static_cast<double>(std::min(j + l, count_ - 1)) + 1;
       const auto inside = load(counts + j) >= load(rank);
-      const Wide middle = load(x + j);
+      const Pack8 middle = load(x + j);
       store(low_ + j, select(inside, middle, load(low_ + j)));
       store(high_ + j, select(inside, load(high_ + j), middle));
     }
@@ -112,13 +112,13 @@ struct BidiagonalSpectrum::Twins {
         s_of(up + rows * kStep),
         z(s_of + rows * kStep) {}
 
-  static Wide index(Index i) { return broadcast(static_cast<double>(i)); }
+  static Pack8 index(Index i) { return broadcast(static_cast<double>(i)); }
 
   double *down, *up;  ///< multipliers of the factorisations from both ends
   double* s_of;       ///< what the one from the top leaves of the pivots
   double* z;          ///< vectors
-  Wide x[kTwin], low[kTwin], high[kTwin], close[kTwin];
-  Wide length2[kTwin], twist[kTwin], gamma[kTwin];
+  Pack8 x[kTwin], low[kTwin], high[kTwin], close[kTwin];
+  Pack8 length2[kTwin], twist[kTwin], gamma[kTwin];
 };
 
 inline void BidiagonalSpectrum::bracket(Twins& t, Index lane) const {
@@ -128,29 +128,29 @@ inline void BidiagonalSpectrum::bracket(Twins& t, Index lane) const {
     t.high[r] = load(high_ + lane + r * kWidth);
     t.x[r] = 0.5 * (t.low[r] + t.high[r]);
     // Cubic convergence: the next error is far below rounding.
-    t.close[r] =
-        fma(broadcast(1e-6), t.high[r] - t.low[r], broadcast(1e-11) * t.low[r]);
+    t.close[r] = fma_lanes(
+        broadcast(1e-6), t.high[r] - t.low[r], broadcast(1e-11) * t.low[r]);
   }
 }
 
 inline void BidiagonalSpectrum::factor_down(Twins& t) const {
-  Wide s[kTwin];
+  Pack8 s[kTwin];
 #pragma GCC unroll 2
   for (int r = 0; r < kTwin; ++r) s[r] = -t.x[r];
   for (Index i = 0; i < n_; ++i) {
 #pragma GCC unroll 2
     for (int r = 0; r < kTwin; ++r) {
       store(t.s_of + i * t.kStep + r * kWidth, s[r]);
-      const Wide inverse = 1 / guarded(q_[i] + s[r]);
+      const Pack8 inverse = 1 / guarded(q_[i] + s[r]);
       store(t.down + i * t.kStep + r * kWidth, off_[i] * inverse);
-      s[r] = fma(e_[i] * s[r], inverse, -t.x[r]);
+      s[r] = fma_lanes(e_[i] * s[r], inverse, -t.x[r]);
     }
   }
 }
 
 /// The twist is where gamma is smallest.
 inline void BidiagonalSpectrum::factor_up(Twins& t) const {
-  Wide p[kTwin];
+  Pack8 p[kTwin];
 #pragma GCC unroll 2
   for (int r = 0; r < kTwin; ++r) {
     p[r] = q_[n_ - 1] - t.x[r];
@@ -160,11 +160,12 @@ inline void BidiagonalSpectrum::factor_up(Twins& t) const {
   for (Index i = n_ - 2; i >= 0; --i) {
 #pragma GCC unroll 2
     for (int r = 0; r < kTwin; ++r) {
-      const Wide inverse = 1 / guarded(e_[i] + p[r]);
+      const Pack8 inverse = 1 / guarded(e_[i] + p[r]);
       store(t.up + i * t.kStep + r * kWidth, off_[i] * inverse);
-      p[r] = fma(q_[i] * p[r], inverse, -t.x[r]);
-      const Wide here = load(t.s_of + i * t.kStep + r * kWidth) + p[r] + t.x[r];
-      const auto smaller = magnitude(here) < magnitude(t.gamma[r]);
+      p[r] = fma_lanes(q_[i] * p[r], inverse, -t.x[r]);
+      const Pack8 here =
+          load(t.s_of + i * t.kStep + r * kWidth) + p[r] + t.x[r];
+      const auto smaller = abs_lanes(here) < abs_lanes(t.gamma[r]);
       t.gamma[r] = select(smaller, here, t.gamma[r]);
       t.twist[r] = select(smaller, t.index(i), t.twist[r]);
     }
@@ -173,36 +174,37 @@ inline void BidiagonalSpectrum::factor_up(Twins& t) const {
 
 /// The vector from its twist, where it is 1, to the top.
 inline void BidiagonalSpectrum::solve_up(Twins& t) const {
-  Wide entry[kTwin];
+  Pack8 entry[kTwin];
 #pragma GCC unroll 2
-  for (int r = 0; r < kTwin; ++r) entry[r] = t.length2[r] = Wide{};
+  for (int r = 0; r < kTwin; ++r) entry[r] = t.length2[r] = Pack8{};
   for (Index i = n_ - 1; i >= 0; --i) {
-    const Wide here = t.index(i);
+    const Pack8 here = t.index(i);
 #pragma GCC unroll 2
     for (int r = 0; r < kTwin; ++r) {
-      const Wide next = -load(t.down + i * t.kStep + r * kWidth) * entry[r];
+      const Pack8 next = -load(t.down + i * t.kStep + r * kWidth) * entry[r];
       entry[r] = select(here == t.twist[r],
                         broadcast(1),
-                        select(here < t.twist[r], next, Wide{}));
+                        select(here < t.twist[r], next, Pack8{}));
       store(t.z + i * t.kStep + r * kWidth, entry[r]);
-      t.length2[r] = fma(entry[r], entry[r], t.length2[r]);
+      t.length2[r] = fma_lanes(entry[r], entry[r], t.length2[r]);
     }
   }
 }
 
 /// And to the bottom.
 inline void BidiagonalSpectrum::solve_down(Twins& t) const {
-  Wide entry[kTwin];
+  Pack8 entry[kTwin];
 #pragma GCC unroll 2
   for (int r = 0; r < kTwin; ++r) entry[r] = load(t.z + r * kWidth);
   for (Index i = 1; i < n_; ++i) {
-    const Wide here = t.index(i);
+    const Pack8 here = t.index(i);
 #pragma GCC unroll 2
     for (int r = 0; r < kTwin; ++r) {
       const auto below = here > t.twist[r];
-      const Wide next = -load(t.up + (i - 1) * t.kStep + r * kWidth) * entry[r];
+      const Pack8 next =
+          -load(t.up + (i - 1) * t.kStep + r * kWidth) * entry[r];
       entry[r] = select(below, next, load(t.z + i * t.kStep + r * kWidth));
-      t.length2[r] += select(below, entry[r] * entry[r], Wide{});
+      t.length2[r] += select(below, entry[r] * entry[r], Pack8{});
       store(t.z + i * t.kStep + r * kWidth, entry[r]);
     }
   }
@@ -234,10 +236,10 @@ void BidiagonalSpectrum::refine(Index lane) {
     last = true;
 #pragma GCC unroll 2
     for (int r = 0; r < kTwin; ++r) {
-      const Wide low = t.low[r], high = t.high[r];
-      Wide next = t.x[r] + t.gamma[r] / t.length2[r];
+      const Pack8 low = t.low[r], high = t.high[r];
+      Pack8 next = t.x[r] + t.gamma[r] / t.length2[r];
       next = select(next < low, low, select(next > high, high, next));
-      last = last && !any_of(magnitude(next - t.x[r]) > t.close[r]);
+      last = last && !any(abs_lanes(next - t.x[r]) > t.close[r]);
       t.x[r] = next;
     }
   }
@@ -301,4 +303,4 @@ void BidiagonalSpectrum::combine(VectorIn<double> w,
   }
 }
 
-}  // namespace physinv::hig
+}  // namespace physinv::linalg

@@ -8,7 +8,7 @@
 #include "suite/core/batch.h"
 #include "suite/core/threads.h"
 
-namespace physinv::hig {
+namespace physinv::linalg {
 
 /// Rows are padded: zeros from column n to the next multiple of the tiles.
 struct Symmetric {
@@ -49,4 +49,4 @@ class RankUpdate {
   std::vector<double> rows_, columns_;
 };
 
-}  // namespace physinv::hig
+}  // namespace physinv::linalg

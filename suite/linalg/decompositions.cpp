@@ -1,4 +1,4 @@
-#include "suite/core/decompositions.h"
+#include "suite/linalg/decompositions.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
@@ -6,7 +6,7 @@
 
 #include "suite/core/eigen_caches.h"
 
-namespace physinv {
+namespace physinv::linalg {
 
 SymmetricEigen symmetric_eigen(const Batch<double>& a) {
   state_caches();
@@ -46,4 +46,4 @@ void FullyPivoted<T>::solve(BatchIn<T> a, VectorIn<T> b, VectorOut<T> x) {
 template class FullyPivoted<float>;
 template class FullyPivoted<double>;
 
-}  // namespace physinv
+}  // namespace physinv::linalg

@@ -14,7 +14,7 @@
 #include "suite/core/batch.h"
 #include "suite/core/workspace.h"
 
-namespace physinv::hig {
+namespace physinv::linalg {
 
 class BidiagonalSpectrum {
  public:
@@ -53,4 +53,4 @@ class BidiagonalSpectrum {
   Batch<double> v_;  ///< stride x count, vectors as columns, reversed
 };
 
-}  // namespace physinv::hig
+}  // namespace physinv::linalg

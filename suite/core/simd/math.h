@@ -7,13 +7,9 @@
 #include <numbers>
 #include <type_traits>
 
-#include "suite/core/lanes.h"
+#include "suite/core/simd/pack.h"
 
 namespace physinv {
-
-/// The number type of a pack.
-template <class P>
-using LaneScalar = std::remove_cvref_t<decltype(std::declval<P>()[0])>;
 
 /// x <- c[0] + c[1] x + c[2] x^2 + ... of N packs, which go through each
 /// operation together: one pack by itself would wait for the result of every
@@ -50,13 +46,6 @@ template <class P>
 PHYSINV_LANES P round_lanes(P x) {
   constexpr auto kMagic = kRounder<LaneScalar<P>>;
   return (x + kMagic) - kMagic;
-}
-
-template <class P>
-PHYSINV_LANES P abs_lanes(P x) {
-  using T = LaneScalar<P>;
-  using I = Mask<T, sizeof(P) / sizeof(T)>;
-  return (P)((I)x & std::numeric_limits<LaneInt<T>>::max());
 }
 
 /// 1, -1, or x itself where that is a zero or NaN.

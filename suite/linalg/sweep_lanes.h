@@ -6,9 +6,9 @@
 #include <array>
 #include <cmath>
 
-#include "optimizers/half_inverse/eight.h"
+#include "suite/linalg/eight.h"
 
-namespace physinv::hig {
+namespace physinv::linalg {
 
 /// Below this the sum of two squares has lost digits.
 inline constexpr double kTinySquare = 1e-280;
@@ -48,7 +48,7 @@ struct Chain {
                                    Index count,
                                    double* cosine,
                                    double* sine) {
-    const Four one = nn::broadcast<Four>(1.0);
+    const Four one = physinv::broadcast<Four>(1.0);
     const auto idle = (at < 0) | (at >= count);
     if constexpr (kEdge) {
       g = select(at == 0, row - shift, g);
@@ -72,8 +72,8 @@ struct Chain {
     g = c * r - b;
     x = s * next + c * head;
     head = c * next - s * head;
-    nn::store(cosine, c);
-    nn::store(sine, s);
+    physinv::store(cosine, c);
+    physinv::store(sine, s);
   }
 
   [[gnu::always_inline]] void rotate(Four f, Four square) {
@@ -97,7 +97,7 @@ using Chains = std::array<Chain, kChains>;
 [[gnu::always_inline]] inline void pass_on(Chains& chains,
                                            Four Chain::*what,
                                            double next) {
-  Four before = nn::broadcast<Four>(next);
+  Four before = physinv::broadcast<Four>(next);
   for (Chain& chain : chains) {
     const Four from = chain.*what;
     chain.*what = __builtin_shufflevector(from, before, 7, 0, 1, 2);
@@ -139,13 +139,13 @@ inline void turn_back_all(double* x,
                           const double* record) {
   Four carried[kChains]{}, rows[kChains]{};
   for (Index in = end; in >= start - kLag; --in) {
-    Four after = nn::broadcast<Four>(in >= start ? x[in] : 0);
+    Four after = physinv::broadcast<Four>(in >= start ? x[in] : 0);
     record -= 2 * kSweeps;
 #pragma GCC unroll 2
     for (int k = kChains - 1; k >= 0; --k) {
       const Four low = __builtin_shufflevector(rows[k], after, 1, 2, 3, 4);
-      const Four c = nn::load<Four>(record + 4 * k);
-      const Four s = nn::load<Four>(record + 4 * k + kSweeps);
+      const Four c = physinv::load<Four>(record + 4 * k);
+      const Four s = physinv::load<Four>(record + 4 * k + kSweeps);
       after = rows[k];
       rows[k] = s * low + c * carried[k];
       carried[k] = c * low - s * carried[k];
@@ -155,10 +155,10 @@ inline void turn_back_all(double* x,
   x[start] = carried[0][0];
 }
 
-/// Step t of that for four of eight vectors: lanes are vectors here. A row
-/// waits for the next sweep where the one before has left it.
+/// Step t of that for register h of eight vectors: lanes are vectors here. A
+/// row waits for the next sweep where the one before has left it.
 template <bool kEdge>
-[[gnu::always_inline]] inline void turn_back_step(Four Eight::*half,
+[[gnu::always_inline]] inline void turn_back_step(int h,
                                                   Eight* x,
                                                   Index count,
                                                   Index t,
@@ -169,14 +169,14 @@ template <bool kEdge>
     const Index i = t - 2 * k;
     if constexpr (kEdge) {
       if (i < 0 || i >= count) continue;
-      if (i == count - 1) carried[k] = x[count].*half;
+      if (i == count - 1) carried[k] = x[count].r[h];
     }
     const double c = record[k], s = record[k + kSweeps];
-    const Four low = x[i].*half;
-    x[i + 1].*half = s * low + c * carried[k];
+    const Four low = x[i].r[h];
+    x[i + 1].r[h] = s * low + c * carried[k];
     carried[k] = c * low - s * carried[k];
     if constexpr (kEdge) {
-      if (i == 0) x[0].*half = carried[k];
+      if (i == 0) x[0].r[h] = carried[k];
     }
   }
 }
@@ -187,17 +187,17 @@ inline void turn_back_all(Eight* x,
                           const double* record) {
   const Index count = end - start;
   x += start;
-  for (Four Eight::*half : {&Eight::low, &Eight::high}) {
+  for (int h = 0; h < Eight::kRegisters; ++h) {
     Four carried[kSweeps]{};
     const double* at = record;
     for (Index t = count + kLag; t >= 0; --t) {
       at -= 2 * kSweeps;
       if (t > kLag && t < count - 1) [[likely]]
-        turn_back_step<false>(half, x, count, t, carried, at);
+        turn_back_step<false>(h, x, count, t, carried, at);
       else
-        turn_back_step<true>(half, x, count, t, carried, at);
+        turn_back_step<true>(h, x, count, t, carried, at);
     }
   }
 }
 
-}  // namespace physinv::hig
+}  // namespace physinv::linalg

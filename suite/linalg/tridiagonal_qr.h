@@ -11,7 +11,7 @@
 
 #include "suite/core/batch.h"
 
-namespace physinv::hig {
+namespace physinv::linalg {
 
 class TridiagonalQr {
  public:
@@ -51,4 +51,4 @@ class TridiagonalQr {
   Index rotations_ = 0, sweeps_ = 0;
 };
 
-}  // namespace physinv::hig
+}  // namespace physinv::linalg

@@ -10,11 +10,11 @@
 
 #include <vector>
 
-#include "optimizers/half_inverse/band.h"
-#include "optimizers/half_inverse/symmetric_update.h"
 #include "suite/core/workspace.h"
+#include "suite/linalg/band.h"
+#include "suite/linalg/symmetric_update.h"
 
-namespace physinv::hig {
+namespace physinv::linalg {
 
 enum class Stages { automatic, one, two };
 
@@ -59,4 +59,4 @@ class Tridiagonalize {
   std::vector<double> parts_;
 };
 
-}  // namespace physinv::hig
+}  // namespace physinv::linalg

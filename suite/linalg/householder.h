@@ -3,23 +3,24 @@
 
 #include <cmath>
 
-#include "optimizers/half_inverse/tile_product.h"
+#include "suite/linalg/tile_product.h"
 
-namespace physinv::hig {
+namespace physinv::linalg {
 
 /// a.b with four registers of partial sums.
 inline double dot(Index n, const double* a, const double* b) {
-  Wide s[4] = {};
+  Pack8 s[4] = {};
   Index i = 0;
   for (; i + 4 * kWidth <= n; i += 4 * kWidth)
 #pragma GCC unroll 4
     for (int k = 0; k < 4; ++k)
-      s[k] = fma(load(a + i + k * kWidth), load(b + i + k * kWidth), s[k]);
+      s[k] =
+          fma_lanes(load(a + i + k * kWidth), load(b + i + k * kWidth), s[k]);
   for (; i + kWidth <= n; i += kWidth)
-    s[0] = fma(load(a + i), load(b + i), s[0]);
+    s[0] = fma_lanes(load(a + i), load(b + i), s[0]);
   double rest = 0;
   for (; i < n; ++i) rest = std::fma(a[i], b[i], rest);
-  return sum((s[0] + s[1]) + (s[2] + s[3])) + rest;
+  return sum_of((s[0] + s[1]) + (s[2] + s[3])) + rest;
 }
 
 // GCC 12 thinks up an overflow of i below where n is a constant.
@@ -27,10 +28,10 @@ inline double dot(Index n, const double* a, const double* b) {
 #pragma GCC diagnostic ignored "-Waggressive-loop-optimizations"
 /// y += s x.
 inline void axpy(Index n, double s, const double* x, double* y) {
-  const Wide factor = broadcast(s);
+  const Pack8 factor = broadcast(s);
   Index i = 0;
   for (; i + kWidth <= n; i += kWidth)
-    store(y + i, fma(factor, load(x + i), load(y + i)));
+    store(y + i, fma_lanes(factor, load(x + i), load(y + i)));
   for (; i < n; ++i) y[i] = std::fma(s, x[i], y[i]);
 }
 #pragma GCC diagnostic pop
@@ -69,4 +70,4 @@ inline double reflect(Index n, double* x, double& beta) {
   return (beta - head) / beta;
 }
 
-}  // namespace physinv::hig
+}  // namespace physinv::linalg

@@ -1,12 +1,12 @@
-#include "optimizers/half_inverse/tridiagonalize.h"
+#include "suite/linalg/tridiagonalize.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "optimizers/half_inverse/panel_product.h"
-#include "optimizers/half_inverse/reflector.h"
+#include "suite/linalg/householder.h"
+#include "suite/linalg/panel_product.h"
 
-namespace physinv::hig {
+namespace physinv::linalg {
 namespace {
 
 constexpr Index kPanel = 12;  ///< columns of a panel of the one-stage form
@@ -261,4 +261,4 @@ void Tridiagonalize::apply(X* x) const {
 template void Tridiagonalize::apply(double*) const;
 template void Tridiagonalize::apply(Eight*) const;
 
-}  // namespace physinv::hig
+}  // namespace physinv::linalg

@@ -1,12 +1,12 @@
-#include "optimizers/half_inverse/tridiagonal_qr.h"
+#include "suite/linalg/tridiagonal_qr.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "optimizers/half_inverse/power.h"
-#include "optimizers/half_inverse/sweep_lanes.h"
+#include "suite/linalg/sweep_lanes.h"
 
-namespace physinv::hig {
+namespace physinv::linalg {
 namespace {
 
 constexpr Index kSweepsPerRow = 60;
@@ -130,7 +130,7 @@ bool TridiagonalQr::several(
   if (!find_shifts(d, e, end, shifts)) return false;
   Chains chains{};
   for (int k = 0; k < kChains; ++k)
-    chains[k].shift = nn::load<Four>(shifts + 4 * k);
+    chains[k].shift = physinv::load<Four>(shifts + 4 * k);
   chains[0].row[0] = d[start], chains[0].head[0] = x[start];
 
   const Index count = end - start;
@@ -152,15 +152,20 @@ bool TridiagonalQr::run(VectorOut<double> d,
   // Enough for the Gram matrices of ill-conditioned problems.
   record_.reserve(static_cast<std::size_t>(n * n + n * n / 4));
   Index rows = 0, tries = 0;
-  return deflate(d.data(), e.data(), n, kEpsilon, [&](Index start, Index end) {
-    if (sweeps_ >= limit) return false;
-    if (end - start != rows) rows = end - start, tries = 0;
-    const bool many =
-        rows >= kLongBlock && tries++ < kPatience && 2 * sweeps_ < limit;
-    if (!many || !several(d.data(), e.data(), x.data(), start, end))
-      single(d.data(), e.data(), x.data(), start, end);
-    return true;
-  });
+  return deflate(
+      d.data(),
+      e.data(),
+      n,
+      std::numeric_limits<double>::epsilon(),
+      [&](Index start, Index end) {
+        if (sweeps_ >= limit) return false;
+        if (end - start != rows) rows = end - start, tries = 0;
+        const bool many =
+            rows >= kLongBlock && tries++ < kPatience && 2 * sweeps_ < limit;
+        if (!many || !several(d.data(), e.data(), x.data(), start, end))
+          single(d.data(), e.data(), x.data(), start, end);
+        return true;
+      });
 }
 
 template <class X>
@@ -181,4 +186,4 @@ void TridiagonalQr::apply(X* x, Index first) const {
 template void TridiagonalQr::apply(double*, Index) const;
 template void TridiagonalQr::apply(Eight*, Index) const;
 
-}  // namespace physinv::hig
+}  // namespace physinv::linalg

@@ -11,7 +11,7 @@
 #include "suite/core/batch.h"
 #include "suite/core/workspace.h"
 
-namespace physinv::hig {
+namespace physinv::linalg {
 
 class Bidiagonal {
  public:
@@ -33,4 +33,4 @@ class Bidiagonal {
   Buffer memory_, reflectors_;
 };
 
-}  // namespace physinv::hig
+}  // namespace physinv::linalg

@@ -6,7 +6,7 @@
 
 #include "suite/core/batch.h"
 
-namespace physinv {
+namespace physinv::linalg {
 
 /// A = V diag(values) V^T, values ascending.
 struct SymmetricEigen {
@@ -41,4 +41,4 @@ class FullyPivoted {
 extern template class FullyPivoted<float>;
 extern template class FullyPivoted<double>;
 
-}  // namespace physinv
+}  // namespace physinv::linalg

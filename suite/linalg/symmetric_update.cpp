@@ -1,11 +1,11 @@
-#include "optimizers/half_inverse/symmetric_update.h"
+#include "suite/linalg/symmetric_update.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "optimizers/half_inverse/tile_product.h"
+#include "suite/linalg/tile_product.h"
 
-namespace physinv::hig {
+namespace physinv::linalg {
 namespace {
 
 constexpr Index kMaxParts = 8;
@@ -21,9 +21,9 @@ template <int kRows, int kCount>
                                                Index c,
                                                const double* x,
                                                double* y,
-                                               const Wide* s,
-                                               Wide* dot) {
-  Wide xc[kCount], yc[kCount];
+                                               const Pack8* s,
+                                               Pack8* dot) {
+  Pack8 xc[kCount], yc[kCount];
 #pragma GCC unroll 2
   for (int k = 0; k < kCount; ++k) {
     xc[k] = held(load(x + c + k * kWidth));
@@ -33,9 +33,9 @@ template <int kRows, int kCount>
   for (int i = 0; i < kRows; ++i)
 #pragma GCC unroll 2
     for (int k = 0; k < kCount; ++k) {
-      const Wide v = held(load(rows + i * stride + c + k * kWidth));
-      yc[k] = fma(v, s[i], yc[k]);
-      dot[i] = fma(v, xc[k], dot[i]);
+      const Pack8 v = held(load(rows + i * stride + c + k * kWidth));
+      yc[k] = fma_lanes(v, s[i], yc[k]);
+      dot[i] = fma_lanes(v, xc[k], dot[i]);
     }
 #pragma GCC unroll 2
   for (int k = 0; k < kCount; ++k) store(y + c + k * kWidth, yc[k]);
@@ -55,7 +55,7 @@ template <int kRows>
       y[r + j] = std::fma(row[r + j], x[r + i], y[r + j]);
     }
   }
-  Wide dot[kRows] = {}, s[kRows];
+  Pack8 dot[kRows] = {}, s[kRows];
 #pragma GCC unroll 4
   for (int i = 0; i < kRows; ++i) s[i] = broadcast(x[r + i]);
   Index c = r + kRows;
@@ -63,7 +63,7 @@ template <int kRows>
     add_columns<kRows, 2>(rows, a.stride, c, x, y, s, dot);
   if (c < a.n) add_columns<kRows, 1>(rows, a.stride, c, x, y, s, dot);
 #pragma GCC unroll 4
-  for (int i = 0; i < kRows; ++i) y[r + i] += sum(dot[i]);
+  for (int i = 0; i < kRows; ++i) y[r + i] += sum_of(dot[i]);
 }
 
 enum class Way { down, up };
@@ -174,7 +174,7 @@ void RankUpdate::operator()(Symmetric a,
                   {rows_.data() + r0 * depth, depth, 1},
                   columns_.data() + q * depth * kTileColumns,
                   kTileColumns,
-                  [&](Index r, Wide x, Wide y) {
+                  [&](Index r, Pack8 x, Pack8 y) {
                     double* to =
                         a.row(first + r0 + r) + first + q * kTileColumns;
                     store(to, load(to) + x);
@@ -184,4 +184,4 @@ void RankUpdate::operator()(Symmetric a,
   });
 }
 
-}  // namespace physinv::hig
+}  // namespace physinv::linalg
