@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "reports/text.h"
+#include "suite/results/csv.h"
 #include "suite/results/markdown.h"
 #include "suite/results/shortened.h"
 
@@ -91,20 +92,6 @@ std::vector<std::size_t> widths_of(const Words& words, std::size_t least) {
 
 std::string aligned(const std::string& word, std::size_t width, bool label) {
   return label ? pad_right(word, width) : pad_left(word, width);
-}
-
-std::string csv_text(std::string_view text) {
-  if (text.find_first_of(",\"\r\n") == text.npos) return std::string(text);
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"') out += '"';
-    out += c;
-  }
-  return out + '"';
-}
-
-std::string csv_number(Number value) {
-  return value && std::isfinite(*value) ? fmt::format("{}", *value) : "";
 }
 
 // A column and the paper's beside it stay together.

@@ -3,11 +3,22 @@
 #include <pybind11/stl.h>
 
 #include "python/module/arrays.h"
+#include "suite/results/catalog.h"
 #include "suite/results/results.h"
+#include "suite/results/results_file.h"
 #include "suite/results/shortfall.h"
+#include "suite/results/tidy.h"
 
 namespace physinv::python {
 namespace {
+
+/// What a directory held when it was opened.
+struct Campaign {
+  explicit Campaign(const std::string& directory)
+      : catalog(Catalog::read(directory)), results(checked_cases(catalog)) {}
+  Catalog catalog;
+  Results results;
+};
 
 /// NaN where a stage has no such number.
 py::dict stage_row(const CaseRecord& c, const StageRecord& s) {
@@ -95,16 +106,60 @@ py::dict curve(const Results& results,
   return all;
 }
 
+/// Of a column in a row; None where it is missing.
+struct Value {
+  const TidyRow& row;
+  py::object operator()(TidyColumn::Text f) const { return py::str(f(row)); }
+  template <class T>
+  py::object operator()(std::optional<T> (*f)(const TidyRow&)) const {
+    return py::cast(f(row));
+  }
+};
+
+py::dict tidy(const Campaign& campaign) {
+  std::vector<py::list> values(tidy_columns().size());
+  const auto& cases = campaign.results.cases();
+  for_each_tidy_row(
+      campaign.catalog,
+      cases,
+      shortfall(campaign.catalog, cases),
+      [&](const TidyRow& row) {
+        for (std::size_t k = 0; k < values.size(); ++k)
+          values[k].append(std::visit(Value{row}, tidy_columns()[k].value));
+      });
+  py::dict columns;
+  for (std::size_t k = 0; k < values.size(); ++k)
+    columns[py::str(std::string(tidy_columns()[k].name))] = values[k];
+  return columns;
+}
+
 }  // namespace
 
 void define_results(py::module_& module) {
-  py::class_<Results>(module, "Results")
-      .def("_stages", &stages)
-      .def("_examples", &examples, py::arg("case"), py::arg("stage"))
-      .def("_curve", &curve, py::arg("case"), py::arg("stage"));
+  py::class_<Campaign>(module, "Results")
+      .def("_stages", [](const Campaign& c) { return stages(c.results); })
+      .def(
+          "_examples",
+          [](const Campaign& c,
+             const std::string& name,
+             const std::string& stage) {
+            return examples(c.results, name, stage);
+          },
+          py::arg("case"),
+          py::arg("stage"))
+      .def(
+          "_curve",
+          [](const Campaign& c,
+             const std::string& name,
+             const std::string& stage) {
+            return curve(c.results, name, stage);
+          },
+          py::arg("case"),
+          py::arg("stage"))
+      .def("_tidy", &tidy);
   module.def(
       "load_results",
-      [](const std::string& directory) { return load_results(directory); },
+      [](const std::string& directory) { return Campaign(directory); },
       py::arg("directory"));
 }
 

@@ -99,24 +99,35 @@ class Results:
         return self._results._curve(case, stage)
 
     def tidy(self):
-        """A row for every example of every stage, as columns (a dict of lists)
-        that pandas.DataFrame takes: case, experiment, method, n, seed, stage,
-        example, loss, status, iterations, evaluations. Stages that came to no
-        result have none."""
-        keys = ("case", "experiment", "method", "n", "seed", "stage")
-        own = ("loss", "status", "iterations", "evaluations")
-        columns = {key: [] for key in (*keys, "example", *own)}
-        for stage in self.stages():
-            if stage["stop"] in ("failed", "skipped"):
-                continue
-            e = self.examples(stage["case"], stage["stage"])
-            count = len(e["loss"])
-            for key in keys:
-                columns[key] += [stage[key]] * count
-            columns["example"] += range(count)
-            for key in own:
-                columns[key] += list(e[key])
+        """A row for every example of every stage that was asked for, as a dict
+        of NumPy columns, which pandas.DataFrame takes: case, experiment,
+        method, n, seed, profile, precision, stage, example, loss, status,
+        iterations, evaluations, seconds (of the stage), ... as of
+        `export --format=tidy`. A missing number is NaN. Stages that failed,
+        were skipped, diverged or were not run have that as their status, and
+        no numbers."""
+        import numpy as np
+        columns = {}
+        for name, values in self._results._tidy().items():
+            if any(value is None for value in values):
+                values = np.array(values, dtype=float)
+            columns[name] = np.asarray(values)
         return columns
+
+    def to_parquet(self, path):
+        """Writes the columns of tidy() as a Parquet file, missing numbers as
+        nulls; needs pyarrow."""
+        try:
+            import pyarrow as pa
+            from pyarrow import parquet
+        except ImportError:
+            raise ImportError(
+                "to_parquet needs pyarrow (pip install pyarrow); without it, "
+                "`physinv-bench export RESULTS --format=tidy` writes the same "
+                "table as CSV") from None
+        table = pa.table({name: pa.array(values) for name, values
+                          in self._results._tidy().items()})
+        parquet.write_table(table, str(path))
 
     def plot(self, figure):
         """A figure of the report as SVG text, by its id ("fig4"); the report is

@@ -9,6 +9,7 @@
 #include "suite/app/options.h"
 #include "suite/results/exports.h"
 #include "suite/results/folder.h"
+#include "suite/results/tidy.h"
 
 namespace physinv {
 namespace {
@@ -21,12 +22,15 @@ std::string text_in(const std::string& format, const Json& results) {
   if (format == "github") return smaller_is_better(results).dump(1) + "\n";
   if (format == "bencher") return bencher_metrics(results).dump(1) + "\n";
   throw UsageError(fmt::format(
-      "--format={} is unknown; known are json, csv, github, bencher", format));
+      "--format={} is unknown; known are json, csv, tidy, github, bencher",
+      format));
 }
 
 }  // namespace
 
 std::string exported(const Loaded& loaded, const std::string& format) {
+  if (format == "tidy")
+    return tidy_csv(loaded.catalog, loaded.results.cases(), loaded.lacks);
   auto results = results_of(loaded);
   add_not_run(results, stages_not_run(loaded.catalog, loaded.lacks));
   return text_in(format, results);
@@ -41,11 +45,14 @@ ExitCode export_verb(const Arguments& arguments) {
           "stage that failed, was skipped, diverged or was not run has no time "
           "and no loss. It is an error: error_occurred in json and csv, in "
           "github and bencher the measure error, 1 instead of 0, which every "
-          "stage has, so that a series of it alarms. Exit 10 if stages failed, "
+          "stage has, so that a series of it alarms; in tidy the end stands as "
+          "the "
+          "status of each example. Exit 10 if stages failed, "
           "were skipped or not run; what there is is written all the same.",
           {{"RESULTS", "directory that 'run' wrote", &directory},
            {"--format",
-            "json or csv (Google Benchmark's), github (customSmallerIsBetter "
+            "json or csv (Google Benchmark's), tidy (CSV, a row for every "
+            "example of every stage), github (customSmallerIsBetter "
             "of github-action-benchmark), bencher (Bencher Metric Format)",
             &format,
             "FORMAT"},

@@ -78,26 +78,27 @@ std::string quoted(const std::string& text) {
 
 }  // namespace
 
-std::vector<std::string> stages_not_run(const Catalog& catalog,
-                                        const Shortfall& lacks) {
-  std::vector<std::string> names;
+std::vector<StageName> stages_not_run(const Catalog& catalog,
+                                      const Shortfall& lacks) {
+  std::vector<StageName> names;
   for (const auto& name : lacks.unrun_cases) {
     const auto stages = planned_stages(catalog.plan, name);
-    for (const auto& stage : stages) names.push_back(name + "/" + stage);
-    if (stages.empty()) names.push_back(name);
+    for (const auto& stage : stages) names.push_back({name, stage});
+    if (stages.empty()) names.push_back({name, ""});
   }
   for (const auto* some : {&lacks.unrun_stages, &lacks.lost}) {
-    for (std::string name : *some) {
-      name[name.rfind(' ')] = '/';
-      names.push_back(std::move(name));
+    for (const std::string& name : *some) {
+      const auto space = name.rfind(' ');
+      names.push_back({name.substr(0, space), name.substr(space + 1)});
     }
   }
   return names;
 }
 
-void add_not_run(Json& results, const std::vector<std::string>& names) {
-  for (const auto& name : names)
-    results["benchmarks"].push_back(error_entry(name, "not run"));
+void add_not_run(Json& results, const std::vector<StageName>& names) {
+  for (const auto& [name, stage] : names)
+    results["benchmarks"].push_back(
+        error_entry(stage.empty() ? name : name + "/" + stage, "not run"));
 }
 
 Json benchmark_json(Json results) {

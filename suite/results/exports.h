@@ -12,14 +12,17 @@ namespace physinv {
 class Catalog;
 struct Shortfall;
 
-/// Names, as those of entries, of stages that were asked for and have no
-/// record; of cases where a plan of an older version does not name stages.
-std::vector<std::string> stages_not_run(const Catalog& catalog,
-                                        const Shortfall& lacks);
+struct StageName {
+  std::string case_name;
+  std::string stage;  ///< empty where a plan of an older version names none
+};
+/// Stages that were asked for and have no record.
+std::vector<StageName> stages_not_run(const Catalog& catalog,
+                                      const Shortfall& lacks);
 
 /// An error for each.
 void add_not_run(nlohmann::ordered_json& results,
-                 const std::vector<std::string>& names);
+                 const std::vector<StageName>& names);
 
 /// Google Benchmark's JSON: `results` as results.json has it, an entry for
 /// each repetition, and mean, median, stddev and cv of what was repeated.

@@ -72,7 +72,7 @@ json parse_line(std::string_view line) {
 }
 
 /// Files of a store are in its folder itself, which no link leads out of.
-Folder folder_of(const fs::path& path) {
+Folder store_of(const fs::path& path) {
   return Folder(path.has_parent_path() ? path.parent_path() : ".");
 }
 
@@ -154,7 +154,7 @@ void check_case(const CaseInfo& c) {
 }
 
 JournalText read_journal(const fs::path& path) {
-  return parse_journal(folder_of(path).read(path.filename(), kLargestData),
+  return parse_journal(store_of(path).read(path.filename(), kLargestData),
                        path);
 }
 
@@ -202,7 +202,7 @@ JournalText parse_journal(std::string_view bytes, const fs::path& path) {
 }
 
 void forget_cases(const fs::path& path, const std::set<std::string>& names) {
-  const Folder store = folder_of(path);
+  const Folder store = store_of(path);
   const std::string bytes = store.read(path.filename(), kLargestData);
   const auto entries = parse_journal(bytes, path).entries;
   std::size_t begin = bytes.find('\n') + 1;
@@ -218,7 +218,7 @@ void forget_cases(const fs::path& path, const std::set<std::string>& names) {
 
 Journal Journal::create(const fs::path& path) {
   // Complete or not there at all, so that a first line is never torn.
-  folder_of(path).write(
+  store_of(path).write(
       path.filename(),
       to_line({{"schema_version", kSchemaVersion}, {"created", utc()}}));
   return resume(path, read_journal(path));
@@ -228,7 +228,7 @@ Journal Journal::resume(const fs::path& path, const JournalText& text) {
   Journal journal;
   journal.path_ = path;
   journal.size_ = text.good_bytes;
-  const Folder store = folder_of(path);
+  const Folder store = store_of(path);
   const auto open = [&] {
     return store.open(path.filename(), O_WRONLY | O_APPEND, "write");
   };

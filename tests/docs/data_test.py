@@ -72,7 +72,10 @@ def main():
     shutil.rmtree(WORK, ignore_errors=True)
     subprocess.run([PROGRAM, "--profile=smoke", "--filter=" + FILTER,
                     "--out=" + WORK], check=True, stdout=subprocess.DEVNULL)
-    _, hdf5, results, plan = re.split(r"^## ", page(), flags=re.M)
+    sections = {s.split("\n")[0]: s
+                for s in re.split(r"^## ", page(), flags=re.M)[1:]}
+    hdf5, results, plan, tidy = (sections[name] for name in (
+        "`cases/<case>.h5`", "`results.json`", "`plan.json`", "Tidy tables"))
     wrong, seen = [], set()
 
     def same(what, said, found):
@@ -94,7 +97,12 @@ def main():
     same("results.json", names(results, "key of `physinv`"), keys)
     with open(WORK + "/plan.json") as f:
         same("plan.json", names(plan, "key |"), set(json.load(f)))
-    print("\n".join(wrong) or f"{len(seen)} data sets, {len(keys)} keys")
+    text = subprocess.run([PROGRAM, "export", WORK, "--format=tidy"],
+                          check=True, capture_output=True, text=True).stdout
+    columns = set(text.splitlines()[0].split(","))
+    same("tidy tables", names(tidy, "column |"), columns)
+    print("\n".join(wrong) or f"{len(seen)} data sets, {len(keys)} keys, "
+          f"{len(columns)} columns")
     sys.exit(bool(wrong))
 
 

@@ -58,11 +58,32 @@ class Campaign(unittest.TestCase):
     def test_tidy_columns(self):
         columns = self.results.tidy()
         e = self.results.examples(BFGS)
-        self.assertEqual({len(c) for c in columns.values()}, {128})
-        self.assertEqual(columns["example"], list(range(128)))
-        self.assertEqual(columns["loss"], list(e["loss"]))
-        self.assertEqual(columns["status"], e["status"])
+        self.assertEqual({c.shape for c in columns.values()}, {(128,)})
+        self.assertEqual(columns["example"].tolist(), list(range(128)))
+        self.assertTrue(np.array_equal(columns["loss"], e["loss"]))
+        self.assertEqual(columns["status"].tolist(), e["status"])
         self.assertEqual(set(columns["case"]), {BFGS})
+        self.assertEqual(columns["n"].dtype, np.int64)
+        text = physinv.verb("export", WORK + "/smoke", format="tidy")
+        rows = [line.split(",") for line in text.splitlines()]
+        self.assertEqual(rows[0], list(columns))
+        for name in ("loss", "seconds", "iterations"):
+            own = [float(row[rows[0].index(name)]) for row in rows[1:]]
+            self.assertEqual(columns[name].tolist(), own)
+
+    def test_parquet(self):
+        path = WORK + "/tidy.parquet"
+        try:
+            from pyarrow import parquet
+        except ImportError:
+            with self.assertRaisesRegex(ImportError, "needs pyarrow"):
+                self.results.to_parquet(path)
+            return
+        self.results.to_parquet(path)
+        own = parquet.read_table(path).to_pydict()
+        columns = self.results.tidy()
+        self.assertEqual(own["loss"], columns["loss"].tolist())
+        self.assertEqual(list(own), list(columns))
 
     def test_what_is_not_there_is_said(self):
         with self.assertRaisesRegex(ValueError, "there is no case"):

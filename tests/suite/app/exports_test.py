@@ -1,5 +1,5 @@
 """What failed, was skipped, diverged or was not run looks like a success in no
-file: results.json, csv, github, bencher and Google's compare.py."""
+file: results.json, csv, tidy, github, bencher and Google's compare.py."""
 
 import csv
 import io
@@ -85,6 +85,52 @@ def csv_rows(text, ends, out):
               f"{out} csv {stage}: {kept}")
 
 
+KEYS = ["case", "experiment", "method", "n", "seed", "profile", "precision",
+        "stage", "example"]
+NUMBERS = ["loss", "iterations", "evaluations", "seconds", "cpu_seconds",
+           "crowded"]
+
+
+def tidy_rows(text, ends, out):
+    """A row for each of four examples, whatever became of the stage."""
+    lines = list(csv.reader(io.StringIO(text)))
+    check(all(len(line) == len(lines[0]) for line in lines) and
+          "\r" not in text, f"{out} tidy: as many cells in each line")
+    rows = list(csv.DictReader(io.StringIO(text)))
+    check(list(rows[0])[:9] == KEYS and all(r[k] for r in rows for k in KEYS),
+          f"{out} tidy: keys are there")
+    for stage in ("fit", "refine", "solve"):
+        own = [r for r in rows if r["stage"] == stage]
+        check([r["example"] for r in own] == list("0123") and
+              {r["n"] for r in own} == {"4"}, f"{out} tidy {stage}: examples")
+        message = ends.get(stage)
+        for r in own:
+            kept = {k for k in NUMBERS if r[k]}
+            if message is None:
+                check(kept | {"evaluations"} == set(NUMBERS) and float(r["loss"]) >= 0 and
+                      r["status"] in ("gtol", "maxiter") and
+                      float(r["seconds"]) > 0, f"{out} tidy {stage}: {r}")
+            else:
+                check(not kept and r["status"] == message.split(":")[0] and
+                      r["message"] == message.partition(": ")[2],
+                      f"{out} tidy {stage} shows no success: {r}")
+    return rows
+
+
+def losses_in_full(d, out, rows):
+    """Every digit, as results.json has it."""
+    with open(os.path.join(d, out, "results.json")) as f:
+        entries = json.load(f)["benchmarks"]
+    for entry in entries:
+        losses = [float(r["loss"]) for r in rows
+                  if r["case"] + "/" + r["stage"] == entry["name"]]
+        times = {float(r["seconds"]) for r in rows
+                 if r["case"] + "/" + r["stage"] == entry["name"]}
+        check(max(losses) == entry["loss_max"] and
+              abs(times.pop() * 1e9 / entry["real_time"] - 1) < 1e-12 and
+              not times, f"{entry['name']}: loss and time of results.json")
+
+
 def alerts(before, after, threshold=2):
     """As github-action-benchmark finds them."""
     old = {b["name"]: b["value"] for b in before}
@@ -139,11 +185,12 @@ def compare_py(d, first, second, ends):
 def ends(d):
     campaign(d, "ok")
     good = {form: exported(d, "ok", form)
-            for form in ("json", "csv", "github", "bencher")}
+            for form in ("json", "csv", "tidy", "github", "bencher")}
     with open(os.path.join(d, "ok", "export.json"), "w") as f:
         f.write(good["json"])
     results_json(d, "ok", {})
     csv_rows(good["csv"], {}, "ok")
+    losses_in_full(d, "ok", tidy_rows(good["tidy"], {}, "ok"))
     bencher(json.loads(good["bencher"]), {}, "ok")
     check(alerts(json.loads(good["github"]), json.loads(good["github"])) == [],
           "no alarm without a change")
@@ -154,6 +201,7 @@ def ends(d):
         with open(os.path.join(d, out, "export.json"), "w") as f:
             f.write(exported(d, out, "json", export))
         csv_rows(exported(d, out, "csv", export), wrong, out)
+        tidy_rows(exported(d, out, "tidy", export), wrong, out)
         github(json.loads(good["github"]),
                json.loads(exported(d, out, "github", export)), wrong, out)
         bencher(json.loads(exported(d, out, "bencher", export)), wrong, out)
@@ -183,6 +231,13 @@ def not_run(d):
     check({r["name"] for r in csv.DictReader(io.StringIO(
         exported(d, "part", "csv", 10))) if r["error_message"] == "not run"}
           == missing, "and in csv")
+    rows = list(csv.DictReader(io.StringIO(exported(d, "part", "tidy", 10))))
+    gone = {r["case"] + "/" + r["stage"]: r for r in rows
+            if r["status"] == "not run"}
+    check(set(gone) == missing and
+          not any(r[k] for r in gone.values() for k in NUMBERS) and
+          len([r for r in rows if r["stage"] == "refine"]) == 4,
+          f"and in tidy: {set(gone)}")
     p = run("export", "part", "--out=kept.json", cwd=d)
     check(p.returncode == 10 and
           len(json.load(open(os.path.join(d, "kept.json")))["benchmarks"]) == 3,
