@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "reports/text.h"
-#include "suite/results/csv.h"
 #include "suite/results/markdown.h"
 #include "suite/results/shortened.h"
 
@@ -148,29 +147,6 @@ nlohmann::ordered_json to_json(const Table& table) {
     out["rows"].push_back({{"label", row.label}, {"cells", std::move(cells)}});
   }
   return out;
-}
-
-std::string to_csv(const Table& table) {
-  std::string out = csv_text(table.corner);
-  const std::size_t columns = table.columns.size();
-  for (std::size_t c = 0; c < columns; ++c) {
-    const std::string& name = table.columns[c];
-    out += ',' + csv_text(name) + ',' + csv_text(name + " spread");
-    if (!has_paper(table, c)) continue;
-    out += ',' + csv_text(name + " paper");
-    out += ',' + csv_text(name + " paper spread");
-  }
-  for (const TableRow& row : table.rows) {
-    out += "\r\n" + csv_text(row.label);
-    for (std::size_t c = 0; c < columns; ++c) {
-      const Cell& cell = cell_at(row, c);
-      out += ',' + (cell.ours ? csv_number(cell.ours) : csv_text(cell.text));
-      out += ',' + csv_number(cell.spread);
-      if (!has_paper(table, c)) continue;
-      out += ',' + csv_number(cell.paper) + ',' + csv_number(cell.paper_spread);
-    }
-  }
-  return out + "\r\n";
 }
 
 std::string to_markdown(const Table& table) {

@@ -17,8 +17,11 @@ const Cell& cell_at(const TableRow& row, std::size_t column);
 /// not finite, `text` only where a cell has one.
 nlohmann::ordered_json to_json(const Table& table);
 
-/// RFC 4180 with every digit: per column ours and spread, then the paper's
-/// two where it printed any.
+/// Tidy: the keys of a row in columns of their own (`Table::keys`, else the
+/// corner; `Table::across`), one value a cell, the unit in the head, numbers
+/// with every digit, empty where there is none. A column has others beside it
+/// where any row has that: "spread", "paper", "paper spread", "of" and, for
+/// words in the place of a number, "note".
 std::string to_csv(const Table& table);
 
 /// Aligned pipe table with title and note: ours ± spread, and a column

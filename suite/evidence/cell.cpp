@@ -25,7 +25,7 @@ Cell written(std::optional<double> value,
              const char* otherwise) {
   if (!value) return {.text = otherwise};
   if (!std::isfinite(*value)) return {.text = "not finite"};
-  return {.text = fmt::format(fmt::runtime(format), *value)};
+  return {.ours = value, .text = fmt::format(fmt::runtime(format), *value)};
 }
 
 Cell written(const Measured& measured, const char* format) {

@@ -159,7 +159,8 @@ Table table_of(const std::vector<SettingCourse>& settings,
       .title = "Run time against loss",
       .digits = 3,
       .corner = "setting",
-      .columns = {"seeds", "seconds", "loss", "10 %", "90 %", "|x - x*|"}};
+      .columns = {"seeds", "seconds", "loss", "10 %", "90 %", "|x - x*|"},
+      .keys = {"method", "n"}};
   std::vector<double> levels;
   for (const double target : kTargets) {
     levels.push_back(lowest + target * (1 - lowest));
@@ -170,8 +171,8 @@ Table table_of(const std::vector<SettingCourse>& settings,
   bool crowded = false;
   for (const SettingCourse& s : settings) {
     const std::string name = fmt::format("{}, n = {}", name_of(s), s.n);
-    TableRow row{.label = name};
-    row.cells.push_back({.text = std::to_string(s.seeds)});
+    TableRow row{.label = name, .keys = {name_of(s), std::to_string(s.n)}};
+    row.cells.push_back(written(s.seeds, "{:g}"));
     if (s.points.empty()) {
       row.cells.insert(
           row.cells.end(),

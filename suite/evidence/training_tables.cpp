@@ -58,7 +58,8 @@ Table loss_table(const Results& results,
                    written(median(losses)),
                    written(*lowest),
                    written(*highest),
-                   Cell{.text = fmt::format("{}/{}", diverged, losses.size())},
+                   Cell{.ours = diverged,
+                        .text = fmt::format("{}/{}", diverged, losses.size())},
                    costs.seconds.empty() ? Cell{.text = kCrowded}
                                          : written(1e3 * median(costs.seconds)),
                    written(1e-6 * median(costs.bytes))}});

@@ -14,12 +14,22 @@ namespace physinv {
 struct Cell {
   std::optional<double> ours, spread;  ///< mean, std over seeds
   std::optional<double> paper, paper_spread;
-  std::string text;  ///< shown instead of numbers if not empty ("not run")
+  std::string text;     ///< shown instead of numbers if not empty ("not run")
+  std::string of = {};  ///< what the number is of, beside it in tidy files
 };
 
 struct TableRow {
   std::string label;
   std::vector<Cell> cells;
+  std::vector<std::string> keys = {};  ///< values of Table::keys
+};
+
+/// Columns that are values of a key: the quantities of the first value, those
+/// of the next.
+struct Across {
+  std::string key;                           ///< "method"
+  std::vector<std::string> values = {};      ///< empty: as the columns
+  std::vector<std::string> quantities = {};  ///< empty: one, "value"
 };
 
 struct Table {
@@ -32,6 +42,9 @@ struct Table {
   std::vector<std::string> columns;
   std::vector<TableRow> rows;
   std::string note;
+  /// For tidy files: parts of a row's label ("n", "method"); empty: the corner.
+  std::vector<std::string> keys = {};
+  std::optional<Across> across = {};
 };
 
 /// Colours that differ for everybody, on light and on dark pages.

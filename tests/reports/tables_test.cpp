@@ -42,11 +42,45 @@ TEST(Tables, JsonHasNullsWhereNothingIs) {
 
 TEST(Tables, CsvQuotes) {
   EXPECT_EQ(to_csv(sample()),
-            "equality,\"JPO, better\",\"JPO, better spread\","
-            "\"JPO, better paper\",\"JPO, better paper spread\","
-            "\"NA \"\"x\"\" a|b\",\"NA \"\"x\"\" a|b spread\"\r\n"
-            "strict,44.25,2,44.3,,not run,\r\n"
-            "tol,,,,,1e-09,\r\n");
+            "equality,\"JPO, better [%]\",\"JPO, better spread [%]\","
+            "\"JPO, better paper [%]\","
+            "\"NA \"\"x\"\" a|b [%]\",\"NA \"\"x\"\" a|b note\"\n"
+            "strict,44.25,2,44.3,,not run\n"
+            "tol,,,,1e-09,\n");
+}
+
+TEST(Tables, CsvHasKeysInColumnsOfTheirOwn) {
+  const Table table{.id = "t",
+                    .corner = "n, method",
+                    .columns = {"loss", "end"},
+                    .rows = {{"8 BFGS",
+                              {{.ours = 1.0 / 3, .text = "0.3"}, {.text = "–"}},
+                              {"8", "BFGS"}},
+                             {"16 JPO",
+                              {{.ours = 1e-3, .text = "1 (at 2)", .of = "at 2"},
+                               {.text = "yes"}},
+                              {"16", "JPO"}}},
+                    .keys = {"n", "method"}};
+  EXPECT_EQ(to_csv(table),
+            "n,method,loss,loss of,end\n"
+            "8,BFGS,0.3333333333333333,,\n"
+            "16,JPO,0.001,at 2,yes\n");
+}
+
+TEST(Tables, CsvHasARowForEachValueOfColumns) {
+  const Table table{
+      .id = "t",
+      .unit = "s",
+      .corner = "n",
+      .columns = {"A better", "A equal", "B better", "B equal"},
+      .rows = {{"8", {{.ours = 1}, {.ours = 2}, {.text = "not run"}}}},
+      .across = Across{.key = "method",
+                       .values = {"A", "B"},
+                       .quantities = {"better", "equal"}}};
+  EXPECT_EQ(to_csv(table),
+            "n,method,better [s],better note,equal [s]\n"
+            "8,A,1,,2\n"
+            "8,B,,not run,\n");
 }
 
 TEST(Tables, MarkdownIsAligned) {
@@ -80,7 +114,7 @@ TEST(Tables, ShortRowsAndNoColumns) {
   const Table table{.id = "t", .columns = {"a"}, .rows = {{"r", {}}}};
   EXPECT_NE(to_markdown(table).find("–"), std::string::npos);
   EXPECT_EQ(render_text({.id = "t", .title = "T"}, 80), "T\n");
-  EXPECT_EQ(to_csv({.id = "t", .corner = "c"}), "c\r\n");
+  EXPECT_EQ(to_csv({.id = "t", .corner = "c"}), "c\n");
 }
 
 TEST(Text, NumbersForReaders) {

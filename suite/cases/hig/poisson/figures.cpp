@@ -62,9 +62,8 @@ Table spectrum_table(const Results& results) {
          .cells = {number(p.rows),
                    number(p.updates),
                    number(p.least_kept),
-                   Cell{.text = std::isfinite(p.smallest)
-                                    ? fmt::format("{:.1e}", p.smallest)
-                                    : "above the cut"},
+                   std::isfinite(p.smallest) ? written(p.smallest, "{:.1e}")
+                                             : Cell{.text = "above the cut"},
                    number(p.unproven)}});
   }
   return table;
@@ -78,15 +77,19 @@ Table crossing_table(const Evidence& e) {
               .digits = 0,
               .corner = "rates",
               .columns = {"updates"},
-              .note = "Medians over seeds, at the measured points."};
-  struct Pairing {
-    const char *label, *smaller, *larger;
+              .note = "Medians over seeds, at the measured points.",
+              .keys = {"smaller rate", "larger rate"}};
+  struct Rate {
+    const char *label, *method;
   };
-  for (const Pairing& p : {Pairing{"1e-4, 3e-4", "adam", "adam-3e-4"},
-                           Pairing{"1e-4, 1e-3", "adam", "adam-1e-3"},
-                           Pairing{"3e-4, 1e-3", "adam-3e-4", "adam-1e-3"}}) {
-    table.rows.push_back(
-        {.label = p.label, .cells = {crossing(e, p.smaller, p.larger)}});
+  const Rate least{"1e-4", "adam"}, middle{"3e-4", "adam-3e-4"},
+      most{"1e-3", "adam-1e-3"};
+  for (const auto& [a, b] : {std::pair(least, middle),
+                             std::pair(least, most),
+                             std::pair(middle, most)}) {
+    table.rows.push_back({.label = fmt::format("{}, {}", a.label, b.label),
+                          .cells = {crossing(e, a.method, b.method)},
+                          .keys = {a.label, b.label}});
   }
   return table;
 }

@@ -108,13 +108,15 @@ Cell saturation(const Evidence& evidence, const char* method) {
   for (const Run& run : find_runs(evidence, {method}))
     for (const double d : last_deviations(run))
       ++neurons, saturated += is_saturated(d);
-  return {.text = fmt::format("{}/{}", saturated, neurons)};
+  return {.ours = static_cast<double>(saturated),
+          .text = fmt::format("{}/{}", saturated, neurons)};
 }
 
 Cell seeds_with_saturation(const Evidence& evidence, const char* method) {
   const auto some = count(
       {method}, saturated_neurons(), [](double n) { return n > 0; })(evidence);
-  return {.text = fmt::format("{}/{}", some.value.value_or(0), some.runs)};
+  return {.ours = some.value.value_or(0),
+          .text = fmt::format("{}/{}", some.value.value_or(0), some.runs)};
 }
 
 /// Median losses along the way, and what became of the neurons.

@@ -75,7 +75,9 @@ Table JpoReport::seconds() const {
               .title = "Training and optimization times at the largest n",
               .source = "Table 2",
               .unit = "CPU s",
-              .digits = 1};
+              .digits = 1,
+              .keys = {"problem"},
+              .across = Across{.key = "procedure", .quantities = {"time"}}};
   const Index n = largest_size();
   TableRow row{.label = options_.title};
   TimedStages timed;
@@ -103,10 +105,13 @@ Table JpoReport::fit_share() const {
               .title = "Share of the loss decrease made by the network fit",
               .source = "Table 3",
               .unit = "%",
-              .digits = 1};
+              .digits = 1,
+              .keys = {"problem"},
+              .across = Across{.key = "n", .quantities = {"share"}}};
   TableRow row{.label = options_.title};
   for (const Index n : options_.table3_sizes) {
     table.columns.push_back(fmt::format("n = {}", n));
+    table.across->values.push_back(std::to_string(n));
     Cell cell = over_seeds(n, [&](Index, std::uint64_t seed) {
       return metrics_.share_of_decrease("jpo", n, seed, options_.from_prior);
     });
@@ -133,8 +138,10 @@ Table JpoReport::better_equal(bool refined) const {
       .source = refined ? "Table 5" : "Table 4",
       .unit = "%",
       .digits = 1,
-      .corner = "equality"};
+      .corner = "equality",
+      .across = Across{.key = "method", .quantities = {"better", "equal"}}};
   for (const std::string& method : options_.methods) {
+    table.across->values.push_back(method_title(method));
     table.columns.push_back(method_title(method) + " better");
     table.columns.push_back(method_title(method) + " equal");
   }
@@ -178,7 +185,8 @@ Table JpoReport::results_table() const {
                           "f_N strict",
                           "f_N tol",
                           "iterations",
-                          "CPU seconds"}};
+                          "CPU seconds"},
+              .keys = {"n", "method", "refined"}};
   TimedStages timed;
   const auto present = results_.methods(options_.experiment);
   const bool gd = std::count(present.begin(), present.end(), "gd") > 0;
@@ -237,18 +245,20 @@ TableRow JpoReport::results_row(const std::string& method,
   const Cell loss = read([](const StageRecord& s) { return s.loss.mean(); });
   Cell time = over_seeds(n, seconds);
   if (!time.ours && loss.ours) time.text = kCrowded;
-  return {.label = fmt::format(
-              "{} {}{}", n, method_title(method), refined ? " refined" : ""),
-          .cells = {over_seeds(n,
-                               [&](Index, std::uint64_t seed) {
-                                 return metrics_.solved_share(
-                                     method, n, seed, refined, options_.solved);
-                               }),
-                    shown_as(loss, "{:.2e}"),
-                    f(Equality::strict),
-                    f(Equality::tol),
-                    shown_as(read(iterations), "{:.1f}"),
-                    time}};
+  return {
+      .label = fmt::format(
+          "{} {}{}", n, method_title(method), refined ? " refined" : ""),
+      .cells = {over_seeds(n,
+                           [&](Index, std::uint64_t seed) {
+                             return metrics_.solved_share(
+                                 method, n, seed, refined, options_.solved);
+                           }),
+                shown_as(loss, "{:.2e}"),
+                f(Equality::strict),
+                f(Equality::tol),
+                shown_as(read(iterations), "{:.1f}"),
+                time},
+      .keys = {std::to_string(n), method_title(method), refined ? "1" : "0"}};
 }
 
 }  // namespace physinv

@@ -64,24 +64,25 @@ Table table(const std::vector<Line>& lines,
             std::string id,
             std::string title,
             std::string note,
-            std::string (*text)(const Line&, const Entry&)) {
+            Cell (*cell)(const Line&, const Entry&)) {
   Table t{.id = std::move(id),
           .title = std::move(title),
           .corner = "problem",
           .columns = {},
-          .note = std::move(note)};
+          .note = std::move(note),
+          .across = Across{.key = "method"}};
   for (const MatrixMethod& m : methods()) t.columns.push_back(m.title);
   for (const Line& line : lines) {
     TableRow row{.label = line.problem.title};
     for (const Entry& e : line.cells)
-      row.cells.push_back({.text = e.last ? text(line, e) : e.why});
+      row.cells.push_back(e.last ? cell(line, e) : Cell{.text = e.why});
     t.rows.push_back(std::move(row));
   }
   return t;
 }
 
-std::string in_digits(std::optional<double> v, const char* otherwise) {
-  return v && std::isfinite(*v) ? fmt::format("{:.3g}", *v) : otherwise;
+Cell in_digits(std::optional<double> v, const char* otherwise) {
+  return v && std::isfinite(*v) ? written(v) : Cell{.text = otherwise};
 }
 
 Figure heat_map(const std::vector<Line>& lines) {

@@ -138,28 +138,36 @@ std::vector<WorkOf> measured(const std::vector<Measurement>& all) {
 
 Table settings_table(const std::vector<Measurement>& all,
                      const std::vector<Knob>& knobs) {
-  Table table{.id = "work_precision",
-              .title = "Settings, accuracy and time",
-              .digits = 2,
-              .corner = "setting",
-              .columns = {},
-              .note =
-                  "Relative errors, medians of the samples; us: per sample, "
-                  "fastest of the repetitions; order: the power of the knob by "
-                  "which errors fell from the value before, median of the "
-                  "samples. A setting is dominated by the fastest of its knob "
-                  "that is at least as accurate in less than nine tenths of "
-                  "its time."};
+  Table table{
+      .id = "work_precision",
+      .title = "Settings, accuracy and time",
+      .digits = 2,
+      .corner = "setting",
+      .columns = {},
+      .note =
+          "Relative errors, medians of the samples; us: per sample, "
+          "fastest of the repetitions; order: the power of the knob by "
+          "which errors fell from the value before, median of the "
+          "samples. A setting is dominated by the fastest of its knob "
+          "that is at least as accurate in less than nine tenths of "
+          "its time.",
+      .keys = {"knob", "value", "precision"},
+      .across = Across{.key = "of",
+                       .quantities = {"error", "order", "us", "dominated by"}}};
   const auto shown = measured(all);
   for (const WorkOf of : shown) {
     table.columns.push_back(fmt::format("{}: error", to_string(of)));
     table.columns.insert(table.columns.end(), {"order", "us", "dominated by"});
+    table.across->values.emplace_back(to_string(of));
   }
   for (const Knob& knob : knobs) {
     for (const auto precision : {Precision::f64, Precision::f32}) {
       for (std::size_t k = 0; k < knob.axis.values.size(); ++k) {
         TableRow row;
         row.label = setting_name(knob, k, precision);
+        row.keys = {knob.axis.label,
+                    fmt::format("{}", knob.axis.values[k]),
+                    word(precision)};
         for (const WorkOf of : shown) {
           const auto* m = find(all, knob, k, precision, of);
           if (m == nullptr) {

@@ -22,15 +22,17 @@ struct Column {
 const std::vector<Column> kColumns = {
     {"double diverges", SweepCheck::forward_double, SweepStatus::diverged},
     {"float good", SweepCheck::forward_single, SweepStatus::ok},
-    {"inaccurate", SweepCheck::forward_single, SweepStatus::inaccurate},
-    {"diverges", SweepCheck::forward_single, SweepStatus::diverged},
+    {"float inaccurate", SweepCheck::forward_single, SweepStatus::inaccurate},
+    {"float diverges", SweepCheck::forward_single, SweepStatus::diverged},
     {"adjoint exact", SweepCheck::adjoint, SweepStatus::ok},
-    {"wrong", SweepCheck::adjoint, SweepStatus::inaccurate},
-    {"undecided", SweepCheck::adjoint, SweepStatus::undecided},
+    {"adjoint wrong", SweepCheck::adjoint, SweepStatus::inaccurate},
+    {"adjoint undecided", SweepCheck::adjoint, SweepStatus::undecided},
     {"Jacobian exact", SweepCheck::tangent, SweepStatus::ok},
-    {"wrong", SweepCheck::tangent, SweepStatus::inaccurate},
+    {"Jacobian wrong", SweepCheck::tangent, SweepStatus::inaccurate},
     {"float adjoint good", SweepCheck::adjoint_single, SweepStatus::ok},
-    {"inaccurate", SweepCheck::adjoint_single, SweepStatus::inaccurate}};
+    {"float adjoint inaccurate",
+     SweepCheck::adjoint_single,
+     SweepStatus::inaccurate}};
 
 /// Every sweep of the campaign, whoever declared it.
 Table side_by_side(const Results& results) {
@@ -44,7 +46,8 @@ Table side_by_side(const Results& results) {
                   "its adjoint within 1e-2; the adjoint is exact within "
                   "1e-5 of central differences or their uncertainty, the "
                   "Jacobian within 1e-8 of the adjoint. Undecided: no step "
-                  "of the differences is of use."};
+                  "of the differences is of use.",
+              .keys = {"problem", "sweep"}};
   for (const Column& c : kColumns) table.columns.emplace_back(c.title);
   for (const CaseRecord& c : results.cases()) {
     for (const StageRecord& s : c.stages) {
@@ -52,8 +55,9 @@ Table side_by_side(const Results& results) {
       if (!c.info.experiment.starts_with(kPrefix) || status == s.arrays.end() ||
           !s.arrays.contains("point"))
         continue;
-      TableRow row{.label = c.info.experiment.substr(kPrefix.size()) + ", " +
-                            s.stage};
+      const std::string problem = c.info.experiment.substr(kPrefix.size());
+      TableRow row{.label = problem + ", " + s.stage,
+                   .keys = {problem, s.stage}};
       row.cells.push_back({.ours = static_cast<double>(status->second.cols())});
       for (const Column& column : kColumns)
         row.cells.push_back({.ours = static_cast<double>(
@@ -111,21 +115,26 @@ Table times_to_accuracy(const Results& results) {
     for (const WorkOf of : kAll) {
       for (const double target : targets) {
         const auto* m = fastest_within(all, of, target);
-        row.cells.push_back(
-            {.text =
-                 m != nullptr
-                     ? fmt::format("{:.3g} ({})", 1e6 * m->seconds, m->setting)
-                 : all.empty()    ? kNotRun
-                 : !asks(all, of) ? "no inverse"
-                                  : "not reached"});
+        if (m != nullptr) {
+          const double us = 1e6 * m->seconds;
+          row.cells.push_back(
+              {.ours = us,
+               .text = fmt::format("{:.3g} ({})", us, m->setting),
+               .of = m->setting});
+          continue;
+        }
+        row.cells.push_back({.text = all.empty()      ? kNotRun
+                                     : !asks(all, of) ? "no inverse"
+                                                      : "not reached"});
       }
     }
     const auto dominated =
         std::count_if(all.begin(), all.end(), [&](const Measurement& m) {
           return dominated_by(all, m) != nullptr;
         });
-    row.cells.push_back({.text = std::to_string(all.size())});
-    row.cells.push_back({.text = std::to_string(dominated)});
+    for (const auto count :
+         {static_cast<double>(all.size()), static_cast<double>(dominated)})
+      row.cells.push_back(written(count, "{:g}"));
     table.rows.push_back(std::move(row));
   }
   return table;

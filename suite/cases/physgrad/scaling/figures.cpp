@@ -135,7 +135,8 @@ Table times(const Results& results, const char* experiment) {
               .unit = "CPU ns",
               .digits = 4,
               .corner = "trajectories",
-              .columns = {"GD", "Newton", "IG", "PG"}};
+              .columns = {"GD", "Newton", "IG", "PG"},
+              .across = Across{.key = "method", .quantities = {"time"}}};
   TimedStages timed;
   const Published none;
   for (const char* id : {"batch_1e3", "batch_1e5", "batch_1e6"}) {

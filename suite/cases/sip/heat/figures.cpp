@@ -178,7 +178,8 @@ Table study(const Results& results,
               .title = std::move(title),
               .source = std::move(source),
               .corner = "setting",
-              .columns = {"SIP", "Adam"}};
+              .columns = {"SIP", "Adam"},
+              .across = Across{.key = "method", .quantities = {"error"}}};
   for (const Spot& cell : spots) {
     if (cell.id("") == "") continue;  // has a length of its own
     const auto sip = end(results, cell.id("sip"), kError),

@@ -160,11 +160,14 @@ Table rate_table(const Evidence& at) {
               .title = "Distance to the nearest solution, by learning rate",
               .source = "App. B.1",
               .corner = "method",
-              .note = "No turn, 8000 updates, median over seeds."};
+              .note = "No turn, 8000 updates, median over seeds.",
+              .keys = {"method", "xi"},
+              .across = Across{.key = "rate", .quantities = {"distance"}}};
   for (const RateFactor& f : kFactors) table.columns.push_back(f.label);
   for (const int xi : kStudied)
     for (const MethodName& m : kSix) {
-      TableRow row{.label = fmt::format("{}, xi = {}", m.label, xi)};
+      TableRow row{.label = fmt::format("{}, xi = {}", m.label, xi),
+                   .keys = {m.label, std::to_string(xi)}};
       for (const RateFactor& f : kFactors)
         row.cells.push_back(written(score_at_rate(xi, m.id, f.name)(at)));
       table.rows.push_back(std::move(row));
@@ -177,9 +180,12 @@ Table gamma_table(const Evidence& at) {
               .title = "Adam's test loss, by gamma",
               .source = "App. B.1",
               .corner = "xi",
-              .note = "No turn, 8000 updates, median over seeds."};
-  for (const int gamma : kGammas)
+              .note = "No turn, 8000 updates, median over seeds.",
+              .across = Across{.key = "gamma", .quantities = {"loss"}}};
+  for (const int gamma : kGammas) {
     table.columns.push_back(fmt::format("gamma = {}", gamma));
+    table.across->values.push_back(std::to_string(gamma));
+  }
   for (const int xi : kStudied) {
     TableRow row{.label = fmt::format("{}", xi)};
     for (const int gamma : kGammas)
