@@ -2,6 +2,8 @@
 
 #include <pybind11/stl.h>
 
+#include <algorithm>
+
 #include "python/module/arrays.h"
 #include "suite/results/catalog.h"
 #include "suite/results/results.h"
@@ -83,8 +85,10 @@ py::dict examples(const Results& results,
   data["given"] = to_array(c.data.given);
   all["problem"] = data;
   py::dict arrays;
-  for (const auto& [key, array] : s.arrays)
-    arrays[py::str(key)] = to_array(array);
+  for (const auto& [key, array] : s.arrays)  // of one row, as in the file
+    arrays[py::str(key)] = array.rows() == 1
+                               ? to_array(Vector<double>(array.reshaped()))
+                               : to_array(array);
   all["arrays"] = arrays;
   return all;
 }
@@ -92,7 +96,8 @@ py::dict examples(const Results& results,
 py::dict curve(const Results& results,
                const std::string& name,
                const std::string& stage) {
-  const Curve& k = stage_named(case_named(results, name), stage).curve;
+  const StageRecord& s = stage_named(case_named(results, name), stage);
+  const Curve& k = s.curve;
   const auto axis = [](const std::vector<double>& values) {
     return Array<double>(static_cast<py::ssize_t>(values.size()),
                          values.data());
@@ -102,7 +107,11 @@ py::dict curve(const Results& results,
   all["seconds"] = axis(k.seconds);
   all["evaluations"] = axis(k.evaluations);
   all["loss"] = to_array(k.loss);  // points x examples
-  all["x"] = to_array(k.x);
+  // points x examples x unknowns
+  const Index unknowns = std::max<Index>(1, s.x.rows());
+  Array<double> x({k.x.cols(), k.x.rows() / unknowns, unknowns});
+  std::copy_n(k.x.data(), x.size(), x.mutable_data());
+  all["x"] = x;
   return all;
 }
 

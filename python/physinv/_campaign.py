@@ -90,12 +90,14 @@ class Results:
     def examples(self, case, stage=""):
         """Of a stage (default: the case's last): loss, status, iterations and
         evaluations per example, x (samples, unknowns), the problem's data and
-        the method's own arrays."""
+        the method's own arrays (one number each: (n,), else samples, points or
+        updates first)."""
         return self._results._examples(case, stage)
 
     def curve(self, case, stage=""):
         """Along a stage: iteration, seconds, evaluations per point; loss
-        (points, examples); x (points, unknowns of the first examples)."""
+        (points, examples); x (points, examples, unknowns) of the first
+        examples."""
         return self._results._curve(case, stage)
 
     def tidy(self):

@@ -10,6 +10,7 @@
 #include "suite/app/conclude.h"
 #include "suite/app/export.h"
 #include "suite/app/habits.h"
+#include "suite/app/installed.h"
 #include "suite/app/run_budget.h"
 #include "suite/core/hash.h"
 #include "suite/harness/campaign.h"
@@ -301,6 +302,21 @@ std::optional<ExitError> ending_of(const RunFlags& flags,
   return {};
 }
 
+/// Files of cases name their publication, where it is known.
+void cite(std::vector<Case>& cases) {
+  Published published;
+  try {
+    published = Published(published_directory());
+  } catch (const UsageError&) {  // a program without such files
+  }
+  for (Case& c : cases) {
+    const auto* p = published.publication(c.experiment->source.paper);
+    if (p == nullptr) continue;
+    c.info.about.paper = p->text();
+    c.info.about.arxiv = p->arxiv;
+  }
+}
+
 CampaignResult run_all(Prepared prepared,
                        const RunFlags& flags,
                        const Screen& screen) {
@@ -378,6 +394,7 @@ ExitCode run_verb(const Arguments& arguments) {
     return ExitCode::good;
   }
   if (!flags.quiet) say_what_runs(flags, cases, screen);
+  cite(cases);
   Prepared prepared = prepare(std::move(cases));
   if (flags.campaign.time_budget > 0)
     follow_budget(flags.campaign, prepared.cases);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "suite/harness/quantities.h"
+
 namespace physinv {
 namespace {
 
@@ -68,6 +70,12 @@ Case declared_case(const std::shared_ptr<const Experiment>& e,
   c.info.profile = profile;
   c.info.n = n;
   c.info.seed = seed;
+  c.info.about.problem = e->problem.name;
+  if (const Quantities* q = find_quantities(e->problem.name)) {
+    c.info.about.unknowns = q->unknowns;
+    c.info.about.observations = q->observations;
+    c.info.about.given = q->given;
+  }
   c.info.precision = has_precision(method) ? row.precision : Precision::f64;
   for (const auto& stage : method.chain) {
     c.info.stages.push_back(stage->name());

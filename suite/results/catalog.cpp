@@ -127,6 +127,7 @@ CaseRecord Catalog::case_record(const std::string& name) const {
   record.info = info_of(name);
   const auto file = case_file(name);
   if (!file) return record;
+  record.info.about = file->about();
   record.data = file->data();
   const auto& keys = record.info.keys;
   for (std::size_t k = 0; k < keys.size(); ++k) {

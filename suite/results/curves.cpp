@@ -16,11 +16,67 @@ namespace fs = std::filesystem;
 constexpr std::string_view kTrailer = "physinv:";
 constexpr std::size_t kTrailerBytes = 16;
 
+/// A number per example; (1, examples) in version 1.
 Vector<double> read_vector(hid_t group, const std::string& name) {
+  if (hdf5::rank(group, name) == 1) {
+    const auto list = hdf5::read_list(group, name);
+    return Eigen::Map<const Vector<double>>(list.data(),
+                                            static_cast<Index>(list.size()));
+  }
   Batch<double> column = hdf5::read_batch(group, name);
   if (column.cols() != 1 && column.size() > 0)
     throw StoreError(fmt::format("array {} is no list of examples", name));
   return column.reshaped();
+}
+
+/// Of one row, a list.
+Batch<double> read_array(hid_t group, const std::string& name) {
+  if (hdf5::rank(group, name) == 2) return hdf5::read_batch(group, name);
+  const auto list = hdf5::read_list(group, name);
+  return Eigen::Map<const Batch<double>>(
+      list.data(), 1, static_cast<Index>(list.size()));
+}
+
+Batch<double> read_estimates(hid_t curve) {
+  return hdf5::rank(curve, "x") == 2 ? hdf5::read_batch(curve, "x")
+                                     : hdf5::read_cube(curve, "x");
+}
+
+std::vector<double> list_of(const Vector<double>& v) {
+  return {v.data(), v.data() + v.size()};
+}
+
+/// Axes of what methods find besides. Others' arrays say nothing of theirs.
+constexpr std::pair<std::string_view, const char*> kAxes[] = {
+    {"alpha", "updates"},
+    {"batch_loss", "updates"},
+    {"cg_iterations", "updates"},
+    {"chosen", "updates"},
+    {"damping", "updates"},
+    {"first_step", "samples"},
+    {"kept", "updates"},
+    {"mean_loss", "points"},
+    {"metrics", "points,metrics"},
+    {"objective", "updates"},
+    {"objective_after", "updates"},
+    {"parameters", "networks,parameters"},
+    {"rho", "updates"},
+    {"searched_loss", "rates"},
+    {"searched_rates", "rates"},
+    {"smallest", "updates"},
+    {"state", "networks,numbers"},
+    {"update_cosine", "updates"}};
+
+hdf5::Note note_of(const std::string& array, const Batch<double>& value) {
+  for (const auto& [name, axes] : kAxes) {
+    const bool is_list = std::string_view(axes).find(',') == name.npos;
+    if (array == name && is_list == (value.rows() == 1)) return {.axes = axes};
+  }
+  return {};
+}
+
+void write_text(hid_t parent, const char* name, const std::string& text) {
+  if (!text.empty()) hdf5::write_attribute(parent, name, text);
 }
 
 Status status_of(std::uint8_t byte) {
@@ -129,6 +185,32 @@ ArrayHash hash_results(const StageRecord& r) {
   return hash;
 }
 
+void read_arrays(const hdf5::Handle& group, StageRecord& r) {
+  r.x = hdf5::read_batch(group, "x");
+  r.loss = read_vector(group, "loss");
+  r.status.clear();
+  for (const auto s : hdf5::read_bytes(group, "status"))
+    r.status.push_back(status_of(s));
+  r.example_iterations = read_vector(group, "iterations");
+  r.example_evaluations = read_vector(group, "evaluations");
+  const auto curve = hdf5::open_group(group, "curve");
+  r.curve = {.iteration = hdf5::read_list(curve, "iteration"),
+             .seconds = hdf5::read_list(curve, "seconds"),
+             .evaluations = hdf5::read_list(curve, "evaluations"),
+             .loss = hdf5::read_batch(curve, "loss"),
+             .x = read_estimates(curve)};
+  const auto arrays = hdf5::open_group(group, "arrays");
+  r.arrays.clear();
+  for (const auto& name : hdf5::names(arrays))
+    r.arrays[name] = read_array(arrays, name);
+}
+
+/// 1 had none.
+std::uint64_t version_of(const hdf5::Handle& file) {
+  return hdf5::has_attribute(file, "schema") ? hdf5::read_number(file, "schema")
+                                             : 1;
+}
+
 /// The bytes without the trailer, once it agrees with them.
 std::string verified(std::string bytes, const fs::path& path) {
   if (bytes.size() > kTrailerBytes) {
@@ -178,6 +260,7 @@ CaseFile::CaseFile(const std::string& case_name)
     : file_(hdf5::new_file()),
       case_name_(case_name),
       where_(case_file_name(case_name)) {
+  hdf5::write_attribute(file_, "schema", kCaseVersion);
   hdf5::write_attribute(file_, "case", case_name);
   hdf5::create_group(file_, "stages");
 }
@@ -198,7 +281,76 @@ CaseFile::CaseFile(std::string bytes,
     if (name != case_name)
       throw StoreError(fmt::format(
           "it holds the case {}, not {} (restore it)", name, case_name));
+    const auto version = version_of(file_);
+    if (version > kCaseVersion)
+      throw UnreadableInput(fmt::format(
+          "{}: it is of version {}, this program reads up to {} (use the "
+          "program that wrote it or a newer one)",
+          where_,
+          version,
+          kCaseVersion));
   });
+}
+
+void CaseFile::describe(const CaseInfo& info, const StageRecord& latest) {
+  named([&] {
+    about_ = info.about;
+    if (version_of(file_) < kCaseVersion) renew();
+    const bool cited = !about_.arxiv.empty();
+    write_text(file_, "experiment", info.experiment);
+    write_text(file_, "problem", about_.problem);
+    write_text(file_, "method", info.method);
+    hdf5::write_attribute(file_, "n", static_cast<std::uint64_t>(info.n));
+    hdf5::write_attribute(file_, "seed", info.seed);
+    write_text(file_, "precision", std::string(to_string(info.precision)));
+    write_text(file_, "profile", profile_of({.info = info}, latest));
+    write_text(file_, "revision", latest.revision);
+    write_text(file_, "paper", about_.paper);
+    write_text(file_, "arxiv", about_.arxiv);
+    write_text(file_, "doi", cited ? "10.48550/arXiv." + about_.arxiv : "");
+  });
+}
+
+About CaseFile::about() const {
+  return named([&] {
+    const auto text = [](hid_t parent, const char* name) {
+      return hdf5::has_attribute(parent, name)
+                 ? hdf5::read_attribute(parent, name)
+                 : std::string();
+    };
+    About about{.problem = text(file_, "problem"),
+                .paper = text(file_, "paper"),
+                .arxiv = text(file_, "arxiv")};
+    if (!hdf5::has(file_, "data")) return about;
+    const auto data = hdf5::open_group(file_, "data");
+    for (const auto& [name, meaning] : {std::pair("x", &about.unknowns),
+                                        {"y", &about.observations},
+                                        {"given", &about.given}}) {
+      auto note = hdf5::note(data, name);
+      meaning->names = std::move(note.names);
+      if (!note.unit.empty()) meaning->unit = std::move(note.unit);
+    }
+    return about;
+  });
+}
+
+/// As this version writes it.
+void CaseFile::renew() {
+  CaseFile fresh(case_name_);
+  fresh.about_ = about_;
+  if (hdf5::has(file_, "data")) fresh.put_data(read_data());
+  const auto stages = hdf5::open_group(file_, "stages");
+  const auto kept = hdf5::open_group(fresh.file_, "stages");
+  for (const auto& name : hdf5::names(stages)) {
+    const auto old = hdf5::open_group(stages, name);
+    const auto group = hdf5::create_group(kept, name);
+    for (const char* attribute : {"key", "hash"})
+      write_text(group, attribute, hdf5::read_attribute(old, attribute));
+    StageRecord record;
+    read_arrays(old, record);
+    fresh.put_arrays(group, record);
+  }
+  file_ = std::move(fresh.file_);
 }
 
 void CaseFile::put_data(const CaseData& data) {
@@ -214,9 +366,18 @@ void CaseFile::put_data(const CaseData& data) {
     }
     const auto group = hdf5::create_group(file_, "data");
     hdf5::write_attribute(group, "hash", data.hash);
-    hdf5::write(group, "x", data.x);
-    hdf5::write(group, "y", data.y);
-    hdf5::write(group, "given", data.given);
+    const auto put = [&](const char* name,
+                         const Batch<double>& array,
+                         const char* axes,
+                         const Meaning& meaning) {
+      hdf5::write(group,
+                  name,
+                  array,
+                  {.axes = axes, .unit = meaning.unit, .names = meaning.names});
+    };
+    put("x", data.x, "samples,unknowns", about_.unknowns);
+    put("y", data.y, "samples,observations", about_.observations);
+    put("given", data.given, "samples,given", about_.given);
     data_are_sound_ = true;
   });
 }
@@ -243,23 +404,51 @@ void CaseFile::put_stage(const StageRecord& r, const std::string& hash) {
     const auto group = hdf5::create_group(stages, name);
     hdf5::write_attribute(group, "key", r.key);
     hdf5::write_attribute(group, "hash", hash);
-    hdf5::write(group, "x", r.x);
-    hdf5::write(group, "loss", Batch<double>(r.loss));
-    std::vector<std::uint8_t> status;
-    for (const Status s : r.status)
-      status.push_back(static_cast<std::uint8_t>(s));
-    hdf5::write(group, "status", status);
-    hdf5::write(group, "iterations", Batch<double>(r.example_iterations));
-    hdf5::write(group, "evaluations", Batch<double>(r.example_evaluations));
-    const auto curve = hdf5::create_group(group, "curve");
-    hdf5::write(curve, "iteration", r.curve.iteration);
-    hdf5::write(curve, "seconds", r.curve.seconds);
-    hdf5::write(curve, "evaluations", r.curve.evaluations);
-    hdf5::write(curve, "loss", r.curve.loss);
-    hdf5::write(curve, "x", r.curve.x);
-    const auto arrays = hdf5::create_group(group, "arrays");
-    for (const auto& [key, array] : r.arrays) hdf5::write(arrays, key, array);
+    hdf5::write_attribute(group, "stop", std::string(to_string(r.stop)));
+    write_text(group, "profile", r.run.profile);
+    write_text(group, "revision", r.revision);
+    put_arrays(group, r);
   });
+}
+
+void CaseFile::put_arrays(const hdf5::Handle& group,
+                          const StageRecord& r) const {
+  const std::string none = "1", seconds = "s";
+  const Meaning& x = about_.unknowns;
+  const hdf5::Note sample{.axes = "samples", .unit = none};
+  hdf5::write(group,
+              "x",
+              r.x,
+              {.axes = "samples,unknowns", .unit = x.unit, .names = x.names});
+  hdf5::write(group, "loss", list_of(r.loss), sample);
+  hdf5::write(group, "status", r.status, {.axes = "samples"});
+  hdf5::write(group, "iterations", list_of(r.example_iterations), sample);
+  hdf5::write(group, "evaluations", list_of(r.example_evaluations), sample);
+  const auto curve = hdf5::create_group(group, "curve");
+  const hdf5::Note point{.axes = "points", .unit = none};
+  hdf5::write(curve, "iteration", r.curve.iteration, point);
+  hdf5::write(
+      curve, "seconds", r.curve.seconds, {.axes = "points", .unit = seconds});
+  hdf5::write(curve, "evaluations", r.curve.evaluations, point);
+  hdf5::write(
+      curve, "loss", r.curve.loss, {.axes = "points,samples", .unit = none});
+  // Examples whose unknowns are not known apart are one.
+  const Index unknowns = r.x.rows(), all = r.curve.x.rows();
+  const bool apart = unknowns > 0 && all % unknowns == 0 && all > 0;
+  hdf5::write_cube(
+      curve,
+      "x",
+      r.curve.x,
+      apart ? all / unknowns : 1,
+      {.axes = "points,samples,unknowns", .unit = x.unit, .names = x.names});
+  const auto arrays = hdf5::create_group(group, "arrays");
+  for (const auto& [key, array] : r.arrays) {
+    if (array.rows() == 1) {
+      hdf5::write(arrays, key, list_of(array.reshaped()), note_of(key, array));
+    } else {
+      hdf5::write(arrays, key, array, note_of(key, array));
+    }
+  }
 }
 
 bool CaseFile::has_stage(const StageRecord& r, const std::string& hash) const {
@@ -276,23 +465,7 @@ void CaseFile::read_stage(StageRecord& r, const std::string& hash) const {
   named([&] {
     const auto stages = hdf5::open_group(file_, "stages");
     const auto group = hdf5::open_group(stages, group_name(r));
-    r.x = hdf5::read_batch(group, "x");
-    r.loss = read_vector(group, "loss");
-    r.status.clear();
-    for (const auto s : hdf5::read_bytes(group, "status"))
-      r.status.push_back(status_of(s));
-    r.example_iterations = read_vector(group, "iterations");
-    r.example_evaluations = read_vector(group, "evaluations");
-    const auto curve = hdf5::open_group(group, "curve");
-    r.curve = {.iteration = hdf5::read_list(curve, "iteration"),
-               .seconds = hdf5::read_list(curve, "seconds"),
-               .evaluations = hdf5::read_list(curve, "evaluations"),
-               .loss = hdf5::read_batch(curve, "loss"),
-               .x = hdf5::read_batch(curve, "x")};
-    const auto arrays = hdf5::open_group(group, "arrays");
-    r.arrays.clear();
-    for (const auto& name : hdf5::names(arrays))
-      r.arrays[name] = hdf5::read_batch(arrays, name);
+    read_arrays(group, r);
     require_fitting(r, "stages/" + group_name(r));
     if (hex64(arrays_hash(r)) != hash)
       throw StoreError(fmt::format(

@@ -1,10 +1,16 @@
 /// The arrays of one case, in one HDF5 file.
 ///
-///   /data/{x, y, given}                                  attribute hash
+///   /                                           what the case is
+///   /data/{x, y, given}                         hash
 ///   /stages/<position>_<stage>/{x, loss, status, iterations, evaluations}
 ///                             /curve/{iteration, seconds, evaluations, loss,
-///                             x} /arrays/<name>             attributes key,
-///                             hash
+///                                     x}
+///                             /arrays/<name>    key, hash, how it ran
+///
+/// with attributes on the right; arrays have their axes, unit and names. All
+/// of them stand in docs/data.md. Examples are the first axis, points of a
+/// curve are. Version 1 had no attributes but case, hash and key, and other
+/// shapes; it is read, and written anew once a stage is added.
 ///
 /// What is read back has the types, shapes and hashes that it was written
 /// with, and is finite where it must be:
@@ -19,7 +25,7 @@
 /// Losses of a stage that ran its iterations or diverged, losses and unknowns
 /// along curves, and arrays may hold anything.
 ///
-/// Arrays are (samples, features). Sixteen bytes after the end of the HDF5
+/// Sixteen bytes after the end of the HDF5
 /// data hold a checksum of the whole file; HDF5 tools do not mind them.
 #pragma once
 
@@ -32,6 +38,9 @@
 #include "suite/results/record.h"
 
 namespace physinv {
+
+/// Of the case's file. 2: attributes that describe it, examples first.
+inline constexpr std::uint64_t kCaseVersion = 2;
 
 /// File name of a case: its name with '+' for '/', and .h5.
 std::string case_file_name(const std::string& case_name);
@@ -53,6 +62,11 @@ class CaseFile {
            const std::filesystem::path& path,
            const std::string& case_name);
 
+  /// What the case is, with the run of its latest stage; comes first.
+  void describe(const CaseInfo& info, const StageRecord& latest);
+  /// What `describe` was told.
+  About about() const;
+
   void put_data(const CaseData& data);
   /// StoreError, with the array's name, unless all of it has the hash.
   CaseData data() const;
@@ -73,9 +87,12 @@ class CaseFile {
   template <class F>
   auto named(F&& body) const;
   CaseData read_data() const;
+  void put_arrays(const hdf5::Handle& group, const StageRecord& record) const;
+  void renew();
 
   hdf5::Handle file_;
   std::string case_name_;
+  About about_;
   bool data_are_sound_ = false;  ///< written here, or looked at
   std::string where_;            ///< for messages
 };

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <span>
 
@@ -10,9 +11,6 @@
 
 namespace physinv::hdf5 {
 namespace {
-
-/// What fits into the header of an object, where attributes stand.
-constexpr std::size_t kLongestText = 1 << 16;
 
 /// Description of the innermost error on HDF5's stack.
 std::string reason() {
@@ -58,10 +56,9 @@ std::string unique_name() {
 void write_array(hid_t parent,
                  const std::string& name,
                  std::span<const hsize_t> shape,
-                 hid_t stored,
-                 hid_t memory,
+                 hid_t type,
                  const void* data,
-                 bool empty) {
+                 const Note& note) {
   const Handle space(
       H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
       H5Sclose,
@@ -69,18 +66,34 @@ void write_array(hid_t parent,
   const Handle options(
       H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "make a property list");
   check(H5Pset_obj_track_times(options, false), "leave out times");
-  const Handle set(H5Dcreate2(parent,
-                              name.c_str(),
-                              stored,
-                              space,
-                              H5P_DEFAULT,
-                              options,
-                              H5P_DEFAULT),
-                   H5Dclose,
-                   "create array " + name);
-  if (!empty)
-    check(H5Dwrite(set, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, data),
+  const Handle set(
+      H5Dcreate2(
+          parent, name.c_str(), type, space, H5P_DEFAULT, options, H5P_DEFAULT),
+      H5Dclose,
+      "create array " + name);
+  if (std::find(shape.begin(), shape.end(), 0) == shape.end())
+    check(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data),
           "write array " + name);
+  for (const auto& [key, text] : {std::pair("axes", &note.axes),
+                                  {"unit", &note.unit},
+                                  {"names", &note.names}})
+    if (!text->empty()) write_attribute(set, key, *text);
+}
+
+/// The enumeration of Status, as it is stored.
+hid_t status_type() {
+  static const Handle type = [] {
+    Handle names(H5Tenum_create(H5T_STD_U8LE), H5Tclose, "make a type");
+    for (const Status s : {Status::gtol,
+                           Status::maxiter,
+                           Status::linesearch,
+                           Status::nonfinite}) {
+      const auto value = static_cast<std::uint8_t>(s);
+      check(H5Tenum_insert(names, to_string(s).data(), &value), "make a type");
+    }
+    return names;
+  }();
+  return type;
 }
 
 /// A name may stand for something elsewhere, also in another file.
@@ -132,19 +145,22 @@ bool holds_all(const Handle& set,
 }
 
 std::vector<hsize_t> shape_of(const Handle& set,
-                              std::size_t rank,
-                              H5T_class_t number,
+                              int rank,
+                              bool real,
                               const std::string& name) {
   const Handle space(H5Dget_space(set), H5Sclose, "read shape of " + name);
   const Handle type(H5Dget_type(set), H5Tclose, "read type of " + name);
-  if (H5Tget_class(type) != number)
-    throw StoreError(fmt::format("array {} holds other than {} numbers",
-                                 name,
-                                 number == H5T_FLOAT ? "real" : "whole"));
-  if (H5Sget_simple_extent_ndims(space) != static_cast<int>(rank))
+  const H5T_class_t numbers = H5Tget_class(type);
+  const bool good =
+      real ? numbers == H5T_FLOAT
+           : numbers == H5T_INTEGER || H5Tequal(type, status_type()) > 0;
+  if (!good)
+    throw StoreError(fmt::format(
+        "array {} holds other than {} numbers", name, real ? "real" : "whole"));
+  if (H5Sget_simple_extent_ndims(space) != rank)
     throw StoreError(
         fmt::format("array {} does not have {} dimensions", name, rank));
-  std::vector<hsize_t> shape(rank);
+  std::vector<hsize_t> shape(static_cast<std::size_t>(rank));
   check(H5Sget_simple_extent_dims(space, shape.data(), nullptr),
         "read shape of " + name);
   if (!holds_all(set, H5Tget_size(type), shape))
@@ -238,90 +254,90 @@ std::vector<std::string> names(hid_t group) {
   return all;
 }
 
-void write(hid_t parent, const std::string& name, const Batch<double>& v) {
+void write(hid_t parent,
+           const std::string& name,
+           const Batch<double>& v,
+           const Note& note) {
   const hsize_t shape[] = {static_cast<hsize_t>(v.cols()),
                            static_cast<hsize_t>(v.rows())};
-  write_array(parent,
-              name,
-              shape,
-              H5T_IEEE_F64LE,
-              H5T_NATIVE_DOUBLE,
-              v.data(),
-              v.size() == 0);
+  write_array(parent, name, shape, H5T_IEEE_F64LE, v.data(), note);
 }
 
 void write(hid_t parent,
            const std::string& name,
-           const std::vector<double>& v) {
+           const std::vector<double>& v,
+           const Note& note) {
   const hsize_t shape[] = {v.size()};
-  write_array(parent,
-              name,
-              shape,
-              H5T_IEEE_F64LE,
-              H5T_NATIVE_DOUBLE,
-              v.data(),
-              v.empty());
+  write_array(parent, name, shape, H5T_IEEE_F64LE, v.data(), note);
 }
 
 void write(hid_t parent,
            const std::string& name,
-           const std::vector<std::uint8_t>& v) {
+           const std::vector<Status>& v,
+           const Note& note) {
+  static_assert(sizeof(Status) == 1);
   const hsize_t shape[] = {v.size()};
-  write_array(
-      parent, name, shape, H5T_STD_U8LE, H5T_NATIVE_UINT8, v.data(), v.empty());
+  write_array(parent, name, shape, status_type(), v.data(), note);
+}
+
+void write_cube(hid_t parent,
+                const std::string& name,
+                const Batch<double>& v,
+                Index parts,
+                const Note& note) {
+  const hsize_t shape[] = {static_cast<hsize_t>(v.cols()),
+                           static_cast<hsize_t>(parts),
+                           static_cast<hsize_t>(v.rows() / parts)};
+  write_array(parent, name, shape, H5T_IEEE_F64LE, v.data(), note);
+}
+
+Note note(hid_t parent, const std::string& name) {
+  const Handle set = open_array(parent, name);
+  Note note;
+  for (const auto& [key, text] : {std::pair("axes", &note.axes),
+                                  {"unit", &note.unit},
+                                  {"names", &note.names}})
+    if (has_attribute(set, key)) *text = read_attribute(set, key);
+  return note;
+}
+
+int rank(hid_t parent, const std::string& name) {
+  const Handle set = open_array(parent, name);
+  const Handle space(H5Dget_space(set), H5Sclose, "read shape of " + name);
+  return H5Sget_simple_extent_ndims(space);
 }
 
 Batch<double> read_batch(hid_t parent, const std::string& name) {
   const Handle set = open_array(parent, name);
-  const auto shape = shape_of(set, 2, H5T_FLOAT, name);
+  const auto shape = shape_of(set, 2, true, name);
   Batch<double> v(static_cast<Index>(shape[1]), static_cast<Index>(shape[0]));
+  read_array(set, H5T_NATIVE_DOUBLE, v.data(), v.size() == 0, name);
+  return v;
+}
+
+Batch<double> read_cube(hid_t parent, const std::string& name) {
+  const Handle set = open_array(parent, name);
+  const auto shape = shape_of(set, 3, true, name);
+  Batch<double> v(static_cast<Index>(shape[1] * shape[2]),
+                  static_cast<Index>(shape[0]));
   read_array(set, H5T_NATIVE_DOUBLE, v.data(), v.size() == 0, name);
   return v;
 }
 
 std::vector<double> read_list(hid_t parent, const std::string& name) {
   const Handle set = open_array(parent, name);
-  std::vector<double> v(shape_of(set, 1, H5T_FLOAT, name)[0]);
+  std::vector<double> v(shape_of(set, 1, true, name)[0]);
   read_array(set, H5T_NATIVE_DOUBLE, v.data(), v.empty(), name);
   return v;
 }
 
 std::vector<std::uint8_t> read_bytes(hid_t parent, const std::string& name) {
   const Handle set = open_array(parent, name);
-  std::vector<std::uint8_t> v(shape_of(set, 1, H5T_INTEGER, name)[0]);
-  read_array(set, H5T_NATIVE_UINT8, v.data(), v.empty(), name);
+  std::vector<std::uint8_t> v(shape_of(set, 1, false, name)[0]);
+  const Handle type(H5Dget_type(set), H5Tclose, "read type of " + name);
+  const bool names = H5Tget_class(type) == H5T_ENUM;
+  read_array(set, names ? type : H5T_NATIVE_UINT8, v.data(), v.empty(), name);
   return v;
-}
-
-void write_attribute(hid_t parent,
-                     const std::string& name,
-                     const std::string& value) {
-  const Handle type(H5Tcopy(H5T_C_S1), H5Tclose, "make a text type");
-  check(H5Tset_size(type, value.size() + 1), "make a text type");
-  const Handle space(H5Screate(H5S_SCALAR), H5Sclose, "make a shape");
-  const Handle attribute(
-      H5Acreate2(parent, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT),
-      H5Aclose,
-      "create attribute " + name);
-  check(H5Awrite(attribute, type, value.c_str()), "write attribute " + name);
-}
-
-std::string read_attribute(hid_t parent, const std::string& name) {
-  const Handle attribute(H5Aopen(parent, name.c_str(), H5P_DEFAULT),
-                         H5Aclose,
-                         "open attribute " + name);
-  const Handle type(H5Aget_type(attribute), H5Tclose, "read a text type");
-  const Handle space(H5Aget_space(attribute), H5Sclose, "read a shape");
-  // H5Aread writes as many elements as there are, or a pointer to a text of
-  // variable length.
-  if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0 ||
-      H5Sget_simple_extent_type(space) != H5S_SCALAR ||
-      H5Tget_size(type) > kLongestText)
-    throw StoreError(
-        fmt::format("attribute {} is not one text of fixed length", name));
-  std::string value(H5Tget_size(type), '\0');
-  check(H5Aread(attribute, type, value.data()), "read attribute " + name);
-  return value.c_str();  // without the closing zero
 }
 
 }  // namespace physinv::hdf5

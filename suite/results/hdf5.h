@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "suite/core/batch.h"
+#include "suite/core/stop.h"
 
 namespace physinv::hdf5 {
 
@@ -51,24 +52,56 @@ bool has(hid_t parent, const std::string& name);
 void remove(hid_t parent, const std::string& name);
 std::vector<std::string> names(hid_t group);
 
+/// What an array is, as attributes of it; empty ones are left out.
+struct Note {
+  std::string axes = {};   ///< "samples,unknowns"
+  std::string unit = {};   ///< "s"
+  std::string names = {};  ///< of what its last axis counts
+};
+
 /// Matrices are stored as (columns, rows) arrays: the bytes of a batch.
-void write(hid_t parent, const std::string& name, const Batch<double>& value);
 void write(hid_t parent,
            const std::string& name,
-           const std::vector<double>& value);
+           const Batch<double>& value,
+           const Note& note = {});
 void write(hid_t parent,
            const std::string& name,
-           const std::vector<std::uint8_t>& value);
+           const std::vector<double>& value,
+           const Note& note = {});
+/// As an enumeration of one byte.
+void write(hid_t parent,
+           const std::string& name,
+           const std::vector<Status>& value,
+           const Note& note = {});
+/// The same bytes as (columns, parts, rows / parts).
+void write_cube(hid_t parent,
+                const std::string& name,
+                const Batch<double>& value,
+                Index parts,
+                const Note& note = {});
+
+/// What stands beside an array.
+Note note(hid_t parent, const std::string& name);
+/// How many axes an array has.
+int rank(hid_t parent, const std::string& name);
 /// What is read has the type and rank that it was written with, and all its
 /// bytes are there; StoreError if not.
 Batch<double> read_batch(hid_t parent, const std::string& name);
 std::vector<double> read_list(hid_t parent, const std::string& name);
+Batch<double> read_cube(hid_t parent, const std::string& name);
+/// Statuses, or bytes.
 std::vector<std::uint8_t> read_bytes(hid_t parent, const std::string& name);
 
-/// One text each; StoreError for what is anything else.
+/// One text, or one whole number; in the place of what has the name.
 void write_attribute(hid_t parent,
                      const std::string& name,
                      const std::string& value);
+void write_attribute(hid_t parent,
+                     const std::string& name,
+                     std::uint64_t value);
+bool has_attribute(hid_t parent, const std::string& name);
+/// StoreError for what is anything else.
 std::string read_attribute(hid_t parent, const std::string& name);
+std::uint64_t read_number(hid_t parent, const std::string& name);
 
 }  // namespace physinv::hdf5

@@ -32,6 +32,11 @@ constexpr auto kSuperblock =
 constexpr auto kDouble =
     "\x11\x20\x3f\0\x8\0\0\0\0\0\x40\0\x34\x0b\0\x34\xff\x3\0\0\0\0\0\0"sv;
 constexpr auto kByte = "\x10\0\0\0\x1\0\0\0\0\0\x8\0\0\0\0\0"sv;
+constexpr auto kWhole = "\x10\0\0\0\x8\0\0\0\0\0\x40\0\0\0\0\0"sv;
+/// The enumeration of Status: its names, then their values.
+constexpr auto kStatus =
+    "\x18\x4\0\0\x1\0\0\0\x10\0\0\0\x1\0\0\0\0\0\x8\0gtol\0\0\0\0"
+    "maxiter\0linesearch\0\0\0\0\0\0nonfinite\0\0\0\0\0\0\0\0\x1\x2\x3"sv;
 constexpr auto kFillValue = "\x2\x2\x2\x1\0\0\0\0"sv;
 constexpr auto kScalar = "\x1\0\0\0\0\0\0\0"sv;
 
@@ -189,7 +194,8 @@ class Walk {
       case kShape:
         return shape(body, object);
       case kType:
-        require(!object.element && (body == kDouble || body == kByte),
+        require(!object.element &&
+                    (body == kDouble || body == kByte || body == kStatus),
                 "a type of numbers");
         object.element = body == kDouble ? 8 : 1;
         return;
@@ -211,7 +217,7 @@ class Walk {
   static void shape(std::string_view body, Object& object) {
     const auto rank = number(body, 1, 1);
     // Sizes and, the same, largest sizes.
-    require(number(body, 0, 1) == 1 && (rank == 1 || rank == 2) &&
+    require(number(body, 0, 1) == 1 && rank >= 1 && rank <= 3 &&
                 number(body, 2, 6) == 1 && body.size() == 8 + 16 * rank &&
                 body.substr(8, 8 * rank) == body.substr(8 + 8 * rank),
             "a shape");
@@ -228,15 +234,26 @@ class Walk {
   }
 
   static void attribute(std::string_view body) {
-    const auto called = number(body, 2, 2);
-    require(number(body, 0, 2) == 1 && number(body, 4, 4) == 0x80008 &&
+    const auto called = number(body, 2, 2), sizes = number(body, 4, 4);
+    const bool is_text = sizes == 0x80008;
+    require(number(body, 0, 2) == 1 && (is_text || sizes == 0x8000c) &&
                 called > 0 && body.size() >= 8 + padded(called) + 16,
             "an attribute");
     name(body.substr(8, called), 0);
-    const auto rest = body.substr(8 + padded(called));
+    is_text ? text(body.substr(8 + padded(called)))
+            : whole(body.substr(8 + padded(called)));
+  }
+
+  static void text(std::string_view rest) {
     require(number(rest, 0, 4) == 0x13 && rest.substr(8, 8) == kScalar &&
                 number(rest, 4, 4) > 0 &&
                 number(rest, 4, 4) <= rest.size() - 16,
+            "an attribute");
+  }
+
+  static void whole(std::string_view rest) {
+    require(rest.size() == 32 && rest.starts_with(kWhole) &&
+                rest.substr(16, 8) == kScalar,
             "an attribute");
   }
 

@@ -1,6 +1,7 @@
 /// The part of HDF5's file format that this suite writes: groups by symbol
-/// tables, arrays in one piece of doubles or bytes, attributes of one text
-/// (HDF5 File Format Specification 2.0, superblock version 0).
+/// tables, arrays in one piece of doubles, bytes or statuses, attributes of one
+/// text or whole number (HDF5 File Format Specification 2.0, superblock version
+/// 0).
 #pragma once
 
 #include <string_view>

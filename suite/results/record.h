@@ -15,6 +15,20 @@
 
 namespace physinv {
 
+/// What stands in the columns of an array of the problem.
+struct Meaning {
+  std::string names;       ///< "v_x, v_y", or of a field "temperature (y, x)"
+  std::string unit = "1";  ///< of all of them
+};
+
+/// What a case is about. It stands in the case's file and decides nothing.
+struct About {
+  std::string problem;  ///< billiards
+  std::string paper;    ///< "Ann Ames: Title. Venue, 2022. arXiv:2203.10131"
+  std::string arxiv;    ///< 2203.10131
+  Meaning unknowns, observations, given;
+};
+
 /// What a case is; all of it known before it runs.
 struct CaseInfo {
   std::string name;        ///< jpo/billiards/jpo/n=64/seed=3
@@ -26,6 +40,7 @@ struct CaseInfo {
   Precision precision = Precision::f32;
   std::vector<std::string> stages;  ///< names in the order of the chain
   std::vector<std::string> keys;    ///< content key of each stage
+  About about = {};
 };
 
 /// Where and how a stage ran: what its times depend on, and its numbers do not.

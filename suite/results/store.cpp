@@ -268,6 +268,7 @@ void Store::write_files(std::span<const JournalEntry> entries) {
     CaseFile*& file = cases[e.info.name];
     if (file == nullptr) {
       file = &open_case(e.info.name);
+      file->describe(e.info, e.stage);
       file->put_data(data_.at(e.info.name));
     }
     file->put_stage(e.stage, e.arrays_hash);

@@ -2,6 +2,7 @@
 """data_test.py PROGRAM SOURCES WORK: docs/data.md names what the files have, no
 more and no less, with the right shapes."""
 
+import csv
 import glob
 import json
 import os
@@ -17,7 +18,7 @@ except ImportError:
     sys.exit(77)
 
 PROGRAM, SOURCES, WORK = sys.argv[1:4]
-FILTER = "^jpo/robotic-arm/|^hig/toy-gamma-1/(adam|hig)/"
+FILTER = "^jpo/robotic-arm/|^hig/toy-gamma-1/(adam|hig)/|^jpo/billiards/bfgs/"
 
 
 def page():
@@ -35,20 +36,53 @@ def names(section, first):
 
 
 def data_sets(path):
-    """Name, as the page has it, to the shapes of all that go by it."""
-    found = {}
+    """Name, as the page has it, to the shapes of all that go by it; names of
+    attributes with where they stand; what is wrong with them."""
+    found, attributes, wrong = {}, set(), []
+
+    def note(place, item):
+        attributes.update((name, place) for name in item.attrs)
 
     def visit(name, item):
-        if isinstance(item, h5py.Dataset):
-            name = re.sub(r"^stages/\d+_\w+", "stages/<position>_<stage>", name)
-            name = re.sub(r"arrays/\w+$", "arrays/<name>", name)
-            found.setdefault(name, []).append(item.shape)
+        name = re.sub(r"^stages/\d+_[\w-]+", "stages/<position>_<stage>", name)
+        if not isinstance(item, h5py.Dataset):
+            note({"data": "`data`"}.get(name, "stage"), item)
+            return
+        note("data set", item)
+        axes = item.attrs.get("axes", b"").decode()
+        if axes and len(axes.split(",")) != item.ndim:
+            wrong.append(f"{path} {name}: {axes} of {item.shape}")
+        if not axes and "/arrays/" not in name:
+            wrong.append(f"{path} {name}: no axes")
+        names = item.attrs.get("names", b"").decode()
+        if names and "(" not in names and item.shape[-1] and \
+                len(names.split(", ")) != item.shape[-1]:
+            wrong.append(f"{path} {name}: {names} of {item.shape}")
+        name = re.sub(r"arrays/\w+$", "arrays/<name>", name)
+        found.setdefault(name, []).append(item.shape)
+        if name.endswith(">/status"):
+            ends = h5py.check_enum_dtype(item.dtype)
+            if ends != {"gtol": 0, "maxiter": 1, "linesearch": 2,
+                        "nonfinite": 3}:
+                wrong.append(f"{path} {name}: {ends}")
     with h5py.File(path) as f:
+        note("file", f)
         f.visititems(visit)
-        attributes = {"case": set(f.attrs), "data": set(f["data"].attrs),
-                      "stages": set().union(*(set(s.attrs) for s in
-                                              f["stages"].values()))}
-    return found, attributes
+        if f.attrs["schema"] != 2 or f.attrs["n"] != len(f["data/y"]):
+            wrong.append(f"{path}: schema or n")
+    return found, attributes, wrong
+
+
+def told_attributes(section):
+    """Pairs of a name and a place from the table of attributes."""
+    table = section.split("| attribute |", 1)[1].split("\n\n")[0]
+    pairs = set()
+    for row in table.splitlines()[2:]:
+        cells = row.split("|")
+        pairs |= {(name, place.strip())
+                  for name in re.findall(r"`([^`]+)`", cells[1])
+                  for place in cells[2].split(",")}
+    return pairs
 
 
 def shapes_are(path, shapes):
@@ -57,15 +91,54 @@ def shapes_are(path, shapes):
     for x in shapes[stage + "x"]:
         unknowns = x[1]
         yield x[0] <= n
-    for name in ("loss", "iterations", "evaluations"):
-        yield all(s == (1, n) for s in shapes[stage + name])
-    yield all(s == (n,) for s in shapes[stage + "status"])
+    for name in ("loss", "iterations", "evaluations", "status"):
+        yield all(s == (n,) for s in shapes[stage + name])
     for i, (p,) in enumerate(shapes[stage + "curve/iteration"]):
         yield shapes[stage + "curve/seconds"][i] == (p,)
         yield shapes[stage + "curve/evaluations"][i] == (p,)
         yield shapes[stage + "curve/loss"][i][0] == p
         yield shapes[stage + "curve/x"][i][0] == p
-        yield shapes[stage + "curve/x"][i][1] % unknowns == 0
+        yield shapes[stage + "curve/x"][i][2] == unknowns
+
+
+BESIDE = (" paper spread", " paper", " spread", " of", " note")
+
+
+def is_number(cell):
+    try:
+        float(cell)
+    except ValueError:
+        return False
+    return True
+
+
+def tables(folder):
+    """Of a report's CSV, what is wrong, and the columns that stand beside."""
+    wrong, beside = [], set()
+    paths = glob.glob(folder + "/report/*/tables/*.csv")
+    for path in paths:
+        with open(path, newline="") as f:
+            head, *rows = list(csv.reader(f))
+        if len(set(head)) != len(head):
+            wrong.append(f"{path}: two columns of one name")
+        if any(len(row) != len(head) for row in rows):
+            wrong.append(f"{path}: rows of another length than the head")
+        for k, name in enumerate(head):
+            own = re.sub(r" \[[^]]*\]$", "", name)
+            suffix = next((s for s in BESIDE if own.endswith(s)), "")
+            if suffix:
+                beside.add("q" + suffix)
+            cells = [row[k] for row in rows if row[k]]
+            numbers = [is_number(c) for c in cells]
+            if suffix not in (" of", " note") and any(numbers) and \
+                    not all(numbers) and k > 0:
+                wrong.append(f"{path}: {name} has words and numbers")
+            if any(c in ("–", "nan", "inf") for c in cells):
+                wrong.append(f"{path}: {name} has what is missing as a word")
+    with open(folder + "/report/jpo-robotic-arm/tables/results.csv") as f:
+        if f.readline().split(",")[:3] != ["n", "method", "refined"]:
+            wrong.append("results.csv: keys are not columns of their own")
+    return len(paths), wrong, beside
 
 
 def main():
@@ -74,9 +147,10 @@ def main():
                     "--out=" + WORK], check=True, stdout=subprocess.DEVNULL)
     sections = {s.split("\n")[0]: s
                 for s in re.split(r"^## ", page(), flags=re.M)[1:]}
-    hdf5, results, plan, tidy = (sections[name] for name in (
-        "`cases/<case>.h5`", "`results.json`", "`plan.json`", "Tidy tables"))
-    wrong, seen = [], set()
+    hdf5, results, plan, tidy, report = (sections[name] for name in (
+        "`cases/<case>.h5`", "`results.json`", "`plan.json`", "Tidy tables",
+        "Tables of a report"))
+    wrong, seen, noted = [], set(), set()
 
     def same(what, said, found):
         for name in sorted(said ^ found):
@@ -84,12 +158,13 @@ def main():
             wrong.append(f"docs/data.md, {what}: {name} {side}")
 
     for path in glob.glob(WORK + "/cases/*.h5"):
-        shapes, attributes = data_sets(path)
+        shapes, attributes, bad = data_sets(path)
         seen |= set(shapes)
+        noted |= attributes
+        wrong += bad
         if not all(shapes_are(path, shapes)):
             wrong.append(f"{path}: other shapes than the page says")
-        same("attributes", {"case", "hash", "key"},
-             set().union(*attributes.values()))
+    same("attributes", told_attributes(hdf5), noted)
     same("HDF5", names(hdf5, "data set"), seen)
     with open(WORK + "/results.json") as f:
         keys = set().union(*(set(e["physinv"])
@@ -101,8 +176,18 @@ def main():
                           check=True, capture_output=True, text=True).stdout
     columns = set(text.splitlines()[0].split(","))
     same("tidy tables", names(tidy, "column |"), columns)
-    print("\n".join(wrong) or f"{len(seen)} data sets, {len(keys)} keys, "
-          f"{len(columns)} columns")
+    subprocess.run([PROGRAM, "report", WORK], stdout=subprocess.DEVNULL,
+                   check=True)
+    count, bad, beside = tables(WORK)
+    wrong += bad
+    told = names(report, "column |")
+    # Several seeds and settings are another campaign's.
+    same("tables of a report", {"q paper", "q note"} & told,
+         {"q paper", "q note"} & beside)
+    same("tables of a report", beside & told, beside)
+    print("\n".join(wrong) or f"{len(seen)} data sets, {len(noted)} "
+          f"attributes, {len(keys)} keys, {len(columns)} columns, "
+          f"{count} tables")
     sys.exit(bool(wrong))
 
 

@@ -54,6 +54,9 @@ class Campaign(unittest.TestCase):
         c = self.results.curve(BFGS)
         self.assertEqual(c["loss"].shape, (len(c["iteration"]), 128))
         self.assertTrue(np.array_equal(c["loss"][-1], e["loss"]))
+        self.assertEqual(c["x"].shape, (len(c["iteration"]), 4, 2))
+        self.assertTrue(np.array_equal(c["x"][-1], e["x"][:4]))
+        self.assertEqual(e["arrays"]["first_step"].shape, (128,))
 
     def test_tidy_columns(self):
         columns = self.results.tidy()

@@ -43,10 +43,27 @@ class ForgedTest : public testing::Test {
   template <class F>
   std::string after(const std::string& array, F&& change) {
     return after([&](hid_t file) {
-      Batch<double> numbers = hdf5::read_batch(file, array);
+      const int rank = hdf5::rank(file, array);
+      Batch<double> numbers;
+      if (rank == 1) {
+        const auto list = hdf5::read_list(file, array);
+        numbers = Eigen::Map<const Batch<double>>(
+            list.data(), static_cast<Index>(list.size()), 1);
+      } else {
+        numbers = rank == 2 ? hdf5::read_batch(file, array)
+                            : hdf5::read_cube(file, array);
+      }
       change(numbers);
       hdf5::remove(file, array);
-      hdf5::write(file, array, numbers);
+      if (rank == 1) {
+        hdf5::write(
+            file,
+            array,
+            std::vector(numbers.data(), numbers.data() + numbers.size()));
+      } else {
+        rank == 2 ? hdf5::write(file, array, numbers)
+                  : hdf5::write_cube(file, array, numbers, 1);
+      }
     });
   }
 
@@ -92,7 +109,7 @@ TEST_F(ForgedTest, TypesAndShapesAreNamed) {
   const auto with_type = [&](const std::string& array, hid_t type, int rank) {
     return after([&](hid_t file) {
       hdf5::remove(file, array);
-      const hsize_t shape[] = {3, 2, 1};
+      const hsize_t shape[] = {3, 2, 1, 1};
       const hdf5::Handle space(
           H5Screate_simple(rank, shape, nullptr), H5Sclose, "make a shape");
       const hdf5::Handle set(H5Dcreate2(file,
@@ -111,7 +128,13 @@ TEST_F(ForgedTest, TypesAndShapesAreNamed) {
                          fmt::format("{}: a type of numbers", array)));
     EXPECT_TRUE(contains(with_type(array, H5T_STD_I64LE, 2),
                          fmt::format("{}: a type of numbers", array)));
-    EXPECT_TRUE(contains(with_type(array, H5T_IEEE_F64LE, 3),
+    EXPECT_TRUE(contains(after([&](hid_t file) {
+                           hdf5::remove(file, array);
+                           hdf5::write_cube(
+                               file, array, sample_batch(2, 3, 0), 1);
+                         }),
+                         "does not have 2 dimensions"));
+    EXPECT_TRUE(contains(with_type(array, H5T_IEEE_F64LE, 4),
                          fmt::format("{}: a shape", array)));
     EXPECT_TRUE(
         contains(after([&](hid_t file) { hdf5::remove(file, array); }), "x"));

@@ -16,6 +16,7 @@ std::string case_image() {
   const auto info = sample_case("jpo", 3, 7);
   const TemporaryDirectory directory;
   CaseFile file(info.name);
+  file.describe(info, sample_stage(info, 0));
   file.put_data(sample_data(info));
   for (const Index position : {0, 1, 0}) {  // once more: leaves gaps
     const StageRecord stage = sample_stage(info, position);
@@ -107,6 +108,36 @@ TEST(Hdf5Form, RefusesPartsThatNeedDecoding) {
                    H5Pset_fill_value(options, H5T_NATIVE_DOUBLE, &one);
                  }),
                  "a fill value");
+}
+
+TEST(Hdf5Form, RefusesOtherEnumerationsAndNumbers) {
+  expect_refused(image_with([](hid_t file) {
+                   const hdf5::Handle type(
+                       H5Tenum_create(H5T_STD_U8LE), H5Tclose, "make a type");
+                   const std::uint8_t zero = 0;
+                   H5Tenum_insert(type, "success", &zero);
+                   const hdf5::Handle set(H5Dcreate2(file,
+                                                     "status",
+                                                     type,
+                                                     list(4),
+                                                     H5P_DEFAULT,
+                                                     H5P_DEFAULT,
+                                                     H5P_DEFAULT),
+                                          H5Dclose,
+                                          "create an array");
+                 }),
+                 "a type of numbers");
+  for (const hid_t type : {H5T_STD_I64LE, H5T_STD_U64BE, H5T_IEEE_F64LE})
+    expect_refused(
+        image_with([&](hid_t file) {
+          const hdf5::Handle one(
+              H5Screate(H5S_SCALAR), H5Sclose, "make a shape");
+          const hdf5::Handle made(
+              H5Acreate2(file, "n", type, one, H5P_DEFAULT, H5P_DEFAULT),
+              H5Aclose,
+              "create an attribute");
+        }),
+        "an attribute");
 }
 
 TEST(Hdf5Form, RefusesGroupsInACircle) {

@@ -49,13 +49,27 @@ TEST(Hdf5, ReadsWhatItWrote) {
   const Batch<double> batch = Batch<double>::Random(3, 4);
   hdf5::write(written, "batch", batch);
   hdf5::write(written, "empty", Batch<double>(0, 4));
-  hdf5::write(written, "bytes", std::vector<std::uint8_t>{1, 255});
+  hdf5::write_attribute(written, "some", "other text");
+  hdf5::write_attribute(written, "seed", ~std::uint64_t{0});
+  hdf5::write(written,
+              "noted",
+              std::vector<double>{1, 2},
+              {.axes = "samples", .unit = "s"});
+  hdf5::write(written, "ends", std::vector{Status::maxiter, Status::nonfinite});
+  hdf5::write_cube(written, "cube", batch.topRows(2), 2);
   const auto file = hdf5::open_image(hdf5::image(written));
-  EXPECT_EQ(hdf5::read_attribute(file, "some"), "text");
+  EXPECT_EQ(hdf5::read_attribute(file, "some"), "other text");
+  EXPECT_EQ(hdf5::read_number(file, "seed"), ~std::uint64_t{0});
+  EXPECT_FALSE(hdf5::has_attribute(file, "other"));
+  EXPECT_EQ(hdf5::note(file, "noted").axes, "samples");
+  EXPECT_EQ(hdf5::note(file, "noted").unit, "s");
+  EXPECT_EQ(hdf5::note(file, "noted").names, "");
+  EXPECT_EQ(hdf5::rank(file, "cube"), 3);
+  EXPECT_EQ(hdf5::read_cube(file, "cube"), batch.topRows(2));
   EXPECT_EQ(hdf5::read_attribute(file, "none"), "");
   EXPECT_EQ(hdf5::read_batch(file, "batch"), batch);
   EXPECT_EQ(hdf5::read_batch(file, "empty").cols(), 4);
-  EXPECT_EQ(hdf5::read_bytes(file, "bytes")[1], 255);
+  EXPECT_EQ(hdf5::read_bytes(file, "ends"), (std::vector<std::uint8_t>{1, 3}));
 }
 
 TEST(Hdf5, AttributesAreOneTextOfFixedLength) {
@@ -69,6 +83,8 @@ TEST(Hdf5, AttributesAreOneTextOfFixedLength) {
     EXPECT_EQ(
         message_of<StoreError>([&] { hdf5::read_attribute(file, name); }),
         fmt::format("attribute {} is not one text of fixed length", name));
+    EXPECT_EQ(message_of<StoreError>([&] { hdf5::read_number(file, name); }),
+              fmt::format("attribute {} is not one whole number", name));
   }
 }
 
@@ -82,6 +98,14 @@ TEST(Hdf5, ArraysHaveTheTypeAndRankTheyWereWrittenWith) {
     EXPECT_THROW(hdf5::read_batch(file, name), StoreError) << name;
   for (const char* name : {"texts", "bytes", "cube"})
     EXPECT_THROW(hdf5::read_list(file, name), StoreError) << name;
+  for (const char* name : {"texts", "bytes", "list"})
+    EXPECT_THROW(hdf5::read_cube(file, name), StoreError) << name;
+  const hdf5::Handle other(
+      H5Tenum_create(H5T_STD_U8LE), H5Tclose, "make a type");
+  const std::uint8_t zero = 0;
+  H5Tenum_insert(other, "success", &zero);
+  put_array(file, "others", other, {4});
+  EXPECT_THROW(hdf5::read_bytes(file, "others"), StoreError);
   EXPECT_THROW(hdf5::read_bytes(file, "list"), StoreError);
 }
 
