@@ -11,7 +11,7 @@ namespace {
 /// What a worker needs before it does anything: code, libraries, registry.
 constexpr double kBaseMemory = 24e6;
 /// HDF5's tables of a case and of each stage; a line of the journal.
-constexpr double kCaseDisk = 6e3, kStageDisk = 4e3;
+constexpr double kCaseDisk = 6e3, kStageDisk = 5e3;
 /// Trials of whole chains take about this long; with more samples, only their
 /// training is tried, whose iterations can be cut.
 constexpr double kWholeSeconds = 0.4;

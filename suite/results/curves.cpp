@@ -296,19 +296,28 @@ void CaseFile::describe(const CaseInfo& info, const StageRecord& latest) {
   named([&] {
     about_ = info.about;
     if (version_of(file_) < kCaseVersion) renew();
-    const bool cited = !about_.arxiv.empty();
-    write_text(file_, "experiment", info.experiment);
-    write_text(file_, "problem", about_.problem);
-    write_text(file_, "method", info.method);
-    hdf5::write_attribute(file_, "n", static_cast<std::uint64_t>(info.n));
-    hdf5::write_attribute(file_, "seed", info.seed);
-    write_text(file_, "precision", std::string(to_string(info.precision)));
-    write_text(file_, "profile", profile_of({.info = info}, latest));
-    write_text(file_, "revision", latest.revision);
-    write_text(file_, "paper", about_.paper);
-    write_text(file_, "arxiv", about_.arxiv);
-    write_text(file_, "doi", cited ? "10.48550/arXiv." + about_.arxiv : "");
+    if (!hdf5::has_attribute(file_, "experiment")) describe_case(info);
+    const std::string& own = latest.run.profile;
+    for (const auto& [name, text] :
+         {std::pair("profile", own.empty() ? &info.profile : &own),
+          {"revision", &latest.revision}}) {
+      hdf5::remove_attribute(file_, name);
+      write_text(file_, name, *text);
+    }
   });
+}
+
+void CaseFile::describe_case(const CaseInfo& info) const {
+  write_text(file_, "experiment", info.experiment);
+  write_text(file_, "problem", about_.problem);
+  write_text(file_, "method", info.method);
+  hdf5::write_attribute(file_, "n", static_cast<std::uint64_t>(info.n));
+  hdf5::write_attribute(file_, "seed", info.seed);
+  write_text(file_, "precision", std::string(to_string(info.precision)));
+  write_text(file_, "paper", about_.paper);
+  write_text(file_, "arxiv", about_.arxiv);
+  if (!about_.arxiv.empty())
+    write_text(file_, "doi", "10.48550/arXiv." + about_.arxiv);
 }
 
 About CaseFile::about() const {

@@ -87,6 +87,7 @@ class CaseFile {
   template <class F>
   auto named(F&& body) const;
   CaseData read_data() const;
+  void describe_case(const CaseInfo& info) const;
   void put_arrays(const hdf5::Handle& group, const StageRecord& record) const;
   void renew();
 

@@ -92,13 +92,15 @@ Batch<double> read_cube(hid_t parent, const std::string& name);
 /// Statuses, or bytes.
 std::vector<std::uint8_t> read_bytes(hid_t parent, const std::string& name);
 
-/// One text, or one whole number; in the place of what has the name.
+/// One text, or one whole number, of a name that is free.
 void write_attribute(hid_t parent,
                      const std::string& name,
                      const std::string& value);
 void write_attribute(hid_t parent,
                      const std::string& name,
                      std::uint64_t value);
+/// Nothing is done if there is none.
+void remove_attribute(hid_t parent, const std::string& name);
 bool has_attribute(hid_t parent, const std::string& name);
 /// StoreError for what is anything else.
 std::string read_attribute(hid_t parent, const std::string& name);

@@ -9,11 +9,12 @@ namespace {
 /// What fits into the header of an object, where attributes stand.
 constexpr std::size_t kLongestText = 1 << 16;
 
-Handle scalar() { return {H5Screate(H5S_SCALAR), H5Sclose, "make a shape"}; }
+hid_t scalar() {
+  static const Handle shape(H5Screate(H5S_SCALAR), H5Sclose, "make a shape");
+  return shape;
+}
 
 void put(hid_t parent, const std::string& name, hid_t type, const void* value) {
-  if (has_attribute(parent, name))
-    check(H5Adelete(parent, name.c_str()), "remove attribute " + name);
   const Handle attribute(
       H5Acreate2(
           parent, name.c_str(), type, scalar(), H5P_DEFAULT, H5P_DEFAULT),
@@ -48,6 +49,11 @@ void write_attribute(hid_t parent,
                      const std::string& name,
                      std::uint64_t value) {
   put(parent, name, H5T_STD_U64LE, &value);
+}
+
+void remove_attribute(hid_t parent, const std::string& name) {
+  if (has_attribute(parent, name))
+    check(H5Adelete(parent, name.c_str()), "remove attribute " + name);
 }
 
 bool has_attribute(hid_t parent, const std::string& name) {

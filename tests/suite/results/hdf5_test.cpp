@@ -49,6 +49,9 @@ TEST(Hdf5, ReadsWhatItWrote) {
   const Batch<double> batch = Batch<double>::Random(3, 4);
   hdf5::write(written, "batch", batch);
   hdf5::write(written, "empty", Batch<double>(0, 4));
+  EXPECT_THROW(hdf5::write_attribute(written, "some", "again"), StoreError);
+  hdf5::remove_attribute(written, "some");
+  hdf5::remove_attribute(written, "other");
   hdf5::write_attribute(written, "some", "other text");
   hdf5::write_attribute(written, "seed", ~std::uint64_t{0});
   hdf5::write(written,
