@@ -17,6 +17,8 @@ except ImportError:
     print("skipped: python3-h5py is missing")
     sys.exit(77)
 
+import files
+
 PROGRAM, SOURCES, WORK = sys.argv[1:4]
 FILTER = "^jpo/robotic-arm/|^hig/toy-gamma-1/(adam|hig)/|^jpo/billiards/bfgs/"
 
@@ -24,15 +26,6 @@ FILTER = "^jpo/robotic-arm/|^hig/toy-gamma-1/(adam|hig)/|^jpo/billiards/bfgs/"
 def page():
     with open(os.path.join(SOURCES, "docs/data.md")) as f:
         return f.read()
-
-
-def names(section, first):
-    """Names in the first column of the table whose head begins so."""
-    table = section.split(f"| {first}", 1)[1].split("\n\n")[0]
-    found = []
-    for row in table.splitlines()[2:]:
-        found += re.findall(r"`([^`]+)`", row.split("|")[1])
-    return set(found)
 
 
 def data_sets(path):
@@ -75,14 +68,10 @@ def data_sets(path):
 
 def told_attributes(section):
     """Pairs of a name and a place from the table of attributes."""
-    table = section.split("| attribute |", 1)[1].split("\n\n")[0]
-    pairs = set()
-    for row in table.splitlines()[2:]:
-        cells = row.split("|")
-        pairs |= {(name, place.strip())
-                  for name in re.findall(r"`([^`]+)`", cells[1])
-                  for place in cells[2].split(",")}
-    return pairs
+    return {(name, place.strip())
+            for cells in files.table(section, "attribute")
+            for name in re.findall(r"`([^`]+)`", cells[0])
+            for place in cells[1].split(",")}
 
 
 def shapes_are(path, shapes):
@@ -143,8 +132,11 @@ def tables(folder):
 
 def main():
     shutil.rmtree(WORK, ignore_errors=True)
+    published = WORK + "-published"
+    shutil.rmtree(published, ignore_errors=True)
     subprocess.run([PROGRAM, "--profile=smoke", "--filter=" + FILTER,
-                    "--out=" + WORK], check=True, stdout=subprocess.DEVNULL)
+                    "--benchmark_repetitions=2", "--out=" + WORK],
+                   check=True, stdout=subprocess.DEVNULL)
     sections = {s.split("\n")[0]: s
                 for s in re.split(r"^## ", page(), flags=re.M)[1:]}
     hdf5, results, plan, tidy, report = (sections[name] for name in (
@@ -165,22 +157,25 @@ def main():
         if not all(shapes_are(path, shapes)):
             wrong.append(f"{path}: other shapes than the page says")
     same("attributes", told_attributes(hdf5), noted)
-    same("HDF5", names(hdf5, "data set"), seen)
+    same("HDF5", files.names(hdf5, "data set"), seen)
     with open(WORK + "/results.json") as f:
         keys = set().union(*(set(e["physinv"])
                              for e in json.load(f)["benchmarks"]))
-    same("results.json", names(results, "key of `physinv`"), keys)
+    same("results.json", files.names(results, "key of `physinv`"), keys)
     with open(WORK + "/plan.json") as f:
-        same("plan.json", names(plan, "key |"), set(json.load(f)))
+        same("plan.json", files.names(plan, "key"), set(json.load(f)))
     text = subprocess.run([PROGRAM, "export", WORK, "--format=tidy"],
                           check=True, capture_output=True, text=True).stdout
     columns = set(text.splitlines()[0].split(","))
-    same("tidy tables", names(tidy, "column |"), columns)
-    subprocess.run([PROGRAM, "report", WORK], stdout=subprocess.DEVNULL,
-                   check=True)
+    same("tidy tables", files.names(tidy, "column"), columns)
+    subprocess.run([PROGRAM, "report", WORK, "--publish", published],
+                   stdout=subprocess.DEVNULL, check=True)
+    wrong += [f"docs/data.md, files: {one}" for one in
+              files.differences(sections["Files"], WORK, published)]
+    wrong += files.all_keys(sections, WORK, published)
     count, bad, beside = tables(WORK)
     wrong += bad
-    told = names(report, "column |")
+    told = files.names(report, "column")
     # Several seeds and settings are another campaign's.
     same("tables of a report", {"q paper", "q note"} & told,
          {"q paper", "q note"} & beside)
