@@ -4,6 +4,7 @@ import os
 import pathlib
 import shutil
 import subprocess
+import sys
 
 from physinv import _core, _methods
 
@@ -32,6 +33,12 @@ def program():
         raise FileNotFoundError(
             "there is no program physinv-bench; PHYSINV_BENCH names it")
     return found
+
+
+def main():
+    """The program, as what pip installs as physinv-bench."""
+    path = program()
+    os.execv(path, [path, *sys.argv[1:]])
 
 
 def _words(arguments, flags):
