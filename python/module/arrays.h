@@ -6,6 +6,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
+#include <string>
 #include <string_view>
 
 #include "suite/core/batch.h"
@@ -19,6 +20,23 @@ using Array = py::array_t<T, py::array::c_style | py::array::forcecast>;
 
 template <class T>
 using View = Eigen::Map<const Batch<T>>;
+
+/// The array of T that an argument is or can be taken for; else TypeError.
+template <class T>
+Array<T> taken(const py::object& argument, std::string_view name) {
+  if (Array<T>::check_(argument))
+    return py::reinterpret_borrow<Array<T>>(argument);
+  if (py::isinstance<py::array>(argument) &&
+      py::reinterpret_borrow<py::array>(argument).dtype().kind() == 'c')
+    throw py::type_error(
+        fmt::format("{} is complex; real numbers are right", name));
+  auto array = Array<T>::ensure(argument);
+  if (!array) {
+    PyErr_Clear();
+    throw py::type_error(fmt::format("{} is no array of numbers", name));
+  }
+  return array;
+}
 
 /// ValueError for what is no (samples, features) of these sizes.
 template <class T>

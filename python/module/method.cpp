@@ -332,43 +332,70 @@ py::tuple run(const Arguments& arguments) {
 }  // namespace
 
 void define_method(py::module_& module) {
+  py::options signatures;
+  signatures.disable_function_signatures();
   const auto active = py::arg("active") = py::none();
-  py::class_<Solving, std::shared_ptr<Solving>>(module, "Run")
+  py::class_<Solving, std::shared_ptr<Solving>>(
+      module,
+      "Run",
+      "What a method sees of its case: n problems without their solutions, all "
+      "calls\ncounted, a budget. Arrays are in double.")
       .def_property_readonly("n", &Solving::n, "Problems of the case.")
       .def_property_readonly("iterations", &Solving::iterations, "The budget.")
-      .def_property_readonly("gtol", &Solving::gtol)
+      .def_property_readonly(
+          "gtol",
+          &Solving::gtol,
+          "The norm of a gradient (largest entry) at which a problem counts as "
+          "solved.")
       .def_property_readonly(
           "start", &Solving::start, "First guesses: (n, unknowns).")
-      .def_property_readonly("given", &Solving::given)
-      .def_property_readonly("observations", &Solving::observations)
       .def_property_readonly(
-          "seed", &Solving::seed, "For the method's own random numbers.")
-      .def("loss",
-           &Solving::loss,
-           py::arg("x"),
-           active,
-           "Losses at x of the problems `active` (default: all); counted.")
+          "given", &Solving::given, "Side input: (n, side input).")
+      .def_property_readonly("observations",
+                             &Solving::observations,
+                             "What x is sought for: (n, observations).")
+      .def_property_readonly(
+          "seed",
+          &Solving::seed,
+          "For the method's own random numbers; each reading "
+          "gives another.")
+      .def(
+          "loss",
+          &Solving::loss,
+          py::arg("x"),
+          active,
+          "loss($self, x, active=None)\n--\n\n"
+          "Losses (k,) at x (k, unknowns) of the problems `active`, by default "
+          "all n;\ncounted.")
       .def("loss_and_gradient",
            &Solving::loss_and_gradient,
            py::arg("x"),
            active,
-           "The same, and d loss / d x.")
+           "loss_and_gradient($self, x, active=None)\n--\n\n"
+           "Losses (k,) and d loss / d x (k, unknowns); counted. Needs vjp.")
       .def("labelled",
            &Solving::labelled,
            py::arg("per_problem") = 1,
-           "Pairs (x, y, given) to learn from, for those who need `labels`.")
-      .def("proceed",
-           &Solving::proceed,
-           py::arg("x"),
-           "while run.proceed(x): counts an iteration; measures x while the "
-           "clock stands still.")
+           "labelled($self, per_problem=1)\n--\n\n"
+           "x, y and given, so many for each problem, to learn from. Needs "
+           "labels.")
+      .def(
+          "proceed",
+          &Solving::proceed,
+          py::arg("x"),
+          "proceed($self, x)\n--\n\n"
+          "while run.proceed(x): counts an iteration, measures x (n, unknowns) "
+          "while the\nclock stands still, and is False when the budget is "
+          "spent.")
       .def("accept",
            &Solving::accept,
            py::arg("example"),
            py::arg("iteration"),
            py::arg("x"),
            py::arg("loss"),
-           "For solvers that go example by example: its iterate.");
+           "accept($self, example, iteration, x, loss)\n--\n\n"
+           "For solvers that go example by example: its iterate x (unknowns,), "
+           "from\niteration 0, the start, on.");
   module.def("add_method", &add_method);
   module.def("run", &run);
 }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <memory>
-#include <optional>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -23,30 +23,61 @@ struct Side {
 /// Made when first used; shared by tapes.
 class Sides {
  public:
-  explicit Sides(const ProblemRecipe& recipe) : recipe_(recipe) {}
+  explicit Sides(const Experiment& experiment)
+      : name_(experiment.name), recipe_(experiment.problem) {}
   template <class T>
   Side<T>& of();
+  /// An ability, or a TypeError that names those which are there.
+  template <template <class> class Ability, class T>
+  const Ability<T>& need(const char* ability);
 
  private:
+  [[noreturn]] void refuse(const char* ability) const;
+
+  std::string name_;
   ProblemRecipe recipe_;
   std::once_flag once_[2];
   Side<float> float_;
   Side<double> double_;
 };
 
+template <class T>
+Side<T>& Sides::of() {
+  auto& side = [this]() -> auto& {
+    if constexpr (std::is_same_v<T, float>) {
+      return float_;
+    } else {
+      return double_;
+    }
+  }
+  ();
+  std::call_once(once_[sizeof(T) / 8],
+                 [&] { side.problem = recipe_.make<T>(); });
+  return side;
+}
+
+template <template <class> class Ability, class T>
+const Ability<T>& Sides::need(const char* ability) {
+  const auto* it = dynamic_cast<const Ability<T>*>(of<T>().problem.get());
+  if (it == nullptr) refuse(ability);
+  return *it;
+}
+
 /// A linearization: products with the Jacobian and its transpose at its point.
 template <class T>
 class Linearization {
  public:
-  Linearization(std::shared_ptr<Sides> sides, std::string name, Index samples);
+  Linearization(std::shared_ptr<Sides> sides, Index samples)
+      : sides_(std::move(sides)),
+        samples_(samples),
+        tape_(sides_->of<T>().tapes.take()) {}
 
   Tape& tape() { return *tape_; }
-  Array<T> pullback(const Array<T>& y_bar) const;
-  Array<T> pushforward(const Array<T>& x_dot) const;
+  Array<T> pullback(const py::object& y_bar) const;
+  Array<T> pushforward(const py::object& x_dot) const;
 
  private:
   std::shared_ptr<Sides> sides_;
-  std::string name_;
   Index samples_;
   typename Pool<Tape>::Lease tape_;
 };
@@ -59,37 +90,11 @@ class PyProblem {
   std::vector<std::string> abilities() const;
   Shape shape() const { return shape_; }
   const Options& options() const { return experiment_->problem.options; }
-  Array<double> start();
+  Array<double> start() const;
   py::tuple sample(std::uint64_t seed, Index n, Index first, bool labelled);
-
-  template <class T>
-  Array<T> forward(const Array<T>& x, const std::optional<Array<T>>& given);
-  template <class T>
-  py::tuple linearize(const Array<T>& x, const std::optional<Array<T>>& given);
-  template <class T>
-  py::object jacobian(const Array<T>& x, const std::optional<Array<T>>& given);
-  template <class T>
-  Array<T> hessian(const Array<T>& x,
-                   const Array<T>& target,
-                   const std::optional<Array<T>>& given);
-  template <class T>
-  Array<T> invert(const Array<T>& y,
-                  const std::optional<Array<T>>& given,
-                  const std::optional<Array<T>>& guess);
-  template <class T>
-  Array<double> loss(const Array<T>& y, const Array<T>& target);
-  template <class T>
-  Array<T> loss_gradient(const Array<T>& y, const Array<T>& target);
+  const std::shared_ptr<Sides>& sides() const { return sides_; }
 
  private:
-  /// An ability, or an error that names those which are there.
-  template <template <class> class Ability, class T>
-  const Ability<T>& need(const char* ability);
-  template <class T>
-  View<T> side_input(const std::optional<Array<T>>& given, Index samples) const;
-  template <class T>
-  View<T> unknowns(const Array<T>& x) const;
-
   std::shared_ptr<const Experiment> experiment_;
   std::shared_ptr<Sides> sides_;
   Shape shape_;
@@ -99,5 +104,8 @@ class PyProblem {
 PyProblem find_problem(const std::string& name);
 
 void define_problem(py::module_& module);
+
+/// Its methods on arrays.
+void define_calls(py::class_<PyProblem>& c);
 
 }  // namespace physinv::python

@@ -6,32 +6,68 @@ how they are solved.
     p = physinv.problem("jpo/billiards")   # physinv.problems() lists them
     s = p.sample(seed=0, n=128)            # s.x, s.y, s.given
     y, tape = p.linearize(s.x, s.given)    # forward that remembers
-    x_bar = tape.pullback(y_bar)           # J^T y_bar
+    y_bar = p.loss_gradient(y, s.y)        # d loss / d y
+    x_bar = tape.pullback(y_bar)           # d loss / d x = J^T y_bar
     p.names                                # what this problem can do
 
-Arrays are (samples, features) in C order, float32 or float64, and not copied.
-A call of one precision answers in it; losses are double. A sample that
-diverges is NaN in its own row. Errors are ValueError and TypeError with the
-suite's words. The lock of the interpreter is free while a problem computes.
+A problem y = F(x | given) has unknowns x, side input given and observations y,
+each an array (samples, features): p.shape says how many features. A step of
+gradient descent on all 128 at once is x = x - 0.1 * x_bar.
 
-    physinv.torch(p)(x, given)             # differentiable by autograd
-    physinv.run("smoke", filter="jpo/billiards", out="results/smoke")
-    r = physinv.open("results/smoke")      # r.stages(), r.examples(), r.curve()
+- Arrays are float32 or float64 in C order and are read without a copy; others
+  are converted. A call answers in the precision of its first array, losses are
+  double.
+- A sample that diverges is NaN in its own row, and no error. What a problem
+  lacks is a TypeError, a wrong shape a ValueError; both say what is right.
+- x, y and given have the units that the header of a problem states
+  (problems/<name>/<name>.h; most are dimensionless), times are seconds.
+- The lock of the interpreter is free while a problem computes; threads may
+  share a problem.
 
-    @physinv.method("mine", experiments="jpo/*")  # a case like any other
-    def solve(run): ...
+Learning through a problem, with PyTorch:
+
+    forward = physinv.torch(p)             # x, given -> y, for autograd
+    loss = (forward(net(features), given) - target).square().sum()
+    loss.backward()                        # one forward pass, one pullback
+
+Campaigns, which physinv-bench runs and this package reads:
+
+    r = physinv.run("smoke", filter="jpo/billiards", out="results/smoke")
+    r = physinv.open("results/smoke")      # one that was run before
+    r.stages(), r.examples(case), r.curve(case), r.tidy(), r.plot("fig4")
+    physinv.compare("results/smoke")       # its methods beside each other
+    physinv.compare("results/a", "results/b")
+    physinv.published("jpo/billiards")     # what the paper prints
+
+A method of one's own, as a case like any other:
+
+    @physinv.method("momentum", experiments="jpo/*", needs="vjp")
+    def solve(run):
+        x, v = run.start, 0
+        while run.proceed(x):              # counts, keeps the clock
+            _, gradient = run.loss_and_gradient(x)
+            v = 0.9 * v - 0.01 * gradient
+            x = x + v
+        return x
+
+    physinv.run("smoke", filter="jpo/billiards/(bfgs|momentum)")
 """
 
+import operator as _operator
 from collections import namedtuple as _namedtuple
 
 from physinv import _core
-from physinv._campaign import ProgramError, open, program, run, verb
+from physinv._campaign import (ProgramError, Results, open, program, published,
+                               run, verb)
+from physinv._compare import compare
 from physinv._methods import method
 
-__all__ = ["Problem", "ProgramError", "Samples", "method", "open", "problem",
-           "problems", "program", "run", "torch", "verb", "version"]
+__all__ = ["Problem", "ProgramError", "Results", "Run", "Samples", "compare",
+           "method", "open", "problem", "problems", "program", "published",
+           "run", "torch", "verb", "version"]
 
 Problem = _core.Problem
+Run = _core.Run
 Samples = _namedtuple("Samples", "x y given")
 Samples.__doc__ = """Inverse problems: unknowns x (no columns where the solution
 is not known), observations y and side input given, each (samples, features)."""
@@ -52,18 +88,33 @@ def version():
     return _core.version_text()
 
 
+def _count(name, value, least):
+    try:
+        count = _operator.index(value)
+    except TypeError:
+        count = None
+    if count is None or not least <= count < 2 ** 63:
+        raise ValueError(f"{name}={value!r}; a whole number from {least} on is "
+                         "right")
+    return count
+
+
 def _sample(self, seed=0, n=1, first=0, labelled=False):
     """Inverse problems first .. first + n - 1 of a seed, in double, the same as
     in campaigns; small sets are the beginnings of large ones. `labelled`: pairs
     (x, y) of the separate set that methods learn from."""
-    return Samples(*self._sample(seed, n, first, labelled))
+    return Samples(*self._sample(
+        _count("seed", seed, 0), _count("n", n, 1), _count("first", first, 0),
+        bool(labelled)))
 
 
+_sample.__name__ = _sample.__qualname__ = "sample"
 Problem.sample = _sample
 
 
 def torch(problem):
     """F as a function of tensors, (x, given=None) -> y, for autograd: one
-    forward pass, and one pullback for a gradient by x."""
+    forward pass, and one pullback for a gradient by x. Tensors of float32 or
+    float64, (samples, features), on the CPU; first derivatives."""
     from physinv._torch import differentiable
     return differentiable(problem)

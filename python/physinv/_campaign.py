@@ -1,5 +1,6 @@
 """Campaigns: run by the program physinv-bench, read by the suite's own code."""
 
+import json
 import os
 import pathlib
 import shutil
@@ -39,6 +40,25 @@ def main():
     """The program, as what pip installs as physinv-bench."""
     path = program()
     os.execv(path, [path, *sys.argv[1:]])
+
+
+def published(experiment):
+    """The numbers that the paper of an experiment prints, a dict each: quantity,
+    value, spread (None where there is none), unit, where (table or figure)."""
+    folder = os.environ.get("PHYSINV_PUBLISHED_DIR") or _published_folder()
+    paper = pathlib.Path(folder) / f"{experiment.split('/')[0]}.json"
+    values = json.loads(paper.read_text())["values"] if paper.is_file() else []
+    found = [dict(v) for v in values if v.pop("experiment") == experiment]
+    if not found:
+        raise ValueError(f"no paper prints numbers of '{experiment}' in {folder}")
+    return found
+
+
+def _published_folder():
+    """Beside the program, or in the checkout that a build tree links to."""
+    installed = pathlib.Path(program()).parent.parent / "share/physinv/published"
+    sources = pathlib.Path(__file__).resolve().parents[2] / "reports/published"
+    return installed if installed.is_dir() else sources
 
 
 def _words(arguments, flags):
@@ -140,7 +160,7 @@ class Results:
 
     def plot(self, figure):
         """A figure of the report as SVG text, by its id ("fig4"); the report is
-        made if it is not there."""
+        made if it is not there. A wrong id is answered with those there are."""
         return _figure(self.directory, figure)
 
 

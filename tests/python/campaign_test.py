@@ -88,6 +88,29 @@ class Campaign(unittest.TestCase):
         self.assertEqual(own["loss"], columns["loss"].tolist())
         self.assertEqual(list(own), list(columns))
 
+    def test_compare(self):
+        row, = physinv.compare(WORK + "/smoke")
+        e = self.results.examples(BFGS)
+        self.assertEqual(
+            [row[k] for k in ("experiment", "n", "method", "seeds", "problems")],
+            ["jpo/billiards", 128, "bfgs", 1, 128])
+        self.assertEqual(row["loss"], np.median(e["loss"]))
+        self.assertEqual(row["converged"], e["status"].count("gtol") / 128)
+        self.assertEqual(row["seconds"], self.results.stages()[0]["seconds"])
+        both = physinv.compare(WORK + "/smoke", WORK + "/smoke")
+        self.assertEqual(both["rows"][0]["sides"][1]["same_bits"], 1)
+        with self.assertRaisesRegex(TypeError, "two campaigns take"):
+            physinv.compare(WORK + "/smoke", by="n")
+
+    def test_published_numbers(self):
+        found = physinv.published("jpo/billiards")
+        values = {v["quantity"]: v["value"] for v in found}
+        self.assertEqual(values["table4/jpo/better"], 44.3)
+        self.assertEqual(set(found[0]),
+                         {"quantity", "value", "spread", "unit", "where"})
+        with self.assertRaisesRegex(ValueError, "no paper prints"):
+            physinv.published("matrix/billiards")
+
     def test_what_is_not_there_is_said(self):
         with self.assertRaisesRegex(ValueError, "there is no case"):
             self.results.curve("jpo/billiards/bfgs")

@@ -2,7 +2,10 @@
 """Every registered problem through the package: shapes, both precisions, what a
 pullback is the transpose of, errors in words, no copies, threads, overheads."""
 
+import ast
+import inspect
 import os
+import pydoc
 import sys
 import threading
 import time
@@ -82,7 +85,10 @@ class Problems(unittest.TestCase):
             s = labelled(p)
             y, tape = p.linearize(s.x, s.given)
             x_dot, y_bar = np.sin(s.x + 1), np.cos(y)
-            left = (tape.pushforward(x_dot) * y_bar).sum(1)
+            y_dot = tape.pushforward(x_dot)
+            self.assertTrue(np.array_equal(
+                y_dot, p.pushforward(s.x, x_dot, s.given)))
+            left = (y_dot * y_bar).sum(1)
             right = (x_dot * tape.pullback(y_bar)).sum(1)
             size = np.abs(left).max() + np.abs(right).max()
             self.assertLess(np.abs(left - right).max(), 1e-9 * (1 + size))
@@ -154,8 +160,14 @@ class Problems(unittest.TestCase):
             arm.invert(s.y)
         with self.assertRaisesRegex(TypeError, "x is no array of numbers"):
             arm.forward("no")
-        with self.assertRaisesRegex(ValueError, "n is at least 1"):
-            arm.sample(n=0)
+        for wrong in ({"n": 0}, {"n": 1.5}, {"seed": -1}, {"first": "x"}):
+            name, = wrong
+            with self.assertRaisesRegex(ValueError, f"{name}=.*is right"):
+                arm.sample(**wrong)
+        with self.assertRaisesRegex(TypeError, "x is complex"):
+            arm.forward(s.x + 1j)
+        with self.assertRaisesRegex(TypeError, "no jvp, which pushforward"):
+            arm.pushforward(s.x, s.x)
         _, tape = arm.linearize(s.x)
         with self.assertRaisesRegex(ValueError, r"y_bar is \(5, 4\)"):
             tape.pullback(s.x)
@@ -163,6 +175,44 @@ class Problems(unittest.TestCase):
         if ks.shape[2] > 0:
             with self.assertRaisesRegex(ValueError, "needs given"):
                 ks.forward(labelled(ks).x)
+
+    def test_help_teaches(self):
+        text = pydoc.plain(pydoc.render_doc(physinv))
+        for words in ("linearize(x, given=None)", "(samples, unknowns)",
+                      "invert(y, given=None, guess=None)",
+                      "sample(self, seed=0, n=1, first=0, labelled=False)",
+                      "loss_and_gradient(x, active=None)"):
+            self.assertIn(words, text)
+        self.assertNotIn("physinv._core.Problem, ", text)
+        for name in physinv.__all__:
+            self.assertTrue(getattr(physinv, name).__doc__, name)
+
+    def stubs(self, name):
+        path = os.path.join(os.path.dirname(physinv.__file__), name)
+        with open(path) as f:
+            return {node.name: node for node in ast.parse(f.read()).body
+                    if isinstance(node, (ast.ClassDef, ast.FunctionDef))}
+
+    @staticmethod
+    def public(module):
+        return {name for name in vars(module) if not name.startswith("__")}
+
+    def test_stubs_name_what_there_is(self):
+        core, stubs = physinv._core, self.stubs("_core.pyi")
+        self.assertEqual(self.public(core), set(stubs))
+        for name, node in stubs.items():
+            if isinstance(node, ast.ClassDef):
+                self.assertEqual(self.public(getattr(core, name)),
+                                 {one.name for one in node.body}, name)
+        own = self.stubs("__init__.pyi")
+        self.assertEqual(set(own) | {"Problem", "Run"}, set(physinv.__all__))
+        for name, node in own.items():
+            if isinstance(node, ast.FunctionDef):
+                there = inspect.signature(getattr(physinv, name)).parameters
+                given = node.args
+                self.assertEqual(
+                    [a.arg for a in (*given.args, *filter(None, (
+                        given.vararg, given.kwarg)))], list(there), name)
 
     def test_threads_share_a_problem(self):
         p = physinv.problem("jpo/kuramoto-sivashinsky")
