@@ -45,21 +45,6 @@ install(DIRECTORY suite problems optimizers baselines
   PATTERN app EXCLUDE PATTERN cases EXCLUDE PATTERN kernels.h EXCLUDE
   PATTERN real_fft.h EXCLUDE)
 
-# Contract tests, which users compile over what they register.
-set(contract tests/contract)
-install(FILES ${contract}/problem_contract_test.cpp
-    ${contract}/method_contract_test.cpp ${contract}/case_contract_test.cpp
-    ${contract}/claim_contract_test.cpp
-  DESTINATION ${CMAKE_INSTALL_DATADIR}/physinv/sources/${contract}
-  COMPONENT development)
-set(support tests/support)
-install(FILES ${support}/bits.h ${support}/bits.cpp ${support}/gradient_check.h
-    ${support}/memory_checkpoint.h ${support}/quadratic.h
-    ${support}/quadratic.cpp ${support}/registered.h ${support}/tolerance.h
-    ${support}/tolerance.cpp
-  DESTINATION ${CMAKE_INSTALL_DATADIR}/physinv/sources/${support}
-  COMPONENT development)
-
 write_basic_package_version_file(
   ${PROJECT_BINARY_DIR}/physinv-config-version.cmake
   COMPATIBILITY SameMinorVersion)
@@ -77,6 +62,20 @@ foreach(program physinv-bench physinv-run physinv-kernels)
     install(TARGETS ${program} COMPONENT programs OPTIONAL)
   endif()
 endforeach()
+
+# Contract tests, where they were built: the verb `conformance`, and what users
+# link over what they register.
+function(physinv_install_contract_tests)
+  install(TARGETS physinv-conformance COMPONENT programs OPTIONAL)
+  install(TARGETS physinv_contract physinv_test_quadratic physinv_test_equality
+    EXPORT physinv-contract ARCHIVE COMPONENT development OPTIONAL)
+  install(TARGETS physinv_conformance EXPORT physinv-contract
+    OBJECTS DESTINATION ${CMAKE_INSTALL_LIBDIR}/physinv
+    COMPONENT development OPTIONAL)
+  install(EXPORT physinv-contract NAMESPACE physinv::
+    FILE physinv-contract-targets.cmake
+    DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/physinv COMPONENT development)
+endfunction()
 foreach(component programs development)
   install(DIRECTORY reports/published
     DESTINATION ${CMAKE_INSTALL_DATADIR}/physinv COMPONENT ${component})

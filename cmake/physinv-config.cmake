@@ -25,4 +25,13 @@ if(physinv_verbs)
   find_dependency(CLI11)
   include(${CMAKE_CURRENT_LIST_DIR}/physinv-verbs-targets.cmake)
 endif()
+# The contract tests, where they were built (./bench conformance, ./check).
+file(GLOB physinv_contract
+  ${CMAKE_CURRENT_LIST_DIR}/../../libphysinv_contract.a)
+if(physinv_verbs AND physinv_contract)
+  find_package(GTest QUIET)
+  if(GTest_FOUND)
+    include(${CMAKE_CURRENT_LIST_DIR}/physinv-contract-targets.cmake)
+  endif()
+endif()
 include(${CMAKE_CURRENT_LIST_DIR}/physinv-outside.cmake)

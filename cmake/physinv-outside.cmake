@@ -5,8 +5,8 @@
 #   physinv_add_plugin(<name> SOURCES <source>...)
 #     <name>.so, the same for physinv-bench --plugin=<name>.so
 #   physinv_add_contract_tests(<name>)
-#     <name>_contract_test: the suite's contract tests over what SOURCES of a
-#     program or plug-in register
+#     <name>_contract_test, also a test of ctest: the suite's contract tests over
+#     what SOURCES of a program or plug-in register
 #
 # SOURCES and the headers that they include enter the content keys: an edit makes
 # stale what is computed from them, and nothing else.
@@ -90,40 +90,20 @@ function(physinv_add_plugin name)
     SLEEF::sleef fmt::fmt nlohmann_json::nlohmann_json)
 endfunction()
 
-# The tests alone, once for a project. They spend their time in the libraries.
-function(physinv_contract_objects)
-  if(TARGET physinv_contract_objects)
-    return()
-  endif()
-  set(tests ${PHYSINV_DATA}/sources/tests)
-  add_library(physinv_contract_objects OBJECT EXCLUDE_FROM_ALL)
-  foreach(kind problem method case claim)
-    target_sources(physinv_contract_objects PRIVATE
-      ${tests}/contract/${kind}_contract_test.cpp)
-  endforeach()
-  foreach(name bits quadratic tolerance)
-    target_sources(physinv_contract_objects PRIVATE ${tests}/support/${name}.cpp)
-  endforeach()
-  target_include_directories(physinv_contract_objects SYSTEM PRIVATE
-    ${PHYSINV_DATA}/sources)
-  target_compile_definitions(physinv_contract_objects PRIVATE
-    PHYSINV_PUBLISHED_DIR="${PHYSINV_DATA}/published")
-  target_compile_options(physinv_contract_objects PRIVATE -w -O1)
-  target_link_libraries(physinv_contract_objects PRIVATE
-    physinv::physinv GTest::gtest)
-endfunction()
-
 # With the include folders and libraries of the program or plug-in.
 function(physinv_add_contract_tests name)
   if(ARGN OR NOT TARGET ${name})
     message(FATAL_ERROR "physinv_add_contract_tests(${name} ${ARGN}): what is "
       "expected is the name of a program or plug-in of physinv")
   endif()
-  find_package(GTest REQUIRED)
-  physinv_contract_objects()
+  if(NOT TARGET physinv::contract)
+    message(FATAL_ERROR "physinv_add_contract_tests(${name}): libgtest-dev is "
+      "missing, or the suite was installed from a tree without contract tests; "
+      "'./bench conformance --help' builds them there")
+  endif()
   set(target ${name}_contract_test)
   get_target_property(sources ${name} physinv_sources)
-  add_executable(${target} ${sources})
+  add_executable(${target} ${sources} $<TARGET_OBJECTS:physinv::conformance>)
   physinv_own_sources(${target} false)
   foreach(property INCLUDE_DIRECTORIES COMPILE_DEFINITIONS)
     set_property(TARGET ${target} PROPERTY ${property}
@@ -131,8 +111,8 @@ function(physinv_add_contract_tests name)
   endforeach()
   set(libraries $<TARGET_PROPERTY:${name},LINK_LIBRARIES>)
   target_link_libraries(${target} PRIVATE
-    $<FILTER:${libraries},EXCLUDE,^physinv::>)
-  target_sources(${target} PRIVATE $<TARGET_OBJECTS:physinv_contract_objects>)
-  target_link_libraries(${target} PRIVATE physinv::physinv
-    GTest::gtest GTest::gtest_main)
+    $<FILTER:${libraries},EXCLUDE,^physinv::>
+    $<LINK_LIBRARY:WHOLE_ARCHIVE,physinv::contract>
+    physinv::app_run physinv::physinv)
+  add_test(NAME ${target} COMMAND ${target})
 endfunction()

@@ -1,17 +1,19 @@
 #include "suite/app/installed.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <vector>
 
 #include "suite/harness/context.h"
 #include "suite/harness/errors.h"
 #include "suite/harness/outside.h"
 
 namespace physinv {
-namespace {
 
 namespace fs = std::filesystem;
-
-}  // namespace
 
 fs::path program_directory() {
   return fs::read_symlink("/proc/self/exe").parent_path();
@@ -33,6 +35,19 @@ fs::path published_directory() {
                     "PHYSINV_PUBLISHED_DIR names it",
                     chosen.string()));
   return chosen;
+}
+
+void go_on_as(const std::string& name,
+              const Arguments& arguments,
+              std::string_view remedy) {
+  std::string program = (program_directory() / name).string();
+  Arguments copies = arguments;
+  std::vector<char*> argv = {program.data()};
+  for (auto& a : copies) argv.push_back(a.data());
+  argv.push_back(nullptr);
+  execv(program.c_str(), argv.data());
+  throw EnvironmentError(fmt::format(
+      "cannot start {} ({}); {}", program, std::strerror(errno), remedy));
 }
 
 }  // namespace physinv

@@ -2,6 +2,10 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "suite/app/verbs.h"
 
 namespace physinv {
 
@@ -14,5 +18,11 @@ std::filesystem::path program_directory();
 /// installed program never depends on what stands there by now. Throws
 /// UsageError if there are none.
 std::filesystem::path published_directory();
+
+/// Goes on as the program of this name beside this one. EnvironmentError with
+/// what would make it if it cannot start.
+[[noreturn]] void go_on_as(const std::string& name,
+                           const Arguments& arguments,
+                           std::string_view remedy);
 
 }  // namespace physinv

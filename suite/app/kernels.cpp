@@ -1,9 +1,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
-#include <cerrno>
-#include <cstring>
 #include <sstream>
 
 #include "suite/app/installed.h"
@@ -17,25 +14,23 @@ namespace {
 
 constexpr std::string_view kFilter = "--benchmark_filter=";
 
-[[noreturn]] void refuse_kernels(const std::string& name, const char* why) {
-  throw EnvironmentError(
-      fmt::format("cannot start {} ({}); build the target physinv-kernels, or "
-                  "install it",
-                  name,
-                  why));
-}
+constexpr const char* kProgram = "physinv-kernels";
+constexpr std::string_view kRemedy =
+    "build the target physinv-kernels, or install it";
 
 /// Google Benchmark's own expressions may take for ever. It gets the names
 /// that match, each as it is.
-std::string by_names(const std::string& program,
-                     const std::string& pattern,
-                     std::string_view whose) {
+std::string by_names(const std::string& pattern, std::string_view whose) {
   const NameFilter filter({pattern}, whose);
+  const std::string program = (program_directory() / kProgram).string();
   const Ended listed = run_child(
       {program, "--benchmark_list_tests", std::string(kFilter) + "all"});
   if (listed.status != 0)
-    refuse_kernels(program,
-                   listed.status < 0 ? "it is not there" : "it cannot list");
+    throw EnvironmentError(
+        fmt::format("cannot start {} ({}); {}",
+                    program,
+                    listed.status < 0 ? "it is not there" : "it cannot list",
+                    kRemedy));
   std::vector<std::string> names;
   std::istringstream lines(listed.output);
   for (std::string name; std::getline(lines, name);)
@@ -50,7 +45,7 @@ std::string by_names(const std::string& program,
 
 /// The last filter counts, as with any of its flags; a flag goes before the
 /// variable.
-Arguments with_names(const std::string& program, Arguments arguments) {
+Arguments with_names(Arguments arguments) {
   std::string pattern = variable("BENCHMARK_FILTER");
   std::string_view whose = "BENCHMARK_FILTER";
   for (const auto& argument : arguments) {
@@ -61,20 +56,14 @@ Arguments with_names(const std::string& program, Arguments arguments) {
   if (pattern.empty() || pattern == "all") return arguments;
   std::erase_if(arguments,
                 [](const auto& a) { return a.starts_with(kFilter); });
-  arguments.push_back(by_names(program, pattern, whose));
+  arguments.push_back(by_names(pattern, whose));
   return arguments;
 }
 
 }  // namespace
 
 ExitCode kernels_verb(const Arguments& arguments) {
-  std::string name = (program_directory() / "physinv-kernels").string();
-  Arguments copies = with_names(name, arguments);
-  std::vector<char*> argv = {name.data()};
-  for (auto& a : copies) argv.push_back(a.data());
-  argv.push_back(nullptr);
-  execv(name.c_str(), argv.data());
-  refuse_kernels(name, std::strerror(errno));
+  go_on_as(kProgram, with_names(arguments), kRemedy);
 }
 
 }  // namespace physinv

@@ -45,6 +45,7 @@ ExitCode completion_verb(const Arguments& arguments);
 ExitCode submit_verb(const Arguments& arguments);
 ExitCode status_verb(const Arguments& arguments);
 ExitCode plan_verb(const Arguments& arguments);
+ExitCode conformance_verb(const Arguments& arguments);
 ExitCode kernels_verb(const Arguments& arguments);
 ExitCode baseline_verb(const Arguments& arguments);
 ExitCode gate_verb(const Arguments& arguments);

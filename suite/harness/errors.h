@@ -30,8 +30,8 @@ inline constexpr std::string_view kExitCodeHelp =
     1  internal error
     2  usage, or input that cannot be read
     3  nothing matched; the nearest names are shown
-    4  a case failed (exception, out of memory), or verify found a mismatch;
-       divergence is a result
+    4  a case failed (exception, out of memory), verify found a mismatch, or
+       conformance a broken contract; divergence is a result
     5  gate: a stage is worse than the baseline says, or missing; compare
        --fail-on: losses, statuses, claims or work got worse, or runs are
        missing

@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
+#include "suite/app/installed.h"
 #include "suite/harness/judge.h"
 #include "suite/harness/registry.h"
 
@@ -15,7 +16,7 @@ TEST(ClaimContract, NamesWhatIsRegistered) {
 }
 
 TEST(ClaimContract, NamesWhatThePapersPrint) {
-  const Published published(PHYSINV_PUBLISHED_DIR);
+  const Published published(published_directory());
   const auto wrong = registry().unknown_printed(published);
   EXPECT_TRUE(wrong.empty()) << fmt::format("{}", fmt::join(wrong, "\n"));
 }

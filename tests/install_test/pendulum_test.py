@@ -178,14 +178,48 @@ class Pendulum(unittest.TestCase):
         finally:
             del os.environ["PHYSINV_PLUGINS"]
 
-    @unittest.skipUnless(os.environ.get("PHYSINV_FULL"),
-                         "minutes of compiling: ./check --full")
     def test_8_keeps_the_contracts(self):
         build("pendulum_contract_test")
-        out = run(TREE + "/pendulum_contract_test")
-        self.assertIn("[  PASSED  ]", out)
-        self.assertIn("ProblemContract", out)
-        self.assertIn("pendulum_momentum", out)
+        mine = run("ctest", "--test-dir", TREE, "--verbose")
+        theirs = self.conformance()
+        checks = [line for line in theirs.splitlines()
+                  if line.startswith(("ok ", "skipped "))]
+        self.assertGreater(len(checks), 25)
+        for line in checks:
+            self.assertIn(line, mine)
+        for name in ("pendulum +ProblemContract.BatchesEqual",
+                     "pendulum momentum +MethodContract.LowersAQuadratic"):
+            self.assertRegex(theirs, "ok +" + name)
+        self.assertEqual(pendulum("conformance"), run(
+            TREE + "/pendulum_contract_test"))
+        self.assertIn("nearest are pendulum", self.conformance("no", status=3))
+
+    def conformance(self, *arguments, status=0):
+        return run(PREFIX + "/bin/physinv-bench", "conformance", *arguments,
+                   "--plugin=" + TREE + "/pendulum_plugin.so", status=status)
+
+    def test_9_a_broken_contract_is_found(self):
+        source = PROJECT + "/pendulum.cpp"
+        with open(source) as f:
+            before = f.read()
+        for right, wrong, check in (
+                ("std::fma(states(2 * k + 1, i)", "std::fma(-states(2 * k + 1, i)",
+                 "PullbackAgreesWithCentralDifferences"),
+                ("  const T force =",
+                 "  static T seen = 0;\n  if (s.angle != s.angle) seen = s.angle;\n"
+                 "  s.angle += seen;\n  const T force =",
+                 "ADivergedSampleDisturbsNoOther")):
+            self.assertIn(right, before)
+            with open(source, "w") as f:
+                f.write(before.replace(right, wrong))
+            build("pendulum_plugin")
+            out = self.conformance(status=4)
+            self.assertRegex(out, r"FAILED +pendulum +ProblemContract\." + check)
+            self.assertIn("problem_contract_test.cpp:", out)
+        with open(source, "w") as f:
+            f.write(before)
+        build("pendulum_plugin")
+        self.conformance()
 
 
 if __name__ == "__main__":

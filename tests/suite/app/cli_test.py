@@ -58,6 +58,8 @@ def bad_input(d):
     open(os.path.join(d, "file"), "w").close()
     expect(9, ["--profile=smoke", "--out=file/below"], d)
     expect(9, ["kernels"], d, "physinv-kernels")
+    expect(9, ["conformance"], d, "build the target physinv-conformance")
+    expect(2, ["conformance", "--gtest_fiter=x"], d, "it takes break_on")
 
 
 def good_input(d):
