@@ -5,13 +5,10 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
-#include <numeric>
 
 #include "python/module/arrays.h"
+#include "python/module/solving.h"
 #include "suite/app/verbs.h"
-#include "suite/core/hash.h"
-#include "suite/core/oracle.h"
-#include "suite/core/probe.h"
 #include "suite/harness/registry.h"
 
 namespace physinv {
@@ -30,103 +27,6 @@ const Program& program() {
 
 namespace physinv::python {
 namespace {
-
-/// What a method may see of its case, for as long as it runs.
-class Solving {
- public:
-  explicit Solving(StageRun& run) : run_(&run) {}
-
-  Index n() const { return oracle().count(); }
-  Index iterations() const { return get().iterations; }
-  double gtol() const { return get().setting.gtol; }
-  Array<double> start() const {
-    return to_array(Batch<double>(oracle().start()));
-  }
-  Array<double> given() const { return to_array(oracle().given()); }
-  Array<double> observations() const {
-    return to_array(oracle().observations());
-  }
-  std::uint64_t seed() const { return get().method.stream().bits(); }
-
-  Array<double> loss(const Array<double>& x,
-                     const std::optional<std::vector<Index>>& active) const {
-    const auto chosen = problems(active);
-    const auto in = points(x, chosen);
-    Vector<double> loss(in.cols());
-    oracle().evaluate<double>(chosen, in, loss);
-    return to_array(loss);
-  }
-  py::tuple loss_and_gradient(
-      const Array<double>& x,
-      const std::optional<std::vector<Index>>& active) const {
-    const auto chosen = problems(active);
-    const auto in = points(x, chosen);
-    Vector<double> loss(in.cols());
-    auto gradient = make_array<double>(in.cols(), in.rows());
-    oracle().evaluate<double>(chosen, in, loss, writable(gradient));
-    return py::make_tuple(to_array(loss), gradient);
-  }
-  py::tuple labelled(Index per_problem) const {
-    const auto& s = oracle().labelled(per_problem);
-    return py::make_tuple(to_array(s.x), to_array(s.y), to_array(s.given));
-  }
-
-  bool proceed(const Array<double>& x) {
-    const auto in = points(x, problems({}));
-    told_ = true;
-    return get().probe.proceed([&](BatchOut<double> out) { out = in; });
-  }
-  void accept(Index example,
-              Index iteration,
-              const Array<double>& x,
-              double loss) {
-    if (example < 0 || example >= n())
-      throw py::value_error(
-          fmt::format("example {} of {} from 0 on", example, n()));
-    if (iteration < 0 || iteration > iterations())
-      throw py::value_error(fmt::format(
-          "iteration {} of {}, which are the budget", iteration, iterations()));
-    if (x.ndim() != 1 || x.shape(0) != oracle().shape().unknowns)
-      throw py::value_error(fmt::format("x has the {} unknowns of an example",
-                                        oracle().shape().unknowns));
-    told_ = accepted_ = true;
-    get().probe.accept(example, iteration, x.data(), loss);
-  }
-
-  View<double> points(const Array<double>& x,
-                      const std::vector<Index>& chosen) const {
-    return view<double>(
-        x, "x", static_cast<Index>(chosen.size()), oracle().shape().unknowns);
-  }
-  std::vector<Index> problems(
-      const std::optional<std::vector<Index>>& active) const {
-    if (!active) return {oracle().all().begin(), oracle().all().end()};
-    for (const Index i : *active)
-      if (i < 0 || i >= n())
-        throw py::value_error(
-            fmt::format("problem {} of {} from 0 on", i, n()));
-    return *active;
-  }
-
-  void end() {
-    if (!told_)
-      throw std::runtime_error(
-          "the method called neither run.proceed nor run.accept, so that there "
-          "is no curve of it");
-    if (accepted_) get().probe.finish();
-    run_ = nullptr;
-  }
-
- private:
-  StageRun& get() const {
-    if (run_ == nullptr) throw std::runtime_error("this run has ended");
-    return *run_;
-  }
-  Oracle& oracle() const { return get().oracle; }
-
-  StageRun* run_;
-  bool told_ = false, accepted_ = false;
-};
 
 Status status_of(const std::string& name) {
   for (const Status s :
@@ -155,7 +55,7 @@ Outcome outcome_of(py::object result, const Solving& solving) {
   const auto x = Array<double>::ensure(result);
   if (!x) throw py::value_error("a method returns x, (samples, unknowns)");
   Outcome out;
-  out.x = solving.points(x, solving.problems({}));
+  out.x = solving.estimates(x);
   for (const auto& [key, value] : more) {
     const auto name = key.cast<std::string>();
     const auto given = py::reinterpret_borrow<py::object>(value);
@@ -179,26 +79,35 @@ Outcome outcome_of(py::object result, const Solving& solving) {
   return out;
 }
 
+/// What a method declares that it uses.
+struct Wanted {
+  Needs needs = Needs::forward;
+  Networks networks = Networks::none;
+};
+
 class PythonStage final : public Stage {
  public:
   PythonStage(py::function solve,
-              Needs needs,
+              Wanted wanted,
               Options options,
               Index iterations)
       : solve_(std::move(solve)),
-        needs_(needs),
+        wanted_(wanted),
         options_(std::move(options)),
         iterations_(iterations) {}
   std::string name() const override { return "solve"; }
-  Needs needs() const override { return needs_; }
+  Needs needs() const override { return wanted_.needs; }
   /// With the hash of the source, which so stands in the key.
   Options options() const override { return options_; }
   Index default_iterations() const override { return iterations_; }
-  Networks networks() const override { return Networks::none; }
+  Networks networks() const override { return wanted_.networks; }
   /// Beside that, what the method sees of the suite.
   Sources sources() const override {
-    return {.roots = {"suite/core/oracle.h", "suite/core/probe.h"},
-            .unused = {}};
+    Sources all = {.roots = {"suite/core/oracle.h", "suite/core/probe.h"},
+                   .unused = {}};
+    if (wanted_.networks != Networks::none)
+      all.roots.emplace_back("optimizers/network_model.h");
+    return all;
   }
   double operations(const CaseSize& size) const override {
     return 3 * size.problem_operations *
@@ -221,22 +130,33 @@ class PythonStage final : public Stage {
 
  private:
   py::function solve_;
-  Needs needs_;
+  Wanted wanted_;
   Options options_;
   Index iterations_;
 };
 
-Needs needs_of(const std::vector<std::string>& names) {
-  Needs all = Needs::forward;
+Wanted wanted_of(const std::vector<std::string>& names) {
+  Wanted all;
   for (const auto& name : names) {
+    if (name == "network") {
+      all.networks = Networks::predictor;
+      continue;
+    }
     unsigned bit = 1;
     while (bit < 256 && to_text(static_cast<Needs>(bit)) != name) bit *= 2;
     if (bit == 256)
       throw py::value_error("there is no ability '" + name + "'; " +
-                            to_text(static_cast<Needs>(255)) + " are");
-    all = all | static_cast<Needs>(bit);
+                            to_text(static_cast<Needs>(255)) +
+                            " and network are");
+    all.needs = all.needs | static_cast<Needs>(bit);
   }
   return all;
+}
+
+bool provides(const Experiment& e, const Wanted& wanted) {
+  return contains(e.problem.provided, wanted.needs) &&
+         (wanted.networks == Networks::none ||
+          !e.setting.predictor.inputs.empty());
 }
 
 /// Wherever a profile of the experiment has rows, on their n and seeds.
@@ -272,15 +192,16 @@ std::vector<std::string> add_method(
     Index iterations) {
   Options all = {{"algorithm", "python"}};
   all.insert(all.end(), options.begin(), options.end());
-  const Method method{.id = id,
-                      .chain = {std::make_shared<PythonStage>(
-                          solve, needs_of(needs), all, iterations)}};
+  const Wanted wanted = wanted_of(needs);
+  const Method method{
+      .id = id,
+      .chain = {std::make_shared<PythonStage>(solve, wanted, all, iterations)}};
   Registry next;
   std::vector<std::string> added;
   for (const auto& e : registry().experiments()) {
     const bool chosen =
         std::count(experiments.begin(), experiments.end(), e->name) > 0 &&
-        contains(e->problem.provided, method.needs());
+        provides(*e, wanted);
     if (!chosen) {
       next.add(Experiment(*e));
       continue;
@@ -332,70 +253,7 @@ py::tuple run(const Arguments& arguments) {
 }  // namespace
 
 void define_method(py::module_& module) {
-  py::options signatures;
-  signatures.disable_function_signatures();
-  const auto active = py::arg("active") = py::none();
-  py::class_<Solving, std::shared_ptr<Solving>>(
-      module,
-      "Run",
-      "What a method sees of its case: n problems without their solutions, all "
-      "calls\ncounted, a budget. Arrays are in double.")
-      .def_property_readonly("n", &Solving::n, "Problems of the case.")
-      .def_property_readonly("iterations", &Solving::iterations, "The budget.")
-      .def_property_readonly(
-          "gtol",
-          &Solving::gtol,
-          "The norm of a gradient (largest entry) at which a problem counts as "
-          "solved.")
-      .def_property_readonly(
-          "start", &Solving::start, "First guesses: (n, unknowns).")
-      .def_property_readonly(
-          "given", &Solving::given, "Side input: (n, side input).")
-      .def_property_readonly("observations",
-                             &Solving::observations,
-                             "What x is sought for: (n, observations).")
-      .def_property_readonly(
-          "seed",
-          &Solving::seed,
-          "For the method's own random numbers; each reading "
-          "gives another.")
-      .def(
-          "loss",
-          &Solving::loss,
-          py::arg("x"),
-          active,
-          "loss($self, x, active=None)\n--\n\n"
-          "Losses (k,) at x (k, unknowns) of the problems `active`, by default "
-          "all n;\ncounted.")
-      .def("loss_and_gradient",
-           &Solving::loss_and_gradient,
-           py::arg("x"),
-           active,
-           "loss_and_gradient($self, x, active=None)\n--\n\n"
-           "Losses (k,) and d loss / d x (k, unknowns); counted. Needs vjp.")
-      .def("labelled",
-           &Solving::labelled,
-           py::arg("per_problem") = 1,
-           "labelled($self, per_problem=1)\n--\n\n"
-           "x, y and given, so many for each problem, to learn from. Needs "
-           "labels.")
-      .def(
-          "proceed",
-          &Solving::proceed,
-          py::arg("x"),
-          "proceed($self, x)\n--\n\n"
-          "while run.proceed(x): counts an iteration, measures x (n, unknowns) "
-          "while the\nclock stands still, and is False when the budget is "
-          "spent.")
-      .def("accept",
-           &Solving::accept,
-           py::arg("example"),
-           py::arg("iteration"),
-           py::arg("x"),
-           py::arg("loss"),
-           "accept($self, example, iteration, x, loss)\n--\n\n"
-           "For solvers that go example by example: its iterate x (unknowns,), "
-           "from\niteration 0, the start, on.");
+  define_solving(module);
   module.def("add_method", &add_method);
   module.def("run", &run);
 }

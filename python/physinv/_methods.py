@@ -27,7 +27,7 @@ def _source(function):
 
 def method(name, experiments="*", needs="vjp", iterations=1000, **options):
     """Makes a function a method of every experiment that matches and provides
-    what it needs ("vjp", ("vjp", "labels"), ...):
+    what it needs ("vjp", ("vjp", "labels"), ...; "network" for run.network):
 
         @physinv.method("momentum", experiments="jpo/*")
         def solve(run):
@@ -43,7 +43,8 @@ def method(name, experiments="*", needs="vjp", iterations=1000, **options):
     iterations and evaluations per example. An exception fails its stage, and
     the campaign goes on. `physinv.run` has it in every profile, on the n and
     seeds of its rows. The key of its results has its name, the hash of its
-    file, the options, and Python's version; `version=scipy.__version__` adds another."""
+    file, the options, and Python's version; `version=scipy.__version__` adds
+    another."""
     needs = [needs] if isinstance(needs, str) else list(needs)
 
     def add(function):

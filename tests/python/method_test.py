@@ -200,6 +200,9 @@ class Methods(unittest.TestCase):
             physinv.method("bfgs", experiments="jpo/*")(lambda run: run.start)
         with self.assertRaisesRegex(ValueError, "no experiment that matches"):
             physinv.method("py-x", experiments="none/*")(lambda run: run.start)
+        with self.assertRaisesRegex(ValueError, "no experiment that matches"):
+            physinv.method("py-x", "numerics/transport", ("vjp", "network"))(
+                lambda run: run.start)
         with self.assertRaisesRegex(ValueError, "no ability 'gradients'"):
             physinv.method("py-x", needs="gradients")(lambda run: run.start)
 

@@ -1,11 +1,14 @@
 #!/usr/bin/env python3
-"""Problems under PyTorch: gradcheck of every problem with a vjp, one forward
-pass and one pullback a step, a network trained through the physics."""
+"""torch_test.py WORK: problems under PyTorch. gradcheck of every problem with a
+vjp, one forward pass and one pullback a step, a network that is trained through
+the physics and ends on the curve of our JPO."""
 
+import shutil
 import sys
 import unittest
 
 try:
+    import numpy as np
     import torch
 except ImportError:
     print("skipped: python3-torch is missing")
@@ -13,7 +16,8 @@ except ImportError:
 
 import physinv
 
-LARGEST = 200  # unknowns, for differences
+WORK = sys.argv[1]
+LARGEST = 200  # unknowns whose every difference is looked at
 
 
 def tensors(p, n):
@@ -26,9 +30,7 @@ class Torch(unittest.TestCase):
         checked = set()
         for name in physinv.problems():
             p = physinv.problem(name)
-            # A flow has kinks closer than the step of a difference.
-            if "vjp" not in p.names or p.shape[0] > LARGEST or \
-                    "navier-stokes" in name:
+            if "vjp" not in p.names:
                 continue
             key = (p.shape, tuple(p.options.items()))
             if key in checked:
@@ -37,10 +39,13 @@ class Torch(unittest.TestCase):
             with self.subTest(name):
                 x, _, given = tensors(p, 2)
                 x.requires_grad_()
+                # Of many unknowns along a random direction; a flow has kinks
+                # closer than the step of many differences.
+                fast = p.shape[0] > LARGEST or "navier-stokes" in name
                 self.assertTrue(torch.autograd.gradcheck(
                     lambda x: physinv.torch(p)(x, given), (x,),
-                    eps=1e-7, atol=1e-5, rtol=1e-4))
-        self.assertGreater(len(checked), 8)
+                    eps=1e-7, atol=1e-5, rtol=1e-4, fast_mode=fast))
+        self.assertGreater(len(checked), 40)
 
     def test_a_step_is_one_forward_and_one_pullback(self):
         p = physinv.problem("jpo/robotic-arm")
@@ -89,6 +94,51 @@ class Torch(unittest.TestCase):
             adam.step()
             losses.append(loss.item())
         self.assertLess(losses[-1], 1e-2 * losses[0])
+
+    def test_the_curve_of_our_jpo(self):
+        """From the same weights, by the same rule, through our adjoint."""
+        @physinv.method("torch-jpo", experiments="jpo/robotic-arm",
+                        needs=("vjp", "network"), version=torch.__version__)
+        def solve(run):
+            net, start = run.network(), torch.tensor(run.start)
+            y = torch.tensor(run.observations)
+            self.assertIn("mlp", net["description"])
+            self.assertTrue(np.array_equal(net["inputs"], run.observations))
+            weights = [torch.tensor(w, requires_grad=True)
+                       for w in net["weights"].values()]
+            forward = physinv.torch(physinv.problem("jpo/robotic-arm"))
+            adam = torch.optim.Adam(weights, 1e-3, eps=1e-7)
+
+            def estimate():
+                h = torch.tensor(net["inputs"])
+                for k in range(0, len(weights), 2):
+                    h = h @ weights[k].T + weights[k + 1]
+                    h = h.relu() if k + 2 < len(weights) else h
+                return start + net["output_scale"] * h
+
+            def clip(gradient):
+                norm = gradient.norm(dim=1, keepdim=True)
+                return gradient * (norm.quantile(0.9) / norm).clamp(max=1)
+
+            while run.proceed((x := estimate()).detach().numpy()):
+                adam.zero_grad()
+                x.register_hook(clip)
+                (0.5 * (forward(x) - y).square().sum()).backward()
+                adam.step()
+            return x.detach().numpy()
+
+        shutil.rmtree(WORK, ignore_errors=True)
+        r = physinv.run("smoke", filter="^jpo/robotic-arm/(jpo|torch-jpo)/",
+                        set=["precision=f64", "iterations=50"], out=WORK)
+        cases = {s["method"]: s["case"] for s in r.stages()}
+        theirs = r.curve(cases["torch-jpo"])
+        ours = r.curve(cases["jpo"], "fit")
+        self.assertTrue(np.array_equal(theirs["iteration"], ours["iteration"]))
+        off = np.abs(theirs["loss"] - ours["loss"]).max(1) / ours["loss"].max(1)
+        print(f"{len(off)} points of both curves differ by at most "
+              f"{off.max():.1e}, the first by {off[0]:.1e}")
+        self.assertLess(off[0], 1e-12)
+        self.assertLess(off.max(), 1e-12)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,213 @@
+#include "python/module/solving.h"
+
+#include <pybind11/stl.h>
+
+#include "optimizers/network_model.h"
+#include "suite/core/oracle.h"
+#include "suite/core/probe.h"
+
+namespace physinv::python {
+namespace {
+
+/// A matrix is [out][in]; other tensors are flat, in the network's order.
+Array<double> tensor(const TensorInfo& info, const double* numbers) {
+  const bool matrix = info.kind == 'm' && info.fan_in > 0;
+  const std::vector<Index> shape =
+      matrix ? std::vector<Index>{info.size / info.fan_in, info.fan_in}
+             : std::vector<Index>{info.size};
+  return Array<double>(shape, numbers + info.offset);
+}
+
+}  // namespace
+
+StageRun& Solving::get() const {
+  if (run_ == nullptr) throw std::runtime_error("this run has ended");
+  return *run_;
+}
+
+Index Solving::n() const { return oracle().count(); }
+
+Array<double> Solving::start() const {
+  return to_array(Batch<double>(oracle().start()));
+}
+
+Array<double> Solving::given() const { return to_array(oracle().given()); }
+
+Array<double> Solving::observations() const {
+  return to_array(oracle().observations());
+}
+
+py::dict Solving::network() const {
+  const Setting& setting = get().setting;
+  const NetworkRole& role = setting.predictor;
+  if (role.inputs.empty())
+    throw py::value_error(
+        "a method that wants the experiment's network says so: needs=(\"vjp\", "
+        "\"network\")");
+  NetworkModel<double> model(
+      role, oracle().shape(), oracle().shape().unknowns, get().threads);
+  model.initialize(get().network_init);
+  py::dict weights;
+  for (const TensorInfo& info : model.network().tensors())
+    weights[py::str(info.name)] = tensor(info, model.parameters().data());
+  py::dict all;
+  all["description"] = role.recipe.description;
+  all["inputs"] = to_array(assemble<double>(role.inputs,
+                                            oracle().start(),
+                                            oracle().given(),
+                                            oracle().observations()));
+  all["weights"] = weights;
+  all["output_scale"] = setting.output_scale;
+  return all;
+}
+
+Array<double> Solving::loss(const Array<double>& x,
+                            const Active& active) const {
+  const auto chosen = problems(active);
+  const auto in = points(x, chosen);
+  Vector<double> loss(in.cols());
+  oracle().evaluate<double>(chosen, in, loss);
+  return to_array(loss);
+}
+
+py::tuple Solving::loss_and_gradient(const Array<double>& x,
+                                     const Active& active) const {
+  const auto chosen = problems(active);
+  const auto in = points(x, chosen);
+  Vector<double> loss(in.cols());
+  auto gradient = make_array<double>(in.cols(), in.rows());
+  oracle().evaluate<double>(chosen, in, loss, writable(gradient));
+  return py::make_tuple(to_array(loss), gradient);
+}
+
+py::tuple Solving::labelled(Index per_problem) const {
+  const auto& s = oracle().labelled(per_problem);
+  return py::make_tuple(to_array(s.x), to_array(s.y), to_array(s.given));
+}
+
+bool Solving::proceed(const Array<double>& x) {
+  const auto in = estimates(x);
+  told_ = true;
+  return get().probe.proceed([&](BatchOut<double> out) { out = in; });
+}
+
+void Solving::accept(Index example,
+                     Index iteration,
+                     const Array<double>& x,
+                     double loss) {
+  if (example < 0 || example >= n())
+    throw py::value_error(
+        fmt::format("example {} of {} from 0 on", example, n()));
+  if (iteration < 0 || iteration > iterations())
+    throw py::value_error(fmt::format(
+        "iteration {} of {}, which are the budget", iteration, iterations()));
+  if (x.ndim() != 1 || x.shape(0) != oracle().shape().unknowns)
+    throw py::value_error(fmt::format("x has the {} unknowns of an example",
+                                      oracle().shape().unknowns));
+  told_ = accepted_ = true;
+  get().probe.accept(example, iteration, x.data(), loss);
+}
+
+View<double> Solving::estimates(const Array<double>& x) const {
+  return points(x, problems({}));
+}
+
+View<double> Solving::points(const Array<double>& x,
+                             const std::vector<Index>& chosen) const {
+  return view<double>(
+      x, "x", static_cast<Index>(chosen.size()), oracle().shape().unknowns);
+}
+
+std::vector<Index> Solving::problems(const Active& active) const {
+  if (!active) return {oracle().all().begin(), oracle().all().end()};
+  for (const Index i : *active)
+    if (i < 0 || i >= n())
+      throw py::value_error(fmt::format("problem {} of {} from 0 on", i, n()));
+  return *active;
+}
+
+void Solving::end() {
+  if (!told_)
+    throw std::runtime_error(
+        "the method called neither run.proceed nor run.accept, so that there "
+        "is no curve of it");
+  if (accepted_) get().probe.finish();
+  run_ = nullptr;
+}
+
+void define_solving(py::module_& module) {
+  py::options signatures;
+  signatures.disable_function_signatures();
+  const auto active = py::arg("active") = py::none();
+  py::class_<Solving, std::shared_ptr<Solving>>(
+      module,
+      "Run",
+      "What a method sees of its case: n problems without their solutions, all "
+      "calls\ncounted, a budget. Arrays are in double.")
+      .def_property_readonly("n", &Solving::n, "Problems of the case.")
+      .def_property_readonly("iterations", &Solving::iterations, "The budget.")
+      .def_property_readonly(
+          "gtol",
+          &Solving::gtol,
+          "The norm of a gradient (largest entry) at which a problem counts as "
+          "solved.")
+      .def_property_readonly(
+          "start", &Solving::start, "First guesses: (n, unknowns).")
+      .def_property_readonly(
+          "given", &Solving::given, "Side input: (n, side input).")
+      .def_property_readonly("observations",
+                             &Solving::observations,
+                             "What x is sought for: (n, observations).")
+      .def_property_readonly(
+          "seed",
+          &Solving::seed,
+          "For the method's own random numbers; each reading "
+          "gives another.")
+      .def(
+          "network",
+          &Solving::network,
+          "network($self)\n--\n\n"
+          "The experiment's network, as every method of the case begins with "
+          "it: a dict of\n`description`, `inputs` (n, features), `weights` (by "
+          "name; matrices [out][in]) and\n`output_scale`: x = start + scale * "
+          "output where the experiment has it linear. Needs network.")
+      .def(
+          "loss",
+          &Solving::loss,
+          py::arg("x"),
+          active,
+          "loss($self, x, active=None)\n--\n\n"
+          "Losses (k,) at x (k, unknowns) of the problems `active`, by default "
+          "all n;\ncounted.")
+      .def("loss_and_gradient",
+           &Solving::loss_and_gradient,
+           py::arg("x"),
+           active,
+           "loss_and_gradient($self, x, active=None)\n--\n\n"
+           "Losses (k,) and d loss / d x (k, unknowns); counted. Needs vjp.")
+      .def("labelled",
+           &Solving::labelled,
+           py::arg("per_problem") = 1,
+           "labelled($self, per_problem=1)\n--\n\n"
+           "x, y and given, so many for each problem, to learn from. Needs "
+           "labels.")
+      .def(
+          "proceed",
+          &Solving::proceed,
+          py::arg("x"),
+          "proceed($self, x)\n--\n\n"
+          "while run.proceed(x): counts an iteration, measures x (n, unknowns) "
+          "while the\nclock stands still, and is False when the budget is "
+          "spent.")
+      .def("accept",
+           &Solving::accept,
+           py::arg("example"),
+           py::arg("iteration"),
+           py::arg("x"),
+           py::arg("loss"),
+           "accept($self, example, iteration, x, loss)\n--\n\n"
+           "For solvers that go example by example: its iterate x (unknowns,), "
+           "from\niteration 0, the start, on.");
+}
+
+}  // namespace physinv::python
