@@ -10,20 +10,7 @@
 #include "python/module/solving.h"
 #include "suite/app/verbs.h"
 #include "suite/harness/registry.h"
-
-namespace physinv {
-
-/// What `run` says of itself.
-const Program& program() {
-  static const Program python{
-      .name = "physinv",
-      .verbs = {{"run", "[flags]", "run cases", run_verb}},
-      .examples = {},
-      .environment = ""};
-  return python;
-}
-
-}  // namespace physinv
+#include "suite/results/errors.h"
 
 namespace physinv::python {
 namespace {
@@ -229,25 +216,34 @@ void after_fork() {
   if (running) PyOS_AfterFork_Child();
 }
 
-/// Status and last words of the verb `run`, in this process.
-py::tuple run(const Arguments& arguments) {
+const Verb& verb_named(const std::string& name) {
+  for (const Verb& verb : program().verbs)
+    if (verb.name == name) return verb;
+  throw py::value_error("there is no verb '" + name + "'");
+}
+
+/// Status and last words of a verb, in this process, which knows the methods.
+py::tuple call(const std::string& name, const Arguments& arguments) {
   static const int kRegistered = pthread_atfork(nullptr, nullptr, after_fork);
   (void)kRegistered;
+  const Verb& verb = verb_named(name);
   running = true;
-  int status = static_cast<int>(ExitCode::good);
+  ExitCode status = ExitCode::internal;
   std::string words;
   try {
-    status = static_cast<int>(run_verb(arguments));
+    status = verb.call(arguments);
   } catch (const ExitError& error) {
-    status = static_cast<int>(error.code());
-    words = error.what();
+    status = error.code(), words = error.what();
+  } catch (const UnreadableInput& error) {
+    status = ExitCode::usage, words = error.what();
+  } catch (const StoreError& error) {
+    status = ExitCode::environment, words = error.what();
   } catch (const std::exception& error) {
-    status = static_cast<int>(ExitCode::internal);
-    words = error.what();
+    words = fmt::format("internal error: {}", error.what());
   }
   running = false;
   std::fflush(stdout);
-  return py::make_tuple(status, words);
+  return py::make_tuple(static_cast<int>(status), words);
 }
 
 }  // namespace
@@ -255,7 +251,7 @@ py::tuple run(const Arguments& arguments) {
 void define_method(py::module_& module) {
   define_solving(module);
   module.def("add_method", &add_method);
-  module.def("run", &run);
+  module.def("call", &call);
 }
 
 }  // namespace physinv::python

@@ -1,11 +1,13 @@
 """Campaigns: run by the program physinv-bench, read by the suite's own code."""
 
+import contextlib
 import json
 import os
 import pathlib
 import shutil
 import subprocess
 import sys
+import tempfile
 
 from physinv import _core, _methods
 
@@ -73,13 +75,42 @@ def _words(arguments, flags):
 
 def verb(name, *arguments, **flags):
     """Calls a verb of physinv-bench and returns what it prints; flags as
-    keywords: verb("compare", "a", "b"), verb("list", profile="smoke")."""
-    command = [program(), name, *_words(arguments, flags)]
+    keywords: verb("compare", "a", "b"), verb("list", profile="smoke"). With
+    methods in Python it runs in this process, which knows them."""
+    words = _words(arguments, flags)
+    if _methods.registered():
+        with _captured() as printed:
+            _here(name, words)
+        return printed()
+    command = [program(), name, *words]
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode != 0:
         lines = done.stderr.strip().splitlines() or [f"{name} failed"]
         raise ProgramError(done.returncode, lines[-1])
     return done.stdout
+
+
+def _here(name, words):
+    status, last = _core.call(name, words)
+    if status != 0:
+        raise ProgramError(status, last)
+
+
+@contextlib.contextmanager
+def _captured():
+    """What is written to the standard output meanwhile, by forks, too."""
+    with tempfile.TemporaryFile() as file:
+        sys.stdout.flush()
+        before = os.dup(1)
+        os.dup2(file.fileno(), 1)
+        text = []
+        try:
+            yield lambda: text[0]
+        finally:
+            os.dup2(before, 1)
+            os.close(before)
+            file.seek(0)
+            text.append(file.read().decode())
 
 
 def run(profile="quick", out=None, **flags):
@@ -89,9 +120,7 @@ def run(profile="quick", out=None, **flags):
     out = out or f"results/{profile}"
     flags = dict(profile=profile, out=out, **flags)
     if _methods.registered():
-        status, words = _core.run(_words([], flags))
-        if status != 0:
-            raise ProgramError(status, words)
+        _here("run", _words([], flags))
     else:
         verb("run", **flags)
     return open(out)

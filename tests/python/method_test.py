@@ -152,6 +152,55 @@ class Methods(unittest.TestCase):
         with open(WORK + "/smoke/report/report.md") as f:
             self.assertIn("py-momentum", f.read())
 
+    def test_report_pages_have_it(self):
+        with self.assertRaises(physinv.ProgramError) as e:
+            physinv.verb("report", WORK + "/smoke")
+        self.assertEqual(e.exception.status, 10)  # as two of them failed
+        pages = WORK + "/smoke/report/jpo-robotic-arm/"
+        self.assertIn("py-momentum", self.read(pages, "index.html"))
+        for name in ("figures/run_time_against_loss.svg",
+                     "figures/performance_profile.svg"):
+            self.assertIn("py-momentum", self.read(pages, name))
+
+    @staticmethod
+    def read(*path):
+        with open(os.path.join(*path)) as f:
+            return f.read()
+
+    def test_gate_and_compare(self):
+        base, line = WORK + "/baseline.txt", "^jpo/robotic-arm/(bfgs|py-momentum)/"
+        flags = dict(filter=line, jobs=1, trace=True, no_report=True)
+        first, again, other = (WORK + "/" + name for name in ("a", "b", "c"))
+        physinv.run("smoke", out=first, **flags)
+        self.assertIn("2 stages", physinv.verb("baseline", first, out=base))
+        self.assertIn("robotic-arm/py-momentum/", self.read(base))
+        physinv.run("smoke", out=again, **flags)
+        held = dict(baseline=base, no_count=True)
+        self.assertIn("accuracy: 2 same",
+                      physinv.verb("gate", results=again, **held))
+        self.assertIn("accuracy: 2 same",
+                      physinv.verb("gate", out=WORK + "/gate", **held))
+        rows = physinv.compare(first, again)["rows"]
+        self.assertEqual({r["method"]: r["sides"][1]["same_bits"] for r in rows},
+                         {"bfgs": 1, "py-momentum": 1})
+        # Who does not know the method leaves nothing out in silence.
+        done = subprocess.run([physinv.program(), "baseline", first,
+                               "--out=" + WORK + "/none.txt"],
+                              capture_output=True, text=True)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("does not know jpo/robotic-arm/py-momentum/", done.stderr)
+        try:
+            define(METHODS.replace("RATE", "60").replace("0.05 *", "1e-4 *"))
+            physinv.run("smoke", out=other, **flags)
+            with self.assertRaisesRegex(physinv.ProgramError, "worse") as e:
+                physinv.verb("gate", results=other, **held)
+            self.assertEqual(e.exception.status, 5)
+            with self.assertRaises(physinv.ProgramError) as e:
+                physinv.compare(first, other, fail_on="loss")
+            self.assertEqual(e.exception.status, 5)
+        finally:
+            define(METHODS.replace("RATE", "60"))
+
     def test_no_two_share_a_key(self):
         keys = [r["key"] for r in self.rows.values()]
         self.assertEqual(len(set(keys)), len(keys))
