@@ -161,8 +161,8 @@ void define_solving(py::module_& module) {
       .def_property_readonly(
           "seed",
           &Solving::seed,
-          "For the method's own random numbers; each reading "
-          "gives another.")
+          "For the method's own random numbers, the same at every "
+          "reading.")
       .def(
           "network",
           &Solving::network,

@@ -63,8 +63,8 @@ from physinv._compare import compare
 from physinv._methods import method
 
 __all__ = ["Problem", "ProgramError", "Results", "Run", "Samples", "compare",
-           "method", "open", "problem", "problems", "program", "published",
-           "run", "torch", "verb", "version"]
+           "jax", "method", "open", "problem", "problems", "program",
+           "published", "run", "torch", "verb", "version"]
 
 Problem = _core.Problem
 Run = _core.Run
@@ -117,4 +117,12 @@ def torch(problem):
     forward pass, and one pullback for a gradient by x. Tensors of float32 or
     float64, (samples, features), on the CPU; first derivatives."""
     from physinv._torch import differentiable
+    return differentiable(problem)
+
+
+def jax(problem):
+    """F as a function of JAX arrays, (x, given=None) -> y, for jit and grad, by
+    pure_callback. A gradient by x linearizes anew, as JAX keeps arrays and no
+    tapes: two forward passes and one pullback. float64 takes jax_enable_x64."""
+    from physinv._jax import differentiable
     return differentiable(problem)

@@ -41,17 +41,16 @@ Chosen chosen_of(const nlohmann::json& plan, const std::string& directory) {
           .sets = options.value("set", std::vector<std::string>())};
 }
 
-/// Plug-ins and methods in Python are known to who has them. What the last run
-/// there asked for is not left out.
-void check_known(const nlohmann::json& plan, const std::vector<Case>& cases) {
-  std::set<std::string> names;
-  for (const Case& c : cases) names.insert(c.info.name);
-  for (const auto& asked : plan.at("cases"))
-    if (!names.contains(asked.get<std::string>()))
+/// Plug-ins and methods in Python are known to who has them.
+void check_known(const Results& results) {
+  for (const CaseRecord& c : results.cases()) {
+    const auto e = registry().find(c.info.experiment);
+    if (e == nullptr || find_method(*e, c.info.method) == nullptr)
       throw UsageError(fmt::format(
           "this program does not know {}; the one that ran it, with the same "
           "plug-ins and methods, makes the baseline",
-          asked.get<std::string>()));
+          c.info.name));
+  }
 }
 
 std::vector<CaseRecord> records_of(const Results& results,
@@ -120,7 +119,7 @@ ExitCode baseline_verb(const Arguments& arguments) {
 
   Baseline b = blank_baseline(chosen_of(loaded.catalog.plan, directory));
   const auto cases = cases_of(b.chosen);
-  check_known(loaded.catalog.plan, cases);
+  check_known(loaded.results);
   b.stages = lines_of(records_of(loaded.results, cases));
   measure_digits(
       b.stages,

@@ -1,0 +1,89 @@
+#!/usr/bin/env python3
+"""examples_test.py WORK: what stands in examples/python does what it says.
+Tesseract's runtime is taken as it is installed, or else two of its names."""
+
+import importlib.util
+import os
+import shutil
+import subprocess
+import sys
+import types
+import unittest
+
+try:
+    import numpy as np
+except ImportError:
+    print("skipped: numpy is missing")
+    sys.exit(77)
+
+import physinv
+
+WORK = sys.argv[1]
+EXAMPLES = os.path.join(os.path.dirname(os.path.abspath(__file__)),
+                        "../../examples/python")
+
+
+class Schema:
+    """Stands in for pydantic's BaseModel."""
+
+    def __init__(self, **values):
+        vars(self).update(values)
+
+
+class Type:
+    """Stands in for Tesseract's types of arrays."""
+
+    def __class_getitem__(cls, item):
+        return cls
+
+    def __init__(self, **values):
+        vars(self).update(values)
+
+
+def stand_ins():
+    names = ("Array", "Differentiable", "Float64", "ShapeDType")
+    runtime = types.ModuleType("tesseract_core.runtime")
+    vars(runtime).update({name: Type for name in names})
+    pydantic = types.ModuleType("pydantic")
+    pydantic.BaseModel = Schema
+    return {"tesseract_core": types.ModuleType("tesseract_core"),
+            "tesseract_core.runtime": runtime, "pydantic": pydantic}
+
+
+class Examples(unittest.TestCase):
+    @unittest.skipUnless(all(map(importlib.util.find_spec,
+                                 ("scipy", "matplotlib"))),
+                         "python3-scipy and python3-matplotlib are missing")
+    def test_own_optimizer(self):
+        shutil.rmtree(WORK, ignore_errors=True)
+        os.makedirs(WORK)
+        subprocess.run([sys.executable, EXAMPLES + "/own_optimizer.py"],
+                       cwd=WORK, check=True, stdout=subprocess.DEVNULL)
+        with open(WORK + "/own_optimizer.svg") as f:
+            picture = f.read()
+        for words in ("best of 64 (here)", "jpo (paper, Table 4)"):
+            self.assertIn(words, picture)
+        rows = physinv.compare(WORK + "/own_optimizer")
+        losses = {r["method"]: r["loss"] for r in rows}
+        self.assertLess(losses["best-of-64"], losses["bfgs"])
+
+    def test_tesseract(self):
+        if importlib.util.find_spec("tesseract_core") is None:
+            sys.modules.update(stand_ins())
+        spec = importlib.util.spec_from_file_location(
+            "tesseract_api", EXAMPLES + "/tesseract_api.py")
+        api = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(api)
+        p = physinv.problem("sip/heat")
+        s = p.sample(n=2, labelled=True)
+        inputs = api.InputSchema(x=s.x, given=s.given)
+        self.assertTrue(np.array_equal(api.apply(inputs).y, s.y))
+        found = api.vector_jacobian_product(inputs, {"x"}, {"y"}, {"y": s.y})
+        wanted = p.linearize(s.x, s.given)[1].pullback(s.y)
+        self.assertTrue(np.array_equal(found["x"], wanted))
+        shape = api.abstract_eval(inputs)["y"].shape
+        self.assertEqual(tuple(shape), s.y.shape)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=2)
