@@ -64,7 +64,7 @@ class Jax(unittest.TestCase):
         for _ in range(200):
             value, weights = step(weights)
             losses.append(float(value))
-        self.assertLess(losses[-1], 0.05 * losses[0])
+        self.assertLess(losses[-1], 0.5 * losses[0])
 
 
 if __name__ == "__main__":
