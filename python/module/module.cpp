@@ -1,4 +1,5 @@
 // The extension module behind the Python package `physinv`.
+#include <dlfcn.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
@@ -7,6 +8,7 @@
 #include "python/module/method.h"
 #include "python/module/problem.h"
 #include "python/module/results.h"
+#include "suite/app/plugins.h"
 #include "suite/harness/context.h"
 #include "suite/harness/registry.h"
 
@@ -26,6 +28,20 @@ void check_numpy() {
         "; numpy<2 is right, or a build with pybind11 2.12 or later");
 }
 
+/// Loads plug-ins, of PHYSINV_PLUGINS and by file; they find the suite in here.
+void load_plugins(physinv::Arguments flags) {
+  static const char here = 0;
+  Dl_info info{};
+  if (dladdr(&here, &info) == 0 ||
+      dlopen(info.dli_fname, RTLD_NOW | RTLD_NOLOAD | RTLD_GLOBAL) == nullptr)
+    throw std::runtime_error("plug-ins would not find the suite");
+  try {
+    physinv::load_plugins(flags);
+  } catch (const physinv::UsageError& error) {
+    throw pybind11::value_error(error.what());
+  }
+}
+
 }  // namespace
 
 PYBIND11_MODULE(_core, module) {
@@ -39,6 +55,7 @@ PYBIND11_MODULE(_core, module) {
     return names;
   });
   module.def("version_text", &physinv::version_text);
+  module.def("load_plugins", &load_plugins);
   python::define_problem(module);
   python::define_results(module);
   python::define_method(module);

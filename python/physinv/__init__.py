@@ -54,6 +54,7 @@ A method of one's own, as a case like any other:
 """
 
 import operator as _operator
+import os as _os
 from collections import namedtuple as _namedtuple
 
 from physinv import _core
@@ -63,7 +64,7 @@ from physinv._compare import compare
 from physinv._methods import method
 
 __all__ = ["Problem", "ProgramError", "Results", "Run", "Samples", "compare",
-           "jax", "method", "open", "problem", "problems", "program",
+           "jax", "load_plugin", "method", "open", "problem", "problems", "program",
            "published", "run", "torch", "verb", "version"]
 
 Problem = _core.Problem
@@ -81,6 +82,13 @@ def problem(name):
 def problems():
     """Names of all experiments, each of which has a problem."""
     return _core.problems()
+
+
+def load_plugin(file):
+    """Adds what a plug-in of physinv_add_plugin registers, here and to verbs;
+    those that PHYSINV_PLUGINS names are there from the start. ValueError for one
+    of another build, for a name that is there already, and for what is none."""
+    _core.load_plugins([f"--plugin={file}"])
 
 
 def version():
@@ -126,3 +134,7 @@ def jax(problem):
     tapes: two forward passes and one pullback. float64 takes jax_enable_x64."""
     from physinv._jax import differentiable
     return differentiable(problem)
+
+
+if _os.environ.get("PHYSINV_PLUGINS"):
+    _core.load_plugins([])

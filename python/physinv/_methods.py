@@ -17,12 +17,17 @@ def registered():
 
 def _source(function):
     """The text of its file, so that an edit of a helper counts, too."""
-    path = inspect.getsourcefile(function)
     try:
-        with open(path, encoding="utf-8") as file:
+        with open(inspect.getsourcefile(function), encoding="utf-8") as file:
             return file.read()
-    except (OSError, TypeError):  # a notebook
-        return inspect.getsource(function)
+    except (OSError, TypeError):
+        pass
+    try:
+        return inspect.getsource(function)  # of a notebook
+    except OSError:
+        raise ValueError(
+            f"{function.__name__} has no source whose hash could enter the key; "
+            "a method stands in a file or a notebook") from None
 
 
 def method(name, experiments="*", needs="vjp", iterations=1000, **options):

@@ -247,6 +247,10 @@ class Methods(unittest.TestCase):
     def test_errors_have_words(self):
         with self.assertRaisesRegex(ValueError, "has a method bfgs"):
             physinv.method("bfgs", experiments="jpo/*")(lambda run: run.start)
+        typed = {}
+        exec("def solve(run): pass", typed)
+        with self.assertRaisesRegex(ValueError, "stands in a file or a note"):
+            physinv.method("py-x", experiments="jpo/*")(typed["solve"])
         with self.assertRaisesRegex(ValueError, "no experiment that matches"):
             physinv.method("py-x", experiments="none/*")(lambda run: run.start)
         with self.assertRaisesRegex(ValueError, "no experiment that matches"):

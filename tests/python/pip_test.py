@@ -80,6 +80,24 @@ class Pip(unittest.TestCase):
         for name in ("py.typed", "_core.pyi", "bin/physinv-bench"):
             self.assertIn("physinv/" + name, out)
 
+    def test_components_stand_alone(self):
+        for component, there, absent in (
+                ("programs", "bin/physinv-bench", "include"),
+                ("development", "lib/cmake/physinv/physinv-config.cmake", "bin"),
+                ("python", "lib/physinv/python/physinv/__init__.py", "bin")):
+            prefix = f"{WORK}/{component}"
+            run("cmake", "--install", BUILD, "--component", component,
+                "--prefix", prefix)
+            self.assertTrue(os.path.exists(f"{prefix}/{there}"), there)
+            self.assertFalse(os.path.exists(f"{prefix}/{absent}"), absent)
+        out = run(sys.executable, "-c", "import physinv\n"
+                  "print(physinv.problem('jpo/robotic-arm'))\n"
+                  "try: physinv.run('smoke')\n"
+                  "except FileNotFoundError as error: print(error)",
+                  PYTHONPATH=WORK + "/python/lib/physinv/python", PATH="/none")
+        self.assertIn("<physinv problem jpo/robotic-arm", out)
+        self.assertIn("PHYSINV_BENCH names it", out)
+
     def test_sources_stay_as_they_were(self):
         self.assertEqual(self.added, set())
 
