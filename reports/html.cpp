@@ -4,9 +4,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
-#include <set>
 
+#include "reports/anchors.h"
 #include "reports/html_parts.h"
 #include "reports/palette.h"
 #include "reports/report.h"
@@ -41,47 +40,6 @@ std::string name_of(std::string_view source, std::string_view title) {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// Ids of everything that can be linked to, in the order of a section.
-struct Anchors {
-  std::string section;
-  std::vector<std::string> claims, tables, figures;
-};
-
-class Ids {
- public:
-  std::string make(const std::string& words) {
-    std::string id;
-    for (const char c : words) {
-      id += std::isalnum(static_cast<unsigned char>(c)) || c == '_' ? c : '-';
-    }
-    std::string free = id;
-    for (int k = 2; !taken_.insert(free).second; ++k) {
-      free = fmt::format("{}-{}", id, k);
-    }
-    return free;
-  }
-
- private:
-  // Of the page itself.
-  std::set<std::string> taken_{"top", "contents", "provenance"};
-};
-
-std::vector<Anchors> anchors_of(const std::vector<Section>& sections) {
-  Ids ids;
-  std::vector<Anchors> all;
-  for (const Section& s : sections) {
-    Anchors a{.section = ids.make(s.experiment)};
-    const auto below = [&](const std::string& id) {
-      return ids.make(s.experiment + '-' + id);
-    };
-    for (const auto& c : s.claims) a.claims.push_back(below(c.id));
-    for (const auto& t : s.tables) a.tables.push_back(below(t.id));
-    for (const auto& f : s.figures) a.figures.push_back(below(f.id));
-    all.push_back(std::move(a));
-  }
-  return all;
-}
 
 std::string link(const std::string& id, const std::string& words) {
   return fmt::format("<a href=\"#{}\">{}</a>", id, html(words));

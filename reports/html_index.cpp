@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "reports/anchors.h"
 #include "reports/html.h"
 #include "reports/html_parts.h"
 #include "reports/statements.h"
@@ -20,6 +21,12 @@ std::string key_of(const Section& section) {
 
 bool is_open(const ClaimResult& claim) {
   return claim.verdict == Verdict::not_judged;
+}
+
+/// What does not hold as printed, or not all of it is known.
+bool needs_words(Verdict verdict) {
+  return verdict == Verdict::not_reproduced || is_explained(verdict) ||
+         verdict == Verdict::partly_judged;
 }
 
 /// "✓ 3 reproduced, ✗ 1 not reproduced"; nothing where nothing is decided.
@@ -42,7 +49,7 @@ std::string verdicts_html(const Section& section, Origin origin) {
 std::string numbers_html(const Section& section) {
   std::string rows;
   for (const Statement& s : statements_of(section, kNumbers)) {
-    if (s.here.empty() || s.verdict == Verdict::not_reproduced) continue;
+    if (s.here.empty() || needs_words(s.verdict)) continue;
     rows += fmt::format(
         "<tr><th scope=\"row\">{}</th><td>{}</td><td class=\"paper\">{}</td>"
         "<td class=\"{}\">{} {}</td></tr>\n",
@@ -61,35 +68,58 @@ std::string numbers_html(const Section& section) {
          rows + "</tbody>\n</table>\n</div>\n";
 }
 
-/// What was measured where a condition does not hold; else all the evidence.
-std::string failure_of(const ClaimResult& claim) {
+/// What was measured where a condition does not hold; of one that is judged in
+/// part, what was and what is missing; else all the evidence.
+std::string measured_of(const ClaimResult& claim) {
+  const bool partly = claim.verdict == Verdict::partly_judged;
   std::string text;
-  for (const ConditionResult& c : claim.conditions)
-    if (c.holds && !*c.holds && c.value)
-      text += fmt::format("{}{} {}, not {}",
-                          text.empty() ? "" : "; ",
-                          c.label,
-                          value_text(*c.value),
-                          c.bounds);
+  const auto add = [&](const std::string& words) {
+    text += (text.empty() ? "" : "; ") + words;
+  };
+  for (const ConditionResult& c : claim.conditions) {
+    if (c.value && c.holds && *c.holds == partly)
+      add(fmt::format("{} {}{} {}",
+                      c.label,
+                      value_text(*c.value),
+                      partly ? "," : ", not",
+                      c.bounds));
+    else if (partly && !c.missing.empty())
+      add(c.label + ": " + c.missing);
+  }
   return text.empty() ? claim.evidence : text;
 }
 
-/// Statements that do not hold, with what was measured and why.
-std::string failing_html(const Section& section) {
+std::string sentence_html(const ClaimResult& c, const std::string& page) {
+  const std::string cause = cause_text(c.verdict, c.cause);
+  return fmt::format(
+      "<li><a href=\"{}\"><strong>{}</strong></a> {}{}: {}{}{} <span "
+      "class=\"{}\">{} {}</span></li>\n",
+      html(page),
+      html(c.id),
+      html(c.says),
+      c.where.empty() ? "" : " (" + html(c.where) + ")",
+      html(measured_of(c)),
+      c.note.empty() ? "" : ". " + html(c.note),
+      cause.empty() ? "" : ". <span class=\"cause\">" + html(cause) + "</span>",
+      css_of(c.verdict),
+      mark_of(c.verdict),
+      words_of(c.verdict, c.origin));
+}
+
+/// Statements that do not hold as printed, with what was measured and why:
+/// what fails first, in the order of verdicts from there.
+std::string failing_html(const Section& section, const std::string& folder) {
+  const Anchors anchors = anchors_of({section}).front();
   std::string items;
-  for (const ClaimResult& c : section.claims) {
-    if (c.verdict != Verdict::not_reproduced) continue;
-    items += fmt::format(
-        "<li><strong>{}</strong> {}{}: {}{} <span "
-        "class=\"no\">{} {}</span></li>\n",
-        html(c.id),
-        html(c.says),
-        c.where.empty() ? "" : " (" + html(c.where) + ")",
-        html(failure_of(c)),
-        c.note.empty() ? "" : ". " + html(c.note),
-        mark_of(c.verdict),
-        words_of(c.verdict, c.origin));
-  }
+  for (const Verdict verdict : {Verdict::not_reproduced,
+                                Verdict::contradiction,
+                                Verdict::depends,
+                                Verdict::differs,
+                                Verdict::partly_judged})
+    for (std::size_t k = 0; k < section.claims.size(); ++k)
+      if (section.claims[k].verdict == verdict)
+        items += sentence_html(section.claims[k],
+                               folder + "/index.html#" + anchors.claims[k]);
   return items.empty() ? "" : "<ul class=\"failing\">\n" + items + "</ul>\n";
 }
 
@@ -120,7 +150,7 @@ std::string experiment_html(const Section& section, const std::string& folder) {
   if (!papers.empty()) out += "<p>The paper: " + papers + "</p>\n";
   if (!ranges.empty())
     out += "<p class=\"remark\">Ranges of the suite: " + ranges + "</p>\n";
-  return out + numbers_html(section) + failing_html(section) +
+  return out + numbers_html(section) + failing_html(section, folder) +
          open_html(section) + "</article>\n";
 }
 

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "reports/anchors.h"
 #include "reports/html.h"
 #include "reports/html_parts.h"
 #include "reports/statements.h"
@@ -75,12 +76,60 @@ TEST(Index, FailingStatementsAreSentencesAndOpenOnesALine) {
   const std::string page = index();
   EXPECT_NE(
       page.find(
-          "<strong>P2</strong> P2 is &lt;so&gt; (Fig. 1): x 1.25, not &gt; 2. "
-          "as it is"),
+          "<a href=\"jpo-toy/index.html#jpo-toy-P2\"><strong>P2</strong></a> "
+          "P2 "
+          "is &lt;so&gt; (Fig. 1): x 1.25, not &gt; 2. as it is"),
       page.npos);
   EXPECT_EQ(page.find("P3 is"), page.npos);
   EXPECT_NE(page.find("2 not judged; decided by profile paper"), page.npos);
   EXPECT_LT(page.size(), 40'000U);
+}
+
+/// What a sentence of the index says of one claim.
+std::string sentence_of(const ClaimResult& claim) {
+  Section one{.experiment = "jpo/toy", .title = "Toy", .claims = {claim}};
+  const std::string page = index_html({one}, {"jpo-toy"}, {}, {});
+  const auto at = page.find("<ul class=\"failing\">");
+  return at == page.npos ? "" : page.substr(at, page.find("</ul>", at) - at);
+}
+
+TEST(Index, WhatIsExplainedHasItsCause) {
+  for (const Verdict verdict :
+       {Verdict::differs, Verdict::depends, Verdict::contradiction}) {
+    ClaimResult c = claim("P5", verdict, 1.25);
+    c.cause = "the rate is not printed";
+    const std::string words = sentence_of(c);
+    EXPECT_NE(words.find("x 1.25, not &gt; 2"), words.npos) << words;
+    EXPECT_NE(words.find("Cause: the rate is not printed"), words.npos)
+        << words;
+    EXPECT_NE(words.find(words_of(verdict, Origin::paper)), words.npos);
+  }
+  EXPECT_EQ(sentence_of(claim("P1", Verdict::reproduced, 3)), "");
+  EXPECT_EQ(sentence_of(claim("P1", Verdict::reported, 3)), "");
+}
+
+TEST(Index, WhatIsJudgedInPartSaysWhatIsMissing) {
+  ClaimResult c = claim("P6", Verdict::partly_judged, 3);
+  c.conditions.front().holds = true;
+  c.conditions.push_back({.label = "y", .bounds = "< 1", .missing = "not run"});
+  c.cause = "an hour";
+  const std::string words = sentence_of(c);
+  EXPECT_NE(words.find("x 3, &gt; 2; y: not run"), words.npos) << words;
+  EXPECT_NE(words.find("an hour"), words.npos) << words;
+}
+
+TEST(Anchors, PlacesOfAPaper) {
+  using Places = std::vector<std::string>;
+  EXPECT_EQ(places_of("Figs. 2, 5 and 6a, Table 4"),
+            (Places{"fig 2", "fig 5", "fig 6", "table 4"}));
+  EXPECT_EQ(places_of("Sec. 3.3, Figs. 4, 8 to 11, Table 5"),
+            (Places{"fig 4", "fig 8", "fig 9", "fig 10", "fig 11", "table 5"}));
+  EXPECT_EQ(places_of("App. D.1, Fig. 25(b)"), (Places{"fig 25"}));
+  EXPECT_EQ(places_of("Sec. 4; Figure 3 (left)"), (Places{"fig 3"}));
+  EXPECT_EQ(places_of("eq. 7"), Places{});
+  EXPECT_TRUE(share_place("Fig. 3, App. D", "Figs. 2 and 3"));
+  EXPECT_FALSE(share_place("Fig. 3", "Table 3"));
+  EXPECT_FALSE(share_place("", ""));
 }
 
 TEST(Index, APageOfAnExperimentLinksItsData) {
