@@ -154,121 +154,6 @@ std::string contents_html(const std::vector<Section>& sections,
   return out + "<p>" + link("provenance", "Provenance") + "</p>\n</nav>\n";
 }
 
-// ---- an experiment --------------------------------------------------------
-
-std::string claim_html(const ClaimResult& claim, const std::string& id) {
-  std::string out = fmt::format(
-      "<tr id=\"{0}\"><th scope=\"row\"><a class=\"self\" href=\"#{0}\">{1}</a>"
-      "</th><td class=\"verdict {2}\">{3} {4}</td><td><p>{5}</p>",
-      id,
-      html(claim.id),
-      css_of(claim.verdict),
-      mark_of(claim.verdict),
-      words_of(claim.verdict, claim.origin),
-      html(claim.says));
-  if (!claim.evidence.empty()) {
-    out += fmt::format("<p class=\"evidence\">{}</p>", html(claim.evidence));
-  }
-  const std::string cause = cause_text(claim.verdict, claim.cause);
-  if (!cause.empty())
-    out += fmt::format("<p class=\"cause\">{}</p>", html(cause));
-  if (!claim.note.empty())
-    out += fmt::format("<p class=\"evidence\">{}</p>", html(claim.note));
-  return out + fmt::format("<p class=\"evidence\">{}{}{}</p></td></tr>\n",
-                           claim.where.empty() ? "" : html(claim.where) + " · ",
-                           claim.gates ? "• gating" : "not gating",
-                           claim.from.empty()
-                               ? ""
-                               : fmt::format(", judged from profile {}",
-                                             html(claim.from)));
-}
-
-std::string claims_table_html(const std::string& title,
-                              const Section& section,
-                              const std::string& rows) {
-  return fmt::format(
-             "<div class=\"scroll\">\n<table class=\"claims\">\n"
-             "<caption class=\"hidden\">{}: {}</caption>\n",
-             title,
-             html(section.title)) +
-         "<thead class=\"hidden\">\n<tr><th scope=\"col\">id</th>"
-         "<th scope=\"col\">verdict</th><th scope=\"col\">claim and "
-         "evidence</th></tr>\n</thead>\n<tbody>\n" +
-         rows + "</tbody>\n</table>\n</div>\n";
-}
-
-/// Those that are not judged stand behind one line.
-std::string claims_html(const Section& section,
-                        const Anchors& anchors,
-                        Origin origin) {
-  std::string judged, open;
-  int count = 0;
-  for (std::size_t k = 0; k < section.claims.size(); ++k) {
-    const ClaimResult& c = section.claims[k];
-    if (c.origin != origin) continue;
-    const bool is_open = c.verdict == Verdict::not_judged;
-    count += is_open ? 1 : 0;
-    (is_open ? open : judged) += claim_html(c, anchors.claims[k]);
-  }
-  if (judged.empty() && open.empty()) return "";
-  const std::string title =
-      origin == Origin::paper ? "What the paper says" : "Ranges of the suite";
-  std::string out = fmt::format("<h3>{}</h3>\n", title);
-  if (!judged.empty()) out += claims_table_html(title, section, judged);
-  if (!open.empty())
-    out += fmt::format("<details>\n<summary>{} {}</summary>\n{}</details>\n",
-                       count,
-                       words_of(Verdict::not_judged, origin),
-                       claims_table_html(title, section, open));
-  return out;
-}
-
-/// Links to the files of a table or figure.
-std::string data_html(const char* folder,
-                      const std::string& id,
-                      std::initializer_list<const char*> kinds) {
-  std::string out;
-  for (const std::string kind : kinds)
-    out += fmt::format("{}<a href=\"{}/{}.{}\">{}</a>",
-                       out.empty() ? "" : " · ",
-                       folder,
-                       html(id),
-                       kind,
-                       kind);
-  return "<p class=\"remark data\">" + out + "</p>\n";
-}
-
-/// With `files`, links to the data beside the page.
-std::string section_html(const Section& section,
-                         const Anchors& anchors,
-                         const Palette& palette,
-                         bool files) {
-  std::string out = fmt::format(
-      "<section id=\"{0}\" aria-labelledby=\"{0}-title\">\n"
-      "<h2 id=\"{0}-title\"><a class=\"self\" href=\"#{0}\">{1}</a></h2>\n"
-      "<p class=\"remark\"><code>{2}</code>{3}</p>\n",
-      anchors.section,
-      html(section.title),
-      html(section.experiment),
-      section.paper.empty() ? ""
-                            : fmt::format(" · paper: {}", html(section.paper)));
-  for (const Origin origin : {Origin::paper, Origin::suite})
-    out += claims_html(section, anchors, origin);
-  if (!section.tables.empty()) out += "<h3>Tables</h3>\n";
-  for (std::size_t k = 0; k < section.tables.size(); ++k) {
-    out += table_html(section.tables[k], anchors.tables[k]);
-    if (files)
-      out += data_html("tables", section.tables[k].id, {"csv", "json", "md"});
-  }
-  if (!section.figures.empty()) out += "<h3>Figures</h3>\n";
-  for (std::size_t k = 0; k < section.figures.size(); ++k) {
-    out += figure_html(section.figures[k], anchors.figures[k], palette);
-    if (files)
-      out += data_html("figures", section.figures[k].id, {"svg", "json"});
-  }
-  return out + "</section>\n";
-}
-
 // ---- the page -------------------------------------------------------------
 
 std::string plain(const Json& value) {
@@ -384,7 +269,7 @@ std::string report_html(const std::vector<Section>& sections,
                  summary_html(provenance) + overview_html(sections, anchors);
   parts.contents = contents_html(sections, anchors);
   for (std::size_t k = 0; k < sections.size(); ++k)
-    parts.main += section_html(sections[k], anchors[k], palette, false);
+    parts.main += section_html(sections[k], anchors[k], palette, {});
   parts.footer = provenance_html(provenance);
   return page_html(parts);
 }
@@ -413,7 +298,8 @@ std::string section_page_html(const Section& section,
   parts.header = "<p><a href=\"../index.html\">← All experiments</a></p>\n" +
                  summary_html(own);
   parts.contents = contents_html({section}, anchors);
-  parts.main = section_html(section, anchors[0], palette, true);
+  parts.main = section_html(
+      section, anchors[0], palette, {true, command_of(section, provenance)});
   parts.footer = provenance_html(own);
   return page_html(parts);
 }

@@ -150,6 +150,8 @@ std::string experiment_html(const Section& section, const std::string& folder) {
   if (!papers.empty()) out += "<p>The paper: " + papers + "</p>\n";
   if (!ranges.empty())
     out += "<p class=\"remark\">Ranges of the suite: " + ranges + "</p>\n";
+  if (!section.standing.empty())
+    out += "<p class=\"remark\">" + html(section.standing) + ".</p>\n";
   return out + numbers_html(section) + failing_html(section, folder) +
          open_html(section) + "</article>\n";
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "reports/anchors.h"
 #include "reports/palette.h"
 #include "suite/results/report_model.h"
 
@@ -48,6 +49,22 @@ std::string provenance_html(const nlohmann::ordered_json& provenance);
 std::string section_page_html(const Section& section,
                               const nlohmann::ordered_json& provenance,
                               const Palette& palette);
+
+/// What stands beside a page.
+struct Beside {
+  bool files = false;        ///< the data of tables and figures
+  std::string command = {};  ///< what makes them
+};
+/// The part of a page that shows an experiment: claims with links to the tables
+/// and figures of the places they name, and back.
+std::string section_html(const Section& section,
+                         const Anchors& anchors,
+                         const Palette& palette,
+                         const Beside& beside);
+
+/// The command that makes a section anew; empty if the profile is not known.
+std::string command_of(const Section& section,
+                       const nlohmann::ordered_json& provenance);
 
 /// Panels as in the SVG file, each a drawing of its own so that they flow on
 /// narrow screens; title, legend and note are HTML.

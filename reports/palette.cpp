@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <sstream>
 
 namespace physinv {
 namespace {
@@ -31,6 +32,11 @@ static_assert(kColorCount == static_cast<int>(Hue::indigo) + 1);
 /// Given out to series without a look.
 constexpr int kFirstFree = static_cast<int>(Hue::brown);
 
+/// Lengths of ink and gaps of the classes d, d2, d3, ... of lines.
+constexpr std::string_view kPatterns[] = {
+    "", "6 4", ".1 4", ".1 8", "11 4 .1 4", "11 4 .1 4 .1 4", "16 4", "16 10"};
+static_assert(std::size(kPatterns) == 2 * kDashes);
+
 constexpr std::string_view kFurniture =
     "text{font-family:system-ui,-apple-system,'Segoe UI',Roboto,"
     "'Helvetica Neue',Arial,sans-serif}"
@@ -39,11 +45,6 @@ constexpr std::string_view kFurniture =
     ".label{font-size:12px}.tick{font-size:11px}.note{font-size:11px}"
     ".l{fill:none;stroke-width:1.9;stroke-linejoin:round;"
     "stroke-linecap:round}"
-    ".d{stroke-dasharray:6 4;stroke-linecap:butt}"
-    ".d2{stroke-dasharray:.1 4}.d3{stroke-dasharray:.1 8}"
-    ".d4{stroke-dasharray:11 4 .1 4}.d5{stroke-dasharray:11 4 .1 4 .1 4}"
-    ".d6{stroke-dasharray:16 4;stroke-linecap:butt}"
-    ".d7{stroke-dasharray:16 10;stroke-linecap:butt}"
     ".e{fill:none;stroke-width:1.2}.b{stroke:none;opacity:.2}"
     ".m{stroke-width:1.3;stroke-linejoin:round}"
     ".o{stroke-width:1.6;stroke-linejoin:round}"
@@ -51,6 +52,19 @@ constexpr std::string_view kFurniture =
     ".arrow{fill:none;stroke:#fff;stroke-width:1.1;stroke-linecap:round}"
     ".halo{fill:none;stroke-width:4.2;stroke-linejoin:round;opacity:.75}"
     ".grid{stroke-width:.8}.frame{fill:none;stroke-width:1}";
+
+/// A pattern of short inks has round ends, which make dots of them.
+std::string dash_rules() {
+  std::string css;
+  for (std::size_t k = 1; k < std::size(kPatterns); ++k)
+    css += fmt::format(".d{}{{stroke-dasharray:{}{}}}",
+                       k == 1 ? "" : std::to_string(k),
+                       kPatterns[k],
+                       kPatterns[k].find(".1") == kPatterns[k].npos
+                           ? ";stroke-linecap:butt"
+                           : "");
+  return css;
+}
 
 std::string furniture_colors(bool dark) {
   const auto pick = [&](const char* l, const char* d) { return dark ? d : l; };
@@ -95,6 +109,17 @@ std::string dash_css(Ink ink, bool dashed) {
   const int pattern = 2 * ink.dash + (dashed ? 1 : 0);
   return pattern == 0 ? "" : pattern == 1 ? " d" : fmt::format(" d{}", pattern);
 }
+
+std::vector<double> dash_pattern(Ink ink, bool dashed) {
+  const auto pattern =
+      static_cast<std::size_t>(2 * ink.dash + (dashed ? 1 : 0));
+  std::vector<double> lengths;
+  std::istringstream words{std::string(kPatterns[pattern])};
+  for (double length = 0; words >> length;) lengths.push_back(length);
+  return lengths;
+}
+
+std::string light_color(int color) { return std::string(kColors[color].light); }
 
 Palette::Palette(const std::vector<Section>& sections) {
   const auto each = [&](auto&& visit) {
@@ -153,8 +178,9 @@ void Palette::set(const Series& entry, Ink ink) {
 
 std::string style_sheet() {
   return fmt::format(
-      "\n{}\n{}\n{}\n@media(prefers-color-scheme:dark){{\n{}\n{}\n}}\n",
+      "\n{}{}\n{}\n{}\n@media(prefers-color-scheme:dark){{\n{}\n{}\n}}\n",
       kFurniture,
+      dash_rules(),
       furniture_colors(false),
       method_colors(false),
       furniture_colors(true),
@@ -166,13 +192,14 @@ std::string page_style_sheet() {
       ":root{{{0}}}\n"
       "@media screen and (prefers-color-scheme:dark){{"
       ":root:not([data-theme=light]){{{1}}}}}\n"
-      "@media screen{{:root[data-theme=dark]{{{1}}}}}\n{2}\n"
+      "@media screen{{:root[data-theme=dark]{{{1}}}}}\n{2}{3}\n"
       ".halo{{stroke:var(--bg)}}.m{{stroke:var(--bg)}}.o{{fill:var(--bg)}}"
       ".grid{{stroke:var(--grid)}}.frame{{stroke:var(--frame)}}"
       ".head,.label{{fill:var(--ink)}}.tick{{fill:var(--soft)}}\n",
       page_variables(false),
       page_variables(true),
-      kFurniture);
+      kFurniture,
+      dash_rules());
   for (int i = 0; i < kColorCount; ++i) {
     css +=
         fmt::format(".s{0}{{stroke:var(--c{0})}}.f{0}{{fill:var(--c{0})}}", i);

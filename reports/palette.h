@@ -27,6 +27,10 @@ inline constexpr int kDashes = 4;
 
 /// Classes of a line: " d" and its like, after a space; empty if it is whole.
 std::string dash_css(Ink ink, bool dashed);
+/// The same as lengths of ink and gaps; empty if it is whole.
+std::vector<double> dash_pattern(Ink ink, bool dashed);
+/// A colour of the style sheet on light pages, "#rrggbb".
+std::string light_color(int color);
 
 /// The inks of methods. A series with a look has that; others get the colours
 /// that looks seldom use, one for each method, in order; then other dashes and

@@ -12,6 +12,7 @@
 #include "reports/plot.h"
 #include "reports/tables.h"
 #include "reports/text.h"
+#include "reports/vega_lite.h"
 #include "suite/results/file.h"
 #include "suite/results/folder.h"
 #include "suite/results/markdown.h"
@@ -157,6 +158,8 @@ std::string section_markdown(const Section& section) {
                                 markdown_code(section.experiment));
   if (!section.paper.empty())
     out += fmt::format("\nPaper: {}\n", markdown(section.paper));
+  if (!section.standing.empty())
+    out += fmt::format("\n{}.\n", markdown(section.standing));
   for (const Origin origin : {Origin::paper, Origin::suite})
     out += claims_markdown(section, origin);
   if (!section.tables.empty()) out += "\n### Tables\n";
@@ -200,6 +203,8 @@ void write_section(Writer& writer,
   for (const Figure& f : section.figures) {
     const fs::path base = folder / "figures";
     writer.write(base / (f.id + ".json"), dump(to_json(f), -1));
+    writer.write(base / (f.id + ".csv"), to_csv(f));
+    writer.write(base / (f.id + ".vl.json"), dump(vega_lite(f, palette), -1));
     writer.write(base / (f.id + ".svg"), render_svg(f, palette));
   }
 }
@@ -338,6 +343,7 @@ std::vector<fs::path> write_report(const fs::path& dir,
     Json one{{"experiment", s.experiment},
              {"title", s.title},
              {"paper", s.paper},
+             {"standing", s.standing},
              {"claims", Json::array()}};
     for (const ClaimResult& c : s.claims) one["claims"].push_back(to_json(c));
     claims["sections"].push_back(std::move(one));

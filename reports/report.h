@@ -46,7 +46,7 @@ struct Pages {
 ///   index.html, report.md, and with several pages <experiment>/index.html,
 ///   claims.json ({provenance, sections: [{..., claims}]}),
 ///   <experiment>/tables/<id>.{json,csv,md},
-///   <experiment>/figures/<id>.{json,svg}.
+///   <experiment>/figures/<id>.{json,csv,vl.json,svg}; vl is Vega-Lite.
 /// Each file appears whole or not at all. Returns what was written, in order.
 /// Same sections and provenance, same bytes.
 /// Throws StoreError if a file cannot be written.

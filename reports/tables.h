@@ -24,6 +24,10 @@ nlohmann::ordered_json to_json(const Table& table);
 /// words in the place of a number, "note".
 std::string to_csv(const Table& table);
 
+/// A figure's points, a line each: panel, series, x, y and the ends of its
+/// band; of a field each cell, its value behind them.
+std::string to_csv(const Figure& figure);
+
 /// Aligned pipe table with title and note: ours ± spread, and a column
 /// "paper" beside it where the paper printed any.
 std::string to_markdown(const Table& table);

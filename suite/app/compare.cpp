@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -11,6 +12,7 @@
 #include "suite/app/options.h"
 #include "suite/compare/comparison.h"
 #include "suite/compare/pages.h"
+#include "suite/compare/ranks.h"
 #include "suite/compare/regressions.h"
 #include "suite/harness/judge.h"
 #include "suite/harness/progress.h"
@@ -106,6 +108,14 @@ void refuse_worse(const CompareFlags& flags,
         fmt::format("worse than {}: {} (--fail-on)", c.labels.front(), worse));
 }
 
+/// The one that compares so.
+std::string command_text(const CompareFlags& flags) {
+  return fmt::format("./bench compare {} --by={} --out={}",
+                     fmt::join(flags.sides, " "),
+                     flags.by,
+                     flags.out);
+}
+
 /// Labels come from the command line, in whatever characters.
 std::string json_text(const nlohmann::ordered_json& json) {
   return json.dump(
@@ -136,10 +146,11 @@ void print_counts(const Comparison& own,
 
 void print(const CompareFlags& flags,
            const Comparison& c,
-           const std::vector<ChangedClaim>& changed) {
+           const std::vector<ChangedClaim>& changed,
+           const std::vector<SideRank>& ranks) {
   const Comparison own = common(c);
   if (flags.format == "json") {
-    fmt::print("{}\n", json_text(to_json(c, changed)));
+    fmt::print("{}\n", json_text(to_json(c, changed, ranks)));
     return;
   }
   if (flags.format == "csv") {
@@ -148,14 +159,22 @@ void print(const CompareFlags& flags,
   }
   const bool markdown = flags.format == "markdown";
   const auto claims = judged_everywhere(changed);
+  const auto differing = static_cast<std::size_t>(
+      std::count_if(ranks.begin(), ranks.end(), [](const auto& rank) {
+        return rank.differs();
+      }));
+  const auto lines = static_cast<std::size_t>(flags.lines);
   for (const Table& table :
-       {changes_table(own, static_cast<std::size_t>(flags.lines)),
+       {changes_table(own, lines),
+        rank_table(ranks, c.labels, std::min(lines, differing)),
         missing_table(c),
         claims_table(claims, c.labels)})
     if (!table.rows.empty())
       fmt::print("{}\n",
                  markdown ? to_markdown(table)
                           : render_text(table, Screen::of(stdout).room()));
+  for (const auto& line : rank_sentences(ranks, c.labels))
+    fmt::print("{}\n", line);
   print_counts(own, changed, claims.size());
 }
 
@@ -188,7 +207,8 @@ ExitCode compare_verb(const Arguments& arguments) {
                "FORMAT"},
               {"--out",
                "also write a report there: HTML, Markdown, tables as CSV and "
-               "JSON, losses over time, performance profiles",
+               "JSON, losses over time, performance profiles, running times, "
+               "ranks",
                &flags.out,
                "DIR"},
               {"--lines", "of the table (default 30)", &flags.lines},
@@ -225,12 +245,14 @@ ExitCode compare_verb(const Arguments& arguments) {
                     "the folders have no run in common; runs pair by "
                     "experiment, method, n and seed");
   const auto claims = changed_claims(sides);
-  print(flags, c, claims);
+  const auto ranks = side_ranks(sides);
+  print(flags, c, claims, ranks);
   if (!flags.out.empty()) {
     nlohmann::ordered_json origin{{"heading", "Campaigns compared"},
                                   {"sides", c.labels},
-                                  {"by", flags.by}};
-    write_report(flags.out, compare_sections(c, sides, claims), origin);
+                                  {"by", flags.by},
+                                  {"command", command_text(flags)}};
+    write_report(flags.out, compare_sections(c, sides, claims, ranks), origin);
     if (flags.format == "text")
       fmt::print("report: {}\n", (fs::path(flags.out) / "index.html").string());
   }

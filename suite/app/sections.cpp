@@ -12,6 +12,7 @@
 
 #include "suite/app/installed.h"
 #include "suite/evidence/frontier.h"
+#include "suite/evidence/standings.h"
 #include "suite/harness/judge.h"
 #include "suite/harness/registry.h"
 #include "suite/results/course.h"
@@ -175,9 +176,10 @@ std::vector<Section> sections_of(const Results& results,
     section.method_titles.insert(titles.begin(), titles.end());
     if (!only_diagnoses(*e)) {
       add_frontier(section, results, e->name, section.method_titles);
+      const CommonRuns common = common_runs(results, e->name);
+      add_standings(section, common, section.method_titles);
       for (Figure& figure :
-           profile_figures(results,
-                           e->name,
+           profile_figures(common,
                            {.title = section.title,
                            .method_titles = section.method_titles}))
         section.figures.push_back(std::move(figure));

@@ -1,12 +1,14 @@
 #include "suite/compare/pages.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
 
+#include "suite/evidence/standings.h"
 #include "suite/results/profiles.h"
 #include "suite/results/shortened.h"
 #include "suite/results/verdict_words.h"
@@ -208,10 +210,14 @@ Figure overlay(const Comparison& c) {
 }
 
 Section overview(const Comparison& c,
-                 const std::vector<ChangedClaim>& changed) {
+                 const std::vector<ChangedClaim>& changed,
+                 const std::vector<SideRank>& ranks) {
   Section section{.experiment = "compare",
                   .title = fmt::format("What changed from {}", c.labels[0])};
+  section.standing =
+      fmt::format("{}", fmt::join(rank_sentences(ranks, c.labels), ". "));
   section.tables.push_back(changes_table(common(c), 40));
+  if (!ranks.empty()) section.tables.push_back(rank_table(ranks, c.labels, 40));
   if (auto table = missing_table(c); !table.rows.empty())
     section.tables.push_back(std::move(table));
   if (const auto claims = judged_everywhere(changed); !claims.empty())
@@ -325,11 +331,11 @@ Table claims_table(const std::vector<ChangedClaim>& changed,
   return table;
 }
 
-std::vector<Section> compare_sections(
-    const Comparison& c,
-    const std::vector<Side>& sides,
-    const std::vector<ChangedClaim>& changed) {
-  std::vector<Section> sections = {overview(c, changed)};
+std::vector<Section> compare_sections(const Comparison& c,
+                                      const std::vector<Side>& sides,
+                                      const std::vector<ChangedClaim>& changed,
+                                      const std::vector<SideRank>& ranks) {
+  std::vector<Section> sections = {overview(c, changed, ranks)};
   std::set<std::string> names;
   for (const auto& row : c.rows) names.insert(row.id.experiment);
   const Results all = pooled(sides);
@@ -341,8 +347,10 @@ std::vector<Section> compare_sections(
     for (auto& table : detail_tables(own))
       section.tables.push_back(std::move(table));
     section.figures.push_back(overlay(own));
+    const CommonRuns runs = common_runs(all, name);
+    add_standings(section, runs, {});
     for (auto& figure :
-         profile_figures(all, name, {.title = name, .method_titles = {}}))
+         profile_figures(runs, {.title = name, .method_titles = {}}))
       section.figures.push_back(std::move(figure));
     sections.push_back(std::move(section));
   }

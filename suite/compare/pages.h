@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "suite/compare/comparison.h"
+#include "suite/compare/ranks.h"
 
 namespace physinv {
 
@@ -24,12 +25,15 @@ Table claims_table(const std::vector<ChangedClaim>& changed,
                    const std::vector<std::string>& labels);
 
 /// For the HTML report: an overview, then an experiment each with its tables,
-/// losses over time of all sides, and performance profiles over all of them.
+/// losses over time of all sides, and performance profiles, running times and
+/// ranks over all of them.
 std::vector<Section> compare_sections(const Comparison& comparison,
                                       const std::vector<Side>& sides,
-                                      const std::vector<ChangedClaim>& changed);
+                                      const std::vector<ChangedClaim>& changed,
+                                      const std::vector<SideRank>& ranks);
 
 nlohmann::ordered_json to_json(const Comparison& comparison,
-                               const std::vector<ChangedClaim>& changed);
+                               const std::vector<ChangedClaim>& changed,
+                               const std::vector<SideRank>& ranks);
 
 }  // namespace physinv

@@ -84,8 +84,20 @@ Json against_json(const Compared& row, std::size_t s) {
 
 }  // namespace
 
-Json to_json(const Comparison& c, const std::vector<ChangedClaim>& changed) {
-  Json rows = Json::array(), claims = Json::array();
+Json to_json(const Comparison& c,
+             const std::vector<ChangedClaim>& changed,
+             const std::vector<SideRank>& ranks) {
+  Json rows = Json::array(), claims = Json::array(), tests = Json::array();
+  for (const SideRank& r : ranks)
+    tests.push_back({{"experiment", r.experiment},
+                     {"method", r.method},
+                     {"stage", r.stage},
+                     {"side", r.side},
+                     {"problems", r.test.pairs},
+                     {"lower", r.test.below},
+                     {"equal", r.test.ties},
+                     {"p", r.test.p},
+                     {"p_holm", r.p}});
   for (const Compared& row : c.rows) {
     Json sides = Json::array();
     for (const auto& r : row.sides)
@@ -120,7 +132,8 @@ Json to_json(const Comparison& c, const std::vector<ChangedClaim>& changed) {
   }
   return {{"labels", c.labels},
           {"rows", std::move(rows)},
-          {"changed_claims", std::move(claims)}};
+          {"changed_claims", std::move(claims)},
+          {"rank_tests", std::move(tests)}};
 }
 
 }  // namespace physinv

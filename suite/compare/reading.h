@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "suite/evidence/rank_test.h"
 #include "suite/results/ends.h"
 #include "suite/results/record.h"
 
@@ -66,8 +67,6 @@ Direction end_direction(const Reading& from, const Reading& to);
 /// "converged -> failed: out of memory"; empty if the ends are the same.
 std::string end_text(const Reading& from, const Reading& to);
 
-/// Losses below this are solved: that they differ counts for nothing.
-inline constexpr double kSolvedLoss = 1e-12;
 /// b over a, both raised to kSolvedLoss; 1 if neither is finite.
 double loss_ratio(const Reading& a, const Reading& b);
 

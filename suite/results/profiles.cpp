@@ -7,11 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <set>
 #include <utility>
-
-#include "suite/core/median.h"
-#include "suite/results/course.h"
 
 namespace physinv {
 namespace {
@@ -20,38 +16,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Steps nearer than this factor are drawn as one; nobody sees less.
 constexpr double kNearest = 1.02;
 
-/// The chains of all methods on the same problems.
-struct Group {
-  Index n = 0, examples = 0;
-  std::vector<Course> courses;
-};
-
-std::optional<Group> group_of(const Results& results,
-                              const std::string& experiment,
-                              const std::vector<std::string>& methods,
-                              Index n,
-                              std::uint64_t seed,
-                              bool& crowded) {
-  Group group{.n = n};
-  bool some_crowded = false;
-  for (const auto& method : methods) {
-    const CaseRecord* found = results.find_case(experiment, method, n, seed);
-    if (found == nullptr) return {};
-    auto course = course_of(*found);
-    if (!course) return {};
-    for (const auto& loss : course->loss) {
-      if (group.examples == 0) group.examples = loss.size();
-      if (loss.size() != group.examples) return {};  // not the same problems
-    }
-    for (const auto& s : found->stages) some_crowded |= s.crowded;
-    group.courses.push_back(std::move(*course));
-  }
-  crowded |= some_crowded;
-  return group;
-}
-
 /// Loss to reach; empty if a method starts there or nobody has a number.
-std::optional<double> target_of(const Group& group,
+std::optional<double> target_of(const CommonRun& group,
                                 Index example,
                                 double tolerance) {
   double start = kInfinity, lowest = kInfinity;
@@ -69,37 +35,8 @@ std::optional<double> target_of(const Group& group,
   return target;
 }
 
-/// Those of `all` that end lowest, in the order of `all`.
-std::vector<std::string> lowest_of(const Results& results,
-                                   const std::string& experiment,
-                                   const std::vector<std::string>& all,
-                                   std::size_t most) {
-  if (all.size() <= most) return all;
-  std::vector<std::pair<double, std::size_t>> ends;
-  for (std::size_t m = 0; m < all.size(); ++m) {
-    std::vector<double> last;
-    for (const Index n : results.sizes(experiment))
-      for (const std::uint64_t seed : results.seeds(experiment))
-        if (const auto* found = results.find_case(experiment, all[m], n, seed))
-          if (const auto course = course_of(*found);
-              course && !course->loss.empty())
-            last.push_back(course->loss.back().mean());
-    for (double& loss : last)
-      if (!std::isfinite(loss)) loss = kInfinity;
-    ends.emplace_back(last.empty() ? kInfinity : median(std::move(last)), m);
-  }
-  std::sort(ends.begin(), ends.end());
-  ends.resize(most);
-  std::sort(ends.begin(), ends.end(), [](const auto& a, const auto& b) {
-    return a.second < b.second;
-  });
-  std::vector<std::string> some;
-  for (const auto& [end, m] : ends) some.push_back(all[m]);
-  return some;
-}
-
 void append_costs(TargetCosts& out,
-                  const Group& group,
+                  const CommonRun& group,
                   Index example,
                   double target) {
   const double share = out.runs ? 1 : static_cast<double>(group.n);
@@ -111,10 +48,16 @@ void append_costs(TargetCosts& out,
         });
     const bool reached = there != course.loss.end();
     const auto k = static_cast<std::size_t>(there - course.loss.begin());
-    out.seconds[m].push_back(reached ? std::max(course.seconds[k], 1e-9)
-                                     : kInfinity);
-    out.simulations[m].push_back(
-        reached ? std::max(course.simulations[k] / share, 1.0) : kInfinity);
+    const auto last = course.loss.empty() ? 0 : course.loss.size() - 1;
+    const double seconds =
+        course.loss.empty() ? 0 : course.seconds[reached ? k : last];
+    const double simulations =
+        course.loss.empty() ? 0 : course.simulations[reached ? k : last];
+    out.spent_seconds[m].push_back(std::max(seconds, 1e-9));
+    out.spent_simulations[m].push_back(std::max(simulations / share, 1.0));
+    out.seconds[m].push_back(reached ? out.spent_seconds[m].back() : kInfinity);
+    out.simulations[m].push_back(reached ? out.spent_simulations[m].back()
+                                         : kInfinity);
   }
   ++out.problems;
 }
@@ -229,43 +172,107 @@ Steps distribution(Costs values) {
   return steps;
 }
 
+TargetCosts target_costs(const CommonRuns& common, double tolerance) {
+  TargetCosts out{.methods = common.methods,
+                  .runs = common.runs,
+                  .left_out = common.left_out,
+                  .sizes = common.sizes,
+                  .seeds = common.seeds,
+                  .crowded = common.crowded};
+  for (auto* costs : {&out.seconds,
+                      &out.simulations,
+                      &out.spent_seconds,
+                      &out.spent_simulations})
+    costs->resize(out.methods.size());
+  for (const CommonRun& group : common.groups) {
+    for (Index i = 0; i < group.examples; ++i) {
+      const auto target = target_of(group, i, tolerance);
+      if (target) {
+        append_costs(out, group, i, *target);
+      } else {
+        ++out.solved_at_start;
+      }
+    }
+  }
+  return out;
+}
+
 TargetCosts target_costs(const Results& results,
                          const std::string& experiment,
                          double tolerance,
                          std::size_t most) {
-  TargetCosts out;
-  const auto all = results.methods(experiment);
-  out.methods = lowest_of(results, experiment, all, most);
-  out.left_out = static_cast<Index>(all.size() - out.methods.size());
-  out.seconds.resize(out.methods.size());
-  out.simulations.resize(out.methods.size());
-  std::set<std::uint64_t> seeds;
-  std::set<Index> sizes;
-  for (const Index n : results.sizes(experiment)) {
-    for (const std::uint64_t seed : results.seeds(experiment)) {
-      const auto group =
-          group_of(results, experiment, out.methods, n, seed, out.crowded);
-      if (!group) continue;
-      out.runs = group->examples == 1 && n > 1;
-      seeds.insert(seed);
-      sizes.insert(n);
-      for (Index i = 0; i < group->examples; ++i) {
-        const auto target = target_of(*group, i, tolerance);
-        if (target) {
-          append_costs(out, *group, i, *target);
-        } else {
-          ++out.solved_at_start;
-        }
-      }
+  return target_costs(common_runs(results, experiment, most), tolerance);
+}
+
+namespace {
+
+/// Costs of all targets that are shared out evenly in their exponent, joined.
+TargetCosts many_targets(const CommonRuns& common) {
+  TargetCosts all;
+  for (const double tolerance : distribution_targets()) {
+    TargetCosts one = target_costs(common, tolerance);
+    if (all.methods.empty()) {
+      all = std::move(one);
+      continue;
     }
+    for (std::size_t m = 0; m < all.methods.size(); ++m) {
+      const auto append = [m](auto& to, const auto& from) {
+        to[m].insert(to[m].end(), from[m].begin(), from[m].end());
+      };
+      append(all.seconds, one.seconds);
+      append(all.simulations, one.simulations);
+    }
+    all.problems += one.problems;
   }
-  out.sizes.assign(sizes.begin(), sizes.end());
-  out.seeds = static_cast<Index>(seeds.size());
-  return out;
+  return all;
+}
+
+Figure distribution_figure(const CommonRuns& common,
+                           const ProfileOptions& options) {
+  const TargetCosts costs = many_targets(common);
+  const auto targets = distribution_targets();
+  Figure figure{
+      .id = "runtime_distribution",
+      .title = options.title + ": runtime distribution over all targets",
+      .note = fmt::format(
+          "Share of all pairs of a problem and a target that a method has "
+          "reached after so many seconds or simulations: the ECDF of run times "
+          "of COCO (Hansen et al. 2021), over {} targets tau from {:.2g} to "
+          "{:.2g}, evenly in their exponent. The further up and left, the "
+          "better. {} pairs.",
+          targets.size(),
+          targets.front(),
+          targets.back(),
+          costs.problems)};
+  for (const bool by_time : {true, false}) {
+    Panel panel = panel_of(by_time ? costs.seconds : costs.simulations,
+                           costs.methods,
+                           options.method_titles);
+    panel.title = by_time ? "By wall time" : "By simulations";
+    panel.x_label = by_time ? "seconds" : "simulations per problem";
+    panel.y_label = "share of problems and targets";
+    figure.panels.push_back(std::move(panel));
+  }
+  return figure;
+}
+
+}  // namespace
+
+std::vector<double> distribution_targets() {
+  constexpr int kTargets = 24, kPerDecade = 4;
+  std::vector<double> all;
+  for (int k = 1; k <= kTargets; ++k)
+    all.push_back(std::pow(10.0, -static_cast<double>(k) / kPerDecade));
+  return all;
 }
 
 std::vector<Figure> profile_figures(const Results& results,
                                     const std::string& experiment,
+                                    const ProfileOptions& options) {
+  return profile_figures(common_runs(results, experiment), options);
+}
+
+std::vector<Figure> profile_figures(const CommonRuns& common,
                                     const ProfileOptions& options) {
   Figure profile{.id = "performance_profile",
                  .title = options.title + ": performance profiles"};
@@ -273,7 +280,7 @@ std::vector<Figure> profile_figures(const Results& results,
                  .title = options.title + ": time to target"};
   std::string note;
   for (const double tolerance : options.tolerances) {
-    const TargetCosts costs = target_costs(results, experiment, tolerance);
+    const TargetCosts costs = target_costs(common, tolerance);
     if (costs.methods.size() < 2 || costs.sizes.empty()) {
       profile.note = reached.note =
           costs.methods.size() < 2
@@ -313,7 +320,9 @@ std::vector<Figure> profile_figures(const Results& results,
       note;
   reached.note =
       "Share of problems solved after so many seconds or simulations. " + note;
-  return {std::move(profile), std::move(reached)};
+  return {std::move(profile),
+          std::move(reached),
+          distribution_figure(common, options)};
 }
 
 }  // namespace physinv

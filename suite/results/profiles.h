@@ -1,5 +1,6 @@
 /// How fast methods reach a target: performance profiles (Dolan and More,
-/// Math. Program. 91, 2002) and time-to-target curves (the ECDF of COCO).
+/// Math. Program. 91, 2002), time-to-target curves, and the same over many
+/// targets (the runtime distributions of COCO).
 ///
 /// A problem p is one example of one seed and one n. With f_L the lowest loss
 /// that any method finds for it and f_0 the lowest loss at which any method
@@ -20,6 +21,7 @@
 #include <string>
 #include <vector>
 
+#include "suite/results/common_runs.h"
 #include "suite/results/report_model.h"
 #include "suite/results/results.h"
 
@@ -50,28 +52,35 @@ struct ProfileOptions {
 
 /// Costs of an experiment's methods at one tolerance.
 struct TargetCosts {
-  std::vector<std::string> methods;
-  std::vector<Costs> seconds;  ///< the batch's time
+  std::vector<std::string> methods = {};
+  std::vector<Costs> seconds = {};  ///< the batch's time
   /// The batch's, over n; those of training if a problem is a run. At least 1.
-  std::vector<Costs> simulations;
-  bool runs = false;          ///< a problem is a run
-  Index left_out = 0;         ///< methods beyond those that end lowest
-  Index problems = 0;         ///< of every entry above
-  Index solved_at_start = 0;  ///< left out: nothing to reach, or no number
-  std::vector<Index> sizes;   ///< n of the cases compared
+  std::vector<Costs> simulations = {};
+  /// The same, and of what is not solved all that its chain spent.
+  std::vector<Costs> spent_seconds = {}, spent_simulations = {};
+  bool runs = false;              ///< a problem is a run
+  Index left_out = 0;             ///< methods beyond those that end lowest
+  Index problems = 0;             ///< of every entry above
+  Index solved_at_start = 0;      ///< left out: nothing to reach, or no number
+  std::vector<Index> sizes = {};  ///< n of the cases compared
   Index seeds = 0;
   bool crowded = false;  ///< some stages shared their cores
 };
 
-/// Compares on the n and seeds where all methods' chains are finished. A
-/// failed stage ends its chain. Of many methods, the `most` that end lowest.
+TargetCosts target_costs(const CommonRuns& common, double tolerance);
 TargetCosts target_costs(const Results& results,
                          const std::string& experiment,
                          double tolerance,
                          std::size_t most = 12);
 
+/// Tolerances of the runtime distribution: 24, four to a decade.
+std::vector<double> distribution_targets();
+
 /// performance_profile and time_to_target: two panels per tolerance, seconds
-/// and simulations. If no two methods can be compared, they say why.
+/// and simulations; runtime_distribution: all targets together. If no two
+/// methods can be compared, the first two say why.
+std::vector<Figure> profile_figures(const CommonRuns& common,
+                                    const ProfileOptions& options);
 std::vector<Figure> profile_figures(const Results& results,
                                     const std::string& experiment,
                                     const ProfileOptions& options);

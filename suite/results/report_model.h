@@ -171,6 +171,7 @@ struct Section {
   std::vector<Figure> figures;
   std::vector<ClaimResult> claims;
   std::map<std::string, std::string> method_titles;  ///< jpo -> JPO
+  std::string standing = {};  ///< how its methods compare, a sentence
 };
 
 /// By what is drawn (`Series::method`).

@@ -58,11 +58,13 @@ class ReportTest : public testing::Test {
 
 TEST_F(ReportTest, WritesEveryFormat) {
   const auto files = write_report(dir_, sample(), {{"revision", "abc"}});
-  EXPECT_EQ(files.size(), 8U);
+  EXPECT_EQ(files.size(), 10U);
   for (const char* name : {"jpo-toy/tables/table1.json",
                            "jpo-toy/tables/table1.csv",
                            "jpo-toy/tables/table1.md",
                            "jpo-toy/figures/fig1.json",
+                           "jpo-toy/figures/fig1.csv",
+                           "jpo-toy/figures/fig1.vl.json",
                            "jpo-toy/figures/fig1.svg",
                            "claims.json",
                            "report.md",

@@ -75,7 +75,7 @@ TEST_P(WordsOf, StandInAComparison) {
   EXPECT_EQ(table.rows[0].cells[0].text, words_);
   EXPECT_EQ(table.rows[0].cells[1].text,
             words_of(Verdict::not_judged, Origin::suite));
-  EXPECT_EQ(to_json(Comparison{}, changed)["changed_claims"][0]["verdicts"][0],
+  EXPECT_EQ(to_json(Comparison{}, changed, {})["changed_claims"][0]["verdicts"][0],
             words_);
 }
 

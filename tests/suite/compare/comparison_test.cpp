@@ -78,7 +78,8 @@ TEST(Compare, WhatASideLacksIsALinePerExperiment) {
   EXPECT_EQ(table.rows[0].cells[0].ours, 0);
   EXPECT_EQ(table.rows[0].cells[1].ours, 1);
   EXPECT_TRUE(missing_table(common(c)).rows.empty());
-  for (const Section& s : compare_sections(c, planted(), {}))
+  for (const Section& s :
+       compare_sections(c, planted(), {}, side_ranks(planted())))
     for (const Table& t : s.tables) EXPECT_NE(t.id, "claims") << "no claim";
 }
 
@@ -94,6 +95,52 @@ TEST(Compare, WhatASideDoesNotJudgeDidNotChange) {
   EXPECT_TRUE(judged_everywhere(
                   {{.experiment = "e", .sides = {ClaimResult{.id = "P1"}, {}}}})
                   .empty());
+}
+
+/// Of one method on 20 examples whose losses are these.
+Side side_of_losses(const char* label, double first, double last) {
+  StageRecord stage = stage_with("solve", 1, 1);
+  stage.loss = Vector<double>::LinSpaced(20, first, last);
+  return side(label, {case_with("m", 0, stage)});
+}
+
+TEST(Compare, ALowerLossOnTheSameProblemsIsTested) {
+  const std::vector<Side> sides{side_of_losses("a", 1, 2),
+                                side_of_losses("b", 0.5, 1),
+                                side_of_losses("c", 1, 2)};
+  const auto ranks = side_ranks(sides);
+  ASSERT_EQ(ranks.size(), 2U);
+  EXPECT_EQ(ranks[0].side, 1U);
+  EXPECT_TRUE(ranks[0].differs());
+  EXPECT_TRUE(ranks[0].better());
+  EXPECT_EQ(ranks[0].test.below, 20U);
+  EXPECT_EQ(ranks[1].test.ties, 20U);
+  EXPECT_FALSE(ranks[1].differs());
+  const auto lines = rank_sentences(ranks, {"a", "b", "c"});
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_NE(lines[0].find("b against a: of 1 stages 1 have lower losses"),
+            std::string::npos)
+      << lines[0];
+  EXPECT_NE(lines[0].find("lower on 100 % of 20 problems"), std::string::npos)
+      << lines[0];
+  EXPECT_NE(lines[1].find("0 have lower losses"), std::string::npos);
+  const Table table = rank_table(ranks, {"a", "b", "c"}, 1);
+  ASSERT_EQ(table.rows.size(), 1U);
+  EXPECT_EQ(table.rows[0].cells[5].text, "lower");
+}
+
+TEST(Compare, WhoFailedHasTheHighestLoss) {
+  std::vector<Side> sides{side_of_losses("a", 1, 2), side_of_losses("b", 1, 2)};
+  auto cases = sides[1].results.cases();
+  cases[0].stages[0].loss.resize(0);
+  sides[1].results = Results(cases);
+  const auto ranks = side_ranks(sides);
+  ASSERT_EQ(ranks.size(), 1U);
+  EXPECT_TRUE(ranks[0].differs());
+  EXPECT_FALSE(ranks[0].better());
+  cases[0].stages[0].loss = Vector<double>::Ones(3);
+  sides[1].results = Results(cases);
+  EXPECT_TRUE(side_ranks(sides).empty()) << "not the same problems";
 }
 
 TEST(Compare, SolvedLossesAreEqual) {

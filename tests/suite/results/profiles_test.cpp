@@ -116,7 +116,7 @@ TEST(ProfileFigures, StairsFromTheBestToTheLast) {
       results,
       "e",
       {.title = "E", .method_titles = {{"a", "A"}}, .tolerances = {0.1}});
-  ASSERT_EQ(figures.size(), 2U);
+  ASSERT_EQ(figures.size(), 3U);
   EXPECT_EQ(figures[0].id, "performance_profile");
   EXPECT_EQ(figures[1].id, "time_to_target");
   ASSERT_EQ(figures[0].panels.size(), 2U);
@@ -130,6 +130,35 @@ TEST(ProfileFigures, StairsFromTheBestToTheLast) {
   EXPECT_EQ(reached.series[0].x.front(), 2);
   EXPECT_NE(figures[0].note.find("2 problems of n = 2 and 1 seed;"),
             std::string::npos);
+}
+
+TEST(ProfileFigures, AllTargetsAreOneDistribution) {
+  // Method a is at 0.1 after a second more and never lower, b ends at 0.
+  const Results results({case_of("a", {stage_of({{1}, {0.1}})}, 1),
+                         case_of("b", {stage_of({{1}, {1}, {0}})}, 1)});
+  const auto targets = distribution_targets();
+  ASSERT_EQ(targets.size(), 24U);
+  EXPECT_DOUBLE_EQ(targets[3], 0.1);
+  EXPECT_DOUBLE_EQ(targets[23], 1e-6);
+  const Figure figure =
+      profile_figures(results, "e", {.title = "E", .tolerances = {0.1}})[2];
+  EXPECT_EQ(figure.id, "runtime_distribution");
+  ASSERT_EQ(figure.panels.size(), 2U);
+  const Panel& seconds = figure.panels[0];
+  EXPECT_DOUBLE_EQ(seconds.series[0].y.back(), 4.0 / 24) << "0.1 and easier";
+  EXPECT_DOUBLE_EQ(seconds.series[1].y.back(), 1);
+  EXPECT_EQ(seconds.series[1].x.front(), 2);
+  EXPECT_DOUBLE_EQ(seconds.series[1].y.front(), 0);
+  EXPECT_NE(figure.note.find("24 pairs"), std::string::npos) << figure.note;
+}
+
+TEST(TargetCosts, WhatIsNotSolvedSpentAllThereWas) {
+  const Results results({case_of("a", {stage_of({{1, 1}, {0, 1}})}),
+                         case_of("b", {stage_of({{1, 1}, {0, 1}, {0, 0}})})});
+  const TargetCosts costs = target_costs(results, "e", 0.1);
+  EXPECT_EQ(costs.seconds[0], (Costs{2, kInf}));
+  EXPECT_EQ(costs.spent_seconds[0], (Costs{2, 2}));
+  EXPECT_EQ(costs.spent_simulations[1], (Costs{10, 15}));
 }
 
 /// A network's run: some examples along the curve, and the mean of all.

@@ -1,0 +1,158 @@
+#include "suite/compare/ranks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include "suite/evidence/statistics.h"
+#include "suite/results/shortened.h"
+
+namespace physinv {
+namespace {
+
+/// Side, experiment, method, stage.
+using Key = std::tuple<std::size_t, std::string, std::string, std::string>;
+using Differences = std::map<Key, std::vector<double>>;
+
+/// Of the same problems; none if they are not the same.
+std::vector<double> differences_of(const StageRecord& first,
+                                   const StageRecord& other) {
+  const Index count = std::max(first.loss.size(), other.loss.size());
+  const auto loss = [&](const StageRecord& s, Index i) {
+    return s.loss.size() == 0 ? kInfinite : s.loss[i];
+  };
+  for (const StageRecord* s : {&first, &other})
+    if (s->loss.size() != 0 && s->loss.size() != count) return {};
+  std::vector<double> all;
+  for (Index i = 0; i < count; ++i)
+    all.push_back(decades_above(loss(other, i), loss(first, i)));
+  return all;
+}
+
+Differences differences(const std::vector<Side>& sides) {
+  Differences all;
+  for (std::size_t s = 1; s < sides.size(); ++s)
+    for (const CaseRecord& c : sides[s].results.cases())
+      for (const StageRecord& stage : c.stages) {
+        const StageRecord* first = sides.front().results.find(c.info.experiment,
+                                                              c.info.method,
+                                                              c.info.n,
+                                                              c.info.seed,
+                                                              stage.stage);
+        if (first == nullptr) continue;
+        auto& own = all[{s, c.info.experiment, c.info.method, stage.stage}];
+        const auto more = differences_of(*first, stage);
+        own.insert(own.end(), more.begin(), more.end());
+      }
+  return all;
+}
+
+std::string words_of(const SideRank& r) {
+  return fmt::format(
+      "{}/{} {} is {} on {:.0f} % of {} problems, {}",
+      r.experiment,
+      r.method,
+      r.stage,
+      r.better() ? "lower" : "higher",
+      100 * static_cast<double>(r.better() ? r.test.below : r.above()) /
+          static_cast<double>(r.test.pairs),
+      r.test.pairs,
+      p_text(r.p));
+}
+
+}  // namespace
+
+std::vector<SideRank> side_ranks(const std::vector<Side>& sides) {
+  std::vector<SideRank> ranks;
+  std::vector<double> p;
+  for (const auto& [key, all] : differences(sides)) {
+    if (all.empty()) continue;
+    SideRank rank{.test = signed_rank(all)};
+    std::tie(rank.side, rank.experiment, rank.method, rank.stage) = key;
+    p.push_back(rank.test.p);
+    ranks.push_back(std::move(rank));
+  }
+  const auto corrected = holm(p);
+  for (std::size_t k = 0; k < ranks.size(); ++k) ranks[k].p = corrected[k];
+  std::stable_sort(ranks.begin(), ranks.end(), [](auto& a, auto& b) {
+    return std::pair(a.p, a.test.p) < std::pair(b.p, b.test.p);
+  });
+  return ranks;
+}
+
+Table rank_table(const std::vector<SideRank>& ranks,
+                 const std::vector<std::string>& labels,
+                 std::size_t most) {
+  Table table{.id = "rank_test",
+              .title = "Which losses are lower",
+              .digits = 0,
+              .corner = "stage",
+              .columns = {"problems",
+                          "lower, %",
+                          "higher, %",
+                          "p",
+                          "p by Holm",
+                          "against " + shortened(labels.front(), 24)}};
+  for (const SideRank& r : ranks) {
+    if (table.rows.size() == most) break;
+    const double share = 100 / static_cast<double>(r.test.pairs);
+    std::string name = r.experiment + "/" + r.method + " " + r.stage;
+    if (labels.size() > 2) name += ", " + shortened(labels[r.side], 24);
+    table.rows.push_back(
+        {std::move(name),
+         {{.ours = static_cast<double>(r.test.pairs)},
+          {.ours = share * static_cast<double>(r.test.below)},
+          {.ours = share * static_cast<double>(r.above())},
+          {.ours = r.test.p, .text = fmt::format("{:.2g}", r.test.p)},
+          {.ours = r.p, .text = fmt::format("{:.2g}", r.p)},
+          {.text = !r.differs() ? "no difference shown"
+                   : r.better() ? "lower"
+                                : "higher"}}});
+  }
+  table.note = fmt::format(
+      "Wilcoxon's signed rank test of the ratios of losses over all examples "
+      "of all n and seeds, two-sided, ties dropped, p corrected by Holm over "
+      "{} stages; losses below {:g} are equal, below p = {:g} it is a "
+      "difference. Problems of one network are not independent.",
+      ranks.size(),
+      kSolvedLoss,
+      kSignificant);
+  if (ranks.size() > table.rows.size())
+    table.note += fmt::format(" {} more stages differ less surely.",
+                              ranks.size() - table.rows.size());
+  return table;
+}
+
+std::vector<std::string> rank_sentences(
+    const std::vector<SideRank>& ranks,
+    const std::vector<std::string>& labels) {
+  std::vector<std::string> lines;
+  for (std::size_t s = 1; s < labels.size(); ++s) {
+    std::size_t stages = 0, lower = 0, higher = 0;
+    const SideRank* surest = nullptr;
+    for (const SideRank& r : ranks) {
+      if (r.side != s) continue;
+      ++stages;
+      if (!r.differs()) continue;
+      ++(r.better() ? lower : higher);
+      if (surest == nullptr) surest = &r;
+    }
+    if (stages == 0) continue;
+    std::string line = fmt::format(
+        "{} against {}: of {} stages {} have lower losses, {} higher ones, for "
+        "the others no difference is shown (signed rank test, Holm)",
+        labels[s],
+        labels.front(),
+        stages,
+        lower,
+        higher);
+    if (surest != nullptr) line += "; surest: " + words_of(*surest);
+    lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
+}  // namespace physinv

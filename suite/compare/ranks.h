@@ -1,0 +1,40 @@
+/// Are losses on one side lower than on the first? Paired over the same
+/// problems.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "suite/compare/comparison.h"
+#include "suite/evidence/rank_test.h"
+
+namespace physinv {
+
+/// A stage of a method on another side against the first, over all examples of
+/// all n and seeds that both have.
+struct SideRank {
+  std::string experiment, method, stage;
+  std::size_t side = 1;
+  SignedRank test;  ///< below: the other side is lower
+  double p = 1;     ///< by Holm over all of them
+
+  bool differs() const { return p < kSignificant; }
+  std::size_t above() const { return test.pairs - test.below - test.ties; }
+  bool better() const { return test.down; }
+};
+
+/// Those that differ most surely first. Who failed has no loss, which counts as
+/// the highest; stages with other numbers of losses have no pairs.
+std::vector<SideRank> side_ranks(const std::vector<Side>& sides);
+
+/// Of these the first `most`.
+Table rank_table(const std::vector<SideRank>& ranks,
+                 const std::vector<std::string>& labels,
+                 std::size_t most);
+
+/// "head against base: of 40 stages 2 end lower and 1 higher ..., best ..."; a
+/// line for each side after the first.
+std::vector<std::string> rank_sentences(const std::vector<SideRank>& ranks,
+                                        const std::vector<std::string>& labels);
+
+}  // namespace physinv

@@ -1,0 +1,110 @@
+#include "suite/evidence/standings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "suite/evidence/statistics.h"
+
+namespace physinv {
+namespace {
+
+/// Of each method, a loss per problem; infinite where there is none.
+std::vector<std::vector<double>> final_losses(const CommonRuns& common) {
+  std::vector<std::vector<double>> all(common.methods.size());
+  for (const CommonRun& group : common.groups)
+    for (std::size_t m = 0; m < all.size(); ++m)
+      for (Index i = 0; i < group.examples; ++i) {
+        const auto& losses = group.courses[m].loss;
+        const double loss = losses.empty() ? kInfinite : losses.back()[i];
+        all[m].push_back(std::isfinite(loss) ? std::max(loss, kSolvedLoss)
+                                             : kInfinite);
+      }
+  return all;
+}
+
+void add_ranks(Standings& out, const std::vector<std::vector<double>>& losses) {
+  const auto problems = static_cast<double>(out.problems);
+  out.mean_rank.resize(losses.size());
+  out.lowest.resize(losses.size());
+  for (std::size_t p = 0; p < out.problems; ++p)
+    for (std::size_t m = 0; m < losses.size(); ++m) {
+      double below = 0, equal = 0;
+      for (const auto& other : losses) {
+        below += other[p] < losses[m][p];
+        equal += other[p] == losses[m][p];
+      }
+      out.mean_rank[m] += (below + 0.5 * (equal + 1)) / problems;
+      out.lowest[m] += (below == 0 ? 1 : 0) / problems;
+    }
+}
+
+MethodPair pair_of(const std::vector<std::vector<double>>& losses,
+                   std::size_t a,
+                   std::size_t b) {
+  std::vector<double> differences;
+  for (std::size_t p = 0; p < losses[a].size(); ++p)
+    differences.push_back(decades_above(losses[a][p], losses[b][p]));
+  return {a, b, signed_rank(differences)};
+}
+
+}  // namespace
+
+Standings standings(const CommonRuns& common) {
+  const auto losses = final_losses(common);
+  Standings out;
+  if (losses.size() < 2 || losses.front().empty()) return out;
+  out.problems = losses.front().size();
+  add_ranks(out, losses);
+  out.order.resize(losses.size());
+  std::iota(out.order.begin(), out.order.end(), std::size_t{0});
+  std::stable_sort(out.order.begin(), out.order.end(), [&](auto a, auto b) {
+    return out.mean_rank[a] < out.mean_rank[b];
+  });
+  std::vector<double> p;
+  for (std::size_t i = 0; i < out.order.size(); ++i)
+    for (std::size_t k = i + 1; k < out.order.size(); ++k) {
+      out.pairs.push_back(pair_of(losses, out.order[i], out.order[k]));
+      p.push_back(out.pairs.back().test.p);
+    }
+  const auto corrected = holm(p);
+  for (std::size_t k = 0; k < p.size(); ++k) out.pairs[k].p = corrected[k];
+  return out;
+}
+
+std::string standing_text(const CommonRuns& common,
+                          const Standings& s,
+                          const std::map<std::string, std::string>& titles) {
+  if (s.pairs.empty()) return "";
+  const auto title = [&](std::size_t m) {
+    const auto found = titles.find(common.methods[m]);
+    return found == titles.end() ? common.methods[m] : found->second;
+  };
+  const MethodPair& pair = s.pairs.front();
+  const auto percent = [&](std::size_t count) {
+    return fmt::format(
+        "{:.0f} %",
+        100 * static_cast<double>(count) / static_cast<double>(s.problems));
+  };
+  const std::size_t above = pair.test.pairs - pair.test.below - pair.test.ties;
+  return fmt::format(
+      "Of {} methods {} has the lowest mean rank ({:.2g}): of {} {} it ends "
+      "below the next, {}, on {}{}{} ({}{})",
+      s.order.size(),
+      title(pair.first),
+      s.mean_rank[pair.first],
+      s.problems,
+      common.runs ? "runs" : "problems",
+      title(pair.second),
+      percent(pair.test.below),
+      pair.test.ties > 0 ? ", equal on " + percent(pair.test.ties) : "",
+      above > 0 ? ", above on " + percent(above) : "",
+      p_text(pair.p),
+      pair.p >= kSignificant ? ", which shows no difference"
+      : pair.test.down       ? ""
+                             : ", for " + title(pair.second));
+}
+
+}  // namespace physinv

@@ -1,0 +1,46 @@
+/// How the methods of an experiment stand to each other: ranks and paired tests
+/// of final losses, expected running times, scores of performance profiles.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "suite/evidence/rank_test.h"
+#include "suite/results/common_runs.h"
+#include "suite/results/report_model.h"
+
+namespace physinv {
+
+/// Two methods on the same problems, the one of the lower mean rank first.
+struct MethodPair {
+  std::size_t first = 0, second = 0;
+  SignedRank test;  ///< below: the first one is lower
+  double p = 1;     ///< by Holm over all pairs
+};
+
+struct Standings {
+  std::size_t problems = 0;
+  std::vector<std::size_t> order;  ///< methods, lowest mean rank first
+  std::vector<double> mean_rank;   ///< of each method, by its final losses
+  std::vector<double> lowest;      ///< share of problems where none is lower
+  std::vector<MethodPair> pairs;   ///< of all methods, in this order
+};
+
+/// Losses at the end of the chains. Losses that are solved, or not finite, are
+/// equal.
+Standings standings(const CommonRuns& common);
+
+/// "Of 5 methods JPO has the lowest mean rank ...": the first against the next.
+/// Empty if no two methods can be compared.
+std::string standing_text(const CommonRuns& common,
+                          const Standings& standings,
+                          const std::map<std::string, std::string>& titles);
+
+/// The sentence and the tables `standings`, `running_time` and `rank_test`;
+/// nothing if no two methods can be compared.
+void add_standings(Section& section,
+                   const CommonRuns& common,
+                   const std::map<std::string, std::string>& titles);
+
+}  // namespace physinv

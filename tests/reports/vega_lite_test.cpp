@@ -1,0 +1,144 @@
+#include "reports/vega_lite.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "reports/html_parts.h"
+#include "reports/tables.h"
+
+namespace physinv {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Figure figure() {
+  Panel curves{.title = "A", .x_label = "updates", .y_label = "loss"};
+  curves.x_log = curves.y_log = true;
+  curves.series = {{.label = "Adam",
+                    .method = "adam",
+                    .x = {0, 1, 2},
+                    .y = {1, 0.5, 0.25},
+                    .lo = {1, 0.4, 0.2},
+                    .hi = {1, 0.6, 0.3}},
+                   {.label = "HIG, \"half\"",
+                    .method = "hig",
+                    .x = {1, 2},
+                    .y = {0.5, -1},
+                    .line = false,
+                    .markers = true}};
+  Panel field{.title = "B", .x_label = "x", .y_label = "y"};
+  field.field =
+      Field2D{.x = {0, 1}, .y = {0, 1, 2}, .values = {1, 2, 3, 4, 5, 6}};
+  field.arrows = Arrows{{0}, {0}, {3}, {4}, 1};
+  return {.id = "f",
+          .title = "F",
+          .source = "Fig. 1",
+          .panels = {curves, field, Panel{.title = "C"}},
+          .note = "as it is"};
+}
+
+/// What every view of the specification has to have.
+void expect_layer(const Json& layer) {
+  ASSERT_TRUE(layer.contains("mark")) << layer.dump(1);
+  ASSERT_TRUE(layer.at("data").at("values").is_array());
+  std::set<std::string> fields;
+  for (const Json& row : layer.at("data").at("values"))
+    for (const auto& [key, value] : row.items()) fields.insert(key);
+  const Json channels = layer.value("encoding", Json::object());
+  for (const auto& [channel, encoding] : channels.items()) {
+    EXPECT_TRUE(fields.contains(encoding.at("field").get<std::string>()))
+        << channel;
+    if (channel == "x2" || channel == "y2") continue;
+    EXPECT_TRUE(encoding.contains("type")) << channel;
+    const Json scale = encoding.value("scale", Json::object());
+    if (scale.contains("domain") && encoding.at("type") == "nominal")
+      EXPECT_EQ(scale.at("domain").size(), scale.at("range").size());
+  }
+}
+
+TEST(VegaLite, HasPanelsWithTheirData) {
+  const Json spec = vega_lite(figure());
+  EXPECT_EQ(spec.at("$schema"),
+            "https://vega.github.io/schema/vega-lite/v5.json");
+  EXPECT_EQ(spec.at("title"), "Fig. 1 · F");
+  ASSERT_EQ(spec.at("concat").size(), 3U);
+  for (const Json& panel : spec.at("concat"))
+    for (const Json& layer : panel.at("layer")) expect_layer(layer);
+}
+
+TEST(VegaLite, LeavesOutWhatALogAxisCannotShow) {
+  const Json layers = vega_lite(figure()).at("concat").at(0).at("layer");
+  ASSERT_EQ(layers.size(), 3U) << "band, lines, points";
+  const Json& rows = layers.at(1).at("data").at("values");
+  ASSERT_EQ(rows.size(), 3U);
+  EXPECT_EQ(rows.at(0).at("x"), 1);
+  EXPECT_EQ(rows.at(0).at("hi"), 0.6);
+  EXPECT_EQ(rows.at(2).at("series"), "HIG, \"half\"");
+  EXPECT_EQ(layers.at(1).at("encoding").at("y").at("scale").at("type"), "log");
+  const Json& color = layers.at(1).at("encoding").at("color").at("scale");
+  EXPECT_EQ(color.at("domain"), (Json{"Adam", "HIG, \"half\""}));
+  EXPECT_EQ(color.at("range").at(0).get<std::string>().substr(0, 1), "#");
+}
+
+TEST(VegaLite, FieldsAreRectanglesAndArrowsRules) {
+  const Json layers = vega_lite(figure()).at("concat").at(1).at("layer");
+  ASSERT_EQ(layers.size(), 2U);
+  EXPECT_EQ(layers.at(0).at("mark"), "rect");
+  const Json& rows = layers.at(0).at("data").at("values");
+  ASSERT_EQ(rows.size(), 3U);
+  EXPECT_EQ(rows.at(1).at("value"), (Json{3.0, 4.0}));
+  EXPECT_EQ(rows.at(0).at("x"), (Json{-0.5, 0.5}));
+  EXPECT_EQ(rows.at(0).at("x2"), (Json{0.5, 1.5}));
+  EXPECT_EQ(rows.at(2).at("y2"), 2.5);
+  const Json& arrow = layers.at(1).at("data").at("values").at(0);
+  EXPECT_DOUBLE_EQ(arrow.at("x2"), 0.6);
+  EXPECT_DOUBLE_EQ(arrow.at("y2"), 0.8);
+}
+
+TEST(VegaLite, EntriesOfOneLabelAreToldApart) {
+  Figure f = figure();
+  f.panels[0].series[1].label = "Adam";
+  const Json names = vega_lite(f)
+                         .at("concat")
+                         .at(0)
+                         .at("layer")
+                         .at(0)
+                         .at("encoding")
+                         .at("color")
+                         .at("scale")
+                         .at("domain");
+  EXPECT_EQ(names, (Json{"Adam", "Adam (hig)"}));
+}
+
+TEST(FigureCsv, HasALineForEachPointAndCell) {
+  const std::string csv = to_csv(figure());
+  EXPECT_EQ(csv.substr(0, csv.find('\r')), "panel,series,x,y,from,to,value");
+  EXPECT_NE(csv.find("A,Adam,1,0.5,0.4,0.6,\r\n"), csv.npos) << csv;
+  EXPECT_NE(csv.find("A,\"HIG, \"\"half\"\"\",2,-1,,,\r\n"), csv.npos) << csv;
+  EXPECT_NE(csv.find("B,,1,2,,,6\r\n"), csv.npos) << csv;
+}
+
+TEST(SectionHtml, ClaimsAndFiguresLeadToEachOther) {
+  Section section{.experiment = "jpo/toy", .title = "Toy"};
+  section.figures = {figure()};
+  section.tables = {{.id = "t", .title = "T", .source = "Table 2"}};
+  section.claims = {{.id = "P1", .says = "so", .where = "Sec. 1, Fig. 1b"},
+                    {.id = "P2", .says = "so", .where = "Sec. 4"}};
+  const Anchors anchors = anchors_of({section}).front();
+  const std::string page =
+      section_html(section, anchors, Palette(), {true, "./bench x"});
+  EXPECT_NE(page.find(" · here: <a href=\"#jpo-toy-f\">Fig. 1</a>"), page.npos)
+      << page;
+  EXPECT_NE(page.find("Statements: <a href=\"#jpo-toy-P1\">– P1</a></p>"),
+            page.npos);
+  EXPECT_EQ(page.find("#jpo-toy-P2\">– P2"), page.npos);
+  for (const char* file :
+       {"figures/f.svg", "figures/f.csv", "figures/f.vl.json", "tables/t.csv"})
+    EXPECT_NE(page.find("href=\"" + std::string(file)), page.npos) << file;
+  EXPECT_NE(page.find("<code>./bench x</code>"), page.npos);
+}
+
+}  // namespace
+}  // namespace physinv
