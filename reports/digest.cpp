@@ -230,6 +230,7 @@ Json digest_json(const std::vector<Section>& sections, const Json& provenance) {
     out["sections"].push_back({{"experiment", s.experiment},
                                {"title", s.title},
                                {"paper", s.paper},
+                               {"standing", s.standing},
                                {"claims", std::move(claims)},
                                {"tables", std::move(tables)}});
   }

@@ -16,6 +16,12 @@ namespace physinv {
 nlohmann::ordered_json digest_json(const std::vector<Section>& sections,
                                    const nlohmann::ordered_json& provenance);
 
+/// What a digest's pages show: claims as they are, tables by their words. There
+/// are no figures; std::runtime_error if it is no digest.
+std::vector<Section> sections_of(const nlohmann::ordered_json& digest);
+/// A table as to_markdown wrote it, with words in place of numbers.
+Table table_of(const std::string& markdown, std::string id);
+
 /// The command that makes such a campaign, from the options that its context
 /// holds: "./bench --profile=paper --filter=jpo/".
 std::string campaign_command(const nlohmann::ordered_json& provenance);

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "reports/report.h"
@@ -26,5 +27,16 @@ std::string index_html(const std::vector<Section>& sections,
                        const std::vector<std::string>& folders,
                        const std::vector<Group>& groups,
                        const nlohmann::ordered_json& provenance);
+
+/// A campaign whose pages stand in the folder of its name.
+struct CampaignPages {
+  std::string name, command;
+  nlohmann::ordered_json provenance;
+  std::vector<Section> sections;
+};
+/// What leads to the pages of campaigns, and of other things: folder, title.
+std::string campaigns_html(
+    const std::vector<CampaignPages>& campaigns,
+    const std::vector<std::pair<std::string, std::string>>& others);
 
 }  // namespace physinv

@@ -89,6 +89,12 @@ std::string measured_of(const ClaimResult& claim) {
   return text.empty() ? claim.evidence : text;
 }
 
+/// Joined to what stands before; without the full stop that follows.
+std::string further(std::string_view words) {
+  while (words.ends_with('.')) words.remove_suffix(1);
+  return words.empty() ? "" : ". " + html(words);
+}
+
 std::string sentence_html(const ClaimResult& c, const std::string& page) {
   const std::string cause = cause_text(c.verdict, c.cause);
   return fmt::format(
@@ -99,7 +105,7 @@ std::string sentence_html(const ClaimResult& c, const std::string& page) {
       html(c.says),
       c.where.empty() ? "" : " (" + html(c.where) + ")",
       html(measured_of(c)),
-      c.note.empty() ? "" : ". " + html(c.note),
+      further(c.note),
       cause.empty() ? "" : ". <span class=\"cause\">" + html(cause) + "</span>",
       css_of(c.verdict),
       mark_of(c.verdict),

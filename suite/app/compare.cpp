@@ -5,11 +5,13 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "reports/digest.h"
 #include "reports/report.h"
 #include "reports/tables.h"
 #include "suite/app/installed.h"
 #include "suite/app/load.h"
 #include "suite/app/options.h"
+#include "suite/app/published_campaign.h"
 #include "suite/compare/comparison.h"
 #include "suite/compare/pages.h"
 #include "suite/compare/ranks.h"
@@ -43,26 +45,41 @@ std::vector<JudgedClaim> claims_of(const Results& results,
 }
 
 /// "LABEL=DIR", or a directory that is its own label.
-Side read_side(const std::string& text) {
+Side read_side(const std::string& text, const Published& published) {
   const auto at = text.find('=');
   const bool labelled = at != std::string::npos && !fs::is_directory(text);
-  return {.label = labelled ? text.substr(0, at) : text,
-          .results = load(labelled ? text.substr(at + 1) : text).results,
-          .claims = {}};
+  const std::string folder = labelled ? text.substr(at + 1) : text;
+  Side side{.label = labelled ? text.substr(0, at) : text,
+            .results = {},
+            .claims = {}};
+  if (is_published(folder)) {
+    side.results = published_results(folder);
+    const auto digest = published_digest(folder, published);
+    for (const Section& section : sections_of(digest))
+      for (const ClaimResult& claim : section.claims)
+        side.claims.push_back({section.experiment, claim});
+  } else {
+    side.results = load(folder).results;
+    side.claims = claims_of(side.results, published);
+  }
+  return side;
 }
 
 std::vector<Side> read_sides(const CompareFlags& flags) {
   std::vector<Side> sides;
-  for (const auto& text : flags.sides) sides.push_back(read_side(text));
-  if (flags.by == "commit") sides = sides_by_revision(sides);
+  const Published published(published_directory());
+  for (const auto& text : flags.sides)
+    sides.push_back(read_side(text, published));
+  if (flags.by == "commit") {
+    sides = sides_by_revision(sides);
+    for (Side& side : sides) side.claims = claims_of(side.results, published);
+  }
   if (sides.size() < 2)
     throw UsageError(
         flags.by == "commit"
             ? "all stages are of one commit; results of two are compared"
             : "one folder is no comparison; two or more are, or one of "
               "several commits with --by=commit");
-  const Published published(published_directory());
-  for (Side& side : sides) side.claims = claims_of(side.results, published);
   return sides;
 }
 
@@ -192,7 +209,8 @@ ExitCode compare_verb(const Arguments& arguments) {
              "repetitions (run --benchmark_repetitions). Exit 0 whatever "
              "changed, unless --fail-on.",
              {{"RESULTS",
-               "directories that 'run' wrote, or LABEL=DIRECTORY; the first "
+               "directories that 'run' or 'report --publish' wrote, or "
+               "LABEL=DIRECTORY; the first "
                "is what the others are held against",
                &flags.sides},
               {"--by",

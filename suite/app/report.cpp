@@ -12,6 +12,7 @@
 #include "suite/app/installed.h"
 #include "suite/app/load.h"
 #include "suite/app/options.h"
+#include "suite/app/published_campaign.h"
 #include "suite/app/sections.h"
 #include "suite/harness/expected.h"
 #include "suite/harness/outside.h"
@@ -104,6 +105,29 @@ void check_claims(const ClaimTally& j) {
                                 j.misses.front()));
 }
 
+/// Pages of a campaign that is kept with the sources, which stays as it is.
+ExitCode report_published(const std::string& results, const std::string& out) {
+  if (out.empty())
+    throw UsageError(fmt::format(
+        "'{}' is a published campaign and stays as it is; say where the pages "
+        "go with --out=DIR",
+        results));
+  const Published numbers = printed_numbers();
+  const auto digest = published_digest(results, numbers);
+  const auto sections = sections_of(digest);
+  auto origin = digest.at("provenance");
+  origin["command"] = campaign_command(origin);
+  write_report(
+      out, sections, origin, {.one_file = false, .groups = groups_of(numbers)});
+  fmt::print(
+      "{}report: {}\nfigures are not kept with a published campaign: {}\n",
+      render_claims_text(sections,
+                         static_cast<std::size_t>(Screen::of(stdout).columns)),
+      (fs::path(out) / "index.html").string(),
+      campaign_command(origin));
+  return ExitCode::good;
+}
+
 }  // namespace
 
 ExitCode report_verb(const Arguments& arguments) {
@@ -113,7 +137,9 @@ ExitCode report_verb(const Arguments& arguments) {
           "report",
           "Writes tables, plots and claims of a finished campaign. Exit 10 "
           "if the campaign is incomplete.",
-          {{"RESULTS", "directory that 'run' wrote", &results},
+          {{"RESULTS",
+            "directory that 'run' or 'report --publish' wrote",
+            &results},
            {"--out", "where to; default: RESULTS/report", &out, "DIR"},
            {"--one-file", "one page that has everything", &one_file},
            {"--publish",
@@ -131,6 +157,13 @@ ExitCode report_verb(const Arguments& arguments) {
             "FILE"}},
           arguments))
     return ExitCode::good;
+  if (is_published(results)) {
+    if (check || !publish.empty() || one_file)
+      throw UsageError(fmt::format(
+          "'{}' is a published campaign: report takes --out alone there",
+          results));
+    return report_published(results, out);
+  }
   const Loaded loaded = load(results);
   const Published numbers = printed_numbers();
   const auto sections = sections_of(loaded.results, numbers);

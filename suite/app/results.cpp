@@ -6,11 +6,16 @@
 #include <filesystem>
 
 #include "reports/digest.h"
+#include "reports/html.h"
 #include "reports/report.h"
+#include "suite/app/history.h"
 #include "suite/app/installed.h"
 #include "suite/app/options.h"
+#include "suite/app/published_campaign.h"
+#include "suite/app/sections.h"
 #include "suite/evidence/claim.h"
 #include "suite/results/file.h"
+#include "suite/results/folder.h"
 #include "suite/results/json.h"
 #include "suite/results/published.h"
 #include "suite/results/results_file.h"
@@ -80,8 +85,9 @@ void renew(Json& digest, const Published& published) {
   }
 }
 
-/// That can be shown; StoreError with the file's name if it cannot.
-Json digest_in(const fs::path& folder, const Published& published) {
+}  // namespace
+
+Json published_digest(const fs::path& folder, const Published& published) {
   const fs::path path = folder / "digest.json";
   const std::string bytes = read_file(path);
   try {
@@ -99,6 +105,8 @@ Json digest_in(const fs::path& folder, const Published& published) {
   }
 }
 
+namespace {
+
 /// The folders of `directory` that hold a digest, by name.
 std::vector<NamedDigest> digests(const fs::path& directory) {
   if (!fs::is_directory(directory))
@@ -111,7 +119,8 @@ std::vector<NamedDigest> digests(const fs::path& directory) {
   const Published published(published_directory());
   std::vector<NamedDigest> found;
   for (const auto& path : paths)
-    found.push_back({path.filename().string(), digest_in(path, published)});
+    found.push_back(
+        {path.filename().string(), published_digest(path, published)});
   if (found.empty())
     throw ExitError(ExitCode::nothing_matched,
                     fmt::format("no folder of '{}' holds a digest.json; "
@@ -120,10 +129,39 @@ std::vector<NamedDigest> digests(const fs::path& directory) {
   return found;
 }
 
+/// Pages of each campaign in a folder of its name, what leads to them, and the
+/// history of the gate where git has one.
+void write_pages(const fs::path& directory,
+                 const std::vector<NamedDigest>& found) {
+  const Published published(published_directory());
+  std::vector<CampaignPages> all;
+  for (const NamedDigest& c : found) {
+    CampaignPages pages{.name = c.name,
+                        .command = campaign_command(c.digest.at("provenance")),
+                        .provenance = c.digest.at("provenance"),
+                        .sections = sections_of(c.digest)};
+    nlohmann::ordered_json origin = pages.provenance;
+    origin["command"] = pages.command;
+    write_report(directory / c.name,
+                 pages.sections,
+                 origin,
+                 {.one_file = false, .groups = groups_of(published)});
+    all.push_back(std::move(pages));
+  }
+  std::vector<std::pair<std::string, std::string>> others;
+  if (const auto sections = history_sections(kGateBaseline);
+      !sections.empty()) {
+    write_report(
+        directory / "history", sections, history_origin(kGateBaseline));
+    others.emplace_back("history", "What the gate measured, commit by commit");
+  }
+  Folder(directory).write("index.html", campaigns_html(all, others));
+}
+
 }  // namespace
 
 ExitCode results_verb(const Arguments& arguments) {
-  std::string campaigns = "reports/campaigns", out = "RESULTS.md";
+  std::string campaigns = "reports/campaigns", out = "RESULTS.md", pages;
   if (!parse("results",
              "Writes a page of all published campaigns: what is not reproduced "
              "and why, then claims and tables, each with machine, build, date "
@@ -135,10 +173,22 @@ ExitCode results_verb(const Arguments& arguments) {
                "reports/campaigns)",
                &campaigns,
                "DIR"},
-              {"--out", "the page (default RESULTS.md)", &out, "FILE"}},
+              {"--out", "the page (default RESULTS.md)", &out, "FILE"},
+              {"--pages",
+               "instead, HTML pages of each campaign, what leads to them, and "
+               "the history of the gate",
+               &pages,
+               "DIR"}},
              arguments))
     return ExitCode::good;
   const auto found = digests(campaigns);
+  if (!pages.empty()) {
+    write_pages(pages, found);
+    fmt::print("{} campaigns: {}\n",
+               found.size(),
+               (fs::path(pages) / "index.html").string());
+    return ExitCode::good;
+  }
   write_atomically(out, results_markdown(found));
   fmt::print("{} campaigns: {}\n", found.size(), out);
   return ExitCode::good;

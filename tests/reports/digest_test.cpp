@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "reports/tables.h"
 #include "suite/results/file.h"
 
 namespace physinv {
@@ -89,6 +90,42 @@ TEST(Digest, SomethingElseIsNoDigest) {
   auto strange = named("a", Verdict::reproduced, Verdict::reported);
   strange.digest["sections"][0]["claims"][0]["verdict"] = "not_reproduced";
   EXPECT_THROW(results_markdown({strange}), std::runtime_error);
+}
+
+TEST(Digest, TablesComeBackAsWords) {
+  const Table table{.id = "t",
+                    .title = "Errors | of *all*",
+                    .source = "Table 4",
+                    .unit = "%",
+                    .digits = 1,
+                    .corner = "method <b>",
+                    .columns = {"n = 4", "n = 8"},
+                    .rows = {{"a|b", {{.ours = 5, .spread = 1, .paper = 7}}},
+                             {"_c_", {{}, {.text = "not run"}}}},
+                    .note = "As it is & \\ was."};
+  const Table back = table_of(to_markdown(table), "t");
+  EXPECT_EQ(back.source, "Table 4");
+  EXPECT_EQ(back.title, "Errors | of *all* [%]");
+  EXPECT_EQ(back.corner, "method <b>");
+  EXPECT_EQ(back.columns,
+            (std::vector<std::string>{"n = 4", "paper", "n = 8"}));
+  ASSERT_EQ(back.rows.size(), 2U);
+  EXPECT_EQ(back.rows[0].label, "a|b");
+  EXPECT_EQ(back.rows[0].cells[0].text, "5.0 ± 1.0");
+  EXPECT_EQ(back.rows[0].cells[1].text, "7.0");
+  EXPECT_EQ(back.rows[1].label, "_c_");
+  EXPECT_EQ(back.rows[1].cells[2].text, "not run");
+  EXPECT_EQ(back.note, "As it is & \\ was.");
+  EXPECT_THROW(table_of("no table", "t"), std::runtime_error);
+}
+
+TEST(Digest, SectionsHaveClaimsAndTables) {
+  const auto sections =
+      sections_of(named("a", Verdict::reproduced, Verdict::reported).digest);
+  ASSERT_FALSE(sections.empty());
+  ASSERT_FALSE(sections[0].claims.empty());
+  EXPECT_EQ(sections[0].claims[0].verdict, Verdict::reproduced);
+  EXPECT_TRUE(sections[0].figures.empty());
 }
 
 TEST(Digest, CompressedBytesComeBack) {

@@ -75,8 +75,9 @@ TEST_P(WordsOf, StandInAComparison) {
   EXPECT_EQ(table.rows[0].cells[0].text, words_);
   EXPECT_EQ(table.rows[0].cells[1].text,
             words_of(Verdict::not_judged, Origin::suite));
-  EXPECT_EQ(to_json(Comparison{}, changed, {})["changed_claims"][0]["verdicts"][0],
-            words_);
+  EXPECT_EQ(
+      to_json(Comparison{}, changed, {})["changed_claims"][0]["verdicts"][0],
+      words_);
 }
 
 INSTANTIATE_TEST_SUITE_P(VerdictWords,

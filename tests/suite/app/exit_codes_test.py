@@ -96,6 +96,8 @@ def scenarios(d, env):
                     3: (["compare", "walk", "stroll"],),
                     5: ([*longer, "--fail-on=work"],),
                     6: ([*longer, "--fail-on=time"],)},
+        "history": {2: (["history", "--baseline=/base.txt"],),
+                    3: (["history", "--baseline=nowhere.txt"],)},
         "export": {2: (["export", "nowhere"],), 10: (["export", "part"],)},
         "completion": {2: (["completion", "csh"],)},
         "submit": {2: (["submit"],),

@@ -1,0 +1,70 @@
+#include <fmt/format.h>
+
+#include "reports/html.h"
+#include "reports/html_parts.h"
+#include "suite/results/verdict_words.h"
+
+namespace physinv {
+namespace {
+
+/// "✓ 3 reproduced, ✗ 1 not reproduced"
+std::string counts_html(const std::vector<Section>& sections, Origin origin) {
+  const Tally counts = tally(sections, origin);
+  std::string out;
+  for (const Verdict v : kVerdicts) {
+    const int count = counts[static_cast<std::size_t>(v)];
+    if (count == 0 || v == Verdict::not_judged) continue;
+    out += fmt::format("{}<span class=\"{}\">{} {} {}</span>",
+                       out.empty() ? "" : ", ",
+                       css_of(v),
+                       mark_of(v),
+                       count,
+                       words_of(v, origin));
+  }
+  return out;
+}
+
+std::string campaign_html(const CampaignPages& campaign) {
+  std::string titles;
+  for (const Section& s : campaign.sections)
+    titles += (titles.empty() ? "" : ", ") + html(s.title);
+  std::string out = fmt::format(
+      "<article>\n<h3><a href=\"{0}/index.html\">{0}</a></h3>\n{1}"
+      "<p class=\"remark\">{2}</p>\n",
+      html(campaign.name),
+      summary_html(campaign.provenance),
+      titles);
+  const std::string papers = counts_html(campaign.sections, Origin::paper);
+  const std::string ranges = counts_html(campaign.sections, Origin::suite);
+  if (!papers.empty()) out += "<p>The papers: " + papers + "</p>\n";
+  if (!ranges.empty())
+    out += "<p class=\"remark\">Ranges of the suite: " + ranges + "</p>\n";
+  return out + "<p class=\"remark data\"><code>" + html(campaign.command) +
+         "</code></p>\n</article>\n";
+}
+
+}  // namespace
+
+std::string campaigns_html(
+    const std::vector<CampaignPages>& campaigns,
+    const std::vector<std::pair<std::string, std::string>>& others) {
+  PageParts parts{.title = "Physics inverse problems: published campaigns"};
+  parts.header =
+      "<h1>Physics inverse problems: published campaigns</h1>\n"
+      "<p>Claims and tables of each campaign that is kept with the sources, "
+      "judged by what is claimed today. Figures are not kept; the command "
+      "makes them.</p>\n";
+  for (const auto& [folder, title] : others)
+    parts.header += fmt::format(
+        "<p><a href=\"{}/index.html\">{}</a></p>\n", html(folder), html(title));
+  parts.main = "<section id=\"campaigns\">\n";
+  for (const CampaignPages& c : campaigns) {
+    CampaignPages brief{c.name, c.command, c.provenance, c.sections};
+    if (brief.provenance.is_object()) brief.provenance.erase("papers");
+    parts.main += campaign_html(brief);
+  }
+  parts.main += "</section>\n";
+  return page_html(parts);
+}
+
+}  // namespace physinv

@@ -1,0 +1,150 @@
+#include "suite/app/published_campaign.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <stdexcept>
+#include <string>
+
+#include "suite/results/file.h"
+#include "suite/results/results_file.h"
+#include "suite/results/results_json.h"
+
+namespace physinv {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+template <class Word>
+Word word_of(const std::string& text, std::initializer_list<Word> all) {
+  for (const Word word : all)
+    if (text == to_string(word)) return word;
+  throw StoreError("a stage of results.json.gz ends as '" + text + "'");
+}
+
+double number(const Json& object, const char* key) {
+  const auto at = object.find(key);
+  return at != object.end() && at->is_number()
+             ? at->get<double>()
+             : std::numeric_limits<double>::infinity();
+}
+
+/// One stage's times, of its repetitions where there are some.
+void add_times(StageRecord& stage, const Json& entry) {
+  const double unit = entry.value("time_unit", "") == "ns" ? 1e-9 : 1e-3;
+  const Json& own = entry.at("physinv");
+  if (own.contains("times") && own["times"].is_object()) {
+    const Json &wall = own["times"]["wall"], &cpu = own["times"]["cpu"];
+    for (std::size_t k = 0; k < std::min(wall.size(), cpu.size()); ++k) {
+      const Seconds seconds{unit * wall[k].get<double>(),
+                            unit * cpu[k].get<double>()};
+      if (k == 0)
+        stage.clocks.solve = seconds;
+      else
+        stage.repeated.push_back(seconds);
+    }
+    return;
+  }
+  stage.clocks.solve = {unit * number(entry, "real_time"),
+                        unit * number(entry, "cpu_time")};
+}
+
+void add_counts(StageRecord& stage, const Json& own) {
+  const Json counts = own.value("counts", Json());
+  if (!counts.is_object()) return;
+  for (std::size_t k = 0; k < kCounters; ++k)
+    stage.counts[static_cast<Counter>(k)] =
+        counts.value(std::string(kCounterNames[k]), std::uint64_t{0});
+}
+
+void add_statuses(StageRecord& stage, const Json& own) {
+  for (const Status s :
+       {Status::gtol, Status::maxiter, Status::linesearch, Status::nonfinite})
+    stage.status.insert(
+        stage.status.end(),
+        own.at("statuses").value(std::string(to_string(s)), std::size_t{0}),
+        s);
+}
+
+/// The losses are told apart by all three numbers that are kept of them.
+void add_losses(StageRecord& stage, const Json& entry) {
+  if (!has_time(stage)) return;
+  stage.loss = Vector<double>::Constant(1, number(entry, "loss_median"));
+  Batch<double> kept(3, 1);
+  kept << number(entry, "loss_mean"), number(entry, "loss_median"),
+      number(entry, "loss_max");
+  stage.arrays["losses"] = std::move(kept);
+}
+
+StageRecord stage_of(const Json& entry) {
+  const Json& own = entry.at("physinv");
+  StageRecord stage{.stage = own.at("stage"), .key = own.at("key")};
+  stage.position = own.value("position", Index{0});
+  stage.stop = word_of(own.at("stop").get<std::string>(),
+                       {Stop::converged,
+                        Stop::iterations,
+                        Stop::diverged,
+                        Stop::failed,
+                        Stop::skipped});
+  stage.message = own.value("message", "");
+  stage.iterations = entry.value("iterations", Index{0});
+  stage.crowded = own.value("crowded", false);
+  stage.revision = own.value("revision", "");
+  stage.finished = own.value("finished", "");
+  stage.run.threads = entry.value("threads", 0);
+  add_times(stage, entry);
+  add_counts(stage, own);
+  add_statuses(stage, own);
+  add_losses(stage, entry);
+  return stage;
+}
+
+}  // namespace
+
+bool is_published(const fs::path& directory) {
+  return fs::exists(directory / "digest.json") &&
+         fs::exists(directory / "results.json.gz") &&
+         !fs::exists(directory / "journal.jsonl");
+}
+
+Results summarized_results(const Json& results) {
+  std::vector<CaseRecord> cases;
+  std::map<std::string, std::size_t> known;
+  for (const Json& entry : results.at("benchmarks")) {
+    const Json& own = entry.at("physinv");
+    StageRecord stage = stage_of(entry);
+    const std::string run = entry.at("name");
+    const std::string name = run.substr(0, run.rfind('/'));
+    const auto [at, is_new] = known.emplace(name, cases.size());
+    if (is_new) {
+      CaseRecord c{.info = {.name = name}, .data = {}, .stages = {}};
+      c.info.experiment = own.at("experiment");
+      c.info.method = own.at("method");
+      c.info.profile = own.value("profile", "");
+      c.info.n = own.at("n");
+      c.info.seed = own.at("seed");
+      c.data.hash = own.value("data_hash", "");
+      cases.push_back(std::move(c));
+    }
+    CaseRecord& c = cases[at->second];
+    c.info.stages.push_back(stage.stage);
+    stage.case_name = name;
+    c.stages.push_back(std::move(stage));
+  }
+  return Results(std::move(cases));
+}
+
+Results published_results(const fs::path& directory) {
+  const fs::path path = directory / "results.json.gz";
+  try {
+    Json results =
+        parse_results(gunzipped(read_file(path), kLargestData), path);
+    return summarized_results(results);
+  } catch (const Json::exception& error) {
+    throw StoreError(path.string() + " is damaged: " + error.what());
+  }
+}
+
+}  // namespace physinv

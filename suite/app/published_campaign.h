@@ -1,0 +1,27 @@
+/// A campaign as `report --publish` keeps it with the sources: results.json.gz
+/// and digest.json.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "suite/results/published.h"
+#include "suite/results/results.h"
+
+namespace physinv {
+
+/// Does the directory hold such a campaign, and no journal?
+bool is_published(const std::filesystem::path& directory);
+
+/// Its digest, with each claim judged by what is registered now; StoreError
+/// with the file's name if it is damaged.
+nlohmann::ordered_json published_digest(const std::filesystem::path& directory,
+                                        const Published& published);
+
+/// What results.json tells of its stages: ends, counts, times, and the median
+/// loss in place of all losses. Without curves, estimates or problems.
+Results published_results(const std::filesystem::path& directory);
+/// The same of its text.
+Results summarized_results(const nlohmann::ordered_json& results);
+
+}  // namespace physinv

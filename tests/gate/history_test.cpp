@@ -1,0 +1,87 @@
+#include "suite/gate/history.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+
+namespace physinv {
+namespace {
+
+PastBaseline baseline(const char* machine, const char* stages, int count) {
+  PastBaseline past = past_baseline(
+      std::string("physinv-bench baseline 1\nprofile smoke\nmachine ") +
+      machine + "\nstages 2\n" + stages +
+      "instructions 1 callgrind x86-64-v3\njpo/toy/a/n=1/seed=0 " +
+      std::to_string(count) + "\nchecksum 00000000\n");
+  past.commit = "0123456789abcdef";
+  past.date = "2026-01-02T03:04:05Z";
+  past.subject = "Faster";
+  return past;
+}
+
+PastBaseline first() {
+  return baseline("one",
+                  "jpo/toy/a/n=1/seed=0/fit trajectory=1 results=aa "
+                  "stop=iterations loss=1,2,3 digits=5 ms=4..5\n"
+                  "hig/toy/b/n=1/seed=0/fit results=bb loss=1,8,9\n",
+                  1000);
+}
+
+PastBaseline second(const char* machine = "one") {
+  return baseline(machine,
+                  "jpo/toy/a/n=1/seed=0/fit results=cc loss=1,1,1 ms=2..5\n"
+                  "sip/toy/c/n=1/seed=0/fit results=dd loss=1,1,1 ms=1..5\n",
+                  1100);
+}
+
+TEST(History, ReadsBaselinesOfAnyVersion) {
+  const PastBaseline past = first();
+  EXPECT_EQ(past.machine, "one");
+  EXPECT_EQ(past.counter, "callgrind x86-64-v3");
+  ASSERT_EQ(past.stages.size(), 2U);
+  const auto& stage = past.stages.at("jpo/toy/a/n=1/seed=0/fit");
+  EXPECT_EQ(stage.results, "aa");
+  EXPECT_EQ(stage.loss, 2);
+  EXPECT_EQ(stage.fastest_ms, 4);
+  EXPECT_EQ(past.stages.at("hig/toy/b/n=1/seed=0/fit").fastest_ms, 0);
+  EXPECT_EQ(past.instructions.at("jpo/toy/a/n=1/seed=0"), 1000U);
+  EXPECT_THROW(past_baseline("something else"), std::runtime_error);
+  EXPECT_THROW(past_baseline("physinv-bench baseline 1\n"), std::runtime_error);
+}
+
+/// Of the group jpo at the last commit.
+double last_of(const Figure& figure) {
+  for (const Series& s : figure.panels[0].series)
+    if (s.label == "jpo") return s.y.back();
+  return NAN;
+}
+
+TEST(History, LinksWhatTwoBaselinesHave) {
+  const auto sections = history_of({first(), second()});
+  ASSERT_EQ(sections.size(), 1U);
+  const auto& figures = sections[0].figures;
+  ASSERT_EQ(figures.size(), 3U);
+  EXPECT_DOUBLE_EQ(last_of(figures[0]), 0.5);
+  EXPECT_DOUBLE_EQ(last_of(figures[1]), 1.1);
+  EXPECT_DOUBLE_EQ(last_of(figures[2]), 0.5);
+  const Table& table = sections[0].tables[0];
+  ASSERT_EQ(table.rows.size(), 2U);
+  const auto& cells = table.rows[0].cells;
+  EXPECT_EQ(cells[0].text, "2026-01-02");
+  EXPECT_EQ(cells[2].ours, 1) << "new";
+  EXPECT_EQ(cells[3].ours, 1) << "gone";
+  EXPECT_EQ(cells[4].ours, 1) << "other bits";
+  EXPECT_EQ(cells[5].ours, 1) << "other losses";
+  EXPECT_EQ(cells[8].text, "012345678 Faster");
+}
+
+TEST(History, AnotherMachineLinksNoSeconds) {
+  const auto sections = history_of({first(), second("two")});
+  EXPECT_DOUBLE_EQ(last_of(sections[0].figures[2]), 1);
+  EXPECT_EQ(sections[0].tables[0].rows[0].cells[7].text, "–");
+  EXPECT_TRUE(history_of({first()}).empty());
+}
+
+}  // namespace
+}  // namespace physinv

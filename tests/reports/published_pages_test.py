@@ -1,0 +1,112 @@
+"""published_pages_test.py PROGRAM SOURCES: what is published can be looked at.
+
+report and compare open the campaigns that are kept with the sources, one
+command makes the pages of all of them, and git's baselines are a history.
+"""
+
+import glob
+import os
+import re
+import subprocess
+import sys
+import tempfile
+
+PROGRAM, SOURCES = (os.path.abspath(p) for p in sys.argv[1:3])
+CAMPAIGNS = os.path.join(SOURCES, "reports", "campaigns")
+FAILED = []
+
+
+def check(condition, what):
+    if not condition:
+        print("FAIL", what)
+        FAILED.append(what)
+
+
+def run(*arguments, cwd):
+    return subprocess.run([PROGRAM, *arguments], cwd=cwd, capture_output=True,
+                          text=True)
+
+
+def listing(folder):
+    return sorted(os.listdir(folder))
+
+
+def links(path):
+    count = 0
+    with open(path) as f:
+        text = f.read()
+    for target in re.findall(r'<a[^>]* href="([^"#]+)', text):
+        if not target.startswith("https://"):
+            count += 1
+            there = os.path.join(os.path.dirname(path), target)
+            check(os.path.exists(there), f"{path}: no {target}")
+    return count
+
+
+def pages_of_all(d):
+    names = listing(CAMPAIGNS)
+    p = run("results", "--campaigns=" + CAMPAIGNS, "--pages=pages", cwd=d)
+    check(p.returncode == 0, p.stderr)
+    for name in names:
+        check(os.path.exists(f"{d}/pages/{name}/index.html"), name)
+    found = sum(links(page) for page in
+                [f"{d}/pages/index.html", *glob.glob(f"{d}/pages/*/index.html")])
+    check(found > 3 * len(names), f"{found} links")
+    check(not os.path.exists(f"{d}/RESULTS.md"), "no RESULTS.md")
+    print(f"{len(names)} campaigns, {found} links")
+
+
+def one_by_one(d):
+    quick = os.path.join(CAMPAIGNS, "1-quick")
+    before = listing(quick)
+    p = run("report", quick, cwd=d)
+    check(p.returncode == 2 and "--out=DIR" in p.stderr, p.stderr)
+    p = run("report", quick, "--out=one", cwd=d)
+    check(p.returncode == 0 and "figures are not kept" in p.stdout, p.stderr)
+    check(os.path.exists(f"{d}/one/jpo-billiards/tables/table-1.csv"), "tables")
+    p = run("report", quick, "--check", "--out=one", cwd=d)
+    check(p.returncode == 2 and "--out alone" in p.stderr, p.stderr)
+    other = os.path.join(CAMPAIGNS, "8-quick-numerics")
+    p = run("compare", "a=" + quick, "b=" + other, "--out=both", cwd=d)
+    check(p.returncode == 0, p.stderr)
+    check("lines compared" in p.stdout and "b against a: of" in p.stdout,
+          p.stdout)
+    p = run("compare", "a=" + quick, "b=" + quick, cwd=d)
+    check(re.search(r"(\d+) lines compared, \1 with the same bits", p.stdout),
+          p.stdout[-300:])
+    check(listing(quick) == before, "a published campaign stays as it is")
+
+
+def history(d):
+    def git(*arguments):
+        subprocess.run(["git", "-c", "user.name=a", "-c", "user.email=a@b",
+                        *arguments], cwd=d, check=True, capture_output=True)
+
+    p = run("history", "--baseline=base.txt", cwd=d)
+    check(p.returncode == 3 and "no two versions" in p.stderr, p.stderr)
+    git("init", "-q")
+    for loss in (1, 2):
+        with open(f"{d}/base.txt", "w") as f:
+            f.write("physinv-bench baseline 1\nmachine one\nstages 1\n"
+                    f"jpo/a/b/n=1/seed=0/fit results={loss} loss=1,{loss},3 "
+                    "ms=1..2\n")
+        git("add", "base.txt")
+        git("commit", "-qm", f"Loss {loss}")
+    p = run("history", "--baseline=base.txt", "--out=past", cwd=d)
+    check(p.returncode == 0, p.stderr)
+    with open(f"{d}/past/history/tables/commits.csv") as f:
+        rows = f.read()
+    check("Loss 2" in rows and "Loss 1" in rows, rows)
+    check(os.path.exists(f"{d}/past/history/figures/losses.vl.json"), "figure")
+    p = run("history", "--baseline=/base.txt", cwd=d)
+    check(p.returncode == 2 and "is absolute" in p.stderr, p.stderr)
+
+
+def main():
+    for step in (pages_of_all, one_by_one, history):
+        with tempfile.TemporaryDirectory() as d:
+            step(d)
+    sys.exit(f"{len(FAILED)} failed" if FAILED else 0)
+
+
+main()
