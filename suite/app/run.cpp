@@ -12,6 +12,7 @@
 #include "suite/app/habits.h"
 #include "suite/app/installed.h"
 #include "suite/app/run_budget.h"
+#include "suite/core/clock.h"
 #include "suite/core/hash.h"
 #include "suite/harness/campaign.h"
 #include "suite/harness/context.h"
@@ -372,6 +373,7 @@ void end_with(const RunFlags& flags,
 }  // namespace
 
 ExitCode run_verb(const Arguments& arguments) {
+  const Seconds begun = now();
   RunFlags flags;
   if (!parse("run",
              "Runs the cases of a profile and writes their results. The "
@@ -397,7 +399,7 @@ ExitCode run_verb(const Arguments& arguments) {
   cite(cases);
   Prepared prepared = prepare(std::move(cases));
   if (flags.campaign.time_budget > 0)
-    follow_budget(flags.campaign, prepared.cases);
+    follow_budget(flags.campaign, prepared.cases, {begun, flags.report});
   std::vector<std::string> names;
   for (const Case& c : prepared.cases) names.push_back(c.info.name);
   CampaignResult result = run_all(std::move(prepared), flags, screen);

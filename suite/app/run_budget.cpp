@@ -23,6 +23,10 @@ constexpr double kBudgetForTrials = 60;
 /// What a case under way may take beyond the budget, and how long it waits at
 /// least: a budget of nothing starts nothing and needs no alarm.
 constexpr double kBeyond = 1.04, kLeastSeconds = 0.2;
+/// What comes after the last case, alone on the machine: writing down, and
+/// pages by the case. A third of the budget at most.
+constexpr double kEndingSeconds = 0.2, kPageSeconds = 0.012,
+                 kMostOfBudget = 0.33;
 /// Until a campaign counts signals.
 constexpr suseconds_t kAgainMicroseconds = 50'000;
 
@@ -58,14 +62,21 @@ std::vector<double> seconds_of(const std::vector<Case>& cases, double budget) {
 
 }  // namespace
 
-void follow_budget(CampaignOptions& campaign, const std::vector<Case>& cases) {
-  const double begin = now().wall;
+void follow_budget(CampaignOptions& campaign,
+                   const std::vector<Case>& cases,
+                   const BudgetUse& use) {
   auto seconds = seconds_of(cases, campaign.time_budget);
-  if (campaign.time_budget >= kBudgetForTrials) {
+  if (campaign.time_budget >= kBudgetForTrials)
     campaign.expected_seconds = seconds;
-    campaign.time_budget =
-        std::max(1e-6, campaign.time_budget - (now().wall - begin));
-  }
+  const double pages =
+      use.pages ? kPageSeconds * static_cast<double>(cases.size()) : 0;
+  const Seconds spent = now() - use.begun;
+  // Who shares the cores ends later.
+  const double shared = std::max(1.0, spent.wall / std::max(spent.cpu, 1e-3));
+  const double ending = std::min(shared * (kEndingSeconds + pages),
+                                 kMostOfBudget * campaign.time_budget);
+  campaign.time_budget =
+      std::max(1e-6, campaign.time_budget - ending - spent.wall);
   campaign.order = [cases, seconds = std::move(seconds)](
                        std::vector<std::size_t> queue,
                        const Finished& finished) {

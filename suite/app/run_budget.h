@@ -5,12 +5,21 @@
 #include <string>
 #include <vector>
 
+#include "suite/core/clock.h"
 #include "suite/harness/campaign.h"
 
 namespace physinv {
 
-/// A coarse pass first; the budget counts from here on.
-void follow_budget(CampaignOptions& campaign, const std::vector<Case>& cases);
+/// What of a budget is not for cases.
+struct BudgetUse {
+  Seconds begun = {};  ///< the clock when the program began
+  bool pages = false;  ///< are they written at the end?
+};
+/// A coarse pass first. What is left of the budget for cases: without what was
+/// spent so far and what the end will take.
+void follow_budget(CampaignOptions& campaign,
+                   const std::vector<Case>& cases,
+                   const BudgetUse& use);
 
 /// Ends the campaign that runs while it lives as a signal to stop would, once
 /// the budget is spent and a little more: stages under way lay their state

@@ -23,8 +23,9 @@ namespace {
 
 constexpr auto kNobody = std::numeric_limits<std::size_t>::max();
 
-/// How long a signal to stop waits for stages to lay their state down.
-constexpr double kPatience = 3;
+/// How long a signal to stop waits for stages to lay their state down; of a
+/// budget of seconds less, as it is to be kept.
+constexpr double kPatience = 3, kLeastPatience = 0.2, kPatienceOfBudget = 0.05;
 
 /// How often a case is started whose worker is killed.
 constexpr int kTries = 3;
@@ -194,7 +195,13 @@ class Campaign {
   void wind_up(Workers& workers) {
     const auto under_way = running_;
     workers.dismiss();
-    const double end = now().wall + kPatience;
+    const double patience =
+        options_.time_budget > 0
+            ? std::clamp(kPatienceOfBudget * options_.time_budget,
+                         kLeastPatience,
+                         kPatience)
+            : kPatience;
+    const double end = now().wall + patience;
     do {
       for (auto& event : workers.wait(0.1)) handle(event);
     } while (workers.busy() && now().wall < end && stop_signals() == 1);

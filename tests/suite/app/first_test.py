@@ -161,8 +161,9 @@ def a_budget_is_kept(d):
     p = expect(10, ["--profile=slow", "--filter=sleep", "--out=slept",
                     "--time-budget=4"], d, "2 of 2 cases not run, out of time")
     seconds = time.time() - begin
-    # Whoever cannot lay its state down is waited for, three seconds.
-    check(3.5 < seconds < 15, f"a budget of 4 s took {seconds:.1f} s")
+    # What is not for cases comes off it: the start, pages, and a wait for whoever
+    # cannot lay its state down.
+    check(2.5 < seconds < 8, f"a budget of 4 s took {seconds:.1f} s")
     check("out of time: 2 cases" in p.stdout, "they are named")
     expect(0, ["--profile=smoke", "--out=soon", "--time-budget=100"], d,
            "[6/6]")
