@@ -138,14 +138,14 @@ std::string to_csv(const Table& table) {
 }
 
 std::string to_csv(const Figure& figure) {
-  std::string out = "panel,series,x,y,from,to,value\r\n";
+  std::string out = "panel,series,x,y,from,to,value\n";
   for (const Panel& panel : figure.panels) {
     for (const Series& s : panel.series)
       for (std::size_t k = 0; k < std::min(s.x.size(), s.y.size()); ++k) {
         const auto end = [&](const std::vector<double>& ends) {
           return k < ends.size() ? std::optional(ends[k]) : std::nullopt;
         };
-        out += fmt::format("{},{},{},{},{},{},\r\n",
+        out += fmt::format("{},{},{},{},{},{},\n",
                            csv_text(panel.title),
                            csv_text(s.label.empty() ? s.method : s.label),
                            csv_number(s.x[k]),
@@ -158,7 +158,7 @@ std::string to_csv(const Figure& figure) {
     for (std::size_t k = 0; k < f.values.size(); ++k) {
       const std::size_t i = k % f.x.size(), j = k / f.x.size();
       out += fmt::format(
-          "{},,{},{},,,{}\r\n",
+          "{},,{},{},,,{}\n",
           csv_text(panel.title),
           f.x_names.empty() ? csv_number(f.x[i]) : csv_text(f.x_names[i]),
           f.y_names.empty() ? csv_number(f.y[j]) : csv_text(f.y_names[j]),

@@ -54,7 +54,7 @@ Side read_side(const std::string& text, const Published& published) {
             .claims = {}};
   if (is_published(folder)) {
     side.results = published_results(folder);
-    const auto digest = published_digest(folder, published);
+    const auto digest = published_digest(folder, published).digest;
     for (const Section& section : sections_of(digest))
       for (const ClaimResult& claim : section.claims)
         side.claims.push_back({section.experiment, claim});

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "reports/digest.h"
 #include "suite/results/published.h"
 #include "suite/results/results.h"
 
@@ -15,8 +16,8 @@ bool is_published(const std::filesystem::path& directory);
 
 /// Its digest, with each claim judged by what is registered now; StoreError
 /// with the file's name if it is damaged.
-nlohmann::ordered_json published_digest(const std::filesystem::path& directory,
-                                        const Published& published);
+NamedDigest published_digest(const std::filesystem::path& directory,
+                             const Published& published);
 
 /// What results.json tells of its stages: ends, counts, times, and the median
 /// loss in place of all losses. Without curves, estimates or problems.

@@ -54,6 +54,10 @@ void publish_campaign(const fs::path& target,
   digest["results"] = checksum_of(results);
   digest["checksum"] = checksum_of(digest);
   results["context"]["physinv"]["digest"] = digest["checksum"];
+  if (const auto figures = kept_figures(sections); !figures.empty()) {
+    const Folder below = folder.make("figures");
+    for (const auto& [name, svg] : figures) below.write(name, svg);
+  }
   folder.write("results.json.gz", gzipped(sealed(std::move(results)).dump(1)));
   folder.write("digest.json", digest.dump(1) + '\n');
 }
@@ -113,7 +117,7 @@ ExitCode report_published(const std::string& results, const std::string& out) {
         "go with --out=DIR",
         results));
   const Published numbers = printed_numbers();
-  const auto digest = published_digest(results, numbers);
+  const auto digest = published_digest(results, numbers).digest;
   const auto sections = sections_of(digest);
   auto origin = digest.at("provenance");
   origin["command"] = campaign_command(origin);
@@ -143,8 +147,9 @@ ExitCode report_verb(const Arguments& arguments) {
            {"--out", "where to; default: RESULTS/report", &out, "DIR"},
            {"--one-file", "one page that has everything", &one_file},
            {"--publish",
-            "also keep results.json (compressed) and a digest of claims and "
-            "tables there, for the verb 'results'",
+            "also keep results.json (compressed), a digest of claims and "
+            "tables, "
+            "and figures there, for the verb 'results'",
             &publish,
             "DIR"},
            {"--check",

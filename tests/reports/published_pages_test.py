@@ -45,7 +45,7 @@ def links(path):
 
 def pages_of_all(d):
     names = listing(CAMPAIGNS)
-    p = run("results", "--campaigns=" + CAMPAIGNS, "--pages=pages", cwd=d)
+    p = run("results", "--campaigns=" + CAMPAIGNS, "--html=pages", cwd=d)
     check(p.returncode == 0, p.stderr)
     for name in names:
         check(os.path.exists(f"{d}/pages/{name}/index.html"), name)

@@ -114,10 +114,10 @@ TEST(VegaLite, EntriesOfOneLabelAreToldApart) {
 
 TEST(FigureCsv, HasALineForEachPointAndCell) {
   const std::string csv = to_csv(figure());
-  EXPECT_EQ(csv.substr(0, csv.find('\r')), "panel,series,x,y,from,to,value");
-  EXPECT_NE(csv.find("A,Adam,1,0.5,0.4,0.6,\r\n"), csv.npos) << csv;
-  EXPECT_NE(csv.find("A,\"HIG, \"\"half\"\"\",2,-1,,,\r\n"), csv.npos) << csv;
-  EXPECT_NE(csv.find("B,,1,2,,,6\r\n"), csv.npos) << csv;
+  EXPECT_EQ(csv.substr(0, csv.find('\n')), "panel,series,x,y,from,to,value");
+  EXPECT_NE(csv.find("A,Adam,1,0.5,0.4,0.6,\n"), csv.npos) << csv;
+  EXPECT_NE(csv.find("A,\"HIG, \"\"half\"\"\",2,-1,,,\n"), csv.npos) << csv;
+  EXPECT_NE(csv.find("B,,1,2,,,6\n"), csv.npos) << csv;
 }
 
 TEST(SectionHtml, ClaimsAndFiguresLeadToEachOther) {
