@@ -11,22 +11,22 @@
 namespace physinv {
 namespace {
 
-using Words = std::vector<std::string>;
+using Cells = std::vector<std::string>;
 
 /// Keys, then quantities.
 struct Tidy {
-  Words keys, quantities;
+  Cells keys, quantities;
   struct Row {
-    Words keys;
+    Cells keys;
     std::vector<Cell> cells;
   };
   std::vector<Row> rows;
 };
 
-Words keys_of(const Table& table, const TableRow& row) {
+Cells keys_of(const Table& table, const TableRow& row) {
   return row.keys.size() == table.keys.size() && !row.keys.empty()
              ? row.keys
-             : Words{row.label};
+             : Cells{row.label};
 }
 
 /// As it stands: columns are quantities.
@@ -45,7 +45,7 @@ Tidy plain(const Table& table) {
 /// A row for each value of the key that columns are of.
 Tidy molten(const Table& table) {
   const Tidy wide = plain(table);
-  const Words& values =
+  const Cells& values =
       table.across->values.empty() ? table.columns : table.across->values;
   Tidy out{.keys = wide.keys, .quantities = table.across->quantities};
   if (out.quantities.empty()) out.quantities = {"value"};
@@ -70,7 +70,7 @@ struct Column {
   std::function<std::string(const Tidy::Row&)> cell;
 };
 
-/// Words that stand for a number which is not there.
+/// Cells that stand for a number which is not there.
 std::string note_of(const Cell& cell) {
   return cell.ours || cell.text == "–" ? "" : csv_text(cell.text);
 }

@@ -46,9 +46,10 @@ ExitCode export_verb(const Arguments& arguments) {
           "and no loss. It is an error: error_occurred in json and csv, in "
           "github and bencher the measure error, 1 instead of 0, which every "
           "stage has, so that a series of it alarms; in tidy the end stands as "
-          "the "
-          "status of each example. Exit 10 if stages failed, "
-          "were skipped or not run; what there is is written all the same.",
+          "the status of each example. A stage whose cores were shared is "
+          "marked crowded: label in csv, extra in github, a measure in "
+          "bencher, a column in tidy. Exit 10 if stages failed, were skipped "
+          "or not run; what there is is written all the same.",
           {{"RESULTS", "directory that 'run' wrote", &directory},
            {"--format",
             "json or csv (Google Benchmark's), tidy (CSV, a row for every "

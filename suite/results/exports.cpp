@@ -19,6 +19,12 @@ using Json = nlohmann::ordered_json;
 
 bool is_error(const Json& entry) { return entry.contains("error_occurred"); }
 
+/// Its cores were shared: its times are no measure of speed.
+bool is_crowded(const Json& entry) {
+  const auto own = entry.find("physinv");
+  return own != entry.end() && own->value("crowded", false);
+}
+
 /// Nanoseconds of all repetitions by "wall" or "cpu", the recorded run first.
 std::vector<double> times_of(const Json& entry, const char* clock) {
   return entry.at("physinv").at("times").at(clock);
@@ -133,12 +139,13 @@ std::string benchmark_csv(const Json& benchmarks) {
     out += is_error(b)
                ? fmt::format(
                      "{},,,,,,,,true,{}\n", name, quoted(b.at("error_message")))
-               : fmt::format("{},{},{},{},{},,,,,\n",
+               : fmt::format("{},{},{},{},{},,,{},,\n",
                              name,
                              b.at("iterations").dump(),
                              b.at("real_time").dump(),
                              b.at("cpu_time").dump(),
-                             b.at("time_unit").get<std::string>());
+                             b.at("time_unit").get<std::string>(),
+                             is_crowded(b) ? quoted("crowded") : "");
   }
   return out;
 }
@@ -159,11 +166,10 @@ Json smaller_is_better(const Json& results) {
               {"value", 1e-6 * median(wall)}};
     if (wall.size() > 1)
       time["range"] = fmt::format("{:.6g}", 1e-6 * deviation(wall));
-    time["extra"] = fmt::format("repetitions: {}{}",
-                                wall.size(),
-                                entry.at("physinv").value("crowded", false)
-                                    ? ", crowded: no measure of speed"
-                                    : "");
+    time["extra"] =
+        fmt::format("repetitions: {}{}",
+                    wall.size(),
+                    is_crowded(entry) ? ", crowded: no measure of speed" : "");
     out.push_back(std::move(time));
     if (const Json& loss = entry.at("loss_median"); loss.is_number())
       out.push_back(
@@ -179,6 +185,7 @@ Json bencher_metrics(const Json& results) {
     if (!is_error(entry)) {
       const auto wall = times_of(entry, "wall");
       const auto [low, high] = std::minmax_element(wall.begin(), wall.end());
+      measures["crowded"] = {{"value", is_crowded(entry) ? 1 : 0}};
       measures["latency"] = {{"value", median(wall)},
                              {"lower_value", *low},
                              {"upper_value", *high}};

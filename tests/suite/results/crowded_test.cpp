@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
+#include "suite/results/exports.h"
+
 namespace physinv {
 namespace {
 
@@ -46,6 +50,33 @@ TEST(Crowded, StagesAreCounted) {
   EXPECT_EQ(crowded_text(cases).find("1 of 3 stages were crowded"), 0U);
   cases[0].stages.pop_back();
   EXPECT_EQ(crowded_text(cases), "");
+}
+
+TEST(Crowded, ExportsSayIt) {
+  for (const bool crowded : {true, false}) {
+    const nlohmann::ordered_json results{
+        {"benchmarks",
+         {{{"name", "a"},
+           {"iterations", 1},
+           {"real_time", 2.0},
+           {"cpu_time", 1.0},
+           {"time_unit", "ns"},
+           {"loss_median", 0.5},
+           {"forward", 1},
+           {"vjp", 0},
+           {"jacobian", 0},
+           {"inverse", 0},
+           {"physinv",
+            {{"crowded", crowded},
+             {"times", {{"wall", {2.0}}, {"cpu", {1.0}}}}}}}}}};
+    const auto said = [&](const std::string& text) {
+      return text.find("crowded") != std::string::npos;
+    };
+    EXPECT_EQ(said(benchmark_csv(results)), crowded);
+    EXPECT_EQ(said(smaller_is_better(results).dump()), crowded);
+    EXPECT_EQ(bencher_metrics(results)["a"]["crowded"]["value"],
+              crowded ? 1 : 0);
+  }
 }
 
 }  // namespace
