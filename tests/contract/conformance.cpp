@@ -87,6 +87,25 @@ void keep(std::size_t first, const std::vector<std::string>& filters) {
   if (asked.experiments().size() < all.size()) registry() = std::move(asked);
 }
 
+/// Methods and cases are those of the profile smoke.
+void check_profiles() {
+  const auto& all = registry().experiments();
+  std::vector<std::string> without;
+  for (const auto& e : all)
+    if (std::ranges::find(e->profiles, "smoke", &Profile::name) ==
+        e->profiles.end())
+      without.push_back(e->name);
+  if (without.size() == all.size())
+    throw UsageError(fmt::format(
+        "{} has no profile smoke, whose methods the contract tests run; give "
+        "it one that takes seconds",
+        without.front()));
+  for (const auto& name : without)
+    fmt::print(
+        "skipped  {}  MethodContract, CaseContract  (no profile smoke)\n",
+        name);
+}
+
 ExitCode check_all(const Arguments& google) {
   std::vector<std::string> words = {std::string(program().name)};
   words.insert(words.end(), google.begin(), google.end());
@@ -122,6 +141,7 @@ ExitCode conform(Arguments arguments) {
   if (!parse_conformance(arguments, flags)) return ExitCode::good;
   const bool plugged = registry().experiments().size() > own;
   keep(plugged ? own : 0, flags.filters);
+  check_profiles();
   return check_all(flags.google);
 }
 

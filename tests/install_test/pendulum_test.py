@@ -251,6 +251,18 @@ except ValueError as e: print(e)
             self.assertRegex(out, r"FAILED +pendulum +ProblemContract\." + check)
             self.assertIn("problem_contract_test.cpp:", out)
 
+    @unittest.skipUnless(os.environ.get("PHYSINV_FULL"), "more to compile")
+    def test_91_who_has_no_smoke_profile_is_told(self):
+        run(*GIT, "checkout", "-q", "pendulum.cpp")
+        source = PROJECT + "/experiment.cpp"
+        with open(source) as f:
+            text = f.read()
+        with open(source, "w") as f:
+            f.write(text.replace('"smoke"', '"tiny"'))
+        build("pendulum_plugin")
+        self.assertIn("pendulum has no profile smoke",
+                      self.conformance(status=2))
+
 
 if __name__ == "__main__":
     unittest.main(argv=sys.argv[:1], verbosity=2, failfast=True)
