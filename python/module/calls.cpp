@@ -70,9 +70,10 @@ class Call {
   auto linearization() const {
     return std::make_shared<Linearization<T>>(self_.sides(), samples);
   }
-  /// f(scratch), for others to run beside it.
+  /// f(scratch), for others to run beside it; of no samples nothing.
   template <class F>
   void compute(F&& f) const {
+    if (samples == 0) return;
     const py::gil_scoped_release released;
     const auto work = side_.work.take();
     f(*work);

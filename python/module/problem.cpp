@@ -26,6 +26,7 @@ Array<T> Linearization<T>::pullback(const py::object& y_bar) const {
   const auto in = view<T>(array, "y_bar", samples_, shape.observations);
   auto x_bar = make_array<T>(samples_, shape.unknowns);
   auto out = writable(x_bar);
+  if (samples_ == 0) return x_bar;
   const Released released;
   const auto work = side.work.take();
   sides_->need<Vjp, T>("vjp").pullback(*tape_, in, out, *work);
@@ -41,6 +42,7 @@ Array<T> Linearization<T>::pushforward(const py::object& x_dot) const {
   const auto in = view<T>(array, "x_dot", samples_, shape.unknowns);
   auto y_dot = make_array<T>(samples_, shape.observations);
   auto out = writable(y_dot);
+  if (samples_ == 0) return y_dot;
   const Released released;
   const auto work = side.work.take();
   jvp.pushforward(*tape_, in, out, *work);

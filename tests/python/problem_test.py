@@ -137,6 +137,16 @@ class Problems(unittest.TestCase):
         again, third = p.linearize(s.x)
         self.assertTrue(np.array_equal(third.pullback(y), expected))
 
+    def test_no_samples_give_none(self):
+        for p in self.each("vjp"):
+            unknowns, observations, side = p.shape
+            x, given = np.empty((0, unknowns)), np.empty((0, side))
+            y, tape = p.linearize(x, given)
+            self.assertEqual(y.shape, (0, observations))
+            self.assertEqual(p.forward(x, given).shape, (0, observations))
+            self.assertEqual(tape.pullback(y).shape, (0, unknowns))
+            self.assertEqual(p.loss(y, y).shape, (0,))
+
     def test_a_row_that_is_no_number_stays_alone(self):
         p = physinv.problem("jpo/robotic-arm")
         s = labelled(p)
