@@ -266,7 +266,12 @@ std::string report_html(const std::vector<Section>& sections,
   const Palette palette(sections);
   PageParts parts{.title = "Physics inverse problems: report"};
   parts.header = "<h1>" + html(heading_of(provenance)) + "</h1>\n" +
-                 summary_html(provenance) + overview_html(sections, anchors);
+                 summary_html(provenance);
+  // What claims nothing has nothing to count.
+  if (std::any_of(sections.begin(), sections.end(), [](const Section& s) {
+        return !s.claims.empty();
+      }))
+    parts.header += overview_html(sections, anchors);
   parts.contents = contents_html(sections, anchors);
   for (std::size_t k = 0; k < sections.size(); ++k)
     parts.main += section_html(sections[k], anchors[k], palette, {});

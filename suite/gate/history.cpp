@@ -183,8 +183,7 @@ Table commits_table(const std::vector<PastBaseline>& past,
                           "other bits",
                           "other losses",
                           "instructions",
-                          "seconds",
-                          "commit"}};
+                          "seconds"}};
   for (std::size_t k = past.size(); k-- > 0;) {
     const PastBaseline& b = past[k];
     const PastBaseline& a = past[k == 0 ? 0 : k - 1];
@@ -194,17 +193,18 @@ Table commits_table(const std::vector<PastBaseline>& past,
       instructions.push_back(instruction_ratio(a, b, group));
       seconds.push_back(time_ratio(a, b, group));
     }
-    table.rows.push_back(
-        {std::to_string(k + 1),
-         {{.text = b.date.substr(0, 10)},
-          count_cell(static_cast<double>(b.stages.size())),
-          count_cell(m.added),
-          count_cell(m.gone),
-          count_cell(m.bits),
-          count_cell(m.losses),
-          ratio_cell(instructions),
-          ratio_cell(seconds),
-          {.text = b.commit.substr(0, 9) + " " + shortened(b.subject, 60)}}});
+    table.rows.push_back({fmt::format("{}: {} {}",
+                                      k + 1,
+                                      b.commit.substr(0, 9),
+                                      shortened(b.subject, 50)),
+                          {{.text = b.date.substr(0, 10)},
+                           count_cell(static_cast<double>(b.stages.size())),
+                           count_cell(m.added),
+                           count_cell(m.gone),
+                           count_cell(m.bits),
+                           count_cell(m.losses),
+                           ratio_cell(instructions),
+                           ratio_cell(seconds)}});
   }
   table.note =
       "Against the baseline before. Other losses: a median that moved by more "

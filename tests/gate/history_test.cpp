@@ -73,7 +73,7 @@ TEST(History, LinksWhatTwoBaselinesHave) {
   EXPECT_EQ(cells[3].ours, 1) << "gone";
   EXPECT_EQ(cells[4].ours, 1) << "other bits";
   EXPECT_EQ(cells[5].ours, 1) << "other losses";
-  EXPECT_EQ(cells[8].text, "012345678 Faster");
+  EXPECT_EQ(table.rows[0].label, "2: 012345678 Faster");
 }
 
 TEST(History, AnotherMachineLinksNoSeconds) {

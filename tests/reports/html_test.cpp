@@ -287,5 +287,12 @@ TEST(ReportHtml, SameBytesAndSmall) {
   EXPECT_LT(report_html({large}, provenance()).size(), 250'000U);
 }
 
+TEST(ReportHtml, WhatClaimsNothingCountsNothing) {
+  const Section section{.experiment = "history", .title = "History"};
+  const std::string page = report_html({section}, {});
+  EXPECT_EQ(page.find("class=\"totals\""), page.npos);
+  EXPECT_EQ(page.find("class=\"overview\""), page.npos);
+}
+
 }  // namespace
 }  // namespace physinv
