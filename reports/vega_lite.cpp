@@ -26,6 +26,12 @@ constexpr std::array kShapes{
     "circle", "square", "triangle-up", "diamond", "triangle-down", "cross"};
 static_assert(kShapes.size() == static_cast<std::size_t>(Marker::cross) + 1);
 
+/// A look may have the number of a hue as its marker; it stands for the next
+/// round of them.
+const char* shape_of(Marker marker) {
+  return kShapes[static_cast<std::size_t>(marker) % kShapes.size()];
+}
+
 /// What each entry of the legend is called, and how it looks.
 struct Scales {
   std::vector<const Series*> legend;
@@ -53,7 +59,7 @@ Scales scales_of(const Figure& figure, Palette& palette) {
     scales.names.push_back(std::move(name));
     scales.colors.push_back(light_color(ink.color));
     scales.dashes.push_back(dash_pattern(ink, s.dashed));
-    scales.shapes.push_back(kShapes[static_cast<std::size_t>(ink.marker)]);
+    scales.shapes.push_back(shape_of(ink.marker));
   };
   for (const Series* s : scales.legend) add(s->label, *s);
   for (const Panel& panel : figure.panels)

@@ -1,12 +1,13 @@
 """pages_test.py PROGRAM STORE: the pages of a real campaign, and in Chromium if
 there is one.
 
-The index is small, links and fragments lead somewhere, no two entries of a
-legend look alike, and nothing is wider than the window at 390, 800 and 1400
+The index is small, links and fragments lead somewhere, each figure is also
+Vega-Lite, no two entries of a legend look alike, and nothing is wider than the window at 390, 800 and 1400
 pixels.
 """
 
 import glob
+import json
 import os
 import re
 import shutil
@@ -44,8 +45,11 @@ def links(path):
         if target.startswith("#"):
             check(target[1:] in ids, f"{path}: no {target}")
         elif not target.startswith("https://"):
-            there = os.path.join(os.path.dirname(path), target)
-            check(os.path.exists(there), f"{path}: no {target}")
+            name, _, fragment = target.partition("#")
+            there = os.path.join(os.path.dirname(path), name)
+            check(os.path.exists(there), f"{path}: no {name}")
+            check(not fragment or f' id="{fragment}"' in read(there),
+                  f"{path}: no {target}")
     return count
 
 
@@ -59,6 +63,19 @@ def legends(path):
         check(len(set(samples)) == len(samples), f"{path}: alike in {names}")
         count += len(entries)
     return count
+
+
+def vega_lite(out):
+    """Each figure has a specification beside it, with its data inside."""
+    figures = glob.glob(os.path.join(out, "*", "figures", "*.svg"))
+    for path in figures:
+        with open(path[:-len("svg")] + "vl.json") as f:
+            spec = json.load(f)
+        check(spec["$schema"].endswith("vega-lite/v5.json"), path)
+        layers = [layer for panel in spec["concat"] for layer in panel["layer"]]
+        check(all("mark" in layer and "values" in layer["data"]
+                  for layer in layers), f"{path}: a layer without data")
+    return len(figures)
 
 
 def too_wide(chromium, path, width, d):
@@ -100,6 +117,7 @@ def main():
                   f"of legends, {os.path.getsize(index)} bytes of index")
             if flags:
                 continue
+            print(f"{vega_lite(out)} figures are Vega-Lite, too")
             chromium = shutil.which("chromium")
             if not chromium or not os.environ.get("PHYSINV_FULL"):
                 print("widths are not looked at: ./check --full does, with "

@@ -97,6 +97,23 @@ TEST(VegaLite, FieldsAreRectanglesAndArrowsRules) {
   EXPECT_DOUBLE_EQ(arrow.at("y2"), 0.8);
 }
 
+TEST(VegaLite, EveryHueHasAShape) {
+  Figure f = figure();
+  f.panels[0].series[1].look =
+      Look{Hue::indigo, static_cast<Marker>(Hue::indigo)};
+  const Json shapes = vega_lite(f)
+                          .at("concat")
+                          .at(0)
+                          .at("layer")
+                          .at(2)
+                          .at("encoding")
+                          .at("shape")
+                          .at("scale")
+                          .at("range");
+  ASSERT_EQ(shapes.size(), 2U);
+  EXPECT_EQ(shapes.at(1), "cross");
+}
+
 TEST(VegaLite, EntriesOfOneLabelAreToldApart) {
   Figure f = figure();
   f.panels[0].series[1].label = "Adam";
