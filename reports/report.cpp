@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "reports/html.h"
 #include "reports/html_parts.h"
@@ -30,18 +32,30 @@ class Writer {
     folder_ = Folder(dir);
   }
 
-  void write(const fs::path& name, const std::string& text) {
-    std::optional<Folder> below;
-    for (const auto& part : name.parent_path())
-      below = (below ? *below : folder_).make(part);
-    (below ? *below : folder_).write(name.filename(), text);
+  void write(const fs::path& name, std::string text) {
+    pending_[name.parent_path()].emplace_back(name.filename(), std::move(text));
     files_.push_back(folder_.path() / name);
+  }
+
+  /// What waits goes to the disk, a folder at a time: hundreds of small files
+  /// would take as many syncs.
+  void flush() {
+    for (const auto& [place, files] : pending_) {
+      std::optional<Folder> below;
+      for (const auto& part : place)
+        below = (below ? *below : folder_).make(part);
+      FileGroup group(below ? *below : folder_);
+      for (const auto& [name, text] : files) group.add(name, text);
+      group.put_in_place();
+    }
+    pending_.clear();
   }
 
   std::vector<fs::path> files() && { return std::move(files_); }
 
  private:
   Folder folder_;
+  std::map<fs::path, std::vector<std::pair<std::string, std::string>>> pending_;
   std::vector<fs::path> files_;
 };
 
@@ -339,6 +353,7 @@ std::vector<fs::path> write_report(const fs::path& dir,
     if (!pages.one_file)
       writer.write(fs::path(folder_of(s.experiment)) / "index.html",
                    section_page_html(s, provenance, palette));
+    writer.flush();
     Json one{{"experiment", s.experiment},
              {"title", s.title},
              {"paper", s.paper},
@@ -355,6 +370,7 @@ std::vector<fs::path> write_report(const fs::path& dir,
                pages.one_file
                    ? report_html(sections, provenance)
                    : index_html(sections, folders, pages.groups, provenance));
+  writer.flush();
   return std::move(writer).files();
 }
 
