@@ -72,6 +72,12 @@ struct Wanted {
   Networks networks = Networks::none;
 };
 
+/// Whoever keeps what a method saw sees nothing of it afterwards.
+struct Ending {
+  Solving& solving;
+  ~Ending() { solving.end(); }
+};
+
 class PythonStage final : public Stage {
  public:
   PythonStage(py::function solve,
@@ -103,9 +109,10 @@ class PythonStage final : public Stage {
   Outcome run(StageRun& run) const override {
     const py::gil_scoped_acquire held;
     const auto solving = std::make_shared<Solving>(run);
+    const Ending ending{*solving};
     try {
       Outcome out = outcome_of(solve_(solving), *solving);
-      solving->end();
+      solving->finish();
       return out;
     } catch (const py::error_already_set& error) {
       throw std::runtime_error(

@@ -126,13 +126,12 @@ std::vector<Index> Solving::problems(const Active& active) const {
   return *active;
 }
 
-void Solving::end() {
+void Solving::finish() {
   if (!told_)
     throw std::runtime_error(
         "the method called neither run.proceed nor run.accept, so that there "
         "is no curve of it");
   if (accepted_) get().probe.finish();
-  run_ = nullptr;
 }
 
 void define_solving(py::module_& module) {

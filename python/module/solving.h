@@ -37,8 +37,10 @@ class Solving {
 
   /// An estimate of each problem; ValueError for another shape.
   View<double> estimates(const Array<double>& x) const;
-  /// Nothing is seen from here on. Throws if the method told nothing.
-  void end();
+  /// Closes the curve. Throws if the method told nothing.
+  void finish();
+  /// Nothing is seen from here on.
+  void end() { run_ = nullptr; }
 
  private:
   StageRun& get() const;

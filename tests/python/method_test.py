@@ -201,6 +201,23 @@ class Methods(unittest.TestCase):
         finally:
             define(METHODS.replace("RATE", "60"))
 
+    def test_a_run_that_ended_shows_nothing(self):
+        kept = []
+
+        @physinv.method("keeps", experiments="jpo/robotic-arm")
+        def keeps(run):
+            print(kept and kept[0].n)
+            kept.append(run)
+            raise ArithmeticError("not today")
+
+        out = WORK + "/kept"
+        with self.assertRaises(physinv.ProgramError):
+            physinv.run("smoke", filter="^jpo/robotic-arm/keeps/", out=out,
+                        seeds="0,1", jobs=1, no_report=True)
+        self.assertEqual([s["message"] for s in physinv.open(out).stages()],
+                         ["ArithmeticError: not today",
+                          "RuntimeError: this run has ended"])
+
     def test_no_two_share_a_key(self):
         keys = [r["key"] for r in self.rows.values()]
         self.assertEqual(len(set(keys)), len(keys))
