@@ -153,7 +153,13 @@ bool provides(const Experiment& e, const Wanted& wanted) {
           !e.setting.predictor.inputs.empty());
 }
 
-/// Wherever a profile of the experiment has rows, on their n and seeds.
+bool in_python(const Method* method) {
+  return method != nullptr && dynamic_cast<const PythonStage*>(
+                                  method->chain.front().get()) != nullptr;
+}
+
+/// Wherever a profile of the experiment has rows of the suite's methods, on
+/// their n and seeds.
 Experiment with_method(const Experiment& e, const Method& method) {
   Experiment with = e;
   std::erase_if(with.methods,
@@ -165,6 +171,7 @@ Experiment with_method(const Experiment& e, const Method& method) {
       std::erase(row.methods, method.id);
       if (row.methods.empty()) continue;
       rows.push_back(row);
+      if (in_python(find_method(e, row.methods.front()))) continue;
       row.methods = {method.id};
       row.iterations = 0;
       row.precision = Precision::f64;
@@ -201,8 +208,7 @@ std::vector<std::string> add_method(
       continue;
     }
     const Method* there = find_method(*e, id);
-    if (there != nullptr &&
-        dynamic_cast<const PythonStage*>(there->chain.front().get()) == nullptr)
+    if (there != nullptr && !in_python(there))
       throw py::value_error(
           fmt::format("{} has a method {} of the suite's; give yours another "
                       "name",

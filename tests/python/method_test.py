@@ -77,6 +77,13 @@ physinv.run("smoke", filter="^jpo/robotic-arm/py-(first|last)/", jobs=2,
 '''
 
 
+def keep(run):
+    """Stays where it starts."""
+    while run.proceed(run.start):
+        pass
+    return run.start
+
+
 def define(text):
     """The methods of a file of its own."""
     path = WORK + "/methods.py"
@@ -92,6 +99,8 @@ def run(**flags):
         results = physinv.run("smoke", filter=FILTER, out=WORK + "/smoke",
                               jobs=2, **flags)
     except physinv.ProgramError as error:
+        if error.status != 4:
+            raise
         with_failure = error
         results = physinv.open(WORK + "/smoke")
     return {r["method"]: r for r in results.stages()}, results, with_failure
@@ -200,6 +209,16 @@ class Methods(unittest.TestCase):
             self.assertEqual(e.exception.status, 5)
         finally:
             define(METHODS.replace("RATE", "60"))
+
+    def test_many_methods_are_as_many_cases(self):
+        for k in range(40):
+            physinv.method(f"many-{k}", experiments="jpo/billiards")(keep)
+        listed = physinv.verb("list", filter="^jpo/billiards/many-",
+                              profile="smoke").splitlines()
+        cases = [line.split()[0] for line in listed
+                 if line.startswith("jpo/billiards/many-")]
+        self.assertEqual(len(cases), 40 * 5)  # n = 4, and 128 with four seeds
+        self.assertEqual(len(set(cases)), len(cases))
 
     def test_a_run_that_ended_shows_nothing(self):
         kept = []
