@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "suite/cases/jpo/billiards_precision/settings.h"
 #include "suite/cases/jpo/common/shares.h"
-#include "suite/cases/studies/billiards_precision/settings.h"
 #include "suite/evidence/condition.h"
 #include "suite/harness/registry.h"
 

@@ -3,7 +3,7 @@
 #include "optimizers/classical.h"
 #include "optimizers/jpo.h"
 #include "suite/cases/jpo/billiards/setting.h"
-#include "suite/cases/studies/billiards_precision/settings.h"
+#include "suite/cases/jpo/billiards_precision/settings.h"
 #include "suite/harness/registry.h"
 #include "suite/harness/study.h"
 
