@@ -2,8 +2,8 @@
 there is one.
 
 The index is small, links and fragments lead somewhere, each figure is also
-Vega-Lite, no two entries of a legend look alike, and nothing is wider than the window at 390, 800 and 1400
-pixels.
+Vega-Lite, no two entries of a legend look alike, and nothing is wider than the
+window at 390, 800 and 1400 pixels.
 """
 
 import glob
@@ -15,12 +15,10 @@ import subprocess
 import sys
 import tempfile
 
+from browser import WIDTHS, too_wide
+
 PROGRAM, STORE = (os.path.abspath(p) for p in sys.argv[1:3])
 LARGEST_INDEX = 150_000
-WIDTHS = (390, 800, 1400)
-FLAGS = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic",
-         "--no-first-run", "--disable-background-networking",
-         "--disable-component-update", "--disable-sync"]
 FAILED = []
 
 
@@ -76,22 +74,6 @@ def vega_lite(out):
         check(all("mark" in layer and "values" in layer["data"]
                   for layer in layers), f"{path}: a layer without data")
     return len(figures)
-
-
-def too_wide(chromium, path, width, d):
-    """Pixels by which the page is wider than the window."""
-    probe = os.path.join(d, "probe.html")
-    shutil.copy(path, probe)
-    with open(probe, "a") as f:
-        f.write("<script>document.body.innerHTML = 'wide ' + "
-                "(document.documentElement.scrollWidth - innerWidth) + ' end'"
-                "</script>")
-    p = subprocess.run([chromium, *FLAGS, "--dump-dom",
-                        "--user-data-dir=" + tempfile.mkdtemp(dir=d),
-                        f"--window-size={width},900", "file://" + probe],
-                       capture_output=True, text=True, timeout=120)
-    found = re.search(r"wide (-?\d+) end", p.stdout)
-    return int(found[1]) if found else None
 
 
 def main():
