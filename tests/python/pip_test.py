@@ -8,6 +8,7 @@ import os
 import shutil
 import subprocess
 import sys
+import tempfile
 import unittest
 import venv
 
@@ -81,20 +82,23 @@ class Pip(unittest.TestCase):
             self.assertIn("physinv/" + name, out)
 
     def test_components_stand_alone(self):
+        # Apart, as a program is sought in the folders above the package, too.
+        apart = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, apart)
         for component, there, absent in (
                 ("programs", "bin/physinv-bench", "include"),
                 ("development", "lib/cmake/physinv/physinv-config.cmake", "bin"),
                 ("python", "lib/physinv/python/physinv/__init__.py", "bin")):
-            prefix = f"{WORK}/{component}"
+            prefix = f"{apart}/{component}"
             run("cmake", "--install", BUILD, "--component", component,
                 "--prefix", prefix)
             self.assertTrue(os.path.exists(f"{prefix}/{there}"), there)
             self.assertFalse(os.path.exists(f"{prefix}/{absent}"), absent)
         out = run(sys.executable, "-c", "import physinv\n"
                   "print(physinv.problem('jpo/robotic-arm'))\n"
-                  "try: physinv.run('smoke')\n"
+                  "try: print(physinv.program())\n"
                   "except FileNotFoundError as error: print(error)",
-                  PYTHONPATH=WORK + "/python/lib/physinv/python", PATH="/none")
+                  PYTHONPATH=apart + "/python/lib/physinv/python", PATH="/none")
         self.assertIn("<physinv problem jpo/robotic-arm", out)
         self.assertIn("PHYSINV_BENCH names it", out)
 
