@@ -6,6 +6,7 @@
 
 #include "python/module/arrays.h"
 #include "suite/results/catalog.h"
+#include "suite/results/repetitions.h"
 #include "suite/results/results.h"
 #include "suite/results/results_file.h"
 #include "suite/results/shortfall.h"
@@ -39,9 +40,9 @@ py::dict stage_row(const CaseRecord& c, const StageRecord& s) {
   row["key"] = s.key;
   row["revision"] = s.revision;
   const bool timed = has_time(s);
-  row["seconds"] = timed ? py::object(py::float_(s.clocks.solve.wall))
+  row["seconds"] = timed ? py::object(py::float_(solving_time(s).wall))
                          : py::object(py::none());
-  row["cpu_seconds"] = timed ? py::object(py::float_(s.clocks.solve.cpu))
+  row["cpu_seconds"] = timed ? py::object(py::float_(solving_time(s).cpu))
                              : py::object(py::none());
   return row;
 }
