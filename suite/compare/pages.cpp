@@ -157,6 +157,16 @@ void add_against(TableRow& out, const Compared& row, std::size_t s) {
       {.text = sum.worst ? pair_text(row, *sum.worst, s) : "–"});
 }
 
+/// What a row is of, in columns of their own.
+const std::vector<std::string> kKeys = {
+    "experiment", "method", "n", "seed", "stage"};
+std::vector<std::string> keys_of(const StageId& id) {
+  const auto one = [](std::int64_t v) {
+    return v < 0 ? std::string() : std::to_string(v);
+  };
+  return {id.experiment, id.method, one(id.n), one(id.seed), id.stage};
+}
+
 template <class F>
 Table per_side(const Comparison& c,
                const char* id,
@@ -168,9 +178,11 @@ Table per_side(const Comparison& c,
               .unit = unit,
               .digits = 3,
               .corner = "stage",
-              .columns = heads_of(c.labels)};
+              .columns = heads_of(c.labels),
+              .keys = kKeys,
+              .across = Across{.key = "side"}};
   for (const Compared& row : c.rows) {
-    table.rows.push_back({row.id.text(), {}});
+    table.rows.push_back({row.id.text(), {}, keys_of(row.id)});
     add_sides(table.rows.back(), row, cell);
   }
   return table;
@@ -232,7 +244,10 @@ std::string word(const ClaimResult& claim) {
 }  // namespace
 
 Table changes_table(const Comparison& c, std::size_t most) {
-  Table table{.id = "changes", .title = "What changed most", .corner = "stage"};
+  Table table{.id = "changes",
+              .title = "What changed most",
+              .corner = "stage",
+              .keys = kKeys};
   const bool groups = !c.rows.empty() && !c.rows.front().members.empty();
   std::vector<const char*> heads = {
       "loss", "time", "simulations", "passes", "end", "bits"};
@@ -246,7 +261,7 @@ Table changes_table(const Comparison& c, std::size_t most) {
                                   : fmt::format("{} {}", what, labels[s]));
   for (const Compared& row : c.rows) {
     if (table.rows.size() == most) break;
-    TableRow out{row.id.text(), {}};
+    TableRow out{row.id.text(), {}, keys_of(row.id)};
     add_sides(out, row, loss_cell);
     for (std::size_t s = 1; s < c.labels.size(); ++s) add_against(out, row, s);
     table.rows.push_back(std::move(out));

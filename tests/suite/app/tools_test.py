@@ -1,6 +1,8 @@
 """compare, plan, export, completion, submit, and other programs' habits on
 run: what they say, exit codes, one clear line for bad input."""
 
+import csv
+import io
 import json
 import os
 import subprocess
@@ -54,7 +56,11 @@ def compare(d):
                                   "--format=json"], d))["rows"]
         check({r["seed"] for r in rows} == seeds, f"--by={by}")
     p = expect(0, ["compare", "a", "c", "--format=csv"], d)
-    check(len(p.stdout.splitlines()) > 2, "csv")
+    rows = list(csv.DictReader(io.StringIO(p.stdout)))
+    check(len(rows) > 1 and list(rows[0])[:5] ==
+          ["experiment", "method", "n", "seed", "stage"] and
+          all(r["n"].isdigit() and float(r["loss a"] or 0) >= 0 for r in rows),
+          f"csv: {rows[0]}")
     expect(0, ["compare", "a", "b", "--format=markdown"], d, "| ")
     expect(0, ["compare", "a", "b", "--out=page"], d, "page/index.html")
     check(os.path.exists(os.path.join(d, "page", "compare", "tables",
