@@ -14,6 +14,9 @@ inline constexpr double kVerifyTolerance = 1e-12;
 /// And within this one (and 1e-13) where the estimate itself is made again, by
 /// plain loops through the network.
 inline constexpr double kPlainTolerance = 1e-9;
+/// Or, where the network is ill-conditioned, within so many times what the loss
+/// moves when each parameter moves by the rounding of a sum.
+inline constexpr double kRoundings = 10;
 
 struct VerifyReport {
   std::size_t stages = 0, losses = 0;  ///< looked at

@@ -22,7 +22,8 @@ def names(section, first):
 def differences(section, store, published):
     """Files that are there and not told, or told and not there."""
     told = {name: re.compile("".join(
-        r"[^/]+" if part.startswith("<") else re.escape(part)
+        r"[^/.]+" if part == "<id>"
+        else r"[^/]+" if part.startswith("<") else re.escape(part)
         for part in re.split(r"(<\w+>)", name)))
         for name in names(section, "file in `results/<profile>`")}
     passing = {"lock.owner", "checkpoints/<key>"}
@@ -102,4 +103,6 @@ def all_keys(sections, store, published):
         key_differences("tables", names(shown, "key of a table"),
                         map(read, glob.glob(report + "*/tables/*.json"))) +
         key_differences("figures", names(shown, "key of a figure"),
-                        map(read, glob.glob(report + "*/figures/*.json"))))
+                        [read(path) for path in
+                         glob.glob(report + "*/figures/*.json")
+                         if not path.endswith(".vl.json")]))
