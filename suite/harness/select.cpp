@@ -110,7 +110,7 @@ std::size_t edit_distance(std::string_view a,
 namespace {
 
 // A distance takes time in proportion to both lengths.
-constexpr std::size_t kMostCompared = 2000, kLongestCompared = 64;
+constexpr std::size_t kMostCompared = 1000, kLongestCompared = 64;
 
 /// The `count` nearest of what is offered, the nearest first; of those at the
 /// same distance in the order of their names, each once.
@@ -152,17 +152,23 @@ std::vector<std::string> nearest_names(const std::vector<std::string>& names,
                                        std::string_view pattern,
                                        std::size_t count) {
   Nearest nearest(pattern, count);
-  std::set<std::string_view> seen;  // beginnings of paths
-  for (const auto& name : names) {
-    std::size_t begin = 0;
-    while (begin <= name.size()) {
+  // Beginnings of paths, the shortest of all names first.
+  std::set<std::string_view> seen;
+  std::vector<std::size_t> begins(names.size(), 0);
+  for (bool longer = true; longer;) {
+    longer = false;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const std::string_view name = names[i];
+      if (begins[i] > name.size()) continue;
+      if (seen.size() >= kMostCompared) return nearest.names();
+      const std::size_t begin = begins[i];
       const std::size_t end = std::min(name.find('/', begin), name.size());
-      const auto head = std::string_view(name).substr(0, end);
+      const auto head = name.substr(0, end);
       if (seen.insert(head).second)
         nearest.offer(head, {head.substr(begin), head});
-      begin = end + 1;
+      begins[i] = end + 1;
+      longer = true;
     }
-    if (seen.size() >= kMostCompared) break;
   }
   return nearest.names();
 }

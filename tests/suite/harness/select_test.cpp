@@ -1,5 +1,6 @@
 #include "suite/harness/select.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "suite/harness/errors.h"
@@ -79,6 +80,11 @@ TEST(Nearest, FindsTheTypo) {
                                           "jpo/waves/bfgs/n=8/seed=0"};
   EXPECT_EQ(nearest_names(names, "biliards").front(), "jpo/billiards");
   EXPECT_EQ(nearest_names(names, "jpo/wave").front(), "jpo/waves");
+  // Thousands of sizes of one experiment do not hide another one.
+  std::vector<std::string> many;
+  for (int n = 0; n < 5000; ++n) many.push_back(fmt::format("a/b/n={}", n));
+  many.emplace_back("sip/heat/n=4");
+  EXPECT_EQ(nearest_names(many, "sip/haet").front(), "sip/heat");
   EXPECT_TRUE(nearest_names({}, "x").empty());
   EXPECT_FALSE(nearest_names(names, std::string(1'000'000, 'x')).empty());
   EXPECT_EQ(edit_distance("kitten", "sitting"), 3u);
