@@ -99,7 +99,10 @@ def all_keys(sections, store, published):
         key_differences("claims.json", claims, [read(report + "claims.json")]) +
         key_differences("digest.json", claims,
                         [read(published + "/digest.json")],
-                        {"results", "checksum", "sections[].tables"}) +
+                        {"results", "checksum", "sections[].tables",
+                         "sections[].figures[].file",
+                         "sections[].figures[].title",
+                         "sections[].figures[].note"}) +
         key_differences("tables", names(shown, "key of a table"),
                         map(read, glob.glob(report + "*/tables/*.json"))) +
         key_differences("figures", names(shown, "key of a figure"),
