@@ -30,10 +30,9 @@ Quantity fig2(const std::vector<const char*>& methods,
         Index fewest = repetitions;
         for (const auto* m : {&f.known_sum, &f.unequal_sum, &f.linear, &f.free})
           if (*m) fewest = std::min(fewest, (*m)->repetitions);
-        const bool all =
-            std::all_of(runs.begin(), runs.end(), [&](const Select& select) {
-              return !find_runs(e, select).empty();
-            });
+        const bool all = std::all_of(methods.begin(),
+                                     methods.end(),
+                                     [&](const char* m) { return f.has(m); });
         const Number found = all ? number(f) : std::nullopt;
         if (!found) return missing(runs.front().text() + " not run");
         if (fewest < repetitions)

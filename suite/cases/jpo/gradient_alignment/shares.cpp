@@ -1,8 +1,11 @@
 #include "suite/cases/jpo/gradient_alignment/shares.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "suite/evidence/statistics.h"
 #include "suite/results/published.h"
@@ -60,6 +63,19 @@ Fig2::Fig2(const Evidence& e)
              .plasticity = printed(e, "fig2b/A", 12.9)}) {
   if (linear) linear_fit = fit_response(linear->n, linear->share);
   if (free) sine_fit = fit_response(free->n, free->share);
+}
+
+bool Fig2::has(std::string_view method) const {
+  using Parts = std::vector<const std::optional<Aligned>*>;
+  const std::map<std::string_view, Parts> parts{
+      {"known", {&known_sum, &known_vote}},
+      {"unequal", {&unequal_sum, &unequal_vote}},
+      {"linear", {&linear}},
+      {"sine", {&free, &sum, &vote}}};
+  const Parts& own = parts.at(method);
+  return std::all_of(own.begin(), own.end(), [&](const auto* part) {
+    return *part && (*part)->n == own.front()->value().n;
+  });
 }
 
 }  // namespace physinv::alignment

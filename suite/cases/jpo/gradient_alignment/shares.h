@@ -42,6 +42,8 @@ struct Fig2 {
   Response paper;  ///< of Fig. 2b
 
   explicit Fig2(const Evidence& evidence);
+  /// All of what the method measures, at the same numbers of examples.
+  bool has(std::string_view method) const;
 
   static double rho(Index n, const Response& response) {
     return response_curve(n, response).back();
