@@ -89,8 +89,9 @@ PHYSINV_LANES P load(const T* p) {
   }
 }
 
+/// By value: accumulators whose address is taken stay in memory.
 template <class T, class P>
-PHYSINV_LANES void store(T* p, const P& v) {
+PHYSINV_LANES void store(T* p, P v) {
   if constexpr (requires { P::kRegisters; }) {
     v.put(p);
   } else {
