@@ -288,7 +288,7 @@ const std::vector<Claim> kStepClaims = {
      .note = "y2 is 0.01, 1 and 250 times x2, and its square at 0.5, 1 and 3."},
     {.id = "P12",
      .origin = Origin::paper,
-     .where = "Inverse simulator",
+     .where = "Fundamental theorem of calculus",
      .from = "smoke",
      .says = "dx / dy of the inverse simulator is the local gradient averaged "
              "over the way",
@@ -298,7 +298,7 @@ const std::vector<Claim> kStepClaims = {
                           0.5)}},
     {.id = "P13",
      .origin = Origin::paper,
-     .where = "Local inverse",
+     .where = "Global and local inverse simulators",
      .from = "smoke",
      .says = "Near x0 the local inverse is the inverse, far from it it need "
              "not be",
@@ -310,7 +310,7 @@ const std::vector<Claim> kStepClaims = {
                           0.5)}},
     {.id = "P14",
      .origin = Origin::paper,
-     .where = "Quasi-Newton methods",
+     .where = "Quasi-Newton methods, Dependence on Hessian",
      .from = "smoke",
      .says = "Where the Hessian is singular Newton has no step, and another "
              "has to stand in",
@@ -322,7 +322,7 @@ const std::vector<Claim> kStepClaims = {
                             0)}},
     {.id = "P15",
      .origin = Origin::paper,
-     .where = "Crux of the matter",
+     .where = "Gradient descent, Function sensitivity",
      .from = "smoke",
      .says = "For alpha << 1 gradient descent hardly moves x2",
      .conditions = {below("its step at alpha 1e-3 over that at 1",
@@ -334,7 +334,7 @@ const std::vector<Claim> kStepClaims = {
                            1 + kExact)}},
     {.id = "P16",
      .origin = Origin::paper,
-     .where = "Inverse simulator",
+     .where = "Time reversal",
      .from = "smoke",
      .says = "Run backwards in time, the simulator of a reversible process is "
              "its inverse",
