@@ -5,6 +5,7 @@
 
 #include "suite/harness/registry.h"
 #include "suite/harness/select.h"
+#include "suite/harness/study.h"
 
 namespace physinv::python {
 namespace {
@@ -73,7 +74,7 @@ py::tuple PyProblem::sample(std::uint64_t seed,
                             Index n,
                             Index first,
                             bool labelled) {
-  const Rng root = Rng::root(experiment_->name, seed);
+  const Rng root = root_of(experiment_->name, seed);
   Samples<double> s;
   {
     const Released released;

@@ -29,7 +29,7 @@ void append(std::string& text, std::string_view name, const NetworkRole& role) {
 }  // namespace
 
 CaseData draw_data(const Case& c) {
-  const Rng root = Rng::root(streams_of(c.info.experiment), c.info.seed);
+  const Rng root = root_of(c.info.experiment, c.info.seed);
   Samples<double> samples =
       disturbed(c.experiment->problem.make<double>()->sample(
           0, c.info.n, root.child("data/test")));

@@ -28,4 +28,8 @@ const std::string& streams_of(const std::string& experiment) {
   return found == studies().end() ? experiment : found->second;
 }
 
+Rng root_of(const std::string& experiment, std::uint64_t seed) {
+  return Rng::root(streams_of(experiment), seed);
+}
+
 }  // namespace physinv

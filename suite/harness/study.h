@@ -8,8 +8,11 @@
 /// options has its content key, so that what it ran is reused.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <string>
+
+#include "suite/core/rng.h"
 
 namespace physinv {
 
@@ -19,6 +22,9 @@ bool register_study(const std::string& study, const std::string& varied);
 /// The experiment on whose name the streams of this one hang: what it varies,
 /// else itself.
 const std::string& streams_of(const std::string& experiment);
+
+/// Of all streams of a case of this experiment.
+Rng root_of(const std::string& experiment, std::uint64_t seed);
 
 /// What each study varies.
 const std::map<std::string, std::string>& studies();

@@ -9,6 +9,7 @@
 #include <numeric>
 #include <utility>
 
+#include "suite/harness/study.h"
 #include "suite/results/crowded.h"
 
 namespace physinv::jpo {
@@ -257,7 +258,7 @@ RunRow beyond_training(const ProblemRecipe& problem,
             ->sample_labelled(
                 0,
                 per_problem * run.n(),
-                Rng::root(info.experiment, info.seed).child("data/train"))
+                root_of(info.experiment, info.seed).child("data/train"))
             .x;
     std::vector<double> beyond;
     for (Index j = 0; j < samples.rows(); ++j) {
