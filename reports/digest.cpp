@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
+#include "reports/latest_claims.h"
 #include "reports/plot.h"
 #include "reports/report.h"
-#include "reports/standings.h"
 #include "reports/tables.h"
 
 namespace physinv {

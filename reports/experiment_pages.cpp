@@ -3,9 +3,9 @@
 #include <set>
 #include <stdexcept>
 
+#include "reports/latest_claims.h"
 #include "reports/report.h"
 #include "reports/results_page.h"
-#include "reports/standings.h"
 #include "suite/results/markdown.h"
 
 namespace physinv {
@@ -14,7 +14,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// Claims with all that was measured, the failing ones as they stand.
-std::string claims_of(const Standings& all,
+std::string claims_of(const LatestClaims& all,
                       const std::string& experiment,
                       Origin origin) {
   std::string rows;
@@ -127,7 +127,7 @@ std::string page_of(const std::string& experiment,
 std::map<std::string, std::string> experiment_pages(
     const std::vector<NamedDigest>& campaigns, const ResultsLinks& links) {
   try {
-    const auto papers = standings(campaigns);
+    const auto papers = latest_claims(campaigns);
     const auto ordered = newest_first(campaigns);
     std::set<std::string> experiments;
     for (const NamedDigest& c : ordered)

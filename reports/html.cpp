@@ -31,6 +31,21 @@ std::string_view css_of(Verdict verdict) {
   return "open";
 }
 
+std::string verdicts_html(const VerdictCounts& counts, Origin origin) {
+  std::string out;
+  for (const Verdict v : kVerdicts) {
+    const int count = counts[static_cast<std::size_t>(v)];
+    if (count == 0 || v == Verdict::not_judged) continue;
+    out += fmt::format("{}<span class=\"{}\">{} {} {}</span>",
+                       out.empty() ? "" : ", ",
+                       css_of(v),
+                       mark_of(v),
+                       count,
+                       words_of(v, origin));
+  }
+  return out;
+}
+
 std::string name_of(std::string_view source, std::string_view title) {
   if (source.empty()) return std::string(title);
   return title.empty() ? std::string(source)

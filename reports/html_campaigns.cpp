@@ -7,23 +7,6 @@
 namespace physinv {
 namespace {
 
-/// "✓ 3 reproduced, ✗ 1 not reproduced"
-std::string counts_html(const std::vector<Section>& sections, Origin origin) {
-  const Tally counts = tally(sections, origin);
-  std::string out;
-  for (const Verdict v : kVerdicts) {
-    const int count = counts[static_cast<std::size_t>(v)];
-    if (count == 0 || v == Verdict::not_judged) continue;
-    out += fmt::format("{}<span class=\"{}\">{} {} {}</span>",
-                       out.empty() ? "" : ", ",
-                       css_of(v),
-                       mark_of(v),
-                       count,
-                       words_of(v, origin));
-  }
-  return out;
-}
-
 std::string campaign_html(const CampaignPages& campaign) {
   std::string titles;
   for (const Section& s : campaign.sections)
@@ -34,8 +17,10 @@ std::string campaign_html(const CampaignPages& campaign) {
       html(campaign.name),
       summary_html(campaign.provenance),
       titles);
-  const std::string papers = counts_html(campaign.sections, Origin::paper);
-  const std::string ranges = counts_html(campaign.sections, Origin::suite);
+  const std::string papers =
+      verdicts_html(tally(campaign.sections, Origin::paper), Origin::paper);
+  const std::string ranges =
+      verdicts_html(tally(campaign.sections, Origin::suite), Origin::suite);
   if (!papers.empty()) out += "<p>The papers: " + papers + "</p>\n";
   if (!ranges.empty())
     out += "<p class=\"remark\">Ranges of the suite: " + ranges + "</p>\n";
@@ -52,8 +37,8 @@ std::string campaigns_html(
   parts.header =
       "<h1>Physics inverse problems: published campaigns</h1>\n"
       "<p>Claims and tables of each campaign that is kept with the sources, "
-      "judged by what is claimed today. Figures are not kept; the command "
-      "makes them.</p>\n";
+      "judged by what is claimed today. Figures are not drawn here; the "
+      "command makes them.</p>\n";
   for (const auto& [folder, title] : others)
     parts.header += fmt::format(
         "<p><a href=\"{}/index.html\">{}</a></p>\n", html(folder), html(title));

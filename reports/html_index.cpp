@@ -29,23 +29,6 @@ bool needs_words(Verdict verdict) {
          verdict == Verdict::partly_judged;
 }
 
-/// "✓ 3 reproduced, ✗ 1 not reproduced"; nothing where nothing is decided.
-std::string verdicts_html(const Section& section, Origin origin) {
-  const Tally counts = tally(section, origin);
-  std::string out;
-  for (const Verdict v : kVerdicts) {
-    const int count = counts[static_cast<std::size_t>(v)];
-    if (count == 0 || v == Verdict::not_judged) continue;
-    out += fmt::format("{}<span class=\"{}\">{} {} {}</span>",
-                       out.empty() ? "" : ", ",
-                       css_of(v),
-                       mark_of(v),
-                       count,
-                       words_of(v, origin));
-  }
-  return out;
-}
-
 std::string numbers_html(const Section& section) {
   std::string rows;
   for (const Statement& s : statements_of(section, kNumbers)) {
@@ -146,8 +129,10 @@ std::string open_html(const Section& section) {
 }
 
 std::string experiment_html(const Section& section, const std::string& folder) {
-  const std::string papers = verdicts_html(section, Origin::paper);
-  const std::string ranges = verdicts_html(section, Origin::suite);
+  const std::string papers =
+      verdicts_html(tally(section, Origin::paper), Origin::paper);
+  const std::string ranges =
+      verdicts_html(tally(section, Origin::suite), Origin::suite);
   std::string out = fmt::format(
       "<article>\n<h3><a href=\"{}/index.html\">{}</a> <code>{}</code></h3>\n",
       html(folder),

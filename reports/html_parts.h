@@ -8,6 +8,7 @@
 #include "reports/anchors.h"
 #include "reports/palette.h"
 #include "suite/results/report_model.h"
+#include "suite/results/verdict_words.h"
 
 namespace physinv {
 
@@ -31,6 +32,9 @@ std::string name_of(std::string_view source, std::string_view title);
 
 /// Class of a verdict in the page's style sheet.
 std::string_view css_of(Verdict verdict);
+
+/// "✓ 3 reproduced, ✗ 1 not reproduced"; nothing where nothing is decided.
+std::string verdicts_html(const VerdictCounts& counts, Origin origin);
 
 /// What stands on a page; all of it is HTML.
 struct PageParts {

@@ -8,8 +8,8 @@
 #include <set>
 #include <stdexcept>
 
+#include "reports/latest_claims.h"
 #include "reports/report.h"
-#include "reports/standings.h"
 #include "reports/statements.h"
 #include "suite/results/markdown.h"
 
@@ -33,11 +33,11 @@ constexpr std::array kOrigins{Origin::paper, Origin::suite};
 
 std::string overview(const Papers& papers) {
   std::array<VerdictCounts, 2> totals{};
-  for (const auto& [paper, standings] : papers)
+  for (const auto& [paper, claims] : papers)
     for (std::size_t o = 0; o < kOrigins.size(); ++o)
       for (const Verdict v : kVerdicts)
         totals[o][static_cast<std::size_t>(v)] +=
-            counts_of(standings, kOrigins[o])[static_cast<std::size_t>(v)];
+            counts_of(claims, kOrigins[o])[static_cast<std::size_t>(v)];
   std::string out = "| paper |", line = "\n| --- |";
   for (std::size_t o = 0; o < kOrigins.size(); ++o)
     for (const Verdict v : columns_of(totals[o])) {
@@ -84,7 +84,7 @@ std::string measured(const ClaimResult& claim) {
 }
 
 std::string row(const ClaimKey& key,
-                const Standing& s,
+                const LatestClaim& s,
                 const ResultsLinks& links) {
   std::string cause = s.claim.cause;
   if (cause.empty() && s.claim.verdict != Verdict::reproduced)
@@ -107,7 +107,7 @@ constexpr const char* kHead =
     "| --- | --- | --- | --- | --- | --- | --- |\n";
 
 /// Claims of an origin, those of `but` left out.
-std::string rows_of(const Standings& all,
+std::string rows_of(const LatestClaims& all,
                     Origin origin,
                     const std::set<Verdict>& but,
                     const ResultsLinks& links) {
@@ -206,7 +206,7 @@ std::string results_markdown(const std::vector<NamedDigest>& campaigns,
       "has all.\n\n",
       kWrittenByResults);
   try {
-    const auto papers = standings(campaigns);
+    const auto papers = latest_claims(campaigns);
     out += overview(papers);
     std::string ranges;
     for (const auto& [paper, all] : papers) {
@@ -282,14 +282,14 @@ std::string audit_counts(const Counts& counts) {
 std::string audit_markdown(const std::vector<NamedDigest>& campaigns,
                            const ResultsLinks& links) {
   try {
-    const Papers then = standings(without_causes(campaigns));
-    const Papers now = standings(campaigns);
+    const Papers then = latest_claims(without_causes(campaigns));
+    const Papers now = latest_claims(campaigns);
     std::string rows;
     Counts counts{};
     for (const auto& [paper, all] : then)
       for (const auto& [key, old] : all) {
         if (old.claim.origin != Origin::paper) continue;
-        const Standing& own = now.at(paper).at(key);
+        const LatestClaim& own = now.at(paper).at(key);
         const Verdict was = old.claim.verdict, is = own.claim.verdict;
         ++counts[0][static_cast<std::size_t>(was)];
         ++counts[1][static_cast<std::size_t>(is)];

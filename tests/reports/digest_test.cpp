@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
+#include "reports/latest_claims.h"
 #include "reports/results_page.h"
-#include "reports/standings.h"
 #include "reports/tables.h"
 #include "suite/results/file.h"
 

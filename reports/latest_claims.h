@@ -12,7 +12,7 @@
 
 namespace physinv {
 
-struct Standing {
+struct LatestClaim {
   ClaimResult claim;
   std::string campaign;
 };
@@ -21,9 +21,9 @@ using ClaimKey = std::pair<std::string, std::string>;
 struct ByNumber {
   bool operator()(const ClaimKey& a, const ClaimKey& b) const;
 };
-using Standings = std::map<ClaimKey, Standing, ByNumber>;
+using LatestClaims = std::map<ClaimKey, LatestClaim, ByNumber>;
 /// By the key of the paper.
-using Papers = std::map<std::string, Standings>;
+using Papers = std::map<std::string, LatestClaims>;
 
 /// By their dates, the newest first; as they are where dates are equal.
 std::vector<NamedDigest> newest_first(std::vector<NamedDigest> campaigns);
@@ -31,9 +31,9 @@ std::vector<NamedDigest> newest_first(std::vector<NamedDigest> campaigns);
 /// The newest campaign that decided a claim counts, whatever it is called. What
 /// was decided counts before what was judged in part, and that before what was
 /// only reported.
-Papers standings(const std::vector<NamedDigest>& campaigns);
+Papers latest_claims(const std::vector<NamedDigest>& campaigns);
 
-VerdictCounts counts_of(const Standings& paper, Origin origin);
+VerdictCounts counts_of(const LatestClaims& paper, Origin origin);
 
 /// The text of a key, empty without one.
 std::string text_of(const nlohmann::ordered_json& object, const char* key);

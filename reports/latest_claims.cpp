@@ -1,4 +1,4 @@
-#include "reports/standings.h"
+#include "reports/latest_claims.h"
 
 #include <algorithm>
 #include <tuple>
@@ -63,12 +63,12 @@ std::vector<NamedDigest> newest_first(std::vector<NamedDigest> campaigns) {
   return campaigns;
 }
 
-Papers standings(const std::vector<NamedDigest>& campaigns) {
+Papers latest_claims(const std::vector<NamedDigest>& campaigns) {
   Papers papers;
   for (const NamedDigest& c : newest_first(campaigns))
     for (const Json& section : c.digest.at("sections"))
       for (const Json& claim : section.at("claims")) {
-        Standing found{claim_from(claim), c.name};
+        LatestClaim found{claim_from(claim), c.name};
         const auto [entry, first] =
             papers[section.at("paper").get<std::string>()].try_emplace(
                 {section.at("experiment").get<std::string>(), found.claim.id},
@@ -80,7 +80,7 @@ Papers standings(const std::vector<NamedDigest>& campaigns) {
   return papers;
 }
 
-VerdictCounts counts_of(const Standings& paper, Origin origin) {
+VerdictCounts counts_of(const LatestClaims& paper, Origin origin) {
   VerdictCounts counts{};
   for (const auto& [id, s] : paper)
     if (s.claim.origin == origin)
