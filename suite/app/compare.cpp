@@ -45,7 +45,10 @@ std::vector<JudgedClaim> claims_of(const Results& results,
 }
 
 /// "LABEL=DIR", or a directory that is its own label.
-Side read_side(const std::string& text, const Published& published) {
+/// `judged`: with claims.
+Side read_side(const std::string& text,
+               const Published& published,
+               bool judged) {
   const auto at = text.find('=');
   const bool labelled = at != std::string::npos && !fs::is_directory(text);
   const std::string folder = labelled ? text.substr(at + 1) : text;
@@ -60,7 +63,7 @@ Side read_side(const std::string& text, const Published& published) {
         side.claims.push_back({section.experiment, claim});
   } else {
     side.results = load(folder).results;
-    side.claims = claims_of(side.results, published);
+    if (judged) side.claims = claims_of(side.results, published);
   }
   return side;
 }
@@ -68,18 +71,18 @@ Side read_side(const std::string& text, const Published& published) {
 std::vector<Side> read_sides(const CompareFlags& flags) {
   std::vector<Side> sides;
   const Published published(published_directory());
+  const bool by_commit = flags.by == "commit";
   for (const auto& text : flags.sides)
-    sides.push_back(read_side(text, published));
-  if (flags.by == "commit") {
+    sides.push_back(read_side(text, published, !by_commit));
+  if (by_commit) {
     sides = sides_by_revision(sides);
     for (Side& side : sides) side.claims = claims_of(side.results, published);
   }
   if (sides.size() < 2)
     throw UsageError(
-        flags.by == "commit"
-            ? "all stages are of one commit; results of two are compared"
-            : "one folder is no comparison; two or more are, or one of "
-              "several commits with --by=commit");
+        by_commit ? "all stages are of one commit; results of two are compared"
+                  : "one folder is no comparison; two or more are, or one of "
+                    "several commits with --by=commit");
   return sides;
 }
 

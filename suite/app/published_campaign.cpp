@@ -33,7 +33,7 @@ double number(const Json& object, const char* key) {
 
 /// One stage's times, of its repetitions where there are some.
 void add_times(StageRecord& stage, const Json& entry) {
-  const double unit = entry.value("time_unit", "") == "ns" ? 1e-9 : 1e-3;
+  const double unit = seconds_per_unit(entry);
   const Json& own = entry.at("physinv");
   if (own.contains("times") && own["times"].is_object()) {
     const Json &wall = own["times"]["wall"], &cpu = own["times"]["cpu"];

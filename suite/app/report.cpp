@@ -123,12 +123,16 @@ ExitCode report_published(const std::string& results, const std::string& out) {
   origin["command"] = campaign_command(origin);
   write_report(
       out, sections, origin, {.one_file = false, .groups = groups_of(numbers)});
+  const fs::path figures = fs::path(results) / "figures";
   fmt::print(
-      "{}report: {}\nfigures are not kept with a published campaign: {}\n",
+      "{}report: {}\n{}: {}\n",
       render_claims_text(sections,
                          static_cast<std::size_t>(Screen::of(stdout).columns)),
       (fs::path(out) / "index.html").string(),
-      campaign_command(origin));
+      fs::is_directory(figures)
+          ? fmt::format("figures are in {}, made by", figures.string())
+          : "figures are not kept with a published campaign",
+      origin["command"].get<std::string>());
   return ExitCode::good;
 }
 

@@ -22,6 +22,7 @@
 #include "suite/results/json.h"
 #include "suite/results/published.h"
 #include "suite/results/results_file.h"
+#include "suite/results/results_json.h"
 
 namespace physinv {
 namespace {
@@ -29,14 +30,14 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// Of solving, by experiment: entries of version 1 tell milliseconds.
+/// Of solving, by experiment.
 std::map<std::string, double> cpu_seconds(const Json& results) {
   std::map<std::string, double> seconds;
   for (const Json& entry : results.at("benchmarks")) {
     if (!entry.contains("cpu_time") || !entry.contains("physinv")) continue;
-    const double unit = entry.value("time_unit", "ns") == "ms" ? 1e-3 : 1e-9;
     const std::string experiment = entry["physinv"].value("experiment", "");
-    seconds[experiment] += unit * entry["cpu_time"].get<double>();
+    seconds[experiment] +=
+        seconds_per_unit(entry) * entry["cpu_time"].get<double>();
   }
   return seconds;
 }

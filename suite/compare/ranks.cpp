@@ -57,7 +57,7 @@ std::string words_of(const SideRank& r) {
       r.method,
       r.stage,
       r.better() ? "lower" : "higher",
-      100 * static_cast<double>(r.better() ? r.test.below : r.above()) /
+      100 * static_cast<double>(r.better() ? r.test.below : r.test.above()) /
           static_cast<double>(r.test.pairs),
       r.test.pairs,
       p_text(r.p));
@@ -105,7 +105,7 @@ Table rank_table(const std::vector<SideRank>& ranks,
         {std::move(name),
          {{.ours = static_cast<double>(r.test.pairs)},
           {.ours = share * static_cast<double>(r.test.below)},
-          {.ours = share * static_cast<double>(r.above())},
+          {.ours = share * static_cast<double>(r.test.above())},
           {.ours = r.test.p, .text = fmt::format("{:.2g}", r.test.p)},
           {.ours = r.p, .text = fmt::format("{:.2g}", r.p)},
           {.text = !r.differs() ? "no difference shown"

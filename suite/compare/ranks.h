@@ -19,7 +19,6 @@ struct SideRank {
   double p = 1;     ///< by Holm over all of them
 
   bool differs() const { return p < kSignificant; }
-  std::size_t above() const { return test.pairs - test.below - test.ties; }
   bool better() const { return test.down; }
 };
 

@@ -25,6 +25,7 @@ struct SignedRank {
   std::size_t pairs = 0, below = 0, ties = 0;  ///< below: negative
   double p = 1;                                ///< 1 if there is no difference
   bool down = false;  ///< those below 0 have the larger sum of ranks
+  std::size_t above() const { return pairs - below - ties; }
   /// Of all pairs.
   double share_below() const;
 };

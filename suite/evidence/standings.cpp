@@ -88,7 +88,6 @@ std::string standing_text(const CommonRuns& common,
         "{:.0f} %",
         100 * static_cast<double>(count) / static_cast<double>(s.problems));
   };
-  const std::size_t above = pair.test.pairs - pair.test.below - pair.test.ties;
   return fmt::format(
       "Of {} methods {} has the lowest mean rank ({:.2g}): of {} {} it ends "
       "below the next, {}, on {}{}{} ({}{})",
@@ -100,7 +99,7 @@ std::string standing_text(const CommonRuns& common,
       title(pair.second),
       percent(pair.test.below),
       pair.test.ties > 0 ? ", equal on " + percent(pair.test.ties) : "",
-      above > 0 ? ", above on " + percent(above) : "",
+      pair.test.above() > 0 ? ", above on " + percent(pair.test.above()) : "",
       p_text(pair.p),
       pair.p >= kSignificant ? ", which shows no difference"
       : pair.test.down       ? ""

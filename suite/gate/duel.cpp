@@ -13,6 +13,7 @@
 #include "suite/harness/select.h"
 #include "suite/results/file.h"
 #include "suite/results/results_file.h"
+#include "suite/results/results_json.h"
 #include "suite/results/store.h"
 
 namespace physinv {
@@ -59,11 +60,9 @@ std::map<std::string, double> times(const fs::path& directory) {
     const bool ends_well = stop != stage.at("physinv").end() &&
                            (*stop == to_string(Stop::converged) ||
                             *stop == to_string(Stop::iterations));
-    // Programs of other versions have other units.
-    const double unit = stage.value("time_unit", "ms") == "ms" ? 1e-3 : 1e-9;
     sums[case_of(stage.at("name").get<std::string>())] +=
         ends_well && time != stage.end() && time->is_number()
-            ? unit * time->get<double>()
+            ? seconds_per_unit(stage) * time->get<double>()
             : std::numeric_limits<double>::quiet_NaN();
   }
   return sums;

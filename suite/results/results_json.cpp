@@ -197,6 +197,10 @@ Json results_json(const std::vector<CaseRecord>& cases,
           {"benchmarks", std::move(entries)}};
 }
 
+double seconds_per_unit(const nlohmann::ordered_json& entry) {
+  return entry.value("time_unit", "ms") == "ms" ? 1e-3 : 1e-9;
+}
+
 std::string results_text(const Json& results) {
   return results.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }

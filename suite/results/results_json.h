@@ -30,6 +30,9 @@ nlohmann::ordered_json results_json(const std::vector<CaseRecord>& cases,
 nlohmann::ordered_json error_entry(const std::string& name,
                                    const std::string& message);
 
+/// Of the times of an entry: earlier programs tell milliseconds.
+double seconds_per_unit(const nlohmann::ordered_json& entry);
+
 /// As it stands in the file.
 std::string results_text(const nlohmann::ordered_json& results);
 
