@@ -88,12 +88,30 @@ def tell(attempt, arguments):
             say("    " + line)
 
 
+class Progress:
+    """A line at most every half minute: what there is and how long it takes."""
+
+    def __init__(self, kind, count):
+        self.kind, self.count = kind, count
+        self.begin = self.said = time.monotonic()
+
+    def show(self, row):
+        now = time.monotonic()
+        if now - self.said < 30:
+            return
+        self.said = now
+        left = (now - self.begin) * (self.count / max(row["hits"], 1) - 1)
+        say(f"{self.kind}: {row['hits']} of {self.count} hits, "
+            f"{row['findings']} findings, about {max(left, 0):.0f} s to go")
+
+
 def attack(world, kind, arguments):
     function, all_of_them, few = KINDS[kind]
     count = arguments.count or (few if arguments.short else all_of_them)
     begin = time.monotonic()
     row = {"tries": 0, "hits": 0, "survived": 0, "findings": 0, "skipped": 0}
     reasons = set()
+    progress = Progress(kind, count)
     for seed in seeds_of(kind, count, arguments):
         if row["hits"] >= count:  # kills hit several times each
             break
@@ -106,6 +124,7 @@ def attack(world, kind, arguments):
         if attempt.skipped:
             row["skipped"] += 1
             reasons.add(attempt.skipped)
+        progress.show(row)
     row["seconds"] = round(time.monotonic() - begin)
     row["why"] = "; ".join(sorted(reasons))
     return row
