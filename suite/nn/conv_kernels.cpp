@@ -1,5 +1,7 @@
 #include "suite/nn/conv_kernels.h"
 
+#include <immintrin.h>
+
 #include <algorithm>
 #include <cstring>
 
@@ -33,6 +35,19 @@ struct Register {
     } else {
       return load<V>(a);
     }
+  }
+  /// a in both halves, by one load and no shuffle.
+  static Whole twice(const T* a) {
+#ifdef PHYSINV_AVX512
+    if constexpr (kPair && sizeof(T) == 4) {
+      return reinterpret_cast<Whole>(
+          _mm512_maskz_broadcast_f32x8(0xFFFF, _mm256_loadu_ps(a)));
+    } else if constexpr (kPair) {
+      return reinterpret_cast<Whole>(
+          _mm512_maskz_broadcast_f64x4(0xFF, _mm256_loadu_pd(a)));
+    }
+#endif
+    return of(a, a);
   }
   static void put(Whole v, T* a, T* b) {
     if constexpr (kPair) {
@@ -196,8 +211,9 @@ void convolve_run(const Product<T>& g,
   by.template operator()<1, false>();
 }
 
-/// R outputs x Q inputs, each a vector of partial sums.
-template <class T, class V, int R, int Q>
+/// R outputs x Q inputs, each a vector of partial sums. kOne: a row is one
+/// vector, so that distances between rows are known to the compiler.
+template <class T, class V, int R, int Q, bool kOne>
 [[gnu::noinline]] void weight_tile(const T* x,
                                    Index x_step,
                                    const T* y,
@@ -211,30 +227,35 @@ template <class T, class V, int R, int Q>
   using W = typename Reg::Whole;
   constexpr Index w = sizeof(V) / sizeof(T), wide = sizeof(W) / sizeof(T);
   constexpr int kInputs = Q / Reg::kVectors;
+  const Index row = kOne ? w : stride;
   W acc[R][kInputs];
 #pragma GCC unroll 8
   for (int r = 0; r < R; ++r)
 #pragma GCC unroll 8
     for (int q = 0; q < kInputs; ++q)
       acc[r][q] = load<W>(sums + r * sums_step + q * wide);
-  for (Index p = 0; p < positions; ++p, x += x_step, y += y_step) {
-    for (Index v = 0; v < vectors * w; v += w) {
-      W xv[kInputs];
+  const auto add = [&](const T* from, const T* by) {
+    W xv[kInputs];
 #pragma GCC unroll 8
-      for (int q = 0; q < kInputs; ++q) {
-        const T* const first = x + q * Reg::kVectors * stride + v;
-        xv[q] = held(Reg::of(first, first + stride));
-      }
-#pragma GCC unroll 8
-      for (int r = 0; r < R; ++r) {
-        const T* const each = y + r * stride + v;
-        const W yv = held(Reg::of(each, each));
-#pragma GCC unroll 8
-        for (int q = 0; q < kInputs; ++q)
-          acc[r][q] = fma_lanes(yv, xv[q], acc[r][q]);
-      }
+    for (int q = 0; q < kInputs; ++q) {
+      const T* const first = from + q * Reg::kVectors * row;
+      xv[q] = held(kOne ? load<W>(first) : Reg::of(first, first + row));
     }
-  }
+#pragma GCC unroll 8
+    for (int r = 0; r < R; ++r) {
+      const W yv = held(Reg::twice(by + r * row));
+#pragma GCC unroll 8
+      for (int q = 0; q < kInputs; ++q)
+        acc[r][q] = fma_lanes(yv, xv[q], acc[r][q]);
+    }
+  };
+  // At least one of each, which keeps the sums in their registers.
+  do {
+    Index v = 0;
+    do add(x + v, y + v);
+    while (!kOne && (v += w) < vectors * w);
+    x += x_step, y += y_step;
+  } while (--positions > 0);
 #pragma GCC unroll 8
   for (int r = 0; r < R; ++r)
 #pragma GCC unroll 8
@@ -255,15 +276,18 @@ void weight_rows(const T* x,
                  Index sums_step) {
   Index o = 0;
   const auto step = [&]<int R>() {
-    weight_tile<T, V, R, Q>(x,
-                            x_step,
-                            y + o * stride,
-                            y_step,
-                            stride,
-                            positions,
-                            vectors,
-                            sums + o * sums_step,
-                            sums_step);
+    const auto tile = stride == sizeof(V) / sizeof(T)
+                          ? weight_tile<T, V, R, Q, true>
+                          : weight_tile<T, V, R, Q, false>;
+    tile(x,
+         x_step,
+         y + o * stride,
+         y_step,
+         stride,
+         positions,
+         vectors,
+         sums + o * sums_step,
+         sums_step);
     o += R;
   };
   while (o + kOutTile <= out) step.template operator()<kOutTile>();

@@ -53,19 +53,15 @@ struct Moving {
     const NormShape plain{.grid = of.shape.grid, .channels = of.shape.channels};
     block_sums<T>(plain, columns, of.parameters, x, x, bar, begin, end, sums);
   }
-  /// The same at all positions, in `work`.
-  T* sums(const NormColumns<T>& columns,
-          Lanes<const T> x,
-          Lanes<const T> bar) const {
-    T* totals = at.work->template take<T>(sums_size(), 1).data();
-    T* parts = at.work->template take<T>(sums_size(), blocks()).data();
-    for_positions(
-        threads, of.shape.positions(), some, [&](Index begin, Index end) {
-          T* part = parts + begin / some * sums_size();
-          add_up(columns, x, bar, begin, end, part);
-        });
-    combine_sums(parts, blocks(), of.shape.channels, totals);
-    return totals;
+  /// Room for the sums of all blocks.
+  T* parts() const {
+    return at.work->template take<T>(sums_size(), blocks()).data();
+  }
+  /// Those of the blocks, put together in `work`.
+  T* total(const T* parts) const {
+    T* sums = at.work->template take<T>(sums_size(), 1).data();
+    combine_sums(parts, blocks(), of.shape.channels, sums);
+    return sums;
   }
   /// What a sum is divided by; zero outside training, where the statistics are
   /// constants.
@@ -111,8 +107,7 @@ void push_block(const BlockParts<T>& block,
   at.dots->template slot<T>(at.slot + 1, channels, NormDots<T>::kCount);
   const Workspace::Scope scope(*at.work);
   const Moving<T> m(block, at, t.y);
-  T* parts = at.work->template take<T>(m.sums_size(), m.blocks()).data();
-  T* sums = at.work->template take<T>(m.sums_size(), 1).data();
+  T* parts = m.parts();
   push_convolution(block.conv,
                    at,
                    t.x,
@@ -122,7 +117,7 @@ void push_block(const BlockParts<T>& block,
                      T* part = parts + i * m.sums_size();
                      m.add_up(m.of.at, m.z, m.z_dot, begin, end, part);
                    });
-  combine_sums(parts, m.blocks(), channels, sums);
+  const T* const sums = m.total(parts);
   for (Index c = 0; c < channels; ++c) {
     m.of.dots.mean[c] = m.share() * sums[c];
     m.of.dots.slope[c] = m.share() * sums[channels + c];
@@ -146,14 +141,15 @@ void pull_block(const BlockParts<T>& block,
   Lanes<T> bar = m.z, bar_dot = m.z;
   bar.data = at.work->template take<T>(bar.stride, bar.rows).data();
   bar_dot.data = at.work->template take<T>(bar.stride, bar.rows).data();
-  for_positions(
-      m.threads,
-      block.norm.pooled().positions(),
-      m.some,
-      [&](Index begin, Index end) {
-        open_cells<T>(
-            m.of, b.y_dot, b.y_bar, b.y_bar_dot, bar, bar_dot, begin, end);
-      });
+  const auto open = [&](Index begin, Index end) {
+    open_cells<T>(
+        m.of, b.y_dot, b.y_bar, b.y_bar_dot, bar, bar_dot, begin, end);
+  };
+  // Cells of several positions are opened first; else each block is added up
+  // while it is in the cache.
+  const bool pooled = block.norm.pool;
+  if (pooled)
+    for_positions(m.threads, block.norm.pooled().positions(), m.some, open);
 
   // (sum of bar n)' = sum of bar' n + bar n', n' = inverse (x' - mean' - n
   // slope).
@@ -161,9 +157,17 @@ void pull_block(const BlockParts<T>& block,
   std::fill_n(ones, channels, T(1));
   NormColumns<T> moved = m.of.at;
   moved.mean = m.of.dots.mean, moved.inverse = ones;
-  T* const base = m.sums(m.of.at, m.z, bar);
-  T* const dot = m.sums(m.of.at, m.z, bar_dot);
-  const T* const more = m.sums(moved, m.z_dot, bar);
+  T *base_parts = m.parts(), *dot_parts = m.parts(), *more_parts = m.parts();
+  for_positions(
+      m.threads, block.norm.positions(), m.some, [&](Index begin, Index end) {
+        if (!pooled) open(begin, end);
+        const Index i = begin / m.some * m.sums_size();
+        m.add_up(m.of.at, m.z, bar, begin, end, base_parts + i);
+        m.add_up(m.of.at, m.z, bar_dot, begin, end, dot_parts + i);
+        m.add_up(moved, m.z_dot, bar, begin, end, more_parts + i);
+      });
+  T *const base = m.total(base_parts), *const dot = m.total(dot_parts);
+  const T* const more = m.total(more_parts);
   for (Index c = 0; c < channels; ++c)
     dot[channels + c] +=
         m.of.at.inverse[c] *
