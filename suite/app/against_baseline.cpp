@@ -11,6 +11,7 @@
 #include "suite/gate/digits.h"
 #include "suite/gate/instructions.h"
 #include "suite/gate/verdict.h"
+#include "suite/harness/nearest.h"
 #include "suite/results/file.h"
 
 namespace physinv {

@@ -18,7 +18,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "suite/harness/select.h"
+#include "suite/harness/nearest.h"
 
 namespace physinv {
 namespace {

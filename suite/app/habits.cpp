@@ -9,6 +9,7 @@
 #include <charconv>
 
 #include "suite/harness/context.h"
+#include "suite/harness/nearest.h"
 
 namespace physinv {
 namespace {

@@ -17,8 +17,8 @@
 #include "suite/app/verbs.h"
 #include "suite/harness/build_info.h"
 #include "suite/harness/context.h"
+#include "suite/harness/nearest.h"
 #include "suite/harness/output.h"
-#include "suite/harness/select.h"
 #include "suite/results/errors.h"
 
 namespace physinv {

@@ -10,6 +10,7 @@
 #include <sstream>
 #include <utility>
 
+#include "suite/harness/nearest.h"
 #include "suite/harness/registry_problems.h"
 #include "suite/harness/words.h"
 #include "suite/results/file.h"

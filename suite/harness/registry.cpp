@@ -12,7 +12,7 @@
 
 #include "suite/harness/errors.h"
 #include "suite/harness/judge.h"
-#include "suite/harness/select.h"
+#include "suite/harness/nearest.h"
 
 namespace physinv {
 namespace {

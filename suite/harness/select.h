@@ -39,26 +39,6 @@ class NameFilter {
 /// The pattern that matches this name and no other.
 std::string exactly(std::string_view name);
 
-/// Up to `count` beginnings of names whose last part reads most like
-/// `pattern`, best first.
-std::vector<std::string> nearest_names(const std::vector<std::string>& names,
-                                       std::string_view pattern,
-                                       std::size_t count = 3);
-
-/// Levenshtein distance, or more than `most` if it is.
-std::size_t edit_distance(std::string_view a,
-                          std::string_view b,
-                          std::size_t most = 1'000'000);
-
-/// Up to `count` of `known`, the one that reads most like `word` first.
-std::vector<std::string> nearest_words(const std::vector<std::string>& known,
-                                       std::string_view word,
-                                       std::size_t count = 5);
-
-/// The word of `known` nearest to `word`, empty if none is near.
-std::string nearest_word(const std::vector<std::string>& known,
-                         std::string_view word);
-
 /// Part `part` of `parts` (from 1): the cases at positions part-1,
 /// part-1+parts, .. of the list.
 struct Shard {

@@ -87,7 +87,8 @@ class Convolution {
   void pull(const Pull& at, Index begin, Index end) const;
   void pull_inner(const Pull& at, Index begin, Index end) const;
   template <class First>
-  void pull_borders(const Pull& at,
+  void pull_borders(Threads* threads,
+                    const Pull& at,
                     Index unit,
                     Index parts,
                     First&& first) const;
@@ -161,15 +162,16 @@ void Convolution<T>::pull_inner(const Pull& at, Index begin, Index end) const {
 /// What more than one part's outputs have seen, and both ends.
 template <class T>
 template <class First>
-void Convolution<T>::pull_borders(const Pull& at,
+void Convolution<T>::pull_borders(Threads* threads,
+                                  const Pull& at,
                                   Index unit,
                                   Index parts,
                                   First&& first) const {
-  for (Index part = 0; part < parts; ++part) {
+  for_blocks(threads, parts, [&](Index part, int) {
     const Index begin = first(part) * unit, end = first(part + 1) * unit;
     pull_inner(at, begin, std::min(end, begin + reach_));
     pull_inner(at, std::max(begin + reach_, end - reach_), end);
-  }
+  });
   const Index inner = shape_.positions() - edge_;
   pull(at, 0, std::min(edge_, inner));
   pull(at, std::max(inner, Index{0}), input_positions_);
@@ -201,7 +203,8 @@ void Convolution<T>::gradients(const LayerArgs<T>& at,
   // In the L2: the weights' sums come and go less often. No bits depend on it.
   const Index some = std::max<Index>(1, 4 * per_block(y_bar) / unit);
   const auto first = [&](Index part) { return units * part / parts; };
-  for_blocks(threads(at, x.samples), parts, [&](Index part, int) {
+  Threads* const threads = this->threads(at, x.samples);
+  for_blocks(threads, parts, [&](Index part, int) {
     const Index last = first(part + 1);
     // Cotangents of inputs that only this part's outputs have seen.
     Index pulled = first(part) * unit + reach_;
@@ -215,7 +218,7 @@ void Convolution<T>::gradients(const LayerArgs<T>& at,
       pulled = std::max(pulled, end - reach_);
     }
   });
-  pull_borders(down, unit, parts, first);
+  pull_borders(threads, down, unit, parts, first);
   if (weights_bar != nullptr) {
     T* totals = at.work->template take<T>(shape_.weights(), 1).data();
     finish_weights<T>(shape_, sums, parts, totals, weights_bar);

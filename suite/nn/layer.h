@@ -16,6 +16,7 @@
 ///    walking down are those of `backward`, run on each sample's rows at once.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -24,6 +25,7 @@
 
 #include "suite/core/check.h"
 #include "suite/core/network.h"
+#include "suite/core/threads.h"
 #include "suite/nn/lanes.h"
 #include "suite/nn/layer_rows.h"
 
@@ -113,6 +115,19 @@ struct BackwardTangent {
             .x_bar = x_bar};
   }
 };
+
+/// f(begin, end) on blocks of `count` rows or positions, of `numbers` each,
+/// over the threads: for passes that store every number once, so that no bit
+/// depends on the blocks.
+template <class T, class F>
+void for_rows(const LayerArgs<T>& at, Index count, Index numbers, F&& f) {
+  constexpr Index kNumbers = 16384;  // some 10 us
+  const Index some = std::max<Index>(1, kNumbers / numbers);
+  for_blocks(
+      at.work->threads(), (count + some - 1) / some, [&](Index block, int) {
+        f(block * some, std::min((block + 1) * some, count));
+      });
+}
 
 template <class T>
 class Layer {

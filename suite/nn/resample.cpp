@@ -63,6 +63,21 @@ struct Shares {
   std::size_t count = 0;
 };
 
+template <class T, class F>
+void each_position(const LayerArgs<T>& at, Grid grid, Index numbers, F&& f) {
+  for_rows(at, grid.positions(), numbers, [&](Index begin, Index end) {
+    for (Index p = begin; p < end; ++p) f(p);
+  });
+}
+
+/// f of every output of a pooling.
+template <class T, class F>
+void each_output(const LayerArgs<T>& at, Lanes<const T> y, F&& f) {
+  for_rows(at, y.rows, y.stride, [&](Index begin, Index end) {
+    for (Index i = begin; i < end; ++i) f(i);
+  });
+}
+
 void check_axis(Index n, Index m) {
   SUITE_CHECK(m == 2 * n || m == 2 * n + 1 || (n == 1 && m == 1),
               "upsampling doubles an axis, plus one at most");
@@ -78,10 +93,10 @@ MaxPool<T>::MaxPool(Grid grid, Index channels)
       channels_(channels) {}
 
 template <class T>
-void MaxPool<T>::forward(const LayerArgs<T>&,
+void MaxPool<T>::forward(const LayerArgs<T>& at,
                          Lanes<const T> x,
                          Lanes<T> y) const {
-  for (Index i = 0; i < y.rows; ++i) {
+  each_output<T>(at, y, [&](Index i) {
     const Cell from = cell(grid_, i / channels_);
     const Index c = i % channels_;
     for (Index j = 0; j < x.width; j += kNarrowLanes<T>) {
@@ -92,15 +107,15 @@ void MaxPool<T>::forward(const LayerArgs<T>&,
       }
       store(y.row(i) + j, top);
     }
-  }
+  });
 }
 
 template <class T>
-void MaxPool<T>::backward(const LayerArgs<T>&, const Backward<T>& b) const {
+void MaxPool<T>::backward(const LayerArgs<T>& at, const Backward<T>& b) const {
   if (!b.x_bar) return;
   if (grid_.columns % 2 != 0 || (!grid_.flat() && grid_.rows % 2 != 0))
     std::fill_n(b.x_bar.data, b.x_bar.rows * b.x_bar.stride, T(0));
-  for (Index i = 0; i < b.y.rows; ++i) {
+  each_output<T>(at, b.y, [&](Index i) {
     const Cell to = cell(grid_, i / channels_);
     const Index c = i % channels_;
     for (Index j = 0; j < b.x.width; j += kNarrowLanes<T>) {
@@ -113,13 +128,13 @@ void MaxPool<T>::backward(const LayerArgs<T>&, const Backward<T>& b) const {
         rest = here ? V<T>{} : rest;
       }
     }
-  }
+  });
   apply_gate(b.gate, b.x_bar);
 }
 
 template <class T>
-void MaxPool<T>::tangent(const LayerArgs<T>&, const Tangent<T>& t) const {
-  for (Index i = 0; i < t.y.rows; ++i) {
+void MaxPool<T>::tangent(const LayerArgs<T>& at, const Tangent<T>& t) const {
+  each_output<T>(at, t.y, [&](Index i) {
     const Cell from = cell(grid_, i / channels_);
     const Index c = i % channels_;
     for (Index j = 0; j < t.x.width; j += kNarrowLanes<T>) {
@@ -132,7 +147,7 @@ void MaxPool<T>::tangent(const LayerArgs<T>&, const Tangent<T>& t) const {
       }
       store(t.y_dot.row(i) + j, dot);
     }
-  }
+  });
 }
 
 template <class T>
@@ -147,13 +162,13 @@ Upsample<T>::Upsample(Grid from, Grid to, Index channels)
 }
 
 template <class T>
-void Upsample<T>::forward(const LayerArgs<T>&,
+void Upsample<T>::forward(const LayerArgs<T>& at,
                           Lanes<const T> x,
                           Lanes<T> y) const {
   const auto row = [&](Index r, Index c, Index channel, Index j) {
     return load<V<T>>(x.row((r * grid_.columns + c) * channels_ + channel) + j);
   };
-  for (Index p = 0; p < fine_.positions(); ++p) {
+  each_position(at, fine_, channels_ * x.stride, [&](Index p) {
     const Pair h = sources(p % fine_.columns, grid_.columns, fine_.columns);
     const Pair v = sources(p / fine_.columns, grid_.rows, fine_.rows);
     const auto two = [](const Pair& pair, V<T> near, V<T> far) {
@@ -170,14 +185,14 @@ void Upsample<T>::forward(const LayerArgs<T>&,
         if (!grid_.flat()) value = two(v, value, along(v.far));
         store(y.row(p * channels_ + c) + j, value);
       }
-  }
+  });
 }
 
 template <class T>
-void Upsample<T>::backward(const LayerArgs<T>&, const Backward<T>& b) const {
+void Upsample<T>::backward(const LayerArgs<T>& at, const Backward<T>& b) const {
   if (!b.x_bar) return;
   // Every input gathers from its outputs, in order.
-  for (Index p = 0; p < grid_.positions(); ++p) {
+  each_position(at, grid_, channels_ * b.x_bar.stride, [&](Index p) {
     const Shares h(p % grid_.columns, grid_.columns, fine_.columns);
     const Shares v(p / grid_.columns, grid_.rows, fine_.rows);
     for (Index c = 0; c < channels_; ++c)
@@ -193,7 +208,7 @@ void Upsample<T>::backward(const LayerArgs<T>&, const Backward<T>& b) const {
           }
         store(b.x_bar.row(p * channels_ + c) + j, sum);
       }
-  }
+  });
   apply_gate(b.gate, b.x_bar);
 }
 

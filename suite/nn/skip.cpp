@@ -12,16 +12,18 @@ namespace {
 
 /// Copies `count` rows per position between fields of different width.
 template <class T>
-void copy_channels(Lanes<const T> from,
+void copy_channels(const LayerArgs<T>& at,
+                   Lanes<const T> from,
                    Index from_step,
                    Lanes<T> to,
                    Index to_step,
                    Index count,
                    Index positions) {
-  for (Index p = 0; p < positions; ++p) {
-    const T* row = from.row(p * from_step);
-    std::copy(row, row + count * from.stride, to.row(p * to_step));
-  }
+  const Index numbers = count * from.stride;
+  for_rows(at, positions, numbers, [&](Index begin, Index end) {
+    for (Index p = begin; p < end; ++p)
+      std::copy_n(from.row(p * from_step), numbers, to.row(p * to_step));
+  });
 }
 
 template <class T>
@@ -90,7 +92,7 @@ void Skip<T>::forward(const LayerArgs<T>& at,
                       Lanes<T> y) const {
   const Index own = this->inputs() / positions_;
   const Index all = this->outputs() / positions_;
-  copy_channels<T>(x, own, y, all, own, positions_);
+  copy_channels<T>(at, x, own, y, all, own, positions_);
   Lanes<const T> from = x;
   for (std::size_t i = 0; i < inner_.size(); ++i) {
     Lanes<T> to(nullptr, inner_[i]->outputs(), x.samples);
@@ -99,7 +101,7 @@ void Skip<T>::forward(const LayerArgs<T>& at,
     from = to;
   }
   copy_channels<T>(
-      from, all - own, from_row(y, own), all, all - own, positions_);
+      at, from, all - own, from_row(y, own), all, all - own, positions_);
 }
 
 template <class T>
@@ -114,7 +116,7 @@ void Skip<T>::backward(const LayerArgs<T>& at, const Backward<T>& b) const {
                  inner_.back()->outputs(),
                  n);
   copy_channels<T>(
-      from_row(b.y_bar, own), all, y_bar, all - own, all - own, positions_);
+      at, from_row(b.y_bar, own), all, y_bar, all - own, all - own, positions_);
   const auto kept = [&](std::size_t i) -> Lanes<const T> {
     return this->kept(*at.tape, at.slot, i, n);
   };
@@ -130,12 +132,14 @@ void Skip<T>::backward(const LayerArgs<T>& at, const Backward<T>& b) const {
     y_bar = inner.x_bar;
   }
   if (!b.x_bar) return;
-  for (Index p = 0; p < positions_; ++p)
-    for (Index c = 0; c < own; ++c)
-      for (Index j = 0; j < b.x_bar.width; j += kNarrowLanes<T>)
-        store(b.x_bar.row(p * own + c) + j,
-              load<V>(b.y_bar.row(p * all + c) + j) +
-                  load<V>(y_bar.row(p * own + c) + j));
+  for_rows(at, positions_, own * stride, [&](Index begin, Index end) {
+    for (Index p = begin; p < end; ++p)
+      for (Index c = 0; c < own; ++c)
+        for (Index j = 0; j < b.x_bar.width; j += kNarrowLanes<T>)
+          store(b.x_bar.row(p * own + c) + j,
+                load<V>(b.y_bar.row(p * all + c) + j) +
+                    load<V>(y_bar.row(p * own + c) + j));
+  });
   apply_gate(b.gate, b.x_bar);
 }
 
@@ -151,7 +155,7 @@ template <class T>
 void Skip<T>::tangent(const LayerArgs<T>& at, const Tangent<T>& t) const {
   const Index own = this->inputs() / positions_, n = t.x.samples;
   const Index all = this->outputs() / positions_;
-  copy_channels<T>(t.x_dot, own, t.y_dot, all, own, positions_);
+  copy_channels<T>(at, t.x_dot, own, t.y_dot, all, own, positions_);
   Tangent<T> inner{.x = t.x, .x_dot = t.x_dot};
   for (std::size_t i = 0; i < inner_.size(); ++i) {
     inner.y = kept(*at.tape, at.slot, i, n);
@@ -160,7 +164,8 @@ void Skip<T>::tangent(const LayerArgs<T>& at, const Tangent<T>& t) const {
     inner_[i]->tangent(args(at, i), inner);
     inner.x = inner.y, inner.x_dot = inner.y_dot;
   }
-  copy_channels<T>(inner.x_dot,
+  copy_channels<T>(at,
+                   inner.x_dot,
                    all - own,
                    from_row(t.y_dot, own),
                    all,
@@ -182,7 +187,7 @@ void Skip<T>::backward_tangent(const LayerArgs<T>& at,
   auto& [y_bar, y_bar_dot, x_bar, x_bar_dot] = bars;
   const auto take_in = [&](Lanes<const T> whole, Lanes<T> part) {
     copy_channels<T>(
-        from_row(whole, own), all, part, all - own, all - own, positions_);
+        at, from_row(whole, own), all, part, all - own, all - own, positions_);
   };
   take_in(b.y_bar, y_bar), take_in(b.y_bar_dot, y_bar_dot);
   for (std::size_t i = inner_.size(); i-- > 0;) {
@@ -208,7 +213,7 @@ void Skip<T>::backward_tangent(const LayerArgs<T>& at,
   }
   if (!b.x_bar) return;
   const auto join = [&](Lanes<const T> whole, Lanes<T> part, Lanes<T> to) {
-    copy_channels<T>(whole, all, to, own, own, positions_);
+    copy_channels<T>(at, whole, all, to, own, own, positions_);
     part.rows = to.rows;
     add_lanes<T>(part, to);
   };

@@ -75,26 +75,6 @@ TEST(NameFilter, ExactlyMatchesOneName) {
           << name << " " << other;
 }
 
-TEST(Nearest, FindsTheTypo) {
-  const std::vector<std::string> names = {"jpo/billiards/bfgs/n=8/seed=0",
-                                          "jpo/waves/bfgs/n=8/seed=0"};
-  EXPECT_EQ(nearest_names(names, "biliards").front(), "jpo/billiards");
-  EXPECT_EQ(nearest_names(names, "jpo/wave").front(), "jpo/waves");
-  // Thousands of sizes of one experiment do not hide another one.
-  std::vector<std::string> many;
-  for (int n = 0; n < 5000; ++n) many.push_back(fmt::format("a/b/n={}", n));
-  many.emplace_back("sip/heat/n=4");
-  EXPECT_EQ(nearest_names(many, "sip/haet").front(), "sip/heat");
-  EXPECT_TRUE(nearest_names({}, "x").empty());
-  EXPECT_FALSE(nearest_names(names, std::string(1'000'000, 'x')).empty());
-  EXPECT_EQ(edit_distance("kitten", "sitting"), 3u);
-  EXPECT_EQ(edit_distance("kitten", "sitting", 3), 3u);
-  EXPECT_GT(edit_distance("kitten", "sitting", 2), 2u);
-  EXPECT_GT(edit_distance("kitten", "a kitten's", 3), 3u);
-  EXPECT_EQ(nearest_word({"--jobs", "--out"}, "--job"), "--jobs");
-  EXPECT_EQ(nearest_word({"--jobs", "--out"}, "--completely-else"), "");
-}
-
 TEST(Shard, SplitsByPosition) {
   std::vector<Case> cases(7);
   for (std::size_t i = 0; i < 7; ++i) cases[i].info.name = std::to_string(i);
