@@ -13,8 +13,8 @@
 
 #include "suite/app/conformance_flags.h"
 #include "suite/app/plugins.h"
-#include "suite/harness/registry.h"
 #include "suite/harness/nearest.h"
+#include "suite/harness/registry.h"
 #include "suite/harness/select.h"
 
 namespace physinv {
