@@ -202,7 +202,10 @@ void Selection::read_words(const std::vector<Case>& all_cases) {
   if (!plain) filters = expressions_of(filters, all_cases, all);
   for (const auto& word : std::exchange(words, {})) {
     filters.push_back(expressions_of({word}, all_cases, all).front());
-    if (NameFilter({filters.back()}).apply(all_cases).empty())
+    const NameFilter filter({filters.back()});
+    if (std::none_of(all_cases.begin(), all_cases.end(), [&](const Case& c) {
+          return filter.matches(c.info.name);
+        }))
       refuse(all_cases, word);
   }
 }

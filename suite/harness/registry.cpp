@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <future>
 #include <iterator>
-#include <map>
 #include <set>
 #include <stdexcept>
+#include <unordered_map>
 
 #include "suite/harness/errors.h"
 #include "suite/harness/judge.h"
@@ -134,7 +134,7 @@ std::vector<Case> Registry::expand(std::string_view profile,
                            !overrides.methods && !overrides.seeds &&
                            !overrides.precision;
   std::vector<Case> cases;
-  std::map<std::string, std::size_t> by_name;
+  std::unordered_map<std::string, std::size_t> by_name;
   std::size_t count = 0;
   // Before any is made, which takes longer than to count.
   const auto add_count = [&](const Experiment& e, const Row& row) {

@@ -75,9 +75,11 @@ std::string exactly(std::string_view name) {
   return pattern + "$";
 }
 
-std::vector<Case> NameFilter::apply(std::vector<Case> cases) const {
-  std::erase_if(cases, [&](const Case& c) { return !matches(c.info.name); });
-  return cases;
+std::vector<Case> NameFilter::apply(const std::vector<Case>& cases) const {
+  std::vector<Case> chosen;
+  for (const Case& c : cases)
+    if (matches(c.info.name)) chosen.push_back(c);
+  return chosen;
 }
 
 std::vector<Case> Shard::apply(std::vector<Case> cases) const {

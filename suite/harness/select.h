@@ -29,7 +29,7 @@ class NameFilter {
                       std::string_view whose = "--filter");
 
   bool matches(const std::string& name) const;
-  std::vector<Case> apply(std::vector<Case> cases) const;
+  std::vector<Case> apply(const std::vector<Case>& cases) const;
 
  private:
   using Patterns = std::vector<std::shared_ptr<const re2::RE2>>;

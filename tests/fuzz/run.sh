@@ -13,7 +13,8 @@ dictionary=$folder/$reader.dict
 # HDF5 forgets memory when it refuses a file.
 printf 'leak:libhdf5\n' >"$beside/inputs/leaks.$reader"
 export LSAN_OPTIONS=suppressions=$beside/inputs/leaks.$reader:print_suppressions=0
-export ASAN_OPTIONS=quarantine_size_mb=16
+# Where memory comes from is told by four calls, which takes less than thirty.
+export ASAN_OPTIONS=quarantine_size_mb=16:malloc_context_size=4
 exec "$program" -runs="${PHYSINV_FUZZ_RUNS:-20000}" -dict="$dictionary" \
   -max_len=16384 -timeout="${PHYSINV_FUZZ_SECONDS:-5}" \
   -rss_limit_mb=1024 -malloc_limit_mb=1024 \
