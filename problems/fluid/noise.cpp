@@ -88,9 +88,9 @@ Vector<double> smooth_noise(const NoiseOptions& o,
 
 Vector<double> smooth_noise(const NoiseOptions& o, Stream& stream) {
   const Index modes = o.components * o.cells * o.cells;
-  Vector<double> real(modes), imaginary(modes);
-  for (Index m = 0; m < modes; ++m)
-    real(m) = stream.normal(), imaginary(m) = stream.normal();
+  Batch<double> pairs(2, modes);
+  stream.normals(pairs.data(), pairs.size());
+  const Vector<double> real = pairs.row(0), imaginary = pairs.row(1);
   return smooth_noise(o, real, imaginary);
 }
 

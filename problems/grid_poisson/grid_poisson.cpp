@@ -118,13 +118,18 @@ enum Slot : std::size_t { kPoison };
 Vector<double> poisson_potential(const Vector<double>& noise) {
   SUITE_CHECK(noise.size() == 2 * kCells, "noise of 64 complex numbers");
   static const Batch<double> kWaves = waves();
-  Vector<double> phi = Vector<double>::Zero(kCells);
-  double* const sum = phi.data();
+  using P = Pack<double>;
+  constexpr Index kPacks = kCells / kLanes<double>;
+  P sum[kPacks] = {};
   for (Index f = 0; f < 2 * kCells; ++f) {
     const double* const wave = kWaves.col(f).data();
     const double factor = noise(f);
-    for (Index i = 0; i < kCells; ++i) sum[i] += factor * wave[i];
+    for (Index i = 0; i < kPacks; ++i)
+      sum[i] += factor * load<P>(wave + i * kLanes<double>);
   }
+  Vector<double> phi(kCells);
+  for (Index i = 0; i < kPacks; ++i)
+    store(phi.data() + i * kLanes<double>, sum[i]);
   const double mean = phi.mean();
   const double deviation =
       std::sqrt((phi.array() - mean).square().sum() / kCells);
@@ -158,7 +163,7 @@ Samples<double> GridPoisson<T>::sample(Index first,
   Vector<double> noise(2 * kCells);
   for (Index i = 0; i < count; ++i) {
     Stream stream = rng.child(static_cast<std::uint64_t>(first + i)).stream();
-    for (double& c : noise) c = stream.normal();
+    stream.normals(noise.data(), noise.size());
     out.x.col(i) = poisson_potential(noise);
     apply(out.x.col(i).data(), out.y.col(i).data());
   }

@@ -281,8 +281,8 @@ Samples<double> Oscillators<T>::sample_labelled(Index first,
     Stream stream = rng.child(static_cast<std::uint64_t>(first + i))
                         .child("control")
                         .stream();
-    for (Index n = 0; n < options_.steps; ++n)
-      out.x(n, i) = options_.deviation * stream.normal();
+    stream.normals(out.x.col(i).data(), options_.steps);
+    out.x.col(i) *= options_.deviation;
   }
   Workspace work;
   Oscillators<double>(options_).forward(out.x, out.given, out.y, work);

@@ -167,11 +167,13 @@ Samples<double> Poisson<T>::sample(Index first,
   out.x.resize(p * q, count), out.y.resize(p * q, count);
   out.given.resize(0, count);
   Batch<double> re(p, q), im(p, q), found;
+  Vector<double> pairs(2 * p * q);
   for (Index i = 0; i < count; ++i) {
     Stream stream = rng.child(static_cast<std::uint64_t>(first + i)).stream();
-    for (Index k = 0; k < p; ++k)
-      for (Index l = 0; l < q; ++l)
-        re(k, l) = stream.normal(), im(k, l) = stream.normal();
+    stream.normals(pairs.data(), pairs.size());
+    for (Index k = 0, at = 0; k < p; ++k)
+      for (Index l = 0; l < q; ++l, at += 2)
+        re(k, l) = pairs(at), im(k, l) = pairs(at + 1);
     const Batch<double> x = poisson_source(re, im).transpose();
     solve(x, found);
     out.x.col(i) = x.reshaped(), out.y.col(i) = found.reshaped();

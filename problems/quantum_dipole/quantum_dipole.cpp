@@ -255,8 +255,8 @@ Samples<double> QuantumDipole<T>::sample_labelled(Index first,
   out.y.resize(kRows, count), out.given.resize(0, count);
   for (Index i = 0; i < count; ++i) {
     Stream stream = rng.child(static_cast<std::uint64_t>(first + i)).stream();
-    for (Index n = 0; n < options_.steps; ++n)
-      out.x(n, i) = options_.deviation * stream.normal();
+    stream.normals(out.x.col(i).data(), options_.steps);
+    out.x.col(i) *= options_.deviation;
   }
   Workspace work;
   QuantumDipole<double>(options_).forward(out.x, out.given, out.y, work);

@@ -210,8 +210,8 @@ Samples<double> WavePacket<T>::sample_labelled(Index first,
     Stream stream = rng.child(static_cast<std::uint64_t>(first + i)).stream();
     const double t0 = stream.uniform(options_.range[0], options_.range[1]);
     out.x(0, i) = (t0 - options_.centre) / options_.scale;
-    for (Index j = 0; j < n; ++j)
-      out.given(j, i) = options_.noise * stream.normal();
+    stream.normals(out.given.col(i).data(), n);
+    out.given.col(i) *= options_.noise;
   }
   Workspace work;
   WavePacket<double>(options_).forward(out.x, out.given, out.y, work);

@@ -73,6 +73,9 @@ inline SinCos<float> sincos(float x) {
   inline Pack<T, W> exp(Pack<T, W> x) {                        \
     return Sleef_finz_exp##kind##_u10##width(x);               \
   }                                                            \
+  inline Pack<T, W> log1p(Pack<T, W> x) {                      \
+    return Sleef_finz_log1p##kind##_u10##width(x);             \
+  }                                                            \
   inline SinCos<Pack<T, W>> sincos(Pack<T, W> x) {             \
     const auto both = Sleef_finz_sincos##kind##_u10##width(x); \
     return {both.x, both.y};                                   \

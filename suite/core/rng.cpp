@@ -7,6 +7,7 @@
 
 #include "suite/core/hash.h"
 #include "suite/core/math.h"
+#include "suite/core/simd/pack.h"
 
 namespace physinv {
 
@@ -36,6 +37,21 @@ double Stream::normal() {
   spare_ = r * sine;
   has_spare_ = true;
   return r * cosine;
+}
+
+void Stream::normals(double* to, Index count) {
+  constexpr Index w = kLanes<double>;
+  using P = Pack<double>;
+  if (count > 0 && has_spare_) *to++ = normal(), --count;
+  for (; count >= 2 * w; count -= 2 * w, to += 2 * w) {
+    P share, turn;
+    for (Index l = 0; l < w; ++l) share[l] = uniform(), turn[l] = uniform();
+    const P r = sqrt_lanes(-2.0 * math::log1p(-share));
+    const auto [sine, cosine] = math::sincos(2.0 * std::numbers::pi * turn);
+    const P even = r * cosine, odd = r * sine;
+    for (Index l = 0; l < w; ++l) to[2 * l] = even[l], to[2 * l + 1] = odd[l];
+  }
+  for (; count > 0; --count) *to++ = normal();
 }
 
 Rng Rng::root(std::string_view experiment, std::uint64_t seed) {

@@ -11,6 +11,8 @@
 #include <cstdint>
 #include <string_view>
 
+#include "suite/core/batch.h"
+
 namespace physinv {
 
 /// Numbers of one stream, in order.
@@ -24,6 +26,8 @@ class Stream {
   double uniform(double lo, double hi) { return lo + (hi - lo) * uniform(); }
   /// Standard normal (Box-Muller, one of the pair kept for the next call).
   double normal();
+  /// The next `count` of them: the same numbers, some at once.
+  void normals(double* to, Index count);
 
  private:
   std::uint64_t key_, counter_ = 0;

@@ -63,18 +63,21 @@ TYPED_TEST(Math, IsWithinAnUlpOfLongDouble) {
 
 template <class T, int W>
 void expect_bits_of_each_alone(Stream& stream) {
-  alignas(64) T x[W], exps[W], sines[W], cosines[W];
+  alignas(64) T x[W], exps[W], logs[W], sines[W], cosines[W];
   for (T& value : x) value = static_cast<T>(stream.uniform() - 0.5);
   for (int k = 0; k < W; ++k) x[k] = std::ldexp(x[k], 5 * k % 40);
   Pack<T, W> pack;
   std::memcpy(&pack, x, sizeof(x));
   const auto exp = math::exp(pack);
+  const auto log = math::log1p(abs_lanes(pack));
   const auto [sine, cosine] = math::sincos(pack);
   std::memcpy(exps, &exp, sizeof(exps));
+  std::memcpy(logs, &log, sizeof(logs));
   std::memcpy(sines, &sine, sizeof(sines));
   std::memcpy(cosines, &cosine, sizeof(cosines));
   for (int k = 0; k < W; ++k) {
     EXPECT_EQ(exps[k], math::exp(x[k])) << x[k];
+    EXPECT_EQ(logs[k], math::log1p(std::abs(x[k]))) << x[k];
     EXPECT_EQ(sines[k], math::sincos(x[k]).sine) << x[k];
     EXPECT_EQ(cosines[k], math::sincos(x[k]).cosine) << x[k];
   }

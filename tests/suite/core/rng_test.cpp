@@ -105,6 +105,16 @@ TEST(Stream, NormalHasItsMoments) {
   EXPECT_NEAR(product, 0, 5 * 4.5e-3);
 }
 
+TEST(Stream, SeveralNormalsAreThoseOfOneByOne) {
+  Stream one = Rng::root("several", 0).stream(), several = one;
+  for (const Index count : {0, 1, 2, 3, 7, 8, 9, 15, 16, 17, 33, 64, 127}) {
+    std::vector<double> some(static_cast<std::size_t>(count));
+    several.normals(some.data(), count);
+    for (const double value : some) EXPECT_EQ(value, one.normal());
+  }
+  EXPECT_EQ(several.normal(), one.normal());
+}
+
 TEST(Rng, ChildrenDoNotDependOnOrder) {
   const Rng root = Rng::root("tree", 1);
   const std::uint64_t before = root.child("a").child(3).stream().bits();
