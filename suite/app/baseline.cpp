@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 /// The folder of a campaign, or a file in it.
 std::string campaign_directory(const std::string& text) {
   const fs::path path(text);
-  return fs::is_regular_file(path)
+  return is_file(path)
              ? (path.has_parent_path() ? path.parent_path().string() : ".")
              : text;
 }

@@ -18,6 +18,7 @@
 #include "suite/compare/regressions.h"
 #include "suite/harness/judge.h"
 #include "suite/harness/progress.h"
+#include "suite/results/file.h"
 
 namespace physinv {
 namespace {
@@ -50,7 +51,7 @@ Side read_side(const std::string& text,
                const Published& published,
                bool judged) {
   const auto at = text.find('=');
-  const bool labelled = at != std::string::npos && !fs::is_directory(text);
+  const bool labelled = at != std::string::npos && !is_folder(text);
   const std::string folder = labelled ? text.substr(at + 1) : text;
   Side side{.label = labelled ? text.substr(0, at) : text,
             .results = {},

@@ -20,7 +20,7 @@ namespace {
 std::filesystem::path program_in(const std::string& flag,
                                  const std::string& text) {
   std::filesystem::path path(text);
-  if (std::filesystem::is_directory(path)) path /= "physinv-bench";
+  if (is_folder(path)) path /= "physinv-bench";
   if (access(path.c_str(), X_OK) != 0)
     throw UsageError(fmt::format(
         "{}={} is no program; a physinv-bench or a directory with one is",

@@ -10,6 +10,7 @@
 #include "suite/harness/context.h"
 #include "suite/harness/errors.h"
 #include "suite/harness/outside.h"
+#include "suite/results/file.h"
 
 namespace physinv {
 
@@ -26,10 +27,10 @@ fs::path published_directory() {
   const Outside* own = outside_program();
   const fs::path sources = own == nullptr ? PHYSINV_PUBLISHED_DIR
                                           : fs::path(own->data) / "published";
-  const fs::path chosen = !named.empty()                ? named
-                          : fs::is_directory(installed) ? installed
-                                                        : sources;
-  if (!fs::is_directory(chosen))
+  const fs::path chosen = !named.empty()         ? named
+                          : is_folder(installed) ? installed
+                                                 : sources;
+  if (!is_folder(chosen))
     throw UsageError(
         fmt::format("there is no directory '{}' of published numbers; "
                     "PHYSINV_PUBLISHED_DIR names it",

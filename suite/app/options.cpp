@@ -111,7 +111,7 @@ std::string filter_example(const std::string& profile) {
 
 /// In the order of the file. All of them must be there: it is part of a whole.
 std::vector<Case> listed(std::vector<Case> cases, const std::string& file) {
-  if (!std::filesystem::is_regular_file(file))
+  if (!is_file(file))
     throw UsageError(fmt::format(
         "there is no file '{}'; --cases takes names of cases, one a line",
         file));
@@ -277,7 +277,7 @@ Shard parse_shard(const std::string& text) {
 }
 
 std::filesystem::path results_directory(const std::string& text) {
-  if (!std::filesystem::is_directory(text))
+  if (!is_folder(text))
     throw UsageError(fmt::format(
         "there are no results in '{}'; a directory that 'run' wrote is "
         "expected, such as results/quick",

@@ -44,7 +44,7 @@ std::vector<std::string> named_by_flags(Arguments& arguments) {
 
 /// What the file says of itself, before any of its code runs.
 void check_build(const std::string& file) {
-  if (!std::filesystem::is_regular_file(file))
+  if (!is_file(file))
     throw UsageError(fmt::format("there is no plug-in '{}'", file));
   const std::string bytes = read_file(file);
   const auto at = bytes.find(kMark);

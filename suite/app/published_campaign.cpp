@@ -104,9 +104,9 @@ StageRecord stage_of(const Json& entry) {
 }  // namespace
 
 bool is_published(const fs::path& directory) {
-  return fs::exists(directory / "digest.json") &&
-         fs::exists(directory / "results.json.gz") &&
-         !fs::exists(directory / "journal.jsonl");
+  return is_there(directory / "digest.json") &&
+         is_there(directory / "results.json.gz") &&
+         !is_there(directory / "journal.jsonl");
 }
 
 Results summarized_results(const Json& results) {

@@ -17,6 +17,7 @@
 #include "suite/harness/expected.h"
 #include "suite/harness/outside.h"
 #include "suite/harness/progress.h"
+#include "suite/results/file.h"
 #include "suite/results/folder.h"
 #include "suite/results/json.h"
 #include "suite/results/results_file.h"
@@ -70,8 +71,8 @@ std::vector<ExpectedFailure> expected_failures(
   const fs::path path = named.empty()
                             ? published.parent_path() / "expected_failures.json"
                             : fs::path(named);
-  if (named.empty() && !fs::exists(path)) return {};
-  if (!fs::is_regular_file(path))
+  if (named.empty() && !is_there(path)) return {};
+  if (!is_file(path))
     throw UsageError(fmt::format(
         "there is no file '{}' of expected failures; a JSON list of experiment,"
         " claim and reason is expected",
@@ -129,7 +130,7 @@ ExitCode report_published(const std::string& results, const std::string& out) {
       render_claims_text(sections,
                          static_cast<std::size_t>(Screen::of(stdout).columns)),
       (fs::path(out) / "index.html").string(),
-      fs::is_directory(figures)
+      is_folder(figures)
           ? fmt::format("figures are in {}, made by", figures.string())
           : "figures are not kept with a published campaign",
       origin["command"].get<std::string>());

@@ -62,7 +62,7 @@ void require_figures(const fs::path& folder, const Json& digest) {
   for (const Json& section : digest.at("sections"))
     for (const Json& figure : section.value("figures", Json::array())) {
       const std::string name = figure.at("file");
-      if (!fs::is_regular_file(folder / "figures" / name))
+      if (!is_file(folder / "figures" / name))
         throw std::runtime_error("its figure " + name + " is missing");
     }
 }
@@ -147,12 +147,12 @@ namespace {
 
 /// The folders of `directory` that hold a digest, by name.
 std::vector<NamedDigest> digests(const fs::path& directory) {
-  if (!fs::is_directory(directory))
+  if (!is_folder(directory))
     throw UsageError(fmt::format("there is no directory '{}' of campaigns",
                                  directory.string()));
   std::vector<fs::path> paths;
   for (const auto& entry : fs::directory_iterator(directory))
-    if (fs::exists(entry.path() / "digest.json")) paths.push_back(entry.path());
+    if (is_there(entry.path() / "digest.json")) paths.push_back(entry.path());
   std::sort(paths.begin(), paths.end());
   const Published published(published_directory());
   std::vector<NamedDigest> found;

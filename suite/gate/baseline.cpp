@@ -211,7 +211,7 @@ Baseline parse_baseline(const std::string& text, const std::string& where) {
 }
 
 Baseline read_baseline(const std::filesystem::path& path) {
-  if (!std::filesystem::is_regular_file(path))
+  if (!is_file(path))
     throw UnreadableInput(
         fmt::format("there is no baseline '{}'; {}", path.string(), kMake));
   return parse_baseline(read_file(path), path.string());

@@ -8,6 +8,7 @@
 
 #include "suite/harness/child.h"
 #include "suite/harness/context.h"
+#include "suite/results/file.h"
 
 namespace physinv {
 namespace {
@@ -74,7 +75,7 @@ std::string counter_name(Counting counting) {
 }
 
 bool can_count(Counting counting, const fs::path& program, std::string* why) {
-  if (!fs::exists(program)) {
+  if (!is_there(program)) {
     *why = fmt::format(
         "there is no {}; the target physinv-count of a build for x86-64-v3, or "
         "with tests, is it",

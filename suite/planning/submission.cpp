@@ -183,7 +183,7 @@ std::optional<std::vector<QueueLine>> queue_lines(const std::string& output) {
 }  // namespace
 
 bool Submission::exists(const fs::path& directory) {
-  return fs::exists(directory / "submission.json");
+  return is_there(directory / "submission.json");
 }
 
 Submission Submission::read(const fs::path& directory) {
@@ -255,7 +255,7 @@ std::vector<TaskState> states_of(const Submission& s) {
   std::vector<TaskState> states;
   for (std::size_t k = 0; k < s.tasks.size(); ++k) {
     TaskState state{.cases = s.tasks[k].cases.size(), .job = {}};
-    if (fs::exists(s.shard(k) / "journal.jsonl")) {
+    if (is_there(s.shard(k) / "journal.jsonl")) {
       const Catalog catalog = Catalog::read(s.shard(k));
       for (const auto& name : s.tasks[k].cases) {
         const std::string is = state_of(catalog, name);

@@ -212,6 +212,21 @@ std::string read_all(const FileDescriptor& fd,
   return bytes;
 }
 
+bool is_file(const std::filesystem::path& path) {
+  std::error_code unknown;
+  return std::filesystem::is_regular_file(path, unknown);
+}
+
+bool is_folder(const std::filesystem::path& path) {
+  std::error_code unknown;
+  return std::filesystem::is_directory(path, unknown);
+}
+
+bool is_there(const std::filesystem::path& path) {
+  std::error_code unknown;
+  return std::filesystem::exists(path, unknown);
+}
+
 std::string read_file(const fs::path& path, std::uint64_t limit) {
   return read_all(open_file(path, O_RDONLY, "read"), path, limit);
 }

@@ -65,6 +65,12 @@ void write_atomically(const std::filesystem::path& path,
 /// Adds to what others write there, too.
 void append_to(const std::filesystem::path& path, std::string_view bytes);
 
+/// Whether a path leads to a file, a folder, or anything; links are followed.
+/// Not if that cannot be found out, as of a name that is too long.
+bool is_file(const std::filesystem::path& path);
+bool is_folder(const std::filesystem::path& path);
+bool is_there(const std::filesystem::path& path);
+
 /// Of a file that a user names, or of the suite's own.
 std::string read_file(const std::filesystem::path& path,
                       std::uint64_t limit = kLargestText);

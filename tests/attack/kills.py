@@ -12,7 +12,7 @@ import stores
 
 IN_A_ROW = 5  # accidents of a campaign before it may end
 # Enough that a training takes seconds and has checkpoints of a second.
-LONG = {"iterations": 40_000, "checkpoint": "1"}
+LONG = {"iterations": 12_000, "checkpoint": "1"}
 BRIEF = {"iterations": 4_000, "checkpoint": "0.05"}
 OWN = re.compile(r"(lock|journal\.jsonl|plan\.json|results\.json|cases"
                  r"|cases/[^/]*\.h5|checkpoints|report(/.*)?)?")

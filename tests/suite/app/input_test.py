@@ -47,6 +47,19 @@ def empty_values(d):
     check(names_in(d) == before, "nothing was written")
 
 
+def long_names(d):
+    """No file has a name of 300 characters, which is said like of any other."""
+    name = "x" * 300
+    for args in ([f"--cases={name}"], ["plan", f"--against={name}"],
+                 ["report", name], ["compare", name, name], ["verify", name],
+                 ["gate", f"--baseline={name}"], ["export", name],
+                 ["results", f"--campaigns={name}"], [f"--plugin={name}"],
+                 ["report", name, f"--published={name}"]):
+        p = run(*args, cwd=d)
+        check(p.returncode == 2, f"{args[0]} of a long name: {p.returncode}")
+        check("filesystem error" not in p.stderr, p.stderr)
+
+
 def expressions(d):
     """Linear in time, limited in length; what the README says stays right."""
     slow = "(.*)*(.*)*(.*)*QQ"
@@ -386,7 +399,7 @@ def hostile(d):
 
 with tempfile.TemporaryDirectory() as directory:
     os.mkdir(os.path.join(directory, "published"))
-    for test in (empty_values, expressions, kernels, switches_and_numbers,
+    for test in (empty_values, long_names, expressions, kernels, switches_and_numbers,
                  variables, cases_of_windows, damaged_speeds, lost_times,
                  names_of_any_bytes, help_of_both, hostile):
         test(directory)
