@@ -42,6 +42,11 @@ void rotate(Index n, double c, double s, double* a, double* b) {
 
 bool orthogonalize_columns(BatchOut<double> x, VectorOut<double> h) {
   const Index n = x.cols();
+  // Squared norms, anew where a column changes or moves: how Eigen sums one
+  // depends on where it lies.
+  Vector<double> square(n);
+  const auto note = [&](Index q) { square(q) = x.col(q).squaredNorm(); };
+  for (Index q = 0; q < n; ++q) note(q);
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     // Columns of nothing but rounding may never come closer than that.
     const double angle = kEpsilon * (2 * sweep < kSweeps ? 1.0 : double(n));
@@ -49,17 +54,15 @@ bool orthogonalize_columns(BatchOut<double> x, VectorOut<double> h) {
     for (Index p = 0; p + 1 < n; ++p) {
       // The longest of the remaining columns comes first.
       Index longest = p;
-      double most = x.col(p).squaredNorm();
-      for (Index q = p + 1; q < n; ++q) {
-        const double square = x.col(q).squaredNorm();
-        if (square > most) most = square, longest = q;
-      }
+      for (Index q = p + 1; q < n; ++q)
+        if (square(q) > square(longest)) longest = q;
       if (longest != p) {
         x.col(p).swap(x.col(longest));
         std::swap(h(p), h(longest));
+        note(p), note(longest);
       }
       for (Index q = p + 1; q < n; ++q) {
-        const double a = x.col(p).squaredNorm(), b = x.col(q).squaredNorm();
+        const double a = square(p), b = square(q);
         if (b < kNothing) continue;
         const double along = x.col(p).dot(x.col(q));
         if (std::abs(along) <= angle * std::sqrt(a) * std::sqrt(b)) continue;
@@ -69,6 +72,7 @@ bool orthogonalize_columns(BatchOut<double> x, VectorOut<double> h) {
             std::copysign(1.0, zeta) / (std::abs(zeta) + std::hypot(1.0, zeta));
         const double c = 1 / std::sqrt(1 + t * t), s = c * t;
         rotate(x.rows(), c, s, x.col(p).data(), x.col(q).data());
+        note(p), note(q);
         const double left = h(p), right = h(q);
         h(p) = std::fma(c, left, -(s * right));
         h(q) = std::fma(s, left, c * right);

@@ -99,13 +99,13 @@ void SpectralPower::leave_eigenbasis(VectorOut<double> v) const {
 void SpectralPower::directions(std::span<const Index> which,
                                BatchOut<double> out) const {
   const Index m = out.rows(), count = out.cols();
-  const Index blocks = (count + Eight::kCount - 1) / Eight::kCount;
+  const Index blocks = (count + kWidth - 1) / kWidth;
   for_blocks(threads_, blocks, [&](Index block, int) {
-    const Index first = block * Eight::kCount;
-    std::vector<Eight> x(static_cast<std::size_t>(m));
+    const Index first = block * kWidth;
+    std::vector<Pack8> x(static_cast<std::size_t>(m));
     Eigen::Map<Batch<double>> columns(
-        reinterpret_cast<double*>(x.data()), Eight::kCount, m);
-    const Index here = std::min(Eight::kCount, count - first);
+        reinterpret_cast<double*>(x.data()), kWidth, m);
+    const Index here = std::min(kWidth, count - first);
     Index top = m;
     for (Index k = 0; k < here; ++k) {
       const Index row = which[static_cast<std::size_t>(first + k)];

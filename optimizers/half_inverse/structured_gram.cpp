@@ -265,15 +265,16 @@ class StructuredGram::Sweep {
     const double* const column_pack = at(of_.packed_, c * features);
     for (Index l = 0; l < count_; ++l) {
       const Term& term = of_.terms_[static_cast<std::size_t>(l)];
-      tile<kRows>(term.depth,
-                  {row_pack + term.row * kTileColumns, 1, kTileColumns},
-                  column_pack + term.column * kTileColumns,
-                  kTileColumns,
-                  [&](int r, Pack8 x, Pack8 y) {
-                    const double* e = of_row[r] + l * kBlock + in_block;
-                    total[r][0] = fma_lanes(x, load(e), total[r][0]);
-                    total[r][1] = fma_lanes(y, load(e + kWidth), total[r][1]);
-                  });
+      tile_rows(kRows,
+                term.depth,
+                {row_pack + term.row * kTileColumns, 1, kTileColumns},
+                column_pack + term.column * kTileColumns,
+                kTileColumns,
+                [&](Index r, Pack8 x, Pack8 y) {
+                  const double* e = of_row[r] + l * kBlock + in_block;
+                  total[r][0] = fma_lanes(x, load(e), total[r][0]);
+                  total[r][1] = fma_lanes(y, load(e + kWidth), total[r][1]);
+                });
     }
   }
 

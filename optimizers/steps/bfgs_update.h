@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <type_traits>
 
 #include "suite/core/simd/pack.h"
 
@@ -16,9 +17,17 @@ inline void add_product(double& sum, double a, double b) {
   sum = std::fma(a, b, sum);
 }
 
+/// f(d), where two unknowns are a constant: loops over them vanish.
+template <class F>
+PHYSINV_LANES decltype(auto) of_size(Index d, F&& f) {
+  return d == 2 ? f(std::integral_constant<Index, 2>{}) : f(d);
+}
+
 /// a.b in four interleaved partial sums; the plain order for d <= 3.
 inline double dot(Index d, const double* a, const double* b) {
   using Four = Pack<double, 4>;
+  if (d == 2)
+    return (std::fma(a[0], b[0], 0.0) + std::fma(a[1], b[1], 0.0)) + 0.0;
   Four sums{};
   Index i = 0;
   for (; i + 4 <= d; i += 4) {
@@ -70,9 +79,11 @@ inline void set_identity(Index d, double* h) {
 
 /// out = H v.
 inline void multiply(Index d, const double* h, const double* v, double* out) {
-  std::fill(out, out + d, 0.0);
-  for (Index j = 0; j < d; ++j)
-    for (Index i = 0; i < d; ++i) add_product(out[i], h[j * d + i], v[j]);
+  of_size(d, [=](auto n) {
+    std::fill(out, out + n, 0.0);
+    for (Index j = 0; j < n; ++j)
+      for (Index i = 0; i < n; ++i) add_product(out[i], h[j * n + i], v[j]);
+  });
 }
 
 /// H <- (I - rho s y^T) H (I - rho y s^T) + rho s s^T, with rho = 1 / (y.s),
@@ -87,13 +98,15 @@ inline void bfgs_update(
   const double rho = ys == 0 ? 1000.0 : 1 / ys;
   double* u = scratch;
   multiply(d, h, y, u);
-  for (Index j = 0; j < d; ++j) {
-    double* column = h + j * d;
-    const double right = rho * s[j];
-    for (Index i = 0; i < d; ++i) add_product(column[i], u[i], -right);
-    const double left = std::fma(-rho, dot(d, y, column), right);
-    for (Index i = 0; i < d; ++i) add_product(column[i], s[i], left);
-  }
+  of_size(d, [=](auto n) {
+    for (Index j = 0; j < n; ++j) {
+      double* column = h + j * n;
+      const double right = rho * s[j];
+      for (Index i = 0; i < n; ++i) add_product(column[i], u[i], -right);
+      const double left = std::fma(-rho, dot(n, y, column), right);
+      for (Index i = 0; i < n; ++i) add_product(column[i], s[i], left);
+    }
+  });
 }
 
 }  // namespace physinv::dense

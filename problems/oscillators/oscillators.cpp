@@ -107,14 +107,30 @@ void integrate(const Constants<T>& constants,
   state = s;
 }
 
-/// Cotangent of one stage's state, from that of its rate.
+/// Cotangent of the positions of one stage, from that of its rate; those of the
+/// momenta are k_bar.x1 and k_bar.x2 as they are: a copy would go through
+/// memory.
+template <class V>
+struct Positions {
+  V x1, x2;
+};
+
 template <class T, class E, class V>
-PHYSINV_LANES Four<V> rate_transposed(const E& w, const Four<V>& k_bar) {
+PHYSINV_LANES Positions<V> rate_transposed(const E& w, const Four<V>& k_bar) {
   const V away = k_bar.p1 - k_bar.p2;
-  return {fma_lanes(-w, away, -k_bar.p1),
-          fma_lanes(w, away, -k_bar.p2),
-          k_bar.x1,
-          k_bar.x2};
+  return {fma_lanes(-w, away, -k_bar.p1), fma_lanes(w, away, -k_bar.p2)};
+}
+
+/// a + s times the cotangent of that stage.
+template <class S, class V>
+PHYSINV_LANES Four<V> add(const Four<V>& a,
+                          S s,
+                          const Positions<V>& x,
+                          const Four<V>& k_bar) {
+  return {fma_lanes(s, x.x1, a.x1),
+          fma_lanes(s, x.x2, a.x2),
+          fma_lanes(s, k_bar.x1, a.p1),
+          fma_lanes(s, k_bar.x2, a.p2)};
 }
 
 template <class V>
@@ -129,16 +145,18 @@ template <class T, class V, class W>
 PHYSINV_LANES V step_transposed(const Constants<T>& k,
                                 Four<V>& bar,
                                 const W& w) {
-  const Four<V> sixth = scale(k.sixth, bar), third = scale(k.third, bar);
-  const Four<V> k4 = sixth;
-  const Four<V> s4 = rate_transposed<T>(w(3), k4);
-  const Four<V> k3 = add(third, k.dt, s4);
-  const Four<V> s3 = rate_transposed<T>(w(2), k3);
-  const Four<V> k2 = add(third, k.half, s3);
-  const Four<V> s2 = rate_transposed<T>(w(1), k2);
-  const Four<V> k1 = add(sixth, k.half, s2);
-  const Four<V> s1 = rate_transposed<T>(w(0), k1);
-  bar = (((bar + s4) + s3) + s2) + s1;
+  const Four<V> third = scale(k.third, bar), k4 = scale(k.sixth, bar);
+  const Positions<V> s4 = rate_transposed<T>(w(3), k4);
+  const Four<V> k3 = add(third, k.dt, s4, k4);
+  const Positions<V> s3 = rate_transposed<T>(w(2), k3);
+  const Four<V> k2 = add(third, k.half, s3, k3);
+  const Positions<V> s2 = rate_transposed<T>(w(1), k2);
+  const Four<V> k1 = add(k4, k.half, s2, k2);
+  const Positions<V> s1 = rate_transposed<T>(w(0), k1);
+  bar.x1 = (((bar.x1 + s4.x1) + s3.x1) + s2.x1) + s1.x1;
+  bar.x2 = (((bar.x2 + s4.x2) + s3.x2) + s2.x2) + s1.x2;
+  bar.p1 = (((bar.p1 + k4.x1) + k3.x1) + k2.x1) + k1.x1;
+  bar.p2 = (((bar.p2 + k4.x2) + k3.x2) + k2.x2) + k1.x2;
   return k.c * ((k1.p2 + k4.p2) + (k2.p2 + k3.p2));
 }
 

@@ -155,6 +155,6 @@ void BandReduction::apply(X* x) const {
 }
 
 template void BandReduction::apply(double*) const;
-template void BandReduction::apply(Eight*) const;
+template void BandReduction::apply(Pack8*) const;
 
 }  // namespace physinv::linalg

@@ -22,7 +22,8 @@ class BandReduction {
 
   void reduce(VectorOut<double> d, VectorOut<double> e);
 
-  /// x <- Q x for T = Q^T A Q. X is double or Eight.
+  /// x <- Q x for T = Q^T A Q. X is double, or Pack8 for
+  /// eight vectors side by side.
   template <class X>
   void apply(X* x) const;
 

@@ -16,9 +16,22 @@ using Flags = FixedPack<std::int64_t, kWidth>;
 PHYSINV_LANES Pack8 broadcast(double s) { return physinv::broadcast<Pack8>(s); }
 PHYSINV_LANES Pack8 load(const double* p) { return physinv::load<Pack8>(p); }
 
-/// Four numbers to a register.
+/// One register of a Pack8, and how many it has.
+using Part = Pack<double>;
+inline constexpr int kParts = sizeof(Pack8) / sizeof(Part);
+inline constexpr Index kPartWidth = kWidth / kParts;
+
+template <class P>
+PHYSINV_LANES Pack8 joined(const P* parts) {
+  using Whole = FixedPack<LaneScalar<P>, kWidth>;
+  if constexpr (kParts == 1) {
+    return parts[0];
+  } else {
+    return Whole::make([&](int k) { return parts[k]; });
+  }
+}
+
+/// Half of them, in a register of 256 bits.
 using Four = NarrowPack<double>;
-/// Eight vectors side by side, row i in x[i].
-using Eight = Registers<Four, 2>;
 
 }  // namespace physinv::linalg

@@ -40,15 +40,15 @@ inline void axpy(Index n, double s, const double* x, double* y) {
 inline void turn(Index n, double tau, const double* v, double* x) {
   axpy(n, -tau * dot(n, v, x), v, x);
 }
-inline void turn(Index n, double tau, const double* v, Eight* x) {
-  Eight even{}, odd{};  // two sums hide the latency of one
+inline void turn(Index n, double tau, const double* v, Pack8* x) {
+  Pack8 even{}, odd{};  // two sums hide the latency of one
   Index i = 0;
   for (; i + 2 <= n; i += 2) {
     even = even + v[i] * x[i];
     odd = odd + v[i + 1] * x[i + 1];
   }
   if (i < n) even = even + v[i] * x[i];
-  const Eight along = -tau * (even + odd);
+  const Pack8 along = -tau * (even + odd);
   for (i = 0; i < n; ++i) x[i] = x[i] + v[i] * along;
 }
 

@@ -7,8 +7,11 @@
 
 namespace physinv::linalg {
 
+/// Rows whose products with one vector stay in registers.
+inline constexpr int kDots = kParts == 1 ? 8 : 6;
+
 /// f.operator()<kRows>(k) for groups of kMost, 2 and 1 rows that cover `count`.
-template <int kMost = 8, class F>
+template <int kMost, class F>
 void for_row_groups(Index count, F&& f) {
   Index k = 0;
   for (; k + kMost <= count; k += kMost) f.template operator()<kMost>(k);
@@ -51,7 +54,7 @@ inline void project(Index n,
                     Index stride,
                     const double* v,
                     double* s) {
-  for_row_groups(count, [&]<int kRows>(Index k) {
+  for_row_groups<kDots>(count, [&]<int kRows>(Index k) {
     const double* const from = x + k * stride;
     Pack8 dots[kRows] = {};
     for (Index c = 0; c < n; c += kWidth) {

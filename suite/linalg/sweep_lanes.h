@@ -3,6 +3,7 @@
 /// follow two rows behind another one.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -155,48 +156,81 @@ inline void turn_back_all(double* x,
   x[start] = carried[0][0];
 }
 
-/// Step t of that for register h of eight vectors: lanes are vectors here. A
-/// row waits for the next sweep where the one before has left it.
+/// Step t of that for one part of eight vectors side by side: lanes are vectors
+/// here. A row waits for the next sweep where the one before has left it.
 template <bool kEdge>
-[[gnu::always_inline]] inline void turn_back_step(int h,
-                                                  Eight* x,
-                                                  Index count,
-                                                  Index t,
-                                                  Four* carried,
-                                                  const double* record) {
+[[gnu::always_inline]] inline void turn_back_step(
+    double* x, Index count, Index t, Part* carried, const double* record) {
 #pragma GCC unroll 8
   for (Index k = kSweeps - 1; k >= 0; --k) {
     const Index i = t - 2 * k;
+    double* const row = x + i * kWidth;
     if constexpr (kEdge) {
       if (i < 0 || i >= count) continue;
-      if (i == count - 1) carried[k] = x[count].r[h];
+      if (i == count - 1) carried[k] = physinv::load<Part>(row + kWidth);
     }
     const double c = record[k], s = record[k + kSweeps];
-    const Four low = x[i].r[h];
-    x[i + 1].r[h] = s * low + c * carried[k];
+    const Part low = physinv::load<Part>(row);
+    store(row + kWidth, s * low + c * carried[k]);
     carried[k] = c * low - s * carried[k];
     if constexpr (kEdge) {
-      if (i == 0) x[0].r[h] = carried[k];
+      if (i == 0) store(row, carried[k]);
     }
   }
 }
 
-inline void turn_back_all(Eight* x,
+/// The steps t of [first, last] from the last one on, all sweeps inside. A row
+/// that one sweep leaves is the next one's at the step after: it stays in a
+/// register where there are enough of them. `record` is the end of step `last`.
+inline void turn_back_inside(
+    double* x, Index first, Index last, Part* carried, const double* record) {
+  if constexpr (kParts > 1) {
+    for (Index t = last; t >= first; --t)
+      turn_back_step<false>(x, 0, t, carried, record -= 2 * kSweeps);
+  } else {
+    Part left[kSweeps];
+#pragma GCC unroll 8
+    for (Index k = 1; k < kSweeps; ++k)
+      left[k] = physinv::load<Part>(x + (last - 2 * k + 2) * kWidth);
+    for (Index t = last; t >= first; --t) {
+      record -= 2 * kSweeps;
+#pragma GCC unroll 8
+      for (Index k = 0; k < kSweeps; ++k) {
+        const double c = record[k], s = record[k + kSweeps];
+        const Part low = k + 1 < kSweeps
+                             ? left[k + 1]
+                             : physinv::load<Part>(x + (t - kLag) * kWidth);
+        left[k] = s * low + c * carried[k];
+        carried[k] = c * low - s * carried[k];
+      }
+      store(x + (t + 1) * kWidth, left[0]);
+    }
+#pragma GCC unroll 8
+    for (Index k = 1; k < kSweeps; ++k)
+      store(x + (first - 2 * k + 1) * kWidth, left[k]);
+  }
+}
+
+inline void turn_back_all(Pack8* x,
                           Index start,
                           Index end,
                           const double* record) {
   const Index count = end - start;
-  x += start;
-  for (int h = 0; h < Eight::kRegisters; ++h) {
-    Four carried[kSweeps]{};
+  constexpr Index kStep = 2 * kSweeps;
+  for (int h = 0; h < kParts; ++h) {
+    auto* const part = reinterpret_cast<double*>(x + start) + h * kPartWidth;
+    Part carried[kSweeps]{};
     const double* at = record;
-    for (Index t = count + kLag; t >= 0; --t) {
-      at -= 2 * kSweeps;
-      if (t > kLag && t < count - 1) [[likely]]
-        turn_back_step<false>(h, x, count, t, carried, at);
-      else
-        turn_back_step<true>(h, x, count, t, carried, at);
+    Index t = count + kLag;
+    for (; t >= std::max(count - 1, kLag + 1); --t)
+      turn_back_step<true>(part, count, t, carried, at -= kStep);
+    if (t > kLag) {
+      turn_back_inside(part, kLag + 1, t, carried, at);
+      at -= (t - kLag) * kStep;
+      t = kLag;
     }
+    for (; t >= 0; --t)
+      turn_back_step<true>(part, count, t, carried, at -= kStep);
   }
 }
 

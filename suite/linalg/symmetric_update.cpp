@@ -11,34 +11,44 @@ namespace {
 constexpr Index kMaxParts = 8;
 constexpr Index kPartRows = 192;     ///< of a part, at least
 constexpr Index kThreadRows = 1024;  ///< below, a product is over too soon
-constexpr Index kColumnBlock = 256;
+constexpr Index kColumnBlock = 128;
+constexpr Index kPackedRows = 16;  ///< at once: they stay in the L1
 
 /// kCount registers from column c on of kRows rows: y += A x for the stored
-/// entries, dot for the mirrored ones.
+/// entries, dot for the mirrored ones. Where a register has only a part of
+/// eight numbers, part by part: x, y, an entry and all of s and dot then fit
+/// into 16 of them.
 template <int kRows, int kCount>
 [[gnu::always_inline]] inline void add_columns(const double* rows,
                                                Index stride,
                                                Index c,
                                                const double* x,
                                                double* y,
-                                               const Pack8* s,
-                                               Pack8* dot) {
-  Pack8 xc[kCount], yc[kCount];
-#pragma GCC unroll 2
-  for (int k = 0; k < kCount; ++k) {
-    xc[k] = held(load(x + c + k * kWidth));
-    yc[k] = load(y + c + k * kWidth);
-  }
+                                               const Part* s,
+                                               Part (&dot)[kRows][kParts]) {
+  constexpr int kAtOnce = kParts == 1 ? kCount : 1;
 #pragma GCC unroll 4
-  for (int i = 0; i < kRows; ++i)
+  for (int part = 0; part < kCount * kParts; part += kAtOnce) {
+    Part xc[kAtOnce], yc[kAtOnce];
+    const Index at = c + part * kPartWidth;
 #pragma GCC unroll 2
-    for (int k = 0; k < kCount; ++k) {
-      const Pack8 v = held(load(rows + i * stride + c + k * kWidth));
-      yc[k] = fma_lanes(v, s[i], yc[k]);
-      dot[i] = fma_lanes(v, xc[k], dot[i]);
+    for (int k = 0; k < kAtOnce; ++k) {
+      xc[k] = held(physinv::load<Part>(x + at + k * kPartWidth));
+      yc[k] = physinv::load<Part>(y + at + k * kPartWidth);
     }
+#pragma GCC unroll 4
+    for (int i = 0; i < kRows; ++i)
 #pragma GCC unroll 2
-  for (int k = 0; k < kCount; ++k) store(y + c + k * kWidth, yc[k]);
+      for (int k = 0; k < kAtOnce; ++k) {
+        const Part v =
+            held(physinv::load<Part>(rows + i * stride + at + k * kPartWidth));
+        Part& along = dot[i][(part + k) % kParts];
+        yc[k] = fma_lanes(v, s[i], yc[k]);
+        along = fma_lanes(v, xc[k], along);
+      }
+#pragma GCC unroll 2
+    for (int k = 0; k < kAtOnce; ++k) store(y + at + k * kPartWidth, yc[k]);
+  }
 }
 
 template <int kRows>
@@ -55,15 +65,15 @@ template <int kRows>
       y[r + j] = std::fma(row[r + j], x[r + i], y[r + j]);
     }
   }
-  Pack8 dot[kRows] = {}, s[kRows];
+  Part dot[kRows][kParts] = {}, s[kRows];
 #pragma GCC unroll 4
-  for (int i = 0; i < kRows; ++i) s[i] = broadcast(x[r + i]);
+  for (int i = 0; i < kRows; ++i) s[i] = physinv::broadcast<Part>(x[r + i]);
   Index c = r + kRows;
   for (; c + kWidth < a.n; c += 2 * kWidth)
     add_columns<kRows, 2>(rows, a.stride, c, x, y, s, dot);
   if (c < a.n) add_columns<kRows, 1>(rows, a.stride, c, x, y, s, dot);
 #pragma GCC unroll 4
-  for (int i = 0; i < kRows; ++i) y[r + i] += sum_of(dot[i]);
+  for (int i = 0; i < kRows; ++i) y[r + i] += sum_of(joined(dot[i]));
 }
 
 enum class Way { down, up };
@@ -144,13 +154,15 @@ void RankUpdate::operator()(Symmetric a,
       std::max(columns_.size(),
                static_cast<std::size_t>(groups * depth * kTileColumns)));
   // Row r reads [-W V](r, :), column group q reads [V W](q, :), both packed.
-  for (Index k = 0; k < count; ++k)
-    for (Index r = 0; r < n; ++r) {
-      rows_[static_cast<std::size_t>(r * depth + k)] =
-          -w[k * stride + first + r];
-      rows_[static_cast<std::size_t>(r * depth + count + k)] =
-          -v[k * stride + first + r];
-    }
+  for (Index begin = 0; begin < n; begin += kPackedRows) {
+    const Index end = std::min(begin + kPackedRows, n);
+    for (Index k = 0; k < count; ++k)
+      for (Index r = begin; r < end; ++r) {
+        double* const to = rows_.data() + r * depth + k;
+        to[0] = -w[k * stride + first + r];
+        to[count] = -v[k * stride + first + r];
+      }
+  }
   for (Index q = 0; q < groups; ++q)
     for (Index k = 0; k < depth; ++k) {
       const double* from =

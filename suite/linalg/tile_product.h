@@ -21,26 +21,54 @@ struct Scalars {
   Index row, step;
 };
 
+/// acc[r] += s[r] b for M rows of two vectors. Registers of 512 bits hold b,
+/// and products take their factors from memory; among 16 of 256 bits there is
+/// room for the factors and one part of b.
+template <int M>
+[[gnu::always_inline]] inline void add_outer(const double* s,
+                                             Index row,
+                                             const double* b,
+                                             Part (&acc)[M][2 * kParts]) {
+  if constexpr (kParts == 1) {
+    const Part first = held(physinv::load<Part>(b)),
+               second = held(physinv::load<Part>(b + kWidth));
+#pragma GCC unroll 8
+    for (int r = 0; r < M; ++r) {
+      const Part factor = physinv::broadcast<Part>(s[r * row]);
+      acc[r][0] = fma_lanes(factor, first, acc[r][0]);
+      acc[r][1] = fma_lanes(factor, second, acc[r][1]);
+    }
+  } else {
+    Part factor[M];
+#pragma GCC unroll 8
+    for (int r = 0; r < M; ++r)
+      factor[r] = held(physinv::broadcast<Part>(s[r * row]));
+#pragma GCC unroll 4
+    for (int c = 0; c < 2 * kParts; ++c) {
+      const Part v = held(physinv::load<Part>(b + c * kPartWidth));
+#pragma GCC unroll 8
+      for (int r = 0; r < M; ++r)
+        acc[r][c] = fma_lanes(factor[r], v, acc[r][c]);
+    }
+  }
+}
+
 /// finish(r, first, second) gets sum_k a(r, k) b[k][0..kTileColumns) for
 /// r < M; b has `b_step` numbers from one k to the next.
 template <int M, class Finish>
 [[gnu::always_inline]] inline void tile(
     Index depth, Scalars a, const double* b, Index b_step, Finish&& finish) {
-  Pack8 acc[M][2];
+  Part acc[M][2 * kParts];
 #pragma GCC unroll 8
-  for (int r = 0; r < M; ++r) acc[r][0] = acc[r][1] = Pack8{};
+  for (int r = 0; r < M; ++r)
+#pragma GCC unroll 4
+    for (int c = 0; c < 2 * kParts; ++c) acc[r][c] = Part{};
   const double* at = a.data;
-  for (Index k = 0; k < depth; ++k, at += a.step, b += b_step) {
-    const Pack8 first = held(load(b)), second = held(load(b + kWidth));
+  for (Index k = 0; k < depth; ++k, at += a.step, b += b_step)
+    add_outer(at, a.row, b, acc);
 #pragma GCC unroll 8
-    for (int r = 0; r < M; ++r) {
-      const Pack8 s = broadcast(at[r * a.row]);
-      acc[r][0] = fma_lanes(s, first, acc[r][0]);
-      acc[r][1] = fma_lanes(s, second, acc[r][1]);
-    }
-  }
-#pragma GCC unroll 8
-  for (int r = 0; r < M; ++r) finish(r, acc[r][0], acc[r][1]);
+  for (int r = 0; r < M; ++r)
+    finish(r, joined(acc[r]), joined(acc[r] + kParts));
 }
 
 /// The same for any number of rows.

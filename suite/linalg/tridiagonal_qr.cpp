@@ -184,6 +184,6 @@ void TridiagonalQr::apply(X* x, Index first) const {
 }
 
 template void TridiagonalQr::apply(double*, Index) const;
-template void TridiagonalQr::apply(Eight*, Index) const;
+template void TridiagonalQr::apply(Pack8*, Index) const;
 
 }  // namespace physinv::linalg

@@ -21,7 +21,8 @@ class TridiagonalQr {
   /// graded matrix. False after 60 n sweeps without an end.
   bool run(VectorOut<double> d, VectorOut<double> e, VectorOut<double> x);
 
-  /// x <- W x: the recorded rotations backwards. X is double or Eight. Rows
+  /// x <- W x: the recorded rotations backwards. X is double, or Pack8 for
+  /// eight vectors side by side. Rows
   /// before `first` are zero, and rotations of zeros are left out.
   template <class X>
   void apply(X* x, Index first = 0) const;

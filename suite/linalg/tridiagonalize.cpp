@@ -259,6 +259,6 @@ void Tridiagonalize::apply(X* x) const {
 }
 
 template void Tridiagonalize::apply(double*) const;
-template void Tridiagonalize::apply(Eight*) const;
+template void Tridiagonalize::apply(Pack8*) const;
 
 }  // namespace physinv::linalg

@@ -32,7 +32,8 @@ class Tridiagonalize {
   const Vector<double>& diagonal() const { return d_; }
   const Vector<double>& off_diagonal() const { return e_; }
 
-  /// x <- Q x. X is double or Eight.
+  /// x <- Q x. X is double, or Pack8 for
+  /// eight vectors side by side.
   template <class X>
   void apply(X* x) const;
 

@@ -4,6 +4,10 @@ fused operations that nobody wrote: GCC 12 makes some of c a - s b, c b + s a
 although contraction is off; functions of the C library that it chooses by the
 processor (suite/core/math.h has others).
 
+And what may not be in the loops that take most of the time: sums that went to
+the stack for want of registers, and structs that were copied through it in
+pieces of 16 bytes.
+
 PROGRAM... --libraries LIBRARY..."""
 
 import re
@@ -13,21 +17,90 @@ import sys
 NOBODY_WROTE = re.compile(r"\bvfn?m(addsub|subadd)")
 WROTE = re.compile(r"\bvfn?m(add|sub)[0-9]")
 
+# Functions whose loops of at least so many fused operations (products, where
+# nothing is fused) keep their sums in registers, in each program.
+HELD = {
+    r"linalg::\(anonymous namespace\)::add_product\(": 8,
+    r"RankUpdate::operator\(\)\(": 12,
+    r"StructuredGram::Sweep::block\(": 12,
+    r"Tridiagonalize::panel\(": 4,
+    r"Tridiagonalize::multiply_panel\(": 12,
+}
+# Functions whose loops copy nothing in pieces.
+WHOLE = {
+    r"anonymous namespace\)::pull_group<(float|double)>\(": 40,
+    r"anonymous namespace\)::differentiate<(float|double)>\(": 80,
+}
+# Vectors to or from the frame: sums and temporaries without a register.
+STACK = re.compile(r"%[xyz]mm.*(\(%rsp|-0x[0-9a-f]+\(%rbp\))|"
+                   r"(\(%rsp|-0x[0-9a-f]+\(%rbp\)).*%[xyz]mm")
+PIECE = re.compile(r"^vmov(dq[au]|[au]p).*(%xmm.*\(%r[sb]p|\(%r[sb]p.*%xmm)")
+JUMP = re.compile(r"^j\w+\s+([0-9a-f]+)")
+
+
+def loops(code):
+    """Innermost loops of a function: [(address, instruction)]."""
+    place = {address: i for i, (address, _) in enumerate(code)}
+    ranges = []
+    for i, (address, text) in enumerate(code):
+        jump = JUMP.match(text)
+        if jump and int(jump[1], 16) <= address:
+            begin = place.get(int(jump[1], 16))
+            if begin is not None:
+                ranges.append((begin, i))
+    for begin, end in ranges:
+        if not any((b, e) != (begin, end) and begin <= b and e <= end
+                   for b, e in ranges):
+            yield [text for _, text in code[begin:end + 1]]
+
+
+def badly_made(functions):
+    """What loops of HELD and WHOLE do with the stack, and what was not found."""
+    complaints = []
+    for table, pattern, what in ((HELD, STACK, "vectors on the stack"),
+                                 (WHOLE, PIECE, "pieces of 16 bytes")):
+        for name, least in table.items():
+            seen = 0
+            for function, code in functions.items():
+                if not re.search(name, function):
+                    continue
+                for body in loops(code):
+                    if sum(bool(WROTE.search(t)) for t in body) < least:
+                        continue
+                    seen += 1
+                    bad = sum(bool(pattern.search(t)) for t in body)
+                    if bad:
+                        complaints.append(f"{function}: a loop with {bad} "
+                                          f"{what}")
+            if not seen:
+                complaints.append(f"no loop of {least} fused operations in "
+                                  f"what {name} names")
+    return complaints
+
 
 def found(program):
-    """The functions that hold such an instruction, and how many do fma."""
+    """The functions that hold an operation that nobody wrote, how many do fma,
+    and the code of those that are looked at."""
     code = subprocess.Popen(["objdump", "-dC", "--no-show-raw-insn", program],
                             stdout=subprocess.PIPE, text=True)
-    function, functions, fma = "", set(), 0
+    looked_at = re.compile("|".join([*HELD, *WHOLE]))
+    function, functions, fma, kept, lines = "", set(), 0, {}, None
     for line in code.stdout:
         if line.endswith(">:\n"):
             function = line.split("<", 1)[1][:-3]
+            lines = None
+            if looked_at.search(function):
+                # A name may stand for parts that the compiler took apart.
+                lines = kept.setdefault(f"{function} {line.split()[0]}", [])
         elif NOBODY_WROTE.search(line):
             functions.add(function)
         elif WROTE.search(line):
             fma += 1
+        if lines is not None and ":\t" in line:
+            address, text = line.split(":\t", 1)
+            lines.append((int(address, 16), text.strip()))
     assert code.wait() == 0, program
-    return functions, fma
+    return functions, fma, kept
 
 
 def chosen(library):
@@ -44,11 +117,13 @@ def main():
     split = sys.argv.index("--libraries")
     wrong = 0
     for program in sys.argv[1:split]:
-        functions, fma = found(program)
+        functions, fma, kept = found(program)
         print(f"{program}: {fma} fused operations, {len(functions)} functions "
               "with some that nobody wrote")
         print("".join(f"  {f}\n" for f in sorted(functions)), end="")
-        wrong += len(functions) + (fma < 1000)
+        complaints = badly_made(kept)
+        print("".join(f"  {c}\n" for c in complaints), end="")
+        wrong += len(functions) + (fma < 1000) + len(complaints)
     for library in ";".join(sys.argv[split + 1:]).split(";"):
         names = chosen(library)
         if names:
