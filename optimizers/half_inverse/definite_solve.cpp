@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "optimizers/half_inverse/spectral_power.h"
+#include "suite/core/eigen_caches.h"
 
 namespace physinv::hig {
 
@@ -49,6 +50,7 @@ bool DefiniteSolve::operator()(BatchIn<double> gram,
   const double theta =
       cut * cut + noise +
       kEpsilon * static_cast<double>(m + 2) * gram.diagonal().sum();
+  state_caches();
   factor_ = gram.triangularView<Eigen::Lower>();
   factor_.diagonal().array() -= theta;
   const Eigen::LLT<Eigen::Ref<Batch<double>>> cholesky(factor_);

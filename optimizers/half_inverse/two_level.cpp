@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "suite/core/eigen_caches.h"
+
 namespace physinv::hig {
 namespace {
 
@@ -50,6 +52,7 @@ Ending TwoLevelPower::refine(Index parameters, const Pullback& pullback) {
   const std::vector<Index> wanted(order_.end() - inside_, order_.end());
   if (wanted == refined_) return second_.ending();
   refined_ = wanted;
+  state_caches();
   Batch<double> u2(spectrum_.lambda.size(), inside_), w2(parameters, inside_);
   first_.directions(wanted, u2);
   pullback(u2, w2);

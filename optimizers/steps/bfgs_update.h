@@ -23,11 +23,9 @@ PHYSINV_LANES decltype(auto) of_size(Index d, F&& f) {
   return d == 2 ? f(std::integral_constant<Index, 2>{}) : f(d);
 }
 
-/// a.b in four interleaved partial sums; the plain order for d <= 3.
-inline double dot(Index d, const double* a, const double* b) {
+/// a.b in four interleaved partial sums.
+inline double interleaved_dot(Index d, const double* a, const double* b) {
   using Four = Pack<double, 4>;
-  if (d == 2)
-    return (std::fma(a[0], b[0], 0.0) + std::fma(a[1], b[1], 0.0)) + 0.0;
   Four sums{};
   Index i = 0;
   for (; i + 4 <= d; i += 4) {
@@ -40,6 +38,12 @@ inline double dot(Index d, const double* a, const double* b) {
   std::memcpy(lane.data(), &sums, sizeof(Four));
   for (std::size_t k = 0; i < d; ++i, ++k) add_product(lane[k], a[i], b[i]);
   return (lane[0] + lane[1]) + (lane[2] + lane[3]);
+}
+
+/// The same; the plain order for d <= 3.
+PHYSINV_LANES double dot(Index d, const double* a, const double* b) {
+  if (d != 2) return interleaved_dot(d, a, b);
+  return (std::fma(a[0], b[0], 0.0) + std::fma(a[1], b[1], 0.0)) + 0.0;
 }
 
 /// Largest magnitude; NaN entries are passed over.

@@ -9,7 +9,8 @@
 namespace physinv::linalg {
 namespace {
 
-constexpr Index kRegisters = kBand / kWidth;
+constexpr int kRegisters = kBand / kWidth;
+static_assert(kRegisters == 4);
 
 struct Masks {
   /// Row s keeps the lanes from s on.
@@ -25,26 +26,45 @@ inline Pack8 from_lane(const Pack8& v, Index first) {
   return masked(physinv::load<Flags>(kMasks.keep[first]), v);
 }
 
+/// The columns of register kGroup of a symmetric block times v: their part of
+/// the sums w, and in `mirrored` what their rows have above the diagonal.
+template <int kGroup>
+[[gnu::always_inline]] inline void multiply_columns(const double* d,
+                                                    Index step,
+                                                    const double* v,
+                                                    Pack8 (&w)[kRegisters],
+                                                    double* mirrored) {
+  for (Index c = kGroup * kWidth; c < (kGroup + 1) * kWidth; ++c) {
+    const double* column = d + c * step;
+    const Index lane = c - kGroup * kWidth;
+    const Pack8 s = broadcast(v[c]);
+    // The diagonal entry once: it comes in with the product along the column.
+    Pack8 x = from_lane(load(column + kGroup * kWidth), lane);
+    w[kGroup] = fma_lanes(x, s, w[kGroup]);
+    Pack8 along = from_lane(load(v + kGroup * kWidth), lane) * x;
+#pragma GCC unroll 4
+    for (int i = kGroup + 1; i < kRegisters; ++i) {
+      x = load(column + i * kWidth);
+      w[i] = fma_lanes(x, s, w[i]);
+      along = fma_lanes(x, load(v + i * kWidth), along);
+    }
+    mirrored[c] = std::fma(-column[c], v[c], sum_of(along));
+  }
+}
+
 /// D <- H D H for the symmetric block whose columns start at `d`, `step`
 /// apart; only entries on and below the diagonal are touched.
 void turn_diagonal(double* d, Index step, double tau, const double* v) {
-  alignas(64) double w[kBand] = {};
-  for (Index c = 0; c < kBand; ++c) {
-    const double* column = d + c * step;
-    const Index g = c / kWidth * kWidth;
-    const Pack8 s = broadcast(v[c]);
-    // The diagonal entry once: it comes in with the product along the column.
-    Pack8 x = from_lane(load(column + g), c - g);
-    store(w + g, fma_lanes(x, s, load(w + g)));
-    Pack8 mirrored = from_lane(load(v + g), c - g) * x;
-    for (Index i = g + kWidth; i < kBand; i += kWidth) {
-      x = load(column + i);
-      store(w + i, fma_lanes(x, s, load(w + i)));
-      mirrored = fma_lanes(x, load(v + i), mirrored);
-    }
-    w[c] += std::fma(-column[c], v[c], sum_of(mirrored));
-  }
-  for (Index i = 0; i < kBand; ++i) w[i] *= tau;
+  // What is mirrored is added last: columns behind c have zeros in row c.
+  alignas(64) double w[kBand], mirrored[kBand];
+  Pack8 sums[kRegisters] = {};
+  multiply_columns<0>(d, step, v, sums, mirrored);
+  multiply_columns<1>(d, step, v, sums, mirrored);
+  multiply_columns<2>(d, step, v, sums, mirrored);
+  multiply_columns<3>(d, step, v, sums, mirrored);
+#pragma GCC unroll 4
+  for (int i = 0; i < kRegisters; ++i)
+    store(w + i * kWidth, tau * (sums[i] + load(mirrored + i * kWidth)));
   axpy(kBand, -0.5 * tau * dot(kBand, w, v), v, w);
   for (Index c = 0; c < kBand; ++c) {
     double* column = d + c * step;

@@ -8,6 +8,7 @@
 
 #include "suite/core/threads.h"
 #include "tests/optimizers/half_inverse_truth.h"
+#include "tests/support/bits.h"
 
 namespace physinv::hig {
 
@@ -81,6 +82,27 @@ TEST(TwoLevel, OfExactZeros) {
   EXPECT_EQ(report.kept, m - dead);
   const Vector<double> expected = truth.update(power);
   EXPECT_LE((j.transpose() * v - expected).norm(), 1e-9 * expected.norm());
+}
+
+/// The second level's Gram matrix is a product of Eigen's, which sums in blocks
+/// of the caches that it believes in.
+TEST(TwoLevel, WhateverCachesTheProgramStates) {
+  const Index m = 40, parameters = 3000;
+  const Batch<double> j = graded(m, parameters, 7, 167);
+  const Vector<double> g = noise(m, 1, 168);
+  SpectralPower first;
+  ASSERT_EQ(first.factor(j * j.transpose(), g), Ending::ok);
+  const Power power{.kappa = -1, .tau = 1e-6};
+  const auto run = [&] {
+    TwoLevelPower two(first);
+    Vector<double> v(m);
+    two.apply(power, 1e-9, parameters, pullback_of(j), v);
+    EXPECT_GT(two.second_level(), 4);
+    return v;
+  };
+  const Vector<double> expected = run();
+  Eigen::setCpuCacheSizes(8 << 10, 64 << 10, 1 << 20);
+  EXPECT_TRUE(test::same_bits(run(), expected));
 }
 
 /// E between directions of small values, from J itself: the estimates of the
