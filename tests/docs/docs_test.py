@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
 """docs_test.py PROGRAM SOURCES: what the pages say of files and commands.
 
-README is short, every link leads to a file, commands have the verbs and flags
-of the program, counts are the program's and verdicts those of RESULTS.md, where
-what is not reproduced has a cause.
+README is short, every link leads to a file and place, commands have the verbs and
+flags of the program, counts are the program's and verdicts those of RESULTS.md,
+where what is not reproduced has a cause. Pages of papers have no measured numbers:
+those stand on pages that the program writes. The table of features has a sign of
+each suite.
 """
 
 import functools
@@ -43,12 +45,55 @@ def help_of(verb):
 
 
 def dead_links(name, text):
-    for target in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", text):
+    for target, place in re.findall(r"\]\(([^)#]*)(?:#([^)]*))?\)", text):
         if re.match(r"https?:", target):
             continue
-        path = os.path.join(SOURCES, os.path.dirname(name), target)
+        path = os.path.join(SOURCES, os.path.dirname(name), target) \
+            if target else os.path.join(SOURCES, name)
         if not os.path.exists(path):
             yield f"{name}: the link '{target}' leads nowhere"
+        elif place and path.endswith(".md") and place not in places_of(path):
+            yield f"{name}: '{target}' has no '#{place}'"
+
+
+@functools.cache
+def places_of(path):
+    """Headings as GitHub links to them."""
+    with open(path) as f:
+        heads = re.findall(r"^#+ (.*)$", f.read(), re.M)
+    return {re.sub(r"[^\w\- ]", "", head.lower()).replace(" ", "-")
+            for head in heads}
+
+
+def measured(name, text):
+    """Numbers with a unit of what is measured, where the program writes them."""
+    if not re.match(r"README|docs/papers/|docs/(numerics|clusters|gate)\.md", name):
+        return
+    prose = re.sub(r"```.*?```|`[^`]*`", "", text, flags=re.S)
+    for found in re.finditer(
+            r"(?<![\w.])\d+\.\d+ (?:%|ms|us|ns|s|min|h)\b|"
+            r"(?<![\w.])\d+ (?:ms|us|ns|MB|kB|GB|hours|GFLOP)\b", prose):
+        yield f"{name}: '{found[0]}' is written by hand"
+
+
+SUITES = 17
+FEATURES = 47
+
+
+def features():
+    """Rows of docs/features.md: here and elsewhere, one sign each."""
+    text = read("docs/features.md")
+    named = re.search(r"^Columns: (.*?)\n\n", text, re.S | re.M)[1]
+    suites = re.findall(r"(\d+)\s+\[", named)
+    if suites != [str(k + 1) for k in range(SUITES)]:
+        yield f"docs/features.md: {len(suites)} suites"
+    rows = re.findall(r"^\| [a-z].*\|$", text, re.M | re.I)
+    if len(rows) != FEATURES:
+        yield f"docs/features.md: {len(rows)} features"
+    for row in rows:
+        signs = [cell.strip() for cell in row.split("|")[2:-1]]
+        if len(signs) != 1 + SUITES or not set(signs) <= set("+o–?"):
+            yield f"docs/features.md: {row}"
 
 
 def commands(text):
@@ -157,13 +202,14 @@ def unexplained():
 
 
 def main():
-    wrong = [*wrong_counts(), *wrong_verdicts(), *unexplained()]
+    wrong = [*wrong_counts(), *wrong_verdicts(), *unexplained(), *features()]
     lines = read("README.md").count("\n")
     if lines > LINES_OF_README:
         wrong.append(f"README.md has {lines} lines, of {LINES_OF_README}")
     checked = 0
     for name, text in pages():
-        wrong += [*dead_links(name, text), *unknown_words(name, text)]
+        wrong += [*dead_links(name, text), *unknown_words(name, text),
+                  *measured(name, text)]
         checked += len(list(commands(text)))
     if checked < 20:
         wrong.append(f"only {checked} commands found")
