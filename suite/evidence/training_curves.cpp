@@ -40,7 +40,7 @@ Points points_of(std::span<const StageRecord> stages,
   return all;
 }
 
-/// Median and range over the seeds at each point that all of them have.
+/// Median and quantiles over the seeds at each point that all of them have.
 Series median_series(const std::vector<Points>& seeds,
                      const MethodLine& line,
                      Axis axis) {
@@ -60,9 +60,9 @@ Series median_series(const std::vector<Points>& seeds,
     if (seeds.front().updates[k] <= 0 || !std::isfinite(middle)) continue;
     s.x.push_back(median(x));
     s.y.push_back(middle);
-    const auto [lo, hi] = std::minmax_element(values.begin(), values.end());
-    s.lo.push_back(*lo);
-    s.hi.push_back(std::isfinite(*hi) ? *hi : middle);
+    const double hi = quantile(values, 0.9);
+    s.lo.push_back(quantile(values, 0.1));
+    s.hi.push_back(std::isfinite(hi) ? hi : middle);
   }
   return s;
 }
@@ -121,8 +121,8 @@ Figure loss_figure(std::vector<Panel> panels,
           .source = std::move(source),
           .panels = std::move(panels),
           .note =
-              "Median over seeds, band: range. Test losses are not finite "
-              "where a line ends early."};
+              "Median over seeds, band: 10 % and 90 % quantiles. Test losses "
+              "are not finite where a line ends early."};
 }
 
 }  // namespace
@@ -170,7 +170,7 @@ void LearningCurves::metric(const std::vector<MethodLine>& lines,
        .source = std::move(source),
        .panels = {std::move(one)},
        .columns = 1,
-       .note = "Median over seeds, band: range."});
+       .note = "Median over seeds, band: 10 % and 90 % quantiles."});
 }
 
 Panel LearningCurves::panel(const std::vector<MethodLine>& lines) const {

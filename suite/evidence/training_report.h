@@ -52,7 +52,8 @@ inline std::optional<Look> look_of(const MethodLine& line) {
 }
 
 /// Draws learning curves into an experiment's section: medians over seeds, with
-/// their range as a band. What shows nothing is left out, lines and figures.
+/// 10 % and 90 % quantiles as a band. What shows nothing is left out, lines and
+/// figures.
 class LearningCurves {
  public:
   LearningCurves(const Results& results, Section& section)

@@ -319,7 +319,8 @@ std::vector<Figure> profile_figures(const CommonRuns& common,
       "a method is fastest, the right end the share it solves at all. " +
       note;
   reached.note =
-      "Share of problems solved after so many seconds or simulations. " + note;
+      "Share of problems solved after so many seconds or simulations, as in "
+      "the performance profiles.";
   return {std::move(profile),
           std::move(reached),
           distribution_figure(common, options)};

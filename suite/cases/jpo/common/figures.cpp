@@ -12,7 +12,7 @@ namespace {
 constexpr Index kExamples = 4;
 
 // Mean and, if there is one, mean -+ deviation.
-void append(Series& s, double x, std::span<const double> values) {
+void append_means(Series& s, double x, const std::vector<double>& values) {
   const auto found = mean_std(values);
   if (!found) return;
   const double spread = found->std.value_or(0);
@@ -20,6 +20,15 @@ void append(Series& s, double x, std::span<const double> values) {
   s.y.push_back(found->mean);
   s.lo.push_back(found->mean - spread);
   s.hi.push_back(found->mean + spread);
+}
+
+// Median and 10 % and 90 % quantiles, for logarithmic axes.
+void append_quantiles(Series& s, double x, const std::vector<double>& values) {
+  if (values.empty()) return;
+  s.x.push_back(x);
+  s.y.push_back(median(values));
+  s.lo.push_back(quantile(values, 0.1));
+  s.hi.push_back(quantile(values, 0.9));
 }
 
 // Mean loss at the last measured point up to an iteration: a run that ended
@@ -50,14 +59,16 @@ std::vector<double> plus_one(std::vector<double> iterations) {
 
 Series JpoReport::over_n(std::string label,
                          const std::string& method,
-                         const PerCase& value) const {
+                         const PerCase& value,
+                         Over over) const {
   Series s{.label = std::move(label), .method = method, .markers = true};
   for (const Index n : metrics_.sizes()) {
     std::vector<double> values;
     for (const std::uint64_t seed : metrics_.seeds()) {
       if (const auto one = value(n, seed)) values.push_back(*one);
     }
-    append(s, static_cast<double>(n), values);
+    (over == Over::means ? append_means : append_quantiles)(
+        s, static_cast<double>(n), values);
   }
   return s;
 }
@@ -74,14 +85,16 @@ Series JpoReport::f_series(const std::string& method, bool refined) const {
 }
 
 Series JpoReport::loss_series(const std::string& method, bool refined) const {
-  return over_n(method_title(method),
-                method,
-                [&](Index n, std::uint64_t seed) -> std::optional<double> {
-                  const auto* end = metrics_.ending(
-                      method, n, seed, refined && method != "bfgs");
-                  if (end == nullptr) return {};
-                  return end->loss.mean();
-                });
+  return over_n(
+      method_title(method),
+      method,
+      [&](Index n, std::uint64_t seed) -> std::optional<double> {
+        const auto* end =
+            metrics_.ending(method, n, seed, refined && method != "bfgs");
+        if (end == nullptr) return {};
+        return end->loss.mean();
+      },
+      Over::quantiles);
 }
 
 // BFGS against itself is equal everywhere: f_N = 1/2.
@@ -123,8 +136,9 @@ Figure JpoReport::improvement() const {
                          ": loss and improvement before and after refinement",
                 .source = options_.improvement.source,
                 .note =
-                    "Mean over problems and seeds. Bars: sample standard "
-                    "deviation over seeds."};
+                    "Losses: mean over problems, median and 10 % and 90 % "
+                    "quantiles over seeds. Improvement: mean and sample "
+                    "standard deviation over seeds."};
   for (const bool refined : {false, true}) {
     Panel panel{
         .title = refined ? "Loss after refinement" : "Loss before refinement",
@@ -181,7 +195,7 @@ Series JpoReport::curve_series(const std::string& method, Index n) const {
     for (const Curve* curve : curves) {
       if (const auto one = loss_at(*curve, iteration)) values.push_back(*one);
     }
-    append(s, iteration + 1, values);
+    append_quantiles(s, iteration + 1, values);
   }
   return s;
 }
@@ -192,8 +206,8 @@ Figure JpoReport::curves() const {
       .title = options_.title + ": optimization curves before refinement",
       .source = options_.curves.source,
       .note =
-          "Mean over problems and seeds, band: sample standard deviation "
-          "over seeds. The start is drawn at 1. Curves of BFGS end when "
+          "Mean over problems, median over seeds, band: 10 % and 90 % "
+          "quantiles. The start is drawn at 1. Curves of BFGS end when "
           "every problem has."};
   for (const Index n : sizes_of_curves()) {
     Panel panel{.title = fmt::format("n = {}", n),

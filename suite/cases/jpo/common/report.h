@@ -81,9 +81,12 @@ class JpoReport {
 
  private:
   using PerCase = std::function<std::optional<double>(Index, std::uint64_t)>;
+  /// What stands for the seeds: quantiles on logarithmic axes.
+  enum class Over { means, quantiles };
   Series over_n(std::string label,
                 const std::string& method,
-                const PerCase& value) const;
+                const PerCase& value,
+                Over over = Over::means) const;
   Series f_series(const std::string& method, bool refined) const;
   Series loss_series(const std::string& method, bool refined) const;
   Series reference_half() const;

@@ -187,7 +187,8 @@ Section report(const Results& results, const Published& published) {
               .source = "Fig. 16b",
               .panels = {std::move(loss)},
               .columns = 1,
-              .note = "Median over seeds, band: range; dashed: what does not "
+              .note = "Median over seeds, band: 10 % and 90 % quantiles; "
+                      "dashed: what does not "
                       "learn, on the same examples."});
   curves.metric({kNetLine},
                 kMeanError,
