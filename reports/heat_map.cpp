@@ -73,21 +73,28 @@ Raster enlarged(const Raster& cells, std::size_t times) {
   return out;
 }
 
+void picture(
+    Svg& svg, const Raster& raster, double x, double y, double w, double h) {
+  svg.leaf("image",
+           {{"x", svg_number(x)},
+            {"y", svg_number(y)},
+            {"width", svg_number(w)},
+            {"height", svg_number(h)},
+            {"preserveAspectRatio", "none"},
+            {"style", "image-rendering:pixelated"},
+            {"href", data_url(png_of(raster, field_colors()))}});
+}
+
 void color_bar(Svg& svg,
                const Field2D& field,
                const Axis& scale,
                double x,
                double y,
                double h) {
-  const double step = h / kFieldColors;
-  for (int k = 0; k < kFieldColors; ++k) {
-    svg.leaf("rect",
-             {{"x", svg_number(x)},
-              {"y", svg_number(y + h - (k + 1) * step)},
-              {"width", "12"},
-              {"height", svg_number(step + 0.3)},
-              {"fill", field_colors()[static_cast<std::size_t>(k)]}});
-  }
+  Raster colors{1, kFieldColors, {}};
+  for (int k = kFieldColors; k > 0; --k)
+    colors.pixels.push_back(static_cast<std::uint8_t>(k));
+  picture(svg, enlarged(colors, kPixels / kFieldColors), x, y, 12, h);
   svg.rect("frame", x, y, 12, h);
   for (const Tick& t : scale.ticks(5)) {
     svg.text("tick", x + 16, y + h * (1 - scale.place(t.value)) + 4, t.label);
@@ -110,15 +117,7 @@ void draw_heat_map(
   const Raster cells = color_cells(field, scale);
   const std::size_t times =
       1 + (kPixels - 1) / std::max(cells.width, cells.height);
-  svg.leaf(
-      "image",
-      {{"x", svg_number(x)},
-       {"y", svg_number(y)},
-       {"width", svg_number(w)},
-       {"height", svg_number(h)},
-       {"preserveAspectRatio", "none"},
-       {"style", "image-rendering:pixelated"},
-       {"href", data_url(png_of(enlarged(cells, times), field_colors()))}});
+  picture(svg, enlarged(cells, times), x, y, w, h);
   color_bar(svg, field, scale, x + w + 14, y, h);
 }
 

@@ -8,6 +8,7 @@
 #include "reports/anchors.h"
 #include "reports/html_parts.h"
 #include "reports/palette.h"
+#include "reports/png.h"
 #include "reports/report.h"
 #include "reports/svg.h"
 
@@ -56,121 +57,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string link(const std::string& id, const std::string& words) {
-  return fmt::format("<a href=\"#{}\">{}</a>", id, html(words));
-}
-
-// ---- overview -------------------------------------------------------------
-
-/// The paper's claims are what counts as reproduced; the suite's ranges are a
-/// line below.
-std::string totals_html(const std::vector<Section>& sections) {
-  int unmet = 0;
-  for (const Section& s : sections)
-    for (const ClaimResult& c : s.claims)
-      unmet += c.gates && c.verdict == Verdict::not_reproduced;
-  const Tally papers = tally(sections, Origin::paper);
-  std::string out =
-      "<p>What the papers say, by their sentences, tables and figures:</p>\n"
-      "<ul class=\"totals\">\n";
-  for (const Verdict v : columns_of(papers)) {
-    const int count = papers[static_cast<std::size_t>(v)];
-    out += fmt::format("<li class=\"{}\"><strong>{}</strong> {}</li>\n",
-                       count == 0 ? "open" : css_of(v),
-                       count,
-                       words_of(v, Origin::paper));
-  }
-  return out +
-         fmt::format(
-             "</ul>\n<p>Ranges of the suite, from earlier runs (regression "
-             "checks): {}. {}</p>\n",
-             tally_text(tally(sections, Origin::suite), Origin::suite),
-             unmet == 0 ? "No gating claim (marked •) is missed."
-                        : fmt::format("Gating claims (marked •) that are not "
-                                      "met: {}.",
-                                      unmet));
-}
-
-std::string chips_html(const Section& section,
-                       const Anchors& anchors,
-                       Origin origin) {
-  std::string out;
-  for (std::size_t k = 0; k < section.claims.size(); ++k) {
-    const ClaimResult& c = section.claims[k];
-    if (c.origin != origin) continue;
-    out += fmt::format(
-        "{}<a class=\"chip {}\" href=\"#{}\" title=\"{}: {}\">{} {}{}</a>",
-        out.empty() ? "" : " ",
-        css_of(c.verdict),
-        anchors.claims[k],
-        words_of(c.verdict, origin),
-        html(c.says),
-        mark_of(c.verdict),
-        html(c.id),
-        c.gates ? " •" : "");
-  }
-  return out;
-}
-
-std::string overview_html(const std::vector<Section>& sections,
-                          const std::vector<Anchors>& anchors) {
-  std::string out = totals_html(sections) +
-                    "<div class=\"scroll\">\n<table class=\"overview\">\n"
-                    "<caption class=\"hidden\">Claims by experiment</caption>\n"
-                    "<thead>\n<tr><th scope=\"col\">experiment</th>";
-  const auto columns = columns_of(tally(sections, Origin::paper));
-  for (const Verdict v : columns) {
-    out += fmt::format("<th scope=\"col\">{}</th>", words_of(v, Origin::paper));
-  }
-  out +=
-      "<th scope=\"col\">the paper's claims</th>"
-      "<th scope=\"col\">the suite's ranges</th></tr>\n</thead>\n<tbody>\n";
-  for (std::size_t s = 0; s < sections.size(); ++s) {
-    out += fmt::format("<tr><th scope=\"row\">{}</th>",
-                       link(anchors[s].section, sections[s].title));
-    const Tally counts = tally(sections[s], Origin::paper);
-    for (const Verdict v : columns) {
-      out += fmt::format("<td>{}<span class=\"word\"> {}</span></td>",
-                         counts[static_cast<std::size_t>(v)],
-                         words_of(v, Origin::paper));
-    }
-    for (const Origin origin : {Origin::paper, Origin::suite})
-      out += fmt::format("<td class=\"chips\">{}</td>",
-                         chips_html(sections[s], anchors[s], origin));
-    out += "</tr>\n";
-  }
-  return out + "</tbody>\n</table>\n</div>\n";
-}
-
-std::string contents_html(const std::vector<Section>& sections,
-                          const std::vector<Anchors>& anchors) {
-  std::string out =
-      "<nav id=\"contents\" aria-label=\"Contents\">\n"
-      "<p>" +
-      link("top", "Overview") + "</p>\n";
-  for (std::size_t k = 0; k < sections.size(); ++k) {
-    const Section& s = sections[k];
-    const Anchors& a = anchors[k];
-    out += fmt::format("<details>\n<summary>{}</summary>\n<ul>\n<li>{}</li>\n",
-                       html(s.title),
-                       link(a.section, "Claims"));
-    for (std::size_t i = 0; i < s.tables.size(); ++i) {
-      out += fmt::format(
-          "<li>{}</li>\n",
-          link(a.tables[i], name_of(s.tables[i].source, s.tables[i].title)));
-    }
-    for (std::size_t i = 0; i < s.figures.size(); ++i) {
-      out += fmt::format(
-          "<li>{}</li>\n",
-          link(a.figures[i], name_of(s.figures[i].source, s.figures[i].title)));
-    }
-    out += "</ul>\n</details>\n";
-  }
-  return out + "<p>" + link("provenance", "Provenance") + "</p>\n</nav>\n";
-}
-
-// ---- the page -------------------------------------------------------------
-
 std::string plain(const Json& value) {
   if (value.is_string()) return value.get<std::string>();
   return value.dump(1, ' ', false, Json::error_handler_t::replace);
@@ -204,15 +90,14 @@ std::string caption_html(const std::string& id,
                      html(name_of(source, title)));
 }
 
-namespace {
+std::string nil_html(const std::string& words) {
+  return words.empty() ? "" : "<p class=\"nil\">" + html(words) + "</p>\n";
+}
 
-/// Pages that are no report of reproductions bring their own.
-std::string heading_of(const nlohmann::ordered_json& provenance) {
+std::string heading_of(const Json& provenance) {
   const std::string usual = "Physics inverse problems: what is reproduced";
   return provenance.is_object() ? provenance.value("heading", usual) : usual;
 }
-
-}  // namespace
 
 std::string provenance_html(const Json& provenance) {
   std::string out = "<footer id=\"provenance\">\n<h2>Provenance</h2>\n<dl>\n",
@@ -307,9 +192,23 @@ Json papers_of(const Json& papers, const std::string& key) {
 
 }  // namespace
 
+namespace {
+
+std::string picture_html(const Picture& p) {
+  return fmt::format(
+      "<figure class=\"c1\">\n<figcaption>{0}</figcaption>\n"
+      "<img src=\"{1}\" alt=\"{0}\"/>\n{2}</figure>\n",
+      html(p.title),
+      data_url(p.svg, "image/svg+xml"),
+      p.note.empty() ? "" : "<p class=\"remark\">" + html(p.note) + "</p>\n");
+}
+
+}  // namespace
+
 std::string section_page_html(const Section& section,
                               const nlohmann::ordered_json& provenance,
-                              const Palette& palette) {
+                              const Palette& palette,
+                              const std::vector<Picture>& pictures) {
   const auto anchors = anchors_of({section});
   PageParts parts{.title = section.title + ": physics inverse problems"};
   Json own = provenance;
@@ -319,7 +218,10 @@ std::string section_page_html(const Section& section,
                  summary_html(own);
   parts.contents = contents_html({section}, anchors);
   parts.main = section_html(
-      section, anchors[0], palette, {true, command_of(section, provenance)});
+      section, anchors[0], palette, {"", command_of(section, provenance)});
+  if (!pictures.empty())
+    parts.main += "<h3>Figures as they were published</h3>\n";
+  for (const Picture& p : pictures) parts.main += picture_html(p);
   parts.footer = provenance_html(own);
   return page_html(parts);
 }

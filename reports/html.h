@@ -20,12 +20,12 @@ namespace physinv {
 std::string report_html(const std::vector<Section>& sections,
                         const nlohmann::ordered_json& provenance);
 
-/// What leads to the pages of experiments, <folder>/index.html: of each paper
-/// its experiments with the numbers that stand beside the paper's, statements
-/// that do not hold as sentences, and how many are not judged.
+/// What leads to the pages of experiments, <folder>/index.html: sections that
+/// stand in front, then of each paper its experiments with the numbers that
+/// stand beside the paper's, statements that do not hold as sentences, and how
+/// many are not judged.
 std::string index_html(const std::vector<Section>& sections,
-                       const std::vector<std::string>& folders,
-                       const std::vector<Group>& groups,
+                       const Pages& pages,
                        const nlohmann::ordered_json& provenance);
 
 /// A campaign whose pages stand in the folder of its name.

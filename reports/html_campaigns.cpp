@@ -37,8 +37,8 @@ std::string campaigns_html(
   parts.header =
       "<h1>Physics inverse problems: published campaigns</h1>\n"
       "<p>Claims and tables of each campaign that is kept with the sources, "
-      "judged by what is claimed today. Figures are not drawn here; the "
-      "command makes them.</p>\n";
+      "judged by what is claimed today, and figures of curves where they "
+      "were published; the command makes all.</p>\n";
   for (const auto& [folder, title] : others)
     parts.header += fmt::format(
         "<p><a href=\"{}/index.html\">{}</a></p>\n", html(folder), html(title));

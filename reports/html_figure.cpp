@@ -49,48 +49,66 @@ std::string panel_html(const Panel& panel,
                        Palette& palette) {
   const Size size = panel_size(figure.columns);
   const std::string& name = panel.title.empty() ? figure.title : panel.title;
+  PanelPlot plot(panel, id, palette);
+  const double height = plot.height(size.w, size.h);
   Svg svg =
       Svg::inlined(size.w,
-                   size.h,
+                   height,
                    name,
                    fmt::format("{} over {}", panel.y_label, panel.x_label));
-  PanelPlot plot(panel, id, palette);
   std::vector<int> keys;
   for (const Series& s : panel.series) keys.push_back(legend_index(legend, s));
   plot.set_keys(std::move(keys));
-  plot.draw(svg, {0, 0, size.w, size.h});
+  plot.draw(svg, {0, 0, size.w, height});
   return std::move(svg).str();
 }
 
-/// Panels without a point are words: which they are, or that none was run. The
-/// moments of a film stay together.
+void list(std::string& words, const std::string& more, const char* between) {
+  words += (words.empty() || more.empty() ? "" : between) + more;
+}
+
+/// Panels below their legend. Those without a point and those that show one
+/// number are words: which they are, or that none was run. The moments of a
+/// film stay together.
 std::string panels_html(const Figure& figure,
                         const std::string& id,
                         const std::vector<const Series*>& legend,
                         Palette& palette) {
-  std::string out, empty;
-  bool any = false;
+  std::string out, empty, constant;
+  int drawn = 0;
   for (std::size_t i = 0; i < figure.panels.size(); ++i) {
     const Panel& panel = figure.panels[i];
     if (figure.moment == 0 && !has_points(panel)) {
-      empty += (empty.empty() ? "" : ", ") + html(panel.title);
+      list(empty, panel.title.empty() ? panel.x_label : panel.title, ", ");
       continue;
     }
-    any = true;
+    if (const auto value = constant_of(panel); value && figure.moment == 0) {
+      list(constant,
+           fmt::format("{}{}{} is {:.4g} throughout",
+                       panel.title,
+                       panel.title.empty() ? "" : ": ",
+                       panel.y_label.empty() ? "it" : panel.y_label,
+                       *value),
+           "; ");
+      continue;
+    }
+    ++drawn;
     out += panel_html(
         panel, figure, fmt::format("{}-panel{}", id, i), legend, palette);
   }
-  if (!any) return "<p class=\"nil\">not run</p>\n";
-  out = fmt::format(
-      "<div class=\"panels c{}\"{}>\n{}</div>\n",
-      std::clamp(figure.columns,
-                 1,
-                 std::clamp(static_cast<int>(figure.panels.size()), 1, 4)),
-      figure.moment > 0 ? fmt::format(" data-moment=\"{}\"", figure.moment)
-                        : "",
-      out);
-  return empty.empty() ? out
-                       : out + "<p class=\"nil\">not run: " + empty + "</p>\n";
+  if (drawn == 0 && constant.empty()) return nil_html("not run");
+  if (!empty.empty()) empty = "not run: " + empty;
+  list(empty, undrawn_text(figure), "; ");
+  const std::string words = nil_html(constant) + nil_html(empty);
+  if (drawn == 0) return words;
+  return legend_html(legend, palette) +
+         fmt::format("<div class=\"panels c{}\"{}>\n{}</div>\n",
+                     std::clamp(figure.columns, 1, std::min(drawn, 4)),
+                     figure.moment > 0
+                         ? fmt::format(" data-moment=\"{}\"", figure.moment)
+                         : "",
+                     out) +
+         words;
 }
 
 }  // namespace
@@ -100,13 +118,10 @@ std::string figure_html(const Figure& figure,
                         const Palette& report) {
   Palette palette = palette_of(figure, report);
   const auto legend = legend_of(figure);
-  const bool any =
-      std::any_of(figure.panels.begin(), figure.panels.end(), has_points);
   std::string out =
-      fmt::format("<figure id=\"{}\">\n<figcaption>{}</figcaption>\n{}{}",
+      fmt::format("<figure id=\"{}\">\n<figcaption>{}</figcaption>\n{}",
                   id,
                   caption_html(id, figure.source, figure.title),
-                  any ? legend_html(legend, palette) : "",
                   panels_html(figure, id, legend, palette));
   if (!figure.note.empty()) {
     out += fmt::format("<p class=\"remark\">{}</p>\n", html(figure.note));

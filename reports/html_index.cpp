@@ -128,7 +128,8 @@ std::string open_html(const Section& section) {
                      from);
 }
 
-std::string experiment_html(const Section& section, const std::string& folder) {
+std::string experiment_html(const Section& section) {
+  const std::string folder = folder_of(section.experiment);
   const std::string papers =
       verdicts_html(tally(section, Origin::paper), Origin::paper);
   const std::string ranges =
@@ -148,12 +149,10 @@ std::string experiment_html(const Section& section, const std::string& folder) {
 }
 
 std::string group_html(const Group& group,
-                       const std::vector<Section>& sections,
-                       const std::vector<std::string>& folders) {
+                       const std::vector<Section>& sections) {
   std::string own;
-  for (std::size_t k = 0; k < sections.size(); ++k)
-    if (key_of(sections[k]) == group.key)
-      own += experiment_html(sections[k], folders[k]);
+  for (const Section& section : sections)
+    if (key_of(section) == group.key) own += experiment_html(section);
   if (own.empty()) return "";
   std::string out = fmt::format(
       "<section id=\"{0}\" aria-labelledby=\"{0}-title\">\n"
@@ -184,16 +183,15 @@ std::vector<Group> all_groups(std::vector<Group> groups,
 }
 
 std::string contents_html(const std::vector<Group>& groups,
-                          const std::vector<Section>& sections,
-                          const std::vector<std::string>& folders) {
+                          const std::vector<Section>& sections) {
   std::string out = "<nav id=\"contents\" aria-label=\"Contents\">\n";
   for (const Group& group : groups) {
     std::string items;
-    for (std::size_t k = 0; k < sections.size(); ++k)
-      if (key_of(sections[k]) == group.key)
+    for (const Section& section : sections)
+      if (key_of(section) == group.key)
         items += fmt::format("<li><a href=\"{}/index.html\">{}</a></li>\n",
-                             html(folders[k]),
-                             html(sections[k].title));
+                             html(folder_of(section.experiment)),
+                             html(section.title));
     if (!items.empty())
       out += fmt::format(
           "<details>\n<summary>{}</summary>\n<ul>\n{}</ul>\n</details>\n",
@@ -203,7 +201,12 @@ std::string contents_html(const std::vector<Group>& groups,
   return out + "<p><a href=\"#provenance\">Provenance</a></p>\n</nav>\n";
 }
 
+/// What claims nothing has nothing to count.
 std::string tallies_html(const std::vector<Section>& sections) {
+  if (std::all_of(sections.begin(), sections.end(), [](const Section& s) {
+        return s.claims.empty();
+      }))
+    return "";
   return fmt::format(
       "<p>What the papers say: {}. Ranges of the suite: {}.</p>\n",
       tally_text(tally(sections, Origin::paper), Origin::paper),
@@ -213,18 +216,27 @@ std::string tallies_html(const std::vector<Section>& sections) {
 }  // namespace
 
 std::string index_html(const std::vector<Section>& sections,
-                       const std::vector<std::string>& folders,
-                       const std::vector<Group>& groups,
+                       const Pages& pages,
                        const nlohmann::ordered_json& provenance) {
-  const auto all = all_groups(groups, sections);
+  const auto front = sections.begin() + static_cast<std::ptrdiff_t>(std::min(
+                                            pages.front, sections.size()));
+  const std::vector<Section> whole(sections.begin(), front),
+      others(front, sections.end());
+  const auto all = all_groups(pages.groups, others);
   PageParts parts{.title = "Physics inverse problems: report"};
   nlohmann::ordered_json brief = provenance;
   if (brief.is_object()) brief.erase("papers");  // the groups name them
-  parts.header = "<h1>Physics inverse problems: what is reproduced</h1>\n" +
+  parts.header = "<h1>" + html(heading_of(provenance)) + "</h1>\n" +
                  summary_html(brief) + tallies_html(sections);
-  parts.contents = contents_html(all, sections, folders);
-  for (const Group& group : all)
-    parts.main += group_html(group, sections, folders);
+  parts.contents = contents_html(all, others);
+  const auto anchors = anchors_of(whole);
+  const Palette palette(sections);
+  for (std::size_t k = 0; k < whole.size(); ++k)
+    parts.main += section_html(whole[k],
+                               anchors[k],
+                               palette,
+                               {.folder = folder_of(whole[k].experiment)});
+  for (const Group& group : all) parts.main += group_html(group, others);
   parts.footer = provenance_html(brief);
   return page_html(parts);
 }

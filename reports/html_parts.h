@@ -2,11 +2,14 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "reports/anchors.h"
 #include "reports/palette.h"
+#include "reports/report.h"
 #include "suite/results/report_model.h"
 #include "suite/results/verdict_words.h"
 
@@ -16,6 +19,8 @@ extern const std::string_view kPageCss, kPageJs;
 
 /// Text as HTML.
 std::string html(std::string_view text);
+/// Words where a table or figure has nothing to show; empty as they are.
+std::string nil_html(const std::string& words);
 
 /// "Fig. 11 · Title" as a link to its own place.
 std::string caption_html(const std::string& id,
@@ -24,7 +29,8 @@ std::string caption_html(const std::string& id,
 
 /// Our numbers and, where there are some, the paper's side by side; spreads
 /// are columns of their own, so that digits stand below each other. A table
-/// that is wide and flat is turned.
+/// that is wide and flat is turned; columns and rows that were not run are
+/// words below it.
 std::string table_html(const Table& table, const std::string& id);
 
 /// "Table 4 · Title".
@@ -44,6 +50,16 @@ struct PageParts {
 /// A page that needs nothing but itself.
 std::string page_html(const PageParts& parts);
 
+/// How many statements came to which verdict, and a row per section.
+std::string overview_html(const std::vector<Section>& sections,
+                          const std::vector<Anchors>& anchors);
+/// Links to the sections' claims, tables and figures.
+std::string contents_html(const std::vector<Section>& sections,
+                          const std::vector<Anchors>& anchors);
+/// What the page is called: pages that are no report of reproductions bring
+/// their own.
+std::string heading_of(const nlohmann::ordered_json& provenance);
+
 /// Profile, date and processor, as far as they are known.
 std::string summary_html(const nlohmann::ordered_json& provenance);
 /// All that is known of a campaign.
@@ -52,11 +68,13 @@ std::string provenance_html(const nlohmann::ordered_json& provenance);
 /// data, which stand in the page's folder, and to the index above it.
 std::string section_page_html(const Section& section,
                               const nlohmann::ordered_json& provenance,
-                              const Palette& palette);
+                              const Palette& palette,
+                              const std::vector<Picture>& pictures = {});
 
 /// What stands beside a page.
 struct Beside {
-  bool files = false;        ///< the data of tables and figures
+  /// Of the data of tables and figures, from the page; nothing: not linked.
+  std::optional<std::string> folder = {};
   std::string command = {};  ///< what makes them
 };
 /// The part of a page that shows an experiment: claims with links to the tables

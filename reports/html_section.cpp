@@ -123,13 +123,13 @@ struct Kind {
 };
 
 /// Links to the files of a table or figure, and the command that makes them.
-std::string data_html(const char* folder,
+std::string data_html(const std::string& folder,
                       const std::string& id,
                       std::initializer_list<Kind> kinds,
                       const std::string& command) {
   std::string out;
   for (const Kind& kind : kinds)
-    out += fmt::format("{}<a href=\"{}/{}{}\">{}</a>",
+    out += fmt::format("{}<a href=\"{}{}{}\">{}</a>",
                        out.empty() ? "" : " · ",
                        folder,
                        html(id),
@@ -159,12 +159,12 @@ std::string section_html(const Section& section,
   std::string out = fmt::format(
       "<section id=\"{0}\" aria-labelledby=\"{0}-title\">\n"
       "<h2 id=\"{0}-title\"><a class=\"self\" href=\"#{0}\">{1}</a></h2>\n"
-      "<p class=\"remark\"><code>{2}</code>{3}</p>\n",
+      "<p class=\"remark\"><code>{2}</code></p>\n",
       anchors.section,
       html(section.title),
-      html(section.experiment),
-      section.paper.empty() ? ""
-                            : fmt::format(" · paper: {}", html(section.paper)));
+      html(section.experiment));
+  const std::string within =
+      beside.folder.value_or("").empty() ? "" : html(*beside.folder) + '/';
   if (!section.standing.empty())
     out += "<p>" + html(section.standing) + ".</p>\n";
   for (const Origin origin : {Origin::paper, Origin::suite})
@@ -174,9 +174,9 @@ std::string section_html(const Section& section,
     const Table& table = section.tables[k];
     out += table_html(table, anchors.tables[k]) +
            said_of(table.source, section, anchors);
-    if (beside.files)
+    if (beside.folder)
       out +=
-          data_html("tables",
+          data_html(within + "tables/",
                     table.id,
                     {{".csv", "CSV"}, {".json", "JSON"}, {".md", "Markdown"}},
                     beside.command);
@@ -186,8 +186,8 @@ std::string section_html(const Section& section,
     const Figure& figure = section.figures[k];
     out += figure_html(figure, anchors.figures[k], palette) +
            said_of(figure.source, section, anchors);
-    if (beside.files)
-      out += data_html("figures",
+    if (beside.folder)
+      out += data_html(within + "figures/",
                        figure.id,
                        {{".svg", "SVG"},
                         {".json", "JSON"},

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <optional>
@@ -47,6 +48,43 @@ Table turned(const Table& table) {
       line.cells.push_back(cell_at(row, c));
     out.rows.push_back(std::move(line));
   }
+  return out;
+}
+
+bool is_missing(const Cell& cell) {
+  return cell.text == "not run" && !cell.paper;
+}
+
+// Without columns and rows of which nothing was run; `words` names them.
+Table without_missing(const Table& table, std::string& words) {
+  Table out = table;
+  std::vector<std::string> missing;
+  out.columns.clear();
+  for (TableRow& row : out.rows) row.cells.clear();
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    const bool all =
+        !table.rows.empty() &&
+        std::all_of(
+            table.rows.begin(), table.rows.end(), [&](const TableRow& row) {
+              return is_missing(cell_at(row, c));
+            });
+    if (all) {
+      missing.push_back(table.columns[c]);
+      continue;
+    }
+    out.columns.push_back(table.columns[c]);
+    for (std::size_t r = 0; r < table.rows.size(); ++r)
+      out.rows[r].cells.push_back(cell_at(table.rows[r], c));
+  }
+  std::erase_if(out.rows, [&](const TableRow& row) {
+    const bool all =
+        !row.cells.empty() &&
+        std::all_of(row.cells.begin(), row.cells.end(), is_missing);
+    if (all) missing.push_back(row.label);
+    return all;
+  });
+  if (!missing.empty() && !out.rows.empty() && !out.columns.empty())
+    words = nil_html(fmt::format("not run: {}", fmt::join(missing, "; ")));
   return out;
 }
 
@@ -146,9 +184,11 @@ std::string head_html(const Table& table, const std::vector<Layout>& layouts) {
 }  // namespace
 
 std::string table_html(const Table& given, const std::string& id) {
+  std::string missing;
+  const Table run = without_missing(given, missing);
   const bool flat =
-      given.rows.size() <= kFlatRows && given.columns.size() >= kWideColumns;
-  const Table table = flat ? turned(given) : given;
+      run.rows.size() <= kFlatRows && run.columns.size() >= kWideColumns;
+  const Table table = flat ? turned(run) : run;
   std::vector<Layout> layouts;
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     layouts.push_back(layout_of(table, c));
@@ -157,12 +197,18 @@ std::string table_html(const Table& given, const std::string& id) {
       table.unit.empty() ? table.title
                          : fmt::format("{} [{}]", table.title, table.unit);
   std::string out = fmt::format(
+      "<div class=\"table\" id=\"{0}\">\n"
+      "<p class=\"caption\" id=\"{0}-caption\">{1}</p>\n",
+      id,
+      caption_html(id, table.source, title));
+  if (table.rows.empty() || table.columns.empty())
+    return out + nil_html("not run") + "</div>\n";
+  out += fmt::format(
       "<div class=\"scroll\" tabindex=\"0\" role=\"region\" "
-      "aria-labelledby=\"{0}-caption\">\n<table id=\"{0}\">\n"
-      "<caption id=\"{0}-caption\">{1}</caption>\n<thead>\n{2}</thead>\n"
+      "aria-labelledby=\"{0}-caption\">\n"
+      "<table aria-labelledby=\"{0}-caption\">\n<thead>\n{1}</thead>\n"
       "<tbody>\n",
       id,
-      caption_html(id, table.source, title),
       head_html(table, layouts));
   for (const TableRow& row : table.rows) {
     out += fmt::format("<tr><th scope=\"row\">{}</th>", html(row.label));
@@ -171,11 +217,11 @@ std::string table_html(const Table& given, const std::string& id) {
     }
     out += "</tr>\n";
   }
-  out += "</tbody>\n</table>\n</div>\n";
+  out += "</tbody>\n</table>\n</div>\n" + missing;
   if (!table.note.empty()) {
     out += fmt::format("<p class=\"remark\">{}</p>\n", html(table.note));
   }
-  return out;
+  return out + "</div>\n";
 }
 
 }  // namespace physinv

@@ -1,6 +1,7 @@
 #include "reports/legend.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <set>
@@ -19,8 +20,9 @@ bool same_look(const Series& a, const Series& b) {
 std::vector<const Series*> legend_of(const Figure& figure) {
   std::vector<const Series*> legend;
   for (const Panel& panel : figure.panels) {
+    if (!has_points(panel)) continue;
     for (const Series& s : panel.series) {
-      if (s.label.empty()) continue;
+      if (s.label.empty() || !shows(panel, s)) continue;
       const bool known =
           std::any_of(legend.begin(), legend.end(), [&](const Series* k) {
             return same_look(*k, s);
@@ -29,6 +31,30 @@ std::vector<const Series*> legend_of(const Figure& figure) {
     }
   }
   return legend;
+}
+
+std::string undrawn_text(const Figure& figure) {
+  const auto drawn = legend_of(figure);
+  if (drawn.empty()) return "";
+  std::vector<std::string> empty, infinite;
+  for (const Panel& panel : figure.panels) {
+    for (const Series& s : panel.series) {
+      if (s.label.empty() || legend_index(drawn, s) >= 0) continue;
+      auto& list = s.y.empty() ? empty : infinite;
+      if (std::find(list.begin(), list.end(), s.label) == list.end())
+        list.push_back(s.label);
+    }
+  }
+  std::erase_if(infinite, [&](const std::string& label) {
+    return std::find(empty.begin(), empty.end(), label) != empty.end();
+  });
+  std::string text;
+  for (const auto& [words, list] :
+       {std::pair("not run", &empty), std::pair("no finite number", &infinite)})
+    if (!list->empty())
+      text += fmt::format(
+          "{}{}: {}", text.empty() ? "" : "; ", words, fmt::join(*list, ", "));
+  return text;
 }
 
 int legend_index(const std::vector<const Series*>& legend,

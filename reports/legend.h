@@ -3,6 +3,7 @@
 #pragma once
 
 #include <compare>
+#include <string>
 #include <vector>
 
 #include "reports/palette.h"
@@ -11,8 +12,12 @@
 
 namespace physinv {
 
-/// One series for each label, method and stroke there is, in order.
+/// One series for each label, method and stroke that is drawn, in order.
 std::vector<const Series*> legend_of(const Figure& figure);
+
+/// What has labels and is not drawn: "not run: JPO; no finite number: Adam".
+/// Empty if there is nothing, or nothing else.
+std::string undrawn_text(const Figure& figure);
 
 /// Where a series is in the legend, -1 if nowhere. One without a label goes
 /// with the first of its method.

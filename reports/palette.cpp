@@ -51,7 +51,7 @@ constexpr std::string_view kFurniture =
     ".x{stroke-width:2.2;fill:none}"
     ".arrow{fill:none;stroke:#fff;stroke-width:1.1;stroke-linecap:round}"
     ".halo{fill:none;stroke-width:4.2;stroke-linejoin:round;opacity:.75}"
-    ".grid{stroke-width:.8}.frame{fill:none;stroke-width:1}";
+    ".grid{fill:none;stroke-width:.8}.frame{fill:none;stroke-width:1}";
 
 /// A pattern of short inks has round ends, which make dots of them.
 std::string dash_rules() {
@@ -121,6 +121,43 @@ std::vector<double> dash_pattern(Ink ink, bool dashed) {
 
 std::string light_color(int color) { return std::string(kColors[color].light); }
 
+namespace {
+
+/// What most sections give a method; of equals the first.
+std::map<std::string, Ink> usual_inks(const std::vector<Section>& sections) {
+  struct Vote {
+    Ink ink;
+    int sections = 0;
+    std::size_t last = SIZE_MAX;
+  };
+  std::map<std::string, std::vector<Vote>> votes;
+  for (std::size_t k = 0; k < sections.size(); ++k)
+    for (const Figure& figure : sections[k].figures)
+      for (const Panel& panel : figure.panels)
+        for (const Series& s : panel.series) {
+          if (!s.look) continue;
+          const Ink ink{static_cast<int>(s.look->hue), s.look->marker};
+          auto& own = votes[s.method];
+          auto vote = std::find_if(own.begin(), own.end(), [&](const Vote& v) {
+            return v.ink == ink;
+          });
+          if (vote == own.end()) vote = own.insert(own.end(), {ink});
+          if (vote->last != k) ++vote->sections;
+          vote->last = k;
+        }
+  std::map<std::string, Ink> inks;
+  for (const auto& [method, own] : votes)
+    inks[method] = std::max_element(own.begin(),
+                                    own.end(),
+                                    [](const Vote& a, const Vote& b) {
+                                      return a.sections < b.sections;
+                                    })
+                       ->ink;
+  return inks;
+}
+
+}  // namespace
+
 Palette::Palette(const std::vector<Section>& sections) {
   const auto each = [&](auto&& visit) {
     for (const Section& section : sections)
@@ -128,11 +165,7 @@ Palette::Palette(const std::vector<Section>& sections) {
         for (const Panel& panel : figure.panels)
           for (const Series& series : panel.series) visit(series);
   };
-  each([&](const Series& s) {
-    if (s.look)
-      methods_.try_emplace(s.method,
-                           Ink{static_cast<int>(s.look->hue), s.look->marker});
-  });
+  methods_ = usual_inks(sections);
   each([&](const Series& s) { of(s); });
 }
 

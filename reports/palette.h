@@ -38,8 +38,8 @@ std::string light_color(int color);
 class Palette {
  public:
   Palette() = default;
-  /// Of a whole report: a method looks the same in every figure, as where it
-  /// first has a look.
+  /// Of a whole report: a method looks the same in every figure, as in most
+  /// sections that give it a look.
   explicit Palette(const std::vector<Section>& sections);
 
   Ink of(const Series& series);

@@ -1,6 +1,7 @@
 /// One panel of a figure: axes, curves, field.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,8 +17,13 @@ struct Rect {
   double x = 0, y = 0, w = 0, h = 0;
 };
 
-/// Is there anything to draw?
+/// Does the panel draw a point of this series?
+bool shows(const Panel& panel, const Series& series);
+/// Is there anything to draw? Lines of reference alone, dashed at one height,
+/// beside series that have no point, are nothing.
 bool has_points(const Panel& panel);
+/// The one value at which all of several points are; bands are none.
+std::optional<double> constant_of(const Panel& panel);
 
 class PanelPlot {
  public:
@@ -28,15 +34,21 @@ class PanelPlot {
   /// and the panel with its axes, for the script of a page.
   void set_keys(std::vector<int> keys) { keys_ = std::move(keys); }
 
+  /// As usual, or what the names of its rows need.
+  double height(double width, double usual) const;
+
   /// Draws into `cell`, labels included.
   void draw(Svg& svg, const Rect& cell) const;
 
  private:
   void fit_axes();
+  Rect box_in(const Rect& cell) const;
   /// Ticks, their values being shares of the axis.
   std::vector<Tick> x_marks(int wanted) const;
   std::vector<Tick> y_marks(int wanted) const;
+  double turned_names(double width) const;
   void furniture(Svg& svg, const Rect& box, const Rect& cell) const;
+  void ticks(Svg& svg, const Rect& box, const Rect& cell) const;
   void curves(Svg& svg, const Rect& box) const;
   void arrows(Svg& svg, const Rect& box, const Arrows& of) const;
   void band(Svg& svg, const Rect& box, const Series& s, int color) const;

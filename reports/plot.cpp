@@ -77,7 +77,11 @@ std::string describe(const Figure& figure) {
 }  // namespace
 
 std::string render_svg(const Figure& figure, const Palette& report) {
-  const Grid grid = grid_of(figure);
+  Palette palette = palette_of(figure, report);
+  Grid grid = grid_of(figure);
+  for (const Panel& panel : figure.panels)
+    grid.cell_h =
+        PanelPlot(panel, "", palette).height(grid.cell_w, grid.cell_h);
   const double inner = grid.columns * grid.cell_w;
   const auto chars = [&](double each) {
     return static_cast<std::size_t>(inner / each);
@@ -86,8 +90,11 @@ std::string render_svg(const Figure& figure, const Palette& report) {
                                ? figure.title
                                : figure.source + " · " + figure.title;
   const auto title = wrap(head, chars(8.2));
-  const auto note = wrap(figure.note, chars(5.9));
-  Palette palette = palette_of(figure, report);
+  const std::string undrawn = undrawn_text(figure);
+  const std::string both = figure.note +
+                           (figure.note.empty() || undrawn.empty() ? "" : " ") +
+                           undrawn;
+  const auto note = wrap(both, chars(5.9));
   std::vector<Key> keys = legend_keys(figure);
   const double legend = lay_out(keys, inner);
 

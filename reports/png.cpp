@@ -64,17 +64,18 @@ std::string png_of(const Raster& raster, std::span<const std::string> palette) {
   return bytes;
 }
 
-std::string data_url(const std::string& png) {
+std::string data_url(const std::string& bytes, std::string_view kind) {
   constexpr char kDigits[] =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string url = "data:image/png;base64,";
-  for (std::size_t i = 0; i < png.size(); i += 3) {
+  std::string url = "data:" + std::string(kind) + ";base64,";
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
     unsigned bits = 0;
     for (std::size_t k = 0; k < 3; ++k)
-      bits = bits << 8U |
-             (i + k < png.size() ? static_cast<std::uint8_t>(png[i + k]) : 0U);
+      bits =
+          bits << 8U |
+          (i + k < bytes.size() ? static_cast<std::uint8_t>(bytes[i + k]) : 0U);
     for (std::size_t k = 0; k < 4; ++k)
-      url += i + k <= png.size() ? kDigits[bits >> (18 - 6 * k) & 63U] : '=';
+      url += i + k <= bytes.size() ? kDigits[bits >> (18 - 6 * k) & 63U] : '=';
   }
   return url;
 }

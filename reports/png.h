@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace physinv {
@@ -19,7 +20,8 @@ struct Raster {
 /// Throws std::runtime_error with libpng's words.
 std::string png_of(const Raster& raster, std::span<const std::string> palette);
 
-/// As a URL that holds the bytes themselves.
-std::string data_url(const std::string& png);
+/// As a URL that holds the bytes themselves; of a picture of this kind.
+std::string data_url(const std::string& bytes,
+                     std::string_view kind = "image/png");
 
 }  // namespace physinv

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
@@ -41,10 +42,18 @@ struct Group {
   std::string link;   ///< where to read it; may be empty
 };
 
+/// A figure that was drawn before.
+struct Picture {
+  std::string title, svg, note;
+};
+
 /// How a report is cut into pages.
 struct Pages {
   bool one_file = true;       ///< index.html has everything
   std::vector<Group> groups;  ///< of the index, in order
+  std::size_t front = 0;      ///< so many sections stand on the index, whole
+  /// By experiment, below its other figures.
+  std::map<std::string, std::vector<Picture>> pictures = {};
 };
 
 /// Files below `dir`, where jpo/billiards becomes jpo-billiards:

@@ -255,10 +255,10 @@ std::vector<NamedDigest> without_causes(
 }
 
 constexpr std::array kWhen{"then", "now"};
-using Counts = std::array<VerdictCounts, kWhen.size()>;
+using AuditCounts = std::array<VerdictCounts, kWhen.size()>;
 
 /// How many came to which verdict, then and now.
-std::string audit_counts(const Counts& counts) {
+std::string audit_counts(const AuditCounts& counts) {
   VerdictCounts any{};
   for (const VerdictCounts& c : counts)
     for (std::size_t v = 0; v < any.size(); ++v) any[v] += c[v];
@@ -285,7 +285,7 @@ std::string audit_markdown(const std::vector<NamedDigest>& campaigns,
     const Papers then = latest_claims(without_causes(campaigns));
     const Papers now = latest_claims(campaigns);
     std::string rows;
-    Counts counts{};
+    AuditCounts counts{};
     for (const auto& [paper, all] : then)
       for (const auto& [key, old] : all) {
         if (old.claim.origin != Origin::paper) continue;

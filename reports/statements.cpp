@@ -37,7 +37,7 @@ Statement statement_of(const ClaimResult& c) {
               .origin = c.origin};
   if (const ConditionResult* condition = telling(c)) {
     if (condition->value) f.here = value_text(*condition->value);
-    f.paper = condition->bounds;
+    f.paper = (c.origin == Origin::suite ? "range " : "") + condition->bounds;
   }
   return f;
 }
@@ -67,18 +67,19 @@ std::string number(const std::optional<double>& value,
   return table.unit.empty() ? text : text + " " + table.unit;
 }
 
-/// Cells with both numbers.
-std::vector<Statement> cells_of(const Table& table) {
+/// Cells with both numbers. A row of the experiment as a whole has no name.
+std::vector<Statement> cells_of(const Table& table, const std::string& title) {
   std::vector<Statement> cells;
   for (const TableRow& row : table.rows) {
     for (std::size_t c = 0; c < table.columns.size(); ++c) {
       const Cell& cell = cell_at(row, c);
       if (!cell.ours || !cell.paper || !cell.text.empty()) continue;
       cells.push_back({.what = fmt::format(
-                           "{}: {}, {}",
+                           "{}: {}{}{}",
                            table.source.empty() ? table.title : table.source,
                            table.columns[c],
-                           row.label),
+                           row.label == title ? "" : ", ",
+                           row.label == title ? "" : row.label),
                        .here = number(cell.ours, cell.spread, table),
                        .paper = number(cell.paper, cell.paper_spread, table)});
     }
@@ -91,7 +92,7 @@ void add_cells(std::vector<Statement>& all,
                std::size_t most) {
   std::vector<std::vector<Statement>> tables;
   for (const Table& table : section.tables)
-    if (!is_of_times(table)) tables.push_back(cells_of(table));
+    if (!is_of_times(table)) tables.push_back(cells_of(table, section.title));
   for (std::size_t k = 0; all.size() < most; ++k) {
     bool any = false;
     for (const auto& cells : tables) {

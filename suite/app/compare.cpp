@@ -12,6 +12,7 @@
 #include "suite/app/load.h"
 #include "suite/app/options.h"
 #include "suite/app/published_campaign.h"
+#include "suite/app/sections.h"
 #include "suite/compare/comparison.h"
 #include "suite/compare/pages.h"
 #include "suite/compare/ranks.h"
@@ -30,6 +31,7 @@ struct CompareFlags {
   std::string by = "seed", format = "text", out;
   double factor = 1.5;
   int lines = 30;
+  bool one_file = false;
 };
 
 std::vector<JudgedClaim> claims_of(const Results& results,
@@ -233,6 +235,9 @@ ExitCode compare_verb(const Arguments& arguments) {
                "ranks",
                &flags.out,
                "DIR"},
+              {"--one-file",
+               "of --out: one page that has everything",
+               &flags.one_file},
               {"--lines", "of the table (default 30)", &flags.lines},
               {"--fail-on",
                fmt::format("exit 5 if this got worse in any pair of runs, 6 if "
@@ -274,7 +279,16 @@ ExitCode compare_verb(const Arguments& arguments) {
                                   {"sides", c.labels},
                                   {"by", flags.by},
                                   {"command", command_text(flags)}};
-    write_report(flags.out, compare_sections(c, sides, claims, ranks), origin);
+    auto sections = compare_sections(c, sides, claims, ranks);
+    for (Section& section : sections)
+      if (const auto e = registry().find(section.experiment))
+        section.title = e->title;
+    write_report(flags.out,
+                 sections,
+                 origin,
+                 {.one_file = flags.one_file,
+                  .groups = groups_of(printed_numbers()),
+                  .front = 1});
     if (flags.format == "text")
       fmt::print("report: {}\n", (fs::path(flags.out) / "index.html").string());
   }

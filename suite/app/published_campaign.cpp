@@ -109,6 +109,20 @@ bool is_published(const fs::path& directory) {
          !is_there(directory / "journal.jsonl");
 }
 
+std::map<std::string, std::vector<Picture>> kept_pictures(
+    const fs::path& directory, const Json& digest) {
+  std::map<std::string, std::vector<Picture>> pictures;
+  for (const Json& section : digest.at("sections")) {
+    auto& own = pictures[section.at("experiment").get<std::string>()];
+    for (const Json& figure : section.value("figures", Json::array()))
+      own.push_back({.title = figure.at("title"),
+                     .svg = read_file(directory / "figures" /
+                                      figure.at("file").get<std::string>()),
+                     .note = figure.value("note", "")});
+  }
+  return pictures;
+}
+
 Results summarized_results(const Json& results) {
   std::vector<CaseRecord> cases;
   std::map<std::string, std::size_t> known;

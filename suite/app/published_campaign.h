@@ -3,9 +3,13 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "reports/digest.h"
+#include "reports/report.h"
 #include "suite/results/published.h"
 #include "suite/results/results.h"
 
@@ -18,6 +22,11 @@ bool is_published(const std::filesystem::path& directory);
 /// with the file's name if it is damaged.
 NamedDigest published_digest(const std::filesystem::path& directory,
                              const Published& published);
+
+/// Its figures, by experiment.
+std::map<std::string, std::vector<Picture>> kept_pictures(
+    const std::filesystem::path& directory,
+    const nlohmann::ordered_json& digest);
 
 /// What results.json tells of its stages: ends, counts, times, and the median
 /// loss in place of all losses. Without curves, estimates or problems.

@@ -122,16 +122,19 @@ ExitCode report_published(const std::string& results, const std::string& out) {
   const auto sections = sections_of(digest);
   auto origin = digest.at("provenance");
   origin["command"] = campaign_command(origin);
-  write_report(
-      out, sections, origin, {.one_file = false, .groups = groups_of(numbers)});
-  const fs::path figures = fs::path(results) / "figures";
+  write_report(out,
+               sections,
+               origin,
+               {.one_file = false,
+                .groups = groups_of(numbers),
+                .pictures = kept_pictures(results, digest)});
   fmt::print(
       "{}report: {}\n{}: {}\n",
       render_claims_text(sections,
                          static_cast<std::size_t>(Screen::of(stdout).columns)),
       (fs::path(out) / "index.html").string(),
-      is_folder(figures)
-          ? fmt::format("figures are in {}, made by", figures.string())
+      is_folder(fs::path(results) / "figures")
+          ? "figures of curves are those that were published; made by"
           : "figures are not kept with a published campaign",
       origin["command"].get<std::string>());
   return ExitCode::good;

@@ -9,6 +9,7 @@
 
 #include "reports/digest.h"
 #include "reports/html.h"
+#include "reports/latest_claims.h"
 #include "reports/report.h"
 #include "reports/results_page.h"
 #include "suite/app/history.h"
@@ -166,13 +167,14 @@ std::vector<NamedDigest> digests(const fs::path& directory) {
   return found;
 }
 
-/// Pages of each campaign in a folder of its name, what leads to them, and the
-/// history of the gate where git has one.
+/// Pages of each campaign in a folder of its name, what leads to them, the
+/// newest first, and the history of the gate where git has one.
 void write_html(const fs::path& directory,
+                const fs::path& campaigns,
                 const std::vector<NamedDigest>& found) {
   const Published published(published_directory());
   std::vector<CampaignPages> all;
-  for (const NamedDigest& c : found) {
+  for (const NamedDigest& c : newest_first(found)) {
     CampaignPages pages{.name = c.name,
                         .command = campaign_command(c.digest.at("provenance")),
                         .provenance = c.digest.at("provenance"),
@@ -182,7 +184,9 @@ void write_html(const fs::path& directory,
     write_report(directory / c.name,
                  pages.sections,
                  origin,
-                 {.one_file = false, .groups = groups_of(published)});
+                 {.one_file = false,
+                  .groups = groups_of(published),
+                  .pictures = kept_pictures(campaigns / c.name, c.digest)});
     all.push_back(std::move(pages));
   }
   std::vector<std::pair<std::string, std::string>> others;
@@ -250,7 +254,7 @@ ExitCode results_verb(const Arguments& arguments) {
     return ExitCode::good;
   const auto found = digests(campaigns);
   if (!html.empty()) {
-    write_html(html, found);
+    write_html(html, campaigns, found);
     fmt::print("{} campaigns: {}\n",
                found.size(),
                (fs::path(html) / "index.html").string());

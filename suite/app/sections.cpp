@@ -105,20 +105,40 @@ std::string profiles_text(const Results& results) {
   return stages.size() > 1 ? text : "";
 }
 
-/// A method that its experiment's own figures call by one name has that name
-/// everywhere.
+/// "HIG, b = 16" names a method, "b = 16" one of its settings.
+bool is_name(const std::string& label) {
+  const auto equals = label.find('=');
+  if (equals == std::string::npos) return !label.empty();
+  const auto word = label.find_first_of(" ,");
+  return word < equals && label.find_first_not_of(' ', word) != equals;
+}
+
+/// A method that its experiment's own figures call by one name, and no other
+/// by it, has that name everywhere.
 void learn_titles(const Experiment& e, Section& section) {
   std::map<std::string, std::set<std::string>> labels;
   for (const Figure& figure : section.figures)
     for (const Panel& panel : figure.panels)
       for (const Series& s : panel.series)
-        if (!s.dashed && !s.label.empty() &&
-            s.label.find('=') == std::string::npos &&
+        if (!s.dashed && is_name(s.label) &&
             find_method(e, s.method) != nullptr)
           labels[s.method].insert(s.label);
+  std::map<std::string, int> called;
   for (const auto& [method, names] : labels)
-    if (names.size() == 1)
+    for (const auto& name : names) ++called[name];
+  for (const auto& [method, names] : labels)
+    if (names.size() == 1 && called[*names.begin()] == 1)
       section.method_titles.try_emplace(method, *names.begin());
+}
+
+/// Rows of methods have their names.
+void name_rows(Section& section) {
+  for (Table& table : section.tables)
+    if (table.corner == "method")
+      for (TableRow& row : table.rows)
+        if (const auto at = section.method_titles.find(row.label);
+            at != section.method_titles.end())
+          row.label = at->second;
 }
 
 }  // namespace
@@ -174,6 +194,7 @@ std::vector<Section> sections_of(const Results& results,
   for (const auto& [e, at] : own) {
     Section& section = sections[at];
     section.method_titles.insert(titles.begin(), titles.end());
+    name_rows(section);
     if (!only_diagnoses(*e)) {
       add_frontier(section, results, e->name, section.method_titles);
       const CommonRuns common = common_runs(results, e->name);

@@ -183,9 +183,10 @@ TEST(ReportHtml, CountsClaimsAndShowsEvidence) {
 }
 
 TEST(ReportHtml, TablesPutThePaperBeside) {
-  const std::string table =
-      between(page(), "<table id=\"jpo-toy-table1\">", "</table>");
-  EXPECT_NE(table.find("<caption id=\"jpo-toy-table1-caption\">"), table.npos);
+  const std::string table = between(
+      page(), "<div class=\"table\" id=\"jpo-toy-table1\">", "</table>");
+  EXPECT_NE(table.find("<p class=\"caption\" id=\"jpo-toy-table1-caption\">"),
+            table.npos);
   EXPECT_NE(table.find("Table 1 · Times [s]"), table.npos);
   EXPECT_NE(table.find("<td>1.50</td><td class=\"spread\">± 0.25</td>"
                        "<td class=\"paper\">2.25</td>"
@@ -205,6 +206,52 @@ TEST(ReportHtml, TablesPutThePaperBeside) {
     ++rows;
   }
   EXPECT_EQ(rows, 3U);
+}
+
+TEST(ReportHtml, ColumnsAndRowsThatWereNotRunAreWords) {
+  const Cell none{.text = "not run"};
+  Section s{.experiment = "e", .title = "E"};
+  s.tables = {
+      {.id = "t",
+       .columns = {"a", "b", "c"},
+       .rows = {{.label = "x", .cells = {{.ours = 1}, none, none}},
+                {.label = "y",
+                 .cells = {none, none, {.paper = 3, .text = "not run"}}},
+                {.label = "z", .cells = {none, none, none}}}},
+      {.id = "nothing",
+       .columns = {"a"},
+       .rows = {{.label = "x", .cells = {none}}}}};
+  const std::string text = report_html({s}, nullptr);
+  EXPECT_NE(text.find("<p class=\"nil\">not run: b; z</p>"), text.npos);
+  EXPECT_EQ(text.find("<th scope=\"row\">z</th>"), text.npos);
+  EXPECT_NE(text.find("<th scope=\"row\">y</th>"), text.npos)
+      << "the paper has a number there";
+  const std::string empty =
+      between(text, "<div class=\"table\" id=\"e-nothing\">", "</div>");
+  EXPECT_NE(empty.find(">not run<"), empty.npos);
+  EXPECT_EQ(empty.find("<table"), empty.npos);
+}
+
+TEST(ReportHtml, PanelsThatShowOneNumberAreWords) {
+  const Series flat{.label = "a", .method = "a", .x = {1, 2}, .y = {0.5, 0.5}},
+      falls{.label = "a", .method = "a", .x = {1, 2}, .y = {1, 0.5}},
+      none{.label = "b", .method = "b"},
+      half{.label = "half",
+           .method = "h",
+           .x = {1, 2},
+           .y = {1, 1},
+           .dashed = true};
+  Section s{.experiment = "e", .title = "E"};
+  s.figures = {{.id = "f",
+                .panels = {{.title = "P", .y_label = "share", .series = {flat}},
+                           {.title = "Q", .series = {falls, none}},
+                           {.title = "R", .series = {none, half}}}}};
+  const std::string figure =
+      between(report_html({s}, nullptr), "<figure id=\"e-f\">", "</figure>");
+  EXPECT_EQ(count(figure, "<svg viewBox"), 1U + 1U) << "a panel and its legend";
+  EXPECT_NE(figure.find("P: share is 0.5 throughout"), figure.npos);
+  EXPECT_NE(figure.find("not run: R; not run: b"), figure.npos)
+      << "half alone is a line of reference";
 }
 
 TEST(ReportHtml, FlatTablesAreTurned) {
@@ -229,10 +276,10 @@ TEST(ReportHtml, FiguresShareOneStyleAndMarkTheirSeries) {
   EXPECT_EQ(count(figure, "<li data-k="), 2U);
   EXPECT_EQ(count(figure, "JPO &lt;&amp;&gt;</li>"), 1U);
   EXPECT_EQ(count(figure, "data-x=\""), 2U);
-  // Line, error bars and marker of each panel; the end of BFGS, which has no
+  // What there is of line, error bars and marker; the end of BFGS, which has no
   // label, goes with BFGS.
   EXPECT_EQ(count(figure, "<g class=\"k k0\""), 4U);
-  EXPECT_EQ(count(figure, "<g class=\"k k1\""), 6U);
+  EXPECT_EQ(count(figure, "<g class=\"k k1\""), 4U);
   EXPECT_NE(figure.find("note &gt; this"), figure.npos);
   EXPECT_NE(between(text, "<figure id=\"jpo-toy-fig2\">", "</figure>")
                 .find("not run"),

@@ -46,16 +46,17 @@ std::vector<Section> sections() {
           {.experiment = "sip/toy", .title = "Third"}};
 }
 
-std::string index() {
+std::string index(std::size_t front = 0) {
   return index_html(
       sections(),
-      {"jpo-toy", "matrix-toy", "sip-toy"},
-      {{.key = "sip",
-        .title = "SIP paper",
-        .text = "A. Author",
-        .link = "https://arxiv.org/abs/1"},
-       {.key = "jpo", .title = "JPO paper", .text = "", .link = ""},
-       {.key = "hig", .title = "HIG paper", .text = "", .link = ""}},
+      {.one_file = false,
+       .groups = {{.key = "sip",
+                   .title = "SIP paper",
+                   .text = "A. Author",
+                   .link = "https://arxiv.org/abs/1"},
+                  {.key = "jpo", .title = "JPO paper", .text = "", .link = ""},
+                  {.key = "hig", .title = "HIG paper", .text = "", .link = ""}},
+       .front = front},
       {{"date", "2026-01-01"}});
 }
 
@@ -70,6 +71,14 @@ TEST(Index, GroupsAreInTheOrderAskedFor) {
   for (const char* folder : {"jpo-toy", "matrix-toy", "sip-toy"})
     EXPECT_NE(at(("href=\"" + std::string(folder) + "/index.html\"").c_str()),
               page.npos);
+}
+
+TEST(Index, SectionsInFrontStandThereWhole) {
+  const std::string page = index(1);
+  EXPECT_NE(page.find("href=\"jpo-toy/tables/t1.csv\""), page.npos);
+  EXPECT_EQ(page.find("jpo-toy/index.html"), page.npos);
+  EXPECT_LT(page.find("id=\"jpo-toy\""), page.find(">SIP paper</h2>"));
+  EXPECT_EQ(page.find(">JPO paper</h2>"), page.npos);
 }
 
 TEST(Index, FailingStatementsAreSentencesAndOpenOnesALine) {
@@ -88,7 +97,7 @@ TEST(Index, FailingStatementsAreSentencesAndOpenOnesALine) {
 /// What a sentence of the index says of one claim.
 std::string sentence_of(const ClaimResult& claim) {
   Section one{.experiment = "jpo/toy", .title = "Toy", .claims = {claim}};
-  const std::string page = index_html({one}, {"jpo-toy"}, {}, {});
+  const std::string page = index_html({one}, {.one_file = false}, {});
   const auto at = page.find("<ul class=\"failing\">");
   return at == page.npos ? "" : page.substr(at, page.find("</ul>", at) - at);
 }
@@ -148,6 +157,12 @@ TEST(Statements, DecidedOnesThenTablesWithoutTimes) {
   EXPECT_EQ(all[0].paper, "> 2");
   EXPECT_EQ(all[1].here, "3");
   EXPECT_EQ(all[2].what, "Table 1: a, row");
+  Section own = sections()[0];
+  own.title = "row";
+  EXPECT_EQ(statements_of(own, 8)[2].what, "Table 1: a");
+  own.claims.front().origin = Origin::suite;
+  own.claims.front().verdict = Verdict::not_reproduced;
+  EXPECT_EQ(statements_of(own, 8)[1].paper, "range > 2");
   EXPECT_EQ(all[2].here, "5.0 %");
   EXPECT_EQ(all[2].paper, "7.0 %");
   EXPECT_EQ(all[2].verdict, Verdict::not_judged);

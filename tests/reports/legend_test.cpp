@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <set>
 
 namespace physinv {
@@ -63,6 +64,31 @@ TEST(Legend, AMethodLooksTheSameInEveryFigure) {
   EXPECT_EQ(other.of(series("adam", "adam")).color,
             static_cast<int>(Hue::purple));
   EXPECT_NE(other.of(series("", "x")), other.of(series("", "y")));
+}
+
+TEST(Legend, AMethodLooksAsMostSectionsHaveIt) {
+  const auto section = [](Hue hue) {
+    Section s;
+    s.figures = {figure_of({series("gd", "gd"), series("gd", "gd")})};
+    for (Series& one : s.figures[0].panels[0].series) one.look = Look{hue, {}};
+    return s;
+  };
+  Palette most({section(Hue::blue), section(Hue::red), section(Hue::red)});
+  EXPECT_EQ(most.of(series("", "gd")).color, static_cast<int>(Hue::red));
+  Palette equal({section(Hue::blue), section(Hue::red)});
+  EXPECT_EQ(equal.of(series("", "gd")).color, static_cast<int>(Hue::blue));
+}
+
+TEST(Legend, HasWhatIsDrawn) {
+  const Series drawn = series("drawn", "a"), missing{.label = "missing"};
+  Series infinite = series("infinite", "c");
+  infinite.y = {INFINITY, NAN};
+  const Figure figure = figure_of({drawn, missing, infinite});
+  ASSERT_EQ(legend_of(figure).size(), 1U);
+  EXPECT_EQ(undrawn_text(figure),
+            "not run: missing; no finite number: infinite");
+  EXPECT_EQ(undrawn_text(figure_of({missing})), "") << "the panel says so";
+  EXPECT_EQ(undrawn_text(figure_of({drawn})), "");
 }
 
 TEST(Legend, AsManyInksAsMethods) {

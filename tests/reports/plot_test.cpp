@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "reports/palette.h"
@@ -177,6 +178,30 @@ TEST(RenderSvg, FieldsArePixels) {
   EXPECT_EQ(is.rgba[3], color(0));
   EXPECT_EQ(is.rgba[4], color(kFieldColors - 1));
   EXPECT_EQ(is.rgba[5][3], 0);
+}
+
+TEST(RenderSvg, WideNamesOfColumnsStandUpright) {
+  Panel panel;
+  panel.field = Field2D{.x = {0, 1}, .y = {0}, .values = {0, 1}};
+  panel.field->x_names = {"a", "b"};
+  EXPECT_EQ(count(render_svg(one_panel(panel)), "rotate(-90"), 0U);
+  panel.field->x_names = {"a", std::string(80, 'b')};
+  EXPECT_EQ(count(render_svg(one_panel(panel)), "rotate(-90"), 2U);
+}
+
+TEST(RenderSvg, RowsWithNamesHaveTheirHeight) {
+  Panel panel;
+  panel.field = Field2D{.x = {0}, .y = {0, 1}, .values = {0, 1}};
+  panel.field->y_names = {"a", "b"};
+  const std::string low = render_svg(one_panel(panel));
+  panel.field->y.assign(60, 0);
+  panel.field->values.assign(60, 1);
+  panel.field->y_names.assign(60, "a");
+  const std::string high = render_svg(one_panel(panel));
+  const auto height = [](const std::string& svg) {
+    return std::stod(svg.substr(svg.find("height=\"") + 8));
+  };
+  EXPECT_GT(height(high), height(low) + 400);
 }
 
 TEST(RenderSvg, FieldsMayShareAScale) {

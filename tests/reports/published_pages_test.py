@@ -74,6 +74,13 @@ def one_by_one(d):
     p = run("report", quick, "--out=one", cwd=d)
     check(p.returncode == 0 and "figures are not kept" in p.stdout, p.stderr)
     check(os.path.exists(f"{d}/one/jpo-billiards/tables/table-1.csv"), "tables")
+    drawn = os.path.join(CAMPAIGNS, "26-paper-jpo-robotic-arm")
+    p = run("report", drawn, "--out=drawn", cwd=d)
+    check(p.returncode == 0 and "were published" in p.stdout, p.stdout[-300:])
+    with open(f"{d}/drawn/jpo-robotic-arm/index.html") as f:
+        pictures = f.read().count("data:image/svg+xml;base64,")
+    check(pictures == len(listing(os.path.join(drawn, "figures"))),
+          f"{pictures} pictures")
     p = run("report", quick, "--check", "--out=one", cwd=d)
     check(p.returncode == 2 and "--out alone" in p.stderr, p.stderr)
     other = os.path.join(CAMPAIGNS, "8-quick-numerics")

@@ -145,7 +145,7 @@ TEST(SectionHtml, ClaimsAndFiguresLeadToEachOther) {
                     {.id = "P2", .says = "so", .where = "Sec. 4"}};
   const Anchors anchors = anchors_of({section}).front();
   const std::string page =
-      section_html(section, anchors, Palette(), {true, "./bench x"});
+      section_html(section, anchors, Palette(), {"", "./bench x"});
   EXPECT_NE(page.find(" · here: <a href=\"#jpo-toy-f\">Fig. 1</a>"), page.npos)
       << page;
   EXPECT_NE(page.find("Statements: <a href=\"#jpo-toy-P1\">– P1</a></p>"),

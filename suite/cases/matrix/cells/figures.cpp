@@ -89,7 +89,7 @@ Figure heat_map(const std::vector<Line>& lines) {
   Field2D field{.log_scale = true, .label = "loss / best"};
   for (std::size_t i = 0; i < methods().size(); ++i) {
     field.x.push_back(static_cast<double>(i));
-    field.x_names.push_back(methods()[i].id);
+    field.x_names.push_back(methods()[i].title);
   }
   // From top to bottom as in the tables.
   for (std::size_t j = lines.size(); j-- > 0;) {
