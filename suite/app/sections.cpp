@@ -10,6 +10,7 @@
 #include <set>
 #include <utility>
 
+#include "reports/printed_curves.h"
 #include "suite/app/installed.h"
 #include "suite/evidence/frontier.h"
 #include "suite/evidence/standings.h"
@@ -53,6 +54,14 @@ std::vector<Section> overviews_of(const Results& results,
     sections.push_back(std::move(section));
   }
   return sections;
+}
+
+/// What the papers print of their curves.
+std::vector<PrintedCurve> curves_of(const Published& published) {
+  std::vector<std::string> papers;
+  for (const Publication& p : published.publications()) papers.push_back(p.key);
+  return papers.empty() ? std::vector<PrintedCurve>()
+                        : printed_curves(published_directory(), papers);
 }
 
 /// Where the sections' experiments were published.
@@ -181,6 +190,7 @@ Published printed_numbers() {
 std::vector<Section> sections_of(const Results& results,
                                  const Published& published) {
   std::vector<Section> sections = overviews_of(results, published);
+  const auto printed = curves_of(published);
   std::vector<std::pair<const Experiment*, std::size_t>> own;
   std::map<std::string, std::string> titles;
   for (const auto& e : registry().experiments()) {
@@ -188,6 +198,7 @@ std::vector<Section> sections_of(const Results& results,
     own.emplace_back(e.get(), sections.size());
     sections.push_back(section_of(*e, results, published));
     learn_titles(*e, sections.back());
+    draw_printed(printed, sections.back());
     titles.insert(sections.back().method_titles.begin(),
                   sections.back().method_titles.end());
   }

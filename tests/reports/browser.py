@@ -12,17 +12,49 @@ FLAGS = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic",
          "--disable-component-update", "--disable-sync"]
 
 
-def too_wide(chromium, path, width, d):
-    """Pixels by which the page is wider than the window."""
+def asked(chromium, path, width, d, expression):
+    """An integer of the page once it is loaded."""
     probe = os.path.join(d, "probe.html")
     shutil.copy(path, probe)
     with open(probe, "a") as f:
-        f.write("<script>document.body.innerHTML = 'wide ' + "
-                "(document.documentElement.scrollWidth - innerWidth) + ' end'"
-                "</script>")
+        f.write("<script>addEventListener('load', () => setTimeout(() => {"
+                f"document.body.innerHTML = 'is ' + ({expression}) + ' end'"
+                "}))</script>")
     p = subprocess.run([chromium, *FLAGS, "--dump-dom",
                         "--user-data-dir=" + tempfile.mkdtemp(dir=d),
                         f"--window-size={width},900", "file://" + probe],
                        capture_output=True, text=True, timeout=120)
-    found = re.search(r"wide (-?\d+) end", p.stdout)
+    found = re.search(r"is (-?\d+) end", p.stdout)
     return int(found[1]) if found else None
+
+
+def too_wide(chromium, path, width, d):
+    """Pixels by which the page is wider than the window."""
+    return asked(chromium, path, width, d,
+                 "document.documentElement.scrollWidth - innerWidth")
+
+
+def elements(chromium, path, d):
+    """Of the page, its script's included: what loading takes goes with them."""
+    return asked(chromium, path, 1400, d,
+                 "document.getElementsByTagName('*').length")
+
+
+def load_ms(chromium, path, d):
+    """From the start of navigation to the end of the load event, the least of
+    three."""
+    times = [asked(chromium, path, 1400, d,
+                   "Math.round(performance.getEntriesByType('navigation')[0]"
+                   ".loadEventEnd)") for _ in range(3)]
+    return min(t for t in times if t is not None)
+
+
+def printed_pages(chromium, path, d):
+    """Sheets of paper."""
+    out = os.path.join(d, "printed.pdf")
+    subprocess.run([chromium, *FLAGS, "--no-pdf-header-footer",
+                    "--user-data-dir=" + tempfile.mkdtemp(dir=d),
+                    "--print-to-pdf=" + out, "file://" + path],
+                   capture_output=True, timeout=120)
+    with open(out, "rb") as f:
+        return len(re.findall(rb"/Type\s*/Page\b(?!s)", f.read()))

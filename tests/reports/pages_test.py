@@ -2,8 +2,10 @@
 there is one.
 
 The index is small, links and fragments lead somewhere, each figure is also
-Vega-Lite, no two entries of a legend look alike, and nothing is wider than the
-window at 390, 800 and 1400 pixels.
+Vega-Lite, no two entries of a legend look alike, and what the papers print of
+their curves stands beside ours. Nothing is wider than the window at 390, 800 and
+1400 pixels, a page has few elements, loads within a second on a machine that is
+not busy, and fits 30 sheets.
 """
 
 import glob
@@ -15,10 +17,13 @@ import subprocess
 import sys
 import tempfile
 
-from browser import WIDTHS, too_wide
+from browser import WIDTHS, elements, load_ms, printed_pages, too_wide
 
-PROGRAM, STORE = (os.path.abspath(p) for p in sys.argv[1:3])
+PROGRAM, STORE, SOURCES = (os.path.abspath(p) for p in sys.argv[1:4])
 LARGEST_INDEX = 150_000
+MOST_ELEMENTS = 5_000
+LONGEST_LOAD_MS = 1_000
+MOST_SHEETS = 30
 FAILED = []
 
 
@@ -76,6 +81,50 @@ def vega_lite(out):
     return len(figures)
 
 
+def printed_curves(out):
+    """Those of the papers' files are in the figures that they name."""
+    drawn = 0
+    for path in glob.glob(os.path.join(SOURCES, "reports", "published",
+                                       "*.json")):
+        with open(path) as f:
+            curves = json.load(f).get("curves", [])
+        for curve in curves:
+            folder = os.path.join(out, curve["experiment"].replace("/", "-"))
+            name = os.path.join(folder, "figures", curve["figure"] + ".json")
+            if not os.path.isdir(folder):
+                continue
+            check(os.path.exists(name), f"no {name}")
+            with open(name) as f:
+                figure = json.load(f)
+            panels = {panel["title"] or panel["x_label"]: panel
+                      for panel in figure["panels"]}
+            for title in curve.get("panels", []):
+                check(title in panels or title == "seconds by the paper's clock",
+                      f"{name}: no panel {title}")
+            drawn += any(series["label"] == curve["label"]
+                         for panel in figure["panels"]
+                         for series in panel["series"])
+    check(drawn > 20, f"{drawn} printed curves are drawn")
+    return drawn
+
+
+def in_chromium(chromium, index, pages, d):
+    largest = sorted(pages, key=os.path.getsize)[-3:]
+    for path in [index, *largest]:
+        for width in WIDTHS:
+            wide = too_wide(chromium, path, width, d)
+            check(wide is not None and wide <= 0,
+                  f"{path} is {wide} too wide for {width}")
+        count, ms = elements(chromium, path, d), load_ms(chromium, path, d)
+        sheets = printed_pages(chromium, path, d)
+        print(f"{os.path.relpath(path, d)}: {os.path.getsize(path)} bytes, "
+              f"{count} elements, loaded in {ms} ms, {sheets} sheets")
+        check(count <= MOST_ELEMENTS, f"{path} has {count} elements")
+        quiet = os.getloadavg()[0] <= os.cpu_count()
+        check(ms <= LONGEST_LOAD_MS or not quiet, f"{path} takes {ms} ms")
+        check(0 < sheets <= MOST_SHEETS, f"{path} takes {sheets} sheets")
+
+
 def main():
     with tempfile.TemporaryDirectory() as d:
         out = os.path.join(d, "report")
@@ -99,18 +148,14 @@ def main():
                   f"of legends, {os.path.getsize(index)} bytes of index")
             if flags:
                 continue
-            print(f"{vega_lite(out)} figures are Vega-Lite, too")
+            print(f"{vega_lite(out)} figures are Vega-Lite, too, and "
+                  f"{printed_curves(out)} printed curves are drawn")
             chromium = shutil.which("chromium")
             if not chromium or not os.environ.get("PHYSINV_FULL"):
                 print("widths are not looked at: ./check --full does, with "
                       "chromium")
                 continue
-            largest = sorted(pages, key=os.path.getsize)[-3:]
-            for path in [index, *largest]:
-                for width in WIDTHS:
-                    wide = too_wide(chromium, path, width, d)
-                    check(wide is not None and wide <= 0,
-                          f"{path} is {wide} too wide for {width}")
+            in_chromium(chromium, index, pages, d)
     sys.exit(f"{len(FAILED)} failed" if FAILED else 0)
 
 

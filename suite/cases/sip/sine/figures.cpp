@@ -62,6 +62,8 @@ Panel sweep(const Evidence& at,
       if (const auto v = printed_score(at.published, p, line.method)) {
         theirs.x.push_back(place(p));
         theirs.y.push_back(*v * scale(p));
+        theirs.lo.push_back(0.9 * theirs.y.back());
+        theirs.hi.push_back(1.1 * theirs.y.back());
       }
     }
     if (ours.x.empty()) continue;
@@ -94,7 +96,7 @@ Figure sweeps(const Evidence& at) {
           .panels = {std::move(a), std::move(b)},
           .note =
               "Mean over the last tenth of the updates, median over seeds. "
-              "Dashed: read off the authors' figure, to about 10 %."};
+              "Dashed: read off the authors' figure, to about 10 % (band)."};
 }
 
 /// The loss around the origin, for one observation.
