@@ -4,6 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -11,6 +13,7 @@
 #include "reports/statements.h"
 #include "suite/app/load.h"
 #include "suite/app/sections.h"
+#include "suite/core/clock.h"
 #include "suite/harness/columns.h"
 #include "suite/harness/output.h"
 #include "suite/planning/forecast.h"
@@ -21,10 +24,14 @@
 namespace physinv {
 namespace {
 
+namespace fs = std::filesystem;
+
 /// More experiments than this have a line each.
 constexpr std::size_t kMostInFull = 6;
 /// Of an experiment, its name and the heads included.
 constexpr std::size_t kMostLines = 8;
+/// Fewer cut words to nothing.
+constexpr std::size_t kColumnsOfTable = 60;
 
 /// The sections of the run's experiments.
 std::vector<const Section*> own_sections(const std::vector<Section>& sections,
@@ -35,11 +42,31 @@ std::vector<const Section*> own_sections(const std::vector<Section>& sections,
   return own;
 }
 
+/// Where no table has room.
+std::string in_two_lines(const Statement& s, std::size_t room) {
+  const std::string here = s.here.empty() ? "" : "here " + s.here + ", ";
+  return fmt::format(
+      "{} {}\n  {}\n",
+      mark_of(s.verdict),
+      shortened(s.what, room - 2),
+      shortened(
+          fmt::format(
+              "{}paper {}: {}", here, s.paper, words_of(s.verdict, s.origin)),
+          room - 2));
+}
+
 std::string in_full(const Section& section, std::size_t room) {
-  const auto statements = statements_of(section, kMostLines - 2);
+  const bool narrow = room < kColumnsOfTable;
+  const std::size_t most = narrow ? (kMostLines - 1) / 2 : kMostLines - 2;
+  const auto statements = statements_of(section, most);
   std::string text =
       fmt::format("{} ({})\n", section.title, section.experiment);
   if (statements.empty()) return text;
+  if (narrow) {
+    text = shortened(text.substr(0, text.size() - 1), room) + '\n';
+    for (const Statement& s : statements) text += in_two_lines(s, room);
+    return text;
+  }
   Columns table({"<", "<  statement", "here", "paper", "<verdict"});
   for (const Statement& s : statements)
     table.add({std::string(mark_of(s.verdict)),
@@ -112,7 +139,8 @@ std::string seconds_text(const RunEnd& end, const std::string& profile) {
   std::erase_if(cases, [&](const Case& c) {
     return !end.experiments.contains(c.info.experiment);
   });
-  return about_text(cases, end.jobs, end.screen.terminal);
+  return about_text(
+      cases, end.jobs, end.screen.terminal && std::isinf(end.until));
 }
 
 std::string undecided_text(const RunEnd& end,
@@ -134,26 +162,40 @@ std::string undecided_text(const RunEnd& end,
   return text;
 }
 
+std::string no_time_text(const char* what, const RunEnd& end) {
+  return fmt::format(
+      "left out for want of time: {} (./bench report {})\n", what, end.out);
+}
+
 }  // namespace
 
 void conclude(const RunEnd& end) {
+  const double begun = wall_now();
+  if (begun > end.until) {
+    put(end.screen.stream, no_time_text("the numbers and the page", end));
+    return;
+  }
   const Loaded loaded = load(end.out, end.screen.stream);
   const Published numbers = printed_numbers();
   const auto sections = sections_of(loaded.results, numbers);
   const auto own = own_sections(sections, end);
   if (own.empty()) return;
-  const auto page = Folder(end.out).make("report").path();
-  write_report(page,
-               sections,
-               provenance(loaded, sections, numbers),
-               {.one_file = false, .groups = groups_of(numbers)});
+  // Pages take once or twice as long as what they show took to read.
+  const bool written = 3 * wall_now() - 2 * begun <= end.until;
+  const fs::path page = fs::path(end.out) / "report";
+  if (written)
+    write_report(Folder(end.out).make("report").path(),
+                 sections,
+                 provenance(loaded, sections, numbers),
+                 {.one_file = false, .groups = groups_of(numbers)});
   std::string text;
   if (own.size() > kMostInFull) {
     text = in_brief(own, end.screen.room());
   } else {
     for (const Section* s : own) text += in_full(*s, end.screen.room());
   }
-  text += fmt::format("page: {}\n", (page / "index.html").string());
+  text += written ? fmt::format("page: {}\n", (page / "index.html").string())
+                  : no_time_text("the page", end);
   put(end.screen.stream, text + undecided_text(end, own));
 }
 

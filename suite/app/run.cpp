@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -352,6 +353,7 @@ void say_what_runs(const RunFlags& flags,
 void end_with(const RunFlags& flags,
               const std::vector<CaseRecord>& own,
               const Screen& screen,
+              double until,
               const std::optional<ExitError>& ending) {
   if (flags.report && !own.empty() &&
       !(ending && ending->code() == ExitCode::interrupted)) {
@@ -359,7 +361,8 @@ void end_with(const RunFlags& flags,
                .selection = flags.selection,
                .experiments = {},
                .jobs = flags.campaign.jobs,
-               .screen = screen};
+               .screen = screen,
+               .until = until};
     for (const CaseRecord& c : own) end.experiments.insert(c.info.experiment);
     try {
       program().conclude(end);
@@ -398,6 +401,9 @@ ExitCode run_verb(const Arguments& arguments) {
   if (!flags.quiet) say_what_runs(flags, cases, screen);
   cite(cases);
   Prepared prepared = prepare(std::move(cases));
+  const double until = flags.campaign.time_budget > 0
+                           ? begun.wall + flags.campaign.time_budget
+                           : std::numeric_limits<double>::infinity();
   if (flags.campaign.time_budget > 0)
     follow_budget(flags.campaign, prepared.cases, {begun, flags.report});
   std::vector<std::string> names;
@@ -409,7 +415,7 @@ ExitCode run_verb(const Arguments& arguments) {
     put(screen.stream, text + '\n');
   put(screen.stream, result_text(flags, result));
   write_exports(flags, screen.stream != stdout);
-  end_with(flags, own, screen, ending_of(flags, result, names.size()));
+  end_with(flags, own, screen, until, ending_of(flags, result, names.size()));
   return ExitCode::good;
 }
 

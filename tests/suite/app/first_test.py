@@ -167,6 +167,10 @@ def a_budget_is_kept(d):
     check("out of time: 2 cases" in p.stdout, "they are named")
     expect(0, ["--profile=smoke", "--out=soon", "--time-budget=100"], d,
            "[6/6]")
+    p = expect(0, ["--profile=smoke", "--out=soon", "--time-budget=0.000001"],
+               d)
+    check("left out for want of time: the numbers and the page (./bench report "
+          "soon)" in p.stdout, "no time for a page")
 
 
 def a_plan_soon(d):
