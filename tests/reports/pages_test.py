@@ -5,7 +5,7 @@ The index is small, links and fragments lead somewhere, each figure is also
 Vega-Lite, no two entries of a legend look alike, and what the papers print of
 their curves stands beside ours. Nothing is wider than the window at 390, 800 and
 1400 pixels, a page has few elements, loads within a second on a machine that is
-not busy, and fits 30 sheets.
+not busy, and fits 30 sheets that cut no table.
 """
 
 import glob
@@ -17,7 +17,8 @@ import subprocess
 import sys
 import tempfile
 
-from browser import WIDTHS, elements, load_ms, printed_pages, too_wide
+from browser import (WIDTHS, cut_in_print, elements, load_ms, printed_pages,
+                     too_wide)
 
 PROGRAM, STORE, SOURCES = (os.path.abspath(p) for p in sys.argv[1:4])
 LARGEST_INDEX = 150_000
@@ -123,6 +124,8 @@ def in_chromium(chromium, index, pages, d):
         quiet = os.getloadavg()[0] <= os.cpu_count()
         check(ms <= LONGEST_LOAD_MS or not quiet, f"{path} takes {ms} ms")
         check(0 < sheets <= MOST_SHEETS, f"{path} takes {sheets} sheets")
+        cut = cut_in_print(chromium, path, d)
+        check(cut == 0, f"{path}: print cuts {cut} tables")
 
 
 def main():
