@@ -25,7 +25,9 @@ inline double dot(Index n, const double* a, const double* b) {
 
 // GCC 12 thinks up an overflow of i below where n is a constant.
 #pragma GCC diagnostic push
+#ifndef __clang__
 #pragma GCC diagnostic ignored "-Waggressive-loop-optimizations"
+#endif
 /// y += s x.
 inline void axpy(Index n, double s, const double* x, double* y) {
   const Pack8 factor = broadcast(s);
