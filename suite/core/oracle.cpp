@@ -4,6 +4,7 @@
 #include <numeric>
 #include <utility>
 
+#include "suite/core/blocks.h"
 #include "suite/core/disturbance.h"
 #include "suite/core/eigen_caches.h"
 
@@ -142,7 +143,9 @@ void Oracle::evaluate(std::span<const Index> active,
   Workspace::Scope scope(*work_);
   const Packed<T> data(s, active, *work_);
   const auto given = data.given_of(s), target = data.y_of(s);
-  const Index wanted = s.problem->gradient_block();
+  // As many samples as stay in the caches of every thread: those of one thread
+  // alone would leave the others without work. A sample's bits are its own.
+  const Index wanted = s.problem->gradient_block() * count_of(work_->threads());
   const Index block = wanted > 0 ? std::min(wanted, m) : m;
   auto y = work_->take<T>(shape_.observations, block);
   auto y_bar = work_->take<T>(shape_.observations, block);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "suite/core/check.h"
+#include "suite/core/threads.h"
 #include "tests/support/bits.h"
 #include "tests/support/quadratic.h"
 
@@ -32,6 +33,46 @@ TEST(Oracle, EvaluatesLossAndGradientOfItsProblems) {
   EXPECT_LE((loss.array() - 0.5 * r.squaredNorm()).abs().maxCoeff(), 1e-15);
   EXPECT_LE((gradient.colwise() - a.transpose() * r).cwiseAbs().maxCoeff(),
             1e-14);
+}
+
+/// Wants gradients of four samples at a time, and notes how many it was given.
+template <class T>
+class InBlocks final : public GradientQuadratic<T> {
+ public:
+  using GradientQuadratic<T>::GradientQuadratic;
+  static inline std::vector<Index> given_;
+
+  Index gradient_block() const override { return 4; }
+  void linearize(BatchIn<T> x,
+                 BatchIn<T> given,
+                 BatchOut<T> y,
+                 Tape& tape) const override {
+    given_.push_back(x.cols());
+    GradientQuadratic<T>::linearize(x, given, y, tape);
+  }
+};
+
+/// A block for each: one block for all would be the work of one thread.
+TEST(Oracle, GivesEveryThreadABlockOfGradients) {
+  const auto gradients = [](int count) {
+    Threads threads(count);
+    Oracle oracle(problem<InBlocks>("blocks"),
+                  kCount,
+                  kData,
+                  Needs::forward | Needs::vjp,
+                  &threads);
+    const Batch<double> x = oracle.data().x.array() + 0.1;
+    Vector<double> loss(kCount);
+    Batch<double> gradient(2, kCount);
+    InBlocks<double>::given_.clear();
+    oracle.evaluate<double>(oracle.all(), x, loss, gradient);
+    return gradient;
+  };
+  const Batch<double> one = gradients(1);
+  EXPECT_EQ(InBlocks<double>::given_, (std::vector<Index>{4, 4, 3}));
+  const Batch<double> two = gradients(2);
+  EXPECT_EQ(InBlocks<double>::given_, (std::vector<Index>{8, 3}));
+  EXPECT_TRUE(same_bits(one, two));
 }
 
 template <class T>
