@@ -4,7 +4,7 @@
 #include <pybind11/stl.h>
 
 #include "suite/harness/registry.h"
-#include "suite/harness/select.h"
+#include "suite/harness/nearest.h"
 #include "suite/harness/study.h"
 
 namespace physinv::python {
