@@ -9,6 +9,7 @@
 
 #include "suite/core/median.h"
 #include "suite/results/catalog.h"
+#include "suite/results/plan.h"
 #include "suite/results/results_json.h"
 #include "suite/results/shortfall.h"
 
