@@ -23,6 +23,12 @@ int weight(Verdict verdict) {
   }
 }
 
+/// A verdict before none, and of two that of the more cases: who ran a part
+/// anew does not decide of the whole.
+auto rank_of(const LatestClaim& c) {
+  return std::tuple(weight(c.claim.verdict), c.cases);
+}
+
 /// "P10b" -> ("P", 10 as text, the longer the later, "b").
 auto parts_of(const std::string& id) {
   const auto digits = "0123456789";
@@ -68,13 +74,13 @@ Papers latest_claims(const std::vector<NamedDigest>& campaigns) {
   for (const NamedDigest& c : newest_first(campaigns))
     for (const Json& section : c.digest.at("sections"))
       for (const Json& claim : section.at("claims")) {
-        LatestClaim found{claim_from(claim), c.name};
+        LatestClaim found{
+            claim_from(claim), c.name, claim.value("cases", std::int64_t{0})};
         const auto [entry, first] =
             papers[section.at("paper").get<std::string>()].try_emplace(
                 {section.at("experiment").get<std::string>(), found.claim.id},
                 found);
-        if (!first &&
-            weight(found.claim.verdict) > weight(entry->second.claim.verdict))
+        if (!first && rank_of(found) > rank_of(entry->second))
           entry->second = std::move(found);
       }
   return papers;

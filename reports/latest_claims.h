@@ -15,6 +15,7 @@ namespace physinv {
 struct LatestClaim {
   ClaimResult claim;
   std::string campaign;
+  std::int64_t cases = 0;  ///< behind what was decided
 };
 /// Experiment and id; ids by their number, P2 before P10.
 using ClaimKey = std::pair<std::string, std::string>;
@@ -28,9 +29,10 @@ using Papers = std::map<std::string, LatestClaims>;
 /// By their dates, the newest first; as they are where dates are equal.
 std::vector<NamedDigest> newest_first(std::vector<NamedDigest> campaigns);
 
-/// The newest campaign that decided a claim counts, whatever it is called. What
-/// was decided counts before what was judged in part, and that before what was
-/// only reported.
+/// The newest campaign that decided a claim counts, whatever it is called; not
+/// one that ran fewer of the claim's cases than an older one. What was decided
+/// counts before what was judged in part, and that before what was only
+/// reported.
 Papers latest_claims(const std::vector<NamedDigest>& campaigns);
 
 VerdictCounts counts_of(const LatestClaims& paper, Origin origin);

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "suite/results/file.h"
+#include "suite/results/loss_summary.h"
 #include "suite/results/results_file.h"
 #include "suite/results/results_json.h"
 
@@ -72,10 +73,10 @@ void add_statuses(StageRecord& stage, const Json& own) {
 void add_losses(StageRecord& stage, const Json& entry) {
   if (!has_time(stage)) return;
   stage.loss = Vector<double>::Constant(1, number(entry, "loss_median"));
-  Batch<double> kept(3, 1);
-  kept << number(entry, "loss_mean"), number(entry, "loss_median"),
-      number(entry, "loss_max");
-  stage.arrays["losses"] = std::move(kept);
+  keep({.mean = number(entry, "loss_mean"),
+        .median = number(entry, "loss_median"),
+        .largest = number(entry, "loss_max")},
+       stage);
 }
 
 StageRecord stage_of(const Json& entry) {

@@ -97,7 +97,8 @@ Results planned(const std::string& profile) {
 /// A digest keeps the numbers of its conditions: each claim is judged by what
 /// is registered now, and has the cause that it states now. One that the
 /// campaign did not know yet waits for a run.
-void renew(Json& digest, const Published& published) {
+/// `stages` are what results.json keeps.
+void renew(Json& digest, const Results& stages, const Published& published) {
   const Results plan = planned(digest.at("provenance").value("profile", ""));
   for (auto& section : digest.at("sections")) {
     const std::string experiment = section.at("experiment");
@@ -108,8 +109,11 @@ void renew(Json& digest, const Published& published) {
       });
       ClaimResult before{.evidence = kNotKept};
       if (own != kept.end()) before = claim_from(*own);
-      Json judged =
-          to_json(judge_again(now, before, {plan, published, experiment}));
+      const Evidence planned{plan, published, experiment},
+          left{stages, published, experiment};
+      const ClaimResult again = judge_again(now, before, {planned, left});
+      Json judged = to_json(again);
+      judged["cases"] = cases_behind(now, again, left);
       if (own != kept.end())
         *own = std::move(judged);
       else
@@ -131,7 +135,7 @@ NamedDigest published_digest(const fs::path& folder,
     require_figures(folder, digest);
     NamedDigest named{
         folder.filename().string(), digest, cpu_seconds(results), digest};
-    renew(named.digest, published);
+    renew(named.digest, summarized_results(results), published);
     results_markdown({named});
     experiment_pages({named});
     return named;

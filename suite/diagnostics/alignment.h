@@ -12,7 +12,9 @@
 /// Stage `measure`; its iterations are the repetitions. Arrays left
 /// (repetitions x 1, shares aligned): `sum` and `vote` of the same data, and
 /// with a network `noise_free`, the step without noise; without noise only
-/// that. The estimate stays at the start: nothing is solved.
+/// that; where gradients are clipped, `clipped`, of the sum of gradients whose
+/// absolute value goes no further than the threshold. The estimate stays at the
+/// start: nothing is solved.
 #pragma once
 
 #include <fmt/format.h>
@@ -35,12 +37,15 @@ struct AlignmentOptions {
   typename Noise<double>::Options data;
   std::optional<TinyNetOptions> network;
   Index repetitions = 1000;
+  /// Threshold of single gradients, without a network.
+  std::optional<double> clip = {};
 
   auto fields() const {
     return std::tuple{word("algorithm", "diagnostic"),
                       word("measures", "alignment"),
                       field("data", data),
                       field("network", network),
+                      field("clip", clip),
                       implied(repetitions)};
   }
 };
@@ -52,7 +57,11 @@ class AlignmentBlock {
   using P = Pack<T>;
 
   AlignmentBlock(const AlignmentOptions<Noise>& options, Index n)
-      : noise_(options.data), noisy_(options.data.terms > 0), n_(n) {
+      : noise_(options.data),
+        noisy_(options.data.terms > 0),
+        clips_(options.clip.has_value()),
+        clip_(static_cast<T>(options.clip.value_or(0)) - P{}),
+        n_(n) {
     if (options.network) network_ = one_step<T>(*options.network);
     const auto room = static_cast<std::size_t>(n) * sizeof(P);
     for (Buffer* b : {&gamma_, &x_, &sign_, &lambda_, &level_, &g_, &delta_})
@@ -60,7 +69,7 @@ class AlignmentBlock {
   }
 
   struct Shares {
-    P sum{}, vote{}, noise_free{};
+    P sum{}, vote{}, noise_free{}, clipped{};
   };
 
   Shares run(StreamLanes<T> random) {
@@ -75,19 +84,26 @@ class AlignmentBlock {
 
   Shares known(StreamLanes<T>& random) {
     const P x = random.uniform(T(-1), T(1));
-    P sum{}, votes{};
+    P sum{}, votes{}, clipped{};
     for (Index i = 0; i < n_; ++i) {
       const auto p = noise_.draw(random);
       const P s = sign_lanes(x - p.solution);
       const P g = s * (p.lambda * s + noise_.noise(random, p.level));
       sum += g;
       votes += sign_lanes(g);
+      if (clips_) clipped += clip(g);
     }
     const P half = T(0.5) - P{};
     Shares out;
     out.sum = half + half * sign_lanes(sum);
     out.vote = half + half * sign_lanes(votes);
+    out.clipped = half + half * sign_lanes(clipped);
     return out;
+  }
+
+  P clip(P g) const {
+    const P below = select(g > clip_, clip_, g);
+    return select(below < -clip_, -clip_, below);
   }
 
   Shares step(StreamLanes<T>& random) {
@@ -126,7 +142,8 @@ class AlignmentBlock {
   }
 
   Noise<T> noise_;
-  bool noisy_;
+  bool noisy_, clips_;
+  P clip_;
   Index n_;
   std::unique_ptr<OneStep<T>> network_;
   Buffer gamma_, x_, sign_, lambda_, level_, g_, delta_;
@@ -185,6 +202,7 @@ class MeasureAlignment final : public Stage {
     double* sum = array("sum", noisy);
     double* vote = array("vote", noisy);
     double* noise_free = array("noise_free", options_.network.has_value());
+    double* clipped = array("clipped", options_.clip.has_value());
     Vector<double> loss(n);
     run.oracle.measure(out.x, loss);
 
@@ -200,6 +218,8 @@ class MeasureAlignment final : public Stage {
       for (Index k = 0; k < std::min(kWidth, repetitions - first); ++k) {
         if (sum) sum[first + k] = static_cast<double>(shares.sum[k]);
         if (vote) vote[first + k] = static_cast<double>(shares.vote[k]);
+        if (clipped)
+          clipped[first + k] = static_cast<double>(shares.clipped[k]);
         if (noise_free)
           noise_free[first + k] = static_cast<double>(shares.noise_free[k]);
       }

@@ -131,7 +131,7 @@ std::vector<ClaimResult> judge(const std::vector<Claim>& claims,
 
 ClaimResult judge_again(const Claim& claim,
                         const ClaimResult& kept,
-                        const Evidence& evidence) {
+                        const Remains& remains) {
   ClaimResult out = unjudged(claim);
   if (kept.conditions.empty()) {
     out.evidence = kept.evidence;
@@ -139,7 +139,7 @@ ClaimResult judge_again(const Claim& claim,
     // Labels may repeat: each number is taken once.
     Kept left = kept.conditions;
     for (const Condition& c : claim.conditions) {
-      add(decide_again(c, left, evidence), out);
+      add(decide_again(c, left, remains), out);
       const auto taken =
           std::find_if(left.begin(), left.end(), [&](const auto& old) {
             return old.label == out.conditions.back().label;
@@ -152,9 +152,23 @@ ClaimResult judge_again(const Claim& claim,
   all.insert(all.end(), kept.shown_by.begin(), kept.shown_by.end());
   explain(
       claim.cause,
-      [&](const Condition& c) { return decide_again(c, all, evidence); },
+      [&](const Condition& c) { return decide_again(c, all, remains); },
       out);
   return out;
+}
+
+std::int64_t cases_behind(const Claim& claim,
+                          const ClaimResult& judged,
+                          const Evidence& evidence) {
+  std::size_t cases = 0;
+  const auto count =
+      std::min(claim.conditions.size(), judged.conditions.size());
+  for (std::size_t k = 0; k < count; ++k) {
+    if (!judged.conditions[k].holds) continue;
+    for (const Quantity& q : claim.conditions[k].quantities)
+      for (const Select& s : q.runs()) cases += find_runs(evidence, s).size();
+  }
+  return static_cast<std::int64_t>(cases);
 }
 
 std::string conditions_text(const Claim& claim) {

@@ -5,6 +5,7 @@
 ///    .conditions = {within("updates to 0.1", median(...), 55, 95)}}
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -37,11 +38,16 @@ std::vector<ClaimResult> judge(const std::vector<Claim>& claims,
 
 /// Judged again from the numbers that an earlier judgement kept, as far as the
 /// claim still asks for them: a condition of another label or relation is
-/// missing, "not kept". `evidence` tells which runs there were, without their
-/// curves.
+/// missing, "not kept".
 ClaimResult judge_again(const Claim& claim,
                         const ClaimResult& kept,
-                        const Evidence& evidence);
+                        const Remains& remains);
+
+/// The cases that the decided conditions of a claim select, so many times as
+/// they do.
+std::int64_t cases_behind(const Claim& claim,
+                          const ClaimResult& judged,
+                          const Evidence& evidence);
 
 /// "Adam / HIG > 2; updates to 0.1 in 55 .. 95"
 std::string conditions_text(const Claim& claim);

@@ -30,16 +30,27 @@ struct Condition {
       again = {};
   std::vector<std::string> parts = {};
   std::vector<Condition> alternatives = {};  ///< of `either`
+  /// Asks for no more than results.json keeps of every stage.
+  bool of_stages = false;
+};
+
+/// What is left of a campaign that was published.
+struct Remains {
+  const Evidence& planned;  ///< the cases of its profile, without a number
+  /// What results.json keeps of each stage: end, iterations, times, mean and
+  /// largest loss.
+  const Evidence& stages;
 };
 
 /// What is missing where no number was kept, although runs were asked for.
 inline constexpr const char* kNotKept = "not kept; needs a run";
 
-/// From what was kept of an earlier judgement; missing if there is nothing of
-/// this label and relation.
+/// From the stages that are left, if the condition is of them; else from what
+/// was kept of an earlier judgement under this label and relation, or was only
+/// reported under it. Missing if there is nothing.
 ConditionResult decide_again(const Condition& condition,
                              const Kept& kept,
-                             const Evidence& evidence);
+                             const Remains& remains);
 
 /// Bounds may be measured themselves ("as many as BFGS").
 Condition at_least(std::string label, Quantity q, Quantity bound);
@@ -52,6 +63,9 @@ Condition within(std::string label, Quantity q, double lowest, double highest);
 Condition report(std::string label, Quantity q);
 /// Holds if one of them does.
 Condition either(Condition a, Condition b);
+/// Of ends, iterations, times, mean or largest losses of stages alone, which
+/// results.json keeps: decided anew for every campaign.
+Condition of_stages(Condition c);
 std::vector<Condition> joined(
     std::initializer_list<std::vector<Condition>> parts);
 

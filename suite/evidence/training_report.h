@@ -94,6 +94,13 @@ Table loss_table(const Results& results,
                  std::string_view experiment,
                  const std::vector<MethodLine>& lines);
 
+/// CPU time of an update over the size of its batch: a curve for the lines
+/// whose labels are the same up to a comma ("SIP", "SIP, batch 8").
+Figure update_times(const Results& results,
+                    std::string_view experiment,
+                    const std::vector<MethodLine>& lines,
+                    std::string source);
+
 /// A method beside a row of the paper's tables of memory and durations.
 struct CostLine {
   std::string method, label;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include "suite/evidence/cell.h"
 #include "suite/evidence/curve.h"
@@ -66,6 +68,72 @@ Table loss_table(const Results& results,
   }
   table.note = "Memory: buffers the stage holds. " + timed.note();
   return table;
+}
+
+namespace {
+
+std::optional<double> batch_of(const StageRecord& stage) {
+  for (const auto& [name, value] : stage.options)
+    if (name == "batch") return std::stod(value);
+  return {};
+}
+
+/// The curve with this label, a new one at the end if there is none.
+Series& curve_of(const std::string& label,
+                 const MethodLine& line,
+                 std::vector<Series>& curves) {
+  const auto known =
+      std::find_if(curves.begin(), curves.end(), [&](const Series& s) {
+        return s.label == label;
+      });
+  if (known != curves.end()) return *known;
+  return curves.emplace_back(Series{
+      .label = label, .method = label, .markers = true, .look = look_of(line)});
+}
+
+/// Ascending in x.
+void sort_points(Series& series) {
+  std::vector<std::pair<double, double>> points;
+  for (std::size_t k = 0; k < series.x.size(); ++k)
+    points.emplace_back(series.x[k], series.y[k]);
+  std::sort(points.begin(), points.end());
+  for (std::size_t k = 0; k < points.size(); ++k)
+    std::tie(series.x[k], series.y[k]) = points[k];
+}
+
+}  // namespace
+
+Figure update_times(const Results& results,
+                    std::string_view experiment,
+                    const std::vector<MethodLine>& lines,
+                    std::string source) {
+  Panel panel{.x_label = "batch size",
+              .y_label = "CPU ms of an update",
+              .x_log = true,
+              .y_log = true};
+  TimedStages timed;
+  for (const MethodLine& line : lines) {
+    const auto stages = trained_stages(results, experiment, line.method);
+    Costs costs;
+    for (const auto* s : stages) costs.add(*s, timed);
+    const auto batch =
+        stages.empty() ? std::nullopt : batch_of(*stages.front());
+    if (!batch || costs.seconds.empty()) continue;
+    Series& curve = curve_of(
+        line.label.substr(0, line.label.find(',')), line, panel.series);
+    // The first line of a batch size is the one that was run longest.
+    if (std::find(curve.x.begin(), curve.x.end(), *batch) != curve.x.end())
+      continue;
+    curve.x.push_back(*batch);
+    curve.y.push_back(1e3 * median(costs.seconds));
+  }
+  for (Series& curve : panel.series) sort_points(curve);
+  return {.id = "update_times",
+          .title = "What an update takes",
+          .source = std::move(source),
+          .panels = {std::move(panel)},
+          .columns = 1,
+          .note = timed.note()};
 }
 
 std::optional<Answered> first_answer(const Results& results,

@@ -156,6 +156,24 @@ TEST(Digest, TheLastCampaignThatDecidedCounts) {
                      "| jpo | 0 | 0 | 0 | 1 | 1 |"));
 }
 
+TEST(Digest, WhoRanAPartAnewDoesNotDecideOfTheWhole) {
+  const auto page = [](int first, int second) {
+    const auto ran = [](NamedDigest campaign, int cases) {
+      for (Json& s : campaign.digest["sections"])
+        for (Json& claim : s["claims"]) claim["cases"] = cases;
+      return campaign;
+    };
+    auto later = named("b", Verdict::not_reproduced, Verdict::reproduced);
+    later.digest["provenance"]["date"] = "2024-05-07T07:08:09Z";
+    return results_markdown(
+        {ran(named("a", Verdict::reproduced, Verdict::reproduced), first),
+         ran(later, second)});
+  };
+  expect_words(page(8, 2), {"| jpo | 1 | 0 | 0 | 0 | 1 |"});
+  expect_words(page(8, 8), {"| jpo | 0 | 1 | 0 | 0 | 1 |"});
+  expect_words(page(2, 8), {"| jpo | 0 | 1 | 0 | 0 | 1 |"});
+}
+
 TEST(Digest, AuditTellsVerdictsOfBeforeClaimsHadCauses) {
   auto old = named("old", Verdict::not_reproduced, Verdict::reproduced);
   EXPECT_EQ(audit_markdown({old}), "");

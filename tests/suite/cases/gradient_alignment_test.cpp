@@ -265,6 +265,32 @@ TEST(NoisyAbsolute, NoNoiseIsLevelZero) {
   EXPECT_EQ(NoisyAbsolute<float>(silent).shape().given, 3);
 }
 
+// ---- clipping --------------------------------------------------------------
+
+// A threshold below all gradients leaves their signs, one above all leaves them
+// as they are.
+TEST(Alignment, AClippedSumIsTheVoteOrTheSum) {
+  const auto count = [](double clip) {
+    AlignmentBlock<double, NoiseLanes> block(
+        {.data = {.solution = Solution::zero, .decades = 2, .snr = 0.1},
+         .network = {},
+         .clip = clip},
+        8);
+    Index votes = 0, sums = 0;
+    for (std::uint64_t seed = 0; seed < 100; ++seed) {
+      const auto shares = block.run(streams<double>(seed));
+      votes += shares.clipped[0] != shares.vote[0];
+      sums += shares.clipped[0] != shares.sum[0];
+    }
+    return std::pair(votes, sums);
+  };
+  const auto low = count(0x1p-30), high = count(1e9);
+  EXPECT_EQ(low.first, 0);
+  EXPECT_GT(low.second, 0);
+  EXPECT_GT(high.first, 0);
+  EXPECT_EQ(high.second, 0);
+}
+
 // ---- one step --------------------------------------------------------------
 
 struct Responses {

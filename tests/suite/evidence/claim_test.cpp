@@ -282,9 +282,10 @@ TEST_F(AsPrinted, KeptNumbersAreJudgedAgain) {
   const Results plan = campaign("quick", {0, 0, 0, 0});
   const auto again = [&](const std::vector<Condition>& now,
                          const ClaimResult& kept) {
+    const Evidence planned{plan, published_, "toy"};
     return judge_again({.id = "P1", .from = "quick", .conditions = now},
                        kept,
-                       {plan, published_, "toy"});
+                       {planned, planned});
   };
   const auto kept = result(as_printed("a", kMean, "alone", 4), {9, 9, 10, 10});
   EXPECT_EQ(kept.verdict, Verdict::reproduced);
@@ -301,6 +302,72 @@ TEST_F(AsPrinted, KeptNumbersAreJudgedAgain) {
       again({either(at_least("c", kMean, 9.6), above("a", kMean, 9))}, bound)
           .verdict,
       Verdict::reproduced);
+}
+
+TEST_F(AsPrinted, WhatWasOnlyReportedIsHeldAgainstABound) {
+  const Results plan = campaign("quick", {0, 0});
+  const Evidence planned{plan, published_, "toy"};
+  const auto kept = result(report("a", kMean), {9, 10});
+  const auto again = [&](const Condition& now) {
+    return judge_again({.id = "P1", .from = "quick", .conditions = {now}},
+                       kept,
+                       {planned, planned})
+        .verdict;
+  };
+  EXPECT_EQ(kept.verdict, Verdict::reported);
+  EXPECT_EQ(again(above("a", kMean, 9)), Verdict::reproduced);
+  EXPECT_EQ(again(above("a", kMean, 9.6)), Verdict::not_reproduced);
+  EXPECT_EQ(again(within("a", kMean, 9, 10)), Verdict::reproduced);
+  EXPECT_EQ(again(above("b", kMean, 9)), Verdict::not_judged);
+  // What a measured bound came to, nobody kept.
+  EXPECT_EQ(again(above("a", kMean, mean({"b"}, first_loss()))),
+            Verdict::not_judged);
+}
+
+TEST(Claim, ConditionsOfStagesAreJudgedByWhatIsLeftOfThem) {
+  const Published none;
+  const Results plan = campaign("quick", {0, 0, 0}),
+                left = campaign("quick", {4, 6, 8});
+  const Evidence planned{plan, none, "toy"}, stages{left, none, "toy"};
+  // Kept under another label, and lower than what the stages have.
+  const auto kept = judged({above("before", kMean, 1)}, campaign("quick", {3}));
+  const auto again = [&](const Condition& now, const Evidence& of) {
+    return judge_again({.id = "P1", .from = "quick", .conditions = {now}},
+                       kept,
+                       {planned, of});
+  };
+  const auto found = again(of_stages(above("a", kMean, 5)), stages);
+  EXPECT_EQ(found.evidence, "a 6 ± 2 (> 5)");
+  EXPECT_EQ(again(of_stages(above("a", kMean, 7)), stages).verdict,
+            Verdict::not_reproduced);
+  // Without the mark, or without such stages, it waits for a run.
+  EXPECT_EQ(again(above("a", kMean, 5), stages).verdict, Verdict::not_judged);
+  const Results nothing;
+  EXPECT_EQ(
+      again(of_stages(above("a", kMean, 5)), {nothing, none, "toy"}).evidence,
+      "a: a not run");
+  // The one of two that holds counts.
+  EXPECT_EQ(again(of_stages(either(above("a", kMean, 7), below("c", kMean, 7))),
+                  stages)
+                .verdict,
+            Verdict::reproduced);
+}
+
+TEST(Claim, CasesAreCountedBehindWhatWasDecided) {
+  const Results results = campaign("quick", {2, 4, 6});
+  const Published none;
+  const Evidence evidence{results, none, "toy"};
+  const auto cases = [&](std::vector<Condition> conditions) {
+    const Claim claim{.id = "P1", .from = "quick", .conditions = conditions};
+    return cases_behind(
+        claim, judged(std::move(conditions), results), evidence);
+  };
+  const Condition decided = above("a", kMean, 1),
+                  open = above("b", mean({"b"}, first_loss()), 1);
+  EXPECT_EQ(cases({decided}), 3);
+  EXPECT_EQ(cases({decided, decided}), 6);
+  EXPECT_EQ(cases({decided, open, report("a", kMean)}), 3);
+  EXPECT_EQ(cases({open}), 0);
 }
 
 TEST(Claim, WhatIsWrongByItself) {

@@ -443,9 +443,7 @@ const std::vector<Claim> kPaper = {
                  kThreeMinutes / 2,
                  2 * kThreeMinutes)},
      .note = "C: below Adam's curve after 290 s, and at Adam's end after "
-             "half to twice three minutes.",
-     .cause = not_run("the runs of Fig. 2b anew: what is stored keeps no bound "
-                      "of the time to Adam's end")},
+             "half to twice three minutes."},
     {.id = "P4",
      .origin = Origin::paper,
      .where = "Sec. 3.1, Fig. 2b",

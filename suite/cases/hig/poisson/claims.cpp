@@ -225,6 +225,19 @@ std::optional<double> highest_of_return(const Run& run) {
   return highest;
 }
 
+/// P3: below another run after an hour of the paper's clock.
+Condition adam_leads(const std::string& over, const Select& other) {
+  return below("Adam 1e-4 over " + over,
+               ratio(median(kAdam, loss_at(paper(), kHour)),
+                     median(other, loss_at(paper(), kHour))),
+               1);
+}
+
+/// P5: on most of the updates.
+Condition leads_every_adam(std::string label, const Select& hig) {
+  return above(std::move(label), lead(hig, {kAdam, kAdam3, kAdam10}), 0.5);
+}
+
 // ---- claims -----------------------------------------------------------------
 
 const std::vector<Claim> kPaper = {
@@ -268,22 +281,19 @@ const std::vector<Claim> kPaper = {
      .where = "Sec. 3.2, Fig. 3b",
      .from = "paper",
      .says = "In convergence per time, Adam with the smallest rate leads",
-     .conditions =
-         {below("Adam 1e-4 over the lowest other, an hour of the paper's clock",
-                ratio(median(kAdam, loss_at(paper(), kHour)),
-                      least({median(kAdam3, loss_at(paper(), kHour)),
-                             median(kAdam10, loss_at(paper(), kHour)),
-                             median(kHig1, loss_at(paper(), kHour)),
-                             median(kHig2, loss_at(paper(), kHour)),
-                             median(kHig5, loss_at(paper(), kHour))})),
-                1),
-          report(
-              "our seconds of Adam to HIG's end",
-              also_asks(
-                  median(kAdam,
-                         time_to(own_seconds(), beside(kHig2, last_loss()))),
-                  {kHig2})),
-          report("of HIG", median(kHig2, length(own_seconds())))},
+     .conditions = {adam_leads("Adam 3e-4, an hour of the paper's clock",
+                               kAdam3),
+                    adam_leads("Adam 1e-3", kAdam10),
+                    adam_leads("HIG 0.02", kHig2),
+                    adam_leads("HIG 0.01", kHig1),
+                    adam_leads("HIG 0.05", kHig5),
+                    report("our seconds of Adam to HIG's end",
+                           also_asks(median(kAdam,
+                                            time_to(
+                                                own_seconds(),
+                                                beside(kHig2, last_loss()))),
+                                     {kHig2})),
+                    report("of HIG", median(kHig2, length(own_seconds())))},
      .cause = not_run("with P2: the profile paper")},
     {.id = "P4",
      .origin = Origin::paper,
@@ -305,11 +315,11 @@ const std::vector<Claim> kPaper = {
      .where = "App. B.3, Fig. 7a",
      .from = "paper",
      .says = "HIG converges faster per iteration",
-     .conditions = {above("share of the updates with HIG below every Adam",
-                          most({lead(kHig1, {kAdam, kAdam3, kAdam10}),
-                                lead(kHig2, {kAdam, kAdam3, kAdam10}),
-                                lead(kHig5, {kAdam, kAdam3, kAdam10})}),
-                          0.5)},
+     .conditions = {either(
+         leads_every_adam("share of the updates with HIG 0.02 below every Adam",
+                          kHig2),
+         either(leads_every_adam("with 0.01", kHig1),
+                leads_every_adam("with 0.05", kHig5)))},
      .cause = not_run("with P2: the profile paper")},
     {.id = "P6",
      .origin = Origin::paper,

@@ -11,6 +11,7 @@
 
 #include "suite/harness/study.h"
 #include "suite/results/crowded.h"
+#include "suite/results/loss_summary.h"
 
 namespace physinv::jpo {
 namespace {
@@ -170,6 +171,22 @@ double least_of(std::vector<double> values) {
 }
 double most_of(std::vector<double> values) {
   return *std::max_element(values.begin(), values.end());
+}
+
+RunValue mean_loss() {
+  return [](const Run& run) { return mean_loss_of(*run.stage); };
+}
+RunValue worst_loss() {
+  return [](const Run& run) { return largest_loss_of(*run.stage); };
+}
+RunValue over_bfgs(RunValue value) {
+  return [value = std::move(value)](const Run& run) -> Value {
+    const auto other = bfgs_beside(run);
+    if (!other) return {};
+    const auto a = value(run), b = value(*other);
+    if (!a || !b) return {};
+    return *a / *b;
+  };
 }
 
 RunValue seconds() {

@@ -51,6 +51,11 @@ RunValue of_row(RunRow row, double (*statistic)(std::vector<double>));
 double mean_of(std::vector<double> values);
 double least_of(std::vector<double> values);
 double most_of(std::vector<double> values);
+/// Over the run's problems; results.json keeps them of every stage.
+RunValue mean_loss();
+RunValue worst_loss();
+/// The value over that of plain BFGS on the same problems.
+RunValue over_bfgs(RunValue value);
 /// Seconds of solving; none where the run shared its cores.
 RunValue seconds();
 

@@ -27,6 +27,9 @@ const TinyNetOptions kLinearNet{.hidden = {32, 32, 32},
                                 .scale = 40,
                                 .range = 1};
 
+/// Of gradients of some ten: none is smaller, and sums of it are exact.
+constexpr double kLowThreshold = 0x1p-30;
+
 Method measure(std::string id,
                const NoisyAbsoluteOptions& data,
                std::optional<TinyNetOptions> network = {}) {
@@ -34,12 +37,32 @@ Method measure(std::string id,
           .chain = {measurement(data, std::move(network), kFull)}};
 }
 
-Profile profile(std::string name, std::vector<Index> n, Index repetitions) {
-  return {.name = std::move(name),
-          .rows = {{.methods = {"known", "unequal", "linear", "sine"},
-                    .n = std::move(n),
-                    .seeds = {0},
-                    .iterations = repetitions}}};
+Method clipped(std::string id, const NoisyAbsoluteOptions& data) {
+  return {.id = std::move(id),
+          .chain = {measurement(data, {}, kFull, kLowThreshold)}};
+}
+
+Row row(std::vector<std::string> methods,
+        std::vector<Index> n,
+        Index repetitions) {
+  return {.methods = std::move(methods),
+          .n = std::move(n),
+          .seeds = {0},
+          .iterations = repetitions};
+}
+
+Profile profile(std::string name,
+                const std::vector<Index>& n,
+                Index repetitions) {
+  return {
+      .name = std::move(name),
+      .rows = {row({"known", "unequal", "linear", "sine"}, n, repetitions)}};
+}
+/// And gradients that are clipped.
+Profile with_clipped(Profile p) {
+  p.rows.push_back(
+      row({"clipped", "clipped-unequal"}, p.rows[0].n, p.rows[0].iterations));
+  return p;
 }
 
 const std::vector<Index> kSizes{1, 2, 4, 8, 16, 32, 64, 128, 256};
@@ -52,11 +75,13 @@ Experiment experiment() {
   e.problem = problem<NoisyAbsolute>("noisy_absolute", kSine);
   e.profiles = {profile("smoke", {1, 2, 4, 8}, 20),
                 profile("quick", kSizes, kJudged),
-                profile("paper", kSizes, kFull)};
+                with_clipped(profile("paper", kSizes, kFull))};
   e.methods = {measure("known", kKnown),
                measure("unequal", kUnequal),
                measure("linear", kLinear, kLinearNet),
-               measure("sine", kSine, kSineNet)};
+               measure("sine", kSine, kSineNet),
+               clipped("clipped", kKnown),
+               clipped("clipped-unequal", kUnequal)};
   return e;
 }
 

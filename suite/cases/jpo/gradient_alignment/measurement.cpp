@@ -9,11 +9,13 @@ namespace physinv::alignment {
 
 std::shared_ptr<const Stage> measurement(const NoisyAbsoluteOptions& data,
                                          std::optional<TinyNetOptions> network,
-                                         Index repetitions) {
+                                         Index repetitions,
+                                         std::optional<double> clip) {
   return std::make_shared<MeasureAlignment<NoiseLanes>>(
       AlignmentOptions<NoiseLanes>{.data = data,
                                    .network = std::move(network),
-                                   .repetitions = repetitions});
+                                   .repetitions = repetitions,
+                                   .clip = clip});
 }
 
 }  // namespace physinv::alignment

@@ -13,6 +13,7 @@ namespace physinv::alignment {
 
 std::shared_ptr<const Stage> measurement(const NoisyAbsoluteOptions& data,
                                          std::optional<TinyNetOptions> network,
-                                         Index repetitions);
+                                         Index repetitions,
+                                         std::optional<double> clip = {});
 
 }  // namespace physinv::alignment

@@ -1,5 +1,6 @@
 // Fig. 6 and Figs. 19 to 24 of the JPO paper.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -10,6 +11,7 @@
 #include "suite/evidence/plane.h"
 #include "suite/harness/networks.h"
 #include "suite/harness/registry.h"
+#include "suite/harness/study.h"
 
 namespace physinv::jpo::navier_stokes {
 namespace {
@@ -17,20 +19,62 @@ namespace {
 constexpr const char* kName = "jpo/navier-stokes";
 const std::vector<std::string> kChains = {"jpo", "supervised", "na"};
 
-/// The observed half of a flow; obstacles are blank.
-Panel observed(std::string title, const Vector<double>& y) {
+/// A flow (u, v) from row `below` on; obstacles are blank.
+Panel blank_at_obstacles(std::string title,
+                         const Vector<double>& uv,
+                         Index below) {
   const NavierStokesOptions o;
-  const Index below = o.cells / 2, rows = o.cells - below;
+  const Index rows = o.cells - below, part = o.cells * rows;
   const double width = o.box / double(o.cells);
   const PlaneLayout layout{
       o.cells, rows, rows, 1, width, 0, double(below) * width};
-  const Index half = o.cells * rows;
-  Vector<double> u = y.head(half), v = y.tail(half);
+  Vector<double> u = uv.head(part), v = uv.tail(part);
   for (const fluid::Obstacle& b : o.obstacles)
     for (Index i = b.i0; i < b.i1; ++i)
       for (Index j = std::max(b.j0, below); j < b.j1; ++j)
         u(i * rows + j - below) = std::nan("");
   return flow(std::move(title), layout, u, v, 4);
+}
+
+/// The observed half.
+Panel observed(std::string title, const Vector<double>& y) {
+  return blank_at_obstacles(
+      std::move(title), y, NavierStokesOptions{}.cells / 2);
+}
+
+/// x0, vx, vy of one z.
+std::array<double, 3> blast(const Vector<double>& z) {
+  const NavierStokesOptions o;
+  return {
+      o.box / 2 * (1 + std::tanh(z(0))), o.speed * z(1), o.speed * (1 + z(2))};
+}
+
+/// Fig. 6a: the first problem at t = 0, what is hidden and the blast, too.
+Figure at_the_start(const CaseRecord& first) {
+  const NavierStokesOptions o;
+  const NavierStokes<double> physics(o);
+  const auto shown = physics.sample_labelled(
+      0, 1, root_of(kName, first.info.seed).child("data/test"));
+  const auto [x0, vx, vy] = blast(first.data.x.col(0));
+  Vector<double> uv = shown.given.col(0);
+  const double size = o.box / double(o.cells);
+  const Index all = o.cells * o.cells;
+  for (Index i = 0; i < o.cells; ++i)
+    for (Index j = 0; j < o.cells; ++j) {
+      const double x = (double(i) + 0.5) * size - x0,
+                   y = (double(j) + 0.5) * size - o.height;
+      const double wind = std::exp(-(x * x + y * y) / (2 * o.width * o.width));
+      uv(i * o.cells + j) += wind * vx;
+      uv(all + i * o.cells + j) += wind * vy;
+    }
+  return {.id = "fig6a",
+          .title = "Initial flow with the true blast",
+          .source = "Fig. 6a",
+          .panels = {blank_at_obstacles("t = 0", uv, 0)},
+          .columns = 1,
+          .note =
+              "Speed, first problem of seed 0; obstacles are blank. Methods "
+              "are given the upper half, without the blast."};
 }
 
 /// Estimates of the first problem of seed 0, truth first.
@@ -68,9 +112,9 @@ Vector<double> blown(const Batch<double>& x,
   return y;
 }
 
-/// Fig. 6a, b: what was seen of the first problem, and what estimates make.
+/// Fig. 6b: what was seen of the first problem, and what estimates make.
 Figure pictures(const CaseRecord& first, const std::vector<Said>& all) {
-  Figure figure{.id = "fig6ab",
+  Figure figure{.id = "fig6b",
                 .title = "Final flow above the obstacles",
                 .source = "Fig. 6b",
                 .columns = 3,
@@ -105,7 +149,81 @@ Figure film(const CaseRecord& first, std::vector<Said> all) {
   return figure;
 }
 
-/// Figs. 19, 20: losses over each true parameter.
+/// One row of panels of Figs. 19 and 20: losses over each true parameter, and
+/// how they are distributed.
+class OverTruth {
+ public:
+  OverTruth(const JpoMetrics& metrics, const Results& results, Index n)
+      : metrics_(metrics), results_(results), n_(n) {}
+
+  void add_row(bool refined, std::vector<Panel>& panels) const {
+    const std::string which = refined ? "refined" : "networks alone";
+    const char* const names[] = {"x0", "vx", "vy"};
+    for (std::size_t j = 0; j < 3; ++j) {
+      Panel panel{.title = which,
+                  .x_label = names[j],
+                  .y_label = "loss",
+                  .y_log = true};
+      for (const auto& method : shown())
+        add(series(method,
+                   refined,
+                   [&](const Vector<double>& z) { return blast(z)[j]; }),
+            panel);
+      panels.push_back(std::move(panel));
+    }
+    Panel panel{.title = which,
+                .x_label = "share of problems with a lower loss",
+                .y_label = "loss",
+                .y_log = true};
+    for (const auto& method : shown()) {
+      Series sorted =
+          series(method, refined, [](const Vector<double>&) { return 0.0; });
+      std::sort(sorted.y.begin(), sorted.y.end());
+      for (std::size_t i = 0; i < sorted.x.size(); ++i)
+        sorted.x[i] = (double(i) + 0.5) / double(sorted.x.size());
+      sorted.line = true, sorted.markers = false;
+      add(std::move(sorted), panel);
+    }
+    panels.push_back(std::move(panel));
+  }
+
+ private:
+  static std::vector<std::string> shown() {
+    std::vector<std::string> all = {"bfgs"};
+    all.insert(all.end(), kChains.begin(), kChains.end());
+    return all;
+  }
+  static void add(Series series, Panel& panel) {
+    if (!series.x.empty()) panel.series.push_back(std::move(series));
+  }
+
+  /// Of all seeds, where(z) to the right. BFGS has no refinement.
+  template <class F>
+  Series series(const std::string& method, bool refined, F where) const {
+    Series out{.label = method_title(method),
+               .method = method,
+               .line = false,
+               .markers = true};
+    for (const std::uint64_t seed : metrics_.seeds()) {
+      const auto* stage =
+          metrics_.ending(method, n_, seed, refined && method != "bfgs");
+      const auto* found = results_.find_case(kName, method, n_, seed);
+      if (stage == nullptr || found->data.x.cols() != stage->loss.size())
+        continue;
+      for (Index i = 0; i < stage->loss.size(); ++i) {
+        out.x.push_back(where(found->data.x.col(i)));
+        out.y.push_back(stage->loss(i));
+      }
+    }
+    return out;
+  }
+
+  const JpoMetrics& metrics_;
+  const Results& results_;
+  Index n_;
+};
+
+/// Figs. 19, 20.
 Figure over_truth(const JpoMetrics& metrics,
                   const Results& results,
                   Index n,
@@ -115,35 +233,10 @@ Figure over_truth(const JpoMetrics& metrics,
       .id = id,
       .title = "Loss over the true parameters, n = " + std::to_string(n),
       .source = source,
-      .columns = 3,
-      .note = "All seeds; networks without refinement."};
-  const char* const names[] = {"x0", "vx", "vy"};
-  for (Index j = 0; j < 3; ++j) {
-    Panel panel{.x_label = names[j], .y_label = "loss", .y_log = true};
-    const auto add = [&](const std::string& method) {
-      Series series{.label = method_title(method),
-                    .method = method,
-                    .line = false,
-                    .markers = true};
-      for (const std::uint64_t seed : metrics.seeds()) {
-        const auto* stage = metrics.ending(method, n, seed, false);
-        const auto* found = results.find_case(kName, method, n, seed);
-        if (stage == nullptr || found->data.x.cols() != stage->loss.size())
-          continue;
-        for (Index i = 0; i < stage->loss.size(); ++i) {
-          const double z = found->data.x(j, i);
-          series.x.push_back(j == 0   ? 50 + 50 * std::tanh(z)
-                             : j == 1 ? 5 * z
-                                      : 5 + 5 * z);
-          series.y.push_back(stage->loss(i));
-        }
-      }
-      if (!series.x.empty()) panel.series.push_back(std::move(series));
-    };
-    add("bfgs");
-    for (const auto& method : kChains) add(method);
-    figure.panels.push_back(std::move(panel));
-  }
+      .columns = 4,
+      .note = "All seeds; BFGS is the same in both rows."};
+  const OverTruth rows(metrics, results, n);
+  for (const bool refined : {false, true}) rows.add_row(refined, figure.panels);
   return figure;
 }
 
@@ -182,7 +275,9 @@ Section report(const Results& results, const Published& published) {
   const CaseRecord* first = results.find_case(kName, "bfgs", sizes.back(), 0);
   if (first != nullptr && first->data.y.cols() > 0) {
     const auto all = said(metrics, *first, sizes.back());
-    before.insert(before.begin(), {pictures(*first, all), film(*first, all)});
+    before.insert(
+        before.begin(),
+        {at_the_start(*first), pictures(*first, all), film(*first, all)});
   }
   section.figures.insert(section.figures.begin(), before.begin(), before.end());
   if (sizes.size() > 1)

@@ -2,12 +2,9 @@
 // a loss full of minima, and noise that nobody can explain.
 #include <vector>
 
-#include "problems/wave_packet/wave_packet.h"
 #include "suite/cases/jpo/common/methods.h"
 #include "suite/cases/jpo/common/report.h"
-#include "suite/harness/registry.h"
-#include "suite/nn/unet.h"
-#include "suite/nn/vgg.h"
+#include "suite/cases/jpo/wave_packet/setting.h"
 
 namespace physinv::jpo::wave_packet {
 namespace {
@@ -15,24 +12,6 @@ namespace {
 constexpr Index kFitIterations = 3000, kQuickIterations = 1000;
 
 const auto kTrained = trained_methods();
-
-constexpr nn::Grid kGrid{.columns = 256};
-
-NetworkRole predictor(const std::vector<Index>& hidden) {
-  return {{Field::observations},
-          nn::vgg({.channels = 1,
-                   .grid = kGrid,
-                   .features = {16, 16, 16, 16, 16},
-                   .hidden = hidden})};
-}
-
-const Setting kSetting{
-    .predictor = predictor({64, 32}),
-    .surrogate = {{Field::unknowns, Field::given},
-                  nn::unet(
-                      {.grid = kGrid, .channels = 1, .scalars_before = 1})},
-    .output_scale = 1.0,
-    .gtol = 1e-5};
 
 Row trained(std::vector<std::string> methods,
             std::vector<Index> n,
@@ -62,8 +41,8 @@ const auto kRegistered = register_experiment({
     .name = "jpo/wave-packet",
     .title = "Wave packet",
     .source = {.paper = "jpo", .where = "Sec. 4, Fig. 3, App. D.1"},
-    .problem = problem<WavePacket>("wave_packet"),
-    .setting = kSetting,
+    .problem = recipe(),
+    .setting = setting(),
     .profiles =
         {{.name = "smoke",
           .rows = {{.methods = {"bfgs"}, .n = {4}, .seeds = {0}},
@@ -89,11 +68,8 @@ const auto kRegisteredHead = register_experiment({
     .name = "jpo/wave-packet-head",
     .title = "Wave packet, head 64-32-1",
     .source = {.paper = "jpo", .where = "App. C"},
-    .problem = problem<WavePacket>("wave_packet"),
-    .setting = {.predictor = predictor({64, 32, 1}),
-                .surrogate = kSetting.surrogate,
-                .output_scale = kSetting.output_scale,
-                .gtol = kSetting.gtol},
+    .problem = recipe(),
+    .setting = setting({64, 32, 1}),
     .profiles =
         {{.name = "smoke",
           .rows = {{.methods = {"bfgs"}, .n = {4}, .seeds = {0}},

@@ -99,6 +99,7 @@ Section section_of(const Variant& variant, const Results& results) {
   curves.metric(
       kLines, kVortex, "|s - s*|", "vortex", "Errors of the vortex", "");
   curves.losses(kLines, "losses", "Losses of the marker", "");
+  curves.add(update_times(results, variant.experiment, kLines, "Fig. 15"));
   if (const auto all = said(variant, results); !all.empty()) {
     section.figures.push_back(pictures(all));
     section.figures.push_back(film(all));

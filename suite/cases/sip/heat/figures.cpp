@@ -212,6 +212,7 @@ Section report(const Results& results, const Published& published) {
   curves.metric(
       networks(), kError, "sum |x - x*|", "fig10", "Errors of x", "Fig. 10");
   curves.losses(networks(), "losses", "Losses of y", "");
+  curves.add(update_times(results, kName, networks(), "Fig. 15"));
   for (Figure figure : {direct(results), pictures(results)})
     if (!figure.panels.empty()) section.figures.push_back(std::move(figure));
   return section;

@@ -13,12 +13,12 @@ Condition update(const std::string& what,
                  const std::string& experiment,
                  const std::string& sip,
                  const std::string& adam) {
-  return within(what + ", CPU time of SIP over Adam",
-                median_ratio(Select{sip}.in(experiment),
-                             Select{adam}.in(experiment),
-                             seconds_per_update()),
-                0.9,
-                1.1);
+  return of_stages(within(what + ", CPU time of SIP over Adam",
+                          median_ratio(Select{sip}.in(experiment),
+                                       Select{adam}.in(experiment),
+                                       seconds_per_update()),
+                          0.9,
+                          1.1));
 }
 
 /// Of runs with ten updates looked at or more.

@@ -57,6 +57,7 @@ Section report(const Plane& plane, const Results& results) {
   curves.metric(
       kLines, kError, "sum |x - x*|", "errors", "Errors of x", "Fig. 9");
   curves.losses(kLines, "losses", "Losses of y", "");
+  curves.add(update_times(results, plane.experiment, kLines, "Fig. 15"));
   if (Figure fields = pictures(plane, results); !fields.panels.empty())
     section.figures.push_back(std::move(fields));
   return section;

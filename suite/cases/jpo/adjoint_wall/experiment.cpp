@@ -1,0 +1,69 @@
+// JPO paper, Tables 4 and 5, Apps. D.1 and D.2: the wall that keeps the neural
+// adjoint in the range of its training samples is not printed, nor is, for
+// billiards, how far these are spread.
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "baselines/neural_adjoint.h"
+#include "baselines/surrogate.h"
+#include "optimizers/classical.h"
+#include "suite/cases/jpo/adjoint_wall/settings.h"
+#include "suite/cases/jpo/billiards/setting.h"
+#include "suite/cases/jpo/wave_packet/setting.h"
+#include "suite/harness/registry.h"
+#include "suite/harness/study.h"
+
+namespace physinv::adjoint_wall {
+namespace {
+
+constexpr Index kFit = 3000;
+
+std::vector<Method> methods() {
+  std::vector<Method> all = {{.id = "bfgs", .chain = {bfgs_solve()}}};
+  for (const Wall& w : kWalls)
+    all.push_back(
+        {.id = w.method(),
+         .chain = {surrogate_fit({.iterations = kFit}),
+                   neural_adjoint_solve({.gamma = w.gamma, .weight = w.weight}),
+                   bfgs_refine()}});
+  return all;
+}
+
+std::vector<Profile> profiles(std::vector<Index> n,
+                              std::vector<std::uint64_t> seeds) {
+  Row classical{.methods = {"bfgs"}, .n = std::move(n), .seeds = seeds};
+  Row trained = classical;
+  trained.methods.clear(), trained.iterations = kFit;
+  for (const Wall& w : kWalls) trained.methods.push_back(w.method());
+  return {{.name = "study", .rows = {classical, trained}}};
+}
+
+Experiment experiment(const Study& s) {
+  Experiment e{.name = s.name,
+               .title = s.title,
+               .source = {.paper = "jpo", .where = "Tables 4 and 5"}};
+  if (std::string_view(s.varied) == "jpo/billiards") {
+    e.problem =
+        problem<Billiards>("billiards", {.velocity_spread = s.velocity_spread});
+    e.setting = jpo::billiards::setting();
+    e.profiles = profiles({2, 8, 32, 128}, first_seeds(3));
+  } else {
+    e.problem = jpo::wave_packet::recipe();
+    e.setting = jpo::wave_packet::setting();
+    e.profiles = profiles({8, 256}, first_seeds(2));
+  }
+  e.methods = methods();
+  return e;
+}
+
+const bool kRegistered = [] {
+  bool all = true;
+  for (const Study& s : kStudies)
+    all = register_study(s.name, s.varied) &&
+          register_experiment(experiment(s)) && all;
+  return all;
+}();
+
+}  // namespace
+}  // namespace physinv::adjoint_wall

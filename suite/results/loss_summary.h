@@ -1,0 +1,43 @@
+/// Mean, median and largest loss of a stage: what results.json keeps of all.
+#pragma once
+
+#include <algorithm>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include "suite/results/record.h"
+
+namespace physinv {
+
+struct LossSummary {
+  double mean, median, largest;
+};
+
+/// Where a stage that was read from results.json has them, in that order.
+inline constexpr const char* kLossSummary = "losses";
+
+inline void keep(const LossSummary& losses, StageRecord& stage) {
+  Batch<double> kept(3, 1);
+  kept << losses.mean, losses.median, losses.largest;
+  stage.arrays[kLossSummary] = std::move(kept);
+}
+
+/// As it was kept, or of all losses; of none there is none.
+inline std::optional<double> mean_loss_of(const StageRecord& stage) {
+  if (const auto at = stage.arrays.find(kLossSummary); at != stage.arrays.end())
+    return at->second(0);
+  const auto& all = stage.loss;
+  if (all.size() == 0) return {};
+  return std::accumulate(all.begin(), all.end(), 0.0) /
+         static_cast<double>(all.size());
+}
+inline std::optional<double> largest_loss_of(const StageRecord& stage) {
+  if (const auto at = stage.arrays.find(kLossSummary); at != stage.arrays.end())
+    return at->second(2);
+  const auto& all = stage.loss;
+  if (all.size() == 0) return {};
+  return *std::max_element(all.begin(), all.end());
+}
+
+}  // namespace physinv
