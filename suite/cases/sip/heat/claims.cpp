@@ -233,7 +233,7 @@ const std::vector<Claim> kPaper = {
      .note = "The network's time is taken for a third of an example's share of "
              "an update of Adam.",
      .cause = differs(
-         "by CPU time 1000 iterations of L-BFGS-B take 169 times as long as an "
+         "by CPU time 1000 iterations of L-BFGS-B take 147 times as long as an "
          "answer of the network, of gradient descent 32, printed are about "
          "1000; ours of single examples are transforms alone",
          {of_stages(above("time of L-BFGS-B over a network's, slower",
