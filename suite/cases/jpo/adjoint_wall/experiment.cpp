@@ -51,7 +51,7 @@ Experiment experiment(const Study& s) {
   } else {
     e.problem = jpo::wave_packet::recipe();
     e.setting = jpo::wave_packet::setting();
-    e.profiles = profiles({8, 256}, first_seeds(2));
+    e.profiles = profiles({8, 256}, first_seeds(3));
   }
   e.methods = methods();
   return e;
