@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <map>
 #include <set>
 #include <stdexcept>
@@ -22,74 +24,90 @@ std::string text_of(const Json& object, const char* key) {
   return found->is_string() ? found->get<std::string>() : found->dump();
 }
 
-/// Verdicts of the claims, one for each experiment and id.
-using Verdicts = std::map<std::pair<std::string, std::string>, Verdict>;
-
-struct Counted {
-  std::string title;
-  Verdicts paper, suite;
+/// What the campaigns came to about one claim.
+struct Standing {
+  ClaimResult claim;
+  std::string campaign;
 };
+/// One for each experiment and id.
+using Standings = std::map<std::pair<std::string, std::string>, Standing>;
+using Papers = std::map<std::string, Standings>;
 
-/// What was decided counts before what was only reported.
+/// What was decided counts before what was judged in part, and that before what
+/// was only reported.
 int weight(Verdict verdict) {
-  return verdict == Verdict::not_judged ? 0
-         : verdict == Verdict::reported ? 1
-                                        : 2;
-}
-
-Origin origin_of(const Json& claim) {
-  return claim.at("origin") == "paper" ? Origin::paper : Origin::suite;
-}
-
-/// That a claim of a digest came to.
-Verdict verdict_in(const Json& claim) {
-  const std::string words = claim.at("verdict");
-  const auto verdict = verdict_of(words);
-  if (!verdict)
-    throw std::runtime_error(
-        fmt::format("no digest of a campaign: '{}' is no verdict", words));
-  return *verdict;
-}
-
-void count(const Json& section, std::map<std::string, Counted>& papers) {
-  const std::string experiment = section.at("experiment");
-  for (const Json& claim : section.at("claims")) {
-    Counted& counted = papers[section.at("paper").get<std::string>()];
-    auto& verdicts =
-        origin_of(claim) == Origin::paper ? counted.paper : counted.suite;
-    const Verdict verdict = verdict_in(claim);
-    const auto [entry, first] = verdicts.try_emplace(
-        {experiment, claim.at("id").get<std::string>()}, verdict);
-    if (!first && weight(verdict) >= weight(entry->second))
-      entry->second = verdict;
+  switch (verdict) {
+    case Verdict::not_judged:
+      return 0;
+    case Verdict::reported:
+      return 1;
+    case Verdict::partly_judged:
+      return 2;
+    default:
+      return 3;
   }
 }
 
-int count_of(const Verdicts& verdicts, Verdict verdict) {
-  int count = 0;
-  for (const auto& [id, v] : verdicts) count += v == verdict;
-  return count;
+std::string date_of(const NamedDigest& campaign) {
+  return text_of(campaign.digest.at("provenance"), "date");
 }
 
-std::string overview(const std::vector<NamedDigest>& campaigns) {
-  std::map<std::string, Counted> papers;
-  for (const auto& c : campaigns)
-    for (const Json& section : c.digest.at("sections")) count(section, papers);
+/// Whatever the campaigns are called, a later one counts before an earlier one.
+Papers standings(std::vector<NamedDigest> campaigns) {
+  std::stable_sort(
+      campaigns.begin(), campaigns.end(), [](const auto& a, const auto& b) {
+        return date_of(a) < date_of(b);
+      });
+  Papers papers;
+  for (const NamedDigest& c : campaigns)
+    for (const Json& section : c.digest.at("sections"))
+      for (const Json& claim : section.at("claims")) {
+        Standing found{claim_from(claim), c.name};
+        const auto [entry, first] =
+            papers[section.at("paper").get<std::string>()].try_emplace(
+                {section.at("experiment").get<std::string>(), found.claim.id},
+                found);
+        if (!first &&
+            weight(found.claim.verdict) >= weight(entry->second.claim.verdict))
+          entry->second = std::move(found);
+      }
+  return papers;
+}
+
+VerdictCounts counts_of(const Standings& paper, Origin origin) {
+  VerdictCounts counts{};
+  for (const auto& [id, s] : paper)
+    if (s.claim.origin == origin)
+      ++counts[static_cast<std::size_t>(s.claim.verdict)];
+  return counts;
+}
+
+std::string overview(const Papers& papers,
+                     const std::vector<NamedDigest>& campaigns) {
+  std::array<VerdictCounts, 2> totals{};
+  constexpr std::array kOrigins{Origin::paper, Origin::suite};
+  for (const auto& [paper, standings] : papers)
+    for (std::size_t o = 0; o < kOrigins.size(); ++o)
+      for (const Verdict v : kVerdicts)
+        totals[o][static_cast<std::size_t>(v)] +=
+            counts_of(standings, kOrigins[o])[static_cast<std::size_t>(v)];
   std::string out = "| paper |", line = "\n| --- |";
-  for (const Origin origin : {Origin::paper, Origin::suite})
-    for (const Verdict v : kVerdicts) {
-      const bool first_range = origin == Origin::suite && v == kVerdicts[0];
+  for (std::size_t o = 0; o < kOrigins.size(); ++o)
+    for (const Verdict v : columns_of(totals[o])) {
+      const bool first_range =
+          kOrigins[o] == Origin::suite && v == kVerdicts[0];
       out += fmt::format(" {}{} |",
                          first_range ? "ranges of the suite: " : "",
-                         words_of(v, origin));
+                         words_of(v, kOrigins[o]));
       line += " --- |";
     }
   out += line + '\n';
   for (const auto& [paper, c] : papers) {
     out += fmt::format("| {} |", paper.empty() ? "(none)" : markdown(paper));
-    for (const Verdicts* verdicts : {&c.paper, &c.suite})
-      for (const Verdict v : kVerdicts)
-        out += fmt::format(" {} |", count_of(*verdicts, v));
+    for (std::size_t o = 0; o < kOrigins.size(); ++o)
+      for (const Verdict v : columns_of(totals[o]))
+        out += fmt::format(
+            " {} |", counts_of(c, kOrigins[o])[static_cast<std::size_t>(v)]);
     out += '\n';
   }
   std::set<std::string> publications;
@@ -102,32 +120,67 @@ std::string overview(const std::vector<NamedDigest>& campaigns) {
   return out;
 }
 
+/// Every claim that is not reproduced, once, with its cause: what fails first.
+std::string causes(const Papers& papers) {
+  constexpr std::array kOrder{Verdict::not_reproduced,
+                              Verdict::contradiction,
+                              Verdict::depends,
+                              Verdict::differs,
+                              Verdict::partly_judged,
+                              Verdict::not_judged,
+                              Verdict::reported};
+  static_assert(kOrder.size() + 1 == kVerdictCount);
+  std::string rows;
+  for (const auto& [paper, standings] : papers)
+    for (const Verdict v : kOrder)
+      for (const auto& [key, s] : standings)
+        if (s.claim.verdict == v)
+          rows += fmt::format(
+              "| {} {} | {} | {} | {} | {} |\n",
+              markdown(key.first),
+              markdown(key.second),
+              markdown(s.claim.says),
+              words_of(v, s.claim.origin),
+              markdown(s.claim.cause.empty() ? "unknown" : s.claim.cause),
+              markdown(s.campaign));
+  if (rows.empty()) return "";
+  return "\n## What is not reproduced, and why\n\n"
+         "The latest campaign that decided counts. `differs`: stronger or "
+         "weaker than printed, the same direction; `depends`: on a choice that "
+         "the paper does not print; `contradiction`: within the paper.\n\n"
+         "| claim | says | verdict | cause | campaign |\n"
+         "| --- | --- | --- | --- | --- |\n" +
+         rows;
+}
+
 /// Judged claims with their numbers, then the others by what is missing.
-std::string claims_of(const Json& section, const char* origin) {
+std::string claims_of(const Json& section, Origin origin) {
   std::string rows;
   std::map<std::string, std::string> waiting;  // what for -> ids
-  for (const Json& claim : section.at("claims")) {
-    if (claim.at("origin") != origin) continue;
-    const std::string where = text_of(claim, "where");
-    const std::string note = text_of(claim, "note");
-    const std::string evidence = text_of(claim, "evidence");
-    if (verdict_in(claim) == Verdict::not_judged) {
-      std::string& ids = waiting[evidence.empty() ? note : evidence];
-      ids += (ids.empty() ? "" : ", ") + text_of(claim, "id");
+  for (const Json& json : section.at("claims")) {
+    const ClaimResult claim = claim_from(json);
+    if (claim.origin != origin) continue;
+    if (claim.verdict == Verdict::not_judged) {
+      std::string& ids =
+          waiting[claim.evidence.empty() ? claim.note : claim.evidence];
+      ids += (ids.empty() ? "" : ", ") + claim.id;
       continue;
     }
-    rows += fmt::format("| {} | {}{} | {} | {}{} |\n",
-                        markdown(text_of(claim, "id")),
-                        markdown(text_of(claim, "says")),
-                        where.empty() ? "" : " (" + markdown(where) + ")",
-                        words_of(verdict_in(claim), origin_of(claim)),
-                        markdown(evidence),
-                        note.empty() ? "" : " *" + markdown(note) + "*");
+    const std::string cause = cause_text(claim.verdict, claim.cause);
+    rows += fmt::format(
+        "| {} | {}{} | {} | {}{}{} |\n",
+        markdown(claim.id),
+        markdown(claim.says),
+        claim.where.empty() ? "" : " (" + markdown(claim.where) + ")",
+        words_of(claim.verdict, claim.origin),
+        markdown(claim.evidence),
+        cause.empty() ? "" : " **" + markdown(cause) + "**",
+        claim.note.empty() ? "" : " *" + markdown(claim.note) + "*");
   }
   if (rows.empty() && waiting.empty()) return "";
-  const bool paper = std::string_view(origin) == "paper";
-  std::string out = paper ? "\nWhat the paper says:\n"
-                          : "\nRanges of the suite (regression checks):\n";
+  std::string out = origin == Origin::paper
+                        ? "\nWhat the paper says:\n"
+                        : "\nRanges of the suite (regression checks):\n";
   if (!rows.empty())
     out +=
         "\n| id | claim | verdict | measured |\n| --- | --- | --- | --- |\n" +
@@ -158,7 +211,7 @@ std::string campaign_markdown(const NamedDigest& campaign) {
     out += fmt::format("\n### {} ({})\n",
                        markdown(text_of(section, "title")),
                        markdown_code(text_of(section, "experiment")));
-    for (const char* origin : {"paper", "suite"})
+    for (const Origin origin : {Origin::paper, Origin::suite})
       out += claims_of(section, origin);
     for (const Json& table : section.at("tables"))
       out += '\n' + table.get<std::string>();
@@ -203,9 +256,11 @@ std::string results_markdown(const std::vector<NamedDigest>& campaigns) {
       "`reports/campaigns`; nothing here is copied by hand. A claim is the "
       "paper's (its sentence, number or figure) or a range of the suite, "
       "which earlier runs of this code or of independent programs showed. "
-      "Only the former count as reproduced or not.\n\n";
+      "Only the former count as reproduced or not. Verdicts are today's, on "
+      "the numbers that the campaigns kept.\n\n";
   try {
-    out += overview(campaigns);
+    const auto papers = standings(campaigns);
+    out += overview(papers, campaigns) + causes(papers);
     for (const auto& c : campaigns) out += campaign_markdown(c);
   } catch (const nlohmann::json::exception& error) {
     throw std::runtime_error(std::string("no digest of a campaign: ") +

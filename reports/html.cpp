@@ -24,6 +24,11 @@ std::string_view css_of(Verdict verdict) {
       return "yes";
     case Verdict::not_reproduced:
       return "no";
+    case Verdict::differs:
+    case Verdict::depends:
+    case Verdict::contradiction:
+      return "why";
+    case Verdict::partly_judged:
     case Verdict::not_judged:
     case Verdict::reported:
       break;
@@ -95,7 +100,7 @@ std::string totals_html(const std::vector<Section>& sections) {
   std::string out =
       "<p>What the papers say, by their sentences, tables and figures:</p>\n"
       "<ul class=\"totals\">\n";
-  for (const Verdict v : kVerdicts) {
+  for (const Verdict v : columns_of(papers)) {
     const int count = papers[static_cast<std::size_t>(v)];
     out += fmt::format("<li class=\"{}\"><strong>{}</strong> {}</li>\n",
                        count == 0 ? "open" : css_of(v),
@@ -140,7 +145,8 @@ std::string overview_html(const std::vector<Section>& sections,
                     "<div class=\"scroll\">\n<table class=\"overview\">\n"
                     "<caption class=\"hidden\">Claims by experiment</caption>\n"
                     "<thead>\n<tr><th scope=\"col\">experiment</th>";
-  for (const Verdict v : kVerdicts) {
+  const auto columns = columns_of(tally(sections, Origin::paper));
+  for (const Verdict v : columns) {
     out += fmt::format("<th scope=\"col\">{}</th>", words_of(v, Origin::paper));
   }
   out +=
@@ -150,7 +156,7 @@ std::string overview_html(const std::vector<Section>& sections,
     out += fmt::format("<tr><th scope=\"row\">{}</th>",
                        link(anchors[s].section, sections[s].title));
     const Tally counts = tally(sections[s], Origin::paper);
-    for (const Verdict v : kVerdicts) {
+    for (const Verdict v : columns) {
       out += fmt::format("<td>{}<span class=\"word\"> {}</span></td>",
                          counts[static_cast<std::size_t>(v)],
                          words_of(v, Origin::paper));
@@ -205,6 +211,9 @@ std::string claim_html(const ClaimResult& claim, const std::string& id) {
   if (!claim.evidence.empty()) {
     out += fmt::format("<p class=\"evidence\">{}</p>", html(claim.evidence));
   }
+  const std::string cause = cause_text(claim.verdict, claim.cause);
+  if (!cause.empty())
+    out += fmt::format("<p class=\"cause\">{}</p>", html(cause));
   if (!claim.note.empty())
     out += fmt::format("<p class=\"evidence\">{}</p>", html(claim.note));
   return out + fmt::format("<p class=\"evidence\">{}{}{}</p></td></tr>\n",

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <stdexcept>
 
 #include "reports/html.h"
 #include "reports/plot.h"
@@ -132,7 +133,8 @@ std::string claims_markdown(const Section& section, Origin origin) {
         c.where.empty() ? "" : fmt::format(" ({})", markdown(c.where));
     const std::string note =
         c.note.empty() ? "" : fmt::format(" *{}*", markdown(c.note));
-    out += fmt::format("| {} | {}{} | {} {} | {} | {} | {}{} |\n",
+    const std::string cause = cause_text(c.verdict, c.cause);
+    out += fmt::format("| {} | {}{} | {} {} | {} | {} | {}{}{}{} |\n",
                        markdown(c.id),
                        markdown(c.says),
                        place,
@@ -141,6 +143,8 @@ std::string claims_markdown(const Section& section, Origin origin) {
                        markdown(c.from),
                        c.gates ? "yes" : "no",
                        markdown(c.evidence),
+                       cause.empty() ? "" : " ",
+                       cause.empty() ? "" : "**" + markdown(cause) + "**",
                        note);
   }
   return out;
@@ -217,7 +221,7 @@ Tally tally(const std::vector<Section>& sections, Origin origin) {
 
 std::string tally_text(const Tally& tally, Origin origin) {
   std::string text;
-  for (const Verdict v : kVerdicts)
+  for (const Verdict v : columns_of(tally))
     text += fmt::format("{}{} {}",
                         text.empty() ? "" : ", ",
                         tally[static_cast<std::size_t>(v)],
@@ -237,18 +241,49 @@ nlohmann::ordered_json to_json(const Figure& figure) {
   return out;
 }
 
-nlohmann::ordered_json to_json(const ClaimResult& claim) {
-  Json conditions = Json::array();
-  for (const ConditionResult& c : claim.conditions) {
+namespace {
+
+Json to_json(const std::vector<ConditionResult>& conditions) {
+  Json out = Json::array();
+  for (const ConditionResult& c : conditions) {
     const bool finite = c.value && std::isfinite(*c.value);
-    conditions.push_back({{"label", c.label},
-                          {"bounds", c.bounds},
-                          {"value", finite ? Json(*c.value) : Json(nullptr)},
-                          {"spread", optional_number(c.spread)},
-                          {"runs", c.runs},
-                          {"holds", c.holds ? Json(*c.holds) : Json(nullptr)},
-                          {"missing", c.missing}});
+    out.push_back({{"label", c.label},
+                   {"bounds", c.bounds},
+                   {"value", finite ? Json(*c.value) : Json(nullptr)},
+                   {"spread", optional_number(c.spread)},
+                   {"runs", c.runs},
+                   {"holds", c.holds ? Json(*c.holds) : Json(nullptr)},
+                   {"missing", c.missing}});
   }
+  return out;
+}
+
+std::vector<ConditionResult> conditions_from(const Json& list) {
+  const auto number = [](const Json& value) {
+    return value.is_number() ? std::optional(value.get<double>())
+                             : std::nullopt;
+  };
+  std::vector<ConditionResult> out;
+  for (const Json& c : list) {
+    const Json& holds = c.at("holds");
+    out.push_back({.label = c.at("label"),
+                   .bounds = c.at("bounds"),
+                   .value = number(c.at("value")),
+                   .spread = number(c.at("spread")),
+                   .runs = c.at("runs"),
+                   .holds = holds.is_boolean()
+                                ? std::optional(holds.get<bool>())
+                                : std::nullopt,
+                   .missing = c.at("missing")});
+    // One that is not finite is null, and was decided about all the same.
+    if (!out.back().value && out.back().holds) out.back().value = INFINITY;
+  }
+  return out;
+}
+
+}  // namespace
+
+nlohmann::ordered_json to_json(const ClaimResult& claim) {
   return {{"id", claim.id},
           {"says", claim.says},
           {"from", claim.from},
@@ -258,7 +293,31 @@ nlohmann::ordered_json to_json(const ClaimResult& claim) {
           {"origin", claim.origin == Origin::paper ? "paper" : "suite"},
           {"where", claim.where},
           {"note", claim.note},
-          {"conditions", std::move(conditions)}};
+          {"cause", claim.cause},
+          {"conditions", to_json(claim.conditions)},
+          {"shown_by", to_json(claim.shown_by)}};
+}
+
+ClaimResult claim_from(const Json& claim) {
+  const std::string words = claim.at("verdict");
+  const auto verdict = verdict_of(words);
+  if (!verdict)
+    throw std::runtime_error(
+        fmt::format("no digest of a campaign: '{}' is no verdict", words));
+  const bool paper = claim.at("origin") == "paper";
+  return {
+      .id = claim.at("id"),
+      .says = claim.at("says"),
+      .from = claim.value("from", ""),
+      .gates = claim.value("gates", true),
+      .verdict = *verdict,
+      .evidence = claim.at("evidence"),
+      .origin = paper ? Origin::paper : Origin::suite,
+      .where = claim.value("where", ""),
+      .note = claim.value("note", ""),
+      .conditions = conditions_from(claim.value("conditions", Json::array())),
+      .cause = claim.value("cause", ""),
+      .shown_by = conditions_from(claim.value("shown_by", Json::array()))};
 }
 
 std::vector<fs::path> write_report(const fs::path& dir,
@@ -300,6 +359,8 @@ std::string render_claims_text(const std::vector<Section>& sections,
       if (!c.where.empty()) words += fmt::format(" ({})", c.where);
       if (!c.gates) words += " (does not gate)";
       if (!c.evidence.empty()) words += " — " + c.evidence;
+      const std::string cause = cause_text(c.verdict, c.cause);
+      if (!cause.empty()) words += fmt::format(" {{{}}}", cause);
       if (!c.note.empty()) words += fmt::format(" [{}]", c.note);
       std::string head = "  " + pad_right(c.id, 4) + ' ';
       head += words_of(c.verdict, c.origin);

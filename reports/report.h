@@ -16,7 +16,7 @@
 namespace physinv {
 
 /// How many claims of an origin came to which verdict.
-using Tally = std::array<int, kVerdictCount>;
+using Tally = VerdictCounts;
 Tally tally(const Section& section, Origin origin);
 Tally tally(const std::vector<Section>& sections, Origin origin);
 /// "12 reproduced, 3 not reproduced, 4 not judged, 1 reported"
@@ -24,6 +24,9 @@ std::string tally_text(const Tally& tally, Origin origin);
 
 nlohmann::ordered_json to_json(const Figure& figure);
 nlohmann::ordered_json to_json(const ClaimResult& claim);
+/// What `to_json` made, with or without a cause; std::runtime_error if it is
+/// none.
+ClaimResult claim_from(const nlohmann::ordered_json& claim);
 
 /// Files below `dir`, where jpo/billiards becomes jpo-billiards:
 ///   index.html, report.md,

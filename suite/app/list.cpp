@@ -150,21 +150,25 @@ void print_methods() {
 /// Every claim as Markdown, what decides it in the words of its bounds.
 void print_claims(const std::string& of, const std::vector<Claim>& claims) {
   for (const Claim& c : claims) {
-    fmt::print("| {} | {} | {} | {} | {} | {} | {} |\n",
+    fmt::print("| {} | {} | {} | {} | {} | {} | {} | {} |\n",
                of,
                c.id,
                c.origin == Origin::paper ? "paper" : "suite",
                escaped(c.where),
                c.from,
                escaped(c.says),
-               escaped(conditions_text(c)));
+               escaped(conditions_text(c)),
+               c.cause.why.empty() ? ""
+                                   : fmt::format("{}: {}",
+                                                 words_of(c.cause.as, c.origin),
+                                                 escaped(c.cause.why)));
   }
 }
 
 void print_claims() {
   fmt::print(
-      "| of | id | whose | where | judged from | says | conditions |\n"
-      "| --- | --- | --- | --- | --- | --- | --- |\n");
+      "| of | id | whose | where | judged from | says | conditions | cause |\n"
+      "| --- | --- | --- | --- | --- | --- | --- | --- |\n");
   for (const Overview& o : registry().overviews())
     print_claims(o.paper, o.claims);
   for (const auto& e : registry().experiments())

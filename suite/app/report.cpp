@@ -203,15 +203,23 @@ std::vector<ExpectedFailure> expected_failures(
 
 /// Says how the gating claims stand; ExitError if one fails unexpectedly.
 void check_claims(const ClaimTally& j) {
-  fmt::print("{} gating claims judged: {} hold, {} fail as expected, {} fail\n",
-             j.judged,
-             j.judged - j.known_misses.size() - j.misses.size(),
-             j.known_misses.size(),
-             j.misses.size());
+  const auto failing =
+      j.known_misses.size() + j.misses.size() + j.explained.size();
+  fmt::print(
+      "{} gating claims judged: {} hold, {} explained by their cause, {} fail "
+      "as expected, {} fail\n",
+      j.judged,
+      j.judged - failing,
+      j.explained.size(),
+      j.known_misses.size(),
+      j.misses.size());
+  for (const auto& claim : j.explained) fmt::print("explained: {}\n", claim);
   for (const auto& claim : j.known_misses)
     fmt::print("expected to fail: {}\n", claim);
   for (const auto& claim : j.surprises)
     fmt::print("holds, although listed as expected to fail: {}\n", claim);
+  for (const auto& claim : j.stale)
+    fmt::print("holds, although its cause says: {}\n", claim);
   if (!j.misses.empty())
     throw ExitError(ExitCode::claim,
                     fmt::format("{} gating claims are not reproduced, first {}",

@@ -6,6 +6,7 @@
 
 #include "suite/results/published.h"
 #include "suite/results/results.h"
+#include "suite/results/verdict_words.h"
 
 namespace physinv {
 namespace {
@@ -38,14 +39,15 @@ std::string evidence_text(const ConditionResult& c) {
   return text + ")";
 }
 
-Verdict verdict_of(const std::vector<ConditionResult>& conditions) {
+/// What the conditions alone say.
+Verdict outcome(const std::vector<ConditionResult>& conditions) {
   bool missing = false, decided = false;
   for (const ConditionResult& c : conditions) {
     if (c.holds && !*c.holds) return Verdict::not_reproduced;
     decided = decided || c.holds;
     missing = missing || (!c.holds && !c.bounds.empty());
   }
-  if (missing) return Verdict::not_judged;
+  if (missing) return decided ? Verdict::partly_judged : Verdict::not_judged;
   if (decided) return Verdict::reproduced;
   const bool any =
       std::any_of(conditions.begin(), conditions.end(), [](const auto& c) {
@@ -54,30 +56,64 @@ Verdict verdict_of(const std::vector<ConditionResult>& conditions) {
   return any ? Verdict::reported : Verdict::not_judged;
 }
 
+bool explains_failure(const Cause& cause) {
+  return cause.as == Verdict::not_reproduced || is_explained(cause.as);
+}
+
+/// The verdict of what was measured, and the cause of it; `check` judges a
+/// condition of the cause.
+template <class F>
+void explain(const Cause& cause, F&& check, ClaimResult& out) {
+  if (cause.why.empty()) return;
+  if (out.verdict != Verdict::not_reproduced) {
+    if (out.verdict != Verdict::reproduced || explains_failure(cause))
+      out.cause = cause.why;
+    return;
+  }
+  if (!explains_failure(cause)) return;
+  out.cause = cause.why;
+  out.verdict = cause.as;
+  for (const Condition& c : cause.shown_by) {
+    out.shown_by.push_back(check(c));
+    const ConditionResult& r = out.shown_by.back();
+    if (r.holds.value_or(true)) continue;
+    out.verdict = Verdict::not_reproduced;
+    out.cause +=
+        fmt::format(" (which does not show here: {})", evidence_text(r));
+  }
+}
+
+/// The claim without a verdict.
+ClaimResult unjudged(const Claim& claim) {
+  return {.id = claim.id,
+          .says = claim.says,
+          .from = claim.from,
+          .gates = claim.gates,
+          .verdict = Verdict::not_judged,
+          .evidence = {},
+          .origin = claim.origin,
+          .where = claim.where,
+          .note = claim.note};
+}
+
+void add(ConditionResult result, ClaimResult& out) {
+  out.evidence += (out.evidence.empty() ? "" : "; ") + evidence_text(result);
+  out.conditions.push_back(std::move(result));
+}
+
 ClaimResult judge(const Claim& claim,
                   const Evidence& evidence,
                   std::ptrdiff_t rank,
                   const std::vector<std::string>& profiles) {
-  ClaimResult out{.id = claim.id,
-                  .says = claim.says,
-                  .from = claim.from,
-                  .gates = claim.gates,
-                  .verdict = Verdict::not_judged,
-                  .evidence = {},
-                  .origin = claim.origin,
-                  .where = claim.where,
-                  .note = claim.note,
-                  .conditions = {}};
+  ClaimResult out = unjudged(claim);
   if (rank < rank_of(profiles, claim.from)) {
     out.evidence = fmt::format("needs the profile {}", claim.from);
-    return out;
+  } else {
+    for (const Condition& c : claim.conditions) add(c.judge(evidence), out);
+    out.verdict = outcome(out.conditions);
   }
-  for (const Condition& c : claim.conditions) {
-    out.conditions.push_back(c.judge(evidence));
-    out.evidence += (out.evidence.empty() ? "" : "; ") +
-                    evidence_text(out.conditions.back());
-  }
-  out.verdict = verdict_of(out.conditions);
+  explain(
+      claim.cause, [&](const Condition& c) { return c.judge(evidence); }, out);
   return out;
 }
 
@@ -93,6 +129,34 @@ std::vector<ClaimResult> judge(const std::vector<Claim>& claims,
   return out;
 }
 
+ClaimResult judge_again(const Claim& claim,
+                        const ClaimResult& kept,
+                        const Evidence& evidence) {
+  ClaimResult out = unjudged(claim);
+  if (kept.conditions.empty()) {
+    out.evidence = kept.evidence;
+  } else {
+    // Labels may repeat: each number is taken once.
+    Kept left = kept.conditions;
+    for (const Condition& c : claim.conditions) {
+      add(decide_again(c, left, evidence), out);
+      const auto taken =
+          std::find_if(left.begin(), left.end(), [&](const auto& old) {
+            return old.label == out.conditions.back().label;
+          });
+      if (taken != left.end()) left.erase(taken);
+    }
+    out.verdict = outcome(out.conditions);
+  }
+  Kept all = kept.conditions;
+  all.insert(all.end(), kept.shown_by.begin(), kept.shown_by.end());
+  explain(
+      claim.cause,
+      [&](const Condition& c) { return decide_again(c, all, evidence); },
+      out);
+  return out;
+}
+
 std::string conditions_text(const Claim& claim) {
   std::string text;
   for (const Condition& c : claim.conditions) {
@@ -100,6 +164,10 @@ std::string conditions_text(const Claim& claim) {
     text += c.bounds.empty() ? c.label : c.label + " " + c.bounds;
   }
   return text;
+}
+
+std::vector<Condition> all_conditions(const Claim& claim) {
+  return joined({claim.conditions, claim.cause.shown_by});
 }
 
 std::vector<std::string> problems_of(const Claim& claim,
@@ -112,8 +180,13 @@ std::vector<std::string> problems_of(const Claim& claim,
   if (claim.says.empty()) add("says nothing");
   if (claim.origin == Origin::paper && claim.where.empty())
     add("is the paper's and does not say where");
-  if (claim.conditions.empty() && claim.note.empty())
-    add("has no conditions and no note why");
+  if (claim.conditions.empty() && claim.note.empty() && claim.cause.why.empty())
+    add("has no conditions and neither note nor cause why");
+  if (claim.cause.as == Verdict::reproduced ||
+      claim.cause.why.find('\n') != std::string::npos)
+    add("has a cause that is none");
+  if (claim.cause.as != Verdict::not_reproduced && claim.cause.why.empty())
+    add("has a cause without a word");
   if (rank_of(profiles, claim.from) ==
       static_cast<std::ptrdiff_t>(profiles.size()))
     add(fmt::format("is judged from the unknown profile '{}'", claim.from));
@@ -125,10 +198,10 @@ std::vector<std::string> unknown_printed(const std::vector<Claim>& claims,
                                          const Published& published) {
   std::vector<std::string> wrong;
   for (const Claim& claim : claims)
-    for (const Condition& c : claim.conditions)
+    for (const Condition& c : all_conditions(claim))
       for (const Quantity& q : c.quantities)
         for (const std::string& name : q.printed())
-          if (!published.find(experiment, name))
+          if (!find_printed(published, experiment, name))
             wrong.push_back(
                 fmt::format("{}: claim {} names the printed value {}, which "
                             "the paper's file lacks",

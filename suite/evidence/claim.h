@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "suite/evidence/cause.h"
 #include "suite/evidence/condition.h"
 
 namespace physinv {
@@ -20,23 +21,37 @@ struct Claim {
   std::string says;   ///< without bounds: these write their own words
   /// All have to hold. None that decides: the numbers are reported.
   std::vector<Condition> conditions;
-  std::string note = {};  ///< "contradicts Table 2 of the same paper"
+  std::string note = {};  ///< how it is read, what was run
+  Cause cause = {};       ///< of a claim that is not reproduced
   bool gates = true;
 };
 
 /// `profiles` are the experiment's in ascending order. A claim is judged from
 /// the profile it names or a later one; below, and where runs are missing, it
 /// is not judged, with what is missing. One condition that fails decides, even
-/// if others are missing.
+/// if others are missing; what that counts as, its cause tells. If none fails
+/// and some are missing, the claim is judged in part.
 std::vector<ClaimResult> judge(const std::vector<Claim>& claims,
                                const Evidence& evidence,
                                const std::vector<std::string>& profiles);
 
+/// Judged again from the numbers that an earlier judgement kept, as far as the
+/// claim still asks for them: a condition of another label or relation is
+/// missing, "not kept". `evidence` tells which runs there were, without their
+/// curves.
+ClaimResult judge_again(const Claim& claim,
+                        const ClaimResult& kept,
+                        const Evidence& evidence);
+
 /// "Adam / HIG > 2; updates to 0.1 in 55 .. 95"
 std::string conditions_text(const Claim& claim);
 
+/// Its own and those of its cause: what registration checks.
+std::vector<Condition> all_conditions(const Claim& claim);
+
 /// What is wrong with a claim by itself, one line each: no id, a claim of the
-/// paper without a place, no conditions, an unknown profile.
+/// paper without a place, no conditions, an unknown profile, a cause that is no
+/// line or counts as holding.
 std::vector<std::string> problems_of(const Claim& claim,
                                      const std::vector<std::string>& profiles);
 

@@ -15,12 +15,31 @@
 
 namespace physinv {
 
+/// What an earlier judgement kept.
+using Kept = std::vector<ConditionResult>;
+
 struct Condition {
   std::string label;
   std::string bounds;                ///< in words: "in 55 .. 95"
   std::vector<Quantity> quantities;  ///< what registration checks
   std::function<ConditionResult(const Evidence&)> judge;
+  /// Decides anew about a number that was kept under this label, or about those
+  /// under the labels `parts`; empty: what was decided stands.
+  std::function<void(
+      const Evidence&, const Kept& all, ConditionResult& this_one)>
+      again = {};
+  std::vector<std::string> parts = {};
+  std::vector<Condition> alternatives = {};  ///< of `either`
 };
+
+/// What is missing where no number was kept, although runs were asked for.
+inline constexpr const char* kNotKept = "not kept; needs a run";
+
+/// From what was kept of an earlier judgement; missing if there is nothing of
+/// this label and relation.
+ConditionResult decide_again(const Condition& condition,
+                             const Kept& kept,
+                             const Evidence& evidence);
 
 /// Bounds may be measured themselves ("as many as BFGS").
 Condition at_least(std::string label, Quantity q, Quantity bound);
@@ -36,12 +55,34 @@ Condition either(Condition a, Condition b);
 std::vector<Condition> joined(
     std::initializer_list<std::vector<Condition>> parts);
 
-/// Whether our number is the printed one. Without a printed spread,
-/// |m - p| <= max(0.05, 2.83 s) with s our deviation over at least three seeds
-/// (the paper's spread assumed as large as ours); not judged if that is wider
-/// than 20. With one, b: |m - p| <= max(0.05, 2 sqrt(s^2 + b^2)). In the unit
-/// of the printed value, as a rule per cent.
-Condition as_printed(std::string label, Quantity q, std::string quantity);
+/// Whether our mean over K seeds is the one that the paper prints of `seeds`:
+/// |m - p| <= 2 sqrt(s^2 / K + s^2 / seeds), twice the standard error of the
+/// difference of two means, or half a printed digit, 0.05. Per cent. s is our
+/// deviation over at least three seeds, and at least that of shares of so many
+/// problems (binomial, at the mean of both numbers).
+Condition as_printed(std::string label,
+                     Quantity q,
+                     std::string quantity,
+                     Index seeds);
+/// The same of a number that no file has under one name.
+Condition as_stated(std::string label,
+                    Quantity percent,
+                    double stated,
+                    Index seeds);
+
+/// One of several means, beside its name among the printed ones.
+struct PrintedMean {
+  std::string label;
+  Quantity quantity;
+  std::string name;
+};
+/// Whether means are those that the paper prints with deviations, all together:
+/// the probability of differences as large, sum (m - p)^2 / (s^2 / K + b^2 /
+/// seeds) after chi squared, is 5 % at least. Variances are at least those of
+/// rounding to 0.1. Behind it the means, and the printed ones, as numbers.
+std::vector<Condition> jointly_as_printed(std::string label,
+                                          std::vector<PrintedMean> means,
+                                          Index seeds);
 
 /// "About x %": |m - x| <= max(5, 2 standard errors), in per cent.
 Condition about(std::string label, Quantity percent, double x);

@@ -8,6 +8,7 @@
 
 #include "suite/evidence/statistics.h"
 #include "suite/evidence/training.h"
+#include "suite/results/crowded.h"
 #include "suite/results/published.h"
 #include "suite/results/record.h"
 
@@ -21,8 +22,14 @@ Quantity over_runs(Select select, RunValue value, F statistic) {
   return {[=](const Evidence& e) {
             const auto samples = sample(e, select, value);
             if (samples.empty()) {
-              const bool ran = !find_runs(e, select).empty();
-              return missing(select.text() + (ran ? " too short" : " not run"));
+              const auto runs = find_runs(e, select);
+              const bool crowded =
+                  std::all_of(runs.begin(), runs.end(), [](const Run& run) {
+                    return is_crowded(*run.stage);
+                  });
+              return missing(select.text() + (runs.empty() ? " not run"
+                                              : crowded    ? " crowded"
+                                                           : " too short"));
             }
             return statistic(samples);
           },
@@ -254,10 +261,20 @@ Quantity from_at_least(Index runs, const Quantity& a) {
           a.printed()};
 }
 
+std::optional<PublishedValue> find_printed(const Published& published,
+                                           const std::string& experiment,
+                                           const std::string& name) {
+  const auto space = name.find(' ');
+  return space == std::string::npos
+             ? published.find(experiment, name)
+             : published.find(name.substr(0, space), name.substr(space + 1));
+}
+
 Quantity printed(std::string quantity) {
   std::vector<std::string> names = {quantity};
   return {[=](const Evidence& e) {
-            const auto found = e.published.find(e.experiment, quantity);
+            const auto found =
+                find_printed(e.published, e.experiment, quantity);
             if (!found) return missing("printed " + quantity);
             return Measured{.value = found->value, .spread = found->spread};
           },

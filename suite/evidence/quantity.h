@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "suite/evidence/runs.h"
+#include "suite/results/published.h"
 
 namespace physinv {
 
@@ -51,6 +52,11 @@ class Quantity {
   std::shared_ptr<const Body> body_;
 };
 
+/// What `printed` looks up.
+std::optional<PublishedValue> find_printed(const Published& published,
+                                           const std::string& experiment,
+                                           const std::string& name);
+
 /// Over all runs selected, whatever their n; missing if one is not a number.
 Quantity median(Select select, RunValue value);
 Quantity lowest(Select select, RunValue value);
@@ -88,7 +94,8 @@ Quantity also_asks(const Quantity& a, const std::vector<Select>& others);
 /// Missing unless so many runs (or seeds) stand behind it.
 Quantity from_at_least(Index runs, const Quantity& a);
 
-/// A value of the paper, with its printed spread.
+/// A value of the paper, with its printed spread: of the experiment that asks,
+/// or of another one, "jpo/billiards table3/n=4".
 Quantity printed(std::string quantity);
 
 }  // namespace physinv

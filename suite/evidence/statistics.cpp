@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace physinv {
 
@@ -42,6 +43,21 @@ std::optional<Line> fit_line(std::span<const double> x,
     residuals += std::pow(y[i] - line.intercept - line.slope * x[i], 2);
   line.slope_error = std::sqrt(residuals / (count - 2) / xx);
   return line;
+}
+
+double chi_squared_tail(double x, int degrees) {
+  // Two degrees less have the tail without its last term.
+  const double half = 0.5 * x;
+  if (!(half > 0)) return 1;
+  const bool odd = degrees % 2 == 1;
+  double tail = odd ? std::erfc(std::sqrt(half)) : 0;
+  double a = odd ? 0.5 : 0;
+  double term = odd ? std::exp(-half) / std::sqrt(std::numbers::pi * half)
+                    : std::exp(-half);
+  // term = half^a exp(-half) / Gamma(a + 1), from a = -1/2 or 0.
+  if (odd) term *= half / 0.5;
+  for (; 2 * a < degrees; term *= half / ++a) tail += term;
+  return tail;
 }
 
 namespace {

@@ -32,6 +32,9 @@ struct Line {
 std::optional<Line> fit_line(std::span<const double> x,
                              std::span<const double> y);
 
+/// P(chi squared of so many degrees of freedom >= x).
+double chi_squared_tail(double x, int degrees);
+
 /// A range that holds a share `content` of all runs with this confidence,
 /// whatever their distribution: the k-th lowest to the k-th highest of the
 /// sample (Wilks 1941), as narrow as the sample allows. Empty if even the

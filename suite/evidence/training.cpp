@@ -168,7 +168,8 @@ RunValue diverged() {
 RunValue seconds_per_update() {
   return [](const Run& run) -> std::optional<double> {
     const auto seconds = seconds_to_tell(*run.stage);
-    if (run.stage->iterations == 0 || !seconds) return {};
+    if (run.stage->iterations == 0 || !seconds || is_crowded(*run.stage))
+      return {};
     return *seconds / static_cast<double>(run.stage->iterations);
   };
 }

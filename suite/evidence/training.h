@@ -61,6 +61,8 @@ RunValue late_training_error();
 
 /// Whether the run diverged: 1 or 0.
 RunValue diverged();
+/// CPU time where no more than one core was at work; of stages that had their
+/// cores to themselves only.
 RunValue seconds_per_update();
 
 /// Of runs of at least so many updates only: in shorter ones fast seeds alone

@@ -9,6 +9,7 @@
 
 #include "suite/harness/errors.h"
 #include "suite/results/file.h"
+#include "suite/results/verdict_words.h"
 
 namespace physinv {
 
@@ -19,14 +20,15 @@ std::vector<ExpectedFailure> read_expected(const std::filesystem::path& path) {
     for (const auto& entry : file.at("expected")) {
       all.push_back({.experiment = entry.at("experiment"),
                      .claim = entry.at("claim"),
-                     .reason = entry.at("reason"),
+                     .reason = entry.value("reason", ""),
                      .profile = entry.value("profile", "")});
-      if (all.back().reason.empty())
-        throw UsageError("an entry without a reason");
+      if (entry.contains("reason") && all.back().reason.empty())
+        throw UsageError("an entry with an empty reason");
     }
   } catch (const std::exception& e) {
     throw UsageError(fmt::format(
-        "{}: {}; entry {} is to have experiment, claim and a reason",
+        "{}: {}; entry {} is to have experiment, claim and a reason, or a "
+        "claim that states its cause",
         path.string(),
         e.what(),
         all.size()));
@@ -38,13 +40,15 @@ void check_expected(const std::vector<ExpectedFailure>& expected,
                     const Registry& registry,
                     const std::vector<Section>& sections,
                     const std::filesystem::path& path) {
-  std::map<std::string, std::set<std::string>> known;
+  // Experiment, claim: cause.
+  std::map<std::string, std::map<std::string, std::string>> known;
   for (const auto& e : registry.experiments())
-    for (const Claim& c : e->claims) known[e->name].insert(c.id);
+    for (const Claim& c : e->claims) known[e->name][c.id] = c.cause.why;
   for (const Overview& o : registry.overviews())
-    for (const Claim& c : o.claims) known[o.paper].insert(c.id);
+    for (const Claim& c : o.claims) known[o.paper][c.id] = c.cause.why;
   for (const Section& s : sections)
-    for (const ClaimResult& c : s.claims) known[s.experiment].insert(c.id);
+    for (const ClaimResult& c : s.claims)
+      known[s.experiment].try_emplace(c.id, c.cause);
   for (const auto& e : expected) {
     const auto claims = known.find(e.experiment);
     const bool there = claims == known.end()
@@ -57,8 +61,38 @@ void check_expected(const std::vector<ExpectedFailure>& expected,
           path.string(),
           e.claim,
           e.experiment));
+    if (e.reason.empty() && claims != known.end() &&
+        claims->second.at(e.claim).empty())
+      throw UsageError(
+          fmt::format("{}: {} {} has no reason, and its claim no cause; give "
+                      "one of them",
+                      path.string(),
+                      e.experiment,
+                      e.claim));
   }
 }
+
+namespace {
+
+/// Where one gating claim of an experiment belongs.
+void sort_in(const ClaimResult& c,
+             const std::string& name,
+             const ExpectedFailure* listed,
+             ClaimTally& tally) {
+  const bool holds = c.verdict == Verdict::reproduced;
+  if (is_explained(c.verdict))
+    tally.explained.push_back(
+        fmt::format("{}{}: {}", name, words_of(c.verdict, c.origin), c.cause));
+  else if (!holds && listed == nullptr)
+    tally.misses.push_back(name + c.says);
+  else if (!holds)
+    tally.known_misses.push_back(
+        name + (listed->reason.empty() ? c.cause : listed->reason));
+  if (holds && listed != nullptr) tally.surprises.push_back(name + c.says);
+  if (holds && !c.cause.empty()) tally.stale.push_back(name + c.cause);
+}
+
+}  // namespace
 
 ClaimTally compare(const std::vector<Section>& sections,
                    const std::vector<ExpectedFailure>& expected,
@@ -66,8 +100,9 @@ ClaimTally compare(const std::vector<Section>& sections,
   ClaimTally judgement;
   for (const Section& s : sections) {
     for (const ClaimResult& c : s.claims) {
-      const bool holds = c.verdict == Verdict::reproduced;
-      if (!c.gates || (!holds && c.verdict != Verdict::not_reproduced))
+      if (!c.gates ||
+          (c.verdict != Verdict::reproduced &&
+           c.verdict != Verdict::not_reproduced && !is_explained(c.verdict)))
         continue;
       ++judgement.judged;
       const auto listed = std::find_if(
@@ -75,12 +110,10 @@ ClaimTally compare(const std::vector<Section>& sections,
             return e.experiment == s.experiment && e.claim == c.id &&
                    (e.profile.empty() || e.profile == profile);
           });
-      const bool known = listed != expected.end();
-      const std::string name = s.experiment + " " + c.id + ": ";
-      if (holds && known) judgement.surprises.push_back(name + c.says);
-      if (!holds && !known) judgement.misses.push_back(name + c.says);
-      if (!holds && known)
-        judgement.known_misses.push_back(name + listed->reason);
+      sort_in(c,
+              s.experiment + " " + c.id + ": ",
+              listed == expected.end() ? nullptr : &*listed,
+              judgement);
     }
   }
   return judgement;

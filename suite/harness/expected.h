@@ -1,8 +1,10 @@
-/// Claims that are known not to hold, from a reviewed list:
+/// Gating claims that are known not to hold, from a reviewed list:
 ///
 ///   {"expected": [{"experiment": "jpo/arm", "claim": "R3", "reason": "..."}]}
 ///
-/// An entry may name the one "profile" in which the claim misses.
+/// Without a reason, the claim's own cause is it. An entry may name the one
+/// "profile" in which the claim misses. What differs, depends or contradicts
+/// itself is explained by its claim and stands in no list.
 #pragma once
 
 #include <filesystem>
@@ -21,18 +23,21 @@ struct ExpectedFailure {
 /// UsageError, naming the file and the entry, if it is malformed.
 std::vector<ExpectedFailure> read_expected(const std::filesystem::path& path);
 
-/// UsageError if an entry names no claim. An experiment that declares none
-/// may make its claims while it reports: they are known once it has run.
+/// UsageError if an entry names no claim, or has no reason and its claim no
+/// cause. An experiment that declares none may make its claims while it
+/// reports: they are known once it has run.
 void check_expected(const std::vector<ExpectedFailure>& expected,
                     const Registry& registry,
                     const std::vector<Section>& sections,
                     const std::filesystem::path& path);
 
-/// Gating claims, as "experiment id: sentence"; for known misses the reason.
+/// Gating claims, as "experiment id: sentence"; for known misses the reason,
+/// for those that their cause explains verdict and cause.
 struct ClaimTally {
   std::size_t judged = 0;
-  std::vector<std::string> misses, known_misses;
+  std::vector<std::string> misses, known_misses, explained;
   std::vector<std::string> surprises;  ///< listed, and hold
+  std::vector<std::string> stale;      ///< hold, with the cause that says not
 };
 ClaimTally compare(const std::vector<Section>& sections,
                    const std::vector<ExpectedFailure>& expected,

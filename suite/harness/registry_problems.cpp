@@ -143,7 +143,7 @@ void check_claims(const Registry& registry,
       wrong.push_back(experiment + ": claim " + claim.id + " appears twice");
     for (const auto& problem : problems_of(claim, profiles))
       wrong.push_back(experiment + ": " + problem);
-    for (const Condition& c : claim.conditions) {
+    for (const Condition& c : all_conditions(claim)) {
       for (const Quantity& q : c.quantities) {
         for (const Select& select : q.runs()) {
           const auto why = objection(registry, experiment, claim, select);

@@ -25,6 +25,11 @@ inline bool shared_its_core(Seconds solve) {
          solve.wall - solve.cpu > kClockResolution;
 }
 
+/// Its times decide nothing: by its clocks, or as it was found while it ran.
+inline bool is_crowded(const StageRecord& stage) {
+  return stage.crowded || shared_its_core(stage.clocks.solve);
+}
+
 /// Seconds of solving as tables tell them, the median of repetitions: CPU time
 /// where no more than one core was at work, as others on the machine add little
 /// to it; else wall time, and nothing of a stage of several threads that was

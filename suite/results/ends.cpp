@@ -63,13 +63,20 @@ Direction direction(const StatusCounts& from, const StatusCounts& to) {
 
 Direction direction(Verdict from, Verdict to) {
   if (from == to) return Direction::same;
-  if (from == Verdict::reported || to == Verdict::reported ||
-      (from == Verdict::not_reproduced && to == Verdict::not_judged))
-    return Direction::other;
+  constexpr int kExplained = 3, kFailed = 4;
   const auto badness = [](Verdict v) {
-    return v == Verdict::reproduced ? 0 : v == Verdict::not_judged ? 1 : 2;
+    return v == Verdict::reproduced       ? 0
+           : v == Verdict::partly_judged  ? 1
+           : v == Verdict::not_judged     ? 2
+           : v == Verdict::not_reproduced ? kFailed
+                                          : kExplained;
   };
-  return by(badness(from), badness(to));
+  const bool no_more = badness(from) >= kExplained && badness(to) < kExplained;
+  if (from == Verdict::reported || to == Verdict::reported ||
+      (no_more && to != Verdict::reproduced))
+    return Direction::other;
+  const Direction found = by(badness(from), badness(to));
+  return found == Direction::same ? Direction::other : found;
 }
 
 }  // namespace physinv

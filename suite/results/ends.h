@@ -33,8 +33,9 @@ std::string status_text(const StatusCounts& counts,
 /// fewer end with `gtol`. Of maxiter and linesearch neither is better.
 Direction direction(const StatusCounts& from, const StatusCounts& to);
 
-/// reproduced, not judged, not reproduced. A claim that failed and is judged no
-/// more is not better, and numbers that no condition decides are neither.
+/// reproduced, partly judged, not judged, then what fails: explained by its
+/// cause (whatever that is), not reproduced. A claim that failed and is judged
+/// no more is not better, and numbers that no condition decides are neither.
 Direction direction(Verdict from, Verdict to);
 
 }  // namespace physinv

@@ -111,10 +111,19 @@ struct Figure {
 /// that earlier runs of this suite or of independent programs showed.
 enum class Origin { paper, suite };
 
-/// `not_judged`: runs are missing or too short. `reported`: numbers that no
-/// condition decides.
-enum class Verdict { reproduced, not_reproduced, not_judged, reported };
-inline constexpr int kVerdictCount = 4;
+/// What a claim came to. Where a condition fails, the claim's cause may tell
+/// more than that: `differs`, `depends` and `contradiction` are explained.
+enum class Verdict {
+  reproduced,
+  differs,        ///< stronger or weaker than printed, the same direction
+  depends,        ///< on a choice that the paper does not print
+  contradiction,  ///< tables, formulas or sentences of the paper disagree
+  not_reproduced,
+  partly_judged,  ///< what was run holds; some is missing or too short
+  not_judged,     ///< runs are missing or too short
+  reported        ///< numbers that no condition decides
+};
+inline constexpr int kVerdictCount = 8;
 
 /// One condition of a claim and what was measured for it.
 struct ConditionResult {
@@ -137,6 +146,9 @@ struct ClaimResult {
   std::string where = {};  ///< place in the paper
   std::string note = {};
   std::vector<ConditionResult> conditions = {};
+  /// Why it is not reproduced, one line; of a claim that is, stale.
+  std::string cause = {};
+  std::vector<ConditionResult> shown_by = {};  ///< of the cause
 };
 
 /// One experiment's part of a report.

@@ -1,5 +1,7 @@
 #include "suite/results/verdict_words.h"
 
+#include <fmt/format.h>
+
 #include <cstddef>
 
 namespace physinv {
@@ -7,13 +9,18 @@ namespace {
 
 struct Words {
   std::string_view paper, suite, mark;
+  bool always = false;  ///< a column of its own, even if there are none
 };
 
 constexpr std::array<Words, kVerdictCount> kWords{{
-    {"reproduced", "holds", "✓"},
-    {"not reproduced", "fails", "✗"},
-    {"not judged", "not judged", "–"},
-    {"reported", "reported", "·"},
+    {"reproduced", "holds", "✓", true},
+    {"differs", "differs", "≈"},
+    {"depends", "depends", "?"},
+    {"contradiction", "contradiction", "≠"},
+    {"not reproduced", "fails", "✗", true},
+    {"partly judged", "partly judged", "◐"},
+    {"not judged", "not judged", "–", true},
+    {"reported", "reported", "·", true},
 }};
 
 const Words& all_of(Verdict verdict) {
@@ -21,6 +28,14 @@ const Words& all_of(Verdict verdict) {
 }
 
 }  // namespace
+
+std::vector<Verdict> columns_of(const VerdictCounts& counts) {
+  std::vector<Verdict> columns;
+  for (const Verdict v : kVerdicts)
+    if (all_of(v).always || counts[static_cast<std::size_t>(v)] > 0)
+      columns.push_back(v);
+  return columns;
+}
 
 std::string_view words_of(Verdict verdict, Origin origin) {
   const Words& words = all_of(verdict);
@@ -33,6 +48,18 @@ std::optional<Verdict> verdict_of(std::string_view words) {
   for (const Verdict v : kVerdicts)
     if (words == all_of(v).paper || words == all_of(v).suite) return v;
   return {};
+}
+
+bool is_explained(Verdict verdict) {
+  return verdict == Verdict::differs || verdict == Verdict::depends ||
+         verdict == Verdict::contradiction;
+}
+
+std::string cause_text(Verdict verdict, std::string_view cause) {
+  if (cause.empty()) return "";
+  const bool stale = verdict == Verdict::reproduced;
+  return fmt::format(
+      "{}: {}", stale ? "It holds; its cause is stale" : "Cause", cause);
 }
 
 }  // namespace physinv

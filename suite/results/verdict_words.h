@@ -4,7 +4,9 @@
 
 #include <array>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "suite/results/report_model.h"
 
@@ -12,19 +14,37 @@ namespace physinv {
 
 /// In the order in which they are counted.
 inline constexpr std::array kVerdicts{Verdict::reproduced,
+                                      Verdict::differs,
+                                      Verdict::depends,
+                                      Verdict::contradiction,
                                       Verdict::not_reproduced,
+                                      Verdict::partly_judged,
                                       Verdict::not_judged,
                                       Verdict::reported};
 static_assert(kVerdicts.size() == kVerdictCount);
 
+/// How many claims came to each.
+using VerdictCounts = std::array<int, kVerdictCount>;
+/// Those that a table of such counts has columns for: what always is there
+/// (reproduced, not reproduced, not judged, reported) and what occurs.
+std::vector<Verdict> columns_of(const VerdictCounts& counts);
+
 /// Of the paper's claims `reproduced`, `not reproduced`, of the suite's ranges
-/// `holds`, `fails`; of both `not judged`, `reported`.
+/// `holds`, `fails`; of both `differs`, `depends`, `contradiction`, `partly
+/// judged`, `not judged`, `reported`.
 std::string_view words_of(Verdict verdict, Origin origin);
 
-/// One character each: ✓ ✗ – ·
+/// One character each: ✓ ≈ ? ≠ ✗ ◐ – ·
 std::string_view mark_of(Verdict verdict);
 
 /// What the words of either origin say; nothing if they are no verdict.
 std::optional<Verdict> verdict_of(std::string_view words);
+
+/// A condition fails, and the cause tells what that is.
+bool is_explained(Verdict verdict);
+
+/// "Cause: the waveform is not printed"; of a claim that holds, that its cause
+/// is stale. Empty without one.
+std::string cause_text(Verdict verdict, std::string_view cause);
 
 }  // namespace physinv

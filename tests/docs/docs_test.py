@@ -7,6 +7,7 @@ of the program, counts are the program's and verdicts those of RESULTS.md.
 
 import functools
 import glob
+import json
 import os
 import re
 import subprocess
@@ -94,8 +95,30 @@ def wrong_verdicts():
             yield f"README.md lacks the verdicts of RESULTS.md: {row}"
 
 
+def unexplained():
+    """Rows of RESULTS.md without a cause where the verdict asks for one."""
+    page = read("RESULTS.md")
+    asks = "not reproduced|fails|differs|depends|contradiction"
+    for row in re.findall(rf"^\| [^|]+ \| .* \| (?:{asks}) \| .*$", page, re.M):
+        if "Cause: " not in row and not row.startswith("| `"):
+            yield f"RESULTS.md has no cause of {row[:60]}"
+    causes = dict(re.findall(
+        r"^\| (\S+ \S+) \| .* \| [a-z ]+ \| (.*) \| [^|]+ \|$",
+        page.partition("## What is not reproduced")[2].partition("\n## ")[0],
+        re.M))
+    if len(causes) < 40:
+        yield f"RESULTS.md has {len(causes)} causes"
+    for name, cause in causes.items():
+        if cause in ("", "unknown"):
+            yield f"RESULTS.md has no cause of {name}"
+    for entry in json.loads(read("reports/expected_failures.json"))["expected"]:
+        name = entry["experiment"] + " " + entry["claim"]
+        if name not in causes:
+            yield f"{name} is expected to fail and not so in RESULTS.md"
+
+
 def main():
-    wrong = [*wrong_counts(), *wrong_verdicts()]
+    wrong = [*wrong_counts(), *wrong_verdicts(), *unexplained()]
     lines = read("README.md").count("\n")
     if lines > LINES_OF_README:
         wrong.append(f"README.md has {lines} lines, of {LINES_OF_README}")

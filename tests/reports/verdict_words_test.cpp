@@ -1,4 +1,5 @@
 // A verdict has one word in every output, whoever made it.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "reports/digest.h"
@@ -19,7 +20,9 @@ class WordsOf : public testing::TestWithParam<std::tuple<Verdict, Origin>> {
                      .from = "quick",
                      .verdict = verdict_,
                      .evidence = "runs",
-                     .origin = origin_};
+                     .origin = origin_,
+                     .cause = "a choice"};
+  std::string cause_ = cause_text(verdict_, "a choice");
   std::vector<Section> sections_{{.experiment = "jpo/toy",
                                   .title = "Toy",
                                   .paper = "jpo",
@@ -36,6 +39,22 @@ TEST_P(WordsOf, StandInTheReport) {
   EXPECT_NE(render_claims_text(sections_, 80).find("R1   " + words_),
             std::string::npos);
   EXPECT_EQ(to_json(claim_)["verdict"], words_);
+  EXPECT_EQ(claim_from(to_json(claim_)).verdict, verdict_);
+}
+
+TEST_P(WordsOf, ComeWithTheirCause) {
+  EXPECT_NE(report_markdown(sections_, {}).find(cause_), std::string::npos);
+  EXPECT_NE(report_html(sections_, {}).find(cause_), std::string::npos);
+  EXPECT_NE(render_claims_text(sections_, 80).find(cause_), std::string::npos);
+  EXPECT_EQ(claim_from(to_json(claim_)).cause, "a choice");
+  const std::string page =
+      results_markdown({{"a", digest_json(sections_, {{"profile", "quick"}})}});
+  const std::string row =
+      fmt::format("| jpo/toy R1 | a | {} | a choice | a |", words_);
+  EXPECT_EQ(page.find(row) == page.npos, verdict_ == Verdict::reproduced)
+      << page;
+  if (verdict_ != Verdict::not_judged)
+    EXPECT_NE(page.find(cause_), page.npos) << page;
 }
 
 TEST_P(WordsOf, StandInThePageOfCampaigns) {
@@ -44,7 +63,7 @@ TEST_P(WordsOf, StandInThePageOfCampaigns) {
   EXPECT_NE(page.find(" " + words_ + " |"), page.npos) << page;
   const std::string row = verdict_ == Verdict::not_judged
                               ? "- R1: runs"
-                              : "| R1 | a | " + words_ + " |";
+                              : "| R1 | a | " + words_ + " | runs **";
   EXPECT_NE(page.find(row), page.npos) << row << "\n" << page;
 }
 

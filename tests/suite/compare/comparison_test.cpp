@@ -233,6 +233,17 @@ TEST(Compare, ClaimsGetWorseInOneDirection) {
   EXPECT_FALSE(worse(not_reproduced, not_judged));
   EXPECT_FALSE(worse(not_reproduced, reproduced));
   EXPECT_FALSE(worse(not_judged, reproduced));
+  // Partly judged is nearly reproduced, explained is nearly failed.
+  EXPECT_TRUE(worse(reproduced, partly_judged));
+  EXPECT_TRUE(worse(partly_judged, not_judged));
+  for (const Verdict explained : {differs, depends, contradiction}) {
+    EXPECT_TRUE(worse(reproduced, explained));
+    EXPECT_TRUE(worse(explained, not_reproduced));
+    EXPECT_TRUE(worse(partly_judged, explained));
+    EXPECT_FALSE(worse(explained, not_judged));
+    EXPECT_FALSE(worse(not_reproduced, explained));
+    EXPECT_FALSE(worse(differs, explained));
+  }
 }
 
 TEST(Compare, NoColumnIsAsWideAsAPath) {

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "suite/results/published.h"
+#include "suite/results/verdict_words.h"
 #include "tests/suite/evidence/campaigns.h"
 #include "tests/suite/results/results_testing.h"
 
@@ -67,8 +68,9 @@ TEST(Claim, OneFailureDecidesMissingRunsDoNot) {
   const Quantity absent = mean({"b"}, first_loss());
   const auto missing =
       judged({at_least("a", kMean, 3), at_least("b", absent, 0)}, results);
-  EXPECT_EQ(missing.verdict, Verdict::not_judged);
+  EXPECT_EQ(missing.verdict, Verdict::partly_judged);
   EXPECT_EQ(missing.evidence, "a 3 ± 1.41 (>= 3); b: b not run");
+  EXPECT_EQ(verdict({at_least("b", absent, 0)}, results), Verdict::not_judged);
   EXPECT_EQ(verdict({at_least("b", absent, 0), above("a", kMean, 9)}, results),
             Verdict::not_reproduced);
   // A bound may be what is missing.
@@ -124,11 +126,24 @@ class AsPrinted : public testing::Test {
       {"experiment": "toy", "quantity": "alone", "value": 50, "spread": null,
        "unit": "%", "where": "Table 4"},
       {"experiment": "toy", "quantity": "spread", "value": 50, "spread": 2,
+       "unit": "%", "where": "Table 3"},
+      {"experiment": "toy", "quantity": "twice", "value": 100, "spread": 4,
        "unit": "%", "where": "Table 3"}]})";
     published_ = Published(dir_.path());
   }
+  ClaimResult result(Condition condition,
+                     const std::vector<double>& seeds) const {
+    return judged({std::move(condition)}, campaign("quick", seeds), published_);
+  }
+  /// The paper has four seeds.
   Verdict of(const std::vector<double>& seeds, const char* quantity) const {
-    return judged({as_printed("a", kMean, quantity)},
+    return result(as_printed("a", kMean, quantity, 4), seeds).verdict;
+  }
+  Verdict jointly(const std::vector<double>& seeds) const {
+    return judged(jointly_as_printed("p",
+                                     {{"m", kMean, "spread"},
+                                      {"twice", times(2, kMean), "twice"}},
+                                     4),
                   campaign("quick", seeds),
                   published_)
         .verdict;
@@ -137,30 +152,63 @@ class AsPrinted : public testing::Test {
   Published published_;
 };
 
-TEST_F(AsPrinted, WithoutASpreadOursCountsForBoth) {
-  // Deviation 2: the band is 2.83 * 2 = 5.66 around 50.
-  EXPECT_EQ(of({53, 55, 57}, "alone"), Verdict::reproduced);
-  EXPECT_EQ(of({54, 56, 58}, "alone"), Verdict::not_reproduced);
-  EXPECT_EQ(of({50, 50, 50}, "alone"), Verdict::reproduced);
-  EXPECT_EQ(of({50.1, 50.1, 50.1}, "alone"), Verdict::not_reproduced);
-  EXPECT_EQ(of({50, 50}, "alone"), Verdict::not_judged);      // two seeds
-  EXPECT_EQ(of({30, 50, 70}, "alone"), Verdict::not_judged);  // band 57
+TEST_F(AsPrinted, TheBandIsThatOfTwoMeans) {
+  // Runs of two problems: the binomial floor at 50 % is 35 points, wider than
+  // any deviation here; 2 * 35.4 sqrt(1/4 + 1/4) = 50.
+  EXPECT_EQ(of({99, 99, 100, 100}, "alone"), Verdict::reproduced);
+  EXPECT_EQ(result(as_printed("a", kMean, "alone", 4), {50, 50, 50, 50})
+                .conditions[0]
+                .bounds,
+            "printed 50 +- 50");
+  // Of 1000 the floor is 1.6; deviation 4: 2 * 4 sqrt(1/4 + 1/4) = 5.66.
+  const auto many = [&](double shift) {
+    std::vector<CaseRecord> cases;
+    const double level[] = {46.54, 46.54, 53.46, 53.46};
+    for (std::uint64_t seed = 0; seed < 4; ++seed) {
+      cases.push_back(case_of("a",
+                              1000,
+                              seed,
+                              {"solve"},
+                              {stage_of("solve", {level[seed] + shift, 1})}));
+      cases.back().info.profile = "quick";
+    }
+    return judged({as_printed("a", kMean, "alone", 4)},
+                  Results(std::move(cases)),
+                  published_)
+        .verdict;
+  };
+  EXPECT_EQ(many(5.6), Verdict::reproduced);
+  EXPECT_EQ(many(-5.6), Verdict::reproduced);
+  EXPECT_EQ(many(5.7), Verdict::not_reproduced);
+  EXPECT_EQ(of({50, 50}, "alone"), Verdict::not_judged);  // two seeds
+  EXPECT_EQ(of({53, 55, 57}, "absent"), Verdict::not_judged);
 }
 
-TEST_F(AsPrinted, WithOneBothCount) {
-  // Ours deviates by sqrt(2), printed 2: 2 sqrt(2 + 4) = 4.9.
-  EXPECT_EQ(of({53.5, 55.5}, "spread"), Verdict::reproduced);
-  EXPECT_EQ(of({54, 56}, "spread"), Verdict::not_reproduced);
-  EXPECT_EQ(of({53, 55, 57}, "absent"), Verdict::not_judged);
+TEST_F(AsPrinted, WhatNoFileHasIsStated) {
+  EXPECT_EQ(result(as_stated("a", kMean, 50, 4), {99, 99, 100, 100}).verdict,
+            Verdict::reproduced);
+  EXPECT_EQ(result(as_stated("a", kMean, 1, 4), {90, 90, 91, 91}).verdict,
+            Verdict::not_reproduced);
+}
+
+TEST_F(AsPrinted, MeansWithDeviationsAreJudgedTogether) {
+  // Printed 50 +- 2 and 100 +- 4 of four seeds each, ours as wide: a shift of
+  // d is (d / sqrt 2)^2 twice, and chi squared of two is 5.99 at 5 %.
+  EXPECT_EQ(jointly({48, 50, 52, 54}), Verdict::reproduced);
+  EXPECT_EQ(jointly({49.3, 51.3, 53.3, 55.3}), Verdict::reproduced);
+  EXPECT_EQ(jointly({50.5, 52.5, 54.5, 56.5}), Verdict::not_reproduced);
+  EXPECT_EQ(jointly({50, 50}), Verdict::not_judged);
 }
 
 TEST_F(AsPrinted, NamesAreCheckedAgainstThePapersFile) {
   const auto claims = [](const char* quantity) {
     return std::vector<Claim>{
-        {.id = "P1", .conditions = {as_printed("a", kMean, quantity)}}};
+        {.id = "P1", .conditions = {as_printed("a", kMean, quantity, 4)}}};
   };
   EXPECT_TRUE(unknown_printed(claims("alone"), "toy", published_).empty());
   EXPECT_EQ(unknown_printed(claims("alnoe"), "toy", published_).size(), 1U);
+  EXPECT_TRUE(unknown_printed(claims("toy alone"), "a", published_).empty());
+  EXPECT_EQ(unknown_printed(claims("toy alnoe"), "a", published_).size(), 1U);
 }
 
 TEST(Claim, AboutAllowsFivePointsOrTwoErrors) {
@@ -172,6 +220,87 @@ TEST(Claim, AboutAllowsFivePointsOrTwoErrors) {
   EXPECT_EQ(verdict({about("a", kMean, 60)},
                     campaign("quick", {42.34, 42.34, 59.66, 59.66})),
             Verdict::reproduced);
+}
+
+class Caused : public testing::Test {
+ protected:
+  static ClaimResult of(const Cause& cause, const Condition& condition) {
+    const Claim claim{.id = "P1",
+                      .from = "quick",
+                      .says = "something",
+                      .conditions = {condition},
+                      .cause = cause};
+    const Published none;
+    return judge({claim}, {campaign("quick", {2, 4}), none, "toy"}, kProfiles)
+        .front();
+  }
+  const Condition holds_ = at_least("a", kMean, 3);
+  const Condition fails_ = above("a", kMean, 9);
+  const Condition open_ = at_least("b", mean({"b"}, first_loss()), 0);
+};
+
+TEST_F(Caused, AFailureCountsAsItsCauseSays) {
+  for (const Cause& cause : {depends("why"),
+                             differs("why", {holds_}),
+                             contradiction("why"),
+                             fails("why")}) {
+    const auto found = of(cause, fails_);
+    EXPECT_EQ(found.verdict, cause.as);
+    EXPECT_EQ(found.cause, "why");
+  }
+  EXPECT_EQ(of({}, fails_).verdict, Verdict::not_reproduced);
+  EXPECT_EQ(of({}, fails_).cause, "");
+}
+
+TEST_F(Caused, AVerdictIsComputedAllTheSame) {
+  const auto stale = of(depends("why"), holds_);
+  EXPECT_EQ(stale.verdict, Verdict::reproduced);
+  EXPECT_EQ(cause_text(stale.verdict, stale.cause),
+            "It holds; its cause is stale: why");
+  EXPECT_EQ(of(not_run("an hour"), holds_).cause, "");
+}
+
+TEST_F(Caused, WhatDoesNotShowExplainsNothing) {
+  const auto found = of(differs("why", {fails_}), fails_);
+  EXPECT_EQ(found.verdict, Verdict::not_reproduced);
+  EXPECT_EQ(found.cause,
+            "why (which does not show here: a 3 ± 1.41 (> 9: no))");
+  // What was not run is no objection.
+  EXPECT_EQ(of(differs("why", {open_}), fails_).verdict, Verdict::differs);
+}
+
+TEST_F(Caused, WhatIsNotJudgedSaysWhatItTakes) {
+  const auto waits = of(not_run("an hour"), open_);
+  EXPECT_EQ(waits.verdict, Verdict::not_judged);
+  EXPECT_EQ(waits.cause, "an hour");
+  // An hour explains no failure.
+  EXPECT_EQ(of(not_run("an hour"), fails_).verdict, Verdict::not_reproduced);
+  EXPECT_EQ(of(not_run("an hour"), fails_).cause, "");
+}
+
+TEST_F(AsPrinted, KeptNumbersAreJudgedAgain) {
+  const Results plan = campaign("quick", {0, 0, 0, 0});
+  const auto again = [&](const std::vector<Condition>& now,
+                         const ClaimResult& kept) {
+    return judge_again({.id = "P1", .from = "quick", .conditions = now},
+                       kept,
+                       {plan, published_, "toy"});
+  };
+  const auto kept = result(as_printed("a", kMean, "alone", 4), {9, 9, 10, 10});
+  EXPECT_EQ(kept.verdict, Verdict::reproduced);
+  // Another printed number, another relation, another label.
+  EXPECT_EQ(again({as_printed("a", kMean, "twice", 4)}, kept).verdict,
+            Verdict::not_reproduced);
+  EXPECT_EQ(again({above("a", kMean, 1)}, kept).verdict, Verdict::not_judged);
+  EXPECT_EQ(again({as_printed("b", kMean, "alone", 4)}, kept).evidence,
+            "b: not kept; needs a run");
+  const auto bound = result(above("a", kMean, 9), {9, 9, 10, 10});
+  EXPECT_EQ(again({above("a", kMean, 9.6)}, bound).verdict,
+            Verdict::not_reproduced);
+  EXPECT_EQ(
+      again({either(at_least("c", kMean, 9.6), above("a", kMean, 9))}, bound)
+          .verdict,
+      Verdict::reproduced);
 }
 
 TEST(Claim, WhatIsWrongByItself) {
@@ -192,6 +321,12 @@ TEST(Claim, WhatIsWrongByItself) {
   EXPECT_EQ(broken([](Claim& c) { c.where.clear(); }), 1U);
   EXPECT_EQ(broken([](Claim& c) { c.conditions.clear(); }), 1U);
   EXPECT_EQ(broken([](Claim& c) { c.from = "qick"; }), 1U);
+  EXPECT_EQ(broken([](Claim& c) { c.cause = fails("two\nlines"); }), 1U);
+  EXPECT_EQ(broken([](Claim& c) { c.cause = depends(""); }), 1U);
+  EXPECT_EQ(broken([](Claim& c) {
+              c.cause = {Verdict::reproduced, "why"};
+            }),
+            1U);
 }
 
 }  // namespace

@@ -1,11 +1,13 @@
 #include "suite/harness/expected.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <fstream>
 
 #include "suite/harness/errors.h"
+#include "suite/results/verdict_words.h"
 
 namespace physinv {
 namespace {
@@ -38,6 +40,35 @@ TEST(Expected, OnlyNewMissesCount) {
       compare(sections(), {{"a/b", "R2", "too few", ""}}, "quick");
   EXPECT_EQ(known.misses, Names{});
   EXPECT_EQ(known.known_misses, Names{"a/b R2: too few"});
+}
+
+TEST(Expected, WhatItsCauseExplainsStandsInNoList) {
+  auto all = sections();
+  ClaimResult& missed = all[0].claims[1];
+  missed.cause = "a choice";
+  for (const Verdict v :
+       {Verdict::depends, Verdict::differs, Verdict::contradiction}) {
+    missed.verdict = v;
+    const auto j = compare(all, {}, "quick");
+    EXPECT_EQ(j.judged, 2u);
+    EXPECT_EQ(j.misses, Names{});
+    EXPECT_EQ(
+        j.explained,
+        Names{fmt::format("a/b R2: {}: a choice", words_of(v, Origin::suite))});
+  }
+}
+
+TEST(Expected, AClaimsCauseIsItsReason) {
+  auto all = sections();
+  const std::vector<ExpectedFailure> list = {{"a/b", "R2", "", ""}};
+  const Registry none;
+  EXPECT_THROW(check_expected(list, none, all, "file"), UsageError);
+  all[0].claims[1].cause = "too few";
+  EXPECT_NO_THROW(check_expected(list, none, all, "file"));
+  EXPECT_EQ(compare(all, list, "quick").known_misses, Names{"a/b R2: too few"});
+  // One that holds all the same is said.
+  all[0].claims[0].cause = "an old story";
+  EXPECT_EQ(compare(all, list, "quick").stale, Names{"a/b R1: an old story"});
 }
 
 TEST(Expected, ProfileOfAnEntryCounts) {
@@ -73,7 +104,7 @@ TEST(Expected, FileIsReadOrRefused) {
   for (const char* wrong :
        {"",
         "{}",
-        R"({"expected": [{"experiment": "a/b", "claim": "R2"}]})",
+        R"({"expected": [{"experiment": "a/b"}]})",
         R"({"expected": [{"experiment": "a", "claim": "b", "reason": ""}]})"})
     EXPECT_THROW(read(wrong), UsageError) << wrong;
   fs::remove(path);

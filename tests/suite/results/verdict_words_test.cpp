@@ -21,5 +21,17 @@ TEST(VerdictWords, OtherWordsAreNone) {
     EXPECT_FALSE(verdict_of(word)) << word;
 }
 
+TEST(VerdictWords, RareOnesHaveAColumnWhereTheyOccur) {
+  VerdictCounts counts{};
+  const std::vector<Verdict> always = {Verdict::reproduced,
+                                       Verdict::not_reproduced,
+                                       Verdict::not_judged,
+                                       Verdict::reported};
+  EXPECT_EQ(columns_of(counts), always);
+  counts[static_cast<std::size_t>(Verdict::depends)] = 1;
+  EXPECT_EQ(columns_of(counts).size(), always.size() + 1);
+  EXPECT_EQ(columns_of(counts)[1], Verdict::depends);
+}
+
 }  // namespace
 }  // namespace physinv

@@ -279,22 +279,25 @@ const std::vector<Claim> kDensePaper =
       .from = "standard",
       .says = "HIG minimises the loss faster than Adam",
       .conditions =
-          {below("time to 1e-2 by the paper's clock, HIG over the fastest Adam",
+          {below("time to 1e-2 by the paper's clock, HIG over the fastest Adam "
+                 "but for the largest rate",
                  ratio(median(kHig, time_to(paper(), 1e-2)),
-                       least(medians({kAdam, kAdam10, kAdam30, kAdam256},
+                       least(medians({kAdam, kAdam10, kAdam256},
                                      time_to(paper(), 1e-2)))),
                  1),
-           below("on the best seeds",
+           below("the same on the best seeds",
                  ratio(lowest(kHig, time_to(paper(), 1e-2)),
-                       least(lowests({kAdam, kAdam10, kAdam30, kAdam256},
+                       least(lowests({kAdam, kAdam10, kAdam256},
                                      time_to(paper(), 1e-2)))),
                  1),
-           report("by our clock",
-                  ratio(median(kHig, time_to(own_seconds(), 1e-2)),
-                        least(medians({kAdam, kAdam10, kAdam30, kAdam256},
-                                      time_to(own_seconds(), 1e-2)))))},
-      .note = "Table 5 has no Adam with b = 16; it is taken to last as long as "
-              "with 256, which favours HIG."},
+           report("over Adam with the largest rate",
+                  ratio(median(kHig, time_to(paper(), 1e-2)),
+                        median(kAdam30, time_to(paper(), 1e-2))))},
+      .note = "That Adam with the largest rate drops first, the paper says "
+              "itself (P3). Table 5 has no Adam with b = 16; it is taken to "
+              "last as long as with 256, which favours HIG.",
+      .cause = not_run("the runs of Fig. 4b at the profile standard: what is "
+                       "stored keeps the fastest Adam of all rates alone")},
      {.id = "P2",
       .origin = Origin::paper,
       .where = "Sec. 3.3, Fig. 4b",
@@ -311,7 +314,8 @@ const std::vector<Claim> kDensePaper =
                  1),
            report("Adam b=256", median(kAdam256, loss_at(paper(), kEnd)))},
       .note = "After 5400 s by the paper's clock; the rates of Fig. 4b are not "
-              "printed."},
+              "printed.",
+      .cause = not_run("0.4 CPU-hours with P3 to P5: the profile paper")},
      {.id = "P3",
       .origin = Origin::paper,
       .where = "Sec. 3.3, Fig. 4b",
@@ -328,7 +332,8 @@ const std::vector<Claim> kDensePaper =
                                                     loss_at(paper(), kEnd))),
                                        most(medians(kFig4Hig,
                                                     loss_at(paper(), kEnd)))})),
-                           1)}},
+                           1)},
+      .cause = not_run("with P2: the profile paper")},
      {.id = "P4",
       .origin = Origin::paper,
       .where = "Sec. 3.3",
@@ -341,7 +346,8 @@ const std::vector<Claim> kDensePaper =
           ratio(median(Select{"adam"}.in("hig/oscillators"), last_loss()),
                 median(Select{"hig"}.in("hig/oscillators"), last_loss())))},
       .note = "The other one: the oscillators, whose runs end after an hour of "
-              "the paper's clock."},
+              "the paper's clock.",
+      .cause = not_run("with P2: the profile paper")},
      {.id = "P5",
       .origin = Origin::paper,
       .where = "Sec. 3.3",
@@ -363,7 +369,8 @@ const std::vector<Claim> kDensePaper =
                             median(Select{"hig"}.in(kDirect), last_loss()))},
       .note = "In float the printed loss cancels; by a formula that does not, "
               "and in double, there is no such floor (A9). Our networks train "
-              "in double."},
+              "in double.",
+      .cause = not_run("with P2: the profile paper")},
      {.id = "P6",
       .origin = Origin::paper,
       .where = "Sec. 3.3, Fig. 4b",
@@ -448,7 +455,12 @@ const std::vector<Claim> kDensePaper =
            report("control alone in double, tau 1e-7 over 1e-5",
                   ratio(median(Select{"hig-tau7"}.in(kDirect), last_loss()),
                         median(Select{"hig"}.in(kDirect), last_loss())))},
-      .note = "Controls alone are updated by projected gradients."},
+      .note = "Controls alone are updated by projected gradients.",
+      .cause = depends(
+          "a tau far below 1e-5 is not printed, nor whether the control's "
+          "gradient is projected: with 1e-7 the lowest test loss is 0.014, "
+          "with 1e-8 it was 0.50 (one seed); control alone, not projected, "
+          "stays at 0.92 to 0.99 for 128 updates")},
      {.id = "P11",
       .origin = Origin::paper,
       .where = "App. B.4, Fig. 9",
@@ -458,7 +470,10 @@ const std::vector<Claim> kDensePaper =
           "not from HIG",
       .conditions = {below("after 20 updates, over the start",
                            median(kHig, over(loss_after(20), first_loss())),
-                           0.9)}}};
+                           0.9)},
+      .cause = fails(
+          "HIG's first plateau stands without TensorFlow: after 20 updates the "
+          "loss is 0.99 to 1.00 of the start, it falls after 46 to 128")}};
 
 const Select kCnnTau3{"hig-b16-eta07-tau3"}, kCnnTau5{"hig-b16-eta07-tau5"};
 
@@ -490,8 +505,8 @@ const std::vector<Claim> kConvolutions = {
                           ratio(median(kHig, loss_at(paper(), kEnd)),
                                 median(kAdam, loss_at(paper(), kEnd))),
                           1)},
-     .note =
-         "Table 5 is of the dense network; its seconds are taken for both."}};
+     .note = "Table 5 is of the dense network; its seconds are taken for both.",
+     .cause = not_run("0.7 CPU-hours: the profile paper")}};
 
 const bool kClaims = register_claims(kDense, kDenseSuite) &&
                      register_claims(kDense, kDensePaper) &&

@@ -14,7 +14,7 @@ namespace {
 constexpr Index kEnd = 400 * kUpdatesPerEpoch;
 constexpr Index kTwentyEpochs = 20 * kUpdatesPerEpoch;
 /// Medians of fewer seeds scatter too much for their ratio to be judged.
-constexpr Index kSeeds = 12;
+constexpr Index kSeeds = 24;
 constexpr const char* kWell = kGammas[0].experiment;
 
 // ---- numbers of a run -------------------------------------------------------
@@ -144,22 +144,31 @@ const std::vector<Claim> kWellConditioned = {
      .where = "Sec. 2.1, Fig. 1a",
      .from = "standard",
      .says = "Adam and GN lower the loss by about three orders of magnitude",
-     .conditions = {at_least("Adam, start over end, best seed",
-                             highest({"adam"}, decrease()),
+     .conditions = {at_least("Adam, start over end, median",
+                             median({"adam"}, decrease()),
                              316),
-                    at_least("GN, start over end, best seed",
-                             highest({"gn"}, decrease()),
-                             316),
-                    report("Adam, median", median({"adam"}, decrease())),
-                    report("GN, median", median({"gn"}, decrease()))},
-     .note = "About three orders: 2.5 or more, of the best seed."},
+                    at_least("GN, start over end, median",
+                             median({"gn"}, decrease()),
+                             316)},
+     .note = "About three orders: 2.5 or more.",
+     .cause =
+         differs("in the median Adam lowers the loss by 2.0 decades, about "
+                 "three are printed; the best seeds of both do by 2.5",
+                 {at_least("Adam, start over end, best seed",
+                           highest({"adam"}, decrease()),
+                           316),
+                  at_least("GN, start over end, best seed",
+                           highest({"gn"}, decrease()),
+                           316)})},
     {.id = "P2",
      .origin = Origin::paper,
      .where = "Sec. 2.1, Fig. 1a",
      .from = "standard",
      .says = "Adam and GN behave similarly",
-     .conditions = {within(
-         "Adam's end over GN's", ratio(end("adam"), end("gn")), 0.1, 10)}},
+     .conditions = {within("Adam's end over GN's, medians of 24",
+                           from_at_least(kSeeds, ratio(end("adam"), end("gn"))),
+                           0.1,
+                           10)}},
     {.id = "P3",
      .origin = Origin::paper,
      .where = "Sec. 2.2, Fig. 1a",
@@ -250,11 +259,16 @@ const std::vector<Claim> kIllConditioned = {
      .where = "Sec. 2.2, Fig. 1b",
      .from = "standard",
      .says = "HIG achieve a better result than Adam and GN",
-     .conditions =
-         {above("Adam's end over HIG's", ratio(end("adam"), end("hig")), 1),
-          above("GN's end over HIG's", ratio(end("gn"), end("hig")), 1),
-          report("Adam over HIG, best seeds", ratio(best("adam"), best("hig"))),
-          report("GN over HIG, best seeds", ratio(best("gn"), best("hig")))}},
+     .conditions = {above("Adam's end over HIG's, medians of 24",
+                          from_at_least(kSeeds, ratio(end("adam"), end("hig"))),
+                          1),
+                    above("GN's end over HIG's, medians of 24",
+                          from_at_least(kSeeds, ratio(end("gn"), end("hig"))),
+                          1),
+                    report("Adam over HIG, best seeds",
+                           ratio(best("adam"), best("hig"))),
+                    report("GN over HIG, best seeds",
+                           ratio(best("gn"), best("hig")))}},
     {.id = "P6",
      .origin = Origin::paper,
      .where = "Sec. 2.1, Fig. 1b",
@@ -280,21 +294,26 @@ const std::vector<Claim> kIllConditioned = {
      .where = "Sec. 2.1, Fig. 1b",
      .from = "standard",
      .says = "GN oversaturates neurons",
-     .conditions = {above("saturated share",
-                          saturated_share({"gn"}),
+     .conditions = {above("saturated share of 24 seeds",
+                          from_at_least(kSeeds, saturated_share({"gn"})),
                           saturated_share(Select{"gn"}.in(kWell))),
-                    at_least("seeds with a saturated neuron",
-                             seeds_with_saturation("gn"),
+                    at_least("seeds of 24 with a saturated neuron",
+                             from_at_least(kSeeds, seeds_with_saturation("gn")),
                              0.5)},
-     .note = "Against gamma = 1; tau = 1e-4."},
+     .note = "Against gamma = 1; tau = 1e-4.",
+     .cause = fails(
+         "with 24 seeds a neuron saturates on a third of them, not on half, "
+         "with absolute cuts, too; the share is 0.048 against 0.042")},
     {.id = "P10",
      .origin = Origin::paper,
      .where = "Sec. 2.2, Fig. 1b",
      .from = "standard",
      .says = "HIG avoid oversaturating neurons, in contrast to GN",
-     .conditions = {below("saturated share of HIG",
-                          saturated_share({"hig"}),
-                          saturated_share({"gn"}))}},
+     .conditions = {below("saturated share of HIG, 24 seeds",
+                          from_at_least(kSeeds, saturated_share({"hig"})),
+                          saturated_share({"gn"}))},
+     .cause =
+         fails("with 24 seeds HIG saturates 8 of 168 neurons and GN as many")},
 };
 
 const std::vector<Claim> kBetween = {

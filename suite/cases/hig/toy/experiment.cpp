@@ -66,8 +66,8 @@ std::vector<Profile> profiles(const Gamma& gamma) {
   std::vector<Profile> all = {
       {.name = "smoke", .rows = {row(five, first_seeds(3), kSmoke)}},
       {.name = "quick", .rows = {row(five, first_seeds(5), kUpdates)}},
-      {.name = "standard", .rows = {row(five, first_seeds(12), kUpdates)}},
-      {.name = "paper", .rows = {row(five, first_seeds(12), kPaper)}}};
+      {.name = "standard", .rows = {row(five, first_seeds(24), kUpdates)}},
+      {.name = "paper", .rows = {row(five, first_seeds(24), kPaper)}}};
   if (gamma.value == 0.01) {
     for (Profile& p : all) {
       if (p.name != "standard" && p.name != "paper") continue;

@@ -86,12 +86,14 @@ Quantity extreme_mean(const Select& select,
 
 std::vector<Condition> row_of_table(const std::string& table,
                                     const char* prefix,
-                                    const Select& runs) {
+                                    const Select& runs,
+                                    Index seeds) {
   const std::string& method = runs.method;
   const auto one = [&](const char* what, const RunValue& value) {
     return as_printed(fmt::format("{}{} {}, %", prefix, method, what),
                       percent(mean(runs, value)),
-                      fmt::format("{}/{}/{}", table, method, what));
+                      fmt::format("{}/{}/{}", table, method, what),
+                      seeds);
   };
   return {one("better", better()), one("equal", equal())};
 }
@@ -245,14 +247,16 @@ RunRow first_tracked(Index j) {
   return [=](const Run& run) { return tracked(run, j, 0); };
 }
 
-RunRow beyond_training(const ProblemRecipe& problem, double margin) {
+RunRow beyond_training(const ProblemRecipe& problem,
+                       double margin,
+                       Index per_problem) {
   return [=](const Run& run) {
     const auto& info = run.record->info;
     const Batch<double> samples =
         problem.make<double>()
             ->sample_labelled(
                 0,
-                run.n(),
+                per_problem * run.n(),
                 Rng::root(info.experiment, info.seed).child("data/train"))
             .x;
     std::vector<double> beyond;
@@ -307,21 +311,44 @@ Quantity from_problems(Index problems, const Select& select, Quantity q) {
           q.printed()};
 }
 
-std::vector<Condition> table4(const std::string& method) {
-  return row_of_table("table4", "", plain(method));
+std::vector<Condition> table4(const std::string& method, Index seeds) {
+  return row_of_table("table4", "", plain(method), seeds);
 }
-std::vector<Condition> table5(const std::string& method) {
-  return row_of_table("table5", "refined ", refined(method));
+std::vector<Condition> table5(const std::string& method, Index seeds) {
+  return row_of_table("table5", "refined ", refined(method), seeds);
 }
 
-std::vector<Condition> table3(bool from_prior) {
-  std::vector<Condition> out;
+std::vector<Condition> table3(Index seeds, bool from_prior) {
+  std::vector<PrintedMean> means;
   for (const Index n : {4, 8, 32, 128})
-    out.push_back(as_printed(
-        fmt::format("made by the network, n = {}, %", n),
-        percent(mean(at(refined("jpo"), n), decrease_before(from_prior))),
-        fmt::format("table3/n={}", n)));
-  return out;
+    means.push_back(
+        {fmt::format("made by the network, n = {}, %", n),
+         percent(mean(at(refined("jpo"), n), decrease_before(from_prior))),
+         fmt::format("table3/n={}", n)});
+  return jointly_as_printed(
+      "probability of such differences from Table 3", std::move(means), seeds);
+}
+
+Quantity growth_in_errors(const Select& a,
+                          const Select& b,
+                          const RunValue& value) {
+  return {[=](const Evidence& e) {
+            std::map<std::uint64_t, double> before;
+            for (const Sample& s : sample(e, b, value))
+              before[s.seed] = s.value;
+            std::vector<double> differences;
+            for (const Sample& s : sample(e, a, value))
+              if (const auto at = before.find(s.seed); at != before.end())
+                differences.push_back(s.value - at->second);
+            const auto found = mean_std(differences);
+            if (!found) return missing(a.text() + " not run");
+            if (!found->std) return missing("two seeds");
+            const auto runs = static_cast<double>(differences.size());
+            return Measured{
+                .value = found->mean / (*found->std / std::sqrt(runs)),
+                .runs = static_cast<Index>(differences.size())};
+          },
+          {a, b}};
 }
 
 }  // namespace physinv::jpo

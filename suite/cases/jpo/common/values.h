@@ -78,8 +78,10 @@ RunRow last_tracked(Index j);
 RunRow first_tracked(Index j);
 /// Of these problems, 1 where the last point lies outside the training
 /// samples' range of any unknown or within `margin` of its ends, as a share of
-/// the range; else 0.
-RunRow beyond_training(const ProblemRecipe& problem, double margin);
+/// the range; else 0. So many samples there are of each problem.
+RunRow beyond_training(const ProblemRecipe& problem,
+                       double margin,
+                       Index per_problem = 1);
 
 /// Sets of one seed are parts of each other; only the largest one counts.
 RunRow largest_sets(RunRow row);
@@ -97,10 +99,17 @@ Quantity highest_mean(const Select& select, const RunValue& value);
 Quantity from_problems(Index problems, const Select& select, Quantity q);
 Quantity problems_of(const Select& select);
 
-/// One row of Table 4 (refined: 5): better and equal as printed.
-std::vector<Condition> table4(const std::string& method);
-std::vector<Condition> table5(const std::string& method);
-/// Table 3 at n = 4, 8, 32, 128.
-std::vector<Condition> table3(bool from_prior = false);
+/// One row of Table 4 (refined: 5): better and equal as printed of so many
+/// seeds.
+std::vector<Condition> table4(const std::string& method, Index seeds);
+std::vector<Condition> table5(const std::string& method, Index seeds);
+/// Table 3 at n = 4, 8, 32, 128, all together.
+std::vector<Condition> table3(Index seeds, bool from_prior = false);
+
+/// Of the differences that `a` has from `b` on the same seed: their mean over
+/// its standard error.
+Quantity growth_in_errors(const Select& a,
+                          const Select& b,
+                          const RunValue& value);
 
 }  // namespace physinv::jpo

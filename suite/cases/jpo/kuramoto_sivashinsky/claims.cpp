@@ -10,6 +10,7 @@ namespace {
 
 /// From here on the paper's statements hold; small sets can be memorised.
 constexpr Index kMany = 32;
+constexpr Index kSeeds = 10;  ///< the paper's
 
 const Solved kSolved = within_of_truth(1e-3);
 const Select kJpo = plain("jpo"), kRefined = refined("jpo");
@@ -69,15 +70,24 @@ std::vector<Claim> paper_claims() {
        .says = "Gradient descent gets stuck in local optima more often than "
                "BFGS",
        .conditions = {below(
-           "solved by GD", solved_of(256, gd()), solved_of(256, bfgs()))}},
+           "solved by GD", solved_of(256, gd()), solved_of(256, bfgs()))},
+       .cause = depends(
+           "how many iterations gradient descent has is not printed: with "
+           "20 it solved 0.48 and BFGS 0.52, with 50 and 100 it solved 0.56 "
+           "and 0.59 (n = 64); run to its end it solves 0.68, BFGS 0.57")},
       {.id = "P3",
        .origin = Origin::paper,
        .where = "Sec. 4",
        .from = "paper",
        .says = "JPO brings 80 % of the problems to the global minimum",
-       .conditions = {about("solved after refinement, %",
-                            percent(mean(kRefined, solved(kSolved))),
-                            80)}},
+       .conditions = {about("solved after refinement at n = 256, %",
+                            percent(mean(at(kRefined, 256), solved(kSolved))),
+                            80),
+                      report("over all n",
+                             percent(mean(kRefined, solved(kSolved))))},
+       .note = "Of the largest n: the sentence names none.",
+       .cause = not_run("n = 256 of the profile paper anew: what is stored "
+                        "keeps the mean over all n")},
       {.id = "P4",
        .origin = Origin::paper,
        .where = "Sec. 4",
@@ -104,12 +114,17 @@ std::vector<Claim> paper_claims() {
             below("refinement below BFGS",
                   of_solved(kRefined, iterations()),
                   of_solved(bfgs(), iterations())),
-            at_most("highest refined L over L at the mean",
-                    highest(kRefined,
-                            of_row(where(is_solved(kSolved), loss_over_start),
-                                   most_of)),
-                    1e-10)},
-       .note = "Over solved problems."},
+            at_least(
+                "share with a refined L below 1e-10 of that at the mean",
+                share_of_examples(kRefined,
+                                  where(is_solved(kSolved), loss_over_start),
+                                  [](double ratio) { return ratio <= 1e-10; }),
+                0.9)},
+       .note = "Over solved problems.",
+       .cause = depends(
+           "the tolerance of BFGS is not printed: to a gradient of 1e-5 it "
+           "takes a median of 9 to 11 iterations, to 1e-12 it took 14, "
+           "printed are 12 to 22")},
       {.id = "P6",
        .origin = Origin::paper,
        .where = "Sec. 4",
@@ -124,30 +139,61 @@ std::vector<Claim> paper_claims() {
                                    mean(at(kRefined, 4), f()))),
                       either(as_printed("better at n = 256, %",
                                         better_percent(at(kJpo, 256)),
-                                        "text/jpo/better/n=256"),
+                                        "text/jpo/better/n=256",
+                                        kSeeds),
                              as_printed("refined",
                                         better_percent(at(kRefined, 256)),
-                                        "text/jpo/better/n=256"))}},
+                                        "text/jpo/better/n=256",
+                                        kSeeds))}},
       {.id = "P7",
        .origin = Origin::paper,
        .where = "Table 4",
        .from = "paper",
        .says = "How often each method is better than BFGS, and equal",
-       .conditions =
-           joined({table4("jpo"), table4("supervised"), table4("na")})},
+       .conditions = joined({table4("jpo", kSeeds),
+                             table4("supervised", kSeeds),
+                             table4("na", kSeeds)}),
+       .cause = differs(
+           "JPO, supervised learning and the neural adjoint are better in "
+           "34, 10 and 4 %, printed are 42.8, 14.4 and 6.4, in the same order",
+           {above("better, %: JPO over supervised",
+                  better_percent(kJpo),
+                  better_percent(plain("supervised"))),
+            above("supervised over the neural adjoint",
+                  better_percent(plain("supervised")),
+                  better_percent(plain("na")))})},
       {.id = "P8",
        .origin = Origin::paper,
        .where = "Table 5",
        .from = "paper",
        .says = "The same after refinement",
-       .conditions =
-           joined({table5("jpo"), table5("supervised"), table5("na")})},
+       .conditions = joined({table5("jpo", kSeeds),
+                             table5("supervised", kSeeds),
+                             table5("na", kSeeds)}),
+       .cause = differs(
+           "refined supervised learning is better in 46 %, printed are 57.7; "
+           "the refined neural adjoint ties in 48 %, printed 62.2; JPO is "
+           "as printed, and the order is",
+           {above("better, %: JPO over supervised",
+                  better_percent(kRefined),
+                  better_percent(refined("supervised"))),
+            above("supervised over the neural adjoint",
+                  better_percent(refined("supervised")),
+                  better_percent(refined("na")))})},
       {.id = "P9",
        .origin = Origin::paper,
        .where = "Table 3",
        .from = "paper",
        .says = "Share of the decrease that the network makes",
-       .conditions = table3()},
+       .conditions = table3(kSeeds),
+       .cause = differs(
+           "the network's share of the decrease, %: 88 to 92, 93 to 94, 92 to "
+           "93 "
+           "and 96 at n = 4, 8, 32 and 128, printed are 93.4, 96.2, 96.0 and "
+           "95.9; 32 falls short",
+           {above("lowest share of any n",
+                  lowest_mean(kRefined, decrease_before()),
+                  0.5)})},
       {.id = "P10",
        .origin = Origin::paper,
        .where = "App. D.3",
@@ -155,19 +201,28 @@ std::vector<Claim> paper_claims() {
        .says = "Supervised learning gains with n: unrefined never better than "
                "BFGS at n = 2 and in around 20 % for n >= 64, refined in 50 "
                "and 62 %",
-       .conditions = {at_most("better at n = 2, %",
-                              better_percent(at(plain("supervised"), 2)),
-                              0),
+       .conditions = {as_stated("better at n = 2, %",
+                                better_percent(at(plain("supervised"), 2)),
+                                0,
+                                kSeeds),
                       about("for n >= 64",
                             better_percent(plain("supervised").of_sizes(64)),
                             20),
                       as_printed("refined at n = 2",
                                  better_percent(at(refined("supervised"), 2)),
-                                 "text/supervised/refined/n=2"),
+                                 "text/supervised/refined/n=2",
+                                 kSeeds),
                       as_printed(
                           "refined for n >= 64",
                           better_percent(refined("supervised").of_sizes(64)),
-                          "text/supervised/refined/n>=64")}},
+                          "text/supervised/refined/n>=64",
+                          kSeeds)},
+       .cause = differs(
+           "supervised learning is better in 14 % for n >= 64, around 20 are "
+           "printed, refined in 57 %, printed 62; it gains with n",
+           {above("refined, n >= 64 over n = 2, %",
+                  better_percent(refined("supervised").of_sizes(64)),
+                  better_percent(at(refined("supervised"), 2)))})},
       {.id = "P11",
        .origin = Origin::paper,
        .where = "App. D.3",
@@ -178,17 +233,24 @@ std::vector<Claim> paper_claims() {
            above("mean L",
                  mean(refined("na"), of_row(losses(), mean_of)),
                  mean(bfgs(), of_row(losses(), mean_of))))},
-       .note = "Table 5 of the same paper says otherwise: better in 23.9 % and "
-               "equal in 62.2 %, f = 0.55."},
+       .note = "Of all n together.",
+       .cause = contradiction(
+           "App. D.3 says that it fails to match BFGS, Table 5 has it "
+           "better in 23.9 % and equal in 62.2 %: f = 0.55",
+           {above("printed better and half of equal, %",
+                  difference(printed("table5/na/better"),
+                             times(-0.5, printed("table5/na/equal"))),
+                  50)})},
       {.id = "P12",
        .origin = Origin::paper,
        .where = "App. D.3",
        .from = "paper",
        .says = "A handful of simulations from supervised learning and the "
                "neural adjoint diverge",
-       .conditions = {
-           report("share of supervised", diverged(plain("supervised"))),
-           report("of the neural adjoint", diverged(plain("na")))}}};
+       .conditions = {report("share of supervised",
+                             diverged(plain("supervised"))),
+                      report("of the neural adjoint", diverged(plain("na")))},
+       .cause = reported("a handful is no number")}};
 }
 
 std::vector<Claim> suite_claims() {

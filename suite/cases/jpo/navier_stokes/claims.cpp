@@ -12,6 +12,8 @@
 namespace physinv::jpo::navier_stokes {
 namespace {
 
+constexpr Index kSeeds = 4;   ///< the paper's
+constexpr Index kLabels = 8;  ///< of each problem, as the experiment has them
 const Select kJpo = plain("jpo"), kRefined = refined("jpo");
 const Select kSupervised = plain("supervised"),
              kSupervisedRefined = refined("supervised");
@@ -31,6 +33,29 @@ RunValue over_bfgs(double (*statistic)(std::vector<double>)) {
     if (!other) return {};
     return statistic(losses()(run)) / statistic(losses()(*other));
   };
+}
+
+/// Decades that the worst loss is above BFGS's worst.
+std::optional<double> order_over_bfgs(const Run& run) {
+  const auto ratio = over_bfgs(most_of)(run);
+  return ratio ? std::optional(std::log10(*ratio)) : std::nullopt;
+}
+
+/// |slope| of the mean loss over log n, in twice its standard error.
+Quantity slope_over_n(const Select& runs) {
+  return {[=](const Evidence& e) {
+            std::vector<double> x, y;
+            for (const Run& run : find_runs(e, runs)) {
+              x.push_back(std::log(static_cast<double>(run.n())));
+              y.push_back(mean_of(losses()(run)));
+            }
+            const auto line = fit_line(x, y);
+            if (!line) return missing(runs.text() + " not run");
+            return Measured{
+                .value = std::abs(line->slope) / (2 * line->slope_error),
+                .runs = static_cast<Index>(x.size())};
+          },
+          {runs}};
 }
 
 /// Mean loss over BFGS's without the tenth of the problems (at least one) of
@@ -80,7 +105,11 @@ std::vector<Claim> paper_claims() {
                       at_most("most iterations",
                               highest(bfgs(), of_row(iterations(), most_of)),
                               40)},
-       .note = "With the suite's extra stop at kinks."},
+       .note = "With the suite's extra stop at kinks.",
+       .cause = fails(
+           "42 % of the runs of BFGS end within 10 iterations, the median is "
+           "13; usually is read as more than half, and stop and precision "
+           "are not printed")},
       {.id = "P2",
        .origin = Origin::paper,
        .where = "Sec. 4",
@@ -100,7 +129,12 @@ std::vector<Claim> paper_claims() {
                             1),
                       above("the same at n = 4, over that at n = 128",
                             mean(at(kJpo, 4), over_bfgs(mean_of)),
-                            mean(at(kJpo, 128), over_bfgs(mean_of)))}},
+                            mean(at(kJpo, 128), over_bfgs(mean_of)))},
+       .cause = fails(
+           "JPO's mean loss is 0.75 to 1.11 of BFGS's: BFGS leaves the box "
+           "of the truths on single problems (448 against a median of 19); "
+           "which unknowns are bounded is not printed, and others were not "
+           "tried")},
       {.id = "P4",
        .origin = Origin::paper,
        .where = "Sec. 4, App. D.4",
@@ -109,55 +143,111 @@ std::vector<Claim> paper_claims() {
        .conditions = {at_most("mean L without the tenth of the highest, over "
                               "BFGS's on the same problems",
                               mean(kJpo, without_worst),
-                              1)}},
+                              1),
+                      above("what it explains: lowest mean L over BFGS's",
+                            lowest_mean(kJpo, over_bfgs(mean_of)),
+                            1)},
+       .cause = fails(
+           "there is nothing to explain: JPO's mean loss is 0.75 to 1.11 of "
+           "BFGS's: BFGS leaves the box "
+           "of the truths on single problems (448 against a median of 19); "
+           "which unknowns are bounded is not printed, and others were not "
+           "tried")},
       {.id = "P5",
        .origin = Origin::paper,
        .where = "Sec. 4",
        .from = "paper",
        .says = "JPO is better than BFGS in 66.7 % on average for n > 4",
        .conditions = {either(
-           about("better, %", percent_better(kJpo.of_sizes(8)), 66.7),
-           about("refined", percent_better(kRefined.of_sizes(8)), 66.7))}},
+           as_stated(
+               "better, %", percent_better(kJpo.of_sizes(8)), 66.7, kSeeds),
+           as_stated(
+               "refined", percent_better(kRefined.of_sizes(8)), 66.7, kSeeds))},
+       .cause = differs(
+           "JPO is better than BFGS in 77 % for n > 4, printed are 66.7",
+           {above("better, %, more than half",
+                  percent_better(kJpo.of_sizes(8)),
+                  50)})},
       {.id = "P6",
        .origin = Origin::paper,
        .where = "Tables 4, 5",
        .from = "paper",
        .says = "How often JPO is better than BFGS, and equal",
-       .conditions = joined({table4("jpo"), table5("jpo")})},
+       .conditions = joined({table4("jpo", kSeeds), table5("jpo", kSeeds)}),
+       .cause = differs(
+           "JPO is better in 74 %, refined in 78 %, printed are 62.5 and 64.1",
+           {above("better, %, more than half", percent_better(kJpo), 50),
+            above("refined, more than half", percent_better(kRefined), 50)})},
       {.id = "P7",
        .origin = Origin::paper,
        .where = "Tables 4, 5",
        .from = "paper",
        .says = "The same of supervised learning and the neural adjoint",
-       .conditions = joined({table4("supervised"),
-                             table4("na"),
-                             table5("supervised"),
-                             table5("na")}),
-       .note = "The text has the unrefined neural adjoint lose in 98.2 %."},
+       .conditions = joined({table4("supervised", kSeeds),
+                             table4("na", kSeeds),
+                             table5("supervised", kSeeds),
+                             table5("na", kSeeds)}),
+       .note = "The text has the unrefined neural adjoint lose in 98.2 %.",
+       .cause = fails(
+           "supervised learning is better in 12 %, printed are 23.5; the "
+           "neural "
+           "adjoint in 10 %, printed 1.1, and refined it ties in 16 %, "
+           "printed 0.1: where the surrogate never lowers the true loss the "
+           "start is kept, which is BFGS's; whether it may be is not printed")},
       {.id = "P8",
        .origin = Origin::paper,
        .where = "App. D.4",
        .from = "paper",
        .says = "Refined supervised learning is better in 64, 73 and 72 % for "
                "n = 16, 64 and 128",
-       .conditions =
-           {about("n = 16, %", percent_better(at(kSupervisedRefined, 16)), 64),
-            about("n = 64", percent_better(at(kSupervisedRefined, 64)), 73),
-            about("n = 128", percent_better(at(kSupervisedRefined, 128)), 72)}},
+       .conditions = {as_stated("n = 16, %",
+                                percent_better(at(kSupervisedRefined, 16)),
+                                64,
+                                kSeeds),
+                      as_stated("n = 64",
+                                percent_better(at(kSupervisedRefined, 64)),
+                                73,
+                                kSeeds),
+                      as_stated("n = 128",
+                                percent_better(at(kSupervisedRefined, 128)),
+                                72,
+                                kSeeds)},
+       .cause = differs(
+           "refined supervised learning is better in 61 % at n = 128, printed "
+           "are 72; 69 and 66 at n = 16 and 64 are as printed",
+           {above("n = 128, more than half, %",
+                  percent_better(at(kSupervisedRefined, 128)),
+                  50)})},
       {.id = "P9",
        .origin = Origin::paper,
        .where = "App. D.4",
        .from = "paper",
        .says = "Its worst losses are about ten times smaller than the worst of "
                "BFGS, its total loss much smaller for n >= 16",
-       .conditions = {at_most("highest mean over n >= 16: worst L over BFGS's",
-                              highest_mean(kSupervisedRefined.of_sizes(16),
-                                           over_bfgs(most_of)),
-                              1 / 3.2),
-                      below("mean L over BFGS's",
-                            highest_mean(kSupervisedRefined.of_sizes(16),
-                                         over_bfgs(mean_of)),
-                            1)}},
+       .conditions =
+           {either(
+                at_most("log10 of the worst L over BFGS's, mean, n >= 16",
+                        mean(kSupervisedRefined.of_sizes(16), order_over_bfgs),
+                        -0.5),
+                at_most("not refined",
+                        mean(kSupervised.of_sizes(16), order_over_bfgs),
+                        -0.5)),
+            either(below("mean L over BFGS's, highest of n >= 16",
+                         highest_mean(kSupervisedRefined.of_sizes(16),
+                                      over_bfgs(mean_of)),
+                         1),
+                   below("not refined, too",
+                         highest_mean(kSupervised.of_sizes(16),
+                                      over_bfgs(mean_of)),
+                         1))},
+       .note = "About ten times: half a decade or more, the geometric mean of "
+               "n and seeds.",
+       .cause = differs(
+           "the worst loss of refined supervised learning is 0.40, 0.21, 0.23 "
+           "and 0.46 of BFGS's at n = 16 to 128, about a tenth is printed",
+           {below("mean of worst L over BFGS's, n >= 16",
+                  mean(kSupervisedRefined.of_sizes(16), over_bfgs(most_of)),
+                  1)})},
       {.id = "P10",
        .origin = Origin::paper,
        .where = "App. D.4",
@@ -167,9 +257,14 @@ std::vector<Claim> paper_claims() {
        .conditions = {below("mean L over BFGS's",
                             mean(kAdjointRefined, over_bfgs(mean_of)),
                             1),
+                      at_most("|slope over log n| in two standard errors",
+                              slope_over_n(kAdjointRefined),
+                              1),
                       report("mean L at n = 128 over n = 4",
                              ratio(mean_loss(at(kAdjointRefined, 128)),
-                                   mean_loss(at(kAdjointRefined, 4))))}},
+                                   mean_loss(at(kAdjointRefined, 4))))},
+       .cause = not_run(
+           "the profile paper anew: what is stored keeps no slope over n")},
       {.id = "P11",
        .origin = Origin::paper,
        .where = "App. D.4",
@@ -185,19 +280,22 @@ std::vector<Claim> paper_claims() {
             above("decrease by refinement, over JPO's",
                   difference(mean_loss(kAdjoint), mean_loss(kAdjointRefined)),
                   difference(mean_loss(kJpo), mean_loss(kRefined))),
-            at_most(
-                "share beyond the training range",
-                share_of_examples(
-                    kAdjoint,
-                    beyond_training(problem<NavierStokes>("navier_stokes"), 0),
-                    holds),
-                0.1)}},
+            at_most("share beyond the training range",
+                    share_of_examples(
+                        kAdjoint,
+                        beyond_training(
+                            problem<NavierStokes>("navier_stokes"), 0, kLabels),
+                        holds),
+                    0.1)},
+       .cause = fails(
+           "up to 42 % of the estimates leave the range of their training "
+           "samples; weight and sharpness of the wall are not printed")},
       {.id = "P12",
        .origin = Origin::paper,
        .where = "Table 3",
        .from = "paper",
        .says = "Share of the decrease that the network makes",
-       .conditions = table3(true),
+       .conditions = table3(kSeeds, true),
        .note = "From the loss at the mean of the truths."}};
 }
 
@@ -228,7 +326,8 @@ std::vector<Claim> suite_claims() {
                             1),
                       at_most("highest median L over BFGS's",
                               highest_mean(large, over_bfgs(median)),
-                              1.3)}},
+                              1.3)},
+       .cause = fails("JPO's mean loss is as low as 0.75 of BFGS's (P3)")},
       {.id = "R5",
        .from = "quick",
        .says = "The network makes nearly all of the decrease",
@@ -255,7 +354,9 @@ std::vector<Claim> suite_claims() {
                       within("refined",
                              mean(kAdjointRefined.of_sizes(16), better()),
                              0.35,
-                             0.75)}},
+                             0.75)},
+       .cause = fails("better in 8.9 % over four seeds; the range, of one "
+                      "seed, ends at 8")},
       {.id = "R7b",
        .from = "quick",
        .says = "The unrefined neural adjoint has a higher mean loss than BFGS",

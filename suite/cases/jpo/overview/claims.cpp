@@ -21,6 +21,7 @@ constexpr Main kWave{"jpo/wave-packet", "wave packet", 2, 256},
     kBilliards{"jpo/billiards", "billiards", 2, 128},
     kChaos{"jpo/kuramoto-sivashinsky", "Kuramoto-Sivashinsky", 2, 256},
     kBox{"jpo/navier-stokes", "Navier-Stokes", 4, 128};
+constexpr Index kFewestSeeds = 4;  ///< that the paper has of any
 constexpr std::array kMain = {kWave, kBilliards, kChaos, kBox};
 
 /// One condition of each experiment.
@@ -37,7 +38,8 @@ std::vector<Condition> of_each(const std::string& what, F&& quantity) {
       [&](const Main& e) { return report(what + e.title, quantity(e)); });
 }
 
-/// The mean of one quantity of each, its spread that of independent ones.
+/// The mean of one quantity of each. Its spread is that of one of as many seeds
+/// as the fewest have, with the error that all together leave.
 template <class F>
 Quantity mean_of_all(F&& quantity) {
   std::vector<Quantity> all;
@@ -47,15 +49,18 @@ Quantity mean_of_all(F&& quantity) {
     for (const Select& s : all.back().runs()) runs.push_back(s);
   }
   return {[all](const Evidence& evidence) {
-            Measured sum{.value = 0, .spread = 0, .runs = 0, .missing = {}};
+            Measured sum{
+                .value = 0, .spread = 0, .runs = kEvery, .missing = {}};
             for (const Quantity& q : all) {
               const Measured one = q(evidence);
               if (!one.value) return one;
               *sum.value += *one.value / double(all.size());
               const double s = one.spread.value_or(0) / double(all.size());
-              sum.spread = std::hypot(*sum.spread, s);
-              sum.runs += one.runs;
+              sum.spread = std::hypot(
+                  *sum.spread, s / std::sqrt(static_cast<double>(one.runs)));
+              sum.runs = std::min(sum.runs, one.runs);
             }
+            *sum.spread *= std::sqrt(static_cast<double>(sum.runs));
             return sum;
           },
           runs};
@@ -67,8 +72,7 @@ auto mean_percent(const Select& runs, const RunValue& value) {
 auto growth_of_f(const Select& runs) {
   return [=](const Main& e) {
     const Select all = runs.in(e.name);
-    return difference(mean(at(all, e.largest), f()),
-                      mean(at(all, e.smallest), f()));
+    return growth_in_errors(at(all, e.largest), at(all, e.smallest), f());
   };
 }
 
@@ -136,6 +140,24 @@ std::vector<Quantity> with_bfgs() {
   return all;
 }
 
+/// Missing if one is.
+Quantity how_many_below(const std::vector<Quantity>& all, double bound) {
+  std::vector<Select> runs;
+  for (const Quantity& q : all)
+    runs.insert(runs.end(), q.runs().begin(), q.runs().end());
+  return {[=](const Evidence& e) {
+            Measured count{.value = 0};
+            for (const Quantity& q : all) {
+              const Measured one = q(e);
+              if (!one.value) return one;
+              *count.value += *one.value < bound;
+              count.runs += one.runs;
+            }
+            return count;
+          },
+          runs};
+}
+
 std::vector<Claim> claims() {
   return {
       {.id = "P1",
@@ -144,12 +166,19 @@ std::vector<Claim> claims() {
        .from = "paper",
        .says = "JPO beats BFGS in an average of 69 % of the problems",
        .conditions =
-           joined({{about("mean of the four, refined, %",
-                          mean_of_all(mean_percent(kRefined, better())),
-                          69)},
+           joined({{as_stated("mean of the four, refined, %",
+                              mean_of_all(mean_percent(kRefined, better())),
+                              68.5,
+                              kFewestSeeds)},
                    of_each("", mean_percent(kRefined, better()))}),
        .note = "The paper's number is the mean of Table 5, 68.5; that of "
-               "Table 4 is 57.5."},
+               "Table 4 is 57.5.",
+       .cause = differs(
+           "refined JPO beats BFGS in 75 % of the problems, printed are 69 "
+           "(68.5 by Table 5)",
+           {above("mean of the four, more than half, %",
+                  mean_of_all(mean_percent(kRefined, better())),
+                  50)})},
       {.id = "P2",
        .origin = Origin::paper,
        .where = "Sec. 5",
@@ -157,12 +186,19 @@ std::vector<Claim> claims() {
        .says = "This fraction clearly increases with the data set",
        .conditions = each([](const Main& e) {
          return either(
-             above(std::string("f at the largest less the smallest n: ") +
+             above(std::string("f at the largest less the smallest n, in "
+                               "standard errors: ") +
                        e.title,
                    growth_of_f(kPlain)(e),
-                   0),
-             above("refined", growth_of_f(kRefined)(e), 0));
-       })},
+                   2),
+             above("refined, " + std::string(e.title),
+                   growth_of_f(kRefined)(e),
+                   2));
+       }),
+       .note = "Clearly: by more than two standard errors; with or without "
+               "refinement, which the sentence leaves open.",
+       .cause = fails(
+           "by more than two standard errors f does not grow in all four")},
       {.id = "P3",
        .origin = Origin::paper,
        .where = "Abstract, Sec. 6",
@@ -195,7 +231,18 @@ std::vector<Claim> claims() {
               const std::string label = std::string("supervised, ") + e.title;
               return e.name == kWave.name ? above(label, share, 50)
                                           : at_most(label, share, 50);
-            })})},
+            })}),
+       .cause = depends(
+           "on the wave packet's waveform and number of samples, which are not "
+           "printed: with as many as problems and a width of 1 supervised "
+           "learning beats BFGS in 30 %, with eight times as many and 0.25 "
+           "it did in 56 to 78 %; the order holds",
+           each([](const Main& e) {
+             return below(
+                 std::string("better, %: supervised below JPO, ") + e.title,
+                 mean_percent(plain("supervised"), better())(e),
+                 mean_percent(kPlain, better())(e));
+           }))},
       {.id = "P5",
        .origin = Origin::paper,
        .where = "App. D, Table 3",
@@ -217,7 +264,13 @@ std::vector<Claim> claims() {
                       difference(share_at(e, 128), share_at(e, 4)),
                       0);
        }),
-       .note = "Table 3 of the same paper contradicts it for Navier-Stokes."},
+       .cause = contradiction(
+           "App. D says that the share grows with n, Table 3 has it fall "
+           "from 100.0 % at n = 4 to 96.8 % at 128 on Navier-Stokes",
+           {below("printed, n = 128 less n = 4: Navier-Stokes",
+                  difference(printed("jpo/navier-stokes table3/n=128"),
+                             printed("jpo/navier-stokes table3/n=4")),
+                  0)})},
       {.id = "P7",
        .origin = Origin::paper,
        .where = "Sec. 5",
@@ -239,22 +292,24 @@ std::vector<Claim> claims() {
        .from = "paper",
        .says = "For few problems JPO is sometimes worse; many of these cases "
                "are outliers, where BFGS can step in",
-       .conditions =
-           joined({{above("share worse at the smallest n, highest of the four",
-                          most(worse_of_few()),
-                          0)},
-                   {below("mean L with BFGS for a tenth, over without, lowest",
-                          least(with_bfgs()),
-                          1)},
-                   of_each("mean L over BFGS's there, highest of a seed: ",
-                           [](const Main& e) {
-                             return highest(at(kRefined.in(e.name), e.smallest),
-                                            loss_over_bfgs);
-                           }),
-                   of_each("mean L with BFGS for a tenth, over without: ",
-                           [](const Main& e) {
-                             return median(kRefined.in(e.name), falling_back);
-                           })})},
+       .conditions = joined(
+           {{above("share worse at the smallest n, highest of the four",
+                   most(worse_of_few()),
+                   0)},
+            {at_least("experiments where BFGS for a tenth lowers the mean L",
+                      how_many_below(with_bfgs(), 1),
+                      2)},
+            of_each("mean L over BFGS's there, highest of a seed: ",
+                    [](const Main& e) {
+                      return highest(at(kRefined.in(e.name), e.smallest),
+                                     loss_over_bfgs);
+                    }),
+            of_each("mean L with BFGS for a tenth, over without: ",
+                    [](const Main& e) {
+                      return median(kRefined.in(e.name), falling_back);
+                    })}),
+       .cause = not_run("the profile paper anew: what is stored keeps the "
+                        "lowest of the four alone")},
       {.id = "P9",
        .origin = Origin::paper,
        .where = "App. D.1 to D.4",
@@ -281,7 +336,13 @@ std::vector<Claim> claims() {
                       report("wave packet with the head 64-32-1",
                              parameters("jpo/wave-packet-head",
                                         &Setting::predictor))},
-       .note = "The layers that App. D.1 names have 13,921 parameters."},
+       .cause = contradiction(
+           "App. D.1 prints 13,925 parameters for the wave packet and names "
+           "layers that have 13,921; a head of 64-32-1, which it does "
+           "not name, has 13,925",
+           {exactly("the named layers",
+                    parameters(kWave.name, &Setting::predictor),
+                    13'921)})},
       {.id = "P10",
        .origin = Origin::paper,
        .where = "Sec. 5, Limitations",
@@ -291,7 +352,11 @@ std::vector<Claim> claims() {
        .conditions =
            of_each("seconds of a fit, n = 128 over n = 4: ", cost_of_growth),
        .note = "Times decide nothing. Table 2 of the same paper has a network "
-               "fit slower than parallel BFGS at the largest n everywhere."},
+               "fit slower than parallel BFGS at the largest n everywhere.",
+       .cause = reported(
+           "times decide nothing: the paper's machine is another one, and its "
+           "Table 2 has a fit slower than parallel BFGS at the largest n "
+           "everywhere")},
       {.id = "P11",
        .origin = Origin::paper,
        .where = "Table 2, App. D.3",
@@ -299,7 +364,9 @@ std::vector<Claim> claims() {
        .says = "Wall times",
        .conditions = of_each("seconds of a fit over those of BFGS, largest n: ",
                              fit_over_bfgs),
-       .note = "Times decide nothing; the paper's machine was another one."}};
+       .note = "Times decide nothing; the paper's machine was another one.",
+       .cause = reported(
+           "times decide nothing: the paper's machine is another one")}};
 }
 
 const bool kRegistered =

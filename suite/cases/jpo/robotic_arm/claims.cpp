@@ -16,8 +16,10 @@ constexpr double kSolved = 1e-12;
 const Select kJpo = plain("jpo"), kRefined = refined("jpo");
 
 /// Of any n and seed.
-Condition all_solved(std::string label, const Select& runs) {
-  return at_least(std::move(label), lowest(runs, solved(kSolved)), 1);
+Condition all_solved(std::string label,
+                     const Select& runs,
+                     double loss = kSolved) {
+  return at_least(std::move(label), lowest(runs, solved(loss)), 1);
 }
 /// In iterations, or updates of a network.
 Quantity median_to(double loss, const Select& runs) {
@@ -70,7 +72,13 @@ std::vector<Claim> paper_claims() {
        .says = "Gradient descent does, too",
        .conditions = {at_most("median iterations to L < 1e-12",
                               median_to(kSolved, at(gd(), 64)),
-                              25)}},
+                              25)},
+       .cause = depends(
+           "which loss is machine precision is not printed: to 1e-12 gradient "
+           "descent takes a median of 28 iterations, to 1e-9 25 or fewer",
+           {at_most("median iterations to L < 1e-9",
+                    median_to(1e-9, at(gd(), 64)),
+                    25)})},
       {.id = "P3",
        .origin = Origin::paper,
        .where = "App. D.5, Fig. 25c",
@@ -81,12 +89,9 @@ std::vector<Claim> paper_claims() {
                             median_to(1e-4, bfgs())),
                       above("of supervised learning",
                             median_to(1e-4, plain("supervised")),
-                            median_to(1e-4, bfgs())),
-                      above("of the surrogate",
-                            median_to(1e-4, {.method = "na", .stage = "fit"}),
                             median_to(1e-4, bfgs()))},
        .note = "Not finite: never. A surrogate has no estimate of its own "
-               "while it is fitted."},
+               "while it is fitted, and is not compared."},
       {.id = "P4",
        .origin = Origin::paper,
        .where = "App. D.5, Fig. 25d",
@@ -103,7 +108,13 @@ std::vector<Claim> paper_claims() {
                "optimizers solve them perfectly",
        .conditions = {all_solved("lowest share solved: JPO refined", kRefined),
                       bfgs_perfect,
-                      descent_perfect}}};
+                      descent_perfect},
+       .cause = depends(
+           "which loss is machine precision is not printed: by 1e-12 gradient "
+           "descent leaves two of 512 targets at the stretched arm, by 1e-8 "
+           "none",
+           {all_solved(
+               "lowest share below 1e-8: gradient descent", gd(), 1e-8)})}};
 }
 
 std::vector<Claim> suite_claims() {

@@ -13,6 +13,7 @@ namespace {
 
 constexpr const char* kName = "jpo/wave-packet";
 constexpr double kBasin = 1;       // of the global optimum, in samples
+constexpr Index kSeeds = 5;        ///< the paper's
 constexpr double kLargeStep = 20;  // samples
 const double kScale = WavePacketOptions{}.scale;
 /// Between minima of the loss.
@@ -33,6 +34,16 @@ std::vector<double> first_steps(const Run& run) {
   const auto& steps = run.stage->arrays.at("first_step");
   std::vector<double> out;
   for (Index i = 0; i < steps.cols(); ++i) out.push_back(kScale * steps(0, i));
+  return out;
+}
+
+/// The same of one guess for all, the middle of the window.
+std::vector<double> distances_of_guess(const Run& run) {
+  const auto truth = run.record->data.x.row(0);
+  const double middle = 0.5 * (truth.minCoeff() + truth.maxCoeff());
+  std::vector<double> out;
+  for (Index i = 0; i < truth.size(); ++i)
+    out.push_back(kScale * std::abs(truth(i) - middle));
   return out;
 }
 
@@ -96,33 +107,44 @@ std::vector<Claim> paper_claims() {
        .where = "Sec. 4, Table 4",
        .from = "paper",
        .says = "JPO is better than BFGS in around 80 % of examples",
-       .conditions = table4("jpo")},
+       .conditions = table4("jpo", kSeeds)},
       {.id = "P2",
        .origin = Origin::paper,
        .where = "Table 4",
        .from = "paper",
        .says = "How often supervised learning and the neural adjoint are "
                "better than BFGS, and equal",
-       .conditions = joined({table4("supervised"), table4("na")}),
-       .note = "This hangs on the waveform, shown only as a picture."},
+       .conditions =
+           joined({table4("supervised", kSeeds), table4("na", kSeeds)}),
+       .cause = depends(
+           "waveform and number of samples are not printed: with as many "
+           "as problems and a width of 1 supervised learning is better in "
+           "30 %, with eight times as many and 0.25 it was in 56 to 78 % "
+           "(two runs), printed are 55.9; the neural adjoint's 16 %, "
+           "printed 28.2, stays open")},
       {.id = "P3",
        .origin = Origin::paper,
        .where = "Table 5",
        .from = "paper",
        .says = "How often refined JPO is better than BFGS, and equal",
-       .conditions = table5("jpo")},
+       .conditions = table5("jpo", kSeeds)},
       {.id = "P4",
        .origin = Origin::paper,
        .where = "Table 5",
        .from = "paper",
        .says = "The same of refined supervised learning and neural adjoint",
-       .conditions = joined({table5("supervised"), table5("na")})},
+       .conditions =
+           joined({table5("supervised", kSeeds), table5("na", kSeeds)}),
+       .cause = depends(
+           "precision and scale are not printed: in double, at a scale of "
+           "128, refined supervised learning ties in 2 %; in float, at 8, 3 "
+           "to 16 % tied, printed are 14.4")},
       {.id = "P5",
        .origin = Origin::paper,
        .where = "Table 3",
        .from = "paper",
        .says = "Share of the decrease that the network makes",
-       .conditions = table3()},
+       .conditions = table3(kSeeds)},
       {.id = "P6",
        .origin = Origin::paper,
        .where = "Sec. 4",
@@ -146,7 +168,11 @@ std::vector<Claim> paper_claims() {
                             0.5),
                       above("median iterations of gradient descent over BFGS",
                             pool_median(gd(), iterations()),
-                            pool_median(bfgs(), iterations()))}},
+                            pool_median(bfgs(), iterations()))},
+       .cause = depends(
+           "the unit of t0 is not printed: where 128 samples are one, "
+           "gradient descent takes twice as many iterations as BFGS had "
+           "and fewer than it takes itself; where 8 are, 7 against 4")},
       {.id = "P8",
        .origin = Origin::paper,
        .where = "Sec. 4",
@@ -156,7 +182,11 @@ std::vector<Claim> paper_claims() {
            "closer than BFGS, over farther",
            pool_share(gd(), farther_than_bfgs, [](double d) { return d < 0; }),
            pool_share(
-               gd(), farther_than_bfgs, [](double d) { return d > 0; }))}},
+               gd(), farther_than_bfgs, [](double d) { return d > 0; }))},
+       .cause = depends(
+           "unit of t0 and first step are not printed: at 128 and 0.1 "
+           "gradient descent is closer on 23 % of the problems, at 8 and "
+           "0.1 on 54 %, at 128 and 1e-4 on 82 % (512 problems)")},
       {.id = "P9",
        .origin = Origin::paper,
        .where = "Sec. 4",
@@ -170,7 +200,11 @@ std::vector<Claim> paper_claims() {
            3000)},
        .note = "Fits of twice as many iterations; the four problems of each "
                "whose paths are kept, measured every seventh part of an "
-               "iteration number."},
+               "iteration number.",
+       .cause = fails(
+           "in fits of twice the length the last change of minimum comes "
+           "after 4,587 iterations in the median, printed are 500 to 3,000; "
+           "four paths a run, the grid of their points is a seventh")},
       {.id = "P10",
        .origin = Origin::paper,
        .where = "Sec. 4",
@@ -182,7 +216,13 @@ std::vector<Claim> paper_claims() {
                                0.2),
                       below("median |t0 - truth|, over BFGS's",
                             median_of_examples(kJpo, distances),
-                            median_of_examples(bfgs(), distances))}},
+                            median_of_examples(bfgs(), distances)),
+                      below("over that of one guess for all",
+                            median_of_examples(kJpo, distances),
+                            median_of_examples(kJpo, distances_of_guess))},
+       .cause = fails(
+           "the median distance from the truth is 62 samples, of one guess for "
+           "all 60; BFGS, which is thrown out of the window, is farther")},
       {.id = "P11",
        .origin = Origin::paper,
        .where = "App. D.1",
@@ -195,7 +235,10 @@ std::vector<Claim> paper_claims() {
                       above("mean L at the end over the start",
                             mean(labels, of_row(losses(), mean_of)),
                             mean(labels, of_row(start_losses(), mean_of)))},
-       .note = "Paths are kept of four problems of each run."},
+       .note = "Paths are kept of four problems of each run.",
+       .cause =
+           fails("66 % of the estimates approach the truth, all are printed; "
+                 "number and spread of the samples are not printed")},
       {.id = "P12",
        .origin = Origin::paper,
        .where = "App. D.1",
@@ -206,13 +249,18 @@ std::vector<Claim> paper_claims() {
            {either(within("better, %", percent(better_share(na_256)), 28, 38),
                    as_printed("better, %",
                               percent(better_share(na_256)),
-                              "text/na/better/n=256")),
+                              "text/na/better/n=256",
+                              kSeeds)),
             at_least("share of ends at or beyond the boundary",
                      share_of_examples(at(plain("na"), 256),
                                        beyond_training(kProblem, 0.02),
                                        holds),
                      0.2)},
-       .note = "Ends of the four problems of each run whose paths are kept."}};
+       .note = "Ends of the four problems of each run whose paths are kept.",
+       .cause = fails(
+           "no estimate ends at the boundary; sharpness and weight of the "
+           "wall are not printed, and others were not tried here; better in "
+           "29.5 %, as printed")}};
 }
 
 std::vector<Claim> suite_claims() {
@@ -293,6 +341,8 @@ std::vector<Claim> suite_claims() {
                    0.459,
                    0.659),
             within("better: na", better_share(plain("na")), 0.182, 0.382)},
+       .cause =
+           fails("Table 4 prints 55.9 and 28.2 %, ours are 30 and 16 (P2)"),
        .gates = false}};
 }
 

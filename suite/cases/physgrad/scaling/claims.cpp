@@ -252,7 +252,9 @@ const bool kComparisonClaims = register_claims(
            within("inverse gradients",
                   of("ig", relative_step_kept),
                   1 - 1e-9,
-                  1 + 1e-9)}},
+                  1 + 1e-9)},
+      .note = "Relative to what is left: in x the steps of all shrink, where "
+              "the chapter has them larger."},
      {.id = "P6",
       .origin = Origin::paper,
       .where = "Inverse gradients",

@@ -153,10 +153,17 @@ const std::vector<Claim> kTrained = {
      .where = "App. B.4",
      .from = "quick",
      .says = "That small scales are ignored limits SIP's accuracy",
-     .conditions = {
-         at_least("error over that of v0 without them",
-                  lowest({"sip-b16"}, over(end(), last_of(metric(kLarge)))),
-                  1)}}};
+     .conditions = {at_least("error over that of v0 without them",
+                             lowest({"sip-b16"},
+                                    over(end(), last_of(metric(kLarge)))),
+                             1),
+                    at_most("within half a decade of it",
+                            lowest({"sip-b16"},
+                                   over(end(), last_of(metric(kLarge)))),
+                            3.2)},
+     .cause = fails(
+         "the error is 44 times that of v0 without small scales: 300 updates "
+         "with batches of 16 do not come near the limit")}};
 
 const std::vector<Claim> kOthers = {
     {.id = "P4",
@@ -170,7 +177,9 @@ const std::vector<Claim> kOthers = {
           report("Adam", lowest({"adam"}, if_ran(double(kLong), end()))),
           report("Adam below SIP for good after so many updates",
                  also_asks(lowest({"adam"}, if_ran(double(kLong), overtakes)),
-                           {{"sip"}}))}},
+                           {{"sip"}}))},
+     .cause = not_run(
+         "3.7 CPU-hours: 20,000 updates of both methods, the profile long")},
     {.id = "P5",
      .origin = Origin::paper,
      .where = "App. B.4",
@@ -184,7 +193,8 @@ const std::vector<Claim> kOthers = {
                     above("energy of its fine scales over the truth's",
                           median({"lbfgsb"}, fine_scales),
                           1)},
-     .note = "Every example by itself, 16 iterations and 100 steps."}};
+     .note = "Every example by itself, 16 iterations and 100 steps.",
+     .cause = not_run("a CPU-minute: lbfgsb and gd at the profile quick")}};
 
 const std::vector<Claim> kRanges = {
     {.id = "A1",

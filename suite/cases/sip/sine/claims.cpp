@@ -86,11 +86,13 @@ std::vector<Condition> of_printed_rates() {
 Claim claim(std::string id,
             std::string from,
             std::string says,
-            std::vector<Condition> conditions) {
+            std::vector<Condition> conditions,
+            Cause cause = {}) {
   return {.id = std::move(id),
           .from = std::move(from),
           .says = std::move(says),
-          .conditions = std::move(conditions)};
+          .conditions = std::move(conditions),
+          .cause = std::move(cause)};
 }
 
 const std::vector<Claim> kPaper = {
@@ -103,8 +105,11 @@ const std::vector<Claim> kPaper = {
                             "30, 100; xi = 1, phi = 0, 8000 updates",
                             of_gamma_ten(1),
                             1.2),
-                    report("xi = 32", of_gamma_ten(32))},
-     .note = "The paper does not say at which xi and phi."},
+                    at_most("xi = 32", of_gamma_ten(32), 1.2)},
+     .cause = depends(
+         "xi and phi are not printed: at xi = 1 gamma = 10 is best, at xi = 32 "
+         "its loss is 23 times the lowest",
+         {at_most("at xi = 1", of_gamma_ten(1), 1.2)})},
     {.id = "P2",
      .origin = Origin::paper,
      .where = "App. B.1",
@@ -112,7 +117,11 @@ const std::vector<Claim> kPaper = {
      .says = "The six learning rates work best",
      .conditions = of_printed_rates(),
      .note = "Distance after 8000 updates over the lowest of a tenth, a third, "
-             "one, three and ten times the rate; phi = 0."},
+             "one, three and ten times the rate; phi = 0.",
+     .cause = fails(
+         "seven of twelve rates are within 1.5 times the best after 8000 "
+         "updates; after 50,000, as printed, RMSprop at xi = 32 still is 2.8 "
+         "times and Adagrad 1.65 (one seed)")},
     {.id = "P3",
      .origin = Origin::paper,
      .where = "App. B.1",
@@ -125,7 +134,10 @@ const std::vector<Claim> kPaper = {
                     report("time of an update, SIP over Adam",
                            ratio(median({"sip"}, seconds_per_update()),
                                  median({"adam"}, seconds_per_update())))},
-     .note = "Closed forms stand for the paper's eigenvalue solver."},
+     .note = "Closed forms stand for the paper's eigenvalue solver.",
+     .cause = reported(
+         "updates in ten minutes are the machine's; App. B.1 and Fig. 15 of "
+         "the paper disagree about them (sip P1)")},
     {.id = "P4",
      .origin = Origin::paper,
      .where = "App. B",
@@ -229,7 +241,8 @@ const std::vector<Claim> kSuite = {
                     ratio(score_at(kEasy, "sgd"),
                           most(of_methods(kEasy,
                                           {"adadelta", "adagrad", "rmsprop"}))),
-                    1)}),
+                    1)},
+          fails("Adadelta ends behind SGD on all three seeds")),
     {.id = "A8",
      .from = "quick",
      .says = "After 8000 updates",
@@ -241,7 +254,9 @@ const std::vector<Claim> kSuite = {
              above("Adadelta", median({"adadelta"}, at_quick(score())), 1.6),
              above("Adagrad", median({"adagrad"}, at_quick(score())), 1.6),
              above("RMSprop", median({"rmsprop"}, at_quick(score())), 1.6)},
-     .note = "Judged by runs of 8000 updates only."}};
+     .note = "Judged by runs of 8000 updates only.",
+     .cause = fails("Adam is at 0.6 to 1.5 by seed, 1.34 in the median; the "
+                    "range is of one seed of another program")}};
 
 const bool kClaims = [] {
   std::vector<Claim> all = kPaper;
