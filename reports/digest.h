@@ -1,8 +1,8 @@
 /// The digest of a campaign: what a table of results needs, as one JSON file
-/// that is small enough to be kept with the sources, and the page that shows
-/// many of them.
+/// that is small enough to be kept with the sources.
 #pragma once
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -11,10 +11,17 @@
 
 namespace physinv {
 
-/// {provenance, sections: [{experiment, title, paper, claims, tables}]}; a
-/// table is the text of its Markdown.
+/// {provenance, sections: [{experiment, title, paper, claims, tables,
+/// figures}]}; a table is the text of its Markdown, figures are those that
+/// `kept_figures` has.
 nlohmann::ordered_json digest_json(const std::vector<Section>& sections,
                                    const nlohmann::ordered_json& provenance);
+
+/// Figures of a campaign as SVG files, by the name that the digest gives them
+/// below the campaign's folder: "jpo-billiards-fig11.svg". Pictures of fields
+/// and films are too large to be kept with the sources.
+std::map<std::string, std::string> kept_figures(
+    const std::vector<Section>& sections);
 
 /// The command that makes such a campaign, from the options that its context
 /// holds: "./bench --profile=paper --filter=jpo/".
@@ -23,13 +30,7 @@ std::string campaign_command(const nlohmann::ordered_json& provenance);
 struct NamedDigest {
   std::string name;  ///< folder of the campaign
   nlohmann::ordered_json digest;
+  std::map<std::string, double> cpu_seconds = {};  ///< by experiment
 };
-
-/// Markdown: how many of each paper's claims are reproduced, then every
-/// campaign with its machine, build, date and command, its claims and tables.
-/// Where campaigns judge the same claim, the last one that decided it counts,
-/// and what was decided before what was only reported. std::runtime_error if a
-/// digest lacks what it should have.
-std::string results_markdown(const std::vector<NamedDigest>& campaigns);
 
 }  // namespace physinv

@@ -22,17 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// A name of its own below the report, and one that needs no escapes.
-std::string folder_of(const Section& section) {
-  constexpr std::string_view kPlain =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.";
-  std::string name = section.experiment;
-  for (char& c : name)
-    if (kPlain.find(c) == std::string_view::npos) c = '-';
-  if (name.empty() || name.front() == '.') name.insert(0, "_");
-  return name;
-}
-
 class Writer {
  public:
   explicit Writer(const fs::path& dir) {
@@ -167,7 +156,7 @@ std::string section_markdown(const Section& section) {
         f.source.empty() ? f.title : f.source + " · " + f.title;
     out += fmt::format("\n![{}]({}/figures/{}.svg)\n",
                        markdown(name),
-                       folder_of(section),
+                       folder_of(section.experiment),
                        f.id);
     if (!f.note.empty()) out += '\n' + markdown(f.note) + '\n';
   }
@@ -190,7 +179,7 @@ std::string provenance_markdown(const Json& provenance) {
 void write_section(Writer& writer,
                    const Section& section,
                    const Palette& palette) {
-  const fs::path folder = folder_of(section);
+  const fs::path folder = folder_of(section.experiment);
   for (const Table& t : section.tables) {
     const fs::path base = folder / "tables";
     writer.write(base / (t.id + ".json"), dump(to_json(t)));
@@ -205,6 +194,16 @@ void write_section(Writer& writer,
 }
 
 }  // namespace
+
+std::string folder_of(std::string_view experiment) {
+  constexpr std::string_view kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.";
+  std::string name(experiment);
+  for (char& c : name)
+    if (kPlain.find(c) == std::string_view::npos) c = '-';
+  if (name.empty() || name.front() == '.') name.insert(0, "_");
+  return name;
+}
 
 Tally tally(const Section& section, Origin origin) {
   Tally counts{};
@@ -333,7 +332,7 @@ std::vector<fs::path> write_report(const fs::path& dir,
   for (const Section& s : sections) {
     write_section(writer, s, palette);
     if (!pages.one_file)
-      writer.write(fs::path(folder_of(s)) / "index.html",
+      writer.write(fs::path(folder_of(s.experiment)) / "index.html",
                    section_page_html(s, provenance, palette));
     Json one{{"experiment", s.experiment},
              {"title", s.title},
@@ -345,7 +344,7 @@ std::vector<fs::path> write_report(const fs::path& dir,
   writer.write("claims.json", dump(claims));
   writer.write("report.md", report_markdown(sections, provenance));
   std::vector<std::string> folders;
-  for (const Section& s : sections) folders.push_back(folder_of(s));
+  for (const Section& s : sections) folders.push_back(folder_of(s.experiment));
   writer.write("index.html",
                pages.one_file
                    ? report_html(sections, provenance)

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "suite/results/report_model.h"
@@ -27,6 +28,10 @@ nlohmann::ordered_json to_json(const ClaimResult& claim);
 /// What `to_json` made, with or without a cause; std::runtime_error if it is
 /// none.
 ClaimResult claim_from(const nlohmann::ordered_json& claim);
+
+/// A file's or folder's name of an experiment, jpo/billiards -> jpo-billiards:
+/// one of its own, which needs no escapes.
+std::string folder_of(std::string_view experiment);
 
 /// Experiments that stand together: those whose name begins with the key.
 struct Group {

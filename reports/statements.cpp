@@ -9,13 +9,7 @@
 #include "reports/text.h"
 
 namespace physinv {
-namespace {
 
-bool is_decided(const ClaimResult& c) {
-  return c.verdict != Verdict::not_judged && c.verdict != Verdict::reported;
-}
-
-/// The condition that says most: the first that does not hold, else the first.
 const ConditionResult* telling(const ClaimResult& c) {
   const auto at = std::find_if(
       c.conditions.begin(), c.conditions.end(), [](const auto& condition) {
@@ -27,6 +21,12 @@ const ConditionResult* telling(const ClaimResult& c) {
         return condition.value && !condition.bounds.empty();
       });
   return bound == c.conditions.end() ? nullptr : &*bound;
+}
+
+namespace {
+
+bool is_decided(const ClaimResult& c) {
+  return c.verdict != Verdict::not_judged && c.verdict != Verdict::reported;
 }
 
 Statement statement_of(const ClaimResult& c) {

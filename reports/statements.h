@@ -15,6 +15,10 @@ struct Statement {
   Origin origin = Origin::paper;
 };
 
+/// The condition that says most: the first that does not hold, else the first
+/// of those with bounds that was measured; null if there is none.
+const ConditionResult* telling(const ClaimResult& claim);
+
 /// Counts as they are, all else with three digits.
 std::string value_text(double value);
 

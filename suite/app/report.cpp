@@ -53,6 +53,10 @@ void publish_campaign(const fs::path& target,
   digest["results"] = checksum_of(results);
   digest["checksum"] = checksum_of(digest);
   results["context"]["physinv"]["digest"] = digest["checksum"];
+  if (const auto figures = kept_figures(sections); !figures.empty()) {
+    const Folder below = folder.make("figures");
+    for (const auto& [name, svg] : figures) below.write(name, svg);
+  }
   folder.write("results.json.gz", gzipped(sealed(std::move(results)).dump(1)));
   folder.write("digest.json", digest.dump(1) + '\n');
 }
@@ -117,8 +121,9 @@ ExitCode report_verb(const Arguments& arguments) {
            {"--out", "where to; default: RESULTS/report", &out, "DIR"},
            {"--one-file", "one page that has everything", &one_file},
            {"--publish",
-            "also keep results.json (compressed) and a digest of claims and "
-            "tables there, for the verb 'results'",
+            "also keep results.json (compressed), a digest of claims and "
+            "tables, "
+            "and figures there, for the verb 'results'",
             &publish,
             "DIR"},
            {"--check",

@@ -4,13 +4,16 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
+#include <utility>
 
-#include "reports/digest.h"
 #include "reports/report.h"
+#include "reports/results_page.h"
 #include "suite/app/installed.h"
 #include "suite/app/options.h"
 #include "suite/evidence/claim.h"
 #include "suite/results/file.h"
+#include "suite/results/folder.h"
 #include "suite/results/json.h"
 #include "suite/results/published.h"
 #include "suite/results/results_file.h"
@@ -21,9 +24,21 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// A digest and results.json.gz beside it tell of each other, unless both are
+/// Of solving, by experiment: entries of version 1 tell milliseconds.
+std::map<std::string, double> cpu_seconds(const Json& results) {
+  std::map<std::string, double> seconds;
+  for (const Json& entry : results.at("benchmarks")) {
+    if (!entry.contains("cpu_time") || !entry.contains("physinv")) continue;
+    const double unit = entry.value("time_unit", "ns") == "ms" ? 1e-3 : 1e-9;
+    const std::string experiment = entry["physinv"].value("experiment", "");
+    seconds[experiment] += unit * entry["cpu_time"].get<double>();
+  }
+  return seconds;
+}
+
+/// results.json.gz beside a digest: they tell of each other, unless both are
 /// of before they did.
-void require_one_campaign(const fs::path& folder, const Json& digest) {
+Json results_beside(const fs::path& folder, const Json& digest) {
   const fs::path path = folder / "results.json.gz";
   Json results = parse_results(gunzipped(read_file(path), kLargestData), path);
   Json& own = results.at("context")["physinv"];
@@ -33,20 +48,26 @@ void require_one_campaign(const fs::path& folder, const Json& digest) {
   if (linked && (told != digest.value("checksum", "") ||
                  digest.value("results", "") != checksum_of(results)))
     throw std::runtime_error("results.json.gz beside it is of another");
+  return results;
 }
 
-/// What is registered under this id of an experiment, or of a paper's
-/// overview; null if there is nothing.
-const Claim* claim_of(const std::string& name, const std::string& id) {
-  const auto find = [&](const std::vector<Claim>& claims) -> const Claim* {
-    for (const Claim& c : claims)
-      if (c.id == id) return &c;
-    return nullptr;
-  };
-  if (const auto e = registry().find(name)) return find(e->claims);
+/// Pages link to them.
+void require_figures(const fs::path& folder, const Json& digest) {
+  for (const Json& section : digest.at("sections"))
+    for (const Json& figure : section.value("figures", Json::array())) {
+      const std::string name = figure.at("file");
+      if (!fs::is_regular_file(folder / "figures" / name))
+        throw std::runtime_error("its figure " + name + " is missing");
+    }
+}
+
+/// The claims of an experiment, or of a paper's overview; none of what is not
+/// registered.
+std::vector<Claim> claims_of(const std::string& name) {
+  if (const auto e = registry().find(name)) return e->claims;
   for (const Overview& o : registry().overviews())
-    if (o.paper == name) return find(o.claims);
-  return nullptr;
+    if (o.paper == name) return o.claims;
+  return {};
 }
 
 /// The cases of a profile as if they had been run, without a number: sizes and
@@ -68,29 +89,44 @@ Results planned(const std::string& profile) {
 }
 
 /// A digest keeps the numbers of its conditions: each claim is judged by what
-/// is registered now, and has the cause that it states now.
+/// is registered now, and has the cause that it states now. One that the
+/// campaign did not know yet waits for a run.
 void renew(Json& digest, const Published& published) {
   const Results plan = planned(digest.at("provenance").value("profile", ""));
   for (auto& section : digest.at("sections")) {
     const std::string experiment = section.at("experiment");
-    for (auto& claim : section.at("claims"))
-      if (const Claim* now = claim_of(experiment, claim.at("id")))
-        claim = to_json(judge_again(
-            *now, claim_from(claim), {plan, published, experiment}));
+    Json& kept = section.at("claims");
+    for (const Claim& now : claims_of(experiment)) {
+      const auto own = std::find_if(kept.begin(), kept.end(), [&](Json& claim) {
+        return claim.at("id") == now.id;
+      });
+      ClaimResult before{.evidence = kNotKept};
+      if (own != kept.end()) before = claim_from(*own);
+      Json judged =
+          to_json(judge_again(now, before, {plan, published, experiment}));
+      if (own != kept.end())
+        *own = std::move(judged);
+      else
+        kept.push_back(std::move(judged));
+    }
   }
 }
 
 /// That can be shown; StoreError with the file's name if it cannot.
-Json digest_in(const fs::path& folder, const Published& published) {
+NamedDigest digest_in(const fs::path& folder, const Published& published) {
   const fs::path path = folder / "digest.json";
   const std::string bytes = read_file(path);
   try {
     auto digest = parse_json<Json>(bytes);
     if (!is_intact(digest)) throw std::runtime_error("it fails its checksum");
-    require_one_campaign(folder, digest);
+    const Json results = results_beside(folder, digest);
+    require_figures(folder, digest);
     renew(digest, published);
-    results_markdown({{folder.filename().string(), digest}});
-    return digest;
+    NamedDigest named{
+        folder.filename().string(), std::move(digest), cpu_seconds(results)};
+    results_markdown({named});
+    experiment_pages({named});
+    return named;
   } catch (const std::exception& error) {
     throw StoreError(
         fmt::format("{} is damaged: {} (write it again with report --publish)",
@@ -110,8 +146,7 @@ std::vector<NamedDigest> digests(const fs::path& directory) {
   std::sort(paths.begin(), paths.end());
   const Published published(published_directory());
   std::vector<NamedDigest> found;
-  for (const auto& path : paths)
-    found.push_back({path.filename().string(), digest_in(path, published)});
+  for (const auto& path : paths) found.push_back(digest_in(path, published));
   if (found.empty())
     throw ExitError(ExitCode::nothing_matched,
                     fmt::format("no folder of '{}' holds a digest.json; "
@@ -120,26 +155,68 @@ std::vector<NamedDigest> digests(const fs::path& directory) {
   return found;
 }
 
+/// From the folder of one to the other, with slashes.
+std::string link(const fs::path& from, const fs::path& to) {
+  return fs::absolute(to)
+      .lexically_normal()
+      .lexically_relative(fs::absolute(from).lexically_normal())
+      .generic_string();
+}
+
+/// Pages replace those that this verb wrote, and nothing else.
+void write_pages(const fs::path& directory,
+                 const std::map<std::string, std::string>& pages) {
+  make_directory(directory);
+  const Folder folder(directory);
+  for (const auto& [name, text] : pages)
+    if (folder.has(name) &&
+        folder.read(name, kLargestText).find(kWrittenByResults) ==
+            std::string::npos)
+      throw EnvironmentError(
+          fmt::format("{} is no page of results; name another folder with "
+                      "--pages, or move it",
+                      (directory / name).string()));
+  for (const auto& [name, text] : pages)
+    if (!folder.has(name) || folder.read(name, kLargestText) != text)
+      folder.write(name, text);
+}
+
 }  // namespace
 
 ExitCode results_verb(const Arguments& arguments) {
-  std::string campaigns = "reports/campaigns", out = "RESULTS.md";
+  std::string campaigns = "reports/campaigns", out = "RESULTS.md", pages;
   if (!parse("results",
-             "Writes a page of all published campaigns: what is not reproduced "
-             "and why, then claims and tables, each with machine, build, date "
+             "Writes a page of all published campaigns that has every "
+             "statement once, what is not reproduced first and why, and a page "
+             "for each experiment with tables, figures, machine, build, date "
              "and command. Claims are judged anew by the numbers that were "
              "kept.",
              {{"--campaigns",
-               "folder of what report --publish wrote, shown in the order of "
-               "their names (default "
-               "reports/campaigns)",
+               "folder of what report --publish wrote; the newest that decided "
+               "a claim counts (default reports/campaigns)",
                &campaigns,
                "DIR"},
-              {"--out", "the page (default RESULTS.md)", &out, "FILE"}},
+              {"--out", "the page (default RESULTS.md)", &out, "FILE"},
+              {"--pages",
+               "those of the experiments (default docs/results beside it)",
+               &pages,
+               "DIR"}},
              arguments))
     return ExitCode::good;
   const auto found = digests(campaigns);
-  write_atomically(out, results_markdown(found));
+  const fs::path beside = fs::absolute(out).parent_path();
+  const fs::path below = pages.empty()
+                             ? fs::path(out).parent_path() / "docs/results"
+                             : fs::path(pages);
+  const ResultsLinks links{.pages = link(beside, below),
+                           .overview = link(below, out),
+                           .campaigns = link(below, campaigns)};
+  try {
+    write_pages(below, experiment_pages(found, links));
+  } catch (const std::runtime_error& error) {
+    throw EnvironmentError(error.what());
+  }
+  write_atomically(out, results_markdown(found, links));
   fmt::print("{} campaigns: {}\n", found.size(), out);
   return ExitCode::good;
 }

@@ -1,5 +1,4 @@
-#include "reports/digest.h"
-
+#include "reports/results_page.h"
 #include "tests/fuzz/inputs.h"
 #include "tests/fuzz/readers.h"
 
@@ -10,6 +9,7 @@ void digest(std::string_view bytes) {
   if (json.is_discarded()) return;
   try {
     results_markdown({{"campaign", json}, {"campaign again", json}});
+    experiment_pages({{"campaign", json}, {"campaign again", json}});
   } catch (const std::runtime_error&) {  // the header says so
   }
 }

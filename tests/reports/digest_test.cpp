@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "reports/results_page.h"
+#include "reports/standings.h"
 #include "suite/results/file.h"
 
 namespace physinv {
@@ -14,12 +18,24 @@ Section section(Verdict of_paper, Verdict of_suite) {
           .title = "Toy",
           .paper = "jpo",
           .tables = {{.id = "t", .title = "A table", .columns = {"a"}}},
+          .figures = {{.id = "curves",
+                       .title = "Curves",
+                       .source = "Fig. 3",
+                       .panels = {{.series = {{.x = {1, 2}, .y = {1, 2}}}}}},
+                      {.id = "picture",
+                       .title = "Picture",
+                       .panels = {{.field = Field2D{{1}, {1}, {1}}}}}},
           .claims = {{.id = "P1",
                       .says = "a | b",
                       .verdict = of_paper,
                       .evidence = "0.98 (> 0.5)",
                       .origin = Origin::paper,
-                      .where = "Sec. 4"},
+                      .where = "Sec. 4",
+                      .conditions = {{.label = "better",
+                                      .bounds = "> 0.5",
+                                      .value = 0.98,
+                                      .spread = 0.01,
+                                      .holds = true}}},
                      {.id = "R1", .says = "range", .verdict = of_suite}}};
 }
 
@@ -28,6 +44,7 @@ Json origin() {
           {"date", "2024-05-06T07:08:09Z"},
           {"cpu_model", "A processor"},
           {"num_cpus", 2},
+          {"git_revision", "abc"},
           {"papers", {"jpo: A. Author: A title. A venue, 2024."}},
           {"options",
            {{"filter", {"jpo/", "-head"}}, {"set", {"n=8"}}, {"seeds", "3"}}}};
@@ -37,26 +54,91 @@ NamedDigest named(const char* name, Verdict of_paper, Verdict of_suite) {
   return {name, digest_json({section(of_paper, of_suite)}, origin())};
 }
 
-TEST(Digest, PageSaysWhereItsNumbersComeFrom) {
-  const std::string page = results_markdown(
-      {named("first", Verdict::reproduced, Verdict::not_reproduced)});
-  for (const char* words :
-       {"## Campaign first",
-        "`./bench --profile=paper '--filter=jpo/' '--filter=-head' "
-        "'--set=n=8' --seeds=3`",
-        "2024-05-06, A processor (2 cores)",
-        "| P1 | a \\| b (Sec. 4) | reproduced | 0.98 (> 0.5) |",
-        "| R1 | range | fails |",
-        "A table",
-        "- jpo: A. Author: A title. A venue, 2024.",
-        "| jpo | 1 | 0 | 0 | 0 | 0 | 1 | 0 | 0 |"})
+Json dated(Json provenance, const char* date) {
+  provenance["date"] = date;
+  return provenance;
+}
+
+void expect_words(const std::string& page,
+                  std::initializer_list<const char*> all) {
+  for (const char* words : all)
     EXPECT_NE(page.find(words), page.npos) << words << "\n" << page;
+}
+
+TEST(Digest, PageHasEveryStatementOnceAndTheRangesThatFail) {
+  auto campaign = named("first", Verdict::reproduced, Verdict::not_reproduced);
+  campaign.cpu_seconds = {{"jpo/toy", 1800}, {"hig/toy", 7}};
+  const std::string page = results_markdown({campaign});
+  expect_words(
+      page,
+      {"| [jpo/toy](docs/results/jpo-toy.md) P1 | a \\| b | reproduced | "
+       "better > 0.5 | 0.98 ± 0.01 |  | first |",
+       "## Ranges of the suite that fail",
+       "R1 | range | fails |  |  | unknown | first |",
+       "A. Author: A title. A venue, 2024.",
+       "1 campaigns, 0.50 CPU-hours of solving, A processor; revisions abc.",
+       "| jpo | 1 | 0 | 0 | 0 | 0 | 1 | 0 | 0 |"});
+}
+
+TEST(Digest, PageOfAnExperimentSaysWhereItsNumbersComeFrom) {
+  const auto pages = experiment_pages(
+      {named("first", Verdict::reproduced, Verdict::not_reproduced)});
+  ASSERT_EQ(pages.size(), 1U);
+  EXPECT_EQ(pages.begin()->first, "jpo-toy.md");
+  expect_words(pages.begin()->second,
+               {"# Toy (`jpo/toy`)",
+                kWrittenByResults,
+                "](../../RESULTS.md)",
+                "| P1 | a \\| b (Sec. 4) | reproduced | 0.98 (> 0.5) | first |",
+                "| R1 | range | fails |",
+                "## Campaign first",
+                "`./bench --profile=paper '--filter=jpo/' '--filter=-head' "
+                "'--set=n=8' --seeds=3`",
+                "2024-05-06, A processor (2 cores)",
+                "A table",
+                "![Fig. 3 · Curves](../../reports/campaigns/first/figures/"
+                "jpo-toy-curves.svg)"});
+}
+
+TEST(Digest, KeepsCurvesAndNoPictures) {
+  const auto files =
+      kept_figures({section(Verdict::reproduced, Verdict::reproduced)});
+  ASSERT_EQ(files.size(), 1U);
+  EXPECT_EQ(files.begin()->first, "jpo-toy-curves.svg");
+  EXPECT_EQ(files.begin()->second.substr(0, 4), "<svg");
+}
+
+TEST(Digest, IdsAreInTheOrderOfTheirNumbers) {
+  std::vector<std::string> ids{"P10", "A2", "P2b", "P2", "T", "P1"};
+  std::sort(ids.begin(), ids.end(), [](const auto& a, const auto& b) {
+    return ByNumber()({"jpo", a}, {"jpo", b});
+  });
+  EXPECT_EQ(ids,
+            (std::vector<std::string>{"A2", "P1", "P2", "P2b", "P10", "T"}));
+}
+
+TEST(Digest, TheNewestByDateCountsWhateverItIsCalled) {
+  const auto at = [](const char* name, const char* date, Verdict verdict) {
+    return NamedDigest{name,
+                       digest_json({section(verdict, Verdict::reproduced)},
+                                   dated(origin(), date))};
+  };
+  for (const bool swap : {false, true}) {
+    std::vector<NamedDigest> all{
+        at("b", "2024-05-06", Verdict::reproduced),
+        at("a", "2024-06-06", Verdict::not_reproduced)};
+    if (swap) std::swap(all[0], all[1]);
+    expect_words(results_markdown(all), {"| jpo | 0 | 1 | 0 | 0 | 1 |"});
+    const std::string page = experiment_pages(all).begin()->second;
+    EXPECT_LT(page.find("## Campaign a"), page.find("## Campaign b"));
+  }
 }
 
 TEST(Digest, TheLastCampaignThatDecidedCounts) {
   const auto page = [](Verdict first, Verdict second) {
-    return results_markdown({named("a", first, Verdict::reproduced),
-                             named("b", second, Verdict::reproduced)});
+    auto later = named("b", second, Verdict::reproduced);
+    later.digest["provenance"]["date"] = "2024-05-07T07:08:09Z";
+    return results_markdown({named("a", first, Verdict::reproduced), later});
   };
   const auto counts = [](const std::string& text, const char* row) {
     return text.find(row) != text.npos;
@@ -73,13 +155,15 @@ TEST(Digest, TheLastCampaignThatDecidedCounts) {
                      "| jpo | 0 | 0 | 0 | 1 | 1 |"));
 }
 
-TEST(Digest, WhatIsNotJudgedIsNamedByWhatIsMissing) {
+TEST(Digest, WhatIsNotJudgedSaysWhatIsMissing) {
   Section waits = section(Verdict::not_judged, Verdict::not_judged);
   waits.claims[0].evidence = "needs the profile paper";
-  const std::string page =
-      results_markdown({{"a", digest_json({waits}, origin())}});
-  EXPECT_NE(page.find("- P1: needs the profile paper"), page.npos);
-  EXPECT_EQ(page.find("| P1 |"), page.npos);
+  waits.claims[0].cause = "an hour";
+  waits.claims[0].conditions.clear();
+  const std::vector<NamedDigest> all{{"a", digest_json({waits}, origin())}};
+  expect_words(results_markdown(all), {"| not judged |  |  | an hour | a |"});
+  expect_words(experiment_pages(all).begin()->second,
+               {"| not judged | needs the profile paper **Cause: an hour**"});
 }
 
 TEST(Digest, SomethingElseIsNoDigest) {
@@ -89,6 +173,7 @@ TEST(Digest, SomethingElseIsNoDigest) {
   auto strange = named("a", Verdict::reproduced, Verdict::reported);
   strange.digest["sections"][0]["claims"][0]["verdict"] = "not_reproduced";
   EXPECT_THROW(results_markdown({strange}), std::runtime_error);
+  EXPECT_THROW(experiment_pages({strange}), std::runtime_error);
 }
 
 TEST(Digest, CompressedBytesComeBack) {

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <sstream>
 
-#include "reports/digest.h"
 #include "reports/report.h"
+#include "reports/results_page.h"
 #include "reports/tables.h"
 
 namespace physinv {
@@ -130,8 +130,10 @@ TEST(Markdown, NamesAreNoStructureOfThePageOfResults) {
                                       {"compiler", kHostile},
                                       {"options", {{"filter", {kHostile}}}},
                                       {"papers", {kHostile}}};
-  expect_tame(
-      results_markdown({{kHostile, digest_json({hostile_section()}, origin)}}));
+  const std::vector<NamedDigest> all{
+      {kHostile, digest_json({hostile_section()}, origin)}};
+  expect_tame(results_markdown(all));
+  for (const auto& [name, page] : experiment_pages(all)) expect_tame(page);
 }
 
 TEST(Markdown, ReportsStayInTheirFolder) {

@@ -2,9 +2,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "reports/digest.h"
 #include "reports/html.h"
 #include "reports/report.h"
+#include "reports/results_page.h"
 #include "suite/compare/pages.h"
 
 namespace physinv {
@@ -47,24 +47,27 @@ TEST_P(WordsOf, ComeWithTheirCause) {
   EXPECT_NE(report_html(sections_, {}).find(cause_), std::string::npos);
   EXPECT_NE(render_claims_text(sections_, 200).find(cause_), std::string::npos);
   EXPECT_EQ(claim_from(to_json(claim_)).cause, "a choice");
-  const std::string page =
-      results_markdown({{"a", digest_json(sections_, {{"profile", "quick"}})}});
+  const std::vector<NamedDigest> all{
+      {"a", digest_json(sections_, {{"profile", "quick"}})}};
+  EXPECT_NE(experiment_pages(all).begin()->second.find(cause_),
+            std::string::npos);
+  const std::string page = results_markdown(all);
+  EXPECT_NE(page.find(" " + words_ + " |"), page.npos) << page;
+  // It has all of the paper's statements and the suite's ranges that fail.
   const std::string row =
-      fmt::format("| jpo/toy R1 | a | {} | a choice | a |", words_);
-  EXPECT_EQ(page.find(row) == page.npos, verdict_ == Verdict::reproduced)
-      << page;
-  if (verdict_ != Verdict::not_judged) {
-    EXPECT_NE(page.find(cause_), page.npos) << page;
-  }
+      fmt::format("| a | {} |  |  | a choice | a |", words_);
+  const bool stands =
+      origin_ == Origin::paper || verdict_ == Verdict::not_reproduced ||
+      verdict_ == Verdict::partly_judged || is_explained(verdict_);
+  EXPECT_EQ(page.find(row) != page.npos, stands) << page;
 }
 
-TEST_P(WordsOf, StandInThePageOfCampaigns) {
+TEST_P(WordsOf, StandInThePageOfAnExperiment) {
   const std::string page =
-      results_markdown({{"a", digest_json(sections_, {{"profile", "quick"}})}});
-  EXPECT_NE(page.find(" " + words_ + " |"), page.npos) << page;
-  const std::string row = verdict_ == Verdict::not_judged
-                              ? "- R1: runs"
-                              : "| R1 | a | " + words_ + " | runs **";
+      experiment_pages({{"a", digest_json(sections_, {{"profile", "quick"}})}})
+          .begin()
+          ->second;
+  const std::string row = "| R1 | a | " + words_ + " | runs **";
   EXPECT_NE(page.find(row), page.npos) << row << "\n" << page;
 }
 
