@@ -54,8 +54,9 @@ double of_evaluations(const CaseSize& size) {
 
 std::shared_ptr<const Stage> bfgs(const BfgsStageOptions& options,
                                   bool refines) {
-  SUITE_CHECK(options.stall >= 0 && options.search_evaluations >= 0,
-              "stall and search_evaluations are numbers from 0 on");
+  SUITE_CHECK(options.stall >= 0 && options.search_evaluations >= 0 &&
+                  options.gtol >= 0,
+              "stall, search_evaluations and gtol are numbers from 0 on");
   StageFacts stage = facts(
       "optimizers/bfgs.h",
       chained({{"algorithm", "bfgs"}, {"from", refines ? "previous" : "start"}},
@@ -67,14 +68,16 @@ std::shared_ptr<const Stage> bfgs(const BfgsStageOptions& options,
       });
   if (refines) stage.name = "refine", stage.own_length = true;
   return make_stage(std::move(stage), [options, refines](StageRun& run) {
-    BfgsOptions bfgs{.gtol = run.setting.gtol,
+    BfgsOptions bfgs{.gtol = options.gtol > 0 ? options.gtol : run.setting.gtol,
                      .maxiter = run.iterations,
                      .stall = options.stall};
     if (options.search_evaluations > 0)
       bfgs.search.max_together = options.search_evaluations;
     Bfgs solver(bfgs);
-    return minimize(
-        solver, run, refines ? run.previous->x : run.oracle.start());
+    return minimize(solver,
+                    run,
+                    refines ? run.previous->x : run.oracle.start(),
+                    options.single ? Precision::f32 : Precision::f64);
   });
 }
 

@@ -17,10 +17,16 @@ struct BfgsStageOptions {
   Index iterations = 1000;
   double stall = 0;            ///< as of BfgsOptions (bfgs.h)
   int search_evaluations = 0;  ///< of a line search at most, 0: as SciPy's
+  double gtol = 0;             ///< 0: the experiment's
+  /// Losses and gradients are evaluated in float and the losses rounded to it;
+  /// array `own_loss` (1 x examples) has those of the estimates.
+  bool single = false;
 
   auto fields() const {
     return std::tuple{if_changed(field("stall", stall)),
                       if_changed(field("search", search_evaluations)),
+                      if_changed(field("gtol", gtol)),
+                      if_changed(field("single", single)),
                       implied(iterations)};
   }
 };

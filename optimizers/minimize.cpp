@@ -8,13 +8,39 @@
 
 namespace physinv {
 
+namespace {
+
+/// Losses and gradients at x, rounded to float.
+class InFloat {
+ public:
+  void evaluate(Oracle& oracle,
+                std::span<const Index> active,
+                BatchIn<double> x,
+                VectorOut<double> loss,
+                BatchOut<double> gradient) {
+    x_ = x.cast<float>();
+    gradient_.resize(x.rows(), x.cols());
+    oracle.evaluate<float>(active, x_, loss, gradient_);
+    loss = loss.cast<float>().cast<double>().eval();
+    gradient = gradient_.cast<double>();
+  }
+
+ private:
+  Batch<float> x_, gradient_;
+};
+
+}  // namespace
+
 Outcome minimize(BatchedSolver& solver,
                  StageRun& run,
-                 const Batch<double>& x0) {
+                 const Batch<double>& x0,
+                 Precision precision) {
   Oracle& oracle = run.oracle;
+  const bool single = precision == Precision::f32;
+  InFloat rounded;
   Batch<double> first_step = Batch<double>::Zero(1, x0.cols());
   run.probe.begin_warmup();
-  oracle.warm_up<double>();
+  single ? oracle.warm_up<float>() : oracle.warm_up<double>();
   run.probe.begin();
   drive(
       solver,
@@ -22,7 +48,10 @@ Outcome minimize(BatchedSolver& solver,
           BatchIn<double> x,
           VectorOut<double> loss,
           BatchOut<double> gradient) {
-        oracle.evaluate<double>(active, x, loss, gradient);
+        if (single)
+          rounded.evaluate(oracle, active, x, loss, gradient);
+        else
+          oracle.evaluate<double>(active, x, loss, gradient);
         run.probe.trace(x.data(),
                         sizeof(double) * static_cast<std::size_t>(x.size()));
       },
@@ -37,6 +66,7 @@ Outcome minimize(BatchedSolver& solver,
   run.probe.finish();
   Outcome out = outcome_of(solver, oracle);
   out.arrays["first_step"] = std::move(first_step);
+  if (single) out.arrays["own_loss"] = solver.loss().transpose();
   return out;
 }
 

@@ -22,7 +22,12 @@ namespace physinv {
 /// Minimizes the true losses from x0, one problem per column. The oracle counts
 /// the evaluations, the probe keeps clock and curve. Array left: `first_step`
 /// (1 x examples), length of the first accepted step, 0 if there is none.
-Outcome minimize(BatchedSolver& solver, StageRun& run, const Batch<double>& x0);
+/// In f32 losses and gradients are evaluated in float and the losses rounded to
+/// it; array `own_loss` has those of the estimates.
+Outcome minimize(BatchedSolver& solver,
+                 StageRun& run,
+                 const Batch<double>& x0,
+                 Precision precision = Precision::f64);
 
 /// Estimates, statuses and counts of a run that has ended, for those who drive
 /// a solver on another objective. The evaluations that finished problems did

@@ -14,9 +14,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Curves and points alone: a picture of a field is a file of its own size.
+/// The papers' figures of curves and points: a picture of a field is a file of
+/// its own size.
 bool is_kept(const Figure& f) {
-  return f.moment == 0 &&
+  return !f.source.empty() && f.moment == 0 &&
          std::none_of(f.panels.begin(), f.panels.end(), [](const Panel& p) {
            return p.field.has_value();
          });

@@ -17,9 +17,9 @@ namespace physinv {
 nlohmann::ordered_json digest_json(const std::vector<Section>& sections,
                                    const nlohmann::ordered_json& provenance);
 
-/// Figures of a campaign as SVG files, by the name that the digest gives them
-/// below the campaign's folder: "jpo-billiards-fig11.svg". Pictures of fields
-/// and films are too large to be kept with the sources.
+/// The papers' figures in a campaign as SVG files, by the name that the digest
+/// gives them below the campaign's folder: "jpo-billiards-fig11.svg". Pictures
+/// of fields and films are too large to be kept with the sources.
 std::map<std::string, std::string> kept_figures(
     const std::vector<Section>& sections);
 
@@ -31,6 +31,8 @@ struct NamedDigest {
   std::string name;  ///< folder of the campaign
   nlohmann::ordered_json digest;
   std::map<std::string, double> cpu_seconds = {};  ///< by experiment
+  /// As it was published, if its claims were judged anew since.
+  nlohmann::ordered_json published = {};
 };
 
 }  // namespace physinv

@@ -181,6 +181,14 @@ std::string others(const std::vector<NamedDigest>& campaigns,
   return out.empty() ? "" : "\nPages without a statement: " + out + ".\n";
 }
 
+std::string audit_link(const std::vector<NamedDigest>& campaigns,
+                       const ResultsLinks& links) {
+  if (audit_markdown(campaigns, links).empty()) return "";
+  return fmt::format("What earlier judgements said: [audit]({}/{}).\n",
+                     links.pages,
+                     kAuditPage);
+}
+
 }  // namespace
 
 std::string results_markdown(const std::vector<NamedDigest>& campaigns,
@@ -219,7 +227,95 @@ std::string results_markdown(const std::vector<NamedDigest>& campaigns,
     if (!ranges.empty())
       out += fmt::format(
           "\n## Ranges of the suite that fail\n{}{}", kHead, ranges);
-    return out + others(campaigns, links);
+    return out + others(campaigns, links) + audit_link(campaigns, links);
+  } catch (const nlohmann::json::exception& error) {
+    throw std::runtime_error(std::string("no digest of a campaign: ") +
+                             error.what());
+  }
+}
+
+namespace {
+
+/// What the campaigns said when claims had no causes.
+std::vector<NamedDigest> without_causes(
+    const std::vector<NamedDigest>& campaigns) {
+  std::vector<NamedDigest> all;
+  for (const NamedDigest& c : campaigns) {
+    if (c.published.is_null()) continue;
+    Json old = c.published;
+    for (Json& section : old.at("sections")) {
+      Json claims = Json::array();
+      for (const Json& claim : section.at("claims"))
+        if (!claim.contains("cause")) claims.push_back(claim);
+      section["claims"] = std::move(claims);
+    }
+    all.push_back({c.name, std::move(old)});
+  }
+  return all;
+}
+
+constexpr std::array kWhen{"then", "now"};
+using Counts = std::array<VerdictCounts, kWhen.size()>;
+
+/// How many came to which verdict, then and now.
+std::string audit_counts(const Counts& counts) {
+  VerdictCounts any{};
+  for (const VerdictCounts& c : counts)
+    for (std::size_t v = 0; v < any.size(); ++v) any[v] += c[v];
+  std::string out = "| |", line = "\n| --- |";
+  for (const Verdict v : columns_of(any)) {
+    out += fmt::format(" {} |", words_of(v, Origin::paper));
+    line += " ---: |";
+  }
+  out += line + '\n';
+  for (std::size_t k = 0; k < counts.size(); ++k) {
+    out += fmt::format("| {} |", kWhen[k]);
+    for (const Verdict v : columns_of(any))
+      out += fmt::format(" {} |", counts[k][static_cast<std::size_t>(v)]);
+    out += '\n';
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string audit_markdown(const std::vector<NamedDigest>& campaigns,
+                           const ResultsLinks& links) {
+  try {
+    const Papers then = standings(without_causes(campaigns));
+    const Papers now = standings(campaigns);
+    std::string rows;
+    Counts counts{};
+    for (const auto& [paper, all] : then)
+      for (const auto& [key, old] : all) {
+        if (old.claim.origin != Origin::paper) continue;
+        const Standing& own = now.at(paper).at(key);
+        const Verdict was = old.claim.verdict, is = own.claim.verdict;
+        ++counts[0][static_cast<std::size_t>(was)];
+        ++counts[1][static_cast<std::size_t>(is)];
+        if (was == Verdict::reproduced && is == was) continue;
+        rows += fmt::format("| [{}]({}.md) {} | {} | {} | {} | {} |\n",
+                            markdown(key.first),
+                            folder_of(key.first),
+                            markdown(key.second),
+                            words_of(was, Origin::paper),
+                            words_of(is, Origin::paper),
+                            markdown(own.claim.cause),
+                            markdown(own.campaign));
+      }
+    if (rows.empty()) return "";
+    return fmt::format(
+        "# Verdicts before claims had causes\n\n{} from "
+        "`reports/campaigns`; back to [all results]({}). What these campaigns "
+        "said of the papers' claims when they were published, and what they "
+        "and later ones come to by what is registered now.\n\n{}\n"
+        "Claims that were not reproduced, or whose verdict is another one:\n\n"
+        "| claim | verdict then | verdict now | cause | decided by |\n"
+        "| --- | --- | --- | --- | --- |\n{}",
+        kWrittenByResults,
+        links.overview,
+        audit_counts(counts),
+        rows);
   } catch (const nlohmann::json::exception& error) {
     throw std::runtime_error(std::string("no digest of a campaign: ") +
                              error.what());

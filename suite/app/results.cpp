@@ -121,9 +121,9 @@ NamedDigest digest_in(const fs::path& folder, const Published& published) {
     if (!is_intact(digest)) throw std::runtime_error("it fails its checksum");
     const Json results = results_beside(folder, digest);
     require_figures(folder, digest);
-    renew(digest, published);
     NamedDigest named{
-        folder.filename().string(), std::move(digest), cpu_seconds(results)};
+        folder.filename().string(), digest, cpu_seconds(results), digest};
+    renew(named.digest, published);
     results_markdown({named});
     experiment_pages({named});
     return named;
@@ -212,7 +212,10 @@ ExitCode results_verb(const Arguments& arguments) {
                            .overview = link(below, out),
                            .campaigns = link(below, campaigns)};
   try {
-    write_pages(below, experiment_pages(found, links));
+    auto written = experiment_pages(found, links);
+    if (auto audit = audit_markdown(found, links); !audit.empty())
+      written[kAuditPage] = std::move(audit);
+    write_pages(below, written);
   } catch (const std::runtime_error& error) {
     throw EnvironmentError(error.what());
   }

@@ -9,6 +9,7 @@
 #include "suite/core/disturbance.h"
 #include "suite/core/hash.h"
 #include "suite/harness/sources.h"
+#include "suite/harness/study.h"
 
 namespace physinv {
 namespace {
@@ -28,7 +29,7 @@ void append(std::string& text, std::string_view name, const NetworkRole& role) {
 }  // namespace
 
 CaseData draw_data(const Case& c) {
-  const Rng root = Rng::root(c.info.experiment, c.info.seed);
+  const Rng root = Rng::root(streams_of(c.info.experiment), c.info.seed);
   Samples<double> samples =
       disturbed(c.experiment->problem.make<double>()->sample(
           0, c.info.n, root.child("data/test")));
@@ -40,8 +41,8 @@ CaseData draw_data(const Case& c) {
 
 std::string recipe_text(const Case& c, std::size_t position) {
   const Experiment& e = *c.experiment;
-  std::string text =
-      fmt::format("experiment={}\nproblem={}\n", e.name, e.problem.name);
+  std::string text = fmt::format(
+      "experiment={}\nproblem={}\n", streams_of(e.name), e.problem.name);
   append(text, e.problem.options);
   append(text, "predictor", e.setting.predictor);
   append(text, "surrogate", e.setting.surrogate);

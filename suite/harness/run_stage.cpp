@@ -10,6 +10,7 @@
 #include "suite/core/oracle.h"
 #include "suite/core/probe.h"
 #include "suite/harness/keys.h"
+#include "suite/harness/study.h"
 
 namespace physinv {
 namespace {
@@ -83,7 +84,7 @@ void run_stage(const Case& c,
                StageRecord& record) {
   const Stage& stage = *c.method->chain[position];
   const Setting setting = setting_for(stage, c.experiment->setting);
-  const Rng root = Rng::root(c.info.experiment, c.info.seed);
+  const Rng root = Rng::root(streams_of(c.info.experiment), c.info.seed);
   const Seconds begin = now();
   Oracle oracle(c.experiment->problem, c.info.n, root, stage.needs(), threads);
   const Seconds made = now();

@@ -27,6 +27,26 @@ TEST(Classical, FindsTheOptimumOfAQuadratic) {
   }
 }
 
+TEST(Classical, InFloatLossesAreRoundedAndTheToleranceIsItsOwn) {
+  const auto in_double = bfgs_solve({.gtol = 1e-3});
+  const auto in_float = bfgs_solve({.gtol = 1e-3, .single = true});
+  StageBench one(*in_double, kCount, 1000), other(*in_float, kCount, 1000);
+  const Outcome exact = one.run(), rounded = other.run();
+  EXPECT_EQ(exact.arrays.count("own_loss"), 0U);
+  ASSERT_EQ(rounded.arrays.count("own_loss"), 1U);
+  const Batch<double>& own = rounded.arrays.at("own_loss");
+  ASSERT_EQ(own.cols(), kCount);
+  const Vector<double> loss = other.loss(rounded.x);
+  for (Index i = 0; i < kCount; ++i) {
+    EXPECT_EQ(own(0, i), static_cast<double>(static_cast<float>(own(0, i))));
+    EXPECT_NEAR(own(0, i), loss(i), 1e-5 * (1 + loss(i)));
+  }
+  EXPECT_FALSE(same_bits(exact.x, rounded.x));
+  const auto strict = bfgs_solve({.gtol = 1e-9});
+  StageBench third(*strict, kCount, 1000);
+  EXPECT_GT(third.run().iterations.sum(), exact.iterations.sum());
+}
+
 TEST(Classical, CurvesStartAtTheStartAndEndAtTheResult) {
   for (const auto& stage :
        {bfgs_solve(), lbfgsb_solve(), gradient_descent_solve()}) {

@@ -155,6 +155,24 @@ TEST(Digest, TheLastCampaignThatDecidedCounts) {
                      "| jpo | 0 | 0 | 0 | 1 | 1 |"));
 }
 
+TEST(Digest, AuditTellsVerdictsOfBeforeClaimsHadCauses) {
+  auto old = named("old", Verdict::not_reproduced, Verdict::reproduced);
+  EXPECT_EQ(audit_markdown({old}), "");
+  old.published = old.digest;
+  EXPECT_EQ(audit_markdown({old}), "");
+  for (Json& claim : old.published["sections"][0]["claims"])
+    claim.erase("cause");
+  auto later = named("later", Verdict::depends, Verdict::reproduced);
+  later.digest["provenance"]["date"] = "2024-06-06";
+  later.digest["sections"][0]["claims"][0]["cause"] = "a choice";
+  expect_words(audit_markdown({old, later}),
+               {"| then | 0 | 0 | 1 | 0 | 0 |",
+                "| now | 0 | 1 | 0 | 0 | 0 |",
+                "| [jpo/toy](jpo-toy.md) P1 | not reproduced | depends | a "
+                "choice | later |"});
+  expect_words(results_markdown({old, later}), {"](docs/results/audit.md)"});
+}
+
 TEST(Digest, WhatIsNotJudgedSaysWhatIsMissing) {
   Section waits = section(Verdict::not_judged, Verdict::not_judged);
   waits.claims[0].evidence = "needs the profile paper";

@@ -1,10 +1,8 @@
 // JPO paper, Sec. 4 "Billiards", Fig. 4, App. D.2: joint optimization against
 // BFGS where a fifth of all problems start on a plateau.
-#include "problems/billiards/billiards.h"
+#include "suite/cases/jpo/billiards/setting.h"
 #include "suite/cases/jpo/common/methods.h"
 #include "suite/cases/jpo/common/report.h"
-#include "suite/harness/registry.h"
-#include "suite/nn/mlp.h"
 
 namespace physinv::jpo::billiards {
 namespace {
@@ -15,14 +13,8 @@ const auto kRegistered = register_experiment({
     .name = "jpo/billiards",
     .title = "Billiards",
     .source = {.paper = "jpo", .where = "Sec. 4, Fig. 4, App. D.2"},
-    .problem = problem<Billiards>("billiards"),
-    .setting =
-        {.predictor = {{Field::given, Field::observations},
-                       nn::mlp({.hidden = {128, 128, 128}, .frequencies = 4})},
-         .surrogate = {{Field::unknowns, Field::given},
-                       nn::mlp({.hidden = {128, 128, 128}, .frequencies = 4})},
-         .output_scale = 1.0,
-         .gtol = 1e-5},
+    .problem = recipe(),
+    .setting = setting(),
     .profiles =
         {{.name = "smoke",
           .rows =

@@ -200,8 +200,10 @@ Condition as_in_notebook(const char* label,
 
 using OfArray = std::function<double(const Batch<double>&)>;
 Quantity identity(const char* array, const OfArray& value) {
-  return median({"identities"}, [=](const Run& run) {
-    return std::optional(value(run.stage->arrays.at(array)));
+  return median({"identities"}, [=](const Run& run) -> std::optional<double> {
+    const auto found = run.stage->arrays.find(array);
+    if (found == run.stage->arrays.end()) return {};
+    return value(found->second);
   });
 }
 /// Log-log slope between the largest dy and the smallest.
@@ -226,6 +228,122 @@ double wrong_branch(const Batch<double>& roots) {
   return static_cast<double>(
       (roots.row(2).array() * roots.row(1).array() <= 0).count());
 }
+
+/// Of the asked change of y, what a step's row comes to: largest over smallest.
+OfArray spread_of_row(Index row) {
+  return [row](const Batch<double>& inner) {
+    return inner.row(row).maxCoeff() / inner.row(row).minCoeff();
+  };
+}
+double off_the_mean(const Batch<double>& average) {
+  return (average.row(1).array() / average.row(2).array() - 1).abs().maxCoeff();
+}
+/// Of the local gradient at the start, which a small step comes near.
+double off_the_start(const Batch<double>& average) {
+  return average(1, average.cols() - 1) * 6 - 1;
+}
+/// Of moves on this side of 0, or beyond it.
+OfArray inverse_off(bool near) {
+  return [near](const Batch<double>& local) {
+    const auto half = local.cols() / 2;
+    return near ? local.row(1).tail(half).maxCoeff()
+                : local.row(1).head(half).minCoeff();
+  };
+}
+double quotients_lost(const Batch<double>& singular) {
+  return static_cast<double>((singular.row(1).array() != 1).count());
+}
+double steps_lost(const Batch<double>& singular) {
+  return static_cast<double>((singular.row(2).array() != 1).count());
+}
+/// At the smallest alpha over that at 1.
+OfArray share_at_small(Index row) {
+  return [row](const Batch<double>& small) {
+    return small(row, small.cols() - 1) / small(row, 0);
+  };
+}
+double reversal_order(const Batch<double>& reversed) {
+  const Index last = reversed.cols() - 1;
+  return std::log2(reversed(1, last - 1) / reversed(1, last));
+}
+double reversal_end(const Batch<double>& reversed) {
+  return reversed(1, reversed.cols() - 1);
+}
+
+/// What single steps show.
+const std::vector<Claim> kStepClaims = {
+    {.id = "P11",
+     .origin = Origin::paper,
+     .where = "Inverse gradients",
+     .from = "smoke",
+     .says = "What an inverse gradient step does to y does not depend on the "
+             "inner function, what Newton's and gradient descent's do does",
+     .conditions = {at_most("inverse gradient, largest over smallest",
+                            identity("inner", spread_of_row(0)),
+                            1 + kExact),
+                    above("Newton", identity("inner", spread_of_row(1)), 1.4),
+                    above("gradient descent",
+                          identity("inner", spread_of_row(2)),
+                          1e3)},
+     .note = "y2 is 0.01, 1 and 250 times x2, and its square at 0.5, 1 and 3."},
+    {.id = "P12",
+     .origin = Origin::paper,
+     .where = "Inverse simulator",
+     .from = "smoke",
+     .says = "dx / dy of the inverse simulator is the local gradient averaged "
+             "over the way",
+     .conditions = {at_most("off", identity("average", off_the_mean), 1e-9),
+                    above("the local gradient alone, off at dy = -0.9 y",
+                          identity("average", off_the_start),
+                          0.5)}},
+    {.id = "P13",
+     .origin = Origin::paper,
+     .where = "Local inverse",
+     .from = "smoke",
+     .says = "Near x0 the local inverse is the inverse, far from it it need "
+             "not be",
+     .conditions = {at_most("x^2 from 1, moved by half or less, off",
+                            identity("local", inverse_off(true)),
+                            kExact),
+                    above("moved beyond 0, off",
+                          identity("local", inverse_off(false)),
+                          0.5)}},
+    {.id = "P14",
+     .origin = Origin::paper,
+     .where = "Quasi-Newton methods",
+     .from = "smoke",
+     .says = "Where the Hessian is singular Newton has no step, and another "
+             "has to stand in",
+     .conditions = {at_least("points where gradient over Hessian is no number",
+                             identity("singular", quotients_lost),
+                             1),
+                    at_most("points without a step",
+                            identity("singular", steps_lost),
+                            0)}},
+    {.id = "P15",
+     .origin = Origin::paper,
+     .where = "Crux of the matter",
+     .from = "smoke",
+     .says = "For alpha << 1 gradient descent hardly moves x2",
+     .conditions = {below("its step at alpha 1e-3 over that at 1",
+                          identity("small", share_at_small(1)),
+                          1e-5),
+                    within("inverse gradient's",
+                           identity("small", share_at_small(2)),
+                           1 - kExact,
+                           1 + kExact)}},
+    {.id = "P16",
+     .origin = Origin::paper,
+     .where = "Inverse simulator",
+     .from = "smoke",
+     .says = "Run backwards in time, the simulator of a reversible process is "
+             "its inverse",
+     .conditions = {below("distance of two oscillators from their start",
+                          identity("reversed", reversal_end),
+                          1e-4),
+                    above("order in the time step",
+                          identity("reversed", reversal_order),
+                          3.5)}}};
 
 const bool kComparisonClaims = register_claims(
     kComparison,
@@ -343,6 +461,8 @@ const bool kComparisonClaims = register_claims(
                             times(1024.0 / 3, of("newton_large", end(0))),
                             1 - 1e-12,
                             1 + 1e-12)}}});
+
+const bool kStepsRegistered = register_claims(kComparison, kStepClaims);
 
 }  // namespace
 }  // namespace physinv::scaling

@@ -21,6 +21,13 @@ inline constexpr double kRate = 0.3;  ///< of all steps that undo the scale
 ///   linear  of L = alpha x: alpha, loss changes of GD (rate 0.1) and of an
 ///           IG step that asks for 0.1
 ///   roots   of the local inverse of x^2: y, x0, the root
+///   inner   change of y2 over the asked one, for inner functions alpha x and
+///           x^2: inverse gradient, Newton, gradient descent
+///   average rate, dx2 / dy2 of the inverse simulator, mean local gradient
+///   local   e, |P^-1(P(1 + e); 1) - (1 + e)| of x^2
+///   singular  second derivative, is gradient over it finite, is Newton's step
+///   small   alpha, share of x2 in a step: gradient descent, inverse gradient
+///   reversed  time step, distance from the start after forth and back
 std::shared_ptr<const Stage> identities();
 
 /// Stages gd, newton, ig and pg of n random trajectories each, a diagnostic

@@ -1,0 +1,79 @@
+// A study sees what the experiment sees that it varies.
+#include "suite/harness/study.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "suite/harness/keys.h"
+#include "suite/harness/registry.h"
+
+namespace physinv {
+namespace {
+
+std::vector<Case> cases_of(const std::string& experiment,
+                           const std::string& profile) {
+  std::vector<Case> found;
+  for (Case& c : registry().expand(profile))
+    if (c.info.experiment == experiment) found.push_back(std::move(c));
+  return found;
+}
+
+/// The first stage of a method at the smallest n and seed.
+std::string first_recipe(const std::vector<Case>& cases,
+                         const std::string& method,
+                         const std::string& stage) {
+  for (const Case& c : cases)
+    if (c.info.method == method && c.info.n == 2 && c.info.seed == 0 &&
+        c.info.stages.front() == stage)
+      return recipe_text(c, 0);
+  return "";
+}
+
+TEST(Study, SeesTheDataOfWhatItVaries) {
+  ASSERT_FALSE(studies().empty());
+  for (const auto& [study, varied] : studies()) {
+    ASSERT_NE(registry().find(study), nullptr) << study;
+    ASSERT_NE(registry().find(varied), nullptr) << varied;
+    EXPECT_EQ(streams_of(study), varied);
+    EXPECT_EQ(streams_of(varied), varied);
+    const auto own = cases_of(study, "study");
+    const auto others = cases_of(varied, "paper");
+    ASSERT_FALSE(own.empty()) << study;
+    ASSERT_FALSE(others.empty()) << varied;
+    int same = 0;
+    for (const Case& c : own)
+      for (const Case& other : others)
+        if (c.info.n == other.info.n && c.info.seed == other.info.seed &&
+            c.info.n <= 8 && same < 8) {
+          EXPECT_EQ(draw_data(c).hash, draw_data(other).hash) << c.info.name;
+          ++same;
+        }
+    EXPECT_GT(same, 0) << study;
+  }
+}
+
+TEST(Study, StagesOfEqualOptionsHaveOneKeyAndOthersHaveNot) {
+  const auto own = cases_of("studies/billiards-precision", "study");
+  const auto paper = cases_of("jpo/billiards", "paper");
+  EXPECT_EQ(first_recipe(own, "jpo-f64-5", "fit"),
+            first_recipe(paper, "jpo", "fit"));
+  EXPECT_NE(first_recipe(own, "bfgs-f64-5", "solve"), "");
+  EXPECT_NE(first_recipe(own, "bfgs-f64-7", "solve"),
+            first_recipe(own, "bfgs-f32-7", "solve"));
+  EXPECT_EQ(first_recipe(paper, "bfgs", "solve").find("gtol=0"),
+            std::string::npos);
+  EXPECT_EQ(first_recipe(paper, "bfgs", "solve").find("single"),
+            std::string::npos);
+}
+
+TEST(Study, VariesAnExperimentThatIsNone) {
+  EXPECT_THROW(register_study("studies/a", "studies/a"), std::logic_error);
+  EXPECT_THROW(register_study("studies/b", "studies/billiards-precision"),
+               std::logic_error);
+  EXPECT_THROW(register_study("studies/billiards-precision", "jpo/robotic-arm"),
+               std::logic_error);
+}
+
+}  // namespace
+}  // namespace physinv
