@@ -45,12 +45,22 @@ class Dice {
   }
   /// One of a few thousand.
   double normal() { return normals_[engine_() % normals_.size()]; }
+  /// A factor of so many decades: their normals are exponentiated once.
+  double decades(double width) {
+    if (width == 0) return 1;
+    std::vector<double>& known = decades_[width];
+    if (known.empty())
+      for (const double z : normals_)
+        known.push_back(std::exp(width * std::numbers::ln10 * z));
+    return known[engine_() % known.size()];
+  }
   bool chance(double p) { return uniform() < p; }
   std::size_t below(std::size_t n) { return engine_() % n; }
 
  private:
   std::mt19937_64 engine_;
   std::vector<double> normals_;
+  std::map<double, std::vector<double>> decades_;
 };
 
 /// How far numbers are thrown, in decades: a draw of its own.
@@ -62,10 +72,6 @@ struct Throw {
     return {kWidths[dice.below(6)], kWidths[dice.below(5)]};
   }
 };
-
-double decades(Dice& dice, double width) {
-  return width == 0 ? 1 : std::exp(width * std::numbers::ln10 * dice.normal());
-}
 
 /// Values of an array that is not drawn entry by entry.
 constexpr Index kLarge = 4'000;
@@ -87,12 +93,12 @@ template <class M>
 void scatter(M& values, Dice& dice, const Throw& t) {
   const double width = values.size() > kLarge ? 0 : t.example;
   for (Index r = 0; r < values.rows(); ++r) {
-    const double row = decades(dice, t.method);
+    const double row = dice.decades(t.method);
     const double sign = t.method > 0.2 && dice.chance(0.3) ? -1 : 1;
     values.row(r) *= sign * row;
     if (width == 0) continue;
     for (Index c = 0; c < values.cols(); ++c)
-      values(r, c) *= decades(dice, width);
+      values(r, c) *= dice.decades(width);
   }
 }
 
@@ -120,10 +126,10 @@ StageRecord made_up(const StageRecord& model,
                     const Throw& t) {
   StageRecord s = model;
   const Index n = c.info.n, was = model.loss.size();
-  const double level = decades(dice, 2 * t.method);
+  const double level = dice.decades(2 * t.method);
   s.case_name = c.info.name, s.crowded = false;
   s.loss = entries(model.loss, n);
-  for (double& loss : s.loss) loss *= level * decades(dice, t.example);
+  for (double& loss : s.loss) loss *= level * dice.decades(t.example);
   s.x = columns(model.x, model.x.cols() == was ? n : model.x.cols());
   scatter_around(data.x, s.x, dice);
   s.example_iterations = entries(model.example_iterations, n);
@@ -138,7 +144,7 @@ StageRecord made_up(const StageRecord& model,
     const double last = std::max(1.0, curve.iteration.back());
     const double stretch = static_cast<double>(s.iterations) / last;
     for (double& k : curve.iteration) k = std::round(k * stretch);
-    const double slower = stretch * decades(dice, t.method);
+    const double slower = stretch * dice.decades(t.method);
     for (double& seconds : curve.seconds) seconds *= slower;
     if (curve.loss.rows() == was)
       curve.loss = columns(curve.loss.transpose(), n).transpose();
@@ -157,7 +163,7 @@ StageRecord made_up(const StageRecord& model,
     if (name == "mean_loss") array = array.cwiseAbs();
   }
   if (dice.chance(0.02)) s.stop = Stop::diverged;
-  s.clocks.solve.cpu *= decades(dice, t.method);
+  s.clocks.solve.cpu *= dice.decades(t.method);
   s.clocks.solve.wall = s.clocks.solve.cpu;
   return s;
 }
@@ -206,7 +212,7 @@ CaseRecord made_up(const CaseRecord& model,
   CaseRecord out{.info = c.info, .data = model.data, .stages = {}};
   for (Batch<double>* part : {&out.data.x, &out.data.y, &out.data.given})
     *part = columns(*part, c.info.n);
-  out.data.y *= decades(dice, t.example);
+  out.data.y *= dice.decades(t.example);
   for (std::size_t k = 0; k < model.stages.size(); ++k)
     out.stages.push_back(made_up(model.stages[k], c, k, out.data, dice, t));
   return out;
@@ -228,8 +234,13 @@ std::map<std::string, std::vector<Variants>> all_cases() {
           known.push_back(std::move(c));
       }
   std::map<std::string, std::vector<Variants>> out;
-  for (auto& [name, variants] : all)
+  for (auto& [name, variants] : all) {
+    std::sort(
+        variants.begin(), variants.end(), [](const auto& a, const auto& b) {
+          return a.stage_iterations < b.stage_iterations;
+        });
     out[variants.front().info.experiment].push_back(std::move(variants));
+  }
   return out;
 }
 
@@ -240,7 +251,10 @@ Cases draw(const std::vector<const Variants*>& of,
   std::map<std::pair<std::string, std::string>, Throw> throws;
   Cases all;
   for (const Variants* variants : of) {
-    const Case* c = &(*variants)[number % variants->size()];
+    // The longest in every second draw, the others in turn.
+    const Case* c = number % 2 == 0
+                        ? &variants->back()
+                        : &(*variants)[number / 2 % variants->size()];
     const CaseRecord* model = models.of(c->info);
     if (model == nullptr || model->stages.size() != c->info.stages.size())
       continue;
@@ -339,6 +353,8 @@ void some_constant(Cases& cases, Dice& dice) {
     };
     level(s.curve.loss);
     each_array(s, level);
+    if (Batch<double>& x = s.curve.x; x.cols() > 0)
+      x = Batch<double>(x.col(0).replicate(1, x.cols()));
   });
 }
 /// What fell rises.
@@ -440,6 +456,8 @@ struct Steady {
 constexpr Steady kSteady[] = {
     {"jpo P9: ", "numbers of parameters hang on networks, on no run"},
     {"sip/poisson P10: ", "numbers of parameters hang on networks, on no run"},
+    {"physgrad/comparison P14: points where",
+     "a second derivative of 0 is 0 however it is scaled"},
     {"numerics/half-inverse N4: cells with J = 0",
      "how many the sweep has hangs on its axes, on no run"}};
 
@@ -450,7 +468,7 @@ const Steady* steady(const std::string& name) {
 }
 
 /// Most conditions turn in the first one or two.
-constexpr std::size_t kDraws = 8;
+constexpr std::size_t kDraws = 12;
 
 /// The conditions of an experiment that nothing has turned yet.
 class Untold {
