@@ -9,29 +9,21 @@ each suite.
 """
 
 import functools
-import glob
 import json
 import os
 import re
 import subprocess
 import sys
 
+from documented import commands, pages
+
 PROGRAM, SOURCES = sys.argv[1:3]
 LINES_OF_README = 150
-PAGES = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "RESULTS.md",
-         "docs/**/*.md"]
 
 
 def read(name):
     with open(os.path.join(SOURCES, name)) as f:
         return f.read()
-
-
-def pages():
-    for pattern in PAGES:
-        for path in glob.glob(os.path.join(SOURCES, pattern), recursive=True):
-            name = os.path.relpath(path, SOURCES)
-            yield name, read(name)
 
 
 def output(*arguments):
@@ -96,15 +88,6 @@ def features():
             yield f"docs/features.md: {row}"
 
 
-def commands(text):
-    """Arguments of each ./bench line of the fenced blocks."""
-    for block in re.findall(r"^```(?:sh|yaml)\n(.*?)^```", text, re.S | re.M):
-        for line in block.splitlines():
-            found = re.search(r"(?:^|\s)\S*/bench\s+(.*)", line)
-            if found:
-                yield found[1].split("#")[0].split(" -- ")[0].split()
-
-
 def unknown_words(name, text):
     verbs = set(re.findall(r"^physinv-bench (\w+) ", output("--help"), re.M))
     for arguments in commands(text):
@@ -156,7 +139,7 @@ def results_rows():
 
 def page_rows():
     """Claim, verdict and all that was measured, of the experiments' pages."""
-    for name, text in pages():
+    for name, text in pages(SOURCES):
         if not name.startswith("docs/results/") or name.endswith("/audit.md"):
             continue
         experiment = re.search(r"^# .* \(`(.*)`\)$", text, re.M)[1]
@@ -207,7 +190,7 @@ def main():
     if lines > LINES_OF_README:
         wrong.append(f"README.md has {lines} lines, of {LINES_OF_README}")
     checked = 0
-    for name, text in pages():
+    for name, text in pages(SOURCES):
         wrong += [*dead_links(name, text), *unknown_words(name, text),
                   *measured(name, text)]
         checked += len(list(commands(text)))

@@ -1,0 +1,99 @@
+#!/usr/bin/env python3
+"""commands_test.py PROGRAM SOURCES: every ./bench line of the pages is run.
+
+It runs where a reader's would: campaigns of the names that the pages use are
+there, small ones. What would run for minutes is asked what it would run; what
+needs a cluster, a second build or a whole gate has tests of its own.
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+
+from documented import commands, pages
+
+PROGRAM, SOURCES = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
+CAMPAIGNS = {  # those that the pages read: the flags of what stands in for them
+    **dict.fromkeys(("results/paper", "results/quick", "results/old",
+                     "results/new", "results/a", "results/b", "results/base",
+                     "base"), ()),
+    "head": ("--set=iterations=2",)}
+ELSEWHERE = {  # verb or flag -> the test that runs it
+    "submit": "slurm", "status": "slurm", "gate": "gate.project",
+    "conformance": "install.pendulum", "--plugin": "install.pendulum",
+    "history": "history"}
+# Losses of fewer iterations are worse, as the page says.
+CODES = {("compare", "--fail-on=loss"): 5}
+
+
+def run(arguments, folder):
+    return subprocess.run([PROGRAM, *arguments], cwd=folder, text=True,
+                          capture_output=True, timeout=300,
+                          stdin=subprocess.DEVNULL)
+
+
+def prepare(folder):
+    for name in ("reports", "docs", "README.md"):
+        os.symlink(os.path.join(SOURCES, name), os.path.join(folder, name))
+    os.mkdir(os.path.join(folder, "results"))
+    first = {}
+    for name, flags in CAMPAIGNS.items():
+        if flags in first:
+            shutil.copytree(first[flags], os.path.join(folder, name))
+            continue
+        done = run(["--profile=smoke", "--filter=jpo/billiards/", "--trace",
+                    "--no-report", "--out", name, *flags], folder)
+        assert done.returncode == 0, done.stderr
+        first[flags] = os.path.join(folder, name)
+
+
+def as_run(arguments):
+    """The same, where it would take minutes without its work."""
+    verb = arguments[0] if arguments and arguments[0][0] != "-" else "run"
+    if verb == "run" and not {"--help", "--version", "-V"} & set(arguments):
+        return [*arguments, "--dry-run"]
+    if verb == "kernels":
+        return [*arguments, "--benchmark_min_time=0.001"]
+    if verb == "results" and "--html" not in " ".join(arguments):
+        return None  # writes into the sources: results_page
+    return arguments
+
+
+def elsewhere(arguments):
+    return any(a.split("=")[0] in ELSEWHERE for a in arguments)
+
+
+def code_of(arguments):
+    for words, code in CODES.items():
+        if set(words) <= set(arguments):
+            return code
+    return 0
+
+
+def main():
+    lines = sorted({(name, tuple(arguments)) for name, text in pages(SOURCES)
+                    for arguments in commands(text)})
+    wrong, ran, left = [], 0, 0
+    with tempfile.TemporaryDirectory() as folder:
+        prepare(folder)
+        for name, arguments in lines:
+            own = None if elsewhere(arguments) else as_run(list(arguments))
+            if own is None:
+                left += 1
+                continue
+            done = run(own, folder)
+            ran += 1
+            said = (done.stdout + done.stderr).strip()
+            if done.returncode != code_of(arguments) or not said:
+                wrong.append(f"{name}: './bench {' '.join(own)}' ends with "
+                             f"{done.returncode}: {done.stderr.strip()[-300:]}")
+    if ran < 25:
+        wrong.append(f"only {ran} commands run")
+    print("\n".join(wrong) or f"{ran} commands run, {left} elsewhere")
+    sys.exit(bool(wrong))
+
+
+if __name__ == "__main__":
+    main()
