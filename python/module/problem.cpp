@@ -3,8 +3,8 @@
 #include <fmt/ranges.h>
 #include <pybind11/stl.h>
 
-#include "suite/harness/registry.h"
 #include "suite/harness/nearest.h"
+#include "suite/harness/registry.h"
 #include "suite/harness/study.h"
 
 namespace physinv::python {
