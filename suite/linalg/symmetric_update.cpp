@@ -173,6 +173,8 @@ void RankUpdate::operator()(Symmetric a,
       store(to + kWidth, load(from + kWidth));
     }
   const Index blocks = (n + kColumnBlock - 1) / kColumnBlock;
+  // Where one core makes the products with vectors, the matrix stays with it.
+  if (n < kThreadRows) threads = nullptr;
   for_blocks(threads, blocks, [&](Index reversed, int) {
     const Index block = blocks - 1 - reversed;  // the largest first
     const Index begin = block * kColumnBlock;

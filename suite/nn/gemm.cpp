@@ -22,7 +22,8 @@ constexpr Index kRowBlock = 16;  ///< rows of one block of the thread loop
 constexpr Index kPanel = 48;     ///< rows of tiles finished together
 constexpr Index kNear = 16384;   ///< bytes of C that are still in the L1
 constexpr Index kGroup = 4;      ///< vectors whose function is taken together
-constexpr double kThreadFlops = 0.5e6;
+/// Below it, what goes from core to core takes longer than half of the product.
+constexpr double kThreadFlops = 16e6;
 
 /// Part of C: rows from i, `valid` columns from j, products k0..k1.
 struct Part {
