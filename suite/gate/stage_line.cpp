@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "suite/core/hash.h"
+#include "suite/core/median.h"
 #include "suite/core/rng.h"
 #include "suite/gate/digits.h"
 #include "suite/results/checksum.h"

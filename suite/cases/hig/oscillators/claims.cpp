@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "suite/cases/hig/oscillators/oscillators.h"
+#include "suite/evidence/statistics.h"
 #include "suite/evidence/training.h"
 #include "suite/harness/registry.h"
 #include "suite/results/record.h"
