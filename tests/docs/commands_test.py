@@ -31,12 +31,16 @@ CODES = {("compare", "--fail-on=loss"): 5}
 def run(arguments, folder):
     return subprocess.run([PROGRAM, *arguments], cwd=folder, text=True,
                           capture_output=True, timeout=300,
-                          stdin=subprocess.DEVNULL)
+                          stdin=subprocess.DEVNULL,
+                          env={**os.environ, "XDG_CACHE_HOME":
+                               os.path.join(os.path.abspath(folder), "cache")})
 
 
 def prepare(folder):
-    for name in ("reports", "docs", "README.md"):
-        os.symlink(os.path.join(SOURCES, name), os.path.join(folder, name))
+    # Some write there.
+    for name in ("reports", "docs"):
+        shutil.copytree(os.path.join(SOURCES, name), os.path.join(folder, name))
+    shutil.copy(os.path.join(SOURCES, "README.md"), folder)
     os.mkdir(os.path.join(folder, "results"))
     first = {}
     for name, flags in CAMPAIGNS.items():
