@@ -12,8 +12,7 @@
 namespace physinv {
 namespace {
 
-constexpr std::size_t kLongest =
-    64;  ///< characters of a word, bits of a column
+constexpr std::size_t kLongest = 64;  ///< of a word; bits of a column
 constexpr std::size_t kMostCompared = 1000;
 
 /// Distances to one word.
