@@ -1,0 +1,200 @@
+// The products of networks by libraries, beside the suite's own: convolutions
+// by oneDNN in whatever order of memory it likes best, small matrices by
+// libxsmm. Rows that the build links a library for (PHYSINV_BENCH_DNNL,
+// PHYSINV_BENCH_XSMM). One thread.
+#include <benchmark/benchmark.h>
+
+#include <vector>
+
+#include "suite/core/workspace.h"
+#include "suite/nn/conv.h"
+
+#ifdef PHYSINV_BENCH_DNNL
+#include <dnnl.hpp>
+extern "C" void omp_set_num_threads(int count);
+#endif
+#ifdef PHYSINV_BENCH_XSMM
+#include <libxsmm.h>
+#endif
+
+namespace physinv::nn {
+namespace {
+
+/// height x width, channels in and out, samples: layers of the U-nets.
+struct Plane {
+  explicit Plane(const benchmark::State& state)
+      : height(state.range(0)),
+        width(state.range(1)),
+        in(state.range(2)),
+        out(state.range(3)),
+        n(state.range(4)) {}
+  Index height, width, in, out, n;
+
+  Index positions() const { return height * width; }
+  /// Products of one pass, the border's taps included.
+  void count(benchmark::State& state) const {
+    const double products =
+        2.0 * 9 * static_cast<double>(in * out * positions() * n);
+    state.counters["FLOPS"] = benchmark::Counter(
+        products, benchmark::Counter::kIsIterationInvariantRate);
+  }
+};
+
+void planes(benchmark::internal::Benchmark* b) {
+  for (const std::int64_t n : {8, 128}) {
+    b->Args({64, 64, 16, 16, n})->Args({32, 32, 16, 16, n});
+    b->Args({64, 64, 32, 16, n})->Args({16, 16, 16, 16, n});
+  }
+}
+
+enum class Which { forward, weights, input };
+
+template <Which pass>
+void own(benchmark::State& state) {
+  const Plane plane(state);
+  const Conv<float> layer({.grid = {plane.height, plane.width},
+                           .in = plane.in,
+                           .out = plane.out,
+                           .taps = {3, 3}});
+  const auto lanes = [&](Index channels, Batch<float>& memory) {
+    Lanes<float> x(nullptr, plane.positions() * channels, plane.n);
+    memory = Batch<float>::Random(x.stride, x.rows);
+    x.data = memory.data();
+    return x;
+  };
+  Batch<float> x, y, y_bar, x_bar;
+  const auto in = lanes(plane.in, x), out = lanes(plane.out, y);
+  Index weights = 0;
+  for (const TensorInfo& t : layer.tensors()) weights += t.size;
+  const Vector<float> p = Vector<float>::Random(weights);
+  Vector<float> p_bar(weights);
+  Workspace work;
+  Tape tape;
+  const LayerArgs<float> at{
+      .parameters = p.data(), .tape = &tape, .work = &work, .training = true};
+  layer.forward(at, in, out);
+  Backward<float> b{.x = in, .y = out, .y_bar = lanes(plane.out, y_bar)};
+  if (pass == Which::weights) b.parameters_bar = p_bar.data();
+  if (pass == Which::input) b.x_bar = lanes(plane.in, x_bar);
+  for (auto _ : state) {
+    if (pass == Which::forward)
+      layer.forward(at, in, out);
+    else
+      layer.backward(at, b);
+    benchmark::ClobberMemory();
+  }
+  plane.count(state);
+}
+BENCHMARK(own<Which::forward>)->Name("nn/plane/forward")->Apply(planes);
+BENCHMARK(own<Which::weights>)->Name("nn/plane/weight_gradient")->Apply(planes);
+BENCHMARK(own<Which::input>)->Name("nn/plane/input_gradient")->Apply(planes);
+
+#ifdef PHYSINV_BENCH_DNNL
+
+template <Which pass>
+void onednn(benchmark::State& state) {
+  using dnnl::memory;
+  omp_set_num_threads(1);
+  const Plane plane(state);
+  const dnnl::engine engine(dnnl::engine::kind::cpu, 0);
+  dnnl::stream stream(engine);
+  const auto any = [](memory::dims dims) {
+    return memory::desc(dims, memory::data_type::f32, memory::format_tag::any);
+  };
+  const auto x = any({plane.n, plane.in, plane.height, plane.width});
+  const auto y = any({plane.n, plane.out, plane.height, plane.width});
+  const auto w = any({plane.out, plane.in, 3, 3}), b = any({plane.out});
+  const memory::dims step = {1, 1}, border = {1, 1};
+  const auto direct = dnnl::algorithm::convolution_auto;
+  const dnnl::convolution_forward::primitive_desc forward(
+      {dnnl::prop_kind::forward_training,
+       direct,
+       x,
+       w,
+       b,
+       y,
+       step,
+       border,
+       border},
+      engine);
+  const auto make = [&](const memory::desc& desc) {
+    memory m(desc, engine);
+    auto* const numbers = static_cast<float*>(m.get_data_handle());
+    const Index count = static_cast<Index>(desc.get_size() / sizeof(float));
+    Eigen::Map<Vector<float>>(numbers, count).setRandom();
+    return m;
+  };
+  const auto run = [&](const dnnl::primitive& primitive, auto arguments) {
+    for (auto _ : state) {
+      primitive.execute(stream, arguments);
+      stream.wait();
+    }
+    plane.count(state);
+  };
+  using Arguments = std::unordered_map<int, memory>;
+  if constexpr (pass == Which::forward) {
+    run(dnnl::convolution_forward(forward),
+        Arguments{{DNNL_ARG_SRC, make(forward.src_desc())},
+                  {DNNL_ARG_WEIGHTS, make(forward.weights_desc())},
+                  {DNNL_ARG_BIAS, make(forward.bias_desc())},
+                  {DNNL_ARG_DST, make(forward.dst_desc())}});
+  } else if constexpr (pass == Which::weights) {
+    const dnnl::convolution_backward_weights::primitive_desc back(
+        {direct, x, w, b, y, step, border, border}, engine, forward);
+    run(dnnl::convolution_backward_weights(back),
+        Arguments{{DNNL_ARG_SRC, make(back.src_desc())},
+                  {DNNL_ARG_DIFF_DST, make(back.diff_dst_desc())},
+                  {DNNL_ARG_DIFF_WEIGHTS, make(back.diff_weights_desc())},
+                  {DNNL_ARG_DIFF_BIAS, make(back.diff_bias_desc())}});
+  } else {
+    const dnnl::convolution_backward_data::primitive_desc back(
+        {direct, x, w, y, step, border, border}, engine, forward);
+    run(dnnl::convolution_backward_data(back),
+        Arguments{{DNNL_ARG_DIFF_SRC, make(back.diff_src_desc())},
+                  {DNNL_ARG_WEIGHTS, make(back.weights_desc())},
+                  {DNNL_ARG_DIFF_DST, make(back.diff_dst_desc())}});
+  }
+}
+BENCHMARK(onednn<Which::forward>)->Name("nn/onednn/forward")->Apply(planes);
+BENCHMARK(onednn<Which::weights>)
+    ->Name("nn/onednn/weight_gradient")
+    ->Apply(planes);
+BENCHMARK(onednn<Which::input>)
+    ->Name("nn/onednn/input_gradient")
+    ->Apply(planes);
+
+#endif
+#ifdef PHYSINV_BENCH_XSMM
+
+/// C = A B, column-major, of the shapes of nn/forward.
+void xsmm(benchmark::State& state) {
+  const auto m = static_cast<int>(state.range(0)),
+             n = static_cast<int>(state.range(1)),
+             k = static_cast<int>(state.range(2));
+  // Ours have samples contiguous: their product is this one's transpose.
+  const auto kernel = libxsmm_smmdispatch(
+      n, m, k, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr);
+  if (kernel == nullptr) return state.SkipWithError("no kernel of this shape");
+  const Batch<float> x = Batch<float>::Random(n, k);
+  const Batch<float> w = Batch<float>::Random(k, m);
+  Batch<float> y = Batch<float>::Zero(n, m);
+  for (auto _ : state) {
+    kernel(x.data(), w.data(), y.data());
+    benchmark::ClobberMemory();
+  }
+  state.counters["FLOPS"] = benchmark::Counter(
+      2.0 * m * n * k, benchmark::Counter::kIsIterationInvariantRate);
+}
+BENCHMARK(xsmm)
+    ->Name("nn/libxsmm/forward<float>")
+    ->Args({128, 128, 128})
+    ->Args({128, 8, 128})
+    ->Args({128, 4, 128})
+    ->Args({128, 128, 32})
+    ->Args({2, 128, 128})
+    ->Args({128, 128, 2});
+
+#endif
+
+}  // namespace
+}  // namespace physinv::nn
