@@ -201,67 +201,100 @@ void print(const CompareFlags& flags,
   print_counts(own, changed, claims.size());
 }
 
-}  // namespace
+/// The pages of --out.
+void write_pages(const CompareFlags& flags,
+                 const std::vector<Side>& sides,
+                 const Comparison& c,
+                 const std::vector<ChangedClaim>& claims,
+                 const std::vector<SideRank>& ranks) {
+  nlohmann::ordered_json origin{{"heading", "Campaigns compared"},
+                                {"sides", c.labels},
+                                {"by", flags.by},
+                                {"command", command_text(flags)}};
+  auto sections = compare_sections(c, sides, claims, ranks);
+  for (Section& section : sections)
+    if (const auto e = registry().find(section.experiment))
+      section.title = e->title;
+  write_report(flags.out,
+               sections,
+               origin,
+               {.one_file = flags.one_file,
+                .groups = groups_of(printed_numbers()),
+                .front = 1});
+  if (flags.format == "text")
+    fmt::print("report: {}\n", (fs::path(flags.out) / "index.html").string());
+}
 
-ExitCode compare_verb(const Arguments& arguments) {
-  CompareFlags flags;
-  if (!parse("compare",
-             "Two or more result folders side by side, what changed most "
-             "first: losses, ends, times, work, claims. Runs pair by "
-             "experiment, method, n and seed. Times and work compare between "
-             "stages that both converged or ran their iterations: who fails, "
-             "is skipped or diverges has none. CPU time where both ran on one "
-             "thread, else wall time unless one was crowded; medians over "
-             "repetitions (run --benchmark_repetitions). Exit 0 whatever "
-             "changed, unless --fail-on.",
-             {{"RESULTS",
-               "directories that 'run' or 'report --publish' wrote, or "
-               "LABEL=DIRECTORY; the first "
-               "is what the others are held against",
-               &flags.sides},
-              {"--by",
-               "seed (every run, the default), n (over seeds), method (over n "
-               "and seeds): ratios are medians over pairs of runs, with the "
-               "worst pair; commit (sides are revisions instead of folders)",
-               &flags.by,
-               "WHAT"},
-              {"--format",
-               "text (default), markdown, csv or json",
-               &flags.format,
-               "FORMAT"},
-              {"--out",
-               "also write a report there: HTML, Markdown, tables as CSV and "
-               "JSON, losses over time, performance profiles, running times, "
-               "ranks",
-               &flags.out,
-               "DIR"},
-              {"--one-file",
-               "of --out: one page that has everything",
-               &flags.one_file},
-              {"--lines", "of the table (default 30)", &flags.lines},
-              {"--fail-on",
-               fmt::format("exit 5 if this got worse in any pair of runs, 6 if "
-                           "only time did; a stage that ends worse counts for "
-                           "time and work, too; repeats unite: {}",
-                           kAspects),
-               &flags.fail_on,
-               "WHAT"},
-              {"--factor",
-               fmt::format("by which a loss or time must grow for --fail-on "
-                           "(default 1.5); losses below {:g} and times below "
-                           "{:g} ms are equal",
-                           kSolvedLoss,
-                           1e3 * kShortTime),
-               &flags.factor}},
-             arguments))
-    return ExitCode::good;
-  const By by = parse_by(flags.by);
+void check_format(const CompareFlags& flags) {
   const std::vector<std::string> formats = {"text", "markdown", "csv", "json"};
   if (std::find(formats.begin(), formats.end(), flags.format) == formats.end())
     throw UsageError(
         fmt::format("--format={} is unknown; known are text, markdown, csv, "
                     "json",
                     flags.format));
+}
+
+/// False if help was asked for.
+bool parse_flags(const Arguments& arguments, CompareFlags& flags) {
+  return parse(
+      "compare",
+      "Two or more result folders side by side, what changed most "
+      "first: losses, ends, times, work, claims. Runs pair by "
+      "experiment, method, n and seed. Times and work compare between "
+      "stages that both converged or ran their iterations: who fails, "
+      "is skipped or diverges has none. CPU time where both ran on one "
+      "thread, else wall time unless one was crowded; medians over "
+      "repetitions (run --benchmark_repetitions). Exit 0 whatever "
+      "changed, unless --fail-on.",
+      {{"RESULTS",
+        "directories that 'run' or 'report --publish' wrote, or "
+        "LABEL=DIRECTORY; the first "
+        "is what the others are held against",
+        &flags.sides},
+       {"--by",
+        "seed (every run, the default), n (over seeds), method (over n "
+        "and seeds): ratios are medians over pairs of runs, with the "
+        "worst pair; commit (sides are revisions instead of folders)",
+        &flags.by,
+        "WHAT"},
+       {"--format",
+        "text (default), markdown, csv or json",
+        &flags.format,
+        "FORMAT"},
+       {"--out",
+        "also write a report there: HTML, Markdown, tables as CSV and "
+        "JSON, losses over time, performance profiles, running times, "
+        "ranks",
+        &flags.out,
+        "DIR"},
+       {"--one-file",
+        "of --out: one page that has everything",
+        &flags.one_file},
+       {"--lines", "of the table (default 30)", &flags.lines},
+       {"--fail-on",
+        fmt::format("exit 5 if this got worse in any pair of runs, 6 if "
+                    "only time did; a stage that ends worse counts for "
+                    "time and work, too; repeats unite: {}",
+                    kAspects),
+        &flags.fail_on,
+        "WHAT"},
+       {"--factor",
+        fmt::format("by which a loss or time must grow for --fail-on "
+                    "(default 1.5); losses below {:g} and times below "
+                    "{:g} ms are equal",
+                    kSolvedLoss,
+                    1e3 * kShortTime),
+        &flags.factor}},
+      arguments);
+}
+
+}  // namespace
+
+ExitCode compare_verb(const Arguments& arguments) {
+  CompareFlags flags;
+  if (!parse_flags(arguments, flags)) return ExitCode::good;
+  const By by = parse_by(flags.by);
+  check_format(flags);
   const auto aspects = parse_fail_on(flags.fail_on);
   const auto sides = read_sides(flags);
   const Comparison c = compare(sides, by);
@@ -274,24 +307,7 @@ ExitCode compare_verb(const Arguments& arguments) {
   const auto claims = changed_claims(sides);
   const auto ranks = side_ranks(sides);
   print(flags, c, claims, ranks);
-  if (!flags.out.empty()) {
-    nlohmann::ordered_json origin{{"heading", "Campaigns compared"},
-                                  {"sides", c.labels},
-                                  {"by", flags.by},
-                                  {"command", command_text(flags)}};
-    auto sections = compare_sections(c, sides, claims, ranks);
-    for (Section& section : sections)
-      if (const auto e = registry().find(section.experiment))
-        section.title = e->title;
-    write_report(flags.out,
-                 sections,
-                 origin,
-                 {.one_file = flags.one_file,
-                  .groups = groups_of(printed_numbers()),
-                  .front = 1});
-    if (flags.format == "text")
-      fmt::print("report: {}\n", (fs::path(flags.out) / "index.html").string());
-  }
+  if (!flags.out.empty()) write_pages(flags, sides, c, claims, ranks);
   refuse_worse(flags, aspects, c, claims);
   return ExitCode::good;
 }

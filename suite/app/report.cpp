@@ -27,6 +27,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
+struct ReportFlags {
+  std::string results, out, expected, publish;
+  bool check = false, one_file = false;
+};
+
 /// Experiments of the results that this program does not have, with commas.
 std::string unknown_text(const Results& results) {
   std::set<std::string> unknown;
@@ -140,74 +145,25 @@ ExitCode report_published(const std::string& results, const std::string& out) {
   return ExitCode::good;
 }
 
-}  // namespace
-
-ExitCode report_verb(const Arguments& arguments) {
-  std::string results, out, expected, publish;
-  bool check = false, one_file = false;
-  if (!parse(
-          "report",
-          "Writes tables, plots and claims of a finished campaign. Exit 10 "
-          "if the campaign is incomplete.",
-          {{"RESULTS",
-            "directory that 'run' or 'report --publish' wrote",
-            &results},
-           {"--out", "where to; default: RESULTS/report", &out, "DIR"},
-           {"--one-file", "one page that has everything", &one_file},
-           {"--publish",
-            "also keep results.json (compressed), a digest of claims and "
-            "tables, "
-            "and figures there, for the verb 'results'",
-            &publish,
-            "DIR"},
-           {"--check",
-            "exit 7 if a gating claim is not reproduced and not expected to "
-            "fail, 10 if none could be judged",
-            &check},
-           {"--expected",
-            "claims expected to fail; default: reports/expected_failures.json",
-            &expected,
-            "FILE"}},
-          arguments))
-    return ExitCode::good;
-  if (is_published(results)) {
-    if (check || !publish.empty() || one_file)
-      throw UsageError(fmt::format(
-          "'{}' is a published campaign: report takes --out alone there",
-          results));
-    return report_published(results, out);
-  }
-  const Loaded loaded = load(results);
-  const Published numbers = printed_numbers();
-  const auto sections = sections_of(loaded.results, numbers);
-  const auto unknown = unknown_text(loaded.results);
-  if (sections.empty()) {
-    require_complete(loaded.lacks, kRunAgain);
-    if (!unknown.empty())
-      throw ExitError(ExitCode::nothing_matched,
-                      fmt::format("this program does not know {}; report with "
-                                  "the one that ran it",
-                                  unknown));
+/// Nothing that has a report: why.
+[[noreturn]] void refuse_empty(const ReportFlags& flags,
+                               const Loaded& loaded,
+                               const std::string& unknown) {
+  require_complete(loaded.lacks, kRunAgain);
+  if (!unknown.empty())
     throw ExitError(ExitCode::nothing_matched,
-                    "no experiment that declares a report has results in '" +
-                        results + "'; run cases first");
-  }
-  const auto listed =
-      check || !expected.empty()
-          ? expected_failures(expected, published_directory(), sections)
-          : std::vector<ExpectedFailure>();
-  const fs::path target =
-      out.empty() ? Folder(results).make("report").path() : fs::path(out);
-  const auto origin = provenance(loaded, sections, numbers);
-  try {
-    write_report(target,
-                 sections,
-                 origin,
-                 {.one_file = one_file, .groups = groups_of(numbers)});
-    if (!publish.empty()) publish_campaign(publish, loaded, sections, origin);
-  } catch (const std::runtime_error& error) {
-    throw EnvironmentError(error.what());
-  }
+                    fmt::format("this program does not know {}; report with "
+                                "the one that ran it",
+                                unknown));
+  throw ExitError(ExitCode::nothing_matched,
+                  "no experiment that declares a report has results in '" +
+                      flags.results + "'; run cases first");
+}
+
+void print_summary(const std::vector<Section>& sections,
+                   const fs::path& target,
+                   const nlohmann::ordered_json& origin,
+                   const std::string& unknown) {
   fmt::print(
       "{}report: {}\n",
       render_claims_text(sections,
@@ -217,10 +173,76 @@ ExitCode report_verb(const Arguments& arguments) {
     fmt::print("{}\n", origin["crowded"].get<std::string>());
   if (!unknown.empty())
     fmt::print("not reported: this program does not know {}\n", unknown);
+}
+
+/// False if help was asked for.
+bool parse_flags(const Arguments& arguments, ReportFlags& flags) {
+  return parse(
+      "report",
+      "Writes tables, plots and claims of a finished campaign. Exit 10 "
+      "if the campaign is incomplete.",
+      {{"RESULTS",
+        "directory that 'run' or 'report --publish' wrote",
+        &flags.results},
+       {"--out", "where to; default: RESULTS/report", &flags.out, "DIR"},
+       {"--one-file", "one page that has everything", &flags.one_file},
+       {"--publish",
+        "also keep results.json (compressed), a digest of claims and "
+        "tables, "
+        "and figures there, for the verb 'results'",
+        &flags.publish,
+        "DIR"},
+       {"--check",
+        "exit 7 if a gating claim is not reproduced and not expected to "
+        "fail, 10 if none could be judged",
+        &flags.check},
+       {"--expected",
+        "claims expected to fail; default: reports/expected_failures.json",
+        &flags.expected,
+        "FILE"}},
+      arguments);
+}
+
+}  // namespace
+
+ExitCode report_verb(const Arguments& arguments) {
+  ReportFlags flags;
+  if (!parse_flags(arguments, flags)) return ExitCode::good;
+  if (is_published(flags.results)) {
+    if (flags.check || !flags.publish.empty() || flags.one_file)
+      throw UsageError(fmt::format(
+          "'{}' is a published campaign: report takes --out alone there",
+          flags.results));
+    return report_published(flags.results, flags.out);
+  }
+  const Loaded loaded = load(flags.results);
+  const Published numbers = printed_numbers();
+  const auto sections = sections_of(loaded.results, numbers);
+  const auto unknown = unknown_text(loaded.results);
+  if (sections.empty()) refuse_empty(flags, loaded, unknown);
+  const auto listed =
+      flags.check || !flags.expected.empty()
+          ? expected_failures(flags.expected, published_directory(), sections)
+          : std::vector<ExpectedFailure>();
+  const fs::path target = flags.out.empty()
+                              ? Folder(flags.results).make("report").path()
+                              : fs::path(flags.out);
+  const auto origin = provenance(loaded, sections, numbers);
+  try {
+    write_report(target,
+                 sections,
+                 origin,
+                 {.one_file = flags.one_file, .groups = groups_of(numbers)});
+    if (!flags.publish.empty())
+      publish_campaign(flags.publish, loaded, sections, origin);
+  } catch (const std::runtime_error& error) {
+    throw EnvironmentError(error.what());
+  }
+  print_summary(sections, target, origin, unknown);
   const auto judgement = compare(sections, listed, origin.value("profile", ""));
-  if (check) check_claims(judgement);
+  if (flags.check) check_claims(judgement);
   require_complete(loaded.lacks, kRunAgain);
-  if (check && judgement.judged == 0)
+  if (flags.check && judgement.judged == 0)
     throw ExitError(ExitCode::incomplete,
                     "incomplete: no gating claim could be judged; run the "
                     "profile that a claim names");
