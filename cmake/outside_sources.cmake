@@ -130,11 +130,24 @@ list(PREPEND seen ${info}/sources.cpp:)
 list(JOIN seen " \\\n  " depfile)
 file(WRITE ${info}/sources.d "${depfile}\n")
 
+# A plug-in is loaded by a program that has one.
+set(register_all)
+if(NOT plugin)
+  set(register_all [[
+
+namespace physinv {
+class Registry;
+/// The sources register what there is when the program is loaded.
+void register_all(Registry&) {}
+}  // namespace physinv
+]])
+endif()
+
 file(CONFIGURE OUTPUT ${info}/sources.cpp @ONLY CONTENT [=[
 #include <array>
 
 #include "suite/harness/outside.h"
-
+@register_all@
 namespace {
 
 constexpr physinv::SourceFile kSources[] = {

@@ -46,6 +46,7 @@ void load_plugins(physinv::Arguments flags) {
 
 PYBIND11_MODULE(_core, module) {
   check_numpy();
+  physinv::register_all(physinv::registry());
   namespace python = physinv::python;
   module.def("problem", &python::find_problem, pybind11::arg("name"));
   module.def("problems", [] {

@@ -75,6 +75,7 @@ void run(std::vector<std::string_view> arguments) {
     throw std::runtime_error("physinv-count [--perf] PROFILE CASE...");
   if (perf) PerfCounter();  // says whether there is one
   if (arguments.empty()) return;
+  register_all(registry());
   const auto cases = registry().expand(arguments.front());
   for (std::size_t i = 1; i < arguments.size(); ++i) {
     const Case& c = named(cases, arguments[i]);

@@ -19,6 +19,7 @@
 #include "suite/harness/context.h"
 #include "suite/harness/nearest.h"
 #include "suite/harness/output.h"
+#include "suite/harness/registry.h"
 #include "suite/results/errors.h"
 
 namespace physinv {
@@ -96,6 +97,7 @@ bool answered(const std::string& flag) {
 
 ExitCode dispatch(Arguments arguments) {
   refuse_empty(arguments);
+  register_all(registry());
   load_plugins(arguments);
   if (arguments.empty()) return run_verb(arguments);
   if (arguments[0] == "help" && arguments.size() > 1) {

@@ -1,7 +1,10 @@
-// What physinv-run has.
+// What physinv-run has: no claims, no pages.
 #include "suite/app/verbs.h"
+#include "suite/cases/tables.h"
 
 namespace physinv {
+
+void register_all(Registry& r) { add_experiments(r); }
 
 const Program& program() {
   static const Program run{

@@ -60,6 +60,7 @@ void bm_append(benchmark::State& state) {
 BENCHMARK(bm_append)->Name("harness/store_append")->Iterations(200);
 
 void bm_expand(benchmark::State& state) {
+  if (registry().experiments().empty()) register_all(registry());
   for (auto _ : state) {
     for (const Case& c : registry().expand("quick"))
       benchmark::DoNotOptimize(content_keys(c, "data", numerics_of_build));

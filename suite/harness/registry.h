@@ -1,11 +1,12 @@
 /// What is registered, and the cases it expands to.
 ///
-///   const auto kRegistered = register_experiment({.name = "jpo/billiards",
-///   ...});
+///   void register_all(Registry& r) {
+///     r.add(Experiment{.name = "jpo/billiards", ...});
+///     r.add_claims("jpo/billiards", paper_claims());
+///   }
 ///
-/// Registering stores a recipe and judges nothing, so nothing throws before
-/// `main`. A test and `list --validate` call `validate`; a run looks at its own
-/// experiments (registry_problems.h).
+/// Registering stores a recipe and judges nothing. A test and `list --validate`
+/// call `validate`; a run looks at its own experiments (registry_problems.h).
 #pragma once
 
 #include <map>
@@ -74,7 +75,14 @@ class Registry {
 /// The program's registry; safe to use while statics are initialised.
 Registry& registry();
 
-/// For static initialisation; returns true.
+/// What a program is over: every program defines it, the suite's in
+/// suite/cases/claims.cpp, and its main calls it once for `registry()`.
+void register_all(Registry& registry);
+
+/// For sources of others, which register when the program or plug-in is loaded;
+/// returns true:
+///
+///   const bool kRegistered = register_experiment({.name = "pendulum", ...});
 bool register_experiment(Experiment experiment);
 bool register_overview(Overview overview);
 bool register_claims(const std::string& experiment, std::vector<Claim> claims);

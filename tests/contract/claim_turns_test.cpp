@@ -603,6 +603,7 @@ int main(int argc, char** argv) {
     fmt::print("usage: claim_turns_test STORE-OF-SMOKE [EXPERIMENT...]\n");
     return 2;
   }
+  register_all(registry());
   const Models models(load_results(argv[1]));
   const Published published(PHYSINV_SOURCE_DIR "/reports/published");
   const std::set<std::string> only(argv + 2, argv + argc);

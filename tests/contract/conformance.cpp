@@ -136,6 +136,7 @@ ExitCode check_all(const Arguments& google) {
 }
 
 ExitCode conform(Arguments arguments) {
+  register_all(registry());
   const std::size_t own = registry().experiments().size();
   load_plugins(arguments);
   ConformanceFlags flags;

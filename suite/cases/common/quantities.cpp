@@ -5,10 +5,11 @@
 
 #include <utility>
 
-namespace physinv {
-namespace {
+#include "suite/cases/tables.h"
 
-bool name_all() {
+namespace physinv {
+
+void name_quantities() {
   const std::pair<const char*, Quantities> all[] = {
       {"billiards",
        {.unknowns = {"v_x, v_y"}, .observations = {"x, y"}, .given = {"x, y"}}},
@@ -70,10 +71,6 @@ bool name_all() {
         .given = {"disturbance(sample)"}}}};
   for (const auto& [problem, quantities] : all)
     register_quantities(problem, quantities);
-  return true;
 }
 
-const bool kNamed = name_all();
-
-}  // namespace
 }  // namespace physinv

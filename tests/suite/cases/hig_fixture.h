@@ -1,4 +1,4 @@
-/// Planted training runs, and what a registered claim makes of them.
+/// Planted training runs, and what a claim makes of them.
 #pragma once
 
 #include <string>
@@ -41,15 +41,17 @@ inline CaseRecord chain(const std::string& experiment,
   return c;
 }
 
-/// The claim of an experiment whose claims alone are linked.
-inline ClaimResult judged(const std::string& experiment,
+/// A claim of an experiment, of those that its folder adds.
+inline ClaimResult judged(void (&add_claims)(Registry&),
+                          const std::string& experiment,
                           const std::vector<CaseRecord>& cases,
                           const std::string& id) {
-  if (!registry().find(experiment))
-    registry().add(Experiment{.name = experiment});
+  Registry registered;
+  registered.add(Experiment{.name = experiment});
+  add_claims(registered);
   const Results results(cases);
   const Published published;
-  for (const Claim& claim : registry().find(experiment)->claims)
+  for (const Claim& claim : registered.find(experiment)->claims)
     if (claim.id == id)
       return judge({claim},
                    {results, published, experiment},

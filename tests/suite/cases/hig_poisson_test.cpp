@@ -7,12 +7,15 @@
 #include "tests/suite/cases/hig_fixture.h"
 
 namespace physinv {
+namespace hig::poisson {
+void add_claims(Registry&);
+}
 namespace {
 
 constexpr const char* kName = "hig/poisson";
 
 ClaimResult claim(const std::vector<CaseRecord>& cases, const char* id) {
-  return judged(kName, cases, id);
+  return judged(hig::poisson::add_claims, kName, cases, id);
 }
 
 TEST(HigPoisson, LevelsLieBetweenMeasuredPoints) {

@@ -5,6 +5,9 @@
 #include "tests/suite/cases/hig_fixture.h"
 
 namespace physinv {
+namespace dipole {
+void add_claims(Registry&);
+}
 namespace {
 
 constexpr const char* kName = "hig/quantum-dipole";
@@ -26,7 +29,7 @@ CaseRecord levels(const char* method,
 TEST(HigQuantumDipole, LagAndRiseOfTheLevels) {
   const auto a4 = [](const std::vector<double>& low,
                      const std::vector<double>& high) {
-    return judged(kName, {levels("hig", low, high)}, "A4");
+    return judged(dipole::add_claims, kName, {levels("hig", low, high)}, "A4");
   };
   // HE < 0.1 at 20 updates, LE at 10, with a rise of 0.02 between; what comes
   // behind does not count.
@@ -46,11 +49,13 @@ TEST(HigQuantumDipole, TheRatioOfTheRiseWaitsForTheFirstLevel) {
   std::vector<double> low(801, 0.01), high(801, 0.01);
   low[0] = 0.2, low[1] = 0.6, low[2] = 0.05, low[3] = 0.1, low[4] = 0.01;
   high[0] = high[1] = high[2] = high[3] = 0.4;
-  const auto p7 = judged(kName, {levels("adam", low, high)}, "P7");
+  const auto p7 =
+      judged(dipole::add_claims, kName, {levels("adam", low, high)}, "P7");
   EXPECT_DOUBLE_EQ(*p7.conditions[0].value, 2);
   EXPECT_DOUBLE_EQ(*p7.conditions[1].value, 2);
   low.resize(800), high.resize(800);
-  EXPECT_EQ(judged(kName, {levels("adam", low, high)}, "P7").verdict,
+  EXPECT_EQ(judged(dipole::add_claims, kName, {levels("adam", low, high)}, "P7")
+                .verdict,
             Verdict::not_judged);
 }
 
@@ -63,7 +68,7 @@ TEST(HigQuantumDipole, FourOfFiveSeedsDecide) {
                 "hig",
                 {trained("train", std::vector<double>(20, levels[seed]))},
                 seed));
-    return judged(kName, cases, "A1").verdict;
+    return judged(dipole::add_claims, kName, cases, "A1").verdict;
   };
   EXPECT_EQ(a1({0.1, 0.1, 0.9, 0.1, 0.1}), Verdict::reproduced);
   EXPECT_EQ(a1({0.1, 0.1, 0.9, 0.9, 0.1}), Verdict::not_reproduced);
@@ -75,7 +80,8 @@ TEST(HigQuantumDipole, TheLongestStretchNearOneHalfIsTaken) {
   std::vector<double> loss(301, 0.1);
   for (int k = 0; k < 60; ++k) loss[5 + k] = 0.5;
   for (int k = 0; k < 120; ++k) loss[100 + k] = 0.45;
-  const auto a3 = judged(kName,
+  const auto a3 = judged(dipole::add_claims,
+                         kName,
                          {chain(kName, "adam", {trained("train", loss)}),
                           chain(kName, "hig", {trained("train", {1, 0.1})})},
                          "A3");

@@ -5,6 +5,9 @@
 #include "tests/suite/cases/hig_fixture.h"
 
 namespace physinv::sip_wave_packet {
+
+void add_claims(Registry&);
+
 namespace {
 
 constexpr const char* kName = "sip/wave-packet";
@@ -28,7 +31,7 @@ CaseRecord planted(const char* method,
 }
 
 Verdict verdict(const std::vector<CaseRecord>& cases, const char* id) {
-  return judged(kName, cases, id).verdict;
+  return judged(add_claims, kName, cases, id).verdict;
 }
 
 TEST(SipWavePacket, DistancesDecideWhatLbfgsFinds) {
@@ -52,7 +55,8 @@ TEST(SipWavePacket, TheNetworkIsHeldAgainstTheSameExamples) {
   EXPECT_EQ(verdict({lbfgs, net}, "P4"), Verdict::reproduced);
   EXPECT_EQ(verdict({lbfgs, net}, "P6"), Verdict::reproduced);
   EXPECT_EQ(verdict({net}, "P5"), Verdict::not_judged);
-  const auto better = judged(kName, {lbfgs, net}, "A5").conditions.back();
+  const auto better =
+      judged(add_claims, kName, {lbfgs, net}, "A5").conditions.back();
   EXPECT_NEAR(*better.value, 1.0 / 3, 1e-12);
 
   const Results results({lbfgs, net});

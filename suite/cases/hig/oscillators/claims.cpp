@@ -549,8 +549,11 @@ const std::vector<Claim> kPaper = {
          not_run("1.0 CPU-hours: the cuts of Fig. 13 at the profile paper")},
 };
 
-const bool kClaims =
-    register_claims(kName, kRanges) && register_claims(kName, kPaper);
-
 }  // namespace
+
+void add_claims(Registry& r) {
+  r.add_claims(kName, kRanges);
+  r.add_claims(kName, kPaper);
+}
+
 }  // namespace physinv::oscillators

@@ -167,11 +167,13 @@ const std::vector<Claim> kClaims = {
      .cause =
          reported("durations are of the paper's GPU and of this machine")}};
 
-const bool kRegistered =
-    register_overview({.paper = "hig",
-                       .title = "Half-inverse gradients",
-                       .profiles = {"smoke", "quick", "standard", "paper"},
-                       .claims = kClaims});
-
 }  // namespace
+
+void add_claims(Registry& r) {
+  r.add(Overview{.paper = "hig",
+                 .title = "Half-inverse gradients",
+                 .profiles = {"smoke", "quick", "standard", "paper"},
+                 .claims = kClaims});
+}
+
 }  // namespace physinv::hig::overview

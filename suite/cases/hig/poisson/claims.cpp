@@ -482,8 +482,11 @@ const std::vector<Claim> kSuite = {
                            median(kThenHig, seconds_per_update())),
                     report("Adam", median(kAdam, seconds_per_update()))}}};
 
-const bool kClaims =
-    register_claims(kName, kSuite) && register_claims(kName, kPaper);
-
 }  // namespace
+
+void add_claims(Registry& r) {
+  r.add_claims(kName, kSuite);
+  r.add_claims(kName, kPaper);
+}
+
 }  // namespace physinv::hig::poisson

@@ -147,15 +147,18 @@ const Setting kSetting{
                            .init = nn::Init::glorot})},
     .recorded = 16};
 
-const auto kRegistered = register_experiment({
-    .name = "hig/poisson",
-    .title = "Poisson's equation",
-    .source = {.paper = "hig", .where = "Sec. 3.2, Figs. 3, 7, Table 4"},
-    .problem = problem<GridPoisson>("grid_poisson"),
-    .setting = kSetting,
-    .profiles = kProfiles,
-    .methods = methods(),
-});
-
 }  // namespace
+
+void add_experiments(Registry& r) {
+  r.add(Experiment{
+      .name = "hig/poisson",
+      .title = "Poisson's equation",
+      .source = {.paper = "hig", .where = "Sec. 3.2, Figs. 3, 7, Table 4"},
+      .problem = problem<GridPoisson>("grid_poisson"),
+      .setting = kSetting,
+      .profiles = kProfiles,
+      .methods = methods(),
+  });
+}
+
 }  // namespace physinv::hig::poisson

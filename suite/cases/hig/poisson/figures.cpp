@@ -233,7 +233,8 @@ Section report(const Results& results, const Published& published) {
   return section;
 }
 
-const bool kReport = register_report(kName, report);
-
 }  // namespace
+
+void add_reports(Registry& r) { r.add_report(kName, report); }
+
 }  // namespace physinv::hig::poisson

@@ -121,25 +121,28 @@ std::vector<Row> all(std::uint64_t seeds, Index updates) {
               {"hig-f32", "gn-f32", "hig-f32-tau7"});
 }
 
-const auto kRegisteredDirect = register_experiment({
-    .name = kDirect,
-    .title = "Quantum dipole, control without a network",
-    .source = {.paper = "hig", .where = "Sec. 3.3, Fig. 4b"},
-    .problem = problem<QuantumDipole>("quantum_dipole", {.angles = {0.7, 2}}),
-    .setting = {.recorded = 16},
-    .profiles = {{.name = "smoke", .rows = few(1, 20)},
-                 {.name = "quick", .rows = few(3, 100)},
-                 {.name = "standard", .rows = all(5, 200)},
-                 {.name = "paper", .rows = all(5, 1000)}},
-    .methods = {method("hig", -0.5),
-                method("gn", -1),
-                method("hig-f32", -0.5),
-                method("gn-f32", -1),
-                method("hig-tau7", -0.5, 1e-7),
-                method("hig-f32-tau7", -0.5, 1e-7)},
-    .claims = {kNoFloor},
-    .report = report,
-});
-
 }  // namespace
+
+void add_direct_experiment(Registry& r) {
+  r.add(Experiment{
+      .name = kDirect,
+      .title = "Quantum dipole, control without a network",
+      .source = {.paper = "hig", .where = "Sec. 3.3, Fig. 4b"},
+      .problem = problem<QuantumDipole>("quantum_dipole", {.angles = {0.7, 2}}),
+      .setting = {.recorded = 16},
+      .profiles = {{.name = "smoke", .rows = few(1, 20)},
+                   {.name = "quick", .rows = few(3, 100)},
+                   {.name = "standard", .rows = all(5, 200)},
+                   {.name = "paper", .rows = all(5, 1000)}},
+      .methods = {method("hig", -0.5),
+                  method("gn", -1),
+                  method("hig-f32", -0.5),
+                  method("gn-f32", -1),
+                  method("hig-tau7", -0.5, 1e-7),
+                  method("hig-f32-tau7", -0.5, 1e-7)},
+      .claims = {kNoFloor},
+      .report = report,
+  });
+}
+
 }  // namespace physinv::dipole

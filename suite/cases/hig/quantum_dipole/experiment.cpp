@@ -175,25 +175,27 @@ ProblemRecipe steered_by_a_network() {
   return problem<QuantumDipole>("quantum_dipole", {.zero_start = true});
 }
 
-const auto kRegistered = register_experiment({
-    .name = kDense,
-    .title = "Quantum dipole",
-    .source = {.paper = "hig", .where = "Sec. 3.3, Figs. 4, 8, 9, Table 5"},
-    .problem = steered_by_a_network(),
-    .setting = {.predictor = dense(), .recorded = 16},
-    .profiles = dense_profiles(),
-    .methods = dense_methods(),
-});
-
-const auto kRegisteredCnn = register_experiment({
-    .name = kConvolutional,
-    .title = "Quantum dipole, convolutional network",
-    .source = {.paper = "hig", .where = "App. B.4, Figs. 10, 11"},
-    .problem = steered_by_a_network(),
-    .setting = {.predictor = convolutional(), .recorded = 16},
-    .profiles = conv_profiles(),
-    .methods = grids(conv_adam(), conv_hig()),
-});
-
 }  // namespace
+
+void add_experiments(Registry& r) {
+  r.add(Experiment{
+      .name = kDense,
+      .title = "Quantum dipole",
+      .source = {.paper = "hig", .where = "Sec. 3.3, Figs. 4, 8, 9, Table 5"},
+      .problem = steered_by_a_network(),
+      .setting = {.predictor = dense(), .recorded = 16},
+      .profiles = dense_profiles(),
+      .methods = dense_methods(),
+  });
+  r.add(Experiment{
+      .name = kConvolutional,
+      .title = "Quantum dipole, convolutional network",
+      .source = {.paper = "hig", .where = "App. B.4, Figs. 10, 11"},
+      .problem = steered_by_a_network(),
+      .setting = {.predictor = convolutional(), .recorded = 16},
+      .profiles = conv_profiles(),
+      .methods = grids(conv_adam(), conv_hig()),
+  });
+}
+
 }  // namespace physinv::dipole

@@ -230,8 +230,11 @@ Section conv_report(const Results& results, const Published& published) {
   return section;
 }
 
-const bool kReport = register_report(kDense, dense_report) &&
-                     register_report(kConvolutional, conv_report);
-
 }  // namespace
+
+void add_reports(Registry& r) {
+  r.add_report(kDense, dense_report);
+  r.add_report(kConvolutional, conv_report);
+}
+
 }  // namespace physinv::dipole

@@ -341,9 +341,12 @@ const std::vector<Claim> kBetween = {
                     above("GN with HIG's cut", after("gn_tau6"), after("hig")),
                     above("SGD", after("sgd"), after("hig"))}}};
 
-const bool kClaims = register_claims(kGammas[0].experiment, kWellConditioned) &&
-                     register_claims(kGammas[1].experiment, kBetween) &&
-                     register_claims(kGammas[2].experiment, kIllConditioned);
-
 }  // namespace
+
+void add_claims(Registry& r) {
+  r.add_claims(kGammas[0].experiment, kWellConditioned);
+  r.add_claims(kGammas[1].experiment, kBetween);
+  r.add_claims(kGammas[2].experiment, kIllConditioned);
+}
+
 }  // namespace physinv::toy

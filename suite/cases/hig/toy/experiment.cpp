@@ -81,9 +81,11 @@ std::vector<Profile> profiles(const Gamma& gamma) {
   return all;
 }
 
-const bool kRegistered = [] {
+}  // namespace
+
+void add_experiments(Registry& r) {
   for (const Gamma& gamma : kGammas) {
-    register_experiment({
+    r.add(Experiment{
         .name = gamma.experiment,
         .title = gamma.title,
         .source = {.paper = "hig", .where = "Secs. 2.1, 2.2, App. B.1, Fig. 1"},
@@ -98,8 +100,6 @@ const bool kRegistered = [] {
         .methods = methods(gamma.value),
     });
   }
-  return true;
-}();
+}
 
-}  // namespace
 }  // namespace physinv::toy

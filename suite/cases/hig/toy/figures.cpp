@@ -180,14 +180,14 @@ Section report(const Gamma& gamma,
   return section;
 }
 
-const bool kReport = [] {
-  for (const Gamma& gamma : kGammas)
-    register_report(gamma.experiment,
-                    [&gamma](const Results& results, const Published& p) {
-                      return report(gamma, results, p);
-                    });
-  return true;
-}();
-
 }  // namespace
+
+void add_reports(Registry& r) {
+  for (const Gamma& gamma : kGammas)
+    r.add_report(gamma.experiment,
+                 [&gamma](const Results& results, const Published& p) {
+                   return report(gamma, results, p);
+                 });
+}
+
 }  // namespace physinv::toy

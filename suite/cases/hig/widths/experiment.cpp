@@ -31,12 +31,10 @@ Experiment experiment(Index width) {
                        .chain = {train({.rule = step, .batch = kBatch})}}}};
 }
 
-const bool kRegistered = [] {
-  bool all = true;
-  for (const Index width : kWidths)
-    all = register_experiment(experiment(width)) && all;
-  return all;
-}();
-
 }  // namespace
+
+void add_experiments(Registry& r) {
+  for (const Index width : kWidths) r.add(experiment(width));
+}
+
 }  // namespace physinv::hig::widths

@@ -121,17 +121,15 @@ Section report(const Study& s,
   return {.tables = {std::move(table)}};
 }
 
-const bool kClaims = [] {
-  bool all = true;
-  for (const Study& s : kStudies)
-    all = register_claims(s.name, {claim(s)}) &&
-          register_report(s.name,
-                          [s](const Results& r, const Published& p) {
-                            return report(s, r, p);
-                          }) &&
-          all;
-  return all;
-}();
-
 }  // namespace
+
+void add_claims(Registry& r) {
+  for (const Study& s : kStudies) {
+    r.add_claims(s.name, {claim(s)});
+    r.add_report(s.name, [s](const Results& results, const Published& p) {
+      return report(s, results, p);
+    });
+  }
+}
+
 }  // namespace physinv::adjoint_wall

@@ -57,13 +57,13 @@ Experiment experiment(const Study& s) {
   return e;
 }
 
-const bool kRegistered = [] {
-  bool all = true;
-  for (const Study& s : kStudies)
-    all = register_study(s.name, s.varied) &&
-          register_experiment(experiment(s)) && all;
-  return all;
-}();
-
 }  // namespace
+
+void add_experiments(Registry& r) {
+  for (const Study& s : kStudies) {
+    register_study(s.name, s.varied);
+    r.add(experiment(s));
+  }
+}
+
 }  // namespace physinv::adjoint_wall

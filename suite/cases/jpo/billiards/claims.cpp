@@ -304,8 +304,11 @@ std::vector<Claim> suite_claims() {
                     0.05)}}};
 }
 
-const bool kClaims = register_claims("jpo/billiards", paper_claims()) &&
-                     register_claims("jpo/billiards", suite_claims());
-
 }  // namespace
+
+void add_claims(Registry& r) {
+  r.add_claims("jpo/billiards", paper_claims());
+  r.add_claims("jpo/billiards", suite_claims());
+}
+
 }  // namespace physinv::jpo::billiards

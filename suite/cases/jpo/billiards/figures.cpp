@@ -74,7 +74,8 @@ Section report(const Results& results, const Published& published) {
   return section;
 }
 
-const bool kReport = register_report("jpo/billiards", report);
-
 }  // namespace
+
+void add_reports(Registry& r) { r.add_report("jpo/billiards", report); }
+
 }  // namespace physinv::jpo::billiards

@@ -76,8 +76,7 @@ Condition some_setting(const Column& c) {
   return any;
 }
 
-const bool kClaims = register_claims(
-    kName,
+const std::vector<Claim> kClaims(
     {{.id = "S1",
       .from = "study",
       .says = "JPO is as often better than BFGS, and equal, as Tables 4 and 5 "
@@ -119,7 +118,11 @@ Section report(const Results& results, const Published& published) {
   return {.tables = {std::move(table)}};
 }
 
-const bool kReport = register_report(kName, report);
-
 }  // namespace
+
+void add_claims(Registry& r) {
+  r.add_claims(kName, kClaims);
+  r.add_report(kName, report);
+}
+
 }  // namespace physinv::billiards_precision

@@ -35,15 +35,17 @@ std::vector<Method> methods() {
   return all;
 }
 
-const bool kRegistered =
-    register_study(kName, kVaried) &&
-    register_experiment({.name = kName,
-                         .title = "Billiards, precision and tolerance of BFGS",
-                         .source = {.paper = "jpo", .where = "Tables 4 and 5"},
-                         .problem = jpo::billiards::recipe(),
-                         .setting = jpo::billiards::setting(),
-                         .profiles = profiles(),
-                         .methods = methods()});
-
 }  // namespace
+
+void add_experiments(Registry& r) {
+  register_study(kName, kVaried);
+  r.add(Experiment{.name = kName,
+                   .title = "Billiards, precision and tolerance of BFGS",
+                   .source = {.paper = "jpo", .where = "Tables 4 and 5"},
+                   .problem = jpo::billiards::recipe(),
+                   .setting = jpo::billiards::setting(),
+                   .profiles = profiles(),
+                   .methods = methods()});
+}
+
 }  // namespace physinv::billiards_precision

@@ -575,8 +575,11 @@ const std::vector<Claim> kPaper = {
      .conditions = both(fits_well)},
 };
 
-const bool kClaims =
-    register_claims(kName, kRanges) && register_claims(kName, kPaper);
-
 }  // namespace
+
+void add_claims(Registry& r) {
+  r.add_claims(kName, kRanges);
+  r.add_claims(kName, kPaper);
+}
+
 }  // namespace physinv::alignment

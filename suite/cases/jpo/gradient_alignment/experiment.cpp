@@ -85,7 +85,8 @@ Experiment experiment() {
   return e;
 }
 
-const auto kRegistered = register_experiment(experiment());
-
 }  // namespace
+
+void add_experiments(Registry& r) { r.add(experiment()); }
+
 }  // namespace physinv::alignment

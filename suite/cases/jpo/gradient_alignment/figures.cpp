@@ -215,7 +215,8 @@ Section report(const Results& results, const Published& published) {
               noisy_figure(f, "fig2d", "Fig. 2d", "vote", f.vote, vote_even)}};
 }
 
-const bool kReport = register_report(kName, report);
-
 }  // namespace
+
+void add_reports(Registry& r) { r.add_report(kName, report); }
+
 }  // namespace physinv::alignment

@@ -344,9 +344,11 @@ std::vector<Claim> suite_claims() {
                     0.3)}}};
 }
 
-const bool kClaims =
-    register_claims("jpo/kuramoto-sivashinsky", paper_claims()) &&
-    register_claims("jpo/kuramoto-sivashinsky", suite_claims());
-
 }  // namespace
+
+void add_claims(Registry& r) {
+  r.add_claims("jpo/kuramoto-sivashinsky", paper_claims());
+  r.add_claims("jpo/kuramoto-sivashinsky", suite_claims());
+}
+
 }  // namespace physinv::jpo::kuramoto_sivashinsky

@@ -363,8 +363,11 @@ std::vector<Claim> suite_claims() {
            at_most("refined", highest_mean(kRefined, equal()), 0.02)}}};
 }
 
-const bool kClaims = register_claims("jpo/navier-stokes", paper_claims()) &&
-                     register_claims("jpo/navier-stokes", suite_claims());
-
 }  // namespace
+
+void add_claims(Registry& r) {
+  r.add_claims("jpo/navier-stokes", paper_claims());
+  r.add_claims("jpo/navier-stokes", suite_claims());
+}
+
 }  // namespace physinv::jpo::navier_stokes

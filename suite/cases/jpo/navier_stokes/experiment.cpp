@@ -62,39 +62,42 @@ std::vector<Method> methods() {
 const std::vector<std::string> kSingly = {"bfgs", "gd", "gn", "hig"};
 const std::vector<Index> kSizes = {4, 8, 16, 32, 64, 128};
 
-const auto kRegistered = register_experiment({
-    .name = "jpo/navier-stokes",
-    .title = "Incompressible Navier-Stokes",
-    .source = {.paper = "jpo", .where = "Sec. 4, Fig. 6, App. D.4"},
-    .problem = problem<NavierStokes>("navier_stokes"),
-    .setting = {.predictor = {{Field::observations}, nn::vgg(kPredictor)},
-                .surrogate = {{Field::given, Field::unknowns},
-                              nn::unet(kSurrogate)},
-                .gtol = 1e-3,
-                .labels = {.per_problem = 8, .bounded = 1}},
-    .profiles =
-        {{.name = "smoke",
-          .rows =
-              {{.methods = kSingly, .n = {4}, .seeds = {0}, .iterations = 5},
-               {.methods = trained_methods(),
-                .n = {2},
-                .seeds = {0},
-                .iterations = 5}}},
-         {.name = "quick",
-          .rows = {{.methods = kSingly, .n = {16}, .seeds = {0}},
-                   {.methods = trained_methods(),
-                    .n = {16},
-                    .seeds = {0},
-                    .iterations = kFitIterations}}},
-         {.name = "paper",
-          .rows = {{.methods = kSingly, .n = kSizes, .seeds = first_seeds(4)},
-                   {.methods = trained_methods(),
-                    .n = kSizes,
-                    .seeds = first_seeds(4),
-                    .iterations = kFitIterations}}}},
-    .methods = methods(),
-    .looks = kJpoLooks,
-});
-
 }  // namespace
+
+void add_experiments(Registry& r) {
+  r.add(Experiment{
+      .name = "jpo/navier-stokes",
+      .title = "Incompressible Navier-Stokes",
+      .source = {.paper = "jpo", .where = "Sec. 4, Fig. 6, App. D.4"},
+      .problem = problem<NavierStokes>("navier_stokes"),
+      .setting = {.predictor = {{Field::observations}, nn::vgg(kPredictor)},
+                  .surrogate = {{Field::given, Field::unknowns},
+                                nn::unet(kSurrogate)},
+                  .gtol = 1e-3,
+                  .labels = {.per_problem = 8, .bounded = 1}},
+      .profiles =
+          {{.name = "smoke",
+            .rows =
+                {{.methods = kSingly, .n = {4}, .seeds = {0}, .iterations = 5},
+                 {.methods = trained_methods(),
+                  .n = {2},
+                  .seeds = {0},
+                  .iterations = 5}}},
+           {.name = "quick",
+            .rows = {{.methods = kSingly, .n = {16}, .seeds = {0}},
+                     {.methods = trained_methods(),
+                      .n = {16},
+                      .seeds = {0},
+                      .iterations = kFitIterations}}},
+           {.name = "paper",
+            .rows = {{.methods = kSingly, .n = kSizes, .seeds = first_seeds(4)},
+                     {.methods = trained_methods(),
+                      .n = kSizes,
+                      .seeds = first_seeds(4),
+                      .iterations = kFitIterations}}}},
+      .methods = methods(),
+      .looks = kJpoLooks,
+  });
+}
+
 }  // namespace physinv::jpo::navier_stokes

@@ -387,11 +387,13 @@ std::vector<Claim> claims() {
            "times decide nothing: the paper's machine is another one")}};
 }
 
-const bool kRegistered =
-    register_overview({.paper = "jpo",
-                       .title = "Joint parameter optimization",
-                       .profiles = {"smoke", "quick", "paper"},
-                       .claims = claims()});
-
 }  // namespace
+
+void add_claims(Registry& r) {
+  r.add(Overview{.paper = "jpo",
+                 .title = "Joint parameter optimization",
+                 .profiles = {"smoke", "quick", "paper"},
+                 .claims = claims()});
+}
+
 }  // namespace physinv::jpo::overview

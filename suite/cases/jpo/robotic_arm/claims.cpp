@@ -200,8 +200,11 @@ std::vector<Claim> suite_claims() {
        .gates = false}};
 }
 
-const bool kClaims = register_claims("jpo/robotic-arm", paper_claims()) &&
-                     register_claims("jpo/robotic-arm", suite_claims());
-
 }  // namespace
+
+void add_claims(Registry& r) {
+  r.add_claims("jpo/robotic-arm", paper_claims());
+  r.add_claims("jpo/robotic-arm", suite_claims());
+}
+
 }  // namespace physinv::jpo::robotic_arm

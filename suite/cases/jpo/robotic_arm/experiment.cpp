@@ -13,43 +13,46 @@ constexpr Index kFitIterations = 2000;
 
 const auto kTrained = trained_methods();
 
-const auto kRegistered = register_experiment({
-    .name = "jpo/robotic-arm",
-    .title = "Robotic arm",
-    .source = {.paper = "jpo", .where = "App. D.5, Fig. 25"},
-    .problem = problem<RoboticArm>("robotic_arm"),
-    .setting = {.predictor = {{Field::observations},
-                              nn::mlp({.hidden = {128, 128, 128}})},
-                .surrogate = {{Field::unknowns},
-                              nn::mlp({.hidden = {128, 128, 128}})},
-                .output_scale = 1.0,
-                .gtol = 1e-10},
-    .profiles =
-        {{.name = "smoke",
-          .rows =
-              {{.methods = {"bfgs"}, .n = {4}, .seeds = {0}},
-               {.methods = {"gd"}, .n = {4}, .seeds = {0}, .iterations = 50},
-               {.methods = kTrained,
-                .n = {4},
-                .seeds = {0},
-                .iterations = 50}}},
-         {.name = "quick",
-          .rows = {{.methods = {"bfgs", "gd"}, .n = {8, 64}, .seeds = {0, 1}},
-                   {.methods = kTrained,
-                    .n = {8, 64},
-                    .seeds = {0, 1},
-                    .iterations = kFitIterations}}},
-         {.name = "paper",
-          .rows = {{.methods = {"bfgs", "gd"},
-                    .n = {2, 4, 8, 16, 32, 64, 128},
-                    .seeds = {0, 1, 2, 3}},
-                   {.methods = kTrained,
-                    .n = {2, 4, 8, 16, 32, 64, 128},
-                    .seeds = {0, 1, 2, 3},
-                    .iterations = kFitIterations}}}},
-    .methods = jpo_methods({.rate = 1e-3, .iterations = kFitIterations}),
-    .looks = kJpoLooks,
-});
-
 }  // namespace
+
+void add_experiments(Registry& r) {
+  r.add(Experiment{
+      .name = "jpo/robotic-arm",
+      .title = "Robotic arm",
+      .source = {.paper = "jpo", .where = "App. D.5, Fig. 25"},
+      .problem = problem<RoboticArm>("robotic_arm"),
+      .setting = {.predictor = {{Field::observations},
+                                nn::mlp({.hidden = {128, 128, 128}})},
+                  .surrogate = {{Field::unknowns},
+                                nn::mlp({.hidden = {128, 128, 128}})},
+                  .output_scale = 1.0,
+                  .gtol = 1e-10},
+      .profiles =
+          {{.name = "smoke",
+            .rows =
+                {{.methods = {"bfgs"}, .n = {4}, .seeds = {0}},
+                 {.methods = {"gd"}, .n = {4}, .seeds = {0}, .iterations = 50},
+                 {.methods = kTrained,
+                  .n = {4},
+                  .seeds = {0},
+                  .iterations = 50}}},
+           {.name = "quick",
+            .rows = {{.methods = {"bfgs", "gd"}, .n = {8, 64}, .seeds = {0, 1}},
+                     {.methods = kTrained,
+                      .n = {8, 64},
+                      .seeds = {0, 1},
+                      .iterations = kFitIterations}}},
+           {.name = "paper",
+            .rows = {{.methods = {"bfgs", "gd"},
+                      .n = {2, 4, 8, 16, 32, 64, 128},
+                      .seeds = {0, 1, 2, 3}},
+                     {.methods = kTrained,
+                      .n = {2, 4, 8, 16, 32, 64, 128},
+                      .seeds = {0, 1, 2, 3},
+                      .iterations = kFitIterations}}}},
+      .methods = jpo_methods({.rate = 1e-3, .iterations = kFitIterations}),
+      .looks = kJpoLooks,
+  });
+}
+
 }  // namespace physinv::jpo::robotic_arm

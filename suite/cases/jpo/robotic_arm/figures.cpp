@@ -110,7 +110,8 @@ Section report(const Results& results, const Published& published) {
   return section;
 }
 
-const bool kReport = register_report("jpo/robotic-arm", report);
-
 }  // namespace
+
+void add_reports(Registry& r) { r.add_report("jpo/robotic-arm", report); }
+
 }  // namespace physinv::jpo::robotic_arm

@@ -346,8 +346,11 @@ std::vector<Claim> suite_claims() {
        .gates = false}};
 }
 
-const bool kClaims = register_claims(kName, paper_claims()) &&
-                     register_claims(kName, suite_claims());
-
 }  // namespace
+
+void add_claims(Registry& r) {
+  r.add_claims(kName, paper_claims());
+  r.add_claims(kName, suite_claims());
+}
+
 }  // namespace physinv::jpo::wave_packet

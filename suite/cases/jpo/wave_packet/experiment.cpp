@@ -37,52 +37,54 @@ const auto kSeeds = first_seeds(5);
 /// For claims about BFGS alone.
 const Row kPool{.methods = {"bfgs"}, .n = {256}, .seeds = {0, 1}};
 
-const auto kRegistered = register_experiment({
-    .name = "jpo/wave-packet",
-    .title = "Wave packet",
-    .source = {.paper = "jpo", .where = "Sec. 4, Fig. 3, App. D.1"},
-    .problem = recipe(),
-    .setting = setting(),
-    .profiles =
-        {{.name = "smoke",
-          .rows = {{.methods = {"bfgs"}, .n = {4}, .seeds = {0}},
-                   trained({"gd"}, {4}, {0}, 20),
-                   trained(kTrained, {4}, {0}, 20),
-                   kPool}},
-         {.name = "quick",
-          .rows =
-              {{.methods = {"bfgs", "gd"}, .n = {8, 32}, .seeds = {0, 1, 2}},
-               trained(kTrained, {8, 32}, {0, 1, 2}, kQuickIterations),
-               kPool}},
-         {.name = "paper",
-          .rows = {{.methods = {"bfgs", "gd"}, .n = kSizes, .seeds = kSeeds},
-                   trained(kTrained, kSizes, kSeeds, kFitIterations),
-                   {.methods = {"jpo-long"}, .n = {128}, .seeds = kSeeds}}}},
-    .methods = methods(),
-    .looks = kJpoLooks,
-});
-
-/// With the paper's number of parameters, 13,925, at the price of one unit
-/// that everything has to pass.
-const auto kRegisteredHead = register_experiment({
-    .name = "jpo/wave-packet-head",
-    .title = "Wave packet, head 64-32-1",
-    .source = {.paper = "jpo", .where = "App. C"},
-    .problem = recipe(),
-    .setting = setting({64, 32, 1}),
-    .profiles =
-        {{.name = "smoke",
-          .rows = {{.methods = {"bfgs"}, .n = {4}, .seeds = {0}},
-                   trained({"jpo"}, {4}, {0}, 20)}},
-         {.name = "quick",
-          .rows = {{.methods = {"bfgs"}, .n = {32}, .seeds = {0, 1, 2}},
-                   trained({"jpo"}, {32}, {0, 1, 2}, kQuickIterations)}},
-         {.name = "paper",
-          .rows = {{.methods = {"bfgs"}, .n = {32, 128}, .seeds = kSeeds},
-                   trained({"jpo"}, {32, 128}, kSeeds, kFitIterations)}}},
-    .methods = jpo_methods({.rate = 1e-3, .iterations = kFitIterations}),
-    .looks = kJpoLooks,
-});
-
 }  // namespace
+
+void add_experiments(Registry& r) {
+  r.add(Experiment{
+      .name = "jpo/wave-packet",
+      .title = "Wave packet",
+      .source = {.paper = "jpo", .where = "Sec. 4, Fig. 3, App. D.1"},
+      .problem = recipe(),
+      .setting = setting(),
+      .profiles =
+          {{.name = "smoke",
+            .rows = {{.methods = {"bfgs"}, .n = {4}, .seeds = {0}},
+                     trained({"gd"}, {4}, {0}, 20),
+                     trained(kTrained, {4}, {0}, 20),
+                     kPool}},
+           {.name = "quick",
+            .rows =
+                {{.methods = {"bfgs", "gd"}, .n = {8, 32}, .seeds = {0, 1, 2}},
+                 trained(kTrained, {8, 32}, {0, 1, 2}, kQuickIterations),
+                 kPool}},
+           {.name = "paper",
+            .rows = {{.methods = {"bfgs", "gd"}, .n = kSizes, .seeds = kSeeds},
+                     trained(kTrained, kSizes, kSeeds, kFitIterations),
+                     {.methods = {"jpo-long"}, .n = {128}, .seeds = kSeeds}}}},
+      .methods = methods(),
+      .looks = kJpoLooks,
+  });
+  // With the paper's number of parameters, 13,925, at the price of one unit
+  // that everything has to pass.
+  r.add(Experiment{
+      .name = "jpo/wave-packet-head",
+      .title = "Wave packet, head 64-32-1",
+      .source = {.paper = "jpo", .where = "App. C"},
+      .problem = recipe(),
+      .setting = setting({64, 32, 1}),
+      .profiles =
+          {{.name = "smoke",
+            .rows = {{.methods = {"bfgs"}, .n = {4}, .seeds = {0}},
+                     trained({"jpo"}, {4}, {0}, 20)}},
+           {.name = "quick",
+            .rows = {{.methods = {"bfgs"}, .n = {32}, .seeds = {0, 1, 2}},
+                     trained({"jpo"}, {32}, {0, 1, 2}, kQuickIterations)}},
+           {.name = "paper",
+            .rows = {{.methods = {"bfgs"}, .n = {32, 128}, .seeds = kSeeds},
+                     trained({"jpo"}, {32, 128}, kSeeds, kFitIterations)}}},
+      .methods = jpo_methods({.rate = 1e-3, .iterations = kFitIterations}),
+      .looks = kJpoLooks,
+  });
+}
+
 }  // namespace physinv::jpo::wave_packet

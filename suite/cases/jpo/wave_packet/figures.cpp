@@ -142,8 +142,11 @@ Section report_head(const Results& results, const Published& published) {
   return section;
 }
 
-const bool kReport = register_report("jpo/wave-packet", report) &&
-                     register_report("jpo/wave-packet-head", report_head);
-
 }  // namespace
+
+void add_reports(Registry& r) {
+  r.add_report("jpo/wave-packet", report);
+  r.add_report("jpo/wave-packet-head", report_head);
+}
+
 }  // namespace physinv::jpo::wave_packet

@@ -16,7 +16,7 @@ Method method(const MatrixMethod& m, const MatrixProblem& p) {
           .chain = {train_at_best_rate(options, {.rates = m.rates})}};
 }
 
-bool add(const MatrixProblem& p) {
+Experiment experiment(const MatrixProblem& p) {
   std::vector<Method> able;
   std::vector<std::string> ids, few;
   for (const MatrixMethod& m : methods()) {
@@ -26,25 +26,23 @@ bool add(const MatrixProblem& p) {
     if (m.id == "adam" || m.id == "sip") few.push_back(m.id);
   }
   const auto full = row(ids, kProblems, 3, p.updates);
-  return register_experiment(
-      {.name = p.experiment(),
-       .title = p.title,
-       .source = {},
-       .problem = p.problem,
-       .setting = p.setting,
-       .profiles = {{.name = "smoke", .rows = {row(few, 4, 1, 2)}},
-                    {.name = "quick",
-                     .rows = {row(ids, kProblems, 1, p.updates / 10)}},
-                    {.name = "standard", .rows = {full}},
-                    {.name = "paper", .rows = {full}}},
-       .methods = std::move(able)});
+  return {.name = p.experiment(),
+          .title = p.title,
+          .source = {},
+          .problem = p.problem,
+          .setting = p.setting,
+          .profiles = {{.name = "smoke", .rows = {row(few, 4, 1, 2)}},
+                       {.name = "quick",
+                        .rows = {row(ids, kProblems, 1, p.updates / 10)}},
+                       {.name = "standard", .rows = {full}},
+                       {.name = "paper", .rows = {full}}},
+          .methods = std::move(able)};
 }
 
-const bool kRegistered = [] {
-  bool all = true;
-  for (const MatrixProblem& p : problems()) all = add(p) && all;
-  return all;
-}();
-
 }  // namespace
+
+void add_experiments(Registry& r) {
+  for (const MatrixProblem& p : problems()) r.add(experiment(p));
+}
+
 }  // namespace physinv::matrix

@@ -136,12 +136,14 @@ Section report(const Results& results, const Published& published) {
       .figures = {heat_map(lines)}};
 }
 
-const bool kReport =
-    register_overview({.paper = "matrix",
-                       .title = "Every method on every problem",
-                       .profiles = {"smoke", "quick", "standard", "paper"},
-                       .claims = {},
-                       .report = report});
-
 }  // namespace
+
+void add_reports(Registry& r) {
+  r.add(Overview{.paper = "matrix",
+                 .title = "Every method on every problem",
+                 .profiles = {"smoke", "quick", "standard", "paper"},
+                 .claims = {},
+                 .report = report});
+}
+
 }  // namespace physinv::matrix

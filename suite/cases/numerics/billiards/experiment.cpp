@@ -41,25 +41,29 @@ std::vector<double> speeds() {
 
 const ProblemRecipe kBilliards = problem<Billiards>("billiards", kAhead);
 
-const bool kRegistered = register_atlas(
-    {.name = "numerics/billiards",
-     .title = "Numerics of billiards",
-     .source = {.paper = "jpo", .where = "Sec. 4"},
-     .sweeps = {{.id = "grazing",
-                 .title = "Aim, from head-on (0) past grazing (1), and speed",
-                 .x = {"offset over 2 r", offsets()},
-                 .y = {"speed", speeds()},
-                 .point = aimed,
-                 .problems = {kBilliards}},
-                {.id = "velocities",
-                 .title = "The plane of velocities",
-                 .x = {"velocity in x", spaced(-3, 3, 25)},
-                 .y = {"velocity in y", spaced(-3, 3, 25)},
-                 .point = velocity,
-                 .problems = {kBilliards}}},
-     .knobs = {batch_knob(
-         problem<Billiards>("billiards"), 1024, {}, billiards_closed_form())},
-     .problem = problem<Billiards>("billiards")});
-
 }  // namespace
+
+void add_experiments(Registry& r) {
+  add_atlas(
+      r,
+      {.name = "numerics/billiards",
+       .title = "Numerics of billiards",
+       .source = {.paper = "jpo", .where = "Sec. 4"},
+       .sweeps = {{.id = "grazing",
+                   .title = "Aim, from head-on (0) past grazing (1), and speed",
+                   .x = {"offset over 2 r", offsets()},
+                   .y = {"speed", speeds()},
+                   .point = aimed,
+                   .problems = {kBilliards}},
+                  {.id = "velocities",
+                   .title = "The plane of velocities",
+                   .x = {"velocity in x", spaced(-3, 3, 25)},
+                   .y = {"velocity in y", spaced(-3, 3, 25)},
+                   .point = velocity,
+                   .problems = {kBilliards}}},
+       .knobs = {batch_knob(
+           problem<Billiards>("billiards"), 1024, {}, billiards_closed_form())},
+       .problem = problem<Billiards>("billiards")});
+}
+
 }  // namespace physinv::numerics::billiards

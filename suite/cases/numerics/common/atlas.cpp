@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "suite/diagnostics/stability_sweep.h"
-#include "suite/harness/registry.h"
 
 namespace physinv {
 namespace {
@@ -43,7 +42,7 @@ Vector<double> uneven(Index rows, double size) {
       rows, [=](Index k) { return size * std::cos(1.1 * double(k)); });
 }
 
-bool register_atlas(Atlas atlas) {
+void add_atlas(Registry& r, Atlas atlas) {
   Method method{kMethod, {}};
   std::vector<std::string> stages;
   for (const Sweep& sweep : atlas.sweeps) {
@@ -74,7 +73,7 @@ bool register_atlas(Atlas atlas) {
     }
     return section;
   };
-  return register_experiment({
+  r.add(Experiment{
       .name = atlas.name,
       .title = atlas.title,
       .source = atlas.source,

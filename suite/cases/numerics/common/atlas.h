@@ -11,7 +11,7 @@
 #include "suite/cases/numerics/common/accuracy.h"
 #include "suite/cases/numerics/common/sweep_report.h"
 #include "suite/core/recipe.h"
-#include "suite/harness/case.h"
+#include "suite/harness/registry.h"
 
 namespace physinv {
 
@@ -41,9 +41,8 @@ struct Atlas {
 
 /// An experiment with the method `stability`, a stage per sweep, a table and
 /// maps of each, and the claim N1 about all adjoints; with knobs the method
-/// `work-precision` and claims about observed orders, too. For static
-/// initialisation; returns true.
-bool register_atlas(Atlas atlas);
+/// `work-precision` and claims about observed orders, too.
+void add_atlas(Registry& r, Atlas atlas);
 
 /// Those registered, in any order.
 const std::vector<Atlas>& atlases();

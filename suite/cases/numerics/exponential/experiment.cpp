@@ -9,23 +9,27 @@ namespace {
 const SweepAxis kPlace{"x", spaced(-760, 720, 75), false};
 const SweepAxis kOffset{"offset", spaced(-1, 1, 9), false};
 
-const bool kRegistered = register_atlas(
-    {.name = "numerics/exponential",
-     .title = "Numerics of the exponential",
-     .source = {.paper = "sip", .where = "App. C.2"},
-     .sweeps = {{.id = "places",
-                 .title = "The unknown, coarse and fine",
-                 .x = kPlace,
-                 .y = kOffset,
-                 .point =
-                     [](double place, double offset) {
-                       return Vector<double>::Constant(1, place + offset);
-                     },
-                 .problems = {problem<Exponential>("exponential")}}},
-     .knobs = {batch_knob(problem<Exponential>("exponential"),
-                          4096,
-                          {},
-                          exponential_closed_form())}});
-
 }  // namespace
+
+void add_experiments(Registry& r) {
+  add_atlas(r,
+            {.name = "numerics/exponential",
+             .title = "Numerics of the exponential",
+             .source = {.paper = "sip", .where = "App. C.2"},
+             .sweeps = {{.id = "places",
+                         .title = "The unknown, coarse and fine",
+                         .x = kPlace,
+                         .y = kOffset,
+                         .point =
+                             [](double place, double offset) {
+                               return Vector<double>::Constant(1,
+                                                               place + offset);
+                             },
+                         .problems = {problem<Exponential>("exponential")}}},
+             .knobs = {batch_knob(problem<Exponential>("exponential"),
+                                  4096,
+                                  {},
+                                  exponential_closed_form())}});
+}
+
 }  // namespace physinv::numerics::exponential

@@ -61,8 +61,7 @@ bool proven(const Cells& c, Index j) {
          c.status(c.once(j)) < StressStatus::unproven;
 }
 
-const bool kClaims = register_claims(
-    kName,
+const std::vector<Claim> kClaims(
     {{.id = "N1",
       .from = "smoke",
       .says = "With a cut, no update and no loss is NaN or infinite",
@@ -102,4 +101,7 @@ const bool kClaims = register_claims(
           at_most("of them with an update", cells(blind_and_moved), 0)}}});
 
 }  // namespace
+
+void add_claims(Registry& r) { r.add_claims(kName, kClaims); }
+
 }  // namespace physinv::half_inverse_numerics

@@ -27,21 +27,24 @@ std::shared_ptr<const Stage> stress() {
 
 const std::vector<Row> kRows = {{.methods = {kMethod}, .n = {1}, .seeds = {0}}};
 
-const auto kRegistered = register_experiment({
-    .name = kName,
-    .title = "Numerics of half-inverse updates",
-    .source = {.paper = "hig", .where = "Secs. 2.1, 2.3"},
-    .problem = problem<ScaledOutput>("scaled_output"),
-    .setting = {.predictor = {{Field::given},
-                              nn::mlp({.hidden = {7},
-                                       .activation = nn::Activation::tanh,
-                                       .init = nn::Init::glorot})}},
-    .profiles = {{.name = "smoke", .rows = kRows},
-                 {.name = "quick", .rows = kRows},
-                 {.name = "standard", .rows = kRows},
-                 {.name = "paper", .rows = kRows}},
-    .methods = {{kMethod, {stress()}}},
-});
-
 }  // namespace
+
+void add_experiments(Registry& r) {
+  r.add(Experiment{
+      .name = kName,
+      .title = "Numerics of half-inverse updates",
+      .source = {.paper = "hig", .where = "Secs. 2.1, 2.3"},
+      .problem = problem<ScaledOutput>("scaled_output"),
+      .setting = {.predictor = {{Field::given},
+                                nn::mlp({.hidden = {7},
+                                         .activation = nn::Activation::tanh,
+                                         .init = nn::Init::glorot})}},
+      .profiles = {{.name = "smoke", .rows = kRows},
+                   {.name = "quick", .rows = kRows},
+                   {.name = "standard", .rows = kRows},
+                   {.name = "paper", .rows = kRows}},
+      .methods = {{kMethod, {stress()}}},
+  });
+}
+
 }  // namespace physinv::half_inverse_numerics

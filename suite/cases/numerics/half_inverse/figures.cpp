@@ -187,7 +187,8 @@ Section report(const Results& results, const Published& published) {
           .figures = {maps(stage), lines(stage)}};
 }
 
-const bool kReport = register_report(kName, report);
-
 }  // namespace
+
+void add_reports(Registry& r) { r.add_report(kName, report); }
+
 }  // namespace physinv::half_inverse_numerics

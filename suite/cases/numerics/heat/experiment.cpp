@@ -48,23 +48,28 @@ Knob floor_knob(double end_time) {
 /// Of so few cells that the sums of the closed form take no time.
 constexpr HeatOptions kFew{.resolution = 8, .end_time = 1};
 
-const bool kRegistered = register_atlas(
-    {.name = "numerics/heat",
-     .title = "Numerics of heat",
-     .source = {.paper = "sip", .where = "App. B.3"},
-     .sweeps = {{.id = "times",
-                 .title = "Wave number and end time",
-                 .x = {"wave number", {0, 1, 2, 3, 4, 5, 6, 7, 8}},
-                 .y = kTimes,
-                 .point = wave,
-                 .problems = along(
-                     kTimes, [](double end_time) { return until(end_time); })}},
-     .knobs = {
-         floor_knob(1),
-         floor_knob(8),
-         floor_knob(64),
-         batch_knob(
-             problem<Heat>("heat", kFew), 32, {}, heat_closed_form(kFew))}});
-
 }  // namespace
+
+void add_experiments(Registry& r) {
+  add_atlas(
+      r,
+      {.name = "numerics/heat",
+       .title = "Numerics of heat",
+       .source = {.paper = "sip", .where = "App. B.3"},
+       .sweeps = {{.id = "times",
+                   .title = "Wave number and end time",
+                   .x = {"wave number", {0, 1, 2, 3, 4, 5, 6, 7, 8}},
+                   .y = kTimes,
+                   .point = wave,
+                   .problems =
+                       along(kTimes,
+                             [](double end_time) { return until(end_time); })}},
+       .knobs = {
+           floor_knob(1),
+           floor_knob(8),
+           floor_knob(64),
+           batch_knob(
+               problem<Heat>("heat", kFew), 32, {}, heat_closed_form(kFew))}});
+}
+
 }  // namespace physinv::numerics::heat

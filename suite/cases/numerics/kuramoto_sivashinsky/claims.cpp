@@ -52,7 +52,8 @@ std::vector<Claim> claims() {
   return all;
 }
 
-const bool kClaims = register_claims(kName, claims());
-
 }  // namespace
+
+void add_claims(Registry& r) { r.add_claims(kName, claims()); }
+
 }  // namespace physinv::ks_numerics

@@ -97,17 +97,22 @@ std::vector<Row> rows(Index n) {
 /// Nothing is learned here.
 const Setting kNoNetworks;
 
-const auto kRegistered = register_experiment({
-    .name = kName,
-    .title = "Numerics of the Kuramoto-Sivashinsky solver",
-    .source = {.paper = "jpo", .where = "App. D.3"},
-    .problem = until(kEnd),
-    .setting = kNoNetworks,
-    .profiles = {{.name = "smoke", .rows = rows(4)},
-                 {.name = "quick", .rows = rows(8)},
-                 {.name = "paper", .rows = rows(32)}},
-    .methods = {accuracy_method(knobs()), growth_method(), stability_method()},
-});
-
 }  // namespace
+
+void add_experiments(Registry& r) {
+  r.add(Experiment{
+      .name = kName,
+      .title = "Numerics of the Kuramoto-Sivashinsky solver",
+      .source = {.paper = "jpo", .where = "App. D.3"},
+      .problem = until(kEnd),
+      .setting = kNoNetworks,
+      .profiles = {{.name = "smoke", .rows = rows(4)},
+                   {.name = "quick", .rows = rows(8)},
+                   {.name = "paper", .rows = rows(32)}},
+      .methods = {accuracy_method(knobs()),
+                  growth_method(),
+                  stability_method()},
+  });
+}
+
 }  // namespace physinv::ks_numerics

@@ -40,52 +40,57 @@ const SweepAxis kTimes{"end time", {0.25, 1, 4, 16}, true};
 
 const SweepAxis kTimeSteps{"time step", {1, 0.5, 0.25, 0.125}, true};
 
-const bool kRegistered = register_atlas(
-    {.name = "numerics/marker-flow",
-     .title = "Numerics of a marker in a flow",
-     .source = {.paper = "sip", .where = "App. B.4"},
-     .sweeps = {{.id = "grids",
-                 .title = "Speed and grid, one step",
-                 .x = kSpeeds,
-                 .y = kGrids,
-                 .point =
-                     [](double speed, double cells) {
-                       return flow(speed, static_cast<Index>(cells));
-                     },
-                 .problems = along(kGrids,
-                                   [](double cells) {
-                                     return problem<MarkerFlow>(
-                                         "marker_flow",
-                                         {.cells = static_cast<Index>(cells),
-                                          .end_time = 0.25,
-                                          .steps = 1});
-                                   })},
-                {.id = "times",
-                 .title = "Speed and end time",
-                 .x = kSpeeds,
-                 .y = kTimes,
-                 .point = [](double speed, double) { return flow(speed, 32); },
-                 .problems = along(kTimes,
-                                   [](double end_time) {
-                                     return problem<MarkerFlow>(
-                                         "marker_flow",
-                                         {.cells = 32,
-                                          .end_time = end_time,
-                                          .steps = static_cast<Index>(
-                                              4 * end_time)});
-                                   })}},
-     .knobs = {{.id = "steps",
-                .title = "Time steps, 32 x 32 cells",
-                .axis = kTimeSteps,
-                .problems = along(kTimeSteps,
-                                  [](double step) {
-                                    return of_steps(
-                                        static_cast<Index>(2 / step));
-                                  }),
-                .reference = of_steps(32),
-                .samples = 4,
-                .repetitions = 3}},
-     .problem = problem<MarkerFlow>("marker_flow")});
-
 }  // namespace
+
+void add_experiments(Registry& r) {
+  add_atlas(
+      r,
+      {.name = "numerics/marker-flow",
+       .title = "Numerics of a marker in a flow",
+       .source = {.paper = "sip", .where = "App. B.4"},
+       .sweeps = {{.id = "grids",
+                   .title = "Speed and grid, one step",
+                   .x = kSpeeds,
+                   .y = kGrids,
+                   .point =
+                       [](double speed, double cells) {
+                         return flow(speed, static_cast<Index>(cells));
+                       },
+                   .problems = along(kGrids,
+                                     [](double cells) {
+                                       return problem<MarkerFlow>(
+                                           "marker_flow",
+                                           {.cells = static_cast<Index>(cells),
+                                            .end_time = 0.25,
+                                            .steps = 1});
+                                     })},
+                  {.id = "times",
+                   .title = "Speed and end time",
+                   .x = kSpeeds,
+                   .y = kTimes,
+                   .point = [](double speed,
+                               double) { return flow(speed, 32); },
+                   .problems = along(kTimes,
+                                     [](double end_time) {
+                                       return problem<MarkerFlow>(
+                                           "marker_flow",
+                                           {.cells = 32,
+                                            .end_time = end_time,
+                                            .steps = static_cast<Index>(
+                                                4 * end_time)});
+                                     })}},
+       .knobs = {{.id = "steps",
+                  .title = "Time steps, 32 x 32 cells",
+                  .axis = kTimeSteps,
+                  .problems = along(kTimeSteps,
+                                    [](double step) {
+                                      return of_steps(
+                                          static_cast<Index>(2 / step));
+                                    }),
+                  .reference = of_steps(32),
+                  .samples = 4,
+                  .repetitions = 3}},
+       .problem = problem<MarkerFlow>("marker_flow")});
+}
+
 }  // namespace physinv::numerics::marker_flow

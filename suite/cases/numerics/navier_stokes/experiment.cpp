@@ -53,30 +53,33 @@ ProblemRecipe stepping(double step) {
                                {.steps = static_cast<Index>(56 / step)});
 }
 
-const bool kRegistered =
-    register_atlas({.name = "numerics/navier-stokes",
-                    .title = "Numerics of wind in a box",
-                    .source = {.paper = "jpo", .where = "App. D.4"},
-                    .sweeps = {{.id = "grids",
-                                .title = "Speed and grid",
-                                .x = kSpeeds,
-                                .y = kGrids,
-                                .point = blast,
-                                .problems = along(kGrids, on_grid)},
-                               {.id = "scenes",
-                                .title = "Speed and obstacles",
-                                .x = kSpeeds,
-                                .y = kScenes,
-                                .point = blast,
-                                .problems = along(kScenes, in_scene)}},
-                    .knobs = {{.id = "steps",
-                               .title = "Time steps",
-                               .axis = kTimeSteps,
-                               .problems = along(kTimeSteps, stepping),
-                               .reference = stepping(0.5),
-                               .samples = 2,
-                               .repetitions = 2}},
-                    .problem = problem<NavierStokes>("navier_stokes")});
-
 }  // namespace
+
+void add_experiments(Registry& r) {
+  add_atlas(r,
+            {.name = "numerics/navier-stokes",
+             .title = "Numerics of wind in a box",
+             .source = {.paper = "jpo", .where = "App. D.4"},
+             .sweeps = {{.id = "grids",
+                         .title = "Speed and grid",
+                         .x = kSpeeds,
+                         .y = kGrids,
+                         .point = blast,
+                         .problems = along(kGrids, on_grid)},
+                        {.id = "scenes",
+                         .title = "Speed and obstacles",
+                         .x = kSpeeds,
+                         .y = kScenes,
+                         .point = blast,
+                         .problems = along(kScenes, in_scene)}},
+             .knobs = {{.id = "steps",
+                        .title = "Time steps",
+                        .axis = kTimeSteps,
+                        .problems = along(kTimeSteps, stepping),
+                        .reference = stepping(0.5),
+                        .samples = 2,
+                        .repetitions = 2}},
+             .problem = problem<NavierStokes>("navier_stokes")});
+}
+
 }  // namespace physinv::numerics::navier_stokes

@@ -16,18 +16,23 @@ ProblemRecipe noisy(double level) {
   return problem<NoisyAbsolute>("noisy_absolute", {.level = level});
 }
 
-const bool kRegistered = register_atlas(
-    {.name = "numerics/gradient-alignment",
-     .title = "Numerics of the noisy distance",
-     .source = {.paper = "jpo", .where = "Sec. 2"},
-     .sweeps = {{.id = "places",
-                 .title = "Place and level of the noise",
-                 .x = kPlace,
-                 .y = kLevel,
-                 .point = [](double place, double) { return uneven(1, place); },
-                 .problems = along(kLevel, noisy),
-                 .examples = 2}},
-     .knobs = {batch_knob(noisy(1), 1024, {}, noisy_absolute_closed_form())}});
-
 }  // namespace
+
+void add_experiments(Registry& r) {
+  add_atlas(r,
+            {.name = "numerics/gradient-alignment",
+             .title = "Numerics of the noisy distance",
+             .source = {.paper = "jpo", .where = "Sec. 2"},
+             .sweeps = {{.id = "places",
+                         .title = "Place and level of the noise",
+                         .x = kPlace,
+                         .y = kLevel,
+                         .point = [](double place,
+                                     double) { return uneven(1, place); },
+                         .problems = along(kLevel, noisy),
+                         .examples = 2}},
+             .knobs = {batch_knob(
+                 noisy(1), 1024, {}, noisy_absolute_closed_form())}});
+}
+
 }  // namespace physinv::numerics::noisy_absolute

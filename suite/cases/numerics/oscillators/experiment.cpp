@@ -22,30 +22,35 @@ ProblemRecipe stepping(double dt) {
 const SweepAxis kSteps{
     "time step", {0.5, 0.25, 0.125, 0.0625, 0.03125, 0.015625}, true};
 
-const bool kRegistered = register_atlas(
-    {.name = "numerics/oscillators",
-     .title = "Numerics of the oscillators",
-     .source = {.paper = "hig", .where = "Sec. 3.1"},
-     .sweeps = {{.id = "controls",
-                 .title = "Size of the control and time step (96 steps)",
-                 .x = kSize,
-                 .y = kStep,
-                 .point = [](double size, double) { return uneven(96, size); },
-                 .problems = along(kStep,
-                                   [](double dt) {
-                                     return problem<Oscillators>("oscillators",
-                                                                 {.dt = dt});
-                                   }),
-                 .examples = 2}},
-     .knobs = {{.id = "step",
-                .title = "Time step of the Runge-Kutta method, until t = 12",
-                .axis = kSteps,
-                .problems = along(kSteps, stepping),
-                .reference = stepping(1.0 / 512),
-                .order = 4,
-                .regime = 3,
-                .samples = 64},
-               batch_knob(stepping(0.125), 256, stepping(1.0 / 128))}});
-
 }  // namespace
+
+void add_experiments(Registry& r) {
+  add_atlas(
+      r,
+      {.name = "numerics/oscillators",
+       .title = "Numerics of the oscillators",
+       .source = {.paper = "hig", .where = "Sec. 3.1"},
+       .sweeps = {{.id = "controls",
+                   .title = "Size of the control and time step (96 steps)",
+                   .x = kSize,
+                   .y = kStep,
+                   .point = [](double size,
+                               double) { return uneven(96, size); },
+                   .problems = along(kStep,
+                                     [](double dt) {
+                                       return problem<Oscillators>(
+                                           "oscillators", {.dt = dt});
+                                     }),
+                   .examples = 2}},
+       .knobs = {{.id = "step",
+                  .title = "Time step of the Runge-Kutta method, until t = 12",
+                  .axis = kSteps,
+                  .problems = along(kSteps, stepping),
+                  .reference = stepping(1.0 / 512),
+                  .order = 4,
+                  .regime = 3,
+                  .samples = 64},
+                 batch_knob(stepping(0.125), 256, stepping(1.0 / 128))}});
+}
+
 }  // namespace physinv::numerics::oscillators

@@ -145,12 +145,14 @@ Section report(const Results& results, const Published&) {
           .figures = {maps(results)}};
 }
 
-const bool kRegistered =
-    register_overview({.paper = "numerics",
-                       .title = "Accuracy and stability of all problems",
-                       .profiles = {"smoke", "quick", "standard", "paper"},
-                       .claims = {},
-                       .report = report});
-
 }  // namespace
+
+void add_reports(Registry& r) {
+  r.add(Overview{.paper = "numerics",
+                 .title = "Accuracy and stability of all problems",
+                 .profiles = {"smoke", "quick", "standard", "paper"},
+                 .claims = {},
+                 .report = report});
+}
+
 }  // namespace physinv::numerics::overview

@@ -47,19 +47,24 @@ Sweep sources(const char* id, const char* title, bool rough) {
 const SweepAxis kResiduals{
     "relative residual", {1e-1, 1e-3, 1e-5, 1e-8, 1e-12}, true};
 
-const bool kRegistered = register_atlas(
-    {.name = "numerics/poisson-plane",
-     .title = "Numerics of Poisson's equation on planes",
-     .source = {.paper = "sip", .where = "App. B.2"},
-     .sweeps = {sources("smoothest", "Smoothest source: size and grid", false),
-                sources("roughest", "Roughest source: size and grid", true)},
-     .knobs = {{.id = "residual",
-                .title = "Conjugate gradients",
-                .axis = kResiduals,
-                .problems = along(kResiduals, iterated),
-                .reference = plane(64),
-                .repetitions = 3},
-               batch_knob(plane(64), 32, iterated(1e-13))}});
-
 }  // namespace
+
+void add_experiments(Registry& r) {
+  add_atlas(
+      r,
+      {.name = "numerics/poisson-plane",
+       .title = "Numerics of Poisson's equation on planes",
+       .source = {.paper = "sip", .where = "App. B.2"},
+       .sweeps = {sources(
+                      "smoothest", "Smoothest source: size and grid", false),
+                  sources("roughest", "Roughest source: size and grid", true)},
+       .knobs = {{.id = "residual",
+                  .title = "Conjugate gradients",
+                  .axis = kResiduals,
+                  .problems = along(kResiduals, iterated),
+                  .reference = plane(64),
+                  .repetitions = 3},
+                 batch_knob(plane(64), 32, iterated(1e-13))}});
+}
+
 }  // namespace physinv::numerics::poisson_plane

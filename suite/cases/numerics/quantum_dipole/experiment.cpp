@@ -39,26 +39,31 @@ Knob steps(const char* id, double end, int halvings, double order) {
   return knob;
 }
 
-const bool kRegistered = register_atlas(
-    {.name = "numerics/quantum-dipole",
-     .title = "Numerics of the quantum dipole",
-     .source = {.paper = "hig", .where = "Sec. 3.3"},
-     .sweeps = {{.id = "controls",
-                 .title = "Size of the control and time step (384 steps)",
-                 .x = kSize,
-                 .y = kStep,
-                 .point = [](double size, double) { return uneven(384, size); },
-                 .problems = along(kStep,
-                                   [](double dt) {
-                                     return problem<QuantumDipole>(
-                                         "quantum_dipole", {.dt = dt});
-                                   }),
-                 // psi has norm 1 and 384 roundings: differences over 0.1 are
-                 // known to 1e-12.
-                 .zero = 1e-7}},
-     .knobs = {steps("step", 19.2, 5, 0),
-               steps("short", 1.2, 8, 2),
-               batch_knob(stepping(19.2, 0), 64, stepping(19.2, 4))}});
-
 }  // namespace
+
+void add_experiments(Registry& r) {
+  add_atlas(
+      r,
+      {.name = "numerics/quantum-dipole",
+       .title = "Numerics of the quantum dipole",
+       .source = {.paper = "hig", .where = "Sec. 3.3"},
+       .sweeps = {{.id = "controls",
+                   .title = "Size of the control and time step (384 steps)",
+                   .x = kSize,
+                   .y = kStep,
+                   .point = [](double size,
+                               double) { return uneven(384, size); },
+                   .problems = along(kStep,
+                                     [](double dt) {
+                                       return problem<QuantumDipole>(
+                                           "quantum_dipole", {.dt = dt});
+                                     }),
+                   // psi has norm 1 and 384 roundings: differences over 0.1 are
+                   // known to 1e-12.
+                   .zero = 1e-7}},
+       .knobs = {steps("step", 19.2, 5, 0),
+                 steps("short", 1.2, 8, 2),
+                 batch_knob(stepping(19.2, 0), 64, stepping(19.2, 4))}});
+}
+
 }  // namespace physinv::numerics::quantum_dipole

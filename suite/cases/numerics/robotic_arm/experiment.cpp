@@ -38,28 +38,32 @@ Vector<double> bent(double base, double direction, double bend) {
 
 const ProblemRecipe kArm = problem<RoboticArm>("robotic_arm");
 
-const bool kRegistered = register_atlas(
-    {.name = "numerics/robotic-arm",
-     .title = "Numerics of the robotic arm",
-     .source = {.paper = "jpo", .where = "App. D.5"},
-     .sweeps = {{.id = "poses",
-                 .title = "Singular poses (bend 0 and ±pi) and others",
-                 .x = {"direction of the first link", turn()},
-                 .y = {"bend of both joints", bends()},
-                 .point =
-                     [](double direction, double bend) {
-                       return bent(0.25, direction, bend);
-                     },
-                 .problems = {kArm}},
-                // From a turn to where neighbouring numbers are turns apart.
-                {.id = "turns",
-                 .title = "Large angles",
-                 .x = {"size of the angles", decades(0, 16), true},
-                 .y = {"bend of both joints", {0, 0.5, 1}},
-                 .point = [](double size,
-                             double bend) { return bent(0, size, bend); },
-                 .problems = {kArm}}},
-     .knobs = {batch_knob(kArm, 1024, {}, robotic_arm_closed_form())}});
-
 }  // namespace
+
+void add_experiments(Registry& r) {
+  add_atlas(
+      r,
+      {.name = "numerics/robotic-arm",
+       .title = "Numerics of the robotic arm",
+       .source = {.paper = "jpo", .where = "App. D.5"},
+       .sweeps = {{.id = "poses",
+                   .title = "Singular poses (bend 0 and ±pi) and others",
+                   .x = {"direction of the first link", turn()},
+                   .y = {"bend of both joints", bends()},
+                   .point =
+                       [](double direction, double bend) {
+                         return bent(0.25, direction, bend);
+                       },
+                   .problems = {kArm}},
+                  // From a turn to where neighbouring numbers are turns apart.
+                  {.id = "turns",
+                   .title = "Large angles",
+                   .x = {"size of the angles", decades(0, 16), true},
+                   .y = {"bend of both joints", {0, 0.5, 1}},
+                   .point = [](double size,
+                               double bend) { return bent(0, size, bend); },
+                   .problems = {kArm}}},
+       .knobs = {batch_knob(kArm, 1024, {}, robotic_arm_closed_form())}});
+}
+
 }  // namespace physinv::numerics::robotic_arm

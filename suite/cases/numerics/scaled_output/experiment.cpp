@@ -13,24 +13,28 @@ Vector<double> unknowns(double size, double) {
   return size * Eigen::Vector2d(0.8, -0.6);
 }
 
-const bool kRegistered = register_atlas(
-    {.name = "numerics/toy",
-     .title = "Numerics of the toy",
-     .source = {.paper = "hig", .where = "Sec. 2.1"},
-     .sweeps = {{.id = "sizes",
-                 .title = "Size of the unknowns and factor of the second",
-                 .x = kSize,
-                 .y = kGamma,
-                 .point = unknowns,
-                 .problems = along(kGamma,
-                                   [](double gamma) {
-                                     return problem<ScaledOutput>(
-                                         "scaled_output", {.gamma = gamma});
-                                   })}},
-     .knobs = {batch_knob(problem<ScaledOutput>("scaled_output"),
-                          4096,
-                          {},
-                          scaled_output_closed_form())}});
-
 }  // namespace
+
+void add_experiments(Registry& r) {
+  add_atlas(
+      r,
+      {.name = "numerics/toy",
+       .title = "Numerics of the toy",
+       .source = {.paper = "hig", .where = "Sec. 2.1"},
+       .sweeps = {{.id = "sizes",
+                   .title = "Size of the unknowns and factor of the second",
+                   .x = kSize,
+                   .y = kGamma,
+                   .point = unknowns,
+                   .problems = along(kGamma,
+                                     [](double gamma) {
+                                       return problem<ScaledOutput>(
+                                           "scaled_output", {.gamma = gamma});
+                                     })}},
+       .knobs = {batch_knob(problem<ScaledOutput>("scaled_output"),
+                            4096,
+                            {},
+                            scaled_output_closed_form())}});
+}
+
 }  // namespace physinv::numerics::scaled_output

@@ -16,20 +16,7 @@ namespace {
 
 constexpr const char* kName = "numerics/transport";
 
-// ---- experiment -----------------------------------------------------------
-
 const Row kRow{.methods = {"carry"}, .n = {1}, .seeds = {0}};
-
-const bool kRegistered = register_experiment(
-    {.name = kName,
-     .title = "Numerics of carried fields",
-     .source = {.paper = "sip", .where = "App. B.4"},
-     .problem = problem<MarkerFlow>("marker_flow", {.cells = 32}),
-     .setting = {},
-     .profiles = {{.name = "smoke", .rows = {kRow}},
-                  {.name = "quick", .rows = {kRow}},
-                  {.name = "paper", .rows = {kRow}}},
-     .methods = {{"carry", {energy_drift(), advection_order()}}}});
 
 // ---- claims ---------------------------------------------------------------
 
@@ -53,8 +40,7 @@ Quantity order(const char* array) {
                 });
 }
 
-const bool kClaims = register_claims(
-    kName,
+const std::vector<Claim> kClaims(
     {{.id = "N1",
       .from = "smoke",
       .says = "A thousand steps keep the energy to rounding, and no cell loses "
@@ -137,15 +123,29 @@ Figure order_figure(const StageRecord& s) {
               "step the largest error where the limiter does not act."};
 }
 
-const bool kReport =
-    register_report(kName, [](const Results& results, const Published&) {
-      Section section;
-      if (const auto* s = find(results, "energy"))
-        section.figures.push_back(drift_figure(*s));
-      if (const auto* s = find(results, "order"))
-        section.figures.push_back(order_figure(*s));
-      return section;
-    });
+Section report(const Results& results, const Published&) {
+  Section section;
+  if (const auto* s = find(results, "energy"))
+    section.figures.push_back(drift_figure(*s));
+  if (const auto* s = find(results, "order"))
+    section.figures.push_back(order_figure(*s));
+  return section;
+}
 
 }  // namespace
+
+void add_experiments(Registry& r) {
+  r.add(Experiment{.name = kName,
+                   .title = "Numerics of carried fields",
+                   .source = {.paper = "sip", .where = "App. B.4"},
+                   .problem = problem<MarkerFlow>("marker_flow", {.cells = 32}),
+                   .setting = {},
+                   .profiles = {{.name = "smoke", .rows = {kRow}},
+                                {.name = "quick", .rows = {kRow}},
+                                {.name = "paper", .rows = {kRow}}},
+                   .methods = {{"carry", {energy_drift(), advection_order()}}},
+                   .claims = kClaims,
+                   .report = report});
+}
+
 }  // namespace physinv::numerics::transport

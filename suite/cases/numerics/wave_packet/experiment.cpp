@@ -107,22 +107,25 @@ std::vector<Row> rows() {
 /// Nothing is learned here.
 const Setting kNoNetworks;
 
-const auto kRegistered = register_experiment({
-    .name = kName,
-    .title = "Numerics of the wave packet",
-    .source = {.paper = "jpo", .where = "App. D.1"},
-    .problem = problem<WavePacket>("wave_packet"),
-    .setting = kNoNetworks,
-    .profiles = {{.name = "smoke", .rows = rows()},
-                 {.name = "quick", .rows = rows()},
-                 {.name = "paper", .rows = rows()}},
-    .methods = {{"stability",
-                 {sweep("positions", positions()),
-                  sweep("far", far_positions())}},
-                accuracy_method(knobs())},
-    .claims = {adjoint_claim("N1", {"positions", "far"})},
-    .report = report,
-});
-
 }  // namespace
+
+void add_experiments(Registry& r) {
+  r.add(Experiment{
+      .name = kName,
+      .title = "Numerics of the wave packet",
+      .source = {.paper = "jpo", .where = "App. D.1"},
+      .problem = problem<WavePacket>("wave_packet"),
+      .setting = kNoNetworks,
+      .profiles = {{.name = "smoke", .rows = rows()},
+                   {.name = "quick", .rows = rows()},
+                   {.name = "paper", .rows = rows()}},
+      .methods = {{"stability",
+                   {sweep("positions", positions()),
+                    sweep("far", far_positions())}},
+                  accuracy_method(knobs())},
+      .claims = {adjoint_claim("N1", {"positions", "far"})},
+      .report = report,
+  });
+}
+
 }  // namespace physinv::numerics::wave_packet

@@ -80,8 +80,7 @@ Quantity apart(const char* method) {
   });
 }
 
-const bool kScalingClaims = register_claims(
-    kScaling,
+const std::vector<Claim> kScalingClaims(
     {{.id = "P1",
       .origin = Origin::paper,
       .where = "Crux of the matter",
@@ -345,8 +344,7 @@ const std::vector<Claim> kStepClaims = {
                           identity("reversed", reversal_order),
                           3.5)}}};
 
-const bool kComparisonClaims = register_claims(
-    kComparison,
+const std::vector<Claim> kComparisonClaims(
     {{.id = "P2",
       .origin = Origin::paper,
       .where = "Crux of the matter",
@@ -462,7 +460,12 @@ const bool kComparisonClaims = register_claims(
                             1 - 1e-12,
                             1 + 1e-12)}}});
 
-const bool kStepsRegistered = register_claims(kComparison, kStepClaims);
-
 }  // namespace
+
+void add_claims(Registry& r) {
+  r.add_claims(kScaling, kScalingClaims);
+  r.add_claims(kComparison, kComparisonClaims);
+  r.add_claims(kComparison, kStepClaims);
+}
+
 }  // namespace physinv::scaling

@@ -133,8 +133,11 @@ Experiment comparison() {
   return e;
 }
 
-const bool kRegistered =
-    register_experiment(scaling()) && register_experiment(comparison());
-
 }  // namespace
+
+void add_experiments(Registry& r) {
+  r.add(scaling());
+  r.add(comparison());
+}
+
 }  // namespace physinv::scaling

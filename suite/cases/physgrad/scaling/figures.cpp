@@ -266,8 +266,11 @@ Section comparison_page(const Results& results, const Published& published) {
           .figures = {both_spaces(results), rates(results), rules(results)}};
 }
 
-const bool kReports = register_report(kScaling, scaling_page) &&
-                      register_report(kComparison, comparison_page);
-
 }  // namespace
+
+void add_reports(Registry& r) {
+  r.add_report(kScaling, scaling_page);
+  r.add_report(kComparison, comparison_page);
+}
+
 }  // namespace physinv::scaling

@@ -110,7 +110,8 @@ const std::vector<Claim> kClaimsOfAll = {
          "estimate at -3 over that at -12", of("sgd", kRise), 0.2)}},
 };
 
-const bool kClaims = register_claims("sip/exponential", kClaimsOfAll);
-
 }  // namespace
+
+void add_claims(Registry& r) { r.add_claims("sip/exponential", kClaimsOfAll); }
+
 }  // namespace physinv::exponential

@@ -53,7 +53,9 @@ std::vector<Method> methods() {
           method("newton-damped", adam, newton_proxy({.damping = 0.01}))};
 }
 
-const bool kRegistered = [] {
+}  // namespace
+
+void add_experiments(Registry& r) {
   const std::vector<std::string> three = {"sgd", "adam", "norm"};
   const std::vector<Row> full = {row(three, kPoints, 10, kPaper),
                                  row({"gt",
@@ -66,7 +68,7 @@ const bool kRegistered = [] {
                                      3,
                                      kPaper),
                                  row({"hf"}, kPoints, 3, kCurvature)};
-  register_experiment({
+  r.add(Experiment{
       .name = "sip/exponential",
       .title = "Exponential",
       .source = {.paper = "sip", .where = "App. C.2, Fig. 2"},
@@ -84,8 +86,6 @@ const bool kRegistered = [] {
            {.name = "paper", .rows = full}},
       .methods = methods(),
   });
-  return true;
-}();
+}
 
-}  // namespace
 }  // namespace physinv::exponential

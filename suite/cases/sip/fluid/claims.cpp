@@ -216,11 +216,14 @@ const std::vector<Claim> kRanges = {
                lowest({"adam-b16"}, error_left()),
                0.75)}}};
 
-const bool kClaims = register_claims(kCode.experiment, kTrained) &&
-                     register_claims(kCode.experiment, kOthers) &&
-                     register_claims(kCode.experiment, kInverse) &&
-                     register_claims(kCode.experiment, kRanges) &&
-                     register_claims(kTimed.experiment, kInverse);
-
 }  // namespace
+
+void add_claims(Registry& r) {
+  r.add_claims(kCode.experiment, kTrained);
+  r.add_claims(kCode.experiment, kOthers);
+  r.add_claims(kCode.experiment, kInverse);
+  r.add_claims(kCode.experiment, kRanges);
+  r.add_claims(kTimed.experiment, kInverse);
+}
+
 }  // namespace physinv::fluid_case

@@ -89,12 +89,10 @@ Experiment experiment(const Variant& variant) {
       .methods = methods()};
 }
 
-const bool kRegistered = [] {
-  bool all = true;
-  for (const Variant& v : {kCode, kTimed})
-    all = register_experiment(experiment(v)) && all;
-  return all;
-}();
-
 }  // namespace
+
+void add_experiments(Registry& r) {
+  for (const Variant& v : {kCode, kTimed}) r.add(experiment(v));
+}
+
 }  // namespace physinv::fluid_case

@@ -107,16 +107,13 @@ Section section_of(const Variant& variant, const Results& results) {
   return section;
 }
 
-const bool kReports = [] {
-  bool all = true;
-  for (const Variant& v : {kCode, kTimed})
-    all = register_report(v.experiment,
-                          [v](const Results& r, const Published&) {
-                            return section_of(v, r);
-                          }) &&
-          all;
-  return all;
-}();
-
 }  // namespace
+
+void add_reports(Registry& r) {
+  for (const Variant& v : {kCode, kTimed})
+    r.add_report(v.experiment, [v](const Results& results, const Published&) {
+      return section_of(v, results);
+    });
+}
+
 }  // namespace physinv::fluid_case

@@ -397,8 +397,11 @@ const std::vector<Claim> kSuite = {
      .gates = false},
 };
 
-const bool kClaims =
-    register_claims(kName, kPaper) && register_claims(kName, kSuite);
-
 }  // namespace
+
+void add_claims(Registry& r) {
+  r.add_claims(kName, kPaper);
+  r.add_claims(kName, kSuite);
+}
+
 }  // namespace physinv::heat

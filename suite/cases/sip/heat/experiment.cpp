@@ -176,7 +176,9 @@ Experiment with_operator(Experiment e) {
   return e;
 }
 
-const bool kRegistered = [] {
+}  // namespace
+
+void add_experiments(Registry& r) {
   auto standard = joined(quick(), small_batches());
   standard.push_back(row({"sip-b32", "adam-b32"}, 64, 1, 1000));
   standard.push_back(row({"adahessian"}, 128, 1, 20));
@@ -210,8 +212,8 @@ const bool kRegistered = [] {
                    {.name = "paper", .rows = joined(paper(), small_batches())}},
       .methods = methods(),
   };
-  return register_experiment(heat) && register_experiment(with_operator(heat));
-}();
+  r.add(heat);
+  r.add(with_operator(heat));
+}
 
-}  // namespace
 }  // namespace physinv::heat

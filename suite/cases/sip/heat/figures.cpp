@@ -236,8 +236,11 @@ Section operator_page(const Results& results, const Published&) {
   return section;
 }
 
-const bool kReport =
-    register_report(kName, report) && register_report(kOperator, operator_page);
-
 }  // namespace
+
+void add_reports(Registry& r) {
+  r.add_report(kName, report);
+  r.add_report(kOperator, operator_page);
+}
+
 }  // namespace physinv::heat

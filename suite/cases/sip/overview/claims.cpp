@@ -73,11 +73,13 @@ const std::vector<Claim> kClaims = {
              "mean that the inverse asks for: the share of the updates with an "
              "acute angle between them."}};
 
-const bool kRegistered =
-    register_overview({.paper = "sip",
-                       .title = "Scale-invariant learning",
-                       .profiles = {"smoke", "quick", "standard", "paper"},
-                       .claims = kClaims});
-
 }  // namespace
+
+void add_claims(Registry& r) {
+  r.add(Overview{.paper = "sip",
+                 .title = "Scale-invariant learning",
+                 .profiles = {"smoke", "quick", "standard", "paper"},
+                 .claims = kClaims});
+}
+
 }  // namespace physinv::sip::overview

@@ -337,11 +337,14 @@ const std::vector<Claim> kOperators = {
                     "time, on a machine that was shared"),
      .gates = false}};
 
-const bool kClaims = register_claims(kPlane.experiment, kDirect) &&
-                     register_claims(kPlane.experiment, kTrained) &&
-                     register_claims(kPaper.experiment, kDirect) &&
-                     register_claims(kSmall.experiment, kOnSmall) &&
-                     register_claims(kFno.experiment, kOperators);
-
 }  // namespace
+
+void add_claims(Registry& r) {
+  r.add_claims(kPlane.experiment, kDirect);
+  r.add_claims(kPlane.experiment, kTrained);
+  r.add_claims(kPaper.experiment, kDirect);
+  r.add_claims(kSmall.experiment, kOnSmall);
+  r.add_claims(kFno.experiment, kOperators);
+}
+
 }  // namespace physinv::poisson

@@ -225,13 +225,12 @@ Experiment narrow_operator() {
   return e;
 }
 
-const bool kRegistered = [] {
-  bool all = register_experiment(wide_operator()) &&
-             register_experiment(narrow_operator());
-  for (const Plane& p : {kPlane, kSmall, kPaper})
-    all = register_experiment(experiment(p)) && all;
-  return all;
-}();
-
 }  // namespace
+
+void add_experiments(Registry& r) {
+  r.add(wide_operator());
+  r.add(narrow_operator());
+  for (const Plane& p : {kPlane, kSmall, kPaper}) r.add(experiment(p));
+}
+
 }  // namespace physinv::poisson

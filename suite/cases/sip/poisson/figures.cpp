@@ -63,16 +63,13 @@ Section report(const Plane& plane, const Results& results) {
   return section;
 }
 
-const bool kReports = [] {
-  bool all = true;
-  for (const Plane& p : {kPlane, kSmall, kPaper, kFno, kNarrow})
-    all = register_report(p.experiment,
-                          [p](const Results& r, const Published&) {
-                            return report(p, r);
-                          }) &&
-          all;
-  return all;
-}();
-
 }  // namespace
+
+void add_reports(Registry& r) {
+  for (const Plane& p : {kPlane, kSmall, kPaper, kFno, kNarrow})
+    r.add_report(p.experiment, [p](const Results& results, const Published&) {
+      return report(p, results);
+    });
+}
+
 }  // namespace physinv::poisson

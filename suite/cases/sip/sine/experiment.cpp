@@ -162,15 +162,14 @@ Experiment study_of_rates(int xi) {
                std::move(methods));
 }
 
-const bool kRegistered = [] {
-  for (const Point& p : points()) register_experiment(sweep_point(p));
-  for (const int xi : kStudied) {
-    register_experiment(study_of_rates(xi));
-    for (const int gamma : kGammas)
-      register_experiment(study_of_gamma(xi, gamma));
-  }
-  return true;
-}();
-
 }  // namespace
+
+void add_experiments(Registry& r) {
+  for (const Point& p : points()) r.add(sweep_point(p));
+  for (const int xi : kStudied) {
+    r.add(study_of_rates(xi));
+    for (const int gamma : kGammas) r.add(study_of_gamma(xi, gamma));
+  }
+}
+
 }  // namespace physinv::sine

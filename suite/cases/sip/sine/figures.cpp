@@ -218,16 +218,14 @@ Section report(const Point& p,
   return section;
 }
 
-const bool kReports = [] {
-  bool all = true;
-  for (const Point& p : points())
-    all = register_report(p.experiment(),
-                          [p](const Results& r, const Published& published) {
-                            return report(p, r, published);
-                          }) &&
-          all;
-  return all;
-}();
-
 }  // namespace
+
+void add_reports(Registry& r) {
+  for (const Point& p : points())
+    r.add_report(p.experiment(),
+                 [p](const Results& results, const Published& published) {
+                   return report(p, results, published);
+                 });
+}
+
 }  // namespace physinv::sine

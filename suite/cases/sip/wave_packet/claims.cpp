@@ -197,8 +197,11 @@ const std::vector<Claim> kClaimsOfJoint = {
          "seeds differ more; it hangs on the packet's width as P6 does")},
 };
 
-const bool kClaims = register_claims("sip/wave-packet", kClaimsOfAll) &&
-                     register_claims("sip/wave-packet-joint", kClaimsOfJoint);
-
 }  // namespace
+
+void add_claims(Registry& r) {
+  r.add_claims("sip/wave-packet", kClaimsOfAll);
+  r.add_claims("sip/wave-packet-joint", kClaimsOfJoint);
+}
+
 }  // namespace physinv::sip_wave_packet

@@ -62,38 +62,40 @@ std::vector<Method> methods() {
 
 const std::vector<std::string> kWithoutNetwork = {"lbfgs", "random"};
 
-const bool kRegistered = register_experiment({
-    .name = "sip/wave-packet",
-    .title = "Wave packet",
-    .source = {.paper = "sip", .where = "App. C.1, Fig. 16"},
-    .problem = kProblem,
-    .setting = kSetting,
-    .profiles = {{.name = "smoke",
-                  .rows = {row({"lbfgs"}, 50, 1),
-                           row({"random"}, kExamples, 1),
-                           row({"net"}, 50, 1, 20)}},
-                 {.name = "quick",
-                  .rows = {row(kWithoutNetwork, kExamples, 3),
-                           row({"net"}, kExamples, 3, kQuick)}},
-                 {.name = "paper",
-                  .rows = {row(kWithoutNetwork, kExamples, 5),
-                           row({"net"}, kExamples, 5, kPaper)}}},
-    .methods = methods(),
-});
-
-/// One network for many examples, and one for each of as many.
-const bool kJoint = register_experiment({
-    .name = "sip/wave-packet-joint",
-    .title = "Wave packet, examples together and alone",
-    .source = {.paper = "sip", .where = "App. C.1"},
-    .problem = kProblem,
-    .setting = kSetting,
-    .profiles = {{.name = "smoke", .rows = {row({"fit"}, 2, 1, 5)}},
-                 {.name = "paper",
-                  .rows = {row({"fit"}, 50, 5, kQuick),
-                           row({"fit"}, 1, 50, kQuick)}}},
-    .methods = {{"fit", {jpo_fit({.step = kAdam, .iterations = kQuick})}}},
-});
-
 }  // namespace
+
+void add_experiments(Registry& r) {
+  r.add(Experiment{
+      .name = "sip/wave-packet",
+      .title = "Wave packet",
+      .source = {.paper = "sip", .where = "App. C.1, Fig. 16"},
+      .problem = kProblem,
+      .setting = kSetting,
+      .profiles = {{.name = "smoke",
+                    .rows = {row({"lbfgs"}, 50, 1),
+                             row({"random"}, kExamples, 1),
+                             row({"net"}, 50, 1, 20)}},
+                   {.name = "quick",
+                    .rows = {row(kWithoutNetwork, kExamples, 3),
+                             row({"net"}, kExamples, 3, kQuick)}},
+                   {.name = "paper",
+                    .rows = {row(kWithoutNetwork, kExamples, 5),
+                             row({"net"}, kExamples, 5, kPaper)}}},
+      .methods = methods(),
+  });
+  // One network for many examples, and one for each of as many.
+  r.add(Experiment{
+      .name = "sip/wave-packet-joint",
+      .title = "Wave packet, examples together and alone",
+      .source = {.paper = "sip", .where = "App. C.1"},
+      .problem = kProblem,
+      .setting = kSetting,
+      .profiles = {{.name = "smoke", .rows = {row({"fit"}, 2, 1, 5)}},
+                   {.name = "paper",
+                    .rows = {row({"fit"}, 50, 5, kQuick),
+                             row({"fit"}, 1, 50, kQuick)}}},
+      .methods = {{"fit", {jpo_fit({.step = kAdam, .iterations = kQuick})}}},
+  });
+}
+
 }  // namespace physinv::sip_wave_packet

@@ -1,0 +1,10 @@
+// Tests are made of what is registered.
+#include <gtest/gtest.h>
+
+#include "suite/harness/registry.h"
+
+int main(int argc, char** argv) {
+  physinv::register_all(physinv::registry());
+  testing::InitGoogleTest(&argc, argv);
+  return RUN_ALL_TESTS();
+}
