@@ -24,7 +24,7 @@ Add add_claims, add_reports;
 namespace jpo::wave_packet {
 Add add_claims, add_reports;
 }
-namespace billiards_precision {
+namespace bfgs_precision {
 Add add_claims;
 }
 namespace adjoint_wall {
@@ -47,7 +47,7 @@ void add_claims(Registry& r) {
   robotic_arm::add_reports(r);
   wave_packet::add_claims(r);
   wave_packet::add_reports(r);
-  billiards_precision::add_claims(r);
+  bfgs_precision::add_claims(r);
   adjoint_wall::add_claims(r);
 }
 

@@ -21,7 +21,7 @@ Add add_experiments;
 namespace jpo::wave_packet {
 Add add_experiments;
 }
-namespace billiards_precision {
+namespace bfgs_precision {
 Add add_experiments;
 }
 namespace adjoint_wall {
@@ -40,7 +40,7 @@ void add_experiments(Registry& r) {
 }
 
 void add_studies(Registry& r) {
-  billiards_precision::add_experiments(r);
+  bfgs_precision::add_experiments(r);
   adjoint_wall::add_experiments(r);
 }
 
