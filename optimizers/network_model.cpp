@@ -1,8 +1,5 @@
 #include "optimizers/network_model.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "suite/core/math.h"
 
 namespace physinv {
@@ -187,23 +184,8 @@ void NetworkModel<T>::warm_up() {
 
 template <class T>
 void NetworkModel<T>::predict(BatchIn<T> input, BatchOut<T> output) {
-  // A sample's output is its own: so many at a time that a call pays, so few
-  // that what runs between the layers of a large network stays in the caches.
-  constexpr Index kSamples = 16;
-  constexpr double kOperations = 64e6;
-  const double calls = std::ceil(kOperations / network_->operations() /
-                                 static_cast<double>(kSamples));
-  const Index n = input.cols();
-  const Index each = std::min(n, kSamples * static_cast<Index>(calls));
-  for (Index first = 0; first < n; first += each) {
-    const Index count = std::min(each, n - first);
-    network_->forward(parameters_,
-                      state_,
-                      input.middleCols(first, count),
-                      output.middleCols(first, count),
-                      prediction_tape_,
-                      prediction_work_);
-  }
+  network_->forward(
+      parameters_, state_, input, output, prediction_tape_, prediction_work_);
 }
 
 template <class T>
