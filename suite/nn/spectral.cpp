@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "suite/core/blocks.h"
-#include "suite/core/check.h"
 #include "suite/nn/activation.h"
 #include "suite/nn/convolution.h"
 #include "suite/nn/gemm.h"
@@ -12,11 +11,6 @@ namespace physinv::nn {
 namespace {
 
 constexpr Index kMostParts = 8;  ///< partial sums of W's gradient
-
-/// Largest row frequency + 1.
-Index row_count(const SpectralOptions& o) {
-  return std::min(o.modes, o.period.rows / 2) + 1;
-}
 
 template <class T>
 Lanes<T> rows_from(Lanes<T> x, Index first, Index count) {
@@ -33,16 +27,6 @@ void pack_rows(Activation f, Lanes<const T> x, T* to) {
       store(to + j, activate_lanes<T>(f, load<V>(x.row(i) + j)));
 }
 
-template <class T>
-void add(const T* from, Index count, T* to) {
-  for (Index i = 0; i < count; ++i) to[i] += from[i];
-}
-
-template <class T>
-void subtract(const T* from, Index count, T* to) {
-  for (Index i = 0; i < count; ++i) to[i] -= from[i];
-}
-
 }  // namespace
 
 template <class T>
@@ -51,29 +35,14 @@ SpectralBlock<T>::SpectralBlock(const SpectralOptions& o)
       o_(o),
       shared_{std::min(o.from.columns, o.to.columns),
               std::min(o.from.rows, o.to.rows)},
-      in_(o.from, o.period, row_count(o), o.modes),
-      out_(o.to, o.period, row_count(o), o.modes),
-      modes_(static_cast<std::size_t>(row_count(o))) {
-  const Index n = o.period.rows;
-  SUITE_CHECK(o.modes <= n && 2 * o.modes <= o.period.columns,
-              "a spectral layer's plane is too small for its modes");
-  Index number = 0;
-  const auto add_mode = [&](Index k, Index last, Index row) {
-    const bool negative = 2 * k > n;
-    modes_[static_cast<std::size_t>(negative ? n - k : k)].push_back(
-        {negative ? -1 : 1, last, row, number++});
-  };
-  for (Index row = 0; row < o.modes; ++row) {
-    if (row < n - o.modes) add_mode(row, 0, row);
-    add_mode(n - o.modes + row, 1, row);
-  }
-}
+      product_(o.from, o.period, o.channels, o.modes),
+      out_(o.to, o.period, product_.row_count(), o.modes) {}
 
 template <class T>
 std::vector<TensorInfo> SpectralBlock<T>::tensors() const {
   const Index c = o_.channels;
   const TensorInfo modes{.kind = 'f',
-                         .size = spectral_size(),
+                         .size = product_.parameter_count() / 4,
                          .fan_in = c,
                          .fan_out = c,
                          .up_to = 1 / static_cast<double>(c * c)};
@@ -92,229 +61,9 @@ double SpectralBlock<T>::operations() const {
            double(m.grid().columns + m.row_sums());
   };
   const double c = double(o_.channels);
-  double modes = 0;
-  for (const auto& of_k : modes_) modes += double(of_k.size() * o_.modes);
-  return 2 * c * (sums(in_) + sums(out_)) + 8 * c * c * modes +
+  return 2 * c * (sums(in()) + sums(out_)) +
+         8 * c * c * double(product_.mode_count()) +
          2 * c * c * double(shared_.positions());
-}
-
-template <class T>
-double SpectralBlock<T>::inverse_weight(Index l) const {
-  return (l == 0 ? 1.0 : 2.0) / static_cast<double>(o_.period.positions());
-}
-
-// ---------------------------------------------------------------- modes
-
-/// Z = (cos cos -+ sin sin) - i (+-cos sin + sin cos), columns before rows.
-template <class T>
-void SpectralBlock<T>::gather(
-    const T* u, Index k, const Mode& m, Index l, Index block, T* z) const {
-  const auto at = [&](Index g, Index h) {
-    return u + (g * in_.row_sums() + h) * in_.pitch(block);
-  };
-  T *re = z, *im = z + block;
-  std::copy_n(at(in_.cos_column(l), in_.cos_row(k)), block, re);
-  std::fill_n(im, block, T(0));
-  if (l > 0) subtract(at(in_.sin_column(l), in_.cos_row(k)), block, im);
-  if (k == 0) return;
-  const auto along = m.sign > 0 ? subtract<T> : add<T>;
-  along(at(in_.cos_column(l), in_.sin_row(k)), block, im);
-  if (l > 0) along(at(in_.sin_column(l), in_.sin_row(k)), block, re);
-}
-
-template <class T>
-void SpectralBlock<T>::scatter(
-    const T* z, Index k, const Mode& m, Index l, Index block, T* u) const {
-  const auto at = [&](Index g, Index h) {
-    return u + (g * in_.row_sums() + h) * in_.pitch(block);
-  };
-  const T *re = z, *im = z + block;
-  add(re, block, at(in_.cos_column(l), in_.cos_row(k)));
-  if (l > 0) subtract(im, block, at(in_.sin_column(l), in_.cos_row(k)));
-  if (k == 0) return;
-  const auto along = m.sign > 0 ? subtract<T> : add<T>;
-  along(im, block, at(in_.cos_column(l), in_.sin_row(k)));
-  if (l > 0) along(re, block, at(in_.sin_column(l), in_.sin_row(k)));
-}
-
-template <class T>
-void SpectralBlock<T>::unpack(const T* parameters,
-                              const Mode& m,
-                              T* weights) const {
-  const Index c = o_.channels;
-  for (const Index part : {0, 1})
-    transpose(parameters + place(m, part),
-              mode_size(),
-              c * c,
-              o_.modes,
-              weights + part * o_.modes * c * c,
-              c * c);
-}
-
-template <class T>
-void SpectralBlock<T>::real_matrix(const T* weights, Index l, T* matrix) const {
-  const Index c = o_.channels;
-  const T* re = weights + l * c * c;
-  const T* im = re + o_.modes * c * c;
-  const T scale = static_cast<T>(inverse_weight(l));
-  for (Index i = 0; i < c; ++i, re += c, im += c) {
-    T* const of_re = matrix + i * 2 * c;
-    T* const of_im = of_re + c * 2 * c;
-    for (Index o = 0; o < c; ++o) {
-      of_re[o] = of_im[c + o] = scale * re[o];
-      of_re[c + o] = scale * im[o];
-      of_im[o] = -of_re[c + o];
-    }
-  }
-}
-
-namespace {
-
-/// Sums of frequency k, all columns, <- 0.
-template <class T>
-void clear(const PlaneModes<T>& modes, Index k, Index block, T* u) {
-  for (Index g = 0; g < modes.column_sums(); ++g) {
-    T* const row = u + g * modes.row_sums() * modes.pitch(block);
-    std::fill_n(row + modes.cos_row(k) * modes.pitch(block), block, T(0));
-    if (k > 0)
-      std::fill_n(row + modes.sin_row(k) * modes.pitch(block), block, T(0));
-  }
-}
-
-}  // namespace
-
-template <class T>
-void SpectralBlock<T>::mix(const Product& at,
-                           Index samples,
-                           T* u,
-                           Workspace& all) const {
-  const Index c = o_.channels, width = Lanes<T>(nullptr, 1, samples).width;
-  const Index block = c * width;
-  for_blocks(all, row_count(o_), [&](Index k, Workspace& work) {
-    const auto& modes = modes_[static_cast<std::size_t>(k)];
-    T* const weights = work.take<T>(2 * c * c, o_.modes).data();
-    T* const matrix = work.take<T>(4 * c * c, 1).data();
-    T* const a = work.take<T>(2 * block, 1).data();
-    const auto z = [&](const Mode& m, Index l) {
-      return at.modes + (m.number * o_.modes + l) * 2 * block;
-    };
-    for (const Mode& m : modes)
-      for (Index l = 0; l < o_.modes; ++l) gather(u, k, m, l, block, z(m, l));
-    clear(in_, k, block, u);
-    for (const Mode& m : modes) {
-      unpack(at.parameters, m, weights);
-      for (Index l = 0; l < o_.modes; ++l) {
-        real_matrix(weights, l, matrix);
-        gemm<T>({.m = 2 * c,
-                 .n = width,
-                 .k = 2 * c,
-                 .a = matrix,
-                 .a_row = 1,
-                 .a_k = 2 * c,
-                 .b = z(m, l),
-                 .b_stride = width,
-                 .c = a,
-                 .c_stride = width});
-        scatter(a, k, m, l, block, u);
-      }
-    }
-  });
-}
-
-template <class T>
-void SpectralBlock<T>::pull_mix(const Product& at,
-                                Index samples,
-                                T* u,
-                                T* parameters_bar,
-                                bool wants_u,
-                                Workspace& all) const {
-  const Index c = o_.channels, width = Lanes<T>(nullptr, 1, samples).width;
-  const Index block = c * width;
-  for_blocks(all, row_count(o_), [&](Index k, Workspace& work) {
-    const auto& modes = modes_[static_cast<std::size_t>(k)];
-    const Index count = o_.modes * static_cast<Index>(modes.size());
-    T* const a_bar = work.take<T>(2 * block, count).data();
-    T* const weights = work.take<T>(2 * c * c, o_.modes).data();
-    T* const matrix = work.take<T>(4 * c * c, 1).data();
-    T* const z_bar = work.take<T>(2 * block, 1).data();
-    T* next = a_bar;
-    for (const Mode& m : modes)
-      for (Index l = 0; l < o_.modes; ++l, next += 2 * block)
-        gather(u, k, m, l, block, next);
-    clear(in_, k, block, u);
-    next = a_bar;
-    for (const Mode& m : modes) {
-      if (parameters_bar != nullptr)
-        pull_weights(at.modes + m.number * o_.modes * 2 * block,
-                     next,
-                     samples,
-                     m,
-                     parameters_bar,
-                     work);
-      if (wants_u) unpack(at.parameters, m, weights);
-      for (Index l = 0; l < o_.modes && wants_u; ++l) {
-        real_matrix(weights, l, matrix);
-        gemm<T>({.m = 2 * c,
-                 .n = width,
-                 .k = 2 * c,
-                 .a = matrix,
-                 .a_row = 2 * c,
-                 .a_k = 1,
-                 .b = next + l * 2 * block,
-                 .b_stride = width,
-                 .c = z_bar,
-                 .c_stride = width});
-        scatter(z_bar, k, m, l, block, u);
-      }
-      next += o_.modes * 2 * block;
-    }
-  });
-}
-
-template <class T>
-void SpectralBlock<T>::pull_weights(const T* z,
-                                    const T* a_bar,
-                                    Index samples,
-                                    const Mode& m,
-                                    T* parameters_bar,
-                                    Workspace& work) const {
-  const Index c = o_.channels, width = Lanes<T>(nullptr, 1, samples).width;
-  const Index across = round_up(2 * c, kNarrowLanes<T>);
-  const Workspace::Scope scope(work);
-  T* const a_t = work.take<T>(across, samples).data();
-  T* const sums = work.take<T>(across, 2 * c).data();
-  T* const weights_bar = work.take<T>(2 * c * c, o_.modes).data();
-  for (Index l = 0; l < o_.modes; ++l) {
-    transpose(a_bar + l * 2 * c * width, width, 2 * c, samples, a_t, across);
-    gemm<T>({.m = 2 * c,
-             .n = 2 * c,
-             .k = samples,
-             .a = z + l * 2 * c * width,
-             .a_row = width,
-             .a_k = 1,
-             .b = a_t,
-             .b_stride = across,
-             .c = sums,
-             .c_stride = across});
-    const T scale = static_cast<T>(inverse_weight(l));
-    T* re = weights_bar + l * c * c;
-    T* im = re + o_.modes * c * c;
-    for (Index i = 0; i < c; ++i, re += c, im += c) {
-      const T* of_re = sums + i * across;
-      const T* of_im = of_re + c * across;
-      for (Index o = 0; o < c; ++o) {
-        re[o] = scale * (of_re[o] + of_im[c + o]);
-        im[o] = scale * (of_re[c + o] - of_im[o]);
-      }
-    }
-  }
-  for (const Index part : {0, 1})
-    transpose(weights_bar + part * o_.modes * c * c,
-              c * c,
-              o_.modes,
-              c * c,
-              parameters_bar + place(m, part),
-              mode_size());
 }
 
 // --------------------------------------------------------------- passes
@@ -323,7 +72,8 @@ template <class T>
 T* SpectralBlock<T>::open_modes(const Lanes<const T>& x,
                                 Tape& tape,
                                 std::size_t slot) const {
-  return tape.slot<T>(slot, 2 * o_.channels * x.width, mode_count()).data();
+  return tape.slot<T>(slot, 2 * o_.channels * x.width, product_.mode_count())
+      .data();
 }
 
 template <class T>
@@ -346,12 +96,12 @@ void SpectralBlock<T>::apply(const Product& at,
                              Workspace& all) const {
   using V = NarrowPack<T>;
   const Index c = o_.channels, block = c * x.width;
-  const Index pitch = in_.pitch(block), sums = in_.column_sums();
+  const Index pitch = in().pitch(block), sums = in().column_sums();
   const T* const w = local(at.parameters);
   const Workspace::Scope scope(all);
   T* const t =
       all.take<T>(pitch, sums * std::max(o_.from.rows, o_.to.rows)).data();
-  T* const u = all.take<T>(pitch, sums * in_.row_sums()).data();
+  T* const u = all.take<T>(pitch, sums * in().row_sums()).data();
 
   for_blocks(all, o_.from.rows, [&](Index r, Workspace& work) {
     T* const row = work.take<T>(pitch, o_.from.columns).data();
@@ -371,12 +121,12 @@ void SpectralBlock<T>::apply(const Product& at,
                .c_stride = y.stride,
                .bias = at.bias});
     }
-    in_.analyse_row(row, r, block, t);
+    in().analyse_row(row, r, block, t);
   });
   for_blocks(all, sums, [&](Index g, Workspace&) {
-    in_.analyse_rows(t, g, block, u);
+    in().analyse_rows(t, g, block, u);
   });
-  mix(at, x.samples, u, all);
+  product_.apply(at.parameters, x.samples, u, at.modes, all);
   for_blocks(all, sums, [&](Index g, Workspace&) {
     out_.synthesise_rows(u, g, block, t);
   });
@@ -413,11 +163,11 @@ void SpectralBlock<T>::pull(const Product& at,
                             const Backward<T>& b,
                             Workspace& all) const {
   const Index c = o_.channels, block = c * b.x.width;
-  const Index pitch = in_.pitch(block), sums = in_.column_sums();
+  const Index pitch = in().pitch(block), sums = in().column_sums();
   const Workspace::Scope scope(all);
   T* const t =
       all.take<T>(pitch, sums * std::max(o_.from.rows, o_.to.rows)).data();
-  T* const u = all.take<T>(pitch, sums * in_.row_sums()).data();
+  T* const u = all.take<T>(pitch, sums * in().row_sums()).data();
   for_blocks(all, o_.to.rows, [&](Index r, Workspace& work) {
     T* const row = work.take<T>(pitch, o_.to.columns).data();
     for (Index q = 0; q < o_.to.columns; ++q)
@@ -430,14 +180,20 @@ void SpectralBlock<T>::pull(const Product& at,
     out_.analyse_rows(t, g, block, u);
   });
   if (b.parameters_bar != nullptr) {
-    std::fill_n(b.parameters_bar, 4 * spectral_size(), T(0));
+    std::fill_n(b.parameters_bar, product_.parameter_count(), T(0));
     channel_sums<T>(
-        all, b.y_bar, c, b.parameters_bar + 4 * spectral_size() + c * c);
+        all, b.y_bar, c, b.parameters_bar + product_.parameter_count() + c * c);
   }
-  pull_mix(at, b.x.samples, u, b.parameters_bar, bool(b.x_bar), all);
+  product_.pull(at.parameters,
+                at.modes,
+                b.x.samples,
+                u,
+                b.parameters_bar,
+                bool(b.x_bar),
+                all);
   if (b.x_bar)
     for_blocks(all, sums, [&](Index g, Workspace&) {
-      in_.synthesise_rows(u, g, block, t);
+      in().synthesise_rows(u, g, block, t);
     });
   pull_rows(at, b, t, all);
 }
@@ -472,7 +228,7 @@ void SpectralBlock<T>::pull_inputs(const Product& at,
                                    Lanes<const T> y_bar,
                                    Lanes<T> x_bar) const {
   using V = NarrowPack<T>;
-  const Index c = o_.channels, pitch = in_.pitch(c * x.width);
+  const Index c = o_.channels, pitch = in().pitch(c * x.width);
   for (Index q = 0; q < o_.from.columns; ++q) {
     const bool added = meets && q < shared_.columns;
     if (added)
@@ -501,7 +257,7 @@ void SpectralBlock<T>::pull_rows(const Product& at,
                                  const Backward<T>& b,
                                  const T* t,
                                  Workspace& all) const {
-  const Index c = o_.channels, block = c * b.x.width, pitch = in_.pitch(block);
+  const Index c = o_.channels, block = c * b.x.width, pitch = in().pitch(block);
   const Index columns = o_.from.columns;
   const ConvShape shape{{shared_.columns, 1}, c, c, {1, 1}};
   const auto runs = window_runs(shape.grid, shape.taps, Padding::zero);
@@ -521,7 +277,7 @@ void SpectralBlock<T>::pull_rows(const Product& at,
       pull_local(shape, runs, at.f, x, y_bar, part, work);
     if (!b.x_bar) return;
     T* const row = work.take<T>(pitch, columns).data();
-    in_.synthesise_row(t, r, block, row);
+    in().synthesise_row(t, r, block, row);
     pull_inputs(at,
                 meets(r),
                 row,
@@ -539,7 +295,7 @@ void SpectralBlock<T>::pull_rows(const Product& at,
                       totals,
                       parts,
                       totals + size * parts,
-                      b.parameters_bar + 4 * spectral_size());
+                      b.parameters_bar + product_.parameter_count());
 }
 
 // --------------------------------------------------------- forward mode
@@ -583,7 +339,8 @@ void SpectralBlock<T>::tangent(const LayerArgs<T>& at,
       {.parameters = at.parameters_dot,
        .bias = bias(at.parameters_dot),
        .f = o_.before,
-       .modes = work.take<T>(2 * o_.channels * t.x.width, mode_count()).data()},
+       .modes = work.take<T>(2 * o_.channels * t.x.width, product_.mode_count())
+                    .data()},
       t.x,
       more,
       work);
@@ -609,7 +366,7 @@ void SpectralBlock<T>::backward_tangent(const LayerArgs<T>& at,
        work);
   const Lanes<T> f_dot = like(b.x_dot, work);
   push_activation<T>(o_.before, b.x, b.x_dot, f_dot);
-  const Index weights = 4 * spectral_size() + o_.channels * o_.channels;
+  const Index weights = product_.parameter_count() + o_.channels * o_.channels;
   T* const sum = work.take<T>(weights + o_.channels, 1).data();
   Lanes<T> more;
   if (b.x_bar) more = like(Lanes<const T>(b.x_bar), work);

@@ -13,10 +13,7 @@
 /// column frequencies l, of which those with l > 0 count twice for their
 /// conjugates. Only the part of y on `to` is computed.
 ///
-/// Parameters: V of the first k, V of the last k, real before imaginary part,
-/// [in][out][k][l] each; W [out][in]; b. With fewer than 2 `modes` rows the
-/// last k are taken from where both have them, and the first have no effect
-/// there.
+/// Parameters: V (see mode_product.h); W [out][in]; b.
 ///
 /// The tape holds Z alone: f(x) is made again in `backward`, where its
 /// derivative needs the same functions.
@@ -25,6 +22,7 @@
 #include <vector>
 
 #include "suite/nn/layer.h"
+#include "suite/nn/mode_product.h"
 #include "suite/nn/plane_modes.h"
 
 namespace physinv::nn {
@@ -63,13 +61,6 @@ class SpectralBlock final : public Layer<T> {
     T* modes;  ///< Z, written on the way up, read on the way down
   };
 
-  /// Row frequency `sign` k, whose weights are row `row` of tensors 2 `last`
-  /// (real) and 2 `last` + 1. Its modes are the `number`-th on the tape.
-  struct Mode {
-    int sign;
-    Index last, row, number;
-  };
-
   T* open_modes(const Lanes<const T>& x, Tape& tape, std::size_t slot) const;
   void apply(const Product& at,
              Lanes<const T> x,
@@ -78,54 +69,15 @@ class SpectralBlock final : public Layer<T> {
   /// Leaves x_bar without b.gate.
   void pull(const Product& at, const Backward<T>& b, Workspace& all) const;
 
-  Index mode_size() const { return o_.modes * o_.modes; }
-  Index mode_count() const {
-    Index count = 0;
-    for (const auto& of_k : modes_) count += static_cast<Index>(of_k.size());
-    return count * o_.modes;
-  }
-  Index spectral_size() const {
-    return o_.channels * o_.channels * mode_size();
-  }
-  /// Of the weights of all l, from the first input to the first output.
-  Index place(const Mode& m, Index part) const {
-    return (2 * m.last + part) * spectral_size() + m.row * o_.modes;
-  }
+  const PlaneModes<T>& in() const { return product_.sums(); }
   const T* local(const T* parameters) const {
-    return parameters + 4 * spectral_size();
+    return parameters + product_.parameter_count();
   }
   const T* bias(const T* parameters) const {
     return local(parameters) + o_.channels * o_.channels;
   }
   bool meets(Index r) const { return r < shared_.rows; }
 
-  /// Modes of frequency (m.sign k, l) from the sums u, and the transpose.
-  void gather(
-      const T* u, Index k, const Mode& m, Index l, Index block, T* z) const;
-  void scatter(
-      const T* z, Index k, const Mode& m, Index l, Index block, T* u) const;
-  /// V(k, .) as [real, imaginary][l][in][out].
-  void unpack(const T* parameters, const Mode& m, T* weights) const;
-  /// [in re, in im][out re, out im]: the product with V(k, l) in real numbers,
-  /// with the weight of the inverse transform.
-  void real_matrix(const T* weights, Index l, T* matrix) const;
-  double inverse_weight(Index l) const;
-
-  /// u <- what the weights make of the modes in u, which go to at.modes.
-  void mix(const Product& at, Index samples, T* u, Workspace& all) const;
-  /// u <- cotangent of the modes, from that of what was made of them.
-  void pull_mix(const Product& at,
-                Index samples,
-                T* u,
-                T* parameters_bar,
-                bool wants_u,
-                Workspace& all) const;
-  void pull_weights(const T* z,
-                    const T* a_bar,
-                    Index samples,
-                    const Mode& m,
-                    T* parameters_bar,
-                    Workspace& work) const;
   void pull_inputs(const Product& at,
                    bool meets,
                    const T* row,
@@ -139,9 +91,9 @@ class SpectralBlock final : public Layer<T> {
                  Workspace& all) const;
 
   SpectralOptions o_;
-  Grid shared_;  ///< positions that both x and y have
-  PlaneModes<T> in_, out_;
-  std::vector<std::vector<Mode>> modes_;  ///< by k
+  Grid shared_;             ///< positions that both x and y have
+  ModeProduct<T> product_;  ///< S between the transforms
+  PlaneModes<T> out_;
 };
 
 extern template class SpectralBlock<float>;
