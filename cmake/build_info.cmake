@@ -1,6 +1,7 @@
 # physinv_build_info: what this build is made of (suite/harness/build_info.h),
 # with hash and #include lines of every source that numbers can come from, read
-# at build time. The file is rewritten only when its content changes.
+# at build time by physinv-sources. The file is rewritten only when its content
+# changes, which comments and formatting do not.
 # The bits of exp and sin are SLEEF's, those of hypot the C library's.
 execute_process(COMMAND getconf GNU_LIBC_VERSION
   OUTPUT_VARIABLE physinv_libc OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
@@ -44,14 +45,18 @@ set(cli11 "@CLI11_VERSION@")
 set(libc "@physinv_libc@")
 ]])
 
+add_executable(physinv-sources cmake/sources.cpp suite/core/hash.cpp)
+target_include_directories(physinv-sources PRIVATE ${PROJECT_SOURCE_DIR})
+target_link_libraries(physinv-sources PRIVATE fmt::fmt)
+
 add_custom_command(
   OUTPUT ${physinv_info}/build_info.cpp
   BYPRODUCTS ${physinv_info}/physinv-build.cmake
   DEPFILE ${physinv_info}/build_info.d
-  DEPENDS ${physinv_info}/values.cmake
+  DEPENDS physinv-sources ${physinv_info}/values.cmake
     ${CMAKE_CURRENT_LIST_DIR}/write_build_info.cmake
   COMMAND ${CMAKE_COMMAND} -D source_dir=${PROJECT_SOURCE_DIR}
-    -D info=${physinv_info}
+    -D info=${physinv_info} -D scanner=$<TARGET_FILE:physinv-sources>
     -P ${CMAKE_CURRENT_LIST_DIR}/write_build_info.cmake
   COMMENT "Sources of the numerics"
   VERBATIM)

@@ -57,6 +57,8 @@ install(FILES
     ${physinv_info}/physinv-build.cmake
     ${PROJECT_BINARY_DIR}/physinv-config-version.cmake
   DESTINATION ${physinv_package} COMPONENT development)
+install(PROGRAMS $<TARGET_FILE:physinv-sources>
+  DESTINATION ${physinv_package} COMPONENT development)
 foreach(program physinv-bench physinv-run physinv-kernels)
   if(TARGET ${program})
     install(TARGETS ${program} COMPONENT programs OPTIONAL)

@@ -118,8 +118,9 @@ while(waiting)
     string(APPEND computing "    \"${name}\",\n")
     math(EXPR count "${count} + 1")
   endif()
-  file(SHA256 ${file} hash)
-  string(SUBSTRING ${hash} 0 32 hash)
+  execute_process(COMMAND ${package}/physinv-sources ${file}
+    OUTPUT_VARIABLE hash COMMAND_ERROR_IS_FATAL ANY)
+  string(REGEX REPLACE " .*" "" hash "${hash}")
   list(JOIN included " " included)
   string(APPEND table
     "    {\"${name}\", \"${hash}\",\n     \"${included} \"},\n")

@@ -31,9 +31,15 @@ list(SORT interfaces)
 list(APPEND sources ${interfaces})
 list(REMOVE_DUPLICATES sources)
 
-foreach(source IN LISTS sources)
-  file(SHA256 "${source_dir}/${source}" hash)
-  string(SUBSTRING ${hash} 0 32 hash_${source})
+# Of each the hash of its tokens, and the headers that it includes.
+list(TRANSFORM sources PREPEND "${source_dir}/" OUTPUT_VARIABLE paths)
+execute_process(COMMAND ${scanner} ${paths}
+  OUTPUT_VARIABLE lines COMMAND_ERROR_IS_FATAL ANY)
+string(REPLACE "\n" ";" lines "${lines}")
+foreach(source line IN ZIP_LISTS sources lines)
+  string(REGEX MATCH "^([0-9a-f]+) (.*)$" _ "${line}")
+  set(hash_${source} "${CMAKE_MATCH_1}")
+  set(headers_${source} "${CMAKE_MATCH_2}")
 endforeach()
 
 # Text of 16 digits over texts and sources.
@@ -53,12 +59,8 @@ physinv_digest(interfaces "${compiler} ${compiler_version} ${flags}"
 
 set(table)
 foreach(source IN LISTS numerics cases)
-  set(line "^[ \t]*#[ \t]*include[ \t]*\"([^\"]+)\"")
-  file(STRINGS "${source_dir}/${source}" headers REGEX "${line}")
-  list(TRANSFORM headers REPLACE "${line}.*" "\\1 ")
-  list(JOIN headers "" headers)
   string(APPEND table "    {\"${source}\", \"${hash_${source}}\",\n"
-    "     \"${headers}\"},\n")
+    "     \"${headers_${source}}\"},\n")
 endforeach()
 
 set(files)

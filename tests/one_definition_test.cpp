@@ -3,7 +3,6 @@
 // linker, which takes either.
 #include <gtest/gtest.h>
 
-#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -13,59 +12,26 @@
 #include <string_view>
 #include <vector>
 
+#include "cmake/tokens.h"
+
 namespace {
 
 namespace fs = std::filesystem;
 using Tokens = std::vector<std::string>;
 
-bool is_word(char c) {
-  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
-}
+using physinv::source::is_word;
 
-/// Where the literal ends that begins with the quote at `at`.
-std::size_t end_of_literal(std::string_view text, std::size_t at) {
-  if (text[at] == '"' && at > 0 && text[at - 1] == 'R') {
-    const auto open = text.find('(', at);
-    const std::string close =
-        ')' + std::string(text.substr(at + 1, open - at - 1)) + '"';
-    return text.find(close, open) + close.size();
-  }
-  std::size_t end = at + 1;
-  while (end < text.size() && text[end] != text[at])
-    end += text[end] == '\\' ? 2 : 1;
-  return end + 1;
-}
-
-/// Words and signs, without comments, literals and lines of the preprocessor.
+/// Words and signs, without literals and lines of the preprocessor.
 Tokens tokens_of(std::string_view text) {
+  using physinv::source::Kind;
   Tokens all;
-  bool fresh = true;  // nothing stands on this line yet
-  for (std::size_t i = 0; i < text.size();) {
-    const char c = text[i];
-    if (c == '\n') {
-      fresh = true, ++i;
-    } else if (std::isspace(static_cast<unsigned char>(c)) != 0) {
-      ++i;
-    } else if (text.substr(i, 2) == "//") {
-      i = std::min(text.find('\n', i), text.size());
-    } else if (text.substr(i, 2) == "/*") {
-      i = text.find("*/", i) + 2;
-    } else if (c == '#' && fresh) {
-      do i = std::min(text.find('\n', i + 1), text.size());
-      while (i < text.size() && text[i - 1] == '\\');
-    } else if (c == '"' || (c == '\'' && !(i > 0 && is_word(text[i - 1])))) {
-      i = end_of_literal(text, i), fresh = false;
+  for (const auto& token : physinv::source::tokens_of(text)) {
+    if (token.kind == Kind::literal)
       all.emplace_back("\"\"");
-    } else {
-      std::size_t end = i + 1;
-      if (is_word(c))
-        while (end < text.size() && (is_word(text[end]) || text[end] == '\''))
-          ++end;
-      else if (text.substr(i, 2) == "::")
-        end = i + 2;
-      all.emplace_back(text.substr(i, end - i));
-      i = end, fresh = false;
-    }
+    else if (token.kind == Kind::word || token.text == "::")
+      all.push_back(token.text);
+    else if (token.kind == Kind::sign)
+      for (const char c : token.text) all.emplace_back(1, c);
   }
   return all;
 }

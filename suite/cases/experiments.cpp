@@ -9,7 +9,6 @@ void add_experiments(Registry& r) {
   hig::add_experiments(r);
   physgrad::add_experiments(r);
   sip::add_experiments(r);
-  jpo::add_studies(r);
   matrix::add_experiments(r);
   numerics::add_experiments(r);
 }

@@ -19,7 +19,7 @@ Add add_experiments;
 void name_quantities();
 
 namespace jpo {
-Add add_experiments, add_studies, add_claims;
+Add add_experiments, add_claims;
 }
 namespace hig {
 Add add_experiments, add_claims;

@@ -116,9 +116,12 @@ void Registry::validate() const {
 std::vector<std::string> Registry::profiles() const {
   std::vector<std::string> names;
   for (const auto& e : experiments_) {
-    for (const Profile& p : e->profiles)
-      if (std::find(names.begin(), names.end(), p.name) == names.end())
-        names.push_back(p.name);
+    // A new one goes in front of the next that is known.
+    auto next = names.end();
+    for (auto p = e->profiles.rbegin(); p != e->profiles.rend(); ++p) {
+      const auto known = std::find(names.begin(), names.end(), p->name);
+      next = known != names.end() ? known : names.insert(next, p->name);
+    }
   }
   return names;
 }

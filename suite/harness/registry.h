@@ -52,7 +52,8 @@ class Registry {
   /// Throws std::logic_error with the lines of `problems`, if any.
   void validate() const;
 
-  /// Names of all profiles, in the order they were first declared.
+  /// Names of all profiles, in the order that experiments have them, as far as
+  /// they agree.
   std::vector<std::string> profiles() const;
 
   /// The cases of a profile in declared order (experiment, row, n, method,

@@ -1,22 +1,23 @@
 # What write_build_info.cmake makes of a little tree, and of edits to it.
-# Usage: cmake -D script=... -D work=... -P run.cmake
+# Usage: cmake -D script=... -D scanner=... -D work=... -P run.cmake
 cmake_minimum_required(VERSION 3.25)
 set(tree ${work}/tree)
 file(REMOVE_RECURSE ${work})
 file(WRITE ${work}/values.cmake "set(compiler GNU)\nset(bit_flags -O3)\n")
-file(WRITE ${tree}/suite/harness/run_stage.cpp "// runs\n")
+file(WRITE ${tree}/suite/harness/run_stage.cpp "int runs;\n")
 file(WRITE ${tree}/suite/harness/run_stage.h "")
 file(WRITE ${tree}/suite/core/rng.h "#include <cstdint>\n")
 file(WRITE ${tree}/problems/heat/heat.h "#include \"suite/core/rng.h\"\n")
 file(WRITE ${tree}/problems/heat/heat.cpp
   "#include \"problems/heat/heat.h\"\n  # include \"suite/core/rng.h\"\n")
 file(WRITE ${tree}/problems/heat/kernels.cpp "")
-file(WRITE ${tree}/suite/cases/heat/claims.cpp "// claims\n")
+file(WRITE ${tree}/suite/cases/heat/claims.cpp "int claims;\n")
 file(WRITE ${tree}/reports/page.cpp "")
 
 macro(make)
   execute_process(
-    COMMAND ${CMAKE_COMMAND} -D source_dir=${tree} -D info=${work} -P ${script}
+    COMMAND ${CMAKE_COMMAND} -D source_dir=${tree} -D info=${work}
+      -D scanner=${scanner} -P ${script}
     COMMAND_ERROR_IS_FATAL ANY)
   set(before_fingerprint ${fingerprint})
   set(before_foundation ${foundation})
@@ -75,19 +76,27 @@ make()
 file(TIMESTAMP ${work}/build_info.cpp second "%s")
 same("unchanged sources leave the file" "${first}" "${second}")
 
-file(WRITE ${tree}/suite/cases/heat/claims.cpp "// other claims\n")
+# Comments and formatting are nobody's business.
+file(WRITE ${tree}/problems/heat/heat.h
+  "// which\n  #include /* why */ \"suite/core/rng.h\"  // generator\n\n")
+file(WRITE ${tree}/suite/harness/run_stage.cpp "int /* what */\n  runs ;")
+make()
+file(TIMESTAMP ${work}/build_info.cpp second "%s")
+same("edited comments leave it, too" "${first}" "${second}")
+
+file(WRITE ${tree}/suite/cases/heat/claims.cpp "int other_claims;\n")
 make()
 entry(suite/cases/heat/claims.cpp)
 differ("an edited case has another hash" "${hash}" "${claims}")
 same("of the same build" "${fingerprint}" "${before_fingerprint}")
 
-file(WRITE ${tree}/problems/heat/heat.h "// constant\n")
+file(WRITE ${tree}/problems/heat/heat.h "constexpr int kConstant = 1;\n")
 make()
 differ("an edited problem is another build"
   "${fingerprint}" "${before_fingerprint}")
 same("on the same foundation" "${foundation}" "${before_foundation}")
 
-file(APPEND ${tree}/suite/harness/run_stage.cpp "// otherwise\n")
+file(APPEND ${tree}/suite/harness/run_stage.cpp "int otherwise;\n")
 make()
 differ("what runs every stage is foundation"
   "${foundation}" "${before_foundation}")
@@ -102,7 +111,7 @@ make()
 same("nor is the compiler" "${foundation}" "${before_foundation}")
 differ("a plug-in is built by the same" "${interfaces}"
   "${before_interfaces}")
-file(WRITE ${tree}/suite/harness/case.h "// what a plug-in sees\n")
+file(WRITE ${tree}/suite/harness/case.h "struct WhatAPlugInSees;\n")
 make()
 differ("and with the same headers" "${interfaces}" "${before_interfaces}")
 same("which are no numbers" "${fingerprint}" "${before_fingerprint}")

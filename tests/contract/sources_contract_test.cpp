@@ -8,6 +8,8 @@
 #include <regex>
 #include <sstream>
 
+#include "cmake/tokens.h"
+#include "suite/core/hash.h"
 #include "suite/harness/child.h"
 #include "suite/harness/keys.h"
 #include "suite/harness/sources.h"
@@ -120,9 +122,10 @@ TEST(SourcesContract, NoSourceIsForgotten) {
 /// The sources of this build with one of them edited or more added.
 class Edited {
  public:
-  Edited& edit(const std::string& path) {
+  Edited& edit(const std::string& path, const std::string& hash = "edited") {
+    hash_ = hash;
     for (SourceFile& file : files_)
-      if (file.path == path) file.hash = "edited", ++edits_;
+      if (file.path == path) file.hash = hash_, ++edits_;
     return *this;
   }
   Edited& add(const char* path, const char* includes) {
@@ -153,6 +156,7 @@ class Edited {
  private:
   std::vector<SourceFile> files_{build_info().sources.begin(),
                                  build_info().sources.end()};
+  std::string hash_;
   int edits_ = 0;
 };
 
@@ -202,6 +206,41 @@ TEST(SourcesContract, EditsMakeStaleWhoUsesThem) {
   edits(
       "suite/nn/unet.cpp",
       "jpo/(kuramoto|navier|wave).*/na/.*|(sip|matrix)/(fluid|heat|poisson).*");
+}
+
+std::string hash_of(const std::string& text) {
+  return hex128(source::substance(source::tokens_of(text)));
+}
+
+/// A token on each line, with a comment.
+std::string reformatted(const std::string& text) {
+  std::string lines;
+  for (const source::Token& token : source::tokens_of(text))
+    lines += token.text + "  // it's \"one\"\n";
+  return lines;
+}
+
+TEST(SourcesContract, CommentsAndFormattingMakeNothingStale) {
+  const std::string path = "optimizers/bfgs.cpp", text = text_of(path);
+  EXPECT_EQ(Edited().edit(path, hash_of(text)).stale(), Names());
+  EXPECT_EQ(Edited()
+                .edit(path, hash_of("// New words.\n" + reformatted(text)))
+                .stale(),
+            Names());
+  std::string other = text;
+  const auto at = other.find("return");
+  ASSERT_NE(at, std::string::npos);
+  other.insert(at, "++");
+  EXPECT_EQ(Edited().edit(path, hash_of(other)).stale(), stale_after(path));
+}
+
+TEST(SourcesContract, EverySourceHasTheHashOfItsTokens) {
+  for (const SourceFile& file : build_info().sources) {
+    const std::string text = text_of(std::string(file.path));
+    EXPECT_EQ(hash_of(text), file.hash) << file.path;
+    EXPECT_EQ(hash_of(reformatted(text)), file.hash) << file.path;
+    EXPECT_EQ(source::includes(source::tokens_of(text)), file.includes);
+  }
 }
 
 // ---- the compiler's word ----------------------------------------------------

@@ -37,9 +37,6 @@ void add_experiments(Registry& r) {
   navier_stokes::add_experiments(r);
   robotic_arm::add_experiments(r);
   wave_packet::add_experiments(r);
-}
-
-void add_studies(Registry& r) {
   bfgs_precision::add_experiments(r);
   adjoint_wall::add_experiments(r);
 }

@@ -151,6 +151,21 @@ TEST(Registry, ExpandsInDeclaredOrder) {
   EXPECT_GT(cases[3].operations(0), 0);
 }
 
+TEST(Registry, ProfilesAreInTheOrderOfAllExperiments) {
+  Registry r;
+  const auto add = [&](const char* name, std::vector<Profile> profiles) {
+    r.add(Experiment{.name = name, .profiles = std::move(profiles)});
+  };
+  add("a", {{.name = "smoke"}, {.name = "quick"}, {.name = "paper"}});
+  add("b", {{.name = "study"}});
+  add("c", {{.name = "quick"}, {.name = "standard"}, {.name = "paper"}});
+  add("d", {{.name = "paper"}, {.name = "long"}, {.name = "longer"}});
+  EXPECT_EQ(
+      r.profiles(),
+      (std::vector<std::string>{
+          "smoke", "quick", "standard", "paper", "study", "long", "longer"}));
+}
+
 TEST(Registry, CollapsesDuplicates) {
   Experiment e = fake::experiment();
   e.profiles[0].rows.push_back(e.profiles[0].rows[0]);
