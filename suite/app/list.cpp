@@ -129,15 +129,16 @@ void print_claims(const std::string& of, const std::vector<Claim>& claims) {
     fmt::print("| {} | {} | {} | {} | {} | {} | {} | {} |\n",
                of,
                c.id,
-               c.origin == Origin::paper ? "paper" : "suite",
+               c.origin() == Origin::paper ? "paper" : "suite",
                escaped(c.where),
                c.from,
                escaped(c.says),
                escaped(conditions_text(c)),
-               c.cause.why.empty() ? ""
-                                   : fmt::format("{}: {}",
-                                                 words_of(c.cause.as, c.origin),
-                                                 escaped(c.cause.why)));
+               c.cause.why.empty()
+                   ? ""
+                   : fmt::format("{}: {}",
+                                 words_of(c.cause.as, c.origin()),
+                                 escaped(c.cause.why)));
   }
 }
 
@@ -152,11 +153,11 @@ nlohmann::ordered_json claims_json(const std::string& of,
     const auto cause = c.cause.why.empty()
                            ? nlohmann::ordered_json(nullptr)
                            : nlohmann::ordered_json{
-                                 {"verdict", words_of(c.cause.as, c.origin)},
+                                 {"verdict", words_of(c.cause.as, c.origin())},
                                  {"why", c.cause.why}};
     all.push_back({{"of", of},
                    {"id", c.id},
-                   {"origin", c.origin == Origin::paper ? "paper" : "suite"},
+                   {"origin", c.origin() == Origin::paper ? "paper" : "suite"},
                    {"where", c.where},
                    {"from", c.from},
                    {"says", c.says},

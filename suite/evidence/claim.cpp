@@ -91,7 +91,7 @@ ClaimResult unjudged(const Claim& claim) {
           .gates = claim.gates,
           .verdict = Verdict::not_judged,
           .evidence = {},
-          .origin = claim.origin,
+          .origin = claim.origin(),
           .where = claim.where,
           .note = claim.note};
 }
@@ -192,8 +192,8 @@ std::vector<std::string> problems_of(const Claim& claim,
   };
   if (claim.id.empty()) add("has no id");
   if (claim.says.empty()) add("says nothing");
-  if (claim.origin == Origin::paper && claim.where.empty())
-    add("is the paper's and does not say where");
+  if (claim.id.starts_with('P') && claim.where.empty())
+    add("is the paper's by its id and does not say where");
   if (claim.conditions.empty() && claim.note.empty() && claim.cause.why.empty())
     add("has no conditions and neither note nor cause why");
   if (claim.cause.as == Verdict::reproduced ||

@@ -1,7 +1,7 @@
 /// Claims: conditions on measured numbers, as data of an experiment.
 ///
-///   {.id = "A2", .origin = Origin::paper, .where = "Fig. 3",
-///    .from = "standard", .says = "HIG takes fewer updates than Adam",
+///   {.id = "P2", .where = "Fig. 3", .from = "standard",
+///    .says = "HIG takes fewer updates than Adam",
 ///    .conditions = {within("updates to 0.1", median(...), 55, 95)}}
 #pragma once
 
@@ -15,9 +15,8 @@
 namespace physinv {
 
 struct Claim {
-  std::string id;  ///< unique within the experiment
-  Origin origin = Origin::suite;
-  std::string where;  ///< place in the paper; for the paper's claims
+  std::string id;     ///< unique within the experiment; P... is the paper's
+  std::string where;  ///< place in the paper; empty: a range of the suite
   std::string from;   ///< lowest profile that can decide it
   std::string says;   ///< without bounds: these write their own words
   /// All have to hold. None that decides: the numbers are reported.
@@ -25,6 +24,10 @@ struct Claim {
   std::string note = {};  ///< how it is read, what was run
   Cause cause = {};       ///< of a claim that is not reproduced
   bool gates = true;
+
+  Origin origin() const {
+    return where.empty() ? Origin::suite : Origin::paper;
+  }
 };
 
 /// `profiles` are the experiment's in ascending order. A claim is judged from

@@ -372,7 +372,6 @@ TEST(Claim, CasesAreCountedBehindWhatWasDecided) {
 
 TEST(Claim, WhatIsWrongByItself) {
   const Claim good{.id = "P1",
-                   .origin = Origin::paper,
                    .where = "Sec. 4",
                    .from = "quick",
                    .says = "s",

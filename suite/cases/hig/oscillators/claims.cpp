@@ -396,7 +396,6 @@ constexpr const char* kOfFig12 =
 
 const std::vector<Claim> kPaper = {
     {.id = "P1",
-     .origin = Origin::paper,
      .where = "Sec. 3.1, Fig. 2b",
      .from = "standard",
      .says = "Adam is the best of the first-order rules, with a final loss of "
@@ -412,13 +411,11 @@ const std::vector<Claim> kPaper = {
      .note = "One clock for all first-order rules; standard runs 54 of the "
              "paper's 60 minutes."},
     {.id = "P2",
-     .origin = Origin::paper,
      .where = "Sec. 3.1, Fig. 2b",
      .from = "paper",
      .says = "The first-order rules stagnate early",
      .conditions = stagnation()},
     {.id = "P3",
-     .origin = Origin::paper,
      .where = "Sec. 3.1, Fig. 2b",
      .from = "standard",
      .says = "HIG and GN exceed Adam's accuracy after about three minutes",
@@ -446,7 +443,6 @@ const std::vector<Claim> kPaper = {
      .note = "C: below Adam's curve after 290 s, and at Adam's end after "
              "half to twice three minutes."},
     {.id = "P4",
-     .origin = Origin::paper,
      .where = "Sec. 3.1, Fig. 2b",
      .from = "paper",
      .says = "HIG yield the best result, a loss of 1e-7",
@@ -458,14 +454,12 @@ const std::vector<Claim> kPaper = {
                     report("best seeds, HIG over GN",
                            ratio(best_end("hig"), best_end("gn")))}},
     {.id = "P5",
-     .origin = Origin::paper,
      .where = "Sec. 3.1, Fig. 2b",
      .from = "paper",
      .says = "The best stable run of GN reaches 1e-6",
      .conditions = {near(
          "GN's end, best of 8 seeds", from_at_least(8, best_end("gn")), 1e-6)}},
     {.id = "P6",
-     .origin = Origin::paper,
      .where = "Sec. 3.1",
      .from = "standard",
      .says = "GN exhibits stability problems, HIG is robust",
@@ -473,7 +467,6 @@ const std::vector<Claim> kPaper = {
                           from_at_least(8, share({"gn"}, diverged(), is_one)),
                           share({"hig"}, diverged(), is_one))}},
     {.id = "P7",
-     .origin = Origin::paper,
      .where = "Sec. 3.1, Fig. 2c",
      .from = "standard",
      .says = "Adam converges about equally quickly with all batch sizes",
@@ -481,7 +474,6 @@ const std::vector<Claim> kPaper = {
                             widest_spread(kAdamBatches, 500),
                             3.2)}},
     {.id = "P8",
-     .origin = Origin::paper,
      .where = "Sec. 3.1, Fig. 2c",
      .from = "paper",
      .says = "HIG and GN improve with larger batches",
@@ -496,7 +488,6 @@ const std::vector<Claim> kPaper = {
      .cause = not_run(
          "0.4 CPU-hours: GN and HIG with batches of 32 at the profile paper")},
     {.id = "P9",
-     .origin = Origin::paper,
      .where = "App. B.2, Figs. 5, 6",
      .from = "standard",
      .says = "First-order rules change little with the batch size and become "
@@ -506,7 +497,6 @@ const std::vector<Claim> kPaper = {
      .cause = not_run("the grid of Figs. 5 and 6 at the profile standard: what "
                       "is stored keeps no number of runs that diverged")},
     {.id = "P10",
-     .origin = Origin::paper,
      .where = "App. C, Fig. 12a",
      .from = "paper",
      .says = "beta has only little influence on the outcome",
@@ -519,7 +509,6 @@ const std::vector<Claim> kPaper = {
      .cause = not_run(
          "0.6 CPU-hours: the exponents of Fig. 12 at the profile paper")},
     {.id = "P11",
-     .origin = Origin::paper,
      .where = "App. C, Fig. 12b",
      .from = "paper",
      .says = "kappa > 0 stagnates, kappa < 0 ends orders of magnitude lower, "
@@ -538,7 +527,6 @@ const std::vector<Claim> kPaper = {
      .cause =
          not_run("with P10: the exponents of Fig. 12 at the profile paper")},
     {.id = "P12",
-     .origin = Origin::paper,
      .where = "App. C, Fig. 13",
      .from = "paper",
      .says = "HIG tolerate tau 1e-5 to 1e-10 and end lower than GN, which "

@@ -100,7 +100,6 @@ const Select kHigOscillators = run("hig", kOscillators),
 
 const std::vector<Claim> kClaims = {
     {.id = "P1",
-     .origin = Origin::paper,
      .where = "abstract, Secs. 1, 5",
      .from = "paper",
      .says = "On all three problems HIG converges more quickly and yields "
@@ -119,7 +118,6 @@ const std::vector<Claim> kClaims = {
          "dipole HIG ends at 5.2e-6 and 5.1e-8 (two seeds), Adam with b = 256 "
          "at 5.6e-7 (one)")},
     {.id = "P2",
-     .origin = Origin::paper,
      .where = "Secs. 1, 2.3",
      .from = "paper",
      .says = "The cost of a HIG step is linear in the number of parameters",
@@ -137,7 +135,6 @@ const std::vector<Claim> kClaims = {
      .cause = not_run("seconds of CPU: networks of six widths, three seeds, at "
                       "the profile paper")},
     {.id = "P3",
-     .origin = Origin::paper,
      .where = "Sec. 2.3, App. A.3",
      .from = "standard",
      .says = "Overly large batches can make the Jacobian increasingly "
@@ -151,7 +148,6 @@ const std::vector<Claim> kClaims = {
      .note = "After 5000 updates of Adam, where no singular value is cut. That "
              "this destabilises learning is not judged."},
     {.id = "P4",
-     .origin = Origin::paper,
      .where = "Tables 3 to 5",
      .from = "standard",
      .says = "Durations of an update on a GPU",

@@ -242,7 +242,6 @@ Condition leads_every_adam(std::string label, const Select& hig) {
 
 const std::vector<Claim> kPaper = {
     {.id = "P1",
-     .origin = Origin::paper,
      .where = "Sec. 3.2, Fig. 3b",
      .from = "paper",
      .says = "Adam and HIG lower the loss by up to three orders of magnitude",
@@ -263,7 +262,6 @@ const std::vector<Claim> kPaper = {
      .cause = not_run("1.1 CPU-hours for each rate and seed: 1000 updates of "
                       "HIG with b = 64")},
     {.id = "P2",
-     .origin = Origin::paper,
      .where = "Sec. 3.2, Fig. 3b",
      .from = "paper",
      .says = "Adam's runs with larger learning rates quickly slow down",
@@ -277,7 +275,6 @@ const std::vector<Claim> kPaper = {
      .cause = not_run("1.0 CPU-hours for one seed, 4.9 for all, with P3 to P5: "
                       "the profile paper")},
     {.id = "P3",
-     .origin = Origin::paper,
      .where = "Sec. 3.2, Fig. 3b",
      .from = "paper",
      .says = "In convergence per time, Adam with the smallest rate leads",
@@ -296,7 +293,6 @@ const std::vector<Claim> kPaper = {
                     report("of HIG", median(kHig2, length(own_seconds())))},
      .cause = not_run("with P2: the profile paper")},
     {.id = "P4",
-     .origin = Origin::paper,
      .where = "Sec. 3.2, Fig. 3b",
      .from = "paper",
      .says = "Over logarithmic time Adam's curve flattens, while the slope of "
@@ -311,7 +307,6 @@ const std::vector<Claim> kPaper = {
                              0.7)},
      .cause = not_run("with P2: the profile paper")},
     {.id = "P5",
-     .origin = Origin::paper,
      .where = "App. B.3, Fig. 7a",
      .from = "paper",
      .says = "HIG converges faster per iteration",
@@ -322,7 +317,6 @@ const std::vector<Claim> kPaper = {
                 leads_every_adam("with 0.05", kHig5)))},
      .cause = not_run("with P2: the profile paper")},
     {.id = "P6",
-     .origin = Origin::paper,
      .where = "Sec. 3.2, Table 4",
      .from = "standard",
      .says = "The time to compute an Adam update is much smaller than for HIG",
@@ -334,7 +328,6 @@ const std::vector<Claim> kPaper = {
                            ratio(printed("table4/hig/b=64/update"),
                                  printed("table4/adam/b=64/update")))}},
     {.id = "P7",
-     .origin = Origin::paper,
      .where = "Sec. 3.2, Fig. 3c",
      .from = "paper",
      .says = "HIG after Adam quickly improves the network: a significant drop "
@@ -349,7 +342,6 @@ const std::vector<Claim> kPaper = {
          "no update of HIG comes below the 0.20 that 30,000 of Adam reach; "
          "after 20 it is at 0.39 (rate 0.02, b = 64, one seed)")},
     {.id = "P8",
-     .origin = Origin::paper,
      .where = "Sec. 3.2, Fig. 3c",
      .from = "paper",
      .says = "After the drop HIG descends faster than Adam",
@@ -361,7 +353,6 @@ const std::vector<Claim> kPaper = {
                     "its log loss rises by 0.006, Adam's falls by 0.58 (one "
                     "seed)")},
     {.id = "P9",
-     .origin = Origin::paper,
      .where = "App. B.3, Fig. 7b",
      .from = "paper",
      .says = "Adam after HIG quickly loses the progress that HIG has made and "

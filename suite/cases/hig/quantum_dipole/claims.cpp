@@ -274,7 +274,6 @@ const std::vector<Claim> kDenseSuite = {
 
 const std::vector<Claim> kDensePaper =
     {{.id = "P1",
-      .origin = Origin::paper,
       .where = "Sec. 3.3, Fig. 4b",
       .from = "standard",
       .says = "HIG minimises the loss faster than Adam",
@@ -297,7 +296,6 @@ const std::vector<Claim> kDensePaper =
               "itself (P3). Table 5 has no Adam with b = 16; it is taken to "
               "last as long as with 256, which favours HIG."},
      {.id = "P2",
-      .origin = Origin::paper,
       .where = "Sec. 3.3, Fig. 4b",
       .from = "paper",
       .says = "HIG reaches a better final accuracy than Adam",
@@ -314,7 +312,6 @@ const std::vector<Claim> kDensePaper =
       .note = "After 5400 s by the paper's clock; the rates of Fig. 4b are not "
               "printed."},
      {.id = "P3",
-      .origin = Origin::paper,
       .where = "Sec. 3.3, Fig. 4b",
       .from = "paper",
       .says = "Adam with the largest rate drops first and ends worst of all",
@@ -331,7 +328,6 @@ const std::vector<Claim> kDensePaper =
                                                     loss_at(paper(), kEnd)))})),
                            1)}},
      {.id = "P4",
-      .origin = Origin::paper,
       .where = "Sec. 3.3",
       .from = "paper",
       .says = "The final losses differ less than in the other experiments",
@@ -346,7 +342,6 @@ const std::vector<Claim> kDensePaper =
       .cause = not_run("4 CPU-minutes a seed: Adam and HIG on the oscillators "
                        "beside these runs, at the profile paper")},
      {.id = "P5",
-      .origin = Origin::paper,
       .where = "Sec. 3.3",
       .from = "paper",
       .says = "A pure physics optimisation reaches about 1e-6, and networks "
@@ -372,7 +367,6 @@ const std::vector<Claim> kDensePaper =
           "cancels, control alone ends at 3.3e-6 in float; in double it comes "
           "to 1e-15 and networks to 5e-8")},
      {.id = "P6",
-      .origin = Origin::paper,
       .where = "Sec. 3.3, Fig. 4b",
       .from = "standard",
       .says = "Adam stagnates at 0.5, most of all with 1e-4; HIG decreases "
@@ -390,7 +384,6 @@ const std::vector<Claim> kDensePaper =
                            least(medians({kAdam, kAdam10, kAdam30},
                                          stalled(paper(), 0.4, 0.6))))}},
      {.id = "P7",
-      .origin = Origin::paper,
       .where = "Sec. 3.3, Fig. 4c",
       .from = "standard",
       .says = "Adam minimises the low-energy loss first and increases it again "
@@ -402,7 +395,6 @@ const std::vector<Claim> kDensePaper =
                            median(kAdam, if_ran(8000, rise_ratio)),
                            1.2)}},
      {.id = "P8",
-      .origin = Origin::paper,
       .where = "Sec. 3.3, Fig. 4c",
       .from = "standard",
       .says = "HIG minimises both losses uniformly",
@@ -410,7 +402,6 @@ const std::vector<Claim> kDensePaper =
                            median(kHig, lag),
                            median(kAdam, if_ran(8000, lag)))}},
      {.id = "P9",
-      .origin = Origin::paper,
       .where = "App. B.4, Fig. 9",
       .from = "standard",
       .says = "HIG is accurate for tau from 1e-5 to 1e-3 and worse for 1e-2",
@@ -438,7 +429,6 @@ const std::vector<Claim> kDensePaper =
                   ratio(after({"hig-b8-eta05-tau2"}, 256),
                         after({"hig-b8-eta05-tau3"}, 256)))}},
      {.id = "P10",
-      .origin = Origin::paper,
       .where = "App. C, Fig. 9",
       .from = "standard",
       .says = "With tau far below 1e-5 the network does not learn, and a pure "
@@ -462,7 +452,6 @@ const std::vector<Claim> kDensePaper =
           "with 1e-8 it was 0.50 (one seed); control alone, not projected, "
           "stays at 0.92 to 0.99 for 128 updates")},
      {.id = "P11",
-      .origin = Origin::paper,
       .where = "App. B.4, Fig. 9",
       .from = "quick",
       .says =
@@ -487,7 +476,6 @@ const std::vector<Claim> kConvolutions = {
                           after(kAdam, 600),
                           1e-2)}},
     {.id = "P12",
-     .origin = Origin::paper,
      .where = "App. B.4, Figs. 10, 11",
      .from = "paper",
      .says = "With convolutions, tau from 1e-5 to 1e-3 is stable, and the best "

@@ -96,7 +96,6 @@ const Select kJpo = plain("jpo"), kRefined = refined("jpo");
 std::vector<Claim> paper_claims() {
   return {
       {.id = "P1",
-       .origin = Origin::paper,
        .where = "Sec. 4",
        .from = "paper",
        .says = "For n <= 32 JPO differs little from BFGS",
@@ -109,7 +108,6 @@ std::vector<Claim> paper_claims() {
            "32, as far from 1/2 as at n >= 64",
            {small_differences("without refinement", kJpo)})},
       {.id = "P2",
-       .origin = Origin::paper,
        .where = "Sec. 4, Fig. 4b",
        .from = "paper",
        .says = "For n >= 64 almost all problems reach the solution",
@@ -120,7 +118,6 @@ std::vector<Claim> paper_claims() {
                                       solved_share(kRefined.of_sizes(64)),
                                       0.9))}},
       {.id = "P3",
-       .origin = Origin::paper,
        .where = "Sec. 4",
        .from = "smoke",
        .says = "Without a collision there is no gradient, and classical "
@@ -135,7 +132,6 @@ std::vector<Claim> paper_claims() {
                                difference(1, bfgs_share(if_solved(kSolved))),
                                0.2)}},
       {.id = "P4",
-       .origin = Origin::paper,
        .where = "Sec. 4",
        .from = "paper",
        .says = "JPO drastically improves the solutions: refined, it leaves "
@@ -145,13 +141,11 @@ std::vector<Claim> paper_claims() {
            difference(1, solved_share(kRefined.of_sizes(64))),
            times(0.5, difference(1, solved_share(bfgs().of_sizes(64)))))}},
       {.id = "P5",
-       .origin = Origin::paper,
        .where = "Table 4",
        .from = "paper",
        .says = "How often JPO is better than BFGS, and equal",
        .conditions = table4("jpo", kSeeds)},
       {.id = "P6",
-       .origin = Origin::paper,
        .where = "Table 5",
        .from = "paper",
        .says = "How often refined JPO is better than BFGS, and equal",
@@ -163,7 +157,6 @@ std::vector<Claim> paper_claims() {
                   percent(mean(kRefined, better())),
                   50)})},
       {.id = "P7",
-       .origin = Origin::paper,
        .where = "Tables 4 and 5",
        .from = "paper",
        .says = "How often supervised learning and the neural adjoint are "
@@ -193,7 +186,6 @@ std::vector<Claim> paper_claims() {
            "0.1 to 1 it was better in 0 to 4 % and tied in 76 to 97 % "
            "(four runs), printed are 1.6 and 98.4")},
       {.id = "P8",
-       .origin = Origin::paper,
        .where = "App. D.2",
        .from = "paper",
        .says = "The neural adjoint gets stuck on the boundary of its training "
@@ -214,7 +206,6 @@ std::vector<Claim> paper_claims() {
            "are not printed: with 20, 10 and 0.5 no estimate ends at the "
            "wall, with 20, 0.1 and 0.1 94 % did")},
       {.id = "P9",
-       .origin = Origin::paper,
        .where = "Table 3",
        .from = "paper",
        .says = "Share of the decrease that the network makes",

@@ -409,7 +409,6 @@ Quantity slope_off_by(F other) {
 
 const std::vector<Claim> kPaper = {
     {.id = "P1",
-     .origin = Origin::paper,
      .where = "Fig. 2a",
      .from = "paper",
      .says = "Measured and predicted scaling of the sum match perfectly",
@@ -422,7 +421,6 @@ const std::vector<Claim> kPaper = {
              kFull),
          1)}},
     {.id = "P2",
-     .origin = Origin::paper,
      .where = "Theorem 1",
      .from = "paper",
      .says = "The excess over 1/2 grows with sqrt(N)",
@@ -448,7 +446,6 @@ const std::vector<Claim> kPaper = {
                                 }))},
      .note = "N up to 16, where P_sum < 0.75: beyond, it saturates."},
     {.id = "P3",
-     .origin = Origin::paper,
      .where = "Sec. 4, Fig. 2a",
      .from = "paper",
      .says = "The majority vote shows identical behaviour",
@@ -460,7 +457,6 @@ const std::vector<Claim> kPaper = {
      .note = "The same law, not the same numbers: a vote is a sum with SNR "
              "smaller by sqrt(2 / pi)."},
     {.id = "P4",
-     .origin = Origin::paper,
      .where = "Theorem 2, App. A.2",
      .from = "paper",
      .says = "The vote is right as often as 1/2 + erf(sqrt(N) e / "
@@ -491,7 +487,6 @@ const std::vector<Claim> kPaper = {
                        }),
                   1)})},
     {.id = "P5",
-     .origin = Origin::paper,
      .where = "Sec. 2",
      .from = "paper",
      .says = "With equal SNR and unequal noise the vote keeps sqrt(N), the "
@@ -506,7 +501,6 @@ const std::vector<Claim> kPaper = {
                               kFull),
                           2)}},
     {.id = "P6",
-     .origin = Origin::paper,
      .where = "Sec. 2",
      .from = "paper",
      .says = "With equal SNR and noise the sum is more efficient than the vote",
@@ -525,7 +519,6 @@ const std::vector<Claim> kPaper = {
      .note = "The paper's printed constants, 0.564 and 0.637, say the "
              "reverse."},
     {.id = "P7",
-     .origin = Origin::paper,
      .where = "Sec. 2, App. A.2",
      .from = "paper",
      .says = "A very low clipping threshold exactly matches majority voting",
@@ -543,7 +536,6 @@ const std::vector<Claim> kPaper = {
      .cause = not_run("seconds of CPU: clipped gradients at the profile "
                       "paper")},
     {.id = "P8",
-     .origin = Origin::paper,
      .where = "Fig. 2b",
      .from = "paper",
      .says = "C = 6.4, A = 12.9 closely match the network",
@@ -552,7 +544,6 @@ const std::vector<Claim> kPaper = {
      .note = "The paper does not name its network. This is one of about "
              "sixty that were tried; fitted to it alone, C is 1.5 and A 2.5."},
     {.id = "P9",
-     .origin = Origin::paper,
      .where = "Theorem 3",
      .from = "paper",
      .says = "The aligned share falls from 1 to a limit in [1/2, 1] that does "
@@ -567,7 +558,6 @@ const std::vector<Claim> kPaper = {
                                    0.5,
                                    1)}})},
     {.id = "P10",
-     .origin = Origin::paper,
      .where = "Fig. 2c, d",
      .from = "paper",
      .says = "Fitted without noise, the model describes noisy updates, best "

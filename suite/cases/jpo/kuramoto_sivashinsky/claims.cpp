@@ -58,13 +58,11 @@ Quantity diverged(const Select& runs) {
 std::vector<Claim> paper_claims() {
   return {
       {.id = "P1",
-       .origin = Origin::paper,
        .where = "Sec. 4",
        .from = "paper",
        .says = "BFGS finds the solution in about 60 % of cases",
        .conditions = {about("solved, %", percent(solved_of(256, bfgs())), 60)}},
       {.id = "P2",
-       .origin = Origin::paper,
        .where = "Sec. 4",
        .from = "paper",
        .says = "Gradient descent gets stuck in local optima more often than "
@@ -76,7 +74,6 @@ std::vector<Claim> paper_claims() {
            "20 it solved 0.48 and BFGS 0.52, with 50 and 100 it solved 0.56 "
            "and 0.59 (n = 64); run to its end it solves 0.68, BFGS 0.57")},
       {.id = "P3",
-       .origin = Origin::paper,
        .where = "Sec. 4",
        .from = "paper",
        .says = "JPO brings 80 % of the problems to the global minimum",
@@ -89,7 +86,6 @@ std::vector<Claim> paper_claims() {
        .cause = not_run("n = 256 of the profile paper anew: what is stored "
                         "keeps the mean over all n")},
       {.id = "P4",
-       .origin = Origin::paper,
        .where = "Sec. 4",
        .from = "paper",
        .says = "Unrefined accuracy stagnates far from machine precision",
@@ -100,7 +96,6 @@ std::vector<Claim> paper_claims() {
                  of_solved(kRefined.of_sizes(kMany), losses())),
            1e3)}},
       {.id = "P5",
-       .origin = Origin::paper,
        .where = "Sec. 4",
        .from = "paper",
        .says = "Refinement reaches machine precision in 4 to 17 iterations, "
@@ -126,7 +121,6 @@ std::vector<Claim> paper_claims() {
            "takes a median of 9 to 11 iterations, to 1e-12 it took 14, "
            "printed are 12 to 22")},
       {.id = "P6",
-       .origin = Origin::paper,
        .where = "Sec. 4",
        .from = "paper",
        .says = "Performance increases with n; at n = 256 JPO is better than "
@@ -146,7 +140,6 @@ std::vector<Claim> paper_claims() {
                                         "text/jpo/better/n=256",
                                         kSeeds))}},
       {.id = "P7",
-       .origin = Origin::paper,
        .where = "Table 4",
        .from = "paper",
        .says = "How often each method is better than BFGS, and equal",
@@ -163,7 +156,6 @@ std::vector<Claim> paper_claims() {
                   better_percent(plain("supervised")),
                   better_percent(plain("na")))})},
       {.id = "P8",
-       .origin = Origin::paper,
        .where = "Table 5",
        .from = "paper",
        .says = "The same after refinement",
@@ -181,7 +173,6 @@ std::vector<Claim> paper_claims() {
                   better_percent(refined("supervised")),
                   better_percent(refined("na")))})},
       {.id = "P9",
-       .origin = Origin::paper,
        .where = "Table 3",
        .from = "paper",
        .says = "Share of the decrease that the network makes",
@@ -195,7 +186,6 @@ std::vector<Claim> paper_claims() {
                   lowest_mean(kRefined, decrease_before()),
                   0.5)})},
       {.id = "P10",
-       .origin = Origin::paper,
        .where = "App. D.3",
        .from = "paper",
        .says = "Supervised learning gains with n: unrefined never better than "
@@ -224,7 +214,6 @@ std::vector<Claim> paper_claims() {
                   better_percent(refined("supervised").of_sizes(64)),
                   better_percent(at(refined("supervised"), 2)))})},
       {.id = "P11",
-       .origin = Origin::paper,
        .where = "App. D.3",
        .from = "paper",
        .says = "The neural adjoint fails to match BFGS even when refined",
@@ -242,7 +231,6 @@ std::vector<Claim> paper_claims() {
                              times(-0.5, printed("table5/na/equal"))),
                   50)})},
       {.id = "P12",
-       .origin = Origin::paper,
        .where = "App. D.3",
        .from = "paper",
        .says = "A handful of simulations from supervised learning and the "

@@ -81,7 +81,6 @@ std::vector<double> stuck(const Run& run) {
 std::vector<Claim> paper_claims() {
   return {
       {.id = "P1",
-       .origin = Origin::paper,
        .where = "Sec. 4",
        .from = "paper",
        .says = "BFGS converges always, usually within 10, sometimes up to 40 "
@@ -100,7 +99,6 @@ std::vector<Claim> paper_claims() {
            "13; usually is read as more than half, and stop and precision "
            "are not printed")},
       {.id = "P2",
-       .origin = Origin::paper,
        .where = "Sec. 4",
        .from = "paper",
        .says = "Many BFGS runs get stuck in local optima",
@@ -108,7 +106,6 @@ std::vector<Claim> paper_claims() {
                                share_of_examples(bfgs(), stuck, holds),
                                0.2)}},
       {.id = "P3",
-       .origin = Origin::paper,
        .where = "Sec. 4",
        .from = "paper",
        .says = "The mean loss of JPO is above that of BFGS for all n, "
@@ -125,7 +122,6 @@ std::vector<Claim> paper_claims() {
            "which unknowns are bounded is not printed, and others were not "
            "tried")},
       {.id = "P4",
-       .origin = Origin::paper,
        .where = "Sec. 4, App. D.4",
        .from = "paper",
        .says = "This comes from about 10 % of the examples",
@@ -144,7 +140,6 @@ std::vector<Claim> paper_claims() {
            "which unknowns are bounded is not printed, and others were not "
            "tried")},
       {.id = "P5",
-       .origin = Origin::paper,
        .where = "Sec. 4",
        .from = "paper",
        .says = "JPO is better than BFGS in 66.7 % on average for n > 4",
@@ -159,7 +154,6 @@ std::vector<Claim> paper_claims() {
                   percent_better(kJpo.of_sizes(8)),
                   50)})},
       {.id = "P6",
-       .origin = Origin::paper,
        .where = "Tables 4, 5",
        .from = "paper",
        .says = "How often JPO is better than BFGS, and equal",
@@ -169,7 +163,6 @@ std::vector<Claim> paper_claims() {
            {above("better, %, more than half", percent_better(kJpo), 50),
             above("refined, more than half", percent_better(kRefined), 50)})},
       {.id = "P7",
-       .origin = Origin::paper,
        .where = "Tables 4, 5",
        .from = "paper",
        .says = "The same of supervised learning and the neural adjoint",
@@ -185,7 +178,6 @@ std::vector<Claim> paper_claims() {
            "printed 0.1: where the surrogate never lowers the true loss the "
            "start is kept, which is BFGS's; whether it may be is not printed")},
       {.id = "P8",
-       .origin = Origin::paper,
        .where = "App. D.4",
        .from = "paper",
        .says = "Refined supervised learning is better in 64, 73 and 72 % for "
@@ -209,7 +201,6 @@ std::vector<Claim> paper_claims() {
                   percent_better(at(kSupervisedRefined, 128)),
                   50)})},
       {.id = "P9",
-       .origin = Origin::paper,
        .where = "App. D.4",
        .from = "paper",
        .says = "Its worst losses are about ten times smaller than the worst of "
@@ -234,7 +225,6 @@ std::vector<Claim> paper_claims() {
        .note = "About ten times: half a decade or more, the geometric mean of "
                "n and seeds."},
       {.id = "P10",
-       .origin = Origin::paper,
        .where = "App. D.4",
        .from = "paper",
        .says = "The refined neural adjoint's mean loss hardly depends on n and "
@@ -250,7 +240,6 @@ std::vector<Claim> paper_claims() {
                    ratio(mean_of_losses(at(kAdjointRefined, 128)),
                          mean_of_losses(at(kAdjointRefined, 4))))}},
       {.id = "P11",
-       .origin = Origin::paper,
        .where = "App. D.4",
        .from = "paper",
        .says = "The unrefined neural adjoint has the highest loss, gains far "
@@ -278,7 +267,6 @@ std::vector<Claim> paper_claims() {
            "up to 42 % of the estimates leave the range of their training "
            "samples; weight and sharpness of the wall are not printed")},
       {.id = "P12",
-       .origin = Origin::paper,
        .where = "Table 3",
        .from = "paper",
        .says = "Share of the decrease that the network makes",

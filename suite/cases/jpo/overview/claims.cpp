@@ -186,7 +186,6 @@ Condition bfgs_can_step_in() {
 std::vector<Claim> claims() {
   return {
       {.id = "P1",
-       .origin = Origin::paper,
        .where = "Sec. 5",
        .from = "paper",
        .says = "JPO beats BFGS in an average of 69 % of the problems",
@@ -205,7 +204,6 @@ std::vector<Claim> claims() {
                   mean_of_all(mean_percent(kRefined, better())),
                   50)})},
       {.id = "P2",
-       .origin = Origin::paper,
        .where = "Sec. 5",
        .from = "paper",
        .says = "This fraction clearly increases with the data set",
@@ -225,7 +223,6 @@ std::vector<Claim> claims() {
        .cause = not_run("the profile paper anew: what is stored keeps no "
                         "errors of the growth")},
       {.id = "P3",
-       .origin = Origin::paper,
        .where = "Abstract, Sec. 6",
        .from = "paper",
        .says = "In all settings JPO surpasses individual optimization, given "
@@ -239,7 +236,6 @@ std::vector<Claim> claims() {
                              0.5));
        })},
       {.id = "P4",
-       .origin = Origin::paper,
        .where = "Sec. 5, Table 4",
        .from = "paper",
        .says = "Supervised learning is worse than JPO everywhere and beats "
@@ -269,7 +265,6 @@ std::vector<Claim> claims() {
                  mean_percent(kPlain, better())(e));
            }))},
       {.id = "P5",
-       .origin = Origin::paper,
        .where = "App. D, Table 3",
        .from = "paper",
        .says = "The network makes the bulk of the decrease, refinement much "
@@ -280,7 +275,6 @@ std::vector<Claim> claims() {
                       0.5);
        })},
       {.id = "P6",
-       .origin = Origin::paper,
        .where = "App. D",
        .from = "paper",
        .says = "The larger n, the more of the decrease the network makes",
@@ -297,7 +291,6 @@ std::vector<Claim> claims() {
                              printed("jpo/navier-stokes table3/n=4")),
                   0)})},
       {.id = "P7",
-       .origin = Origin::paper,
        .where = "Sec. 5",
        .from = "paper",
        .says = "BFGS is the best tested iterative solver",
@@ -312,7 +305,6 @@ std::vector<Claim> claims() {
        .note = "On the wave packet the same paper has gradient descent "
                "closer to the optimum more often."},
       {.id = "P8",
-       .origin = Origin::paper,
        .where = "Sec. 5",
        .from = "paper",
        .says = "For few problems JPO is sometimes worse; many of these cases "
@@ -329,7 +321,6 @@ std::vector<Claim> claims() {
                            }),
                    of_each(kWithBfgs, with_bfgs)})},
       {.id = "P9",
-       .origin = Origin::paper,
        .where = "App. D.1 to D.4",
        .from = "smoke",
        .says = "The networks' numbers of parameters",
@@ -362,7 +353,6 @@ std::vector<Claim> claims() {
                     parameters(kWave.name, &Setting::predictor),
                     13'921)})},
       {.id = "P10",
-       .origin = Origin::paper,
        .where = "Sec. 5, Limitations",
        .from = "paper",
        .says = "JPO is slower for few problems and faster for many: the cost "
@@ -376,7 +366,6 @@ std::vector<Claim> claims() {
            "Table 2 has a fit slower than parallel BFGS at the largest n "
            "everywhere")},
       {.id = "P11",
-       .origin = Origin::paper,
        .where = "Table 2, App. D.3",
        .from = "paper",
        .says = "Wall times",

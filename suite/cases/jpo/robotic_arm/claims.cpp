@@ -56,7 +56,6 @@ std::vector<Claim> paper_claims() {
                   descent_perfect = all_solved("gradient descent", gd());
   return {
       {.id = "P1",
-       .origin = Origin::paper,
        .where = "App. D.5",
        .from = "quick",
        .says = "BFGS reaches machine precision within a couple of iterations",
@@ -66,7 +65,6 @@ std::vector<Claim> paper_claims() {
        .note = "A couple is read as 25. Curves are measured every seventh "
                "part of an iteration number."},
       {.id = "P2",
-       .origin = Origin::paper,
        .where = "App. D.5",
        .from = "quick",
        .says = "Gradient descent does, too",
@@ -80,7 +78,6 @@ std::vector<Claim> paper_claims() {
                     median_to(1e-9, at(gd(), 64)),
                     25)})},
       {.id = "P3",
-       .origin = Origin::paper,
        .where = "App. D.5, Fig. 25c",
        .from = "quick",
        .says = "The networks take longer to fit the data",
@@ -93,7 +90,6 @@ std::vector<Claim> paper_claims() {
        .note = "Not finite: never. A surrogate has no estimate of its own "
                "while it is fitted, and is not compared."},
       {.id = "P4",
-       .origin = Origin::paper,
        .where = "App. D.5, Fig. 25d",
        .from = "paper",
        .says = "Refined, all solutions of every n reach zero loss",
@@ -101,7 +97,6 @@ std::vector<Claim> paper_claims() {
                       all_solved("supervised", refined("supervised")),
                       all_solved("na", refined("na"))}},
       {.id = "P5",
-       .origin = Origin::paper,
        .where = "Sec. 5, App. D.5",
        .from = "paper",
        .says = "On convex problems JPO always reaches the optimum; classical "

@@ -103,13 +103,11 @@ std::vector<Claim> paper_claims() {
   const Select labels = plain("supervised"), na_256 = at(refined("na"), 256);
   return {
       {.id = "P1",
-       .origin = Origin::paper,
        .where = "Sec. 4, Table 4",
        .from = "paper",
        .says = "JPO is better than BFGS in around 80 % of examples",
        .conditions = table4("jpo", kSeeds)},
       {.id = "P2",
-       .origin = Origin::paper,
        .where = "Table 4",
        .from = "paper",
        .says = "How often supervised learning and the neural adjoint are "
@@ -123,13 +121,11 @@ std::vector<Claim> paper_claims() {
            "(two runs), printed are 55.9; the neural adjoint's 16 %, "
            "printed 28.2, stays open")},
       {.id = "P3",
-       .origin = Origin::paper,
        .where = "Table 5",
        .from = "paper",
        .says = "How often refined JPO is better than BFGS, and equal",
        .conditions = table5("jpo", kSeeds)},
       {.id = "P4",
-       .origin = Origin::paper,
        .where = "Table 5",
        .from = "paper",
        .says = "The same of refined supervised learning and neural adjoint",
@@ -140,13 +136,11 @@ std::vector<Claim> paper_claims() {
            "128, refined supervised learning ties in 2 %; in float, at 8, 3 "
            "to 16 % tied, printed are 14.4")},
       {.id = "P5",
-       .origin = Origin::paper,
        .where = "Table 3",
        .from = "paper",
        .says = "Share of the decrease that the network makes",
        .conditions = table3(kSeeds)},
       {.id = "P6",
-       .origin = Origin::paper,
        .where = "Sec. 4",
        .from = "paper",
        .says = "BFGS and gradient descent often end in local minima",
@@ -156,7 +150,6 @@ std::vector<Claim> paper_claims() {
                                pool_share(gd(), distances, misses),
                                0.2)}},
       {.id = "P7",
-       .origin = Origin::paper,
        .where = "Sec. 4",
        .from = "paper",
        .says = "BFGS usually takes a large first step and then converges "
@@ -174,7 +167,6 @@ std::vector<Claim> paper_claims() {
            "gradient descent takes a median of 2 iterations and BFGS 5, "
            "where 8 are, 7 and 4")},
       {.id = "P8",
-       .origin = Origin::paper,
        .where = "Sec. 4",
        .from = "paper",
        .says = "Gradient descent comes closer to the global optimum more often",
@@ -188,7 +180,6 @@ std::vector<Claim> paper_claims() {
            "gradient descent is closer on 23 % of the problems, at 8 and "
            "0.1 on 54 %, at 128 and 1e-4 on 82 % (512 problems)")},
       {.id = "P9",
-       .origin = Origin::paper,
        .where = "Sec. 4",
        .from = "paper",
        .says = "JPO moves from minimum to minimum until it settles after 500 "
@@ -206,7 +197,6 @@ std::vector<Claim> paper_claims() {
            "after 4,587 iterations in the median, printed are 500 to 3,000; "
            "four paths a run, the grid of their points is a seventh")},
       {.id = "P10",
-       .origin = Origin::paper,
        .where = "Sec. 4",
        .from = "paper",
        .says = "Many examples of JPO miss the global optimum, but none moves "
@@ -224,7 +214,6 @@ std::vector<Claim> paper_claims() {
            "the median distance from the truth is 62 samples, of one guess for "
            "all 60; BFGS, which is thrown out of the window, is farther")},
       {.id = "P11",
-       .origin = Origin::paper,
        .where = "App. D.1",
        .from = "paper",
        .says = "With supervised learning all estimates approach the truth "
@@ -240,7 +229,6 @@ std::vector<Claim> paper_claims() {
            fails("66 % of the estimates approach the truth, all are printed; "
                  "number and spread of the samples are not printed")},
       {.id = "P12",
-       .origin = Origin::paper,
        .where = "App. D.1",
        .from = "paper",
        .says = "At n = 256 the refined neural adjoint is better in about a "

@@ -82,7 +82,6 @@ Quantity apart(const char* method) {
 
 const std::vector<Claim> kScalingClaims(
     {{.id = "P1",
-      .origin = Origin::paper,
       .where = "Crux of the matter",
       .from = "smoke",
       .says = "For alpha = 1 gradient descent points straight at the minimum, "
@@ -91,7 +90,6 @@ const std::vector<Claim> kScalingClaims(
                      above("alpha 3", of("gd", angle, kThree), 1),
                      above("alpha 5", of("gd", angle, kFive), 1)}},
      {.id = "P2",
-      .origin = Origin::paper,
       .where = "Crux of the matter",
       .from = "smoke",
       .says = "Gradient descent applies the square of the scaling",
@@ -105,7 +103,6 @@ const std::vector<Claim> kScalingClaims(
                   25 - 1e-12,
                   25 + 1e-12)}},
      {.id = "P3",
-      .origin = Origin::paper,
       .where = "Crux of the matter",
       .from = "quick",
       .says = "A large alpha needs a smaller rate; then x2 is there before x1",
@@ -118,7 +115,6 @@ const std::vector<Claim> kScalingClaims(
                             of("gd", steps_to_a_percent(0), kFive)),
                  0)}},
      {.id = "P4",
-      .origin = Origin::paper,
       .where = "Crux of the matter, Summary",
       .from = "quick",
       .says = "Newton, inverse gradients and the inverse simulator take the "
@@ -272,7 +268,6 @@ double reversal_end(const Batch<double>& reversed) {
 /// What single steps show.
 const std::vector<Claim> kStepClaims = {
     {.id = "P11",
-     .origin = Origin::paper,
      .where = "Inverse gradients",
      .from = "smoke",
      .says = "What an inverse gradient step does to y does not depend on the "
@@ -286,7 +281,6 @@ const std::vector<Claim> kStepClaims = {
                           1e3)},
      .note = "y2 is 0.01, 1 and 250 times x2, and its square at 0.5, 1 and 3."},
     {.id = "P12",
-     .origin = Origin::paper,
      .where = "Fundamental theorem of calculus",
      .from = "smoke",
      .says = "dx / dy of the inverse simulator is the local gradient averaged "
@@ -296,7 +290,6 @@ const std::vector<Claim> kStepClaims = {
                           identity("average", off_the_start),
                           0.5)}},
     {.id = "P13",
-     .origin = Origin::paper,
      .where = "Global and local inverse simulators",
      .from = "smoke",
      .says = "Near x0 the local inverse is the inverse, far from it it need "
@@ -308,7 +301,6 @@ const std::vector<Claim> kStepClaims = {
                           identity("local", inverse_off(false)),
                           0.5)}},
     {.id = "P14",
-     .origin = Origin::paper,
      .where = "Quasi-Newton methods, Dependence on Hessian",
      .from = "smoke",
      .says = "Where the Hessian is singular Newton has no step, and another "
@@ -320,7 +312,6 @@ const std::vector<Claim> kStepClaims = {
                             identity("singular", steps_lost),
                             0)}},
     {.id = "P15",
-     .origin = Origin::paper,
      .where = "Gradient descent, Function sensitivity",
      .from = "smoke",
      .says = "For alpha << 1 gradient descent hardly moves x2",
@@ -332,7 +323,6 @@ const std::vector<Claim> kStepClaims = {
                            1 - kExact,
                            1 + kExact)}},
     {.id = "P16",
-     .origin = Origin::paper,
      .where = "Time reversal",
      .from = "smoke",
      .says = "Run backwards in time, the simulator of a reversible process is "
@@ -346,13 +336,11 @@ const std::vector<Claim> kStepClaims = {
 
 const std::vector<Claim> kComparisonClaims(
     {{.id = "P2",
-      .origin = Origin::paper,
       .where = "Crux of the matter",
       .from = "smoke",
       .says = "L = alpha x: gradient descent changes it by -rate alpha^2",
       .conditions = {at_most("off", identity("linear", gd_off), kExact)}},
      {.id = "P5",
-      .origin = Origin::paper,
       .where = "Convergence",
       .from = "quick",
       .says = "Gradient descent stalls as the gradient vanishes; Newton keeps "
@@ -372,20 +360,17 @@ const std::vector<Claim> kComparisonClaims(
       .note = "Relative to what is left: in x the steps of all shrink, where "
               "the chapter has them larger."},
      {.id = "P6",
-      .origin = Origin::paper,
       .where = "Inverse gradients",
       .from = "smoke",
       .says = "L = alpha x: an inverse gradient step changes it by what was "
               "asked, whatever alpha",
       .conditions = {at_most("off", identity("linear", ig_off), kExact)}},
      {.id = "P7",
-      .origin = Origin::paper,
       .where = "Inverse simulator",
       .from = "smoke",
       .says = "P(x + dx) = y + dy, also where P is not linear",
       .conditions = {at_most("missed by", of("pg", missed), kExact)}},
      {.id = "P8",
-      .origin = Origin::paper,
       .where = "Loss functions",
       .from = "smoke",
       .says = "The inverse simulator's step is the inverse gradient's up to "
@@ -393,7 +378,6 @@ const std::vector<Claim> kComparisonClaims(
       .conditions = {within(
           "order of their distance", identity("order", slope), 1.9, 2.1)}},
      {.id = "P9",
-      .origin = Origin::paper,
       .where = "Local inverse",
       .from = "smoke",
       .says = "Of x^2, the root nearest to x0 is a local inverse",
@@ -401,7 +385,6 @@ const std::vector<Claim> kComparisonClaims(
                      at_most(
                          "wrong ones", identity("roots", wrong_branch), 0)}},
      {.id = "P10",
-      .origin = Origin::paper,
       .where = "notebook of the chapter",
       .from = "smoke",
       .says = "The digits printed after ten steps",

@@ -34,21 +34,18 @@ Quantity worst_ratio(const char* a, const char* b, MetricRow row) {
 
 const std::vector<Claim> kClaimsOfAll = {
     {.id = "P1",
-     .origin = Origin::paper,
      .where = "App. C.2",
      .from = "quick",
      .says = "SGD converges very slowly",
      .conditions = {above(
          "share of the error left", lowest({"sgd"}, left()), 0.1)}},
     {.id = "P2",
-     .origin = Origin::paper,
      .where = "App. C.2",
      .from = "quick",
      .says = "Adam converges very slowly",
      .conditions = {above(
          "share of the error left", lowest({"adam"}, left()), 0.1)}},
     {.id = "P3",
-     .origin = Origin::paper,
      .where = "App. C.2",
      .from = "quick",
      .says = "The cause: gradients scale with exp x",
@@ -57,7 +54,6 @@ const std::vector<Claim> kClaimsOfAll = {
                           2),
                     above("Adam", lowest({"adam"}, low_over_high()), 2)}},
     {.id = "P4",
-     .origin = Origin::paper,
      .where = "App. C.2",
      .from = "quick",
      .says = "Normalising the gradient cures it",

@@ -110,7 +110,6 @@ RunValue marker_left() {
 
 const std::vector<Claim> kInverse = {
     {.id = "P6",
-     .origin = Origin::paper,
      .where = "App. B.4",
      .from = "quick",
      .says = "Reverse simulation yields the strength of the vortex",
@@ -119,7 +118,6 @@ const std::vector<Claim> kInverse = {
                           0.5)},
      .note = "The estimate fed with itself ten times, from no velocity."},
     {.id = "P7",
-     .origin = Origin::paper,
      .where = "App. B.4",
      .from = "quick",
      .says = "Advection diffuses the marker visibly",
@@ -128,7 +126,6 @@ const std::vector<Claim> kInverse = {
 
 const std::vector<Claim> kTrained = {
     {.id = "P1",
-     .origin = Origin::paper,
      .where = "App. B.4",
      .from = "paper",
      .says = "SIP finds a much better v0 than the regular gradient",
@@ -136,7 +133,6 @@ const std::vector<Claim> kTrained = {
                           worst_ratio({"sip"}, {"adam"}, end()),
                           1)}},
     {.id = "P2",
-     .origin = Origin::paper,
      .where = "Fig. 14",
      .from = "paper",
      .says = "The difference is especially clear in v0, not in the markers",
@@ -149,7 +145,6 @@ const std::vector<Claim> kTrained = {
                    {{"adam"}}),
          1)}},
     {.id = "P3",
-     .origin = Origin::paper,
      .where = "App. B.4",
      .from = "quick",
      .says = "That small scales are ignored limits SIP's accuracy",
@@ -167,7 +162,6 @@ const std::vector<Claim> kTrained = {
 
 const std::vector<Claim> kOthers = {
     {.id = "P4",
-     .origin = Origin::paper,
      .where = "App. B.4",
      .from = "long",
      .says = "Trained for extremely long, the gradient could win",
@@ -181,7 +175,6 @@ const std::vector<Claim> kOthers = {
      .cause = not_run(
          "3.7 CPU-hours: 20,000 updates of both methods, the profile long")},
     {.id = "P5",
-     .origin = Origin::paper,
      .where = "App. B.4",
      .from = "quick",
      .says = "L-BFGS-B is no better than the gradient and overshoots high "

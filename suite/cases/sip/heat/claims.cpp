@@ -132,7 +132,6 @@ Quantity over_network(const char* method) {
 
 const std::vector<Claim> kPaper = {
     {.id = "P1",
-     .origin = Origin::paper,
      .where = "App. B.3, Fig. 10",
      .from = "paper",
      .says = "SIP performs better than Adam",
@@ -146,7 +145,6 @@ const std::vector<Claim> kPaper = {
      .cause = not_run("a second seed: 10,000 updates of both methods with "
                       "batches of 128, about an hour each")},
     {.id = "P2",
-     .origin = Origin::paper,
      .where = "Fig. 11",
      .from = "paper",
      .says = "Both do best with rate 1e-3 and batches of 128",
@@ -156,7 +154,6 @@ const std::vector<Claim> kPaper = {
      .cause =
          not_run("1.7 CPU-hours: the rates of Fig. 11 at the profile paper")},
     {.id = "P3",
-     .origin = Origin::paper,
      .where = "Fig. 12",
      .from = "paper",
      .says = "Both overfit sets of up to 128",
@@ -170,7 +167,6 @@ const std::vector<Claim> kPaper = {
      .cause = not_run(
          "2.3 CPU-hours with P5: the sets of Fig. 12 at the profile paper")},
     {.id = "P4",
-     .origin = Origin::paper,
      .where = "Fig. 12",
      .from = "standard",
      .says = "SIP overfits a very small set more strongly: 32 examples in "
@@ -182,7 +178,6 @@ const std::vector<Claim> kPaper = {
      .note = "Losses of observations; the training set's is a mean over the "
              "last 100 updates."},
     {.id = "P5",
-     .origin = Origin::paper,
      .where = "Fig. 12",
      .from = "paper",
      .says = "SIP's test error is below Adam's on every set",
@@ -192,7 +187,6 @@ const std::vector<Claim> kPaper = {
          1)},
      .cause = not_run("with P3: the sets of Fig. 12 at the profile paper")},
     {.id = "P6",
-     .origin = Origin::paper,
      .where = "Fig. 13",
      .from = "quick",
      .says = "L-BFGS-B is faster than gradient descent, both are slow",
@@ -210,7 +204,6 @@ const std::vector<Claim> kPaper = {
                 ratio(error("gd", 1000), error("gd", 100)),
                 0.95)}},
     {.id = "P7",
-     .origin = Origin::paper,
      .where = "Fig. 13",
      .from = "paper",
      .says = "L-BFGS-B comes up to the network trained with Adam after 500",
@@ -220,7 +213,6 @@ const std::vector<Claim> kPaper = {
          0.8,
          1.2)}},
     {.id = "P8",
-     .origin = Origin::paper,
      .where = "App. B.3",
      .from = "quick",
      .says = "A network answers about 1000 times as fast as 1000 iterations on "
@@ -242,7 +234,6 @@ const std::vector<Claim> kPaper = {
           of_stages(above("of GD, slower", over_network("gd-cells"), 1))}),
      .gates = false},
     {.id = "P9",
-     .origin = Origin::paper,
      .where = "App. B.3",
      .from = "quick",
      .says = "The stable inverse is faster and more precise than any generic "
@@ -255,7 +246,6 @@ const std::vector<Claim> kPaper = {
                 ratio(error("inverse-physics", 100), error("lbfgsb", 100)),
                 1)}},
     {.id = "P10",
-     .origin = Origin::paper,
      .where = "App. B.3",
      .from = "quick",
      .says = "Gradient descent fits coarse structures, not fine ones; the "
@@ -266,7 +256,6 @@ const std::vector<Claim> kPaper = {
                 0.5),
           above("undamped inverse over x*", error("gd", 0, kOfInverse), 10)}},
     {.id = "P11",
-     .origin = Origin::paper,
      .where = "App. B.3",
      .from = "quick",
      .says = "SGD trains with rate 1e-3",
@@ -279,7 +268,6 @@ const std::vector<Claim> kPaper = {
          "diverge"),
      .gates = false},
     {.id = "P11b",
-     .origin = Origin::paper,
      .where = "App. B.3",
      .from = "paper",
      .says = "1e-3 is the best rate of AdaHessian and the Fourier neural "

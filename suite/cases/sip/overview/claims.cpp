@@ -40,7 +40,6 @@ Condition same_way(const std::string& what,
 
 const std::vector<Claim> kClaims = {
     {.id = "P1",
-     .origin = Origin::paper,
      .where = "Fig. 15",
      .from = "quick",
      .says = "The choice of the gradient changes the time of training by less "
@@ -58,7 +57,6 @@ const std::vector<Claim> kClaims = {
          "15,000 of SIP: 3.3 times the time, Fig. 15 less than 1.1"),
      .gates = false},
     {.id = "P2",
-     .origin = Origin::paper,
      .where = "App. A.2",
      .from = "standard",
      .says =

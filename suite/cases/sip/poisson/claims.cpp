@@ -123,7 +123,6 @@ RunValue steepest_rise() {
 
 const std::vector<Claim> kDirect = {
     {.id = "P1",
-     .origin = Origin::paper,
      .where = "App. B.2",
      .from = "quick",
      .says = "Gradient descent on single examples needs a rate of at most 2e-5",
@@ -134,7 +133,6 @@ const std::vector<Claim> kDirect = {
                           lowest({"gd-5e-5"}, growth()),
                           1e3)}},
     {.id = "P2",
-     .origin = Origin::paper,
      .where = "App. B.2",
      .from = "quick",
      .says = "It converges extremely slowly",
@@ -142,7 +140,6 @@ const std::vector<Claim> kDirect = {
                           median({"gd"}, direct_error()),
                           0.5)}},
     {.id = "P2b",
-     .origin = Origin::paper,
      .where = "App. B.2",
      .from = "quick",
      .says = "So does Adam, which stands larger rates",
@@ -162,7 +159,6 @@ const std::vector<Claim> kDirect = {
                 median({"direct-adam-lr3"}, direct_error()),
                 0.5)})},
     {.id = "P3",
-     .origin = Origin::paper,
      .where = "App. B.2",
      .from = "quick",
      .says = "One step of inverse physics points directly to the solution",
@@ -177,7 +173,6 @@ const std::vector<Claim> kDirect = {
 
 const std::vector<Claim> kTrained = {
     {.id = "P4",
-     .origin = Origin::paper,
      .where = "App. B.2, Fig. 15",
      .from = "quick",
      .says = "An update of SIP takes no longer than one with the gradient",
@@ -193,7 +188,6 @@ const std::vector<Claim> kTrained = {
               1))},
      .gates = false},
     {.id = "P5",
-     .origin = Origin::paper,
      .where = "App. B.2",
      .from = "paper",
      .says = "The rates are the largest that train consistently, after 2000 "
@@ -211,7 +205,6 @@ const std::vector<Claim> kTrained = {
      .conditions = largest_rate(
          "SGD", {"sgd-16x-b8"}, {"sgd-160x-b8"}, late_training_error())},
     {.id = "P6",
-     .origin = Origin::paper,
      .where = "App. B.2",
      .from = "paper",
      .says = "AdaHessian does best with 1e-6 and a Hessian power of 0.5 and "
@@ -228,7 +221,6 @@ const std::vector<Claim> kTrained = {
          "1e-4 at 0.94 of the start: sums over a sixteenth of the paper's "
          "batch make smaller steps")},
     {.id = "P10",
-     .origin = Origin::paper,
      .where = "App. B.2",
      .from = "quick",
      .says = "The networks' numbers of parameters",
@@ -243,7 +235,6 @@ const std::vector<Claim> kTrained = {
                  1,
                  1)}},
     {.id = "P8",
-     .origin = Origin::paper,
      .where = "Fig. 9",
      .from = "paper",
      .says = "SIP ends below Adam, every seed",
@@ -257,7 +248,6 @@ const std::vector<Claim> kTrained = {
      .cause = not_run(
          "a second seed: 12,000 updates of both methods with batches of 128")},
     {.id = "P7",
-     .origin = Origin::paper,
      .where = "App. B.2",
      .from = "paper",
      .says = "Hessian-free reaches an error of 900 in fewer than six updates",
@@ -322,7 +312,6 @@ const std::vector<Claim> kOnSmall = {
 
 const std::vector<Claim> kOperators = {
     {.id = "P9",
-     .origin = Origin::paper,
      .where = "App. B.2",
      .from = "paper",
      .says = "Smaller operators do worse in the same time",

@@ -37,7 +37,6 @@ Quantity passes(RunValue when) {
 
 const std::vector<Claim> kClaimsOfAll = {
     {.id = "P1",
-     .origin = Origin::paper,
      .where = "App. C.1",
      .from = "quick",
      .says = "L-BFGS-B fits perfectly what is very close to the center",
@@ -46,7 +45,6 @@ const std::vector<Claim> kClaimsOfAll = {
          share_of_examples(kLbfgs, errors(0, 2), up_to(0.5)),
          0.95)}},
     {.id = "P2",
-     .origin = Origin::paper,
      .where = "App. C.1",
      .from = "quick",
      .says = "Slightly to the side it is off by an integer phase shift",
@@ -55,7 +53,6 @@ const std::vector<Claim> kClaimsOfAll = {
          share_of_examples(kLbfgs, off_missed_period(5, 20), up_to(2.2)),
          0.5)}},
     {.id = "P3",
-     .origin = Origin::paper,
      .where = "App. C.1",
      .from = "quick",
      .says = "Farther away it fits the noise near the center",
@@ -65,7 +62,6 @@ const std::vector<Claim> kClaimsOfAll = {
      .note = "Staying near the start: what it fits there, the packet's tail or "
              "the noise, this does not tell."},
     {.id = "P4",
-     .origin = Origin::paper,
      .where = "App. C.1",
      .from = "paper",
      .says = "The network learns to localize most wave packets correctly",
@@ -79,7 +75,6 @@ const std::vector<Claim> kClaimsOfAll = {
                "is one reading, with batch norm and pooling brought 44 % (one "
                "seed)")},
     {.id = "P5",
-     .origin = Origin::paper,
      .where = "App. C.1, Fig. 16b",
      .from = "paper",
      .says = "It outperforms L-BFGS-B after 30 to 40 training iterations",
@@ -97,7 +92,6 @@ const std::vector<Claim> kClaimsOfAll = {
          "printed are 30 to 40, and ends 1 % below; no kind of initial "
          "weights, norm, pooling, padding, rate or width passed before 128")},
     {.id = "P6",
-     .origin = Origin::paper,
      .where = "App. C.1",
      .from = "paper",
      .says =
@@ -182,7 +176,6 @@ Quantity alone() { return share_of_examples(fits(1), errors(), up_to(kBasin)); }
 
 const std::vector<Claim> kClaimsOfJoint = {
     {.id = "P7",
-     .origin = Origin::paper,
      .where = "App. C.1",
      .from = "paper",
      .says = "Updates from other examples keep it from local optima",
