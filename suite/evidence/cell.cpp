@@ -20,6 +20,11 @@ Cell cell_of(std::span<const double> values, const char* otherwise) {
   return {.ours = found->mean, .spread = found->std};
 }
 
+Cell cell_of(const Measured& measured) {
+  if (!measured.value) return {.text = kNotRun};
+  return {.ours = measured.value, .spread = measured.spread};
+}
+
 Cell written(std::optional<double> value,
              const char* format,
              const char* otherwise) {
@@ -30,6 +35,15 @@ Cell written(std::optional<double> value,
 
 Cell written(const Measured& measured, const char* format) {
   return written(measured.value, format);
+}
+
+Cell beside_printed(Cell cell,
+                    const Evidence& evidence,
+                    const std::string& quantity) {
+  if (const auto found =
+          find_printed(evidence.published, evidence.experiment, quantity))
+    cell.paper = found->value, cell.paper_spread = found->spread;
+  return cell;
 }
 
 std::optional<double> TimedStages::seconds(const StageRecord& stage) {

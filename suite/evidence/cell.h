@@ -23,12 +23,20 @@ Cell cell_of(std::optional<double> value, const char* otherwise = kNotRun);
 /// Mean and deviation of one number per seed.
 Cell cell_of(std::span<const double> values, const char* otherwise = kNotRun);
 
+/// Value and spread.
+Cell cell_of(const Measured& measured);
+
 /// The number in words of its own size: fmt's format, "not finite" for what is
 /// not.
 Cell written(std::optional<double> value,
              const char* format = "{:.3g}",
              const char* otherwise = kNotRun);
 Cell written(const Measured& measured, const char* format = "{:.3g}");
+
+/// The cell with what the paper prints, if it does.
+Cell beside_printed(Cell cell,
+                    const Evidence& evidence,
+                    const std::string& quantity);
 
 /// Which stages a table of times is of. Its note says which clock they are from
 /// and how many were crowded.

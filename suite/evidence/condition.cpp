@@ -4,16 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <string_view>
+#include <functional>
 #include <utility>
 
-#include "suite/evidence/statistics.h"
-#include "suite/results/published.h"
-#include "suite/results/results.h"
-
 namespace physinv {
-namespace {
 
 ConditionResult result_of(const std::string& label,
                           const std::string& bounds,
@@ -27,13 +21,15 @@ ConditionResult result_of(const std::string& label,
           .missing = m.missing};
 }
 
+namespace {
+
 /// `decide` gets value and bound once both are there. A bound with runs behind
 /// it says its number beside its relation.
 Condition compare(std::string label,
                   Quantity q,
                   const char* relation,
                   Quantity bound,
-                  bool (*decide)(double, double)) {
+                  std::function<bool(double, double)> decide) {
   const bool measured = !bound.runs().empty() || !bound.printed().empty();
   const auto words = [=](const Measured& b) {
     if (b.value) return fmt::format("{} {}", relation, number_text(*b.value));
@@ -61,77 +57,6 @@ Condition compare(std::string label,
           }};
 }
 
-/// |m - p| <= allowance(measured, p), not judged where that is empty.
-template <class F>
-Condition agree(
-    std::string label, Quantity q, Quantity p, std::string words, F allowance) {
-  const auto decide = [=](const Evidence& e, ConditionResult& r) {
-    const Measured target = p(e);
-    r.holds.reset();
-    if (!target.value) {
-      if (r.missing.empty()) r.missing = target.missing;
-      return;
-    }
-    r.bounds = "printed " + number_text(*target.value);
-    if (!r.value) return;
-    const std::optional<double> band = allowance(e, r, *target.value);
-    if (!band) {
-      r.missing = "three seeds";
-      return;
-    }
-    r.bounds += " +- " + number_text(*band);
-    r.holds = std::abs(*r.value - *target.value) <= *band;
-  };
-  return {label,
-          words,
-          {q, p},
-          [=](const Evidence& e) {
-            ConditionResult r = result_of(label, words, q(e));
-            decide(e, r);
-            return r;
-          },
-          [=](const Evidence& e, const Kept&, ConditionResult& kept) {
-            decide(e, kept);
-          }};
-}
-
-/// Half a digit of what is printed.
-constexpr double kRounding = 0.05;
-
-/// Problems behind a seed's mean of shares over n, as far as its scatter goes:
-/// the square of how many n over the sum of 1 / n. The mean over seeds; 0 for
-/// no runs.
-double problems_behind(const Evidence& e, const Select& runs) {
-  std::map<std::uint64_t, std::pair<double, double>> seeds;
-  for (const Run& run : find_runs(e, runs)) {
-    auto& [count, inverse] = seeds[run.seed()];
-    count += 1, inverse += 1 / static_cast<double>(run.n());
-  }
-  double all = 0;
-  for (const auto& [seed, s] : seeds) all += s.first * s.first / s.second;
-  return seeds.empty() ? 0 : all / static_cast<double>(seeds.size());
-}
-
-/// Twice the standard error of the difference of our mean and one over so many
-/// seeds, in per cent.
-auto band_of_means(Quantity q, Index seeds) {
-  return [=](const Evidence& e,
-             const ConditionResult& m,
-             double printed) -> std::optional<double> {
-    if (m.runs < 3 || !m.spread) return {};
-    double variance = *m.spread * *m.spread;
-    if (q.runs().size() == 1) {
-      const double p = std::clamp(0.005 * (*m.value + printed), 0.0, 1.0);
-      const double problems = problems_behind(e, q.runs().front());
-      if (problems > 0)
-        variance = std::max(variance, 1e4 * p * (1 - p) / problems);
-    }
-    const double shares =
-        1 / static_cast<double>(m.runs) + 1 / static_cast<double>(seeds);
-    return std::max(kRounding, 2 * std::sqrt(variance * shares));
-  };
-}
-
 }  // namespace
 
 std::string number_text(double value) {
@@ -143,118 +68,17 @@ std::string number_text(double value) {
   return plain ? fmt::format("{:.3g}", value) : fmt::format("{:.2e}", value);
 }
 
-namespace {
-
-/// The word before the numbers: ">", "in", "printed", "about"; whatever a
-/// number was held against.
-std::string_view relation_of(std::string_view bounds) {
-  const auto word = bounds.substr(0, bounds.find(' '));
-  return word == "as" || word == "about" ? "printed" : word;
-}
-
-const ConditionResult* find(const Kept& kept, const std::string& label) {
-  for (const ConditionResult& c : kept)
-    if (c.label == label) return &c;
-  return nullptr;
-}
-
-}  // namespace
-
-namespace {
-
-/// Of alternatives one that holds, else the first that was decided.
-std::optional<ConditionResult> decide_either(const Condition& condition,
-                                             const Kept& kept,
-                                             const Remains& remains) {
-  std::optional<ConditionResult> found;
-  for (const Condition& one : condition.alternatives) {
-    ConditionResult r = decide_again(one, kept, remains);
-    if (r.missing == kNotKept) continue;
-    if (r.holds.value_or(false)) return r;
-    if (!found) found = std::move(r);
-  }
-  return found;
-}
-
-/// A number that was kept under the label, decided by today's bound.
-std::optional<ConditionResult> decide_kept(const Condition& condition,
-                                           const Kept& kept,
-                                           const Evidence& planned) {
-  for (const ConditionResult& old : kept) {
-    if (old.label != condition.label) continue;
-    ConditionResult r = old;
-    if (condition.bounds.empty()) r.bounds.clear(), r.holds.reset();
-    const bool only_reported = r.bounds.empty() && !condition.bounds.empty();
-    if (!only_reported &&
-        relation_of(r.bounds) != relation_of(condition.bounds))
-      continue;
-    if (condition.again) condition.again(planned, kept, r);
-    if (only_reported && !r.holds) continue;
-    return r;
-  }
-  return {};
-}
-
-}  // namespace
-
-ConditionResult decide_again(const Condition& condition,
-                             const Kept& kept,
-                             const Remains& remains) {
-  const Evidence& evidence = remains.planned;
-  const auto& asks = condition.quantities;
-  if (std::all_of(asks.begin(), asks.end(), [](const Quantity& q) {
-        return q.runs().empty();
-      }))
-    return condition.judge(evidence);
-  if (const auto r = decide_either(condition, kept, remains)) return *r;
-  ConditionResult left;
-  if (condition.of_stages) {
-    left = condition.judge(remains.stages);
-    if (left.value) return left;
-  }
-  if (const auto r = decide_kept(condition, kept, evidence)) return *r;
-  if (condition.of_stages) return left;
-  ConditionResult r{.label = condition.label, .bounds = condition.bounds};
-  r.missing = kNotKept;
-  const auto& parts = condition.parts;
-  if (!parts.empty() &&
-      std::all_of(parts.begin(), parts.end(), [&](const std::string& part) {
-        return find(kept, part) != nullptr;
-      }))
-    condition.again(evidence, kept, r);
-  return r;
-}
-
 Condition at_least(std::string label, Quantity q, Quantity bound) {
-  return compare(std::move(label),
-                 std::move(q),
-                 ">=",
-                 std::move(bound),
-                 [](double a, double b) { return a >= b; });
+  return compare(label, q, ">=", bound, std::greater_equal<>());
 }
-
 Condition at_most(std::string label, Quantity q, Quantity bound) {
-  return compare(std::move(label),
-                 std::move(q),
-                 "<=",
-                 std::move(bound),
-                 [](double a, double b) { return a <= b; });
+  return compare(label, q, "<=", bound, std::less_equal<>());
 }
-
 Condition above(std::string label, Quantity q, Quantity bound) {
-  return compare(std::move(label),
-                 std::move(q),
-                 ">",
-                 std::move(bound),
-                 [](double a, double b) { return a > b; });
+  return compare(label, q, ">", bound, std::greater<>());
 }
-
 Condition below(std::string label, Quantity q, Quantity bound) {
-  return compare(std::move(label),
-                 std::move(q),
-                 "<",
-                 std::move(bound),
-                 [](double a, double b) { return a < b; });
+  return compare(label, q, "<", bound, std::less<>());
 }
 
 Condition within(std::string label, Quantity q, double lowest, double highest) {
@@ -273,6 +97,15 @@ Condition within(std::string label, Quantity q, double lowest, double highest) {
             kept.bounds = words;
             kept.holds = *kept.value >= lowest && *kept.value <= highest;
           }};
+}
+
+std::vector<Condition> below_on_every_seed(const std::string& label,
+                                           const Select& a,
+                                           const Select& b,
+                                           const RunValue& value) {
+  const Quantity worst = worst_ratio(a, b, value);
+  return {below(label + ", worst seed", worst, 1),
+          below("of two seeds at least", from_at_least(2, worst), 1)};
 }
 
 Condition report(std::string label, Quantity q) {
@@ -312,119 +145,6 @@ std::vector<Condition> joined(
   for (const auto& part : parts)
     all.insert(all.end(), part.begin(), part.end());
   return all;
-}
-
-Condition as_printed(std::string label,
-                     Quantity q,
-                     std::string quantity,
-                     Index seeds) {
-  return agree(std::move(label),
-               q,
-               printed(quantity),
-               "as printed (" + quantity + ")",
-               band_of_means(q, seeds));
-}
-
-Condition as_stated(std::string label,
-                    Quantity percent,
-                    double stated,
-                    Index seeds) {
-  return agree(std::move(label),
-               percent,
-               Quantity(stated),
-               fmt::format("as printed ({})", number_text(stated)),
-               band_of_means(percent, seeds));
-}
-
-namespace {
-
-/// One term of chi squared after the other.
-class Differences {
- public:
-  explicit Differences(Index seeds) : seeds_(static_cast<double>(seeds)) {}
-
-  /// What is missing, empty if nothing.
-  std::string add(const Measured& m, const Measured& p) {
-    if (!m.value) return m.missing;
-    if (!p.value) return p.missing;
-    if (m.runs < 3 || !m.spread) return "three seeds";
-    const double b = p.spread.value_or(0);
-    const double variance =
-        *m.spread * *m.spread / static_cast<double>(m.runs) + b * b / seeds_ +
-        2 * kRounding * kRounding / 3;
-    sum_ += (*m.value - *p.value) * (*m.value - *p.value) / variance;
-    runs_ = m.runs, ++terms_;
-    return "";
-  }
-  Measured probability() const {
-    return {.value = chi_squared_tail(sum_, terms_), .runs = runs_};
-  }
-
- private:
-  double seeds_, sum_ = 0;
-  Index runs_ = 0;
-  int terms_ = 0;
-};
-
-constexpr double kUnlikely = 0.05;
-
-}  // namespace
-
-std::vector<Condition> jointly_as_printed(std::string label,
-                                          std::vector<PrintedMean> means,
-                                          Index seeds) {
-  std::vector<Select> runs;
-  std::vector<std::string> names, parts;
-  std::vector<Condition> out;
-  for (const PrintedMean& m : means) {
-    runs.insert(runs.end(), m.quantity.runs().begin(), m.quantity.runs().end());
-    names.push_back(m.name), parts.push_back(m.label);
-    out.push_back(report(m.label, m.quantity));
-    out.push_back(report("printed", printed(m.name)));
-  }
-  const auto probability = [=](const Evidence& e) -> Measured {
-    Differences all(seeds);
-    for (const PrintedMean& m : means)
-      if (const auto lacks = all.add(m.quantity(e), printed(m.name)(e));
-          !lacks.empty())
-        return missing(lacks);
-    return all.probability();
-  };
-  Condition jointly =
-      at_least(std::move(label),
-               Quantity(probability, std::move(runs), std::move(names)),
-               kUnlikely);
-  jointly.parts = std::move(parts);
-  jointly.again = [=](const Evidence& e, const Kept& kept, ConditionResult& r) {
-    Differences all(seeds);
-    for (const PrintedMean& m : means) {
-      const ConditionResult* old = find(kept, m.label);
-      if (old == nullptr) return;
-      r.missing = all.add({old->value, old->spread, old->runs, old->missing},
-                          printed(m.name)(e));
-      if (!r.missing.empty()) return;
-    }
-    const Measured found = all.probability();
-    r.value = found.value, r.runs = found.runs;
-    r.holds = *r.value >= kUnlikely;
-  };
-  out.insert(out.begin(), std::move(jointly));
-  return out;
-}
-
-Condition about(std::string label, Quantity percent, double x) {
-  return agree(std::move(label),
-               std::move(percent),
-               Quantity(x),
-               fmt::format("about {}", number_text(x)),
-               [](const Evidence&,
-                  const ConditionResult& m,
-                  double) -> std::optional<double> {
-                 const double error = m.spread.value_or(0) /
-                                      std::sqrt(std::max<double>(
-                                          1, static_cast<double>(m.runs)));
-                 return std::max(5.0, 2 * error);
-               });
 }
 
 Condition near(std::string label, Quantity q, double v) {

@@ -52,6 +52,14 @@ ConditionResult decide_again(const Condition& condition,
                              const Kept& kept,
                              const Remains& remains);
 
+/// The one under this label, null if none was kept.
+const ConditionResult* find_kept(const Kept& kept, const std::string& label);
+
+/// What a condition of these words makes of a number before it is decided.
+ConditionResult result_of(const std::string& label,
+                          const std::string& bounds,
+                          const Measured& measured);
+
 /// Bounds may be measured themselves ("as many as BFGS").
 Condition at_least(std::string label, Quantity q, Quantity bound);
 Condition at_most(std::string label, Quantity q, Quantity bound);
@@ -59,6 +67,12 @@ Condition above(std::string label, Quantity q, Quantity bound);
 Condition below(std::string label, Quantity q, Quantity bound);
 /// Both ends belong to it.
 Condition within(std::string label, Quantity q, double lowest, double highest);
+/// On every seed that both methods have, and of two seeds at least, the first
+/// one's value is below the second one's.
+std::vector<Condition> below_on_every_seed(const std::string& label,
+                                           const Select& a,
+                                           const Select& b,
+                                           const RunValue& value);
 /// A number that decides nothing.
 Condition report(std::string label, Quantity q);
 /// Holds if one of them does.

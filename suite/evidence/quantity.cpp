@@ -161,6 +161,16 @@ Quantity share(Select select,
       });
 }
 
+std::vector<Quantity> medians(const std::vector<Select>& of,
+                              const RunValue& value) {
+  return each(of, [&](const Select& s) { return median(s, value); });
+}
+
+std::vector<Quantity> lowests(const std::vector<Select>& of,
+                              const RunValue& value) {
+  return each(of, [&](const Select& s) { return lowest(s, value); });
+}
+
 Quantity median_ratio(Select a, Select b, RunValue value) {
   const auto pair = [=](const Run& run) -> std::optional<double> {
     const auto other = run.beside(b);
@@ -242,6 +252,9 @@ Quantity percent(const Quantity& share) { return times(100, share); }
 
 Quantity least(std::vector<Quantity> of) { return extreme(of, false); }
 Quantity most(std::vector<Quantity> of) { return extreme(of, true); }
+Quantity spread_ratio(const std::vector<Quantity>& of) {
+  return ratio(most(of), least(of));
+}
 
 Quantity also_asks(const Quantity& a, const std::vector<Select>& others) {
   return {[=](const Evidence& e) { return a(e); },

@@ -5,10 +5,11 @@
 #pragma once
 
 #include <functional>
-#include <initializer_list>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "suite/evidence/runs.h"
@@ -66,6 +67,11 @@ Quantity mean(Select select, RunValue value);
 /// Share of the runs that have a value and pass; their number.
 Quantity share(Select select, RunValue value, std::function<bool(double)> test);
 Quantity count(Select select, RunValue value, std::function<bool(double)> test);
+/// Medians, and lowest values, of several methods.
+std::vector<Quantity> medians(const std::vector<Select>& of,
+                              const RunValue& value);
+std::vector<Quantity> lowests(const std::vector<Select>& of,
+                              const RunValue& value);
 /// Of value(a) / value(b) over pairs of runs of one n and seed; the median over
 /// those that have a ratio.
 Quantity median_ratio(Select a, Select b, RunValue value);
@@ -79,7 +85,19 @@ Quantity share_of_examples(Select select,
                            RunRow row,
                            std::function<bool(double)> test);
 
+/// f of each: least(each({"sgd", "adam"}, at_end)).
+template <class Range, class F>
+auto each(const Range& range, F f) {
+  std::vector<decltype(f(*std::begin(range)))> all;
+  for (const auto& one : range) all.push_back(f(one));
+  return all;
+}
+
 Quantity ratio(const Quantity& a, const Quantity& b);
+/// Of a's median over b's, each over all its runs.
+inline Quantity ratio_of_medians(Select a, Select b, const RunValue& value) {
+  return ratio(median(std::move(a), value), median(std::move(b), value));
+}
 Quantity difference(const Quantity& a, const Quantity& b);
 /// Value and spread times a factor; 100 makes per cent of a share.
 Quantity times(double factor, const Quantity& a);
@@ -87,6 +105,8 @@ Quantity percent(const Quantity& share);
 /// The smallest and the largest of those that are there, missing if one is.
 Quantity least(std::vector<Quantity> of);
 Quantity most(std::vector<Quantity> of);
+/// The largest over the smallest.
+Quantity spread_ratio(const std::vector<Quantity>& of);
 
 /// Names the other runs that the values read, for registration to look up.
 Quantity also_asks(const Quantity& a, const std::vector<Select>& others);

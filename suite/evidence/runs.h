@@ -69,6 +69,10 @@ std::vector<Run> find_runs(const Evidence& evidence, const Select& select);
 /// A number of one run; empty if it does not have it (too short).
 using RunValue = std::function<std::optional<double>(const Run&)>;
 
+/// Of an array that the stage recorded; empty without it.
+RunValue of_array(const char* name,
+                  std::function<double(const Batch<double>&)> value);
+
 struct Sample {
   Index n;
   std::uint64_t seed;

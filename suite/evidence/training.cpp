@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "suite/evidence/quantity.h"
 #include "suite/evidence/statistics.h"
 #include "suite/results/crowded.h"
 #include "suite/results/published.h"
@@ -18,15 +19,18 @@ RunValue of_row(RowOfCurve which, F f) {
     if (!run.stage->arrays.contains(which.array) ||
         run.stage->curve.points() == 0)
       return {};
-    return f(CurveRow{*run.stage, which.array, which.row}, run);
+    return f(CurveRow{*run.stage, which.array, which.row});
   };
 }
 
-template <class F>
-std::optional<double> best(const CurveRow& row, F better) {
-  double found = row(0);
-  for (Index k = 1; k < row.points(); ++k) found = better(found, row(k));
-  return found;
+/// Of all points, the one that is `better` than those before.
+RunValue best_of(RowOfCurve which, bool (*better)(double, double)) {
+  return of_row(which, [=](const CurveRow& row) {
+    double found = row(0);
+    for (Index k = 1; k < row.points(); ++k)
+      if (better(row(k), found)) found = row(k);
+    return found;
+  });
 }
 
 bool has_loss(const Run& run) {
@@ -48,9 +52,8 @@ Clock own_seconds() {
 
 Clock paper_seconds(std::function<std::string(const Run&)> update) {
   const auto seconds = [=](const Run& run) -> std::optional<double> {
-    const Evidence& e = *run.evidence;
-    const auto found =
-        e.published.find(run.record->info.experiment, update(run));
+    const auto found = find_printed(
+        run.evidence->published, run.record->info.experiment, update(run));
     return found ? std::optional(found->value) : std::nullopt;
   };
   return {[=](const Run& run, double t) -> std::optional<LossPoint> {
@@ -76,33 +79,14 @@ RunValue loss_at(Clock clock, double time) {
 RunValue loss_after(double count) { return loss_at(updates(), count); }
 
 RunValue loss_at_share(double share) {
-  return of_row({}, [=](const CurveRow& row, const Run& run) {
-    return loss_at(*run.stage, share * row.updates(row.points() - 1));
-  });
-}
-
-RunValue first_loss() {
-  return of_row({}, [](const CurveRow& row, const Run&) {
-    return std::optional(row(0));
+  return of_row({}, [=](const CurveRow& row) {
+    return loss_at(row.stage, share * row.updates(row.points() - 1));
   });
 }
 
 RunValue last_loss() {
-  return of_row({}, [](const CurveRow& row, const Run& run) {
-    return std::optional(run.stage->stop == Stop::diverged ? kInfinite
-                                                           : row.last());
-  });
-}
-
-RunValue lowest_loss() {
-  return of_row({}, [](const CurveRow& row, const Run&) {
-    return best(row, [](double a, double b) { return std::min(a, b); });
-  });
-}
-
-RunValue highest_loss() {
-  return of_row({}, [](const CurveRow& row, const Run&) {
-    return best(row, [](double a, double b) { return std::max(a, b); });
+  return of_row({}, [](const CurveRow& row) {
+    return row.stage.stop == Stop::diverged ? kInfinite : row.last();
   });
 }
 
@@ -130,33 +114,52 @@ RunValue length(Clock clock) {
 }
 
 RunValue first_below(double level, RowOfCurve which) {
-  return of_row(which, [=](const CurveRow& row, const Run&) {
+  return of_row(which, [=](const CurveRow& row) {
     for (Index k = 0; k < row.points(); ++k)
-      if (row(k) < level) return std::optional(row.updates(k));
-    return std::optional(kInfinite);
+      if (row(k) < level) return row.updates(k);
+    return kInfinite;
   });
 }
 
+RunValue first_of(RowOfCurve which) {
+  return of_row(which, [](const CurveRow& row) { return row(0); });
+}
 RunValue last_of(RowOfCurve which) {
-  return of_row(which, [](const CurveRow& row, const Run&) {
-    return std::optional(row.last());
-  });
+  return of_row(which, [](const CurveRow& row) { return row.last(); });
 }
 
 RunValue value_after(RowOfCurve which, Index count) {
-  return of_row(which,
-                [=](const CurveRow& row, const Run&) -> std::optional<double> {
-                  const auto k = last_point(row.stage, count);
-                  return k ? std::optional(row(*k)) : std::nullopt;
-                });
+  return of_row(which, [=](const CurveRow& row) -> std::optional<double> {
+    const auto k = last_point(row.stage, count);
+    return k ? std::optional(row(*k)) : std::nullopt;
+  });
+}
+
+RunValue lowest_of(RowOfCurve which) {
+  return best_of(which, [](double a, double b) { return a < b; });
+}
+RunValue highest_of(RowOfCurve which) {
+  return best_of(which, [](double a, double b) { return a > b; });
+}
+
+RunValue largest_rise(RowOfCurve which) {
+  return of_row(which, [](const CurveRow& row) {
+    double lowest = row(0), most = 0;
+    for (Index k = 0; k < row.points(); ++k) {
+      most = std::max(most, row(k) / lowest);
+      lowest = std::min(lowest, row(k));
+    }
+    return most;
+  });
+}
+
+RunValue share_left(RowOfCurve row) {
+  return over(last_of(row), first_of(row));
 }
 
 RunValue late_training_error() {
-  return [](const Run& run) -> std::optional<double> {
-    const auto found = run.stage->arrays.find("late_error");
-    if (found == run.stage->arrays.end()) return {};
-    return found->second(0, 0);
-  };
+  return of_array("late_error",
+                  [](const Batch<double>& error) { return error(0, 0); });
 }
 
 RunValue diverged() {

@@ -31,12 +31,8 @@ RunValue loss_at(Clock clock, double time);
 RunValue loss_after(double updates);
 /// After this share of the run's updates.
 RunValue loss_at_share(double share);
-/// At the ends of the curve; a run that diverged ends at infinity.
-RunValue first_loss();
+/// At the end of the curve; infinite if the run diverged.
 RunValue last_loss();
-/// Of all measured points.
-RunValue lowest_loss();
-RunValue highest_loss();
 
 /// When the test loss has first fallen to a level; infinite if it never has.
 RunValue time_to(Clock clock, double level);
@@ -49,11 +45,25 @@ struct RowOfCurve {
   const char* array = "mean_loss";
   Index row = 0;
 };
+/// A row of what the experiment records beside the loss.
+constexpr RowOfCurve metric(Index row) { return {"metrics", row}; }
 /// Updates of the first measured point below a level; infinite without one.
 RunValue first_below(double level, RowOfCurve row = {});
-/// At the last measured point, and at the last one up to so many updates.
-RunValue last_of(RowOfCurve row);
+/// At the first and the last measured point, and at the last one up to so many
+/// updates.
+RunValue first_of(RowOfCurve row = {});
+RunValue last_of(RowOfCurve row = {});
 RunValue value_after(RowOfCurve row, Index updates);
+/// Of all measured points.
+RunValue lowest_of(RowOfCurve row = {});
+RunValue highest_of(RowOfCurve row = {});
+/// The largest factor by which a point lies above the lowest one up to it.
+RunValue largest_rise(RowOfCurve row = {});
+/// What is left at the end: last over first point.
+RunValue share_left(RowOfCurve row = {});
+inline RunValue first_loss() { return first_of(); }
+inline RunValue lowest_loss() { return lowest_of(); }
+inline RunValue highest_loss() { return highest_of(); }
 
 /// Mean error of the samples seen near the end (a LateError); empty where it
 /// was not asked for.

@@ -2,6 +2,7 @@
 /// over our time and over the paper's.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -39,6 +40,15 @@ struct MethodLine {
   std::optional<double> paper_update = {};  ///< seconds by the paper
   std::string key = {};  ///< lines of one look alike; empty: the method
 };
+
+/// Fields of the first example of the first seed: the truth, what is observed
+/// and what each method's network answers.
+Figure answered_fields(
+    const Results& results,
+    std::string_view experiment,
+    const std::vector<MethodLine>& lines,
+    std::string source,
+    const std::function<Panel(std::string, const Vector<double>&)>& picture);
 
 /// Seconds of an update by a row of the paper's tables ("table3/hig/b=128").
 std::optional<double> paper_update(const Published& published,

@@ -7,6 +7,7 @@
 
 #include "suite/evidence/cell.h"
 #include "suite/evidence/curve.h"
+#include "suite/evidence/options.h"
 #include "suite/evidence/statistics.h"
 #include "suite/evidence/training_report.h"
 
@@ -14,7 +15,7 @@ namespace physinv {
 namespace {
 
 /// What updates took, and the bytes that stages hold.
-struct Costs {
+struct UpdateCosts {
   void add(const StageRecord& s, TimedStages& timed) {
     if (const auto all = timed.seconds(s))
       seconds.push_back(*all / std::max(1.0, s.curve.iteration.back()));
@@ -43,7 +44,7 @@ Table loss_table(const Results& results,
   TimedStages timed;
   for (const MethodLine& line : lines) {
     std::vector<double> losses, updates;
-    Costs costs;
+    UpdateCosts costs;
     int diverged = 0;
     for (const auto* s : trained_stages(results, experiment, line.method)) {
       losses.push_back(CurveRow{*s}.last());
@@ -71,12 +72,6 @@ Table loss_table(const Results& results,
 }
 
 namespace {
-
-std::optional<double> batch_of(const StageRecord& stage) {
-  for (const auto& [name, value] : stage.options)
-    if (name == "batch") return std::stod(value);
-  return {};
-}
 
 /// The curve with this label, a new one at the end if there is none.
 Series& curve_of(const std::string& label,
@@ -114,10 +109,11 @@ Figure update_times(const Results& results,
   TimedStages timed;
   for (const MethodLine& line : lines) {
     const auto stages = trained_stages(results, experiment, line.method);
-    Costs costs;
+    UpdateCosts costs;
     for (const auto* s : stages) costs.add(*s, timed);
-    const auto batch =
-        stages.empty() ? std::nullopt : batch_of(*stages.front());
+    const auto batch = stages.empty()
+                           ? std::nullopt
+                           : number_of(stages.front()->options, "batch");
     if (!batch || costs.seconds.empty()) continue;
     Series& curve = curve_of(
         line.label.substr(0, line.label.find(',')), line, panel.series);
@@ -151,6 +147,28 @@ std::optional<Answered> first_answer(const Results& results,
       first(c.data.given), first(c.data.y), first(c.data.x), first(x)};
 }
 
+Figure answered_fields(
+    const Results& results,
+    std::string_view experiment,
+    const std::vector<MethodLine>& lines,
+    std::string source,
+    const std::function<Panel(std::string, const Vector<double>&)>& picture) {
+  Figure figure{.id = "fields",
+                .title = "What was there, what is seen, what is found",
+                .source = std::move(source),
+                .columns = 3,
+                .note = "First test example."};
+  for (const MethodLine& line : lines) {
+    const auto answer = first_answer(results, experiment, line.method);
+    if (!answer) continue;
+    if (figure.panels.empty())
+      figure.panels = {picture("truth x*", answer->truth),
+                       picture("observed y", answer->wanted)};
+    figure.panels.push_back(picture(line.label, answer->x));
+  }
+  return figure;
+}
+
 Table cost_table(const Results& results,
                  std::string_view experiment,
                  const Published& published,
@@ -164,7 +182,7 @@ Table cost_table(const Results& results,
               .columns = {"MB", "CPU ms / update"}};
   TimedStages timed;
   for (const CostLine& line : lines) {
-    Costs costs;
+    UpdateCosts costs;
     for (const auto* s : trained_stages(results, experiment, line.method))
       costs.add(*s, timed);
     Cell megabytes, duration;

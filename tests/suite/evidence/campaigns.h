@@ -55,4 +55,21 @@ inline CaseRecord case_of(const std::string& method,
   return c;
 }
 
+/// A curve of a point every ten updates; a row of metrics has its squares.
+inline CaseRecord trained_case(const char* method,
+                               std::uint64_t seed,
+                               const std::vector<double>& loss) {
+  StageRecord s = stage_of("fit", {loss.back()});
+  const auto points = static_cast<Index>(loss.size());
+  s.arrays["mean_loss"] =
+      Eigen::Map<const Batch<double>>(loss.data(), 1, points);
+  s.arrays["metrics"] = s.arrays["mean_loss"].array().square();
+  s.arrays["late_error"] = Batch<double>::Constant(1, 1, 7);
+  s.options = {{"batch", "64"}, {"rate", "1e-3"}, {"rule", "adam"}};
+  for (Index k = 0; k < points; ++k)
+    s.curve.iteration.push_back(10 * static_cast<double>(k));
+  s.curve.seconds = s.curve.iteration;
+  return case_of(method, 4, seed, {"fit"}, {std::move(s)});
+}
+
 }  // namespace physinv

@@ -9,8 +9,7 @@
 #include <vector>
 
 #include "suite/cases/hig/oscillators/oscillators.h"
-#include "suite/evidence/statistics.h"
-#include "suite/evidence/training.h"
+#include "suite/evidence/curve_shape.h"
 #include "suite/harness/registry.h"
 #include "suite/results/record.h"
 
@@ -28,17 +27,6 @@ constexpr double kFiveMinutes = 290;  ///< 2000 updates of HIG
 
 RunValue at_paper_time(double seconds) { return loss_at(kPaperClock, seconds); }
 
-/// The largest factor by which the curve rises above what it had reached.
-std::optional<double> rise(const Run& run) {
-  const CurveRow loss{*run.stage};
-  double lowest = loss(0), most = 0;
-  for (Index k = 0; k < loss.points(); ++k) {
-    most = std::max(most, loss(k) / lowest);
-    lowest = std::min(lowest, loss(k));
-  }
-  return most;
-}
-
 /// Diverged, or at some point three times as high as at the start.
 bool is_unstable(const Run& run) {
   return run.stage->stop == Stop::diverged ||
@@ -50,20 +38,6 @@ RunValue if_stable(RunValue value) {
   return [=](const Run& run) {
     return is_unstable(run) ? std::nullopt : value(run);
   };
-}
-
-/// How much the loss changes from point to point in the last half: the mean
-/// of |log|.
-/// Infinite where it diverged: nothing is less stable.
-std::optional<double> scatter(const Run& run) {
-  if (run.stage->stop == Stop::diverged) return kInfinite;
-  const CurveRow loss{*run.stage};
-  double sum = 0;
-  const Index last = loss.points() - 1, first = last / 2;
-  if (last < 2) return {};
-  for (Index k = first; k < last; ++k)
-    sum += std::abs(std::log(loss(k + 1) / loss(k)));
-  return sum / static_cast<double>(last - first);
 }
 
 // ---- of all seeds -----------------------------------------------------------
@@ -81,69 +55,27 @@ Quantity best_end(const std::string& method) {
 }
 /// Medians at the same time by the paper's clock.
 Quantity by_clock(const std::string& a, const std::string& b, double seconds) {
-  return ratio(median({a}, at_paper_time(seconds)),
-               median({b}, at_paper_time(seconds)));
+  return ratio_of_medians({a}, {b}, at_paper_time(seconds));
 }
 
-template <class F>
-std::vector<Quantity> each(const Ids& ids, F f) {
-  std::vector<Quantity> all;
-  for (const auto& id : ids) all.push_back(f(id));
-  return all;
+std::vector<Select> runs_of(const Ids& ids) {
+  return each(ids, [](const auto& id) { return Select{id}; });
 }
 
 /// Highest over lowest median.
 Quantity spread_of(const Ids& ids, const RunValue& value) {
-  const auto all =
-      each(ids, [&](const auto& id) { return median({id}, value); });
-  return ratio(most(all), least(all));
+  return spread_ratio(medians(runs_of(ids), value));
 }
 
 /// The same, infinite where a median diverged.
 Quantity spread_or_unstable(const Ids& ids, const RunValue& value) {
-  const auto all =
-      each(ids, [&](const auto& id) { return median({id}, value); });
-  const Quantity highest = most(all), spread = spread_of(ids, value);
+  const Quantity highest = most(medians(runs_of(ids), value)),
+                 spread = spread_of(ids, value);
   return {[=](const Evidence& e) {
             const Measured m = highest(e);
             return m.value && !std::isfinite(*m.value) ? m : spread(e);
           },
           spread.runs()};
-}
-
-/// The same along the curves, from some update on: the widest.
-Quantity widest_spread(const Ids& ids, double from) {
-  std::vector<Select> runs;
-  for (const auto& id : ids) runs.push_back({id});
-  return {[=](const Evidence& e) {
-            const auto found = find_runs(e, runs.front());
-            if (found.empty()) return missing(ids.front() + " not run");
-            Measured widest;
-            for (const double at : found.front().stage->curve.iteration) {
-              if (at < from) continue;
-              const auto m = spread_of(ids, loss_after(at))(e);
-              if (!m.value) return m;
-              if (!widest.value || *m.value > *widest.value) widest = m;
-            }
-            return widest.value ? widest : missing("runs long enough");
-          },
-          runs};
-}
-
-/// Of one seed's losses with several tau: highest over lowest.
-Quantity spread_of_seeds(const Ids& ids, const RunValue& value) {
-  std::vector<Select> runs;
-  for (const auto& id : ids) runs.push_back({id});
-  const RunValue spread = [=](const Run& run) -> std::optional<double> {
-    double lowest = INFINITY, highest = 0;
-    for (const Select& other : runs) {
-      const auto one = beside(other, value)(run);
-      if (!one) return {};
-      lowest = std::min(lowest, *one), highest = std::max(highest, *one);
-    }
-    return highest / lowest;
-  };
-  return also_asks(median(runs.front(), spread), runs);
 }
 
 Ids exponents(bool (*wanted)(double kappa)) {
@@ -176,7 +108,7 @@ const std::vector<Claim> kRanges = {
      .says = "HIG brings the test loss down in 320 updates, hardly ever rising",
      .conditions = {within("median after 320", after("hig", 320), 1e-4, 2e-3),
                     at_most("rise over the lowest so far",
-                            highest({"hig"}, rise),
+                            highest({"hig"}, largest_rise()),
                             2)}},
     {.id = "A1b",
      .from = "standard",
@@ -276,12 +208,12 @@ const std::vector<Claim> kRanges = {
      .from = "standard",
      .says = "HIG depends little on tau",
      .conditions = {at_most("highest over lowest, 256 updates, 1e-5 .. 1e-8",
-                            spread_of_seeds(
-                                {kHigCuts.begin(), kHigCuts.begin() + 4},
-                                loss_after(256)),
+                            spread_of_seeds(runs_of({kHigCuts.begin(),
+                                                     kHigCuts.begin() + 4}),
+                                            loss_after(256)),
                             2.4),
                     at_most("at the end, 1e-5 .. 1e-10",
-                            spread_of_seeds(kHigCuts, last_loss()),
+                            spread_of_seeds(runs_of(kHigCuts), last_loss()),
                             10)},
      .note = "Median of each seed's ratio. The first bound is the highest of "
              "24 seeds, above 80 % of all with 95 % confidence (19 of 24 are "
@@ -346,8 +278,7 @@ std::vector<Condition> rates_and_batches() {
       return some;
     };
     const auto jumps = [&](double rate) {
-      return most(each(ids(rate),
-                       [](const auto& id) { return median({id}, scatter); }));
+      return most(medians(runs_of(ids(rate)), scatter()));
     };
     std::vector<Quantity> spreads;
     for (const double rate : grid.rates)
@@ -400,14 +331,14 @@ const std::vector<Claim> kPaper = {
      .from = "standard",
      .says = "Adam is the best of the first-order rules, with a final loss of "
              "1e-4",
-     .conditions = {near("Adam's end, best seed", best_end("adam"), 1e-4),
-                    above("lowest of the others over Adam, medians at the end",
-                          ratio(least(each(
-                                    {"sgd", "adagrad", "adadelta", "rmsprop"},
-                                    at_end)),
-                                at_end("adam")),
-                          1),
-                    report("Adam's end, median", at_end("adam"))},
+     .conditions =
+         {near("Adam's end, best seed", best_end("adam"), 1e-4),
+          above("lowest of the others over Adam, medians at the end",
+                ratio(least(each(Ids{"sgd", "adagrad", "adadelta", "rmsprop"},
+                                 at_end)),
+                      at_end("adam")),
+                1),
+          report("Adam's end, median", at_end("adam"))},
      .note = "One clock for all first-order rules; standard runs 54 of the "
              "paper's 60 minutes."},
     {.id = "P2",
@@ -470,9 +401,14 @@ const std::vector<Claim> kPaper = {
      .where = "Sec. 3.1, Fig. 2c",
      .from = "standard",
      .says = "Adam converges about equally quickly with all batch sizes",
-     .conditions = {at_most("highest over lowest b, from 500 updates on",
-                            widest_spread(kAdamBatches, 500),
-                            3.2)}},
+     .conditions = {at_most(
+         "highest over lowest b, from 500 updates on",
+         highest_along({kAdamBatches.front()},
+                       500,
+                       [](double updates) {
+                         return spread_of(kAdamBatches, loss_after(updates));
+                       }),
+         3.2)}},
     {.id = "P8",
      .where = "Sec. 3.1, Fig. 2c",
      .from = "paper",

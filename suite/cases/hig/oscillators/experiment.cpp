@@ -12,6 +12,7 @@
 #include "suite/cases/hig/common/methods.h"
 #include "suite/cases/hig/oscillators/oscillators.h"
 #include "suite/core/power_of_ten.h"
+#include "suite/evidence/options.h"
 #include "suite/harness/registry.h"
 #include "suite/nn/mlp.h"
 #include "suite/results/record.h"
@@ -97,13 +98,11 @@ std::vector<std::string> ids_with(const std::string& beginning) {
 }
 
 std::string update_row(const Run& run) {
-  for (const auto& [name, value] : run.stage->options) {
-    if (name != "batch") continue;
-    const bool first_order = std::stoi(value) >= 256;
-    return fmt::format(
-        "table3/{}/b={}/update", first_order ? "adam" : "hig", value);
-  }
-  return {};
+  const auto batch = number_of(run.stage->options, "batch");
+  if (!batch) return {};
+  const bool first_order = *batch >= 256;
+  return fmt::format(
+      "table3/{}/b={:.0f}/update", first_order ? "adam" : "hig", *batch);
 }
 
 namespace {

@@ -8,7 +8,9 @@
 #include "problems/oscillators/oscillators.h"
 #include "suite/cases/hig/oscillators/oscillators.h"
 #include "suite/evidence/cell.h"
+#include "suite/evidence/options.h"
 #include "suite/evidence/quantity.h"
+#include "suite/evidence/series.h"
 #include "suite/evidence/training.h"
 #include "suite/evidence/training_report.h"
 #include "suite/harness/registry.h"
@@ -19,7 +21,7 @@ namespace physinv::oscillators {
 namespace {
 
 /// The lowest test loss of any seed beside the paper's best runs of an hour.
-Table final_losses(const Results& results, const Published& published) {
+Table final_losses(const Evidence& evidence) {
   Table table{.id = "final",
               .title = "Lowest final loss over seeds",
               .source = "Fig. 2b, Sec. 3.1",
@@ -27,13 +29,13 @@ Table final_losses(const Results& results, const Published& published) {
               .corner = "method",
               .columns = {"test loss"},
               .note = "The paper's are the best of a search, after an hour."};
-  const Evidence evidence{results, published, kName};
-  for (const char* id : {"adam", "gn", "hig"}) {
-    Cell cell = cell_of(lowest({id}, last_loss())(evidence).value);
-    if (const auto v = published.find(kName, fmt::format("fig2b/{}", id)))
-      cell.paper = v->value;
-    table.rows.push_back({.label = id, .cells = {cell}});
-  }
+  for (const std::string id : {"adam", "gn", "hig"})
+    table.rows.push_back(
+        {.label = id,
+         .cells = {
+             beside_printed(cell_of(lowest({id}, last_loss())(evidence).value),
+                            evidence,
+                            "fig2b/" + id)}});
   return table;
 }
 
@@ -106,12 +108,10 @@ Panel time_evolution(const Answered& answer, std::string title) {
   panel.series.push_back(std::move(control));
   const double end = physics.dt * static_cast<double>(answer.x.size());
   for (std::size_t k = 0; k < 4; ++k)
-    panel.series.push_back({.label = std::string(names[k]) + " wanted",
-                            .method = names[k],
-                            .x = {end},
-                            .y = {answer.wanted(static_cast<Index>(k))},
-                            .line = false,
-                            .markers = true});
+    panel.series.push_back(mark(std::string(names[k]) + " wanted",
+                                names[k],
+                                end,
+                                answer.wanted(static_cast<Index>(k))));
   return panel;
 }
 
@@ -130,34 +130,31 @@ Figure evolution_figure(const Results& results,
 }
 
 /// What the runs were made with, beside the paper's.
-Table hyperparameters(const Results& results, const Published& published) {
+Table hyperparameters(const Evidence& evidence) {
   Table table{.id = "table2",
               .title = "Hyperparameters of Fig. 2b",
               .source = "Table 2",
               .digits = 7,
               .corner = "method",
               .columns = {"b", "eta", "tau"}};
-  const auto cell = [&](const StageRecord& s,
-                        const char* option,
-                        const std::string& printed) {
-    Cell out{.text = kNothing};
-    for (const auto& [name, value] : s.options)
-      if (name == option) out = {.ours = std::stod(value)};
-    if (const auto v = published.find(kName, printed)) out.paper = v->value;
-    return out;
+  struct Hyperparameter {
+    const char *option, *printed;
   };
-  for (const MethodLine& line : rules(published)) {
-    const auto stages = trained_stages(results, kName, line.method);
-    TableRow shown{.label = line.label};
-    const std::string printed = "table2/" + line.method;
-    if (stages.empty()) {
-      shown.cells.assign(3, Cell{.text = kNotRun});
-    } else {
-      shown.cells = {cell(*stages.front(), "batch", printed + "/b"),
-                     cell(*stages.front(), "rate", printed + "/eta"),
-                     cell(*stages.front(), "tau", printed + "/tau")};
-    }
-    table.rows.push_back(std::move(shown));
+  constexpr Hyperparameter kShown[] = {
+      {"batch", "/b"}, {"rate", "/eta"}, {"tau", "/tau"}};
+  for (const MethodLine& line : rules(evidence.published)) {
+    const auto runs = find_runs(evidence, {line.method});
+    TableRow row{.label = line.label};
+    for (const auto& [option, printed] : kShown)
+      row.cells.push_back(
+          runs.empty()
+              ? Cell{.text = kNotRun}
+              : beside_printed(
+                    cell_of(number_of(runs.front().stage->options, option),
+                            kNothing),
+                    evidence,
+                    "table2/" + line.method + printed));
+    table.rows.push_back(std::move(row));
   }
   return table;
 }
@@ -178,8 +175,8 @@ Section report(const Results& results, const Published& published) {
       .title = "Nonlinear oscillators",
       .paper = "hig",
       .tables = {
-          final_losses(results, published),
-          hyperparameters(results, published),
+          final_losses({results, published, kName}),
+          hyperparameters({results, published, kName}),
           cost_table(results,
                      kName,
                      published,

@@ -36,7 +36,7 @@ Condition ends_lower(const std::string& what,
                      const Select& hig,
                      const Select& adam) {
   return below(what + ": end of HIG over Adam's",
-               ratio(median(hig, last_loss()), median(adam, last_loss())),
+               ratio_of_medians(hig, adam, last_loss()),
                1);
 }
 

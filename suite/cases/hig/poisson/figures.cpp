@@ -8,6 +8,7 @@
 #include "problems/grid_poisson/grid_poisson.h"
 #include "suite/cases/hig/poisson/phases.h"
 #include "suite/evidence/cell.h"
+#include "suite/evidence/plane.h"
 #include "suite/evidence/quantity.h"
 #include "suite/evidence/training.h"
 #include "suite/evidence/training_report.h"
@@ -136,13 +137,9 @@ const std::vector<MethodLine> kReturns = {
     {"chain-smoke", "Adam, HIG, Adam, short"}};
 
 Panel cells(std::string title, const Vector<double>& values) {
-  Panel panel{.title = std::move(title), .field = Field2D{}};
-  for (Index k = 0; k < kPoissonSide; ++k) {
-    panel.field->x.push_back(static_cast<double>(k));
-    panel.field->y.push_back(static_cast<double>(k));
-  }
-  panel.field->values.assign(values.data(), values.data() + values.size());
-  return panel;
+  constexpr PlaneLayout kLayout{
+      kPoissonSide, kPoissonSide, 1, kPoissonSide, 1, -0.5, -0.5};
+  return plane(std::move(title), kLayout, values);
 }
 
 /// A source, its potential, and those that networks infer.

@@ -1,5 +1,7 @@
 // What HIG paper Sec. 3.3, App. B.4 and C, Figs. 4, 8 to 11 say of the quantum
 // dipole steered by a network, and what our runs showed.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -10,8 +12,8 @@
 #include "suite/cases/hig/quantum_dipole/direct_metrics.h"
 #include "suite/cases/hig/quantum_dipole/grids.h"
 #include "suite/cases/hig/quantum_dipole/metrics.h"
-#include "suite/evidence/statistics.h"
-#include "suite/evidence/training.h"
+#include "suite/evidence/curve_shape.h"
+#include "suite/evidence/options.h"
 #include "suite/harness/registry.h"
 
 namespace physinv::dipole {
@@ -35,49 +37,20 @@ constexpr double kEnd = 5400;
 /// Table 5 begins at b = 256 for Adam; smaller batches are taken to last as
 /// long, and convolutions as long as dense layers.
 Clock paper() {
-  const auto seconds = [](const Run& run) {
-    double batch = 16;
-    for (const auto& [name, value] : run.stage->options)
-      if (name == "batch") batch = std::stod(value);
-    const bool hig = run.stage->arrays.contains("kept");
-    const auto row = hig ? "hig/b=" + std::string(batch < 16 ? "8" : "16")
-                         : "adam/b=" + std::string(batch > 512   ? "1024"
-                                                   : batch > 256 ? "512"
-                                                                 : "256");
-    return run.evidence->published.find(kDense, "table5/" + row + "/update");
-  };
-  return {[=](const Run& run, double time) -> std::optional<LossPoint> {
-            const auto each = seconds(run);
-            if (!each) return {};
-            return level_at(run.stage, time / each->value);
-          },
-          [=](const Run& run, const LossPoint& p) -> std::optional<double> {
-            const auto each = seconds(run);
-            if (!each) return {};
-            return p.updates * each->value;
-          }};
+  return paper_seconds([](const Run& run) {
+    const double batch = number_of(run.stage->options, "batch").value_or(16);
+    const char* const row = run.stage->arrays.contains("kept")
+                                ? (batch < 16 ? "hig/b=8" : "hig/b=16")
+                            : batch > 512 ? "adam/b=1024"
+                            : batch > 256 ? "adam/b=512"
+                                          : "adam/b=256";
+    return fmt::format("{} table5/{}/update", kDense, row);
+  });
 }
 
 // ---- numbers ----------------------------------------------------------------
 
-constexpr RowOfCurve kLowLoss{"metrics", kLow}, kHighLoss{"metrics", kHigh};
-
-/// Longest stretch of a test loss between the two.
-RunValue stalled(const Clock& clock, double from, double to) {
-  return [=](const Run& run) -> std::optional<double> {
-    const CurveRow loss{*run.stage};
-    double longest = 0, since = -1;
-    for (Index k = 0; k < loss.points(); ++k) {
-      const auto now = clock.time(run, loss_point(*run.stage, k));
-      if (!now) return {};
-      const bool inside = loss(k) >= from && loss(k) <= to;
-      if (!inside) since = -1;
-      if (inside && since < 0) since = *now;
-      if (inside) longest = std::max(longest, *now - since);
-    }
-    return longest;
-  };
-}
+constexpr RowOfCurve kLowLoss = metric(kLow), kHighLoss = metric(kHigh);
 
 /// Updates until HE < 0.1 over updates until LE < 0.1; empty without the first.
 std::optional<double> lag(const Run& run) {
@@ -107,44 +80,6 @@ std::optional<double> rise(const Run& run) {
 /// The same as a ratio, once LE has been below 0.1.
 std::optional<double> rise_ratio(const Run& run) {
   return until_high(run, 0.1, [](double a, double b) { return a / b; });
-}
-
-/// Median test loss of the last three points of the curve.
-std::optional<double> settled(const Run& run) {
-  const CurveRow loss{*run.stage};
-  const Index last = loss.points() - 1;
-  if (last < 2) return {};
-  return median({loss(last), loss(last - 1), loss(last - 2)});
-}
-
-enum class Side { above, below };
-/// What four seeds of five (two of three) stay above or below.
-Quantity of_most(Side side, const Select& select, const RunValue& value) {
-  return {
-      [=](const Evidence& e) {
-        auto values = values_of(sample(e, select, value));
-        if (values.empty()) return missing(select.text() + " too short");
-        std::sort(values.begin(), values.end());
-        const auto count = values.size(),
-                   enough = std::max<std::size_t>(1, 4 * count / 5);
-        return Measured{
-            .value = values[side == Side::below ? enough - 1 : count - enough],
-            .runs = static_cast<Index>(count)};
-      },
-      {select}};
-}
-
-std::vector<Quantity> medians(const std::vector<Select>& of,
-                              const RunValue& value) {
-  std::vector<Quantity> all;
-  for (const Select& select : of) all.push_back(median(select, value));
-  return all;
-}
-std::vector<Quantity> lowests(const std::vector<Select>& of,
-                              const RunValue& value) {
-  std::vector<Quantity> all;
-  for (const Select& select : of) all.push_back(lowest(select, value));
-  return all;
 }
 
 Quantity after(const Select& select, double count) {
@@ -216,10 +151,10 @@ const std::vector<Claim> kDenseSuite = {
                         "Adam b=16 in [0.4, 0.56], four seeds of five",
                         of_most(Side::above,
                                 kAdam,
-                                if_ran(3000, stalled(updates(), 0.4, 0.56))),
+                                if_ran(3000, plateau(updates(), 0.4, 0.56))),
                         1000),
                     at_most("HIG, longest",
-                            highest(kHig, stalled(updates(), 0.4, 0.56)),
+                            highest(kHig, plateau(updates(), 0.4, 0.56)),
                             64)}},
     {.id = "A4",
      .from = "quick",
@@ -249,8 +184,8 @@ const std::vector<Claim> kDenseSuite = {
                           median(kAdam, if_ran(8000, first_below(1e-2))),
                           4000),
                     above("after 25000, loss at 3e-3 over 1e-4",
-                          ratio(median(kAdam30, if_ran(25'000, settled)),
-                                median(kAdam, if_ran(25'000, settled))),
+                          ratio_of_medians(
+                              kAdam30, kAdam, if_ran(25'000, settled_loss())),
                           1)}},
     {.id = "A6",
      .from = "standard",
@@ -290,8 +225,7 @@ const std::vector<Claim> kDensePaper =
                                      time_to(paper(), 1e-2)))),
                  1),
            report("over Adam with the largest rate",
-                  ratio(median(kHig, time_to(paper(), 1e-2)),
-                        median(kAdam30, time_to(paper(), 1e-2))))},
+                  ratio_of_medians(kHig, kAdam30, time_to(paper(), 1e-2)))},
       .note = "That Adam with the largest rate drops first, the paper says "
               "itself (P3). Table 5 has no Adam with b = 16; it is taken to "
               "last as long as with 256, which favours HIG."},
@@ -335,8 +269,9 @@ const std::vector<Claim> kDensePaper =
           "Adam over HIG at the end",
           ratio(least(medians(kFig4Adam, loss_at(paper(), kEnd))),
                 least(medians(kFig4Hig, loss_at(paper(), kEnd)))),
-          ratio(median(Select{"adam"}.in("hig/oscillators"), last_loss()),
-                median(Select{"hig"}.in("hig/oscillators"), last_loss())))},
+          ratio_of_medians(Select{"adam"}.in("hig/oscillators"),
+                           Select{"hig"}.in("hig/oscillators"),
+                           last_loss()))},
       .note = "The other one: the oscillators, whose runs end after an hour of "
               "the paper's clock.",
       .cause = not_run("4 CPU-minutes a seed: Adam and HIG on the oscillators "
@@ -372,17 +307,17 @@ const std::vector<Claim> kDensePaper =
       .says = "Adam stagnates at 0.5, most of all with 1e-4; HIG decreases "
               "faster below",
       .conditions = {above("updates in 0.4 .. 0.6, rate 1e-4",
-                           median(kAdam, stalled(updates(), 0.4, 0.6)),
+                           median(kAdam, plateau(updates(), 0.4, 0.6)),
                            most(medians({kAdam10, kAdam30},
-                                        stalled(updates(), 0.4, 0.6)))),
+                                        plateau(updates(), 0.4, 0.6)))),
                      below("HIG",
-                           median(kHig, stalled(updates(), 0.4, 0.6)),
+                           median(kHig, plateau(updates(), 0.4, 0.6)),
                            least(medians({kAdam, kAdam10, kAdam30},
-                                         stalled(updates(), 0.4, 0.6)))),
+                                         plateau(updates(), 0.4, 0.6)))),
                      below("HIG, seconds by the paper's clock",
-                           median(kHig, stalled(paper(), 0.4, 0.6)),
+                           median(kHig, plateau(paper(), 0.4, 0.6)),
                            least(medians({kAdam, kAdam10, kAdam30},
-                                         stalled(paper(), 0.4, 0.6))))}},
+                                         plateau(paper(), 0.4, 0.6))))}},
      {.id = "P7",
       .where = "Sec. 3.3, Fig. 4c",
       .from = "standard",
@@ -433,18 +368,21 @@ const std::vector<Claim> kDensePaper =
       .from = "standard",
       .says = "With tau far below 1e-5 the network does not learn, and a pure "
               "physics optimisation does worse",
-      .conditions =
-          {above("float, gradient as it is, tau 1e-7: lowest test loss",
-                 lowest({"hig-f32-raw-tau7"}, lowest_loss()),
-                 0.1),
-           above("control alone in float, tau 1e-7 over 1e-5",
-                 ratio(median(Select{"hig-f32-tau7"}.in(kDirect), last_loss()),
-                       median(Select{"hig-f32"}.in(kDirect), last_loss())),
-                 1),
-           report("double, tau 1e-6, test loss after 256", after(kTau6, 256)),
-           report("control alone in double, tau 1e-7 over 1e-5",
-                  ratio(median(Select{"hig-tau7"}.in(kDirect), last_loss()),
-                        median(Select{"hig"}.in(kDirect), last_loss())))},
+      .conditions = {above(
+                         "float, gradient as it is, tau 1e-7: lowest test loss",
+                         lowest({"hig-f32-raw-tau7"}, lowest_loss()),
+                         0.1),
+                     above("control alone in float, tau 1e-7 over 1e-5",
+                           ratio_of_medians(Select{"hig-f32-tau7"}.in(kDirect),
+                                            Select{"hig-f32"}.in(kDirect),
+                                            last_loss()),
+                           1),
+                     report("double, tau 1e-6, test loss after 256",
+                            after(kTau6, 256)),
+                     report("control alone in double, tau 1e-7 over 1e-5",
+                            ratio_of_medians(Select{"hig-tau7"}.in(kDirect),
+                                             Select{"hig"}.in(kDirect),
+                                             last_loss()))},
       .note = "Controls alone are updated by projected gradients.",
       .cause = depends(
           "a tau far below 1e-5 is not printed, nor whether the control's "
@@ -486,12 +424,10 @@ const std::vector<Claim> kConvolutions = {
                                   highest(kCnnTau5, diverged())}),
                             0),
                     below("time to 1e-2 by the paper's clock, HIG over Adam",
-                          ratio(median(kHig, time_to(paper(), 1e-2)),
-                                median(kAdam, time_to(paper(), 1e-2))),
+                          ratio_of_medians(kHig, kAdam, time_to(paper(), 1e-2)),
                           1),
                     below("end, HIG over Adam",
-                          ratio(median(kHig, loss_at(paper(), kEnd)),
-                                median(kAdam, loss_at(paper(), kEnd))),
+                          ratio_of_medians(kHig, kAdam, loss_at(paper(), kEnd)),
                           1)},
      .note = "Table 5 is of the dense network; its seconds are taken for both.",
      .cause = not_run("0.7 CPU-hours: the profile paper")}};

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "suite/cases/hig/toy/toy.h"
+#include "suite/evidence/curve_shape.h"
 #include "suite/harness/registry.h"
 #include "suite/results/record.h"
 
@@ -33,13 +34,6 @@ std::optional<double> second_lost(const Run& run) {
   for (Index k = 0; k < first.points(); ++k)
     if (first(k) <= first(0) / 3) return 1 - second(k) / second(0);
   return {};
-}
-
-RunValue second_kept() {
-  return [](const Run& run) -> std::optional<double> {
-    const CurveRow second{*run.stage, "metrics", kSecondLoss};
-    return second.last() / second(0);
-  };
 }
 
 /// Distance over length of the point's path in the last half of the updates.
@@ -75,17 +69,9 @@ Quantity price(const char* method) {
 
 /// The largest median along the curves.
 Quantity highest_median(const char* method) {
-  const Select select{method};
-  return {[=](const Evidence& e) {
-            const auto runs = find_runs(e, select);
-            if (runs.empty()) return missing(select.text() + " not run");
-            Measured most{.value = 0, .runs = static_cast<Index>(runs.size())};
-            for (const double at : runs.front().stage->curve.iteration)
-              if (const auto m = median(select, loss_after(at))(e).value)
-                most.value = std::max(*most.value, *m);
-            return most;
-          },
-          {select}};
+  return highest_along({method}, 0, [=](double updates) {
+    return median({method}, loss_after(updates));
+  });
 }
 
 Quantity most_diverged() {
@@ -288,11 +274,11 @@ const std::vector<Claim> kIllConditioned = {
      .from = "standard",
      .says = "HIG progress along the second component",
      .conditions = {below("HIG, end over start",
-                          median({"hig"}, second_kept()),
+                          median({"hig"}, share_left(metric(kSecondLoss))),
                           0.5),
                     below("HIG's end over Adam's",
-                          ratio(median({"hig"}, last_of(metric(kSecondLoss))),
-                                median({"adam"}, last_of(metric(kSecondLoss)))),
+                          ratio_of_medians(
+                              {"hig"}, {"adam"}, last_of(metric(kSecondLoss))),
                           1)}},
     {.id = "P9",
      .where = "Sec. 2.1, Fig. 1b",

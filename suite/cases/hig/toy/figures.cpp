@@ -4,8 +4,9 @@
 #include <cmath>
 
 #include "suite/cases/hig/toy/toy.h"
-#include "suite/evidence/cell.h"
+#include "suite/evidence/method_table.h"
 #include "suite/evidence/quantity.h"
+#include "suite/evidence/series.h"
 #include "suite/evidence/training_report.h"
 #include "suite/harness/registry.h"
 #include "suite/results/published.h"
@@ -88,13 +89,11 @@ Figure path_figure(const Evidence& evidence,
     panel.series.push_back(std::move(s));
   }
   if (!panel.series.empty())
-    panel.series.push_back({.label = "target",
-                            .method = "truth",
-                            .x = {std::sin(6 * kPoint)},
-                            .y = {std::cos(9 * kPoint)},
-                            .line = false,
-                            .markers = true,
-                            .look = Look{Hue::ink, Marker::cross}});
+    panel.series.push_back(mark("target",
+                                "truth",
+                                std::sin(6 * kPoint),
+                                std::cos(9 * kPoint),
+                                Look{Hue::ink, Marker::cross}));
   return {.id = "fig1-path",
           .title = fmt::format("Path of the output at x = {}", kPoint),
           .source = "Fig. 1, right",
@@ -103,18 +102,18 @@ Figure path_figure(const Evidence& evidence,
           .note = "One seed; excursions beyond 3 are left out."};
 }
 
-Cell saturation(const Evidence& evidence, const char* method) {
+Cell saturation(const Evidence& evidence, const Select& runs) {
   Index neurons = 0, saturated = 0;
-  for (const Run& run : find_runs(evidence, {method}))
+  for (const Run& run : find_runs(evidence, runs))
     for (const double d : last_deviations(run))
       ++neurons, saturated += is_saturated(d);
   return {.ours = static_cast<double>(saturated),
           .text = fmt::format("{}/{}", saturated, neurons)};
 }
 
-Cell seeds_with_saturation(const Evidence& evidence, const char* method) {
+Cell saturated_seeds(const Evidence& evidence, const Select& runs) {
   const auto some = count(
-      {method}, saturated_neurons(), [](double n) { return n > 0; })(evidence);
+      runs, saturated_neurons(), [](double n) { return n > 0; })(evidence);
   return {.ours = some.value.value_or(0),
           .text = fmt::format("{}/{}", some.value.value_or(0), some.runs)};
 }
@@ -122,38 +121,33 @@ Cell seeds_with_saturation(const Evidence& evidence, const char* method) {
 /// Median losses along the way, and what became of the neurons.
 Table course_table(const Evidence& evidence,
                    const std::vector<MethodLine>& lines) {
-  constexpr std::array<Index, 7> kEpochs = {1, 5, 20, 96, 200, 400, 4000};
-  Table table{.id = "course",
-              .title = "Median test loss along the way",
-              .source = "Fig. 1",
-              .digits = 5,
-              .corner = "method",
-              .note =
-                  "Second: loss of the second component after 20 epochs. "
-                  "Beyond: share of hidden outputs beyond 0.99 after one "
-                  "epoch. Saturated: neurons whose outputs deviate by less "
-                  "than 0.02 over the test points at the end, and seeds with "
-                  "at least one."};
-  for (const Index e : kEpochs)
-    table.columns.push_back(fmt::format("epoch {}", e));
-  for (const char* more : {"second", "beyond", "norm", "saturated", "seeds"})
-    table.columns.push_back(more);
-  for (const MethodLine& line : lines) {
-    const Select select{line.method};
-    if (find_runs(evidence, select).empty()) continue;
-    TableRow row{.label = line.label};
-    const auto add = [&](const RunValue& value) {
-      row.cells.push_back(written(median(select, value)(evidence)));
-    };
-    for (const Index e : kEpochs) add(value_after({}, e * kUpdatesPerEpoch));
-    add(value_after(metric(kSecondLoss), 20 * kUpdatesPerEpoch));
-    add(value_after(metric(kBeyond), kUpdatesPerEpoch));
-    add(value_after(metric(kWeightNorm), 400 * kUpdatesPerEpoch));
-    row.cells.push_back(saturation(evidence, line.method.c_str()));
-    row.cells.push_back(seeds_with_saturation(evidence, line.method.c_str()));
-    table.rows.push_back(std::move(row));
-  }
-  return table;
+  std::vector<MethodColumn> columns;
+  for (const Index e : {1, 5, 20, 96, 200, 400, 4000})
+    columns.push_back(median_column(fmt::format("epoch {}", e),
+                                    value_after({}, e * kUpdatesPerEpoch)));
+  const auto add = [&](const char* head, MetricRow row, Index epochs) {
+    columns.push_back(median_column(
+        head, value_after(metric(row), epochs * kUpdatesPerEpoch)));
+  };
+  add("second", kSecondLoss, 20);
+  add("beyond", kBeyond, 1);
+  add("norm", kWeightNorm, 400);
+  columns.push_back({"saturated", saturation});
+  columns.push_back({"seeds", saturated_seeds});
+  return table_by_method(
+      {.id = "course",
+       .title = "Median test loss along the way",
+       .source = "Fig. 1",
+       .digits = 5,
+       .corner = "method",
+       .note = "Second: loss of the second component after 20 epochs. "
+               "Beyond: share of hidden outputs beyond 0.99 after one "
+               "epoch. Saturated: neurons whose outputs deviate by less "
+               "than 0.02 over the test points at the end, and seeds with "
+               "at least one."},
+      evidence,
+      lines,
+      columns);
 }
 
 Section report(const Gamma& gamma,

@@ -28,8 +28,6 @@ inline constexpr Index kUpdatesPerEpoch = 4;
 /// stopped to tell them apart.
 inline constexpr double kSaturated = 0.02;
 
-inline RowOfCurve metric(MetricRow row) { return {"metrics", row}; }
-
 /// Of each hidden neuron, over the test points at the end of a run.
 inline std::vector<double> last_deviations(const Run& run) {
   const Vector<double> neurons =

@@ -8,6 +8,7 @@
 
 #include "suite/cases/jpo/adjoint_wall/settings.h"
 #include "suite/cases/jpo/common/values.h"
+#include "suite/evidence/cell.h"
 #include "suite/evidence/claim.h"
 #include "suite/harness/registry.h"
 
@@ -83,12 +84,6 @@ Claim claim(const Study& s) {
               "has the settings for which each number comes out")};
 }
 
-Cell cell_of(const Measured& m) {
-  Cell cell{.ours = m.value, .spread = m.spread};
-  if (!m.value) cell.text = "not run";
-  return cell;
-}
-
 Section report(const Study& s,
                const Results& results,
                const Published& published) {
@@ -110,10 +105,8 @@ Section report(const Study& s,
   for (const Wall& w : kWalls) {
     TableRow row{.label = w.title};
     for (const Column& c : kColumns) {
-      Cell cell = cell_of(percent_of(w, c)(e));
-      if (const auto p = find_printed(published, s.name, printed_name(s, c)))
-        cell.paper = p->value, cell.paper_spread = p->spread;
-      row.cells.push_back(std::move(cell));
+      row.cells.push_back(
+          beside_printed(cell_of(percent_of(w, c)(e)), e, printed_name(s, c)));
     }
     row.cells.push_back(cell_of(percent(at_the_wall(s, w))(e)));
     table.rows.push_back(std::move(row));

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "suite/cases/jpo/common/report.h"
+#include "suite/evidence/series.h"
 
 namespace physinv {
 namespace {
@@ -256,23 +257,12 @@ Panel JpoReport::plane(Index n, Index example) const {
                .method = method,
                .x = tracked(*stage, example, 0),
                .y = tracked(*stage, example, 1)};
-    Series end{.method = method,
-               .x = {way.x.back()},
-               .y = {way.y.back()},
-               .line = false,
-               .markers = true};
+    Series end = mark("", method, way.x.back(), way.y.back());
     panel.series.push_back(std::move(way));
     panel.series.push_back(std::move(end));
   }
   const auto x = solution_of(n, example, 0), y = solution_of(n, example, 1);
-  if (x && y) {
-    panel.series.push_back({.label = "solution",
-                            .method = "truth",
-                            .x = {*x},
-                            .y = {*y},
-                            .line = false,
-                            .markers = true});
-  }
+  if (x && y) panel.series.push_back(mark("solution", "truth", *x, *y));
   return panel;
 }
 
@@ -292,13 +282,8 @@ Panel JpoReport::over_iterations(Index n, Index example, Index unknown) const {
                             .y = tracked(*stage, example, unknown)});
     last = std::max(last, panel.series.back().x.back());
   }
-  if (const auto level = solution_of(n, example, unknown)) {
-    panel.series.push_back({.label = "solution",
-                            .method = "truth",
-                            .x = {1, last},
-                            .y = {*level, *level},
-                            .dashed = true});
-  }
+  if (const auto x = solution_of(n, example, unknown))
+    panel.series.push_back(level("solution", "truth", 1, last, *x));
   return panel;
 }
 

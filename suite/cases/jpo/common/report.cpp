@@ -30,6 +30,18 @@ Index JpoReport::largest_size() const {
   return largest;
 }
 
+Figure curves_with_descent(JpoReportOptions options,
+                           FigureRef figure,
+                           const Results& results) {
+  const auto sizes = results.sizes(options.experiment);
+  options.methods.insert(options.methods.begin(), "gd");
+  options.curves = std::move(figure);
+  if (!sizes.empty()) options.curve_sizes = {sizes.back()};
+  Figure curves = JpoReport(options, results, {}).curves();
+  curves.columns = 1;
+  return curves;
+}
+
 Section jpo_section(const JpoReportOptions& options,
                     const Results& results,
                     const Published& published) {

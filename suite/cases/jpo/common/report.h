@@ -123,4 +123,9 @@ Section jpo_section(const JpoReportOptions& options,
                     const Results& results,
                     const Published& published);
 
+/// The curves of the largest set alone, those of gradient descent among them.
+Figure curves_with_descent(JpoReportOptions options,
+                           FigureRef figure,
+                           const Results& results);
+
 }  // namespace physinv

@@ -39,11 +39,8 @@ std::string list(std::span<const Index> sizes) {
 }  // namespace
 
 Cell JpoReport::with_paper(Cell cell, const std::string& quantity) const {
-  if (const auto found = published_.find(options_.experiment, quantity)) {
-    cell.paper = found->value;
-    cell.paper_spread = found->spread;
-  }
-  return cell;
+  return beside_printed(
+      std::move(cell), {results_, published_, options_.experiment}, quantity);
 }
 
 Cell JpoReport::over_seeds(Index n, const PerCase& value) const {

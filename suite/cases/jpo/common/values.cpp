@@ -332,6 +332,14 @@ Quantity highest_mean(const Select& select, const RunValue& value) {
   return extreme_mean(select, value, most_of);
 }
 
+Quantity percent_better(const Select& select) {
+  return percent(mean(select, better()));
+}
+
+Quantity solved_share(const Select& select, const Solved& solved) {
+  return share_of_examples(select, if_solved(solved), holds);
+}
+
 Quantity problems_of(const Select& select) {
   return {[=](const Evidence& e) {
             double count = 0;

@@ -100,6 +100,10 @@ inline bool holds(double flag) { return flag > 0.5; }
 /// The mean over seeds at each n; of these the lowest, and the highest.
 Quantity lowest_mean(const Select& select, const RunValue& value);
 Quantity highest_mean(const Select& select, const RunValue& value);
+/// Of the problems, on average over seeds.
+Quantity percent_better(const Select& select);
+/// Of all their examples.
+Quantity solved_share(const Select& select, const Solved& solved);
 /// Missing unless the largest sets of `select` have so many problems.
 Quantity from_problems(Index problems, const Select& select, Quantity q);
 Quantity problems_of(const Select& select);

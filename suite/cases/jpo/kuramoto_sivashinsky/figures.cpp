@@ -10,6 +10,8 @@
 #include "suite/cases/jpo/common/report.h"
 #include "suite/cases/jpo/common/values.h"
 #include "suite/evidence/cell.h"
+#include "suite/evidence/landscape.h"
+#include "suite/evidence/series.h"
 #include "suite/harness/networks.h"
 #include "suite/harness/registry.h"
 
@@ -52,31 +54,22 @@ Figure trajectory() {
 
 /// Fig. 5b: the loss over beta at the true alpha.
 Figure landscape() {
-  constexpr Index kPoints = 401;
   const KuramotoSivashinsky<double> physics;
   const Samples<double> s = example(physics);
-  Batch<double> x(2, kPoints), y(s.y.rows(), kPoints);
+  Batch<double> x(2, 401);
   x.row(0).setConstant(s.x(0, 0));
   x.row(1).setLinSpaced(0.5, 1.5);
-  Vector<double> loss(kPoints);
-  Workspace work;
-  physics.forward(x, s.given.replicate(1, kPoints).eval(), y, work);
-  physics.loss(y, s.y.replicate(1, kPoints).eval(), loss);
+  Panel panel = line_panel("bfgs",
+                           "beta",
+                           "loss",
+                           x.row(1),
+                           losses_of(physics, {s.y.col(0), s.given.col(0)}, x));
+  panel.series.push_back(mark("solution", "truth", s.x(1, 0), 0));
   return {
       .id = "fig5b",
       .title = "Loss over beta at the true alpha",
       .source = "Fig. 5b",
-      .panels = {{.x_label = "beta",
-                  .y_label = "loss",
-                  .series = {{.method = "bfgs",
-                              .x = {x.row(1).begin(), x.row(1).end()},
-                              .y = {loss.begin(), loss.end()}},
-                             {.label = "solution",
-                              .method = "truth",
-                              .x = {s.x(1, 0)},
-                              .y = {0},
-                              .line = false,
-                              .markers = true}}}},
+      .panels = {std::move(panel)},
       .columns = 1,
       .note = fmt::format("Problem 0 of seed 0, alpha = {:.3f}.", s.x(0, 0))};
 }
@@ -140,24 +133,12 @@ Table in_words(const Evidence& evidence) {
                   "Solved: both unknowns within 1e-3. Iterations: lowest and "
                   "highest mean of any n. Better: than BFGS."};
   for (const auto& [label, name, ours] : rows) {
-    Cell cell = cell_of(ours(evidence).value);
-    cell.paper = printed(std::string("text/") + name)(evidence).value;
-    table.rows.push_back({label, {cell}});
+    table.rows.push_back({label,
+                          {beside_printed(cell_of(ours(evidence).value),
+                                          evidence,
+                                          std::string("text/") + name)}});
   }
   return table;
-}
-
-/// Fig. 5c: curves of one n, gradient descent among them.
-Figure curves_with_descent(JpoReportOptions options,
-                           const Results& results,
-                           const Published& published) {
-  const auto sizes = JpoMetrics(results, options.experiment).sizes();
-  options.methods.insert(options.methods.begin(), "gd");
-  options.curves = {"fig5c", "Fig. 5c"};
-  if (!sizes.empty()) options.curve_sizes = {sizes.back()};
-  Figure figure = JpoReport(options, results, published).curves();
-  figure.columns = 1;
-  return figure;
 }
 
 Section report(const Results& results, const Published& published) {
@@ -174,10 +155,11 @@ Section report(const Results& results, const Published& published) {
                                  .trajectories = {"fig17", "Fig. 17"},
                                  .weight_change = {"fig18", "Fig. 18"}};
   Section section = jpo_section(options, results, published);
-  section.figures.insert(section.figures.begin(),
-                         {trajectory(),
-                          landscape(),
-                          curves_with_descent(options, results, published)});
+  section.figures.insert(
+      section.figures.begin(),
+      {trajectory(),
+       landscape(),
+       curves_with_descent(options, {"fig5c", "Fig. 5c"}, results)});
   section.tables.push_back(in_words({results, published, kName}));
   return section;
 }

@@ -19,9 +19,6 @@ const Select kSupervised = plain("supervised"),
              kSupervisedRefined = refined("supervised");
 const Select kAdjoint = plain("na"), kAdjointRefined = refined("na");
 
-Quantity percent_better(const Select& runs) {
-  return percent(mean(runs, better()));
-}
 Quantity mean_of_losses(const Select& runs) { return mean(runs, mean_loss()); }
 
 /// Decades that the worst loss is above BFGS's worst.

@@ -240,19 +240,6 @@ Figure over_truth(const JpoMetrics& metrics,
   return figure;
 }
 
-/// Fig. 6c: curves of one n, gradient descent among them.
-Figure curves_with_descent(JpoReportOptions options,
-                           const Results& results,
-                           const Published& published,
-                           Index n) {
-  options.methods.insert(options.methods.begin(), "gd");
-  options.curves = {"fig6c", "Fig. 6c"};
-  options.curve_sizes = {n};
-  Figure figure = JpoReport(options, results, published).curves();
-  figure.columns = 1;
-  return figure;
-}
-
 Section report(const Results& results, const Published& published) {
   const JpoReportOptions options{.experiment = kName,
                                  .title = "Incompressible Navier-Stokes",
@@ -270,7 +257,7 @@ Section report(const Results& results, const Published& published) {
   const auto sizes = metrics.sizes();
   if (sizes.empty()) return section;
   std::vector<Figure> before = {
-      curves_with_descent(options, results, published, sizes.back()),
+      curves_with_descent(options, {"fig6c", "Fig. 6c"}, results),
       over_truth(metrics, results, sizes.front(), "fig19", "Fig. 19")};
   const CaseRecord* first = results.find_case(kName, "bfgs", sizes.back(), 0);
   if (first != nullptr && first->data.y.cols() > 0) {

@@ -9,6 +9,8 @@
 
 #include "problems/robotic_arm/robotic_arm.h"
 #include "suite/cases/jpo/common/report.h"
+#include "suite/evidence/landscape.h"
+#include "suite/evidence/series.h"
 #include "suite/harness/registry.h"
 
 namespace physinv::jpo::robotic_arm {
@@ -33,52 +35,33 @@ Figure task() {
   // The shorter links mirror each other, the long one lies level.
   const double bend = std::acos(kTarget[0] - 1);
   const std::array<double, 4> x = {kTarget[1], bend, 0, bend};
-  return {.id = "fig25a",
-          .title = "Task: base and joints that bring the tip to a target",
-          .source = "Fig. 25a",
-          .panels = {{.title = "",
-                      .x_label = "horizontal",
-                      .y_label = "vertical",
-                      .series = {arm_series("start", "bfgs", {0, 0, 0, 0}),
-                                 arm_series("a solution", "jpo", x),
-                                 {.label = "target",
-                                  .method = "truth",
-                                  .x = {kTarget[0]},
-                                  .y = {kTarget[1]},
-                                  .line = false,
-                                  .markers = true}}}},
-          .columns = 1};
+  return {
+      .id = "fig25a",
+      .title = "Task: base and joints that bring the tip to a target",
+      .source = "Fig. 25a",
+      .panels = {{.title = "",
+                  .x_label = "horizontal",
+                  .y_label = "vertical",
+                  .series = {arm_series("start", "bfgs", {0, 0, 0, 0}),
+                             arm_series("a solution", "jpo", x),
+                             mark("target", "truth", kTarget[0], kTarget[1])}}},
+      .columns = 1};
 }
 
 /// Fig. 25b: loss and gradient over the first joint angle, through x = 0.
 Figure landscape() {
-  constexpr Index kPoints = 241;
-  const RoboticArm<double> arm;
-  Batch<double> x = Batch<double>::Zero(4, kPoints), given(0, kPoints);
+  Batch<double> x = Batch<double>::Zero(4, 241);
   x.row(1).setLinSpaced(-std::numbers::pi, std::numbers::pi);
-  Batch<double> y(2, kPoints), target(2, kPoints), y_bar(2, kPoints);
-  target.colwise() = Eigen::Vector2d(kTarget[0], kTarget[1]);
-  Batch<double> gradient(4, kPoints);
-  Vector<double> loss(kPoints);
-  Tape tape;
-  Workspace work;
-  arm.linearize(x, given, y, tape);
-  arm.loss(y, target, loss);
-  arm.loss_gradient(y, target, y_bar);
-  arm.pullback(tape, y_bar, gradient, work);
-  const auto panel = [&](const char* label, const auto& values) {
-    return Panel{.x_label = "angle 1",
-                 .y_label = label,
-                 .series = {{.method = "bfgs",
-                             .x = {x.row(1).begin(), x.row(1).end()},
-                             .y = {values.begin(), values.end()}}}};
-  };
   return {
       .id = "fig25b",
       .title = "Loss and gradient over the first joint angle",
       .source = "Fig. 25b",
-      .panels = {panel("loss", loss),
-                 panel("derivative of the loss", gradient.row(1))},
+      .panels = loss_and_derivative(
+          RoboticArm<double>(),
+          {Eigen::Vector2d(kTarget[0], kTarget[1])},
+          x,
+          {.label = "angle 1", .at = x.row(1), .unknown = 1},
+          "bfgs"),
       .note = fmt::format(
           "Target ({}, {}), all other unknowns 0.", kTarget[0], kTarget[1])};
 }

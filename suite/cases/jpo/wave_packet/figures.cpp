@@ -7,37 +7,22 @@
 
 #include "problems/wave_packet/wave_packet.h"
 #include "suite/cases/jpo/common/report.h"
+#include "suite/evidence/landscape.h"
 #include "suite/harness/networks.h"
 #include "suite/harness/registry.h"
 
 namespace physinv::jpo::wave_packet {
 namespace {
 
-/// One signal of the problem, and what its loss looks like.
+/// One signal of the problem.
 struct Example {
-  static constexpr Index kPoints = 1021;
-
   Example() {
     const auto s = problem.sample(0, 1, Rng::root("jpo/wave-packet/figure", 0));
     truth = s.x;
     signal = s.y;
-    t0.setLinSpaced(kPoints, 1, 256);
-    const auto& o = problem.options();
-    const Batch<double> x =
-        (t0.array() - o.centre).matrix().transpose() / o.scale;
-    const Batch<double> given = Batch<double>::Zero(o.samples, kPoints);
-    const Batch<double> target = signal.replicate(1, kPoints);
-    Batch<double> y(o.samples, kPoints), y_bar(o.samples, kPoints);
-    loss.resize(kPoints), gradient.resize(1, kPoints);
-    Tape tape;
+    packet.resize(signal.rows(), 1);
     Workspace work;
-    problem.linearize(x, given, y, tape);
-    problem.loss(y, target, loss);
-    problem.loss_gradient(y, target, y_bar);
-    problem.pullback(tape, y_bar, gradient, work);
-    gradient /= o.scale;
-    packet.resize(o.samples, 1);
-    problem.forward(truth, given.leftCols(1), packet, work);
+    problem.forward(truth, Batch<double>::Zero(signal.rows(), 1), packet, work);
   }
   double centre() const {
     const auto& o = problem.options();
@@ -45,8 +30,7 @@ struct Example {
   }
 
   WavePacket<double> problem;
-  Batch<double> truth, signal, packet, gradient;
-  Vector<double> t0, loss;
+  Batch<double> truth, signal, packet;
 };
 
 Figure waveform(const Example& e) {
@@ -73,18 +57,17 @@ Figure waveform(const Example& e) {
 }
 
 Figure landscape(const Example& e) {
-  const auto panel = [&](const char* label, const auto& values) {
-    return Panel{.x_label = "t0",
-                 .y_label = label,
-                 .series = {{.method = "bfgs",
-                             .x = {e.t0.begin(), e.t0.end()},
-                             .y = {values.begin(), values.end()}}}};
-  };
+  const auto& o = e.problem.options();
+  const Vector<double> t0 = Vector<double>::LinSpaced(1021, 1, 256);
   return {.id = "fig3b",
           .title = "Loss and gradient over the packet's centre",
           .source = "Fig. 3b",
-          .panels = {panel("loss", e.loss),
-                     panel("derivative of the loss", e.gradient.row(0))},
+          .panels = loss_and_derivative(
+              e.problem,
+              {e.signal.col(0), Vector<double>::Zero(o.samples)},
+              (t0.array() - o.centre).matrix().transpose() / o.scale,
+              {.label = "t0", .at = t0, .scale = o.scale},
+              "bfgs"),
           .note = fmt::format("The signal above: t0 = {:.1f}.", e.centre())};
 }
 

@@ -66,13 +66,6 @@ std::vector<double> decades(double first, double last, double step) {
   return values;
 }
 
-std::vector<double> spaced(double first, double last, int count) {
-  std::vector<double> values;
-  for (int k = 0; k < count; ++k)
-    values.push_back(first + (last - first) * k / (count - 1));
-  return values;
-}
-
 std::vector<ProblemRecipe> along(
     const SweepAxis& axis,
     const std::function<ProblemRecipe(double)>& problem) {

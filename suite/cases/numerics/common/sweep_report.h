@@ -9,6 +9,7 @@
 #include "suite/core/recipe.h"
 #include "suite/diagnostics/stability_sweep.h"
 #include "suite/evidence/claim.h"
+#include "suite/evidence/series.h"
 #include "suite/results/record.h"
 #include "suite/results/report_model.h"
 #include "suite/results/results.h"
@@ -24,8 +25,6 @@ struct SweepAxis {
 
 /// Powers of ten, 10^first, 10^(first + step) .. 10^last.
 std::vector<double> decades(double first, double last, double step = 1);
-/// So many values from `first` to `last`.
-std::vector<double> spaced(double first, double last, int count);
 
 /// One problem for each value of an axis.
 std::vector<ProblemRecipe> along(

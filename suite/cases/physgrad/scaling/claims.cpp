@@ -195,11 +195,7 @@ Condition as_in_notebook(const char* label,
 
 using OfArray = std::function<double(const Batch<double>&)>;
 Quantity identity(const char* array, const OfArray& value) {
-  return median({"identities"}, [=](const Run& run) -> std::optional<double> {
-    const auto found = run.stage->arrays.find(array);
-    if (found == run.stage->arrays.end()) return {};
-    return value(found->second);
-  });
+  return median({"identities"}, of_array(array, value));
 }
 /// Log-log slope between the largest dy and the smallest.
 double slope(const Batch<double>& order) {

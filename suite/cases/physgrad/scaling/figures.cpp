@@ -10,6 +10,7 @@
 #include "suite/cases/physgrad/scaling/path.h"
 #include "suite/cases/physgrad/scaling/scaling.h"
 #include "suite/evidence/cell.h"
+#include "suite/evidence/series.h"
 #include "suite/harness/registry.h"
 
 namespace physinv::scaling {
@@ -50,20 +51,11 @@ Series series(const Line& line, const Batch<double>& points) {
 
 constexpr double kScales[] = {1, 3, 5};
 
-/// 101 numbers from -below to 1.
-std::vector<double> up_to_one(double below) {
-  constexpr int kPoints = 101;
-  std::vector<double> all;
-  for (int i = 0; i < kPoints; ++i)
-    all.push_back(-below + (1 + below) * i / (kPoints - 1));
-  return all;
-}
-
 /// |P|, as the chapter's bars say, or the loss |P|^2 as far down as the
 /// trajectories go.
 Panel landscape(double alpha, bool squared) {
-  Field2D field{.x = up_to_one(0.1),
-                .y = up_to_one(squared ? 0.5 : 0.1),
+  Field2D field{.x = spaced(-0.1, 1, 101),
+                .y = spaced(squared ? -0.5 : -0.1, 1, 101),
                 .label = squared ? "|P(x)|^2" : "|P(x)|"};
   for (const double x2 : field.y)
     for (const double x1 : field.x) {
@@ -246,11 +238,10 @@ Table ends(const Results& results, const Published& published) {
     const auto path = path_of(results, kComparison, line.method);
     TableRow row{.label = line.label};
     const auto add = [&](const char* quantity, double (*value)(const Path&)) {
-      Cell cell = cell_of(path ? std::optional(value(*path)) : std::nullopt);
-      if (const auto p =
-              published.find(kComparison, shown.printed + "/" + quantity))
-        cell.paper = p->value;
-      row.cells.push_back(std::move(cell));
+      row.cells.push_back(beside_printed(
+          cell_of(path ? std::optional(value(*path)) : std::nullopt),
+          {results, published, kComparison},
+          shown.printed + "/" + quantity));
     };
     add("x1", [](const Path& p) { return p.x()(0, p.steps()); });
     add("x2", [](const Path& p) { return p.x()(1, p.steps()); });

@@ -9,8 +9,6 @@
 namespace physinv::exponential {
 namespace {
 
-RowOfCurve metric(MetricRow row) { return {"metrics", row}; }
-
 Quantity of(const char* method, MetricRow row) {
   return median({method}, last_of(metric(row)));
 }
@@ -21,10 +19,6 @@ Quantity worst(const char* method, MetricRow row) {
   return highest({method}, last_of(metric(row)));
 }
 
-/// Share of the mean error that is left of the first network's.
-RunValue left() {
-  return over(last_of(metric(kMean)), value_after(metric(kMean), 0));
-}
 RunValue low_over_high() {
   return over(last_of(metric(kLow)), last_of(metric(kHigh)));
 }
@@ -37,14 +31,16 @@ const std::vector<Claim> kClaimsOfAll = {
      .where = "App. C.2",
      .from = "quick",
      .says = "SGD converges very slowly",
-     .conditions = {above(
-         "share of the error left", lowest({"sgd"}, left()), 0.1)}},
+     .conditions = {above("share of the error left",
+                          lowest({"sgd"}, share_left(metric(kMean))),
+                          0.1)}},
     {.id = "P2",
      .where = "App. C.2",
      .from = "quick",
      .says = "Adam converges very slowly",
-     .conditions = {above(
-         "share of the error left", lowest({"adam"}, left()), 0.1)}},
+     .conditions = {above("share of the error left",
+                          lowest({"adam"}, share_left(metric(kMean))),
+                          0.1)}},
     {.id = "P3",
      .where = "App. C.2",
      .from = "quick",
@@ -88,10 +84,9 @@ const std::vector<Claim> kClaimsOfAll = {
     {.id = "A4",
      .from = "quick",
      .says = "In y the order is the other way round",
-     .conditions = {below(
-         "Adam's loss over the normalised one's",
-         ratio(median({"adam"}, last_loss()), median({"norm"}, last_loss())),
-         1)}},
+     .conditions = {below("Adam's loss over the normalised one's",
+                          ratio_of_medians({"adam"}, {"norm"}, last_loss()),
+                          1)}},
     {.id = "A5",
      .from = "standard",
      .says = "The signs of the distances do as well as the distances",

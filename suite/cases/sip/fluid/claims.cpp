@@ -15,13 +15,10 @@
 namespace physinv::fluid_case {
 namespace {
 
-RowOfCurve metric(MetricRow row) { return {"metrics", row}; }
 RunValue error_after(Index updates) {
   return value_after(metric(kError), updates);
 }
 RunValue end() { return last_of(metric(kError)); }
-/// Share of the first value that is left at the end.
-RunValue error_left() { return over(end(), error_after(0)); }
 /// The loss with its floor, as the authors have it.
 RunValue with_floor(RunValue loss) {
   return [=](const Run& run) -> std::optional<double> {
@@ -180,8 +177,7 @@ const std::vector<Claim> kOthers = {
      .says = "L-BFGS-B is no better than the gradient and overshoots high "
              "frequencies",
      .conditions = {above("its error of v0 over gradient descent's",
-                          ratio(median({"lbfgsb"}, recorded_error),
-                                median({"gd"}, recorded_error)),
+                          ratio_of_medians({"lbfgsb"}, {"gd"}, recorded_error),
                           0.5),
                     above("energy of its fine scales over the truth's",
                           median({"lbfgsb"}, fine_scales),
@@ -206,7 +202,7 @@ const std::vector<Claim> kRanges = {
      .conditions = {
          below("its loss, share left", highest({"adam-b16"}, loss_left()), 0.5),
          above("its error of v0, share left",
-               lowest({"adam-b16"}, error_left()),
+               lowest({"adam-b16"}, share_left(metric(kError))),
                0.75)}}};
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "suite/evidence/cell.h"
 #include "suite/evidence/curve.h"
 #include "suite/evidence/plane.h"
+#include "suite/evidence/series.h"
 #include "suite/evidence/statistics.h"
 #include "suite/evidence/training_report.h"
 #include "suite/harness/registry.h"
@@ -124,12 +125,8 @@ Figure direct(const Results& results) {
   for (const MethodLine& line : networks())
     if (const auto error = end(results, line.method, kClamped);
         error && line.label.find("1e-3") == std::string::npos)
-      panel.series.push_back({.label = line.label,
-                              .method = line.method,
-                              .x = {1, last},
-                              .y = {*error, *error},
-                              .dashed = true,
-                              .look = look_of(line)});
+      panel.series.push_back(
+          level(line.label, line.method, 1, last, *error, look_of(line)));
   return {.id = "fig13",
           .title = "Examples by themselves",
           .source = "Fig. 13",
@@ -146,26 +143,11 @@ Panel picture(std::string title, const Vector<double>& field) {
   return plane(std::move(title), {side, side, 1, side}, field);
 }
 
-/// The first test example of the first seed.
 Figure pictures(const Results& results) {
-  Figure figure{.id = "fields",
-                .title = "What was there, what is seen, what is found",
-                .source = "Fig. 10",
-                .columns = 3,
-                .note = "First test example."};
   auto lines = networks();
+  std::erase_if(lines, [](const auto& l) { return l.method == "sgd-b8-lr3"; });
   lines.insert(lines.end(), kDirect.begin(), kDirect.end());
-  for (const MethodLine& line : lines) {
-    if (line.method == "sgd-b8-lr3") continue;
-    const auto answer = first_answer(results, kName, line.method);
-    if (!answer) continue;
-    if (figure.panels.empty()) {
-      figure.panels.push_back(picture("truth x*", answer->truth));
-      figure.panels.push_back(picture("observed y", answer->wanted));
-    }
-    figure.panels.push_back(picture(line.label, answer->x));
-  }
-  return figure;
+  return answered_fields(results, kName, lines, "Fig. 10", picture);
 }
 
 /// Figs. 11 and 12: SIP and Adam in every cell.

@@ -28,28 +28,6 @@ const std::vector<MethodLine> kLines = {
     {"adam-long-b8", "Adam, batch 8, longer", Hue::purple},
     {"fno-long-b8", "FNO, batch 8, longer", Hue::pink}};
 
-/// The first test example of the first seed.
-Figure pictures(const Plane& plane, const Results& results) {
-  Figure figure{.id = "fields",
-                .title = "What was there, what is seen, what is found",
-                .source = "Fig. 9",
-                .columns = 3,
-                .note = "First test example."};
-  const PlaneLayout layout{plane.columns, plane.rows, 1, plane.columns};
-  for (const MethodLine& line : kLines) {
-    const auto answer = first_answer(results, plane.experiment, line.method);
-    if (!answer) continue;
-    if (figure.panels.empty()) {
-      figure.panels.push_back(
-          physinv::plane("truth x*", layout, answer->truth));
-      figure.panels.push_back(
-          physinv::plane("observed y", layout, answer->wanted));
-    }
-    figure.panels.push_back(physinv::plane(line.label, layout, answer->x));
-  }
-  return figure;
-}
-
 Section report(const Plane& plane, const Results& results) {
   Section section{.experiment = plane.experiment,
                   .tables = {loss_table(results, plane.experiment, kLines)}};
@@ -58,8 +36,16 @@ Section report(const Plane& plane, const Results& results) {
       kLines, kError, "sum |x - x*|", "errors", "Errors of x", "Fig. 9");
   curves.losses(kLines, "losses", "Losses of y", "");
   curves.add(update_times(results, plane.experiment, kLines, "Fig. 15"));
-  if (Figure fields = pictures(plane, results); !fields.panels.empty())
-    section.figures.push_back(std::move(fields));
+  const PlaneLayout layout{plane.columns, plane.rows, 1, plane.columns};
+  Figure fields =
+      answered_fields(results,
+                      plane.experiment,
+                      kLines,
+                      "Fig. 9",
+                      [&](std::string title, const Vector<double>& field) {
+                        return physinv::plane(std::move(title), layout, field);
+                      });
+  if (!fields.panels.empty()) section.figures.push_back(std::move(fields));
   return section;
 }
 

@@ -5,6 +5,9 @@
 
 #include "suite/cases/sip/sine/score.h"
 #include "suite/evidence/cell.h"
+#include "suite/evidence/landscape.h"
+#include "suite/evidence/method_table.h"
+#include "suite/evidence/series.h"
 #include "suite/evidence/statistics.h"
 #include "suite/evidence/training_report.h"
 #include "suite/harness/registry.h"
@@ -101,60 +104,42 @@ Figure sweeps(const Evidence& at) {
 
 /// The loss around the origin, for one observation.
 Figure landscape() {
-  constexpr int kSide = 121;
   const SinePlaneOptions options{.degrees = 15};
-  const SinePlane<double> problem(options);
-  Field2D field{.log_scale = true, .label = "loss"};
-  for (int k = 0; k < kSide; ++k) field.x.push_back(-1 + 2.0 * k / (kSide - 1));
-  field.y = field.x;
-  Batch<double> x(2, kSide * kSide), y = x, target = x;
-  for (int j = 0; j < kSide; ++j)
-    for (int i = 0; i < kSide; ++i)
-      x.col(j * kSide + i) << field.x[std::size_t(i)], field.y[std::size_t(j)];
-  target.colwise() = Eigen::Vector2d(0.3, -0.5);
-  Workspace work;
-  Vector<double> loss(x.cols());
-  problem.forward(x, Batch<double>(0, x.cols()), y, work);
-  problem.loss(y, target, loss);
-  field.values.assign(loss.begin(), loss.end());
+  const auto axis = spaced(-1, 1, 121);
   return {.id = "landscape",
           .title = "The loss for y* = (0.3, -0.5), xi = 1, phi = 15 degrees",
           .panels = {{.x_label = "x_1",
                       .y_label = "x_2",
-                      .field = std::move(field)}},
+                      .field = loss_over_plane(SinePlane<double>(options),
+                                               {Eigen::Vector2d(0.3, -0.5)},
+                                               axis,
+                                               axis)}},
           .columns = 1};
 }
 
 Table score_table(const Evidence& at,
                   const Point& p,
                   const std::vector<MethodLine>& lines) {
-  Table table{.id = "scores",
-              .title = "Distance to the nearest solution",
-              .source = "Fig. 5",
-              .corner = "method",
-              .columns = {"distance",
-                          "lowest",
-                          "highest",
-                          "paper's figure",
-                          "distance / xi"},
-              .note =
-                  "Mean over the last tenth of the updates, median and "
-                  "range over seeds. The figure is read to about 10 %."};
-  for (const MethodLine& line : lines) {
-    const auto all = scores(at, p, line.method);
-    if (all.empty()) continue;
-    const auto [low, high] = std::minmax_element(all.begin(), all.end());
-    table.rows.push_back(
-        {.label = line.label,
-         .cells = {written(median(all)),
-                   written(*low),
-                   written(*high),
-                   written(printed_score(at.published, p, line.method),
-                           "{:.3g}",
-                           kNothing),
-                   written(median(all) / p.xi)}});
-  }
-  return table;
+  const auto paper = [&](const Evidence&, const Select& runs) {
+    return written(
+        printed_score(at.published, p, runs.method), "{:.3g}", kNothing);
+  };
+  return table_by_method(
+      {.id = "scores",
+       .title = "Distance to the nearest solution",
+       .source = "Fig. 5",
+       .corner = "method",
+       .note = "Mean over the last tenth of the updates, median and "
+               "range over seeds. The figure is read to about 10 %."},
+      at,
+      lines,
+      {median_column("distance", score()),
+       quantity_column("lowest", [](auto& s) { return lowest(s, score()); }),
+       quantity_column("highest", [](auto& s) { return highest(s, score()); }),
+       {"paper's figure", paper},
+       quantity_column("distance / xi", [&](auto& s) {
+         return ratio(median(s, score()), p.xi);
+       })});
 }
 
 Table rate_table(const Evidence& at) {

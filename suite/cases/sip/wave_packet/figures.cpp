@@ -10,8 +10,9 @@
 #include <vector>
 
 #include "suite/cases/sip/wave_packet/values.h"
-#include "suite/evidence/cell.h"
+#include "suite/evidence/method_table.h"
 #include "suite/evidence/quantity.h"
+#include "suite/evidence/series.h"
 #include "suite/evidence/statistics.h"
 #include "suite/evidence/training_report.h"
 #include "suite/harness/registry.h"
@@ -76,40 +77,17 @@ void add_levels(const Evidence& e, const RunRow& row, Panel& panel) {
   for (const MethodLine& line : {kLines[1], kLines[2]}) {
     const auto value = median({line.method}, mean_of(row))(e).value;
     if (!value) continue;
-    panel.series.push_back({.label = line.label,
-                            .method = line.method,
-                            .x = {first, last},
-                            .y = {*value, *value},
-                            .dashed = true,
-                            .look = look_of(line)});
+    panel.series.push_back(
+        level(line.label, line.method, first, last, *value, look_of(line)));
   }
 }
 
-/// What a table says of a method.
-struct Column {
-  std::string head;
-  std::function<Quantity(const Select&)> of;
-};
-
-Table table_of(const Evidence& e, Table table, std::vector<Column> columns) {
-  for (const Column& c : columns) table.columns.push_back(c.head);
-  for (const MethodLine& line : kLines) {
-    if (find_runs(e, {line.method}).empty()) continue;
-    TableRow row{.label = line.label};
-    for (const Column& c : columns)
-      row.cells.push_back(written(c.of({line.method})(e)));
-    table.rows.push_back(std::move(row));
-  }
-  return table;
-}
-
-Column typical(std::string head, RunValue value) {
-  return {std::move(head),
-          [=](const Select& who) { return median(who, value); }};
-}
-Column share(std::string head, RunRow row, std::function<bool(double)> test) {
-  return {std::move(head),
-          [=](const Select& who) { return share_of_examples(who, row, test); }};
+MethodColumn share(std::string head,
+                   RunRow row,
+                   std::function<bool(double)> test) {
+  return quantity_column(std::move(head), [=](const Select& who) {
+    return share_of_examples(who, row, test);
+  });
 }
 
 RunValue quantile_of(RunRow row, double q) {
@@ -121,8 +99,7 @@ RunValue quantile_of(RunRow row, double q) {
 }
 
 Table at_the_end(const Evidence& e) {
-  return table_of(
-      e,
+  return table_by_method(
       {.id = "results",
        .title = "At the end, medians over seeds",
        .digits = 3,
@@ -130,12 +107,14 @@ Table at_the_end(const Evidence& e) {
        .note = "Losses and their quantiles over the examples, errors "
                "|t0 - t0*| in samples, shares. Equal to L-BFGS-B's: within a "
                "millionth."},
-      {typical("mean loss", mean_of(losses())),
-       typical("10 %", quantile_of(losses(), 0.1)),
-       typical("50 %", quantile_of(losses(), 0.5)),
-       typical("90 %", quantile_of(losses(), 0.9)),
-       typical("mean error", mean_of(errors())),
-       typical("median error", quantile_of(errors(), 0.5)),
+      e,
+      kLines,
+      {median_column("mean loss", mean_of(losses())),
+       median_column("10 %", quantile_of(losses(), 0.1)),
+       median_column("50 %", quantile_of(losses(), 0.5)),
+       median_column("90 %", quantile_of(losses(), 0.9)),
+       median_column("mean error", mean_of(errors())),
+       median_column("median error", quantile_of(errors(), 0.5)),
        share("within 2", errors(), [](double v) { return v < 2; }),
        share("within half a period",
              errors(),
@@ -150,7 +129,7 @@ Table at_the_end(const Evidence& e) {
 
 Table by_distance(const Evidence& e) {
   constexpr double kEdges[] = {0, 2, 6, 15, 40};
-  std::vector<Column> columns;
+  std::vector<MethodColumn> columns;
   for (std::size_t k = 0; k < std::size(kEdges); ++k) {
     const bool last = k + 1 == std::size(kEdges);
     columns.push_back(
@@ -159,14 +138,15 @@ Table by_distance(const Evidence& e) {
               errors(kEdges[k], last ? kInfinite : kEdges[k + 1]),
               [](double v) { return v < 2; }));
   }
-  return table_of(
-      e,
+  return table_by_method(
       {.id = "distance",
        .title = "Share of packets found, by distance from the start",
        .digits = 3,
        .corner = "method",
        .note = "Found: |t0 - t0*| < 2. The start is t0 = 76.8."},
-      std::move(columns));
+      e,
+      kLines,
+      columns);
 }
 
 Section report(const Results& results, const Published& published) {
