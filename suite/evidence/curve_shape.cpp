@@ -78,7 +78,7 @@ Quantity lead(const Select& select, const std::vector<Select>& others) {
     }
     return ahead / end;
   };
-  return also_asks(median(select, share), others);
+  return depends_on(median(select, share), others);
 }
 
 Quantity spread_of_seeds(const std::vector<Select>& of, const RunValue& value) {
@@ -91,7 +91,7 @@ Quantity spread_of_seeds(const std::vector<Select>& of, const RunValue& value) {
     }
     return highest / lowest;
   };
-  return also_asks(median(of.front(), spread), of);
+  return depends_on(median(of.front(), spread), of);
 }
 
 Quantity highest_along(const Select& curve,

@@ -179,11 +179,11 @@ Quantity median_ratio(Select a, Select b, RunValue value) {
     if (!x || !y || std::isnan(*x / *y)) return {};
     return *x / *y;
   };
-  return also_asks(median(std::move(a), pair), {b});
+  return depends_on(median(std::move(a), pair), {b});
 }
 
 Quantity worst_ratio(Select a, Select b, RunValue value) {
-  return also_asks(highest(std::move(a), over(value, beside(b, value))), {b});
+  return depends_on(highest(std::move(a), over(value, beside(b, value))), {b});
 }
 
 Quantity median_of_examples(Select select, RunRow row) {
@@ -256,7 +256,7 @@ Quantity spread_ratio(const std::vector<Quantity>& of) {
   return ratio(most(of), least(of));
 }
 
-Quantity also_asks(const Quantity& a, const std::vector<Select>& others) {
+Quantity depends_on(const Quantity& a, const std::vector<Select>& others) {
   return {[=](const Evidence& e) { return a(e); },
           joined(a.runs(), others),
           a.printed()};

@@ -109,7 +109,7 @@ Quantity most(std::vector<Quantity> of);
 Quantity spread_ratio(const std::vector<Quantity>& of);
 
 /// Names the other runs that the values read, for registration to look up.
-Quantity also_asks(const Quantity& a, const std::vector<Select>& others);
+Quantity depends_on(const Quantity& a, const std::vector<Select>& others);
 
 /// Missing unless so many runs (or seeds) stand behind it.
 Quantity from_at_least(Index runs, const Quantity& a);

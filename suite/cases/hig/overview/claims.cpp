@@ -46,7 +46,7 @@ Condition is_first(const std::string& what,
   const RunValue theirs = beside(adam, length(paper()));
   return below(
       what + ": time to Adam's end, HIG over Adam",
-      also_asks(
+      depends_on(
           median(hig,
                  over(time_to(paper(), beside(adam, last_loss())), theirs)),
           {adam}),

@@ -198,11 +198,11 @@ const std::vector<Claim> kPaper = {
                     adam_leads("HIG 0.01", kHig1),
                     adam_leads("HIG 0.05", kHig5),
                     report("our seconds of Adam to HIG's end",
-                           also_asks(median(kAdam,
-                                            time_to(
-                                                own_seconds(),
-                                                beside(kHig2, last_loss()))),
-                                     {kHig2})),
+                           depends_on(median(kAdam,
+                                             time_to(
+                                                 own_seconds(),
+                                                 beside(kHig2, last_loss()))),
+                                      {kHig2})),
                     report("of HIG", median(kHig2, length(own_seconds())))},
      .cause = not_run("with P2: the profile paper")},
     {.id = "P4",
@@ -273,14 +273,14 @@ const std::vector<Claim> kPaper = {
                             median(kLateDetour, lowest_over_start()),
                             0.9),
                     above("highest after HIG over HIG's end",
-                          if_it_dropped(also_asks(
+                          if_it_dropped(depends_on(
                               median(kLateReturns,
                                      over(highest_of_return,
                                           beside(kLateDetour, last_loss()))),
                               {kLateDetour})),
                           1),
                     within("loss over the original run's",
-                           if_it_dropped(also_asks(
+                           if_it_dropped(depends_on(
                                median(kLateReturns,
                                       over(loss_after(kReturn),
                                            beside(kLateStart, last_loss()))),
@@ -315,10 +315,10 @@ const std::vector<Claim> kSuite = {
              "many",
      .conditions =
          {at_least("Adam's updates",
-                   also_asks(median(kAdam,
-                                    time_to(updates(),
-                                            beside(kHig16, loss_after(60)))),
-                             {kHig16}),
+                   depends_on(median(kAdam,
+                                     time_to(updates(),
+                                             beside(kHig16, loss_after(60)))),
+                              {kHig16}),
                    6 * 60),
           report(
               "Adam's seconds",

@@ -89,7 +89,7 @@ Quantity after(const Select& select, double count) {
 /// Updates to a test loss of 0.1 of runs as long as the slowest may take.
 RunValue to_a_tenth(double count) { return if_ran(count, first_below(0.1)); }
 Quantity over_hig(const Select& adam, double count) {
-  return also_asks(
+  return depends_on(
       of_most(Side::above,
               adam,
               over(to_a_tenth(count), beside(kHig, to_a_tenth(224)))),

@@ -40,8 +40,8 @@ Quantity against_bfgs(const Choice& c) {
                           Equality::strict).*
            kShare;
   };
-  return percent(also_asks(mean({c.jpo(), kRefined ? "refine" : "fit"}, value),
-                           {{c.bfgs()}}));
+  return percent(depends_on(mean({c.jpo(), kRefined ? "refine" : "fit"}, value),
+                            {{c.bfgs()}}));
 }
 
 Select bfgs_of(const Choice& c) { return {c.bfgs(), "solve"}; }
@@ -74,7 +74,7 @@ Quantity mean_over_bfgs(const Choice& c) {
     if (!bfgs) return {};
     return run.stage->loss.mean() / bfgs->stage->loss.mean();
   };
-  return also_asks(mean({c.jpo(), "fit"}, value), {bfgs_of(c)});
+  return depends_on(mean({c.jpo(), "fit"}, value), {bfgs_of(c)});
 }
 
 // ---- columns ----------------------------------------------------------------

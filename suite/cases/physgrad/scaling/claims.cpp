@@ -182,7 +182,7 @@ Quantity mean_apart(const char* method) {
     if (!other) return {};
     return (Path(*run.stage).x() - Path(*other->stage).x()).cwiseAbs().mean();
   };
-  return also_asks(median({method}, value), {{"pg"}});
+  return depends_on(median({method}, value), {{"pg"}});
 }
 Condition as_in_notebook(const char* label,
                          const char* method,

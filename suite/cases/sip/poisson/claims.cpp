@@ -85,7 +85,7 @@ Condition wide_over_narrow(const char* method) {
   const Select narrow = Select{method}.in(kNarrow.experiment);
   return at_most(
       "error over that of width 16 at equal time, median",
-      also_asks(median({method}, over_at_equal_time(narrow)), {narrow}),
+      depends_on(median({method}, over_at_equal_time(narrow)), {narrow}),
       1);
 }
 

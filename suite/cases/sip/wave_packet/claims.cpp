@@ -27,12 +27,12 @@ Quantity mean_error(const Select& who) {
 }
 /// Of the network beside L-BFGS-B on the same examples.
 Quantity beside_lbfgs(RunValue net, RunRow lbfgs) {
-  return also_asks(
+  return depends_on(
       median(kNet, over(std::move(net), beside(kLbfgs, mean_of(lbfgs)))),
       {kLbfgs});
 }
 Quantity passes(RunValue when) {
-  return also_asks(median(kNet, std::move(when)), {kLbfgs});
+  return depends_on(median(kNet, std::move(when)), {kLbfgs});
 }
 
 const std::vector<Claim> kClaimsOfAll = {
@@ -98,10 +98,10 @@ const std::vector<Claim> kClaimsOfAll = {
          "Networks explore the solution space better than iterative solvers",
      .conditions = {above("within half a period, network over L-BFGS-B, "
                           "worst seed",
-                          also_asks(lowest(kNet,
-                                           over(in_basin(),
-                                                beside(kLbfgs, in_basin()))),
-                                    {kLbfgs}),
+                          depends_on(lowest(kNet,
+                                            over(in_basin(),
+                                                 beside(kLbfgs, in_basin()))),
+                                     {kLbfgs}),
                           1),
                     report("of the network", median(kNet, in_basin())),
                     report("of L-BFGS-B", median(kLbfgs, in_basin()))},
@@ -155,9 +155,9 @@ const std::vector<Claim> kClaimsOfAll = {
                                errors()),
                   1.08),
           at_least("examples better than L-BFGS-B",
-                   also_asks(share_of_examples(
-                                 kNet, loss_over_lbfgs(), up_to(-1e-6)),
-                             {kLbfgs}),
+                   depends_on(
+                       share_of_examples(kNet, loss_over_lbfgs(), up_to(-1e-6)),
+                       {kLbfgs}),
                    0.04)}},
     {.id = "A6",
      .from = "quick",
