@@ -8,7 +8,7 @@
 #include "problems/grid_poisson/grid_poisson.h"
 #include "suite/cases/hig/poisson/phases.h"
 #include "suite/evidence/cell.h"
-#include "suite/evidence/plane.h"
+#include "suite/evidence/field_panel.h"
 #include "suite/evidence/quantity.h"
 #include "suite/evidence/training.h"
 #include "suite/evidence/training_report.h"
@@ -137,9 +137,9 @@ const std::vector<MethodLine> kReturns = {
     {"chain-smoke", "Adam, HIG, Adam, short"}};
 
 Panel cells(std::string title, const Vector<double>& values) {
-  constexpr PlaneLayout kLayout{
+  constexpr FieldLayout kLayout{
       kPoissonSide, kPoissonSide, 1, kPoissonSide, 1, -0.5, -0.5};
-  return plane(std::move(title), kLayout, values);
+  return field_panel(std::move(title), kLayout, values);
 }
 
 /// A source, its potential, and those that networks infer.

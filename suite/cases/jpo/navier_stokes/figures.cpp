@@ -8,7 +8,7 @@
 
 #include "problems/navier_stokes/navier_stokes.h"
 #include "suite/cases/jpo/common/report.h"
-#include "suite/evidence/plane.h"
+#include "suite/evidence/field_panel.h"
 #include "suite/harness/networks.h"
 #include "suite/harness/registry.h"
 #include "suite/harness/study.h"
@@ -26,14 +26,14 @@ Panel blank_at_obstacles(std::string title,
   const NavierStokesOptions o;
   const Index rows = o.cells - below, part = o.cells * rows;
   const double width = o.box / double(o.cells);
-  const PlaneLayout layout{
+  const FieldLayout layout{
       o.cells, rows, rows, 1, width, 0, double(below) * width};
   Vector<double> u = uv.head(part), v = uv.tail(part);
   for (const fluid::Obstacle& b : o.obstacles)
     for (Index i = b.i0; i < b.i1; ++i)
       for (Index j = std::max(b.j0, below); j < b.j1; ++j)
         u(i * rows + j - below) = std::nan("");
-  return flow(std::move(title), layout, u, v, 4);
+  return flow_panel(std::move(title), layout, u, v, 4);
 }
 
 /// The observed half.

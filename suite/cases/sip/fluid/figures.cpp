@@ -6,7 +6,7 @@
 #include "problems/marker_flow/marker_flow.h"
 #include "suite/cases/sip/fluid/fluid.h"
 #include "suite/cases/sip/fluid/metrics.h"
-#include "suite/evidence/plane.h"
+#include "suite/evidence/field_panel.h"
 #include "suite/evidence/training_report.h"
 #include "suite/harness/registry.h"
 
@@ -23,7 +23,7 @@ const std::vector<MethodLine> kLines = {
 
 constexpr Index kPlane = kCells * kCells;
 
-constexpr PlaneLayout kLayout{kCells, kCells, kCells, 1};
+constexpr FieldLayout kLayout{kCells, kCells, kCells, 1};
 
 /// The marker after so many steps.
 Vector<double> carried(const Vector<double>& x,
@@ -63,11 +63,12 @@ Figure pictures(const std::vector<Said>& all) {
                 .note = "First test example. Arrows: every fourth cell."};
   for (const auto& [who, x, marker] : all) {
     figure.panels.push_back(
-        flow(who + ", v0", kLayout, x.head(kPlane), x.tail(kPlane), 4));
+        flow_panel(who + ", v0", kLayout, x.head(kPlane), x.tail(kPlane), 4));
     for (const Index time : {1, 2})
-      figure.panels.push_back(plane(who + ", marker at " + std::to_string(time),
-                                    kLayout,
-                                    carried(x, marker, 4 * time)));
+      figure.panels.push_back(
+          field_panel(who + ", marker at " + std::to_string(time),
+                      kLayout,
+                      carried(x, marker, 4 * time)));
   }
   return figure;
 }
@@ -83,9 +84,9 @@ Figure film(const std::vector<Said>& all) {
   for (Index step = 0; step <= 8; ++step)
     for (const auto& [who, x, marker] : all)
       figure.panels.push_back(
-          plane(who + ", step " + std::to_string(step),
-                kLayout,
-                step == 0 ? marker : carried(x, marker, step)));
+          field_panel(who + ", step " + std::to_string(step),
+                      kLayout,
+                      step == 0 ? marker : carried(x, marker, step)));
   share_scale(figure.panels);
   return figure;
 }

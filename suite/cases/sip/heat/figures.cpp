@@ -11,7 +11,7 @@
 #include "suite/cases/sip/heat/metrics.h"
 #include "suite/evidence/cell.h"
 #include "suite/evidence/curve.h"
-#include "suite/evidence/plane.h"
+#include "suite/evidence/field_panel.h"
 #include "suite/evidence/series.h"
 #include "suite/evidence/statistics.h"
 #include "suite/evidence/training_report.h"
@@ -140,7 +140,7 @@ Figure direct(const Results& results) {
 /// Row by row, from below.
 Panel picture(std::string title, const Vector<double>& field) {
   const auto side = static_cast<Index>(std::lround(std::sqrt(field.size())));
-  return plane(std::move(title), {side, side, 1, side}, field);
+  return field_panel(std::move(title), {side, side, 1, side}, field);
 }
 
 Figure pictures(const Results& results) {

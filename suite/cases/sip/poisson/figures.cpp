@@ -3,7 +3,7 @@
 
 #include "suite/cases/sip/poisson/metrics.h"
 #include "suite/cases/sip/poisson/poisson.h"
-#include "suite/evidence/plane.h"
+#include "suite/evidence/field_panel.h"
 #include "suite/evidence/training_report.h"
 #include "suite/harness/registry.h"
 
@@ -36,14 +36,14 @@ Section report(const Plane& plane, const Results& results) {
       kLines, kError, "sum |x - x*|", "errors", "Errors of x", "Fig. 9");
   curves.losses(kLines, "losses", "Losses of y", "");
   curves.add(update_times(results, plane.experiment, kLines, "Fig. 15"));
-  const PlaneLayout layout{plane.columns, plane.rows, 1, plane.columns};
+  const FieldLayout layout{plane.columns, plane.rows, 1, plane.columns};
   Figure fields =
       answered_fields(results,
                       plane.experiment,
                       kLines,
                       "Fig. 9",
                       [&](std::string title, const Vector<double>& field) {
-                        return physinv::plane(std::move(title), layout, field);
+                        return field_panel(std::move(title), layout, field);
                       });
   if (!fields.panels.empty()) section.figures.push_back(std::move(fields));
   return section;

@@ -1,4 +1,4 @@
-/// Fields on planes as panels of a figure.
+/// Fields of two coordinates as panels of a figure.
 #pragma once
 
 #include <span>
@@ -9,25 +9,25 @@
 
 namespace physinv {
 
-/// How a plane lies in memory, and where its cells are: cell (i, j), i to the
+/// How a field lies in memory, and where its cells are: cell (i, j), i to the
 /// right, is number i * x_stride + j * y_stride, its middle at
 /// (x0 + (i + 1/2) size, y0 + (j + 1/2) size).
-struct PlaneLayout {
+struct FieldLayout {
   Index nx, ny, x_stride, y_stride;
   double size = 1, x0 = 0, y0 = 0;
 };
 
 /// The field, a pixel a cell.
-Panel plane(std::string title,
-            const PlaneLayout& layout,
-            const Vector<double>&);
+Panel field_panel(std::string title,
+                  const FieldLayout& layout,
+                  const Vector<double>&);
 
 /// The speed of a flow (u, v), with arrows of every `every`-th cell.
-Panel flow(std::string title,
-           const PlaneLayout& layout,
-           const Vector<double>& u,
-           const Vector<double>& v,
-           Index every);
+Panel flow_panel(std::string title,
+                 const FieldLayout& layout,
+                 const Vector<double>& u,
+                 const Vector<double>& v,
+                 Index every);
 
 /// All fields with the scale that shows the largest of them.
 void share_scale(std::span<Panel> panels);

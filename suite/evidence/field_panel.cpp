@@ -1,4 +1,4 @@
-#include "suite/evidence/plane.h"
+#include "suite/evidence/field_panel.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,15 +8,15 @@ namespace physinv {
 namespace {
 
 /// Middle of a row's or column's k-th cell.
-double middle(const PlaneLayout& layout, double from, Index k) {
+double middle(const FieldLayout& layout, double from, Index k) {
   return from + (double(k) + 0.5) * layout.size;
 }
 
 }  // namespace
 
-Panel plane(std::string title,
-            const PlaneLayout& layout,
-            const Vector<double>& f) {
+Panel field_panel(std::string title,
+                  const FieldLayout& layout,
+                  const Vector<double>& f) {
   Field2D field;
   for (Index i = 0; i < layout.nx; ++i)
     field.x.push_back(middle(layout, layout.x0, i));
@@ -28,13 +28,13 @@ Panel plane(std::string title,
   return {.title = std::move(title), .field = std::move(field)};
 }
 
-Panel flow(std::string title,
-           const PlaneLayout& layout,
-           const Vector<double>& u,
-           const Vector<double>& v,
-           Index every) {
-  Panel panel =
-      plane(std::move(title), layout, u.binaryExpr(v, [](double a, double b) {
+Panel flow_panel(std::string title,
+                 const FieldLayout& layout,
+                 const Vector<double>& u,
+                 const Vector<double>& v,
+                 Index every) {
+  Panel panel = field_panel(
+      std::move(title), layout, u.binaryExpr(v, [](double a, double b) {
         return std::hypot(a, b);
       }));
   Arrows arrows{.length = 1.4 * double(every) * layout.size};
