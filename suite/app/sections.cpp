@@ -12,8 +12,8 @@
 
 #include "reports/printed_curves.h"
 #include "suite/app/installed.h"
-#include "suite/evidence/frontier.h"
 #include "suite/evidence/standings.h"
+#include "suite/evidence/work_precision.h"
 #include "suite/harness/judge.h"
 #include "suite/harness/registry.h"
 #include "suite/results/course.h"
@@ -207,7 +207,7 @@ std::vector<Section> sections_of(const Results& results,
     section.method_titles.insert(titles.begin(), titles.end());
     name_rows(section);
     if (!only_diagnoses(*e)) {
-      add_frontier(section, results, e->name, section.method_titles);
+      add_work_precision(section, results, e->name, section.method_titles);
       const CommonRuns common = common_runs(results, e->name);
       add_standings(section, common, section.method_titles);
       for (Figure& figure :

@@ -1,4 +1,4 @@
-#include "suite/evidence/frontier.h"
+#include "suite/evidence/work_precision.h"
 
 #include <gtest/gtest.h>
 
@@ -39,7 +39,7 @@ Results three_methods() {
                   course("poor", 2, {2, 1.8, 1e-9}, 20)});
 }
 
-TEST(Frontier, MediansArePairedAndRelativeToTheStart) {
+TEST(WorkPrecision, MediansArePairedAndRelativeToTheStart) {
   const auto settings = setting_courses(three_methods(), "toy");
   ASSERT_EQ(settings.size(), 3U);
   const SettingCourse& poor = settings[2];
@@ -52,23 +52,23 @@ TEST(Frontier, MediansArePairedAndRelativeToTheStart) {
   EXPECT_DOUBLE_EQ(poor.distance.value(), 0.75 * std::sqrt(2.0));
 }
 
-TEST(Frontier, HullAndTargets) {
+TEST(WorkPrecision, HullAndTargets) {
   const auto settings = setting_courses(three_methods(), "toy");
-  const auto hull = frontier(settings);
+  const auto hull = work_precision_hull(settings);
   ASSERT_EQ(hull.size(), 4U);
   EXPECT_DOUBLE_EQ(hull[1].loss, 0.4);
   EXPECT_DOUBLE_EQ(hull.back().loss, 0.01);
-  EXPECT_TRUE(on_frontier(settings[0], hull));
-  EXPECT_TRUE(on_frontier(settings[1], hull));
-  EXPECT_FALSE(on_frontier(settings[2], hull));
+  EXPECT_TRUE(on_hull(settings[0], hull));
+  EXPECT_TRUE(on_hull(settings[1], hull));
+  EXPECT_FALSE(on_hull(settings[2], hull));
   EXPECT_DOUBLE_EQ(seconds_to(settings[0], 0.4), 1);
   EXPECT_DOUBLE_EQ(seconds_to(settings[1], 0.4), 15);
   EXPECT_EQ(seconds_to(settings[2], 0.4), HUGE_VAL);
 }
 
-TEST(Frontier, TheReportNamesWhatIsDominated) {
+TEST(WorkPrecision, TheReportNamesWhatIsDominated) {
   Section section;
-  add_frontier(section, three_methods(), "toy", {{"poor", "Poor"}});
+  add_work_precision(section, three_methods(), "toy", {{"poor", "Poor"}});
   ASSERT_EQ(section.tables.size(), 1U);
   EXPECT_NE(
       section.tables[0].note.find("Dominated at every budget: Poor, n = 2"),
@@ -79,16 +79,16 @@ TEST(Frontier, TheReportNamesWhatIsDominated) {
   EXPECT_EQ(section.figures[0].panels[0].series.size(), 4U);
 }
 
-TEST(Frontier, WithoutLossesThereIsNoReport) {
+TEST(WorkPrecision, WithoutLossesThereIsNoReport) {
   Section section;
-  add_frontier(section, Results{}, "toy", {});
+  add_work_precision(section, Results{}, "toy", {});
   auto diverged = course("good", 0, {1, 0.5}, 1);
   diverged.stages[0].curve.loss.setConstant(NAN);
   diverged.stages[0].loss.setConstant(NAN);
-  add_frontier(section, Results({diverged}), "toy", {});
+  add_work_precision(section, Results({diverged}), "toy", {});
   auto looks = course("look", 0, {1, 0.5}, 1);
   looks.stages[0].options = {{"algorithm", "diagnostic"}};
-  add_frontier(section, Results({looks}), "toy", {});
+  add_work_precision(section, Results({looks}), "toy", {});
   EXPECT_TRUE(section.tables.empty());
 }
 

@@ -1,4 +1,4 @@
-#include "suite/evidence/frontier.h"
+#include "suite/evidence/work_precision.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -190,7 +190,7 @@ Table table_of(const std::vector<SettingCourse>& settings,
       row.cells.push_back(std::isfinite(seconds) ? written(seconds)
                                                  : Cell{.text = "never"});
     }
-    const bool good = on_frontier(s, hull);
+    const bool good = on_hull(s, hull);
     row.cells.push_back({.text = good ? "yes" : "dominated"});
     if (!good) dominated.push_back(name);
     crowded |= s.crowded;
@@ -278,7 +278,8 @@ std::vector<SettingCourse> setting_courses(const Results& results,
   return out;
 }
 
-std::vector<BudgetPoint> frontier(const std::vector<SettingCourse>& settings) {
+std::vector<BudgetPoint> work_precision_hull(
+    const std::vector<SettingCourse>& settings) {
   std::vector<BudgetPoint> all, hull;
   for (const SettingCourse& s : settings)
     for (const BudgetPoint& p : s.points)
@@ -291,8 +292,8 @@ std::vector<BudgetPoint> frontier(const std::vector<SettingCourse>& settings) {
   return hull;
 }
 
-bool on_frontier(const SettingCourse& setting,
-                 const std::vector<BudgetPoint>& hull) {
+bool on_hull(const SettingCourse& setting,
+             const std::vector<BudgetPoint>& hull) {
   return std::any_of(
       setting.points.begin(), setting.points.end(), [&](const auto& p) {
         return std::any_of(hull.begin(), hull.end(), [&](const auto& h) {
@@ -307,12 +308,13 @@ double seconds_to(const SettingCourse& setting, double loss) {
   return kInfinite;
 }
 
-void add_frontier(Section& section,
-                  const Results& results,
-                  const std::string& experiment,
-                  const std::map<std::string, std::string>& method_titles) {
+void add_work_precision(
+    Section& section,
+    const Results& results,
+    const std::string& experiment,
+    const std::map<std::string, std::string>& method_titles) {
   const auto settings = setting_courses(results, experiment);
-  const auto hull = frontier(settings);
+  const auto hull = work_precision_hull(settings);
   if (hull.empty()) return;
   const Names name_of(settings, method_titles);
   section.tables.push_back(table_of(settings, hull, name_of));

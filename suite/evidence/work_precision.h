@@ -42,20 +42,22 @@ std::vector<SettingCourse> setting_courses(const Results& results,
                                            const std::string& experiment);
 
 /// The lower-left hull: points that no other one beats in both, by time.
-std::vector<BudgetPoint> frontier(const std::vector<SettingCourse>& settings);
+std::vector<BudgetPoint> work_precision_hull(
+    const std::vector<SettingCourse>& settings);
 
 /// Whether one of its points lies on the hull.
-bool on_frontier(const SettingCourse& setting,
-                 const std::vector<BudgetPoint>& hull);
+bool on_hull(const SettingCourse& setting,
+             const std::vector<BudgetPoint>& hull);
 
 /// Seconds until a loss; infinite if it is never reached.
 double seconds_to(const SettingCourse& setting, double loss);
 
 /// Adds the table `run_time_against_loss`, with the time to three targets, and
 /// the figure of the same name. Nothing where no method solves anything.
-void add_frontier(Section& section,
-                  const Results& results,
-                  const std::string& experiment,
-                  const std::map<std::string, std::string>& method_titles);
+void add_work_precision(
+    Section& section,
+    const Results& results,
+    const std::string& experiment,
+    const std::map<std::string, std::string>& method_titles);
 
 }  // namespace physinv
