@@ -16,7 +16,7 @@
 #include "suite/evidence/work_precision.h"
 #include "suite/harness/judge.h"
 #include "suite/harness/registry.h"
-#include "suite/results/course.h"
+#include "suite/results/convergence_history.h"
 #include "suite/results/crowded.h"
 #include "suite/results/profiles.h"
 

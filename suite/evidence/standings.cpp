@@ -17,7 +17,7 @@ std::vector<std::vector<double>> final_losses(const CommonRuns& common) {
   for (const CommonRun& group : common.groups)
     for (std::size_t m = 0; m < all.size(); ++m)
       for (Index i = 0; i < group.examples; ++i) {
-        const auto& losses = group.courses[m].loss;
+        const auto& losses = group.histories[m].loss;
         const double loss = losses.empty() ? kInfinite : losses.back()[i];
         all[m].push_back(std::isfinite(loss) ? std::max(loss, kSolvedLoss)
                                              : kInfinite);

@@ -10,7 +10,7 @@
 
 #include "suite/evidence/cell.h"
 #include "suite/evidence/statistics.h"
-#include "suite/results/course.h"
+#include "suite/results/convergence_history.h"
 
 namespace physinv {
 namespace {
@@ -19,13 +19,13 @@ namespace {
 constexpr double kTargets[] = {1e-1, 1e-2, 1e-3};
 
 /// A chain's mean losses over seconds per problem.
-struct MeanCourse {
+struct MeanHistory {
   std::vector<double> seconds, loss;
   std::optional<double> distance;
   bool crowded = false;
 };
 using SettingKey = std::tuple<std::string, Index, Precision>;
-using BySeed = std::map<std::uint64_t, MeanCourse>;
+using BySeed = std::map<std::uint64_t, MeanHistory>;
 
 bool solves(const CaseRecord& c) {
   return std::none_of(c.stages.begin(), c.stages.end(), [](const auto& s) {
@@ -45,21 +45,21 @@ std::optional<double> distance_of(const CaseRecord& c) {
   return median(std::move(all));
 }
 
-std::map<SettingKey, BySeed> mean_courses(const Results& results,
-                                          const std::string& experiment) {
+std::map<SettingKey, BySeed> mean_histories(const Results& results,
+                                            const std::string& experiment) {
   std::map<SettingKey, BySeed> all;
   for (const CaseRecord& c : results.cases()) {
     if (c.info.experiment != experiment || !solves(c)) continue;
-    const auto course = course_of(c);
-    if (!course || course->loss.empty()) continue;
-    MeanCourse mean;
+    const auto history = history_of(c);
+    if (!history || history->loss.empty()) continue;
+    MeanHistory mean;
     for (const StageRecord& s : c.stages) mean.crowded |= s.crowded;
     mean.distance = distance_of(c);
-    const bool run = course->loss.front().size() == 1;
+    const bool run = history->loss.front().size() == 1;
     const double share = run ? 1 : static_cast<double>(c.info.n);
-    for (std::size_t k = 0; k < course->loss.size(); ++k) {
-      mean.seconds.push_back(course->seconds[k] / share);
-      mean.loss.push_back(course->loss[k].mean());
+    for (std::size_t k = 0; k < history->loss.size(); ++k) {
+      mean.seconds.push_back(history->seconds[k] / share);
+      mean.loss.push_back(history->loss[k].mean());
     }
     all[{c.info.method, c.info.n, c.info.precision}][c.info.seed] =
         std::move(mean);
@@ -80,10 +80,10 @@ std::map<Index, Pairing> pairings(const std::map<SettingKey, BySeed>& all) {
     const Index n = std::get<1>(key);
     Pairing& p = out[n];
     std::set<std::uint64_t> mine;
-    for (const auto& [seed, course] : by_seed) {
+    for (const auto& [seed, history] : by_seed) {
       mine.insert(seed);
-      const auto [at, is_new] = p.start.emplace(seed, course.loss.front());
-      if (!is_new) at->second = std::min(at->second, course.loss.front());
+      const auto [at, is_new] = p.start.emplace(seed, history.loss.front());
+      if (!is_new) at->second = std::min(at->second, history.loss.front());
     }
     if (seen.insert(n).second) {
       p.seeds = mine;
@@ -94,16 +94,16 @@ std::map<Index, Pairing> pairings(const std::map<SettingKey, BySeed>& all) {
   return out;
 }
 
-SettingCourse setting_of(const SettingKey& key,
-                         const BySeed& by_seed,
-                         const Pairing& pairing) {
-  SettingCourse out;
+SettingHistory setting_of(const SettingKey& key,
+                          const BySeed& by_seed,
+                          const Pairing& pairing) {
+  SettingHistory out;
   std::tie(out.method, out.n, out.precision) = key;
   out.seeds = pairing.seeds.size();
   std::size_t points = 0;
   std::vector<double> distances;
   for (const auto seed : pairing.seeds) {
-    const MeanCourse& c = by_seed.at(seed);
+    const MeanHistory& c = by_seed.at(seed);
     points = std::max(points, c.loss.size());
     if (c.distance) distances.push_back(*c.distance);
     out.crowded |= c.crowded;
@@ -113,7 +113,7 @@ SettingCourse setting_of(const SettingKey& key,
     std::vector<double> seconds, losses;
     for (const auto seed : pairing.seeds) {
       // A run that has ended stays where it is.
-      const MeanCourse& c = by_seed.at(seed);
+      const MeanHistory& c = by_seed.at(seed);
       const std::size_t at = std::min(k, c.loss.size() - 1);
       seconds.push_back(c.seconds[at]);
       losses.push_back(c.loss[at] / pairing.start.at(seed));
@@ -131,13 +131,13 @@ SettingCourse setting_of(const SettingKey& key,
 /// Words of a setting; its precision where its method has both.
 class Names {
  public:
-  Names(const std::vector<SettingCourse>& settings,
+  Names(const std::vector<SettingHistory>& settings,
         const std::map<std::string, std::string>& titles)
       : titles_(titles) {
-    for (const SettingCourse& s : settings)
+    for (const SettingHistory& s : settings)
       precisions_[s.method].insert(s.precision);
   }
-  std::string operator()(const SettingCourse& s) const {
+  std::string operator()(const SettingHistory& s) const {
     const auto title = titles_.find(s.method);
     std::string name = title == titles_.end() ? s.method : title->second;
     if (precisions_.at(s.method).size() > 1)
@@ -150,7 +150,7 @@ class Names {
   std::map<std::string, std::set<Precision>> precisions_;
 };
 
-Table table_of(const std::vector<SettingCourse>& settings,
+Table table_of(const std::vector<SettingHistory>& settings,
                const std::vector<BudgetPoint>& hull,
                const Names& name_of) {
   const double lowest = hull.back().loss;
@@ -169,7 +169,7 @@ Table table_of(const std::vector<SettingCourse>& settings,
   table.columns.emplace_back("on the hull");
   std::vector<std::string> dominated;
   bool crowded = false;
-  for (const SettingCourse& s : settings) {
+  for (const SettingHistory& s : settings) {
     const std::string name = fmt::format("{}, n = {}", name_of(s), s.n);
     TableRow row{.label = name, .keys = {name_of(s), std::to_string(s.n)}};
     row.cells.push_back(written(s.seeds, "{:g}"));
@@ -227,11 +227,11 @@ void append(Series& s, const BudgetPoint& p) {
   s.lo.push_back(p.low), s.hi.push_back(p.high);
 }
 
-Figure figure_of(const std::vector<SettingCourse>& settings,
+Figure figure_of(const std::vector<SettingHistory>& settings,
                  const std::vector<BudgetPoint>& hull,
                  const Names& name_of) {
   Index largest = 0;
-  for (const SettingCourse& s : settings) largest = std::max(largest, s.n);
+  for (const SettingHistory& s : settings) largest = std::max(largest, s.n);
   const auto panel = [](std::string title) {
     return Panel{.title = std::move(title),
                  .x_label = "seconds per problem",
@@ -242,7 +242,7 @@ Figure figure_of(const std::vector<SettingCourse>& settings,
   Panel budget = panel(fmt::format("Growing budget, n = {}", largest)),
         sizes = panel("Whole budget, all n");
   std::map<std::string, Series> ends;
-  for (const SettingCourse& s : settings) {
+  for (const SettingHistory& s : settings) {
     const std::string label = name_of(s);
     Series line{.label = label, .method = s.method};
     if (s.n == largest) {
@@ -268,20 +268,20 @@ Figure figure_of(const std::vector<SettingCourse>& settings,
 
 }  // namespace
 
-std::vector<SettingCourse> setting_courses(const Results& results,
-                                           const std::string& experiment) {
-  const auto all = mean_courses(results, experiment);
+std::vector<SettingHistory> setting_histories(const Results& results,
+                                              const std::string& experiment) {
+  const auto all = mean_histories(results, experiment);
   const auto pairs = pairings(all);
-  std::vector<SettingCourse> out;
+  std::vector<SettingHistory> out;
   for (const auto& [key, by_seed] : all)
     out.push_back(setting_of(key, by_seed, pairs.at(std::get<1>(key))));
   return out;
 }
 
 std::vector<BudgetPoint> work_precision_hull(
-    const std::vector<SettingCourse>& settings) {
+    const std::vector<SettingHistory>& settings) {
   std::vector<BudgetPoint> all, hull;
-  for (const SettingCourse& s : settings)
+  for (const SettingHistory& s : settings)
     for (const BudgetPoint& p : s.points)
       if (p.seconds > 0) all.push_back(p);
   std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) {
@@ -292,7 +292,7 @@ std::vector<BudgetPoint> work_precision_hull(
   return hull;
 }
 
-bool on_hull(const SettingCourse& setting,
+bool on_hull(const SettingHistory& setting,
              const std::vector<BudgetPoint>& hull) {
   return std::any_of(
       setting.points.begin(), setting.points.end(), [&](const auto& p) {
@@ -302,7 +302,7 @@ bool on_hull(const SettingCourse& setting,
       });
 }
 
-double seconds_to(const SettingCourse& setting, double loss) {
+double seconds_to(const SettingHistory& setting, double loss) {
   for (const BudgetPoint& p : setting.points)
     if (p.loss <= loss) return p.seconds;
   return kInfinite;
@@ -313,7 +313,7 @@ void add_work_precision(
     const Results& results,
     const std::string& experiment,
     const std::map<std::string, std::string>& method_titles) {
-  const auto settings = setting_courses(results, experiment);
+  const auto settings = setting_histories(results, experiment);
   const auto hull = work_precision_hull(settings);
   if (hull.empty()) return;
   const Names name_of(settings, method_titles);

@@ -24,7 +24,7 @@ struct BudgetPoint {
   double low = 0, high = 0;  ///< 10 % and 90 % of the seeds
 };
 
-struct SettingCourse {
+struct SettingHistory {
   std::string method;
   Index n = 0;
   Precision precision = Precision::f32;
@@ -38,19 +38,19 @@ struct SettingCourse {
 
 /// Settings whose chains are finished. Losses that are not positive have no
 /// ratio: such settings have no points.
-std::vector<SettingCourse> setting_courses(const Results& results,
-                                           const std::string& experiment);
+std::vector<SettingHistory> setting_histories(const Results& results,
+                                              const std::string& experiment);
 
 /// The lower-left hull: points that no other one beats in both, by time.
 std::vector<BudgetPoint> work_precision_hull(
-    const std::vector<SettingCourse>& settings);
+    const std::vector<SettingHistory>& settings);
 
 /// Whether one of its points lies on the hull.
-bool on_hull(const SettingCourse& setting,
+bool on_hull(const SettingHistory& setting,
              const std::vector<BudgetPoint>& hull);
 
 /// Seconds until a loss; infinite if it is never reached.
-double seconds_to(const SettingCourse& setting, double loss);
+double seconds_to(const SettingHistory& setting, double loss);
 
 /// Adds the table `run_time_against_loss`, with the time to three targets, and
 /// the figure of the same name. Nothing where no method solves anything.

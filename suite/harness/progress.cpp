@@ -13,7 +13,7 @@
 #include "suite/harness/context.h"
 #include "suite/harness/output.h"
 #include "suite/harness/run_case.h"
-#include "suite/results/course.h"
+#include "suite/results/convergence_history.h"
 
 namespace physinv {
 namespace {

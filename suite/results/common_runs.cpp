@@ -25,14 +25,14 @@ std::optional<CommonRun> common_run(const Results& results,
   for (const auto& method : methods) {
     const CaseRecord* found = results.find_case(experiment, method, n, seed);
     if (found == nullptr) return {};
-    auto course = course_of(*found);
-    if (!course) return {};
-    for (const auto& loss : course->loss) {
+    auto history = history_of(*found);
+    if (!history) return {};
+    for (const auto& loss : history->loss) {
       if (group.examples == 0) group.examples = loss.size();
       if (loss.size() != group.examples) return {};  // not the same problems
     }
     for (const auto& s : found->stages) some_crowded |= s.crowded;
-    group.courses.push_back(std::move(*course));
+    group.histories.push_back(std::move(*history));
   }
   crowded |= some_crowded;
   return group;
@@ -50,9 +50,9 @@ std::vector<std::string> lowest_of(const Results& results,
     for (const Index n : results.sizes(experiment))
       for (const std::uint64_t seed : results.seeds(experiment))
         if (const auto* found = results.find_case(experiment, all[m], n, seed))
-          if (const auto course = course_of(*found);
-              course && !course->loss.empty())
-            last.push_back(course->loss.back().mean());
+          if (const auto history = history_of(*found);
+              history && !history->loss.empty())
+            last.push_back(history->loss.back().mean());
     for (double& loss : last)
       if (!std::isfinite(loss)) loss = kHighest;
     ends.emplace_back(last.empty() ? kHighest : median(std::move(last)), m);

@@ -5,15 +5,16 @@
 #include <string>
 #include <vector>
 
-#include "suite/results/course.h"
+#include "suite/results/convergence_history.h"
 #include "suite/results/results.h"
 
 namespace physinv {
 
 /// Of one n and seed.
 struct CommonRun {
-  Index n = 0, examples = 0;    ///< examples: problems of each course
-  std::vector<Course> courses;  ///< of each method; empty if it failed at once
+  Index n = 0, examples = 0;  ///< examples: problems of each history
+  std::vector<ConvergenceHistory>
+      histories;  ///< of each method; empty if it failed at once
 };
 
 struct CommonRuns {

@@ -21,9 +21,9 @@ std::optional<double> target_of(const CommonRun& group,
                                 Index example,
                                 double tolerance) {
   double start = kInfinity, lowest = kInfinity;
-  for (const Course& course : group.courses) {
-    for (std::size_t k = 0; k < course.loss.size(); ++k) {
-      const double loss = course.loss[k][example];
+  for (const ConvergenceHistory& history : group.histories) {
+    for (std::size_t k = 0; k < history.loss.size(); ++k) {
+      const double loss = history.loss[k][example];
       if (!std::isfinite(loss)) continue;
       if (k == 0) start = std::min(start, loss);
       lowest = std::min(lowest, loss);
@@ -40,19 +40,19 @@ void append_costs(TargetCosts& out,
                   Index example,
                   double target) {
   const double share = out.runs ? 1 : static_cast<double>(group.n);
-  for (std::size_t m = 0; m < group.courses.size(); ++m) {
-    const Course& course = group.courses[m];
+  for (std::size_t m = 0; m < group.histories.size(); ++m) {
+    const ConvergenceHistory& history = group.histories[m];
     const auto there =
-        std::find_if(course.loss.begin(), course.loss.end(), [&](auto& loss) {
+        std::find_if(history.loss.begin(), history.loss.end(), [&](auto& loss) {
           return loss[example] <= target;
         });
-    const bool reached = there != course.loss.end();
-    const auto k = static_cast<std::size_t>(there - course.loss.begin());
-    const auto last = course.loss.empty() ? 0 : course.loss.size() - 1;
+    const bool reached = there != history.loss.end();
+    const auto k = static_cast<std::size_t>(there - history.loss.begin());
+    const auto last = history.loss.empty() ? 0 : history.loss.size() - 1;
     const double seconds =
-        course.loss.empty() ? 0 : course.seconds[reached ? k : last];
+        history.loss.empty() ? 0 : history.seconds[reached ? k : last];
     const double simulations =
-        course.loss.empty() ? 0 : course.simulations[reached ? k : last];
+        history.loss.empty() ? 0 : history.simulations[reached ? k : last];
     out.spent_seconds[m].push_back(std::max(seconds, 1e-9));
     out.spent_simulations[m].push_back(std::max(simulations / share, 1.0));
     out.seconds[m].push_back(reached ? out.spent_seconds[m].back() : kInfinity);

@@ -53,11 +53,11 @@ CommonRuns runs_of(const std::vector<std::vector<double>>& losses) {
   group.examples = group.n;
   for (std::size_t m = 0; m < losses.size(); ++m) {
     common.methods.push_back(std::string(1, static_cast<char>('a' + m)));
-    Course course{.seconds = {0, 1}, .simulations = {1, 10}};
-    course.loss.push_back(Vector<double>::Ones(group.n));
-    course.loss.push_back(
+    ConvergenceHistory history{.seconds = {0, 1}, .simulations = {1, 10}};
+    history.loss.push_back(Vector<double>::Ones(group.n));
+    history.loss.push_back(
         Eigen::Map<const Vector<double>>(losses[m].data(), group.n));
-    group.courses.push_back(std::move(course));
+    group.histories.push_back(std::move(history));
   }
   common.groups.push_back(std::move(group));
   common.sizes = {common.groups.front().n};

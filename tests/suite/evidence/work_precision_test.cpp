@@ -11,10 +11,10 @@ namespace {
 
 /// A chain of one stage with these mean losses of two alike examples, point k
 /// after `step` (k + 1) seconds of the batch.
-CaseRecord course(const std::string& method,
-                  std::uint64_t seed,
-                  const std::vector<double>& means,
-                  double step) {
+CaseRecord history(const std::string& method,
+                   std::uint64_t seed,
+                   const std::vector<double>& means,
+                   double step) {
   StageRecord s = stage_of("solve", {means.back(), means.back()});
   s.curve.loss.resize(2, static_cast<Index>(means.size()));
   for (std::size_t k = 0; k < means.size(); ++k) {
@@ -30,19 +30,19 @@ CaseRecord course(const std::string& method,
 // Slow and good, fast and rough, and one that is both slow and rough. The start
 // of seed 1 is twice as high, all else is alike.
 Results three_methods() {
-  return Results({course("good", 0, {1, 0.5, 0.01}, 10),
-                  course("good", 1, {2, 1, 0.02}, 10),
-                  course("fast", 0, {1, 0.4, 0.3}, 1),
-                  course("fast", 1, {2, 0.8, 0.6}, 1),
-                  course("poor", 0, {1, 0.9, 0.8}, 20),
-                  course("poor", 1, {2, 1.8, 1.6}, 20),
-                  course("poor", 2, {2, 1.8, 1e-9}, 20)});
+  return Results({history("good", 0, {1, 0.5, 0.01}, 10),
+                  history("good", 1, {2, 1, 0.02}, 10),
+                  history("fast", 0, {1, 0.4, 0.3}, 1),
+                  history("fast", 1, {2, 0.8, 0.6}, 1),
+                  history("poor", 0, {1, 0.9, 0.8}, 20),
+                  history("poor", 1, {2, 1.8, 1.6}, 20),
+                  history("poor", 2, {2, 1.8, 1e-9}, 20)});
 }
 
 TEST(WorkPrecision, MediansArePairedAndRelativeToTheStart) {
-  const auto settings = setting_courses(three_methods(), "toy");
+  const auto settings = setting_histories(three_methods(), "toy");
   ASSERT_EQ(settings.size(), 3U);
-  const SettingCourse& poor = settings[2];
+  const SettingHistory& poor = settings[2];
   EXPECT_EQ(poor.method, "poor");
   EXPECT_EQ(poor.seeds, 2U);  // the third is nobody else's
   EXPECT_DOUBLE_EQ(poor.points.back().loss, 0.8);
@@ -53,7 +53,7 @@ TEST(WorkPrecision, MediansArePairedAndRelativeToTheStart) {
 }
 
 TEST(WorkPrecision, HullAndTargets) {
-  const auto settings = setting_courses(three_methods(), "toy");
+  const auto settings = setting_histories(three_methods(), "toy");
   const auto hull = work_precision_hull(settings);
   ASSERT_EQ(hull.size(), 4U);
   EXPECT_DOUBLE_EQ(hull[1].loss, 0.4);
@@ -82,11 +82,11 @@ TEST(WorkPrecision, TheReportNamesWhatIsDominated) {
 TEST(WorkPrecision, WithoutLossesThereIsNoReport) {
   Section section;
   add_work_precision(section, Results{}, "toy", {});
-  auto diverged = course("good", 0, {1, 0.5}, 1);
+  auto diverged = history("good", 0, {1, 0.5}, 1);
   diverged.stages[0].curve.loss.setConstant(NAN);
   diverged.stages[0].loss.setConstant(NAN);
   add_work_precision(section, Results({diverged}), "toy", {});
-  auto looks = course("look", 0, {1, 0.5}, 1);
+  auto looks = history("look", 0, {1, 0.5}, 1);
   looks.stages[0].options = {{"algorithm", "diagnostic"}};
   add_work_precision(section, Results({looks}), "toy", {});
   EXPECT_TRUE(section.tables.empty());

@@ -1,17 +1,17 @@
-#include "suite/results/course.h"
+#include "suite/results/convergence_history.h"
 
 #include <algorithm>
 
 namespace physinv {
 namespace {
 
-void add_point(Course& course,
+void add_point(ConvergenceHistory& history,
                double seconds,
                double simulations,
                VectorIn<double> loss) {
-  course.seconds.push_back(seconds);
-  course.simulations.push_back(simulations);
-  course.loss.emplace_back(loss);
+  history.seconds.push_back(seconds);
+  history.simulations.push_back(simulations);
+  history.loss.emplace_back(loss);
 }
 
 /// The mean over a test set along the curve, if that is what is known of all.
@@ -23,8 +23,8 @@ const Batch<double>* mean_of(const StageRecord& s) {
 
 }  // namespace
 
-std::optional<Course> course_of(const CaseRecord& found) {
-  Course course;
+std::optional<ConvergenceHistory> history_of(const CaseRecord& found) {
+  ConvergenceHistory history;
   double seconds = 0, simulations = 0;
   bool failed = false;
   for (const StageRecord& s : found.stages) {
@@ -36,7 +36,7 @@ std::optional<Course> course_of(const CaseRecord& found) {
                              : std::min(mean->cols(), s.curve.points());
     for (Index k = 0; k < points; ++k) {
       const auto at = static_cast<std::size_t>(k);
-      add_point(course,
+      add_point(history,
                 seconds + s.curve.seconds[at],
                 simulations + s.curve.evaluations[at],
                 mean == nullptr ? Vector<double>(s.curve.loss.col(k))
@@ -47,10 +47,10 @@ std::optional<Course> course_of(const CaseRecord& found) {
                                        s.counts[Counter::vjp]);
     // The estimate may be better than the end of the curve.
     if (s.loss.size() > 0 && mean == nullptr)
-      add_point(course, seconds, simulations, s.loss);
+      add_point(history, seconds, simulations, s.loss);
   }
   if (!failed && found.stages.size() < found.info.stages.size()) return {};
-  return course;
+  return history;
 }
 
 bool is_diagnostic(const Options& options) {

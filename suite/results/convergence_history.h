@@ -8,7 +8,7 @@
 
 namespace physinv {
 
-struct Course {
+struct ConvergenceHistory {
   std::vector<double> seconds, simulations;
   std::vector<Vector<double>> loss;  ///< one entry per problem
 };
@@ -16,7 +16,7 @@ struct Course {
 /// Empty unless every stage is finished, or one of them failed: that one and
 /// those behind it are left out. Where a method is judged by its network on a
 /// test set and its curve is a mean (`mean_loss`), a problem is the whole run.
-std::optional<Course> course_of(const CaseRecord& found);
+std::optional<ConvergenceHistory> history_of(const CaseRecord& found);
 
 /// Whether a stage with these options looks instead of solving.
 bool is_diagnostic(const Options& options);
