@@ -8,9 +8,9 @@
 #include <optional>
 #include <set>
 
+#include "suite/app/benchmark_flags.h"
 #include "suite/app/conclude.h"
 #include "suite/app/export.h"
-#include "suite/app/habits.h"
 #include "suite/app/installed.h"
 #include "suite/app/run_budget.h"
 #include "suite/core/clock.h"
@@ -41,7 +41,7 @@ std::string valid_text(const std::string& text) {
 
 struct RunFlags {
   Selection selection;
-  Habits habits;
+  BenchmarkFlags benchmark;
   CampaignOptions campaign;
   std::string out, budget, checkpoint, config;
   int jobs = 0;
@@ -86,7 +86,7 @@ struct RunFlags {
         {"--trace",
          "record a hash of all iterates of the stages that run",
          &campaign.trace}};
-    const auto more = habits.flags();
+    const auto more = benchmark.flags();
     own.insert(own.end(), more.begin(), more.end());
     return selection.flags(own);
   }
@@ -94,7 +94,7 @@ struct RunFlags {
   void complete() {
     if (jobs == 0) jobs = std::max(1, available_cores() / campaign.threads);
     campaign.jobs = jobs;
-    habits.complete(selection);
+    benchmark.complete(selection);
     if (!budget.empty())
       campaign.time_budget = parse_duration("--time-budget", budget);
     if (!checkpoint.empty())
@@ -185,7 +185,7 @@ Repetitions repeat(const Prepared& prepared,
   Repetitions all;
   CampaignOptions again = flags.campaign;
   again.resume = false;
-  for (int k = 1; k < flags.habits.repetitions; ++k) {
+  for (int k = 1; k < flags.benchmark.repetitions; ++k) {
     const PassingStore passing(flags.campaign.out);
     again.out = passing.path();
     const auto r = run_campaign(prepared, again, flags.json(), screen);
@@ -205,17 +205,17 @@ Repetitions repeat(const Prepared& prepared,
 
 /// In the formats of Google Benchmark's flags.
 void write_exports(const RunFlags& flags, bool to_screen) {
-  const Habits& habits = flags.habits;
-  if (!to_screen && habits.out.empty()) return;
+  const BenchmarkFlags& benchmark = flags.benchmark;
+  if (!to_screen && benchmark.out.empty()) return;
   const Loaded loaded = load(flags.campaign.out.string(), stderr);
-  if (to_screen) put(stdout, exported(loaded, habits.format));
-  if (!habits.out.empty())
-    write_atomically(habits.out, exported(loaded, habits.out_format));
+  if (to_screen) put(stdout, exported(loaded, benchmark.format));
+  if (!benchmark.out.empty())
+    write_atomically(benchmark.out, exported(loaded, benchmark.out_format));
 }
 
 Screen screen_of(const RunFlags& flags) {
   Screen screen =
-      Screen::of(flags.habits.format == "console" ? stdout : stderr);
+      Screen::of(flags.benchmark.format == "console" ? stdout : stderr);
   screen.quiet = flags.quiet;
   screen.live = screen.live && !flags.quiet;
   return screen;
@@ -323,7 +323,7 @@ CampaignResult run_all(Prepared prepared,
                        const RunFlags& flags,
                        const Screen& screen) {
   const BudgetAlarm alarm(flags.campaign.time_budget);
-  const bool repeats = flags.habits.repetitions > 1;
+  const bool repeats = flags.benchmark.repetitions > 1;
   CampaignResult result = run_campaign(repeats ? prepared : std::move(prepared),
                                        flags.campaign,
                                        flags.json(),
@@ -385,7 +385,7 @@ ExitCode run_verb(const Arguments& arguments) {
              arguments))
     return ExitCode::good;
   flags.complete();
-  if (flags.habits.list) {
+  if (flags.benchmark.list) {
     for (const Case& c : flags.selection.cases())
       fmt::print("{}\n", c.info.name);
     return ExitCode::good;

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdlib>
 
-#include "suite/app/habits.h"
+#include "suite/app/benchmark_flags.h"
 #include "tests/fuzz/inputs.h"
 #include "tests/fuzz/readers.h"
 
@@ -47,13 +47,13 @@ Arguments prepared(std::string_view bytes) {
 void read(const Arguments& arguments) {
   refuse_empty(arguments);
   Selection selection;
-  Habits habits;
+  BenchmarkFlags benchmark;
   std::string budget;
   int jobs = 1;
   double within = 1;
   bool resume = true;
   std::vector<std::string> shards;
-  std::vector<Flag> own = habits.flags();
+  std::vector<Flag> own = benchmark.flags();
   own.push_back({"--jobs", "", &jobs});
   own.push_back({"--within", "", &within});
   own.push_back({"--time-budget", "", &budget, "TIME"});
@@ -61,7 +61,7 @@ void read(const Arguments& arguments) {
   if (!arguments.empty() && arguments[0] == "merge")
     own.push_back({"SHARDS", "", &shards});
   if (!parse("run", "", selection.flags(own), arguments)) return;
-  habits.complete(selection);
+  benchmark.complete(selection);
   if (!budget.empty()) parse_duration("--time-budget", budget);
   selection.cases();
 }

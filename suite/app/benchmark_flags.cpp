@@ -1,4 +1,4 @@
-#include "suite/app/habits.h"
+#include "suite/app/benchmark_flags.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -88,7 +88,7 @@ void take_filter(const std::string& flag, Selection& selection) {
 
 }  // namespace
 
-std::vector<Flag> Habits::flags() {
+std::vector<Flag> BenchmarkFlags::flags() {
   return {
       {"--benchmark_filter", "the same as --filter", &filter, "REGEX"},
       {"--benchmark_list_tests", "the names of the cases, and no more", &list},
@@ -112,12 +112,12 @@ std::vector<Flag> Habits::flags() {
        "FORMAT"}};
 }
 
-Habits::Habits() {
+BenchmarkFlags::BenchmarkFlags() {
   const auto all = variable("BENCHMARK_LIST_TESTS");
   list = !all.empty() && all != "0" && all != "false";
 }
 
-void Habits::complete(Selection& selection) {
+void BenchmarkFlags::complete(Selection& selection) {
   take_filter(filter, selection);
   take(out, "BENCHMARK_OUT", "");
   take(out_format, "BENCHMARK_OUT_FORMAT", "json");

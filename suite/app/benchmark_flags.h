@@ -9,12 +9,12 @@
 
 namespace physinv {
 
-struct Habits {
+struct BenchmarkFlags {
   std::string filter, out, out_format, format;
   int repetitions = 0;
   bool list = false;  ///< from the start as BENCHMARK_LIST_TESTS says
 
-  Habits();
+  BenchmarkFlags();
   std::vector<Flag> flags();
   /// After the command line: what it leaves open is as BENCHMARK_FILTER and so
   /// on say, or as always. Then into the selection: the filter, and
