@@ -6,10 +6,10 @@
 
 #include "python/module/arrays.h"
 #include "suite/results/catalog.h"
+#include "suite/results/missing_work.h"
 #include "suite/results/repetitions.h"
 #include "suite/results/results.h"
 #include "suite/results/results_file.h"
-#include "suite/results/shortfall.h"
 #include "suite/results/tidy.h"
 
 namespace physinv::python {
@@ -132,7 +132,7 @@ py::dict tidy(const Campaign& campaign) {
   for_each_tidy_row(
       campaign.catalog,
       cases,
-      shortfall(campaign.catalog, cases),
+      missing_work(campaign.catalog, cases),
       [&](const TidyRow& row) {
         for (std::size_t k = 0; k < values.size(); ++k)
           values[k].append(std::visit(Value{row}, tidy_columns()[k].value));

@@ -13,7 +13,7 @@ namespace physinv {
 Loaded load(const std::string& directory, std::FILE* warnings) {
   Loaded loaded{.catalog = Catalog::read(results_directory(directory))};
   auto cases = checked_cases(loaded.catalog);
-  loaded.lacks = shortfall(loaded.catalog, cases);
+  loaded.lacks = missing_work(loaded.catalog, cases);
   // What lacks is said at the end, in the one line of an error.
   if (warnings == stdout || !loaded.lacks.any())
     for (const auto& warning : loaded.catalog.warnings())
@@ -30,7 +30,7 @@ nlohmann::ordered_json results_of(const Loaded& loaded) {
                       plan.is_object() ? plan.value("context", none) : none);
 }
 
-void require_complete(const Shortfall& lacks, std::string_view advice) {
+void require_complete(const MissingWork& lacks, std::string_view advice) {
   if (lacks.any())
     throw ExitError(ExitCode::incomplete,
                     fmt::format("incomplete: {}; {}", to_text(lacks), advice));

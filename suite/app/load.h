@@ -7,15 +7,15 @@
 #include <string_view>
 
 #include "suite/results/catalog.h"
+#include "suite/results/missing_work.h"
 #include "suite/results/results.h"
-#include "suite/results/shortfall.h"
 
 namespace physinv {
 
 struct Loaded {
   Catalog catalog;
   Results results;
-  Shortfall lacks;
+  MissingWork lacks;
 };
 
 /// Prints what the catalog warns of; to another stream than standard output
@@ -30,6 +30,6 @@ inline constexpr std::string_view kRunAgain =
     "'run' as before makes up for it and keeps the rest; a merge, all shards";
 
 /// ExitError (incomplete) with `advice` if anything lacks.
-void require_complete(const Shortfall& lacks, std::string_view advice);
+void require_complete(const MissingWork& lacks, std::string_view advice);
 
 }  // namespace physinv

@@ -10,7 +10,7 @@
 namespace physinv {
 namespace {
 
-void print(const VerifyReport& r, const Shortfall& lacks) {
+void print(const VerifyReport& r, const MissingWork& lacks) {
   fmt::print(
       "{} losses of {} of {} stages: {} bitwise equal, {} within {:g}, {} "
       "within {:g} by plain loops through the network, {} mismatches\n",

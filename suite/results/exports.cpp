@@ -9,9 +9,9 @@
 
 #include "suite/core/median.h"
 #include "suite/results/catalog.h"
+#include "suite/results/missing_work.h"
 #include "suite/results/plan.h"
 #include "suite/results/results_json.h"
-#include "suite/results/shortfall.h"
 
 namespace physinv {
 namespace {
@@ -86,7 +86,7 @@ std::string quoted(const std::string& text) {
 }  // namespace
 
 std::vector<StageName> stages_not_run(const Catalog& catalog,
-                                      const Shortfall& lacks) {
+                                      const MissingWork& lacks) {
   std::vector<StageName> names;
   for (const auto& name : lacks.unrun_cases) {
     const auto stages = planned_stages(catalog.plan, name);

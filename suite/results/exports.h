@@ -10,7 +10,7 @@
 namespace physinv {
 
 class Catalog;
-struct Shortfall;
+struct MissingWork;
 
 struct StageName {
   std::string case_name;
@@ -18,7 +18,7 @@ struct StageName {
 };
 /// Stages that were asked for and have no record.
 std::vector<StageName> stages_not_run(const Catalog& catalog,
-                                      const Shortfall& lacks);
+                                      const MissingWork& lacks);
 
 /// An error for each.
 void add_not_run(nlohmann::ordered_json& results,

@@ -136,7 +136,7 @@ void merge_case(Store& store,
                 Origins& origins,
                 std::vector<std::string>& warnings) {
   const CaseRecord c = shard.case_record(name);
-  Shortfall lacks;
+  MissingWork lacks;
   lacks.add(shard, c);
   for (const auto& stage : lacks.lost)
     warnings.push_back(fmt::format(
@@ -198,7 +198,7 @@ Merged merge(const std::vector<fs::path>& paths,
     }
     if (store.is_due(kCommitSeconds)) store.commit();
   }
-  merged.lacks = shortfall(store.catalog(), store.finish());
+  merged.lacks = missing_work(store.catalog(), store.finish());
   return merged;
 }
 

@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "suite/results/lock.h"
-#include "suite/results/shortfall.h"
+#include "suite/results/missing_work.h"
 
 namespace physinv {
 
 struct Merged {
-  Shortfall lacks;                    ///< what the whole campaign still lacks
+  MissingWork lacks;                  ///< what the whole campaign still lacks
   std::vector<std::string> warnings;  ///< about shards, and OUT's lock
 };
 

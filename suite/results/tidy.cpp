@@ -7,8 +7,8 @@
 #include "suite/results/catalog.h"
 #include "suite/results/csv.h"
 #include "suite/results/exports.h"
+#include "suite/results/missing_work.h"
 #include "suite/results/repetitions.h"
-#include "suite/results/shortfall.h"
 
 namespace physinv {
 namespace {
@@ -145,7 +145,7 @@ std::span<const TidyColumn> tidy_columns() { return kColumns; }
 
 void for_each_tidy_row(const Catalog& catalog,
                        const std::vector<CaseRecord>& cases,
-                       const Shortfall& lacks,
+                       const MissingWork& lacks,
                        const std::function<void(const TidyRow&)>& row) {
   for (const CaseRecord& c : cases)
     for (const StageRecord& s : c.stages)
@@ -166,7 +166,7 @@ void for_each_tidy_row(const Catalog& catalog,
 
 std::string tidy_csv(const Catalog& catalog,
                      const std::vector<CaseRecord>& cases,
-                     const Shortfall& lacks) {
+                     const MissingWork& lacks) {
   std::string out;
   for (const TidyColumn& column : kColumns)
     out += fmt::format("{}{}", out.empty() ? "" : ",", column.name);

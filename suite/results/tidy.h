@@ -20,7 +20,7 @@
 namespace physinv {
 
 class Catalog;
-struct Shortfall;
+struct MissingWork;
 
 /// Of one example. What it points to belongs to the campaign.
 struct TidyRow {
@@ -48,11 +48,11 @@ std::span<const TidyColumn> tidy_columns();
 /// In the order of the campaign; `cases` and `lacks` are the catalog's.
 void for_each_tidy_row(const Catalog& catalog,
                        const std::vector<CaseRecord>& cases,
-                       const Shortfall& lacks,
+                       const MissingWork& lacks,
                        const std::function<void(const TidyRow&)>& row);
 
 std::string tidy_csv(const Catalog& catalog,
                      const std::vector<CaseRecord>& cases,
-                     const Shortfall& lacks);
+                     const MissingWork& lacks);
 
 }  // namespace physinv

@@ -2,8 +2,8 @@
 #include <nlohmann/json.hpp>
 
 #include "suite/results/catalog.h"
+#include "suite/results/missing_work.h"
 #include "suite/results/results_json.h"
-#include "suite/results/shortfall.h"
 #include "tests/fuzz/readers.h"
 #include "tests/fuzz/sealed.h"
 
@@ -17,7 +17,7 @@ void store(std::string_view bytes) {
     const Catalog catalog = Catalog::read(folder() / "store");
     const auto context = catalog.plan.value("context", nlohmann::json());
     results_text(results_json(catalog.summaries(), catalog.order(), context));
-    to_text(shortfall(catalog, catalog.cases()));
+    to_text(missing_work(catalog, catalog.cases()));
     for (const auto& entry : catalog.entries()) catalog.find(entry.stage.key);
   });
 }

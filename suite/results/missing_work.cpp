@@ -1,4 +1,4 @@
-#include "suite/results/shortfall.h"
+#include "suite/results/missing_work.h"
 
 #include <fmt/format.h>
 
@@ -10,12 +10,12 @@
 namespace physinv {
 namespace {}  // namespace
 
-bool Shortfall::any() const {
+bool MissingWork::any() const {
   return unknown_plan || !unrun_cases.empty() || !unrun_stages.empty() ||
          !failed.empty() || !lost.empty();
 }
 
-void Shortfall::add(const Catalog& catalog, const CaseRecord& c) {
+void MissingWork::add(const Catalog& catalog, const CaseRecord& c) {
   const auto& info = c.info;
   for (std::size_t k = 0; k < info.stages.size(); ++k) {
     ++stages;
@@ -36,11 +36,11 @@ void Shortfall::add(const Catalog& catalog, const CaseRecord& c) {
   }
 }
 
-Shortfall shortfall(const Catalog& catalog,
-                    const std::vector<CaseRecord>& cases) {
+MissingWork missing_work(const Catalog& catalog,
+                         const std::vector<CaseRecord>& cases) {
   std::map<std::string, const CaseRecord*> by_name;
   for (const CaseRecord& c : cases) by_name[c.info.name] = &c;
-  Shortfall lacks;
+  MissingWork lacks;
   lacks.unknown_plan = !catalog.plan.is_object();
   for (const auto& name : catalog.order()) {
     const auto at = by_name.find(name);
@@ -55,7 +55,7 @@ Shortfall shortfall(const Catalog& catalog,
   return lacks;
 }
 
-std::string to_text(const Shortfall& lacks) {
+std::string to_text(const MissingWork& lacks) {
   std::string text =
       lacks.unknown_plan
           ? "plan.json is missing, so what was asked for is not known"

@@ -10,7 +10,7 @@ namespace physinv {
 class Catalog;
 struct CaseRecord;
 
-struct Shortfall {
+struct MissingWork {
   std::size_t stages = 0;                 ///< of all cases that have one
   std::vector<std::string> unrun_cases;   ///< planned, without a stage
   std::vector<std::string> unrun_stages;  ///< "case stage", so below
@@ -24,10 +24,10 @@ struct Shortfall {
 };
 
 /// `cases` as the catalog gave them, arrays or summaries.
-Shortfall shortfall(const Catalog& catalog,
-                    const std::vector<CaseRecord>& cases);
+MissingWork missing_work(const Catalog& catalog,
+                         const std::vector<CaseRecord>& cases);
 
 /// "6 cases not run (first a/b/n=4/seed=0), ..."; empty if nothing lacks.
-std::string to_text(const Shortfall& lacks);
+std::string to_text(const MissingWork& lacks);
 
 }  // namespace physinv
