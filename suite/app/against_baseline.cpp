@@ -48,14 +48,14 @@ AgainstBaseline::AgainstBaseline(const GateFlags& flags)
   require_something();
 }
 
-void AgainstBaseline::judge_stages(Sheet& sheet) {
+void AgainstBaseline::judge_stages(GateReport& report) {
   now_ =
       flags_.results.empty()
           ? measure(cases_, flags_.measuring(), Screen::of(stdout))
           : matching(lines_of(load(flags_.results).results.cases()), filter_);
   const Rules rules{.bits = same_bits(), .allow_work = flags_.allow_work};
   if (!rules.bits)
-    sheet.notes.push_back(fmt::format(
+    report.notes.push_back(fmt::format(
         "{} is of other libraries or flags ({}): judged within its stable "
         "digits, which {} of {} stages do not have: their losses decide "
         "nothing",
@@ -66,10 +66,10 @@ void AgainstBaseline::judge_stages(Sheet& sheet) {
                       [](auto& line) { return line.digits == kNoDigits; }),
         lines_.size()));
   for (const auto& j : judge(lines_, now_, rules))
-    sheet.findings.push_back(finding_of(j));
+    report.findings.push_back(finding_of(j));
 }
 
-void AgainstBaseline::judge_instructions(Sheet& sheet) {
+void AgainstBaseline::judge_instructions(GateReport& report) {
   const auto lines = countable();
   if (lines.empty() || !flags_.count) return;
   const auto counting = before_.counts.counter == counter_name(Counting::perf)
@@ -77,7 +77,7 @@ void AgainstBaseline::judge_instructions(Sheet& sheet) {
                             : Counting::callgrind;
   std::string why = "the baseline is from another build";
   if (!same_build() || !can_count(counting, counting_program(), &why)) {
-    sheet.findings.push_back(
+    report.findings.push_back(
         {.kind = "instructions",
          .name = fmt::format("{} cases", lines.size()),
          .verdict = "not counted",
@@ -91,7 +91,7 @@ void AgainstBaseline::judge_instructions(Sheet& sheet) {
   counts_ = count_instructions(
       counting, counting_program(), before_.chosen.profile, names);
   for (std::size_t i = 0; i < lines.size(); ++i)
-    sheet.findings.push_back(judge(lines[i], counts_.lines[i]));
+    report.findings.push_back(judge(lines[i], counts_.lines[i]));
 }
 
 void AgainstBaseline::renew() {

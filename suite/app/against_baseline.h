@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "suite/app/gate_flags.h"
-#include "suite/gate/sheet.h"
+#include "suite/gate/gate_report.h"
 #include "suite/harness/select.h"
 
 namespace physinv {
@@ -15,9 +15,9 @@ class AgainstBaseline {
   explicit AgainstBaseline(const GateFlags& flags);
 
   /// Runs the cases, or reads a campaign that did.
-  void judge_stages(Sheet& sheet);
+  void judge_stages(GateReport& report);
   /// Where the baseline has them and this build can count.
-  void judge_instructions(Sheet& sheet);
+  void judge_instructions(GateReport& report);
   /// The new lines in the place of the old ones; what is gone goes.
   void renew();
 

@@ -8,7 +8,7 @@
 #include "suite/app/against_baseline.h"
 #include "suite/app/options.h"
 #include "suite/gate/duel.h"
-#include "suite/gate/sheet.h"
+#include "suite/gate/gate_report.h"
 #include "suite/harness/context.h"
 #include "suite/harness/progress.h"
 #include "suite/results/file.h"
@@ -37,7 +37,7 @@ std::filesystem::path head_of(const GateFlags& flags) {
 void judge_clock(const GateFlags& flags,
                  const Chosen& chosen,
                  const std::vector<Case>& cases,
-                 Sheet& sheet) {
+                 GateReport& report) {
   DuelOptions options{.base = program_in("--against", flags.against),
                       .head = head_of(flags),
                       .chosen = chosen,
@@ -58,7 +58,7 @@ void judge_clock(const GateFlags& flags,
                                 options.base.string(),
                                 cases.size()));
   if (options.cases.size() < cases.size())
-    sheet.notes.push_back(
+    report.notes.push_back(
         fmt::format("{} of {} cases are not in both programs: not timed",
                     cases.size() - options.cases.size(),
                     cases.size()));
@@ -68,23 +68,24 @@ void judge_clock(const GateFlags& flags,
       });
   const std::size_t pairs =
       *std::max_element(duel.pairs.begin(), duel.pairs.end());
-  sheet.notes.push_back(
+  report.notes.push_back(
       fmt::format("by the clock against {}: {} pairs in {}, order from seed {}",
                   options.base.string(),
                   pairs,
                   duration_text(duel.seconds),
                   options.seed));
   for (auto& finding : findings_of(options, duel, flags.strict))
-    sheet.findings.push_back(std::move(finding));
+    report.findings.push_back(std::move(finding));
 }
 
-void tell(const Sheet& sheet, const GateFlags& flags) {
-  fmt::print("{}", terminal_text(sheet));
-  if (!variable("GITHUB_ACTIONS").empty()) fmt::print("{}", annotations(sheet));
+void tell(const GateReport& report, const GateFlags& flags) {
+  fmt::print("{}", terminal_text(report));
+  if (!variable("GITHUB_ACTIONS").empty())
+    fmt::print("{}", annotations(report));
   if (const auto path = variable("GITHUB_STEP_SUMMARY"); !path.empty())
-    append_to(path, markdown_text(sheet));
+    append_to(path, markdown_text(report));
   if (!flags.json.empty())
-    write_atomically(flags.json, to_json(sheet).dump(1) + "\n");
+    write_atomically(flags.json, to_json(report).dump(1) + "\n");
 }
 
 void check(const GateFlags& flags) {
@@ -113,14 +114,14 @@ ExitCode gate_verb(const Arguments& arguments) {
   check(flags);
   if (!flags.against.empty()) program_in("--against", flags.against);
   head_of(flags);
-  Sheet sheet;
+  GateReport report;
   Chosen chosen{.profile = flags.profile.empty() ? "smoke" : flags.profile};
   std::vector<Case> cases;
   std::optional<AgainstBaseline> gate;
   if (!flags.baseline.empty()) {
     gate.emplace(flags);
-    gate->judge_stages(sheet);
-    gate->judge_instructions(sheet);
+    gate->judge_stages(report);
+    gate->judge_instructions(report);
     chosen = gate->before().chosen;
     cases = gate->cases();
   } else {
@@ -130,15 +131,15 @@ ExitCode gate_verb(const Arguments& arguments) {
     selection.profile = chosen.profile;
     cases = selection.cases();
   }
-  if (!flags.against.empty()) judge_clock(flags, chosen, cases, sheet);
-  tell(sheet, flags);
+  if (!flags.against.empty()) judge_clock(flags, chosen, cases, report);
+  tell(report, flags);
   if (flags.update) {
     gate->renew();
     return ExitCode::good;
   }
-  if (sheet.code() != ExitCode::good)
-    throw ExitError(sheet.code(),
-                    fmt::format("the gate is shut: {}", summary_text(sheet)));
+  if (report.code() != ExitCode::good)
+    throw ExitError(report.code(),
+                    fmt::format("the gate is shut: {}", summary_text(report)));
   return ExitCode::good;
 }
 

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "suite/gate/baseline.h"
+#include "suite/gate/gate_report.h"
 #include "suite/gate/sequential.h"
-#include "suite/gate/sheet.h"
 
 namespace physinv {
 

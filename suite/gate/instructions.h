@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "suite/gate/baseline.h"
-#include "suite/gate/sheet.h"
+#include "suite/gate/gate_report.h"
 
 namespace physinv {
 

@@ -4,8 +4,8 @@
 
 #include <functional>
 
+#include "suite/gate/gate_report.h"
 #include "suite/gate/instructions.h"
-#include "suite/gate/sheet.h"
 #include "tests/gate/lines.h"
 
 namespace physinv {
@@ -66,7 +66,8 @@ TEST(Verdict, ReasonsForAndAgainstAreApart) {
   const std::string text = j.reasons.text();
   EXPECT_EQ(text.find("worse: worst loss"), 0u) << text;
   EXPECT_NE(text.find("; better: median loss"), std::string::npos) << text;
-  const auto json = to_json(Sheet{{}, {finding_of(j)}}).at("findings").at(0);
+  const auto json =
+      to_json(GateReport{{}, {finding_of(j)}}).at("findings").at(0);
   EXPECT_EQ(json.at("worse").size(), 1u);
   EXPECT_EQ(json.at("better").size(), 1u);
 }
@@ -77,7 +78,8 @@ TEST(Verdict, TheSizeOfAChangeIsNamed) {
   now.x = 3.0 * (1 + 3e-16), now.x_norm = 2.0;
   now.results = "0";
   const auto said = [&](const StageLine& stage) {
-    return largest_text(Sheet{{}, {finding_of(judge(before, stage, kBits))}});
+    return largest_text(
+        GateReport{{}, {finding_of(judge(before, stage, kBits))}});
   };
   EXPECT_EQ(said(now), "largest relative change 3.0e-16 in x of c/s");
   now.losses.worst *= 1.5;
@@ -169,43 +171,44 @@ TEST(Instructions, OnePercentIsTheLimit) {
   EXPECT_EQ(judge({"c", 100000}, {"c", 90000}).verdict, "faster");
 }
 
-TEST(Sheet, AClockThatDecidesNothingIsLoud) {
-  Sheet sheet;
-  EXPECT_EQ(undecided_text(sheet), "");
-  sheet.findings = {{.kind = "clock", .name = "c", .verdict = "inconclusive"}};
-  EXPECT_EQ(undecided_text(sheet).find("the clock decided 0 of 1 cases"), 0u);
-  EXPECT_NE(terminal_text(sheet).find("warning: the clock"), std::string::npos);
-  EXPECT_EQ(annotations(sheet).find("::warning title="), 0u);
-  EXPECT_NE(markdown_text(sheet).find("passed, the clock decided nothing"),
+TEST(GateReport, AClockThatDecidesNothingIsLoud) {
+  GateReport report;
+  EXPECT_EQ(undecided_text(report), "");
+  report.findings = {{.kind = "clock", .name = "c", .verdict = "inconclusive"}};
+  EXPECT_EQ(undecided_text(report).find("the clock decided 0 of 1 cases"), 0u);
+  EXPECT_NE(terminal_text(report).find("warning: the clock"),
             std::string::npos);
-  sheet.findings.push_back({.kind = "clock", .name = "d", .verdict = "equal"});
-  EXPECT_EQ(undecided_text(sheet), "");
+  EXPECT_EQ(annotations(report).find("::warning title="), 0u);
+  EXPECT_NE(markdown_text(report).find("passed, the clock decided nothing"),
+            std::string::npos);
+  report.findings.push_back({.kind = "clock", .name = "d", .verdict = "equal"});
+  EXPECT_EQ(undecided_text(report), "");
 }
 
-TEST(Sheet, TheGravestCodeCounts) {
-  Sheet sheet;
-  EXPECT_EQ(sheet.code(), ExitCode::good);
-  sheet.findings = {{.kind = "clock", .code = ExitCode::inconclusive},
-                    {.kind = "clock", .code = ExitCode::slower}};
-  EXPECT_EQ(sheet.code(), ExitCode::slower);
-  sheet.findings.push_back({.kind = "accuracy", .code = ExitCode::accuracy});
-  EXPECT_EQ(sheet.code(), ExitCode::accuracy);
+TEST(GateReport, TheGravestCodeCounts) {
+  GateReport report;
+  EXPECT_EQ(report.code(), ExitCode::good);
+  report.findings = {{.kind = "clock", .code = ExitCode::inconclusive},
+                     {.kind = "clock", .code = ExitCode::slower}};
+  EXPECT_EQ(report.code(), ExitCode::slower);
+  report.findings.push_back({.kind = "accuracy", .code = ExitCode::accuracy});
+  EXPECT_EQ(report.code(), ExitCode::accuracy);
 }
 
-TEST(Sheet, SaysTheSameToEverybody) {
-  Sheet sheet;
-  sheet.notes = {"a note"};
+TEST(GateReport, SaysTheSameToEverybody) {
+  GateReport report;
+  report.notes = {"a note"};
   for (const auto& j :
        judge({line("a|b/s"), line("b/s")}, {line("b/s")}, kBits))
-    sheet.findings.push_back(finding_of(j));
-  EXPECT_EQ(summary_text(sheet), "accuracy: 1 missing, 1 same");
-  EXPECT_NE(terminal_text(sheet).find("missing"), std::string::npos);
-  EXPECT_EQ(terminal_text(sheet).find(" same  "), std::string::npos);
-  EXPECT_NE(markdown_text(sheet).find("gate: failed"), std::string::npos);
-  EXPECT_NE(markdown_text(sheet).find("a\\|b/s"), std::string::npos);
-  EXPECT_EQ(annotations(sheet).find("::error title=accuracy missing::a|b/s"),
+    report.findings.push_back(finding_of(j));
+  EXPECT_EQ(summary_text(report), "accuracy: 1 missing, 1 same");
+  EXPECT_NE(terminal_text(report).find("missing"), std::string::npos);
+  EXPECT_EQ(terminal_text(report).find(" same  "), std::string::npos);
+  EXPECT_NE(markdown_text(report).find("gate: failed"), std::string::npos);
+  EXPECT_NE(markdown_text(report).find("a\\|b/s"), std::string::npos);
+  EXPECT_EQ(annotations(report).find("::error title=accuracy missing::a|b/s"),
             0u);
-  const auto json = to_json(sheet);
+  const auto json = to_json(report);
   EXPECT_EQ(json.at("exit_code"), 5);
   EXPECT_EQ(json.at("findings").size(), 2u);
 }

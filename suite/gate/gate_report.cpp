@@ -1,4 +1,4 @@
-#include "suite/gate/sheet.h"
+#include "suite/gate/gate_report.h"
 
 #include <fmt/format.h>
 
@@ -23,9 +23,9 @@ bool quiet(const Finding& f) {
 }
 
 /// Failures first.
-std::vector<const Finding*> loud(const Sheet& sheet) {
+std::vector<const Finding*> loud(const GateReport& report) {
   std::vector<const Finding*> all;
-  for (const auto& f : sheet.findings)
+  for (const auto& f : report.findings)
     if (!quiet(f)) all.push_back(&f);
   std::stable_sort(all.begin(), all.end(), [](auto* a, auto* b) {
     return (a->code != ExitCode::good) > (b->code != ExitCode::good);
@@ -78,9 +78,9 @@ std::string text_of(const Distance& d) {
 
 /// The finding that is farthest from the baseline in this; null if none is.
 template <class F>
-const Finding* farthest(const Sheet& sheet, F&& size) {
+const Finding* farthest(const GateReport& report, F&& size) {
   const Finding* most = nullptr;
-  for (const auto& f : sheet.findings)
+  for (const auto& f : report.findings)
     if (f.distance && size(*f.distance) > 0 &&
         (most == nullptr || size(*f.distance) > size(*most->distance)))
       most = &f;
@@ -111,7 +111,7 @@ Finding finding_of(const StageVerdict& j) {
           .distance = j.distance};
 }
 
-ExitCode Sheet::code() const {
+ExitCode GateReport::code() const {
   ExitCode gravest = ExitCode::good;
   for (const auto& f : findings)
     if (f.code != ExitCode::good &&
@@ -120,9 +120,9 @@ ExitCode Sheet::code() const {
   return gravest;
 }
 
-std::string summary_text(const Sheet& sheet) {
+std::string summary_text(const GateReport& report) {
   std::vector<std::pair<std::string, std::map<std::string, int>>> kinds;
-  for (const auto& f : sheet.findings) {
+  for (const auto& f : report.findings) {
     if (kinds.empty() || kinds.back().first != f.kind)
       kinds.emplace_back(f.kind, std::map<std::string, int>());
     ++kinds.back().second[f.verdict];
@@ -138,9 +138,9 @@ std::string summary_text(const Sheet& sheet) {
   return text;
 }
 
-std::string undecided_text(const Sheet& sheet) {
+std::string undecided_text(const GateReport& report) {
   std::size_t asked = 0, decided = 0;
-  for (const auto& f : sheet.findings) {
+  for (const auto& f : report.findings) {
     if (f.kind != "clock") continue;
     ++asked;
     decided += f.verdict != "inconclusive" && f.verdict != "not timed";
@@ -153,10 +153,10 @@ std::string undecided_text(const Sheet& sheet) {
       asked);
 }
 
-std::string largest_text(const Sheet& sheet) {
+std::string largest_text(const GateReport& report) {
   const auto* x =
-      farthest(sheet, [](const Distance& d) { return d.x.value_or(0); });
-  const auto* loss = farthest(sheet, [](const Distance& d) { return d.loss; });
+      farthest(report, [](const Distance& d) { return d.x.value_or(0); });
+  const auto* loss = farthest(report, [](const Distance& d) { return d.loss; });
   std::string text;
   if (x != nullptr)
     text = fmt::format("{:.1e} in x of {}", *x->distance->x, x->name);
@@ -168,10 +168,10 @@ std::string largest_text(const Sheet& sheet) {
   return text.empty() ? "" : "largest relative change " + text;
 }
 
-std::string terminal_text(const Sheet& sheet) {
+std::string terminal_text(const GateReport& report) {
   std::string text;
-  for (const auto& note : sheet.notes) text += "note: " + note + '\n';
-  const auto shown = loud(sheet);
+  for (const auto& note : report.notes) text += "note: " + note + '\n';
+  const auto shown = loud(report);
   std::size_t width = 4;
   for (const auto* f : shown) width = std::max(width, f->name.size());
   if (!shown.empty())
@@ -188,25 +188,25 @@ std::string terminal_text(const Sheet& sheet) {
                         width,
                         f->verdict,
                         one_line(f->detail));
-  if (const auto largest = largest_text(sheet); !largest.empty())
+  if (const auto largest = largest_text(report); !largest.empty())
     text += one_line(largest) + '\n';
-  if (const auto undecided = undecided_text(sheet); !undecided.empty())
+  if (const auto undecided = undecided_text(report); !undecided.empty())
     text += "warning: " + undecided + '\n';
-  return text + summary_text(sheet) + '\n';
+  return text + summary_text(report) + '\n';
 }
 
-std::string markdown_text(const Sheet& sheet) {
-  const bool good = sheet.code() == ExitCode::good;
-  const std::string undecided = undecided_text(sheet);
+std::string markdown_text(const GateReport& report) {
+  const bool good = report.code() == ExitCode::good;
+  const std::string undecided = undecided_text(report);
   std::string text =
       fmt::format("### physinv-bench gate: {}{}\n\n{}\n\n",
                   good ? "passed" : "failed",
                   undecided.empty() ? "" : ", the clock decided nothing",
-                  summary_text(sheet));
-  for (const auto& line : {undecided, largest_text(sheet)})
+                  summary_text(report));
+  for (const auto& line : {undecided, largest_text(report)})
     if (!line.empty()) text += "- " + markdown(line) + '\n';
-  for (const auto& note : sheet.notes) text += "- " + markdown(note) + '\n';
-  const auto shown = loud(sheet);
+  for (const auto& note : report.notes) text += "- " + markdown(note) + '\n';
+  const auto shown = loud(report);
   if (!shown.empty())
     text += "\n| check | name | verdict | why |\n| --- | --- | --- | --- |\n";
   for (std::size_t i = 0; i < std::min(shown.size(), kMarkdownRows); ++i)
@@ -220,13 +220,13 @@ std::string markdown_text(const Sheet& sheet) {
   return text + '\n';
 }
 
-std::string annotations(const Sheet& sheet) {
+std::string annotations(const GateReport& report) {
   std::string text;
-  if (const auto undecided = undecided_text(sheet); !undecided.empty())
+  if (const auto undecided = undecided_text(report); !undecided.empty())
     text += fmt::format("::warning title=clock undecided::{}\n",
                         escaped(undecided));
   std::size_t left = kAnnotations;
-  for (const auto* f : loud(sheet)) {
+  for (const auto* f : loud(report)) {
     if (f->code == ExitCode::good || left-- == 0) break;
     text += fmt::format("::error title={} {}::{}: {}\n",
                         f->kind,
@@ -237,9 +237,9 @@ std::string annotations(const Sheet& sheet) {
   return text;
 }
 
-nlohmann::json to_json(const Sheet& sheet) {
+nlohmann::json to_json(const GateReport& report) {
   nlohmann::json findings = nlohmann::json::array();
-  for (const auto& f : sheet.findings)
+  for (const auto& f : report.findings)
     findings.push_back({{"check", f.kind},
                         {"name", f.name},
                         {"verdict", f.verdict},
@@ -251,10 +251,10 @@ nlohmann::json to_json(const Sheet& sheet) {
                         {"exit_code", static_cast<int>(f.code)},
                         {"numbers", f.numbers}});
   return {{"schema_version", 1},
-          {"exit_code", static_cast<int>(sheet.code())},
-          {"notes", sheet.notes},
-          {"warning", undecided_text(sheet)},
-          {"largest_change", largest_text(sheet)},
+          {"exit_code", static_cast<int>(report.code())},
+          {"notes", report.notes},
+          {"warning", undecided_text(report)},
+          {"largest_change", largest_text(report)},
           {"findings", std::move(findings)}};
 }
 

@@ -25,7 +25,7 @@ struct Finding {
 
 Finding finding_of(const StageVerdict& judgement);
 
-struct Sheet {
+struct GateReport {
   std::vector<std::string> notes;
   std::vector<Finding> findings;
 
@@ -34,18 +34,18 @@ struct Sheet {
 };
 
 /// One line: how many of each kind came to each verdict.
-std::string summary_text(const Sheet& sheet);
+std::string summary_text(const GateReport& report);
 /// Where the clock was asked and decided nothing; else empty.
-std::string undecided_text(const Sheet& sheet);
+std::string undecided_text(const GateReport& report);
 /// "largest relative change 2e-16 in x of jpo/.../solve, 3e-15 in the best loss
 /// of ..."; empty if no stage changed by what its line tells.
-std::string largest_text(const Sheet& sheet);
+std::string largest_text(const GateReport& report);
 /// Notes, everything that is not as it was, and the summary.
-std::string terminal_text(const Sheet& sheet);
-std::string markdown_text(const Sheet& sheet);
+std::string terminal_text(const GateReport& report);
+std::string markdown_text(const GateReport& report);
 /// One `::error` of GitHub's workflow commands for each finding that fails, up
 /// to ten, and a `::warning` where the clock decided nothing.
-std::string annotations(const Sheet& sheet);
-nlohmann::json to_json(const Sheet& sheet);
+std::string annotations(const GateReport& report);
+nlohmann::json to_json(const GateReport& report);
 
 }  // namespace physinv
