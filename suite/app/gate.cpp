@@ -7,8 +7,8 @@
 
 #include "suite/app/against_baseline.h"
 #include "suite/app/options.h"
-#include "suite/gate/duel.h"
 #include "suite/gate/gate_report.h"
+#include "suite/gate/paired_timing.h"
 #include "suite/harness/context.h"
 #include "suite/harness/progress.h"
 #include "suite/results/file.h"
@@ -38,14 +38,14 @@ void judge_clock(const GateFlags& flags,
                  const Chosen& chosen,
                  const std::vector<Case>& cases,
                  GateReport& report) {
-  DuelOptions options{.base = program_in("--against", flags.against),
-                      .head = head_of(flags),
-                      .chosen = chosen,
-                      .cases = {},
-                      .out = flags.out,
-                      .seconds = flags.budget,
-                      .margin = flags.within / 100,
-                      .seed = static_cast<std::uint64_t>(flags.seed)};
+  PairedTimingOptions options{.base = program_in("--against", flags.against),
+                              .head = head_of(flags),
+                              .chosen = chosen,
+                              .cases = {},
+                              .out = flags.out,
+                              .seconds = flags.budget,
+                              .margin = flags.within / 100,
+                              .seed = static_cast<std::uint64_t>(flags.seed)};
   setenv("PHYSINV_NO_REPORT", "1", 1);  // programs of other versions, too
   const auto before = cases_known_to(options.base, chosen);
   const auto after = cases_known_to(options.head, chosen);
@@ -62,19 +62,19 @@ void judge_clock(const GateFlags& flags,
         fmt::format("{} of {} cases are not in both programs: not timed",
                     cases.size() - options.cases.size(),
                     cases.size()));
-  const Duel duel = fight(
+  const PairedTiming timing = time_in_pairs(
       options, timed_run(options), [](std::size_t pair, std::size_t left) {
         fmt::print("pair {}: {} cases undecided\n", pair, left);
       });
   const std::size_t pairs =
-      *std::max_element(duel.pairs.begin(), duel.pairs.end());
+      *std::max_element(timing.pairs.begin(), timing.pairs.end());
   report.notes.push_back(
       fmt::format("by the clock against {}: {} pairs in {}, order from seed {}",
                   options.base.string(),
                   pairs,
-                  duration_text(duel.seconds),
+                  duration_text(timing.seconds),
                   options.seed));
-  for (auto& finding : findings_of(options, duel, flags.strict))
+  for (auto& finding : findings_of(options, timing, flags.strict))
     report.findings.push_back(std::move(finding));
 }
 

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "suite/core/rng.h"
-#include "suite/gate/duel.h"
+#include "suite/gate/paired_timing.h"
 
 namespace physinv {
 namespace {
@@ -142,13 +142,13 @@ TEST(Sequential, PowerOverRunTime) {
 }
 
 /// Two programs that take what they are told to.
-TEST(Duel, TellsWhoIsSlower) {
-  DuelOptions options{.base = "base",
-                      .head = "head",
-                      .chosen = {},
-                      .cases = {"slow", "same", "fast"},
-                      .out = {},
-                      .seconds = 60};
+TEST(PairedTiming, TellsWhoIsSlower) {
+  PairedTimingOptions options{.base = "base",
+                              .head = "head",
+                              .chosen = {},
+                              .cases = {"slow", "same", "fast"},
+                              .out = {},
+                              .seconds = 60};
   Stream random = Rng::root("test/gate/duel", 0).stream();
   std::size_t runs = 0;
   const Runner run = [&](const std::filesystem::path& program,
@@ -164,25 +164,26 @@ TEST(Duel, TellsWhoIsSlower) {
     }
     return times;
   };
-  const Duel duel = fight(options, run, {});
-  EXPECT_EQ(duel.decisions[0].speed, Speed::slower);
-  EXPECT_EQ(duel.decisions[1].speed, Speed::equal);
-  EXPECT_EQ(duel.decisions[2].speed, Speed::faster);
-  EXPECT_EQ(runs, 2 * *std::max_element(duel.pairs.begin(), duel.pairs.end()));
-  EXPECT_EQ(duel.pairs[0], 12u) << "what is decided is not run again";
-  EXPECT_LT(duel.pairs[0], duel.pairs[1]);
-  const auto findings = findings_of(options, duel, false);
+  const PairedTiming timing = time_in_pairs(options, run, {});
+  EXPECT_EQ(timing.decisions[0].speed, Speed::slower);
+  EXPECT_EQ(timing.decisions[1].speed, Speed::equal);
+  EXPECT_EQ(timing.decisions[2].speed, Speed::faster);
+  EXPECT_EQ(runs,
+            2 * *std::max_element(timing.pairs.begin(), timing.pairs.end()));
+  EXPECT_EQ(timing.pairs[0], 12u) << "what is decided is not run again";
+  EXPECT_LT(timing.pairs[0], timing.pairs[1]);
+  const auto findings = findings_of(options, timing, false);
   EXPECT_EQ(findings[0].code, ExitCode::slower);
   EXPECT_EQ(findings[1].code, ExitCode::good);
 }
 
-TEST(Duel, WhoHasNoTimeIsNotFaster) {
-  const DuelOptions options{.base = "base",
-                            .head = "head",
-                            .chosen = {},
-                            .cases = {"neither", "lost", "gained"},
-                            .out = {},
-                            .seconds = 60};
+TEST(PairedTiming, WhoHasNoTimeIsNotFaster) {
+  const PairedTimingOptions options{.base = "base",
+                                    .head = "head",
+                                    .chosen = {},
+                                    .cases = {"neither", "lost", "gained"},
+                                    .out = {},
+                                    .seconds = 60};
   std::size_t runs = 0;
   const Runner run = [&](const std::filesystem::path& program,
                          const std::vector<std::string>& cases) {
@@ -193,7 +194,8 @@ TEST(Duel, WhoHasNoTimeIsNotFaster) {
                                                                       : NAN);
     return times;
   };
-  const auto found = findings_of(options, fight(options, run, {}), false);
+  const auto found =
+      findings_of(options, time_in_pairs(options, run, {}), false);
   EXPECT_EQ(runs, 2u) << "what has no time is not run again";
   EXPECT_EQ(found[0].verdict, "not timed");
   EXPECT_EQ(found[0].code, ExitCode::good);
@@ -202,17 +204,17 @@ TEST(Duel, WhoHasNoTimeIsNotFaster) {
   EXPECT_EQ(found[2].code, ExitCode::good);
 }
 
-TEST(Duel, StaysOpenWhereTheTimeIsUp) {
-  const DuelOptions options{.base = "base",
-                            .head = "head",
-                            .chosen = {},
-                            .cases = {"c"},
-                            .out = {},
-                            .seconds = 0};
-  const Duel duel = fight(options, {}, {});
-  EXPECT_EQ(findings_of(options, duel, false)[0].code, ExitCode::good);
-  EXPECT_EQ(findings_of(options, duel, true)[0].code, ExitCode::inconclusive);
-  const Finding open = findings_of(options, duel, true)[0];
+TEST(PairedTiming, StaysOpenWhereTheTimeIsUp) {
+  const PairedTimingOptions options{.base = "base",
+                                    .head = "head",
+                                    .chosen = {},
+                                    .cases = {"c"},
+                                    .out = {},
+                                    .seconds = 0};
+  const PairedTiming timing = time_in_pairs(options, {}, {});
+  EXPECT_EQ(findings_of(options, timing, false)[0].code, ExitCode::good);
+  EXPECT_EQ(findings_of(options, timing, true)[0].code, ExitCode::inconclusive);
+  const Finding open = findings_of(options, timing, true)[0];
   EXPECT_EQ(open.verdict, "inconclusive");
   EXPECT_EQ(open.detail, "no pair of runs within the budget");
   EXPECT_FALSE(open.numbers.contains("interval"));

@@ -16,7 +16,7 @@
 
 namespace physinv {
 
-struct DuelOptions {
+struct PairedTimingOptions {
   std::filesystem::path base, head;  ///< programs
   Chosen chosen;                     ///< profile and what replaces its keys
   std::vector<std::string> cases;
@@ -39,9 +39,9 @@ using Runner = std::function<std::vector<double>(
 
 /// Runs the program's verb `run`, here, on one core. Throws EnvironmentError
 /// if it fails.
-Runner timed_run(const DuelOptions& options);
+Runner timed_run(const PairedTimingOptions& options);
 
-struct Duel {
+struct PairedTiming {
   std::vector<Decision> decisions;  ///< of each case
   /// Who has no time of a case, so that it is not run again.
   struct Untimed {
@@ -53,14 +53,15 @@ struct Duel {
 };
 
 /// `tell`, if not empty, hears how many cases are left after each pair.
-Duel fight(const DuelOptions& options,
-           const Runner& run,
-           const std::function<void(std::size_t pair, std::size_t left)>& tell);
+PairedTiming time_in_pairs(
+    const PairedTimingOptions& options,
+    const Runner& run,
+    const std::function<void(std::size_t pair, std::size_t left)>& tell);
 
 /// With `strict`, what stayed undecided ends the gate with exit code 8. A case
 /// that has a time in the base alone ends worse.
-std::vector<Finding> findings_of(const DuelOptions& options,
-                                 const Duel& duel,
+std::vector<Finding> findings_of(const PairedTimingOptions& options,
+                                 const PairedTiming& timing,
                                  bool strict);
 
 }  // namespace physinv

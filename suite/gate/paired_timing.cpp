@@ -1,4 +1,4 @@
-#include "suite/gate/duel.h"
+#include "suite/gate/paired_timing.h"
 
 #include <fmt/format.h>
 #include <sched.h>
@@ -123,7 +123,7 @@ std::string detail_of(const Decision& d, std::size_t pairs, double margin) {
 }
 
 Finding untimed_case(const std::string& name,
-                     Duel::Untimed untimed,
+                     PairedTiming::Untimed untimed,
                      bool strict) {
   const bool lost = untimed.head && !untimed.base;
   return {.kind = "clock",
@@ -169,7 +169,7 @@ std::set<std::string> cases_known_to(const fs::path& program,
   }
 }
 
-Runner timed_run(const DuelOptions& o) {
+Runner timed_run(const PairedTimingOptions& o) {
   return [&o](const fs::path& program, const std::vector<std::string>& cases) {
     const PassingStore passing(o.out);
     const fs::path& out = passing.path();
@@ -188,16 +188,16 @@ Runner timed_run(const DuelOptions& o) {
   };
 }
 
-Duel fight(
-    const DuelOptions& o,
+PairedTiming time_in_pairs(
+    const PairedTimingOptions& o,
     const Runner& run,
     const std::function<void(std::size_t pair, std::size_t left)>& tell) {
   const double begin = now().wall;
   Stream random = Rng::root("gate/pairs", o.seed).stream();
   std::vector<MedianWatch> watches(o.cases.size());
-  Duel duel;
-  duel.decisions.resize(o.cases.size());
-  duel.untimed.resize(o.cases.size());
+  PairedTiming timing;
+  timing.decisions.resize(o.cases.size());
+  timing.untimed.resize(o.cases.size());
   std::vector<std::size_t> left(o.cases.size());
   for (std::size_t i = 0; i < left.size(); ++i) left[i] = i;
   // What is decided stays so and is not run again.
@@ -213,43 +213,43 @@ Duel fight(
     const auto& base = base_first ? first : second;
     const auto& head = base_first ? second : first;
     for (std::size_t k = 0; k < left.size(); ++k) {
-      Duel::Untimed& untimed = duel.untimed[left[k]];
+      PairedTiming::Untimed& untimed = timing.untimed[left[k]];
       untimed = {.base = !(base[k] > 0), .head = !(head[k] > 0)};
       if (!untimed.base && !untimed.head)
         watches[left[k]].add(std::log(head[k] / base[k]));
     }
     const auto decisions = decide(watches, o.alpha, o.margin);
-    for (const std::size_t i : left) duel.decisions[i] = decisions[i];
+    for (const std::size_t i : left) timing.decisions[i] = decisions[i];
     std::erase_if(left, [&](std::size_t i) {
-      return duel.decisions[i].speed != Speed::inconclusive ||
-             duel.untimed[i].base || duel.untimed[i].head;
+      return timing.decisions[i].speed != Speed::inconclusive ||
+             timing.untimed[i].base || timing.untimed[i].head;
     });
     if (tell) tell(pair, left.size());
   }
-  for (const auto& watch : watches) duel.pairs.push_back(watch.count());
-  duel.seconds = now().wall - begin;
-  return duel;
+  for (const auto& watch : watches) timing.pairs.push_back(watch.count());
+  timing.seconds = now().wall - begin;
+  return timing;
 }
 
-std::vector<Finding> findings_of(const DuelOptions& o,
-                                 const Duel& duel,
+std::vector<Finding> findings_of(const PairedTimingOptions& o,
+                                 const PairedTiming& timing,
                                  bool strict) {
   std::vector<Finding> all;
   for (std::size_t i = 0; i < o.cases.size(); ++i) {
-    const Decision& d = duel.decisions[i];
+    const Decision& d = timing.decisions[i];
     const bool open = d.speed == Speed::inconclusive;
-    if (duel.untimed[i].base || duel.untimed[i].head) {
-      all.push_back(untimed_case(o.cases[i], duel.untimed[i], strict));
+    if (timing.untimed[i].base || timing.untimed[i].head) {
+      all.push_back(untimed_case(o.cases[i], timing.untimed[i], strict));
       continue;
     }
     all.push_back({.kind = "clock",
                    .name = o.cases[i],
                    .verdict = std::string(to_string(d.speed)),
-                   .detail = detail_of(d, duel.pairs[i], o.margin),
+                   .detail = detail_of(d, timing.pairs[i], o.margin),
                    .code = d.speed == Speed::slower ? ExitCode::slower
                            : open && strict         ? ExitCode::inconclusive
                                                     : ExitCode::good,
-                   .numbers = numbers_of(d, duel.pairs[i], o.seed)});
+                   .numbers = numbers_of(d, timing.pairs[i], o.seed)});
   }
   return all;
 }
