@@ -23,7 +23,7 @@ std::vector<StageLine> measure(const std::vector<Case>& cases,
                                const Screen& screen);
 
 /// Runs the cases again with data one ulp off, into the folder `disturbed` of
-/// `out`, and enters digits, play and times.
+/// `out`, and enters digits, jitter and times.
 void measure_digits(std::vector<StageLine>& lines,
                     const std::vector<Case>& cases,
                     MeasureOptions options,

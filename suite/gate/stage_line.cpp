@@ -116,7 +116,7 @@ void read_work(StageLine& line, std::string_view key, std::string_view value) {
     throw std::runtime_error(fmt::format("unknown key '{}'", key));
   const auto i = static_cast<std::size_t>(at - kWork.begin());
   line.work[i] = number<std::uint64_t>(cut(value, "~"));
-  if (!value.empty()) line.play[i] = number<std::uint64_t>(value);
+  if (!value.empty()) line.jitter[i] = number<std::uint64_t>(value);
 }
 
 void read(StageLine& line, std::string_view key, std::string_view value) {
@@ -207,7 +207,7 @@ void repeated(StageLine& line, const StageLine& other, Precision precision) {
   line.digits =
       same_bits(line, other) ? kUnmeasured : stable_digits(apart_by, most);
   for (std::size_t i = 0; i < kWork.size(); ++i)
-    line.play[i] = apart(line.work[i], other.work[i]);
+    line.jitter[i] = apart(line.work[i], other.work[i]);
   line.fastest = std::min(line.fastest, other.fastest);
   line.slowest = std::max(line.slowest, other.slowest);
 }
@@ -242,9 +242,9 @@ std::string to_text(const StageLine& l) {
   if (l.losses.nonfinite > 0)
     text += fmt::format(" nonfinite={}", l.losses.nonfinite);
   for (std::size_t i = 0; i < kWork.size(); ++i) {
-    if (l.work[i] == 0 && l.play[i] == 0) continue;
+    if (l.work[i] == 0 && l.jitter[i] == 0) continue;
     text += fmt::format(" {}={}", kWork[i], l.work[i]);
-    if (l.play[i] > 0) text += fmt::format("~{}", l.play[i]);
+    if (l.jitter[i] > 0) text += fmt::format("~{}", l.jitter[i]);
   }
   return text + fmt::format(" ms={:.3g}..{:.3g}", l.fastest, l.slowest);
 }

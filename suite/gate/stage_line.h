@@ -47,11 +47,11 @@ struct StageLine {
   int digits = 0;     ///< of the losses, that are stable; or kNoDigits
   std::array<std::uint64_t, kWork.size()> work{};
   /// How far they moved when the data were one ulp off.
-  std::array<std::uint64_t, kWork.size()> play{};
+  std::array<std::uint64_t, kWork.size()> jitter{};
   double fastest = 0, slowest = 0;  ///< milliseconds of solving, of the runs
 };
 
-/// Of a finished stage; `digits` and `play` are for `repeated`.
+/// Of a finished stage; `digits` and `jitter` are for `repeated`.
 StageLine line_of(const StageRecord& record);
 
 /// Enters what the same stage did with data one ulp off. Numbers in that

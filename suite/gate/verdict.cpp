@@ -97,7 +97,7 @@ void compare_work(const StageLine& a,
     if (a.work[i] == b.work[i]) continue;
     const std::string text =
         fmt::format("{} {} -> {}", kWork[i], a.work[i], b.work[i]);
-    const std::uint64_t slack = rules.bits ? 0 : 2 * a.play[i];
+    const std::uint64_t slack = rules.bits ? 0 : 2 * a.jitter[i];
     const bool grown = b.work[i] > a.work[i] + slack;
     // Less work does not make up for bits that were promised.
     const bool less = b.work[i] + slack < a.work[i] && (same || !rules.bits);

@@ -36,7 +36,7 @@ TEST(Baseline, ReadsWhatItWrote) {
   EXPECT_EQ(read.build, build_text());
   ASSERT_EQ(read.stages.size(), 2u);
   EXPECT_EQ(read.stages[0].work, b.stages[0].work);
-  EXPECT_EQ(read.stages[0].play, b.stages[0].play);
+  EXPECT_EQ(read.stages[0].jitter, b.stages[0].jitter);
   EXPECT_EQ(read.stages[0].statuses, b.stages[0].statuses);
   EXPECT_EQ(read.stages[0].x, b.stages[0].x);
   EXPECT_FALSE(read.stages[1].x);
@@ -107,7 +107,7 @@ TEST(Digits, OfAStageThatNoDisturbanceReachedAreFew) {
   b.work[0] += 3;
   repeated(a, b, Precision::f64);
   EXPECT_EQ(a.digits, 1);
-  EXPECT_EQ(a.play[0], 3u);
+  EXPECT_EQ(a.jitter[0], 3u);
 }
 
 }  // namespace

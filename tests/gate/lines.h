@@ -16,7 +16,7 @@ inline StageLine line(std::string name) {
   l.losses = {.best = 1e-6, .median = 2e-4, .worst = 3e-2};
   l.digits = 4;
   l.work = {10, 44, 40, 0, 0, 0, 0};
-  l.play = {0, 2, 0, 0, 0, 0, 0};
+  l.jitter = {0, 2, 0, 0, 0, 0, 0};
   l.fastest = 1.25, l.slowest = 1.5;
   return l;
 }
