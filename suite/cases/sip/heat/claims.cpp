@@ -37,23 +37,24 @@ RunValue mean_loss_after(Index steps) {
   };
 }
 
-std::vector<Quantity> over_cells(const std::vector<Spot>& cells,
-                                 const std::function<Quantity(const Spot&)>& of,
-                                 const std::function<bool(const Spot&)>& only) {
+std::vector<Quantity> over_cells(
+    const std::vector<GridPoint>& cells,
+    const std::function<Quantity(const GridPoint&)>& of,
+    const std::function<bool(const GridPoint&)>& only) {
   std::vector<Quantity> all;
-  for (const Spot& cell : cells)
+  for (const GridPoint& cell : cells)
     if (only(cell)) all.push_back(of(cell));
   return all;
 }
-bool any_cell(const Spot&) { return true; }
-bool small_set(const Spot& cell) { return cell.set <= 128; }
+bool any_cell(const GridPoint&) { return true; }
+bool small_set(const GridPoint& cell) { return cell.set <= 128; }
 
-Quantity sip_over_adam(const Spot& cell) {
+Quantity sip_over_adam(const GridPoint& cell) {
   return worst_ratio({cell.id("sip")}, {cell.id("adam")}, end());
 }
-std::function<Quantity(const Spot&)> of(
+std::function<Quantity(const GridPoint&)> of(
     const char* method, const std::function<Quantity(std::string)>& value) {
-  return [=](const Spot& cell) { return value(cell.id(method)); };
+  return [=](const GridPoint& cell) { return value(cell.id(method)); };
 }
 Quantity rise_of(const std::string& id) { return median({id}, rise()); }
 /// After the updates that the cells have.
@@ -63,7 +64,7 @@ Quantity best_cell_ratio(const char* method) {
   };
   return ratio(
       after_study(method),
-      least(over_cells(rate_spots(), of(method, after_study), any_cell)));
+      least(over_cells(rate_points(), of(method, after_study), any_cell)));
 }
 
 /// Loss on the test set over that on the training set, of the observations.
@@ -72,7 +73,7 @@ RunValue gap() { return over(last_loss(), late_training_error()); }
 /// One method with the rates of Fig. 11; the ids of `at` depend on the rate.
 class Rates {
  public:
-  Rates(std::function<Select(const Spot&)> at, Index batch, RunValue error)
+  Rates(std::function<Select(const GridPoint&)> at, Index batch, RunValue error)
       : at_(std::move(at)),
         batch_(batch),
         error_(or_infinite(std::move(error))) {}
@@ -92,12 +93,12 @@ class Rates {
     return median(at_({.batch = batch_, .decade = decade}), error_);
   }
 
-  std::function<Select(const Spot&)> at_;
+  std::function<Select(const GridPoint&)> at_;
   Index batch_;
   RunValue error_;
 };
-Select adahessian(const Spot& cell) { return {cell.id("adahessian")}; }
-Select fno(const Spot& cell) {
+Select adahessian(const GridPoint& cell) { return {cell.id("adahessian")}; }
+Select fno(const GridPoint& cell) {
   return Select{cell.id(cell.batch == 8 ? "fno-long" : "fno")}.in(kOperator);
 }
 std::vector<Condition> best_rates(Index batch, const RunValue& error) {
@@ -144,10 +145,10 @@ const std::vector<Claim> kPaper = {
      .says = "Both overfit sets of up to 128",
      .conditions =
          {above("SIP, end over lowest, least",
-                least(over_cells(set_spots(), of("sip", rise_of), small_set)),
+                least(over_cells(set_points(), of("sip", rise_of), small_set)),
                 1.05),
           above("Adam",
-                least(over_cells(set_spots(), of("adam", rise_of), small_set)),
+                least(over_cells(set_points(), of("adam", rise_of), small_set)),
                 1.05)},
      .cause = not_run(
          "2.3 CPU-hours with P5: the sets of Fig. 12 at the profile paper")},
@@ -168,7 +169,7 @@ const std::vector<Claim> kPaper = {
      .says = "SIP's test error is below Adam's on every set",
      .conditions = {below(
          "error over Adam's, worst cell",
-         most(over_cells(set_spots(), sip_over_adam, any_cell)),
+         most(over_cells(set_points(), sip_over_adam, any_cell)),
          1)},
      .cause = not_run("with P3: the sets of Fig. 12 at the profile paper")},
     {.id = "P6",
@@ -345,12 +346,12 @@ const std::vector<Claim> kSuite = {
      .conditions = {below(
          "error over Adam's after 2000, worst cell",
          most(over_cells(
-             rate_spots(),
-             [](const Spot& cell) {
+             rate_points(),
+             [](const GridPoint& cell) {
                return worst_ratio(
                    {cell.id("sip")}, {cell.id("adam")}, after(2000));
              },
-             [](const Spot& cell) { return cell.decade >= 3; })),
+             [](const GridPoint& cell) { return cell.decade >= 3; })),
          1)},
      .cause = not_run("with P2: the rates of Fig. 11 at the profile paper")},
     {.id = "A6",

@@ -41,7 +41,7 @@ SignalRecipe signal(Push push) {
 Method trained(std::string id,
                Push push,
                decltype(TrainingOptions::rule) rule,
-               const Spot& cell,
+               const GridPoint& cell,
                const LateError& late = {}) {
   return {.id = std::move(id),
           .chain = {train({.rule = std::move(rule),
@@ -57,7 +57,7 @@ Method trained(std::string id,
 
 std::vector<Method> methods() {
   std::vector<Method> all;
-  const auto both = [&](const Spot& cell, const LateError& late = {}) {
+  const auto both = [&](const GridPoint& cell, const LateError& late = {}) {
     const AdamOptions adam{.rate = cell.rate(), .eps = 1e-8};
     all.push_back(trained(cell.id("sip"), Push::inverse, adam, cell, late));
     all.push_back(trained(cell.id("adam"), Push::solver, adam, cell, late));
@@ -67,8 +67,8 @@ std::vector<Method> methods() {
                         Push::watched_inverse,
                         AdamOptions{.rate = 1e-3, .eps = 1e-8},
                         {.batch = 8}));
-  for (const Spot& cell : rate_spots()) both(cell);
-  for (const Spot& cell : set_spots()) both(cell);
+  for (const GridPoint& cell : rate_points()) both(cell);
+  for (const GridPoint& cell : set_points()) both(cell);
   both(kGap, late_loss(kProblem));
   const auto sgd = [&](std::string id, Index batch, double rate) {
     all.push_back(trained(std::move(id),
@@ -79,7 +79,7 @@ std::vector<Method> methods() {
   sgd("sgd", 128, 2e-6), sgd("sgd-b4", 4, 2e-6);
   sgd("sgd-lr3", 128, 1e-3), sgd("sgd-b8-lr3", 8, 1e-3);
   sgd("sgd-b8-lr4", 8, 1e-4), sgd("sgd-b8-lr2", 8, 1e-2);
-  for (const Spot& cell : rates_with({128, 8}))
+  for (const GridPoint& cell : rates_with({128, 8}))
     all.push_back(trained(cell.id("adahessian"),
                           Push::solver,
                           AdaHessianOptions{.rate = cell.rate()},
@@ -124,8 +124,8 @@ std::vector<Row> small_batches() {
 
 std::vector<Row> paper() {
   std::vector<std::string> studies;
-  for (const auto& cells : {rate_spots(), set_spots()})
-    for (const Spot& cell : cells)
+  for (const auto& cells : {rate_points(), set_points()})
+    for (const GridPoint& cell : cells)
       for (const char* method : {"sip", "adam"})
         if (const auto id = cell.id(method); id != method)
           studies.push_back(id);
@@ -145,14 +145,14 @@ std::vector<Row> paper() {
 /// Paper, text: rate 1e-3; plotted runs of the authors' script: 1e-4.
 std::vector<Method> operators() {
   std::vector<Method> all;
-  const auto add = [&](const char* id, const Spot& cell) {
+  const auto add = [&](const char* id, const GridPoint& cell) {
     all.push_back(trained(cell.id(id),
                           Push::solver,
                           AdamOptions{.rate = cell.rate(), .eps = 1e-8},
                           cell));
   };
-  for (const Spot& cell : rates_with({128, 8})) add("fno", cell);
-  for (const Spot& cell : rates_with({8})) add("fno-long", cell);
+  for (const GridPoint& cell : rates_with({128, 8})) add("fno", cell);
+  for (const GridPoint& cell : rates_with({8})) add("fno-long", cell);
   return all;
 }
 

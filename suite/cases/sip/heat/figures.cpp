@@ -155,14 +155,14 @@ Table study(const Results& results,
             std::string id,
             std::string title,
             std::string source,
-            const std::vector<Spot>& spots) {
+            const std::vector<GridPoint>& points) {
   Table table{.id = std::move(id),
               .title = std::move(title),
               .source = std::move(source),
               .corner = "setting",
               .columns = {"SIP", "Adam"},
               .across = Across{.key = "method", .quantities = {"error"}}};
-  for (const Spot& cell : spots) {
+  for (const GridPoint& cell : points) {
     if (cell.id("") == "") continue;  // has a length of its own
     const auto sip = end(results, cell.id("sip"), kError),
                adam = end(results, cell.id("adam"), kError);
@@ -179,16 +179,18 @@ Table study(const Results& results,
 
 Section report(const Results& results, const Published& published) {
   Section section{.experiment = kName};
-  section.tables = {
-      errors(results, published),
-      loss_table(results, kName, networks()),
-      study(
-          results, "fig11", "Error by rate and batch", "Fig. 11", rate_spots()),
-      study(results,
-            "fig12",
-            "Error by size of the training set",
-            "Fig. 12",
-            set_spots())};
+  section.tables = {errors(results, published),
+                    loss_table(results, kName, networks()),
+                    study(results,
+                          "fig11",
+                          "Error by rate and batch",
+                          "Fig. 11",
+                          rate_points()),
+                    study(results,
+                          "fig12",
+                          "Error by size of the training set",
+                          "Fig. 12",
+                          set_points())};
   std::erase_if(section.tables, [](const Table& t) { return t.rows.empty(); });
   LearningCurves curves(results, section);
   curves.metric(

@@ -15,7 +15,7 @@ inline constexpr const char* kName = "sip/heat";
 inline constexpr const char* kOperator = "sip/heat-fno";
 
 /// One setting; the paper's own has no suffix.
-struct Spot {
+struct GridPoint {
   Index batch = 128;
   int decade = 3;  ///< the rate is 10^-decade
   Index set = 0;   ///< samples of the training set; 0: always fresh ones
@@ -31,23 +31,23 @@ struct Spot {
 };
 
 /// Rates of 1e-2, 1e-3 and 1e-4 with each batch.
-inline std::vector<Spot> rates_with(const std::vector<Index>& batches) {
-  std::vector<Spot> all;
+inline std::vector<GridPoint> rates_with(const std::vector<Index>& batches) {
+  std::vector<GridPoint> all;
   for (const int decade : {2, 3, 4})
     for (const Index batch : batches) all.push_back({batch, decade});
   return all;
 }
 
-inline std::vector<Spot> rate_spots() { return rates_with({4, 32, 128}); }
+inline std::vector<GridPoint> rate_points() { return rates_with({4, 32, 128}); }
 
-inline std::vector<Spot> set_spots() {
-  std::vector<Spot> all;
+inline std::vector<GridPoint> set_points() {
+  std::vector<GridPoint> all;
   for (const Index set : {32, 128, 512, 2048})
     for (const Index batch : {4, 32, 128}) all.push_back({batch, 3, set});
   return all;
 }
 
 /// The smallest set, whose training error is recorded, too.
-inline constexpr Spot kGap{.batch = 8, .set = 32};
+inline constexpr GridPoint kGap{.batch = 8, .set = 32};
 
 }  // namespace physinv::heat
