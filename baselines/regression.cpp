@@ -64,10 +64,10 @@ class Passes {
 template <class T>
 class Labels final : public Signal<T> {
  public:
-  Labels(const StageRun& run, NetworkModel<T>& model, Lessons<T> lessons)
+  Labels(const StageRun& run, NetworkModel<T>& model, TrainingSet<T> set)
       : probe_(run.probe),
         model_(model),
-        all_(std::move(lessons)),
+        all_(std::move(set)),
         passes_(run.batches.child("labels"), all_.target.cols()) {
     const Index count = run.oracle.count();
     in_parts_ = count < all_.target.cols();
@@ -125,7 +125,7 @@ class Labels final : public Signal<T> {
 
   Probe& probe_;
   NetworkModel<T>& model_;
-  Lessons<T> all_;
+  TrainingSet<T> all_;
   Passes passes_;
   bool in_parts_ = false;
   Batch<T> part_, residual_, shown_, tanh_;
@@ -137,11 +137,11 @@ class Labels final : public Signal<T> {
 template <class T>
 Outcome fit_regression(
     NetworkModel<T>& model,
-    Lessons<T> lessons,
+    TrainingSet<T> set,
     const RegressionOptions& options,
     StageRun& run,
     const std::function<void(BatchOut<double> x)>& estimate) {
-  Labels<T> signal(run, model, std::move(lessons));
+  Labels<T> signal(run, model, std::move(set));
   FirstOrder<T> rule(options.step, model);
   Outcome out = run_training<T>({.model = model,
                                  .signal = signal,
@@ -157,12 +157,12 @@ Outcome fit_regression(
 }
 
 template Outcome fit_regression(NetworkModel<float>&,
-                                Lessons<float>,
+                                TrainingSet<float>,
                                 const RegressionOptions&,
                                 StageRun&,
                                 const std::function<void(BatchOut<double>)>&);
 template Outcome fit_regression(NetworkModel<double>&,
-                                Lessons<double>,
+                                TrainingSet<double>,
                                 const RegressionOptions&,
                                 StageRun&,
                                 const std::function<void(BatchOut<double>)>&);

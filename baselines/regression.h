@@ -24,7 +24,7 @@ struct RegressionOptions {
 /// Inputs and targets, a sample per column. The network's first `bounded`
 /// outputs count as tanh of what they say.
 template <class T>
-struct Lessons {
+struct TrainingSet {
   Batch<T> input, target;
   Index bounded = 0;
 };
@@ -35,7 +35,7 @@ struct Lessons {
 /// `training_loss` (the last seen in training).
 template <class T>
 Outcome fit_regression(NetworkModel<T>& model,
-                       Lessons<T> lessons,
+                       TrainingSet<T> set,
                        const RegressionOptions& options,
                        StageRun& run,
                        const std::function<void(BatchOut<double> x)>& estimate);
