@@ -3,10 +3,12 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "suite/cases/jpo/gradient_alignment/shares.h"
 #include "suite/evidence/condition.h"
+#include "suite/evidence/statistics.h"
 
 namespace physinv::alignment {
 
