@@ -120,7 +120,7 @@ while(waiting)
   endif()
   execute_process(COMMAND ${package}/physinv-sources ${file}
     OUTPUT_VARIABLE hash COMMAND_ERROR_IS_FATAL ANY)
-  string(REGEX REPLACE " .*" "" hash "${hash}")
+  string(REGEX REPLACE ".*, \"([0-9a-f]+)\".*" "\\1" hash "${hash}")
   list(JOIN included " " included)
   string(APPEND table
     "    {\"${name}\", \"${hash}\",\n     \"${included} \"},\n")

@@ -1,6 +1,6 @@
-// physinv-sources FILE...: a line for each source, the hash of its tokens and
-// the project's headers that it includes. The build makes build_info.cpp of it,
-// and programs on the installed suite their own.
+// physinv-sources FILE...: a line of C++ for each source (SourceFile of
+// suite/harness/build_info.h), its path, the hash of its tokens and the headers
+// of its project that it includes.
 #include <cstdio>
 #include <fstream>
 #include <iterator>
@@ -19,7 +19,8 @@ int main(int argc, char** argv) {
       return 1;
     }
     const auto tokens = source::tokens_of(text);
-    std::printf("%s %s\n",
+    std::printf("    {\"%s\", \"%s\",\n     \"%s\"},\n",
+                argv[i],
                 physinv::hex128(source::substance(tokens)).c_str(),
                 source::includes(tokens).c_str());
   }

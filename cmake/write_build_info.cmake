@@ -31,23 +31,17 @@ list(SORT interfaces)
 list(APPEND sources ${interfaces})
 list(REMOVE_DUPLICATES sources)
 
-# Of each the hash of its tokens, and the headers that it includes.
-list(TRANSFORM sources PREPEND "${source_dir}/" OUTPUT_VARIABLE paths)
-execute_process(COMMAND ${scanner} ${paths}
-  OUTPUT_VARIABLE lines COMMAND_ERROR_IS_FATAL ANY)
-string(REPLACE "\n" ";" lines "${lines}")
-foreach(source line IN ZIP_LISTS sources lines)
-  string(REGEX MATCH "^([0-9a-f]+) (.*)$" _ "${line}")
-  set(hash_${source} "${CMAKE_MATCH_1}")
-  set(headers_${source} "${CMAKE_MATCH_2}")
-endforeach()
+# A line for each source: path, hash of its tokens, the headers that it includes.
+function(physinv_scan result)
+  execute_process(COMMAND ${scanner} ${ARGN} WORKING_DIRECTORY ${source_dir}
+    OUTPUT_VARIABLE lines COMMAND_ERROR_IS_FATAL ANY)
+  set(${result} "${lines}" PARENT_SCOPE)
+endfunction()
 
 # Text of 16 digits over texts and sources.
 function(physinv_digest result text)
-  foreach(source IN LISTS ARGN)
-    string(APPEND text "\n${source} ${hash_${source}}")
-  endforeach()
-  string(SHA256 digest "${text}")
+  physinv_scan(lines ${ARGN})
+  string(SHA256 digest "${text}\n${lines}")
   string(SUBSTRING ${digest} 0 16 digest)
   set(${result} ${digest} PARENT_SCOPE)
 endfunction()
@@ -56,12 +50,7 @@ physinv_digest(foundation "${bit_flags} ${libc} ${eigen} ${sleef}" ${everywhere}
 physinv_digest(fingerprint ${foundation} ${numerics})
 physinv_digest(interfaces "${compiler} ${compiler_version} ${flags}"
   ${interfaces})
-
-set(table)
-foreach(source IN LISTS numerics cases)
-  string(APPEND table "    {\"${source}\", \"${hash_${source}}\",\n"
-    "     \"${headers_${source}}\"},\n")
-endforeach()
+physinv_scan(table ${numerics} ${cases})
 
 set(files)
 foreach(source IN LISTS sources)
