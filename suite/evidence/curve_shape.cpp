@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "suite/evidence/statistics.h"
 
@@ -112,19 +113,35 @@ Quantity highest_along(const Select& curve,
           of(first).runs()};
 }
 
-Quantity of_most(Side side, const Select& select, const RunValue& value) {
-  return {
-      [=](const Evidence& e) {
-        auto values = values_of(sample(e, select, value));
-        if (values.empty()) return missing(select.text() + " too short");
-        std::sort(values.begin(), values.end());
-        const auto count = values.size(),
-                   enough = std::max<std::size_t>(1, 4 * count / 5);
-        return Measured{
-            .value = values[side == Side::below ? enough - 1 : count - enough],
-            .runs = static_cast<Index>(count)};
-      },
-      {select}};
+namespace {
+
+/// Of the ascending values the one at this place.
+Quantity ordered_value(const Select& select,
+                       const RunValue& value,
+                       std::size_t (*place)(std::size_t count)) {
+  return {[=](const Evidence& e) {
+            auto values = values_of(sample(e, select, value));
+            if (values.empty()) return missing(select.text() + " too short");
+            std::sort(values.begin(), values.end());
+            return Measured{.value = values[place(values.size())],
+                            .runs = static_cast<Index>(values.size())};
+          },
+          {select}};
+}
+
+std::size_t most_of(std::size_t count) {
+  return std::max<std::size_t>(1, 4 * count / 5);
+}
+
+}  // namespace
+
+Quantity most_stay_above(const Select& select, const RunValue& value) {
+  return ordered_value(
+      select, value, [](std::size_t count) { return count - most_of(count); });
+}
+Quantity most_stay_below(const Select& select, const RunValue& value) {
+  return ordered_value(
+      select, value, [](std::size_t count) { return most_of(count) - 1; });
 }
 
 }  // namespace physinv

@@ -35,8 +35,8 @@ Quantity highest_along(const Select& curve,
                        double first,
                        std::function<Quantity(double updates)> of);
 
-/// What four seeds of five (two of three) stay above or below.
-enum class Side { above, below };
-Quantity of_most(Side side, const Select& select, const RunValue& value);
+/// What four seeds of five (two of three) stay above, or below.
+Quantity most_stay_above(const Select& select, const RunValue& value);
+Quantity most_stay_below(const Select& select, const RunValue& value);
 
 }  // namespace physinv

@@ -84,9 +84,9 @@ TEST_F(CurveShapeTest, TheHighestAlongACurveBeginsAtAnUpdate) {
 }
 
 TEST_F(CurveShapeTest, FourOfFiveSeedsStayOnASide) {
-  EXPECT_EQ(of_most(Side::below, {"many"}, last_loss())(evidence_).value, 4);
-  EXPECT_EQ(of_most(Side::above, {"many"}, last_loss())(evidence_).value, 2);
-  EXPECT_EQ(of_most(Side::above, {"none"}, last_loss())(evidence_).missing,
+  EXPECT_EQ(most_stay_below({"many"}, last_loss())(evidence_).value, 4);
+  EXPECT_EQ(most_stay_above({"many"}, last_loss())(evidence_).value, 2);
+  EXPECT_EQ(most_stay_above({"none"}, last_loss())(evidence_).missing,
             "none too short");
 }
 

@@ -1,102 +1,13 @@
 // What HIG paper Sec. 3.3, App. B.4 and C, Figs. 4, 8 to 11 say of the quantum
 // dipole steered by a network, and what our runs showed.
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <string>
 #include <vector>
 
 #include "suite/cases/hig/quantum_dipole/direct_metrics.h"
-#include "suite/cases/hig/quantum_dipole/grids.h"
-#include "suite/cases/hig/quantum_dipole/metrics.h"
-#include "suite/evidence/curve_shape.h"
-#include "suite/evidence/options.h"
+#include "suite/cases/hig/quantum_dipole/quantities.h"
 #include "suite/harness/registry.h"
 
 namespace physinv::dipole {
 namespace {
-
-// ---- runs -------------------------------------------------------------------
-
-const Select kHig{"hig"}, kHigSlow{"hig-b16-eta025-tau5"},
-    kHigFast{"hig-b16-eta10-tau5"}, kGn{"gn"}, kAdam{"adam"},
-    kAdam3{"adam-b16-3e-4"}, kAdam10{"adam-b16-1e-3"}, kAdam30{"adam-b16-3e-3"},
-    kAdam256{"adam-b256-5e-4"}, kTau2{"hig-b16-eta05-tau2"},
-    kTau3{"hig-b16-eta05-tau3"}, kTau4{"hig-b16-eta05-tau4"},
-    kTau6{"hig-b16-eta05-tau6"};
-/// Fig. 4b's, as far as the text tells; its rates are not printed.
-const std::vector<Select> kFig4Hig = {kHig, kHigSlow, kHigFast},
-                          kFig4Adam = {kAdam, kAdam3, kAdam10, kAdam30};
-
-/// 90 minutes (from the authors' scripts) by the paper's clock.
-constexpr double kEnd = 5400;
-
-/// Table 5 begins at b = 256 for Adam; smaller batches are taken to last as
-/// long, and convolutions as long as dense layers.
-Clock paper() {
-  return paper_seconds([](const Run& run) {
-    const double batch = number_of(run.stage->options, "batch").value_or(16);
-    const char* const row = run.stage->arrays.contains("kept")
-                                ? (batch < 16 ? "hig/b=8" : "hig/b=16")
-                            : batch > 512 ? "adam/b=1024"
-                            : batch > 256 ? "adam/b=512"
-                                          : "adam/b=256";
-    return fmt::format("{} table5/{}/update", kDense, row);
-  });
-}
-
-// ---- numbers ----------------------------------------------------------------
-
-constexpr RowOfCurve kLowLoss = metric(kLow), kHighLoss = metric(kHigh);
-
-/// Updates until HE < 0.1 over updates until LE < 0.1; empty without the first.
-std::optional<double> lag(const Run& run) {
-  const auto high = first_below(0.1, kHighLoss)(run),
-             low = first_below(0.1, kLowLoss)(run);
-  if (!high || !low || !std::isfinite(*high)) return {};
-  return *high / *low;
-}
-
-/// Until HE < 0.1: the largest of f(LE, its lowest value so far).
-template <class F>
-std::optional<double> until_high(const Run& run, double level, F f) {
-  const CurveRow low{*run.stage, "metrics", kLow},
-      high{*run.stage, "metrics", kHigh};
-  double lowest = std::numeric_limits<double>::infinity(), most = 0;
-  for (Index k = 0; k < low.points(); ++k) {
-    lowest = std::min(lowest, low(k));
-    if (lowest < level) most = std::max(most, f(low(k), lowest));
-    if (high(k) < 0.1) return most;
-  }
-  return {};
-}
-/// Largest rise of LE over its lowest value so far.
-std::optional<double> rise(const Run& run) {
-  return until_high(run, 1e300, [](double a, double b) { return a - b; });
-}
-/// The same as a ratio, once LE has been below 0.1.
-std::optional<double> rise_ratio(const Run& run) {
-  return until_high(run, 0.1, [](double a, double b) { return a / b; });
-}
-
-Quantity after(const Select& select, double count) {
-  return median(select, loss_after(count));
-}
-
-/// Updates to a test loss of 0.1 of runs as long as the slowest may take.
-RunValue to_a_tenth(double count) { return if_ran(count, first_below(0.1)); }
-Quantity over_hig(const Select& adam, double count) {
-  return depends_on(
-      of_most(Side::above,
-              adam,
-              over(to_a_tenth(count), beside(kHig, to_a_tenth(224)))),
-      {kHig});
-}
-
-// ---- claims -----------------------------------------------------------------
 
 constexpr const char* kFrom24 =
     "Bounds: ends of tolerance intervals from 24 seeds, which hold 80 % of all "
@@ -107,7 +18,7 @@ const std::vector<Claim> kDenseSuite = {
      .from = "quick",
      .says = "HIG leaves the plateau within 160 updates on most seeds",
      .conditions = {at_most("after 160 updates, four seeds of five",
-                            of_most(Side::below, kHig, loss_after(160)),
+                            most_stay_below(kHig, loss_after(160)),
                             0.15)}},
     {.id = "A1b",
      .from = "standard",
@@ -120,14 +31,12 @@ const std::vector<Claim> kDenseSuite = {
      .says =
          "To a test loss of 0.1, HIG takes fewer updates than Adam with b = "
          "256; four seeds of five keep each bound",
-     .conditions = {at_most("HIG",
-                            of_most(Side::below, kHig, to_a_tenth(224)),
-                            189),
+     .conditions = {at_most("HIG", most_stay_below(kHig, to_a_tenth(224)), 189),
                     at_least("Adam b=256",
-                             of_most(Side::above, kAdam256, to_a_tenth(960)),
+                             most_stay_above(kAdam256, to_a_tenth(960)),
                              300),
                     at_most("Adam b=256",
-                            of_most(Side::below, kAdam256, to_a_tenth(960)),
+                            most_stay_below(kAdam256, to_a_tenth(960)),
                             1000),
                     at_least("over HIG", over_hig(kAdam256, 960), 2.5)},
      .note = "HIG's bound: end of a tolerance interval from 24 seeds (80 % of "
@@ -136,22 +45,18 @@ const std::vector<Claim> kDenseSuite = {
     {.id = "A2b",
      .from = "standard",
      .says = "The same for Adam with b = 16 and 1e-4",
-     .conditions = {at_least("Adam b=16",
-                             of_most(Side::above, kAdam, to_a_tenth(8000)),
-                             2354),
-                    at_most("Adam b=16",
-                            of_most(Side::below, kAdam, to_a_tenth(8000)),
-                            5990),
-                    at_least("over HIG", over_hig(kAdam, 8000), 14.1)},
+     .conditions =
+         {at_least("Adam b=16", most_stay_above(kAdam, to_a_tenth(8000)), 2354),
+          at_most("Adam b=16", most_stay_below(kAdam, to_a_tenth(8000)), 5990),
+          at_least("over HIG", over_hig(kAdam, 8000), 14.1)},
      .note = kFrom24},
     {.id = "A3",
      .from = "quick",
      .says = "Adam (b=16, 1e-4) stays near one half for long, HIG does not",
      .conditions = {at_least(
                         "Adam b=16 in [0.4, 0.56], four seeds of five",
-                        of_most(Side::above,
-                                kAdam,
-                                if_ran(3000, plateau(updates(), 0.4, 0.56))),
+                        most_stay_above(
+                            kAdam, if_ran(3000, plateau(updates(), 0.4, 0.56))),
                         1000),
                     at_most("HIG, longest",
                             highest(kHig, plateau(updates(), 0.4, 0.56)),
@@ -161,17 +66,16 @@ const std::vector<Claim> kDenseSuite = {
      .says =
          "HIG lowers the losses of both levels together; four seeds of five "
          "keep each bound",
-     .conditions = {at_most("lag", of_most(Side::below, kHig, lag), 1.9),
-                    at_most("rise", of_most(Side::below, kHig, rise), 0.0192)},
+     .conditions = {at_most("lag", most_stay_below(kHig, lag), 1.9),
+                    at_most("rise", most_stay_below(kHig, rise), 0.0192)},
      .note = kFrom24},
     {.id = "A4b",
      .from = "standard",
      .says = "Adam (b=16, 1e-4) lowers the low level first and lets it rise "
              "again",
      .conditions =
-         {at_least("lag", of_most(Side::above, kAdam, if_ran(8000, lag)), 2.89),
-          at_least(
-              "rise", of_most(Side::above, kAdam, if_ran(8000, rise)), 0.0325)},
+         {at_least("lag", most_stay_above(kAdam, if_ran(8000, lag)), 2.89),
+          at_least("rise", most_stay_above(kAdam, if_ran(8000, rise)), 0.0325)},
      .note = kFrom24},
     {.id = "A5",
      .from = "standard",

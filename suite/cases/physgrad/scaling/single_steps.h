@@ -1,0 +1,79 @@
+/// Numbers of single steps, from the arrays that the stage `identities` leaves.
+#pragma once
+
+#include <cmath>
+#include <functional>
+
+#include "suite/evidence/quantity.h"
+
+namespace physinv::scaling {
+
+using OfArray = std::function<double(const Batch<double>&)>;
+inline Quantity identity(const char* array, const OfArray& value) {
+  return median({"identities"}, of_array(array, value));
+}
+/// Log-log slope between the largest dy and the smallest.
+inline double slope(const Batch<double>& order) {
+  return std::log(order(1, 0) / order(1, 5)) /
+         std::log(order(0, 0) / order(0, 5));
+}
+inline double gd_off(const Batch<double>& linear) {
+  return ((linear.row(1).array() / linear.row(0).array().square()) + 0.1)
+      .abs()
+      .maxCoeff();
+}
+inline double ig_off(const Batch<double>& linear) {
+  return (linear.row(2).array() + 0.1).abs().maxCoeff();
+}
+inline double root_off(const Batch<double>& roots) {
+  return (roots.row(2).array().square() - roots.row(0).array())
+      .abs()
+      .maxCoeff();
+}
+inline double wrong_branch(const Batch<double>& roots) {
+  return static_cast<double>(
+      (roots.row(2).array() * roots.row(1).array() <= 0).count());
+}
+
+/// Of the asked change of y, what a step's row comes to: largest over smallest.
+inline OfArray spread_of_row(Index row) {
+  return [row](const Batch<double>& inner) {
+    return inner.row(row).maxCoeff() / inner.row(row).minCoeff();
+  };
+}
+inline double off_the_mean(const Batch<double>& average) {
+  return (average.row(1).array() / average.row(2).array() - 1).abs().maxCoeff();
+}
+/// Of the local gradient at the start, which a small step comes near.
+inline double off_the_start(const Batch<double>& average) {
+  return average(1, average.cols() - 1) * 6 - 1;
+}
+/// Of moves on this side of 0, or beyond it.
+inline OfArray inverse_off(bool near) {
+  return [near](const Batch<double>& local) {
+    const auto half = local.cols() / 2;
+    return near ? local.row(1).tail(half).maxCoeff()
+                : local.row(1).head(half).minCoeff();
+  };
+}
+inline double quotients_lost(const Batch<double>& singular) {
+  return static_cast<double>((singular.row(1).array() != 1).count());
+}
+inline double steps_lost(const Batch<double>& singular) {
+  return static_cast<double>((singular.row(2).array() != 1).count());
+}
+/// At the smallest alpha over that at 1.
+inline OfArray share_at_small(Index row) {
+  return [row](const Batch<double>& small) {
+    return small(row, small.cols() - 1) / small(row, 0);
+  };
+}
+inline double reversal_order(const Batch<double>& reversed) {
+  const Index last = reversed.cols() - 1;
+  return std::log2(reversed(1, last - 1) / reversed(1, last));
+}
+inline double reversal_end(const Batch<double>& reversed) {
+  return reversed(1, reversed.cols() - 1);
+}
+
+}  // namespace physinv::scaling
