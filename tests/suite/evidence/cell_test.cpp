@@ -5,6 +5,9 @@
 #include <limits>
 #include <vector>
 
+#include "suite/results/published.h"
+#include "suite/results/results.h"
+
 namespace physinv {
 namespace {
 
@@ -22,6 +25,31 @@ TEST(Cell, ANumberIsANumber) {
   EXPECT_EQ(mean.ours, 2);
   EXPECT_NEAR(*mean.spread, 1.4142, 1e-4);
   EXPECT_FALSE(cell_of(std::vector<double>{1}).spread);
+}
+
+TEST(Cell, AMeasuredNumberHasItsSpread) {
+  const Cell cell = cell_of(Measured{.value = 3, .spread = 0.5, .runs = 2});
+  EXPECT_EQ(cell.ours, 3);
+  EXPECT_EQ(cell.spread, 0.5);
+  EXPECT_EQ(cell_of(missing("three seeds")).text, "not run");
+}
+
+TEST(Cell, StandsBesideWhatIsPrinted) {
+  Published published;
+  published.add(R"({"publication": {"key": "toy", "title": "Toy",
+    "authors": ["A"], "year": 2022, "venue": "V"}, "values": [
+    {"experiment": "toy", "quantity": "t/x", "value": 5, "spread": 2,
+     "unit": "%", "where": "Table 3"}]})",
+                "toy.json");
+  const Results none;
+  const Cell cell =
+      beside_printed(cell_of(4.0), {none, published, "toy"}, "t/x");
+  EXPECT_EQ(cell.ours, 4);
+  EXPECT_EQ(cell.paper, 5);
+  EXPECT_EQ(cell.paper_spread, 2);
+  const Evidence elsewhere{none, published, "other"};
+  EXPECT_FALSE(beside_printed({}, elsewhere, "t/x").paper);
+  EXPECT_EQ(beside_printed({}, elsewhere, "toy t/x").paper, 5);
 }
 
 TEST(Cell, Words) {

@@ -4,8 +4,6 @@
 
 #include <vector>
 
-#include "suite/evidence/series.h"
-
 namespace physinv {
 namespace {
 
@@ -38,10 +36,6 @@ class Stretch final : public Problem<double>, public Vjp<double> {
 };
 
 const Observed kZero{Vector<double>::Zero(2), Vector<double>::Ones(1)};
-
-TEST(Landscape, NumbersAreEquallySpacedFromEndToEnd) {
-  EXPECT_EQ(spaced(-1, 1, 5), (std::vector<double>{-1, -0.5, 0, 0.5, 1}));
-}
 
 TEST(Landscape, AFieldHasTheFirstUnknownToTheRight) {
   const Field2D f = loss_over_plane(Stretch(), kZero, {0, 1}, {0, 1, 2});
