@@ -50,7 +50,7 @@ execute_process(COMMAND ninja -C ${alone} -t inputs physinv-run
   OUTPUT_VARIABLE inputs COMMAND_ERROR_IS_FATAL ANY)
 string(REGEX MATCHALL
   "[^\n ]*(libphysinv_[^\n ]*[.]a|physinv_main[^\n ]*[.]o)" libraries "${inputs}")
-foreach(path physinv-run build_info/physinv-build.cmake ${libraries})
+foreach(path physinv-run physinv-sources build_info/physinv-build.cmake ${libraries})
   cmake_path(GET path PARENT_PATH folder)
   file(COPY ${build}/${path} DESTINATION ${alone}/${folder})
 endforeach()
