@@ -1,14 +1,14 @@
 # physinv_sort_sources(<prefix> <sources>): what the sources of experiments are,
 # by their names. experiment.cpp and ..._experiment.cpp register
-# (<prefix>_registrations), claims.cpp and figures.cpp, or ..._claims.cpp and
-# ..._figures.cpp, state and draw what was recorded (<prefix>_claims). Every other
-# one computes numbers (<prefix>_numbers).
+# (<prefix>_registrations), claims.cpp, figures.cpp and quantities.cpp, or
+# ..._claims.cpp and so on, state and draw what was recorded (<prefix>_claims).
+# Every other one computes numbers (<prefix>_numbers).
 function(physinv_sort_sources prefix)
   foreach(kind numbers claims registrations)
     set(${kind} ${ARGN})
   endforeach()
-  list(FILTER numbers EXCLUDE REGEX "[/_](experiment|claims|figures)\\.cpp$")
-  list(FILTER claims INCLUDE REGEX "[/_](claims|figures)\\.cpp$")
+  list(FILTER numbers EXCLUDE REGEX "[/_](experiment|claims|figures|quantities)\\.cpp$")
+  list(FILTER claims INCLUDE REGEX "[/_](claims|figures|quantities)\\.cpp$")
   list(FILTER registrations INCLUDE REGEX "[/_]experiment\\.cpp$")
   foreach(kind numbers claims registrations)
     set(${prefix}_${kind} ${${kind}} PARENT_SCOPE)

@@ -129,7 +129,7 @@ std::string objection(const std::string& file,
   const std::string from = layer_of(file);
   const auto layer = kLayers.find(from);
   if (layer == kLayers.end()) return "the folder is not a layer";
-  const bool kernels = fs::path(file).stem() == "kernels";
+  const bool kernels = fs::path(file).stem().string().starts_with("kernels");
   if (kernels && from != "suite/app") {  // a target of its own
     return layer_of(header) == "suite/app" ? "kernels know no program" : "";
   }

@@ -4,8 +4,8 @@
 /// Nothing is gathered: the taps of a position along x are one block of
 /// contiguous rows. A register tile spans outputs x columns, a column being a
 /// vector of samples at one position, so that small batches fill a tile with
-/// neighbouring positions. The weight gradient's tiles are whole vectors over
-/// samples; nothing is transposed before the lanes are added up at the end.
+/// neighbouring positions. The weight gradient (conv_weights.h) has tiles of
+/// whole vectors over samples.
 ///
 /// Measured on one Zen 3 core, float, PHYSINV_NATIVE, GFlop/s with 8 and 128
 /// samples, 128 positions, 16 -> 16 channels: 71 and 79; one `gemm` per
@@ -63,34 +63,5 @@ void convolve(const ConvShape& shape,
               Index begin,
               Index end,
               Into into = Into::nothing);
-
-/// Number of partial sums that `accumulate_weights` needs.
-template <class T>
-Index weight_sums(const ConvShape& shape);
-
-/// sums += y_bar[p][o] x[p + t][c] over positions [begin, end), a vector of
-/// samples each. Padding lanes of y_bar must be zero, of x finite.
-template <class T>
-void accumulate_weights(const ConvShape& shape,
-                        const std::vector<Run>& runs,
-                        Lanes<const T> x,
-                        Lanes<const T> y_bar,
-                        Index begin,
-                        Index end,
-                        T* sums);
-
-/// Adds up the vectors of `parts` arrays of sums: weights_bar [out][in][tap].
-/// totals: room for as many.
-template <class T>
-void finish_weights(const ConvShape& shape,
-                    const T* sums,
-                    Index parts,
-                    T* totals,
-                    T* weights_bar);
-
-/// Positions of a block that should stay in the L1 cache, by shape and samples
-/// alone.
-template <class T>
-Index positions_per_block(Lanes<const T> x, Index channels);
 
 }  // namespace physinv::nn

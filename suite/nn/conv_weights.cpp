@@ -1,7 +1,7 @@
-// The weight gradient of a convolution.
+#include "suite/nn/conv_weights.h"
+
 #include <algorithm>
 
-#include "suite/nn/conv_kernels.h"
 #include "suite/nn/conv_registers.h"
 
 namespace physinv::nn {

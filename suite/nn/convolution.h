@@ -8,6 +8,7 @@
 
 #include "suite/core/threads.h"
 #include "suite/nn/conv_kernels.h"
+#include "suite/nn/conv_weights.h"
 #include "suite/nn/layer.h"
 
 namespace physinv::nn {

@@ -11,7 +11,6 @@
 #include <cmath>
 #include <csignal>
 #include <cstdlib>
-#include <limits>
 #include <map>
 #include <string>
 #include <utility>
@@ -19,6 +18,7 @@
 #include "suite/core/clock.h"
 #include "suite/harness/progress.h"
 #include "suite/planning/kinds.h"
+#include "suite/planning/operation_rates.h"
 #include "suite/planning/split.h"
 #include "suite/results/errors.h"
 
@@ -115,39 +115,6 @@ void wait_for(pid_t child, double seconds) {
   }
 }
 
-double median(std::vector<double> values) {
-  const auto middle =
-      values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-/// Seconds of an operation, by experiment, by paper and of all.
-class Rates {
- public:
-  void add(const Case& c, double seconds) {
-    const double operations = operations_.of(c);
-    if (operations > 0) add_rate(c, seconds / operations);
-  }
-  void add_rate(const Case& c, double rate) {
-    for (const auto& key : keys(c)) rates_[key].push_back(rate);
-  }
-  double seconds(const Case& c) {
-    for (const auto& key : keys(c))
-      if (const auto at = rates_.find(key); at != rates_.end())
-        return operations_.of(c) * median(at->second);
-    return std::numeric_limits<double>::quiet_NaN();
-  }
-
- private:
-  static std::vector<std::string> keys(const Case& c) {
-    const std::string& name = c.info.experiment;
-    return {name, name.substr(0, name.find('/') + 1), ""};
-  }
-  Operations operations_;
-  std::map<std::string, std::vector<double>> rates_;
-};
-
 /// By what is known; a stage's share of the time is then not known.
 Forecast by_known(const std::vector<Case>& cases,
                   const Kinds& kinds,
@@ -159,7 +126,8 @@ Forecast by_known(const std::vector<Case>& cases,
     if (!found.empty()) known[kind] = std::move(found);
   }
   f.measured = known.size();
-  Rates rates;
+  Operations operations;
+  OperationRates rates;
   for (const Case& c : cases) {
     const auto at = known.find(kind_of(c));
     if (at == known.end()) {
@@ -167,17 +135,17 @@ Forecast by_known(const std::vector<Case>& cases,
       continue;
     }
     f.costs.push_back(cost_of(c, at->second));
-    rates.add(c, f.costs.back().seconds);
+    rates.add(c.info.experiment, {operations.of(c), f.costs.back().seconds});
   }
   for (const Sizes* sizes : one_each(kinds)) {
     const Case brief = brief_case(*sizes);
     if (const Trial* trial = trials.known(brief, true))
-      if (const auto rate = rate_of(brief, *trial))
-        rates.add_rate(brief, *rate);
+      rates.add(brief.info.experiment, work_of(brief, *trial));
   }
   for (std::size_t i = 0; i < cases.size(); ++i)
     if (!known.contains(kind_of(cases[i])))
-      f.costs[i].seconds = rates.seconds(cases[i]);
+      f.costs[i].seconds =
+          rates.seconds(cases[i].info.experiment, operations.of(cases[i]));
   return f;
 }
 

@@ -2,11 +2,11 @@
 #pragma once
 
 #include <map>
-#include <optional>
 #include <string>
 #include <tuple>
 #include <vector>
 
+#include "suite/planning/operation_rates.h"
 #include "suite/planning/predict.h"
 
 namespace physinv {
@@ -47,8 +47,8 @@ std::vector<Trial> known_trials(const Sizes& s, const Trials& trials);
 /// A few iterations of a kind's training on few samples: enough for how long
 /// an operation takes.
 Case brief_case(const Sizes& s);
-/// Seconds of an operation by a trial of it; nothing if it trained nothing.
-std::optional<double> rate_of(const Case& brief, const Trial& trial);
+/// What a trial of it did.
+Work work_of(const Case& brief, const Trial& trial);
 
 /// Of a case by its kind's trials.
 Cost cost_of(const Case& c, const std::vector<Trial>& all);

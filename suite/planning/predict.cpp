@@ -127,14 +127,13 @@ Case brief_case(const Sizes& s) {
       *s.largest, std::min(s.largest->info.n, kBriefSamples), iterations);
 }
 
-std::optional<double> rate_of(const Case& brief, const Trial& trial) {
-  double seconds = 0, operations = 0;
+Work work_of(const Case& brief, const Trial& trial) {
+  Work work;
   for (std::size_t k = 0; k < trial.size(); ++k) {
-    seconds += trial[k].seconds;
-    operations += brief.operations(k);
+    work.seconds += trial[k].seconds;
+    work.operations += brief.operations(k);
   }
-  if (!(operations > 0 && seconds > 0)) return {};
-  return seconds / operations;
+  return work;
 }
 
 Cost unmeasured_cost(const Case& c) {

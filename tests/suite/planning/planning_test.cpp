@@ -1,9 +1,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "suite/planning/budget.h"
+#include "suite/planning/operation_rates.h"
 #include "suite/planning/split.h"
 
 namespace physinv {
@@ -50,6 +52,19 @@ TEST(Split, NoTaskIsEmptyAndItemsWithoutCostSpread) {
   EXPECT_EQ(split_longest_first({1, 1}, 16).tasks.size(), 2U);
   for (const auto& task : split_longest_first({0, 0, 0, 0}, 2).tasks)
     EXPECT_EQ(task.size(), 2U);
+}
+
+/// A start of a tenth of a second is no rate of 20 operations.
+TEST(OperationRates, FewOperationsTellNothingOfMany) {
+  OperationRates rates;
+  rates.add("sip/heat", {.operations = 20, .seconds = 0.1});
+  EXPECT_TRUE(std::isnan(rates.seconds("sip/heat", 1e12)));
+  rates.add("sip/fluid", {.operations = 1e9, .seconds = 0.02});
+  EXPECT_DOUBLE_EQ(rates.seconds("sip/heat", 1e12), 20);  // of its paper
+  for (const double seconds : {0.01, 0.03, 5.0})
+    rates.add("sip/heat", {.operations = 1e9, .seconds = seconds});
+  EXPECT_DOUBLE_EQ(rates.seconds("sip/heat", 1e12), 30);
+  EXPECT_DOUBLE_EQ(rates.seconds("hig/toy", 1e12), 30);  // of all
 }
 
 TEST(Budget, RankingIsOpenUntilRangesPart) {

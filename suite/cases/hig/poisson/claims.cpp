@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "suite/cases/hig/poisson/phases.h"
+#include "suite/cases/hig/poisson/quantities.h"
 #include "suite/evidence/curve_shape.h"
 #include "suite/harness/registry.h"
 

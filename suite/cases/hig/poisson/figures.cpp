@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "problems/grid_poisson/grid_poisson.h"
-#include "suite/cases/hig/poisson/phases.h"
+#include "suite/cases/hig/poisson/quantities.h"
 #include "suite/evidence/cell.h"
 #include "suite/evidence/field_panel.h"
 #include "suite/evidence/quantity.h"

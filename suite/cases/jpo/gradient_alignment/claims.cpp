@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "suite/cases/jpo/gradient_alignment/values.h"
+#include "suite/cases/jpo/gradient_alignment/quantities.h"
 #include "suite/evidence/claim.h"
 #include "suite/evidence/statistics.h"
 #include "suite/harness/registry.h"

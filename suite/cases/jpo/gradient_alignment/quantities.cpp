@@ -1,4 +1,4 @@
-#include "suite/cases/jpo/gradient_alignment/values.h"
+#include "suite/cases/jpo/gradient_alignment/quantities.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "suite/cases/hig/poisson/phases.h"
+#include "suite/cases/hig/poisson/quantities.h"
 
 #include <algorithm>
 #include <limits>
