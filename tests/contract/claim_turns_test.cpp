@@ -66,10 +66,13 @@ class Dice {
 /// How far numbers are thrown, in decades: a draw of its own.
 struct Throw {
   double method = 0, example = 0;
+  double path = 1;  ///< how far estimates on the way are thrown, no decade
 
   static Throw of(Dice& dice) {
     constexpr double kWidths[] = {0, 0.02, 0.1, 0.5, 2, 6};
-    return {kWidths[dice.below(6)], kWidths[dice.below(5)]};
+    return {kWidths[dice.below(6)],
+            kWidths[dice.below(5)],
+            std::pow(10, dice.uniform(-3, 1))};
   }
 };
 
@@ -150,10 +153,9 @@ StageRecord made_up(const StageRecord& model,
       curve.loss = columns(curve.loss.transpose(), n).transpose();
     curve.loss *= level;
     const Index unknowns = s.x.rows();
-    const double far = std::pow(10, dice.uniform(-3, 1));
     for (Index r = 0; r < curve.x.rows() && unknowns > 0; ++r)
       for (Index k = 0; k < curve.x.cols(); ++k)
-        curve.x(r, k) += far * dice.normal();
+        curve.x(r, k) += t.path * dice.normal();
   }
   for (auto& [name, array] : s.arrays) {
     if (is_axis(name)) continue;
@@ -378,6 +380,22 @@ void signs_drawn(Cases& cases, Dice& dice) {
 void ties(Cases& cases, Dice&) {
   exchange(cases, [](CaseRecord& a, CaseRecord& b) { a.stages = b.stages; });
 }
+/// Some methods end where another one does, whatever their stages.
+void losses_shared(Cases& cases, Dice& dice) {
+  std::map<std::string, const StageRecord*> first;
+  for (const CaseRecord& c : cases)
+    first.try_emplace(
+        fmt::format("{} {} {}", c.info.experiment, c.info.n, c.info.seed),
+        &c.stages.back());
+  for (CaseRecord& c : cases) {
+    if (dice.chance(0.5)) continue;
+    const Vector<double> of =
+        first[fmt::format("{} {} {}", c.info.experiment, c.info.n, c.info.seed)]
+            ->loss;
+    for (StageRecord& s : c.stages)
+      if (s.loss.size() == of.size()) s.loss = of;
+  }
+}
 void estimates_anywhere(Cases& cases, Dice& dice) {
   change_some(cases, dice, [&](StageRecord& s) {
     const double far = std::pow(10, dice.uniform(-2, 2));
@@ -401,6 +419,7 @@ constexpr std::pair<const char*, Perturbation> kPerturbations[] = {
     {"curves of some methods constant", some_constant},
     {"signs of some methods drawn", signs_drawn},
     {"methods tie", ties},
+    {"losses of some methods are another's", losses_shared},
     {"estimates of some methods anywhere", estimates_anywhere},
     {"examples of some methods take longer", examples_take_longer},
     {"some methods diverge", some_diverge}};

@@ -184,12 +184,31 @@ TEST(Digest, AuditTellsVerdictsOfBeforeClaimsHadCauses) {
   auto later = named("later", Verdict::depends, Verdict::reproduced);
   later.digest["provenance"]["date"] = "2024-06-06";
   later.digest["sections"][0]["claims"][0]["cause"] = "a choice";
+  later.digest["sections"][0]["claims"][0]["conditions"][0]["runs"] = 3;
   expect_words(audit_markdown({old, later}),
                {"| then | 0 | 0 | 1 | 0 | 0 |",
                 "| now | 0 | 1 | 0 | 0 | 0 |",
                 "| [jpo/toy](jpo-toy.md) P1 | not reproduced | depends | a "
-                "choice | later |"});
+                "choice | later, 3 runs |"});
   expect_words(results_markdown({old, later}), {"](docs/results/audit.md)"});
+}
+
+TEST(Digest, AuditHasWhatStayedReproducedAndTheHours) {
+  auto old = named("old", Verdict::reproduced, Verdict::reproduced);
+  old.published = old.digest;
+  for (Json& claim : old.published["sections"][0]["claims"])
+    claim.erase("cause");
+  auto later = named("later", Verdict::reproduced, Verdict::reproduced);
+  later.digest["provenance"]["date"] = "2024-06-06";
+  later.digest["provenance"]["git_revision"] = "0123456789";
+  old.cpu_seconds = {{"jpo/toy", 900}, {"hig/toy", 36}};
+  later.cpu_seconds = {{"jpo/toy", 1800}, {"jpo/other", 900}};
+  expect_words(audit_markdown({old, later}),
+               {"| [jpo/toy](jpo-toy.md) P1 | reproduced | reproduced |",
+                "| jpo | A processor | 01234567 | later | 0.75 |",
+                "| jpo | A processor | abc | old | 0.25 |",
+                "| jpo | all |  |  | 1.00 |",
+                "| hig | A processor | abc | old | 0.01 |"});
 }
 
 TEST(Digest, WhatIsNotJudgedSaysWhatIsMissing) {

@@ -3,12 +3,9 @@
 // network that sees many.
 #include <vector>
 
-#include "problems/kuramoto_sivashinsky/kuramoto_sivashinsky.h"
 #include "suite/cases/jpo/common/methods.h"
 #include "suite/cases/jpo/common/report.h"
-#include "suite/harness/registry.h"
-#include "suite/nn/unet.h"
-#include "suite/nn/vgg.h"
+#include "suite/cases/jpo/kuramoto_sivashinsky/setting.h"
 
 namespace physinv::jpo::kuramoto_sivashinsky {
 namespace {
@@ -16,28 +13,14 @@ namespace {
 constexpr Index kFitIterations = 1000;
 
 const auto kTrained = trained_methods();
-const nn::VggOptions kPredictor{.channels = 2,
-                                .grid = {.columns = 128},
-                                .features = {32, 32, 64, 64},
-                                .hidden = {64, 64}};
-
 const std::vector<Index> kSizes = {2, 4, 8, 16, 32, 64, 128, 256};
 
 const auto kRegistered = register_experiment({
     .name = "jpo/kuramoto-sivashinsky",
     .title = "Kuramoto-Sivashinsky equation",
     .source = {.paper = "jpo", .where = "Sec. 4, Fig. 5, App. D.3"},
-    .problem = problem<KuramotoSivashinsky>("kuramoto_sivashinsky"),
-    .setting = {.predictor = {{Field::given, Field::observations},
-                              nn::vgg(kPredictor)},
-                .surrogate = {{Field::given, Field::unknowns},
-                              nn::unet({.grid = {.columns = 128},
-                                        .channels = 1,
-                                        .scalars_after = 2,
-                                        .scalar_shift = 1,
-                                        .scalar_unit = 0.25})},
-                .output_scale = 0.25,
-                .gtol = 1e-10},
+    .problem = recipe(),
+    .setting = setting(),
     .profiles =
         {{.name = "smoke",
           .rows = {{.methods = {"bfgs"}, .n = {4}, .seeds = {0}},

@@ -5,32 +5,14 @@
 #include <vector>
 
 #include "optimizers/half_inverse_direct.h"
-#include "problems/navier_stokes/navier_stokes.h"
 #include "suite/cases/jpo/common/methods.h"
 #include "suite/cases/jpo/common/report.h"
-#include "suite/harness/registry.h"
-#include "suite/nn/unet.h"
-#include "suite/nn/vgg.h"
+#include "suite/cases/jpo/navier_stokes/setting.h"
 
 namespace physinv::jpo::navier_stokes {
 namespace {
 
 constexpr Index kFitIterations = 1000;
-/// The map has kinks everywhere: BFGS ends where it no longer gets on.
-constexpr BfgsStageOptions kBfgs{
-    .iterations = 100, .stall = 1e-5, .search_evaluations = 20};
-
-const nn::VggOptions kPredictor{.channels = 2,
-                                .grid = {.columns = 32, .rows = 64},
-                                .features = {16, 32, 32, 32},
-                                .hidden = {64, 64}};
-
-/// The flow below is hidden, before and after.
-const nn::UnetOptions kSurrogate{.grid = {.columns = 64, .rows = 64},
-                                 .channels = 2,
-                                 .scalars_after = 3,
-                                 .outputs = 2,
-                                 .hidden = 32};
 
 /// Powers of the problem's own Jacobian, three tangent runs an update: what
 /// the paper does not have.
@@ -66,12 +48,8 @@ const auto kRegistered = register_experiment({
     .name = "jpo/navier-stokes",
     .title = "Incompressible Navier-Stokes",
     .source = {.paper = "jpo", .where = "Sec. 4, Fig. 6, App. D.4"},
-    .problem = problem<NavierStokes>("navier_stokes"),
-    .setting = {.predictor = {{Field::observations}, nn::vgg(kPredictor)},
-                .surrogate = {{Field::given, Field::unknowns},
-                              nn::unet(kSurrogate)},
-                .gtol = 1e-3,
-                .labels = {.per_problem = 8, .bounded = 1}},
+    .problem = recipe(),
+    .setting = setting(),
     .profiles =
         {{.name = "smoke",
           .rows =

@@ -1,10 +1,8 @@
 // JPO paper, App. D.5, Fig. 25: an underdetermined problem with a loss like a
 // bowl, where joint optimization needs no advantage over BFGS and shows none.
-#include "problems/robotic_arm/robotic_arm.h"
 #include "suite/cases/jpo/common/methods.h"
 #include "suite/cases/jpo/common/report.h"
-#include "suite/harness/registry.h"
-#include "suite/nn/mlp.h"
+#include "suite/cases/jpo/robotic_arm/setting.h"
 
 namespace physinv::jpo::robotic_arm {
 namespace {
@@ -17,13 +15,8 @@ const auto kRegistered = register_experiment({
     .name = "jpo/robotic-arm",
     .title = "Robotic arm",
     .source = {.paper = "jpo", .where = "App. D.5, Fig. 25"},
-    .problem = problem<RoboticArm>("robotic_arm"),
-    .setting = {.predictor = {{Field::observations},
-                              nn::mlp({.hidden = {128, 128, 128}})},
-                .surrogate = {{Field::unknowns},
-                              nn::mlp({.hidden = {128, 128, 128}})},
-                .output_scale = 1.0,
-                .gtol = 1e-10},
+    .problem = recipe(),
+    .setting = setting(),
     .profiles =
         {{.name = "smoke",
           .rows =

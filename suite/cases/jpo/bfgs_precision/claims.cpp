@@ -1,0 +1,244 @@
+// For which precision and tolerance of BFGS the paper's numbers come out.
+// Losses in float are compared as such, which makes ties.
+#include <fmt/format.h>
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "suite/cases/jpo/bfgs_precision/settings.h"
+#include "suite/cases/jpo/common/values.h"
+#include "suite/evidence/claim.h"
+#include "suite/harness/registry.h"
+
+namespace physinv::bfgs_precision {
+namespace {
+
+constexpr Index kSeeds = 4;  ///< the fewest that the paper has of any
+
+// ---- numbers of a setting ---------------------------------------------------
+
+/// In the precision that the setting works in.
+Vector<double> own_losses(const StageRecord& stage, bool single) {
+  const auto own = stage.arrays.find("own_loss");
+  if (own != stage.arrays.end()) return own->second.row(0).transpose();
+  if (!single) return stage.loss;
+  return stage.loss.cast<float>().cast<double>();
+}
+
+/// Mean percentage over all n of the problems where JPO, or its refinement, is
+/// better than BFGS of the same setting, or equal.
+template <bool kRefined, double Shares::*kShare>
+Quantity against_bfgs(const Choice& c) {
+  const RunValue value = [=](const Run& run) -> std::optional<double> {
+    const auto bfgs = run.beside({c.bfgs()});
+    if (!bfgs) return {};
+    return compare_losses(own_losses(*run.stage, c.single),
+                          own_losses(*bfgs->stage, c.single),
+                          Equality::strict).*
+           kShare;
+  };
+  return percent(also_asks(mean({c.jpo(), kRefined ? "refine" : "fit"}, value),
+                           {{c.bfgs()}}));
+}
+
+Select bfgs_of(const Choice& c) { return {c.bfgs(), "solve"}; }
+Select refined_of(const Choice& c) { return {c.jpo(), "refine"}; }
+
+Quantity iterations(const Choice& c) {
+  return median_of_examples(bfgs_of(c), jpo::iterations());
+}
+Quantity within_ten(const Choice& c) {
+  return percent(share_of_examples(bfgs_of(c),
+                                   jpo::largest_sets(jpo::iterations()),
+                                   [](double k) { return k <= 10; }));
+}
+/// Of the problems that are solved: App. D.3 counts no others.
+template <bool kRefined>
+Quantity iterations_of_solved(const Choice& c) {
+  return median_of_examples(
+      kRefined ? refined_of(c) : bfgs_of(c),
+      jpo::where(jpo::is_solved(within_of_truth(1e-3)), jpo::iterations()));
+}
+/// To what is read as machine precision.
+template <bool kRefined>
+Quantity at_zero(const Choice& c) {
+  return percent(
+      mean(kRefined ? refined_of(c) : bfgs_of(c), jpo::solved(Solved(1e-12))));
+}
+Quantity mean_over_bfgs(const Choice& c) {
+  const RunValue value = [=](const Run& run) -> std::optional<double> {
+    const auto bfgs = run.beside(bfgs_of(c));
+    if (!bfgs) return {};
+    return run.stage->loss.mean() / bfgs->stage->loss.mean();
+  };
+  return also_asks(mean({c.jpo(), "fit"}, value), {bfgs_of(c)});
+}
+
+// ---- columns ----------------------------------------------------------------
+
+/// A number of each setting, beside what the paper's tables print or its text
+/// states.
+struct Column {
+  std::string title;
+  Quantity (*of)(const Choice&);
+  std::string printed = {};  ///< of the paper's file
+  /// Else what the text states.
+  Condition (*asks)(std::string, Quantity) = nullptr;
+};
+
+std::vector<Column> tables() {
+  return {
+      {"better, %", against_bfgs<false, &Shares::better>, "table4/jpo/better"},
+      {"equal, %", against_bfgs<false, &Shares::equal>, "table4/jpo/equal"},
+      {"refined better, %",
+       against_bfgs<true, &Shares::better>,
+       "table5/jpo/better"},
+      {"refined equal, %",
+       against_bfgs<true, &Shares::equal>,
+       "table5/jpo/equal"}};
+}
+
+template <int kLowest, int kHighest>
+Condition in_range(std::string label, Quantity q) {
+  return within(std::move(label), std::move(q), kLowest, kHighest);
+}
+template <int kBound>
+Condition more_than(std::string label, Quantity q) {
+  return above(std::move(label), std::move(q), kBound);
+}
+Condition all_of_them(std::string label, Quantity q) {
+  return at_least(std::move(label), std::move(q), 100);
+}
+
+std::vector<Column> columns_of(const Study& s) {
+  const std::string_view varied = s.varied;
+  if (varied == "jpo/robotic-arm")
+    return {{"iterations of BFGS (a couple)", iterations, {}, in_range<1, 25>},
+            {"BFGS below 1e-12, % (all)", at_zero<false>, {}, all_of_them},
+            {"refined JPO, % (all)", at_zero<true>, {}, all_of_them}};
+  std::vector<Column> all = tables();
+  if (varied == "jpo/kuramoto-sivashinsky") {
+    all.push_back({"iterations of BFGS (12 to 22)",
+                   iterations_of_solved<false>,
+                   {},
+                   in_range<12, 22>});
+    all.push_back({"of the refinement (4 to 17)",
+                   iterations_of_solved<true>,
+                   {},
+                   in_range<4, 17>});
+  }
+  if (varied == "jpo/navier-stokes") {
+    all.push_back({"BFGS within 10 iterations, % (usually)",
+                   within_ten,
+                   {},
+                   more_than<50>});
+    all.push_back({"mean loss of JPO over BFGS's (above)",
+                   mean_over_bfgs,
+                   {},
+                   more_than<1>});
+  }
+  return all;
+}
+
+std::string printed_name(const Study& s, const Column& c) {
+  return std::string(s.varied) + ' ' + c.printed;
+}
+
+Condition as_the_paper(const Study& s, const Choice& choice, const Column& c) {
+  const std::string label = fmt::format("{}: {}", choice.title, c.title);
+  if (!c.printed.empty())
+    return as_printed(label, c.of(choice), printed_name(s, c), kSeeds);
+  return c.asks(label, c.of(choice));
+}
+
+// ---- claims -----------------------------------------------------------------
+
+/// Every column of every setting.
+std::vector<Condition> all_settings(const Study& s) {
+  std::vector<Condition> all;
+  for (const Choice& choice : s.choices)
+    for (const Column& c : columns_of(s))
+      all.push_back(as_the_paper(s, choice, c));
+  return all;
+}
+Condition some_setting(const Study& s, const Column& c) {
+  Condition any = as_the_paper(s, s.choices[0], c);
+  for (std::size_t k = 1; k < s.choices.size(); ++k)
+    any = either(any, as_the_paper(s, s.choices[k], c));
+  return any;
+}
+
+Claim claim(const Study& s) {
+  const auto columns = columns_of(s);
+  std::vector<Condition> shown_by;
+  for (const Column& c : columns) shown_by.push_back(some_setting(s, c));
+  return {.id = "S1",
+          .from = "study",
+          .says =
+              "The paper's numbers come out whatever precision and "
+              "tolerance BFGS and refinement have",
+          .conditions = all_settings(s),
+          .cause = depends(
+              "precision and tolerance of BFGS are not printed; the table has "
+              "the settings for which each number comes out",
+              shown_by)};
+}
+
+// ---- report -----------------------------------------------------------------
+
+Cell cell_of(const Study& s,
+             const Choice& choice,
+             const Column& c,
+             const Evidence& e) {
+  const Measured m = c.of(choice)(e);
+  Cell cell{.ours = m.value, .spread = m.spread};
+  if (!m.value) cell.text = "not run";
+  if (c.printed.empty()) return cell;
+  if (const auto p =
+          find_printed(e.published, e.experiment, printed_name(s, c)))
+    cell.paper = p->value, cell.paper_spread = p->spread;
+  return cell;
+}
+
+Section report(const Study& s,
+               const Results& results,
+               const Published& published) {
+  const Evidence evidence{results, published, s.name};
+  Table table{
+      .id = "settings",
+      .title = "JPO against BFGS by precision and tolerance",
+      .source = "Sec. 4, Tables 4 and 5",
+      .corner = "precision, gtol",
+      .note =
+          "Means over n, then mean ± sample standard deviation over seeds; "
+          "of iterations medians. In brackets what the text states. Both "
+          "methods of a row have its setting; float compares float "
+          "losses."};
+  const auto columns = columns_of(s);
+  for (const Column& c : columns) table.columns.push_back(c.title);
+  for (const Choice& choice : s.choices) {
+    TableRow row{.label = choice.title};
+    for (const Column& c : columns)
+      row.cells.push_back(cell_of(s, choice, c, evidence));
+    table.rows.push_back(std::move(row));
+  }
+  return {.tables = {std::move(table)}};
+}
+
+const bool kClaims = [] {
+  bool all = true;
+  for (const Study& s : all_studies())
+    all = register_claims(s.name, {claim(s)}) &&
+          register_report(s.name,
+                          [s](const Results& r, const Published& p) {
+                            return report(s, r, p);
+                          }) &&
+          all;
+  return all;
+}();
+
+}  // namespace
+}  // namespace physinv::bfgs_precision
