@@ -171,20 +171,42 @@ Condition some_setting(const Study& s, const Column& c) {
   return any;
 }
 
-Claim claim(const Study& s) {
-  const auto columns = columns_of(s);
+/// Each column comes out with some setting.
+Cause depends_on_it(const Study& s, std::string why) {
   std::vector<Condition> shown_by;
-  for (const Column& c : columns) shown_by.push_back(some_setting(s, c));
+  for (const Column& c : columns_of(s)) shown_by.push_back(some_setting(s, c));
+  return depends("precision and tolerance of BFGS are not printed: " + why,
+                 shown_by);
+}
+
+Cause cause_of(const Study& s) {
+  const std::string_view varied = s.varied;
+  if (varied == "jpo/wave-packet")
+    return fails(
+        "they move nothing: JPO is better in 82 %, refined in 89 %, as "
+        "printed, with all settings; ties after refinement are 0.3 % at most, "
+        "printed 1.8");
+  if (varied == "jpo/kuramoto-sivashinsky")
+    return depends_on_it(
+        s,
+        "in double JPO is better in 20 % of the small sets, in float in 36; "
+        "BFGS takes a median of 9 iterations to 1e-5 and 13 to 1e-12");
+  if (varied == "jpo/robotic-arm")
+    return depends_on_it(s,
+                         "to a gradient of 1e-5 half of the losses stay above "
+                         "1e-12, to 1e-7 none");
+  return depends_on_it(
+      s, "the table has the settings for which each number comes out");
+}
+
+Claim claim(const Study& s) {
   return {.id = "S1",
           .from = "study",
           .says =
               "The paper's numbers come out whatever precision and "
               "tolerance BFGS and refinement have",
           .conditions = all_settings(s),
-          .cause = depends(
-              "precision and tolerance of BFGS are not printed; the table has "
-              "the settings for which each number comes out",
-              shown_by)};
+          .cause = cause_of(s)};
 }
 
 // ---- report -----------------------------------------------------------------

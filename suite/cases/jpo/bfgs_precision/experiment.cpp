@@ -72,7 +72,7 @@ std::vector<Varied> all_varied() {
            1000,
            jpo::navier_stokes::kBfgs,
            {4, 16},
-           2}};
+           3}};
 }
 
 Experiment experiment(const Study& study, const Varied& varied) {
