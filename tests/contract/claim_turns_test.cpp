@@ -66,12 +66,15 @@ class Dice {
 /// How far numbers are thrown, in decades: a draw of its own.
 struct Throw {
   double method = 0, example = 0;
-  double path = 1;  ///< how far estimates on the way are thrown, no decade
+  /// How far estimates are thrown from the truth, and those on the way; no
+  /// decades.
+  double estimate = 1, path = 1;
 
   static Throw of(Dice& dice) {
     constexpr double kWidths[] = {0, 0.02, 0.1, 0.5, 2, 6};
     return {kWidths[dice.below(6)],
             kWidths[dice.below(5)],
+            std::pow(10, dice.uniform(-6, 1)),
             std::pow(10, dice.uniform(-3, 1))};
   }
 };
@@ -106,9 +109,11 @@ void scatter(M& values, Dice& dice, const Throw& t) {
 }
 
 /// Estimates near the truth or far from it.
-void scatter_around(const Batch<double>& truth, Batch<double>& x, Dice& dice) {
+void scatter_around(const Batch<double>& truth,
+                    double far,
+                    Batch<double>& x,
+                    Dice& dice) {
   if (x.rows() != truth.rows() || x.cols() > truth.cols()) return;
-  const double far = std::pow(10, dice.uniform(-6, 1));
   for (Index i = 0; i < x.cols(); ++i)
     for (Index j = 0; j < x.rows(); ++j)
       x(j, i) = truth(j, i) + far * dice.normal();
@@ -134,7 +139,7 @@ StageRecord made_up(const StageRecord& model,
   s.loss = entries(model.loss, n);
   for (double& loss : s.loss) loss *= level * dice.decades(t.example);
   s.x = columns(model.x, model.x.cols() == was ? n : model.x.cols());
-  scatter_around(data.x, s.x, dice);
+  scatter_around(data.x, t.estimate, s.x, dice);
   s.example_iterations = entries(model.example_iterations, n);
   s.example_evaluations = entries(model.example_evaluations, n);
   scatter(s.example_iterations, dice, t);
@@ -161,6 +166,8 @@ StageRecord made_up(const StageRecord& model,
     if (is_axis(name)) continue;
     if (array.cols() == was && array.cols() != curve.points())
       array = columns(array, n);
+    else if (array.cols() == 1 && array.rows() == model.iterations)
+      array = columns(array.transpose(), s.iterations).transpose();
     scatter(array, dice, t);
     if (name == "mean_loss") array = array.cwiseAbs();
   }
@@ -172,24 +179,29 @@ StageRecord made_up(const StageRecord& model,
 
 using Cases = std::vector<CaseRecord>;
 
-/// Records of the smoke profile, by experiment and method.
+/// Records of the smoke profile, by experiment and method: of the largest sets.
 class Models {
  public:
   explicit Models(const Results& smoke) {
-    for (const CaseRecord& c : smoke.cases())
-      models_.try_emplace({c.info.experiment, c.info.method}, c);
+    for (const CaseRecord& c : smoke.cases()) {
+      const auto [model, first] =
+          models_.try_emplace({c.info.experiment, c.info.method}, c);
+      if (c.info.n > model->second.info.n) model->second = c;
+    }
   }
 
-  /// Of the method, else of one with the same stages, of the experiment or of
-  /// its variants, or of what it varies; null.
+  /// Of the method, else of one that begins with the same stages, of the
+  /// experiment or of its variants, or of what it varies; null.
   const CaseRecord* of(const CaseInfo& info) const {
     const auto own = models_.find({info.experiment, info.method});
     if (own != models_.end()) return &own->second;
     const CaseRecord* found = nullptr;
     int best = 0;
     for (const auto& [key, model] : models_) {
+      const auto& stages = model.info.stages;
       if (stem(key.first) != stem(streams_of(info.experiment)) ||
-          model.info.stages != info.stages)
+          stages.size() < info.stages.size() ||
+          !std::equal(info.stages.begin(), info.stages.end(), stages.begin()))
         continue;
       const int likeness =
           1 + 2 * (key.first == info.experiment) + (key.second == info.method);
@@ -215,7 +227,7 @@ CaseRecord made_up(const CaseRecord& model,
   for (Batch<double>* part : {&out.data.x, &out.data.y, &out.data.given})
     *part = columns(*part, c.info.n);
   out.data.y *= dice.decades(t.example);
-  for (std::size_t k = 0; k < model.stages.size(); ++k)
+  for (std::size_t k = 0; k < c.info.stages.size(); ++k)
     out.stages.push_back(made_up(model.stages[k], c, k, out.data, dice, t));
   return out;
 }
@@ -258,7 +270,7 @@ Cases draw(const std::vector<const Variants*>& of,
                         ? &variants->back()
                         : &(*variants)[number / 2 % variants->size()];
     const CaseRecord* model = models.of(c->info);
-    if (model == nullptr || model->stages.size() != c->info.stages.size())
+    if (model == nullptr || model->stages.size() < c->info.stages.size())
       continue;
     const auto [t, first] = throws.try_emplace(
         {c->info.experiment, c->info.method}, Throw::of(dice));
@@ -382,18 +394,19 @@ void ties(Cases& cases, Dice&) {
 }
 /// Some methods end where another one does, whatever their stages.
 void losses_shared(Cases& cases, Dice& dice) {
-  std::map<std::string, const StageRecord*> first;
+  const auto problems = [](const CaseRecord& c) {
+    return fmt::format("{} {} {}", c.info.experiment, c.info.n, c.info.seed);
+  };
+  std::map<std::string, Vector<double>> first;
   for (const CaseRecord& c : cases)
-    first.try_emplace(
-        fmt::format("{} {} {}", c.info.experiment, c.info.n, c.info.seed),
-        &c.stages.back());
+    first.try_emplace(problems(c), c.stages.back().loss);
+  std::map<std::string, bool> chosen;
   for (CaseRecord& c : cases) {
-    if (dice.chance(0.5)) continue;
-    const Vector<double> of =
-        first[fmt::format("{} {} {}", c.info.experiment, c.info.n, c.info.seed)]
-            ->loss;
+    const auto [at, is_new] = chosen.try_emplace(
+        c.info.experiment + ' ' + c.info.method, dice.chance(0.5));
+    const Vector<double>& loss = first[problems(c)];
     for (StageRecord& s : c.stages)
-      if (s.loss.size() == of.size()) s.loss = of;
+      if (at->second && s.loss.size() == loss.size()) s.loss = loss;
   }
 }
 void estimates_anywhere(Cases& cases, Dice& dice) {
@@ -479,6 +492,8 @@ constexpr Steady kSteady[] = {
      "few made-up clocks reach Fig. 4's end in all of its runs"},
     {"sip/sine-xi32-phi45 P5: ",
      "of the problem's derivatives at the targets, whatever was run"},
+    {"jpo/navier-stokes P11: share beyond the training range",
+     "its 8 n samples of each seed are drawn with their flows: 20 seconds"},
     {"sip/heat P4: loss on the test set",
      "no run of the smoke profile leaves what a small training set does"},
     {"physgrad/comparison P14: points where",

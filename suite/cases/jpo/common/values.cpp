@@ -6,7 +6,9 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <memory>
 #include <numeric>
+#include <tuple>
 #include <utility>
 
 #include "suite/harness/study.h"
@@ -265,22 +267,45 @@ RunRow first_tracked(Index j) {
   return [=](const Run& run) { return tracked(run, j, 0); };
 }
 
+namespace {
+
+/// The ends of the training samples' range, by experiment, seed and number of
+/// samples: a flow's are drawn with their observations, which takes seconds.
+class TrainingRanges {
+ public:
+  struct Range {
+    Vector<double> low, high;
+  };
+
+  explicit TrainingRanges(ProblemRecipe problem)
+      : problem_(std::move(problem)) {}
+
+  const Range& of(const CaseInfo& info, Index samples) {
+    Range& known = known_[{info.experiment, info.seed, samples}];
+    if (known.low.size() > 0) return known;
+    const Rng stream = root_of(info.experiment, info.seed).child("data/train");
+    const Batch<double> x =
+        problem_.make<double>()->sample_labelled(0, samples, stream).x;
+    known = {x.rowwise().minCoeff(), x.rowwise().maxCoeff()};
+    return known;
+  }
+
+ private:
+  ProblemRecipe problem_;
+  std::map<std::tuple<std::string, std::uint64_t, Index>, Range> known_;
+};
+
+}  // namespace
+
 RunRow beyond_training(const ProblemRecipe& problem,
                        double margin,
                        Index per_problem) {
+  const auto ranges = std::make_shared<TrainingRanges>(problem);
   return [=](const Run& run) {
-    const auto& info = run.record->info;
-    const Batch<double> samples =
-        problem.make<double>()
-            ->sample_labelled(
-                0,
-                per_problem * run.n(),
-                root_of(info.experiment, info.seed).child("data/train"))
-            .x;
+    const auto& range = ranges->of(run.record->info, per_problem * run.n());
     std::vector<double> beyond;
-    for (Index j = 0; j < samples.rows(); ++j) {
-      const double low = samples.row(j).minCoeff();
-      const double high = samples.row(j).maxCoeff();
+    for (Index j = 0; j < range.low.size(); ++j) {
+      const double low = range.low(j), high = range.high(j);
       const double edge = margin * (high - low);
       const auto ends = last_tracked(j)(run);
       beyond.resize(ends.size());
