@@ -8,6 +8,7 @@
 #include "problems/quantum_dipole/quantum_dipole.h"
 #include "suite/cases/hig/quantum_dipole/grids.h"
 #include "suite/cases/hig/quantum_dipole/metrics.h"
+#include "suite/cases/hig/quantum_dipole/tau_figures.h"
 #include "suite/evidence/training_report.h"
 #include "suite/harness/registry.h"
 
@@ -193,6 +194,7 @@ Section dense_report(const Results& results, const Published& published) {
   Section section{
       .experiment = kDense,
       .tables = {loss_table(results, kDense, all),
+                 tau_table(results),
                  cost_table(results, kDense, published, kCosts, "Table 5")}};
   LearningCurves curves(results, section);
   section.figures.push_back(
