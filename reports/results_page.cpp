@@ -106,7 +106,9 @@ constexpr const char* kHead =
     "\n| claim | says | verdict | asked | measured | cause | campaign |\n"
     "| --- | --- | --- | --- | --- | --- | --- |\n";
 
-/// Claims of an origin, those of `but` left out.
+bool is_study(const ClaimKey& key) { return key.first.starts_with("studies/"); }
+
+/// Claims of an origin, those of `but` and of studies left out.
 std::string rows_of(const LatestClaims& all,
                     Origin origin,
                     const std::set<Verdict>& but,
@@ -114,7 +116,8 @@ std::string rows_of(const LatestClaims& all,
   std::string rows;
   for (const Verdict v : kOrder)
     for (const auto& [key, s] : all)
-      if (s.claim.origin == origin && s.claim.verdict == v && !but.contains(v))
+      if (s.claim.origin == origin && s.claim.verdict == v &&
+          !but.contains(v) && !is_study(key))
         rows += row(key, s, links);
   return rows;
 }
@@ -181,6 +184,25 @@ std::string others(const std::vector<NamedDigest>& campaigns,
   return out.empty() ? "" : "\nPages without a statement: " + out + ".\n";
 }
 
+/// What studies came to, in a paragraph.
+std::string studies_line(const Papers& papers, const ResultsLinks& links) {
+  std::string out;
+  for (const auto& [paper, all] : papers)
+    for (const auto& [key, s] : all)
+      if (is_study(key))
+        out += fmt::format("{}[{}]({}/{}.md) {}",
+                           out.empty() ? "" : "; ",
+                           markdown(key.first.substr(key.first.find('/') + 1)),
+                           links.pages,
+                           folder_of(key.first),
+                           words_of(s.claim.verdict, s.claim.origin));
+  if (out.empty()) return "";
+  return "\nStudies, whether numbers come out whatever is chosen where the "
+         "paper "
+         "prints no choice: " +
+         out + ".\n";
+}
+
 std::string audit_link(const std::vector<NamedDigest>& campaigns,
                        const ResultsLinks& links) {
   if (audit_markdown(campaigns, links).empty()) return "";
@@ -228,7 +250,8 @@ std::string results_markdown(const std::vector<NamedDigest>& campaigns,
     if (!ranges.empty())
       out += fmt::format(
           "\n## Ranges of the suite that fail\n{}{}", kHead, ranges);
-    return out + others(campaigns, links) + audit_link(campaigns, links);
+    return out + studies_line(papers, links) + others(campaigns, links) +
+           audit_link(campaigns, links);
   } catch (const nlohmann::json::exception& error) {
     throw std::runtime_error(std::string("no digest of a campaign: ") +
                              error.what());

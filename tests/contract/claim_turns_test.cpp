@@ -510,8 +510,8 @@ const Steady* steady(const std::string& name) {
   return nullptr;
 }
 
-/// Most conditions turn in the first one or two.
-constexpr std::size_t kDraws = 12;
+/// Most conditions turn in the first one or two; what has failed is left then.
+constexpr std::size_t kDraws = 30;
 
 /// The conditions of an experiment that nothing has turned yet.
 class Untold {

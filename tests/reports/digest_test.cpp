@@ -193,6 +193,16 @@ TEST(Digest, AuditTellsVerdictsOfBeforeClaimsHadCauses) {
   expect_words(results_markdown({old, later}), {"](docs/results/audit.md)"});
 }
 
+TEST(Digest, StudiesStandInAParagraph) {
+  Section study = section(Verdict::reproduced, Verdict::depends);
+  study.experiment = "studies/a-choice";
+  study.claims.erase(study.claims.begin());
+  const std::string page =
+      results_markdown({{"a", digest_json({study}, origin())}});
+  expect_words(page, {"[a-choice](docs/results/studies-a-choice.md) depends."});
+  EXPECT_EQ(page.find("| [studies/"), page.npos) << page;
+}
+
 TEST(Digest, AuditHasWhatStayedReproducedAndTheHours) {
   auto old = named("old", Verdict::reproduced, Verdict::reproduced);
   old.published = old.digest;

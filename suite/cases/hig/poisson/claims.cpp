@@ -477,7 +477,9 @@ const std::vector<Claim> kSuite = {
      .conditions = {at_most("most dropped in an update",
                             of_phases(most_dropped),
                             0),
-                    report("smallest s / s_max", of_phases(smallest_seen))}},
+                    report("smallest s / s_max", of_phases(smallest_seen))},
+     .cause = fails("from weights that Adam has trained for 30,000 updates an "
+                    "update with b = 64 drops 2 of 4,096")},
     {.id = "A9",
      .from = "standard",
      .says = "At b = 64 HIG takes less memory than the paper's",

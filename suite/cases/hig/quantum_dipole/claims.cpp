@@ -295,9 +295,7 @@ const std::vector<Claim> kDensePaper =
                         median(kAdam30, time_to(paper(), 1e-2))))},
       .note = "That Adam with the largest rate drops first, the paper says "
               "itself (P3). Table 5 has no Adam with b = 16; it is taken to "
-              "last as long as with 256, which favours HIG.",
-      .cause = not_run("the runs of Fig. 4b at the profile standard: what is "
-                       "stored keeps the fastest Adam of all rates alone")},
+              "last as long as with 256, which favours HIG."},
      {.id = "P2",
       .origin = Origin::paper,
       .where = "Sec. 3.3, Fig. 4b",
