@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "suite/core/hash.h"
+#include "suite/diagnostics/stability_sweep.h"
 #include "suite/harness/registry.h"
 #include "suite/harness/study.h"
 #include "suite/results/published.h"
@@ -388,6 +389,15 @@ void signs_drawn(Cases& cases, Dice& dice) {
     });
   });
 }
+/// Of sweeps: how each point ended.
+void statuses_drawn(Cases& cases, Dice& dice) {
+  change_some(cases, dice, [&](StageRecord& s) {
+    const auto found = s.arrays.find("status");
+    if (found == s.arrays.end()) return;
+    for (double& status : found->second.reshaped())
+      status = static_cast<double>(dice.below(kSweepStatusNames.size()));
+  });
+}
 /// Two methods find the same.
 void ties(Cases& cases, Dice&) {
   exchange(cases, [](CaseRecord& a, CaseRecord& b) { a.stages = b.stages; });
@@ -431,6 +441,7 @@ constexpr std::pair<const char*, Perturbation> kPerturbations[] = {
     {"curves of some methods reversed", some_reversed},
     {"curves of some methods constant", some_constant},
     {"signs of some methods drawn", signs_drawn},
+    {"statuses of some methods drawn", statuses_drawn},
     {"methods tie", ties},
     {"losses of some methods are another's", losses_shared},
     {"estimates of some methods anywhere", estimates_anywhere},
