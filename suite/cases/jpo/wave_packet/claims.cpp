@@ -95,6 +95,10 @@ Quantity pool_median(const Select& runs, const RunRow& row) {
 }
 
 bool misses(double distance) { return distance > kBasin; }
+/// Of JPO, over more than a few of the paper's n and seeds.
+Quantity of_many_sets(const RunRow& row) {
+  return from_at_least(20, median_of_examples(kJpo, row));
+}
 Quantity better_share(const Select& runs) { return mean(runs, better()); }
 
 const auto kProblem = problem<WavePacket>("wave_packet");
@@ -215,14 +219,16 @@ std::vector<Claim> paper_claims() {
                                share_of_examples(kJpo, distances, misses),
                                0.2),
                       below("median |t0 - truth|, over BFGS's",
-                            median_of_examples(kJpo, distances),
+                            of_many_sets(distances),
                             median_of_examples(bfgs(), distances)),
                       below("over that of one guess for all",
-                            median_of_examples(kJpo, distances),
-                            median_of_examples(kJpo, distances_of_guess))},
+                            of_many_sets(distances),
+                            of_many_sets(distances_of_guess))},
+       .note = "Of all n together: alone, the largest sets lie nearer.",
        .cause = fails(
            "the median distance from the truth is 62 samples, of one guess for "
-           "all 60; BFGS, which is thrown out of the window, is farther")},
+           "all 60 (at n = 256 alone 25 and 50); BFGS, which is thrown out of "
+           "the window, is farther")},
       {.id = "P11",
        .origin = Origin::paper,
        .where = "App. D.1",
