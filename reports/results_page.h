@@ -31,10 +31,10 @@ std::string results_markdown(const std::vector<NamedDigest>& campaigns,
 std::map<std::string, std::string> experiment_pages(
     const std::vector<NamedDigest>& campaigns, const ResultsLinks& links = {});
 
-/// Markdown: all of the papers' claims as campaigns were published before claims
-/// had causes, and as they stand now with cause, deciding campaign and its runs;
-/// then the CPU-hours by paper, machine and revision. Empty if no campaign is so
-/// old. std::runtime_error as above.
+/// Markdown: all of the papers' claims as campaigns were published before
+/// claims had causes, and as they stand now with cause, deciding campaign and
+/// its runs; then the CPU-hours by paper, machine and revision. Empty if no
+/// campaign is so old. std::runtime_error as above.
 inline constexpr const char* kAuditPage = "audit.md";
 std::string audit_markdown(const std::vector<NamedDigest>& campaigns,
                            const ResultsLinks& links = {});
