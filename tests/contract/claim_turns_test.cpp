@@ -84,8 +84,9 @@ struct Throw {
 constexpr Index kLarge = 4'000;
 
 /// As many columns, again from the first one; of large fields as many as there
-/// are.
+/// are, of the largest, which nothing asks about, the first.
 Batch<double> columns(const Batch<double>& of, Index count) {
+  if (of.rows() > kLarge && of.cols() > 1) return of.leftCols(1);
   if (of.rows() * count > kLarge) return of;
   Batch<double> out(of.rows(), of.cols() == 0 ? 0 : count);
   for (Index i = 0; i < out.cols(); ++i) out.col(i) = of.col(i % of.cols());
