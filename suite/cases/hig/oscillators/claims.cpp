@@ -2,6 +2,7 @@
 // by the paper's clock, updates times the seconds of Table 3.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -353,13 +354,12 @@ const std::vector<Claim> kPaper = {
      .from = "paper",
      .says = "beta has only little influence on the outcome",
      .conditions = {below(
-         "highest over lowest beta, end; of kappa from -1 to 1/2",
+         "highest over lowest beta, end; of kappa from -3/4 to 1/2",
          spread_of(kBetas, last_loss()),
-         ratio(most(each(exponents([](double k) { return k < 1; }), at_end)),
-               least(each(kNegative, at_end))))},
-     .note = kOfFig12,
-     .cause = not_run("12 CPU-minutes a seed: the exponents of Fig. 12 at the "
-                      "profile paper")},
+         spread_of(exponents([](double k) { return std::abs(k) < 1; }),
+                   last_loss()))},
+     .note =
+         "With kappa of -1 and 1 most seeds diverge. " + std::string(kOfFig12)},
     {.id = "P11",
      .where = "App. C, Fig. 12b",
      .from = "paper",
@@ -376,8 +376,10 @@ const std::vector<Claim> kPaper = {
                             1.2)},
      .note = "The text prints beta = -0.5 and means kappa. " +
              std::string(kOfFig12),
-     .cause =
-         not_run("with P10: the exponents of Fig. 12 at the profile paper")},
+     .cause = fails(
+         "kappa = -3/4 ends at 4.0e-6 and -1 on the best of its five seeds at "
+         "1.6e-6, below -1/2 with 9.6e-6; the worst kappa < 0 ends 44 times "
+         "below the best kappa > 0, whose losses do stagnate (one seed)")},
     {.id = "P12",
      .where = "App. C, Fig. 13",
      .from = "paper",
