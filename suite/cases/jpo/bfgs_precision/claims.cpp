@@ -10,6 +10,7 @@
 
 #include "suite/cases/jpo/bfgs_precision/settings.h"
 #include "suite/cases/jpo/common/values.h"
+#include "suite/evidence/cell.h"
 #include "suite/evidence/claim.h"
 #include "suite/harness/registry.h"
 
@@ -215,14 +216,8 @@ Cell cell_of(const Study& s,
              const Choice& choice,
              const Column& c,
              const Evidence& e) {
-  const Measured m = c.of(choice)(e);
-  Cell cell{.ours = m.value, .spread = m.spread};
-  if (!m.value) cell.text = "not run";
-  if (c.printed.empty()) return cell;
-  if (const auto p =
-          find_printed(e.published, e.experiment, printed_name(s, c)))
-    cell.paper = p->value, cell.paper_spread = p->spread;
-  return cell;
+  const Cell own = physinv::cell_of(c.of(choice)(e));
+  return c.printed.empty() ? own : beside_printed(own, e, printed_name(s, c));
 }
 
 Section report(const Study& s,
