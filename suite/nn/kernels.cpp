@@ -2,6 +2,8 @@
 // of the widest registers of this build, measured in the same run;
 // machine/gemm<T> is Eigen's product, which stays with 256 bits.
 
+#include "suite/nn/kernels.h"
+
 #include <benchmark/benchmark.h>
 
 #include <Eigen/Core>
@@ -25,15 +27,6 @@
 
 namespace physinv::nn {
 namespace {
-
-void flops(benchmark::State& state, double per_iteration) {
-  state.counters["FLOPS"] = benchmark::Counter(
-      per_iteration, benchmark::Counter::kIsIterationInvariantRate);
-}
-
-double products(Index m, Index n, Index k) {
-  return 2.0 * static_cast<double>(m * n * k);
-}
 
 // ------------------------------------------------------------ the machine
 
@@ -94,17 +87,6 @@ BENCHMARK(machine_gemm<double>)
 BENCHMARK(machine_copy)->Name("machine/copy_64MiB");
 
 // --------------------------------------------------------------- products
-
-template <class T>
-struct LaneBlock {
-  LaneBlock(Index rows, Index samples) : lanes(nullptr, rows, samples) {
-    buffer.resize(lanes.stride, rows);
-    buffer.setRandom();
-    lanes.data = buffer.data();
-  }
-  Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic> buffer;
-  Lanes<T> lanes;
-};
 
 /// W X, with rows of W contiguous in k (forward) or in m (input gradient).
 template <class T, bool kTransposed>

@@ -8,6 +8,7 @@
 
 #include "suite/core/workspace.h"
 #include "suite/nn/conv.h"
+#include "suite/nn/kernels.h"
 
 #ifdef PHYSINV_BENCH_DNNL
 #include <dnnl.hpp>
@@ -30,13 +31,9 @@ struct Plane {
         n(state.range(4)) {}
   Index height, width, in, out, n;
 
-  Index positions() const { return height * width; }
   /// Products of one pass, the border's taps included.
   void count(benchmark::State& state) const {
-    const double products =
-        2.0 * 9 * static_cast<double>(in * out * positions() * n);
-    state.counters["FLOPS"] = benchmark::Counter(
-        products, benchmark::Counter::kIsIterationInvariantRate);
+    flops(state, products(out, height * width * n, 9 * in));
   }
 };
 
@@ -56,14 +53,9 @@ void own(benchmark::State& state) {
                            .in = plane.in,
                            .out = plane.out,
                            .taps = {3, 3}});
-  const auto lanes = [&](Index channels, Batch<float>& memory) {
-    Lanes<float> x(nullptr, plane.positions() * channels, plane.n);
-    memory = Batch<float>::Random(x.stride, x.rows);
-    x.data = memory.data();
-    return x;
-  };
-  Batch<float> x, y, y_bar, x_bar;
-  const auto in = lanes(plane.in, x), out = lanes(plane.out, y);
+  const Index inputs = layer.inputs(), outputs = layer.outputs();
+  LaneBlock<float> x(inputs, plane.n), x_bar(inputs, plane.n);
+  LaneBlock<float> y(outputs, plane.n), y_bar(outputs, plane.n);
   Index weights = 0;
   for (const TensorInfo& t : layer.tensors()) weights += t.size;
   const Vector<float> p = Vector<float>::Random(weights);
@@ -72,13 +64,13 @@ void own(benchmark::State& state) {
   Tape tape;
   const LayerArgs<float> at{
       .parameters = p.data(), .tape = &tape, .work = &work, .training = true};
-  layer.forward(at, in, out);
-  Backward<float> b{.x = in, .y = out, .y_bar = lanes(plane.out, y_bar)};
+  layer.forward(at, x.lanes, y.lanes);
+  Backward<float> b{.x = x.lanes, .y = y.lanes, .y_bar = y_bar.lanes};
   if (pass == Which::weights) b.parameters_bar = p_bar.data();
-  if (pass == Which::input) b.x_bar = lanes(plane.in, x_bar);
+  if (pass == Which::input) b.x_bar = x_bar.lanes;
   for (auto _ : state) {
     if (pass == Which::forward)
-      layer.forward(at, in, out);
+      layer.forward(at, x.lanes, y.lanes);
     else
       layer.backward(at, b);
     benchmark::ClobberMemory();
@@ -182,8 +174,7 @@ void xsmm(benchmark::State& state) {
     kernel(x.data(), w.data(), y.data());
     benchmark::ClobberMemory();
   }
-  state.counters["FLOPS"] = benchmark::Counter(
-      2.0 * m * n * k, benchmark::Counter::kIsIterationInvariantRate);
+  flops(state, products(m, n, k));
 }
 BENCHMARK(xsmm)
     ->Name("nn/libxsmm/forward<float>")
