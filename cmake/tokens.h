@@ -62,8 +62,9 @@ class Lexer {
     return std::min(text_.find("*/", at_ + 2), text_.size() - 2) + 2;
   }
 
-  /// Comments and white space; how many lines end in there.
-  int skip() {
+  /// Comments and white space; how many lines end in there. Of one line: up to
+  /// its end.
+  int skip(bool of_line = false) {
     int lines = 0;
     while (at_ < text_.size()) {
       if (starts("//"))
@@ -72,7 +73,7 @@ class Lexer {
         at_ = past_comment();
       else if (starts("\\\n"))
         at_ += 2;
-      else if (is_space(text_[at_]))
+      else if (is_space(text_[at_]) && !(of_line && text_[at_] == '\n'))
         lines += text_[at_++] == '\n' ? 1 : 0;
       else
         break;
@@ -157,21 +158,9 @@ class Lexer {
     }
   }
 
-  /// Skips comments and white space, but no end of a line.
   bool end_of_line() {
-    while (at_ < text_.size() && text_[at_] != '\n') {
-      if (starts("//"))
-        at_ = from_here("\n");
-      else if (starts("/*"))
-        at_ = past_comment();
-      else if (starts("\\\n"))
-        at_ += 2;
-      else if (is_space(text_[at_]))
-        ++at_;
-      else
-        return false;
-    }
-    return true;
+    skip(true);
+    return at_ >= text_.size() || text_[at_] == '\n';
   }
 
   std::string_view text_;

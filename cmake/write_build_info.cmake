@@ -38,19 +38,23 @@ function(physinv_scan result)
   set(${result} "${lines}" PARENT_SCOPE)
 endfunction()
 
-# Text of 16 digits over texts and sources.
-function(physinv_digest result text)
-  physinv_scan(lines ${ARGN})
+# Text of 16 digits over texts and scanned sources.
+function(physinv_digest result text lines)
   string(SHA256 digest "${text}\n${lines}")
   string(SUBSTRING ${digest} 0 16 digest)
   set(${result} ${digest} PARENT_SCOPE)
 endfunction()
 
-physinv_digest(foundation "${bit_flags} ${libc} ${eigen} ${sleef}" ${everywhere})
-physinv_digest(fingerprint ${foundation} ${numerics})
+physinv_scan(everywhere_lines ${everywhere})
+physinv_scan(numerics_lines ${numerics})
+physinv_scan(cases_lines ${cases})
+physinv_scan(interfaces_lines ${interfaces})
+physinv_digest(foundation "${bit_flags} ${libc} ${eigen} ${sleef}"
+  "${everywhere_lines}")
+physinv_digest(fingerprint ${foundation} "${numerics_lines}")
 physinv_digest(interfaces "${compiler} ${compiler_version} ${flags}"
-  ${interfaces})
-physinv_scan(table ${numerics} ${cases})
+  "${interfaces_lines}")
+set(table "${numerics_lines}${cases_lines}")
 
 set(files)
 foreach(source IN LISTS sources)
