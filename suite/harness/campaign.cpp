@@ -178,6 +178,8 @@ class Campaign {
                      .revision = revision_,
                      .checkpoints = {.store = options_.out,
                                      .seconds = options_.checkpoint_seconds}});
+    if (count > 1 && !options_.order)
+      queue_ = largest_first(std::move(queue_), work_left());
     while (stop_signals() == 0) {
       hand_out(workers);
       if (running_.empty()) break;
@@ -189,6 +191,18 @@ class Campaign {
     }
     if (stop_signals() != 0) wind_up(workers);
     for (const auto& [worker, index] : running_) queue_.push_back(index);
+  }
+
+  /// Declared operations of the stages that are left of each case.
+  std::vector<double> work_left() const {
+    std::vector<double> left(cases_.size());
+    for (const std::size_t i : queue_) {
+      const Case& c = cases_[i];
+      for (std::size_t k = c.info.stages.size();
+           k-- > 0 && !counted_.contains({i, k});)
+        left[i] += c.operations(k);
+    }
+    return left;
   }
 
   /// What arrives is kept. A second signal does not wait.
@@ -448,6 +462,14 @@ void dry_run(const Prepared& prepared,
              reused,
              left,
              all);
+}
+
+std::vector<std::size_t> largest_first(std::vector<std::size_t> queue,
+                                       const std::vector<double>& work) {
+  std::stable_sort(queue.begin(), queue.end(), [&](auto a, auto b) {
+    return work[a] > work[b];
+  });
+  return queue;
 }
 
 CampaignResult run_campaign(Prepared prepared,

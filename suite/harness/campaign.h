@@ -18,7 +18,7 @@ namespace physinv {
 
 struct CampaignOptions {
   std::filesystem::path out;
-  int jobs = 1;     ///< worker processes
+  int jobs = 1;     ///< worker processes; several take the largest case first
   int threads = 1;  ///< inside a case
   /// Seconds after which no further case is started; 0 for none.
   double time_budget = 0;
@@ -66,6 +66,12 @@ struct CampaignResult {
   double bookkeeping = 0;  ///< CPU seconds for all but stages and data
   double waiting = 0;      ///< wall seconds for the disk, without CPU
 };
+
+/// The queue (indices of cases) by falling work, so that no worker has the
+/// largest case to itself at the end (Graham 1969); equal ones keep their
+/// order.
+std::vector<std::size_t> largest_first(std::vector<std::size_t> queue,
+                                       const std::vector<double>& work);
 
 /// Runs what the store does not hold. Only this process writes to it; finished
 /// stages go to the disk together, every two seconds (or as often as stages

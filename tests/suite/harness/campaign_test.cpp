@@ -80,6 +80,13 @@ TEST_F(CampaignTest, SameBitsForJobsThreadsAndOrder) {
   EXPECT_EQ(once, bits(root_ / "c"));
 }
 
+TEST(LargestFirst, SortsByWorkAndKeepsTheOrderOfEqualOnes) {
+  EXPECT_EQ(largest_first({4, 1, 3, 0}, {2, 5, 9, 2, 7}),
+            (std::vector<std::size_t>{4, 1, 3, 0}));
+  EXPECT_EQ(largest_first({0, 1, 2, 3, 4}, {2, 5, 9, 2, 7}),
+            (std::vector<std::size_t>{2, 4, 1, 0, 3}));
+}
+
 TEST_F(CampaignTest, ReusesWhatIsFinished) {
   run("smoke", {.out = root_ / "a"});
   const std::string once = bits(root_ / "a");
