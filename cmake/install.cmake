@@ -54,6 +54,8 @@ install(FILES
     ${PROJECT_SOURCE_DIR}/cmake/FindSLEEF.cmake
     ${PROJECT_SOURCE_DIR}/cmake/outside_sources.cmake
     ${PROJECT_SOURCE_DIR}/cmake/physinv-outside.cmake
+    ${PROJECT_SOURCE_DIR}/cmake/revision.cmake
+    ${PROJECT_SOURCE_DIR}/cmake/write_revision.cmake
     ${physinv_info}/physinv-build.cmake
     ${PROJECT_BINARY_DIR}/physinv-config-version.cmake
   DESTINATION ${physinv_package} COMPONENT development)

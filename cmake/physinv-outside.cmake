@@ -11,6 +11,8 @@
 # SOURCES and the headers that they include enter the content keys: an edit makes
 # stale what is computed from them, and nothing else.
 
+include(${CMAKE_CURRENT_LIST_DIR}/revision.cmake)
+
 # physinv_own_sources(<target> <plugin: true | false>)
 function(physinv_own_sources target plugin)
   get_target_property(sources ${target} SOURCES)
@@ -42,6 +44,7 @@ set(include_folders \"$<TARGET_PROPERTY:${target},INCLUDE_DIRECTORIES>\")
     COMMENT "Sources of ${target}"
     VERBATIM)
   target_sources(${target} PRIVATE ${info}/sources.cpp)
+  physinv_revision(${target} ${target} ${PROJECT_SOURCE_DIR} ${info})
   # Designated initializers name what they set; the rest is default on purpose.
   target_compile_options(${target} PRIVATE -Wno-missing-field-initializers)
 endfunction()

@@ -12,6 +12,7 @@
 
 #include "suite/harness/build_info.h"
 #include "suite/harness/context.h"
+#include "suite/harness/revision.h"
 #include "suite/results/checksum.h"
 #include "suite/results/file.h"
 

@@ -9,11 +9,10 @@
 #include <filesystem>
 #include <fstream>
 #include <string_view>
-#include <vector>
 
 #include "suite/harness/build_info.h"
-#include "suite/harness/child.h"
 #include "suite/harness/outside.h"
+#include "suite/harness/revision.h"
 #include "suite/harness/run_case.h"
 
 namespace physinv {
@@ -28,16 +27,6 @@ std::string first_line(const fs::path& path) {
   std::string line;
   std::getline(file, line);
   return line;
-}
-
-/// Output of a program found in PATH, nothing if it fails.
-std::string output_of(std::vector<std::string> arguments) {
-  constexpr double kLongestAnswer = 10;
-  Ended ended = run_child(std::move(arguments), {.seconds = kLongestAnswer});
-  if (ended.status != 0) return {};
-  std::string& text = ended.output;
-  while (!text.empty() && text.back() == '\n') text.pop_back();
-  return text;
 }
 
 /// Value of the first "key : value" line of /proc/cpuinfo.
@@ -100,19 +89,6 @@ json load() {
   return all;
 }
 
-/// Of the sources in a folder.
-std::string revision_of(std::string_view folder) {
-  const std::string revision = output_of({"git",
-                                          "-C",
-                                          std::string(folder),
-                                          "describe",
-                                          "--always",
-                                          "--dirty=+dirty",
-                                          "--abbrev=40",
-                                          "--exclude=*"});
-  return revision.empty() ? "unknown" : revision;
-}
-
 /// Who else wrote what ran: the program, if it is not the suite's, and what it
 /// loaded.
 void add_outsides(json& context) {
@@ -120,7 +96,7 @@ void add_outsides(json& context) {
   for (const Outside& o : outsides())
     if (o.plugin)
       context["plugins"].push_back(
-          {{"name", o.name}, {"git_revision", revision_of(o.root)}});
+          {{"name", o.name}, {"git_revision", revision_of(o.name)}});
 }
 
 std::string host_name() {
@@ -144,11 +120,6 @@ int available_cores() {
 }
 
 std::string processor_name() { return cpuinfo("model name"); }
-
-std::string git_revision() {
-  const Outside* own = outside_program();
-  return revision_of(own == nullptr ? PHYSINV_SOURCE_DIR : own->root);
-}
 
 json machine_context(const std::string& revision) {
   const BuildInfo& build = build_info();
@@ -200,6 +171,7 @@ std::string version_text() {
              "compiler         {} {} ({})\n"
              "flags            {}\n"
              "instruction set  {}\n"
+             "revision         {}\n"
              "numerics         {}\n"
              "libraries        Eigen {}, SLEEF {}, HDF5 {}, nlohmann-json "
              "{}, "
@@ -210,6 +182,7 @@ std::string version_text() {
              b.build_type,
              b.flags,
              b.instruction_set,
+             git_revision(),
              b.fingerprint,
              b.eigen,
              b.sleef,

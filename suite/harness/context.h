@@ -16,12 +16,8 @@ int available_cores();
 /// As the processor calls itself; empty if unknown.
 std::string processor_name();
 
-/// Revision of the program's own sources, "+dirty" appended if a tracked file
-/// differs; "unknown" without git. Asks git, so some milliseconds.
-std::string git_revision();
-
 /// Machine and build: date, host, processor, caches, load, compiler, flags,
-/// versions, revision.
+/// versions, revision (revision.h).
 nlohmann::json machine_context(const std::string& revision);
 
 /// The build alone, some lines of text for --version.

@@ -66,12 +66,15 @@ class Pendulum(unittest.TestCase):
 
     def test_1_records_whose_it_is(self):
         self.assertEqual(self.run_smoke(), (2, 0))
-        with open(RESULTS + "/results.json") as f:
-            context = json.load(f)["context"]
         head = run(*GIT, "rev-parse", "HEAD").strip()
-        self.assertEqual(context["program"], "pendulum")
-        self.assertEqual(context["git_revision"], head)
-        self.assertFalse(context["git_dirty"])
+        run(*GIT, "commit", "-q", "--allow-empty", "-m", "Not built")
+        pendulum("--profile=smoke", "--out=" + WORK + "/later")
+        for results in (RESULTS, WORK + "/later"):
+            with open(results + "/results.json") as f:
+                context = json.load(f)["context"]
+            self.assertEqual(context["program"], "pendulum")
+            self.assertEqual(context["git_revision"], head)
+            self.assertFalse(context["git_dirty"])
         self.assertIn("pendulum, built on", pendulum("--version"))
         self.assertIn("pendulum list", pendulum("--help"))
 
