@@ -123,6 +123,9 @@ RunValue better(Equality equality) {
 RunValue equal(Equality equality) {
   return against_bfgs([](const Shares& s) { return s.equal; }, equality);
 }
+RunValue worse() {
+  return against_bfgs([](const Shares& s) { return s.worse; });
+}
 RunValue f() {
   return against_bfgs([](const Shares& s) { return s.f(); });
 }

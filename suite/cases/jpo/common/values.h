@@ -33,9 +33,10 @@ std::optional<Run> bfgs_beside(const Run& run);
 // ---- numbers of one run ---------------------------------------------------
 
 /// Shares of the run's problems: losses below BFGS's, equal to them bit by
-/// bit, and f = better + equal / 2.
+/// bit, above them, and f = better + equal / 2.
 RunValue better(Equality equality = Equality::strict);
 RunValue equal(Equality equality = Equality::strict);
+RunValue worse();
 RunValue f();
 RunValue solved(const Solved& solved);
 /// Share that it solves less the share that BFGS solves.

@@ -119,11 +119,8 @@ const auto kPlain = plain("jpo"), kRefined = refined("jpo");
 
 std::vector<Quantity> worse_of_few() {
   std::vector<Quantity> all;
-  for (const Main& e : kMain) {
-    const Select runs = at(kRefined.in(e.name), e.smallest);
-    all.push_back(
-        difference(difference(1, mean(runs, better())), mean(runs, equal())));
-  }
+  for (const Main& e : kMain)
+    all.push_back(mean(at(kRefined.in(e.name), e.smallest), worse()));
   return all;
 }
 Quantity with_bfgs(const Main& e) {
