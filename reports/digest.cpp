@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "reports/latest_claims.h"
 #include "reports/plot.h"
 #include "reports/report.h"
@@ -14,14 +12,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The papers' figures of curves and points: a picture of a field is a file of
-/// its own size.
-bool is_kept(const Figure& f) {
-  return !f.source.empty() && f.moment == 0 &&
-         std::none_of(f.panels.begin(), f.panels.end(), [](const Panel& p) {
-           return p.field.has_value();
-         });
-}
+/// The papers' figures. A film is a file of its own size.
+bool is_kept(const Figure& f) { return !f.source.empty() && f.moment == 0; }
 
 std::string file_of(const Section& section, const Figure& figure) {
   return fmt::format("{}-{}.svg", folder_of(section.experiment), figure.id);

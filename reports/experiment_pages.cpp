@@ -1,11 +1,15 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
 #include <stdexcept>
 
+#include "reports/digest.h"
+#include "reports/joined_tables.h"
 #include "reports/latest_claims.h"
 #include "reports/report.h"
 #include "reports/results_page.h"
+#include "reports/tables.h"
 #include "suite/results/markdown.h"
 
 namespace physinv {
@@ -69,6 +73,24 @@ std::string figures_of(const Json& section,
   return out;
 }
 
+/// What the campaign kept and, of a paper's own section, the tables that its
+/// experiments share, unless they were kept.
+std::vector<std::string> tables_of(const Json& section, const Json& digest) {
+  std::vector<std::string> tables;
+  for (const Json& table : section.at("tables"))
+    tables.push_back(table.get<std::string>());
+  const std::string paper = section.at("paper");
+  if (paper != section.at("experiment")) return tables;
+  std::vector<Table> kept;
+  for (const std::string& table : tables) kept.push_back(table_of(table, ""));
+  for (const Table& joined : joined_tables(sections_of(digest), paper))
+    if (std::none_of(kept.begin(), kept.end(), [&](const Table& t) {
+          return t.source == joined.source && t.title == joined.title;
+        }))
+      tables.push_back(to_markdown(joined));
+  return tables;
+}
+
 std::string campaign_of(const NamedDigest& campaign,
                         const Json& section,
                         const ResultsLinks& links) {
@@ -92,8 +114,8 @@ std::string campaign_of(const NamedDigest& campaign,
   if (cpu != campaign.cpu_seconds.end())
     out += fmt::format(", {:.0f} s of CPU", cpu->second);
   out += '\n';
-  for (const Json& table : section.at("tables"))
-    out += '\n' + table.get<std::string>();
+  for (const std::string& table : tables_of(section, campaign.digest))
+    out += '\n' + table;
   return out + figures_of(section, campaign.name, links);
 }
 
@@ -106,7 +128,7 @@ std::string page_of(const std::string& experiment,
     for (const Json& section : c.digest.at("sections")) {
       if (section.at("experiment") != experiment) continue;
       if (title.empty()) title = text_of(section, "title");
-      if (!section.at("tables").empty() || section.contains("figures"))
+      if (!tables_of(section, c.digest).empty() || section.contains("figures"))
         body += campaign_of(c, section, links);
     }
   std::string out = fmt::format(

@@ -136,7 +136,7 @@ std::string publication(const std::string& paper,
 /// Hours, machines and revisions of the campaigns that ran a paper's cases.
 std::string spent(const std::string& paper,
                   const std::vector<NamedDigest>& campaigns) {
-  constexpr double kHour = 3600;
+  constexpr double kSecondsAnHour = 3600;
   double seconds = 0;
   std::set<std::string> machines;
   std::vector<std::string> revisions;
@@ -158,7 +158,7 @@ std::string spent(const std::string& paper,
   return fmt::format(
       "{} campaigns, {:.2f} CPU-hours of solving, {}; revisions {}.\n",
       count,
-      seconds / kHour,
+      seconds / kSecondsAnHour,
       markdown(fmt::format("{}", fmt::join(machines, ", "))),
       markdown(fmt::format("{}", fmt::join(revisions, ", "))));
 }

@@ -10,6 +10,7 @@
 #include <set>
 #include <utility>
 
+#include "reports/joined_tables.h"
 #include "reports/printed_curves.h"
 #include "suite/app/installed.h"
 #include "suite/evidence/standings.h"
@@ -218,6 +219,10 @@ std::vector<Section> sections_of(const Results& results,
     }
     apply(e->looks, section.figures);
   }
+  for (Section& overview : sections)
+    if (overview.experiment == overview.paper)
+      for (Table& table : joined_tables(sections, overview.paper))
+        overview.tables.push_back(std::move(table));
   return sections;
 }
 

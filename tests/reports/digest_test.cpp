@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "reports/joined_tables.h"
 #include "reports/latest_claims.h"
 #include "reports/results_page.h"
 #include "reports/tables.h"
@@ -101,12 +102,63 @@ TEST(Digest, PageOfAnExperimentSaysWhereItsNumbersComeFrom) {
                 "jpo-toy-curves.svg)"});
 }
 
-TEST(Digest, KeepsCurvesAndNoPictures) {
-  const auto files =
-      kept_figures({section(Verdict::reproduced, Verdict::reproduced)});
-  ASSERT_EQ(files.size(), 1U);
-  EXPECT_EQ(files.begin()->first, "jpo-toy-curves.svg");
-  EXPECT_EQ(files.begin()->second.substr(0, 4), "<svg");
+TEST(Digest, KeepsThePapersFiguresAndNoFilms) {
+  Section kept = section(Verdict::reproduced, Verdict::reproduced);
+  Figure& picture = kept.figures.emplace_back(kept.figures.back());
+  picture.id = "fig6a", picture.source = "Fig. 6a";
+  kept.figures.push_back(picture);
+  kept.figures.back().id = "film", kept.figures.back().moment = 1;
+  const auto files = kept_figures({kept});
+  ASSERT_EQ(files.size(), 2U);
+  for (const char* name : {"jpo-toy-curves.svg", "jpo-toy-fig6a.svg"})
+    EXPECT_EQ(files.at(name).substr(0, 4), "<svg") << name;
+}
+
+/// A campaign of two experiments that share a table, and their paper's part.
+std::vector<Section> with_shared_table(const char* label) {
+  std::vector<Section> all = {{.experiment = "jpo", .paper = "jpo"}};
+  for (const char* title : {"Toy", "Game"})
+    all.push_back({.experiment = std::string("jpo/") + title,
+                   .title = title,
+                   .paper = "jpo",
+                   .tables = {{.id = "table4",
+                               .title = "Better than BFGS",
+                               .source = "Table 4",
+                               .unit = "%",
+                               .corner = "equality",
+                               .columns = {"JPO"},
+                               .rows = {{*label != 0 ? label : title,
+                                         {{.ours = 50, .paper = 62.5}}}}}}});
+  return all;
+}
+
+TEST(Digest, PageOfAPaperHasTheTablesThatItsExperimentsShare) {
+  const auto page = [](const std::vector<Section>& all) {
+    return experiment_pages({{"first", digest_json(all, origin())}})
+        .at("jpo.md");
+  };
+  expect_words(page(with_shared_table("strict")),
+               {"**Table 4 · Better than BFGS [%]**",
+                "| experiment, equality |",
+                "| Toy, strict          | 50.0 |  62.5 |",
+                "| Game, strict         | 50.0 |  62.5 |"});
+  expect_words(page(with_shared_table("")),
+               {"| Toy      | 50.0 |  62.5 |", "| Game     | 50.0 |  62.5 |"});
+  auto kept = with_shared_table("strict");
+  kept.front().tables = joined_tables(kept, "jpo");
+  const std::string once = page(kept);
+  EXPECT_EQ(once.find("**Table 4"), once.rfind("**Table 4"));
+  kept.front().tables.clear();
+  kept.pop_back();
+  EXPECT_EQ(page(kept).find("Table 4"), std::string::npos);
+}
+
+TEST(Digest, TablesOfOtherColumnsOrPapersAreNotJoined) {
+  auto all = with_shared_table("strict");
+  EXPECT_EQ(joined_tables(all, "jpo").size(), 1U);
+  EXPECT_TRUE(joined_tables(all, "hig").empty());
+  all.back().tables.front().columns = {"Adam"};
+  EXPECT_TRUE(joined_tables(all, "jpo").empty());
 }
 
 TEST(Digest, IdsAreInTheOrderOfTheirNumbers) {
