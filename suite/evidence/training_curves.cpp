@@ -155,20 +155,10 @@ void LearningCurves::metric(const std::vector<MethodLine>& lines,
                             std::string id,
                             std::string title,
                             std::string source) {
-  Panel one = over("updates", std::move(y_label));
-  for (const MethodLine& line : lines) {
-    std::vector<Points> seeds;
-    for (const auto* s :
-         trained_stages(results_, section_.experiment, line.method))
-      if (s->arrays.contains("metrics"))
-        seeds.push_back(points_of({s, 1}, "metrics", row, 0));
-    if (!seeds.empty())
-      one.series.push_back(median_series(seeds, line, &Points::updates));
-  }
   add({.id = std::move(id),
        .title = std::move(title),
        .source = std::move(source),
-       .panels = {std::move(one)},
+       .panels = {metric_panel(lines, row, std::move(y_label))},
        .columns = 1,
        .note = "Median over seeds, band: 10 % and 90 % quantiles."});
 }
@@ -176,6 +166,22 @@ void LearningCurves::metric(const std::vector<MethodLine>& lines,
 Panel LearningCurves::panel(const std::vector<MethodLine>& lines) const {
   return loss_panels(results_, section_.experiment, lines, Stages::last)
       .front();
+}
+
+Panel LearningCurves::metric_panel(const std::vector<MethodLine>& lines,
+                                   Index row,
+                                   std::string y_label) const {
+  Panel panel = over("updates", std::move(y_label));
+  for (const MethodLine& line : lines) {
+    std::vector<Points> seeds;
+    for (const auto* s :
+         trained_stages(results_, section_.experiment, line.method))
+      if (s->arrays.contains("metrics"))
+        seeds.push_back(points_of({s, 1}, "metrics", row, 0));
+    if (!seeds.empty())
+      panel.series.push_back(median_series(seeds, line, &Points::updates));
+  }
+  return panel;
 }
 
 void LearningCurves::add(Figure figure) {

@@ -14,6 +14,9 @@
 
 namespace physinv {
 
+template <class T>
+class Problem;
+
 /// Finished chains of training stages at the experiment's only n, one for each
 /// seed that has one, and their last stages.
 std::vector<const CaseRecord*> trained_chains(const Results& results,
@@ -23,15 +26,21 @@ std::vector<const StageRecord*> trained_stages(const Results& results,
                                                std::string_view experiment,
                                                std::string_view method);
 
-/// The first example of the first seed: what was asked and what a method's
-/// network answers. Empty if it was not run to its end.
+/// An example of the first seed: what was asked and what a method's network
+/// answers. Empty if it was not run to its end, or on fewer examples.
 struct Answered {
   Vector<double> given, wanted, truth;  ///< truth: no entries if not known
   Vector<double> x;
 };
-std::optional<Answered> first_answer(const Results& results,
-                                     std::string_view experiment,
-                                     std::string_view method);
+std::optional<Answered> answer_of(const Results& results,
+                                  std::string_view experiment,
+                                  std::string_view method,
+                                  Index example);
+inline std::optional<Answered> first_answer(const Results& results,
+                                            std::string_view experiment,
+                                            std::string_view method) {
+  return answer_of(results, experiment, method, 0);
+}
 
 /// A method as a figure shows it.
 struct MethodLine {
@@ -41,14 +50,25 @@ struct MethodLine {
   std::string key = {};  ///< lines of one look alike; empty: the method
 };
 
-/// Fields of the first example of the first seed: the truth, what is observed
-/// and what each method's network answers.
-Figure answered_fields(
-    const Results& results,
-    std::string_view experiment,
-    const std::vector<MethodLine>& lines,
-    std::string source,
-    const std::function<Panel(std::string, const Vector<double>&)>& picture);
+/// What a problem makes of an answer.
+Vector<double> observed(const Problem<double>& problem, const Answered& answer);
+
+/// How fields of examples are drawn.
+struct AnsweredFields {
+  std::string source;
+  Index examples = 1;  ///< the first ones
+  std::function<Panel(std::string, const Vector<double>&)> picture;
+  /// What is observed of an answer.
+  std::function<Vector<double>(const Answered&)> observe;
+};
+
+/// Of the first seed, two rows for each example: what is observed, and what of
+/// each method's answer would be; the truth, and what each method's network
+/// answers. Scales reach at least as far as that of a row's first field.
+Figure answered_fields(const Results& results,
+                       std::string_view experiment,
+                       const std::vector<MethodLine>& lines,
+                       const AnsweredFields& drawn);
 
 /// Seconds of an update by a row of the paper's tables ("table3/hig/b=128").
 std::optional<double> paper_update(const Published& published,
@@ -90,8 +110,11 @@ class LearningCurves {
               std::string title,
               std::string source);
 
-  /// Test loss over updates: a panel for a figure of another form.
+  /// Panels for figures of another form: the test loss, a row of `metrics`.
   Panel panel(const std::vector<MethodLine>& lines) const;
+  Panel metric_panel(const std::vector<MethodLine>& lines,
+                     Index row,
+                     std::string y_label) const;
 
   void add(Figure figure);
 
@@ -115,10 +138,12 @@ Figure update_times(const Results& results,
 /// A method beside a row of the paper's tables of memory and durations.
 struct CostLine {
   std::string method, label;
-  std::string published;  ///< "table3/hig/b=128"
+  std::string published;      ///< "table3/hig/b=128"
+  std::string jacobian = {};  ///< the method that takes its Jacobian alone
 };
 
-/// Memory and duration of an update, ours and the paper's.
+/// Memory and duration of an update and, where its experiment
+/// `<name>-jacobians` was run, of its Jacobian, ours and the paper's.
 Table cost_table(const Results& results,
                  std::string_view experiment,
                  const Published& published,

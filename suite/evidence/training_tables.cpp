@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <tuple>
 #include <utility>
 
+#include "suite/core/problem.h"
 #include "suite/evidence/cell.h"
 #include "suite/evidence/curve.h"
+#include "suite/evidence/field_panel.h"
 #include "suite/evidence/options.h"
 #include "suite/evidence/statistics.h"
 #include "suite/evidence/training_report.h"
@@ -132,42 +135,115 @@ Figure update_times(const Results& results,
           .note = timed.note()};
 }
 
-std::optional<Answered> first_answer(const Results& results,
-                                     std::string_view experiment,
-                                     std::string_view method) {
+std::optional<Answered> answer_of(const Results& results,
+                                  std::string_view experiment,
+                                  std::string_view method,
+                                  Index example) {
   const auto chains = trained_chains(results, experiment, method);
   if (chains.empty()) return {};
   const CaseRecord& c = *chains.front();
   const Batch<double>& x = c.stages.back().x;
-  if (x.cols() == 0 || c.data.y.cols() == 0 || !x.col(0).allFinite()) return {};
-  const auto first = [](const Batch<double>& all) {
-    return all.size() > 0 ? Vector<double>(all.col(0)) : Vector<double>();
+  if (x.cols() <= example || c.data.y.cols() <= example ||
+      !x.col(example).allFinite())
+    return {};
+  const auto column = [&](const Batch<double>& all) {
+    return all.size() > 0 ? Vector<double>(all.col(example)) : Vector<double>();
   };
   return Answered{
-      first(c.data.given), first(c.data.y), first(c.data.x), first(x)};
+      column(c.data.given), column(c.data.y), column(c.data.x), column(x)};
 }
 
-Figure answered_fields(
-    const Results& results,
-    std::string_view experiment,
-    const std::vector<MethodLine>& lines,
-    std::string source,
-    const std::function<Panel(std::string, const Vector<double>&)>& picture) {
-  Figure figure{.id = "fields",
-                .title = "What was there, what is seen, what is found",
-                .source = std::move(source),
-                .columns = 3,
-                .note = "First test example."};
+Vector<double> observed(const Problem<double>& problem,
+                        const Answered& answer) {
+  Batch<double> y(problem.shape().observations, 1);
+  Workspace work;
+  problem.forward(answer.x, answer.given, y, work);
+  return y;
+}
+
+namespace {
+
+/// Colours reach at least as far as in the first panel.
+void scale_like_first(std::vector<Panel>& row) {
+  share_scale({row.data(), 1});
+  for (Panel& panel : row)
+    if (panel.field && row.front().field) {
+      panel.field->min = row.front().field->min;
+      panel.field->max = row.front().field->max;
+    }
+}
+
+/// The two rows of an example; none if nobody answers it.
+struct FieldRows {
+  std::vector<Panel> observed, answers;
+};
+FieldRows rows_of(const Results& results,
+                  std::string_view experiment,
+                  const std::vector<MethodLine>& lines,
+                  const AnsweredFields& drawn,
+                  Index example) {
+  FieldRows rows;
   for (const MethodLine& line : lines) {
-    const auto answer = first_answer(results, experiment, line.method);
+    const auto answer = answer_of(results, experiment, line.method, example);
     if (!answer) continue;
-    if (figure.panels.empty())
-      figure.panels = {picture("truth x*", answer->truth),
-                       picture("observed y", answer->wanted)};
-    figure.panels.push_back(picture(line.label, answer->x));
+    if (rows.observed.empty()) {
+      rows.observed.push_back(drawn.picture("observed y*", answer->wanted));
+      rows.answers.push_back(drawn.picture("truth x*", answer->truth));
+    }
+    rows.observed.push_back(
+        drawn.picture(line.label + ", y", drawn.observe(*answer)));
+    rows.answers.push_back(drawn.picture(line.label + ", x", answer->x));
   }
+  return rows;
+}
+
+}  // namespace
+
+Figure answered_fields(const Results& results,
+                       std::string_view experiment,
+                       const std::vector<MethodLine>& lines,
+                       const AnsweredFields& drawn) {
+  Figure figure{.id = "fields",
+                .title = "What is seen, and what is found",
+                .source = drawn.source};
+  Index examples = 0;
+  for (; examples < drawn.examples; ++examples) {
+    auto [observed, answers] =
+        rows_of(results, experiment, lines, drawn, examples);
+    if (observed.empty()) break;
+    figure.columns = static_cast<int>(observed.size());
+    for (auto* row : {&observed, &answers}) {
+      scale_like_first(*row);
+      std::move(row->begin(), row->end(), std::back_inserter(figure.panels));
+    }
+  }
+  figure.note = fmt::format(
+      "The first {} of the test set, two rows each: observations, the second "
+      "and further ones of what is found; truth and what is found. The scale "
+      "of a row is that of its first panel, or reaches further.",
+      examples == 1 ? "example" : fmt::format("{} examples", examples));
   return figure;
 }
+
+namespace {
+
+UpdateCosts costs_of(const Results& results,
+                     std::string_view experiment,
+                     const std::string& method,
+                     TimedStages& timed) {
+  UpdateCosts costs;
+  for (const auto* s : trained_stages(results, experiment, method))
+    costs.add(*s, timed);
+  return costs;
+}
+
+Cell duration_of(const UpdateCosts& costs) {
+  if (costs.bytes.empty()) return {.text = kNotRun};
+  if (costs.seconds.empty()) return {.text = kCrowded};
+  return {.ours = 1e3 * median(costs.seconds)};
+}
+
+}  // namespace
 
 Table cost_table(const Results& results,
                  std::string_view experiment,
@@ -179,31 +255,33 @@ Table cost_table(const Results& results,
               .source = std::move(source),
               .digits = 2,
               .corner = "method",
-              .columns = {"MB", "CPU ms / update"}};
+              .columns = {"MB", "CPU ms / update", "CPU ms / Jacobian"}};
   TimedStages timed;
   for (const CostLine& line : lines) {
-    UpdateCosts costs;
-    for (const auto* s : trained_stages(results, experiment, line.method))
-      costs.add(*s, timed);
-    Cell megabytes, duration;
-    if (const auto v = published.find(experiment, line.published + "/memory"))
-      megabytes.paper = v->value;
-    if (const auto v = paper_update(published, experiment, line.published))
-      duration.paper = 1e3 * *v;
-    if (costs.bytes.empty()) {
-      megabytes.text = duration.text = kNotRun;
-    } else {
-      megabytes.ours = 1e-6 * median(costs.bytes);
-      if (costs.seconds.empty())
-        duration.text = kCrowded;
-      else
-        duration.ours = 1e3 * median(costs.seconds);
-    }
-    table.rows.push_back({.label = line.label, .cells = {megabytes, duration}});
+    const UpdateCosts costs = costs_of(results, experiment, line.method, timed);
+    Cell megabytes{.text = kNotRun}, update = duration_of(costs);
+    if (!costs.bytes.empty()) megabytes = {.ours = 1e-6 * median(costs.bytes)};
+    Cell jacobian{.text = kNothing};
+    if (!line.jacobian.empty())
+      jacobian = duration_of(costs_of(results,
+                                      fmt::format("{}-jacobians", experiment),
+                                      line.jacobian,
+                                      timed));
+    const auto printed = [&](const char* what) {
+      return published.find(experiment, line.published + what);
+    };
+    if (const auto v = printed("/memory")) megabytes.paper = v->value;
+    if (const auto v = printed("/update")) update.paper = 1e3 * v->value;
+    if (const auto v = printed("/jacobian")) jacobian.paper = 1e3 * v->value;
+    table.rows.push_back(
+        {.label = line.label, .cells = {megabytes, update, jacobian}});
   }
   table.note =
       "Ours: bytes of the buffers the stage holds, median over seeds. " +
-      timed.note() + " The paper's machine had a GPU.";
+      timed.note() +
+      " The paper's machine had a GPU. Adam's Jacobian is the gradient of its "
+      "batch; HIG's here are those of solver and outputs, the network's is "
+      "not formed.";
   return table;
 }
 

@@ -177,16 +177,23 @@ Section report(const Results& results, const Published& published) {
       .tables = {
           final_losses({results, published, kName}),
           hyperparameters({results, published, kName}),
-          cost_table(results,
-                     kName,
-                     published,
-                     {{"adam-b256", "Adam, b = 256", "table3/adam/b=256"},
-                      {"adam", "Adam, b = 512", "table3/adam/b=512"},
-                      {"adam-b1024", "Adam, b = 1024", "table3/adam/b=1024"},
-                      {"hig-b32", "HIG, b = 32", "table3/hig/b=32"},
-                      {"kappa-m05", "HIG, b = 64", "table3/hig/b=64"},
-                      {"hig", "HIG, b = 128", "table3/hig/b=128"}},
-                     "Table 3"),
+          cost_table(
+              results,
+              kName,
+              published,
+              {{"adam-b256",
+                "Adam, b = 256",
+                "table3/adam/b=256",
+                "gradient-b256"},
+               {"adam", "Adam, b = 512", "table3/adam/b=512", "gradient-b512"},
+               {"adam-b1024",
+                "Adam, b = 1024",
+                "table3/adam/b=1024",
+                "gradient-b1024"},
+               {"hig-b32", "HIG, b = 32", "table3/hig/b=32", "jacobians-b32"},
+               {"kappa-m05", "HIG, b = 64", "table3/hig/b=64", "jacobians-b64"},
+               {"hig", "HIG, b = 128", "table3/hig/b=128", "jacobians-b128"}},
+              "Table 3"),
           loss_table(results, kName, all)}};
   LearningCurves curves(results, section);
   section.figures.push_back(evolution_figure(

@@ -173,19 +173,24 @@ Section report(const Results& results, const Published& published) {
         all.push_back(line);
   Section section{
       .experiment = kName,
-      .tables = {loss_table(results, kName, all),
-                 cost_table(results,
-                            kName,
-                            published,
-                            {{"adam", "Adam, b = 64", "table4/adam/b=64"},
-                             {"hig-002-b64", "HIG, b = 64", "table4/hig/b=64"},
-                             {"adam-hig-002-b64",
-                              "HIG after Adam, b = 64",
-                              "table4/hig/b=64"},
-                             {"hig-002-b16", "HIG, b = 16", ""}},
-                            "Table 4"),
-                 spectrum_table(results),
-                 crossing_table({results, published, kName})}};
+      .tables = {
+          loss_table(results, kName, all),
+          cost_table(
+              results,
+              kName,
+              published,
+              {{"adam", "Adam, b = 64", "table4/adam/b=64", "gradient-b64"},
+               {"hig-002-b64",
+                "HIG, b = 64",
+                "table4/hig/b=64",
+                "jacobians-b64"},
+               {"adam-hig-002-b64",
+                "HIG after Adam, b = 64",
+                "table4/hig/b=64"},
+               {"hig-002-b16", "HIG, b = 16", ""}},
+              "Table 4"),
+          spectrum_table(results),
+          crossing_table({results, published, kName})}};
   LearningCurves curves(results, section);
   section.figures.push_back(
       fields(results,

@@ -87,11 +87,11 @@ const std::vector<MethodLine> kRules = {{"hig", "HIG", Hue::orange},
                                         {"adam-hig", "Adam, then HIG"}};
 
 const std::vector<CostLine> kCosts = {
-    {"adam-b256-5e-4", "Adam b=256", "table5/adam/b=256"},
-    {"adam-b512-5e-4", "Adam b=512", "table5/adam/b=512"},
-    {"adam-b1024-5e-4", "Adam b=1024", "table5/adam/b=1024"},
-    {"hig-b8-eta05-tau5", "HIG b=8", "table5/hig/b=8"},
-    {"hig", "HIG b=16", "table5/hig/b=16"},
+    {"adam-b256-5e-4", "Adam b=256", "table5/adam/b=256", "gradient-b256"},
+    {"adam-b512-5e-4", "Adam b=512", "table5/adam/b=512", "gradient-b512"},
+    {"adam-b1024-5e-4", "Adam b=1024", "table5/adam/b=1024", "gradient-b1024"},
+    {"hig-b8-eta05-tau5", "HIG b=8", "table5/hig/b=8", "jacobians-b8"},
+    {"hig", "HIG b=16", "table5/hig/b=16", "jacobians-b16"},
     {"gn", "Gauss-Newton b=16", ""},
     {"adam", "Adam b=16", ""}};
 

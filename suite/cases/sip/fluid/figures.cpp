@@ -1,4 +1,7 @@
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -38,15 +41,18 @@ Vector<double> carried(const Vector<double>& x,
   return y;
 }
 
-/// First test example of the first seed: who says what, truth first.
+/// A test example of the first seed: who says what, truth first.
 struct Said {
   std::string who;
   Vector<double> x, marker;
 };
-std::vector<Said> said(const Variant& variant, const Results& results) {
+std::vector<Said> said(const Variant& variant,
+                       const Results& results,
+                       Index example) {
   std::vector<Said> all;
   for (const MethodLine& line : kLines) {
-    const auto answer = first_answer(results, variant.experiment, line.method);
+    const auto answer =
+        answer_of(results, variant.experiment, line.method, example);
     if (!answer || answer->x.size() != 2 * kPlane) continue;
     if (all.empty()) all.push_back({"truth", answer->truth, answer->given});
     all.push_back({line.label, answer->x, answer->given});
@@ -54,22 +60,32 @@ std::vector<Said> said(const Variant& variant, const Results& results) {
   return all;
 }
 
-/// A row for each: v0, and where it takes the marker.
-Figure pictures(const std::vector<Said>& all) {
+/// v0, and where it takes the marker: at t = 0, 0.5, 1, 1.5 and 2.
+std::vector<Panel> frames(const Said& said) {
+  const auto& [who, x, marker] = said;
+  std::vector<Panel> row = {
+      flow_panel(who + ", v0", kLayout, x.head(kPlane), x.tail(kPlane), 4)};
+  for (Index step = 0; step <= 8; step += 2)
+    row.push_back(field_panel(fmt::format("t = {}", 0.25 * double(step)),
+                              kLayout,
+                              step == 0 ? marker : carried(x, marker, step)));
+  share_scale(std::span(row).subspan(1));
+  return row;
+}
+
+/// A row for each method and the truth, of three examples.
+Figure pictures(const Variant& variant, const Results& results) {
   Figure figure{.id = "fig14",
                 .title = "Velocities found, and where they take the marker",
                 .source = "Fig. 14",
-                .columns = 3,
-                .note = "First test example. Arrows: every fourth cell."};
-  for (const auto& [who, x, marker] : all) {
-    figure.panels.push_back(
-        flow_panel(who + ", v0", kLayout, x.head(kPlane), x.tail(kPlane), 4));
-    for (const Index time : {1, 2})
-      figure.panels.push_back(
-          field_panel(who + ", marker at " + std::to_string(time),
-                      kLayout,
-                      carried(x, marker, 4 * time)));
-  }
+                .columns = 6,
+                .note =
+                    "First test examples, v0 and the marker's density at "
+                    "times 0 to 2. Arrows: every fourth cell."};
+  for (Index example = 0; example < 3; ++example)
+    for (const Said& one : said(variant, results, example))
+      for (Panel& panel : frames(one))
+        figure.panels.push_back(std::move(panel));
   return figure;
 }
 
@@ -101,8 +117,8 @@ Section section_of(const Variant& variant, const Results& results) {
       kLines, kVortex, "|s - s*|", "vortex", "Errors of the vortex", "");
   curves.losses(kLines, "losses", "Losses of the marker", "");
   curves.add(update_times(results, variant.experiment, kLines, "Fig. 15"));
-  if (const auto all = said(variant, results); !all.empty()) {
-    section.figures.push_back(pictures(all));
+  if (const auto all = said(variant, results, 0); !all.empty()) {
+    section.figures.push_back(pictures(variant, results));
     section.figures.push_back(film(all));
   }
   return section;

@@ -23,7 +23,7 @@
 namespace physinv::heat {
 namespace {
 
-constexpr Index kSide = 64, kPaperSteps = 10'000, kStudy = 2'000;
+constexpr Index kPaperSteps = 10'000, kStudy = 2'000;
 
 const ProblemRecipe kProblem = problem<Heat>("heat", {.resolution = kSide});
 

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "problems/heat/heat.h"
 #include "suite/cases/sip/heat/grids.h"
 #include "suite/cases/sip/heat/metrics.h"
 #include "suite/evidence/cell.h"
@@ -147,7 +148,24 @@ Figure pictures(const Results& results) {
   auto lines = networks();
   std::erase_if(lines, [](const auto& l) { return l.method == "sgd-b8-lr3"; });
   lines.insert(lines.end(), kDirect.begin(), kDirect.end());
-  return answered_fields(results, kName, lines, "Fig. 10", picture);
+  const Heat<double> physics({.resolution = kSide});
+  return answered_fields(
+      results,
+      kName,
+      lines,
+      {.source = "Fig. 10",
+       .examples = 2,
+       .picture = picture,
+       .observe = [&](const Answered& a) { return observed(physics, a); }});
+}
+
+constexpr const char* kByRate = "Error by rate and batch";
+constexpr const char* kBySet = "Error by size of the training set";
+
+std::string setting_of(const GridPoint& cell) {
+  return cell.set > 0
+             ? fmt::format("{} examples, batch {}", cell.set, cell.batch)
+             : fmt::format("rate 1e-{}, batch {}", cell.decade, cell.batch);
 }
 
 /// Figs. 11 and 12: SIP and Adam in every cell.
@@ -168,34 +186,54 @@ Table study(const Results& results,
                adam = end(results, cell.id("adam"), kError);
     if (!sip && !adam) continue;
     table.rows.push_back(
-        {.label =
-             cell.set > 0
-                 ? fmt::format("{} examples, batch {}", cell.set, cell.batch)
-                 : fmt::format("rate 1e-{}, batch {}", cell.decade, cell.batch),
-         .cells = {cell_of(sip), cell_of(adam)}});
+        {.label = setting_of(cell), .cells = {cell_of(sip), cell_of(adam)}});
   }
   return table;
+}
+
+/// The same along the way, a panel for each setting.
+Figure study_curves(const LearningCurves& curves,
+                    std::string id,
+                    std::string title,
+                    std::string source,
+                    const std::vector<GridPoint>& points) {
+  Figure figure{.id = std::move(id),
+                .title = std::move(title),
+                .source = std::move(source),
+                .columns = 3,
+                .note =
+                    "On the test set; median over seeds, band: 10 % and "
+                    "90 % quantiles. The paper's are means over 64 "
+                    "updates, and of finite sets also on the training "
+                    "set, whose errors are not recorded."};
+  for (const GridPoint& cell : points) {
+    Panel panel = curves.metric_panel(
+        {{cell.id("sip"), "SIP", Hue::orange, {}, "sip"},
+         {cell.id("adam"), "Adam", Hue::purple, {}, "adam"}},
+        kError,
+        "sum |x - x*|");
+    if (panel.series.empty()) continue;
+    panel.title = setting_of(cell);
+    figure.panels.push_back(std::move(panel));
+  }
+  return figure;
 }
 
 Section report(const Results& results, const Published& published) {
   Section section{.experiment = kName};
   section.tables = {errors(results, published),
                     loss_table(results, kName, networks()),
-                    study(results,
-                          "fig11",
-                          "Error by rate and batch",
-                          "Fig. 11",
-                          rate_points()),
-                    study(results,
-                          "fig12",
-                          "Error by size of the training set",
-                          "Fig. 12",
-                          set_points())};
+                    study(results, "fig11", kByRate, "Fig. 11", rate_points()),
+                    study(results, "fig12", kBySet, "Fig. 12", set_points())};
   std::erase_if(section.tables, [](const Table& t) { return t.rows.empty(); });
   LearningCurves curves(results, section);
   curves.metric(
       networks(), kError, "sum |x - x*|", "fig10", "Errors of x", "Fig. 10");
   curves.losses(networks(), "losses", "Losses of y", "");
+  curves.add(
+      study_curves(curves, "fig11_curves", kByRate, "Fig. 11", rate_points()));
+  curves.add(
+      study_curves(curves, "fig12_curves", kBySet, "Fig. 12", set_points()));
   curves.add(update_times(results, kName, networks(), "Fig. 15"));
   for (Figure figure : {direct(results), pictures(results)})
     if (!figure.panels.empty()) section.figures.push_back(std::move(figure));

@@ -14,6 +14,8 @@ inline constexpr const char* kName = "sip/heat";
 /// The same with a Fourier neural operator.
 inline constexpr const char* kOperator = "sip/heat-fno";
 
+inline constexpr Index kSide = 64;  ///< cells
+
 /// One setting; the paper's own has no suffix.
 struct GridPoint {
   Index batch = 128;

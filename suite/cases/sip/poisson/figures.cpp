@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "problems/poisson/poisson.h"
 #include "suite/cases/sip/poisson/metrics.h"
 #include "suite/cases/sip/poisson/poisson.h"
 #include "suite/evidence/field_panel.h"
@@ -37,14 +38,18 @@ Section report(const Plane& plane, const Results& results) {
   curves.losses(kLines, "losses", "Losses of y", "");
   curves.add(update_times(results, plane.experiment, kLines, "Fig. 15"));
   const FieldLayout layout{plane.columns, plane.rows, 1, plane.columns};
-  Figure fields =
-      answered_fields(results,
-                      plane.experiment,
-                      kLines,
-                      "Fig. 9",
-                      [&](std::string title, const Vector<double>& field) {
-                        return field_panel(std::move(title), layout, field);
-                      });
+  const Poisson<double> physics({.rows = plane.rows, .columns = plane.columns});
+  Figure fields = answered_fields(
+      results,
+      plane.experiment,
+      kLines,
+      {.source = "Fig. 9",
+       .examples = 3,
+       .picture =
+           [&](std::string title, const Vector<double>& field) {
+             return field_panel(std::move(title), layout, field);
+           },
+       .observe = [&](const Answered& a) { return observed(physics, a); }});
   if (!fields.panels.empty()) section.figures.push_back(std::move(fields));
   return section;
 }

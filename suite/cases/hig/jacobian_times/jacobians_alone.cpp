@@ -1,0 +1,43 @@
+#include "suite/cases/hig/jacobian_times/jacobians_alone.h"
+
+#include <memory>
+#include <utility>
+
+#include "optimizers/training/signal.h"
+#include "optimizers/training/solver_loss.h"
+
+namespace physinv::hig::jacobian_times {
+namespace {
+
+template <class T>
+class JacobiansAlone final : public Signal<T> {
+ public:
+  explicit JacobiansAlone(const SignalPlace<T>& place)
+      : of_(solver_loss().make<T>(place)),
+        zero_(Vector<T>::Zero(place.model.parameters().size())) {}
+
+  void warm_up() override { of_->warm_up(); }
+  bool look(bool last) override { return of_->look(last); }
+  Vector<T>& gradient() override {
+    of_->jacobians();
+    zero_.setZero();
+    return zero_;
+  }
+  void keep(Archive& archive) override { of_->keep(archive); }
+  void leave(Outcome& out) const override { of_->leave(out); }
+  Counts counts() const override { return of_->counts(); }
+  std::size_t bytes() const override { return of_->bytes(); }
+
+ private:
+  std::unique_ptr<Signal<T>> of_;
+  Vector<T> zero_;
+};
+
+}  // namespace
+
+SignalRecipe jacobians_alone() {
+  return batch_signal<JacobiansAlone>(
+      "jacobians", Needs::jacobian, Needs::jacobian);
+}
+
+}  // namespace physinv::hig::jacobian_times
