@@ -12,6 +12,7 @@
 #include "reports/latest_claims.h"
 #include "reports/report.h"
 #include "reports/results_page.h"
+#include "reports/tables.h"
 #include "suite/app/history.h"
 #include "suite/app/installed.h"
 #include "suite/app/options.h"
@@ -95,6 +96,19 @@ Results planned(const std::string& profile) {
   return Results(std::move(cases));
 }
 
+/// Tables of a paper's own section that its campaign did not know yet, by what
+/// results.json keeps.
+void add_tables(const std::string& paper,
+                const Results& stages,
+                const Published& published,
+                Json& tables) {
+  if (!tables.empty()) return;
+  for (const Overview& o : registry().overviews())
+    if (o.paper == paper && o.report)
+      for (const Table& table : o.report(stages, published).tables)
+        tables.push_back(to_markdown(table));
+}
+
 /// A digest keeps the numbers of its conditions: each claim is judged by what
 /// is registered now, and has the cause that it states now. One that the
 /// campaign did not know yet waits for a run.
@@ -103,6 +117,7 @@ void renew(Json& digest, const Results& stages, const Published& published) {
   const Results plan = planned(digest.at("provenance").value("profile", ""));
   for (auto& section : digest.at("sections")) {
     const std::string experiment = section.at("experiment");
+    add_tables(experiment, stages, published, section.at("tables"));
     Json& kept = section.at("claims");
     for (const Claim& now : claims_of(experiment)) {
       const auto own = std::find_if(kept.begin(), kept.end(), [&](Json& claim) {

@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "suite/cases/sip/overview/step_time_figures.h"
 #include "suite/evidence/training.h"
 #include "suite/harness/registry.h"
 #include "suite/results/record.h"
@@ -77,7 +78,8 @@ void add_claims(Registry& r) {
   r.add(Overview{.paper = "sip",
                  .title = "Scale-invariant learning",
                  .profiles = {"smoke", "quick", "standard", "paper"},
-                 .claims = kClaims});
+                 .claims = kClaims,
+                 .report = step_times});
 }
 
 }  // namespace physinv::sip::overview
