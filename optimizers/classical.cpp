@@ -1,5 +1,6 @@
 #include "optimizers/classical.h"
 
+#include <cmath>
 #include <functional>
 #include <string>
 #include <utility>
@@ -45,6 +46,11 @@ StageFacts facts(const char* header,
 double of_line_searches(const CaseSize& size, double search) {
   return 40.0 * static_cast<double>(size.n) *
          (3 * size.problem_operations + search);
+}
+
+void check_step(double first) {
+  SUITE_CHECK(std::isfinite(first) && first > 0,
+              "first_step is a positive number");
 }
 
 double of_evaluations(const CaseSize& size) {
@@ -114,6 +120,7 @@ std::shared_ptr<const Stage> lbfgsb_solve(const LbfgsbStageOptions& options) {
 
 std::shared_ptr<const Stage> gradient_descent_solve(
     const GradientDescentStageOptions& options) {
+  check_step(options.first_step);
   const auto operations = [](const CaseSize& size) {
     return 0.5 * of_evaluations(size);
   };
@@ -122,21 +129,24 @@ std::shared_ptr<const Stage> gradient_descent_solve(
             describe(options),
             options.iterations,
             operations),
-      [](StageRun& run) {
-        GradientDescent solver(
-            {.step_tolerance = run.setting.gtol, .maxiter = run.iterations});
+      [options](StageRun& run) {
+        GradientDescent solver({.first_step = options.first_step,
+                                .step_tolerance = run.setting.gtol,
+                                .maxiter = run.iterations});
         return minimize(solver, run, run.oracle.start());
       });
 }
 
 std::shared_ptr<const Stage> bold_descent_solve(
     const BoldDescentStageOptions& options) {
+  check_step(options.first_step);
   return make_stage(facts("optimizers/bold_descent.h",
                           describe(options),
                           options.evaluations,
                           of_evaluations),
-                    [](StageRun& run) {
-                      BoldDescent solver({.evaluations = run.iterations});
+                    [options](StageRun& run) {
+                      BoldDescent solver({.first_step = options.first_step,
+                                          .evaluations = run.iterations});
                       return minimize(solver, run, run.oracle.start());
                     });
 }

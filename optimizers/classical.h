@@ -61,18 +61,23 @@ std::shared_ptr<const Stage> lbfgsb_solve(
 
 struct GradientDescentStageOptions {
   Index iterations = 1000;
+  double first_step = 0.1;  ///< times the gradient
 
   auto fields() const {
     return std::tuple{word("algorithm", "gradient_descent"),
+                      if_changed(field("first_step", first_step)),
                       implied(iterations)};
   }
 };
 
 struct BoldDescentStageOptions {
   Index evaluations = 100;
+  double first_step = 0.1;  ///< times the gradient, of length 1 at most
 
   auto fields() const {
-    return std::tuple{word("algorithm", "bold_descent"), implied(evaluations)};
+    return std::tuple{word("algorithm", "bold_descent"),
+                      if_changed(field("first_step", first_step)),
+                      implied(evaluations)};
   }
 };
 

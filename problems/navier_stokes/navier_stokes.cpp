@@ -55,27 +55,36 @@ struct NavierStokes<T>::Kernel {
     return s;
   }
 
-  /// tanh z0 besides the blast itself.
+  /// t of each unknown besides the blast itself.
   struct Unknowns : Blast<P> {
-    P tanh;
+    P t[3];
   };
   Unknowns unknowns(const Block<T>& block, BatchIn<T> x) const {
-    const P z[3] = {block.load(x, 0), block.load(x, 1), block.load(x, 2)};
     const T half = static_cast<T>(0.5 * options.box);
     const T speed = static_cast<T>(options.speed);
-    const P t = tanh_lanes(z[0]), centre = P{} + half;
-    return {{fma_lanes(centre, t, centre),
-             speed * z[1],
-             fma_lanes(P{} + speed, z[2], P{} + speed)},
-            t};
+    const P centre = P{} + half;
+    P t[3];
+    for (Index k = 0; k < 3; ++k) {
+      const P z = block.load(x, k);
+      t[k] = k < options.bounded ? tanh_lanes(z) : z;
+    }
+    return {{fma_lanes(centre, t[0], centre),
+             speed * t[1],
+             fma_lanes(P{} + speed, t[2], P{} + speed)},
+            {t[0], t[1], t[2]}};
   }
   /// Cotangents of the unknowns from those of the blast; also, as the map is
   /// one by one, how much of each unknown moves the blast.
   Blast<P> scaled(const Unknowns& b, const Blast<P>& bar) const {
     const T half = static_cast<T>(0.5 * options.box);
     const T speed = static_cast<T>(options.speed);
-    const P slope = half * fma_lanes(-b.tanh, b.tanh, T(1) - P{});
-    return {slope * bar.x0, speed * bar.vx, speed * bar.vy};
+    const auto slope = [&](Index k, T scale) {
+      const P t = b.t[k], one = T(1) - P{};
+      return k < options.bounded ? scale * fma_lanes(-t, t, one) : P{} + scale;
+    };
+    return {slope(0, half) * bar.x0,
+            slope(1, speed) * bar.vx,
+            slope(2, speed) * bar.vy};
   }
 
   /// Centred velocities to the faces, planes of zeros.
@@ -241,6 +250,12 @@ NavierStokes<T>::NavierStokes(const Options& o)
                     {"vy", o.vy[0]},
                     {"vy", o.vy[1]}});
   SUITE_CHECK(o.tape_budget >= 0, "tape_budget is a number of bytes");
+  SUITE_CHECK(0 <= o.bounded && o.bounded <= 3,
+              "bounded is a number of unknowns, 0 to 3");
+  SUITE_CHECK(o.bounded < 2 || (-1 <= o.vx[0] && o.vx[1] <= 1),
+              "a bounded vx lies within speed");
+  SUITE_CHECK(o.bounded < 3 || (0 <= o.vy[0] && o.vy[1] <= 2),
+              "a bounded vy lies within twice the speed");
   SUITE_CHECK(o.vx[0] <= o.vx[1] && o.vy[0] <= o.vy[1], "vx and vy are ranges");
   SUITE_CHECK(o.cells >= 4 && o.cells % 2 == 0,
               "cells must be an even number, at least 4");
@@ -264,9 +279,10 @@ Samples<double> NavierStokes<T>::sample_labelled(Index first,
   const Index cut = fluid::noise_cut(o.box);
   for (Index i = 0; i < count; ++i) {
     Stream stream = rng.child(static_cast<std::uint64_t>(first + i)).stream();
-    out.x(0, i) = std::atanh(2 * stream.uniform(o.x0[0], o.x0[1]) - 1);
+    out.x(0, i) = 2 * stream.uniform(o.x0[0], o.x0[1]) - 1;
     out.x(1, i) = stream.uniform(o.vx[0], o.vx[1]);
     out.x(2, i) = stream.uniform(o.vy[0], o.vy[1]) - 1;
+    for (Index k = 0; k < o.bounded; ++k) out.x(k, i) = std::atanh(out.x(k, i));
     out.given.col(i) = fluid::smooth_noise(
         {.cells = o.cells, .components = 2, .cut = cut, .deviation = o.noise},
         stream);

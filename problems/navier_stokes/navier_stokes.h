@@ -8,12 +8,13 @@
 /// (problems/fluid). A blast exp(-((x-x0)^2 + (y-y0)^2) / (2 width^2)) (vx, vy)
 /// joins a random flow at t = 0.
 ///
-/// Unknown x: z (3), x0 = box / 2 (1 + tanh z0), vx = speed z1,
-/// vy = speed (1 + z2). Given: the initial velocity at the cells' centres
-/// (component, i, j). Observation y: the final one in the upper half, j from
-/// cells / 2. Index j is the fastest. `sample` hides the initial flow of the
-/// lower half, so that the truth has a loss; `sample_labelled` shows it. Both
-/// draw the same flows from the same stream.
+/// Unknown x: z (3), x0 = box / 2 (1 + t0), vx = speed t1, vy = speed (1 + t2),
+/// t = tanh z of the first `bounded` unknowns, of the others z itself. Given:
+/// the initial velocity at the cells' centres (component, i, j). Observation y:
+/// the final one in the upper half, j from cells / 2. Index j is the fastest.
+/// `sample` hides the initial flow of the lower half, so that the truth has a
+/// loss; `sample_labelled` shows it. Both draw the same flows from the same
+/// stream.
 ///
 /// vjp: exact discrete adjoint. Jacobian: three tangent runs. The map is
 /// continuous and has kinks everywhere (limiter, cells), some 1e-5 in z apart.
@@ -45,6 +46,7 @@ struct NavierStokesOptions {
       {12, 22, 24, 29}, {42, 52, 24, 29}, {27, 37, 38, 44}};
   double height = 20, width = 8;  ///< of the blast: y0 and standard deviation
   double speed = 5;               ///< of the unknowns' scaling
+  Index bounded = 1;              ///< so many unknowns pass through tanh
   double noise = 0.5;             ///< standard deviation of the initial flow
   /// Of the truth, uniform: x0 in box times, vx and vy in speed times.
   std::array<double, 2> x0 = {0.15, 0.85}, vx = {-1, 1}, vy = {0, 2};
@@ -66,7 +68,8 @@ struct NavierStokesOptions {
                       field("x0", x0),
                       field("vx", vx),
                       field("vy", vy),
-                      field("tape_budget", tape_budget)};
+                      field("tape_budget", tape_budget),
+                      if_changed(field("bounded", bounded))};
   }
 };
 

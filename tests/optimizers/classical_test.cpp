@@ -47,6 +47,23 @@ TEST(Classical, InFloatLossesAreRoundedAndTheToleranceIsItsOwn) {
   EXPECT_GT(third.run().iterations.sum(), exact.iterations.sum());
 }
 
+TEST(Classical, FirstStepsAreAsLongAsAsked) {
+  const auto length_of = [](const std::shared_ptr<const Stage>& stage) {
+    StageBench bench(*stage, kCount, 1);
+    return bench.run().arrays.at("first_step").maxCoeff();
+  };
+  // The adaptive rule stretches a step a thousandfold at most, the bold driver
+  // takes it as it is.
+  const double adaptive = length_of(gradient_descent_solve());
+  EXPECT_LT(length_of(gradient_descent_solve({.first_step = 1e-9})),
+            1e-4 * adaptive);
+  const double bold = length_of(bold_descent_solve());
+  EXPECT_NEAR(
+      length_of(bold_descent_solve({.first_step = 0.05})), bold / 2, 1e-12);
+  EXPECT_THROW(gradient_descent_solve({.first_step = 0}), std::logic_error);
+  EXPECT_THROW(bold_descent_solve({.first_step = -1}), std::logic_error);
+}
+
 TEST(Classical, CurvesStartAtTheStartAndEndAtTheResult) {
   for (const auto& stage :
        {bfgs_solve(), lbfgsb_solve(), gradient_descent_solve()}) {

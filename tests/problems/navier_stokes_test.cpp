@@ -30,7 +30,9 @@ Samples<double> draw(Index n) {
 template <class T>
 struct Bench {
   explicit Bench(int threads = 1, double budget = 1e9)
-      : problem(small(budget)), pool(threads), tape(&pool), work(&pool) {}
+      : Bench(small(budget), threads) {}
+  explicit Bench(const NavierStokesOptions& options, int threads = 1)
+      : problem(options), pool(threads), tape(&pool), work(&pool) {}
 
   Batch<T> forward(const Batch<T>& x, const Batch<T>& given) {
     Batch<T> y(given.rows() / 2, x.cols());
@@ -112,6 +114,37 @@ TEST(NavierStokes, JacobianIsTheDerivative) {
       s.x.col(0),
       1e-8);
   EXPECT_LE((j - expected).norm(), 1e-5 * expected.norm());
+}
+
+TEST(NavierStokes, BoundsAreOtherCoordinatesOfTheSameBlast) {
+  const auto ours = draw(2);
+  for (const Index bounded : {0, 2, 3}) {
+    NavierStokesOptions o = small();
+    o.bounded = bounded;
+    Bench<double> bench(o);
+    const auto s =
+        bench.problem.sample(0, 2, Rng::root("test/navier_stokes", 1));
+    EXPECT_TRUE(same_bits(s.given, ours.given));
+    EXPECT_LE((s.y - ours.y).norm(), 1e-9 * ours.y.norm());
+    const auto t = [](const Batch<double>& x, Index of) {
+      Batch<double> out = x;
+      out.topRows(of) = x.topRows(of).array().tanh();
+      return out;
+    };
+    EXPECT_LE((t(s.x, bounded) - t(ours.x, 1)).cwiseAbs().maxCoeff(), 1e-12);
+    const Batch<double> x = s.x.col(0), given = s.given.col(0);
+    const Batch<double> j = bench.jacobian(x, given).reshaped(s.y.rows(), 3);
+    const Batch<double> expected = difference_jacobian(
+        [&](const Vector<double>& at) -> Vector<double> {
+          return bench.forward(at, given).col(0);
+        },
+        x.col(0),
+        1e-8);
+    EXPECT_LE((j - expected).norm(), 1e-5 * expected.norm());
+    const Batch<double> bar = s.y.col(0);
+    EXPECT_LE((bench.pull(x, given, bar) - j.transpose() * bar).norm(),
+              1e-12 * (j.transpose() * bar).norm());
+  }
 }
 
 TYPED_TEST(NavierStokesIn, BitsDependOnNothingElse) {

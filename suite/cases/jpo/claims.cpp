@@ -30,6 +30,12 @@ Add add_claims;
 namespace adjoint_wall {
 Add add_claims;
 }
+namespace packet_unit {
+Add add_claims;
+}
+namespace flow_bounds {
+Add add_claims;
+}
 
 namespace jpo {
 
@@ -49,6 +55,8 @@ void add_claims(Registry& r) {
   wave_packet::add_reports(r);
   bfgs_precision::add_claims(r);
   adjoint_wall::add_claims(r);
+  packet_unit::add_claims(r);
+  flow_bounds::add_claims(r);
 }
 
 }  // namespace jpo

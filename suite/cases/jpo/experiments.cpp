@@ -27,6 +27,12 @@ Add add_experiments;
 namespace adjoint_wall {
 Add add_experiments;
 }
+namespace packet_unit {
+Add add_experiments;
+}
+namespace flow_bounds {
+Add add_experiments;
+}
 
 namespace jpo {
 
@@ -39,6 +45,8 @@ void add_experiments(Registry& r) {
   wave_packet::add_experiments(r);
   bfgs_precision::add_experiments(r);
   adjoint_wall::add_experiments(r);
+  packet_unit::add_experiments(r);
+  flow_bounds::add_experiments(r);
 }
 
 }  // namespace jpo

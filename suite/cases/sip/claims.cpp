@@ -24,6 +24,9 @@ Add add_claims, add_reports;
 namespace sip_wave_packet {
 Add add_claims, add_reports;
 }
+namespace packet_width {
+Add add_claims;
+}
 
 namespace sip {
 
@@ -41,6 +44,7 @@ void add_claims(Registry& r) {
   poisson::add_reports(r);
   sip_wave_packet::add_claims(r);
   sip_wave_packet::add_reports(r);
+  packet_width::add_claims(r);
 }
 
 }  // namespace sip

@@ -1,4 +1,4 @@
-// Experiments of the SIP paper.
+// Experiments of the SIP paper, and a study of what it leaves open.
 #include "suite/cases/tables.h"
 
 namespace physinv {
@@ -21,6 +21,9 @@ Add add_experiments;
 namespace sip_wave_packet {
 Add add_experiments;
 }
+namespace packet_width {
+Add add_experiments;
+}
 
 namespace sip {
 
@@ -31,6 +34,7 @@ void add_experiments(Registry& r) {
   heat::add_experiments(r);
   poisson::add_experiments(r);
   sip_wave_packet::add_experiments(r);
+  packet_width::add_experiments(r);
 }
 
 }  // namespace sip

@@ -48,7 +48,7 @@ Quantity at_the_wall(const Study& s, const Wall& w) {
   return {[=](const Evidence& e) {
             if (!*beyond)
               *beyond = jpo::largest_sets(jpo::beyond_training(
-                  registry().find(s.name)->problem, kMargin));
+                  registry().find(s.name)->problem, kMargin, s.labels));
             return share_of_examples(runs, *beyond, jpo::holds)(e);
           },
           {runs}};

@@ -1,6 +1,6 @@
 // JPO paper, Tables 4 and 5, Apps. D.1 and D.2: the wall that keeps the neural
-// adjoint in the range of its training samples is not printed, nor is, for
-// billiards, how far these are spread.
+// adjoint in the range of its training samples is not printed, nor how many
+// these are and, for billiards, how far they are spread.
 #include <string>
 #include <string_view>
 #include <vector>
@@ -53,6 +53,7 @@ Experiment experiment(const Study& s) {
     e.setting = jpo::wave_packet::setting();
     e.profiles = profiles({8, 256}, first_seeds(3));
   }
+  e.setting.labels.per_problem = s.labels;
   e.methods = methods();
   return e;
 }

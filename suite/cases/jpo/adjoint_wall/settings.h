@@ -25,18 +25,39 @@ inline constexpr std::array<Wall, 5> kWalls{
 struct Study {
   const char *name, *varied, *title;
   double velocity_spread = 0;  ///< of billiards' labelled samples
+  Index labels = 1;            ///< for each problem of a set
 };
-inline constexpr std::array<Study, 3> kStudies{
+inline constexpr std::array<Study, 7> kStudies{
     {{"studies/billiards-wall",
       "jpo/billiards",
       "Billiards, wall of the neural adjoint",
       0.5},
+     {"studies/billiards-wall-8n",
+      "jpo/billiards",
+      "Billiards, wall of the neural adjoint, 8 n samples",
+      0.5,
+      8},
+     {"studies/billiards-wall-32n",
+      "jpo/billiards",
+      "Billiards, wall of the neural adjoint, 32 n samples",
+      0.5,
+      32},
      {"studies/billiards-wall-narrow",
       "jpo/billiards",
       "Billiards, wall of the neural adjoint, samples spread by 0.1",
       0.1},
      {"studies/wave-packet-wall",
       "jpo/wave-packet",
-      "Wave packet, wall of the neural adjoint"}}};
+      "Wave packet, wall of the neural adjoint"},
+     {"studies/wave-packet-wall-8n",
+      "jpo/wave-packet",
+      "Wave packet, wall of the neural adjoint, 8 n samples",
+      0,
+      8},
+     {"studies/wave-packet-wall-32n",
+      "jpo/wave-packet",
+      "Wave packet, wall of the neural adjoint, 32 n samples",
+      0,
+      32}}};
 
 }  // namespace physinv::adjoint_wall

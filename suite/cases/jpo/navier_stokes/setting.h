@@ -13,7 +13,10 @@ namespace physinv::jpo::navier_stokes {
 inline constexpr BfgsStageOptions kBfgs{
     .iterations = 100, .stall = 1e-5, .search_evaluations = 20};
 
-inline ProblemRecipe recipe() { return problem<NavierStokes>("navier_stokes"); }
+/// `bounded`: so many unknowns pass through tanh.
+inline ProblemRecipe recipe(Index bounded = 1) {
+  return problem<NavierStokes>("navier_stokes", {.bounded = bounded});
+}
 
 inline Setting setting() {
   const nn::VggOptions predictor{.channels = 2,

@@ -6,6 +6,7 @@
 
 #include "problems/wave_packet/wave_packet.h"
 #include "suite/cases/jpo/common/values.h"
+#include "suite/cases/jpo/wave_packet/quantities.h"
 #include "suite/harness/registry.h"
 
 namespace physinv::jpo::wave_packet {
@@ -21,23 +22,12 @@ const double kPeriod = 2 * std::numbers::pi / WavePacketOptions{}.frequency;
 
 const Select kJpo = plain("jpo"), kRefined = refined("jpo");
 
-/// |t0 - truth| in samples.
-std::vector<double> distances(const Run& run) {
-  const auto d =
-      kScale * (run.stage->x.row(0) - run.record->data.x.row(0)).array().abs();
-  std::vector<double> out;
-  for (Index i = 0; i < d.size(); ++i) out.push_back(d(i));
-  return out;
-}
+/// In samples.
+const RunRow distances = distances_in(kScale),
+             first_steps = first_steps_in(kScale),
+             farther_than_bfgs = farther_than_bfgs_in(kScale);
 
-std::vector<double> first_steps(const Run& run) {
-  const auto& steps = run.stage->arrays.at("first_step");
-  std::vector<double> out;
-  for (Index i = 0; i < steps.cols(); ++i) out.push_back(kScale * steps(0, i));
-  return out;
-}
-
-/// The same of one guess for all, the middle of the window.
+/// Distance of one guess for all, the middle of the window.
 std::vector<double> distances_of_guess(const Run& run) {
   const auto truth = run.record->data.x.row(0);
   const double middle = 0.5 * (truth.minCoeff() + truth.maxCoeff());
@@ -45,16 +35,6 @@ std::vector<double> distances_of_guess(const Run& run) {
   for (Index i = 0; i < truth.size(); ++i)
     out.push_back(kScale * std::abs(truth(i) - middle));
   return out;
-}
-
-/// How much farther from the truth than BFGS.
-std::vector<double> farther_than_bfgs(const Run& run) {
-  const auto other = bfgs_beside(run);
-  auto d = distances(run);
-  if (!other) return {};
-  const auto of_bfgs = distances(*other);
-  for (std::size_t i = 0; i < d.size(); ++i) d[i] -= of_bfgs[i];
-  return d;
 }
 
 /// 1 where a path that is kept ends nearer to the truth than it started.

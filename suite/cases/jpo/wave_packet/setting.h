@@ -12,7 +12,10 @@ namespace physinv::jpo::wave_packet {
 
 inline constexpr nn::Grid kGrid{.columns = 256};
 
-inline ProblemRecipe recipe() { return problem<WavePacket>("wave_packet"); }
+/// `unit`: so many samples are one.
+inline ProblemRecipe recipe(double unit = WavePacketOptions{}.scale) {
+  return problem<WavePacket>("wave_packet", {.scale = unit});
+}
 
 inline NetworkRole predictor(const std::vector<Index>& hidden) {
   return {{Field::observations},
