@@ -1,8 +1,25 @@
 #include "suite/nn/activation.h"
 
 #include <algorithm>
+#include <type_traits>
 
 namespace physinv::nn {
+namespace {
+
+/// Calls f(offset) for every vector of rows [first, last).
+template <class T, class F>
+void each_vector(Lanes<T> x, Index first, Index last, F&& f) {
+  constexpr Index w = kNarrowLanes<std::remove_const_t<T>>;
+  const Index end = last * x.stride;
+  if (x.width == x.stride) {
+    for (Index k = first * x.stride; k < end; k += w) f(k);
+  } else {
+    for (Index row = first * x.stride; row < end; row += x.stride)
+      for (Index j = 0; j < x.width; j += w) f(row + j);
+  }
+}
+
+}  // namespace
 
 std::string_view to_string(Activation a) {
   constexpr std::string_view names[] = {"identity",
@@ -16,16 +33,39 @@ std::string_view to_string(Activation a) {
   return names[static_cast<std::size_t>(a)];
 }
 
+// A loop of its own for ReLU: it costs less than to ask at each vector.
+
+template <class T>
+void activate_rows(Activation a, Lanes<T> z, Index first, Index last) {
+  using V = NarrowPack<T>;
+  const auto all = [&](auto&& f) {
+    each_vector(z, first, last, [&](Index k) {
+      store(z.data + k, f(load<V>(z.data + k)));
+    });
+  };
+  if (a == Activation::identity) return;
+  if (a == Activation::relu) {
+    all([](V v) { return relu_lanes(v); });
+  } else {
+    all([a](V v) { return activate_lanes<T>(a, v); });
+  }
+}
+
 template <class T>
 void apply_gate(const Gate<T>& gate, Lanes<T> x_bar) {
   using V = NarrowPack<T>;
-  if (gate.activation == Activation::identity) return;
-  for (Index i = 0; i < x_bar.rows; ++i) {
-    const T* y = gate.y.row(i);
-    T* bar = x_bar.row(i);
-    for (Index j = 0; j < x_bar.width; j += kNarrowLanes<T>)
-      store(bar + j,
-            pull_lanes<T>(gate.activation, load<V>(y + j), load<V>(bar + j)));
+  const Activation a = gate.activation;
+  const auto all = [&](auto&& f) {
+    each_vector(x_bar, 0, x_bar.rows, [&](Index k) {
+      T* const bar = x_bar.data + k;
+      store(bar, f(load<V>(gate.y.data + k), load<V>(bar)));
+    });
+  };
+  if (a == Activation::identity) return;
+  if (a == Activation::relu) {
+    all([](V y, V bar) { return pull_relu_lanes(y, bar); });
+  } else {
+    all([a](V y, V bar) { return pull_lanes<T>(a, y, bar); });
   }
 }
 
@@ -37,15 +77,13 @@ void apply_gate_tangent(const Gate<T>& gate,
   using V = NarrowPack<T>;
   const Activation a = gate.activation;
   if (a == Activation::identity) return;
-  for (Index i = 0; i < x_bar.rows; ++i)
-    for (Index j = 0; j < x_bar.width; j += kNarrowLanes<T>) {
-      const V y = load<V>(gate.y.row(i) + j);
-      const V bar = load<V>(x_bar.row(i) + j);
-      store(x_bar_dot.row(i) + j,
-            pull_lanes<T>(a, y, load<V>(x_bar_dot.row(i) + j)) +
-                bend_lanes<T>(a, y, bar * load<V>(y_dot.row(i) + j)));
-      store(x_bar.row(i) + j, pull_lanes<T>(a, y, bar));
-    }
+  each_vector(x_bar, 0, x_bar.rows, [&](Index k) {
+    const V y = load<V>(gate.y.data + k), bar = load<V>(x_bar.data + k);
+    store(x_bar_dot.data + k,
+          pull_lanes<T>(a, y, load<V>(x_bar_dot.data + k)) +
+              bend_lanes<T>(a, y, bar * load<V>(y_dot.data + k)));
+    store(x_bar.data + k, pull_lanes<T>(a, y, bar));
+  });
 }
 
 template <class T>
@@ -53,10 +91,9 @@ void ActivationLayer<T>::forward(const LayerArgs<T>&,
                                  Lanes<const T> x,
                                  Lanes<T> y) const {
   using V = NarrowPack<T>;
-  for (Index i = 0; i < x.rows; ++i)
-    for (Index j = 0; j < x.width; j += kNarrowLanes<T>)
-      store(y.row(i) + j,
-            activate_lanes<T>(activation_, load<V>(x.row(i) + j)));
+  each_vector(x, 0, x.rows, [&](Index k) {
+    store(y.data + k, activate_lanes<T>(activation_, load<V>(x.data + k)));
+  });
 }
 
 template <class T>
@@ -65,12 +102,11 @@ void ActivationLayer<T>::backward(const LayerArgs<T>&,
   using V = NarrowPack<T>;
   if (!b.x_bar) return;
   const Lanes<const T> at = from_output(activation_) ? b.y : b.x;
-  for (Index i = 0; i < at.rows; ++i)
-    for (Index j = 0; j < at.width; j += kNarrowLanes<T>)
-      store(b.x_bar.row(i) + j,
-            pull_lanes<T>(activation_,
-                          load<V>(at.row(i) + j),
-                          load<V>(b.y_bar.row(i) + j)));
+  each_vector(at, 0, at.rows, [&](Index k) {
+    store(b.x_bar.data + k,
+          pull_lanes<T>(
+              activation_, load<V>(at.data + k), load<V>(b.y_bar.data + k)));
+  });
   apply_gate(b.gate, b.x_bar);
 }
 
@@ -96,6 +132,8 @@ void ActivationLayer<T>::backward_tangent(const LayerArgs<T>&,
                         b.x_bar_dot);
 }
 
+template void activate_rows<float>(Activation, Lanes<float>, Index, Index);
+template void activate_rows<double>(Activation, Lanes<double>, Index, Index);
 template void apply_gate<float>(const Gate<float>&, Lanes<float>);
 template void apply_gate<double>(const Gate<double>&, Lanes<double>);
 template void apply_gate_tangent<float>(const Gate<float>&,

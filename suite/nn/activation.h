@@ -97,12 +97,22 @@ inline T second_derivative(Activation a, T y) {
   return T(0);
 }
 
-/// The same for a register. tanh has an absolute, not a relative, error of
+/// A ReLU of a register, and what it lets through of a cotangent.
+template <class V>
+PHYSINV_LANES V relu_lanes(V z) {
+  return z < V{} ? V{} : z;
+}
+template <class V>
+PHYSINV_LANES V pull_relu_lanes(V y, V y_bar) {
+  return y > V{} ? y_bar : V{};
+}
+
+/// The same for any activation. tanh has an absolute, not a relative, error of
 /// about eps.
 template <class T, class V>
 inline V activate_lanes(Activation a, V z) {
   if (a == Activation::identity) return z;
-  if (a == Activation::relu) return z < V{} ? V{} : z;
+  if (a == Activation::relu) return relu_lanes(z);
   if (a == Activation::tanh) return tanh_lanes(z);
   if (a == Activation::sigmoid) return sigmoid_lanes(z);
   if (a == Activation::half_tanh) return tanh_lanes(broadcast<V>(T(0.5)) * z);
@@ -117,7 +127,7 @@ inline V activate_lanes(Activation a, V z) {
 template <class T, class V>
 inline V pull_lanes(Activation a, V y, V y_bar) {
   if (a == Activation::identity) return y_bar;
-  if (a == Activation::relu) return y > V{} ? y_bar : V{};
+  if (a == Activation::relu) return pull_relu_lanes(y, y_bar);
   if (a == Activation::tanh)
     return y_bar * fma_lanes(-y, y, broadcast<V>(T(1)));
   if (a == Activation::sigmoid) return y_bar * (y * (broadcast<V>(T(1)) - y));
@@ -135,6 +145,10 @@ inline V bend_lanes(Activation a, V y, V v) {
     v[l] *= second_derivative<T>(a, y[l]);
   return v;
 }
+
+/// Rows [first, last) of z through the activation, in place.
+template <class T>
+void activate_rows(Activation a, Lanes<T> z, Index first, Index last);
 
 /// x_bar *= derivative at `gate`; what a layer does to its input's cotangent
 /// when it has no tile store to fuse it into.

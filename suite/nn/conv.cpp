@@ -42,14 +42,9 @@ template <class T>
 void Conv<T>::forward(const LayerArgs<T>& at,
                       Lanes<const T> x,
                       Lanes<T> y) const {
-  using V = NarrowPack<T>;
   const Index out = conv_.shape().out;
   conv_.forward(at, x, y, [&](Index, Index begin, Index end) {
-    if (activation_ == Activation::identity) return;
-    for (Index i = begin * out; i < end * out; ++i)
-      for (Index j = 0; j < y.width; j += kNarrowLanes<T>)
-        store(y.row(i) + j,
-              activate_lanes<T>(activation_, load<V>(y.row(i) + j)));
+    activate_rows(activation_, y, begin * out, end * out);
   });
 }
 

@@ -13,18 +13,16 @@ namespace {
 template <class T>
 using V = NarrowPack<T>;
 
-/// Input positions of a pooling cell.
+/// Input positions of a pooling cell, two or four of them.
 struct Cell {
   std::array<Index, 4> position;
-  std::size_t count;
 };
 
 Cell cell(Grid grid, Index output) {
   const Index half = grid.columns / 2;  // an odd column is in no cell
-  if (grid.flat()) return {{2 * output, 2 * output + 1, 0, 0}, 2};
+  if (grid.flat()) return {{2 * output, 2 * output + 1, 0, 0}};
   const Index first = output / half * 2 * grid.columns + output % half * 2;
-  return {{first, first + 1, first + grid.columns, first + grid.columns + 1},
-          4};
+  return {{first, first + 1, first + grid.columns, first + grid.columns + 1}};
 }
 
 /// The two sources of an output along one axis, the nearer one first.
@@ -70,12 +68,33 @@ void each_position(const LayerArgs<T>& at, Grid grid, Index numbers, F&& f) {
   });
 }
 
-/// f of every output of a pooling.
+/// f(output row, its 2 or 4 input rows) of every pooling cell.
 template <class T, class F>
-void each_output(const LayerArgs<T>& at, Lanes<const T> y, F&& f) {
-  for_rows(at, y.rows, y.stride, [&](Index begin, Index end) {
-    for (Index i = begin; i < end; ++i) f(i);
-  });
+void each_output(const LayerArgs<T>& at,
+                 Lanes<const T> y,
+                 Grid grid,
+                 Index channels,
+                 F&& f) {
+  const auto cells = [&]<int N>() {
+    for_rows(at, y.rows, y.stride, [&](Index begin, Index end) {
+      for (Index i = begin; i < end;) {
+        const Cell from = cell(grid, i / channels);
+        std::array<Index, N> rows;
+        for (std::size_t k = 0; k < N; ++k)
+          rows[k] = from.position[k] * channels + i % channels;
+        const Index last = std::min(end, (i / channels + 1) * channels);
+        for (; i < last; ++i) {
+          f(i, rows);
+          for (Index& row : rows) ++row;
+        }
+      }
+    });
+  };
+  if (grid.flat()) {
+    cells.template operator()<2>();
+  } else {
+    cells.template operator()<4>();
+  }
 }
 
 void check_axis(Index n, Index m) {
@@ -96,13 +115,11 @@ template <class T>
 void MaxPool<T>::forward(const LayerArgs<T>& at,
                          Lanes<const T> x,
                          Lanes<T> y) const {
-  each_output<T>(at, y, [&](Index i) {
-    const Cell from = cell(grid_, i / channels_);
-    const Index c = i % channels_;
+  each_output<T>(at, y, grid_, channels_, [&](Index i, const auto& rows) {
     for (Index j = 0; j < x.width; j += kNarrowLanes<T>) {
-      V<T> top = load<V<T>>(x.row(from.position[0] * channels_ + c) + j);
-      for (std::size_t k = 1; k < from.count; ++k) {
-        const V<T> v = load<V<T>>(x.row(from.position[k] * channels_ + c) + j);
+      V<T> top = load<V<T>>(x.row(rows[0]) + j);
+      for (std::size_t k = 1; k < rows.size(); ++k) {
+        const V<T> v = load<V<T>>(x.row(rows[k]) + j);
         top = ((top >= v) | (top != top)) ? top : v;  // keeps NaN
       }
       store(y.row(i) + j, top);
@@ -115,14 +132,11 @@ void MaxPool<T>::backward(const LayerArgs<T>& at, const Backward<T>& b) const {
   if (!b.x_bar) return;
   if (grid_.columns % 2 != 0 || (!grid_.flat() && grid_.rows % 2 != 0))
     std::fill_n(b.x_bar.data, b.x_bar.rows * b.x_bar.stride, T(0));
-  each_output<T>(at, b.y, [&](Index i) {
-    const Cell to = cell(grid_, i / channels_);
-    const Index c = i % channels_;
+  each_output<T>(at, b.y, grid_, channels_, [&](Index i, const auto& rows) {
     for (Index j = 0; j < b.x.width; j += kNarrowLanes<T>) {
       const V<T> top = load<V<T>>(b.y.row(i) + j);
       V<T> rest = load<V<T>>(b.y_bar.row(i) + j);
-      for (std::size_t k = 0; k < to.count; ++k) {
-        const Index row = to.position[k] * channels_ + c;
+      for (const Index row : rows) {
         const auto here = load<V<T>>(b.x.row(row) + j) == top;
         store(b.x_bar.row(row) + j, here ? rest : V<T>{});
         rest = here ? V<T>{} : rest;
@@ -134,16 +148,13 @@ void MaxPool<T>::backward(const LayerArgs<T>& at, const Backward<T>& b) const {
 
 template <class T>
 void MaxPool<T>::tangent(const LayerArgs<T>& at, const Tangent<T>& t) const {
-  each_output<T>(at, t.y, [&](Index i) {
-    const Cell from = cell(grid_, i / channels_);
-    const Index c = i % channels_;
+  each_output<T>(at, t.y, grid_, channels_, [&](Index i, const auto& rows) {
     for (Index j = 0; j < t.x.width; j += kNarrowLanes<T>) {
       const V<T> top = load<V<T>>(t.y.row(i) + j);
       V<T> dot{};
-      for (std::size_t k = from.count; k-- > 0;) {
-        const Index row = from.position[k] * channels_ + c;
-        const auto here = load<V<T>>(t.x.row(row) + j) == top;
-        dot = here ? load<V<T>>(t.x_dot.row(row) + j) : dot;
+      for (std::size_t k = rows.size(); k-- > 0;) {
+        const auto here = load<V<T>>(t.x.row(rows[k]) + j) == top;
+        dot = here ? load<V<T>>(t.x_dot.row(rows[k]) + j) : dot;
       }
       store(t.y_dot.row(i) + j, dot);
     }
@@ -195,18 +206,24 @@ void Upsample<T>::backward(const LayerArgs<T>& at, const Backward<T>& b) const {
   each_position(at, grid_, channels_ * b.x_bar.stride, [&](Index p) {
     const Shares h(p % grid_.columns, grid_.columns, fine_.columns);
     const Shares v(p / grid_.columns, grid_.rows, fine_.rows);
+    std::array<const T*, 49> from;
+    std::array<T, 49> weight;
+    std::size_t count = 0;
+    for (std::size_t a = 0; a < v.count; ++a)
+      for (std::size_t k = 0; k < h.count; ++k) {
+        const Index output = v.output[a] * fine_.columns + h.output[k];
+        from[count] = b.y_bar.row(output * channels_);
+        weight[count++] = static_cast<T>(v.weight[a] * h.weight[k]);
+      }
+    T* const to = b.x_bar.row(p * channels_);
     for (Index c = 0; c < channels_; ++c)
       for (Index j = 0; j < b.x_bar.width; j += kNarrowLanes<T>) {
+        const Index at_lane = c * b.x_bar.stride + j;
         V<T> sum{};
-        for (std::size_t a = 0; a < v.count; ++a)
-          for (std::size_t k = 0; k < h.count; ++k) {
-            const Index from = v.output[a] * fine_.columns + h.output[k];
-            sum = fma_lanes(
-                broadcast<V<T>>(static_cast<T>(v.weight[a] * h.weight[k])),
-                load<V<T>>(b.y_bar.row(from * channels_ + c) + j),
-                sum);
-          }
-        store(b.x_bar.row(p * channels_ + c) + j, sum);
+        for (std::size_t k = 0; k < count; ++k)
+          sum = fma_lanes(
+              broadcast<V<T>>(weight[k]), load<V<T>>(from[k] + at_lane), sum);
+        store(to + at_lane, sum);
       }
   });
   apply_gate(b.gate, b.x_bar);
