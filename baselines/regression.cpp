@@ -32,7 +32,7 @@ class Passes {
     at_ += count;
     return {order_.data() + at_ - count, count};
   }
-  void keep(Archive& archive) {
+  void serialize(Archive& archive) {
     const std::size_t all = order_.size();
     archive(order_, at_, pass_);
     std::vector<bool> seen(all, false);
@@ -100,9 +100,9 @@ class Labels final : public Signal<T> {
     return model_.backward(residual_);
   }
 
-  void keep(Archive& archive) override { archive(passes_, loss_); }
+  void serialize(Archive& archive) override { archive(passes_, loss_); }
 
-  void leave(Outcome& out) const override {
+  void export_to(Outcome& out) const override {
     out.arrays["training_loss"] = Batch<double>::Constant(1, 1, loss_);
   }
 

@@ -33,8 +33,8 @@ class Direct final : public StepwiseSolver {
     probe_.trace(x_.data(), sizeof(T) * static_cast<std::size_t>(x_.size()));
   }
   void estimate(BatchOut<double> x) override { x = x_.template cast<double>(); }
-  void leave(Outcome& out) override {
-    examples_.leave(out);
+  void export_to(Outcome& out) override {
+    examples_.export_to(out);
     out.bytes = bytes();
     oracle_.add(problem_.counts());
   }

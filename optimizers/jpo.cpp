@@ -15,7 +15,7 @@ namespace physinv {
 namespace {
 
 /// The signal: losses and clipped gradients of the case's own problems, all of
-/// them at every look.
+/// them at every evaluation.
 template <class T>
 class JointLoss final : public Signal<T> {
  public:
@@ -36,8 +36,8 @@ class JointLoss final : public Signal<T> {
     oracle_.template warm_up<T>();
   }
 
-  /// Nobody needs the gradient at the last look.
-  bool look(bool last) override {
+  /// Nobody needs the gradient at the last evaluation.
+  bool evaluate(bool last) override {
     (*map_)(model_.forward(), observations_, x_);
     if (last) {
       oracle_.evaluate<T>(oracle_.all(), x_, loss_);
@@ -49,15 +49,15 @@ class JointLoss final : public Signal<T> {
     return best_.offer(x_, loss_);
   }
 
-  /// By the estimates of the last look.
+  /// By the estimates of the last evaluation.
   Vector<T>& gradient() override {
     clip_.template operator()<T>(gradient_);
     map_->pull_back(gradient_);
     return model_.backward(gradient_);
   }
 
-  /// The next look makes the rest.
-  void keep(Archive& archive) override { archive(best_); }
+  /// The next evaluation makes the rest.
+  void serialize(Archive& archive) override { archive(best_); }
 
   const Batch<T>& x() const { return x_; }
   const Batch<T>& best() const { return best_.x(); }

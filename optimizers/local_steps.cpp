@@ -70,8 +70,8 @@ class LocalSteps final : public StepwiseSolver {
     probe_.trace(x_.data(), sizeof(T) * static_cast<std::size_t>(x_.size()));
   }
   void estimate(BatchOut<double> x) override { x = x_.template cast<double>(); }
-  void leave(Outcome& out) override {
-    examples_.leave(out);
+  void export_to(Outcome& out) override {
+    examples_.export_to(out);
     if (examples_.none_running()) out.stop = Stop::diverged;
     if (path_.rows() > 0) out.arrays["path"] = path_;
     out.bytes = bytes();

@@ -44,7 +44,7 @@ class MetricsRecorder {
   void operator()(VectorIn<double> parameters,
                   BatchIn<double> x,
                   BatchIn<double> y);
-  void keep(Archive& archive) { archive(values_); }
+  void serialize(Archive& archive) { archive(values_); }
   /// Rows x points of the curve.
   const Batch<double>& values() const { return values_; }
 

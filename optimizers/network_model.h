@@ -67,7 +67,7 @@ class NetworkModel {
   void predict(BatchIn<T> input, BatchOut<T> output);
 
   /// After `warm_up`, if the input is bound.
-  void keep(Archive& archive) { archive(parameters_, state_, fresh_); }
+  void serialize(Archive& archive) { archive(parameters_, state_, fresh_); }
 
   const Tape& tape() const { return tape_; }
   Workspace& workspace() { return work_; }

@@ -27,7 +27,7 @@ Outcome run_all(StepwiseSolver& solver, StageRun& run, Measured&& measured) {
   out.status.assign(static_cast<std::size_t>(n), Status::maxiter);
   out.iterations.setConstant(n, static_cast<double>(run.probe.iteration()));
   out.evaluations = out.iterations;
-  solver.leave(out);
+  solver.export_to(out);
   return out;
 }
 
@@ -70,7 +70,7 @@ void Examples::end(Index i) {
   status_[static_cast<std::size_t>(i)] = Status::nonfinite;
 }
 
-void Examples::leave(Outcome& out) const {
+void Examples::export_to(Outcome& out) const {
   out.status = status_;
   out.iterations = iterations_;
   out.evaluations = iterations_;

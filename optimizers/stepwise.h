@@ -18,7 +18,7 @@ class StepwiseSolver {
   /// Where it stands. Not part of its work.
   virtual void estimate(BatchOut<double> x) = 0;
   /// Adds statuses, counts, arrays and bytes to what has run its iterations.
-  virtual void leave(Outcome& /*out*/) {}
+  virtual void export_to(Outcome& /*out*/) {}
 };
 
 /// Steps as long as the probe says, which keeps clock and curve. Every number
@@ -40,7 +40,7 @@ class Examples {
   /// Example i took its update, or ends.
   void count(Index i) { ++iterations_(i); }
   void end(Index i);
-  void leave(Outcome& out) const;
+  void export_to(Outcome& out) const;
 
  private:
   std::vector<Status> status_;

@@ -143,7 +143,7 @@ Outcome fit(const TrainingOptions& options, StageRun& run) {
                        .batches = &batches,
                        .estimate = [&](BatchOut<double> x) { predict(x); },
                        .measured = measured,
-                       .keep = [&](Archive& a) { a(metrics); }},
+                       .serialize = [&](Archive& a) { a(metrics); }},
                       run);
 
   out.x.resize(shape.unknowns, run.oracle.count());

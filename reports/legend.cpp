@@ -67,12 +67,12 @@ int legend_index(const std::vector<const Series*>& legend,
   return at == legend.end() ? -1 : static_cast<int>(at - legend.begin());
 }
 
-DrawnLook drawn_look(const Series& series, Ink ink) {
-  DrawnLook look{.color = ink.color};
+DrawnStyle drawn_style(const Series& series, Ink ink) {
+  DrawnStyle style{.color = ink.color};
   if (series.markers || !series.line)
-    look.marker = 2 * static_cast<int>(ink.marker) + (series.dashed ? 1 : 0);
-  if (series.line) look.pattern = 2 * ink.dash + (series.dashed ? 1 : 0);
-  return look;
+    style.marker = 2 * static_cast<int>(ink.marker) + (series.dashed ? 1 : 0);
+  if (series.line) style.pattern = 2 * ink.dash + (series.dashed ? 1 : 0);
+  return style;
 }
 
 namespace {
@@ -96,15 +96,15 @@ constexpr int kVariations = 288;
 
 Palette palette_of(const Figure& figure, const Palette& report) {
   Palette palette = report;
-  std::set<DrawnLook> taken;
+  std::set<DrawnStyle> taken;
   for (const Series* entry : legend_of(figure)) {
     const Ink usual = palette.of(*entry);
     Ink ink = usual;
     for (int step = 1;
-         taken.contains(drawn_look(*entry, ink)) && step < kVariations;
+         taken.contains(drawn_style(*entry, ink)) && step < kVariations;
          ++step)
       ink = varied(usual, step);
-    taken.insert(drawn_look(*entry, ink));
+    taken.insert(drawn_style(*entry, ink));
     palette.set(*entry, ink);
   }
   return palette;

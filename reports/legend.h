@@ -1,4 +1,4 @@
-/// What the series of a figure are called: one entry per look, shared by all
+/// What the series of a figure are called: one entry per style, shared by all
 /// panels.
 #pragma once
 
@@ -25,11 +25,11 @@ int legend_index(const std::vector<const Series*>& legend,
                  const Series& series);
 
 /// What an entry of a legend is told apart by: what of its ink is drawn.
-struct DrawnLook {
+struct DrawnStyle {
   int color = 0, marker = -1, pattern = -1;  ///< -1: none
-  auto operator<=>(const DrawnLook&) const = default;
+  auto operator<=>(const DrawnStyle&) const = default;
 };
-DrawnLook drawn_look(const Series& series, Ink ink);
+DrawnStyle drawn_style(const Series& series, Ink ink);
 
 /// The inks of a figure: those of the report, unless two entries of its legend
 /// would look alike; then the later one gets the next dash, marker or colour

@@ -29,7 +29,7 @@ constexpr Color kColors[] = {{"#1f6fb5", "#6cb2f2"},
                              {"#3d4fb0", "#9fadff"}};
 constexpr int kColorCount = static_cast<int>(std::size(kColors));
 static_assert(kColorCount == static_cast<int>(Hue::indigo) + 1);
-/// Given out to series without a look.
+/// Given out to series without a style.
 constexpr int kFirstFree = static_cast<int>(Hue::brown);
 
 /// Lengths of ink and gaps of the classes d, d2, d3, ... of lines.
@@ -135,8 +135,8 @@ std::map<std::string, Ink> usual_inks(const std::vector<Section>& sections) {
     for (const Figure& figure : sections[k].figures)
       for (const Panel& panel : figure.panels)
         for (const Series& s : panel.series) {
-          if (!s.look) continue;
-          const Ink ink{static_cast<int>(s.look->hue), s.look->marker};
+          if (!s.style) continue;
+          const Ink ink{static_cast<int>(s.style->hue), s.style->marker};
           auto& own = votes[s.method];
           auto vote = std::find_if(own.begin(), own.end(), [&](const Vote& v) {
             return v.ink == ink;
@@ -198,9 +198,9 @@ Ink Palette::of(const Series& series) {
       return at->second;
   if (const auto at = methods_.find(series.method); at != methods_.end())
     return at->second;
-  const Ink ink =
-      series.look ? Ink{static_cast<int>(series.look->hue), series.look->marker}
-                  : next_free();
+  const Ink ink = series.style ? Ink{static_cast<int>(series.style->hue),
+                                     series.style->marker}
+                               : next_free();
   return methods_[series.method] = ink;
 }
 

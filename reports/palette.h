@@ -32,14 +32,14 @@ std::vector<double> dash_pattern(Ink ink, bool dashed);
 /// A colour of the style sheet on light pages, "#rrggbb".
 std::string light_color(int color);
 
-/// The inks of methods. A series with a look has that; others get the colours
+/// The inks of methods. A series with a style has that; others get the colours
 /// that looks seldom use, one for each method, in order; then other dashes and
 /// markers, so that none is given twice.
 class Palette {
  public:
   Palette() = default;
   /// Of a whole report: a method looks the same in every figure, as in most
-  /// sections that give it a look.
+  /// sections that give it a style.
   explicit Palette(const std::vector<Section>& sections);
 
   Ink of(const Series& series);

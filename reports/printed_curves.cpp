@@ -159,7 +159,7 @@ void draw_printed(const std::vector<PrintedCurve>& curves, Section& section) {
             });
         if (own == panel.series.end()) continue;
         printed.push_back(series_of(c, across, up));
-        printed.back().look = own->look;
+        printed.back().style = own->style;
         if (std::find(places.begin(), places.end(), c.where) == places.end())
           places.push_back(c.where);
       }

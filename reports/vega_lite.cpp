@@ -26,7 +26,7 @@ constexpr std::array kShapes{
     "circle", "square", "triangle-up", "diamond", "triangle-down", "cross"};
 static_assert(kShapes.size() == static_cast<std::size_t>(Marker::cross) + 1);
 
-/// A look may have the number of a hue as its marker; it stands for the next
+/// A style may have the number of a hue as its marker; it stands for the next
 /// round of them.
 const char* shape_of(Marker marker) {
   return kShapes[static_cast<std::size_t>(marker) % kShapes.size()];
@@ -105,7 +105,7 @@ Json y_axis(const Panel& panel, const char* field) {
   return out;
 }
 
-Json look(const Scales& scales, const Json& range) {
+Json channel(const Scales& scales, const Json& range) {
   return {{"field", "series"},
           {"type", "nominal"},
           {"title", nullptr},
@@ -123,7 +123,7 @@ void add_curves(Json& layers, const Panel& panel, const Scales& scales) {
     return std::any_of(rows.begin(), rows.end(), test);
   };
   const Json x = axis("x", panel.x_label, panel.x_log), y = y_axis(panel, "y"),
-             color = look(scales, scales.colors);
+             color = channel(scales, scales.colors);
   const Json data{{"values", rows}};
   if (any([](const Json& row) { return row.contains("lo"); }))
     layers.push_back({{"data", data},
@@ -143,7 +143,7 @@ void add_curves(Json& layers, const Panel& panel, const Scales& scales) {
                         {"y", y},
                         {"order", {{"field", "k"}, {"type", "quantitative"}}},
                         {"color", color},
-                        {"strokeDash", look(scales, scales.dashes)}}}});
+                        {"strokeDash", channel(scales, scales.dashes)}}}});
   if (any([](const Json& row) { return row["mark"] == true; }))
     layers.push_back({{"data", data},
                       {"transform", only("datum.mark")},
@@ -152,7 +152,7 @@ void add_curves(Json& layers, const Panel& panel, const Scales& scales) {
                        {{"x", x},
                         {"y", y},
                         {"color", color},
-                        {"shape", look(scales, scales.shapes)}}}});
+                        {"shape", channel(scales, scales.shapes)}}}});
 }
 
 /// Between the places of a grid, and as far beyond its ends.

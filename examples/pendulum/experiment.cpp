@@ -45,7 +45,7 @@ Section draw(const Results& results, const Published& published) {
 const bool kRegistered = register_experiment({
     .name = "pendulum",
     .title = "Damped pendulum",
-    .source = {.paper = "pendulum", .where = "docs/extending.md"},
+    .citation = {.paper = "pendulum", .where = "docs/extending.md"},
     .problem = problem<Pendulum>("pendulum"),
     .setting = {.gtol = 1e-8},
     .profiles = {{.name = "smoke",
@@ -61,8 +61,8 @@ const bool kRegistered = register_experiment({
                     "BFGS / momentum",
                     ratio(median_loss({"bfgs"}), median_loss({"momentum"})),
                     1)}}},
-    .looks = {{"bfgs", {Hue::blue, Marker::circle}},
-              {"momentum", {Hue::orange, Marker::square}}},
+    .styles = {{"bfgs", {Hue::blue, Marker::circle}},
+               {"momentum", {Hue::orange, Marker::square}}},
     .report = draw,
 });
 

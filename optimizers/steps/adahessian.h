@@ -49,7 +49,7 @@ class AdaHessian {
             VectorOut<T> curvature,
             VectorOut<T> to);
 
-  void keep(Archive& archive) { archive(m_, v_, steps_); }
+  void serialize(Archive& archive) { archive(m_, v_, steps_); }
 
  private:
   AdaHessianOptions options_;

@@ -49,7 +49,7 @@ class ElementwiseStep {
 
   /// Forgets what is kept; the next step is a first one.
   void reset() { steps_ = 0; }
-  void keep(Archive& archive) {
+  void serialize(Archive& archive) {
     for (auto& k : kept_) archive(k);
     archive(steps_);
   }

@@ -39,8 +39,8 @@ class UpdateStep {
     std::visit([&](auto& rule) { rule.step(x, gradient, to); }, rule_);
   }
 
-  void keep(Archive& archive) {
-    std::visit([&](auto& rule) { rule.keep(archive); }, rule_);
+  void serialize(Archive& archive) {
+    std::visit([&](auto& rule) { rule.serialize(archive); }, rule_);
   }
 
   /// That the rule keeps.

@@ -18,7 +18,7 @@ class AdaHessianRule final : public Rule<T> {
         probes_(method.child("probes")) {}
 
   bool operator()(Signal<T>& signal) override;
-  void keep(Archive& archive) override { archive(step_, updates_); }
+  void serialize(Archive& archive) override { archive(step_, updates_); }
   std::size_t bytes() const override;
 
  private:

@@ -135,7 +135,7 @@ void BatchSignal<T>::weigh(BatchIn<T>, VectorOut<double>) {
 }
 
 template <class T>
-void BatchSignal<T>::leave(Outcome& out) const {
+void BatchSignal<T>::export_to(Outcome& out) const {
   out.arrays["batch_loss"] = as_row(losses_);
   if (late_samples_ > 0)
     out.arrays["late_error"] = Batch<double>::Constant(

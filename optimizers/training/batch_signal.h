@@ -27,10 +27,10 @@ class BatchSignal : public Signal<T> {
   void gauss_newton_product(const Vector<T>& direction,
                             Vector<T>& product) override;
   double objective() override;
-  void keep(Archive& archive) override {
+  void serialize(Archive& archive) override {
     archive(losses_, late_, late_samples_);
   }
-  void leave(Outcome& out) const override;
+  void export_to(Outcome& out) const override;
   std::size_t bytes() const override;
 
  protected:

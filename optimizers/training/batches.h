@@ -30,7 +30,7 @@ class Batches {
   void keep_labels();
 
   /// Which batch is next; the samples follow from the case.
-  void keep(Archive& archive) {
+  void serialize(Archive& archive) {
     archive(drawn_, at_);
     SUITE_CHECK(drawn_ >= 0 && at_ >= 0 && (fresh_ || at_ < slices_),
                 "a state of other batches");

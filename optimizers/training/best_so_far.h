@@ -32,7 +32,7 @@ class BestSoFar {
   }
 
   const Batch<T>& x() const { return x_; }
-  void keep(Archive& archive) { archive(x_, loss_); }
+  void serialize(Archive& archive) { archive(x_, loss_); }
 
  private:
   Batch<T> x_;

@@ -16,7 +16,7 @@ class FirstOrder : public Rule<T> {
   }
 
   bool operator()(Signal<T>& signal) override;
-  void keep(Archive& archive) override { step_.keep(archive); }
+  void serialize(Archive& archive) override { step_.serialize(archive); }
   std::size_t bytes() const override;
 
  protected:

@@ -23,7 +23,7 @@ bool HalfInverseRule<T>::operator()(Signal<T>& signal) {
 }
 
 template <class T>
-void HalfInverseRule<T>::leave(Outcome& out) const {
+void HalfInverseRule<T>::export_to(Outcome& out) const {
   out.arrays["kept"] = as_row(kept_);
   out.arrays["smallest"] = as_row(smallest_);
   out.arrays["path"] = as_row(path_);

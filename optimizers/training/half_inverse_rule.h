@@ -20,10 +20,10 @@ class HalfInverseRule final : public Rule<T> {
       : model_(model), step_(options, threads) {}
 
   bool operator()(Signal<T>& signal) override;
-  void keep(Archive& archive) override {
+  void serialize(Archive& archive) override {
     archive(kept_, smallest_, path_, unproven_);
   }
-  void leave(Outcome& out) const override;
+  void export_to(Outcome& out) const override;
   std::size_t bytes() const override { return step_.bytes(); }
 
  private:

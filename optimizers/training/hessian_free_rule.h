@@ -48,7 +48,7 @@ struct HessianFreeReport {
   Index chosen = 0;
   std::vector<Index> stored;  ///< iterates
 
-  void keep(Archive& archive) {
+  void serialize(Archive& archive) {
     archive(model, damping, next_damping, rho, alpha, before, after);
     archive(chosen, stored);
   }
@@ -62,13 +62,13 @@ class HessianFreeRule final : public Rule<T> {
 
   /// False if objective or gradient are not finite, or what follows from them.
   bool operator()(Signal<T>& signal) override;
-  void keep(Archive& archive) override {
+  void serialize(Archive& archive) override {
     archive(damping_, start_, reports_, stored_);
     SUITE_CHECK(
         start_.size() == 0 || start_.size() == model_.parameters().size(),
         "a state of another network");
   }
-  void leave(Outcome& out) const override;
+  void export_to(Outcome& out) const override;
   std::size_t bytes() const override;
 
   const std::vector<HessianFreeReport>& reports() const { return reports_; }

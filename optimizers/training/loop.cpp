@@ -10,30 +10,30 @@ namespace physinv {
 namespace {
 
 /// Everything that the updates to come depend on, and what was found so far,
-/// between an update and the look after it.
+/// between an update and the evaluation after it.
 template <class T>
 class State {
  public:
   State(const Training<T>& training, StageRun& run)
       : training_(training), run_(run) {}
 
-  void take_up() {
+  void restore() {
     if (run_.checkpoint == nullptr) return;
     auto last = run_.checkpoint->last();
     if (!last) return;
-    keep(*last);
+    serialize(*last);
     SUITE_CHECK(last->at_end(), "a state of another training");
   }
 
-  void lay_down() {
+  void save() {
     const Probe& probe = run_.probe;
     const bool ends =
         probe.stopped() || probe.iteration() == probe.iterations();
     if (run_.checkpoint == nullptr || ends || !run_.checkpoint->due()) return;
     const Probe::Aside aside = run_.probe.recording();
     Archive archive;
-    keep(archive);
-    run_.checkpoint->lay_down(probe.iteration(), archive);
+    serialize(archive);
+    run_.checkpoint->save(probe.iteration(), archive);
   }
 
   /// Of model and signal, wherever they ran.
@@ -45,12 +45,12 @@ class State {
   }
 
  private:
-  void keep(Archive& archive) {
+  void serialize(Archive& archive) {
     Counts all = counts();
     archive(all, run_.probe, run_.oracle);
     archive(training_.model, training_.signal, training_.rule);
     if (training_.batches != nullptr) archive(*training_.batches);
-    if (training_.keep) training_.keep(archive);
+    if (training_.serialize) training_.serialize(archive);
     if (archive.reading()) earlier_ = all;
   }
 
@@ -71,17 +71,17 @@ Outcome run_training(const Training<T>& training, StageRun& run) {
     out.stop = Stop::diverged;
     out.message = fmt::format(fmt::runtime(why), probe.iteration());
   };
-  const auto look = [&] {
-    if (!signal.look(probe.iteration() == probe.iterations()))
+  const auto evaluate = [&] {
+    if (!signal.evaluate(probe.iteration() == probe.iterations()))
       end("no finite loss after iteration {}");
   };
 
   probe.begin_warmup();
   signal.warm_up();
   State<T> state(training, run);
-  state.take_up();
+  state.restore();
   probe.begin();
-  look();
+  evaluate();
   while (probe.proceed(training.estimate, training.measured)) {
     if (training.batches != nullptr) training.batches->next();
     if (!training.rule(signal))
@@ -89,15 +89,15 @@ Outcome run_training(const Training<T>& training, StageRun& run) {
     const Vector<T>& theta = training.model.parameters();
     probe.trace(theta.data(),
                 sizeof(T) * static_cast<std::size_t>(theta.size()));
-    state.lay_down();
-    look();
+    state.save();
+    evaluate();
   }
 
   out.iterations.setConstant(run.oracle.count(),
                              static_cast<double>(probe.iteration()));
   out.bytes = training.model.bytes();
-  signal.leave(out);
-  training.rule.leave(out);
+  signal.export_to(out);
+  training.rule.export_to(out);
   run.oracle.add(state.counts());
   return out;
 }

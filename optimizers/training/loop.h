@@ -27,7 +27,7 @@ struct Training {
   std::function<void(BatchIn<double> x, BatchIn<double> y)> measured =
       [](BatchIn<double>, BatchIn<double>) {};
   /// What the two collect, if they do.
-  std::function<void(Archive& archive)> keep = {};
+  std::function<void(Archive& archive)> serialize = {};
 };
 
 /// With a checkpoint, goes on from the state that is there and lays one down

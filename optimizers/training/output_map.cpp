@@ -169,7 +169,7 @@ template <class T>
 std::unique_ptr<OutputMap<T>> output_map(const Setting& setting,
                                          const Oracle& oracle) {
   return output_map<T>(
-      setting.output_form, setting.output_scale, oracle.look().start());
+      setting.output_form, setting.output_scale, oracle.inspect().start());
 }
 
 template class OutputMap<float>;

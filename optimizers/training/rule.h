@@ -16,9 +16,9 @@ class Rule {
   virtual bool operator()(Signal<T>& signal) = 0;
 
   /// What the next update depends on, and what is left at the end.
-  virtual void keep(Archive& archive) = 0;
+  virtual void serialize(Archive& archive) = 0;
   /// Adds arrays to what the stage leaves.
-  virtual void leave(Outcome&) const {}
+  virtual void export_to(Outcome&) const {}
   virtual std::size_t bytes() const = 0;
 };
 

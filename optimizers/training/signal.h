@@ -27,10 +27,10 @@ class Signal {
   /// Fills caches, before the clock starts; leaves no count behind.
   virtual void warm_up() {}
 
-  /// Looks at the parameters as they stand, before a point of the curve is
+  /// Evaluates the parameters as they stand, before a point of the curve is
   /// measured, for signals whose own passes are the estimates. No update
-  /// follows the last look. False: there is nothing to learn from any more.
-  virtual bool look([[maybe_unused]] bool last) { return true; }
+  /// follows the last one. False: there is nothing to learn from any more.
+  virtual bool evaluate([[maybe_unused]] bool last) { return true; }
 
   /// By the parameters, of the current batch's objective, in memory that may
   /// be written until the next call.
@@ -52,9 +52,9 @@ class Signal {
 
   /// Between two updates: what later ones depend on, and what is left at the
   /// end; counts are kept by the loop.
-  virtual void keep(Archive& archive) = 0;
+  virtual void serialize(Archive& archive) = 0;
   /// Adds arrays to what the stage leaves.
-  virtual void leave(Outcome&) const {}
+  virtual void export_to(Outcome&) const {}
   virtual Counts counts() const { return {}; }
   virtual std::size_t bytes() const { return 0; }
 };

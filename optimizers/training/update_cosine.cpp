@@ -24,16 +24,16 @@ class WatchedProxy final : public Signal<T> {
         model_(place.model),
         batches_(place.batches),
         proxy_(proxy.make<T>(place)),
-        inverse_(dynamic_cast<const Inverse<double>&>(run_.oracle.look())),
+        inverse_(dynamic_cast<const Inverse<double>&>(run_.oracle.inspect())),
         map_(output_map<T>(run_.setting, run_.oracle)),
         work_(run_.threads) {
     batches_.keep_exact();
   }
 
   void warm_up() override { proxy_->warm_up(); }
-  bool look(bool last) override {
+  bool evaluate(bool last) override {
     if (waits()) look_behind();
-    return proxy_->look(last);
+    return proxy_->evaluate(last);
   }
   Vector<T>& gradient() override {
     const Index update = run_.probe.iteration() - 1;
@@ -44,7 +44,7 @@ class WatchedProxy final : public Signal<T> {
     return proxy_->gradient();
   }
 
-  void keep(Archive& archive) override {
+  void serialize(Archive& archive) override {
     archive(*proxy_, input_, target_, before_, wanted_, cosines_, next_);
     const Index unknowns = run_.oracle.shape().unknowns;
     SUITE_CHECK(
@@ -53,8 +53,8 @@ class WatchedProxy final : public Signal<T> {
                      before_.size() == unknowns && wanted_.size() == unknowns),
         "a state of other batches");
   }
-  void leave(Outcome& out) const override {
-    proxy_->leave(out);
+  void export_to(Outcome& out) const override {
+    proxy_->export_to(out);
     out.arrays["update_cosine"] = as_row(cosines_);
   }
   Counts counts() const override { return proxy_->counts(); }

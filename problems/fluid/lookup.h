@@ -71,7 +71,7 @@ PHYSINV_LANES P gather(const LaneScalar<P>* base, const I& index) {
 
 /// A cell of four corners and the place in it.
 template <class P>
-struct Spot {
+struct CellPoint {
   using I = Mask<LaneScalar<P>, kWidthOf<P>>;
   I corner;  ///< of f[a][b], counted in numbers from f[0][0]
   P wx, wy;
@@ -79,7 +79,7 @@ struct Spot {
 
 /// A value and d/dx, d/dy.
 template <class P>
-struct Looked {
+struct Interpolated {
   P value, dx, dy;
 };
 
@@ -87,7 +87,7 @@ template <Edge kEdge, class P>
 class Lookup {
  public:
   using T = LaneScalar<P>;
-  using I = typename Spot<P>::I;
+  using I = typename CellPoint<P>::I;
   static constexpr int W = kWidthOf<P>;
 
   explicit Lookup(const Plane& plane)
@@ -97,7 +97,7 @@ class Lookup {
     for (int k = 0; k < W; ++k) lane_[k] = k;
   }
 
-  PHYSINV_LANES Spot<P> find(P x, P y) const {
+  PHYSINV_LANES CellPoint<P> find(P x, P y) const {
     x = inside(x, extent_[0]), y = inside(y, extent_[1]);
     const P a = floor_lanes(x), b = floor_lanes(y);
     const P stride = P{} + static_cast<T>(stride_);
@@ -106,28 +106,30 @@ class Lookup {
     return {point * W + lane_, x - a, y - b};
   }
 
-  PHYSINV_LANES void read(const P* f, const Spot<P>& s, P (&c)[4]) const {
+  PHYSINV_LANES void read(const P* f, const CellPoint<P>& s, P (&c)[4]) const {
     const T* const p = reinterpret_cast<const T*>(f + origin_);
     c[0] = gather<P>(p, s.corner), c[1] = gather<P>(p + W, s.corner);
     c[2] = gather<P>(p + stride_ * W, s.corner);
     c[3] = gather<P>(p + (stride_ + 1) * W, s.corner);
   }
 
-  PHYSINV_LANES static Looked<P> look(const P (&c)[4], const Spot<P>& s) {
+  PHYSINV_LANES static Interpolated<P> interpolate(const P (&c)[4],
+                                                   const CellPoint<P>& s) {
     const P left = c[1] - c[0], right = c[3] - c[2];
     const P low = fma_lanes(s.wy, left, c[0]);
     const P dx = fma_lanes(s.wy, right, c[2]) - low;
     return {fma_lanes(s.wx, dx, low), dx, fma_lanes(s.wx, right - left, left)};
   }
 
-  PHYSINV_LANES Looked<P> look(const P* f, const Spot<P>& s) const {
+  PHYSINV_LANES Interpolated<P> interpolate(const P* f,
+                                            const CellPoint<P>& s) const {
     P c[4];
     read(f, s, c);
-    return look(c, s);
+    return interpolate(c, s);
   }
 
   /// h times the weights of the corners.
-  PHYSINV_LANES static void weigh(P h, const Spot<P>& s, P (&c)[4]) {
+  PHYSINV_LANES static void weigh(P h, const CellPoint<P>& s, P (&c)[4]) {
     const P high = h * s.wx, low = h - high;
     c[1] = low * s.wy, c[0] = low - c[1];
     c[3] = high * s.wy, c[2] = high - c[3];
@@ -135,7 +137,7 @@ class Lookup {
 
   /// Adds a number to each corner. Lanes never share one, so that the order
   /// of the calls is all that the sums depend on.
-  PHYSINV_LANES void add(P* f, const Spot<P>& s, const P (&c)[4]) const {
+  PHYSINV_LANES void add(P* f, const CellPoint<P>& s, const P (&c)[4]) const {
     T* const p = reinterpret_cast<T*>(f + origin_);
     alignas(64) T part[4][W];
     alignas(64) LaneInt<T> corner[W];

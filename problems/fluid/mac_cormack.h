@@ -28,7 +28,7 @@ inline constexpr int kFree = 0, kBelow = 1, kAbove = 2;
 /// Bytes of decisions and masks of lanes.
 template <class P>
 struct Decisions {
-  using I = typename Spot<P>::I;
+  using I = typename CellPoint<P>::I;
   typedef std::uint8_t Bytes __attribute__((vector_size(kWidthOf<P>)));
 
   PHYSINV_LANES static void put(std::uint8_t* to, I below, I above) {
@@ -47,12 +47,12 @@ template <Edge kEdge, class P>
 class MacCormack {
  public:
   using T = LaneScalar<P>;
-  using I = typename Spot<P>::I;
+  using I = typename CellPoint<P>::I;
   static constexpr int W = kWidthOf<P>;
 
   /// Displacements are lambda = dt / dx times the velocity.
   MacCormack(const Plane& plane, double lambda)
-      : plane_(plane), look_(plane), lambda_(P{} + static_cast<T>(lambda)) {}
+      : plane_(plane), lookup_(plane), lambda_(P{} + static_cast<T>(lambda)) {}
 
   const Plane& plane() const { return plane_; }
   /// Decisions of one plane.
@@ -69,10 +69,10 @@ class MacCormack {
               P* scratch) const {
     P* bounds = scratch;
     plane_.for_points([&](Index i, Index j, Index at) {
-      const auto spot = look_.find_from(i, j, -lambda_, velocity(at));
+      const auto spot = lookup_.find_from(i, j, -lambda_, velocity(at));
       P c[4];
-      look_.read(f, spot, c);
-      s[at] = look_.look(c, spot).value;
+      lookup_.read(f, spot, c);
+      s[at] = lookup_.interpolate(c, spot).value;
       bounds[0] = least(least(c[0], c[1]), least(c[2], c[3]));
       bounds[1] = most(most(c[0], c[1]), most(c[2], c[3]));
       bounds += 2;
@@ -80,8 +80,8 @@ class MacCormack {
     if constexpr (kEdge == Edge::periodic) wrap(plane_, s);
     bounds = scratch;
     plane_.for_points([&](Index i, Index j, Index at) {
-      const auto spot = look_.find_from(i, j, lambda_, velocity(at));
-      const P r = look_.look(s, spot).value;
+      const auto spot = lookup_.find_from(i, j, lambda_, velocity(at));
+      const P r = lookup_.interpolate(s, spot).value;
       const P n = fma_lanes(P{} + T(0.5), f[at] - r, s[at]);
       const I below = n < bounds[0];
       const I above = n > bounds[1];
@@ -113,11 +113,11 @@ class MacCormack {
       const P free = select(Decisions<P>::get(decision) == kFree, g[at], P{});
       const P half = T(0.5) * free;
       s_bar[at] += free, f_bar[at] += half;
-      const auto spot = look_.find_from(i, j, lambda_, velocity(at));
+      const auto spot = lookup_.find_from(i, j, lambda_, velocity(at));
       P c[4];
-      look_.weigh(-half, spot, c);
-      look_.add(s_bar, spot, c);
-      const auto r = look_.look(s, spot);
+      lookup_.weigh(-half, spot, c);
+      lookup_.add(s_bar, spot, c);
+      const auto r = lookup_.interpolate(s, spot);
       const P h = lambda_ * -half;
       moved[0] = h * r.dx, moved[1] = h * r.dy;
       moved += 2, decision += W;
@@ -125,13 +125,13 @@ class MacCormack {
     if constexpr (kEdge == Edge::periodic) fold(plane_, s_bar);
     decision = decisions, moved = scratch + plane_.size();
     plane_.for_points([&](Index i, Index j, Index at) {
-      const auto spot = look_.find_from(i, j, -lambda_, velocity(at));
+      const auto spot = lookup_.find_from(i, j, -lambda_, velocity(at));
       P c[4], c_bar[4];
-      look_.read(f, spot, c);
-      const auto back = look_.look(c, spot);
-      look_.weigh(s_bar[at], spot, c_bar);
+      lookup_.read(f, spot, c);
+      const auto back = lookup_.interpolate(c, spot);
+      lookup_.weigh(s_bar[at], spot, c_bar);
       add_held(Decisions<P>::get(decision), g[at], c, c_bar);
-      look_.add(f_bar, spot, c_bar);
+      lookup_.add(f_bar, spot, c_bar);
       const P h = lambda_ * -s_bar[at];
       velocity.add(
           at, fma_lanes(h, back.dx, moved[0]), fma_lanes(h, back.dy, moved[1]));
@@ -156,20 +156,22 @@ class MacCormack {
     const std::uint8_t* decision = decisions;
     P* bound = held_dot;
     plane_.for_points([&](Index i, Index j, Index at) {
-      const auto spot = look_.find_from(i, j, -lambda_, velocity(at));
+      const auto spot = lookup_.find_from(i, j, -lambda_, velocity(at));
       P c[4], c_dot[4];
-      look_.read(f, spot, c), look_.read(f_dot, spot, c_dot);
-      const P moved = shift(look_.look(c, spot), velocity_dot(at));
-      s_dot[at] = fma_lanes(-lambda_, moved, look_.look(c_dot, spot).value);
+      lookup_.read(f, spot, c), lookup_.read(f_dot, spot, c_dot);
+      const P moved = shift(lookup_.interpolate(c, spot), velocity_dot(at));
+      s_dot[at] =
+          fma_lanes(-lambda_, moved, lookup_.interpolate(c_dot, spot).value);
       *bound++ = held_tangent(Decisions<P>::get(decision), c, c_dot);
       decision += W;
     });
     if constexpr (kEdge == Edge::periodic) wrap(plane_, s_dot);
     decision = decisions, bound = held_dot;
     plane_.for_points([&](Index i, Index j, Index at) {
-      const auto spot = look_.find_from(i, j, lambda_, velocity(at));
-      const P moved = shift(look_.look(s, spot), velocity_dot(at));
-      const P r_dot = fma_lanes(lambda_, moved, look_.look(s_dot, spot).value);
+      const auto spot = lookup_.find_from(i, j, lambda_, velocity(at));
+      const P moved = shift(lookup_.interpolate(s, spot), velocity_dot(at));
+      const P r_dot =
+          fma_lanes(lambda_, moved, lookup_.interpolate(s_dot, spot).value);
       const P n_dot = fma_lanes(P{} + T(0.5), f_dot[at] - r_dot, s_dot[at]);
       out_dot[at] =
           select(Decisions<P>::get(decision) == kFree, n_dot, *bound++);
@@ -178,7 +180,7 @@ class MacCormack {
   }
 
  private:
-  PHYSINV_LANES static P shift(const Looked<P>& l, const Velocity<P>& v) {
+  PHYSINV_LANES static P shift(const Interpolated<P>& l, const Velocity<P>& v) {
     return fma_lanes(v.x, l.dx, v.y * l.dy);
   }
 
@@ -216,17 +218,17 @@ class MacCormack {
   /// The lookups of this plane, at a displacement from one of its points.
   struct From : Lookup<kEdge, P> {
     using Lookup<kEdge, P>::Lookup;
-    PHYSINV_LANES Spot<P> find_from(Index i,
-                                    Index j,
-                                    P times,
-                                    const Velocity<P>& v) const {
+    PHYSINV_LANES CellPoint<P> find_from(Index i,
+                                         Index j,
+                                         P times,
+                                         const Velocity<P>& v) const {
       return this->find(fma_lanes(times, v.x, P{} + static_cast<T>(i)),
                         fma_lanes(times, v.y, P{} + static_cast<T>(j)));
     }
   };
 
   Plane plane_;
-  From look_;
+  From lookup_;
   P lambda_;
 };
 

@@ -146,7 +146,7 @@ class PeriodicFlow {
  private:
   /// sqrt(before / after), or 1 where either is nothing.
   struct Scaling {
-    typename fluid::Spot<P>::I acts;
+    typename fluid::CellPoint<P>::I acts;
     P before, after, factor;
 
     explicit Scaling(const P* energy)

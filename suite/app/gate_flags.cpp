@@ -3,7 +3,7 @@
 #include "suite/app/installed.h"
 #include "suite/app/options.h"
 #include "suite/harness/context.h"
-#include "suite/harness/registry_problems.h"
+#include "suite/harness/registry_errors.h"
 
 namespace physinv {
 

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "suite/harness/nearest.h"
-#include "suite/harness/registry_problems.h"
+#include "suite/harness/registry_errors.h"
 #include "suite/harness/words.h"
 #include "suite/results/file.h"
 

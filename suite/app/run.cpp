@@ -312,7 +312,7 @@ void cite(std::vector<Case>& cases) {
   } catch (const UsageError&) {  // a program without such files
   }
   for (Case& c : cases) {
-    const auto* p = published.publication(c.experiment->source.paper);
+    const auto* p = published.publication(c.experiment->citation.paper);
     if (p == nullptr) continue;
     c.info.about.paper = p->text();
     c.info.about.arxiv = p->arxiv;

@@ -19,7 +19,7 @@
 #include "suite/harness/registry.h"
 #include "suite/results/convergence_history.h"
 #include "suite/results/crowded.h"
-#include "suite/results/profiles.h"
+#include "suite/results/performance_profiles.h"
 
 namespace physinv {
 namespace {
@@ -31,7 +31,7 @@ Section section_of(const Experiment& e,
   if (e.report) section = e.report(results, published);
   section.experiment = e.name;
   section.title = e.title;
-  section.paper = e.source.paper;
+  section.paper = e.citation.paper;
   for (auto& claim : judge(e, results, published))
     section.claims.push_back(std::move(claim));
   return section;
@@ -212,12 +212,12 @@ std::vector<Section> sections_of(const Results& results,
       const CommonRuns common = common_runs(results, e->name);
       add_standings(section, common, section.method_titles);
       for (Figure& figure :
-           profile_figures(common,
-                           {.title = section.title,
-                           .method_titles = section.method_titles}))
+           performance_profile_figures(common,
+                                       {.title = section.title,
+                                       .method_titles = section.method_titles}))
         section.figures.push_back(std::move(figure));
     }
-    apply(e->looks, section.figures);
+    apply(e->styles, section.figures);
   }
   for (Section& overview : sections)
     if (overview.experiment == overview.paper)

@@ -9,7 +9,7 @@
 #include <set>
 
 #include "suite/evidence/standings.h"
-#include "suite/results/profiles.h"
+#include "suite/results/performance_profiles.h"
 #include "suite/results/shortened.h"
 #include "suite/results/verdict_words.h"
 
@@ -364,8 +364,8 @@ std::vector<Section> compare_sections(const Comparison& c,
     section.figures.push_back(overlay(own));
     const CommonRuns runs = common_runs(all, name);
     add_standings(section, runs, {});
-    for (auto& figure :
-         profile_figures(runs, {.title = name, .method_titles = {}}))
+    for (auto& figure : performance_profile_figures(
+             runs, {.title = name, .method_titles = {}}))
       section.figures.push_back(std::move(figure));
     sections.push_back(std::move(section));
   }

@@ -1,7 +1,7 @@
 /// The state of something under way as bytes, and back. Each part says once
 /// what it keeps, for both ways:
 ///
-///   void keep(Archive& archive) { archive(m_, v_, steps_); }
+///   void serialize(Archive& archive) { archive(m_, v_, steps_); }
 ///
 /// Numbers stand as they lie in memory: for the build that wrote them. What is
 /// given back may be anything: matrices that have rows, or numbers, keep their
@@ -40,8 +40,8 @@ class Archive {
  private:
   template <class Part>
   void one(Part& part) {
-    if constexpr (requires { part.keep(*this); }) {
-      part.keep(*this);
+    if constexpr (requires { part.serialize(*this); }) {
+      part.serialize(*this);
     } else {
       static_assert(std::is_trivially_copyable_v<Part>);
       raw(&part, sizeof(Part));

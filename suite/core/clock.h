@@ -44,8 +44,8 @@ class Stopwatch {
     running_ = false;
   }
   bool running() const { return running_; }
-  /// What was taken up counts too.
-  void keep(Archive& archive) {
+  /// What was restored counts too.
+  void serialize(Archive& archive) {
     Seconds sum = total();
     archive(sum);
     if (archive.reading()) total_ += sum;

@@ -16,7 +16,7 @@ struct Curve {
   Batch<double> x;     ///< (unknowns * tracked examples) x points
 
   Index points() const { return static_cast<Index>(iteration.size()); }
-  void keep(Archive& archive) {
+  void serialize(Archive& archive) {
     archive(iteration, seconds, evaluations, loss, x);
   }
 };

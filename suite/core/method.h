@@ -103,7 +103,7 @@ struct StageRun {
   Index iterations;
   Precision precision;
   Threads* threads;
-  Checkpoint* checkpoint = nullptr;  ///< for stages that lay their state down
+  Checkpoint* checkpoint = nullptr;  ///< for stages that save their state
 };
 
 /// Size of a case, for estimates of work.

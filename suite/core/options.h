@@ -99,26 +99,26 @@ std::string text_of(const T& values, std::string_view separator) {
 /// One word under its name; of what lists its own fields, those. Of a variant
 /// what it holds, of an empty optional nothing.
 template <class T>
-Options in_words(std::string_view name, const T& value) {
+Options describe(std::string_view name, const T& value) {
   return {{std::string(name), text_of(value)}};
 }
 template <Listing O>
-Options in_words(std::string_view, const O& o) {
+Options describe(std::string_view, const O& o) {
   return describe(o);
 }
 template <class T>
-Options in_words(std::string_view name, const std::optional<T>& value) {
-  return value ? in_words(name, *value) : Options{};
+Options describe(std::string_view name, const std::optional<T>& value) {
+  return value ? describe(name, *value) : Options{};
 }
 template <class... T>
-Options in_words(std::string_view name, const std::variant<T...>& value) {
-  return std::visit([&](const auto& v) { return in_words(name, v); }, value);
+Options describe(std::string_view name, const std::variant<T...>& value) {
+  return std::visit([&](const auto& v) { return describe(name, v); }, value);
 }
 
 /// A member; several under one name, with commas.
 template <class T>
 Listed<1> field(std::string_view name, const T& member) {
-  return {.words = in_words(name, member)};
+  return {.words = describe(name, member)};
 }
 template <class... T>
 requires(sizeof...(T) > 1) Listed<sizeof...(T)> field(std::string_view name,

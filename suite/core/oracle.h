@@ -69,7 +69,7 @@ class Oracle {
 
   /// The problem for metrics and whoever else looks on: what it is, and runs
   /// that are not part of a method's work. Not counted.
-  const Problem<double>& look() const { return *problem_; }
+  const Problem<double>& inspect() const { return *problem_; }
 
   /// Losses in double for curves and records; not counted, not part of a
   /// method's work.
@@ -79,7 +79,7 @@ class Oracle {
 
   const Counts& counts() const;
   /// What was counted; everything else follows from the case.
-  void keep(Archive& archive) {
+  void serialize(Archive& archive) {
     counts();
     archive(counts_);
   }

@@ -137,7 +137,7 @@ const Curve& Probe::curve() {
   return curve_;
 }
 
-void Probe::keep(Archive& archive) {
+void Probe::serialize(Archive& archive) {
   curve();  // the points alone, without room for more
   archive(iteration_, next_, trajectory_, curve_);
   const auto points = static_cast<std::size_t>(curve_.points());

@@ -99,7 +99,7 @@ class Probe {
   bool knows_losses(BatchIn<double> x, VectorOut<double> loss) const;
   Clocks clocks() const;
   /// Not of solvers that go example by example.
-  void keep(Archive& archive);
+  void serialize(Archive& archive);
 
   /// Told of every point of the curve, the clock stopped meanwhile.
   using Observer = std::function<void(Index iteration, VectorIn<double> loss)>;

@@ -30,7 +30,7 @@ enum class WorkOf : std::uint8_t { forward, gradient, inverse };
 /// "forward"
 const char* to_string(WorkOf what);
 
-/// What is right, once found, for the stages of one knob that ask for it.
+/// What is right, once found, for the stages of one parameter that ask for it.
 class Answers;
 std::shared_ptr<Answers> no_answers_yet();
 

@@ -184,8 +184,8 @@ std::vector<Condition> all_conditions(const Claim& claim) {
   return joined({claim.conditions, claim.cause.shown_by});
 }
 
-std::vector<std::string> problems_of(const Claim& claim,
-                                     const std::vector<std::string>& profiles) {
+std::vector<std::string> errors_of(const Claim& claim,
+                                   const std::vector<std::string>& profiles) {
   std::vector<std::string> wrong;
   const auto add = [&](const std::string& what) {
     wrong.push_back(fmt::format("claim {} {}", claim.id, what));

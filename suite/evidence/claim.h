@@ -61,8 +61,8 @@ std::vector<Condition> all_conditions(const Claim& claim);
 /// What is wrong with a claim by itself, one line each: no id, a claim of the
 /// paper without a place, no conditions, an unknown profile, a cause that is no
 /// line or counts as holding.
-std::vector<std::string> problems_of(const Claim& claim,
-                                     const std::vector<std::string>& profiles);
+std::vector<std::string> errors_of(const Claim& claim,
+                                   const std::vector<std::string>& profiles);
 
 /// Printed values that claims name and the paper's file lacks.
 std::vector<std::string> unknown_printed(const std::vector<Claim>& claims,

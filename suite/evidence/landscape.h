@@ -35,7 +35,7 @@ struct LossAxis {
   double scale = 1;
 };
 
-/// One line in the look of a method.
+/// One line in the style of a method.
 Panel line_panel(std::string method,
                  std::string x_label,
                  std::string y_label,

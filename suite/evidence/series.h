@@ -23,14 +23,14 @@ inline Series mark(std::string label,
                    std::string method,
                    double x,
                    double y,
-                   std::optional<Look> look = {}) {
+                   std::optional<PlotStyle> style = {}) {
   return {.label = std::move(label),
           .method = std::move(method),
           .x = {x},
           .y = {y},
           .line = false,
           .markers = true,
-          .look = look};
+          .style = style};
 }
 
 /// A dashed line at one height.
@@ -39,13 +39,13 @@ inline Series level(std::string label,
                     double from,
                     double to,
                     double y,
-                    std::optional<Look> look = {}) {
+                    std::optional<PlotStyle> style = {}) {
   return {.label = std::move(label),
           .method = std::move(method),
           .x = {from, to},
           .y = {y, y},
           .dashed = true,
-          .look = look};
+          .style = style};
 }
 
 }  // namespace physinv

@@ -6,7 +6,7 @@
 #include "suite/evidence/cell.h"
 #include "suite/evidence/running_time.h"
 #include "suite/evidence/standings.h"
-#include "suite/results/profiles.h"
+#include "suite/results/performance_profiles.h"
 
 namespace physinv {
 namespace {

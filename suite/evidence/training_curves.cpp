@@ -46,7 +46,7 @@ Series median_series(const std::vector<Points>& seeds,
                      Axis axis) {
   Series s{.label = line.label,
            .method = line.key.empty() ? line.method : line.key,
-           .look = look_of(line)};
+           .style = style_of(line)};
   std::size_t points = seeds.empty() ? 0 : SIZE_MAX;
   for (const Points& p : seeds) points = std::min(points, p.value.size());
   for (std::size_t k = 0; k < points; ++k) {

@@ -76,9 +76,9 @@ std::optional<double> paper_update(const Published& published,
                                    std::string_view row);
 
 /// Of a series that shows this line; markers go with the hues.
-inline std::optional<Look> look_of(const MethodLine& line) {
+inline std::optional<PlotStyle> style_of(const MethodLine& line) {
   if (!line.hue) return {};
-  return Look{*line.hue, static_cast<Marker>(*line.hue)};
+  return PlotStyle{*line.hue, static_cast<Marker>(*line.hue)};
 }
 
 /// Draws learning curves into an experiment's section: medians over seeds, with

@@ -85,8 +85,10 @@ Series& curve_of(const std::string& label,
         return s.label == label;
       });
   if (known != curves.end()) return *known;
-  return curves.emplace_back(Series{
-      .label = label, .method = label, .markers = true, .look = look_of(line)});
+  return curves.emplace_back(Series{.label = label,
+                                    .method = label,
+                                    .markers = true,
+                                    .style = style_of(line)});
 }
 
 /// Ascending in x.

@@ -215,7 +215,7 @@ Series hull_series(const std::vector<BudgetPoint>& hull) {
   Series s{.label = "lower-left hull",
            .method = "hull",
            .dashed = true,
-           .look = Look{.hue = Hue::ink}};
+           .style = PlotStyle{.hue = Hue::ink}};
   for (const BudgetPoint& p : hull)
     s.x.push_back(p.seconds), s.y.push_back(p.loss);
   return s;

@@ -128,13 +128,13 @@ std::optional<double> estimate_change(const StageLine& before,
 
 Distance distance(const StageLine& before, const StageLine& now) {
   Distance d{.x = estimate_change(before, now)};
-  const auto look = [&](std::string_view which, double a, double b) {
+  const auto compared = [&](std::string_view which, double a, double b) {
     const double change = loss_change(a, b, shown_digits(before));
     if (change > d.loss) d.loss = change, d.which = which;
   };
-  look("best", before.losses.best, now.losses.best);
-  look("median", before.losses.median, now.losses.median);
-  look("worst", before.losses.worst, now.losses.worst);
+  compared("best", before.losses.best, now.losses.best);
+  compared("median", before.losses.median, now.losses.median);
+  compared("worst", before.losses.worst, now.losses.worst);
   return d;
 }
 

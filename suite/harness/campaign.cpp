@@ -130,7 +130,7 @@ class Campaign {
                                 info.name,
                                 info.stages[stage],
                                 state->iteration));
-      taken_up_[i] = static_cast<Index>(stage);
+      restored_[i] = static_cast<Index>(stage);
     } catch (const StoreError& error) {
       progress_.say(error.what());
       store_.drop_state(info.keys[stage]);
@@ -340,8 +340,8 @@ class Campaign {
   /// A stage that crashed when it went on from a state tries without, once.
   bool starts_again(const WorkerEvent& event) {
     const std::size_t i = event.case_index;
-    const auto at = taken_up_.find(i);
-    if (at == taken_up_.end() || !event.crashed ||
+    const auto at = restored_.find(i);
+    if (at == restored_.end() || !event.crashed ||
         at->second != positions_[event.worker])
       return false;
     const CaseInfo& info = cases_[i].info;
@@ -353,7 +353,7 @@ class Campaign {
                     info.stages[stage],
                     event.message));
     store_.drop_state(info.keys[stage]);
-    taken_up_.erase(at);
+    restored_.erase(at);
     queue_.push_back(i);
     return true;
   }
@@ -417,7 +417,7 @@ class Campaign {
   std::vector<std::size_t> queue_;              // cases not handed out yet
   std::map<std::size_t, std::size_t> running_;  // worker -> case
   std::map<std::size_t, Index> positions_;      // worker -> stage
-  std::map<std::size_t, Index> taken_up_;       // case -> stage with a state
+  std::map<std::size_t, Index> restored_;       // case -> stage with a state
   std::set<std::pair<std::size_t, std::size_t>> counted_;  // reused stages
   std::map<std::size_t, int> tries_;        // of cases whose worker was killed
   std::map<std::size_t, double> finished_;  // final median loss of a case

@@ -21,7 +21,7 @@
 
 namespace physinv {
 
-struct Source {
+struct Citation {
   std::string paper;  ///< key of reports/published/<paper>.json
   std::string where;  ///< "Sec. 4, Fig. 4"
 };
@@ -71,15 +71,15 @@ using Report = std::function<Section(const Results&, const Published&)>;
 struct Experiment {
   std::string name;   ///< jpo/billiards
   std::string title;  ///< Billiards
-  Source source;
+  Citation citation;
   ProblemRecipe problem;
   Setting setting;
   std::vector<Profile> profiles;
   std::vector<Method> methods;
   /// Profiles in ascending order are what the claims' `from` refers to.
   std::vector<Claim> claims;
-  Looks looks;    ///< colours and markers of methods in every figure
-  Report report;  ///< empty: claims alone
+  PlotStyles styles;  ///< colours and markers of methods in every figure
+  Report report;      ///< empty: claims alone
 };
 
 /// What stands in front of several experiments: what their paper says of them

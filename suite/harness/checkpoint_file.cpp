@@ -22,7 +22,7 @@ std::optional<Archive> CheckpointFile::last() {
   try {
     auto state = read_state(store_, stage_.key);
     if (!state) return {};
-    taken_up_ = true;
+    restored_ = true;
     return Archive(std::move(state->bytes));
   } catch (const StoreError&) {
     drop();
@@ -31,7 +31,7 @@ std::optional<Archive> CheckpointFile::last() {
 }
 
 void CheckpointFile::drop() {
-  taken_up_ = false;
+  restored_ = false;
   dropped_ = true;
   try {
     remove_state(store_, stage_.key);
@@ -43,7 +43,7 @@ bool CheckpointFile::due() {
   return leaving() || now().wall - last_ >= seconds_;
 }
 
-void CheckpointFile::lay_down(Index iteration, const Archive& state) {
+void CheckpointFile::save(Index iteration, const Archive& state) {
   try {
     write_state(store_,
                 stage_.key,

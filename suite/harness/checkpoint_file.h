@@ -11,11 +11,11 @@ namespace physinv {
 struct CheckpointOptions {
   std::filesystem::path store;  ///< empty: no checkpoints
   double seconds = 0;           ///< between two of a stage
-  /// True: a stage lays its state down as soon as it can, and ends there.
+  /// True: a stage saves its state as soon as it can, and ends there.
   bool (*leaving)() = nullptr;
 };
 
-/// A stage was left where it laid its state down.
+/// A stage was left where it saved its state.
 struct StageLeft {};
 
 class CheckpointFile final : public Checkpoint {
@@ -26,19 +26,19 @@ class CheckpointFile final : public Checkpoint {
   /// What is damaged goes: the stage starts again.
   std::optional<Archive> last() override;
   /// Has the stage gone on from a state?
-  bool taken_up() const { return taken_up_; }
+  bool restored() const { return restored_; }
   /// The stage cannot go on from there.
   void drop();
   bool due() override;
   /// A disk that is full costs the checkpoint, not the stage. Throws StageLeft
   /// where the stage is to be left.
-  void lay_down(Index iteration, const Archive& state) override;
+  void save(Index iteration, const Archive& state) override;
 
  private:
   std::filesystem::path store_;
   double seconds_, last_;
   bool (*leaving_)();
-  bool taken_up_ = false, dropped_ = false;
+  bool restored_ = false, dropped_ = false;
   const StageRecord& stage_;
 
   bool leaving() const { return leaving_ != nullptr && leaving_(); }

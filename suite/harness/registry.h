@@ -6,7 +6,7 @@
 ///   }
 ///
 /// Registering stores a recipe and judges nothing. A test and `list --validate`
-/// call `validate`; a run looks at its own experiments (registry_problems.h).
+/// call `validate`; a run looks at its own experiments (registry_errors.h).
 #pragma once
 
 #include <map>

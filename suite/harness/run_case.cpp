@@ -133,7 +133,7 @@ void run_case(const Case& c,
           run();
         } catch (...) {
           // A state that leads nowhere would do so every time.
-          if (!checkpoint.taken_up()) throw;
+          if (!checkpoint.restored()) throw;
           checkpoint.drop();
           record = blank(c, position, options.revision);
           run();

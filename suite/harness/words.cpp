@@ -109,7 +109,7 @@ bool is_plain_word(std::string_view text) {
 }
 
 bool is_of_paper(const Experiment& experiment) {
-  const std::string& paper = experiment.source.paper;
+  const std::string& paper = experiment.citation.paper;
   return !paper.empty() && experiment.name.starts_with(paper + "/");
 }
 

@@ -61,7 +61,7 @@ void serve(int socket,
               send_message(socket, kStageDone, to_wire(record));
             }};
     run_case(cases[index], std::move(earlier), options, &threads, hooks);
-    // What a stage was taken up with counts as its own, but not as ours.
+    // What a stage was restored with counts as its own, but not as ours.
     const double overhead = std::max(0.0, now().cpu - begin - in_stages);
     send_message(socket, kCaseDone, BodyWriter().put(overhead).take());
   }

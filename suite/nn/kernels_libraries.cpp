@@ -22,8 +22,8 @@ namespace physinv::nn {
 namespace {
 
 /// height x width, channels in and out, samples: layers of the U-nets.
-struct Plane {
-  explicit Plane(const benchmark::State& state)
+struct ConvShape {
+  explicit ConvShape(const benchmark::State& state)
       : height(state.range(0)),
         width(state.range(1)),
         in(state.range(2)),
@@ -48,14 +48,14 @@ enum class Which { forward, weights, input };
 
 template <Which pass>
 void own(benchmark::State& state) {
-  const Plane plane(state);
-  const Conv<float> layer({.grid = {plane.height, plane.width},
-                           .in = plane.in,
-                           .out = plane.out,
+  const ConvShape shape(state);
+  const Conv<float> layer({.grid = {shape.height, shape.width},
+                           .in = shape.in,
+                           .out = shape.out,
                            .taps = {3, 3}});
   const Index inputs = layer.inputs(), outputs = layer.outputs();
-  LaneBlock<float> x(inputs, plane.n), x_bar(inputs, plane.n);
-  LaneBlock<float> y(outputs, plane.n), y_bar(outputs, plane.n);
+  LaneBlock<float> x(inputs, shape.n), x_bar(inputs, shape.n);
+  LaneBlock<float> y(outputs, shape.n), y_bar(outputs, shape.n);
   Index weights = 0;
   for (const TensorInfo& t : layer.tensors()) weights += t.size;
   const Vector<float> p = Vector<float>::Random(weights);
@@ -75,7 +75,7 @@ void own(benchmark::State& state) {
       layer.backward(at, b);
     benchmark::ClobberMemory();
   }
-  plane.count(state);
+  shape.count(state);
 }
 BENCHMARK(own<Which::forward>)->Name("nn/plane/forward")->Apply(planes);
 BENCHMARK(own<Which::weights>)->Name("nn/plane/weight_gradient")->Apply(planes);
@@ -87,15 +87,15 @@ template <Which pass>
 void onednn(benchmark::State& state) {
   using dnnl::memory;
   omp_set_num_threads(1);
-  const Plane plane(state);
+  const ConvShape shape(state);
   const dnnl::engine engine(dnnl::engine::kind::cpu, 0);
   dnnl::stream stream(engine);
   const auto any = [](memory::dims dims) {
     return memory::desc(dims, memory::data_type::f32, memory::format_tag::any);
   };
-  const auto x = any({plane.n, plane.in, plane.height, plane.width});
-  const auto y = any({plane.n, plane.out, plane.height, plane.width});
-  const auto w = any({plane.out, plane.in, 3, 3}), b = any({plane.out});
+  const auto x = any({shape.n, shape.in, shape.height, shape.width});
+  const auto y = any({shape.n, shape.out, shape.height, shape.width});
+  const auto w = any({shape.out, shape.in, 3, 3}), b = any({shape.out});
   const memory::dims step = {1, 1}, border = {1, 1};
   const auto direct = dnnl::algorithm::convolution_auto;
   const dnnl::convolution_forward::primitive_desc forward(
@@ -121,7 +121,7 @@ void onednn(benchmark::State& state) {
       primitive.execute(stream, arguments);
       stream.wait();
     }
-    plane.count(state);
+    shape.count(state);
   };
   using Arguments = std::unordered_map<int, memory>;
   if constexpr (pass == Which::forward) {

@@ -52,7 +52,7 @@ auto retry(F&& call) {
   return result;
 }
 
-std::optional<struct stat> look(const fs::path& path) {
+std::optional<struct stat> file_info(const fs::path& path) {
   struct stat info {};
   if (::stat(path.c_str(), &info) < 0) return {};
   return info;
@@ -86,7 +86,7 @@ FileDescriptor open_file(const fs::path& path,
   FileDescriptor fd(retry([&] { return ::open(path.c_str(), flags, 0644); }));
   if (fd.get() >= 0) return fd;
   const int error = errno;
-  if (const auto info = look(path);
+  if (const auto info = file_info(path);
       error == ENXIO && info && S_ISSOCK(info->st_mode))
     fail_kind(what, path, info->st_mode);
   fail_file(what, path, error);
@@ -172,7 +172,7 @@ void write_atomically(const fs::path& named, std::string_view bytes) {
   const fs::path path = followed(named);
   if (const auto own = own_descriptor(path); own.get() >= 0)
     return write_all(own, bytes, named);
-  const auto info = look(path);
+  const auto info = file_info(path);
   if (info && S_ISDIR(info->st_mode)) fail_kind("write", named, info->st_mode);
   if (info && !S_ISREG(info->st_mode))
     return write_into(open_file(path, O_WRONLY, "write"), bytes, named);

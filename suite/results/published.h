@@ -12,7 +12,7 @@ namespace physinv {
 
 /// What the numbers were printed in.
 struct Publication {
-  std::string key;  ///< "jpo", what a case's `Source` calls it
+  std::string key;  ///< "jpo", what a case's `Citation` calls it
   std::string title;
   std::vector<std::string> authors;
   int year = 0;

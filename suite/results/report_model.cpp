@@ -2,12 +2,12 @@
 
 namespace physinv {
 
-void apply(const Looks& looks, std::vector<Figure>& figures) {
+void apply(const PlotStyles& styles, std::vector<Figure>& figures) {
   for (Figure& figure : figures)
     for (Panel& panel : figure.panels)
       for (Series& series : panel.series)
-        if (const auto at = looks.find(series.method); at != looks.end())
-          series.look = at->second;
+        if (const auto at = styles.find(series.method); at != styles.end())
+          series.style = at->second;
 }
 
 }  // namespace physinv

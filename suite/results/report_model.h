@@ -65,7 +65,7 @@ enum class Hue {
 enum class Marker { circle, square, triangle, diamond, down, cross };
 
 /// How a method is drawn everywhere in an experiment's report.
-struct Look {
+struct PlotStyle {
   Hue hue = Hue::blue;
   Marker marker = Marker::circle;
 };
@@ -78,7 +78,7 @@ struct Series {
   bool line = true;            ///< joined points
   bool markers = false;        ///< a mark at each point
   bool dashed = false;
-  std::optional<Look> look = {};  ///< empty: the next free colour
+  std::optional<PlotStyle> style = {};  ///< empty: the next free colour
 };
 
 /// A grid of values over two axes, drawn as a heat map: value(i, j) =
@@ -175,8 +175,8 @@ struct Section {
 };
 
 /// By what is drawn (`Series::method`).
-using Looks = std::map<std::string, Look>;
-/// Series whose method has a look get it.
-void apply(const Looks& looks, std::vector<Figure>& figures);
+using PlotStyles = std::map<std::string, PlotStyle>;
+/// Series whose method has a style get it.
+void apply(const PlotStyles& styles, std::vector<Figure>& figures);
 
 }  // namespace physinv

@@ -96,7 +96,7 @@ bool own_losses(const StageRecord& r) {
 /// updates, and, where it did, one that goes on from there.
 struct Continued {
   std::vector<StageRecord> first, second;
-  std::vector<bool> taken_up;
+  std::vector<bool> restored;
 };
 
 Continued run_twice(const Case& c, Index update) {
@@ -117,7 +117,7 @@ Continued run_twice(const Case& c, Index update) {
     auto outcome = one(both.first);
     if (checkpoint.state) outcome = one(both.second);
     if (!checkpoint.state) both.second.push_back(both.first.back());
-    both.taken_up.push_back(checkpoint.taken_up);
+    both.restored.push_back(checkpoint.restored);
     previous = std::move(outcome);
   }
   return both;
@@ -251,7 +251,7 @@ TEST_P(MethodContract, RepeatsItselfForAnyThreadsAndWhenResumed) {
       expect_same(once[i], again.second[i]);
       expect_same(once[i], threaded[i]);
       if (trains(once[i])) {
-        EXPECT_TRUE(again.taken_up[i]);
+        EXPECT_TRUE(again.restored[i]);
       }
     }
     if (once.size() < 2) continue;

@@ -75,7 +75,7 @@ TEST(CurvatureRules, RepeatThemselvesAlsoFromTheMiddle) {
     const auto once = found(nullptr);
     EXPECT_EQ(once, found(&after_two));
     EXPECT_EQ(once, found(&after_two));
-    EXPECT_TRUE(after_two.taken_up);
+    EXPECT_TRUE(after_two.restored);
   };
   expect_same(stage_of(kAdaHessian));
   expect_same(stage_of(kHessianFree));

@@ -23,9 +23,9 @@ class Falling final : public Signal<double> {
  public:
   explicit Falling(NetworkModel<double>& model) : model_(model) {}
 
-  bool look(bool last) override {
-    looks.push_back(last);
-    return static_cast<Index>(looks.size()) <= patience;
+  bool evaluate(bool last) override {
+    evaluations.push_back(last);
+    return static_cast<Index>(evaluations.size()) <= patience;
   }
   Vector<double>& gradient() override {
     ++gradients;
@@ -33,11 +33,11 @@ class Falling final : public Signal<double> {
     return gradient_;
   }
 
-  void keep(Archive&) override {}
+  void serialize(Archive&) override {}
 
   Index patience = 100, gradients = 0;
   double pull = 1;
-  std::vector<bool> looks;
+  std::vector<bool> evaluations;
 
  private:
   NetworkModel<double>& model_;
@@ -84,7 +84,7 @@ TEST(Loop, LooksBeforeEveryUpdateAndAfterTheLast) {
   FirstOrder<double> rule(SgdOptions{.rate = 0.5}, b.model);
   const Vector<double> before = b.model.parameters();
   const Outcome out = b.train_by(rule);
-  EXPECT_EQ(b.signal.looks,
+  EXPECT_EQ(b.signal.evaluations,
             (std::vector<bool>{false, false, false, false, true}));
   EXPECT_EQ(b.signal.gradients, kUpdates);
   EXPECT_LT((before.array() - 0.5 * kUpdates - b.model.parameters().array())

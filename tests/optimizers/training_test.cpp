@@ -175,7 +175,7 @@ TEST(Training, GoesOnFromTheMiddle) {
       EXPECT_EQ(once, found(&after));
       EXPECT_EQ(after.at, 11);
       EXPECT_EQ(once, found(&after));
-      EXPECT_TRUE(after.taken_up);
+      EXPECT_TRUE(after.restored);
     }
   }
 }

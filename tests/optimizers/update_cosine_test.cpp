@@ -103,7 +103,7 @@ TEST(UpdateCosine, SurvivesACheckpoint) {
     EXPECT_EQ(once, found(&after));
     EXPECT_EQ(after.at, update);
     EXPECT_EQ(once, found(&after));
-    EXPECT_TRUE(after.taken_up);
+    EXPECT_TRUE(after.restored);
   }
 }
 

@@ -206,16 +206,17 @@ TYPED_TEST(FluidIn, PlacesFarAwayAreSafe) {
   const fluid::Lookup<Edge::periodic, P> periodic(g);
   for (const T far : {T(1e4), T(1e9), T(1e30), std::numeric_limits<T>::max()})
     for (const T x : {far, -far}) {
-      EXPECT_EQ(
-          walled.look(f.data(), walled.find(P{} + x, P{} + T(2))).value[0],
-          T(0));
+      EXPECT_EQ(walled.interpolate(f.data(), walled.find(P{} + x, P{} + T(2)))
+                    .value[0],
+                T(0));
       const auto found =
-          periodic.look(f.data(), periodic.find(P{} + x, P{} + T(2)));
+          periodic.interpolate(f.data(), periodic.find(P{} + x, P{} + T(2)));
       EXPECT_LE(std::abs(found.value[0]), T(1));
     }
   wrap(g, f.data());
   const auto at = [&](T x, T y) {
-    return periodic.look(f.data(), periodic.find(P{} + x, P{} + y)).value[3];
+    return periodic.interpolate(f.data(), periodic.find(P{} + x, P{} + y))
+        .value[3];
   };
   EXPECT_NEAR(at(T(2.25) - 60, T(1.5) + 36), at(T(2.25), T(1.5)), 1e-5);
 }

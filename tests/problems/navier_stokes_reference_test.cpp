@@ -36,7 +36,7 @@ void check_lookup(const Json& entry) {
     const auto spot = lookup.find(P{} + T(x(k)), P{} + T(y(k)));
     P c[4];
     lookup.read(f.data(), spot, c);
-    const auto l = lookup.look(c, spot);
+    const auto l = lookup.interpolate(c, spot);
     found.row(k) << double(l.value[1]), double(l.dx[1]), double(l.dy[1]);
     for (int q = 0; q < 4; ++q) corners(k, q) = double(c[q][1]);
   }

@@ -23,11 +23,11 @@ Figure figure_of(std::vector<Series> all) {
 /// How many entries of a legend look like an earlier one.
 std::size_t alike(const Figure& figure, const Palette& report = {}) {
   Palette palette = palette_of(figure, report);
-  std::set<DrawnLook> looks;
+  std::set<DrawnStyle> styles;
   std::size_t count = 0;
   for (const Series* entry : legend_of(figure))
     count +=
-        looks.insert(drawn_look(*entry, palette.of(*entry))).second ? 0 : 1;
+        styles.insert(drawn_style(*entry, palette.of(*entry))).second ? 0 : 1;
   return count;
 }
 
@@ -36,9 +36,9 @@ TEST(Legend, NoTwoEntriesLookAlike) {
   for (int k = 0; k < 24; ++k)
     many.push_back(series("m" + std::to_string(k), "m" + std::to_string(k)));
   EXPECT_EQ(alike(figure_of(many)), 0U);
-  for (Series& s : many) s.look = Look{Hue::blue, Marker::circle};
-  EXPECT_EQ(alike(figure_of(many)), 0U) << "with the same look";
-  for (Series& s : many) s.method = "one", s.look = {};
+  for (Series& s : many) s.style = PlotStyle{Hue::blue, Marker::circle};
+  EXPECT_EQ(alike(figure_of(many)), 0U) << "with the same style";
+  for (Series& s : many) s.method = "one", s.style = {};
   EXPECT_EQ(alike(figure_of(many)), 0U) << "of one method";
   for (Series& s : many) s.line = false, s.markers = true;
   EXPECT_EQ(alike(figure_of(many)), 0U) << "points alone";
@@ -51,7 +51,7 @@ TEST(Legend, NoTwoEntriesLookAlike) {
 
 TEST(Legend, AMethodLooksTheSameInEveryFigure) {
   auto first = series("Adam", "adam");
-  first.look = Look{Hue::purple, Marker::down};
+  first.style = PlotStyle{Hue::purple, Marker::down};
   std::vector<Section> sections(2);
   sections[0].figures = {figure_of({series("x", "x"), first})};
   sections[1].figures = {
@@ -70,7 +70,8 @@ TEST(Legend, AMethodLooksAsMostSectionsHaveIt) {
   const auto section = [](Hue hue) {
     Section s;
     s.figures = {figure_of({series("gd", "gd"), series("gd", "gd")})};
-    for (Series& one : s.figures[0].panels[0].series) one.look = Look{hue, {}};
+    for (Series& one : s.figures[0].panels[0].series)
+      one.style = PlotStyle{hue, {}};
     return s;
   };
   Palette most({section(Hue::blue), section(Hue::red), section(Hue::red)});

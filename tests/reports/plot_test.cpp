@@ -41,7 +41,7 @@ TEST(RenderSvg, SameFigureSameBytes) {
                           .lo = {0.5, -1, 0.001},
                           .hi = {2, 1, 1},
                           .markers = true,
-                          .look = Look{Hue::orange, Marker::square}});
+                          .style = PlotStyle{Hue::orange, Marker::square}});
   const std::string a = render_svg(one_panel(panel));
   EXPECT_EQ(a, render_svg(one_panel(panel)));
   EXPECT_EQ(xml_error(a), "");
@@ -250,7 +250,7 @@ TEST(RenderSvg, MethodsHaveTheLookOfTheirCase) {
   std::vector<Figure> figures = {
       one_panel({.series = {series("x"), series("na"), series("x")}})};
   apply({{"na", {Hue::red, Marker::diamond}}, {"other", {}}}, figures);
-  EXPECT_FALSE(figures[0].panels[0].series[0].look);
+  EXPECT_FALSE(figures[0].panels[0].series[0].style);
   const std::string svg = render_svg(figures[0]);
   EXPECT_EQ(count(svg, "class=\"l s3\""), 2U);  // legend and curve
   EXPECT_EQ(count(svg, "class=\"l s6\""), 3U);  // one method, one colour

@@ -22,7 +22,7 @@ Section section() {
                     .method = "jpo",
                     .x = {1, 10},
                     .y = {0.5, 0.25},
-                    .look = Look{Hue::orange, Marker::square}};
+                    .style = PlotStyle{Hue::orange, Marker::square}};
   Section s{.experiment = "jpo/toy"};
   s.figures = {{.id = "fig1",
                 .panels = {{.title = "a", .series = {ours}},
@@ -44,7 +44,7 @@ TEST(PrintedCurves, ALevelIsAsLongAsOurs) {
   EXPECT_EQ(printed.lo, (std::vector<double>{0.2, 0.2}));
   EXPECT_EQ(printed.hi, (std::vector<double>{0.4, 0.4}));
   EXPECT_TRUE(printed.dashed && printed.line && !printed.markers);
-  EXPECT_EQ(printed.look->hue, Hue::orange);
+  EXPECT_EQ(printed.style->hue, Hue::orange);
   EXPECT_EQ(s.figures[0].note,
             "Ours. The paper's, with the error of reading: Table 4.");
   EXPECT_EQ(s.figures[0].panels[2].series.size(), 1U) << "ours was not run";

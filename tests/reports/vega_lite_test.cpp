@@ -99,8 +99,8 @@ TEST(VegaLite, FieldsAreRectanglesAndArrowsRules) {
 
 TEST(VegaLite, EveryHueHasAShape) {
   Figure f = figure();
-  f.panels[0].series[1].look =
-      Look{Hue::indigo, static_cast<Marker>(Hue::indigo)};
+  f.panels[0].series[1].style =
+      PlotStyle{Hue::indigo, static_cast<Marker>(Hue::indigo)};
   const Json shapes = vega_lite(f)
                           .at("concat")
                           .at(0)

@@ -14,19 +14,19 @@ class MemoryCheckpoint final : public Checkpoint {
   explicit MemoryCheckpoint(Index update) : left_(update) {}
 
   std::optional<Archive> last() override {
-    taken_up = state.has_value();
+    restored = state.has_value();
     if (!state) return {};
     return Archive(*state);
   }
   bool due() override { return --left_ == 0; }
-  void lay_down(Index iteration, const Archive& archive) override {
+  void save(Index iteration, const Archive& archive) override {
     at = iteration;
     state = archive.bytes();
   }
 
   std::optional<std::string> state;
   Index at = 0;
-  bool taken_up = false;
+  bool restored = false;
 
  private:
   Index left_;

@@ -9,12 +9,12 @@
 namespace physinv {
 namespace {
 
-const Knob kStep{.id = "step",
-                 .title = "Step",
-                 .axis = {"h", {1, 0.5, 0.25}, true},
-                 .problems = {ProblemRecipe{}},
-                 .order = 2,
-                 .regime = 1};
+const NumericalParameter kStep{.id = "step",
+                               .title = "Step",
+                               .axis = {"h", {1, 0.5, 0.25}, true},
+                               .problems = {ProblemRecipe{}},
+                               .order = 2,
+                               .regime = 1};
 
 StageRecord stage(const std::string& name, double error, double seconds) {
   StageRecord s;
@@ -43,7 +43,7 @@ CaseRecord run_of(Precision precision, double order, double seconds) {
 }
 
 TEST(Accuracy, SettingsAreMeasuredAndDominated) {
-  declare_knobs("numerics/toy-steps", {kStep});
+  declare_parameters("numerics/toy-steps", {kStep});
   const Results results(
       {run_of(Precision::f64, 2, 1), run_of(Precision::f32, 2, 0.5)});
   const auto all = measurements(results, "numerics/toy-steps");
@@ -59,7 +59,7 @@ TEST(Accuracy, SettingsAreMeasuredAndDominated) {
 }
 
 TEST(Accuracy, ClaimsJudgeTheOrder) {
-  declare_knobs("numerics/toy-steps", {kStep});
+  declare_parameters("numerics/toy-steps", {kStep});
   const auto claims = order_claims({kStep});
   ASSERT_EQ(claims.size(), 1U);
   const auto verdict = [&](double order, double diverged) {

@@ -93,7 +93,7 @@ TEST_F(JpoValues, SolvedAndGain) {
 }
 
 TEST_F(JpoValues, OnlyTheLargestSetsOfASeed) {
-  EXPECT_DOUBLE_EQ(value(problems_of(bfgs())), 12);
+  EXPECT_DOUBLE_EQ(value(problem_count(bfgs())), 12);
   const Quantity share =
       share_of_examples(bfgs(), largest_sets(if_solved(1e-6)), holds);
   EXPECT_DOUBLE_EQ(value(share), 2.0 / 12);

@@ -17,7 +17,7 @@ namespace {
 struct Inner {
   std::vector<double> values;
   bool on = false;
-  void keep(Archive& archive) { archive(values, on); }
+  void serialize(Archive& archive) { archive(values, on); }
 };
 
 struct Outer {
@@ -25,7 +25,7 @@ struct Outer {
   Vector<double> vector;
   std::vector<Inner> parts;
   long count = 0;
-  void keep(Archive& archive) { archive(matrix, vector, parts, count); }
+  void serialize(Archive& archive) { archive(matrix, vector, parts, count); }
 };
 
 Outer example() {

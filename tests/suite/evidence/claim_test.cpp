@@ -376,11 +376,11 @@ TEST(Claim, WhatIsWrongByItself) {
                    .from = "quick",
                    .says = "s",
                    .conditions = {report("a", kMean)}};
-  EXPECT_TRUE(problems_of(good, kProfiles).empty());
+  EXPECT_TRUE(errors_of(good, kProfiles).empty());
   const auto broken = [&](auto&& change) {
     Claim claim = good;
     change(claim);
-    return problems_of(claim, kProfiles).size();
+    return errors_of(claim, kProfiles).size();
   };
   EXPECT_EQ(broken([](Claim& c) { c.id.clear(); }), 1U);
   EXPECT_EQ(broken([](Claim& c) { c.says.clear(); }), 1U);

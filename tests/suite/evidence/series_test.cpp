@@ -10,12 +10,13 @@ TEST(Series, NumbersAreEquallySpacedFromEndToEnd) {
 }
 
 TEST(Series, AMarkIsAPointAndALevelALine) {
-  const Series point = mark("target", "truth", 1, 2, Look{.hue = Hue::ink}),
+  const Series point =
+                   mark("target", "truth", 1, 2, PlotStyle{.hue = Hue::ink}),
                line = level("solution", "truth", 1, 9, 3);
   EXPECT_EQ(point.x, std::vector<double>{1});
   EXPECT_EQ(point.y, std::vector<double>{2});
   EXPECT_TRUE(point.markers && !point.line && !point.dashed);
-  EXPECT_EQ(point.look->hue, Hue::ink);
+  EXPECT_EQ(point.style->hue, Hue::ink);
   EXPECT_EQ(line.x, (std::vector<double>{1, 9}));
   EXPECT_EQ(line.y, (std::vector<double>{3, 3}));
   EXPECT_TRUE(line.dashed && line.line && !line.markers);

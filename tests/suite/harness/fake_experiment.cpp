@@ -169,13 +169,13 @@ class Descend final : public Base {
         run.previous != nullptr ? run.previous->x : run.oracle.start();
     Batch<double> gradient(x.rows(), x.cols());
     Vector<double> loss(x.cols());
-    const auto keep = [&](Archive& archive) {
+    const auto serialize = [&](Archive& archive) {
       archive(x, gradient, run.probe, run.oracle);
     };
     if (run.checkpoint != nullptr) {
       if (auto last = run.checkpoint->last()) {
         if (planted("a crash when going on")) crash();
-        keep(*last);
+        serialize(*last);
       }
     }
     if (planted("an exception")) throw std::runtime_error("planted");
@@ -190,8 +190,8 @@ class Descend final : public Base {
       run.probe.trace(x.data(), static_cast<std::size_t>(x.size()) * 8);
       if (run.checkpoint != nullptr && run.checkpoint->due()) {
         Archive archive;
-        keep(archive);
-        run.checkpoint->lay_down(run.probe.iteration(), archive);
+        serialize(archive);
+        run.checkpoint->save(run.probe.iteration(), archive);
       }
       nap(pace());
       if (planted("slower")) burn(0.001);
@@ -308,7 +308,7 @@ Experiment experiment() {
   Experiment e;
   e.name = "fake/cubic";
   e.title = "Cubic";
-  e.source = {"fake", "nowhere"};
+  e.citation = {"fake", "nowhere"};
   e.problem = problem<Cubic>("cubic");
   e.problem.source = "suite/core/problem.h";
   e.methods = {chain("descend", {descend}),

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "suite/harness/errors.h"
-#include "suite/harness/registry_problems.h"
+#include "suite/harness/registry_errors.h"
 #include "tests/suite/harness/fake_experiment.h"
 
 namespace physinv {

@@ -20,7 +20,7 @@ std::vector<Case> cases() {
         std::tuple("numerics/poisson", "hig", "stability")}) {
     auto e = std::make_shared<Experiment>();
     e->name = experiment;
-    e->source.paper = paper;
+    e->citation.paper = paper;
     std::istringstream words(methods);
     for (std::string method; words >> method;) {
       Case c;

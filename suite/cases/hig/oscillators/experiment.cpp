@@ -138,7 +138,7 @@ void add_experiments(Registry& r) {
   r.add(Experiment{
       .name = kName,
       .title = "Nonlinear oscillators",
-      .source = {.paper = "hig", .where = "Sec. 3.1, Figs. 2, 5, 6, 12, 13"},
+      .citation = {.paper = "hig", .where = "Sec. 3.1, Figs. 2, 5, 6, 12, 13"},
       .problem = problem<Oscillators>("oscillators"),
       .setting = kSetting,
       .profiles =

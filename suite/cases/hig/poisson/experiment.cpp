@@ -153,7 +153,7 @@ void add_experiments(Registry& r) {
   r.add(Experiment{
       .name = "hig/poisson",
       .title = "Poisson's equation",
-      .source = {.paper = "hig", .where = "Sec. 3.2, Figs. 3, 7, Table 4"},
+      .citation = {.paper = "hig", .where = "Sec. 3.2, Figs. 3, 7, Table 4"},
       .problem = problem<GridPoisson>("grid_poisson"),
       .setting = kSetting,
       .profiles = kProfiles,

@@ -127,7 +127,7 @@ void add_direct_experiment(Registry& r) {
   r.add(Experiment{
       .name = kDirect,
       .title = "Quantum dipole, control without a network",
-      .source = {.paper = "hig", .where = "Sec. 3.3, Fig. 4b"},
+      .citation = {.paper = "hig", .where = "Sec. 3.3, Fig. 4b"},
       .problem = problem<QuantumDipole>("quantum_dipole", {.angles = {0.7, 2}}),
       .setting = {.recorded = 16},
       .profiles = {{.name = "smoke", .rows = few(1, 20)},

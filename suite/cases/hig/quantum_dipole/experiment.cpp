@@ -181,7 +181,7 @@ void add_experiments(Registry& r) {
   r.add(Experiment{
       .name = kDense,
       .title = "Quantum dipole",
-      .source = {.paper = "hig", .where = "Sec. 3.3, Figs. 4, 8, 9, Table 5"},
+      .citation = {.paper = "hig", .where = "Sec. 3.3, Figs. 4, 8, 9, Table 5"},
       .problem = steered_by_a_network(),
       .setting = {.predictor = dense(), .recorded = 16},
       .profiles = dense_profiles(),
@@ -190,7 +190,7 @@ void add_experiments(Registry& r) {
   r.add(Experiment{
       .name = kConvolutional,
       .title = "Quantum dipole, convolutional network",
-      .source = {.paper = "hig", .where = "App. B.4, Figs. 10, 11"},
+      .citation = {.paper = "hig", .where = "App. B.4, Figs. 10, 11"},
       .problem = steered_by_a_network(),
       .setting = {.predictor = convolutional(), .recorded = 16},
       .profiles = conv_profiles(),

@@ -88,7 +88,8 @@ void add_experiments(Registry& r) {
     r.add(Experiment{
         .name = gamma.experiment,
         .title = gamma.title,
-        .source = {.paper = "hig", .where = "Secs. 2.1, 2.2, App. B.1, Fig. 1"},
+        .citation = {.paper = "hig",
+                     .where = "Secs. 2.1, 2.2, App. B.1, Fig. 1"},
         .problem =
             problem<ScaledOutput>("scaled_output", {.gamma = gamma.value}),
         .setting = {.predictor = {{Field::given},

@@ -78,7 +78,7 @@ Figure path_figure(const Evidence& evidence,
     Series s{.label = line.label,
              .method = line.method,
              .markers = true,
-             .look = look_of(line)};
+             .style = style_of(line)};
     // An excursion beyond the frame would hide everything else.
     for (Index i = 0; i < m.cols(); ++i) {
       if (std::abs(m(kPathFirst, i)) > 3 || std::abs(m(kPathSecond, i)) > 3)
@@ -93,7 +93,7 @@ Figure path_figure(const Evidence& evidence,
                                 "truth",
                                 std::sin(6 * kPoint),
                                 std::cos(9 * kPoint),
-                                Look{Hue::ink, Marker::cross}));
+                                PlotStyle{Hue::ink, Marker::cross}));
   return {.id = "fig1-path",
           .title = fmt::format("Path of the output at x = {}", kPoint),
           .source = "Fig. 1, right",

@@ -19,7 +19,7 @@ Experiment experiment(Index width) {
   const HalfInverseStepOptions step{.power = {.kappa = -0.5, .tau = 1e-6}};
   return {.name = name_of(width),
           .title = fmt::format("Nonlinear oscillators, {} wide", width),
-          .source = {.paper = "hig", .where = "Sec. 2.3"},
+          .citation = {.paper = "hig", .where = "Sec. 2.3"},
           .problem = problem<Oscillators>("oscillators"),
           .setting = {.predictor = {{Field::observations},
                                     nn::mlp({.hidden = {width, width, width},

@@ -42,7 +42,7 @@ std::vector<Profile> profiles(std::vector<Index> n,
 Experiment experiment(const Study& s) {
   Experiment e{.name = s.name,
                .title = s.title,
-               .source = {.paper = "jpo", .where = "Tables 4 and 5"}};
+               .citation = {.paper = "jpo", .where = "Tables 4 and 5"}};
   if (std::string_view(s.varied) == "jpo/billiards") {
     e.problem =
         problem<Billiards>("billiards", {.velocity_spread = s.velocity_spread});

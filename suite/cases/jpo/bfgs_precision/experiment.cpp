@@ -78,7 +78,7 @@ std::vector<Varied> all_varied() {
 Experiment experiment(const Study& study, const Varied& varied) {
   Experiment e{.name = study.name,
                .title = study.title,
-               .source = {.paper = "jpo", .where = "Sec. 4, Tables 4 and 5"},
+               .citation = {.paper = "jpo", .where = "Sec. 4, Tables 4 and 5"},
                .problem = varied.problem,
                .setting = varied.setting};
   Row classical{.n = varied.n, .seeds = first_seeds(varied.seeds)};

@@ -15,7 +15,7 @@ void add_experiments(Registry& r) {
   r.add(Experiment{
       .name = "jpo/billiards",
       .title = "Billiards",
-      .source = {.paper = "jpo", .where = "Sec. 4, Fig. 4, App. D.2"},
+      .citation = {.paper = "jpo", .where = "Sec. 4, Fig. 4, App. D.2"},
       .problem = recipe(),
       .setting = setting(),
       .profiles =
@@ -45,7 +45,7 @@ void add_experiments(Registry& r) {
                       .seeds = {0, 1, 2, 3},
                       .iterations = 3000}}}},
       .methods = jpo_methods(),
-      .looks = kJpoLooks,
+      .styles = kJpoStyles,
   });
 }
 

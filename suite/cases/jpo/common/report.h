@@ -45,12 +45,13 @@ struct JpoReportOptions {
 };
 
 /// The paper's colours.
-inline const Looks kJpoLooks = {{"bfgs", {Hue::blue, Marker::circle}},
-                                {"jpo", {Hue::orange, Marker::square}},
-                                {"supervised", {Hue::green, Marker::triangle}},
-                                {"na", {Hue::red, Marker::diamond}},
-                                {"gd", {Hue::purple, Marker::down}},
-                                {"truth", {Hue::ink, Marker::cross}}};
+inline const PlotStyles kJpoStyles = {
+    {"bfgs", {Hue::blue, Marker::circle}},
+    {"jpo", {Hue::orange, Marker::square}},
+    {"supervised", {Hue::green, Marker::triangle}},
+    {"na", {Hue::red, Marker::diamond}},
+    {"gd", {Hue::purple, Marker::down}},
+    {"truth", {Hue::ink, Marker::cross}}};
 
 /// Name for readers: jpo -> JPO, na -> Neural adjoint.
 std::string method_title(const std::string& method);

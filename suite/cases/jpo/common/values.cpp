@@ -343,7 +343,7 @@ Quantity solved_share(const Select& select, const Solved& solved) {
   return share_of_examples(select, if_solved(solved), holds);
 }
 
-Quantity problems_of(const Select& select) {
+Quantity problem_count(const Select& select) {
   return {[=](const Evidence& e) {
             double count = 0;
             for (const Run& run : find_runs(e, select))
@@ -355,7 +355,7 @@ Quantity problems_of(const Select& select) {
 }
 
 Quantity from_problems(Index problems, const Select& select, Quantity q) {
-  const Quantity count = problems_of(select);
+  const Quantity count = problem_count(select);
   return {[=](const Evidence& e) {
             if (*count(e).value >= static_cast<double>(problems)) return q(e);
             return missing(

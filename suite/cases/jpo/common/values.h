@@ -107,7 +107,7 @@ Quantity percent_better(const Select& select);
 Quantity solved_share(const Select& select, const Solved& solved);
 /// Missing unless the largest sets of `select` have so many problems.
 Quantity from_problems(Index problems, const Select& select, Quantity q);
-Quantity problems_of(const Select& select);
+Quantity problem_count(const Select& select);
 
 /// One row of Table 4 (refined: 5): better and equal as printed of so many
 /// seeds.

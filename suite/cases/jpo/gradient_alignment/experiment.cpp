@@ -71,7 +71,7 @@ Experiment experiment() {
   Experiment e;
   e.name = kName;
   e.title = "Gradient alignment";
-  e.source = {.paper = "jpo", .where = "Secs. 2-3, Fig. 2, Apps. A, B"};
+  e.citation = {.paper = "jpo", .where = "Secs. 2-3, Fig. 2, Apps. A, B"};
   e.problem = problem<NoisyAbsolute>("noisy_absolute", kSine);
   e.profiles = {profile("smoke", {1, 2, 4, 8}, 20),
                 profile("quick", kSizes, kJudged),

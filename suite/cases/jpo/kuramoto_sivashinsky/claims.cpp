@@ -257,7 +257,7 @@ std::vector<Claim> suite_claims() {
                           largest_sets(of_row(
                               where(is_solved(kSolved), losses()), most_of))),
                   1e-18),
-            report("problems", problems_of(bfgs()))}},
+            report("problems", problem_count(bfgs()))}},
       {.id = "R3",
        .from = "quick",
        .says = "For n >= 32, 100 iterations of gradient descent solve about as "

@@ -21,7 +21,7 @@ void add_experiments(Registry& r) {
   r.add(Experiment{
       .name = "jpo/kuramoto-sivashinsky",
       .title = "Kuramoto-Sivashinsky equation",
-      .source = {.paper = "jpo", .where = "Sec. 4, Fig. 5, App. D.3"},
+      .citation = {.paper = "jpo", .where = "Sec. 4, Fig. 5, App. D.3"},
       .problem = recipe(),
       .setting = setting(),
       .profiles = {{.name = "smoke",
@@ -54,7 +54,7 @@ void add_experiments(Registry& r) {
                               .iterations = kFitIterations,
                               .bfgs_iterations = 200,
                               .descent_iterations = 100}),
-      .looks = kJpoLooks,
+      .styles = kJpoStyles,
   });
 }
 

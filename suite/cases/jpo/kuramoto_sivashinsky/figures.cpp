@@ -75,7 +75,7 @@ Figure landscape() {
 }
 
 /// Numbers of Sec. 4 and App. D.3 that stand in no table.
-Table in_words(const Evidence& evidence) {
+Table numbers_of_text(const Evidence& evidence) {
   const auto better = [](const Select& runs) {
     return percent(mean(runs, jpo::better()));
   };
@@ -160,7 +160,7 @@ Section report(const Results& results, const Published& published) {
       {trajectory(),
        landscape(),
        curves_with_descent(options, {"fig5c", "Fig. 5c"}, results)});
-  section.tables.push_back(in_words({results, published, kName}));
+  section.tables.push_back(numbers_of_text({results, published, kName}));
   return section;
 }
 

@@ -50,7 +50,7 @@ void add_experiments(Registry& r) {
   r.add(Experiment{
       .name = "jpo/navier-stokes",
       .title = "Incompressible Navier-Stokes",
-      .source = {.paper = "jpo", .where = "Sec. 4, Fig. 6, App. D.4"},
+      .citation = {.paper = "jpo", .where = "Sec. 4, Fig. 6, App. D.4"},
       .problem = recipe(),
       .setting = setting(),
       .profiles =
@@ -74,7 +74,7 @@ void add_experiments(Registry& r) {
                       .seeds = first_seeds(4),
                       .iterations = kFitIterations}}}},
       .methods = methods(),
-      .looks = kJpoLooks,
+      .styles = kJpoStyles,
   });
 }
 

@@ -17,7 +17,7 @@ void add_experiments(Registry& r) {
   r.add(Experiment{
       .name = "jpo/robotic-arm",
       .title = "Robotic arm",
-      .source = {.paper = "jpo", .where = "App. D.5, Fig. 25"},
+      .citation = {.paper = "jpo", .where = "App. D.5, Fig. 25"},
       .problem = recipe(),
       .setting = setting(),
       .profiles =
@@ -44,7 +44,7 @@ void add_experiments(Registry& r) {
                       .seeds = {0, 1, 2, 3},
                       .iterations = kFitIterations}}}},
       .methods = jpo_methods({.rate = 1e-3, .iterations = kFitIterations}),
-      .looks = kJpoLooks,
+      .styles = kJpoStyles,
   });
 }
 

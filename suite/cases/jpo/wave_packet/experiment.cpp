@@ -43,7 +43,7 @@ void add_experiments(Registry& r) {
   r.add(Experiment{
       .name = "jpo/wave-packet",
       .title = "Wave packet",
-      .source = {.paper = "jpo", .where = "Sec. 4, Fig. 3, App. D.1"},
+      .citation = {.paper = "jpo", .where = "Sec. 4, Fig. 3, App. D.1"},
       .problem = recipe(),
       .setting = setting(),
       .profiles =
@@ -62,14 +62,14 @@ void add_experiments(Registry& r) {
                      trained(kTrained, kSizes, kSeeds, kFitIterations),
                      {.methods = {"jpo-long"}, .n = {128}, .seeds = kSeeds}}}},
       .methods = methods(),
-      .looks = kJpoLooks,
+      .styles = kJpoStyles,
   });
   // With the paper's number of parameters, 13,925, at the price of one unit
   // that everything has to pass.
   r.add(Experiment{
       .name = "jpo/wave-packet-head",
       .title = "Wave packet, head 64-32-1",
-      .source = {.paper = "jpo", .where = "App. C"},
+      .citation = {.paper = "jpo", .where = "App. C"},
       .problem = recipe(),
       .setting = setting({64, 32, 1}),
       .profiles =
@@ -83,7 +83,7 @@ void add_experiments(Registry& r) {
             .rows = {{.methods = {"bfgs"}, .n = {32, 128}, .seeds = kSeeds},
                      trained({"jpo"}, {32, 128}, kSeeds, kFitIterations)}}},
       .methods = jpo_methods({.rate = 1e-3, .iterations = kFitIterations}),
-      .looks = kJpoLooks,
+      .styles = kJpoStyles,
   });
 }
 

@@ -28,7 +28,7 @@ Experiment experiment(const MatrixProblem& p) {
   const auto full = row(ids, kProblems, 3, p.updates);
   return {.name = p.experiment(),
           .title = p.title,
-          .source = {},
+          .citation = {},
           .problem = p.problem,
           .setting = p.setting,
           .profiles = {{.name = "smoke", .rows = {row(few, 4, 1, 2)}},

@@ -48,7 +48,7 @@ void add_experiments(Registry& r) {
       r,
       {.name = "numerics/billiards",
        .title = "Numerics of billiards",
-       .source = {.paper = "jpo", .where = "Sec. 4"},
+       .citation = {.paper = "jpo", .where = "Sec. 4"},
        .sweeps = {{.id = "grazing",
                    .title = "Aim, from head-on (0) past grazing (1), and speed",
                    .x = {"offset over 2 r", offsets()},
@@ -61,7 +61,7 @@ void add_experiments(Registry& r) {
                    .y = {"velocity in y", spaced(-3, 3, 25)},
                    .point = velocity,
                    .problems = {kBilliards}}},
-       .knobs = {batch_knob(
+       .parameters = {batch_parameter(
            problem<Billiards>("billiards"), 1024, {}, billiards_closed_form())},
        .problem = problem<Billiards>("billiards")});
 }

@@ -16,41 +16,47 @@ namespace {
 constexpr WorkOf kBoth[] = {WorkOf::forward, WorkOf::gradient};
 constexpr WorkOf kAll[] = {WorkOf::forward, WorkOf::gradient, WorkOf::inverse};
 
-/// What can be asked of all settings of a knob.
-std::vector<WorkOf> asked(const Knob& knob) {
+/// What can be asked of all settings of a parameter.
+std::vector<WorkOf> asked(const NumericalParameter& parameter) {
   std::vector<WorkOf> all(std::begin(kBoth), std::end(kBoth));
-  if (std::all_of(
-          knob.problems.begin(), knob.problems.end(), [](const auto& problem) {
-            return contains(problem.provided, Needs::inverse);
-          }))
+  if (std::all_of(parameter.problems.begin(),
+                  parameter.problems.end(),
+                  [](const auto& problem) {
+                    return contains(problem.provided, Needs::inverse);
+                  }))
     all.push_back(WorkOf::inverse);
   return all;
 }
 
-std::string stage_name(const Knob& knob, std::size_t place, WorkOf of) {
-  std::string value = fmt::format("{:g}", knob.axis.values[place]);
+std::string stage_name(const NumericalParameter& parameter,
+                       std::size_t place,
+                       WorkOf of) {
+  std::string value = fmt::format("{:g}", parameter.axis.values[place]);
   std::replace(value.begin(), value.end(), '.', '_');
   return fmt::format("{}-{}{}{}",
-                     knob.id,
+                     parameter.id,
                      value,
                      of == WorkOf::forward ? "" : "-",
                      of == WorkOf::forward ? "" : to_string(of));
 }
 
-std::shared_ptr<const Stage> stage_of(const Knob& knob,
+std::shared_ptr<const Stage> stage_of(const NumericalParameter& parameter,
                                       std::size_t place,
                                       WorkOf of,
                                       const std::shared_ptr<Answers>& answers) {
   return work_precision(
-      {.name = stage_name(knob, place, of),
-       .problem = knob.problems[knob.problems.size() == 1 ? 0 : place],
-       .base = knob.problems.front(),
-       .reference = knob.reference,
-       .exact = knob.exact,
+      {.name = stage_name(parameter, place, of),
+       .problem =
+           parameter.problems[parameter.problems.size() == 1 ? 0 : place],
+       .base = parameter.problems.front(),
+       .reference = parameter.reference,
+       .exact = parameter.exact,
        .of = of,
-       .samples = knob.samples,
-       .block = knob.blocks ? static_cast<Index>(knob.axis.values[place]) : 0,
-       .repetitions = knob.repetitions,
+       .samples = parameter.samples,
+       .block = parameter.blocks
+                    ? static_cast<Index>(parameter.axis.values[place])
+                    : 0,
+       .repetitions = parameter.repetitions,
        .answers = answers});
 }
 
@@ -73,31 +79,33 @@ const StageRecord* find_stage(const CaseRecord& chain,
 /// Power of the axis by which the errors fell from the value before: the
 /// median of the samples', which need not be alike.
 std::optional<double> order_of(const CaseRecord& chain,
-                               const Knob& knob,
+                               const NumericalParameter& parameter,
                                std::size_t place,
                                WorkOf of) {
-  if (place == 0 || knob.blocks) return {};
-  const auto* before = find_stage(chain, stage_name(knob, place - 1, of));
-  const auto* after = find_stage(chain, stage_name(knob, place, of));
+  if (place == 0 || parameter.blocks) return {};
+  const auto* before = find_stage(chain, stage_name(parameter, place - 1, of));
+  const auto* after = find_stage(chain, stage_name(parameter, place, of));
   if (before == nullptr || after == nullptr) return {};
   const auto& coarse = before->arrays.at("error");
   const auto& fine = after->arrays.at("error");
   std::vector<double> orders;
   for (Index i = 0; i < fine.size(); ++i)
     if (coarse(i) > 0 && fine(i) > 0)
-      orders.push_back(
-          std::log(coarse(i) / fine(i)) /
-          std::log(knob.axis.values[place - 1] / knob.axis.values[place]));
+      orders.push_back(std::log(coarse(i) / fine(i)) /
+                       std::log(parameter.axis.values[place - 1] /
+                                parameter.axis.values[place]));
   if (orders.empty()) return {};
   return median(std::move(orders));
 }
 
 /// In a run of all settings.
-Quantity order_at(const Knob& knob, std::size_t place, WorkOf of) {
-  return median({kAccuracy, stage_name(knob, place, of)},
+Quantity order_at(const NumericalParameter& parameter,
+                  std::size_t place,
+                  WorkOf of) {
+  return median({kAccuracy, stage_name(parameter, place, of)},
                 [=](const Run& run) -> std::optional<double> {
                   if (run.record->info.precision != Precision::f64) return {};
-                  return order_of(*run.record, knob, place, of);
+                  return order_of(*run.record, parameter, place, of);
                 });
 }
 
@@ -105,21 +113,23 @@ const char* word(Precision precision) {
   return precision == Precision::f64 ? "double" : "float";
 }
 
-std::string setting_name(const Knob& knob,
+std::string setting_name(const NumericalParameter& parameter,
                          std::size_t place,
                          Precision precision) {
-  return fmt::format(
-      "{} {:g}, {}", knob.axis.label, knob.axis.values[place], word(precision));
+  return fmt::format("{} {:g}, {}",
+                     parameter.axis.label,
+                     parameter.axis.values[place],
+                     word(precision));
 }
 
 const Measurement* find(const std::vector<Measurement>& all,
-                        const Knob& knob,
+                        const NumericalParameter& parameter,
                         std::size_t place,
                         Precision precision,
                         WorkOf of) {
   for (const Measurement& m : all)
-    if (m.knob == knob.id && m.place == place && m.precision == precision &&
-        m.of == of)
+    if (m.parameter == parameter.id && m.place == place &&
+        m.precision == precision && m.of == of)
       return &m;
   return nullptr;
 }
@@ -137,7 +147,7 @@ std::vector<WorkOf> measured(const std::vector<Measurement>& all) {
 }
 
 Table settings_table(const std::vector<Measurement>& all,
-                     const std::vector<Knob>& knobs) {
+                     const std::vector<NumericalParameter>& parameters) {
   Table table{
       .id = "work_precision",
       .title = "Settings, accuracy and time",
@@ -146,12 +156,12 @@ Table settings_table(const std::vector<Measurement>& all,
       .columns = {},
       .note =
           "Relative errors, medians of the samples; us: per sample, "
-          "fastest of the repetitions; order: the power of the knob by "
+          "fastest of the repetitions; order: the power of the parameter by "
           "which errors fell from the value before, median of the "
-          "samples. A setting is dominated by the fastest of its knob "
+          "samples. A setting is dominated by the fastest of its parameter "
           "that is at least as accurate in less than nine tenths of "
           "its time.",
-      .keys = {"knob", "value", "precision"},
+      .keys = {"parameter", "value", "precision"},
       .across = Across{.key = "of",
                        .quantities = {"error", "order", "us", "dominated by"}}};
   const auto shown = measured(all);
@@ -160,16 +170,16 @@ Table settings_table(const std::vector<Measurement>& all,
     table.columns.insert(table.columns.end(), {"order", "us", "dominated by"});
     table.across->values.emplace_back(to_string(of));
   }
-  for (const Knob& knob : knobs) {
+  for (const NumericalParameter& parameter : parameters) {
     for (const auto precision : {Precision::f64, Precision::f32}) {
-      for (std::size_t k = 0; k < knob.axis.values.size(); ++k) {
+      for (std::size_t k = 0; k < parameter.axis.values.size(); ++k) {
         TableRow row;
-        row.label = setting_name(knob, k, precision);
-        row.keys = {knob.axis.label,
-                    fmt::format("{}", knob.axis.values[k]),
+        row.label = setting_name(parameter, k, precision);
+        row.keys = {parameter.axis.label,
+                    fmt::format("{}", parameter.axis.values[k]),
                     word(precision)};
         for (const WorkOf of : shown) {
-          const auto* m = find(all, knob, k, precision, of);
+          const auto* m = find(all, parameter, k, precision, of);
           if (m == nullptr) {
             row.cells.insert(row.cells.end(), 4, Cell{.text = kNotRun});
             continue;
@@ -189,19 +199,21 @@ Table settings_table(const std::vector<Measurement>& all,
   return table;
 }
 
-Figure knob_figure(const std::vector<Measurement>& all, const Knob& knob) {
-  Figure figure{.id = "work_precision_" + knob.id,
-                .title = knob.title + ": accuracy over time",
-                .note = fmt::format(
-                    "{} from {:g} to {:g}. Errors are relative, medians of the "
-                    "samples; seconds are per sample.{}",
-                    knob.axis.label,
-                    knob.axis.values.front(),
-                    knob.axis.values.back(),
-                    knob.order > 0 ? fmt::format(" In theory the error falls "
-                                                 "with the power {:g}.",
-                                                 knob.order)
-                                   : "")};
+Figure parameter_figure(const std::vector<Measurement>& all,
+                        const NumericalParameter& parameter) {
+  Figure figure{
+      .id = "work_precision_" + parameter.id,
+      .title = parameter.title + ": accuracy over time",
+      .note = fmt::format(
+          "{} from {:g} to {:g}. Errors are relative, medians of the "
+          "samples; seconds are per sample.{}",
+          parameter.axis.label,
+          parameter.axis.values.front(),
+          parameter.axis.values.back(),
+          parameter.order > 0 ? fmt::format(" In theory the error falls "
+                                            "with the power {:g}.",
+                                            parameter.order)
+                              : "")};
   for (const WorkOf of : measured(all)) {
     Panel panel{.title = to_string(of),
                 .x_label = "seconds per sample",
@@ -212,8 +224,8 @@ Figure knob_figure(const std::vector<Measurement>& all, const Knob& knob) {
       Series s{.label = word(precision),
                .method = precision == Precision::f64 ? "f64" : "f32",
                .markers = true};
-      for (std::size_t k = 0; k < knob.axis.values.size(); ++k) {
-        const auto* m = find(all, knob, k, precision, of);
+      for (std::size_t k = 0; k < parameter.axis.values.size(); ++k) {
+        const auto* m = find(all, parameter, k, precision, of);
         if (m == nullptr || m->error < 0 || m->seconds <= 0) continue;
         s.x.push_back(m->seconds);
         s.y.push_back(std::max(m->error, 1e-18));  // exact: on the scale
@@ -225,26 +237,26 @@ Figure knob_figure(const std::vector<Measurement>& all, const Knob& knob) {
   return figure;
 }
 
-std::map<std::string, std::vector<Knob>>& declared() {
-  static std::map<std::string, std::vector<Knob>> all;
+std::map<std::string, std::vector<NumericalParameter>>& declared() {
+  static std::map<std::string, std::vector<NumericalParameter>> all;
   return all;
 }
 
 }  // namespace
 
-const std::vector<Knob>& declare_knobs(const std::string& experiment,
-                                       std::vector<Knob> knobs) {
-  return declared()[experiment] = std::move(knobs);
+const std::vector<NumericalParameter>& declare_parameters(
+    const std::string& experiment, std::vector<NumericalParameter> parameters) {
+  return declared()[experiment] = std::move(parameters);
 }
 
-const std::map<std::string, std::vector<Knob>>& all_knobs() {
+const std::map<std::string, std::vector<NumericalParameter>>& all_parameters() {
   return declared();
 }
 
-Knob batch_knob(ProblemRecipe problem,
-                Index samples,
-                ProblemRecipe reference,
-                ClosedForm exact) {
+NumericalParameter batch_parameter(ProblemRecipe problem,
+                                   Index samples,
+                                   ProblemRecipe reference,
+                                   ClosedForm exact) {
   SweepAxis axis{"samples per call", {}, true};
   for (Index block = 1; block <= samples; block *= 4)
     axis.values.push_back(static_cast<double>(block));
@@ -258,13 +270,13 @@ Knob batch_knob(ProblemRecipe problem,
           .blocks = true};
 }
 
-Method accuracy_method(const std::vector<Knob>& knobs) {
+Method accuracy_method(const std::vector<NumericalParameter>& parameters) {
   Method method{kAccuracy, {}};
-  for (const Knob& knob : knobs) {
+  for (const NumericalParameter& parameter : parameters) {
     const auto answers = no_answers_yet();
-    for (const WorkOf of : asked(knob))
-      for (std::size_t k = 0; k < knob.axis.values.size(); ++k)
-        method.chain.push_back(stage_of(knob, k, of, answers));
+    for (const WorkOf of : asked(parameter))
+      for (std::size_t k = 0; k < parameter.axis.values.size(); ++k)
+        method.chain.push_back(stage_of(parameter, k, of, answers));
   }
   return method;
 }
@@ -282,24 +294,24 @@ std::vector<Row> accuracy_rows(Index n) {
 std::vector<Measurement> measurements(const Results& results,
                                       const std::string& experiment) {
   std::vector<Measurement> all;
-  const auto& knobs = all_knobs().at(experiment);
+  const auto& parameters = all_parameters().at(experiment);
   for (const CaseRecord& c : results.cases()) {
     if (c.info.experiment != experiment || c.info.method != kAccuracy) continue;
     const Precision precision = c.info.precision;
-    for (const Knob& knob : knobs) {
-      for (std::size_t k = 0; k < knob.axis.values.size(); ++k) {
+    for (const NumericalParameter& parameter : parameters) {
+      for (std::size_t k = 0; k < parameter.axis.values.size(); ++k) {
         for (const WorkOf of : kAll) {
-          const std::string stage = stage_name(knob, k, of);
+          const std::string stage = stage_name(parameter, k, of);
           for (const StageRecord& s : c.stages) {
             if (s.stage != stage || !s.arrays.contains("error")) continue;
             const auto& error = s.arrays.at("error");
-            all.push_back({.knob = knob.id,
-                           .setting = setting_name(knob, k, precision),
+            all.push_back({.parameter = parameter.id,
+                           .setting = setting_name(parameter, k, precision),
                            .place = k,
                            .precision = precision,
                            .of = of,
                            .error = typical_error(error),
-                           .order = order_of(c, knob, k, of),
+                           .order = order_of(c, parameter, k, of),
                            .seconds = fastest_repetition(s.curve) /
                                       static_cast<double>(error.cols())});
           }
@@ -313,11 +325,11 @@ std::vector<Measurement> measurements(const Results& results,
 const Measurement* fastest_within(const std::vector<Measurement>& all,
                                   WorkOf of,
                                   double error,
-                                  const std::string& knob) {
+                                  const std::string& parameter) {
   const Measurement* best = nullptr;
   for (const Measurement& m : all)
     if (m.of == of && m.error >= 0 && m.error <= error &&
-        (knob.empty() || m.knob == knob) &&
+        (parameter.empty() || m.parameter == parameter) &&
         (best == nullptr || m.seconds < best->seconds))
       best = &m;
   return best;
@@ -326,45 +338,47 @@ const Measurement* fastest_within(const std::vector<Measurement>& all,
 const Measurement* dominated_by(const std::vector<Measurement>& all,
                                 const Measurement& one) {
   const auto* best = fastest_within(
-      all, one.of, one.error < 0 ? HUGE_VAL : one.error, one.knob);
+      all, one.of, one.error < 0 ? HUGE_VAL : one.error, one.parameter);
   return best != nullptr && best->seconds < 0.9 * one.seconds ? best : nullptr;
 }
 
 void add_accuracy(Section& section,
                   const Results& results,
                   const std::string& experiment) {
-  const auto found = all_knobs().find(experiment);
-  if (found == all_knobs().end()) return;
-  const auto& knobs = found->second;
+  const auto found = all_parameters().find(experiment);
+  if (found == all_parameters().end()) return;
+  const auto& parameters = found->second;
   const auto all = measurements(results, experiment);
-  section.tables.push_back(settings_table(all, knobs));
-  for (const Knob& knob : knobs)
-    section.figures.push_back(knob_figure(all, knob));
+  section.tables.push_back(settings_table(all, parameters));
+  for (const NumericalParameter& parameter : parameters)
+    section.figures.push_back(parameter_figure(all, parameter));
 }
 
-std::vector<Claim> order_claims(const std::vector<Knob>& knobs) {
+std::vector<Claim> order_claims(
+    const std::vector<NumericalParameter>& parameters) {
   std::vector<Claim> claims;
-  for (const Knob& knob : knobs) {
-    if (knob.order == 0) continue;
+  for (const NumericalParameter& parameter : parameters) {
+    if (parameter.order == 0) continue;
     std::vector<Condition> conditions;
     for (const WorkOf of : kBoth) {
       std::vector<Quantity> orders;
-      for (std::size_t k = knob.regime; k < knob.axis.values.size(); ++k)
-        orders.push_back(order_at(knob, k, of));
+      for (std::size_t k = parameter.regime; k < parameter.axis.values.size();
+           ++k)
+        orders.push_back(order_at(parameter, k, of));
       const std::string what = to_string(of);
-      conditions.push_back(
-          at_least(what + ", lowest order", least(orders), 0.85 * knob.order));
-      conditions.push_back(
-          at_most(what + ", highest order", most(orders), 1.15 * knob.order));
+      conditions.push_back(at_least(
+          what + ", lowest order", least(orders), 0.85 * parameter.order));
+      conditions.push_back(at_most(
+          what + ", highest order", most(orders), 1.15 * parameter.order));
     }
     claims.push_back(
         {.id = fmt::format("O{}", claims.size() + 1),
          .from = "smoke",
          .says =
              fmt::format("{}: the error falls with the power {:g} from {:g} on",
-                         knob.title,
-                         knob.order,
-                         knob.axis.values[knob.regime - 1]),
+                         parameter.title,
+                         parameter.order,
+                         parameter.axis.values[parameter.regime - 1]),
          .conditions = std::move(conditions)});
   }
   return claims;

@@ -1,8 +1,7 @@
-/// Work against precision: what every knob of a problem does to its error and
-/// to its time, in double and in float, forward pass, gradient and,
-/// where there is one, inverse
-/// (suite/diagnostics/work_precision.h). A problem enters by saying what can be
-/// turned.
+/// Work against precision: what every parameter of a problem does to its error
+/// and to its time, in double and in float, forward pass, gradient and, where
+/// there is one, inverse (suite/diagnostics/work_precision.h). A problem enters
+/// by saying what can be turned.
 #pragma once
 
 #include <map>
@@ -17,7 +16,7 @@
 
 namespace physinv {
 
-struct Knob {
+struct NumericalParameter {
   std::string id;     ///< of its stages, table and figure: "steps"
   std::string title;  ///< "Time steps"
   SweepAxis axis;     ///< values from coarse to fine
@@ -36,31 +35,31 @@ struct Knob {
 };
 
 /// Samples per call from 1 to all of them: what batches are worth.
-Knob batch_knob(ProblemRecipe problem,
-                Index samples,
-                ProblemRecipe reference,
-                ClosedForm exact = {});
+NumericalParameter batch_parameter(ProblemRecipe problem,
+                                   Index samples,
+                                   ProblemRecipe reference,
+                                   ClosedForm exact = {});
 
-/// Makes an experiment's knobs known to the reports; returns those kept. For
-/// static initialisation.
-const std::vector<Knob>& declare_knobs(const std::string& experiment,
-                                       std::vector<Knob> knobs);
+/// Makes an experiment's parameters known to the reports; returns those kept.
+/// For static initialisation.
+const std::vector<NumericalParameter>& declare_parameters(
+    const std::string& experiment, std::vector<NumericalParameter> parameters);
 /// By experiment.
-const std::map<std::string, std::vector<Knob>>& all_knobs();
+const std::map<std::string, std::vector<NumericalParameter>>& all_parameters();
 
 inline constexpr const char* kAccuracy = "work-precision";
 
 /// A stage for the forward passes of each value, one for the gradients, one for
 /// the inverses if all settings have one.
-Method accuracy_method(const std::vector<Knob>& knobs);
+Method accuracy_method(const std::vector<NumericalParameter>& parameters);
 /// In double and in float.
 std::vector<Row> accuracy_rows(Index n);
 
-/// One setting of a knob as measured: median error of the samples, seconds per
-/// sample of the fastest repetition.
+/// One setting of a parameter as measured: median error of the samples, seconds
+/// per sample of the fastest repetition.
 struct Measurement {
-  std::string knob, setting;  ///< "time step 0.25, float"
-  std::size_t place = 0;      ///< on the knob's axis
+  std::string parameter, setting;  ///< "time step 0.25, float"
+  std::size_t place = 0;           ///< on the parameter's axis
   Precision precision = Precision::f64;
   WorkOf of = WorkOf::forward;
   double error = -1;  ///< -1: half of the samples or more are not finite
@@ -71,24 +70,26 @@ struct Measurement {
 std::vector<Measurement> measurements(const Results& results,
                                       const std::string& experiment);
 
-/// The fastest of all (or of one knob) with at most this error; null if there
-/// is none.
+/// The fastest of all (or of one parameter) with at most this error; null if
+/// there is none.
 const Measurement* fastest_within(const std::vector<Measurement>& all,
                                   WorkOf of,
                                   double error,
-                                  const std::string& knob = {});
+                                  const std::string& parameter = {});
 
-/// The fastest of the same knob that is at least as accurate and takes less
-/// than nine tenths of the time; null for a setting that nothing beats.
+/// The fastest of the same parameter that is at least as accurate and takes
+/// less than nine tenths of the time; null for a setting that nothing beats.
 const Measurement* dominated_by(const std::vector<Measurement>& all,
                                 const Measurement& one);
 
-/// A table of all settings and a figure of each knob, if knobs were declared.
+/// A table of all settings and a figure of each parameter, if parameters were
+/// declared.
 void add_accuracy(Section& section,
                   const Results& results,
                   const std::string& experiment);
 
 /// Where theory knows an order: that observed in double, within 15 %.
-std::vector<Claim> order_claims(const std::vector<Knob>& knobs);
+std::vector<Claim> order_claims(
+    const std::vector<NumericalParameter>& parameters);
 
 }  // namespace physinv

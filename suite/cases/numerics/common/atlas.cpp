@@ -9,7 +9,7 @@ namespace physinv {
 namespace {
 
 constexpr const char* kMethod = "stability";
-/// Of a knob that names no number.
+/// Of a parameter that names no number.
 constexpr Index kSamples = 4;
 
 std::shared_ptr<const Stage> stage_of(const Sweep& sweep) {
@@ -52,11 +52,12 @@ void add_atlas(Registry& r, Atlas atlas) {
   std::vector<Row> rows = {{.methods = {kMethod}, .n = {1}, .seeds = {0}}};
   std::vector<Method> methods = {std::move(method)};
   std::vector<Claim> claims = {adjoint_claim("N1", stages)};
-  if (!atlas.knobs.empty()) {
+  if (!atlas.parameters.empty()) {
     for (const Row& row : accuracy_rows(kSamples)) rows.push_back(row);
-    const auto& knobs = declare_knobs(atlas.name, atlas.knobs);
-    methods.push_back(accuracy_method(knobs));
-    for (Claim& claim : order_claims(knobs)) claims.push_back(std::move(claim));
+    const auto& parameters = declare_parameters(atlas.name, atlas.parameters);
+    methods.push_back(accuracy_method(parameters));
+    for (Claim& claim : order_claims(parameters))
+      claims.push_back(std::move(claim));
   }
   all_atlases().push_back(atlas);
   const ProblemRecipe problem = atlas.problem.make_double
@@ -76,7 +77,7 @@ void add_atlas(Registry& r, Atlas atlas) {
   r.add(Experiment{
       .name = atlas.name,
       .title = atlas.title,
-      .source = atlas.source,
+      .citation = atlas.citation,
       .problem = problem,
       .setting = {},  // nothing is learned here
       .profiles = {{.name = "smoke", .rows = rows},

@@ -1,7 +1,7 @@
 /// The atlas of all problems: parameters over their whole range and beyond it,
 /// as sweeps over two axes (suite/diagnostics/stability_sweep.h), and what
 /// accuracy costs (accuracy.h). A problem enters it by saying what its axes and
-/// knobs are.
+/// parameters are.
 #pragma once
 
 #include <functional>
@@ -33,15 +33,15 @@ Vector<double> uneven(Index rows, double size);
 struct Atlas {
   std::string name;   ///< numerics/billiards
   std::string title;  ///< Numerics of billiards
-  Source source;
+  Citation citation;
   std::vector<Sweep> sweeps;
-  std::vector<Knob> knobs = {};
+  std::vector<NumericalParameter> parameters = {};
   ProblemRecipe problem = {};  ///< as it is registered; none: that of a sweep
 };
 
 /// An experiment with the method `stability`, a stage per sweep, a table and
-/// maps of each, and the claim N1 about all adjoints; with knobs the method
-/// `work-precision` and claims about observed orders, too.
+/// maps of each, and the claim N1 about all adjoints; with parameters the
+/// method `work-precision` and claims about observed orders, too.
 void add_atlas(Registry& r, Atlas atlas);
 
 /// Those registered, in any order.

@@ -15,7 +15,7 @@ void add_experiments(Registry& r) {
   add_atlas(r,
             {.name = "numerics/exponential",
              .title = "Numerics of the exponential",
-             .source = {.paper = "sip", .where = "App. C.2"},
+             .citation = {.paper = "sip", .where = "App. C.2"},
              .sweeps = {{.id = "places",
                          .title = "The unknown, coarse and fine",
                          .x = kPlace,
@@ -26,10 +26,10 @@ void add_experiments(Registry& r) {
                                                                place + offset);
                              },
                          .problems = {problem<Exponential>("exponential")}}},
-             .knobs = {batch_knob(problem<Exponential>("exponential"),
-                                  4096,
-                                  {},
-                                  exponential_closed_form())}});
+             .parameters = {batch_parameter(problem<Exponential>("exponential"),
+                                            4096,
+                                            {},
+                                            exponential_closed_form())}});
 }
 
 }  // namespace physinv::numerics::exponential

@@ -26,18 +26,18 @@ const ProblemRecipe kPoisson = problem<GridPoisson>("grid_poisson");
 }  // namespace
 
 void add_experiments(Registry& r) {
-  add_atlas(
-      r,
-      {.name = "numerics/poisson",
-       .title = "Numerics of the Poisson problem",
-       .source = {.paper = "hig", .where = "Sec. 3.2"},
-       .sweeps = {{.id = "potentials",
-                   .title = "Size and wave number of the potential",
-                   .x = {"size", decades(-150, 150, 10), true},
-                   .y = {"wave number", {1, 2, 3, 4, 5, 6, 7, 8}},
-                   .point = potential,
-                   .problems = {kPoisson}}},
-       .knobs = {batch_knob(kPoisson, 256, {}, grid_poisson_closed_form())}});
+  add_atlas(r,
+            {.name = "numerics/poisson",
+             .title = "Numerics of the Poisson problem",
+             .citation = {.paper = "hig", .where = "Sec. 3.2"},
+             .sweeps = {{.id = "potentials",
+                         .title = "Size and wave number of the potential",
+                         .x = {"size", decades(-150, 150, 10), true},
+                         .y = {"wave number", {1, 2, 3, 4, 5, 6, 7, 8}},
+                         .point = potential,
+                         .problems = {kPoisson}}},
+             .parameters = {batch_parameter(
+                 kPoisson, 256, {}, grid_poisson_closed_form())}});
 }
 
 }  // namespace physinv::numerics::grid_poisson

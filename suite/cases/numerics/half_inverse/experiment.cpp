@@ -33,7 +33,7 @@ void add_experiments(Registry& r) {
   r.add(Experiment{
       .name = kName,
       .title = "Numerics of half-inverse updates",
-      .source = {.paper = "hig", .where = "Secs. 2.1, 2.3"},
+      .citation = {.paper = "hig", .where = "Secs. 2.1, 2.3"},
       .problem = problem<ScaledOutput>("scaled_output"),
       .setting = {.predictor = {{Field::given},
                                 nn::mlp({.hidden = {7},

@@ -31,7 +31,7 @@ Vector<double> wave(double k, double /*end_time*/) {
 const SweepAxis kTimes{"end time", {1, 2, 4, 8, 16, 32, 64}, true};
 
 /// What is said of noise, at one end time; the inverse's error is that of x.
-Knob floor_knob(double end_time) {
+NumericalParameter floor_parameter(double end_time) {
   const SweepAxis floors{fmt::format("end time {}, noise floor", end_time),
                          {1e-3, 1e-6, 1e-9, 1e-12},
                          true};
@@ -55,7 +55,7 @@ void add_experiments(Registry& r) {
       r,
       {.name = "numerics/heat",
        .title = "Numerics of heat",
-       .source = {.paper = "sip", .where = "App. B.3"},
+       .citation = {.paper = "sip", .where = "App. B.3"},
        .sweeps = {{.id = "times",
                    .title = "Wave number and end time",
                    .x = {"wave number", {0, 1, 2, 3, 4, 5, 6, 7, 8}},
@@ -64,11 +64,11 @@ void add_experiments(Registry& r) {
                    .problems =
                        along(kTimes,
                              [](double end_time) { return until(end_time); })}},
-       .knobs = {
-           floor_knob(1),
-           floor_knob(8),
-           floor_knob(64),
-           batch_knob(
+       .parameters = {
+           floor_parameter(1),
+           floor_parameter(8),
+           floor_parameter(64),
+           batch_parameter(
                problem<Heat>("heat", kFew), 32, {}, heat_closed_form(kFew))}});
 }
 

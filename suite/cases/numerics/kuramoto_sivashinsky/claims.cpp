@@ -34,7 +34,7 @@ Quantity at(const char* array, double end) {
 }
 
 std::vector<Claim> claims() {
-  std::vector<Claim> all = order_claims(knobs());
+  std::vector<Claim> all = order_claims(parameters());
   all.push_back(
       {.id = "N2",
        .from = "smoke",

@@ -35,28 +35,28 @@ ProblemRecipe gridded(double cells) {
 }  // namespace
 
 // Claims ask while static objects of other sources are made: all of it is here.
-const std::vector<Knob>& knobs() {
+const std::vector<NumericalParameter>& parameters() {
   static const SweepAxis steps{
       "time step", {1, 0.5, 0.25, 0.125, 0.0625, 0.03125, 0.015625}, true};
   static const SweepAxis cells{"cells", {64, 128, 256}, true};
   // Longer steps than 1/16 are not yet in the regime of small steps.
-  static const std::vector<Knob>& all =
-      declare_knobs(kName,
-                    {{.id = "step",
-                      .title = "Time step, until t = 25",
-                      .axis = steps,
-                      .problems = along(steps, stepping),
-                      .reference = solver(kEnd, 12800),
-                      .order = 2,
-                      .regime = 4,
-                      .samples = 16},
-                     {.id = "cells",
-                      .title = "Cells, steps of 1/4",
-                      .axis = cells,
-                      .problems = along(cells, gridded),
-                      .reference = gridded(512),
-                      .samples = 16},
-                     batch_knob(stepping(0.25), 64, stepping(0.015625))});
+  static const std::vector<NumericalParameter>& all = declare_parameters(
+      kName,
+      {{.id = "step",
+        .title = "Time step, until t = 25",
+        .axis = steps,
+        .problems = along(steps, stepping),
+        .reference = solver(kEnd, 12800),
+        .order = 2,
+        .regime = 4,
+        .samples = 16},
+       {.id = "cells",
+        .title = "Cells, steps of 1/4",
+        .axis = cells,
+        .problems = along(cells, gridded),
+        .reference = gridded(512),
+        .samples = 16},
+       batch_parameter(stepping(0.25), 64, stepping(0.015625))});
   return all;
 }
 
@@ -103,13 +103,13 @@ void add_experiments(Registry& r) {
   r.add(Experiment{
       .name = kName,
       .title = "Numerics of the Kuramoto-Sivashinsky solver",
-      .source = {.paper = "jpo", .where = "App. D.3"},
+      .citation = {.paper = "jpo", .where = "App. D.3"},
       .problem = until(kEnd),
       .setting = kNoNetworks,
       .profiles = {{.name = "smoke", .rows = rows(4)},
                    {.name = "quick", .rows = rows(8)},
                    {.name = "paper", .rows = rows(32)}},
-      .methods = {accuracy_method(knobs()),
+      .methods = {accuracy_method(parameters()),
                   growth_method(),
                   stability_method()},
   });

@@ -26,7 +26,7 @@ inline const SweepAxis kLowBeta{"beta", spaced(0, 4, 9)};
 inline const SweepAxis kTime{"end time", spaced(5, 100, 11)};
 
 /// Steps, grid and samples per call.
-const std::vector<Knob>& knobs();
+const std::vector<NumericalParameter>& parameters();
 
 /// Over the samples that have a number: the geometric mean of a column of an
 /// array of the growth stage, or nothing.

@@ -47,7 +47,7 @@ void add_experiments(Registry& r) {
       r,
       {.name = "numerics/marker-flow",
        .title = "Numerics of a marker in a flow",
-       .source = {.paper = "sip", .where = "App. B.4"},
+       .citation = {.paper = "sip", .where = "App. B.4"},
        .sweeps = {{.id = "grids",
                    .title = "Speed and grid, one step",
                    .x = kSpeeds,
@@ -79,17 +79,17 @@ void add_experiments(Registry& r) {
                                             .steps = static_cast<Index>(
                                                 4 * end_time)});
                                      })}},
-       .knobs = {{.id = "steps",
-                  .title = "Time steps, 32 x 32 cells",
-                  .axis = kTimeSteps,
-                  .problems = along(kTimeSteps,
-                                    [](double step) {
-                                      return of_steps(
-                                          static_cast<Index>(2 / step));
-                                    }),
-                  .reference = of_steps(32),
-                  .samples = 4,
-                  .repetitions = 3}},
+       .parameters = {{.id = "steps",
+                       .title = "Time steps, 32 x 32 cells",
+                       .axis = kTimeSteps,
+                       .problems = along(kTimeSteps,
+                                         [](double step) {
+                                           return of_steps(
+                                               static_cast<Index>(2 / step));
+                                         }),
+                       .reference = of_steps(32),
+                       .samples = 4,
+                       .repetitions = 3}},
        .problem = problem<MarkerFlow>("marker_flow")});
 }
 

@@ -22,7 +22,7 @@ void add_experiments(Registry& r) {
   add_atlas(r,
             {.name = "numerics/gradient-alignment",
              .title = "Numerics of the noisy distance",
-             .source = {.paper = "jpo", .where = "Sec. 2"},
+             .citation = {.paper = "jpo", .where = "Sec. 2"},
              .sweeps = {{.id = "places",
                          .title = "Place and level of the noise",
                          .x = kPlace,
@@ -31,7 +31,7 @@ void add_experiments(Registry& r) {
                                      double) { return uneven(1, place); },
                          .problems = along(kLevel, noisy),
                          .examples = 2}},
-             .knobs = {batch_knob(
+             .parameters = {batch_parameter(
                  noisy(1), 1024, {}, noisy_absolute_closed_form())}});
 }
 

@@ -29,7 +29,7 @@ void add_experiments(Registry& r) {
       r,
       {.name = "numerics/oscillators",
        .title = "Numerics of the oscillators",
-       .source = {.paper = "hig", .where = "Sec. 3.1"},
+       .citation = {.paper = "hig", .where = "Sec. 3.1"},
        .sweeps = {{.id = "controls",
                    .title = "Size of the control and time step (96 steps)",
                    .x = kSize,
@@ -42,15 +42,16 @@ void add_experiments(Registry& r) {
                                            "oscillators", {.dt = dt});
                                      }),
                    .examples = 2}},
-       .knobs = {{.id = "step",
-                  .title = "Time step of the Runge-Kutta method, until t = 12",
-                  .axis = kSteps,
-                  .problems = along(kSteps, stepping),
-                  .reference = stepping(1.0 / 512),
-                  .order = 4,
-                  .regime = 3,
-                  .samples = 64},
-                 batch_knob(stepping(0.125), 256, stepping(1.0 / 128))}});
+       .parameters = {
+           {.id = "step",
+            .title = "Time step of the Runge-Kutta method, until t = 12",
+            .axis = kSteps,
+            .problems = along(kSteps, stepping),
+            .reference = stepping(1.0 / 512),
+            .order = 4,
+            .regime = 3,
+            .samples = 64},
+           batch_parameter(stepping(0.125), 256, stepping(1.0 / 128))}});
 }
 
 }  // namespace physinv::numerics::oscillators

@@ -109,7 +109,7 @@ Table times_to_accuracy(const Results& results) {
     for (const double target : targets)
       table.columns.push_back(fmt::format("{} {:.0e}", to_string(of), target));
   table.columns.insert(table.columns.end(), {"settings", "dominated"});
-  for (const auto& [experiment, knobs] : all_knobs()) {
+  for (const auto& [experiment, parameters] : all_parameters()) {
     const auto all = measurements(results, experiment);
     TableRow row{.label = experiment.substr(kPrefix.size())};
     for (const WorkOf of : kAll) {

@@ -54,17 +54,17 @@ void add_experiments(Registry& r) {
       r,
       {.name = "numerics/poisson-plane",
        .title = "Numerics of Poisson's equation on planes",
-       .source = {.paper = "sip", .where = "App. B.2"},
+       .citation = {.paper = "sip", .where = "App. B.2"},
        .sweeps = {sources(
                       "smoothest", "Smoothest source: size and grid", false),
                   sources("roughest", "Roughest source: size and grid", true)},
-       .knobs = {{.id = "residual",
-                  .title = "Conjugate gradients",
-                  .axis = kResiduals,
-                  .problems = along(kResiduals, iterated),
-                  .reference = plane(64),
-                  .repetitions = 3},
-                 batch_knob(plane(64), 32, iterated(1e-13))}});
+       .parameters = {{.id = "residual",
+                       .title = "Conjugate gradients",
+                       .axis = kResiduals,
+                       .problems = along(kResiduals, iterated),
+                       .reference = plane(64),
+                       .repetitions = 3},
+                      batch_parameter(plane(64), 32, iterated(1e-13))}});
 }
 
 }  // namespace physinv::numerics::poisson_plane

@@ -23,20 +23,24 @@ ProblemRecipe stepping(double end, int halved) {
 
 /// Energies reach 225: the phases of the highest states turn right over the
 /// whole time only with steps of 1e-4. The order shows on a shorter one.
-Knob steps(const char* id, double end, int halvings, double order) {
-  Knob knob{.id = id,
-            .title = fmt::format("Time step of Cayley's method, until {}", end),
-            .axis = {"time step", {}, true},
-            .problems = {},
-            .reference = stepping(end, halvings + 3),
-            .order = order,
-            .samples = 16};
+NumericalParameter steps(const char* id,
+                         double end,
+                         int halvings,
+                         double order) {
+  NumericalParameter parameter{
+      .id = id,
+      .title = fmt::format("Time step of Cayley's method, until {}", end),
+      .axis = {"time step", {}, true},
+      .problems = {},
+      .reference = stepping(end, halvings + 3),
+      .order = order,
+      .samples = 16};
   for (int k = 0; k <= halvings; ++k) {
-    knob.axis.values.push_back(std::ldexp(0.05, -k));
-    knob.problems.push_back(stepping(end, k));
+    parameter.axis.values.push_back(std::ldexp(0.05, -k));
+    parameter.problems.push_back(stepping(end, k));
   }
-  knob.regime = knob.problems.size() - 2;
-  return knob;
+  parameter.regime = parameter.problems.size() - 2;
+  return parameter;
 }
 
 }  // namespace
@@ -46,7 +50,7 @@ void add_experiments(Registry& r) {
       r,
       {.name = "numerics/quantum-dipole",
        .title = "Numerics of the quantum dipole",
-       .source = {.paper = "hig", .where = "Sec. 3.3"},
+       .citation = {.paper = "hig", .where = "Sec. 3.3"},
        .sweeps = {{.id = "controls",
                    .title = "Size of the control and time step (384 steps)",
                    .x = kSize,
@@ -61,9 +65,10 @@ void add_experiments(Registry& r) {
                    // psi has norm 1 and 384 roundings: differences over 0.1 are
                    // known to 1e-12.
                    .zero = 1e-7}},
-       .knobs = {steps("step", 19.2, 5, 0),
-                 steps("short", 1.2, 8, 2),
-                 batch_knob(stepping(19.2, 0), 64, stepping(19.2, 4))}});
+       .parameters = {
+           steps("step", 19.2, 5, 0),
+           steps("short", 1.2, 8, 2),
+           batch_parameter(stepping(19.2, 0), 64, stepping(19.2, 4))}});
 }
 
 }  // namespace physinv::numerics::quantum_dipole

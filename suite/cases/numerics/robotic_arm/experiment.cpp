@@ -45,7 +45,7 @@ void add_experiments(Registry& r) {
       r,
       {.name = "numerics/robotic-arm",
        .title = "Numerics of the robotic arm",
-       .source = {.paper = "jpo", .where = "App. D.5"},
+       .citation = {.paper = "jpo", .where = "App. D.5"},
        .sweeps = {{.id = "poses",
                    .title = "Singular poses (bend 0 and ±pi) and others",
                    .x = {"direction of the first link", turn()},
@@ -63,7 +63,8 @@ void add_experiments(Registry& r) {
                    .point = [](double size,
                                double bend) { return bent(0, size, bend); },
                    .problems = {kArm}}},
-       .knobs = {batch_knob(kArm, 1024, {}, robotic_arm_closed_form())}});
+       .parameters = {
+           batch_parameter(kArm, 1024, {}, robotic_arm_closed_form())}});
 }
 
 }  // namespace physinv::numerics::robotic_arm

@@ -20,7 +20,7 @@ void add_experiments(Registry& r) {
       r,
       {.name = "numerics/toy",
        .title = "Numerics of the toy",
-       .source = {.paper = "hig", .where = "Sec. 2.1"},
+       .citation = {.paper = "hig", .where = "Sec. 2.1"},
        .sweeps = {{.id = "sizes",
                    .title = "Size of the unknowns and factor of the second",
                    .x = kSize,
@@ -31,10 +31,10 @@ void add_experiments(Registry& r) {
                                        return problem<ScaledOutput>(
                                            "scaled_output", {.gamma = gamma});
                                      })}},
-       .knobs = {batch_knob(problem<ScaledOutput>("scaled_output"),
-                            4096,
-                            {},
-                            scaled_output_closed_form())}});
+       .parameters = {batch_parameter(problem<ScaledOutput>("scaled_output"),
+                                      4096,
+                                      {},
+                                      scaled_output_closed_form())}});
 }
 
 }  // namespace physinv::numerics::scaled_output

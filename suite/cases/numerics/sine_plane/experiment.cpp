@@ -25,7 +25,7 @@ void add_experiments(Registry& r) {
       r,
       {.name = "numerics/sine",
        .title = "Numerics of the sine",
-       .source = {.paper = "sip", .where = "App. B.1"},
+       .citation = {.paper = "sip", .where = "App. B.1"},
        .sweeps = {{.id = "turns",
                    .title = "Turns of the sine and stretch",
                    .x = kTurns,
@@ -42,7 +42,7 @@ void add_experiments(Registry& r) {
                    .y = kStretches,
                    .point = [](double size, double) { return uneven(2, size); },
                    .problems = along(kStretches, stretched)}},
-       .knobs = {batch_knob(stretched(4), 1024, stretched(4))}});
+       .parameters = {batch_parameter(stretched(4), 1024, stretched(4))}});
 }
 
 }  // namespace physinv::numerics::sine_plane

@@ -137,7 +137,7 @@ Section report(const Results& results, const Published&) {
 void add_experiments(Registry& r) {
   r.add(Experiment{.name = kName,
                    .title = "Numerics of carried fields",
-                   .source = {.paper = "sip", .where = "App. B.4"},
+                   .citation = {.paper = "sip", .where = "App. B.4"},
                    .problem = problem<MarkerFlow>("marker_flow", {.cells = 32}),
                    .setting = {},
                    .profiles = {{.name = "smoke", .rows = {kRow}},

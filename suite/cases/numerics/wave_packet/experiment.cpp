@@ -49,13 +49,13 @@ std::shared_ptr<const Stage> sweep(const char* name,
   return stability_sweep(options);
 }
 
-const std::vector<Knob>& knobs() {
-  static const std::vector<Knob>& all =
-      declare_knobs(kName,
-                    {batch_knob(problem<WavePacket>("wave_packet"),
-                                256,
-                                {},
-                                wave_packet_closed_form())});
+const std::vector<NumericalParameter>& parameters() {
+  static const std::vector<NumericalParameter>& all =
+      declare_parameters(kName,
+                         {batch_parameter(problem<WavePacket>("wave_packet"),
+                                          256,
+                                          {},
+                                          wave_packet_closed_form())});
   return all;
 }
 
@@ -113,7 +113,7 @@ void add_experiments(Registry& r) {
   r.add(Experiment{
       .name = kName,
       .title = "Numerics of the wave packet",
-      .source = {.paper = "jpo", .where = "App. D.1"},
+      .citation = {.paper = "jpo", .where = "App. D.1"},
       .problem = problem<WavePacket>("wave_packet"),
       .setting = kNoNetworks,
       .profiles = {{.name = "smoke", .rows = rows()},
@@ -122,7 +122,7 @@ void add_experiments(Registry& r) {
       .methods = {{"stability",
                    {sweep("positions", positions()),
                     sweep("far", far_positions())}},
-                  accuracy_method(knobs())},
+                  accuracy_method(parameters())},
       .claims = {adjoint_claim("N1", {"positions", "far"})},
       .report = report,
   });

@@ -68,7 +68,7 @@ Experiment scaling() {
   };
   Experiment e{.name = kScaling,
                .title = "Scaling",
-               .source = {.paper = "physgrad", .where = "Crux of the matter"},
+               .citation = {.paper = "physgrad", .where = "Crux of the matter"},
                .problem = problem<Scaling>(
                    "scaling", {.scales = {1, 3, 5, 1e-3, 1e3, 1e6}}),
                .profiles = profiles(rows(3, 10), rows(6, 50)),
@@ -125,7 +125,7 @@ Experiment comparison() {
   Experiment e{
       .name = kComparison,
       .title = "Comparison",
-      .source = {.paper = "physgrad", .where = "notebook of the chapter"},
+      .citation = {.paper = "physgrad", .where = "notebook of the chapter"},
       .problem = problem<Scaling>("scaling", {.power = 2, .start = {3, 3}}),
       .profiles = profiles({ten}, all),
       .methods = comparison_methods()};

@@ -19,7 +19,7 @@ namespace {
 struct Line {
   const char* method;
   const char* label;
-  Look look;
+  PlotStyle style;
 };
 const Line kGd{"gd", "gradient descent", {Hue::blue, Marker::circle}};
 const Line kNewton{"newton", "Newton", {Hue::orange, Marker::square}};
@@ -41,7 +41,7 @@ Series series(const Line& line, const Batch<double>& points) {
   Series s{.label = line.label,
            .method = line.method,
            .markers = points.cols() <= 11,
-           .look = line.look};
+           .style = line.style};
   for (Index k = 0; k < points.cols(); ++k)
     s.x.push_back(points(0, k)), s.y.push_back(points(1, k));
   return s;

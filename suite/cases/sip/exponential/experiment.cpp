@@ -71,7 +71,7 @@ void add_experiments(Registry& r) {
   r.add(Experiment{
       .name = "sip/exponential",
       .title = "Exponential",
-      .source = {.paper = "sip", .where = "App. C.2, Fig. 2"},
+      .citation = {.paper = "sip", .where = "App. C.2, Fig. 2"},
       .problem = problem<Exponential>("exponential", {}),
       .setting = {.predictor = {{Field::observations},
                                 nn::mlp({.hidden = {16, 64, 16},

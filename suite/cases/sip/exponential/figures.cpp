@@ -32,7 +32,8 @@ Figure predictions(const Results& results) {
     for (Index i = 0; i < std::min(truth.cols(), x.cols()); ++i)
       points.emplace_back(truth(0, i), x(0, i));
     std::sort(points.begin(), points.end());
-    Series s{.label = line.label, .method = line.method, .look = look_of(line)};
+    Series s{
+        .label = line.label, .method = line.method, .style = style_of(line)};
     for (const auto& [wanted, answer] : points)
       s.x.push_back(wanted), s.y.push_back(answer);
     panel.series.push_back(std::move(s));
@@ -43,7 +44,7 @@ Figure predictions(const Results& results) {
                             .x = {-12, 0},
                             .y = {-12, 0},
                             .dashed = true,
-                            .look = Look{.hue = Hue::ink}});
+                            .style = PlotStyle{.hue = Hue::ink}});
   return {.id = "fig2",
           .title = "Predictions after training",
           .source = "Fig. 2",

@@ -73,7 +73,7 @@ Experiment experiment(const Variant& variant) {
   return {
       .name = variant.experiment,
       .title = variant.title,
-      .source = {.paper = "sip", .where = "App. B.4, Figs. 14, 15"},
+      .citation = {.paper = "sip", .where = "App. B.4, Figs. 14, 15"},
       .problem = problem<MarkerFlow>(
           "marker_flow", {.cells = kCells, .timed_path = variant.timed_path}),
       .setting = {.predictor = {{Field::given, Field::observations},

@@ -8,7 +8,8 @@ namespace {
 
 void evaluate(const Snapshot& s, VectorOut<double> values) {
   values.setZero();
-  const auto* flow = dynamic_cast<const MarkerFlow<double>*>(&s.oracle.look());
+  const auto* flow =
+      dynamic_cast<const MarkerFlow<double>*>(&s.oracle.inspect());
   if (flow == nullptr) return;  // these numbers are of no other problem
   const Vortex vortex = flow->vortex();
   const Batch<double>& truth = s.oracle.data().x;

@@ -43,7 +43,7 @@ class Descent final : public Solver {
 /// The case's problem, with another noise floor if one is named.
 Heat<double> heat_of(const StageRun& run, double noise_floor = 0) {
   HeatOptions options =
-      dynamic_cast<const Heat<double>&>(run.oracle.look()).options();
+      dynamic_cast<const Heat<double>&>(run.oracle.inspect()).options();
   options.noise_floor = noise_floor;
   return Heat<double>(options);
 }
@@ -82,7 +82,7 @@ class InversePhysics final : public Solver {
     oracle_.add(Counter::inverse, x_.cols());
   }
   void estimate(BatchOut<double> x) override { x = x_; }
-  void leave(Outcome&) override { oracle_.add(work_.counts); }
+  void export_to(Outcome&) override { oracle_.add(work_.counts); }
 
  private:
   Heat<double> heat_;
@@ -103,7 +103,7 @@ class InversePhysicsOfModes final : public Solver {
     oracle_.add(Counter::inverse, oracle_.count());
   }
   void estimate(BatchOut<double> x) override { inversion_.estimate(x, work_); }
-  void leave(Outcome&) override { oracle_.add(work_.counts); }
+  void export_to(Outcome&) override { oracle_.add(work_.counts); }
 
  private:
   Heat<double> heat_;
@@ -145,7 +145,7 @@ class LbfgsbOfModes final : public Solver {
       x.col(i) = one;
     }
   }
-  void leave(Outcome& out) override {
+  void export_to(Outcome& out) override {
     for (std::size_t i = 0; i < solvers_.size(); ++i) {
       const Lbfgsb& s = solvers_[i];
       const auto k = static_cast<Index>(i);

@@ -187,7 +187,7 @@ void add_experiments(Registry& r) {
   const Experiment heat = {
       .name = kName,
       .title = "Heat",
-      .source = {.paper = "sip", .where = "App. B.3, Figs. 10 to 13"},
+      .citation = {.paper = "sip", .where = "App. B.3, Figs. 10 to 13"},
       .problem = kProblem,
       .setting = {.predictor = {{Field::observations},
                                 nn::unet({.grid = {kSide, kSide},

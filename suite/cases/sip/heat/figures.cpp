@@ -113,7 +113,8 @@ Figure direct(const Results& results) {
     const auto stages = trained_stages(results, kName, line.method);
     if (stages.empty()) continue;
     const CurveRow row{*stages.front(), "metrics", kError};
-    Series s{.label = line.label, .method = line.method, .look = look_of(line)};
+    Series s{
+        .label = line.label, .method = line.method, .style = style_of(line)};
     for (Index k = 0; k < row.points(); ++k)
       if (row.updates(k) > 0)
         s.x.push_back(row.updates(k)), s.y.push_back(row(k));
@@ -127,7 +128,7 @@ Figure direct(const Results& results) {
     if (const auto error = end(results, line.method, kClamped);
         error && line.label.find("1e-3") == std::string::npos)
       panel.series.push_back(
-          level(line.label, line.method, 1, last, *error, look_of(line)));
+          level(line.label, line.method, 1, last, *error, style_of(line)));
   return {.id = "fig13",
           .title = "Examples by themselves",
           .source = "Fig. 13",

@@ -33,7 +33,7 @@ class Band {
 
 void evaluate(const Snapshot& s, VectorOut<double> values) {
   values.setZero();
-  const auto* heat = dynamic_cast<const Heat<double>*>(&s.oracle.look());
+  const auto* heat = dynamic_cast<const Heat<double>*>(&s.oracle.inspect());
   if (heat == nullptr) return;  // these numbers are of no other problem
   const Batch<double>&truth = s.oracle.data().x, &y = s.oracle.observations();
   const Batch<double> error = s.x - truth;

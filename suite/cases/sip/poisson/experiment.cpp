@@ -25,7 +25,7 @@ constexpr double kSgd = 3e-12, kAdam = 1e-3, kHessian = 1e-6;
 const std::vector<Index> kBatches = {128, 8};
 
 /// Objectives are sums over the batch, not means.
-Method trained(const Plane& plane,
+Method trained(const Domain& domain,
                std::string id,
                Index batch,
                decltype(TrainingOptions::rule) rule,
@@ -38,11 +38,11 @@ Method trained(const Plane& plane,
                            .gradient_scale = double(batch),
                            .fresh = true,
                            .metrics = metrics(),
-                           .late = late_error(plane.rows, plane.columns),
+                           .late = late_error(domain.rows, domain.columns),
                            .signal = std::move(signal)})}};
 }
 
-std::vector<Method> methods(const Plane& plane) {
+std::vector<Method> methods(const Domain& domain) {
   std::vector<Method> all;
   const auto adam = [](double rate) {
     return StepOptions(AdamOptions{.rate = rate, .eps = 1e-8});
@@ -53,7 +53,7 @@ std::vector<Method> methods(const Plane& plane) {
   for (const Index batch : kBatches) {
     const auto add = [&](std::string id, auto rule, auto... signal) {
       all.push_back(trained(
-          plane, std::move(id), batch, std::move(rule), std::move(signal)...));
+          domain, std::move(id), batch, std::move(rule), std::move(signal)...));
     };
     add("sip", adam(kAdam), inverse_proxy());
     add("sip-cosines", adam(kAdam), proxy_with_cosines());
@@ -74,9 +74,9 @@ std::vector<Method> methods(const Plane& plane) {
   const Index few = kBatches.back();
   for (const int times : {16, 160})
     all.push_back(trained(
-        plane, "sgd-" + std::to_string(times) + 'x', few, sgd(times * kSgd)));
-  all.push_back(trained(plane, "sip-long", few, adam(kAdam), inverse_proxy()));
-  all.push_back(trained(plane, "adam-long", few, adam(kAdam)));
+        domain, "sgd-" + std::to_string(times) + 'x', few, sgd(times * kSgd)));
+  all.push_back(trained(domain, "sip-long", few, adam(kAdam), inverse_proxy()));
+  all.push_back(trained(domain, "adam-long", few, adam(kAdam)));
   const auto direct = [&](std::string id, LocalStep step, double rate) {
     all.push_back({.id = std::move(id),
                    .chain = {local_steps(
@@ -132,8 +132,8 @@ const std::vector<Row> kFullRates = {
         3,
         kHessians)};
 
-std::vector<Profile> profiles(const Plane& plane) {
-  const std::string name = plane.experiment;
+std::vector<Profile> profiles(const Domain& domain) {
+  const std::string name = domain.experiment;
   if (name == kSmall.experiment) {
     const std::vector<Row> quick = {row({"sip-b8", "adam-b8"}, 32, 1, 160),
                                     row({"sgd-b8"}, 32, 1, 170),
@@ -173,10 +173,10 @@ std::vector<Profile> profiles(const Plane& plane) {
                            cosines})}};
 }
 
-Experiment experiment(const Plane& p) {
+Experiment experiment(const Domain& p) {
   return {.name = p.experiment,
           .title = p.title,
-          .source = {.paper = "sip", .where = "App. B.2, Figs. 9, 15"},
+          .citation = {.paper = "sip", .where = "App. B.2, Figs. 9, 15"},
           .problem = problem<Poisson>("poisson",
                                       {.rows = p.rows, .columns = p.columns}),
           .setting = {.predictor = {{Field::observations},
@@ -190,13 +190,16 @@ Experiment experiment(const Plane& p) {
 }
 
 /// Fourier neural operator: a network of its own, so an experiment of its own.
-Experiment operator_experiment(const Plane& plane, Index width) {
-  Experiment e = experiment(plane);
+Experiment operator_experiment(const Domain& domain, Index width) {
+  Experiment e = experiment(domain);
   e.setting.predictor.recipe = nn::fno({.grid = {64, 64}, .width = width});
   e.methods.clear();
   const auto add = [&](const char* id, Index batch) {
-    e.methods.push_back(trained(
-        plane, id, batch, StepOptions(AdamOptions{.rate = 3e-3, .eps = 1e-8})));
+    e.methods.push_back(
+        trained(domain,
+                id,
+                batch,
+                StepOptions(AdamOptions{.rate = 3e-3, .eps = 1e-8})));
   };
   for (const Index batch : kBatches) add("fno", batch);
   add("fno-long", kBatches.back());
@@ -230,7 +233,7 @@ Experiment narrow_operator() {
 void add_experiments(Registry& r) {
   r.add(wide_operator());
   r.add(narrow_operator());
-  for (const Plane& p : {kPlane, kSmall, kPaper}) r.add(experiment(p));
+  for (const Domain& p : {kPlane, kSmall, kPaper}) r.add(experiment(p));
 }
 
 }  // namespace physinv::poisson

@@ -29,19 +29,19 @@ const std::vector<MethodLine> kLines = {
     {"adam-long-b8", "Adam, batch 8, longer", Hue::purple},
     {"fno-long-b8", "FNO, batch 8, longer", Hue::pink}};
 
-Section report(const Plane& plane, const Results& results) {
-  Section section{.experiment = plane.experiment,
-                  .tables = {loss_table(results, plane.experiment, kLines)}};
+Section report(const Domain& domain, const Results& results) {
+  Section section{.experiment = domain.experiment,
+                  .tables = {loss_table(results, domain.experiment, kLines)}};
   LearningCurves curves(results, section);
   curves.metric(
       kLines, kError, "sum |x - x*|", "errors", "Errors of x", "Fig. 9");
   curves.losses(kLines, "losses", "Losses of y", "");
-  curves.add(update_times(results, plane.experiment, kLines, "Fig. 15"));
-  const FieldLayout layout{plane.columns, plane.rows, 1, plane.columns};
-  const Poisson<double> physics({.rows = plane.rows, .columns = plane.columns});
+  curves.add(update_times(results, domain.experiment, kLines, "Fig. 15"));
+  const FieldLayout layout{domain.columns, domain.rows, 1, domain.columns};
+  const Poisson<double> physics({.rows = domain.rows, .columns = domain.columns});
   Figure fields = answered_fields(
       results,
-      plane.experiment,
+      domain.experiment,
       kLines,
       {.source = "Fig. 9",
        .examples = 3,
@@ -57,7 +57,7 @@ Section report(const Plane& plane, const Results& results) {
 }  // namespace
 
 void add_reports(Registry& r) {
-  for (const Plane& p : {kPlane, kSmall, kPaper, kFno, kNarrow})
+  for (const Domain& p : {kPlane, kSmall, kPaper, kFno, kNarrow})
     r.add_report(p.experiment, [p](const Results& results, const Published&) {
       return report(p, results);
     });

@@ -8,17 +8,17 @@
 
 namespace physinv::poisson {
 
-struct Plane {
+struct Domain {
   Index rows, columns;
   const char *experiment, *title;
 };
 
-inline constexpr Plane kPlane{64, 64, "sip/poisson", "Poisson, 64 x 64"};
-inline constexpr Plane kSmall{32, 32, "sip/poisson-32", "Poisson, 32 x 32"};
-inline constexpr Plane kPaper{80, 60, "sip/poisson-80x60", "Poisson, 80 x 60"};
-inline constexpr Plane kFno{
+inline constexpr Domain kPlane{64, 64, "sip/poisson", "Poisson, 64 x 64"};
+inline constexpr Domain kSmall{32, 32, "sip/poisson-32", "Poisson, 32 x 32"};
+inline constexpr Domain kPaper{80, 60, "sip/poisson-80x60", "Poisson, 80 x 60"};
+inline constexpr Domain kFno{
     64, 64, "sip/poisson-fno", "Poisson, 64 x 64, Fourier neural operator"};
-inline constexpr Plane kNarrow{
+inline constexpr Domain kNarrow{
     64, 64, "sip/poisson-fno-16", "Poisson, 64 x 64, operator of width 16"};
 
 }  // namespace physinv::poisson

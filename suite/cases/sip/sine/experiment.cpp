@@ -109,7 +109,7 @@ Experiment experiment(std::string name,
                       const SinePlaneOptions& options) {
   return {.name = std::move(name),
           .title = std::move(title),
-          .source = {.paper = "sip", .where = "App. B.1, Fig. 5"},
+          .citation = {.paper = "sip", .where = "App. B.1, Fig. 5"},
           .problem = problem<SinePlane>("sine_plane", options),
           .setting = {.predictor = {{Field::observations},
                                     nn::mlp({.hidden = {32, 64, 32},
@@ -128,7 +128,7 @@ Experiment sweep_point(const Point& p) {
 
 /// All its methods, from the profile `standard` on.
 Experiment study(Experiment e, std::vector<Method> methods) {
-  e.source.where = "App. B.1";
+  e.citation.where = "App. B.1";
   std::vector<std::string> ids;
   for (const Method& m : methods) ids.push_back(m.id);
   const Row all = row(std::move(ids), kProblems, 3, kQuick);

@@ -52,11 +52,11 @@ Panel sweep(const Evidence& at,
     Series ours{.label = line.label,
                 .method = line.method,
                 .markers = true,
-                .look = look_of(line)};
+                .style = style_of(line)};
     Series theirs{.label = line.label + ", paper",
                   .method = line.method,
                   .dashed = true,
-                  .look = look_of(line)};
+                  .style = style_of(line)};
     for (const Point& p : points) {
       if (auto all = scores(at, p, line.method); !all.empty()) {
         ours.x.push_back(place(p));

@@ -9,14 +9,14 @@
 namespace physinv::sine {
 namespace {
 
-using Plane = Eigen::Vector2d;
+using Vector2 = Eigen::Vector2d;
 
-Plane as_vector(const Pair& p) { return {p[0], p[1]}; }
-Pair as_pair(const Plane& v) { return {v(0), v(1)}; }
+Vector2 as_vector(const Pair& p) { return {p[0], p[1]}; }
+Pair as_pair(const Vector2& v) { return {v(0), v(1)}; }
 
 /// Slope of the loss along a step(x, y, gradient, Hessian).
-using Step = std::function<Plane(
-    const Plane&, const Plane&, const Plane&, const Eigen::Matrix2d&)>;
+using Step = std::function<Vector2(
+    const Vector2&, const Vector2&, const Vector2&, const Eigen::Matrix2d&)>;
 
 std::vector<double> slopes(const SinePlaneOptions& options,
                            const CaseData& data,
@@ -32,7 +32,7 @@ std::vector<double> slopes(const SinePlaneOptions& options,
   problem.hessian(x, data.given, data.y, h, work);
   std::vector<double> all;
   for (Index i = 0; i < n; ++i) {
-    const Plane to = data.y.col(i), from = x.col(i), gradient = g.col(i);
+    const Vector2 to = data.y.col(i), from = x.col(i), gradient = g.col(i);
     const Eigen::Matrix2d hessian = h.col(i).reshaped(2, 2);
     all.push_back(gradient.dot(step(from, to, gradient, hessian)));
   }
@@ -50,13 +50,13 @@ RunValue solution_range() {
 
 RunValue highest_slope(const SinePlaneOptions& options) {
   return [options](const Run& run) -> std::optional<double> {
-    const auto all =
-        slopes(options,
-               run.record->data,
-               [&](const Plane& x, const Plane& y, const auto&, const auto&) {
-                 return as_vector(
-                     limited_newton_step(options, as_pair(x), as_pair(y)));
-               });
+    const auto all = slopes(
+        options,
+        run.record->data,
+        [&](const Vector2& x, const Vector2& y, const auto&, const auto&) {
+          return as_vector(
+              limited_newton_step(options, as_pair(x), as_pair(y)));
+        });
     return *std::max_element(all.begin(), all.end());
   };
 }
@@ -66,7 +66,7 @@ RunValue newton_ascents(const SinePlaneOptions& options) {
     const auto all = slopes(options,
                             run.record->data,
                             [](const auto&, const auto&, auto& g, auto& h) {
-                              return Plane(-h.inverse() * g);
+                              return Vector2(-h.inverse() * g);
                             });
     return double(std::count_if(
                all.begin(), all.end(), [](double s) { return s > 0; })) /

@@ -32,7 +32,7 @@ void add_experiments(Registry& r) {
   r.add(Experiment{
       .name = "sip/wave-packet",
       .title = "Wave packet",
-      .source = {.paper = "sip", .where = "App. C.1, Fig. 16"},
+      .citation = {.paper = "sip", .where = "App. C.1, Fig. 16"},
       .problem = recipe(),
       .setting = setting(),
       .profiles = {{.name = "smoke",
@@ -51,7 +51,7 @@ void add_experiments(Registry& r) {
   r.add(Experiment{
       .name = "sip/wave-packet-joint",
       .title = "Wave packet, examples together and alone",
-      .source = {.paper = "sip", .where = "App. C.1"},
+      .citation = {.paper = "sip", .where = "App. C.1"},
       .problem = recipe(),
       .setting = setting(),
       .profiles = {{.name = "smoke", .rows = {row({"fit"}, 2, 1, 5)}},

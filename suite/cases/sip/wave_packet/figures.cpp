@@ -39,7 +39,7 @@ Series packet(const MethodLine& line, double x, Index samples) {
   Series s{.label = line.label,
            .method = line.method,
            .x = axis(samples),
-           .look = look_of(line)};
+           .style = style_of(line)};
   for (const double t : s.x) {
     const double d = t - kStart - x;
     s.y.push_back(std::sin(kFrequency * d) * std::exp(-d * d / 800));
@@ -61,7 +61,7 @@ Panel example(const Evidence& e, Index i) {
                               .method = "data",
                               .x = axis(samples),
                               .y = {data.y.col(i).begin(), data.y.col(i).end()},
-                              .look = Look{.hue = Hue::ink}});
+                              .style = PlotStyle{.hue = Hue::ink}});
     }
     panel.series.push_back(packet(line, runs.front().stage->x(0, i), samples));
     panel.series.back().dashed = panel.series.size() > 2;
@@ -78,7 +78,7 @@ void add_levels(const Evidence& e, const RunRow& row, Panel& panel) {
     const auto value = median({line.method}, mean_of(row))(e).value;
     if (!value) continue;
     panel.series.push_back(
-        level(line.label, line.method, first, last, *value, look_of(line)));
+        level(line.label, line.method, first, last, *value, style_of(line)));
   }
 }
 

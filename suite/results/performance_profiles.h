@@ -79,10 +79,10 @@ std::vector<double> distribution_targets();
 /// performance_profile and time_to_target: two panels per tolerance, seconds
 /// and simulations; runtime_distribution: all targets together. If no two
 /// methods can be compared, the first two say why.
-std::vector<Figure> profile_figures(const CommonRuns& common,
-                                    const ProfileOptions& options);
-std::vector<Figure> profile_figures(const Results& results,
-                                    const std::string& experiment,
-                                    const ProfileOptions& options);
+std::vector<Figure> performance_profile_figures(const CommonRuns& common,
+                                                const ProfileOptions& options);
+std::vector<Figure> performance_profile_figures(const Results& results,
+                                                const std::string& experiment,
+                                                const ProfileOptions& options);
 
 }  // namespace physinv

@@ -1,4 +1,4 @@
-#include "suite/harness/registry_problems.h"
+#include "suite/harness/registry_errors.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -61,7 +61,7 @@ std::vector<std::string> unreached_sources(const Registry& registry) {
   return wrong;
 }
 
-std::vector<std::string> problems_of(const Experiment& e) {
+std::vector<std::string> errors_of(const Experiment& e) {
   std::vector<std::string> wrong;
   const auto add = [&](const std::string& text) {
     wrong.push_back(e.name + ": " + text);
@@ -165,7 +165,7 @@ void check_claims(const Registry& registry,
   for (const Claim& claim : claims) {
     if (!ids.insert(claim.id).second)
       wrong.push_back(experiment + ": claim " + claim.id + " appears twice");
-    for (const auto& problem : problems_of(claim, profiles))
+    for (const auto& problem : errors_of(claim, profiles))
       wrong.push_back(experiment + ": " + problem);
     for (const Condition& c : all_conditions(claim)) {
       for (const Quantity& q : c.quantities) {
@@ -190,7 +190,7 @@ std::vector<std::string> problems_of_experiments(const Registry& registry,
     if (!names.insert(e->name).second)
       wrong.push_back(e->name + ": registered twice");
     if (!chosen(*e)) continue;
-    const auto own = problems_of(*e);
+    const auto own = errors_of(*e);
     wrong.insert(wrong.end(), own.begin(), own.end());
     check_claims(registry, e->name, e->claims, profile_names(*e), wrong);
   }

@@ -1,4 +1,4 @@
-#include "suite/results/profiles.h"
+#include "suite/results/performance_profiles.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -266,14 +266,14 @@ std::vector<double> distribution_targets() {
   return all;
 }
 
-std::vector<Figure> profile_figures(const Results& results,
-                                    const std::string& experiment,
-                                    const ProfileOptions& options) {
-  return profile_figures(common_runs(results, experiment), options);
+std::vector<Figure> performance_profile_figures(const Results& results,
+                                                const std::string& experiment,
+                                                const ProfileOptions& options) {
+  return performance_profile_figures(common_runs(results, experiment), options);
 }
 
-std::vector<Figure> profile_figures(const CommonRuns& common,
-                                    const ProfileOptions& options) {
+std::vector<Figure> performance_profile_figures(const CommonRuns& common,
+                                                const ProfileOptions& options) {
   Figure profile{.id = "performance_profile",
                  .title = options.title + ": performance profiles"};
   Figure reached{.id = "time_to_target",

@@ -1,4 +1,4 @@
-#include "suite/results/profiles.h"
+#include "suite/results/performance_profiles.h"
 
 #include <gtest/gtest.h>
 
@@ -112,7 +112,7 @@ TEST(TargetCosts, OnlyWhereAllMethodsHaveFinished) {
 TEST(ProfileFigures, StairsFromTheBestToTheLast) {
   const Results results({case_of("a", {stage_of({{1, 1}, {0, 0}})}),
                          case_of("b", {stage_of({{1, 1}, {1, 0}})})});
-  const auto figures = profile_figures(
+  const auto figures = performance_profile_figures(
       results,
       "e",
       {.title = "E", .method_titles = {{"a", "A"}}, .tolerances = {0.1}});
@@ -140,8 +140,8 @@ TEST(ProfileFigures, AllTargetsAreOneDistribution) {
   ASSERT_EQ(targets.size(), 24U);
   EXPECT_DOUBLE_EQ(targets[3], 0.1);
   EXPECT_DOUBLE_EQ(targets[23], 1e-6);
-  const Figure figure =
-      profile_figures(results, "e", {.title = "E", .tolerances = {0.1}})[2];
+  const Figure figure = performance_profile_figures(
+      results, "e", {.title = "E", .tolerances = {0.1}})[2];
   EXPECT_EQ(figure.id, "runtime_distribution");
   ASSERT_EQ(figure.panels.size(), 2U);
   const Panel& seconds = figure.panels[0];
@@ -199,7 +199,7 @@ TEST(ProfileFigures, SayWhyThereIsNothingToCompare) {
                        case_of("b", {stage_of({{1}, {0}})})});
   for (const auto& [results, why] :
        {std::pair{&one, "only one method"}, {&apart, "the same problems"}}) {
-    const auto figures = profile_figures(*results, "e", {});
+    const auto figures = performance_profile_figures(*results, "e", {});
     ASSERT_EQ(figures.size(), 2U);
     for (const Figure& figure : figures) {
       EXPECT_NE(figure.note.find(why), std::string::npos) << figure.note;
