@@ -13,7 +13,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// The papers' figures. A film is a file of its own size.
-bool is_kept(const Figure& f) { return !f.source.empty() && f.moment == 0; }
+bool is_kept(const Figure& f) { return !f.where.empty() && f.moment == 0; }
 
 std::string file_of(const Section& section, const Figure& figure) {
   return fmt::format("{}-{}.svg", folder_of(section.experiment), figure.id);
@@ -25,7 +25,7 @@ Json figures_json(const Section& section) {
     if (is_kept(f))
       out.push_back(
           {{"file", file_of(section, f)},
-           {"title", f.source.empty() ? f.title : f.source + " · " + f.title},
+           {"title", f.where.empty() ? f.title : f.where + " · " + f.title},
            {"note", f.note}});
   return out;
 }

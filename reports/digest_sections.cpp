@@ -65,13 +65,13 @@ std::vector<std::string_view> lines_of(std::string_view text) {
   return lines;
 }
 
-/// "Table 2 · Title": a source names a place of a paper.
+/// "Table 2 · Title": where it stands in the paper.
 void set_title(Table& table, std::string_view line) {
   const std::string title = unmarked(line);
   constexpr std::string_view kBetween = " · ";
   const auto at = title.find(kBetween);
   if (at != title.npos && !places_of(title.substr(0, at)).empty()) {
-    table.source = title.substr(0, at);
+    table.where = title.substr(0, at);
     table.title = title.substr(at + kBetween.size());
   } else {
     table.title = title;

@@ -47,10 +47,10 @@ std::string verdicts_html(const VerdictCounts& counts, Origin origin) {
   return out;
 }
 
-std::string name_of(std::string_view source, std::string_view title) {
-  if (source.empty()) return std::string(title);
-  return title.empty() ? std::string(source)
-                       : fmt::format("{} · {}", source, title);
+std::string name_of(std::string_view where, std::string_view title) {
+  if (where.empty()) return std::string(title);
+  return title.empty() ? std::string(where)
+                       : fmt::format("{} · {}", where, title);
 }
 
 namespace {
@@ -83,11 +83,10 @@ std::string html(std::string_view text) {
 }
 
 std::string caption_html(const std::string& id,
-                         std::string_view source,
+                         std::string_view where,
                          std::string_view title) {
-  return fmt::format("<a class=\"self\" href=\"#{}\">{}</a>",
-                     id,
-                     html(name_of(source, title)));
+  return fmt::format(
+      "<a class=\"self\" href=\"#{}\">{}</a>", id, html(name_of(where, title)));
 }
 
 std::string nil_html(const std::string& words) {

@@ -121,7 +121,7 @@ std::string figure_html(const Figure& figure,
   std::string out =
       fmt::format("<figure id=\"{}\">\n<figcaption>{}</figcaption>\n{}",
                   id,
-                  caption_html(id, figure.source, figure.title),
+                  caption_html(id, figure.where, figure.title),
                   panels_html(figure, id, legend, palette));
   if (!figure.note.empty()) {
     out += fmt::format("<p class=\"remark\">{}</p>\n", html(figure.note));

@@ -110,12 +110,12 @@ std::string contents_html(const std::vector<Section>& sections,
     for (std::size_t i = 0; i < s.tables.size(); ++i) {
       out += fmt::format(
           "<li>{}</li>\n",
-          link(a.tables[i], name_of(s.tables[i].source, s.tables[i].title)));
+          link(a.tables[i], name_of(s.tables[i].where, s.tables[i].title)));
     }
     for (std::size_t i = 0; i < s.figures.size(); ++i) {
       out += fmt::format(
           "<li>{}</li>\n",
-          link(a.figures[i], name_of(s.figures[i].source, s.figures[i].title)));
+          link(a.figures[i], name_of(s.figures[i].where, s.figures[i].title)));
     }
     out += "</ul>\n</details>\n";
   }

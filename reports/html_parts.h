@@ -24,7 +24,7 @@ std::string nil_html(const std::string& words);
 
 /// "Fig. 11 · Title" as a link to its own place.
 std::string caption_html(const std::string& id,
-                         std::string_view source,
+                         std::string_view where,
                          std::string_view title);
 
 /// Our numbers and, where there are some, the paper's side by side; spreads
@@ -34,7 +34,7 @@ std::string caption_html(const std::string& id,
 std::string table_html(const Table& table, const std::string& id);
 
 /// "Table 4 · Title".
-std::string name_of(std::string_view source, std::string_view title);
+std::string name_of(std::string_view where, std::string_view title);
 
 /// Class of a verdict in the page's style sheet.
 std::string_view css_of(Verdict verdict);

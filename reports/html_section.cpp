@@ -23,22 +23,22 @@ std::string shown_in(const ClaimResult& claim,
                      const Anchors& anchors) {
   std::string links;
   for (std::size_t k = 0; k < section.tables.size(); ++k)
-    if (share_place(claim.where, section.tables[k].source))
-      add_link(links, anchors.tables[k], section.tables[k].source);
+    if (share_place(claim.where, section.tables[k].where))
+      add_link(links, anchors.tables[k], section.tables[k].where);
   for (std::size_t k = 0; k < section.figures.size(); ++k)
-    if (share_place(claim.where, section.figures[k].source))
-      add_link(links, anchors.figures[k], section.figures[k].source);
+    if (share_place(claim.where, section.figures[k].where))
+      add_link(links, anchors.figures[k], section.figures[k].where);
   return links.empty() ? "" : " · here: " + links;
 }
 
 /// The claims about a table's or figure's place.
-std::string said_of(std::string_view source,
+std::string said_of(std::string_view where,
                     const Section& section,
                     const Anchors& anchors) {
   std::string links;
   for (std::size_t k = 0; k < section.claims.size(); ++k) {
     const ClaimResult& c = section.claims[k];
-    if (share_place(c.where, source))
+    if (share_place(c.where, where))
       add_link(links,
                anchors.claims[k],
                fmt::format("{} {}", mark_of(c.verdict), c.id));
@@ -173,7 +173,7 @@ std::string section_html(const Section& section,
   for (std::size_t k = 0; k < section.tables.size(); ++k) {
     const Table& table = section.tables[k];
     out += table_html(table, anchors.tables[k]) +
-           said_of(table.source, section, anchors);
+           said_of(table.where, section, anchors);
     if (beside.folder)
       out +=
           data_html(within + "tables/",
@@ -185,7 +185,7 @@ std::string section_html(const Section& section,
   for (std::size_t k = 0; k < section.figures.size(); ++k) {
     const Figure& figure = section.figures[k];
     out += figure_html(figure, anchors.figures[k], palette) +
-           said_of(figure.source, section, anchors);
+           said_of(figure.where, section, anchors);
     if (beside.folder)
       out += data_html(within + "figures/",
                        figure.id,

@@ -200,7 +200,7 @@ std::string table_html(const Table& given, const std::string& id) {
       "<div class=\"table\" id=\"{0}\">\n"
       "<p class=\"caption\" id=\"{0}-caption\">{1}</p>\n",
       id,
-      caption_html(id, table.source, title));
+      caption_html(id, table.where, title));
   if (table.rows.empty() || table.columns.empty())
     return out + nil_html("not run") + "</div>\n";
   out += fmt::format(

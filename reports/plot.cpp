@@ -63,7 +63,7 @@ Grid grid_of(const Figure& figure) {
 }
 
 std::string describe(const Figure& figure) {
-  std::string text = figure.source;
+  std::string text = figure.where;
   for (const Panel& p : figure.panels) {
     text += fmt::format("{}{}: {} over {}",
                         text.empty() ? "" : "; ",
@@ -86,9 +86,8 @@ std::string render_svg(const Figure& figure, const Palette& report) {
   const auto chars = [&](double each) {
     return static_cast<std::size_t>(inner / each);
   };
-  const std::string head = figure.source.empty()
-                               ? figure.title
-                               : figure.source + " · " + figure.title;
+  const std::string head =
+      figure.where.empty() ? figure.title : figure.where + " · " + figure.title;
   const auto title = wrap(head, chars(8.2));
   const std::string undrawn = undrawn_text(figure);
   const std::string both = figure.note +

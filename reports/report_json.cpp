@@ -65,7 +65,7 @@ Json to_json(const Panel& p) {
 nlohmann::ordered_json to_json(const Figure& figure) {
   Json out{{"id", figure.id},
            {"title", figure.title},
-           {"source", figure.source},
+           {"source", figure.where},
            {"columns", figure.columns},
            {"moment", figure.moment},
            {"panels", Json::array()},

@@ -68,7 +68,7 @@ std::string section_markdown(const Section& section) {
   if (!section.figures.empty()) out += "\n### Figures\n";
   for (const Figure& f : section.figures) {
     const std::string name =
-        f.source.empty() ? f.title : f.source + " · " + f.title;
+        f.where.empty() ? f.title : f.where + " · " + f.title;
     out += fmt::format("\n![{}]({}/figures/{}.svg)\n",
                        markdown(name),
                        folder_of(section.experiment),

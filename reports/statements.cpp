@@ -74,14 +74,14 @@ std::vector<Statement> cells_of(const Table& table, const std::string& title) {
     for (std::size_t c = 0; c < table.columns.size(); ++c) {
       const Cell& cell = cell_at(row, c);
       if (!cell.ours || !cell.paper || !cell.text.empty()) continue;
-      cells.push_back({.what = fmt::format(
-                           "{}: {}{}{}",
-                           table.source.empty() ? table.title : table.source,
-                           table.columns[c],
-                           row.label == title ? "" : ", ",
-                           row.label == title ? "" : row.label),
-                       .here = number(cell.ours, cell.spread, table),
-                       .paper = number(cell.paper, cell.paper_spread, table)});
+      cells.push_back(
+          {.what = fmt::format("{}: {}{}{}",
+                               table.where.empty() ? table.title : table.where,
+                               table.columns[c],
+                               row.label == title ? "" : ", ",
+                               row.label == title ? "" : row.label),
+           .here = number(cell.ours, cell.spread, table),
+           .paper = number(cell.paper, cell.paper_spread, table)});
     }
   }
   return cells;

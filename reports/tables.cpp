@@ -44,7 +44,7 @@ std::string ours(const Cell& cell, int digits) {
 // Its words as `shown` writes them.
 template <class F>
 std::string headline(const Table& table, F&& shown) {
-  std::string text = shown(table.source);
+  std::string text = shown(table.where);
   if (!text.empty() && !table.title.empty()) text += " · ";
   text += shown(table.title);
   return table.unit.empty() ? text
@@ -127,7 +127,7 @@ nlohmann::ordered_json to_json(const Table& table) {
   };
   Json out{{"id", table.id},
            {"title", table.title},
-           {"source", table.source},
+           {"source", table.where},
            {"unit", table.unit},
            {"corner", table.corner},
            {"columns", table.columns},

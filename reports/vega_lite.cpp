@@ -278,9 +278,8 @@ Json vega_lite(const Figure& figure, const Palette& report) {
   Json panels = Json::array();
   for (const Panel& panel : figure.panels)
     panels.push_back(panel_of(panel, scales));
-  const std::string title = figure.source.empty()
-                                ? figure.title
-                                : figure.source + " · " + figure.title;
+  const std::string title =
+      figure.where.empty() ? figure.title : figure.where + " · " + figure.title;
   return {{"$schema", kSchema},
           {"title", title},
           {"description", figure.note},

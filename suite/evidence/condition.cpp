@@ -108,7 +108,7 @@ std::vector<Condition> below_on_every_seed(const std::string& label,
           below("of two seeds at least", from_at_least(2, worst), 1)};
 }
 
-Condition report(std::string label, Quantity q) {
+Condition reported(std::string label, Quantity q) {
   return {label, "", {q}, [=](const Evidence& e) {
             return result_of(label, "", q(e));
           }};

@@ -74,7 +74,7 @@ std::vector<Condition> below_on_every_seed(const std::string& label,
                                            const Select& b,
                                            const RunValue& value);
 /// A number that decides nothing.
-Condition report(std::string label, Quantity q);
+Condition reported(std::string label, Quantity q);
 /// Holds if one of them does.
 Condition either(Condition a, Condition b);
 /// Of ends, iterations, times, mean or largest losses of stages alone, which

@@ -151,8 +151,8 @@ std::vector<Condition> jointly_as_printed(std::string label,
   for (const PrintedMean& m : means) {
     runs.insert(runs.end(), m.quantity.runs().begin(), m.quantity.runs().end());
     names.push_back(m.name), parts.push_back(m.label);
-    out.push_back(report(m.label, m.quantity));
-    out.push_back(report("printed", printed(m.name)));
+    out.push_back(reported(m.label, m.quantity));
+    out.push_back(reported("printed", printed(m.name)));
   }
   const auto probability = [=](const Evidence& e) -> Measured {
     Differences all(seeds);

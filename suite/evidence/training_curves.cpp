@@ -115,10 +115,10 @@ std::vector<Panel> loss_panels(const Results& results,
 Figure loss_figure(std::vector<Panel> panels,
                    std::string id,
                    std::string title,
-                   std::string source) {
+                   std::string where) {
   return {.id = std::move(id),
           .title = std::move(title),
-          .source = std::move(source),
+          .where = std::move(where),
           .panels = std::move(panels),
           .note =
               "Median over seeds, band: 10 % and 90 % quantiles. Test losses "
@@ -130,23 +130,23 @@ Figure loss_figure(std::vector<Panel> panels,
 void LearningCurves::losses(const std::vector<MethodLine>& lines,
                             std::string id,
                             std::string title,
-                            std::string source) {
+                            std::string where) {
   add(loss_figure(
       loss_panels(results_, section_.experiment, lines, Stages::last),
       std::move(id),
       std::move(title),
-      std::move(source)));
+      std::move(where)));
 }
 
 void LearningCurves::chains(const std::vector<MethodLine>& lines,
                             std::string id,
                             std::string title,
-                            std::string source) {
+                            std::string where) {
   add(loss_figure(
       loss_panels(results_, section_.experiment, lines, Stages::all),
       std::move(id),
       std::move(title),
-      std::move(source)));
+      std::move(where)));
 }
 
 void LearningCurves::metric(const std::vector<MethodLine>& lines,
@@ -154,10 +154,10 @@ void LearningCurves::metric(const std::vector<MethodLine>& lines,
                             std::string y_label,
                             std::string id,
                             std::string title,
-                            std::string source) {
+                            std::string where) {
   add({.id = std::move(id),
        .title = std::move(title),
-       .source = std::move(source),
+       .where = std::move(where),
        .panels = {metric_panel(lines, row, std::move(y_label))},
        .columns = 1,
        .note = "Median over seeds, band: 10 % and 90 % quantiles."});

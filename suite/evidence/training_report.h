@@ -55,7 +55,7 @@ Vector<double> observed(const Problem<double>& problem, const Answered& answer);
 
 /// How fields of examples are drawn.
 struct AnsweredFields {
-  std::string source;
+  std::string where;
   Index examples = 1;  ///< the first ones
   std::function<Panel(std::string, const Vector<double>&)> picture;
   /// What is observed of an answer.
@@ -94,13 +94,13 @@ class LearningCurves {
   void losses(const std::vector<MethodLine>& lines,
               std::string id,
               std::string title,
-              std::string source);
+              std::string where);
 
   /// The same over all stages of each method's chain, joined.
   void chains(const std::vector<MethodLine>& lines,
               std::string id,
               std::string title,
-              std::string source);
+              std::string where);
 
   /// Row `row` of the array `metrics` over updates.
   void metric(const std::vector<MethodLine>& lines,
@@ -108,7 +108,7 @@ class LearningCurves {
               std::string y_label,
               std::string id,
               std::string title,
-              std::string source);
+              std::string where);
 
   /// Panels for figures of another form: the test loss, a row of `metrics`.
   Panel panel(const std::vector<MethodLine>& lines) const;
@@ -133,7 +133,7 @@ Table loss_table(const Results& results,
 Figure update_times(const Results& results,
                     std::string_view experiment,
                     const std::vector<MethodLine>& lines,
-                    std::string source);
+                    std::string where);
 
 /// A method beside a row of the paper's tables of memory and durations.
 struct CostLine {
@@ -148,6 +148,6 @@ Table cost_table(const Results& results,
                  std::string_view experiment,
                  const Published& published,
                  const std::vector<CostLine>& lines,
-                 std::string source);
+                 std::string where);
 
 }  // namespace physinv

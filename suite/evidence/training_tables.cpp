@@ -106,7 +106,7 @@ void sort_points(Series& series) {
 Figure update_times(const Results& results,
                     std::string_view experiment,
                     const std::vector<MethodLine>& lines,
-                    std::string source) {
+                    std::string where) {
   Panel panel{.x_label = "batch size",
               .y_label = "CPU ms of an update",
               .x_log = true,
@@ -131,7 +131,7 @@ Figure update_times(const Results& results,
   for (Series& curve : panel.series) sort_points(curve);
   return {.id = "update_times",
           .title = "What an update takes",
-          .source = std::move(source),
+          .where = std::move(where),
           .panels = {std::move(panel)},
           .columns = 1,
           .note = timed.note()};
@@ -207,7 +207,7 @@ Figure answered_fields(const Results& results,
                        const AnsweredFields& drawn) {
   Figure figure{.id = "fields",
                 .title = "What is seen, and what is found",
-                .source = drawn.source};
+                .where = drawn.where};
   Index examples = 0;
   for (; examples < drawn.examples; ++examples) {
     auto [observed, answers] =
@@ -251,10 +251,10 @@ Table cost_table(const Results& results,
                  std::string_view experiment,
                  const Published& published,
                  const std::vector<CostLine>& lines,
-                 std::string source) {
+                 std::string where) {
   Table table{.id = "cost",
               .title = "Memory and duration of an update",
-              .source = std::move(source),
+              .where = std::move(where),
               .digits = 2,
               .corner = "method",
               .columns = {"MB", "CPU ms / update", "CPU ms / Jacobian"}};

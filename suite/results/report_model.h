@@ -35,7 +35,7 @@ struct Across {
 struct Table {
   std::string id;      ///< file name: table4
   std::string title;   ///< one line
-  std::string source;  ///< "Table 4"
+  std::string where;   ///< "Table 4"
   std::string unit;    ///< "%", "s", "" - for all cells
   int digits = 1;      ///< after the point
   std::string corner;  ///< head of the label column
@@ -110,9 +110,9 @@ struct Panel {
 };
 
 struct Figure {
-  std::string id;      ///< file name: fig11
-  std::string title;   ///< one line
-  std::string source;  ///< "Fig. 11"
+  std::string id;     ///< file name: fig11
+  std::string title;  ///< one line
+  std::string where;  ///< "Fig. 11"
   std::vector<Panel> panels;
   int columns = 2;  ///< panels per row
   std::string note;

@@ -22,7 +22,7 @@ Section section(Verdict of_paper, Verdict of_suite) {
           .tables = {{.id = "t", .title = "A table", .columns = {"a"}}},
           .figures = {{.id = "curves",
                        .title = "Curves",
-                       .source = "Fig. 3",
+                       .where = "Fig. 3",
                        .panels = {{.series = {{.x = {1, 2}, .y = {1, 2}}}}}},
                       {.id = "picture",
                        .title = "Picture",
@@ -297,7 +297,7 @@ TEST(Digest, SomethingElseIsNoDigest) {
 TEST(Digest, TablesComeBackAsWords) {
   const Table table{.id = "t",
                     .title = "Errors | of *all*",
-                    .source = "Table 4",
+                    .where = "Table 4",
                     .unit = "%",
                     .digits = 1,
                     .corner = "method <b>",
@@ -306,7 +306,7 @@ TEST(Digest, TablesComeBackAsWords) {
                              {"_c_", {{}, {.text = "not run"}}}},
                     .note = "As it is & \\ was."};
   const Table back = table_of(to_markdown(table), "t");
-  EXPECT_EQ(back.source, "Table 4");
+  EXPECT_EQ(back.where, "Table 4");
   EXPECT_EQ(back.title, "Errors | of *all* [%]");
   EXPECT_EQ(back.corner, "method <b>");
   EXPECT_EQ(back.columns,

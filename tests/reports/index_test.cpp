@@ -31,13 +31,13 @@ std::vector<Section> sections() {
                 claim("P4", Verdict::not_judged, 0)};
   one.tables = {{.id = "t1",
                  .title = "T",
-                 .source = "Table 1",
+                 .where = "Table 1",
                  .unit = "%",
                  .columns = {"a"},
                  .rows = {{"row", {{.ours = 5, .paper = 7}}}}},
                 {.id = "t2",
                  .title = "Times",
-                 .source = "Table 2",
+                 .where = "Table 2",
                  .unit = "CPU s",
                  .columns = {"a"},
                  .rows = {{"row", {{.ours = 5, .paper = 7}}}}}};

@@ -84,7 +84,7 @@ Section hostile_section() {
           .paper = name,
           .tables = {{.id = "t",
                       .title = name,
-                      .source = name,
+                      .where = name,
                       .unit = name,
                       .corner = name,
                       .columns = {name, "x"},

@@ -25,23 +25,22 @@ std::vector<Section> sample() {
                           .method = "jpo",
                           .x = {1, 2},
                           .y = {1, std::numeric_limits<double>::quiet_NaN()}});
-  return {{.experiment = "jpo/toy",
-           .title = "Toy",
-           .paper = "someone2020",
-           .tables = {{.id = "table1", .title = "T", .columns = {"a"}}},
-           .figures = {{.id = "fig1",
-                        .title = "F",
-                        .source = "Fig. 1",
-                        .panels = {panel}}},
-           .claims = {{.id = "R1",
-                       .says = "a | b",
-                       .from = "quick",
-                       .gates = true,
-                       .verdict = Verdict::reproduced,
-                       .evidence = "0.98",
-                       .origin = Origin::paper,
-                       .where = "Fig. 1"},
-                      {.id = "R2", .says = "c", .from = "paper"}}}};
+  return {
+      {.experiment = "jpo/toy",
+       .title = "Toy",
+       .paper = "someone2020",
+       .tables = {{.id = "table1", .title = "T", .columns = {"a"}}},
+       .figures =
+           {{.id = "fig1", .title = "F", .where = "Fig. 1", .panels = {panel}}},
+       .claims = {{.id = "R1",
+                   .says = "a | b",
+                   .from = "quick",
+                   .gates = true,
+                   .verdict = Verdict::reproduced,
+                   .evidence = "0.98",
+                   .origin = Origin::paper,
+                   .where = "Fig. 1"},
+                  {.id = "R2", .says = "c", .from = "paper"}}}};
 }
 
 class ReportTest : public testing::Test {

@@ -14,7 +14,7 @@ namespace {
 Table sample() {
   return {.id = "table4",
           .title = "Better, or equal",
-          .source = "Table 4",
+          .where = "Table 4",
           .unit = "%",
           .digits = 1,
           .corner = "equality",

@@ -34,7 +34,7 @@ Figure figure() {
   field.arrows = Arrows{{0}, {0}, {3}, {4}, 1};
   return {.id = "f",
           .title = "F",
-          .source = "Fig. 1",
+          .where = "Fig. 1",
           .panels = {curves, field, Panel{.title = "C"}},
           .note = "as it is"};
 }
@@ -140,7 +140,7 @@ TEST(FigureCsv, HasALineForEachPointAndCell) {
 TEST(SectionHtml, ClaimsAndFiguresLeadToEachOther) {
   Section section{.experiment = "jpo/toy", .title = "Toy"};
   section.figures = {figure()};
-  section.tables = {{.id = "t", .title = "T", .source = "Table 2"}};
+  section.tables = {{.id = "t", .title = "T", .where = "Table 2"}};
   section.claims = {{.id = "P1", .says = "so", .where = "Sec. 1, Fig. 1b"},
                     {.id = "P2", .says = "so", .where = "Sec. 4"}};
   const Anchors anchors = anchors_of({section}).front();

@@ -79,13 +79,13 @@ TEST(Claim, OneFailureDecidesMissingRunsDoNot) {
 
 TEST(Claim, NumbersAloneAreReported) {
   const Results results = campaign("quick", {2, 4});
-  EXPECT_EQ(verdict({report("a", kMean)}, results), Verdict::reported);
-  EXPECT_EQ(verdict({report("b", mean({"b"}, first_loss()))}, results),
+  EXPECT_EQ(verdict({reported("a", kMean)}, results), Verdict::reported);
+  EXPECT_EQ(verdict({reported("b", mean({"b"}, first_loss()))}, results),
             Verdict::not_judged);
-  EXPECT_EQ(
-      verdict({report("b", mean({"b"}, first_loss())), at_least("a", kMean, 3)},
-              results),
-      Verdict::reproduced);
+  EXPECT_EQ(verdict({reported("b", mean({"b"}, first_loss())),
+                     at_least("a", kMean, 3)},
+                    results),
+            Verdict::reproduced);
 }
 
 TEST(Claim, EitherMayHold) {
@@ -307,7 +307,7 @@ TEST_F(AsPrinted, KeptNumbersAreJudgedAgain) {
 TEST_F(AsPrinted, WhatWasOnlyReportedIsHeldAgainstABound) {
   const Results plan = campaign("quick", {0, 0});
   const Evidence planned{plan, published_, "toy"};
-  const auto kept = result(report("a", kMean), {9, 10});
+  const auto kept = result(reported("a", kMean), {9, 10});
   const auto again = [&](const Condition& now) {
     return judge_again({.id = "P1", .from = "quick", .conditions = {now}},
                        kept,
@@ -366,7 +366,7 @@ TEST(Claim, CasesAreCountedBehindWhatWasDecided) {
                   open = above("b", mean({"b"}, first_loss()), 1);
   EXPECT_EQ(cases({decided}), 3);
   EXPECT_EQ(cases({decided, decided}), 6);
-  EXPECT_EQ(cases({decided, open, report("a", kMean)}), 3);
+  EXPECT_EQ(cases({decided, open, reported("a", kMean)}), 3);
   EXPECT_EQ(cases({open}), 0);
 }
 
@@ -375,7 +375,7 @@ TEST(Claim, WhatIsWrongByItself) {
                    .where = "Sec. 4",
                    .from = "quick",
                    .says = "s",
-                   .conditions = {report("a", kMean)}};
+                   .conditions = {reported("a", kMean)}};
   EXPECT_TRUE(errors_of(good, kProfiles).empty());
   const auto broken = [&](auto&& change) {
     Claim claim = good;

@@ -45,7 +45,7 @@ TEST(TrainingReport, FieldsAreTheTruthWhatIsSeenAndEachAnswerOfEachExample) {
                 "observed y*", "B, y", "A, y", "truth x*", "B, x", "A, x"}));
   EXPECT_EQ(shown, (std::vector<double>{7, 0.25, 3, 1, 3, 1}));
   EXPECT_EQ(figure.columns, 3);
-  EXPECT_EQ(figure.source, "Fig. 9");
+  EXPECT_EQ(figure.where, "Fig. 9");
   EXPECT_EQ(fields(both, 2).panels.size(), 6U) << "one example is recorded";
   EXPECT_TRUE(fields(Results{}, 1).panels.empty());
 }

@@ -93,7 +93,7 @@ Claim claim_on(Select select) {
   return {.id = "R1",
           .from = "smoke",
           .says = "s",
-          .conditions = {report("x", median(std::move(select), {}))}};
+          .conditions = {reported("x", median(std::move(select), {}))}};
 }
 
 /// The complaint about such a claim.

@@ -59,12 +59,12 @@ const std::vector<Claim> kRanges = {
      .conditions = {at_least("unstable seeds of 8",
                              from_at_least(8, count({"gn"}, unstable, is_one)),
                              3),
-                    report("best stable over HIG, 320 updates",
-                           ratio(lowest({"gn"}, if_stable(loss_after(320))),
-                                 after("hig", 320))),
-                    report("2000 updates",
-                           ratio(lowest({"gn"}, if_stable(loss_after(2000))),
-                                 after("hig", 2000)))},
+                    reported("best stable over HIG, 320 updates",
+                             ratio(lowest({"gn"}, if_stable(loss_after(320))),
+                                   after("hig", 320))),
+                    reported("2000 updates",
+                             ratio(lowest({"gn"}, if_stable(loss_after(2000))),
+                                   after("hig", 2000)))},
      .note = "Of 24 seeds 19 are unstable: at least 61 % of all with 95 % "
              "confidence, and then 3 or more of 8 in 95 of 100 "
              "campaigns. Two of 24 come within ten times HIG's loss: too few "
@@ -254,7 +254,7 @@ const std::vector<Claim> kPaper = {
                                  at_end)),
                       at_end("adam")),
                 1),
-          report("Adam's end, median", at_end("adam"))},
+          reported("Adam's end, median", at_end("adam"))},
      .note = "One clock for all first-order rules; standard runs 54 of the "
              "paper's 60 minutes."},
     {.id = "P2",
@@ -274,7 +274,7 @@ const std::vector<Claim> kPaper = {
                 ratio(lowest({"gn"}, at_paper_time(kFiveMinutes)),
                       median({"adam"}, at_paper_time(kFiveMinutes))),
                 1),
-          report(
+          reported(
               "seconds of HIG to Adam's loss then",
               depends_on(median({"hig"},
                                 time_to(kPaperClock,
@@ -299,8 +299,8 @@ const std::vector<Claim> kPaper = {
                           by_clock("hig", "adam", kHour),
                           1),
                     below("HIG's end", at_end("hig"), at_end("gn")),
-                    report("best seeds, HIG over GN",
-                           ratio(best_end("hig"), best_end("gn")))}},
+                    reported("best seeds, HIG over GN",
+                             ratio(best_end("hig"), best_end("gn")))}},
     {.id = "P5",
      .where = "Sec. 3.1, Fig. 2b",
      .from = "paper",

@@ -24,7 +24,7 @@ namespace {
 Table final_losses(const Evidence& evidence) {
   Table table{.id = "final",
               .title = "Lowest final loss over seeds",
-              .source = "Fig. 2b, Sec. 3.1",
+              .where = "Fig. 2b, Sec. 3.1",
               .digits = 9,
               .corner = "method",
               .columns = {"test loss"},
@@ -62,10 +62,10 @@ std::vector<MethodLine> sweep(const std::string& beginning,
 Figure grid_figure(const LearningCurves& curves,
                    const std::vector<Grid>& grids,
                    const char* id,
-                   const char* source) {
+                   const char* where) {
   Figure figure{.id = id,
                 .title = "First-order rules: rates and batch sizes",
-                .source = source,
+                .where = where,
                 .note = "eta / b; median over seeds."};
   for (const Grid& grid : grids) {
     std::vector<MethodLine> lines;
@@ -120,7 +120,7 @@ Figure evolution_figure(const Results& results,
   Figure figure{
       .id = "fig2a",
       .title = "Time evolution controlled by a network",
-      .source = "Fig. 2a",
+      .where = "Fig. 2a",
       .note = "First example of the test set; marks: what is wanted."};
   for (const MethodLine& line : lines)
     if (const auto answer = first_answer(results, kName, line.method))
@@ -133,7 +133,7 @@ Figure evolution_figure(const Results& results,
 Table hyperparameters(const Evidence& evidence) {
   Table table{.id = "table2",
               .title = "Hyperparameters of Fig. 2b",
-              .source = "Table 2",
+              .where = "Table 2",
               .digits = 7,
               .corner = "method",
               .columns = {"b", "eta", "tau"}};

@@ -63,7 +63,7 @@ std::optional<double> first_smallest(const Run& run) {
 Condition update_time(const char* what,
                       const char* method,
                       const std::string& experiment) {
-  return report(
+  return reported(
       what, times(1e3, median(run(method, experiment), seconds_per_update())));
 }
 

@@ -193,19 +193,18 @@ const std::vector<Claim> kPaper = {
      .where = "Sec. 3.2, Fig. 3b",
      .from = "paper",
      .says = "In convergence per time, Adam with the smallest rate leads",
-     .conditions = {adam_leads("Adam 3e-4, an hour of the paper's clock",
-                               kAdam3),
-                    adam_leads("Adam 1e-3", kAdam10),
-                    adam_leads("HIG 0.02", kHig2),
-                    adam_leads("HIG 0.01", kHig1),
-                    adam_leads("HIG 0.05", kHig5),
-                    report("our seconds of Adam to HIG's end",
-                           depends_on(median(kAdam,
-                                             time_to(
-                                                 own_seconds(),
-                                                 beside(kHig2, last_loss()))),
-                                      {kHig2})),
-                    report("of HIG", median(kHig2, length(own_seconds())))},
+     .conditions =
+         {adam_leads("Adam 3e-4, an hour of the paper's clock", kAdam3),
+          adam_leads("Adam 1e-3", kAdam10),
+          adam_leads("HIG 0.02", kHig2),
+          adam_leads("HIG 0.01", kHig1),
+          adam_leads("HIG 0.05", kHig5),
+          reported("our seconds of Adam to HIG's end",
+                   depends_on(median(kAdam,
+                                     time_to(own_seconds(),
+                                             beside(kHig2, last_loss()))),
+                              {kHig2})),
+          reported("of HIG", median(kHig2, length(own_seconds())))},
      .cause = not_run("an hour for one seed: P2's runs and 261 updates of HIG "
                       "with b = 64 and three rates, the profile paper")},
     {.id = "P4",
@@ -241,9 +240,9 @@ const std::vector<Claim> kPaper = {
                         "seconds of an update, HIG over Adam, b = 64",
                         ratio_of_medians(kThenHig, kAdam, seconds_per_update()),
                         10),
-                    report("printed",
-                           ratio(printed("table4/hig/b=64/update"),
-                                 printed("table4/adam/b=64/update")))}},
+                    reported("printed",
+                             ratio(printed("table4/hig/b=64/update"),
+                                   printed("table4/adam/b=64/update")))}},
     {.id = "P7",
      .where = "Sec. 3.2, Fig. 3c",
      .from = "paper",
@@ -252,8 +251,8 @@ const std::vector<Claim> kPaper = {
      .conditions = {at_most("lowest over start, after 30000 updates of Adam",
                             median(kLateHig, if_ran(20, lowest_over_start())),
                             0.9),
-                    report("after 5000",
-                           median(kThenHig, lowest_over_start()))},
+                    reported("after 5000",
+                             median(kThenHig, lowest_over_start()))},
      .note = "A7 has what shorter runs show.",
      .cause = fails(
          "no update of HIG comes below the 0.20 that 30,000 of Adam reach; "
@@ -325,12 +324,12 @@ const std::vector<Claim> kSuite = {
                                              beside(kHig16, loss_after(60)))),
                               {kHig16}),
                    6 * 60),
-          report(
+          reported(
               "Adam's seconds",
               median(kAdam,
                      time_to(own_seconds(), beside(kHig16, loss_after(60))))),
-          report("HIG's seconds",
-                 median(kHig16, time_to(own_seconds(), loss_after(60))))}},
+          reported("HIG's seconds",
+                   median(kHig16, time_to(own_seconds(), loss_after(60))))}},
     {.id = "A4",
      .from = "quick",
      .says = "Gauss-Newton (b = 16) from fresh weights, 20 updates: with eta 1 "
@@ -374,8 +373,8 @@ const std::vector<Claim> kSuite = {
                      median(kThenHig16, lowest_over_start()),
                      median(kThenHig, lowest_over_start())}),
               0.9),
-          report("Adam over its start after 60 updates",
-                 median({"adam-adam", "again"}, over_start(loss_after(60))))},
+          reported("Adam over its start after 60 updates",
+                   median({"adam-adam", "again"}, over_start(loss_after(60))))},
      .gates = false},
     {.id = "A8",
      .from = "smoke",
@@ -383,7 +382,7 @@ const std::vector<Claim> kSuite = {
      .conditions = {at_most("most dropped in an update",
                             of_phases(most_dropped),
                             0),
-                    report("smallest s / s_max", of_phases(smallest_seen))},
+                    reported("smallest s / s_max", of_phases(smallest_seen))},
      .cause = fails("from weights that Adam has trained for 30,000 updates an "
                     "update with b = 64 drops 2 of 4,096")},
     {.id = "A9",
@@ -392,10 +391,10 @@ const std::vector<Claim> kSuite = {
      .conditions = {below("HIG MB",
                           median(kThenHig, megabytes),
                           printed("table4/hig/b=64/memory")),
-                    report("Adam MB", median(kAdam, megabytes)),
-                    report("seconds of an update, HIG",
-                           median(kThenHig, seconds_per_update())),
-                    report("Adam", median(kAdam, seconds_per_update()))}}};
+                    reported("Adam MB", median(kAdam, megabytes)),
+                    reported("seconds of an update, HIG",
+                             median(kThenHig, seconds_per_update())),
+                    reported("Adam", median(kAdam, seconds_per_update()))}}};
 
 }  // namespace
 

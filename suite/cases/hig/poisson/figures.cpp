@@ -41,7 +41,7 @@ Cell crossing(const Evidence& e, const char* smaller, const char* larger) {
 Table spectrum_table(const Results& results) {
   Table table{.id = "spectra",
               .title = "Singular values of the stacked Jacobian",
-              .source = "App. B.3",
+              .where = "App. B.3",
               .digits = 0,
               .corner = "method",
               .columns = {"rows m",
@@ -74,7 +74,7 @@ Table spectrum_table(const Results& results) {
 Table crossing_table(const Evidence& e) {
   Table table{.id = "crossings",
               .title = "From when on the smaller of two of Adam's rates leads",
-              .source = "Figs. 3b, 7a",
+              .where = "Figs. 3b, 7a",
               .digits = 0,
               .corner = "rates",
               .columns = {"updates"},
@@ -146,7 +146,7 @@ Panel cells(std::string title, const Vector<double>& values) {
 Figure fields(const Results& results, const std::vector<MethodLine>& lines) {
   Figure figure{.id = "fig3a",
                 .title = "Source and inferred potentials",
-                .source = "Fig. 3a",
+                .where = "Fig. 3a",
                 .columns = 3,
                 .note = "First example of the test set."};
   for (const MethodLine& line : lines) {

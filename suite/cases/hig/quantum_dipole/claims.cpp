@@ -96,7 +96,7 @@ const std::vector<Claim> kDenseSuite = {
      .says = "After 256 updates HIG does well for tau 1e-3 and worse for 1e-2; "
              "with the gradient projected, 1e-6 is as good as 1e-5",
      .conditions = {at_most("tau 1e-3", after(kTau3, 256), 5e-3),
-                    report("1e-4", after(kTau4, 256)),
+                    reported("1e-4", after(kTau4, 256)),
                     above("tau 1e-2 over 1e-3",
                           ratio(after(kTau2, 256), after(kTau3, 256)),
                           10),
@@ -108,8 +108,8 @@ const std::vector<Claim> kDenseSuite = {
      .from = "quick",
      .says = "Gauss-Newton (not in the paper) stays finite on all seeds",
      .conditions = {at_most("highest end", highest(kGn, last_loss()), 1),
-                    report("median", median(kGn, last_loss())),
-                    report("HIG", median(kHig, last_loss()))}}};
+                    reported("median", median(kGn, last_loss())),
+                    reported("HIG", median(kHig, last_loss()))}}};
 
 const std::vector<Claim> kDensePaper =
     {{.id = "P1",
@@ -128,8 +128,8 @@ const std::vector<Claim> kDensePaper =
                        least(lowests({kAdam, kAdam10, kAdam256},
                                      time_to(paper(), 1e-2)))),
                  1),
-           report("over Adam with the largest rate",
-                  ratio_of_medians(kHig, kAdam30, time_to(paper(), 1e-2)))},
+           reported("over Adam with the largest rate",
+                    ratio_of_medians(kHig, kAdam30, time_to(paper(), 1e-2)))},
       .note = "That Adam with the largest rate drops first, the paper says "
               "itself (P3). Table 5 has no Adam with b = 16; it is taken to "
               "last as long as with 256, which favours HIG."},
@@ -146,7 +146,7 @@ const std::vector<Claim> kDensePaper =
                  ratio(least(lowests(kFig4Hig, loss_at(paper(), kEnd))),
                        least(lowests(kFig4Adam, loss_at(paper(), kEnd)))),
                  1),
-           report("Adam b=256", median(kAdam256, loss_at(paper(), kEnd)))},
+           reported("Adam b=256", median(kAdam256, loss_at(paper(), kEnd)))},
       .note = "After 5400 s by the paper's clock; the rates of Fig. 4b are not "
               "printed."},
      {.id = "P3",
@@ -194,11 +194,11 @@ const std::vector<Claim> kDensePaper =
                               least({least(lowests(kFig4Hig, lowest_loss())),
                                      least(lowests(kFig4Adam, lowest_loss()))}),
                               3e-7),
-                     report("control alone in float, |psi - <t, psi> t|^2",
-                            median(Select{"hig-f32"}.in(kDirect),
-                                   last_of({"metrics", kRest}))),
-                     report("control alone in double",
-                            median(Select{"hig"}.in(kDirect), last_loss()))},
+                     reported("control alone in float, |psi - <t, psi> t|^2",
+                              median(Select{"hig-f32"}.in(kDirect),
+                                     last_of({"metrics", kRest}))),
+                     reported("control alone in double",
+                              median(Select{"hig"}.in(kDirect), last_loss()))},
       .note = "In float the printed loss cancels; by a formula that does not, "
               "and in double, there is no such floor (A9). Our networks train "
               "in double.",
@@ -265,9 +265,9 @@ const std::vector<Claim> kDensePaper =
                              after(kTau4, 256),
                              after(kTau3, 256)})),
                  1),
-           report("b=8, tau 1e-2 over 1e-3",
-                  ratio(after({"hig-b8-eta05-tau2"}, 256),
-                        after({"hig-b8-eta05-tau3"}, 256)))}},
+           reported("b=8, tau 1e-2 over 1e-3",
+                    ratio(after({"hig-b8-eta05-tau2"}, 256),
+                          after({"hig-b8-eta05-tau3"}, 256)))}},
      {.id = "P10",
       .where = "App. C, Fig. 9",
       .from = "standard",
@@ -282,12 +282,12 @@ const std::vector<Claim> kDensePaper =
                                             Select{"hig-f32"}.in(kDirect),
                                             last_loss()),
                            1),
-                     report("double, tau 1e-6, test loss after 256",
-                            after(kTau6, 256)),
-                     report("control alone in double, tau 1e-7 over 1e-5",
-                            ratio_of_medians(Select{"hig-tau7"}.in(kDirect),
-                                             Select{"hig"}.in(kDirect),
-                                             last_loss()))},
+                     reported("double, tau 1e-6, test loss after 256",
+                              after(kTau6, 256)),
+                     reported("control alone in double, tau 1e-7 over 1e-5",
+                              ratio_of_medians(Select{"hig-tau7"}.in(kDirect),
+                                               Select{"hig"}.in(kDirect),
+                                               last_loss()))},
       .note = "Controls alone are updated by projected gradients.",
       .cause = depends(
           "a tau far below 1e-5 is not printed, nor whether the control's "

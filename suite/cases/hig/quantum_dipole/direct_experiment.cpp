@@ -65,13 +65,13 @@ const Claim kNoFloor{
         below("float32, |psi - <t, psi> t|^2",
               highest({"hig-f32"}, after_100(rest)),
               1e-7),
-        report("float32, 1 - |<t, psi>|^2",
-               highest({"hig-f32"}, after_100(overlap))),
-        report("GN float64", highest({"gn"}, after_100(worse_named))),
-        report("GN float32", highest({"gn-f32"}, after_100(rest))),
-        report("random targets, float64, median",
-               highest({"hig"}, after_100(middle))),
-        report("worst", highest({"hig"}, after_100(worst)))}};
+        reported("float32, 1 - |<t, psi>|^2",
+                 highest({"hig-f32"}, after_100(overlap))),
+        reported("GN float64", highest({"gn"}, after_100(worse_named))),
+        reported("GN float32", highest({"gn-f32"}, after_100(rest))),
+        reported("random targets, float64, median",
+                 highest({"hig"}, after_100(middle))),
+        reported("worst", highest({"hig"}, after_100(worst)))}};
 
 // ---- report -----------------------------------------------------------------
 

@@ -171,7 +171,7 @@ Figure transitions(const Results& results,
                    const std::vector<MethodLine>& lines) {
   Figure figure{.id = "fig4a",
                 .title = "Transition controlled by a network",
-                .source = "Fig. 4a",
+                .where = "Fig. 4a",
                 .columns = 3,
                 .note = "First example of the test set."};
   for (const MethodLine& line : lines) {

@@ -44,7 +44,7 @@ Table tau_table(const Results& results) {
   Table table{
       .id = "tau",
       .title = "HIG by truncation, precision and projection",
-      .source = "App. C, Fig. 9",
+      .where = "App. C, Fig. 9",
       .corner = "tau",
       .columns = {"float, projected", "float, as it is", "double, projected"},
       .note =

@@ -34,7 +34,7 @@ Figure neuron_figure(const Evidence& evidence,
                      const std::vector<MethodLine>& lines) {
   Figure figure{.id = "fig1-neurons",
                 .title = "Outputs of the hidden neurons over the test points",
-                .source = "Fig. 1, middle",
+                .where = "Fig. 1, middle",
                 .columns = 3,
                 .note = "Mean and standard deviation (band), one seed."};
   for (const MethodLine& line : lines) {
@@ -96,7 +96,7 @@ Figure path_figure(const Evidence& evidence,
                                 PlotStyle{Hue::ink, Marker::cross}));
   return {.id = "fig1-path",
           .title = fmt::format("Path of the output at x = {}", kPoint),
-          .source = "Fig. 1, right",
+          .where = "Fig. 1, right",
           .panels = {panel},
           .columns = 1,
           .note = "One seed; excursions beyond 3 are left out."};
@@ -137,7 +137,7 @@ Table course_table(const Evidence& evidence,
   return table_by_method(
       {.id = "course",
        .title = "Median test loss along the way",
-       .source = "Fig. 1",
+       .where = "Fig. 1",
        .digits = 5,
        .corner = "method",
        .note = "Second: loss of the second component after 20 epochs. "

@@ -94,7 +94,7 @@ Section report(const Study& s,
               .title =
                   "Neural adjoint against BFGS by sharpness and weight "
                   "of the wall",
-              .source = "Tables 4 and 5",
+              .where = "Tables 4 and 5",
               .unit = "%",
               .corner = "sharpness, weight",
               .note =

@@ -227,7 +227,7 @@ Section report(const Study& s,
   Table table{
       .id = "settings",
       .title = "JPO against BFGS by precision and tolerance",
-      .source = "Sec. 4, Tables 4 and 5",
+      .where = "Sec. 4, Tables 4 and 5",
       .corner = "precision, gtol",
       .note =
           "Means over n, then mean ± sample standard deviation over seeds; "

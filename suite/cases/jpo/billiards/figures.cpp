@@ -21,7 +21,7 @@ Figure landscape() {
   return {
       .id = "fig4a",
       .title = "Loss over the initial velocity, ball at (1, 0.3)",
-      .source = "Fig. 4a",
+      .where = "Fig. 4a",
       .panels = {{.title = "",
                   .x_label = "v1",
                   .y_label = "v2",

@@ -122,7 +122,7 @@ Figure JpoReport::fraction() const {
   panel.series.push_back(f_series("gd", false));
   return {.id = options_.fraction.id,
           .title = options_.title + ": improvement over BFGS",
-          .source = options_.fraction.source,
+          .where = options_.fraction.where,
           .panels = {std::move(panel)},
           .columns = 1,
           .note =
@@ -135,7 +135,7 @@ Figure JpoReport::improvement() const {
   Figure figure{.id = options_.improvement.id,
                 .title = options_.title +
                          ": loss and improvement before and after refinement",
-                .source = options_.improvement.source,
+                .where = options_.improvement.where,
                 .note =
                     "Losses: mean over problems, median and 10 % and 90 % "
                     "quantiles over seeds. Improvement: mean and sample "
@@ -205,7 +205,7 @@ Figure JpoReport::curves() const {
   Figure figure{
       .id = options_.curves.id,
       .title = options_.title + ": optimization curves before refinement",
-      .source = options_.curves.source,
+      .where = options_.curves.where,
       .note =
           "Mean over problems, median over seeds, band: 10 % and 90 % "
           "quantiles. The start is drawn at 1. Curves of BFGS end when "
@@ -297,7 +297,7 @@ Index JpoReport::size_of_trajectories() const {
 Figure JpoReport::trajectories() const {
   Figure figure{.id = options_.trajectories.id,
                 .title = options_.title + ": estimates during optimization",
-                .source = options_.trajectories.source};
+                .where = options_.trajectories.where};
   const auto seeds = metrics_.seeds();
   const Index n = size_of_trajectories();
   if (n == 0 || seeds.empty()) return figure;
@@ -364,7 +364,7 @@ Figure JpoReport::weight_change() const {
   Figure figure{
       .id = options_.weight_change.id,
       .title = options_.title + ": change of the JPO network",
-      .source = options_.weight_change.source,
+      .where = options_.weight_change.where,
       .panels = {tensor_panel("Weights", weights),
                  tensor_panel("Biases", biases)},
       .note =

@@ -17,7 +17,7 @@ namespace physinv {
 
 /// Where the paper shows a figure: file name and printed number.
 struct FigureRef {
-  std::string id, source;
+  std::string id, where;
 };
 
 /// The paper's numbers are looked up under these names (of the experiment):

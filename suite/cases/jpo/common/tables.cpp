@@ -70,7 +70,7 @@ Cell JpoReport::seconds_cell(const std::string& method,
 Table JpoReport::seconds() const {
   Table table{.id = "table2",
               .title = "Training and optimization times at the largest n",
-              .source = "Table 2",
+              .where = "Table 2",
               .unit = "CPU s",
               .digits = 1,
               .keys = {"problem"},
@@ -100,7 +100,7 @@ Table JpoReport::seconds() const {
 Table JpoReport::fit_share() const {
   Table table{.id = "table3",
               .title = "Share of the loss decrease made by the network fit",
-              .source = "Table 3",
+              .where = "Table 3",
               .unit = "%",
               .digits = 1,
               .keys = {"problem"},
@@ -132,7 +132,7 @@ Table JpoReport::better_equal(bool refined) const {
       .title = fmt::format("Problems with better or equal solutions than "
                            "BFGS, {} refinement",
                            refined ? "with" : "without"),
-      .source = refined ? "Table 5" : "Table 4",
+      .where = refined ? "Table 5" : "Table 4",
       .unit = "%",
       .digits = 1,
       .corner = "equality",

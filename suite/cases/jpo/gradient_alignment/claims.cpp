@@ -69,8 +69,8 @@ const std::vector<Claim> kRanges = {
     {.id = "R2b",
      .from = "paper",
      .says = "The excess of the sum over 1/2 grows as P_sum does",
-     .conditions = {report("slope over N = 4 .. 64",
-                           slope("known", &Fig2::known_sum, kFrom, kTo)),
+     .conditions = {reported("slope over N = 4 .. 64",
+                             slope("known", &Fig2::known_sum, kFrom, kTo)),
                     at_most(
                         "its distance from theory", slope_off_theory(), 0.15)}},
     {.id = "R3",
@@ -198,7 +198,7 @@ const std::vector<Claim> kPaper = {
                            return law;
                          }),
                          1)),
-          report("slope", slope("known", &Fig2::known_sum, 1, kFirstOrder))},
+          reported("slope", slope("known", &Fig2::known_sum, 1, kFirstOrder))},
      .note = "N up to 16, where P_sum < 0.75: beyond, it saturates."},
     {.id = "P3",
      .where = "Sec. 4, Fig. 2a",
@@ -220,8 +220,8 @@ const std::vector<Claim> kPaper = {
          {at_most("|measured - as printed| in four standard errors, N >= 16",
                   vote_off(kFull, vote_printed),
                   1),
-          report("|measured - exact binomial| in four standard errors",
-                 vote_off(kJudged, vote_weak))},
+          reported("|measured - exact binomial| in four standard errors",
+                   vote_off(kJudged, vote_weak))},
      .note = "A 2 is missing below the printed root.",
      .cause = contradiction(
          "the formula of Theorem 2 lacks a factor of 2 below its root "

@@ -64,7 +64,7 @@ Figure noise_figure(const Fig2& f) {
   };
   return {.id = "fig2a",
           .title = "Noisy gradients with the same solution",
-          .source = "Fig. 2a",
+          .where = "Fig. 2a",
           .panels = {both("equal noise", f.known_sum, f.known_vote),
                      both("noise levels over four decades, equal SNR",
                           f.unequal_sum,
@@ -76,7 +76,7 @@ Figure linear_figure(const Fig2& f) {
   const auto rho = [&](Index n) { return Fig2::rho(n, f.paper); };
   return {.id = "fig2b",
           .title = "Noise-free updates of a network, x* = 10 gamma",
-          .source = "Fig. 2b",
+          .where = "Fig. 2b",
           .panels = {panel("",
                            {points("measured", "noise_free", f.linear),
                             curve("rho(6.4, 12.9)", "rho", f.linear, rho)})},
@@ -86,7 +86,7 @@ Figure linear_figure(const Fig2& f) {
 
 Figure noisy_figure(const Fig2& f,
                     const char* id,
-                    const char* source,
+                    const char* where,
                     const char* name,
                     const std::optional<Aligned>& m,
                     double (*noise_only)(Index)) {
@@ -100,7 +100,7 @@ Figure noisy_figure(const Fig2& f,
           .title = fmt::format("Updates of a network under noise, {}, x* = "
                                "sin(2 gamma)",
                                name),
-          .source = source,
+          .where = where,
           .panels = {panel(
               "",
               {points(name, name, m),
@@ -157,7 +157,7 @@ Table shares_table(const Results& results, const Fig2& f) {
 Table fits_table(const Fig2& f, const Published& published) {
   Table table{.id = "response",
               .title = "Response model fitted to noise-free updates",
-              .source = "Fig. 2b",
+              .where = "Fig. 2b",
               .digits = 3,
               .corner = "network",
               .columns = {"C", "A", "rms"}};

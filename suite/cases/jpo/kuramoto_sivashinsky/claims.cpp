@@ -74,8 +74,8 @@ std::vector<Claim> paper_claims() {
        .conditions = {about("solved after refinement at n = 256, %",
                             percent(mean(at(kRefined, 256), solved(kSolved))),
                             80),
-                      report("over all n",
-                             percent(mean(kRefined, solved(kSolved))))},
+                      reported("over all n",
+                               percent(mean(kRefined, solved(kSolved))))},
        .note = "Of the largest n: the sentence names none.",
        .cause = not_run("n = 256 of the profile paper anew: what is stored "
                         "keeps the mean over all n")},
@@ -231,9 +231,9 @@ std::vector<Claim> paper_claims() {
        .from = "paper",
        .says = "A handful of simulations from supervised learning and the "
                "neural adjoint diverge",
-       .conditions = {report("share of supervised",
-                             diverged(plain("supervised"))),
-                      report("of the neural adjoint", diverged(plain("na")))},
+       .conditions = {reported("share of supervised",
+                               diverged(plain("supervised"))),
+                      reported("of the neural adjoint", diverged(plain("na")))},
        .cause = reported("a handful is no number")}};
 }
 
@@ -257,7 +257,7 @@ std::vector<Claim> suite_claims() {
                           largest_sets(of_row(
                               where(is_solved(kSolved), losses()), most_of))),
                   1e-18),
-            report("problems", problem_count(bfgs()))}},
+            reported("problems", problem_count(bfgs()))}},
       {.id = "R3",
        .from = "quick",
        .says = "For n >= 32, 100 iterations of gradient descent solve about as "
@@ -297,8 +297,8 @@ std::vector<Claim> suite_claims() {
                           "median L", median_of_examples(jpo, losses()), 1e-1),
                       above(
                           "median L", median_of_examples(jpo, losses()), 1e-12),
-                      report("solved without refinement at n <= 4",
-                             solved_share(kJpo.of_sizes(0, 4), kSolved))}},
+                      reported("solved without refinement at n <= 4",
+                               solved_share(kJpo.of_sizes(0, 4), kSolved))}},
       {.id = "R6",
        .from = "quick",
        .says = "For n >= 8 the network makes nearly all of the decrease",

@@ -43,7 +43,7 @@ Figure trajectory() {
   return {
       .id = "fig5a",
       .title = "A trajectory u(x, t)",
-      .source = "Fig. 5a",
+      .where = "Fig. 5a",
       .panels = {{.x_label = "t", .y_label = "x", .field = std::move(field)}},
       .columns = 1,
       .note = fmt::format("Problem 0 of seed 0: alpha = {:.3f}, beta = "
@@ -68,7 +68,7 @@ Figure landscape() {
   return {
       .id = "fig5b",
       .title = "Loss over beta at the true alpha",
-      .source = "Fig. 5b",
+      .where = "Fig. 5b",
       .panels = {std::move(panel)},
       .columns = 1,
       .note = fmt::format("Problem 0 of seed 0, alpha = {:.3f}.", s.x(0, 0))};
@@ -126,7 +126,7 @@ Table numbers_of_text(const Evidence& evidence) {
        better(labels.of_sizes(64))}};
   Table table{.id = "text",
               .title = "Numbers of the text",
-              .source = "Sec. 4, App. D.3",
+              .where = "Sec. 4, App. D.3",
               .digits = 1,
               .columns = {"value"},
               .note =

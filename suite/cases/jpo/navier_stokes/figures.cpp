@@ -69,7 +69,7 @@ Figure at_the_start(const CaseRecord& first) {
     }
   return {.id = "fig6a",
           .title = "Initial flow with the true blast",
-          .source = "Fig. 6a",
+          .where = "Fig. 6a",
           .panels = {blank_at_obstacles("t = 0", uv, 0)},
           .columns = 1,
           .note =
@@ -116,7 +116,7 @@ Vector<double> blown(const Batch<double>& x,
 Figure pictures(const CaseRecord& first, const std::vector<Said>& all) {
   Figure figure{.id = "fig6b",
                 .title = "Final flow above the obstacles",
-                .source = "Fig. 6b",
+                .where = "Fig. 6b",
                 .columns = 3,
                 .note =
                     "Speed, first problem of the largest set of seed 0. "
@@ -136,7 +136,7 @@ Figure film(const CaseRecord& first, std::vector<Said> all) {
   std::erase_if(all, [](const Said& s) { return s.who.ends_with("refined"); });
   Figure figure{.id = "film",
                 .title = "The blast on its way",
-                .source = "Fig. 6b",
+                .where = "Fig. 6b",
                 .columns = 3,
                 .note = "Every fourth step.",
                 .moment = int(all.size())};
@@ -228,11 +228,11 @@ Figure over_truth(const JpoMetrics& metrics,
                   const Results& results,
                   Index n,
                   const char* id,
-                  const char* source) {
+                  const char* where) {
   Figure figure{
       .id = id,
       .title = "Loss over the true parameters, n = " + std::to_string(n),
-      .source = source,
+      .where = where,
       .columns = 4,
       .note = "All seeds; BFGS is the same in both rows."};
   const OverTruth rows(metrics, results, n);

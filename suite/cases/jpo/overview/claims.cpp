@@ -35,7 +35,7 @@ std::vector<Condition> each(F&& condition) {
 template <class F>
 std::vector<Condition> of_each(const std::string& what, F&& quantity) {
   return each(
-      [&](const Main& e) { return report(what + e.title, quantity(e)); });
+      [&](const Main& e) { return reported(what + e.title, quantity(e)); });
 }
 
 /// The mean of one quantity of each. Its spread is that of one of as many seeds
@@ -341,9 +341,9 @@ std::vector<Claim> claims() {
                       exactly("Navier-Stokes, surrogate",
                               parameters(kBox.name, &Setting::surrogate),
                               38'290),
-                      report("wave packet with the head 64-32-1",
-                             parameters("jpo/wave-packet-head",
-                                        &Setting::predictor))},
+                      reported("wave packet with the head 64-32-1",
+                               parameters("jpo/wave-packet-head",
+                                          &Setting::predictor))},
        .cause = contradiction(
            "App. D.1 prints 13,925 parameters for the wave packet and names "
            "layers that have 13,921; a head of 64-32-1, which it does "

@@ -135,8 +135,8 @@ std::vector<Claim> suite_claims() {
             above("median iterations over those of BFGS",
                   median_iterations(gd()),
                   median_iterations(bfgs())),
-            report("missed targets end before full stretch by at most",
-                   highest(gd(), slack_of_misses))},
+            reported("missed targets end before full stretch by at most",
+                     highest(gd(), slack_of_misses))},
        .note = "Tolerance intervals: 90 % of all seeds with 95 % confidence, "
                "from 48 seeds of n = 128."},
       {.id = "R4",
@@ -182,9 +182,9 @@ std::vector<Claim> suite_claims() {
                             highest_loss(refined("supervised")),
                             kSolved),
                       below("na", highest_loss(refined("na")), kSolved),
-                      report("f, refined: jpo", mean(kRefined, f())),
-                      report("supervised", mean(refined("supervised"), f())),
-                      report("na", mean(refined("na"), f()))},
+                      reported("f, refined: jpo", mean(kRefined, f())),
+                      reported("supervised", mean(refined("supervised"), f())),
+                      reported("na", mean(refined("na"), f()))},
        .gates = false}};
 }
 

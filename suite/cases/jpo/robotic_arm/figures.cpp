@@ -38,7 +38,7 @@ Figure task() {
   return {
       .id = "fig25a",
       .title = "Task: base and joints that bring the tip to a target",
-      .source = "Fig. 25a",
+      .where = "Fig. 25a",
       .panels = {{.title = "",
                   .x_label = "horizontal",
                   .y_label = "vertical",
@@ -55,7 +55,7 @@ Figure landscape() {
   return {
       .id = "fig25b",
       .title = "Loss and gradient over the first joint angle",
-      .source = "Fig. 25b",
+      .where = "Fig. 25b",
       .panels = loss_and_derivative(
           RoboticArm<double>(),
           {Eigen::Vector2d(kTarget[0], kTarget[1])},
@@ -81,7 +81,7 @@ Section report(const Results& results, const Published& published) {
       .weight_change = {"weight_change", ""}};
   Section section = jpo_section(options, results, published);
   // The paper has no table of this experiment.
-  for (Table& table : section.tables) table.source.clear();
+  for (Table& table : section.tables) table.where.clear();
   // Fig. 25c shows gradient descent too.
   JpoReportOptions with_descent = options;
   with_descent.methods.insert(with_descent.methods.begin(), "gd");

@@ -39,7 +39,7 @@ Figure waveform(const Example& e) {
     t.push_back(static_cast<double>(i + 1));
   return {.id = "fig3a",
           .title = "Task: where is the packet?",
-          .source = "Fig. 3a",
+          .where = "Fig. 3a",
           .panels = {{.x_label = "t",
                       .y_label = "signal",
                       .series = {{.label = "observed",
@@ -61,7 +61,7 @@ Figure landscape(const Example& e) {
   const Vector<double> t0 = Vector<double>::LinSpaced(1021, 1, 256);
   return {.id = "fig3b",
           .title = "Loss and gradient over the packet's centre",
-          .source = "Fig. 3b",
+          .where = "Fig. 3b",
           .panels = loss_and_derivative(
               e.problem,
               {e.signal.col(0), Vector<double>::Zero(o.samples)},
@@ -120,8 +120,8 @@ Section report_head(const Results& results, const Published& published) {
   options.methods = {"jpo"};
   Section section = jpo_section(options, results, published);
   // The paper's numbers stand with the other network.
-  for (Table& table : section.tables) table.source.clear();
-  for (Figure& figure : section.figures) figure.source.clear();
+  for (Table& table : section.tables) table.where.clear();
+  for (Figure& figure : section.figures) figure.where.clear();
   return section;
 }
 

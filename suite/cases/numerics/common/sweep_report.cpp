@@ -220,10 +220,10 @@ Claim adjoint_claim(std::string id, const std::vector<std::string>& stages) {
       .says =
           "Wherever the forward pass is finite in double, the adjoint "
           "agrees with the tangent and with central differences",
-      .conditions = {report("cells", total(sweeps, &AdjointTally::finite)),
+      .conditions = {reported("cells", total(sweeps, &AdjointTally::finite)),
                      at_most("wrong", total(sweeps, &AdjointTally::wrong), 0),
-                     report("undecided by differences",
-                            total(sweeps, &AdjointTally::undecided))}};
+                     reported("undecided by differences",
+                              total(sweeps, &AdjointTally::undecided))}};
 }
 
 }  // namespace physinv

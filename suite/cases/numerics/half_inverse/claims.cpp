@@ -65,11 +65,11 @@ const std::vector<Claim> kClaims(
     {{.id = "N1",
       .from = "smoke",
       .says = "With a cut, no update and no loss is NaN or infinite",
-      .conditions = {report("cells", cells(any)),
+      .conditions = {reported("cells", cells(any)),
                      at_most("not finite with a cut", cells(lost_with_cut), 0),
-                     report("refused or overflowing without one",
-                            cells(lost_without_cut)),
-                     report("unproven", cells(unproven))}},
+                     reported("refused or overflowing without one",
+                              cells(lost_without_cut)),
+                     reported("unproven", cells(unproven))}},
      {.id = "N2",
       .from = "smoke",
       .says = "Every update is as short as the singular values kept and the "
@@ -84,15 +84,16 @@ const std::vector<Claim> kClaims(
       .from = "smoke",
       .says = "Where updates are proven, a batch with every sample twice keeps "
               "no more singular values than with each once",
-      .conditions = {report("pairs", cells(twice)),
+      .conditions = {reported("pairs", cells(twice)),
                      at_most("of the proven with more kept",
                              cells([](const Cells& c, Index j) {
                                return keeps_more(c, j) && proven(c, j);
                              }),
                              0),
-                     report("of the others", cells([](const Cells& c, Index j) {
-                              return keeps_more(c, j) && !proven(c, j);
-                            }))}},
+                     reported("of the others",
+                              cells([](const Cells& c, Index j) {
+                                return keeps_more(c, j) && !proven(c, j);
+                              }))}},
      {.id = "N4",
       .from = "smoke",
       .says = "A Jacobian of zeros gives updates that are exactly zero",

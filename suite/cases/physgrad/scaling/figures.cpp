@@ -87,7 +87,7 @@ Series arrow(const Line& line, const Path& path) {
 Figure landscapes(const Results& results) {
   Figure figure{.id = "fig1",
                 .title = "Landscapes and first updates",
-                .source = "Figs. 1, 2",
+                .where = "Figs. 1, 2",
                 .columns = 3,
                 .note = "Arrows show directions, not lengths."};
   for (Index i = 0; i < 3; ++i) {
@@ -103,7 +103,7 @@ Figure landscapes(const Results& results) {
 Figure trajectories(const Results& results) {
   Figure figure{.id = "fig2",
                 .title = "Trajectories on the losses",
-                .source = "Figs. 1, 2",
+                .where = "Figs. 1, 2",
                 .columns = 3,
                 .note =
                     "Newton, inverse gradients and the inverse simulator take "
@@ -170,14 +170,14 @@ Figure both_spaces(const Results& results) {
     }
   return {.id = "fig3",
           .title = "Ten steps from (3, 3)",
-          .source = "Figs. 3, 4",
+          .where = "Figs. 3, 4",
           .panels = {std::move(x), std::move(y)}};
 }
 
 Figure ways(const Results& results,
             std::string id,
             std::string title,
-            std::string source,
+            std::string where,
             const std::vector<Line>& lines) {
   Panel x{.x_label = "x1", .y_label = "x2"};
   for (const Line& line : lines)
@@ -185,7 +185,7 @@ Figure ways(const Results& results,
       x.series.push_back(series(line, path->x()));
   return {.id = std::move(id),
           .title = std::move(title),
-          .source = std::move(source),
+          .where = std::move(where),
           .panels = {std::move(x)},
           .columns = 1};
 }
@@ -217,7 +217,7 @@ Figure rules(const Results& results) {
 Table ends(const Results& results, const Published& published) {
   Table table{.id = "comparison",
               .title = "After ten steps from (3, 3)",
-              .source = "notebook",
+              .where = "notebook",
               .digits = 6,
               .corner = "method",
               .columns = {"x1", "x2", "distance", "first update on diagonal"},

@@ -47,7 +47,7 @@ Figure predictions(const Results& results) {
                             .style = PlotStyle{.hue = Hue::ink}});
   return {.id = "fig2",
           .title = "Predictions after training",
-          .source = "Fig. 2",
+          .where = "Fig. 2",
           .panels = {std::move(panel)},
           .columns = 1,
           .note = "Networks of the first seed on the test set."};

@@ -163,12 +163,13 @@ const std::vector<Claim> kOthers = {
      .from = "long",
      .says = "Trained for extremely long, the gradient could win",
      .conditions =
-         {report("error after 20,000 updates, SIP",
-                 lowest({"sip"}, if_ran(double(kLong), end()))),
-          report("Adam", lowest({"adam"}, if_ran(double(kLong), end()))),
-          report("Adam below SIP for good after so many updates",
-                 depends_on(lowest({"adam"}, if_ran(double(kLong), overtakes)),
-                            {{"sip"}}))},
+         {reported("error after 20,000 updates, SIP",
+                   lowest({"sip"}, if_ran(double(kLong), end()))),
+          reported("Adam", lowest({"adam"}, if_ran(double(kLong), end()))),
+          reported(
+              "Adam below SIP for good after so many updates",
+              depends_on(lowest({"adam"}, if_ran(double(kLong), overtakes)),
+                         {{"sip"}}))},
      .cause = not_run(
          "3.7 CPU-hours: 20,000 updates of both methods, the profile long")},
     {.id = "P5",

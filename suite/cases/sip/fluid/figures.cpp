@@ -77,7 +77,7 @@ std::vector<Panel> frames(const Said& said) {
 Figure pictures(const Variant& variant, const Results& results) {
   Figure figure{.id = "fig14",
                 .title = "Velocities found, and where they take the marker",
-                .source = "Fig. 14",
+                .where = "Fig. 14",
                 .columns = 6,
                 .note =
                     "First test examples, v0 and the marker's density at "
@@ -93,7 +93,7 @@ Figure pictures(const Variant& variant, const Results& results) {
 Figure film(const std::vector<Said>& all) {
   Figure figure{.id = "film",
                 .title = "The marker on its way",
-                .source = "Fig. 14",
+                .where = "Fig. 14",
                 .columns = int(std::min<std::size_t>(all.size(), 4)),
                 .note = "First test example, after 0 to 8 steps.",
                 .moment = int(all.size())};

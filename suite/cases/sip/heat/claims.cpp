@@ -246,8 +246,8 @@ const std::vector<Claim> kPaper = {
      .from = "quick",
      .says = "SGD trains with rate 1e-3",
      .conditions = {below("diverged", highest({"sgd-b8-lr3"}, diverged()), 0.5),
-                    report("with 1e-4", lowest({"sgd-b8-lr4"}, diverged())),
-                    report("with 1e-2", lowest({"sgd-b8-lr2"}, diverged()))},
+                    reported("with 1e-4", lowest({"sgd-b8-lr4"}, diverged())),
+                    reported("with 1e-2", lowest({"sgd-b8-lr2"}, diverged()))},
      .cause = contradiction(
          "App. B.3 prints 1e-3, the authors' script has 2e-6: on a loss "
          "that is summed over the batch, as theirs, 1e-4 to 1e-2 "

@@ -63,7 +63,7 @@ Table errors(const Results& results, const Published& published) {
   Table table{
       .id = "errors",
       .title = "Errors at the end, sums of |x - x*| over the cells",
-      .source = "Fig. 13",
+      .where = "Fig. 13",
       .corner = "method",
       .columns = {"sum |x - x*|",
                   "clamped at 0",
@@ -131,7 +131,7 @@ Figure direct(const Results& results) {
           level(line.label, line.method, 1, last, *error, style_of(line)));
   return {.id = "fig13",
           .title = "Examples by themselves",
-          .source = "Fig. 13",
+          .where = "Fig. 13",
           .panels = {std::move(panel)},
           .columns = 1,
           .note =
@@ -154,7 +154,7 @@ Figure pictures(const Results& results) {
       results,
       kName,
       lines,
-      {.source = "Fig. 10",
+      {.where = "Fig. 10",
        .examples = 2,
        .picture = picture,
        .observe = [&](const Answered& a) { return observed(physics, a); }});
@@ -173,11 +173,11 @@ std::string setting_of(const GridPoint& cell) {
 Table study(const Results& results,
             std::string id,
             std::string title,
-            std::string source,
+            std::string where,
             const std::vector<GridPoint>& points) {
   Table table{.id = std::move(id),
               .title = std::move(title),
-              .source = std::move(source),
+              .where = std::move(where),
               .corner = "setting",
               .columns = {"SIP", "Adam"},
               .across = Across{.key = "method", .quantities = {"error"}}};

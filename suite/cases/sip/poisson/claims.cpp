@@ -42,7 +42,7 @@ std::vector<Condition> largest_rate(const std::string& label,
           above("ten times its rate, error over that, worst seed",
                 worst_ratio(tenfold, of, value),
                 1),
-          report("median seed", median_ratio(tenfold, of, value))};
+          reported("median seed", median_ratio(tenfold, of, value))};
 }
 
 std::vector<Condition> adahessian(const std::string& batch,

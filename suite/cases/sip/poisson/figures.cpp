@@ -43,7 +43,7 @@ Section report(const Domain& domain, const Results& results) {
       results,
       domain.experiment,
       kLines,
-      {.source = "Fig. 9",
+      {.where = "Fig. 9",
        .examples = 3,
        .picture =
            [&](std::string title, const Vector<double>& field) {

@@ -125,11 +125,11 @@ const std::vector<Claim> kPaper = {
      .from = "standard",
      .says = "In ten minutes more than 50,000 updates, about 15,000 of SIP",
      .conditions =
-         {report("updates of Adam in ten minutes",
-                 ratio(600, median({"adam"}, seconds_per_update()))),
-          report("of SIP", ratio(600, median({"sip"}, seconds_per_update()))),
-          report("time of an update, SIP over Adam",
-                 ratio_of_medians({"sip"}, {"adam"}, seconds_per_update()))},
+         {reported("updates of Adam in ten minutes",
+                   ratio(600, median({"adam"}, seconds_per_update()))),
+          reported("of SIP", ratio(600, median({"sip"}, seconds_per_update()))),
+          reported("time of an update, SIP over Adam",
+                   ratio_of_medians({"sip"}, {"adam"}, seconds_per_update()))},
      .note = "Closed forms stand for the paper's eigenvalue solver.",
      .cause = reported(
          "updates in ten minutes are the machine's; App. B.1 and Fig. 15 of "
@@ -161,8 +161,8 @@ const std::vector<Claim> kPaper = {
          {at_most("largest residual with sin(x / xi)",
                   highest({"adam"}, residual(options_of(kHard))),
                   1e-12),
-          report("share of targets out of reach with the printed sin(x) / xi",
-                 median({"adam"}, share_beyond(1.0 / kHard.xi)))}},
+          reported("share of targets out of reach with the printed sin(x) / xi",
+                   median({"adam"}, share_beyond(1.0 / kHard.xi)))}},
     {.id = "P7",
      .where = "App. B.1",
      .from = "paper",

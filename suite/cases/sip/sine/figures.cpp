@@ -95,7 +95,7 @@ Figure sweeps(const Evidence& at) {
   b.title = "xi = 32", b.x_label = "phi in degrees", b.y_label = "distance";
   return {.id = "fig5-sweeps",
           .title = "Distance to the nearest solution",
-          .source = "Fig. 5",
+          .where = "Fig. 5",
           .panels = {std::move(a), std::move(b)},
           .note =
               "Mean over the last tenth of the updates, median over seeds. "
@@ -127,7 +127,7 @@ Table score_table(const Evidence& at,
   return table_by_method(
       {.id = "scores",
        .title = "Distance to the nearest solution",
-       .source = "Fig. 5",
+       .where = "Fig. 5",
        .corner = "method",
        .note = "Mean over the last tenth of the updates, median and "
                "range over seeds. The figure is read to about 10 %."},
@@ -145,7 +145,7 @@ Table score_table(const Evidence& at,
 Table rate_table(const Evidence& at) {
   Table table{.id = "rates",
               .title = "Distance to the nearest solution, by learning rate",
-              .source = "App. B.1",
+              .where = "App. B.1",
               .corner = "method",
               .note = "No turn, 8000 updates, median over seeds.",
               .keys = {"method", "xi"},
@@ -165,7 +165,7 @@ Table rate_table(const Evidence& at) {
 Table gamma_table(const Evidence& at) {
   Table table{.id = "gamma",
               .title = "Adam's test loss, by gamma",
-              .source = "App. B.1",
+              .where = "App. B.1",
               .corner = "xi",
               .note = "No turn, 8000 updates, median over seeds.",
               .across = Across{.key = "gamma", .quantities = {"loss"}}};

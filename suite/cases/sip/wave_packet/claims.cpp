@@ -84,8 +84,8 @@ const std::vector<Claim> kClaimsOfAll = {
                     below("loss at the end over L-BFGS-B's",
                           beside_lbfgs(mean_of(losses()), losses()),
                           1),
-                    report("updates to its error",
-                           passes(passes_lbfgs_error()))},
+                    reported("updates to its error",
+                             passes(passes_lbfgs_error()))},
      .cause = fails(
          "the network passes L-BFGS-B's loss after 1,400 updates in the "
          "median, "
@@ -103,8 +103,8 @@ const std::vector<Claim> kClaimsOfAll = {
                                                  beside(kLbfgs, in_basin()))),
                                      {kLbfgs}),
                           1),
-                    report("of the network", median(kNet, in_basin())),
-                    report("of L-BFGS-B", median(kLbfgs, in_basin()))},
+                    reported("of the network", median(kNet, in_basin())),
+                    reported("of L-BFGS-B", median(kLbfgs, in_basin()))},
      .cause = depends(
          "the packet's width is printed ambiguously: with a variance of 400 "
          "9 % lie within half a period and 8 % of L-BFGS-B's, with 20 it was "
@@ -127,8 +127,8 @@ const std::vector<Claim> kClaimsOfAll = {
                     at_least("ends within 6 of the start",
                              share_of_examples(kLbfgs, moves(), up_to(6)),
                              0.95),
-                    report("evaluations",
-                           median(kLbfgs, mean_of(evaluations())))}},
+                    reported("evaluations",
+                             median(kLbfgs, mean_of(evaluations())))}},
     {.id = "A4a",
      .from = "smoke",
      .says = "Random guesses",
@@ -183,8 +183,8 @@ const std::vector<Claim> kClaimsOfJoint = {
                           "seed",
                           ratio(lowest(fits(50), in_basin()), alone()),
                           1),
-                    report("together", median(fits(50), in_basin())),
-                    report("alone", alone())},
+                    reported("together", median(fits(50), in_basin())),
+                    reported("alone", alone())},
      .cause = fails(
          "12 % within half a period together, 0 to 14 by seed, 6 % alone: "
          "seeds differ more; it hangs on the packet's width as P6 does")},

@@ -156,7 +156,7 @@ Section report(const Results& results, const Published& published) {
   LearningCurves curves(results, section);
   curves.add({.id = "fig16a",
               .title = "Two examples and their fits",
-              .source = "Fig. 16a",
+              .where = "Fig. 16a",
               .panels = {example(e, 0), example(e, 1)},
               .columns = 1,
               .note = "Of the first seed, at the end."});
@@ -164,7 +164,7 @@ Section report(const Results& results, const Published& published) {
   add_levels(e, losses(), loss);
   curves.add({.id = "fig16b",
               .title = "Learning curves: the objective",
-              .source = "Fig. 16b",
+              .where = "Fig. 16b",
               .panels = {std::move(loss)},
               .columns = 1,
               .note = "Median over seeds, band: 10 % and 90 % quantiles; "
