@@ -11,7 +11,7 @@ function(physinv_sources result)
     list(APPEND all ${found})
   endforeach()
   # No number comes from those.
-  list(FILTER all EXCLUDE REGEX "/(kernels|kernels_libraries|real_fft)\\.(cpp|h)$")
+  list(FILTER all EXCLUDE REGEX "/(kernels|kernels_libraries|real_fft|array_table)\\.(cpp|h)$")
   list(SORT all)
   set(${result} ${all} PARENT_SCOPE)
 endfunction()

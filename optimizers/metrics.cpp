@@ -28,7 +28,7 @@ Batch<double> as_row(const std::vector<double>& values) {
       values.data(), 1, static_cast<Index>(values.size()));
 }
 
-void keep_finite(std::map<std::string, Batch<double>>& arrays) {
+void keep_finite(Arrays& arrays) {
   for (auto& [name, array] : arrays)
     array = array.unaryExpr([](double value) {
       constexpr double kMost = std::numeric_limits<double>::max();

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <functional>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -59,6 +58,6 @@ Batch<double> as_row(const std::vector<double>& values);
 
 /// Arrays of records hold finite numbers only: what is not becomes the largest
 /// double.
-void keep_finite(std::map<std::string, Batch<double>>& arrays);
+void keep_finite(Arrays& arrays);
 
 }  // namespace physinv

@@ -85,7 +85,7 @@ void NetworkModel<T>::initialize(const Rng& rng) {
 }
 
 template <class T>
-void NetworkModel<T>::load(const std::map<std::string, Batch<double>>& arrays) {
+void NetworkModel<T>::load(const Arrays& arrays) {
   const auto& parameters = arrays.at("parameters");
   SUITE_CHECK(parameters.rows() == parameters_.size(),
               "stored parameters belong to another network");
@@ -94,7 +94,7 @@ void NetworkModel<T>::load(const std::map<std::string, Batch<double>>& arrays) {
 }
 
 template <class T>
-void NetworkModel<T>::save(std::map<std::string, Batch<double>>& arrays) const {
+void NetworkModel<T>::save(Arrays& arrays) const {
   arrays["parameters"] = parameters_.template cast<double>();
   if (state_.size() > 0) arrays["state"] = state_.template cast<double>();
 }

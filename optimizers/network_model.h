@@ -34,8 +34,8 @@ class NetworkModel {
 
   void initialize(const Rng& rng);
   /// Parameters and running statistics as an earlier stage left them.
-  void load(const std::map<std::string, Batch<double>>& arrays);
-  void save(std::map<std::string, Batch<double>>& arrays) const;
+  void load(const Arrays& arrays);
+  void save(Arrays& arrays) const;
 
   /// The samples every training pass runs on.
   void bind(Batch<T> input);

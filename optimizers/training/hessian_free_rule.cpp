@@ -99,7 +99,7 @@ bool HessianFreeRule<T>::operator()(Signal<T>& signal) {
 
 template <class T>
 void HessianFreeRule<T>::export_to(Outcome& out) const {
-  const auto row = [&](const char* name, auto&& of) {
+  const auto row = [&](ArrayKey name, auto&& of) {
     std::vector<double> values;
     for (const HessianFreeReport& r : reports_) values.push_back(of(r));
     out.arrays[name] = as_row(values);

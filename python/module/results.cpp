@@ -145,7 +145,23 @@ py::dict tidy(const Campaign& campaign) {
 
 }  // namespace
 
+/// What the suite's stages leave, a dict each.
+py::list known_arrays() {
+  py::list all;
+  for (const ArrayInfo& info : kArrays) {
+    py::dict one;
+    one["name"] = info.name;
+    one["axes"] = info.axes;
+    one["unit"] = info.unit;
+    one["meaning"] = info.meaning;
+    one["beside"] = info.beside;
+    all.append(one);
+  }
+  return all;
+}
+
 void define_results(py::module_& module) {
+  module.def("arrays", &known_arrays);
   py::class_<Campaign>(module, "Results")
       .def("_stages", [](const Campaign& c) { return stages(c.results); })
       .def(

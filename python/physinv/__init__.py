@@ -84,6 +84,12 @@ def problems():
     return _core.problems()
 
 
+def arrays():
+    """What stages leave in examples(...)["arrays"]: dicts of name, axes (of the
+    case's file), unit, meaning, and the array beside which a name means this."""
+    return _core.arrays()
+
+
 def load_plugin(file):
     """Adds what a plug-in of physinv_add_plugin registers, here and to verbs;
     those that PHYSINV_PLUGINS names are there from the start. ValueError for one

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "suite/core/arrays.h"
 #include "suite/core/checkpoint.h"
 #include "suite/core/recipe.h"
 #include "suite/core/stop.h"
@@ -87,7 +88,7 @@ struct Outcome {
   std::string message;
   /// Whatever else the stage found, by name; `parameters` of a network is
   /// what a later stage of the chain picks up.
-  std::map<std::string, Batch<double>> arrays;
+  Arrays arrays;
   std::size_t bytes = 0;  ///< peak bytes of the stage's own buffers
 };
 

@@ -194,10 +194,9 @@ class MeasureAlignment final : public Stage {
     Outcome out;
     out.x = run.oracle.start();
     const bool noisy = options_.data.terms > 0;
-    const auto array = [&](const char* name, bool wanted) {
-      return wanted ? out.arrays.emplace(name, Batch<double>(repetitions, 1))
-                          .first->second.data()
-                    : nullptr;
+    const auto array = [&](ArrayKey name, bool wanted) -> double* {
+      if (!wanted) return nullptr;
+      return (out.arrays[name] = Batch<double>(repetitions, 1)).data();
     };
     double* sum = array("sum", noisy);
     double* vote = array("vote", noisy);

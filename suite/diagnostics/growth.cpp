@@ -68,7 +68,7 @@ class GrowthStage final : public Diagnostic {
     run.probe.begin();
     const Index n = run.oracle.count();
     const auto horizons = static_cast<Index>(options_.horizons.size());
-    const auto array = [&](const char* name) -> Batch<double>& {
+    const auto array = [&](ArrayKey name) -> Batch<double>& {
       return out.arrays[name] = Batch<double>(n, horizons);
     };
     auto &gradient = array("gradient"), &single = array("gradient_single"),

@@ -8,11 +8,13 @@
 
 namespace physinv {
 
+inline constexpr ArrayKey kMeanLoss{"mean_loss"};
+
 /// One row of an array along the curve; what overflowed is infinite again, as
 /// records hold finite numbers only.
 struct CurveRow {
   const StageRecord& stage;
-  const char* array = "mean_loss";
+  ArrayKey array = kMeanLoss;
   Index row = 0;
 
   Index points() const { return stage.curve.points(); }

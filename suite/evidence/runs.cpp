@@ -60,7 +60,7 @@ std::vector<Run> find_runs(const Evidence& evidence, const Select& select) {
   return found;
 }
 
-RunValue of_array(const char* name,
+RunValue of_array(ArrayKey name,
                   std::function<double(const Batch<double>&)> value) {
   return [=](const Run& run) -> std::optional<double> {
     const auto found = run.stage->arrays.find(name);

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "suite/core/batch.h"
+#include "suite/core/arrays.h"
 
 namespace physinv {
 
@@ -70,7 +70,7 @@ std::vector<Run> find_runs(const Evidence& evidence, const Select& select);
 using RunValue = std::function<std::optional<double>(const Run&)>;
 
 /// Of an array that the stage recorded; empty without it.
-RunValue of_array(const char* name,
+RunValue of_array(ArrayKey name,
                   std::function<double(const Batch<double>&)> value);
 
 struct Sample {

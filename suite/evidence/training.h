@@ -42,7 +42,7 @@ RunValue length(Clock clock);
 
 /// A row of an array along the curve, by default the test loss.
 struct RowOfCurve {
-  const char* array = "mean_loss";
+  ArrayKey array = kMeanLoss;
   Index row = 0;
 };
 /// A row of what the experiment records beside the loss.

@@ -46,33 +46,18 @@ std::vector<double> list_of(const Vector<double>& v) {
   return {v.data(), v.data() + v.size()};
 }
 
-/// Axes of what methods find besides. Others' arrays say nothing of theirs.
-constexpr std::pair<std::string_view, const char*> kAxes[] = {
-    {"alpha", "updates"},
-    {"batch_loss", "updates"},
-    {"cg_iterations", "updates"},
-    {"chosen", "updates"},
-    {"damping", "updates"},
-    {"first_step", "samples"},
-    {"kept", "updates"},
-    {"mean_loss", "points"},
-    {"metrics", "points,metrics"},
-    {"objective", "updates"},
-    {"objective_after", "updates"},
-    {"parameters", "networks,parameters"},
-    {"rho", "updates"},
-    {"searched_loss", "rates"},
-    {"searched_rates", "rates"},
-    {"smallest", "updates"},
-    {"state", "networks,numbers"},
-    {"update_cosine", "updates"}};
-
-hdf5::Note note_of(const std::string& array, const Batch<double>& value) {
-  for (const auto& [name, axes] : kAxes) {
-    const bool is_list = std::string_view(axes).find(',') == name.npos;
-    if (array == name && is_list == (value.rows() == 1)) return {.axes = axes};
-  }
-  return {};
+/// What array_table.h says of an array. Others' arrays say nothing of theirs.
+hdf5::Note note_of(const Arrays& arrays,
+                   const std::string& name,
+                   const Batch<double>& value) {
+  const bool list = value.rows() == 1;
+  const ArrayInfo* info = find_array(name, list, [&](std::string_view other) {
+    return arrays.contains(ArrayKey::own(other));
+  });
+  if (info == nullptr) return {};
+  const auto axes =
+      list ? info->axes.substr(0, info->axes.find(',')) : info->axes;
+  return {.axes = std::string(axes), .unit = std::string(info->unit)};
 }
 
 void write_text(hid_t parent, const char* name, const std::string& text) {
@@ -202,7 +187,7 @@ void read_arrays(const hdf5::Handle& group, StageRecord& r) {
   const auto arrays = hdf5::open_group(group, "arrays");
   r.arrays.clear();
   for (const auto& name : hdf5::names(arrays))
-    r.arrays[name] = read_array(arrays, name);
+    r.arrays[ArrayKey::own(name)] = read_array(arrays, name);
 }
 
 /// 1 had none.
@@ -453,9 +438,12 @@ void CaseFile::put_arrays(const hdf5::Handle& group,
   const auto arrays = hdf5::create_group(group, "arrays");
   for (const auto& [key, array] : r.arrays) {
     if (array.rows() == 1) {
-      hdf5::write(arrays, key, list_of(array.reshaped()), note_of(key, array));
+      hdf5::write(arrays,
+                  key,
+                  list_of(array.reshaped()),
+                  note_of(r.arrays, key, array));
     } else {
-      hdf5::write(arrays, key, array, note_of(key, array));
+      hdf5::write(arrays, key, array, note_of(r.arrays, key, array));
     }
   }
 }

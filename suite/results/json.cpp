@@ -160,7 +160,7 @@ void arrays_from_json(const json& j, StageRecord& r) {
   r.curve.loss = batch(curve.at("loss"));
   r.curve.x = batch(curve.at("x"));
   for (const auto& [name, b] : j.at("arrays").items())
-    r.arrays[name] = batch(b);
+    r.arrays[ArrayKey::own(name)] = batch(b);
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ struct LossSummary {
 };
 
 /// Where a stage that was read from results.json has them, in that order.
-inline constexpr const char* kLossSummary = "losses";
+inline constexpr ArrayKey kLossSummary{"losses"};
 
 inline void keep(const LossSummary& losses, StageRecord& stage) {
   Batch<double> kept(3, 1);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "suite/core/arrays.h"
 #include "suite/core/batch.h"
 #include "suite/core/clock.h"
 #include "suite/core/counts.h"
@@ -75,7 +76,7 @@ struct StageRecord {
   std::vector<Status> status;  ///< per example
   Vector<double> example_iterations, example_evaluations;
   Curve curve;
-  std::map<std::string, Batch<double>> arrays;  ///< method's own findings
+  Arrays arrays;  ///< method's own findings
 
   /// Solving again, only for its times, see repetitions.h; not in the journal.
   std::vector<Seconds> repeated;

@@ -21,7 +21,7 @@ class VerifyByNetwork : public testing::TestWithParam<const char*> {
     return verify_results(Results({record_}), registry());
   }
   StageRecord& stage() { return record_.stages.back(); }
-  double& last_of(const char* array) {
+  double& last_of(ArrayKey array) {
     auto& values = stage().arrays.at(array);
     return values.data()[values.size() - 1];
   }

@@ -75,7 +75,7 @@ TYPED_TEST(NetworkModelTest, SavedAndLoadedItPredictsTheSame) {
   first.bind(filled(4, 9, 0).template cast<T>());
   first.forward();
   first.update_state();
-  std::map<std::string, Batch<double>> arrays;
+  Arrays arrays;
   first.save(arrays);
   ASSERT_TRUE(arrays.contains("state"));
   second.load(arrays);

@@ -167,7 +167,7 @@ TEST(Training, GoesOnFromTheMiddle) {
         StageBench bench(*stage, kCount, 20);
         bench.checkpoint = checkpoint;
         auto arrays = bench.run(nullptr, precision).arrays;
-        arrays["curve"] = bench.probe.curve().x;
+        arrays[ArrayKey::own("curve")] = bench.probe.curve().x;
         return arrays;
       };
       MemoryCheckpoint after(11);

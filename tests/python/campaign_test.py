@@ -57,6 +57,9 @@ class Campaign(unittest.TestCase):
         self.assertEqual(c["x"].shape, (len(c["iteration"]), 4, 2))
         self.assertTrue(np.array_equal(c["x"][-1], e["x"][:4]))
         self.assertEqual(e["arrays"]["first_step"].shape, (128,))
+        told = {a["name"]: a for a in physinv.arrays()}
+        self.assertLessEqual(set(e["arrays"]), set(told))
+        self.assertEqual(told["first_step"]["axes"], "samples")
 
     def test_tidy_columns(self):
         columns = self.results.tidy()

@@ -44,8 +44,9 @@ void expect_same(const StageRecord& a, const StageRecord& b) {
   EXPECT_TRUE(same_bits(a.curve.x, b.curve.x));
   ASSERT_EQ(a.arrays.size(), b.arrays.size());
   for (const auto& [name, array] : a.arrays) {
-    ASSERT_TRUE(b.arrays.contains(name)) << name;
-    EXPECT_TRUE(same_bits(array, b.arrays.at(name))) << name;
+    const auto key = ArrayKey::own(name);
+    ASSERT_TRUE(b.arrays.contains(key)) << name;
+    EXPECT_TRUE(same_bits(array, b.arrays.at(key))) << name;
   }
 }
 

@@ -88,8 +88,7 @@ class Toy final : public Problem<T>, public Vjp<T>, public Jacobian<T> {
   Options options_;
 };
 
-std::map<std::string, Batch<double>> sweep(const ToyOptions& toy,
-                                           std::vector<Eigen::Vector2d> xs) {
+Arrays sweep(const ToyOptions& toy, std::vector<Eigen::Vector2d> xs) {
   StabilitySweepOptions options{.problems = {problem<Toy>("toy", toy)},
                                 .points = {}};
   for (const auto& x : xs) options.points.push_back({0, x});

@@ -15,9 +15,9 @@ namespace physinv::test {
 namespace {
 
 struct Found {
-  std::map<std::string, Batch<double>> arrays;
+  Arrays arrays;
 
-  double get(const char* name, Index cell, Index row = 0) const {
+  double get(ArrayKey name, Index cell, Index row = 0) const {
     return arrays.at(name)(row, cell);
   }
   StressStatus status(Index cell) const {

@@ -53,7 +53,8 @@ TEST_F(TrainingTest, ARiseIsOverTheLowestSoFar) {
 
 TEST_F(TrainingTest, AnArrayThatIsNotThereIsNoNumber) {
   EXPECT_EQ(value(late_training_error()), 7);
-  const auto none = of_array("none", [](const Batch<double>&) { return 1.0; });
+  const auto none =
+      of_array(ArrayKey::own("none"), [](const Batch<double>&) { return 1.0; });
   EXPECT_EQ(median({"a"}, none)(evidence_).missing, "a too short");
 }
 

@@ -179,7 +179,7 @@ inline StageRecord sample_stage(const CaseInfo& info,
   r.curve.x = sample_batch(4, 5, salt + 5);
   r.curve.x(0, 0) = -std::numeric_limits<double>::infinity();
   r.arrays["parameters"] = sample_batch(parameters, 1, salt + 6);
-  r.arrays["empty"] = Batch<double>(0, 3);
+  r.arrays[ArrayKey::own("empty")] = Batch<double>(0, 3);
   return r;
 }
 

@@ -147,7 +147,7 @@ Quantity slope(const char* method, AlignedOf shares, Index first, Index last) {
   });
 }
 
-Quantity apart_from_vote(const char* method, const char* array) {
+Quantity apart_from_vote(const char* method, ArrayKey array) {
   const RunValue differ = [=](const Run& run) -> Number {
     const auto& arrays = run.stage->arrays;
     const auto ours = arrays.find(array), vote = arrays.find("vote");

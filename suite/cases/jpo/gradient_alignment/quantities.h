@@ -60,7 +60,7 @@ Quantity slope(const char* method, AlignedOf shares, Index first, Index last);
 
 /// Repetitions of all N in which one way to take the gradients together points
 /// elsewhere than the vote of the same gradients.
-Quantity apart_from_vote(const char* method, const char* array);
+Quantity apart_from_vote(const char* method, ArrayKey array);
 
 /// AlignedOf of updates along noisy gradients, of the sum or the vote.
 struct Noisy {

@@ -16,7 +16,7 @@ namespace {
 
 std::optional<Aligned> measured(const Evidence& evidence,
                                 const std::string& method,
-                                const std::string& array) {
+                                ArrayKey array) {
   std::map<Index, std::vector<double>> all;  // of all seeds
   for (const Run& run : find_runs(evidence, {method, "measure"})) {
     const auto found = run.stage->arrays.find(array);

@@ -147,7 +147,7 @@ Figure lines(const StageRecord* stage) {
                     "Updates: the largest of them."};
   if (stage == nullptr) return figure;
   const Cells cells(*stage);
-  const auto panel = [&](const char* label, const char* array, Index row) {
+  const auto panel = [&](const char* label, ArrayKey array, Index row) {
     Panel out{
         .x_label = "gamma", .y_label = label, .x_log = true, .y_log = true};
     for (std::size_t k = 0; k < kKappas.size(); ++k)

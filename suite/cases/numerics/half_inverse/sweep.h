@@ -2,7 +2,6 @@
 /// a finished sweep over them.
 #pragma once
 
-#include <map>
 #include <string>
 #include <vector>
 
@@ -36,7 +35,7 @@ class Cells {
     return static_cast<Index>(
         arrays_.at("cell")(static_cast<Index>(axis), cell));
   }
-  double get(const char* array, Index cell, Index row = 0) const {
+  double get(ArrayKey array, Index cell, Index row = 0) const {
     return arrays_.at(array)(row, cell);
   }
   StressStatus status(Index cell) const {
@@ -61,7 +60,7 @@ class Cells {
   }
 
  private:
-  const std::map<std::string, Batch<double>>& arrays_;
+  const Arrays& arrays_;
 };
 
 }  // namespace physinv::half_inverse_numerics

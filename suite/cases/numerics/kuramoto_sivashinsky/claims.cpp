@@ -10,7 +10,7 @@
 namespace physinv::ks_numerics {
 
 std::optional<double> typical(const StageRecord& s,
-                              const char* array,
+                              ArrayKey array,
                               Index horizon) {
   const auto values = s.arrays.at(array).col(horizon);
   double sum = 0;
@@ -24,7 +24,7 @@ std::optional<double> typical(const StageRecord& s,
 namespace {
 
 /// A typical number of the growth stage at an end time.
-Quantity at(const char* array, double end) {
+Quantity at(ArrayKey array, double end) {
   return median({"growth"}, [=](const Run& run) -> std::optional<double> {
     const auto& time = run.stage->arrays.at("time");
     for (Index k = 0; k < time.cols(); ++k)

@@ -30,7 +30,7 @@ Figure growth_figure(const Results& results) {
   if (s == nullptr) return figure;
   const auto& time = s->arrays.at("time");
   const auto series =
-      [&](const char* label, const char* method, const char* array) {
+      [&](const char* label, const char* method, ArrayKey array) {
         Series out{.label = label, .method = method, .markers = true};
         for (Index k = 0; k < time.cols(); ++k) {
           const auto value = typical(*s, array, k);
@@ -74,11 +74,12 @@ Table growth_table(const Results& results) {
   const auto& time = s->arrays.at("time");
   for (Index k = 0; k < time.cols(); ++k) {
     TableRow row{.label = fmt::format("{:g}", time(0, k))};
-    for (const char* array : {"gradient",
-                              "perturbation",
-                              "perturbation_single",
-                              "rounding",
-                              "gradient_error"}) {
+    for (const ArrayKey array :
+         std::initializer_list<ArrayKey>{"gradient",
+                                         "perturbation",
+                                         "perturbation_single",
+                                         "rounding",
+                                         "gradient_error"}) {
       const auto value = typical(*s, array, k);
       row.cells.push_back(
           {.ours = value,

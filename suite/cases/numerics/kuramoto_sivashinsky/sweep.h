@@ -31,7 +31,7 @@ const std::vector<NumericalParameter>& parameters();
 /// Over the samples that have a number: the geometric mean of a column of an
 /// array of the growth stage, or nothing.
 std::optional<double> typical(const StageRecord& s,
-                              const char* array,
+                              ArrayKey array,
                               Index horizon);
 
 }  // namespace physinv::ks_numerics

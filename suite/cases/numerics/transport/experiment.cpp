@@ -21,7 +21,7 @@ const Row kRow{.methods = {"carry"}, .n = {1}, .seeds = {0}};
 // ---- claims ---------------------------------------------------------------
 
 /// The largest entry of an array, nothing where one was not finite.
-Quantity largest(const char* stage, const char* array) {
+Quantity largest(const char* stage, ArrayKey array) {
   return median({.method = "carry", .stage = stage},
                 [=](const Run& run) -> std::optional<double> {
                   const auto& all = run.stage->arrays.at(array);
@@ -31,7 +31,7 @@ Quantity largest(const char* stage, const char* array) {
 }
 
 /// log2 of the errors' ratio between the two finest grids.
-Quantity order(const char* array) {
+Quantity order(ArrayKey array) {
   return median({.method = "carry", .stage = "order"},
                 [=](const Run& run) -> std::optional<double> {
                   const auto& e = run.stage->arrays.at(array);
@@ -71,11 +71,12 @@ const StageRecord* find(const Results& results, const std::string& stage) {
 
 /// A row of an array over another's, without what has no number.
 Series over(const StageRecord& s,
-            const char* x,
-            const char* array,
+            ArrayKey x,
+            ArrayKey array,
             Index row,
             std::string label) {
-  Series out{.label = std::move(label), .method = array, .markers = true};
+  Series out{
+      .label = std::move(label), .method = array.text(), .markers = true};
   const auto &at = s.arrays.at(x), &values = s.arrays.at(array);
   for (Index k = 0; k < at.cols(); ++k)
     if (values(row, k) >= 0)
@@ -90,7 +91,7 @@ Figure drift_figure(const StageRecord& s) {
   Panel energy = panel("|E - E(0)| / E(0)", true),
         left = panel("Energy left without scaling", false),
         out = panel("Net flow out of a cell, relative", true);
-  const auto add = [&](Panel& to, const char* array, const char* label) {
+  const auto add = [&](Panel& to, ArrayKey array, const char* label) {
     for (Index i = 0; i < s.arrays.at(array).rows(); ++i) {
       Series one = over(s, "step", array, i, i == 0 ? label : "");
       one.method = label, one.markers = false;

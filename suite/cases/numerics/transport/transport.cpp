@@ -240,7 +240,7 @@ class AdvectionOrder final : public Diagnostic {
   Options settings() const override { return {{"grids", text_of(kGrids)}}; }
   void diagnose(StageRun& run, Outcome& out) const override {
     run.probe.begin();
-    const auto array = [&](const char* name) -> Batch<double>& {
+    const auto array = [&](ArrayKey name) -> Batch<double>& {
       return out.arrays[name] = Batch<double>(1, std::size(kGrids));
     };
     auto &cells = array("cells"), &constant = array("constant"),

@@ -9,7 +9,7 @@
 namespace physinv::scaling {
 
 using OfArray = std::function<double(const Batch<double>&)>;
-inline Quantity identity(const char* array, const OfArray& value) {
+inline Quantity identity(ArrayKey array, const OfArray& value) {
   return median({"identities"}, of_array(array, value));
 }
 /// Log-log slope between the largest dy and the smallest.
