@@ -26,6 +26,39 @@ double norm_bound(BatchIn<double> gram) {
   return std::sqrt(total) * (1 + 1e-12);
 }
 
+using Cholesky = Eigen::LLT<Eigen::Ref<Batch<double>>>;
+
+/// v = G^{-1} g by refinement: steps of the shifted matrix G - theta I, which
+/// `cholesky` has, until the update's relative error in `report` is at most
+/// `enough`. False where too many would be needed.
+bool refine(const Cholesky& cholesky,
+            BatchIn<double> gram,
+            VectorIn<double> g,
+            double enough,
+            Vector<double>& residual,
+            Vector<double>& step,
+            VectorOut<double> v,
+            PowerReport& report) {
+  const auto full = gram.selfadjointView<Eigen::Lower>();
+  v.setZero();
+  residual = g;
+  // |J^T G^{-1} r|^2 = r.G^{-1} r <= r.(G - theta I)^{-1} r, of the residual
+  // that is left, against |update|^2 = v.G v.
+  for (int round = 0;; ++round) {
+    step = cholesky.solve(residual);
+    const double left = std::max(residual.dot(step), 0.0);
+    if (round > 0) report.error = std::sqrt(left) / report.norm;
+    if (report.error <= enough && round > 0) return true;
+    if (round == kRounds) return false;
+    v += step;
+    residual.noalias() = full * v;
+    const double square = v.dot(residual);
+    residual = g - residual;
+    if (!(square > 0)) return false;
+    report.norm = std::sqrt(square);
+  }
+}
+
 }  // namespace
 
 bool DefiniteSolve::operator()(BatchIn<double> gram,
@@ -53,28 +86,12 @@ bool DefiniteSolve::operator()(BatchIn<double> gram,
   state_caches();
   factor_ = gram.triangularView<Eigen::Lower>();
   factor_.diagonal().array() -= theta;
-  const Eigen::LLT<Eigen::Ref<Batch<double>>> cholesky(factor_);
+  const Cholesky cholesky(factor_);
   if (cholesky.info() != Eigen::Success) return false;
 
-  const auto full = gram.selfadjointView<Eigen::Lower>();
-  v.setZero();
-  residual_ = g;
   report = PowerReport{};
-  // |J^T G^{-1} r|^2 = r.G^{-1} r <= r.(G - theta I)^{-1} r, of the residual
-  // that is left, against |update|^2 = v.G v.
-  for (int round = 0;; ++round) {
-    step_ = cholesky.solve(residual_);
-    const double left = std::max(residual_.dot(step_), 0.0);
-    if (round > 0) report.error = std::sqrt(left) / report.norm;
-    if (report.error <= 1e-3 * tolerance && round > 0) break;
-    if (round == kRounds) return false;
-    v += step_;
-    residual_.noalias() = full * v;
-    const double square = v.dot(residual_);
-    residual_ = g - residual_;
-    if (!(square > 0)) return false;
-    report.norm = std::sqrt(square);
-  }
+  if (!refine(cholesky, gram, g, 1e-3 * tolerance, residual_, step_, v, report))
+    return false;
   // G itself is known to `noise`: |delta update| <= noise |v| / (2 s_min).
   const double s_min = std::sqrt(theta);
   report.error +=

@@ -158,6 +158,9 @@ void define_passes(py::class_<PyProblem>& c) {
       },
       x,
       given);
+}
+
+void define_pushforward(py::class_<PyProblem>& c) {
   define(
       c,
       "pushforward",
@@ -179,9 +182,9 @@ void define_passes(py::class_<PyProblem>& c) {
         });
         return y_dot.array;
       },
-      x,
+      py::arg("x"),
       py::arg("x_dot"),
-      given);
+      py::arg("given") = py::none());
 }
 
 void define_matrices(py::class_<PyProblem>& c) {
@@ -300,6 +303,7 @@ void define_calls(py::class_<PyProblem>& c) {
   py::options signatures;
   signatures.disable_function_signatures();
   define_passes(c);
+  define_pushforward(c);
   define_matrices(c);
   define_inverse(c);
   define_losses(c);

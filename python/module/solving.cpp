@@ -134,16 +134,12 @@ void Solving::finish() {
   if (accepted_) get().probe.finish();
 }
 
-void define_solving(py::module_& module) {
-  py::options signatures;
-  signatures.disable_function_signatures();
-  const auto active = py::arg("active") = py::none();
-  py::class_<Solving, std::shared_ptr<Solving>>(
-      module,
-      "Run",
-      "What a method sees of its case: n problems without their solutions, all "
-      "calls\ncounted, a budget. Arrays are in double.")
-      .def_property_readonly("n", &Solving::n, "Problems of the case.")
+namespace {
+
+using Run = py::class_<Solving, std::shared_ptr<Solving>>;
+
+void define_case(Run& run) {
+  run.def_property_readonly("n", &Solving::n, "Problems of the case.")
       .def_property_readonly("iterations", &Solving::iterations, "The budget.")
       .def_property_readonly(
           "gtol",
@@ -170,8 +166,17 @@ void define_solving(py::module_& module) {
           "it: a dict of\n`description`, `inputs` (n, features), `weights` (by "
           "name; matrices [out][in]) and\n`output_scale`: x = start + scale * "
           "output where the experiment has it linear. Needs network.")
-      .def(
-          "loss",
+      .def("labelled",
+           &Solving::labelled,
+           py::arg("per_problem") = 1,
+           "labelled($self, per_problem=1)\n--\n\n"
+           "x, y and given, so many for each problem, to learn from. Needs "
+           "labels.");
+}
+
+void define_losses(Run& run) {
+  const auto active = py::arg("active") = py::none();
+  run.def("loss",
           &Solving::loss,
           py::arg("x"),
           active,
@@ -183,15 +188,11 @@ void define_solving(py::module_& module) {
            py::arg("x"),
            active,
            "loss_and_gradient($self, x, active=None)\n--\n\n"
-           "Losses (k,) and d loss / d x (k, unknowns); counted. Needs vjp.")
-      .def("labelled",
-           &Solving::labelled,
-           py::arg("per_problem") = 1,
-           "labelled($self, per_problem=1)\n--\n\n"
-           "x, y and given, so many for each problem, to learn from. Needs "
-           "labels.")
-      .def(
-          "proceed",
+           "Losses (k,) and d loss / d x (k, unknowns); counted. Needs vjp.");
+}
+
+void define_curve(Run& run) {
+  run.def("proceed",
           &Solving::proceed,
           py::arg("x"),
           "proceed($self, x)\n--\n\n"
@@ -207,6 +208,21 @@ void define_solving(py::module_& module) {
            "accept($self, example, iteration, x, loss)\n--\n\n"
            "For solvers that go example by example: its iterate x (unknowns,), "
            "from\niteration 0, the start, on.");
+}
+
+}  // namespace
+
+void define_solving(py::module_& module) {
+  py::options signatures;
+  signatures.disable_function_signatures();
+  Run run(
+      module,
+      "Run",
+      "What a method sees of its case: n problems without their solutions, all "
+      "calls\ncounted, a budget. Arrays are in double.");
+  define_case(run);
+  define_losses(run);
+  define_curve(run);
 }
 
 }  // namespace physinv::python

@@ -208,36 +208,8 @@ class StabilitySweep final : public Diagnostic {
     Workspace work(run.threads);
     const Side exact = evaluate<double>(recipe, x, given, w, run.threads);
     const Side single = evaluate<float>(recipe, x, given, w, run.threads);
-    const auto by_differences = [&](const std::vector<Index>& some,
-                                    double widest) {
-      const Batch<double> d = central_differences(*problem,
-                                                  x(Eigen::all, some),
-                                                  given(Eigen::all, some),
-                                                  w,
-                                                  v,
-                                                  exact.x_bar(Eigen::all, some),
-                                                  widest,
-                                                  work);
-      run.oracle.add(Counter::forward, 2 * kSteps * d.cols());
-      std::vector<Finding> found;
-      for (Index k = 0; k < d.cols(); ++k) {
-        const auto bar = exact.x_bar.col(some[static_cast<std::size_t>(k)]);
-        found.push_back(judge_differences(extrapolate(d.col(k)),
-                                          bar.dot(v),
-                                          std::max(options_.zero, bar.norm())));
-      }
-      return found;
-    };
-    std::vector<Index> all(static_cast<std::size_t>(x.cols())), doubtful;
-    std::iota(all.begin(), all.end(), Index{0});
-    std::vector<Finding> adjoint = by_differences(all, kWidest);
-    for (const Index j : all)
-      if (adjoint[static_cast<std::size_t>(j)].status != SweepStatus::ok)
-        doubtful.push_back(j);
-    const auto nearby = by_differences(doubtful, kNearby);
-    for (std::size_t k = 0; k < doubtful.size(); ++k)
-      if (nearby[k].status != SweepStatus::undecided)
-        adjoint[static_cast<std::size_t>(doubtful[k])] = nearby[k];
+    const std::vector<Finding> adjoint = by_differences(
+        {*problem, x, given, w, v, exact.x_bar}, run.oracle, work);
     const auto* jacobian = dynamic_cast<const Jacobian<double>*>(problem.get());
     Vector<double> tangent;
     if (jacobian != nullptr)
@@ -269,6 +241,51 @@ class StabilitySweep final : public Diagnostic {
         error(c, j) = f.error;
       }
     }
+  }
+
+  /// Adjoints at points x, and the directions that they are checked along.
+  struct Adjoints {
+    const Problem<double>& problem;
+    const Batch<double>&x, &given;
+    const Vector<double>&w, &v;
+    const Batch<double>& x_bar;
+  };
+
+  /// The adjoints against central differences; where wide steps object, nearer
+  /// ones decide if they can.
+  std::vector<Finding> by_differences(const Adjoints& at,
+                                      Oracle& oracle,
+                                      Workspace& work) const {
+    const auto judged = [&](const std::vector<Index>& some, double widest) {
+      const Batch<double> d = central_differences(at.problem,
+                                                  at.x(Eigen::all, some),
+                                                  at.given(Eigen::all, some),
+                                                  at.w,
+                                                  at.v,
+                                                  at.x_bar(Eigen::all, some),
+                                                  widest,
+                                                  work);
+      oracle.add(Counter::forward, 2 * kSteps * d.cols());
+      std::vector<Finding> found;
+      for (Index k = 0; k < d.cols(); ++k) {
+        const auto bar = at.x_bar.col(some[static_cast<std::size_t>(k)]);
+        found.push_back(judge_differences(extrapolate(d.col(k)),
+                                          bar.dot(at.v),
+                                          std::max(options_.zero, bar.norm())));
+      }
+      return found;
+    };
+    std::vector<Index> all(static_cast<std::size_t>(at.x.cols())), doubtful;
+    std::iota(all.begin(), all.end(), Index{0});
+    std::vector<Finding> adjoint = judged(all, kWidest);
+    for (const Index j : all)
+      if (adjoint[static_cast<std::size_t>(j)].status != SweepStatus::ok)
+        doubtful.push_back(j);
+    const auto nearby = judged(doubtful, kNearby);
+    for (std::size_t k = 0; k < doubtful.size(); ++k)
+      if (nearby[k].status != SweepStatus::undecided)
+        adjoint[static_cast<std::size_t>(doubtful[k])] = nearby[k];
+    return adjoint;
   }
 
   StabilitySweepOptions options_;

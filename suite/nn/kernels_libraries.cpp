@@ -4,6 +4,8 @@
 // PHYSINV_BENCH_XSMM). One thread.
 #include <benchmark/benchmark.h>
 
+#include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "suite/core/workspace.h"
@@ -83,69 +85,84 @@ BENCHMARK(own<Which::input>)->Name("nn/plane/input_gradient")->Apply(planes);
 
 #ifdef PHYSINV_BENCH_DNNL
 
-template <Which pass>
-void onednn(benchmark::State& state) {
-  using dnnl::memory;
-  omp_set_num_threads(1);
-  const ConvShape shape(state);
-  const dnnl::engine engine(dnnl::engine::kind::cpu, 0);
-  dnnl::stream stream(engine);
-  const auto any = [](memory::dims dims) {
-    return memory::desc(dims, memory::data_type::f32, memory::format_tag::any);
-  };
-  const auto x = any({shape.n, shape.in, shape.height, shape.width});
-  const auto y = any({shape.n, shape.out, shape.height, shape.width});
-  const auto w = any({shape.out, shape.in, 3, 3}), b = any({shape.out});
+using dnnl::memory;
+
+/// Descriptions of a layer's parts, in whatever order of memory is fastest.
+struct ConvMemory {
+  explicit ConvMemory(const ConvShape& s)
+      : x(any({s.n, s.in, s.height, s.width})),
+        y(any({s.n, s.out, s.height, s.width})),
+        w(any({s.out, s.in, 3, 3})),
+        b(any({s.out})) {}
+  memory::desc x, y, w, b;
+
+ private:
+  static memory::desc any(const memory::dims& dims) {
+    return {dims, memory::data_type::f32, memory::format_tag::any};
+  }
+};
+
+/// The primitive of a pass, and its arguments by `make`.
+template <Which pass, class Make>
+auto primitive(const dnnl::engine& engine, const ConvMemory& m, Make make)
+    -> std::pair<dnnl::primitive, std::unordered_map<int, memory>> {
   const memory::dims step = {1, 1}, border = {1, 1};
   const auto direct = dnnl::algorithm::convolution_auto;
   const dnnl::convolution_forward::primitive_desc forward(
       {dnnl::prop_kind::forward_training,
        direct,
-       x,
-       w,
-       b,
-       y,
+       m.x,
+       m.w,
+       m.b,
+       m.y,
        step,
        border,
        border},
       engine);
-  const auto make = [&](const memory::desc& desc) {
+  if constexpr (pass == Which::forward) {
+    return {dnnl::convolution_forward(forward),
+            {{DNNL_ARG_SRC, make(forward.src_desc())},
+             {DNNL_ARG_WEIGHTS, make(forward.weights_desc())},
+             {DNNL_ARG_BIAS, make(forward.bias_desc())},
+             {DNNL_ARG_DST, make(forward.dst_desc())}}};
+  } else if constexpr (pass == Which::weights) {
+    const dnnl::convolution_backward_weights::primitive_desc back(
+        {direct, m.x, m.w, m.b, m.y, step, border, border}, engine, forward);
+    return {dnnl::convolution_backward_weights(back),
+            {{DNNL_ARG_SRC, make(back.src_desc())},
+             {DNNL_ARG_DIFF_DST, make(back.diff_dst_desc())},
+             {DNNL_ARG_DIFF_WEIGHTS, make(back.diff_weights_desc())},
+             {DNNL_ARG_DIFF_BIAS, make(back.diff_bias_desc())}}};
+  } else {
+    const dnnl::convolution_backward_data::primitive_desc back(
+        {direct, m.x, m.w, m.y, step, border, border}, engine, forward);
+    return {dnnl::convolution_backward_data(back),
+            {{DNNL_ARG_DIFF_SRC, make(back.diff_src_desc())},
+             {DNNL_ARG_WEIGHTS, make(back.weights_desc())},
+             {DNNL_ARG_DIFF_DST, make(back.diff_dst_desc())}}};
+  }
+}
+
+template <Which pass>
+void onednn(benchmark::State& state) {
+  omp_set_num_threads(1);
+  const ConvShape shape(state);
+  const dnnl::engine engine(dnnl::engine::kind::cpu, 0);
+  dnnl::stream stream(engine);
+  const auto random = [&](const memory::desc& desc) {
     memory m(desc, engine);
     auto* const numbers = static_cast<float*>(m.get_data_handle());
     const Index count = static_cast<Index>(desc.get_size() / sizeof(float));
     Eigen::Map<Vector<float>>(numbers, count).setRandom();
     return m;
   };
-  const auto run = [&](const dnnl::primitive& primitive, auto arguments) {
-    for (auto _ : state) {
-      primitive.execute(stream, arguments);
-      stream.wait();
-    }
-    shape.count(state);
-  };
-  using Arguments = std::unordered_map<int, memory>;
-  if constexpr (pass == Which::forward) {
-    run(dnnl::convolution_forward(forward),
-        Arguments{{DNNL_ARG_SRC, make(forward.src_desc())},
-                  {DNNL_ARG_WEIGHTS, make(forward.weights_desc())},
-                  {DNNL_ARG_BIAS, make(forward.bias_desc())},
-                  {DNNL_ARG_DST, make(forward.dst_desc())}});
-  } else if constexpr (pass == Which::weights) {
-    const dnnl::convolution_backward_weights::primitive_desc back(
-        {direct, x, w, b, y, step, border, border}, engine, forward);
-    run(dnnl::convolution_backward_weights(back),
-        Arguments{{DNNL_ARG_SRC, make(back.src_desc())},
-                  {DNNL_ARG_DIFF_DST, make(back.diff_dst_desc())},
-                  {DNNL_ARG_DIFF_WEIGHTS, make(back.diff_weights_desc())},
-                  {DNNL_ARG_DIFF_BIAS, make(back.diff_bias_desc())}});
-  } else {
-    const dnnl::convolution_backward_data::primitive_desc back(
-        {direct, x, w, y, step, border, border}, engine, forward);
-    run(dnnl::convolution_backward_data(back),
-        Arguments{{DNNL_ARG_DIFF_SRC, make(back.diff_src_desc())},
-                  {DNNL_ARG_WEIGHTS, make(back.weights_desc())},
-                  {DNNL_ARG_DIFF_DST, make(back.diff_dst_desc())}});
+  const auto [run, arguments] =
+      primitive<pass>(engine, ConvMemory(shape), random);
+  for (auto _ : state) {
+    run.execute(stream, arguments);
+    stream.wait();
   }
+  shape.count(state);
 }
 BENCHMARK(onednn<Which::forward>)->Name("nn/onednn/forward")->Apply(planes);
 BENCHMARK(onednn<Which::weights>)

@@ -159,7 +159,7 @@ Table hyperparameters(const Evidence& evidence) {
   return table;
 }
 
-Section report(const Results& results, const Published& published) {
+std::vector<Table> tables(const Results& results, const Published& published) {
   std::vector<MethodLine> all = rules(published);
   for (const char* group : {"adam-b",
                             "hig-b",
@@ -170,34 +170,27 @@ Section report(const Results& results, const Published& published) {
                             "gn-tau",
                             "grid-"})
     for (const auto& line : sweep(group)) all.push_back(line);
-  Section section{
-      .experiment = kName,
-      .title = "Nonlinear oscillators",
-      .paper = "hig",
-      .tables = {
-          final_losses({results, published, kName}),
-          hyperparameters({results, published, kName}),
-          cost_table(
-              results,
-              kName,
-              published,
-              {{"adam-b256",
-                "Adam, b = 256",
-                "table3/adam/b=256",
-                "gradient-b256"},
-               {"adam", "Adam, b = 512", "table3/adam/b=512", "gradient-b512"},
-               {"adam-b1024",
-                "Adam, b = 1024",
-                "table3/adam/b=1024",
-                "gradient-b1024"},
-               {"hig-b32", "HIG, b = 32", "table3/hig/b=32", "jacobians-b32"},
-               {"kappa-m05", "HIG, b = 64", "table3/hig/b=64", "jacobians-b64"},
-               {"hig", "HIG, b = 128", "table3/hig/b=128", "jacobians-b128"}},
-              "Table 3"),
-          loss_table(results, kName, all)}};
-  LearningCurves curves(results, section);
-  section.figures.push_back(evolution_figure(
-      results, {{"hig", "HIG"}, {"adam", "Adam"}, {"gn", "Gauss-Newton"}}));
+  return {
+      final_losses({results, published, kName}),
+      hyperparameters({results, published, kName}),
+      cost_table(
+          results,
+          kName,
+          published,
+          {{"adam-b256", "Adam, b = 256", "table3/adam/b=256", "gradient-b256"},
+           {"adam", "Adam, b = 512", "table3/adam/b=512", "gradient-b512"},
+           {"adam-b1024",
+            "Adam, b = 1024",
+            "table3/adam/b=1024",
+            "gradient-b1024"},
+           {"hig-b32", "HIG, b = 32", "table3/hig/b=32", "jacobians-b32"},
+           {"kappa-m05", "HIG, b = 64", "table3/hig/b=64", "jacobians-b64"},
+           {"hig", "HIG, b = 128", "table3/hig/b=128", "jacobians-b128"}},
+          "Table 3"),
+      loss_table(results, kName, all)};
+}
+
+void add_curves(LearningCurves& curves, const Published& published) {
   curves.losses(rules(published), "fig2b", "Learning curves", "Fig. 2b");
   curves.losses({{"hig-b32", "HIG, b = 32", Hue::red},
                  {"kappa-m05", "HIG, b = 64", Hue::green},
@@ -227,6 +220,17 @@ Section report(const Results& results, const Published& published) {
                 "fig13b",
                 "Gauss-Newton: truncation tau",
                 "Fig. 13");
+}
+
+Section report(const Results& results, const Published& published) {
+  Section section{.experiment = kName,
+                  .title = "Nonlinear oscillators",
+                  .paper = "hig",
+                  .tables = tables(results, published)};
+  LearningCurves curves(results, section);
+  section.figures.push_back(evolution_figure(
+      results, {{"hig", "HIG"}, {"adam", "Adam"}, {"gn", "Gauss-Newton"}}));
+  add_curves(curves, published);
   return section;
 }
 

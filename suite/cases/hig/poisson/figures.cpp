@@ -163,50 +163,37 @@ Figure fields(const Results& results, const std::vector<MethodLine>& lines) {
   return figure;
 }
 
-Section report(const Results& results, const Published& published) {
-  const auto fresh = learning(published), turned = turns(published);
-  std::vector<MethodLine> all = fresh;
-  for (const auto* group : {&turned, &kReturns})
-    for (const MethodLine& line : *group)
+std::vector<Table> tables(const Results& results, const Published& published) {
+  std::vector<MethodLine> all = learning(published);
+  for (const auto& group : {turns(published), kReturns})
+    for (const MethodLine& line : group)
       if (line.method != "adam" && line.method != "adam-adam" &&
           line.method != "long-adam-adam")
         all.push_back(line);
-  Section section{
-      .experiment = kName,
-      .tables = {
-          loss_table(results, kName, all),
-          cost_table(
-              results,
-              kName,
-              published,
-              {{"adam", "Adam, b = 64", "table4/adam/b=64", "gradient-b64"},
-               {"hig-002-b64",
-                "HIG, b = 64",
-                "table4/hig/b=64",
-                "jacobians-b64"},
-               {"adam-hig-002-b64",
-                "HIG after Adam, b = 64",
-                "table4/hig/b=64"},
-               {"hig-002-b16", "HIG, b = 16", ""}},
-              "Table 4"),
-          spectrum_table(results),
-          crossing_table({results, published, kName})}};
-  LearningCurves curves(results, section);
-  section.figures.push_back(
-      fields(results,
-             {{"adam", "Adam"},
-              {"hig-002-b64", "HIG"},
-              {"hig-002-b16", "HIG, b = 16"},
-              {"adam-hig-002-b64", "Adam, then HIG"},
-              {"adam-hig-002-b16", "Adam, then HIG, b = 16"},
-              {"chain-smoke", "Adam, HIG, Adam, short"}}));
-  const auto some = [&](std::initializer_list<const char*> ids) {
-    std::vector<MethodLine> lines;
-    for (const MethodLine& line : fresh)
-      for (const char* id : ids)
-        if (line.method == id) lines.push_back(line);
-    return lines;
-  };
+  return {
+      loss_table(results, kName, all),
+      cost_table(
+          results,
+          kName,
+          published,
+          {{"adam", "Adam, b = 64", "table4/adam/b=64"},
+           {"hig-002-b64", "HIG, b = 64", "table4/hig/b=64"},
+           {"adam-hig-002-b64", "HIG after Adam, b = 64", "table4/hig/b=64"},
+           {"hig-002-b16", "HIG, b = 16", ""}},
+          "Table 4"),
+      spectrum_table(results),
+      crossing_table({results, published, kName})};
+}
+
+void add_curves(LearningCurves& curves, const Published& published) {
+  const auto some =
+      [lines = learning(published)](std::initializer_list<const char*> ids) {
+        std::vector<MethodLine> found;
+        for (const MethodLine& line : lines)
+          for (const char* id : ids)
+            if (line.method == id) found.push_back(line);
+        return found;
+      };
   curves.losses(some({"adam",
                       "adam-3e-4",
                       "adam-1e-3",
@@ -228,10 +215,26 @@ Section report(const Results& results, const Published& published) {
                 "fig7a",
                 "Small batches, and Gauss-Newton beside HIG",
                 "Fig. 7a");
-  curves.losses(
-      turned, "fig3c", "From weights that Adam has trained", "Fig. 3c");
+  curves.losses(turns(published),
+                "fig3c",
+                "From weights that Adam has trained",
+                "Fig. 3c");
   curves.chains(
       kReturns, "fig7b", "Adam, then HIG, then Adam again", "Fig. 7b");
+}
+
+Section report(const Results& results, const Published& published) {
+  Section section{.experiment = kName, .tables = tables(results, published)};
+  LearningCurves curves(results, section);
+  section.figures.push_back(
+      fields(results,
+             {{"adam", "Adam"},
+              {"hig-002-b64", "HIG"},
+              {"hig-002-b16", "HIG, b = 16"},
+              {"adam-hig-002-b64", "Adam, then HIG"},
+              {"adam-hig-002-b16", "Adam, then HIG, b = 16"},
+              {"chain-smoke", "Adam, HIG, Adam, short"}}));
+  add_curves(curves, published);
   return section;
 }
 

@@ -74,8 +74,13 @@ Figure landscape() {
       .note = fmt::format("Problem 0 of seed 0, alpha = {:.3f}.", s.x(0, 0))};
 }
 
+struct PrintedNumber {
+  const char *label, *printed;
+  Quantity ours;
+};
+
 /// Numbers of Sec. 4 and App. D.3 that stand in no table.
-Table numbers_of_text(const Evidence& evidence) {
+std::vector<PrintedNumber> printed_numbers() {
   const auto better = [](const Select& runs) {
     return percent(mean(runs, jpo::better()));
   };
@@ -87,43 +92,41 @@ Table numbers_of_text(const Evidence& evidence) {
   const Select bfgs = jpo::bfgs(), refined = jpo::refined("jpo"),
                labels = jpo::plain("supervised"),
                labels_refined = jpo::refined("supervised");
-  struct Row {
-    const char *label, *printed;
-    Quantity ours;
-  };
-  const Row rows[] = {
-      {"BFGS solves, n >= 32, %", "bfgs/solved", solved(bfgs)},
-      {"JPO refined solves, n >= 32, %", "jpo/solved", solved(refined)},
-      {"BFGS iterations, lowest",
-       "bfgs/iterations_low",
-       jpo::lowest_mean(bfgs, iterations)},
-      {"BFGS iterations, highest",
-       "bfgs/iterations_high",
-       jpo::highest_mean(bfgs, iterations)},
-      {"refinement iterations, lowest",
-       "jpo/iterations_low",
-       jpo::lowest_mean(refined, iterations)},
-      {"refinement iterations, highest",
-       "jpo/iterations_high",
-       jpo::highest_mean(refined, iterations)},
-      {"JPO refined better, n = 256, %",
-       "jpo/better/n=256",
-       better(jpo::at(refined, 256))},
-      {"supervised refined better, %",
-       "supervised/refined",
-       better(labels_refined)},
-      {"supervised refined better, n = 2, %",
-       "supervised/refined/n=2",
-       better(jpo::at(labels_refined, 2))},
-      {"supervised refined better, n >= 64, %",
-       "supervised/refined/n>=64",
-       better(labels_refined.of_sizes(64))},
-      {"supervised better, n = 2, %",
-       "supervised/better/n=2",
-       better(jpo::at(labels, 2))},
-      {"supervised better, n >= 64, %",
-       "supervised/better/n>=64",
-       better(labels.of_sizes(64))}};
+  return {{"BFGS solves, n >= 32, %", "bfgs/solved", solved(bfgs)},
+          {"JPO refined solves, n >= 32, %", "jpo/solved", solved(refined)},
+          {"BFGS iterations, lowest",
+           "bfgs/iterations_low",
+           jpo::lowest_mean(bfgs, iterations)},
+          {"BFGS iterations, highest",
+           "bfgs/iterations_high",
+           jpo::highest_mean(bfgs, iterations)},
+          {"refinement iterations, lowest",
+           "jpo/iterations_low",
+           jpo::lowest_mean(refined, iterations)},
+          {"refinement iterations, highest",
+           "jpo/iterations_high",
+           jpo::highest_mean(refined, iterations)},
+          {"JPO refined better, n = 256, %",
+           "jpo/better/n=256",
+           better(jpo::at(refined, 256))},
+          {"supervised refined better, %",
+           "supervised/refined",
+           better(labels_refined)},
+          {"supervised refined better, n = 2, %",
+           "supervised/refined/n=2",
+           better(jpo::at(labels_refined, 2))},
+          {"supervised refined better, n >= 64, %",
+           "supervised/refined/n>=64",
+           better(labels_refined.of_sizes(64))},
+          {"supervised better, n = 2, %",
+           "supervised/better/n=2",
+           better(jpo::at(labels, 2))},
+          {"supervised better, n >= 64, %",
+           "supervised/better/n>=64",
+           better(labels.of_sizes(64))}};
+}
+
+Table numbers_of_text(const Evidence& evidence) {
   Table table{.id = "text",
               .title = "Numbers of the text",
               .where = "Sec. 4, App. D.3",
@@ -132,7 +135,7 @@ Table numbers_of_text(const Evidence& evidence) {
               .note =
                   "Solved: both unknowns within 1e-3. Iterations: lowest and "
                   "highest mean of any n. Better: than BFGS."};
-  for (const auto& [label, name, ours] : rows) {
+  for (const auto& [label, name, ours] : printed_numbers()) {
     table.rows.push_back({label,
                           {beside_printed(cell_of(ours(evidence).value),
                                           evidence,
