@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "tests/contract/problem_bench.h"
 #include "tests/support/bits.h"
 #include "tests/support/gradient_check.h"
 #include "tests/support/registered.h"
@@ -19,80 +20,6 @@ namespace physinv::test {
 namespace {
 
 constexpr Index kCount = 37;  // no multiple of any lane width
-
-/// A problem with its scratch, and its answers by value.
-template <class T>
-struct Bench {
-  explicit Bench(const ProblemRecipe& recipe)
-      : problem(recipe.make<T>()),
-        vjp(dynamic_cast<const Vjp<T>*>(problem.get())),
-        jac(dynamic_cast<const Jacobian<T>*>(problem.get())) {}
-
-  Batch<T> forward(const Batch<T>& x, const Batch<T>& given) {
-    Batch<T> seen(problem->shape().observations, x.cols());
-    problem->forward(x, given, seen, work);
-    return seen;
-  }
-  /// Leaves y of the linearization in `y`.
-  Batch<T> pull(const Batch<T>& x,
-                const Batch<T>& given,
-                const Batch<T>& y_bar) {
-    y.resize(problem->shape().observations, x.cols());
-    Batch<T> x_bar(problem->shape().unknowns, x.cols());
-    vjp->linearize(x, given, y, tape);
-    vjp->pullback(tape, y_bar, x_bar, work);
-    return x_bar;
-  }
-
-  /// Gradient of y_bar . y at x by central differences, step h max(1, |x_j|),
-  /// many of them at once.
-  Vector<T> difference(const Vector<T>& x,
-                       const Vector<T>& given,
-                       const Vector<T>& y_bar,
-                       T h) {
-    constexpr Index kAtOnce = 32;
-    Vector<T> g(x.size());
-    for (Index first = 0; first < x.size(); first += kAtOnce) {
-      const Index count = std::min(kAtOnce, x.size() - first);
-      Batch<T> up = x.replicate(1, count), down = up;
-      Vector<T> width(count);
-      for (Index k = 0; k < count; ++k) {
-        const T at = x(first + k), step = h * std::max(T(1), std::abs(at));
-        up(first + k, k) = at + step, down(first + k, k) = at - step;
-        width(k) = 2 * step;
-      }
-      const Batch<T> shown = given.replicate(1, count);
-      const Batch<T> change = forward(up, shown) - forward(down, shown);
-      g.segment(first, count) =
-          (change.transpose() * y_bar).cwiseQuotient(width);
-    }
-    return g;
-  }
-
-  std::unique_ptr<Problem<T>> problem;
-  const Vjp<T>* vjp;
-  const Jacobian<T>* jac;
-  Batch<T> y;
-  Tape tape;
-  Workspace work;
-};
-
-template <class T>
-Batch<T> directions(Index rows, Index cols, double shift) {
-  return Batch<T>::NullaryExpr(rows, cols, [=](Index i, Index j) {
-    return static_cast<T>(std::sin(1.7 * double(i) + 0.9 * double(j) + shift));
-  });
-}
-
-/// A derivative that hardly depends on the step, or nothing at a kink.
-template <class F>
-bool smooth_derivative(F&& along, Vector<double>& d, double step = 1e-6) {
-  d = along(step);
-  const Vector<double> wide = along(4 * step);
-  if (!d.allFinite() || !wide.allFinite()) return false;
-  return (d - wide).cwiseAbs().maxCoeff() <=
-         1e-6 * (1 + d.cwiseAbs().maxCoeff());
-}
 
 class ProblemContract : public testing::TestWithParam<ExperimentPtr> {
  protected:
@@ -146,7 +73,7 @@ TEST_P(ProblemContract, ShapesAndAbilitiesAreAsDeclared) {
 }
 
 TEST_P(ProblemContract, SamplesSatisfyTheModel) {
-  Bench<double> b(recipe());
+  ProblemBench<double> b(recipe());
   const auto l = labelled();
   EXPECT_TRUE(same_bits(b.forward(l.x, l.given), l.y));
   const auto s = b.problem->sample(0, kCount, rng_);
@@ -184,7 +111,7 @@ TEST_P(ProblemContract, SamplesRepeatAndSmallSetsArePrefixes) {
 
 TEST_P(ProblemContract, PullbackAgreesWithCentralDifferences) {
   if (!provides(Needs::vjp)) GTEST_SKIP() << "has no vjp";
-  Bench<double> b(recipe());
+  ProblemBench<double> b(recipe());
   // Each unknown takes two solves.
   const Index unknowns = b.problem->shape().unknowns;
   if (b.problem->operations() * double(unknowns) > 4e10)
@@ -211,7 +138,7 @@ TEST_P(ProblemContract, PullbackAgreesWithCentralDifferences) {
 
 TEST_P(ProblemContract, PullbackIsTheAdjointOfTheDirectionalDerivative) {
   if (!provides(Needs::vjp)) GTEST_SKIP() << "has no vjp";
-  Bench<double> b(recipe());
+  ProblemBench<double> b(recipe());
   const auto l = labelled(24);
   const Batch<double> y_bar = directions<double>(l.y.rows(), 24, 2.4);
   const Batch<double> v = directions<double>(l.x.rows(), 24, 0.7);
@@ -242,7 +169,7 @@ TEST_P(ProblemContract, PushforwardIsTheTransposeOfPullback) {
   if (!provides(Needs::vjp | Needs::jvp)) GTEST_SKIP() << "has no jvp";
   in_both([&](auto t) {
     using T = decltype(t);
-    Bench<T> b(recipe());
+    ProblemBench<T> b(recipe());
     const auto& jvp = dynamic_cast<const Jvp<T>&>(*b.problem);
     const auto l = labelled().template cast<T>();
     const Batch<T> x_dot = directions<T>(l.x.rows(), kCount, 0.7);
@@ -268,7 +195,7 @@ TEST_P(ProblemContract, PushforwardIsTheTransposeOfPullback) {
 TEST_P(ProblemContract, PullbackTangentAgreesWithCentralDifferences) {
   if (!provides(Needs::vjp | Needs::pullback_tangent))
     GTEST_SKIP() << "has no tangent of the pullback";
-  Bench<double> b(recipe());
+  ProblemBench<double> b(recipe());
   const auto& tangent =
       dynamic_cast<const PullbackTangent<double>&>(*b.problem);
   const auto l = labelled(24);
@@ -302,7 +229,7 @@ TEST_P(ProblemContract, JacobianAgreesWithPullback) {
     GTEST_SKIP() << "has no vjp or no Jacobian";
   in_both([&](auto t) {
     using T = decltype(t);
-    Bench<T> b(recipe());
+    ProblemBench<T> b(recipe());
     const auto l = labelled().template cast<T>();
     const Index m = l.y.rows(), d = l.x.rows();
     Batch<T> j(m * d, kCount);
@@ -320,7 +247,7 @@ TEST_P(ProblemContract, JacobianAgreesWithPullback) {
 
 TEST_P(ProblemContract, HessianIsSymmetricAndTheGradientsDerivative) {
   if (!provides(Needs::vjp | Needs::hessian)) GTEST_SKIP() << "has no Hessian";
-  Bench<double> b(recipe());
+  ProblemBench<double> b(recipe());
   const auto l = labelled(12);
   const Batch<double> target = l.y + directions<double>(l.y.rows(), 12, 0.3);
   const Index d = l.x.rows();
@@ -349,7 +276,7 @@ TEST_P(ProblemContract, InverseLowersTheLossAndColumnsAreIndependent) {
   if (!provides(Needs::inverse)) GTEST_SKIP() << "has no inverse";
   in_both([&](auto t) {
     using T = decltype(t);
-    Bench<T> b(recipe());
+    ProblemBench<T> b(recipe());
     const auto& inverse = dynamic_cast<const Inverse<T>&>(*b.problem);
     const auto l = labelled().template cast<T>();
     Batch<T> guess = l.x + directions<T>(l.x.rows(), kCount, 0.3);
@@ -397,7 +324,7 @@ TEST_P(ProblemContract, LossGradientAgreesWithCentralDifferences) {
 TEST_P(ProblemContract, BatchesEqualTheirColumnsInAnyOrderBitwise) {
   in_both([&](auto t) {
     using T = decltype(t);
-    Bench<T> b(recipe());
+    ProblemBench<T> b(recipe());
     const auto l = labelled().template cast<T>();
     const Batch<T> y_bar = directions<T>(l.y.rows(), kCount, 0.4);
     const Batch<T> y = b.forward(l.x, l.given);
@@ -426,7 +353,7 @@ TEST_P(ProblemContract, BatchesEqualTheirColumnsInAnyOrderBitwise) {
 TEST_P(ProblemContract, ADivergedSampleDisturbsNoOther) {
   in_both([&](auto t) {
     using T = decltype(t);
-    Bench<T> b(recipe());
+    ProblemBench<T> b(recipe());
     const auto l = labelled().template cast<T>();
     const Batch<T> y_bar = directions<T>(l.y.rows(), kCount, 0.4);
     Batch<T> expected = b.forward(l.x, l.given), x = l.x;
@@ -448,7 +375,7 @@ TEST_P(ProblemContract, ADivergedSampleDisturbsNoOther) {
 TEST_P(ProblemContract, RepeatsItselfAndTakesNoMoreMemory) {
   in_both([&](auto t) {
     using T = decltype(t);
-    Bench<T> b(recipe());
+    ProblemBench<T> b(recipe());
     const auto l = labelled().template cast<T>();
     const Batch<T> y_bar = directions<T>(l.y.rows(), kCount, 0.4);
     const auto all = [&] {
@@ -467,12 +394,12 @@ TEST_P(ProblemContract, RepeatsItselfAndTakesNoMoreMemory) {
 }
 
 TEST_P(ProblemContract, FloatAgreesWithDouble) {
-  Bench<float> f(recipe());
+  ProblemBench<float> f(recipe());
   const auto l = labelled(128);
   // The same inputs for both: rounding may move a sample across a kink.
   const auto rounded = l.cast<float>();
   const auto exact = rounded.cast<double>();
-  Bench<double> d(recipe());
+  ProblemBench<double> d(recipe());
   const Batch<double> y = d.forward(exact.x, exact.given);
   const Batch<double> seen = f.forward(rounded.x, rounded.given).cast<double>();
   Index close = 0;
