@@ -62,11 +62,6 @@ double decades_above(double a, double b) {
          std::log10(std::max(b, kSolvedLoss));
 }
 
-double SignedRank::share_below() const {
-  return pairs == 0 ? 0
-                    : static_cast<double>(below) / static_cast<double>(pairs);
-}
-
 SignedRank signed_rank(std::span<const double> differences) {
   SignedRank out{.pairs = differences.size()};
   std::vector<double> d;

@@ -26,8 +26,6 @@ struct SignedRank {
   double p = 1;                                ///< 1 if there is no difference
   bool down = false;  ///< those below 0 have the larger sum of ranks
   std::size_t above() const { return pairs - below - ties; }
-  /// Of all pairs.
-  double share_below() const;
 };
 SignedRank signed_rank(std::span<const double> differences);
 

@@ -60,31 +60,4 @@ double chi_squared_tail(double x, int degrees) {
   return tail;
 }
 
-namespace {
-
-/// P(at most k of n) where each happens with probability p.
-double binomial_below(int k, int n, double p) {
-  double term = std::pow(1 - p, n), sum = term;
-  for (int i = 1; i <= k; ++i) sum += term *= p / (1 - p) * (n - i + 1) / i;
-  return sum;
-}
-
-}  // namespace
-
-std::optional<Range> tolerance_interval(std::vector<double> values,
-                                        double content,
-                                        double confidence) {
-  // The k-th lowest to the k-th highest hold a share above `content` with
-  // probability P(Binomial(n, content) <= n - 2 k).
-  const auto n = static_cast<int>(values.size());
-  int k = 0;
-  while (2 * (k + 1) <= n &&
-         binomial_below(n - 2 * (k + 1), n, content) >= confidence)
-    ++k;
-  if (k == 0) return {};
-  std::sort(values.begin(), values.end());
-  const auto at = static_cast<std::size_t>(k - 1);
-  return Range{values[at], values[values.size() - 1 - at]};
-}
-
 }  // namespace physinv

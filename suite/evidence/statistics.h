@@ -35,15 +35,4 @@ std::optional<Line> fit_line(std::span<const double> x,
 /// P(chi squared of so many degrees of freedom >= x).
 double chi_squared_tail(double x, int degrees);
 
-/// A range that holds a share `content` of all runs with this confidence,
-/// whatever their distribution: the k-th lowest to the k-th highest of the
-/// sample (Wilks 1941), as narrow as the sample allows. Empty if even the
-/// whole sample is too small.
-struct Range {
-  double lowest = 0, highest = 0;
-};
-std::optional<Range> tolerance_interval(std::vector<double> values,
-                                        double content,
-                                        double confidence);
-
 }  // namespace physinv

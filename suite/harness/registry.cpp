@@ -197,19 +197,4 @@ bool register_experiment(Experiment experiment) {
   return true;
 }
 
-bool register_claims(const std::string& experiment, std::vector<Claim> claims) {
-  registry().add_claims(experiment, std::move(claims));
-  return true;
-}
-
-bool register_report(const std::string& experiment, Report report) {
-  registry().add_report(experiment, std::move(report));
-  return true;
-}
-
-bool register_overview(Overview overview) {
-  registry().add(std::move(overview));
-  return true;
-}
-
 }  // namespace physinv

@@ -85,9 +85,6 @@ void register_all(Registry& registry);
 ///
 ///   const bool kRegistered = register_experiment({.name = "pendulum", ...});
 bool register_experiment(Experiment experiment);
-bool register_overview(Overview overview);
-bool register_claims(const std::string& experiment, std::vector<Claim> claims);
-bool register_report(const std::string& experiment, Report report);
 
 /// "forward|vjp"
 std::string to_text(Needs needs);

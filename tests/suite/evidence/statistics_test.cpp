@@ -35,26 +35,5 @@ TEST(Statistics, LineThroughPoints) {
   EXPECT_FALSE(fit_line(std::vector{0.0, 1.0}, std::vector{0.0, 1.0}));
 }
 
-TEST(Statistics, ToleranceIntervalsAreWilks) {
-  // 93 values are the least whose extremes hold 95 % with confidence 0.95.
-  std::vector<double> values;
-  for (int i = 0; i < 92; ++i) values.push_back(i);
-  EXPECT_FALSE(tolerance_interval(values, 0.95, 0.95));
-  values.push_back(92);
-  const auto all = tolerance_interval(values, 0.95, 0.95);
-  ASSERT_TRUE(all);
-  EXPECT_EQ(all->lowest, 0);
-  EXPECT_EQ(all->highest, 92);
-  // 24 values: the extremes hold 80 % with confidence
-  // 1 - 24 0.8^23 + 23 0.8^24 = 0.967, the second ones not 0.95.
-  values.resize(24);
-  const auto most = tolerance_interval(values, 0.8, 0.95);
-  ASSERT_TRUE(most);
-  EXPECT_EQ(most->lowest, 0);
-  EXPECT_EQ(most->highest, 23);
-  // Half of all runs are held by much less than the whole sample.
-  EXPECT_GT(tolerance_interval(values, 0.5, 0.9)->lowest, 0);
-}
-
 }  // namespace
 }  // namespace physinv

@@ -36,10 +36,6 @@ double align_one_first_order(double snr) {
 
 double align_sum(Index n, double snr) { return align_one(snr * root(n)); }
 
-double align_sum_first_order(Index n, double snr) {
-  return align_one_first_order(snr * root(n));
-}
-
 double align_vote(Index n, double snr) {
   SUITE_CHECK(n > 0, "somebody votes");
   const double p = 0.5 * math::erfc(-snr), q = 0.5 * math::erfc(snr);

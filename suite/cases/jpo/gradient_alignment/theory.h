@@ -19,7 +19,6 @@ double align_one_first_order(double snr);
 
 /// Sum of n losses, equal noise: 1/2 + erf(snr sqrt(n)) / 2.
 double align_sum(Index n, double snr);
-double align_sum_first_order(Index n, double snr);
 
 /// Majority of n signs, each right with probability p = align_one(snr): the
 /// exact binomial, a tie counts 1/2. No overflow for large n.
