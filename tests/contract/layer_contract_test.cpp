@@ -6,10 +6,13 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 
 #include "optimizers/network_model.h"
+#include "suite/harness/study.h"
 #include "tests/support/gradient_check.h"
 #include "tests/support/registered.h"
 #include "tests/support/tolerance.h"
@@ -36,12 +39,19 @@ struct Role {
 };
 void PrintTo(const Role& r, std::ostream* out) { *out << r.experiment->name; }
 
+/// A study's networks are those of what it varies, unless it varies them.
 std::vector<Role> roles() {
   std::vector<Role> all;
-  for (const auto& e : registry().experiments()) {
-    if (e->setting.predictor.recipe.make_double) all.push_back({e, false});
-    if (e->setting.surrogate.recipe.make_double) all.push_back({e, true});
-  }
+  std::set<std::tuple<std::string, std::string, bool>> seen;
+  for (const auto& e : registry().experiments())
+    for (const bool surrogate : {false, true}) {
+      const NetworkRecipe& recipe =
+          (surrogate ? e->setting.surrogate : e->setting.predictor).recipe;
+      if (!recipe.make_double) continue;
+      const bool is_new =
+          seen.emplace(recipe.description, e->problem.name, surrogate).second;
+      if (is_new || !studies().contains(e->name)) all.push_back({e, surrogate});
+    }
   return all;
 }
 
