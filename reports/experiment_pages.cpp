@@ -94,7 +94,7 @@ std::vector<std::string> tables_of(const Json& section, const Json& digest) {
   for (const std::string& table : tables) kept.push_back(table_of(table, ""));
   for (const Table& joined : joined_tables(sections_of(digest), paper))
     if (std::none_of(kept.begin(), kept.end(), [&](const Table& t) {
-          return t.source == joined.source && t.title == joined.title;
+          return t.where == joined.where && t.title == joined.title;
         }))
       tables.push_back(to_markdown(with_unit(joined)));
   return tables;

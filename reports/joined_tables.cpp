@@ -13,7 +13,7 @@ struct Part {
 };
 
 bool belong_together(const Table& a, const Table& b) {
-  return a.source == b.source && a.title == b.title && a.columns == b.columns;
+  return a.where == b.where && a.title == b.title && a.columns == b.columns;
 }
 
 /// Groups of tables that belong together, in the order of their first ones.
@@ -23,7 +23,7 @@ std::vector<std::vector<Part>> groups_of(const std::vector<Section>& sections,
   for (const Section& s : sections) {
     if (s.paper != paper || !s.experiment.starts_with(paper + "/")) continue;
     for (const Table& t : s.tables) {
-      if (!t.source.starts_with("Table ")) continue;
+      if (!t.where.starts_with("Table ")) continue;
       const auto same =
           std::find_if(groups.begin(), groups.end(), [&](const auto& group) {
             return belong_together(*group.front().table, t);

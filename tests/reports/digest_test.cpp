@@ -105,7 +105,7 @@ TEST(Digest, PageOfAnExperimentSaysWhereItsNumbersComeFrom) {
 TEST(Digest, KeepsThePapersFiguresAndNoFilms) {
   Section kept = section(Verdict::reproduced, Verdict::reproduced);
   Figure& picture = kept.figures.emplace_back(kept.figures.back());
-  picture.id = "fig6a", picture.source = "Fig. 6a";
+  picture.id = "fig6a", picture.where = "Fig. 6a";
   kept.figures.push_back(picture);
   kept.figures.back().id = "film", kept.figures.back().moment = 1;
   const auto files = kept_figures({kept});
@@ -123,7 +123,7 @@ std::vector<Section> with_shared_table(const char* label) {
                    .paper = "jpo",
                    .tables = {{.id = "table4",
                                .title = "Better than BFGS",
-                               .source = "Table 4",
+                               .where = "Table 4",
                                .unit = "%",
                                .corner = "equality",
                                .columns = {"JPO"},

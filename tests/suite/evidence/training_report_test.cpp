@@ -25,7 +25,7 @@ TEST(TrainingReport, FieldsAreTheTruthWhatIsSeenAndEachAnswerOfEachExample) {
         results,
         "toy",
         {{"b", "B"}, {"c", "C"}, {"a", "A"}},
-        {.source = "Fig. 9",
+        {.where = "Fig. 9",
          .examples = examples,
          .picture =
              [&](std::string title, const Vector<double>& field) {

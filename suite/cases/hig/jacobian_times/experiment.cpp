@@ -29,7 +29,7 @@ Method timed(const Batches& of, Index batch, SignalRecipe signal) {
 Experiment experiment(Experiment e, const Timed& t) {
   e.name = name_of(e.name);
   e.title += ", time of the Jacobian";
-  e.source.where = t.table;
+  e.citation.where = t.table;
   e.claims.clear(), e.methods.clear(), e.report = {};
   for (const Index batch : t.adam.sizes)
     e.methods.push_back(timed(t.adam, batch, solver_loss()));

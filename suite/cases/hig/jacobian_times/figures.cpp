@@ -16,7 +16,7 @@ Section report(const Timed& t,
   const Evidence ours{results, published, name_of(t.experiment)};
   Table table{.id = "jacobians",
               .title = "Duration of the Jacobian",
-              .source = t.table,
+              .where = t.table,
               .unit = "CPU ms",
               .digits = 3,
               .corner = "optimizer",

@@ -17,14 +17,14 @@ class JacobiansAlone final : public Signal<T> {
         zero_(Vector<T>::Zero(place.model.parameters().size())) {}
 
   void warm_up() override { of_->warm_up(); }
-  bool look(bool last) override { return of_->look(last); }
+  bool evaluate(bool last) override { return of_->evaluate(last); }
   Vector<T>& gradient() override {
     of_->jacobians();
     zero_.setZero();
     return zero_;
   }
-  void keep(Archive& archive) override { of_->keep(archive); }
-  void leave(Outcome& out) const override { of_->leave(out); }
+  void serialize(Archive& archive) override { of_->serialize(archive); }
+  void export_to(Outcome& out) const override { of_->export_to(out); }
   Counts counts() const override { return of_->counts(); }
   std::size_t bytes() const override { return of_->bytes(); }
 

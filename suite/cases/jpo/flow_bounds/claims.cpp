@@ -97,7 +97,7 @@ std::vector<Condition> all_settings() {
             as_printed(label, of(choice, c), printed_name(c), kSeeds));
       else
         all.push_back(c.asks != nullptr ? c.asks(label, of(choice, c))
-                                        : report(label, of(choice, c)));
+                                        : reported(label, of(choice, c)));
     }
   return all;
 }
@@ -118,7 +118,7 @@ Claim claim() {
 Table settings_table(const Evidence& e) {
   Table table{.id = "settings",
               .title = "BFGS and JPO by the unknowns that are bounded",
-              .source = "Sec. 4, Tables 4 and 5",
+              .where = "Sec. 4, Tables 4 and 5",
               .corner = "through tanh",
               .note =
                   "BFGS: 32 problems a seed. JPO: means over n, then mean "

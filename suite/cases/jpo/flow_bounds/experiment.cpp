@@ -25,7 +25,7 @@ Experiment experiment(const Choice& c) {
   setting.labels.bounded = c.bounded;
   return {.name = c.name(),
           .title = fmt::format("Navier-Stokes, bounded: {}", c.title),
-          .source = {.paper = "jpo", .where = "Sec. 4, Tables 4 and 5"},
+          .citation = {.paper = "jpo", .where = "Sec. 4, Tables 4 and 5"},
           .problem = jpo::navier_stokes::recipe(c.bounded),
           .setting = std::move(setting),
           .profiles = {{.name = "study", .rows = {classical, trained}}},

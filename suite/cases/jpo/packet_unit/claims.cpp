@@ -159,7 +159,7 @@ Claim claim() {
 Table by_unit(const Evidence& e) {
   Table table{.id = "units",
               .title = "BFGS and JPO by the unit of t0",
-              .source = "Sec. 4, Tables 4 and 5",
+              .where = "Sec. 4, Tables 4 and 5",
               .corner = "samples in a unit",
               .note =
                   "First steps of 256 problems a seed; JPO: means over n, "
@@ -182,7 +182,7 @@ Table by_unit(const Evidence& e) {
 Table by_rule(const Evidence& e) {
   Table table{.id = "rules",
               .title = "Gradient descent by unit, rule and first step",
-              .source = "Sec. 4",
+              .where = "Sec. 4",
               .corner = "unit, rule, first step",
               .note =
                   "Of 256 problems a seed. In brackets what the text "

@@ -25,7 +25,7 @@ Experiment experiment(Index unit) {
   Experiment e{
       .name = name_of(unit),
       .title = fmt::format("Wave packet, units of {} samples", unit),
-      .source = {.paper = "jpo", .where = "Sec. 4, Tables 4 and 5"},
+      .citation = {.paper = "jpo", .where = "Sec. 4, Tables 4 and 5"},
       .problem = jpo::wave_packet::recipe(static_cast<double>(unit)),
       .setting = jpo::wave_packet::setting(),
       .methods = {{.id = "bfgs", .chain = {bfgs_solve()}},

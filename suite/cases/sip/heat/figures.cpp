@@ -196,11 +196,11 @@ Table study(const Results& results,
 Figure study_curves(const LearningCurves& curves,
                     std::string id,
                     std::string title,
-                    std::string source,
+                    std::string where,
                     const std::vector<GridPoint>& points) {
   Figure figure{.id = std::move(id),
                 .title = std::move(title),
-                .source = std::move(source),
+                .where = std::move(where),
                 .columns = 3,
                 .note =
                     "On the test set; median over seeds, band: 10 % and "

@@ -45,7 +45,7 @@ constexpr Setting kSettings[] = {
 Table table_of(const Evidence& e) {
   Table table{.id = "fig15",
               .title = "CPU time of an update",
-              .source = "Fig. 15",
+              .where = "Fig. 15",
               .unit = "ms",
               .digits = 2,
               .corner = "experiment",
@@ -73,7 +73,7 @@ Table table_of(const Evidence& e) {
 Figure figure_of(const Results& results) {
   Figure figure{.id = "fig15_batches",
                 .title = "What an update takes",
-                .source = "Fig. 15",
+                .where = "Fig. 15",
                 .columns = 3};
   std::vector<std::string> drawn;
   for (const Setting& first : kSettings) {
@@ -84,7 +84,7 @@ Figure figure_of(const Results& results) {
       if (drawn.back() == s.experiment)
         for (const Column& c : kColumns)
           lines.push_back({s.method(c), c.title, c.hue});
-    Figure own = update_times(results, first.experiment, lines, figure.source);
+    Figure own = update_times(results, first.experiment, lines, figure.where);
     Panel& panel = own.panels.front();
     if (panel.series.empty()) continue;
     panel.title =

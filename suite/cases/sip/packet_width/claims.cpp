@@ -99,7 +99,7 @@ Section report(const std::string& name,
   const Evidence evidence{results, published, name};
   Table table{.id = "settings",
               .title = "Packets localized by width and network",
-              .source = "App. C.1, Fig. 16",
+              .where = "App. C.1, Fig. 16",
               .corner = "variance, norm, pooling, initial weights",
               .note =
                   "Shares of all test examples ± sample standard deviation "

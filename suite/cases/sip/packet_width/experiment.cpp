@@ -20,7 +20,7 @@ Experiment experiment(const Choice& choice) {
   return {
       .name = choice.name(),
       .title = "Wave packet, variance " + choice.title(),
-      .source = {.paper = "sip", .where = "App. C.1"},
+      .citation = {.paper = "sip", .where = "App. C.1"},
       .problem = sip_wave_packet::recipe(choice.width()),
       .setting = sip_wave_packet::setting(net),
       .profiles =
