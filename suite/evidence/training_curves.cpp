@@ -19,7 +19,7 @@ using Axis = std::vector<double> Points::*;
 
 /// One row of an array along the stages, each behind the one before.
 Points points_of(std::span<const StageRecord> stages,
-                 const char* array,
+                 ArrayKey array,
                  Index row,
                  double paper_update) {
   Points all;
