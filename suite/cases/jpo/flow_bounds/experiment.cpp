@@ -16,10 +16,10 @@ using jpo::navier_stokes::kBfgs;
 
 Experiment experiment(const Choice& c) {
   const Row classical{
-      .methods = {"bfgs"}, .n = {4, 16, 32}, .seeds = first_seeds(4)};
+      .methods = {"bfgs"}, .n = {4, 16, 32}, .seeds = first_seeds(3)};
   const Row trained{.methods = {"jpo"},
                     .n = {16},
-                    .seeds = first_seeds(2),
+                    .seeds = first_seeds(3),
                     .iterations = kFit};
   Setting setting = jpo::navier_stokes::setting();
   setting.labels.bounded = c.bounded;
