@@ -1,42 +1,35 @@
-# Component `programs`: those that are built. ./bench builds one of them, and
-# with it every layer of the component `development`: find_package(physinv) gives
-# physinv::physinv, all below the cases, with the flags that they were built with.
-# physinv::app, the verbs, is there where physinv-bench was built, too.
+# Component `programs`: those that are built. physinv-bench has every layer of
+# the component `development`: find_package(physinv) gives physinv::physinv, all
+# below the cases, with the flags that they were built with, and physinv::app,
+# the verbs.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 install(CODE "
-  if(NOT EXISTS \"${PROJECT_BINARY_DIR}/physinv-bench\" AND
-     NOT EXISTS \"${PROJECT_BINARY_DIR}/physinv-run\")
+  if(NOT EXISTS \"${PROJECT_BINARY_DIR}/physinv-bench\")
     message(FATAL_ERROR \"Nothing is built yet that could be installed. Run \"
-      \"./bench or cmake --build ${PROJECT_BINARY_DIR} first.\")
+      \"./bench list or cmake --build ${PROJECT_BINARY_DIR} first.\")
   endif()" ALL_COMPONENTS)
 
 add_library(physinv INTERFACE)
 set(physinv_exported physinv physinv_flags)
 set_target_properties(physinv_flags PROPERTIES EXPORT_NAME flags)
-foreach(layer core decompositions linalg nn problems optimizers baselines
-               diagnostics results evidence build_info harness)
-  if(TARGET physinv_${layer})
-    target_link_libraries(physinv INTERFACE physinv_${layer})
-    list(APPEND physinv_exported physinv_${layer})
-  endif()
+set(layers ${physinv_numbers})
+list(FILTER layers EXCLUDE REGEX "_numbers$")  # of experiments
+foreach(layer ${layers} decompositions nn problems optimizers results evidence
+               build_info harness)
+  target_link_libraries(physinv INTERFACE physinv_${layer})
+  list(APPEND physinv_exported physinv_${layer})
 endforeach()
 
 set(physinv_package ${CMAKE_INSTALL_LIBDIR}/cmake/physinv)
 install(TARGETS ${physinv_exported} EXPORT physinv COMPONENT development)
-set(physinv_verbs)
 foreach(layer app_run app gate compare planning reports)
-  list(APPEND physinv_verbs physinv_${layer})
+  install(TARGETS physinv_${layer} EXPORT physinv COMPONENT development)
 endforeach()
-install(TARGETS ${physinv_verbs} EXPORT physinv-verbs
-  ARCHIVE COMPONENT development OPTIONAL)
 # Their main, which stands in the sources of a program.
 install(TARGETS physinv_main EXPORT physinv
   OBJECTS DESTINATION ${CMAKE_INSTALL_LIBDIR}/physinv COMPONENT development)
-install(EXPORT physinv-verbs NAMESPACE physinv::
-  FILE physinv-verbs-targets.cmake
-  DESTINATION ${physinv_package} COMPONENT development)
 install(EXPORT physinv NAMESPACE physinv:: FILE physinv-targets.cmake
   DESTINATION ${physinv_package} COMPONENT development)
 install(DIRECTORY suite problems optimizers baselines
@@ -61,7 +54,7 @@ install(FILES
   DESTINATION ${physinv_package} COMPONENT development)
 install(PROGRAMS $<TARGET_FILE:physinv-sources>
   DESTINATION ${physinv_package} COMPONENT development)
-foreach(program physinv-bench physinv-run physinv-kernels)
+foreach(program physinv-bench physinv-kernels)
   if(TARGET ${program})
     install(TARGETS ${program} COMPONENT programs OPTIONAL)
   endif()

@@ -60,11 +60,6 @@ function(physinv_add_program name)
   cmake_parse_arguments(PARSE_ARGV 1 ARG "" "" "SOURCES")
   physinv_check_sources(physinv_add_program ${name} "${ARG_SOURCES}"
     "${ARG_UNPARSED_ARGUMENTS}")
-  if(NOT TARGET physinv::app)
-    message(FATAL_ERROR "physinv_add_program(${name}): the suite was installed "
-      "from a tree that holds physinv-run alone; build physinv-bench there and "
-      "install it again")
-  endif()
   add_executable(${name} ${ARG_SOURCES})
   set_target_properties(${name} PROPERTIES ENABLE_EXPORTS ON)
   physinv_own_sources(${name} false)

@@ -122,36 +122,50 @@ if(PHYSINV_PRECOMPILE)
   endif()
 endif()
 
-# physinv_join(<target> [<sources per compilation>]): for sources whose
+# physinv_join(<target> <mode> [<sources per compilation>]): for sources whose
 # compilation is mostly headers. A name of an unnamed namespace then stands for
 # one thing in the whole target. What a stage's numbers depend on is read from
 # the #include lines source by source: the preset `clang` compiles each alone, so
 # that none can lean on a neighbour's.
-function(physinv_join name)
+function(physinv_join name mode)
   if(PHYSINV_PRECOMPILE)
     set_target_properties(${name} PROPERTIES UNITY_BUILD ON
-      UNITY_BUILD_BATCH_SIZE "${ARGN}")
+      UNITY_BUILD_MODE ${mode} UNITY_BUILD_BATCH_SIZE "${ARGN}")
     # A source's own types are in no header here either.
     target_compile_options(${name} PRIVATE
       $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
   endif()
 endfunction()
 
-# physinv_layer(<name> [OBJECT] [NUMBERS | RECORDS] [JOIN n]
-# [PRECOMPILE headers] SOURCES ... DEPENDS ...): one target per layer. OBJECT
-# keeps registrations that nobody names from the linker's broom. NUMBERS computes
-# what is recorded: physinv_<name>_v3 is the same for AVX2, where that is another
-# build. PRECOMPILE: headers of the project that nearly every source of the layer
-# includes, or a layer that has them precompiled. RECORDS handles numbers and
-# makes none: narrow, as it serves both widths, joined, hardly optimized.
+# physinv_layer(<name> [OBJECT] [NUMBERS | RECORDS] [PRECOMPILE headers]
+# SOURCES a.cpp "b.cpp c.cpp" ... DEPENDS ...): one target per layer. Sources
+# between quotes are compiled as one; so a new one compiles no other batch anew.
+# OBJECT keeps registrations that nobody names from the linker's broom. NUMBERS
+# computes what is recorded: physinv_<name>_v3 is the same for AVX2, where that is
+# another build. PRECOMPILE: headers of the project that nearly every source of
+# the layer includes, or a layer that has them precompiled. RECORDS handles
+# numbers and makes none: narrow, as it serves both widths, hardly optimized.
 function(physinv_layer name)
   cmake_parse_arguments(ARG "OBJECT;NUMBERS;RECORDS"
-    "JOIN" "SOURCES;DEPENDS;PRECOMPILE" ${ARGN})
+    "" "SOURCES;DEPENDS;PRECOMPILE" ${ARGN})
   set(kind STATIC)
   if(ARG_OBJECT)
     set(kind OBJECT)
   endif()
-  add_library(physinv_${name} ${kind} ${ARG_SOURCES})
+  set(sources)
+  set(batches 0)
+  foreach(batch IN LISTS ARG_SOURCES)
+    if(NOT IS_ABSOLUTE "${batch}")
+      separate_arguments(batch UNIX_COMMAND "${batch}")
+    endif()
+    list(LENGTH batch count)
+    if(count GREATER 1)
+      set_source_files_properties(${batch} PROPERTIES UNITY_GROUP ${batches})
+      math(EXPR batches "${batches} + 1")
+    endif()
+    list(APPEND sources ${batch})
+  endforeach()
+  add_library(physinv_${name} ${kind} ${sources})
   set_target_properties(physinv_${name} PROPERTIES EXPORT_NAME ${name})
   target_include_directories(physinv_${name} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
@@ -163,7 +177,6 @@ function(physinv_layer name)
     set(precompiled physinv_precompiled_records)
     target_link_libraries(physinv_${name} PRIVATE
       $<BUILD_INTERFACE:physinv_narrow> $<BUILD_INTERFACE:physinv_records>)
-    set(ARG_JOIN 8)
   endif()
   if(PHYSINV_PRECOMPILE)
     target_link_libraries(physinv_${name} PRIVATE Eigen3::Eigen fmt::fmt)
@@ -179,20 +192,22 @@ function(physinv_layer name)
         REUSE_FROM ${precompiled})
     endif()
   endif()
-  if(ARG_JOIN)
-    physinv_join(physinv_${name} ${ARG_JOIN})
+  if(batches)
+    physinv_join(physinv_${name} GROUP)
+  endif()
+  if(ARG_NUMBERS)
+    set_property(GLOBAL APPEND PROPERTY physinv_numbers ${name})
   endif()
   if(ARG_NUMBERS AND physinv_two_widths)
-    physinv_layer_v3(${name} ${kind} "${ARG_SOURCES}" "${ARG_DEPENDS}")
-    if(ARG_JOIN)
-      physinv_join(physinv_${name}_v3 ${ARG_JOIN})
+    physinv_layer_v3(${name} ${kind} "${sources}" "${ARG_DEPENDS}")
+    if(batches)
+      physinv_join(physinv_${name}_v3 GROUP)
     endif()
   endif()
 endfunction()
 
-# Built for who asks. Claims and pages compute nothing.
+# Built for who asks.
 function(physinv_layer_v3 name kind sources depends)
-  list(FILTER sources EXCLUDE REGEX "/(claims|figures)\\.cpp$")
   list(FILTER depends EXCLUDE REGEX "^physinv_")
   add_library(physinv_${name}_v3 ${kind} EXCLUDE_FROM_ALL ${sources})
   target_include_directories(physinv_${name}_v3 PRIVATE ${PROJECT_SOURCE_DIR})
@@ -204,4 +219,12 @@ function(physinv_layer_v3 name kind sources depends)
     target_precompile_headers(physinv_${name}_v3
       REUSE_FROM physinv_precompiled_v3)
   endif()
+endfunction()
+
+# physinv_layers(<name> <layer>...): one name for several, for who takes them all.
+function(physinv_layers name)
+  add_library(physinv_${name} INTERFACE)
+  set_target_properties(physinv_${name} PROPERTIES EXPORT_NAME ${name})
+  list(TRANSFORM ARGN PREPEND physinv_)
+  target_link_libraries(physinv_${name} INTERFACE ${ARGN})
 endfunction()

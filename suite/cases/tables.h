@@ -4,6 +4,9 @@
 /// header: a table declares what it names.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "suite/harness/registry.h"
 
 namespace physinv {
@@ -14,6 +17,14 @@ using Add = void(Registry&);
 
 /// Experiments alone: what runs, without claims and pages.
 Add add_experiments;
+
+/// A folder of suite/cases by what its sources add: the source that
+/// cmake/write_registration.cmake makes of some folders has them.
+struct Folder {
+  std::string path;  ///< <paper>/<folder>
+  Add* add;
+};
+std::vector<Folder> folders();
 
 /// Of problems' columns (suite/harness/quantities.h).
 void name_quantities();

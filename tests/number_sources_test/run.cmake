@@ -24,7 +24,8 @@ same("registrations" "${made_registrations}"
   "${new}/experiment.cpp;${new}/grid_experiment.cpp")
 
 # Every source there is computes numbers, unless its name says otherwise.
-file(GLOB sources ${source}/suite/cases/*/*/*.cpp)
+file(GLOB sources RELATIVE ${source}/suite/cases
+  ${source}/suite/cases/*/*/*.cpp)
 list(FILTER sources EXCLUDE REGEX "/common/")
 list(LENGTH sources count)
 if(count LESS 80)

@@ -18,9 +18,6 @@ Add add_claims, add_reports;
 namespace toy {
 Add add_claims, add_reports;
 }
-namespace hig::jacobian_times {
-Add add_reports;
-}
 
 namespace hig {
 
@@ -34,7 +31,6 @@ void add_claims(Registry& r) {
   dipole::add_reports(r);
   toy::add_claims(r);
   toy::add_reports(r);
-  jacobian_times::add_reports(r);
 }
 
 }  // namespace hig

@@ -18,9 +18,6 @@ Add add_experiments;
 namespace hig::widths {
 Add add_experiments;
 }
-namespace hig::jacobian_times {
-Add add_experiments;
-}
 
 namespace hig {
 
@@ -31,7 +28,6 @@ void add_experiments(Registry& r) {
   dipole::add_experiments(r);
   toy::add_experiments(r);
   widths::add_experiments(r);
-  jacobian_times::add_experiments(r);
 }
 
 }  // namespace hig

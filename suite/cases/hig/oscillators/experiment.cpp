@@ -9,6 +9,7 @@
 
 #include "optimizers/training.h"
 #include "problems/oscillators/oscillators.h"
+#include "suite/cases/hig/common/jacobian_times.h"
 #include "suite/cases/hig/common/methods.h"
 #include "suite/cases/hig/oscillators/oscillators.h"
 #include "suite/core/power_of_ten.h"
@@ -176,6 +177,7 @@ void add_experiments(Registry& r) {
                      row(groups({"grid-"}), {0}, 44'400)}}},
       .methods = methods(),
   });
+  hig::add_jacobian_times(r, kName);
 }
 
 }  // namespace physinv::oscillators

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "problems/oscillators/oscillators.h"
+#include "suite/cases/hig/common/jacobian_times.h"
 #include "suite/cases/hig/oscillators/oscillators.h"
 #include "suite/evidence/cell.h"
 #include "suite/evidence/options.h"
@@ -236,6 +237,9 @@ Section report(const Results& results, const Published& published) {
 
 }  // namespace
 
-void add_reports(Registry& r) { r.add_report(kName, report); }
+void add_reports(Registry& r) {
+  r.add_report(kName, report);
+  hig::add_jacobian_report(r, kName);
+}
 
 }  // namespace physinv::oscillators

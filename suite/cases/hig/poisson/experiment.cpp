@@ -8,6 +8,7 @@
 
 #include "optimizers/training.h"
 #include "problems/grid_poisson/grid_poisson.h"
+#include "suite/cases/hig/common/jacobian_times.h"
 #include "suite/cases/hig/common/methods.h"
 #include "suite/harness/registry.h"
 #include "suite/nn/mlp.h"
@@ -159,6 +160,7 @@ void add_experiments(Registry& r) {
       .profiles = kProfiles,
       .methods = methods(),
   });
+  add_jacobian_times(r, "hig/poisson");
 }
 
 }  // namespace physinv::hig::poisson

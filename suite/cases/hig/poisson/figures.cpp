@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "problems/grid_poisson/grid_poisson.h"
+#include "suite/cases/hig/common/jacobian_times.h"
 #include "suite/cases/hig/poisson/quantities.h"
 #include "suite/evidence/cell.h"
 #include "suite/evidence/field_panel.h"
@@ -240,6 +241,9 @@ Section report(const Results& results, const Published& published) {
 
 }  // namespace
 
-void add_reports(Registry& r) { r.add_report(kName, report); }
+void add_reports(Registry& r) {
+  r.add_report(kName, report);
+  add_jacobian_report(r, kName);
+}
 
 }  // namespace physinv::hig::poisson

@@ -8,6 +8,7 @@
 
 #include "optimizers/training.h"
 #include "problems/quantum_dipole/quantum_dipole.h"
+#include "suite/cases/hig/common/jacobian_times.h"
 #include "suite/cases/hig/common/methods.h"
 #include "suite/cases/hig/quantum_dipole/grids.h"
 #include "suite/cases/hig/quantum_dipole/metrics.h"
@@ -196,6 +197,7 @@ void add_experiments(Registry& r) {
       .profiles = conv_profiles(),
       .methods = grids(conv_adam(), conv_hig()),
   });
+  hig::add_jacobian_times(r, kDense);
 }
 
 }  // namespace physinv::dipole

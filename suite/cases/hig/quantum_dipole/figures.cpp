@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "problems/quantum_dipole/quantum_dipole.h"
+#include "suite/cases/hig/common/jacobian_times.h"
 #include "suite/cases/hig/quantum_dipole/grids.h"
 #include "suite/cases/hig/quantum_dipole/metrics.h"
 #include "suite/cases/hig/quantum_dipole/tau_figures.h"
@@ -237,6 +238,7 @@ Section conv_report(const Results& results, const Published& published) {
 void add_reports(Registry& r) {
   r.add_report(kDense, dense_report);
   r.add_report(kConvolutional, conv_report);
+  hig::add_jacobian_report(r, kDense);
 }
 
 }  // namespace physinv::dipole

@@ -33,7 +33,7 @@ std::vector<Method> methods() {
 }
 
 const std::vector<Index> kSizes = {2, 4, 8, 16, 32, 64, 128, 256};
-const auto kSeeds = first_seeds(5);
+const auto kFirst = first_seeds(5);
 /// For claims about BFGS alone.
 const Row kPool{.methods = {"bfgs"}, .n = {256}, .seeds = {0, 1}};
 
@@ -58,9 +58,9 @@ void add_experiments(Registry& r) {
                  trained(kTrained, {8, 32}, {0, 1, 2}, kQuickIterations),
                  kPool}},
            {.name = "paper",
-            .rows = {{.methods = {"bfgs", "gd"}, .n = kSizes, .seeds = kSeeds},
-                     trained(kTrained, kSizes, kSeeds, kFitIterations),
-                     {.methods = {"jpo-long"}, .n = {128}, .seeds = kSeeds}}}},
+            .rows = {{.methods = {"bfgs", "gd"}, .n = kSizes, .seeds = kFirst},
+                     trained(kTrained, kSizes, kFirst, kFitIterations),
+                     {.methods = {"jpo-long"}, .n = {128}, .seeds = kFirst}}}},
       .methods = methods(),
       .styles = kJpoStyles,
   });
@@ -80,8 +80,8 @@ void add_experiments(Registry& r) {
             .rows = {{.methods = {"bfgs"}, .n = {32}, .seeds = {0, 1, 2}},
                      trained({"jpo"}, {32}, {0, 1, 2}, kQuickIterations)}},
            {.name = "paper",
-            .rows = {{.methods = {"bfgs"}, .n = {32, 128}, .seeds = kSeeds},
-                     trained({"jpo"}, {32, 128}, kSeeds, kFitIterations)}}},
+            .rows = {{.methods = {"bfgs"}, .n = {32, 128}, .seeds = kFirst},
+                     trained({"jpo"}, {32, 128}, kFirst, kFitIterations)}}},
       .methods = jpo_methods({.rate = 1e-3, .iterations = kFitIterations}),
       .styles = kJpoStyles,
   });

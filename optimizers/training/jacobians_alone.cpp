@@ -1,4 +1,4 @@
-#include "suite/cases/hig/jacobian_times/jacobians_alone.h"
+#include "optimizers/training/jacobians_alone.h"
 
 #include <memory>
 #include <utility>
@@ -6,7 +6,7 @@
 #include "optimizers/training/signal.h"
 #include "optimizers/training/solver_loss.h"
 
-namespace physinv::hig::jacobian_times {
+namespace physinv {
 namespace {
 
 template <class T>
@@ -40,4 +40,4 @@ SignalRecipe jacobians_alone() {
       "jacobians", Needs::jacobian, Needs::jacobian);
 }
 
-}  // namespace physinv::hig::jacobian_times
+}  // namespace physinv

@@ -4,10 +4,10 @@
 
 #include "optimizers/training/signal_recipe.h"
 
-namespace physinv::hig::jacobian_times {
+namespace physinv {
 
 /// Takes the Jacobians of the loss through the solver (solver_loss.h) and
 /// leaves a gradient of zero: no weight moves.
 SignalRecipe jacobians_alone();
 
-}  // namespace physinv::hig::jacobian_times
+}  // namespace physinv
