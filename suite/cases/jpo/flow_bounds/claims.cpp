@@ -19,22 +19,22 @@ namespace physinv::flow_bounds {
 namespace {
 
 constexpr Index kSeeds = 4;  ///< the paper's
-const Select kBfgs{"bfgs"}, kJpo{"jpo", "fit"}, kRefined{"jpo", "refine"};
+const Select kBfgsRuns{"bfgs"}, kJpo{"jpo", "fit"}, kRefined{"jpo", "refine"};
 
 // ---- numbers of a setting ---------------------------------------------------
 
 /// Of BFGS on the largest set of each seed.
 Quantity within_ten() {
-  return percent(share_of_examples(kBfgs,
+  return percent(share_of_examples(kBfgsRuns,
                                    jpo::largest_sets(jpo::iterations()),
                                    [](double k) { return k <= 10; }));
 }
 Quantity most_iterations() {
-  return highest(kBfgs, jpo::of_row(jpo::iterations(), jpo::most_of));
+  return highest(kBfgsRuns, jpo::of_row(jpo::iterations(), jpo::most_of));
 }
 /// How far outliers stand out.
 Quantity mean_over_median() {
-  return median(kBfgs, jpo::largest_sets(RunValue([](const Run& run) {
+  return median(kBfgsRuns, jpo::largest_sets(RunValue([](const Run& run) {
                   std::vector<double> all = jpo::losses()(run);
                   const double mean = jpo::mean_of(all);
                   return std::optional(mean / physinv::median(std::move(all)));
@@ -42,12 +42,12 @@ Quantity mean_over_median() {
 }
 Quantity jpo_over_bfgs() {
   return depends_on(jpo::lowest_mean(kJpo, jpo::over_bfgs(jpo::mean_loss())),
-                    {kBfgs});
+                    {kBfgsRuns});
 }
 template <bool kIsRefined>
 Quantity better() {
-  return percent(
-      depends_on(mean(kIsRefined ? kRefined : kJpo, jpo::better()), {kBfgs}));
+  return percent(depends_on(mean(kIsRefined ? kRefined : kJpo, jpo::better()),
+                            {kBfgsRuns}));
 }
 
 // ---- columns ----------------------------------------------------------------
