@@ -46,6 +46,7 @@ TEST(HigPoisson, NothingRunIsNotJudged) {
                          "A6",
                          "A7",
                          "A8",
+                         "A8b",
                          "A9",
                          "P1",
                          "P2",
@@ -93,7 +94,7 @@ TEST(HigPoisson, AdamsUpdatesAreCountedToTheSameLevel) {
 }
 
 TEST(HigPoisson, DroppedSingularValuesAreSeen) {
-  const auto verdict = [](double kept) {
+  const auto verdict = [](double kept, const char* method, const char* id) {
     StageRecord s = trained("hig", {20, 10});
     s.options = {{"batch", "2"}};
     s.arrays["kept"] = Batch<double>::Constant(1, 3, 128);
@@ -101,10 +102,13 @@ TEST(HigPoisson, DroppedSingularValuesAreSeen) {
     s.arrays["path"] = Batch<double>::Constant(1, 3, 1);
     s.arrays["smallest"] = Batch<double>::Constant(1, 3, 1e-3);
     s.arrays["unproven"] = Batch<double>::Zero(1, 1);
-    return claim({chain(kName, "hig-b4", {s})}, "A8").verdict;
+    return claim({chain(kName, method, {s})}, id).verdict;
   };
-  EXPECT_EQ(verdict(128), Verdict::reproduced);
-  EXPECT_EQ(verdict(127), Verdict::not_reproduced);
+  EXPECT_EQ(verdict(128, "hig-b4", "A8b"), Verdict::reproduced);
+  EXPECT_EQ(verdict(127, "hig-b4", "A8b"), Verdict::not_reproduced);
+  EXPECT_EQ(verdict(128, "long-adam-hig", "A8"), Verdict::reproduced);
+  EXPECT_EQ(verdict(127, "long-adam-hig", "A8"), Verdict::not_reproduced);
+  EXPECT_EQ(verdict(127, "hig-b4", "A8"), Verdict::not_judged);
 }
 
 /// A loss that falls by a power of the updates, every ten of them up to 160.

@@ -196,8 +196,18 @@ Cause cause_of(const Study& s) {
     return depends_on_it(s,
                          "to a gradient of 1e-5 half of the losses stay above "
                          "1e-12, to 1e-7 none");
+  if (varied == "jpo/navier-stokes")
+    return fails(
+        "they move nothing: 59 of 60 runs end at kinks, where no lower point "
+        "is found, before any tolerance is met; with all settings JPO is "
+        "better in 59 to 60 % and refined in 62 to 66, as printed, and 46 to "
+        "48 % of the runs of BFGS end within ten iterations, printed is "
+        "usually");
   return depends_on_it(
-      s, "the table has the settings for which each number comes out");
+      s,
+      "to a gradient of 1e-3 in double and 1e-5 in either JPO is better in 44 "
+      "to 62 %, printed are 44.3, to 1e-7 in 33 and 34; refined and in float "
+      "it ties in 42 % to 1e-7, printed are 9, else in 18");
 }
 
 Claim claim(const Study& s) {

@@ -98,11 +98,11 @@ std::vector<Claim> paper_claims() {
        .conditions = {small_differences("largest |f - 1/2| - 2 s.e., n <= 32",
                                         kJpo),
                       small_differences("refined", kRefined)},
-       .cause = depends(
-           "whether JPO is refined is not said: without refinement f stays "
-           "near 1/2 up to n = 32, with it f is 0.83 to 0.88 at n = 16 and "
-           "32, as far from 1/2 as at n >= 64",
-           {small_differences("without refinement", kJpo)})},
+       .cause = fails(
+           "refined, f is 0.69 to 0.81 for n <= 32 and 0.84 beyond: JPO is "
+           "ahead from the smallest sets on; not refined, f leaves 1/2 at "
+           "n = 2 (0.78) and not for n >= 64 (0.52), where BFGS ends lower on "
+           "what it solves (24 seeds)")},
       {.id = "P2",
        .where = "Sec. 4, Fig. 4b",
        .from = "paper",
@@ -147,13 +147,7 @@ std::vector<Claim> paper_claims() {
        .where = "Table 5",
        .from = "paper",
        .says = "How often refined JPO is better than BFGS, and equal",
-       .conditions = table5("jpo", kSeeds),
-       .cause = differs(
-           "refined JPO is better than BFGS in 76 % of the problems, printed "
-           "are 61.7; equal in 11 %, printed 9",
-           {above("refined jpo better, %",
-                  percent(mean(kRefined, better())),
-                  50)})},
+       .conditions = table5("jpo", kSeeds)},
       {.id = "P7",
        .where = "Tables 4 and 5",
        .from = "paper",
@@ -209,8 +203,8 @@ std::vector<Claim> paper_claims() {
        .says = "Share of the decrease that the network makes",
        .conditions = table3(kSeeds),
        .cause = differs(
-           "the network makes 100.0 % of the decrease from n = 4 on, printed "
-           "are 88.9, 86.8, 92.9 and 98.1",
+           "the network makes 99.5 to 100.0 % of the decrease from n = 4 on, "
+           "printed are 88.9, 86.8, 92.9 and 98.1",
            {above("lowest share of any n",
                   lowest_mean(kRefined, decrease_before()),
                   0.5)})}};

@@ -128,8 +128,8 @@ const std::vector<Claim> kPaper = {
      .says = "SIP performs better than Adam",
      .conditions =
          below_on_every_seed("error over Adam's", {"sip"}, {"adam"}, end()),
-     .cause = not_run("a second seed: 10,000 updates of both methods with "
-                      "batches of 128, about an hour each")},
+     .cause = not_run("2.2 CPU-hours for a second seed: 10,000 updates of both "
+                      "methods with batches of 128")},
     {.id = "P2",
      .where = "Fig. 11",
      .from = "paper",
