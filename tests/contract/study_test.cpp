@@ -62,7 +62,7 @@ TEST(Study, SeesTheDataOfWhatItVaries) {
     EXPECT_EQ(streams_of(varied), varied);
     auto pairs = pairs_of(cases_of(study, "study"), cases_of(varied, "paper"));
     ASSERT_FALSE(pairs.empty()) << study;
-    if (pairs.size() > 8) pairs.erase(pairs.begin() + 8, pairs.end());
+    if (pairs.size() > 2) pairs.erase(pairs.begin() + 2, pairs.end());
     for (const auto& [own, other] : pairs) expect_same_data(own, other);
   }
 }

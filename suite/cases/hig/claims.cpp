@@ -18,6 +18,9 @@ Add add_claims, add_reports;
 namespace toy {
 Add add_claims, add_reports;
 }
+namespace hig::ablation_batch {
+Add add_claims;
+}
 
 namespace hig {
 
@@ -31,6 +34,7 @@ void add_claims(Registry& r) {
   dipole::add_reports(r);
   toy::add_claims(r);
   toy::add_reports(r);
+  ablation_batch::add_claims(r);
 }
 
 }  // namespace hig

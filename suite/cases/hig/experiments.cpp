@@ -18,6 +18,9 @@ Add add_experiments;
 namespace hig::widths {
 Add add_experiments;
 }
+namespace hig::ablation_batch {
+Add add_experiments;
+}
 
 namespace hig {
 
@@ -28,6 +31,7 @@ void add_experiments(Registry& r) {
   dipole::add_experiments(r);
   toy::add_experiments(r);
   widths::add_experiments(r);
+  ablation_batch::add_experiments(r);
 }
 
 }  // namespace hig

@@ -11,8 +11,8 @@
 #include "problems/oscillators/oscillators.h"
 #include "suite/cases/hig/common/jacobian_times.h"
 #include "suite/cases/hig/common/methods.h"
+#include "suite/cases/hig/oscillators/ablation.h"
 #include "suite/cases/hig/oscillators/oscillators.h"
-#include "suite/core/power_of_ten.h"
 #include "suite/evidence/options.h"
 #include "suite/harness/registry.h"
 #include "suite/nn/mlp.h"
@@ -55,21 +55,8 @@ std::vector<Method> made_methods() {
       by_rule("adam-b1024", 1024, first_order("adam", 3e-4)),
       by_power("hig-b32", 32, {.kappa = -0.5, .tau = 1e-6}),
       by_power("gn-b32", 32, {.kappa = -1, .tau = 1e-6})};
-  for (const Exponent& e : kExponents)
-    all.push_back(by_power(e.id, 64, {.kappa = e.kappa, .tau = 1e-6}));
-  for (const int digits : {5, 7, 8, 9, 10}) {
-    const double tau = math::power_of_ten(-digits);
-    all.push_back(by_power(
-        fmt::format("hig-tau{}", digits), 64, {.kappa = -0.5, .tau = tau}));
-    all.push_back(by_power(
-        fmt::format("gn-tau{}", digits), 64, {.kappa = -1, .tau = tau}));
-  }
-  for (const int thousandths : {125, 250, 375, 500}) {
-    all.push_back(
-        by_power(fmt::format("beta-m{}", thousandths),
-                 64,
-                 {.kappa = -0.5, .tau = 1e-6, .beta = -thousandths / 1000.0}));
-  }
+  for (const AblationPoint& p : ablation_points())
+    all.push_back(by_power(p.id, 64, p.power));
   for (const Grid& grid : kGrids)
     for (const double rate : grid.rates)
       for (const Index batch : kGridBatches)
