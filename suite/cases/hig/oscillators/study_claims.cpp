@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "suite/cases/common/of_experiment.h"
-#include "suite/cases/hig/ablation_batch/settings.h"
 #include "suite/cases/hig/oscillators/ablation.h"
 #include "suite/cases/hig/oscillators/quantities.h"
+#include "suite/cases/hig/oscillators/study.h"
 #include "suite/evidence/cell.h"
 #include "suite/evidence/claim.h"
 #include "suite/evidence/training_report.h"

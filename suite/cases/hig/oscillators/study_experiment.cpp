@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "optimizers/training.h"
-#include "suite/cases/hig/ablation_batch/settings.h"
 #include "suite/cases/hig/common/methods.h"
 #include "suite/cases/hig/oscillators/ablation.h"
+#include "suite/cases/hig/oscillators/study.h"
 #include "suite/core/check.h"
 #include "suite/harness/registry.h"
 #include "suite/harness/study.h"
@@ -19,7 +19,7 @@ constexpr Index kUpdates = 2000;
 Experiment experiment(Experiment e, Index batch) {
   e.name = name_of(batch);
   e.title += fmt::format(", batches of {}", batch);
-  e.source.where = "App. C, Figs. 12, 13";
+  e.citation.where = "App. C, Figs. 12, 13";
   e.claims.clear(), e.methods.clear(), e.report = {};
   std::vector<std::string> ids;
   for (const auto& p : oscillators::ablation_points()) {
