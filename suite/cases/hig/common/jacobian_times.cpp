@@ -8,9 +8,9 @@
 
 #include "optimizers/training.h"
 #include "optimizers/training/jacobians_alone.h"
-#include "suite/cases/common/update_time.h"
 #include "suite/cases/hig/common/methods.h"
 #include "suite/core/check.h"
+#include "suite/evidence/update_time.h"
 
 namespace physinv::hig {
 namespace {

@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include "suite/cases/common/of_experiment.h"
 #include "suite/cases/jpo/common/values.h"
 #include "suite/cases/jpo/flow_bounds/settings.h"
 #include "suite/evidence/cell.h"
 #include "suite/evidence/claim.h"
+#include "suite/evidence/of_experiment.h"
 #include "suite/evidence/statistics.h"
 #include "suite/harness/registry.h"
 

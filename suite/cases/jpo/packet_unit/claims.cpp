@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "problems/wave_packet/wave_packet.h"
-#include "suite/cases/common/of_experiment.h"
 #include "suite/cases/jpo/common/values.h"
 #include "suite/cases/jpo/packet_unit/settings.h"
 #include "suite/cases/jpo/wave_packet/quantities.h"
 #include "suite/evidence/cell.h"
 #include "suite/evidence/claim.h"
+#include "suite/evidence/of_experiment.h"
 #include "suite/harness/registry.h"
 
 namespace physinv::packet_unit {

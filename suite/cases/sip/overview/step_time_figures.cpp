@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "suite/cases/common/update_time.h"
 #include "suite/evidence/training_report.h"
+#include "suite/evidence/update_time.h"
 
 namespace physinv::sip::overview {
 namespace {

@@ -6,11 +6,11 @@
 #include <utility>
 #include <vector>
 
-#include "suite/cases/common/of_experiment.h"
 #include "suite/cases/sip/packet_width/settings.h"
 #include "suite/cases/sip/wave_packet/values.h"
 #include "suite/evidence/cell.h"
 #include "suite/evidence/claim.h"
+#include "suite/evidence/of_experiment.h"
 #include "suite/harness/registry.h"
 
 namespace physinv::packet_width {
