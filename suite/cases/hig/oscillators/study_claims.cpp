@@ -6,11 +6,6 @@
 #include <utility>
 #include <vector>
 
-<<<<<<< HEAD:suite/cases/hig/oscillators/study_claims.cpp
-#include "suite/evidence/of_experiment.h"
-    =======
-#include "suite/cases/hig/ablation_batch/settings.h"
-    >>>>>>> e5ad0b2 (Quantities of another experiment and times of updates are words of suite/evidence):suite/cases/hig/ablation_batch/claims.cpp
 #include "suite/cases/hig/oscillators/ablation.h"
 #include "suite/cases/hig/oscillators/quantities.h"
 #include "suite/cases/hig/oscillators/study.h"

@@ -38,7 +38,8 @@ Section report(const Domain& domain, const Results& results) {
   curves.losses(kLines, "losses", "Losses of y", "");
   curves.add(update_times(results, domain.experiment, kLines, "Fig. 15"));
   const FieldLayout layout{domain.columns, domain.rows, 1, domain.columns};
-  const Poisson<double> physics({.rows = domain.rows, .columns = domain.columns});
+  const Poisson<double> physics(
+      {.rows = domain.rows, .columns = domain.columns});
   Figure fields = answered_fields(
       results,
       domain.experiment,
