@@ -417,9 +417,8 @@ void signs_drawn(Cases& cases, Dice& dice) {
 /// Of sweeps: how each point ended.
 void statuses_drawn(Cases& cases, Dice& dice) {
   change_some(cases, dice, [&](StageRecord& s) {
-    const auto found = s.arrays.find("status");
-    if (found == s.arrays.end()) return;
-    for (double& status : found->second.reshaped())
+    if (!s.arrays.contains("status")) return;
+    for (double& status : s.arrays.at("status").reshaped())
       status = static_cast<double>(dice.below(kSweepStatusNames.size()));
   });
 }
