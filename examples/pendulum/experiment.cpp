@@ -37,7 +37,7 @@ Section draw(const Results& results, const Published& published) {
   }
   return {.figures = {{.id = "losses",
                        .title = "Final losses",
-                       .source = "",
+                       .where = "",
                        .panels = {panel},
                        .columns = 1}}};
 }

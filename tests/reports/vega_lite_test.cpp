@@ -53,8 +53,9 @@ void expect_layer(const Json& layer) {
     if (channel == "x2" || channel == "y2") continue;
     EXPECT_TRUE(encoding.contains("type")) << channel;
     const Json scale = encoding.value("scale", Json::object());
-    if (scale.contains("domain") && encoding.at("type") == "nominal")
+    if (scale.contains("domain") && encoding.at("type") == "nominal") {
       EXPECT_EQ(scale.at("domain").size(), scale.at("range").size());
+    }
   }
 }
 

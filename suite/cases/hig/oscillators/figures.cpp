@@ -145,9 +145,9 @@ Table hyperparameters(const Evidence& evidence) {
       {"batch", "/b"}, {"rate", "/eta"}, {"tau", "/tau"}};
   for (const MethodLine& line : rules(evidence.published)) {
     const auto runs = find_runs(evidence, {line.method});
-    TableRow row{.label = line.label};
+    TableRow shown{.label = line.label};
     for (const auto& [option, printed] : kShown)
-      row.cells.push_back(
+      shown.cells.push_back(
           runs.empty()
               ? Cell{.text = kNotRun}
               : beside_printed(
@@ -155,7 +155,7 @@ Table hyperparameters(const Evidence& evidence) {
                             kNothing),
                     evidence,
                     "table2/" + line.method + printed));
-    table.rows.push_back(std::move(row));
+    table.rows.push_back(std::move(shown));
   }
   return table;
 }

@@ -80,11 +80,11 @@ Table ends(const Evidence& e) {
   for (const Index batch : kBatches)
     table.columns.push_back(fmt::format("b = {}", batch));
   for (const auto& p : oscillators::ablation_points()) {
-    TableRow row{.label = p.id};
+    TableRow shown{.label = p.id};
     for (const Index batch : kBatches)
-      row.cells.push_back(
+      shown.cells.push_back(
           written(of_experiment(name_of(batch), at_end(p.id))(e)));
-    table.rows.push_back(std::move(row));
+    table.rows.push_back(std::move(shown));
   }
   return table;
 }

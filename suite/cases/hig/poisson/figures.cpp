@@ -81,10 +81,10 @@ Table crossing_table(const Evidence& e) {
               .columns = {"updates"},
               .note = "Medians over seeds, at the measured points.",
               .keys = {"smaller rate", "larger rate"}};
-  struct Rate {
+  struct OfRate {
     const char *label, *method;
   };
-  const Rate least{"1e-4", "adam"}, middle{"3e-4", "adam-3e-4"},
+  const OfRate least{"1e-4", "adam"}, middle{"3e-4", "adam-3e-4"},
       most{"1e-3", "adam-1e-3"};
   for (const auto& [a, b] : {std::pair(least, middle),
                              std::pair(least, most),
