@@ -38,7 +38,7 @@ namespace physinv {
 namespace {
 @functions@}  // namespace
 
-std::vector<Folder> folders() {
+std::vector<CaseFolder> folders() {
   return {
 @table@  };
 }

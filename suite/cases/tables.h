@@ -20,11 +20,11 @@ Add add_experiments;
 
 /// A folder of suite/cases by what its sources add: the source that
 /// cmake/write_registration.cmake makes of some folders has them.
-struct Folder {
+struct CaseFolder {
   std::string path;  ///< <paper>/<folder>
   Add* add;
 };
-std::vector<Folder> folders();
+std::vector<CaseFolder> folders();
 
 /// Of problems' columns (suite/harness/quantities.h).
 void name_quantities();

@@ -38,7 +38,7 @@ TEST(Folders, HaveTheExperimentsOfTheirLineAlone) {
   const auto all = listed();
   EXPECT_EQ(folders().size(), all.size());
   std::size_t experiments = 0;
-  for (const Folder& folder : folders()) {
+  for (const CaseFolder& folder : folders()) {
     Registry own;
     folder.add(own);
     experiments += own.experiments().size();
@@ -68,7 +68,7 @@ Names ids(const std::vector<Claim>& claims) {
 /// A page of a program over one folder lacks nothing of its experiments.
 TEST(Folders, HaveTheClaimsAndPagesOfTheirExperiments) {
   int claims = 0, reports = 0;
-  for (const Folder& folder : folders()) {
+  for (const CaseFolder& folder : folders()) {
     Registry own;
     folder.add(own);
     for (const auto& e : own.experiments()) {
