@@ -63,7 +63,7 @@ from physinv._campaign import (ProgramError, Results, open, program, published,
 from physinv._compare import compare
 from physinv._methods import method
 
-__all__ = ["Problem", "ProgramError", "Results", "Run", "Samples", "compare",
+__all__ = ["Problem", "ProgramError", "Results", "Run", "Samples", "arrays", "compare",
            "jax", "load_plugin", "method", "open", "problem", "problems", "program",
            "published", "run", "torch", "verb", "version"]
 
