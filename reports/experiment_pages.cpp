@@ -102,6 +102,7 @@ std::vector<std::string> tables_of(const Json& section, const Json& digest) {
 
 std::string campaign_of(const NamedDigest& campaign,
                         const Json& section,
+                        const std::vector<std::string>& tables,
                         const ResultsLinks& links) {
   const Json& p = campaign.digest.at("provenance");
   const auto word = [&](const char* key, std::size_t most = std::string::npos) {
@@ -123,8 +124,7 @@ std::string campaign_of(const NamedDigest& campaign,
   if (cpu != campaign.cpu_seconds.end())
     out += fmt::format(", {:.0f} s of CPU", cpu->second);
   out += '\n';
-  for (const std::string& table : tables_of(section, campaign.digest))
-    out += '\n' + table;
+  for (const std::string& table : tables) out += '\n' + table;
   return out + figures_of(section, campaign.name, links);
 }
 
@@ -137,8 +137,9 @@ std::string page_of(const std::string& experiment,
     for (const Json& section : c.digest.at("sections")) {
       if (section.at("experiment") != experiment) continue;
       if (title.empty()) title = text_of(section, "title");
-      if (!tables_of(section, c.digest).empty() || section.contains("figures"))
-        body += campaign_of(c, section, links);
+      const auto tables = tables_of(section, c.digest);
+      if (!tables.empty() || section.contains("figures"))
+        body += campaign_of(c, section, tables, links);
     }
   std::string out = fmt::format(
       "# {} ({})\n\n{} from `reports/campaigns`; "

@@ -9,7 +9,7 @@
 namespace physinv {
 
 /// Of the sections of this paper's experiments: the tables that stand in two
-/// of them or more under one source ("Table 4"), title and columns, as one,
+/// of them or more under one place ("Table 4"), title and columns, as one,
 /// with the rows of all in the order of the sections. Rows that are not called
 /// like their experiment have its title in front.
 std::vector<Table> joined_tables(const std::vector<Section>& sections,

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "suite/evidence/runs.h"
 #include "suite/results/published.h"
 #include "suite/results/report_model.h"
 #include "suite/results/results.h"
@@ -138,12 +139,12 @@ Figure update_times(const Results& results,
 /// A method beside a row of the paper's tables of memory and durations.
 struct CostLine {
   std::string method, label;
-  std::string published;      ///< "table3/hig/b=128"
-  std::string jacobian = {};  ///< the method that takes its Jacobian alone
+  std::string published;  ///< "table3/hig/b=128"
+  Select jacobian = {};   ///< what takes its Jacobian alone
 };
 
-/// Memory and duration of an update and, where its experiment
-/// `<name>-jacobians` was run, of its Jacobian, ours and the paper's.
+/// Memory and duration of an update and, where that was timed, of its Jacobian,
+/// ours and the paper's.
 Table cost_table(const Results& results,
                  std::string_view experiment,
                  const Published& published,

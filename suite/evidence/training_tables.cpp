@@ -28,6 +28,16 @@ struct UpdateCosts {
   std::vector<double> seconds, bytes;
 };
 
+UpdateCosts costs_of(const Results& results,
+                     std::string_view experiment,
+                     const std::string& method,
+                     TimedStages& timed) {
+  UpdateCosts costs;
+  for (const auto* s : trained_stages(results, experiment, method))
+    costs.add(*s, timed);
+  return costs;
+}
+
 }  // namespace
 
 Table loss_table(const Results& results,
@@ -114,8 +124,7 @@ Figure update_times(const Results& results,
   TimedStages timed;
   for (const MethodLine& line : lines) {
     const auto stages = trained_stages(results, experiment, line.method);
-    UpdateCosts costs;
-    for (const auto* s : stages) costs.add(*s, timed);
+    const UpdateCosts costs = costs_of(results, experiment, line.method, timed);
     const auto batch = stages.empty()
                            ? std::nullopt
                            : number_of(stages.front()->options, "batch");
@@ -229,16 +238,6 @@ Figure answered_fields(const Results& results,
 
 namespace {
 
-UpdateCosts costs_of(const Results& results,
-                     std::string_view experiment,
-                     const std::string& method,
-                     TimedStages& timed) {
-  UpdateCosts costs;
-  for (const auto* s : trained_stages(results, experiment, method))
-    costs.add(*s, timed);
-  return costs;
-}
-
 Cell duration_of(const UpdateCosts& costs) {
   if (costs.bytes.empty()) return {.text = kNotRun};
   if (costs.seconds.empty()) return {.text = kCrowded};
@@ -264,11 +263,9 @@ Table cost_table(const Results& results,
     Cell megabytes{.text = kNotRun}, update = duration_of(costs);
     if (!costs.bytes.empty()) megabytes = {.ours = 1e-6 * median(costs.bytes)};
     Cell jacobian{.text = kNothing};
-    if (!line.jacobian.empty())
-      jacobian = duration_of(costs_of(results,
-                                      fmt::format("{}-jacobians", experiment),
-                                      line.jacobian,
-                                      timed));
+    if (const Select& runs = line.jacobian; !runs.method.empty())
+      jacobian =
+          duration_of(costs_of(results, runs.experiment, runs.method, timed));
     const auto printed = [&](const char* what) {
       return published.find(experiment, line.published + what);
     };

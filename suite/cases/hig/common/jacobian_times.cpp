@@ -122,6 +122,14 @@ Section report(const Timed& t,
 
 }  // namespace
 
+Select gradient_of(const std::string& experiment, Index batch) {
+  return Select{timed_of(experiment).adam.method(batch)}.in(
+      name_of(experiment));
+}
+Select jacobians_of(const std::string& experiment, Index batch) {
+  return Select{timed_of(experiment).hig.method(batch)}.in(name_of(experiment));
+}
+
 void add_jacobian_times(Registry& r, const std::string& name) {
   const auto of = r.find(name);
   SUITE_CHECK(of != nullptr, "what is timed is registered before");

@@ -6,12 +6,16 @@
 
 #include <string>
 
+#include "suite/evidence/runs.h"
 #include "suite/harness/registry.h"
 
 namespace physinv::hig {
 
 /// "hig/oscillators-jacobians" of hig/oscillators, which is registered.
 void add_jacobian_times(Registry& r, const std::string& experiment);
+/// Its runs: Adam's gradient of a batch, the Jacobians of half-inverses.
+Select gradient_of(const std::string& experiment, Index batch);
+Select jacobians_of(const std::string& experiment, Index batch);
 void add_jacobian_report(Registry& r, const std::string& experiment);
 
 }  // namespace physinv::hig

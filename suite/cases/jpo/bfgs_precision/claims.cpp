@@ -12,6 +12,7 @@
 #include "suite/cases/jpo/common/values.h"
 #include "suite/evidence/cell.h"
 #include "suite/evidence/claim.h"
+#include "suite/evidence/settings_table.h"
 #include "suite/harness/registry.h"
 
 namespace physinv::bfgs_precision {
@@ -244,15 +245,14 @@ Section report(const Study& s,
           "of iterations medians. In brackets what the text states. Both "
           "methods of a row have its setting; float compares float "
           "losses."};
-  const auto columns = columns_of(s);
-  for (const Column& c : columns) table.columns.push_back(c.title);
-  for (const Choice& choice : s.choices) {
-    TableRow row{.label = choice.title};
-    for (const Column& c : columns)
-      row.cells.push_back(cell_of(s, choice, c, evidence));
-    table.rows.push_back(std::move(row));
-  }
-  return {.tables = {std::move(table)}};
+  return {.tables = {table_by_setting(
+              std::move(table),
+              s.choices,
+              columns_of(s),
+              [](const Choice& choice) { return choice.title; },
+              [&](const Choice& choice, const Column& c) {
+                return cell_of(s, choice, c, evidence);
+              })}};
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "suite/evidence/cell.h"
 #include "suite/evidence/claim.h"
 #include "suite/evidence/of_experiment.h"
+#include "suite/evidence/settings_table.h"
 #include "suite/evidence/statistics.h"
 #include "suite/harness/registry.h"
 
@@ -77,14 +78,17 @@ constexpr Column kColumns[] = {
      [](std::string label, Quantity q) {
        return above(std::move(label), std::move(q), 1);
      }},
-    {"JPO better, %", better<false>, nullptr, "table4/jpo/better"},
-    {"refined better, %", better<true>, nullptr, "table5/jpo/better"}};
+    {"JPO better, %",
+     better<false>,
+     nullptr,
+     "jpo/navier-stokes table4/jpo/better"},
+    {"refined better, %",
+     better<true>,
+     nullptr,
+     "jpo/navier-stokes table5/jpo/better"}};
 
 Quantity of(const Choice& choice, const Column& c) {
   return of_experiment(choice.name(), c.of());
-}
-std::string printed_name(const Column& c) {
-  return std::string("jpo/navier-stokes ") + c.printed;
 }
 
 std::vector<Condition> all_settings() {
@@ -93,8 +97,7 @@ std::vector<Condition> all_settings() {
     for (const Column& c : kColumns) {
       const std::string label = fmt::format("{}: {}", choice.title, c.title);
       if (c.printed != nullptr)
-        all.push_back(
-            as_printed(label, of(choice, c), printed_name(c), kSeeds));
+        all.push_back(as_printed(label, of(choice, c), c.printed, kSeeds));
       else
         all.push_back(c.asks != nullptr ? c.asks(label, of(choice, c))
                                         : reported(label, of(choice, c)));
@@ -124,19 +127,15 @@ Table settings_table(const Evidence& e) {
                   "BFGS: 32 problems a seed. JPO: means over n, then mean "
                   "± sample standard deviation over seeds. In brackets "
                   "what the text states."};
-  for (const Column& c : kColumns) table.columns.push_back(c.title);
-  for (const Choice& choice : kChoices) {
-    TableRow row{.label = choice.title};
-    for (const Column& c : kColumns) {
-      Cell cell = cell_of(of(choice, c)(e));
-      row.cells.push_back(
-          c.printed == nullptr
-              ? cell
-              : beside_printed(std::move(cell), e, printed_name(c)));
-    }
-    table.rows.push_back(std::move(row));
-  }
-  return table;
+  return table_by_setting(
+      std::move(table),
+      kChoices,
+      kColumns,
+      [](const Choice& choice) { return choice.title; },
+      [&](const Choice& choice, const Column& c) {
+        const Cell own = cell_of(of(choice, c)(e));
+        return c.printed == nullptr ? own : beside_printed(own, e, c.printed);
+      });
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "suite/evidence/cell.h"
 #include "suite/evidence/claim.h"
 #include "suite/evidence/of_experiment.h"
+#include "suite/evidence/settings_table.h"
 #include "suite/harness/registry.h"
 
 namespace physinv::packet_unit {
@@ -84,10 +85,16 @@ struct UnitColumn {
 };
 constexpr UnitColumn kOfUnits[] = {
     {"first steps of BFGS beyond a period, % (usually)", large_steps},
-    {"JPO better, %", share<false, jpo::better>, "table4/jpo/better"},
-    {"equal, %", share<false, jpo::equal>, "table4/jpo/equal"},
-    {"refined better, %", share<true, jpo::better>, "table5/jpo/better"},
-    {"refined equal, %", share<true, jpo::equal>, "table5/jpo/equal"}};
+    {"JPO better, %",
+     share<false, jpo::better>,
+     "jpo/wave-packet table4/jpo/better"},
+    {"equal, %", share<false, jpo::equal>, "jpo/wave-packet table4/jpo/equal"},
+    {"refined better, %",
+     share<true, jpo::better>,
+     "jpo/wave-packet table5/jpo/better"},
+    {"refined equal, %",
+     share<true, jpo::equal>,
+     "jpo/wave-packet table5/jpo/equal"}};
 
 /// Of gradient descent.
 struct Column {
@@ -100,15 +107,11 @@ constexpr Column kOfRules[] = {
     {"closer than BFGS, % (more often)", closer},
     {"farther, %", farther}};
 
-std::string printed_name(const UnitColumn& c) {
-  return std::string("jpo/wave-packet ") + c.printed;
-}
-
 Condition condition(Index unit, const UnitColumn& c) {
   const std::string label = fmt::format("{} samples: {}", unit, c.title);
   const Quantity q = of_experiment(name_of(unit), c.of(unit));
   return c.printed == nullptr ? above(label, q, 50)
-                              : as_printed(label, q, printed_name(c), kSeeds);
+                              : as_printed(label, q, c.printed, kSeeds);
 }
 std::vector<Condition> conditions(const Choice& choice) {
   const auto label = [&](const char* what) {
@@ -164,19 +167,15 @@ Table by_unit(const Evidence& e) {
               .note =
                   "First steps of 256 problems a seed; JPO: means over n, "
                   "then mean ± sample standard deviation over seeds."};
-  for (const UnitColumn& c : kOfUnits) table.columns.push_back(c.title);
-  for (const Index unit : kUnits) {
-    TableRow row{.label = fmt::format("{}", unit)};
-    for (const UnitColumn& c : kOfUnits) {
-      Cell cell = cell_of(of_experiment(name_of(unit), c.of(unit))(e));
-      row.cells.push_back(
-          c.printed == nullptr
-              ? cell
-              : beside_printed(std::move(cell), e, printed_name(c)));
-    }
-    table.rows.push_back(std::move(row));
-  }
-  return table;
+  return table_by_setting(
+      std::move(table),
+      kUnits,
+      kOfUnits,
+      [](Index unit) { return fmt::format("{}", unit); },
+      [&](Index unit, const UnitColumn& c) {
+        const Cell own = cell_of(of_experiment(name_of(unit), c.of(unit))(e));
+        return c.printed == nullptr ? own : beside_printed(own, e, c.printed);
+      });
 }
 
 Table by_rule(const Evidence& e) {
@@ -187,15 +186,14 @@ Table by_rule(const Evidence& e) {
               .note =
                   "Of 256 problems a seed. In brackets what the text "
                   "states."};
-  for (const Column& c : kOfRules) table.columns.push_back(c.title);
-  for (const Choice& choice : choices()) {
-    TableRow row{.label = choice.title()};
-    for (const Column& c : kOfRules)
-      row.cells.push_back(
-          cell_of(of_experiment(name_of(choice.unit), c.of(choice))(e)));
-    table.rows.push_back(std::move(row));
-  }
-  return table;
+  return table_by_setting(
+      std::move(table),
+      choices(),
+      kOfRules,
+      [](const Choice& choice) { return choice.title(); },
+      [&](const Choice& choice, const Column& c) {
+        return cell_of(of_experiment(name_of(choice.unit), c.of(choice))(e));
+      });
 }
 
 }  // namespace

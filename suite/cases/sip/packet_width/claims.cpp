@@ -11,6 +11,7 @@
 #include "suite/evidence/cell.h"
 #include "suite/evidence/claim.h"
 #include "suite/evidence/of_experiment.h"
+#include "suite/evidence/settings_table.h"
 #include "suite/harness/registry.h"
 
 namespace physinv::packet_width {
@@ -105,15 +106,18 @@ Section report(const std::string& name,
                   "Shares of all test examples ± sample standard deviation "
                   "over seeds, medians over seeds of the others. In "
                   "brackets what the text states."};
-  for (const Column& c : kColumns) table.columns.push_back(c.title);
-  for (const Choice& choice : choices()) {
-    if (find_runs(evidence, kNet.in(choice.name())).empty()) continue;
-    TableRow row{.label = choice.title()};
-    for (const Column& c : kColumns)
-      row.cells.push_back(written(c.of(choice)(evidence)));
-    table.rows.push_back(std::move(row));
-  }
-  return {.tables = {std::move(table)}};
+  std::vector<Choice> run = choices();
+  std::erase_if(run, [&](const Choice& choice) {
+    return find_runs(evidence, kNet.in(choice.name())).empty();
+  });
+  return {.tables = {table_by_setting(
+              std::move(table),
+              run,
+              kColumns,
+              [](const Choice& choice) { return choice.title(); },
+              [&](const Choice& choice, const Column& c) {
+                return written(c.of(choice)(evidence));
+              })}};
 }
 
 }  // namespace
