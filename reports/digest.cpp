@@ -59,17 +59,8 @@ std::map<std::string, std::string> kept_figures(
   return files;
 }
 
-std::string campaign_command(const Json& provenance) {
-  std::string out = "./bench --profile=" + text_of(provenance, "profile");
-  const auto options = provenance.find("options");
-  if (options == provenance.end()) return out;
-  for (const char* list : {"filter", "set"})
-    if (options->contains(list))
-      for (const Json& value : (*options)[list])
-        out += fmt::format(" '--{}={}'", list, value.get<std::string>());
-  const std::string seeds = text_of(*options, "seeds");
-  if (!seeds.empty()) out += " --seeds=" + seeds;
-  return out;
+std::string campaign_command(const std::string& name) {
+  return "./bench reproduce " + name;
 }
 
 }  // namespace physinv

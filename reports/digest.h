@@ -29,9 +29,8 @@ Table table_of(const std::string& markdown, std::string id);
 std::map<std::string, std::string> kept_figures(
     const std::vector<Section>& sections);
 
-/// The command that makes such a campaign, from the options that its context
-/// holds: "./bench --profile=paper --filter=jpo/".
-std::string campaign_command(const nlohmann::ordered_json& provenance);
+/// The command that runs a published campaign again.
+std::string campaign_command(const std::string& name);
 
 struct NamedDigest {
   std::string name;  ///< folder of the campaign

@@ -111,7 +111,7 @@ std::string campaign_of(const NamedDigest& campaign,
   std::string out = fmt::format(
       "\n## Campaign {}\n\n{}\n\n{}, {} ({} cores), {}, {} {}, revision {}",
       markdown(campaign.name),
-      markdown_code(campaign_command(p)),
+      markdown_code(campaign_command(campaign.name)),
       word("date", 10),
       word("cpu_model"),
       word("num_cpus"),

@@ -86,6 +86,27 @@ Papers latest_claims(const std::vector<NamedDigest>& campaigns) {
   return papers;
 }
 
+std::vector<ChangedClaim> changed_claims(const Papers& then,
+                                         const Papers& now) {
+  std::vector<ChangedClaim> changed;
+  for (const auto& [paper, claims] : then) {
+    const auto own = now.find(paper);
+    for (const auto& [key, before] : claims) {
+      Verdict verdict = Verdict::not_judged;
+      if (own != now.end())
+        if (const auto at = own->second.find(key); at != own->second.end())
+          verdict = at->second.claim.verdict;
+      if (verdict != before.claim.verdict)
+        changed.push_back({key,
+                           before.claim.verdict,
+                           verdict,
+                           before.claim.origin,
+                           before.claim.says});
+    }
+  }
+  return changed;
+}
+
 VerdictCounts counts_of(const LatestClaims& paper, Origin origin) {
   VerdictCounts counts{};
   for (const auto& [id, s] : paper)

@@ -35,6 +35,15 @@ std::vector<NamedDigest> newest_first(std::vector<NamedDigest> campaigns);
 /// reported.
 Papers latest_claims(const std::vector<NamedDigest>& campaigns);
 
+/// A claim that comes to another verdict; not judged where it is not there.
+struct ChangedClaim {
+  ClaimKey key;
+  Verdict then, now;
+  Origin origin;
+  std::string says;
+};
+std::vector<ChangedClaim> changed_claims(const Papers& then, const Papers& now);
+
 VerdictCounts counts_of(const LatestClaims& paper, Origin origin);
 
 /// The text of a key, empty without one.

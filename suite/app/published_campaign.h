@@ -22,6 +22,10 @@ bool is_published(const std::filesystem::path& directory);
 /// with the file's name if it is damaged.
 NamedDigest published_digest(const std::filesystem::path& directory,
                              const Published& published);
+/// Those of the folders of `directory` that hold one, by name. UsageError if
+/// there is no such directory, ExitError if none holds one.
+std::vector<NamedDigest> published_digests(
+    const std::filesystem::path& directory);
 
 /// Its figures, by experiment.
 std::map<std::string, std::vector<Picture>> kept_pictures(

@@ -126,7 +126,8 @@ ExitCode report_published(const std::string& results, const std::string& out) {
   const auto digest = published_digest(results, numbers).digest;
   const auto sections = sections_of(digest);
   auto origin = digest.at("provenance");
-  origin["command"] = campaign_command(origin);
+  origin["command"] =
+      campaign_command(fs::path(results).lexically_normal().filename());
   write_report(out,
                sections,
                origin,

@@ -12,179 +12,20 @@
 #include "reports/latest_claims.h"
 #include "reports/report.h"
 #include "reports/results_page.h"
-#include "reports/tables.h"
 #include "suite/app/history.h"
 #include "suite/app/installed.h"
 #include "suite/app/options.h"
 #include "suite/app/published_campaign.h"
 #include "suite/app/sections.h"
-#include "suite/evidence/claim.h"
 #include "suite/results/file.h"
 #include "suite/results/folder.h"
-#include "suite/results/json.h"
 #include "suite/results/published.h"
-#include "suite/results/results_file.h"
-#include "suite/results/results_json.h"
 
 namespace physinv {
 namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-
-/// Of solving, by experiment.
-std::map<std::string, double> cpu_seconds(const Json& results) {
-  std::map<std::string, double> seconds;
-  for (const Json& entry : results.at("benchmarks")) {
-    if (!entry.contains("cpu_time") || !entry.contains("physinv")) continue;
-    const std::string experiment = entry["physinv"].value("experiment", "");
-    seconds[experiment] +=
-        seconds_per_unit(entry) * entry["cpu_time"].get<double>();
-  }
-  return seconds;
-}
-
-/// results.json.gz beside a digest: they tell of each other, unless both are
-/// of before they did.
-Json results_beside(const fs::path& folder, const Json& digest) {
-  const fs::path path = folder / "results.json.gz";
-  Json results = parse_results(gunzipped(read_file(path), kLargestData), path);
-  Json& own = results.at("context")["physinv"];
-  const std::string told = own.value("digest", "");
-  own.erase("digest");
-  const bool linked = !told.empty() || digest.contains("results");
-  if (linked && (told != digest.value("checksum", "") ||
-                 digest.value("results", "") != checksum_of(results)))
-    throw std::runtime_error("results.json.gz beside it is of another");
-  return results;
-}
-
-/// Pages link to them.
-void require_figures(const fs::path& folder, const Json& digest) {
-  for (const Json& section : digest.at("sections"))
-    for (const Json& figure : section.value("figures", Json::array())) {
-      const std::string name = figure.at("file");
-      if (!is_file(folder / "figures" / name))
-        throw std::runtime_error("its figure " + name + " is missing");
-    }
-}
-
-/// The claims of an experiment, or of a paper's overview; none of what is not
-/// registered.
-std::vector<Claim> claims_of(const std::string& name) {
-  if (const auto e = registry().find(name)) return e->claims;
-  for (const Overview& o : registry().overviews())
-    if (o.paper == name) return o.claims;
-  return {};
-}
-
-/// The cases of a profile as if they had been run, without a number: sizes and
-/// seeds alone.
-Results planned(const std::string& profile) {
-  const auto known = registry().profiles();
-  if (std::find(known.begin(), known.end(), profile) == known.end()) return {};
-  std::vector<CaseRecord> cases;
-  for (const Case& c : registry().expand(profile)) {
-    CaseRecord record{.info = c.info, .data = {}, .stages = {}};
-    for (const std::string& name : c.info.stages) {
-      StageRecord stage;
-      stage.stage = name;
-      record.stages.push_back(std::move(stage));
-    }
-    cases.push_back(std::move(record));
-  }
-  return Results(std::move(cases));
-}
-
-/// Tables of a paper's own section that its campaign did not know yet, by what
-/// results.json keeps.
-void add_tables(const std::string& paper,
-                const Results& stages,
-                const Published& published,
-                Json& tables) {
-  if (!tables.empty()) return;
-  for (const Overview& o : registry().overviews())
-    if (o.paper == paper && o.report)
-      for (const Table& table : o.report(stages, published).tables)
-        tables.push_back(to_markdown(table));
-}
-
-/// A digest keeps the numbers of its conditions: each claim is judged by what
-/// is registered now, and has the cause that it states now. One that the
-/// campaign did not know yet waits for a run.
-/// `stages` are what results.json keeps.
-void renew(Json& digest, const Results& stages, const Published& published) {
-  const Results plan = planned(digest.at("provenance").value("profile", ""));
-  for (auto& section : digest.at("sections")) {
-    const std::string experiment = section.at("experiment");
-    add_tables(experiment, stages, published, section.at("tables"));
-    Json& kept = section.at("claims");
-    for (const Claim& now : claims_of(experiment)) {
-      const auto own = std::find_if(kept.begin(), kept.end(), [&](Json& claim) {
-        return claim.at("id") == now.id;
-      });
-      ClaimResult before{.evidence = kNotKept};
-      if (own != kept.end()) before = claim_from(*own);
-      const Evidence planned{plan, published, experiment},
-          left{stages, published, experiment};
-      const ClaimResult again = judge_again(now, before, {planned, left});
-      Json judged = to_json(again);
-      judged["cases"] = cases_behind(now, again, left);
-      if (own != kept.end())
-        *own = std::move(judged);
-      else
-        kept.push_back(std::move(judged));
-    }
-  }
-}
-
-}  // namespace
-
-NamedDigest published_digest(const fs::path& folder,
-                             const Published& published) {
-  const fs::path path = folder / "digest.json";
-  const std::string bytes = read_file(path);
-  try {
-    auto digest = parse_json<Json>(bytes);
-    if (!is_intact(digest)) throw std::runtime_error("it fails its checksum");
-    const Json results = results_beside(folder, digest);
-    require_figures(folder, digest);
-    NamedDigest named{
-        folder.filename().string(), digest, cpu_seconds(results), digest};
-    renew(named.digest, summarized_results(results), published);
-    results_markdown({named});
-    experiment_pages({named});
-    return named;
-  } catch (const std::exception& error) {
-    throw StoreError(
-        fmt::format("{} is damaged: {} (write it again with report --publish)",
-                    path.string(),
-                    error.what()));
-  }
-}
-
-namespace {
-
-/// The folders of `directory` that hold a digest, by name.
-std::vector<NamedDigest> digests(const fs::path& directory) {
-  if (!is_folder(directory))
-    throw UsageError(fmt::format("there is no directory '{}' of campaigns",
-                                 directory.string()));
-  std::vector<fs::path> paths;
-  for (const auto& entry : fs::directory_iterator(directory))
-    if (is_there(entry.path() / "digest.json")) paths.push_back(entry.path());
-  std::sort(paths.begin(), paths.end());
-  const Published published(published_directory());
-  std::vector<NamedDigest> found;
-  for (const auto& path : paths)
-    found.push_back(published_digest(path, published));
-  if (found.empty())
-    throw ExitError(ExitCode::nothing_matched,
-                    fmt::format("no folder of '{}' holds a digest.json; "
-                                "report --publish writes one",
-                                directory.string()));
-  return found;
-}
 
 /// Pages of each campaign in a folder of its name, what leads to them, the
 /// newest first, and the history of the gate where git has one.
@@ -195,7 +36,7 @@ void write_html(const fs::path& directory,
   std::vector<CampaignPages> all;
   for (const NamedDigest& c : newest_first(found)) {
     CampaignPages pages{.name = c.name,
-                        .command = campaign_command(c.digest.at("provenance")),
+                        .command = campaign_command(c.name),
                         .provenance = c.digest.at("provenance"),
                         .sections = sections_of(c.digest)};
     nlohmann::ordered_json origin = pages.provenance;
@@ -271,7 +112,7 @@ ExitCode results_verb(const Arguments& arguments) {
                "DIR"}},
              arguments))
     return ExitCode::good;
-  const auto found = digests(campaigns);
+  const auto found = published_digests(campaigns);
   if (!html.empty()) {
     write_html(html, campaigns, found);
     fmt::print("{} campaigns: {}\n",

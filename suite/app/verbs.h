@@ -37,6 +37,7 @@ ExitCode run_verb(const Arguments& arguments);
 ExitCode list_verb(const Arguments& arguments);
 ExitCode report_verb(const Arguments& arguments);
 ExitCode results_verb(const Arguments& arguments);
+ExitCode reproduce_verb(const Arguments& arguments);
 ExitCode history_verb(const Arguments& arguments);
 ExitCode verify_verb(const Arguments& arguments);
 ExitCode merge_verb(const Arguments& arguments);

@@ -47,9 +47,7 @@ Json origin() {
           {"cpu_model", "A processor"},
           {"num_cpus", 2},
           {"git_revision", "abc"},
-          {"papers", {"jpo: A. Author: A title. A venue, 2024."}},
-          {"options",
-           {{"filter", {"jpo/", "-head"}}, {"set", {"n=8"}}, {"seeds", "3"}}}};
+          {"papers", {"jpo: A. Author: A title. A venue, 2024."}}};
 }
 
 NamedDigest named(const char* name, Verdict of_paper, Verdict of_suite) {
@@ -94,12 +92,27 @@ TEST(Digest, PageOfAnExperimentSaysWhereItsNumbersComeFrom) {
                 "| P1 | a \\| b (Sec. 4) | reproduced | 0.98 (> 0.5) | first |",
                 "| R1 | range | fails |",
                 "## Campaign first",
-                "`./bench --profile=paper '--filter=jpo/' '--filter=-head' "
-                "'--set=n=8' --seeds=3`",
+                "`./bench reproduce first`",
                 "2024-05-06, A processor (2 cores)",
                 "A table",
                 "![Fig. 3 · Curves](../../reports/campaigns/first/figures/"
                 "jpo-toy-curves.svg)"});
+}
+
+TEST(LatestClaims, ChangedOnesAreThoseOfAnotherVerdictOrNone) {
+  const auto latest = [](Verdict of_paper, Verdict of_suite) {
+    return latest_claims({named("a", of_paper, of_suite)});
+  };
+  const Papers then = latest(Verdict::reproduced, Verdict::reproduced);
+  EXPECT_TRUE(changed_claims(then, then).empty());
+  const auto changed = changed_claims(
+      then, latest(Verdict::reproduced, Verdict::not_reproduced));
+  ASSERT_EQ(changed.size(), 1U);
+  EXPECT_EQ(changed[0].key, ClaimKey("jpo/toy", "R1"));
+  EXPECT_EQ(changed[0].now, Verdict::not_reproduced);
+  const auto gone = changed_claims(then, {});
+  ASSERT_EQ(gone.size(), 2U);
+  EXPECT_EQ(gone[0].now, Verdict::not_judged);
 }
 
 TEST(Digest, KeepsThePapersFiguresAndNoFilms) {

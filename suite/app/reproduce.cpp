@@ -1,0 +1,203 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <set>
+
+#include "suite/app/again.h"
+#include "suite/app/flags.h"
+#include "suite/app/published_campaign.h"
+#include "suite/app/verbs.h"
+#include "suite/harness/columns.h"
+#include "suite/harness/output.h"
+#include "suite/harness/progress.h"
+#include "suite/results/file.h"
+#include "suite/results/verdict_words.h"
+
+namespace physinv {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ReproduceFlags {
+  std::vector<std::string> names;
+  std::string paper, campaigns = "reports/campaigns", out = "results/reproduce";
+  int jobs = 0;
+  bool dry = false;
+};
+
+void refuse_unknown(const ReproduceFlags& flags,
+                    const std::vector<NamedDigest>& campaigns) {
+  if (flags.names.empty() == flags.paper.empty())
+    throw UsageError(
+        "name published campaigns, or a paper with --paper=KEY; one of both is "
+        "expected");
+  for (const std::string& name : flags.names)
+    if (std::none_of(campaigns.begin(), campaigns.end(), [&](const auto& c) {
+          return c.name == name;
+        }))
+      throw ExitError(
+          ExitCode::nothing_matched,
+          fmt::format("there is no campaign '{}' in {}; 'results' lists them",
+                      name,
+                      flags.campaigns));
+}
+
+std::string keys_of(const Papers& papers) {
+  std::vector<std::string> keys;
+  for (const auto& [key, claims] : papers)
+    if (!key.empty()) keys.push_back(key);
+  return fmt::format("{}", fmt::join(keys, ", "));
+}
+
+std::string plan_text(const std::vector<Again>& all) {
+  Columns table({"<campaign", "cases", "CPU time", "<decides"});
+  double seconds = 0;
+  std::size_t cases = 0, unknown = 0;
+  for (const Again& a : all) {
+    std::vector<std::string> decides;
+    for (const ClaimKey& claim : a.decides) decides.push_back(name_of(claim));
+    table.add({a.name,
+               std::to_string(a.size()),
+               duration_text(a.cpu_seconds),
+               fmt::format("{}", fmt::join(decides, ", "))});
+    seconds += a.cpu_seconds, cases += a.size(), unknown += a.unknown;
+  }
+  std::string text = table.text(Screen::of(stdout).room());
+  text += fmt::format("{} campaigns, {} cases, {} of CPU when published\n",
+                      all.size(),
+                      cases,
+                      duration_text(seconds));
+  if (unknown > 0)
+    text +=
+        fmt::format("{} cases of them are not registered any more\n", unknown);
+  return text;
+}
+
+/// What a verb ended with, if that leaves something to go on with.
+std::optional<std::string> trouble(ExitCode (*verb)(const Arguments&),
+                                   const Arguments& arguments) {
+  try {
+    verb(arguments);
+    return {};
+  } catch (const ExitError& error) {
+    if (error.code() != ExitCode::case_failed &&
+        error.code() != ExitCode::incomplete)
+      throw;
+    return error.what();
+  }
+}
+
+/// Runs one into OUT/NAME and publishes it to OUT/campaigns/NAME.
+std::vector<std::string> run_again(const Again& again,
+                                   const ReproduceFlags& flags) {
+  const fs::path store = fs::path(flags.out) / again.name;
+  std::vector<std::string> troubles;
+  for (const auto& [profile, names] : again.cases) {
+    const std::string list = fmt::format("{}.{}.txt", store.string(), profile);
+    make_directory(flags.out);
+    write_atomically(list, fmt::format("{}\n", fmt::join(names, "\n")));
+    Arguments arguments{"--profile=" + profile,
+                        "--seeds=" + again.seeds,
+                        "--cases=" + list,
+                        "--out=" + store.string(),
+                        "--no-report"};
+    for (const std::string& set : again.sets)
+      arguments.push_back("--set=" + set);
+    if (flags.jobs > 0)
+      arguments.push_back(fmt::format("--jobs={}", flags.jobs));
+    if (auto t = trouble(run_verb, arguments)) troubles.push_back(*t);
+  }
+  const fs::path kept = fs::path(flags.out) / "campaigns" / again.name;
+  if (auto t =
+          trouble(report_verb, {store.string(), "--publish=" + kept.string()}))
+    troubles.push_back(*t);
+  return troubles;
+}
+
+/// Of the claims that these campaigns decide, those that come to another
+/// verdict than the published one; how many.
+std::size_t show_changes(const std::vector<Again>& all,
+                         const Papers& published,
+                         const Papers& here) {
+  std::set<ClaimKey> decided;
+  for (const Again& a : all) decided.insert(a.decides.begin(), a.decides.end());
+  auto changed = changed_claims(published, here);
+  std::erase_if(
+      changed, [&](const ChangedClaim& c) { return !decided.contains(c.key); });
+  Columns table({"<claim", "<published", "<here", "<says"});
+  for (const ChangedClaim& c : changed)
+    table.add({name_of(c.key),
+               std::string(words_of(c.then, c.origin)),
+               std::string(words_of(c.now, c.origin)),
+               c.says});
+  if (!changed.empty()) fmt::print("{}", table.text(Screen::of(stdout).room()));
+  fmt::print("{} of {} claims have the published verdict\n",
+             decided.size() - changed.size(),
+             decided.size());
+  return changed.size();
+}
+
+}  // namespace
+
+ExitCode reproduce_verb(const Arguments& arguments) {
+  ReproduceFlags flags;
+  if (!parse(
+          "reproduce",
+          "Runs published campaigns again, case by case as they were run, "
+          "and writes the same pages of what comes out: all that decide a "
+          "claim of a paper, or those that are named. What is finished "
+          "is reused. Exit 7 if a claim comes to another verdict, 10 if "
+          "something did not run.",
+          {{.name = "CAMPAIGN",
+            .help = "of RESULTS.md, such as 41-paper-jpo-billiards",
+            .to = &flags.names,
+            .optional = true},
+           {"--paper", "jpo, hig, sip or physgrad", &flags.paper, "KEY"},
+           {"--campaigns",
+            "folder of published campaigns (default reports/campaigns)",
+            &flags.campaigns,
+            "DIR"},
+           {"--out", "where to (default results/reproduce)", &flags.out, "DIR"},
+           {"-j,--jobs", "worker processes; default: cores", &flags.jobs},
+           {"--dry-run", "say what would run, and what it took", &flags.dry}},
+          arguments))
+    return ExitCode::good;
+  const auto campaigns = published_digests(flags.campaigns);
+  refuse_unknown(flags, campaigns);
+  const Papers latest = latest_claims(campaigns);
+  const auto all = to_run_again(
+      campaigns, latest, flags.campaigns, flags.names, flags.paper);
+  if (all.empty())
+    throw ExitError(ExitCode::nothing_matched,
+                    fmt::format("no campaign in {} decides a claim of '{}'; "
+                                "papers are {}",
+                                flags.campaigns,
+                                flags.paper,
+                                keys_of(latest)));
+  fmt::print("{}", plan_text(all));
+  if (flags.dry) return ExitCode::good;
+  std::vector<std::string> troubles;
+  for (const Again& again : all)
+    for (const std::string& t : run_again(again, flags))
+      troubles.push_back(again.name + ": " + t);
+  const std::string kept = flags.out + "/campaigns";
+  results_verb({"--campaigns=" + kept, "--out=" + flags.out + "/RESULTS.md"});
+  const int changed =
+      show_changes(all, latest, latest_claims(published_digests(kept)));
+  if (!troubles.empty())
+    throw ExitError(ExitCode::incomplete,
+                    fmt::format("{} campaigns did not run whole, first {}",
+                                troubles.size(),
+                                troubles.front()));
+  if (changed > 0)
+    throw ExitError(ExitCode::claim,
+                    fmt::format("{} claims come to another verdict than "
+                                "the published one",
+                                changed));
+  return ExitCode::good;
+}
+
+}  // namespace physinv

@@ -1,0 +1,41 @@
+"""`reproduce` runs published campaigns again: every one of them by cases that are
+registered, and a cheap one to the published verdicts.
+
+    reproduce_test.py PROGRAM SOURCES"""
+
+import os
+import re
+import subprocess
+import sys
+import tempfile
+
+PROGRAM, SOURCES = (os.path.abspath(p) for p in sys.argv[1:3])
+CAMPAIGNS = SOURCES + "/reports/campaigns"
+CHEAP = "27-paper-jpo-clipping"
+
+
+def reproduce(code, *arguments, cwd):
+    done = subprocess.run(
+        [PROGRAM, "reproduce", "--campaigns=" + CAMPAIGNS, *arguments],
+        cwd=cwd, capture_output=True, text=True)
+    assert done.returncode == code, (arguments, done)
+    return done.stdout + done.stderr
+
+
+with tempfile.TemporaryDirectory() as d:
+    planned = reproduce(0, *sorted(os.listdir(CAMPAIGNS)), "--dry-run", cwd=d)
+    assert "not registered" not in planned, planned
+    assert f"{len(os.listdir(CAMPAIGNS))} campaigns" in planned, planned
+    of_paper = reproduce(0, "--paper=physgrad", "--dry-run", cwd=d)
+    assert "physgrad" in of_paper and "jpo/" not in of_paper, of_paper
+    assert "one of both" in reproduce(2, cwd=d)
+    assert "no campaign 'none'" in reproduce(3, "none", cwd=d)
+    assert "papers are hig, jpo" in reproduce(3, "--paper=none", cwd=d)
+    assert not os.listdir(d), os.listdir(d)
+
+    made = reproduce(0, CHEAP, "--out=again", "--jobs=1", cwd=d)
+    same, of = re.search(r"(\d+) of (\d+) claims have", made).groups()
+    assert same == of != "0", made
+    assert os.path.isfile(d + "/again/RESULTS.md")
+    assert " 0 stages run" in " " + reproduce(
+        0, CHEAP, "--out=again", "--jobs=1", cwd=d)
