@@ -47,7 +47,8 @@ Again again_of(const NamedDigest& campaign,
       if (!value.get<std::string>().starts_with("seeds="))
         again.sets.push_back(value);
   std::set<std::uint64_t> seeds;
-  for (const CaseRecord& c : published_results(folder).cases()) {
+  const Results results = published_results(folder);
+  for (const CaseRecord& c : results.cases()) {
     if (!paper.empty() && paper_of(c.info.experiment) != paper) continue;
     const std::string& own = c.info.profile;
     again.cases[own.empty() ? provenance.value("profile", "") : own].push_back(
@@ -69,14 +70,9 @@ std::size_t Again::size() const {
   return all;
 }
 
-std::string name_of(const ClaimKey& claim) {
-  return claim.first + ' ' + claim.second;
-}
-
 std::vector<Again> to_run_again(const std::vector<NamedDigest>& campaigns,
                                 const Papers& latest,
                                 const fs::path& folder,
-                                const std::vector<std::string>& names,
                                 const std::string& paper) {
   std::map<std::string, std::vector<ClaimKey>> decides;
   for (const auto& [key, claims] : latest)
@@ -86,9 +82,7 @@ std::vector<Again> to_run_again(const std::vector<NamedDigest>& campaigns,
           decides[found.campaign].push_back(claim);
   std::vector<Again> all;
   for (const NamedDigest& c : campaigns) {
-    const bool named =
-        std::find(names.begin(), names.end(), c.name) != names.end();
-    if (names.empty() ? !decides.contains(c.name) : !named) continue;
+    if (!paper.empty() && !decides.contains(c.name)) continue;
     Again again = again_of(c, folder / c.name, paper);
     again.decides = decides[c.name];
     all.push_back(std::move(again));

@@ -23,16 +23,12 @@ struct Again {
   std::size_t size() const;  ///< cases
 };
 
-/// "jpo/billiards P1"
-std::string name_of(const ClaimKey& claim);
-
-/// Of `campaigns` below `folder`, those of these names or, without names, all
-/// that decide a claim of the paper, with the paper's cases alone; the
-/// cheapest first. `latest` is what all of them come to.
+/// Those of `campaigns` below `folder` that decide a claim (`latest` is what
+/// all of them come to) of this paper, with the paper's cases alone, or,
+/// without a paper, all of them; the cheapest first.
 std::vector<Again> to_run_again(const std::vector<NamedDigest>& campaigns,
                                 const Papers& latest,
                                 const std::filesystem::path& folder,
-                                const std::vector<std::string>& names,
                                 const std::string& paper);
 
 }  // namespace physinv

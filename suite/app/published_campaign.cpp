@@ -8,6 +8,8 @@
 #include <string>
 
 #include "suite/results/file.h"
+#include "suite/results/folder.h"
+#include "suite/results/json.h"
 #include "suite/results/loss_summary.h"
 #include "suite/results/results_file.h"
 #include "suite/results/results_json.h"
@@ -149,6 +151,32 @@ Results summarized_results(const Json& results) {
     c.stages.push_back(std::move(stage));
   }
   return Results(std::move(cases));
+}
+
+void publish_campaign(const fs::path& target,
+                      const Loaded& loaded,
+                      const std::vector<Section>& sections,
+                      Json provenance) {
+  const auto forget_place = [](auto& context) {
+    if (context.contains("options") && context["options"].is_object())
+      context["options"].erase("out");
+  };
+  auto results = results_of(loaded);
+  forget_place(results["context"]);
+  forget_place(provenance);
+  make_directory(target);
+  const Folder folder(target);
+  auto digest = digest_json(sections, provenance);
+  // Neither is altered alone.
+  digest["results"] = checksum_of(results);
+  digest["checksum"] = checksum_of(digest);
+  results["context"]["physinv"]["digest"] = digest["checksum"];
+  if (const auto figures = kept_figures(sections); !figures.empty()) {
+    const Folder below = folder.make("figures");
+    for (const auto& [name, svg] : figures) below.write(name, svg);
+  }
+  folder.write("results.json.gz", gzipped(sealed(std::move(results)).dump(1)));
+  folder.write("digest.json", digest.dump(1) + '\n');
 }
 
 Results published_results(const fs::path& directory) {

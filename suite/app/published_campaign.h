@@ -10,6 +10,7 @@
 
 #include "reports/digest.h"
 #include "reports/report.h"
+#include "suite/app/load.h"
 #include "suite/results/published.h"
 #include "suite/results/results.h"
 
@@ -22,10 +23,19 @@ bool is_published(const std::filesystem::path& directory);
 /// with the file's name if it is damaged.
 NamedDigest published_digest(const std::filesystem::path& directory,
                              const Published& published);
-/// Those of the folders of `directory` that hold one, by name. UsageError if
-/// there is no such directory, ExitError if none holds one.
+/// Those of the folders of `directory` that hold one, by name; or of these
+/// names alone. UsageError if there is no such directory, ExitError if none
+/// holds one, or one of the names is not there.
 std::vector<NamedDigest> published_digests(
-    const std::filesystem::path& directory);
+    const std::filesystem::path& directory,
+    const std::vector<std::string>& names = {});
+
+/// Keeps a campaign in a folder, so that a later one, and the page of results,
+/// can be made from it; without the directory that it lay in.
+void publish_campaign(const std::filesystem::path& folder,
+                      const Loaded& loaded,
+                      const std::vector<Section>& sections,
+                      nlohmann::ordered_json provenance);
 
 /// Its figures, by experiment.
 std::map<std::string, std::vector<Picture>> kept_pictures(

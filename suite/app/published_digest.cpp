@@ -8,6 +8,7 @@
 #include "reports/latest_claims.h"
 #include "reports/results_page.h"
 #include "reports/tables.h"
+#include "suite/app/installed.h"
 #include "suite/app/published_campaign.h"
 #include "suite/evidence/claim.h"
 #include "suite/harness/errors.h"
@@ -154,7 +155,8 @@ NamedDigest published_digest(const fs::path& folder,
   }
 }
 
-std::vector<NamedDigest> published_digests(const fs::path& directory) {
+std::vector<NamedDigest> published_digests(
+    const fs::path& directory, const std::vector<std::string>& names) {
   if (!is_folder(directory))
     throw UsageError(fmt::format("there is no directory '{}' of campaigns",
                                  directory.string()));
@@ -162,6 +164,21 @@ std::vector<NamedDigest> published_digests(const fs::path& directory) {
   for (const auto& entry : fs::directory_iterator(directory))
     if (is_there(entry.path() / "digest.json")) paths.push_back(entry.path());
   std::sort(paths.begin(), paths.end());
+  for (const std::string& name : names)
+    if (std::none_of(paths.begin(), paths.end(), [&](const fs::path& path) {
+          return path.filename() == name;
+        }))
+      throw ExitError(ExitCode::nothing_matched,
+                      fmt::format("there is no campaign '{}' in {}; "
+                                  "RESULTS.md names them",
+                                  name,
+                                  directory.string()));
+  if (!names.empty())
+    std::erase_if(paths, [&](const fs::path& path) {
+      return std::none_of(names.begin(), names.end(), [&](const auto& name) {
+        return path.filename() == name;
+      });
+    });
   const Published published(published_directory());
   std::vector<NamedDigest> found;
   for (const auto& path : paths)

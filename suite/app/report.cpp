@@ -40,34 +40,6 @@ std::string unknown_text(const Results& results) {
   return fmt::format("{}", fmt::join(unknown, ", "));
 }
 
-/// What a later campaign, and the page of results, can be made from; without
-/// the directory that it lay in.
-void publish_campaign(const fs::path& target,
-                      const Loaded& loaded,
-                      const std::vector<Section>& sections,
-                      nlohmann::ordered_json provenance) {
-  const auto forget_place = [](auto& context) {
-    if (context.contains("options") && context["options"].is_object())
-      context["options"].erase("out");
-  };
-  auto results = results_of(loaded);
-  forget_place(results["context"]);
-  forget_place(provenance);
-  make_directory(target);
-  const Folder folder(target);
-  auto digest = digest_json(sections, provenance);
-  // Neither is altered alone.
-  digest["results"] = checksum_of(results);
-  digest["checksum"] = checksum_of(digest);
-  results["context"]["physinv"]["digest"] = digest["checksum"];
-  if (const auto figures = kept_figures(sections); !figures.empty()) {
-    const Folder below = folder.make("figures");
-    for (const auto& [name, svg] : figures) below.write(name, svg);
-  }
-  folder.write("results.json.gz", gzipped(sealed(std::move(results)).dump(1)));
-  folder.write("digest.json", digest.dump(1) + '\n');
-}
-
 /// The list named by the flag, else the one beside the published numbers.
 std::vector<ExpectedFailure> expected_failures(
     const std::string& named,

@@ -8,12 +8,14 @@
 
 #include "suite/app/again.h"
 #include "suite/app/flags.h"
+#include "suite/app/load.h"
 #include "suite/app/published_campaign.h"
+#include "suite/app/sections.h"
 #include "suite/app/verbs.h"
 #include "suite/harness/columns.h"
 #include "suite/harness/output.h"
 #include "suite/harness/progress.h"
-#include "suite/results/file.h"
+#include "suite/harness/select.h"
 #include "suite/results/verdict_words.h"
 
 namespace physinv {
@@ -28,23 +30,6 @@ struct ReproduceFlags {
   bool dry = false;
 };
 
-void refuse_unknown(const ReproduceFlags& flags,
-                    const std::vector<NamedDigest>& campaigns) {
-  if (flags.names.empty() == flags.paper.empty())
-    throw UsageError(
-        "name published campaigns, or a paper with --paper=KEY; one of both is "
-        "expected");
-  for (const std::string& name : flags.names)
-    if (std::none_of(campaigns.begin(), campaigns.end(), [&](const auto& c) {
-          return c.name == name;
-        }))
-      throw ExitError(
-          ExitCode::nothing_matched,
-          fmt::format("there is no campaign '{}' in {}; 'results' lists them",
-                      name,
-                      flags.campaigns));
-}
-
 std::string keys_of(const Papers& papers) {
   std::vector<std::string> keys;
   for (const auto& [key, claims] : papers)
@@ -52,17 +37,26 @@ std::string keys_of(const Papers& papers) {
   return fmt::format("{}", fmt::join(keys, ", "));
 }
 
+/// "jpo P2 P6, jpo/billiards P1": each experiment once.
+std::string text_of(const std::vector<ClaimKey>& claims) {
+  std::string text, experiment;
+  for (const auto& [of, id] : claims) {
+    if (of != experiment)
+      text += (text.empty() ? "" : ", ") + (experiment = of);
+    text += ' ' + id;
+  }
+  return text;
+}
+
 std::string plan_text(const std::vector<Again>& all) {
   Columns table({"<campaign", "cases", "CPU time", "<decides"});
   double seconds = 0;
   std::size_t cases = 0, unknown = 0;
   for (const Again& a : all) {
-    std::vector<std::string> decides;
-    for (const ClaimKey& claim : a.decides) decides.push_back(name_of(claim));
     table.add({a.name,
                std::to_string(a.size()),
                duration_text(a.cpu_seconds),
-               fmt::format("{}", fmt::join(decides, ", "))});
+               text_of(a.decides)});
     seconds += a.cpu_seconds, cases += a.size(), unknown += a.unknown;
   }
   std::string text = table.text(Screen::of(stdout).room());
@@ -76,45 +70,44 @@ std::string plan_text(const std::vector<Again>& all) {
   return text;
 }
 
-/// What a verb ended with, if that leaves something to go on with.
-std::optional<std::string> trouble(ExitCode (*verb)(const Arguments&),
-                                   const Arguments& arguments) {
+/// What a run ended with, if the next one can go on.
+std::optional<std::string> trouble_of_run(const Arguments& arguments) {
   try {
-    verb(arguments);
+    run_verb(arguments);
     return {};
   } catch (const ExitError& error) {
-    if (error.code() != ExitCode::case_failed &&
-        error.code() != ExitCode::incomplete)
-      throw;
+    if (error.code() != ExitCode::case_failed) throw;
     return error.what();
   }
 }
 
-/// Runs one into OUT/NAME and publishes it to OUT/campaigns/NAME.
+/// Into OUT/NAME; what was wrong.
 std::vector<std::string> run_again(const Again& again,
-                                   const ReproduceFlags& flags) {
-  const fs::path store = fs::path(flags.out) / again.name;
+                                   const ReproduceFlags& flags,
+                                   const std::string& store) {
   std::vector<std::string> troubles;
   for (const auto& [profile, names] : again.cases) {
-    const std::string list = fmt::format("{}.{}.txt", store.string(), profile);
-    make_directory(flags.out);
-    write_atomically(list, fmt::format("{}\n", fmt::join(names, "\n")));
     Arguments arguments{"--profile=" + profile,
                         "--seeds=" + again.seeds,
-                        "--cases=" + list,
-                        "--out=" + store.string(),
+                        "--out=" + store,
                         "--no-report"};
+    for (const std::string& name : names)
+      arguments.push_back("--filter=" + exactly(name));
     for (const std::string& set : again.sets)
       arguments.push_back("--set=" + set);
     if (flags.jobs > 0)
       arguments.push_back(fmt::format("--jobs={}", flags.jobs));
-    if (auto t = trouble(run_verb, arguments)) troubles.push_back(*t);
+    if (auto t = trouble_of_run(arguments)) troubles.push_back(*t);
   }
-  const fs::path kept = fs::path(flags.out) / "campaigns" / again.name;
-  if (auto t =
-          trouble(report_verb, {store.string(), "--publish=" + kept.string()}))
-    troubles.push_back(*t);
   return troubles;
+}
+
+void publish(const std::string& store, const fs::path& folder) {
+  const Loaded loaded = load(store);
+  const Published numbers = printed_numbers();
+  const auto sections = sections_of(loaded.results, numbers);
+  publish_campaign(
+      folder, loaded, sections, provenance(loaded, sections, numbers));
 }
 
 /// Of the claims that these campaigns decide, those that come to another
@@ -129,7 +122,7 @@ std::size_t show_changes(const std::vector<Again>& all,
       changed, [&](const ChangedClaim& c) { return !decided.contains(c.key); });
   Columns table({"<claim", "<published", "<here", "<says"});
   for (const ChangedClaim& c : changed)
-    table.add({name_of(c.key),
+    table.add({text_of({c.key}),
                std::string(words_of(c.then, c.origin)),
                std::string(words_of(c.now, c.origin)),
                c.says});
@@ -165,11 +158,14 @@ ExitCode reproduce_verb(const Arguments& arguments) {
            {"--dry-run", "say what would run, and what it took", &flags.dry}},
           arguments))
     return ExitCode::good;
-  const auto campaigns = published_digests(flags.campaigns);
-  refuse_unknown(flags, campaigns);
+  if (flags.names.empty() == flags.paper.empty())
+    throw UsageError(
+        "name published campaigns, or a paper with --paper=KEY; one of both is "
+        "expected");
+  const auto campaigns = published_digests(flags.campaigns, flags.names);
   const Papers latest = latest_claims(campaigns);
-  const auto all = to_run_again(
-      campaigns, latest, flags.campaigns, flags.names, flags.paper);
+  const auto all =
+      to_run_again(campaigns, latest, flags.campaigns, flags.paper);
   if (all.empty())
     throw ExitError(ExitCode::nothing_matched,
                     fmt::format("no campaign in {} decides a claim of '{}'; "
@@ -180,10 +176,13 @@ ExitCode reproduce_verb(const Arguments& arguments) {
   fmt::print("{}", plan_text(all));
   if (flags.dry) return ExitCode::good;
   std::vector<std::string> troubles;
-  for (const Again& again : all)
-    for (const std::string& t : run_again(again, flags))
-      troubles.push_back(again.name + ": " + t);
   const std::string kept = flags.out + "/campaigns";
+  for (const Again& again : all) {
+    const std::string store = flags.out + '/' + again.name;
+    for (const std::string& t : run_again(again, flags, store))
+      troubles.push_back(again.name + ": " + t);
+    publish(store, fs::path(kept) / again.name);
+  }
   results_verb({"--campaigns=" + kept, "--out=" + flags.out + "/RESULTS.md"});
   const int changed =
       show_changes(all, latest, latest_claims(published_digests(kept)));

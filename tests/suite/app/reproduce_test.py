@@ -11,12 +11,12 @@ import tempfile
 
 PROGRAM, SOURCES = (os.path.abspath(p) for p in sys.argv[1:3])
 CAMPAIGNS = SOURCES + "/reports/campaigns"
-CHEAP = "27-paper-jpo-clipping"
+CHEAP, OF_TWO_PAPERS = "27-paper-jpo-clipping", "24-paper-physgrad-alignment"
 
 
-def reproduce(code, *arguments, cwd):
+def reproduce(code, *arguments, cwd, campaigns=CAMPAIGNS):
     done = subprocess.run(
-        [PROGRAM, "reproduce", "--campaigns=" + CAMPAIGNS, *arguments],
+        [PROGRAM, "reproduce", "--campaigns=" + campaigns, *arguments],
         cwd=cwd, capture_output=True, text=True)
     assert done.returncode == code, (arguments, done)
     return done.stdout + done.stderr
@@ -26,16 +26,24 @@ with tempfile.TemporaryDirectory() as d:
     planned = reproduce(0, *sorted(os.listdir(CAMPAIGNS)), "--dry-run", cwd=d)
     assert "not registered" not in planned, planned
     assert f"{len(os.listdir(CAMPAIGNS))} campaigns" in planned, planned
-    of_paper = reproduce(0, "--paper=physgrad", "--dry-run", cwd=d)
-    assert "physgrad" in of_paper and "jpo/" not in of_paper, of_paper
     assert "one of both" in reproduce(2, cwd=d)
     assert "no campaign 'none'" in reproduce(3, "none", cwd=d)
-    assert "papers are hig, jpo" in reproduce(3, "--paper=none", cwd=d)
     assert not os.listdir(d), os.listdir(d)
+
+    few = d + "/few"
+    os.mkdir(few)
+    for name in CHEAP, OF_TWO_PAPERS:
+        os.symlink(f"{CAMPAIGNS}/{name}", f"{few}/{name}")
+    of_paper = reproduce(0, "--paper=physgrad", "--dry-run", cwd=d,
+                         campaigns=few)
+    assert OF_TWO_PAPERS in of_paper and CHEAP not in of_paper, of_paper
+    assert "jpo/" not in of_paper, of_paper
+    assert "papers are jpo, physgrad" in reproduce(
+        3, "--paper=none", cwd=d, campaigns=few)
 
     made = reproduce(0, CHEAP, "--out=again", "--jobs=1", cwd=d)
     same, of = re.search(r"(\d+) of (\d+) claims have", made).groups()
     assert same == of != "0", made
     assert os.path.isfile(d + "/again/RESULTS.md")
-    assert " 0 stages run" in " " + reproduce(
+    assert "\n0 stages run" in reproduce(
         0, CHEAP, "--out=again", "--jobs=1", cwd=d)
