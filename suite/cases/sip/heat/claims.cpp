@@ -47,7 +47,15 @@ std::vector<Quantity> over_cells(
   return all;
 }
 bool any_cell(const GridPoint&) { return true; }
-bool small_set(const GridPoint& cell) { return cell.set <= 128; }
+/// Of Fig. 12, one of whose lines has one batch.
+std::function<bool(const GridPoint&)> batches_of(Index batch) {
+  return [=](const GridPoint& cell) { return cell.batch == batch; };
+}
+std::function<bool(const GridPoint&)> small_sets(Index batch) {
+  return [=](const GridPoint& cell) {
+    return cell.set <= 128 && cell.batch == batch;
+  };
+}
 
 Quantity sip_over_adam(const GridPoint& cell) {
   return worst_ratio({cell.id("sip")}, {cell.id("adam")}, end());
@@ -121,6 +129,34 @@ Quantity over_network(const char* method) {
                times(1. / (3 * 8), median({"adam-b8"}, seconds_per_update())));
 }
 
+std::string with_batches_of(Index batch) {
+  return ", batches of " + std::to_string(batch);
+}
+
+/// Each method's error on the test set rises again, with every batch.
+std::vector<Condition> overfit_small_sets() {
+  std::vector<Condition> all;
+  for (const Index batch : kBatches)
+    for (const auto& [method, title] :
+         {std::pair("sip", "SIP"), std::pair("adam", "Adam")})
+      all.push_back(
+          above(title + (", end over lowest, least" + with_batches_of(batch)),
+                least(over_cells(
+                    set_points(), of(method, rise_of), small_sets(batch))),
+                1.05));
+  return all;
+}
+
+std::vector<Condition> sip_below_on_every_set() {
+  std::vector<Condition> all;
+  for (const Index batch : kBatches)
+    all.push_back(
+        below("error over Adam's, worst set" + with_batches_of(batch),
+              most(over_cells(set_points(), sip_over_adam, batches_of(batch))),
+              1));
+  return all;
+}
+
 const std::vector<Claim> kPaper = {
     {.id = "P1",
      .where = "App. B.3, Fig. 10",
@@ -138,20 +174,18 @@ const std::vector<Claim> kPaper = {
                         "SIP, over the best cell", best_cell_ratio("sip"), 1.1),
                     at_most("Adam", best_cell_ratio("adam"), 1.1)},
      .cause =
-         not_run("1.7 CPU-hours: the rates of Fig. 11 at the profile paper")},
+         not_run("2.2 CPU-hours: the rates of Fig. 11 at the profile paper")},
     {.id = "P3",
      .where = "Fig. 12",
      .from = "paper",
      .says = "Both overfit sets of up to 128",
-     .conditions =
-         {above("SIP, end over lowest, least",
-                least(over_cells(set_points(), of("sip", rise_of), small_set)),
-                1.05),
-          above("Adam",
-                least(over_cells(set_points(), of("adam", rise_of), small_set)),
-                1.05)},
-     .cause = not_run(
-         "2.3 CPU-hours with P5: the sets of Fig. 12 at the profile paper")},
+     .conditions = overfit_small_sets(),
+     .cause = fails(
+         "after 2000 updates (one seed; the paper's number is not printed) the "
+         "test error of 32 examples still falls in batches of 4, with Adam of "
+         "all 32 at once, too; in batches of 32 SIP's rises by 8 % with 32 "
+         "examples and 5 % with 128, Adam's by 23 % with 128 in batches of "
+         "4")},
     {.id = "P4",
      .where = "Fig. 12",
      .from = "standard",
@@ -167,11 +201,11 @@ const std::vector<Claim> kPaper = {
      .where = "Fig. 12",
      .from = "paper",
      .says = "SIP's test error is below Adam's on every set",
-     .conditions = {below(
-         "error over Adam's, worst cell",
-         most(over_cells(set_points(), sip_over_adam, any_cell)),
-         1)},
-     .cause = not_run("with P3: the sets of Fig. 12 at the profile paper")},
+     .conditions = sip_below_on_every_set(),
+     .cause = not_run(
+         "with batches of 4 SIP's is at most 0.75 of Adam's on each of four "
+         "sets (one seed); 17 CPU-minutes for the two sets left in batches of "
+         "32, 2.2 CPU-hours for batches of 128")},
     {.id = "P6",
      .where = "Fig. 13",
      .from = "quick",

@@ -2,6 +2,7 @@
 /// finite training sets (Fig. 12).
 #pragma once
 
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,8 @@ inline constexpr const char* kName = "sip/heat";
 inline constexpr const char* kOperator = "sip/heat-fno";
 
 inline constexpr Index kSide = 64;  ///< cells
+
+inline constexpr Index kBatches[] = {4, 32, 128};
 
 /// One setting; the paper's own has no suffix.
 struct GridPoint {
@@ -40,12 +43,14 @@ inline std::vector<GridPoint> rates_with(const std::vector<Index>& batches) {
   return all;
 }
 
-inline std::vector<GridPoint> rate_points() { return rates_with({4, 32, 128}); }
+inline std::vector<GridPoint> rate_points() {
+  return rates_with({std::begin(kBatches), std::end(kBatches)});
+}
 
 inline std::vector<GridPoint> set_points() {
   std::vector<GridPoint> all;
   for (const Index set : {32, 128, 512, 2048})
-    for (const Index batch : {4, 32, 128}) all.push_back({batch, 3, set});
+    for (const Index batch : kBatches) all.push_back({batch, 3, set});
   return all;
 }
 
