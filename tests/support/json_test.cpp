@@ -9,7 +9,7 @@
 namespace physinv::test {
 namespace {
 
-Json parsed(const char* text) { return Json(Json::Raw::parse(text)); }
+Json parsed_json(const char* text) { return Json(Json::Raw::parse(text)); }
 
 /// What reading throws.
 template <class F>
@@ -23,7 +23,7 @@ std::string refusal(F&& read) {
 }
 
 TEST(ReferenceJson, WordsAreNumbersThatJsonLacks) {
-  const Json list = parsed(R"([1, 2.5, "inf", "-inf", "nan", null])");
+  const Json list = parsed_json(R"([1, 2.5, "inf", "-inf", "nan", null])");
   const std::vector<double> read = list;
   constexpr double kInf = std::numeric_limits<double>::infinity();
   EXPECT_EQ(read[0], 1);
@@ -35,8 +35,8 @@ TEST(ReferenceJson, WordsAreNumbersThatJsonLacks) {
 }
 
 TEST(ReferenceJson, WhatIsOfAnotherTypeIsNamed) {
-  const Json entry =
-      parsed(R"({"inputs": {"n": 2.5, "rate": "fast", "xi": [[1, 2, 3]]}})");
+  const Json entry = parsed_json(
+      R"({"inputs": {"n": 2.5, "rate": "fast", "xi": [[1, 2, 3]]}})");
   const Json in = entry.at("inputs");
   EXPECT_EQ(refusal([&] { (void)in.at("n").get<int>(); }),
             "inputs.n is 2.5, expected an integer");
@@ -49,12 +49,12 @@ TEST(ReferenceJson, WhatIsOfAnotherTypeIsNamed) {
   EXPECT_EQ(refusal([&] { (void)in.at("lr"); }), "no key lr in inputs");
   EXPECT_EQ(refusal([&] { (void)entry.at("expected"); }), "no key expected");
   EXPECT_EQ(in.at("xi")[0][1].get<int>(), 2);
-  EXPECT_EQ(parsed("12.0").get<int>(), 12);
-  EXPECT_THROW((void)parsed("1e24").get<int>(), std::runtime_error);
+  EXPECT_EQ(parsed_json("12.0").get<int>(), 12);
+  EXPECT_THROW((void)parsed_json("1e24").get<int>(), std::runtime_error);
 }
 
 TEST(ReferenceJson, RemembersWhatIsRead) {
-  const Json entry = parsed(R"({
+  const Json entry = parsed_json(R"({
       "description": "for people", "inputs": {"a": 1, "b": 2},
       "steps": [{"x": 1, "why": "so"}, {"x": 2, "y": 3}], "rtol": 1})");
   EXPECT_EQ(entry.unread(),
