@@ -1,6 +1,6 @@
 # Writes ${output}: what folders of suite/cases add to the registry, each by a
-# function that stands in a table, folders() of suite/cases/tables.h; of one
-# folder, register_all, for a program over it alone.
+# function that stands in a table, folders() of suite/cases/folders.h, and
+# register_all over that table, for a program over these folders.
 # Usage: cmake -D cases=suite/cases -D folders=jpo/billiards -D output=... -P ...
 set(declared)
 set(functions)
@@ -24,13 +24,8 @@ foreach(folder IN LISTS folders)
   endforeach()
   string(APPEND functions "}\n")
 endforeach()
-list(LENGTH folders count)
-set(all)
-if(count EQUAL 1)
-  set(all "void register_all(Registry& r) {\n  name_quantities();\n  ${function}(r);\n}\n")
-endif()
 file(CONFIGURE OUTPUT ${output} @ONLY CONTENT [[
-#include "suite/cases/tables.h"
+#include "suite/cases/folders.h"
 
 namespace physinv {
 
@@ -42,6 +37,11 @@ std::vector<CaseFolder> folders() {
   return {
 @table@  };
 }
-@all@
+
+void register_all(Registry& r) {
+  name_quantities();
+  for (const CaseFolder& folder : folders()) folder.add(r);
+}
+
 }  // namespace physinv
 ]])

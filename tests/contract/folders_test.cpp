@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "suite/cases/tables.h"
+#include "suite/cases/folders.h"
 
 namespace physinv {
 namespace {

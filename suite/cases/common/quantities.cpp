@@ -5,7 +5,7 @@
 
 #include <utility>
 
-#include "suite/cases/tables.h"
+#include "suite/cases/folders.h"
 
 namespace physinv {
 
