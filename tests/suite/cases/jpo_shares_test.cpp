@@ -3,11 +3,14 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "suite/cases/jpo/common/shares.h"
+#include "suite/cases/jpo/common/values.h"
 #include "suite/core/check.h"
+#include "suite/evidence/statistics.h"
+#include "suite/results/published.h"
 #include "tests/suite/evidence/campaigns.h"
 #include "tests/support/reference.h"
 
@@ -90,7 +93,7 @@ TEST(CompareLosses, OtherProblemsThrow) {
                ContractError);
 }
 
-class JpoMetricsTest : public testing::Test {
+class JpoEndings : public testing::Test {
  protected:
   // Seed 1 of jpo has not been refined yet; seed 0 is complete.
   Results results_{{
@@ -112,49 +115,52 @@ class JpoMetricsTest : public testing::Test {
                stage_of("solve", {0.5, 9, 0, 9}),
                stage_of("refine", {0.5, 9, 0, 9})}),
   }};
-  JpoMetrics metrics_{results_, "toy"};
-  const std::vector<Index> all_{4};
+  /// Of seed 0 or 1, at n = 4.
+  std::optional<double> of(const char* method,
+                           bool refined,
+                           std::uint64_t seed,
+                           const RunValue& value) const {
+    for (const Run& run : find_runs(evidence_, jpo::ending(method, refined)))
+      if (run.seed() == seed) return value(run);
+    return {};
+  }
+
+  Published published_;
+  Evidence evidence_{results_, published_, "toy"};
 };
 
-TEST_F(JpoMetricsTest, EndingIsTheLastUnrefinedStage) {
-  EXPECT_EQ(metrics_.ending("na", 4, 0, false)->stage, "solve");
-  EXPECT_EQ(metrics_.ending("jpo", 4, 0, false)->stage, "fit");
-  EXPECT_EQ(metrics_.ending("jpo", 4, 0, true)->stage, "refine");
-  EXPECT_EQ(metrics_.ending("jpo", 4, 1, true), nullptr);
-  EXPECT_EQ(metrics_.ending("gd", 4, 0, false), nullptr);
+TEST_F(JpoEndings, AreTheLastUnrefinedStages) {
+  const auto stage = [&](const char* method, bool refined, std::size_t run) {
+    const auto all = find_runs(evidence_, jpo::ending(method, refined));
+    return run < all.size() ? all[run].stage->stage : "";
+  };
+  EXPECT_EQ(stage("na", false, 0), "solve");
+  EXPECT_EQ(stage("jpo", false, 0), "fit");
+  EXPECT_EQ(stage("jpo", true, 0), "refine");
+  EXPECT_EQ(stage("jpo", true, 1), "") << "is not refined yet";
+  EXPECT_EQ(stage("bfgs", true, 0), "solve") << "has no refinement";
+  EXPECT_EQ(stage("gd", false, 0), "");
 }
 
-TEST_F(JpoMetricsTest, AMissingPartnerIsNotRun) {
-  EXPECT_FALSE(metrics_.shares("jpo", 4, 1, true, Equality::strict));
-  EXPECT_FALSE(metrics_.shares("supervised", 4, 0, false, Equality::strict));
-  EXPECT_FALSE(metrics_.mean_shares("gd", all_, false, Equality::strict));
-  EXPECT_FALSE(metrics_.solved_share("jpo", 8, 0, false, 1e-6));
-  EXPECT_FALSE(metrics_.share_of_decrease("jpo", 4, 1));
+TEST_F(JpoEndings, AMissingPartnerIsNotRun) {
+  EXPECT_FALSE(of("jpo", true, 1, jpo::better()));
+  EXPECT_FALSE(of("supervised", false, 0, jpo::better()));
+  EXPECT_FALSE(of("jpo", true, 1, jpo::decrease_before()));
 }
 
-TEST_F(JpoMetricsTest, SharesAndTheirMean) {
-  const auto s = metrics_.shares("jpo", 4, 0, true, Equality::strict);
-  ASSERT_TRUE(s);
-  EXPECT_EQ(s->better, 0.5);  // two below, one equal, one not a number
-  EXPECT_EQ(s->equal, 0.25);
-  EXPECT_EQ(s->worse, 0.25);
-  // Unrefined: 1 of 4 better and 1 equal, then 0 better and 0 equal.
-  const auto mean = metrics_.mean_shares("jpo", all_, false, Equality::strict);
-  ASSERT_TRUE(mean);
-  EXPECT_EQ(mean->pairs, 2);
-  EXPECT_EQ(mean->mean.better, 0.125);
-  EXPECT_EQ(mean->mean.equal, 0.125);
-  EXPECT_DOUBLE_EQ(*mean->better_std, 0.25 / std::sqrt(2.0));
+TEST_F(JpoEndings, HaveShares) {
+  // Two below, one equal, one not a number.
+  EXPECT_EQ(of("jpo", true, 0, jpo::better()), 0.5);
+  EXPECT_EQ(of("jpo", true, 0, jpo::equal()), 0.25);
+  EXPECT_EQ(of("jpo", true, 0, jpo::worse()), 0.25);
+  EXPECT_EQ(of("jpo", true, 0, jpo::f()), 0.625);
+  EXPECT_EQ(of("jpo", false, 0, jpo::solved(1e-2)), 0.5);
 }
 
-TEST_F(JpoMetricsTest, ShareOfDecrease) {
+TEST_F(JpoEndings, ShareOfDecrease) {
   // Problems 0 and 1: 1 / (1.001 - end); 2 and 3 never decrease.
   const double expected = 0.5 * (1 / (1.001 - 1e-9) + 1 / 1.001);
-  EXPECT_NEAR(*metrics_.share_of_decrease("jpo", 4, 0), expected, 1e-12);
-}
-
-TEST_F(JpoMetricsTest, SolvedShares) {
-  EXPECT_EQ(*metrics_.solved_share("jpo", 4, 0, false, 1e-2), 0.5);
+  EXPECT_NEAR(*of("jpo", true, 0, jpo::decrease_before()), expected, 1e-12);
 }
 
 TEST(SolvedTest, MayAskForTheTruthInsteadOfTheLoss) {
@@ -174,10 +180,6 @@ TEST(SolvedTest, MayAskForTheTruthInsteadOfTheLoss) {
   EXPECT_EQ(Solved(1e-6).count(c.data, s), 0);
   EXPECT_EQ(Solved(2).count(c.data, s), 3);
   EXPECT_EQ(Solved(1e-6).says(), "loss < 1e-06");
-
-  const Results results({c});
-  const JpoMetrics metrics(results, "toy");
-  EXPECT_DOUBLE_EQ(*metrics.solved_share("bfgs", 3, 0, false, near), 1.0 / 3);
 }
 
 }  // namespace

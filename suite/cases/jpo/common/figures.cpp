@@ -6,6 +6,7 @@
 
 #include "suite/cases/jpo/common/report.h"
 #include "suite/evidence/series.h"
+#include "suite/evidence/statistics.h"
 
 namespace physinv {
 namespace {
@@ -58,50 +59,42 @@ std::vector<double> plus_one(std::vector<double> iterations) {
 
 }  // namespace
 
+std::vector<double> JpoReport::values(const Select& runs,
+                                      Index n,
+                                      const RunValue& value) const {
+  return values_of(sample(evidence_, jpo::at(runs, n), value));
+}
+
 Series JpoReport::over_n(std::string label,
-                         const std::string& method,
-                         const PerCase& value,
+                         std::string method,
+                         const Select& runs,
+                         const RunValue& value,
                          Over over) const {
-  Series s{.label = std::move(label), .method = method, .markers = true};
-  for (const Index n : metrics_.sizes()) {
-    std::vector<double> values;
-    for (const std::uint64_t seed : metrics_.seeds()) {
-      if (const auto one = value(n, seed)) values.push_back(*one);
-    }
+  Series s{
+      .label = std::move(label), .method = std::move(method), .markers = true};
+  for (const Index n : sizes())
     (over == Over::means ? append_means : append_quantiles)(
-        s, static_cast<double>(n), values);
-  }
+        s, static_cast<double>(n), values(runs, n, value));
   return s;
 }
 
 Series JpoReport::f_series(const std::string& method, bool refined) const {
-  return over_n(method_title(method),
-                method,
-                [&](Index n, std::uint64_t seed) -> std::optional<double> {
-                  const auto one = metrics_.shares(
-                      method, n, seed, refined, Equality::strict);
-                  if (!one) return {};
-                  return one->f();
-                });
+  return over_n(
+      method_title(method), method, jpo::ending(method, refined), jpo::f());
 }
 
 Series JpoReport::loss_series(const std::string& method, bool refined) const {
-  return over_n(
-      method_title(method),
-      method,
-      [&](Index n, std::uint64_t seed) -> std::optional<double> {
-        const auto* end =
-            metrics_.ending(method, n, seed, refined && method != "bfgs");
-        if (end == nullptr) return {};
-        return end->loss.mean();
-      },
-      Over::quantiles);
+  return over_n(method_title(method),
+                method,
+                jpo::ending(method, refined),
+                jpo::mean_loss(),
+                Over::quantiles);
 }
 
 // BFGS against itself is equal everywhere: f_N = 1/2.
 Series JpoReport::reference_half() const {
   Series s{.label = "as good as BFGS", .method = "bfgs", .dashed = true};
-  for (const Index n : metrics_.sizes()) {
+  for (const Index n : sizes()) {
     s.x.push_back(static_cast<double>(n));
     s.y.push_back(0.5);
   }
@@ -171,7 +164,7 @@ Figure JpoReport::improvement() const {
 
 std::vector<Index> JpoReport::sizes_of_curves() const {
   if (!options_.curve_sizes.empty()) return options_.curve_sizes;
-  const auto all = metrics_.sizes();
+  const auto all = sizes();
   if (all.size() <= 4) return all;
   std::vector<Index> four;
   for (std::size_t k = 0; k < 4; ++k) {
@@ -183,12 +176,11 @@ std::vector<Index> JpoReport::sizes_of_curves() const {
 Series JpoReport::curve_series(const std::string& method, Index n) const {
   std::vector<const Curve*> curves;
   std::set<double> iterations;
-  for (const std::uint64_t seed : metrics_.seeds()) {
-    const StageRecord* stage = metrics_.ending(method, n, seed, false);
-    if (stage == nullptr || stage->curve.points() == 0) continue;
-    curves.push_back(&stage->curve);
-    iterations.insert(stage->curve.iteration.begin(),
-                      stage->curve.iteration.end());
+  for (const Run& run : find_runs(evidence_, jpo::at(jpo::plain(method), n))) {
+    const Curve& curve = run.stage->curve;
+    if (curve.points() == 0) continue;
+    curves.push_back(&curve);
+    iterations.insert(curve.iteration.begin(), curve.iteration.end());
   }
   Series s{.label = method_title(method), .method = method};
   for (const double iteration : iterations) {
@@ -230,13 +222,21 @@ std::string JpoReport::unknown_name(Index j) const {
                                       : fmt::format("unknown {}", j + 1);
 }
 
+const StageRecord* JpoReport::of_first_seed(const std::string& method,
+                                            Index n) const {
+  const auto seed = evidence_.results.seeds(options_.experiment).front();
+  for (const Run& run : find_runs(evidence_, jpo::at(jpo::plain(method), n)))
+    if (run.seed() == seed) return run.stage;
+  return nullptr;
+}
+
 std::optional<double> JpoReport::solution_of(Index n,
                                              Index example,
                                              Index j) const {
-  const std::uint64_t seed = metrics_.seeds().front();
+  const Results& results = evidence_.results;
+  const auto seed = results.seeds(options_.experiment).front();
   for (const auto& method : with_bfgs()) {
-    const auto* found =
-        results_.find_case(options_.experiment, method, n, seed);
+    const auto* found = results.find_case(options_.experiment, method, n, seed);
     if (found == nullptr) continue;
     const Batch<double> x =
         options_.solution ? options_.solution(*found) : found->data.x;
@@ -249,9 +249,8 @@ Panel JpoReport::plane(Index n, Index example) const {
   Panel panel{.title = fmt::format("Problem {}", example),
               .x_label = unknown_name(0),
               .y_label = unknown_name(1)};
-  const std::uint64_t seed = metrics_.seeds().front();
   for (const auto& method : with_bfgs()) {
-    const StageRecord* stage = metrics_.ending(method, n, seed, false);
+    const StageRecord* stage = of_first_seed(method, n);
     if (stage == nullptr || !tracks(*stage, example)) continue;
     Series way{.label = method_title(method),
                .method = method,
@@ -271,10 +270,9 @@ Panel JpoReport::over_iterations(Index n, Index example, Index unknown) const {
               .x_label = "iteration + 1",
               .y_label = unknown_name(unknown),
               .x_log = true};
-  const std::uint64_t seed = metrics_.seeds().front();
   double last = 1;
   for (const auto& method : with_bfgs()) {
-    const StageRecord* stage = metrics_.ending(method, n, seed, false);
+    const StageRecord* stage = of_first_seed(method, n);
     if (stage == nullptr || !tracks(*stage, example)) continue;
     panel.series.push_back({.label = method_title(method),
                             .method = method,
@@ -288,22 +286,21 @@ Panel JpoReport::over_iterations(Index n, Index example, Index unknown) const {
 }
 
 Index JpoReport::size_of_trajectories() const {
-  const auto sizes = metrics_.sizes();
+  const auto all = sizes();
   const Index asked = options_.trajectory_size;
-  return std::count(sizes.begin(), sizes.end(), asked) > 0 ? asked
-                                                           : largest_size();
+  return std::count(all.begin(), all.end(), asked) > 0 ? asked : largest_size();
 }
 
 Figure JpoReport::trajectories() const {
   Figure figure{.id = options_.trajectories.id,
                 .title = options_.title + ": estimates during optimization",
                 .where = options_.trajectories.where};
-  const auto seeds = metrics_.seeds();
+  const auto seeds = evidence_.results.seeds(options_.experiment);
   const Index n = size_of_trajectories();
   if (n == 0 || seeds.empty()) return figure;
   Index unknowns = 0, examples = kExamples;
   for (const auto& method : with_bfgs()) {
-    if (const auto* s = metrics_.ending(method, n, seeds.front(), false)) {
+    if (const auto* s = of_first_seed(method, n)) {
       unknowns = s->x.rows();
       examples = std::min(examples, s->x.cols());
     }
@@ -335,19 +332,14 @@ Panel JpoReport::tensor_panel(const std::string& title,
               .x_log = true};
   for (const Index t : tensors) {
     const std::string& name = options_.tensors[static_cast<std::size_t>(t)];
-    Series s =
-        over_n(name,
-               "layer " + name.substr(1),
-               [&](Index n, std::uint64_t seed) -> std::optional<double> {
-                 const StageRecord* fit = metrics_.stage("jpo", n, seed, "fit");
-                 if (fit == nullptr) return {};
-                 const auto found = fit->arrays.find("weight_change");
-                 if (found == fit->arrays.end() || t >= found->second.rows()) {
-                   return {};
-                 }
-                 return found->second(t, 0);
-               });
-    panel.series.push_back(std::move(s));
+    const RunValue change = [t](const Run& run) -> std::optional<double> {
+      const auto found = run.stage->arrays.find("weight_change");
+      if (found == run.stage->arrays.end() || t >= found->second.rows())
+        return {};
+      return found->second(t, 0);
+    };
+    panel.series.push_back(
+        over_n(name, "layer " + name.substr(1), jpo::plain("jpo"), change));
   }
   return panel;
 }

@@ -1,5 +1,7 @@
 #include "suite/cases/jpo/common/report.h"
 
+#include <algorithm>
+
 namespace physinv {
 
 std::string method_title(const std::string& method) {
@@ -20,14 +22,12 @@ std::vector<std::string> JpoReport::with_bfgs() const {
 
 // With a network, if there is one: BFGS alone may have seen more problems.
 Index JpoReport::largest_size() const {
+  const auto all = sizes();
   Index largest = 0;
-  for (const Index n : metrics_.sizes())
-    for (const std::uint64_t seed : metrics_.seeds())
-      for (const auto& method : options_.methods)
-        if (metrics_.ending(method, n, seed, false) != nullptr) largest = n;
-  if (largest == 0 && !metrics_.sizes().empty())
-    largest = metrics_.sizes().back();
-  return largest;
+  for (const auto& method : options_.methods)
+    for (const Run& run : find_runs(evidence_, jpo::plain(method)))
+      largest = std::max(largest, run.n());
+  return largest == 0 && !all.empty() ? all.back() : largest;
 }
 
 Figure curves_with_descent(JpoReportOptions options,

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "suite/cases/jpo/common/shares.h"
+#include "suite/cases/jpo/common/values.h"
 #include "suite/evidence/cell.h"
 #include "suite/results/published.h"
 #include "suite/results/report_model.h"
@@ -32,7 +32,7 @@ struct JpoReportOptions {
   std::vector<Index> curve_sizes;  ///< of fig. 12; default: four present
   Index trajectory_size = 0;       ///< of fig. 13; default: the largest
   std::vector<Index> table3_sizes = {4, 8, 32, 128};
-  bool from_prior = false;  ///< Table 3, see JpoMetrics::share_of_decrease
+  bool from_prior = false;            ///< Table 3, see decrease_before
   std::vector<std::string> unknowns;  ///< names of the unknowns, for axes
   std::vector<std::string> tensors;   ///< m1, b1, ... in the order of the rows
   /// What trajectories should reach, unknowns x examples; data.x if empty.
@@ -61,10 +61,7 @@ class JpoReport {
   JpoReport(const JpoReportOptions& options,
             const Results& results,
             const Published& published)
-      : options_(options),
-        results_(results),
-        published_(published),
-        metrics_(results, options.experiment) {}
+      : options_(options), evidence_{results, published, options.experiment} {}
 
   Table seconds() const;                   ///< Table 2, at the largest n
   Table fit_share() const;                 ///< Table 3
@@ -77,17 +74,25 @@ class JpoReport {
   Figure trajectories() const;   ///< estimates of examples 0..3, largest n
   Figure weight_change() const;  ///< by tensor over n
 
-  const JpoMetrics& metrics() const { return metrics_; }
   Index largest_size() const;  ///< of problems, with a network if there is one
 
  private:
-  using PerCase = std::function<std::optional<double>(Index, std::uint64_t)>;
   /// What stands for the seeds: quantiles on logarithmic axes.
   enum class Over { means, quantiles };
+  std::vector<Index> sizes() const {
+    return evidence_.results.sizes(options_.experiment);
+  }
+  /// A number for each seed.
+  std::vector<double> values(const Select& runs,
+                             Index n,
+                             const RunValue& value) const;
   Series over_n(std::string label,
-                const std::string& method,
-                const PerCase& value,
+                std::string method,
+                const Select& runs,
+                const RunValue& value,
                 Over over = Over::means) const;
+  /// The end of the first seed's chain before its refinement, null without.
+  const StageRecord* of_first_seed(const std::string& method, Index n) const;
   Series f_series(const std::string& method, bool refined) const;
   Series loss_series(const std::string& method, bool refined) const;
   Series reference_half() const;
@@ -102,11 +107,9 @@ class JpoReport {
   std::vector<std::string> with_bfgs() const;
   std::optional<double> solution_of(Index n, Index example, Index j) const;
 
-  Cell seconds_cell(const std::string& method,
-                    const std::string& stage,
-                    Index n,
-                    TimedStages& timed) const;
-  Cell over_seeds(Index n, const PerCase& value) const;
+  Cell over_seeds(const Select& runs, Index n, const RunValue& value) const;
+  Cell over_runs(const Select& runs, const RunValue& share) const;
+  Cell seconds_cell(const Select& runs, Index n, TimedStages& timed) const;
   TableRow results_row(const std::string& method,
                        Index n,
                        bool refined,
@@ -114,9 +117,7 @@ class JpoReport {
   Cell with_paper(Cell cell, const std::string& quantity) const;
 
   const JpoReportOptions& options_;
-  const Results& results_;
-  const Published& published_;
-  JpoMetrics metrics_;
+  const Evidence evidence_;
 };
 
 /// All of the above in the order of the paper.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "suite/cases/jpo/common/report.h"
+#include "suite/evidence/statistics.h"
 
 namespace physinv {
 namespace {
@@ -39,30 +40,33 @@ std::string list(std::span<const Index> sizes) {
 }  // namespace
 
 Cell JpoReport::with_paper(Cell cell, const std::string& quantity) const {
-  return beside_printed(
-      std::move(cell), {results_, published_, options_.experiment}, quantity);
+  return beside_printed(std::move(cell), evidence_, quantity);
 }
 
-Cell JpoReport::over_seeds(Index n, const PerCase& value) const {
-  std::vector<double> values;
-  for (const std::uint64_t seed : metrics_.seeds()) {
-    if (const auto one = value(n, seed)) values.push_back(*one);
-  }
-  return cell_of(values);
+Cell JpoReport::over_seeds(const Select& runs,
+                           Index n,
+                           const RunValue& value) const {
+  return cell_of(values(runs, n, value));
 }
 
-Cell JpoReport::seconds_cell(const std::string& method,
-                             const std::string& stage,
+/// Per cent of all runs, and the deviation of each seed's mean.
+Cell JpoReport::over_runs(const Select& runs, const RunValue& share) const {
+  const auto all = sample(evidence_, runs, share);
+  if (all.empty()) return {.text = kNotRun};
+  Cell cell{.ours = 100 * jpo::mean_of(values_of(all))};
+  if (const auto deviation = mean_std(seed_means(all))->std)
+    cell.spread = 100 * *deviation;
+  return cell;
+}
+
+Cell JpoReport::seconds_cell(const Select& runs,
                              Index n,
                              TimedStages& timed) const {
   bool crowded = false;
-  Cell cell =
-      over_seeds(n, [&](Index, std::uint64_t seed) -> std::optional<double> {
-        const StageRecord* found = metrics_.stage(method, n, seed, stage);
-        if (found == nullptr) return {};
-        crowded = crowded || found->crowded;
-        return timed.seconds(*found);
-      });
+  Cell cell = over_seeds(runs, n, [&](const Run& run) {
+    crowded = crowded || run.stage->crowded;
+    return timed.seconds(*run.stage);
+  });
   if (!cell.ours && crowded) cell.text = kCrowded;
   return cell;
 }
@@ -86,7 +90,7 @@ Table JpoReport::seconds() const {
     }
     table.columns.emplace_back(title);
     row.cells.push_back(
-        with_paper(seconds_cell(method, stage, n, timed), published));
+        with_paper(seconds_cell({method, stage}, n, timed), published));
   }
   table.rows.push_back(std::move(row));
   table.note = fmt::format(
@@ -109,11 +113,9 @@ Table JpoReport::fit_share() const {
   for (const Index n : options_.table3_sizes) {
     table.columns.push_back(fmt::format("n = {}", n));
     table.across->values.push_back(std::to_string(n));
-    Cell cell = over_seeds(n, [&](Index, std::uint64_t seed) {
-      return metrics_.share_of_decrease("jpo", n, seed, options_.from_prior);
-    });
-    if (cell.ours) cell.ours = 100 * *cell.ours;
-    if (cell.spread) cell.spread = 100 * *cell.spread;
+    const Select runs = jpo::at(jpo::refined("jpo"), n);
+    const Cell cell =
+        over_runs(runs, jpo::decrease_before(options_.from_prior));
     row.cells.push_back(with_paper(cell, fmt::format("table3/n={}", n)));
   }
   table.rows.push_back(std::move(row));
@@ -126,7 +128,6 @@ Table JpoReport::fit_share() const {
 
 Table JpoReport::better_equal(bool refined) const {
   const std::string id = refined ? "table5" : "table4";
-  const auto sizes = metrics_.sizes();
   Table table{
       .id = id,
       .title = fmt::format("Problems with better or equal solutions than "
@@ -146,17 +147,9 @@ Table JpoReport::better_equal(bool refined) const {
     const bool strict = equality == Equality::strict;
     TableRow row{.label = strict ? "strict" : "tol"};
     for (const std::string& method : options_.methods) {
-      const auto found = metrics_.mean_shares(method, sizes, refined, equality);
-      Cell better{.text = kNotRun}, equal{.text = kNotRun};
-      const auto percent = [](double mean, std::optional<double> std) {
-        Cell cell{.ours = 100 * mean};
-        if (std) cell.spread = 100 * *std;
-        return cell;
-      };
-      if (found) {
-        better = percent(found->mean.better, found->better_std);
-        equal = percent(found->mean.equal, found->equal_std);
-      }
+      const Select runs = jpo::ending(method, refined);
+      const Cell better = over_runs(runs, jpo::better(equality)),
+                 equal = over_runs(runs, jpo::equal(equality));
       const std::string name = id + "/" + method;
       row.cells.push_back(strict ? with_paper(better, name + "/better")
                                  : better);
@@ -168,7 +161,7 @@ Table JpoReport::better_equal(bool refined) const {
       "Mean over n = {} and seeds; ± sample standard deviation over seeds of "
       "each seed's mean. strict: equal losses bit by bit; tol: |a - b| <= "
       "1e-6 |b|.",
-      list(sizes));
+      list(sizes()));
   return table;
 }
 
@@ -185,9 +178,9 @@ Table JpoReport::results_table() const {
                           "CPU seconds"},
               .keys = {"n", "method", "refined"}};
   TimedStages timed;
-  const auto present = results_.methods(options_.experiment);
+  const auto present = evidence_.results.methods(options_.experiment);
   const bool gd = std::count(present.begin(), present.end(), "gd") > 0;
-  for (const Index n : metrics_.sizes()) {
+  for (const Index n : sizes()) {
     table.rows.push_back(results_row("bfgs", n, false, timed));
     if (gd) table.rows.push_back(results_row("gd", n, false, timed));
     for (const std::string& method : options_.methods) {
@@ -210,28 +203,19 @@ TableRow JpoReport::results_row(const std::string& method,
                                 bool refined,
                                 TimedStages& timed) const {
   using Value = std::optional<double>;
-  const auto read = [&](auto&& value) {
-    return over_seeds(n, [&](Index, std::uint64_t seed) -> Value {
-      const StageRecord* found = metrics_.ending(method, n, seed, refined);
-      return found == nullptr ? Value{} : Value{value(*found)};
-    });
-  };
+  const Select runs = jpo::ending(method, refined);
   const auto f = [&](Equality equality) {
-    if (method == "bfgs") return Cell{.text = kNothing};
-    return over_seeds(n, [&](Index, std::uint64_t seed) -> Value {
-      const auto one = metrics_.shares(method, n, seed, refined, equality);
-      return one ? Value{one->f()} : Value{};
-    });
+    return method == "bfgs" ? Cell{.text = kNothing}
+                            : over_seeds(runs, n, jpo::f(equality));
   };
-  const auto iterations = [](const StageRecord& s) {
-    return s.example_iterations.size() > 0 ? s.example_iterations.mean()
-                                           : static_cast<double>(s.iterations);
+  const RunValue iterations = [](const Run& run) -> Value {
+    const auto& own = run.stage->example_iterations;
+    return own.size() > 0 ? own.mean()
+                          : static_cast<double>(run.stage->iterations);
   };
-  const auto seconds = [&](Index, std::uint64_t seed) -> Value {
-    if (metrics_.ending(method, n, seed, refined) == nullptr) return {};
+  const RunValue seconds = [&](const Run& run) -> Value {
     double sum = 0;
-    for (const StageRecord& s :
-         results_.find_case(options_.experiment, method, n, seed)->stages) {
+    for (const StageRecord& s : run.record->stages) {
       if ((s.stage == "refine") != refined) continue;
       const auto own = timed.seconds(s);
       if (!own) return {};
@@ -239,21 +223,17 @@ TableRow JpoReport::results_row(const std::string& method,
     }
     return sum;
   };
-  const Cell loss = read([](const StageRecord& s) { return s.loss.mean(); });
-  Cell time = over_seeds(n, seconds);
+  const Cell loss = over_seeds(runs, n, jpo::mean_loss());
+  Cell time = over_seeds(runs, n, seconds);
   if (!time.ours && loss.ours) time.text = kCrowded;
   return {
       .label = fmt::format(
           "{} {}{}", n, method_title(method), refined ? " refined" : ""),
-      .cells = {over_seeds(n,
-                           [&](Index, std::uint64_t seed) {
-                             return metrics_.solved_share(
-                                 method, n, seed, refined, options_.solved);
-                           }),
+      .cells = {over_seeds(runs, n, jpo::solved(options_.solved)),
                 shown_as(loss, "{:.2e}"),
                 f(Equality::strict),
                 f(Equality::tol),
-                shown_as(read(iterations), "{:.1f}"),
+                shown_as(over_seeds(runs, n, iterations), "{:.1f}"),
                 time},
       .keys = {std::to_string(n), method_title(method), refined ? "1" : "0"}};
 }

@@ -11,6 +11,7 @@
 #include <tuple>
 #include <utility>
 
+#include "suite/evidence/statistics.h"
 #include "suite/harness/study.h"
 #include "suite/results/crowded.h"
 #include "suite/results/loss_summary.h"
@@ -19,6 +20,10 @@ namespace physinv::jpo {
 namespace {
 
 using Value = std::optional<double>;
+
+bool is_solver(const std::string& method) {
+  return method == "bfgs" || method == "gd";
+}
 
 template <class V>
 std::vector<double> list(const V& row) {
@@ -107,10 +112,14 @@ std::vector<Condition> row_of_table(const std::string& table,
 Select bfgs() { return {.method = "bfgs", .stage = "solve"}; }
 Select gd() { return {.method = "gd", .stage = "solve"}; }
 Select plain(const std::string& method) {
-  return {.method = method, .stage = method == "na" ? "solve" : "fit"};
+  return {.method = method,
+          .stage = is_solver(method) || method == "na" ? "solve" : "fit"};
 }
 Select refined(const std::string& method) {
   return {.method = method, .stage = "refine"};
+}
+Select ending(const std::string& method, bool is_refined) {
+  return is_refined && !is_solver(method) ? refined(method) : plain(method);
 }
 
 std::optional<Run> bfgs_beside(const Run& run) {
@@ -126,8 +135,8 @@ RunValue equal(Equality equality) {
 RunValue worse() {
   return against_bfgs([](const Shares& s) { return s.worse; });
 }
-RunValue f() {
-  return against_bfgs([](const Shares& s) { return s.f(); });
+RunValue f(Equality equality) {
+  return against_bfgs([](const Shares& s) { return s.f(); }, equality);
 }
 
 RunValue solved(const Solved& solved) {
@@ -144,9 +153,12 @@ RunValue gain(const Solved& solved) {
 
 RunValue decrease_before(bool from_prior) {
   return [=](const Run& run) -> Value {
-    return JpoMetrics(run.evidence->results, run.record->info.experiment)
-        .share_of_decrease(
-            run.record->info.method, run.n(), run.seed(), from_prior);
+    const auto fit = before(run);
+    const auto begins = from_prior ? bfgs_beside(run) : fit;
+    if (!fit || !begins) return {};
+    const Curve& curve = begins->stage->curve;
+    if (curve.points() == 0 || curve.iteration.front() != 0) return {};
+    return decrease_share(curve.loss.col(0), fit->stage->loss, run.stage->loss);
   };
 }
 

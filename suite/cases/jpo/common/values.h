@@ -20,10 +20,12 @@ namespace physinv::jpo {
 
 Select bfgs();
 Select gd();
-/// Where a chain ends before its refinement: of a network, or of the solver on
-/// a surrogate.
+/// Where a chain ends before its refinement: of a network, or of a solver, be
+/// it on a surrogate.
 Select plain(const std::string& method);
 Select refined(const std::string& method);
+/// Solvers by themselves have no refinement.
+Select ending(const std::string& method, bool refined);
 inline Select at(const Select& select, Index n) {
   return select.of_sizes(n, n);
 }
@@ -37,7 +39,7 @@ std::optional<Run> bfgs_beside(const Run& run);
 RunValue better(Equality equality = Equality::strict);
 RunValue equal(Equality equality = Equality::strict);
 RunValue worse();
-RunValue f();
+RunValue f(Equality equality = Equality::strict);
 RunValue solved(const Solved& solved);
 /// Share that it solves less the share that BFGS solves.
 RunValue gain(const Solved& solved);

@@ -82,19 +82,18 @@ struct Said {
   std::string who;
   Batch<double> x;
 };
-std::vector<Said> said(const JpoMetrics& metrics,
-                       const CaseRecord& first,
-                       Index n) {
+std::vector<Said> said(const Evidence& e, const CaseRecord& first, Index n) {
   std::vector<Said> all = {{"truth", first.data.x.leftCols(1)}};
-  const auto add = [&](const std::string& who, const StageRecord* stage) {
-    if (stage != nullptr && stage->x.cols() > 0)
-      all.push_back({who, stage->x.leftCols(1)});
+  const auto add = [&](const std::string& who, const Select& runs) {
+    for (const Run& run : find_runs(e, at(runs, n)))
+      if (run.seed() == 0 && run.stage->x.cols() > 0)
+        all.push_back({who, run.stage->x.leftCols(1)});
   };
-  add("BFGS", metrics.stage("bfgs", n, 0, "solve"));
+  add("BFGS", bfgs());
   for (const auto& method : kChains)
-    for (const bool refined : {false, true})
-      add(method_title(method) + (refined ? ", refined" : ""),
-          metrics.ending(method, n, 0, refined));
+    for (const bool is_refined : {false, true})
+      add(method_title(method) + (is_refined ? ", refined" : ""),
+          ending(method, is_refined));
   return all;
 }
 
@@ -153,8 +152,7 @@ Figure film(const CaseRecord& first, std::vector<Said> all) {
 /// how they are distributed.
 class OverTruth {
  public:
-  OverTruth(const JpoMetrics& metrics, const Results& results, Index n)
-      : metrics_(metrics), results_(results), n_(n) {}
+  OverTruth(const Evidence& evidence, Index n) : evidence_(evidence), n_(n) {}
 
   void add_row(bool refined, std::vector<Panel>& panels) const {
     const std::string which = refined ? "refined" : "networks alone";
@@ -197,35 +195,31 @@ class OverTruth {
     if (!series.x.empty()) panel.series.push_back(std::move(series));
   }
 
-  /// Of all seeds, where(z) to the right. BFGS has no refinement.
+  /// Of all seeds, where(z) to the right.
   template <class F>
   Series series(const std::string& method, bool refined, F where) const {
     Series out{.label = method_title(method),
                .method = method,
                .line = false,
                .markers = true};
-    for (const std::uint64_t seed : metrics_.seeds()) {
-      const auto* stage =
-          metrics_.ending(method, n_, seed, refined && method != "bfgs");
-      const auto* found = results_.find_case(kName, method, n_, seed);
-      if (stage == nullptr || found->data.x.cols() != stage->loss.size())
-        continue;
-      for (Index i = 0; i < stage->loss.size(); ++i) {
-        out.x.push_back(where(found->data.x.col(i)));
-        out.y.push_back(stage->loss(i));
+    for (const Run& run :
+         find_runs(evidence_, at(ending(method, refined), n_))) {
+      const Batch<double>& truth = run.record->data.x;
+      if (truth.cols() != run.stage->loss.size()) continue;
+      for (Index i = 0; i < truth.cols(); ++i) {
+        out.x.push_back(where(truth.col(i)));
+        out.y.push_back(run.stage->loss(i));
       }
     }
     return out;
   }
 
-  const JpoMetrics& metrics_;
-  const Results& results_;
+  const Evidence& evidence_;
   Index n_;
 };
 
 /// Figs. 19, 20.
-Figure over_truth(const JpoMetrics& metrics,
-                  const Results& results,
+Figure over_truth(const Evidence& evidence,
                   Index n,
                   const char* id,
                   const char* where) {
@@ -235,7 +229,7 @@ Figure over_truth(const JpoMetrics& metrics,
       .where = where,
       .columns = 4,
       .note = "All seeds; BFGS is the same in both rows."};
-  const OverTruth rows(metrics, results, n);
+  const OverTruth rows(evidence, n);
   for (const bool refined : {false, true}) rows.add_row(refined, figure.panels);
   return figure;
 }
@@ -253,15 +247,15 @@ Section report(const Results& results, const Published& published) {
                                  .trajectories = {"fig23", "Fig. 23"},
                                  .weight_change = {"fig24", "Fig. 24"}};
   Section section = jpo_section(options, results, published);
-  const JpoMetrics metrics(results, kName);
-  const auto sizes = metrics.sizes();
+  const Evidence evidence{results, published, kName};
+  const auto sizes = results.sizes(kName);
   if (sizes.empty()) return section;
   std::vector<Figure> before = {
       curves_with_descent(options, {"fig6c", "Fig. 6c"}, results),
-      over_truth(metrics, results, sizes.front(), "fig19", "Fig. 19")};
+      over_truth(evidence, sizes.front(), "fig19", "Fig. 19")};
   const CaseRecord* first = results.find_case(kName, "bfgs", sizes.back(), 0);
   if (first != nullptr && first->data.y.cols() > 0) {
-    const auto all = said(metrics, *first, sizes.back());
+    const auto all = said(evidence, *first, sizes.back());
     before.insert(
         before.begin(),
         {at_the_start(*first), pictures(*first, all), film(*first, all)});
@@ -269,7 +263,7 @@ Section report(const Results& results, const Published& published) {
   section.figures.insert(section.figures.begin(), before.begin(), before.end());
   if (sizes.size() > 1)
     section.figures.push_back(
-        over_truth(metrics, results, sizes.back(), "fig20", "Fig. 20"));
+        over_truth(evidence, sizes.back(), "fig20", "Fig. 20"));
   return section;
 }
 
