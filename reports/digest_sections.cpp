@@ -65,16 +65,20 @@ std::vector<std::string_view> lines_of(std::string_view text) {
   return lines;
 }
 
-/// "Table 2 · Title": where it stands in the paper.
+/// "Table 2 · Title [%]": where it stands in the paper, what it is in.
 void set_title(Table& table, std::string_view line) {
-  const std::string title = unmarked(line);
+  table.title = unmarked(line);
   constexpr std::string_view kBetween = " · ";
-  const auto at = title.find(kBetween);
-  if (at != title.npos && !places_of(title.substr(0, at)).empty()) {
-    table.where = title.substr(0, at);
-    table.title = title.substr(at + kBetween.size());
-  } else {
-    table.title = title;
+  if (const auto at = table.title.find(kBetween);
+      at != std::string::npos &&
+      !places_of(table.title.substr(0, at)).empty()) {
+    table.where = table.title.substr(0, at);
+    table.title.erase(0, at + kBetween.size());
+  }
+  if (const auto at = table.title.rfind(" [");
+      at != std::string::npos && table.title.ends_with(']')) {
+    table.unit = table.title.substr(at + 2, table.title.size() - at - 3);
+    table.title.resize(at);
   }
 }
 

@@ -73,15 +73,6 @@ std::string figures_of(const Json& section,
   return out;
 }
 
-/// Words that were read have the unit in the title: "Title [%]".
-Table with_unit(Table table) {
-  const auto at = table.title.rfind(" [");
-  if (at == std::string::npos || !table.title.ends_with(']')) return table;
-  table.unit = table.title.substr(at + 2, table.title.size() - at - 3);
-  table.title.resize(at);
-  return table;
-}
-
 /// What the campaign kept and, of a paper's own section, the tables that its
 /// experiments share, unless they were kept.
 std::vector<std::string> tables_of(const Json& section, const Json& digest) {
@@ -96,7 +87,7 @@ std::vector<std::string> tables_of(const Json& section, const Json& digest) {
     if (std::none_of(kept.begin(), kept.end(), [&](const Table& t) {
           return t.where == joined.where && t.title == joined.title;
         }))
-      tables.push_back(to_markdown(with_unit(joined)));
+      tables.push_back(to_markdown(joined));
   return tables;
 }
 

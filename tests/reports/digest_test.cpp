@@ -320,7 +320,8 @@ TEST(Digest, TablesComeBackAsWords) {
                     .note = "As it is & \\ was."};
   const Table back = table_of(to_markdown(table), "t");
   EXPECT_EQ(back.where, "Table 4");
-  EXPECT_EQ(back.title, "Errors | of *all* [%]");
+  EXPECT_EQ(back.title, "Errors | of *all*");
+  EXPECT_EQ(back.unit, "%");
   EXPECT_EQ(back.corner, "method <b>");
   EXPECT_EQ(back.columns,
             (std::vector<std::string>{"n = 4", "paper", "n = 8"}));
