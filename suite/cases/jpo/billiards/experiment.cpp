@@ -5,11 +5,6 @@
 #include "suite/cases/jpo/common/report.h"
 
 namespace physinv::jpo::billiards {
-namespace {
-
-const auto kTrained = trained_methods();
-
-}  // namespace
 
 void add_experiments(Registry& r) {
   r.add(Experiment{
@@ -18,32 +13,14 @@ void add_experiments(Registry& r) {
       .citation = {.paper = "jpo", .where = "Sec. 4, Fig. 4, App. D.2"},
       .problem = recipe(),
       .setting = setting(),
-      .profiles =
-          {{.name = "smoke",
-            .rows =
-                {{.methods = {"bfgs"}, .n = {4}, .seeds = {0}},
-                 {.methods = {"gd"}, .n = {4}, .seeds = {0}, .iterations = 50},
-                 {.methods = kTrained,
-                  .n = {4},
-                  .seeds = {0},
-                  .iterations = 50},
-                 {.methods = {"bfgs"}, .n = {128}, .seeds = {0, 1, 2, 3}}}},
-           {.name = "quick",
-            .rows = {{.methods = {"bfgs", "gd"},
-                      .n = {8, 32, 128},
-                      .seeds = {0, 1}},
-                     {.methods = kTrained,
-                      .n = {8, 32, 128},
-                      .seeds = {0, 1},
-                      .iterations = 3000}}},
-           {.name = "paper",
-            .rows = {{.methods = {"bfgs", "gd"},
-                      .n = {2, 4, 8, 16, 32, 64, 128},
-                      .seeds = {0, 1, 2, 3}},
-                     {.methods = kTrained,
-                      .n = {2, 4, 8, 16, 32, 64, 128},
-                      .seeds = {0, 1, 2, 3},
-                      .iterations = 3000}}}},
+      .profiles = {{.name = "smoke",
+                    .rows = {row({"bfgs"}, 4, 1),
+                             row({"gd"}, 4, 1, 50),
+                             row(trained_methods(), 4, 1, 50),
+                             row({"bfgs"}, 128, 4)}},
+                   {.name = "quick", .rows = jpo_rows({8, 32, 128}, 2, 3000)},
+                   {.name = "paper",
+                    .rows = jpo_rows({2, 4, 8, 16, 32, 64, 128}, 4, 3000)}},
       .methods = jpo_methods(),
       .styles = kJpoStyles,
   });

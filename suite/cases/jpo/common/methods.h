@@ -9,6 +9,7 @@
 #include "baselines/surrogate.h"
 #include "optimizers/classical.h"
 #include "optimizers/jpo.h"
+#include "suite/harness/case.h"
 
 namespace physinv {
 
@@ -41,6 +42,20 @@ inline std::vector<Method> jpo_methods(const JpoMethodOptions& options = {}) {
 /// Those of them that train a network.
 inline std::vector<std::string> trained_methods() {
   return {"jpo", "supervised", "na"};
+}
+
+/// Solvers and networks on the same problems of the first seeds, each network
+/// for so many iterations.
+inline std::vector<Row> jpo_rows(const std::vector<Index>& n,
+                                 std::uint64_t seeds,
+                                 Index iterations,
+                                 const std::vector<std::string>& solvers = {
+                                     "bfgs", "gd"}) {
+  return {{.methods = solvers, .n = n, .seeds = first_seeds(seeds)},
+          {.methods = trained_methods(),
+           .n = n,
+           .seeds = first_seeds(seeds),
+           .iterations = iterations}};
 }
 
 }  // namespace physinv

@@ -42,7 +42,6 @@ std::vector<Method> methods() {
 }
 
 const std::vector<std::string> kSingly = {"bfgs", "gd", "gn", "hig"};
-const std::vector<Index> kSizes = {4, 8, 16, 32, 64, 128};
 
 }  // namespace
 
@@ -53,26 +52,14 @@ void add_experiments(Registry& r) {
       .citation = {.paper = "jpo", .where = "Sec. 4, Fig. 6, App. D.4"},
       .problem = recipe(),
       .setting = setting(),
-      .profiles =
-          {{.name = "smoke",
-            .rows =
-                {{.methods = kSingly, .n = {4}, .seeds = {0}, .iterations = 5},
-                 {.methods = trained_methods(),
-                  .n = {2},
-                  .seeds = {0},
-                  .iterations = 5}}},
-           {.name = "quick",
-            .rows = {{.methods = kSingly, .n = {16}, .seeds = {0}},
-                     {.methods = trained_methods(),
-                      .n = {16},
-                      .seeds = {0},
-                      .iterations = kFitIterations}}},
-           {.name = "paper",
-            .rows = {{.methods = kSingly, .n = kSizes, .seeds = first_seeds(4)},
-                     {.methods = trained_methods(),
-                      .n = kSizes,
-                      .seeds = first_seeds(4),
-                      .iterations = kFitIterations}}}},
+      .profiles = {{.name = "smoke",
+                    .rows = {row(kSingly, 4, 1, 5),
+                             row(trained_methods(), 2, 1, 5)}},
+                   {.name = "quick",
+                    .rows = jpo_rows({16}, 1, kFitIterations, kSingly)},
+                   {.name = "paper",
+                    .rows = jpo_rows(
+                        {4, 8, 16, 32, 64, 128}, 4, kFitIterations, kSingly)}},
       .methods = methods(),
       .styles = kJpoStyles,
   });

@@ -9,8 +9,6 @@ namespace {
 
 constexpr Index kFitIterations = 2000;
 
-const auto kTrained = trained_methods();
-
 }  // namespace
 
 void add_experiments(Registry& r) {
@@ -22,27 +20,12 @@ void add_experiments(Registry& r) {
       .setting = setting(),
       .profiles =
           {{.name = "smoke",
-            .rows =
-                {{.methods = {"bfgs"}, .n = {4}, .seeds = {0}},
-                 {.methods = {"gd"}, .n = {4}, .seeds = {0}, .iterations = 50},
-                 {.methods = kTrained,
-                  .n = {4},
-                  .seeds = {0},
-                  .iterations = 50}}},
-           {.name = "quick",
-            .rows = {{.methods = {"bfgs", "gd"}, .n = {8, 64}, .seeds = {0, 1}},
-                     {.methods = kTrained,
-                      .n = {8, 64},
-                      .seeds = {0, 1},
-                      .iterations = kFitIterations}}},
+            .rows = {row({"bfgs"}, 4, 1),
+                     row({"gd"}, 4, 1, 50),
+                     row(trained_methods(), 4, 1, 50)}},
+           {.name = "quick", .rows = jpo_rows({8, 64}, 2, kFitIterations)},
            {.name = "paper",
-            .rows = {{.methods = {"bfgs", "gd"},
-                      .n = {2, 4, 8, 16, 32, 64, 128},
-                      .seeds = {0, 1, 2, 3}},
-                     {.methods = kTrained,
-                      .n = {2, 4, 8, 16, 32, 64, 128},
-                      .seeds = {0, 1, 2, 3},
-                      .iterations = kFitIterations}}}},
+            .rows = jpo_rows({2, 4, 8, 16, 32, 64, 128}, 4, kFitIterations)}},
       .methods = jpo_methods({.rate = 1e-3, .iterations = kFitIterations}),
       .styles = kJpoStyles,
   });

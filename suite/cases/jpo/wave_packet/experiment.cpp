@@ -11,18 +11,6 @@ namespace {
 
 constexpr Index kFitIterations = 3000, kQuickIterations = 1000;
 
-const auto kTrained = trained_methods();
-
-Row trained(std::vector<std::string> methods,
-            std::vector<Index> n,
-            std::vector<std::uint64_t> seeds,
-            Index iterations) {
-  return {.methods = std::move(methods),
-          .n = std::move(n),
-          .seeds = std::move(seeds),
-          .iterations = iterations};
-}
-
 /// `jpo-long` fits until its estimates have settled.
 std::vector<Method> methods() {
   auto all = jpo_methods({.rate = 1e-3, .iterations = kFitIterations});
@@ -32,10 +20,8 @@ std::vector<Method> methods() {
   return all;
 }
 
-const std::vector<Index> kSizes = {2, 4, 8, 16, 32, 64, 128, 256};
-const auto kFirst = first_seeds(5);
 /// For claims about BFGS alone.
-const Row kPool{.methods = {"bfgs"}, .n = {256}, .seeds = {0, 1}};
+const Row kPool = row({"bfgs"}, 256, 2);
 
 }  // namespace
 
@@ -48,19 +34,16 @@ void add_experiments(Registry& r) {
       .setting = setting(),
       .profiles =
           {{.name = "smoke",
-            .rows = {{.methods = {"bfgs"}, .n = {4}, .seeds = {0}},
-                     trained({"gd"}, {4}, {0}, 20),
-                     trained(kTrained, {4}, {0}, 20),
+            .rows = {row({"bfgs"}, 4, 1),
+                     row({"gd"}, 4, 1, 20),
+                     row(trained_methods(), 4, 1, 20),
                      kPool}},
            {.name = "quick",
-            .rows =
-                {{.methods = {"bfgs", "gd"}, .n = {8, 32}, .seeds = {0, 1, 2}},
-                 trained(kTrained, {8, 32}, {0, 1, 2}, kQuickIterations),
-                 kPool}},
+            .rows = joined(jpo_rows({8, 32}, 3, kQuickIterations), {kPool})},
            {.name = "paper",
-            .rows = {{.methods = {"bfgs", "gd"}, .n = kSizes, .seeds = kFirst},
-                     trained(kTrained, kSizes, kFirst, kFitIterations),
-                     {.methods = {"jpo-long"}, .n = {128}, .seeds = kFirst}}}},
+            .rows = joined(
+                jpo_rows({2, 4, 8, 16, 32, 64, 128, 256}, 5, kFitIterations),
+                {row({"jpo-long"}, 128, 5)})}},
       .methods = methods(),
       .styles = kJpoStyles,
   });
@@ -72,16 +55,19 @@ void add_experiments(Registry& r) {
       .citation = {.paper = "jpo", .where = "App. C"},
       .problem = recipe(),
       .setting = setting({64, 32, 1}),
-      .profiles =
-          {{.name = "smoke",
-            .rows = {{.methods = {"bfgs"}, .n = {4}, .seeds = {0}},
-                     trained({"jpo"}, {4}, {0}, 20)}},
-           {.name = "quick",
-            .rows = {{.methods = {"bfgs"}, .n = {32}, .seeds = {0, 1, 2}},
-                     trained({"jpo"}, {32}, {0, 1, 2}, kQuickIterations)}},
-           {.name = "paper",
-            .rows = {{.methods = {"bfgs"}, .n = {32, 128}, .seeds = kFirst},
-                     trained({"jpo"}, {32, 128}, kFirst, kFitIterations)}}},
+      .profiles = {{.name = "smoke",
+                    .rows = {row({"bfgs"}, 4, 1), row({"jpo"}, 4, 1, 20)}},
+                   {.name = "quick",
+                    .rows = {row({"bfgs"}, 32, 3),
+                             row({"jpo"}, 32, 3, kQuickIterations)}},
+                   {.name = "paper",
+                    .rows = {{.methods = {"bfgs"},
+                              .n = {32, 128},
+                              .seeds = first_seeds(5)},
+                             {.methods = {"jpo"},
+                              .n = {32, 128},
+                              .seeds = first_seeds(5),
+                              .iterations = kFitIterations}}}},
       .methods = jpo_methods({.rate = 1e-3, .iterations = kFitIterations}),
       .styles = kJpoStyles,
   });
