@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -137,11 +138,7 @@ void add_jacobian_times(Registry& r, const std::string& name) {
 }
 
 void add_jacobian_report(Registry& r, const std::string& name) {
-  r.add_report(name_of(name),
-               [&t = timed_of(name)](const Results& results,
-                                     const Published& published) {
-                 return report(t, results, published);
-               });
+  r.add_report(name_of(name), std::bind_front(report, timed_of(name)));
 }
 
 }  // namespace physinv::hig

@@ -2,6 +2,7 @@
 // as Tables 4 and 5 print, and for which it ends at the wall.
 #include <fmt/format.h>
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -139,9 +140,7 @@ Section report(const Study& s,
 void add_claims(Registry& r) {
   for (const Study& s : kStudies) {
     r.add_claims(s.name, {claim(s)});
-    r.add_report(s.name, [s](const Results& results, const Published& p) {
-      return report(s, results, p);
-    });
+    r.add_report(s.name, std::bind_front(report, s));
   }
 }
 

@@ -2,6 +2,7 @@
 // Losses in float are compared as such, which makes ties.
 #include <fmt/format.h>
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -260,9 +261,7 @@ Section report(const Study& s,
 void add_claims(Registry& r) {
   for (const Study& s : all_studies()) {
     r.add_claims(s.name, {claim(s)});
-    r.add_report(s.name, [s](const Results& results, const Published& p) {
-      return report(s, results, p);
-    });
+    r.add_report(s.name, std::bind_front(report, s));
   }
 }
 
