@@ -120,7 +120,8 @@ class JpoEndings : public testing::Test {
                            bool refined,
                            std::uint64_t seed,
                            const RunValue& value) const {
-    for (const Run& run : find_runs(evidence_, jpo::ending(method, refined)))
+    for (const physinv::Run& run :
+         find_runs(evidence_, jpo::ending(method, refined)))
       if (run.seed() == seed) return value(run);
     return {};
   }

@@ -6,6 +6,7 @@
 
 #include "suite/cases/jpo/common/methods.h"
 #include "suite/cases/jpo/common/values.h"
+#include "suite/evidence/statistics.h"
 #include "suite/harness/registry.h"
 
 namespace physinv::jpo::robotic_arm {
