@@ -11,51 +11,76 @@
 
 namespace physinv {
 
-template <class T, class P>
+template <class K, class P>
 struct Block : SampleBlock {
+  using T = LaneScalar<P>;
   static constexpr Index kWidth = sizeof(P) / sizeof(T);
 
-  const Etdrk2<T>& k;
+  const K& k;
 
-  void load(BatchIn<T> batch, P* out) const {
-    for (Index r = 0; r < batch.rows(); ++r)
-      for (Index lane = 0; lane < kWidth; ++lane)
-        out[r][lane] = batch(r, column(lane));
+  void load(BatchIn<T> fields, P* out) const {
+    for (Index r = 0; r < fields.rows(); ++r) {
+      const Index at = K::point(r);
+      for (Index lane = 0; lane < kWidth; lane += K::kSide)
+        out[at / K::kSide][lane + at % K::kSide] =
+            fields(r, column(lane / K::kSide));
+    }
   }
-  void store(const P* in, Index lane, Eigen::Ref<Vector<T>> out) const {
-    for (Index r = 0; r < out.size(); ++r) out(r) = in[r][lane];
+  void store(const P* in, Index sample, Eigen::Ref<Vector<T>> out) const {
+    for (Index r = 0; r < out.size(); ++r) {
+      const Index at = K::point(r);
+      out(r) = in[at / K::kSide][sample * K::kSide + at % K::kSide];
+    }
   }
   /// Last states go out, as NaN unless all of one is finite.
   void finish(const P* u, BatchOut<T>& y) const {
-    for (Index lane = 0; lane < count; ++lane) {
-      auto column = y.col(first + lane);
-      store(u, lane, column);
+    for (Index sample = 0; sample < count; ++sample) {
+      auto column = y.col(first + sample);
+      store(u, sample, column);
       if (!column.allFinite())
         column.setConstant(std::numeric_limits<T>::quiet_NaN());
     }
   }
   /// Of unknowns x, in 3 `stride` packs of memory.
   Etdrk2Run<P> run(BatchIn<T> x, P* memory) const {
-    P unknowns[2];
-    load(x, unknowns);
     const Index h = k.stride();
-    return {unknowns[0], unknowns[1], memory, memory + h, memory + 2 * h};
+    return {all_of(x, 0), all_of(x, 1), memory, memory + h, memory + 2 * h};
+  }
+
+ private:
+  /// Row r in all lanes of each sample.
+  P all_of(BatchIn<T> x, Index r) const {
+    P v{};
+    for (Index lane = 0; lane < kWidth; ++lane)
+      v[lane] = x(r, column(lane / K::kSide));
+    return v;
   }
 };
 
-/// Calls f(block, own) for all samples, a register of them at a time: `own` is
-/// the thread, or its workspace, as `work` is Threads* or a Workspace.
+/// Calls f(block, own) for all samples, a register of them at a time, or few
+/// (samples_together): `own` is the thread, or its workspace, as `work` is
+/// Threads* or a Workspace.
 template <class T, class Work, class F>
-void for_packs(const Etdrk2<T>& k, Work&& work, Index samples, F&& f) {
+void for_packs(const Etdrk2Kernels<T>& kernels,
+               Work&& work,
+               Index samples,
+               F&& f) {
   for_registers(work, samples, kLanes<T>, [&](SampleBlock at, auto&& own) {
-    with_pack<T>(at.count, [&]<class P>(P) { f(Block<T, P>{at, k}, own); });
+    const Index end = at.first + at.count;
+    const Index step = samples_together(kernels, at.count);
+    for (Index first = at.first; first < end; first += step) {
+      const SampleBlock few{first, std::min(step, end - first)};
+      with_pack(kernels, few.count, [&]<class K, class P>(const K& k, P) {
+        f(Block<K, P>{few, k}, own);
+      });
+    }
   });
 }
 
 /// Runs body(block, workspace) for all samples; returns the sum of what the
 /// bodies return.
 template <class T, class F>
-std::uint64_t sum_blocks(const Etdrk2<T>& k,
+std::uint64_t sum_blocks(const Etdrk2Kernels<T>& k,
                          Workspace& work,
                          Index samples,
                          F&& body) {

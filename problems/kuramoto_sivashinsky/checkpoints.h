@@ -19,21 +19,24 @@ P* take_packs(Workspace& work, Index count) {
   return reinterpret_cast<P*>(work.take<T>(kWidth, count).data());
 }
 
-/// Is no lane finite?
-template <class P>
+/// Is no lane finite, of every kSide lanes the first?
+template <Index kSide, class P>
 bool all_lost(const P& v) {
   using T = LaneScalar<P>;
   constexpr Index kWidth = sizeof(P) / sizeof(T);
-  return count_set(beyond<T, kWidth>(v, std::numeric_limits<T>::max())) ==
-         kWidth;
+  const auto lost = beyond<T, kWidth>(v, std::numeric_limits<T>::max());
+  Index count = 0;
+  for (Index lane = 0; lane < kWidth; lane += kSide)
+    count -= static_cast<Index>(lost[lane]);
+  return count * kSide == kWidth;
 }
 
 /// Steps first .. last-1, from state(first) with its spectrum in r.s; returns
 /// the last step reached. A point that is not finite spreads over its sample
 /// in the next transform and never leaves it; a block ends with its last
 /// sample.
-template <class T, class P, class State, class Between>
-Index march(const Etdrk2<T>& k,
+template <class K, class P, class State, class Between>
+Index march(const K& k,
             const Etdrk2Run<P>& r,
             Index first,
             Index last,
@@ -41,7 +44,7 @@ Index march(const Etdrk2<T>& k,
             Between&& between) {
   for (Index i = first; i < last; ++i) {
     k.step(r, state(i), between(i), state(i + 1));
-    if (all_lost(state(i + 1)[0])) [[unlikely]]
+    if (all_lost<K::kSide>(state(i + 1)[0])) [[unlikely]]
       return i + 1;
   }
   return last;
@@ -52,28 +55,31 @@ Index march(const Etdrk2<T>& k,
 struct Keeping {
   Index segment, stride, rows;  ///< in steps, 0: all states; in packs
 
-  template <class T>
+  /// `bytes` of a number.
+  template <class K>
   Keeping(const KuramotoSivashinskyOptions& o,
-          const Etdrk2<T>& k,
-          Index samples)
-      : segment(0), stride(o.cells), rows((2 * o.steps + 1) * o.cells) {
-    if (double(samples * rows) * sizeof(T) <= o.tape_budget) return;
+          const K& k,
+          Index samples,
+          std::size_t bytes)
+      : segment(0), stride(k.field()), rows((2 * o.steps + 1) * k.field()) {
+    const Index numbers = samples * (2 * o.steps + 1) * o.cells;
+    if (double(numbers) * double(bytes) <= o.tape_budget) return;
     segment = Index(std::ceil(std::sqrt(double(o.steps))));
-    stride = o.cells + k.stride();
+    stride = k.field() + k.stride();
     rows = (o.steps + segment - 1) / segment * stride;
   }
 };
 
 /// All steps of one block back; states that were not kept are made again.
-template <class T, class P>
-void pull_steps(const Etdrk2<T>& k,
+template <class K, class P>
+void pull_steps(const K& k,
                 const Etdrk2Run<P>& r,
                 const Etdrk2Sums<P>& sums,
                 Index steps,
                 const Keeping& keep,
                 const P* kept,
                 Workspace& work) {
-  const Index n = k.cells();
+  const Index n = k.field();
   const auto back = [&](const P* states, Index count) {
     for (Index i = count; i-- > 0;)
       k.back_step(r, states + 2 * i * n, states + (2 * i + 1) * n, sums);
@@ -88,7 +94,7 @@ void pull_steps(const Etdrk2<T>& k,
     const Index count = std::min(keep.segment, steps - c * keep.segment);
     const P* const start = kept + c * keep.stride;
     std::copy_n(start, n, states);
-    std::copy_n(start + n, n + 2, again.s);
+    std::copy_n(start + n, k.stride(), again.s);
     march(k, again, 0, count, state, between);
     back(states, count);
   }

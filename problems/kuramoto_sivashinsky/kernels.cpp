@@ -50,10 +50,12 @@ void BM_kuramoto_sivashinsky_gradient(benchmark::State& state) {
   report(state, static_cast<double>(state.range(0)), f.steps());
 }
 
-#define PHYSINV_KS(T)                                                      \
-  BENCHMARK(BM_kuramoto_sivashinsky_forward<T>)->Arg(1)->Arg(8)->Arg(128); \
-  BENCHMARK(BM_kuramoto_sivashinsky_gradient<T>)                           \
-      ->ArgsProduct({{1, 8, 128}, {0, 4, 1000}})
+#define PHYSINV_KS(T)                            \
+  BENCHMARK(BM_kuramoto_sivashinsky_forward<T>)  \
+      ->ArgsProduct({{1, 2, 4, 8, 128}});        \
+  BENCHMARK(BM_kuramoto_sivashinsky_gradient<T>) \
+      ->ArgsProduct({{1, 8, 128}, {0, 4, 1000}}) \
+      ->ArgsProduct({{2, 4}, {1000}})
 PHYSINV_KS(float);
 PHYSINV_KS(double);
 #undef PHYSINV_KS

@@ -55,11 +55,19 @@ void draw_state(const KuramotoSivashinskyOptions& o,
   for (Index j = 0; j < n; ++j) u(j) = (u(j) - mean) / deviation;
 }
 
+/// What is kept of a block: a column for every register of samples; the second
+/// of two blocks that share one has its half.
+template <class T, class States>
+auto* kept_of(States& states, const SampleBlock& block) {
+  constexpr Index W = kLanes<T>;
+  const Index half = block.first % W > 0 ? states.rows() / 2 : 0;
+  return states.col(block.first / W).data() + half;
+}
+
 /// Cotangents of a block's unknowns and initial states.
-template <class T, class P>
+template <class T, class K, class P>
 void pull_block(const KuramotoSivashinskyOptions& o,
-                const Etdrk2<T>& k,
-                const Block<T, P>& block,
+                const Block<K, P>& block,
                 const Tape& tape,
                 BatchIn<T> y_bar,
                 BatchOut<T>& x_bar,
@@ -67,8 +75,9 @@ void pull_block(const KuramotoSivashinskyOptions& o,
                 Workspace& work) {
   const auto x = tape.view<T>(kUnknowns);
   const auto states = tape.view<T>(kStates);
-  const Keeping keep(o, k, x.cols());
-  const Index n = k.cells(), h = k.stride();
+  const K& k = block.k;
+  const Keeping keep(o, k, x.cols(), sizeof(T));
+  const Index n = k.field(), h = k.stride();
   P* const lambda = take_packs<P>(work, n);
   P* const sum = take_packs<P>(work, 2 * h);
   const auto r = block.run(x, take_packs<P>(work, 3 * h));
@@ -76,13 +85,13 @@ void pull_block(const KuramotoSivashinskyOptions& o,
   std::fill_n(sum, 2 * h, P{});
   block.load(y_bar, lambda);
   k.begin(r, lambda);
-  const T* const kept = states.col(block.first / kLanes<T>).data();
+  const T* const kept = kept_of<T>(states, block);
   pull_steps(k, r, sums, o.steps, keep, reinterpret_cast<const P*>(kept), work);
   const P alpha_bar = k.alpha_bar(sums), beta_bar = k.beta_bar(sums);
   if (given_bar != nullptr) k.restore(r, lambda);
   for (Index i = 0; i < block.count; ++i) {
-    x_bar(0, block.first + i) = alpha_bar[i];
-    x_bar(1, block.first + i) = beta_bar[i];
+    x_bar(0, block.first + i) = alpha_bar[i * K::kSide];
+    x_bar(1, block.first + i) = beta_bar[i * K::kSide];
     if (given_bar != nullptr)
       block.store(lambda, i, given_bar->col(block.first + i));
   }
@@ -104,7 +113,7 @@ KuramotoSivashinsky<T>::KuramotoSivashinsky(const Options& o) : options_(o) {
   SUITE_CHECK(o.box > 0 && o.time_step > 0 && o.steps > 0,
               "box, time step and number of steps must be positive");
   SUITE_CHECK(o.prior_low <= o.prior_high, "the prior has no width");
-  kernel_ = std::make_shared<const Etdrk2<T>>(operators(o));
+  kernels_ = std::make_shared<const Etdrk2Kernels<T>>(operators(o));
 }
 
 template <class T>
@@ -147,16 +156,17 @@ void KuramotoSivashinsky<T>::forward(BatchIn<T> x,
                                      BatchIn<T> given,
                                      BatchOut<T> y,
                                      Workspace& work) const {
-  const Etdrk2<T>& k = *kernel_;
-  const Index n = k.cells(), steps = options_.steps;
+  const Index steps = options_.steps;
   check_size(x, 2, x.cols());
-  check_size(given, n, x.cols());
-  check_size(y, n, x.cols());
+  check_size(given, options_.cells, x.cols());
+  check_size(y, options_.cells, x.cols());
   work.counts[Counter::skipped_steps] += sum_blocks(
-      k,
+      *kernels_,
       work,
       x.cols(),
-      [&]<class P>(const Block<T, P>& block, Workspace& mine) -> Index {
+      [&]<class K, class P>(const Block<K, P>& block, Workspace& mine) {
+        const K& k = block.k;
+        const Index n = k.field();
         P* const u = take_packs<P>(mine, 3 * n);
         const auto r = block.run(x, take_packs<P>(mine, 3 * k.stride()));
         const auto state = [=](Index t) { return u + t % 2 * n; };
@@ -175,29 +185,32 @@ void KuramotoSivashinsky<T>::forward(BatchIn<T> x,
       });
 }
 
-/// A block's part of a slot is as wide as a register, whatever its pack is.
 template <class T>
 void KuramotoSivashinsky<T>::linearize(BatchIn<T> x,
                                        BatchIn<T> given,
                                        BatchOut<T> y,
                                        Tape& tape) const {
   constexpr Index W = kLanes<T>;
-  const Etdrk2<T>& k = *kernel_;
-  const Index n = k.cells(), steps = options_.steps;
+  const Index steps = options_.steps;
   check_size(x, 2, x.cols());
-  check_size(given, n, x.cols());
-  check_size(y, n, x.cols());
-  const Keeping keep(options_, k, x.cols());
+  check_size(given, options_.cells, x.cols());
+  check_size(y, options_.cells, x.cols());
+  const auto& lanes = kernels_->lanes;
+  const Index most = Keeping(options_, lanes, x.cols(), sizeof(T)).rows;
   const Index threads = tape.threads() != nullptr ? tape.threads()->count() : 1;
-  auto states = tape.slot<T>(kStates, keep.rows * W, (x.cols() + W - 1) / W);
-  auto scratch = tape.slot<T>(kScratch, (3 * k.stride() + 3 * n) * W, threads);
+  auto states = tape.slot<T>(kStates, most * W, (x.cols() + W - 1) / W);
+  auto scratch =
+      tape.slot<T>(kScratch, 3 * (lanes.stride() + lanes.field()) * W, threads);
   auto lost = tape.slot<unsigned char>(kLost, 1, x.cols());
   tape.slot<T>(kUnknowns, 2, x.cols()) = x;
 
   std::atomic<std::uint64_t> skipped = 0;
-  const auto run = [&]<class P>(const Block<T, P>& block, int thread) {
+  const auto run = [&]<class K, class P>(const Block<K, P>& block, int thread) {
+    const K& k = block.k;
+    const Index n = k.field();
+    const Keeping keep(options_, k, x.cols(), sizeof(T));
     P* const u = reinterpret_cast<P*>(scratch.col(thread).data());
-    P* const kept = reinterpret_cast<P*>(states.col(block.first / W).data());
+    P* const kept = reinterpret_cast<P*>(kept_of<T>(states, block));
     const auto r = block.run(x, u + 3 * n);
     const bool all = keep.segment == 0;
     const auto state = [=](Index t) {
@@ -213,18 +226,18 @@ void KuramotoSivashinsky<T>::linearize(BatchIn<T> x,
       if (!all) {
         P* const start = kept + end / keep.segment * keep.stride;
         std::copy_n(state(end), n, start);
-        std::copy_n(r.s, n + 2, start + n);
+        std::copy_n(r.s, k.stride(), start + n);
         to = std::min(steps, end + keep.segment);
       }
       end = march(k, r, end, to, state, between);
-      if (all_lost(state(end)[0])) break;
+      if (all_lost<K::kSide>(state(end)[0])) break;
     }
     block.finish(state(end), y);
     for (Index i = 0; i < block.count; ++i)
       lost(0, block.first + i) = !std::isfinite(y(0, block.first + i));
     skipped += static_cast<std::uint64_t>((steps - end) * block.count);
   };
-  for_packs(k, tape.threads(), x.cols(), run);
+  for_packs(*kernels_, tape.threads(), x.cols(), run);
   tape.counts[Counter::skipped_steps] += skipped;
 }
 
@@ -252,10 +265,9 @@ void KuramotoSivashinsky<T>::pull(const Tape& tape,
                                   BatchOut<T>& x_bar,
                                   BatchOut<T>* given_bar,
                                   Workspace& work) const {
-  const Etdrk2<T>& k = *kernel_;
   const auto x = tape.view<T>(kUnknowns);
   const auto lost = tape.view<unsigned char>(kLost);
-  check_size(y_bar, k.cells(), x.cols());
+  check_size(y_bar, options_.cells, x.cols());
   check_size(x_bar, 2, x.cols());
 
   // What is lost ends as NaN whatever is done, zeros remain zeros. A block of
@@ -269,14 +281,11 @@ void KuramotoSivashinsky<T>::pull(const Tape& tape,
     if (given_bar != nullptr) given_bar->col(i).setConstant(end);
   };
   work.counts[Counter::skipped_vjp] += sum_blocks(
-      k,
-      work,
-      x.cols(),
-      [&]<class P>(const Block<T, P>& block, Workspace& mine) -> Index {
+      *kernels_, work, x.cols(), [&](const auto& block, Workspace& mine) {
         Index live = 0;
         for (Index i = 0; i < block.count; ++i) live += !known(block.first + i);
         if (live > 0)
-          pull_block(options_, k, block, tape, y_bar, x_bar, given_bar, mine);
+          pull_block<T>(options_, block, tape, y_bar, x_bar, given_bar, mine);
         for (Index i = block.first; i < block.first + block.count; ++i)
           if (known(i)) finish(i);
         return live > 0 ? 0 : block.count;
@@ -288,16 +297,17 @@ void KuramotoSivashinsky<T>::jacobian(BatchIn<T> x,
                                       BatchIn<T> given,
                                       BatchOut<T> j,
                                       Workspace& work) const {
-  const Etdrk2<T>& k = *kernel_;
-  const Index n = k.cells(), h = k.stride(), steps = options_.steps;
+  const Index cells = options_.cells, steps = options_.steps;
   check_size(x, 2, x.cols());
-  check_size(given, n, x.cols());
-  check_size(j, 2 * n, x.cols());
+  check_size(given, cells, x.cols());
+  check_size(j, 2 * cells, x.cols());
   work.counts[Counter::skipped_steps] += sum_blocks(
-      k,
+      *kernels_,
       work,
       x.cols(),
-      [&]<class P>(const Block<T, P>& block, Workspace& mine) -> Index {
+      [&]<class K, class P>(const Block<K, P>& block, Workspace& mine) {
+        const K& k = block.k;
+        const Index n = k.field(), h = k.stride();
         P* const u = take_packs<P>(mine, 3 * n);
         P* const d = take_packs<P>(mine, 6 * h);
         const auto r = block.run(x, take_packs<P>(mine, 3 * h));
@@ -313,13 +323,13 @@ void KuramotoSivashinsky<T>::jacobian(BatchIn<T> x,
           P* const next = u + ++end % 2 * n;
           k.step(r, now, u + 2 * n, next);
           k.tangent_step(r, now, u + 2 * n, by_alpha, by_beta);
-          finite = !all_lost(next[0]);
+          finite = !all_lost<K::kSide>(next[0]);
         }
-        auto y = mine.take<T>(n, 1);
+        auto y = mine.take<T>(cells, 1);
         for (Index i = 0; i < block.count; ++i) {
           auto column = j.col(block.first + i);
-          block.store(by_alpha.du, i, column.head(n));
-          block.store(by_beta.du, i, column.tail(n));
+          block.store(by_alpha.du, i, column.head(cells));
+          block.store(by_beta.du, i, column.tail(cells));
           block.store(u + end % 2 * n, i, y.col(0));
           if (!y.allFinite()) column.setConstant(kNan<T>);
         }
@@ -339,14 +349,14 @@ Index KuramotoSivashinsky<T>::gradient_block() const {
 template <class T>
 Batch<T> KuramotoSivashinsky<T>::trajectory(VectorIn<T> x,
                                             VectorIn<T> given) const {
-  const Etdrk2<T>& k = *kernel_;
-  const Index n = k.cells(), steps = options_.steps;
+  const Index cells = options_.cells, steps = options_.steps;
   check_size(x, 2, 1);
-  check_size(given, n, 1);
+  check_size(given, cells, 1);
   Workspace work;
-  Batch<T> out(n, steps + 1);
-  with_pack<T>(1, [&]<class P>(P) {
-    const Block<T, P> block{{0, 1}, k};
+  Batch<T> out(cells, steps + 1);
+  with_pack(*kernels_, 1, [&]<class K, class P>(const K& k, P) {
+    const Block<K, P> block{{0, 1}, k};
+    const Index n = k.field();
     P* const u = take_packs<P>(work, (steps + 2) * n);  // and the middle stage
     const auto r = block.run(x, take_packs<P>(work, 3 * k.stride()));
     const auto state = [=](Index t) { return u + t * n; };

@@ -1,5 +1,6 @@
 /// Discrete Fourier transforms of real signals side by side, one signal per
 /// lane: no shuffles, and bits that depend on no processor and no neighbour.
+/// Of few signals, four points of each go side by side (fours_fft.h).
 ///
 /// Real signals of n = 2 M points are complex ones of M, z_j = u_2j + i u_2j+1
 /// (radix 4, decimated in frequency on the way there and in time on the way
@@ -15,16 +16,41 @@
 namespace physinv {
 
 template <class T>
+class FoursFft;
+
+template <class T>
 class LanesFft {
  public:
+  /// Numbers of a signal that go side by side in a pack.
+  static constexpr Index kSide = 1;
+
   /// `size` is a power of two, at least 4.
   explicit LanesFft(Index size);
 
   Index size() const { return 2 * half_; }
+  /// Packs of a signal.
+  Index field() const { return size(); }
   /// Packs of a spectrum: real and imaginary part of size / 2 + 1 modes.
   Index spectrum() const { return 2 * half_ + 2; }
   /// The mode at position p = 0 .. size / 2; the last one is Nyquist's.
   Index mode(Index p) const { return p == half_ ? half_ : mode_[p]; }
+
+  /// Where point r of a signal, and number i = 2 p or 2 p + 1 of a spectrum
+  /// (real and imaginary part at position p) stand: lane at % kSide of pack
+  /// at / kSide.
+  static Index point(Index r) { return r; }
+  Index place(Index i) const { return i; }
+  /// What pack i of a field or spectrum is multiplied by, of numbers in the
+  /// order of `place`.
+  template <class P>
+  PHYSINV_LANES static P weights(const T* numbers, Index i) {
+    return broadcast<P>(numbers[i]);
+  }
+  /// The number at `at`, in the first lane of each signal.
+  template <class P>
+  PHYSINV_LANES static P taken(const P* packs, Index at) {
+    return packs[at];
+  }
 
   /// y_m = sum_j u_j exp(-2 pi i j m / size), in the order of positions.
   template <class P>
@@ -37,6 +63,8 @@ class LanesFft {
   void inverse(P* y, P* u) const;
 
  private:
+  friend class FoursFft<T>;
+
   template <class P>
   struct Complex {
     P re, im;
@@ -48,10 +76,13 @@ class LanesFft {
     }
     PHYSINV_LANES Complex conjugate() const { return {re, -im}; }
     PHYSINV_LANES Complex times_i() const { return {-im, re}; }
+    /// times c + i s
+    PHYSINV_LANES Complex times(P c, P s) const {
+      return {fma_lanes(re, c, -(im * s)), fma_lanes(re, s, im * c)};
+    }
     /// times w[0] + i w[1]
     PHYSINV_LANES Complex times(const T* w) const {
-      const P c = P{} + w[0], s = P{} + w[1];
-      return {fma_lanes(re, c, -(im * s)), fma_lanes(re, s, im * c)};
+      return times(P{} + w[0], P{} + w[1]);
     }
   };
   template <class P>
@@ -61,6 +92,38 @@ class LanesFft {
   template <class P>
   PHYSINV_LANES static void put(P* z, Index j, Complex<P> v) {
     z[2 * j] = v.re, z[2 * j + 1] = v.im;
+  }
+
+  /// The transform of four points.
+  template <bool kThere, class P>
+  PHYSINV_LANES static void quartet(Complex<P>& a,
+                                    Complex<P>& b,
+                                    Complex<P>& c,
+                                    Complex<P>& d) {
+    const auto ac = a + c, a_c = a - c, bd = b + d;
+    const auto turned = kThere ? (d - b).times_i() : (b - d).times_i();
+    a = ac + bd, b = a_c + turned, c = ac - bd, d = a_c - turned;
+  }
+
+  /// Modes m and M - m of the complex signal become those of the real one, or
+  /// the reverse. There: Y_m = E + W O, Y_(M-m) = (E - W O)* with
+  /// 2 E = Z_m + Z*_(M-m) and 2 O = -i (Z_m - Z*_(M-m)),
+  /// W = exp(-2 pi i m / size), w = W / 2. Back, twice the above undone:
+  /// Z_m = (Y_m + Y*_(M-m)) + i W* (Y_m - Y*_(M-m)), w = W*.
+  template <bool kThere, class P>
+  PHYSINV_LANES static void pair(Complex<P>& low,
+                                 Complex<P>& high,
+                                 P w_re,
+                                 P w_im) {
+    const auto a = low, b = high.conjugate(), sum = a + b;
+    if constexpr (kThere) {
+      const auto odd = (b - a).times_i().times(w_re, w_im);
+      const Complex<P> even{T(0.5) * sum.re, T(0.5) * sum.im};
+      low = even + odd, high = (even - odd).conjugate();
+    } else {
+      const auto odd = (a - b).times(w_re, w_im).times_i();
+      low = sum + odd, high = (sum - odd).conjugate();
+    }
   }
 
   /// Blocks of `length` points, four of each a quarter apart. For point j of a
@@ -83,6 +146,8 @@ class LanesFft {
   static void run(const Pass& pass, Index points, const P* in, P* out);
   template <class P>
   static void run_pairs(Index points, const P* in, P* out);
+  template <bool kThere, class P>
+  void split(P* y) const;
 
   Index half_;                ///< M
   std::vector<Pass> passes_;  ///< the longest blocks first
@@ -103,9 +168,7 @@ PHYSINV_LANES void LanesFft<T>::four(
              d = at(in, j + 3 * q);
   if constexpr (!kThere && kTurned)
     b = b.times(w), c = c.times(w + 2), d = d.times(w + 4);
-  const auto ac = a + c, a_c = a - c, bd = b + d;
-  const auto turned = kThere ? (d - b).times_i() : (b - d).times_i();
-  a = ac + bd, b = a_c + turned, c = ac - bd, d = a_c - turned;
+  quartet<kThere>(a, b, c, d);
   if constexpr (kThere && kTurned)
     b = b.times(w), c = c.times(w + 2), d = d.times(w + 4);
   put(out, j, a), put(out, j + q, b);
@@ -136,8 +199,17 @@ inline void LanesFft<T>::run_pairs(Index points, const P* in, P* out) {
   }
 }
 
-/// Y_m = E + W O, Y_(M-m) = (E - W O)* with 2 E = Z_m + Z*_(M-m) and
-/// 2 O = -i (Z_m - Z*_(M-m)), W = exp(-2 pi i m / size).
+template <class T>
+template <bool kThere, class P>
+PHYSINV_LANES void LanesFft<T>::split(P* y) const {
+  for (const Pair& s : split_) {
+    const T* const w = kThere ? s.there : s.back;
+    auto low = at(y, s.p), high = at(y, s.q);
+    pair<kThere>(low, high, P{} + w[0], P{} + w[1]);
+    put(y, s.p, low), put(y, s.q, high);
+  }
+}
+
 template <class T>
 template <class P>
 void LanesFft<T>::forward(const P* u, P* y) const {
@@ -148,29 +220,16 @@ void LanesFft<T>::forward(const P* u, P* y) const {
   put<P>(y, 0, {zero.re + zero.im, P{}});
   put<P>(y, half_, {zero.re - zero.im, P{}});
   y[2 * middle_ + 1] = -y[2 * middle_ + 1];
-  for (const Pair& s : split_) {
-    const auto a = at(y, s.p), b = at(y, s.q).conjugate();
-    const auto sum = a + b, odd = (b - a).times_i().times(s.there);
-    const Complex<P> even{T(0.5) * sum.re, T(0.5) * sum.im};
-    put(y, s.p, even + odd);
-    put(y, s.q, (even - odd).conjugate());
-  }
+  split<true>(y);
 }
 
-/// Z_m = (Y_m + Y*_(M-m)) + i W* (Y_m - Y*_(M-m)), which is twice the above
-/// undone.
 template <class T>
 template <class P>
 void LanesFft<T>::inverse(P* y, P* u) const {
   const P first = y[0], last = y[2 * half_];
   put<P>(y, 0, {first + last, first - last});
   put<P>(y, middle_, {T(2) * y[2 * middle_], T(-2) * y[2 * middle_ + 1]});
-  for (const Pair& s : split_) {
-    const auto a = at(y, s.p), b = at(y, s.q).conjugate();
-    const auto sum = a + b, odd = (a - b).times(s.back).times_i();
-    put(y, s.p, sum + odd);
-    put(y, s.q, (sum - odd).conjugate());
-  }
+  split<false>(y);
   P* const end = passes_.empty() ? u : y;
   if (pairs_last_) run_pairs(half_, y, end);
   for (auto p = passes_.rbegin(); p != passes_.rend(); ++p)

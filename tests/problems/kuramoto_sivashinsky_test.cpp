@@ -265,7 +265,7 @@ TYPED_TEST(KuramotoSivashinskyIn, BitsDependNeitherOnBatchNorOnThreads) {
     Bench<T> threaded({.tape_budget = budget}, 3);
     EXPECT_TRUE(same_bits(threaded.pull(s.x, s.given, y_bar), pulled));
     EXPECT_TRUE(same_bits(threaded.jacobian(s.x, s.given), j));
-    for (const Index size : {1, 5}) {
+    for (const Index size : {1, 2, 3, 5}) {
       for (Index first = 0; first + size <= n; first += size) {
         const auto part = [&](const Batch<T>& all) {
           return Batch<T>(all.middleCols(first, size).rowwise().reverse());

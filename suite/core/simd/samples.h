@@ -105,14 +105,10 @@ class Lanes {
   Index rows_;
 };
 
-namespace detail {
-
 /// In every block of four lanes: v[i][r] and v[r][i] change places.
-template <class T, int... I>
-PHYSINV_LANES void transpose_four(Pack<T> (&v)[4],
-                                  std::integer_sequence<int, I...>) {
-  constexpr int W = kLanes<T>;
-  using P = Pack<T>;
+template <class P, int... I>
+PHYSINV_LANES void transpose_four(P (&v)[4], std::integer_sequence<int, I...>) {
+  constexpr int W = sizeof...(I);
   const P low01 = __builtin_shufflevector(
       v[0], v[1], (I / 4 * 4 + I % 4 / 2 + I % 2 * W)...);
   const P high01 = __builtin_shufflevector(
@@ -131,12 +127,11 @@ PHYSINV_LANES void transpose_four(Pack<T> (&v)[4],
       high01, high23, (I / 4 * 4 + 2 + I % 2 + I % 4 / 2 * W)...);
 }
 
-template <class T>
-PHYSINV_LANES void transpose_four(Pack<T> (&v)[4]) {
-  transpose_four<T>(v, std::make_integer_sequence<int, kLanes<T>>());
+template <class P>
+PHYSINV_LANES void transpose_four(P (&v)[4]) {
+  constexpr int W = sizeof(P) / sizeof(LaneScalar<P>);
+  transpose_four(v, std::make_integer_sequence<int, W>());
 }
-
-}  // namespace detail
 
 /// out[r * stride] = rows row + r of columns first .. of the batch; columns
 /// beyond it read as zero.
@@ -159,7 +154,7 @@ inline void load_rows(BatchIn<LaneScalar<P>> batch,
       std::memcpy(reinterpret_cast<T*>(&v[k % 4]) + k / 4 * 4,
                   p + k * step + r,
                   4 * sizeof(T));
-    detail::transpose_four<T>(v);
+    transpose_four(v);
     for (Index i = 0; i < 4; ++i) out[(r + i) * stride] = v[i];
   }
   for (; r < rows; ++r) {
@@ -186,7 +181,7 @@ inline void store_rows(const P* in,
   for (; count == W && r + 4 <= rows; r += 4) {
     P v[4];
     for (Index i = 0; i < 4; ++i) v[i] = in[(r + i) * stride];
-    detail::transpose_four<T>(v);
+    transpose_four(v);
     for (Index k = 0; k < W; ++k)
       std::memcpy(p + k * step + r,
                   reinterpret_cast<const T*>(&v[k % 4]) + k / 4 * 4,

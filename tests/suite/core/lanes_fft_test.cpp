@@ -6,8 +6,10 @@
 #include <cmath>
 #include <vector>
 
+#include "suite/core/fours_fft.h"
 #include "suite/core/real_fft.h"
 #include "suite/core/workspace.h"
+#include "tests/support/bits.h"
 #include "tests/support/tolerance.h"
 
 namespace physinv::test {
@@ -92,6 +94,59 @@ TYPED_TEST(LanesFftIn, HasTheBitsOfAnyWidth) {
   for (Index j = 0; j < 128; ++j)
     for (int k = 0; k < kFew; ++k)
       EXPECT_EQ(wide.back[j][k], narrow.back[j][k]);
+}
+
+/// W / 4 signals, by FoursFft and by LanesFft.
+template <class T, int W>
+void expect_bits_of_lanes(const Batch<T>& given) {
+  constexpr int kFew = 16 / sizeof(T);
+  const Index n = given.rows();
+  const FoursFft<T> fours(n);
+  const LanesFft<T> lanes(n);
+  std::vector<Pack<T, W>> u(fours.field()), y(fours.spectrum()), back(u.size());
+  std::vector<Pack<T, kFew>> lane_u(n), lane_y(n + 2), lane_back(n);
+  const auto at = [](auto& packs, Index place, Index k) -> auto& {
+    return reinterpret_cast<T*>(&packs[place / 4])[4 * k + place % 4];
+  };
+  for (Index j = 0; j < n; ++j)
+    for (Index k = 0; k < W / 4; ++k)
+      at(u, fours.point(j), k) = lane_u[j][k] = given(j, k);
+  fours.forward(u.data(), y.data());
+  lanes.forward(lane_u.data(), lane_y.data());
+  Batch<T> ours(n + 2, W / 4), theirs(n + 2, W / 4);
+  for (Index i = 0; i < n + 2; ++i)
+    for (Index k = 0; k < W / 4; ++k) {
+      ours(i, k) = at(y, fours.place(i), k);
+      EXPECT_EQ(ours(i, k), fours.taken(y.data(), fours.place(i))[4 * k]);
+      theirs(i, k) = lane_y[i][k];
+    }
+  EXPECT_TRUE(same_bits(ours, theirs));
+  fours.inverse(y.data(), back.data());
+  lanes.inverse(lane_y.data(), lane_back.data());
+  for (Index j = 0; j < n; ++j)
+    for (Index k = 0; k < W / 4; ++k) {
+      ours(j, k) = at(back, fours.point(j), k);
+      theirs(j, k) = lane_back[j][k];
+    }
+  EXPECT_TRUE(same_bits(ours, theirs));
+}
+
+TYPED_TEST(LanesFftIn, FourPointsSideBySideHaveTheBitsOfLanes) {
+  using T = TypeParam;
+  for (const Index n : {32, 128, 512, 2048}) {
+    SCOPED_TRACE(n);
+    ASSERT_TRUE(FoursFft<T>::takes(n));
+    Batch<T> given = signals<T>(n, 4);
+    expect_bits_of_lanes<T, 4>(given);
+    expect_bits_of_lanes<T, kLanes<T>>(given);
+    // Signs of zeros, too.
+    given.setConstant(T(-0.0)), given(n / 4 + 1, 0) = 1;
+    expect_bits_of_lanes<T, 4>(given);
+    expect_bits_of_lanes<T, kLanes<T>>(given);
+  }
+  for (const Index n : {8, 16, 64, 96, 256})
+    EXPECT_FALSE(FoursFft<T>::takes(n)) << n;
+  EXPECT_THROW(FoursFft<T>(64), std::exception);
 }
 
 TEST(LanesFft, WantsAPowerOfTwo) {
