@@ -23,26 +23,34 @@ PHYSINV_LANES decltype(auto) of_size(Index d, F&& f) {
   return d == 2 ? f(std::integral_constant<Index, 2>{}) : f(d);
 }
 
-/// a.b in four interleaved partial sums.
-inline double interleaved_dot(Index d, const double* a, const double* b) {
+/// a[k].b[k] in four interleaved partial sums each, all at once: the sums of
+/// one wait for each other.
+template <std::size_t N>
+inline std::array<double, N> dots(Index d,
+                                  const std::array<const double*, N>& a,
+                                  const std::array<const double*, N>& b) {
   using Four = Pack<double, 4>;
-  Four sums{};
+  std::array<Four, N> sums{};
   Index i = 0;
-  for (; i + 4 <= d; i += 4) {
-    Four left, right;
-    std::memcpy(&left, a + i, sizeof(Four));
-    std::memcpy(&right, b + i, sizeof(Four));
-    sums = fma_lanes(left, right, sums);
+  for (; i + 4 <= d; i += 4)
+#pragma GCC unroll 4
+    for (std::size_t k = 0; k < N; ++k)
+      sums[k] = fma_lanes(load<Four>(a[k] + i), load<Four>(b[k] + i), sums[k]);
+  std::array<double, N> out;
+#pragma GCC unroll 4
+  for (std::size_t k = 0; k < N; ++k) {
+    std::array<double, 4> lane;
+    std::memcpy(lane.data(), &sums[k], sizeof(Four));
+    for (Index j = i; j < d; ++j)
+      add_product(lane[static_cast<std::size_t>(j - i)], a[k][j], b[k][j]);
+    out[k] = (lane[0] + lane[1]) + (lane[2] + lane[3]);
   }
-  std::array<double, 4> lane;
-  std::memcpy(lane.data(), &sums, sizeof(Four));
-  for (std::size_t k = 0; i < d; ++i, ++k) add_product(lane[k], a[i], b[i]);
-  return (lane[0] + lane[1]) + (lane[2] + lane[3]);
+  return out;
 }
 
-/// The same; the plain order for d <= 3.
+/// The same of one; the plain order for d <= 3.
 PHYSINV_LANES double dot(Index d, const double* a, const double* b) {
-  if (d != 2) return interleaved_dot(d, a, b);
+  if (d != 2) return dots<1>(d, {a}, {b})[0];
   return (std::fma(a[0], b[0], 0.0) + std::fma(a[1], b[1], 0.0)) + 0.0;
 }
 

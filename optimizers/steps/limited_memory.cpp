@@ -63,7 +63,7 @@ bool SaddleFactor::factor(Index k,
   if (!cholesky(k, p_)) return false;
   for (Index j = 0; j < k; ++j) solve_lower(k, p_, g_.col(j).data());
   for (Index j = 0; j < k; ++j)
-    for (Index i = 0; i < k; ++i)
+    for (Index i = j; i < k; ++i)
       t_(i, j) += dense::dot(k, g_.col(i).data(), g_.col(j).data());
   return cholesky(k, t_);
 }
@@ -103,21 +103,25 @@ void LimitedMemory::clear() {
   theta_ = 1;
 }
 
-bool LimitedMemory::update(const double* s, const double* y, double sy) {
+bool LimitedMemory::update(const double* step,
+                           const double* change,
+                           double sy) {
   if (pairs_ == m_) {
-    std::copy(s_.data() + d_, s_.data() + m_ * d_, s_.data());
-    std::copy(y_.data() + d_, y_.data() + m_ * d_, y_.data());
+    oldest_ = (oldest_ + 1) % m_;
     for (Batch<double>* table : {&ss_, &sy_, &yy_}) drop_first(m_, *table);
     --pairs_;
   }
   const Index last = pairs_++;
-  std::copy(s, s + d_, s_.col(last).data());
-  std::copy(y, y + d_, y_.col(last).data());
+  const Index column = (oldest_ + last) % m_;
+  std::copy(step, step + d_, s_.col(column).data());
+  std::copy(change, change + d_, y_.col(column).data());
   for (Index j = 0; j <= last; ++j) {
-    ss_(last, j) = ss_(j, last) = dense::dot(d_, s, s_.col(j).data());
-    yy_(last, j) = yy_(j, last) = dense::dot(d_, y, y_.col(j).data());
-    sy_(last, j) = dense::dot(d_, s, y_.col(j).data());
-    sy_(j, last) = dense::dot(d_, s_.col(j).data(), y);
+    const auto [ss, yy, sy_last, sy_j] = dense::dots<4>(
+        d_, {step, change, step, s(j)}, {s(j), y(j), y(j), change});
+    ss_(last, j) = ss_(j, last) = ss;
+    yy_(last, j) = yy_(j, last) = yy;
+    sy_(last, j) = sy_last;
+    sy_(j, last) = sy_j;
   }
   sy_(last, last) = sy;
   theta_ = yy_(last, last) / sy;
@@ -135,26 +139,29 @@ bool LimitedMemory::update(const double* s, const double* y, double sy) {
 }
 
 void LimitedMemory::project(const double* v, double* out) const {
-  for (Index j = 0; j < pairs_; ++j) {
-    out[j] = dense::dot(d_, y_.col(j).data(), v);
-    out[pairs_ + j] = theta_ * dense::dot(d_, s_.col(j).data(), v);
+  for (Index j = 0; j < pairs_; j += 2) {
+    const Index next = std::min(j + 1, pairs_ - 1);
+    const auto products =
+        dense::dots<4>(d_, {y(j), y(next), s(j), s(next)}, {v, v, v, v});
+    out[j] = products[0], out[next] = products[1];
+    out[pairs_ + j] = theta_ * products[2];
+    out[pairs_ + next] = theta_ * products[3];
   }
 }
 
 void LimitedMemory::expand(const double* w, double* v) const {
   for (Index j = 0; j < pairs_; ++j) {
-    const double* y = y_.col(j).data();
-    const double* s = s_.col(j).data();
+    const double *yj = y(j), *sj = s(j);
     const double ws = theta_ * w[pairs_ + j];
     for (Index i = 0; i < d_; ++i)
-      v[i] = std::fma(ws, s[i], std::fma(w[j], y[i], v[i]));
+      v[i] = std::fma(ws, sj[i], std::fma(w[j], yj[i], v[i]));
   }
 }
 
 void LimitedMemory::row(Index i, double* out) const {
   for (Index j = 0; j < pairs_; ++j) {
-    out[j] = y_(i, j);
-    out[pairs_ + j] = theta_ * s_(i, j);
+    out[j] = y(j)[i];
+    out[pairs_ + j] = theta_ * s(j)[i];
   }
 }
 
@@ -177,18 +184,19 @@ bool LimitedMemory::solve_free(std::span<const char> free, double* r) {
   const bool all = std::find(free.begin(), free.end(), 0) == free.end();
   for (Index j = 0; j < pairs_; ++j) {
     for (Index i = 0; i < pairs_; ++i) {
-      const auto product = [&](const Batch<double>& a,
-                               const Batch<double>& b,
+      const auto product = [&](const double* a,
+                               const double* b,
                                const Batch<double>& whole,
                                bool held) {
         if (all) return held ? 0.0 : whole(i, j);
-        return free_dot(free, held, a.col(i).data(), b.col(j).data());
+        return free_dot(free, held, a, b);
       };
+      r_(i, j) = i > j ? product(s(i), y(j), sy_, true)
+                       : -product(s(i), y(j), sy_, false);
+      if (i < j) continue;  // of the symmetric two the lower part is enough
       p_(i, j) =
-          (i == j ? sy_(i, j) : 0) + product(y_, y_, yy_, false) / theta_;
-      r_(i, j) =
-          i > j ? product(s_, y_, sy_, true) : -product(s_, y_, sy_, false);
-      q_(i, j) = theta_ * product(s_, s_, ss_, true);
+          (i == j ? sy_(i, j) : 0) + product(y(i), y(j), yy_, false) / theta_;
+      q_(i, j) = theta_ * product(s(i), s(j), ss_, true);
     }
   }
   if (!subspace_.factor(pairs_, p_, r_, q_)) return false;

@@ -14,8 +14,9 @@
 
 namespace physinv {
 
-/// Solves (-P R'; R Q) v = b for symmetric P and Q, k x k, where P and
-/// Q + R P^-1 R' are positive definite: M^-1 above, and its like in a subspace.
+/// Solves (-P R'; R Q) v = b for symmetric P and Q, k x k (their lower parts
+/// are read), where P and Q + R P^-1 R' are positive definite: M^-1 above, and
+/// its like in a subspace.
 class SaddleFactor {
  public:
   void reserve(Index k);
@@ -40,9 +41,9 @@ class LimitedMemory {
   Index pairs() const { return pairs_; }
   double theta() const { return theta_; }
 
-  /// Takes in a pair with s.y = sy > 0; the oldest of m leaves. False, and the
-  /// memory empty, if rounding has left M^-1 singular.
-  bool update(const double* s, const double* y, double sy);
+  /// Takes in a step s and a change y with s.y = sy > 0; the oldest of m pairs
+  /// leaves. False, and the memory empty, if rounding has left M^-1 singular.
+  bool update(const double* step, const double* change, double sy);
 
   /// out = W'v.
   void project(const double* v, double* out) const;
@@ -65,9 +66,14 @@ class LimitedMemory {
                   const double* a,
                   const double* b) const;
 
+  /// Of pair j, the oldest being 0.
+  const double* s(Index j) const { return s_.col((oldest_ + j) % m_).data(); }
+  const double* y(Index j) const { return y_.col((oldest_ + j) % m_).data(); }
+
   Index d_ = 0, m_ = 0, pairs_ = 0;
+  Index oldest_ = 0;  // column of the first pair
   double theta_ = 1;
-  Batch<double> s_, y_;         // d x m, oldest first
+  Batch<double> s_, y_;         // d x m, in a ring
   Batch<double> ss_, sy_, yy_;  // S'S, S'Y, Y'Y
   Batch<double> p_, r_, q_;     // blocks of a SaddleFactor
   Vector<double> w_;
