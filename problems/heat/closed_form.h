@@ -19,7 +19,7 @@ inline ClosedForm heat_closed_form(const HeatOptions& options = {}) {
       const long double turn = 2 * std::numbers::pi_v<long double> / n;
       const long double wave =
           turn * static_cast<long double>(k < n - k ? k : n - k);
-      c[d] += std::exp(-wave * wave * options.end_time) *
+      c[d] += exact_exp(-wave * wave * options.end_time).real() *
               std::cos(turn * static_cast<long double>(k * d % n)) / n;
     }
   return {[n, c](auto x, auto, auto y) {

@@ -17,7 +17,7 @@ inline ClosedForm wave_packet_closed_form(const WavePacketOptions& o = {}) {
       const Exact d = static_cast<long double>(k + 1) - t0;
       y[k] = static_cast<long double>(o.amplitude) *
                  std::cos(w * d + static_cast<long double>(o.phase)) *
-                 std::exp(-d * d / (2 * width * width)) +
+                 exact_exp(-d * d / (2 * width * width)) +
              static_cast<long double>(noise[k]);
     }
   }};
