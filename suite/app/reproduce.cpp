@@ -133,31 +133,35 @@ std::size_t show_changes(const std::vector<Again>& all,
   return changed.size();
 }
 
+/// False if help was asked for.
+bool parse_flags(const Arguments& arguments, ReproduceFlags& flags) {
+  return parse(
+      "reproduce",
+      "Runs published campaigns again, case by case as they were run, "
+      "and writes the same pages of what comes out: all that decide a "
+      "claim of a paper, or those that are named. What is finished "
+      "is reused. Exit 7 if a claim comes to another verdict, 10 if "
+      "something did not run.",
+      {{.name = "CAMPAIGN",
+        .help = "of RESULTS.md, such as 41-paper-jpo-billiards",
+        .to = &flags.names,
+        .optional = true},
+       {"--paper", "jpo, hig, sip or physgrad", &flags.paper, "KEY"},
+       {"--campaigns",
+        "folder of published campaigns (default reports/campaigns)",
+        &flags.campaigns,
+        "DIR"},
+       {"--out", "where to (default results/reproduce)", &flags.out, "DIR"},
+       {"-j,--jobs", "worker processes; default: cores", &flags.jobs},
+       {"--dry-run", "say what would run, and what it took", &flags.dry}},
+      arguments);
+}
+
 }  // namespace
 
 ExitCode reproduce_verb(const Arguments& arguments) {
   ReproduceFlags flags;
-  if (!parse(
-          "reproduce",
-          "Runs published campaigns again, case by case as they were run, "
-          "and writes the same pages of what comes out: all that decide a "
-          "claim of a paper, or those that are named. What is finished "
-          "is reused. Exit 7 if a claim comes to another verdict, 10 if "
-          "something did not run.",
-          {{.name = "CAMPAIGN",
-            .help = "of RESULTS.md, such as 41-paper-jpo-billiards",
-            .to = &flags.names,
-            .optional = true},
-           {"--paper", "jpo, hig, sip or physgrad", &flags.paper, "KEY"},
-           {"--campaigns",
-            "folder of published campaigns (default reports/campaigns)",
-            &flags.campaigns,
-            "DIR"},
-           {"--out", "where to (default results/reproduce)", &flags.out, "DIR"},
-           {"-j,--jobs", "worker processes; default: cores", &flags.jobs},
-           {"--dry-run", "say what would run, and what it took", &flags.dry}},
-          arguments))
-    return ExitCode::good;
+  if (!parse_flags(arguments, flags)) return ExitCode::good;
   if (flags.names.empty() == flags.paper.empty())
     throw UsageError(
         "name published campaigns, or a paper with --paper=KEY; one of both is "
@@ -184,7 +188,7 @@ ExitCode reproduce_verb(const Arguments& arguments) {
     publish(store, fs::path(kept) / again.name);
   }
   results_verb({"--campaigns=" + kept, "--out=" + flags.out + "/RESULTS.md"});
-  const int changed =
+  const std::size_t changed =
       show_changes(all, latest, latest_claims(published_digests(kept)));
   if (!troubles.empty())
     throw ExitError(ExitCode::incomplete,
