@@ -56,7 +56,8 @@ def prepare(folder):
 def as_run(arguments):
     """The same, where it would take minutes without its work."""
     verb = arguments[0] if arguments and arguments[0][0] != "-" else "run"
-    if verb == "run" and not {"--help", "--version", "-V"} & set(arguments):
+    told = {"--help", "--version", "-V", "--dry-run"}
+    if verb in ("run", "reproduce") and not told & set(arguments):
         return [*arguments, "--dry-run"]
     if verb == "kernels":
         return [*arguments, "--benchmark_min_time=0.001"]
