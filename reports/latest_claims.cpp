@@ -86,9 +86,8 @@ Papers latest_claims(const std::vector<NamedDigest>& campaigns) {
   return papers;
 }
 
-std::vector<ChangedClaim> changed_claims(const Papers& then,
-                                         const Papers& now) {
-  std::vector<ChangedClaim> changed;
+std::vector<NewVerdict> new_verdicts(const Papers& then, const Papers& now) {
+  std::vector<NewVerdict> changed;
   for (const auto& [paper, claims] : then) {
     const auto own = now.find(paper);
     for (const auto& [key, before] : claims) {

@@ -36,13 +36,13 @@ std::vector<NamedDigest> newest_first(std::vector<NamedDigest> campaigns);
 Papers latest_claims(const std::vector<NamedDigest>& campaigns);
 
 /// A claim that comes to another verdict; not judged where it is not there.
-struct ChangedClaim {
+struct NewVerdict {
   ClaimKey key;
   Verdict then, now;
   Origin origin;
   std::string says;
 };
-std::vector<ChangedClaim> changed_claims(const Papers& then, const Papers& now);
+std::vector<NewVerdict> new_verdicts(const Papers& then, const Papers& now);
 
 VerdictCounts counts_of(const LatestClaims& paper, Origin origin);
 

@@ -117,11 +117,11 @@ std::size_t show_changes(const std::vector<Again>& all,
                          const Papers& here) {
   std::set<ClaimKey> decided;
   for (const Again& a : all) decided.insert(a.decides.begin(), a.decides.end());
-  auto changed = changed_claims(published, here);
-  std::erase_if(
-      changed, [&](const ChangedClaim& c) { return !decided.contains(c.key); });
+  auto changed = new_verdicts(published, here);
+  std::erase_if(changed,
+                [&](const NewVerdict& c) { return !decided.contains(c.key); });
   Columns table({"<claim", "<published", "<here", "<says"});
-  for (const ChangedClaim& c : changed)
+  for (const NewVerdict& c : changed)
     table.add({text_of({c.key}),
                std::string(words_of(c.then, c.origin)),
                std::string(words_of(c.now, c.origin)),

@@ -99,18 +99,18 @@ TEST(Digest, PageOfAnExperimentSaysWhereItsNumbersComeFrom) {
                 "jpo-toy-curves.svg)"});
 }
 
-TEST(LatestClaims, ChangedOnesAreThoseOfAnotherVerdictOrNone) {
+TEST(LatestClaims, NewVerdictsAreThoseThatDifferOrAreGone) {
   const auto latest = [](Verdict of_paper, Verdict of_suite) {
     return latest_claims({named("a", of_paper, of_suite)});
   };
   const Papers then = latest(Verdict::reproduced, Verdict::reproduced);
-  EXPECT_TRUE(changed_claims(then, then).empty());
-  const auto changed = changed_claims(
-      then, latest(Verdict::reproduced, Verdict::not_reproduced));
+  EXPECT_TRUE(new_verdicts(then, then).empty());
+  const auto changed =
+      new_verdicts(then, latest(Verdict::reproduced, Verdict::not_reproduced));
   ASSERT_EQ(changed.size(), 1U);
   EXPECT_EQ(changed[0].key, ClaimKey("jpo/toy", "R1"));
   EXPECT_EQ(changed[0].now, Verdict::not_reproduced);
-  const auto gone = changed_claims(then, {});
+  const auto gone = new_verdicts(then, {});
   ASSERT_EQ(gone.size(), 2U);
   EXPECT_EQ(gone[0].now, Verdict::not_judged);
 }
