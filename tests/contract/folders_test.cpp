@@ -1,4 +1,6 @@
 // The list of folders (suite/cases/experiments.txt) against what they register.
+#include "suite/cases/folders.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,8 +9,6 @@
 #include <sstream>
 #include <string>
 #include <vector>
-
-#include "suite/cases/folders.h"
 
 namespace physinv {
 namespace {
