@@ -33,6 +33,9 @@ def prepare(d):
     expect(0, [*smoke, "--out=stroll", "--filter=stroll"], d)
     expect(10, ["--profile=quick", "--time-budget=0.000001", "--out=part"], d)
     expect(0, ["baseline", "good", "--out=base.txt"], d)
+    expect(0, ["report", "good", "--publish=kept/good"], d)
+    run("--profile=bad", "--out=broken", cwd=d)
+    run("report", "broken", "--publish=kept/broken", cwd=d)
     with open(os.path.join(d, "base.txt"), "rb") as f:
         text = f.read()
     with open(os.path.join(d, "torn.txt"), "wb") as f:
@@ -84,6 +87,10 @@ def scenarios(d, env):
         "report": {2: (["report", "nowhere"],),
                    7: (["report", "good", "--check"], doubt),
                    10: (["report", "part"],)},
+        "reproduce": {2: (["reproduce"],),
+                      3: (["reproduce", "none", "--campaigns=kept"],),
+                      7: (["reproduce", "good", "--campaigns=kept"], doubt),
+                      10: (["reproduce", "broken", "--campaigns=kept"],)},
         "verify": {2: (["verify", "nowhere"],), 4: (["verify", "good"], other),
                    10: (["verify", "part"],)},
         "gate": {2: (["gate", "--baseline=nowhere"],),
