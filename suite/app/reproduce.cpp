@@ -182,6 +182,7 @@ ExitCode reproduce_verb(const Arguments& arguments) {
   std::vector<std::string> troubles;
   const std::string kept = flags.out + "/campaigns";
   for (const Again& again : all) {
+    if (again.cases.empty()) continue;  // none is registered any more
     const std::string store = flags.out + '/' + again.name;
     for (const std::string& t : run_again(again, flags, store))
       troubles.push_back(again.name + ": " + t);
