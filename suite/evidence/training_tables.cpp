@@ -28,13 +28,10 @@ struct UpdateCosts {
   std::vector<double> seconds, bytes;
 };
 
-UpdateCosts costs_of(const Results& results,
-                     std::string_view experiment,
-                     const std::string& method,
+UpdateCosts costs_of(const std::vector<const StageRecord*>& stages,
                      TimedStages& timed) {
   UpdateCosts costs;
-  for (const auto* s : trained_stages(results, experiment, method))
-    costs.add(*s, timed);
+  for (const auto* s : stages) costs.add(*s, timed);
   return costs;
 }
 
@@ -124,7 +121,7 @@ Figure update_times(const Results& results,
   TimedStages timed;
   for (const MethodLine& line : lines) {
     const auto stages = trained_stages(results, experiment, line.method);
-    const UpdateCosts costs = costs_of(results, experiment, line.method, timed);
+    const UpdateCosts costs = costs_of(stages, timed);
     const auto batch = stages.empty()
                            ? std::nullopt
                            : number_of(stages.front()->options, "batch");
@@ -259,13 +256,14 @@ Table cost_table(const Results& results,
               .columns = {"MB", "CPU ms / update", "CPU ms / Jacobian"}};
   TimedStages timed;
   for (const CostLine& line : lines) {
-    const UpdateCosts costs = costs_of(results, experiment, line.method, timed);
+    const UpdateCosts costs =
+        costs_of(trained_stages(results, experiment, line.method), timed);
     Cell megabytes{.text = kNotRun}, update = duration_of(costs);
     if (!costs.bytes.empty()) megabytes = {.ours = 1e-6 * median(costs.bytes)};
     Cell jacobian{.text = kNothing};
     if (const Select& runs = line.jacobian; !runs.method.empty())
-      jacobian =
-          duration_of(costs_of(results, runs.experiment, runs.method, timed));
+      jacobian = duration_of(costs_of(
+          trained_stages(results, runs.experiment, runs.method), timed));
     const auto printed = [&](const char* what) {
       return published.find(experiment, line.published + what);
     };
