@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "reports/latest_claims.h"
@@ -160,25 +161,19 @@ std::vector<NamedDigest> published_digests(
   if (!is_folder(directory))
     throw UsageError(fmt::format("there is no directory '{}' of campaigns",
                                  directory.string()));
+  std::set<std::string> missing(names.begin(), names.end());
   std::vector<fs::path> paths;
   for (const auto& entry : fs::directory_iterator(directory))
-    if (is_there(entry.path() / "digest.json")) paths.push_back(entry.path());
+    if (is_there(entry.path() / "digest.json") &&
+        (names.empty() || missing.erase(entry.path().filename()) > 0))
+      paths.push_back(entry.path());
+  if (!missing.empty())
+    throw ExitError(ExitCode::nothing_matched,
+                    fmt::format("there is no campaign '{}' in {}; "
+                                "RESULTS.md names them",
+                                *missing.begin(),
+                                directory.string()));
   std::sort(paths.begin(), paths.end());
-  for (const std::string& name : names)
-    if (std::none_of(paths.begin(), paths.end(), [&](const fs::path& path) {
-          return path.filename() == name;
-        }))
-      throw ExitError(ExitCode::nothing_matched,
-                      fmt::format("there is no campaign '{}' in {}; "
-                                  "RESULTS.md names them",
-                                  name,
-                                  directory.string()));
-  if (!names.empty())
-    std::erase_if(paths, [&](const fs::path& path) {
-      return std::none_of(names.begin(), names.end(), [&](const auto& name) {
-        return path.filename() == name;
-      });
-    });
   const Published published(published_directory());
   std::vector<NamedDigest> found;
   for (const auto& path : paths)
