@@ -11,7 +11,7 @@
 namespace physinv::test {
 namespace {
 
-constexpr Index kCount = 24;
+constexpr Index kExamples = 24;
 
 double training_loss(const Outcome& out) {
   return out.arrays.at("training_loss")(0, 0);
@@ -20,7 +20,7 @@ double training_loss(const Outcome& out) {
 TEST(Supervised, LearnsAndGeneralises) {
   const auto stage = supervised_fit({.step = AdamOptions{.rate = 1e-2}});
   for (const auto precision : {Precision::f32, Precision::f64}) {
-    StageBench first(*stage, kCount, 1), bench(*stage, kCount, 600);
+    StageBench first(*stage, kExamples, 1), bench(*stage, kExamples, 600);
     const double before = training_loss(first.run(nullptr, precision));
     const Outcome out = bench.run(nullptr, precision);
     EXPECT_LT(training_loss(out), 0.05 * before);
@@ -32,7 +32,7 @@ TEST(Supervised, LearnsAndGeneralises) {
 
 TEST(PriorGuess, IsTheSolutionOfOtherProblems) {
   const auto stage = prior_guess();
-  StageBench bench(*stage, kCount, 0);
+  StageBench bench(*stage, kExamples, 0);
   const Outcome out = bench.run();
   EXPECT_TRUE(same_bits(out.x, bench.oracle.labelled().x));
   EXPECT_FALSE(same_bits(out.x, bench.oracle.data().x));
@@ -43,7 +43,7 @@ TEST(PriorGuess, IsTheSolutionOfOtherProblems) {
 // The prediction of the last network, be it better or worse than before.
 TEST(Supervised, SelectsNoBestIterate) {
   const auto stage = supervised_fit({.step = AdamOptions{.rate = 0.3}});
-  StageBench bench(*stage, kCount, 60);
+  StageBench bench(*stage, kExamples, 60);
   const Outcome out = bench.run();
   const Batch<double>& curve = bench.probe.curve().loss;
   const Vector<double> last = curve.rightCols(1);
@@ -55,10 +55,10 @@ TEST(Supervised, SelectsNoBestIterate) {
 // every pass, in another order each time.
 TEST(Supervised, GoesThroughItsSetInParts) {
   const auto stage = supervised_fit({.step = AdamOptions{.rate = 1e-2}});
-  StageBench few(*stage, kCount, 400), many(*stage, kCount, 400);
+  StageBench few(*stage, kExamples, 400), many(*stage, kExamples, 400);
   many.setting.labels.per_problem = 4;
   const Outcome a = few.run(), b = many.run();
-  EXPECT_EQ(many.oracle.labelled(4).count(), 4 * kCount);
+  EXPECT_EQ(many.oracle.labelled(4).count(), 4 * kExamples);
   EXPECT_LT(many.loss(b.x).mean(), many.probe.curve().loss.col(0).mean());
   EXPECT_FALSE(same_bits(a.x, b.x));
 }
@@ -66,7 +66,7 @@ TEST(Supervised, GoesThroughItsSetInParts) {
 // Bounded unknowns are learnt as tanh x.
 TEST(Supervised, BoundedUnknownsAreLearntAsTheyAreRead) {
   const auto stage = supervised_fit({.step = AdamOptions{.rate = 1e-2}});
-  StageBench first(*stage, kCount, 1), bench(*stage, kCount, 600);
+  StageBench first(*stage, kExamples, 1), bench(*stage, kExamples, 600);
   for (StageBench* b : {&first, &bench}) b->setting.labels.bounded = 1;
   const double before = training_loss(first.run());
   const Outcome out = bench.run();
@@ -78,21 +78,21 @@ TEST(Supervised, BoundedUnknownsAreLearntAsTheyAreRead) {
 // simulations nor gradients are made, and other problems leave the weights.
 TEST(Supervised, SeesOnlyTheLabelledSamples) {
   const auto stage = supervised_fit();
-  StageBench bench(*stage, kCount, 20);
+  StageBench bench(*stage, kExamples, 20);
   const Outcome out = bench.run();
   const Counts& counts = bench.oracle.counts();
   EXPECT_EQ(counts[Counter::forward], 0U);
   EXPECT_EQ(counts[Counter::vjp], 0U);
   EXPECT_EQ(counts[Counter::network_forward],
-            static_cast<std::uint64_t>(20 * kCount));
+            static_cast<std::uint64_t>(20 * kExamples));
   const auto broken = quadratic({.broken_above = -1e9});
-  StageBench other(*stage, kCount, 20, broken);
+  StageBench other(*stage, kExamples, 20, broken);
   EXPECT_TRUE(same_bits(other.run().x, out.x));
 }
 
 TEST(Supervised, TargetsAreScaledLikeTheOutput) {
   const auto stage = supervised_fit({.step = AdamOptions{.rate = 1e-2}});
-  StageBench bench(*stage, kCount, 600, quadratic(), quadratic_setting(0.5));
+  StageBench bench(*stage, kExamples, 600, quadratic(), quadratic_setting(0.5));
   const Outcome out = bench.run();
   EXPECT_LT(bench.loss(out.x).mean(),
             0.05 * bench.probe.curve().loss.col(0).mean());

@@ -13,14 +13,14 @@
 namespace physinv::test {
 namespace {
 
-constexpr Index kCount = 12;
+constexpr Index kProblems = 12;
 
 TEST(Jpo, KeepsTheBestEstimateOfEachExample) {
   // A rate that makes the losses jump: the last iterate is rarely the best.
   const auto jpo = jpo_fit({.step = AdamOptions{.rate = 0.3}});
-  StageBench bench(*jpo, kCount, 25);
+  StageBench bench(*jpo, kProblems, 25);
   const Outcome out = bench.run();
-  const Batch<double> losses = bench.traced<double>(kCount);
+  const Batch<double> losses = bench.traced<double>(kProblems);
   ASSERT_EQ(losses.cols(), 26);
   const Vector<double> best = losses.rowwise().minCoeff();
   EXPECT_TRUE(same_bits(bench.loss(out.x), best));
@@ -36,9 +36,9 @@ TEST(Jpo, KeepsTheBestEstimateOfEachExample) {
 // is what the step led to.
 TEST(Jpo, TheLastStateCounts) {
   const auto jpo = jpo_fit({.step = AdamOptions{.rate = 1e-4}});
-  StageBench bench(*jpo, kCount, 1);
+  StageBench bench(*jpo, kProblems, 1);
   const Outcome out = bench.run();
-  const Batch<double> losses = bench.traced<double>(kCount);
+  const Batch<double> losses = bench.traced<double>(kProblems);
   ASSERT_EQ(losses.cols(), 2);
   EXPECT_LT(losses.col(1).sum(), losses.col(0).sum());
   EXPECT_TRUE(same_bits(bench.loss(out.x),
@@ -48,7 +48,7 @@ TEST(Jpo, TheLastStateCounts) {
 TEST(Jpo, LowersTheLossInBothPrecisions) {
   const auto jpo = jpo_fit({.step = AdamOptions{.rate = 1e-2}});
   for (const auto precision : {Precision::f32, Precision::f64}) {
-    StageBench bench(*jpo, kCount, 400);
+    StageBench bench(*jpo, kProblems, 400);
     const Outcome out = bench.run(nullptr, precision);
     const double first = bench.probe.curve().loss.col(0).mean();
     EXPECT_LT(bench.loss(out.x).mean(), 0.02 * first);
@@ -59,8 +59,8 @@ TEST(Jpo, LowersTheLossInBothPrecisions) {
 // are that much farther from the start.
 TEST(Jpo, ScalesTheOutput) {
   const auto jpo = jpo_fit();
-  StageBench one(*jpo, kCount, 0, quadratic(), quadratic_setting(1));
-  StageBench two(*jpo, kCount, 0, quadratic(), quadratic_setting(2));
+  StageBench one(*jpo, kProblems, 0, quadratic(), quadratic_setting(1));
+  StageBench two(*jpo, kProblems, 0, quadratic(), quadratic_setting(2));
   const Batch<double> a = one.run().x, b = two.run().x;
   const Batch<double> start = one.oracle.start();
   EXPECT_GT((a - start).norm(), 0);
@@ -68,7 +68,7 @@ TEST(Jpo, ScalesTheOutput) {
 
   // The chain rule knows the scale, and its sign.
   const auto scaled = jpo_fit({.step = AdamOptions{.rate = 1e-2}});
-  StageBench bench(*scaled, kCount, 300, quadratic(), quadratic_setting(-0.5));
+  StageBench bench(*scaled, kProblems, 300, quadratic(), quadratic_setting(-0.5));
   const Outcome out = bench.run();
   EXPECT_LT(bench.loss(out.x).mean(),
             0.1 * bench.probe.curve().loss.col(0).mean());
@@ -77,9 +77,9 @@ TEST(Jpo, ScalesTheOutput) {
 // One loss that is not finite does not spoil the others.
 TEST(Jpo, SurvivesExamplesThatAreNotFinite) {
   const auto jpo = jpo_fit({.step = AdamOptions{.rate = 1e-3}});
-  StageBench bench(*jpo, kCount, 30, quadratic({.broken_above = 0.6}));
+  StageBench bench(*jpo, kProblems, 30, quadratic({.broken_above = 0.6}));
   const Outcome out = bench.run();
-  const Batch<double> losses = bench.traced<double>(kCount);
+  const Batch<double> losses = bench.traced<double>(kProblems);
   EXPECT_FALSE(losses.allFinite());
   EXPECT_TRUE(out.x.allFinite());
   EXPECT_EQ(out.stop, Stop::iterations);
@@ -88,7 +88,7 @@ TEST(Jpo, SurvivesExamplesThatAreNotFinite) {
 
 TEST(Jpo, StopsWhenNoLossIsFinite) {
   const auto jpo = jpo_fit();
-  StageBench bench(*jpo, kCount, 30, quadratic({.broken_above = -1e9}));
+  StageBench bench(*jpo, kProblems, 30, quadratic({.broken_above = -1e9}));
   const Outcome out = bench.run();
   EXPECT_EQ(out.stop, Stop::diverged);
   EXPECT_FALSE(out.message.empty());

@@ -57,14 +57,14 @@ Setting heat_setting(Index side) {
 }
 
 /// The same on every grid.
-const std::vector<TensorInfo>& tensors() {
+const std::vector<TensorInfo>& net_tensors() {
   static const auto net =
       heat_setting(16).predictor.recipe.make<double>(256, 256);
   return net->tensors();
 }
 
 Batch<double> heat_weights(const Json& rule) {
-  return recurrence_weights(rule, tensors());
+  return recurrence_weights(rule, net_tensors());
 }
 
 /// The entry's own batch, or the one that it names.
@@ -138,7 +138,7 @@ void check_training_gradient(const Json& entry) {
     const Vector<double> g =
         (heat_weights(rule) - after.arrays.at("parameters")).col(0);
     EXPECT_TRUE(
-        same(tensor_norms(tensors(), g), vector(want.at("gradient_norms"))));
+        same(tensor_norms(net_tensors(), g), vector(want.at("gradient_norms"))));
   }
 }
 
@@ -163,7 +163,7 @@ struct NamedRule {
 };
 
 /// After every step: norm and first entries of the prediction.
-void check_steps(const Json& entry) {
+void check_two_steps(const Json& entry) {
   const Batch<double> after = columns(entry.at("expected").at("after_step"));
   const bool sip = entry.at("name").get<std::string>().ends_with("-sip");
   const Json rule = entry.at("inputs").at("weights");
@@ -211,7 +211,7 @@ TEST(Proxy, InDoubleIsTheSameForNetworksInDouble) {
 TEST(SipHeatReference, Training) {
   check_entries(kHeatId,
                 {{"training-gradient-*", check_training_gradient},
-                 {"two-steps-*", check_steps}},
+                 {"two-steps-*", check_two_steps}},
                 {"kernel",
                  "rectangles",
                  "forward",

@@ -270,7 +270,7 @@ StepOptions rule_of(const Json& in, const std::string& method, double xi) {
 }
 
 /// First batch, second, first, ...
-void check_steps(const Json& entry) {
+void check_sine_steps(const Json& entry) {
   const Json in = entry.at("inputs"), want = entry.at("expected");
   const std::string name = entry.at("name");
   const std::string method = name.substr(std::string("three-steps-").size());
@@ -313,7 +313,7 @@ TEST(SipSineReference, AllEntries) {
                 {{"point-*", check_point},
                  {"network-forward", check_network},
                  {"training-gradient-*", check_gradient},
-                 {"three-steps-*", check_steps}});
+                 {"three-steps-*", check_sine_steps}});
 }
 
 // At saddles, maxima and exact solutions: finite, and never uphill.

@@ -17,7 +17,7 @@
 namespace physinv::test {
 namespace {
 
-const std::string kId = "sip-wave-packet";
+const std::string kPacket = "sip-wave-packet";
 constexpr double kCentre = 76.8, kHalfRange = 51.2;
 
 /// The problem of the specification, on as many samples as the signals have.
@@ -54,7 +54,7 @@ Batch<double> signals_of(const Json& words) {
     throw std::runtime_error(words.path() + " is \"" + said +
                              "\", expected \"first four of NAME\"");
   const Batch<double> all =
-      columns(spoken_of(kId, found[2]).at("inputs").at("y"));
+      columns(spoken_of(kPacket, found[2]).at("inputs").at("y"));
   if (!found[1].matched) return all;
   const std::string number = found[1];
   const auto at = std::find(kNumbers.begin(), kNumbers.end(), number);
@@ -67,7 +67,7 @@ Batch<double> signals_of(const Json& words) {
 }
 /// Of an entry that does not say which.
 Batch<double> signals() {
-  return columns(spoken_of(kId, "loss-and-gradient").at("inputs").at("y"));
+  return columns(spoken_of(kPacket, "loss-and-gradient").at("inputs").at("y"));
 }
 
 /// Single precision has its own rounding to lose.
@@ -256,10 +256,10 @@ Json start_of(const Json& entry) {
   if (!said.starts_with(kWords))
     throw std::runtime_error("inputs.start is \"" + said + "\", expected \"" +
                              kWords + "NAME\"");
-  return spoken_of(kId, said.substr(kWords.size()));
+  return spoken_of(kPacket, said.substr(kWords.size()));
 }
 
-void check_steps(const Json& entry) {
+void check_packet_steps(const Json& entry) {
   const Json want = entry.at("expected"), start = start_of(entry);
   const Batch<double> t0 = columns(want.at("t0")),
                       y = signals_of(start.at("inputs").at("signals"));
@@ -295,13 +295,13 @@ void check_steps(const Json& entry) {
 
 TEST(SipWavePacketReference, AllEntries) {
   check_entries(
-      kId,
+      kPacket,
       {{"signal", in_both(check_signal<float>, check_signal<double>)},
        {"loss-and-gradient", in_both(check_loss<float>, check_loss<double>)},
        {"global-minimum", check_minimum},
        {"local-search", check_search},
        {"network", in_both(check_network<float>, check_network<double>)},
-       {"three-adam-steps", check_steps},
+       {"three-adam-steps", check_packet_steps},
        {"network-bn", in_both(check_network<float>, check_network<double>)}});
 }
 
