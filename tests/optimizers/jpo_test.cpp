@@ -68,7 +68,8 @@ TEST(Jpo, ScalesTheOutput) {
 
   // The chain rule knows the scale, and its sign.
   const auto scaled = jpo_fit({.step = AdamOptions{.rate = 1e-2}});
-  StageBench bench(*scaled, kProblems, 300, quadratic(), quadratic_setting(-0.5));
+  StageBench bench(
+      *scaled, kProblems, 300, quadratic(), quadratic_setting(-0.5));
   const Outcome out = bench.run();
   EXPECT_LT(bench.loss(out.x).mean(),
             0.1 * bench.probe.curve().loss.col(0).mean());

@@ -137,8 +137,8 @@ void check_training_gradient(const Json& entry) {
     EXPECT_TRUE(same(loss, number(want.at("loss"))));
     const Vector<double> g =
         (heat_weights(rule) - after.arrays.at("parameters")).col(0);
-    EXPECT_TRUE(
-        same(tensor_norms(net_tensors(), g), vector(want.at("gradient_norms"))));
+    EXPECT_TRUE(same(tensor_norms(net_tensors(), g),
+                     vector(want.at("gradient_norms"))));
   }
 }
 
