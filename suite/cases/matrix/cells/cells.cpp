@@ -63,14 +63,140 @@ NetworkRole asks(std::vector<Field> fields, NetworkRecipe recipe) {
 
 /// Of the SIP paper's planes, on a grid that leaves time for every method.
 constexpr Index kSide = 32;
-NetworkRecipe plane_unet() {
+NetworkRecipe plane_unet(Index channels = 1, Index outputs = 1) {
   return nn::unet({.grid = {kSide, kSide},
+                   .channels = channels,
+                   .outputs = outputs,
                    .padding = nn::Padding::circular,
                    .batch_statistics = true,
                    .init = nn::Init::uniform});
 }
 
 constexpr Field kGiven = Field::given, kObserved = Field::observations;
+
+NetworkRecipe tanh_layers(std::vector<Index> hidden) {
+  return nn::mlp({.hidden = std::move(hidden),
+                  .activation = nn::Activation::tanh,
+                  .init = nn::Init::glorot});
+}
+
+/// Their networks are dense layers.
+std::vector<MatrixProblem> dense() {
+  return {
+      {.id = "exponential",
+       .title = "Exponential",
+       .problem = problem<Exponential>("exponential"),
+       .setting = {.predictor = asks({kObserved}, tanh_layers({16, 64, 16}))},
+       .batch = 64,
+       .updates = 4000},
+      {.id = "scaled-output",
+       .title = "Scaled output",
+       .problem = problem<ScaledOutput>("scaled_output"),
+       .setting = {.predictor = asks({kGiven}, tanh_layers({7}))},
+       .batch = 64,
+       .updates = 4000},
+      {.id = "robotic-arm",
+       .title = "Robotic arm",
+       .problem = problem<RoboticArm>("robotic_arm"),
+       .setting = {.predictor =
+                       asks({kObserved}, nn::mlp({.hidden = {128, 128, 128}}))},
+       .batch = 64,
+       .updates = 1000},
+      {.id = "billiards",
+       .title = "Billiards",
+       .problem = problem<Billiards>("billiards"),
+       .setting = {.predictor = asks(
+                       {kGiven, kObserved},
+                       nn::mlp({.hidden = {128, 128, 128}, .frequencies = 4}))},
+       .batch = 64,
+       .updates = 800},
+      {.id = "oscillators",
+       .title = "Oscillators",
+       .problem = problem<Oscillators>("oscillators"),
+       .setting = {.predictor = asks({kObserved}, tanh_layers({20, 20, 20}))},
+       .batch = 64,
+       .updates = 2000},
+      {.id = "poisson-8",
+       .title = "Poisson, 8 x 8",
+       .problem = problem<GridPoisson>("grid_poisson"),
+       .setting = {.predictor = asks({kObserved}, tanh_layers({64, 256, 64}))},
+       .batch = 16,
+       .updates = 400},
+      {.id = "quantum-dipole",
+       .title = "Quantum dipole",
+       .problem =
+           problem<QuantumDipole>("quantum_dipole", {.zero_start = true}),
+       .setting = {.predictor = asks({kObserved}, tanh_layers({20, 20, 20}))},
+       .batch = 8,
+       .updates = 1000},
+      {.id = "sine",
+       .title = "Sine, xi = 32, 45 degrees",
+       .problem = problem<SinePlane>("sine_plane", {.xi = 32, .degrees = 45}),
+       .setting = {.predictor = asks({kObserved},
+                                     nn::mlp({.hidden = {32, 64, 32},
+                                              .init = nn::Init::uniform}))},
+       .batch = 64,
+       .updates = 4000}};
+}
+
+/// Their networks have convolutions, and give no rows.
+std::vector<MatrixProblem> convolutional() {
+  std::vector<MatrixProblem> all = {
+      {.id = "poisson",
+       .title = "Poisson, 32 x 32",
+       .problem =
+           problem<Poisson>("poisson", {.rows = kSide, .columns = kSide}),
+       .setting = {.predictor = asks({kObserved}, plane_unet())},
+       .batch = 8,
+       .updates = 200},
+      {.id = "heat",
+       .title = "Heat, 32 x 32",
+       .problem = problem<Heat>("heat", {.resolution = kSide}),
+       .setting = {.predictor = asks({kObserved}, plane_unet()),
+                   .output_form = OutputForm::mean_of_observations},
+       .batch = 8,
+       .updates = 200},
+      {.id = "wave-packet",
+       .title = "Wave packet",
+       .problem = problem<WavePacket>("wave_packet"),
+       .setting = {.predictor = asks({kObserved},
+                                     nn::vgg({.channels = 1,
+                                              .grid = {.columns = 256},
+                                              .features = {16, 16, 16, 16, 16},
+                                              .hidden = {64, 32}}))},
+       .batch = 64,
+       .updates = 1000},
+      {.id = "kuramoto-sivashinsky",
+       .title = "Kuramoto-Sivashinsky",
+       .problem = problem<KuramotoSivashinsky>("kuramoto_sivashinsky"),
+       .setting = {.predictor = asks({kGiven, kObserved},
+                                     nn::vgg({.channels = 2,
+                                              .grid = {.columns = 128},
+                                              .features = {32, 32, 64, 64},
+                                              .hidden = {64, 64}})),
+                   .output_scale = 0.25},
+       .batch = 32,
+       .updates = 300},
+      {.id = "navier-stokes",
+       .title = "Navier-Stokes",
+       .problem = problem<NavierStokes>("navier_stokes"),
+       .setting = {.predictor =
+                       asks({kObserved},
+                            nn::vgg({.channels = 2,
+                                     .grid = {.columns = 32, .rows = 64},
+                                     .features = {16, 32, 32, 32},
+                                     .hidden = {64, 64}}))},
+       .batch = 8,
+       .updates = 100},
+      {.id = "fluid",
+       .title = "Marker flow, 32 x 32",
+       .problem = problem<MarkerFlow>("marker_flow", {.cells = kSide}),
+       .setting = {.predictor = asks({kGiven, kObserved}, plane_unet(2, 2))},
+       .batch = 8,
+       .updates = 200}};
+  for (MatrixProblem& problem : all) problem.rows = false;
+  return all;
+}
 
 }  // namespace
 
@@ -118,130 +244,11 @@ const std::vector<MatrixMethod>& methods() {
 }
 
 const std::vector<MatrixProblem>& problems() {
-  const auto tanh = [](std::vector<Index> hidden) {
-    return nn::mlp({.hidden = std::move(hidden),
-                    .activation = nn::Activation::tanh,
-                    .init = nn::Init::glorot});
-  };
-  static const std::vector<MatrixProblem> all = {
-      {.id = "exponential",
-       .title = "Exponential",
-       .problem = problem<Exponential>("exponential"),
-       .setting = {.predictor = asks({kObserved}, tanh({16, 64, 16}))},
-       .batch = 64,
-       .updates = 4000},
-      {.id = "scaled-output",
-       .title = "Scaled output",
-       .problem = problem<ScaledOutput>("scaled_output"),
-       .setting = {.predictor = asks({kGiven}, tanh({7}))},
-       .batch = 64,
-       .updates = 4000},
-      {.id = "robotic-arm",
-       .title = "Robotic arm",
-       .problem = problem<RoboticArm>("robotic_arm"),
-       .setting = {.predictor =
-                       asks({kObserved}, nn::mlp({.hidden = {128, 128, 128}}))},
-       .batch = 64,
-       .updates = 1000},
-      {.id = "billiards",
-       .title = "Billiards",
-       .problem = problem<Billiards>("billiards"),
-       .setting = {.predictor = asks(
-                       {kGiven, kObserved},
-                       nn::mlp({.hidden = {128, 128, 128}, .frequencies = 4}))},
-       .batch = 64,
-       .updates = 800},
-      {.id = "oscillators",
-       .title = "Oscillators",
-       .problem = problem<Oscillators>("oscillators"),
-       .setting = {.predictor = asks({kObserved}, tanh({20, 20, 20}))},
-       .batch = 64,
-       .updates = 2000},
-      {.id = "poisson-8",
-       .title = "Poisson, 8 x 8",
-       .problem = problem<GridPoisson>("grid_poisson"),
-       .setting = {.predictor = asks({kObserved}, tanh({64, 256, 64}))},
-       .batch = 16,
-       .updates = 400},
-      {.id = "quantum-dipole",
-       .title = "Quantum dipole",
-       .problem =
-           problem<QuantumDipole>("quantum_dipole", {.zero_start = true}),
-       .setting = {.predictor = asks({kObserved}, tanh({20, 20, 20}))},
-       .batch = 8,
-       .updates = 1000},
-      {.id = "sine",
-       .title = "Sine, xi = 32, 45 degrees",
-       .problem = problem<SinePlane>("sine_plane", {.xi = 32, .degrees = 45}),
-       .setting = {.predictor = asks({kObserved},
-                                     nn::mlp({.hidden = {32, 64, 32},
-                                              .init = nn::Init::uniform}))},
-       .batch = 64,
-       .updates = 4000},
-      {.id = "poisson",
-       .title = "Poisson, 32 x 32",
-       .problem =
-           problem<Poisson>("poisson", {.rows = kSide, .columns = kSide}),
-       .setting = {.predictor = asks({kObserved}, plane_unet())},
-       .batch = 8,
-       .updates = 200,
-       .rows = false},
-      {.id = "heat",
-       .title = "Heat, 32 x 32",
-       .problem = problem<Heat>("heat", {.resolution = kSide}),
-       .setting = {.predictor = asks({kObserved}, plane_unet()),
-                   .output_form = OutputForm::mean_of_observations},
-       .batch = 8,
-       .updates = 200,
-       .rows = false},
-      {.id = "wave-packet",
-       .title = "Wave packet",
-       .problem = problem<WavePacket>("wave_packet"),
-       .setting = {.predictor = asks({kObserved},
-                                     nn::vgg({.channels = 1,
-                                              .grid = {.columns = 256},
-                                              .features = {16, 16, 16, 16, 16},
-                                              .hidden = {64, 32}}))},
-       .batch = 64,
-       .updates = 1000,
-       .rows = false},
-      {.id = "kuramoto-sivashinsky",
-       .title = "Kuramoto-Sivashinsky",
-       .problem = problem<KuramotoSivashinsky>("kuramoto_sivashinsky"),
-       .setting = {.predictor = asks({kGiven, kObserved},
-                                     nn::vgg({.channels = 2,
-                                              .grid = {.columns = 128},
-                                              .features = {32, 32, 64, 64},
-                                              .hidden = {64, 64}})),
-                   .output_scale = 0.25},
-       .batch = 32,
-       .updates = 300,
-       .rows = false},
-      {.id = "navier-stokes",
-       .title = "Navier-Stokes",
-       .problem = problem<NavierStokes>("navier_stokes"),
-       .setting = {.predictor =
-                       asks({kObserved},
-                            nn::vgg({.channels = 2,
-                                     .grid = {.columns = 32, .rows = 64},
-                                     .features = {16, 32, 32, 32},
-                                     .hidden = {64, 64}}))},
-       .batch = 8,
-       .updates = 100,
-       .rows = false},
-      {.id = "fluid",
-       .title = "Marker flow, 32 x 32",
-       .problem = problem<MarkerFlow>("marker_flow", {.cells = kSide}),
-       .setting = {.predictor = asks({kGiven, kObserved},
-                                     nn::unet({.grid = {kSide, kSide},
-                                               .channels = 2,
-                                               .outputs = 2,
-                                               .padding = nn::Padding::circular,
-                                               .batch_statistics = true,
-                                               .init = nn::Init::uniform}))},
-       .batch = 8,
-       .updates = 200,
-       .rows = false}};
+  static const std::vector<MatrixProblem> all = [] {
+    auto both = dense();
+    for (auto& problem : convolutional()) both.push_back(std::move(problem));
+    return both;
+  }();
   return all;
 }
 
