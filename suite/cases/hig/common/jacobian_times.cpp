@@ -123,12 +123,17 @@ Section report(const Timed& t,
 
 }  // namespace
 
-Select gradient_of(const std::string& experiment, Index batch) {
-  return Select{timed_of(experiment).adam.method(batch)}.in(
-      name_of(experiment));
-}
-Select jacobians_of(const std::string& experiment, Index batch) {
-  return Select{timed_of(experiment).hig.method(batch)}.in(name_of(experiment));
+CostLine cost_line(const std::string& experiment,
+                   std::string_view optimizer,
+                   Index batch,
+                   std::string method,
+                   std::string label) {
+  const Timed& t = timed_of(experiment);
+  const Batches& of = optimizer == t.adam.optimizer ? t.adam : t.hig;
+  return {.method = std::move(method),
+          .label = std::move(label),
+          .published = fmt::format("{}/{}/b={}", t.key, of.optimizer, batch),
+          .jacobian = Select{of.method(batch)}.in(name_of(experiment))};
 }
 
 void add_jacobian_times(Registry& r, const std::string& name) {

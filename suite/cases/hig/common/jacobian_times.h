@@ -5,17 +5,22 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
-#include "suite/evidence/runs.h"
+#include "suite/evidence/training_report.h"
 #include "suite/harness/registry.h"
 
 namespace physinv::hig {
 
 /// "hig/oscillators-jacobians" of hig/oscillators, which is registered.
 void add_jacobian_times(Registry& r, const std::string& experiment);
-/// Its runs: Adam's gradient of a batch, the Jacobians of half-inverses.
-Select gradient_of(const std::string& experiment, Index batch);
-Select jacobians_of(const std::string& experiment, Index batch);
+/// A method beside the row of the paper's table of "adam" or "hig" with this
+/// batch, and what takes the Jacobian of the row.
+CostLine cost_line(const std::string& experiment,
+                   std::string_view optimizer,
+                   Index batch,
+                   std::string method,
+                   std::string label);
 void add_jacobian_report(Registry& r, const std::string& experiment);
 
 }  // namespace physinv::hig

@@ -171,37 +171,21 @@ std::vector<Table> tables(const Results& results, const Published& published) {
                             "gn-tau",
                             "grid-"})
     for (const auto& line : sweep(group)) all.push_back(line);
-  return {final_losses({results, published, kName}),
-          hyperparameters({results, published, kName}),
-          cost_table(results,
-                     kName,
-                     published,
-                     {{"adam-b256",
-                       "Adam, b = 256",
-                       "table3/adam/b=256",
-                       hig::gradient_of(kName, 256)},
-                      {"adam",
-                       "Adam, b = 512",
-                       "table3/adam/b=512",
-                       hig::gradient_of(kName, 512)},
-                      {"adam-b1024",
-                       "Adam, b = 1024",
-                       "table3/adam/b=1024",
-                       hig::gradient_of(kName, 1024)},
-                      {"hig-b32",
-                       "HIG, b = 32",
-                       "table3/hig/b=32",
-                       hig::jacobians_of(kName, 32)},
-                      {"kappa-m05",
-                       "HIG, b = 64",
-                       "table3/hig/b=64",
-                       hig::jacobians_of(kName, 64)},
-                      {"hig",
-                       "HIG, b = 128",
-                       "table3/hig/b=128",
-                       hig::jacobians_of(kName, 128)}},
-                     "Table 3"),
-          loss_table(results, kName, all)};
+  return {
+      final_losses({results, published, kName}),
+      hyperparameters({results, published, kName}),
+      cost_table(
+          results,
+          kName,
+          published,
+          {hig::cost_line(kName, "adam", 256, "adam-b256", "Adam, b = 256"),
+           hig::cost_line(kName, "adam", 512, "adam", "Adam, b = 512"),
+           hig::cost_line(kName, "adam", 1024, "adam-b1024", "Adam, b = 1024"),
+           hig::cost_line(kName, "hig", 32, "hig-b32", "HIG, b = 32"),
+           hig::cost_line(kName, "hig", 64, "kappa-m05", "HIG, b = 64"),
+           hig::cost_line(kName, "hig", 128, "hig", "HIG, b = 128")},
+          "Table 3"),
+      loss_table(results, kName, all)};
 }
 
 void add_curves(LearningCurves& curves, const Published& published) {
