@@ -1,7 +1,5 @@
 // For which precision and tolerance of BFGS the paper's numbers come out.
 // Losses in float are compared as such, which makes ties.
-#include <fmt/format.h>
-
 #include <functional>
 #include <optional>
 #include <string>
@@ -11,9 +9,8 @@
 
 #include "suite/cases/jpo/bfgs_precision/settings.h"
 #include "suite/cases/jpo/common/values.h"
-#include "suite/evidence/cell.h"
 #include "suite/evidence/claim.h"
-#include "suite/evidence/settings_table.h"
+#include "suite/evidence/study_table.h"
 #include "suite/harness/registry.h"
 
 namespace physinv::bfgs_precision {
@@ -82,102 +79,73 @@ Quantity mean_over_bfgs(const Choice& c) {
 
 // ---- columns ----------------------------------------------------------------
 
-/// A number of each setting, beside what the paper's tables print or its text
-/// states.
-struct Column {
-  std::string title;
-  Quantity (*of)(const Choice&);
-  std::string printed = {};  ///< of the paper's file
-  /// Else what the text states.
-  Condition (*asks)(std::string, Quantity) = nullptr;
-};
+using Column = StudyColumn<Choice>;
 
-std::vector<Column> tables() {
+std::vector<Column> tables(const std::string& varied) {
+  const auto column = [&](const char* title, auto of, const char* printed) {
+    return Column(title, of, varied + ' ' + printed);
+  };
   return {
-      {"better, %", against_bfgs<false, &Shares::better>, "table4/jpo/better"},
-      {"equal, %", against_bfgs<false, &Shares::equal>, "table4/jpo/equal"},
-      {"refined better, %",
-       against_bfgs<true, &Shares::better>,
-       "table5/jpo/better"},
-      {"refined equal, %",
-       against_bfgs<true, &Shares::equal>,
-       "table5/jpo/equal"}};
+      column("better, %",
+             against_bfgs<false, &Shares::better>,
+             "table4/jpo/better"),
+      column(
+          "equal, %", against_bfgs<false, &Shares::equal>, "table4/jpo/equal"),
+      column("refined better, %",
+             against_bfgs<true, &Shares::better>,
+             "table5/jpo/better"),
+      column("refined equal, %",
+             against_bfgs<true, &Shares::equal>,
+             "table5/jpo/equal")};
 }
 
-template <int kLowest, int kHighest>
-Condition in_range(std::string label, Quantity q) {
-  return within(std::move(label), std::move(q), kLowest, kHighest);
-}
-template <int kBound>
-Condition more_than(std::string label, Quantity q) {
-  return above(std::move(label), std::move(q), kBound);
-}
-Condition all_of_them(std::string label, Quantity q) {
+Condition all_of_them(std::string label, Quantity q, const Choice&) {
   return at_least(std::move(label), std::move(q), 100);
 }
 
-std::vector<Column> columns_of(const Study& s) {
-  const std::string_view varied = s.varied;
+std::vector<Column> columns_of(const std::string& varied) {
   if (varied == "jpo/robotic-arm")
-    return {{"iterations of BFGS (a couple)", iterations, {}, in_range<1, 25>},
-            {"BFGS below 1e-12, % (all)", at_zero<false>, {}, all_of_them},
-            {"refined JPO, % (all)", at_zero<true>, {}, all_of_them}};
-  std::vector<Column> all = tables();
+    return {{"iterations of BFGS (a couple)", iterations, asks_within(1, 25)},
+            {"BFGS below 1e-12, % (all)", at_zero<false>, all_of_them},
+            {"refined JPO, % (all)", at_zero<true>, all_of_them}};
+  std::vector<Column> all = tables(varied);
   if (varied == "jpo/kuramoto-sivashinsky") {
     all.push_back({"iterations of BFGS (12 to 22)",
                    iterations_of_solved<false>,
-                   {},
-                   in_range<12, 22>});
+                   asks_within(12, 22)});
     all.push_back({"of the refinement (4 to 17)",
                    iterations_of_solved<true>,
-                   {},
-                   in_range<4, 17>});
+                   asks_within(4, 17)});
   }
   if (varied == "jpo/navier-stokes") {
-    all.push_back({"BFGS within 10 iterations, % (usually)",
-                   within_ten,
-                   {},
-                   more_than<50>});
+    all.push_back(
+        {"BFGS within 10 iterations, % (usually)", within_ten, asks_above(50)});
     all.push_back({"mean loss of JPO over BFGS's (above)",
                    mean_over_bfgs,
-                   {},
-                   more_than<1>});
+                   asks_above(1)});
   }
   return all;
 }
 
-std::string printed_name(const Study& s, const Column& c) {
-  return std::string(s.varied) + ' ' + c.printed;
-}
-
-Condition as_the_paper(const Study& s, const Choice& choice, const Column& c) {
-  const std::string label = fmt::format("{}: {}", choice.title, c.title);
-  if (!c.printed.empty())
-    return as_printed(label, c.of(choice), printed_name(s, c), kSeeds);
-  return c.asks(label, c.of(choice));
+StudyTable<Choice> settings_of(const Study& s) {
+  return {.settings = s.choices,
+          .columns = columns_of(s.varied),
+          .title = [](const Choice& choice) { return choice.title; },
+          .seeds = kSeeds};
 }
 
 // ---- claims -----------------------------------------------------------------
 
-/// Every column of every setting.
-std::vector<Condition> all_settings(const Study& s) {
-  std::vector<Condition> all;
-  for (const Choice& choice : s.choices)
-    for (const Column& c : columns_of(s))
-      all.push_back(as_the_paper(s, choice, c));
-  return all;
-}
-Condition some_setting(const Study& s, const Column& c) {
-  Condition any = as_the_paper(s, s.choices[0], c);
-  for (std::size_t k = 1; k < s.choices.size(); ++k)
-    any = either(any, as_the_paper(s, s.choices[k], c));
-  return any;
-}
-
 /// Each column comes out with some setting.
 Cause depends_on_it(const Study& s, std::string why) {
+  const auto study = settings_of(s);
   std::vector<Condition> shown_by;
-  for (const Column& c : columns_of(s)) shown_by.push_back(some_setting(s, c));
+  for (const Column& c : study.columns) {
+    Condition any = study.condition(s.choices[0], c);
+    for (std::size_t k = 1; k < s.choices.size(); ++k)
+      any = either(any, study.condition(s.choices[k], c));
+    shown_by.push_back(std::move(any));
+  }
   return depends("precision and tolerance of BFGS are not printed: " + why,
                  shown_by);
 }
@@ -216,21 +184,13 @@ Claim claim(const Study& s) {
   return {.id = "S1",
           .from = "study",
           .says =
-              "The paper's numbers come out whatever precision and "
-              "tolerance BFGS and refinement have",
-          .conditions = all_settings(s),
+              "The paper's numbers come out whatever precision and tolerance "
+              "BFGS and refinement have",
+          .conditions = settings_of(s).conditions(),
           .cause = cause_of(s)};
 }
 
 // ---- report -----------------------------------------------------------------
-
-Cell cell_of(const Study& s,
-             const Choice& choice,
-             const Column& c,
-             const Evidence& e) {
-  const Cell own = physinv::cell_of(c.of(choice)(e));
-  return c.printed.empty() ? own : beside_printed(own, e, printed_name(s, c));
-}
 
 Section report(const Study& s,
                const Results& results,
@@ -242,18 +202,10 @@ Section report(const Study& s,
       .where = "Sec. 4, Tables 4 and 5",
       .corner = "precision, gtol",
       .note =
-          "Means over n, then mean ± sample standard deviation over seeds; "
-          "of iterations medians. In brackets what the text states. Both "
-          "methods of a row have its setting; float compares float "
-          "losses."};
-  return {.tables = {table_by_setting(
-              std::move(table),
-              s.choices,
-              columns_of(s),
-              [](const Choice& choice) { return choice.title; },
-              [&](const Choice& choice, const Column& c) {
-                return cell_of(s, choice, c, evidence);
-              })}};
+          "Means over n, then mean ± sample standard deviation over seeds; of "
+          "iterations medians. In brackets what the text states. Both methods "
+          "of a row have its setting; float compares float losses."};
+  return {.tables = {settings_of(s).rows(std::move(table), evidence)}};
 }
 
 }  // namespace

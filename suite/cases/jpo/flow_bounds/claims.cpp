@@ -1,7 +1,6 @@
 // For which bounds the sentences of Sec. 4 about BFGS and JPO's mean loss come
 // out.
-#include <fmt/format.h>
-
+#include <iterator>
 #include <optional>
 #include <string>
 #include <utility>
@@ -9,11 +8,9 @@
 
 #include "suite/cases/jpo/common/values.h"
 #include "suite/cases/jpo/flow_bounds/settings.h"
-#include "suite/evidence/cell.h"
 #include "suite/evidence/claim.h"
-#include "suite/evidence/of_experiment.h"
-#include "suite/evidence/settings_table.h"
 #include "suite/evidence/statistics.h"
+#include "suite/evidence/study_table.h"
 #include "suite/harness/registry.h"
 
 namespace physinv::flow_bounds {
@@ -53,57 +50,30 @@ Quantity better() {
 
 // ---- columns ----------------------------------------------------------------
 
-/// What the text asks of a number, or the paper's tables print; neither: it is
-/// shown.
-struct Column {
-  const char* title;
-  Quantity (*of)();
-  Condition (*asks)(std::string, Quantity) = nullptr;
-  const char* printed = nullptr;
-};
-constexpr Column kColumns[] = {
-    {"BFGS within 10 iterations, % (usually)",
-     within_ten,
-     [](std::string label, Quantity q) {
-       return above(std::move(label), std::move(q), 50);
-     }},
-    {"most iterations (40)",
-     most_iterations,
-     [](std::string label, Quantity q) {
-       return at_most(std::move(label), std::move(q), 40);
-     }},
-    {"mean loss of BFGS over its median", mean_over_median},
-    {"mean loss of JPO over BFGS's, lowest of any n (above)",
-     jpo_over_bfgs,
-     [](std::string label, Quantity q) {
-       return above(std::move(label), std::move(q), 1);
-     }},
-    {"JPO better, %",
-     better<false>,
-     nullptr,
-     "jpo/navier-stokes table4/jpo/better"},
-    {"refined better, %",
-     better<true>,
-     nullptr,
-     "jpo/navier-stokes table5/jpo/better"}};
-
-Quantity of(const Choice& choice, const Column& c) {
-  return of_experiment(choice.name(), c.of());
+template <Quantity (*kOf)()>
+Quantity of(const Choice&) {
+  return kOf();
 }
 
-std::vector<Condition> all_settings() {
-  std::vector<Condition> all;
-  for (const Choice& choice : kChoices)
-    for (const Column& c : kColumns) {
-      const std::string label = fmt::format("{}: {}", choice.title, c.title);
-      if (c.printed != nullptr)
-        all.push_back(as_printed(label, of(choice, c), c.printed, kSeeds));
-      else
-        all.push_back(c.asks != nullptr ? c.asks(label, of(choice, c))
-                                        : reported(label, of(choice, c)));
-    }
-  return all;
-}
+const StudyTable<Choice> kStudy{
+    .settings = {std::begin(kChoices), std::end(kChoices)},
+    .columns = {{"BFGS within 10 iterations, % (usually)",
+                 of<within_ten>,
+                 asks_above(50)},
+                {"most iterations (40)", of<most_iterations>, asks_at_most(40)},
+                {"mean loss of BFGS over its median", of<mean_over_median>},
+                {"mean loss of JPO over BFGS's, lowest of any n (above)",
+                 of<jpo_over_bfgs>,
+                 asks_above(1)},
+                {"JPO better, %",
+                 of<better<false>>,
+                 "jpo/navier-stokes table4/jpo/better"},
+                {"refined better, %",
+                 of<better<true>>,
+                 "jpo/navier-stokes table5/jpo/better"}},
+    .title = [](const Choice& choice) { return choice.title; },
+    .experiment = [](const Choice& choice) { return choice.name(); },
+    .seeds = kSeeds};
 
 Claim claim() {
   return {.id = "S1",
@@ -112,7 +82,7 @@ Claim claim() {
               "BFGS usually takes 10 iterations at most, JPO's mean loss is "
               "above its own and JPO is as often better as Tables 4 and 5 "
               "print, whichever unknowns are bounded",
-          .conditions = all_settings(),
+          .conditions = kStudy.conditions(),
           .cause = depends("which unknowns are bounded is not printed; the "
                            "table has the settings for which each number comes "
                            "out")};
@@ -127,15 +97,7 @@ Table settings_table(const Evidence& e) {
                   "BFGS: 32 problems a seed. JPO: means over n, then mean "
                   "± sample standard deviation over seeds. In brackets "
                   "what the text states."};
-  return table_by_setting(
-      std::move(table),
-      kChoices,
-      kColumns,
-      [](const Choice& choice) { return choice.title; },
-      [&](const Choice& choice, const Column& c) {
-        const Cell own = cell_of(of(choice, c)(e));
-        return c.printed == nullptr ? own : beside_printed(own, e, c.printed);
-      });
+  return kStudy.rows(std::move(table), e);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // and gradient descent come out, and how often JPO is better.
 #include <fmt/format.h>
 
+#include <iterator>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -11,10 +12,8 @@
 #include "suite/cases/jpo/common/values.h"
 #include "suite/cases/jpo/packet_unit/settings.h"
 #include "suite/cases/jpo/wave_packet/quantities.h"
-#include "suite/evidence/cell.h"
 #include "suite/evidence/claim.h"
-#include "suite/evidence/of_experiment.h"
-#include "suite/evidence/settings_table.h"
+#include "suite/evidence/study_table.h"
 #include "suite/harness/registry.h"
 
 namespace physinv::packet_unit {
@@ -75,58 +74,6 @@ Quantity closer_or_farther(const Choice& c) {
 Quantity closer(const Choice& c) { return closer_or_farther<-1>(c); }
 Quantity farther(const Choice& c) { return closer_or_farther<1>(c); }
 
-// ---- columns ----------------------------------------------------------------
-
-/// Of BFGS and JPO, for each unit; printed, or at least half.
-struct UnitColumn {
-  const char* title;
-  Quantity (*of)(Index);
-  const char* printed = nullptr;
-};
-constexpr UnitColumn kOfUnits[] = {
-    {"first steps of BFGS beyond a period, % (usually)", large_steps},
-    {"JPO better, %",
-     share<false, jpo::better>,
-     "jpo/wave-packet table4/jpo/better"},
-    {"equal, %", share<false, jpo::equal>, "jpo/wave-packet table4/jpo/equal"},
-    {"refined better, %",
-     share<true, jpo::better>,
-     "jpo/wave-packet table5/jpo/better"},
-    {"refined equal, %",
-     share<true, jpo::equal>,
-     "jpo/wave-packet table5/jpo/equal"}};
-
-/// Of gradient descent.
-struct Column {
-  const char* title;
-  Quantity (*of)(const Choice&);
-};
-constexpr Column kOfRules[] = {
-    {"ends in other minima, % (often)", misses},
-    {"median iterations over BFGS's (more)", more_iterations},
-    {"closer than BFGS, % (more often)", closer},
-    {"farther, %", farther}};
-
-Condition condition(Index unit, const UnitColumn& c) {
-  const std::string label = fmt::format("{} samples: {}", unit, c.title);
-  const Quantity q = of_experiment(name_of(unit), c.of(unit));
-  return c.printed == nullptr ? above(label, q, 50)
-                              : as_printed(label, q, c.printed, kSeeds);
-}
-std::vector<Condition> conditions(const Choice& choice) {
-  const auto label = [&](const char* what) {
-    return fmt::format("{}: {}", choice.title(), what);
-  };
-  const auto of = [&](Quantity (*number)(const Choice&)) {
-    return of_experiment(name_of(choice.unit), number(choice));
-  };
-  return {
-      above(label(kOfRules[0].title), of(misses), kOften),
-      above(label(kOfRules[1].title), of(more_iterations), 1),
-      above(
-          label("closer than BFGS, over farther, %"), of(closer), of(farther))};
-}
-
 std::vector<Choice> choices() {
   std::vector<Choice> all;
   for (const Index unit : kUnits)
@@ -134,27 +81,73 @@ std::vector<Choice> choices() {
   return all;
 }
 
+// ---- columns ----------------------------------------------------------------
+
+/// Of BFGS and JPO, for each unit.
+const StudyTable<Index> kOfUnits{
+    .settings = {std::begin(kUnits), std::end(kUnits)},
+    .columns = {{"first steps of BFGS beyond a period, % (usually)",
+                 large_steps,
+                 asks_above(50)},
+                {"JPO better, %",
+                 share<false, jpo::better>,
+                 "jpo/wave-packet table4/jpo/better"},
+                {"equal, %",
+                 share<false, jpo::equal>,
+                 "jpo/wave-packet table4/jpo/equal"},
+                {"refined better, %",
+                 share<true, jpo::better>,
+                 "jpo/wave-packet table5/jpo/better"},
+                {"refined equal, %",
+                 share<true, jpo::equal>,
+                 "jpo/wave-packet table5/jpo/equal"}},
+    .title = [](Index unit) { return fmt::format("{} samples", unit); },
+    .experiment = name_of,
+    .seeds = kSeeds};
+
+/// Of gradient descent.
+const StudyTable<Choice> kOfRules{
+    .settings = choices(),
+    .columns = {{"ends in other minima, % (often)", misses},
+                {"median iterations over BFGS's (more)", more_iterations},
+                {"closer than BFGS, % (more often)", closer},
+                {"farther, %", farther}},
+    .title = [](const Choice& choice) { return choice.title(); },
+    .experiment = [](const Choice& choice) { return name_of(choice.unit); }};
+
+std::vector<Condition> conditions(const Choice& choice) {
+  const auto label = [&](const std::string& what) {
+    return fmt::format("{}: {}", choice.title(), what);
+  };
+  const auto of = [&](Quantity (*number)(const Choice&)) {
+    return of_experiment(name_of(choice.unit), number(choice));
+  };
+  return {
+      above(label(kOfRules.columns[0].title), of(misses), kOften),
+      above(label(kOfRules.columns[1].title), of(more_iterations), 1),
+      above(
+          label("closer than BFGS, over farther, %"), of(closer), of(farther))};
+}
+
 std::vector<Condition> all_settings() {
-  std::vector<Condition> all;
-  for (const Index unit : kUnits)
-    for (const UnitColumn& c : kOfUnits) all.push_back(condition(unit, c));
+  std::vector<Condition> all = kOfUnits.conditions();
   for (const Choice& choice : choices())
     for (Condition& c : conditions(choice)) all.push_back(std::move(c));
   return all;
 }
 
 Claim claim() {
-  return {.id = "S1",
-          .from = "study",
-          .says =
-              "BFGS usually takes a large first step, gradient descent "
-              "needs more iterations and comes closer to the optimum more "
-              "often, and JPO is as often better as Tables 4 and 5 print, "
-              "whatever the unit of t0, the rule and the first step",
-          .conditions = all_settings(),
-          .cause = depends("unit, rule and first step are not printed; the "
-                           "tables have the settings for which each number "
-                           "comes out")};
+  return {
+      .id = "S1",
+      .from = "study",
+      .says =
+          "BFGS usually takes a large first step, gradient descent needs more "
+          "iterations and comes closer to the optimum more often, and JPO is "
+          "as often better as Tables 4 and 5 print, whatever the unit of t0, "
+          "the rule and the first step",
+      .conditions = all_settings(),
+      .cause = depends("unit, rule and first step are not printed; the tables "
+                       "have the settings for which each number comes out")};
 }
 
 // ---- report -----------------------------------------------------------------
@@ -165,35 +158,21 @@ Table by_unit(const Evidence& e) {
               .where = "Sec. 4, Tables 4 and 5",
               .corner = "samples in a unit",
               .note =
-                  "First steps of 256 problems a seed; JPO: means over n, "
-                  "then mean ± sample standard deviation over seeds."};
-  return table_by_setting(
-      std::move(table),
-      kUnits,
-      kOfUnits,
-      [](Index unit) { return fmt::format("{}", unit); },
-      [&](Index unit, const UnitColumn& c) {
-        const Cell own = cell_of(of_experiment(name_of(unit), c.of(unit))(e));
-        return c.printed == nullptr ? own : beside_printed(own, e, c.printed);
-      });
+                  "First steps of 256 problems a seed; JPO: means over n, then "
+                  "mean ± sample standard deviation over seeds."};
+  StudyTable<Index> study = kOfUnits;
+  study.title = [](Index unit) { return fmt::format("{}", unit); };
+  return study.rows(std::move(table), e);
 }
 
 Table by_rule(const Evidence& e) {
-  Table table{.id = "rules",
-              .title = "Gradient descent by unit, rule and first step",
-              .where = "Sec. 4",
-              .corner = "unit, rule, first step",
-              .note =
-                  "Of 256 problems a seed. In brackets what the text "
-                  "states."};
-  return table_by_setting(
-      std::move(table),
-      choices(),
-      kOfRules,
-      [](const Choice& choice) { return choice.title(); },
-      [&](const Choice& choice, const Column& c) {
-        return cell_of(of_experiment(name_of(choice.unit), c.of(choice))(e));
-      });
+  Table table{
+      .id = "rules",
+      .title = "Gradient descent by unit, rule and first step",
+      .where = "Sec. 4",
+      .corner = "unit, rule, first step",
+      .note = "Of 256 problems a seed. In brackets what the text states."};
+  return kOfRules.rows(std::move(table), e);
 }
 
 }  // namespace
