@@ -1,6 +1,5 @@
 #include "baselines/neural_adjoint.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "baselines/boundary_loss.h"

@@ -1,7 +1,5 @@
 #include "optimizers/bfgs.h"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "optimizers/steps/bfgs_update.h"

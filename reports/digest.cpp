@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "reports/latest_claims.h"
 #include "reports/plot.h"
 #include "reports/report.h"
 #include "reports/tables.h"

@@ -1,7 +1,5 @@
 #include "reports/heat_map.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

@@ -2,7 +2,6 @@
 
 #include "reports/html.h"
 #include "reports/html_parts.h"
-#include "suite/results/verdict_words.h"
 
 namespace physinv {
 namespace {

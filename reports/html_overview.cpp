@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "reports/anchors.h"
 #include "reports/html_parts.h"
 #include "reports/report.h"

@@ -1,7 +1,6 @@
 #include "optimizers/training/jacobians_alone.h"
 
 #include <memory>
-#include <utility>
 
 #include "optimizers/training/signal.h"
 #include "optimizers/training/solver_loss.h"

@@ -1,6 +1,5 @@
 #include "problems/navier_stokes/navier_stokes.h"
 
-#include <cmath>
 #include <memory>
 #include <mutex>
 

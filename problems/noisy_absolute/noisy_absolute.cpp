@@ -1,6 +1,5 @@
 #include "problems/noisy_absolute/noisy_absolute.h"
 
-#include <cmath>
 #include <numbers>
 
 #include "suite/core/check.h"

@@ -1,8 +1,6 @@
 /// The time step of the quantum dipole, in lanes: factorisation and solve.
 #pragma once
 
-#include <algorithm>
-
 #include "problems/quantum_dipole/quantum_dipole.h"
 #include "suite/core/simd/samples.h"
 

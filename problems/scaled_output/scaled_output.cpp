@@ -1,7 +1,5 @@
 #include "problems/scaled_output/scaled_output.h"
 
-#include <cmath>
-
 #include "suite/core/check.h"
 #include "suite/core/math.h"
 #include "suite/core/option_check.h"

@@ -1,6 +1,5 @@
 #include "problems/scaling/scaling.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "suite/core/check.h"

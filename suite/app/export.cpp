@@ -2,13 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "suite/app/load.h"
 #include "suite/app/options.h"
 #include "suite/results/exports.h"
-#include "suite/results/folder.h"
 #include "suite/results/tidy.h"
 
 namespace physinv {

@@ -1,10 +1,8 @@
 #include "suite/app/published_campaign.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <map>
-#include <stdexcept>
 #include <string>
 
 #include "suite/results/file.h"

@@ -6,7 +6,6 @@
 #include <set>
 #include <utility>
 
-#include "reports/latest_claims.h"
 #include "reports/results_page.h"
 #include "reports/tables.h"
 #include "suite/app/installed.h"

@@ -19,8 +19,6 @@
 #include "suite/harness/progress.h"
 #include "suite/results/file.h"
 #include "suite/results/folder.h"
-#include "suite/results/json.h"
-#include "suite/results/results_file.h"
 
 namespace physinv {
 namespace {

@@ -13,7 +13,6 @@
 #include "suite/app/sections.h"
 #include "suite/app/verbs.h"
 #include "suite/harness/columns.h"
-#include "suite/harness/output.h"
 #include "suite/harness/progress.h"
 #include "suite/harness/select.h"
 #include "suite/results/verdict_words.h"

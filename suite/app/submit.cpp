@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "suite/app/installed.h"
 #include "suite/app/options.h"
 #include "suite/app/speeds.h"
 #include "suite/harness/child.h"

@@ -17,8 +17,6 @@
 /// start: nothing is solved.
 #pragma once
 
-#include <fmt/format.h>
-
 #include <optional>
 #include <vector>
 

@@ -82,9 +82,6 @@ class OneStep {
 template <class T>
 std::unique_ptr<OneStep<T>> one_step(const TinyNetOptions& options);
 
-extern template std::unique_ptr<OneStep<float>> one_step(const TinyNetOptions&);
-extern template std::unique_ptr<OneStep<double>> one_step(
-    const TinyNetOptions&);
 extern template class OneStep<float>;
 extern template class OneStep<double>;
 

@@ -1,13 +1,11 @@
 #include "suite/evidence/training.h"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include "suite/evidence/quantity.h"
 #include "suite/evidence/statistics.h"
 #include "suite/results/crowded.h"
-#include "suite/results/published.h"
 
 namespace physinv {
 namespace {

@@ -11,7 +11,6 @@
 #include "suite/core/rng.h"
 #include "suite/harness/child.h"
 #include "suite/harness/select.h"
-#include "suite/results/file.h"
 #include "suite/results/results_file.h"
 #include "suite/results/results_json.h"
 #include "suite/results/store.h"

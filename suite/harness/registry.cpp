@@ -11,7 +11,6 @@
 #include <unordered_map>
 
 #include "suite/harness/errors.h"
-#include "suite/harness/judge.h"
 #include "suite/harness/nearest.h"
 
 namespace physinv {

@@ -1,7 +1,5 @@
 #include "suite/harness/run_case.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <ctime>

@@ -1,6 +1,5 @@
 #include "suite/nn/encoding.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "suite/core/math.h"

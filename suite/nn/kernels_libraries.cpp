@@ -6,7 +6,6 @@
 
 #include <unordered_map>
 #include <utility>
-#include <vector>
 
 #include "suite/core/workspace.h"
 #include "suite/nn/conv.h"

@@ -2,7 +2,6 @@
 #include <limits>
 #include <map>
 
-#include "suite/harness/registry.h"
 #include "suite/planning/kinds.h"
 
 namespace physinv {

@@ -5,11 +5,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <ctime>
 #include <nlohmann/json.hpp>
-#include <optional>
 
 #include "suite/results/checksum.h"
 #include "suite/results/names.h"

@@ -1,5 +1,4 @@
 // HIG paper, App. C, Figs. 12 and 13: the size of the batch is not printed.
-#include <utility>
 #include <vector>
 
 #include "optimizers/training.h"

@@ -2,7 +2,6 @@
 // the potentials of sources on an 8 x 8 grid, with fresh data at every update.
 #include <fmt/format.h>
 
-#include <cmath>
 #include <string>
 #include <vector>
 

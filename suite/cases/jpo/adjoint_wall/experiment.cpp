@@ -1,7 +1,6 @@
 // JPO paper, Tables 4 and 5, Apps. D.1 and D.2: the wall that keeps the neural
 // adjoint in the range of its training samples is not printed, nor how many
 // these are and, for billiards, how far they are spread.
-#include <string>
 #include <string_view>
 #include <vector>
 

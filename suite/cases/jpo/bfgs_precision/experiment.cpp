@@ -1,9 +1,7 @@
 // JPO paper, Tables 4 and 5, Sec. 4: precision and tolerance of BFGS and of the
 // refinement are not printed. All else is that of the experiment which is
 // varied, at some of its sizes.
-#include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "optimizers/classical.h"

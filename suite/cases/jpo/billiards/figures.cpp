@@ -1,7 +1,5 @@
 // Fig. 4a of the JPO paper, beside what all its experiments show.
 #include <array>
-#include <string>
-#include <utility>
 
 #include "problems/billiards/billiards.h"
 #include "suite/cases/jpo/common/report.h"

@@ -6,7 +6,6 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "suite/core/batch.h"
 #include "suite/results/record.h"

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "suite/cases/jpo/common/report.h"
 #include "suite/evidence/statistics.h"

@@ -1,6 +1,5 @@
 // One page of the whole matrix: who ends lowest, who is there first, and why a
 // cell is empty.
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>

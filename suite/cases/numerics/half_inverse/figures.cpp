@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <functional>
 #include <string>
-#include <vector>
 
 #include "suite/cases/numerics/half_inverse/sweep.h"
 #include "suite/evidence/cell.h"

@@ -2,7 +2,6 @@
 /// a finished sweep over them.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "suite/diagnostics/half_inverse_stress.h"

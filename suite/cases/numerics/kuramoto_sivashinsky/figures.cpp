@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <string>
 #include <vector>
 
 #include "suite/cases/numerics/kuramoto_sivashinsky/sweep.h"

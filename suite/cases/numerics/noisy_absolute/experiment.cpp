@@ -1,6 +1,5 @@
 // Distance under noise, from next to its solution to far away (at 1e8 the noise
 // has no digits left), with noise from none to overwhelming.
-#include <cmath>
 
 #include "problems/noisy_absolute/closed_form.h"
 #include "problems/noisy_absolute/noisy_absolute.h"

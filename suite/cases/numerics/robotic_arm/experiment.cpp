@@ -1,7 +1,6 @@
 // The robotic arm where its Jacobian loses rank, and at angles far beyond a
 // turn.
 #include <array>
-#include <cmath>
 #include <numbers>
 #include <vector>
 

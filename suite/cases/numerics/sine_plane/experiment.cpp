@@ -1,6 +1,5 @@
 // A sine and a line, stretched against each other: from the flat of the sine to
 // arguments of which no digit is left.
-#include <cmath>
 #include <numbers>
 
 #include "problems/sine_plane/sine_plane.h"

@@ -1,6 +1,5 @@
 // The wave packet at and far beyond the ends of its interval, where a line
 // search may well send it.
-#include <cmath>
 #include <vector>
 
 #include "problems/wave_packet/closed_form.h"

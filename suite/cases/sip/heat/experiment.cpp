@@ -1,7 +1,6 @@
 // SIP paper, App. B.3, Figs. 10 to 13: a network finds the initial state of
 // strong diffusion. Rates that paper and authors' script disagree on (SGD) are
 // both here.
-#include <fmt/format.h>
 
 #include <string>
 #include <utility>

@@ -1,7 +1,6 @@
 // What App. B.2 of the SIP paper says of Poisson's equation, and the ranges of
 // independent programs. Errors are sums of |x - x*| over the cells.
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>

@@ -2,8 +2,6 @@
 /// paper, and a small one for methods that take long.
 #pragma once
 
-#include <array>
-
 #include "suite/core/batch.h"
 
 namespace physinv::poisson {

@@ -2,7 +2,6 @@
 /// are in samples; the start of L-BFGS-B is 0.
 #pragma once
 
-#include <functional>
 #include <limits>
 
 #include "suite/cases/sip/wave_packet/metrics.h"
