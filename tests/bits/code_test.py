@@ -8,7 +8,9 @@ And what may not be in the loops that take most of the time: sums that went to
 the stack for want of registers, and structs that were copied through it in
 pieces of 16 bytes.
 
-PROGRAM... --libraries LIBRARY..."""
+And what is for wide registers in the last program, if it is for narrow ones.
+
+PROGRAM... [--narrow] --libraries LIBRARY..."""
 
 import re
 import subprocess
@@ -81,11 +83,12 @@ def badly_made(functions):
 
 def found(program):
     """The functions that hold an operation that nobody wrote, how many do fma,
-    and the code of those that are looked at."""
+    the code of those that are looked at, and what is for wide registers."""
     code = subprocess.Popen(["objdump", "-dC", "--no-show-raw-insn", program],
                             stdout=subprocess.PIPE, text=True)
     looked_at = re.compile("|".join([*HELD, *WHOLE]))
     function, functions, fma, kept, lines = "", set(), 0, {}, None
+    wide = []
     for line in code.stdout:
         if line.endswith(">:\n"):
             function = line.split("<", 1)[1][:-3]
@@ -93,15 +96,20 @@ def found(program):
             if looked_at.search(function):
                 # A name may stand for parts that the compiler took apart.
                 lines = kept.setdefault(f"{function} {line.split()[0]}", [])
-        elif NOBODY_WROTE.search(line):
-            functions.add(function)
-        elif WROTE.search(line):
-            fma += 1
+            continue
+        if "vf" in line:
+            if NOBODY_WROTE.search(line):
+                functions.add(function)
+            elif WROTE.search(line):
+                fma += 1
+        if "mm" in line and ("%zmm" in line or "%ymm16" in line or
+                             "%xmm16" in line):
+            wide.append(line)
         if lines is not None and ":\t" in line:
             address, text = line.split(":\t", 1)
             lines.append((int(address, 16), text.strip()))
     assert code.wait() == 0, program
-    return functions, fma, kept
+    return functions, fma, kept, wide
 
 
 def chosen(library):
@@ -116,15 +124,22 @@ def chosen(library):
 
 def main():
     split = sys.argv.index("--libraries")
+    programs = sys.argv[1:split]
+    narrow = "--narrow" in programs
+    if narrow:
+        programs.remove("--narrow")
     wrong = 0
-    for program in sys.argv[1:split]:
-        functions, fma, kept = found(program)
+    for program in programs:
+        functions, fma, kept, wide = found(program)
         print(f"{program}: {fma} fused operations, {len(functions)} functions "
-              "with some that nobody wrote")
+              f"with some that nobody wrote, {len(wide)} wide registers")
         print("".join(f"  {f}\n" for f in sorted(functions)), end="")
         complaints = badly_made(kept)
         print("".join(f"  {c}\n" for c in complaints), end="")
         wrong += len(functions) + (fma < 1000) + len(complaints)
+        if narrow and program == programs[-1]:
+            print("".join(wide[:5]), end="")
+            wrong += len(wide)
     for library in ";".join(sys.argv[split + 1:]).split(";"):
         names = chosen(library)
         if names:

@@ -35,15 +35,6 @@ def numbers(value, name=""):
         yield name, value
 
 
-def check_narrow(program):
-    """Nothing in it is for wide registers."""
-    code = subprocess.run(["objdump", "-d", "--no-show-raw-insn", program],
-                          check=True, capture_output=True, text=True).stdout
-    wide = [line for line in code.splitlines()
-            if "%zmm" in line or "%ymm16" in line or "%xmm16" in line]
-    assert len(code) > 1_000_000 and not wide, wide[:5]
-
-
 def smoke(program, out, *flags, check=True):
     return subprocess.run(
         [program, "run", "--profile=smoke", "--trace", f"--out={out}", *flags],
@@ -70,7 +61,6 @@ def read(out):
 
 def main():
     program, results, varied, baseline = sys.argv[1:]
-    check_narrow(varied)
     first = read(pathlib.Path(results))
     with tempfile.TemporaryDirectory() as folder:
         out = pathlib.Path(folder) / "varied"
