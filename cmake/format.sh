@@ -7,4 +7,4 @@ action=(--dry-run --Werror --ferror-limit=1)
 [[ ${1:-} != --fix ]] || action=(-i)
 find suite problems optimizers baselines reports tests python examples \
   \( -name '*.h' -o -name '*.cpp' \) -print0 |
-  xargs -0 -P "$(nproc)" -n 8 clang-format-14 "${action[@]}" || exit 1
+  xargs -0 -P "$(nproc)" -n 64 clang-format-14 "${action[@]}" || exit 1
