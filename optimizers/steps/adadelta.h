@@ -30,7 +30,7 @@ class Adadelta : public ElementwiseStep<T, Adadelta<T>, 2> {
   explicit Adadelta(const Options& options = {}) : options_(options) {}
 
   auto update(long /*step*/) const {
-    using V = NarrowPack<T>;
+    using V = Pack<T>;
     const T rate = static_cast<T>(options_.rate);
     const T decay = static_cast<T>(options_.decay);
     const T fresh = static_cast<T>(1 - options_.decay);

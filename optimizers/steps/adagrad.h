@@ -30,7 +30,7 @@ class Adagrad : public ElementwiseStep<T, Adagrad<T>, 1> {
         options_(options) {}
 
   auto update(long /*step*/) const {
-    using V = NarrowPack<T>;
+    using V = Pack<T>;
     const T rate = static_cast<T>(options_.rate);
     const T eps = static_cast<T>(options_.eps);
     return [=](V x, V g, V & a) __attribute__((always_inline)) {

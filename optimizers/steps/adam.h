@@ -40,7 +40,7 @@ class Adam : public ElementwiseStep<T, Adam<T>, 2> {
   explicit Adam(const Options& options = {}) : options_(options) {}
 
   auto update(long step) const {
-    using V = NarrowPack<T>;
+    using V = Pack<T>;
     const auto t = static_cast<double>(step);
     const Options& o = options_;
     const double c1 = 1 - math::pow(o.beta1, t), c2 = 1 - math::pow(o.beta2, t);

@@ -64,11 +64,11 @@ class ElementwiseStep {
              VectorIn<T> gradient,
              VectorOut<T> to,
              std::index_sequence<k...>) {
-    using V = NarrowPack<T>;
+    using V = Pack<T>;
     T* const out = to.data();
     const T *const px = x.data(), *const pg = gradient.data();
     const std::array<T*, kKept> p = {kept_[k].data()...};
-    for_narrow_packs<T>(x.size(), [=](Index i, auto lanes) {
+    for_pieces<V>(x.size(), [=](Index i, auto lanes) {
       std::array<V, kKept> kept = {load_lanes<V>(p[k] + i, lanes)...};
       const auto next = update(load_lanes<V>(px + i, lanes),
                                load_lanes<V>(pg + i, lanes),

@@ -28,7 +28,7 @@ class Rmsprop : public ElementwiseStep<T, Rmsprop<T>, 1> {
   explicit Rmsprop(const Options& options = {}) : options_(options) {}
 
   auto update(long /*step*/) const {
-    using V = NarrowPack<T>;
+    using V = Pack<T>;
     const T rate = static_cast<T>(options_.rate);
     const T decay = static_cast<T>(options_.decay);
     const T fresh = static_cast<T>(1 - options_.decay);

@@ -24,7 +24,7 @@ class Sgd : public ElementwiseStep<T, Sgd<T>, 1> {
   explicit Sgd(const Options& options = {}) : options_(options) {}
 
   auto update(long /*step*/) const {
-    using V = NarrowPack<T>;
+    using V = Pack<T>;
     const T rate = static_cast<T>(options_.rate);
     const T momentum = static_cast<T>(options_.momentum);
     return [=](V x, V g, V & u) __attribute__((always_inline)) {

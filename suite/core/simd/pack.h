@@ -130,14 +130,18 @@ PHYSINV_LANES void store_lanes(T* p, P v, Index count) {
 }
 
 /// body(i, lanes) for consecutive pieces of [0, size), the last of which may
-/// have fewer lanes than a narrow pack. The body captures by value: it is
-/// inlined, and its constants stay in registers.
-template <class T, class F>
-PHYSINV_LANES void for_narrow_packs(Index size, F body) {
-  constexpr Index w = kNarrowLanes<T>;
+/// have fewer lanes than a pack P. The body captures by value: it is inlined,
+/// and its constants stay in registers.
+template <class P, class F>
+PHYSINV_LANES void for_pieces(Index size, F body) {
+  constexpr auto w = static_cast<Index>(sizeof(P) / sizeof(LaneScalar<P>));
   Index i = 0;
   for (; i + w <= size; i += w) body(i, std::integral_constant<Index, w>{});
   if (i < size) body(i, size - i);
+}
+template <class T, class F>
+PHYSINV_LANES void for_narrow_packs(Index size, F body) {
+  for_pieces<NarrowPack<T>>(size, body);
 }
 
 /// v, in a register: GCC would rather load it again for each of its uses, and
