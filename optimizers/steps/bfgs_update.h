@@ -48,10 +48,14 @@ inline std::array<double, N> dots(Index d,
   return out;
 }
 
+PHYSINV_LANES double dot_of_two(double a0, double a1, double b0, double b1) {
+  return (std::fma(a0, b0, 0.0) + std::fma(a1, b1, 0.0)) + 0.0;
+}
+
 /// The same of one; the plain order for d <= 3.
 PHYSINV_LANES double dot(Index d, const double* a, const double* b) {
   if (d != 2) return dots<1>(d, {a}, {b})[0];
-  return (std::fma(a[0], b[0], 0.0) + std::fma(a[1], b[1], 0.0)) + 0.0;
+  return dot_of_two(a[0], a[1], b[0], b[1]);
 }
 
 /// Largest magnitude; NaN entries are passed over.
@@ -98,27 +102,47 @@ inline void multiply(Index d, const double* h, const double* v, double* out) {
   });
 }
 
-/// H <- (I - rho s y^T) H (I - rho y s^T) + rho s s^T, with rho = 1 / (y.s),
-/// or 1000 where y.s is exactly 0 (SciPy's value). No curvature safeguard.
+/// rho of the update; 1000 where y.s is exactly 0 (SciPy's value).
+PHYSINV_LANES double curvature(double ys) { return ys == 0 ? 1000.0 : 1 / ys; }
+
+/// bfgs_update of two unknowns, in registers: through memory, which may be that
+/// of its other arguments, each number would wait for the one before.
+inline void update_of_two(const double* s, const double* y, double* h) {
+  const double s0 = s[0], s1 = s[1], y0 = y[0], y1 = y[1];
+  const double rho = curvature(dot_of_two(y0, y1, s0, s1));
+  const double u0 = std::fma(h[2], y1, std::fma(h[0], y0, 0.0));
+  const double u1 = std::fma(h[3], y1, std::fma(h[1], y0, 0.0));
+  const auto update = [=](double* column, double along) {
+    const double right = rho * along;
+    const double a = std::fma(u0, -right, column[0]);
+    const double b = std::fma(u1, -right, column[1]);
+    const double left = std::fma(-rho, dot_of_two(y0, y1, a, b), right);
+    column[0] = std::fma(s0, left, a);
+    column[1] = std::fma(s1, left, b);
+  };
+  update(h, s0);
+  update(h + 2, s1);
+}
+
+/// H <- (I - rho s y^T) H (I - rho y s^T) + rho s s^T, with rho = 1 / (y.s). No
+/// curvature safeguard.
 ///
 /// Two rank-one steps, O(d^2). They round like the product of the three
 /// matrices does; the expanded sum would cancel where H is much larger than
 /// rho s s^T. `scratch` holds d numbers.
 inline void bfgs_update(
     Index d, const double* s, const double* y, double* h, double* scratch) {
-  const double ys = dot(d, y, s);
-  const double rho = ys == 0 ? 1000.0 : 1 / ys;
+  if (d == 2) return update_of_two(s, y, h);
+  const double rho = curvature(dot(d, y, s));
   double* u = scratch;
   multiply(d, h, y, u);
-  of_size(d, [=](auto n) {
-    for (Index j = 0; j < n; ++j) {
-      double* column = h + j * n;
-      const double right = rho * s[j];
-      for (Index i = 0; i < n; ++i) add_product(column[i], u[i], -right);
-      const double left = std::fma(-rho, dot(n, y, column), right);
-      for (Index i = 0; i < n; ++i) add_product(column[i], s[i], left);
-    }
-  });
+  for (Index j = 0; j < d; ++j) {
+    double* column = h + j * d;
+    const double right = rho * s[j];
+    for (Index i = 0; i < d; ++i) add_product(column[i], u[i], -right);
+    const double left = std::fma(-rho, dot(d, y, column), right);
+    for (Index i = 0; i < d; ++i) add_product(column[i], s[i], left);
+  }
 }
 
 }  // namespace physinv::dense

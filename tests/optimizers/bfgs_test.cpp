@@ -380,6 +380,23 @@ TEST(BfgsUpdate, EqualsTheMatrixProduct) {
   }
 }
 
+// Two unknowns have a way of their own; zeros add nothing.
+TEST(BfgsUpdate, TwoUnknownsGoAsTwoOfThree) {
+  for (int k = 0; k < 50; ++k) {
+    const Batch<double> h = starts(2, 2 + k).rightCols(2);
+    Batch<double> two = h, three = Batch<double>::Zero(3, 3);
+    three.topLeftCorner(2, 2) = h;
+    Vector<double> s = Vector<double>::Zero(3), y = s, scratch(3);
+    s.head(2) = starts(2, 7 + k).rightCols(1);
+    y.head(2) = starts(2, 9 + k).rightCols(1);
+    if (k == 7) y << s(1), -s(0), 0;  // no curvature
+    if (k == 8) s(1) = 0;
+    dense::bfgs_update(2, s.data(), y.data(), two.data(), scratch.data());
+    dense::bfgs_update(3, s.data(), y.data(), three.data(), scratch.data());
+    EXPECT_EQ(two, three.topLeftCorner(2, 2)) << k;
+  }
+}
+
 TEST(BfgsUpdate, NormsOfAnySize) {
   Vector<double> a(7);
   a << 3, -1, 0, 4, 1e-3, -2, 0.5;
