@@ -125,6 +125,8 @@ void HalfInverseStep<T>::power_of_jacobian(VectorIn<T> parameters,
     report = tall_(columns_, options_.power, update);
   }
   report_.path = hig::Path::explicit_jacobian;
+  report_.spared = tall_.spared();
+  report_.abandoned = tall_.abandoned();
   report_.proven = hig::proven(report_, options_.numerics.tolerance);
   if (report_.ending != hig::Ending::ok && report_.ending != hig::Ending::zero)
     update_.setConstant(std::numeric_limits<double>::quiet_NaN());
@@ -164,6 +166,9 @@ bool HalfInverseStep<T>::operator()(const Network<T>& network,
     power_of_gram(network, parameters, tape, samples, work);
   }
   options_.power = power;
+  work.counts[Counter::skipped_levels] += report_.spared;
+  work.counts[Counter::abandoned_levels] +=
+      static_cast<std::uint64_t>(report_.abandoned);
   hig::leave_units(power, double(unit), report_, update_.col(0));
   column_ = parameters - (options_.rate * update_.col(0)).template cast<T>();
   const bool finite = column_.allFinite();

@@ -6,7 +6,9 @@
 /// S_i the solver's Jacobian of sample i, N_i the network's, g = dLoss/dy
 /// stacked. A wide J (more parameters than rows) is never formed: its rows are
 /// outer products, and J J^T is enough (optimizers/half_inverse). A tall one
-/// is small, and is taken apart as it is.
+/// is small, and is taken apart as it is. Counted are, in the workspace, the
+/// decompositions given up for a more exact one (`abandoned_levels`) and the
+/// updates that were accurate enough without one (`skipped_levels`).
 #pragma once
 
 #include <vector>

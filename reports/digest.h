@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "suite/results/record.h"
 #include "suite/results/report_model.h"
 
 namespace physinv {
@@ -36,6 +37,7 @@ struct NamedDigest {
   std::string name;  ///< folder of the campaign
   nlohmann::ordered_json digest;
   std::map<std::string, double> cpu_seconds = {};  ///< by experiment
+  std::map<std::string, Counts> work = {};         ///< made and saved, alike
   /// As it was published, if its claims were judged anew since.
   nlohmann::ordered_json published = {};
 };

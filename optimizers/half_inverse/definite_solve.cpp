@@ -69,6 +69,7 @@ bool DefiniteSolve::operator()(BatchIn<double> gram,
                                PowerReport& report,
                                double gram_noise) {
   const Index m = g.size();
+  began_ = false;
   if (power.kappa != -1 || power.beta != 0 || m == 0) return false;
   double largest = 0;
   if (!g.allFinite() || !finite_lower(gram, largest)) return false;
@@ -86,6 +87,7 @@ bool DefiniteSolve::operator()(BatchIn<double> gram,
   state_caches();
   factor_ = gram.triangularView<Eigen::Lower>();
   factor_.diagonal().array() -= theta;
+  began_ = true;
   const Cholesky cholesky(factor_);
   if (cholesky.info() != Eigen::Success) return false;
 

@@ -25,6 +25,8 @@ class DefiniteSolve {
                   PowerReport& report,
                   double gram_noise = 1);
 
+  /// Whether the last call factored anything.
+  bool began() const { return began_; }
   std::size_t bytes() const {
     return static_cast<std::size_t>(factor_.size()) * sizeof(double);
   }
@@ -32,6 +34,7 @@ class DefiniteSolve {
  private:
   Batch<double> factor_;
   Vector<double> residual_, step_;
+  bool began_ = false;
 };
 
 }  // namespace physinv::hig

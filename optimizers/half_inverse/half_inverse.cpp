@@ -15,8 +15,10 @@ bool HalfInverse::settled(std::size_t i, Path path, bool last) {
   report.proven = proven(report, options_.tolerance);
   if (!report.proven && !ended && !last) {
     ++counts_.abandoned[static_cast<std::size_t>(path)];
+    ++report.abandoned;
     return false;
   }
+  report.spared = report.proven && !ended && !last;
   ++counts_.taken[static_cast<std::size_t>(path)];
   if (!report.proven) ++counts_.unproven;
   done_[i] = true;
@@ -38,10 +40,12 @@ void HalfInverse::try_shortcut(BatchIn<double> gram,
                    v_.col(0),
                    reports_[i],
                    options_.gram_noise)) {
-      ++counts_.abandoned[static_cast<std::size_t>(Path::shortcut)];
+      counts_.abandoned[static_cast<std::size_t>(Path::shortcut)] +=
+          definite_.began();
+      reports_[i].abandoned += definite_.began();
       continue;
     }
-    settled(i, Path::shortcut, true);
+    settled(i, Path::shortcut, false);
     pullback(v_, updates.middleCols(static_cast<Index>(i), 1));
   }
 }
@@ -61,6 +65,8 @@ bool HalfInverse::attempt(Path path,
     if (done_[i]) continue;
     auto update = updates.col(static_cast<Index>(i));
     static_cast<PowerReport&>(reports_[i]) = apply(powers[i], update);
+    if (path == Path::two_level)
+      reports_[i].abandoned += two_level_.abandoned();
     if (!settled(i, path, last)) {
       all = false;
     } else if (reports_[i].ending == Ending::zero) {
@@ -95,7 +101,7 @@ std::span<const HalfInverseReport> HalfInverse::operator()(
   };
   spectral_.factor(gram, g, options_.gram_noise);
   if (by(Path::gram, false, [&](const Power& power, auto&) {
-        return spectral_.apply(power, v_.col(0));
+        return spectral_.apply(power, v_.col(0), options_.tolerance);
       }))
     return reports_;
   two_level_.open();

@@ -7,8 +7,9 @@
 ///   explicit   J itself, QR and SVD (explicit_power.h)
 ///
 /// A path whose error estimate exceeds the tolerance is left for the next
-/// one, and the fall is counted. All settings of one call share what is
-/// factored; each gets the bits that it would get alone.
+/// one, without its way back from the eigenbasis, and the fall is counted. All
+/// settings of one call share what is factored; each gets the bits that it
+/// would get alone.
 #pragma once
 
 #include <array>
@@ -47,6 +48,8 @@ struct HalfInverseOptions {
 struct HalfInverseReport : PowerReport {
   Path path = Path::gram;
   bool proven = false;  ///< error <= tolerance
+  Index abandoned = 0;  ///< decompositions made for it and given up
+  bool spared = false;  ///< proven, so that a next path was not gone
 };
 
 class HalfInverse {

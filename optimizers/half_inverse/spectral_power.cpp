@@ -81,11 +81,16 @@ Ending SpectralPower::factor(BatchIn<double> gram,
 }
 
 PowerReport SpectralPower::apply(const Power& power,
-                                 VectorOut<double> v) const {
+                                 VectorOut<double> v,
+                                 double most) const {
   v.setZero();
   if (ending_ != Ending::ok) return {.ending = ending_};
   const PowerReport report = power_weights(spectrum_, power, v);
-  if (report.kept > 0) leave_eigenbasis(v);
+  if (report.error > most) {
+    v.setZero();
+  } else if (report.kept > 0) {
+    leave_eigenbasis(v);
+  }
   return report;
 }
 

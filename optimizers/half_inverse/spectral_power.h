@@ -10,6 +10,7 @@
 /// report's `error` says what that does to the update at hand.
 #pragma once
 
+#include <limits>
 #include <span>
 
 #include "optimizers/half_inverse/power.h"
@@ -31,8 +32,12 @@ class SpectralPower {
                 double gram_noise = 1,
                 linalg::Stages stages = linalg::Stages::automatic);
 
-  /// v of power.h for the matrix factored last; zero unless that ended ok.
-  PowerReport apply(const Power& power, VectorOut<double> v) const;
+  /// v of power.h for the matrix factored last; zero unless that ended ok, and
+  /// where the update's `error` exceeds `most`: the way back is left out then.
+  PowerReport apply(
+      const Power& power,
+      VectorOut<double> v,
+      double most = std::numeric_limits<double>::infinity()) const;
 
   /// v <- U v, from the order of the spectrum to the rows of G.
   void leave_eigenbasis(VectorOut<double> v) const;

@@ -33,6 +33,7 @@ PowerReport TallPower::of_triangle(BatchIn<double> r,
   const Index n = update.size();
   PowerReport report;
   update.setZero();
+  spared_ = abandoned_ = false;
   if (!r.allFinite()) {
     report.ending = Ending::nonfinite;
     return report;
@@ -47,7 +48,8 @@ PowerReport TallPower::of_triangle(BatchIn<double> r,
   std::frexp(largest, &exponent);
   scale_ = std::ldexp(1.0, exponent);
   r_ = r.leftCols(n) * std::ldexp(1.0, -exponent);
-  if (by_lanes(power, update, report)) return report;
+  spared_ = by_lanes(power, update, report);
+  if (spared_) return report;
   ++fallbacks_;
   explicit_.factor(r_ * scale_, h_);
   return explicit_.apply(power, update);
@@ -62,11 +64,13 @@ bool TallPower::by_lanes(const Power& power,
   const double cut = power.absolute ? power.tau / scale_ : power.tau * length;
   const double floor = kBelowCut * cut;
   if (!(floor >= kSmallest * length)) return false;
+  abandoned_ = true;
   bidiagonal_.reduce(r_, h_);
   if (!lanes_.find(bidiagonal_.diagonal(), bidiagonal_.below(), floor))
     return false;
   const Index found = lanes_.count();
   if (found == 0 || found > n) return false;
+  abandoned_ = false;
 
   spectrum_.lambda.resize(n), spectrum_.c.resize(n), weights_.resize(n);
   spectrum_.scale = scale_;

@@ -31,6 +31,10 @@ class TallPower {
 
   /// Updates that ExplicitPower had to do.
   Index fallbacks() const { return fallbacks_; }
+  /// Of the last update: steps 2 and 3 made it, so that no SVD was needed;
+  /// they were begun and given up.
+  bool spared() const { return spared_; }
+  bool abandoned() const { return abandoned_; }
   std::size_t bytes() const;
 
  private:
@@ -46,6 +50,7 @@ class TallPower {
   Spectrum spectrum_;
   ExplicitPower explicit_;
   Index fallbacks_ = 0;
+  bool spared_ = false, abandoned_ = false;
 };
 
 }  // namespace physinv::hig

@@ -52,6 +52,7 @@ Ending TwoLevelPower::refine(Index parameters, const Pullback& pullback) {
   const std::vector<Index> wanted(order_.end() - inside_, order_.end());
   if (wanted == refined_) return second_.ending();
   refined_ = wanted;
+  ++made_;
   state_caches();
   Batch<double> u2(spectrum_.lambda.size(), inside_), w2(parameters, inside_);
   first_.directions(wanted, u2);
@@ -64,7 +65,10 @@ Ending TwoLevelPower::refine(Index parameters, const Pullback& pullback) {
   return second_.factor(square, c);
 }
 
+/// The update from the range as it is arranged; v stays zero where its error
+/// exceeds `most`.
 PowerReport TwoLevelPower::settle(const Power& power,
+                                  double most,
                                   Index parameters,
                                   const Pullback& pullback,
                                   VectorOut<double> v) {
@@ -82,7 +86,7 @@ PowerReport TwoLevelPower::settle(const Power& power,
     return {.ending = ending};
   }
   const PowerReport report = power_weights(spectrum_, power, weights_);
-  if (report.kept == 0) return report;
+  if (report.kept == 0 || report.error > most) return report;
   if (turned) second_.leave_eigenbasis(weights_.tail(inside_));
   v(order_) = weights_;
   first_.leave_eigenbasis(v);
@@ -95,6 +99,7 @@ PowerReport TwoLevelPower::apply(const Power& power,
                                  const Pullback& pullback,
                                  VectorOut<double> v) {
   v.setZero();
+  made_ = 0;
   if (first_.ending() != Ending::ok) return {.ending = first_.ending()};
   weights_.resize(v.size());
   const double s_max = first_.spectrum().s_max();
@@ -104,12 +109,14 @@ PowerReport TwoLevelPower::apply(const Power& power,
     if (!proven(power_weights(spectrum_, power, weights_),
                 kExpected * tolerance))
       continue;
-    const PowerReport report = settle(power, parameters, pullback, v);
+    const PowerReport report =
+        settle(power, tolerance, parameters, pullback, v);
     if (proven(report, tolerance)) return report;
     v.setZero();
   }
   arrange(0, kSecondLevel * s_max);
-  return settle(power, parameters, pullback, v);
+  const double any = std::numeric_limits<double>::infinity();
+  return settle(power, any, parameters, pullback, v);
 }
 
 }  // namespace physinv::hig

@@ -38,10 +38,13 @@ class TwoLevelPower {
 
   /// k2 of the last update.
   Index second_level() const { return inside_; }
+  /// Ranges decomposed for the last update that it was not made from.
+  Index abandoned() const { return made_ - (made_ > 0 && inside_ > 0); }
 
  private:
   void arrange(double low, double high);
   PowerReport settle(const Power& power,
+                     double most,
                      Index parameters,
                      const Pullback& pullback,
                      VectorOut<double> v);
@@ -51,7 +54,7 @@ class TwoLevelPower {
   const SpectralPower& first_;
   Spectrum spectrum_;         ///< the last inside_ values are U2's
   std::vector<Index> order_;  ///< of the first level's directions in it
-  Index inside_ = 0;
+  Index inside_ = 0, made_ = 0;
   SpectralPower second_;        ///< of W2^T W2
   std::vector<Index> refined_;  ///< the U2 it stands for
   Vector<double> weights_;

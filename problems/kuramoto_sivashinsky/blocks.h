@@ -46,6 +46,11 @@ struct Block : SampleBlock {
     const Index h = k.stride();
     return {all_of(x, 0), all_of(x, 1), memory, memory + h, memory + 2 * h};
   }
+  /// Forcing terms that so many steps leave out, as alpha is 0 in every lane.
+  std::uint64_t unforced(const Etdrk2Run<P>& r, Index steps) const {
+    const bool none = count_set(r.alpha == P{}) == kWidth;
+    return none ? static_cast<std::uint64_t>(steps * count) : 0;
+  }
 
  private:
   /// Row r in all lanes of each sample.

@@ -160,6 +160,7 @@ void KuramotoSivashinsky<T>::forward(BatchIn<T> x,
   check_size(x, 2, x.cols());
   check_size(given, options_.cells, x.cols());
   check_size(y, options_.cells, x.cols());
+  std::atomic<std::uint64_t> terms = 0;
   work.counts[Counter::skipped_steps] += sum_blocks(
       *kernels_,
       work,
@@ -177,12 +178,15 @@ void KuramotoSivashinsky<T>::forward(BatchIn<T> x,
           // Linear: the modes go their own ways.
           for (Index t = 0; t < steps; ++t) k.drift(r);
           k.restore(r, state(end));
+          terms += static_cast<std::uint64_t>(2 * steps * block.count);
         } else {
           end = march(k, r, 0, steps, state, [=](Index) { return u + 2 * n; });
         }
         block.finish(state(end), y);
+        terms += block.unforced(r, end);
         return (steps - end) * block.count;
       });
+  work.counts[Counter::skipped_terms] += terms;
 }
 
 template <class T>
@@ -204,7 +208,7 @@ void KuramotoSivashinsky<T>::linearize(BatchIn<T> x,
   auto lost = tape.slot<unsigned char>(kLost, 1, x.cols());
   tape.slot<T>(kUnknowns, 2, x.cols()) = x;
 
-  std::atomic<std::uint64_t> skipped = 0;
+  std::atomic<std::uint64_t> skipped = 0, terms = 0;
   const auto run = [&]<class K, class P>(const Block<K, P>& block, int thread) {
     const K& k = block.k;
     const Index n = k.field();
@@ -236,9 +240,11 @@ void KuramotoSivashinsky<T>::linearize(BatchIn<T> x,
     for (Index i = 0; i < block.count; ++i)
       lost(0, block.first + i) = !std::isfinite(y(0, block.first + i));
     skipped += static_cast<std::uint64_t>((steps - end) * block.count);
+    terms += block.unforced(r, end);
   };
   for_packs(*kernels_, tape.threads(), x.cols(), run);
   tape.counts[Counter::skipped_steps] += skipped;
+  tape.counts[Counter::skipped_terms] += terms;
 }
 
 template <class T>
@@ -301,6 +307,7 @@ void KuramotoSivashinsky<T>::jacobian(BatchIn<T> x,
   check_size(x, 2, x.cols());
   check_size(given, cells, x.cols());
   check_size(j, 2 * cells, x.cols());
+  std::atomic<std::uint64_t> terms = 0;
   work.counts[Counter::skipped_steps] += sum_blocks(
       *kernels_,
       work,
@@ -333,8 +340,10 @@ void KuramotoSivashinsky<T>::jacobian(BatchIn<T> x,
           block.store(u + end % 2 * n, i, y.col(0));
           if (!y.allFinite()) column.setConstant(kNan<T>);
         }
+        terms += block.unforced(r, end);
         return (steps - end) * block.count;
       });
+  work.counts[Counter::skipped_terms] += terms;
 }
 
 /// At least a register of samples.

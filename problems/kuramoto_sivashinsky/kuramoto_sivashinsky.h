@@ -22,7 +22,9 @@
 ///
 /// alpha = 0 adds no forcing, and beta = 0 makes `forward` one multiplication
 /// of modes per step, to the same values; finite states are assumed to have
-/// finite squares then.
+/// finite squares then. `skipped_terms` are those of the registers where that
+/// is so for every sample: one a step and sample without forcing, two without
+/// advection; steps that are simulated again count once.
 ///
 /// Speed: a register of samples at a time (LanesFft), which ends with its last
 /// sample; of samples that fill half of one at most, four points of each go

@@ -53,11 +53,15 @@ void add_times(StageRecord& stage, const Json& entry) {
 }
 
 void add_counts(StageRecord& stage, const Json& own) {
-  const Json counts = own.value("counts", Json());
-  if (!counts.is_object()) return;
-  for (std::size_t k = 0; k < kCounters; ++k)
-    stage.counts[static_cast<Counter>(k)] =
-        counts.value(std::string(kCounterNames[k]), std::uint64_t{0});
+  Json counts = own.value("counts", Json());
+  if (!counts.is_object()) counts = Json::object();
+  for (std::size_t k = 0; k < kCounters; ++k) {
+    const auto c = static_cast<Counter>(k);
+    if (const auto at = counts.find(kCounterNames[k]); at != counts.end())
+      stage.counts[c] = at->get<std::uint64_t>();
+    else
+      stage.counts.forget(c);
+  }
 }
 
 void add_statuses(StageRecord& stage, const Json& own) {

@@ -36,6 +36,15 @@ std::map<std::string, double> cpu_seconds(const Json& results) {
   return seconds;
 }
 
+/// Made and saved, by experiment.
+std::map<std::string, Counts> work(const Results& stages) {
+  std::map<std::string, Counts> work;
+  for (const CaseRecord& c : stages.cases())
+    for (const StageRecord& s : c.stages)
+      if (has_result(s)) work[c.info.experiment] += s.counts;
+  return work;
+}
+
 /// results.json.gz beside a digest: they tell of each other, unless both are
 /// of before they did.
 Json results_beside(const fs::path& folder, const Json& digest) {
@@ -141,9 +150,13 @@ NamedDigest published_digest(const fs::path& folder,
     if (!is_intact(digest)) throw std::runtime_error("it fails its checksum");
     const Json results = results_beside(folder, digest);
     require_figures(folder, digest);
-    NamedDigest named{
-        folder.filename().string(), digest, cpu_seconds(results), digest};
-    renew(named.digest, summarized_results(results), published);
+    const Results stages = summarized_results(results);
+    NamedDigest named{folder.filename().string(),
+                      digest,
+                      cpu_seconds(results),
+                      work(stages),
+                      digest};
+    renew(named.digest, stages, published);
     results_markdown({named});
     experiment_pages({named});
     return named;

@@ -297,6 +297,7 @@ std::vector<Table> detail_tables(const Comparison& c) {
     const std::string name(kCounterNames[i]);
     tables.push_back(
         per_side(c, name.c_str(), name.c_str(), "", [&](const Reading& r) {
+          if (!r.counts.knows(counter)) return Cell{.text = "not counted"};
           return number(static_cast<double>(r.counts[counter]), "{:.0f}");
         }));
   }

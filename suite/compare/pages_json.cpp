@@ -31,7 +31,8 @@ Json to_json(const Reading& r) {
   Json counts = Json::object(), ends = Json::object();
   Json statuses = Json::object();
   for (std::size_t i = 0; i < kCounters; ++i)
-    counts[std::string(kCounterNames[i])] = r.counts[static_cast<Counter>(i)];
+    if (const auto c = static_cast<Counter>(i); r.counts.knows(c))
+      counts[std::string(kCounterNames[i])] = r.counts[c];
   for (const auto& [end, count] : r.ends)
     ends[std::string(to_string(end))] = count;
   for (std::size_t i = 0; i < r.statuses.size(); ++i)

@@ -55,15 +55,19 @@ double time_from(const json& j) {
 json to_json(const Counts& counts) {
   json j = json::object();
   for (std::size_t i = 0; i < kCounters; ++i)
-    j[std::string(kCounterNames[i])] = counts[static_cast<Counter>(i)];
+    if (const auto c = static_cast<Counter>(i); counts.knows(c))
+      j[std::string(kCounterNames[i])] = counts[c];
   return j;
 }
 
 Counts counts_from_json(const json& j) {
   Counts counts;
   for (std::size_t i = 0; i < kCounters; ++i) {
-    const auto at = j.find(kCounterNames[i]);
-    if (at != j.end()) counts[static_cast<Counter>(i)] = count(*at);
+    const auto c = static_cast<Counter>(i);
+    if (const auto at = j.find(kCounterNames[i]); at != j.end())
+      counts[c] = count(*at);
+    else
+      counts.forget(c);
   }
   return counts;
 }

@@ -44,7 +44,8 @@ void add_accuracy(Json& j, const Vector<double>& loss) {
 
 void add_counts(Json& j, const Counts& counts) {
   for (std::size_t i = 0; i < kCounters; ++i)
-    j[std::string(kCounterNames[i])] = counts[static_cast<Counter>(i)];
+    if (const auto c = static_cast<Counter>(i); counts.knows(c))
+      j[std::string(kCounterNames[i])] = counts[c];
 }
 
 Json statuses(const std::vector<Status>& status) {

@@ -16,7 +16,8 @@ template <class T>
 Vector<double> update(const HalfInverseStepOptions& options,
                       Index samples,
                       double size,
-                      hig::HalfInverseReport& report) {
+                      hig::HalfInverseReport& report,
+                      Counts* counts = nullptr) {
   constexpr Index kIn = 2, kOut = 3, kSeen = 2;
   const auto net = nn::mlp({.hidden = {4}, .activation = nn::Activation::tanh})
                        .make<T>(kIn, kOut);
@@ -33,6 +34,7 @@ Vector<double> update(const HalfInverseStepOptions& options,
   HalfInverseStep<T> step(options);
   step(*net, parameters, tape, solver, g, work);
   report = step.report();
+  if (counts != nullptr) *counts = work.counts;
   return step.update();
 }
 
@@ -66,6 +68,28 @@ TEST(HalfInverseStep, JacobiansAtExtremesOfScale) {
         expect_scaled<double>(power, samples, size, 1e-9);
       for (const double size : {1e-30, 1e-20, 1e20, 1e30})
         expect_scaled<float>(power, samples, size, 1e-3);
+    }
+}
+
+TEST(HalfInverseStep, CountsLevelsOfEitherWay) {
+  for (const Index samples : {3, 40})
+    for (const double tolerance : {3e-4, 1e-30}) {
+      hig::HalfInverseReport report;
+      Counts counts;
+      update<double>({.power = {.kappa = -0.5, .tau = 1e-4},
+                      .numerics = {.tolerance = tolerance}},
+                     samples,
+                     1,
+                     report,
+                     &counts);
+      // J itself is taken apart without a proof, and at once.
+      const bool spared = samples == 40 || tolerance > 1e-20;
+      EXPECT_EQ(counts[Counter::skipped_levels], spared ? 1U : 0U);
+      if (spared) {
+        EXPECT_EQ(counts[Counter::abandoned_levels], 0U);
+      } else {
+        EXPECT_GE(counts[Counter::abandoned_levels], 2U);
+      }
     }
 }
 

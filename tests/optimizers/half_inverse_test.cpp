@@ -10,6 +10,7 @@
 
 #include "suite/core/check.h"
 #include "tests/optimizers/half_inverse_truth.h"
+#include "tests/support/bits.h"
 
 namespace physinv::hig {
 namespace {
@@ -164,6 +165,115 @@ TEST(HalfInverse, FallsBackUntilProvenAndCounts) {
     EXPECT_EQ(abandoned[1], report.path == Path::gram ? 0 : 1);
     EXPECT_EQ(abandoned[2], report.path == Path::explicit_jacobian ? 1 : 0);
   }
+}
+
+// A proven path makes the one behind it needless: that would end within the two
+// estimates.
+TEST(HalfInverse, LevelsSparedAndGivenUpAreCounted) {
+  const Index m = 60, p = 90;
+  const Batch<double> j = graded(m, p, 8, 70);
+  const Vector<double> g = noise(m, 1, 71);
+  const auto run = [&](double tau,
+                       double tolerance,
+                       Index largest,
+                       Batch<double>& update) {
+    const Power power{.kappa = -0.5, .tau = tau};
+    HalfInverse solver({.tolerance = tolerance, .largest_jacobian = largest});
+    return solver(
+        j * j.transpose(), g, pullback_of(j), std::span(&power, 1), update)[0];
+  };
+  Batch<double> update(p, 1), exact(p, 1);
+  const auto expect = [&](double tau, Path path, Index abandoned) {
+    const auto report = run(tau, 1e-2, m * p, update);
+    EXPECT_EQ(report.path, path);
+    EXPECT_EQ(report.abandoned, abandoned);
+    EXPECT_TRUE(report.spared);
+    const auto last = run(tau, 1e-30, m * p, exact);
+    EXPECT_EQ(last.path, Path::explicit_jacobian);
+    EXPECT_GE(last.abandoned, 2);
+    EXPECT_FALSE(last.spared);
+    EXPECT_LE((update - exact).norm(),
+              (report.error + last.error + 1e-12) * exact.norm());
+  };
+  expect(1e-3, Path::gram, 0);
+  expect(1e-7, Path::two_level, 1);
+  // The last path that there is spares nothing.
+  const auto last = run(1e-7, 1e-2, m * p - 1, update);
+  EXPECT_EQ(last.path, Path::two_level);
+  EXPECT_TRUE(last.proven);
+  EXPECT_FALSE(last.spared);
+  // Nothing is begun for zeros.
+  HalfInverse solver;
+  const auto zero = solver(j * j.transpose(),
+                           Vector<double>::Zero(m),
+                           pullback_of(j),
+                           std::vector<Power>{{.kappa = -1}},
+                           update)[0];
+  EXPECT_EQ(zero.ending, Ending::zero);
+  EXPECT_EQ(zero.abandoned, 0);
+  EXPECT_FALSE(zero.spared);
+}
+
+TEST(HalfInverse, WaysBackThatAreGivenUpChangeNoBit) {
+  const Index m = 60, p = 90;
+  const Batch<double> j = graded(m, p, 8, 70);
+  const Batch<double> gram = j * j.transpose();
+  const Vector<double> g = noise(m, 1, 71);
+  SpectralPower spectral;
+  TwoLevelPower two(spectral);
+  Vector<double> with(m), without(m);
+  Index fell = 0;
+  for (const double kappa : {-0.5, -1.0, 0.25})
+    for (double tau = 1e-2; tau > 1e-9; tau /= 3) {
+      const Power power{.kappa = kappa, .tau = tau};
+      ASSERT_EQ(spectral.factor(gram, g), Ending::ok);
+      const double error = spectral.apply(power, without).error;
+      EXPECT_EQ(spectral.apply(power, with, 1e-5).error, error);
+      if (error <= 1e-5) {
+        EXPECT_TRUE(test::same_bits(with, without));
+      } else {
+        EXPECT_TRUE(with.isZero(0));
+        HalfInverse solver({.tolerance = 1e-5, .shortcut = false});
+        Batch<double> update(p, 1), pulled(p, 1);
+        const auto report =
+            solver(gram, g, pullback_of(j), std::span(&power, 1), update)[0];
+        two.open();
+        two.apply(power, 1e-5, p, pullback_of(j), without);
+        pullback_of(j)(without, pulled);
+        if (report.path == Path::two_level) {
+          ++fell;
+          EXPECT_TRUE(test::same_bits(update, pulled));
+        }
+      }
+    }
+  EXPECT_GT(fell, 0);
+}
+
+// A cut beside a value that only the refined spectrum knows to be so near.
+TEST(HalfInverse, RangesThatAreGivenUpAreCountedAndLeaveNothing) {
+  const Index m = 60, p = 90;
+  const Batch<double> j = graded(m, p, 8, 70);
+  const Vector<double> g = noise(m, 1, 71);
+  const Definition truth(j, g);
+  SpectralPower spectral;
+  TwoLevelPower two(spectral);
+  Vector<double> with(m), without(m);
+  ASSERT_EQ(spectral.factor(j * j.transpose(), g), Ending::ok);
+  Index given_up = 0;
+  for (const Index q : {25, 30, 35})
+    for (const double near : {1e-7, 1e-9, 1e-11, 1e-13}) {
+      const Power power{.tau = truth.svd.s(q) / truth.svd.s(0) * (1 + near)};
+      two.open();
+      const bool taken =
+          proven(two.apply(power, 1e-4, p, pullback_of(j), with), 1e-4);
+      given_up += two.abandoned();
+      if (taken) continue;
+      two.open();
+      two.apply(power, 0, p, pullback_of(j), without);
+      EXPECT_EQ(two.abandoned(), 0);
+      EXPECT_TRUE(test::same_bits(with, without));
+    }
+  EXPECT_GT(given_up, 0);
 }
 
 TEST(HalfInverse, NonFiniteInputGivesNanAndNoFurtherPath) {

@@ -102,6 +102,8 @@ TEST(TallPower, AgainstTheDefinition) {
             << ", error " << report.error;
         EXPECT_LE((update - expected).norm(), 1e-8 * expected.norm());
         EXPECT_LT(report.error, 1e-6);
+        EXPECT_EQ(power.spared(), power.fallbacks() == 0);
+        EXPECT_FALSE(power.spared() && power.abandoned());
         checked += power.fallbacks() == 0;
       }
     }
@@ -122,6 +124,8 @@ TEST(TallPower, ValuesThatCoincide) {
     EXPECT_EQ(power(a, p, update).ending, Ending::ok);
     const Vector<double> expected = Definition(j, g).update(p);
     EXPECT_LE((update - expected).norm(), 1e-9 * expected.norm()) << apart;
+    EXPECT_EQ(power.abandoned(), power.fallbacks() == 1) << apart;
+    EXPECT_TRUE(apart > 0 || power.abandoned());
   }
 }
 

@@ -118,6 +118,42 @@ TYPED_TEST(KuramotoSivashinskyIn, WhatIsSkippedForZerosChangesNoValue) {
   }
 }
 
+TYPED_TEST(KuramotoSivashinskyIn, TermsSkippedForZerosAreCounted) {
+  using T = TypeParam;
+  constexpr Index n = 2 * kLanes<T>;
+  const auto s = draw(n).cast<T>();
+  for (const int threads : {1, 3})
+    for (const bool forced : {true, false})
+      for (const bool advected : {true, false}) {
+        Batch<T> x = s.x;
+        if (!forced) x.row(0).setZero();
+        if (!advected) x.row(1).setZero();
+        const auto terms = [&](bool knows_advection) {
+          return static_cast<std::uint64_t>(n * 100) *
+                 (!forced + (knows_advection && !advected ? 2U : 0U));
+        };
+        Bench<T> b({}, threads);
+        b.forward(x, s.given);
+        EXPECT_EQ(b.work.counts[Counter::skipped_terms], terms(true));
+        b.work.counts = {};
+        b.jacobian(x, s.given);
+        EXPECT_EQ(b.work.counts[Counter::skipped_terms], terms(false));
+        for (const double budget : {0.0, 1e12}) {
+          Bench<T> kept({.tape_budget = budget}, threads);
+          Batch<T> y(128, n);
+          kept.problem.linearize(x, s.given, y, kept.tape);
+          EXPECT_EQ(kept.tape.counts[Counter::skipped_terms], terms(false));
+        }
+      }
+  // One that has the term makes its register compute it.
+  Batch<T> x = s.x;
+  x.setZero(), x.col(0).setOnes();
+  Bench<T> b;
+  b.forward(x, s.given);
+  EXPECT_EQ(b.work.counts[Counter::skipped_terms],
+            static_cast<std::uint64_t>(n / 2 * 100 * 3));
+}
+
 TEST(KuramotoSivashinsky, ChangingEverySignChangesNothingElse) {
   const auto s = draw(9);
   EXPECT_EQ(simulate(-s.x, -s.given), -s.y);

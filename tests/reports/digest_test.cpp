@@ -286,6 +286,21 @@ TEST(Digest, AuditHasWhatStayedReproducedAndTheHours) {
                 "| hig | A processor | abc | old | 0.01 |"});
 }
 
+TEST(Digest, PagesTellWorkMadeAndSaved) {
+  auto run = named("a", Verdict::reproduced, Verdict::reproduced);
+  EXPECT_EQ(experiment_pages({run}).begin()->second.find("Work:"),
+            std::string::npos);
+  Counts& counts = run.work["jpo/toy"];
+  counts[Counter::forward] = 5, counts[Counter::vjp] = 30;
+  counts[Counter::skipped_vjp] = 7, counts[Counter::abandoned_levels] = 2;
+  counts.forget(Counter::skipped_terms);
+  expect_words(
+      experiment_pages({run}).begin()->second,
+      {"\nWork: 5 simulations, 30 gradients. Saved: 7 gradients known "
+       "to be zero. Given up: 2 decompositions of half-inverses. Not counted: "
+       "`skipped_terms`.\n"});
+}
+
 TEST(Digest, WhatIsNotJudgedSaysWhatIsMissing) {
   Section waits = section(Verdict::not_judged, Verdict::not_judged);
   waits.claims[0].evidence = "needs the profile paper";

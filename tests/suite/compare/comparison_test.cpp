@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "suite/compare/pages.h"
@@ -290,6 +291,23 @@ TEST(Compare, RepetitionsAreRead) {
   EXPECT_FALSE(regression(Aspect::time, c, {}, 1.5));
   std::swap(sides[0], sides[1]);
   EXPECT_TRUE(regression(Aspect::time, compare(sides, By::seed), {}, 1.5));
+}
+
+TEST(Compare, WhatWasNotCountedIsNoZero) {
+  auto before = stage_with("solve", 1e-3, 1), now = before;
+  before.counts.forget(Counter::skipped_terms);
+  now.counts[Counter::skipped_terms] = 7;
+  const auto tables =
+      detail_tables(compare({side("a", {case_with("m", 0, before)}),
+                             side("b", {case_with("m", 0, now)})},
+                            By::seed));
+  const auto table =
+      std::find_if(tables.begin(), tables.end(), [](const Table& t) {
+        return t.title == "skipped_terms";
+      });
+  ASSERT_NE(table, tables.end());
+  EXPECT_EQ(table->rows[0].cells[0].text, "not counted");
+  EXPECT_EQ(table->rows[0].cells[1].ours, 7);
 }
 
 TEST(Compare, ClaimsGetWorseInOneDirection) {

@@ -39,6 +39,22 @@ TEST(Json, ScalarsRoundTripAsText) {
   expect_same(record, back);
 }
 
+TEST(Json, CountersThatARecordLacksAreNotZero) {
+  auto record = sample_stage(sample_case("jpo", 4, 1), 0);
+  EXPECT_TRUE(record.counts.knows(Counter::skipped_levels));
+  auto json = to_json(record);
+  json["counts"].erase("skipped_levels");
+  auto old = stage_from_json(json).counts;
+  EXPECT_FALSE(old.knows(Counter::skipped_levels));
+  EXPECT_TRUE(old.knows(Counter::skipped_rows));
+  record.counts += old;  // nor is the sum known
+  EXPECT_FALSE(record.counts.knows(Counter::skipped_levels));
+  json = to_json(record);
+  EXPECT_FALSE(json["counts"].contains("skipped_levels"));
+  EXPECT_EQ(json["counts"]["skipped_rows"], 6);
+  EXPECT_EQ(stage_from_json(json).counts, record.counts);
+}
+
 TEST(Json, CaseRoundTrips) {
   auto info = sample_case("na", 128, ~0ULL);
   info.precision = Precision::f64;
