@@ -24,6 +24,7 @@
 #include "suite/harness/study.h"
 #include "suite/results/published.h"
 #include "suite/results/results.h"
+#include "tests/support/kept_memory.h"
 
 namespace physinv {
 namespace {
@@ -686,6 +687,7 @@ int main(int argc, char** argv) {
     fmt::print("a CPU-minute: ./check --full\n");
     return 77;
   }
+  test::keep_memory();
   register_all(registry());
   const Models models(load_results(argv[1]));
   const Published published(PHYSINV_SOURCE_DIR "/reports/published");
