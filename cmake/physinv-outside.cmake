@@ -13,9 +13,9 @@
 
 include(${CMAKE_CURRENT_LIST_DIR}/revision.cmake)
 
-# physinv_own_sources(<target> <plugin: true | false>)
+# physinv_own_sources(<target> <plugin: true | false> <source>...)
 function(physinv_own_sources target plugin)
-  get_target_property(sources ${target} SOURCES)
+  set(sources ${ARGN})
   list(FILTER sources EXCLUDE REGEX "^\\$<")
   list(TRANSFORM sources PREPEND "${CMAKE_CURRENT_SOURCE_DIR}/"
     REGEX "^[^/]")
@@ -62,7 +62,7 @@ function(physinv_add_program name)
     "${ARG_UNPARSED_ARGUMENTS}")
   add_executable(${name} ${ARG_SOURCES})
   set_target_properties(${name} PROPERTIES ENABLE_EXPORTS ON)
-  physinv_own_sources(${name} false)
+  physinv_own_sources(${name} false ${ARG_SOURCES})
   set_property(TARGET ${name} PROPERTY physinv_sources ${ARG_SOURCES})
   target_sources(${name} PRIVATE $<TARGET_OBJECTS:physinv::main>)
   target_link_libraries(${name} PRIVATE physinv::app physinv::physinv)
@@ -81,14 +81,15 @@ function(physinv_add_plugin name)
   endif()
   add_library(${name} MODULE ${ARG_SOURCES})
   set_target_properties(${name} PROPERTIES PREFIX "")
-  physinv_own_sources(${name} true)
+  physinv_own_sources(${name} true ${ARG_SOURCES})
   set_property(TARGET ${name} PROPERTY physinv_sources ${ARG_SOURCES})
   target_include_directories(${name} SYSTEM PRIVATE ${PHYSINV_HEADERS})
   target_link_libraries(${name} PRIVATE physinv::flags Eigen3::Eigen
     SLEEF::sleef fmt::fmt nlohmann_json::nlohmann_json)
 endfunction()
 
-# With the include folders and libraries of the program or plug-in.
+# Of the objects of the program or plug-in and with its libraries: what it says
+# of itself stands in one of its own.
 function(physinv_add_contract_tests name)
   if(ARGN OR NOT TARGET ${name})
     message(FATAL_ERROR "physinv_add_contract_tests(${name} ${ARGN}): what is "
@@ -101,8 +102,13 @@ function(physinv_add_contract_tests name)
   endif()
   set(target ${name}_contract_test)
   get_target_property(sources ${name} physinv_sources)
-  add_executable(${target} ${sources} $<TARGET_OBJECTS:physinv::conformance>)
-  physinv_own_sources(${target} false)
+  set(others ${sources})
+  list(FILTER others INCLUDE REGEX "^\\$<")
+  set(objects $<TARGET_OBJECTS:${name}>)
+  set(of_its_own /physinv_${name}/[a-z]*.cpp)
+  add_executable(${target} $<FILTER:${objects},EXCLUDE,${of_its_own}> ${others}
+    $<TARGET_OBJECTS:physinv::conformance>)
+  physinv_own_sources(${target} false ${sources})
   foreach(property INCLUDE_DIRECTORIES COMPILE_DEFINITIONS)
     set_property(TARGET ${target} PROPERTY ${property}
       $<TARGET_PROPERTY:${name},${property}>)
