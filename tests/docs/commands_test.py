@@ -2,8 +2,9 @@
 """commands_test.py PROGRAM SOURCES: every ./bench line of the pages is run.
 
 It runs where a reader's would: campaigns of the names that the pages use are
-there, small ones. What would run for minutes is asked what it would run; what
-needs a cluster, a second build or a whole gate has tests of its own.
+there, small ones. What would run for minutes is asked what it would run, plans
+but the plainest are of one experiment; what needs a cluster, a second build or a
+whole gate has tests of its own.
 """
 
 import os
@@ -61,6 +62,8 @@ def as_run(arguments):
         return [*arguments, "--dry-run"]
     if verb == "kernels":
         return [*arguments, "--benchmark_min_time=0.001"]
+    if verb == "plan" and len(arguments) > 2:  # else 8 seconds of measuring
+        return [*arguments, "--filter=jpo/billiards/"]
     if verb == "results" and "--html" not in " ".join(arguments):
         return None  # writes into the sources: results_page
     return arguments
@@ -78,22 +81,25 @@ def code_of(arguments):
 
 
 def main():
-    lines = sorted({(name, tuple(arguments)) for name, text in pages(SOURCES)
-                    for arguments in commands(text)})
-    wrong, ran, left = [], 0, 0
-    with tempfile.TemporaryDirectory() as folder:
-        prepare(folder)
-        for name, arguments in lines:
-            own = None if elsewhere(arguments) else as_run(list(arguments))
+    lines, left = {}, 0  # what is run, once: the pages that say it
+    for name, text in pages(SOURCES):
+        for arguments in commands(text):
+            own = None if elsewhere(arguments) else as_run(arguments)
             if own is None:
                 left += 1
                 continue
+            lines.setdefault(tuple(own), set()).add(name)
+    wrong, ran = [], 0
+    with tempfile.TemporaryDirectory() as folder:
+        prepare(folder)
+        for own, names in sorted(lines.items()):
             done = run(own, folder)
             ran += 1
             said = (done.stdout + done.stderr).strip()
-            if done.returncode != code_of(arguments) or not said:
-                wrong.append(f"{name}: './bench {' '.join(own)}' ends with "
-                             f"{done.returncode}: {done.stderr.strip()[-300:]}")
+            if done.returncode != code_of(own) or not said:
+                wrong.append(f"{', '.join(sorted(names))}: './bench "
+                             f"{' '.join(own)}' ends with {done.returncode}: "
+                             f"{done.stderr.strip()[-300:]}")
     if ran < 25:
         wrong.append(f"only {ran} commands run")
     print("\n".join(wrong) or f"{ran} commands run, {left} elsewhere")
