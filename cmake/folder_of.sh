@@ -37,6 +37,7 @@ find_folder() {
     return 0
   fi
   while IFS=: read -r line _ names; do
+    [[ -n $names && $line != '#'* ]] || continue
     read -ra names <<<"$names"
     for name in "${names[@]}"; do
       can_choose || continue
@@ -44,7 +45,7 @@ find_folder() {
       found=$line all=("${names[@]}")
       [[ -z $word ]] || filter=^$name/
     done
-  done < <(grep '^[^#]' "$root/suite/cases/experiments.txt")
+  done <"$root/suite/cases/experiments.txt"
   [[ $filter != *'*'/ ]] && results_are_of "${out:-results/$profile}" "${all[@]}" ||
     return 0
   # shellcheck disable=SC2034 # read by who calls this

@@ -26,14 +26,10 @@ def read(name):
         return f.read()
 
 
+@functools.cache
 def output(*arguments):
     done = subprocess.run([PROGRAM, *arguments], capture_output=True, text=True)
     return done.stdout
-
-
-@functools.cache
-def help_of(verb):
-    return output(verb, "--help")
 
 
 def dead_links(name, text):
@@ -97,7 +93,7 @@ def unknown_words(name, text):
             continue
         flags = [a.split("=")[0] for a in arguments if a.startswith("--")]
         for flag in flags:
-            known = help_of(verb) + ("--help --version" if verb == "run" else "")
+            known = output(verb, "--help") + ("--help --version" if verb == "run" else "")
             if not re.search(re.escape(flag) + r"(?![\w-])", known):
                 yield f"{name}: './bench {verb}' has no flag {flag}"
 
