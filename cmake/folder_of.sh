@@ -37,7 +37,7 @@ find_folder() {
     return 0
   fi
   while IFS=: read -r line _ names; do
-    [[ -n $names && $line != '#'* ]] || continue
+    [[ $line != '#'* ]] || continue
     read -ra names <<<"$names"
     for name in "${names[@]}"; do
       can_choose || continue

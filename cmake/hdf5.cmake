@@ -7,7 +7,6 @@ include(CheckCSourceCompiles)
 find_package(HDF5 REQUIRED COMPONENTS C)
 
 add_library(physinv_hdf5 INTERFACE)
-set(physinv_hdf5_archive)
 if(HDF5_C_LIBRARY_hdf5)
   cmake_path(GET HDF5_C_LIBRARY_hdf5 PARENT_PATH folder)
   find_library(PHYSINV_HDF5_ARCHIVE libhdf5.a PATHS ${folder} NO_DEFAULT_PATH)

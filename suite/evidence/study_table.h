@@ -41,6 +41,11 @@ inline auto asks_above(double bound) {
     return above(std::move(label), std::move(q), bound);
   };
 }
+inline auto asks_below(double bound) {
+  return [=](std::string label, Quantity q, const auto&) {
+    return below(std::move(label), std::move(q), bound);
+  };
+}
 inline auto asks_at_most(double bound) {
   return [=](std::string label, Quantity q, const auto&) {
     return at_most(std::move(label), std::move(q), bound);

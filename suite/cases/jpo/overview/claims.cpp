@@ -384,9 +384,9 @@ const std::vector<Claim> kTimes = {
 
 std::vector<Claim> claims() {
   std::vector<Claim> all;
-  for (const auto& part :
-       {kAgainstBfgs, kSupervised, kShares, kSolvers, kNetworks, kTimes})
-    all.insert(all.end(), part.begin(), part.end());
+  for (const auto* part :
+       {&kAgainstBfgs, &kSupervised, &kShares, &kSolvers, &kNetworks, &kTimes})
+    all.insert(all.end(), part->begin(), part->end());
   return all;
 }
 

@@ -52,9 +52,7 @@ const StudyTable<Choice> kStudy{
                  }},
                 {"loss over L-BFGS-B's (below)",
                  loss_over_lbfgs,
-                 [](std::string label, Quantity q, const Choice&) {
-                   return below(std::move(label), std::move(q), 1);
-                 }}},
+                 asks_below(1)}},
     .title = [](const Choice& choice) { return choice.title(); },
     .experiment = [](const Choice& choice) { return choice.name(); }};
 
