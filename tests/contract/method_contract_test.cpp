@@ -252,9 +252,10 @@ void expect_whole_curves(const Case& c,
   }
 }
 
+// Of five updates where it repeats itself.
 TEST_P(MethodContract, ObeysItsBudgetAndLeavesFiniteEstimates) {
   const auto lengths =
-      looks() ? std::vector<Index>{0} : std::vector<Index>{0, 1, 5};
+      looks() ? std::vector<Index>{0} : std::vector<Index>{0, 1};
   for (const auto precision : precisions()) {
     for (const Index iterations : lengths) {
       const Case c = make(3, iterations, precision);
@@ -282,7 +283,8 @@ TEST_P(MethodContract, RepeatsItselfForAnyThreadsAndWhenResumed) {
         EXPECT_TRUE(runs.restored[i]);
       }
     }
-    if (looks()) expect_whole_curves(c, runs.first);
+    looks() ? expect_whole_curves(c, runs.first)
+            : expect_finite(c, runs.first, iterations);
   }
 }
 
