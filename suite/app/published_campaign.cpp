@@ -52,18 +52,6 @@ void add_times(StageRecord& stage, const Json& entry) {
                         unit * number(entry, "cpu_time")};
 }
 
-void add_counts(StageRecord& stage, const Json& own) {
-  Json counts = own.value("counts", Json());
-  if (!counts.is_object()) counts = Json::object();
-  for (std::size_t k = 0; k < kCounters; ++k) {
-    const auto c = static_cast<Counter>(k);
-    if (const auto at = counts.find(kCounterNames[k]); at != counts.end())
-      stage.counts[c] = at->get<std::uint64_t>();
-    else
-      stage.counts.forget(c);
-  }
-}
-
 void add_statuses(StageRecord& stage, const Json& own) {
   for (const Status s :
        {Status::gtol, Status::maxiter, Status::linesearch, Status::nonfinite})
@@ -100,7 +88,7 @@ StageRecord stage_of(const Json& entry) {
   stage.finished = own.value("finished", "");
   stage.run.threads = entry.value("threads", 0);
   add_times(stage, entry);
-  add_counts(stage, own);
+  stage.counts = counts_from_json(own.value("counts", Json()));
   add_statuses(stage, own);
   add_losses(stage, entry);
   return stage;
@@ -187,7 +175,9 @@ Results published_results(const fs::path& directory) {
     Json results =
         parse_results(gunzipped(read_file(path), kLargestData), path);
     return summarized_results(results);
-  } catch (const Json::exception& error) {
+  } catch (const StoreError&) {
+    throw;
+  } catch (const std::exception& error) {
     throw StoreError(path.string() + " is damaged: " + error.what());
   }
 }

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "suite/compare/pages.h"
+#include "suite/results/json.h"
 #include "suite/results/verdict_words.h"
 
 namespace physinv {
@@ -30,9 +31,7 @@ Json to_json(const std::optional<Quartiles>& q) {
 Json to_json(const Reading& r) {
   Json counts = Json::object(), ends = Json::object();
   Json statuses = Json::object();
-  for (std::size_t i = 0; i < kCounters; ++i)
-    if (const auto c = static_cast<Counter>(i); r.counts.knows(c))
-      counts[std::string(kCounterNames[i])] = r.counts[c];
+  add_counts(counts, r.counts);
   for (const auto& [end, count] : r.ends)
     ends[std::string(to_string(end))] = count;
   for (std::size_t i = 0; i < r.statuses.size(); ++i)

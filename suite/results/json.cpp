@@ -52,26 +52,6 @@ double time_from(const json& j) {
   return j;
 }
 
-json to_json(const Counts& counts) {
-  json j = json::object();
-  for (std::size_t i = 0; i < kCounters; ++i)
-    if (const auto c = static_cast<Counter>(i); counts.knows(c))
-      j[std::string(kCounterNames[i])] = counts[c];
-  return j;
-}
-
-Counts counts_from_json(const json& j) {
-  Counts counts;
-  for (std::size_t i = 0; i < kCounters; ++i) {
-    const auto c = static_cast<Counter>(i);
-    if (const auto at = j.find(kCounterNames[i]); at != j.end())
-      counts[c] = count(*at);
-    else
-      counts.forget(c);
-  }
-  return counts;
-}
-
 json to_json(const RunContext& run) {
   return {{"profile", run.profile},
           {"host", run.host},
@@ -210,8 +190,30 @@ Seconds seconds_from_json(const json& j) {
   return {time_from(j.at(0)), time_from(j.at(1))};
 }
 
+template <class Json>
+void add_counts(Json& object, const Counts& counts) {
+  for (std::size_t i = 0; i < kCounters; ++i)
+    if (const auto c = static_cast<Counter>(i); counts.knows(c))
+      object[std::string(kCounterNames[i])] = counts[c];
+}
+template void add_counts(json&, const Counts&);
+template void add_counts(nlohmann::ordered_json&, const Counts&);
+
+Counts counts_from_json(const json& j) {
+  Counts counts;
+  for (std::size_t i = 0; i < kCounters; ++i) {
+    const auto c = static_cast<Counter>(i);
+    if (const auto at = j.find(kCounterNames[i]); at != j.end())
+      counts[c] = count(*at);
+    else
+      counts.forget(c);
+  }
+  return counts;
+}
+
 json to_json(const StageRecord& r) {
-  json options = json::array();
+  json options = json::array(), counts = json::object();
+  add_counts(counts, r.counts);
   for (const auto& [name, value] : r.options)
     options.push_back(json::array({name, value}));
   return {{"case", r.case_name},
@@ -228,7 +230,7 @@ json to_json(const StageRecord& r) {
             {"data", to_json(r.clocks.data)},
             {"solve", to_json(r.clocks.solve)},
             {"measure", to_json(r.clocks.measure)}}},
-          {"counts", to_json(r.counts)},
+          {"counts", std::move(counts)},
           {"buffer_bytes", r.buffer_bytes},
           {"rss_bytes", r.rss_bytes},
           {"crowded", r.crowded},

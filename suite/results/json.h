@@ -35,6 +35,12 @@ std::int64_t whole(const nlohmann::json& json);
 nlohmann::json to_json(Seconds seconds);
 Seconds seconds_from_json(const nlohmann::json& json);
 
+/// Counters by their names. One that was not counted is left out; read, one
+/// that is not there was not counted.
+template <class Json>
+void add_counts(Json& object, const Counts& counts);
+Counts counts_from_json(const nlohmann::json& object);
+
 /// All scalars of a stage; its arrays stay behind. Doubles round-trip.
 /// `_from_json` throw std::exception for what `to_json` does not write.
 nlohmann::json to_json(const StageRecord& record);

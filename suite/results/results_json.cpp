@@ -42,12 +42,6 @@ void add_accuracy(Json& j, const Vector<double>& loss) {
       any ? number(solved / static_cast<double>(loss.size())) : nullptr;
 }
 
-void add_counts(Json& j, const Counts& counts) {
-  for (std::size_t i = 0; i < kCounters; ++i)
-    if (const auto c = static_cast<Counter>(i); counts.knows(c))
-      j[std::string(kCounterNames[i])] = counts[c];
-}
-
 Json statuses(const std::vector<Status>& status) {
   Json j = Json::object();
   for (const Status s :

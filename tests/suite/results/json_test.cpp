@@ -55,6 +55,30 @@ TEST(Json, CountersThatARecordLacksAreNotZero) {
   EXPECT_EQ(stage_from_json(json).counts, record.counts);
 }
 
+TEST(Json, CountersKeepTheirOrderAndWhatIsNotCounted) {
+  Counts counts;
+  counts[Counter::forward] = 3;
+  counts[Counter::abandoned_levels] = 2;
+  counts.forget(Counter::vjp);
+  auto object = nlohmann::ordered_json::object();
+  add_counts(object, counts);
+  EXPECT_EQ(object.size(), kCounters - 1);
+  EXPECT_TRUE(
+      object.dump().starts_with(R"({"forward":3,"jacobian":0,"inverse":0,)"));
+  EXPECT_EQ(counts_from_json(object), counts);
+}
+
+TEST(Json, NoCountersAreKnownWhereNoneWereKept) {
+  const Counts counts = counts_from_json(nullptr);
+  for (std::size_t i = 0; i < kCounters; ++i)
+    EXPECT_FALSE(counts.knows(static_cast<Counter>(i))) << kCounterNames[i];
+}
+
+TEST(Json, CountersAreNoFractions) {
+  for (const auto& bad : nlohmann::json::array({-1, 0.5, "3", nullptr}))
+    EXPECT_THROW(counts_from_json({{"forward", bad}}), std::exception) << bad;
+}
+
 TEST(Json, CaseRoundTrips) {
   auto info = sample_case("na", 128, ~0ULL);
   info.precision = Precision::f64;
