@@ -48,11 +48,12 @@ inline std::array<double, N> dots(Index d,
   return out;
 }
 
+/// a.b of two unknowns: the four sums of `dots`, two of them empty.
 PHYSINV_LANES double dot_of_two(double a0, double a1, double b0, double b1) {
   return (std::fma(a0, b0, 0.0) + std::fma(a1, b1, 0.0)) + 0.0;
 }
 
-/// The same of one; the plain order for d <= 3.
+/// a.b, in the order of `dots`: the plain one for d <= 3.
 PHYSINV_LANES double dot(Index d, const double* a, const double* b) {
   if (d != 2) return dots<1>(d, {a}, {b})[0];
   return dot_of_two(a[0], a[1], b[0], b[1]);

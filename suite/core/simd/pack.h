@@ -139,10 +139,6 @@ PHYSINV_LANES void for_pieces(Index size, F body) {
   for (; i + w <= size; i += w) body(i, std::integral_constant<Index, w>{});
   if (i < size) body(i, size - i);
 }
-template <class T, class F>
-PHYSINV_LANES void for_narrow_packs(Index size, F body) {
-  for_pieces<NarrowPack<T>>(size, body);
-}
 
 /// v, in a register: GCC would rather load it again for each of its uses, and
 /// loads are what bounds a product whose factors come from the caches.
