@@ -42,4 +42,7 @@ struct NamedDigest {
   nlohmann::ordered_json published = {};
 };
 
+/// With the work of each.
+std::vector<Section> sections_of(const NamedDigest& campaign);
+
 }  // namespace physinv

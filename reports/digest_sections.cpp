@@ -133,4 +133,13 @@ std::vector<Section> sections_of(const Json& digest) {
   return sections;
 }
 
+std::vector<Section> sections_of(const NamedDigest& campaign) {
+  std::vector<Section> sections = sections_of(campaign.digest);
+  for (Section& s : sections)
+    if (const auto at = campaign.work.find(s.experiment);
+        at != campaign.work.end())
+      s.work = at->second;
+  return sections;
+}
+
 }  // namespace physinv

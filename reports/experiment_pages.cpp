@@ -10,6 +10,7 @@
 #include "reports/report.h"
 #include "reports/results_page.h"
 #include "reports/tables.h"
+#include "reports/work.h"
 #include "suite/results/markdown.h"
 
 namespace physinv {
@@ -91,36 +92,6 @@ std::vector<std::string> tables_of(const Json& section, const Json& digest) {
   return tables;
 }
 
-/// "Work: 49 simulations. Saved: 7 encodings of inputs. Given up: ..". What a
-/// campaign of before did not count is no 0.
-std::string work_text(const Counts& counts) {
-  std::string done, saved, given_up, unknown;
-  for (std::size_t i = 0; i < kCounters; ++i) {
-    const auto c = static_cast<Counter>(i);
-    const bool abandoned = kCounterNames[i].starts_with("abandoned_");
-    const bool skipped = kCounterNames[i].starts_with("skipped_");
-    const auto add = [](std::string& list, const std::string& what) {
-      list += (list.empty() ? "" : ", ") + what;
-    };
-    if (!counts.knows(c)) {
-      add(unknown, markdown_code(kCounterNames[i]));
-    } else if (counts[c] > 0) {
-      add(abandoned ? given_up
-          : skipped ? saved
-                    : done,
-          markdown(fmt::format("{} {}", counts[c], kCounterWords[i])));
-    }
-  }
-  std::string out;
-  for (const auto& [head, list] : {std::pair("Work", done),
-                                   std::pair("Saved", saved),
-                                   std::pair("Given up", given_up),
-                                   std::pair("Not counted", unknown)})
-    if (!list.empty())
-      out += fmt::format("{}{}: {}.", out.empty() ? "" : " ", head, list);
-  return out;
-}
-
 std::string campaign_of(const NamedDigest& campaign,
                         const Json& section,
                         const std::vector<std::string>& tables,
@@ -148,7 +119,9 @@ std::string campaign_of(const NamedDigest& campaign,
   const auto work =
       campaign.work.find(section.at("experiment").get<std::string>());
   if (work != campaign.work.end())
-    if (const std::string text = work_text(work->second); !text.empty())
+    if (const std::string text =
+            work_text(work->second, markdown, markdown_code);
+        !text.empty())
       out += '\n' + text + '\n';
   for (const std::string& table : tables) out += '\n' + table;
   return out + figures_of(section, campaign.name, links);

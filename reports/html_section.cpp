@@ -4,12 +4,17 @@
 
 #include "reports/anchors.h"
 #include "reports/html_parts.h"
+#include "reports/work.h"
 #include "suite/results/verdict_words.h"
 
 namespace physinv {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+std::string code_html(std::string_view text) {
+  return "<code>" + html(text) + "</code>";
+}
 
 /// Links, with commas.
 void add_link(std::string& links, const std::string& id, std::string words) {
@@ -167,6 +172,10 @@ std::string section_html(const Section& section,
       beside.folder.value_or("").empty() ? "" : html(*beside.folder) + '/';
   if (!section.standing.empty())
     out += "<p>" + html(section.standing) + ".</p>\n";
+  if (section.work)
+    if (const std::string text = work_text(*section.work, html, code_html);
+        !text.empty())
+      out += "<p class=\"remark\">" + text + "</p>\n";
   for (const Origin origin : {Origin::paper, Origin::suite})
     out += claims_html(section, anchors, origin);
   if (!section.tables.empty()) out += "<h3>Tables</h3>\n";

@@ -36,15 +36,6 @@ std::map<std::string, double> cpu_seconds(const Json& results) {
   return seconds;
 }
 
-/// Made and saved, by experiment.
-std::map<std::string, Counts> work(const Results& stages) {
-  std::map<std::string, Counts> work;
-  for (const CaseRecord& c : stages.cases())
-    for (const StageRecord& s : c.stages)
-      if (has_result(s)) work[c.info.experiment] += s.counts;
-  return work;
-}
-
 /// results.json.gz beside a digest: they tell of each other, unless both are
 /// of before they did.
 Json results_beside(const fs::path& folder, const Json& digest) {
@@ -154,7 +145,7 @@ NamedDigest published_digest(const fs::path& folder,
     NamedDigest named{folder.filename().string(),
                       digest,
                       cpu_seconds(results),
-                      work(stages),
+                      work_of(stages),
                       digest};
     renew(named.digest, stages, published);
     results_markdown({named});

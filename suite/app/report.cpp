@@ -93,9 +93,9 @@ ExitCode report_published(const std::string& results, const std::string& out) {
         "go with --out=DIR",
         results));
   const Published numbers = printed_numbers();
-  const auto digest = published_digest(results, numbers).digest;
-  const auto sections = sections_of(digest);
-  auto origin = digest.at("provenance");
+  const auto campaign = published_digest(results, numbers);
+  const auto sections = sections_of(campaign);
+  auto origin = campaign.digest.at("provenance");
   origin["command"] =
       campaign_command(fs::path(results).lexically_normal().filename());
   write_report(out,
@@ -103,7 +103,7 @@ ExitCode report_published(const std::string& results, const std::string& out) {
                origin,
                {.one_file = false,
                 .groups = groups_of(numbers),
-                .pictures = kept_pictures(results, digest)});
+                .pictures = kept_pictures(results, campaign.digest)});
   fmt::print(
       "{}report: {}\n{}: {}\n",
       render_claims_text(sections,

@@ -38,7 +38,7 @@ void write_html(const fs::path& directory,
     CampaignPages pages{.name = c.name,
                         .command = campaign_command(c.name),
                         .provenance = c.digest.at("provenance"),
-                        .sections = sections_of(c.digest)};
+                        .sections = sections_of(c)};
     nlohmann::ordered_json origin = pages.provenance;
     origin["command"] = pages.command;
     write_report(directory / c.name,

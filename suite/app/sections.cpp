@@ -192,12 +192,15 @@ std::vector<Section> sections_of(const Results& results,
                                  const Published& published) {
   std::vector<Section> sections = overviews_of(results, published);
   const auto printed = curves_of(published);
+  const auto work = work_of(results);
   std::vector<std::pair<const Experiment*, std::size_t>> own;
   std::map<std::string, std::string> titles;
   for (const auto& e : registry().experiments()) {
     if (results.sizes(e->name).empty()) continue;
     own.emplace_back(e.get(), sections.size());
     sections.push_back(section_of(*e, results, published));
+    if (const auto at = work.find(e->name); at != work.end())
+      sections.back().work = at->second;
     learn_titles(*e, sections.back());
     draw_printed(printed, sections.back());
     titles.insert(sections.back().method_titles.begin(),

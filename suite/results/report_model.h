@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "suite/core/counts.h"
+
 namespace physinv {
 
 /// A measured number beside a published one. Absent values are absent, never 0.
@@ -171,7 +173,8 @@ struct Section {
   std::vector<Figure> figures;
   std::vector<ClaimResult> claims;
   std::map<std::string, std::string> method_titles;  ///< jpo -> JPO
-  std::string standing = {};  ///< how its methods compare, a sentence
+  std::string standing = {};        ///< how its methods compare, a sentence
+  std::optional<Counts> work = {};  ///< of all its stages
 };
 
 /// By what is drawn (`Series::method`).

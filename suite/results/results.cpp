@@ -65,6 +65,14 @@ std::vector<std::string> Results::methods(std::string_view experiment) const {
       cases_, experiment, [](const CaseInfo& i) { return i.method; });
 }
 
+std::map<std::string, Counts> work_of(const Results& results) {
+  std::map<std::string, Counts> work;
+  for (const CaseRecord& c : results.cases())
+    for (const StageRecord& s : c.stages)
+      if (has_result(s)) work[c.info.experiment] += s.counts;
+  return work;
+}
+
 Results load_results(const std::filesystem::path& directory) {
   return Results(Catalog::read(directory).cases());
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,6 +38,9 @@ class Results {
  private:
   std::vector<CaseRecord> cases_;
 };
+
+/// Of all stages that came to a result, by experiment.
+std::map<std::string, Counts> work_of(const Results& results);
 
 /// Everything a directory holds, in the order of its campaign. StoreError if
 /// something is damaged, UnreadableInput if there is nothing or it is of a

@@ -359,6 +359,13 @@ TEST(Digest, SectionsHaveClaimsAndTables) {
   EXPECT_TRUE(sections[0].figures.empty());
 }
 
+TEST(Digest, SectionsOfACampaignHaveItsWork) {
+  auto run = named("a", Verdict::reproduced, Verdict::reported);
+  EXPECT_FALSE(sections_of(run)[0].work);
+  run.work[sections_of(run)[0].experiment][Counter::forward] = 5;
+  EXPECT_EQ((*sections_of(run)[0].work)[Counter::forward], 5U);
+}
+
 TEST(Digest, CompressedBytesComeBack) {
   std::string text;
   for (int i = 0; i < 10000; ++i) text += std::to_string(i % 97);

@@ -182,6 +182,20 @@ TEST(ReportHtml, CountsClaimsAndShowsEvidence) {
             row.npos);
 }
 
+TEST(ReportHtml, TellsWorkMadeAndSaved) {
+  Section own = section("jpo/toy");
+  EXPECT_EQ(report_html({own}, provenance()).find("Work: "), std::string::npos);
+  own.work = Counts();
+  (*own.work)[Counter::forward] = 5;
+  (*own.work)[Counter::skipped_vjp] = 7;
+  own.work->forget(Counter::skipped_terms);
+  EXPECT_EQ(count(report_html({own}, provenance()),
+                  "<p class=\"remark\">Work: 5 simulations. Saved: 7 "
+                  "gradients known to be zero. Not counted: "
+                  "<code>skipped_terms</code>.</p>\n"),
+            1U);
+}
+
 TEST(ReportHtml, TablesPutThePaperBeside) {
   const std::string table = between(
       page(), "<div class=\"table\" id=\"jpo-toy-table1\">", "</table>");

@@ -40,6 +40,18 @@ TEST(Results, FindsByWhatACaseIs) {
   EXPECT_TRUE(results.sizes("other").empty());
 }
 
+TEST(Results, WorkIsThatOfStagesWithAResult) {
+  auto lost = sample_record("na", 8, 1);
+  lost.stages[1].stop = Stop::failed;
+  Counts expected = lost.stages[0].counts;
+  expected += lost.stages[0].counts;
+  const auto other = lost.stages[0];
+  lost.stages.insert(lost.stages.begin(), other);
+  const auto work = work_of(Results({lost}));
+  ASSERT_EQ(work.size(), 1U);
+  EXPECT_EQ(work.at("jpo/sample"), expected);
+}
+
 TEST(Published, HasThePapersBilliardsNumbers) {
   const Published published(std::string(PHYSINV_SOURCE_DIR) +
                             "/reports/published");
