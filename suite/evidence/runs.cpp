@@ -60,15 +60,6 @@ std::vector<Run> find_runs(const Evidence& evidence, const Select& select) {
   return found;
 }
 
-RunValue of_array(ArrayKey name,
-                  std::function<double(const Batch<double>&)> value) {
-  return [=](const Run& run) -> std::optional<double> {
-    const auto found = run.stage->arrays.find(name);
-    if (found == run.stage->arrays.end()) return {};
-    return value(found->second);
-  };
-}
-
 std::vector<Sample> sample(const Evidence& evidence,
                            const Select& select,
                            const RunValue& value) {

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "suite/core/arrays.h"
+#include "suite/core/batch.h"
 
 namespace physinv {
 
@@ -68,10 +68,6 @@ std::vector<Run> find_runs(const Evidence& evidence, const Select& select);
 
 /// A number of one run; empty if it does not have it (too short).
 using RunValue = std::function<std::optional<double>(const Run&)>;
-
-/// Of an array that the stage recorded; empty without it.
-RunValue of_array(ArrayKey name,
-                  std::function<double(const Batch<double>&)> value);
 
 struct Sample {
   Index n;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace physinv {
 
@@ -13,6 +14,17 @@ double quantile(std::vector<double> values, double q) {
   const double share = at - static_cast<double>(below);
   if (share == 0 || values[below] == values[below + 1]) return values[below];
   return (1 - share) * values[below] + share * values[below + 1];
+}
+
+double mean_of(std::vector<double> values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) /
+         static_cast<double>(values.size());
+}
+double least_of(std::vector<double> values) {
+  return *std::min_element(values.begin(), values.end());
+}
+double most_of(std::vector<double> values) {
+  return *std::max_element(values.begin(), values.end());
 }
 
 std::optional<MeanStd> mean_std(std::span<const double> values) {

@@ -16,6 +16,11 @@ inline constexpr double kInfinite = std::numeric_limits<double>::infinity();
 /// Of a list that is not empty.
 double quantile(std::vector<double> values, double q);
 
+/// Of lists that are not empty.
+double mean_of(std::vector<double> values);
+double least_of(std::vector<double> values);
+double most_of(std::vector<double> values);
+
 /// Mean and ordinary sample standard deviation (divided by count - 1; empty
 /// for a single value). Empty for no values.
 struct MeanStd {

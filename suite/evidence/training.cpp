@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "suite/evidence/quantity.h"
+#include "suite/evidence/run_values.h"
 #include "suite/evidence/statistics.h"
 #include "suite/results/crowded.h"
 
@@ -12,7 +12,7 @@ namespace {
 
 /// f(row of the curve) of runs that have one.
 template <class F>
-RunValue of_row(RowOfCurve which, F f) {
+RunValue of_curve(RowOfCurve which, F f) {
   return [=](const Run& run) -> std::optional<double> {
     if (!run.stage->arrays.contains(which.array) ||
         run.stage->curve.points() == 0)
@@ -23,7 +23,7 @@ RunValue of_row(RowOfCurve which, F f) {
 
 /// Of all points, the one that is `better` than those before.
 RunValue best_of(RowOfCurve which, bool (*better)(double, double)) {
-  return of_row(which, [=](const CurveRow& row) {
+  return of_curve(which, [=](const CurveRow& row) {
     double found = row(0);
     for (Index k = 1; k < row.points(); ++k)
       if (better(row(k), found)) found = row(k);
@@ -76,14 +76,24 @@ RunValue loss_at(Clock clock, double time) {
 
 RunValue loss_after(double count) { return loss_at(updates(), count); }
 
+Quantity median_after(Select select, double updates) {
+  return median(std::move(select), loss_after(updates));
+}
+Quantity median_at_end(Select select) {
+  return median(std::move(select), last_loss());
+}
+Quantity lowest_at_end(Select select) {
+  return lowest(std::move(select), last_loss());
+}
+
 RunValue loss_at_share(double share) {
-  return of_row({}, [=](const CurveRow& row) {
+  return of_curve({}, [=](const CurveRow& row) {
     return loss_at(row.stage, share * row.updates(row.points() - 1));
   });
 }
 
 RunValue last_loss() {
-  return of_row({}, [](const CurveRow& row) {
+  return of_curve({}, [](const CurveRow& row) {
     return row.stage.stop == Stop::diverged ? kInfinite : row.last();
   });
 }
@@ -112,7 +122,7 @@ RunValue length(Clock clock) {
 }
 
 RunValue first_below(double level, RowOfCurve which) {
-  return of_row(which, [=](const CurveRow& row) {
+  return of_curve(which, [=](const CurveRow& row) {
     for (Index k = 0; k < row.points(); ++k)
       if (row(k) < level) return row.updates(k);
     return kInfinite;
@@ -120,14 +130,14 @@ RunValue first_below(double level, RowOfCurve which) {
 }
 
 RunValue first_of(RowOfCurve which) {
-  return of_row(which, [](const CurveRow& row) { return row(0); });
+  return of_curve(which, [](const CurveRow& row) { return row(0); });
 }
 RunValue last_of(RowOfCurve which) {
-  return of_row(which, [](const CurveRow& row) { return row.last(); });
+  return of_curve(which, [](const CurveRow& row) { return row.last(); });
 }
 
 RunValue value_after(RowOfCurve which, Index count) {
-  return of_row(which, [=](const CurveRow& row) -> std::optional<double> {
+  return of_curve(which, [=](const CurveRow& row) -> std::optional<double> {
     const auto k = last_point(row.stage, count);
     return k ? std::optional(row(*k)) : std::nullopt;
   });
@@ -141,7 +151,7 @@ RunValue highest_of(RowOfCurve which) {
 }
 
 RunValue largest_rise(RowOfCurve which) {
-  return of_row(which, [](const CurveRow& row) {
+  return of_curve(which, [](const CurveRow& row) {
     double lowest = row(0), most = 0;
     for (Index k = 0; k < row.points(); ++k) {
       most = std::max(most, row(k) / lowest);

@@ -1,7 +1,7 @@
 /// Numbers of one training run, from the curve of its mean test loss or from
 /// another row along it.
 ///
-///   median({"hig"}, loss_after(320))
+///   median_after({"hig"}, 320)
 ///   lowest({"adam"}, loss_at(paper_seconds(update_row), 3240))
 ///   median({"adam"}, time_to(updates(), beside({"hig"}, loss_after(60))))
 #pragma once
@@ -10,7 +10,7 @@
 #include <string>
 
 #include "suite/evidence/curve.h"
-#include "suite/evidence/runs.h"
+#include "suite/evidence/quantity.h"
 
 namespace physinv {
 
@@ -33,6 +33,11 @@ RunValue loss_after(double updates);
 RunValue loss_at_share(double share);
 /// At the end of the curve; infinite if the run diverged.
 RunValue last_loss();
+
+/// Over all runs.
+Quantity median_after(Select select, double updates);
+Quantity median_at_end(Select select);
+Quantity lowest_at_end(Select select);
 
 /// When the test loss has first fallen to a level; infinite if it never has.
 RunValue time_to(Clock clock, double level);

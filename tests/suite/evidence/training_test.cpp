@@ -7,6 +7,7 @@
 
 #include "suite/evidence/condition.h"
 #include "suite/evidence/options.h"
+#include "suite/evidence/run_values.h"
 #include "suite/evidence/statistics.h"
 #include "suite/results/errors.h"
 #include "suite/results/published.h"

@@ -33,10 +33,9 @@ Table final_losses(const Evidence& evidence) {
   for (const std::string id : {"adam", "gn", "hig"})
     table.rows.push_back(
         {.label = id,
-         .cells = {
-             beside_printed(cell_of(lowest({id}, last_loss())(evidence).value),
-                            evidence,
-                            "fig2b/" + id)}});
+         .cells = {beside_printed(cell_of(lowest_at_end({id})(evidence).value),
+                                  evidence,
+                                  "fig2b/" + id)}});
   return table;
 }
 

@@ -45,15 +45,6 @@ inline RunValue if_stable(RunValue value) {
 
 inline bool is_one(double v) { return v == 1; }
 
-inline Quantity after(const std::string& method, double updates) {
-  return median({method}, loss_after(updates));
-}
-inline Quantity at_end(const std::string& method) {
-  return median({method}, last_loss());
-}
-inline Quantity best_end(const std::string& method) {
-  return lowest({method}, last_loss());
-}
 /// Medians at the same time by the paper's clock.
 inline Quantity by_clock(const std::string& a,
                          const std::string& b,

@@ -18,11 +18,15 @@
 namespace physinv::hig::ablation_batch {
 namespace {
 
-using oscillators::at_end;
 using oscillators::Ids;
+using oscillators::runs_of;
 
-Quantity lowest_of(const Ids& ids) { return least(each(ids, at_end)); }
-Quantity highest_of(const Ids& ids) { return most(each(ids, at_end)); }
+Quantity lowest_of(const Ids& ids) {
+  return least(medians(runs_of(ids), last_loss()));
+}
+Quantity highest_of(const Ids& ids) {
+  return most(medians(runs_of(ids), last_loss()));
+}
 
 /// The sentences of App. C about Figs. 12a, 12b and 13.
 std::vector<Condition> sentences(Index batch) {
@@ -39,7 +43,7 @@ std::vector<Condition> sentences(Index batch) {
             here(oscillators::spread_of(oscillators::kBetas, last_loss())),
             here(oscillators::spread_of(between, last_loss()))),
       at_most(label("kappa = -1/2 over the lowest other (lowest)"),
-              here(ratio(at_end("kappa-m05"),
+              here(ratio(median_at_end({"kappa-m05"}),
                          lowest_of(oscillators::kOtherExponents))),
               1.2),
       at_most(label("highest kappa from -3/4 to -1/4 over lowest above 0 "
@@ -83,7 +87,7 @@ Table ends(const Evidence& e) {
     TableRow shown{.label = p.id};
     for (const Index batch : kBatches)
       shown.cells.push_back(
-          written(of_experiment(name_of(batch), at_end(p.id))(e)));
+          written(of_experiment(name_of(batch), median_at_end({p.id}))(e)));
     table.rows.push_back(std::move(shown));
   }
   return table;

@@ -64,7 +64,7 @@ Quantity of_medians(const Select& select,
             std::vector<double> curve;
             Measured m;
             for (int k = 0; k <= updates; ++k) {
-              m = median(select, loss_after(k))(e);
+              m = median_after(select, k)(e);
               if (!m.value) return m;
               curve.push_back(*m.value);
             }
@@ -319,17 +319,17 @@ const std::vector<Claim> kSuite = {
     {.id = "A1",
      .from = "standard",
      .says = "What Adam reaches after so many updates, for each of its rates",
-     .conditions =
-         {within("5000, 1e-4", median(kAdam, loss_after(5000)), 8, 20),
-          within("3e-4", median(kAdam3, loss_after(5000)), 1.2, 3),
-          within("1e-3", median(kAdam10, loss_after(5000)), 0.6, 1.4),
-          within("20000, 1e-4", median(kAdam, loss_after(20'000)), 0.3, 1.5)}},
+     .conditions = {within("5000, 1e-4", median_after(kAdam, 5000), 8, 20),
+                    within("3e-4", median_after(kAdam3, 5000), 1.2, 3),
+                    within("1e-3", median_after(kAdam10, 5000), 0.6, 1.4),
+                    within(
+                        "20000, 1e-4", median_after(kAdam, 20'000), 0.3, 1.5)}},
     {.id = "A2",
      .from = "quick",
      .says = "HIG (0.02, b = 16) from fresh weights, and Adam after as many "
              "updates",
-     .conditions = {within("after 24", median(kHig16, loss_after(24)), 55, 95),
-                    within("after 60", median(kHig16, loss_after(60)), 40, 62),
+     .conditions = {within("after 24", median_after(kHig16, 24), 55, 95),
+                    within("after 60", median_after(kHig16, 60), 40, 62),
                     above("Adam over HIG at 60",
                           ratio_of_medians(kAdam, kHig16, loss_after(60)),
                           2)}},

@@ -25,8 +25,8 @@ Cell crossing(const Evidence& e, const char* smaller, const char* larger) {
   std::optional<double> since;
   double last = 0;
   for (const double updates : some.front().stage->curve.iteration) {
-    const auto a = median({smaller}, loss_after(updates))(e).value,
-               b = median({larger}, loss_after(updates))(e).value;
+    const auto a = median_after({smaller}, updates)(e).value,
+               b = median_after({larger}, updates)(e).value;
     // Behind a first stretch in which every curve falls alike.
     if (!a || !b || updates < 100) continue;
     last = updates;

@@ -80,10 +80,6 @@ inline std::optional<double> rise_ratio(const Run& run) {
   return until_high(run, 0.1, [](double a, double b) { return a / b; });
 }
 
-inline Quantity after(const Select& select, double count) {
-  return median(select, loss_after(count));
-}
-
 /// Updates to a test loss of 0.1 of runs as long as the slowest may take.
 inline RunValue to_a_tenth(double count) {
   return if_ran(count, first_below(0.1));

@@ -52,7 +52,7 @@ Cell JpoReport::over_seeds(const Select& runs,
 Cell JpoReport::over_runs(const Select& runs, const RunValue& share) const {
   const auto all = sample(evidence_, runs, share);
   if (all.empty()) return {.text = kNotRun};
-  Cell cell{.ours = 100 * jpo::mean_of(values_of(all))};
+  Cell cell{.ours = 100 * mean_of(values_of(all))};
   if (const auto deviation = mean_std(seed_means(all))->std)
     cell.spread = 100 * *deviation;
   return cell;

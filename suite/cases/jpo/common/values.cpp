@@ -7,11 +7,9 @@
 #include <limits>
 #include <map>
 #include <memory>
-#include <numeric>
 #include <tuple>
 #include <utility>
 
-#include "suite/evidence/statistics.h"
 #include "suite/harness/study.h"
 #include "suite/results/crowded.h"
 #include "suite/results/loss_summary.h"
@@ -171,25 +169,6 @@ RunValue worsened() {
   };
 }
 
-RunValue of_row(RunRow row, double (*statistic)(std::vector<double>)) {
-  return [=](const Run& run) -> Value {
-    auto values = row(run);
-    if (values.empty()) return {};
-    return statistic(std::move(values));
-  };
-}
-
-double mean_of(std::vector<double> values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) /
-         static_cast<double>(values.size());
-}
-double least_of(std::vector<double> values) {
-  return *std::min_element(values.begin(), values.end());
-}
-double most_of(std::vector<double> values) {
-  return *std::max_element(values.begin(), values.end());
-}
-
 RunValue mean_loss() {
   return [](const Run& run) { return mean_loss_of(*run.stage); };
 }
@@ -208,16 +187,6 @@ RunValue over_bfgs(RunValue value) {
 
 RunValue seconds() {
   return [](const Run& run) -> Value { return seconds_to_tell(*run.stage); };
-}
-
-RunRow losses() {
-  return [](const Run& run) { return list(run.stage->loss); };
-}
-RunRow iterations() {
-  return [](const Run& run) { return list(run.stage->example_iterations); };
-}
-RunRow evaluations() {
-  return [](const Run& run) { return list(run.stage->example_evaluations); };
 }
 
 RunRow if_solved(const Solved& solved) {

@@ -14,6 +14,8 @@
 #include "suite/cases/jpo/common/shares.h"
 #include "suite/core/recipe.h"
 #include "suite/evidence/condition.h"
+#include "suite/evidence/run_values.h"
+#include "suite/evidence/statistics.h"
 
 namespace physinv::jpo {
 
@@ -48,11 +50,6 @@ RunValue gain(const Solved& solved);
 RunValue decrease_before(bool from_prior = false);
 /// Of a refined run: how many losses it increased.
 RunValue worsened();
-/// Any statistic of a row.
-RunValue of_row(RunRow row, double (*statistic)(std::vector<double>));
-double mean_of(std::vector<double> values);
-double least_of(std::vector<double> values);
-double most_of(std::vector<double> values);
 /// Over the run's problems; results.json keeps them of every stage.
 RunValue mean_loss();
 RunValue worst_loss();
@@ -63,9 +60,6 @@ RunValue seconds();
 
 // ---- a number of each problem ---------------------------------------------
 
-RunRow losses();
-RunRow iterations();
-RunRow evaluations();
 /// 1 where it is solved, else 0.
 RunRow if_solved(const Solved& solved);
 /// Of the problems with `condition`, the values of `row`.

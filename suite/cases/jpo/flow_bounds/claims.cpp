@@ -24,17 +24,17 @@ const Select kBfgsRuns{"bfgs"}, kJpo{"jpo", "fit"}, kRefined{"jpo", "refine"};
 /// Of BFGS on the largest set of each seed.
 Quantity within_ten() {
   return percent(share_of_examples(kBfgsRuns,
-                                   jpo::largest_sets(jpo::iterations()),
+                                   jpo::largest_sets(iterations()),
                                    [](double k) { return k <= 10; }));
 }
 Quantity most_iterations() {
-  return highest(kBfgsRuns, jpo::of_row(jpo::iterations(), jpo::most_of));
+  return highest(kBfgsRuns, of_row(iterations(), most_of));
 }
 /// How far outliers stand out.
 Quantity mean_over_median() {
   return median(kBfgsRuns, jpo::largest_sets(RunValue([](const Run& run) {
-                  std::vector<double> all = jpo::losses()(run);
-                  const double mean = jpo::mean_of(all);
+                  std::vector<double> all = losses()(run);
+                  const double mean = mean_of(all);
                   return std::optional(mean / physinv::median(std::move(all)));
                 })));
 }

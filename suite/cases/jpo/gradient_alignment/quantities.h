@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "suite/cases/jpo/gradient_alignment/shares.h"
+#include "suite/core/arrays.h"
 #include "suite/evidence/condition.h"
 #include "suite/evidence/statistics.h"
 

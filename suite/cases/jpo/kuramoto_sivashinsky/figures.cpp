@@ -88,7 +88,7 @@ std::vector<PrintedNumber> printed_numbers() {
     return percent(share_of_examples(
         runs.of_sizes(32), jpo::if_solved(kNear), jpo::holds));
   };
-  const RunValue iterations = jpo::of_row(jpo::iterations(), jpo::mean_of);
+  const RunValue mean_iterations = of_row(iterations(), mean_of);
   const Select bfgs = jpo::bfgs(), refined = jpo::refined("jpo"),
                labels = jpo::plain("supervised"),
                labels_refined = jpo::refined("supervised");
@@ -96,16 +96,16 @@ std::vector<PrintedNumber> printed_numbers() {
           {"JPO refined solves, n >= 32, %", "jpo/solved", solved(refined)},
           {"BFGS iterations, lowest",
            "bfgs/iterations_low",
-           jpo::lowest_mean(bfgs, iterations)},
+           jpo::lowest_mean(bfgs, mean_iterations)},
           {"BFGS iterations, highest",
            "bfgs/iterations_high",
-           jpo::highest_mean(bfgs, iterations)},
+           jpo::highest_mean(bfgs, mean_iterations)},
           {"refinement iterations, lowest",
            "jpo/iterations_low",
-           jpo::lowest_mean(refined, iterations)},
+           jpo::lowest_mean(refined, mean_iterations)},
           {"refinement iterations, highest",
            "jpo/iterations_high",
-           jpo::highest_mean(refined, iterations)},
+           jpo::highest_mean(refined, mean_iterations)},
           {"JPO refined better, n = 256, %",
            "jpo/better/n=256",
            better(jpo::at(refined, 256))},

@@ -42,7 +42,7 @@ Quantity large_steps(Index unit) {
       [](double d) { return d > kPeriod; });
 }
 Quantity iterations_of(const Select& runs) {
-  return median_of_examples(runs, of_pool(jpo::iterations()));
+  return median_of_examples(runs, of_pool(iterations()));
 }
 template <bool kIsRefined, RunValue (*kShare)(Equality)>
 Quantity share(Index) {

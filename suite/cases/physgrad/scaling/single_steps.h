@@ -4,7 +4,7 @@
 #include <cmath>
 #include <functional>
 
-#include "suite/evidence/quantity.h"
+#include "suite/evidence/run_values.h"
 
 namespace physinv::scaling {
 

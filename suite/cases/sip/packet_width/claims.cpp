@@ -12,8 +12,8 @@
 namespace physinv::packet_width {
 namespace {
 
-using sip_wave_packet::errors, sip_wave_packet::kBasin, sip_wave_packet::losses,
-    sip_wave_packet::mean_of, sip_wave_packet::passes_lbfgs;
+using sip_wave_packet::errors, sip_wave_packet::kBasin,
+    sip_wave_packet::passes_lbfgs;
 
 const Select kNet{"net"}, kLbfgs{"lbfgs"};
 
@@ -29,7 +29,8 @@ Quantity by_net(const Choice&) { return localized(kNet); }
 Quantity by_lbfgs(const Choice&) { return localized(kLbfgs); }
 Quantity updates_to_pass(const Choice&) { return of_both(passes_lbfgs()); }
 Quantity loss_over_lbfgs(const Choice&) {
-  return of_both(over(mean_of(losses()), beside(kLbfgs, mean_of(losses()))));
+  return of_both(over(of_row(losses(), mean_of),
+                      beside(kLbfgs, of_row(losses(), mean_of))));
 }
 
 const StudyTable<Choice> kStudy{

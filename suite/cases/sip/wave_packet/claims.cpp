@@ -21,14 +21,17 @@ Quantity found(double from, double to = 1e9) {
   return share_of_examples(
       kLbfgs, errors(from, to), [](double e) { return e < 2; });
 }
-Quantity mean_loss(const Select& who) { return median(who, mean_of(losses())); }
+Quantity mean_loss(const Select& who) {
+  return median(who, of_row(losses(), mean_of));
+}
 Quantity mean_error(const Select& who) {
-  return median(who, mean_of(errors()));
+  return median(who, of_row(errors(), mean_of));
 }
 /// Of the network beside L-BFGS-B on the same examples.
 Quantity beside_lbfgs(RunValue net, RunRow lbfgs) {
   return depends_on(
-      median(kNet, over(std::move(net), beside(kLbfgs, mean_of(lbfgs)))),
+      median(kNet,
+             over(std::move(net), beside(kLbfgs, of_row(lbfgs, mean_of)))),
       {kLbfgs});
 }
 Quantity passes(RunValue when) {
@@ -82,7 +85,7 @@ const std::vector<Claim> kClaimsOfAll = {
                             passes(passes_lbfgs()),
                             times(2, printed("crossing/latest"))),
                     below("loss at the end over L-BFGS-B's",
-                          beside_lbfgs(mean_of(losses()), losses()),
+                          beside_lbfgs(of_row(losses(), mean_of), losses()),
                           1),
                     reported("updates to its error",
                              passes(passes_lbfgs_error()))},
@@ -128,7 +131,7 @@ const std::vector<Claim> kClaimsOfAll = {
                              share_of_examples(kLbfgs, moves(), up_to(6)),
                              0.95),
                     reported("evaluations",
-                             median(kLbfgs, mean_of(evaluations())))}},
+                             median(kLbfgs, of_row(evaluations(), mean_of)))}},
     {.id = "A4a",
      .from = "smoke",
      .says = "Random guesses",
@@ -143,9 +146,9 @@ const std::vector<Claim> kClaimsOfAll = {
      .from = "quick",
      .says = "The network after 1000 updates comes up to L-BFGS-B",
      .conditions =
-         {below("loss after 60", median(kNet, loss_after(60)), 25),
+         {below("loss after 60", median_after(kNet, 60), 25),
           below("loss over random's",
-                ratio(median(kNet, loss_after(1000)), mean_loss(kRandom)),
+                ratio(median_after(kNet, 1000), mean_loss(kRandom)),
                 0.5),
           at_most("loss over L-BFGS-B's",
                   beside_lbfgs(loss_after(1000), losses()),

@@ -75,7 +75,7 @@ void add_levels(const Evidence& e, const RunRow& row, Panel& panel) {
   const auto& x = panel.series.front().x;
   const double first = x.front(), last = x.back();
   for (const MethodLine& line : {kLines[1], kLines[2]}) {
-    const auto value = median({line.method}, mean_of(row))(e).value;
+    const auto value = median({line.method}, of_row(row, mean_of))(e).value;
     if (!value) continue;
     panel.series.push_back(
         level(line.label, line.method, first, last, *value, style_of(line)));
@@ -109,11 +109,11 @@ Table at_the_end(const Evidence& e) {
                "millionth."},
       e,
       kLines,
-      {median_column("mean loss", mean_of(losses())),
+      {median_column("mean loss", of_row(losses(), mean_of)),
        median_column("10 %", quantile_of(losses(), 0.1)),
        median_column("50 %", quantile_of(losses(), 0.5)),
        median_column("90 %", quantile_of(losses(), 0.9)),
-       median_column("mean error", mean_of(errors())),
+       median_column("mean error", of_row(errors(), mean_of)),
        median_column("median error", quantile_of(errors(), 0.5)),
        share("within 2", errors(), [](double v) { return v < 2; }),
        share("within half a period",

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "suite/evidence/curve.h"
@@ -24,13 +25,11 @@ RunRow of_examples(double from, double to, F f) {
   };
 }
 
-std::vector<double> as_list(const Vector<double>& v) {
-  return {v.begin(), v.end()};
-}
-
 constexpr double kAnywhere = std::numeric_limits<double>::infinity();
 
-RunValue of_lbfgs(RunRow row) { return beside({"lbfgs"}, mean_of(row)); }
+RunValue of_lbfgs(RunRow row) {
+  return beside({"lbfgs"}, of_row(std::move(row), mean_of));
+}
 
 }  // namespace
 
@@ -58,40 +57,25 @@ RunRow off_missed_period(double from, double to) {
   });
 }
 
-RunRow losses() {
-  return [](const Run& run) { return as_list(run.stage->loss); };
-}
-
-RunRow evaluations() {
-  return [](const Run& run) { return as_list(run.stage->example_evaluations); };
-}
-
 RunRow loss_over_lbfgs() {
   return [](const Run& run) -> std::vector<double> {
     const auto other = run.beside({"lbfgs"});
     if (!other || other->stage->loss.size() != run.stage->loss.size())
       return {};
     const auto& base = other->stage->loss.array();
-    return as_list((run.stage->loss.array() - base) / base);
-  };
-}
-
-RunValue mean_of(RunRow row) {
-  return [=](const Run& run) -> std::optional<double> {
-    const std::vector<double> values = row(run);
-    if (values.empty()) return {};
-    double sum = 0;
-    for (const double v : values) sum += v;
-    return sum / static_cast<double>(values.size());
+    const Vector<double> left = (run.stage->loss.array() - base) / base;
+    return {left.begin(), left.end()};
   };
 }
 
 RunValue in_basin() {
-  return mean_of([](const Run& run) {
-    std::vector<double> flags = errors()(run);
-    for (double& e : flags) e = e <= kBasin ? 1 : 0;
-    return flags;
-  });
+  return of_row(
+      [](const Run& run) {
+        std::vector<double> flags = errors()(run);
+        for (double& e : flags) e = e <= kBasin ? 1 : 0;
+        return flags;
+      },
+      mean_of);
 }
 
 RunValue passes_lbfgs() { return time_to(updates(), of_lbfgs(losses())); }

@@ -5,7 +5,8 @@
 #include <limits>
 
 #include "suite/cases/sip/wave_packet/metrics.h"
-#include "suite/evidence/quantity.h"
+#include "suite/evidence/run_values.h"
+#include "suite/evidence/statistics.h"
 #include "suite/evidence/training.h"
 
 namespace physinv::sip_wave_packet {
@@ -21,13 +22,9 @@ RunRow off_period();
 /// The same for those that lie so far from the start and have missed by a
 /// period at least; infinite for those that have not.
 RunRow off_missed_period(double from, double to);
-RunRow losses();
-RunRow evaluations();
 /// (L - L') / L', L' that of L-BFGS-B on the same example.
 RunRow loss_over_lbfgs();
 
-/// The mean over the examples.
-RunValue mean_of(RunRow row);
 /// The share of the examples within half a period of the truth.
 RunValue in_basin();
 /// Updates until the mean loss, or the mean error, has fallen below that of
