@@ -1,5 +1,5 @@
 # Writes ${output}: what folders of suite/cases add to the registry, each by a
-# function that stands in a table, folders() of suite/cases/folders.h, and
+# function that stands in a table, folders() of suite/cases/common/folders.h, and
 # register_all over that table, for a program over these folders.
 # Usage: cmake -D cases=suite/cases -D folders=jpo/billiards -D output=... -P ...
 set(declared)
@@ -25,7 +25,7 @@ foreach(folder IN LISTS folders)
   string(APPEND functions "}\n")
 endforeach()
 file(CONFIGURE OUTPUT ${output} @ONLY CONTENT [[
-#include "suite/cases/folders.h"
+#include "suite/cases/common/folders.h"
 
 namespace physinv {
 

@@ -5,8 +5,8 @@
 #include <type_traits>
 
 #include "optimizers/batched_solver.h"
+#include "optimizers/objective.h"
 #include "suite/core/batch.h"
-#include "suite/core/objective.h"
 
 namespace physinv {
 

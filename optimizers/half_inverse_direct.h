@@ -15,7 +15,7 @@
 #include <memory>
 #include <string>
 
-#include "optimizers/half_inverse_step.h"
+#include "optimizers/half_inverse/power.h"
 #include "optimizers/metrics.h"
 #include "suite/core/method.h"
 

@@ -1,9 +1,9 @@
 #include "optimizers/jpo.h"
 
+#include "optimizers/best_so_far.h"
 #include "optimizers/stage.h"
 #include "optimizers/steps/clip_percentile.h"
 #include "optimizers/steps/rule_check.h"
-#include "optimizers/training/best_so_far.h"
 #include "optimizers/training/first_order.h"
 #include "optimizers/training/loop.h"
 #include "optimizers/training/output_map.h"

@@ -12,7 +12,7 @@
 
 #include "optimizers/bfgs.h"
 #include "optimizers/drive.h"
-#include "optimizers/half_inverse_step.h"
+#include "optimizers/half_inverse/half_inverse_step.h"
 #include "optimizers/steps/bfgs_update.h"
 #include "suite/nn/cnn.h"
 #include "suite/nn/mlp.h"

@@ -9,6 +9,7 @@
 #include "optimizers/training/adahessian_rule.h"
 #include "optimizers/training/first_order.h"
 #include "optimizers/training/half_inverse_rule.h"
+#include "optimizers/training/hessian_free_rule.h"
 #include "optimizers/training/loop.h"
 #include "optimizers/training/predictions.h"
 #include "suite/core/check.h"
@@ -179,10 +180,11 @@ double operations(const TrainingOptions& options, const CaseSize& size) {
 /// Where options and class of a rule are, in the order of the variant.
 constexpr std::array<std::array<const char*, 2>, 4> kRules = {
     {{"optimizers/steps/rule.h", "optimizers/training/first_order.h"},
-     {"optimizers/half_inverse_step.h",
+     {"optimizers/half_inverse/options.h",
       "optimizers/training/half_inverse_rule.h"},
      {"optimizers/steps/adahessian.h", "optimizers/training/adahessian_rule.h"},
-     {"optimizers/training/hessian_free_rule.h", nullptr}}};
+     {"optimizers/training/hessian_free.h",
+      "optimizers/training/hessian_free_rule.h"}}};
 
 Sources sources(const TrainingOptions& options) {
   Sources all;
@@ -200,8 +202,7 @@ Sources sources(const TrainingOptions& options) {
   for (std::size_t i = 0; i < kRules.size(); ++i) {
     if (i == options.rule.index()) continue;
     unused("optimizers/training.h", kRules[i][0]);
-    if (kRules[i][1] != nullptr)
-      unused("optimizers/training.cpp", kRules[i][1]);
+    unused("optimizers/training.cpp", kRules[i][1]);
   }
   return all;
 }

@@ -18,11 +18,11 @@
 #include <string>
 #include <variant>
 
-#include "optimizers/half_inverse_step.h"
+#include "optimizers/half_inverse/options.h"
 #include "optimizers/metrics.h"
 #include "optimizers/steps/adahessian.h"
 #include "optimizers/steps/rule.h"
-#include "optimizers/training/hessian_free_rule.h"
+#include "optimizers/training/hessian_free.h"
 #include "optimizers/training/signal_recipe.h"
 #include "optimizers/training/solver_loss.h"
 

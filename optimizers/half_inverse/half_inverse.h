@@ -20,6 +20,7 @@
 
 #include "optimizers/half_inverse/definite_solve.h"
 #include "optimizers/half_inverse/explicit_power.h"
+#include "optimizers/half_inverse/options.h"
 #include "optimizers/half_inverse/spectral_power.h"
 #include "optimizers/half_inverse/two_level.h"
 #include "suite/core/options.h"
@@ -27,23 +28,6 @@
 namespace physinv::hig {
 
 enum class Path { shortcut, gram, two_level, explicit_jacobian };
-
-struct HalfInverseOptions {
-  /// What the estimate of an update's relative error (2-norm) may be; the
-  /// error itself is 3 to 100 times smaller. 1e-6 is a strict mode.
-  double tolerance = 3e-4;
-  bool shortcut = true;
-  double gram_noise = 1;  ///< see SpectralPower::factor
-  /// Largest explicit Jacobian, in numbers; beyond it two levels are the end.
-  Index largest_jacobian = 64'000'000;
-
-  auto fields() const {
-    return std::tuple{field("tolerance", tolerance),
-                      if_changed(field("shortcut", shortcut)),
-                      if_changed(field("gram_noise", gram_noise)),
-                      if_changed(field("largest_jacobian", largest_jacobian))};
-  }
-};
 
 struct HalfInverseReport : PowerReport {
   Path path = Path::gram;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "suite/core/check.h"
+#include "suite/core/threads.h"
 #include "suite/linalg/householder.h"
 
 namespace physinv::hig {

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "optimizers/half_inverse_step.h"
+#include "optimizers/half_inverse/half_inverse_step.h"
 #include "optimizers/training/rule.h"
 
 namespace physinv {

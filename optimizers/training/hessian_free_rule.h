@@ -17,28 +17,11 @@
 
 #include <vector>
 
-#include "optimizers/conjugate_gradients.h"
+#include "optimizers/training/hessian_free.h"
 #include "optimizers/training/rule.h"
 #include "suite/core/check.h"
-#include "suite/core/options.h"
-#include "suite/core/recipe.h"
 
 namespace physinv {
-
-struct HessianFreeOptions {
-  double rate = 1;     ///< of the update
-  double damping = 1;  ///< to begin with
-  double warm = 0.95;  ///< share of the last result to start from
-  ConjugateGradientOptions solver = {};
-
-  auto fields() const {
-    return std::tuple{word("step", "hessian_free"),
-                      field("rate", rate),
-                      field("damping", damping),
-                      field("warm", warm),
-                      field("solver", solver)};
-  }
-};
 
 /// What happened in an update.
 struct HessianFreeReport {

@@ -17,11 +17,6 @@
 
 namespace physinv::fluid {
 
-template <class P>
-struct Velocity {
-  P x, y;
-};
-
 /// The limiter's decision for a point of one sample.
 inline constexpr int kFree = 0, kBelow = 1, kAbove = 2;
 

@@ -38,6 +38,11 @@ struct Plane {
   }
 };
 
+template <class P>
+struct Velocity {
+  P x, y;
+};
+
 /// Planes of memory that one call of any kernel needs for itself.
 inline constexpr Index kScratchPlanes = 3;
 

@@ -6,7 +6,7 @@
 /// (i, j) lies below cell (i, j).
 #pragma once
 
-#include "problems/fluid/mac_cormack.h"
+#include "problems/fluid/plane.h"
 
 namespace physinv::fluid {
 

@@ -4,7 +4,8 @@
 /// with the new velocity.
 #pragma once
 
-#include "problems/fluid/periodic_projection.h"
+#include "problems/fluid/mac_cormack.h"
+#include "problems/marker_flow/periodic_projection.h"
 
 namespace physinv {
 

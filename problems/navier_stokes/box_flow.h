@@ -3,6 +3,7 @@
 #pragma once
 
 #include "problems/fluid/box_projection.h"
+#include "problems/fluid/mac_cormack.h"
 
 namespace physinv {
 

@@ -8,6 +8,7 @@
 
 #include "python/module/arrays.h"
 #include "python/module/pool.h"
+#include "suite/core/recipe.h"
 #include "suite/harness/case.h"
 
 namespace physinv::python {

@@ -12,6 +12,8 @@
 #include "suite/gate/instructions.h"
 #include "suite/gate/measure.h"
 #include "suite/harness/build_info.h"
+#include "suite/harness/registry.h"
+#include "suite/harness/select.h"
 #include "suite/results/file.h"
 
 namespace physinv {

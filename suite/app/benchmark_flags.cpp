@@ -10,6 +10,7 @@
 
 #include "suite/harness/context.h"
 #include "suite/harness/nearest.h"
+#include "suite/harness/select.h"
 
 namespace physinv {
 namespace {

@@ -18,7 +18,8 @@
 #include "suite/compare/ranks.h"
 #include "suite/compare/regressions.h"
 #include "suite/harness/judge.h"
-#include "suite/harness/progress.h"
+#include "suite/harness/registry.h"
+#include "suite/harness/screen.h"
 #include "suite/results/file.h"
 
 namespace physinv {

@@ -15,6 +15,7 @@
 #include "suite/core/clock.h"
 #include "suite/harness/columns.h"
 #include "suite/harness/output.h"
+#include "suite/harness/registry.h"
 #include "suite/planning/forecast.h"
 #include "suite/results/folder.h"
 #include "suite/results/shortened.h"

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "suite/app/options.h"
-#include "suite/harness/progress.h"
+#include "suite/harness/screen.h"
 
 namespace physinv {
 

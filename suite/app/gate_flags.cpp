@@ -4,6 +4,7 @@
 #include "suite/app/options.h"
 #include "suite/harness/context.h"
 #include "suite/harness/registry_errors.h"
+#include "suite/harness/select.h"
 
 namespace physinv {
 

@@ -7,7 +7,8 @@
 
 #include "suite/app/options.h"
 #include "suite/harness/columns.h"
-#include "suite/harness/progress.h"
+#include "suite/harness/registry.h"
+#include "suite/harness/screen.h"
 #include "suite/harness/sources.h"
 #include "suite/planning/kinds.h"
 #include "suite/results/verdict_words.h"

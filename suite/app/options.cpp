@@ -10,10 +10,14 @@
 #include <sstream>
 #include <utility>
 
+#include "suite/harness/keys.h"
 #include "suite/harness/nearest.h"
+#include "suite/harness/registry.h"
 #include "suite/harness/registry_errors.h"
+#include "suite/harness/select.h"
 #include "suite/harness/words.h"
 #include "suite/results/file.h"
+#include "suite/results/plan.h"
 
 namespace physinv {
 namespace {

@@ -6,11 +6,13 @@
 #include <vector>
 
 #include "suite/app/flags.h"
-#include "suite/harness/keys.h"
-#include "suite/harness/registry.h"
-#include "suite/harness/select.h"
+#include "suite/harness/case.h"
 
 namespace physinv {
+
+struct Overrides;
+struct PlannedCase;
+struct Shard;
 
 /// Flags that choose cases.
 struct Selection {

@@ -16,7 +16,7 @@
 #include "suite/app/sections.h"
 #include "suite/harness/expected.h"
 #include "suite/harness/outside.h"
-#include "suite/harness/progress.h"
+#include "suite/harness/screen.h"
 #include "suite/results/file.h"
 #include "suite/results/folder.h"
 

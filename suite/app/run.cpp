@@ -18,6 +18,7 @@
 #include "suite/harness/campaign.h"
 #include "suite/harness/context.h"
 #include "suite/harness/output.h"
+#include "suite/harness/progress.h"
 #include "suite/harness/stop_signal.h"
 #include "suite/planning/forecast.h"
 #include "suite/results/catalog.h"

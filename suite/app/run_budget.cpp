@@ -11,6 +11,7 @@
 
 #include "suite/app/speeds.h"
 #include "suite/core/clock.h"
+#include "suite/harness/campaign.h"
 #include "suite/harness/stop_signal.h"
 #include "suite/planning/budget.h"
 #include "suite/planning/predict.h"

@@ -6,9 +6,11 @@
 #include <vector>
 
 #include "suite/core/clock.h"
-#include "suite/harness/campaign.h"
 
 namespace physinv {
+
+struct CampaignOptions;
+struct Case;
 
 /// What of a budget is not for cases.
 struct BudgetUse {

@@ -3,8 +3,6 @@
 
 #include <ctime>
 
-#include "suite/core/archive.h"
-
 namespace physinv {
 
 struct Seconds {
@@ -31,35 +29,6 @@ inline double wall_now() { return seconds_of(CLOCK_MONOTONIC); }
 inline Seconds now() {
   return {wall_now(), seconds_of(CLOCK_PROCESS_CPUTIME_ID)};
 }
-
-/// Sums the time between start and stop; starts stopped.
-class Stopwatch {
- public:
-  void start() {
-    if (!running_) since_ = now();
-    running_ = true;
-  }
-  void stop() {
-    if (running_) total_ += now() - since_;
-    running_ = false;
-  }
-  bool running() const { return running_; }
-  /// What was restored counts too.
-  void serialize(Archive& archive) {
-    Seconds sum = total();
-    archive(sum);
-    if (archive.reading()) total_ += sum;
-  }
-  Seconds total() const {
-    Seconds sum = total_;
-    if (running_) sum += now() - since_;
-    return sum;
-  }
-
- private:
-  Seconds since_, total_;
-  bool running_ = false;
-};
 
 /// Clocks of a stage. Setup and warm-up are apart from solving; so is drawing
 /// training examples while it solves. Measuring is the time spent on curves, in

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "suite/core/archive.h"
+#include "suite/core/batch.h"
 
 namespace physinv {
 
@@ -16,6 +16,7 @@ struct Curve {
   Batch<double> x;     ///< (unknowns * tracked examples) x points
 
   Index points() const { return static_cast<Index>(iteration.size()); }
+  template <class Archive>
   void serialize(Archive& archive) {
     archive(iteration, seconds, evaluations, loss, x);
   }

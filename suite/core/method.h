@@ -10,7 +10,9 @@
 
 #include "suite/core/arrays.h"
 #include "suite/core/checkpoint.h"
-#include "suite/core/recipe.h"
+#include "suite/core/network.h"
+#include "suite/core/options.h"
+#include "suite/core/problem.h"
 #include "suite/core/stop.h"
 
 namespace physinv {

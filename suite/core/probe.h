@@ -8,6 +8,7 @@
 #include <functional>
 #include <vector>
 
+#include "suite/core/archive.h"
 #include "suite/core/clock.h"
 #include "suite/core/curve.h"
 #include "suite/core/hash.h"
@@ -15,6 +16,35 @@
 namespace physinv {
 
 class Oracle;
+
+/// Sums the time between start and stop; starts stopped.
+class Stopwatch {
+ public:
+  void start() {
+    if (!running_) since_ = now();
+    running_ = true;
+  }
+  void stop() {
+    if (running_) total_ += now() - since_;
+    running_ = false;
+  }
+  bool running() const { return running_; }
+  /// What was restored counts too.
+  void serialize(Archive& archive) {
+    Seconds sum = total();
+    archive(sum);
+    if (archive.reading()) total_ += sum;
+  }
+  Seconds total() const {
+    Seconds sum = total_;
+    if (running_) sum += now() - since_;
+    return sum;
+  }
+
+ private:
+  Seconds since_, total_;
+  bool running_ = false;
+};
 
 class Probe {
  public:

@@ -1,5 +1,6 @@
-/// Recipes: how to make a problem or a network in either precision, with the
-/// options that define it. Registering stores recipes and runs nothing.
+/// Recipes: how to make a problem in either precision, with the options that
+/// define it; of networks, network.h. Registering stores recipes and runs
+/// nothing.
 #pragma once
 
 #include <functional>
@@ -8,7 +9,6 @@
 #include <type_traits>
 #include <vector>
 
-#include "suite/core/network.h"
 #include "suite/core/options.h"
 #include "suite/core/problem.h"
 

@@ -1,10 +1,6 @@
 #include "suite/core/workspace.h"
 
-#include <sys/mman.h>
-
 #include <algorithm>
-#include <cstdlib>
-#include <new>
 
 #include "suite/core/threads.h"
 
@@ -12,37 +8,8 @@ namespace physinv {
 namespace {
 
 constexpr std::size_t kFirstChunk = std::size_t{64} << 10;
-constexpr std::size_t kHugePage = std::size_t{2} << 20;
-
-std::size_t round_up(std::size_t bytes, std::size_t to = kAlignment) {
-  return (bytes + to - 1) / to * to;
-}
-
-/// On huge pages where there is room for some: fewer faults, fewer misses of
-/// the address cache. A system without them ignores the advice.
-void* allocate_pages(std::size_t bytes) {
-  if (bytes < 2 * kHugePage) return std::aligned_alloc(kAlignment, bytes);
-  const std::size_t whole = round_up(bytes, kHugePage);
-  void* p = std::aligned_alloc(kHugePage, whole);
-  if (p != nullptr) ::madvise(p, whole, MADV_HUGEPAGE);
-  return p;
-}
 
 }  // namespace
-
-void Buffer::Free::operator()(void* p) const { std::free(p); }
-
-void* Buffer::reserve(std::size_t bytes) {
-  if (bytes > bytes_ || !data_) {
-    const std::size_t size = std::max(round_up(bytes), kAlignment);
-    data_.reset();
-    bytes_ = 0;
-    data_.reset(allocate_pages(size));
-    if (!data_) throw std::bad_alloc();
-    bytes_ = size;
-  }
-  return data_.get();
-}
 
 Workspace::Workspace(Threads* threads) : threads_(threads) {}
 Workspace::Workspace(Workspace&&) noexcept = default;
@@ -50,7 +17,7 @@ Workspace& Workspace::operator=(Workspace&&) noexcept = default;
 Workspace::~Workspace() = default;
 
 void* Workspace::allocate(std::size_t bytes) {
-  const std::size_t size = round_up(bytes);
+  const std::size_t size = aligned_size(bytes);
   while (chunk_ < chunks_.size() && used_ + size > chunks_[chunk_].bytes())
     ++chunk_, used_ = 0;
   if (chunk_ == chunks_.size()) {

@@ -7,30 +7,13 @@
 #include <vector>
 
 #include "suite/core/batch.h"
+#include "suite/core/buffer.h"
 #include "suite/core/check.h"
 #include "suite/core/counts.h"
 
 namespace physinv {
 
 class Threads;
-
-inline constexpr std::size_t kAlignment = 64;
-
-/// A 64-byte aligned block that only ever grows.
-class Buffer {
- public:
-  /// At least `bytes` of memory; contents are undefined after growing.
-  void* reserve(std::size_t bytes);
-  void* data() const { return data_.get(); }
-  std::size_t bytes() const { return bytes_; }
-
- private:
-  struct Free {
-    void operator()(void* p) const;
-  };
-  std::unique_ptr<void, Free> data_;
-  std::size_t bytes_ = 0;
-};
 
 template <class T>
 using Scratch = Eigen::Map<Batch<T>, Eigen::Aligned64>;

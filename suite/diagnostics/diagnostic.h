@@ -3,6 +3,7 @@
 #pragma once
 
 #include "suite/core/method.h"
+#include "suite/core/recipe.h"
 
 namespace physinv {
 

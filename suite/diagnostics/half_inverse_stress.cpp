@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "optimizers/half_inverse_step.h"
+#include "optimizers/half_inverse/half_inverse_step.h"
 #include "optimizers/network_model.h"
 #include "suite/core/math.h"
 #include "suite/core/probe.h"

@@ -5,10 +5,12 @@
 #include <vector>
 
 #include "suite/gate/baseline.h"
-#include "suite/harness/case.h"
-#include "suite/harness/progress.h"
+#include "suite/harness/screen.h"
 
 namespace physinv {
+
+struct Case;
+struct CaseRecord;
 
 struct MeasureOptions {
   std::filesystem::path out;

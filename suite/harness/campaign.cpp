@@ -11,6 +11,7 @@
 #include "suite/harness/columns.h"
 #include "suite/harness/context.h"
 #include "suite/harness/keys.h"
+#include "suite/harness/progress.h"
 #include "suite/harness/revision.h"
 #include "suite/harness/run_case.h"
 #include "suite/harness/stop_signal.h"

@@ -11,7 +11,7 @@
 
 #include "suite/harness/case.h"
 #include "suite/harness/prepare.h"
-#include "suite/harness/progress.h"
+#include "suite/harness/screen.h"
 #include "suite/results/plan.h"
 
 namespace physinv {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "suite/core/method.h"
+#include "suite/core/recipe.h"
 #include "suite/evidence/claim.h"
 #include "suite/results/published.h"
 #include "suite/results/record.h"

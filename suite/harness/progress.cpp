@@ -1,12 +1,9 @@
 #include "suite/harness/progress.h"
 
 #include <fmt/format.h>
-#include <sys/ioctl.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <string_view>
 
 #include "suite/core/clock.h"
@@ -19,8 +16,6 @@ namespace physinv {
 namespace {
 
 constexpr std::size_t kRecent = 5;
-
-constexpr int kMostColumns = 10'000;
 
 /// Rows of the live table and plain lines have the same columns.
 std::string row(std::string_view name,
@@ -55,25 +50,6 @@ std::string duration_text(double seconds) {
   const auto s = static_cast<long>(std::lround(seconds));
   if (s < 3600) return fmt::format("{} min {} s", s / 60, s % 60);
   return fmt::format("{} h {} min", s / 3600, s / 60 % 60);
-}
-
-Screen Screen::of(std::FILE* stream) {
-  Screen s{.stream = stream};
-  const bool terminal = isatty(fileno(stream)) == 1;
-  const auto ci = variable("CI");
-  s.terminal = terminal;
-  s.live = terminal && variable("TERM") != "dumb" &&
-           (ci.empty() || ci == "false" || ci == "0");
-  s.color = s.live && variable("NO_COLOR").empty();
-  winsize size{};
-  if (terminal && ioctl(fileno(stream), TIOCGWINSZ, &size) == 0 &&
-      size.ws_col > 0)
-    s.columns = size.ws_col;
-  const long wanted = std::strtol(variable("COLUMNS").c_str(), nullptr, 10);
-  if (wanted > 0)
-    s.columns = static_cast<int>(std::min<long>(wanted, kMostColumns));
-  s.columns = std::max(s.columns, 40);
-  return s;
 }
 
 void Rates::add(const std::string& stage, double operations, double seconds) {

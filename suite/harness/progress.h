@@ -4,33 +4,15 @@
 /// so far, not from a count of cases.
 #pragma once
 
-#include <cstdio>
 #include <deque>
 #include <map>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "suite/harness/case.h"
+#include "suite/harness/screen.h"
 
 namespace physinv {
-
-/// How to write: decided once from the stream and the environment (TERM, CI,
-/// NO_COLOR, COLUMNS).
-struct Screen {
-  std::FILE* stream = stdout;
-  bool live = false, color = false;
-  bool terminal = false;
-  bool quiet = false;  ///< nothing while a campaign runs
-  int columns = 80;
-
-  /// Of a table's lines: what is no terminal takes all of them.
-  std::size_t room() const {
-    return terminal ? static_cast<std::size_t>(columns)
-                    : std::string_view::npos;
-  }
-  static Screen of(std::FILE* stream);
-};
 
 /// Operations per second, by stage name, from what has finished.
 class Rates {

@@ -6,6 +6,7 @@
 
 #include "suite/harness/campaign.h"
 #include "suite/harness/columns.h"
+#include "suite/harness/progress.h"
 
 namespace physinv {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "suite/core/batch.h"
-#include "suite/core/workspace.h"
+#include "suite/core/buffer.h"
 
 namespace physinv::linalg {
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "suite/core/threads.h"
 #include "suite/linalg/tile_product.h"
 
 namespace physinv::linalg {

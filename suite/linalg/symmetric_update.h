@@ -6,7 +6,10 @@
 #include <vector>
 
 #include "suite/core/batch.h"
-#include "suite/core/threads.h"
+
+namespace physinv {
+class Threads;
+}
 
 namespace physinv::linalg {
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "suite/core/threads.h"
 #include "suite/linalg/householder.h"
 #include "suite/linalg/panel_product.h"
 

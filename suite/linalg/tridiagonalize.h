@@ -10,7 +10,7 @@
 
 #include <vector>
 
-#include "suite/core/workspace.h"
+#include "suite/core/buffer.h"
 #include "suite/linalg/band.h"
 #include "suite/linalg/symmetric_update.h"
 

@@ -20,6 +20,7 @@
 #include "suite/planning/kinds.h"
 #include "suite/planning/operation_rates.h"
 #include "suite/planning/split.h"
+#include "suite/planning/trials.h"
 #include "suite/results/errors.h"
 
 namespace physinv {

@@ -6,8 +6,10 @@
 #include <tuple>
 #include <vector>
 
+#include "suite/harness/case.h"
 #include "suite/planning/operation_rates.h"
 #include "suite/planning/predict.h"
+#include "suite/planning/trials.h"
 
 namespace physinv {
 

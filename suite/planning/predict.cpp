@@ -3,6 +3,7 @@
 #include <map>
 
 #include "suite/planning/kinds.h"
+#include "suite/planning/trials.h"
 
 namespace physinv {
 namespace {

@@ -5,9 +5,10 @@
 #include <functional>
 #include <vector>
 
-#include "suite/planning/trials.h"
-
 namespace physinv {
+
+class Trials;
+struct Case;
 
 struct Cost {
   double seconds = 0;  ///< of one thread of an idle core, without bookkeeping

@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
-#include "suite/harness/case.h"
-
 namespace physinv {
+
+struct Case;
 
 /// What a short run says of one stage. Times are of the processor, so that
 /// whoever else is busy counts little.

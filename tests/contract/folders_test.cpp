@@ -1,5 +1,5 @@
 // The list of folders (suite/cases/experiments.txt) against what they register.
-#include "suite/cases/folders.h"
+#include "suite/cases/common/folders.h"
 
 #include <gtest/gtest.h>
 

@@ -5,6 +5,7 @@
 #include "optimizers/training.h"
 #include "optimizers/training/adahessian_rule.h"
 #include "optimizers/training/batches.h"
+#include "optimizers/training/hessian_free_rule.h"
 #include "suite/core/linear_problem.h"
 #include "suite/nn/unet.h"
 #include "tests/support/quadratic.h"

@@ -1,5 +1,5 @@
 // The step of a network and a solver whose Jacobian is far from 1.
-#include "optimizers/half_inverse_step.h"
+#include "optimizers/half_inverse/half_inverse_step.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "optimizers/half_inverse_step.h"
+#include "optimizers/half_inverse/half_inverse_step.h"
 #include "suite/core/problem.h"
 #include "suite/nn/cnn.h"
 #include "tests/support/hig_reference.h"

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <vector>
 
+#include "optimizers/objective.h"
 #include "optimizers/steps/rule.h"
-#include "suite/core/objective.h"
 
 namespace physinv {
 namespace {

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "problems/fluid/box_projection.h"
-#include "problems/fluid/periodic_projection.h"
+#include "problems/marker_flow/periodic_projection.h"
 #include "tests/support/mac_cormack_reference.h"
 
 namespace physinv::test {

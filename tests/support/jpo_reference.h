@@ -9,6 +9,7 @@
 
 #include "suite/core/method.h"
 #include "suite/core/problem.h"
+#include "suite/core/recipe.h"
 #include "tests/support/reference.h"
 
 namespace physinv::test {

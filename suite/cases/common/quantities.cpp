@@ -5,7 +5,7 @@
 
 #include <utility>
 
-#include "suite/cases/folders.h"
+#include "suite/cases/common/folders.h"
 
 namespace physinv {
 

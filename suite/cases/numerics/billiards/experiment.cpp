@@ -4,9 +4,10 @@
 #include <cmath>
 
 #include "problems/billiards/billiards.h"
-#include "problems/billiards/closed_form.h"
+#include "suite/cases/numerics/billiards/closed_form.h"
 #include "suite/cases/numerics/common/atlas.h"
 #include "suite/core/power_of_ten.h"
+#include "suite/evidence/series.h"
 
 namespace physinv::numerics::billiards {
 namespace {

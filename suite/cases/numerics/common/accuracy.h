@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "suite/cases/numerics/common/sweep_report.h"
+#include "suite/cases/numerics/common/sweep_axis.h"
 #include "suite/diagnostics/work_precision.h"
 #include "suite/evidence/claim.h"
 #include "suite/harness/case.h"

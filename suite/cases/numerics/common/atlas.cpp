@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "suite/cases/numerics/common/sweep_report.h"
 #include "suite/diagnostics/stability_sweep.h"
 
 namespace physinv {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "suite/cases/numerics/common/accuracy.h"
-#include "suite/cases/numerics/common/sweep_report.h"
+#include "suite/cases/numerics/common/sweep_axis.h"
 #include "suite/core/recipe.h"
 #include "suite/harness/registry.h"
 

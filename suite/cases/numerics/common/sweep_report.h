@@ -2,11 +2,10 @@
 /// (suite/diagnostics/stability_sweep.h).
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
-#include "suite/core/recipe.h"
+#include "suite/cases/numerics/common/sweep_axis.h"
 #include "suite/diagnostics/stability_sweep.h"
 #include "suite/evidence/claim.h"
 #include "suite/evidence/series.h"
@@ -15,20 +14,6 @@
 #include "suite/results/results.h"
 
 namespace physinv {
-
-/// A sweep over a grid: point number j * x.size() + i lies at (x[i], y[j]).
-struct SweepAxis {
-  std::string label;
-  std::vector<double> values;
-  bool log = false;
-};
-
-/// Powers of ten, 10^first, 10^(first + step) .. 10^last.
-std::vector<double> decades(double first, double last, double step = 1);
-
-/// One problem for each value of an axis.
-std::vector<ProblemRecipe> along(
-    const SweepAxis& axis, const std::function<ProblemRecipe(double)>& problem);
 
 /// The stage of the first case that finished it, else null.
 const StageRecord* find_sweep(const Results& results,

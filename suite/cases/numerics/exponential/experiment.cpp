@@ -1,7 +1,8 @@
 // The exponential: from where it underflows to where it overflows.
-#include "problems/exponential/closed_form.h"
 #include "problems/exponential/exponential.h"
 #include "suite/cases/numerics/common/atlas.h"
+#include "suite/cases/numerics/exponential/closed_form.h"
+#include "suite/evidence/series.h"
 
 namespace physinv::numerics::exponential {
 namespace {

@@ -2,9 +2,9 @@
 // roughest.
 #include <numbers>
 
-#include "problems/grid_poisson/closed_form.h"
 #include "problems/grid_poisson/grid_poisson.h"
 #include "suite/cases/numerics/common/atlas.h"
+#include "suite/cases/numerics/grid_poisson/closed_form.h"
 #include "suite/core/math.h"
 
 namespace physinv::numerics::grid_poisson {

@@ -4,9 +4,9 @@
 
 #include <numbers>
 
-#include "problems/heat/closed_form.h"
 #include "problems/heat/heat.h"
 #include "suite/cases/numerics/common/atlas.h"
+#include "suite/cases/numerics/heat/closed_form.h"
 #include "suite/core/math.h"
 
 namespace physinv::numerics::heat {

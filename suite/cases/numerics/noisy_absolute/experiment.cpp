@@ -1,9 +1,9 @@
 // Distance under noise, from next to its solution to far away (at 1e8 the noise
 // has no digits left), with noise from none to overwhelming.
 
-#include "problems/noisy_absolute/closed_form.h"
 #include "problems/noisy_absolute/noisy_absolute.h"
 #include "suite/cases/numerics/common/atlas.h"
+#include "suite/cases/numerics/noisy_absolute/closed_form.h"
 
 namespace physinv::numerics::noisy_absolute {
 namespace {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "suite/cases/numerics/common/atlas.h"
+#include "suite/cases/numerics/common/sweep_report.h"
 #include "suite/evidence/cell.h"
 #include "suite/harness/registry.h"
 

@@ -4,9 +4,9 @@
 #include <numbers>
 #include <vector>
 
-#include "problems/robotic_arm/closed_form.h"
 #include "problems/robotic_arm/robotic_arm.h"
 #include "suite/cases/numerics/common/atlas.h"
+#include "suite/cases/numerics/robotic_arm/closed_form.h"
 
 namespace physinv::numerics::robotic_arm {
 namespace {

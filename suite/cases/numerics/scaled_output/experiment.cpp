@@ -1,7 +1,7 @@
 // The toy's scaled output: any size of the unknowns and of the factor.
-#include "problems/scaled_output/closed_form.h"
 #include "problems/scaled_output/scaled_output.h"
 #include "suite/cases/numerics/common/atlas.h"
+#include "suite/cases/numerics/scaled_output/closed_form.h"
 
 namespace physinv::numerics::scaled_output {
 namespace {

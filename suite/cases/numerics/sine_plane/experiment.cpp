@@ -4,6 +4,7 @@
 
 #include "problems/sine_plane/sine_plane.h"
 #include "suite/cases/numerics/common/atlas.h"
+#include "suite/evidence/series.h"
 
 namespace physinv::numerics::sine_plane {
 namespace {

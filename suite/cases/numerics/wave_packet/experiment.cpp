@@ -2,10 +2,10 @@
 // search may well send it.
 #include <vector>
 
-#include "problems/wave_packet/closed_form.h"
 #include "problems/wave_packet/wave_packet.h"
 #include "suite/cases/numerics/common/accuracy.h"
 #include "suite/cases/numerics/common/sweep_report.h"
+#include "suite/cases/numerics/wave_packet/closed_form.h"
 #include "suite/diagnostics/stability_sweep.h"
 #include "suite/harness/registry.h"
 

@@ -23,19 +23,6 @@
 
 namespace physinv {
 
-struct HalfInverseStepOptions {
-  hig::Power power = {};
-  double rate = 1;
-  hig::HalfInverseOptions numerics = {};
-
-  auto fields() const {
-    return std::tuple{word("step", "half_inverse"),
-                      field("power", power),
-                      field("rate", rate),
-                      field("numerics", numerics)};
-  }
-};
-
 template <class T>
 class HalfInverseStep {
  public:

@@ -1,4 +1,4 @@
-#include "optimizers/half_inverse_step.h"
+#include "optimizers/half_inverse/half_inverse_step.h"
 
 #include <algorithm>
 #include <limits>
