@@ -15,24 +15,39 @@ constexpr int kOutTile = 8, kInTile = 6;
 constexpr int kOutTile = 4, kInTile = 3;
 #endif
 constexpr Index kBlockBytes = 16384, kWeightBytes = 32768;
+// Below so many vectors a position, tiles hold their sums across edges.
+constexpr Index kFewVectors = 4, kMostSpans = 64;
+
+/// Output positions [first, first + count) that meet the inputs from
+/// first + shift on.
+struct Span {
+  Index first, count, shift;
+};
+
+/// What the tiles of some taps share: sums += y[p][o] x[p + shift][k] over all
+/// spans. Steps are distances in memory, of positions, rows, and outputs.
+template <class T>
+struct Sweep {
+  const Span* spans;
+  Index span_count;
+  const T* x;
+  const T* y;
+  Index x_step, y_step, stride, vectors, out;
+  T* sums;
+  Index sums_step;
+};
 
 /// R outputs x Q inputs, each a vector of partial sums. kOne: a row is one
 /// vector, so that distances between rows are known to the compiler.
 template <class T, class V, int R, int Q, bool kOne>
-[[gnu::noinline]] void weight_tile(const T* x,
-                                   Index x_step,
-                                   const T* y,
-                                   Index y_step,
-                                   Index stride,
-                                   Index positions,
-                                   Index vectors,
-                                   T* sums,
-                                   Index sums_step) {
+[[gnu::noinline]] void weight_tile(const Sweep<T>& g, Index o, Index k) {
   using Reg = Register<T, V, kPairs<T, V> && Q % 2 == 0>;
   using W = typename Reg::Whole;
   constexpr Index w = sizeof(V) / sizeof(T), wide = sizeof(W) / sizeof(T);
   constexpr int kInputs = Q / Reg::kVectors;
-  const Index row = kOne ? w : stride;
+  const Index row = kOne ? w : g.stride, vectors = g.vectors;
+  const Index x_step = g.x_step, y_step = g.y_step, sums_step = g.sums_step;
+  T* const sums = g.sums + o * sums_step + k * w;
   W acc[R][kInputs];
 #pragma GCC unroll 8
   for (int r = 0; r < R; ++r)
@@ -55,12 +70,19 @@ template <class T, class V, int R, int Q, bool kOne>
     }
   };
   // At least one of each, which keeps the sums in their registers.
+  const Span* span = g.spans;
+  const Span* const end = span + g.span_count;
   do {
-    Index v = 0;
-    do add(x + v, y + v);
-    while (!kOne && (v += w) < vectors * w);
-    x += x_step, y += y_step;
-  } while (--positions > 0);
+    const T* x = g.x + (span->first + span->shift) * x_step + k * row;
+    const T* y = g.y + span->first * y_step + o * row;
+    Index positions = span->count;
+    do {
+      Index v = 0;
+      do add(x + v, y + v);
+      while (!kOne && (v += w) < vectors * w);
+      x += x_step, y += y_step;
+    } while (--positions > 0);
+  } while (++span != end);
 #pragma GCC unroll 8
   for (int r = 0; r < R; ++r)
 #pragma GCC unroll 8
@@ -68,90 +90,95 @@ template <class T, class V, int R, int Q, bool kOne>
       store(sums + r * sums_step + q * wide, acc[r][q]);
 }
 
+/// Inputs [k, k + Q) with all outputs.
 template <class T, class V, int Q>
-void weight_rows(const T* x,
-                 Index x_step,
-                 const T* y,
-                 Index y_step,
-                 Index stride,
-                 Index positions,
-                 Index vectors,
-                 Index out,
-                 T* sums,
-                 Index sums_step) {
+void weight_rows(const Sweep<T>& g, Index k) {
   Index o = 0;
   const auto step = [&]<int R>() {
-    const auto tile = stride == sizeof(V) / sizeof(T)
-                          ? weight_tile<T, V, R, Q, true>
-                          : weight_tile<T, V, R, Q, false>;
-    tile(x,
-         x_step,
-         y + o * stride,
-         y_step,
-         stride,
-         positions,
-         vectors,
-         sums + o * sums_step,
-         sums_step);
+    if (g.stride == sizeof(V) / sizeof(T)) {
+      weight_tile<T, V, R, Q, true>(g, o, k);
+    } else {
+      weight_tile<T, V, R, Q, false>(g, o, k);
+    }
     o += R;
   };
-  while (o + kOutTile <= out) step.template operator()<kOutTile>();
+  while (o + kOutTile <= g.out) step.template operator()<kOutTile>();
   if constexpr (kOutTile > 4)
-    while (o + 4 <= out) step.template operator()<4>();
-  while (o < out) step.template operator()<1>();
+    while (o + 4 <= g.out) step.template operator()<4>();
+  while (o < g.out) step.template operator()<1>();
 }
 
-/// One run of positions, lanes [lane, lane + vectors).
+/// Inputs [0, depth) with all outputs.
 template <class T, class V>
-void weight_run(const ConvShape& shape,
-                const Run& run,
-                Lanes<const T> x,
-                Lanes<const T> y_bar,
-                Index first,
-                Index last,
-                Index lane0,
-                Index vectors,
-                T* sums) {
-  constexpr Index w = sizeof(V) / sizeof(T);
-  if (vectors == 0) return;
-  const Index stride = x.stride, in = shape.in;
-  const Index x_step = in * stride, y_step = shape.out * stride;
-  const Index sums_step = shape.depth() * w;
-  // y_bar's part stays in the L1 while all inputs pass by; with many outputs
-  // in the L2, as a tile's sums must not come and go too often.
-  const Index budget = std::max<Index>(
-      16, kWeightBytes / (shape.out * static_cast<Index>(sizeof(V))));
-  const Index per_row = std::min(vectors, budget);
-  const Index per_block = std::max<Index>(1, budget / per_row);
-  for (Index p = first; p < last; p += per_block) {
-    const Index count = std::min(per_block, last - p);
-    for (Index v = 0; v < vectors; v += per_row) {
-      const Index some = std::min(per_row, vectors - v);
-      const Index lane = lane0 + v * w;
-      const T* y = y_bar.data + p * y_step + lane;
-      for (const Segment& s : run.segments) {
-        const T* from = x.data + (p + s.shift) * x_step + lane;
-        T* to = sums + s.tap * in * w;
-        Index k = 0;
-        const auto step = [&]<int Q>() {
-          weight_rows<T, V, Q>(from + k * stride,
-                               x_step,
-                               y,
-                               y_step,
-                               stride,
-                               count,
-                               some,
-                               shape.out,
-                               to + k * w,
-                               sums_step);
-          k += Q;
-        };
-        const Index depth = s.taps * in;
-        while (k + kInTile <= depth) step.template operator()<kInTile>();
-        if constexpr (kInTile > 3)
-          while (k + 3 <= depth) step.template operator()<3>();
-        while (k < depth) step.template operator()<1>();
+void weight_columns(const Sweep<T>& g, Index depth) {
+  Index k = 0;
+  const auto step = [&]<int Q>() {
+    weight_rows<T, V, Q>(g, k);
+    k += Q;
+  };
+  // Rather twice 4 than 6 and 2, twice 2 than 3 and 1.
+  constexpr int kNext = kInTile > 3 ? 4 : 2;
+  while (k + kInTile <= depth && depth - k != 2 * kNext)
+    step.template operator()<kInTile>();
+  while (k + kNext <= depth) step.template operator()<kNext>();
+  if constexpr (kNext > 3)
+    while (k + 3 <= depth) step.template operator()<3>();
+  while (k < depth) step.template operator()<1>();
+}
+
+/// Positions [begin, end) tap by tap: a tile holds its sums across the edges of
+/// a plane's rows.
+template <class T, class V>
+void weights_by_tap(Sweep<T> g,
+                    const ConvShape& shape,
+                    const Run* run,
+                    const Run* last,
+                    Index begin,
+                    Index end) {
+  Span spans[kMostSpans];
+  T* const sums = g.sums;
+  for (Index tap = 0; tap < shape.taps.count(); ++tap) {
+    Span* next = spans;
+    for (const Run* r = run; r != last && r->first < end; ++r) {
+      const Index first = std::max(begin, r->first);
+      const Index count = std::min(end, r->first + r->count) - first;
+      for (const Segment& s : r->segments) {
+        if (tap < s.tap || tap >= s.tap + s.taps) continue;
+        const Index shift = s.shift + tap - s.tap;
+        const bool goes_on = next != spans && next[-1].shift == shift &&
+                             next[-1].first + next[-1].count == first;
+        if (goes_on) {
+          next[-1].count += count;
+        } else {
+          *next++ = {first, count, shift};
+        }
       }
+    }
+    if (next == spans) continue;
+    g.spans = spans, g.span_count = next - spans;
+    g.sums = sums + tap * shape.in * static_cast<Index>(sizeof(V) / sizeof(T));
+    weight_columns<T, V>(g, shape.in);
+  }
+}
+
+/// The same run by run: inputs of neighbouring taps share tiles.
+template <class T, class V>
+void weights_by_run(Sweep<T> g,
+                    const ConvShape& shape,
+                    const Run* run,
+                    const Run* last,
+                    Index begin,
+                    Index end) {
+  constexpr Index w = sizeof(V) / sizeof(T);
+  T* const sums = g.sums;
+  for (; run != last && run->first < end; ++run) {
+    const Index first = std::max(begin, run->first);
+    Span span{first, std::min(end, run->first + run->count) - first, 0};
+    g.spans = &span, g.span_count = 1;
+    for (const Segment& s : run->segments) {
+      span.shift = s.shift;
+      g.sums = sums + s.tap * shape.in * w;
+      weight_columns<T, V>(g, s.taps * shape.in);
     }
   }
 }
@@ -186,13 +213,57 @@ void accumulate_weights(const ConvShape& shape,
                         Index begin,
                         Index end,
                         T* sums) {
-  for (const Run& run : runs) {
-    const Index first = std::max(begin, run.first);
-    const Index last = std::min(end, run.first + run.count);
-    if (first >= last) continue;
-    weight_run<T, NarrowPack<T>>(
-        shape, run, x, y_bar, first, last, 0, x.width / kNarrowLanes<T>, sums);
+  using V = NarrowPack<T>;
+  constexpr Index w = kNarrowLanes<T>;
+  const Index vectors = x.width / w, in = shape.in, out = shape.out;
+  if (vectors == 0) return;
+  // y_bar's part stays in the L1 while all inputs pass by; with many outputs
+  // in the L2, as a tile's sums must not come and go too often.
+  const Index budget =
+      std::max<Index>(16, kWeightBytes / (out * static_cast<Index>(sizeof(V))));
+  const Index per_row = std::min(vectors, budget);
+  const Index per_block = std::min(budget / per_row, kMostSpans);
+  const auto sweep = vectors < kFewVectors && in > kInTile
+                         ? weights_by_tap<T, V>
+                         : weights_by_run<T, V>;
+  const Run* run = runs.data();
+  const Run* const last = run + runs.size();
+  for (Index p = begin; p < end; p += per_block) {
+    const Index stop = std::min(end, p + per_block);
+    run = std::partition_point(
+        run, last, [&](const Run& r) { return r.first + r.count <= p; });
+    for (Index v = 0; v < vectors; v += per_row)
+      sweep({.spans = nullptr,
+             .span_count = 0,
+             .x = x.data + v * w,
+             .y = y_bar.data + v * w,
+             .x_step = in * x.stride,
+             .y_step = out * x.stride,
+             .stride = x.stride,
+             .vectors = std::min(per_row, vectors - v),
+             .out = out,
+             .sums = sums,
+             .sums_step = shape.depth() * w},
+            shape,
+            run,
+            last,
+            p,
+            stop);
   }
+}
+
+template <class T>
+void add_weights(const ConvShape& shape, const T* sums, T* totals) {
+  add_lanes(sums, kNarrowLanes<T>, shape.weights(), totals);
+}
+
+template <class T>
+void order_weights(const ConvShape& shape, const T* totals, T* weights_bar) {
+  const Index taps = shape.taps.count(), in = shape.in, depth = shape.depth();
+  for (Index o = 0; o < shape.out; ++o)
+    for (Index t = 0; t < taps; ++t)
+      for (Index c = 0; c < in; ++c)
+        weights_bar[(o * in + c) * taps + t] = totals[o * depth + t * in + c];
 }
 
 template <class T>
@@ -201,14 +272,10 @@ void finish_weights(const ConvShape& shape,
                     Index parts,
                     T* totals,
                     T* weights_bar) {
-  const Index taps = shape.taps.count(), in = shape.in, depth = shape.depth();
   std::fill_n(totals, shape.weights(), T(0));
   for (Index part = 0; part < parts; ++part, sums += weight_sums<T>(shape))
-    add_lanes(sums, kNarrowLanes<T>, shape.weights(), totals);
-  for (Index o = 0; o < shape.out; ++o)
-    for (Index t = 0; t < taps; ++t)
-      for (Index c = 0; c < in; ++c)
-        weights_bar[(o * in + c) * taps + t] = totals[o * depth + t * in + c];
+    add_weights(shape, sums, totals);
+  order_weights(shape, totals, weights_bar);
 }
 
 template <class T>
@@ -226,6 +293,8 @@ Index positions_per_block(Lanes<const T> x, Index channels) {
                                       Index,                                  \
                                       Index,                                  \
                                       T*);                                    \
+  template void add_weights<T>(const ConvShape&, const T*, T*);               \
+  template void order_weights<T>(const ConvShape&, const T*, T*);             \
   template void finish_weights<T>(const ConvShape&, const T*, Index, T*, T*); \
   template Index positions_per_block<T>(Lanes<const T>, Index);
 PHYSINV_INSTANTIATE(float)

@@ -22,8 +22,15 @@ void accumulate_weights(const ConvShape& shape,
                         Index end,
                         T* sums);
 
-/// Adds up the vectors of `parts` arrays of sums: weights_bar [out][in][tap].
-/// totals: room for as many.
+/// totals += the vectors of an array of sums, lane after lane: [out][tap][in].
+template <class T>
+void add_weights(const ConvShape& shape, const T* sums, T* totals);
+
+/// weights_bar [out][in][tap] from such totals.
+template <class T>
+void order_weights(const ConvShape& shape, const T* totals, T* weights_bar);
+
+/// Both, of `parts` arrays of sums. totals: room for as many.
 template <class T>
 void finish_weights(const ConvShape& shape,
                     const T* sums,

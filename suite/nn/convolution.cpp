@@ -15,11 +15,11 @@ void channel_sums(Workspace& work, Lanes<const T> x, Index channels, T* sums) {
   const Workspace::Scope scope(work);
   auto per_row = work.take<T>(x.rows, 1);
   row_sums<T>(x, per_row.data());
-  for (Index c = 0; c < channels; ++c) {
-    double sum = 0;
-    for (Index i = c; i < x.rows; i += channels) sum += double(per_row(i));
-    sums[c] = static_cast<T>(sum);
-  }
+  auto totals = work.take<double>(channels, 1);
+  totals.setZero();
+  for (Index i = 0; i < x.rows; i += channels)
+    for (Index c = 0; c < channels; ++c) totals(c) += double(per_row(i + c));
+  for (Index c = 0; c < channels; ++c) sums[c] = static_cast<T>(totals(c));
 }
 
 template <class T>

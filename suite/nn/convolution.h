@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <initializer_list>
+#include <optional>
 #include <vector>
 
 #include "suite/core/threads.h"
@@ -12,6 +13,47 @@
 #include "suite/nn/layer.h"
 
 namespace physinv::nn {
+
+/// The weight gradient's partial sums: an array a part, or one for all parts if
+/// they come in turn, which then stays in the caches.
+template <class T>
+class WeightSums {
+ public:
+  WeightSums(const ConvShape& shape, Index parts, bool in_turn, Workspace& work)
+      : shape_(shape),
+        parts_(parts),
+        in_turn_(in_turn),
+        size_(weight_sums<T>(shape)),
+        sums_(work.take<T>(size_, in_turn ? 1 : parts).data()),
+        totals_(work.take<T>(shape.weights(), 1).data()) {
+    std::fill_n(totals_, shape.weights(), T(0));
+  }
+
+  /// Zeros to add to.
+  T* begin(Index part) const {
+    T* const sums = at(part);
+    std::fill_n(sums, size_, T(0));
+    return sums;
+  }
+  void end(Index part) const {
+    if (in_turn_) add_weights(shape_, at(part), totals_);
+  }
+  void finish(T* weights_bar) const {
+    for (Index part = 0; part < parts_ && !in_turn_; ++part)
+      add_weights(shape_, at(part), totals_);
+    order_weights(shape_, totals_, weights_bar);
+  }
+
+ private:
+  T* at(Index part) const { return sums_ + (in_turn_ ? 0 : part * size_); }
+
+  const ConvShape& shape_;
+  Index parts_;
+  bool in_turn_;
+  Index size_;
+  T* sums_;
+  T* totals_;
+};
 
 /// Sums over positions and samples, one per channel.
 template <class T>
@@ -189,12 +231,11 @@ void Convolution<T>::gradients(const LayerArgs<T>& at,
                                F&& fill) const {
   const Workspace::Scope scope(*at.work);
   const Index parts = this->parts(x.samples);
-  const Index size = weight_sums<T>(shape_);
-  T *sums = nullptr, *packed = nullptr;
-  if (weights_bar != nullptr) {
-    sums = at.work->template take<T>(size, parts).data();
-    std::fill_n(sums, size * parts, T(0));
-  }
+  Threads* const threads = this->threads(at, x.samples);
+  const bool in_turn = threads == nullptr || threads->count() == 1;
+  std::optional<WeightSums<T>> sums;
+  if (weights_bar != nullptr) sums.emplace(shape_, parts, in_turn, *at.work);
+  T* packed = nullptr;
   if (x_bar) {
     packed = at.work->template take<T>(shape_.weights(), 1).data();
     pack_flipped(shape_, at.parameters, packed);
@@ -204,26 +245,23 @@ void Convolution<T>::gradients(const LayerArgs<T>& at,
   // In the L2: the weights' sums come and go less often. No bits depend on it.
   const Index some = std::max<Index>(1, 4 * per_block(y_bar) / unit);
   const auto first = [&](Index part) { return units * part / parts; };
-  Threads* const threads = this->threads(at, x.samples);
   for_blocks(threads, parts, [&](Index part, int) {
     const Index last = first(part + 1);
+    T* const part_sums = sums ? sums->begin(part) : nullptr;
     // Cotangents of inputs that only this part's outputs have seen.
     Index pulled = first(part) * unit + reach_;
     for (Index u = first(part); u < last; u += some) {
       const Index begin = u * unit, end = std::min(u + some, last) * unit;
       fill(begin, end);
-      if (weights_bar != nullptr)
-        accumulate_weights<T>(
-            shape_, runs_, x, y_bar, begin, end, sums + part * size);
+      if (sums)
+        accumulate_weights<T>(shape_, runs_, x, y_bar, begin, end, part_sums);
       pull_inner(down, pulled, end - reach_);
       pulled = std::max(pulled, end - reach_);
     }
+    if (sums) sums->end(part);
   });
   pull_borders(threads, down, unit, parts, first);
-  if (weights_bar != nullptr) {
-    T* totals = at.work->template take<T>(shape_.weights(), 1).data();
-    finish_weights<T>(shape_, sums, parts, totals, weights_bar);
-  }
+  if (sums) sums->finish(weights_bar);
 }
 
 extern template class Convolution<float>;

@@ -141,6 +141,34 @@ void add_lanes(Lanes<const T> more, Lanes<T> to) {
       store(to.row(i) + j, load<V>(to.row(i) + j) + load<V>(more.row(i) + j));
 }
 
+namespace {
+
+/// sums[q] = sum of the lanes of v[q] as `sum_of` makes it, of four at once.
+PHYSINV_LANES void sums_of(const NarrowPack<double> (&v)[4], double* sums) {
+  const auto pairs = [](auto a, auto b) {
+    return __builtin_shufflevector(a, b, 0, 1, 4, 5) +
+           __builtin_shufflevector(a, b, 2, 3, 6, 7);
+  };
+  const auto a = pairs(v[0], v[1]), b = pairs(v[2], v[3]);
+  store(sums,
+        __builtin_shufflevector(a, b, 0, 2, 4, 6) +
+            __builtin_shufflevector(a, b, 1, 3, 5, 7));
+}
+PHYSINV_LANES void sums_of(const NarrowPack<float> (&v)[4], float* sums) {
+  const auto halves = [](auto a, auto b) {
+    return __builtin_shufflevector(a, b, 0, 1, 2, 3, 8, 9, 10, 11) +
+           __builtin_shufflevector(a, b, 4, 5, 6, 7, 12, 13, 14, 15);
+  };
+  const auto a = halves(v[0], v[1]), b = halves(v[2], v[3]);
+  const auto pairs = __builtin_shufflevector(a, b, 0, 1, 4, 5, 8, 9, 12, 13) +
+                     __builtin_shufflevector(a, b, 2, 3, 6, 7, 10, 11, 14, 15);
+  store(sums,
+        __builtin_shufflevector(pairs, pairs, 0, 2, 4, 6) +
+            __builtin_shufflevector(pairs, pairs, 1, 3, 5, 7));
+}
+
+}  // namespace
+
 template <class T>
 void row_sums(Lanes<const T> x, T* sums) {
   using V = NarrowPack<T>;
@@ -160,10 +188,13 @@ void row_sums(Lanes<const T> x, T* sums) {
     for (Index j = 0; j < full; j += w)
 #pragma GCC unroll 4
       for (Index q = 0; q < kRows; ++q) sum[q] += load<V>(rows[q] + j);
-    for (Index q = 0; q <= last; ++q) {
-      if (full < x.samples) sum[q] += valid ? load<V>(rows[q] + full) : V{};
-      sums[i + q] = sum_of(sum[q]);
-    }
+    if (full < x.samples)
+#pragma GCC unroll 4
+      for (Index q = 0; q < kRows; ++q)
+        sum[q] += valid ? load<V>(rows[q] + full) : V{};
+    T four[kRows];
+    sums_of(sum, four);
+    std::copy_n(four, last + 1, sums + i);
   }
 }
 
