@@ -123,19 +123,30 @@ void all_outputs(const Product<T>& g,
       g, packed + i * g.depth, bias, i, out - i, columns);
 }
 
-/// Walks over the vectors of samples of a run's positions, lane by lane.
+/// Positions [first, first + count) of runs that are alike.
+struct Piece {
+  Index first, count;
+};
+
+/// Walks over the vectors of samples of all pieces' positions, lane by lane.
 template <class T, class V>
 struct Walk {
   Index x_step, y_step, lane0, vectors;  ///< per position
   const T* x;
   T* y;
-  Index position = 0, vector = 0;
+  const Piece* piece;
+  Index position = piece->first, last = piece->first + piece->count;
+  Index vector = 0;
 
   template <int N, bool kPair>
   Columns<T, V, N, kPair> next() {
     constexpr Index w = sizeof(V) / sizeof(T);
     Columns<T, V, N, kPair> c;
     for (int i = 0; i < c.kCount; ++i) {
+      if (position == last) {
+        ++piece;
+        position = piece->first, last = position + piece->count;
+      }
       const Index lane = lane0 + vector * w;
       c.x[i] = x + position * x_step + lane;
       c.y[i] = y + position * y_step + lane;
@@ -146,12 +157,12 @@ struct Walk {
 };
 
 template <class T, class V>
-void convolve_run(const Product<T>& g,
-                  const T* packed,
-                  const T* bias,
-                  Index out,
-                  Walk<T, V> walk,
-                  Index columns) {
+void convolve_pieces(const Product<T>& g,
+                     const T* packed,
+                     const T* bias,
+                     Index out,
+                     Walk<T, V> walk,
+                     Index columns) {
   const auto by = [&]<int N, bool kPair>() {
     constexpr Index kSome = Columns<T, V, N, kPair>::kCount;
     for (; columns >= kSome; columns -= kSome)
@@ -162,6 +173,34 @@ void convolve_run(const Product<T>& g,
   if constexpr (kPair) by.template operator()<1, true>();
   by.template operator()<2, false>();
   by.template operator()<1, false>();
+}
+
+/// Calls f(run, pieces, their positions) for positions [begin, end) of the runs
+/// from `run` on, those alike together: so the single positions at the edges
+/// of a plane's rows fill a tile.
+template <class F>
+void for_alike(const Run* run, const Run* last, Index begin, Index end, F&& f) {
+  constexpr Index kMost = 64;
+  while (run != last && run->first < end) {
+    // At most so many runs at once.
+    const Run* stop = run;
+    while (stop != last && stop->first < end && stop - run < kMost) ++stop;
+    std::uint64_t done = 0;
+    for (Index i = 0; i < stop - run; ++i) {
+      Piece pieces[kMost];
+      Index found = 0, count = 0;
+      for (Index j = i; j < stop - run; ++j) {
+        const Run& r = run[j];
+        if ((done >> j & 1) != 0 || r.alike != run[i].alike) continue;
+        done |= std::uint64_t{1} << j;
+        const Index first = std::max(begin, r.first);
+        pieces[found] = {first, std::min(end, r.first + r.count) - first};
+        count += pieces[found++].count;
+      }
+      if (found > 0) f(run[i], pieces, count);
+    }
+    run = stop;
+  }
 }
 
 /// How a row's lanes are cut into vectors.
@@ -214,37 +253,34 @@ void convolve(const ConvShape& shape,
   using Wide = Pack<T>;
   using Narrow = NarrowPack<T>;
   const Split<T> split(x.width);
-  const Index wide = split.wide, narrow = split.narrow;
-  const Index in = shape.in, out = shape.out;
-  for (const Run& run : runs) {
-    const Index first = std::max(begin, run.first);
-    const Index count = std::min(end, run.first + run.count) - first;
-    if (count <= 0) continue;
-    const Product<T> g{in,
+  const Index out = shape.out;
+  const Index x_step = shape.in * x.stride, y_step = out * x.stride;
+  const auto product = [&](const Run& like, const Piece* pieces, Index count) {
+    const Product<T> g{shape.in,
                        shape.depth(),
                        x.stride,
-                       run.segments.data(),
-                       static_cast<Index>(run.segments.size()),
+                       like.segments.data(),
+                       static_cast<Index>(like.segments.size()),
                        into};
-    const Index x_step = in * x.stride, y_step = out * x.stride;
-    const T* from = x.data + first * x_step;
-    T* to = y.data + first * y_step;
-    if (wide > 0)
-      convolve_run<T, Wide>(g,
-                            packed,
-                            bias,
-                            out,
-                            {x_step, y_step, 0, wide, from, to},
-                            wide * count);
-    if (narrow > 0)
-      convolve_run<T, Narrow>(
-          g,
-          packed,
-          bias,
-          out,
-          {x_step, y_step, wide * kLanes<T>, narrow, from, to},
-          narrow * count);
-  }
+    const auto by = [&]<class V>(Index lane0, Index vectors) {
+      if (vectors > 0)
+        convolve_pieces<T, V>(
+            g,
+            packed,
+            bias,
+            out,
+            {x_step, y_step, lane0, vectors, x.data, y.data, pieces},
+            vectors * count);
+    };
+    by.template operator()<Wide>(0, split.wide);
+    by.template operator()<Narrow>(split.wide * kLanes<T>, split.narrow);
+  };
+  const Run* const last = runs.data() + runs.size();
+  const Run* const some =
+      std::partition_point(runs.data(), last, [&](const Run& r) {
+        return r.first + r.count <= begin;
+      });
+  for_alike(some, last, begin, end, product);
 }
 
 #define PHYSINV_INSTANTIATE(T)                                   \

@@ -169,17 +169,23 @@ void Convolution<T>::forward(const LayerArgs<T>& at,
     pack_weights(shape_, term.weights, next);
     next += size;
   }
-  const Index per_block = this->per_block(y);
-  for_blocks(threads(at, y.samples), blocks(y), [&](Index block, int) {
-    const Index begin = block * per_block;
-    const Index end = std::min(begin + per_block, shape_.positions());
+  const Index per_block = this->per_block(y), blocks = this->blocks(y);
+  // Some at once, so that edges of a plane's rows come together.
+  Threads* const threads = this->threads(at, y.samples);
+  const Index users = threads == nullptr ? 1 : threads->count();
+  const Index some = std::clamp(blocks / (2 * users), Index{1}, Index{4});
+  for_blocks(threads, (blocks + some - 1) / some, [&](Index group, int) {
+    const Index first = group * some, last = std::min(first + some, blocks);
+    const Index begin = first * per_block;
+    const Index end = std::min(last * per_block, shape_.positions());
     const T* w = packed;
     for (const Term& term : terms) {
       const Into into = w == packed ? Into::nothing : Into::sum;
       convolve<T>(shape_, runs_, w, bias, term.x, y, begin, end, into);
       w += size;
     }
-    done(block, begin, end);
+    for (Index b = first; b < last; ++b)
+      done(b, b * per_block, std::min((b + 1) * per_block, end));
   });
 }
 

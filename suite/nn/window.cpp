@@ -1,6 +1,7 @@
 #include "suite/nn/window.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "suite/core/check.h"
 
@@ -32,6 +33,18 @@ std::vector<Segment> segments_at(
   return segments;
 }
 
+std::vector<Run> with_alike(std::vector<Run> runs) {
+  std::vector<Index> kinds;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const auto same = std::find_if(kinds.begin(), kinds.end(), [&](Index k) {
+      return runs[static_cast<std::size_t>(k)].segments == runs[i].segments;
+    });
+    runs[i].alike = same != kinds.end() ? *same : static_cast<Index>(i);
+    if (same == kinds.end()) kinds.push_back(runs[i].alike);
+  }
+  return runs;
+}
+
 /// Inside a row of `inputs`, output position p's first tap lies at p + first.
 std::vector<Run> row_runs(Index outputs,
                           Index inputs,
@@ -45,10 +58,10 @@ std::vector<Run> row_runs(Index outputs,
     if (!runs.empty() && runs.back().segments == segments) {
       ++runs.back().count;
     } else {
-      runs.push_back({p, 1, segments});
+      runs.push_back({.first = p, .count = 1, .segments = segments});
     }
   }
-  return runs;
+  return with_alike(std::move(runs));
 }
 
 }  // namespace
@@ -76,10 +89,11 @@ std::vector<Run> window_runs(Grid grid, Taps taps, Padding padding) {
     if (!runs.empty() && runs.back().segments == segments) {
       runs.back().count += count;
     } else {
-      runs.push_back({p, count, std::move(segments)});
+      runs.push_back(
+          {.first = p, .count = count, .segments = std::move(segments)});
     }
   }
-  return runs;
+  return with_alike(std::move(runs));
 }
 
 std::vector<Run> flipped_runs(Grid grid, Taps taps, Padding padding) {

@@ -24,6 +24,7 @@ struct Segment {
 struct Run {
   Index first = 0, count = 0;
   std::vector<Segment> segments;
+  Index alike = 0;  ///< the first run with these segments
 };
 
 /// Odd numbers of taps per axis, centred, stride 1; tap = row of taps * x + x.
