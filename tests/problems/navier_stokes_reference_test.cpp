@@ -299,11 +299,11 @@ template <class T>
 void check_scene(const Json& entry) {
   const Json in = entry.at("inputs"), out = entry.at("outputs");
   const Json tolerance = entry.at("tolerance");
-  constexpr bool kSingle = sizeof(T) == 4;
-  const double loss_rel = kSingle ? 1e-3 : number(tolerance.at("loss_rel"));
-  const double probe = kSingle ? 1e-2 : number(tolerance.at("probe_abs"));
+  constexpr bool kFloat = sizeof(T) == 4;
+  const double loss_rel = kFloat ? 1e-3 : number(tolerance.at("loss_rel"));
+  const double probe = kFloat ? 1e-2 : number(tolerance.at("probe_abs"));
   const double gradient_rel =
-      kSingle ? 5e-2 : number(tolerance.at("grad_rel_to_max"));
+      kFloat ? 5e-2 : number(tolerance.at("grad_rel_to_max"));
   NavierStokesOptions o;
   o.steps = in.at("steps").get<Index>(), o.end_time = in.at("T");
   const NavierStokes<T> problem(o);
@@ -349,7 +349,7 @@ void check_scene(const Json& entry) {
   check_probes(y.col(0), out.at("final_probes_first_z"));
   // Where a z is the truth, rounding of the data is all that float has left.
   expect_near(
-      loss, vector(out.at("loss")), loss_rel, kSingle ? 1e-5 : 0, "loss");
+      loss, vector(out.at("loss")), loss_rel, kFloat ? 1e-5 : 0, "loss");
   const auto check_gradient = [&](const Batch<double>& got, const char* key) {
     const Batch<double> expected = columns(out.at(key));
     expect_near(
@@ -363,7 +363,7 @@ void check_scene(const Json& entry) {
     gradient(1, k) /= 5, gradient(2, k) /= 5;
   }
   check_gradient(gradient, "grad_xi");
-  if constexpr (!kSingle) {
+  if constexpr (!kFloat) {
     if (out.contains("bfgs"))
       check_informational(problem, given, all, out.at("bfgs"));
   }
