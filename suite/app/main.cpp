@@ -101,7 +101,7 @@ bool answered(const std::string& flag) {
 ExitCode dispatch(Arguments arguments) {
   refuse_empty(arguments);
   // Without registering, which takes longer than all else.
-  if (!arguments.empty() && answered(arguments[0])) return ExitCode::good;
+  if (arguments.size() == 1 && answered(arguments[0])) return ExitCode::good;
   register_all(registry());
   load_plugins(arguments);
   if (arguments.empty()) return run_verb(arguments);

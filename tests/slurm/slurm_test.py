@@ -14,8 +14,9 @@ import time
 BENCH = os.path.realpath(sys.argv[1])  # as the program names itself
 HERE = os.path.dirname(os.path.abspath(__file__))
 FAILED = []
+# Some seconds a task: journals are written every two.
 SELECTION = ["--profile=quick", "--filter=jpo/billiards/(jpo|na|supervised)/",
-             "--set=seeds=0-2"]
+             "--set=seeds=0-4"]
 
 
 def check(condition, what):
@@ -86,7 +87,7 @@ def logs(directory):
 
 
 def submit(directory, *more):
-    p = bench("submit", "--slurm", directory, *SELECTION, "--tasks=4", *more)
+    p = bench("submit", "--slurm", directory, *SELECTION, "--tasks=2", *more)
     check(p.returncode == 0, f"submit: {p.stdout.strip()}{p.stderr.strip()}")
     return p.stdout.split(":")[0].removeprefix("job ")
 
