@@ -24,6 +24,12 @@ struct Span {
   Index first, count, shift;
 };
 
+/// Of a run, positions [begin, end).
+Span part_of(const Run& run, Index begin, Index end) {
+  const Index first = std::max(begin, run.first);
+  return {first, std::min(end, run.first + run.count) - first, 0};
+}
+
 /// What the tiles of some taps share: sums += y[p][o] x[p + shift][k] over all
 /// spans. Steps are distances in memory, of positions, rows, and outputs.
 template <class T>
@@ -140,17 +146,16 @@ void weights_by_tap(Sweep<T> g,
   for (Index tap = 0; tap < shape.taps.count(); ++tap) {
     Span* next = spans;
     for (const Run* r = run; r != last && r->first < end; ++r) {
-      const Index first = std::max(begin, r->first);
-      const Index count = std::min(end, r->first + r->count) - first;
+      Span span = part_of(*r, begin, end);
       for (const Segment& s : r->segments) {
         if (tap < s.tap || tap >= s.tap + s.taps) continue;
-        const Index shift = s.shift + tap - s.tap;
-        const bool goes_on = next != spans && next[-1].shift == shift &&
-                             next[-1].first + next[-1].count == first;
+        span.shift = s.shift + tap - s.tap;
+        const bool goes_on = next != spans && next[-1].shift == span.shift &&
+                             next[-1].first + next[-1].count == span.first;
         if (goes_on) {
-          next[-1].count += count;
+          next[-1].count += span.count;
         } else {
-          *next++ = {first, count, shift};
+          *next++ = span;
         }
       }
     }
@@ -172,8 +177,7 @@ void weights_by_run(Sweep<T> g,
   constexpr Index w = sizeof(V) / sizeof(T);
   T* const sums = g.sums;
   for (; run != last && run->first < end; ++run) {
-    const Index first = std::max(begin, run->first);
-    Span span{first, std::min(end, run->first + run->count) - first, 0};
+    Span span = part_of(*run, begin, end);
     g.spans = &span, g.span_count = 1;
     for (const Segment& s : run->segments) {
       span.shift = s.shift;
@@ -267,35 +271,22 @@ void order_weights(const ConvShape& shape, const T* totals, T* weights_bar) {
 }
 
 template <class T>
-void finish_weights(const ConvShape& shape,
-                    const T* sums,
-                    Index parts,
-                    T* totals,
-                    T* weights_bar) {
-  std::fill_n(totals, shape.weights(), T(0));
-  for (Index part = 0; part < parts; ++part, sums += weight_sums<T>(shape))
-    add_weights(shape, sums, totals);
-  order_weights(shape, totals, weights_bar);
-}
-
-template <class T>
 Index positions_per_block(Lanes<const T> x, Index channels) {
   const Index bytes = channels * x.stride * static_cast<Index>(sizeof(T));
   return std::max<Index>(1, kBlockBytes / bytes);
 }
 
-#define PHYSINV_INSTANTIATE(T)                                                \
-  template Index weight_sums<T>(const ConvShape&);                            \
-  template void accumulate_weights<T>(const ConvShape&,                       \
-                                      const std::vector<Run>&,                \
-                                      Lanes<const T>,                         \
-                                      Lanes<const T>,                         \
-                                      Index,                                  \
-                                      Index,                                  \
-                                      T*);                                    \
-  template void add_weights<T>(const ConvShape&, const T*, T*);               \
-  template void order_weights<T>(const ConvShape&, const T*, T*);             \
-  template void finish_weights<T>(const ConvShape&, const T*, Index, T*, T*); \
+#define PHYSINV_INSTANTIATE(T)                                    \
+  template Index weight_sums<T>(const ConvShape&);                \
+  template void accumulate_weights<T>(const ConvShape&,           \
+                                      const std::vector<Run>&,    \
+                                      Lanes<const T>,             \
+                                      Lanes<const T>,             \
+                                      Index,                      \
+                                      Index,                      \
+                                      T*);                        \
+  template void add_weights<T>(const ConvShape&, const T*, T*);   \
+  template void order_weights<T>(const ConvShape&, const T*, T*); \
   template Index positions_per_block<T>(Lanes<const T>, Index);
 PHYSINV_INSTANTIATE(float)
 PHYSINV_INSTANTIATE(double)

@@ -3,6 +3,10 @@
 /// up at the end.
 #pragma once
 
+#include <algorithm>
+#include <vector>
+
+#include "suite/core/workspace.h"
 #include "suite/nn/conv_kernels.h"
 
 namespace physinv::nn {
@@ -30,13 +34,46 @@ void add_weights(const ConvShape& shape, const T* sums, T* totals);
 template <class T>
 void order_weights(const ConvShape& shape, const T* totals, T* weights_bar);
 
-/// Both, of `parts` arrays of sums. totals: room for as many.
+/// The weight gradient's partial sums: an array a part, or one for all parts if
+/// they come in turn, which then stays in the caches.
 template <class T>
-void finish_weights(const ConvShape& shape,
-                    const T* sums,
-                    Index parts,
-                    T* totals,
-                    T* weights_bar);
+class WeightSums {
+ public:
+  WeightSums(const ConvShape& shape, Index parts, bool in_turn, Workspace& work)
+      : shape_(shape),
+        parts_(parts),
+        in_turn_(in_turn),
+        size_(weight_sums<T>(shape)),
+        sums_(work.take<T>(size_, in_turn ? 1 : parts).data()),
+        totals_(work.take<T>(shape.weights(), 1).data()) {
+    std::fill_n(totals_, shape.weights(), T(0));
+  }
+
+  /// Zeros to add to.
+  T* begin(Index part) const {
+    T* const sums = at(part);
+    std::fill_n(sums, size_, T(0));
+    return sums;
+  }
+  void end(Index part) const {
+    if (in_turn_) add_weights(shape_, at(part), totals_);
+  }
+  void finish(T* weights_bar) const {
+    for (Index part = 0; part < parts_ && !in_turn_; ++part)
+      add_weights(shape_, at(part), totals_);
+    order_weights(shape_, totals_, weights_bar);
+  }
+
+ private:
+  T* at(Index part) const { return sums_ + (in_turn_ ? 0 : part * size_); }
+
+  const ConvShape& shape_;
+  Index parts_;
+  bool in_turn_;
+  Index size_;
+  T* sums_;
+  T* totals_;
+};
 
 /// Positions of a block that should stay in the L1 cache, by shape and samples
 /// alone.

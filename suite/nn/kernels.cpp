@@ -326,17 +326,19 @@ void conv_forward(benchmark::State& state) {
 
 void conv_weights(benchmark::State& state) {
   Field f(state);
-  Vector<float> sums(weight_sums<float>(f.shape));
+  Workspace work;
   for (auto _ : state) {
-    sums.setZero();
+    const Workspace::Scope scope(work);
+    const WeightSums<float> sums(f.shape, 1, true, work);
     accumulate_weights<float>(f.shape,
                               f.runs,
                               f.x.lanes,
                               f.y.lanes,
                               0,
                               f.shape.positions(),
-                              sums.data());
-    finish_weights(f.shape, sums.data(), 1, f.packed.data(), f.weights.data());
+                              sums.begin(0));
+    sums.end(0);
+    sums.finish(f.weights.data());
     benchmark::ClobberMemory();
   }
   flops(state, f.flops());

@@ -1,6 +1,7 @@
 #include "suite/nn/spectral.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "suite/core/blocks.h"
 #include "suite/nn/activation.h"
@@ -262,10 +263,8 @@ void SpectralBlock<T>::pull_rows(const Product& at,
   const ConvShape shape{{shared_.columns, 1}, c, c, {1, 1}};
   const auto runs = window_runs(shape.grid, shape.taps, Padding::zero);
   const Index parts = std::min(kMostParts, o_.from.rows);
-  const Index size = weight_sums<T>(shape);
-  const bool weights = b.parameters_bar != nullptr;
-  T* const totals = all.take<T>(size, parts + 1).data();
-  std::fill_n(totals, size * parts, T(0));
+  std::optional<WeightSums<T>> sums;
+  if (b.parameters_bar != nullptr) sums.emplace(shape, parts, false, all);
   const auto pull_row = [&](Index r, T* part, Workspace& work) {
     const Workspace::Scope scope(work);
     const Lanes<const T> y_bar =
@@ -273,8 +272,7 @@ void SpectralBlock<T>::pull_rows(const Product& at,
             ? rows_from(b.y_bar, r * o_.to.columns * c, shared_.columns * c)
             : Lanes<const T>();
     const Lanes<const T> x = rows_from(b.x, r * columns * c, columns * c);
-    if (weights && meets(r))
-      pull_local(shape, runs, at.f, x, y_bar, part, work);
+    if (sums && meets(r)) pull_local(shape, runs, at.f, x, y_bar, part, work);
     if (!b.x_bar) return;
     T* const row = work.take<T>(pitch, columns).data();
     in().synthesise_row(t, r, block, row);
@@ -287,15 +285,11 @@ void SpectralBlock<T>::pull_rows(const Product& at,
   };
   for_blocks(all, parts, [&](Index part, Workspace& work) {
     const Index end = o_.from.rows * (part + 1) / parts;
+    T* const part_sums = sums ? sums->begin(part) : nullptr;
     for (Index r = o_.from.rows * part / parts; r < end; ++r)
-      pull_row(r, totals + part * size, work);
+      pull_row(r, part_sums, work);
   });
-  if (weights)
-    finish_weights<T>(shape,
-                      totals,
-                      parts,
-                      totals + size * parts,
-                      b.parameters_bar + product_.parameter_count());
+  if (sums) sums->finish(b.parameters_bar + product_.parameter_count());
 }
 
 // --------------------------------------------------------- forward mode
