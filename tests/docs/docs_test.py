@@ -5,7 +5,8 @@ README is short, every link leads to a file and place, commands have the verbs a
 flags of the program, counts are the program's and verdicts those of RESULTS.md,
 where what is not reproduced has a cause. Pages of papers have no measured numbers:
 those stand on pages that the program writes. The table of features has a sign of
-each suite. The baseline of CI has all cases of its profile.
+each suite. The baseline of CI has all cases of its profile. A source that a page or
+a comment names is there.
 """
 
 import functools
@@ -42,6 +43,40 @@ def dead_links(name, text):
             yield f"{name}: the link '{target}' leads nowhere"
         elif place and path.endswith(".md") and place not in places_of(path):
             yield f"{name}: '{target}' has no '#{place}'"
+
+
+# Of Google Benchmark, and examples.
+OTHER_SOURCES = {"compare.py", "x.h", "x.cpp"}
+
+
+@functools.cache
+def ends_of_paths():
+    """Of each source all that a page may call it: c.h, b/c.h, a/b/c.h."""
+    ends = set()
+    for top in ("suite", "problems", "optimizers", "baselines", "reports",
+                "tests", "python", "examples", "cmake"):
+        for folder, _, names in os.walk(os.path.join(SOURCES, top)):
+            parts = os.path.relpath(folder, SOURCES).split(os.sep)
+            ends |= {"/".join([*parts[k:], name]) for name in names
+                     for k in range(len(parts) + 1)}
+    return ends
+
+
+def lost_sources(name, text):
+    for source in re.findall(
+            r"(?<![\w/.*<-])((?:\w+/)*[a-z_]\w*\.(?:h|cpp|py|cmake))\b", text):
+        if source not in ends_of_paths() | OTHER_SOURCES:
+            yield f"{name}: there is no '{source}'"
+
+
+def lost_in_comments():
+    for top in ("suite", "problems", "optimizers", "baselines", "reports"):
+        for folder, _, names in os.walk(os.path.join(SOURCES, top)):
+            for name in names:
+                if name.endswith((".h", ".cpp")):
+                    path = os.path.relpath(os.path.join(folder, name), SOURCES)
+                    comments = re.findall(r"//.*", read(path))
+                    yield from lost_sources(path, "\n".join(comments))
 
 
 @functools.cache
@@ -193,14 +228,15 @@ def unexplained():
 
 def main():
     wrong = [*wrong_counts(), *wrong_verdicts(), *unexplained(), *features(),
-             *baseline()]
+             *baseline(), *lost_in_comments()]
     lines = read("README.md").count("\n")
     if lines > LINES_OF_README:
         wrong.append(f"README.md has {lines} lines, of {LINES_OF_README}")
     checked = 0
     for name, text in pages(SOURCES):
         wrong += [*dead_links(name, text), *unknown_words(name, text),
-                  *measured(name, text)]
+                  *measured(name, text),
+                  *lost_sources(name, "\n".join(re.findall("`[^`\n]*`", text)))]
         checked += len(list(commands(text)))
     if checked < 20:
         wrong.append(f"only {checked} commands found")
