@@ -16,7 +16,7 @@ set(physinv_exported physinv physinv_flags)
 set_target_properties(physinv_flags PROPERTIES EXPORT_NAME flags)
 set(layers ${physinv_numbers})
 list(FILTER layers EXCLUDE REGEX "_numbers$")  # of experiments
-foreach(layer ${layers} decompositions nn problems optimizers results evidence
+foreach(layer ${layers} decompositions nn problems optimizers store results evidence
                build_info harness)
   target_link_libraries(physinv INTERFACE physinv_${layer})
   list(APPEND physinv_exported physinv_${layer})

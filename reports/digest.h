@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "suite/results/record.h"
 #include "suite/results/report_model.h"
+#include "suite/store/record.h"
 
 namespace physinv {
 

@@ -9,8 +9,8 @@
 #include <stdexcept>
 
 #include "reports/panel.h"
-#include "suite/results/file.h"
-#include "suite/results/json.h"
+#include "suite/store/file.h"
+#include "suite/store/json.h"
 
 namespace physinv {
 namespace {

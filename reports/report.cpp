@@ -11,8 +11,8 @@
 #include "reports/plot.h"
 #include "reports/tables.h"
 #include "reports/vega_lite.h"
-#include "suite/results/file.h"
-#include "suite/results/folder.h"
+#include "suite/store/file.h"
+#include "suite/store/folder.h"
 
 namespace physinv {
 namespace {

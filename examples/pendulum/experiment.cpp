@@ -4,7 +4,7 @@
 #include "pendulum.h"
 #include "suite/evidence/claim.h"
 #include "suite/harness/registry.h"
-#include "suite/results/record.h"
+#include "suite/store/record.h"
 
 namespace pendulum {
 namespace {

@@ -10,7 +10,7 @@
 #include "python/module/solving.h"
 #include "suite/app/verbs.h"
 #include "suite/harness/registry.h"
-#include "suite/results/errors.h"
+#include "suite/store/errors.h"
 
 namespace physinv::python {
 namespace {

@@ -5,12 +5,12 @@
 #include <algorithm>
 
 #include "python/module/arrays.h"
-#include "suite/results/catalog.h"
-#include "suite/results/missing_work.h"
-#include "suite/results/repetitions.h"
 #include "suite/results/results.h"
-#include "suite/results/results_file.h"
 #include "suite/results/tidy.h"
+#include "suite/store/catalog.h"
+#include "suite/store/missing_work.h"
+#include "suite/store/repetitions.h"
+#include "suite/store/results_file.h"
 
 namespace physinv::python {
 namespace {

@@ -14,7 +14,7 @@
 #include "suite/harness/build_info.h"
 #include "suite/harness/registry.h"
 #include "suite/harness/select.h"
-#include "suite/results/file.h"
+#include "suite/store/file.h"
 
 namespace physinv {
 namespace {

@@ -20,7 +20,7 @@
 #include "suite/harness/judge.h"
 #include "suite/harness/registry.h"
 #include "suite/harness/screen.h"
-#include "suite/results/file.h"
+#include "suite/store/file.h"
 
 namespace physinv {
 namespace {

@@ -17,9 +17,9 @@
 #include "suite/harness/output.h"
 #include "suite/harness/registry.h"
 #include "suite/planning/forecast.h"
-#include "suite/results/folder.h"
 #include "suite/results/shortened.h"
 #include "suite/results/verdict_words.h"
+#include "suite/store/folder.h"
 
 namespace physinv {
 namespace {

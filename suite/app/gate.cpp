@@ -11,7 +11,7 @@
 #include "suite/gate/paired_timing.h"
 #include "suite/harness/context.h"
 #include "suite/harness/progress.h"
-#include "suite/results/file.h"
+#include "suite/store/file.h"
 
 namespace physinv {
 namespace {

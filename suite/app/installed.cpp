@@ -10,7 +10,7 @@
 #include "suite/harness/context.h"
 #include "suite/harness/errors.h"
 #include "suite/harness/outside.h"
-#include "suite/results/file.h"
+#include "suite/store/file.h"
 
 namespace physinv {
 

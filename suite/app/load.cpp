@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "suite/app/options.h"
-#include "suite/results/results_file.h"
-#include "suite/results/results_json.h"
+#include "suite/store/results_file.h"
+#include "suite/store/results_json.h"
 
 namespace physinv {
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <string_view>
 
-#include "suite/results/catalog.h"
-#include "suite/results/missing_work.h"
 #include "suite/results/results.h"
+#include "suite/store/catalog.h"
+#include "suite/store/missing_work.h"
 
 namespace physinv {
 

@@ -23,7 +23,7 @@
 #include "suite/harness/nearest.h"
 #include "suite/harness/output.h"
 #include "suite/harness/registry.h"
-#include "suite/results/errors.h"
+#include "suite/store/errors.h"
 
 namespace physinv {
 namespace {

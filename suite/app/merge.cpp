@@ -1,4 +1,4 @@
-#include "suite/results/merge.h"
+#include "suite/store/merge.h"
 
 #include <fmt/format.h>
 

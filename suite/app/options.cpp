@@ -16,8 +16,8 @@
 #include "suite/harness/registry_errors.h"
 #include "suite/harness/select.h"
 #include "suite/harness/words.h"
-#include "suite/results/file.h"
-#include "suite/results/plan.h"
+#include "suite/store/file.h"
+#include "suite/store/plan.h"
 
 namespace physinv {
 namespace {

@@ -13,8 +13,8 @@
 #include "suite/harness/progress.h"
 #include "suite/planning/forecast.h"
 #include "suite/planning/split.h"
-#include "suite/results/curves.h"
-#include "suite/results/file.h"
+#include "suite/store/case_file.h"
+#include "suite/store/file.h"
 
 namespace physinv {
 namespace {

@@ -14,7 +14,7 @@
 #include "suite/harness/output.h"
 #include "suite/harness/outside.h"
 #include "suite/harness/registry.h"
-#include "suite/results/file.h"
+#include "suite/store/file.h"
 
 namespace physinv {
 namespace {

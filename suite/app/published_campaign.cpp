@@ -5,12 +5,12 @@
 #include <map>
 #include <string>
 
-#include "suite/results/file.h"
-#include "suite/results/folder.h"
-#include "suite/results/json.h"
 #include "suite/results/loss_summary.h"
-#include "suite/results/results_file.h"
-#include "suite/results/results_json.h"
+#include "suite/store/file.h"
+#include "suite/store/folder.h"
+#include "suite/store/json.h"
+#include "suite/store/results_file.h"
+#include "suite/store/results_json.h"
 
 namespace physinv {
 namespace {

@@ -13,10 +13,10 @@
 #include "suite/evidence/claim.h"
 #include "suite/harness/errors.h"
 #include "suite/harness/registry.h"
-#include "suite/results/file.h"
-#include "suite/results/json.h"
-#include "suite/results/results_file.h"
-#include "suite/results/results_json.h"
+#include "suite/store/file.h"
+#include "suite/store/json.h"
+#include "suite/store/results_file.h"
+#include "suite/store/results_json.h"
 
 namespace physinv {
 namespace {

@@ -17,8 +17,8 @@
 #include "suite/harness/expected.h"
 #include "suite/harness/outside.h"
 #include "suite/harness/screen.h"
-#include "suite/results/file.h"
-#include "suite/results/folder.h"
+#include "suite/store/file.h"
+#include "suite/store/folder.h"
 
 namespace physinv {
 namespace {

@@ -17,9 +17,9 @@
 #include "suite/app/options.h"
 #include "suite/app/published_campaign.h"
 #include "suite/app/sections.h"
-#include "suite/results/file.h"
-#include "suite/results/folder.h"
 #include "suite/results/published.h"
+#include "suite/store/file.h"
+#include "suite/store/folder.h"
 
 namespace physinv {
 namespace {

@@ -21,12 +21,12 @@
 #include "suite/harness/progress.h"
 #include "suite/harness/stop_signal.h"
 #include "suite/planning/forecast.h"
-#include "suite/results/catalog.h"
 #include "suite/results/crowded.h"
-#include "suite/results/file.h"
-#include "suite/results/repetitions.h"
 #include "suite/results/results.h"
-#include "suite/results/store.h"
+#include "suite/store/catalog.h"
+#include "suite/store/file.h"
+#include "suite/store/repetitions.h"
+#include "suite/store/store.h"
 
 namespace physinv {
 namespace {

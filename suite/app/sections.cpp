@@ -13,13 +13,13 @@
 #include "reports/joined_tables.h"
 #include "reports/printed_curves.h"
 #include "suite/app/installed.h"
+#include "suite/evidence/convergence_history.h"
+#include "suite/evidence/performance_profiles.h"
 #include "suite/evidence/standings.h"
 #include "suite/evidence/work_precision.h"
 #include "suite/harness/judge.h"
 #include "suite/harness/registry.h"
-#include "suite/results/convergence_history.h"
 #include "suite/results/crowded.h"
-#include "suite/results/performance_profiles.h"
 
 namespace physinv {
 namespace {

@@ -10,7 +10,7 @@
 #include "suite/planning/predict.h"
 #include "suite/planning/split.h"
 #include "suite/planning/submission.h"
-#include "suite/results/file.h"
+#include "suite/store/file.h"
 
 namespace physinv {
 namespace {

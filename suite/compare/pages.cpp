@@ -8,8 +8,8 @@
 #include <map>
 #include <set>
 
+#include "suite/evidence/performance_profiles.h"
 #include "suite/evidence/standings.h"
-#include "suite/results/performance_profiles.h"
 #include "suite/results/shortened.h"
 #include "suite/results/verdict_words.h"
 

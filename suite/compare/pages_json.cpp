@@ -2,8 +2,8 @@
 #include <nlohmann/json.hpp>
 
 #include "suite/compare/pages.h"
-#include "suite/results/json.h"
 #include "suite/results/verdict_words.h"
+#include "suite/store/json.h"
 
 namespace physinv {
 namespace {

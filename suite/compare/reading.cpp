@@ -7,8 +7,8 @@
 
 #include "suite/evidence/statistics.h"
 #include "suite/results/crowded.h"
-#include "suite/results/curves.h"
-#include "suite/results/repetitions.h"
+#include "suite/store/case_file.h"
+#include "suite/store/repetitions.h"
 
 namespace physinv {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "suite/evidence/rank_test.h"
 #include "suite/results/ends.h"
-#include "suite/results/record.h"
+#include "suite/store/record.h"
 
 namespace physinv {
 

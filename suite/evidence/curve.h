@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "suite/results/record.h"
+#include "suite/store/record.h"
 
 namespace physinv {
 

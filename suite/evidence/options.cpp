@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "suite/results/errors.h"
+#include "suite/store/errors.h"
 
 namespace physinv {
 

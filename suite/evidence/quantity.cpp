@@ -10,7 +10,7 @@
 #include "suite/evidence/training.h"
 #include "suite/results/crowded.h"
 #include "suite/results/published.h"
-#include "suite/results/record.h"
+#include "suite/store/record.h"
 
 namespace physinv {
 namespace {

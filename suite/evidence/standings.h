@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "suite/evidence/common_runs.h"
 #include "suite/evidence/rank_test.h"
-#include "suite/results/common_runs.h"
 #include "suite/results/report_model.h"
 
 namespace physinv {

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "suite/evidence/cell.h"
+#include "suite/evidence/performance_profiles.h"
 #include "suite/evidence/running_time.h"
 #include "suite/evidence/standings.h"
-#include "suite/results/performance_profiles.h"
 
 namespace physinv {
 namespace {

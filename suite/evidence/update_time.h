@@ -6,7 +6,7 @@
 
 #include "suite/evidence/cell.h"
 #include "suite/evidence/statistics.h"
-#include "suite/results/record.h"
+#include "suite/store/record.h"
 
 namespace physinv {
 

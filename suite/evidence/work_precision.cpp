@@ -9,8 +9,8 @@
 #include <tuple>
 
 #include "suite/evidence/cell.h"
+#include "suite/evidence/convergence_history.h"
 #include "suite/evidence/statistics.h"
-#include "suite/results/convergence_history.h"
 
 namespace physinv {
 namespace {

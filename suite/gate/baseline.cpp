@@ -13,8 +13,8 @@
 #include "suite/harness/build_info.h"
 #include "suite/harness/context.h"
 #include "suite/harness/revision.h"
-#include "suite/results/checksum.h"
-#include "suite/results/file.h"
+#include "suite/store/checksum.h"
+#include "suite/store/file.h"
 
 namespace physinv {
 namespace {

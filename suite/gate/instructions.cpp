@@ -8,7 +8,7 @@
 
 #include "suite/harness/child.h"
 #include "suite/harness/context.h"
-#include "suite/results/file.h"
+#include "suite/store/file.h"
 
 namespace physinv {
 namespace {

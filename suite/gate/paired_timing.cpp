@@ -11,9 +11,9 @@
 #include "suite/core/rng.h"
 #include "suite/harness/child.h"
 #include "suite/harness/select.h"
-#include "suite/results/results_file.h"
-#include "suite/results/results_json.h"
-#include "suite/results/store.h"
+#include "suite/store/results_file.h"
+#include "suite/store/results_json.h"
+#include "suite/store/store.h"
 
 namespace physinv {
 namespace {

@@ -14,7 +14,7 @@
 #include "suite/core/median.h"
 #include "suite/core/rng.h"
 #include "suite/gate/digits.h"
-#include "suite/results/checksum.h"
+#include "suite/store/checksum.h"
 
 namespace physinv {
 namespace {

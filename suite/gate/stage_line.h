@@ -13,7 +13,7 @@
 #include <string_view>
 
 #include "suite/results/ends.h"
-#include "suite/results/record.h"
+#include "suite/store/record.h"
 
 namespace physinv {
 

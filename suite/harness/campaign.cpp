@@ -16,8 +16,8 @@
 #include "suite/harness/run_case.h"
 #include "suite/harness/stop_signal.h"
 #include "suite/harness/workers.h"
-#include "suite/results/errors.h"
-#include "suite/results/store.h"
+#include "suite/store/errors.h"
+#include "suite/store/store.h"
 
 namespace physinv {
 namespace {

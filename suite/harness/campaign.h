@@ -12,7 +12,7 @@
 #include "suite/harness/case.h"
 #include "suite/harness/prepare.h"
 #include "suite/harness/screen.h"
-#include "suite/results/plan.h"
+#include "suite/store/plan.h"
 
 namespace physinv {
 

@@ -16,9 +16,9 @@
 #include "suite/core/recipe.h"
 #include "suite/evidence/claim.h"
 #include "suite/results/published.h"
-#include "suite/results/record.h"
 #include "suite/results/report_model.h"
 #include "suite/results/results.h"
+#include "suite/store/record.h"
 
 namespace physinv {
 

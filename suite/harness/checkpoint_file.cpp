@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "suite/core/clock.h"
-#include "suite/results/errors.h"
-#include "suite/results/stage_state.h"
+#include "suite/store/errors.h"
+#include "suite/store/stage_state.h"
 
 namespace physinv {
 

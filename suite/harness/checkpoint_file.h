@@ -1,10 +1,10 @@
-/// Checkpoints of a worker: states in files (suite/results/stage_state.h).
+/// Checkpoints of a worker: states in files (suite/store/stage_state.h).
 #pragma once
 
 #include <filesystem>
 
 #include "suite/core/checkpoint.h"
-#include "suite/results/record.h"
+#include "suite/store/record.h"
 
 namespace physinv {
 

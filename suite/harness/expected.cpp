@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "suite/harness/errors.h"
-#include "suite/results/file.h"
 #include "suite/results/verdict_words.h"
+#include "suite/store/file.h"
 
 namespace physinv {
 

@@ -7,8 +7,8 @@
 
 #include "suite/harness/keys.h"
 #include "suite/harness/registry.h"
-#include "suite/results/json.h"
-#include "suite/results/store.h"
+#include "suite/store/json.h"
+#include "suite/store/store.h"
 
 namespace physinv {
 namespace {

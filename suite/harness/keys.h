@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "suite/harness/case.h"
-#include "suite/results/plan.h"
+#include "suite/store/plan.h"
 
 namespace physinv {
 

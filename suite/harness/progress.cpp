@@ -7,10 +7,10 @@
 #include <string_view>
 
 #include "suite/core/clock.h"
+#include "suite/evidence/convergence_history.h"
 #include "suite/harness/context.h"
 #include "suite/harness/output.h"
 #include "suite/harness/run_case.h"
-#include "suite/results/convergence_history.h"
 
 namespace physinv {
 namespace {

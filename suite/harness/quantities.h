@@ -9,7 +9,7 @@
 
 #include <string>
 
-#include "suite/results/record.h"
+#include "suite/store/record.h"
 
 namespace physinv {
 

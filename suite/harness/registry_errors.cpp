@@ -13,7 +13,7 @@
 #include "suite/harness/judge.h"
 #include "suite/harness/outside.h"
 #include "suite/harness/sources.h"
-#include "suite/results/names.h"
+#include "suite/store/names.h"
 
 namespace physinv {
 namespace {

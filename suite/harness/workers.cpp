@@ -15,7 +15,7 @@
 
 #include "suite/core/clock.h"
 #include "suite/harness/errors.h"
-#include "suite/results/json.h"
+#include "suite/store/json.h"
 
 namespace physinv {
 namespace {

@@ -21,7 +21,7 @@
 #include "suite/planning/operation_rates.h"
 #include "suite/planning/split.h"
 #include "suite/planning/trials.h"
-#include "suite/results/errors.h"
+#include "suite/store/errors.h"
 
 namespace physinv {
 namespace {

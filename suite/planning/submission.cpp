@@ -14,8 +14,8 @@
 #include "suite/harness/context.h"
 #include "suite/harness/errors.h"
 #include "suite/harness/output.h"
-#include "suite/results/catalog.h"
-#include "suite/results/file.h"
+#include "suite/store/catalog.h"
+#include "suite/store/file.h"
 
 namespace physinv {
 namespace {

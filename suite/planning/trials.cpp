@@ -13,8 +13,8 @@
 #include "suite/harness/keys.h"
 #include "suite/harness/registry.h"
 #include "suite/harness/run_case.h"
-#include "suite/results/folder.h"
-#include "suite/results/json.h"
+#include "suite/store/folder.h"
+#include "suite/store/json.h"
 
 namespace physinv {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "suite/results/record.h"
-#include "suite/results/repetitions.h"
+#include "suite/store/record.h"
+#include "suite/store/repetitions.h"
 
 namespace physinv {
 

@@ -8,10 +8,10 @@
 #include <numeric>
 
 #include "suite/core/median.h"
-#include "suite/results/catalog.h"
-#include "suite/results/missing_work.h"
-#include "suite/results/plan.h"
-#include "suite/results/results_json.h"
+#include "suite/store/catalog.h"
+#include "suite/store/missing_work.h"
+#include "suite/store/plan.h"
+#include "suite/store/results_json.h"
 
 namespace physinv {
 namespace {

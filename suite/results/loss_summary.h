@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "suite/results/record.h"
+#include "suite/store/record.h"
 
 namespace physinv {
 

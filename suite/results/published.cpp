@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "suite/results/file.h"
-#include "suite/results/json.h"
+#include "suite/store/file.h"
+#include "suite/store/json.h"
 
 namespace physinv {
 namespace {

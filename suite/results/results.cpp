@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <set>
 
-#include "suite/results/catalog.h"
+#include "suite/store/catalog.h"
 
 namespace physinv {
 namespace {

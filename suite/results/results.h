@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "suite/results/record.h"
+#include "suite/store/record.h"
 
 namespace physinv {
 

@@ -4,11 +4,11 @@
 
 #include <cmath>
 
-#include "suite/results/catalog.h"
 #include "suite/results/csv.h"
 #include "suite/results/exports.h"
-#include "suite/results/missing_work.h"
-#include "suite/results/repetitions.h"
+#include "suite/store/catalog.h"
+#include "suite/store/missing_work.h"
+#include "suite/store/repetitions.h"
 
 namespace physinv {
 namespace {

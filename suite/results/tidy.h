@@ -15,7 +15,7 @@
 #include <variant>
 #include <vector>
 
-#include "suite/results/record.h"
+#include "suite/store/record.h"
 
 namespace physinv {
 

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "suite/harness/keys.h"
-#include "suite/results/json.h"
-#include "suite/results/results_json.h"
+#include "suite/store/json.h"
+#include "suite/store/results_json.h"
 #include "tests/support/registered.h"
 
 namespace physinv::test {

@@ -235,8 +235,10 @@ def main():
     checked = 0
     for name, text in pages(SOURCES):
         wrong += [*dead_links(name, text), *unknown_words(name, text),
-                  *measured(name, text),
-                  *lost_sources(name, "\n".join(re.findall("`[^`\n]*`", text)))]
+                  *measured(name, text)]
+        if name != "CHANGELOG.md":  # names what was
+            spans = re.findall("`[^`\n]*`", text)
+            wrong += lost_sources(name, "\n".join(spans))
         checked += len(list(commands(text)))
     if checked < 20:
         wrong.append(f"only {checked} commands found")

@@ -2,7 +2,7 @@
 // stands in front of it.
 #include <fmt/format.h>
 
-#include "suite/results/curves.h"
+#include "suite/store/case_file.h"
 #include "tests/fuzz/inputs.h"
 #include "tests/fuzz/readers.h"
 

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "suite/results/checksum.h"
+#include "suite/store/checksum.h"
 
 namespace physinv::fuzz {
 namespace {

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "suite/harness/errors.h"
-#include "suite/results/errors.h"
+#include "suite/store/errors.h"
 
 namespace physinv::fuzz {
 

@@ -1,4 +1,4 @@
-#include "suite/results/journal.h"
+#include "suite/store/journal.h"
 
 #include "tests/fuzz/readers.h"
 #include "tests/fuzz/sealed.h"

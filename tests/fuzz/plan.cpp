@@ -1,4 +1,4 @@
-#include "suite/results/plan.h"
+#include "suite/store/plan.h"
 
 #include <nlohmann/json.hpp>
 

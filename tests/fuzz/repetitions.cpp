@@ -1,4 +1,4 @@
-#include "suite/results/repetitions.h"
+#include "suite/store/repetitions.h"
 
 #include "tests/fuzz/inputs.h"
 #include "tests/fuzz/readers.h"

@@ -1,8 +1,8 @@
 #include <nlohmann/json.hpp>
 
 #include "suite/results/exports.h"
-#include "suite/results/results_file.h"
-#include "suite/results/results_json.h"
+#include "suite/store/results_file.h"
+#include "suite/store/results_json.h"
 #include "tests/fuzz/inputs.h"
 #include "tests/fuzz/readers.h"
 

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "suite/results/plan.h"
+#include "suite/store/plan.h"
 
 namespace physinv::fuzz {
 namespace {

@@ -1,9 +1,9 @@
 // A directory of journal and plan, divided by a line "--", without arrays.
 #include <nlohmann/json.hpp>
 
-#include "suite/results/catalog.h"
-#include "suite/results/missing_work.h"
-#include "suite/results/results_json.h"
+#include "suite/store/catalog.h"
+#include "suite/store/missing_work.h"
+#include "suite/store/results_json.h"
 #include "tests/fuzz/readers.h"
 #include "tests/fuzz/sealed.h"
 

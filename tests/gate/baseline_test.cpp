@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "suite/gate/digits.h"
-#include "suite/results/checksum.h"
-#include "suite/results/errors.h"
+#include "suite/store/checksum.h"
+#include "suite/store/errors.h"
 #include "tests/gate/lines.h"
 
 namespace physinv {

@@ -8,7 +8,7 @@
 #include "reports/latest_claims.h"
 #include "reports/results_page.h"
 #include "reports/tables.h"
-#include "suite/results/file.h"
+#include "suite/store/file.h"
 
 namespace physinv {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "suite/results/errors.h"
+#include "suite/store/errors.h"
 
 namespace physinv {
 namespace {

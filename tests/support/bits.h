@@ -6,7 +6,7 @@
 #include <cstddef>
 
 #include "suite/core/batch.h"
-#include "suite/results/record.h"
+#include "suite/store/record.h"
 
 namespace physinv::test {
 

@@ -14,7 +14,7 @@ from program import FAILED, check, expect, run
 
 SCHEMAS = os.path.abspath(sys.argv[2])
 sys.path.insert(0, os.path.join(os.path.dirname(SCHEMAS), "..", "tests",
-                                "suite", "results"))
+                                "suite", "store"))
 import check_compare  # noqa: E402
 
 WALK = "fake/cubic/walk/n=4/seed=0/"

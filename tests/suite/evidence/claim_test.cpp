@@ -8,7 +8,7 @@
 #include "suite/results/published.h"
 #include "suite/results/verdict_words.h"
 #include "tests/suite/evidence/campaigns.h"
-#include "tests/suite/results/results_testing.h"
+#include "tests/suite/store/store_testing.h"
 
 namespace physinv {
 namespace {

@@ -9,8 +9,8 @@
 #include "suite/evidence/options.h"
 #include "suite/evidence/run_values.h"
 #include "suite/evidence/statistics.h"
-#include "suite/results/errors.h"
 #include "suite/results/published.h"
+#include "suite/store/errors.h"
 #include "tests/suite/evidence/campaigns.h"
 
 namespace physinv {

@@ -8,8 +8,8 @@
 
 #include "suite/harness/registry.h"
 #include "suite/harness/select.h"
-#include "suite/results/catalog.h"
 #include "suite/results/results.h"
+#include "suite/store/catalog.h"
 #include "tests/suite/harness/fake_experiment.h"
 
 namespace physinv {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "suite/results/published.h"
-#include "tests/suite/results/results_testing.h"
+#include "tests/suite/store/store_testing.h"
 
 namespace physinv {
 namespace {

@@ -16,7 +16,7 @@
 #include "suite/evidence/options.h"
 #include "suite/harness/registry.h"
 #include "suite/nn/mlp.h"
-#include "suite/results/record.h"
+#include "suite/store/record.h"
 
 namespace physinv::oscillators {
 namespace {

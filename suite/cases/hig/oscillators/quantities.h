@@ -9,7 +9,7 @@
 
 #include "suite/cases/hig/oscillators/oscillators.h"
 #include "suite/evidence/curve_shape.h"
-#include "suite/results/record.h"
+#include "suite/store/record.h"
 
 namespace physinv::oscillators {
 

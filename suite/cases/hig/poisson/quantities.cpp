@@ -6,8 +6,8 @@
 
 #include "optimizers/half_inverse/half_inverse.h"
 #include "suite/evidence/options.h"
-#include "suite/results/record.h"
 #include "suite/results/results.h"
+#include "suite/store/record.h"
 
 namespace physinv::hig::poisson {
 namespace {

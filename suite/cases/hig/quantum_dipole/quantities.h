@@ -13,7 +13,7 @@
 #include "suite/cases/hig/quantum_dipole/metrics.h"
 #include "suite/evidence/curve_shape.h"
 #include "suite/evidence/options.h"
-#include "suite/results/record.h"
+#include "suite/store/record.h"
 
 namespace physinv::dipole {
 

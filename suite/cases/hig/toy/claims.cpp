@@ -7,7 +7,7 @@
 #include "suite/cases/hig/toy/toy.h"
 #include "suite/evidence/curve_shape.h"
 #include "suite/harness/registry.h"
-#include "suite/results/record.h"
+#include "suite/store/record.h"
 
 namespace physinv::toy {
 namespace {

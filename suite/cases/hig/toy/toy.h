@@ -9,7 +9,7 @@
 
 #include "suite/cases/hig/toy/metrics.h"
 #include "suite/evidence/training.h"
-#include "suite/results/record.h"
+#include "suite/store/record.h"
 
 namespace physinv::toy {
 

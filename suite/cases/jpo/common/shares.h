@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "suite/core/batch.h"
-#include "suite/results/record.h"
+#include "suite/store/record.h"
 
 namespace physinv {
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "suite/evidence/statistics.h"
-#include "suite/results/record.h"
+#include "suite/store/record.h"
 
 namespace physinv::alignment {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "suite/evidence/statistics.h"
 #include "suite/results/published.h"
-#include "suite/results/record.h"
+#include "suite/store/record.h"
 
 namespace physinv::alignment {
 namespace {

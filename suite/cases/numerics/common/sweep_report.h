@@ -9,9 +9,9 @@
 #include "suite/diagnostics/stability_sweep.h"
 #include "suite/evidence/claim.h"
 #include "suite/evidence/series.h"
-#include "suite/results/record.h"
 #include "suite/results/report_model.h"
 #include "suite/results/results.h"
+#include "suite/store/record.h"
 
 namespace physinv {
 

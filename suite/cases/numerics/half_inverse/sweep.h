@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "suite/diagnostics/half_inverse_stress.h"
-#include "suite/results/record.h"
+#include "suite/store/record.h"
 
 namespace physinv::half_inverse_numerics {
 

@@ -1,7 +1,7 @@
 /// The recorded trajectory of one problem of a run.
 #pragma once
 
-#include "suite/results/record.h"
+#include "suite/store/record.h"
 
 namespace physinv::scaling {
 

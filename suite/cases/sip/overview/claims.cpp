@@ -8,7 +8,7 @@
 #include "suite/evidence/training_report.h"
 #include "suite/evidence/update_time.h"
 #include "suite/harness/registry.h"
-#include "suite/results/record.h"
+#include "suite/store/record.h"
 
 namespace physinv::sip::overview {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "suite/results/record.h"
+#include "suite/store/record.h"
 
 namespace physinv::sine {
 namespace {

@@ -6,7 +6,7 @@
 #include "suite/cases/sip/sine/sine.h"
 #include "suite/evidence/quantity.h"
 #include "suite/evidence/training.h"
-#include "suite/results/record.h"
+#include "suite/store/record.h"
 
 namespace physinv::sine {
 

@@ -16,7 +16,7 @@
 #include "suite/evidence/statistics.h"
 #include "suite/evidence/training_report.h"
 #include "suite/harness/registry.h"
-#include "suite/results/record.h"
+#include "suite/store/record.h"
 
 namespace physinv::sip_wave_packet {
 namespace {

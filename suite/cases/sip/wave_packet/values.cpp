@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "suite/evidence/curve.h"
-#include "suite/results/record.h"
+#include "suite/store/record.h"
 
 namespace physinv::sip_wave_packet {
 namespace {

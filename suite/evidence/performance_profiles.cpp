@@ -1,0 +1,329 @@
+#include "suite/evidence/performance_profiles.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+namespace physinv {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// Steps nearer than this factor are drawn as one; nobody sees less.
+constexpr double kNearest = 1.02;
+
+/// Loss to reach; empty if a method starts there or nobody has a number.
+std::optional<double> target_of(const CommonRun& group,
+                                Index example,
+                                double tolerance) {
+  double start = kInfinity, lowest = kInfinity;
+  for (const ConvergenceHistory& history : group.histories) {
+    for (std::size_t k = 0; k < history.loss.size(); ++k) {
+      const double loss = history.loss[k][example];
+      if (!std::isfinite(loss)) continue;
+      if (k == 0) start = std::min(start, loss);
+      lowest = std::min(lowest, loss);
+    }
+  }
+  if (!std::isfinite(start)) return {};
+  const double target = lowest + tolerance * (start - lowest);
+  if (start <= target) return {};
+  return target;
+}
+
+void append_costs(TargetCosts& out,
+                  const CommonRun& group,
+                  Index example,
+                  double target) {
+  const double share = out.runs ? 1 : static_cast<double>(group.n);
+  for (std::size_t m = 0; m < group.histories.size(); ++m) {
+    const ConvergenceHistory& history = group.histories[m];
+    const auto there =
+        std::find_if(history.loss.begin(), history.loss.end(), [&](auto& loss) {
+          return loss[example] <= target;
+        });
+    const bool reached = there != history.loss.end();
+    const auto k = static_cast<std::size_t>(there - history.loss.begin());
+    const auto last = history.loss.empty() ? 0 : history.loss.size() - 1;
+    const double seconds =
+        history.loss.empty() ? 0 : history.seconds[reached ? k : last];
+    const double simulations =
+        history.loss.empty() ? 0 : history.simulations[reached ? k : last];
+    out.spent_seconds[m].push_back(std::max(seconds, 1e-9));
+    out.spent_simulations[m].push_back(std::max(simulations / share, 1.0));
+    out.seconds[m].push_back(reached ? out.spent_seconds[m].back() : kInfinity);
+    out.simulations[m].push_back(reached ? out.spent_simulations[m].back()
+                                         : kInfinity);
+  }
+  ++out.problems;
+}
+
+// The stairs as a line from `first` to `last`, at `before` ahead of the steps.
+void draw_steps(Series& series, const Steps& steps, double first, double last) {
+  double level = 0;
+  const auto point = [&](double x, double y) {
+    series.x.push_back(x);
+    series.y.push_back(y);
+  };
+  std::size_t k = 0;
+  while (k < steps.x.size() && steps.x[k] <= first) level = steps.y[k++];
+  point(first, level);
+  while (k < steps.x.size()) {
+    std::size_t end = k;
+    while (end + 1 < steps.x.size() &&
+           steps.x[end + 1] < kNearest * steps.x[k]) {
+      ++end;
+    }
+    point(steps.x[end], level);
+    level = steps.y[end];
+    point(steps.x[end], level);
+    k = end + 1;
+  }
+  if (series.x.back() < last) point(last, level);
+}
+
+Panel panel_of(const std::vector<Costs>& values,
+               const std::vector<std::string>& methods,
+               const std::map<std::string, std::string>& titles) {
+  Panel panel{.x_log = true, .y_min = 0, .y_max = 1};
+  double first = kInfinity, last = 0;
+  for (const Costs& one : values) {
+    for (const double v : one) {
+      if (!std::isfinite(v)) continue;
+      first = std::min(first, v);
+      last = std::max(last, v);
+    }
+  }
+  if (last == 0) return panel;  // reads "not run"
+  for (std::size_t m = 0; m < methods.size(); ++m) {
+    const auto title = titles.find(methods[m]);
+    Series s{.label = title == titles.end() ? methods[m] : title->second,
+             .method = methods[m]};
+    draw_steps(s, distribution(values[m]), first, 1.1 * last);
+    panel.series.push_back(std::move(s));
+  }
+  return panel;
+}
+
+std::string tolerance_text(double tolerance) {
+  return fmt::format("tau = {:g}", tolerance);
+}
+
+std::string target_note(const TargetCosts& costs) {
+  std::string note = fmt::format(
+      "A problem ({}) is solved to tau once its "
+      "loss is at most f_L + tau (f_0 - f_L), f_L the lowest loss any method "
+      "found for it, f_0 the lowest at which any method starts (More and Wild "
+      "2009). {} problems of n = {} and {} seed{}; {} more start there or "
+      "without a number and are left out. Costs are those of the whole chain "
+      "of stages, refinement included. {}",
+      costs.runs ? "one run: the mean test loss of one seed"
+                 : "one example of one n and seed",
+      costs.problems,
+      fmt::join(costs.sizes, ", "),
+      costs.seeds,
+      costs.seeds == 1 ? "" : "s",
+      costs.solved_at_start,
+      costs.runs
+          ? "Simulations are those of training, gradients included."
+          : "Curves hold the times of a batch: an example's seconds are the "
+            "batch's when it first meets its target. Simulations, gradients "
+            "included, are the batch's at that time over n, at least 1; those "
+            "behind labelled training samples are not counted.");
+  if (costs.left_out > 0)
+    note +=
+        fmt::format(" The {} methods that end lowest; {} more are left out.",
+                    costs.methods.size(),
+                    costs.left_out);
+  if (costs.crowded) {
+    note += " Some stages shared their cores: their seconds are too many.";
+  }
+  return note;
+}
+
+}  // namespace
+
+std::vector<Costs> performance_ratios(const std::vector<Costs>& costs) {
+  std::vector<Costs> ratios = costs;
+  const std::size_t problems = costs.empty() ? 0 : costs.front().size();
+  for (std::size_t p = 0; p < problems; ++p) {
+    double best = kInfinity;
+    for (const Costs& one : costs) best = std::min(best, one[p]);
+    if (!std::isfinite(best)) continue;
+    for (Costs& one : ratios) one[p] /= best;
+  }
+  return ratios;
+}
+
+Steps distribution(Costs values) {
+  std::sort(values.begin(), values.end());
+  Steps steps;
+  const auto count = static_cast<double>(values.size());
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (!std::isfinite(values[k])) break;
+    if (k + 1 < values.size() && values[k + 1] == values[k]) continue;
+    steps.x.push_back(values[k]);
+    steps.y.push_back(static_cast<double>(k + 1) / count);
+  }
+  return steps;
+}
+
+TargetCosts target_costs(const CommonRuns& common, double tolerance) {
+  TargetCosts out{.methods = common.methods,
+                  .runs = common.runs,
+                  .left_out = common.left_out,
+                  .sizes = common.sizes,
+                  .seeds = common.seeds,
+                  .crowded = common.crowded};
+  for (auto* costs : {&out.seconds,
+                      &out.simulations,
+                      &out.spent_seconds,
+                      &out.spent_simulations})
+    costs->resize(out.methods.size());
+  for (const CommonRun& group : common.groups) {
+    for (Index i = 0; i < group.examples; ++i) {
+      const auto target = target_of(group, i, tolerance);
+      if (target) {
+        append_costs(out, group, i, *target);
+      } else {
+        ++out.solved_at_start;
+      }
+    }
+  }
+  return out;
+}
+
+TargetCosts target_costs(const Results& results,
+                         const std::string& experiment,
+                         double tolerance,
+                         std::size_t most) {
+  return target_costs(common_runs(results, experiment, most), tolerance);
+}
+
+namespace {
+
+/// Costs of all targets that are shared out evenly in their exponent, joined.
+TargetCosts many_targets(const CommonRuns& common) {
+  TargetCosts all;
+  for (const double tolerance : distribution_targets()) {
+    TargetCosts one = target_costs(common, tolerance);
+    if (all.methods.empty()) {
+      all = std::move(one);
+      continue;
+    }
+    for (std::size_t m = 0; m < all.methods.size(); ++m) {
+      const auto append = [m](auto& to, const auto& from) {
+        to[m].insert(to[m].end(), from[m].begin(), from[m].end());
+      };
+      append(all.seconds, one.seconds);
+      append(all.simulations, one.simulations);
+    }
+    all.problems += one.problems;
+  }
+  return all;
+}
+
+Figure distribution_figure(const CommonRuns& common,
+                           const ProfileOptions& options) {
+  const TargetCosts costs = many_targets(common);
+  const auto targets = distribution_targets();
+  Figure figure{
+      .id = "runtime_distribution",
+      .title = options.title + ": runtime distribution over all targets",
+      .note = fmt::format(
+          "Share of all pairs of a problem and a target that a method has "
+          "reached after so many seconds or simulations: the ECDF of run times "
+          "of COCO (Hansen et al. 2021), over {} targets tau from {:.2g} to "
+          "{:.2g}, evenly in their exponent. The further up and left, the "
+          "better. {} pairs.",
+          targets.size(),
+          targets.front(),
+          targets.back(),
+          costs.problems)};
+  for (const bool by_time : {true, false}) {
+    Panel panel = panel_of(by_time ? costs.seconds : costs.simulations,
+                           costs.methods,
+                           options.method_titles);
+    panel.title = by_time ? "By wall time" : "By simulations";
+    panel.x_label = by_time ? "seconds" : "simulations per problem";
+    panel.y_label = "share of problems and targets";
+    figure.panels.push_back(std::move(panel));
+  }
+  return figure;
+}
+
+}  // namespace
+
+std::vector<double> distribution_targets() {
+  constexpr int kTargets = 24, kPerDecade = 4;
+  std::vector<double> all;
+  for (int k = 1; k <= kTargets; ++k)
+    all.push_back(std::pow(10.0, -static_cast<double>(k) / kPerDecade));
+  return all;
+}
+
+std::vector<Figure> performance_profile_figures(const Results& results,
+                                                const std::string& experiment,
+                                                const ProfileOptions& options) {
+  return performance_profile_figures(common_runs(results, experiment), options);
+}
+
+std::vector<Figure> performance_profile_figures(const CommonRuns& common,
+                                                const ProfileOptions& options) {
+  Figure profile{.id = "performance_profile",
+                 .title = options.title + ": performance profiles"};
+  Figure reached{.id = "time_to_target",
+                 .title = options.title + ": time to target"};
+  std::string note;
+  for (const double tolerance : options.tolerances) {
+    const TargetCosts costs = target_costs(common, tolerance);
+    if (costs.methods.size() < 2 || costs.sizes.empty()) {
+      profile.note = reached.note =
+          costs.methods.size() < 2
+              ? "Not made: only one method was run."
+              : "Not made: no n and seed at which every method is finished "
+                "and has the losses of the same problems.";
+      profile.panels = reached.panels = {Panel{}};
+      return {std::move(profile), std::move(reached)};
+    }
+    if (note.empty()) note = target_note(costs);
+    for (const bool by_time : {true, false}) {
+      const auto& spent = by_time ? costs.seconds : costs.simulations;
+      Panel panel = panel_of(
+          performance_ratios(spent), costs.methods, options.method_titles);
+      panel.title = fmt::format("By {}, {}",
+                                by_time ? "wall time" : "simulations",
+                                tolerance_text(tolerance));
+      panel.x_label = by_time ? "seconds over the best method's"
+                              : "simulations over the best method's";
+      panel.y_label = "share of problems";
+      profile.panels.push_back(std::move(panel));
+
+      panel = panel_of(spent, costs.methods, options.method_titles);
+      panel.title = fmt::format("By {}, {}",
+                                by_time ? "wall time" : "simulations",
+                                tolerance_text(tolerance));
+      panel.x_label = by_time ? "seconds" : "simulations per problem";
+      panel.y_label = "share of problems solved";
+      reached.panels.push_back(std::move(panel));
+    }
+  }
+  profile.note =
+      "Share of problems that a method solves within a factor of what the "
+      "best method needs for the same problem (Dolan and More 2002); a method "
+      "that fails never counts. The left end is the share of problems where "
+      "a method is fastest, the right end the share it solves at all. " +
+      note;
+  reached.note =
+      "Share of problems solved after so many seconds or simulations, as in "
+      "the performance profiles.";
+  return {std::move(profile),
+          std::move(reached),
+          distribution_figure(common, options)};
+}
+
+}  // namespace physinv

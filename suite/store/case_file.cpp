@@ -1,0 +1,485 @@
+#include "suite/store/case_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "suite/core/dataset.h"
+#include "suite/store/checksum.h"
+
+namespace physinv {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kTrailer = "physinv:";
+constexpr std::size_t kTrailerBytes = 16;
+
+/// A number per example; (1, examples) in version 1.
+Vector<double> read_vector(hid_t group, const std::string& name) {
+  if (hdf5::rank(group, name) == 1) {
+    const auto list = hdf5::read_list(group, name);
+    return Eigen::Map<const Vector<double>>(list.data(),
+                                            static_cast<Index>(list.size()));
+  }
+  Batch<double> column = hdf5::read_batch(group, name);
+  if (column.cols() != 1 && column.size() > 0)
+    throw StoreError(fmt::format("array {} is no list of examples", name));
+  return column.reshaped();
+}
+
+/// Of one row, a list.
+Batch<double> read_array(hid_t group, const std::string& name) {
+  if (hdf5::rank(group, name) == 2) return hdf5::read_batch(group, name);
+  const auto list = hdf5::read_list(group, name);
+  return Eigen::Map<const Batch<double>>(
+      list.data(), 1, static_cast<Index>(list.size()));
+}
+
+Batch<double> read_estimates(hid_t curve) {
+  return hdf5::rank(curve, "x") == 2 ? hdf5::read_batch(curve, "x")
+                                     : hdf5::read_cube(curve, "x");
+}
+
+std::vector<double> list_of(const Vector<double>& v) {
+  return {v.data(), v.data() + v.size()};
+}
+
+/// What array_table.h says of an array. Others' arrays say nothing of theirs.
+hdf5::Note note_of(const Arrays& arrays,
+                   const std::string& name,
+                   const Batch<double>& value) {
+  const bool list = value.rows() == 1;
+  const ArrayInfo* info = find_array(name, list, [&](std::string_view other) {
+    return arrays.contains(ArrayKey::own(other));
+  });
+  if (info == nullptr) return {};
+  const auto axes =
+      list ? info->axes.substr(0, info->axes.find(',')) : info->axes;
+  return {.axes = std::string(axes), .unit = std::string(info->unit)};
+}
+
+void write_text(hid_t parent, const char* name, const std::string& text) {
+  if (!text.empty()) hdf5::write_attribute(parent, name, text);
+}
+
+Status status_of(std::uint8_t byte) {
+  if (byte > static_cast<std::uint8_t>(Status::nonfinite))
+    throw StoreError("an array status holds what is no status");
+  return static_cast<Status>(byte);
+}
+
+std::string shape_text(const Batch<double>& b) {
+  return fmt::format("{} x {}", b.cols(), b.rows());
+}
+
+/// Arrays that are read together have one length.
+void require_count(Index count, Index expected, const std::string& name) {
+  if (count != expected)
+    throw StoreError(fmt::format(
+        "array {} has {} entries where {} are expected (restore the file)",
+        name,
+        count,
+        expected));
+}
+
+void require_fitting(const StageRecord& r, const std::string& group) {
+  const Index n = r.loss.size(), points = r.curve.points();
+  const auto name = [&](const char* array) { return group + "/" + array; };
+  require_count(static_cast<Index>(r.status.size()), n, name("status"));
+  require_count(r.example_iterations.size(), n, name("iterations"));
+  require_count(r.example_evaluations.size(), n, name("evaluations"));
+  if (r.x.cols() > n) require_count(r.x.cols(), n, name("x"));
+  const auto times = static_cast<Index>(r.curve.seconds.size());
+  const auto work = static_cast<Index>(r.curve.evaluations.size());
+  require_count(times, points, name("curve/seconds"));
+  require_count(work, points, name("curve/evaluations"));
+  require_count(r.curve.loss.cols(), points, name("curve/loss"));
+  require_count(r.curve.x.cols(), points, name("curve/x"));
+}
+
+/// As case_file.h says.
+void require_finite(const StageRecord& r, const std::string& group) {
+  const auto require = [&](bool good, const char* array) {
+    if (!good)
+      throw StoreError(fmt::format(
+          "array {}/{} holds what is no number of a stage that ended as '{}' "
+          "(restore the file)",
+          group,
+          array,
+          to_string(r.stop)));
+  };
+  const auto all = [](const auto& list) {
+    return std::all_of(list.begin(), list.end(), [](double v) {
+      return std::isfinite(v) && v >= 0;
+    });
+  };
+  require(all(r.example_iterations), "iterations");
+  require(all(r.example_evaluations), "evaluations");
+  require(all(r.curve.iteration), "curve/iteration");
+  require(all(r.curve.seconds), "curve/seconds");
+  require(all(r.curve.evaluations), "curve/evaluations");
+  if (r.stop == Stop::converged) require(r.loss.allFinite(), "loss");
+  if (r.stop == Stop::diverged) return;
+  for (Index i = 0; i < r.x.cols(); ++i)
+    require(!std::isfinite(r.loss(i)) || r.x.col(i).allFinite(), "x");
+}
+
+/// Whole, and finite.
+void require_sound(const CaseData& data) {
+  for (const auto& [name, array] :
+       {std::pair("x", &data.x), {"y", &data.y}, {"given", &data.given}}) {
+    if (array->rows() > 0 && array->cols() != data.y.cols())
+      throw StoreError(fmt::format(
+          "array data/{} has the shape {} where {} examples are expected "
+          "(restore the file)",
+          name,
+          shape_text(*array),
+          data.y.cols()));
+    if (!array->allFinite())
+      throw StoreError(fmt::format(
+          "array data/{} holds what is no number (restore the file)", name));
+  }
+  const bool none = data.hash.empty() && data.y.size() == 0;  // not drawn
+  if (!none && hex64(content_hash({data.x, data.y, data.given})) != data.hash)
+    throw StoreError(
+        "the arrays of data do not have their hash (restore the file, or "
+        "delete it to run the stages of this case again)");
+}
+
+std::string group_name(const StageRecord& r) {
+  return fmt::format("{}_{}", r.position, r.stage);
+}
+
+void add(ArrayHash& hash, const std::vector<double>& v) {
+  hash.add(v.data(), static_cast<Index>(v.size()), 1);
+}
+
+ArrayHash hash_results(const StageRecord& r) {
+  ArrayHash hash;
+  hash.add(r.x).add(r.loss);
+  hash.add(static_cast<std::uint64_t>(r.status.size()));
+  for (const Status s : r.status) hash.add(static_cast<std::uint64_t>(s));
+  hash.add(r.example_iterations).add(r.example_evaluations);
+  add(hash, r.curve.iteration);
+  add(hash, r.curve.evaluations);
+  hash.add(r.curve.loss).add(r.curve.x);
+  for (const auto& [name, array] : r.arrays)
+    hash.add(std::string_view(name)).add(array);
+  return hash;
+}
+
+void read_arrays(const hdf5::Handle& group, StageRecord& r) {
+  r.x = hdf5::read_batch(group, "x");
+  r.loss = read_vector(group, "loss");
+  r.status.clear();
+  for (const auto s : hdf5::read_bytes(group, "status"))
+    r.status.push_back(status_of(s));
+  r.example_iterations = read_vector(group, "iterations");
+  r.example_evaluations = read_vector(group, "evaluations");
+  const auto curve = hdf5::open_group(group, "curve");
+  r.curve = {.iteration = hdf5::read_list(curve, "iteration"),
+             .seconds = hdf5::read_list(curve, "seconds"),
+             .evaluations = hdf5::read_list(curve, "evaluations"),
+             .loss = hdf5::read_batch(curve, "loss"),
+             .x = read_estimates(curve)};
+  const auto arrays = hdf5::open_group(group, "arrays");
+  r.arrays.clear();
+  for (const auto& name : hdf5::names(arrays))
+    r.arrays[ArrayKey::own(name)] = read_array(arrays, name);
+}
+
+/// 1 had none.
+std::uint64_t version_of(const hdf5::Handle& file) {
+  return hdf5::has_attribute(file, "schema") ? hdf5::read_number(file, "schema")
+                                             : 1;
+}
+
+/// The bytes without the trailer, once it agrees with them.
+std::string verified(std::string bytes, const fs::path& path) {
+  if (bytes.size() > kTrailerBytes) {
+    const std::size_t size = bytes.size() - kTrailerBytes;
+    const std::string_view all = bytes;
+    if (all.substr(size) ==
+        fmt::format("{}{:08x}", kTrailer, crc32c(all.substr(0, size)))) {
+      bytes.resize(size);
+      return bytes;
+    }
+  }
+  throw StoreError(fmt::format(
+      "{} is damaged: it fails its checksum (restore it, or delete it to run "
+      "the stages of this case again)",
+      path.string()));
+}
+
+}  // namespace
+
+std::string case_file_name(const std::string& case_name) {
+  std::string name = case_name;
+  std::replace(name.begin(), name.end(), '/', '+');
+  return name + ".h5";
+}
+
+std::uint64_t results_hash(const StageRecord& record) {
+  return hash_results(record).value();
+}
+
+std::uint64_t arrays_hash(const StageRecord& record) {
+  ArrayHash hash = hash_results(record);
+  add(hash, record.curve.seconds);
+  return hash.value();
+}
+
+/// Puts the file's name before what HDF5 complains about.
+template <class F>
+auto CaseFile::named(F&& body) const {
+  try {
+    return body();
+  } catch (const StoreError& e) {
+    throw StoreError(fmt::format("{}: {}", where_, e.what()));
+  }
+}
+
+CaseFile::CaseFile(const std::string& case_name)
+    : file_(hdf5::new_file()),
+      case_name_(case_name),
+      where_(case_file_name(case_name)) {
+  hdf5::write_attribute(file_, "schema", kCaseVersion);
+  hdf5::write_attribute(file_, "case", case_name);
+  hdf5::create_group(file_, "stages");
+}
+
+CaseFile::CaseFile(const Folder& folder, const std::string& case_name)
+    : CaseFile(folder.read(case_file_name(case_name), kLargestData),
+               folder.path() / case_file_name(case_name),
+               case_name) {}
+
+CaseFile::CaseFile(std::string bytes,
+                   const fs::path& path,
+                   const std::string& case_name)
+    : case_name_(case_name), where_(path.string()) {
+  bytes = verified(std::move(bytes), path);
+  named([&] {
+    file_ = hdf5::open_image(std::move(bytes));
+    const std::string name = hdf5::read_attribute(file_, "case");
+    if (name != case_name)
+      throw StoreError(fmt::format(
+          "it holds the case {}, not {} (restore it)", name, case_name));
+    const auto version = version_of(file_);
+    if (version > kCaseVersion)
+      throw UnreadableInput(fmt::format(
+          "{}: it is of version {}, this program reads up to {} (use the "
+          "program that wrote it or a newer one)",
+          where_,
+          version,
+          kCaseVersion));
+  });
+}
+
+void CaseFile::describe(const CaseInfo& info, const StageRecord& latest) {
+  named([&] {
+    about_ = info.about;
+    if (version_of(file_) < kCaseVersion) renew();
+    if (!hdf5::has_attribute(file_, "experiment")) describe_case(info);
+    const std::string& own = latest.run.profile;
+    for (const auto& [name, text] :
+         {std::pair("profile", own.empty() ? &info.profile : &own),
+          {"revision", &latest.revision}}) {
+      hdf5::remove_attribute(file_, name);
+      write_text(file_, name, *text);
+    }
+  });
+}
+
+void CaseFile::describe_case(const CaseInfo& info) const {
+  write_text(file_, "experiment", info.experiment);
+  write_text(file_, "problem", about_.problem);
+  write_text(file_, "method", info.method);
+  hdf5::write_attribute(file_, "n", static_cast<std::uint64_t>(info.n));
+  hdf5::write_attribute(file_, "seed", info.seed);
+  write_text(file_, "precision", std::string(to_string(info.precision)));
+  write_text(file_, "paper", about_.paper);
+  write_text(file_, "arxiv", about_.arxiv);
+  if (!about_.arxiv.empty())
+    write_text(file_, "doi", "10.48550/arXiv." + about_.arxiv);
+}
+
+About CaseFile::about() const {
+  return named([&] {
+    const auto text = [](hid_t parent, const char* name) {
+      return hdf5::has_attribute(parent, name)
+                 ? hdf5::read_attribute(parent, name)
+                 : std::string();
+    };
+    About about{.problem = text(file_, "problem"),
+                .paper = text(file_, "paper"),
+                .arxiv = text(file_, "arxiv")};
+    if (!hdf5::has(file_, "data")) return about;
+    const auto data = hdf5::open_group(file_, "data");
+    for (const auto& [name, meaning] : {std::pair("x", &about.unknowns),
+                                        {"y", &about.observations},
+                                        {"given", &about.given}}) {
+      auto note = hdf5::note(data, name);
+      meaning->names = std::move(note.names);
+      if (!note.unit.empty()) meaning->unit = std::move(note.unit);
+    }
+    return about;
+  });
+}
+
+/// As this version writes it.
+void CaseFile::renew() {
+  CaseFile fresh(case_name_);
+  fresh.about_ = about_;
+  if (hdf5::has(file_, "data")) fresh.put_data(read_data());
+  const auto stages = hdf5::open_group(file_, "stages");
+  const auto kept = hdf5::open_group(fresh.file_, "stages");
+  for (const auto& name : hdf5::names(stages)) {
+    const auto old = hdf5::open_group(stages, name);
+    const auto group = hdf5::create_group(kept, name);
+    for (const char* attribute : {"key", "hash"})
+      write_text(group, attribute, hdf5::read_attribute(old, attribute));
+    StageRecord record;
+    read_arrays(old, record);
+    fresh.put_arrays(group, record);
+  }
+  file_ = std::move(fresh.file_);
+}
+
+void CaseFile::put_data(const CaseData& data) {
+  named([&] {
+    if (hdf5::has(file_, "data")) {
+      const auto old = hdf5::open_group(file_, "data");
+      if (hdf5::read_attribute(old, "hash") == data.hash) {
+        if (!data_are_sound_) read_data();
+        data_are_sound_ = true;
+        return;
+      }
+      hdf5::remove(file_, "data");
+    }
+    const auto group = hdf5::create_group(file_, "data");
+    hdf5::write_attribute(group, "hash", data.hash);
+    const auto put = [&](const char* name,
+                         const Batch<double>& array,
+                         const char* axes,
+                         const Meaning& meaning) {
+      hdf5::write(group,
+                  name,
+                  array,
+                  {.axes = axes, .unit = meaning.unit, .names = meaning.names});
+    };
+    put("x", data.x, "samples,unknowns", about_.unknowns);
+    put("y", data.y, "samples,observations", about_.observations);
+    put("given", data.given, "samples,given", about_.given);
+    data_are_sound_ = true;
+  });
+}
+
+CaseData CaseFile::data() const {
+  return named([&] { return read_data(); });
+}
+
+CaseData CaseFile::read_data() const {
+  const auto group = hdf5::open_group(file_, "data");
+  CaseData data{.hash = hdf5::read_attribute(group, "hash"),
+                .x = hdf5::read_batch(group, "x"),
+                .y = hdf5::read_batch(group, "y"),
+                .given = hdf5::read_batch(group, "given")};
+  require_sound(data);
+  return data;
+}
+
+void CaseFile::put_stage(const StageRecord& r, const std::string& hash) {
+  named([&] {
+    const auto stages = hdf5::open_group(file_, "stages");
+    const std::string name = group_name(r);
+    if (hdf5::has(stages, name)) hdf5::remove(stages, name);
+    const auto group = hdf5::create_group(stages, name);
+    hdf5::write_attribute(group, "key", r.key);
+    hdf5::write_attribute(group, "hash", hash);
+    hdf5::write_attribute(group, "stop", std::string(to_string(r.stop)));
+    write_text(group, "profile", r.run.profile);
+    write_text(group, "revision", r.revision);
+    put_arrays(group, r);
+  });
+}
+
+void CaseFile::put_arrays(const hdf5::Handle& group,
+                          const StageRecord& r) const {
+  const std::string none = "1", seconds = "s";
+  const Meaning& x = about_.unknowns;
+  const hdf5::Note sample{.axes = "samples", .unit = none};
+  hdf5::write(group,
+              "x",
+              r.x,
+              {.axes = "samples,unknowns", .unit = x.unit, .names = x.names});
+  hdf5::write(group, "loss", list_of(r.loss), sample);
+  hdf5::write(group, "status", r.status, {.axes = "samples"});
+  hdf5::write(group, "iterations", list_of(r.example_iterations), sample);
+  hdf5::write(group, "evaluations", list_of(r.example_evaluations), sample);
+  const auto curve = hdf5::create_group(group, "curve");
+  const hdf5::Note point{.axes = "points", .unit = none};
+  hdf5::write(curve, "iteration", r.curve.iteration, point);
+  hdf5::write(
+      curve, "seconds", r.curve.seconds, {.axes = "points", .unit = seconds});
+  hdf5::write(curve, "evaluations", r.curve.evaluations, point);
+  hdf5::write(
+      curve, "loss", r.curve.loss, {.axes = "points,samples", .unit = none});
+  // Examples whose unknowns are not known apart are one.
+  const Index unknowns = r.x.rows(), all = r.curve.x.rows();
+  const bool apart = unknowns > 0 && all % unknowns == 0 && all > 0;
+  hdf5::write_cube(
+      curve,
+      "x",
+      r.curve.x,
+      apart ? all / unknowns : 1,
+      {.axes = "points,samples,unknowns", .unit = x.unit, .names = x.names});
+  const auto arrays = hdf5::create_group(group, "arrays");
+  for (const auto& [key, array] : r.arrays) {
+    if (array.rows() == 1) {
+      hdf5::write(arrays,
+                  key,
+                  list_of(array.reshaped()),
+                  note_of(r.arrays, key, array));
+    } else {
+      hdf5::write(arrays, key, array, note_of(r.arrays, key, array));
+    }
+  }
+}
+
+bool CaseFile::has_stage(const StageRecord& r, const std::string& hash) const {
+  return named([&] {
+    const auto stages = hdf5::open_group(file_, "stages");
+    if (!hdf5::has(stages, group_name(r))) return false;
+    const auto group = hdf5::open_group(stages, group_name(r));
+    return hdf5::read_attribute(group, "key") == r.key &&
+           hdf5::read_attribute(group, "hash") == hash;
+  });
+}
+
+void CaseFile::read_stage(StageRecord& r, const std::string& hash) const {
+  named([&] {
+    const auto stages = hdf5::open_group(file_, "stages");
+    const auto group = hdf5::open_group(stages, group_name(r));
+    read_arrays(group, r);
+    require_fitting(r, "stages/" + group_name(r));
+    if (hex64(arrays_hash(r)) != hash)
+      throw StoreError(fmt::format(
+          "stage {} does not have the hash of its journal line (delete the "
+          "file to run the stages of this case again)",
+          r.stage));
+    if (has_result(r)) require_finite(r, "stages/" + group_name(r));
+  });
+}
+
+std::string CaseFile::bytes() const {
+  std::string all = named([&] { return hdf5::image(file_); });
+  return all += fmt::format("{}{:08x}", kTrailer, crc32c(all));
+}
+
+void CaseFile::save(const Folder& folder) const {
+  folder.write(case_file_name(case_name_), bytes());
+}
+
+}  // namespace physinv

@@ -1,0 +1,85 @@
+#include "suite/store/stage_state.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "suite/store/checksum.h"
+#include "suite/store/folder.h"
+#include "suite/store/json.h"
+#include "suite/store/names.h"
+
+namespace physinv {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr std::size_t kSum = 8;
+constexpr const char* kFolder = "checkpoints";
+
+const std::string& checked(const std::string& key) {
+  if (!is_key(key))
+    throw StoreError(fmt::format(
+        "'{}' is no content key, which has 32 hexadecimal digits", key));
+  return key;
+}
+
+std::optional<Folder> states_of(const fs::path& store) {
+  std::error_code error;
+  if (!fs::exists(store, error)) return {};
+  return Folder(store).find(kFolder);
+}
+
+StageState parsed(std::string_view text) {
+  const auto end = text.find('\n');
+  if (end == std::string_view::npos) throw std::runtime_error("no header");
+  const json head = parse_json(text.substr(0, end));
+  const Index iteration = whole(head.at("iteration"));
+  if (iteration < 0) throw std::runtime_error("no iteration");
+  return {.case_name = head.at("case"),
+          .stage = head.at("stage"),
+          .iteration = iteration,
+          .bytes = std::string(text.substr(end + 1))};
+}
+
+}  // namespace
+
+void write_state(const fs::path& store,
+                 const std::string& key,
+                 const StageState& state) {
+  const json head = {{"case", state.case_name},
+                     {"stage", state.stage},
+                     {"iteration", state.iteration}};
+  const std::string text = fmt::format(" {}\n{}", head.dump(), state.bytes);
+  Folder(store).make(kFolder).write(
+      checked(key), fmt::format("{:08x}{}", crc32c(text), text));
+}
+
+std::optional<StageState> read_state(const fs::path& store,
+                                     const std::string& key) {
+  checked(key);
+  const auto states = states_of(store);
+  if (!states || !states->has(key)) return {};
+  return parse_state(states->read(key, kLargestData), states->path() / key);
+}
+
+StageState parse_state(std::string_view bytes, const fs::path& path) {
+  const auto sum = bytes.substr(0, kSum);
+  const auto text = bytes.substr(sum.size());
+  try {
+    if (fmt::format("{:08x}", crc32c(text)) != sum)
+      throw std::runtime_error("checksum");
+    return parsed(text);
+  } catch (const std::exception&) {
+    throw StoreError(
+        fmt::format("{} is damaged (its stage starts again)", path.string()));
+  }
+}
+
+void remove_state(const fs::path& store, const std::string& key) {
+  checked(key);
+  if (const auto states = states_of(store)) states->remove(key);
+}
+
+}  // namespace physinv
