@@ -2,7 +2,16 @@
 # with hash and #include lines of every source that numbers can come from, read
 # at build time by physinv-sources. The file is rewritten only when its content
 # changes, which comments and formatting do not.
-# The bits of exp and sin are SLEEF's, those of hypot the C library's.
+# The bits of exp and sin are SLEEF's, whose version stands in its header; those
+# of hypot the C library's.
+set(physinv_sleef)
+foreach(part MAJOR MINOR PATCHLEVEL)
+  file(STRINGS ${SLEEF_INCLUDE_DIR}/sleef.h line
+    REGEX "^#define SLEEF_VERSION_${part} ")
+  string(REGEX REPLACE "[^0-9]+" "" line "${line}")
+  list(APPEND physinv_sleef ${line})
+endforeach()
+list(JOIN physinv_sleef "." physinv_sleef)
 execute_process(COMMAND getconf GNU_LIBC_VERSION
   OUTPUT_VARIABLE physinv_libc OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
 
@@ -37,7 +46,7 @@ set(build_type "@CMAKE_BUILD_TYPE@")
 set(instruction_set "@physinv_arch@")
 set(version "@PROJECT_VERSION@")
 set(eigen "@Eigen3_VERSION@")
-set(sleef "@SLEEF_VERSION@")
+set(sleef "@physinv_sleef@")
 set(hdf5 "@HDF5_VERSION@")
 set(json "@nlohmann_json_VERSION@")
 set(fmt "@fmt_VERSION@")

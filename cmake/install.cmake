@@ -43,8 +43,7 @@ write_basic_package_version_file(
   COMPATIBILITY SameMinorVersion)
 install(FILES
     ${PROJECT_SOURCE_DIR}/cmake/physinv-config.cmake
-    ${PROJECT_SOURCE_DIR}/cmake/FindRE2.cmake
-    ${PROJECT_SOURCE_DIR}/cmake/FindSLEEF.cmake
+    ${PROJECT_SOURCE_DIR}/cmake/libraries.cmake
     ${PROJECT_SOURCE_DIR}/cmake/outside_sources.cmake
     ${PROJECT_SOURCE_DIR}/cmake/physinv-outside.cmake
     ${PROJECT_SOURCE_DIR}/cmake/revision.cmake

@@ -1,16 +1,14 @@
 include(CMakeFindDependencyMacro)
-list(APPEND CMAKE_MODULE_PATH ${CMAKE_CURRENT_LIST_DIR})
 enable_language(C)  # FindHDF5 asks the C compiler
 find_dependency(Eigen3 3.4)
-find_dependency(SLEEF)
 find_dependency(fmt)
 find_dependency(nlohmann_json)
 find_dependency(CLI11)
-find_dependency(RE2)
 find_dependency(Threads)
 find_dependency(HDF5 COMPONENTS C)
 find_dependency(ZLIB)
 find_dependency(PNG)
+include(${CMAKE_CURRENT_LIST_DIR}/libraries.cmake)
 include(${CMAKE_CURRENT_LIST_DIR}/physinv-targets.cmake)
 
 # Where things are, seen from here: an installed tree may move.

@@ -1,0 +1,22 @@
+# physinv_find_library(<namespace>::<library> <header>): an imported target for a
+# library whose Debian package has no CMake files.
+function(physinv_find_library target header)
+  string(REGEX REPLACE ".*::" "" name ${target})
+  string(TOUPPER ${name} upper)
+  find_path(${upper}_INCLUDE_DIR ${header} REQUIRED)
+  find_library(${upper}_LIBRARY ${name} REQUIRED)
+  mark_as_advanced(${upper}_INCLUDE_DIR ${upper}_LIBRARY)
+  if(NOT TARGET ${target})
+    add_library(${target} UNKNOWN IMPORTED)
+    set_target_properties(${target} PROPERTIES
+      IMPORTED_LOCATION "${${upper}_LIBRARY}"
+      INTERFACE_INCLUDE_DIRECTORIES "${${upper}_INCLUDE_DIR}")
+  endif()
+endfunction()
+
+# What every program of the suite takes of these.
+physinv_find_library(SLEEF::sleef sleef.h)
+find_package(re2 CONFIG QUIET)  # later packages have them
+if(NOT TARGET re2::re2)
+  physinv_find_library(re2::re2 re2/re2.h)
+endif()
