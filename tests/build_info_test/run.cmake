@@ -1,5 +1,5 @@
 # What write_build_info.cmake makes of a little tree, and of edits to it.
-# Usage: cmake -D script=... -D scanner=... -D work=... -P run.cmake
+# Usage: cmake -D source=... -D scanner=... -D work=... -P run.cmake
 cmake_minimum_required(VERSION 3.25)
 set(tree ${work}/tree)
 file(REMOVE_RECURSE ${work})
@@ -17,7 +17,7 @@ file(WRITE ${tree}/reports/page.cpp "")
 macro(make)
   execute_process(
     COMMAND ${CMAKE_COMMAND} -D source_dir=${tree} -D info=${work}
-      -D scanner=${scanner} -P ${script}
+      -D scanner=${scanner} -P ${source}/cmake/write_build_info.cmake
     COMMAND_ERROR_IS_FATAL ANY)
   set(before_fingerprint ${fingerprint})
   set(before_foundation ${foundation})

@@ -3,6 +3,7 @@
 # Usage: cmake -D source=... -D numbers=... -P run.cmake
 cmake_minimum_required(VERSION 3.25)
 include(${source}/cmake/number_sources.cmake)
+separate_arguments(numbers UNIX_COMMAND "${numbers}")
 
 function(same what made expected)
   if(NOT "${made}" STREQUAL "${expected}")
