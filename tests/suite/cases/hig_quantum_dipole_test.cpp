@@ -10,7 +10,7 @@ void add_claims(Registry&);
 }
 namespace {
 
-constexpr const char* kName = "hig/quantum-dipole";
+constexpr const char* kDipole = "hig/quantum-dipole";
 
 CaseRecord levels(const char* method,
                   const std::vector<double>& low,
@@ -23,13 +23,14 @@ CaseRecord levels(const char* method,
       Eigen::Map<const Batch<double>>(low.data(), 1, points);
   s.arrays["metrics"].row(1) =
       Eigen::Map<const Batch<double>>(high.data(), 1, points);
-  return chain(kName, method, {s}, seed);
+  return chain(kDipole, method, {s}, seed);
 }
 
 TEST(HigQuantumDipole, LagAndRiseOfTheLevels) {
   const auto a4 = [](const std::vector<double>& low,
                      const std::vector<double>& high) {
-    return judged(dipole::add_claims, kName, {levels("hig", low, high)}, "A4");
+    return judged(
+        dipole::add_claims, kDipole, {levels("hig", low, high)}, "A4");
   };
   // HE < 0.1 at 20 updates, LE at 10, with a rise of 0.02 between; what comes
   // behind does not count.
@@ -50,13 +51,14 @@ TEST(HigQuantumDipole, TheRatioOfTheRiseWaitsForTheFirstLevel) {
   low[0] = 0.2, low[1] = 0.6, low[2] = 0.05, low[3] = 0.1, low[4] = 0.01;
   high[0] = high[1] = high[2] = high[3] = 0.4;
   const auto p7 =
-      judged(dipole::add_claims, kName, {levels("adam", low, high)}, "P7");
+      judged(dipole::add_claims, kDipole, {levels("adam", low, high)}, "P7");
   EXPECT_DOUBLE_EQ(*p7.conditions[0].value, 2);
   EXPECT_DOUBLE_EQ(*p7.conditions[1].value, 2);
   low.resize(800), high.resize(800);
-  EXPECT_EQ(judged(dipole::add_claims, kName, {levels("adam", low, high)}, "P7")
-                .verdict,
-            Verdict::not_judged);
+  EXPECT_EQ(
+      judged(dipole::add_claims, kDipole, {levels("adam", low, high)}, "P7")
+          .verdict,
+      Verdict::not_judged);
 }
 
 TEST(HigQuantumDipole, FourOfFiveSeedsDecide) {
@@ -64,11 +66,11 @@ TEST(HigQuantumDipole, FourOfFiveSeedsDecide) {
     std::vector<CaseRecord> cases;
     for (std::size_t seed = 0; seed < levels.size(); ++seed)
       cases.push_back(
-          chain(kName,
+          chain(kDipole,
                 "hig",
                 {trained("train", std::vector<double>(20, levels[seed]))},
                 seed));
-    return judged(dipole::add_claims, kName, cases, "A1").verdict;
+    return judged(dipole::add_claims, kDipole, cases, "A1").verdict;
   };
   EXPECT_EQ(a1({0.1, 0.1, 0.9, 0.1, 0.1}), Verdict::reproduced);
   EXPECT_EQ(a1({0.1, 0.1, 0.9, 0.9, 0.1}), Verdict::not_reproduced);
@@ -81,9 +83,9 @@ TEST(HigQuantumDipole, TheLongestStretchNearOneHalfIsTaken) {
   for (int k = 0; k < 60; ++k) loss[5 + k] = 0.5;
   for (int k = 0; k < 120; ++k) loss[100 + k] = 0.45;
   const auto a3 = judged(dipole::add_claims,
-                         kName,
-                         {chain(kName, "adam", {trained("train", loss)}),
-                          chain(kName, "hig", {trained("train", {1, 0.1})})},
+                         kDipole,
+                         {chain(kDipole, "adam", {trained("train", loss)}),
+                          chain(kDipole, "hig", {trained("train", {1, 0.1})})},
                          "A3");
   EXPECT_DOUBLE_EQ(*a3.conditions[0].value, 1190);
   EXPECT_EQ(a3.verdict, Verdict::reproduced);

@@ -12,14 +12,14 @@
 namespace physinv::test {
 namespace {
 
-constexpr Index kCount = 3;
+constexpr Index kExamples = 3;
 const std::vector<double> kSchedule = {
     0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 16, 18, 20, 22};
 
 struct ProbeTest : testing::Test {
   Oracle make() {
     return Oracle(
-        quadratic(), kCount, Rng::root("probe_test", 1), Needs::forward);
+        quadratic(), kExamples, Rng::root("probe_test", 1), Needs::forward);
   }
   /// The iterate k of example i, and its made-up loss.
   static double at(Index i, Index k) {
@@ -35,7 +35,7 @@ struct ProbeTest : testing::Test {
     for (Index p = 0; p < c.points(); ++p) {
       const auto k =
           static_cast<Index>(c.iteration[static_cast<std::size_t>(p)]);
-      for (Index i = 0; i < kCount; ++i) {
+      for (Index i = 0; i < kExamples; ++i) {
         const double expected =
             at(i, std::min(k, last[static_cast<std::size_t>(i)]));
         EXPECT_EQ(c.loss(i, p), expected) << "example " << i << " at " << k;
@@ -77,7 +77,7 @@ TEST_F(ProbeTest, CountsIterationsAndMeasuresTrueLosses) {
   EXPECT_EQ(c.iteration, schedule);
   EXPECT_EQ(c.loss.cols(), c.points());
   EXPECT_EQ(c.x.rows(), 4);
-  Vector<double> loss(kCount);
+  Vector<double> loss(kExamples);
   oracle.measure(x, loss);
   EXPECT_EQ(c.loss.rightCols(1), loss);
   EXPECT_EQ(c.x(2, c.points() - 1), x(0, 1));
@@ -106,7 +106,7 @@ TEST_F(ProbeTest, AcceptInLockstep) {
   Probe probe(oracle, 1000, 2);
   const std::vector<Index> last = {25, 4, 17};
   for (Index k = 0; k <= 25; ++k)
-    for (Index i = 0; i < kCount; ++i)
+    for (Index i = 0; i < kExamples; ++i)
       if (k <= last[static_cast<std::size_t>(i)]) accept(probe, i, k);
   probe.finish();
   std::vector<double> schedule = kSchedule;
@@ -119,7 +119,7 @@ TEST_F(ProbeTest, AcceptOneExampleAfterTheOther) {
   for (const std::vector<Index>& last :
        {std::vector<Index>{25, 4, 17}, {4, 25, 40}, {0, 0, 0}, {15, 16, 15}}) {
     Probe probe(oracle, 1000, 2);
-    for (Index i = 0; i < kCount; ++i)
+    for (Index i = 0; i < kExamples; ++i)
       for (Index k = 0; k <= last[static_cast<std::size_t>(i)]; ++k)
         accept(probe, i, k);
     probe.finish();
@@ -179,7 +179,7 @@ TEST_F(ProbeTest, TellsObservationsOfWhatItMeasures) {
   const auto estimate = [&](BatchOut<double> out) { out = x; };
   const auto measured = [&](BatchIn<double> at, BatchIn<double> y) {
     Batch<double> again(y.rows(), y.cols());
-    Vector<double> loss(kCount);
+    Vector<double> loss(kExamples);
     oracle.measure(at, again, loss);
     EXPECT_EQ(at, x);
     EXPECT_EQ(y, again);
@@ -192,7 +192,7 @@ TEST_F(ProbeTest, TellsObservationsOfWhatItMeasures) {
 TEST_F(ProbeTest, KnowsTheLossesOfWhatWasMeasuredLast) {
   Probe probe(oracle, 1);
   Batch<double> x = oracle.start();
-  Vector<double> loss(kCount), measured(kCount);
+  Vector<double> loss(kExamples), measured(kExamples);
   EXPECT_FALSE(probe.knows_losses(x, loss));
   while (probe.proceed([&](BatchOut<double> out) { out = x; }))
     x.array() += 0.5;
@@ -206,7 +206,7 @@ TEST_F(ProbeTest, KnowsTheLossesOfWhatWasMeasuredLast) {
   Probe told(oracle, 1);
   accept(told, 0, 0);
   told.finish();
-  Batch<double> last = Batch<double>::Constant(2, kCount, 0);
+  Batch<double> last = Batch<double>::Constant(2, kExamples, 0);
   EXPECT_FALSE(told.knows_losses(last, loss));
 }
 
@@ -261,7 +261,7 @@ TEST_F(ProbeTest, ObserversSeeEveryPoint) {
   std::vector<double> seen;
   probe.set_observer([&](Index k, VectorIn<double> loss) {
     seen.push_back(static_cast<double>(k));
-    EXPECT_EQ(loss.size(), kCount);
+    EXPECT_EQ(loss.size(), kExamples);
     EXPECT_TRUE(loss.allFinite());
   });
   const Batch<double> x = oracle.start();
