@@ -156,16 +156,8 @@ Outcome fit_regression(
   return out;
 }
 
-template Outcome fit_regression(NetworkModel<float>&,
-                                TrainingSet<float>,
-                                const RegressionOptions&,
-                                StageRun&,
-                                const std::function<void(BatchOut<double>)>&);
-template Outcome fit_regression(NetworkModel<double>&,
-                                TrainingSet<double>,
-                                const RegressionOptions&,
-                                StageRun&,
-                                const std::function<void(BatchOut<double>)>&);
+template decltype(fit_regression<float>) fit_regression<float>;
+template decltype(fit_regression<double>) fit_regression<double>;
 
 StageFacts regression_facts(std::string algorithm,
                             Needs needs,

@@ -42,14 +42,8 @@ Batch<T> assemble(const std::vector<Field>& fields,
   return input;
 }
 
-template Batch<float> assemble(const std::vector<Field>&,
-                               const Batch<double>&,
-                               const Batch<double>&,
-                               const Batch<double>&);
-template Batch<double> assemble(const std::vector<Field>&,
-                                const Batch<double>&,
-                                const Batch<double>&,
-                                const Batch<double>&);
+template decltype(assemble<float>) assemble<float>;
+template decltype(assemble<double>) assemble<double>;
 
 Batch<double> bounded(Batch<double> x, const Labelling& labels) {
   auto rows = x.topRows(labels.bounded);

@@ -66,15 +66,4 @@ class SharedFunctions {
   std::vector<Index> place_;
 };
 
-extern template bool SharedFunctions::triangle<float>(
-    std::span<const LayerRows<float>>,
-    VectorIn<float>,
-    VectorIn<double>,
-    Index);
-extern template bool SharedFunctions::triangle<double>(
-    std::span<const LayerRows<double>>,
-    VectorIn<double>,
-    VectorIn<double>,
-    Index);
-
 }  // namespace physinv::hig

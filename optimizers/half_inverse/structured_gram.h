@@ -71,17 +71,4 @@ class StructuredGram {
   Index features_ = 0;
 };
 
-extern template void StructuredGram::operator()<float>(
-    std::span<const LayerRows<float>>,
-    Index,
-    Index,
-    BatchOut<double>,
-    Threads*);
-extern template void StructuredGram::operator()<double>(
-    std::span<const LayerRows<double>>,
-    Index,
-    Index,
-    BatchOut<double>,
-    Threads*);
-
 }  // namespace physinv::hig

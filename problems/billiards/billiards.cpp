@@ -235,12 +235,8 @@ Collision<T> collide(const std::array<T, 2>& velocity,
   return out;
 }
 
-template Collision<float> collide(const std::array<float, 2>&,
-                                  const std::array<float, 2>&,
-                                  const BilliardsOptions&);
-template Collision<double> collide(const std::array<double, 2>&,
-                                   const std::array<double, 2>&,
-                                   const BilliardsOptions&);
+template decltype(collide<float>) collide<float>;
+template decltype(collide<double>) collide<double>;
 
 BilliardsPath simulate_events(const Point& velocity,
                               const Point& ball,

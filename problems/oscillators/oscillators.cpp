@@ -252,12 +252,8 @@ OscillatorsStep oscillators_step(const std::array<double, 4>& state,
   return out;
 }
 
-template OscillatorsStep oscillators_step<float>(const std::array<double, 4>&,
-                                                 double,
-                                                 const OscillatorsOptions&);
-template OscillatorsStep oscillators_step<double>(const std::array<double, 4>&,
-                                                  double,
-                                                  const OscillatorsOptions&);
+template decltype(oscillators_step<float>) oscillators_step<float>;
+template decltype(oscillators_step<double>) oscillators_step<double>;
 
 template <class T>
 Oscillators<T>::Oscillators(const Options& options) : options_(options) {

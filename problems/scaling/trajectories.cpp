@@ -124,19 +124,7 @@ void advance(const ScalingFlow& flow,
   });
 }
 
-template void advance<float>(const ScalingFlow&,
-                             VectorIn<float>,
-                             VectorIn<float>,
-                             VectorIn<float>,
-                             VectorOut<float>,
-                             VectorOut<float>,
-                             Threads*);
-template void advance<double>(const ScalingFlow&,
-                              VectorIn<double>,
-                              VectorIn<double>,
-                              VectorIn<double>,
-                              VectorOut<double>,
-                              VectorOut<double>,
-                              Threads*);
+template decltype(advance<float>) advance<float>;
+template decltype(advance<double>) advance<double>;
 
 }  // namespace physinv

@@ -59,19 +59,4 @@ void advance(const ScalingFlow& flow,
              VectorOut<T> x2,
              Threads* threads = nullptr);
 
-extern template void advance<float>(const ScalingFlow&,
-                                    VectorIn<float>,
-                                    VectorIn<float>,
-                                    VectorIn<float>,
-                                    VectorOut<float>,
-                                    VectorOut<float>,
-                                    Threads*);
-extern template void advance<double>(const ScalingFlow&,
-                                     VectorIn<double>,
-                                     VectorIn<double>,
-                                     VectorIn<double>,
-                                     VectorOut<double>,
-                                     VectorOut<double>,
-                                     Threads*);
-
 }  // namespace physinv

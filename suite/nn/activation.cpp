@@ -132,18 +132,12 @@ void ActivationLayer<T>::backward_tangent(const LayerArgs<T>&,
                         b.x_bar_dot);
 }
 
-template void activate_rows<float>(Activation, Lanes<float>, Index, Index);
-template void activate_rows<double>(Activation, Lanes<double>, Index, Index);
-template void apply_gate<float>(const Gate<float>&, Lanes<float>);
-template void apply_gate<double>(const Gate<double>&, Lanes<double>);
-template void apply_gate_tangent<float>(const Gate<float>&,
-                                        Lanes<const float>,
-                                        Lanes<float>,
-                                        Lanes<float>);
-template void apply_gate_tangent<double>(const Gate<double>&,
-                                         Lanes<const double>,
-                                         Lanes<double>,
-                                         Lanes<double>);
+template decltype(activate_rows<float>) activate_rows<float>;
+template decltype(activate_rows<double>) activate_rows<double>;
+template decltype(apply_gate<float>) apply_gate<float>;
+template decltype(apply_gate<double>) apply_gate<double>;
+template decltype(apply_gate_tangent<float>) apply_gate_tangent<float>;
+template decltype(apply_gate_tangent<double>) apply_gate_tangent<double>;
 template class ActivationLayer<float>;
 template class ActivationLayer<double>;
 

@@ -316,39 +316,15 @@ void pull_norm(const NormShape& shape,
   });
 }
 
-#define PHYSINV_INSTANTIATE(T)                                             \
-  template void block_moments<T>(Lanes<const T>, Index, Index, Index, T*); \
-  template void combine_moments<T>(                                        \
-      const T*, Index, Index, Index, Index, NormColumns<T>);               \
-  template void use_state<T>(const T*, Index, NormColumns<T>);             \
-  template void move_state<T>(NormColumns<T>, Index, T*);                  \
-  template void normalise<T>(const NormShape&,                             \
-                             const NormColumns<T>&,                        \
-                             const T*,                                     \
-                             Lanes<const T>,                               \
-                             Lanes<T>,                                     \
-                             Index,                                        \
-                             Index);                                       \
-  template void block_sums<T>(const NormShape&,                            \
-                              const NormColumns<T>&,                       \
-                              const T*,                                    \
-                              Lanes<const T>,                              \
-                              Lanes<const T>,                              \
-                              Lanes<const T>,                              \
-                              Index,                                       \
-                              Index,                                       \
-                              T*);                                         \
-  template void combine_sums<T>(const T*, Index, Index, T*);               \
-  template void pull_norm<T>(const NormShape&,                             \
-                             const NormColumns<T>&,                        \
-                             const T*,                                     \
-                             const T*,                                     \
-                             Lanes<const T>,                               \
-                             Lanes<const T>,                               \
-                             Lanes<const T>,                               \
-                             Lanes<T>,                                     \
-                             Index,                                        \
-                             Index);
+#define PHYSINV_INSTANTIATE(T)                              \
+  template decltype(block_moments<T>) block_moments<T>;     \
+  template decltype(combine_moments<T>) combine_moments<T>; \
+  template decltype(use_state<T>) use_state<T>;             \
+  template decltype(move_state<T>) move_state<T>;           \
+  template decltype(normalise<T>) normalise<T>;             \
+  template decltype(block_sums<T>) block_sums<T>;           \
+  template decltype(combine_sums<T>) combine_sums<T>;       \
+  template decltype(pull_norm<T>) pull_norm<T>;
 PHYSINV_INSTANTIATE(float)
 PHYSINV_INSTANTIATE(double)
 #undef PHYSINV_INSTANTIATE

@@ -171,23 +171,10 @@ void pull_norm_tangent(const NormTangent<T>& of,
   }
 }
 
-#define PHYSINV_INSTANTIATE(T)                              \
-  template void normalise_tangent<T>(                       \
-      const NormTangent<T>&, Lanes<T>, Index, Index);       \
-  template void open_cells<T>(const NormTangent<T>&,        \
-                              Lanes<const T>,               \
-                              Lanes<const T>,               \
-                              Lanes<const T>,               \
-                              Lanes<T>,                     \
-                              Lanes<T>,                     \
-                              Index,                        \
-                              Index);                       \
-  template void pull_norm_tangent<T>(const NormTangent<T>&, \
-                                     const NormMeans<T>&,   \
-                                     Lanes<T>,              \
-                                     Lanes<T>,              \
-                                     Index,                 \
-                                     Index);
+#define PHYSINV_INSTANTIATE(T)                                  \
+  template decltype(normalise_tangent<T>) normalise_tangent<T>; \
+  template decltype(open_cells<T>) open_cells<T>;               \
+  template decltype(pull_norm_tangent<T>) pull_norm_tangent<T>;
 PHYSINV_INSTANTIATE(float)
 PHYSINV_INSTANTIATE(double)
 #undef PHYSINV_INSTANTIATE

@@ -283,18 +283,10 @@ void convolve(const ConvShape& shape,
   for_alike(some, last, begin, end, product);
 }
 
-#define PHYSINV_INSTANTIATE(T)                                   \
-  template void pack_weights<T>(const ConvShape&, const T*, T*); \
-  template void pack_flipped<T>(const ConvShape&, const T*, T*); \
-  template void convolve<T>(const ConvShape&,                    \
-                            const std::vector<Run>&,             \
-                            const T*,                            \
-                            const T*,                            \
-                            Lanes<const T>,                      \
-                            Lanes<T>,                            \
-                            Index,                               \
-                            Index,                               \
-                            Into);
+#define PHYSINV_INSTANTIATE(T)                        \
+  template decltype(pack_weights<T>) pack_weights<T>; \
+  template decltype(pack_flipped<T>) pack_flipped<T>; \
+  template decltype(convolve<T>) convolve<T>;
 PHYSINV_INSTANTIATE(float)
 PHYSINV_INSTANTIATE(double)
 #undef PHYSINV_INSTANTIATE

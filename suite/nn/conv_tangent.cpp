@@ -191,11 +191,9 @@ void pull_block(const BlockParts<T>& block,
   pull_convolution<T>(block.conv, at, b, bar, bar_dot);
 }
 
-#define PHYSINV_INSTANTIATE(T)                                       \
-  template void push_block<T>(                                       \
-      const BlockParts<T>&, const LayerArgs<T>&, const Tangent<T>&); \
-  template void pull_block<T>(                                       \
-      const BlockParts<T>&, const LayerArgs<T>&, const BackwardTangent<T>&);
+#define PHYSINV_INSTANTIATE(T)                    \
+  template decltype(push_block<T>) push_block<T>; \
+  template decltype(pull_block<T>) pull_block<T>;
 PHYSINV_INSTANTIATE(float)
 PHYSINV_INSTANTIATE(double)
 #undef PHYSINV_INSTANTIATE

@@ -277,17 +277,11 @@ Index positions_per_block(Lanes<const T> x, Index channels) {
 }
 
 #define PHYSINV_INSTANTIATE(T)                                    \
-  template Index weight_sums<T>(const ConvShape&);                \
-  template void accumulate_weights<T>(const ConvShape&,           \
-                                      const std::vector<Run>&,    \
-                                      Lanes<const T>,             \
-                                      Lanes<const T>,             \
-                                      Index,                      \
-                                      Index,                      \
-                                      T*);                        \
-  template void add_weights<T>(const ConvShape&, const T*, T*);   \
-  template void order_weights<T>(const ConvShape&, const T*, T*); \
-  template Index positions_per_block<T>(Lanes<const T>, Index);
+  template decltype(weight_sums<T>) weight_sums<T>;               \
+  template decltype(accumulate_weights<T>) accumulate_weights<T>; \
+  template decltype(add_weights<T>) add_weights<T>;               \
+  template decltype(order_weights<T>) order_weights<T>;           \
+  template decltype(positions_per_block<T>) positions_per_block<T>;
 PHYSINV_INSTANTIATE(float)
 PHYSINV_INSTANTIATE(double)
 #undef PHYSINV_INSTANTIATE

@@ -24,12 +24,8 @@ void pull_convolution(const Convolution<T>& conv,
   if (b.x_bar) add_lanes<T>(more, b.x_bar_dot);
 }
 
-#define PHYSINV_INSTANTIATE(T)                                 \
-  template void pull_convolution<T>(const Convolution<T>&,     \
-                                    const LayerArgs<T>&,       \
-                                    const BackwardTangent<T>&, \
-                                    Lanes<const T>,            \
-                                    Lanes<const T>);
+#define PHYSINV_INSTANTIATE(T) \
+  template decltype(pull_convolution<T>) pull_convolution<T>;
 PHYSINV_INSTANTIATE(float)
 PHYSINV_INSTANTIATE(double)
 #undef PHYSINV_INSTANTIATE

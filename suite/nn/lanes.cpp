@@ -198,13 +198,12 @@ void row_sums(Lanes<const T> x, T* sums) {
   }
 }
 
-#define PHYSINV_INSTANTIATE(T)                              \
-  template void transpose<T>(                               \
-      const T*, Index, Index, Index, T*, Index, Behind);    \
-  template void to_lanes<T>(BatchIn<T>, Lanes<T>);          \
-  template void from_lanes<T>(Lanes<const T>, BatchOut<T>); \
-  template void add_lanes<T>(Lanes<const T>, Lanes<T>);     \
-  template void row_sums<T>(Lanes<const T>, T*);
+#define PHYSINV_INSTANTIATE(T)                    \
+  template decltype(transpose<T>) transpose<T>;   \
+  template decltype(to_lanes<T>) to_lanes<T>;     \
+  template decltype(from_lanes<T>) from_lanes<T>; \
+  template decltype(add_lanes<T>) add_lanes<T>;   \
+  template decltype(row_sums<T>) row_sums<T>;
 PHYSINV_INSTANTIATE(float)
 PHYSINV_INSTANTIATE(double)
 #undef PHYSINV_INSTANTIATE
