@@ -9,10 +9,12 @@ import subprocess
 import sys
 import tempfile
 
-BENCH = os.path.abspath(sys.argv[1])
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.append(os.path.join(HERE, "..", "suite", "app"))
+from program import BENCH, FAILED, check, crc32c  # noqa: E402
+
 COUNT = os.path.abspath(sys.argv[2]) if len(sys.argv) > 2 else None
 CAN_COUNT = COUNT is not None and shutil.which("valgrind") is not None
-FAILED = []
 
 
 def run(*args, cwd, plant="", **env):
@@ -21,12 +23,6 @@ def run(*args, cwd, plant="", **env):
         [BENCH, *args], cwd=cwd, text=True, capture_output=True, timeout=300,
         env={**quiet, "PHYSINV_FAKE_PLANT": plant,
              "PHYSINV_COUNT": COUNT or "nowhere", **env})
-
-
-def check(condition, what):
-    print("ok  " if condition else "FAIL", what)
-    if not condition:
-        FAILED.append(what)
 
 
 def expect(code, args, cwd, says="", **kwargs):
@@ -40,22 +36,13 @@ def expect(code, args, cwd, says="", **kwargs):
     return p
 
 
-def crc32c(data):
-    crc = 0xffffffff
-    for byte in data:
-        crc ^= byte
-        for _ in range(8):
-            crc = crc >> 1 ^ (0x82f63b78 if crc & 1 else 0)
-    return crc ^ 0xffffffff
-
-
 def rewrite(d, name, change, base="base.txt"):
     """Another baseline with a right checksum."""
     body = open(os.path.join(d, base)).read().rsplit("checksum", 1)[0]
     changed = change(body)
     assert changed != body
     with open(os.path.join(d, name), "w") as f:
-        f.write(f"{changed}checksum {crc32c(changed.encode()):08x}\n")
+        f.write(f"{changed}checksum {crc32c(changed.encode()).decode()}\n")
 
 
 GATE = ["gate", "--baseline=base.txt"]

@@ -11,15 +11,9 @@ import subprocess
 import sys
 import tempfile
 
-BENCH = os.path.abspath(sys.argv[1])
+from program import BENCH, FAILED, check
+
 SMOKE = ["--profile=smoke", "--jobs=2"]
-FAILED = []
-
-
-def check(condition, what):
-    print("ok  " if condition else "FAIL", what)
-    if not condition:
-        FAILED.append(what)
 
 
 def run(*args, **kwargs):
