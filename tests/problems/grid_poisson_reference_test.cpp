@@ -28,7 +28,7 @@ void check_stencil(const Json& entry, const TwoNorm& same) {
   const Batch<T> f = cells_of(entry.at("input").at("f")).cast<T>(), given(0, 1);
   const Vector<double> laplace = flat(entry.at("expected").at("laplace"));
   const GridPoisson<T> grid;
-  Physics<GridPoisson<T>, T> at(grid);
+  Physics at(grid);
   EXPECT_TRUE(same(at.forward(f, given), laplace));
   at.linearize(f, given);
   EXPECT_TRUE(same(at.pullback(f), laplace));
@@ -40,7 +40,7 @@ void check_laplacian(const Json& entry) {
   check_stencil<double>(entry, HigTolerance(entry).array());
   check_stencil<float>(entry, {1e-6, 1e-6});
   const GridPoisson<double> grid;
-  Physics<GridPoisson<double>, double> at(grid);
+  Physics at(grid);
   const Batch<double> j =
       at.jacobian(Batch<double>::Zero(kPoissonCells, 1), Batch<double>(0, 1));
   EXPECT_TRUE(HigTolerance(entry).array()(
@@ -56,7 +56,7 @@ void check_sample(const Json& entry) {
   const Batch<double> phi = poisson_potential(noise);
   EXPECT_TRUE(same(phi, flat(entry.at("expected").at("phi"))));
   const GridPoisson<double> grid;
-  Physics<GridPoisson<double>, double> at(grid);
+  Physics at(grid);
   EXPECT_TRUE(same(at.forward(phi, Batch<double>(0, 1)),
                    flat(entry.at("expected").at("rho"))));
 }

@@ -16,7 +16,7 @@ TEST(GridPoisson, DerivativesAgreeWithDifferences) {
 
 TEST(GridPoisson, TheOperatorIsSymmetricAndNegative) {
   const GridPoisson<double> grid;
-  Physics<GridPoisson<double>, double> at(grid);
+  Physics at(grid);
   const Batch<double> j =
       at.jacobian(Batch<double>::Zero(64, 1), Batch<double>(0, 1));
   const Batch<double> l = at.matrix(j, 0);
@@ -28,7 +28,7 @@ TEST(GridPoisson, TheOperatorIsSymmetricAndNegative) {
 
 TEST(GridPoisson, AConstantFeelsOnlyTheBorder) {
   const GridPoisson<float> grid;
-  Physics<GridPoisson<float>, float> at(grid);
+  Physics at(grid);
   const Batch<float> y =
       at.forward(Batch<float>::Ones(64, 1), Batch<float>(0, 1));
   for (Index i = 0; i < 8; ++i)

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "problems/heat/heat.h"
+#include "tests/support/physics.h"
 #include "tests/support/reference.h"
 
 namespace physinv::test {
@@ -136,14 +137,11 @@ void check_forward(const Json& entry) {
   const Json in = entry.at("inputs"), want = entry.at("expected");
   const HeatOptions options = options_of(entry);
   const Index side = options.resolution, cells = side * side;
-  Batch<T> fields(cells, 2), y(cells, 2), gradient(cells, 1);
+  Batch<T> fields(cells, 2);
   fields.col(0) = field_of(entry, side).cast<T>();
   fields.col(1) = start_of(in, cells).cast<T>();
-  const Heat<T> heat(options);
-  Workspace work;
-  Tape tape;
-  const Batch<T> given(0, 2);
-  heat.forward(fields, given, y, work);
+  Physics heat{Heat<T>(options)};
+  const Batch<T> given(0, 2), y = heat.forward(fields, given);
   const auto same = tolerance<T>(entry);
   const Vector<double> seen = y.col(0).template cast<double>();
   const Json at = in.at("cells");
@@ -151,14 +149,9 @@ void check_forward(const Json& entry) {
   EXPECT_TRUE(same(seen.sum(), number(want.at("y_sum"))));
   EXPECT_TRUE(same(seen.norm(), number(want.at("y_norm"))));
 
-  Batch<T> y0(cells, 1), y_bar(cells, 1);
-  Vector<double> loss(1);
-  heat.linearize(fields.col(1), given.leftCols(1), y0, tape);
-  heat.loss(y0, y.col(0), loss);
-  heat.loss_gradient(y0, y.col(0), y_bar);
-  heat.pullback(tape, y_bar, gradient, work);
-  const Vector<double> g = gradient.template cast<double>();
-  EXPECT_TRUE(same(loss(0), number(want.at("loss"))));
+  const auto start = heat.losses(fields.col(1), given.leftCols(1), y.col(0));
+  const Vector<double> g = start.x_bar.template cast<double>();
+  EXPECT_TRUE(same(start.loss(0), number(want.at("loss"))));
   EXPECT_TRUE(same(at_cells(g, side, at), vector(want.at("gradient"))));
   EXPECT_TRUE(same(g.norm(), number(want.at("gradient_norm"))));
 }

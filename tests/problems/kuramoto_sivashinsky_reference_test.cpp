@@ -11,6 +11,7 @@
 #include "suite/nn/vgg.h"
 #include "tests/support/jpo_entries.h"
 #include "tests/support/jpo_reference.h"
+#include "tests/support/physics.h"
 #include "tests/support/run_reference.h"
 
 namespace physinv::test {
@@ -60,16 +61,10 @@ struct Observed {
                   VectorOut<double> loss,
                   BatchOut<T> gradient) const {
     const std::vector<Index> some(active.begin(), active.end());
-    const Batch<T> given = data.given(Eigen::all, some);
-    const Batch<T> target = data.y(Eigen::all, some);
-    Batch<T> y(target.rows(), x.cols()), y_bar = y;
-    const KuramotoSivashinsky<T> problem(options_on(target.rows()));
-    Tape tape;
-    Workspace work;
-    problem.linearize(x, given, y, tape);
-    problem.loss(y, target, loss);
-    problem.loss_gradient(y, target, y_bar);
-    problem.pullback(tape, y_bar, gradient, work);
+    Physics at{KuramotoSivashinsky<T>(options_on(data.y.rows()))};
+    const auto found =
+        at.losses(x, data.given(Eigen::all, some), data.y(Eigen::all, some));
+    loss = found.loss, gradient = found.x_bar;
   }
 };
 

@@ -12,6 +12,7 @@
 #include "suite/core/threads.h"
 #include "tests/support/bits.h"
 #include "tests/support/gradient_check.h"
+#include "tests/support/physics.h"
 #include "tests/support/tolerance.h"
 
 namespace physinv::test {
@@ -23,51 +24,28 @@ Samples<double> draw(Index n, const KuramotoSivashinskyOptions& o = {}) {
   return Equation(o).sample(0, n, Rng::root("test/ks", 1));
 }
 
-/// Answers by value, on a given number of threads.
 template <class T>
-struct Bench {
+struct Bench : Physics<KuramotoSivashinsky<T>> {
   explicit Bench(const KuramotoSivashinskyOptions& o = {}, int threads = 1)
-      : problem(o), pool(threads), tape(&pool), work(&pool) {}
+      : Physics<KuramotoSivashinsky<T>>(KuramotoSivashinsky<T>(o), threads) {}
 
-  Batch<T> forward(const Batch<T>& x, const Batch<T>& u0) {
-    Batch<T> y(u0.rows(), x.cols());
-    problem.forward(x, u0, y, work);
-    return y;
-  }
   /// d/dx above d/du(0), at a y that has the bits of `forward`.
   Batch<T> pull(const Batch<T>& x, const Batch<T>& u0, const Batch<T>& y_bar) {
     const Index n = u0.rows();
-    Batch<T> y(n, x.cols()), x_bar(2, x.cols()), both(n + 2, x.cols());
-    problem.linearize(x, u0, y, tape);
-    problem.pullback(tape, y_bar, both.topRows(2), both.bottomRows(n), work);
-    problem.pullback(tape, y_bar, x_bar, work);
-    EXPECT_TRUE(same_bits(Batch<T>(both.topRows(2)), x_bar));
-    EXPECT_TRUE(same_bits(y, forward(x, u0)));
+    Batch<T> both(n + 2, x.cols());
+    const Batch<T> y = this->linearize(x, u0);
+    this->problem.pullback(
+        this->tape, y_bar, both.topRows(2), both.bottomRows(n), this->work);
+    EXPECT_TRUE(same_bits(Batch<T>(both.topRows(2)), this->pullback(y_bar)));
+    EXPECT_TRUE(same_bits(y, this->forward(x, u0)));
     return both;
   }
-  Batch<T> jacobian(const Batch<T>& x, const Batch<T>& u0) {
-    Batch<T> j(2 * u0.rows(), x.cols());
-    problem.jacobian(x, u0, j, work);
-    return j;
-  }
-
-  KuramotoSivashinsky<T> problem;
-  Threads pool;
-  Tape tape;
-  Workspace work;
 };
 
 Batch<double> simulate(const Batch<double>& x,
                        const Batch<double>& u0,
                        const KuramotoSivashinskyOptions& o = {}) {
   return Bench<double>(o).forward(x, u0);
-}
-
-template <class T>
-Batch<T> waves(Index rows, Index cols, double shift) {
-  return Batch<T>::NullaryExpr(rows, cols, [=](Index i, Index j) {
-    return T(std::sin(1.7 * double(i) + 0.9 * double(j) + shift));
-  });
 }
 
 template <class T>

@@ -13,6 +13,7 @@
 #include "problems/navier_stokes/navier_stokes.h"
 #include "tests/support/hig_reference.h"
 #include "tests/support/mac_cormack_reference.h"
+#include "tests/support/physics.h"
 
 namespace physinv::test {
 namespace {
@@ -339,13 +340,7 @@ void check_scene(const Json& entry) {
   ASSERT_GE(count, 1);
   const Batch<T> given = upper_half(flow, n).cast<T>().replicate(1, count);
   const Batch<T> all = target.cast<T>().replicate(1, count);
-  Batch<T> y(n * n, count), y_bar = y, z_bar(3, count);
-  Vector<double> loss(count);
-  Tape tape;
-  problem.linearize(z, given, y, tape);
-  problem.loss(y, all, loss);
-  problem.loss_gradient(y, all, y_bar);
-  problem.pullback(tape, y_bar, z_bar, work);
+  const auto [y, loss, z_bar] = Physics(problem).losses(z, given, all);
   check_probes(y.col(0), out.at("final_probes_first_z"));
   // Where a z is the truth, rounding of the data is all that float has left.
   expect_near(

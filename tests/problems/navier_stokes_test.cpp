@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
-#include "suite/core/threads.h"
 #include "tests/support/bits.h"
 #include "tests/support/gradient_check.h"
+#include "tests/support/physics.h"
 
 namespace physinv::test {
 namespace {
@@ -26,38 +26,10 @@ Samples<double> draw(Index n) {
       0, n, Rng::root("test/navier_stokes", 1));
 }
 
-/// Answers by value, on a given number of threads.
 template <class T>
-struct Bench {
-  explicit Bench(int threads = 1, double budget = 1e9)
-      : Bench(small(budget), threads) {}
-  explicit Bench(const NavierStokesOptions& options, int threads = 1)
-      : problem(options), pool(threads), tape(&pool), work(&pool) {}
-
-  Batch<T> forward(const Batch<T>& x, const Batch<T>& given) {
-    Batch<T> y(given.rows() / 2, x.cols());
-    problem.forward(x, given, y, work);
-    return y;
-  }
-  /// At a y that has the bits of `forward`.
-  Batch<T> pull(const Batch<T>& x, const Batch<T>& given, const Batch<T>& bar) {
-    Batch<T> y(given.rows() / 2, x.cols()), x_bar(3, x.cols());
-    problem.linearize(x, given, y, tape);
-    problem.pullback(tape, bar, x_bar, work);
-    EXPECT_TRUE(same_bits(y, forward(x, given)));
-    return x_bar;
-  }
-  Batch<T> jacobian(const Batch<T>& x, const Batch<T>& given) {
-    Batch<T> j(3 * given.rows() / 2, x.cols());
-    problem.jacobian(x, given, j, work);
-    return j;
-  }
-
-  NavierStokes<T> problem;
-  Threads pool;
-  Tape tape;
-  Workspace work;
-};
+auto physics(int threads = 1, double budget = 1e9) {
+  return Physics(NavierStokes<T>(small(budget)), threads);
+}
 
 template <class T>
 class NavierStokesIn : public testing::Test {};
@@ -78,19 +50,19 @@ TEST(NavierStokes, SamplesAreWhatTheyShouldBe) {
               0.5,
               1e-12);
   EXPECT_TRUE(same_bits(all.y, s.y));
-  EXPECT_TRUE(same_bits(Bench<double>().forward(all.x, all.given), s.y));
+  EXPECT_TRUE(same_bits(physics<double>().forward(all.x, all.given), s.y));
   // The flow below is hidden: the truth does not fit.
   EXPECT_EQ((all.given - s.given).cwiseProduct(s.given).norm(), 0);
-  const Batch<double> y = Bench<double>().forward(s.x, s.given);
+  const Batch<double> y = physics<double>().forward(s.x, s.given);
   EXPECT_GT((y - s.y).colwise().norm().minCoeff(), 0.1);
 }
 
 TYPED_TEST(NavierStokesIn, PullbackIsTheJacobiansTranspose) {
   using T = TypeParam;
   const auto s = draw(5).template cast<T>();
-  Bench<T> bench;
+  auto bench = physics<T>();
   const Batch<T> bar = s.y.reverse();
-  const Batch<T> x_bar = bench.pull(s.x, s.given, bar);
+  const Batch<T> x_bar = bench.gradient(s.x, s.given, bar);
   const Batch<double> j = bench.jacobian(s.x, s.given).template cast<double>();
   for (Index i = 0; i < 5; ++i) {
     const Vector<double> expected =
@@ -105,7 +77,7 @@ TYPED_TEST(NavierStokesIn, PullbackIsTheJacobiansTranspose) {
 
 TEST(NavierStokes, JacobianIsTheDerivative) {
   const auto s = draw(1);
-  Bench<double> bench;
+  auto bench = physics<double>();
   const Batch<double> j = bench.jacobian(s.x, s.given).reshaped(s.y.rows(), 3);
   const Batch<double> expected = difference_jacobian(
       [&](const Vector<double>& x) -> Vector<double> {
@@ -121,7 +93,7 @@ TEST(NavierStokes, BoundsAreOtherCoordinatesOfTheSameBlast) {
   for (const Index bounded : {0, 2, 3}) {
     NavierStokesOptions o = small();
     o.bounded = bounded;
-    Bench<double> bench(o);
+    Physics bench{NavierStokes<double>(o)};
     const auto s =
         bench.problem.sample(0, 2, Rng::root("test/navier_stokes", 1));
     EXPECT_TRUE(same_bits(s.given, ours.given));
@@ -142,7 +114,7 @@ TEST(NavierStokes, BoundsAreOtherCoordinatesOfTheSameBlast) {
         1e-8);
     EXPECT_LE((j - expected).norm(), 1e-5 * expected.norm());
     const Batch<double> bar = s.y.col(0);
-    EXPECT_LE((bench.pull(x, given, bar) - j.transpose() * bar).norm(),
+    EXPECT_LE((bench.gradient(x, given, bar) - j.transpose() * bar).norm(),
               1e-12 * (j.transpose() * bar).norm());
   }
 }
@@ -150,17 +122,17 @@ TEST(NavierStokes, BoundsAreOtherCoordinatesOfTheSameBlast) {
 TYPED_TEST(NavierStokesIn, BitsDependOnNothingElse) {
   using T = TypeParam;
   const auto s = draw(11).template cast<T>();
-  Bench<T> one, two(2), again(2, 0);
+  auto one = physics<T>(), two = physics<T>(2), again = physics<T>(2, 0);
   const Batch<T> y = one.forward(s.x, s.given);
-  const Batch<T> x_bar = one.pull(s.x, s.given, s.y);
-  EXPECT_TRUE(same_bits(two.pull(s.x, s.given, s.y), x_bar));
-  EXPECT_TRUE(same_bits(again.pull(s.x, s.given, s.y), x_bar));
+  const Batch<T> x_bar = one.gradient(s.x, s.given, s.y);
+  EXPECT_TRUE(same_bits(two.gradient(s.x, s.given, s.y), x_bar));
+  EXPECT_TRUE(same_bits(again.gradient(s.x, s.given, s.y), x_bar));
   const std::vector<Index> some{10, 3, 4};
   const Batch<T> x = s.x(Eigen::all, some), given = s.given(Eigen::all, some),
                  bar = s.y(Eigen::all, some);
   EXPECT_TRUE(same_bits(one.forward(x, given), Batch<T>(y(Eigen::all, some))));
-  EXPECT_TRUE(
-      same_bits(one.pull(x, given, bar), Batch<T>(x_bar(Eigen::all, some))));
+  EXPECT_TRUE(same_bits(one.gradient(x, given, bar),
+                        Batch<T>(x_bar(Eigen::all, some))));
   const Batch<T> j = two.jacobian(s.x, s.given);
   EXPECT_TRUE(same_bits(one.jacobian(x, given), Batch<T>(j(Eigen::all, some))));
 }
@@ -168,14 +140,14 @@ TYPED_TEST(NavierStokesIn, BitsDependOnNothingElse) {
 TYPED_TEST(NavierStokesIn, WhatIsLostStaysInItsColumn) {
   using T = TypeParam;
   auto s = draw(6).template cast<T>();
-  Bench<T> bench;
+  auto bench = physics<T>();
   const Batch<T> y = bench.forward(s.x, s.given);
-  const Batch<T> x_bar = bench.pull(s.x, s.given, s.y);
+  const Batch<T> x_bar = bench.gradient(s.x, s.given, s.y);
   s.x(1, 2) = std::numeric_limits<T>::quiet_NaN();
   s.x(0, 3) = std::numeric_limits<T>::infinity();
   s.given(40, 4) = T(1e30);
   const Batch<T> y2 = bench.forward(s.x, s.given);
-  const Batch<T> x_bar2 = bench.pull(s.x, s.given, s.y);
+  const Batch<T> x_bar2 = bench.gradient(s.x, s.given, s.y);
   const Batch<T> j = bench.jacobian(s.x, s.given);
   for (Index i = 0; i < 6; ++i) {
     const bool lost = i >= 2 && i <= 4;
@@ -189,7 +161,7 @@ TYPED_TEST(NavierStokesIn, WhatIsLostStaysInItsColumn) {
   // A blast far too strong is still a number.
   s.x.col(0) << T(-40), T(1e5), T(-1e5);
   EXPECT_TRUE(bench.forward(s.x, s.given).col(0).allFinite());
-  EXPECT_TRUE(bench.pull(s.x, s.given, s.y).col(0).allFinite());
+  EXPECT_TRUE(bench.gradient(s.x, s.given, s.y).col(0).allFinite());
 }
 
 }  // namespace

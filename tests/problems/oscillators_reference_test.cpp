@@ -16,15 +16,13 @@ void check_solver(const Json& entry, const TwoNorm& same) {
   const Batch<T> x = flat(in.at("u")).cast<T>();
   const Batch<T> given = flat(in.at("x0"), 4).cast<T>();
   const Oscillators<T> pair({.steps = x.rows(), .coupling = g});
-  Physics<Oscillators<T>, T> at(pair);
+  Physics at(pair);
   const Batch<T> y = at.linearize(x, given);
   EXPECT_TRUE(same(y, flat(out.at("y"))));
   for (const auto& [steps, state] : states_after(out)) {
     ASSERT_TRUE(1 <= steps && steps <= x.rows()) << steps;
     const Oscillators<T> part({.steps = steps, .coupling = g});
-    EXPECT_TRUE(same(
-        (Physics<Oscillators<T>, T>(part).forward(x.topRows(steps), given)),
-        state))
+    EXPECT_TRUE(same(Physics(part).forward(x.topRows(steps), given), state))
         << "after " << steps;
   }
   Vector<double> loss(1);

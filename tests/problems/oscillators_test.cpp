@@ -75,7 +75,7 @@ TEST(Oscillators, EnergyIsConservedWithoutControlToFourthOrder) {
     const Oscillators<double> pair(
         {.steps = steps, .dt = 12.0 / double(steps)});
     const auto s = pair.sample(0, 16, rng);
-    Physics<Oscillators<double>, double> at(pair);
+    Physics at(pair);
     const Batch<double> y = at.forward(Batch<double>::Zero(steps, 16), s.given);
     for (Index i = 0; i < 16; ++i)
       error[fine] = std::max(
@@ -91,7 +91,7 @@ TEST(Oscillators, CouplingActsOnTheDifferenceOnly) {
   const Oscillators<double> coupled({.coupling = 4}), free({.coupling = 0});
   const auto s = coupled.sample(0, 11, kRng);
   const Batch<double> x = Batch<double>::Zero(96, 11);
-  Physics<Oscillators<double>, double> a(coupled), b(free);
+  Physics a(coupled), b(free);
   const Batch<double> u = a.forward(x, s.given), v = b.forward(x, s.given);
   for (const Index r : {0, 2}) {
     EXPECT_TRUE(Comparator(1e-13, 0)((u.row(r) + u.row(r + 1)).eval(),
@@ -122,7 +122,7 @@ TEST(Oscillators, StatesAreDrawnUniformlyAndWantedBack) {
   EXPECT_LT(s.y.maxCoeff(), 1);
   EXPECT_NEAR(s.y.mean(), 0.5, 0.01);
   // What doing nothing costs.
-  Physics<Oscillators<double>, double> at(pair);
+  Physics at(pair);
   Vector<double> loss(4096);
   pair.loss(at.forward(Batch<double>::Zero(96, 4096), s.given), s.y, loss);
   EXPECT_NEAR(loss.mean(), 0.80, 0.05);
@@ -131,7 +131,7 @@ TEST(Oscillators, StatesAreDrawnUniformlyAndWantedBack) {
 TEST(Oscillators, TakesNoMoreMemoryAndLittleOfIt) {
   const Oscillators<double> pair;
   const auto s = pair.sample_labelled(0, 512, kRng);
-  Physics<Oscillators<double>, double> at(pair);
+  Physics at(pair);
   at.gradient(s.x, s.given, s.y);
   EXPECT_LE(at.tape.bytes(), std::size_t{2} << 20);
   Batch<double> j = at.jacobian(s.x, s.given);

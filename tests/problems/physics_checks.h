@@ -6,67 +6,12 @@
 #include <limits>
 #include <vector>
 
-#include "suite/core/problem.h"
-#include "suite/core/threads.h"
 #include "tests/support/bits.h"
 #include "tests/support/gradient_check.h"
+#include "tests/support/physics.h"
 #include "tests/support/tolerance.h"
 
 namespace physinv::test {
-
-/// The answers of problem P<T> by value, on `threads` threads.
-template <class P, class T>
-struct Physics {
-  explicit Physics(const P& p, int thread_count = 1)
-      : problem(p), threads(thread_count), work(&threads), tape(&threads) {}
-
-  Batch<T> forward(const Batch<T>& x, const Batch<T>& given) {
-    Batch<T> y(problem.shape().observations, x.cols());
-    problem.forward(x, given, y, work);
-    return y;
-  }
-  Batch<T> linearize(const Batch<T>& x, const Batch<T>& given) {
-    Batch<T> y(problem.shape().observations, x.cols());
-    problem.linearize(x, given, y, tape);
-    return y;
-  }
-  /// At the point of the last linearize.
-  Batch<T> pullback(const Batch<T>& y_bar) {
-    Batch<T> x_bar(problem.shape().unknowns, y_bar.cols());
-    problem.pullback(tape, y_bar, x_bar, work);
-    return x_bar;
-  }
-  Batch<T> gradient(const Batch<T>& x,
-                    const Batch<T>& given,
-                    const Batch<T>& y_bar) {
-    linearize(x, given);
-    return pullback(y_bar);
-  }
-  Batch<T> jacobian(const Batch<T>& x, const Batch<T>& given) {
-    const Shape s = problem.shape();
-    Batch<T> j(s.observations * s.unknowns, x.cols());
-    problem.jacobian(x, given, j, work);
-    return j;
-  }
-  /// Sample i's matrix.
-  Batch<T> matrix(const Batch<T>& j, Index i) const {
-    const Shape s = problem.shape();
-    return Eigen::Map<const Batch<T>>(
-        j.col(i).data(), s.observations, s.unknowns);
-  }
-
-  const P& problem;
-  Threads threads;
-  Workspace work;
-  Tape tape;
-};
-
-template <class T>
-Batch<T> waves(Index rows, Index cols, double shift) {
-  return Batch<T>::NullaryExpr(rows, cols, [=](Index i, Index j) {
-    return static_cast<T>(std::sin(1.7 * double(i) + 0.9 * double(j) + shift));
-  });
-}
 
 /// Jacobian against central differences, pullback against the Jacobian.
 template <class P>
@@ -74,7 +19,7 @@ void expect_derivatives(const P& problem,
                         const Batch<double>& x,
                         const Batch<double>& given,
                         double rtol = 1e-7) {
-  Physics<P, double> at(problem);
+  Physics at(problem);
   const Batch<double> j = at.jacobian(x, given);
   const Batch<double> y_bar =
       waves<double>(problem.shape().observations, x.cols(), 0.4);
@@ -98,7 +43,7 @@ template <class T, class P>
 void expect_independent_samples(const P& problem,
                                 const Batch<T>& x,
                                 const Batch<T>& given) {
-  Physics<P, T> at(problem), threaded(problem, 3);
+  Physics at(problem), threaded(problem, 3);
   const Index n = x.cols();
   const Batch<T> y_bar = waves<T>(problem.shape().observations, n, 0.4);
   const Batch<T> y = at.forward(x, given), j = at.jacobian(x, given);
@@ -129,7 +74,7 @@ void expect_contained(const P& problem,
                       const Batch<T>& given,
                       const Batch<T>& x,
                       Index bad) {
-  Physics<P, T> at(problem);
+  Physics at(problem);
   const Batch<T> y_bar = waves<T>(problem.shape().observations, x.cols(), 0.4);
   const auto check = [&](const Batch<T>& expected, Batch<T> seen) {
     EXPECT_FALSE(seen.col(bad).allFinite());

@@ -46,16 +46,14 @@ void check_solver(const Json& entry, const TwoNorm& same) {
   const Batch<T> x = flat(in.at("u")).cast<T>(), given(0, 1);
   const Batch<T> target = flat(in.at("target"), 2 * kQuantumPoints).cast<T>();
   const QuantumDipole<T> box({.steps = x.rows()});
-  Physics<QuantumDipole<T>, T> at(box);
+  Physics at(box);
   const Batch<T> y = at.linearize(x, given);
   EXPECT_TRUE(same(y, flat(out.at("psi"))));
   EXPECT_TRUE(same(double(y.squaredNorm()), number(out.at("norm2"))));
   for (const auto& [steps, state] : states_after(out)) {
     ASSERT_TRUE(1 <= steps && steps <= x.rows()) << steps;
     const QuantumDipole<T> part({.steps = steps});
-    EXPECT_TRUE(same(
-        (Physics<QuantumDipole<T>, T>(part).forward(x.topRows(steps), given)),
-        state))
+    EXPECT_TRUE(same(Physics(part).forward(x.topRows(steps), given), state))
         << "after " << steps;
   }
   Vector<double> loss(1);

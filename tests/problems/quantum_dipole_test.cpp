@@ -77,11 +77,11 @@ TEST(QuantumDipole, TheNormIsConserved) {
     SCOPED_TRACE(scale);
     const Batch<double> x = controls(384, 8, scale);
     const QuantumDipole<double> box;
-    Physics<QuantumDipole<double>, double> at(box);
+    Physics at(box);
     const Batch<double> y = at.forward(x, none<double>(8));
     EXPECT_LE((y.colwise().norm().array() - 1).abs().maxCoeff(), 1e-12);
     const QuantumDipole<float> rough;
-    Physics<QuantumDipole<float>, float> rounded(rough);
+    Physics rounded(rough);
     const Batch<float> z = rounded.forward(x.cast<float>(), none<float>(8));
     EXPECT_LE((z.colwise().norm().array() - 1).abs().maxCoeff(), 1e-4);
     if (scale < 1) {
@@ -92,7 +92,7 @@ TEST(QuantumDipole, TheNormIsConserved) {
 
 TEST(QuantumDipole, NoControlMovesTheStateAlongItself) {
   const QuantumDipole<double> box;
-  Physics<QuantumDipole<double>, double> at(box);
+  Physics at(box);
   const Batch<double> x = controls(384, 6, 0.3);
   const Batch<double> psi = at.linearize(x, none<double>(6));
   const double scale = at.pullback(waves<double>(28, 6, 0.1)).norm();
@@ -101,7 +101,7 @@ TEST(QuantumDipole, NoControlMovesTheStateAlongItself) {
 
 TEST(QuantumDipole, WithoutControlOnlyThePhaseTurns) {
   const QuantumDipole<double> box;
-  Physics<QuantumDipole<double>, double> at(box);
+  Physics at(box);
   const Batch<double> y =
       at.forward(Batch<double>::Zero(384, 1), none<double>(1));
   const std::complex<double> a(0, 0.025 * quantum_energy(1));
@@ -166,7 +166,7 @@ TEST(QuantumDipole, TheAccurateLossResolvesWhatTheOtherRoundsAway) {
 
 TEST(QuantumDipole, ProjectionTakesOutWhatNoControlActsOn) {
   const QuantumDipole<double> box;
-  Physics<QuantumDipole<double>, double> at(box);
+  Physics at(box);
   const Batch<double> x = controls(384, 5, 0.3);
   const Batch<double> psi = at.linearize(x, none<double>(5));
   const Batch<double> raw = waves<double>(28, 5, 0.7);
@@ -197,7 +197,7 @@ TEST(QuantumDipole, TargetsAreUniformOnACircleOfStates) {
 
 TEST(QuantumDipole, NoControlCannotReachTheThirdLevelAtFirstOrder) {
   const QuantumDipole<double> box;
-  Physics<QuantumDipole<double>, double> at(box);
+  Physics at(box);
   const Batch<double> j =
       at.jacobian(Batch<double>::Zero(384, 1), none<double>(1));
   const Vector<double> psi3 = quantum_observation(quantum_eigenstate(3));
@@ -225,7 +225,7 @@ TEST(QuantumDipole, JacobiansInFloatAreThoseOfDoubleRounded) {
 TEST(QuantumDipole, TakesLittleMemory) {
   const QuantumDipole<double> box;
   const Batch<double> x = controls(384, 256, 0.1);
-  Physics<QuantumDipole<double>, double> at(box);
+  Physics at(box);
   at.gradient(x, none<double>(256), waves<double>(28, 256, 0));
   EXPECT_LE(at.tape.bytes(), std::size_t{1} << 20);
   EXPECT_LE(at.work.bytes(), std::size_t{1} << 16);

@@ -9,6 +9,7 @@
 #include "suite/nn/mlp.h"
 #include "tests/support/jpo_entries.h"
 #include "tests/support/jpo_reference.h"
+#include "tests/support/physics.h"
 #include "tests/support/run_reference.h"
 #include "tests/support/singular_values.h"
 
@@ -21,24 +22,14 @@ const std::string kId = "jpo-robotic-arm";
 /// as T rounds them.
 template <class T>
 void check_case(const Json& c, const Comparator& same) {
-  const RoboticArm<T> arm;
+  Physics at{RoboticArm<T>()};
   const Batch<T> x = vector(c.at("x"), 4).cast<T>(), given(0, 1);
   const Batch<T> target = vector(c.at("target"), 2).cast<T>();
-  Batch<T> y(2, 1), forward(2, 1), y_bar(2, 1), x_bar(4, 1), j(8, 1);
-  Vector<double> loss(1);
-  Tape tape;
-  Workspace work;
-  arm.linearize(x, given, y, tape);
-  arm.loss(y, target, loss);
-  arm.loss_gradient(y, target, y_bar);
-  arm.pullback(tape, y_bar, x_bar, work);
-  arm.jacobian(x, given, j, work);
-  arm.forward(x, given, forward, work);
+  const auto [y, loss, x_bar] = at.losses(x, given, target);
   const Batch<double> jacobian =
-      Eigen::Map<const Eigen::Matrix<T, 2, 4>>(j.data())
-          .template cast<double>();
+      at.matrix(at.jacobian(x, given), 0).template cast<double>();
   const Vector<double> sigma = jacobi_singular_values(jacobian).s;
-  EXPECT_EQ(forward, y);
+  EXPECT_EQ(at.forward(x, given), y);
   EXPECT_TRUE(same(y, vector(c.at("tip"))));
   EXPECT_TRUE(same(loss, Vector<double>::Constant(1, number(c.at("loss")))));
   EXPECT_TRUE(same(x_bar, vector(c.at("gradient"))));

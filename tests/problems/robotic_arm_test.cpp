@@ -12,37 +12,30 @@
 #include "suite/core/check.h"
 #include "tests/support/bits.h"
 #include "tests/support/gradient_check.h"
+#include "tests/support/physics.h"
 #include "tests/support/tolerance.h"
 
 namespace physinv::test {
 namespace {
 
 template <class T>
+Batch<T> none(const Batch<T>& x) {
+  return Batch<T>(0, x.cols());
+}
+
+template <class T>
 Batch<T> tips(const Batch<T>& x) {
-  Batch<T> y(2, x.cols());
-  Workspace work;
-  RoboticArm<T>().forward(x, Batch<T>(0, x.cols()), y, work);
-  return y;
+  return Physics{RoboticArm<T>()}.forward(x, none(x));
 }
 
 template <class T>
 Batch<T> jacobians(const Batch<T>& x) {
-  Batch<T> j(8, x.cols());
-  Workspace work;
-  RoboticArm<T>().jacobian(x, Batch<T>(0, x.cols()), j, work);
-  return j;
+  return Physics{RoboticArm<T>()}.jacobian(x, none(x));
 }
 
 template <class T>
 Batch<T> pulled(const Batch<T>& x, const Batch<T>& y_bar) {
-  Batch<T> y(2, x.cols()), x_bar(4, x.cols());
-  Tape tape;
-  Workspace work;
-  const RoboticArm<T> arm;
-  arm.linearize(x, Batch<T>(0, x.cols()), y, tape);
-  arm.pullback(tape, y_bar, x_bar, work);
-  EXPECT_TRUE(same_bits(y, tips(x)));
-  return x_bar;
+  return Physics{RoboticArm<T>()}.gradient(x, none(x), y_bar);
 }
 
 Samples<double> draw(Index n, std::uint64_t seed = 1) {

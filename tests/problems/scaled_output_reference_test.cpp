@@ -40,7 +40,7 @@ void check_forward(const Json& entry) {
                        points = flat(in.at("x"));
   const Index n = points.size();
   const ScaledOutput<double> fit({.gamma = number(in.at("gamma"))});
-  Physics<ScaledOutput<double>, double> at(fit);
+  Physics at(fit);
   Batch<double> y(2, n), target(2, n), hidden(7, n), stacked(2 * n, 30);
   std::vector<Network> nets;
   for (Index i = 0; i < n; ++i) {

@@ -13,7 +13,7 @@ TEST(ScaledOutput, DerivativesAgreeWithDifferences) {
     const auto s = fit.sample(0, 5, kRng);
     const Batch<double> x = waves<double>(2, 5, 0.3);
     expect_derivatives(fit, x, s.given, 1e-8);
-    Physics<ScaledOutput<double>, double> at(fit);
+    Physics at(fit);
     EXPECT_EQ(at.matrix(at.jacobian(x, s.given), 2)(1, 1), gamma);
   }
 }
@@ -41,7 +41,7 @@ TEST(ScaledOutput, PointsAreUniformAndSolutionsExact) {
   EXPECT_GE(s.given.minCoeff(), -1);
   EXPECT_LT(s.given.maxCoeff(), 1);
   EXPECT_NEAR(s.given.mean(), 0, 0.02);
-  Physics<ScaledOutput<double>, double> at(fit);
+  Physics at(fit);
   EXPECT_TRUE(Comparator(1e-14, 0)(at.forward(s.x, s.given), s.y));
   // What an output of zero costs: 1/2 + sin 18 / 72 - sin 12 / 48.
   Vector<double> loss(8192);

@@ -11,6 +11,7 @@
 #include "suite/nn/vgg.h"
 #include "tests/support/jpo_entries.h"
 #include "tests/support/jpo_reference.h"
+#include "tests/support/physics.h"
 #include "tests/support/run_reference.h"
 
 namespace physinv::test {
@@ -31,28 +32,16 @@ double xi_of(double t0) {
   return (t0 - o.centre) / o.scale;
 }
 
+/// Of every column of x against the same column of targets.
 template <class T>
-struct Evaluation {
-  Batch<T> y, x_bar;
-  Vector<double> loss;
-
-  /// Of every column of x against the same column of targets.
-  Evaluation(const Batch<double>& xi, const Batch<double>& targets)
-      : y(targets.rows(), xi.cols()), x_bar(1, xi.cols()), loss(xi.cols()) {
-    const WavePacket<T> packet(options_of(targets.rows()));
-    const Batch<T> x = xi.cast<T>(), target = targets.cast<T>();
-    const Batch<T> given = Batch<T>::Zero(y.rows(), y.cols());
-    Batch<T> y_bar(y), forward(y);
-    Tape tape;
-    Workspace work;
-    packet.linearize(x, given, y, tape);
-    packet.loss(y, target, loss);
-    packet.loss_gradient(y, target, y_bar);
-    packet.pullback(tape, y_bar, x_bar, work);
-    packet.forward(x, given, forward, work);
-    EXPECT_EQ(forward, y);
-  }
-};
+auto evaluated(const Batch<double>& xi, const Batch<double>& targets) {
+  Physics at{WavePacket<T>(options_of(targets.rows()))};
+  const Batch<T> x = xi.cast<T>();
+  const Batch<T> given = Batch<T>::Zero(targets.rows(), xi.cols());
+  auto found = at.losses(x, given, targets.cast<T>());
+  EXPECT_EQ(at.forward(x, given), found.y);
+  return found;
+}
 
 /// The truth leaves noise, whose deviation the file may state: nothing in it is
 /// larger than such noise gets, and nothing looks like the packet.
@@ -60,7 +49,7 @@ void check_observations(const Json& entry) {
   const Batch<double> y = columns(entry.at("y"));
   const Vector<double> t0 = vector(entry.at("t0_true"), y.cols());
   const Batch<double> xi = t0.unaryExpr(&xi_of).transpose();
-  const Batch<double> packet = Evaluation<double>(xi, y).y;
+  const Batch<double> packet = evaluated<double>(xi, y).y;
   const double stated = setting(entry, "noise", "noise", 0);
   constexpr double kRounded = 1e-6;  // the file's decimals
   for (Index i = 0; i < y.cols(); ++i) {
@@ -79,8 +68,8 @@ void check_observations(const Json& entry) {
 
 template <class T>
 void check_case(const Json& c, const Batch<double>& y, const Comparator& same) {
-  const Evaluation<T> e(
-      Batch<double>::Constant(1, y.cols(), number(c.at("xi"))), y);
+  const auto e =
+      evaluated<T>(Batch<double>::Constant(1, y.cols(), number(c.at("xi"))), y);
   EXPECT_TRUE(same(e.loss, vector(c.at("loss"))));
   EXPECT_TRUE(same(e.x_bar.row(0).transpose(), vector(c.at("grad_xi"))));
 }
@@ -101,8 +90,8 @@ void check_packet(const Json& entry) {
       Batch<double>::Constant(1, 1, xi_of(number(entry.at("t0"))));
   const Vector<double> u = vector(entry.at("u"));
   EXPECT_TRUE(
-      EntryTolerance(entry).array()(Evaluation<double>(xi, u).y.col(0), u));
-  EXPECT_TRUE(Comparator(1e-4, 0)(Evaluation<float>(xi, u).y.col(0), u));
+      EntryTolerance(entry).array()(evaluated<double>(xi, u).y.col(0), u));
+  EXPECT_TRUE(Comparator(1e-4, 0)(evaluated<float>(xi, u).y.col(0), u));
 }
 
 void check_landscape(const Json& entry) {
@@ -112,8 +101,8 @@ void check_landscape(const Json& entry) {
     xi(0, k) = xi_of(static_cast<double>(k + 1));
   const Batch<double> y = signals().col(0).replicate(1, stored.size());
   EXPECT_TRUE(
-      EntryTolerance(entry).array()(Evaluation<double>(xi, y).loss, stored));
-  EXPECT_TRUE(Comparator(1e-4, 0)(Evaluation<float>(xi, y).loss, stored));
+      EntryTolerance(entry).array()(evaluated<double>(xi, y).loss, stored));
+  EXPECT_TRUE(Comparator(1e-4, 0)(evaluated<float>(xi, y).loss, stored));
 }
 
 void check_bfgs(const Json& entry) {

@@ -8,6 +8,7 @@
 #include "suite/core/check.h"
 #include "tests/support/bits.h"
 #include "tests/support/gradient_check.h"
+#include "tests/support/physics.h"
 #include "tests/support/tolerance.h"
 
 namespace physinv::test {
@@ -24,10 +25,7 @@ Batch<T> quiet(Index n) {
 
 template <class T>
 Batch<T> signals(const Batch<T>& x, const Batch<T>& given) {
-  Batch<T> y(kSamples, x.cols());
-  Workspace work;
-  WavePacket<T>().forward(x, given, y, work);
-  return y;
+  return Physics{WavePacket<T>()}.forward(x, given);
 }
 
 template <class T>
@@ -37,22 +35,12 @@ Batch<T> signals(const Batch<T>& x) {
 
 template <class T>
 Batch<T> jacobians(const Batch<T>& x) {
-  Batch<T> j(kSamples, x.cols());
-  Workspace work;
-  WavePacket<T>().jacobian(x, quiet<T>(x.cols()), j, work);
-  return j;
+  return Physics{WavePacket<T>()}.jacobian(x, quiet<T>(x.cols()));
 }
 
 template <class T>
 Batch<T> pulled(const Batch<T>& x, const Batch<T>& given, const Batch<T>& r) {
-  Batch<T> y(kSamples, x.cols()), x_bar(1, x.cols());
-  Tape tape;
-  Workspace work;
-  const WavePacket<T> packet;
-  packet.linearize(x, given, y, tape);
-  packet.pullback(tape, r, x_bar, work);
-  EXPECT_TRUE(same_bits(y, signals(x, given)));
-  return x_bar;
+  return Physics{WavePacket<T>()}.gradient(x, given, r);
 }
 
 template <class T>

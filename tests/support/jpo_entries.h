@@ -12,6 +12,7 @@
 #include "optimizers/drive.h"
 #include "optimizers/gradient_descent.h"
 #include "suite/core/workspace.h"
+#include "tests/support/physics.h"
 #include "tests/support/reference.h"
 
 namespace physinv::test {
@@ -26,18 +27,13 @@ struct Matching {
                   BatchIn<double> x,
                   VectorOut<double> loss,
                   BatchOut<double> gradient) const {
-    const P<double> problem(options);
-    const Index n = x.cols(), m = targets.rows();
-    const Batch<double> given = Batch<double>::Zero(problem.shape().given, n);
-    Batch<double> y(m, n), target(m, n), y_bar(m, n);
-    for (Index k = 0; k < n; ++k)
-      target.col(k) = targets.col(active[static_cast<std::size_t>(k)]);
-    Tape tape;
-    Workspace work;
-    problem.linearize(x, given, y, tape);
-    problem.loss(y, target, loss);
-    problem.loss_gradient(y, target, y_bar);
-    problem.pullback(tape, y_bar, gradient, work);
+    Physics at{P<double>(options)};
+    const std::vector<Index> some(active.begin(), active.end());
+    const auto found =
+        at.losses(x,
+                  Batch<double>::Zero(at.problem.shape().given, x.cols()),
+                  targets(Eigen::all, some));
+    loss = found.loss, gradient = found.x_bar;
   }
 };
 
