@@ -339,19 +339,24 @@ TEST(Newton, StepsAlongEigenvectors) {
   EXPECT_TRUE(newton_step({}, g * std::nan(""), hessian).array().isNaN().all());
 }
 
+/// Of 16 examples, after so many updates of a network.
+double error_after_60(const Stage& stage) {
+  StageBench bench(stage,
+                   16,
+                   60,
+                   physinv::problem<Exponential>("exponential"),
+                   setting_of_network());
+  const Outcome out = bench.run();
+  return (out.x - bench.oracle.data().x).cwiseAbs().mean();
+}
+
 TEST(Newton, TrainsANetwork) {
   const auto error = [&](double rate) {
     const auto stage = train({.rule = AdamOptions{.rate = rate},
                               .batch = 16,
                               .signal = newton_proxy({.limit = 0.1})});
     EXPECT_EQ(stage->needs(), Needs::forward | Needs::vjp | Needs::hessian);
-    StageBench bench(*stage,
-                     16,
-                     60,
-                     physinv::problem<Exponential>("exponential"),
-                     setting_of_network());
-    const Outcome out = bench.run();
-    return (out.x - bench.oracle.data().x).cwiseAbs().mean();
+    return error_after_60(*stage);
   };
   EXPECT_LT(error(1e-2), 0.9 * error(0));
 }
@@ -361,15 +366,8 @@ TEST(Proxy, DrivesEveryRule) {
   for (const ProxyNorm norm : {ProxyNorm::square, ProxyNorm::absolute}) {
     SCOPED_TRACE(static_cast<int>(norm));
     const auto error = [&](auto rule) {
-      const auto stage =
-          train({.rule = rule, .batch = 16, .signal = inverse_proxy(norm)});
-      StageBench bench(*stage,
-                       16,
-                       60,
-                       physinv::problem<Exponential>("exponential"),
-                       setting_of_network());
-      const Outcome out = bench.run();
-      return (out.x - bench.oracle.data().x).cwiseAbs().mean();
+      return error_after_60(
+          *train({.rule = rule, .batch = 16, .signal = inverse_proxy(norm)}));
     };
     const double start = error(SgdOptions{.rate = 0});
     EXPECT_LT(error(SgdOptions{.rate = 0.1}), 0.9 * start);

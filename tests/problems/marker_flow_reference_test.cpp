@@ -6,6 +6,7 @@
 #include "problems/marker_flow/marker_flow.h"
 #include "problems/marker_flow/periodic_flow.h"
 #include "tests/support/mac_cormack_reference.h"
+#include "tests/support/physics.h"
 
 namespace physinv::test {
 namespace {
@@ -212,33 +213,23 @@ struct Scene {
         truth(scene_velocity(in.at("truth")).cast<T>()),
         guess(scene_velocity(in.at("guess")).cast<T>()) {
     target = at(truth);
-    y = Batch<T>(kPlane, 1), gradient = guess, bar = y;
-    problem.linearize(guess, given, y, tape);
-    problem.loss(y, target, loss);
-    problem.loss_gradient(y, target, bar);
-    problem.pullback(tape, bar, gradient, work);
+    found = Physics(problem).losses(guess, given, target);
   }
   Batch<T> at(const Batch<T>& x, Index steps = 8) {
-    Batch<T> end(kPlane, 1);
     const auto& o = problem.options();
     const MarkerFlow<T> until(
         {.end_time = o.end_time * double(steps) / double(o.steps),
          .steps = steps});
-    until.forward(x, given, end, work);
-    return end;
+    return Physics(until).forward(x, given);
   }
   Vector<double> inverse(bool timed) {
-    Batch<T> x(guess);
     const MarkerFlow<T> other({.timed_path = timed});
-    other.invert(target, given, guess, x, work);
-    return x.template cast<double>();
+    return Physics(other).invert(target, given, guess).template cast<double>();
   }
 
   MarkerFlow<T> problem;
-  Batch<T> given, truth, guess, target, y, bar, gradient;
-  Vector<double> loss = Vector<double>(1);
-  Workspace work;
-  Tape tape;
+  Batch<T> given, truth, guess, target;
+  typename Physics<MarkerFlow<T>&>::Losses found;
 };
 
 Vector<double> mass_of(const Batch<double>& m) {
@@ -265,8 +256,8 @@ void check_scene(const Json& entry) {
     }
   };
   const Batch<double> target = scene.target.template cast<double>(),
-                      seen = scene.y.template cast<double>(),
-                      g = scene.gradient.template cast<double>(),
+                      seen = scene.found.y.template cast<double>(),
+                      g = scene.found.x_bar.template cast<double>(),
                       x = scene.guess.template cast<double>();
   EXPECT_EQ(double(scene.given.sum()), number(want.at("cells_set")));
   const auto place = [&](const Batch<double>& m, const Json& expected) {
@@ -287,7 +278,7 @@ void check_scene(const Json& entry) {
           want.at("com_forward")[std::size_t(t - 1)]);
   const auto& o = scene.problem.options();
   const double floor = FrequencyLoss(o.cells, o.falloff, o.threshold).floor();
-  relative(scene.loss(0) + floor, want.at("loss"), is.loss);
+  relative(scene.found.loss(0) + floor, want.at("loss"), is.loss);
 
   const double most = g.cwiseAbs().maxCoeff();
   at_probes(want.at("grad_probes"), [&](Index a, const Json& p) {

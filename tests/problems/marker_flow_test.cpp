@@ -7,9 +7,9 @@
 #include <complex>
 #include <numbers>
 
-#include "suite/core/threads.h"
 #include "tests/support/bits.h"
 #include "tests/support/gradient_check.h"
+#include "tests/support/physics.h"
 
 namespace physinv::test {
 namespace {
@@ -24,36 +24,10 @@ Samples<double> draw(Index n, const MarkerFlowOptions& options = small()) {
       0, n, Rng::root("test/marker_flow", 1));
 }
 
-/// Answers by value, on a given number of threads.
 template <class T>
-struct Bench {
-  explicit Bench(int threads = 1, const MarkerFlowOptions& options = small())
-      : problem(options), pool(threads), tape(&pool), work(&pool) {}
-
-  Batch<T> forward(const Batch<T>& x, const Batch<T>& given) {
-    Batch<T> y(given);
-    problem.forward(x, given, y, work);
-    return y;
-  }
-  /// At a y that has the bits of `forward`.
-  Batch<T> pull(const Batch<T>& x, const Batch<T>& given, const Batch<T>& bar) {
-    Batch<T> y(given), x_bar(x);
-    problem.linearize(x, given, y, tape);
-    problem.pullback(tape, bar, x_bar, work);
-    EXPECT_TRUE(same_bits(y, forward(x, given)));
-    return x_bar;
-  }
-  Batch<T> invert(const Batch<T>& y, const Batch<T>& given, const Batch<T>& x) {
-    Batch<T> found(x);
-    problem.invert(y, given, x, found, work);
-    return found;
-  }
-
-  MarkerFlow<T> problem;
-  Threads pool;
-  Tape tape;
-  Workspace work;
-};
+auto physics(int threads = 1) {
+  return Physics(MarkerFlow<T>(small()), threads);
+}
 
 /// Numbers without structure, between -1 and 1.
 Batch<double> rough(Index rows, Index columns, Index shift) {
@@ -66,8 +40,8 @@ Batch<double> rough(Index rows, Index columns, Index shift) {
 TEST(MarkerFlow, GradientIsTheDerivative) {
   const auto s = draw(3);
   const Batch<double> bar = rough(256, 3, 5);
-  Bench<double> bench;
-  const Batch<double> g = bench.pull(s.x, s.given, bar);
+  auto bench = physics<double>();
+  const Batch<double> g = bench.gradient(s.x, s.given, bar);
   for (Index direction = 0; direction < 3; ++direction) {
     const Batch<double> dot = rough(512, 3, 100 * direction + 9);
     const double h = 1e-8;  // far below most kinks
@@ -148,17 +122,18 @@ template <class T>
 void expect_same_bits_everywhere() {
   const auto s = draw(19).cast<T>();  // two registers and a part
   const Batch<T> bar = rough(256, 19, 5).cast<T>();
-  Bench<T> one, two(2);
-  const Batch<T> y = one.forward(s.x, s.given), g = one.pull(s.x, s.given, bar),
+  auto one = physics<T>(), two = physics<T>(2);
+  const Batch<T> y = one.forward(s.x, s.given),
+                 g = one.gradient(s.x, s.given, bar),
                  x = one.invert(s.y, s.given, s.x);
   EXPECT_TRUE(same_bits(y, two.forward(s.x, s.given)));
-  EXPECT_TRUE(same_bits(g, two.pull(s.x, s.given, bar)));
+  EXPECT_TRUE(same_bits(g, two.gradient(s.x, s.given, bar)));
   EXPECT_TRUE(same_bits(x, two.invert(s.y, s.given, s.x)));
   // Alone, in another lane.
   const Batch<T> x11 = s.x.col(11), m11 = s.given.col(11), b11 = bar.col(11),
                  y11 = s.y.col(11);
   EXPECT_TRUE(same_bits(Batch<T>(y.col(11)), one.forward(x11, m11)));
-  EXPECT_TRUE(same_bits(Batch<T>(g.col(11)), one.pull(x11, m11, b11)));
+  EXPECT_TRUE(same_bits(Batch<T>(g.col(11)), one.gradient(x11, m11, b11)));
   EXPECT_TRUE(same_bits(Batch<T>(x.col(11)), one.invert(y11, m11, x11)));
 }
 
@@ -171,16 +146,16 @@ TEST(MarkerFlow, BitsDependOnNothingElse) {
 template <class T>
 void expect_lost_alone() {
   const auto s = draw(4).cast<T>();
-  Bench<T> bench;
+  auto bench = physics<T>();
   const Batch<T> bar = rough(256, 4, 5).cast<T>();
   const Batch<T> y = bench.forward(s.x, s.given),
-                 g = bench.pull(s.x, s.given, bar),
+                 g = bench.gradient(s.x, s.given, bar),
                  found = bench.invert(s.y, s.given, s.x);
   auto bad = s;
   bad.x(7, 1) = std::numeric_limits<T>::quiet_NaN();
   bad.x(300, 2) = T(1e30);
   const Batch<T> all[][2] = {{bench.forward(bad.x, s.given), y},
-                             {bench.pull(bad.x, s.given, bar), g},
+                             {bench.gradient(bad.x, s.given, bar), g},
                              {bench.invert(s.y, s.given, bad.x), found}};
   for (const auto& [got, whole] : all)
     for (Index k = 0; k < 4; ++k) {
@@ -198,10 +173,10 @@ TEST(MarkerFlow, WhatIsNotFiniteStaysInItsColumn) {
 
 TEST(MarkerFlow, NothingMovesWithoutVelocity) {
   const auto s = draw(1);
-  Bench<double> bench;
+  auto bench = physics<double>();
   const Batch<double> still = Batch<double>::Zero(512, 1);
   EXPECT_EQ(bench.forward(still, s.given), s.given);
-  EXPECT_TRUE(bench.pull(still, s.given, s.given).allFinite());
+  EXPECT_TRUE(bench.gradient(still, s.given, s.given).allFinite());
   const Batch<double> empty = Batch<double>::Zero(256, 1);
   EXPECT_TRUE(bench.invert(empty, empty, still).isZero(0));
 }
@@ -209,13 +184,14 @@ TEST(MarkerFlow, NothingMovesWithoutVelocity) {
 TEST(MarkerFlow, VelocitiesFarTooLargeAreSafe) {
   auto s = draw(2);
   s.x *= 1e4;
-  const Batch<double> y = Bench<double>().forward(s.x, s.given);
+  const Batch<double> y = physics<double>().forward(s.x, s.given);
   EXPECT_GE(y.minCoeff(), 0);
   EXPECT_LE(y.maxCoeff(), 1);
-  EXPECT_TRUE(
-      Bench<float>()
-          .pull(s.x.cast<float>(), s.given.cast<float>(), s.given.cast<float>())
-          .allFinite());
+  EXPECT_TRUE(physics<float>()
+                  .gradient(s.x.cast<float>(),
+                            s.given.cast<float>(),
+                            s.given.cast<float>())
+                  .allFinite());
 }
 
 /// Spec of the data: box, positive noise, what the truth is made of.
@@ -242,7 +218,7 @@ TEST(MarkerFlow, InverseDrawsNear) {
   const std::vector<double> offsets = {0, -4, -2, -1, -0.5, 0.5, 1, 2, 4};
   for (const bool timed : {false, true}) {
     const MarkerFlowOptions options{.timed_path = timed};
-    Bench<double> bench(1, options);
+    Physics bench{MarkerFlow<double>(options)};
     const Vortex vortex = bench.problem.vortex();
     const auto count = static_cast<Index>(offsets.size());
     const auto s = bench.problem.sample(0, 12, Rng::root("test/fluid", 3));
