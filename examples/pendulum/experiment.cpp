@@ -18,8 +18,7 @@ Quantity median_loss(const Select& runs) {
 }
 
 /// Medians of the losses over n, a line for each method.
-Section draw(const Results& results, const Published& published) {
-  const Evidence evidence{results, published, "pendulum"};
+Section draw(const Evidence& evidence) {
   Panel panel{.title = "",
               .x_label = "pendulums",
               .y_label = "median loss",
@@ -27,7 +26,7 @@ Section draw(const Results& results, const Published& published) {
               .y_log = true};
   for (const char* method : {"bfgs", "momentum"}) {
     Series series{.label = method, .method = method, .markers = true};
-    for (const Index n : results.sizes("pendulum")) {
+    for (const Index n : evidence.results.sizes("pendulum")) {
       const auto found = median_loss(Select{method}.of_sizes(n, n))(evidence);
       if (!found.value) continue;
       series.x.push_back(static_cast<double>(n));

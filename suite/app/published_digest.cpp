@@ -97,7 +97,7 @@ void add_tables(const std::string& paper,
   if (!tables.empty()) return;
   for (const Overview& o : registry().overviews())
     if (o.paper == paper && o.report)
-      for (const Table& table : o.report(stages, published).tables)
+      for (const Table& table : o.report({stages, published, paper}).tables)
         tables.push_back(to_markdown(table));
 }
 

@@ -28,7 +28,7 @@ Section section_of(const Experiment& e,
                    const Results& results,
                    const Published& published) {
   Section section;
-  if (e.report) section = e.report(results, published);
+  if (e.report) section = e.report({results, published, e.name});
   section.experiment = e.name;
   section.title = e.title;
   section.paper = e.citation.paper;
@@ -48,7 +48,7 @@ std::vector<Section> overviews_of(const Results& results,
         }))
       continue;
     Section section;
-    if (o.report) section = o.report(results, published);
+    if (o.report) section = o.report({results, published, o.paper});
     section.experiment = section.paper = o.paper;
     section.title = o.title;
     section.claims = judge(o.claims, {results, published, o.paper}, o.profiles);

@@ -87,7 +87,7 @@ void explain(const Cause& cause, F&& check, ClaimResult& out) {
 ClaimResult unjudged(const Claim& claim) {
   return {.id = claim.id,
           .says = claim.says,
-          .from = claim.from,
+          .from = claim.judged_from(),
           .gates = claim.gates,
           .verdict = Verdict::not_judged,
           .evidence = {},
@@ -106,8 +106,8 @@ ClaimResult judge(const Claim& claim,
                   std::ptrdiff_t rank,
                   const std::vector<std::string>& profiles) {
   ClaimResult out = unjudged(claim);
-  if (rank < rank_of(profiles, claim.from)) {
-    out.evidence = fmt::format("needs the profile {}", claim.from);
+  if (rank < rank_of(profiles, claim.judged_from())) {
+    out.evidence = fmt::format("needs the profile {}", claim.judged_from());
   } else {
     for (const Condition& c : claim.conditions) add(c.judge(evidence), out);
     out.verdict = outcome(out.conditions);
@@ -201,9 +201,10 @@ std::vector<std::string> errors_of(const Claim& claim,
     add("has a cause that is none");
   if (claim.cause.as != Verdict::not_reproduced && claim.cause.why.empty())
     add("has a cause without a word");
-  if (rank_of(profiles, claim.from) ==
+  if (rank_of(profiles, claim.judged_from()) ==
       static_cast<std::ptrdiff_t>(profiles.size()))
-    add(fmt::format("is judged from the unknown profile '{}'", claim.from));
+    add(fmt::format("is judged from the unknown profile '{}'",
+                    claim.judged_from()));
   return wrong;
 }
 

@@ -67,8 +67,10 @@ inline Cause reported(std::string why) {
 struct Claim {
   std::string id;     ///< unique within the experiment; P... is the paper's
   std::string where;  ///< place in the paper; empty: a range of the suite
-  std::string from;   ///< lowest profile that can decide it
-  std::string says;   ///< without bounds: these write their own words
+  /// Lowest profile that can decide it; where none is named, `paper` of what
+  /// the paper claims, `quick` of the suite's ranges.
+  std::string from = {};
+  std::string says;  ///< without bounds: these write their own words
   /// All have to hold. None that decides: the numbers are reported.
   std::vector<Condition> conditions;
   std::string note = {};  ///< how it is read, what was run
@@ -77,6 +79,10 @@ struct Claim {
 
   Origin origin() const {
     return where.empty() ? Origin::suite : Origin::paper;
+  }
+  std::string judged_from() const {
+    if (!from.empty()) return from;
+    return origin() == Origin::paper ? "paper" : "quick";
   }
 };
 

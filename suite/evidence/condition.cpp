@@ -81,6 +81,10 @@ Condition below(std::string label, Quantity q, Quantity bound) {
   return compare(label, q, "<", bound, std::less<>());
 }
 
+Condition equals(std::string label, Quantity q, double value, double off) {
+  return within(std::move(label), std::move(q), value - off, value + off);
+}
+
 Condition within(std::string label, Quantity q, double lowest, double highest) {
   const std::string words =
       fmt::format("in {} .. {}", number_text(lowest), number_text(highest));

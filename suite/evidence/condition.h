@@ -67,6 +67,8 @@ Condition above(std::string label, Quantity q, Quantity bound);
 Condition below(std::string label, Quantity q, Quantity bound);
 /// Both ends belong to it.
 Condition within(std::string label, Quantity q, double lowest, double highest);
+/// In [value - off, value + off].
+Condition equals(std::string label, Quantity q, double value, double off = 0);
 /// On every seed that both methods have, and of two seeds at least, the first
 /// one's value is below the second one's.
 std::vector<Condition> below_on_every_seed(const std::string& label,

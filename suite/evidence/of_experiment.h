@@ -16,9 +16,7 @@ inline Quantity of_experiment(const std::string& experiment,
   std::vector<Select> runs;
   for (const Select& s : q.runs())
     runs.push_back(s.experiment.empty() ? s.in(experiment) : s);
-  return {[=](const Evidence& e) {
-            return q({e.results, e.published, experiment});
-          },
+  return {[=](const Evidence& e) { return q(e.of(experiment)); },
           std::move(runs),
           q.printed()};
 }

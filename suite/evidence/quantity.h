@@ -93,6 +93,15 @@ auto each(const Range& range, F f) {
   return all;
 }
 
+/// Of those alone that are wanted.
+template <class Range, class Wanted, class F>
+auto each_if(const Range& range, Wanted wanted, F f) {
+  std::vector<decltype(f(*std::begin(range)))> all;
+  for (const auto& one : range)
+    if (wanted(one)) all.push_back(f(one));
+  return all;
+}
+
 Quantity ratio(const Quantity& a, const Quantity& b);
 /// Of a's median over b's, each over all its runs.
 inline Quantity ratio_of_medians(Select a, Select b, const RunValue& value) {

@@ -60,6 +60,11 @@ std::vector<Run> find_runs(const Evidence& evidence, const Select& select) {
   return found;
 }
 
+std::optional<Run> first_run(const Evidence& evidence, const Select& select) {
+  const auto all = find_runs(evidence, select);
+  return all.empty() ? std::nullopt : std::optional(all.front());
+}
+
 std::vector<Sample> sample(const Evidence& evidence,
                            const Select& select,
                            const RunValue& value) {

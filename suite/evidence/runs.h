@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "suite/core/batch.h"
@@ -27,6 +28,11 @@ struct Evidence {
   const Results& results;
   const Published& published;
   std::string experiment;
+
+  /// As if another experiment asked.
+  Evidence of(std::string name) const {
+    return {results, published, std::move(name)};
+  }
 };
 
 /// Runs of one method: a stage of its chain, sizes within [first, last].
@@ -65,6 +71,8 @@ struct Run {
 /// Those that finished (diverged runs did, failed ones did not), ascending in
 /// n and seed.
 std::vector<Run> find_runs(const Evidence& evidence, const Select& select);
+/// The first of them.
+std::optional<Run> first_run(const Evidence& evidence, const Select& select);
 
 /// A number of one run; empty if it does not have it (too short).
 using RunValue = std::function<std::optional<double>(const Run&)>;

@@ -43,9 +43,7 @@ Points points_of(std::span<const StageRecord> stages,
 Series median_series(const std::vector<Points>& seeds,
                      const MethodLine& line,
                      Axis axis) {
-  Series s{.label = line.label,
-           .method = line.key.empty() ? line.method : line.key,
-           .style = style_of(line)};
+  Series s = series_of(line);
   std::size_t points = seeds.empty() ? 0 : SIZE_MAX;
   for (const Points& p : seeds) points = std::min(points, p.value.size());
   for (std::size_t k = 0; k < points; ++k) {
@@ -75,12 +73,11 @@ Panel over(const char* x_label, std::string y_label) {
 
 enum class Stages { last, all };
 
-std::vector<Points> losses_of(const Results& results,
-                              std::string_view experiment,
+std::vector<Points> losses_of(const Evidence& e,
                               const MethodLine& line,
                               Stages which) {
   std::vector<Points> seeds;
-  for (const CaseRecord* c : trained_chains(results, experiment, line.method)) {
+  for (const CaseRecord* c : trained_chains(e, line.method)) {
     const std::span<const StageRecord> chain = c->stages;
     seeds.push_back(points_of(which == Stages::all ? chain : chain.last(1),
                               "mean_loss",
@@ -91,15 +88,14 @@ std::vector<Points> losses_of(const Results& results,
 }
 
 /// A panel for each axis; the paper's clock is known for some lines only.
-std::vector<Panel> loss_panels(const Results& results,
-                               std::string_view experiment,
+std::vector<Panel> loss_panels(const Evidence& e,
                                const std::vector<MethodLine>& lines,
                                Stages which) {
   Panel updates = over("updates", "test loss"),
         seconds = over("seconds", "test loss"),
         paper = over("seconds by the paper's clock", "test loss");
   for (const MethodLine& line : lines) {
-    const auto seeds = losses_of(results, experiment, line, which);
+    const auto seeds = losses_of(e, line, which);
     if (seeds.empty()) continue;
     updates.series.push_back(median_series(seeds, line, &Points::updates));
     seconds.series.push_back(median_series(seeds, line, &Points::seconds));
@@ -130,22 +126,20 @@ void LearningCurves::losses(const std::vector<MethodLine>& lines,
                             std::string id,
                             std::string title,
                             std::string where) {
-  add(loss_figure(
-      loss_panels(results_, section_.experiment, lines, Stages::last),
-      std::move(id),
-      std::move(title),
-      std::move(where)));
+  add(loss_figure(loss_panels(evidence_, lines, Stages::last),
+                  std::move(id),
+                  std::move(title),
+                  std::move(where)));
 }
 
 void LearningCurves::chains(const std::vector<MethodLine>& lines,
                             std::string id,
                             std::string title,
                             std::string where) {
-  add(loss_figure(
-      loss_panels(results_, section_.experiment, lines, Stages::all),
-      std::move(id),
-      std::move(title),
-      std::move(where)));
+  add(loss_figure(loss_panels(evidence_, lines, Stages::all),
+                  std::move(id),
+                  std::move(title),
+                  std::move(where)));
 }
 
 void LearningCurves::metric(const std::vector<MethodLine>& lines,
@@ -163,8 +157,7 @@ void LearningCurves::metric(const std::vector<MethodLine>& lines,
 }
 
 Panel LearningCurves::panel(const std::vector<MethodLine>& lines) const {
-  return loss_panels(results_, section_.experiment, lines, Stages::last)
-      .front();
+  return loss_panels(evidence_, lines, Stages::last).front();
 }
 
 Panel LearningCurves::metric_panel(const std::vector<MethodLine>& lines,
@@ -173,8 +166,7 @@ Panel LearningCurves::metric_panel(const std::vector<MethodLine>& lines,
   Panel panel = over("updates", std::move(y_label));
   for (const MethodLine& line : lines) {
     std::vector<Points> seeds;
-    for (const auto* s :
-         trained_stages(results_, section_.experiment, line.method))
+    for (const auto* s : trained_stages(evidence_, line.method))
       if (s->arrays.contains("metrics"))
         seeds.push_back(points_of({s, 1}, "metrics", row, 0));
     if (!seeds.empty())

@@ -6,12 +6,11 @@ namespace physinv {
 namespace {
 
 /// A finished chain of training stages; null if it is not there.
-const CaseRecord* trained_case(const Results& results,
-                               std::string_view experiment,
+const CaseRecord* trained_case(const Evidence& e,
                                std::string_view method,
                                std::uint64_t seed) {
-  for (const Index n : results.sizes(experiment)) {
-    const CaseRecord* c = results.find_case(experiment, method, n, seed);
+  for (const Index n : e.results.sizes(e.experiment)) {
+    const CaseRecord* c = e.results.find_case(e.experiment, method, n, seed);
     if (c == nullptr || c->stages.size() != c->info.stages.size()) continue;
     if (c->stages.back().arrays.contains("mean_loss")) return c;
   }
@@ -20,29 +19,25 @@ const CaseRecord* trained_case(const Results& results,
 
 }  // namespace
 
-std::vector<const CaseRecord*> trained_chains(const Results& results,
-                                              std::string_view experiment,
+std::vector<const CaseRecord*> trained_chains(const Evidence& e,
                                               std::string_view method) {
   std::vector<const CaseRecord*> found;
-  for (const std::uint64_t seed : results.seeds(experiment))
-    if (const auto* c = trained_case(results, experiment, method, seed))
-      found.push_back(c);
+  for (const std::uint64_t seed : e.results.seeds(e.experiment))
+    if (const auto* c = trained_case(e, method, seed)) found.push_back(c);
   return found;
 }
 
-std::vector<const StageRecord*> trained_stages(const Results& results,
-                                               std::string_view experiment,
+std::vector<const StageRecord*> trained_stages(const Evidence& e,
                                                std::string_view method) {
   std::vector<const StageRecord*> found;
-  for (const CaseRecord* c : trained_chains(results, experiment, method))
+  for (const CaseRecord* c : trained_chains(e, method))
     found.push_back(&c->stages.back());
   return found;
 }
 
-std::optional<double> paper_update(const Published& published,
-                                   std::string_view experiment,
-                                   std::string_view row) {
-  const auto found = published.find(experiment, fmt::format("{}/update", row));
+std::optional<double> paper_update(const Evidence& e, std::string_view row) {
+  const auto found =
+      e.published.find(e.experiment, fmt::format("{}/update", row));
   return found ? std::optional(found->value) : std::nullopt;
 }
 

@@ -20,11 +20,9 @@ class Problem;
 
 /// Finished chains of training stages at the experiment's only n, one for each
 /// seed that has one, and their last stages.
-std::vector<const CaseRecord*> trained_chains(const Results& results,
-                                              std::string_view experiment,
+std::vector<const CaseRecord*> trained_chains(const Evidence& e,
                                               std::string_view method);
-std::vector<const StageRecord*> trained_stages(const Results& results,
-                                               std::string_view experiment,
+std::vector<const StageRecord*> trained_stages(const Evidence& e,
                                                std::string_view method);
 
 /// An example of the first seed: what was asked and what a method's network
@@ -33,15 +31,9 @@ struct Answered {
   Vector<double> given, wanted, truth;  ///< truth: no entries if not known
   Vector<double> x;
 };
-std::optional<Answered> answer_of(const Results& results,
-                                  std::string_view experiment,
+std::optional<Answered> answer_of(const Evidence& e,
                                   std::string_view method,
-                                  Index example);
-inline std::optional<Answered> first_answer(const Results& results,
-                                            std::string_view experiment,
-                                            std::string_view method) {
-  return answer_of(results, experiment, method, 0);
-}
+                                  Index example = 0);
 
 /// A method as a figure shows it.
 struct MethodLine {
@@ -66,15 +58,12 @@ struct AnsweredFields {
 /// Of the first seed, two rows for each example: what is observed, and what of
 /// each method's answer would be; the truth, and what each method's network
 /// answers. Scales reach at least as far as that of a row's first field.
-Figure answered_fields(const Results& results,
-                       std::string_view experiment,
+Figure answered_fields(const Evidence& e,
                        const std::vector<MethodLine>& lines,
                        const AnsweredFields& drawn);
 
 /// Seconds of an update by a row of the paper's tables ("table3/hig/b=128").
-std::optional<double> paper_update(const Published& published,
-                                   std::string_view experiment,
-                                   std::string_view row);
+std::optional<double> paper_update(const Evidence& e, std::string_view row);
 
 /// Of a series that shows this line; markers go with the hues.
 inline std::optional<PlotStyle> style_of(const MethodLine& line) {
@@ -82,13 +71,20 @@ inline std::optional<PlotStyle> style_of(const MethodLine& line) {
   return PlotStyle{*line.hue, static_cast<Marker>(*line.hue)};
 }
 
+/// A series of its looks and its name, without a point.
+inline Series series_of(const MethodLine& line) {
+  return {.label = line.label,
+          .method = line.key.empty() ? line.method : line.key,
+          .style = style_of(line)};
+}
+
 /// Draws learning curves into an experiment's section: medians over seeds, with
 /// 10 % and 90 % quantiles as a band. What shows nothing is left out, lines and
 /// figures.
 class LearningCurves {
  public:
-  LearningCurves(const Results& results, Section& section)
-      : results_(results), section_(section) {}
+  LearningCurves(const Evidence& evidence, Section& section)
+      : evidence_(evidence), section_(section) {}
 
   /// Test loss over updates, over solving time and, for lines that know it,
   /// over the paper's time; of the last stage.
@@ -120,19 +116,16 @@ class LearningCurves {
   void add(Figure figure);
 
  private:
-  const Results& results_;
+  const Evidence& evidence_;
   Section& section_;
 };
 
 /// Per method with results: test loss at the end, seconds and bytes per update.
-Table loss_table(const Results& results,
-                 std::string_view experiment,
-                 const std::vector<MethodLine>& lines);
+Table loss_table(const Evidence& e, const std::vector<MethodLine>& lines);
 
 /// CPU time of an update over the size of its batch: a curve for the lines
 /// whose labels are the same up to a comma ("SIP", "SIP, batch 8").
-Figure update_times(const Results& results,
-                    std::string_view experiment,
+Figure update_times(const Evidence& e,
                     const std::vector<MethodLine>& lines,
                     std::string where);
 
@@ -145,9 +138,7 @@ struct CostLine {
 
 /// Memory and duration of an update and, where that was timed, of its Jacobian,
 /// ours and the paper's.
-Table cost_table(const Results& results,
-                 std::string_view experiment,
-                 const Published& published,
+Table cost_table(const Evidence& e,
                  const std::vector<CostLine>& lines,
                  std::string where);
 

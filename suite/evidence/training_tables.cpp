@@ -36,9 +36,7 @@ UpdateCosts costs_of(const std::vector<const StageRecord*>& stages,
 
 }  // namespace
 
-Table loss_table(const Results& results,
-                 std::string_view experiment,
-                 const std::vector<MethodLine>& lines) {
+Table loss_table(const Evidence& e, const std::vector<MethodLine>& lines) {
   Table table{.id = "results",
               .title = "Test loss at the end, and what an update takes",
               .digits = 5,
@@ -55,7 +53,7 @@ Table loss_table(const Results& results,
     std::vector<double> losses, updates;
     UpdateCosts costs;
     int diverged = 0;
-    for (const auto* s : trained_stages(results, experiment, line.method)) {
+    for (const auto* s : trained_stages(e, line.method)) {
       losses.push_back(CurveRow{*s}.last());
       updates.push_back(s->curve.iteration.back());
       costs.add(*s, timed);
@@ -109,8 +107,7 @@ void sort_points(Series& series) {
 
 }  // namespace
 
-Figure update_times(const Results& results,
-                    std::string_view experiment,
+Figure update_times(const Evidence& e,
                     const std::vector<MethodLine>& lines,
                     std::string where) {
   Panel panel{.x_label = "batch size",
@@ -119,7 +116,7 @@ Figure update_times(const Results& results,
               .y_log = true};
   TimedStages timed;
   for (const MethodLine& line : lines) {
-    const auto stages = trained_stages(results, experiment, line.method);
+    const auto stages = trained_stages(e, line.method);
     const UpdateCosts costs = costs_of(stages, timed);
     const auto batch = stages.empty()
                            ? std::nullopt
@@ -142,11 +139,10 @@ Figure update_times(const Results& results,
           .note = timed.note()};
 }
 
-std::optional<Answered> answer_of(const Results& results,
-                                  std::string_view experiment,
+std::optional<Answered> answer_of(const Evidence& e,
                                   std::string_view method,
                                   Index example) {
-  const auto chains = trained_chains(results, experiment, method);
+  const auto chains = trained_chains(e, method);
   if (chains.empty()) return {};
   const CaseRecord& c = *chains.front();
   const Batch<double>& x = c.stages.back().x;
@@ -184,14 +180,13 @@ void scale_like_first(std::vector<Panel>& row) {
 struct FieldRows {
   std::vector<Panel> observed, answers;
 };
-FieldRows rows_of(const Results& results,
-                  std::string_view experiment,
+FieldRows rows_of(const Evidence& e,
                   const std::vector<MethodLine>& lines,
                   const AnsweredFields& drawn,
                   Index example) {
   FieldRows rows;
   for (const MethodLine& line : lines) {
-    const auto answer = answer_of(results, experiment, line.method, example);
+    const auto answer = answer_of(e, line.method, example);
     if (!answer) continue;
     if (rows.observed.empty()) {
       rows.observed.push_back(drawn.picture("observed y*", answer->wanted));
@@ -206,8 +201,7 @@ FieldRows rows_of(const Results& results,
 
 }  // namespace
 
-Figure answered_fields(const Results& results,
-                       std::string_view experiment,
+Figure answered_fields(const Evidence& e,
                        const std::vector<MethodLine>& lines,
                        const AnsweredFields& drawn) {
   Figure figure{.id = "fields",
@@ -215,8 +209,7 @@ Figure answered_fields(const Results& results,
                 .where = drawn.where};
   Index examples = 0;
   for (; examples < drawn.examples; ++examples) {
-    auto [observed, answers] =
-        rows_of(results, experiment, lines, drawn, examples);
+    auto [observed, answers] = rows_of(e, lines, drawn, examples);
     if (observed.empty()) break;
     figure.columns = static_cast<int>(observed.size());
     for (auto* row : {&observed, &answers}) {
@@ -242,9 +235,7 @@ Cell duration_of(const UpdateCosts& costs) {
 
 }  // namespace
 
-Table cost_table(const Results& results,
-                 std::string_view experiment,
-                 const Published& published,
+Table cost_table(const Evidence& e,
                  const std::vector<CostLine>& lines,
                  std::string where) {
   Table table{.id = "cost",
@@ -255,16 +246,15 @@ Table cost_table(const Results& results,
               .columns = {"MB", "CPU ms / update", "CPU ms / Jacobian"}};
   TimedStages timed;
   for (const CostLine& line : lines) {
-    const UpdateCosts costs =
-        costs_of(trained_stages(results, experiment, line.method), timed);
+    const UpdateCosts costs = costs_of(trained_stages(e, line.method), timed);
     Cell megabytes{.text = kNotRun}, update = duration_of(costs);
     if (!costs.bytes.empty()) megabytes = {.ours = 1e-6 * median(costs.bytes)};
     Cell jacobian{.text = kNothing};
     if (const Select& runs = line.jacobian; !runs.method.empty())
-      jacobian = duration_of(costs_of(
-          trained_stages(results, runs.experiment, runs.method), timed));
+      jacobian = duration_of(
+          costs_of(trained_stages(e.of(runs.experiment), runs.method), timed));
     const auto printed = [&](const char* what) {
-      return published.find(experiment, line.published + what);
+      return e.published.find(e.experiment, line.published + what);
     };
     if (const auto v = printed("/memory")) megabytes.paper = v->value;
     if (const auto v = printed("/update")) update.paper = 1e3 * v->value;

@@ -66,8 +66,9 @@ struct Profile {
   std::vector<Row> rows;
 };
 
-/// Tables and figures of an experiment from a campaign's results.
-using Report = std::function<Section(const Results&, const Published&)>;
+/// Tables and figures from a campaign's results. The experiment asks, of an
+/// overview its paper; whose section it is, the program writes down.
+using Report = std::function<Section(const Evidence&)>;
 
 struct Experiment {
   std::string name;   ///< jpo/billiards

@@ -150,9 +150,10 @@ std::string objection(const Registry& registry,
       });
   if (!stage)
     return fmt::format("the unknown stage '{}' of {}", select.stage, m->id);
-  if (!runs_from(*e, claim.from, select))
-    return fmt::format(
-        "'{}', which no profile from {} on runs", select.text(), claim.from);
+  if (!runs_from(*e, claim.judged_from(), select))
+    return fmt::format("'{}', which no profile from {} on runs",
+                       select.text(),
+                       claim.judged_from());
   return "";
 }
 

@@ -46,7 +46,7 @@ TEST(Accuracy, SettingsAreMeasuredAndDominated) {
   declare_parameters("numerics/toy-steps", {kStep});
   const Results results(
       {run_of(Precision::f64, 2, 1), run_of(Precision::f32, 2, 0.5)});
-  const auto all = measurements(results, "numerics/toy-steps");
+  const auto all = measurements({results, {}, "numerics/toy-steps"});
   ASSERT_EQ(all.size(), 12U);
   const Measurement* best = fastest_within(all, WorkOf::gradient, 0.25);
   ASSERT_NE(best, nullptr);

@@ -2,16 +2,27 @@
 
 #include <algorithm>
 
+#include "problems/noisy_absolute/noisy_absolute.h"
 #include "suite/cases/jpo/common/report.h"
+#include "suite/harness/registry.h"
+#include "suite/nn/mlp.h"
 #include "tests/suite/evidence/campaigns.h"
 
 namespace physinv {
 namespace {
 
-const JpoReportOptions kOptions{.experiment = "toy",
-                                .title = "Toy",
-                                .table3_sizes = {4, 8},
-                                .tensors = {"m1", "b1"}};
+const JpoReportOptions kOptions{.table3_sizes = {4, 8}};
+
+/// Of an experiment whose network has one matrix and one bias.
+Section section_of(const JpoReportOptions& options, const Evidence& evidence) {
+  if (registry().find(evidence.experiment) == nullptr)
+    registry().add(Experiment{
+        .name = evidence.experiment,
+        .title = "Toy",
+        .problem = problem<NoisyAbsolute>("noisy_absolute"),
+        .setting = {.predictor = {{Field::observations}, nn::mlp({})}}});
+  return jpo_section(options, evidence);
+}
 
 const Table& table(const Section& s, const std::string& id) {
   return *std::find_if(s.tables.begin(), s.tables.end(), [&](const Table& t) {
@@ -43,7 +54,7 @@ Results some_results() {
 
 TEST(JpoReport, NothingRunYet) {
   const Results results;
-  const Section s = jpo_section(kOptions, results, {});
+  const Section s = section_of(kOptions, {results, {}, "toy"});
   EXPECT_EQ(s.tables.size(), 5U);
   EXPECT_EQ(s.figures.size(), 5U);
   EXPECT_EQ(table(s, "table4").rows[0].cells[0].text, "not run");
@@ -53,7 +64,7 @@ TEST(JpoReport, NothingRunYet) {
 
 TEST(JpoReport, TablesHoldMeansAndSpreads) {
   const Results results = some_results();
-  const Section s = jpo_section(kOptions, results, {});
+  const Section s = section_of(kOptions, {results, {}, "toy"});
   const Table& seconds = table(s, "table2");
   ASSERT_EQ(seconds.columns.size(), 8U);
   EXPECT_EQ(*seconds.rows[0].cells[0].ours, 2);
@@ -77,11 +88,10 @@ TEST(JpoReport, TablesHoldMeansAndSpreads) {
 
 TEST(JpoReport, PaperNumbersStandBeside) {
   JpoReportOptions options = kOptions;
-  options.experiment = "jpo/billiards";
   options.table3_sizes = {4};
   const Published published(PHYSINV_SOURCE_DIR "/reports/published");
   const Results results;
-  const Section s = jpo_section(options, results, published);
+  const Section s = section_of(options, {results, published, "jpo/billiards"});
   for (const char* id : {"table2", "table3", "table4", "table5"}) {
     for (const Cell& cell : table(s, id).rows[0].cells) {
       EXPECT_TRUE(cell.paper) << id;
@@ -93,7 +103,7 @@ TEST(JpoReport, PaperNumbersStandBeside) {
 
 TEST(JpoReport, FiguresHoldWhatIsThere) {
   const Results results = some_results();
-  const Section s = jpo_section(kOptions, results, {});
+  const Section s = section_of(kOptions, {results, {}, "toy"});
   const Panel& curves = figure(s, "fig12").panels.at(0);
   const Series& bfgs = curves.series.at(0);
   EXPECT_EQ(bfgs.x, (std::vector<double>{1, 6}));  // iteration + 1

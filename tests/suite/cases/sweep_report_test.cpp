@@ -112,10 +112,14 @@ TEST(SweepReport, FindsTheStageOfTheMethod) {
   c.info.method = "stability";
   c.stages = {four_cells()};
   const Results results({c});
-  EXPECT_NE(find_sweep(results, "numerics/toy", "stability", "grid"), nullptr);
-  EXPECT_EQ(find_sweep(results, "numerics/toy", "stability", "x"), nullptr);
-  EXPECT_EQ(find_sweep(results, "numerics/toy", "growth", "grid"), nullptr);
-  EXPECT_EQ(find_sweep(results, "other", "stability", "grid"), nullptr);
+  const Published none;
+  const Evidence toy{results, none, "numerics/toy"};
+  EXPECT_NE(find_sweep(toy, "grid"), nullptr);
+  EXPECT_EQ(find_sweep(toy, "x"), nullptr);
+  EXPECT_EQ(find_sweep(toy.of("other"), "grid"), nullptr);
+  c.info.method = "growth";
+  const Results other({c});
+  EXPECT_EQ(find_sweep({other, none, "numerics/toy"}, "grid"), nullptr);
 }
 
 }  // namespace

@@ -45,6 +45,12 @@ Verdict verdict(std::vector<Condition> conditions, const Results& results) {
   return judged(std::move(conditions), results).verdict;
 }
 
+TEST(Claim, IsJudgedFromTheProfileThatItNamesOrItsOwnersFirst) {
+  EXPECT_EQ((Claim{.id = "A1", .from = "smoke"}.judged_from()), "smoke");
+  EXPECT_EQ((Claim{.id = "A1"}.judged_from()), "quick");
+  EXPECT_EQ((Claim{.id = "P1", .where = "Sec. 1"}.judged_from()), "paper");
+}
+
 TEST(Claim, BoundsDecideAndSayThemselves) {
   const Results results = campaign("quick", {2, 4});
   EXPECT_EQ(verdict({at_least("a", kMean, 3)}, results), Verdict::reproduced);
@@ -52,6 +58,11 @@ TEST(Claim, BoundsDecideAndSayThemselves) {
   EXPECT_EQ(verdict({at_most("a", kMean, 3)}, results), Verdict::reproduced);
   EXPECT_EQ(verdict({below("a", kMean, 3)}, results), Verdict::not_reproduced);
   EXPECT_EQ(verdict({within("a", kMean, 3, 4)}, results), Verdict::reproduced);
+  EXPECT_EQ(verdict({equals("a", kMean, 3)}, results), Verdict::reproduced);
+  EXPECT_EQ(verdict({equals("a", kMean, 2.5, 0.6)}, results),
+            Verdict::reproduced);
+  EXPECT_EQ(verdict({equals("a", kMean, 2.5, 0.4)}, results),
+            Verdict::not_reproduced);
   EXPECT_EQ(verdict({within("a", kMean, 1, 2.9)}, results),
             Verdict::not_reproduced);
   EXPECT_EQ(verdict({near("a", kMean, 9)}, results), Verdict::reproduced);

@@ -55,6 +55,25 @@ TEST_F(QuantityTest, StatisticsOverRuns) {
   EXPECT_DOUBLE_EQ(value(share({"a"}, first_loss(), above2)), 2.0 / 3);
 }
 
+TEST_F(QuantityTest, TheFirstRunHasTheLowestSizeAndSeed) {
+  const auto first = first_run(evidence_, {"a"});
+  ASSERT_TRUE(first);
+  EXPECT_EQ(first->n(), 2);
+  EXPECT_EQ(first->seed(), 0U);
+  EXPECT_EQ(first_run(evidence_, Select{"a"}.of_sizes(4))->stage->loss[0], 3);
+  EXPECT_FALSE(first_run(evidence_, {"c"}));
+  EXPECT_FALSE(first_run(evidence_.of("other"), {"a"}));
+}
+
+TEST(Each, IsOfThoseThatAreWanted) {
+  const std::vector<int> all = {1, 2, 3};
+  EXPECT_EQ(each(all, [](int k) { return 2 * k; }),
+            (std::vector<int>{2, 4, 6}));
+  EXPECT_EQ(each_if(
+                all, [](int k) { return k != 2; }, [](int k) { return 2 * k; }),
+            (std::vector<int>{2, 6}));
+}
+
 /// Infinite over infinite is no ratio, in whatever order the pairs come.
 TEST_F(QuantityTest, TheWorstOfPairsThatBothDivergedIsNotKnown) {
   constexpr double kInfinite = std::numeric_limits<double>::infinity();

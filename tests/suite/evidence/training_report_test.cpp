@@ -22,8 +22,7 @@ TEST(TrainingReport, FieldsAreTheTruthWhatIsSeenAndEachAnswerOfEachExample) {
   const auto fields = [&](const Results& results, Index examples) {
     shown.clear();
     return answered_fields(
-        results,
-        "toy",
+        {results, {}, "toy"},
         {{"b", "B"}, {"c", "C"}, {"a", "A"}},
         {.where = "Fig. 9",
          .examples = examples,
@@ -56,11 +55,11 @@ TEST(TrainingReport, AnswersAreOfTheExampleThatIsAskedFor) {
   two.stages.back().x.col(1) *= 5;
   two.data.x.col(1) *= 2;
   const Results results({two});
-  const auto second = answer_of(results, "toy", "a", 1);
+  const auto second = answer_of({results, {}, "toy"}, "a", 1);
   ASSERT_TRUE(second);
   EXPECT_EQ(second->x(0), 5);
   EXPECT_EQ(second->truth(0), 0.5);
-  EXPECT_FALSE(answer_of(results, "toy", "a", 2));
+  EXPECT_FALSE(answer_of({results, {}, "toy"}, "a", 2));
 }
 
 }  // namespace

@@ -277,8 +277,8 @@ Method chain(std::string id, std::vector<std::shared_ptr<const Stage>> stages) {
   return {.id = std::move(id), .chain = std::move(stages)};
 }
 
-Section report(const Results& results, const Published&) {
-  const auto* found = results.find("fake/cubic", "descend", 4, 0, "solve");
+Section report(const Evidence& e) {
+  const auto* found = e.results.find("fake/cubic", "descend", 4, 0, "solve");
   ClaimResult claim;
   claim.id = "R1";
   claim.says = "descend lowers the loss";

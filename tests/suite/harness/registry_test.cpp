@@ -121,7 +121,7 @@ TEST(Registry, ChecksWhatClaimsAskFor) {
 }
 
 TEST(Registry, JoinsClaimsAndReportsOfOtherFiles) {
-  const auto report = [](const Results&, const Published&) {
+  const auto report = [](const Evidence&) {
     return Section{.title = "from elsewhere"};
   };
   for (const bool first : {true, false}) {
@@ -132,7 +132,8 @@ TEST(Registry, JoinsClaimsAndReportsOfOtherFiles) {
     if (first) r.add(fake::experiment());
     EXPECT_TRUE(r.problems().empty());
     EXPECT_EQ(r.find("fake/cubic")->claims.size(), 1U);
-    EXPECT_EQ(r.find("fake/cubic")->report({}, {}).title, "from elsewhere");
+    EXPECT_EQ(r.find("fake/cubic")->report({{}, {}, "fake/cubic"}).title,
+              "from elsewhere");
   }
   Registry alone;
   alone.add_claims("fake/quartic", {claim_on({"descend"})});

@@ -92,10 +92,7 @@ Experiment experiment(Experiment e, const Timed& t) {
   return e;
 }
 
-Section report(const Timed& t,
-               const Results& results,
-               const Published& published) {
-  const Evidence ours{results, published, name_of(t.experiment)};
+Section report(const Timed& t, const Evidence& e) {
   Table table{.id = "jacobians",
               .title = "Duration of the Jacobian",
               .where = t.table,
@@ -106,8 +103,8 @@ Section report(const Timed& t,
   TimedStages timed;
   for (const Batches& b : {t.adam, t.hig})
     for (const Index batch : b.sizes) {
-      Cell cell = update_time(ours, {b.method(batch)}, timed);
-      if (const auto value = published.find(
+      Cell cell = update_time(e, {b.method(batch)}, timed);
+      if (const auto value = e.published.find(
               t.experiment,
               fmt::format("{}/{}/b={}/jacobian", t.key, b.optimizer, batch)))
         cell.paper = 1e3 * value->value;

@@ -1,4 +1,5 @@
-/// The powers of the stacked Jacobian that App. C compares (Figs. 12, 13).
+/// The powers of the stacked Jacobian that App. C compares (Figs. 12, 13), and
+/// batches that its figures may have been made with.
 #pragma once
 
 #include <fmt/format.h>
@@ -32,6 +33,13 @@ inline std::vector<AblationPoint> ablation_points() {
         {fmt::format("beta-m{}", thousandths),
          {.kappa = -0.5, .tau = 1e-6, .beta = -thousandths / 1000.0}});
   return all;
+}
+
+/// Table 2 has 128 for Fig. 2b; the suite's figures have 64. A study for each;
+/// tables of both stand with the first one.
+inline constexpr Index kAblationBatches[] = {128, 64};
+inline std::string study_of(Index batch) {
+  return fmt::format("studies/oscillators-batch-{}", batch);
 }
 
 }  // namespace physinv::oscillators

@@ -15,7 +15,6 @@
 #include "suite/evidence/training.h"
 #include "suite/evidence/training_report.h"
 #include "suite/harness/registry.h"
-#include "suite/results/published.h"
 #include "suite/results/results.h"
 
 namespace physinv::oscillators {
@@ -39,9 +38,9 @@ Table final_losses(const Evidence& evidence) {
   return table;
 }
 
-std::vector<MethodLine> rules(const Published& published) {
-  const auto adam = paper_update(published, kName, "table3/adam/b=512"),
-             hig = paper_update(published, kName, "table3/hig/b=128");
+std::vector<MethodLine> rules(const Evidence& e) {
+  const auto adam = paper_update(e, "table3/adam/b=512"),
+             hig = paper_update(e, "table3/hig/b=128");
   return {{"hig", "HIG", Hue::orange, hig},
           {"gn", "Gauss-Newton", Hue::blue, hig},
           {"adam", "Adam", Hue::purple, adam},
@@ -115,7 +114,7 @@ Panel time_evolution(const Answered& answer, std::string title) {
   return panel;
 }
 
-Figure evolution_figure(const Results& results,
+Figure evolution_figure(const Evidence& e,
                         const std::vector<MethodLine>& lines) {
   Figure figure{
       .id = "fig2a",
@@ -123,7 +122,7 @@ Figure evolution_figure(const Results& results,
       .where = "Fig. 2a",
       .note = "First example of the test set; marks: what is wanted."};
   for (const MethodLine& line : lines)
-    if (const auto answer = first_answer(results, kName, line.method))
+    if (const auto answer = answer_of(e, line.method))
       figure.panels.push_back(time_evolution(*answer, line.label));
   if (figure.panels.empty()) figure.panels.emplace_back();  // reads "not run"
   return figure;
@@ -142,25 +141,23 @@ Table hyperparameters(const Evidence& evidence) {
   };
   constexpr Hyperparameter kShown[] = {
       {"batch", "/b"}, {"rate", "/eta"}, {"tau", "/tau"}};
-  for (const MethodLine& line : rules(evidence.published)) {
-    const auto runs = find_runs(evidence, {line.method});
+  for (const MethodLine& line : rules(evidence)) {
+    const auto run = first_run(evidence, {line.method});
     TableRow shown{.label = line.label};
     for (const auto& [option, printed] : kShown)
       shown.cells.push_back(
-          runs.empty()
-              ? Cell{.text = kNotRun}
-              : beside_printed(
-                    cell_of(number_of(runs.front().stage->options, option),
-                            kNothing),
+          run ? beside_printed(
+                    cell_of(number_of(run->stage->options, option), kNothing),
                     evidence,
-                    "table2/" + line.method + printed));
+                    "table2/" + line.method + printed)
+              : Cell{.text = kNotRun});
     table.rows.push_back(std::move(shown));
   }
   return table;
 }
 
-std::vector<Table> tables(const Results& results, const Published& published) {
-  std::vector<MethodLine> all = rules(published);
+std::vector<Table> tables(const Evidence& e) {
+  std::vector<MethodLine> all = rules(e);
   for (const char* group : {"adam-b",
                             "hig-b",
                             "gn-b",
@@ -171,12 +168,10 @@ std::vector<Table> tables(const Results& results, const Published& published) {
                             "grid-"})
     for (const auto& line : sweep(group)) all.push_back(line);
   return {
-      final_losses({results, published, kName}),
-      hyperparameters({results, published, kName}),
+      final_losses(e),
+      hyperparameters(e),
       cost_table(
-          results,
-          kName,
-          published,
+          e,
           {hig::cost_line(kName, "adam", 256, "adam-b256", "Adam, b = 256"),
            hig::cost_line(kName, "adam", 512, "adam", "Adam, b = 512"),
            hig::cost_line(kName, "adam", 1024, "adam-b1024", "Adam, b = 1024"),
@@ -184,11 +179,11 @@ std::vector<Table> tables(const Results& results, const Published& published) {
            hig::cost_line(kName, "hig", 64, "kappa-m05", "HIG, b = 64"),
            hig::cost_line(kName, "hig", 128, "hig", "HIG, b = 128")},
           "Table 3"),
-      loss_table(results, kName, all)};
+      loss_table(e, all)};
 }
 
-void add_curves(LearningCurves& curves, const Published& published) {
-  curves.losses(rules(published), "fig2b", "Learning curves", "Fig. 2b");
+void add_curves(LearningCurves& curves, const Evidence& e) {
+  curves.losses(rules(e), "fig2b", "Learning curves", "Fig. 2b");
   curves.losses({{"hig-b32", "HIG, b = 32", Hue::red},
                  {"kappa-m05", "HIG, b = 64", Hue::green},
                  {"hig", "HIG, b = 128", Hue::orange},
@@ -219,15 +214,12 @@ void add_curves(LearningCurves& curves, const Published& published) {
                 "Fig. 13");
 }
 
-Section report(const Results& results, const Published& published) {
-  Section section{.experiment = kName,
-                  .title = "Nonlinear oscillators",
-                  .paper = "hig",
-                  .tables = tables(results, published)};
-  LearningCurves curves(results, section);
+Section report(const Evidence& e) {
+  Section section{.tables = tables(e)};
+  LearningCurves curves(e, section);
   section.figures.push_back(evolution_figure(
-      results, {{"hig", "HIG"}, {"adam", "Adam"}, {"gn", "Gauss-Newton"}}));
-  add_curves(curves, published);
+      e, {{"hig", "HIG"}, {"adam", "Adam"}, {"gn", "Gauss-Newton"}}));
+  add_curves(curves, e);
   return section;
 }
 

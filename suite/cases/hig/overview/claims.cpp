@@ -101,7 +101,6 @@ const Select kHigOscillators = run("hig", kOscillators),
 const std::vector<Claim> kClaims = {
     {.id = "P1",
      .where = "abstract, Secs. 1, 5",
-     .from = "paper",
      .says = "On all three problems HIG converges more quickly and yields "
              "better solutions, also in wall-clock time",
      .conditions = {ends_lower(
@@ -120,7 +119,6 @@ const std::vector<Claim> kClaims = {
          "(one)")},
     {.id = "P2",
      .where = "Secs. 1, 2.3",
-     .from = "paper",
      .says = "The cost of a HIG step is linear in the number of parameters",
      .conditions = {of_stages(at_most(
                         "CPU time over parameters, exponent of doubled widths",

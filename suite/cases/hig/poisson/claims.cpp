@@ -97,7 +97,7 @@ double largest_fall(const std::vector<double>& losses) {
 /// all others.
 Quantity of_phases(double (*f)(const std::vector<Phase>&), bool late = false) {
   return {[=](const Evidence& e) {
-            auto all = phases(e.results);
+            auto all = phases(e);
             std::erase_if(all, [=](const Phase& p) {
               return p.method.starts_with("long-adam") != late;
             });
@@ -170,7 +170,6 @@ Condition leads_every_adam(std::string label, const Select& hig) {
 const std::vector<Claim> kPaper = {
     {.id = "P1",
      .where = "Sec. 3.2, Fig. 3b",
-     .from = "paper",
      .says = "Adam and HIG lower the loss by up to three orders of magnitude",
      .conditions = {at_least("Adam, start over lowest, best rate and seed",
                              most({highest(kAdam, fall()),
@@ -192,7 +191,6 @@ const std::vector<Claim> kPaper = {
                  "0.6 CPU-hours for each rate and seed")},
     {.id = "P2",
      .where = "Sec. 3.2, Fig. 3b",
-     .from = "paper",
      .says = "Adam's runs with larger learning rates quickly slow down",
      .conditions = {below("fall in the last octave, 3e-4 over 1e-4",
                           ratio_of_medians(kAdam3, kAdam, steepness()),
@@ -202,7 +200,6 @@ const std::vector<Claim> kPaper = {
                           1)}},
     {.id = "P3",
      .where = "Sec. 3.2, Fig. 3b",
-     .from = "paper",
      .says = "In convergence per time, Adam with the smallest rate leads",
      .conditions =
          {adam_leads("Adam 3e-4, an hour of the paper's clock", kAdam3),
@@ -220,7 +217,6 @@ const std::vector<Claim> kPaper = {
                       "= 64, the profile paper")},
     {.id = "P4",
      .where = "Sec. 3.2, Fig. 3b",
-     .from = "paper",
      .says = "Over logarithmic time Adam's curve flattens, while the slope of "
              "HIG's remains constant and is steeper",
      .conditions = {above("fall in the last octave, HIG over Adam",
@@ -245,7 +241,6 @@ const std::vector<Claim> kPaper = {
                 1)})},
     {.id = "P5",
      .where = "App. B.3, Fig. 7a",
-     .from = "paper",
      .says = "HIG converges faster per iteration",
      .conditions = {either(
          leads_every_adam("share of the updates with HIG 0.02 below every Adam",
@@ -265,7 +260,6 @@ const std::vector<Claim> kPaper = {
                                    printed("table4/adam/b=64/update")))}},
     {.id = "P7",
      .where = "Sec. 3.2, Fig. 3c",
-     .from = "paper",
      .says = "HIG after Adam quickly improves the network: a significant drop "
              "of the loss",
      .conditions = {at_most("lowest over start, after 30000 updates of Adam",
@@ -279,7 +273,6 @@ const std::vector<Claim> kPaper = {
          "after 20 it is at 0.39 (rate 0.02, b = 64, one seed)")},
     {.id = "P8",
      .where = "Sec. 3.2, Fig. 3c",
-     .from = "paper",
      .says = "After the drop HIG descends faster than Adam",
      .conditions = {above("fall of log loss, updates 5 to 23 of HIG",
                           median(kLateHig, log_fall(paper(), 69, 320)),
@@ -290,7 +283,6 @@ const std::vector<Claim> kPaper = {
                     "seed)")},
     {.id = "P9",
      .where = "App. B.3, Fig. 7b",
-     .from = "paper",
      .says = "Adam after HIG quickly loses the progress that HIG has made and "
              "goes on like the original run",
      .conditions = {at_most("what it loses: HIG's lowest over its start",
@@ -325,7 +317,6 @@ const std::vector<Claim> kSuite = {
                     within(
                         "20000, 1e-4", median_after(kAdam, 20'000), 0.3, 1.5)}},
     {.id = "A2",
-     .from = "quick",
      .says = "HIG (0.02, b = 16) from fresh weights, and Adam after as many "
              "updates",
      .conditions = {within("after 24", median_after(kHig16, 24), 55, 95),
@@ -334,7 +325,6 @@ const std::vector<Claim> kSuite = {
                           ratio_of_medians(kAdam, kHig16, loss_after(60)),
                           2)}},
     {.id = "A3",
-     .from = "quick",
      .says = "To the level of 60 HIG updates (b = 16) Adam takes many times as "
              "many",
      .conditions =
@@ -351,7 +341,6 @@ const std::vector<Claim> kSuite = {
           reported("HIG's seconds",
                    median(kHig16, time_to(own_seconds(), loss_after(60))))}},
     {.id = "A4",
-     .from = "quick",
      .says = "Gauss-Newton (b = 16) from fresh weights, 20 updates: with eta 1 "
              "it stalls, with 0.02 each takes off a little",
      .conditions =

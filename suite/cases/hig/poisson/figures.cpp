@@ -20,11 +20,11 @@ namespace {
 
 /// Since when the smaller rate leads, up to the end of the larger one's curve.
 Cell crossing(const Evidence& e, const char* smaller, const char* larger) {
-  const auto some = find_runs(e, {larger});
-  if (some.empty()) return {.text = kNotRun};
+  const auto some = first_run(e, {larger});
+  if (!some) return {.text = kNotRun};
   std::optional<double> since;
   double last = 0;
-  for (const double updates : some.front().stage->curve.iteration) {
+  for (const double updates : some->stage->curve.iteration) {
     const auto a = median_after({smaller}, updates)(e).value,
                b = median_after({larger}, updates)(e).value;
     // Behind a first stretch in which every curve falls alike.
@@ -39,7 +39,7 @@ Cell crossing(const Evidence& e, const char* smaller, const char* larger) {
 }
 
 /// Kept singular values and the smallest of them, by method.
-Table spectrum_table(const Results& results) {
+Table spectrum_table(const Evidence& e) {
   Table table{.id = "spectra",
               .title = "Singular values of the stacked Jacobian",
               .where = "App. B.3",
@@ -55,7 +55,7 @@ Table spectrum_table(const Results& results) {
                   "Cholesky factorisation knows that all s are above the cut, "
                   "not where. Unproven: updates whose accuracy was not "
                   "shown."};
-  for (const Phase& p : phases(results)) {
+  for (const Phase& p : phases(e)) {
     const auto number = [](Index v) {
       return Cell{.ours = static_cast<double>(v)};
     };
@@ -96,9 +96,9 @@ Table crossing_table(const Evidence& e) {
   return table;
 }
 
-std::vector<MethodLine> learning(const Published& published) {
-  const auto adam = paper_update(published, kName, "table4/adam/b=64"),
-             hig = paper_update(published, kName, "table4/hig/b=64");
+std::vector<MethodLine> learning(const Evidence& e) {
+  const auto adam = paper_update(e, "table4/adam/b=64"),
+             hig = paper_update(e, "table4/hig/b=64");
   return {{"adam", "Adam 1e-4", Hue::purple, adam},
           {"adam-3e-4", "Adam 3e-4", {}, adam},
           {"adam-1e-3", "Adam 1e-3", {}, adam},
@@ -117,9 +117,9 @@ std::vector<MethodLine> learning(const Published& published) {
 }
 
 /// From weights that Adam has trained.
-std::vector<MethodLine> turns(const Published& published) {
-  const auto adam = paper_update(published, kName, "table4/adam/b=64"),
-             hig = paper_update(published, kName, "table4/hig/b=64");
+std::vector<MethodLine> turns(const Evidence& e) {
+  const auto adam = paper_update(e, "table4/adam/b=64"),
+             hig = paper_update(e, "table4/hig/b=64");
   return {{"adam-adam", "Adam, Adam", Hue::purple, adam},
           {"adam-hig-0001-b16", "Adam, HIG 0.001, b = 16"},
           {"adam-hig-0005-b16", "Adam, HIG 0.005, b = 16"},
@@ -144,14 +144,14 @@ Panel cells(std::string title, const Vector<double>& values) {
 }
 
 /// A source, its potential, and those that networks infer.
-Figure fields(const Results& results, const std::vector<MethodLine>& lines) {
+Figure fields(const Evidence& e, const std::vector<MethodLine>& lines) {
   Figure figure{.id = "fig3a",
                 .title = "Source and inferred potentials",
                 .where = "Fig. 3a",
                 .columns = 3,
                 .note = "First example of the test set."};
   for (const MethodLine& line : lines) {
-    const auto answer = first_answer(results, kName, line.method);
+    const auto answer = answer_of(e, line.method);
     if (!answer) continue;
     if (figure.panels.empty()) {
       figure.panels.push_back(cells("Source", answer->wanted));
@@ -164,37 +164,35 @@ Figure fields(const Results& results, const std::vector<MethodLine>& lines) {
   return figure;
 }
 
-std::vector<Table> tables(const Results& results, const Published& published) {
-  std::vector<MethodLine> all = learning(published);
-  for (const auto& group : {turns(published), kReturns})
+std::vector<Table> tables(const Evidence& e) {
+  std::vector<MethodLine> all = learning(e);
+  for (const auto& group : {turns(e), kReturns})
     for (const MethodLine& line : group)
       if (line.method != "adam" && line.method != "adam-adam" &&
           line.method != "long-adam-adam")
         all.push_back(line);
   return {
-      loss_table(results, kName, all),
+      loss_table(e, all),
       cost_table(
-          results,
-          kName,
-          published,
+          e,
           {cost_line(kName, "adam", 64, "adam", "Adam, b = 64"),
            cost_line(kName, "hig", 64, "hig-002-b64", "HIG, b = 64"),
            {"adam-hig-002-b64", "HIG after Adam, b = 64", "table4/hig/b=64"},
            {"hig-002-b16", "HIG, b = 16", ""}},
           "Table 4"),
-      spectrum_table(results),
-      crossing_table({results, published, kName})};
+      spectrum_table(e),
+      crossing_table(e)};
 }
 
-void add_curves(LearningCurves& curves, const Published& published) {
-  const auto some =
-      [lines = learning(published)](std::initializer_list<const char*> ids) {
-        std::vector<MethodLine> found;
-        for (const MethodLine& line : lines)
-          for (const char* id : ids)
-            if (line.method == id) found.push_back(line);
-        return found;
-      };
+void add_curves(LearningCurves& curves, const Evidence& e) {
+  const auto some = [lines =
+                         learning(e)](std::initializer_list<const char*> ids) {
+    std::vector<MethodLine> found;
+    for (const MethodLine& line : lines)
+      for (const char* id : ids)
+        if (line.method == id) found.push_back(line);
+    return found;
+  };
   curves.losses(some({"adam",
                       "adam-3e-4",
                       "adam-1e-3",
@@ -216,26 +214,24 @@ void add_curves(LearningCurves& curves, const Published& published) {
                 "fig7a",
                 "Small batches, and Gauss-Newton beside HIG",
                 "Fig. 7a");
-  curves.losses(turns(published),
-                "fig3c",
-                "From weights that Adam has trained",
-                "Fig. 3c");
+  curves.losses(
+      turns(e), "fig3c", "From weights that Adam has trained", "Fig. 3c");
   curves.chains(
       kReturns, "fig7b", "Adam, then HIG, then Adam again", "Fig. 7b");
 }
 
-Section report(const Results& results, const Published& published) {
-  Section section{.experiment = kName, .tables = tables(results, published)};
-  LearningCurves curves(results, section);
+Section report(const Evidence& e) {
+  Section section{.tables = tables(e)};
+  LearningCurves curves(e, section);
   section.figures.push_back(
-      fields(results,
+      fields(e,
              {{"adam", "Adam"},
               {"hig-002-b64", "HIG"},
               {"hig-002-b16", "HIG, b = 16"},
               {"adam-hig-002-b64", "Adam, then HIG"},
               {"adam-hig-002-b16", "Adam, then HIG, b = 16"},
               {"chain-smoke", "Adam, HIG, Adam, short"}}));
-  add_curves(curves, published);
+  add_curves(curves, e);
   return section;
 }
 

@@ -39,12 +39,13 @@ void add(const StageRecord& stage, Phase& phase) {
 
 }  // namespace
 
-std::vector<Phase> phases(const Results& results) {
+std::vector<Phase> phases(const Evidence& e) {
   std::vector<Phase> found;
-  for (const std::string& method : results.methods(kName)) {
+  for (const std::string& method : e.results.methods(e.experiment)) {
     Phase phase{.method = method};
-    for (const CaseRecord& c : results.cases()) {
-      if (c.info.experiment != kName || c.info.method != method) continue;
+    for (const CaseRecord& c : e.results.cases()) {
+      if (c.info.experiment != e.experiment || c.info.method != method)
+        continue;
       for (const StageRecord& s : c.stages)
         if (s.arrays.contains("kept") && s.arrays.at("kept").size() > 0)
           add(s, phase);

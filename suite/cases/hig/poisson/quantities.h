@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "suite/results/results.h"
+#include "suite/evidence/runs.h"
 
 namespace physinv::hig::poisson {
 
@@ -20,6 +20,6 @@ struct Phase {
 };
 
 /// Of every method whose records say how many singular values were kept.
-std::vector<Phase> phases(const Results& results);
+std::vector<Phase> phases(const Evidence& e);
 
 }  // namespace physinv::hig::poisson

@@ -7,8 +7,8 @@
 
 #include "optimizers/half_inverse_direct.h"
 #include "problems/quantum_dipole/quantum_dipole.h"
-#include "suite/cases/hig/quantum_dipole/direct_metrics.h"
 #include "suite/cases/hig/quantum_dipole/grids.h"
+#include "suite/cases/hig/quantum_dipole/metrics.h"
 #include "suite/evidence/statistics.h"
 #include "suite/evidence/training.h"
 #include "suite/evidence/training_report.h"
@@ -55,7 +55,6 @@ double rest(const StageRecord& s, Index k) {
 
 const Claim kNoFloor{
     .id = "A9",
-    .from = "quick",
     .says =
         "A control optimised without a network (target angles 0.7 and 2, "
         "100 updates) has no floor near 1e-6, in double and, by the "
@@ -83,10 +82,9 @@ const std::vector<MethodLine> kLines = {
     {"hig-tau7", "HIG, tau=1e-7", Hue::red},
     {"hig-f32-tau7", "HIG, float, tau=1e-7"}};
 
-Section report(const Results& results, const Published&) {
-  Section section{.experiment = kDirect,
-                  .tables = {loss_table(results, kDirect, kLines)}};
-  LearningCurves curves(results, section);
+Section report(const Evidence& e) {
+  Section section{.tables = {loss_table(e, kLines)}};
+  LearningCurves curves(e, section);
   curves.losses(kLines, "loss", "Loss, evaluated in double", "Fig. 4b");
   curves.metric(kLines,
                 kOverlap,

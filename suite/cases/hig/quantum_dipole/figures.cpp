@@ -19,36 +19,35 @@ namespace {
 
 /// Seconds of an update in Table 5. Adam with fewer than 256 samples, the
 /// fewest that it lists, takes as long as with these.
-std::optional<double> adam_update(const Published& published, Index batch) {
+std::optional<double> adam_update(const Evidence& e, Index batch) {
   const Index listed = std::max<Index>(batch, 256);
-  return paper_update(
-      published, kDense, fmt::format("table5/adam/b={}", listed));
+  return paper_update(e.of(kDense), fmt::format("table5/adam/b={}", listed));
 }
 
-std::optional<double> hig_update(const Published& published, Index batch) {
-  return paper_update(published, kDense, fmt::format("table5/hig/b={}", batch));
+std::optional<double> hig_update(const Evidence& e, Index batch) {
+  return paper_update(e.of(kDense), fmt::format("table5/hig/b={}", batch));
 }
 
 std::vector<MethodLine> lines_of(const std::vector<AdamPoint>& grid,
-                                 const Published& published) {
+                                 const Evidence& e) {
   std::vector<MethodLine> lines;
   for (const AdamPoint& p : grid)
     lines.push_back({p.id,
                      fmt::format("b={} eta={:.0e}", p.batch, p.rate),
                      {},
-                     adam_update(published, p.batch)});
+                     adam_update(e, p.batch)});
   return lines;
 }
 
 std::vector<MethodLine> lines_of(const std::vector<HigPoint>& grid,
-                                 const Published& published) {
+                                 const Evidence& e) {
   std::vector<MethodLine> lines;
   for (const HigPoint& p : grid)
     lines.push_back(
         {p.id,
          fmt::format("b={} eta={} tau=1e-{}", p.batch, p.rate, p.digits),
          {},
-         hig_update(published, p.batch)});
+         hig_update(e, p.batch)});
   return lines;
 }
 
@@ -68,8 +67,8 @@ const std::vector<MethodLine> kMain = {
     {"adam", "Adam b=16 1e-4", Hue::purple},
     {"adam-b256-5e-4", "Adam b=256 5e-4", Hue::green}};
 
-std::vector<MethodLine> rates(const Published& published) {
-  const auto hig = hig_update(published, 16), adam = adam_update(published, 16);
+std::vector<MethodLine> rates(const Evidence& e) {
+  const auto hig = hig_update(e, 16), adam = adam_update(e, 16);
   return {{"hig-b16-eta025-tau5", "HIG eta=0.25", Hue::red, hig},
           {"hig", "HIG eta=0.5", Hue::orange, hig},
           {"hig-b16-eta10-tau5", "HIG eta=1", Hue::blue, hig},
@@ -122,9 +121,7 @@ Cell lowest_loss_of(const std::string& method, const Evidence& e) {
 
 /// Of App. C: which tau is too small hangs on precision and projection, which
 /// are not printed (claim P10: far below 1e-5 the test loss stays above 0.1).
-Table tau_table(const Results& results) {
-  const Published none;
-  const Evidence evidence{results, none, kDense};
+Table tau_table(const Evidence& evidence) {
   Table table{
       .id = "tau",
       .title = "HIG by truncation, precision and projection",
@@ -217,15 +214,14 @@ Panel control(const Answered& answer, std::string title) {
           .series = {std::move(u)}};
 }
 
-Figure transitions(const Results& results,
-                   const std::vector<MethodLine>& lines) {
+Figure transitions(const Evidence& e, const std::vector<MethodLine>& lines) {
   Figure figure{.id = "fig4a",
                 .title = "Transition controlled by a network",
                 .where = "Fig. 4a",
                 .columns = 3,
                 .note = "First example of the test set."};
   for (const MethodLine& line : lines) {
-    const auto answer = first_answer(results, kDense, line.method);
+    const auto answer = answer_of(e, line.method);
     if (!answer) continue;
     figure.panels.push_back(probability(*answer, line.label));
     figure.panels.push_back(at_the_end(*answer, line.label));
@@ -235,20 +231,16 @@ Figure transitions(const Results& results,
   return figure;
 }
 
-Section dense_report(const Results& results, const Published& published) {
-  const auto adam = lines_of(dense_adam(), published),
-             hig = lines_of(dense_hig(), published), by_rate = rates(published),
-             single = lines_of(in_float());
+Section dense_report(const Evidence& e) {
+  const auto adam = lines_of(dense_adam(), e), hig = lines_of(dense_hig(), e),
+             by_rate = rates(e), single = lines_of(in_float());
   const auto all = joined(joined(joined(kMain, kRules), by_rate),
                           joined(joined(hig, adam), single));
-  Section section{
-      .experiment = kDense,
-      .tables = {loss_table(results, kDense, all),
-                 tau_table(results),
-                 cost_table(results, kDense, published, costs(), "Table 5")}};
-  LearningCurves curves(results, section);
-  section.figures.push_back(
-      transitions(results, {{"hig", "HIG"}, {"adam", "Adam"}}));
+  Section section{.tables = {loss_table(e, all),
+                             tau_table(e),
+                             cost_table(e, costs(), "Table 5")}};
+  LearningCurves curves(e, section);
+  section.figures.push_back(transitions(e, {{"hig", "HIG"}, {"adam", "Adam"}}));
   curves.losses(
       by_rate, "fig4b", "Learning curves for several rates", "Fig. 4b");
   curves.metric(kMain,
@@ -270,13 +262,10 @@ Section dense_report(const Results& results, const Published& published) {
   return section;
 }
 
-Section conv_report(const Results& results, const Published& published) {
-  const auto adam = lines_of(conv_adam(), published),
-             hig = lines_of(conv_hig(), published);
-  Section section{
-      .experiment = kConvolutional,
-      .tables = {loss_table(results, kConvolutional, joined(hig, adam))}};
-  LearningCurves curves(results, section);
+Section conv_report(const Evidence& e) {
+  const auto adam = lines_of(conv_adam(), e), hig = lines_of(conv_hig(), e);
+  Section section{.tables = {loss_table(e, joined(hig, adam))}};
+  LearningCurves curves(e, section);
   curves.losses(adam, "fig10", kAdamGrid, "Fig. 10");
   curves.losses(hig, "fig11", kHigGrid, "Fig. 11");
   return section;

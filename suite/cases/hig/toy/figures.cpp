@@ -8,8 +8,6 @@
 #include "suite/evidence/series.h"
 #include "suite/evidence/training_report.h"
 #include "suite/harness/registry.h"
-#include "suite/results/published.h"
-#include "suite/results/results.h"
 
 namespace physinv::toy {
 namespace {
@@ -37,9 +35,9 @@ Figure neuron_figure(const Evidence& evidence,
                 .columns = 3,
                 .note = "Mean and standard deviation (band), one seed."};
   for (const MethodLine& line : lines) {
-    const auto runs = find_runs(evidence, {line.method});
-    if (runs.empty()) continue;
-    const StageRecord& stage = *runs.front().stage;
+    const auto run = first_run(evidence, {line.method});
+    if (!run) continue;
+    const StageRecord& stage = *run->stage;
     const Batch<double>& m = stage.arrays.at("metrics");
     Panel panel{.title = line.label,
                 .x_label = "updates",
@@ -70,14 +68,12 @@ Figure path_figure(const Evidence& evidence,
                    const std::vector<MethodLine>& lines) {
   Panel panel{.x_label = "z1", .y_label = "z2", .y_min = -3, .y_max = 3};
   for (const MethodLine& line : lines) {
-    const auto runs = find_runs(evidence, {line.method});
-    if (runs.empty()) continue;
-    const StageRecord& stage = *runs.front().stage;
+    const auto run = first_run(evidence, {line.method});
+    if (!run) continue;
+    const StageRecord& stage = *run->stage;
     const Batch<double>& m = stage.arrays.at("metrics");
-    Series s{.label = line.label,
-             .method = line.method,
-             .markers = true,
-             .style = style_of(line)};
+    Series s = series_of(line);
+    s.markers = true;
     // An excursion beyond the frame would hide everything else.
     for (Index i = 0; i < m.cols(); ++i) {
       if (std::abs(m(kPathFirst, i)) > 3 || std::abs(m(kPathSecond, i)) > 3)
@@ -149,16 +145,12 @@ Table course_table(const Evidence& evidence,
       columns);
 }
 
-Section report(const Gamma& gamma,
-               const Results& results,
-               const Published& published) {
-  const Evidence evidence{results, published, gamma.experiment};
+Section report(const Evidence& evidence) {
   auto all = kLines;
   all.insert(all.end(), kVariants.begin(), kVariants.end());
-  Section section{.experiment = gamma.experiment,
-                  .tables = {loss_table(results, gamma.experiment, all),
-                             course_table(evidence, all)}};
-  LearningCurves curves(results, section);
+  Section section{
+      .tables = {loss_table(evidence, all), course_table(evidence, all)}};
+  LearningCurves curves(evidence, section);
   curves.losses(kLines, "fig1-loss", "Learning curves", "Fig. 1, left");
   curves.metric(kLines,
                 kSecondLoss,
@@ -176,11 +168,7 @@ Section report(const Gamma& gamma,
 }  // namespace
 
 void add_reports(Registry& r) {
-  for (const Gamma& gamma : kGammas)
-    r.add_report(gamma.experiment,
-                 [&gamma](const Results& results, const Published& p) {
-                   return report(gamma, results, p);
-                 });
+  for (const Gamma& gamma : kGammas) r.add_report(gamma.experiment, report);
 }
 
 }  // namespace physinv::toy

@@ -105,10 +105,7 @@ Claim claim(const Study& s) {
           .cause = cause_of(s)};
 }
 
-Section report(const Study& s,
-               const Results& results,
-               const Published& published) {
-  const Evidence e{results, published, s.name};
+Section report(const Study& s, const Evidence& e) {
   Table table{.id = "walls",
               .title =
                   "Neural adjoint against BFGS by sharpness and weight "

@@ -193,10 +193,7 @@ Claim claim(const Study& s) {
 
 // ---- report -----------------------------------------------------------------
 
-Section report(const Study& s,
-               const Results& results,
-               const Published& published) {
-  const Evidence evidence{results, published, s.name};
+Section report(const Study& s, const Evidence& evidence) {
   Table table{
       .id = "settings",
       .title = "JPO against BFGS by precision and tolerance",

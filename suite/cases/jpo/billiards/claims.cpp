@@ -49,13 +49,9 @@ Quantity most_where_start_misses(const RunRow& row) {
 
 /// Share solved of what BFGS left unsolved.
 Quantity rescued(Index first, Index last = kEvery) {
-  return share_of_examples(refined("jpo").of_sizes(first, last),
+  return share_of_examples(kRefined.of_sizes(first, last),
                            where(bfgs_unsolved(kSolved), if_solved(kSolved)),
                            holds);
-}
-
-Quantity mean_at_16(const Select& runs) {
-  return mean(runs.of_sizes(16), better());
 }
 
 /// At every n <= 32, |f - 1/2| beyond two standard errors is at most half of
@@ -85,13 +81,11 @@ Condition small_differences(const char* label, const Select& runs) {
 }
 
 const auto kProblem = problem<Billiards>("billiards");
-const Select kJpo = plain("jpo"), kRefined = refined("jpo");
 
 /// Sec. 4, Fig. 4: BFGS and JPO.
 const std::vector<Claim> kSection4 = {
     {.id = "P1",
      .where = "Sec. 4",
-     .from = "paper",
      .says = "For n <= 32 JPO differs little from BFGS",
      .conditions = {small_differences("largest |f - 1/2| - 2 s.e., n <= 32",
                                       kJpo),
@@ -102,7 +96,6 @@ const std::vector<Claim> kSection4 = {
                     "where BFGS ends lower on what it solves (24 seeds)")},
     {.id = "P2",
      .where = "Sec. 4, Fig. 4b",
-     .from = "paper",
      .says = "For n >= 64 almost all problems reach the solution",
      .conditions = {either(
          at_least("share with L < 1e-2",
@@ -127,7 +120,6 @@ const std::vector<Claim> kSection4 = {
                              0.2)}},
     {.id = "P4",
      .where = "Sec. 4",
-     .from = "paper",
      .says = "JPO drastically improves the solutions: refined, it leaves less "
              "than half of what BFGS leaves unsolved, n >= 64",
      .conditions = {below(
@@ -140,36 +132,30 @@ const std::vector<Claim> kSection4 = {
 const std::vector<Claim> kTables45 = {
     {.id = "P5",
      .where = "Table 4",
-     .from = "paper",
      .says = "How often JPO is better than BFGS, and equal",
      .conditions = table4("jpo", kSeeds)},
     {.id = "P6",
      .where = "Table 5",
-     .from = "paper",
      .says = "How often refined JPO is better than BFGS, and equal",
      .conditions = table5("jpo", kSeeds)},
     {.id = "P7",
      .where = "Tables 4 and 5",
-     .from = "paper",
      .says =
          "How often supervised learning and the neural adjoint are better and "
          "equal; JPO, supervised learning, neural adjoint is their order",
-     .conditions = joined({table4("supervised", kSeeds),
-                           table5("supervised", kSeeds),
-                           table4("na", kSeeds),
-                           table5("na", kSeeds),
-                           {above("better: jpo over supervised",
-                                  mean(kJpo, better()),
-                                  mean(plain("supervised"), better())),
-                            above("better: supervised over na",
-                                  mean(plain("supervised"), better()),
-                                  mean(plain("na"), better())),
-                            above("refined: jpo over supervised",
-                                  mean(kRefined, better()),
-                                  mean(refined("supervised"), better())),
-                            above("refined: supervised over na",
-                                  mean(refined("supervised"), better()),
-                                  mean(refined("na"), better()))}}),
+     .conditions = joined(
+         {table4("supervised", kSeeds),
+          table5("supervised", kSeeds),
+          table4("na", kSeeds),
+          table5("na", kSeeds),
+          {better_more_often("better: jpo over supervised", kJpo, kSupervised),
+           better_more_often(
+               "better: supervised over na", kSupervised, kAdjoint),
+           better_more_often(
+               "refined: jpo over supervised", kRefined, kSupervisedRefined),
+           better_more_often("refined: supervised over na",
+                             kSupervisedRefined,
+                             kAdjointRefined)}}),
      .note = "The training samples of these methods are not in the paper.",
      .cause =
          depends("sharpness and weight of the neural adjoint's wall and the "
@@ -182,16 +168,14 @@ const std::vector<Claim> kTables45 = {
 const std::vector<Claim> kAppendix = {
     {.id = "P8",
      .where = "App. D.2",
-     .from = "paper",
      .says = "The neural adjoint gets stuck on the boundary of its training "
              "data; supervised learning cannot extrapolate to the solutions",
      .conditions = {above("share of ends of the neural adjoint at or beyond it",
-                          share_of_examples(plain("na"),
-                                            beyond_training(kProblem, 0.02),
-                                            holds),
+                          share_of_examples(
+                              kAdjoint, beyond_training(kProblem, 0.02), holds),
                           0.5),
                     below("solved by supervised learning",
-                          solved_share(plain("supervised"), kSolved),
+                          solved_share(kSupervised, kSolved),
                           0.5)},
      .note = "Ends of the four problems of each run whose paths are kept. The "
              "paper does not say how steep the boundary is; ours turns "
@@ -202,7 +186,6 @@ const std::vector<Claim> kAppendix = {
                  "ends at the wall, with 20, 0.1 and 0.1 94 % did")},
     {.id = "P9",
      .where = "Table 3",
-     .from = "paper",
      .says = "Share of the decrease that the network makes",
      .conditions = table3(kSeeds),
      .cause = differs("the network makes 99.5 to 100.0 % of the decrease from "
@@ -230,7 +213,6 @@ const std::vector<Claim> kRangesOfSolvers = {
 
 const std::vector<Claim> kRangesOfJoint = {
     {.id = "R3",
-     .from = "quick",
      .says = "For n >= 64 and every seed, JPO brings nearly all problems close "
              "to the solution, and refinement solves them",
      .conditions = {at_least("lowest share with L < 1e-2",
@@ -240,7 +222,6 @@ const std::vector<Claim> kRangesOfJoint = {
                              lowest(kRefined.of_sizes(64), solved(kSolved)),
                              0.97)}},
     {.id = "R4",
-     .from = "quick",
      .says =
          "Refined JPO solves what BFGS left unsolved, more of it for n >= 64 "
          "than for n <= 8, and the network makes nearly all of the decrease",
@@ -255,38 +236,36 @@ const std::vector<Claim> kRangesOfJoint = {
 
 const std::vector<Claim> kRangesOfOthers = {
     {.id = "R5",
-     .from = "quick",
      .says =
          "For n >= 16, JPO is better than BFGS more often than supervised "
          "learning and the neural adjoint, and refined solves more problems",
      .conditions =
-         {above("better: jpo over supervised",
-                mean_at_16(kJpo),
-                mean_at_16(plain("supervised"))),
+         {better_more_often("better: jpo over supervised",
+                            kJpo.of_sizes(16),
+                            kSupervised.of_sizes(16)),
           above("solved, refined: jpo over supervised",
                 solved_share(kRefined.of_sizes(16), kSolved),
-                solved_share(refined("supervised").of_sizes(16), kSolved)),
-          above(
-              "better: jpo over na", mean_at_16(kJpo), mean_at_16(plain("na"))),
+                solved_share(kSupervisedRefined.of_sizes(16), kSolved)),
+          better_more_often(
+              "better: jpo over na", kJpo.of_sizes(16), kAdjoint.of_sizes(16)),
           above("solved, refined: jpo over na",
                 solved_share(kRefined.of_sizes(16), kSolved),
-                solved_share(refined("na").of_sizes(16), kSolved))}},
+                solved_share(kAdjointRefined.of_sizes(16), kSolved))}},
     {.id = "R6",
-     .from = "quick",
      .says = "For n >= 32, refined JPO ends on BFGS's plateaus hardly ever, "
              "while supervised learning and the neural adjoint share them",
      .conditions = {
          at_most(
              "equal: jpo refined", mean(kRefined.of_sizes(32), equal()), 0.02),
          at_least("equal: supervised",
-                  mean(plain("supervised").of_sizes(32), equal()),
+                  mean(kSupervised.of_sizes(32), equal()),
                   0.05),
          at_least("equal: supervised refined",
-                  mean(refined("supervised").of_sizes(32), equal()),
+                  mean(kSupervisedRefined.of_sizes(32), equal()),
                   0.05),
-         at_least("equal: na", mean(plain("na").of_sizes(32), equal()), 0.05),
+         at_least("equal: na", mean(kAdjoint.of_sizes(32), equal()), 0.05),
          at_least("equal: na refined",
-                  mean(refined("na").of_sizes(32), equal()),
+                  mean(kAdjointRefined.of_sizes(32), equal()),
                   0.05)}}};
 
 }  // namespace

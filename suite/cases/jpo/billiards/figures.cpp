@@ -37,14 +37,9 @@ Figure landscape() {
           "stops short, and the gradient is exactly zero."};
 }
 
-Section report(const Results& results, const Published& published) {
-  const JpoReportOptions options{
-      .experiment = "jpo/billiards",
-      .title = "Billiards",
-      .paper = "jpo",
-      .unknowns = {"v1", "v2"},
-      .tensors = {"m1", "b1", "m2", "b2", "m3", "b3", "m4", "b4"}};
-  Section section = jpo_section(options, results, published);
+Section report(const Evidence& e) {
+  const JpoReportOptions options{.unknowns = {"v1", "v2"}};
+  Section section = jpo_section(options, e);
   section.figures.insert(section.figures.begin(), landscape());
   return section;
 }

@@ -6,6 +6,7 @@
 #include "suite/cases/jpo/common/report.h"
 #include "suite/evidence/series.h"
 #include "suite/evidence/statistics.h"
+#include "suite/harness/networks.h"
 
 namespace physinv {
 namespace {
@@ -113,7 +114,7 @@ Figure JpoReport::fraction() const {
   panel.series.back().dashed = true;
   panel.series.push_back(f_series("gd", false));
   return {.id = options_.fraction.id,
-          .title = options_.title + ": improvement over BFGS",
+          .title = title() + ": improvement over BFGS",
           .where = options_.fraction.where,
           .panels = {std::move(panel)},
           .columns = 1,
@@ -124,14 +125,14 @@ Figure JpoReport::fraction() const {
 }
 
 Figure JpoReport::improvement() const {
-  Figure figure{.id = options_.improvement.id,
-                .title = options_.title +
-                         ": loss and improvement before and after refinement",
-                .where = options_.improvement.where,
-                .note =
-                    "Losses: mean over problems, median and 10 % and 90 % "
-                    "quantiles over seeds. Improvement: mean and sample "
-                    "standard deviation over seeds."};
+  Figure figure{
+      .id = options_.improvement.id,
+      .title = title() + ": loss and improvement before and after refinement",
+      .where = options_.improvement.where,
+      .note =
+          "Losses: mean over problems, median and 10 % and 90 % "
+          "quantiles over seeds. Improvement: mean and sample "
+          "standard deviation over seeds."};
   for (const bool refined : {false, true}) {
     Panel panel{
         .title = refined ? "Loss after refinement" : "Loss before refinement",
@@ -195,7 +196,7 @@ Series JpoReport::curve_series(const std::string& method, Index n) const {
 Figure JpoReport::curves() const {
   Figure figure{
       .id = options_.curves.id,
-      .title = options_.title + ": optimization curves before refinement",
+      .title = title() + ": optimization curves before refinement",
       .where = options_.curves.where,
       .note =
           "Mean over problems, median over seeds, band: 10 % and 90 % "
@@ -223,7 +224,7 @@ std::string JpoReport::unknown_name(Index j) const {
 
 const StageRecord* JpoReport::of_first_seed(const std::string& method,
                                             Index n) const {
-  const auto seed = evidence_.results.seeds(options_.experiment).front();
+  const auto seed = evidence_.results.seeds(evidence_.experiment).front();
   for (const Run& run : find_runs(evidence_, jpo::at(jpo::plain(method), n)))
     if (run.seed() == seed) return run.stage;
   return nullptr;
@@ -233,9 +234,10 @@ std::optional<double> JpoReport::solution_of(Index n,
                                              Index example,
                                              Index j) const {
   const Results& results = evidence_.results;
-  const auto seed = results.seeds(options_.experiment).front();
+  const auto seed = results.seeds(evidence_.experiment).front();
   for (const auto& method : with_bfgs()) {
-    const auto* found = results.find_case(options_.experiment, method, n, seed);
+    const auto* found =
+        results.find_case(evidence_.experiment, method, n, seed);
     if (found == nullptr) continue;
     const Batch<double> x =
         options_.solution ? options_.solution(*found) : found->data.x;
@@ -292,9 +294,9 @@ Index JpoReport::size_of_trajectories() const {
 
 Figure JpoReport::trajectories() const {
   Figure figure{.id = options_.trajectories.id,
-                .title = options_.title + ": estimates during optimization",
+                .title = title() + ": estimates during optimization",
                 .where = options_.trajectories.where};
-  const auto seeds = evidence_.results.seeds(options_.experiment);
+  const auto seeds = evidence_.results.seeds(evidence_.experiment);
   const Index n = size_of_trajectories();
   if (n == 0 || seeds.empty()) return figure;
   Index unknowns = 0, examples = kExamples;
@@ -323,14 +325,15 @@ Figure JpoReport::trajectories() const {
   return figure;
 }
 
-Panel JpoReport::tensor_panel(const std::string& title,
+Panel JpoReport::tensor_panel(const std::string& which,
+                              const std::vector<std::string>& names,
                               const std::vector<Index>& tensors) const {
-  Panel panel{.title = title,
+  Panel panel{.title = which,
               .x_label = "n",
               .y_label = "mean |change|",
               .x_log = true};
   for (const Index t : tensors) {
-    const std::string& name = options_.tensors[static_cast<std::size_t>(t)];
+    const std::string& name = names[static_cast<std::size_t>(t)];
     const RunValue change = [t](const Run& run) -> std::optional<double> {
       const auto found = run.stage->arrays.find("weight_change");
       if (found == run.stage->arrays.end() || t >= found->second.rows())
@@ -344,9 +347,10 @@ Panel JpoReport::tensor_panel(const std::string& title,
 }
 
 Figure JpoReport::weight_change() const {
+  const auto names = tensor_names(evidence_.experiment);
   std::vector<Index> weights, biases, normalisation;
-  for (std::size_t t = 0; t < options_.tensors.size(); ++t) {
-    const char kind = options_.tensors[t].front();
+  for (std::size_t t = 0; t < names.size(); ++t) {
+    const char kind = names[t].front();
     auto& list = kind == 'b'                  ? biases
                  : kind == 's' || kind == 'o' ? normalisation
                                               : weights;
@@ -354,17 +358,18 @@ Figure JpoReport::weight_change() const {
   }
   Figure figure{
       .id = options_.weight_change.id,
-      .title = options_.title + ": change of the JPO network",
+      .title = title() + ": change of the JPO network",
       .where = options_.weight_change.where,
-      .panels = {tensor_panel("Weights", weights),
-                 tensor_panel("Biases", biases)},
+      .panels = {tensor_panel("Weights", names, weights),
+                 tensor_panel("Biases", names, biases)},
       .note =
           "Mean absolute difference of a tensor's entries before and "
           "after the fit (k: kernels, m: matrices, b: biases, s and o: scales "
           "and offsets of normalisations). Bars: sample standard deviation "
           "over seeds."};
   if (!normalisation.empty()) {
-    figure.panels.push_back(tensor_panel("Scales and offsets", normalisation));
+    figure.panels.push_back(
+        tensor_panel("Scales and offsets", names, normalisation));
   }
   return figure;
 }

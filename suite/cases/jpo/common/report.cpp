@@ -2,7 +2,13 @@
 
 #include <algorithm>
 
+#include "suite/harness/registry.h"
+
 namespace physinv {
+
+std::string JpoReport::title() const {
+  return registry().find(evidence_.experiment)->title;
+}
 
 std::string method_title(const std::string& method) {
   if (method == "bfgs") return "BFGS";
@@ -32,28 +38,22 @@ Index JpoReport::largest_size() const {
 
 Figure curves_with_descent(JpoReportOptions options,
                            FigureRef figure,
-                           const Results& results) {
-  const auto sizes = results.sizes(options.experiment);
+                           const Evidence& e) {
+  const auto sizes = e.results.sizes(e.experiment);
   options.methods.insert(options.methods.begin(), "gd");
   options.curves = std::move(figure);
   if (!sizes.empty()) options.curve_sizes = {sizes.back()};
-  Figure curves = JpoReport(options, results, {}).curves();
+  Figure curves = JpoReport(options, e).curves();
   curves.columns = 1;
   return curves;
 }
 
-Section jpo_section(const JpoReportOptions& options,
-                    const Results& results,
-                    const Published& published) {
-  const JpoReport report(options, results, published);
+Section jpo_section(const JpoReportOptions& options, const Evidence& e) {
+  const JpoReport report(options, e);
   std::map<std::string, std::string> titles;
-  for (const auto& method : results.methods(options.experiment)) {
+  for (const auto& method : e.results.methods(e.experiment))
     titles[method] = method_title(method);
-  }
-  return {.experiment = options.experiment,
-          .title = options.title,
-          .paper = options.paper,
-          .tables = {report.seconds(),
+  return {.tables = {report.seconds(),
                      report.fit_share(),
                      report.better_equal(false),
                      report.better_equal(true),

@@ -24,9 +24,6 @@ struct FigureRef {
 /// table2/bfgs, table2/<method>/<stage>, table3/n=<n>, table4/<method>/better
 /// and /equal, table5 likewise.
 struct JpoReportOptions {
-  std::string experiment;  ///< jpo/billiards
-  std::string title;       ///< Billiards
-  std::string paper;       ///< key of the publication
   std::vector<std::string> methods = {"jpo", "supervised", "na"};
   Solved solved = 1e-6;            ///< when a problem counts as solved
   std::vector<Index> curve_sizes;  ///< of fig. 12; default: four present
@@ -34,7 +31,6 @@ struct JpoReportOptions {
   std::vector<Index> table3_sizes = {4, 8, 32, 128};
   bool from_prior = false;            ///< Table 3, see decrease_before
   std::vector<std::string> unknowns;  ///< names of the unknowns, for axes
-  std::vector<std::string> tensors;   ///< m1, b1, ... in the order of the rows
   /// What trajectories should reach, unknowns x examples; data.x if empty.
   std::function<Batch<double>(const CaseRecord&)> solution;
   FigureRef fraction{"fig4b", "Fig. 4b"};
@@ -58,10 +54,9 @@ std::string method_title(const std::string& method);
 
 class JpoReport {
  public:
-  JpoReport(const JpoReportOptions& options,
-            const Results& results,
-            const Published& published)
-      : options_(options), evidence_{results, published, options.experiment} {}
+  /// Of the experiment that asks; both have to outlive it.
+  JpoReport(const JpoReportOptions& options, const Evidence& evidence)
+      : options_(options), evidence_(evidence) {}
 
   Table seconds() const;                   ///< Table 2, at the largest n
   Table fit_share() const;                 ///< Table 3
@@ -80,8 +75,9 @@ class JpoReport {
   /// What stands for the seeds: quantiles on logarithmic axes.
   enum class Over { means, quantiles };
   std::vector<Index> sizes() const {
-    return evidence_.results.sizes(options_.experiment);
+    return evidence_.results.sizes(evidence_.experiment);
   }
+  std::string title() const;  ///< of the experiment
   /// A number for each seed.
   std::vector<double> values(const Select& runs,
                              Index n,
@@ -101,7 +97,8 @@ class JpoReport {
   Index size_of_trajectories() const;
   Panel plane(Index n, Index example) const;
   Panel over_iterations(Index n, Index example, Index unknown) const;
-  Panel tensor_panel(const std::string& title,
+  Panel tensor_panel(const std::string& which,
+                     const std::vector<std::string>& names,
                      const std::vector<Index>& tensors) const;
   std::string unknown_name(Index j) const;
   std::vector<std::string> with_bfgs() const;
@@ -117,17 +114,15 @@ class JpoReport {
   Cell with_paper(Cell cell, const std::string& quantity) const;
 
   const JpoReportOptions& options_;
-  const Evidence evidence_;
+  const Evidence& evidence_;
 };
 
 /// All of the above in the order of the paper.
-Section jpo_section(const JpoReportOptions& options,
-                    const Results& results,
-                    const Published& published);
+Section jpo_section(const JpoReportOptions& options, const Evidence& e);
 
 /// The curves of the largest set alone, those of gradient descent among them.
 Figure curves_with_descent(JpoReportOptions options,
                            FigureRef figure,
-                           const Results& results);
+                           const Evidence& e);
 
 }  // namespace physinv

@@ -79,7 +79,7 @@ Table JpoReport::seconds() const {
               .keys = {"problem"},
               .across = Across{.key = "procedure", .quantities = {"time"}}};
   const Index n = largest_size();
-  TableRow row{.label = options_.title};
+  TableRow row{.label = title()};
   TimedStages timed;
   for (const auto& [title, method, stage] : kSecondsColumns) {
     // BFGS alone has one stage only, so the paper's number names none.
@@ -108,7 +108,7 @@ Table JpoReport::fit_share() const {
               .digits = 1,
               .keys = {"problem"},
               .across = Across{.key = "n", .quantities = {"share"}}};
-  TableRow row{.label = options_.title};
+  TableRow row{.label = title()};
   for (const Index n : options_.table3_sizes) {
     table.columns.push_back(fmt::format("n = {}", n));
     table.across->values.push_back(std::to_string(n));
@@ -166,7 +166,7 @@ Table JpoReport::better_equal(bool refined) const {
 
 Table JpoReport::results_table() const {
   Table table{.id = "results",
-              .title = options_.title + " by n and method",
+              .title = title() + " by n and method",
               .digits = 3,
               .corner = "n, method",
               .columns = {"solved",
@@ -177,7 +177,7 @@ Table JpoReport::results_table() const {
                           "CPU seconds"},
               .keys = {"n", "method", "refined"}};
   TimedStages timed;
-  const auto present = evidence_.results.methods(options_.experiment);
+  const auto present = evidence_.results.methods(evidence_.experiment);
   const bool gd = std::count(present.begin(), present.end(), "gd") > 0;
   for (const Index n : sizes()) {
     table.rows.push_back(results_row("bfgs", n, false, timed));

@@ -320,6 +320,11 @@ Quantity percent_better(const Select& select) {
   return percent(mean(select, better()));
 }
 
+Condition better_more_often(std::string label,
+                            const Select& a,
+                            const Select& b) {
+  return above(std::move(label), mean(a, better()), mean(b, better()));
+}
 Quantity solved_share(const Select& select, const Solved& solved) {
   return share_of_examples(select, if_solved(solved), holds);
 }

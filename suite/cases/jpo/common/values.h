@@ -30,6 +30,11 @@ Select ending(const std::string& method, bool refined);
 inline Select at(const Select& select, Index n) {
   return select.of_sizes(n, n);
 }
+/// The networks' chains, without their refinement and with it.
+inline const Select kJpo = plain("jpo"), kRefined = refined("jpo"),
+                    kSupervised = plain("supervised"),
+                    kSupervisedRefined = refined("supervised"),
+                    kAdjoint = plain("na"), kAdjointRefined = refined("na");
 /// Plain BFGS on the same problems.
 std::optional<Run> bfgs_beside(const Run& run);
 
@@ -98,6 +103,10 @@ Quantity lowest_mean(const Select& select, const RunValue& value);
 Quantity highest_mean(const Select& select, const RunValue& value);
 /// Of the problems, on average over seeds.
 Quantity percent_better(const Select& select);
+/// `a` is better than BFGS in more of the problems than `b`.
+Condition better_more_often(std::string label,
+                            const Select& a,
+                            const Select& b);
 /// Of all their examples.
 Quantity solved_share(const Select& select, const Solved& solved);
 /// Missing unless the largest sets of `select` have so many problems.

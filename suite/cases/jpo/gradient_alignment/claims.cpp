@@ -49,7 +49,6 @@ Quantity slope_off_theory() {
 
 const std::vector<Claim> kRanges = {
     {.id = "R2",
-     .from = "quick",
      .says = "With a common solution, the sum of the gradients and the "
              "majority of their signs are right as often as P_sum and P_vote "
              "say",
@@ -74,7 +73,6 @@ const std::vector<Claim> kRanges = {
                     at_most(
                         "its distance from theory", slope_off_theory(), 0.15)}},
     {.id = "R3",
-     .from = "quick",
      .says = "Where noise levels differ but not their ratio to the signal, "
              "the majority keeps P_vote and the sum falls below it",
      .conditions = {at_most("vote: |measured - theory| / band",
@@ -90,7 +88,6 @@ const std::vector<Claim> kRanges = {
                                 64),
                             -0.05)}},
     {.id = "R4",
-     .from = "quick",
      .says = "A network's noise-free updates follow the response model of the "
              "paper's C = 6.4, A = 12.9",
      .conditions = {at_least("rho(1)", kFirstShare, 1),
@@ -115,7 +112,6 @@ const std::vector<Claim> kRanges = {
                                     }),
                             0)}},
     {.id = "R5",
-     .from = "quick",
      .says = "Noise-free updates for sin(2x) follow the response model and "
              "end on a plateau",
      .conditions = {at_most("rms",
@@ -144,7 +140,6 @@ const std::vector<Claim> kRanges = {
                                 64),
                             0.72)}},
     {.id = "R6",
-     .from = "quick",
      .says = "Updates along noisy gradients follow the combined model: more "
              "examples mean fewer aligned updates, down to the noise-free "
              "plateau",
@@ -173,7 +168,6 @@ Quantity slope_off_by(F other) {
 const std::vector<Claim> kPaper = {
     {.id = "P1",
      .where = "Fig. 2a",
-     .from = "paper",
      .says = "Measured and predicted scaling of the sum match perfectly",
      .conditions = {at_most(
          "largest |measured - P_sum| in four standard "
@@ -182,7 +176,6 @@ const std::vector<Claim> kPaper = {
          1)}},
     {.id = "P2",
      .where = "Theorem 1",
-     .from = "paper",
      .says = "The excess over 1/2 grows with sqrt(N)",
      .conditions =
          {either(at_most("|slope - 1/2| in two standard errors",
@@ -202,7 +195,6 @@ const std::vector<Claim> kPaper = {
      .note = "N up to 16, where P_sum < 0.75: beyond, it saturates."},
     {.id = "P3",
      .where = "Sec. 4, Fig. 2a",
-     .from = "paper",
      .says = "The majority vote shows identical behaviour",
      .conditions = {at_most("|slopes of vote and sum| in two standard errors",
                             slope_off_by([](const Fig2& f) {
@@ -213,7 +205,6 @@ const std::vector<Claim> kPaper = {
              "smaller by sqrt(2 / pi)."},
     {.id = "P4",
      .where = "Theorem 2, App. A.2",
-     .from = "paper",
      .says = "The vote is right as often as 1/2 + erf(sqrt(N) e / "
              "sqrt(1/4 - e^2)) / 2 says",
      .conditions =
@@ -232,7 +223,6 @@ const std::vector<Claim> kPaper = {
                   1)})},
     {.id = "P5",
      .where = "Sec. 2",
-     .from = "paper",
      .says = "With equal SNR and unequal noise the vote keeps sqrt(N), the "
              "sum loses it",
      .conditions = {above(
@@ -242,7 +232,6 @@ const std::vector<Claim> kPaper = {
          2)}},
     {.id = "P6",
      .where = "Sec. 2",
-     .from = "paper",
      .says = "With equal SNR and noise the sum is more efficient than the vote",
      .conditions = {above(
          "mean of sum - vote over N",
@@ -261,7 +250,6 @@ const std::vector<Claim> kPaper = {
              "reverse."},
     {.id = "P7",
      .where = "Sec. 2, App. A.2",
-     .from = "paper",
      .says = "A very low clipping threshold exactly matches majority voting",
      .conditions =
          {at_most("repetitions where clipped sum and vote part, equal noise",
@@ -279,7 +267,6 @@ const std::vector<Claim> kPaper = {
                       "paper")},
     {.id = "P8",
      .where = "Fig. 2b",
-     .from = "paper",
      .says = "C = 6.4, A = 12.9 closely match the network",
      .conditions = {at_most(
          "largest |measured - rho(6.4, 12.9)|", kResponse, 0.07)},
@@ -287,7 +274,6 @@ const std::vector<Claim> kPaper = {
              "sixty that were tried; fitted to it alone, C is 1.5 and A 2.5."},
     {.id = "P9",
      .where = "Theorem 3",
-     .from = "paper",
      .says = "The aligned share falls from 1 to a limit in [1/2, 1] that does "
              "not depend on the noise",
      .conditions = joined({both(keeps_the_limit),
@@ -298,7 +284,6 @@ const std::vector<Claim> kPaper = {
                                    1)}})},
     {.id = "P10",
      .where = "Fig. 2c, d",
-     .from = "paper",
      .says = "Fitted without noise, the model describes noisy updates, best "
              "for many examples, of which fewer are aligned",
      .conditions = both(fits_well)},

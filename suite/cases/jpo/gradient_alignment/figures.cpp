@@ -112,15 +112,13 @@ Figure noisy_figure(const Fig2& f,
           .note = fmt::format("{}SNR {}.", kMarks, kEven)};
 }
 
-Table shares_table(const Results& results, const Fig2& f) {
+Table shares_table(const std::vector<Index>& sizes, const Fig2& f) {
   Table table{.id = "alignment",
               .title = "Share of aligned gradients and updates",
               .digits = 3,
               .corner = "N"};
   std::vector<TableRow> rows;
-  for (const Index n : results.sizes(kName))
-    rows.push_back({.label = fmt::format("{}", n)});
-  const auto sizes = results.sizes(kName);
+  for (const Index n : sizes) rows.push_back({.label = fmt::format("{}", n)});
   const auto add =
       [&](const char* name, const std::optional<Aligned>& m, auto&& theory) {
         table.columns.emplace_back(name);
@@ -203,11 +201,12 @@ Table vote_table(const std::vector<Index>& sizes) {
   return table;
 }
 
-Section report(const Results& results, const Published& published) {
-  const Fig2 f({results, published, kName});
-  return {.tables = {shares_table(results, f),
-                     fits_table(f, published),
-                     vote_table(results.sizes(kName))},
+Section report(const Evidence& e) {
+  const Fig2 f(e);
+  const auto sizes = e.results.sizes(kName);
+  return {.tables = {shares_table(sizes, f),
+                     fits_table(f, e.published),
+                     vote_table(sizes)},
           .figures = {
               noise_figure(f),
               linear_figure(f),

@@ -81,49 +81,44 @@ struct PrintedNumber {
 
 /// Numbers of Sec. 4 and App. D.3 that stand in no table.
 std::vector<PrintedNumber> printed_numbers() {
-  const auto better = [](const Select& runs) {
-    return percent(mean(runs, jpo::better()));
-  };
   const auto solved = [](const Select& runs) {
-    return percent(share_of_examples(
-        runs.of_sizes(32), jpo::if_solved(kNear), jpo::holds));
+    return percent(
+        share_of_examples(runs.of_sizes(32), if_solved(kNear), holds));
   };
   const RunValue mean_iterations = of_row(iterations(), mean_of);
-  const Select bfgs = jpo::bfgs(), refined = jpo::refined("jpo"),
-               labels = jpo::plain("supervised"),
-               labels_refined = jpo::refined("supervised");
+  const Select bfgs = jpo::bfgs();
   return {{"BFGS solves, n >= 32, %", "bfgs/solved", solved(bfgs)},
-          {"JPO refined solves, n >= 32, %", "jpo/solved", solved(refined)},
+          {"JPO refined solves, n >= 32, %", "jpo/solved", solved(kRefined)},
           {"BFGS iterations, lowest",
            "bfgs/iterations_low",
-           jpo::lowest_mean(bfgs, mean_iterations)},
+           lowest_mean(bfgs, mean_iterations)},
           {"BFGS iterations, highest",
            "bfgs/iterations_high",
-           jpo::highest_mean(bfgs, mean_iterations)},
+           highest_mean(bfgs, mean_iterations)},
           {"refinement iterations, lowest",
            "jpo/iterations_low",
-           jpo::lowest_mean(refined, mean_iterations)},
+           lowest_mean(kRefined, mean_iterations)},
           {"refinement iterations, highest",
            "jpo/iterations_high",
-           jpo::highest_mean(refined, mean_iterations)},
+           highest_mean(kRefined, mean_iterations)},
           {"JPO refined better, n = 256, %",
            "jpo/better/n=256",
-           better(jpo::at(refined, 256))},
+           percent_better(at(kRefined, 256))},
           {"supervised refined better, %",
            "supervised/refined",
-           better(labels_refined)},
+           percent_better(kSupervisedRefined)},
           {"supervised refined better, n = 2, %",
            "supervised/refined/n=2",
-           better(jpo::at(labels_refined, 2))},
+           percent_better(at(kSupervisedRefined, 2))},
           {"supervised refined better, n >= 64, %",
            "supervised/refined/n>=64",
-           better(labels_refined.of_sizes(64))},
+           percent_better(kSupervisedRefined.of_sizes(64))},
           {"supervised better, n = 2, %",
            "supervised/better/n=2",
-           better(jpo::at(labels, 2))},
+           percent_better(at(kSupervised, 2))},
           {"supervised better, n >= 64, %",
            "supervised/better/n>=64",
-           better(labels.of_sizes(64))}};
+           percent_better(kSupervised.of_sizes(64))}};
 }
 
 Table numbers_of_text(const Evidence& evidence) {
@@ -144,26 +139,22 @@ Table numbers_of_text(const Evidence& evidence) {
   return table;
 }
 
-Section report(const Results& results, const Published& published) {
-  const JpoReportOptions options{.experiment = kName,
-                                 .title = "Kuramoto-Sivashinsky equation",
-                                 .paper = "jpo",
-                                 .solved = kNear,
+Section report(const Evidence& e) {
+  const JpoReportOptions options{.solved = kNear,
                                  .trajectory_size = 128,
                                  .unknowns = {"alpha", "beta"},
-                                 .tensors = tensor_names(kName),
                                  .fraction = {"fig5d", "Fig. 5d"},
                                  .improvement = {"fig15", "Fig. 15"},
                                  .curves = {"fig16", "Fig. 16"},
                                  .trajectories = {"fig17", "Fig. 17"},
                                  .weight_change = {"fig18", "Fig. 18"}};
-  Section section = jpo_section(options, results, published);
+  Section section = jpo_section(options, e);
   section.figures.insert(
       section.figures.begin(),
       {trajectory(),
        landscape(),
-       curves_with_descent(options, {"fig5c", "Fig. 5c"}, results)});
-  section.tables.push_back(numbers_of_text({results, published, kName}));
+       curves_with_descent(options, {"fig5c", "Fig. 5c"}, e)});
+  section.tables.push_back(numbers_of_text(e));
   return section;
 }
 

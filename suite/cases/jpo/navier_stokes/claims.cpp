@@ -14,10 +14,6 @@ namespace {
 
 constexpr Index kSeeds = 4;   ///< the paper's
 constexpr Index kLabels = 8;  ///< of each problem, as the experiment has them
-const Select kJpo = plain("jpo"), kRefined = refined("jpo");
-const Select kSupervised = plain("supervised"),
-             kSupervisedRefined = refined("supervised");
-const Select kAdjoint = plain("na"), kAdjointRefined = refined("na");
 
 Quantity mean_of_losses(const Select& runs) { return mean(runs, mean_loss()); }
 
@@ -79,7 +75,6 @@ std::vector<double> stuck(const Run& run) {
 const std::vector<Claim> kSolvers = {
     {.id = "P1",
      .where = "Sec. 4",
-     .from = "paper",
      .says = "BFGS converges always, usually within 10, sometimes up to 40 "
              "iterations",
      .conditions = {above("share within 10",
@@ -99,7 +94,6 @@ const std::vector<Claim> kSolvers = {
                  "move nothing (46 to 48 %): runs end at kinks")},
     {.id = "P2",
      .where = "Sec. 4",
-     .from = "paper",
      .says = "Many BFGS runs get stuck in local optima",
      .conditions = {at_least("share where a refined network ends 1 % lower",
                              share_of_examples(bfgs(), stuck, holds),
@@ -109,7 +103,6 @@ const std::vector<Claim> kSolvers = {
 const std::vector<Claim> kJoint = {
     {.id = "P3",
      .where = "Sec. 4",
-     .from = "paper",
      .says = "The mean loss of JPO is above that of BFGS for all n, especially "
              "for small ones",
      .conditions = {above("lowest mean over n, over BFGS's",
@@ -125,7 +118,6 @@ const std::vector<Claim> kJoint = {
          "of the truths on single problems (448 against a median of 19)")},
     {.id = "P4",
      .where = "Sec. 4, App. D.4",
-     .from = "paper",
      .says = "This comes from about 10 % of the examples",
      .conditions = {at_most("mean L without the tenth of the highest, over "
                             "BFGS's on the same problems",
@@ -142,7 +134,6 @@ const std::vector<Claim> kJoint = {
                "it is 2.5 times at n = 16, of which examples was not asked")},
     {.id = "P5",
      .where = "Sec. 4",
-     .from = "paper",
      .says = "JPO is better than BFGS in 66.7 % on average for n > 4",
      .conditions = {either(
          as_stated("better, %", percent_better(kJpo.of_sizes(8)), 66.7, kSeeds),
@@ -158,7 +149,6 @@ const std::vector<Claim> kJoint = {
 const std::vector<Claim> kTables45 = {
     {.id = "P6",
      .where = "Tables 4, 5",
-     .from = "paper",
      .says = "How often JPO is better than BFGS, and equal",
      .conditions = joined({table4("jpo", kSeeds), table5("jpo", kSeeds)}),
      .cause = differs(
@@ -167,7 +157,6 @@ const std::vector<Claim> kTables45 = {
           above("refined, more than half", percent_better(kRefined), 50)})},
     {.id = "P7",
      .where = "Tables 4, 5",
-     .from = "paper",
      .says = "The same of supervised learning and the neural adjoint",
      .conditions = joined({table4("supervised", kSeeds),
                            table4("na", kSeeds),
@@ -184,7 +173,6 @@ const std::vector<Claim> kTables45 = {
 const std::vector<Claim> kOfSupervised =
     {{.id = "P8",
       .where = "App. D.4",
-      .from = "paper",
       .says = "Refined supervised learning is better in 64, 73 and 72 % for n "
               "= 16, 64 and 128",
       .conditions = {as_stated("n = 16, %",
@@ -207,7 +195,6 @@ const std::vector<Claim> kOfSupervised =
                          50)})},
      {.id = "P9",
       .where = "App. D.4",
-      .from = "paper",
       .says = "Its worst losses are about ten times smaller than the worst of "
               "BFGS, its total loss much smaller for n >= 16",
       .conditions =
@@ -230,54 +217,51 @@ const std::vector<Claim> kOfSupervised =
               "and seeds."}};
 
 /// App. D.4: the neural adjoint.
-const std::vector<Claim> kOfAdjoint =
-    {{.id = "P10",
-      .where = "App. D.4",
-      .from = "paper",
-      .says = "The refined neural adjoint's mean loss hardly depends on n and "
-              "is slightly below that of BFGS",
-      .conditions =
-          {of_stages(below("mean L over BFGS's",
-                           mean(kAdjointRefined, over_bfgs(mean_loss())),
-                           1)),
-           of_stages(at_most("|slope over log n| in two standard errors",
-                             slope_over_n(kAdjointRefined),
-                             1)),
-           reported("mean L at n = 128 over n = 4",
-                    ratio(mean_of_losses(at(kAdjointRefined, 128)),
-                          mean_of_losses(at(kAdjointRefined, 4))))}},
-     {.id = "P11",
-      .where = "App. D.4",
-      .from = "paper",
-      .says = "The unrefined neural adjoint has the highest loss, gains far "
-              "more by refinement than JPO, and nearly always stays within the "
-              "training range",
-      .conditions =
-          {above("mean L over JPO's",
-                 mean_of_losses(kAdjoint),
-                 mean_of_losses(kJpo)),
-           above("over that of supervised learning",
-                 mean_of_losses(kAdjoint),
-                 mean_of_losses(kSupervised)),
-           above("decrease by refinement, over JPO's",
-                 difference(mean_of_losses(kAdjoint),
-                            mean_of_losses(kAdjointRefined)),
-                 difference(mean_of_losses(kJpo), mean_of_losses(kRefined))),
-           at_most("share beyond the training range",
-                   share_of_examples(
-                       kAdjoint,
-                       beyond_training(
-                           problem<NavierStokes>("navier_stokes"), 0, kLabels),
-                       holds),
-                   0.1)},
-      .cause =
-          fails("up to 42 % of the estimates leave the range of their training "
-                "samples; weight and sharpness of the wall are not printed")}};
+const std::vector<Claim> kOfAdjoint = {
+    {.id = "P10",
+     .where = "App. D.4",
+     .says = "The refined neural adjoint's mean loss hardly depends on n and "
+             "is slightly below that of BFGS",
+     .conditions =
+         {of_stages(below("mean L over BFGS's",
+                          mean(kAdjointRefined, over_bfgs(mean_loss())),
+                          1)),
+          of_stages(at_most("|slope over log n| in two standard errors",
+                            slope_over_n(kAdjointRefined),
+                            1)),
+          reported("mean L at n = 128 over n = 4",
+                   ratio(mean_of_losses(at(kAdjointRefined, 128)),
+                         mean_of_losses(at(kAdjointRefined, 4))))}},
+    {.id = "P11",
+     .where = "App. D.4",
+     .says = "The unrefined neural adjoint has the highest loss, gains far "
+             "more by refinement than JPO, and nearly always stays within the "
+             "training range",
+     .conditions =
+         {above("mean L over JPO's",
+                mean_of_losses(kAdjoint),
+                mean_of_losses(kJpo)),
+          above("over that of supervised learning",
+                mean_of_losses(kAdjoint),
+                mean_of_losses(kSupervised)),
+          above("decrease by refinement, over JPO's",
+                difference(mean_of_losses(kAdjoint),
+                           mean_of_losses(kAdjointRefined)),
+                difference(mean_of_losses(kJpo), mean_of_losses(kRefined))),
+          at_most("share beyond the training range",
+                  share_of_examples(
+                      kAdjoint,
+                      beyond_training(
+                          problem<NavierStokes>("navier_stokes"), 0, kLabels),
+                      holds),
+                  0.1)},
+     .cause =
+         fails("up to 42 % of the estimates leave the range of their training "
+               "samples; weight and sharpness of the wall are not printed")}};
 
 const std::vector<Claim> kTable3 = {
     {.id = "P12",
      .where = "Table 3",
-     .from = "paper",
      .says = "Share of the decrease that the network makes",
      .conditions = table3(kSeeds, true),
      .note = "From the loss at the mean of the truths."}};
@@ -300,7 +284,6 @@ const std::vector<Claim> kRangesOfJoint = {
                     reported("equal within it",
                              mean(kJpo.of_sizes(8), equal(Equality::band)))}},
     {.id = "R4",
-     .from = "quick",
      .says = "JPO's mean loss is above that of BFGS, its median for n >= 16 is "
              "not far",
      .conditions = {above("lowest mean L over BFGS's",
@@ -312,7 +295,6 @@ const std::vector<Claim> kRangesOfJoint = {
                             1.3)},
      .cause = fails("JPO's mean loss is as low as 0.75 of BFGS's (P3)")},
     {.id = "R5",
-     .from = "quick",
      .says = "The network makes nearly all of the decrease",
      .conditions = {within("share of the decrease",
                            mean(kRefined, decrease_before(true)),
@@ -344,7 +326,6 @@ const std::vector<Claim> kRangesOfOthers = {
      .cause = fails(
          "better in 8.9 % over four seeds; the range, of one seed, ends at 8")},
     {.id = "R7b",
-     .from = "quick",
      .says = "The unrefined neural adjoint has a higher mean loss than BFGS",
      .conditions = {above("lowest mean L over BFGS's",
                           lowest_mean(kAdjoint, over_bfgs(mean_loss())),
@@ -352,11 +333,9 @@ const std::vector<Claim> kRangesOfOthers = {
 
 const std::vector<Claim> kRangesOfSolvers = {
     {.id = "R8",
-     .from = "quick",
      .says = "Gradient descent is better than BFGS on less than half",
      .conditions = {below("better", mean(gd(), better()), 0.5)}},
     {.id = "R9",
-     .from = "quick",
      .says = "Losses are hardly ever equal to BFGS's bit by bit",
      .conditions = {
          at_most("highest mean of any n", highest_mean(kJpo, equal()), 0.02),

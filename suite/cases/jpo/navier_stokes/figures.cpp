@@ -234,36 +234,30 @@ Figure over_truth(const Evidence& evidence,
   return figure;
 }
 
-Section report(const Results& results, const Published& published) {
-  const JpoReportOptions options{.experiment = kName,
-                                 .title = "Incompressible Navier-Stokes",
-                                 .paper = "jpo",
-                                 .from_prior = true,
+Section report(const Evidence& e) {
+  const JpoReportOptions options{.from_prior = true,
                                  .unknowns = {"z0", "z1", "z2"},
-                                 .tensors = tensor_names(kName),
                                  .fraction = {"fig6d", "Fig. 6d"},
                                  .improvement = {"fig21", "Fig. 21"},
                                  .curves = {"fig22", "Fig. 22"},
                                  .trajectories = {"fig23", "Fig. 23"},
                                  .weight_change = {"fig24", "Fig. 24"}};
-  Section section = jpo_section(options, results, published);
-  const Evidence evidence{results, published, kName};
-  const auto sizes = results.sizes(kName);
+  Section section = jpo_section(options, e);
+  const auto sizes = e.results.sizes(kName);
   if (sizes.empty()) return section;
   std::vector<Figure> before = {
-      curves_with_descent(options, {"fig6c", "Fig. 6c"}, results),
-      over_truth(evidence, sizes.front(), "fig19", "Fig. 19")};
-  const CaseRecord* first = results.find_case(kName, "bfgs", sizes.back(), 0);
+      curves_with_descent(options, {"fig6c", "Fig. 6c"}, e),
+      over_truth(e, sizes.front(), "fig19", "Fig. 19")};
+  const CaseRecord* first = e.results.find_case(kName, "bfgs", sizes.back(), 0);
   if (first != nullptr && first->data.y.cols() > 0) {
-    const auto all = said(evidence, *first, sizes.back());
+    const auto all = said(e, *first, sizes.back());
     before.insert(
         before.begin(),
         {at_the_start(*first), pictures(*first, all), film(*first, all)});
   }
   section.figures.insert(section.figures.begin(), before.begin(), before.end());
   if (sizes.size() > 1)
-    section.figures.push_back(
-        over_truth(evidence, sizes.back(), "fig20", "Fig. 20"));
+    section.figures.push_back(over_truth(e, sizes.back(), "fig20", "Fig. 20"));
   return section;
 }
 

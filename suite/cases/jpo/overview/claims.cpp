@@ -27,9 +27,7 @@ constexpr std::array kMain = {kWave, kBilliards, kChaos, kBox};
 /// One condition of each experiment.
 template <class F>
 std::vector<Condition> each(F&& condition) {
-  std::vector<Condition> all;
-  for (const Main& e : kMain) all.push_back(condition(e));
-  return all;
+  return physinv::each(kMain, condition);
 }
 /// One number of each.
 template <class F>
@@ -38,16 +36,18 @@ std::vector<Condition> of_each(const std::string& what, F&& quantity) {
       [&](const Main& e) { return reported(what + e.title, quantity(e)); });
 }
 
+std::vector<Select> runs_of(const std::vector<Quantity>& all) {
+  std::vector<Select> runs;
+  for (const Quantity& q : all)
+    runs.insert(runs.end(), q.runs().begin(), q.runs().end());
+  return runs;
+}
+
 /// The mean of one quantity of each. Its spread is that of one of as many seeds
 /// as the fewest have, with the error that all together leave.
 template <class F>
 Quantity mean_of_all(F&& quantity) {
-  std::vector<Quantity> all;
-  std::vector<Select> runs;
-  for (const Main& e : kMain) {
-    all.push_back(quantity(e));
-    for (const Select& s : all.back().runs()) runs.push_back(s);
-  }
+  const auto all = physinv::each(kMain, quantity);
   return {[all](const Evidence& evidence) {
             Measured sum{
                 .value = 0, .spread = 0, .runs = kEvery, .missing = {}};
@@ -63,7 +63,7 @@ Quantity mean_of_all(F&& quantity) {
             *sum.spread *= std::sqrt(static_cast<double>(sum.runs));
             return sum;
           },
-          runs};
+          runs_of(all)};
 }
 
 auto mean_percent(const Select& runs, const RunValue& value) {
@@ -80,7 +80,7 @@ RunValue share_of(const Main& e) {
   return decrease_before(e.name == kBox.name);
 }
 Quantity share_at(const Main& e, Index n) {
-  return mean(at(refined("jpo").in(e.name), n), share_of(e));
+  return mean(at(kRefined.in(e.name), n), share_of(e));
 }
 
 /// The tenth of its problems with JPO's highest losses (at least one) solved
@@ -100,28 +100,19 @@ std::optional<double> falling_back(const Run& run) {
   return mean_of(mixed) / mean_of(jpo);
 }
 
-Condition exactly(std::string label, const Quantity& q, double count) {
-  return within(std::move(label), q, count, count);
-}
-
 Quantity median_seconds(const Select& runs) { return median(runs, seconds()); }
 /// Of fits at n = 128 and n = 4, where the data are 32 times as many.
 Quantity cost_of_growth(const Main& e) {
-  const Select fits = plain("jpo").in(e.name);
+  const Select fits = kJpo.in(e.name);
   return ratio(median_seconds(at(fits, 128)), median_seconds(at(fits, 4)));
 }
 Quantity fit_over_bfgs(const Main& e) {
-  return ratio(median_seconds(at(plain("jpo").in(e.name), e.largest)),
+  return ratio(median_seconds(at(kJpo.in(e.name), e.largest)),
                median_seconds(at(bfgs().in(e.name), e.largest)));
 }
 
-const auto kPlain = plain("jpo"), kRefined = refined("jpo");
-
-std::vector<Quantity> worse_of_few() {
-  std::vector<Quantity> all;
-  for (const Main& e : kMain)
-    all.push_back(mean(at(kRefined.in(e.name), e.smallest), worse()));
-  return all;
+Quantity worse_of_few(const Main& e) {
+  return mean(at(kRefined.in(e.name), e.smallest), worse());
 }
 Quantity with_bfgs(const Main& e) {
   return median(kRefined.in(e.name), falling_back);
@@ -131,12 +122,7 @@ const std::string kWithBfgs = "mean L with BFGS for a tenth, over without: ";
 /// In how many of the experiments BFGS for a tenth lowers the mean loss.
 /// Missing if one is.
 Quantity how_many_gain() {
-  std::vector<Quantity> all;
-  std::vector<Select> runs;
-  for (const Main& e : kMain) {
-    all.push_back(with_bfgs(e));
-    for (const Select& s : all.back().runs()) runs.push_back(s);
-  }
+  const auto all = physinv::each(kMain, with_bfgs);
   return {[=](const Evidence& e) {
             Measured count{.value = 0};
             for (const Quantity& q : all) {
@@ -147,7 +133,7 @@ Quantity how_many_gain() {
             }
             return count;
           },
-          runs};
+          runs_of(all)};
 }
 
 /// Two of the four at least, also by the four numbers that were kept.
@@ -177,7 +163,6 @@ Condition bfgs_can_step_in() {
 const std::vector<Claim> kAgainstBfgs = {
     {.id = "P1",
      .where = "Sec. 5",
-     .from = "paper",
      .says = "JPO beats BFGS in an average of 69 % of the problems",
      .conditions =
          joined({{as_stated("mean of the four, refined, %",
@@ -194,13 +179,12 @@ const std::vector<Claim> kAgainstBfgs = {
                              50)})},
     {.id = "P2",
      .where = "Sec. 5",
-     .from = "paper",
      .says = "This fraction clearly increases with the data set",
      .conditions = each([](const Main& e) {
        return either(above(std::string("f at the largest less the smallest "
                                        "n, in standard errors: ") +
                                e.title,
-                           growth_of_f(kPlain)(e),
+                           growth_of_f(kJpo)(e),
                            2),
                      above("refined, " + std::string(e.title),
                            growth_of_f(kRefined)(e),
@@ -221,33 +205,31 @@ const std::vector<Claim> kAgainstBfgs = {
          }))},
     {.id = "P3",
      .where = "Abstract, Sec. 6",
-     .from = "paper",
      .says = "In all settings JPO surpasses individual optimization, given "
              "enough examples",
      .conditions = each([](const Main& e) {
        return either(
            above(std::string("f at the largest n: ") + e.title,
-                 mean(at(kPlain.in(e.name), e.largest), f()),
+                 mean(at(kJpo.in(e.name), e.largest), f()),
                  0.5),
            above(
                "refined", mean(at(kRefined.in(e.name), e.largest), f()), 0.5));
      })}};
 
-const std::vector<Claim> kSupervised = {
+const std::vector<Claim> kOfSupervised = {
     {.id = "P4",
      .where = "Sec. 5, Table 4",
-     .from = "paper",
      .says = "Supervised learning is worse than JPO everywhere and beats "
              "BFGS in more than half on the wave packet alone",
      .conditions = joined(
          {each([](const Main& e) {
             return below(
                 std::string("better, %: supervised below JPO, ") + e.title,
-                mean_percent(plain("supervised"), better())(e),
-                mean_percent(kPlain, better())(e));
+                mean_percent(kSupervised, better())(e),
+                mean_percent(kJpo, better())(e));
           }),
           each([](const Main& e) {
-            const auto share = mean_percent(plain("supervised"), better())(e);
+            const auto share = mean_percent(kSupervised, better())(e);
             const std::string label = std::string("supervised, ") + e.title;
             return e.name == kWave.name ? above(label, share, 50)
                                         : at_most(label, share, 50);
@@ -260,15 +242,14 @@ const std::vector<Claim> kSupervised = {
          each([](const Main& e) {
            return below(
                std::string("better, %: supervised below JPO, ") + e.title,
-               mean_percent(plain("supervised"), better())(e),
-               mean_percent(kPlain, better())(e));
+               mean_percent(kSupervised, better())(e),
+               mean_percent(kJpo, better())(e));
          }))}};
 
 /// App. D, Table 3: the share of the decrease.
 const std::vector<Claim> kShares = {
     {.id = "P5",
      .where = "App. D, Table 3",
-     .from = "paper",
      .says = "The network makes the bulk of the decrease, refinement much less",
      .conditions = each([](const Main& e) {
        return above(std::string("lowest share of any n: ") + e.title,
@@ -277,7 +258,6 @@ const std::vector<Claim> kShares = {
      })},
     {.id = "P6",
      .where = "App. D",
-     .from = "paper",
      .says = "The larger n, the more of the decrease the network makes",
      .conditions = each([](const Main& e) {
        return above(std::string("n = 128 less n = 4: ") + e.title,
@@ -296,7 +276,6 @@ const std::vector<Claim> kShares = {
 const std::vector<Claim> kSolvers = {
     {.id = "P7",
      .where = "Sec. 5",
-     .from = "paper",
      .says = "BFGS is the best tested iterative solver",
      .conditions = joined(
          {{below("f(gradient descent), mean of the four",
@@ -309,12 +288,11 @@ const std::vector<Claim> kSolvers = {
              "to the optimum more often."},
     {.id = "P8",
      .where = "Sec. 5",
-     .from = "paper",
      .says = "For few problems JPO is sometimes worse; many of these cases "
              "are outliers, where BFGS can step in",
      .conditions =
          joined({{above("share worse at the smallest n, highest of the four",
-                        most(worse_of_few()),
+                        most(physinv::each(kMain, worse_of_few)),
                         0)},
                  {bfgs_can_step_in()},
                  of_each("mean L over BFGS's there, highest of a seed: ",
@@ -330,24 +308,24 @@ const std::vector<Claim> kNetworks = {
      .where = "App. D.1 to D.4",
      .from = "smoke",
      .says = "The networks' numbers of parameters",
-     .conditions = {exactly("wave packet, surrogate",
-                            parameters(kWave.name, &Setting::surrogate),
-                            13'073),
-                    exactly("wave packet, JPO",
-                            parameters(kWave.name, &Setting::predictor),
-                            13'925),
-                    exactly("billiards, JPO",
-                            parameters(kBilliards.name, &Setting::predictor),
-                            37'506),
-                    exactly("billiards, surrogate",
-                            parameters(kBilliards.name, &Setting::surrogate),
-                            37'506),
-                    exactly("Navier-Stokes, JPO",
-                            parameters(kBox.name, &Setting::predictor),
-                            44'723),
-                    exactly("Navier-Stokes, surrogate",
-                            parameters(kBox.name, &Setting::surrogate),
-                            38'290),
+     .conditions = {equals("wave packet, surrogate",
+                           parameters(kWave.name, &Setting::surrogate),
+                           13'073),
+                    equals("wave packet, JPO",
+                           parameters(kWave.name, &Setting::predictor),
+                           13'925),
+                    equals("billiards, JPO",
+                           parameters(kBilliards.name, &Setting::predictor),
+                           37'506),
+                    equals("billiards, surrogate",
+                           parameters(kBilliards.name, &Setting::surrogate),
+                           37'506),
+                    equals("Navier-Stokes, JPO",
+                           parameters(kBox.name, &Setting::predictor),
+                           44'723),
+                    equals("Navier-Stokes, surrogate",
+                           parameters(kBox.name, &Setting::surrogate),
+                           38'290),
                     reported("wave packet with the head 64-32-1",
                              parameters("jpo/wave-packet-head",
                                         &Setting::predictor))},
@@ -355,14 +333,13 @@ const std::vector<Claim> kNetworks = {
          contradiction("App. D.1 prints 13,925 parameters for the wave "
                        "packet and names layers that have 13,921; a head of "
                        "64-32-1, which it does not name, has 13,925",
-                       {exactly("the named layers",
-                                parameters(kWave.name, &Setting::predictor),
-                                13'921)})}};
+                       {equals("the named layers",
+                               parameters(kWave.name, &Setting::predictor),
+                               13'921)})}};
 
 const std::vector<Claim> kTimes = {
     {.id = "P10",
      .where = "Sec. 5, Limitations",
-     .from = "paper",
      .says = "JPO is slower for few problems and faster for many: the cost "
              "of training grows less than linearly",
      .conditions =
@@ -374,7 +351,6 @@ const std::vector<Claim> kTimes = {
                        "BFGS at the largest n everywhere")},
     {.id = "P11",
      .where = "Table 2, App. D.3",
-     .from = "paper",
      .says = "Wall times",
      .conditions = of_each("seconds of a fit over those of BFGS, largest n: ",
                            fit_over_bfgs),
@@ -384,8 +360,12 @@ const std::vector<Claim> kTimes = {
 
 std::vector<Claim> claims() {
   std::vector<Claim> all;
-  for (const auto* part :
-       {&kAgainstBfgs, &kSupervised, &kShares, &kSolvers, &kNetworks, &kTimes})
+  for (const auto* part : {&kAgainstBfgs,
+                           &kOfSupervised,
+                           &kShares,
+                           &kSolvers,
+                           &kNetworks,
+                           &kTimes})
     all.insert(all.end(), part->begin(), part->end());
   return all;
 }

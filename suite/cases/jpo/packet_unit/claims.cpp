@@ -23,7 +23,7 @@ constexpr Index kSeeds = 5;    ///< the paper's
 constexpr double kOften = 20;  ///< per cent
 constexpr double kBasin = 1;   ///< of the global optimum, in samples
 const double kPeriod = 2 * std::numbers::pi / WavePacketOptions{}.frequency;
-const Select kBfgs{"bfgs"}, kJpo{"jpo", "fit"}, kRefined{"jpo", "refine"};
+const Select kBfgs{"bfgs"};
 
 // ---- numbers of a unit ------------------------------------------------------
 
@@ -47,7 +47,8 @@ Quantity iterations_of(const Select& runs) {
 template <bool kIsRefined, RunValue (*kShare)(Equality)>
 Quantity share(Index) {
   return percent(depends_on(
-      mean(kIsRefined ? kRefined : kJpo, kShare(Equality::strict)), {kBfgs}));
+      mean(kIsRefined ? jpo::kRefined : jpo::kJpo, kShare(Equality::strict)),
+      {kBfgs}));
 }
 
 // ---- numbers of a rule ------------------------------------------------------
@@ -180,8 +181,7 @@ Table by_rule(const Evidence& e) {
 void add_claims(Registry& r) {
   const std::string first = name_of(kUnits[0]);
   r.add_claims(first, {claim()});
-  r.add_report(first, [first](const Results& results, const Published& p) {
-    const Evidence e{results, p, first};
+  r.add_report(first, [](const Evidence& e) {
     return Section{.tables = {by_unit(e), by_rule(e)}};
   });
 }

@@ -12,8 +12,6 @@ namespace {
 
 constexpr double kSolved = 1e-12;
 
-const Select kJpo = plain("jpo"), kRefined = refined("jpo");
-
 /// Of any n and seed.
 Condition all_solved(std::string label,
                      const Select& runs,
@@ -79,20 +77,18 @@ const std::vector<Claim> kNetworks = {
                           median_to(1e-4, kJpo),
                           median_to(1e-4, bfgs())),
                     above("of supervised learning",
-                          median_to(1e-4, plain("supervised")),
+                          median_to(1e-4, kSupervised),
                           median_to(1e-4, bfgs()))},
      .note = "Not finite: never. A surrogate has no estimate of its own while "
              "it is fitted, and is not compared."},
     {.id = "P4",
      .where = "App. D.5, Fig. 25d",
-     .from = "paper",
      .says = "Refined, all solutions of every n reach zero loss",
      .conditions = {all_solved("lowest share with L < 1e-12: jpo", kRefined),
-                    all_solved("supervised", refined("supervised")),
-                    all_solved("na", refined("na"))}},
+                    all_solved("supervised", kSupervisedRefined),
+                    all_solved("na", kAdjointRefined)}},
     {.id = "P5",
      .where = "Sec. 5, App. D.5",
-     .from = "paper",
      .says = "On convex problems JPO always reaches the optimum; classical "
              "optimizers solve them perfectly",
      .conditions = {all_solved("lowest share solved: JPO refined", kRefined),
@@ -120,7 +116,6 @@ const std::vector<Claim> kRangesOfSolvers = {
                        bfgs(), losses(), [](double l) { return l <= 1e-18; }),
                    0.95)}},
     {.id = "R3",
-     .from = "quick",
      .says = "Gradient descent solves nearly every problem, all but targets at "
              "full stretch, and needs more iterations than BFGS",
      .conditions = {at_least("share solved of all problems",
@@ -142,7 +137,6 @@ const std::vector<Claim> kRangesOfSolvers = {
 
 const std::vector<Claim> kRangesOfNetworks = {
     {.id = "R4",
-     .from = "quick",
      .says = "For n >= 8 and every seed, JPO ends close to the solution but "
              "far above BFGS; refined, it solves every problem",
      .conditions =
@@ -157,34 +151,32 @@ const std::vector<Claim> kRangesOfNetworks = {
               1e3),
           all_solved("lowest share solved, refined", kRefined.of_sizes(8))}},
     {.id = "R5",
-     .from = "quick",
      .says = "Refined, supervised learning and the neural adjoint solve nearly "
              "all problems, and the mean loss of every method is a rounding "
              "error for every n",
      .conditions =
          {at_least("solved, refined: supervised",
-                   solved_share(refined("supervised"), kSolved),
+                   solved_share(kSupervisedRefined, kSolved),
                    0.98),
           at_least("solved, refined: na",
-                   solved_share(refined("na"), kSolved),
+                   solved_share(kAdjointRefined, kSolved),
                    0.98),
           below(
               "highest L/n, refined: jpo", highest_mean_loss(kRefined), 1e-12),
-          below("supervised", highest_mean_loss(refined("supervised")), 1e-12),
-          below("na", highest_mean_loss(refined("na")), 1e-12)}},
+          below("supervised", highest_mean_loss(kSupervisedRefined), 1e-12),
+          below("na", highest_mean_loss(kAdjointRefined), 1e-12)}},
     {.id = "R6",
-     .from = "quick",
      .says =
          "f against BFGS says nothing here: both losses are rounding errors",
      .conditions = {below("highest L: bfgs", highest_loss(bfgs()), kSolved),
                     below("refined: jpo", highest_loss(kRefined), kSolved),
                     below("supervised",
-                          highest_loss(refined("supervised")),
+                          highest_loss(kSupervisedRefined),
                           kSolved),
-                    below("na", highest_loss(refined("na")), kSolved),
+                    below("na", highest_loss(kAdjointRefined), kSolved),
                     reported("f, refined: jpo", mean(kRefined, f())),
-                    reported("supervised", mean(refined("supervised"), f())),
-                    reported("na", mean(refined("na"), f()))},
+                    reported("supervised", mean(kSupervisedRefined, f())),
+                    reported("na", mean(kAdjointRefined, f()))},
      .gates = false}};
 
 }  // namespace

@@ -66,20 +66,16 @@ Figure landscape() {
           "Target ({}, {}), all other unknowns 0.", kTarget[0], kTarget[1])};
 }
 
-Section report(const Results& results, const Published& published) {
+Section report(const Evidence& e) {
   const JpoReportOptions options{
-      .experiment = "jpo/robotic-arm",
-      .title = "Robotic arm",
-      .paper = "jpo",
       .solved = 1e-12,
       .unknowns = {"base", "angle 1", "angle 2", "angle 3"},
-      .tensors = {"m1", "b1", "m2", "b2", "m3", "b3", "m4", "b4"},
       .fraction = {"fraction", ""},
       .improvement = {"fig25d", "Fig. 25d (loss after refinement)"},
       .curves = {"fig25c", "Fig. 25c"},
       .trajectories = {"trajectories", ""},
       .weight_change = {"weight_change", ""}};
-  Section section = jpo_section(options, results, published);
+  Section section = jpo_section(options, e);
   // The paper has no table of this experiment.
   for (Table& table : section.tables) table.where.clear();
   // Fig. 25c shows gradient descent too.
@@ -87,7 +83,7 @@ Section report(const Results& results, const Published& published) {
   with_descent.methods.insert(with_descent.methods.begin(), "gd");
   for (Figure& figure : section.figures) {
     if (figure.id == options.curves.id)
-      figure = JpoReport(with_descent, results, published).curves();
+      figure = JpoReport(with_descent, e).curves();
   }
   section.figures.insert(section.figures.begin(), {task(), landscape()});
   return section;

@@ -7,7 +7,6 @@
 #include "problems/wave_packet/wave_packet.h"
 #include "suite/cases/jpo/common/report.h"
 #include "suite/evidence/landscape.h"
-#include "suite/harness/networks.h"
 #include "suite/harness/registry.h"
 
 namespace physinv::jpo::wave_packet {
@@ -70,16 +69,11 @@ Figure landscape(const Example& e) {
           .note = fmt::format("The signal above: t0 = {:.1f}.", e.centre())};
 }
 
-JpoReportOptions report_options(const std::string& name,
-                                const std::string& title) {
-  return {.experiment = name,
-          .title = title,
-          .paper = "jpo",
-          .solved = within_of_truth(1 / WavePacketOptions{}.scale),
+JpoReportOptions report_options() {
+  return {.solved = within_of_truth(1 / WavePacketOptions{}.scale),
           .curve_sizes = {},
           .trajectory_size = 128,
           .unknowns = {"xi"},
-          .tensors = tensor_names(name),
           .fraction = {"fig3d", "Fig. 3d"},
           .improvement = {"fig7", "Fig. 7"},
           .curves = {"fig8", "Fig. 8"},
@@ -88,12 +82,10 @@ JpoReportOptions report_options(const std::string& name,
 }
 
 /// Fig. 3c: gradient descent beside BFGS and JPO, at the largest n.
-Figure three_curves(JpoReportOptions options,
-                    const Results& results,
-                    const Published& published) {
+Figure three_curves(JpoReportOptions options, const Evidence& e) {
   options.methods = {"gd", "jpo"};
   options.curves = {"fig3c", "Fig. 3c"};
-  const JpoReport report(options, results, published);
+  const JpoReport report(options, e);
   const Index n = report.largest_size();
   options.curve_sizes = {n};
   Figure figure = report.curves();
@@ -101,23 +93,20 @@ Figure three_curves(JpoReportOptions options,
   return figure;
 }
 
-Section report(const Results& results, const Published& published) {
-  const JpoReportOptions options =
-      report_options("jpo/wave-packet", "Wave packet");
-  Section section = jpo_section(options, results, published);
+Section report(const Evidence& e) {
+  const JpoReportOptions options = report_options();
+  Section section = jpo_section(options, e);
   const Example example;
-  const std::vector<Figure> first = {waveform(example),
-                                     landscape(example),
-                                     three_curves(options, results, published)};
+  const std::vector<Figure> first = {
+      waveform(example), landscape(example), three_curves(options, e)};
   section.figures.insert(section.figures.begin(), first.begin(), first.end());
   return section;
 }
 
-Section report_head(const Results& results, const Published& published) {
-  JpoReportOptions options =
-      report_options("jpo/wave-packet-head", "Wave packet, head 64-32-1");
+Section report_head(const Evidence& e) {
+  JpoReportOptions options = report_options();
   options.methods = {"jpo"};
-  Section section = jpo_section(options, results, published);
+  Section section = jpo_section(options, e);
   // The paper's numbers stand with the other network.
   for (Table& table : section.tables) table.where.clear();
   for (Figure& figure : section.figures) figure.where.clear();

@@ -38,11 +38,9 @@ std::optional<double> middle(const Evidence& at,
   return median(values);
 }
 
-Line line_of(const Results& results,
-             const Published& published,
-             const MatrixProblem& p) {
+Line line_of(const Evidence& all, const MatrixProblem& p) {
   Line line{.problem = p};
-  const Evidence at{results, published, p.experiment()};
+  const Evidence at = all.of(p.experiment());
   for (const MatrixMethod& m : methods()) {
     Entry e{.why = refusal(p, m)};
     if (e.why.empty()) {
@@ -107,10 +105,10 @@ Figure heat_map(const std::vector<Line>& lines) {
           .note = "Medians over seeds. Blank: the tables say why."};
 }
 
-Section report(const Results& results, const Published& published) {
+Section report(const Evidence& evidence) {
   std::vector<Line> lines;
   for (const MatrixProblem& p : problems()) {
-    Line line = line_of(results, published, p);
+    Line line = line_of(evidence, p);
     if (std::isfinite(line.best)) lines.push_back(std::move(line));
   }
   if (lines.empty()) return {};

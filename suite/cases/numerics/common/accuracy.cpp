@@ -291,12 +291,12 @@ std::vector<Row> accuracy_rows(Index n) {
   return rows;
 }
 
-std::vector<Measurement> measurements(const Results& results,
-                                      const std::string& experiment) {
+std::vector<Measurement> measurements(const Evidence& e) {
   std::vector<Measurement> all;
-  const auto& parameters = all_parameters().at(experiment);
-  for (const CaseRecord& c : results.cases()) {
-    if (c.info.experiment != experiment || c.info.method != kAccuracy) continue;
+  const auto& parameters = all_parameters().at(e.experiment);
+  for (const CaseRecord& c : e.results.cases()) {
+    if (c.info.experiment != e.experiment || c.info.method != kAccuracy)
+      continue;
     const Precision precision = c.info.precision;
     for (const NumericalParameter& parameter : parameters) {
       for (std::size_t k = 0; k < parameter.axis.values.size(); ++k) {
@@ -342,13 +342,11 @@ const Measurement* dominated_by(const std::vector<Measurement>& all,
   return best != nullptr && best->seconds < 0.9 * one.seconds ? best : nullptr;
 }
 
-void add_accuracy(Section& section,
-                  const Results& results,
-                  const std::string& experiment) {
-  const auto found = all_parameters().find(experiment);
+void add_accuracy(Section& section, const Evidence& e) {
+  const auto found = all_parameters().find(e.experiment);
   if (found == all_parameters().end()) return;
   const auto& parameters = found->second;
-  const auto all = measurements(results, experiment);
+  const auto all = measurements(e);
   section.tables.push_back(settings_table(all, parameters));
   for (const NumericalParameter& parameter : parameters)
     section.figures.push_back(parameter_figure(all, parameter));

@@ -67,8 +67,7 @@ struct Measurement {
   double seconds = 0;
 };
 
-std::vector<Measurement> measurements(const Results& results,
-                                      const std::string& experiment);
+std::vector<Measurement> measurements(const Evidence& e);
 
 /// The fastest of all (or of one parameter) with at most this error; null if
 /// there is none.
@@ -84,9 +83,7 @@ const Measurement* dominated_by(const std::vector<Measurement>& all,
 
 /// A table of all settings and a figure of each parameter, if parameters were
 /// declared.
-void add_accuracy(Section& section,
-                  const Results& results,
-                  const std::string& experiment);
+void add_accuracy(Section& section, const Evidence& e);
 
 /// Where theory knows an order: that observed in double, within 15 %.
 std::vector<Claim> order_claims(

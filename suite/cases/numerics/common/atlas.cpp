@@ -64,12 +64,11 @@ void add_atlas(Registry& r, Atlas atlas) {
   const ProblemRecipe problem = atlas.problem.make_double
                                     ? atlas.problem
                                     : atlas.sweeps.front().problems.front();
-  const auto report = [name = atlas.name, sweeps = std::move(atlas.sweeps)](
-                          const Results& results, const Published&) {
+  const auto report = [sweeps = std::move(atlas.sweeps)](const Evidence& e) {
     Section section;
-    add_accuracy(section, results, name);
+    add_accuracy(section, e);
     for (const Sweep& s : sweeps) {
-      const auto* found = find_sweep(results, name, kMethod, s.id);
+      const auto* found = find_sweep(e, s.id);
       section.tables.push_back(sweep_table(s.id, s.title, found));
       section.figures.push_back(sweep_maps(s.id, s.title, s.x, s.y, found));
     }

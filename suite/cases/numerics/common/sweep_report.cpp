@@ -92,12 +92,10 @@ Panel sweep_map(const SweepAxis& x,
   });
 }
 
-const StageRecord* find_sweep(const Results& results,
-                              const std::string& experiment,
-                              const std::string& method,
-                              const std::string& stage) {
-  for (const CaseRecord& c : results.cases()) {
-    if (c.info.experiment != experiment || c.info.method != method) continue;
+const StageRecord* find_sweep(const Evidence& e, const std::string& stage) {
+  for (const CaseRecord& c : e.results.cases()) {
+    if (c.info.experiment != e.experiment || c.info.method != "stability")
+      continue;
     for (const StageRecord& s : c.stages)
       if (s.stage == stage && s.arrays.contains("status")) return &s;
   }

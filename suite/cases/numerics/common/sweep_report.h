@@ -15,11 +15,9 @@
 
 namespace physinv {
 
-/// The stage of the first case that finished it, else null.
-const StageRecord* find_sweep(const Results& results,
-                              const std::string& experiment,
-                              const std::string& method,
-                              const std::string& stage);
+/// A stage of the method `stability`, of the first case that finished it, else
+/// null.
+const StageRecord* find_sweep(const Evidence& e, const std::string& stage);
 
 /// How many cells have which status, by check, and the largest error.
 Table sweep_table(std::string id, std::string title, const StageRecord* sweep);

@@ -179,9 +179,9 @@ Figure lines(const StageRecord* stage) {
   return figure;
 }
 
-Section report(const Results& results, const Published& published) {
-  const auto runs = find_runs({results, published, kName}, {.method = kMethod});
-  const StageRecord* stage = runs.empty() ? nullptr : runs.front().stage;
+Section report(const Evidence& e) {
+  const auto run = first_run(e, {kMethod});
+  const StageRecord* stage = run ? run->stage : nullptr;
   return {.tables = {ends_table(stage)},
           .figures = {maps(stage), lines(stage)}};
 }

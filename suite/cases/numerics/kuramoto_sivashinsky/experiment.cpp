@@ -94,9 +94,6 @@ std::vector<Row> rows(Index n) {
   return all;
 }
 
-/// Nothing is learned here.
-const Setting kNoNetworks;
-
 }  // namespace
 
 void add_experiments(Registry& r) {
@@ -105,7 +102,7 @@ void add_experiments(Registry& r) {
       .title = "Numerics of the Kuramoto-Sivashinsky solver",
       .citation = {.paper = "jpo", .where = "App. D.3"},
       .problem = until(kEnd),
-      .setting = kNoNetworks,
+      .setting = {},  // nothing is learned here
       .profiles = {{.name = "smoke", .rows = rows(4)},
                    {.name = "quick", .rows = rows(8)},
                    {.name = "paper", .rows = rows(32)}},

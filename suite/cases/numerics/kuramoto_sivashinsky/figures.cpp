@@ -9,15 +9,15 @@
 namespace physinv::ks_numerics {
 namespace {
 
-const StageRecord* growth_stage(const Results& results) {
-  for (const CaseRecord& c : results.cases())
+const StageRecord* growth_stage(const Evidence& e) {
+  for (const CaseRecord& c : e.results.cases())
     if (c.info.experiment == kName && c.info.method == "growth")
       for (const StageRecord& s : c.stages)
         if (s.arrays.contains("perturbation")) return &s;
   return nullptr;
 }
 
-Figure growth_figure(const Results& results) {
+Figure growth_figure(const Evidence& e) {
   Figure figure{.id = "growth",
                 .title = "Chaos: growth with the end time",
                 .columns = 3,
@@ -25,7 +25,7 @@ Figure growth_figure(const Results& results) {
                     "Geometric means of the samples. Perturbations of 1e-8 "
                     "(float: 1e-3) of the initial state; they saturate where "
                     "they become as large as the state."};
-  const StageRecord* s = growth_stage(results);
+  const StageRecord* s = growth_stage(e);
   if (s == nullptr) return figure;
   const auto& time = s->arrays.at("time");
   const auto series =
@@ -57,7 +57,7 @@ Figure growth_figure(const Results& results) {
   return figure;
 }
 
-Table growth_table(const Results& results) {
+Table growth_table(const Evidence& e) {
   Table table{.id = "growth",
               .title = "Chaos: growth with the end time",
               .digits = 1,
@@ -68,7 +68,7 @@ Table growth_table(const Results& results) {
                           "state, float error",
                           "gradient, float error"},
               .note = "Geometric means of the samples."};
-  const StageRecord* s = growth_stage(results);
+  const StageRecord* s = growth_stage(e);
   if (s == nullptr) return table;
   const auto& time = s->arrays.at("time");
   for (Index k = 0; k < time.cols(); ++k) {
@@ -89,19 +89,18 @@ Table growth_table(const Results& results) {
   return table;
 }
 
-Section report(const Results& results, const Published&) {
-  const auto* parameters =
-      find_sweep(results, kName, "stability", "parameters");
-  const auto* horizons = find_sweep(results, kName, "stability", "horizons");
+Section report(const Evidence& e) {
+  const auto* parameters = find_sweep(e, "parameters");
+  const auto* horizons = find_sweep(e, "horizons");
   Section section{
-      .tables = {growth_table(results),
+      .tables = {growth_table(e),
                  sweep_table("stability_parameters",
                              "Stability over alpha and beta, t = 25",
                              parameters),
                  sweep_table("stability_horizons",
                              "Stability over beta and end time, alpha = 1",
                              horizons)},
-      .figures = {growth_figure(results),
+      .figures = {growth_figure(e),
                   sweep_maps("stability_parameters",
                              "Stability over alpha and beta, t = 25",
                              kAlpha,
@@ -112,7 +111,7 @@ Section report(const Results& results, const Published&) {
                              kLowBeta,
                              kTime,
                              horizons)}};
-  add_accuracy(section, results, kName);
+  add_accuracy(section, e);
   return section;
 }
 

@@ -36,7 +36,7 @@ const std::vector<Column> kColumns = {
      SweepStatus::inaccurate}};
 
 /// Every sweep of the campaign, whoever declared it.
-Table side_by_side(const Results& results) {
+Table side_by_side(const Evidence& e) {
   Table table{.id = "atlas",
               .title = "Stability of all problems",
               .digits = 0,
@@ -50,7 +50,7 @@ Table side_by_side(const Results& results) {
                   "of the differences is of use.",
               .keys = {"problem", "sweep"}};
   for (const Column& c : kColumns) table.columns.emplace_back(c.title);
-  for (const CaseRecord& c : results.cases()) {
+  for (const CaseRecord& c : e.results.cases()) {
     for (const StageRecord& s : c.stages) {
       const auto status = s.arrays.find("status");
       if (!c.info.experiment.starts_with(kPrefix) || status == s.arrays.end() ||
@@ -69,7 +69,7 @@ Table side_by_side(const Results& results) {
   return table;
 }
 
-Figure maps(const Results& results) {
+Figure maps(const Evidence& e) {
   Figure figure{.id = "atlas",
                 .title = "Where problems run",
                 .columns = 3,
@@ -78,7 +78,7 @@ Figure maps(const Results& results) {
                     "diverged."};
   for (const Atlas& atlas : atlases()) {
     for (const Sweep& s : atlas.sweeps) {
-      const auto* found = find_sweep(results, atlas.name, "stability", s.id);
+      const auto* found = find_sweep(e.of(atlas.name), s.id);
       if (found != nullptr)
         figure.panels.push_back(
             sweep_map(s.x, s.y, *found, atlas.title + ": " + s.id));
@@ -93,7 +93,7 @@ bool asks(const std::vector<Measurement>& all, WorkOf of) {
 }
 
 /// What accuracy costs, at the fastest setting that reaches it.
-Table times_to_accuracy(const Results& results) {
+Table times_to_accuracy(const Evidence& e) {
   Table table{.id = "accuracy",
               .title = "Time to an accuracy",
               .corner = "problem",
@@ -111,7 +111,7 @@ Table times_to_accuracy(const Results& results) {
       table.columns.push_back(fmt::format("{} {:.0e}", to_string(of), target));
   table.columns.insert(table.columns.end(), {"settings", "dominated"});
   for (const auto& [experiment, parameters] : all_parameters()) {
-    const auto all = measurements(results, experiment);
+    const auto all = measurements(e.of(experiment));
     TableRow row{.label = experiment.substr(kPrefix.size())};
     for (const WorkOf of : kAll) {
       for (const double target : targets) {
@@ -141,9 +141,9 @@ Table times_to_accuracy(const Results& results) {
   return table;
 }
 
-Section report(const Results& results, const Published&) {
-  return {.tables = {times_to_accuracy(results), side_by_side(results)},
-          .figures = {maps(results)}};
+Section report(const Evidence& e) {
+  return {.tables = {times_to_accuracy(e), side_by_side(e)},
+          .figures = {maps(e)}};
 }
 
 }  // namespace

@@ -61,8 +61,8 @@ const std::vector<Claim> kClaims(
 
 // ---- pages ----------------------------------------------------------------
 
-const StageRecord* find(const Results& results, const std::string& stage) {
-  for (const CaseRecord& c : results.cases())
+const StageRecord* find(const Evidence& e, const std::string& stage) {
+  for (const CaseRecord& c : e.results.cases())
     if (c.info.experiment == kName)
       for (const StageRecord& s : c.stages)
         if (s.stage == stage && !s.arrays.empty()) return &s;
@@ -124,11 +124,11 @@ Figure order_figure(const StageRecord& s) {
               "step the largest error where the limiter does not act."};
 }
 
-Section report(const Results& results, const Published&) {
+Section report(const Evidence& e) {
   Section section;
-  if (const auto* s = find(results, "energy"))
+  if (const auto* s = find(e, "energy"))
     section.figures.push_back(drift_figure(*s));
-  if (const auto* s = find(results, "order"))
+  if (const auto* s = find(e, "order"))
     section.figures.push_back(order_figure(*s));
   return section;
 }

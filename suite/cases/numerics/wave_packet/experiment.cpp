@@ -86,14 +86,14 @@ Figure errors(const StageRecord* sweep) {
   return figure;
 }
 
-Section report(const Results& results, const Published&) {
-  const auto* near = find_sweep(results, kName, "stability", "positions");
-  const auto* far = find_sweep(results, kName, "stability", "far");
+Section report(const Evidence& e) {
+  const auto* near = find_sweep(e, "positions");
+  const auto* far = find_sweep(e, "far");
   Section section{
       .tables = {sweep_table("positions", "Packets inside and near", near),
                  sweep_table("far", "Packets out of sight", far)},
       .figures = {errors(near)}};
-  add_accuracy(section, results, kName);
+  add_accuracy(section, e);
   return section;
 }
 
@@ -103,9 +103,6 @@ std::vector<Row> rows() {
   return all;
 }
 
-/// Nothing is learned here.
-const Setting kNoNetworks;
-
 }  // namespace
 
 void add_experiments(Registry& r) {
@@ -114,7 +111,7 @@ void add_experiments(Registry& r) {
       .title = "Numerics of the wave packet",
       .citation = {.paper = "jpo", .where = "App. D.1"},
       .problem = problem<WavePacket>("wave_packet"),
-      .setting = kNoNetworks,
+      .setting = {},  // nothing is learned here
       .profiles = {{.name = "smoke", .rows = rows()},
                    {.name = "quick", .rows = rows()},
                    {.name = "paper", .rows = rows()}},

@@ -4,9 +4,8 @@
 #include <numbers>
 #include <optional>
 
-#include "suite/cases/physgrad/scaling/path.h"
+#include "suite/cases/physgrad/scaling/quantities.h"
 #include "suite/cases/physgrad/scaling/scaling.h"
-#include "suite/cases/physgrad/scaling/single_steps.h"
 #include "suite/harness/registry.h"
 
 namespace physinv::scaling {
@@ -95,14 +94,14 @@ const std::vector<Claim> kScalingClaims(
       .from = "smoke",
       .says = "Gradient descent applies the square of the scaling",
       .conditions =
-          {within("step along x2, alpha 3 over alpha 1",
+          {equals("step along x2, alpha 3 over alpha 1",
                   ratio(of("gd", first_step, kThree), of("gd", first_step)),
-                  9 - 1e-12,
-                  9 + 1e-12),
-           within("alpha 5 over alpha 1",
+                  9,
+                  1e-12),
+           equals("alpha 5 over alpha 1",
                   ratio(of("gd", first_step, kFive), of("gd", first_step)),
-                  25 - 1e-12,
-                  25 + 1e-12)}},
+                  25,
+                  1e-12)}},
      {.id = "P3",
       .where = "Crux of the matter",
       .from = "quick",
@@ -128,16 +127,14 @@ const std::vector<Claim> kScalingClaims(
       .from = "smoke",
       .says = "x2 / x1 after a step of gradient descent over that before",
       .conditions =
-          {within("alpha 1", of("gd", ratio_kept), 1 - 1e-12, 1 + 1e-12),
+          {equals("alpha 1", of("gd", ratio_kept), 1, 1e-12),
            within("alpha 3", of("gd", ratio_kept, kThree), 0.489, 0.490),
            within("alpha 5", of("gd", ratio_kept, kFive), -0.532, -0.531)}},
      {.id = "A2",
       .from = "smoke",
       .says = "Gradient descent at 0.05 and alpha = 5 grows by half each step",
-      .conditions = {within("|x2| per step",
-                            of("gd_large", growth, kFive),
-                            1.5 - 1e-12,
-                            1.5 + 1e-12)}},
+      .conditions = {equals(
+          "|x2| per step", of("gd_large", growth, kFive), 1.5, 1e-12)}},
      {.id = "A3",
       .from = "smoke",
       .says = "Steps that undo the scale are as long as rate |x|; gradient "
@@ -190,8 +187,8 @@ Condition as_in_notebook(const char* label,
                          const OfPath& value,
                          const char* quantity,
                          double digit) {
-  return within(
-      label, difference(of(method, value), printed(quantity)), -digit, digit);
+  return equals(
+      label, difference(of(method, value), printed(quantity)), 0, digit);
 }
 
 /// What single steps show.
@@ -247,10 +244,10 @@ const std::vector<Claim> kStepClaims = {
      .conditions = {below("its step at alpha 1e-3 over that at 1",
                           identity("small", share_at_small(1)),
                           1e-5),
-                    within("inverse gradient's",
+                    equals("inverse gradient's",
                            identity("small", share_at_small(2)),
-                           1 - kExact,
-                           1 + kExact)}},
+                           1,
+                           kExact)}},
     {.id = "P16",
      .where = "Time reversal",
      .from = "smoke",
@@ -278,14 +275,8 @@ const std::vector<Claim> kComparisonClaims(
           {below("relative step along x2, last over first, gradient descent",
                  of("gd_small", relative_step_kept),
                  0.01),
-           within("Newton",
-                  of("newton_small", relative_step_kept),
-                  1 - 1e-9,
-                  1 + 1e-9),
-           within("inverse gradients",
-                  of("ig", relative_step_kept),
-                  1 - 1e-9,
-                  1 + 1e-9)},
+           equals("Newton", of("newton_small", relative_step_kept), 1, 1e-9),
+           equals("inverse gradients", of("ig", relative_step_kept), 1, 1e-9)},
       .note = "Relative to what is left: in x the steps of all shrink, where "
               "the chapter has them larger."},
      {.id = "P6",
@@ -365,12 +356,11 @@ const std::vector<Claim> kComparisonClaims(
                "mean distance, differences", mean_apart("pg_numeric"), 5e-6),
            at_most("exact gradients", mean_apart("pg_numeric_exact"), 1e-7)}},
      {.id = "A4",
-      .from = "quick",
       .says = "Newton at 1/2 leaves 3/1024 of x1",
-      .conditions = {within("1024 x1 / 3",
+      .conditions = {equals("1024 x1 / 3",
                             times(1024.0 / 3, of("newton_large", end(0))),
-                            1 - 1e-12,
-                            1 + 1e-12)}}});
+                            1,
+                            1e-12)}}});
 
 }  // namespace
 

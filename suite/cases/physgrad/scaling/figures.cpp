@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "suite/cases/physgrad/scaling/path.h"
+#include "suite/cases/physgrad/scaling/quantities.h"
 #include "suite/cases/physgrad/scaling/scaling.h"
 #include "suite/evidence/cell.h"
 #include "suite/evidence/series.h"
@@ -21,20 +21,21 @@ struct Line {
   const char* label;
   PlotStyle style;
 };
-const Line kGd{"gd", "gradient descent", {Hue::blue, Marker::circle}};
-const Line kNewton{"newton", "Newton", {Hue::orange, Marker::square}};
-const Line kIg{"ig", "inverse gradients", {Hue::purple, Marker::triangle}};
-const Line kPg{"pg", "inverse simulator", {Hue::green, Marker::diamond}};
+const Line kGd{"gd", "gradient descent", {Hue::blue, Marker::circle}},
+    kNewton{"newton", "Newton", {Hue::orange, Marker::square}},
+    kIg{"ig", "inverse gradients", {Hue::purple, Marker::triangle}},
+    kPg{"pg", "inverse simulator", {Hue::green, Marker::diamond}},
+    kSlowGd{"gd_small", "gradient descent, 0.005", {Hue::teal, Marker::circle}},
+    kSlowPg{
+        "pg_small", "inverse simulator, 0.05", {Hue::green, Marker::diamond}};
 
 /// The path of a finished run.
-std::optional<Path> path_of(const Results& results,
-                            const char* experiment,
+std::optional<Path> path_of(const Evidence& e,
                             const char* method,
                             Index problem = 0) {
-  const Published none;
-  const auto runs = find_runs({results, none, experiment}, {.method = method});
-  if (runs.empty() || problem >= Path::count(*runs.front().stage)) return {};
-  return Path(*runs.front().stage, problem);
+  const auto run = first_run(e, {method});
+  if (!run || problem >= Path::count(*run->stage)) return {};
+  return Path(*run->stage, problem);
 }
 
 Series series(const Line& line, const Batch<double>& points) {
@@ -84,7 +85,7 @@ Series arrow(const Line& line, const Path& path) {
   return s;
 }
 
-Figure landscapes(const Results& results) {
+Figure landscapes(const Evidence& e) {
   Figure figure{.id = "fig1",
                 .title = "Landscapes and first updates",
                 .where = "Figs. 1, 2",
@@ -93,14 +94,14 @@ Figure landscapes(const Results& results) {
   for (Index i = 0; i < 3; ++i) {
     Panel panel = landscape(kScales[i], false);
     for (const Line& line : {kGd, kNewton})
-      if (const auto path = path_of(results, kScaling, line.method, i))
+      if (const auto path = path_of(e, line.method, i))
         panel.series.push_back(arrow(line, *path));
     figure.panels.push_back(std::move(panel));
   }
   return figure;
 }
 
-Figure trajectories(const Results& results) {
+Figure trajectories(const Evidence& e) {
   Figure figure{.id = "fig2",
                 .title = "Trajectories on the losses",
                 .where = "Figs. 1, 2",
@@ -111,7 +112,7 @@ Figure trajectories(const Results& results) {
   for (Index i = 0; i < 3; ++i) {
     Panel panel = landscape(kScales[i], true);
     for (const Line& line : {kGd, kNewton, kIg, kPg})
-      if (const auto path = path_of(results, kScaling, line.method, i)) {
+      if (const auto path = path_of(e, line.method, i)) {
         panel.series.push_back(series(line, path->x()));
         panel.series.back().dashed = line.method != kGd.method;
       }
@@ -121,7 +122,7 @@ Figure trajectories(const Results& results) {
 }
 
 /// Of the batches that were run.
-Table times(const Results& results, const char* experiment) {
+Table times(const Evidence& e) {
   Table table{.id = "batch",
               .title = "A step of one of many trajectories",
               .unit = "CPU ns",
@@ -130,14 +131,12 @@ Table times(const Results& results, const char* experiment) {
               .columns = {"GD", "Newton", "IG", "PG"},
               .across = Across{.key = "method", .quantities = {"time"}}};
   TimedStages timed;
-  const Published none;
   for (const char* id : {"batch_1e3", "batch_1e5", "batch_1e6"}) {
     TableRow row{.label = id + 6};
     for (const char* stage : {"gd", "newton", "ig", "pg"}) {
-      const auto runs = find_runs({results, none, experiment},
-                                  {.method = id, .stage = stage});
-      if (runs.empty()) continue;
-      const StageRecord& s = *runs.front().stage;
+      const auto run = first_run(e, {.method = id, .stage = stage});
+      if (!run) continue;
+      const StageRecord& s = *run->stage;
       const double steps = s.arrays.at("batch").prod();
       const auto seconds = timed.seconds(s);
       row.cells.push_back(seconds ? Cell{.ours = 1e9 * *seconds / steps}
@@ -153,18 +152,17 @@ Table times(const Results& results, const char* experiment) {
   return table;
 }
 
-Section scaling_page(const Results& results, const Published&) {
-  return {.tables = {times(results, kScaling)},
-          .figures = {landscapes(results), trajectories(results)}};
+Section scaling_page(const Evidence& e) {
+  return {.tables = {times(e)}, .figures = {landscapes(e), trajectories(e)}};
 }
 
 // ---- y = (x1, x2^2) ---------------------------------------------------------
 
-Figure both_spaces(const Results& results) {
+Figure both_spaces(const Evidence& e) {
   Panel x{.title = "Unknowns", .x_label = "x1", .y_label = "x2"};
   Panel y{.title = "Observations", .x_label = "y1", .y_label = "y2"};
   for (const Line& line : {kGd, kNewton, kIg, kPg})
-    if (const auto path = path_of(results, kComparison, line.method)) {
+    if (const auto path = path_of(e, line.method)) {
       x.series.push_back(series(line, path->x()));
       y.series.push_back(series(line, path->squared()));
     }
@@ -174,47 +172,41 @@ Figure both_spaces(const Results& results) {
           .panels = {std::move(x), std::move(y)}};
 }
 
-Figure ways(const Results& results,
-            std::string id,
-            std::string title,
-            std::string where,
-            const std::vector<Line>& lines) {
+/// `figure` with the ways in x.
+Figure ways(Figure figure, const Evidence& e, const std::vector<Line>& lines) {
   Panel x{.x_label = "x1", .y_label = "x2"};
   for (const Line& line : lines)
-    if (const auto path = path_of(results, kComparison, line.method))
+    if (const auto path = path_of(e, line.method))
       x.series.push_back(series(line, path->x()));
-  return {.id = std::move(id),
-          .title = std::move(title),
-          .where = std::move(where),
-          .panels = {std::move(x)},
-          .columns = 1};
+  figure.panels = {std::move(x)};
+  figure.columns = 1;
+  return figure;
 }
 
-Figure rates(const Results& results) {
-  const std::vector<Line> lines = {
-      {"newton_large", "Newton, rate 0.5", {Hue::orange, Marker::square}},
-      {"newton_small", "Newton, 0.1", {Hue::brown, Marker::square}},
-      {"pg_small", "inverse simulator, 0.05", {Hue::green, Marker::diamond}},
-      {"gd_large", "gradient descent, 0.5 / 36", {Hue::blue, Marker::circle}},
-      {"gd_small", "gradient descent, 0.005", {Hue::teal, Marker::circle}}};
-  return ways(results,
-              "figure1",
-              "Large and small rates",
-              "the authors' script",
-              lines);
+Figure rates(const Evidence& e) {
+  return ways(
+      {.id = "figure1",
+       .title = "Large and small rates",
+       .where = "the authors' script"},
+      e,
+      {{"newton_large", "Newton, rate 0.5", {Hue::orange, Marker::square}},
+       {"newton_small", "Newton, 0.1", {Hue::brown, Marker::square}},
+       kSlowPg,
+       {"gd_large", "gradient descent, 0.5 / 36", {Hue::blue, Marker::circle}},
+       kSlowGd});
 }
 
-Figure rules(const Results& results) {
-  const std::vector<Line> lines = {
-      {"adam", "Adam", {Hue::red, Marker::circle}},
-      {"adagrad", "Adagrad", {Hue::olive, Marker::square}},
-      {"rmsprop", "RMSprop", {Hue::indigo, Marker::triangle}},
-      {"gd_small", "gradient descent, 0.005", {Hue::teal, Marker::circle}},
-      {"pg_small", "inverse simulator, 0.05", {Hue::green, Marker::diamond}}};
-  return ways(results, "rules", "Adaptive rules, rate 0.1", "", lines);
+Figure rules(const Evidence& e) {
+  return ways({.id = "rules", .title = "Adaptive rules, rate 0.1"},
+              e,
+              {{"adam", "Adam", {Hue::red, Marker::circle}},
+               {"adagrad", "Adagrad", {Hue::olive, Marker::square}},
+               {"rmsprop", "RMSprop", {Hue::indigo, Marker::triangle}},
+               kSlowGd,
+               kSlowPg});
 }
 
-Table ends(const Results& results, const Published& published) {
+Table ends(const Evidence& e) {
   Table table{.id = "comparison",
               .title = "After ten steps from (3, 3)",
               .where = "notebook",
@@ -235,12 +227,12 @@ Table ends(const Results& results, const Published& published) {
               {{"pg_numeric_exact", "by search, exact gradients", {}}, ""}};
   for (const auto& shown : rows) {
     const Line& line = shown.line;
-    const auto path = path_of(results, kComparison, line.method);
+    const auto path = path_of(e, line.method);
     TableRow row{.label = line.label};
     const auto add = [&](const char* quantity, double (*value)(const Path&)) {
       row.cells.push_back(beside_printed(
           cell_of(path ? std::optional(value(*path)) : std::nullopt),
-          {results, published, kComparison},
+          e,
           shown.printed + "/" + quantity));
     };
     add("x1", [](const Path& p) { return p.x()(0, p.steps()); });
@@ -252,9 +244,9 @@ Table ends(const Results& results, const Published& published) {
   return table;
 }
 
-Section comparison_page(const Results& results, const Published& published) {
-  return {.tables = {ends(results, published), times(results, kComparison)},
-          .figures = {both_spaces(results), rates(results), rules(results)}};
+Section comparison_page(const Evidence& e) {
+  return {.tables = {ends(e), times(e)},
+          .figures = {both_spaces(e), rates(e), rules(e)}};
 }
 
 }  // namespace

@@ -60,7 +60,6 @@ const std::vector<Claim> kClaimsOfAll = {
                           worst_ratio("norm", "sgd", kMean),
                           1)}},
     {.id = "A1",
-     .from = "quick",
      .says = "Mean errors, every seed in order",
      .conditions = {below("Adam's over SGD's, worst seed",
                           worst_ratio("adam", "sgd", kMean),
@@ -69,7 +68,6 @@ const std::vector<Claim> kClaimsOfAll = {
                     within("Adam", of("adam", kMean), 1.5, 3.2),
                     within("SGD", of("sgd", kMean), 3.2, 4.6)}},
     {.id = "A3",
-     .from = "quick",
      .says = "Below -8 Adam and SGD predict nearly one number",
      .conditions =
          {below("normalised over Adam, worst seed",
@@ -82,7 +80,6 @@ const std::vector<Claim> kClaimsOfAll = {
           below("range of Adam's below -9", worst("adam", kSpread), 0.1),
           below("of SGD's", worst("sgd", kSpread), 0.1)}},
     {.id = "A4",
-     .from = "quick",
      .says = "In y the order is the other way round",
      .conditions = {below("Adam's loss over the normalised one's",
                           ratio_of_medians({"adam"}, {"norm"}, last_loss()),
@@ -95,7 +92,6 @@ const std::vector<Claim> kClaimsOfAll = {
                            0.5,
                            2)}},
     {.id = "A6",
-     .from = "quick",
      .says = "SGD barely leaves the best constant",
      .conditions = {below(
          "estimate at -3 over that at -12", of("sgd", kRise), 0.2)}},

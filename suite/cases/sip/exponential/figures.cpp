@@ -8,7 +8,6 @@
 namespace physinv::exponential {
 namespace {
 
-constexpr const char* kName = "sip/exponential";
 const std::vector<MethodLine> kLines = {
     {"sgd", "SGD", Hue::blue},
     {"adam", "Adam", Hue::purple},
@@ -21,10 +20,10 @@ const std::vector<MethodLine> kLines = {
     {"newton-damped", "Hessian + 0.01", Hue::brown}};
 
 /// What the networks of the first seed answer, over the whole range.
-Figure predictions(const Results& results) {
+Figure predictions(const Evidence& e) {
   Panel panel{.x_label = "x*", .y_label = "x"};
   for (const MethodLine& line : kLines) {
-    const auto chains = trained_chains(results, kName, line.method);
+    const auto chains = trained_chains(e, line.method);
     if (chains.empty()) continue;
     const auto& truth = chains.front()->data.x;
     const auto& x = chains.front()->stages.back().x;
@@ -32,8 +31,7 @@ Figure predictions(const Results& results) {
     for (Index i = 0; i < std::min(truth.cols(), x.cols()); ++i)
       points.emplace_back(truth(0, i), x(0, i));
     std::sort(points.begin(), points.end());
-    Series s{
-        .label = line.label, .method = line.method, .style = style_of(line)};
+    Series s = series_of(line);
     for (const auto& [wanted, answer] : points)
       s.x.push_back(wanted), s.y.push_back(answer);
     panel.series.push_back(std::move(s));
@@ -53,11 +51,10 @@ Figure predictions(const Results& results) {
           .note = "Networks of the first seed on the test set."};
 }
 
-Section report(const Results& results, const Published&) {
-  Section section{.experiment = kName,
-                  .tables = {loss_table(results, kName, kLines)},
-                  .figures = {predictions(results)}};
-  LearningCurves curves(results, section);
+Section report(const Evidence& e) {
+  Section section{.tables = {loss_table(e, kLines)},
+                  .figures = {predictions(e)}};
+  LearningCurves curves(e, section);
   curves.metric(kLines, kMean, "mean |x - x*|", "errors", "Errors of x", "");
   curves.losses(kLines, "losses", "Learning curves", "");
   return section;
@@ -65,6 +62,6 @@ Section report(const Results& results, const Published&) {
 
 }  // namespace
 
-void add_reports(Registry& r) { r.add_report(kName, report); }
+void add_reports(Registry& r) { r.add_report("sip/exponential", report); }
 
 }  // namespace physinv::exponential

@@ -124,14 +124,12 @@ const std::vector<Claim> kInverse = {
 const std::vector<Claim> kTrained = {
     {.id = "P1",
      .where = "App. B.4",
-     .from = "paper",
      .says = "SIP finds a much better v0 than the regular gradient",
      .conditions = {below("error over Adam's, worst seed",
                           worst_ratio({"sip"}, {"adam"}, end()),
                           1)}},
     {.id = "P2",
      .where = "Fig. 14",
-     .from = "paper",
      .says = "The difference is especially clear in v0, not in the markers",
      .conditions = {above(
          "SIP's ratio of loss to error over Adam's, worst seed",
@@ -188,7 +186,6 @@ const std::vector<Claim> kOthers = {
 
 const std::vector<Claim> kRanges = {
     {.id = "A1",
-     .from = "quick",
      .says = "Error of v0 over Adam's, batches of 16",
      .conditions =
          {at_most("after 150",
@@ -198,7 +195,6 @@ const std::vector<Claim> kRanges = {
                   worst_ratio({"sip-b16"}, {"adam-b16"}, error_after(300)),
                   0.8)}},
     {.id = "A2",
-     .from = "quick",
      .says = "Adam fits the markers and not v0, batches of 16",
      .conditions = {
          below("its loss, share left", highest({"adam-b16"}, loss_left()), 0.5),

@@ -46,13 +46,10 @@ struct Said {
   std::string who;
   Vector<double> x, marker;
 };
-std::vector<Said> said(const Variant& variant,
-                       const Results& results,
-                       Index example) {
+std::vector<Said> said(const Evidence& e, Index example) {
   std::vector<Said> all;
   for (const MethodLine& line : kLines) {
-    const auto answer =
-        answer_of(results, variant.experiment, line.method, example);
+    const auto answer = answer_of(e, line.method, example);
     if (!answer || answer->x.size() != 2 * kPlane) continue;
     if (all.empty()) all.push_back({"truth", answer->truth, answer->given});
     all.push_back({line.label, answer->x, answer->given});
@@ -74,7 +71,7 @@ std::vector<Panel> frames(const Said& said) {
 }
 
 /// A row for each method and the truth, of three examples.
-Figure pictures(const Variant& variant, const Results& results) {
+Figure pictures(const Evidence& e) {
   Figure figure{.id = "fig14",
                 .title = "Velocities found, and where they take the marker",
                 .where = "Fig. 14",
@@ -83,7 +80,7 @@ Figure pictures(const Variant& variant, const Results& results) {
                     "First test examples, v0 and the marker's density at "
                     "times 0 to 2. Arrows: every fourth cell."};
   for (Index example = 0; example < 3; ++example)
-    for (const Said& one : said(variant, results, example))
+    for (const Said& one : said(e, example))
       for (Panel& panel : frames(one))
         figure.panels.push_back(std::move(panel));
   return figure;
@@ -107,18 +104,17 @@ Figure film(const std::vector<Said>& all) {
   return figure;
 }
 
-Section section_of(const Variant& variant, const Results& results) {
-  Section section{.experiment = variant.experiment,
-                  .tables = {loss_table(results, variant.experiment, kLines)}};
-  LearningCurves curves(results, section);
+Section report(const Evidence& e) {
+  Section section{.tables = {loss_table(e, kLines)}};
+  LearningCurves curves(e, section);
   curves.metric(
       kLines, kError, "|x - x*|", "errors", "Errors of v0", "Fig. 14");
   curves.metric(
       kLines, kVortex, "|s - s*|", "vortex", "Errors of the vortex", "");
   curves.losses(kLines, "losses", "Losses of the marker", "");
-  curves.add(update_times(results, variant.experiment, kLines, "Fig. 15"));
-  if (const auto all = said(variant, results, 0); !all.empty()) {
-    section.figures.push_back(pictures(variant, results));
+  curves.add(update_times(e, kLines, "Fig. 15"));
+  if (const auto all = said(e, 0); !all.empty()) {
+    section.figures.push_back(pictures(e));
     section.figures.push_back(film(all));
   }
   return section;
@@ -127,10 +123,7 @@ Section section_of(const Variant& variant, const Results& results) {
 }  // namespace
 
 void add_reports(Registry& r) {
-  for (const Variant& v : {kCode, kTimed})
-    r.add_report(v.experiment, [v](const Results& results, const Published&) {
-      return section_of(v, results);
-    });
+  for (const Variant& v : {kCode, kTimed}) r.add_report(v.experiment, report);
 }
 
 }  // namespace physinv::fluid_case

@@ -43,23 +43,23 @@ std::vector<MethodLine> networks() {
   return all;
 }
 
-std::vector<double> ends(const Results& results,
+std::vector<double> ends(const Evidence& e,
                          const std::string& method,
                          MetricRow row) {
   std::vector<double> all;
-  for (const StageRecord* s : trained_stages(results, kName, method))
+  for (const StageRecord* s : trained_stages(e, method))
     all.push_back(CurveRow{*s, "metrics", row}.last());
   return all;
 }
 
-std::optional<double> end(const Results& results,
+std::optional<double> end(const Evidence& e,
                           const std::string& method,
                           MetricRow row) {
-  const auto all = ends(results, method, row);
+  const auto all = ends(e, method, row);
   return all.empty() ? std::nullopt : std::optional(median(all));
 }
 
-Table errors(const Results& results, const Published& published) {
+Table errors(const Evidence& e) {
   Table table{
       .id = "errors",
       .title = "Errors at the end, sums of |x - x*| over the cells",
@@ -76,13 +76,12 @@ Table errors(const Results& results, const Published& published) {
           "and further, to e^-16; shares are of x*'s energy. The paper's "
           "script clamps networks only."};
   const auto add = [&](const MethodLine& line) {
-    if (!end(results, line.method, kError)) return;
+    if (!end(e, line.method, kError)) return;
     std::vector<Cell> cells;
     for (const MetricRow row : {kError, kClamped, kCoarse, kFine})
-      cells.push_back(row <= kClamped
-                          ? cell_of(ends(results, line.method, row))
-                          : written(end(results, line.method, row)));
-    if (const auto paper = published.find(kName, "fig13/" + line.method))
+      cells.push_back(row <= kClamped ? cell_of(ends(e, line.method, row))
+                                      : written(end(e, line.method, row)));
+    if (const auto paper = e.published.find(kName, "fig13/" + line.method))
       cells[kClamped].paper = paper->value;
     table.rows.push_back({.label = line.label, .cells = std::move(cells)});
   };
@@ -92,7 +91,7 @@ Table errors(const Results& results, const Published& published) {
   for (const auto& [row, label] :
        {std::pair(kOfMean, "mean of y"), std::pair(kOfObserved, "y itself")})
     for (const char* any : {"gd", "sip", "sip-b8", "sip-b4"})
-      if (const auto error = end(results, any, row)) {
+      if (const auto error = end(e, any, row)) {
         table.rows.push_back({.label = label,
                               .cells = {cell_of(error),
                                         Cell{.text = kNothing},
@@ -104,17 +103,16 @@ Table errors(const Results& results, const Published& published) {
 }
 
 /// Fig. 13: what single examples reach, and what networks answer at once.
-Figure direct(const Results& results) {
+Figure direct(const Evidence& e) {
   Panel panel{.x_label = "iterations",
               .y_label = "sum |x - x*|",
               .x_log = true,
               .y_min = 0};
   for (const MethodLine& line : kDirect) {
-    const auto stages = trained_stages(results, kName, line.method);
+    const auto stages = trained_stages(e, line.method);
     if (stages.empty()) continue;
     const CurveRow row{*stages.front(), "metrics", kError};
-    Series s{
-        .label = line.label, .method = line.method, .style = style_of(line)};
+    Series s = series_of(line);
     for (Index k = 0; k < row.points(); ++k)
       if (row.updates(k) > 0)
         s.x.push_back(row.updates(k)), s.y.push_back(row(k));
@@ -125,7 +123,7 @@ Figure direct(const Results& results) {
   for (const Series& s : panel.series)
     if (!s.x.empty()) last = std::max(last, s.x.back());
   for (const MethodLine& line : networks())
-    if (const auto error = end(results, line.method, kClamped);
+    if (const auto error = end(e, line.method, kClamped);
         error && line.label.find("1e-3") == std::string::npos)
       panel.series.push_back(
           level(line.label, line.method, 1, last, *error, style_of(line)));
@@ -145,14 +143,13 @@ Panel picture(std::string title, const Vector<double>& field) {
   return field_panel(std::move(title), {side, side, 1, side}, field);
 }
 
-Figure pictures(const Results& results) {
+Figure pictures(const Evidence& e) {
   auto lines = networks();
   std::erase_if(lines, [](const auto& l) { return l.method == "sgd-b8-lr3"; });
   lines.insert(lines.end(), kDirect.begin(), kDirect.end());
   const Heat<double> physics({.resolution = kSide});
   return answered_fields(
-      results,
-      kName,
+      e,
       lines,
       {.where = "Fig. 10",
        .examples = 2,
@@ -170,7 +167,7 @@ std::string setting_of(const GridPoint& cell) {
 }
 
 /// Figs. 11 and 12: SIP and Adam in every cell.
-Table study(const Results& results,
+Table study(const Evidence& e,
             std::string id,
             std::string title,
             std::string where,
@@ -183,8 +180,8 @@ Table study(const Results& results,
               .across = Across{.key = "method", .quantities = {"error"}}};
   for (const GridPoint& cell : points) {
     if (cell.id("") == "") continue;  // has a length of its own
-    const auto sip = end(results, cell.id("sip"), kError),
-               adam = end(results, cell.id("adam"), kError);
+    const auto sip = end(e, cell.id("sip"), kError),
+               adam = end(e, cell.id("adam"), kError);
     if (!sip && !adam) continue;
     table.rows.push_back(
         {.label = setting_of(cell), .cells = {cell_of(sip), cell_of(adam)}});
@@ -220,14 +217,14 @@ Figure study_curves(const LearningCurves& curves,
   return figure;
 }
 
-Section report(const Results& results, const Published& published) {
-  Section section{.experiment = kName};
-  section.tables = {errors(results, published),
-                    loss_table(results, kName, networks()),
-                    study(results, "fig11", kByRate, "Fig. 11", rate_points()),
-                    study(results, "fig12", kBySet, "Fig. 12", set_points())};
+Section report(const Evidence& e) {
+  Section section{
+      .tables = {errors(e),
+                 loss_table(e, networks()),
+                 study(e, "fig11", kByRate, "Fig. 11", rate_points()),
+                 study(e, "fig12", kBySet, "Fig. 12", set_points())}};
   std::erase_if(section.tables, [](const Table& t) { return t.rows.empty(); });
-  LearningCurves curves(results, section);
+  LearningCurves curves(e, section);
   curves.metric(
       networks(), kError, "sum |x - x*|", "fig10", "Errors of x", "Fig. 10");
   curves.losses(networks(), "losses", "Losses of y", "");
@@ -235,13 +232,13 @@ Section report(const Results& results, const Published& published) {
       study_curves(curves, "fig11_curves", kByRate, "Fig. 11", rate_points()));
   curves.add(
       study_curves(curves, "fig12_curves", kBySet, "Fig. 12", set_points()));
-  curves.add(update_times(results, kName, networks(), "Fig. 15"));
-  for (Figure figure : {direct(results), pictures(results)})
+  curves.add(update_times(e, networks(), "Fig. 15"));
+  for (Figure figure : {direct(e), pictures(e)})
     if (!figure.panels.empty()) section.figures.push_back(std::move(figure));
   return section;
 }
 
-Section operator_page(const Results& results, const Published&) {
+Section operator_page(const Evidence& e) {
   const std::vector<MethodLine> lines = {
       {"fno", "FNO", Hue::pink},
       {"fno-lr4", "FNO, rate 1e-4", Hue::red},
@@ -250,9 +247,8 @@ Section operator_page(const Results& results, const Published&) {
       {"fno-long-b8-lr2", "FNO, batch 8, rate 1e-2, longer", Hue::brown},
       {"fno-long-b8", "FNO, batch 8, longer", Hue::pink},
       {"fno-long-b8-lr4", "FNO, batch 8, rate 1e-4, longer", Hue::red}};
-  Section section{.experiment = kOperator,
-                  .tables = {loss_table(results, kOperator, lines)}};
-  LearningCurves curves(results, section);
+  Section section{.tables = {loss_table(e, lines)}};
+  LearningCurves curves(e, section);
   curves.metric(
       lines, kError, "sum |x - x*|", "fig10", "Errors of x", "Fig. 10");
   curves.losses(lines, "losses", "Losses of y", "");

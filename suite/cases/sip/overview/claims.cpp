@@ -136,7 +136,7 @@ Table table_of(const Evidence& e) {
 }
 
 /// A panel for each experiment.
-Figure figure_of(const Results& results) {
+Figure figure_of(const Evidence& e) {
   Figure figure{.id = "fig15_batches",
                 .title = "What an update takes",
                 .where = "Fig. 15",
@@ -150,7 +150,7 @@ Figure figure_of(const Results& results) {
       if (drawn.back() == s.experiment)
         for (const Column& c : kColumns)
           lines.push_back({s.method(c), c.title, c.hue});
-    Figure own = update_times(results, first.experiment, lines, figure.where);
+    Figure own = update_times(e.of(first.experiment), lines, figure.where);
     Panel& panel = own.panels.front();
     if (panel.series.empty()) continue;
     panel.title =
@@ -161,13 +161,12 @@ Figure figure_of(const Results& results) {
   return figure;
 }
 
-Section step_times(const Results& results, const Published& published) {
-  Section section{.experiment = "sip"};
+Section step_times(const Evidence& e) {
+  Section section;
   // One experiment has no others to be compared with.
-  if (Table table = table_of({results, published, "sip"});
-      table.rows.size() > 1)
+  if (Table table = table_of(e); table.rows.size() > 1)
     section.tables.push_back(std::move(table));
-  if (Figure figure = figure_of(results); !figure.panels.empty())
+  if (Figure figure = figure_of(e); !figure.panels.empty())
     section.figures.push_back(std::move(figure));
   return section;
 }

@@ -71,10 +71,7 @@ Claim claim() {
                            "settings for which each number comes out")};
 }
 
-Section report(const std::string& name,
-               const Results& results,
-               const Published& published) {
-  const Evidence evidence{results, published, name};
+Section report(const Evidence& evidence) {
   Table table{.id = "settings",
               .title = "Packets localized by width and network",
               .where = "App. C.1, Fig. 16",
@@ -97,9 +94,7 @@ Section report(const std::string& name,
 void add_claims(Registry& r) {
   const std::string first = choices().front().name();
   r.add_claims(first, {claim()});
-  r.add_report(first, [first](const Results& results, const Published& p) {
-    return report(first, results, p);
-  });
+  r.add_report(first, report);
 }
 
 }  // namespace physinv::packet_width

@@ -1,4 +1,4 @@
-#include <algorithm>
+#include <functional>
 #include <vector>
 
 #include "problems/poisson/poisson.h"
@@ -29,20 +29,18 @@ const std::vector<MethodLine> kLines = {
     {"adam-long-b8", "Adam, batch 8, longer", Hue::purple},
     {"fno-long-b8", "FNO, batch 8, longer", Hue::pink}};
 
-Section report(const Domain& domain, const Results& results) {
-  Section section{.experiment = domain.experiment,
-                  .tables = {loss_table(results, domain.experiment, kLines)}};
-  LearningCurves curves(results, section);
+Section report(const Domain& domain, const Evidence& e) {
+  Section section{.tables = {loss_table(e, kLines)}};
+  LearningCurves curves(e, section);
   curves.metric(
       kLines, kError, "sum |x - x*|", "errors", "Errors of x", "Fig. 9");
   curves.losses(kLines, "losses", "Losses of y", "");
-  curves.add(update_times(results, domain.experiment, kLines, "Fig. 15"));
+  curves.add(update_times(e, kLines, "Fig. 15"));
   const FieldLayout layout{domain.columns, domain.rows, 1, domain.columns};
   const Poisson<double> physics(
       {.rows = domain.rows, .columns = domain.columns});
   Figure fields = answered_fields(
-      results,
-      domain.experiment,
+      e,
       kLines,
       {.where = "Fig. 9",
        .examples = 3,
@@ -59,9 +57,7 @@ Section report(const Domain& domain, const Results& results) {
 
 void add_reports(Registry& r) {
   for (const Domain& p : {kPlane, kSmall, kPaper, kFno, kNarrow})
-    r.add_report(p.experiment, [p](const Results& results, const Published&) {
-      return report(p, results);
-    });
+    r.add_report(p.experiment, std::bind_front(report, p));
 }
 
 }  // namespace physinv::poisson

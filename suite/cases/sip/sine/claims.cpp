@@ -27,23 +27,22 @@ Quantity stretched(const std::string& method) {
 }
 
 /// Of all stretches from `first` on.
+template <class F>
+std::vector<Quantity> of_stretches(int first, F of) {
+  return each_if(
+      kStretches, [=](int xi) { return xi >= first; }, of);
+}
 std::vector<Quantity> relatives(int first, const std::string& method) {
-  std::vector<Quantity> all;
-  for (const int xi : kStretches)
-    if (xi >= first) all.push_back(relative(xi, method));
-  return all;
+  return of_stretches(first, [&](int xi) { return relative(xi, method); });
 }
 std::vector<Quantity> turns(const std::string& method) {
-  std::vector<Quantity> all;
-  for (const int degrees : kTurns)
-    all.push_back(score_at({kStretch, degrees}, method));
-  return all;
+  return each(kTurns, [&](int degrees) {
+    return score_at({kStretch, degrees}, method);
+  });
 }
 std::vector<Quantity> of_methods(const Point& p,
                                  const std::vector<std::string>& methods) {
-  std::vector<Quantity> all;
-  for (const auto& m : methods) all.push_back(score_at(p, m));
-  return all;
+  return each(methods, [&](const auto& m) { return score_at(p, m); });
 }
 
 Quantity finite_over_infinite(const std::string& method) {
@@ -52,25 +51,23 @@ Quantity finite_over_infinite(const std::string& method) {
 
 /// Without a turn, over xi, of all stretches from `first` on.
 std::vector<Quantity> ranges(int first) {
-  std::vector<Quantity> all;
-  for (const int xi : kStretches)
-    if (xi >= first)
-      all.push_back(times(1.0 / xi,
-                          median(Select{"adam"}.in(Point{xi, 0}.experiment()),
-                                 solution_range())));
-  return all;
+  return of_stretches(first, [](int xi) {
+    return times(
+        1.0 / xi,
+        median(Select{"adam"}.in(Point{xi, 0}.experiment()), solution_range()));
+  });
 }
 
 Quantity of_gamma_ten(int xi) {
-  std::vector<Quantity> all;
-  for (const int gamma : kGammas) all.push_back(loss_of_gamma(xi, gamma));
-  return ratio(loss_of_gamma(xi, 10), least(all));
+  return ratio(loss_of_gamma(xi, 10), least(each(kGammas, [=](int gamma) {
+                 return loss_of_gamma(xi, gamma);
+               })));
 }
 
 Condition of_printed_rate(int xi, const MethodName& method) {
-  std::vector<Quantity> all;
-  for (const RateFactor& f : kFactors)
-    all.push_back(score_at_rate(xi, method.id, f.name));
+  const auto all = each(kFactors, [&](const RateFactor& f) {
+    return score_at_rate(xi, method.id, f.name);
+  });
   return at_most(fmt::format("{}, xi = {}", method.label, xi),
                  ratio(score_at_rate(xi, method.id, "x1"), least(all)),
                  1.5);
@@ -165,7 +162,6 @@ const std::vector<Claim> kPaper = {
                    median({"adam"}, share_beyond(1.0 / kHard.xi)))}},
     {.id = "P7",
      .where = "App. B.1",
-     .from = "paper",
      .says = "The range of solutions scales linearly with xi",
      .conditions = {at_most("range over xi, largest over smallest, xi >= 3",
                             ratio(most(ranges(3)), least(ranges(3))),
@@ -236,7 +232,6 @@ const std::vector<Claim> kSuite = {
                     1)},
           fails("Adadelta ends behind SGD on all three seeds")),
     {.id = "A8",
-     .from = "quick",
      .says = "After 8000 updates",
      .conditions =
          {

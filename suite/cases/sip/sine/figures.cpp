@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <functional>
 #include <vector>
 
 #include "suite/cases/sip/sine/score.h"
@@ -27,10 +28,10 @@ const std::vector<MethodLine> kFinite = {
     {"adam-finite", "Adam, 1000 samples", Hue::indigo}};
 
 /// What the authors' figure shows, read off to about 10 %.
-std::optional<double> printed_score(const Published& published,
+std::optional<double> printed_score(const Evidence& at,
                                     const Point& p,
                                     const std::string& method) {
-  const auto v = published.find(p.experiment(), "fig5/" + method);
+  const auto v = at.published.find(p.experiment(), "fig5/" + method);
   if (!v) return {};
   return v->value;
 }
@@ -48,20 +49,15 @@ Panel sweep(const Evidence& at,
             double (*scale)(const Point&)) {
   Panel panel{.y_log = true};
   for (const MethodLine& line : kLines) {
-    Series ours{.label = line.label,
-                .method = line.method,
-                .markers = true,
-                .style = style_of(line)};
-    Series theirs{.label = line.label + ", paper",
-                  .method = line.method,
-                  .dashed = true,
-                  .style = style_of(line)};
+    Series ours = series_of(line), theirs = ours;
+    ours.markers = true;
+    theirs.label += ", paper", theirs.dashed = true;
     for (const Point& p : points) {
       if (auto all = scores(at, p, line.method); !all.empty()) {
         ours.x.push_back(place(p));
         ours.y.push_back(median(all) * scale(p));
       }
-      if (const auto v = printed_score(at.published, p, line.method)) {
+      if (const auto v = printed_score(at, p, line.method)) {
         theirs.x.push_back(place(p));
         theirs.y.push_back(*v * scale(p));
         theirs.lo.push_back(0.9 * theirs.y.back());
@@ -120,8 +116,7 @@ Table score_table(const Evidence& at,
                   const Point& p,
                   const std::vector<MethodLine>& lines) {
   const auto paper = [&](const Evidence&, const Select& runs) {
-    return written(
-        printed_score(at.published, p, runs.method), "{:.3g}", kNothing);
+    return written(printed_score(at, p, runs.method), "{:.3g}", kNothing);
   };
   return table_by_method(
       {.id = "scores",
@@ -181,22 +176,17 @@ Table gamma_table(const Evidence& at) {
   return table;
 }
 
-Section report(const Point& p,
-               const Results& results,
-               const Published& published) {
-  const Evidence at{results, published, p.experiment()};
+Section report(const Point& p, const Evidence& at) {
   const bool main = p.experiment() == kHard.experiment();
   std::vector<MethodLine> lines = kLines;
   if (main) lines.insert(lines.end(), kFinite.begin(), kFinite.end());
-  Section section{.experiment = p.experiment(),
-                  .tables = {score_table(at, p, lines),
-                             loss_table(results, p.experiment(), lines)}};
+  Section section{.tables = {score_table(at, p, lines), loss_table(at, lines)}};
   if (main) {
     section.tables.push_back(rate_table(at));
     section.tables.push_back(gamma_table(at));
     section.figures = {sweeps(at), landscape()};
   }
-  LearningCurves curves(results, section);
+  LearningCurves curves(at, section);
   curves.metric(lines, 0, "mean distance", "distances", "Distances", "Fig. 5");
   curves.losses(lines, "losses", "Learning curves", "");
   return section;
@@ -206,10 +196,7 @@ Section report(const Point& p,
 
 void add_reports(Registry& r) {
   for (const Point& p : points())
-    r.add_report(p.experiment(),
-                 [p](const Results& results, const Published& published) {
-                   return report(p, results, published);
-                 });
+    r.add_report(p.experiment(), std::bind_front(report, p));
 }
 
 }  // namespace physinv::sine

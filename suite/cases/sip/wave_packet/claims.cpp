@@ -66,7 +66,6 @@ const std::vector<Claim> kClaimsOfAll = {
              "the noise, this does not tell."},
     {.id = "P4",
      .where = "App. C.1",
-     .from = "paper",
      .says = "The network learns to localize most wave packets correctly",
      .conditions = {above("within half a period",
                           share_of_examples(kNet, errors(), up_to(kBasin)),
@@ -79,7 +78,6 @@ const std::vector<Claim> kClaimsOfAll = {
          "each)")},
     {.id = "P5",
      .where = "App. C.1, Fig. 16b",
-     .from = "paper",
      .says = "It outperforms L-BFGS-B after 30 to 40 training iterations",
      .conditions = {at_most("updates to its loss, twice as many at most",
                             passes(passes_lbfgs()),
@@ -96,7 +94,6 @@ const std::vector<Claim> kClaimsOfAll = {
          "after 359 updates (one seed each)")},
     {.id = "P6",
      .where = "App. C.1",
-     .from = "paper",
      .says =
          "Networks explore the solution space better than iterative solvers",
      .conditions = {above("within half a period, network over L-BFGS-B, "
@@ -113,7 +110,6 @@ const std::vector<Claim> kClaimsOfAll = {
          "ambiguous: of 32 settings (one seed each) the network localizes more "
          "packets than L-BFGS-B in 22, with 7 to 30 % against 8")},
     {.id = "A2",
-     .from = "quick",
      .says = "L-BFGS-B finds packets by their distance from its start",
      .conditions = {at_least("nearer than 2", found(0, 2), 1),
                     within("2 to 6", found(2, 6), 0.2, 0.8),
@@ -121,7 +117,6 @@ const std::vector<Claim> kClaimsOfAll = {
                     at_most("15 to 40", found(15, 40), 0.02),
                     at_most("beyond 40", found(40), 0.02)}},
     {.id = "A3",
-     .from = "quick",
      .says = "It misses by whole periods and hardly moves",
      .conditions = {at_least(
                         "within 1.5 of whole periods",
@@ -138,12 +133,10 @@ const std::vector<Claim> kClaimsOfAll = {
      .conditions = {within("loss", mean_loss(kRandom), 35.5, 41),
                     within("error", mean_error(kRandom), 30, 38)}},
     {.id = "A4b",
-     .from = "quick",
      .says = "L-BFGS-B",
      .conditions = {within("loss", mean_loss(kLbfgs), 13.5, 16.8),
                     within("error", mean_error(kLbfgs), 23, 27.8)}},
     {.id = "A5",
-     .from = "quick",
      .says = "The network after 1000 updates comes up to L-BFGS-B",
      .conditions =
          {below("loss after 60", median_after(kNet, 60), 25),
@@ -163,7 +156,6 @@ const std::vector<Claim> kClaimsOfAll = {
                        {kLbfgs}),
                    0.04)}},
     {.id = "A6",
-     .from = "quick",
      .says = "Both are far below random guesses",
      .conditions = {below("network over random",
                           ratio(mean_loss(kNet), mean_loss(kRandom)),
@@ -180,7 +172,6 @@ Quantity alone() { return share_of_examples(fits(1), errors(), up_to(kBasin)); }
 const std::vector<Claim> kClaimsOfJoint = {
     {.id = "P7",
      .where = "App. C.1",
-     .from = "paper",
      .says = "Updates from other examples keep it from local optima",
      .conditions = {above("within half a period, together over alone, worst "
                           "seed",

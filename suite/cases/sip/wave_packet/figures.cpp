@@ -21,7 +21,6 @@
 namespace physinv::sip_wave_packet {
 namespace {
 
-constexpr const char* kName = "sip/wave-packet";
 constexpr double kStart = 76.8;
 const MethodLine kNetLine{"net", "network", Hue::blue};
 const std::vector<MethodLine> kLines = {kNetLine,
@@ -36,10 +35,8 @@ std::vector<double> axis(Index samples) {
 
 /// The packet at t0 less the start.
 Series packet(const MethodLine& line, double x, Index samples) {
-  Series s{.label = line.label,
-           .method = line.method,
-           .x = axis(samples),
-           .style = style_of(line)};
+  Series s = series_of(line);
+  s.x = axis(samples);
   for (const double t : s.x) {
     const double d = t - kStart - x;
     s.y.push_back(std::sin(kFrequency * d) * std::exp(-d * d / 800));
@@ -51,9 +48,9 @@ Series packet(const MethodLine& line, double x, Index samples) {
 Panel example(const Evidence& e, Index i) {
   Panel panel{.x_label = "t", .y_label = "signal"};
   for (const MethodLine& line : {kLines[0], kLines[1]}) {
-    const auto runs = find_runs(e, {line.method});
-    if (runs.empty() || runs.front().stage->x.cols() <= i) continue;
-    const CaseData& data = runs.front().record->data;
+    const auto run = first_run(e, {line.method});
+    if (!run || run->stage->x.cols() <= i) continue;
+    const CaseData& data = run->record->data;
     const Index samples = data.y.rows();
     if (panel.series.empty()) {
       panel.title = fmt::format("t0 = {:.1f}", kStart + data.x(0, i));
@@ -63,7 +60,7 @@ Panel example(const Evidence& e, Index i) {
                               .y = {data.y.col(i).begin(), data.y.col(i).end()},
                               .style = PlotStyle{.hue = Hue::ink}});
     }
-    panel.series.push_back(packet(line, runs.front().stage->x(0, i), samples));
+    panel.series.push_back(packet(line, run->stage->x(0, i), samples));
     panel.series.back().dashed = panel.series.size() > 2;
   }
   return panel;
@@ -149,11 +146,9 @@ Table by_distance(const Evidence& e) {
       columns);
 }
 
-Section report(const Results& results, const Published& published) {
-  const Evidence e{results, published, kName};
-  Section section{.experiment = kName,
-                  .tables = {at_the_end(e), by_distance(e)}};
-  LearningCurves curves(results, section);
+Section report(const Evidence& e) {
+  Section section{.tables = {at_the_end(e), by_distance(e)}};
+  LearningCurves curves(e, section);
   curves.add({.id = "fig16a",
               .title = "Two examples and their fits",
               .where = "Fig. 16a",
@@ -189,6 +184,6 @@ Section report(const Results& results, const Published& published) {
 
 }  // namespace
 
-void add_reports(Registry& r) { r.add_report(kName, report); }
+void add_reports(Registry& r) { r.add_report("sip/wave-packet", report); }
 
 }  // namespace physinv::sip_wave_packet
