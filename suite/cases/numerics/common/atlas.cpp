@@ -9,7 +9,6 @@
 namespace physinv {
 namespace {
 
-constexpr const char* kMethod = "stability";
 /// Of a parameter that names no number.
 constexpr Index kSamples = 4;
 
@@ -44,13 +43,13 @@ Vector<double> uneven(Index rows, double size) {
 }
 
 void add_atlas(Registry& r, Atlas atlas) {
-  Method method{kMethod, {}};
+  Method method{kStability, {}};
   std::vector<std::string> stages;
   for (const Sweep& sweep : atlas.sweeps) {
     method.chain.push_back(stage_of(sweep));
     stages.push_back(sweep.id);
   }
-  std::vector<Row> rows = {{.methods = {kMethod}, .n = {1}, .seeds = {0}}};
+  std::vector<Row> rows = {{.methods = {kStability}, .n = {1}, .seeds = {0}}};
   std::vector<Method> methods = {std::move(method)};
   std::vector<Claim> claims = {adjoint_claim("N1", stages)};
   if (!atlas.parameters.empty()) {

@@ -94,7 +94,7 @@ Panel sweep_map(const SweepAxis& x,
 
 const StageRecord* find_sweep(const Evidence& e, const std::string& stage) {
   for (const CaseRecord& c : e.results.cases()) {
-    if (c.info.experiment != e.experiment || c.info.method != "stability")
+    if (c.info.experiment != e.experiment || c.info.method != kStability)
       continue;
     for (const StageRecord& s : c.stages)
       if (s.stage == stage && s.arrays.contains("status")) return &s;
@@ -210,8 +210,7 @@ Quantity total(const std::vector<Select>& sweeps,
 
 Claim adjoint_claim(std::string id, const std::vector<std::string>& stages) {
   std::vector<Select> sweeps;
-  for (const std::string& stage : stages)
-    sweeps.push_back({"stability", stage});
+  for (const std::string& stage : stages) sweeps.push_back({kStability, stage});
   return {
       .id = std::move(id),
       .from = "smoke",

@@ -15,8 +15,10 @@
 
 namespace physinv {
 
-/// A stage of the method `stability`, of the first case that finished it, else
-/// null.
+/// The method whose stages are sweeps.
+inline constexpr const char* kStability = "stability";
+
+/// A stage of `kStability`, of the first case that finished it, else null.
 const StageRecord* find_sweep(const Evidence& e, const std::string& stage);
 
 /// How many cells have which status, by check, and the largest error.

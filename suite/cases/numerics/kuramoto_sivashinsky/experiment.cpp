@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "problems/kuramoto_sivashinsky/kuramoto_sivashinsky.h"
+#include "suite/cases/numerics/common/sweep_report.h"
 #include "suite/cases/numerics/kuramoto_sivashinsky/sweep.h"
 #include "suite/diagnostics/growth.h"
 #include "suite/diagnostics/stability_sweep.h"
@@ -84,13 +85,12 @@ Method stability_method() {
                                  Eigen::Vector2d(1, beta)});
     horizons.problems.push_back(until(end));
   }
-  return {"stability",
-          {stability_sweep(parameters), stability_sweep(horizons)}};
+  return {kStability, {stability_sweep(parameters), stability_sweep(horizons)}};
 }
 
 std::vector<Row> rows(Index n) {
   std::vector<Row> all = accuracy_rows(n);
-  all.push_back({.methods = {"growth", "stability"}, .n = {n}, .seeds = {0}});
+  all.push_back({.methods = {"growth", kStability}, .n = {n}, .seeds = {0}});
   return all;
 }
 

@@ -99,7 +99,7 @@ Section report(const Evidence& e) {
 
 std::vector<Row> rows() {
   std::vector<Row> all = accuracy_rows(4);
-  all.push_back({.methods = {"stability"}, .n = {1}, .seeds = {0}});
+  all.push_back({.methods = {kStability}, .n = {1}, .seeds = {0}});
   return all;
 }
 
@@ -115,7 +115,7 @@ void add_experiments(Registry& r) {
       .profiles = {{.name = "smoke", .rows = rows()},
                    {.name = "quick", .rows = rows()},
                    {.name = "paper", .rows = rows()}},
-      .methods = {{"stability",
+      .methods = {{kStability,
                    {sweep("positions", positions()),
                     sweep("far", far_positions())}},
                   accuracy_method(parameters())},
