@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 #include <pybind11/stl.h>
 
+#include "suite/core/float_environment.h"
 #include "suite/harness/nearest.h"
 #include "suite/harness/registry.h"
 #include "suite/harness/study.h"
@@ -75,6 +76,7 @@ py::tuple PyProblem::sample(std::uint64_t seed,
                             Index first,
                             bool labelled) {
   const Rng root = root_of(experiment_->name, seed);
+  const DefaultFloatEnvironment floats;
   Samples<double> s;
   {
     const Released released;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "suite/core/disturbance.h"
+#include "suite/core/float_environment.h"
 #include "suite/core/hash.h"
 #include "suite/harness/sources.h"
 #include "suite/harness/study.h"
@@ -29,6 +30,7 @@ void append(std::string& text, std::string_view name, const NetworkRole& role) {
 }  // namespace
 
 CaseData draw_data(const Case& c) {
+  const DefaultFloatEnvironment floats;  // whatever the caller has
   const Rng root = root_of(c.info.experiment, c.info.seed);
   Samples<double> samples =
       disturbed(c.experiment->problem.make<double>()->sample(

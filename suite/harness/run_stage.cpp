@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "suite/core/clock.h"
+#include "suite/core/float_environment.h"
 #include "suite/core/hash.h"
 #include "suite/core/oracle.h"
 #include "suite/core/probe.h"
@@ -82,6 +83,7 @@ void run_stage(const Case& c,
                Threads* threads,
                Checkpoint* checkpoint,
                StageRecord& record) {
+  set_default_float_environment();  // whatever ran before
   const Stage& stage = *c.method->chain[position];
   const Setting setting = setting_for(stage, c.experiment->setting);
   const Rng root = root_of(c.info.experiment, c.info.seed);
@@ -106,6 +108,7 @@ void run_stage(const Case& c,
                .threads = threads,
                .checkpoint = checkpoint};
   Outcome out = stage.run(run);
+  set_default_float_environment();  // its losses are of no other
   probe.end();
   check_outcome(out, oracle);
   fill(record, c, out, oracle, probe);

@@ -14,6 +14,7 @@
 #include <cstring>
 
 #include "suite/core/clock.h"
+#include "suite/core/float_environment.h"
 #include "suite/harness/errors.h"
 #include "suite/store/json.h"
 
@@ -183,6 +184,7 @@ void Workers::start(Worker& worker) {
   }
   if (pid == 0) {
     become_worker(pair[1], parent);
+    set_default_float_environment();  // of its threads, too
     try {
       const auto threads = start_threads(pair[1], threads_);
       serve(pair[1], cases_, *threads, options_);

@@ -1,5 +1,8 @@
 #include "tests/suite/harness/fake_experiment.h"
 
+#include <xmmintrin.h>
+
+#include <cfenv>
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -251,6 +254,9 @@ class Walk final : public Base {
   }
 };
 
+/// Of MXCSR: flush to zero, denormals are zero.
+constexpr unsigned kFlushAll = 0x8040;
+
 /// Ends as it is told to.
 class Ends final : public Base {
  public:
@@ -262,6 +268,10 @@ class Ends final : public Base {
     if (how_ == "exhaust") throw std::bad_alloc();
     if (how_ == "die") crash();
     if (how_ == "sleep") nap(60);
+    if (how_ == "floats") {
+      _mm_setcsr(_mm_getcsr() | kFlushAll);
+      std::fesetround(FE_UPWARD);
+    }
     Outcome out;
     out.x = run.oracle.start();
     if (how_ == "diverge")
@@ -319,6 +329,7 @@ Experiment experiment() {
                ends("exhaust"),
                ends("die"),
                ends("sleep"),
+               ends("floats"),
                chain("broken",
                      {std::make_shared<Ends>("throws"),
                       std::make_shared<Descend>("refine", 0.1)})};

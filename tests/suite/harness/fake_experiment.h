@@ -8,7 +8,8 @@ namespace physinv::fake {
 
 /// Methods: descend (one stage); walk and stroll (fit, refine; the same fit,
 /// threads and random numbers in it); diverge; throws; exhaust (bad_alloc);
-/// die (a signal); sleep (a minute). Profiles: smoke, quick (all that end
+/// die (a signal); sleep (a minute); floats (leaves another rounding, subnormal
+/// numbers that are zero). Profiles: smoke, quick (all that end
 /// well), bad (throws, exhaust, die, and descend between them), slow, kernel
 /// (most of its time is the physics').
 ///

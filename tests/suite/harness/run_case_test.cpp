@@ -1,7 +1,9 @@
 #include "suite/harness/run_case.h"
 
 #include <gtest/gtest.h>
+#include <xmmintrin.h>
 
+#include <cfenv>
 #include <filesystem>
 
 #include "suite/harness/keys.h"
@@ -57,6 +59,32 @@ class RunCase : public ::testing::Test {
 
   Registry registry_;
 };
+
+/// Rounding and what becomes of subnormal numbers, in this thread.
+unsigned float_control() {
+  constexpr unsigned kFlags = 0x3f;
+  return _mm_getcsr() & ~kFlags;
+}
+
+TEST_F(RunCase, NoStageLeavesItsRoundingToTheNext) {
+  const unsigned standard = float_control();
+  const Case c = make("descend");
+  const std::string hash = draw_data(c).hash;
+  const auto before = run(c);
+  run(make("floats"));
+  EXPECT_EQ(float_control(), standard);
+  EXPECT_EQ(std::fegetround(), FE_TONEAREST);
+  expect_same(run(c).front(), before.front());
+  // Whoever begins may have set it, too.
+  _mm_setcsr(_mm_getcsr() | 0x8040);
+  std::fesetround(FE_UPWARD);
+  EXPECT_NE(float_control(), standard);
+  EXPECT_EQ(draw_data(c).hash, hash);
+  const auto after = run(c);
+  EXPECT_EQ(float_control(), standard);
+  std::fesetenv(FE_DFL_ENV);
+  expect_same(after.front(), before.front());
+}
 
 TEST_F(RunCase, FillsTheRecord) {
   const auto records = run(make("walk"));
