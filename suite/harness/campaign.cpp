@@ -14,6 +14,7 @@
 #include "suite/harness/progress.h"
 #include "suite/harness/revision.h"
 #include "suite/harness/run_case.h"
+#include "suite/harness/standstill.h"
 #include "suite/harness/stop_signal.h"
 #include "suite/harness/workers.h"
 #include "suite/store/errors.h"
@@ -63,7 +64,8 @@ class Campaign {
         errors_(std::move(prepared.errors)),
         revision_(git_revision()),
         store_(options.out, {.break_lock = options.break_lock}),
-        progress_(screen, cases_, options.jobs) {
+        progress_(screen, cases_, options.jobs),
+        still_(options.still_seconds) {
     data_cpu_ = result_.data_cpu = prepared.data_cpu;
     context_ = machine_context(revision_);
     context_["options"] = options_json;
@@ -188,6 +190,7 @@ class Campaign {
       if (store_.is_due(std::min(kCommitSeconds, options_.checkpoint_seconds)))
         store_.commit();
       for (auto& event : workers.wait(0.1)) handle(event);
+      name_still(workers);
       progress_.draw();
     }
     if (stop_signals() != 0) wind_up(workers);
@@ -255,6 +258,7 @@ class Campaign {
       running_[w] = i;
       positions_[w] = static_cast<Index>(earlier.size());
       workers.submit(w, i, earlier);
+      still_.moved(w, now().wall);
     }
   }
 
@@ -267,6 +271,7 @@ class Campaign {
 
   void handle(WorkerEvent& event) {
     using Kind = WorkerEvent::Kind;
+    still_.moved(event.worker, now().wall);
     switch (event.kind) {
       case Kind::stage_started:
         positions_[event.worker] = event.position;
@@ -283,10 +288,12 @@ class Campaign {
       case Kind::case_done:
         overhead_ += event.overhead;
         running_.erase(event.worker);
+        still_.idle(event.worker);
         break;
       case Kind::died:
         progress_.idle(event.worker);
         running_.erase(event.worker);
+        still_.idle(event.worker);
         if (stop_signals() != 0) {
           queue_.push_back(event.case_index);
         } else if (starts_again(event)) {
@@ -297,6 +304,25 @@ class Campaign {
           lose(event.case_index, positions_[event.worker], event.message);
         }
         break;
+    }
+  }
+
+  /// A worker that waits for what never comes is not waited for in silence.
+  void name_still(const Workers& workers) {
+    const double t = now().wall;
+    for (const auto& [worker, index] : running_) {
+      const pid_t process = workers.process(worker);
+      if (!still_.found(worker, t, cpu_seconds(process))) continue;
+      const CaseInfo& info = cases_[index].info;
+      const auto stage = static_cast<std::size_t>(positions_[worker]);
+      progress_.say(fmt::format(
+          "{} {}: its worker stands still, for {:g} s neither a step nor time "
+          "on a core; it waits for another program, or for ever for a lock "
+          "(kill -ABRT {} fails the stage)",
+          info.name,
+          info.stages[std::min(stage, info.stages.size() - 1)],
+          still_.seconds(),
+          process));
     }
   }
 
@@ -412,6 +438,7 @@ class Campaign {
   std::set<std::string> names_;  // of the cases
   Store store_;
   Progress progress_;
+  Standstill still_;
   nlohmann::json context_;
   CampaignResult result_;
   std::vector<std::size_t> queue_;              // cases not handed out yet

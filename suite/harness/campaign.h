@@ -37,6 +37,9 @@ struct CampaignOptions {
   bool trace = false;  ///< record hashes of all iterates
   /// Seconds between the states that a stage under way lays down.
   double checkpoint_seconds = 60;
+  /// Seconds after which a worker is named that tells nothing and computes
+  /// nothing.
+  double still_seconds = 60;
   /// Take the lock of the store from whoever has it, where there is no flock.
   bool break_lock = false;
   /// Run with data one ulp off, as `prepare` drew them.

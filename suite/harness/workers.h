@@ -44,6 +44,7 @@ class Workers {
 
   std::size_t count() const { return workers_.size(); }
   bool idle(std::size_t worker) const { return !workers_[worker].busy; }
+  pid_t process(std::size_t worker) const { return workers_[worker].pid; }
 
   /// Hands a case to an idle worker; `earlier` are the stages it need not run.
   void submit(std::size_t worker,

@@ -87,6 +87,27 @@ TEST(LargestFirst, SortsByWorkAndKeepsTheOrderOfEqualOnes) {
             (std::vector<std::size_t>{2, 4, 1, 0, 3}));
 }
 
+TEST_F(CampaignTest, AWorkerThatStandsStillIsNamed) {
+  setenv("PHYSINV_FAKE_PACE_MS", "900", 1);
+  Overrides one;
+  one.methods = {"descend"}, one.iterations = 1;
+  std::FILE* output = std::tmpfile();
+  const auto result = run_campaign(prepare(registry_.expand("smoke", one)),
+                                   {.out = root_ / "a", .still_seconds = 0.3},
+                                   {},
+                                   {.stream = output});
+  unsetenv("PHYSINV_FAKE_PACE_MS");
+  EXPECT_EQ(result.stages_run, 1u);
+  std::rewind(output);
+  std::string text(4096, ' ');
+  text.resize(std::fread(text.data(), 1, text.size(), output));
+  std::fclose(output);
+  EXPECT_NE(text.find("descend/n=4/seed=0 solve: its worker stands still, for "
+                      "0.3 s neither a step"),
+            std::string::npos)
+      << text;
+}
+
 TEST_F(CampaignTest, ReusesWhatIsFinished) {
   run("smoke", {.out = root_ / "a"});
   const std::string once = bits(root_ / "a");
