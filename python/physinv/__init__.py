@@ -129,7 +129,8 @@ Problem.sample = _sample
 def torch(problem):
     """F as a function of tensors, (x, given=None) -> y, for autograd: one
     forward pass, and one pullback for a gradient by x. Tensors of float32 or
-    float64, (samples, features), on the CPU; first derivatives."""
+    float64, (samples, features), on the CPU. Second derivatives are a
+    NotImplementedError, a derivative by given is a TypeError."""
     from physinv._torch import differentiable
     return differentiable(problem)
 
@@ -137,7 +138,8 @@ def torch(problem):
 def jax(problem):
     """F as a function of JAX arrays, (x, given=None) -> y, for jit and grad, by
     pure_callback. A gradient by x linearizes anew, as JAX keeps arrays and no
-    tapes: two forward passes and one pullback. float64 takes jax_enable_x64."""
+    tapes: two forward passes and one pullback. float64 takes jax_enable_x64.
+    Second derivatives are an error, and a derivative by given is one."""
     from physinv._jax import differentiable
     return differentiable(problem)
 

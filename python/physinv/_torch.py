@@ -1,7 +1,8 @@
 """Problems for PyTorch's autograd."""
 
 import torch
-from torch.autograd.function import once_differentiable
+
+_PRECISIONS = (torch.float32, torch.float64)
 
 
 def _array(tensor):
@@ -15,14 +16,40 @@ def _like(array, tensor):
 class _Forward(torch.autograd.Function):
     @staticmethod
     def forward(ctx, x, given, problem):
-        given = None if given is None else _array(given.to(x.dtype))
         y, ctx.tape = problem.linearize(_array(x), given)
+        ctx.save_for_backward(x)
         return _like(y, x)
 
     @staticmethod
-    @once_differentiable
     def backward(ctx, y_bar):
-        return _like(ctx.tape.pullback(_array(y_bar)), y_bar), None, None
+        if not torch.is_grad_enabled():
+            return _like(ctx.tape.pullback(_array(y_bar)), y_bar), None, None
+        x, = ctx.saved_tensors
+        return _Pullback.apply(y_bar, x, ctx.tape), None, None
+
+
+class _Pullback(torch.autograd.Function):
+    """J^T y_bar under create_graph: depends on x and y_bar, and says so."""
+
+    @staticmethod
+    def forward(ctx, y_bar, x, tape):
+        return _like(tape.pullback(_array(y_bar)), y_bar)
+
+    @staticmethod
+    def backward(ctx, x_dot):
+        raise NotImplementedError(
+            "physinv.torch has first derivatives alone, and this asks for "
+            "second ones; Problem.hessian has those of the loss where it is "
+            "among the problem's names")
+
+
+def _checked(name, value):
+    if not isinstance(value, torch.Tensor):
+        raise TypeError(f"{name} is {type(value).__name__}; a tensor of "
+                        "float32 or float64 is right")
+    if value.dtype not in _PRECISIONS:
+        raise TypeError(f"{name} is {value.dtype}; float32 or float64 is right")
+    return value
 
 
 def differentiable(problem):
@@ -31,8 +58,13 @@ def differentiable(problem):
                         "no vjp, which autograd needs")
 
     def forward(x, given=None):
-        if x.dtype not in (torch.float32, torch.float64):
-            raise TypeError(f"x is {x.dtype}; float32 or float64 is right")
+        _checked("x", x)
+        if given is not None:
+            if _checked("given", given).requires_grad and torch.is_grad_enabled():
+                raise TypeError(
+                    "given requires a gradient, and there are derivatives by x "
+                    "alone; given.detach() is right")
+            given = _array(given.to(x.dtype))
         return _Forward.apply(x, given, problem)
 
     return forward

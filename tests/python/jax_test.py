@@ -44,6 +44,34 @@ class Jax(unittest.TestCase):
         x = p.sample(n=2, labelled=True).x
         np.testing.assert_array_equal(physinv.jax(p)(x), p.forward(x))
 
+    def test_second_derivatives_are_none_rather_than_zero(self):
+        p = physinv.problem("jpo/billiards")
+        s = p.sample(n=2, labelled=True)
+        forward = physinv.jax(p)
+
+        def loss(x):
+            return forward(x, s.given).sum()
+
+        one = np.ones_like(s.x)
+        for ask in (lambda: jax.jvp(jax.grad(loss), (s.x,), (one,)),
+                    lambda: jax.hessian(loss)(s.x),
+                    lambda: jax.grad(lambda x: jax.grad(loss)(x).sum())(s.x),
+                    lambda: jax.jvp(loss, (s.x,), (one,))):
+            with self.assertRaises((TypeError, ValueError)):
+                ask()
+
+    def test_given_has_no_derivative(self):
+        p = next(p for p in map(physinv.problem, physinv.problems())
+                 if "vjp" in p.names and p.shape[2] > 0)
+        s = p.sample(n=2, labelled=True)
+        forward = physinv.jax(p)
+        for argnums in (1, (0, 1)):
+            with self.assertRaisesRegex(TypeError, "stop_gradient"):
+                jax.grad(lambda x, given: forward(x, given).sum(),
+                         argnums)(s.x, s.given)
+        with self.assertRaisesRegex(TypeError, "x is int"):
+            forward(np.ones(s.x.shape, int), s.given)
+
     def test_a_network_learns_through_the_physics(self):
         p = physinv.problem("jpo/robotic-arm")
         y = p.sample(seed=0, n=32).y

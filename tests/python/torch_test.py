@@ -20,6 +20,11 @@ WORK = sys.argv[1]
 LARGEST = 200  # unknowns whose every difference is looked at
 
 
+def with_given():
+    return next(p for p in map(physinv.problem, physinv.problems())
+                if "vjp" in p.names and p.shape[2] > 0)
+
+
 def tensors(p, n):
     s = p.sample(seed=1, n=n, labelled=True)
     return [torch.from_numpy(a) for a in (s.x, s.y, s.given)]
@@ -77,6 +82,40 @@ class Torch(unittest.TestCase):
         p = physinv.problem("jpo/robotic-arm")
         with self.assertRaisesRegex(TypeError, "float32 or float64"):
             physinv.torch(p)(torch.zeros(1, 4, dtype=torch.int64))
+        p = with_given()
+        x, _, given = tensors(p, 2)
+        for wrong in (given + 1j, given.numpy()):
+            with self.assertRaisesRegex(TypeError, "given is .*float32 or"):
+                physinv.torch(p)(x, wrong)
+
+    def test_second_derivatives_are_none_rather_than_zero(self):
+        p = physinv.problem("jpo/billiards")
+        x, y, given = tensors(p, 2)
+        forward = physinv.torch(p)
+        x.requires_grad_()
+
+        def loss(x):  # linear in y as well: no second derivative by y
+            return forward(x, given).sum()
+
+        with self.assertRaisesRegex(NotImplementedError, "first derivatives"):
+            torch.autograd.functional.hessian(loss, x)
+        with self.assertRaisesRegex(NotImplementedError, "first derivatives"):
+            torch.autograd.functional.hvp(loss, x, x)
+        with self.assertRaisesRegex(NotImplementedError, "first derivatives"):
+            slope, = torch.autograd.grad(loss(x), x, create_graph=True)
+            (loss(x) + slope.square().sum()).backward()
+        with self.assertRaises(NotImplementedError):
+            torch.autograd.gradgradcheck(lambda x: forward(x, given), (x,))
+
+    def test_given_has_no_derivative(self):
+        p = with_given()
+        x, _, given = tensors(p, 2)
+        given.requires_grad_()
+        with self.assertRaisesRegex(TypeError, "given.detach"):
+            physinv.torch(p)(x, given)
+        with torch.no_grad():
+            y = physinv.torch(p)(x, given)
+        self.assertTrue(torch.equal(y, physinv.torch(p)(x, given.detach())))
 
     def test_a_network_learns_through_the_physics(self):
         torch.manual_seed(0)
