@@ -34,7 +34,7 @@ Campaigns, which physinv-bench runs and this package reads:
 
     r = physinv.run("smoke", filter="jpo/billiards", out="results/smoke")
     r = physinv.open("results/smoke")      # one that was run before
-    r.stages(), r.examples(case), r.curve(case), r.tidy(), r.plot("fig4")
+    r.stages(), r.examples(case), r.curve(case), r.tidy(), r.plot("fig4a")
     physinv.compare("results/smoke")       # its methods beside each other
     physinv.compare("results/a", "results/b")
     physinv.published("jpo/billiards")     # what the paper prints

@@ -15,6 +15,7 @@ class Samples(NamedTuple):
 
 class ProgramError(RuntimeError):
     status: int
+    output: str
 
 class Results:
     directory: str

@@ -1,5 +1,6 @@
 """Campaigns: run by the program physinv-bench, read by the suite's own code."""
 
+import collections.abc
 import contextlib
 import json
 import os
@@ -14,11 +15,13 @@ from physinv import _core, _methods
 
 class ProgramError(RuntimeError):
     """The program ended with another status than 0; `status` is its exit code,
-    the message its last words."""
+    the message its last words, `output` what the verb printed before it ended
+    (of `run` with methods in Python nothing: it prints as it goes)."""
 
-    def __init__(self, status, words):
+    def __init__(self, status, words, output=""):
         super().__init__(words)
         self.status = status
+        self.output = output
 
 
 def program():
@@ -63,37 +66,62 @@ def _published_folder():
     return installed if installed.is_dir() else sources
 
 
+# A list is one value of these, with commas; other flags repeat.
+_LISTS = ("seeds",)
+
+
+def _texts(value):
+    """What flags take of a value, or of several."""
+    if hasattr(value, "tolist"):  # of NumPy
+        value = value.tolist()
+    if isinstance(value, bool):
+        return [str(value).lower()]
+    if isinstance(value, (str, bytes, os.PathLike)):
+        return [os.fsdecode(value)]
+    if isinstance(value, collections.abc.Iterable):
+        return [text for one in value for text in _texts(one)]
+    return [str(value)]
+
+
 def _words(arguments, flags):
-    words = [str(one) for one in arguments]
+    """As typed. A flag that is None, or an empty list, is left out."""
+    words = [text for one in arguments for text in _texts(one)]
     for key, value in flags.items():
-        flag = "--" + key.replace("_", "-")
-        for one in value if isinstance(value, (list, tuple)) else [value]:
-            if one is not False:
-                words.append(flag if one is True else f"{flag}={one}")
+        texts = [] if value is None else _texts(value)
+        if key in _LISTS and texts:
+            texts = [",".join(texts)]
+        words += [f"--{key.replace('_', '-')}={text}" for text in texts]
     return words
 
 
 def verb(name, *arguments, **flags):
     """Calls a verb of physinv-bench and returns what it prints; flags as
-    keywords: verb("compare", "a", "b"), verb("list", profile="smoke"). With
-    methods in Python it runs in this process, which knows them."""
+    keywords: verb("compare", "a", "b"), verb("list", profile="smoke",
+    seeds=[0, 1]). None leaves a flag out. With methods in Python it runs in
+    this process, which knows them. ProgramError where it ends with a status;
+    its `output` is what was printed."""
     words = _words(arguments, flags)
     if _methods.registered():
         with _captured() as printed:
-            _here(name, words)
-        return printed()
-    command = [program(), name, *words]
-    done = subprocess.run(command, capture_output=True, text=True)
-    if done.returncode != 0:
-        lines = done.stderr.strip().splitlines() or [f"{name} failed"]
-        raise ProgramError(done.returncode, lines[-1])
-    return done.stdout
-
-
-def _here(name, words):
-    status, last = _core.call(name, words)
+            status, last = _call(name, words)
+        output = printed()
+    else:
+        done = subprocess.run([program(), name, *words], capture_output=True)
+        status, output = done.returncode, _decoded(done.stdout)
+        lines = _decoded(done.stderr).strip().splitlines()
+        last = lines[-1] if lines else f"{name} failed"
     if status != 0:
-        raise ProgramError(status, last)
+        raise ProgramError(status, last, output)
+    return output
+
+
+def _decoded(printed):
+    return printed.decode("utf-8", "surrogateescape")
+
+
+def _call(name, words):
+    """Status and last words of a verb in this process."""
+    return _core.call(name, [os.fsencode(word) for word in words])
 
 
 @contextlib.contextmanager
@@ -110,17 +138,19 @@ def _captured():
             os.dup2(before, 1)
             os.close(before)
             file.seek(0)
-            text.append(file.read().decode())
+            text.append(_decoded(file.read()))
 
 
 def run(profile="quick", out=None, **flags):
-    """Runs a profile (flags of `run`, such as filter="jpo/billiards", jobs=2)
-    and opens its results. With methods in Python, in workers of this
-    process."""
+    """Runs a profile (flags of `run`, such as filter="jpo/billiards", jobs=2,
+    seeds=[0, 1]) and opens its results. With methods in Python, in workers of
+    this process."""
     out = out or f"results/{profile}"
     flags = dict(profile=profile, out=out, **flags)
     if _methods.registered():
-        _here("run", _words([], flags))
+        status, last = _call("run", _words([], flags))
+        if status != 0:
+            raise ProgramError(status, last)
     else:
         verb("run", **flags)
     return open(out)
@@ -128,15 +158,16 @@ def run(profile="quick", out=None, **flags):
 
 def open(directory):
     """Results of a campaign, which may be under way."""
-    return Results(str(directory))
+    return Results(directory)
 
 
 class Results:
-    """A campaign's results."""
+    """A campaign's results. `directory` is absolute: another working directory
+    makes it no other campaign."""
 
     def __init__(self, directory):
-        self.directory = directory
-        self._results = _core.load_results(directory)
+        self.directory = os.path.abspath(os.fsdecode(directory))
+        self._results = _core.load_results(os.fsencode(self.directory))
 
     def stages(self):
         """A dict for every finished stage: case, experiment, method, n, seed,
@@ -188,18 +219,41 @@ class Results:
         parquet.write_table(table, str(path))
 
     def plot(self, figure):
-        """A figure of the report as SVG text, by its id ("fig4"); the report is
-        made if it is not there. A wrong id is answered with those there are."""
+        """A figure of the report as SVG text, by its id ("fig4a"), or with its
+        experiment ("jpo-billiards/fig4a") where several have one; the report is
+        made if it is not there, or older than the results. A wrong id is
+        answered with those there are."""
         return _figure(self.directory, figure)
 
 
 def _figure(directory, name):
     report = pathlib.Path(directory) / "report"
-    if not report.is_dir():
-        verb("report", directory)
-    found = sorted(report.rglob(f"{name}.svg"))
+    if not _newer(report / "report.md", report.parent / "results.json"):
+        try:
+            verb("report", directory)
+        except ProgramError as error:
+            if error.status not in _REPORTED:
+                raise
+    figures = {}  # id, and each with its experiment
+    for path in sorted(report.rglob("*.svg")):
+        where = path.relative_to(report).parts[0]
+        figures.setdefault(path.stem, {})[f"{where}/{path.stem}"] = path
+    found = {full: path for alike in figures.values()
+             for full, path in alike.items() if name in (full, path.stem)}
     if not found:
-        known = sorted({path.stem for path in report.rglob("*.svg")})
         raise ValueError(f"there is no figure '{name}'; known are "
-                         f"{', '.join(known)}")
-    return found[0].read_text()
+                         f"{', '.join(sorted(figures))}")
+    if len(found) > 1:
+        raise ValueError(f"there are several figures '{name}': "
+                         f"{', '.join(sorted(found))}")
+    path, = found.values()
+    return path.read_text(encoding="utf-8")
+
+
+# The report is written, of runs that say no or are not all there.
+_REPORTED = (7, 10)
+
+
+def _newer(path, other):
+    return (path.is_file() and other.is_file() and
+            path.stat().st_mtime_ns >= other.stat().st_mtime_ns)

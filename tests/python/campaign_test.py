@@ -4,6 +4,8 @@ beside ours on 128 problems of billiards."""
 
 import json
 import os
+import pathlib
+import re
 import shutil
 import sys
 import unittest
@@ -99,6 +101,10 @@ class Campaign(unittest.TestCase):
             ["jpo/billiards", 128, "bfgs", 1, 128])
         self.assertEqual(row["loss"], np.median(e["loss"]))
         self.assertEqual(row["converged"], e["status"].count("gtol") / 128)
+        self.assertEqual(row["solved"], (e["loss"] < 1e-12).mean())
+        self.assertGreater(row["converged"], row["solved"])  # plateaus
+        self.assertIn("losses below 1e-12 ",  # as the program has it
+                      " ".join(physinv.verb("compare", help=True).split()))
         self.assertEqual(row["seconds"], self.results.stages()[0]["seconds"])
         both = physinv.compare(WORK + "/smoke", WORK + "/smoke")
         self.assertEqual(both["rows"][0]["sides"][1]["same_bits"], 1)
@@ -132,6 +138,71 @@ class Campaign(unittest.TestCase):
             self.results.plot("no-such")
         name = str(e.exception).split("known are ")[1].split(",")[0]
         self.assertIn("<svg", self.results.plot(name))
+        page = os.path.join(os.path.dirname(__file__), "../../docs/python.md")
+        with open(page) as f:
+            named = re.findall(r'r\.plot\("([^"]+)"\)', f.read())
+        self.assertTrue(named)
+        for figure in named + ["jpo-billiards/" + named[0]]:
+            self.assertIn("<svg", self.results.plot(figure))
+
+    def test_figures_are_of_the_results_as_they_are(self):
+        out = WORK + "/anew"
+        lines = []
+        for method in ("bfgs", "gd"):
+            r = physinv.run("smoke", filter=f"^jpo/billiards/{method}/n=4/",
+                            out=out, jobs=1, no_report=len(lines) > 0)
+            lines.append(r.plot("run_time_against_loss"))
+        self.assertFalse(lines[0] == lines[1])
+
+    def test_one_of_several_figures_is_named(self):
+        r = physinv.run("smoke", filter="^jpo/(billiards|robotic-arm)/bfgs/n=4/",
+                        out=WORK + "/two", jobs=1)
+        name = "run_time_against_loss"
+        with self.assertRaisesRegex(ValueError, f"jpo-billiards/{name}, "
+                                    f"jpo-robotic-arm/{name}"):
+            r.plot(name)
+        self.assertFalse(r.plot("jpo-billiards/" + name) ==
+                         r.plot("jpo-robotic-arm/" + name))
+
+    def test_another_working_directory_is_no_other_campaign(self):
+        before = os.getcwd()
+        try:
+            os.chdir(WORK)
+            r = physinv.open("smoke")
+            os.chdir("/")
+            self.assertEqual(r.directory, os.path.join(before, WORK, "smoke"))
+            self.assertIn("<svg", r.plot("fig4a"))
+        finally:
+            os.chdir(before)
+
+    def test_flags_as_python_has_them(self):
+        def names(**flags):
+            text = physinv.verb("list", profile="smoke", **flags)
+            return re.findall(r"^jpo/billiards/bfgs/\S+", text, re.M)
+
+        wanted = [f"jpo/billiards/bfgs/n=4/seed={k}" for k in (0, 1)]
+        line = "^jpo/billiards/bfgs/n=4/"
+        for seeds in ([0, 1], (0, 1), np.arange(2), range(2), "0,1"):
+            self.assertEqual(names(filter=line, seeds=seeds), wanted)
+        self.assertEqual(names(filter=line, seeds=np.int64(1)), wanted[1:])
+        everything = names(filter=None)
+        self.assertEqual(everything, names())
+        self.assertGreater(len(everything), 1)
+        self.assertEqual(names(filter=[line, "-seed=0"], seeds=[0, 1]),
+                         wanted[1:])
+        r = physinv.run("smoke", filter=line, out=pathlib.Path(WORK) / "typed",
+                        no_report=False, dry_run=False, seeds=[0])
+        self.assertEqual([s["case"] for s in r.stages()], wanted[:1])
+        self.assertTrue(os.path.isdir(r.directory + "/report"))
+
+    def test_what_was_printed_is_kept(self):
+        other = WORK + "/other"
+        physinv.run("smoke", filter="^jpo/billiards/bfgs/n=(4|128)/seed=0",
+                    out=other, jobs=1, no_report=True)
+        with self.assertRaises(physinv.ProgramError) as e:
+            physinv.verb("compare", other, WORK + "/smoke", fail_on="missing")
+        self.assertEqual(e.exception.status, 5)
+        self.assertIn("jpo/billiards", e.exception.output)
 
     @unittest.skipIf(minimize is None, "scipy is missing")
     def test_scipy_does_as_ours(self):
