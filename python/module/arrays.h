@@ -21,16 +21,32 @@ using Array = py::array_t<T, py::array::c_style | py::array::forcecast>;
 template <class T>
 using View = Eigen::Map<const Batch<T>>;
 
+/// An array of numbers for an argument that is no plain array of T. Complex and
+/// masked arrays are none: what would be dropped is a TypeError.
+inline py::array numbers(const py::object& argument, std::string_view name) {
+  const py::object masked =
+      py::module_::import("numpy").attr("ma").attr("MaskedArray");
+  if (py::isinstance(argument, masked))
+    throw py::type_error(fmt::format(
+        "{} is a masked array; filled(), without a mask, is right", name));
+  auto array = py::array::ensure(argument);
+  PyErr_Clear();
+  const char kind = array ? array.dtype().kind() : 'U';
+  if (kind == 'c')
+    throw py::type_error(
+        fmt::format("{} is complex; real numbers are right", name));
+  if (std::string_view("biufO").find(kind) == std::string_view::npos)
+    throw py::type_error(fmt::format("{} is no array of numbers", name));
+  return array;
+}
+
 /// The array of T that an argument is or can be taken for; else TypeError.
 template <class T>
 Array<T> taken(const py::object& argument, std::string_view name) {
-  if (Array<T>::check_(argument))
+  const auto* plain = py::detail::npy_api::get().PyArray_Type_;
+  if (Py_TYPE(argument.ptr()) == plain && Array<T>::check_(argument))
     return py::reinterpret_borrow<Array<T>>(argument);
-  if (py::isinstance<py::array>(argument) &&
-      py::reinterpret_borrow<py::array>(argument).dtype().kind() == 'c')
-    throw py::type_error(
-        fmt::format("{} is complex; real numbers are right", name));
-  auto array = Array<T>::ensure(argument);
+  auto array = Array<T>::ensure(numbers(argument, name));
   if (!array) {
     PyErr_Clear();
     throw py::type_error(fmt::format("{} is no array of numbers", name));
@@ -46,6 +62,12 @@ View<T> view(const Array<T>& array,
              Index features) {
   if (array.ndim() != 2 || array.shape(0) != samples ||
       array.shape(1) != features) {
+    if (array.ndim() == 1 && array.shape(0) == features)
+      throw py::value_error(fmt::format(
+          "{0} is ({1}), one sample without its axis; {0}[None], (1, {1}), is "
+          "right",
+          name,
+          features));
     std::string shape;
     for (py::ssize_t i = 0; i < array.ndim(); ++i)
       shape += fmt::format("{}{}", i == 0 ? "" : ", ", array.shape(i));

@@ -9,6 +9,8 @@
 #include "python/module/arrays.h"
 #include "python/module/solving.h"
 #include "suite/app/verbs.h"
+#include "suite/core/float_environment.h"
+#include "suite/core/threads.h"
 #include "suite/harness/registry.h"
 #include "suite/store/errors.h"
 
@@ -23,36 +25,51 @@ Status status_of(const std::string& name) {
                         "'; gtol, maxiter, linesearch and nonfinite are");
 }
 
-Vector<double> counts_of(const py::object& values) {
-  const auto array = Array<double>::ensure(values);
-  if (!array || array.ndim() != 1) {
-    PyErr_Clear();
-    throw py::value_error("iterations and evaluations are lists of numbers");
-  }
-  return Eigen::Map<const Vector<double>>(array.data(), array.shape(0));
+/// What a method says that it took, one count per problem.
+Batch<double> counts_of(const py::object& values,
+                        const std::string& name,
+                        Index n) {
+  const auto array = taken<double>(values, name);
+  const Eigen::Map<const Vector<double>> counts(array.data(), array.size());
+  if (array.ndim() != 1 || counts.size() != n || !counts.allFinite() ||
+      (counts.array() < 0).any())
+    throw py::value_error(fmt::format(
+        "{} are no counts from 0 on, one for each of {} problems", name, n));
+  return counts.transpose();
 }
 
-/// x, or x and a dict of status, iterations and evaluations per example.
+std::vector<Status> statuses_of(const py::object& values, Index n) {
+  std::vector<Status> all;
+  for (const auto& one : values.cast<std::vector<std::string>>())
+    all.push_back(status_of(one));
+  if (static_cast<Index>(all.size()) != n)
+    throw py::value_error(
+        fmt::format("status has {} entries for {} problems", all.size(), n));
+  return all;
+}
+
+/// x, or x and a dict of status, iterations and evaluations per example. The
+/// record has the counts of the suite, and what a method says beside them.
 Outcome outcome_of(py::object result, const Solving& solving) {
   py::dict more;
   if (py::isinstance<py::tuple>(result) && py::len(result) == 2) {
     more = result.cast<py::tuple>()[1].cast<py::dict>();
     result = result.cast<py::tuple>()[0];
   }
-  const auto x = Array<double>::ensure(result);
-  if (!x) throw py::value_error("a method returns x, (samples, unknowns)");
+  if (result.is_none())
+    throw py::value_error("it returned None; x, (samples, unknowns), is right");
   Outcome out;
-  out.x = solving.estimates(x);
+  out.x = solving.estimates(result);
+  out.iterations = solving.counted_iterations();
+  out.evaluations = solving.counted_evaluations();
   for (const auto& [key, value] : more) {
     const auto name = key.cast<std::string>();
     const auto given = py::reinterpret_borrow<py::object>(value);
     if (name == "status") {
-      for (const auto& one : given.cast<std::vector<std::string>>())
-        out.status.push_back(status_of(one));
-    } else if (name == "iterations") {
-      out.iterations = counts_of(given);
-    } else if (name == "evaluations") {
-      out.evaluations = counts_of(given);
+      out.status = statuses_of(given, solving.n());
+    } else if (name == "iterations" || name == "evaluations") {
+      const std::string claimed = "claimed_" + name;
+      out.arrays[ArrayKey::own(claimed)] = counts_of(given, name, solving.n());
     } else {
       throw py::value_error("a method has no '" + name +
                             "'; status, iterations and evaluations are known");
@@ -66,10 +83,52 @@ Outcome outcome_of(py::object result, const Solving& solving) {
   return out;
 }
 
+/// UTF-8 without a NUL: what is neither becomes the escape that Python has for
+/// it.
+std::string plain_text(const py::object& text) {
+  const auto bytes = text.attr("encode")("utf-8", "backslashreplace");
+  std::string plain;
+  for (const char c : bytes.cast<std::string>())
+    plain += c == '\0' ? "\\x00" : std::string(1, c);
+  return plain;
+}
+
+/// "ArithmeticError: not today"
+std::string words_of(const py::error_already_set& error) {
+  const std::string type = plain_text(error.type().attr("__name__"));
+  try {
+    return fmt::format("{}: {}", type, plain_text(py::str(error.value())));
+  } catch (const py::error_already_set&) {
+    return type + ", whose text cannot be had";
+  }
+}
+
 /// What a method declares that it uses.
 struct Wanted {
   Needs needs = Needs::forward;
   Networks networks = Networks::none;
+};
+
+/// What Python's libraries compute with: so many threads as the case has, for
+/// as long as it stands (physinv/_threads.py).
+class CaseThreads {
+ public:
+  explicit CaseThreads(int count)
+      : module_(py::module_::import("physinv._threads")),
+        before_(module_.attr("limit")(count)) {}
+  ~CaseThreads() {
+    try {
+      module_.attr("restore")(before_);
+    } catch (const py::error_already_set&) {
+      // A library that refuses keeps what it has.
+    }
+  }
+  CaseThreads(const CaseThreads&) = delete;
+  CaseThreads& operator=(const CaseThreads&) = delete;
+
+ private:
+  py::module_ module_;
+  py::object before_;
 };
 
 /// Whoever keeps what a method saw sees nothing of it afterwards.
@@ -111,14 +170,13 @@ class PythonStage final : public Stage {
     const auto solving = std::make_shared<Solving>(run);
     const Ending ending{*solving};
     try {
+      const CaseThreads threads(run.threads == nullptr ? 1
+                                                       : run.threads->count());
       Outcome out = outcome_of(solve_(solving), *solving);
       solving->finish();
       return out;
     } catch (const py::error_already_set& error) {
-      throw std::runtime_error(
-          fmt::format("{}: {}",
-                      error.type().attr("__name__").cast<std::string>(),
-                      py::str(error.value()).cast<std::string>()));
+      throw std::runtime_error(words_of(error));
     }
   }
 
@@ -224,9 +282,25 @@ std::vector<std::string> add_method(
 
 bool running = false;
 
-/// A worker is a fork, and Python is to know.
-void after_fork() {
+/// A worker is a fork, and Python is to know, and OpenMP, whose threads a child
+/// has not.
+void before_fork() {
+  if (!running) return;
+  try {
+    py::module_::import("physinv._threads").attr("before_fork")();
+  } catch (const py::error_already_set&) {
+    // A child without threads of OpenMP is one that uses a single one.
+  }
+  PyOS_BeforeFork();
+}
+
+void after_fork_here() {
+  if (running) PyOS_AfterFork_Parent();
+}
+
+void after_fork_there() {
   if (running) PyOS_AfterFork_Child();
+  running = false;  // what it forks is its own affair
 }
 
 const Verb& verb_named(const std::string& name) {
@@ -237,9 +311,11 @@ const Verb& verb_named(const std::string& name) {
 
 /// Status and last words of a verb, in this process, which knows the methods.
 py::tuple call(const std::string& name, const Arguments& arguments) {
-  static const int kRegistered = pthread_atfork(nullptr, nullptr, after_fork);
+  static const int kRegistered =
+      pthread_atfork(before_fork, after_fork_here, after_fork_there);
   (void)kRegistered;
   const Verb& verb = verb_named(name);
+  const DefaultFloatEnvironment floats;
   running = true;
   ExitCode status = ExitCode::internal;
   std::string words;
@@ -256,7 +332,9 @@ py::tuple call(const std::string& name, const Arguments& arguments) {
   }
   running = false;
   std::fflush(stdout);
-  return py::make_tuple(static_cast<int>(status), words);
+  const auto text = py::reinterpret_steal<py::str>(PyUnicode_DecodeUTF8(
+      words.data(), static_cast<py::ssize_t>(words.size()), "surrogateescape"));
+  return py::make_tuple(static_cast<int>(status), text);
 }
 
 }  // namespace

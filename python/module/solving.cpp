@@ -2,7 +2,10 @@
 
 #include <pybind11/stl.h>
 
+#include <algorithm>
+
 #include "optimizers/network_model.h"
+#include "suite/core/float_environment.h"
 #include "suite/core/oracle.h"
 #include "suite/core/probe.h"
 
@@ -38,6 +41,7 @@ Array<double> Solving::observations() const {
 }
 
 py::dict Solving::network() const {
+  const DefaultFloatEnvironment floats;
   const Setting& setting = get().setting;
   const NetworkRole& role = setting.predictor;
   if (role.inputs.empty())
@@ -61,55 +65,77 @@ py::dict Solving::network() const {
   return all;
 }
 
-Array<double> Solving::loss(const Array<double>& x,
-                            const Active& active) const {
+Array<double> Solving::loss(const py::object& x, const py::object& active) {
+  const DefaultFloatEnvironment floats;
   const auto chosen = problems(active);
-  const auto in = points(x, chosen);
+  const auto array = taken<double>(x, "x");
+  const auto in = points(array, chosen);
   Vector<double> loss(in.cols());
   oracle().evaluate<double>(chosen, in, loss);
+  count(chosen);
   return to_array(loss);
 }
 
-py::tuple Solving::loss_and_gradient(const Array<double>& x,
-                                     const Active& active) const {
+py::tuple Solving::loss_and_gradient(const py::object& x,
+                                     const py::object& active) {
+  const DefaultFloatEnvironment floats;
   const auto chosen = problems(active);
-  const auto in = points(x, chosen);
+  const auto array = taken<double>(x, "x");
+  const auto in = points(array, chosen);
   Vector<double> loss(in.cols());
   auto gradient = make_array<double>(in.cols(), in.rows());
   oracle().evaluate<double>(chosen, in, loss, writable(gradient));
+  count(chosen);
   return py::make_tuple(to_array(loss), gradient);
 }
 
 py::tuple Solving::labelled(Index per_problem) const {
+  const DefaultFloatEnvironment floats;
   const auto& s = oracle().labelled(per_problem);
   return py::make_tuple(to_array(s.x), to_array(s.y), to_array(s.given));
 }
 
-bool Solving::proceed(const Array<double>& x) {
-  const auto in = estimates(x);
+bool Solving::proceed(const py::object& x) {
+  const DefaultFloatEnvironment floats;
+  const Batch<double> in = estimates(x);
   told_ = true;
   return get().probe.proceed([&](BatchOut<double> out) { out = in; });
 }
 
 void Solving::accept(Index example,
                      Index iteration,
-                     const Array<double>& x,
-                     double loss) {
+                     const py::object& x,
+                     const py::object& loss) {
   if (example < 0 || example >= n())
     throw py::value_error(
         fmt::format("example {} of {} from 0 on", example, n()));
   if (iteration < 0 || iteration > iterations())
     throw py::value_error(fmt::format(
         "iteration {} of {}, which are the budget", iteration, iterations()));
-  if (x.ndim() != 1 || x.shape(0) != oracle().shape().unknowns)
+  const auto at = taken<double>(x, "x");
+  const auto lost = taken<double>(loss, "loss");
+  if (lost.size() != 1) throw py::value_error("loss is one number");
+  if (at.ndim() != 1 || at.shape(0) != oracle().shape().unknowns)
     throw py::value_error(fmt::format("x has the {} unknowns of an example",
                                       oracle().shape().unknowns));
   told_ = accepted_ = true;
-  get().probe.accept(example, iteration, x.data(), loss);
+  get().probe.accept(example, iteration, at.data(), *lost.data());
+  double& reached = accepted_iterations_(example);
+  reached = std::max(reached, static_cast<double>(iteration));
 }
 
-View<double> Solving::estimates(const Array<double>& x) const {
-  return points(x, problems({}));
+Batch<double> Solving::estimates(const py::object& x) const {
+  return points(taken<double>(x, "x"), all());
+}
+
+Vector<double> Solving::counted_iterations() const {
+  if (accepted_) return accepted_iterations_;
+  return Vector<double>::Constant(n(),
+                                  static_cast<double>(get().probe.iteration()));
+}
+
+void Solving::count(const std::vector<Index>& chosen) {
+  for (const Index i : chosen) evaluations_(i) += 1;
 }
 
 View<double> Solving::points(const Array<double>& x,
@@ -118,12 +144,29 @@ View<double> Solving::points(const Array<double>& x,
       x, "x", static_cast<Index>(chosen.size()), oracle().shape().unknowns);
 }
 
-std::vector<Index> Solving::problems(const Active& active) const {
-  if (!active) return {oracle().all().begin(), oracle().all().end()};
-  for (const Index i : *active)
-    if (i < 0 || i >= n())
-      throw py::value_error(fmt::format("problem {} of {} from 0 on", i, n()));
-  return *active;
+std::vector<Index> Solving::all() const {
+  return {oracle().all().begin(), oracle().all().end()};
+}
+
+std::vector<Index> Solving::problems(const py::object& active) const {
+  if (active.is_none()) return all();
+  const py::array given = numbers(active, "active");
+  const char kind = given.dtype().kind();
+  const bool mask = kind == 'b' && given.size() == n();
+  const bool indices = kind == 'i' || kind == 'u' || given.size() == 0;
+  if (given.ndim() != 1 || !(mask || indices))
+    throw py::type_error(fmt::format(
+        "active is neither a list of problems from 0 on nor one of {} bools",
+        n()));
+  const Array<Index> list(given);
+  std::vector<Index> chosen;
+  for (Index i = 0; i < list.size(); ++i) {
+    const Index it = *list.data(i);
+    if (!mask && (it < 0 || it >= n()))
+      throw py::value_error(fmt::format("problem {} of {} from 0 on", it, n()));
+    if (!mask || it != 0) chosen.push_back(mask ? i : it);
+  }
+  return chosen;
 }
 
 void Solving::finish() {
@@ -144,8 +187,8 @@ void define_case(Run& run) {
       .def_property_readonly(
           "gtol",
           &Solving::gtol,
-          "The norm of a gradient (largest entry) at which a problem counts as "
-          "solved.")
+          "The norm of a gradient (largest entry) at which the suite's solvers "
+          "end a\nproblem as converged.")
       .def_property_readonly(
           "start", &Solving::start, "First guesses: (n, unknowns).")
       .def_property_readonly(
@@ -176,13 +219,14 @@ void define_case(Run& run) {
 
 void define_losses(Run& run) {
   const auto active = py::arg("active") = py::none();
-  run.def("loss",
-          &Solving::loss,
-          py::arg("x"),
-          active,
-          "loss($self, x, active=None)\n--\n\n"
-          "Losses (k,) at x (k, unknowns) of the problems `active`, by default "
-          "all n;\ncounted.")
+  run.def(
+         "loss",
+         &Solving::loss,
+         py::arg("x"),
+         active,
+         "loss($self, x, active=None)\n--\n\n"
+         "Losses (k,) at x (k, unknowns) of the problems `active`, by default "
+         "all n;\ncounted. Problems are named by their indices, or by n bools.")
       .def("loss_and_gradient",
            &Solving::loss_and_gradient,
            py::arg("x"),

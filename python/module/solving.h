@@ -1,7 +1,6 @@
 /// What a method written in Python may see of its case, for as long as it runs.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "python/module/arrays.h"
@@ -11,7 +10,10 @@ namespace physinv::python {
 
 class Solving {
  public:
-  explicit Solving(StageRun& run) : run_(&run) {}
+  explicit Solving(StageRun& run)
+      : run_(&run),
+        accepted_iterations_(Vector<double>::Zero(n())),
+        evaluations_(Vector<double>::Zero(n())) {}
 
   Index n() const;
   Index iterations() const { return get().iterations; }
@@ -23,20 +25,23 @@ class Solving {
   /// The experiment's network as every method of the case begins with it.
   py::dict network() const;
 
-  using Active = std::optional<std::vector<Index>>;
-  Array<double> loss(const Array<double>& x, const Active& active) const;
-  py::tuple loss_and_gradient(const Array<double>& x,
-                              const Active& active) const;
+  /// Of the problems `active`: None for all, indices, or a bool for each.
+  Array<double> loss(const py::object& x, const py::object& active);
+  py::tuple loss_and_gradient(const py::object& x, const py::object& active);
   py::tuple labelled(Index per_problem) const;
 
-  bool proceed(const Array<double>& x);
+  bool proceed(const py::object& x);
   void accept(Index example,
               Index iteration,
-              const Array<double>& x,
-              double loss);
+              const py::object& x,
+              const py::object& loss);
 
   /// An estimate of each problem; ValueError for another shape.
-  View<double> estimates(const Array<double>& x) const;
+  Batch<double> estimates(const py::object& x) const;
+  /// Of each problem: iterations that `proceed` counted, or the last one that
+  /// was accepted, and losses that were asked for, with gradients and without.
+  Vector<double> counted_iterations() const;
+  Vector<double> counted_evaluations() const { return evaluations_; }
   /// Closes the curve. Throws if the method told nothing.
   void finish();
   /// Nothing is seen from here on.
@@ -47,10 +52,13 @@ class Solving {
   Oracle& oracle() const { return get().oracle; }
   View<double> points(const Array<double>& x,
                       const std::vector<Index>& chosen) const;
-  std::vector<Index> problems(const Active& active) const;
+  std::vector<Index> all() const;
+  std::vector<Index> problems(const py::object& active) const;
+  void count(const std::vector<Index>& chosen);
 
   StageRun* run_;
   bool told_ = false, accepted_ = false;
+  Vector<double> accepted_iterations_, evaluations_;
 };
 
 /// Class `Run`.

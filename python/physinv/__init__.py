@@ -15,7 +15,7 @@ each an array (samples, features): p.shape says how many features. A step of
 gradient descent on all 128 at once is x = x - 0.1 * x_bar.
 
 - Arrays are float32 or float64 in C order and are read without a copy; others
-  are converted. A call answers in the precision of its first array, losses are
+  are converted, but for complex and masked ones. A call answers in the precision of its first array, losses are
   double.
 - A sample that diverges is NaN in its own row, and no error. What a problem
   lacks is a TypeError, a wrong shape a ValueError; both say what is right.
@@ -57,7 +57,9 @@ import operator as _operator
 import os as _os
 from collections import namedtuple as _namedtuple
 
-from physinv import _core
+from physinv._built import core as _load_core
+
+_core = _load_core()
 from physinv._campaign import (ProgramError, Results, open, program, published,
                                run, verb)
 from physinv._compare import compare

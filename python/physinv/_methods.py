@@ -45,7 +45,8 @@ def method(name, experiments="*", needs="vjp", iterations=1000, **options):
 
     It sees what a method of the suite sees: problems without their solutions,
     calls counted, its budget. It returns x, or x and a dict of status,
-    iterations and evaluations per example. An exception fails its stage, and
+    iterations and evaluations per example; these two stand beside what was
+    counted, as arrays claimed_iterations and so on. An exception fails its stage, and
     the campaign goes on. `physinv.run` has it in every profile, on the n and
     seeds of its rows. The key of its results has its name, the hash of its
     file, the options, and Python's version; `version=scipy.__version__` adds

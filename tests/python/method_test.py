@@ -3,6 +3,7 @@
 recorded, reused, verified, reported; what fails, fails alone."""
 
 import importlib.util
+import json
 import os
 import shutil
 import signal
@@ -51,7 +52,92 @@ def single(run):
             run.accept(i, k, x[i], loss[0])
             if k < run.iterations:
                 x[i] -= 0.1 * gradient[0]
-    return x, {"status": ["gtol"] * run.n, "iterations": [3] * run.n}
+    return x, {"status": ["gtol"] * run.n, "iterations": [7] * run.n}
+'''
+
+KINDS = '''
+import ctypes
+import numpy as np
+import physinv
+
+libm = ctypes.CDLL("libm.so.6")
+
+def descend(run):
+    x = run.start
+    while run.proceed(x):
+        x = x - 0.05 * run.loss_and_gradient(x)[1]
+    return x
+
+@physinv.method("kind-a", experiments="jpo/robotic-arm", iterations=20)
+def upward(run):
+    x = descend(run)
+    assert libm.fesetround(0x800) == 0  # FE_UPWARD
+    return x
+
+@physinv.method("kind-b", experiments="jpo/robotic-arm", iterations=20)
+def after(run):
+    assert libm.fegetround() == 0
+    return descend(run)
+
+def refused(call):
+    try:
+        call()
+    except TypeError as error:
+        assert "complex" in str(error) or "masked" in str(error), error
+    else:
+        raise AssertionError("taken")
+
+@physinv.method("kind-c", experiments="jpo/robotic-arm", iterations=2)
+def kinds(run):
+    x = run.start
+    for bad in (x + 1j, np.ma.masked_array(x, x > 9), (x + 1j).tolist()):
+        refused(lambda: run.loss(bad))
+        refused(lambda: run.loss_and_gradient(bad))
+        refused(lambda: run.proceed(bad))
+        refused(lambda: run.accept(0, 0, bad[0], 0.5))
+    refused(lambda: run.accept(0, 0, x[0], np.complex128(1 + 1j)))
+    y = x + np.arange(run.n)[:, None]
+    mask = np.arange(run.n) != 1
+    assert (run.loss(y[mask], mask) == run.loss(y)[mask]).all()
+    assert run.loss(y[:0], []).shape == (0,)
+    for bad in ([True], [0.5], 1, "0"):
+        try:
+            run.loss(x[:1], bad)
+        except TypeError:
+            continue
+        raise AssertionError(bad)
+    return descend(run)
+
+@physinv.method("kind-d", experiments="jpo/robotic-arm", iterations=2)
+def returned(run):
+    return descend(run) + 1j
+
+@physinv.method("kind-e", experiments="jpo/robotic-arm", iterations=2)
+def masked(run):
+    return np.ma.masked_array(descend(run), True)
+
+@physinv.method("kind-f", experiments="jpo/robotic-arm", iterations=2)
+def counts(run):
+    return descend(run), {"iterations": np.ones(run.n) * 1j}
+
+@physinv.method("kind-g", experiments="jpo/robotic-arm", iterations=2)
+def nothing(run):
+    descend(run)
+
+@physinv.method("kind-h", experiments="jpo/robotic-arm", iterations=2)
+def odd(run):
+    raise ValueError("caf\\u00e9 \\udcff and \\0 end")
+
+@physinv.method("kind-i", experiments="jpo/robotic-arm", iterations=2)
+def wordless(run):
+    class Odd(Exception):
+        def __str__(self):
+            raise KeyError
+    raise Odd
+
+@physinv.method("kind-j", experiments="jpo/robotic-arm", iterations=2)
+def single(run):
+    run.loss(run.start[0], [0])
 '''
 
 KILLED = '''
@@ -132,13 +218,56 @@ class Methods(unittest.TestCase):
             x = x + v
         self.assertTrue(np.array_equal(
             self.results.examples(row["case"])["x"], x))
+        # Of one who returns x alone the counts are those of the suite.
+        e = self.results.examples(row["case"])
+        self.assertEqual(list(e["iterations"]), [60] * 4)
+        self.assertEqual(list(e["evaluations"]), [60] * 4)
+        self.assertEqual(e["evaluations"].sum(), c["evaluations"][-1])
+
+    def kinds(self):
+        out = WORK + "/kinds"
+        if not os.path.isdir(out):
+            define(KINDS)
+            with self.assertRaises(physinv.ProgramError):
+                physinv.run("smoke", filter="^jpo/robotic-arm/kind-", out=out,
+                            jobs=1, no_report=True)
+        results = physinv.open(out)
+        return results, {s["method"][-1]: s for s in results.stages()}
+
+    def test_no_part_of_a_number_is_dropped(self):
+        _, rows = self.kinds()
+        self.assertEqual(rows["c"]["message"], "")
+        for method, words in (("d", "x is complex; real numbers are right"),
+                              ("e", "x is a masked array"),
+                              ("f", "iterations is complex"),
+                              ("g", "returned None"),
+                              ("j", "x[None], (1, 4), is right")):
+            self.assertIn(words, rows[method]["message"])
+            self.assertEqual(rows[method]["stop"], "failed")
+
+    def test_messages_keep_what_no_text_has(self):
+        _, rows = self.kinds()
+        self.assertEqual(rows["h"]["message"],
+                         "ValueError: caf\u00e9 \\udcff and \\x00 end")
+        self.assertEqual(rows["i"]["message"],
+                         "Odd, whose text cannot be had")
+
+    def test_rounding_is_of_one_stage_alone(self):
+        results, rows = self.kinds()
+        first, then = (results.examples(rows[k]["case"]) for k in "ab")
+        self.assertEqual(rows["b"]["message"], "")
+        self.assertTrue(np.array_equal(first["loss"], then["loss"]))
+        self.assertTrue(np.array_equal(first["x"], then["x"]))
 
     def test_examples_may_go_one_by_one(self):
         row = self.rows["py-single"]
         self.assertEqual((row["stop"], row["iterations"]), ("converged", 3))
         e = self.results.examples(row["case"])
         self.assertEqual(e["status"], ["gtol"] * 4)
+        # As they were accepted and asked for; what it says stands beside them.
         self.assertEqual(list(e["iterations"]), [3] * 4)
+        self.assertEqual(list(e["evaluations"]), [4] * 4)
+        self.assertEqual(list(e["arrays"]["claimed_iterations"]), [7] * 4)
         c = self.results.curve(row["case"])
         self.assertTrue(np.array_equal(c["loss"][-1], e["loss"]))
 
@@ -207,6 +336,7 @@ class Methods(unittest.TestCase):
             with self.assertRaises(physinv.ProgramError) as e:
                 physinv.compare(first, other, fail_on="loss")
             self.assertEqual(e.exception.status, 5)
+            json.loads(e.exception.output)
         finally:
             define(METHODS.replace("RATE", "60"))
 

@@ -6,7 +6,10 @@ import ast
 import inspect
 import os
 import pydoc
+import shutil
+import subprocess
 import sys
+import tempfile
 import threading
 import time
 import unittest
@@ -164,8 +167,10 @@ class Problems(unittest.TestCase):
             physinv.problem("jpo/biliards")
         with self.assertRaisesRegex(ValueError, r"x is \(5, 3\).*\(5, 4\)"):
             arm.forward(s.x[:, :3])
-        with self.assertRaisesRegex(ValueError, r"x is \(4\)"):
+        with self.assertRaisesRegex(ValueError, r"x\[None\], \(1, 4\)"):
             arm.forward(s.x[0])
+        with self.assertRaisesRegex(ValueError, r"x is \(3\)"):
+            arm.forward(s.x[0, :3])
         with self.assertRaisesRegex(TypeError, "provides forward.*no inverse"):
             arm.invert(s.y)
         with self.assertRaisesRegex(TypeError, "x is no array of numbers"):
@@ -176,6 +181,16 @@ class Problems(unittest.TestCase):
                 arm.sample(**wrong)
         with self.assertRaisesRegex(TypeError, "x is complex"):
             arm.forward(s.x + 1j)
+        with self.assertRaisesRegex(ValueError, r"y\[None\], \(1, 2\)"):
+            arm.loss(s.y[0], s.y)
+        for dtype in (np.float32, np.float64):
+            masked = np.ma.masked_array(s.x.astype(dtype), s.x > 9)
+            with self.assertRaisesRegex(TypeError, "x is a masked array"):
+                arm.forward(masked)
+        with self.assertRaisesRegex(TypeError, "x is complex"):
+            arm.forward((s.x + 1j).tolist())
+        with self.assertRaisesRegex(TypeError, "x is no array of numbers"):
+            arm.forward(s.x.astype(str))
         with self.assertRaisesRegex(TypeError, "no jvp, which pushforward"):
             arm.pushforward(s.x, s.x)
         _, tape = arm.linearize(s.x)
@@ -185,6 +200,25 @@ class Problems(unittest.TestCase):
         if ks.shape[2] > 0:
             with self.assertRaisesRegex(ValueError, "needs given"):
                 ks.forward(labelled(ks).x)
+
+    def test_of_another_python_the_right_one_is_named(self):
+        with tempfile.TemporaryDirectory() as folder:
+            there = os.path.dirname(physinv.__file__)
+            package = shutil.copytree(
+                there, folder + "/physinv",
+                ignore=shutil.ignore_patterns("_core.*", "__pycache__"))
+            for file, words in (
+                    (None, "no extension module _core"),
+                    ("_core.cpython-399-x86_64-linux-gnu.so",
+                     r"built for Python 3\.99, and this is Python 3\.\d+ "
+                     r".*; python3\.99 is right")):
+                if file is not None:
+                    open(os.path.join(package, file), "w").close()
+                done = subprocess.run(
+                    [sys.executable, "-c", "import physinv"], text=True,
+                    capture_output=True, env=dict(os.environ, PYTHONPATH=folder))
+                self.assertRegex(done.stderr.splitlines()[-1],
+                                 "^ImportError: .*" + words)
 
     def test_help_teaches(self):
         text = pydoc.plain(pydoc.render_doc(physinv))

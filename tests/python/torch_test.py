@@ -4,6 +4,7 @@ vjp, one forward pass and one pullback a step, a network that is trained through
 the physics and ends on the curve of our JPO."""
 
 import shutil
+import subprocess
 import sys
 import unittest
 
@@ -18,6 +19,30 @@ import physinv
 
 WORK = sys.argv[1]
 LARGEST = 200  # unknowns whose every difference is looked at
+# The parent has threads of OpenMP, its workers are forks.
+FORKED = """
+import sys
+import physinv, torch
+
+torch.set_num_threads(2)
+a = torch.randn(512, 512)
+(a.exp() @ a).sum()
+
+@physinv.method("forked", experiments="jpo/robotic-arm", needs="vjp",
+                iterations=2)
+def solve(run):
+    (a.exp() @ a).sum()
+    threads = torch.get_num_threads()
+    assert threads == int(sys.argv[2]), threads
+    while run.proceed(run.start):
+        pass
+    return run.start
+
+r = physinv.run("smoke", filter="^jpo/robotic-arm/forked/", out=sys.argv[1],
+                threads=int(sys.argv[2]), no_report=True)
+print([(s["stop"], s["message"]) for s in r.stages()], torch.get_num_threads())
+(a.exp() @ a).sum()
+"""
 
 
 def with_given():
@@ -116,6 +141,17 @@ class Torch(unittest.TestCase):
         with torch.no_grad():
             y = physinv.torch(p)(x, given)
         self.assertTrue(torch.equal(y, physinv.torch(p)(x, given.detach())))
+
+    def test_workers_of_a_parent_with_threads(self):
+        script = WORK + "-forked.py"
+        with open(script, "w") as f:
+            f.write(FORKED)
+        for threads in ("1", "2"):
+            out = f"{WORK}-forked-{threads}"
+            shutil.rmtree(out, ignore_errors=True)
+            done = subprocess.run([sys.executable, script, out, threads],
+                                  capture_output=True, text=True, timeout=120)
+            self.assertIn("[('iterations', '')] 2", done.stdout + done.stderr)
 
     def test_a_network_learns_through_the_physics(self):
         torch.manual_seed(0)
