@@ -7,6 +7,7 @@
 #include "suite/core/blocks.h"
 #include "suite/core/disturbance.h"
 #include "suite/core/eigen_caches.h"
+#include "suite/core/float_environment.h"
 
 namespace physinv {
 namespace {
@@ -238,6 +239,7 @@ void Oracle::measure(BatchIn<double> x, VectorOut<double> loss) {
 void Oracle::measure(BatchIn<double> x,
                      BatchOut<double> y,
                      VectorOut<double> loss) {
+  const DefaultFloatEnvironment floats;  // whatever the method has
   Side<double>& s = side<double>();
   Workspace::Scope scope(*measuring_);
   s.problem->forward(x, s.given, y, *measuring_);
