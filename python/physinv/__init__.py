@@ -15,8 +15,8 @@ each an array (samples, features): p.shape says how many features. A step of
 gradient descent on all 128 at once is x = x - 0.1 * x_bar.
 
 - Arrays are float32 or float64 in C order and are read without a copy; others
-  are converted, but for complex and masked ones. A call answers in the precision of its first array, losses are
-  double.
+  are converted, but for complex and masked ones. A call answers in the
+  precision of its first array, losses are double.
 - A sample that diverges is NaN in its own row, and no error. What a problem
   lacks is a TypeError, a wrong shape a ValueError; both say what is right.
 - x, y and given have the units that the header of a problem states

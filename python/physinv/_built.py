@@ -15,11 +15,12 @@ def core():
             raise
     here = pathlib.Path(__file__).parent  # links lead elsewhere
     built = sorted(path.name for path in here.glob("_core.*.so"))
-    this = f"this is Python {_version(importlib.machinery.EXTENSION_SUFFIXES[0])}"
+    own = _version(importlib.machinery.EXTENSION_SUFFIXES[0])
+    this = f"this is Python {own}"
     if not built:
-        raise ImportError(f"{here} has no extension module _core, and {this}; a "
-                          "build with python3-dev, python3-numpy and "
-                          "pybind11-dev makes it")
+        raise ImportError(
+            f"{here} has no extension module _core, and {this}; a build with "
+            "python3-dev, python3-numpy and pybind11-dev makes it")
     versions = [_version(name) for name in built]
     raise ImportError(
         f"physinv is built for Python {' and '.join(versions)}, and {this} "
