@@ -64,10 +64,16 @@ void write_text(hid_t parent, const char* name, const std::string& text) {
   if (!text.empty()) hdf5::write_attribute(parent, name, text);
 }
 
-Status status_of(std::uint8_t byte) {
-  if (byte > static_cast<std::uint8_t>(Status::nonfinite))
+/// What is not known has no attribute.
+std::string read_text(hid_t parent, const char* name) {
+  return hdf5::has_attribute(parent, name) ? hdf5::read_attribute(parent, name)
+                                           : std::string();
+}
+
+Status status_of(std::int32_t code) {
+  if (code < 0 || code > static_cast<std::int32_t>(Status::nonfinite))
     throw StoreError("an array status holds what is no status");
-  return static_cast<Status>(byte);
+  return static_cast<Status>(code);
 }
 
 std::string shape_text(const Batch<double>& b) {
@@ -174,7 +180,7 @@ void read_arrays(const hdf5::Handle& group, StageRecord& r) {
   r.x = hdf5::read_batch(group, "x");
   r.loss = read_vector(group, "loss");
   r.status.clear();
-  for (const auto s : hdf5::read_bytes(group, "status"))
+  for (const auto s : hdf5::read_codes(group, "status"))
     r.status.push_back(status_of(s));
   r.example_iterations = read_vector(group, "iterations");
   r.example_evaluations = read_vector(group, "evaluations");
@@ -307,14 +313,9 @@ void CaseFile::describe_case(const CaseInfo& info) const {
 
 About CaseFile::about() const {
   return named([&] {
-    const auto text = [](hid_t parent, const char* name) {
-      return hdf5::has_attribute(parent, name)
-                 ? hdf5::read_attribute(parent, name)
-                 : std::string();
-    };
-    About about{.problem = text(file_, "problem"),
-                .paper = text(file_, "paper"),
-                .arxiv = text(file_, "arxiv")};
+    About about{.problem = read_text(file_, "problem"),
+                .paper = read_text(file_, "paper"),
+                .arxiv = read_text(file_, "arxiv")};
     if (!hdf5::has(file_, "data")) return about;
     const auto data = hdf5::open_group(file_, "data");
     for (const auto& [name, meaning] : {std::pair("x", &about.unknowns),
@@ -338,8 +339,8 @@ void CaseFile::renew() {
   for (const auto& name : hdf5::names(stages)) {
     const auto old = hdf5::open_group(stages, name);
     const auto group = hdf5::create_group(kept, name);
-    for (const char* attribute : {"key", "hash"})
-      write_text(group, attribute, hdf5::read_attribute(old, attribute));
+    for (const char* text : {"key", "hash", "stop", "profile", "revision"})
+      write_text(group, text, read_text(old, text));
     StageRecord record;
     read_arrays(old, record);
     fresh.put_arrays(group, record);
@@ -351,7 +352,7 @@ void CaseFile::put_data(const CaseData& data) {
   named([&] {
     if (hdf5::has(file_, "data")) {
       const auto old = hdf5::open_group(file_, "data");
-      if (hdf5::read_attribute(old, "hash") == data.hash) {
+      if (read_text(old, "hash") == data.hash) {
         if (!data_are_sound_) read_data();
         data_are_sound_ = true;
         return;
@@ -359,7 +360,7 @@ void CaseFile::put_data(const CaseData& data) {
       hdf5::remove(file_, "data");
     }
     const auto group = hdf5::create_group(file_, "data");
-    hdf5::write_attribute(group, "hash", data.hash);
+    write_text(group, "hash", data.hash);
     const auto put = [&](const char* name,
                          const Batch<double>& array,
                          const char* axes,
@@ -382,7 +383,7 @@ CaseData CaseFile::data() const {
 
 CaseData CaseFile::read_data() const {
   const auto group = hdf5::open_group(file_, "data");
-  CaseData data{.hash = hdf5::read_attribute(group, "hash"),
+  CaseData data{.hash = read_text(group, "hash"),
                 .x = hdf5::read_batch(group, "x"),
                 .y = hdf5::read_batch(group, "y"),
                 .given = hdf5::read_batch(group, "given")};

@@ -10,7 +10,8 @@
 /// with attributes on the right; arrays have their axes, unit and names. All
 /// of them stand in docs/data.md. Examples are the first axis, points of a
 /// curve are. Version 1 had no attributes but case, hash and key, and other
-/// shapes; it is read, and written anew once a stage is added.
+/// shapes; version 2 had statuses as an enumeration, and texts that end in a
+/// zero. Both are read, and written anew once a stage is added.
 ///
 /// What is read back has the types, shapes and hashes that it was written
 /// with, and is finite where it must be:
@@ -39,8 +40,9 @@
 
 namespace physinv {
 
-/// Of the case's file. 2: attributes that describe it, examples first.
-inline constexpr std::uint64_t kCaseVersion = 2;
+/// Of the case's file. 2: attributes that describe it, examples first. 3:
+/// statuses are whole numbers, texts have their exact length.
+inline constexpr std::uint64_t kCaseVersion = 3;
 
 /// File name of a case: its name with '+' for '/', and .h5.
 std::string case_file_name(const std::string& case_name);

@@ -1,9 +1,12 @@
 #include "suite/store/hdf5.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <iterator>
 #include <span>
 
 #include "suite/store/errors.h"
@@ -53,12 +56,19 @@ std::string unique_name() {
   return fmt::format("memory-{}", next++);
 }
 
-void write_array(hid_t parent,
-                 const std::string& name,
-                 std::span<const hsize_t> shape,
-                 hid_t type,
-                 const void* data,
-                 const Note& note) {
+void write_note(const Handle& set, const Note& note) {
+  for (const auto& [key, text] : {std::pair("axes", &note.axes),
+                                  {"unit", &note.unit},
+                                  {"names", &note.names}})
+    if (!text->empty()) write_attribute(set, key, *text);
+}
+
+Handle write_array(hid_t parent,
+                   const std::string& name,
+                   std::span<const hsize_t> shape,
+                   hid_t type,
+                   const void* data,
+                   const Note& note) {
   const Handle space(
       H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
       H5Sclose,
@@ -66,7 +76,7 @@ void write_array(hid_t parent,
   const Handle options(
       H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "make a property list");
   check(H5Pset_obj_track_times(options, false), "leave out times");
-  const Handle set(
+  Handle set(
       H5Dcreate2(
           parent, name.c_str(), type, space, H5P_DEFAULT, options, H5P_DEFAULT),
       H5Dclose,
@@ -74,20 +84,18 @@ void write_array(hid_t parent,
   if (std::find(shape.begin(), shape.end(), 0) == shape.end())
     check(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data),
           "write array " + name);
-  for (const auto& [key, text] : {std::pair("axes", &note.axes),
-                                  {"unit", &note.unit},
-                                  {"names", &note.names}})
-    if (!text->empty()) write_attribute(set, key, *text);
+  write_note(set, note);
+  return set;
 }
 
-/// The enumeration of Status, as it is stored.
+constexpr std::array kStatuses{
+    Status::gtol, Status::maxiter, Status::linesearch, Status::nonfinite};
+
+/// The enumeration of Status, as version 2 stored it.
 hid_t status_type() {
   static const Handle type = [] {
     Handle names(H5Tenum_create(H5T_STD_U8LE), H5Tclose, "make a type");
-    for (const Status s : {Status::gtol,
-                           Status::maxiter,
-                           Status::linesearch,
-                           Status::nonfinite}) {
+    for (const Status s : kStatuses) {
       const auto value = static_cast<std::uint8_t>(s);
       check(H5Tenum_insert(names, to_string(s).data(), &value), "make a type");
     }
@@ -275,9 +283,18 @@ void write(hid_t parent,
            const std::string& name,
            const std::vector<Status>& v,
            const Note& note) {
-  static_assert(sizeof(Status) == 1);
-  const hsize_t shape[] = {v.size()};
-  write_array(parent, name, shape, status_type(), v.data(), note);
+  const auto code = [](Status s) { return static_cast<std::int32_t>(s); };
+  std::vector<std::int32_t> codes, values;
+  std::transform(v.begin(), v.end(), std::back_inserter(codes), code);
+  const hsize_t shape[] = {codes.size()};
+  const Handle set =
+      write_array(parent, name, shape, H5T_STD_I32LE, codes.data(), note);
+  std::vector<std::string_view> words;
+  for (const Status s : kStatuses)
+    values.push_back(code(s)), words.push_back(to_string(s));
+  write_attribute(set, "flag_values", values);
+  write_attribute(
+      set, "flag_meanings", fmt::format("{}", fmt::join(words, " ")));
 }
 
 void write_cube(hid_t parent,
@@ -331,12 +348,17 @@ std::vector<double> read_list(hid_t parent, const std::string& name) {
   return v;
 }
 
-std::vector<std::uint8_t> read_bytes(hid_t parent, const std::string& name) {
+std::vector<std::int32_t> read_codes(hid_t parent, const std::string& name) {
   const Handle set = open_array(parent, name);
-  std::vector<std::uint8_t> v(shape_of(set, 1, false, name)[0]);
+  const hsize_t count = shape_of(set, 1, false, name)[0];
   const Handle type(H5Dget_type(set), H5Tclose, "read type of " + name);
-  const bool names = H5Tget_class(type) == H5T_ENUM;
-  read_array(set, names ? type : H5T_NATIVE_UINT8, v.data(), v.empty(), name);
+  if (H5Tget_class(type) == H5T_ENUM) {
+    std::vector<std::uint8_t> bytes(count);
+    read_array(set, type, bytes.data(), count == 0, name);
+    return {bytes.begin(), bytes.end()};
+  }
+  std::vector<std::int32_t> v(count);
+  read_array(set, H5T_NATIVE_INT32, v.data(), count == 0, name);
   return v;
 }
 

@@ -3,6 +3,7 @@
 
 #include <hdf5.h>
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -68,7 +69,9 @@ void write(hid_t parent,
            const std::string& name,
            const std::vector<double>& value,
            const Note& note = {});
-/// As an enumeration of one byte.
+/// As whole numbers of 32 bits, which every reader has. Their words stand
+/// beside them in the attributes flag_values and flag_meanings, as the CF
+/// conventions have it.
 void write(hid_t parent,
            const std::string& name,
            const std::vector<Status>& value,
@@ -89,20 +92,29 @@ int rank(hid_t parent, const std::string& name);
 Batch<double> read_batch(hid_t parent, const std::string& name);
 std::vector<double> read_list(hid_t parent, const std::string& name);
 Batch<double> read_cube(hid_t parent, const std::string& name);
-/// Statuses, or bytes.
-std::vector<std::uint8_t> read_bytes(hid_t parent, const std::string& name);
+/// The numbers of statuses; older files have them as bytes or an enumeration.
+std::vector<std::int32_t> read_codes(hid_t parent, const std::string& name);
 
-/// One text, or one whole number, of a name that is free.
+/// One text, or one whole number, of a name that is free. A text has its exact
+/// length, without a zero at its end; it is UTF-8, and ASCII where it can be.
+/// An attribute holds less than 64 KiB: of a longer text the first 60,000 bytes
+/// or less, in whole characters, have the name, the next ones name_2, name_3
+/// and so on.
 void write_attribute(hid_t parent,
                      const std::string& name,
                      const std::string& value);
 void write_attribute(hid_t parent,
                      const std::string& name,
                      std::uint64_t value);
+/// A list of whole numbers of 32 bits.
+void write_attribute(hid_t parent,
+                     const std::string& name,
+                     const std::vector<std::int32_t>& value);
 /// Nothing is done if there is none.
 void remove_attribute(hid_t parent, const std::string& name);
 bool has_attribute(hid_t parent, const std::string& name);
-/// StoreError for what is anything else.
+/// All parts of a text, up to the first zero of each; StoreError for what is
+/// anything else.
 std::string read_attribute(hid_t parent, const std::string& name);
 std::uint64_t read_number(hid_t parent, const std::string& name);
 

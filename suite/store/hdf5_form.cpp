@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <optional>
@@ -31,14 +32,20 @@ constexpr auto kSuperblock =
     "\0\0\0\0\0\0\0\0\xff\xff\xff\xff\xff\xff\xff\xff"sv;
 constexpr auto kDouble =
     "\x11\x20\x3f\0\x8\0\0\0\0\0\x40\0\x34\x0b\0\x34\xff\x3\0\0\0\0\0\0"sv;
+constexpr auto kCode = "\x10\x8\0\0\x4\0\0\0\0\0\x20\0\0\0\0\0"sv;
 constexpr auto kByte = "\x10\0\0\0\x1\0\0\0\0\0\x8\0\0\0\0\0"sv;
 constexpr auto kWhole = "\x10\0\0\0\x8\0\0\0\0\0\x40\0\0\0\0\0"sv;
-/// The enumeration of Status: its names, then their values.
+/// The enumeration of Status in version 2: its names, then their values.
 constexpr auto kStatus =
     "\x18\x4\0\0\x1\0\0\0\x10\0\0\0\x1\0\0\0\0\0\x8\0gtol\0\0\0\0"
     "maxiter\0linesearch\0\0\0\0\0\0nonfinite\0\0\0\0\0\0\0\0\x1\x2\x3"sv;
 constexpr auto kFillValue = "\x2\x2\x2\x1\0\0\0\0"sv;
 constexpr auto kScalar = "\x1\0\0\0\0\0\0\0"sv;
+/// A list of as many numbers as there are statuses.
+constexpr auto kStatusList =
+    "\x1\x1\x1\0\0\0\0\0\x4\0\0\0\0\0\0\0\x4\0\0\0\0\0\0\0"sv;
+/// Texts: of version 2, which end in a zero, ASCII, UTF-8.
+constexpr std::uint64_t kTexts[] = {0x13, 0x113, 0x1113};
 
 /// A structure of another form than this suite writes.
 struct Refused {
@@ -194,10 +201,10 @@ class Walk {
       case kShape:
         return shape(body, object);
       case kType:
-        require(!object.element &&
-                    (body == kDouble || body == kByte || body == kStatus),
+        require(!object.element && (body == kDouble || body == kCode ||
+                                    body == kByte || body == kStatus),
                 "a type of numbers");
-        object.element = body == kDouble ? 8 : 1;
+        object.element = body == kDouble ? 8 : body == kCode ? 4 : 1;
         return;
       case kFill:
         return require(body == kFillValue, "a fill value");
@@ -235,25 +242,41 @@ class Walk {
 
   static void attribute(std::string_view body) {
     const auto called = number(body, 2, 2), sizes = number(body, 4, 4);
-    const bool is_text = sizes == 0x80008;
-    require(number(body, 0, 2) == 1 && (is_text || sizes == 0x8000c) &&
-                called > 0 && body.size() >= 8 + padded(called) + 16,
+    require(number(body, 0, 2) == 1 && called > 0 &&
+                body.size() >= 8 + padded(called) + 16,
             "an attribute");
     name(body.substr(8, called), 0);
-    is_text ? text(body.substr(8 + padded(called)))
-            : whole(body.substr(8 + padded(called)));
+    const auto rest = body.substr(8 + padded(called));
+    switch (sizes) {  // of its type and of its shape
+      case 0x80008:
+        return text(rest);
+      case 0x8000c:
+        return whole(rest);
+      case 0x18000c:
+        return codes(rest);
+      default:
+        refuse("an attribute");
+    }
   }
 
   static void text(std::string_view rest) {
-    require(number(rest, 0, 4) == 0x13 && rest.substr(8, 8) == kScalar &&
-                number(rest, 4, 4) > 0 &&
-                number(rest, 4, 4) <= rest.size() - 16,
-            "an attribute");
+    require(
+        std::find(std::begin(kTexts), std::end(kTexts), number(rest, 0, 4)) !=
+                std::end(kTexts) &&
+            rest.substr(8, 8) == kScalar && number(rest, 4, 4) > 0 &&
+            number(rest, 4, 4) <= rest.size() - 16,
+        "an attribute");
   }
 
   static void whole(std::string_view rest) {
     require(rest.size() == 32 && rest.starts_with(kWhole) &&
                 rest.substr(16, 8) == kScalar,
+            "an attribute");
+  }
+
+  static void codes(std::string_view rest) {
+    require(rest.size() == 56 && rest.starts_with(kCode) &&
+                rest.substr(16, 24) == kStatusList,
             "an attribute");
   }
 

@@ -1,7 +1,8 @@
 /// The part of HDF5's file format that this suite writes: groups by symbol
-/// tables, arrays in one piece of doubles, bytes or statuses, attributes of one
-/// text or whole number (HDF5 File Format Specification 2.0, superblock version
-/// 0).
+/// tables, arrays in one piece of doubles or statuses, attributes of one text,
+/// whole number or the numbers of all statuses (HDF5 File Format Specification
+/// 2.0, superblock version 0). In older files statuses are bytes or an
+/// enumeration, and texts end in a zero.
 #pragma once
 
 #include <string_view>

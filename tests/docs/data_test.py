@@ -54,14 +54,16 @@ def data_sets(path):
         name = re.sub(r"arrays/\w+$", "arrays/<name>", name)
         found.setdefault(name, []).append(item.shape)
         if name.endswith(">/status"):
-            ends = h5py.check_enum_dtype(item.dtype)
-            if ends != {"gtol": 0, "maxiter": 1, "linesearch": 2,
-                        "nonfinite": 3}:
-                wrong.append(f"{path} {name}: {ends}")
+            words = item.attrs["flag_meanings"].decode().split()
+            ends = dict(zip(words, item.attrs["flag_values"].tolist()))
+            if item.dtype != "<i4" or h5py.check_enum_dtype(item.dtype) or \
+                    ends != {"gtol": 0, "maxiter": 1, "linesearch": 2,
+                             "nonfinite": 3}:
+                wrong.append(f"{path} {name}: {item.dtype} {ends}")
     with h5py.File(path) as f:
         note("file", f)
         f.visititems(visit)
-        if f.attrs["schema"] != 2 or f.attrs["n"] != len(f["data/y"]):
+        if f.attrs["schema"] != 3 or f.attrs["n"] != len(f["data/y"]):
             wrong.append(f"{path}: schema or n")
     return found, attributes, wrong
 

@@ -165,6 +165,126 @@ TEST(CaseFile, OfVersion1IsReadAndWrittenAnew) {
     EXPECT_EQ(hdf5::rank(hdf5::open_group(stages, name), "loss"), 1);
 }
 
+/// Of a campaign that an earlier version of this program ran.
+std::string file_of_version_2() {
+  const auto bytes = read_file(PHYSINV_SOURCE_DIR
+                               "/tests/fuzz/corpus/hdf5/billiards-bfgs-"
+                               "described");
+  return fmt::format("{}physinv:{:08x}", bytes, crc32c(bytes));
+}
+
+hdf5::Handle root_of(std::string bytes) {
+  bytes.resize(bytes.size() - 16);
+  return hdf5::open_image(std::move(bytes));
+}
+
+H5T_class_t type_of(hid_t group, const char* array) {
+  const hdf5::Handle set(
+      H5Dopen2(group, array, H5P_DEFAULT), H5Dclose, "open an array");
+  return H5Tget_class(hdf5::Handle(H5Dget_type(set), H5Tclose, "read a type"));
+}
+
+TEST(CaseFile, OfVersion2IsReadAndWrittenAnew) {
+  auto info = sample_case("bfgs", 4, 0);
+  info.name = "jpo/billiards/bfgs/n=4/seed=0";
+  info.stages = {"solve"};
+  const auto old = root_of(file_of_version_2());
+  ASSERT_EQ(hdf5::read_number(old, "schema"), 2U);
+  const auto group =
+      hdf5::open_group(hdf5::open_group(old, "stages"), "0_solve");
+  ASSERT_EQ(type_of(group, "status"), H5T_ENUM);
+  const auto hash = hdf5::read_attribute(group, "hash");
+  StageRecord first;
+  first.stage = "solve";
+  first.key = hdf5::read_attribute(group, "key");
+  CaseFile file(file_of_version_2(), "path", info.name);
+  const auto expect_stage = [&] {
+    StageRecord back = first;
+    EXPECT_TRUE(file.has_stage(first, hash));
+    file.read_stage(back, hash);  // its hash says that all are the same
+    EXPECT_EQ(back.status.size(), 4U);
+  };
+  expect_stage();
+  auto second = sample_stage(info, 0);
+  second.position = 1, second.stage = "refine";
+  const CaseData data = file.data();
+  file.describe(info, second);
+  file.put_data(data);
+  put(file, second);
+  expect_stage();
+  const auto root = root_of(file.bytes());
+  EXPECT_EQ(hdf5::read_number(root, "schema"), kCaseVersion);
+  const auto stages = hdf5::open_group(root, "stages");
+  const auto kept = hdf5::open_group(stages, "0_solve");
+  EXPECT_EQ(type_of(kept, "status"), H5T_INTEGER);
+  for (const char* text : {"key", "hash", "stop", "profile", "revision"})
+    EXPECT_EQ(hdf5::read_attribute(kept, text),
+              hdf5::read_attribute(group, text));
+}
+
+/// Other programs read fewer kinds than HDF5 has: texts of their exact length,
+/// doubles and whole numbers, with none that stands for words.
+TEST(CaseFile, HoldsWhatEveryReaderHas) {
+  auto info = sample_case("jpo", 4, 3);
+  info.about = sample_about();
+  info.about.unknowns.unit = "\u00b5m, m";
+  CaseFile file(info.name);
+  file.describe(info, sample_stage(info, 0));
+  file.put_data({});  // not drawn
+  put(file, sample_stage(info, 0));
+  int arrays = 0, texts = 0;
+  const auto visit = [&](hid_t object, const hdf5::Handle& type) {
+    const auto kind = H5Tget_class(type);
+    EXPECT_TRUE(kind == H5T_FLOAT || kind == H5T_INTEGER || kind == H5T_STRING);
+    if (kind != H5T_STRING || H5Iget_type(object) != H5I_ATTR) {
+      EXPECT_NE(kind, H5T_STRING);
+      ++arrays;
+      return;
+    }
+    EXPECT_EQ(H5Tget_strpad(type), H5T_STR_NULLPAD);
+    std::string text(H5Tget_size(type), '\0');
+    H5Aread(object, type, text.data());
+    EXPECT_FALSE(contains(text, std::string(1, '\0'))) << text;
+    EXPECT_EQ(H5Tget_cset(type) == H5T_CSET_UTF8, contains(text, "\u00b5"));
+    ++texts;
+  };
+  const auto look = [](hid_t root,
+                       const char* name,
+                       const H5O_info_t* what,
+                       void* out) -> herr_t {
+    const auto& visitor = *static_cast<decltype(visit)*>(out);
+    const hdf5::Handle object(
+        H5Oopen(root, name, H5P_DEFAULT), H5Oclose, "open an object");
+    if (what->type == H5O_TYPE_DATASET)
+      visitor(object, {H5Dget_type(object), H5Tclose, "read a type"});
+    for (hsize_t k = 0; k < what->num_attrs; ++k) {
+      const hdf5::Handle attribute(H5Aopen_by_idx(object,
+                                                  ".",
+                                                  H5_INDEX_NAME,
+                                                  H5_ITER_INC,
+                                                  k,
+                                                  H5P_DEFAULT,
+                                                  H5P_DEFAULT),
+                                   H5Aclose,
+                                   "open an attribute");
+      visitor(attribute, {H5Aget_type(attribute), H5Tclose, "read a type"});
+    }
+    return 0;
+  };
+  const auto root = root_of(file.bytes());
+  ASSERT_GE(H5Ovisit(root,
+                     H5_INDEX_NAME,
+                     H5_ITER_INC,
+                     look,
+                     const_cast<void*>(static_cast<const void*>(&visit))),
+            0);
+  EXPECT_GT(arrays, 12);
+  EXPECT_GT(texts, 30);
+  const auto data = hdf5::open_group(root, "data");
+  EXPECT_FALSE(hdf5::has_attribute(data, "hash"));
+  EXPECT_EQ(CaseFile(file.bytes(), "path", info.name).data().hash, "");
+}
+
 TEST(CaseFile, OfANewerVersionIsRefused) {
   const auto file = hdf5::new_file();
   hdf5::write_attribute(file, "case", "a/case");

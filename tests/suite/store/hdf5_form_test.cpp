@@ -173,7 +173,7 @@ void read_all(const std::string& image) {
     hdf5::read_attribute(stage, "key");
     for (const char* array : {"x", "loss", "iterations", "evaluations"})
       hdf5::read_batch(stage, array);
-    hdf5::read_bytes(stage, "status");
+    hdf5::read_codes(stage, "status");
   }
 }
 

@@ -72,7 +72,7 @@ TEST(Hdf5, ReadsWhatItWrote) {
   EXPECT_EQ(hdf5::read_attribute(file, "none"), "");
   EXPECT_EQ(hdf5::read_batch(file, "batch"), batch);
   EXPECT_EQ(hdf5::read_batch(file, "empty").cols(), 4);
-  EXPECT_EQ(hdf5::read_bytes(file, "ends"), (std::vector<std::uint8_t>{1, 3}));
+  EXPECT_EQ(hdf5::read_codes(file, "ends"), (std::vector<std::int32_t>{1, 3}));
 }
 
 TEST(Hdf5, AttributesAreOneTextOfFixedLength) {
@@ -89,6 +89,25 @@ TEST(Hdf5, AttributesAreOneTextOfFixedLength) {
     EXPECT_EQ(message_of<StoreError>([&] { hdf5::read_number(file, name); }),
               fmt::format("attribute {} is not one whole number", name));
   }
+}
+
+TEST(Hdf5, LongTextsStandInSeveralAttributes) {
+  const auto written = hdf5::new_file();
+  std::string text = "a";  // so that a character would be cut in two
+  while (text.size() < 1000000) text += "\u00fc";
+  hdf5::write_attribute(written, "names", "short");
+  hdf5::remove_attribute(written, "names");
+  hdf5::write_attribute(written, "names", text);
+  const auto file = hdf5::open_image(hdf5::image(written));
+  EXPECT_EQ(hdf5::read_attribute(file, "names"), text);
+  const auto last = hdf5::read_attribute(file, "names_17");
+  EXPECT_EQ(last.substr(0, 2), "\u00fc");
+  EXPECT_FALSE(hdf5::has_attribute(file, "names_18"));
+  hdf5::remove_attribute(file, "names");
+  EXPECT_FALSE(hdf5::has_attribute(file, "names_17"));
+  hdf5::write_attribute(file, "names", std::string(120000, 'a'));
+  EXPECT_EQ(hdf5::read_attribute(file, "names_2"), std::string(60000, 'a'));
+  EXPECT_FALSE(hdf5::has_attribute(file, "names_3"));
 }
 
 TEST(Hdf5, ArraysHaveTheTypeAndRankTheyWereWrittenWith) {
@@ -108,8 +127,8 @@ TEST(Hdf5, ArraysHaveTheTypeAndRankTheyWereWrittenWith) {
   const std::uint8_t zero = 0;
   H5Tenum_insert(other, "success", &zero);
   put_array(file, "others", other, {4});
-  EXPECT_THROW(hdf5::read_bytes(file, "others"), StoreError);
-  EXPECT_THROW(hdf5::read_bytes(file, "list"), StoreError);
+  EXPECT_THROW(hdf5::read_codes(file, "others"), StoreError);
+  EXPECT_THROW(hdf5::read_codes(file, "list"), StoreError);
 }
 
 TEST(Hdf5, NothingIsMadeForArraysThatAreNotThere) {

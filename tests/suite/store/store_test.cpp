@@ -60,6 +60,27 @@ class StoreTest : public testing::Test {
   CaseInfo a_ = sample_case("bfgs", 4, 0), b_ = sample_case("jpo", 4, 0);
 };
 
+/// A text of a megabyte is more than an attribute of HDF5 holds.
+TEST_F(StoreTest, KeepsTextsOfAnyLength) {
+  auto stage = sample_stage(a_, 0);
+  stage.message = std::string(1000000, 'm') + "\n\xc3\xa9";
+  a_.about.unknowns.names = std::string(1000000, 'n');
+  a_.about.paper = std::string(1000000, 'p');
+  {
+    Store store(out_.path());
+    store.set_plan({a_}, {{"date", "today"}, {"host_name", "here"}});
+    store.append(a_, sample_data(a_), stage);
+    store.finish();
+  }
+  const Results results = load_results(out_.path());
+  ASSERT_EQ(results.cases().size(), 1U);
+  const CaseRecord& own = results.cases().front();
+  EXPECT_EQ(own.stages.front().message, stage.message);
+  EXPECT_EQ(own.info.about.unknowns.names, a_.about.unknowns.names);
+  EXPECT_EQ(own.info.about.paper, a_.about.paper);
+  expect_same(stage, own.stages.front());
+}
+
 TEST_F(StoreTest, FindsWhatWasAppendedAlsoLater) {
   {
     Store store(out_.path());
