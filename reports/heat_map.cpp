@@ -80,7 +80,8 @@ void picture(
             {"height", svg_number(h)},
             {"preserveAspectRatio", "none"},
             {"style", "image-rendering:pixelated"},
-            {"href", data_url(png_of(raster, field_colors()))}});
+            {"xmlns:xlink", "http://www.w3.org/1999/xlink"},
+            {"xlink:href", data_url(png_of(raster, field_colors()))}});
 }
 
 void color_bar(Svg& svg,

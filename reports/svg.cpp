@@ -48,8 +48,7 @@ Svg::Svg(double width,
         {"viewBox", fmt::format("0 0 {} {}", w, h)},
         {"width", w},
         {"height", h},
-        {"role", "img"},
-        {"style", "max-width:100%;height:auto"}});
+        {"role", "img"}});
   out_ += fmt::format("<title>{}</title>\n<desc>{}</desc>\n",
                       svg_escape(title),
                       svg_escape(description));

@@ -12,6 +12,7 @@
 #include "reports/axis.h"
 #include "reports/legend.h"
 #include "reports/panel.h"
+#include "reports/vega_lite_parts.h"
 
 namespace physinv {
 namespace {
@@ -45,6 +46,19 @@ struct Scales {
   }
 };
 
+/// All lines have round ends, which make dots of short inks; others are as much
+/// shorter.
+Json dashes_of(Ink ink, bool dashed) {
+  constexpr double kStroke = 2;  // Vega-Lite's width of lines
+  std::vector<double> lengths = dash_pattern(ink, dashed);
+  if (std::all_of(lengths.begin(), lengths.end(), [](double length) {
+        return length > kStroke;
+      }))
+    for (std::size_t k = 0; k < lengths.size(); ++k)
+      lengths[k] += k % 2 == 0 ? -kStroke : kStroke;
+  return lengths;
+}
+
 /// Entries of one label have their method, too.
 Scales scales_of(const Figure& figure, Palette& palette) {
   Scales scales{.legend = legend_of(figure)};
@@ -58,7 +72,7 @@ Scales scales_of(const Figure& figure, Palette& palette) {
     const Ink ink = palette.of(s);
     scales.names.push_back(std::move(name));
     scales.colors.push_back(light_color(ink.color));
-    scales.dashes.push_back(dash_pattern(ink, s.dashed));
+    scales.dashes.push_back(dashes_of(ink, s.dashed));
     scales.shapes.push_back(shape_of(ink.marker));
   };
   for (const Series* s : scales.legend) add(s->label, *s);
@@ -69,6 +83,12 @@ Scales scales_of(const Figure& figure, Palette& palette) {
               scales.names.end())
         add(s.method, s);
   return scales;
+}
+
+/// "none", "full" or "hollow".
+const char* mark_of(const Series& s) {
+  if (s.line && !s.markers) return "none";
+  return s.dashed ? "hollow" : "full";
 }
 
 /// A row for each point that can be drawn.
@@ -84,36 +104,80 @@ Json rows_of(const Panel& panel, const Scales& scales) {
           y.shows(s.hi[k]))
         row["lo"] = s.lo[k], row["hi"] = s.hi[k];
       row["line"] = s.line;
-      row["mark"] = s.markers || !s.line;
+      row["mark"] = mark_of(s);
       rows.push_back(std::move(row));
     }
   }
   return rows;
 }
 
-Json axis(const char* field, const std::string& title, bool log) {
-  return {{"field", field},
-          {"type", "quantitative"},
-          {"title", title},
-          {"scale", {{"type", log ? "log" : "linear"}, {"zero", false}}}};
+/// With room for markers at the ends.
+Json roomy(Json axis, bool field) {
+  if (!field) axis["scale"]["padding"] = 8;
+  return axis;
+}
+
+Json x_axis(const Panel& panel) {
+  return roomy(vega_axis("x", panel.x_label, panel.x_log),
+               panel.field.has_value());
+}
+
+bool is_limited(const Panel& panel) {
+  const Axis y(panel.y_log);
+  return panel.y_min && panel.y_max && y.shows(*panel.y_min) &&
+         y.shows(*panel.y_max);
 }
 
 Json y_axis(const Panel& panel, const char* field) {
-  Json out = axis(field, panel.y_label, panel.y_log);
-  if (panel.y_min && panel.y_max)
-    out["scale"]["domain"] = {*panel.y_min, *panel.y_max};
+  Json out = vega_axis(field, panel.y_label, panel.y_log);
+  if (!is_limited(panel)) return roomy(std::move(out), panel.field.has_value());
+  out["scale"]["domain"] = {*panel.y_min, *panel.y_max};
   return out;
 }
 
+/// The legend of a figure is drawn (legend_of).
 Json channel(const Scales& scales, const Json& range) {
   return {{"field", "series"},
           {"type", "nominal"},
-          {"title", nullptr},
+          {"legend", nullptr},
           {"scale", {{"domain", scales.names}, {"range", range}}}};
+}
+
+Json line_mark(const char* type) {
+  return {{"type", type}, {"strokeWidth", 2}, {"strokeCap", "round"}};
+}
+
+Json point_mark(bool hollow) {
+  Json mark{{"type", "point"}, {"filled", !hollow}, {"opacity", 1}};
+  if (hollow) mark["fill"] = "white";
+  return mark;
 }
 
 Json only(const char* expression) {
   return Json::array({{{"filter", expression}}});
+}
+
+/// Those of a legend, or of a panel; `x` and `y` are their places.
+void add_points(Json& layers,
+                const Json& rows,
+                const Scales& scales,
+                const Json& x,
+                const Json& y) {
+  for (const char* kind : {"full", "hollow"}) {
+    if (std::none_of(rows.begin(), rows.end(), [&](const Json& row) {
+          return row["mark"] == kind;
+        }))
+      continue;
+    const std::string filter = fmt::format("datum.mark == '{}'", kind);
+    layers.push_back({{"data", {{"values", rows}}},
+                      {"transform", only(filter.c_str())},
+                      {"mark", point_mark(kind == std::string("hollow"))},
+                      {"encoding",
+                       {{"x", x},
+                        {"y", y},
+                        {"color", channel(scales, scales.colors)},
+                        {"shape", channel(scales, scales.shapes)}}}});
+  }
 }
 
 /// Bands, lines and points, as far as there are any.
@@ -122,13 +186,17 @@ void add_curves(Json& layers, const Panel& panel, const Scales& scales) {
   const auto any = [&](auto&& test) {
     return std::any_of(rows.begin(), rows.end(), test);
   };
-  const Json x = axis("x", panel.x_label, panel.x_log), y = y_axis(panel, "y"),
+  const Json x = x_axis(panel), y = y_axis(panel, "y"),
              color = channel(scales, scales.colors);
   const Json data{{"values", rows}};
+  const auto clipped = [&](Json mark) {
+    if (is_limited(panel)) mark["clip"] = true;
+    return mark;
+  };
   if (any([](const Json& row) { return row.contains("lo"); }))
     layers.push_back({{"data", data},
                       {"transform", only("isValid(datum.lo)")},
-                      {"mark", {{"type", "area"}, {"opacity", 0.2}}},
+                      {"mark", clipped({{"type", "area"}, {"opacity", 0.2}})},
                       {"encoding",
                        {{"x", x},
                         {"y", y_axis(panel, "lo")},
@@ -137,129 +205,57 @@ void add_curves(Json& layers, const Panel& panel, const Scales& scales) {
   if (any([](const Json& row) { return row["line"] == true; }))
     layers.push_back({{"data", data},
                       {"transform", only("datum.line")},
-                      {"mark", {{"type", "line"}}},
+                      {"mark", clipped(line_mark("line"))},
                       {"encoding",
                        {{"x", x},
                         {"y", y},
                         {"order", {{"field", "k"}, {"type", "quantitative"}}},
                         {"color", color},
                         {"strokeDash", channel(scales, scales.dashes)}}}});
-  if (any([](const Json& row) { return row["mark"] == true; }))
-    layers.push_back({{"data", data},
-                      {"transform", only("datum.mark")},
-                      {"mark", {{"type", "point"}, {"filled", true}}},
-                      {"encoding",
-                       {{"x", x},
-                        {"y", y},
-                        {"color", color},
-                        {"shape", channel(scales, scales.shapes)}}}});
+  add_points(layers, rows, scales, x, y);
 }
 
-/// Between the places of a grid, and as far beyond its ends.
-std::vector<double> edges_of(const std::vector<double>& at, bool log) {
-  std::vector<double> warped, edges;
-  for (const double v : at) warped.push_back(log ? std::log10(v) : v);
-  const std::size_t n = warped.size();
-  for (std::size_t k = 0; k <= n; ++k) {
-    const std::size_t after = std::clamp<std::size_t>(k, 1, n > 1 ? n - 1 : 1);
-    const double step = n > 1 ? warped[after] - warped[after - 1] : 1;
-    const double edge =
-        k < n ? warped[k] - 0.5 * step : warped[n - 1] + 0.5 * step;
-    edges.push_back(log ? std::pow(10.0, edge) : edge);
-  }
-  return edges;
-}
-
-/// Each row of the grid is one row of data, whose arrays are unfolded.
-Json field_rows(const Field2D& field, const Panel& panel) {
-  const auto x = edges_of(field.x, panel.x_log),
-             y = edges_of(field.y, panel.y_log);
-  const Axis scale(field.log_scale);
-  Json rows = Json::array();
-  for (std::size_t j = 0; j < field.y.size(); ++j) {
-    Json from = Json::array(), to = Json::array(), values = Json::array();
-    for (std::size_t i = 0; i < field.x.size(); ++i) {
-      const double value = field.values[j * field.x.size() + i];
-      const bool named = !field.x_names.empty();
-      from.push_back(named ? Json(field.x_names[i]) : Json(x[i]));
-      if (!named) to.push_back(x[i + 1]);
-      values.push_back(scale.shows(value) ? Json(value) : Json(nullptr));
-    }
-    Json row = field.y_names.empty() ? Json{{"y", y[j]}, {"y2", y[j + 1]}}
-                                     : Json{{"y", field.y_names[j]}};
-    row["x"] = std::move(from);
-    if (!to.empty()) row["x2"] = std::move(to);
-    row["value"] = std::move(values);
-    rows.push_back(std::move(row));
-  }
-  return rows;
-}
-
-void add_field(Json& layers, const Field2D& field, const Panel& panel) {
-  if (field.values.size() != field.x.size() * field.y.size() ||
-      field.values.empty())
-    return;
-  const bool x_named = !field.x_names.empty(), y_named = !field.y_names.empty();
-  Json unfold = {"x", "value"};
-  if (!x_named) unfold.push_back("x2");
-  Json color{{"field", "value"},
-             {"type", "quantitative"},
-             {"title", field.label},
-             {"scale",
-              {{"type", field.log_scale ? "log" : "linear"},
-               {"range", field_colors()}}}};
-  if (field.min) color["scale"]["domainMin"] = *field.min;
-  if (field.max) color["scale"]["domainMax"] = *field.max;
-  const auto place = [](const char* name, const std::string& title, bool log) {
-    return axis(name, title, log);
-  };
-  const auto named = [](const char* name, const std::string& title) {
-    return Json{{"field", name},
-                {"type", "ordinal"},
-                {"title", title},
-                {"sort", nullptr}};
-  };
-  Json encoding{{"x",
-                 x_named ? named("x", panel.x_label)
-                         : place("x", panel.x_label, panel.x_log)},
-                {"y",
-                 y_named ? named("y", panel.y_label)
-                         : place("y", panel.y_label, panel.y_log)},
-                {"color", std::move(color)}};
-  if (!x_named) encoding["x2"] = {{"field", "x2"}};
-  if (!y_named) encoding["y2"] = {{"field", "y2"}};
-  layers.push_back({{"data", {{"values", field_rows(field, panel)}}},
-                    {"transform", Json::array({{{"flatten", unfold}}})},
-                    {"mark", "rect"},
-                    {"encoding", std::move(encoding)}});
-}
-
-void add_arrows(Json& layers, const Arrows& arrows, const Panel& panel) {
-  double longest = 0;
-  for (std::size_t k = 0; k < arrows.x.size(); ++k)
-    longest = std::max(longest, std::hypot(arrows.u[k], arrows.v[k]));
-  if (!(longest > 0) || !std::isfinite(longest)) return;
-  const double scale = arrows.length / longest;
-  Json rows = Json::array();
-  for (std::size_t k = 0; k < arrows.x.size(); ++k)
-    rows.push_back({{"x", arrows.x[k]},
-                    {"y", arrows.y[k]},
-                    {"x2", arrows.x[k] + scale * arrows.u[k]},
-                    {"y2", arrows.y[k] + scale * arrows.v[k]}});
-  layers.push_back({{"data", {{"values", std::move(rows)}}},
-                    {"mark", {{"type", "rule"}, {"color", "white"}}},
+/// A line with its marker and name for each entry, as SVG has it: legends of
+/// Vega-Lite show no line with its marker.
+Json legend_view(const Scales& scales) {
+  Json rows = Json::array(), layers = Json::array();
+  for (const Series* s : scales.legend)
+    rows.push_back({{"series", scales.name_of(*s)},
+                    {"line", s->line},
+                    {"mark", mark_of(*s)}});
+  const Json data{{"values", rows}};
+  const Json y{{"field", "series"},
+               {"type", "nominal"},
+               {"sort", nullptr},
+               {"axis", nullptr}};
+  layers.push_back({{"data", data},
+                    {"transform", only("datum.line")},
+                    {"mark", line_mark("rule")},
                     {"encoding",
-                     {{"x", axis("x", panel.x_label, panel.x_log)},
-                      {"y", axis("y", panel.y_label, panel.y_log)},
-                      {"x2", {{"field", "x2"}}},
-                      {"y2", {{"field", "y2"}}}}}});
+                     {{"x", {{"value", 0}}},
+                      {"x2", {{"value", 36}}},
+                      {"y", y},
+                      {"color", channel(scales, scales.colors)},
+                      {"strokeDash", channel(scales, scales.dashes)}}}});
+  add_points(layers, rows, scales, {{"value", 18}}, y);
+  layers.push_back(
+      {{"data", data},
+       {"mark", {{"type", "text"}, {"align", "left"}, {"limit", 290}}},
+       {"encoding",
+        {{"x", {{"value", 44}}},
+         {"y", y},
+         {"text", {{"field", "series"}, {"type", "nominal"}}}}}});
+  return {{"width", 330},
+          {"height", {{"step", 20}}},
+          {"view", {{"stroke", nullptr}}},
+          {"layer", std::move(layers)}};
 }
 
 /// A panel without a point says so.
 Json panel_of(const Panel& panel, const Scales& scales) {
   Json layers = Json::array();
-  if (panel.field) add_field(layers, *panel.field, panel);
-  if (panel.arrows) add_arrows(layers, *panel.arrows, panel);
+  if (panel.field) add_vega_field(layers, *panel.field, panel);
+  if (panel.arrows) add_vega_arrows(layers, *panel.arrows, panel);
   add_curves(layers, panel, scales);
   if (layers.empty())
     layers.push_back({{"data", {{"values", Json::array({Json::object()})}}},
@@ -278,13 +274,15 @@ Json vega_lite(const Figure& figure, const Palette& report) {
   Json panels = Json::array();
   for (const Panel& panel : figure.panels)
     panels.push_back(panel_of(panel, scales));
+  if (!scales.legend.empty()) panels.push_back(legend_view(scales));
   const std::string title =
       figure.where.empty() ? figure.title : figure.where + " · " + figure.title;
   return {{"$schema", kSchema},
           {"title", title},
           {"description", figure.note},
           {"columns", std::max(1, figure.columns)},
-          {"concat", std::move(panels)}};
+          {"concat", std::move(panels)},
+          {"resolve", {{"scale", {{"fill", "independent"}}}}}};
 }
 
 }  // namespace physinv

@@ -11,7 +11,8 @@ namespace physinv {
 
 /// A specification that holds its data: panels side by side, series as lines,
 /// points and bands in the colours, dashes and markers of the pages, fields as
-/// rectangles, arrows as rules. What cannot be drawn on a log axis is left out.
+/// rectangles, arrows as rules, the legend as the last panel. What cannot be
+/// drawn on a log axis is left out.
 nlohmann::ordered_json vega_lite(const Figure& figure,
                                  const Palette& report = {});
 

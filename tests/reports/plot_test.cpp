@@ -102,6 +102,16 @@ TEST(RenderSvg, LargeFieldsStaySmall) {
   EXPECT_LT(svg.size(), 300'000U);
 }
 
+/// SVG 1.1's name of it is the one that all programs know.
+TEST(RenderSvg, PicturesHaveTheNameThatAllProgramsKnow) {
+  Panel panel;
+  panel.field = Field2D{.x = {0, 1}, .y = {0, 1}, .values = {1, 2, 3, 4}};
+  const std::string svg = render_svg(one_panel(panel));
+  EXPECT_EQ(count(svg, " xlink:href=\"data:"), 2U);
+  EXPECT_EQ(count(svg, " xmlns:xlink=\"http://www.w3.org/1999/xlink\""), 2U);
+  EXPECT_EQ(count(svg, " href="), 0U);
+}
+
 /// The bytes behind "base64," up to the next quotation mark.
 std::string from_base64(const std::string& svg) {
   const std::string digits =

@@ -33,8 +33,7 @@ TEST(Svg, GoldenBytes) {
   svg.text("t", 1, 2, "x \"y\"", "middle", true);
   EXPECT_EQ(std::move(svg).str(),
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 20 10\" "
-            "width=\"20\" height=\"10\" role=\"img\" "
-            "style=\"max-width:100%;height:auto\">\n"
+            "width=\"20\" height=\"10\" role=\"img\">\n"
             "<title>a &lt; b</title>\n<desc> &amp; more</desc>\n"
             "<style>.l{fill:none}</style>\n"
             "<g clip-path=\"url(#c)\">\n"

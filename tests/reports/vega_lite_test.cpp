@@ -48,11 +48,20 @@ void expect_layer(const Json& layer) {
     for (const auto& [key, value] : row.items()) fields.insert(key);
   const Json channels = layer.value("encoding", Json::object());
   for (const auto& [channel, encoding] : channels.items()) {
+    if (encoding.contains("value")) continue;
     EXPECT_TRUE(fields.contains(encoding.at("field").get<std::string>()))
         << channel;
     if (channel == "x2" || channel == "y2") continue;
     EXPECT_TRUE(encoding.contains("type")) << channel;
     const Json scale = encoding.value("scale", Json::object());
+    if (encoding.at("type") == "quantitative" && channel.size() == 1) {
+      EXPECT_EQ(scale.at("nice"), false) << "room for decades without data";
+      EXPECT_EQ(scale.contains("zero"), scale.at("type") == "linear")
+          << "a warning for each logarithmic axis";
+    }
+    if (layer.at("mark").at("type") == "line") {
+      EXPECT_EQ(layer.at("mark").at("strokeCap"), "round");
+    }
     if (scale.contains("domain") && encoding.at("type") == "nominal") {
       EXPECT_EQ(scale.at("domain").size(), scale.at("range").size());
     }
@@ -64,7 +73,7 @@ TEST(VegaLite, HasPanelsWithTheirData) {
   EXPECT_EQ(spec.at("$schema"),
             "https://vega.github.io/schema/vega-lite/v5.json");
   EXPECT_EQ(spec.at("title"), "Fig. 1 · F");
-  ASSERT_EQ(spec.at("concat").size(), 3U);
+  ASSERT_EQ(spec.at("concat").size(), 4U) << "with the legend";
   for (const Json& panel : spec.at("concat"))
     for (const Json& layer : panel.at("layer")) expect_layer(layer);
 }
@@ -86,7 +95,7 @@ TEST(VegaLite, LeavesOutWhatALogAxisCannotShow) {
 TEST(VegaLite, FieldsAreRectanglesAndArrowsRules) {
   const Json layers = vega_lite(figure()).at("concat").at(1).at("layer");
   ASSERT_EQ(layers.size(), 2U);
-  EXPECT_EQ(layers.at(0).at("mark"), "rect");
+  EXPECT_EQ(layers.at(0).at("mark").at("type"), "rect");
   const Json& rows = layers.at(0).at("data").at("values");
   ASSERT_EQ(rows.size(), 3U);
   EXPECT_EQ(rows.at(1).at("value"), (Json{3.0, 4.0}));
@@ -128,6 +137,78 @@ TEST(VegaLite, EntriesOfOneLabelAreToldApart) {
                          .at("scale")
                          .at("domain");
   EXPECT_EQ(names, (Json{"Adam", "Adam (hig)"}));
+}
+
+TEST(VegaLite, OneLegendShowsWhatTellsEntriesApart) {
+  Figure f = figure();
+  f.panels[0].series[1] = f.panels[0].series[0];
+  f.panels[0].series[1].label = "paper";
+  f.panels[0].series[1].dashed = true;
+  f.panels[0].series[1].markers = true;
+  const Json spec = vega_lite(f);
+  const Json& legend = spec.at("concat").back();
+  EXPECT_EQ(legend.at("view").at("stroke"), nullptr);
+  ASSERT_EQ(legend.at("layer").size(), 3U) << "lines, markers, names";
+  const Json& rows = legend.at("layer").at(0).at("data").at("values");
+  EXPECT_EQ(rows,
+            (Json{{{"series", "Adam"}, {"line", true}, {"mark", "none"}},
+                  {{"series", "paper"}, {"line", true}, {"mark", "hollow"}}}));
+  const Json& dashes = legend.at("layer").at(0).at("encoding").at("strokeDash");
+  EXPECT_NE(dashes.at("scale").at("range").at(0),
+            dashes.at("scale").at("range").at(1));
+  int channels = 0;
+  for (const Json& panel : spec.at("concat"))
+    for (const Json& layer : panel.at("layer")) {
+      const Json encodings = layer.value("encoding", Json::object());
+      for (const char* name : {"color", "shape", "strokeDash"}) {
+        if (!encodings.contains(name)) continue;
+        EXPECT_EQ(encodings.at(name).at("legend"), nullptr) << name;
+        ++channels;
+      }
+    }
+  EXPECT_GT(channels, 6);
+  f.panels[0].series.clear();
+  EXPECT_EQ(vega_lite(f).at("concat").size(), 3U) << "none without entries";
+}
+
+TEST(VegaLite, PlacesThatALogAxisLacksAreNames) {
+  Figure f = figure();
+  Panel& panel = f.panels[1];
+  panel.arrows.reset();
+  panel.x_log = panel.y_log = true;
+  panel.field =
+      Field2D{.x = {0, 1}, .y = {1, 2, 4}, .values = {1, 2, 3, 0, 5, 6}};
+  panel.field->log_scale = true;
+  const Json layer = vega_lite(f).at("concat").at(1).at("layer").at(0);
+  const Json& x = layer.at("encoding").at("x");
+  EXPECT_EQ(x.at("type"), "ordinal");
+  EXPECT_EQ(x.at("scale").at("domain"), (Json{"0", "1"}));
+  const Json& y = layer.at("encoding").at("y");
+  EXPECT_EQ(y.at("scale").at("type"), "log");
+  EXPECT_EQ(y.at("scale").at("domain").size(), 2U);
+  const Json& rows = layer.at("data").at("values");
+  EXPECT_EQ(rows.at(0).at("x"), (Json{"0", "1"}));
+  EXPECT_EQ(rows.at(1).at("x"), Json::array({"0"})) << "0 is not shown";
+  EXPECT_EQ(rows.at(1).at("value"), Json::array({3.0}));
+}
+
+TEST(VegaLite, LimitsOfALogAxisArePositive) {
+  Figure f = figure();
+  f.panels[0].y_min = 0;
+  f.panels[0].y_max = 1;
+  const auto scale = [&] {
+    return vega_lite(f)
+        .at("concat")
+        .at(0)
+        .at("layer")
+        .at(1)
+        .at("encoding")
+        .at("y")
+        .at("scale");
+  };
+  EXPECT_FALSE(scale().contains("domain")) << scale();
+  f.panels[0].y_min = 0.1;
+  EXPECT_EQ(scale().at("domain"), (Json{0.1, 1.0}));
 }
 
 TEST(FigureCsv, HasALineForEachPointAndCell) {
