@@ -46,6 +46,19 @@ def links(path):
     return count
 
 
+def figures():
+    """As the program writes them: CairoSVG draws nothing of a height that is
+    auto, Inkscape 1.2 no picture without xlink."""
+    paths = [path for folder in ("campaigns/*/figures", "gallery") for path in
+             glob.glob(os.path.join(SOURCES, "reports", folder, "*.svg"))]
+    for path in paths:
+        with open(path) as f:
+            text = f.read()
+        check("height:auto" not in text, f"{path}: a height that is auto")
+        check(" href=" not in text, f"{path}: a picture without xlink")
+    check(len(paths) > 100, f"{len(paths)} figures")
+
+
 def pages_of_all(d):
     names = listing(CAMPAIGNS)
     p = run("results", "--campaigns=" + CAMPAIGNS, "--html=pages", cwd=d)
@@ -120,6 +133,7 @@ def history(d):
 
 
 def main():
+    figures()
     for step in (pages_of_all, one_by_one, history):
         with tempfile.TemporaryDirectory() as d:
             step(d)

@@ -140,6 +140,33 @@ TEST(Hdf5Form, RefusesOtherEnumerationsAndNumbers) {
         "an attribute");
 }
 
+TEST(Hdf5Form, RefusesOtherListsAndTexts) {
+  const auto with_attribute = [](hid_t type, hsize_t size) {
+    return image_with([&](hid_t file) {
+      const hdf5::Handle made(
+          H5Acreate2(file, "of", type, list(size), H5P_DEFAULT, H5P_DEFAULT),
+          H5Aclose,
+          "create an attribute");
+    });
+  };
+  hdf5::check_form(with_attribute(H5T_STD_I32LE, 4));
+  expect_refused(with_attribute(H5T_STD_I32LE, 5), "an attribute");
+  expect_refused(with_attribute(H5T_STD_U32LE, 4), "an attribute");
+  expect_refused(with_attribute(H5T_IEEE_F64LE, 4), "an attribute");
+  const hdf5::Handle padded(H5Tcopy(H5T_C_S1), H5Tclose, "make a type");
+  H5Tset_size(padded, 8);
+  H5Tset_strpad(padded, H5T_STR_SPACEPAD);
+  expect_refused(
+      image_with([&](hid_t file) {
+        const hdf5::Handle one(H5Screate(H5S_SCALAR), H5Sclose, "make a shape");
+        const hdf5::Handle made(
+            H5Acreate2(file, "of", padded, one, H5P_DEFAULT, H5P_DEFAULT),
+            H5Aclose,
+            "create an attribute");
+      }),
+      "an attribute");
+}
+
 TEST(Hdf5Form, RefusesGroupsInACircle) {
   expect_refused(image_with([](hid_t file) {
                    const auto inner = hdf5::create_group(file, "inner");
