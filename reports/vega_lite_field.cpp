@@ -66,6 +66,7 @@ struct Side {
     return {{"field", field},
             {"type", "ordinal"},
             {"title", title},
+            {"axis", {{"labelLimit", 0}}},
             {"scale", {{"domain", domain}, {"round", true}}}};
   }
 };

@@ -336,7 +336,8 @@ void check_form(std::string_view image) {
     Walk(image).file();
   } catch (const Refused& refused) {
     throw StoreError(fmt::format(
-        "{}{} is not of the form that this suite writes (restore it)",
+        "{}{} is not of a form that this program reads (restore it, "
+        "or use the program that wrote it)",
         refused.path.empty() ? "" : refused.path + ": ",
         refused.what));
   }
