@@ -5,6 +5,7 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <set>
 
 #include "python/module/arrays.h"
 #include "python/module/solving.h"
@@ -12,6 +13,7 @@
 #include "suite/core/float_environment.h"
 #include "suite/core/threads.h"
 #include "suite/harness/registry.h"
+#include "suite/harness/sources.h"
 #include "suite/store/errors.h"
 
 namespace physinv::python {
@@ -139,14 +141,24 @@ struct Ending {
 
 class PythonStage final : public Stage {
  public:
+  /// `words` returns what the key has of the method, for options().
   PythonStage(py::function solve,
               Wanted wanted,
-              Options options,
+              py::function words,
               Index iterations)
       : solve_(std::move(solve)),
+        words_(std::move(words)),
         wanted_(wanted),
-        options_(std::move(options)),
-        iterations_(iterations) {}
+        iterations_(iterations) {
+    renew();
+  }
+  /// Asks for the words anew, as what the method refers to may have changed.
+  void renew() const {
+    const auto words =
+        words_().cast<std::vector<std::pair<std::string, std::string>>>();
+    options_ = {{"algorithm", "python"}};
+    options_.insert(options_.end(), words.begin(), words.end());
+  }
   std::string name() const override { return "solve"; }
   Needs needs() const override { return wanted_.needs; }
   /// With the hash of the source, which so stands in the key.
@@ -181,9 +193,9 @@ class PythonStage final : public Stage {
   }
 
  private:
-  py::function solve_;
+  py::function solve_, words_;
   Wanted wanted_;
-  Options options_;
+  mutable Options options_;
   Index iterations_;
 };
 
@@ -211,9 +223,22 @@ bool provides(const Experiment& e, const Wanted& wanted) {
           !e.setting.predictor.inputs.empty());
 }
 
+/// Null for a method of the suite's.
+const PythonStage* python_stage(const Method& method) {
+  return dynamic_cast<const PythonStage*>(method.chain.front().get());
+}
+
 bool in_python(const Method* method) {
-  return method != nullptr && dynamic_cast<const PythonStage*>(
-                                  method->chain.front().get()) != nullptr;
+  return method != nullptr && python_stage(*method) != nullptr;
+}
+
+/// Before any verb, so that keys are of what the methods are now.
+void renew_methods() {
+  std::set<const PythonStage*> stages;
+  for (const auto& e : registry().experiments())
+    for (const Method& method : e->methods) stages.insert(python_stage(method));
+  stages.erase(nullptr);
+  for (const PythonStage* stage : stages) stage->renew();
 }
 
 /// Wherever a profile of the experiment has rows of the suite's methods, on
@@ -242,19 +267,16 @@ Experiment with_method(const Experiment& e, const Method& method) {
 
 /// Adds a method to the experiments of these names that provide what it needs;
 /// returns them. One of the suite's own keeps its name.
-std::vector<std::string> add_method(
-    const std::string& id,
-    const py::function& solve,
-    const std::vector<std::string>& experiments,
-    const std::vector<std::string>& needs,
-    const std::vector<std::pair<std::string, std::string>>& options,
-    Index iterations) {
-  Options all = {{"algorithm", "python"}};
-  all.insert(all.end(), options.begin(), options.end());
+std::vector<std::string> add_method(const std::string& id,
+                                    const py::function& solve,
+                                    const std::vector<std::string>& experiments,
+                                    const std::vector<std::string>& needs,
+                                    const py::function& words,
+                                    Index iterations) {
   const Wanted wanted = wanted_of(needs);
-  const Method method{
-      .id = id,
-      .chain = {std::make_shared<PythonStage>(solve, wanted, all, iterations)}};
+  const Method method{.id = id,
+                      .chain = {std::make_shared<PythonStage>(
+                          solve, wanted, words, iterations)}};
   Registry next;
   std::vector<std::string> added;
   for (const auto& e : registry().experiments()) {
@@ -278,6 +300,14 @@ std::vector<std::string> add_method(
   for (const Overview& o : registry().overviews()) next.add(o);
   registry() = std::move(next);
   return added;
+}
+
+/// Of the sources of all problems, for methods that call them by themselves.
+std::string problem_sources() {
+  Sources all;
+  for (const auto& e : registry().experiments())
+    all.roots.push_back(e->problem.source);
+  return project_sources().fingerprint({all});
 }
 
 bool running = false;
@@ -315,6 +345,7 @@ py::tuple call(const std::string& name, const Arguments& arguments) {
       pthread_atfork(before_fork, after_fork_here, after_fork_there);
   (void)kRegistered;
   const Verb& verb = verb_named(name);
+  renew_methods();
   const DefaultFloatEnvironment floats;
   running = true;
   ExitCode status = ExitCode::internal;
@@ -342,6 +373,7 @@ py::tuple call(const std::string& name, const Arguments& arguments) {
 void define_method(py::module_& module) {
   define_solving(module);
   module.def("add_method", &add_method);
+  module.def("problem_sources", &problem_sources);
   module.def("call", &call);
 }
 

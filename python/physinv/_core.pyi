@@ -105,7 +105,8 @@ def add_method(
     solve: Callable[[Run], Any],
     experiments: list[str],
     needs: list[str],
-    options: list[tuple[str, str]],
+    words: Callable[[], list[tuple[str, str]]],
     iterations: int,
 ) -> list[str]: ...
+def problem_sources() -> str: ...
 def call(verb: str, arguments: list[bytes]) -> tuple[int, str]: ...

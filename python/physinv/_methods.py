@@ -1,12 +1,21 @@
 """Methods written in Python, as cases of campaigns."""
 
 import fnmatch
+import functools
 import hashlib
-import inspect
+import operator
+import pathlib
+import re
 import sys
 
-from physinv import _core
+import numpy as np
 
+from physinv import _core, _libraries
+from physinv._key import Refused, source_key
+
+_OWN_WORDS = ("algorithm", "method", "source", "python", "libraries", "physinv")
+_LARGEST_BUDGET = 10 ** 9
+_LONGEST_TEXT = 200
 _registered = {}
 
 
@@ -15,19 +24,94 @@ def registered():
     return dict(_registered)
 
 
-def _source(function):
-    """The text of its file, so that an edit of a helper counts, too."""
+def _option_text(value, name):
+    """The same text in every process, and another one for another value."""
+    kind = type(value)
+    if kind in (bool, int, float, complex, str, bytes, type(None)):
+        text = repr(value)
+    elif kind in (list, tuple):
+        each = [_option_text(one, name) for one in value]
+        text = f"{kind.__name__}({', '.join(each)})"
+    elif kind in (set, frozenset):
+        each = sorted(_option_text(one, name) for one in value)
+        text = f"{kind.__name__}({', '.join(each)})"
+    elif kind is dict:
+        each = sorted(f"{_option_text(key, name)}: {_option_text(one, name)}"
+                      for key, one in value.items())
+        text = f"dict({', '.join(each)})"
+    elif isinstance(value, (np.bool_, np.integer, np.floating)):
+        text = f"{value.dtype}({value.item()!r})"
+    else:
+        return f"{kind.__name__} {_value_key(value, name)}"
+    if len(text) <= _LONGEST_TEXT:
+        return text
+    digest = hashlib.sha256(text.encode("utf-8", "backslashreplace"))
+    return f"{kind.__name__} {digest.hexdigest()[:32]}"
+
+
+def _value_key(value, name):
     try:
-        with open(inspect.getsourcefile(function), encoding="utf-8") as file:
-            return file.read()
-    except (OSError, TypeError):
-        pass
+        return source_key(value, name)[0]
+    except Refused as error:
+        raise TypeError(f"the option {name} has no lasting text that could "
+                        f"enter the key: {error}") from None
+
+
+@functools.lru_cache(maxsize=None)
+def _package_key(problems):
+    """Of this package's sources and those of all problems."""
+    here = pathlib.Path(__file__).parent
+    text = [path.read_bytes() for path in sorted(here.glob("*.py"))
+            if path.is_file()]
+    return hashlib.sha256(b"\0".join([problems.encode(), *text])).hexdigest()[:32]
+
+
+def words_of(name, function, options):
+    """What the key has of a method, as pairs of texts."""
     try:
-        return inspect.getsource(function)  # of a notebook
-    except OSError:
-        raise ValueError(
-            f"{function.__name__} has no source whose hash could enter the key; "
-            "a method stands in a file or a notebook") from None
+        source, libraries = source_key(function, _name_of(function))
+    except Refused as error:
+        raise ValueError(f"the key of the method {name} cannot name all that "
+                         f"its numbers come from: {error}") from None
+    own = {_libraries.PYTHON, _libraries.PHYSINV}
+    words = [("method", name), ("source", source),
+             ("python", "%d.%d" % sys.version_info[:2]),
+             ("libraries", _libraries.versions((libraries | {"numpy"}) - own))]
+    if _libraries.PHYSINV in libraries:
+        words.append(("physinv", _package_key(_core.problem_sources())))
+    return words + [(key, _option_text(value, key))
+                    for key, value in sorted(options.items())]
+
+
+def _name_of(function):
+    return getattr(function, "__name__", type(function).__name__)
+
+
+def _check(name, experiments, needs, iterations, options):
+    if not isinstance(name, str) or not re.fullmatch("[a-z0-9_-]+", name):
+        raise ValueError(f"a method's name is in [a-z0-9_-], and {name!r} is not")
+    if not isinstance(experiments, str):
+        raise ValueError(f"experiments={experiments!r} of the method {name}; a "
+                         "pattern such as 'jpo/*' is right")
+    if not all(isinstance(one, str) for one in needs):
+        raise ValueError(f"needs={needs!r} of the method {name}; names such as "
+                         "'vjp' are right")
+    try:
+        budget = operator.index(iterations)
+    except TypeError:
+        budget = None
+    if budget is None or isinstance(iterations, (bool, np.bool_)) or \
+            not 1 <= budget <= _LARGEST_BUDGET:
+        raise ValueError(f"iterations={iterations!r} of the method {name}; a "
+                         f"whole number from 1 to {_LARGEST_BUDGET} is right")
+    for option in options:
+        if not option.isidentifier():
+            raise ValueError(f"an option's name is an identifier, and {option!r} "
+                             f"of the method {name} is not")
+        if option in _OWN_WORDS:
+            raise ValueError(f"the method {name} has an option {option}, a word "
+                             "that the record has already; give it another name")
+    return budget
 
 
 def method(name, experiments="*", needs="vjp", iterations=1000, **options):
@@ -48,19 +132,30 @@ def method(name, experiments="*", needs="vjp", iterations=1000, **options):
     iterations and evaluations per example; these two stand beside what was
     counted, as arrays claimed_iterations and so on. An exception fails its stage, and
     the campaign goes on. `physinv.run` has it in every profile, on the n and
-    seeds of its rows. The key of its results has its name, the hash of its
-    file, the options, and Python's version; `version=scipy.__version__` adds
-    another."""
+    seeds of its rows.
+
+    The key of its results has the method's name, the hash of its code and of
+    all that it refers to, transitively (globals, variables of enclosing
+    functions, decorators, defaults, classes, modules of the user's own), the
+    versions of Python and of the libraries among it, and the options, which the
+    function does not see: data="grid-2" names what the code does not refer to,
+    such as a file. It is made anew whenever physinv.run or physinv.verb is
+    called. docs/python.md says what is followed and what is refused.
+
+    ValueError for a name that is not in [a-z0-9_-], a budget that is no whole
+    number from 1 on, what cannot be called, and what cannot be followed;
+    TypeError for an option that has no lasting text."""
     needs = [needs] if isinstance(needs, str) else list(needs)
+    budget = _check(name, experiments, needs, iterations, options)
 
     def add(function):
+        if not callable(function):
+            raise ValueError(f"the method {name} is a {type(function).__name__}, "
+                             "which cannot be called")
         matching = fnmatch.filter(_core.problems(), experiments)
-        text = hashlib.sha256(_source(function).encode()).hexdigest()[:32]
-        words = [("method", name), ("source", text),
-                 ("python", "%d.%d" % sys.version_info[:2])]
-        words += [(key, str(value)) for key, value in options.items()]
-        added = _core.add_method(name, function, matching, needs, words,
-                                 iterations)
+        added = _core.add_method(name, function, matching, needs,
+                                 lambda: words_of(name, function, options),
+                                 budget)
         if not added:
             raise ValueError(
                 f"no experiment that matches '{experiments}' provides "

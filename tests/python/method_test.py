@@ -158,7 +158,7 @@ def first(run):
 
 @physinv.method("py-last", experiments="jpo/robotic-arm", iterations=1)
 def last(run):
-    return stay(run, 60 * int(os.environ["STAYS"]))
+    return stay(run, 60 * os.path.exists(sys.argv[1] + ".stays"))
 
 physinv.run("smoke", filter="^jpo/robotic-arm/py-(first|last)/", jobs=2,
             out=sys.argv[1])
@@ -383,26 +383,31 @@ class Methods(unittest.TestCase):
         before = {m: r["key"] for m, r in self.rows.items()}
         again, _, _ = run()
         self.assertEqual({m: r["key"] for m, r in again.items()}, before)
-        define(METHODS.replace("RATE", "60") + "# edited\n")
+        define("# moved\n" + METHODS.replace("RATE", "60"))
+        again, _, _ = run()
+        self.assertEqual({m: r["key"] for m, r in again.items()}, before)
+        define(METHODS.replace("RATE", "60").replace("0.05 *", "0.04 *"))
         edited, _, _ = run()
         for method, row in edited.items():
             same = row["key"] == before[method]
-            self.assertEqual(same, method == "bfgs", method)
+            self.assertEqual(same, method != "py-momentum", method)
 
     def test_killed_and_taken_up_again(self):
         script, out = WORK + "/killed.py", WORK + "/killed"
-        with open(script, "w") as f:
-            f.write(KILLED)
+        for path, text in ((script, KILLED), (out + ".stays", "")):
+            with open(path, "w") as f:
+                f.write(text)
 
-        def start(stays):
+        def start():
             return subprocess.Popen(
                 [sys.executable, script, out], text=True, stdout=subprocess.PIPE,
-                env=dict(os.environ, STAYS=str(stays)), start_new_session=True)
-        process = start(1)
+                start_new_session=True)
+        process = start()
         self.wait_for_a_stage(out)
         os.killpg(process.pid, signal.SIGKILL)
         process.communicate()
-        again, _ = start(0).communicate()
+        os.remove(out + ".stays")
+        again, _ = start().communicate()
         rows = physinv.open(out).stages()
         self.assertEqual({r["method"]: r["stop"] for r in rows},
                          {"py-first": "iterations", "py-last": "iterations"})
@@ -421,10 +426,22 @@ class Methods(unittest.TestCase):
     def test_errors_have_words(self):
         with self.assertRaisesRegex(ValueError, "has a method bfgs"):
             physinv.method("bfgs", experiments="jpo/*")(lambda run: run.start)
-        typed = {}
-        exec("def solve(run): pass", typed)
-        with self.assertRaisesRegex(ValueError, "stands in a file or a note"):
-            physinv.method("py-x", experiments="jpo/*")(typed["solve"])
+        for name in ("py x", "Py", "", "a/b", "a\n", 3, None):
+            with self.assertRaisesRegex(ValueError, "name is in .a-z0-9_-."):
+                physinv.method(name, experiments="jpo/*")
+        for budget in (0, -1, 1.5, "9", True, None, 10 ** 9 + 1, np.nan):
+            with self.assertRaisesRegex(ValueError, "whole number from 1 to"):
+                physinv.method("py-x", iterations=budget)
+        for function in (None, "solve", 3):
+            with self.assertRaisesRegex(ValueError, "which cannot be called"):
+                physinv.method("py-x")(function)
+        with self.assertRaisesRegex(ValueError, "a pattern such as"):
+            physinv.method("py-x", experiments=["jpo/*"])
+        with self.assertRaisesRegex(ValueError, "has an option source"):
+            physinv.method("py-x", source="mine")
+        with self.assertRaisesRegex(ValueError, "is an identifier, and 'a b'"):
+            physinv.method("py-x", **{"a b": 1})
+        self.assertNotIn("py-x", physinv.verb("list", profile="smoke"))
         with self.assertRaisesRegex(ValueError, "no experiment that matches"):
             physinv.method("py-x", experiments="none/*")(lambda run: run.start)
         with self.assertRaisesRegex(ValueError, "no experiment that matches"):

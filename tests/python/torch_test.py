@@ -179,8 +179,8 @@ class Torch(unittest.TestCase):
         def solve(run):
             net, start = run.network(), torch.tensor(run.start)
             y = torch.tensor(run.observations)
-            self.assertIn("mlp", net["description"])
-            self.assertTrue(np.array_equal(net["inputs"], run.observations))
+            assert "mlp" in net["description"]
+            assert np.array_equal(net["inputs"], run.observations)
             weights = [torch.tensor(w, requires_grad=True)
                        for w in net["weights"].values()]
             forward = physinv.torch(physinv.problem("jpo/robotic-arm"))
