@@ -34,7 +34,13 @@ def source_key(value, name):
     from: (32 hexadecimal digits, set of names). `name` begins the path that
     Refused states, such as "solve -> helper -> LOCK"."""
     walk = Walk()
-    walk.visit(value, name)
+    try:
+        walk.visit(value, name)
+    except Refused:
+        raise
+    except Exception as error:  # of code of the user's that the walk calls
+        raise Refused(f"{' -> '.join(walk.path)} cannot be followed: "
+                      f"{type(error).__name__}: {error}") from error
     return walk.digest(), walk.libraries
 
 

@@ -162,9 +162,9 @@ def _put_imports(walk, function):
     names = {name for code in _references.codes(function.__code__)
              for name in code.co_names}
     for name, level, chosen in _references.imports(function.__code__):
-        if level:
+        walk.say("import", str(level), name)
+        if level and package:
             name = importlib.util.resolve_name("." * level + name, package)
-        walk.say("import", name)
         module = _imported(name)
         if module is None:
             walk.say("nothing")

@@ -152,8 +152,8 @@ def _put_library_instance(walk, value):
             package in ("jax", "jaxlib", "numba")
             and hasattr(value, "__wrapped__")):
         walk.say("wrapped", kind.__module__, kind.__qualname__)
-        walk.visit(value.__wrapped__, "__wrapped__")
-        walk.visit(getattr(value, "targetoptions", None), "targetoptions")
+        for name in ("__wrapped__", "fun", "fwd", "bwd", "jvp", "targetoptions"):
+            walk.visit(getattr(value, name, None), name)
     else:
         _put_reduced(walk, value)
 
@@ -191,10 +191,13 @@ def _put_named(walk, value, name):
     """An object that pickle names."""
     homes = [getattr(value, "__module__", None), type(value).__module__,
              *sorted((m for m in list(sys.modules) if _libraries.of_module(m)
-                      and vars(sys.modules[m]).get(name) is value),
+                      and _libraries.named(m, name) is value),
                      key=lambda m: (len(m), m))]
     home = next((m for m in homes if m and _libraries.named(m, name) is value),
                 None)
+    if home is None and type(value).__module__ == "typing":
+        walk.say("name", name)  # of a type variable
+        return
     if home is None:
         walk.refuse(value, "the module that it stands in is not known")
     top = _libraries.of_module(home)

@@ -35,6 +35,9 @@ def names(code):
         instructions = [i for i in dis.get_instructions(one)
                         if i.opname not in _BETWEEN]
         for at, i in enumerate(instructions):
+            follows = [(j.opname, j.argval) for j in instructions[at + 1:at + 2]]
+            if follows == [("STORE_NAME", "__module__")]:
+                continue  # the name of its module, in the body of a class
             if i.opname in _GLOBAL or i.opname in _FREE:
                 key = i.opname in _GLOBAL, i.argval
                 found.setdefault(key, set()).add(

@@ -37,13 +37,19 @@ def turn(x): return x * RATE
 
 
 def files_of(text):
-    """With the modules that any row may import."""
+    """With the modules that it imports."""
     if isinstance(text, dict):
         return text
-    return {"methods.py": text, "decorators.py": DECORATORS,
-            "helpers.py": HELPERS, "deeper.py": DEEPER,
+    files = {"methods.py": text}
+    if "decorators" in text:
+        files["decorators.py"] = DECORATORS
+    if "helpers" in text:
+        files.update({"helpers.py": HELPERS, "deeper.py": DEEPER})
+    if "package" in text:
+        files.update({
             "package/__init__.py": "from .part import LEVEL\n",
-            "package/part.py": "LEVEL = 4\ndef climb(x): return x + LEVEL\n"}
+            "package/part.py": "LEVEL = 4\ndef climb(x): return x + LEVEL\n"})
+    return files
 
 
 def solve(body, before=""):
@@ -80,6 +86,20 @@ CALLABLE, BOUND = CLASS + "solve = solver\n", CLASS + "solve = solver.method\n"
 NUMPY = "import numpy as np\n"
 PARTIAL = ("import functools\ndef f(a, run, b=1): return run.start * a * b\n"
            "solve = functools.partial(f, 2, b=3)\n")
+
+TORCH = """
+import torch
+class Net(torch.nn.Module):
+    def __init__(self):
+        super().__init__()
+        self.layer = torch.nn.Linear(2, 2)
+    def forward(self, x): return torch.tanh(self.layer(x))
+torch.manual_seed(0)
+net, weights = Net(), torch.ones(3)
+@torch.no_grad()
+def last(x): return x + 1
+def solve(run): return last(net(run) * weights)
+"""
 
 CHANGES = [
     # The function itself.
@@ -196,6 +216,20 @@ CHANGES = [
     ("fraction", solve("R", "from fractions import Fraction as F\nR = F(1, 3)"),
      ("3)", "4)")),
     ("path", solve("R", "import pathlib\nR = pathlib.Path('a')"), ("'a'", "'b'")),
+    ("stands for another object", """
+class Proxy:
+    def __init__(self, f, by): self.f, self.by = f, by
+    @property
+    def __class__(self): return type(self.f)
+    def __getattr__(self, name): return getattr(self.f, name)
+    def __call__(self, x): return self.f(x) * self.by
+f = Proxy(lambda x: x, 2)
+def solve(run): return f(run)
+""", (", 2)", ", 3)")),
+    ("type that is generic", solve("G[int].k", "import typing\n"
+                                   "T = typing.TypeVar('T')\n"
+                                   "class G(typing.Generic[T]): k = 1\n"),
+     ("k = 1", "k = 2")),
     ("iterator", solve("next(R)", "R = iter([1, 2])"), ("[1,", "[3,")),
     # Modules of the user's own.
     ("attribute of a module", solve("helpers.STEP", "import helpers"),
@@ -249,6 +283,14 @@ CHANGES = [
     ("function of a library", solve("np.sin(1)", NUMPY), ("np.sin", "np.cos")),
     ("function of a library by name", solve("f(1)", "from numpy import sin as f"),
      ("import sin", "import cos")),
+]
+
+CHANGES_OF_TORCH = [
+    ("tensor", TORCH, ("ones(3)", "zeros(3)")),
+    ("seed of a network", TORCH, ("seed(0)", "seed(1)")),
+    ("layers of a network", TORCH, ("2, 2)", "2, 3)")),
+    ("function of a network", TORCH, ("torch.tanh", "torch.relu")),
+    ("below no_grad", TORCH, ("x + 1", "x + 2")),
 ]
 
 REFUSED = [
@@ -311,6 +353,14 @@ SAME = [
     ("annotations", solve("run"), ("(run)", "(run: object) -> object")),
     ("array that was computed", solve("A", NUMPY + "A = np.ones(3)"),
      ("np.ones(3)", "np.zeros(3) + 1")),
+    ("name of a file with a class in a function",
+     {"methods.py": "from one import f\ndef solve(run): return f(run)\n",
+      "one.py": "def f(x):\n    class A: b = x\n    return A\n",
+      "two.py": "def f(x):\n    class A: b = x\n    return A\n"},
+     ("from one", "from two")),
+    ("function that has run", solve("[f(i) for i in range(9)]", "def f(x): return"
+                                    " x + 1.5\n"),
+     ("def solve", "for i in range(99): f(1.5)\ndef solve")),
     ("name of a helper's file", {"methods.py": "from one import f\n"
                                  "def solve(run): return f(run)\n",
                                  "one.py": "def f(x): return x\n",

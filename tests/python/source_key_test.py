@@ -4,6 +4,7 @@ numbers come from, and nothing else. A table of ways to change what a method
 computes, each of which changes the key or is refused, and one of ways that
 change nothing."""
 
+import functools
 import importlib
 import itertools
 import os
@@ -21,12 +22,18 @@ except ImportError:
     print("skipped: numpy is missing")
     sys.exit(77)
 
+try:
+    import torch
+except ImportError:
+    torch = None
+
 import physinv
 from physinv import _libraries, _methods
 from physinv._key import Refused, source_key
 
 import source_key_rows as rows
 
+sys.dont_write_bytecode = True
 WORK = sys.argv[1]
 HERE = os.path.dirname(os.path.abspath(__file__))
 FOLDERS = itertools.count()
@@ -102,6 +109,14 @@ class Table(unittest.TestCase):
                 self.assertEqual(key_of(files), key_of(files))
         self.assertGreaterEqual(len(rows.CHANGES), 30)
 
+    @unittest.skipIf(torch is None, "torch is missing")
+    def test_networks_and_tensors(self):
+        for name, text, edit in rows.CHANGES_OF_TORCH:
+            with self.subTest(name):
+                files = rows.files_of(text)
+                self.assertNotEqual(key_of(files), key_of(edited(files, [edit])))
+                self.assertEqual(key_of(files), key_of(files))
+
     def test_what_cannot_be_followed_is_refused(self):
         for name, files, words in rows.REFUSED:
             with self.subTest(name), self.assertRaisesRegex(Refused, words):
@@ -141,6 +156,14 @@ class Table(unittest.TestCase):
         with mock.patch("fractions.Fraction.__mul__", mine):
             self.assertNotEqual(key, key_of(files))
         with mock.patch("numpy.dot", np.vdot):
+            self.assertNotEqual(key, key_of(files))
+        self.assertEqual(key, key_of(files))
+        files = rows.files_of("def solve(run):\n    import numpy as np\n"
+                              "    return np.linalg.solve(run.start, 1)\n")
+        key = key_of(files)
+        with mock.patch("numpy.linalg.solve", functools.partial(mine, 1)):
+            self.assertNotEqual(key, key_of(files))
+        with mock.patch("numpy.linalg.svd", mine):
             self.assertNotEqual(key, key_of(files))
         self.assertEqual(key, key_of(files))
 
