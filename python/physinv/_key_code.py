@@ -49,7 +49,7 @@ def put_code(walk, code):
 def put_function(walk, value):
     top = _libraries.of_file(value.__code__.co_filename)
     if top is None:
-        walk.say("function")
+        walk.say("function", repr(value.__name__))
         put_code(walk, value.__code__)
         _put_names(walk, value)
         _put_imports(walk, value)
@@ -198,12 +198,11 @@ def put_module(walk, value):
         return
     if put_binary(walk, value):
         return
-    members = vars(value)
-    for name in sorted(members):
+    for name, member in list(vars(value).items()):
         if name == "__getattr__" or not (
                 name.startswith("__") and name.endswith("__")):
             walk.say("member", name)
-            walk.visit(members[name], name)
+            walk.visit(member, name)
 
 
 def _put_patches(walk, module, names):

@@ -38,10 +38,11 @@ def put_class(walk, value):
     walk.visit(type(value), "its metaclass")
     for base in value.__bases__:
         walk.visit(base, base.__name__)
-    members = vars(value)
-    for name in sorted(set(members) - _NOT_OF_CLASSES):
-        walk.say("member", name)
-        walk.visit(members[name], f"{value.__name__}.{name}")
+    for name, member in list(vars(value).items()):
+        if name not in _NOT_OF_CLASSES:
+            walk.say("member", name)
+            walk.visit(member, f"{value.__name__}.{name}")
+    walk.attempt(vars(value).get("__annotations__"), "__annotations__")
 
 
 def put_object(walk, value):
@@ -152,6 +153,8 @@ def _put_library_instance(walk, value):
             package in ("jax", "jaxlib", "numba")
             and hasattr(value, "__wrapped__")):
         walk.say("wrapped", kind.__module__, kind.__qualname__)
+        if hasattr(value, "cache_clear"):
+            value.cache_clear()  # it may hold what came from other values
         for name in ("__wrapped__", "fun", "fwd", "bwd", "jvp", "targetoptions"):
             walk.visit(getattr(value, name, None), name)
     else:

@@ -21,6 +21,7 @@ except ImportError:
 import physinv
 
 WORK = sys.argv[1]
+WORK_FILE = sys.stdout
 FILTER = "^jpo/robotic-arm/(bfgs|py-.*)/"
 METHODS = '''
 import physinv
@@ -439,6 +440,11 @@ class Methods(unittest.TestCase):
             physinv.method("py-x", experiments=["jpo/*"])
         with self.assertRaisesRegex(ValueError, "has an option source"):
             physinv.method("py-x", source="mine")
+        with self.assertRaisesRegex(TypeError, "the option v has no lasting"):
+            physinv.method("py-x", v=sys.stdout)(keep)
+        with self.assertRaisesRegex(ValueError, "py-x cannot name all .* <lambda> "
+                                    "-> WORK_FILE .* cannot be followed"):
+            physinv.method("py-x")(lambda run: WORK_FILE)
         with self.assertRaisesRegex(ValueError, "is an identifier, and 'a b'"):
             physinv.method("py-x", **{"a b": 1})
         self.assertNotIn("py-x", physinv.verb("list", profile="smoke"))

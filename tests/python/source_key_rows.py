@@ -191,6 +191,13 @@ CHANGES = [
     ("base class", CALLABLE, ("shift = 1", "shift = 2")),
     ("method of a class set later", CALLABLE,
      ("solve =", "Solver.__call__ = lambda self, run: 0\nsolve =")),
+    ("annotations of a class", solve("[x for x in C.__annotations__]",
+                                     "class C:\n    a: int\n"),
+     ("a: int", "b: int")),
+    ("order of a class", solve("list(vars(C))", "class C:\n    a = 1\n    b = 2\n"),
+     ("    a = 1\n    b = 2\n", "    b = 2\n    a = 1\n")),
+    ("name of a function", solve("f.__name__", "def f(): pass"), ("f()", "g()"),
+     ("f.__", "g.__")),
     ("metaclass", solve("A()", "class M(type):\n    def __call__(c): return 1\n"
                         "class A(metaclass=M): pass"), ("return 1", "return 2")),
     ("default of a dataclass",

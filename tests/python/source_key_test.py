@@ -144,6 +144,16 @@ class Table(unittest.TestCase):
                      (step, helper, solve, "OTHER = 0.2", "print")):
             self.assertEqual(key, key_of_cells(*same), same)
 
+    def test_a_cache_does_not_keep_what_was(self):
+        space = cells("import functools", "STEP = 1",
+                      "@functools.lru_cache(None)\ndef f(): return STEP",
+                      "def solve(run): return f()")
+        first = source_key(space["solve"], "solve")[0]
+        self.assertEqual(space["solve"](None), 1)
+        space["STEP"] = 2
+        self.assertNotEqual(first, source_key(space["solve"], "solve")[0])
+        self.assertEqual(space["solve"](None), 2)
+
     def test_what_is_patched(self):
         def mine(*a):
             return 0
