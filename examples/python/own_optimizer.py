@@ -6,7 +6,7 @@ from matplotlib import pyplot
 import physinv
 
 
-@physinv.method("best-of-64", experiments="jpo/billiards", version=scipy.__version__)
+@physinv.method("best-of-64", experiments="jpo/billiards")
 def solve(run):
     ends, random = run.start, np.random.default_rng(run.seed)
     for i in range(run.n):

@@ -234,11 +234,12 @@ bool in_python(const Method* method) {
 
 /// Before any verb, so that keys are of what the methods are now.
 void renew_methods() {
-  std::set<const PythonStage*> stages;
+  std::set<const PythonStage*> renewed = {nullptr};
   for (const auto& e : registry().experiments())
-    for (const Method& method : e->methods) stages.insert(python_stage(method));
-  stages.erase(nullptr);
-  for (const PythonStage* stage : stages) stage->renew();
+    for (const Method& method : e->methods)
+      if (const PythonStage* stage = python_stage(method);
+          renewed.insert(stage).second)
+        stage->renew();
 }
 
 /// Wherever a profile of the experiment has rows of the suite's methods, on
