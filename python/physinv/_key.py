@@ -191,7 +191,7 @@ class Walk:
             self.say(repr(value.stride()))
             there = value.detach().cpu()
             if str(there.dtype) == "torch.bfloat16":
-                there = there.float()
+                there = there.view(sys.modules["torch"].int16)
             self.say(digest_of(there.numpy().tobytes()))
         except (RuntimeError, TypeError) as error:
             self.refuse(value, f"it has no bytes ({error})")

@@ -21,8 +21,8 @@ _REFUSED = [
     ("builtins", "open", _FILE), ("os", "open", _FILE),
     *(("numpy", name, _FILE)
       for name in ("load", "loadtxt", "genfromtxt", "fromfile", "memmap")),
-    ("torch", "load", _FILE), ("h5py", "File", _FILE), ("pandas", "read_csv", _FILE),
-    ("scipy.io", "loadmat", _FILE),
+    ("torch", "load", _FILE), ("h5py", "File", _FILE),
+    ("pandas", "read_csv", _FILE), ("scipy.io", "loadmat", _FILE),
     ("os", "environ", _SET), ("os", "getenv", _SET)]
 _READING = {"read_text", "read_bytes"}  # of pathlib.Path
 
@@ -148,9 +148,9 @@ def _put_of_library(walk, value, name):
     the user may have put others there."""
     kind = type(value)
     visited = (*_key.PLAIN, types.FunctionType, types.BuiltinFunctionType)
-    if (kind in visited or issubclass(kind, type) or _libraries.is_users(value)) \
-            and walk.attempt(value, name):
-        return
+    if kind in visited or issubclass(kind, type) or _libraries.is_users(value):
+        if walk.attempt(value, name):
+            return
     walk.path.append(name)
     forbid(walk, value)
     walk.path.pop()

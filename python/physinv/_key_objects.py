@@ -144,8 +144,8 @@ def _put_library_instance(walk, value):
     if _is_global(walk, value):
         return
     if isinstance(value, _DRAWING):
-        walk.refuse(value, "its numbers depend on those that were drawn before; "
-                    "make it in the method, from run.seed")
+        walk.refuse(value, "its numbers depend on those that were drawn "
+                    "before; make it in the method, from run.seed")
     if issubclass(kind, getattr(sys.modules.get("jax"), "Array", ())):
         walk.say("array of JAX", str(getattr(value, "weak_type", "")))
         walk.visit(np.asarray(value), "its numbers")
@@ -155,7 +155,8 @@ def _put_library_instance(walk, value):
         walk.say("wrapped", kind.__module__, kind.__qualname__)
         if hasattr(value, "cache_clear"):
             value.cache_clear()  # it may hold what came from other values
-        for name in ("__wrapped__", "fun", "fwd", "bwd", "jvp", "targetoptions"):
+        for name in ("__wrapped__", "fun", "fwd", "bwd", "jvp",
+                     "targetoptions"):
             walk.visit(getattr(value, name, None), name)
     else:
         _put_reduced(walk, value)

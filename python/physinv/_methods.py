@@ -2,7 +2,7 @@
 
 import fnmatch
 import functools
-import hashlib
+import inspect
 import operator
 import pathlib
 import re
@@ -11,7 +11,7 @@ import sys
 import numpy as np
 
 from physinv import _core, _libraries
-from physinv._key import Refused, source_key
+from physinv._key import Refused, digest_of, source_key
 
 _OWN_WORDS = ("algorithm", "method", "source", "python", "libraries", "physinv")
 _LARGEST_BUDGET = 10 ** 9
@@ -45,8 +45,7 @@ def _option_text(value, name):
         return f"{kind.__name__} {_value_key(value, name)}"
     if len(text) <= _LONGEST_TEXT:
         return text
-    digest = hashlib.sha256(text.encode("utf-8", "backslashreplace"))
-    return f"{kind.__name__} {digest.hexdigest()[:32]}"
+    return f"{kind.__name__} {digest_of(text.encode('utf-8'))}"
 
 
 def _value_key(value, name):
@@ -63,7 +62,7 @@ def _package_key(problems):
     here = pathlib.Path(__file__).parent
     text = [path.read_bytes() for path in sorted(here.glob("*.py"))
             if path.is_file()]
-    return hashlib.sha256(b"\0".join([problems.encode(), *text])).hexdigest()[:32]
+    return digest_of(b"\0".join([problems.encode(), *text]))
 
 
 def words_of(name, function, options):
@@ -88,12 +87,14 @@ def _name_of(function):
 
 
 def _check(name, experiments, needs, iterations, options):
-    if not isinstance(name, str) or not re.fullmatch("[a-z0-9_-]+", name):
-        raise ValueError(f"a method's name is in [a-z0-9_-], and {name!r} is not")
+    if not isinstance(name, str) or not re.fullmatch("[a-z0-9_-]{1,100}", name):
+        raise ValueError("a method's name is in [a-z0-9_-], at most 100 letters, "
+                         f"and {name!r} is not")
     if not isinstance(experiments, str):
         raise ValueError(f"experiments={experiments!r} of the method {name}; a "
                          "pattern such as 'jpo/*' is right")
-    if not all(isinstance(one, str) for one in needs):
+    if not isinstance(needs, (str, list, tuple, set)) or not all(
+            isinstance(one, str) for one in needs):
         raise ValueError(f"needs={needs!r} of the method {name}; names such as "
                          "'vjp' are right")
     try:
@@ -106,12 +107,28 @@ def _check(name, experiments, needs, iterations, options):
                          f"whole number from 1 to {_LARGEST_BUDGET} is right")
     for option in options:
         if not option.isidentifier():
-            raise ValueError(f"an option's name is an identifier, and {option!r} "
-                             f"of the method {name} is not")
+            raise ValueError("an option's name is an identifier, and "
+                             f"{option!r} of the method {name} is not")
         if option in _OWN_WORDS:
-            raise ValueError(f"the method {name} has an option {option}, a word "
-                             "that the record has already; give it another name")
+            raise ValueError(f"the method {name} has an option {option}, a "
+                             "word that the record has already; give it another "
+                             "name")
     return budget
+
+
+def _check_callable(name, function):
+    if not callable(function):
+        raise ValueError(f"the method {name} is a {type(function).__name__}, "
+                         "which cannot be called")
+    try:
+        signature = inspect.signature(function)
+    except (TypeError, ValueError):
+        return  # of a function in C that does not tell it
+    try:
+        signature.bind(None)
+    except TypeError as error:
+        raise ValueError(f"the method {name} is called with one argument, the "
+                         f"run: {error}") from None
 
 
 def method(name, experiments="*", needs="vjp", iterations=1000, **options):
@@ -145,13 +162,11 @@ def method(name, experiments="*", needs="vjp", iterations=1000, **options):
     ValueError for a name that is not in [a-z0-9_-], a budget that is no whole
     number from 1 on, what cannot be called, and what cannot be followed;
     TypeError for an option that has no lasting text."""
-    needs = [needs] if isinstance(needs, str) else list(needs)
     budget = _check(name, experiments, needs, iterations, options)
+    needs = [needs] if isinstance(needs, str) else sorted(needs)
 
     def add(function):
-        if not callable(function):
-            raise ValueError(f"the method {name} is a {type(function).__name__}, "
-                             "which cannot be called")
+        _check_callable(name, function)
         matching = fnmatch.filter(_core.problems(), experiments)
         added = _core.add_method(name, function, matching, needs,
                                  lambda: words_of(name, function, options),

@@ -35,8 +35,8 @@ def names(code):
         instructions = [i for i in dis.get_instructions(one)
                         if i.opname not in _BETWEEN]
         for at, i in enumerate(instructions):
-            follows = [(j.opname, j.argval) for j in instructions[at + 1:at + 2]]
-            if follows == [("STORE_NAME", "__module__")]:
+            after = instructions[min(at + 1, len(instructions) - 1)]
+            if (after.opname, after.argval) == ("STORE_NAME", "__module__"):
                 continue  # the name of its module, in the body of a class
             if i.opname in _GLOBAL or i.opname in _FREE:
                 key = i.opname in _GLOBAL, i.argval

@@ -427,7 +427,7 @@ class Methods(unittest.TestCase):
     def test_errors_have_words(self):
         with self.assertRaisesRegex(ValueError, "has a method bfgs"):
             physinv.method("bfgs", experiments="jpo/*")(lambda run: run.start)
-        for name in ("py x", "Py", "", "a/b", "a\n", 3, None):
+        for name in ("py x", "Py", "", "a/b", "a\n", 3, None, "a" * 101):
             with self.assertRaisesRegex(ValueError, "name is in .a-z0-9_-."):
                 physinv.method(name, experiments="jpo/*")
         for budget in (0, -1, 1.5, "9", True, None, 10 ** 9 + 1, np.nan):
@@ -436,6 +436,12 @@ class Methods(unittest.TestCase):
         for function in (None, "solve", 3):
             with self.assertRaisesRegex(ValueError, "which cannot be called"):
                 physinv.method("py-x")(function)
+        for function in (lambda: 0, lambda run, x: 0, lambda *, run: 0):
+            with self.assertRaisesRegex(ValueError, "with one argument, the run"):
+                physinv.method("py-x")(function)
+        for needs in (3, None, ["vjp", 3]):
+            with self.assertRaisesRegex(ValueError, "names such as 'vjp'"):
+                physinv.method("py-x", needs=needs)
         with self.assertRaisesRegex(ValueError, "a pattern such as"):
             physinv.method("py-x", experiments=["jpo/*"])
         with self.assertRaisesRegex(ValueError, "has an option source"):
