@@ -148,9 +148,11 @@ def _put_of_library(walk, value, name):
     the user may have put others there."""
     kind = type(value)
     visited = (*_key.PLAIN, types.FunctionType, types.BuiltinFunctionType)
-    if kind in visited or issubclass(kind, type) or _libraries.is_users(value):
-        if walk.attempt(value, name):
-            return
+    if _libraries.is_users(value):
+        walk.visit(value, name)
+        return
+    if (kind in visited or issubclass(kind, type)) and walk.attempt(value, name):
+        return
     walk.path.append(name)
     forbid(walk, value)
     walk.path.pop()

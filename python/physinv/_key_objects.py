@@ -53,7 +53,8 @@ def put_object(walk, value):
         walk.say("method", value.__name__)
         walk.visit(value.__self__, "__self__")
         walk.visit(getattr(value, "__func__", None), value.__name__)
-    elif kind in (staticmethod, classmethod):
+    elif kind in (staticmethod, classmethod) or \
+            kind.__name__ == "instancemethod":  # of pybind11's classes
         walk.say(kind.__name__)
         walk.visit(value.__func__, "__func__")
     elif kind is property:

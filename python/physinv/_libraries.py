@@ -51,6 +51,8 @@ def of_file(path):
 
 def of_module(name):
     """The library that a module belongs to, None for the user's own."""
+    if not isinstance(name, str):
+        return None
     if name not in _known:
         top = _library_of(name)
         if top is None:
@@ -60,13 +62,19 @@ def of_module(name):
 
 
 def _library_of(name):
-    module = sys.modules.get(name) or sys.modules.get(name.split(".")[0])
-    if module is None or name == "__main__":
-        return None
-    spec = getattr(module, "__spec__", None)
-    if getattr(spec, "origin", None) in ("built-in", "frozen"):
-        return PYTHON
-    return of_file(file_of(module) or "")
+    """By its file; what has none, as parts of compiled modules, by the package
+    that it is in."""
+    for one in dict.fromkeys((name, name.split(".")[0])):
+        module = sys.modules.get(one)
+        if module is None or one == "__main__":
+            continue
+        spec = getattr(module, "__spec__", None)
+        if getattr(spec, "origin", None) in ("built-in", "frozen"):
+            return PYTHON
+        path = file_of(module)
+        if path:
+            return of_file(path)
+    return None
 
 
 def named(module, qualified):

@@ -88,8 +88,8 @@ def _name_of(function):
 
 def _check(name, experiments, needs, iterations, options):
     if not isinstance(name, str) or not re.fullmatch("[a-z0-9_-]{1,100}", name):
-        raise ValueError("a method's name is in [a-z0-9_-], at most 100 letters, "
-                         f"and {name!r} is not")
+        raise ValueError("a method's name is in [a-z0-9_-], at most 100 of "
+                         f"them, and {name!r} is not")
     if not isinstance(experiments, str):
         raise ValueError(f"experiments={experiments!r} of the method {name}; a "
                          "pattern such as 'jpo/*' is right")
@@ -111,8 +111,8 @@ def _check(name, experiments, needs, iterations, options):
                              f"{option!r} of the method {name} is not")
         if option in _OWN_WORDS:
             raise ValueError(f"the method {name} has an option {option}, a "
-                             "word that the record has already; give it another "
-                             "name")
+                             "word that the record has already; give it "
+                             "another name")
     return budget
 
 

@@ -144,6 +144,23 @@ class Table(unittest.TestCase):
                      (step, helper, solve, "OTHER = 0.2", "print")):
             self.assertEqual(key, key_of_cells(*same), same)
 
+    def test_what_libraries_have_is_no_obstacle(self):
+        """All public names of some modules, but for readers of files."""
+        readers = {"fromfile", "genfromtxt", "load", "loadtxt", "memmap"}
+        for module in ("numpy", "numpy.linalg", "scipy.optimize", "math",
+                       "torch.linalg", "torch.nn.functional"):
+            try:
+                names = sorted(set(dir(importlib.import_module(module))) - readers)
+            except ImportError:
+                continue
+            for name in names:
+                if name.startswith("_"):
+                    continue
+                with self.subTest(f"{module}.{name}"):
+                    space = cells(f"import {module} as m\nf = m.{name}\n"
+                                  f"def solve(run): return f, m.{name}")
+                    source_key(space["solve"], "solve")
+
     def test_a_cache_does_not_keep_what_was(self):
         space = cells("import functools", "STEP = 1",
                       "@functools.lru_cache(None)\ndef f(): return STEP",
