@@ -18,13 +18,14 @@ _REFUSED = [
     ("importlib", "import_module", _TEXT), ("importlib", "__import__", _TEXT),
     ("sys", "modules", _TEXT), ("sys", "_getframe", _TEXT),
     ("inspect", "currentframe", _TEXT), ("inspect", "stack", _TEXT),
+    ("builtins", "input", _TEXT), ("sys", "stdin", _TEXT),
     ("builtins", "open", _FILE), ("os", "open", _FILE),
     *(("numpy", name, _FILE)
       for name in ("load", "loadtxt", "genfromtxt", "fromfile", "memmap")),
     ("torch", "load", _FILE), ("h5py", "File", _FILE),
     ("pandas", "read_csv", _FILE), ("scipy.io", "loadmat", _FILE),
     ("os", "environ", _SET), ("os", "getenv", _SET)]
-_READING = {"read_text", "read_bytes"}  # of pathlib.Path
+_READING = {"open", "read_text", "read_bytes"}  # of pathlib.Path, gzip, ...
 
 
 def forbid(walk, value):
@@ -88,10 +89,8 @@ def _put_cell(walk, cell, name, uses=((),)):
 
 def _put_names(walk, function):
     """All that the user's code refers to."""
-    read = _READING & {name for code in _references.codes(function.__code__)
-                       for name in code.co_names}
-    if read:
-        walk.refuse(function, f"{min(read)}: {_FILE}")
+    for name in sorted(_READING & _references.attributes(function.__code__)):
+        walk.refuse(function, f".{name}: {_FILE}")
     cells = _cells(function)
     builtin = function.__globals__.get("__builtins__", {})
     if isinstance(builtin, types.ModuleType):

@@ -45,6 +45,12 @@ def names(code):
     return found
 
 
+def attributes(code):
+    """All attributes that the code asks any object for."""
+    return {i.argval for one in codes(code) for i in dis.get_instructions(one)
+            if i.opname in _ATTRIBUTE}
+
+
 def imports(code):
     """Of every import statement: (module, level, names or None)."""
     found = set()
