@@ -150,8 +150,9 @@ def _put_of_library(walk, value, name):
     if _libraries.is_users(value):
         walk.visit(value, name)
         return
-    if (kind in visited or issubclass(kind, type)) and walk.attempt(value, name):
-        return
+    if kind in visited or issubclass(kind, type):
+        if walk.attempt(value, name):
+            return
     walk.path.append(name)
     forbid(walk, value)
     walk.path.pop()
