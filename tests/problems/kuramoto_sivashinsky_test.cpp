@@ -26,8 +26,8 @@ Samples<double> draw(Index n, const KuramotoSivashinskyOptions& o = {}) {
 
 template <class T>
 struct Bench : Physics<KuramotoSivashinsky<T>> {
-  explicit Bench(const KuramotoSivashinskyOptions& o = {}, int threads = 1)
-      : Physics<KuramotoSivashinsky<T>>(KuramotoSivashinsky<T>(o), threads) {}
+  explicit Bench(const KuramotoSivashinskyOptions& o = {}, int count = 1)
+      : Physics<KuramotoSivashinsky<T>>(KuramotoSivashinsky<T>(o), count) {}
 
   /// d/dx above d/du(0), at a y that has the bits of `forward`.
   Batch<T> pull(const Batch<T>& x, const Batch<T>& u0, const Batch<T>& y_bar) {
