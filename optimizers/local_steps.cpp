@@ -140,7 +140,8 @@ class LocalSteps final : public StepwiseSolver {
       const Eigen::Map<const Batch<T>> h(matrix_.col(i).data(), d, d);
       next_.col(i) = newton_step({.flip = false},
                                  next_.col(i).template cast<double>(),
-                                 h.template cast<double>())
+                                 h.template cast<double>(),
+                                 std::numeric_limits<T>::epsilon())
                          .template cast<T>();
     }
   }

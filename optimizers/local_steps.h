@@ -8,10 +8,12 @@
 ///   inverse_search     the same, P^-1 by a NumericInverse, in double always
 ///
 /// There is no line search. H^-1 and J^-1 are the problem's ClosedSteps if it
-/// has them; otherwise a direction that H or J does not see at all, its pivot
-/// an exact zero, stays where it is. Problems are independent of each other. A
-/// step that is not finite is not taken, and ends its problem with status
-/// nonfinite; with all problems ended, the stage has diverged.
+/// has them; otherwise a direction that H or J does not see, its eigenvalue or
+/// pivot zero but for rounding, stays where it is: up to d eps of the largest,
+/// with eps of the stage's precision (training/newton.h). Problems are
+/// independent of each other. A step that is not finite is not taken, and ends
+/// its problem with status nonfinite; with all problems ended, the stage has
+/// diverged.
 ///
 /// Array `path`: the first problems' x below each other (unknowns times
 /// `LocalStepsOptions::paths`, or fewer), a column for each step, the start

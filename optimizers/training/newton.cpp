@@ -14,10 +14,10 @@
 namespace physinv {
 namespace {
 
-/// s of one direction.
-double along(const NewtonOptions& o, double q, double h) {
+/// s of one direction; denominators up to `zero` are.
+double along(const NewtonOptions& o, double q, double h, double zero) {
   const double bottom = h + o.damping;
-  if (bottom == 0 || q == 0) return 0;
+  if (std::abs(bottom) <= zero || q == 0) return 0;
   const double size = std::min(std::abs(q / bottom), o.limit);
   const bool down = o.flip || bottom > 0;
   return std::copysign(size, down ? q : -q);
@@ -59,7 +59,8 @@ class NewtonProxy final : public BatchSignal<T> {
       const Vector<double> dx =
           newton_step(newton_,
                       x_bar.col(i).template cast<double>(),
-                      h.template cast<double>());
+                      h.template cast<double>(),
+                      std::numeric_limits<T>::epsilon());
       loss(i) = 0.5 * dx.squaredNorm();
       x_bar.col(i) = (-double(this->factor_) * dx).template cast<T>();
     }
@@ -81,16 +82,23 @@ SignalRecipe::Make<T> maker(const NewtonOptions& options) {
 
 Vector<double> newton_step(const NewtonOptions& options,
                            const Vector<double>& gradient,
-                           const Batch<double>& hessian) {
+                           const Batch<double>& hessian,
+                           double epsilon) {
   const Index d = gradient.size();
   if (!gradient.allFinite() || !hessian.allFinite())
     return Vector<double>::Constant(d, std::nan(""));
   if (d == 1)
-    return Vector<double>::Constant(
-        1, -along(options, gradient(0), hessian(0, 0)));
+    return Vector<double>::Constant(1,
+                                    -along(options,
+                                           gradient(0),
+                                           hessian(0, 0),
+                                           epsilon * std::abs(hessian(0, 0))));
   const linalg::SymmetricEigen parts = linalg::symmetric_eigen(hessian);
   Vector<double> q = parts.vectors.transpose() * gradient;
-  for (Index k = 0; k < d; ++k) q(k) = along(options, q(k), parts.values(k));
+  const double zero =
+      static_cast<double>(d) * epsilon * parts.values.cwiseAbs().maxCoeff();
+  for (Index k = 0; k < d; ++k)
+    q(k) = along(options, q(k), parts.values(k), zero);
   return -parts.vectors * q;
 }
 

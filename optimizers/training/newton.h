@@ -8,7 +8,11 @@
 ///   dx = -V s,   s_k = sign(q_k) min(|q_k / (h_k + damping)|, limit),
 ///   q = V^T g,
 ///
-/// 0 where a denominator is. Signs are those of the gradient: negative
+/// 0 where a denominator is but for rounding: |h_k + damping| <= d eps max_j
+/// |h_j|, with d unknowns and eps the machine epsilon of the precision that H
+/// was computed in. So far eigenvalues are from those of the exact matrix
+/// (backward error, LAPACK Users' Guide, Sec. 4.7); NumPy's matrix_rank has the
+/// same bound. Signs are those of the gradient: negative
 /// curvature is flipped, so that every step goes down. Without `flip`, s_k =
 /// q_k / (h_k + damping): to the stationary point, also where that is up.
 ///
@@ -30,9 +34,12 @@ struct NewtonOptions {
 
 SignalRecipe newton_proxy(const NewtonOptions& options = {});
 
-/// dx of one sample; the Hessian is symmetric.
-Vector<double> newton_step(const NewtonOptions& options,
-                           const Vector<double>& gradient,
-                           const Batch<double>& hessian);
+/// dx of one sample; the Hessian is symmetric, `epsilon` that of the precision
+/// that it was computed in.
+Vector<double> newton_step(
+    const NewtonOptions& options,
+    const Vector<double>& gradient,
+    const Batch<double>& hessian,
+    double epsilon = std::numeric_limits<double>::epsilon());
 
 }  // namespace physinv

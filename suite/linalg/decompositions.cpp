@@ -30,9 +30,7 @@ struct FullyPivoted<T>::Lu {
 };
 
 template <class T>
-FullyPivoted<T>::FullyPivoted() : lu_(std::make_unique<Lu>()) {
-  lu_->of.setThreshold(T(0));
-}
+FullyPivoted<T>::FullyPivoted() : lu_(std::make_unique<Lu>()) {}
 
 template <class T>
 FullyPivoted<T>::~FullyPivoted() = default;

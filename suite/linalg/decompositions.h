@@ -24,8 +24,9 @@ struct SingularValues {
 };
 SingularValues singular_values(const Batch<double>& a);
 
-/// x with A x = b by an LU decomposition with full pivoting; pivots that are
-/// zero alone count as zero, and their unknowns are. Keeps its memory.
+/// x with A x = b by an LU decomposition with full pivoting; pivots up to the
+/// smaller size of A times the machine epsilon of the largest are zero but for
+/// rounding, and their unknowns are zero. Keeps its memory.
 template <class T>
 class FullyPivoted {
  public:

@@ -7,6 +7,7 @@
 #include "problems/scaling/scaling.h"
 #include "problems/scaling/trajectories.h"
 #include "suite/core/check.h"
+#include "suite/linalg/decompositions.h"
 #include "tests/optimizers/scaling_support.h"
 #include "tests/support/bits.h"
 #include "tests/support/tolerance.h"
@@ -191,6 +192,47 @@ TEST(NewtonStep, OfOneUnknownIsNoNumberEither) {
       EXPECT_TRUE(std::isnan(newton_step({}, one(good), one(bad))(0)));
       EXPECT_TRUE(std::isnan(newton_step({}, one(bad), one(good))(0)));
     }
+}
+
+TEST(NewtonStep, AnEigenvalueThatIsZeroButForRoundingIsZero) {
+  const Vector<double> g = Vector<double>::Ones(2);
+  const auto second = [&](double h, double epsilon, NewtonOptions o = {}) {
+    const Batch<double> hessian{{1, 0}, {0, h}};
+    const Vector<double> dx = newton_step(o, g, hessian, epsilon);
+    EXPECT_DOUBLE_EQ(dx(0), -1 / (1 + o.damping));
+    return dx(1);
+  };
+  constexpr double kDouble = std::numeric_limits<double>::epsilon();
+  constexpr double kFloat = std::numeric_limits<float>::epsilon();
+  for (const double h : {0.0, 1e-17, -1e-17, 4e-16}) {
+    EXPECT_EQ(second(h, kDouble), 0) << h;
+    EXPECT_EQ(second(h, kDouble, {.limit = 3}), 0) << h;
+    EXPECT_EQ(second(h, kDouble, {.flip = false}), 0) << h;
+  }
+  EXPECT_DOUBLE_EQ(second(1e-15, kDouble), -1e15);
+  EXPECT_DOUBLE_EQ(second(1e-15, kDouble, {.limit = 3}), -3);
+  EXPECT_EQ(second(1e-8, kFloat), 0);
+  EXPECT_DOUBLE_EQ(second(1e-6, kFloat), -1e6);
+  // Damped it is zero no more.
+  EXPECT_DOUBLE_EQ(second(1e-17, kDouble, {.damping = 0.5}), -2);
+  // Of rank one: the solver's zero is some 1e-17 of the other.
+  for (const double slope : {0.1, 0.3, 0.7, 1.1, 3.3}) {
+    const Vector<double> v{{1, slope}};
+    const Vector<double> dx = newton_step({}, g, v * v.transpose());
+    EXPECT_LT(dx.norm(), 2 * g.norm() / v.squaredNorm()) << slope;
+  }
+}
+
+TEST(FullyPivoted, APivotThatIsZeroButForRoundingIsZero) {
+  linalg::FullyPivoted<double> lu;
+  Vector<double> x(2);
+  for (const double slope : {0.1, 0.3, 0.7, 1.1, 3.3}) {
+    const Batch<double> a{{0.1, 0.3}, {slope * 0.1, slope * 0.3}};
+    lu.solve(a, Vector<double>{{1, 2}}, x);
+    EXPECT_LT(x.norm(), 100) << slope;
+  }
+  lu.solve(Batch<double>{{1, 0}, {0, 1e-15}}, Vector<double>{{1, 1}}, x);
+  EXPECT_DOUBLE_EQ(x(1), 1e15);
 }
 
 TEST(LocalSteps, AStartOfNoUseEndsItsProblemAtOnce) {
