@@ -10,6 +10,8 @@
 #include <set>
 #include <stdexcept>
 
+#include "suite/core/stop.h"
+#include "suite/evidence/rank_test.h"
 #include "suite/results/shortened.h"
 
 namespace physinv {
@@ -41,7 +43,11 @@ void add_stage(PastBaseline& past, const std::vector<std::string_view>& words) {
     if (word.starts_with("results=")) stage.results = word.substr(8);
     if (word.starts_with("loss="))
       if (const auto losses = split(word.substr(5), ','); losses.size() >= 2)
-        stage.loss = decimal(losses[1]);
+        if (const double loss = decimal(losses[1]); std::isfinite(loss))
+          stage.loss = loss;
+    if (word.starts_with("stop=")) stage.stop = word.substr(5);
+    if (word.starts_with("nonfinite="))
+      stage.nonfinite = static_cast<std::int64_t>(decimal(word.substr(10)));
     if (word.starts_with("ms="))
       stage.fastest_ms = decimal(word.substr(3, word.find("..") - 3));
   }
@@ -65,6 +71,16 @@ class Link {
   int count_ = 0;
 };
 
+/// Is the median of the same losses on both sides?
+bool losses_compare(const PastBaseline::Stage& a,
+                    const PastBaseline::Stage& b) {
+  return a.loss && b.loss && a.nonfinite == b.nonfinite && !a.failed() &&
+         !b.failed();
+}
+
+/// Losses that are solved are equal.
+double raised(double loss) { return std::max(loss, kSolvedLoss); }
+
 using Ratio = std::function<std::optional<double>(
     const PastBaseline&, const PastBaseline&, const std::string& group)>;
 
@@ -79,7 +95,8 @@ std::optional<double> loss_ratio(const PastBaseline& a,
   for (const auto& [name, stage] : b.stages)
     if (group_of(name) == group)
       if (const auto at = a.stages.find(name); at != a.stages.end())
-        link.add(at->second.loss, stage.loss);
+        if (losses_compare(at->second, stage))
+          link.add(raised(*at->second.loss), raised(*stage.loss));
   return link.ratio();
 }
 
@@ -91,7 +108,8 @@ std::optional<double> time_ratio(const PastBaseline& a,
   for (const auto& [name, stage] : b.stages)
     if (group_of(name) == group)
       if (const auto at = a.stages.find(name); at != a.stages.end())
-        link.add(at->second.fastest_ms, stage.fastest_ms);
+        if (!at->second.failed() && !stage.failed())
+          link.add(at->second.fastest_ms, stage.fastest_ms);
   return link.ratio();
 }
 
@@ -142,6 +160,15 @@ struct Moved {
   int both = 0, bits = 0, losses = 0, added = 0, gone = 0;
 };
 
+/// By more than nearly nothing, or to another number of finite losses.
+bool other_losses(const PastBaseline::Stage& a, const PastBaseline::Stage& b) {
+  if (!losses_compare(a, b))
+    return a.loss.has_value() != b.loss.has_value() ||
+           a.nonfinite != b.nonfinite || a.failed() != b.failed();
+  const double from = raised(*a.loss), to = raised(*b.loss);
+  return std::abs(to - from) > kSameLoss * from;
+}
+
 Moved moved(const PastBaseline& a, const PastBaseline& b) {
   Moved out;
   for (const auto& [name, stage] : b.stages) {
@@ -152,11 +179,17 @@ Moved moved(const PastBaseline& a, const PastBaseline& b) {
     }
     ++out.both;
     out.bits += at->second.results != stage.results;
-    out.losses += std::abs(at->second.loss - stage.loss) >
-                  kSameLoss * std::abs(at->second.loss);
+    out.losses += other_losses(at->second, stage);
   }
   out.gone = static_cast<int>(a.stages.size()) - out.both;
   return out;
+}
+
+double failed_in(const PastBaseline& past) {
+  return static_cast<double>(std::count_if(
+      past.stages.begin(), past.stages.end(), [](const auto& stage) {
+        return stage.second.failed();
+      }));
 }
 
 Cell count_cell(double value) { return {.ours = value}; }
@@ -180,6 +213,7 @@ Table commits_table(const std::vector<PastBaseline>& past,
                           "stages",
                           "new",
                           "gone",
+                          "failed",
                           "other bits",
                           "other losses",
                           "instructions",
@@ -201,19 +235,27 @@ Table commits_table(const std::vector<PastBaseline>& past,
                            count_cell(static_cast<double>(b.stages.size())),
                            count_cell(m.added),
                            count_cell(m.gone),
+                           count_cell(failed_in(b)),
                            count_cell(m.bits),
                            count_cell(m.losses),
                            ratio_cell(instructions),
                            ratio_cell(seconds)}});
   }
   table.note =
-      "Against the baseline before. Other losses: a median that moved by more "
-      "than 1e-6 of itself. Instructions and seconds: geometric means over "
+      "Against the baseline before. Failed: stages that failed, were skipped "
+      "or diverged. Other losses: a median that moved by more than 1e-6 of "
+      "itself, where losses below 1e-12 are equal, or another number of losses "
+      "that are finite. Instructions and seconds: geometric means over "
       "what both have, of one counter and one machine.";
   return table;
 }
 
 }  // namespace
+
+bool PastBaseline::Stage::failed() const {
+  return stop == to_string(Stop::failed) || stop == to_string(Stop::skipped) ||
+         stop == to_string(Stop::diverged);
+}
 
 PastBaseline past_baseline(std::string_view text) {
   PastBaseline past;
@@ -254,8 +296,9 @@ std::vector<Section> history_of(const std::vector<PastBaseline>& past) {
                    "losses",
                    "Final losses",
                    "Each commit's median losses over those of the baseline "
-                   "before, stage by stage; geometric means, linked. What is "
-                   "new or gone links nothing.",
+                   "before, stage by stage; geometric means, linked. Losses "
+                   "below 1e-12 are equal. What is new, gone or failed, or has "
+                   "another number of losses that are finite, links nothing.",
                    loss_ratio),
       index_figure(past,
                    groups,
@@ -268,8 +311,8 @@ std::vector<Section> history_of(const std::vector<PastBaseline>& past) {
                    groups,
                    "seconds",
                    "Seconds of solving",
-                   "The same of each stage's fastest run; another machine "
-                   "links nothing.",
+                   "The same of each stage's fastest run; another machine, and "
+                   "what failed or diverged, links nothing.",
                    time_ratio)};
   return {std::move(section)};
 }
