@@ -12,6 +12,7 @@
 #include "suite/app/published_campaign.h"
 #include "suite/evidence/claim.h"
 #include "suite/harness/errors.h"
+#include "suite/harness/judge.h"
 #include "suite/harness/registry.h"
 #include "suite/store/file.h"
 #include "suite/store/json.h"
@@ -61,15 +62,6 @@ void require_figures(const fs::path& folder, const Json& digest) {
     }
 }
 
-/// The claims of an experiment, or of a paper's overview; none of what is not
-/// registered.
-std::vector<Claim> claims_of(const std::string& name) {
-  if (const auto e = registry().find(name)) return e->claims;
-  for (const Overview& o : registry().overviews())
-    if (o.paper == name) return o.claims;
-  return {};
-}
-
 /// The cases of a profile as if they had been run, without a number: sizes and
 /// seeds alone.
 Results planned(const std::string& profile) {
@@ -111,7 +103,7 @@ void renew(Json& digest, const Results& stages, const Published& published) {
     const std::string experiment = section.at("experiment");
     add_tables(experiment, stages, published, section.at("tables"));
     Json& kept = section.at("claims");
-    for (const Claim& now : claims_of(experiment)) {
+    for (const Claim& now : claims_of(registry(), experiment)) {
       const auto own = std::find_if(kept.begin(), kept.end(), [&](Json& claim) {
         return claim.at("id") == now.id;
       });

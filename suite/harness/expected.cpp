@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "suite/harness/errors.h"
+#include "suite/harness/judge.h"
 #include "suite/results/verdict_words.h"
 #include "suite/store/file.h"
 
@@ -86,6 +87,13 @@ void check_expected(const std::vector<ExpectedFailure>& expected,
 
 namespace {
 
+/// Does it gate, and is there a verdict that counts?
+bool is_judged(const ClaimResult& c) {
+  return c.gates &&
+         (c.verdict == Verdict::reproduced ||
+          c.verdict == Verdict::not_reproduced || is_explained(c.verdict));
+}
+
 /// Where one gating claim of an experiment belongs.
 void sort_in(const ClaimResult& c,
              const std::string& name,
@@ -106,16 +114,33 @@ void sort_in(const ClaimResult& c,
 
 }  // namespace
 
+std::size_t decided_by_runs(const Registry& registry,
+                            const std::vector<Section>& sections,
+                            const Results& results,
+                            const Published& published) {
+  std::size_t decided = 0;
+  for (const Section& s : sections) {
+    const std::vector<Claim> claims = claims_of(registry, s.experiment);
+    for (const ClaimResult& c : s.claims) {
+      if (!is_judged(c)) continue;
+      const auto own =
+          std::find_if(claims.begin(), claims.end(), [&](const Claim& claim) {
+            return claim.id == c.id;
+          });
+      decided += own == claims.end() ||
+                 cases_behind(*own, c, {results, published, s.experiment}) > 0;
+    }
+  }
+  return decided;
+}
+
 ClaimTally compare(const std::vector<Section>& sections,
                    const std::vector<ExpectedFailure>& expected,
                    const std::string& profile) {
   ClaimTally judgement;
   for (const Section& s : sections) {
     for (const ClaimResult& c : s.claims) {
-      if (!c.gates ||
-          (c.verdict != Verdict::reproduced &&
-           c.verdict != Verdict::not_reproduced && !is_explained(c.verdict)))
-        continue;
+      if (!is_judged(c)) continue;
       ++judgement.judged;
       const auto listed = std::find_if(
           expected.begin(), expected.end(), [&](const ExpectedFailure& e) {

@@ -48,4 +48,12 @@ ClaimTally compare(const std::vector<Section>& sections,
                    const std::vector<ExpectedFailure>& expected,
                    const std::string& profile);
 
+/// How many gating claims are decided by runs of these results, and not by what
+/// is registered alone, such as a network's number of parameters. Claims that
+/// an experiment makes while it reports count as decided by runs.
+std::size_t decided_by_runs(const Registry& registry,
+                            const std::vector<Section>& sections,
+                            const Results& results,
+                            const Published& published);
+
 }  // namespace physinv

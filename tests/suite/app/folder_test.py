@@ -54,3 +54,12 @@ with tempfile.TemporaryDirectory() as directory:
     assert len(claims) > 10 and claims == verdicts(PART, of_part), claims
     names = run(PART, "list", "--profile=smoke").split("\n")
     assert all(n.startswith("jpo/billiards/") for n in names[1:-2]), names
+
+    # No run of gd decides a claim; that on numbers of parameters needs none.
+    alone = pathlib.Path(directory) / "gd"
+    run(WHOLE, "--profile=smoke", "--filter=^jpo/billiards/gd/",
+        f"--out={alone}")
+    check = subprocess.run([WHOLE, "report", str(alone), "--check"],
+                           capture_output=True, text=True)
+    assert check.returncode == 10, check
+    assert "these runs decide no gating claim" in check.stderr, check

@@ -6,7 +6,9 @@
 #include <filesystem>
 #include <fstream>
 
+#include "suite/evidence/quantity.h"
 #include "suite/harness/errors.h"
+#include "suite/harness/judge.h"
 #include "suite/results/verdict_words.h"
 
 namespace physinv {
@@ -93,6 +95,43 @@ TEST(Expected, OtherProgramsTakeWhatTheyKnow) {
   ASSERT_EQ(known.size(), 2U);
   EXPECT_EQ(known[0].claim, "R9");
   EXPECT_EQ(known[1].experiment, "c");
+}
+
+/// A case of experiment a/b, whose method "m" ends with this loss.
+Results one_run() {
+  CaseRecord c;
+  c.info.experiment = "a/b", c.info.method = "m", c.info.stages = {"solve"};
+  c.stages.push_back({.stage = "solve", .loss = Vector<double>::Ones(1)});
+  return Results({c});
+}
+
+RunValue first_loss() {
+  return [](const Run& run) { return std::optional(run.stage->loss(0)); };
+}
+
+TEST(Expected, WhatIsRegisteredAloneIsDecidedByNoRun) {
+  const Condition constant = equals("parameters", Quantity(3.0), 3),
+                  measured = above("loss", median({"m"}, first_loss()), 0);
+  const auto decided = [](std::vector<Condition> conditions,
+                          const Results& results) {
+    Registry registry;
+    registry.add(Experiment{
+        .name = "a/b",
+        .profiles = {{"quick", {}}},
+        .claims = {{.id = "R1", .says = "so", .conditions = conditions}}});
+    const Published none;
+    Section s{.experiment = "a/b"};
+    s.claims = judge(*registry.find("a/b"), results, none);
+    EXPECT_EQ(compare({s}, {}, "quick").judged,
+              results.cases().empty() ? 0U : 1U);
+    return decided_by_runs(registry, {s}, results, none);
+  };
+  EXPECT_EQ(decided({constant}, one_run()), 0U);
+  EXPECT_EQ(decided({constant, measured}, one_run()), 1U);
+  EXPECT_EQ(decided({measured}, one_run()), 1U);
+  EXPECT_EQ(decided({measured}, Results()), 0U);
+  // Made while it reports: nobody knows from what.
+  EXPECT_EQ(decided_by_runs(Registry(), sections(), one_run(), {}), 2U);
 }
 
 TEST(Expected, EntryWithoutAClaimIsAnError) {
