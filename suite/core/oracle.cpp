@@ -220,6 +220,7 @@ Samples<double> Oracle::training(Index first, Index count) const {
 
 template <class T>
 CountedProblem<T> Oracle::problem() const {
+  handed_out_ = true;
   return {recipe_.make<T>(), allowed_, work_->threads()};
 }
 
@@ -227,6 +228,7 @@ template CountedProblem<float> Oracle::problem() const;
 template CountedProblem<double> Oracle::problem() const;
 
 Oracle Oracle::sibling(Index count, const Rng& data, Needs allowed) const {
+  handed_out_ = true;
   return {recipe_, count, data, allowed, work_->threads()};
 }
 

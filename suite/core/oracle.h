@@ -64,6 +64,9 @@ class Oracle {
   /// runs it adds its counts.
   template <class T>
   CountedProblem<T> problem() const;
+  /// Was that, or a sibling, asked for? Then `counts` lacks what was not added
+  /// yet.
+  bool handed_out() const { return handed_out_; }
   /// Other problems of the same kind and configuration, from another stream.
   Oracle sibling(Index count, const Rng& data, Needs allowed) const;
 
@@ -112,6 +115,7 @@ class Oracle {
   std::unique_ptr<Side<double>> double_;
   std::unique_ptr<Workspace> work_, measuring_;
   mutable Counts counts_;
+  mutable bool handed_out_ = false;
   double operations_ = 0;
 };
 

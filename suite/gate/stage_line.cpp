@@ -184,7 +184,8 @@ StageLine line_of(const StageRecord& r) {
                  .message = r.message,
                  .statuses = count(r.status),
                  .losses = losses_of(r.loss)};
-  if (has_result(r)) line.x = projection_of(r.x), line.x_norm = norm_of(r.x);
+  if (!has_result(r)) return line;  // what it spent gained nothing
+  line.x = projection_of(r.x), line.x_norm = norm_of(r.x);
   line.work = {static_cast<std::uint64_t>(r.iterations),
                r.counts[Counter::forward],
                r.counts[Counter::vjp],

@@ -92,6 +92,7 @@ StageRecord lost_stage(const Case& c,
   r.stop = stop;
   r.message = std::move(message);
   r.finished = utc_now();
+  if (stop == Stop::failed) r.counts = unknown_counts();
   return r;
 }
 
@@ -142,8 +143,10 @@ void run_case(const Case& c,
       } catch (const StageLeft&) {
         throw;
       } catch (...) {
+        const StageRecord until = std::move(record);
         record = lost_stage(
             c, position, Stop::failed, exception_text(), options.revision);
+        record.clocks = until.clocks, record.counts = until.counts;
         failed = record.stage;
       }
     }

@@ -43,7 +43,8 @@ void run_case(const Case& c,
               Threads* threads,
               const CaseHooks& hooks);
 
-/// The record of a stage that did not come to a result.
+/// The record of a stage that did not come to a result. What a stage that
+/// failed spent is not known, that of one that was skipped is nothing.
 StageRecord lost_stage(const Case& c,
                        Index position,
                        Stop stop,

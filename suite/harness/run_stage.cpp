@@ -37,6 +37,12 @@ void check_outcome(Outcome& out, const Oracle& oracle) {
               "a stage leaves one status per example");
 }
 
+/// What a stage that failed has run. Who runs a problem itself tells its counts
+/// at its end alone: then nobody knows them.
+Counts counts_of_failure(const Oracle& oracle) {
+  return oracle.handed_out() ? unknown_counts() : oracle.counts();
+}
+
 /// The experiment's setting with the networks that the stage names, so that no
 /// other can enter its numbers.
 Setting setting_for(const Stage& stage, Setting setting) {
@@ -107,14 +113,31 @@ void run_stage(const Case& c,
                .precision = c.info.precision,
                .threads = threads,
                .checkpoint = checkpoint};
-  Outcome out = stage.run(run);
-  set_default_float_environment();  // its losses are of no other
-  probe.end();
-  check_outcome(out, oracle);
+  Outcome out;
+  try {
+    out = stage.run(run);
+    set_default_float_environment();  // its losses are of no other
+    probe.end();
+    check_outcome(out, oracle);
+  } catch (...) {
+    set_default_float_environment();
+    probe.end();
+    record.clocks = probe.clocks();
+    record.clocks.setup += made - begin;
+    record.counts = counts_of_failure(oracle);
+    throw;
+  }
   fill(record, c, out, oracle, probe);
   record.clocks.setup += made - begin;
   if (trace) record.trajectory = hex64(probe.trajectory());
   previous = std::move(out);
+}
+
+Counts unknown_counts() {
+  Counts counts;
+  for (std::size_t i = 0; i < kCounters; ++i)
+    counts.forget(static_cast<Counter>(i));
+  return counts;
 }
 
 Outcome as_outcome(StageRecord record) {

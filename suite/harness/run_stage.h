@@ -15,7 +15,7 @@ namespace physinv {
 /// The stage at `position` of a chain; `previous` is the outcome of the stage
 /// before it, if there is one, and becomes this one's. With `trace`, the record
 /// gets a hash of every iterate. `observer` may be empty, `checkpoint`
-/// null.
+/// null. Of a stage that throws, the record gets times and counts until then.
 void run_stage(const Case& c,
                std::size_t position,
                std::optional<Outcome>& previous,
@@ -24,6 +24,9 @@ void run_stage(const Case& c,
                Threads* threads,
                Checkpoint* checkpoint,
                StageRecord& record);
+
+/// Those of a stage that tells nothing of what it ran.
+Counts unknown_counts();
 
 /// A finished stage as the next one sees it.
 Outcome as_outcome(StageRecord record);

@@ -213,5 +213,16 @@ TEST(GateReport, SaysTheSameToEverybody) {
   EXPECT_EQ(json.at("findings").size(), 2u);
 }
 
+TEST(StageLine, OfAFailedStageHasNeitherWorkNorTime) {
+  StageRecord r;
+  r.counts[Counter::vjp] = 7;
+  r.clocks.solve = {2, 2};
+  EXPECT_EQ(line_of(r).work[2], 7U);
+  EXPECT_EQ(line_of(r).fastest, 2000);
+  r.stop = Stop::failed;
+  EXPECT_EQ(line_of(r).work[2], 0U);
+  EXPECT_EQ(line_of(r).fastest, 0);
+}
+
 }  // namespace
 }  // namespace physinv

@@ -257,6 +257,22 @@ class Walk final : public Base {
 /// Of MXCSR: flush to zero, denormals are zero.
 constexpr unsigned kFlushAll = 0x8040;
 
+/// Solves for a while, and throws.
+[[noreturn]] void give_up(StageRun& run, bool alone) {
+  const Batch<double> x = run.oracle.start();
+  Vector<double> loss(x.cols());
+  run.probe.begin();
+  if (alone) {
+    auto problem = run.oracle.problem<double>();
+    Batch<double> y(x.rows(), x.cols());
+    problem.forward(x, run.oracle.given(), y);
+  }
+  for (int k = 0; k < 4; ++k)
+    run.oracle.evaluate<double>(run.oracle.all(), x, loss);
+  burn(0.02);
+  throw std::runtime_error("it gives up");
+}
+
 /// Ends as it is told to.
 class Ends final : public Base {
  public:
@@ -275,6 +291,7 @@ class Ends final : public Base {
           [&](BatchOut<double> x) { x = run.oracle.start(); })) {
       }
     }
+    if (how_.starts_with("give-up")) give_up(run, how_ == "give-up-alone");
     Outcome out;
     out.x = run.oracle.start();
     if (how_ == "diverge")
@@ -333,6 +350,8 @@ Experiment experiment() {
                ends("die"),
                ends("sleep"),
                ends("floats"),
+               ends("give-up"),
+               ends("give-up-alone"),
                chain("broken",
                      {std::make_shared<Ends>("throws"),
                       std::make_shared<Descend>("refine", 0.1)})};

@@ -134,6 +134,28 @@ TEST_F(RunCase, FailuresAreRecorded) {
   EXPECT_EQ(run(make("diverge"))[0].stop, Stop::diverged);
 }
 
+TEST_F(RunCase, WhatAFailedStageSpentIsRecorded) {
+  const auto gives_up = run(make("give-up"));
+  ASSERT_EQ(gives_up.size(), 1u);
+  const StageRecord& s = gives_up[0];
+  EXPECT_EQ(s.stop, Stop::failed);
+  EXPECT_GE(s.clocks.solve.wall, 0.02);
+  EXPECT_GE(s.clocks.solve.cpu, 0.02);
+  EXPECT_GT(s.clocks.setup.wall, 0);
+  EXPECT_EQ(s.counts[Counter::forward], 4u * 5u);
+  // Who runs a problem itself tells its counts at its end alone.
+  const auto alone = run(make("give-up-alone"))[0];
+  EXPECT_EQ(alone.stop, Stop::failed);
+  EXPECT_GE(alone.clocks.solve.wall, 0.02);
+  EXPECT_FALSE(alone.counts.knows(Counter::forward));
+  // Nothing was spent on what was skipped.
+  const auto skipped = run(make("broken"))[1];
+  EXPECT_EQ(skipped.clocks.total().wall, 0);
+  EXPECT_TRUE(skipped.counts.knows(Counter::vjp));
+  const StageRecord lost = lost_stage(make("walk"), 0, Stop::failed, "", "");
+  EXPECT_FALSE(lost.counts.knows(Counter::forward));
+}
+
 TEST_F(RunCase, KeysChangeWithWhatDecides) {
   const Case base = make("walk");
   const auto other = [&](Overrides o) { return make("walk", o).info.keys; };
