@@ -12,14 +12,15 @@ _SOLVED = 1e-12
 
 def compare(campaign, *others, **flags):
     """One campaign: its methods beside each other, a dict for every experiment,
-    n, method and stage: seeds, problems, the median loss, shares of problems,
-    medians of iterations of a problem and of seconds of a run.
-    pandas.DataFrame takes it.
+    n, method and stage: seeds, how many of them failed, problems, the median
+    loss, shares of problems, medians of iterations of a problem and of seconds
+    of a run. pandas.DataFrame takes it.
 
     `solved`: the share of problems whose loss is below 1e-12, as in the tables
     of the report. `converged`: the share at which the method met its tolerance
-    (status gtol), be it on a plateau. Problems of seeds that failed count in
-    both shares, and in nothing else.
+    (status gtol), be it on a plateau. The problems of a run that failed have an
+    infinite loss and count in both shares; iterations and seconds are of the
+    other runs.
 
     Two or more: what `physinv-bench compare` says of them, as the dict of its
     --format=json; flags as keywords (by="method")."""
@@ -41,18 +42,22 @@ def methods_of(results):
 
 
 def _row(results, key, stages):
-    """Numbers of the seeds that came to a result; None where none did."""
+    """Numbers of all seeds, None where no seed came to a result; a problem
+    without a finite loss, or of a run that failed, has an infinite one."""
     ended = [s for s in stages if s["stop"] not in ("failed", "skipped")]
     each = [results.examples(s["case"], s["stage"]) for s in ended]
-    problems = len(stages) * stages[0]["n"]
+    lost = sum(s["n"] for s in stages if s not in ended)
+    problems = lost + sum(len(e["loss"]) for e in each)
     row = dict(zip(("experiment", "n", "method", "stage"), key),
-               seeds=len(stages), problems=problems, loss=None, solved=0.0,
-               converged=0.0, iterations=None, seconds=None)
+               seeds=len(stages), failed=len(stages) - len(ended),
+               problems=problems, loss=None, solved=0.0, converged=0.0,
+               iterations=None, seconds=None)
     if each:
         status = [one for e in each for one in e["status"]]
-        losses = np.concatenate([e["loss"] for e in each])
-        row["loss"] = _median([losses])
-        row["solved"] = float((losses < _SOLVED).sum()) / problems
+        loss = np.concatenate([*(e["loss"] for e in each),
+                               np.full(lost, np.inf)])
+        row["loss"] = _median([np.where(np.isfinite(loss), loss, np.inf)])
+        row["solved"] = float((loss < _SOLVED).sum()) / problems
         row["converged"] = status.count("gtol") / problems
         row["iterations"] = _median([e["iterations"] for e in each])
     seconds = [s["seconds"] for s in ended if s["seconds"] is not None]

@@ -14,6 +14,7 @@
 #include "reports/printed_curves.h"
 #include "suite/app/installed.h"
 #include "suite/evidence/convergence_history.h"
+#include "suite/evidence/failures.h"
 #include "suite/evidence/performance_profiles.h"
 #include "suite/evidence/standings.h"
 #include "suite/evidence/work_precision.h"
@@ -201,6 +202,9 @@ std::vector<Section> sections_of(const Results& results,
     sections.push_back(section_of(*e, results, published));
     if (const auto at = work.find(e->name); at != work.end())
       sections.back().work = at->second;
+    if (Table failed = failed_runs(results, e->name); !failed.rows.empty())
+      sections.back().tables.insert(sections.back().tables.begin(),
+                                    std::move(failed));
     learn_titles(*e, sections.back());
     draw_printed(printed, sections.back());
     titles.insert(sections.back().method_titles.begin(),

@@ -112,6 +112,8 @@ Cell time_cell(const Reading& r) {
   const Quartiles& seconds = seconds_of(*r.times);
   Cell cell = number(1e3 * seconds.median, "{:.4g}");
   if (!r.times->of_one_core() && r.times->crowded) cell.text += " (crowded)";
+  if (r.stages > 1 && seconds.count < r.stages)
+    cell.text += fmt::format(" ({} of {})", seconds.count, r.stages);
   spread(cell, seconds, 1e-3);
   return cell;
 }
@@ -205,9 +207,15 @@ Figure overlay(const Comparison& c) {
               .x_log = true,
               .y_log = true};
   std::map<std::string, Series> series;
+  std::size_t left_out = 0;
   for (const Compared& row : c.rows) {
     for (std::size_t s = 0; s < row.sides.size(); ++s) {
-      if (!row.sides[s] || !row.sides[s]->times) continue;
+      if (!row.sides[s]) continue;
+      const Reading& r = *row.sides[s];
+      if (!r.times || !std::isfinite(r.loss.median)) {
+        ++left_out;
+        continue;
+      }
       const std::string label = row.id.method + ", " + c.labels[s];
       Series& own = series[label];
       own.label = own.method = label;
@@ -218,6 +226,11 @@ Figure overlay(const Comparison& c) {
   }
   for (auto& [label, own] : series) panel.series.push_back(std::move(own));
   figure.panels.push_back(std::move(panel));
+  if (left_out > 0)
+    figure.note = fmt::format(
+        "Without {} points of stages that failed, diverged or have no finite "
+        "median loss.",
+        left_out);
   return figure;
 }
 

@@ -31,16 +31,25 @@ std::vector<double> differences_of(const StageRecord& first,
   return all;
 }
 
+/// Whether it came to a result or not; null if it was not run.
+const StageRecord* same_stage(const Results& results,
+                              const CaseInfo& info,
+                              const std::string& name) {
+  const CaseRecord* c =
+      results.find_case(info.experiment, info.method, info.n, info.seed);
+  if (c == nullptr) return nullptr;
+  for (const StageRecord& s : c->stages)
+    if (s.stage == name) return &s;
+  return nullptr;
+}
+
 Differences differences(const std::vector<Side>& sides) {
   Differences all;
   for (std::size_t s = 1; s < sides.size(); ++s)
     for (const CaseRecord& c : sides[s].results.cases())
       for (const StageRecord& stage : c.stages) {
-        const StageRecord* first = sides.front().results.find(c.info.experiment,
-                                                              c.info.method,
-                                                              c.info.n,
-                                                              c.info.seed,
-                                                              stage.stage);
+        const StageRecord* first =
+            same_stage(sides.front().results, c.info, stage.stage);
         if (first == nullptr) continue;
         auto& own = all[{s, c.info.experiment, c.info.method, stage.stage}];
         const auto more = differences_of(*first, stage);

@@ -4,10 +4,19 @@
 
 #include <cmath>
 
+#include "suite/evidence/failures.h"
 #include "suite/evidence/statistics.h"
 #include "suite/results/crowded.h"
 
 namespace physinv {
+namespace {
+
+std::string why_missing(const Measured& measured) {
+  const std::string failed = failed_part(measured.missing);
+  return failed.empty() ? kNotRun : failed;
+}
+
+}  // namespace
 
 Cell cell_of(std::optional<double> value, const char* otherwise) {
   if (!value) return {.text = otherwise};
@@ -21,7 +30,7 @@ Cell cell_of(std::span<const double> values, const char* otherwise) {
 }
 
 Cell cell_of(const Measured& measured) {
-  if (!measured.value) return {.text = kNotRun};
+  if (!measured.value) return {.text = why_missing(measured)};
   return {.ours = measured.value, .spread = measured.spread};
 }
 
@@ -34,7 +43,7 @@ Cell written(std::optional<double> value,
 }
 
 Cell written(const Measured& measured, const char* format) {
-  return written(measured.value, format);
+  return written(measured.value, format, why_missing(measured).c_str());
 }
 
 Cell beside_printed(Cell cell,

@@ -38,6 +38,13 @@ std::optional<CommonRun> common_run(const Results& results,
   return group;
 }
 
+double mean_final_loss(const ConvergenceHistory& history) {
+  double sum = 0;
+  const Index examples = history.loss.empty() ? 0 : history.loss.back().size();
+  for (Index i = 0; i < examples; ++i) sum += final_loss(history, i);
+  return examples == 0 ? kHighest : sum / static_cast<double>(examples);
+}
+
 /// Those of `all` that end lowest, in the order of `all`.
 std::vector<std::string> lowest_of(const Results& results,
                                    const std::string& experiment,
@@ -50,11 +57,8 @@ std::vector<std::string> lowest_of(const Results& results,
     for (const Index n : results.sizes(experiment))
       for (const std::uint64_t seed : results.seeds(experiment))
         if (const auto* found = results.find_case(experiment, all[m], n, seed))
-          if (const auto history = history_of(*found);
-              history && !history->loss.empty())
-            last.push_back(history->loss.back().mean());
-    for (double& loss : last)
-      if (!std::isfinite(loss)) loss = kHighest;
+          if (const auto history = history_of(*found))
+            last.push_back(mean_final_loss(*history));
     ends.emplace_back(last.empty() ? kHighest : median(std::move(last)), m);
   }
   std::sort(ends.begin(), ends.end());
@@ -68,6 +72,12 @@ std::vector<std::string> lowest_of(const Results& results,
 }
 
 }  // namespace
+
+double final_loss(const ConvergenceHistory& history, Index i) {
+  if (history.failed || history.loss.empty()) return kHighest;
+  const double loss = history.loss.back()[i];
+  return std::isfinite(loss) ? loss : kHighest;
+}
 
 CommonRuns common_runs(const Results& results,
                        const std::string& experiment,
@@ -83,12 +93,15 @@ CommonRuns common_runs(const Results& results,
       auto group =
           common_run(results, experiment, out.methods, n, seed, out.crowded);
       if (!group) continue;
-      out.runs = group->examples == 1 && n > 1;
+      out.runs |= group->examples == 1 && n > 1;
       seeds.insert(seed);
       sizes.insert(n);
       out.groups.push_back(std::move(*group));
     }
   }
+  // Where all methods failed at once nobody tells how many problems there were.
+  for (CommonRun& group : out.groups)
+    if (group.examples == 0) group.examples = out.runs ? 1 : group.n;
   out.sizes.assign(sizes.begin(), sizes.end());
   out.seeds = static_cast<Index>(seeds.size());
   return out;

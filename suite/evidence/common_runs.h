@@ -14,7 +14,7 @@ namespace physinv {
 struct CommonRun {
   Index n = 0, examples = 0;  ///< examples: problems of each history
   std::vector<ConvergenceHistory>
-      histories;  ///< of each method; empty if it failed at once
+      histories;  ///< of each method; no points if it failed at once
 };
 
 struct CommonRuns {
@@ -28,7 +28,13 @@ struct CommonRuns {
   bool crowded = false;  ///< some stages shared their cores
 };
 
-/// A failed stage ends its chain. Of many methods, the `most` that end lowest.
+/// Of problem i at the end of a chain; infinite where it failed or where the
+/// loss is not finite.
+double final_loss(const ConvergenceHistory& history, Index i);
+
+/// A failed stage ends its chain, which counts: as unsolved, with what it spent
+/// and an infinite loss at its end. Of many methods, the `most` that end
+/// lowest.
 CommonRuns common_runs(const Results& results,
                        const std::string& experiment,
                        std::size_t most = 12);

@@ -11,10 +11,15 @@ namespace physinv {
 struct ConvergenceHistory {
   std::vector<double> seconds, simulations;
   std::vector<Vector<double>> loss;  ///< one entry per problem
+  /// All that the chain spent, that of a stage that failed included; empty
+  /// where nobody knows what that was, as its process was lost.
+  std::optional<double> all_seconds = {}, all_simulations = {};
+  bool failed = false;  ///< one of the stages, so that the chain has no end
 };
 
-/// Empty unless every stage is finished, or one of them failed: that one and
-/// those behind it are left out. Where a method is judged by its network on a
+/// Empty unless every stage is finished, or one of them failed: of that one
+/// and those behind it there are no points. A training that diverged ends with
+/// an infinite loss. Where a method is judged by its network on a
 /// test set and its curve is a mean (`mean_loss`), a problem is the whole run.
 std::optional<ConvergenceHistory> history_of(const CaseRecord& found);
 

@@ -122,6 +122,8 @@ Quantity ordered_value(const Select& select,
   return {[=](const Evidence& e) {
             auto values = values_of(sample(e, select, value));
             if (values.empty()) return missing(select.text() + " too short");
+            for (const double v : values)
+              if (std::isnan(v)) return missing("no finite value");
             std::sort(values.begin(), values.end());
             return Measured{.value = values[place(values.size())],
                             .runs = static_cast<Index>(values.size())};

@@ -13,6 +13,7 @@ namespace physinv {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 /// Steps nearer than this factor are drawn as one; nobody sees less.
 constexpr double kNearest = 1.02;
 
@@ -46,18 +47,19 @@ void append_costs(TargetCosts& out,
         std::find_if(history.loss.begin(), history.loss.end(), [&](auto& loss) {
           return loss[example] <= target;
         });
-    const bool reached = there != history.loss.end();
+    if (there == history.loss.end()) {
+      out.seconds[m].push_back(kInfinity);
+      out.simulations[m].push_back(kInfinity);
+      out.spent_seconds[m].push_back(history.all_seconds.value_or(kUnknown));
+      out.spent_simulations[m].push_back(
+          history.all_simulations.value_or(kUnknown) / share);
+      continue;
+    }
     const auto k = static_cast<std::size_t>(there - history.loss.begin());
-    const auto last = history.loss.empty() ? 0 : history.loss.size() - 1;
-    const double seconds =
-        history.loss.empty() ? 0 : history.seconds[reached ? k : last];
-    const double simulations =
-        history.loss.empty() ? 0 : history.simulations[reached ? k : last];
-    out.spent_seconds[m].push_back(std::max(seconds, 1e-9));
-    out.spent_simulations[m].push_back(std::max(simulations / share, 1.0));
-    out.seconds[m].push_back(reached ? out.spent_seconds[m].back() : kInfinity);
-    out.simulations[m].push_back(reached ? out.spent_simulations[m].back()
-                                         : kInfinity);
+    out.seconds[m].push_back(std::max(history.seconds[k], 1e-9));
+    out.simulations[m].push_back(std::max(history.simulations[k] / share, 1.0));
+    out.spent_seconds[m].push_back(out.seconds[m].back());
+    out.spent_simulations[m].push_back(out.simulations[m].back());
   }
   ++out.problems;
 }

@@ -56,7 +56,8 @@ struct TargetCosts {
   std::vector<Costs> seconds = {};  ///< the batch's time
   /// The batch's, over n; those of training if a problem is a run. At least 1.
   std::vector<Costs> simulations = {};
-  /// The same, and of what is not solved all that its chain spent.
+  /// The same, and of what is not solved all that its chain spent until its
+  /// end or its failure; NaN where nobody knows that.
   std::vector<Costs> spent_seconds = {}, spent_simulations = {};
   bool runs = false;              ///< a problem is a run
   Index left_out = 0;             ///< methods beyond those that end lowest

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "suite/evidence/failures.h"
 #include "suite/evidence/statistics.h"
 #include "suite/evidence/training.h"
 #include "suite/results/crowded.h"
@@ -94,6 +95,19 @@ Quantity extreme(const std::vector<Quantity>& of, bool largest) {
   return out;
 }
 
+/// Missing if one of the runs that it is of failed, whatever it makes of the
+/// others.
+Quantity::Measure guarded(Quantity::Measure measure,
+                          const std::vector<Select>& runs) {
+  if (runs.empty()) return measure;
+  return [=](const Evidence& e) {
+    for (const Select& select : runs)
+      if (const auto failed = failed_text(e, select); !failed.empty())
+        return missing(select.text() + ": " + failed);
+    return measure(e);
+  };
+}
+
 }  // namespace
 
 Measured missing(std::string why) { return {.missing = std::move(why)}; }
@@ -105,8 +119,9 @@ Quantity::Quantity(double constant)
 Quantity::Quantity(Measure measure,
                    std::vector<Select> runs,
                    std::vector<std::string> printed)
-    : body_(std::make_shared<const Body>(
-          Body{std::move(measure), std::move(runs), std::move(printed)})) {}
+    : body_(std::make_shared<const Body>(Body{guarded(std::move(measure), runs),
+                                              std::move(runs),
+                                              std::move(printed)})) {}
 
 Quantity median(Select select, RunValue value) {
   return of_ordered(std::move(select), std::move(value), [](auto values) {
@@ -194,6 +209,8 @@ Quantity median_of_examples(Select select, RunRow row) {
             for (const Run& run : found)
               for (const double v : row(run)) all.push_back(v);
             if (all.empty()) return missing(select.text() + " not run");
+            for (const double v : all)
+              if (std::isnan(v)) return missing("no finite value");
             return Measured{.value = median(std::move(all)),
                             .runs = static_cast<Index>(found.size())};
           },

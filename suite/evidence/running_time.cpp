@@ -32,7 +32,7 @@ RunningTime expected_running_time(const std::vector<double>& cost,
     return solved == 0 ? kInfinite : sum / static_cast<double>(solved);
   };
   out.expected = out.low = out.high = over(all, out.solved);
-  if (out.solved == 0) return out;
+  if (out.solved == 0 || std::isnan(all)) return out;
   Stream stream = Rng::root("bootstrap", 0).child(name).stream();
   std::vector<double> again;
   for (std::uint64_t k = 0; k < kResamplings; ++k) {

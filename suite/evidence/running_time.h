@@ -9,13 +9,15 @@
 namespace physinv {
 
 struct RunningTime {
-  double expected = 0;       ///< infinite if nothing was solved
+  /// Infinite if nothing was solved, else NaN if something spent is unknown.
+  double expected = 0;
   double low = 0, high = 0;  ///< 2.5 % and 97.5 % of the resampled
   std::size_t solved = 0, problems = 0;
 };
 
 /// `cost` until the target, infinite where it is not reached; `spent` is the
-/// same and, where it is not reached, all that was spent. The interval is of
+/// same and, where it is not reached, all that was spent, NaN if nobody knows:
+/// a run without a cost would make who gives up look cheap. The interval is of
 /// 1,000 resamplings of the problems (percentile bootstrap, Efron 1979), drawn
 /// from the stream of this name: same costs, same interval.
 RunningTime expected_running_time(const std::vector<double>& cost,

@@ -17,10 +17,8 @@ std::vector<std::vector<double>> final_losses(const CommonRuns& common) {
   for (const CommonRun& group : common.groups)
     for (std::size_t m = 0; m < all.size(); ++m)
       for (Index i = 0; i < group.examples; ++i) {
-        const auto& losses = group.histories[m].loss;
-        const double loss = losses.empty() ? kInfinite : losses.back()[i];
-        all[m].push_back(std::isfinite(loss) ? std::max(loss, kSolvedLoss)
-                                             : kInfinite);
+        all[m].push_back(
+            std::max(final_loss(group.histories[m], i), kSolvedLoss));
       }
   return all;
 }
@@ -37,7 +35,8 @@ void add_ranks(Standings& out, const std::vector<std::vector<double>>& losses) {
         equal += other[p] == losses[m][p];
       }
       out.mean_rank[m] += (below + 0.5 * (equal + 1)) / problems;
-      out.lowest[m] += (below == 0 ? 1 : 0) / problems;
+      const bool is_lowest = below == 0 && std::isfinite(losses[m][p]);
+      out.lowest[m] += (is_lowest ? 1 : 0) / problems;
     }
 }
 

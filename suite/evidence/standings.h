@@ -23,12 +23,13 @@ struct Standings {
   std::size_t problems = 0;
   std::vector<std::size_t> order;  ///< methods, lowest mean rank first
   std::vector<double> mean_rank;   ///< of each method, by its final losses
-  std::vector<double> lowest;      ///< share of problems where none is lower
-  std::vector<MethodPair> pairs;   ///< of all methods, in this order
+  /// Share of problems where it is finite and none is lower.
+  std::vector<double> lowest;
+  std::vector<MethodPair> pairs;  ///< of all methods, in this order
 };
 
 /// Losses at the end of the chains. Losses that are solved, or not finite, are
-/// equal.
+/// equal; that of a chain that failed is not finite.
 Standings standings(const CommonRuns& common);
 
 /// "Of 5 methods JPO has the lowest mean rank ...": the first against the next.

@@ -15,6 +15,7 @@ namespace {
 constexpr double kTolerances[] = {1e-2, 1e-5};
 /// Of more pairs, those of the methods that stand first.
 constexpr std::size_t kMostPairs = 28;
+constexpr const char* kNotKnown = "not known";
 
 /// What methods are called in an experiment's pages.
 class Titles {
@@ -41,6 +42,60 @@ Cell number(double value, const char* format = "{:.3g}") {
 
 std::string noun(const CommonRuns& common) {
   return common.runs ? "runs" : "problems";
+}
+
+/// Runs of a method that failed, and those of them that nobody knows the time
+/// or the simulations of.
+struct Failed {
+  std::string method;
+  std::size_t runs = 0, unknown = 0;
+};
+
+std::vector<Failed> failed_of(const CommonRuns& common, const Titles& title) {
+  std::vector<Failed> all;
+  for (std::size_t m = 0; m < common.methods.size(); ++m) {
+    Failed one{.method = title(m)};
+    for (const CommonRun& group : common.groups) {
+      const ConvergenceHistory& history = group.histories[m];
+      one.runs += history.failed;
+      one.unknown += !history.all_seconds || !history.all_simulations;
+    }
+    if (one.runs > 0) all.push_back(std::move(one));
+  }
+  return all;
+}
+
+/// " Failed: BFGS 1 of 3 runs, ...". Empty if none did.
+std::string failed_note(const CommonRuns& common, const Titles& title) {
+  std::string text;
+  for (const Failed& f : failed_of(common, title))
+    text += fmt::format("{}{} {} of {} runs",
+                        text.empty() ? " Failed, of which the loss counts as "
+                                       "the highest: "
+                                     : ", ",
+                        f.method,
+                        f.runs,
+                        common.groups.size());
+  return text.empty() ? "" : text + ".";
+}
+
+/// The same of what was spent until then.
+std::string spent_note(const CommonRuns& common, const Titles& title) {
+  std::string text;
+  for (const Failed& f : failed_of(common, title))
+    text += fmt::format(
+        "{}{} {} of {} runs{}",
+        text.empty() ? " Failed, which counts with all that was spent until "
+                       "then: "
+                     : ", ",
+        f.method,
+        f.runs,
+        common.groups.size(),
+        f.unknown > 0 ? fmt::format(" ({} without a record of it, so that "
+                                    "there is no value)",
+                                    f.unknown)
+                      : "");
+  return text.empty() ? "" : text + ".";
 }
 
 std::string left_out(const CommonRuns& common) {
@@ -77,12 +132,13 @@ Table standings_table(const CommonRuns& common,
       "Ranks of the final losses on {} {}, 1 is the lowest; losses below "
       "{:g} are equal. Scores: the area below the performance profile of "
       "tau = {:g} between factors of 1 and {:g}, over its width (AlgoPerf): 1 "
-      "is fastest everywhere.{}",
+      "is fastest everywhere.{}{}",
       s.problems,
       noun(common),
       kSolvedLoss,
       kTolerances[0],
       kScoredFactor,
+      failed_note(common, title),
       left_out(common));
   return table;
 }
@@ -104,6 +160,7 @@ void add_times(TableRow& row,
                                            static_cast<double>(time.problems)));
     for (const double value : {time.expected, time.low, time.high})
       row.cells.push_back(std::isfinite(value) ? number(value)
+                          : std::isnan(value)  ? Cell{.text = kNotKnown}
                                                : Cell{.text = "never"});
   }
 }
@@ -136,9 +193,10 @@ Table times_table(const CommonRuns& common,
       "All that was spent until the loss is at most f_L + tau (f_0 - f_L) "
       "(performance profiles say what they are) or until the end, over the "
       "number of {} solved: the expected running time of COCO. From .. to: 95 "
-      "% of 1,000 resamplings of the {}, which count as independent.{}{}",
+      "% of 1,000 resamplings of the {}, which count as independent.{}{}{}",
       noun(common),
       noun(common),
+      spent_note(common, title),
       left_out(common),
       common.crowded
           ? " Some stages shared their cores: their seconds are too many."
@@ -171,7 +229,7 @@ Table pairs_table(const CommonRuns& common,
   table.note = fmt::format(
       "Final losses on the same {} {}: Wilcoxon's signed rank test of the "
       "ratios, two-sided, ties dropped, p corrected by Holm over {} pairs; "
-      "below {:g} it is a difference.{}{}{}",
+      "below {:g} it is a difference.{}{}{}{}",
       s.problems,
       noun(common),
       s.pairs.size(),
@@ -183,6 +241,7 @@ Table pairs_table(const CommonRuns& common,
       s.pairs.size() > shown
           ? fmt::format(" The first {} pairs are shown.", shown)
           : "",
+      failed_note(common, title),
       left_out(common));
   return table;
 }

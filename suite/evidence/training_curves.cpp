@@ -3,6 +3,7 @@
 #include <span>
 
 #include "suite/evidence/curve.h"
+#include "suite/evidence/failures.h"
 #include "suite/evidence/statistics.h"
 #include "suite/evidence/training_report.h"
 
@@ -107,17 +108,30 @@ std::vector<Panel> loss_panels(const Evidence& e,
   return panels;
 }
 
+/// " Not drawn: Adam 1 of 3 runs failed." Empty if none did.
+std::string failed_note(const Evidence& e,
+                        const std::vector<MethodLine>& lines) {
+  std::string text;
+  for (const MethodLine& line : lines)
+    if (const auto failed = failed_text(e, {line.method}); !failed.empty())
+      text +=
+          (text.empty() ? " Not drawn: " : ", ") + line.label + " " + failed;
+  return text.empty() ? "" : text + ".";
+}
+
 Figure loss_figure(std::vector<Panel> panels,
                    std::string id,
                    std::string title,
-                   std::string where) {
+                   std::string where,
+                   const std::string& failed) {
   return {.id = std::move(id),
           .title = std::move(title),
           .where = std::move(where),
           .panels = std::move(panels),
           .note =
               "Median over seeds, band: 10 % and 90 % quantiles. Test losses "
-              "are not finite where a line ends early."};
+              "are not finite where a line ends early." +
+              failed};
 }
 
 }  // namespace
@@ -129,7 +143,8 @@ void LearningCurves::losses(const std::vector<MethodLine>& lines,
   add(loss_figure(loss_panels(evidence_, lines, Stages::last),
                   std::move(id),
                   std::move(title),
-                  std::move(where)));
+                  std::move(where),
+                  failed_note(evidence_, lines)));
 }
 
 void LearningCurves::chains(const std::vector<MethodLine>& lines,
@@ -139,7 +154,8 @@ void LearningCurves::chains(const std::vector<MethodLine>& lines,
   add(loss_figure(loss_panels(evidence_, lines, Stages::all),
                   std::move(id),
                   std::move(title),
-                  std::move(where)));
+                  std::move(where),
+                  failed_note(evidence_, lines)));
 }
 
 void LearningCurves::metric(const std::vector<MethodLine>& lines,
@@ -153,7 +169,8 @@ void LearningCurves::metric(const std::vector<MethodLine>& lines,
        .where = std::move(where),
        .panels = {metric_panel(lines, row, std::move(y_label))},
        .columns = 1,
-       .note = "Median over seeds, band: 10 % and 90 % quantiles."});
+       .note = "Median over seeds, band: 10 % and 90 % quantiles." +
+               failed_note(evidence_, lines)});
 }
 
 Panel LearningCurves::panel(const std::vector<MethodLine>& lines) const {

@@ -8,6 +8,7 @@
 #include "suite/core/problem.h"
 #include "suite/evidence/cell.h"
 #include "suite/evidence/curve.h"
+#include "suite/evidence/failures.h"
 #include "suite/evidence/field_panel.h"
 #include "suite/evidence/options.h"
 #include "suite/evidence/statistics.h"
@@ -54,12 +55,18 @@ Table loss_table(const Evidence& e, const std::vector<MethodLine>& lines) {
     UpdateCosts costs;
     int diverged = 0;
     for (const auto* s : trained_stages(e, line.method)) {
-      losses.push_back(CurveRow{*s}.last());
+      losses.push_back(s->stop == Stop::diverged ? kInfinite
+                                                 : CurveRow{*s}.last());
       updates.push_back(s->curve.iteration.back());
       costs.add(*s, timed);
       diverged += s->stop == Stop::diverged;
     }
-    if (losses.empty()) continue;
+    const std::string failed = failed_text(e, {line.method});
+    if (!failed.empty())
+      table.rows.push_back(
+          {.label = line.label,
+           .cells = std::vector<Cell>(table.columns.size(), {.text = failed})});
+    if (!failed.empty() || losses.empty()) continue;
     const auto [lowest, highest] =
         std::minmax_element(losses.begin(), losses.end());
     table.rows.push_back(
@@ -74,7 +81,10 @@ Table loss_table(const Evidence& e, const std::vector<MethodLine>& lines) {
                                          : written(1e3 * median(costs.seconds)),
                    written(1e-6 * median(costs.bytes))}});
   }
-  table.note = "Memory: buffers the stage holds. " + timed.note();
+  table.note =
+      "The loss of a run that diverged is not finite. Memory: buffers the "
+      "stage holds. " +
+      timed.note();
   return table;
 }
 

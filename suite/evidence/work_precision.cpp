@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <tuple>
 
@@ -17,12 +18,13 @@ namespace {
 
 /// Shares of the way from the start to the lowest loss that are left.
 constexpr double kTargets[] = {1e-1, 1e-2, 1e-3};
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 /// A chain's mean losses over seconds per problem.
 struct MeanHistory {
   std::vector<double> seconds, loss;
   std::optional<double> distance;
-  bool crowded = false;
+  bool crowded = false, failed = false;
 };
 using SettingKey = std::tuple<std::string, Index, Precision>;
 using BySeed = std::map<std::uint64_t, MeanHistory>;
@@ -33,37 +35,55 @@ bool solves(const CaseRecord& c) {
   });
 }
 
-std::optional<double> distance_of(const CaseRecord& c) {
+std::optional<double> distance_of(const CaseRecord& c, bool failed) {
   const Batch<double>& truth = c.data.x;
   const Batch<double>& x = c.stages.back().x;
-  if (truth.rows() == 0 || x.rows() != truth.rows() || x.cols() == 0 ||
-      x.cols() > truth.cols() || !x.allFinite())
+  if (truth.rows() == 0) return {};
+  if (failed) return kInfinite;
+  if (x.rows() != truth.rows() || x.cols() == 0 || x.cols() > truth.cols())
     return {};
   std::vector<double> all;
-  for (Index i = 0; i < x.cols(); ++i)
-    all.push_back((x.col(i) - truth.col(i)).norm());
+  for (Index i = 0; i < x.cols(); ++i) {
+    const double distance = (x.col(i) - truth.col(i)).norm();
+    all.push_back(std::isfinite(distance) ? distance : kInfinite);
+  }
   return median(std::move(all));
+}
+
+/// Over seconds per problem; what is not finite is infinite.
+MeanHistory mean_of(const CaseRecord& c,
+                    const ConvergenceHistory& history,
+                    bool run) {
+  MeanHistory mean{.distance = distance_of(c, history.failed),
+                   .failed = history.failed};
+  for (const StageRecord& s : c.stages) mean.crowded |= s.crowded;
+  const double share = run ? 1 : static_cast<double>(c.info.n);
+  const auto add = [&](double seconds, double loss) {
+    mean.seconds.push_back(seconds / share);
+    mean.loss.push_back(std::isfinite(loss) ? loss : kInfinite);
+  };
+  for (std::size_t k = 0; k < history.loss.size(); ++k)
+    add(history.seconds[k], history.loss[k].mean());
+  if (history.failed) add(history.all_seconds.value_or(kUnknown), kInfinite);
+  return mean;
 }
 
 std::map<SettingKey, BySeed> mean_histories(const Results& results,
                                             const std::string& experiment) {
-  std::map<SettingKey, BySeed> all;
+  std::vector<std::pair<const CaseRecord*, ConvergenceHistory>> found;
+  bool runs = false;  // a method is judged by its network on a test set
   for (const CaseRecord& c : results.cases()) {
     if (c.info.experiment != experiment || !solves(c)) continue;
-    const auto history = history_of(c);
-    if (!history || history->loss.empty()) continue;
-    MeanHistory mean;
-    for (const StageRecord& s : c.stages) mean.crowded |= s.crowded;
-    mean.distance = distance_of(c);
-    const bool run = history->loss.front().size() == 1;
-    const double share = run ? 1 : static_cast<double>(c.info.n);
-    for (std::size_t k = 0; k < history->loss.size(); ++k) {
-      mean.seconds.push_back(history->seconds[k] / share);
-      mean.loss.push_back(history->loss[k].mean());
-    }
-    all[{c.info.method, c.info.n, c.info.precision}][c.info.seed] =
-        std::move(mean);
+    auto history = history_of(c);
+    if (!history || (history->loss.empty() && !history->failed)) continue;
+    runs |= c.info.n > 1 && !history->loss.empty() &&
+            history->loss.front().size() == 1;
+    found.emplace_back(&c, std::move(*history));
   }
+  std::map<SettingKey, BySeed> all;
+  for (const auto& [c, history] : found)
+    all[{c->info.method, c->info.n, c->info.precision}][c->info.seed] =
+        mean_of(*c, history, runs);
   return all;
 }
 
@@ -94,6 +114,11 @@ std::map<Index, Pairing> pairings(const std::map<SettingKey, BySeed>& all) {
   return out;
 }
 
+SettingHistory without_points(SettingHistory setting) {
+  setting.points.clear();
+  return setting;
+}
+
 SettingHistory setting_of(const SettingKey& key,
                           const BySeed& by_seed,
                           const Pairing& pairing) {
@@ -107,6 +132,7 @@ SettingHistory setting_of(const SettingKey& key,
     points = std::max(points, c.loss.size());
     if (c.distance) distances.push_back(*c.distance);
     out.crowded |= c.crowded;
+    out.failed += c.failed;
   }
   if (!distances.empty()) out.distance = median(std::move(distances));
   for (std::size_t k = 0; k < points; ++k) {
@@ -115,15 +141,18 @@ SettingHistory setting_of(const SettingKey& key,
       // A run that has ended stays where it is.
       const MeanHistory& c = by_seed.at(seed);
       const std::size_t at = std::min(k, c.loss.size() - 1);
+      if (std::isnan(c.seconds[at])) return without_points(std::move(out));
       seconds.push_back(c.seconds[at]);
-      losses.push_back(c.loss[at] / pairing.start.at(seed));
+      losses.push_back(std::isfinite(c.loss[at])
+                           ? c.loss[at] / pairing.start.at(seed)
+                           : kInfinite);
     }
-    const double middle = median(losses);
-    if (std::isfinite(middle) && middle > 0)
-      out.points.push_back({.seconds = median(seconds),
-                            .loss = middle,
-                            .low = quantile(losses, 0.1),
-                            .high = quantile(losses, 0.9)});
+    out.end = {.seconds = median(seconds),
+               .loss = median(losses),
+               .low = quantile(losses, 0.1),
+               .high = quantile(losses, 0.9)};
+    if (std::isfinite(out.end.loss) && out.end.loss > 0)
+      out.points.push_back(out.end);
   }
   return out;
 }
@@ -150,6 +179,10 @@ class Names {
   std::map<std::string, std::set<Precision>> precisions_;
 };
 
+std::string failed_words(const SettingHistory& s) {
+  return fmt::format("{} of {} failed", s.failed, s.seeds);
+}
+
 Table table_of(const std::vector<SettingHistory>& settings,
                const std::vector<BudgetPoint>& hull,
                const Names& name_of) {
@@ -167,22 +200,23 @@ Table table_of(const std::vector<SettingHistory>& settings,
     table.columns.push_back(fmt::format("s to {:.2g}", levels.back()));
   }
   table.columns.emplace_back("on the hull");
-  std::vector<std::string> dominated;
+  std::vector<std::string> dominated, failed;
   bool crowded = false;
   for (const SettingHistory& s : settings) {
     const std::string name = fmt::format("{}, n = {}", name_of(s), s.n);
     TableRow row{.label = name, .keys = {name_of(s), std::to_string(s.n)}};
     row.cells.push_back(written(s.seeds, "{:g}"));
+    if (s.failed > 0) failed.push_back(name + " " + failed_words(s));
     if (s.points.empty()) {
-      row.cells.insert(
-          row.cells.end(),
-          table.columns.size() - 1,
-          Cell{.text = s.seeds == 0 ? "no common seed" : "no ratio"});
+      row.cells.insert(row.cells.end(),
+                       table.columns.size() - 1,
+                       Cell{.text = s.seeds == 0   ? "no common seed"
+                                    : s.failed > 0 ? failed_words(s)
+                                                   : "no ratio"});
       table.rows.push_back(std::move(row));
       continue;
     }
-    const BudgetPoint& end = s.points.back();
-    for (const double v : {end.seconds, end.loss, end.low, end.high})
+    for (const double v : {s.end.seconds, s.end.loss, s.end.low, s.end.high})
       row.cells.push_back(written(v));
     row.cells.push_back(written(s.distance, "{:.3g}", kNothing));
     for (const double level : levels) {
@@ -202,10 +236,14 @@ Table table_of(const std::vector<SettingHistory>& settings,
       "judged on a test set: of its training); mean loss over the lowest at "
       "which any method starts. Targets leave 10, 1 and 0.1 % of the way from "
       "the start to the lowest loss of all. The hull is the lower left one "
-      "over all budgets. {}{}",
+      "over all budgets. {}{}{}",
       dominated.empty() ? "Nothing is dominated."
                         : fmt::format("Dominated at every budget: {}.",
                                       fmt::join(dominated, "; ")),
+      failed.empty() ? ""
+                     : fmt::format(" A run that failed has an infinite loss "
+                                   "from there on: {}.",
+                                   fmt::join(failed, "; ")),
       crowded ? " Some stages shared their cores: their seconds are too many."
               : "");
   return table;
@@ -252,7 +290,8 @@ Figure figure_of(const std::vector<SettingHistory>& settings,
     auto [at, is_new] = ends.emplace(label, line);
     if (is_new)
       at->second = {.label = label, .method = s.method, .markers = true};
-    if (!s.points.empty()) append(at->second, s.points.back());
+    if (!s.points.empty() && std::isfinite(s.end.loss))
+      append(at->second, s.end);
   }
   for (auto& [label, series] : ends) sizes.series.push_back(std::move(series));
   for (Panel* p : {&budget, &sizes}) p->series.push_back(hull_series(hull));

@@ -6,6 +6,9 @@
 /// Seconds are the batch's over n; where a method is judged by its network on a
 /// test set, those of the training. Medians over the seeds that all settings
 /// of one n have in common.
+///
+/// A run that failed counts: its loss is infinite from its failure on, after
+/// all that it spent; so is a loss that is not finite.
 #pragma once
 
 #include <map>
@@ -29,15 +32,19 @@ struct SettingHistory {
   Index n = 0;
   Precision precision = Precision::f32;
   std::size_t seeds = 0;
+  std::size_t failed = 0;           ///< of them
   std::vector<BudgetPoint> points;  ///< growing budgets; finite losses alone
+  BudgetPoint end;                  ///< of the whole budget, finite or not
   /// Of the estimates from the true unknowns, where a problem knows them:
-  /// median over the seeds of the examples' median |x - x*|.
+  /// median over the seeds of the examples' median |x - x*|, infinite of what
+  /// failed or is not finite.
   std::optional<double> distance;
   bool crowded = false;  ///< its stages shared their cores
 };
 
-/// Settings whose chains are finished. Losses that are not positive have no
-/// ratio: such settings have no points.
+/// Settings whose chains are finished or failed. Losses that are not positive
+/// have no ratio, and a failure after a time that nobody knows has no place:
+/// such settings have no points.
 std::vector<SettingHistory> setting_histories(const Results& results,
                                               const std::string& experiment);
 

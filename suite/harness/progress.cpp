@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "suite/core/clock.h"
+#include "suite/core/median.h"
 #include "suite/evidence/convergence_history.h"
 #include "suite/harness/context.h"
 #include "suite/harness/output.h"
@@ -33,6 +34,14 @@ std::string row(std::string_view name,
                      status,
                      best,
                      duration_text(seconds));
+}
+
+/// Of all examples, those without a finite loss as the highest; NaN of none.
+double median_of(const Vector<double>& losses) {
+  std::vector<double> all;
+  for (const double loss : losses)
+    all.push_back(std::isfinite(loss) ? loss : HUGE_VAL);
+  return all.empty() ? std::nan("") : median(std::move(all));
 }
 
 double seconds_of(const Clocks& c) {
@@ -212,7 +221,7 @@ std::string Progress::finished_row(const StageRecord& record,
              name_width(),
              record.stage,
              to_string(record.stop),
-             solves ? median_finite(record.loss) : std::nan(""),
+             solves ? median_of(record.loss) : std::nan(""),
              seconds_of(record.clocks));
 }
 

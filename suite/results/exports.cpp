@@ -20,6 +20,17 @@ using Json = nlohmann::ordered_json;
 
 bool is_error(const Json& entry) { return entry.contains("error_occurred"); }
 
+/// It failed, or most of its losses are not finite: a series of losses that
+/// ends alarms nobody.
+bool alarms(const Json& entry) {
+  return is_error(entry) || !entry.at("loss_median").is_number();
+}
+
+std::string why(const Json& entry) {
+  return is_error(entry) ? entry.at("error_message").get<std::string>()
+                         : "its median loss is not finite";
+}
+
 /// Its cores were shared: its times are no measure of speed.
 bool is_crowded(const Json& entry) {
   const auto own = entry.find("physinv");
@@ -157,8 +168,8 @@ Json smaller_is_better(const Json& results) {
     const std::string name = entry.at("name");
     Json error{{"name", name + " error"},
                {"unit", "0 or 1"},
-               {"value", is_error(entry) ? 1 : 0}};
-    if (is_error(entry)) error["extra"] = entry.at("error_message");
+               {"value", alarms(entry) ? 1 : 0}};
+    if (alarms(entry)) error["extra"] = why(entry);
     out.push_back(std::move(error));
     if (is_error(entry)) continue;
     const auto wall = times_of(entry, "wall");
@@ -182,7 +193,7 @@ Json smaller_is_better(const Json& results) {
 Json bencher_metrics(const Json& results) {
   Json out = Json::object();
   for (const Json& entry : results.at("benchmarks")) {
-    Json measures{{"error", {{"value", is_error(entry) ? 1 : 0}}}};
+    Json measures{{"error", {{"value", alarms(entry) ? 1 : 0}}}};
     if (!is_error(entry)) {
       const auto wall = times_of(entry, "wall");
       const auto [low, high] = std::minmax_element(wall.begin(), wall.end());

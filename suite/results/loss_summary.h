@@ -2,6 +2,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -37,7 +39,12 @@ inline std::optional<double> largest_loss_of(const StageRecord& stage) {
     return at->second(2);
   const auto& all = stage.loss;
   if (all.size() == 0) return {};
-  return *std::max_element(all.begin(), all.end());
+  double largest = -std::numeric_limits<double>::infinity();
+  for (const double loss : all)
+    largest = std::max(
+        largest,
+        std::isfinite(loss) ? loss : std::numeric_limits<double>::infinity());
+  return largest;
 }
 
 }  // namespace physinv

@@ -21,6 +21,7 @@ except ImportError:
     minimize = None
 
 import physinv
+from physinv import _compare
 
 WORK = sys.argv[1]
 BFGS = "jpo/billiards/bfgs/n=128/seed=0"
@@ -110,6 +111,28 @@ class Campaign(unittest.TestCase):
         self.assertEqual(both["rows"][0]["sides"][1]["same_bits"], 1)
         with self.assertRaisesRegex(TypeError, "two campaigns take"):
             physinv.compare(WORK + "/smoke", by="n")
+
+    def test_compare_counts_what_failed(self):
+        class Campaign:
+            def stages(self):
+                return [dict(case=f"c{seed}", experiment="e", method="m", n=2,
+                             seed=seed, stage="solve", stop=stop,
+                             seconds=None if stop == "failed" else 3.0)
+                        for seed, stop in enumerate(
+                            ("converged", "failed", "diverged"))]
+
+            def examples(self, case, stage):
+                lost = case == "c2"
+                return dict(loss=np.array([1.0, np.nan if lost else 2.0]),
+                            status=["gtol", "nonfinite" if lost else "gtol"],
+                            iterations=np.array([4.0, 4.0]))
+
+        row, = _compare.methods_of(Campaign())
+        self.assertEqual((row["seeds"], row["failed"], row["problems"]),
+                         (3, 1, 6))
+        self.assertEqual(row["loss"], np.inf)  # of 1, 2, 1 and three without
+        self.assertEqual(row["converged"], 3 / 6)
+        self.assertEqual((row["iterations"], row["seconds"]), (4, 3))
 
     def test_published_numbers(self):
         found = physinv.published("jpo/billiards")

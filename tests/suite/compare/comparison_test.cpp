@@ -139,6 +139,16 @@ TEST(Compare, WhoFailedHasTheHighestLoss) {
   ASSERT_EQ(ranks.size(), 1U);
   EXPECT_TRUE(ranks[0].differs());
   EXPECT_FALSE(ranks[0].better());
+  // On the first side, too.
+  std::swap(sides[0], sides[1]);
+  auto failed = sides[0].results.cases();
+  failed[0].stages[0].stop = Stop::failed;
+  sides[0].results = Results(failed);
+  const auto first = side_ranks(sides);
+  ASSERT_EQ(first.size(), 1U);
+  EXPECT_TRUE(first[0].better());
+  EXPECT_EQ(first[0].test.below, 20U);
+  std::swap(sides[0], sides[1]);
   cases[0].stages[0].loss = Vector<double>::Ones(3);
   sides[1].results = Results(cases);
   EXPECT_TRUE(side_ranks(sides).empty()) << "not the same problems";
@@ -165,6 +175,28 @@ TEST(Compare, AGroupCountsOnlyWhatAllSidesHave) {
   EXPECT_DOUBLE_EQ(c.rows[0].sides[0]->times->cpu.median, 1);
   EXPECT_TRUE(regression(Aspect::missing, c, {}, 1.5))
       << "a group without one of its runs";
+}
+
+TEST(Compare, AMedianOfTimesSaysOfHowManyItIs) {
+  auto failed = stage_with("solve", NAN, 1);
+  failed.stop = Stop::failed;
+  const std::vector<Side> sides{
+      side("a",
+           {case_with("m", 0, stage_with("solve", 1, 2)),
+            case_with("m", 1, stage_with("solve", 1, 2))}),
+      side("b",
+           {case_with("m", 0, failed),
+            case_with("m", 1, stage_with("solve", 1, 3))})};
+  const Comparison c = compare(sides, By::method);
+  const auto tables = detail_tables(c);
+  EXPECT_EQ(tables[0].id, "times");
+  EXPECT_EQ(tables[0].rows[0].cells[0].text, "2000");
+  EXPECT_EQ(tables[0].rows[0].cells[1].text, "3000 (1 of 2)");
+  const auto sections =
+      compare_sections(compare(sides, By::seed), sides, {}, {});
+  EXPECT_EQ(sections[1].figures[0].note,
+            "Without 1 points of stages that failed, diverged or have no "
+            "finite median loss.");
 }
 
 TEST(Compare, ClaimsThatChangeTheirVerdict) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 namespace physinv::profiles {
@@ -161,6 +162,67 @@ TEST(TargetCosts, WhatIsNotSolvedSpentAllThereWas) {
   EXPECT_EQ(costs.spent_simulations[1], (Costs{10, 15}));
 }
 
+/// A stage that failed after so many seconds and simulations.
+StageRecord failed_after(double seconds, std::uint64_t simulations) {
+  StageRecord s{.stage = "solve", .stop = Stop::failed};
+  s.clocks.setup.wall = 0.5;
+  s.clocks.solve.wall = seconds;
+  s.counts[Counter::forward] = simulations;
+  return s;
+}
+
+TEST(TargetCosts, AFailedRunCostsWhatItTookUntilItFailed) {
+  const auto costs = [](std::vector<StageRecord> failing) {
+    return target_costs(
+        Results({case_of("a", {stage_of({{1, 1}, {0, 0}})}),
+                 case_of("b", std::move(failing)),
+                 case_of("a", {stage_of({{1, 1}, {0, 0}})}, 2, 1),
+                 case_of("b", {stage_of({{1, 1}, {0, 0}})}, 2, 1)}),
+        "e",
+        0.1);
+  };
+  const TargetCosts at_once = costs({failed_after(7, 40)});
+  EXPECT_EQ(at_once.problems, 4);
+  EXPECT_EQ(at_once.seconds[1], (Costs{kInf, kInf, 2, 2}));
+  EXPECT_EQ(at_once.spent_seconds[1], (Costs{7, 7, 2, 2}));
+  EXPECT_EQ(at_once.spent_simulations[1], (Costs{20, 20, 10, 10}));
+  // What was reached before the failure was reached.
+  const TargetCosts later =
+      costs({stage_of({{1, 1}, {0, 0.5}}), failed_after(7, 40)});
+  EXPECT_EQ(later.seconds[1], (Costs{2, kInf, 2, 2}));
+  EXPECT_EQ(later.spent_seconds[1], (Costs{2, 9, 2, 2}));
+  EXPECT_EQ(later.spent_simulations[1], (Costs{10, 30, 10, 10}));
+  // Its process was lost, or it is of before this was recorded.
+  StageRecord lost{.stage = "solve", .stop = Stop::failed};
+  EXPECT_TRUE(std::isnan(costs({lost}).spent_seconds[1][0]));
+  StageRecord calls = failed_after(7, 0);
+  calls.counts.forget(Counter::forward);
+  EXPECT_EQ(costs({calls}).spent_seconds[1][0], 7);
+  EXPECT_TRUE(std::isnan(costs({calls}).spent_simulations[1][0]));
+  // What comes behind the failure was not run.
+  StageRecord behind{.stage = "refine", .stop = Stop::skipped};
+  EXPECT_EQ(costs({failed_after(7, 40), behind}).spent_seconds[1][0], 7);
+}
+
+TEST(TargetCosts, WhereAllMethodsFailTheProblemsAreCounted) {
+  const auto both = [](std::uint64_t seed, bool fail) {
+    std::vector<CaseRecord> cases;
+    for (const char* method : {"a", "b"})
+      cases.push_back(
+          case_of(method,
+                  {fail ? failed_after(1, 1) : stage_of({{1, 1}, {0, 0}})},
+                  2,
+                  seed));
+    return cases;
+  };
+  auto cases = both(0, false);
+  for (auto& c : both(1, true)) cases.push_back(std::move(c));
+  const TargetCosts costs = target_costs(Results(cases), "e", 0.1);
+  EXPECT_EQ(costs.problems, 2);
+  EXPECT_EQ(costs.solved_at_start, 2) << "left out, and said";
+  EXPECT_EQ(costs.seeds, 2);
+}
+
 /// A network's run: some examples along the curve, and the mean of all.
 StageRecord training_of(const std::vector<double>& means) {
   std::vector<std::vector<double>> tracked(means.size(), {7, 7});
@@ -191,6 +253,42 @@ TEST(TargetCosts, OfManyMethodsThoseThatEndLowest) {
   const TargetCosts costs = target_costs(results, "e", 0.1, 2);
   EXPECT_EQ(costs.methods, (std::vector<std::string>{"a", "c"}));
   EXPECT_EQ(costs.left_out, 1);
+}
+
+TEST(TargetCosts, AMethodThatFailsMostlyDoesNotEndLowest) {
+  const auto run = [](const char* method, std::uint64_t seed, double end) {
+    return case_of(method, {training_of({4, end})}, 5, seed);
+  };
+  const auto lost = [](std::uint64_t seed) {
+    return case_of("b", {failed_after(1, 1)}, 5, seed);
+  };
+  const Results results({run("a", 0, 3),
+                         run("a", 1, 3),
+                         run("a", 2, 3),
+                         run("b", 0, 1),
+                         lost(1),
+                         lost(2),
+                         run("c", 0, 2),
+                         run("c", 1, 2),
+                         run("c", 2, 2)});
+  const TargetCosts costs = target_costs(results, "e", 0.1, 2);
+  EXPECT_EQ(costs.methods, (std::vector<std::string>{"a", "c"}));
+  // The last seed's group says no less that a problem is a run.
+  const Results pair({run("a", 0, 3), lost(0), run("a", 1, 3), lost(1)});
+  EXPECT_TRUE(target_costs(pair, "e", 0.1).runs);
+}
+
+TEST(TargetCosts, ATrainingThatDivergedEndsWithoutALoss) {
+  auto diverged = training_of({4, 0.5});
+  diverged.stop = Stop::diverged;
+  auto overflow = training_of({4, std::numeric_limits<double>::max()});
+  const Results results(
+      {case_of("a", {diverged}, 5), case_of("b", {overflow}, 5)});
+  const CommonRuns common = common_runs(results, "e");
+  EXPECT_EQ(final_loss(common.groups[0].histories[0], 0), kInf);
+  EXPECT_EQ(final_loss(common.groups[0].histories[1], 0), kInf);
+  // What it reached before counts as reached.
+  EXPECT_EQ(target_costs(common, 0.1).seconds[0], (Costs{2}));
 }
 
 TEST(ProfileFigures, SayWhyThereIsNothingToCompare) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "suite/evidence/cell.h"
+#include "suite/evidence/failures.h"
 #include "suite/results/published.h"
 #include "tests/suite/evidence/campaigns.h"
 
@@ -63,6 +65,71 @@ TEST_F(QuantityTest, TheFirstRunHasTheLowestSizeAndSeed) {
   EXPECT_EQ(first_run(evidence_, Select{"a"}.of_sizes(4))->stage->loss[0], 3);
   EXPECT_FALSE(first_run(evidence_, {"c"}));
   EXPECT_FALSE(first_run(evidence_.of("other"), {"a"}));
+}
+
+/// Two runs of a and two of b; the second of a fails.
+Results one_failed(Stop stop) {
+  std::vector<CaseRecord> cases;
+  for (const char* method : {"a", "b"})
+    for (const std::uint64_t seed : {0, 1}) {
+      cases.push_back(case_of(method,
+                              2,
+                              seed,
+                              {"fit", "refine"},
+                              {stage_of("fit", {4}), stage_of("refine", {1})}));
+      if (method[0] == 'a' && seed == 1)
+        cases.back().stages[1] = {.stage = "refine", .stop = stop};
+    }
+  return Results(cases);
+}
+
+TEST_F(QuantityTest, NothingIsSaidOfTheRunsThatDidNotFail) {
+  const auto any = [](double) { return true; };
+  for (const Stop stop : {Stop::failed, Stop::skipped}) {
+    const Results results = one_failed(stop);
+    const Evidence evidence{results, published_, "toy"};
+    const Select a{"a"}, b{"b"};
+    for (const Quantity& q :
+         {median(a, first_loss()),
+          mean(a, first_loss()),
+          count(a, first_loss(), any),
+          share(a, first_loss(), any),
+          median_of_examples(a, all_losses()),
+          share_of_examples(a, all_losses(), any),
+          ratio(median(b, first_loss()), median(a, first_loss())),
+          median_ratio(b, a, first_loss()),
+          least({median(b, first_loss()), median(a, first_loss())})}) {
+      const Measured m = q(evidence);
+      EXPECT_FALSE(m.value);
+      EXPECT_EQ(m.missing, "a: 1 of 2 runs failed");
+      EXPECT_EQ(written(m).text, "1 of 2 runs failed");
+      EXPECT_EQ(cell_of(m).text, "1 of 2 runs failed");
+    }
+    // Who asks for the stage before it, or for others, is answered.
+    EXPECT_EQ(median({"a", "fit"}, first_loss())(evidence).value, 4);
+    EXPECT_EQ(median(b, first_loss())(evidence).value, 1);
+  }
+}
+
+TEST_F(QuantityTest, NoNumberHasNoPlaceAmongExamples) {
+  const Results results(
+      {case_of("a", 2, 0, {"solve"}, {stage_of("solve", {1, NAN, 3})})});
+  EXPECT_EQ(
+      median_of_examples({"a"}, all_losses())({results, published_, "toy"})
+          .missing,
+      "no finite value");
+}
+
+TEST(FailedRuns, AreATableOfTheirOwn) {
+  auto cases = one_failed(Stop::failed).cases();
+  cases[1].stages[1].message = "out of memory";
+  const Table table = failed_runs(Results(cases), "toy");
+  ASSERT_EQ(table.rows.size(), 1U);
+  EXPECT_EQ(table.rows[0].label, "a, n = 2, seed 1");
+  EXPECT_EQ(table.rows[0].cells[0].text, "refine");
+  EXPECT_EQ(table.rows[0].cells[1].text, "out of memory");
+  EXPECT_TRUE(table.note.starts_with("1 of 4 runs.")) << table.note;
+  EXPECT_TRUE(failed_runs(campaign(), "toy").rows.empty());
 }
 
 TEST(Each, IsOfThoseThatAreWanted) {
@@ -148,10 +215,10 @@ TEST_F(QuantityTest, AnotherExperimentIsNamed) {
   EXPECT_EQ(median(Select{"a"}.in("toy"), first_loss())(other).value, 3);
 }
 
-TEST_F(QuantityTest, FailedAndUnfinishedRunsDoNotCount) {
+TEST_F(QuantityTest, UnfinishedRunsDoNotCount) {
   auto cases = campaign().cases();
-  cases[0].stages[0].stop = Stop::failed;
-  cases[1].info.stages = {"solve", "refine"};  // not all of the chain yet
+  cases.erase(cases.begin());
+  cases[0].info.stages = {"solve", "refine"};  // not all of the chain yet
   const Results results(cases);
   const Evidence evidence{results, published_, "toy"};
   EXPECT_EQ(lowest({"a"}, first_loss())(evidence).value, 5);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "suite/evidence/running_time.h"
@@ -20,6 +21,18 @@ TEST(RunningTime, AllThatWasSpentOverWhatWasSolved) {
   EXPECT_LT(time.low, 8);
   EXPECT_GT(time.high, 8);
   EXPECT_EQ(expected_running_time({kInf}, {10}, "a").expected, kInf);
+}
+
+TEST(RunningTime, WhatNobodyKnowsMakesNoValue) {
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  const RunningTime time =
+      expected_running_time({2, kInf, 4}, {2, unknown, 4}, "a");
+  for (const double value : {time.expected, time.low, time.high})
+    EXPECT_TRUE(std::isnan(value));
+  EXPECT_EQ(time.solved, 2U);
+  EXPECT_EQ(time.problems, 3U);
+  EXPECT_EQ(expected_running_time({kInf}, {unknown}, "a").expected, kInf)
+      << "never, whatever it took";
 }
 
 TEST(RunningTime, TheIntervalHoldsAndRepeatsItself) {
@@ -53,7 +66,11 @@ CommonRuns runs_of(const std::vector<std::vector<double>>& losses) {
   group.examples = group.n;
   for (std::size_t m = 0; m < losses.size(); ++m) {
     common.methods.push_back(std::string(1, static_cast<char>('a' + m)));
-    ConvergenceHistory history{.seconds = {0, 1}, .simulations = {1, 10}};
+    ConvergenceHistory history{.seconds = {0, 1},
+                               .simulations = {1, 10},
+                               .loss = {},
+                               .all_seconds = 1,
+                               .all_simulations = 10};
     history.loss.push_back(Vector<double>::Ones(group.n));
     history.loss.push_back(
         Eigen::Map<const Vector<double>>(losses[m].data(), group.n));
@@ -80,6 +97,57 @@ TEST(Standings, RanksByProblemAndPairs) {
   EXPECT_EQ(s.pairs[1].test.below, 3U);
   EXPECT_DOUBLE_EQ(s.pairs[1].test.p, 0.25);
   EXPECT_DOUBLE_EQ(s.pairs[1].p, 0.75) << "of three pairs";
+}
+
+TEST(Standings, WhoFailedIsNowhereTheLowest) {
+  auto common = runs_of({{0.5, kInf}, {0.1, kInf}});
+  EXPECT_DOUBLE_EQ(standings(common).lowest[0], 0);
+  EXPECT_DOUBLE_EQ(standings(common).lowest[1], 0.5) << "nobody has a number";
+  // With a finite loss when it failed.
+  common.groups[0].histories[1].failed = true;
+  const Standings s = standings(common);
+  EXPECT_DOUBLE_EQ(s.lowest[0], 0.5);
+  EXPECT_DOUBLE_EQ(s.lowest[1], 0);
+  EXPECT_EQ(s.order, (std::vector<std::size_t>{0, 1}));
+}
+
+/// Of two equal methods, one fails on a third of the seeds.
+CommonRuns third_failed(std::optional<double> seconds) {
+  CommonRuns all = runs_of({{0}, {0}});
+  for (const bool failed : {false, true}) {
+    CommonRun group = all.groups.front();
+    if (failed)
+      group.histories[1] = {
+          .all_seconds = seconds, .all_simulations = seconds, .failed = true};
+    all.groups.push_back(std::move(group));
+  }
+  all.seeds = 3;
+  return all;
+}
+
+TEST(Standings, FailuresCostWhatTheyTook) {
+  const auto tables = [](std::optional<double> seconds) {
+    Section section;
+    add_standings(section, third_failed(seconds), {{"b", "B"}});
+    return section.tables;
+  };
+  const Table times = tables(4)[1];
+  EXPECT_DOUBLE_EQ(*times.rows[0].cells[1].ours, 1);
+  EXPECT_EQ(times.rows[1].label, "B, tau = 0.01");
+  EXPECT_DOUBLE_EQ(*times.rows[1].cells[1].ours, 3) << "(1 + 1 + 4) / 2";
+  EXPECT_DOUBLE_EQ(*times.rows[1].cells[4].ours, 12) << "(10 + 10 + 4) / 2";
+  EXPECT_NE(times.note.find("spent until then: B 1 of 3 runs."),
+            std::string::npos)
+      << times.note;
+  const Table unknown = tables({})[1];
+  for (const std::size_t c : {1, 2, 3, 4, 5, 6})
+    EXPECT_EQ(unknown.rows[1].cells[c].text, "not known");
+  EXPECT_NE(unknown.note.find("B 1 of 3 runs (1 without a record of it"),
+            std::string::npos)
+      << unknown.note;
+  const Table ranks = tables({})[0];
+  EXPECT_NE(ranks.note.find("the highest: B 1 of 3 runs."), std::string::npos)
+      << ranks.note;
 }
 
 TEST(Standings, ASentenceWithWhatWasShown) {

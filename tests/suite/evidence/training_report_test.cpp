@@ -49,6 +49,34 @@ TEST(TrainingReport, FieldsAreTheTruthWhatIsSeenAndEachAnswerOfEachExample) {
   EXPECT_TRUE(fields(Results{}, 1).panels.empty());
 }
 
+TEST(TrainingReport, FailedAndDivergedRunsAreInTheTable) {
+  std::vector<CaseRecord> cases;
+  for (const std::uint64_t seed : {0, 1, 2}) {
+    for (const char* method : {"failed", "diverged", "good"})
+      cases.push_back(trained_case(method, seed, {2, 1}));
+    if (seed > 0) cases[3 * seed + 1].stages[0].stop = Stop::diverged;
+  }
+  cases[0].stages[0] = {.stage = "fit", .stop = Stop::failed};
+  const Results results(cases);
+  const Evidence evidence{results, {}, "toy"};
+  const std::vector<MethodLine> lines = {
+      {"failed", "F"}, {"diverged", "D"}, {"good", "G"}};
+  const Table table = loss_table(evidence, lines);
+  ASSERT_EQ(table.rows.size(), 3U);
+  for (const Cell& cell : table.rows[0].cells)
+    EXPECT_EQ(cell.text, "1 of 3 runs failed");
+  EXPECT_EQ(table.rows[1].cells[1].text, "not finite") << "median of 3, 2 lost";
+  EXPECT_EQ(table.rows[1].cells[2].ours, 1) << "the lowest";
+  EXPECT_EQ(table.rows[1].cells[4].text, "2/3");
+  EXPECT_EQ(table.rows[2].cells[1].ours, 1);
+  Section section;
+  LearningCurves(evidence, section).losses(lines, "f", "F", "Fig. 1");
+  ASSERT_EQ(section.figures.size(), 1U);
+  EXPECT_TRUE(
+      section.figures[0].note.ends_with(" Not drawn: F 1 of 3 runs failed."))
+      << section.figures[0].note;
+}
+
 TEST(TrainingReport, AnswersAreOfTheExampleThatIsAskedFor) {
   CaseRecord two = answered("a");
   two.stages.back().x = Batch<double>::Ones(2, 2);

@@ -79,6 +79,70 @@ TEST(WorkPrecision, TheReportNamesWhatIsDominated) {
   EXPECT_EQ(section.figures[0].panels[0].series.size(), 4U);
 }
 
+/// A run that fails after so many seconds, at once or behind its stage.
+CaseRecord failing(CaseRecord c, double seconds, bool at_once) {
+  StageRecord lost{.stage = "refine", .stop = Stop::failed};
+  lost.clocks.setup.wall = seconds > 0 ? 1 : 0;
+  lost.clocks.solve.wall = seconds;
+  if (at_once) c.stages.clear();
+  c.stages.push_back(lost);
+  return c;
+}
+
+TEST(WorkPrecision, FailedRunsAreInTheMedians) {
+  const auto of = [](bool at_once, double seconds) {
+    std::vector<CaseRecord> cases;
+    for (const std::uint64_t seed : {0, 1, 2}) {
+      cases.push_back(history("good", seed, {1, 0.5, 0.1}, 10));
+      CaseRecord c = history("frail", seed, {1, 0.5, 0.01}, 1);
+      cases.push_back(seed == 0 ? failing(c, seconds, at_once) : c);
+    }
+    return setting_histories(Results(cases), "toy");
+  };
+  for (const bool at_once : {false, true}) {
+    const auto settings = of(at_once, 100);
+    const SettingHistory &frail = settings[0], &good = settings[1];
+    EXPECT_EQ(good.seeds, 3U) << "no seed is lost to the others";
+    EXPECT_EQ(frail.seeds, 3U);
+    EXPECT_EQ(frail.failed, 1U);
+    EXPECT_DOUBLE_EQ(frail.end.loss, 0.01);
+    EXPECT_EQ(frail.end.high, HUGE_VAL);
+    EXPECT_TRUE(std::isfinite(*frail.distance));
+    // Whoever lost a process has no seconds.
+    EXPECT_TRUE(of(at_once, 0)[0].points.empty());
+    EXPECT_FALSE(of(at_once, 0)[1].points.empty());
+  }
+}
+
+TEST(WorkPrecision, WhereMostRunsFailThereIsNoLossAtTheEnd) {
+  std::vector<CaseRecord> cases;
+  for (const std::uint64_t seed : {0, 1, 2}) {
+    cases.push_back(history("good", seed, {1, 0.5, 0.1}, 10));
+    const CaseRecord c = history("frail", seed, {1, 0.5, 0.01}, 1);
+    cases.push_back(seed == 0 ? c : failing(c, 100, false));
+  }
+  const Results results(cases);
+  const auto frail = setting_histories(results, "toy")[0];
+  EXPECT_EQ(frail.end.loss, HUGE_VAL);
+  EXPECT_EQ(*frail.distance, HUGE_VAL);
+  EXPECT_DOUBLE_EQ(frail.points.back().loss, 0.01) << "before they fail";
+  Section section;
+  add_work_precision(section, results, "toy", {});
+  const Table& table = section.tables[0];
+  EXPECT_EQ(table.rows[0].cells[2].text, "not finite");
+  EXPECT_NE(table.note.find("frail, n = 2 2 of 3 failed"), std::string::npos)
+      << table.note;
+}
+
+TEST(WorkPrecision, AnEstimateThatIsNotFiniteIsFar) {
+  std::vector<CaseRecord> cases;
+  for (const std::uint64_t seed : {0, 1, 2}) {
+    cases.push_back(history("a", seed, {1, 0.5}, 1));
+    if (seed > 0) cases.back().stages[0].x.setConstant(NAN);
+  }
+  EXPECT_EQ(*setting_histories(Results(cases), "toy")[0].distance, HUGE_VAL);
+}
+
 TEST(WorkPrecision, WithoutLossesThereIsNoReport) {
   Section section;
   add_work_precision(section, Results{}, "toy", {});

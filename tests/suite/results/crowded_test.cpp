@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "suite/results/exports.h"
@@ -52,23 +53,38 @@ TEST(Crowded, StagesAreCounted) {
   EXPECT_EQ(crowded_text(cases), "");
 }
 
+nlohmann::ordered_json one_stage(bool crowded, double loss) {
+  return {{"benchmarks",
+           {{{"name", "a"},
+             {"iterations", 1},
+             {"real_time", 2.0},
+             {"cpu_time", 1.0},
+             {"time_unit", "ns"},
+             {"loss_median",
+              std::isfinite(loss) ? nlohmann::ordered_json(loss)
+                                  : nlohmann::ordered_json()},
+             {"forward", 1},
+             {"vjp", 0},
+             {"jacobian", 0},
+             {"inverse", 0},
+             {"physinv",
+              {{"crowded", crowded},
+               {"times", {{"wall", {2.0}}, {"cpu", {1.0}}}}}}}}}};
+}
+
+TEST(Exports, ALossThatIsNotFiniteIsAnError) {
+  for (const bool finite : {true, false}) {
+    const auto results = one_stage(false, finite ? 0.5 : NAN);
+    EXPECT_EQ(bencher_metrics(results)["a"]["error"]["value"], finite ? 0 : 1);
+    EXPECT_EQ(bencher_metrics(results)["a"].contains("loss"), finite);
+    EXPECT_EQ(smaller_is_better(results)[0]["value"], finite ? 0 : 1);
+    EXPECT_EQ(smaller_is_better(results)[0].contains("extra"), !finite);
+  }
+}
+
 TEST(Crowded, ExportsSayIt) {
   for (const bool crowded : {true, false}) {
-    const nlohmann::ordered_json results{
-        {"benchmarks",
-         {{{"name", "a"},
-           {"iterations", 1},
-           {"real_time", 2.0},
-           {"cpu_time", 1.0},
-           {"time_unit", "ns"},
-           {"loss_median", 0.5},
-           {"forward", 1},
-           {"vjp", 0},
-           {"jacobian", 0},
-           {"inverse", 0},
-           {"physinv",
-            {{"crowded", crowded},
-             {"times", {{"wall", {2.0}}, {"cpu", {1.0}}}}}}}}}};
+    const auto results = one_stage(crowded, 0.5);
     const auto said = [&](const std::string& text) {
       return text.find("crowded") != std::string::npos;
     };

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "suite/results/loss_summary.h"
 #include "suite/results/published.h"
 #include "tests/suite/store/store_testing.h"
 
@@ -50,6 +53,18 @@ TEST(Results, WorkIsThatOfStagesWithAResult) {
   const auto work = work_of(Results({lost}));
   ASSERT_EQ(work.size(), 1U);
   EXPECT_EQ(work.at("jpo/sample"), expected);
+}
+
+TEST(LossSummary, WhatIsNotFiniteIsTheLargest) {
+  StageRecord stage;
+  EXPECT_FALSE(largest_loss_of(stage));
+  for (const double bad : {std::nan(""), HUGE_VAL}) {
+    stage.loss = Vector<double>{{1, bad, 2}};
+    EXPECT_EQ(*largest_loss_of(stage), HUGE_VAL);
+    EXPECT_FALSE(std::isfinite(*mean_loss_of(stage)));
+  }
+  stage.loss = Vector<double>{{1, 3, 2}};
+  EXPECT_EQ(*largest_loss_of(stage), 3);
 }
 
 TEST(Published, HasThePapersBilliardsNumbers) {

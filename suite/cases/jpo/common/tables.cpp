@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "suite/cases/jpo/common/report.h"
+#include "suite/evidence/failures.h"
 #include "suite/evidence/statistics.h"
 
 namespace physinv {
@@ -45,11 +46,17 @@ Cell JpoReport::with_paper(Cell cell, const std::string& quantity) const {
 Cell JpoReport::over_seeds(const Select& runs,
                            Index n,
                            const RunValue& value) const {
+  if (const auto failed = failed_text(evidence_, jpo::at(runs, n));
+      !failed.empty())
+    return {.text = failed};
   return cell_of(values(runs, n, value));
 }
 
-/// Per cent of all runs, and the deviation of each seed's mean.
+/// Per cent of all runs, and the deviation of each seed's mean; beside BFGS.
 Cell JpoReport::over_runs(const Select& runs, const RunValue& share) const {
+  for (const Select& each : {runs, jpo::bfgs()})
+    if (const auto failed = failed_text(evidence_, each); !failed.empty())
+      return {.text = failed};
   const auto all = sample(evidence_, runs, share);
   if (all.empty()) return {.text = kNotRun};
   Cell cell{.ours = 100 * mean_of(values_of(all))};
@@ -204,8 +211,10 @@ TableRow JpoReport::results_row(const std::string& method,
   using Value = std::optional<double>;
   const Select runs = jpo::ending(method, refined);
   const auto f = [&](Equality equality) {
-    return method == "bfgs" ? Cell{.text = kNothing}
-                            : over_seeds(runs, n, jpo::f(equality));
+    if (method == "bfgs") return Cell{.text = kNothing};
+    const auto failed = failed_text(evidence_, jpo::at(jpo::bfgs(), n));
+    return failed.empty() ? over_seeds(runs, n, jpo::f(equality))
+                          : Cell{.text = failed};
   };
   const RunValue iterations = [](const Run& run) -> Value {
     const auto& own = run.stage->example_iterations;

@@ -343,7 +343,9 @@ Quantity problem_count(const Select& select) {
 Quantity from_problems(Index problems, const Select& select, Quantity q) {
   const Quantity count = problem_count(select);
   return {[=](const Evidence& e) {
-            if (*count(e).value >= static_cast<double>(problems)) return q(e);
+            const Measured there = count(e);
+            if (!there.value) return there;
+            if (*there.value >= static_cast<double>(problems)) return q(e);
             return missing(
                 fmt::format("{} of {} problems", select.text(), problems));
           },
