@@ -7,10 +7,9 @@
 #include <string>
 #include <vector>
 
-namespace physinv {
+#include "suite/results/solved_loss.h"
 
-/// Losses below this are solved: that they differ counts for nothing.
-inline constexpr double kSolvedLoss = 1e-12;
+namespace physinv {
 
 /// Decades by which loss `a` lies above `b`, both raised to kSolvedLoss;
 /// infinite if only one is not finite, 0 if neither is.

@@ -11,8 +11,8 @@
 #include <stdexcept>
 
 #include "suite/core/stop.h"
-#include "suite/evidence/rank_test.h"
 #include "suite/results/shortened.h"
+#include "suite/results/solved_loss.h"
 
 namespace physinv {
 namespace {

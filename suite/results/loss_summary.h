@@ -25,25 +25,29 @@ inline void keep(const LossSummary& losses, StageRecord& stage) {
   stage.arrays[kLossSummary] = std::move(kept);
 }
 
-/// As it was kept, or of all losses; of none there is none.
+/// A loss that is not finite is infinite.
+inline double finite_or_infinite(double loss) {
+  return std::isfinite(loss) ? loss : std::numeric_limits<double>::infinity();
+}
+
+/// As it was kept, or of all losses; of none there is none. Infinite if one of
+/// them is not finite.
 inline std::optional<double> mean_loss_of(const StageRecord& stage) {
   if (const auto at = stage.arrays.find(kLossSummary); at != stage.arrays.end())
-    return at->second(0);
+    return finite_or_infinite(at->second(0));
   const auto& all = stage.loss;
   if (all.size() == 0) return {};
-  return std::accumulate(all.begin(), all.end(), 0.0) /
-         static_cast<double>(all.size());
+  return finite_or_infinite(std::accumulate(all.begin(), all.end(), 0.0) /
+                            static_cast<double>(all.size()));
 }
 inline std::optional<double> largest_loss_of(const StageRecord& stage) {
   if (const auto at = stage.arrays.find(kLossSummary); at != stage.arrays.end())
-    return at->second(2);
+    return finite_or_infinite(at->second(2));
   const auto& all = stage.loss;
   if (all.size() == 0) return {};
   double largest = -std::numeric_limits<double>::infinity();
   for (const double loss : all)
-    largest = std::max(
-        largest,
-        std::isfinite(loss) ? loss : std::numeric_limits<double>::infinity());
+    largest = std::max(largest, finite_or_infinite(loss));
   return largest;
 }
 

@@ -204,6 +204,12 @@ def incomplete(d):
     expect(0, ["report", "only"], d)
     expect(4, ["--profile=bad", "--out=bad"], d)
     expect(10, ["verify", "bad"], d, "stages failed (first ")
+    expect(10, ["report", "bad"], d, "stages failed (first ")
+    page = os.path.join(d, "bad/report/fake-cubic/tables/failed_runs.csv")
+    with open(page) as f:
+        failed = f.read()
+    check("no solution today" in failed and "out of memory" in failed,
+          "the page names runs that failed, and why")
 
 
 def expected_failures(d):

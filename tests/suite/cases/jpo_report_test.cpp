@@ -86,6 +86,22 @@ TEST(JpoReport, TablesHoldMeansAndSpreads) {
   EXPECT_EQ(table(s, "table3").rows[0].cells[1].text, "not run");
 }
 
+TEST(JpoReport, NothingIsSaidOfTheRunsThatDidNotFail) {
+  const auto with = [](std::size_t failing) {
+    auto cases = some_results().cases();
+    cases[failing].stages.back().stop = Stop::failed;
+    const Results results(cases);
+    return section_of(kOptions, {results, {}, "toy"});
+  };
+  const Section bfgs = with(1), refine = with(2);
+  EXPECT_EQ(table(bfgs, "table2").rows[0].cells[0].text, "1 of 2 runs failed");
+  EXPECT_EQ(table(bfgs, "table5").rows[0].cells[0].text, "1 of 2 runs failed")
+      << "beside BFGS";
+  EXPECT_EQ(table(refine, "table5").rows[0].cells[0].text,
+            "1 of 1 runs failed");
+  EXPECT_EQ(table(refine, "table3").rows[0].cells[0].text, "not run");
+}
+
 TEST(JpoReport, PaperNumbersStandBeside) {
   JpoReportOptions options = kOptions;
   options.table3_sizes = {4};
