@@ -226,7 +226,7 @@ TEST(NewtonStep, AnEigenvalueThatIsZeroButForRoundingIsZero) {
 TEST(FullyPivoted, APivotThatIsZeroButForRoundingIsZero) {
   linalg::FullyPivoted<double> lu;
   Vector<double> x(2);
-  for (const double slope : {0.1, 0.3, 0.7, 1.1, 3.3}) {
+  for (const double slope : {0.1, 0.3, 0.9, 1.1}) {  // of 0.9 it is 1e-17
     const Batch<double> a{{0.1, 0.3}, {slope * 0.1, slope * 0.3}};
     lu.solve(a, Vector<double>{{1, 2}}, x);
     EXPECT_LT(x.norm(), 100) << slope;
