@@ -18,6 +18,11 @@
 namespace physinv {
 namespace {
 
+std::vector<std::string>& elsewhere() {
+  static std::vector<std::string> names;
+  return names;
+}
+
 std::string method_ids(const Experiment& e) {
   std::vector<std::string> ids;
   for (const Method& m : e.methods) ids.push_back(m.id);
@@ -140,6 +145,7 @@ std::string objection(const Registry& registry,
   const std::string& name =
       select.experiment.empty() ? experiment : select.experiment;
   const auto e = registry.find(name);
+  if (!e && is_elsewhere(name)) return "";
   if (!e) return fmt::format("the unknown experiment '{}'", name);
   const Method* m = find_method(*e, select.method);
   if (m == nullptr)
@@ -210,6 +216,19 @@ void validate(const Registry& registry, const std::vector<Case>& cases) {
   // A mistake of the suite, or of who built on it.
   if (outsides().empty()) throw std::logic_error(text);
   throw UsageError(text);
+}
+
+void name_elsewhere(std::vector<std::string> experiments) {
+  elsewhere() = std::move(experiments);
+}
+
+bool is_elsewhere(std::string_view experiment) {
+  return std::any_of(
+      elsewhere().begin(), elsewhere().end(), [&](std::string_view name) {
+        return name.ends_with('*')
+                   ? experiment.starts_with(name.substr(0, name.size() - 1))
+                   : experiment == name;
+      });
 }
 
 std::string to_text(Needs needs) {

@@ -2,6 +2,8 @@
 /// build, by a test; a start of the program looks at what it will run.
 #pragma once
 
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "suite/harness/registry.h"
@@ -12,5 +14,11 @@ namespace physinv {
 /// about experiments of the same name; throws std::logic_error with them, if
 /// any.
 void validate(const Registry& registry, const std::vector<Case>& cases);
+
+/// Experiments of the suite that this program leaves out; one that ends with a
+/// star stands for all that begin so. Claims may ask for runs of them: they are
+/// not there, and checked in the program over all. Replaces those named before.
+void name_elsewhere(std::vector<std::string> experiments);
+bool is_elsewhere(std::string_view experiment);
 
 }  // namespace physinv

@@ -18,6 +18,9 @@ using Add = void(Registry&);
 struct CaseFolder {
   std::string path;  ///< <paper>/<folder>
   Add* add;
+  /// Names, as its line of experiments.txt has them: with a star, all that
+  /// begin so.
+  std::vector<std::string> experiments;
 };
 /// Of the program: all, or the one that it is over.
 std::vector<CaseFolder> folders();

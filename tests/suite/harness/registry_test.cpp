@@ -112,6 +112,12 @@ TEST(Registry, ChecksWhatClaimsAskFor) {
             asks("the unknown stage 'train' of walk"));
   EXPECT_EQ(complaint_of(claim_on(Select{"walk"}.in("fake/quartic"))),
             asks("the unknown experiment 'fake/quartic'"));
+  name_elsewhere({"fake/quartic", "other/*"});
+  EXPECT_EQ(complaint_of(claim_on(Select{"walk"}.in("fake/quartic"))), "");
+  EXPECT_EQ(complaint_of(claim_on(Select{"walk"}.in("other/cubic"))), "");
+  EXPECT_EQ(complaint_of(claim_on(Select{"walk"}.in("fake/quintic"))),
+            asks("the unknown experiment 'fake/quintic'"));
+  name_elsewhere({});
   EXPECT_EQ(complaint_of(claim_on(Select{"walk"}.of_sizes(1000))),
             asks("'walk, n >= 1000', which no profile from smoke on runs"));
   Claim late = claim_on({"descend"});
