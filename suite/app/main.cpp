@@ -122,9 +122,13 @@ ExitCode dispatch(Arguments arguments) {
 
 /// Whoever starts us may have closed 0, 1 or 2. The next file that opens would
 /// take the place, and what is printed would land in the journal or the lock.
+/// Output that was closed cannot be written into: what is printed there fails.
 void open_standard_streams() {
   int fd = 0;
-  while (fd >= 0 && fd <= STDERR_FILENO) fd = open("/dev/null", O_RDWR);
+  while (fd >= 0 && fd <= STDERR_FILENO) {
+    const bool output_is_open = fcntl(STDOUT_FILENO, F_GETFD) != -1;
+    fd = open("/dev/null", output_is_open ? O_RDWR : O_RDONLY);
+  }
   if (fd >= 0) close(fd);
 }
 
@@ -138,8 +142,8 @@ bool can_run_here() {
 }
 
 constexpr const char* kUnwritable =
-    "standard output cannot be written; a disk may be full, or the limit on "
-    "file sizes (ulimit -f) too low";
+    "standard output cannot be written; it may be closed, a disk full, or the "
+    "limit on file sizes (ulimit -f) too low";
 
 ExitCode complain(ExitCode code, std::string_view text) {
   put(stdout, "");  // what was said before

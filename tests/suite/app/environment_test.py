@@ -39,13 +39,24 @@ def closed_streams(d):
             out = os.path.join(d, "closed" + "".join(map(str, which)))
             p = run(*SMOKE, "--out", out, preexec_fn=closed(*which),
                     stdin=subprocess.DEVNULL)
-            check(p.returncode == 0, f"runs without {which}")
+            check(p.returncode == (9 if 1 in which else 0),
+                  f"runs without {which}: {p.returncode}")
+            check(1 not in which or 2 in which or
+                  "standard output cannot be written" in p.stderr, "it is said")
             lock = open(os.path.join(out, "lock")).read()
             check(lock.isdigit(), f"lock holds a process: {lock[:40]!r}")
             p = run("verify", out)
             check("0 mismatches" in p.stdout, "store is whole " + p.stderr)
     p = run("--profile=huge", preexec_fn=closed(2))
     check(p.returncode == 2, f"an error without stderr -> {p.returncode}")
+    for args in (["export", out], ["list"], ["--help"], ["--version"],
+                 ["help", "run"], ["verify", out], ["report", out],
+                 ["completion", "bash"], ["compare", out, out],
+                 ["export", out, "--format=csv"]):
+        fails(9, "standard output", *args, preexec_fn=closed(1))
+    written = os.path.join(d, "exported.json")
+    p = run("export", out, "--out=" + written, preexec_fn=closed(1))
+    check(p.returncode == 0 and json.load(open(written)), "into a file")
 
 
 def broken_streams(d):
