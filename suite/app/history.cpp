@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include "reports/report.h"
 #include "suite/app/options.h"
@@ -20,24 +22,58 @@ namespace fs = std::filesystem;
 
 constexpr char kBetween = '\x1f';
 
-std::string git(std::vector<std::string> arguments) {
+Ended run_git(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), "git");
-  const Ended ended =
-      run_child(std::move(arguments), {.seconds = 60, .bytes = 64 << 20});
+  return run_child(std::move(arguments), {.seconds = 60, .bytes = 64 << 20});
+}
+
+std::string git(std::vector<std::string> arguments) {
+  const Ended ended = run_git(std::move(arguments));
   return ended.status == 0 ? ended.output : "";
+}
+
+/// Those of a text that are not blank.
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream all(text);
+  for (std::string line; std::getline(all, line);) {
+    const auto begin = line.find_first_not_of(" \t\r");
+    if (begin != line.npos) lines.push_back(line.substr(begin));
+  }
+  return lines;
+}
+
+/// Why git tells nothing of this folder: its first line and, where that is
+/// advice, its last one.
+std::string complaint_of_git() {
+  if (!has_program("git")) return "git is not installed";
+  const Ended ended = run_git({"rev-parse", "HEAD"});
+  if (ended.status == 0) return "";
+  const auto lines = lines_of(ended.errors);
+  if (lines.empty())
+    return fmt::format("git ends with {} {}", ended.status, ended.exceeded);
+  return "git says: " + lines.front() +
+         (lines.size() > 1 ? " ... " + lines.back() : "");
+}
+
+/// Where a shallow clone ends.
+std::string end_of_clone() {
+  if (!git({"rev-parse", "--is-shallow-repository"}).starts_with("true"))
+    return "";
+  const auto first = lines_of(
+      git({"log", "--max-parents=0", "--date-order", "--format=%h of %cs"}));
+  return fmt::format(
+      "this clone is shallow and begins with commit {}; 'git fetch "
+      "--unshallow' brings what is before",
+      first.empty() ? "?" : first.back());
 }
 
 /// "commit, date, subject", newest first.
 std::vector<std::string> commits_of(const std::string& baseline) {
-  std::vector<std::string> lines;
-  std::string text = git(
-      {"log", fmt::format("--format=%H{0}%cI{0}%s", kBetween), "--", baseline});
-  for (std::size_t at = 0; at < text.size();) {
-    const auto end = std::min(text.find('\n', at), text.size());
-    lines.push_back(text.substr(at, end - at));
-    at = end + 1;
-  }
-  return lines;
+  return lines_of(git({"log",
+                       fmt::format("--format=%H{0}%cI{0}%s", kBetween),
+                       "--",
+                       baseline}));
 }
 
 std::vector<PastBaseline> past_of(const std::string& baseline) {
@@ -63,9 +99,14 @@ std::vector<PastBaseline> past_of(const std::string& baseline) {
 
 }  // namespace
 
-std::vector<Section> history_sections(const std::string& baseline) {
-  if (!has_program("git")) return {};
-  return history_of(past_of(baseline));
+GitHistory history_of_git(const std::string& baseline) {
+  if (auto why = complaint_of_git(); !why.empty()) return {{}, std::move(why)};
+  GitHistory history{history_of(past_of(baseline)), end_of_clone()};
+  if (!history.lacks.empty())
+    for (Section& section : history.sections)
+      for (Table& table : section.tables)
+        table.note += fmt::format(" Not all: {}.", history.lacks);
+  return history;
 }
 
 nlohmann::ordered_json history_origin(const std::string& baseline) {
@@ -91,13 +132,16 @@ ExitCode history_verb(const Arguments& arguments) {
         "--baseline={} is absolute; a path below this folder, as git has it, "
         "is expected",
         baseline));
-  const auto sections = history_sections(baseline);
-  if (sections.empty())
+  const GitHistory history = history_of_git(baseline);
+  if (history.sections.empty())
     throw ExitError(ExitCode::nothing_matched,
                     fmt::format("git has no two versions of '{}' here; run in "
-                                "a checkout with its history",
-                                baseline));
-  write_report(out, sections, history_origin(baseline));
+                                "a checkout with its history{}{}",
+                                baseline,
+                                history.lacks.empty() ? "" : "; ",
+                                history.lacks));
+  write_report(out, history.sections, history_origin(baseline));
+  if (!history.lacks.empty()) fmt::print("note: {}\n", history.lacks);
   fmt::print("history: {}\n", (fs::path(out) / "index.html").string());
   return ExitCode::good;
 }

@@ -50,12 +50,14 @@ void write_html(const fs::path& directory,
     all.push_back(std::move(pages));
   }
   std::vector<std::pair<std::string, std::string>> others;
-  if (const auto sections = history_sections(kGateBaseline);
-      !sections.empty()) {
+  const GitHistory history = history_of_git(kGateBaseline);
+  if (!history.sections.empty()) {
     write_report(
-        directory / "history", sections, history_origin(kGateBaseline));
+        directory / "history", history.sections, history_origin(kGateBaseline));
     others.emplace_back("history", "What the gate measured, commit by commit");
   }
+  if (!history.lacks.empty())
+    fmt::print("note: no whole history of the gate: {}\n", history.lacks);
   Folder(directory).write("index.html", campaigns_html(all, others));
 }
 

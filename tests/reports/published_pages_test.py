@@ -25,9 +25,9 @@ def check(condition, what):
         FAILED.append(what)
 
 
-def run(*arguments, cwd):
+def run(*arguments, cwd, env=None):
     return subprocess.run([PROGRAM, *arguments], cwd=cwd, capture_output=True,
-                          text=True)
+                          text=True, env={**os.environ, **(env or {})})
 
 
 def listing(folder):
@@ -130,6 +130,27 @@ def history(d):
     check(os.path.exists(f"{d}/past/history/figures/losses.vl.json"), "figure")
     p = run("history", "--baseline=/base.txt", cwd=d)
     check(p.returncode == 2 and "is absolute" in p.stderr, p.stderr)
+    # What git refuses, in its own words.
+    p = run("history", "--baseline=base.txt", cwd=d,
+            env={"GIT_TEST_ASSUME_DIFFERENT_OWNER": "1"})
+    check(p.returncode == 3 and "dubious ownership" in p.stderr and
+          p.stderr.rstrip().endswith(f"safe.directory {os.path.realpath(d)}"),
+          p.stderr)
+    # A shallow clone says where it ends.
+    with open(f"{d}/base.txt", "a") as f:
+        f.write("another 1\n")
+    git("commit", "-qam", "Loss 3")
+    for depth, code in ((1, 3), (2, 0)):
+        git("clone", "-q", f"--depth={depth}", f"file://{d}", f"of{depth}")
+        first = subprocess.run(
+            ["git", "rev-parse", "--short", f"HEAD~{depth - 1}"], text=True,
+            cwd=d, check=True, capture_output=True).stdout.strip()
+        p = run("history", "--baseline=base.txt", cwd=f"{d}/of{depth}")
+        text = p.stdout + p.stderr
+        check(p.returncode == code and f"begins with commit {first} of " in text
+              and "--unshallow" in text, (depth, p.returncode, text))
+    with open(f"{d}/of2/results/history/history/tables/commits.csv") as f:
+        check("Loss 3" in f.read(), "the part that is there")
 
 
 def main():
