@@ -1,6 +1,7 @@
 #include "suite/app/flags.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
@@ -9,15 +10,13 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <iterator>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
-#include <sstream>
 #include <type_traits>
 #include <utility>
 
+#include "suite/app/campaign_file.h"
 #include "suite/harness/nearest.h"
 
 namespace physinv {
@@ -68,12 +67,18 @@ std::string check_count(const std::string& text) {
 }
 
 /// Is it `name`, or one of several such as "--resume,!--fresh"?
-bool is_switch(const Flag& flag, std::string_view name) {
-  if (!std::holds_alternative<bool*>(flag.to)) return false;
+bool is_named(const Flag& flag, std::string_view name) {
   const auto at = flag.name.find(name);
   const auto end = at + name.size();
-  return at != std::string::npos && (at == 0 || flag.name[at - 1] == '!') &&
+  const auto begins = [&] {
+    return at == 0 || flag.name[at - 1] == '!' || flag.name[at - 1] == ',';
+  };
+  return at != std::string::npos && begins() &&
          (end == flag.name.size() || flag.name[end] == ',');
+}
+
+bool is_switch(const Flag& flag, std::string_view name) {
+  return std::holds_alternative<bool*>(flag.to) && is_named(flag, name);
 }
 
 /// CLI11 takes any number, and what is not positive for no.
@@ -98,76 +103,90 @@ void check_switches(const std::vector<Flag>& flags,
   }
 }
 
-/// What a campaign's file may hold at most.
-constexpr std::size_t kLongestFile = 1 << 16;
-
-std::string text_of(const nlohmann::json& value) {
-  return value.is_string() ? value.get<std::string>() : value.dump();
+/// What is wrong with values that CLI11 would refuse without their line.
+std::string objection(const Flag& flag,
+                      const std::vector<std::string>& values) {
+  if (std::holds_alternative<std::vector<std::string>*>(flag.to)) return "";
+  if (values.size() > 1)
+    return fmt::format("takes one value, not {}", values.size());
+  if (std::holds_alternative<int*>(flag.to)) return check_count(values[0]);
+  if (std::holds_alternative<double*>(flag.to))
+    return check_positive(values[0]);
+  return "";
 }
 
-/// TOML as CLI11 reads it, or JSON: an object of flags without their dashes;
-/// lists for flags that repeat.
-class CampaignFile final : public CLI::ConfigTOML {
+/// The file of --config as CLI11 asks for it. What it holds is checked as the
+/// flags of a command line are, and told with its line.
+class CampaignFile final : public CLI::ConfigBase {
  public:
-  explicit CampaignFile(const std::vector<Flag>& flags) : flags_(flags) {}
+  CampaignFile(std::string path, const std::vector<Flag>& flags)
+      : path_(std::move(path)), flags_(flags) {}
 
-  std::vector<CLI::ConfigItem> from_config(std::istream& input) const override {
-    const std::string text(std::istreambuf_iterator<char>(input), {});
-    const auto begin = text.find_first_not_of(" \t\r\n");
-    const bool is_json = begin != std::string::npos && text[begin] == '{';
-    std::istringstream again(text);
-    auto named =
-        is_json ? from_json(text) : CLI::ConfigTOML::from_config(again);
-    for (const auto& item : named) check(item);
-    return named;
+  std::vector<CLI::ConfigItem> from_config(std::istream&) const override {
+    std::vector<CLI::ConfigItem> found;
+    for (FileFlag& one : read_campaign_file(path_)) {
+      const Flag& flag = known(one);
+      if (flag.type == "LIST")  // 0,1 on a command line
+        one.values = {fmt::format("{}", fmt::join(one.values, ","))};
+      check(flag, one);
+      CLI::ConfigItem item;
+      item.name = one.name;
+      item.inputs = one.values;
+      found.push_back(std::move(item));
+    }
+    return found;
   }
 
  private:
-  static std::vector<CLI::ConfigItem> from_json(const std::string& text) {
-    nlohmann::json all;
-    try {
-      all = nlohmann::json::parse(text);
-    } catch (const nlohmann::json::exception&) {
-      throw UsageError("the file of --config is no JSON");
-    }
-    std::vector<CLI::ConfigItem> items;
-    for (const auto& [name, value] : all.items()) {
-      CLI::ConfigItem item;
-      item.name = name;
-      if (value.is_object() || value.is_null())
-        throw UsageError(fmt::format(
-            "{} in the file of --config is neither text, number, yes or no, "
-            "nor a list of them",
-            name));
-      if (value.is_array()) {
-        for (const auto& one : value) item.inputs.push_back(text_of(one));
-      } else {
-        item.inputs.push_back(text_of(value));
-      }
-      items.push_back(std::move(item));
-    }
-    return items;
+  static std::string dashed(const std::string& name) {
+    return (name.size() == 1 ? "-" : "--") + name;
   }
 
-  void check(const CLI::ConfigItem& item) const {
+  const Flag& known(const FileFlag& one) const {
+    std::vector<std::string> names;
+    for (const Flag& flag : flags_) {
+      if (!flag.name.starts_with('-') || flag.name == "--config") continue;
+      if (is_named(flag, dashed(one.name))) return flag;
+      names.push_back(flag.name.substr(flag.name.find("--") + 2));
+    }
+    const std::string near = nearest_word(names, one.name);
+    throw UsageError(fmt::format(
+        "{}: unknown key '{}'; {}",
+        one.where,
+        one.name,
+        near.empty() ? "flags without their dashes are known, see --help"
+                     : fmt::format("did you mean {}?", near)));
+  }
+
+  void check(const Flag& flag, const FileFlag& one) const {
+    const std::string wrong = objection(flag, one.values);
+    if (!wrong.empty())
+      throw UsageError(fmt::format("{}: {}: {}", one.where, one.name, wrong));
     Arguments as_typed;
-    for (const auto& input : item.inputs)
-      as_typed.push_back(fmt::format("--{}={}", item.name, input));
-    refuse_empty(as_typed);
-    check_switches(flags_, as_typed);
+    for (const auto& value : one.values)
+      as_typed.push_back(fmt::format("{}={}", dashed(one.name), value));
+    try {
+      check_switches(flags_, as_typed);
+    } catch (const UsageError& error) {
+      throw UsageError(fmt::format("{}: {}", one.where, error.what()));
+    }
   }
 
+  std::string path_;
   const std::vector<Flag>& flags_;
 };
 
-/// The file that --config names has to be one, and of a size that is read.
-void check_file(const Arguments& arguments) {
+/// The file that --config names, "" if none. It has to be one, and of a size
+/// that is read.
+std::string config_file(const Arguments& arguments) {
   constexpr std::string_view kFlag = "--config";
+  std::string path;
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     const std::string& a = arguments[i];
+    if (a == "--") break;
     const bool apart = a == kFlag && i + 1 < arguments.size();
     if (!apart && !a.starts_with(std::string(kFlag) + "=")) continue;
-    const std::string path = apart ? arguments[i + 1] : a.substr(9);
+    path = apart ? arguments[i + 1] : a.substr(kFlag.size() + 1);
     std::error_code none;
     if (!std::filesystem::is_regular_file(path, none) ||
         std::filesystem::file_size(path, none) > kLongestFile)
@@ -177,6 +196,7 @@ void check_file(const Arguments& arguments) {
           path,
           kLongestFile));
   }
+  return path;
 }
 
 void add(CLI::App& app, const Flag& flag) {
@@ -235,8 +255,8 @@ bool parse(const std::string& verb,
     return false;
   }
   check_switches(flags, arguments);
-  check_file(arguments);
-  app.config_formatter(std::make_shared<CampaignFile>(flags));
+  app.config_formatter(
+      std::make_shared<CampaignFile>(config_file(arguments), flags));
   try {
     app.parse(Arguments(arguments.rbegin(), arguments.rend()));
   } catch (const CLI::CallForHelp&) {

@@ -17,6 +17,7 @@
 #include "suite/harness/select.h"
 #include "suite/harness/words.h"
 #include "suite/store/file.h"
+#include "suite/store/plain_text.h"
 #include "suite/store/plan.h"
 
 namespace physinv {
@@ -121,7 +122,7 @@ std::vector<Case> listed(std::vector<Case> cases, const std::string& file) {
         file));
   std::map<std::string, Case*> by_name;
   for (Case& c : cases) by_name[c.info.name] = &c;
-  std::istringstream lines(read_file(file));
+  std::istringstream lines(read_plain_text(file));
   std::vector<Case> own;
   std::set<std::string> taken;
   std::string name;

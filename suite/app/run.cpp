@@ -25,6 +25,7 @@
 #include "suite/results/results.h"
 #include "suite/store/catalog.h"
 #include "suite/store/file.h"
+#include "suite/store/plain_text.h"
 #include "suite/store/repetitions.h"
 #include "suite/store/store.h"
 
@@ -107,6 +108,7 @@ struct RunFlags {
   }
 
   nlohmann::json json() const {
+    const std::string text = config.empty() ? "" : read_plain_text(config);
     return {{"profile", selection.profile},
             {"filter", selection.filters},
             {"set", selection.sets},
@@ -118,7 +120,7 @@ struct RunFlags {
             {"time_budget", campaign.time_budget},
             {"resume", campaign.resume},
             {"trace", campaign.trace},
-            {"config", config.empty() ? "" : valid_text(read_file(config))},
+            {"config", valid_text(text)},
             {"out", one_line(campaign.out.string())}};
   }
 };

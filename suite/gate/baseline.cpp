@@ -15,6 +15,7 @@
 #include "suite/harness/revision.h"
 #include "suite/store/checksum.h"
 #include "suite/store/file.h"
+#include "suite/store/plain_text.h"
 
 namespace physinv {
 namespace {
@@ -122,6 +123,14 @@ std::string_view unsealed(std::string_view text, const std::string& where) {
   if (!body.empty() &&
       text.substr(at) == fmt::format("{}{:08x}\n", kSeal, crc32c(body)))
     return body;
+  if (text.starts_with(kTitle) &&
+      text.substr(0, text.find('\n')).ends_with('\r'))
+    throw StoreError(fmt::format(
+        "{} has lines that end with CR and LF, as git makes them with "
+        "core.autocrlf; a baseline ends them with LF ('{} -text' in "
+        ".gitattributes, then check it out anew)",
+        where,
+        where));
   if (text.starts_with(kTitle))
     throw StoreError(
         fmt::format("{} is damaged: it fails its checksum (restore it from "
@@ -215,7 +224,7 @@ Baseline read_baseline(const std::filesystem::path& path) {
   if (!is_file(path))
     throw UnreadableInput(
         fmt::format("there is no baseline '{}'; {}", path.string(), kMake));
-  return parse_baseline(read_file(path), path.string());
+  return parse_baseline(read_plain_text(path), path.string());
 }
 
 }  // namespace physinv

@@ -18,6 +18,7 @@ import tempfile
 import time
 import traceback
 
+import campaigns
 import cluster
 import disks
 import files
@@ -39,6 +40,7 @@ KINDS = {
     "flips": (files.flips, 1000, 32),
     "resealed": (files.reseal, 1000, 32),
     "lines": (lines.lines, 300, 36),
+    "odd TOML": (campaigns.odd_toml, 1000, 24),
     "cluster": (cluster.cluster, len(cluster.ALL), 6),
     "shards": (shards.shards, len(shards.ALL), 24),
     "links": (links.links, len(links.ALL_LINKS), 16),

@@ -16,6 +16,7 @@ void cache(std::string_view bytes);
 void case_list(std::string_view bytes);
 void checkpoint(std::string_view bytes);
 void command_line(std::string_view bytes);
+void config(std::string_view bytes);
 void digest(std::string_view bytes);
 void expected(std::string_view bytes);
 void hdf5(std::string_view bytes);

@@ -3,7 +3,8 @@ folder, which ./bench would build, runs its smoke profile and writes its page.
 
     experiments_test.py SOURCES BUILD [ROW...]
 
-Without ROWs all of the table, where PHYSINV_FULL is set, else status 77."""
+Without ROWs all of the table, whose programs are built first, where PHYSINV_FULL
+is set, else status 77."""
 
 import os
 import pathlib
@@ -32,8 +33,9 @@ def chosen(row, folder):
 
 def program_of(folder):
     name = "physinv-" + folder.replace("/", "-") if folder else "physinv-bench"
-    subprocess.run(["cmake", "--build", BUILD, "--target", name], check=True,
-                   stdout=subprocess.DEVNULL)
+    if not sys.argv[3:]:
+        subprocess.run(["cmake", "--build", BUILD, "--target", name],
+                       check=True, stdout=subprocess.DEVNULL)
     return BUILD / name
 
 

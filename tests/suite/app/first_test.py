@@ -148,7 +148,7 @@ def a_campaign_file(d):
                        ('{"profile": {"a": 1}}', "neither text"),
                        ('{"jobs": 0}', "whole number"),
                        ('{"dry-run": 7}', "neither yes nor no"),
-                       ('{"profile"', "no JSON"), ("profile", "profile")):
+                       ('{"profile"', "no JSON"), ("profile", "no TOML")):
         write("wrong", text)
         expect(2, ["--config=wrong"], d, says)
     expect(2, ["--config=nowhere"], d, "no file of at most")
