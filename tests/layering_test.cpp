@@ -86,7 +86,7 @@ const std::map<std::string, Layer> kLayers{
        "suite/compare",
        "suite/planning",
        "reports"},
-      {"cli11", "benchmark", "json"}}},
+      {"cli11", "benchmark", "json", "toml++"}}},
 };
 
 // "suite/nn/unet.h" -> "suite/nn", "problems/heat/heat.h" -> "problems".
@@ -122,6 +122,7 @@ std::string library_of(const std::string& header) {
       {"fmt/", ""},  // the messages of SUITE_CHECK, so everybody's
       {"nlohmann/", "json"},
       {"CLI/", "cli11"},
+      {"toml++/", "toml++"},
       {"re2/", "re2"},
       {"zlib.h", "zlib"},
       {"benchmark/", "benchmark"},
