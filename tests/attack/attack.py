@@ -40,7 +40,7 @@ KINDS = {
     "flips": (files.flips, 1000, 32),
     "resealed": (files.reseal, 1000, 32),
     "lines": (lines.lines, 300, 36),
-    "odd TOML": (campaigns.odd_toml, 1000, 24),
+    "odd-toml": (campaigns.odd_toml, 1000, 24),
     "cluster": (cluster.cluster, len(cluster.ALL), 6),
     "shards": (shards.shards, len(shards.ALL), 24),
     "links": (links.links, len(links.ALL_LINKS), 16),

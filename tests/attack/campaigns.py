@@ -3,11 +3,15 @@ choose what the same flags on the command line choose, by Python's parsers."""
 
 import json
 import os
-import tomllib
 
 import damage
 import sandbox
 import stores
+
+try:
+    import tomllib
+except ImportError:  # before Python 3.11
+    tomllib = None
 
 CASES = ["--benchmark_list_tests"]
 # Texts that one parser or another would cut, unescape or expand.
@@ -169,6 +173,9 @@ def results_go_where_it_says(attempt):
 
 
 def odd_toml(attempt):
+    if tomllib is None:
+        attempt.skipped = "Python has no tomllib before 3.11"
+        return None
     attempt.hits, rng = 1, attempt.rng
     if attempt.seed % 12 == 11:
         return results_go_where_it_says(attempt)
