@@ -2,12 +2,27 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "suite/store/plan.h"
 
 namespace physinv {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// Did a writer begin there that was killed before its journal, the first of
+/// its files, stood there?
+bool is_begun(const Folder& store) {
+  if (!store.has("lock")) return false;
+  for (const char* file : {"plan.json", "results.json", "repetitions.json"})
+    if (store.has(file)) return false;
+  const auto cases = store.find("cases");
+  const auto names = cases ? cases->names() : std::vector<std::string>();
+  return std::none_of(names.begin(), names.end(), [](const auto& name) {
+    return name.ends_with(".h5");
+  });
+}
 
 }  // namespace
 
@@ -17,8 +32,14 @@ Catalog Catalog::read(const fs::path& directory) {
   Catalog catalog(directory);
   const fs::path path = catalog.journal_path();
   std::error_code error;
-  if (!fs::is_directory(directory, error) ||
-      !Folder(directory).has(path.filename()))
+  const bool there = fs::is_directory(directory, error);
+  if (there && !Folder(directory).has(path.filename()) &&
+      is_begun(Folder(directory))) {
+    catalog.warnings_.push_back(fmt::format(
+        "{}: a run began there, and nothing has finished", directory.string()));
+    return catalog;
+  }
+  if (!there || !Folder(directory).has(path.filename()))
     throw UnreadableInput(fmt::format(
         "{}: no results there (there is no {}; give the --out of a run)",
         directory.string(),

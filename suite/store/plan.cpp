@@ -90,6 +90,7 @@ bool well_formed(const json& plan) {
                   [](const json& j) { return is_table(j, is_text); }) &&
          may_hold(plan, "keys", is_table_of_lists<is_key_text>) &&
          may_hold(plan, "stages", is_table_of_lists<is_stage>) &&
+         may_hold(plan, "results", is_text) &&
          may_hold(plan, "merged", [](const json& j) { return j.is_boolean(); });
 }
 

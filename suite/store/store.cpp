@@ -7,6 +7,7 @@
 
 #include "suite/core/check.h"
 #include "suite/core/hash.h"
+#include "suite/store/json.h"
 #include "suite/store/names.h"
 #include "suite/store/repetitions.h"
 #include "suite/store/results_file.h"
@@ -93,6 +94,7 @@ void keep_what_results_need(StageRecord& r) {
 
 /// Unless it is damaged: then it is written again.
 std::optional<nlohmann::ordered_json> known_results(const fs::path& directory) {
+  if (!Folder(directory).has(kResults)) return {};
   try {
     return read_results(directory);
   } catch (const StoreError&) {
@@ -306,6 +308,10 @@ void Store::set_plan(const std::vector<CaseInfo>& cases,
 }
 
 void Store::set_plan(json plan) {
+  // Until it is written again, results.json tells of what was asked for before.
+  plan.erase("results");
+  if (const auto earlier = known_results(catalog_.directory()))
+    plan["results"] = checksum_of(*earlier);
   catalog_.plan = std::move(plan);
   folder_.write(kPlan, plan_text(catalog_.plan));
 }

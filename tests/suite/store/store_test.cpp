@@ -10,6 +10,9 @@
 #include <nlohmann/json.hpp>
 
 #include "suite/results/results.h"
+#include "suite/store/missing_work.h"
+#include "suite/store/results_file.h"
+#include "suite/store/results_json.h"
 #include "tests/suite/store/store_testing.h"
 
 namespace physinv {
@@ -273,6 +276,45 @@ TEST_F(StoreTest, NoResultsIsSaid) {
         message_of<UnreadableInput>([&] { load_results(directory); });
     EXPECT_TRUE(contains(message, "no results there")) << message;
   }
+}
+
+TEST_F(StoreTest, WhatAKilledWriterBeganIsIncomplete) {
+  Folder(out_.path()).write("lock", "");
+  Folder(out_.path()).make("cases");
+  const Catalog begun = Catalog::read(out_.path());
+  EXPECT_TRUE(begun.entries().empty());
+  EXPECT_TRUE(missing_work(begun, begun.cases()).any());
+  Folder(out_.path()).write("results.json", "{}");
+  EXPECT_THROW(Catalog::read(out_.path()), UnreadableInput)
+      << "the journal of more is lost";
+}
+
+TEST_F(StoreTest, ResultsFromBeforeThePlanAreNotAltered) {
+  const nlohmann::json today = {{"date", "today"}};
+  {
+    Store store(out_.path());
+    store.set_plan({a_}, {{"date", "yesterday"}});
+    for (Index k = 0; k < 2; ++k) append(store, a_, k);
+    store.finish();
+  }
+  const auto checked = [&] { checked_cases(Catalog::read(out_.path())); };
+  Store(out_.path()).set_plan({a_}, today);  // and is killed
+  EXPECT_NO_THROW(checked());
+  Store(out_.path()).set_plan({a_}, {{"date", "tomorrow"}});
+  EXPECT_NO_THROW(checked());
+  auto results = read_results(out_.path());
+  results["context"]["date"] = "never";
+  Folder(out_.path()).write("results.json", results_text(sealed(results)));
+  EXPECT_TRUE(contains(message_of<StoreError>(checked),
+                       "says otherwise of the context"));
+  results["context"]["date"] = "yesterday";
+  Folder(out_.path()).write("results.json", results_text(sealed(results)));
+  EXPECT_NO_THROW(checked());
+  Store store(out_.path());
+  store.set_plan({a_}, today);
+  store.finish();
+  EXPECT_NO_THROW(checked());
+  EXPECT_EQ(read_results(out_.path())["context"]["date"], "today");
 }
 
 TEST_F(StoreTest, FileInsteadOfADirectory) {
