@@ -13,7 +13,9 @@
 #include "suite/core/median.h"
 #include "suite/core/probe.h"
 #include "suite/harness/run_stage.h"
+#include "suite/harness/sources.h"
 #include "suite/results/crowded.h"
+#include "suite/store/storable.h"
 
 namespace physinv {
 namespace {
@@ -42,12 +44,22 @@ Probe::Observer observer(const CaseHooks& hooks) {
   };
 }
 
+/// "file.cpp:12: what" with the file's path from the root of its sources.
+std::string without_folders(const std::string& text) {
+  const auto colon = text.find(':');
+  return colon == std::string::npos
+             ? text
+             : source_name(text.substr(0, colon)) + text.substr(colon);
+}
+
 /// What the current exception says.
 std::string exception_text() {
   try {
     throw;
   } catch (const std::bad_alloc&) {
     return "out of memory";
+  } catch (const ContractError& error) {
+    return without_folders(error.what());
   } catch (const std::exception& error) {
     return error.what();
   } catch (...) {
@@ -90,7 +102,7 @@ StageRecord lost_stage(const Case& c,
                        const std::string& revision) {
   StageRecord r = blank(c, position, revision);
   r.stop = stop;
-  r.message = std::move(message);
+  r.message = bounded_message(std::move(message));
   r.finished = utc_now();
   if (stop == Stop::failed) r.counts = unknown_counts();
   return r;

@@ -1,8 +1,12 @@
 #include "suite/harness/run_stage.h"
 
+#include <fmt/format.h>
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
 #include <utility>
 
 #include "suite/core/clock.h"
@@ -11,7 +15,9 @@
 #include "suite/core/oracle.h"
 #include "suite/core/probe.h"
 #include "suite/harness/keys.h"
+#include "suite/harness/sources.h"
 #include "suite/harness/study.h"
+#include "suite/store/storable.h"
 
 namespace physinv {
 namespace {
@@ -22,19 +28,87 @@ std::uint64_t peak_rss() {
   return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
 }
 
-/// Missing per-example findings get neutral values; wrong sizes are a bug of
-/// the stage.
+[[noreturn]] void refuse(const std::string& what) {
+  throw std::runtime_error(what);
+}
+
+bool is_end(Stop stop) {
+  return stop == Stop::converged || stop == Stop::iterations ||
+         stop == Stop::diverged;
+}
+
+/// Missing per-example findings get neutral values. Throws if the stage says
+/// that it failed, or leaves what is not one for each example.
 void check_outcome(Outcome& out, const Oracle& oracle) {
-  const Index n = oracle.count();
-  SUITE_CHECK(out.x.rows() == oracle.shape().unknowns && out.x.cols() == n,
-              "a stage leaves one estimate per example");
+  const Index n = oracle.count(), unknowns = oracle.shape().unknowns;
+  if (out.stop == Stop::failed || out.stop == Stop::skipped)
+    refuse(out.message.empty() ? "the stage says that it failed" : out.message);
+  if (!is_end(out.stop))
+    refuse(fmt::format("the stage ended as {}, which is no end of a stage",
+                       static_cast<int>(out.stop)));
+  if (out.x.rows() != unknowns || out.x.cols() != n)
+    refuse(
+        fmt::format("the stage left {} estimates of {} unknowns where {} "
+                    "of {} are expected",
+                    out.x.cols(),
+                    out.x.rows(),
+                    n,
+                    unknowns));
   if (out.status.empty())
     out.status.assign(static_cast<std::size_t>(n), Status::maxiter);
+  if (static_cast<Index>(out.status.size()) != n)
+    refuse(fmt::format(
+        "the stage left {} statuses for {} examples", out.status.size(), n));
   if (out.iterations.size() == 0) out.iterations.setZero(n);
   if (out.evaluations.size() == 0) out.evaluations.setZero(n);
-  SUITE_CHECK(static_cast<Index>(out.status.size()) == n &&
-                  out.iterations.size() == n && out.evaluations.size() == n,
-              "a stage leaves one status per example");
+}
+
+/// Of a method from outside iterations and evaluations are what was counted,
+/// its own numbers stand beside them as arrays. Evaluations are the mean of the
+/// examples, as along the curve.
+void take_counts(Outcome& out, const Oracle& oracle, const Probe& probe) {
+  const auto take = [&](const char* name, Vector<double>& own, double counted) {
+    if (own.size() > 0) out.arrays[ArrayKey::own(name)] = own.transpose();
+    own.setConstant(oracle.count(), counted);
+  };
+  const Counts& counts = oracle.counts();
+  const auto all =
+      static_cast<double>(counts[Counter::forward] + counts[Counter::vjp]);
+  take("claimed_iterations",
+       out.iterations,
+       static_cast<double>(probe.iteration()));
+  take("claimed_evaluations",
+       out.evaluations,
+       all / static_cast<double>(oracle.count()));
+}
+
+/// How many iterations beyond its budget a method says that an example took,
+/// where it says anything.
+void note_overrun(Outcome& out, Index budget) {
+  const auto claimed = out.arrays.find(ArrayKey::own("claimed_iterations"));
+  if (claimed == out.arrays.end()) return;
+  const Batch<double> beyond =
+      claimed->second.array() - static_cast<double>(budget);
+  out.arrays[ArrayKey::own("overrun")] =
+      (beyond.array() > 0).select(beyond, 0.0);
+}
+
+/// What the numbers are goes before what the stage says of them: an estimate
+/// that is not finite has no loss, a sample without a finite loss ends as
+/// `nonfinite`, and no stage with such a sample has converged.
+void settle(StageRecord& r, Outcome& out) {
+  for (Index i = 0; i < r.loss.size(); ++i) {
+    if (std::isfinite(r.loss(i)) && !out.x.col(i).allFinite())
+      r.loss(i) = std::numeric_limits<double>::quiet_NaN();
+    if (!std::isfinite(r.loss(i)))
+      out.status[static_cast<std::size_t>(i)] = Status::nonfinite;
+  }
+  const auto finite = r.loss.array().isFinite();
+  if (!finite.any()) {
+    out.stop = Stop::diverged;
+  } else if (out.stop == Stop::converged && !finite.all()) {
+    out.stop = Stop::iterations;
+  }
 }
 
 /// What a stage that failed has run. Who runs a problem itself tells its counts
@@ -52,14 +126,12 @@ Setting setting_for(const Stage& stage, Setting setting) {
 }
 
 /// Every final loss of every method is evaluated by Oracle::measure.
-void fill(StageRecord& r,
-          const Case& c,
-          const Outcome& out,
-          Oracle& oracle,
-          Probe& probe) {
+void fill(
+    StageRecord& r, const Case& c, Outcome& out, Oracle& oracle, Probe& probe) {
   r.counts = oracle.counts();
   r.loss.resize(oracle.count());
   if (!probe.knows_losses(out.x, r.loss)) oracle.measure(out.x, r.loss);
+  settle(r, out);
   const Index setting = c.experiment->setting.recorded;
   const Index recorded =
       setting > 0 ? std::min(setting, oracle.count()) : oracle.count();
@@ -69,8 +141,7 @@ void fill(StageRecord& r,
   r.example_evaluations = out.evaluations;
   r.arrays = out.arrays;
   r.stop = out.stop;
-  r.message = out.message;
-  if (!r.loss.array().isFinite().any()) r.stop = Stop::diverged;
+  r.message = out.message = bounded_message(std::move(out.message));
   r.iterations = probe.iteration();
   r.clocks = probe.clocks();
   r.curve = probe.curve();
@@ -118,7 +189,9 @@ void run_stage(const Case& c,
     out = stage.run(run);
     set_default_float_environment();  // its losses are of no other
     probe.end();
+    if (is_from_outside(stage)) take_counts(out, oracle, probe);
     check_outcome(out, oracle);
+    note_overrun(out, c.stage_iterations[position]);
   } catch (...) {
     set_default_float_environment();
     probe.end();
@@ -128,6 +201,9 @@ void run_stage(const Case& c,
     throw;
   }
   fill(record, c, out, oracle, probe);
+  if (const auto flaw = flaw_of_new(record, c.method->chain.size());
+      !flaw.empty())
+    refuse("the stage left what cannot be stored: " + flaw);
   record.clocks.setup += made - begin;
   if (trace) record.trajectory = hex64(probe.trajectory());
   previous = std::move(out);

@@ -198,6 +198,27 @@ const SourceGraph& project_sources() {
   return kGraph;
 }
 
+bool is_from_outside(const Stage& stage) {
+  const auto roots = stage.sources().roots;
+  if (outsides().empty() || roots.empty()) return false;
+  const std::string& given = roots.front();
+  const std::string path = project_sources().find(given);
+  return std::any_of(
+      outsides().begin(), outsides().end(), [&](const Outside& o) {
+        return given.starts_with(fmt::format("{}/", o.root)) ||
+               path.starts_with(fmt::format("{}/", o.project));
+      });
+}
+
+std::string source_name(const std::string& path) {
+  if (!path.starts_with('/')) return path;
+  for (const Outside& o : outsides())
+    if (const auto root = fmt::format("{}/", o.root); path.starts_with(root))
+      return fmt::format("{}/{}", o.project, path.substr(root.size()));
+  const std::string found = project_sources().find(path);
+  return found.empty() ? path.substr(path.rfind('/') + 1) : found;
+}
+
 std::vector<Sources> chain_sources(const Experiment& experiment,
                                    const Method& method,
                                    std::size_t position) {

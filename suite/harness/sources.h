@@ -76,6 +76,13 @@ class SourceGraph {
 /// Of this build.
 const SourceGraph& project_sources();
 
+/// Does a stage stand in a program or plug-in on the installed suite?
+bool is_from_outside(const Stage& stage);
+
+/// A file as a compiler names it, by its path from the root of the suite's
+/// sources or of the project that it is of; of others, its name alone.
+std::string source_name(const std::string& path);
+
 /// What the stages of a method up to `position` come from, each its problem,
 /// the networks that it may use, and what it names itself.
 std::vector<Sources> chain_sources(const Experiment& experiment,

@@ -65,6 +65,22 @@ Real evaluations(const TidyRow& r) {
   return counted(r, r.record->example_evaluations);
 }
 
+/// What a method from outside says of its work, beside what was counted.
+Real beside(const TidyRow& r, std::string_view array) {
+  if (!r.has_numbers()) return {};
+  const auto at = r.record->arrays.find(ArrayKey::own(array));
+  const bool any = at != r.record->arrays.end() &&
+                   at->second.size() == r.record->loss.size();
+  return any ? finite(at->second.reshaped()(*r.example)) : Real();
+}
+Real claimed_iterations(const TidyRow& r) {
+  return beside(r, "claimed_iterations");
+}
+Real claimed_evaluations(const TidyRow& r) {
+  return beside(r, "claimed_evaluations");
+}
+Real overrun(const TidyRow& r) { return beside(r, "overrun"); }
+
 template <double Seconds::*clock>
 Real solving(const TidyRow& r) {
   return r.has_numbers() ? finite(solving_time(*r.record).*clock) : Real();
@@ -92,6 +108,9 @@ constexpr TidyColumn kColumns[] = {
     {"status", [](const TidyRow& r) { return std::string(r.status()); }},
     {"iterations", iterations},
     {"evaluations", evaluations},
+    {"claimed_iterations", claimed_iterations},
+    {"claimed_evaluations", claimed_evaluations},
+    {"overrun", overrun},
     {"seconds", solving<&Seconds::wall>},
     {"cpu_seconds", solving<&Seconds::cpu>},
     {"threads", threads},

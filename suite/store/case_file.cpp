@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "suite/core/dataset.h"
 #include "suite/store/checksum.h"
+#include "suite/store/storable.h"
 
 namespace physinv {
 namespace {
@@ -78,58 +78,6 @@ Status status_of(std::int32_t code) {
 
 std::string shape_text(const Batch<double>& b) {
   return fmt::format("{} x {}", b.cols(), b.rows());
-}
-
-/// Arrays that are read together have one length.
-void require_count(Index count, Index expected, const std::string& name) {
-  if (count != expected)
-    throw StoreError(fmt::format(
-        "array {} has {} entries where {} are expected (restore the file)",
-        name,
-        count,
-        expected));
-}
-
-void require_fitting(const StageRecord& r, const std::string& group) {
-  const Index n = r.loss.size(), points = r.curve.points();
-  const auto name = [&](const char* array) { return group + "/" + array; };
-  require_count(static_cast<Index>(r.status.size()), n, name("status"));
-  require_count(r.example_iterations.size(), n, name("iterations"));
-  require_count(r.example_evaluations.size(), n, name("evaluations"));
-  if (r.x.cols() > n) require_count(r.x.cols(), n, name("x"));
-  const auto times = static_cast<Index>(r.curve.seconds.size());
-  const auto work = static_cast<Index>(r.curve.evaluations.size());
-  require_count(times, points, name("curve/seconds"));
-  require_count(work, points, name("curve/evaluations"));
-  require_count(r.curve.loss.cols(), points, name("curve/loss"));
-  require_count(r.curve.x.cols(), points, name("curve/x"));
-}
-
-/// As case_file.h says.
-void require_finite(const StageRecord& r, const std::string& group) {
-  const auto require = [&](bool good, const char* array) {
-    if (!good)
-      throw StoreError(fmt::format(
-          "array {}/{} holds what is no number of a stage that ended as '{}' "
-          "(restore the file)",
-          group,
-          array,
-          to_string(r.stop)));
-  };
-  const auto all = [](const auto& list) {
-    return std::all_of(list.begin(), list.end(), [](double v) {
-      return std::isfinite(v) && v >= 0;
-    });
-  };
-  require(all(r.example_iterations), "iterations");
-  require(all(r.example_evaluations), "evaluations");
-  require(all(r.curve.iteration), "curve/iteration");
-  require(all(r.curve.seconds), "curve/seconds");
-  require(all(r.curve.evaluations), "curve/evaluations");
-  if (r.stop == Stop::converged) require(r.loss.allFinite(), "loss");
-  if (r.stop == Stop::diverged) return;
-  for (Index i = 0; i < r.x.cols(); ++i)
-    require(!std::isfinite(r.loss(i)) || r.x.col(i).allFinite(), "x");
 }
 
 /// Whole, and finite.
@@ -464,13 +412,14 @@ void CaseFile::read_stage(StageRecord& r, const std::string& hash) const {
     const auto stages = hdf5::open_group(file_, "stages");
     const auto group = hdf5::open_group(stages, group_name(r));
     read_arrays(group, r);
-    require_fitting(r, "stages/" + group_name(r));
+    if (const auto flaw = flaw_of(r); !flaw.empty())
+      throw StoreError(fmt::format(
+          "array stages/{}/{} (restore the file)", group_name(r), flaw));
     if (hex64(arrays_hash(r)) != hash)
       throw StoreError(fmt::format(
           "stage {} does not have the hash of its journal line (delete the "
           "file to run the stages of this case again)",
           r.stage));
-    if (has_result(r)) require_finite(r, "stages/" + group_name(r));
   });
 }
 

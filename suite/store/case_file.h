@@ -14,17 +14,8 @@
 /// zero. Both are read, and written anew once a stage is added.
 ///
 /// What is read back has the types, shapes and hashes that it was written
-/// with, and is finite where it must be:
-///
-///   data                               all of it
-///   iterations, evaluations; the       of every stage
-///   curve's iteration, seconds,
-///   evaluations
-///   x and loss, whole                  of a stage that converged
-///   x of an example of finite loss     of one that ran its iterations
-///
-/// Losses of a stage that ran its iterations or diverged, losses and unknowns
-/// along curves, and arrays may hold anything.
+/// with. All of the data is finite, and a stage's arrays are what storable.h
+/// says.
 ///
 /// Sixteen bytes after the end of the HDF5
 /// data hold a checksum of the whole file; HDF5 tools do not mind them.

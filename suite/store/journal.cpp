@@ -259,6 +259,11 @@ void Journal::append(std::span<const JournalEntry> entries) {
   require_there();
   std::string lines;
   for (const JournalEntry& entry : entries) lines += to_line(to_json(entry));
+  if (size_ + lines.size() > kLargestData)
+    throw StoreError(fmt::format(
+        "{} would be larger than what is read, {} bytes (choose another --out)",
+        path_.string(),
+        kLargestData));
   try {
     write_all(fd_, lines, path_);
     sync(fd_, path_);

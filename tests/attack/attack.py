@@ -4,6 +4,8 @@
   attack.py PROGRAM                      all of it, half an hour
   attack.py PROGRAM --short              a part of each kind, a minute
   attack.py PROGRAM --only KIND          one kind
+  attack.py PROGRAM --fake FAKE          also what stages may leave, by the
+                                         program over the fake experiment
   attack.py PROGRAM --only KIND --seed N one attempt, told in full
 
 Attempt N of a kind is always the same but for the moments of kills. Seeds that
@@ -18,6 +20,7 @@ import tempfile
 import time
 import traceback
 
+import between
 import campaigns
 import cluster
 import disks
@@ -26,6 +29,7 @@ import kills
 import lines
 import links
 import locks
+import returns
 import shards
 import special
 import stores
@@ -35,6 +39,8 @@ from world import Attempt, World, say
 KINDS = {
     "kills": (kills.kills, 300, 6),
     "signals": (kills.signals, 100, 4),
+    "between": (between.between, 350, 10),
+    "returns": (returns.returns, 300, 12),
     "disks": (disks.disks, 80, 5),
     "locks": (locks.locks, 15, 2),
     "flips": (files.flips, 1000, 32),
@@ -147,11 +153,13 @@ def main():
     parser.add_argument("--short", action="store_true")
     parser.add_argument("--only", choices=KINDS, action="append")
     parser.add_argument("--seed", type=int)
+    parser.add_argument("--fake", default="",
+                        help="physinv-bench-fake, for `returns`")
     parser.add_argument("--count", type=int, help="attempts of each kind")
     arguments = parser.parse_args()
     rows = {}
     with tempfile.TemporaryDirectory(prefix="attack-") as root:
-        world = World(arguments.program, root, arguments.short)
+        world = World(arguments.program, root, arguments.short, arguments.fake)
         stores.make(world)
         for kind in arguments.only or KINDS:
             rows[kind] = attack(world, kind, arguments)

@@ -34,9 +34,10 @@ def results(store):
 
 
 class World:
-    def __init__(self, program, root, short=False):
+    def __init__(self, program, root, short=False, fake_program=""):
         self.short = short
         self.program = os.path.abspath(program)
+        self.fake_program = fake_program and os.path.abspath(fake_program)
         self.scratch, self.golden, self.bin, box = (
             os.path.join(root, name)
             for name in ("scratch", "golden", "bin", "sandbox"))
@@ -52,8 +53,9 @@ class World:
                "HOME": self.sandbox.home, "CI": "1", "TMPDIR": self.scratch}
         return {**own, **more}
 
-    def start(self, arguments, cwd, env=None, **kwargs):
-        return Running([self.program, *arguments], self.scratch, cwd=cwd,
+    def start(self, arguments, cwd, env=None, program=None, **kwargs):
+        program = program or self.program
+        return Running([program, *arguments], self.scratch, cwd=cwd,
                        env=self.environment(cwd, env), **kwargs)
 
     def fake(self, name, script):

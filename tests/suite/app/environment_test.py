@@ -110,7 +110,8 @@ def huge_numbers(d):
 def own_help(d):
     """What the help says can be done does something."""
     text = " ".join(run("run", "--help").stdout.split())
-    check("smoke, quick, bad, slow, kernel; default: quick" in text, "profiles")
+    check("smoke, quick, bad, hostile, slow, kernel; default: quick" in text,
+          "profiles")
     example = re.search(r"\((--filter=\S+)\)", text).group(1)
     everything = len(json.loads(run("list", "--json").stdout))
     p = run("list", "--json", example)

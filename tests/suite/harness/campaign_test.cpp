@@ -3,13 +3,19 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 
 #include "suite/harness/registry.h"
 #include "suite/harness/select.h"
+#include "suite/harness/verify.h"
 #include "suite/results/results.h"
+#include "suite/results/tidy.h"
 #include "suite/store/catalog.h"
+#include "suite/store/missing_work.h"
+#include "suite/store/results_file.h"
+#include "suite/store/storable.h"
 #include "tests/suite/harness/fake_experiment.h"
 
 namespace physinv {
@@ -160,6 +166,41 @@ TEST_F(CampaignTest, FailuresDoNotStopTheOthers) {
   const auto again = run("bad", {.out = root_ / "a"});
   EXPECT_EQ(again.stages_reused, 1u);
   EXPECT_EQ(again.failed.size(), 4u);
+}
+
+/// Whatever one stage leaves, it is stored or fails alone, and every reader
+/// reads what is there.
+TEST_F(CampaignTest, WhateverAStageLeavesTheStoreIsRead) {
+  std::size_t failed = 0, kept = 0;
+  for (int way = 0; way < 40; ++way) {
+    SCOPED_TRACE(way);
+    setenv("PHYSINV_FAKE_RETURN", std::to_string(way).c_str(), 1);
+    const fs::path out = root_ / std::to_string(way);
+    const auto result = run("hostile", {.out = out});
+    ASSERT_LE(result.failed.size(), 1U);
+    failed += result.failed.size();
+    const Catalog catalog = Catalog::read(out);
+    const auto cases = checked_cases(catalog);
+    ASSERT_EQ(cases.size(), 2U);
+    const StageRecord& left = cases[0].stages.at(0);
+    EXPECT_LE(left.message.size(), kLongestMessage + 100);
+    for (Index i = 0; has_result(left) && i < left.loss.size(); ++i) {
+      if (std::isfinite(left.loss(i))) continue;
+      EXPECT_EQ(left.status[static_cast<std::size_t>(i)], Status::nonfinite);
+    }
+    kept += has_result(left) ? 1 : 0;
+    const auto lacks = missing_work(catalog, cases);
+    EXPECT_EQ(lacks.failed.size(), result.failed.size());
+    EXPECT_FALSE(tidy_csv(catalog, cases, lacks).empty());
+    EXPECT_NO_THROW(read_results(out));
+    const auto report = verify_results(Results(cases), registry_);
+    EXPECT_TRUE(report.mismatches.empty()) << report.mismatches.front();
+    // Other cases go on in the same store.
+    if (way % 8 > 0) continue;
+    EXPECT_TRUE(run("smoke", {.out = out}).failed.empty());
+  }
+  EXPECT_GT(failed, 8U);
+  EXPECT_GT(kept, 8U);
 }
 
 TEST_F(CampaignTest, BudgetActsBetweenCases) {

@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <limits>
 #include <new>
+#include <random>
 #include <stdexcept>
 #include <string_view>
 #include <thread>
@@ -282,6 +283,7 @@ class Ends final : public Base {
   Outcome run(StageRun& run) const override {
     if (how_ == "throws") throw std::runtime_error("no solution today");
     if (how_ == "exhaust") throw std::bad_alloc();
+    SUITE_CHECK(how_ != "breach", "a planted breach");
     if (how_ == "die") crash();
     if (how_ == "sleep") nap(60);
     if (how_ == "floats") {
@@ -301,6 +303,105 @@ class Ends final : public Base {
 
  private:
   std::string how_;
+};
+
+/// Ends in one of very many ways, told by the number in PHYSINV_FAKE_RETURN:
+/// what a stage may leave, and what none should.
+class Hostile final : public Base {
+ public:
+  Hostile() : Base("solve", Needs::forward) {}
+  Options options() const override { return {{"way", way()}}; }
+  Outcome run(StageRun& run) const override {
+    std::mt19937_64 random(std::strtoull(way().c_str(), nullptr, 10));
+    const auto pick = [&](std::size_t count) { return random() % count; };
+    // Every other way can be stored.
+    const bool breaks = pick(2) == 0;
+    const auto odd = [&](std::size_t rarely) {
+      return pick(rarely) == 0 && breaks;
+    };
+    const Index n = run.oracle.count();
+    Batch<double> x = run.oracle.start();
+    for (std::size_t k = pick(5); k-- > 0;)
+      x(static_cast<Index>(pick(2)), static_cast<Index>(pick(4))) =
+          number(pick(kNumbers));
+    if (pick(3) == 0) run.oracle.add(Counter::forward, -7);
+    if (pick(3) == 0)
+      run.probe.accept(Index{1}, static_cast<Index>(pick(1000)), x.data(), 0);
+    else if (pick(3) > 0)
+      while (run.probe.proceed([&](BatchOut<double> out) { out = x; })) {
+      }
+    if (odd(8)) throw std::runtime_error(text(pick(kTexts)));
+    if (odd(12)) throw 7;
+    Outcome out;
+    const Index others[][2] = {{2, n + 1}, {2, n - 1}, {3, n}, {0, 0}, {n, 2}};
+    const std::size_t shape = odd(4) ? pick(5) : 5;
+    out.x = shape < 5 ? Batch<double>(Batch<double>::Zero(others[shape][0],
+                                                          others[shape][1]))
+                      : x;
+    const auto length = [&] { return pick(10) == 0 ? 0 : odd(8) ? n + 1 : n; };
+    for (Index i = length(); i-- > 0;)
+      out.status.push_back(
+          static_cast<Status>(odd(20) ? 4 + pick(250) : pick(4)));
+    for (Vector<double>* counts : {&out.iterations, &out.evaluations}) {
+      counts->setZero(length());
+      for (double& count : *counts)
+        if (odd(4)) count = number(pick(kNumbers));
+    }
+    out.stop = static_cast<Stop>(odd(8) ? pick(256) : pick(3));
+    out.message = text(pick(kTexts));
+    for (std::size_t k = pick(3); k-- > 0;)
+      out.arrays[ArrayKey::own(name(odd(4) ? pick(kNames) : pick(6)))]
+          .setConstant(static_cast<Index>(pick(3)),
+                       static_cast<Index>(pick(3)),
+                       number(pick(kNumbers)));
+    if (pick(2) == 0) out.bytes = ~std::size_t{0};
+    return out;
+  }
+
+ private:
+  static std::string way() {
+    const char* text = std::getenv("PHYSINV_FAKE_RETURN");
+    return text == nullptr ? "0" : text;
+  }
+  static constexpr std::size_t kNumbers = 9, kTexts = 6, kNames = 12;
+  static double number(std::size_t which) {
+    using Limits = std::numeric_limits<double>;
+    const double all[kNumbers] = {Limits::quiet_NaN(),
+                                  Limits::infinity(),
+                                  -Limits::infinity(),
+                                  Limits::max(),
+                                  Limits::denorm_min(),
+                                  -1,
+                                  -0.0,
+                                  0.5,
+                                  1e18};
+    return all[which];
+  }
+  static std::string text(std::size_t which) {
+    const std::string all[kTexts] = {
+        "",
+        "a word",
+        std::string(3 << 20, 'm'),
+        std::string("nul \0 and \xff\xfe", 12),
+        "two\nlines, \033[31mred \"quoted\" <b>| `x`",
+        "/nowhere/file.cpp:3: \xed\xa0\x80"};
+    return all[which];
+  }
+  static std::string name(std::size_t which) {
+    const std::string all[kNames] = {"mine",
+                                     "metrics",
+                                     "status",
+                                     "with blanks",
+                                     "..",
+                                     std::string(900, 'n'),
+                                     "",
+                                     "a/b",
+                                     ".",
+                                     std::string("n\0l", 3),
+                                     "\xff",
+                                     std::string(2000, 'n')};
+    return all[which];
+  }
 };
 
 Method chain(std::string id, std::vector<std::shared_ptr<const Stage>> stages) {
@@ -352,6 +453,8 @@ Experiment experiment() {
                ends("floats"),
                ends("give-up"),
                ends("give-up-alone"),
+               ends("breach"),
+               chain("hostile", {std::make_shared<Hostile>()}),
                chain("broken",
                      {std::make_shared<Ends>("throws"),
                       std::make_shared<Descend>("refine", 0.1)})};
@@ -362,6 +465,7 @@ Experiment experiment() {
       {"quick", {{good, {4, 9}, {0, 1, 2}, 40}}},
       {"bad",
        {{{"throws", "descend", "exhaust", "die", "broken"}, {4}, {0}, 10}}},
+      {"hostile", {{{"hostile", "descend"}, {4}, {0}, 10}}},
       {"slow", {{{"descend", "sleep"}, {4}, {0, 1}, 10}}},
       {"kernel", {{{"descend"}, {512}, {0}, 200}}}};
   e.report = report;

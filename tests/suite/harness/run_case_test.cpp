@@ -4,10 +4,16 @@
 #include <xmmintrin.h>
 
 #include <cfenv>
+#include <cmath>
 #include <filesystem>
+#include <limits>
 
+#include "suite/core/oracle.h"
+#include "suite/core/probe.h"
 #include "suite/harness/keys.h"
+#include "suite/harness/outside.h"
 #include "suite/harness/registry.h"
+#include "suite/harness/sources.h"
 #include "suite/harness/verify.h"
 #include "tests/suite/harness/fake_experiment.h"
 
@@ -18,6 +24,36 @@ namespace {
 Numerics all_from(std::string build) {
   return [=](const Case&, std::size_t) { return build; };
 }
+
+/// A project that builds on the suite, with one source.
+constexpr SourceFile kStranger[] = {{"stranger/claims.cpp", "0", ""}};
+/// A method of it that says what it likes of its work.
+class Claims final : public Stage {
+ public:
+  Claims() : Stage("/home/stranger/claims.cpp") {}
+  std::string name() const override { return "solve"; }
+  Needs needs() const override { return Needs::forward; }
+  Options options() const override { return {}; }
+  Index default_iterations() const override { return 12; }
+  double operations(const CaseSize&) const override { return 1; }
+  Outcome run(StageRun& run) const override {
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    const Index n = run.oracle.count();
+    Batch<double> x = run.oracle.start();
+    Vector<double> loss(n);
+    while (run.probe.proceed([&](BatchOut<double> out) { out = x; }))
+      run.oracle.evaluate<double>(run.oracle.all(), x, loss);
+    x(0, 2) = kNan;
+    Outcome out;
+    out.x = x;
+    out.status.assign(static_cast<std::size_t>(n), Status::gtol);
+    out.iterations.setConstant(n, 15);
+    out.iterations(0) = kNan;
+    out.evaluations.setConstant(n, -1);
+    out.stop = Stop::converged;
+    return out;
+  }
+};
 
 class RunCase : public ::testing::Test {
  protected:
@@ -121,6 +157,48 @@ TEST_F(RunCase, ChainsWithTheSameBeginningShareIt) {
   const auto walk = run(make("walk")), stroll = run(make("stroll"));
   expect_same(walk[0], stroll[0]);
   EXPECT_NE(walk[1].key, stroll[1].key);
+}
+
+TEST_F(RunCase, ABreachIsNamedFromTheRootOfTheSources) {
+  const std::string message = run(make("breach"))[0].message;
+  EXPECT_TRUE(message.starts_with("tests/suite/harness/fake_experiment.cpp:"))
+      << message;
+}
+
+TEST_F(RunCase, CountsOfAMethodFromOutsideAreTheOracles) {
+  register_outside({.name = "stranger",
+                    .project = "stranger",
+                    .root = "/home/stranger",
+                    .data = {},
+                    .build = {},
+                    .plugin = true,
+                    .sources = kStranger,
+                    .computing = {}});
+  Case c = make("descend");
+  auto method = std::make_shared<Method>(
+      Method{.id = "claims", .chain = {std::make_shared<Claims>()}});
+  c.method = method.get();
+  c.info.stages = {"solve"};
+  const auto records = run(c);
+  ASSERT_EQ(records.size(), 1U);
+  const StageRecord& r = records[0];
+  ASSERT_EQ(r.message, "");
+  const auto list = [&](const char* name) {
+    return r.arrays.at(ArrayKey::own(name)).reshaped();
+  };
+  EXPECT_TRUE((r.example_iterations.array() == 12).all());
+  EXPECT_TRUE((r.example_evaluations.array() == 12).all());
+  EXPECT_EQ(list("claimed_iterations")(1), 15);
+  EXPECT_TRUE(std::isnan(list("claimed_iterations")(0)));
+  EXPECT_EQ(list("claimed_evaluations")(4), -1);
+  EXPECT_EQ(list("overrun")(1), 3);
+  EXPECT_EQ(list("overrun")(0), 0);
+  EXPECT_EQ(r.status[2], Status::nonfinite) << "its loss is not finite";
+  EXPECT_EQ(r.stop, Stop::iterations) << "one has no loss";
+  EXPECT_EQ(source_name("/home/stranger/src/a.h"), "stranger/src/a.h");
+  EXPECT_EQ(source_name("/home/other/src/a.h"), "a.h");
+  EXPECT_EQ(source_name("/usr/include/physinv/suite/core/oracle.h"),
+            "suite/core/oracle.h");
 }
 
 TEST_F(RunCase, FailuresAreRecorded) {

@@ -1,0 +1,148 @@
+#include "suite/store/storable.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+
+#include "suite/store/file.h"
+
+namespace physinv {
+namespace {
+
+constexpr std::size_t kLongestName = 1000;
+
+/// Arrays that are read together have one length.
+std::string wrong_count(Index count, Index expected, const char* name) {
+  return count == expected
+             ? ""
+             : fmt::format("{} has {} entries where {} are expected",
+                           name,
+                           count,
+                           expected);
+}
+
+std::string wrong_counts(const StageRecord& r) {
+  const Index n = r.loss.size(), points = r.curve.points();
+  const auto size = [](const auto& list) {
+    return static_cast<Index>(list.size());
+  };
+  for (const auto& wrong :
+       {wrong_count(size(r.status), n, "status"),
+        wrong_count(r.example_iterations.size(), n, "iterations"),
+        wrong_count(r.example_evaluations.size(), n, "evaluations"),
+        wrong_count(std::max(r.x.cols(), n), n, "x"),
+        wrong_count(size(r.curve.seconds), points, "curve/seconds"),
+        wrong_count(size(r.curve.evaluations), points, "curve/evaluations"),
+        wrong_count(r.curve.loss.cols(), points, "curve/loss"),
+        wrong_count(r.curve.x.cols(), points, "curve/x")})
+    if (!wrong.empty()) return wrong;
+  return "";
+}
+
+template <class List>
+bool are_counts(const List& list) {
+  return std::all_of(list.begin(), list.end(), [](double v) {
+    return std::isfinite(v) && v >= 0;
+  });
+}
+
+bool has_estimates(const StageRecord& r) {
+  if (r.stop == Stop::diverged) return true;
+  for (Index i = 0; i < r.x.cols(); ++i)
+    if (std::isfinite(r.loss(i)) && !r.x.col(i).allFinite()) return false;
+  return true;
+}
+
+/// The first array that holds what is no number where there must be one.
+std::string wrong_numbers(const StageRecord& r) {
+  const bool converged = r.stop == Stop::converged;
+  const std::pair<const char*, bool> arrays[] = {
+      {"iterations", are_counts(r.example_iterations)},
+      {"evaluations", are_counts(r.example_evaluations)},
+      {"curve/iteration", are_counts(r.curve.iteration)},
+      {"curve/seconds", are_counts(r.curve.seconds)},
+      {"curve/evaluations", are_counts(r.curve.evaluations)},
+      {"loss", !converged || r.loss.allFinite()},
+      {"x", has_estimates(r)}};
+  for (const auto& [name, good] : arrays)
+    if (!good)
+      return fmt::format(
+          "{} holds what is no number of a stage that ended as '{}'",
+          name,
+          to_string(r.stop));
+  return "";
+}
+
+bool is_utf8(const std::string& text) {
+  try {
+    static_cast<void>(nlohmann::json(text).dump());
+    return true;
+  } catch (const nlohmann::json::exception&) {
+    return false;
+  }
+}
+
+bool is_array_name(const std::string& name) {
+  return !name.empty() && name.size() <= kLongestName && name != "." &&
+         std::none_of(name.begin(),
+                      name.end(),
+                      [](unsigned char c) {
+                        return c < 0x20 || c == 0x7f || c == '/';
+                      }) &&
+         is_utf8(name);
+}
+
+std::string wrong_names(const StageRecord& r) {
+  for (const auto& [name, array] : r.arrays)
+    if (!is_array_name(name))
+      return fmt::format(
+          "arrays has a name that no file can have, {}",
+          nlohmann::json(name.substr(0, 80))
+              .dump(-1, ' ', true, nlohmann::json::error_handler_t::replace));
+  return "";
+}
+
+std::string wrong_status(const StageRecord& r) {
+  for (const Status s : r.status)
+    if (s > Status::nonfinite)
+      return fmt::format("status holds {}, which is no status",
+                         static_cast<int>(s));
+  return "";
+}
+
+std::uint64_t array_bytes(const StageRecord& r) {
+  Index numbers = r.x.size() + 4 * r.loss.size() + 3 * r.curve.points() +
+                  r.curve.loss.size() + r.curve.x.size();
+  for (const auto& [name, array] : r.arrays) numbers += array.size();
+  return static_cast<std::uint64_t>(numbers) * sizeof(double);
+}
+
+}  // namespace
+
+std::string flaw_of(const StageRecord& r) {
+  for (auto* rule : {wrong_counts, wrong_status, wrong_names})
+    if (auto wrong = rule(r); !wrong.empty()) return wrong;
+  return has_result(r) ? wrong_numbers(r) : "";
+}
+
+std::string flaw_of_new(const StageRecord& r, std::size_t stages) {
+  const std::uint64_t room = kLargestData / (1 + stages);
+  if (auto wrong = flaw_of(r); !wrong.empty()) return wrong;
+  return array_bytes(r) <= room
+             ? ""
+             : fmt::format("arrays have {} bytes where {} can be stored",
+                           array_bytes(r),
+                           room);
+}
+
+std::string bounded_message(std::string message) {
+  if (message.size() <= kLongestMessage) return message;
+  const std::size_t left_out = message.size() - kLongestMessage;
+  message.resize(kLongestMessage);
+  return message + fmt::format(" ... ({} bytes left out)", left_out);
+}
+
+}  // namespace physinv
