@@ -16,6 +16,7 @@
 #include "suite/harness/columns.h"
 #include "suite/harness/output.h"
 #include "suite/harness/registry.h"
+#include "suite/app/speeds.h"
 #include "suite/planning/forecast.h"
 #include "suite/results/shortened.h"
 #include "suite/results/verdict_words.h"
@@ -139,8 +140,7 @@ std::string seconds_text(const RunEnd& end, const std::string& profile) {
   std::erase_if(cases, [&](const Case& c) {
     return !end.experiments.contains(c.info.experiment);
   });
-  return about_text(
-      cases, end.jobs, end.screen.terminal && std::isinf(end.until));
+  return about_text(cases, end.jobs, durations_file());
 }
 
 std::string undecided_text(const RunEnd& end,

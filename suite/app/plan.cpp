@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -20,6 +21,15 @@ namespace physinv {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// "12 s", "12 s, 3 not known" or "not known".
+std::string time_text(const std::size_t cases,
+                      const std::size_t unknown,
+                      double seconds) {
+  if (unknown == 0) return duration_text(seconds);
+  if (unknown == cases) return "not known";
+  return fmt::format("{}, {} not known", duration_text(seconds), unknown);
+}
 
 std::string bytes_text(double bytes) {
   return bytes < 1e6   ? fmt::format("{:.0f} kB", bytes / 1e3)
@@ -56,11 +66,16 @@ std::vector<Cost> measured(const std::vector<Case>& cases,
   return costs;
 }
 
+/// Of what is known.
 struct Sum {
-  double seconds = 0, memory = 0, disk = 0;
+  double seconds = 0, least = 0, most = 0, memory = 0, disk = 0;
+  std::size_t unknown = 0;
 
   void add(const Cost& c) {
-    seconds += c.seconds;
+    if (std::isfinite(c.seconds))
+      seconds += c.seconds, least += c.least, most += c.most;
+    else
+      ++unknown;
     memory = std::max(memory, c.memory);
     disk += c.disk;
   }
@@ -94,7 +109,9 @@ std::vector<Line> lines_of(const std::vector<Case>& cases,
     Line& line = lines[at->second];
     ++line.cases;
     line.sum.add(costs[i]);
-    if (beside.empty() || beside[i].stage_seconds.empty()) continue;
+    if (beside.empty() || beside[i].stage_seconds.empty() ||
+        !std::isfinite(costs[i].seconds))
+      continue;
     ++line.compared;
     line.predicted += costs[i].seconds;
     line.measured += beside[i].seconds;
@@ -107,11 +124,12 @@ void print_table(const std::vector<Line>& lines, bool compares) {
   if (compares) heads.insert(heads.end(), {"measured", "factor"});
   Columns table(heads);
   for (const Line& line : lines) {
-    std::vector<std::string> row = {line.name,
-                                    std::to_string(line.cases),
-                                    duration_text(line.sum.seconds),
-                                    bytes_text(line.sum.memory),
-                                    bytes_text(line.sum.disk)};
+    std::vector<std::string> row = {
+        line.name,
+        std::to_string(line.cases),
+        time_text(line.cases, line.sum.unknown, line.sum.seconds),
+        bytes_text(line.sum.memory),
+        bytes_text(line.sum.disk)};
     if (compares && line.compared > 0)
       row.insert(row.end(),
                  {duration_text(line.measured),
@@ -121,18 +139,47 @@ void print_table(const std::vector<Line>& lines, bool compares) {
   fmt::print("{}", table.text(Screen::of(stdout).room()));
 }
 
-void print_sum(const std::vector<Cost>& costs) {
+/// Those whose time is known.
+std::vector<Cost> known_of(const std::vector<Cost>& costs) {
+  std::vector<Cost> known;
+  for (const Cost& c : costs)
+    if (std::isfinite(c.seconds)) known.push_back(c);
+  return known;
+}
+
+void print_sum(const std::vector<Case>& cases, const std::vector<Cost>& costs) {
   const Sum sum = sum_of(costs);
   const int cores = available_cores();
-  fmt::print(
-      "{} cases: {} of one core, {} with {} workers; {} on disk, at "
-      "most {} per worker\n",
-      costs.size(),
-      duration_text(sum.seconds),
-      duration_text(seconds_with(costs, cores)),
-      cores,
-      bytes_text(sum.disk),
-      bytes_text(sum.memory));
+  const auto known = known_of(costs);
+  const std::string time =
+      known.empty() ? "time not known, --exact measures"
+                    : fmt::format(
+                          "{} of one core (from {} to {}), {} with {} "
+                          "workers",
+                          duration_text(sum.seconds),
+                          duration_text(sum.least),
+                          duration_text(sum.most),
+                          duration_text(seconds_with(known, cores)),
+                          cores);
+  fmt::print("{} cases: {}; {} on disk, at most {} per worker\n",
+             costs.size(),
+             time,
+             bytes_text(sum.disk),
+             bytes_text(sum.memory));
+  if (known.empty()) return;
+  std::size_t longest = 0;
+  for (std::size_t i = 1; i < costs.size(); ++i)
+    if (!std::isfinite(costs[longest].seconds) ||
+        costs[i].seconds > costs[longest].seconds)
+      longest = i;
+  fmt::print("the longest of these cases, which bounds it: {}, {}\n",
+             cases[longest].info.name,
+             duration_text(costs[longest].seconds));
+  if (sum.unknown > 0)
+    fmt::print(
+        "of {} cases the time is not known and not in the sum; --exact "
+        "measures\n",
+        sum.unknown);
 }
 
 /// How close the prediction was, case by case.
@@ -141,6 +188,7 @@ void print_factors(const std::vector<Cost>& costs,
   std::size_t compared = 0, close = 0;
   for (std::size_t i = 0; i < beside.size(); ++i) {
     if (beside[i].stage_seconds.empty()) continue;
+    if (!std::isfinite(costs[i].seconds)) continue;
     const double factor = costs[i].seconds / beside[i].seconds;
     ++compared;
     if (factor <= 1.5 && factor >= 1 / 1.5) ++close;
@@ -163,6 +211,8 @@ void print_json(const std::vector<Case>& cases,
   for (std::size_t i = 0; i < cases.size(); ++i) {
     nlohmann::ordered_json entry{{"name", cases[i].info.name},
                                  {"seconds", costs[i].seconds},
+                                 {"least_seconds", costs[i].least},
+                                 {"most_seconds", costs[i].most},
                                  {"stage_seconds", costs[i].stage_seconds},
                                  {"memory_bytes", costs[i].memory},
                                  {"disk_bytes", costs[i].disk}};
@@ -188,7 +238,8 @@ Figure scatter(const std::vector<Case>& cases,
   std::map<std::string, Series> series;
   double least = 1e9, most = 0;
   for (std::size_t i = 0; i < cases.size(); ++i) {
-    if (beside[i].stage_seconds.empty()) continue;
+    if (beside[i].stage_seconds.empty() || !std::isfinite(costs[i].seconds))
+      continue;
     const std::string& name = cases[i].info.experiment;
     Series& own = series[name];
     own.label = own.method = name;
@@ -214,7 +265,11 @@ Figure scatter(const std::vector<Case>& cases,
 /// How long so many workers take, and what share of them works.
 void print_workers(const std::vector<Cost>& costs) {
   std::vector<double> seconds;
-  for (const Cost& c : costs) seconds.push_back(c.seconds);
+  for (const Cost& c : known_of(costs)) seconds.push_back(c.seconds);
+  if (seconds.empty()) {
+    fmt::print("time not known: no campaign tells it; --exact measures\n");
+    return;
+  }
   fmt::print("{:>8}  {:>14}  {:>10}\n", "workers", "time", "efficiency");
   for (const std::size_t workers :
        {1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1000}) {
@@ -230,32 +285,16 @@ void print_workers(const std::vector<Cost>& costs) {
              duration_text(*std::max_element(seconds.begin(), seconds.end())));
 }
 
-/// Of all chains however long that takes, or soon.
+/// By short runs of all chains however long that takes, or without runs.
 std::vector<Cost> costs_of(const std::vector<Case>& cases, bool exact) {
-  constexpr double kSeconds = 8;
+  if (!exact) return costs_without_runs(cases);
   Trials trials = known_speeds();
-  if (exact) {
-    auto costs = predict(cases, trials, [](const Case& c) {
-      fmt::print(stderr, "measuring {} {}\n", c.info.experiment, c.info.method);
-    });
-    trials.save();
-    return costs;
-  }
-  const auto cache = Trials::default_file();
-  Forecast f = forecast(cases, 0, cache);
-  if (f.measured < f.chains) {
-    fmt::print(stderr,
-               "measuring chains whose speed is not known, for at most {}\n",
-               duration_text(kSeconds));
-    f = forecast(cases, kSeconds, cache);
-  }
-  if (f.measured < f.chains)
-    fmt::print(stderr,
-               "{} of {} chains are measured, the others follow from counted "
-               "operations; the same again measures more, --exact all\n",
-               f.measured,
-               f.chains);
-  return std::move(f.costs);
+  auto costs = predict(cases, trials, [](const Case& c) {
+    fmt::print(stderr, "measuring {} {}\n", c.info.experiment, c.info.method);
+  });
+  trials.save();
+  add_memory(costs, cases, Durations::read(durations_file()));
+  return costs;
 }
 
 }  // namespace
@@ -267,13 +306,15 @@ ExitCode plan_verb(const Arguments& arguments) {
   if (!parse(
           "plan",
           "What a selection will cost: time, peak memory and disk of each "
-          "experiment and in sum, from counted operations and the speeds of "
-          "this machine, which short runs measure and the user's cache "
-          "directory keeps. Answers within 20 seconds.",
+          "experiment and in sum. Times are those of published campaigns, by "
+          "counted operations and this machine's speed; of other methods those "
+          "that --exact measured and the user's cache directory keeps.",
           selection.flags(
               {selection.arguments(),
                {"--each", "a line for each case", &each},
-               {"--exact", "measure all chains, however long it takes", &exact},
+               {"--exact",
+                "try all chains by short runs, however long that takes",
+                &exact},
                {"--json", "each case as JSON", &json},
                {"--against",
                 "results of this selection: shows what was measured beside "
@@ -308,7 +349,7 @@ ExitCode plan_verb(const Arguments& arguments) {
     print_json(cases, costs, known);
   } else {
     print_table(lines_of(cases, costs, known, each), !known.empty());
-    print_sum(costs);
+    print_sum(cases, costs);
     print_factors(costs, known);
   }
   return ExitCode::good;

@@ -12,6 +12,7 @@
 #include "suite/app/conclude.h"
 #include "suite/app/export.h"
 #include "suite/app/installed.h"
+#include "suite/app/speeds.h"
 #include "suite/app/run_budget.h"
 #include "suite/core/clock.h"
 #include "suite/core/hash.h"
@@ -243,8 +244,7 @@ std::optional<Catalog> reusable(const CampaignOptions& o) {
 
 /// What will run, at once.
 std::string begin_text(const RunFlags& flags,
-                       const std::vector<Case>& cases,
-                       bool watched) {
+                       const std::vector<Case>& cases) {
   const fs::path& out = flags.campaign.out;
   std::vector<Case> left = cases;
   if (const auto stored = reusable(flags.campaign))
@@ -260,7 +260,7 @@ std::string begin_text(const RunFlags& flags,
                                        one_line(out.string()))
                          : "",
                      flags.campaign.jobs,
-                     about_text(left, flags.campaign.jobs, watched));
+                     about_text(left, flags.campaign.jobs, durations_file()));
 }
 
 /// With keys only where something may be reused: the data of experiments that
@@ -344,7 +344,7 @@ CampaignResult run_all(Prepared prepared,
 void say_what_runs(const RunFlags& flags,
                    const std::vector<Case>& cases,
                    const Screen& screen) {
-  const std::string text = begin_text(flags, cases, screen.terminal);
+  const std::string text = begin_text(flags, cases);
   const StopSignalWatch watch;
   put(screen.stream, text);
   if (stop_signals() > 0)

@@ -2,12 +2,15 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <functional>
+#include <numeric>
+#include <set>
 
 #include "suite/app/options.h"
 #include "suite/app/speeds.h"
 #include "suite/harness/child.h"
 #include "suite/harness/progress.h"
-#include "suite/planning/predict.h"
+#include "suite/planning/forecast.h"
 #include "suite/planning/split.h"
 #include "suite/planning/submission.h"
 #include "suite/store/file.h"
@@ -32,31 +35,85 @@ std::vector<std::string> flags_of(const Selection& s) {
   return flags;
 }
 
-/// Predicted by this machine; the nodes' speed is a common factor.
-std::vector<Task> tasks_of(const std::vector<Case>& cases, int count) {
-  Trials trials = known_speeds();
-  std::vector<double> seconds;
-  for (const Cost& cost : predict(cases, trials))
-    seconds.push_back(cost.seconds);
-  trials.save();
+/// By this machine's speed; the nodes' is a common factor. A task needs the
+/// memory of as many of its largest cases as it has workers.
+std::vector<Task> tasks_of(const std::vector<Case>& cases,
+                           int count,
+                           int jobs) {
+  const auto costs = costs_without_runs(cases);
+  const auto seconds = weights_of(cases, costs);
   const Split split =
       split_longest_first(seconds, static_cast<std::size_t>(count));
   std::vector<Task> tasks;
   for (const auto& items : split.tasks) {
     Task task;
+    std::vector<double> memory;
     for (const std::size_t i : items) {
       task.cases.push_back(cases[i].info.name);
       task.seconds += seconds[i];
+      memory.push_back(costs[i].memory);
     }
+    std::sort(memory.begin(), memory.end(), std::greater<>());
+    memory.resize(std::min(memory.size(), static_cast<std::size_t>(jobs)));
+    task.memory = std::accumulate(memory.begin(), memory.end(), 0.0);
     tasks.push_back(std::move(task));
   }
   return tasks;
 }
 
+/// The cases of a list are not in the flags.
+void require_same(const Submission& s, const std::vector<Case>& cases) {
+  std::set<std::string> before, now;
+  for (const Task& task : s.tasks)
+    before.insert(task.cases.begin(), task.cases.end());
+  for (const Case& c : cases) now.insert(c.info.name);
+  if (before == now) return;
+  const auto lacks = [](const auto& a, const auto& b) {
+    return *std::find_if(a.begin(), a.end(), [&](const auto& name) {
+      return !b.contains(name);
+    });
+  };
+  const bool fewer =
+      std::includes(before.begin(), before.end(), now.begin(), now.end());
+  throw UsageError(fmt::format(
+      "{} was submitted with {} cases, now there are {}: {} is {}; the same "
+      "list runs what is missing, another directory another campaign",
+      s.directory.string(),
+      before.size(),
+      now.size(),
+      fewer ? lacks(before, now) : lacks(now, before),
+      fewer ? "left out" : "new"));
+}
+
+/// A split of these cases, in files.
+Submission written(const SubmitFlags& flags,
+                   const std::vector<std::string>& selection,
+                   const std::vector<Case>& cases) {
+  Submission s{.directory = fs::absolute(flags.directory),
+               .program = fs::read_symlink("/proc/self/exe").string(),
+               .selection = selection,
+               .running = {fmt::format("--jobs={}", flags.jobs),
+                           fmt::format("--threads={}", flags.threads)},
+               .tasks = tasks_of(cases, flags.tasks, flags.jobs),
+               .jobs = {},
+               .merges_after = {},
+               .listed = !flags.selection.list.empty()};
+  require_expressible(s.directory);
+  make_directory(s.directory);
+  s.write();
+  return s;
+}
+
 Submission prepare_submission(SubmitFlags& flags) {
   const auto selection = flags_of(flags.selection);
+  const auto cases = flags.selection.cases();
   if (Submission::exists(flags.directory)) {
     Submission s = Submission::read(flags.directory);
+    if (!flags.selection.list.empty() || s.listed) require_same(s, cases);
+    // Nothing was taken yet: another split may suit Slurm's limits.
+    if (selection == s.selection && s.jobs.empty() &&
+        fs::is_empty(s.directory / "shards"))
+      return written(flags, selection, cases);
     if (selection != s.selection)
       throw UsageError(fmt::format(
           "{} was submitted with {}; the same flags run what is missing, "
@@ -65,17 +122,7 @@ Submission prepare_submission(SubmitFlags& flags) {
           fmt::join(s.selection, " ")));
     return s;
   }
-  Submission s{.directory = fs::absolute(flags.directory),
-               .program = fs::read_symlink("/proc/self/exe").string(),
-               .selection = selection,
-               .running = {fmt::format("--jobs={}", flags.jobs),
-                           fmt::format("--threads={}", flags.threads)},
-               .tasks = tasks_of(flags.selection.cases(), flags.tasks),
-               .jobs = {},
-               .merges_after = {}};
-  make_directory(s.directory);
-  s.write();
-  return s;
+  return written(flags, selection, cases);
 }
 
 std::vector<std::size_t> missing_tasks(const std::vector<TaskState>& states) {

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "suite/harness/case.h"
-#include "suite/planning/operation_rates.h"
 #include "suite/planning/predict.h"
 #include "suite/planning/trials.h"
 
@@ -45,12 +44,6 @@ class Operations {
 std::vector<Trial> trials_of(const Sizes& s, Trials& trials);
 /// Of these, those that are known; nothing runs.
 std::vector<Trial> known_trials(const Sizes& s, const Trials& trials);
-
-/// A few iterations of a kind's training on few samples: enough for how long
-/// an operation takes.
-Case brief_case(const Sizes& s);
-/// What a trial of it did.
-Work work_of(const Case& brief, const Trial& trial);
 
 /// Of a case by its kind's trials.
 Cost cost_of(const Case& c, const std::vector<Trial>& all);

@@ -9,7 +9,7 @@ namespace physinv {
 namespace {
 
 /// What a worker needs before it does anything: code, libraries, registry.
-constexpr double kBaseMemory = 24e6;
+constexpr double kBaseMemory = 32e6;
 /// HDF5's tables of a case and of each stage; a line of the journal.
 constexpr double kCaseDisk = 6e3, kStageDisk = 5e3;
 /// Trials of whole chains take about this long; with more samples, only their
@@ -119,23 +119,6 @@ std::vector<Trial> known_trials(const Sizes& s, const Trials& trials) {
   return all;
 }
 
-Case brief_case(const Sizes& s) {
-  constexpr Index kBriefIterations = 2, kBriefSamples = 64;
-  auto iterations = s.largest->stage_iterations;
-  for (Index& k : iterations) k = std::min(k, kBriefIterations);
-  return resized(
-      *s.largest, std::min(s.largest->info.n, kBriefSamples), iterations);
-}
-
-Work work_of(const Case& brief, const Trial& trial) {
-  Work work;
-  for (std::size_t k = 0; k < trial.size(); ++k) {
-    work.seconds += trial[k].seconds;
-    work.operations += brief.operations(k);
-  }
-  return work;
-}
-
 Cost unmeasured_cost(const Case& c) {
   return {.seconds = std::numeric_limits<double>::quiet_NaN(),
           .memory = kBaseMemory,
@@ -148,7 +131,9 @@ Cost cost_of(const Case& c, const std::vector<Trial>& all) {
   Cost cost{.disk = kCaseDisk + data_bytes(c)};
   for (std::size_t k = 0; k < all.front().size(); ++k)
     add_stage(cost, c.info.n, {&all.front()[k], last_with(all, k)});
+  constexpr double kWide = 2;
   cost.memory += kBaseMemory;
+  cost.least = cost.seconds / kWide, cost.most = cost.seconds * kWide;
   return cost;
 }
 

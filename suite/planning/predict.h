@@ -11,9 +11,11 @@ class Trials;
 struct Case;
 
 struct Cost {
-  double seconds = 0;  ///< of one thread of an idle core, without bookkeeping
-  double memory = 0;   ///< peak bytes of a worker process
-  double disk = 0;     ///< bytes
+  /// Of one thread of an idle core, without bookkeeping; NaN: not known.
+  double seconds = 0;
+  double least = 0, most = 0;  ///< between which the seconds are expected
+  double memory = 0;           ///< peak bytes of a worker process
+  double disk = 0;             ///< bytes
   std::vector<double> stage_seconds;
 };
 

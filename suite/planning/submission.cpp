@@ -23,6 +23,32 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
+/// sbatch replaces what follows a % in the names of output files: %% is one.
+std::string pattern(const fs::path& directory) {
+  std::string out;
+  for (const char c : directory.string())
+    out += c == '%' ? "%%" : std::string(1, c);
+  return out;
+}
+
+/// What the largest of these tasks needs and a margin; nothing if the user
+/// asks, or if no task tells.
+std::string memory_option(const Submission& s,
+                          const std::vector<std::size_t>& tasks,
+                          const std::vector<std::string>& sbatch_options) {
+  constexpr double kMargin = 1.5, kAtLeast = 256e6, kMega = 1024.0 * 1024;
+  double most = 0;
+  for (const std::size_t k : tasks) most = std::max(most, s.tasks[k].memory);
+  const bool asked = std::any_of(
+      sbatch_options.begin(), sbatch_options.end(), [](const auto& option) {
+        return option.starts_with("--mem");
+      });
+  if (asked || !(most > 0)) return "";
+  return fmt::format(
+      "--mem={:.0f}M",
+      std::ceil(std::max(kMargin * most, most + kAtLeast) / kMega));
+}
+
 /// For a shell.
 std::string quoted(const std::string& text) {
   std::string out = "'";
@@ -99,7 +125,8 @@ bool sound(const Submission& s) {
   return std::all_of(s.jobs.begin(), s.jobs.end(), is_number) &&
          (s.merges_after.empty() || is_number(s.merges_after)) &&
          std::all_of(s.tasks.begin(), s.tasks.end(), [](const Task& t) {
-           return t.seconds >= 0 && std::isfinite(t.seconds);
+           return t.seconds >= 0 && std::isfinite(t.seconds) && t.memory >= 0 &&
+                  std::isfinite(t.memory);
          });
 }
 
@@ -119,6 +146,28 @@ std::string job_id(const std::string& output) {
   return id;
 }
 
+struct SlurmRefuses : EnvironmentError {
+  using EnvironmentError::EnvironmentError;
+};
+
+/// " (MaxArraySize is 1001)" as scontrol tells, or nothing.
+std::string array_limit() {
+  constexpr std::string_view kName = "MaxArraySize";
+  if (!has_program("scontrol")) return "";
+  const Ended r = run_child({"scontrol", "show", "config"}, slurm_limits());
+  if (!r.exceeded.empty() || r.status != 0) return "";
+  std::istringstream lines(r.output);
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string name, equals, value;
+    words >> name >> equals >> value;
+    if (name == kName && is_number(value))
+      return fmt::format(" (MaxArraySize is {}: task numbers stay below it)",
+                         value);
+  }
+  return "";
+}
+
 std::string sbatch(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), {"sbatch", "--parsable"});
   const Ended r = run_child(arguments, slurm_limits());
@@ -129,8 +178,9 @@ std::string sbatch(std::vector<std::string> arguments) {
         r.exceeded));
   if (r.status != 0) {
     const std::string text = r.output + r.errors;
-    throw EnvironmentError(
-        fmt::format("sbatch refuses: {}", text.empty() ? "no answer" : text));
+    throw SlurmRefuses(fmt::format(
+        "sbatch refuses: {}",
+        text.empty() ? "no answer" : one_line(text.substr(0, 300))));
   }
   return job_id(r.output);
 }
@@ -200,11 +250,13 @@ Submission Submission::read(const fs::path& directory) {
     s.selection = all.at("selection").get<std::vector<std::string>>();
     s.running = all.at("running").get<std::vector<std::string>>();
     s.jobs = all.at("jobs").get<std::vector<std::string>>();
+    s.listed = all.value("listed", false);
     s.merges_after =
         all.value("merges_after", s.jobs.empty() ? "" : s.jobs.back());
     for (const json& t : all.at("tasks"))
       s.tasks.push_back({t.at("cases").get<std::vector<std::string>>(),
-                         t.at("seconds").get<double>()});
+                         t.at("seconds").get<double>(),
+                         t.value("memory", 0.0)});
     if (sound(s)) return s;
   } catch (const json::exception&) {
   }
@@ -219,9 +271,11 @@ void Submission::save() const {
            {"running", running},
            {"jobs", jobs},
            {"merges_after", merges_after},
+           {"listed", listed},
            {"tasks", json::array()}};
   for (const Task& t : tasks)
-    all["tasks"].push_back({{"cases", t.cases}, {"seconds", t.seconds}});
+    all["tasks"].push_back(
+        {{"cases", t.cases}, {"seconds", t.seconds}, {"memory", t.memory}});
   write_atomically(directory / "submission.json", all.dump(1) + "\n");
 }
 
@@ -249,6 +303,14 @@ void Submission::write() const {
 
 fs::path Submission::shard(std::size_t task) const {
   return directory / "shards" / std::to_string(task);
+}
+
+void require_expressible(const fs::path& directory) {
+  if (directory.string().find('\\') != std::string::npos)
+    throw UsageError(fmt::format(
+        "Slurm takes a backslash in the name of a file for its own; '{}' needs "
+        "another name",
+        directory.string()));
 }
 
 std::vector<TaskState> states_of(const Submission& s) {
@@ -297,10 +359,22 @@ std::string submit_array(const Submission& s,
       "--requeue",
       "--open-mode=append",
       "--job-name=physinv",
-      "--output=" + (s.directory / "log" / "task-%a.txt").string()};
+      "--output=" + pattern(s.directory) + "/log/task-%a.txt"};
+  if (const auto memory = memory_option(s, tasks, sbatch_options);
+      !memory.empty())
+    array.push_back(memory);
   array.insert(array.end(), sbatch_options.begin(), sbatch_options.end());
   array.push_back((s.directory / "task.sh").string());
-  return sbatch(array);
+  try {
+    return sbatch(array);
+  } catch (const SlurmRefuses& error) {
+    throw EnvironmentError(fmt::format(
+        "{}; {} tasks were asked for{}: other --tasks, --jobs or --threads of "
+        "the next submit count, options of sbatch follow --",
+        error.what(),
+        tasks.size(),
+        array_limit()));
+  }
 }
 
 void submit_merge(const Submission& s, const std::string& after) {
@@ -308,7 +382,7 @@ void submit_merge(const Submission& s, const std::string& after) {
       "--requeue",
       "--open-mode=append",
       "--job-name=physinv-merge",
-      "--output=" + (s.directory / "log" / "merge.txt").string(),
+      "--output=" + pattern(s.directory) + "/log/merge.txt",
       (s.directory / "merge.sh").string()};
   if (!after.empty())
     merge.insert(merge.begin(), "--dependency=afterany:" + after);

@@ -17,7 +17,8 @@ namespace physinv {
 
 struct Task {
   std::vector<std::string> cases;
-  double seconds = 0;  ///< predicted
+  double seconds = 0;  ///< predicted; by operations where not known
+  double memory = 0;   ///< bytes of its workers, without a margin
 };
 
 struct Submission {
@@ -28,6 +29,7 @@ struct Submission {
   std::vector<Task> tasks;
   std::vector<std::string> jobs;  ///< ids of the arrays submitted so far
   std::string merges_after;  ///< id of the last array with a merge after it
+  bool listed = false;       ///< the cases are those of a --cases file
 
   static bool exists(const std::filesystem::path& directory);
   /// UsageError if there is none, StoreError if it is damaged.
@@ -53,6 +55,9 @@ std::vector<TaskState> states_of(const Submission& submission);
 /// an empty text; the states then stay as they are.
 std::string ask_queue(const Submission& submission,
                       std::vector<TaskState>& states);
+
+/// UsageError if sbatch cannot be told of files in this directory.
+void require_expressible(const std::filesystem::path& directory);
 
 /// Submits an array of these tasks and returns its job id. EnvironmentError if
 /// Slurm refuses, or answers within PHYSINV_SLURM_SECONDS with nothing that is

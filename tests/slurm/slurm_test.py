@@ -202,7 +202,8 @@ def main():
             os.environ["SLURM_CONF"] = os.path.join(cluster, "slurm.conf")
             for test in (undisturbed, killed, node_down, cancelled):
                 begin = time.time()
-                test(os.path.join(d, test.__name__), expected)
+                # Slurm replaces what follows a %.
+                test(os.path.join(d, "50%a" + test.__name__), expected)
                 print(f"     {test.__name__}: {time.time() - begin:.1f} s",
                       flush=True)
         finally:

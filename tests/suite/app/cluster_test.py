@@ -61,6 +61,46 @@ def refused_merge(d):
           f"three tries of a merge: {merges}")
 
 
+def other_cases(d):
+    """A used folder is of its own list; one that Slurm refused is split again,
+    and sbatch is asked for memory."""
+    s = Slurm(d)
+    names = sorted(json.loads(run("list", "--profile=quick", "descend",
+                                  "--json", cwd=d).stdout),
+                   key=lambda case: case["name"])
+    names = [case["name"] for case in names]
+
+    def put(name, chosen):
+        with open(os.path.join(d, name), "w") as f:
+            f.write("".join(line + "\n" for line in chosen))
+
+    put("two", names[:2]), put("same", reversed(names[:2]))
+    put("one", names[:1]), put("other", names[1:3])
+    s.put(sbatch=LOG + "echo too many >&2; exit 1", squeue="exit 0",
+          scontrol="echo 'MaxArraySize            = 7'")
+    submit = ["submit", "--slurm=50%array", *SELECTION[:2]]
+    p = expect(9, [*submit, "--cases=two", "--tasks=1"], d,
+               "MaxArraySize is 7", env=s.env)
+    check("--tasks" in p.stderr, "the advice names --tasks")
+    s.put(sbatch=LOG + "echo 77")
+    p = expect(0, [*submit, "--cases=two", "--tasks=2", "--threads=2"], d,
+               "2 of 2 tasks", env=s.env)
+    with open(os.path.join(d, "50%array", "task.sh")) as f:
+        check("--threads=2" in f.read(), "flags of the next submit count")
+    array = [line for line in s.log() if "--array=0,1" in line][-1]
+    check("/50%%array/log/task-%a.txt" in array, "a % stands twice: " + array)
+    check("--mem=" in array, "memory is asked for")
+    for name, says in (("one", "left out"), ("other", names[2])):
+        expect(2, [*submit, "--cases=" + name], d, says, env=s.env)
+    expect(2, submit, d, "is new", env=s.env)
+    expect(0, [*submit, "--cases=same"], d, env=s.env)
+    expect(0, ["submit", "--slurm=own", *SELECTION, "--", "--mem=7G"], d,
+           env=s.env)
+    check(s.log()[-2].count("--mem") == 1, "the user's own --mem: " + s.log()[-2])
+    expect(2, ["submit", "--slurm=a\\b", *SELECTION], d, "backslash",
+           env=s.env)
+
+
 def bad_queues(d):
     """Tasks that may be in the queue are not submitted again."""
     s = Slurm(d)
@@ -168,7 +208,7 @@ def killed_in_a_task(d):
 
 with tempfile.TemporaryDirectory() as directory:
     os.mkdir(os.path.join(directory, "published"))
-    for test in (refused_merge, bad_queues, bad_sbatch, damaged,
+    for test in (refused_merge, other_cases, bad_queues, bad_sbatch, damaged,
                  killed_in_a_task):
         test(directory)
 sys.exit(f"{len(FAILED)} failed: {FAILED}" if FAILED else 0)

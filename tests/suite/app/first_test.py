@@ -186,7 +186,7 @@ def a_plan_soon(d):
               "by experiment, with a sum")
     p = run("plan", "--profile=quick", "--exact", "--each", cwd=d,
             env={"XDG_CACHE_HOME": os.path.join(d, "new")})
-    check(p.stdout.count("/seed=") == 18 and "?" not in p.stdout,
+    check(p.stdout.count("/seed=") == 19 and "?" not in p.stdout,
           "--each and --exact")
 
 

@@ -80,8 +80,14 @@ def compare(d):
 def plan(d):
     env = {"XDG_CACHE_HOME": os.path.join(d, "cache")}
     p = run("plan", "--profile=quick", cwd=d, env=env)
-    check(p.returncode == 0 and "of one core" in p.stdout, "plan")
-    check(p.stderr.startswith("measuring "), "what is not known is measured")
+    check(p.returncode == 0 and "time not known" in p.stdout,
+          "plan: what no campaign took is not known")
+    p = run("plan", "--profile=quick", "--exact", cwd=d, env=env)
+    check(p.returncode == 0 and "of one core" in p.stdout, "plan --exact")
+    check(p.stderr.startswith("measuring "), "--exact measures")
+    p = run("plan", "--profile=quick", cwd=d, env=env)
+    check(p.returncode == 0 and "of one core" in p.stdout,
+          "plan: by what --exact measured")
     p = expect(0, ["plan", "--profile=quick", "--against=a", "--json"], d,
                env=env)
     costs = json_of(p)
@@ -100,7 +106,7 @@ def plan(d):
     speeds = [f for f in os.listdir(os.path.join(d, "cache", "physinv"))]
     with open(os.path.join(d, "cache", "physinv", speeds[0]), "w") as f:
         f.write("{torn")
-    p = run("plan", "--profile=quick", cwd=d, env=env)
+    p = run("plan", "--profile=quick", "--exact", cwd=d, env=env)
     check(p.returncode == 0 and "measuring" in p.stderr,
           "speeds that cannot be read are measured again")
     expect(2, ["--time-budget=3x"], d, "90, 90s, 10m and 2h are")

@@ -1,12 +1,17 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <numeric>
 
 #include "suite/planning/budget.h"
-#include "suite/planning/operation_rates.h"
+#include "suite/planning/durations.h"
 #include "suite/planning/split.h"
+#include "suite/store/errors.h"
 
 namespace physinv {
 namespace {
@@ -54,17 +59,32 @@ TEST(Split, NoTaskIsEmptyAndItemsWithoutCostSpread) {
     EXPECT_EQ(task.size(), 2U);
 }
 
-/// A start of a tenth of a second is no rate of 20 operations.
-TEST(OperationRates, FewOperationsTellNothingOfMany) {
-  OperationRates rates;
-  rates.add("sip/heat", {.operations = 20, .seconds = 0.1});
-  EXPECT_TRUE(std::isnan(rates.seconds("sip/heat", 1e12)));
-  rates.add("sip/fluid", {.operations = 1e9, .seconds = 0.02});
-  EXPECT_DOUBLE_EQ(rates.seconds("sip/heat", 1e12), 20);  // of its paper
-  for (const double seconds : {0.01, 0.03, 5.0})
-    rates.add("sip/heat", {.operations = 1e9, .seconds = seconds});
-  EXPECT_DOUBLE_EQ(rates.seconds("sip/heat", 1e12), 30);
-  EXPECT_DOUBLE_EQ(rates.seconds("hig/toy", 1e12), 30);  // of all
+TEST(Durations, TellOfWorkThatIsNearAndOfNothingElse) {
+  const auto file = std::filesystem::temp_directory_path() /
+                    fmt::format("durations-{}.csv", getpid());
+  std::ofstream(file) << "experiment,method,stage,n,operations,seconds,least,"
+                         "most,bytes\n"
+                         "sip/heat,adam,train,8,1e9,2,1,3,1000\n";
+  const Durations d = Durations::read(file);
+  const auto same = d.of("sip/heat", "adam", "train", 1e9);
+  ASSERT_TRUE(same);
+  EXPECT_DOUBLE_EQ(same->seconds, 2);
+  EXPECT_LT(same->least, 1);
+  EXPECT_GT(same->most, 3);
+  EXPECT_NEAR(d.of("sip/heat", "adam", "train", 2e9)->seconds, 4, 1e-12);
+  EXPECT_FALSE(d.of("sip/heat", "adam", "train", 5e9));
+  EXPECT_FALSE(d.of("sip/heat", "sgd", "train", 1e9));
+  EXPECT_EQ(d.bytes("sip/heat", "adam", "train", 8), 1000);
+  EXPECT_FALSE(d.bytes("sip/heat", "adam", "train", 9));
+  for (const char* bad : {"a,b,c,1,2,3,4,5",
+                          "a,b,c,1,x,3,4,5,6",
+                          "a,b,c,1,-2,3,4,5,6",
+                          "a,b,c,1,2,3,4,5,6,7"}) {
+    std::ofstream(file) << "names\n" << bad << "\n";
+    EXPECT_THROW(Durations::read(file), StoreError) << bad;
+  }
+  std::filesystem::remove(file);
+  EXPECT_FALSE(Durations::read(file).of("sip/heat", "adam", "train", 1e9));
 }
 
 TEST(Budget, RankingIsOpenUntilRangesPart) {
