@@ -12,8 +12,8 @@
 #include "suite/app/conclude.h"
 #include "suite/app/export.h"
 #include "suite/app/installed.h"
-#include "suite/app/speeds.h"
 #include "suite/app/run_budget.h"
+#include "suite/app/speeds.h"
 #include "suite/core/clock.h"
 #include "suite/core/hash.h"
 #include "suite/harness/campaign.h"
@@ -243,8 +243,7 @@ std::optional<Catalog> reusable(const CampaignOptions& o) {
 }
 
 /// What will run, at once.
-std::string begin_text(const RunFlags& flags,
-                       const std::vector<Case>& cases) {
+std::string begin_text(const RunFlags& flags, const std::vector<Case>& cases) {
   const fs::path& out = flags.campaign.out;
   std::vector<Case> left = cases;
   if (const auto stored = reusable(flags.campaign))

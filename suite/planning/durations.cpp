@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -107,7 +106,7 @@ double machine_factor() {
   constexpr Index kSize = 160;
   constexpr int kTimes = 60;
   constexpr double kReference = 1.35e-4;  // seconds
-  using Matrix = Eigen::MatrixXf;
+  using Matrix = Batch<float>;
   const Matrix a = Matrix::Constant(kSize, kSize, 0.5F);
   const Matrix b = Matrix::Constant(kSize, kSize, 0.25F);
   Matrix c(kSize, kSize);
