@@ -69,7 +69,7 @@ Durations Durations::read(const fs::path& file) {
   return all;
 }
 
-std::optional<Seconds3> Durations::of(const std::string& experiment,
+std::optional<TimeRange> Durations::of(const std::string& experiment,
                                       const std::string& method,
                                       const std::string& stage,
                                       double operations) const {
@@ -85,9 +85,9 @@ std::optional<Seconds3> Durations::of(const std::string& experiment,
   }
   if (nearest == nullptr) return {};
   const double by = operations / nearest->operations;
-  const Seconds3& t = nearest->time;
+  const TimeRange& t = nearest->time;
   const double wide = least > std::log(kSame) ? kElsewhere : kOthers;
-  return Seconds3{by * t.seconds, by * t.least / wide, by * t.most * wide};
+  return TimeRange{by * t.seconds, by * t.least / wide, by * t.most * wide};
 }
 
 std::optional<double> Durations::bytes(const std::string& experiment,

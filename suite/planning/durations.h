@@ -15,7 +15,7 @@ namespace physinv {
 
 /// Seconds of one thread, set-up and measuring included: the median, and what
 /// it may be from fast runs to slow ones.
-struct Seconds3 {
+struct TimeRange {
   double seconds = 0, least = 0, most = 0;
 };
 
@@ -27,7 +27,7 @@ class Durations {
   /// By the row of this experiment, method and stage whose counted operations
   /// are nearest, in proportion to them. Nothing if there is none, or if they
   /// differ by more than a factor of four.
-  std::optional<Seconds3> of(const std::string& experiment,
+  std::optional<TimeRange> of(const std::string& experiment,
                              const std::string& method,
                              const std::string& stage,
                              double operations) const;
@@ -42,7 +42,7 @@ class Durations {
   struct Row {
     Index n;
     double operations;
-    Seconds3 time;
+    TimeRange time;
     double bytes;
   };
   std::map<Kind, std::vector<Row>> rows_;

@@ -27,7 +27,7 @@ bool add_published(Cost& cost,
                    const Case& c,
                    const Durations& published,
                    double factor) {
-  Seconds3 sum;
+  TimeRange sum;
   std::vector<double> stages;
   for (std::size_t k = 0; k < c.info.stages.size(); ++k) {
     const auto t = published.of(
