@@ -199,8 +199,9 @@ const SourceGraph& project_sources() {
 }
 
 bool is_from_outside(const Stage& stage) {
+  if (outsides().empty()) return false;
   const auto roots = stage.sources().roots;
-  if (outsides().empty() || roots.empty()) return false;
+  if (roots.empty()) return false;
   const std::string& given = roots.front();
   const std::string path = project_sources().find(given);
   return std::any_of(

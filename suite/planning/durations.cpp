@@ -70,9 +70,9 @@ Durations Durations::read(const fs::path& file) {
 }
 
 std::optional<TimeRange> Durations::of(const std::string& experiment,
-                                      const std::string& method,
-                                      const std::string& stage,
-                                      double operations) const {
+                                       const std::string& method,
+                                       const std::string& stage,
+                                       double operations) const {
   constexpr double kSame = 1.01;  // rows have three digits
   const auto at = rows_.find({experiment, method, stage});
   if (at == rows_.end()) return {};

@@ -77,6 +77,9 @@ std::string wrong_numbers(const StageRecord& r) {
 }
 
 bool is_utf8(const std::string& text) {
+  if (std::all_of(
+          text.begin(), text.end(), [](unsigned char c) { return c < 0x80; }))
+    return true;
   try {
     static_cast<void>(nlohmann::json(text).dump());
     return true;

@@ -44,7 +44,7 @@ READERS = {
                     ("part1", "part2"), ("joined",)),
     "gate": Reader(["gate", "--baseline=base.txt", "--results=done",
                     "--no-count"], ("base.txt", "done")),
-    "plan": Reader(["plan", *SMALL], ("cache",), env=CACHE),
+    "plan": Reader(["plan", "--exact", *SMALL], ("cache",), env=CACHE),
     "results": Reader(["results", "--campaigns=campaigns", "--out=page.md"],
                       ("campaigns",), ("page.md",)),
     "list": Reader(["list", *SMALL, "--cases=names.txt"], ("names.txt",)),
@@ -134,7 +134,7 @@ def make(world):
     interrupted(world, os.path.join(world.golden, "half"))
     run("report", "done", "--out=page", "--publish=campaigns/one")
     run("baseline", "done", "--out=base.txt")
-    run("plan", *SMALL, env=CACHE)
+    run("plan", "--exact", *SMALL, env=CACHE)
     names = [entry["run_name"].rsplit("/", 1)[0]
              for entry in results(os.path.join(world.golden, "done"))]
     sandbox.write(os.path.join(world.golden, "names.txt"),
