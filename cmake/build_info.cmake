@@ -2,8 +2,7 @@
 # with hash and #include lines of every source that numbers can come from, read
 # at build time by physinv-sources. The file is rewritten only when its content
 # changes, which comments and formatting do not.
-# The bits of exp and sin are SLEEF's, whose version stands in its header; those
-# of hypot the C library's.
+# The bits of exp and sin are SLEEF's, whose version stands in its header.
 set(physinv_sleef)
 foreach(part MAJOR MINOR PATCHLEVEL)
   file(STRINGS ${SLEEF_INCLUDE_DIR}/sleef.h line
@@ -12,8 +11,8 @@ foreach(part MAJOR MINOR PATCHLEVEL)
   list(APPEND physinv_sleef ${line})
 endforeach()
 list(JOIN physinv_sleef "." physinv_sleef)
-execute_process(COMMAND getconf GNU_LIBC_VERSION
-  OUTPUT_VARIABLE physinv_libc OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+include(${CMAKE_CURRENT_LIST_DIR}/libc.cmake)
+physinv_libc_version(physinv_libc)
 
 string(TOUPPER ${CMAKE_BUILD_TYPE} physinv_config)
 get_target_property(physinv_options physinv_flags INTERFACE_COMPILE_OPTIONS)
@@ -29,9 +28,10 @@ string(GENEX_STRIP "${physinv_flags_text}" physinv_flags_text)
 string(REGEX REPLACE " +" " " physinv_flags_text "${physinv_flags_text}")
 string(STRIP "${physinv_flags_text}" physinv_flags_text)
 # Those that may decide about bits. Optimization, registers, sanitizers and the
-# compiler itself do not (the tests of bits hold it).
+# compiler itself do not (the tests of bits hold it), nor does where a cross
+# compiler finds the other machine's libraries.
 string(REGEX REPLACE
-  "(^| )-(O[0-3]|g|DNDEBUG|march=[^ ]*|U__AVX512F__|fpch-preprocess|fno-omit-frame-pointer|fPIC|fno-semantic-interposition|f(no-)?sanitize[^ ]*)" ""
+  "(^| )-(O[0-3]|g|DNDEBUG|m(arch|cpu|tune)=[^ ]*|-(target|sysroot)=[^ ]*|Wno-psabi|fpch-preprocess|fno-omit-frame-pointer|fPIC|fno-semantic-interposition|f(no-)?sanitize[^ ]*)" ""
   physinv_bit_flags "${physinv_flags_text}")
 string(REGEX REPLACE " +" " " physinv_bit_flags "${physinv_bit_flags}")
 string(STRIP "${physinv_bit_flags}" physinv_bit_flags)
@@ -52,6 +52,7 @@ set(json "@nlohmann_json_VERSION@")
 set(fmt "@fmt_VERSION@")
 set(cli11 "@CLI11_VERSION@")
 set(libc "@physinv_libc@")
+set(emulator "@CMAKE_CROSSCOMPILING_EMULATOR@")
 ]])
 
 add_executable(physinv-sources cmake/sources.cpp suite/core/hash.cpp)

@@ -27,6 +27,10 @@ quietly() {
   "$@" >"$log" 2>&1 </dev/null {lock_fd}>&- || { cat "$log" >&2; return 1; }
 }
 
+# On ARM the compiler is clang: GCC 12 keeps what is wider than a register, as
+# packs of 256 bits are there, in memory.
+on_arm() { [[ $(uname -m) == aarch64 ]]; }
+
 # packages_of SECTION: sets `packages`.
 packages_of() {
   local line in_section=
@@ -38,6 +42,7 @@ packages_of() {
       *) [[ -z $in_section ]] || packages+=("$line") ;;
     esac
   done <"$root/apt-packages.txt"
+  [[ $1 != bench ]] || ! on_arm || packages+=(clang)
 }
 
 # need SECTION: installs what the machine lacks. The stamp holds the list that
@@ -93,8 +98,10 @@ configure() {
     return
   fi
   say "configuring ${tree#"$root/"}"
+  local compiler=()
+  ! on_arm || compiler=(-DCMAKE_CXX_COMPILER=clang++ -DPHYSINV_PRECOMPILE=OFF)
   quietly "$tree/configure.log" cmake -S "$root" --preset "${tree##*/}" \
-    -DPHYSINV_TESTS="$tests" || build_failed
+    -DPHYSINV_TESTS="$tests" "${compiler[@]}" || build_failed
   printf '%s\n' "$tests $root" >"$tree/.configured"
 }
 

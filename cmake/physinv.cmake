@@ -17,35 +17,33 @@ endif()
 # template round differently and the linker takes whichever comes first.
 add_library(physinv_flags INTERFACE)
 #
-# Registers of 256 bits (x86-64-v3) or of 512 (v4): what this machine has, as
-# the bits are the same. Samples and columns are what fills a register, sums
-# have an order of their own, and Eigen, whose sums follow the register, sees
-# AVX2 in both.
+# Registers of 256 bits (x86-64-v3) or of 512 (v4) or two of 128 (aarch64): what
+# this machine has, as the bits are the same. Samples and columns are what fills a
+# register, and sums have an order of their own, Eigen's too, which sees no
+# registers at all.
 set(PHYSINV_ARCH "" CACHE STRING
-  "x86-64-v3 or x86-64-v4; empty: the higher one that this machine has")
-set_property(CACHE PHYSINV_ARCH PROPERTY STRINGS "" x86-64-v3 x86-64-v4)
+  "x86-64-v3, x86-64-v4 or aarch64; empty: the highest that this machine has")
+set_property(CACHE PHYSINV_ARCH PROPERTY STRINGS "" x86-64-v3 x86-64-v4 aarch64)
 set(physinv_arch ${PHYSINV_ARCH})
 if(NOT physinv_arch)
-  set(physinv_arch x86-64-v3)
-  if(EXISTS /proc/cpuinfo)
-    file(STRINGS /proc/cpuinfo physinv_cpu REGEX "^flags" LIMIT_COUNT 1)
-    set(physinv_has_v4 ON)
-    foreach(feature avx512f avx512bw avx512cd avx512dq avx512vl)
-      if(NOT "${physinv_cpu} " MATCHES " ${feature} ")
-        set(physinv_has_v4 OFF)
-      endif()
-    endforeach()
-    if(physinv_has_v4)
-      set(physinv_arch x86-64-v4)
-    elseif(NOT "${physinv_cpu} " MATCHES " avx2 ")
-      message(FATAL_ERROR "This processor lacks AVX2 (x86-64-v3).")
-    endif()
-  endif()
+  include(processor)
+  physinv_find_processor(physinv_arch)
 endif()
-target_compile_options(physinv_flags INTERFACE -march=${physinv_arch})
+set(physinv_narrow_march x86-64-v3)
+set(physinv_march ${physinv_arch})
+if(physinv_arch STREQUAL aarch64)
+  # Checksums by the processor: all but the first of them have crc.
+  set(physinv_march armv8-a+crc)
+  set(physinv_narrow_march ${physinv_march})
+  # Else clang schedules for a core that runs in order, loads early and spills.
+  set(physinv_tune -mtune=neoverse-n1)
+  # GCC says of pairs of doubles that they were passed otherwise before GCC 10.
+  add_compile_options($<$<CXX_COMPILER_ID:GNU>:-Wno-psabi>)
+endif()
+target_compile_options(physinv_flags INTERFACE -march=${physinv_march}
+  ${physinv_tune})
 set(physinv_two_widths OFF)
 if(physinv_arch STREQUAL x86-64-v4)
-  target_compile_options(physinv_flags INTERFACE -U__AVX512F__)
   target_compile_definitions(physinv_flags INTERFACE PHYSINV_AVX512)
   # A test runs what computes numbers with either width (physinv_layer).
   if(PHYSINV_TESTS AND NOT PHYSINV_SANITIZE AND CMAKE_BUILD_TYPE STREQUAL Release)
@@ -53,18 +51,19 @@ if(physinv_arch STREQUAL x86-64-v4)
   endif()
 endif()
 add_library(physinv_flags_v3 INTERFACE)
-target_compile_options(physinv_flags_v3 INTERFACE -march=x86-64-v3)
+target_compile_options(physinv_flags_v3 INTERFACE -march=${physinv_narrow_march})
 foreach(flags physinv_flags physinv_flags_v3)
   target_compile_features(${flags} INTERFACE cxx_std_20)
   target_compile_options(${flags} INTERFACE -ffp-contract=off)
-  target_compile_definitions(${flags} INTERFACE EIGEN_DONT_PARALLELIZE)
+  target_compile_definitions(${flags} INTERFACE
+    EIGEN_DONT_PARALLELIZE EIGEN_DONT_VECTORIZE EIGEN_MAX_ALIGN_BYTES=32)
 endforeach()
 # Words and records compute nothing, so they take no wide registers: a program
 # whose numbers are from the build for AVX2 then runs under valgrind, which
 # knows no AVX-512. Linked last, as the last -march counts.
 add_library(physinv_narrow INTERFACE)
 target_compile_options(physinv_narrow INTERFACE
-  -march=x86-64-v3 -UPHYSINV_AVX512)
+  -march=${physinv_narrow_march} -UPHYSINV_AVX512)
 # Nor do they take long optimizing. A header that is compiled with -O3 would
 # bring -O3 along.
 add_library(physinv_records INTERFACE)

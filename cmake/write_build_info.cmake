@@ -33,7 +33,7 @@ list(REMOVE_DUPLICATES sources)
 
 # A line for each source: path, hash of its tokens, the headers that it includes.
 function(physinv_scan result)
-  execute_process(COMMAND ${scanner} ${ARGN} WORKING_DIRECTORY ${source_dir}
+  execute_process(COMMAND ${emulator} ${scanner} ${ARGN} WORKING_DIRECTORY ${source_dir}
     OUTPUT_VARIABLE lines COMMAND_ERROR_IS_FATAL ANY)
   set(${result} "${lines}" PARENT_SCOPE)
 endfunction()

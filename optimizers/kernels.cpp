@@ -14,6 +14,7 @@
 #include "optimizers/drive.h"
 #include "optimizers/half_inverse/half_inverse_step.h"
 #include "optimizers/steps/bfgs_update.h"
+#include "suite/core/math.h"
 #include "suite/nn/cnn.h"
 #include "suite/nn/mlp.h"
 
@@ -37,8 +38,8 @@ void bm_bfgs_update(benchmark::State& state) {
   std::vector<double> h(static_cast<std::size_t>(d * d));
   Vector<double> s(d), y(d), scratch(d);
   for (Index i = 0; i < d; ++i) {
-    s(i) = std::sin(0.7 * static_cast<double>(i) + 1);
-    y(i) = (1 + 0.5 * std::cos(static_cast<double>(i))) * s(i);
+    s(i) = math::sin(0.7 * static_cast<double>(i) + 1);
+    y(i) = (1 + 0.5 * math::cos(static_cast<double>(i))) * s(i);
   }
   dense::set_identity(d, h.data());
   for (auto _ : state) {
@@ -59,8 +60,8 @@ void bm_bfgs_batch(benchmark::State& state) {
   const Index n = 128;
   Batch<double> x0(2, n);
   for (Index i = 0; i < n; ++i) {
-    x0(0, i) = 2 * std::sin(static_cast<double>(i));
-    x0(1, i) = 2 * std::cos(1.7 * static_cast<double>(i));
+    x0(0, i) = 2 * math::sin(static_cast<double>(i));
+    x0(1, i) = 2 * math::cos(1.7 * static_cast<double>(i));
   }
   Bfgs solver;
   for (auto _ : state) drive(solver, rosenbrock, x0);
@@ -126,7 +127,7 @@ struct Update {
     // Controls matter less and less: a spectrum over some decades.
     solver = noise(per * outputs, samples);
     for (Index k = 0; k < outputs; ++k)
-      solver.middleRows(k * per, per) *= std::pow(
+      solver.middleRows(k * per, per) *= math::pow(
           10, -3.0 * static_cast<double>(k) / static_cast<double>(outputs));
     Batch<double> out(outputs, samples);
     net->forward(theta,
@@ -204,7 +205,7 @@ void bm_update_gram(benchmark::State& state) {
     benchmark::ClobberMemory();
   }
   // One triangle, two flops a product.
-  count_flops(state, std::pow(double(u.gram.rows()), 2) * features);
+  count_flops(state, double(u.gram.rows() * u.gram.rows()) * features);
   label(state);
 }
 

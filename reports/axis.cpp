@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "reports/text.h"
+#include "suite/core/math.h"
+#include "suite/core/power_of_ten.h"
 
 namespace physinv {
 namespace {
@@ -28,12 +30,12 @@ std::string power_label(double mantissa, int exponent) {
 std::string linear_label(double value, double step, double largest) {
   if (value == 0) return "0";
   if (largest >= 1e5 || largest < 1e-3) {
-    const int e = static_cast<int>(std::floor(std::log10(std::abs(value))));
-    return power_label(value / std::pow(10.0, e), e);
+    const int e = static_cast<int>(std::floor(math::log10(std::abs(value))));
+    return power_label(value / math::power_of_ten(e), e);
   }
   // 2.5 needs a digit more than 2.
-  int digits = std::max(0, static_cast<int>(-std::floor(std::log10(step))));
-  const double scaled = step * std::pow(10.0, digits);
+  int digits = std::max(0, static_cast<int>(-std::floor(math::log10(step))));
+  const double scaled = step * math::power_of_ten(digits);
   if (std::abs(scaled - std::round(scaled)) > 1e-6) ++digits;
   return with_minus(fmt::format("{:.{}f}", value, digits));
 }
@@ -46,10 +48,10 @@ bool Axis::shows(double value) const {
 }
 
 double Axis::warp(double value) const {
-  return log_ ? std::log10(value) : value;
+  return log_ ? math::log10(value) : value;
 }
 double Axis::unwarp(double value) const {
-  return log_ ? std::pow(10.0, value) : value;
+  return log_ ? math::power_of_ten(value) : value;
 }
 
 void Axis::include(double value) {
@@ -98,7 +100,7 @@ std::vector<Tick> Axis::ticks(int wanted) const {
 
 std::vector<Tick> Axis::linear_ticks(int wanted) const {
   const double rough = (hi_ - lo_) / std::max(wanted, 1);
-  const double unit = std::pow(10.0, std::floor(std::log10(rough)));
+  const double unit = math::power_of_ten(std::floor(math::log10(rough)));
   double step = 10 * unit;
   for (const double m : {5.0, 2.5, 2.0, 1.0}) {
     if (m * unit >= 0.85 * rough) step = m * unit;
@@ -116,11 +118,11 @@ std::vector<Tick> Axis::linear_ticks(int wanted) const {
 }
 
 std::vector<Tick> Axis::decade_ticks(int wanted) const {
-  const double a = std::log10(lo_), b = std::log10(hi_);
+  const double a = math::log10(lo_), b = math::log10(hi_);
   if (b - a < 0.5) return linear_ticks(wanted);
   const bool plain = a > -2.6 && b < 4.1;
   const auto label = [&](double mantissa, int e) {
-    return plain ? fmt::format("{:.6g}", mantissa * std::pow(10.0, e))
+    return plain ? fmt::format("{:.6g}", mantissa * math::power_of_ten(e))
                  : power_label(mantissa, e);
   };
   const int stride =
@@ -132,16 +134,16 @@ std::vector<Tick> Axis::decade_ticks(int wanted) const {
     if (e % stride != 0) continue;
     for (const double m : {1.0, 2.0, 5.0}) {
       if (m > 1 && !between) break;
-      const double at = e + std::log10(m);
+      const double at = e + math::log10(m);
       if (at < a - 1e-9 || at > b + 1e-9) continue;
-      ticks.push_back({m * std::pow(10.0, e), label(m, e)});
+      ticks.push_back({m * math::power_of_ten(e), label(m, e)});
     }
   }
   return ticks;
 }
 
 std::vector<Tick> Axis::binary_ticks(int wanted) const {
-  const int spread = static_cast<int>(std::lround(std::log2(most_ / least_)));
+  const int spread = static_cast<int>(std::lround(math::log2(most_ / least_)));
   const int stride = std::max(1, (spread + wanted) / std::max(wanted + 1, 1));
   std::vector<Tick> ticks;
   for (int e = 0; e <= spread; e += stride) {

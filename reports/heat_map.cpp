@@ -7,6 +7,8 @@
 #include "reports/axis.h"
 #include "reports/palette.h"
 #include "reports/png.h"
+#include "suite/core/math.h"
+#include "suite/core/power_of_ten.h"
 
 namespace physinv {
 namespace {
@@ -28,12 +30,12 @@ double block_mean(const Field2D& f,
     for (std::size_t i = i0; i < i1; ++i) {
       const double v = f.values[j * f.x.size() + i];
       if (!scale.shows(v)) continue;
-      sum += f.log_scale ? std::log10(v) : v;
+      sum += f.log_scale ? math::log10(v) : v;
       ++count;
     }
   }
   const double mean = sum / count;
-  return f.log_scale ? std::pow(10.0, mean) : mean;
+  return f.log_scale ? math::power_of_ten(mean) : mean;
 }
 
 Raster color_cells(const Field2D& f, const Axis& scale) {

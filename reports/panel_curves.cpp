@@ -5,6 +5,7 @@
 
 #include "reports/marks.h"
 #include "reports/panel.h"
+#include "suite/core/math.h"
 
 namespace physinv {
 namespace {
@@ -89,7 +90,7 @@ void PanelPlot::curves(Svg& svg, const Rect& box) const {
 void PanelPlot::arrows(Svg& svg, const Rect& box, const Arrows& of) const {
   double longest = 0;
   for (std::size_t i = 0; i < of.u.size(); ++i)
-    longest = std::max(longest, std::hypot(of.u[i], of.v[i]));
+    longest = std::max(longest, math::hypot(of.u[i], of.v[i]));
   const double unit =
       longest > 0 && std::isfinite(longest)
           ? std::abs(px(box, x_.lo() + of.length) - px(box, x_.lo())) / longest

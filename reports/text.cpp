@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "suite/core/power_of_ten.h"
+
 namespace physinv {
 
 std::size_t display_width(std::string_view text) {
@@ -49,7 +51,7 @@ std::vector<std::string> wrap(std::string_view text, std::size_t width) {
 std::string show_number(double value, int digits) {
   if (!std::isfinite(value)) return "–";
   const double size = std::abs(value);
-  const bool vanishes = size != 0 && size < 0.5 * std::pow(10.0, -digits);
+  const bool vanishes = size != 0 && size < 0.5 * math::power_of_ten(-digits);
   if (vanishes || size >= 1e7) return fmt::format("{:.1e}", value);
   const std::string text = fmt::format("{:.{}f}", value, digits);
   return value == 0 && text.front() == '-' ? text.substr(1) : text;

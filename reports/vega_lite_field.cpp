@@ -9,6 +9,8 @@
 #include "reports/axis.h"
 #include "reports/palette.h"
 #include "reports/vega_lite_parts.h"
+#include "suite/core/math.h"
+#include "suite/core/power_of_ten.h"
 
 namespace physinv {
 namespace {
@@ -18,14 +20,14 @@ using Json = nlohmann::ordered_json;
 /// Between the places of a grid, and as far beyond its ends.
 std::vector<double> edges_of(const std::vector<double>& at, bool log) {
   std::vector<double> warped, edges;
-  for (const double v : at) warped.push_back(log ? std::log10(v) : v);
+  for (const double v : at) warped.push_back(log ? math::log10(v) : v);
   const std::size_t n = warped.size();
   for (std::size_t k = 0; k <= n; ++k) {
     const std::size_t after = std::clamp<std::size_t>(k, 1, n > 1 ? n - 1 : 1);
     const double step = n > 1 ? warped[after] - warped[after - 1] : 1;
     const double edge =
         k < n ? warped[k] - 0.5 * step : warped[n - 1] + 0.5 * step;
-    edges.push_back(log ? std::pow(10.0, edge) : edge);
+    edges.push_back(log ? math::power_of_ten(edge) : edge);
   }
   return edges;
 }
@@ -151,7 +153,7 @@ void add_vega_field(Json& layers, const Field2D& field, const Panel& panel) {
 void add_vega_arrows(Json& layers, const Arrows& arrows, const Panel& panel) {
   double longest = 0;
   for (std::size_t k = 0; k < arrows.x.size(); ++k)
-    longest = std::max(longest, std::hypot(arrows.u[k], arrows.v[k]));
+    longest = std::max(longest, math::hypot(arrows.u[k], arrows.v[k]));
   if (!(longest > 0) || !std::isfinite(longest)) return;
   const double scale = arrows.length / longest;
   Json rows = Json::array();

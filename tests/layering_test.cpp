@@ -62,7 +62,7 @@ const std::map<std::string, Layer> kLayers{
        "suite/evidence",
        "suite/harness"},
       {"eigen", "json"}}},
-    {"reports", {{"suite/store", "suite/results"}, {"json"}}},
+    {"reports", {{"suite/core", "suite/store", "suite/results"}, {"json"}}},
     {"python",
      {{"suite/core",
        "optimizers",

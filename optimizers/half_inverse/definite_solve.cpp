@@ -1,12 +1,12 @@
 #include "optimizers/half_inverse/definite_solve.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "optimizers/half_inverse/spectral_power.h"
-#include "suite/core/eigen_caches.h"
+#include "suite/linalg/cholesky.h"
+#include "suite/linalg/householder.h"
 
 namespace physinv::hig {
 
@@ -26,40 +26,45 @@ double norm_bound(BatchIn<double> gram) {
   return std::sqrt(total) * (1 + 1e-12);
 }
 
-using Cholesky = Eigen::LLT<Eigen::Ref<Batch<double>>>;
+}  // namespace
+
+Symmetric DefiniteSolve::padded(std::vector<double>& storage) {
+  const Index stride = padded_stride(m_);
+  storage.resize(static_cast<std::size_t>(m_ * stride));
+  return {storage.data(), m_, stride};
+}
 
 /// v = G^{-1} g by refinement: steps of the shifted matrix G - theta I, which
-/// `cholesky` has, until the update's relative error in `report` is at most
+/// was factored, until the update's relative error in `report` is at most
 /// `enough`. False where too many would be needed.
-bool refine(const Cholesky& cholesky,
-            BatchIn<double> gram,
-            VectorIn<double> g,
-            double enough,
-            Vector<double>& residual,
-            Vector<double>& step,
-            VectorOut<double> v,
-            PowerReport& report) {
-  const auto full = gram.selfadjointView<Eigen::Lower>();
-  v.setZero();
-  residual = g;
+bool DefiniteSolve::refine(VectorIn<double> g,
+                           double enough,
+                           VectorOut<double> v,
+                           PowerReport& report) {
+  const Symmetric gram = padded(gram_), factor = padded(factor_);
+  const auto length = static_cast<std::size_t>(gram.stride);
+  for (auto* x : {&v_, &product_, &residual_, &step_}) x->assign(length, 0.0);
+  std::copy(g.data(), g.data() + m_, residual_.data());
   // |J^T G^{-1} r|^2 = r.G^{-1} r <= r.(G - theta I)^{-1} r, of the residual
   // that is left, against |update|^2 = v.G v.
   for (int round = 0;; ++round) {
-    step = cholesky.solve(residual);
-    const double left = std::max(residual.dot(step), 0.0);
+    product_ = residual_;  // the solver overwrites it
+    cholesky_solve(factor, product_.data(), step_.data());
+    const double left = std::max(dot(m_, residual_.data(), step_.data()), 0.0);
     if (round > 0) report.error = std::sqrt(left) / report.norm;
-    if (report.error <= enough && round > 0) return true;
+    if (report.error <= enough && round > 0) break;
     if (round == kRounds) return false;
-    v += step;
-    residual.noalias() = full * v;
-    const double square = v.dot(residual);
-    residual = g - residual;
+    for (Index i = 0; i < m_; ++i) v_[std::size_t(i)] += step_[std::size_t(i)];
+    multiply_(gram, 0, v_.data(), product_.data(), nullptr);
+    const double square = dot(m_, v_.data(), product_.data());
+    for (Index i = 0; i < m_; ++i)
+      residual_[std::size_t(i)] = g(i) - product_[std::size_t(i)];
     if (!(square > 0)) return false;
     report.norm = std::sqrt(square);
   }
+  std::copy(v_.data(), v_.data() + m_, v.data());
+  return true;
 }
-
-}  // namespace
 
 bool DefiniteSolve::operator()(BatchIn<double> gram,
                                VectorIn<double> g,
@@ -84,16 +89,21 @@ bool DefiniteSolve::operator()(BatchIn<double> gram,
   const double theta =
       cut * cut + noise +
       kEpsilon * static_cast<double>(m + 2) * gram.diagonal().sum();
-  state_caches();
-  factor_ = gram.triangularView<Eigen::Lower>();
-  factor_.diagonal().array() -= theta;
+  m_ = m;
+  const Symmetric matrix = padded(gram_), factor = padded(factor_);
+  for (Index r = 0; r < m; ++r) {
+    double* const row = std::fill_n(matrix.row(r), r, 0.0);
+    std::fill(std::copy_n(gram.col(r).data() + r, m - r, row),
+              matrix.row(r) + matrix.stride,
+              0.0);
+  }
+  factor_ = gram_;
+  for (Index r = 0; r < m; ++r) factor.row(r)[r] -= theta;
   began_ = true;
-  const Cholesky cholesky(factor_);
-  if (cholesky.info() != Eigen::Success) return false;
+  if (!cholesky(factor)) return false;
 
   report = PowerReport{};
-  if (!refine(cholesky, gram, g, 1e-3 * tolerance, residual_, step_, v, report))
-    return false;
+  if (!refine(g, 1e-3 * tolerance, v, report)) return false;
   // G itself is known to `noise`: |delta update| <= noise |v| / (2 s_min).
   const double s_min = std::sqrt(theta);
   report.error +=

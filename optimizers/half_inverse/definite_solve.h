@@ -7,7 +7,10 @@
 /// factor theta / (lambda_min - theta) a round.
 #pragma once
 
+#include <vector>
+
 #include "optimizers/half_inverse/power.h"
+#include "suite/linalg/symmetric_update.h"
 
 namespace physinv::hig {
 
@@ -28,12 +31,20 @@ class DefiniteSolve {
   /// Whether the last call factored anything.
   bool began() const { return began_; }
   std::size_t bytes() const {
-    return static_cast<std::size_t>(factor_.size()) * sizeof(double);
+    return (gram_.size() + factor_.size()) * sizeof(double);
   }
 
  private:
-  Batch<double> factor_;
-  Vector<double> residual_, step_;
+  bool refine(VectorIn<double> g,
+              double enough,
+              VectorOut<double> v,
+              PowerReport& report);
+  linalg::Symmetric padded(std::vector<double>& storage);
+
+  Index m_ = 0;
+  std::vector<double> gram_, factor_;  ///< memory rows of Symmetric
+  std::vector<double> v_, product_, residual_, step_;  ///< padded
+  linalg::SymmetricProduct multiply_;
   bool began_ = false;
 };
 

@@ -7,9 +7,10 @@
 #include "optimizers/half_inverse/units.h"
 #include "suite/core/check.h"
 #include "suite/core/eigen_caches.h"
+#include "suite/core/math.h"
 #include "suite/core/unit_of.h"
 #include "suite/linalg/decompositions.h"
-#include "suite/linalg/eight.h"
+#include "suite/linalg/householder.h"
 
 namespace physinv::hig {
 
@@ -42,10 +43,11 @@ void rotate(Index n, double c, double s, double* a, double* b) {
 
 bool orthogonalize_columns(BatchOut<double> x, VectorOut<double> h) {
   const Index n = x.cols();
-  // Squared norms, anew where a column changes or moves: how Eigen sums one
-  // depends on where it lies.
-  Vector<double> square(n);
-  const auto note = [&](Index q) { square(q) = x.col(q).squaredNorm(); };
+  Vector<double> square(n);  // of the columns' norms
+  const auto product = [&](Index p, Index q) {
+    return dot(x.rows(), x.col(p).data(), x.col(q).data());
+  };
+  const auto note = [&](Index q) { square(q) = product(q, q); };
   for (Index q = 0; q < n; ++q) note(q);
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     // Columns of nothing but rounding may never come closer than that.
@@ -59,17 +61,17 @@ bool orthogonalize_columns(BatchOut<double> x, VectorOut<double> h) {
       if (longest != p) {
         x.col(p).swap(x.col(longest));
         std::swap(h(p), h(longest));
-        note(p), note(longest);
+        std::swap(square(p), square(longest));
       }
       for (Index q = p + 1; q < n; ++q) {
         const double a = square(p), b = square(q);
         if (b < kNothing) continue;
-        const double along = x.col(p).dot(x.col(q));
+        const double along = product(p, q);
         if (std::abs(along) <= angle * std::sqrt(a) * std::sqrt(b)) continue;
         turned = true;
         const double zeta = (b - a) / (2 * along);
-        const double t =
-            std::copysign(1.0, zeta) / (std::abs(zeta) + std::hypot(1.0, zeta));
+        const double t = std::copysign(1.0, zeta) /
+                         (std::abs(zeta) + math::hypot(1.0, zeta));
         const double c = 1 / std::sqrt(1 + t * t), s = c * t;
         rotate(x.rows(), c, s, x.col(p).data(), x.col(q).data());
         note(p), note(q);

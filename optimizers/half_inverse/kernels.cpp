@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "optimizers/half_inverse/half_inverse.h"
+#include "suite/core/math.h"
 
 #ifdef PHYSINV_BENCH_LAPACK
 extern "C" {
@@ -57,7 +58,7 @@ struct Sample {
     };
     for (Index c = 0; c < j.cols(); ++c) {
       const double scale =
-          std::pow(10, -6.0 * static_cast<double>(c) / static_cast<double>(m));
+          math::pow(10, -6.0 * static_cast<double>(c) / static_cast<double>(m));
       for (Index r = 0; r < m; ++r) j(r, c) = next() * scale;
     }
     for (Index i = 0; i < m; ++i) g(i) = next();

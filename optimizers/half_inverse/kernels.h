@@ -6,12 +6,13 @@
 #include <cmath>
 
 #include "suite/core/batch.h"
+#include "suite/core/math.h"
 
 namespace physinv::hig {
 
 /// Of a symmetric matrix to tridiagonal form.
 inline double reduction_flops(Index m) {
-  return 4.0 / 3 * std::pow(static_cast<double>(m), 3);
+  return 4.0 / 3 * math::pow(static_cast<double>(m), 3);
 }
 
 inline void count_flops(benchmark::State& state, double flops) {

@@ -5,6 +5,7 @@
 #include "optimizers/network_model.h"
 #include "suite/core/oracle.h"
 #include "suite/core/probe.h"
+#include "suite/core/whole.h"
 
 namespace physinv {
 
@@ -13,7 +14,7 @@ Index drawn_before(const StageRun& run) {
   const auto found = run.previous->arrays.find("samples_drawn");
   return found == run.previous->arrays.end()
              ? 0
-             : static_cast<Index>(found->second(0, 0));
+             : whole_part<Index>(found->second(0, 0));
 }
 
 namespace {

@@ -272,11 +272,11 @@ BilliardsPath simulate_events(const Point& velocity,
 std::array<double, 2> exact_velocity(const Point& ball,
                                      const BilliardsOptions& o) {
   const double lx = o.target[0] - ball[0], ly = o.target[1] - ball[1];
-  const double l = std::hypot(lx, ly);
+  const double l = math::hypot(lx, ly);
   const Point n = {lx / l, ly / l};
   const Point w = {ball[0] - 2 * o.radius * n[0] - o.cue[0],
                    ball[1] - 2 * o.radius * n[1] - o.cue[1]};
-  const double length = std::hypot(w[0], w[1]);
+  const double length = math::hypot(w[0], w[1]);
   const double cosine = (n[0] * w[0] + n[1] * w[1]) / length;
   const double speed = l / (reach(o) * cosine) + o.drag * length;
   return {w[0] / length * speed, w[1] / length * speed};

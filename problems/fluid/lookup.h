@@ -54,9 +54,16 @@ PHYSINV_LANES P floor_lanes(P x) {
 #ifdef __AVX2__
   if constexpr (sizeof(P) == 32 && sizeof(x[0]) == 8) return _mm256_floor_pd(x);
   if constexpr (sizeof(P) == 32 && sizeof(x[0]) == 4) return _mm256_floor_ps(x);
+#elif defined(__aarch64__)
+  if constexpr (sizeof(P) == 32 && sizeof(x[0]) == 8)
+    return by_halves([](auto h) { return Pack<double, 2>(vrndmq_f64(h)); }, x);
+  if constexpr (sizeof(P) == 32 && sizeof(x[0]) == 4)
+    return by_halves([](auto h) { return Pack<float, 4>(vrndmq_f32(h)); }, x);
 #endif
-  const P r = round_lanes(x);
-  return select(r > x, r - 1, r);
+  P below = x;
+  for (std::size_t k = 0; k < sizeof(P) / sizeof(x[0]); ++k)
+    below[k] = std::floor(x[k]);
+  return below;
 }
 
 /// base[index[k]] in lane k; one by one, as the processors' own gathers are no

@@ -80,7 +80,7 @@ double FrequencyLoss::operator()(VectorIn<double> difference,
         a = std::fma(im(j), s, std::fma(re(j), c, a));
         b = std::fma(-re(j), s, std::fma(im(j), c, b));
       }
-      const double size = std::hypot(a, b);
+      const double size = math::hypot(a, b);
       if (w * size <= least_) continue;
       loss += twice * (w * size - least_);
       const double g = twice * w / size;

@@ -8,6 +8,7 @@
 #include "problems/navier_stokes/blast.h"
 #include "problems/navier_stokes/box_flow.h"
 #include "suite/core/check.h"
+#include "suite/core/math.h"
 #include "suite/core/option_check.h"
 
 namespace physinv {
@@ -281,7 +282,8 @@ Samples<double> NavierStokes<T>::sample_labelled(Index first,
     out.x(0, i) = 2 * stream.uniform(o.x0[0], o.x0[1]) - 1;
     out.x(1, i) = stream.uniform(o.vx[0], o.vx[1]);
     out.x(2, i) = stream.uniform(o.vy[0], o.vy[1]) - 1;
-    for (Index k = 0; k < o.bounded; ++k) out.x(k, i) = std::atanh(out.x(k, i));
+    for (Index k = 0; k < o.bounded; ++k)
+      out.x(k, i) = math::atanh(out.x(k, i));
     out.given.col(i) = fluid::smooth_noise(
         {.cells = o.cells, .components = 2, .cut = cut, .deviation = o.noise},
         stream);

@@ -241,7 +241,7 @@ Samples<double> QuantumDipole<T>::sample(Index first,
     if (const auto k = static_cast<std::size_t>(first + i);
         k < options_.angles.size())
       f1 = math::cos(options_.angles[k]), f2 = math::sin(options_.angles[k]);
-    out.y.col(i) = (f1 * psi2 + f2 * psi3) / std::hypot(f1, f2);
+    out.y.col(i) = (f1 * psi2 + f2 * psi3) / math::hypot(f1, f2);
   }
   return out;
 }
@@ -401,8 +401,8 @@ void QuantumDipole<T>::level_loss(int k,
                                   VectorOut<double> loss) const {
   const Vector<double> level = quantum_observation(quantum_eigenstate(k));
   for (Index i = 0; i < y.cols(); ++i) {
-    const double miss = std::abs(inner(level, y.col(i))) -
-                        std::abs(inner(level, target.col(i)));
+    const double miss = math::abs(inner(level, y.col(i))) -
+                        math::abs(inner(level, target.col(i)));
     loss(i) = miss * miss;
   }
 }

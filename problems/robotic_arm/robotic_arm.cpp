@@ -3,7 +3,7 @@
 #include <cstring>
 
 #include "suite/core/check.h"
-#include "suite/core/math.h"
+#include "suite/core/math_lanes.h"
 #include "suite/core/option_check.h"
 #include "suite/core/simd/samples.h"
 

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "suite/core/check.h"
-#include "suite/core/math.h"
+#include "suite/core/math_lanes.h"
 #include "suite/core/option_check.h"
 #include "suite/core/simd/pack.h"
 

@@ -11,6 +11,7 @@
 #include "suite/gate/digits.h"
 #include "suite/gate/instructions.h"
 #include "suite/gate/verdict.h"
+#include "suite/harness/build_info.h"
 #include "suite/harness/nearest.h"
 #include "suite/store/file.h"
 
@@ -72,26 +73,35 @@ void AgainstBaseline::judge_stages(GateReport& report) {
 void AgainstBaseline::judge_instructions(GateReport& report) {
   const auto lines = countable();
   if (lines.empty() || !flags_.count) return;
+  const std::string elsewhere =
+      not_comparable(before_.counts.counter, build_info().instruction_set);
+  if (!elsewhere.empty())
+    return leave_counts(lines, "not compared", elsewhere, report);
   const auto counting = before_.counts.counter == counter_name(Counting::perf)
                             ? Counting::perf
                             : Counting::callgrind;
   std::string why = "the baseline is from another build";
-  if (!same_build() || !can_count(counting, counting_program(), &why)) {
-    report.findings.push_back(
-        {.kind = "instructions",
-         .name = fmt::format("{} cases", lines.size()),
-         .verdict = "not counted",
-         .detail = why,
-         .code = flags_.strict ? ExitCode::inconclusive : ExitCode::good,
-         .numbers = nullptr});
-    return;
-  }
+  if (!same_build() || !can_count(counting, counting_program(), &why))
+    return leave_counts(lines, "not counted", why, report);
   std::vector<std::string> names;
   for (const auto& line : lines) names.push_back(line.name);
   counts_ = count_instructions(
       counting, counting_program(), before_.chosen.profile, names);
   for (std::size_t i = 0; i < lines.size(); ++i)
     report.findings.push_back(judge(lines[i], counts_.lines[i]));
+}
+
+void AgainstBaseline::leave_counts(const std::vector<CountLine>& lines,
+                                   const std::string& verdict,
+                                   const std::string& why,
+                                   GateReport& report) const {
+  report.findings.push_back(
+      {.kind = "instructions",
+       .name = fmt::format("{} cases", lines.size()),
+       .verdict = verdict,
+       .detail = why,
+       .code = flags_.strict ? ExitCode::inconclusive : ExitCode::good,
+       .numbers = {{"recorded_by", before_.counts.counter}}});
 }
 
 void AgainstBaseline::renew() {
@@ -111,8 +121,16 @@ void AgainstBaseline::renew() {
   for (const auto& line : now_)
     if (fresh.contains(line.name)) renewed.stages.push_back(line);
   renewed.counts = renewed_counts();
+  // Counts that stay are of the build that counted them.
+  const bool kept = counts_.lines.empty() && !renewed.counts.lines.empty();
+  if (kept) renewed.build = before_.build;
   write_atomically(flags_.baseline, to_text(renewed));
-  fmt::print("renewed {}: {} stages\n", flags_.baseline, renewed.stages.size());
+  fmt::print("renewed {}: {} stages{}\n",
+             flags_.baseline,
+             renewed.stages.size(),
+             kept ? fmt::format("; instruction counts of {} are kept",
+                                renewed.counts.counter)
+                  : "");
 }
 
 /// Nothing passes because nothing was judged.

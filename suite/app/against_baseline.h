@@ -18,7 +18,8 @@ class AgainstBaseline {
   void judge_stages(GateReport& report);
   /// Where the baseline has them and this build can count.
   void judge_instructions(GateReport& report);
-  /// The new lines in the place of the old ones; what is gone goes.
+  /// The new lines in the place of the old ones; what is gone goes. Counts
+  /// that were not made anew, as on another processor, stay with their build.
   void renew();
 
   const Baseline& before() const { return before_; }
@@ -31,6 +32,11 @@ class AgainstBaseline {
   }
   void require_something() const;
   std::vector<CountLine> countable() const;
+  /// What the report says of counts that nobody compares.
+  void leave_counts(const std::vector<CountLine>& lines,
+                    const std::string& verdict,
+                    const std::string& why,
+                    GateReport& report) const;
   CountTable renewed_counts() const;
 
   const GateFlags& flags_;

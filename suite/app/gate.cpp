@@ -49,6 +49,7 @@ void judge_clock(const GateFlags& flags,
   setenv("PHYSINV_NO_REPORT", "1", 1);  // programs of other versions, too
   const auto before = cases_known_to(options.base, chosen);
   const auto after = cases_known_to(options.head, chosen);
+  require_one_processor(options.base, options.head);
   for (const Case& c : cases)
     if (before.contains(c.info.name) && after.contains(c.info.name))
       options.cases.push_back(c.info.name);

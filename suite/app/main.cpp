@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <malloc.h>
+#include <sys/auxv.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -134,10 +135,14 @@ void open_standard_streams() {
 
 /// The build may come from another machine.
 bool can_run_here() {
-#ifdef PHYSINV_AVX512
+#if defined(PHYSINV_AVX512)
   return __builtin_cpu_supports("avx512vl") != 0;
-#else
+#elif defined(__x86_64__)
   return __builtin_cpu_supports("avx2") != 0;
+#elif defined(__ARM_FEATURE_CRC32)
+  return (getauxval(AT_HWCAP) & HWCAP_CRC32) != 0;
+#else
+  return true;
 #endif
 }
 

@@ -7,6 +7,8 @@
 #include <map>
 #include <tuple>
 
+#include "suite/core/math.h"
+
 namespace physinv {
 namespace {
 
@@ -68,7 +70,7 @@ Compared group_of(const StageId& id, std::vector<Compared> stages) {
 }
 
 double decades(double ratio) {
-  return ratio > 0 && std::isfinite(ratio) ? std::abs(std::log10(ratio)) : 0;
+  return ratio > 0 && std::isfinite(ratio) ? std::abs(math::log10(ratio)) : 0;
 }
 
 /// b over a; 1 if both are 0.

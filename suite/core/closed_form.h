@@ -1,37 +1,60 @@
-/// A problem's forward pass as its paper writes it, in complex numbers of long
-/// double: what rounding is measured against. Plain loops that share nothing
-/// with the problem's kernels. Derivatives are taken by an imaginary step (no
-/// difference, so no cancellation); comparisons look at real parts.
+/// A problem's forward pass as its paper writes it, in numbers of twice the
+/// digits of a double: what rounding is measured against. Plain loops that
+/// share nothing with the problem's kernels. A number carries its derivative
+/// along (forward mode), so that nothing cancels; comparisons look at values.
 #pragma once
 
-#include <cmath>
-#include <complex>
 #include <functional>
-#include <limits>
 #include <span>
 
+#include "suite/core/double_double.h"
 #include "suite/core/options.h"
 
 namespace physinv {
 
-using Exact = std::complex<long double>;
+/// A value and its derivative by the one input that moves.
+struct Exact {
+  DoubleDouble value, slope;
 
-/// exp(z), for a real part below 11000 in size (0 and inf beyond), by sums and
-/// products: the C library's takes an instruction, f2xm1, whose last bit hangs
-/// on the processor. exp(r + k ln 2) = 2^k exp(r) (Cody and Waite 1980), the
-/// series of exp(r) to r^20 / 20!, below 2^-70 of it.
-inline Exact exact_exp(const Exact& z) {
-  constexpr long double kHigh = 0xb17217f7d18p-44L,  // of ln 2: 41 bits
-      kLow = 0x9ef35793c7673008p-105L, kLn2 = kHigh + kLow;
-  const long double x = z.real();
-  if (!(std::abs(x) <= 11000))
-    return x < 0 ? 0 : x * std::numeric_limits<long double>::infinity();
-  const long double k = std::nearbyint(x / kLn2);
-  const long double r = x - k * kHigh - k * kLow;
-  long double sum = 1;
-  for (int n = 20; n > 0; --n) sum = 1 + sum * r / n;
-  return std::ldexp(sum, static_cast<int>(k)) *
-         Exact(std::cos(z.imag()), std::sin(z.imag()));
+  Exact() = default;
+  Exact(double v) : value(v) {}
+  Exact(DoubleDouble v, DoubleDouble s = {}) : value(v), slope(s) {}
+
+  friend Exact operator-(Exact a) { return {-a.value, -a.slope}; }
+  friend Exact operator+(Exact a, Exact b) {
+    return {a.value + b.value, a.slope + b.slope};
+  }
+  friend Exact operator-(Exact a, Exact b) { return a + -b; }
+  friend Exact operator*(Exact a, Exact b) {
+    return {a.value * b.value, a.slope * b.value + a.value * b.slope};
+  }
+  friend Exact operator*(DoubleDouble a, Exact b) {
+    return {a * b.value, a * b.slope};
+  }
+  friend Exact operator*(double a, Exact b) { return DoubleDouble(a) * b; }
+  friend Exact operator/(Exact a, Exact b) {
+    const DoubleDouble q = a.value / b.value;
+    return {q, (a.slope - q * b.slope) / b.value};
+  }
+  Exact& operator+=(Exact b) { return *this = *this + b; }
+  Exact& operator-=(Exact b) { return *this = *this - b; }
+};
+
+inline Exact sqrt(Exact x) {
+  const DoubleDouble root = sqrt(x.value);
+  return {root, x.slope / (2 * root)};
+}
+inline Exact exp(Exact x) {
+  const DoubleDouble e = exp(x.value);
+  return {e, e * x.slope};
+}
+inline Exact sin(Exact x) {
+  const auto [s, c] = sine_cosine(x.value);
+  return {s, c * x.slope};
+}
+inline Exact cos(Exact x) {
+  const auto [s, c] = sine_cosine(x.value);
+  return {c, -s * x.slope};
 }
 
 struct ClosedForm {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "suite/core/lanes_fft.h"
+#include "suite/core/math.h"
 #include "suite/core/real_fft.h"
 #include "suite/core/workspace.h"
 
@@ -22,7 +23,7 @@ constexpr Index kSignals = kLanes<T>;
 void report(benchmark::State& state, Index signals) {
   const auto n = static_cast<double>(state.range(0));
   state.counters["flops"] =
-      benchmark::Counter(5 * n * std::log2(n) * static_cast<double>(signals),
+      benchmark::Counter(5 * n * math::log2(n) * static_cast<double>(signals),
                          benchmark::Counter::kIsIterationInvariantRate);
   state.counters["per_signal"] =
       benchmark::Counter(static_cast<double>(signals),

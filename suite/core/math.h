@@ -1,24 +1,22 @@
 /// Elementary functions with the same bits on every processor. The C library
 /// has several versions of exp, sin, log and pow, chooses among them by the
-/// processor and changes them from release to release; here they are SLEEF's
-/// deterministic ones (https://sleef.org, "finz": fused operations, same bits
-/// for every length of vector). Errors below 1 ulp, erfc below 1.5 ulp; NaN and
-/// infinities as in the C standard; errno stays as it is.
+/// processor and changes them from release to release; its hypot takes other
+/// formulas on x86-64 and aarch64. Here they are SLEEF's deterministic ones
+/// (https://sleef.org, "finz": fused operations, same bits for every length of
+/// vector). Errors below 1 ulp, erfc below 1.5 ulp; NaN and infinities as in
+/// the C standard; errno stays as it is.
 ///
-/// What computes numbers takes these. What IEEE 754 rounds exactly (sqrt, fma,
-/// floor, remainder, ...) is taken from the standard library.
+/// Every number that is recorded or printed comes from these. What IEEE 754
+/// rounds exactly (sqrt, fma, floor, remainder, ...) is taken from the standard
+/// library.
 #pragma once
 
-#include "suite/core/simd/pack.h"
-
-// Eigen is not to see AVX-512 (cmake/physinv.cmake), SLEEF is.
-#pragma push_macro("__AVX512F__")
-#undef __AVX512F__
-#ifdef PHYSINV_AVX512
-#define __AVX512F__ 1
-#endif
 #include <sleef.h>
-#pragma pop_macro("__AVX512F__")
+
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <utility>
 
 namespace physinv::math {
 
@@ -30,6 +28,7 @@ namespace physinv::math {
     return Sleef_finz_##name##f1_##accuracy##purecfma(x); \
   }
 PHYSINV_FUNCTION(exp, u10)
+PHYSINV_FUNCTION(exp2, u10)
 PHYSINV_FUNCTION(expm1, u10)
 PHYSINV_FUNCTION(log, u10)
 PHYSINV_FUNCTION(log1p, u10)
@@ -39,11 +38,18 @@ PHYSINV_FUNCTION(sin, u10)
 PHYSINV_FUNCTION(cos, u10)
 PHYSINV_FUNCTION(tan, u10)
 PHYSINV_FUNCTION(asin, u10)
+PHYSINV_FUNCTION(acos, u10)
 PHYSINV_FUNCTION(tanh, u10)
+PHYSINV_FUNCTION(atanh, u10)
 PHYSINV_FUNCTION(erf, u10)
 PHYSINV_FUNCTION(erfc, u15)
 PHYSINV_FUNCTION(lgamma, u10)
 #undef PHYSINV_FUNCTION
+
+/// The angle of (x, y), from -pi to pi.
+inline double atan2(double y, double x) {
+  return Sleef_finz_atan2d1_u10purecfma(y, x);
+}
 
 /// x^y
 inline double pow(double x, double y) {
@@ -51,6 +57,53 @@ inline double pow(double x, double y) {
 }
 inline float pow(float x, float y) {
   return Sleef_finz_powf1_u10purecfma(x, y);
+}
+
+/// sqrt(x^2 + y^2) of numbers whose squares are normal, x >= y > 0: the root
+/// of the rounded sum, less the rest of h^2 - x^2 - y^2 over 2 h, which is
+/// written so that no product cancels. Source: C. F. Borges, Algorithm 1014: An
+/// Improved Algorithm for hypot(x, y), ACM Trans. Math. Softw. 47 (2020).
+inline double corrected_hypot(double x, double y) {
+  const double h = std::sqrt(x * x + y * y);
+  double rest;
+  if (h <= 2 * y) {
+    const double d = h - y;
+    rest = x * (2 * d - x) + (d - 2 * (x - y)) * d;
+  } else {
+    const double d = h - x;
+    rest = 2 * d * (x - 2 * y) + ((4 * d - y) * y + d * d);
+  }
+  return h - rest / (2 * h);
+}
+
+/// sqrt(x^2 + y^2) without overflow or underflow on the way, error below 1 ulp;
+/// infinity if one of them is infinite, even beside NaN.
+inline double hypot(double x, double y) {
+  if (!std::isfinite(x) || !std::isfinite(y)) {
+    if (std::isinf(x) || std::isinf(y))
+      return std::numeric_limits<double>::infinity();
+    return x + y;
+  }
+  double a = std::abs(x), b = std::abs(y);
+  if (a < b) std::swap(a, b);
+  if (b * 0x1p54 <= a) return a + b;
+  constexpr double kLarge = 0x1p511, kTiny = 0x1p-459, kScale = 0x1p600;
+  if (a > kLarge) return corrected_hypot(a / kScale, b / kScale) * kScale;
+  if (b < kTiny) return corrected_hypot(a * kScale, b * kScale) / kScale;
+  return corrected_hypot(a, b);
+}
+/// Squares of floats are exact in double.
+inline float hypot(float x, float y) {
+  if (std::isinf(x) || std::isinf(y))
+    return std::numeric_limits<float>::infinity();
+  const double a = x, b = y;
+  return static_cast<float>(std::sqrt(a * a + b * b));
+}
+
+/// |z|
+template <class T>
+T abs(const std::complex<T>& z) {
+  return hypot(z.real(), z.imag());
 }
 
 template <class T>
@@ -67,25 +120,5 @@ inline SinCos<float> sincos(float x) {
   const auto both = Sleef_finz_sincosf1_u10purecfma(x);
   return {both.x, both.y};
 }
-
-/// Of a register of numbers, with the bits of each alone.
-#define PHYSINV_FUNCTIONS(T, W, kind, width)                   \
-  inline Pack<T, W> exp(Pack<T, W> x) {                        \
-    return Sleef_finz_exp##kind##_u10##width(x);               \
-  }                                                            \
-  inline Pack<T, W> log1p(Pack<T, W> x) {                      \
-    return Sleef_finz_log1p##kind##_u10##width(x);             \
-  }                                                            \
-  inline SinCos<Pack<T, W>> sincos(Pack<T, W> x) {             \
-    const auto both = Sleef_finz_sincos##kind##_u10##width(x); \
-    return {both.x, both.y};                                   \
-  }
-PHYSINV_FUNCTIONS(double, 4, d4, avx2)
-PHYSINV_FUNCTIONS(float, 8, f8, avx2)
-#ifdef PHYSINV_AVX512
-PHYSINV_FUNCTIONS(double, 8, d8, avx512f)
-PHYSINV_FUNCTIONS(float, 16, f16, avx512f)
-#endif
-#undef PHYSINV_FUNCTIONS
 
 }  // namespace physinv::math

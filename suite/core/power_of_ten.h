@@ -2,6 +2,9 @@
 #pragma once
 
 #include <charconv>
+#include <cmath>
+
+#include "suite/core/math.h"
 
 namespace physinv::math {
 
@@ -11,6 +14,13 @@ inline double power_of_ten(int k) {
   double value = 0;
   std::from_chars(text, end, value);
   return value;
+}
+
+/// The same of a number, with an error below 1 ulp where it is not whole.
+inline double power_of_ten(double x) {
+  return x == std::trunc(x) && std::abs(x) < 400
+             ? power_of_ten(static_cast<int>(x))
+             : pow(10.0, x);
 }
 
 }  // namespace physinv::math

@@ -5,6 +5,7 @@
 ///   while (probe.proceed([&](BatchOut<double> x) { predict(x); })) step();
 #pragma once
 
+#include <concepts>
 #include <functional>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "suite/core/clock.h"
 #include "suite/core/curve.h"
 #include "suite/core/hash.h"
+#include "suite/core/nan.h"
 
 namespace physinv {
 
@@ -143,6 +145,17 @@ class Probe {
   void trace(const void* data, std::size_t bytes) {
     if (follows_) trajectory_ = hash_bytes(data, bytes, trajectory_);
     if (trace_) trace_(data, bytes);
+  }
+  /// Every NaN as the same bits.
+  template <std::floating_point T>
+  void trace(const T* values, std::size_t bytes) {
+    if (!traced()) return;
+    const auto count = static_cast<Index>(bytes / sizeof(T));
+    if (!has_nan(values, count))
+      return trace(static_cast<const void*>(values), bytes);
+    std::vector<T> unified(values, values + count);
+    unify_nan(unified);
+    trace(static_cast<const void*>(unified.data()), bytes);
   }
 
  private:

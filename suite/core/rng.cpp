@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "suite/core/hash.h"
-#include "suite/core/math.h"
+#include "suite/core/math_lanes.h"
 #include "suite/core/simd/pack.h"
 
 namespace physinv {

@@ -21,6 +21,15 @@ namespace {
 /// one that sleeps.
 constexpr double kLongest = 100e-6, kShortest = 1e-6;
 
+/// Leaves the core to its other thread for a moment.
+void pause() {
+#ifdef __x86_64__
+  __builtin_ia32_pause();
+#elif defined(__aarch64__)
+  asm volatile("isb" ::: "memory");
+#endif
+}
+
 /// Waits until a number changes: briefly awake, then asleep (a futex). To stay
 /// awake is worth it where that is sooner than a wake-up, as between the steps
 /// of a small network. On a core that others share it only keeps them, and who
@@ -33,7 +42,7 @@ class Waiting {
     do {
       for (int i = 0; i < 32; ++i) {
         if (number.load(std::memory_order_acquire) != old) return;
-        __builtin_ia32_pause();
+        pause();
       }
     } while (wall_now() - begin < awake_);
     number.wait(old, std::memory_order_acquire);

@@ -155,12 +155,11 @@ Answer exact_answer(const ClosedForm& f,
                     const Problem<double>& base,
                     const Samples<double>& drawn,
                     bool gradient) {
-  constexpr long double kStep = 1e-100L;
   const Index n = drawn.x.cols();
   const auto at = [&](Index i, Index moved) {
     std::vector<Exact> x, y(static_cast<std::size_t>(drawn.y.rows()));
     for (Index k = 0; k < drawn.x.rows(); ++k)
-      x.emplace_back(drawn.x(k, i), k == moved ? kStep : 0);
+      x.emplace_back(drawn.x(k, i), k == moved ? 1 : 0);
     const Vector<double> given = drawn.given.col(i);
     f.forward(x, {given.data(), static_cast<std::size_t>(given.size())}, y);
     return y;
@@ -169,7 +168,7 @@ Answer exact_answer(const ClosedForm& f,
   for (Index i = 0; i < n; ++i) {
     const auto column = at(i, -1);
     for (Index j = 0; j < y.rows(); ++j)
-      y(j, i) = static_cast<double>(column[static_cast<std::size_t>(j)].real());
+      y(j, i) = double(column[static_cast<std::size_t>(j)].value);
   }
   if (!gradient) return {y, {}};
   Answer out{Batch<double>(drawn.x.rows(), n), next_of(y)};
@@ -178,11 +177,10 @@ Answer exact_answer(const ClosedForm& f,
   for (Index i = 0; i < n; ++i) {
     for (Index k = 0; k < drawn.x.rows(); ++k) {
       const auto moved = at(i, k);
-      long double sum = 0;
+      DoubleDouble sum;
       for (Index j = 0; j < y.rows(); ++j)
-        sum += moved[static_cast<std::size_t>(j)].imag() / kStep *
-               static_cast<long double>(y_bar(j, i));
-      out.base(k, i) = static_cast<double>(sum);
+        sum += moved[static_cast<std::size_t>(j)].slope * y_bar(j, i);
+      out.base(k, i) = double(sum);
     }
   }
   return out;

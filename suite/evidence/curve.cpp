@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "suite/core/math.h"
 #include "suite/evidence/statistics.h"
 
 namespace physinv {
@@ -16,7 +17,7 @@ LossPoint between(const LossPoint& a, const LossPoint& b, double share) {
   };
   return {mix(a.updates, b.updates),
           mix(a.seconds, b.seconds),
-          std::exp(mix(std::log(a.loss), std::log(b.loss)))};
+          math::exp(mix(math::log(a.loss), math::log(b.loss)))};
 }
 
 /// Where updates or seconds come to `x`.
@@ -84,7 +85,7 @@ std::optional<LossPoint> reaches(const StageRecord* stage, double loss) {
     return between(
         before,
         next,
-        std::log(before.loss / loss) / std::log(before.loss / next.loss));
+        math::log(before.loss / loss) / math::log(before.loss / next.loss));
   }
   return {};
 }

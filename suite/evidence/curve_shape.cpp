@@ -4,17 +4,19 @@
 #include <cmath>
 #include <cstddef>
 
+#include "suite/core/math.h"
 #include "suite/evidence/statistics.h"
 
 namespace physinv {
 
 RunValue steepness(int before) {
   return [=](const Run& run) -> std::optional<double> {
-    const double end = run.stage->curve.iteration.back() / std::exp2(before);
+    const double end =
+        run.stage->curve.iteration.back() / math::exp2(double(before));
     const auto loss = loss_at(*run.stage, end),
                half = loss_at(*run.stage, end / 2);
     if (!loss || !half) return {};
-    return std::log2(*half / *loss);
+    return math::log2(*half / *loss);
   };
 }
 
@@ -22,7 +24,7 @@ RunValue log_fall(const Clock& clock, double from, double to) {
   return [=](const Run& run) -> std::optional<double> {
     const auto a = loss_at(clock, from)(run), b = loss_at(clock, to)(run);
     if (!a || !b) return {};
-    return std::log(*a / *b);
+    return math::log(*a / *b);
   };
 }
 
@@ -50,7 +52,7 @@ RunValue scatter() {
     const Index last = loss.points() - 1, first = last / 2;
     if (last < 2) return {};
     for (Index k = first; k < last; ++k)
-      sum += std::abs(std::log(loss(k + 1) / loss(k)));
+      sum += std::abs(math::log(loss(k + 1) / loss(k)));
     return sum / static_cast<double>(last - first);
   };
 }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "suite/core/math.h"
+
 namespace physinv {
 namespace {
 
@@ -35,7 +37,7 @@ Panel flow_panel(std::string title,
                  Index every) {
   Panel panel = field_panel(
       std::move(title), layout, u.binaryExpr(v, [](double a, double b) {
-        return std::hypot(a, b);
+        return math::hypot(a, b);
       }));
   Arrows arrows{.length = 1.4 * double(every) * layout.size};
   for (Index j = every / 2; j < layout.ny; j += every)

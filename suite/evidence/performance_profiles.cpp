@@ -9,6 +9,8 @@
 #include <optional>
 #include <utility>
 
+#include "suite/core/power_of_ten.h"
+
 namespace physinv {
 namespace {
 
@@ -264,7 +266,7 @@ std::vector<double> distribution_targets() {
   constexpr int kTargets = 24, kPerDecade = 4;
   std::vector<double> all;
   for (int k = 1; k <= kTargets; ++k)
-    all.push_back(std::pow(10.0, -static_cast<double>(k) / kPerDecade));
+    all.push_back(math::power_of_ten(-static_cast<double>(k) / kPerDecade));
   return all;
 }
 

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "suite/core/math.h"
+
 namespace physinv {
 namespace {
 
@@ -50,7 +52,7 @@ double normal_p(double n, const Ranks& sum) {
   const double mean = n * (n + 1) / 4;
   const double variance = n * (n + 1) * (2 * n + 1) / 24 - sum.shared / 48;
   const double w = std::min(sum.below, sum.above);
-  return std::erfc((mean - w) / std::sqrt(2 * variance));
+  return math::erfc((mean - w) / std::sqrt(2 * variance));
 }
 
 }  // namespace
@@ -58,8 +60,8 @@ double normal_p(double n, const Ranks& sum) {
 double decades_above(double a, double b) {
   const bool is_a = std::isfinite(a), is_b = std::isfinite(b);
   if (!is_a || !is_b) return is_a == is_b ? 0 : is_a ? -HUGE_VAL : HUGE_VAL;
-  return std::log10(std::max(a, kSolvedLoss)) -
-         std::log10(std::max(b, kSolvedLoss));
+  return math::log10(std::max(a, kSolvedLoss)) -
+         math::log10(std::max(b, kSolvedLoss));
 }
 
 SignedRank signed_rank(std::span<const double> differences) {

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "suite/core/math.h"
+
 namespace physinv {
 
 double quantile(std::vector<double> values, double q) {
@@ -51,8 +53,10 @@ std::optional<Line> fit_line(std::span<const double> x,
   }
   Line line{.slope = xy / xx};
   line.intercept = mean_y - line.slope * mean_x;
-  for (std::size_t i = 0; i < x.size(); ++i)
-    residuals += std::pow(y[i] - line.intercept - line.slope * x[i], 2);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double residual = y[i] - line.intercept - line.slope * x[i];
+    residuals += residual * residual;
+  }
   line.slope_error = std::sqrt(residuals / (count - 2) / xx);
   return line;
 }
@@ -62,10 +66,10 @@ double chi_squared_tail(double x, int degrees) {
   const double half = 0.5 * x;
   if (!(half > 0)) return 1;
   const bool odd = degrees % 2 == 1;
-  double tail = odd ? std::erfc(std::sqrt(half)) : 0;
+  double tail = odd ? math::erfc(std::sqrt(half)) : 0;
   double a = odd ? 0.5 : 0;
-  double term = odd ? std::exp(-half) / std::sqrt(std::numbers::pi * half)
-                    : std::exp(-half);
+  double term = odd ? math::exp(-half) / std::sqrt(std::numbers::pi * half)
+                    : math::exp(-half);
   // term = half^a exp(-half) / Gamma(a + 1), from a = -1/2 or 0.
   if (odd) term *= half / 0.5;
   for (; 2 * a < degrees; term *= half / ++a) tail += term;

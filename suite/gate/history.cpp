@@ -10,7 +10,9 @@
 #include <set>
 #include <stdexcept>
 
+#include "suite/core/math.h"
 #include "suite/core/stop.h"
+#include "suite/core/whole.h"
 #include "suite/results/shortened.h"
 #include "suite/results/solved_loss.h"
 
@@ -47,7 +49,7 @@ void add_stage(PastBaseline& past, const std::vector<std::string_view>& words) {
           stage.loss = loss;
     if (word.starts_with("stop=")) stage.stop = word.substr(5);
     if (word.starts_with("nonfinite="))
-      stage.nonfinite = static_cast<std::int64_t>(decimal(word.substr(10)));
+      stage.nonfinite = whole_part<std::int64_t>(decimal(word.substr(10)));
     if (word.starts_with("ms="))
       stage.fastest_ms = decimal(word.substr(3, word.find("..") - 3));
   }
@@ -59,11 +61,11 @@ class Link {
  public:
   void add(double from, double to) {
     if (!(from > 0) || !(to > 0)) return;
-    sum_ += std::log(to / from);
+    sum_ += math::log(to / from);
     ++count_;
   }
   std::optional<double> ratio() const {
-    return count_ == 0 ? std::nullopt : std::optional(std::exp(sum_ / count_));
+    return count_ == 0 ? std::nullopt : std::optional(math::exp(sum_ / count_));
   }
 
  private:
@@ -197,9 +199,9 @@ Cell count_cell(double value) { return {.ours = value}; }
 Cell ratio_cell(const std::vector<std::optional<double>>& all) {
   double sum = 0, count = 0;
   for (const auto& ratio : all)
-    if (ratio) sum += std::log(*ratio), ++count;
+    if (ratio) sum += math::log(*ratio), ++count;
   if (count == 0) return {.text = "–"};
-  const double mean = std::exp(sum / count);
+  const double mean = math::exp(sum / count);
   return {.ours = mean, .text = fmt::format("×{:.3g}", mean)};
 }
 
@@ -273,7 +275,7 @@ PastBaseline past_baseline(std::string_view text) {
       past.counter = rest.substr(words[1].size() + 1);
     } else if (key.find('/') != key.npos && counts && words.size() == 2) {
       past.instructions[std::string(key)] =
-          static_cast<std::uint64_t>(decimal(words[1]));
+          whole_part<std::uint64_t>(decimal(words[1]));
     } else if (key.find('/') != key.npos && !counts) {
       add_stage(past, words);
     }

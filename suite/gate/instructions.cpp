@@ -6,8 +6,10 @@
 #include <charconv>
 #include <future>
 
+#include "suite/harness/build_info.h"
 #include "suite/harness/child.h"
 #include "suite/harness/context.h"
+#include "suite/harness/processor.h"
 #include "suite/store/file.h"
 
 namespace physinv {
@@ -71,7 +73,27 @@ std::uint64_t count(Counting counting,
 }  // namespace
 
 std::string counter_name(Counting counting) {
-  return counting == Counting::perf ? "perf x86-64-v3" : "callgrind x86-64-v3";
+  const std::string_view here = build_info().instruction_set;
+  return fmt::format("{} {}",
+                     counting == Counting::perf ? "perf" : "callgrind",
+                     processor_kind(here) == "x86-64" ? "x86-64-v3" : here);
+}
+
+std::string counted_processor(std::string_view counter) {
+  const auto at = counter.rfind(' ');
+  return std::string(
+      at == counter.npos ? "x86-64" : processor_kind(counter.substr(at + 1)));
+}
+
+std::string not_comparable(std::string_view counter,
+                           std::string_view instruction_set) {
+  const auto there = counted_processor(counter);
+  const auto here = processor_kind(instruction_set);
+  if (there == here) return "";
+  return fmt::format(
+      "instruction counts were recorded on {} and are not compared on {}",
+      there,
+      here);
 }
 
 bool can_count(Counting counting, const fs::path& program, std::string* why) {

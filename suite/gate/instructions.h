@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "suite/gate/baseline.h"
@@ -17,8 +18,18 @@
 namespace physinv {
 
 enum class Counting { perf, callgrind };
-/// As a baseline calls it: "callgrind x86-64-v3".
+/// As a baseline calls it, with what this build counts: "callgrind x86-64-v3",
+/// whatever the width of the other programs; "callgrind aarch64".
 std::string counter_name(Counting counting);
+
+/// Of which processor a counter's instructions are: "x86-64", "aarch64". A
+/// name without an instruction set is of x86-64.
+std::string counted_processor(std::string_view counter);
+
+/// Empty where a program of `instruction_set` may compare its instructions
+/// with those of `counter`; else why not, for the gate's line.
+std::string not_comparable(std::string_view counter,
+                           std::string_view instruction_set);
 
 /// Can `program` (physinv-count) be counted so? If not, `why` says it.
 bool can_count(Counting counting,

@@ -3,13 +3,16 @@
 #include <fmt/format.h>
 #include <sched.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 
 #include "suite/core/clock.h"
+#include "suite/core/math.h"
 #include "suite/core/rng.h"
 #include "suite/harness/child.h"
+#include "suite/harness/processor.h"
 #include "suite/harness/select.h"
 #include "suite/store/results_file.h"
 #include "suite/store/results_json.h"
@@ -103,9 +106,24 @@ std::string output_of(const std::vector<std::string>& arguments) {
       why + "; a physinv-bench or a directory with one lists its cases");
 }
 
+constexpr double kLongestAnswer = 20;
+
+/// As the program's --version says; empty if it does not.
+std::string processor_of(const fs::path& program) {
+  const Ended ended =
+      run_child({program.string(), "--version"}, {.seconds = kLongestAnswer});
+  constexpr std::string_view kLine = "\ninstruction set ";
+  const auto at = ended.output.find(kLine);
+  if (ended.status != 0 || at == std::string::npos) return "";
+  std::string_view set =
+      std::string_view(ended.output).substr(at + kLine.size());
+  set.remove_prefix(std::min(set.find_first_not_of(' '), set.size()));
+  return std::string(processor_kind(set.substr(0, set.find('\n'))));
+}
+
 std::string percent(double log_ratio) {
   return std::isfinite(log_ratio)
-             ? fmt::format("{:+.2f} %", 100 * std::expm1(log_ratio))
+             ? fmt::format("{:+.2f} %", 100 * math::expm1(log_ratio))
              : std::string(log_ratio < 0 ? "-inf" : "+inf");
 }
 
@@ -154,9 +172,8 @@ nlohmann::json numbers_of(const Decision& d,
 
 std::set<std::string> cases_known_to(const fs::path& program,
                                      const Chosen& chosen) {
-  constexpr double kLongestList = 20;
   const Ended listed = run_child(command(program, "list", chosen, {"--json"}),
-                                 {.seconds = kLongestList});
+                                 {.seconds = kLongestAnswer});
   if (listed.status != 0) refuse_program(ending_of(program.string(), listed));
   try {
     std::set<std::string> names;
@@ -166,6 +183,18 @@ std::set<std::string> cases_known_to(const fs::path& program,
   } catch (const nlohmann::json::exception&) {
     refuse_program(program.string() + " prints no list of cases as JSON");
   }
+}
+
+void require_one_processor(const fs::path& base, const fs::path& head) {
+  const auto of_base = processor_of(base), of_head = processor_of(head);
+  if (of_base.empty() || of_head.empty() || of_base == of_head) return;
+  throw UsageError(
+      fmt::format("{} is of {} and {} of {}; times of two processors are not "
+                  "compared",
+                  base.string(),
+                  of_base,
+                  head.string(),
+                  of_head));
 }
 
 Runner timed_run(const PairedTimingOptions& o) {
@@ -215,7 +244,7 @@ PairedTiming time_in_pairs(
       PairedTiming::Untimed& untimed = timing.untimed[left[k]];
       untimed = {.base = !(base[k] > 0), .head = !(head[k] > 0)};
       if (!untimed.base && !untimed.head)
-        watches[left[k]].add(std::log(head[k] / base[k]));
+        watches[left[k]].add(math::log(head[k] / base[k]));
     }
     const auto decisions = decide(watches, o.alpha, o.margin);
     for (const std::size_t i : left) timing.decisions[i] = decisions[i];

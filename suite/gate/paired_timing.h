@@ -32,6 +32,11 @@ struct PairedTimingOptions {
 std::set<std::string> cases_known_to(const std::filesystem::path& program,
                                      const Chosen& chosen);
 
+/// Throws UsageError if the programs say that they are of other processors:
+/// their times do not compare.
+void require_one_processor(const std::filesystem::path& base,
+                           const std::filesystem::path& head);
+
 /// Who runs a program on some cases: milliseconds of solving for each of them;
 /// no number where a stage came to no end that has a time.
 using Runner = std::function<std::vector<double>(

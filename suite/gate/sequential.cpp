@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "suite/core/math.h"
 #include "suite/core/median.h"
 
 namespace physinv {
@@ -13,8 +14,8 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double log_evidence(double n, double above) {
-  return n * std::log(2.0) - std::log(n + 1) - std::lgamma(n + 1) +
-         std::lgamma(above + 1) + std::lgamma(n - above + 1);
+  return n * math::log(2.0) - math::log(n + 1) - math::lgamma(n + 1) +
+         math::lgamma(above + 1) + math::lgamma(n - above + 1);
 }
 
 Speed speed_of(const Decision& d, bool rejected, double margin) {
@@ -44,14 +45,14 @@ double MedianWatch::median() const {
   return sorted_.empty() ? 0 : physinv::median(sorted_);
 }
 
-double MedianWatch::p_value() const { return std::exp(-most_); }
+double MedianWatch::p_value() const { return math::exp(-most_); }
 
 Interval MedianWatch::interval(double alpha) const {
   const std::size_t n = count();
   std::size_t below = 0;  // numbers that the lower end leaves behind
   while (2 * below <= n &&
          log_evidence(static_cast<double>(n), static_cast<double>(n - below)) >=
-             -std::log(alpha))
+             -math::log(alpha))
     ++below;
   if (below == 0) return {-kInfinity, kInfinity};
   return {sorted_[below - 1], sorted_[n - below]};

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "suite/core/double_double.h"
 #include "suite/core/hash.h"
 #include "suite/core/median.h"
 #include "suite/core/rng.h"
@@ -151,12 +152,12 @@ void read(StageLine& line, std::string_view key, std::string_view value) {
 double projection_of(const Batch<double>& x) {
   Stream weights = Rng::root("gate/projection", 0).stream();
   const double range = std::sqrt(3.0);
-  long double sum = 0;
+  DoubleDouble sum;
   for (const double v : x.reshaped()) {
-    const long double weight = weights.uniform(-range, range);
-    if (std::isfinite(v)) sum += weight * v;
+    const double weight = weights.uniform(-range, range);
+    if (std::isfinite(v)) sum += DoubleDouble::product(weight, v);
   }
-  return static_cast<double>(sum);
+  return double(sum);
 }
 
 double norm_of(const Batch<double>& x) {

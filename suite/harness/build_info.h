@@ -22,7 +22,7 @@ struct BuildInfo {
   std::string_view compiler, compiler_version, flags;
   std::string_view bit_flags;  ///< those that may change a bit of a result
   std::string_view build_type;
-  std::string_view instruction_set;  ///< "x86-64-v3" or "x86-64-v4"
+  std::string_view instruction_set;  ///< "x86-64-v3", "x86-64-v4", "aarch64"
   std::string_view fingerprint;
   std::string_view interfaces;  ///< hash of compiler, flags and headers: what
                                 ///< plug-ins must be built with

@@ -8,10 +8,12 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <string_view>
 
 #include "suite/harness/build_info.h"
 #include "suite/harness/outside.h"
+#include "suite/harness/processor.h"
 #include "suite/harness/revision.h"
 #include "suite/harness/run_case.h"
 
@@ -27,19 +29,6 @@ std::string first_line(const fs::path& path) {
   std::string line;
   std::getline(file, line);
   return line;
-}
-
-/// Value of the first "key : value" line of /proc/cpuinfo.
-std::string cpuinfo(std::string_view key) {
-  std::ifstream file("/proc/cpuinfo");
-  std::string line;
-  while (std::getline(file, line)) {
-    const auto colon = line.find(':');
-    if (colon == std::string::npos || !line.starts_with(key)) continue;
-    const auto value = line.find_first_not_of(' ', colon + 1);
-    return value == std::string::npos ? "" : line.substr(value);
-  }
-  return {};
 }
 
 /// "32K" -> 32768
@@ -81,6 +70,13 @@ json caches() {
   return all;
 }
 
+/// In MHz; 0 if Linux does not tell it, as on most aarch64.
+int clock_rate() {
+  std::ifstream file("/proc/cpuinfo");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  return std::atoi(cpuinfo_value(text, "cpu MHz").c_str());
+}
+
 json load() {
   double averages[3] = {};
   json all = json::array();
@@ -119,8 +115,6 @@ int available_cores() {
   return std::max(1, CPU_COUNT(&set));
 }
 
-std::string processor_name() { return cpuinfo("model name"); }
-
 json machine_context(const std::string& revision) {
   const BuildInfo& build = build_info();
   const std::string governor =
@@ -130,7 +124,7 @@ json machine_context(const std::string& revision) {
       {"date", utc_now()},
       {"host_name", host_name()},
       {"num_cpus", available_cores()},
-      {"mhz_per_cpu", std::atoi(cpuinfo("cpu MHz").c_str())},
+      {"mhz_per_cpu", clock_rate()},
       {"cpu_scaling_enabled", !governor.empty() && governor != "performance"},
       {"scaling_governor", governor},
       {"caches", caches()},

@@ -13,9 +13,6 @@ std::string variable(const char* name);
 /// Processors this process may use.
 int available_cores();
 
-/// As the processor calls itself; empty if unknown.
-std::string processor_name();
-
 /// Machine and build: date, host, processor, caches, load, compiler, flags,
 /// versions, revision (revision.h).
 nlohmann::json machine_context(const std::string& revision);

@@ -12,6 +12,7 @@
 #include "suite/core/clock.h"
 #include "suite/core/float_environment.h"
 #include "suite/core/hash.h"
+#include "suite/core/nan.h"
 #include "suite/core/oracle.h"
 #include "suite/core/probe.h"
 #include "suite/harness/keys.h"
@@ -111,6 +112,13 @@ void settle(StageRecord& r, Outcome& out) {
   }
 }
 
+/// Every NaN that is recorded is the same bits, whichever processor made it.
+void unify(StageRecord& r, Outcome& out) {
+  unify_nan(r.loss);
+  unify_nan(out.x);
+  for (auto& [name, array] : out.arrays) unify_nan(array);
+}
+
 /// What a stage that failed has run. Who runs a problem itself tells its counts
 /// at its end alone: then nobody knows them.
 Counts counts_of_failure(const Oracle& oracle) {
@@ -132,6 +140,7 @@ void fill(
   r.loss.resize(oracle.count());
   if (!probe.knows_losses(out.x, r.loss)) oracle.measure(out.x, r.loss);
   settle(r, out);
+  unify(r, out);
   const Index setting = c.experiment->setting.recorded;
   const Index recorded =
       setting > 0 ? std::min(setting, oracle.count()) : oracle.count();
@@ -146,6 +155,8 @@ void fill(
   r.clocks = probe.clocks();
   r.curve = probe.curve();
   r.curve.loss.conservativeResize(recorded, Eigen::NoChange);
+  unify_nan(r.curve.loss);
+  unify_nan(r.curve.x);
   r.buffer_bytes = out.bytes + oracle.bytes();
   r.rss_bytes = peak_rss();
 }

@@ -8,7 +8,11 @@
 namespace physinv::linalg {
 
 /// Rows whose products with one vector stay in registers.
+#ifdef __aarch64__
+inline constexpr int kDots = 4;
+#else
 inline constexpr int kDots = kParts == 1 ? 8 : 6;
+#endif
 
 /// f.operator()<kRows>(k) for groups of kMost, 2 and 1 rows that cover `count`.
 template <int kMost, class F>

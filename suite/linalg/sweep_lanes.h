@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "suite/core/math.h"
 #include "suite/linalg/eight.h"
 
 namespace physinv::linalg {
@@ -29,7 +30,7 @@ inline void rotation(double g, double f, double& c, double& s, double& r) {
     const double inverse = 1 / r;
     c = g * inverse, s = f * inverse;
   } else {
-    r = std::hypot(g, f);
+    r = math::hypot(g, f);
     c = r == 0 ? 1 : g / r;
     s = r == 0 ? 0 : f / r;
   }

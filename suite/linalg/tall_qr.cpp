@@ -18,6 +18,36 @@ struct Panel {
   double s[kPanel][kPanel];  ///< upper triangular
 };
 
+/// Columns whose products with a panel stay in registers.
+#ifdef __aarch64__
+constexpr int kProjected = 1;
+#else
+constexpr int kProjected = 2;
+#endif
+
+/// w[k][c] = V_k y_c by lanes, for columns c from kFirst on.
+template <int kFirst, int N>
+[[gnu::always_inline]] inline void project_columns(const Panel& p,
+                                                   double* const* y,
+                                                   Index begin,
+                                                   Index end,
+                                                   Pack8 (&w)[kPanel][N]) {
+  constexpr int kLast = kFirst + kProjected < N ? kFirst + kProjected : N;
+  for (Index i = begin; i < end; i += kWidth) {
+    Pack8 at[N];
+#pragma GCC unroll 4
+    for (int c = kFirst; c < kLast; ++c) at[c] = held(load(y[c] + i));
+#pragma GCC unroll 8
+    for (int k = 0; k < kPanel; ++k) {
+      const Pack8 v = held(load(p.v[k] + i));
+#pragma GCC unroll 4
+      for (int c = kFirst; c < kLast; ++c)
+        w[k][c] = fma_lanes(v, at[c], w[k][c]);
+    }
+  }
+  if constexpr (kLast < N) project_columns<kLast>(p, y, begin, end, w);
+}
+
 /// N columns y <- (I - V S V^T)^T y on rows [begin, end), multiples of kWidth.
 template <int N>
 void reflect_columns(const Panel& p, double* const* y, Index begin, Index end) {
@@ -26,17 +56,7 @@ void reflect_columns(const Panel& p, double* const* y, Index begin, Index end) {
   for (int k = 0; k < kPanel; ++k)
 #pragma GCC unroll 4
     for (int c = 0; c < N; ++c) w[k][c] = Pack8{};
-  for (Index i = begin; i < end; i += kWidth) {
-    Pack8 at[N];
-#pragma GCC unroll 4
-    for (int c = 0; c < N; ++c) at[c] = held(load(y[c] + i));
-#pragma GCC unroll 8
-    for (int k = 0; k < kPanel; ++k) {
-      const Pack8 v = held(load(p.v[k] + i));
-#pragma GCC unroll 4
-      for (int c = 0; c < N; ++c) w[k][c] = fma_lanes(v, at[c], w[k][c]);
-    }
-  }
+  project_columns<0>(p, y, begin, end, w);
   Pack8 f[kPanel][N];
 #pragma GCC unroll 4
   for (int c = 0; c < N; ++c) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "suite/core/math.h"
 #include "suite/linalg/sweep_lanes.h"
 
 namespace physinv::linalg {
@@ -22,7 +23,7 @@ double wilkinson(double a, double b, double off) {
   const double half = 0.5 * (a - b);
   if (off == 0) return b;
   const double ratio = half / off;
-  const double root = std::hypot(ratio, 1.0);
+  const double root = math::hypot(ratio, 1.0);
   return b - off / (ratio + std::copysign(root, ratio));
 }
 

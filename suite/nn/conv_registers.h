@@ -1,8 +1,6 @@
 /// Registers of the products of a convolution.
 #pragma once
 
-#include <immintrin.h>
-
 #include <cstring>
 
 #include "suite/core/simd/pack.h"

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "suite/core/math.h"
+#include "suite/core/math_lanes.h"
 #include "suite/nn/activation.h"
 
 namespace physinv::nn {
@@ -19,8 +19,8 @@ void PositionalEncoding<T>::forward(const LayerArgs<T>&,
       double at[kWidth], s[kWidth], c[kWidth];
       for (Index l = 0; l < kWidth; ++l)
         at[l] = j + l < x.samples ? double(a[j + l]) : 0.0;
-      const auto [s1, c1] = math::sincos(Pack<double, 4>(_mm256_loadu_pd(at)));
-      _mm256_storeu_pd(s, s1), _mm256_storeu_pd(c, c1);
+      const auto [s1, c1] = math::sincos(load<Pack<double, 4>>(at));
+      store(s, s1), store(c, c1);
       for (Index k = 0; k < frequencies_; ++k)
         for (Index l = 0; l < kWidth; ++l) {
           out[k * y.stride + j + l] = static_cast<T>(s[l]);

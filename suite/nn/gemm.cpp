@@ -12,10 +12,19 @@ namespace {
 
 // Register tiles of rows x vectors. Twelve accumulators fill the sixteen
 // registers of AVX2, and hide the latency of two FMA units (8 in flight).
-#ifdef PHYSINV_AVX512
-constexpr int kRows2 = 8, kRows1 = 16;
+#if defined(PHYSINV_AVX512)
+template <class T>
+constexpr int kRows2 = 8;
+constexpr int kRows1 = 16;
+#elif defined(__aarch64__)
+// There a vector takes two of 32.
+template <class T>
+constexpr int kRows2 = sizeof(T) == 4 ? 6 : 4;
+constexpr int kRows1 = 8;
 #else
-constexpr int kRows2 = 6, kRows1 = 12;
+template <class T>
+constexpr int kRows2 = 6;
+constexpr int kRows1 = 12;
 #endif
 constexpr Index kDepth = 256;    ///< k per round: a panel of B stays in the L1
 constexpr Index kRowBlock = 16;  ///< rows of one block of the thread loop
@@ -254,7 +263,8 @@ void rows(const Gemm<T>& g, Index begin, Index end) {
     const Index k1 = std::min(k0 + kDepth, g.k);
     Index j = 0;
     for (; j + 2 * wide <= g.n; j += 2 * wide)
-      panels<T, Wide, kRows2, 2, kUnit>(g, {begin, j, k0, k1, 2 * wide}, end);
+      panels<T, Wide, kRows2<T>, 2, kUnit>(
+          g, {begin, j, k0, k1, 2 * wide}, end);
     for (; j + wide <= g.n; j += wide)
       panels<T, Wide, kRows1, 1, kUnit>(g, {begin, j, k0, k1, wide}, end);
     for (; j + narrow <= g.n; j += narrow)

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "suite/core/clock.h"
+#include "suite/core/math.h"
 #include "suite/store/errors.h"
 #include "suite/store/file.h"
 
@@ -77,16 +78,16 @@ std::optional<TimeRange> Durations::of(const std::string& experiment,
   const auto at = rows_.find({experiment, method, stage});
   if (at == rows_.end()) return {};
   const Row* nearest = nullptr;
-  double least = std::log(kReach);
+  double least = math::log(kReach);
   for (const Row& row : at->second) {
     if (!(row.operations > 0 && operations > 0)) continue;
-    const double far = std::abs(std::log(operations / row.operations));
+    const double far = std::abs(math::log(operations / row.operations));
     if (far < least) least = far, nearest = &row;
   }
   if (nearest == nullptr) return {};
   const double by = operations / nearest->operations;
   const TimeRange& t = nearest->time;
-  const double wide = least > std::log(kSame) ? kElsewhere : kOthers;
+  const double wide = least > math::log(kSame) ? kElsewhere : kOthers;
   return TimeRange{by * t.seconds, by * t.least / wide, by * t.most * wide};
 }
 
@@ -119,7 +120,7 @@ double machine_factor() {
     least = std::min(least, now().cpu - begin);
   }
   // To a step of sqrt(2), so that repeated calls agree.
-  return std::exp2(std::round(2 * std::log2(least / kReference)) / 2);
+  return math::exp2(std::round(2 * math::log2(least / kReference)) / 2);
 }
 
 }  // namespace physinv

@@ -11,6 +11,7 @@
 #include "suite/harness/build_info.h"
 #include "suite/harness/context.h"
 #include "suite/harness/keys.h"
+#include "suite/harness/processor.h"
 #include "suite/harness/registry.h"
 #include "suite/harness/run_case.h"
 #include "suite/store/folder.h"

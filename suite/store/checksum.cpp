@@ -6,6 +6,8 @@
 
 #ifdef __SSE4_2__
 #include <nmmintrin.h>
+#elif defined(__ARM_FEATURE_CRC32)
+#include <arm_acle.h>
 #endif
 
 namespace physinv {
@@ -18,6 +20,15 @@ std::uint32_t add_word(std::uint32_t r, std::uint64_t word) {
 }
 std::uint32_t add_byte(std::uint32_t r, unsigned char byte) {
   return _mm_crc32_u8(r, byte);
+}
+
+#elif defined(__ARM_FEATURE_CRC32)
+
+std::uint32_t add_word(std::uint32_t r, std::uint64_t word) {
+  return __crc32cd(r, word);
+}
+std::uint32_t add_byte(std::uint32_t r, unsigned char byte) {
+  return __crc32cb(r, byte);
 }
 
 #else

@@ -1,8 +1,7 @@
 """What may not be in code that computes numbers:
 
 fused operations that nobody wrote: GCC 12 makes some of c a - s b, c b + s a
-although contraction is off; functions of the C library that it chooses by the
-processor (suite/core/math.h has others).
+although contraction is off.
 
 And what may not be in the loops that take most of the time: sums that went to
 the stack for want of registers, and structs that were copied through it in
@@ -10,7 +9,7 @@ pieces of 16 bytes.
 
 And what is for wide registers in the last program, if it is for narrow ones.
 
-PROGRAM... [--narrow] --libraries LIBRARY..."""
+PROGRAM... [--narrow]"""
 
 import re
 import subprocess
@@ -112,19 +111,8 @@ def found(program):
     return functions, fma, kept, wide
 
 
-def chosen(library):
-    """Functions whose bits glibc lets the processor decide, in itself or in
-    what it calls, and the library asks for."""
-    symbols = subprocess.run(["nm", "--undefined-only", library], check=True,
-                             capture_output=True, text=True).stdout
-    return set(re.findall(r" U ((?:exp|log|pow|sin|cos|tan|sincos|atan|atan2|"
-                          r"exp2|log2|sinh|cosh|tanh|expm1|log1p|erf|erfc|"
-                          r"lgamma|tgamma)f?)$", symbols, re.MULTILINE))
-
-
 def main():
-    split = sys.argv.index("--libraries")
-    programs = sys.argv[1:split]
+    programs = sys.argv[1:]
     narrow = "--narrow" in programs
     if narrow:
         programs.remove("--narrow")
@@ -140,11 +128,6 @@ def main():
         if narrow and program == programs[-1]:
             print("".join(wide[:5]), end="")
             wrong += len(wide)
-    for library in ";".join(sys.argv[split + 1:]).split(";"):
-        names = chosen(library)
-        if names:
-            print(f"{library}: {', '.join(sorted(names))} of the C library")
-        wrong += len(names)
     sys.exit(bool(wrong))
 
 

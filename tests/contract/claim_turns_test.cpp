@@ -36,9 +36,10 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 class Dice {
  public:
   explicit Dice(std::uint64_t seed) : engine_(seed), normals_(4096) {
-    for (double& z : normals_)
-      z = std::sqrt(-2 * std::log(1 - uniform())) *
-          std::cos(2 * std::numbers::pi * uniform());
+    for (double& z : normals_) {
+      z = std::sqrt(-2 * std::log(1 - uniform()));
+      z *= std::cos(2 * std::numbers::pi * uniform());
+    }
   }
 
   double uniform() { return 0x1p-53 * static_cast<double>(engine_() >> 11); }

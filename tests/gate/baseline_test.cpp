@@ -7,6 +7,8 @@
 #include <limits>
 
 #include "suite/gate/digits.h"
+#include "suite/gate/instructions.h"
+#include "suite/harness/build_info.h"
 #include "suite/store/checksum.h"
 #include "suite/store/errors.h"
 #include "tests/gate/lines.h"
@@ -44,6 +46,26 @@ TEST(Baseline, ReadsWhatItWrote) {
   EXPECT_EQ(read.stages[1].losses.nonfinite, 4);
   EXPECT_TRUE(std::isnan(read.stages[1].losses.median));
   EXPECT_EQ(read.counts.lines.at(0).instructions, 123456789u);
+}
+
+TEST(Counts, CompareOnTheProcessorThatRecordedThem) {
+  EXPECT_EQ(counted_processor("callgrind x86-64-v3"), "x86-64");
+  EXPECT_EQ(counted_processor("perf aarch64"), "aarch64");
+  EXPECT_EQ(counted_processor("callgrind"), "x86-64");
+  for (const auto* set : {"x86-64-v3", "x86-64-v4"})
+    EXPECT_EQ(not_comparable("callgrind x86-64-v3", set), "");
+  EXPECT_EQ(not_comparable("perf aarch64", "aarch64"), "");
+  EXPECT_EQ(not_comparable("callgrind x86-64-v3", "aarch64"),
+            "instruction counts were recorded on x86-64 and are not compared "
+            "on aarch64");
+  EXPECT_NE(not_comparable("perf aarch64", "x86-64-v4"), "");
+}
+
+TEST(Counts, OfThisBuildCompareHere) {
+  for (const auto counting : {Counting::perf, Counting::callgrind})
+    EXPECT_EQ(
+        not_comparable(counter_name(counting), build_info().instruction_set),
+        "");
 }
 
 TEST(Baseline, EveryFlippedBitIsSeen) {

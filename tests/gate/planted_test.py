@@ -148,6 +148,43 @@ def update(d):
           "an update back gives the same lines")
 
 
+def of_another_processor(d):
+    """Stages are held to the bits; counts stay as they were recorded."""
+    text = open(os.path.join(d, "base.txt")).read()
+    name = re.search(r"^(fake/\S*descend\S*)/\w+ ", text, re.M).group(1)
+    counted = f"instructions 1 callgrind s390x\n{name} 7\n"
+    rewrite(d, "counted.txt",
+            lambda t: t.replace("\nbuild ", "\nbuild GNU 1 ") + counted)
+    gate = ["gate", "--baseline=counted.txt"]
+    says = "instruction counts were recorded on s390x and are not compared on"
+    p = expect(0, [*gate, "--json=other.json"], d, says)
+    check("accuracy: 6 same" in p.stdout, "bits are held")
+    check(p.stdout.count("recorded on s390x") == 1, "in one line")
+    found = json.load(open(os.path.join(d, "other.json")))["findings"]
+    check([(f["verdict"], f["numbers"]["recorded_by"]) for f in found
+           if f["check"] == "instructions"] ==
+          [("not compared", "callgrind s390x")], "JSON says it")
+    expect(5, gate, d, says, plant="ulp in a constant")
+    expect(8, [*gate, "--strict"], d, says)
+    expect(0, [*gate, "--update"], d,
+           "6 stages; instruction counts of callgrind s390x are kept")
+    text = open(os.path.join(d, "counted.txt")).read()
+    check(counted in text and "\nbuild GNU 1 " in text,
+          "with the build that they are of")
+
+
+def clock_of_two_processors(d):
+    other = os.path.join(d, "of_s390x")
+    with open(other, "w") as f:
+        f.write(f"""#!/bin/bash
+[[ $1 == --version ]] || exec {BENCH} "$@"
+echo physinv-bench 1; echo "instruction set  s390x"
+""")
+    os.chmod(other, 0o755)
+    expect(2, ["gate", "--profile=kernel", "--against=" + other], d,
+           "times of two processors are not compared")
+
+
 def instructions(d):
     kernel = ["gate", "--baseline=kernel.txt"]
     expect(0, ["--profile=kernel", "--trace", "--out=k"], d)
@@ -244,6 +281,7 @@ mkdir -p "$out" && echo '{{"benchmarks": 5}}' >"$out/results.json"
 
 with tempfile.TemporaryDirectory() as directory:
     for test in (made, passes, defects, other_baselines, bad_input, update,
-                 instructions, hostile_baselines, clock):
+                 of_another_processor, instructions, hostile_baselines, clock,
+                 clock_of_two_processors):
         test(directory)
 sys.exit(f"{len(FAILED)} failed: {FAILED}" if FAILED else 0)

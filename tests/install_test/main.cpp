@@ -5,8 +5,9 @@
 #include "suite/core/rng.h"
 #include "suite/harness/build_info.h"
 
-#if !defined(__AVX2__) || !defined(EIGEN_DONT_PARALLELIZE)
-#error "the package must carry the flags that change Eigen's alignment"
+#if (defined(__x86_64__) && !defined(__AVX2__)) || \
+    !defined(EIGEN_DONT_PARALLELIZE) || !defined(EIGEN_DONT_VECTORIZE)
+#error "the package must carry the flags that change Eigen's alignment and sums"
 #endif
 
 int main() {

@@ -17,9 +17,10 @@ Batch<double> noise(Index rows, Index cols, std::uint32_t seed) {
     h = (h ^ (h >> 13)) * 0xc2b2ae35u;
     return ((h ^ (h >> 16)) + 0.5) / 4294967296.0;
   };
-  for (Index i = 0; i < x.size(); ++i)
-    x.data()[i] =
-        std::sqrt(-2 * std::log(uniform())) * std::cos(2 * M_PI * uniform());
+  for (double& z : x.reshaped()) {
+    z = std::sqrt(-2 * std::log(uniform()));
+    z *= std::cos(2 * M_PI * uniform());
+  }
   return x;
 }
 

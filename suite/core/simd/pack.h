@@ -12,6 +12,8 @@
 
 #ifdef __AVX__
 #include <immintrin.h>
+#elif defined(__ARM_NEON)
+#include <arm_neon.h>
 #endif
 
 #include <algorithm>
@@ -150,6 +152,35 @@ PHYSINV_LANES P held(P v) {
   return v;
 }
 
+/// A pack of twice as many lanes.
+template <class P>
+PHYSINV_LANES auto side_by_side(P a, P b) {
+  if constexpr (sizeof(P) == 8 * sizeof(a[0])) {
+    return __builtin_shufflevector(
+        a, b, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+  } else if constexpr (sizeof(P) == 4 * sizeof(a[0])) {
+    return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
+  } else {
+    static_assert(sizeof(P) == 2 * sizeof(a[0]));
+    return __builtin_shufflevector(a, b, 0, 1, 2, 3);
+  }
+}
+
+/// The first (k = 0) or second (1) half of the lanes.
+template <class P>
+PHYSINV_LANES auto half_of(P v, int k) {
+  Pack<LaneScalar<P>, int(sizeof(P) / sizeof(v[0]) / 2)> half[2];
+  std::memcpy(half, &v, sizeof(v));
+  return half[k];
+}
+
+/// f of each half: a pack of 256 bits takes two registers of ARM.
+template <class F, class P, class... Q>
+PHYSINV_LANES P by_halves(F f, P a, Q... more) {
+  return side_by_side(f(half_of(a, 0), half_of(more, 0)...),
+                      f(half_of(a, 1), half_of(more, 1)...));
+}
+
 /// a where the mask is set, b elsewhere.
 template <class M, class P>
 PHYSINV_LANES P select(M mask, P a, P b) {
@@ -168,6 +199,11 @@ PHYSINV_LANES P sqrt_lanes(P x) {
 #ifdef __AVX__
   if constexpr (sizeof(P) == 32 && sizeof(x[0]) == 8) return _mm256_sqrt_pd(x);
   if constexpr (sizeof(P) == 32 && sizeof(x[0]) == 4) return _mm256_sqrt_ps(x);
+#elif defined(__ARM_NEON)
+  if constexpr (sizeof(P) == 32 && sizeof(x[0]) == 8)
+    return by_halves([](auto h) { return Pack<double, 2>(vsqrtq_f64(h)); }, x);
+  if constexpr (sizeof(P) == 32 && sizeof(x[0]) == 4)
+    return by_halves([](auto h) { return Pack<float, 4>(vsqrtq_f32(h)); }, x);
 #endif
   P root = x;
   for (std::size_t k = 0; k < sizeof(P) / sizeof(x[0]); ++k)
@@ -190,6 +226,23 @@ PHYSINV_LANES P fma_lanes(P a, P b, P c) {
     return _mm256_fmadd_pd(a, b, c);
   if constexpr (sizeof(P) == 32 && sizeof(a[0]) == 4)
     return _mm256_fmadd_ps(a, b, c);
+#elif defined(__ARM_NEON) && defined(__clang__)  // GCC is better lane by lane
+  if constexpr (sizeof(P) == 32 && sizeof(a[0]) == 8)
+    return by_halves(
+        [](auto x, auto y, auto z) {
+          return Pack<double, 2>(vfmaq_f64(z, x, y));
+        },
+        a,
+        b,
+        c);
+  if constexpr (sizeof(P) == 32 && sizeof(a[0]) == 4)
+    return by_halves(
+        [](auto x, auto y, auto z) {
+          return Pack<float, 4>(vfmaq_f32(z, x, y));
+        },
+        a,
+        b,
+        c);
 #endif
   P out = c;
   for (std::size_t k = 0; k < sizeof(P) / sizeof(a[0]); ++k)
@@ -248,18 +301,6 @@ PHYSINV_LANES LaneScalar<P> sum_of(P v) {
     Pack<T, sizeof(P) / sizeof(T) / 2> half[2];
     std::memcpy(half, &v, sizeof(v));
     return sum_of(half[0] + half[1]);
-  }
-}
-
-/// A pack of twice as many lanes.
-template <class P>
-PHYSINV_LANES auto side_by_side(P a, P b) {
-  if constexpr (sizeof(P) == 8 * sizeof(a[0])) {
-    return __builtin_shufflevector(
-        a, b, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-  } else {
-    static_assert(sizeof(P) == 4 * sizeof(a[0]));
-    return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
   }
 }
 

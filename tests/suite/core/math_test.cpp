@@ -2,12 +2,20 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <limits>
 
+#include "suite/core/double_double.h"
+#include "suite/core/math_lanes.h"
+#include "suite/core/power_of_ten.h"
 #include "suite/core/rng.h"
-#include "suite/core/simd/pack.h"
+
+#ifdef EIGEN_VECTORIZE
+#error Sums of Eigen follow the register: EIGEN_DONT_VECTORIZE is missing
+#endif
 
 namespace physinv {
 namespace {
@@ -109,6 +117,67 @@ TYPED_TEST(Math, EndsAreThoseOfTheStandard) {
                         math::asin(T(2)),
                         math::tanh(nan)})
     EXPECT_TRUE(std::isnan(value));
+}
+
+TEST(Hypot, IsThatOfTheDefinition) {
+  Stream stream = Rng::root("hypot", 0).stream();
+  for (int i = 0; i < kTries; ++i) {
+    const int size = static_cast<int>(stream.uniform(-980, 980));
+    const double x = std::ldexp(stream.uniform(-1, 1), size),
+                 y = std::ldexp(stream.uniform(-1, 1), size + i % 70 - 35);
+    const DoubleDouble a = std::ldexp(x, -size), b = std::ldexp(y, -size);
+    const double exact = std::ldexp(double(sqrt(a * a + b * b)), size);
+    EXPECT_NEAR(math::hypot(x, y), exact, std::abs(exact) * 0x1p-52);
+    EXPECT_EQ(math::hypot(y, -x), math::hypot(x, y));
+  }
+  EXPECT_EQ(math::hypot(3.0, 4.0), 5.0);
+  EXPECT_EQ(math::hypot(3.F, 4.F), 5.F);
+  EXPECT_EQ(math::hypot(-0.0, 0.0), 0.0);
+  EXPECT_EQ(math::hypot(0x1p-1074, 0.0), 0x1p-1074);
+  EXPECT_EQ(math::hypot(3 * 0x1p-1074, 4 * 0x1p-1074), 5 * 0x1p-1074);
+  EXPECT_EQ(math::hypot(0x1.8p1022, 0x1p1023), 0x1.4p1023);
+  EXPECT_EQ(math::hypot(double(INFINITY), double(NAN)), INFINITY);
+  EXPECT_TRUE(std::isnan(math::hypot(1.0, double(NAN))));
+  EXPECT_EQ(math::abs(std::complex<double>(3, -4)), 5.0);
+}
+
+/// Every processor and compiler makes this number.
+TEST(Functions, HaveTheSameBitsEverywhere) {
+  Stream stream = Rng::root("math", 1).stream();
+  std::uint64_t hash = 0;
+  const auto add = [&](auto x) {
+    using Bits = LaneInt<decltype(x)>;
+    hash = hash * 0x100000001b3 + std::uint64_t(std::bit_cast<Bits>(x));
+  };
+  const auto add_all = [&](auto x, auto y) {
+    const auto positive = std::abs(x) + std::abs(y), share = x / 10;
+    for (const auto value :
+         {math::exp(x),          math::exp2(x),          math::expm1(x),
+          math::log(positive),   math::log1p(positive),  math::log2(positive),
+          math::log10(positive), math::sin(x),           math::cos(x),
+          math::tan(x),          math::asin(share),      math::acos(share),
+          math::tanh(x),         math::atanh(share),     math::erf(x),
+          math::erfc(x),         math::lgamma(positive), math::pow(positive, y),
+          math::sincos(x).sine,  math::sincos(y).cosine, math::hypot(x, y)})
+      add(value);
+  };
+  for (int i = 0; i < 2000; ++i) {
+    const double x = stream.uniform(-10, 10), y = stream.uniform(-10, 10);
+    add_all(x, y), add_all(float(x), float(y)), add(math::atan2(x, y));
+    const auto four = math::exp(Pack<double, 4>{x, y, -x, -y});
+    const auto eight = math::log1p(Pack<float, 8>{} + float(x + 10));
+    add(four[0]), add(four[3]), add(eight[5]);
+  }
+  EXPECT_EQ(hash, 13762146574131944207U);
+}
+
+TEST(PowerOfTen, IsTheNearestDoubleWhereWhole) {
+  EXPECT_EQ(math::power_of_ten(-5.0), 1e-5);  // pow is one off
+  EXPECT_EQ(math::power_of_ten(165.0), 1e165);
+  EXPECT_EQ(math::power_of_ten(-323.0), 1e-323);
+  EXPECT_EQ(math::power_of_ten(400.0), INFINITY);
+  EXPECT_NEAR(math::power_of_ten(0.5), std::sqrt(10), 1e-15);
+  EXPECT_TRUE(std::isnan(math::power_of_ten(double(NAN))));
 }
 
 }  // namespace

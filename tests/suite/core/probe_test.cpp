@@ -283,5 +283,20 @@ TEST_F(ProbeTest, TracesOnlyWhenAsked) {
   EXPECT_EQ(text, "abc");
 }
 
+TEST_F(ProbeTest, HashesEveryNanAlike) {
+  const auto trajectory = [&](auto value) {
+    Probe probe(oracle, 1);
+    probe.follow();
+    const decltype(value) values[] = {1, value, 2};
+    probe.trace(values, sizeof(values));
+    return probe.trajectory();
+  };
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(trajectory(-kNan), trajectory(kNan));
+  EXPECT_EQ(trajectory(-std::nanf("7")), trajectory(std::nanf("")));
+  EXPECT_NE(trajectory(kNan), trajectory(0.0));
+  EXPECT_NE(trajectory(-0.0), trajectory(0.0));
+}
+
 }  // namespace
 }  // namespace physinv::test

@@ -201,20 +201,20 @@ TEST(WorkPrecision, MeasuresTheDistanceToTheReference) {
   EXPECT_EQ(StageBench(*broken, 3, 1).run().arrays.at("error").maxCoeff(), -1);
 }
 
-/// The quadratic in long double, its first row times `factor`.
-ClosedForm quadratic_form(long double factor) {
+/// The quadratic in numbers of twice the digits, its first row times `factor`.
+ClosedForm quadratic_form(double factor) {
   return {[=](auto x, auto given, auto y) {
-    const auto a = GradientQuadratic<long double>::matrix();
+    const auto a = GradientQuadratic<double>::matrix();
     for (std::size_t j = 0; j < 2; ++j) {
       const auto row = static_cast<Index>(j);
       y[j] = (j == 0 ? factor : 1) * (a(row, 0) * x[0] + a(row, 1) * x[1]) +
-             static_cast<long double>(given[j]);
+             given[j];
     }
   }};
 }
 
 TEST(WorkPrecision, MeasuresGradientsAgainstAClosedForm) {
-  const auto error = [](long double factor, Precision precision) {
+  const auto error = [](double factor, Precision precision) {
     const auto stage = work_precision({.name = "gradient",
                                        .problem = quadratic(),
                                        .base = quadratic(),
@@ -232,7 +232,7 @@ TEST(WorkPrecision, MeasuresGradientsAgainstAClosedForm) {
   EXPECT_LT(error(1, Precision::f64), 1e-15);
   EXPECT_LT(error(1, Precision::f32), 1e-6);
   EXPECT_GT(error(1, Precision::f32), 1e-9);
-  EXPECT_GT(error(1.001L, Precision::f64), 1e-5);
+  EXPECT_GT(error(1.001, Precision::f64), 1e-5);
 }
 
 /// y = x + given, point by point: given is a wave over one period.

@@ -1,7 +1,5 @@
 #include "tests/suite/harness/fake_experiment.h"
 
-#include <xmmintrin.h>
-
 #include <cfenv>
 #include <chrono>
 #include <cmath>
@@ -18,6 +16,7 @@
 #include "suite/core/oracle.h"
 #include "suite/core/probe.h"
 #include "suite/core/threads.h"
+#include "tests/support/float_control.h"
 
 namespace physinv::fake {
 namespace {
@@ -255,9 +254,6 @@ class Walk final : public Base {
   }
 };
 
-/// Of MXCSR: flush to zero, denormals are zero.
-constexpr unsigned kFlushAll = 0x8040;
-
 /// Solves for a while, and throws.
 [[noreturn]] void give_up(StageRun& run, bool alone) {
   const Batch<double> x = run.oracle.start();
@@ -287,7 +283,7 @@ class Ends final : public Base {
     if (how_ == "die") crash();
     if (how_ == "sleep") nap(60);
     if (how_ == "floats") {
-      _mm_setcsr(_mm_getcsr() | kFlushAll);
+      flush_subnormals();
       std::fesetround(FE_UPWARD);
       while (run.probe.proceed(
           [&](BatchOut<double> x) { x = run.oracle.start(); })) {
@@ -321,9 +317,11 @@ class Hostile final : public Base {
     };
     const Index n = run.oracle.count();
     Batch<double> x = run.oracle.start();
-    for (std::size_t k = pick(5); k-- > 0;)
-      x(static_cast<Index>(pick(2)), static_cast<Index>(pick(4))) =
-          number(pick(kNumbers));
+    for (std::size_t k = pick(5); k-- > 0;) {
+      const double value = number(pick(kNumbers));
+      const auto column = static_cast<Index>(pick(4));
+      x(static_cast<Index>(pick(2)), column) = value;
+    }
     if (pick(3) == 0) run.oracle.add(Counter::forward, -7);
     if (pick(3) == 0)
       run.probe.accept(Index{1}, static_cast<Index>(pick(1000)), x.data(), 0);
@@ -349,11 +347,13 @@ class Hostile final : public Base {
     }
     out.stop = static_cast<Stop>(odd(8) ? pick(256) : pick(3));
     out.message = text(pick(kTexts));
-    for (std::size_t k = pick(3); k-- > 0;)
-      out.arrays[ArrayKey::own(name(odd(4) ? pick(kNames) : pick(6)))]
-          .setConstant(static_cast<Index>(pick(3)),
-                       static_cast<Index>(pick(3)),
-                       number(pick(kNumbers)));
+    for (std::size_t k = pick(3); k-- > 0;) {
+      auto& array =
+          out.arrays[ArrayKey::own(name(odd(4) ? pick(kNames) : pick(6)))];
+      const double value = number(pick(kNumbers));
+      const auto columns = static_cast<Index>(pick(3));
+      array.setConstant(static_cast<Index>(pick(3)), columns, value);
+    }
     if (pick(2) == 0) out.bytes = ~std::size_t{0};
     return out;
   }

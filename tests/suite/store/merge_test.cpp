@@ -97,6 +97,54 @@ TEST_F(MergeTest, SameStageTwiceMayDifferInTimesOnly) {
   EXPECT_TRUE(contains(message, cases_[2].name)) << message;
 }
 
+/// A shard of x86-64 and one of aarch64: machine and build of a plan and of
+/// records are told, and decide about nothing.
+TEST_F(MergeTest, ShardsOfTwoProcessorsAreOneCampaign) {
+  run("whole", all);
+  const auto part = [&](const std::string& where, std::size_t first, json on) {
+    Store store(out_ / where);
+    std::vector<PlannedCase> campaign;
+    for (const auto& name : names_) campaign.push_back({name, "r"});
+    std::vector<CaseInfo> chosen;
+    for (std::size_t i = first; i < cases_.size(); i += 2)
+      chosen.push_back(cases_[i]);
+    on["fingerprint"] = "f";
+    store.set_plan(chosen, on, campaign);
+    for (const auto& c : chosen)
+      for (Index k = 0; k < 2; ++k) {
+        StageRecord stage = sample_stage(c, k);
+        stage.run.instruction_set = on.at("instruction_set");
+        stage.run.processor = on.at("cpu_model");
+        store.append(c, sample_data(c), stage);
+      }
+    store.finish();
+  };
+  part("x86",
+       0,
+       {{"instruction_set", "x86-64-v4"},
+        {"cpu_model", "AMD EPYC"},
+        {"compiler", "GNU 12.2.0"},
+        {"mhz_per_cpu", 2400}});
+  part("arm",
+       1,
+       {{"instruction_set", "aarch64"},
+        {"cpu_model", "ARM Neoverse-N1"},
+        {"compiler", "Clang 14.0.6"},
+        {"mhz_per_cpu", 0}});
+  EXPECT_FALSE(
+      merge({out_ / "arm", out_ / "x86"}, out_ / "merged").lacks.any());
+  const auto whole = load_results(out_ / "whole");
+  const auto merged = load_results(out_ / "merged");
+  ASSERT_EQ(merged.cases().size(), cases_.size());
+  for (std::size_t i = 0; i < cases_.size(); ++i)
+    for (std::size_t k = 0; k < 2; ++k) {
+      const StageRecord& stage = merged.cases()[i].stages[k];
+      EXPECT_EQ(results_hash(stage), results_hash(whole.cases()[i].stages[k]));
+      EXPECT_EQ(stage.key, cases_[i].keys[k]);
+      EXPECT_EQ(stage.run.instruction_set, i % 2 ? "aarch64" : "x86-64-v4");
+    }
+}
+
 TEST_F(MergeTest, OtherBuildIsRefused) {
   run("even", even), run("odd", odd, 0, "g");
   const auto message = message_of<UnreadableInput>([&] {

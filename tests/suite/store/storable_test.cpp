@@ -80,8 +80,10 @@ TEST(Storable, WhatTheListTakesIsReadBack) {
         array->data()[pick(8)] = numbers[pick(6)];
     for (Index k = pick(4); k-- > 0;) r.loss(pick(4)) = numbers[pick(6)];
     r.stop = static_cast<Stop>(pick(3));
-    r.arrays[ArrayKey::own(std::string(1 + 999 * pick(2), 'n'))].setConstant(
-        pick(3), pick(3), numbers[pick(6)]);
+    auto& array = r.arrays[ArrayKey::own(std::string(1 + 999 * pick(2), 'n'))];
+    const double value = numbers[pick(6)];
+    const Index columns = pick(3);
+    array.setConstant(pick(3), columns, value);
     r.buffer_bytes = ~std::uint64_t{0};
     const std::string flaw = flaw_of(r), read = read_back(r);
     EXPECT_EQ(flaw.empty(), read.empty()) << seed << ": " << flaw << read;

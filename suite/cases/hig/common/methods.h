@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "suite/core/math.h"
 #include "suite/core/power_of_ten.h"
 #include "suite/harness/case.h"
 
@@ -16,7 +17,7 @@ namespace physinv {
 
 /// Rates are a digit times a power of ten: 3e-4, 1e1.
 inline std::string rate_id(double rate) {
-  const int exponent = static_cast<int>(std::floor(std::log10(rate) + 1e-9));
+  const int exponent = static_cast<int>(std::floor(math::log10(rate) + 1e-9));
   return fmt::format(
       "{:.0f}e{}", rate / math::power_of_ten(exponent), exponent);
 }

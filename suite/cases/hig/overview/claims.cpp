@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "suite/cases/hig/widths/widths.h"
+#include "suite/core/math.h"
 #include "suite/evidence/training.h"
 #include "suite/harness/networks.h"
 #include "suite/harness/registry.h"
@@ -83,7 +84,7 @@ Quantity steepest_growth() {
                      Measured m = time(e);
                      if (m.value)
                        *m.value =
-                           std::log(*m.value) / std::log(*weights(e).value);
+                           math::log(*m.value) / math::log(*weights(e).value);
                      return m;
                    },
                    time.runs()});

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "suite/cases/hig/poisson/quantities.h"
+#include "suite/core/power_of_ten.h"
 #include "suite/evidence/curve_shape.h"
 #include "suite/harness/registry.h"
 
@@ -26,7 +27,7 @@ const Select kThenHig16{"adam-hig-002-b16", "hig"},
     kLateStart{"long-adam-hig-adam", "adam"};
 
 /// Three orders of magnitude, half of one less: read from a plot.
-const double kThreeOrders = std::pow(10, 2.5);
+const double kThreeOrders = math::power_of_ten(2.5);
 /// Seconds by the paper's clock, which Adam's 327,000 updates and HIG's 261
 /// last; the length of its runs is not printed.
 constexpr double kHour = 3590;

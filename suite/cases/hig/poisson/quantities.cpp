@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "optimizers/half_inverse/half_inverse.h"
+#include "suite/core/whole.h"
 #include "suite/evidence/options.h"
 #include "suite/results/results.h"
 #include "suite/store/record.h"
@@ -27,13 +28,13 @@ double smallest_of(const StageRecord& stage) {
 void add(const StageRecord& stage, Phase& phase) {
   const auto& kept = stage.arrays.at("kept");
   if (const auto batch = number_of(stage.options, "batch"))
-    phase.rows = kCells * static_cast<Index>(*batch);
-  const auto least = static_cast<Index>(kept.minCoeff());
+    phase.rows = kCells * whole_part<Index>(*batch);
+  const auto least = whole_part<Index>(kept.minCoeff());
   phase.least_kept =
       phase.runs == 0 ? least : std::min(phase.least_kept, least);
   ++phase.runs;
   phase.updates += kept.size();
-  phase.unproven += static_cast<Index>(stage.arrays.at("unproven")(0, 0));
+  phase.unproven += whole_part<Index>(stage.arrays.at("unproven")(0, 0));
   phase.smallest = std::min(phase.smallest, smallest_of(stage));
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "suite/cases/hig/toy/toy.h"
+#include "suite/core/math.h"
 #include "suite/evidence/curve_shape.h"
 #include "suite/harness/registry.h"
 #include "suite/store/record.h"
@@ -44,9 +45,9 @@ std::optional<double> straightness(const Run& run) {
   while (x.updates(from) < x.updates(last) / 2) ++from;
   double path = 0;
   for (Index k = from; k < last; ++k)
-    path += std::hypot(x(k + 1) - x(k), y(k + 1) - y(k));
+    path += math::hypot(x(k + 1) - x(k), y(k + 1) - y(k));
   if (!(path > 0)) return {};
-  return std::hypot(x(last) - x(from), y(last) - y(from)) / path;
+  return math::hypot(x(last) - x(from), y(last) - y(from)) / path;
 }
 
 // ---- of all seeds -----------------------------------------------------------
@@ -86,7 +87,7 @@ Quantity errors_apart(const char* a, const char* b) {
             const Measured u = x(e), v = y(e);
             if (!u.value || !v.value) return u.value ? v : u;
             const double error =
-                std::hypot(u.spread.value_or(0), v.spread.value_or(0)) /
+                math::hypot(u.spread.value_or(0), v.spread.value_or(0)) /
                 std::sqrt(static_cast<double>(std::min(u.runs, v.runs)));
             return Measured{.value = (*u.value - *v.value) / error,
                             .runs = std::min(u.runs, v.runs)};

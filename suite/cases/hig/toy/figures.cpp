@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "suite/cases/hig/toy/toy.h"
+#include "suite/core/math.h"
 #include "suite/evidence/method_table.h"
 #include "suite/evidence/quantity.h"
 #include "suite/evidence/series.h"
@@ -86,8 +87,8 @@ Figure path_figure(const Evidence& evidence,
   if (!panel.series.empty())
     panel.series.push_back(mark("target",
                                 "truth",
-                                std::sin(6 * kPoint),
-                                std::cos(9 * kPoint),
+                                math::sin(6 * kPoint),
+                                math::cos(9 * kPoint),
                                 PlotStyle{Hue::ink, Marker::cross}));
   return {.id = "fig1-path",
           .title = fmt::format("Path of the output at x = {}", kPoint),

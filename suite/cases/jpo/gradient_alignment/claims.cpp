@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "suite/cases/jpo/gradient_alignment/quantities.h"
+#include "suite/core/math.h"
 #include "suite/evidence/claim.h"
 #include "suite/evidence/statistics.h"
 #include "suite/harness/registry.h"
@@ -160,7 +161,7 @@ Quantity slope_off_by(F other) {
         const auto to = other(f);
         if (!line || !to) return {};
         return std::abs(line->slope - to->slope) /
-               (2 * std::hypot(line->slope_error, to->slope_error));
+               (2 * math::hypot(line->slope_error, to->slope_error));
       },
       kFull);
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "suite/core/math.h"
 #include "suite/evidence/statistics.h"
 #include "suite/store/record.h"
 
@@ -38,7 +39,7 @@ Number largest_of(const Aligned& m, F value, Index first, Index last = kEvery) {
 /// (a - b) at the largest N over its standard error.
 double errors_apart_of(const Aligned& a, const Aligned& b) {
   return (a.share.back() - b.share.back()) /
-         std::hypot(a.error.back(), b.error.back());
+         math::hypot(a.error.back(), b.error.back());
 }
 
 }  // namespace
@@ -134,8 +135,8 @@ std::optional<Line> excess(const Aligned& m,
                            Theory theory) {
   std::vector<double> x, y;
   for_sizes(m, first, last, [&](std::size_t i) {
-    x.push_back(std::log(static_cast<double>(m.n[i])));
-    y.push_back(std::log((theory ? theory(m.n[i]) : m.share[i]) - 0.5));
+    x.push_back(math::log(static_cast<double>(m.n[i])));
+    y.push_back(math::log((theory ? theory(m.n[i]) : m.share[i]) - 0.5));
   });
   return fit_line(x, y);
 }

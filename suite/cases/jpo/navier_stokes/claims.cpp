@@ -6,6 +6,7 @@
 
 #include "problems/navier_stokes/navier_stokes.h"
 #include "suite/cases/jpo/common/values.h"
+#include "suite/core/math.h"
 #include "suite/evidence/statistics.h"
 #include "suite/harness/registry.h"
 
@@ -20,7 +21,7 @@ Quantity mean_of_losses(const Select& runs) { return mean(runs, mean_loss()); }
 /// Decades that the worst loss is above BFGS's worst.
 std::optional<double> order_over_bfgs(const Run& run) {
   const auto ratio = over_bfgs(worst_loss())(run);
-  return ratio ? std::optional(std::log10(*ratio)) : std::nullopt;
+  return ratio ? std::optional(math::log10(*ratio)) : std::nullopt;
 }
 
 /// |slope| of the mean loss over log n, in twice its standard error.
@@ -28,7 +29,7 @@ Quantity slope_over_n(const Select& runs) {
   return {[=](const Evidence& e) {
             std::vector<double> x, y;
             for (const Run& run : find_runs(e, runs)) {
-              x.push_back(std::log(static_cast<double>(run.n())));
+              x.push_back(math::log(static_cast<double>(run.n())));
               y.push_back(*mean_loss()(run));
             }
             const auto line = fit_line(x, y);

@@ -8,6 +8,7 @@
 
 #include "problems/navier_stokes/navier_stokes.h"
 #include "suite/cases/jpo/common/report.h"
+#include "suite/core/math.h"
 #include "suite/evidence/field_panel.h"
 #include "suite/harness/networks.h"
 #include "suite/harness/registry.h"
@@ -46,7 +47,7 @@ Panel observed(std::string title, const Vector<double>& y) {
 std::array<double, 3> blast(const Vector<double>& z) {
   const NavierStokesOptions o;
   return {
-      o.box / 2 * (1 + std::tanh(z(0))), o.speed * z(1), o.speed * (1 + z(2))};
+      o.box / 2 * (1 + math::tanh(z(0))), o.speed * z(1), o.speed * (1 + z(2))};
 }
 
 /// Fig. 6a: the first problem at t = 0, what is hidden and the blast, too.
@@ -63,7 +64,7 @@ Figure at_the_start(const CaseRecord& first) {
     for (Index j = 0; j < o.cells; ++j) {
       const double x = (double(i) + 0.5) * size - x0,
                    y = (double(j) + 0.5) * size - o.height;
-      const double wind = std::exp(-(x * x + y * y) / (2 * o.width * o.width));
+      const double wind = math::exp(-(x * x + y * y) / (2 * o.width * o.width));
       uv(i * o.cells + j) += wind * vx;
       uv(all + i * o.cells + j) += wind * vy;
     }

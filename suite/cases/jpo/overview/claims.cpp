@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "suite/cases/jpo/common/values.h"
+#include "suite/core/math.h"
 #include "suite/harness/networks.h"
 #include "suite/harness/registry.h"
 
@@ -56,7 +57,7 @@ Quantity mean_of_all(F&& quantity) {
               if (!one.value) return one;
               *sum.value += *one.value / double(all.size());
               const double s = one.spread.value_or(0) / double(all.size());
-              sum.spread = std::hypot(
+              sum.spread = math::hypot(
                   *sum.spread, s / std::sqrt(static_cast<double>(one.runs)));
               sum.runs = std::min(sum.runs, one.runs);
             }

@@ -9,6 +9,7 @@
 
 #include "problems/robotic_arm/robotic_arm.h"
 #include "suite/cases/jpo/common/report.h"
+#include "suite/core/math.h"
 #include "suite/evidence/landscape.h"
 #include "suite/evidence/series.h"
 #include "suite/harness/registry.h"
@@ -33,7 +34,7 @@ Series arm_series(std::string label,
 /// Fig. 25a: the arm where every method starts, and one that reaches.
 Figure task() {
   // The shorter links mirror each other, the long one lies level.
-  const double bend = std::acos(kTarget[0] - 1);
+  const double bend = math::acos(kTarget[0] - 1);
   const std::array<double, 4> x = {kTarget[1], bend, 0, bend};
   return {
       .id = "fig25a",

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "suite/core/math.h"
 #include "suite/evidence/cell.h"
 #include "suite/evidence/statistics.h"
 
@@ -91,9 +92,9 @@ std::optional<double> order_of(const CaseRecord& chain,
   std::vector<double> orders;
   for (Index i = 0; i < fine.size(); ++i)
     if (coarse(i) > 0 && fine(i) > 0)
-      orders.push_back(std::log(coarse(i) / fine(i)) /
-                       std::log(parameter.axis.values[place - 1] /
-                                parameter.axis.values[place]));
+      orders.push_back(math::log(coarse(i) / fine(i)) /
+                       math::log(parameter.axis.values[place - 1] /
+                                 parameter.axis.values[place]));
   if (orders.empty()) return {};
   return median(std::move(orders));
 }

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "suite/cases/numerics/common/sweep_report.h"
+#include "suite/core/math.h"
 #include "suite/diagnostics/stability_sweep.h"
 
 namespace physinv {
@@ -39,7 +40,7 @@ const std::vector<Atlas>& atlases() { return all_atlases(); }
 
 Vector<double> uneven(Index rows, double size) {
   return Vector<double>::NullaryExpr(
-      rows, [=](Index k) { return size * std::cos(1.1 * double(k)); });
+      rows, [=](Index k) { return size * math::cos(1.1 * double(k)); });
 }
 
 void add_atlas(Registry& r, Atlas atlas) {

@@ -6,13 +6,15 @@
 #include <cmath>
 #include <utility>
 
+#include "suite/core/power_of_ten.h"
+#include "suite/core/whole.h"
 #include "suite/evidence/cell.h"
 
 namespace physinv {
 namespace {
 
 SweepStatus status_of(const StageRecord& sweep, SweepCheck check, Index cell) {
-  return static_cast<SweepStatus>(static_cast<int>(
+  return static_cast<SweepStatus>(whole_part<int>(
       sweep.arrays.at("status")(static_cast<Index>(check), cell)));
 }
 
@@ -62,7 +64,7 @@ Panel map(const SweepAxis& x,
 std::vector<double> decades(double first, double last, double step) {
   std::vector<double> values;
   for (double e = first; e <= last + step / 2; e += step)
-    values.push_back(std::pow(10.0, e));
+    values.push_back(math::power_of_ten(e));
   return values;
 }
 

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "suite/core/whole.h"
 #include "suite/diagnostics/half_inverse_stress.h"
 #include "suite/store/record.h"
 
@@ -31,14 +32,14 @@ class Cells {
 
   Index count() const { return arrays_.at("status").cols(); }
   Index on(StressAxis axis, Index cell) const {
-    return static_cast<Index>(
+    return whole_part<Index>(
         arrays_.at("cell")(static_cast<Index>(axis), cell));
   }
   double get(ArrayKey array, Index cell, Index row = 0) const {
     return arrays_.at(array)(row, cell);
   }
   StressStatus status(Index cell) const {
-    return static_cast<StressStatus>(static_cast<int>(get("status", cell)));
+    return static_cast<StressStatus>(whole_part<int>(get("status", cell)));
   }
   bool is(StressStatus s, Index cell) const { return status(cell) == s; }
   double tau(Index cell) const {

@@ -2,8 +2,6 @@
 /// single hot cell of one dimension becomes.
 #pragma once
 
-#include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "problems/heat/heat.h"
@@ -13,14 +11,14 @@ namespace physinv {
 
 inline ClosedForm heat_closed_form(const HeatOptions& options = {}) {
   const auto n = static_cast<std::size_t>(options.resolution);
-  std::vector<long double> c(n, 0);
+  std::vector<DoubleDouble> c(n);
+  constexpr DoubleDouble kTurn(0x1.921fb54442d18p2, 0x1.1a62633145c07p-52);
+  const DoubleDouble turn = kTurn / double(n);  // 2 pi / n
   for (std::size_t d = 0; d < n; ++d)
     for (std::size_t k = 0; k < n; ++k) {
-      const long double turn = 2 * std::numbers::pi_v<long double> / n;
-      const long double wave =
-          turn * static_cast<long double>(k < n - k ? k : n - k);
-      c[d] += exact_exp(-wave * wave * options.end_time).real() *
-              std::cos(turn * static_cast<long double>(k * d % n)) / n;
+      const DoubleDouble wave = turn * double(k < n - k ? k : n - k);
+      c[d] += exp(-wave * wave * options.end_time) *
+              sine_cosine(turn * double(k * d % n)).cosine / double(n);
     }
   return {[n, c](auto x, auto, auto y) {
     std::vector<Exact> rows(n * n);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "suite/cases/numerics/kuramoto_sivashinsky/sweep.h"
+#include "suite/core/math.h"
 #include "suite/harness/registry.h"
 
 namespace physinv::ks_numerics {
@@ -16,9 +17,9 @@ std::optional<double> typical(const StageRecord& s,
   double sum = 0;
   Index count = 0;
   for (const double v : values)
-    if (v > 0) sum += std::log(v), ++count;
+    if (v > 0) sum += math::log(v), ++count;
   if (count == 0) return {};
-  return std::exp(sum / static_cast<double>(count));
+  return math::exp(sum / static_cast<double>(count));
 }
 
 namespace {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 
 #include "problems/robotic_arm/robotic_arm.h"
 #include "suite/core/closed_form.h"
@@ -14,8 +13,7 @@ inline ClosedForm robotic_arm_closed_form(const RoboticArmOptions& o = {}) {
     const std::array<Exact, 3> phi = {x[1], x[2] - x[1], x[3] - x[2] - x[1]};
     y[0] = 0, y[1] = x[0];
     for (std::size_t k = 0; k < 3; ++k) {
-      const auto link = static_cast<long double>(o.links[k]);
-      y[0] += link * std::cos(phi[k]), y[1] += link * std::sin(phi[k]);
+      y[0] += o.links[k] * cos(phi[k]), y[1] += o.links[k] * sin(phi[k]);
     }
   }};
 }

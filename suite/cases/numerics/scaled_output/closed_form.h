@@ -9,7 +9,7 @@ namespace physinv {
 inline ClosedForm scaled_output_closed_form(const ScaledOutputOptions& o = {}) {
   return {[=](auto x, auto, auto y) {
     y[0] = x[0];
-    y[1] = static_cast<long double>(o.gamma) * x[1];
+    y[1] = o.gamma * x[1];
   }};
 }
 

@@ -6,6 +6,7 @@
 
 #include "suite/cases/physgrad/scaling/quantities.h"
 #include "suite/cases/physgrad/scaling/scaling.h"
+#include "suite/core/math.h"
 #include "suite/harness/registry.h"
 
 namespace physinv::scaling {
@@ -29,7 +30,7 @@ Quantity of(const char* method, const OfPath& value, Index problem = kOne) {
 /// Degrees between the first update and the way to the minimum.
 double angle(const Path& p) {
   const Vector<double> u = p.x().col(0) - p.x().col(1), x = p.x().col(0);
-  return std::atan2(std::abs(u(0) * x(1) - u(1) * x(0)), u.dot(x)) * 180 /
+  return math::atan2(std::abs(u(0) * x(1) - u(1) * x(0)), u.dot(x)) * 180 /
          std::numbers::pi;
 }
 double first_step(const Path& p) { return p.x()(1, 1) - p.x()(1, 0); }

@@ -9,6 +9,7 @@
 
 #include "suite/cases/physgrad/scaling/quantities.h"
 #include "suite/cases/physgrad/scaling/scaling.h"
+#include "suite/core/math.h"
 #include "suite/evidence/cell.h"
 #include "suite/evidence/series.h"
 #include "suite/harness/registry.h"
@@ -60,7 +61,7 @@ Panel landscape(double alpha, bool squared) {
                 .label = squared ? "|P(x)|^2" : "|P(x)|"};
   for (const double x2 : field.y)
     for (const double x1 : field.x) {
-      const double r = std::hypot(x1, alpha * x2);
+      const double r = math::hypot(x1, alpha * x2);
       field.values.push_back(squared ? r * r : r);
     }
   return {.title = fmt::format("alpha = {:g}", alpha),

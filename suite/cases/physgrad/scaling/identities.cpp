@@ -47,7 +47,7 @@ Batch<double> order() {
   const Batch<double> pg = b.invert(y + dy, x), end = x + ig;
   const Batch<double> reached = b.forward(pg, alpha), wanted = y + dy;
   const auto distance = [](const Batch<double>& p, Index k) {
-    return std::hypot(p(0, k), p(1, k));
+    return math::hypot(p(0, k), p(1, k));
   };
   for (Index k = 0; k < 6; ++k)
     found.col(k) << distance(dy, k), distance(pg - end, k),

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 
+#include "suite/core/math.h"
 #include "suite/evidence/run_values.h"
 #include "suite/store/record.h"
 
@@ -31,11 +32,13 @@ class Path {
     y.row(1) = x_.row(1).cwiseAbs2();
     return y;
   }
-  double distance() const { return std::hypot(x_(0, steps()), x_(1, steps())); }
+  double distance() const {
+    return math::hypot(x_(0, steps()), x_(1, steps()));
+  }
   /// The first update along the diagonal, sqrt 2 at most; NaN without one.
   double diagonal() const {
     const Vector<double> u = x_.col(0) - x_.col(1);
-    return u.sum() / std::hypot(u(0), u(1));
+    return u.sum() / math::hypot(u(0), u(1));
   }
 
  private:
@@ -50,8 +53,8 @@ inline Quantity identity(ArrayKey array, const OfArray& value) {
 }
 /// Log-log slope between the largest dy and the smallest.
 inline double slope(const Batch<double>& order) {
-  return std::log(order(1, 0) / order(1, 5)) /
-         std::log(order(0, 0) / order(0, 5));
+  return math::log(order(1, 0) / order(1, 5)) /
+         math::log(order(0, 0) / order(0, 5));
 }
 inline double gd_off(const Batch<double>& linear) {
   return ((linear.row(1).array() / linear.row(0).array().square()) + 0.1)
@@ -106,7 +109,7 @@ inline OfArray share_at_small(Index row) {
 }
 inline double reversal_order(const Batch<double>& reversed) {
   const Index last = reversed.cols() - 1;
-  return std::log2(reversed(1, last - 1) / reversed(1, last));
+  return math::log2(reversed(1, last - 1) / reversed(1, last));
 }
 inline double reversal_end(const Batch<double>& reversed) {
   return reversed(1, reversed.cols() - 1);

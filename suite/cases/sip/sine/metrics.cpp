@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "suite/core/math.h"
 #include "suite/core/oracle.h"
 
 namespace physinv::sine {
@@ -14,7 +15,7 @@ double mean_distance(const SinePlaneOptions& options,
   for (Index i = 0; i < x.cols(); ++i) {
     const Pair at = {x(0, i), x(1, i)};
     const Pair there = nearest_solution(options, at, {y(0, i), y(1, i)});
-    sum += std::hypot(at[0] - there[0], at[1] - there[1]);
+    sum += math::hypot(at[0] - there[0], at[1] - there[1]);
   }
   return sum / static_cast<double>(x.cols());
 }

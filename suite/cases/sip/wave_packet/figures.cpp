@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "suite/cases/sip/wave_packet/values.h"
+#include "suite/core/math.h"
 #include "suite/evidence/method_table.h"
 #include "suite/evidence/quantity.h"
 #include "suite/evidence/series.h"
@@ -39,7 +40,7 @@ Series packet(const MethodLine& line, double x, Index samples) {
   s.x = axis(samples);
   for (const double t : s.x) {
     const double d = t - kStart - x;
-    s.y.push_back(std::sin(kFrequency * d) * std::exp(-d * d / 800));
+    s.y.push_back(math::sin(kFrequency * d) * math::exp(-d * d / 800));
   }
   return s;
 }

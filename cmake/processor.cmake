@@ -1,0 +1,26 @@
+# physinv_find_processor(<result>): the widest instruction set that the processor
+# that programs are built for has, or an error that says what is missing.
+function(physinv_find_processor result)
+  if(CMAKE_SYSTEM_PROCESSOR STREQUAL aarch64)
+    set(${result} aarch64 PARENT_SCOPE)
+    return()
+  elseif(NOT CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")
+    message(FATAL_ERROR "Processors are x86-64 with AVX2 and aarch64; for "
+      "${CMAKE_SYSTEM_PROCESSOR} nobody has seen to SLEEF's functions and to "
+      "Random123's products of 64 bits.")
+  endif()
+  set(widest x86-64-v3)
+  if(EXISTS /proc/cpuinfo)
+    file(STRINGS /proc/cpuinfo flags REGEX "^flags" LIMIT_COUNT 1)
+    set(widest x86-64-v4)
+    foreach(feature avx512f avx512bw avx512cd avx512dq avx512vl)
+      if(NOT "${flags} " MATCHES " ${feature} ")
+        set(widest x86-64-v3)
+      endif()
+    endforeach()
+    if(widest STREQUAL x86-64-v3 AND NOT "${flags} " MATCHES " avx2 ")
+      message(FATAL_ERROR "This processor lacks AVX2 (x86-64-v3).")
+    endif()
+  endif()
+  set(${result} ${widest} PARENT_SCOPE)
+endfunction()
