@@ -9,7 +9,7 @@ function(physinv_libc_version result)
   if(CMAKE_SYSROOT)
     list(APPEND flags --sysroot=${CMAKE_SYSROOT})
   endif()
-  if(CMAKE_CXX_COMPILER_TARGET)
+  if(CMAKE_CXX_COMPILER_TARGET AND CMAKE_CXX_COMPILER_ID MATCHES Clang)
     list(APPEND flags --target=${CMAKE_CXX_COMPILER_TARGET})
   endif()
   execute_process(COMMAND ${CMAKE_CXX_COMPILER} ${flags} -E -P ${source}
