@@ -277,7 +277,8 @@ void KuramotoSivashinsky<T>::pull(const Tape& tape,
   check_size(x_bar, 2, x.cols());
 
   // What is lost ends as NaN whatever is done, zeros remain zeros. A block of
-  // nothing else needs no way back.
+  // nothing else needs no way back; how many share one is the register's
+  // affair, so that the count is of samples.
   const auto known = [&](Index i) {
     return lost(0, i) != 0 || (y_bar.col(i).array() == 0).all();
   };
@@ -294,7 +295,7 @@ void KuramotoSivashinsky<T>::pull(const Tape& tape,
           pull_block<T>(options_, block, tape, y_bar, x_bar, given_bar, mine);
         for (Index i = block.first; i < block.first + block.count; ++i)
           if (known(i)) finish(i);
-        return live > 0 ? 0 : block.count;
+        return block.count - live;
       });
 }
 
