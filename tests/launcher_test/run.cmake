@@ -92,3 +92,22 @@ execute_process(
 if(NOT status EQUAL 9 OR NOT said MATCHES "fake --mode=chrootless .*cannot be had")
   message(SEND_ERROR "unpacking for ARM: ${status}\n${said}")
 endif()
+
+# Sets of another processor, and processors without any, end in words.
+function(expect_processor processor chosen words)
+  file(WRITE ${work}/processor.cmake "cmake_minimum_required(VERSION 3.25)
+    include(${source}/cmake/processor.cmake)
+    physinv_find_processor(found \"${chosen}\")
+    message(NOTICE \"it is \${found}\")")
+  execute_process(ERROR_VARIABLE said COMMAND ${CMAKE_COMMAND}
+    -D CMAKE_SYSTEM_PROCESSOR=${processor} -P ${work}/processor.cmake)
+  string(REGEX REPLACE "[ \n]+" " " said "${said}")
+  if(NOT said MATCHES "${words}")
+    message(SEND_ERROR "'${chosen}' on ${processor}: ${said}")
+  endif()
+endfunction()
+expect_processor(aarch64 "" "^it is aarch64")
+expect_processor(aarch64 x86-64-v3 "PHYSINV_ARCH is x86-64-v3.*aarch64 has aarch64")
+expect_processor(x86_64 x86-64-v4 "^it is x86-64-v4")
+expect_processor(x86_64 aarch64 "PHYSINV_ARCH is aarch64")
+expect_processor(riscv64 x86-64-v3 "riscv64.*SLEEF")
