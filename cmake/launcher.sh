@@ -29,7 +29,7 @@ quietly() {
 
 # On ARM the compiler is clang: GCC 12 keeps what is wider than a register, as
 # packs of 256 bits are there, in memory.
-on_arm() { [[ $(uname -m) == aarch64 ]]; }
+on_arm() { [[ $HOSTTYPE == aarch64 ]]; }
 
 # packages_of SECTION: sets `packages`.
 packages_of() {
@@ -42,7 +42,10 @@ packages_of() {
       *) [[ -z $in_section ]] || packages+=("$line") ;;
     esac
   done <"$root/apt-packages.txt"
-  [[ $1 != bench ]] || ! on_arm || packages+=(clang)
+  ! on_arm || case $1 in
+    bench) packages+=(clang) ;;
+    test) packages+=(libclang-rt-dev) ;;  # its sanitizers
+  esac
 }
 
 # need SECTION: installs what the machine lacks. The stamp holds the list that

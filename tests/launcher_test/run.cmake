@@ -68,18 +68,16 @@ launch(${checkout} check)
 expect_one_build("tests by the path")
 
 # On ARM the program is built by clang, and by GCC elsewhere.
-file(WRITE ${work}/arm/uname "#!/bin/sh\necho aarch64\n")
-file(WRITE ${work}/x86/uname "#!/bin/sh\necho x86_64\n")
-foreach(processor arm x86)
-  file(CHMOD ${work}/${processor}/uname PERMISSIONS OWNER_READ OWNER_EXECUTE)
+foreach(processor aarch64 x86_64)
   execute_process(
-    COMMAND bash -c "PATH='${work}/${processor}':$PATH root='${checkout}'
+    COMMAND bash -c "HOSTTYPE=${processor} root='${checkout}'
       source '${source}/cmake/launcher.sh'
       packages_of bench; echo \"\${packages[*]}\""
     OUTPUT_VARIABLE ${processor} OUTPUT_STRIP_TRAILING_WHITESPACE)
 endforeach()
-if(NOT arm STREQUAL clang OR NOT x86 STREQUAL "")
-  message(SEND_ERROR "packages of [bench]: '${arm}' on ARM, '${x86}' elsewhere")
+if(NOT aarch64 STREQUAL clang OR NOT x86_64 STREQUAL "")
+  message(SEND_ERROR
+    "packages of [bench]: '${aarch64}' on ARM, '${x86_64}' elsewhere")
 endif()
 
 # The libraries for ARM are unpacked by who is not root, too, and where nothing
