@@ -154,7 +154,7 @@ std::string bits_text() {
 std::string build_text() {
   const BuildInfo& b = build_info();
   const std::string flags = std::regex_replace(
-      std::string(b.flags), std::regex(" ?-(march=|U__AVX512F__)\\S*"), "");
+      std::string(b.flags), std::regex(" ?-m(arch|tune)=\\S*"), "");
   return fmt::format("{} {} {}", b.compiler, b.compiler_version, flags);
 }
 
