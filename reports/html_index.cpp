@@ -62,12 +62,12 @@ std::string measured_of(const ClaimResult& claim) {
   for (const ConditionResult& c : claim.conditions) {
     if (c.value && c.holds && *c.holds == partly)
       add(fmt::format("{} {}{} {}",
-                      c.label,
+                      c.text(),
                       value_text(*c.value),
                       partly ? "," : ", not",
                       c.bounds));
     else if (partly && !c.missing.empty())
-      add(c.label + ": " + c.missing);
+      add(c.text() + ": " + c.missing);
   }
   return text.empty() ? claim.evidence : text;
 }

@@ -87,6 +87,7 @@ Json to_json(const std::vector<ConditionResult>& conditions) {
                    {"runs", c.runs},
                    {"holds", c.holds ? Json(*c.holds) : Json(nullptr)},
                    {"missing", c.missing}});
+    if (!c.shown.empty()) out.back()["shown"] = c.shown;
   }
   return out;
 }
@@ -107,7 +108,8 @@ std::vector<ConditionResult> conditions_from(const Json& list) {
                    .holds = holds.is_boolean()
                                 ? std::optional(holds.get<bool>())
                                 : std::nullopt,
-                   .missing = c.at("missing")});
+                   .missing = c.at("missing"),
+                   .shown = c.value("shown", "")});
     // One that is not finite is null, and was decided about all the same.
     if (!out.back().value && out.back().holds) out.back().value = INFINITY;
   }

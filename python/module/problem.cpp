@@ -4,9 +4,9 @@
 #include <pybind11/stl.h>
 
 #include "suite/core/float_environment.h"
-#include "suite/harness/nearest.h"
 #include "suite/harness/registry.h"
 #include "suite/harness/study.h"
+#include "suite/results/nearest.h"
 
 namespace physinv::python {
 namespace {

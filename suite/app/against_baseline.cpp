@@ -12,7 +12,7 @@
 #include "suite/gate/instructions.h"
 #include "suite/gate/verdict.h"
 #include "suite/harness/build_info.h"
-#include "suite/harness/nearest.h"
+#include "suite/results/nearest.h"
 #include "suite/store/file.h"
 
 namespace physinv {

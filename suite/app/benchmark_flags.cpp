@@ -9,8 +9,8 @@
 #include <charconv>
 
 #include "suite/harness/context.h"
-#include "suite/harness/nearest.h"
 #include "suite/harness/select.h"
+#include "suite/results/nearest.h"
 
 namespace physinv {
 namespace {

@@ -17,7 +17,7 @@
 #include <utility>
 
 #include "suite/app/campaign_file.h"
-#include "suite/harness/nearest.h"
+#include "suite/results/nearest.h"
 
 namespace physinv {
 namespace {

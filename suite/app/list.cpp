@@ -150,7 +150,7 @@ nlohmann::ordered_json claims_json(const std::string& of,
     nlohmann::ordered_json conditions = nlohmann::ordered_json::array();
     for (const Condition& condition : c.conditions)
       conditions.push_back(
-          {{"label", condition.label}, {"bounds", condition.bounds}});
+          {{"label", condition.text()}, {"bounds", condition.bounds}});
     const auto cause = c.cause.why.empty()
                            ? nlohmann::ordered_json(nullptr)
                            : nlohmann::ordered_json{

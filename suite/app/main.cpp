@@ -21,9 +21,9 @@
 #include "suite/app/verbs.h"
 #include "suite/harness/build_info.h"
 #include "suite/harness/context.h"
-#include "suite/harness/nearest.h"
 #include "suite/harness/output.h"
 #include "suite/harness/registry.h"
+#include "suite/results/nearest.h"
 #include "suite/store/errors.h"
 
 namespace physinv {

@@ -11,11 +11,11 @@
 #include <utility>
 
 #include "suite/harness/keys.h"
-#include "suite/harness/nearest.h"
 #include "suite/harness/registry.h"
 #include "suite/harness/registry_errors.h"
 #include "suite/harness/select.h"
 #include "suite/harness/words.h"
+#include "suite/results/nearest.h"
 #include "suite/store/file.h"
 #include "suite/store/plain_text.h"
 #include "suite/store/plan.h"

@@ -29,8 +29,8 @@ std::ptrdiff_t rank_of(const Evidence& evidence,
 }
 
 std::string evidence_text(const ConditionResult& c) {
-  if (!c.value) return fmt::format("{}: {}", c.label, c.missing);
-  std::string text = c.label + " " + number_text(*c.value);
+  if (!c.value) return fmt::format("{}: {}", c.text(), c.missing);
+  std::string text = c.text() + " " + number_text(*c.value);
   if (c.spread) text += " ± " + number_text(*c.spread);
   if (c.bounds.empty()) return text;
   text += " (" + c.bounds;
@@ -175,7 +175,7 @@ std::string conditions_text(const Claim& claim) {
   std::string text;
   for (const Condition& c : claim.conditions) {
     if (!text.empty()) text += "; ";
-    text += c.bounds.empty() ? c.label : c.label + " " + c.bounds;
+    text += c.bounds.empty() ? c.text() : c.text() + " " + c.bounds;
   }
   return text;
 }

@@ -122,7 +122,7 @@ Condition either(Condition a, Condition b) {
   std::vector<Quantity> both = a.quantities;
   both.insert(both.end(), b.quantities.begin(), b.quantities.end());
   const std::string bounds =
-      fmt::format("{}, or {} {}", a.bounds, b.label, b.bounds);
+      fmt::format("{}, or {} {}", a.bounds, b.text(), b.bounds);
   return {.label = a.label,
           .bounds = bounds,
           .quantities = std::move(both),
@@ -134,12 +134,23 @@ Condition either(Condition a, Condition b) {
                 if (other.holds.value_or(false)) return other;
                 return r.holds && !other.holds ? other : r;
               },
-          .alternatives = {a, b}};
+          .alternatives = {a, b},
+          .shown = a.shown};
 }
 
 Condition of_stages(Condition c) {
   c.of_stages = true;
   for (Condition& one : c.alternatives) one.of_stages = true;
+  return c;
+}
+
+Condition shown_as(Condition c, std::string text) {
+  c.judge = [=, judge = std::move(c.judge)](const Evidence& e) {
+    ConditionResult r = judge(e);
+    r.shown = text;
+    return r;
+  };
+  c.shown = std::move(text);
   return c;
 }
 

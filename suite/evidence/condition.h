@@ -19,7 +19,7 @@ namespace physinv {
 using Kept = std::vector<ConditionResult>;
 
 struct Condition {
-  std::string label;
+  std::string label;                 ///< by which its number is kept
   std::string bounds;                ///< in words: "in 55 .. 95"
   std::vector<Quantity> quantities;  ///< what registration checks
   std::function<ConditionResult(const Evidence&)> judge;
@@ -32,6 +32,9 @@ struct Condition {
   std::vector<Condition> alternatives = {};  ///< of `either`
   /// Asks for no more than results.json keeps of every stage.
   bool of_stages = false;
+  std::string shown = {};  ///< instead of the label, if any
+
+  const std::string& text() const { return shown.empty() ? label : shown; }
 };
 
 /// What is left of a campaign that was published.
@@ -82,6 +85,8 @@ Condition either(Condition a, Condition b);
 /// Of ends, iterations, times, mean or largest losses of stages alone, which
 /// results.json keeps: decided anew for every campaign.
 Condition of_stages(Condition c);
+/// Under another text; numbers are kept by the label as before.
+Condition shown_as(Condition c, std::string text);
 std::vector<Condition> joined(
     std::initializer_list<std::vector<Condition>> parts);
 

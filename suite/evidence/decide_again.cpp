@@ -57,9 +57,11 @@ std::optional<ConditionResult> decide_kept(const Condition& condition,
 
 }  // namespace
 
-ConditionResult decide_again(const Condition& condition,
-                             const Kept& kept,
-                             const Remains& remains) {
+namespace {
+
+ConditionResult decide_by_label(const Condition& condition,
+                                const Kept& kept,
+                                const Remains& remains) {
   const Evidence& evidence = remains.planned;
   const auto& asks = condition.quantities;
   if (std::all_of(asks.begin(), asks.end(), [](const Quantity& q) {
@@ -82,6 +84,16 @@ ConditionResult decide_again(const Condition& condition,
         return find_kept(kept, part) != nullptr;
       }))
     condition.again(evidence, kept, r);
+  return r;
+}
+
+}  // namespace
+
+ConditionResult decide_again(const Condition& condition,
+                             const Kept& kept,
+                             const Remains& remains) {
+  ConditionResult r = decide_by_label(condition, kept, remains);
+  if (r.label == condition.label) r.shown = condition.shown;
   return r;
 }
 

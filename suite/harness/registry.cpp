@@ -11,7 +11,7 @@
 #include <unordered_map>
 
 #include "suite/harness/errors.h"
-#include "suite/harness/nearest.h"
+#include "suite/results/nearest.h"
 
 namespace physinv {
 namespace {

@@ -142,12 +142,15 @@ inline constexpr int kVerdictCount = 8;
 
 /// One condition of a claim and what was measured for it.
 struct ConditionResult {
-  std::string label;                    ///< "Adam / HIG"
-  std::string bounds;                   ///< "> 2"; empty: a number alone
+  std::string label;   ///< "Adam / HIG", by which its number is kept
+  std::string bounds;  ///< "> 2"; empty: a number alone
   std::optional<double> value, spread;  ///< std over seeds
   std::int64_t runs = 0;                ///< behind the value
   std::optional<bool> holds;            ///< empty: not decided
   std::string missing;                  ///< what is not there
+  std::string shown = {};               ///< instead of the label, if any
+
+  const std::string& text() const { return shown.empty() ? label : shown; }
 };
 
 struct ClaimResult {

@@ -13,9 +13,9 @@
 
 #include "suite/app/conformance_flags.h"
 #include "suite/app/plugins.h"
-#include "suite/harness/nearest.h"
 #include "suite/harness/registry.h"
 #include "suite/harness/select.h"
+#include "suite/results/nearest.h"
 
 namespace physinv {
 

@@ -15,6 +15,7 @@ void baseline(std::string_view bytes);
 void cache(std::string_view bytes);
 void case_list(std::string_view bytes);
 void checkpoint(std::string_view bytes);
+void claims(std::string_view bytes);
 void command_line(std::string_view bytes);
 void config(std::string_view bytes);
 void digest(std::string_view bytes);

@@ -1,4 +1,4 @@
-#include "suite/harness/nearest.h"
+#include "suite/results/nearest.h"
 
 #include <algorithm>
 #include <array>

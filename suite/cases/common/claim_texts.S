@@ -1,0 +1,15 @@
+# Every claims.md of an experiment, by its folder, each with a zero at its end;
+# an empty name ends the list. Editing one compiles nothing.
+    .section .note.GNU-stack, "", %progbits
+    .section .rodata
+
+    .macro claims folder
+    .asciz "\folder"
+    .incbin "\folder/claims.md"
+    .byte 0
+    .endm
+
+    .global physinv_claim_texts
+physinv_claim_texts:
+    claims sip/exponential
+    .byte 0

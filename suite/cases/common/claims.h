@@ -1,0 +1,22 @@
+/// Claims of an experiment's folder, written in its claims.md.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "suite/evidence/claim_document.h"
+#include "suite/harness/registry.h"
+
+namespace physinv {
+
+/// Those of suite/cases/<folder>/claims.md. Throws ClaimDocumentError, and
+/// std::logic_error of a folder that claim_texts.S does not list.
+std::vector<ClaimsOfExperiment> claims_of_folder(
+    const std::string& folder, ClaimNames names = claim_names());
+
+/// Registers them.
+void add_claims_of_folder(Registry& registry,
+                          const std::string& folder,
+                          ClaimNames names = claim_names());
+
+}  // namespace physinv
