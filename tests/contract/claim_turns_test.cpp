@@ -614,6 +614,39 @@ void look(const Asked& asked,
   }
 }
 
+/// What every condition comes to on three campaigns, its cause's included, a
+/// line each: the same before and after an edit of claims that changes none.
+void print_values(const Asked& asked,
+                  const std::vector<const Variants*>& cases,
+                  const Models& models,
+                  const Published& published) {
+  Dice dice(hash_text(asked.name));
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Results results(draw(cases, k, models, dice));
+    for (const Claim& claim : *asked.claims)
+      for (const Condition& c : all_conditions(claim)) {
+        ConditionResult r;
+        try {
+          r = c.judge({results, published, asked.name});
+        } catch (const std::exception& error) {
+          r.missing = error.what();
+        }
+        fmt::print("{} {} {}: {}|{}|{}|{}|{}|{}|{}\n",
+                   asked.name,
+                   claim.id,
+                   k,
+                   c.label,
+                   r.label,
+                   r.bounds,
+                   r.value.value_or(NAN),
+                   r.spread.value_or(NAN),
+                   r.holds ? *r.holds ? "holds" : "fails" : r.missing,
+                   r.runs);
+      }
+  }
+  std::fflush(stdout);
+}
+
 const char* end_of(const Seen& s) {
   if (s.turned) return "turned";
   if (!s.held && !s.failed) return "undecided";
@@ -648,9 +681,14 @@ bool print(const std::string& of, const std::map<std::string, Seen>& seen) {
 bool apart(const Asked& asked,
            const std::vector<const Variants*>& cases,
            const Models& models,
-           const Published& published) {
+           const Published& published,
+           bool values) {
   std::fflush(stdout);
   const pid_t child = fork();
+  if (child == 0 && values) {
+    print_values(asked, cases, models, published);
+    _exit(0);
+  }
   if (child == 0) {
     std::map<std::string, Seen> seen;
     look(asked, cases, models, published, seen);
@@ -674,13 +712,15 @@ bool apart(const Asked& asked,
 int main(int argc, char** argv) {
   using namespace physinv;
   const std::string_view how = argc > 2 ? argv[2] : "";
-  const bool full = how == "--full", but = how == "--all-but";
-  const std::set<std::string> named(argv + std::min(argc, full || but ? 3 : 2),
-                                    argv + argc);
+  const bool full = how == "--full", but = how == "--all-but",
+             values = how == "--values";
+  const std::set<std::string> named(
+      argv + std::min(argc, full || but || values ? 3 : 2), argv + argc);
   if (argc < 2) {
     fmt::print(
-        "usage: claim_turns_test STORE-OF-SMOKE [--full | --all-but] "
-        "[EXPERIMENT...]\n"
+        "usage: claim_turns_test STORE-OF-SMOKE [--full | --all-but | "
+        "--values] [EXPERIMENT...]\n"
+        "--values: prints what every condition comes to instead\n"
         "--full: only where PHYSINV_FULL is set, else status 77\n");
     return 2;
   }
@@ -702,7 +742,7 @@ int main(int argc, char** argv) {
     for (const std::string& experiment : asked.experiments)
       if (const auto at = cases.find(experiment); at != cases.end())
         for (const Variants& c : at->second) own.push_back(&c);
-    good = apart(asked, own, models, published) && good;
+    good = apart(asked, own, models, published, values) && good;
   }
   return good ? 0 : 1;
 }
