@@ -340,7 +340,7 @@ class WorkPrecision final : public Diagnostic {
     for (Index i = 0; i < n; ++i)
       error(0, i) =
           number_or_none(relative_distance(found.col(i), right.base.col(i)));
-    out.arrays = {{"error", error}};
+    out.arrays["error"] = error;
     out.bytes = work.bytes() + tape.bytes();
   }
 
