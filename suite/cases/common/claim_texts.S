@@ -11,5 +11,6 @@
 
     .global physinv_claim_texts
 physinv_claim_texts:
+    claims hig/poisson
     claims sip/exponential
     .byte 0
