@@ -12,5 +12,6 @@
     .global physinv_claim_texts
 physinv_claim_texts:
     claims hig/poisson
+    claims hig/toy
     claims sip/exponential
     .byte 0
