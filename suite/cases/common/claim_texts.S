@@ -11,7 +11,9 @@
 
     .global physinv_claim_texts
 physinv_claim_texts:
+    claims hig/overview
     claims hig/poisson
+    claims hig/quantum_dipole
     claims hig/toy
     claims sip/exponential
     .byte 0
