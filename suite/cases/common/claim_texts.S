@@ -11,6 +11,7 @@
 
     .global physinv_claim_texts
 physinv_claim_texts:
+    claims hig/oscillators
     claims hig/overview
     claims hig/poisson
     claims hig/quantum_dipole
