@@ -26,6 +26,7 @@ constexpr std::array kCauses{
     CauseWord{"Reported: ", Verdict::reported}};
 constexpr std::string_view kNote = "Note: ";
 constexpr std::string_view kOr = " or ";
+constexpr std::string_view kAnd = ", ";  ///< between experiments
 constexpr std::string_view kKept = " (kept as ";
 
 /// Takes a beginning away, if it is there.
@@ -65,7 +66,14 @@ class Reader {
   std::vector<ClaimsOfExperiment> read() {
     while (next_ < lines_.size()) block();
     end_claim();
-    return std::move(parts_);
+    std::vector<ClaimsOfExperiment> all;
+    for (ClaimsOfExperiment& part : parts_)
+      for (std::string_view names = part.experiment; !names.empty();) {
+        const auto end = std::min(names.find(kAnd), names.size());
+        all.push_back({std::string(names.substr(0, end)), part.claims});
+        names.remove_prefix(std::min(end + kAnd.size(), names.size()));
+      }
+    return all;
   }
 
  private:

@@ -21,12 +21,13 @@
 ///
 ///   - share left: `lowest("adam", share_left(mean)) > 0.05`
 ///
-/// A heading has the claim's id, its place in the paper (without one, the claim
-/// is a range of the suite), the lowest profile that decides it, and "no gate"
-/// where it gates nothing. A line of a list is a condition; without a relation
-/// its number is reported. Lines go on where the next ones are indented. The
-/// label finds numbers that were kept; a text that is to be shown instead
-/// stands before it: "- text (kept as label): `...`".
+/// "# sip/fluid, sip/fluid-timed" begins claims that each of these experiments
+/// has. The heading of a claim has its id, its place in the paper (without one,
+/// the claim is a range of the suite), the lowest profile that decides it, and
+/// "no gate" where it gates nothing. A line of a list is a condition; without a
+/// relation its number is reported. Lines go on where the next ones are
+/// indented. The label finds numbers that were kept; a text that is to be shown
+/// instead stands before it: "- text (kept as label): `...`".
 ///
 /// Relations: > >= < <=, `in a .. b`, `= a`, `= a +- b`, `near a`, `about a`,
 /// `as printed("name", seeds)`, `as stated(a, seeds)`, each perhaps followed by

@@ -7,6 +7,7 @@
 #include <cctype>
 #include <charconv>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "suite/evidence/training.h"
@@ -106,6 +107,7 @@ std::string kind_of_value(const ClaimValue& v) { return kind_of(v.type()); }
 
 constexpr int kDeepest = 50;        ///< parentheses, calls of defined functions
 constexpr int kMostCalls = 10'000;  ///< of an expression
+constexpr std::size_t kLongestText = 1000;  ///< of parts that are joined
 
 /// What parameters of a defined function are.
 using Locals = std::map<std::string, ClaimValue>;
@@ -269,6 +271,13 @@ class Expression {
             near.empty() ? "" : fmt::format("; did you mean {}?", near))};
   }
 
+  /// Of text and of numbers, as parts of names have them: "-b" + 8.
+  static std::optional<std::string> written(const ClaimValue& value) {
+    if (const auto* number = std::any_cast<double>(&value))
+      return fmt::format("{}", *number);
+    return claim_value_as<std::string>(value);
+  }
+
   /// left sign right.
   static ClaimValue combined(const Token& sign,
                              const ClaimValue& left,
@@ -281,6 +290,13 @@ class Expression {
              : s == '-' ? *a - *b
              : s == '*' ? *a * *b
                         : *a / *b;
+    if (const auto* text = std::any_cast<std::string>(&left);
+        s == '+' && text != nullptr)
+      if (const auto end = written(right)) {
+        if (text->size() + end->size() > kLongestText)
+          throw ExpressionError{sign.place, "this text is too long"};
+        return *text + *end;
+      }
     const auto *of = std::any_cast<RunValue>(&left),
                *under = std::any_cast<RunValue>(&right);
     if (s == '/' && of != nullptr && under != nullptr) return over(*of, *under);

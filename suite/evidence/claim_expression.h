@@ -1,6 +1,6 @@
 /// The expressions of claims.md. Numbers of a campaign are added to nothing but
 /// numbers, subtracted, divided, and multiplied by numbers; values of a run are
-/// divided.
+/// divided. To text, text and numbers are added: "sip-b" + 8.
 #pragma once
 
 #include <string>

@@ -123,6 +123,28 @@ TEST(ClaimDocument, ReadsEveryRelation) {
   EXPECT_TRUE(claim("- v: `Two > 1 of stages`\n").conditions.at(0).of_stages);
 }
 
+TEST(ClaimDocument, JoinsTextAndNumbersToNames) {
+  const auto one = claims(
+      "## A1\nSays\n\n- v: `median(\"sip-b\" + 8 + \"-lr\" + 2, "
+      "loss())`\n");
+  EXPECT_EQ(one.at(0).conditions.at(0).quantities.at(0).runs().at(0).method,
+            "sip-b8-lr2");
+}
+
+TEST(ClaimDocument, GivesClaimsToEveryExperimentOfAHeading) {
+  const auto all = read_claims(
+      "# toy\n## P1 (a)\nSays\n\n- v: `1`\n# toy, toy-two\n## P2 (b)\n"
+      "Says\n\n- v: `1`\n",
+      "claims.md",
+      {});
+  ASSERT_EQ(all.size(), 3U);
+  EXPECT_EQ(all[0].experiment, "toy");
+  EXPECT_EQ(all[1].experiment, "toy");
+  EXPECT_EQ(all[2].experiment, "toy-two");
+  EXPECT_EQ(all[1].claims.at(0).id, "P2");
+  EXPECT_EQ(all[2].claims.at(0).id, "P2");
+}
+
 TEST(ClaimDocument, DefinesNamesAndFunctions) {
   const auto one = claims(
       "```claims\nthree = Two +\n  1\nhalf(x) = x / Two\n"
@@ -183,8 +205,8 @@ TEST(ClaimDocument, NamesThePlaceOfAnErrorAndWhatWouldBeRight) {
   EXPECT_EQ(error_of_expression("(1"), "claims.md:5:9: ')' is missing here");
   EXPECT_EQ(error_of_expression("Two ; 3"),
             "claims.md:5:11: ';' means nothing here");
-  EXPECT_EQ(error_of_expression("\"a\" + 1"),
-            "claims.md:5:11: text + a number has no meaning");
+  EXPECT_EQ(error_of_expression("\"a\" - 1"),
+            "claims.md:5:11: text - a number has no meaning");
   EXPECT_EQ(error_of_expression("Two in 1"),
             "claims.md:5:15: '..' is missing here");
 }
@@ -208,6 +230,9 @@ TEST(ClaimDocument, NamesThePlaceOfALineThatItCannotRead) {
             "claims.md:2:1: this block has no end");
   EXPECT_EQ(error("```claims\nf(x) = f(x)\nb = f(1)\n```\n"),
             "claims.md:3:10: this is nested too deeply");
+  EXPECT_EQ(error("```claims\na(x) = x + x + x + x + x + x + x + x + x + x\n"
+                  "b = a(a(a(a(\"x\"))))\n```\n"),
+            "claims.md:2:40: this text is too long");
 }
 
 }  // namespace
