@@ -17,4 +17,5 @@ physinv_claim_texts:
     claims hig/quantum_dipole
     claims hig/toy
     claims sip/exponential
+    claims sip/packet_width
     .byte 0

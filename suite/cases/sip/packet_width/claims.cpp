@@ -1,13 +1,12 @@
-// For which packets and networks the sentences of App. C.1 come out.
+#include "suite/cases/common/claims.h"
+
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "suite/cases/sip/packet_width/settings.h"
 #include "suite/cases/sip/wave_packet/values.h"
-#include "suite/evidence/claim.h"
 #include "suite/evidence/study_table.h"
-#include "suite/harness/registry.h"
 
 namespace physinv::packet_width {
 namespace {
@@ -17,20 +16,18 @@ using sip_wave_packet::errors, sip_wave_packet::kBasin,
 
 const Select kNet{"net"}, kLbfgs{"lbfgs"};
 
-bool is_localized(double error) { return error <= kBasin; }
-
 Quantity localized(const Select& who) {
-  return percent(share_of_examples(who, errors(), is_localized));
-}
-Quantity of_both(RunValue value) {
-  return depends_on(median(kNet, std::move(value)), {kLbfgs});
+  return percent(share_of_examples(
+      who, errors(), [](double error) { return error <= kBasin; }));
 }
 Quantity by_net(const Choice&) { return localized(kNet); }
 Quantity by_lbfgs(const Choice&) { return localized(kLbfgs); }
-Quantity updates_to_pass(const Choice&) { return of_both(passes_lbfgs()); }
+Quantity updates_to_pass(const Choice&) {
+  return depends_on(median(kNet, passes_lbfgs()), {kLbfgs});
+}
 Quantity loss_over_lbfgs(const Choice&) {
-  return of_both(over(of_row(losses(), mean_of),
-                      beside(kLbfgs, of_row(losses(), mean_of))));
+  const RunValue loss = of_row(losses(), mean_of);
+  return depends_on(median(kNet, over(loss, beside(kLbfgs, loss))), {kLbfgs});
 }
 
 const StudyTable<Choice> kStudy{
@@ -39,37 +36,22 @@ const StudyTable<Choice> kStudy{
                 {"L-BFGS-B's, % (fewer)",
                  by_lbfgs,
                  [](std::string label, Quantity q, const Choice& c) {
-                   return below(std::move(label),
-                                std::move(q),
-                                of_experiment(c.name(), by_net(c)));
+                   return below(
+                       std::move(label), q, of_experiment(c.name(), by_net(c)));
                  }},
                 {"updates to L-BFGS-B's loss (30 to 40)",
                  updates_to_pass,
                  [](std::string label, Quantity q, const Choice&) {
                    return at_most(
                        std::move(label),
-                       std::move(q),
+                       q,
                        times(2, printed("sip/wave-packet crossing/latest")));
                  }},
                 {"loss over L-BFGS-B's (below)",
                  loss_over_lbfgs,
                  asks_below(1)}},
-    .title = [](const Choice& choice) { return choice.title(); },
-    .experiment = [](const Choice& choice) { return choice.name(); }};
-
-Claim claim() {
-  return {.id = "S1",
-          .from = "study",
-          .says =
-              "The network localizes most packets, more than L-BFGS-B, and "
-              "passes its loss after 30 to 40 updates, whatever the "
-              "packet's width and the network's norm, pooling and initial "
-              "weights",
-          .conditions = kStudy.conditions(),
-          .cause = depends("width, norm, pooling and initial weights are not "
-                           "printed, or ambiguously; the table has the "
-                           "settings for which each number comes out")};
-}
+    .title = &Choice::title,
+    .experiment = &Choice::name};
 
 Section report(const Evidence& evidence) {
   Table table{.id = "settings",
@@ -92,9 +74,10 @@ Section report(const Evidence& evidence) {
 }  // namespace
 
 void add_claims(Registry& r) {
-  const std::string first = choices().front().name();
-  r.add_claims(first, {claim()});
-  r.add_report(first, report);
+  ClaimNames names = claim_names();
+  names.add("columns_of_every_setting", kStudy.conditions());
+  add_claims_of_folder(r, "sip/packet_width", names);
+  r.add_report(choices().front().name(), report);
 }
 
 }  // namespace physinv::packet_width
