@@ -17,5 +17,6 @@ physinv_claim_texts:
     claims hig/quantum_dipole
     claims hig/toy
     claims sip/exponential
+    claims sip/overview
     claims sip/packet_width
     .byte 0
