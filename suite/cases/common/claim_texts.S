@@ -19,4 +19,5 @@ physinv_claim_texts:
     claims sip/exponential
     claims sip/overview
     claims sip/packet_width
+    claims sip/wave_packet
     .byte 0
