@@ -17,6 +17,7 @@ physinv_claim_texts:
     claims hig/quantum_dipole
     claims hig/toy
     claims sip/exponential
+    claims sip/fluid
     claims sip/overview
     claims sip/packet_width
     claims sip/wave_packet
