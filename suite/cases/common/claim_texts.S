@@ -20,6 +20,7 @@ physinv_claim_texts:
     claims sip/fluid
     claims sip/overview
     claims sip/packet_width
+    claims sip/poisson
     claims sip/sine
     claims sip/wave_packet
     .byte 0
