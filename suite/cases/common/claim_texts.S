@@ -18,6 +18,7 @@ physinv_claim_texts:
     claims hig/toy
     claims sip/exponential
     claims sip/fluid
+    claims sip/heat
     claims sip/overview
     claims sip/packet_width
     claims sip/poisson
