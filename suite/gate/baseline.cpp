@@ -4,12 +4,12 @@
 #include <gnu/libc-version.h>
 
 #include <array>
-#include <charconv>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
 #include <stdexcept>
 
+#include "suite/core/decimal.h"
 #include "suite/harness/build_info.h"
 #include "suite/harness/context.h"
 #include "suite/harness/revision.h"
@@ -43,24 +43,20 @@ class Lines {
   std::string_view rest_;
 };
 
-std::pair<std::string, std::string> two(std::string_view line) {
+std::pair<std::string, std::string> first_word_and_rest(std::string_view line) {
   const auto at = line.find(' ');
   if (at == std::string_view::npos) return {std::string(line), ""};
   return {std::string(line.substr(0, at)), std::string(line.substr(at + 1))};
 }
 
-std::uint64_t count(std::string_view text) {
-  std::uint64_t value = 0;
-  const char* end = text.data() + text.size();
-  const auto [at, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc() || at != end)
-    throw std::runtime_error(fmt::format("'{}' is no count", text));
-  return value;
+std::uint64_t parse_count(std::string_view text) {
+  if (const auto value = decimal<std::uint64_t>(text)) return *value;
+  throw std::runtime_error(fmt::format("'{}' is no count", text));
 }
 
 void read_stages(Baseline& b, Lines& lines, const std::string& how_many) {
   std::set<std::string> names;
-  for (auto left = count(how_many); left > 0; --left) {
+  for (auto left = parse_count(how_many); left > 0; --left) {
     b.stages.push_back(stage_line(lines.next()));
     if (!names.insert(b.stages.back().name).second)
       throw std::runtime_error(b.stages.back().name + " stands twice");
@@ -68,11 +64,11 @@ void read_stages(Baseline& b, Lines& lines, const std::string& how_many) {
 }
 
 void read_counts(Baseline& b, Lines& lines, const std::string& head) {
-  const auto [how_many, counter] = two(head);
+  const auto [how_many, counter] = first_word_and_rest(head);
   b.counts.counter = counter;
-  for (auto left = count(how_many); left > 0; --left) {
-    const auto [name, value] = two(lines.next());
-    b.counts.lines.push_back({name, count(value)});
+  for (auto left = parse_count(how_many); left > 0; --left) {
+    const auto [name, value] = first_word_and_rest(lines.next());
+    b.counts.lines.push_back({name, parse_count(value)});
   }
 }
 
@@ -90,7 +86,7 @@ Baseline parse_body(Lines lines) {
   Baseline b;
   std::set<std::string> seen;
   while (!lines.empty()) {
-    const auto [key, value] = two(lines.next());
+    const auto [key, value] = first_word_and_rest(lines.next());
     const bool repeats = key == "filter" || key == "set";
     const bool may_be_empty = key == "revision";  // outside of git
     if (!value.empty() || may_be_empty)
@@ -206,7 +202,7 @@ Baseline parse_baseline(const std::string& text, const std::string& where) {
     const std::string_view title = lines.next();
     if (!title.starts_with(kTitle))
       throw std::runtime_error("its first line is another");
-    if (count(title.substr(kTitle.size())) > kVersion)
+    if (parse_count(title.substr(kTitle.size())) > kVersion)
       throw std::runtime_error("its version is newer than this program");
     Baseline b = parse_body(lines);
     if (b.stages.empty()) throw std::runtime_error("it holds no stage");

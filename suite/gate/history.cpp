@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <functional>
 #include <optional>
 #include <set>
 #include <stdexcept>
 
+#include "suite/core/decimal.h"
 #include "suite/core/math.h"
 #include "suite/core/stop.h"
 #include "suite/core/whole.h"
@@ -32,10 +32,9 @@ std::vector<std::string_view> split(std::string_view text, char at) {
   return parts;
 }
 
-double decimal(std::string_view text) {
-  double value = 0;
-  std::from_chars(text.data(), text.data() + text.size(), value);
-  return value;
+/// 0 for what is none.
+double number(std::string_view text) {
+  return decimal<double>(text).value_or(0);
 }
 
 /// "NAME results=.. loss=BEST,MEDIAN,WORST ms=FAST..SLOW ..."
@@ -45,13 +44,13 @@ void add_stage(PastBaseline& past, const std::vector<std::string_view>& words) {
     if (word.starts_with("results=")) stage.results = word.substr(8);
     if (word.starts_with("loss="))
       if (const auto losses = split(word.substr(5), ','); losses.size() >= 2)
-        if (const double loss = decimal(losses[1]); std::isfinite(loss))
+        if (const double loss = number(losses[1]); std::isfinite(loss))
           stage.loss = loss;
     if (word.starts_with("stop=")) stage.stop = word.substr(5);
     if (word.starts_with("nonfinite="))
-      stage.nonfinite = whole_part<std::int64_t>(decimal(word.substr(10)));
+      stage.nonfinite = whole_part<std::int64_t>(number(word.substr(10)));
     if (word.starts_with("ms="))
-      stage.fastest_ms = decimal(word.substr(3, word.find("..") - 3));
+      stage.fastest_ms = number(word.substr(3, word.find("..") - 3));
   }
   past.stages[std::string(words.front())] = std::move(stage);
 }
@@ -90,41 +89,49 @@ std::string group_of(const std::string& name) {
   return name.substr(0, name.find('/'));
 }
 
+/// Over what both have of a group; `add` says what counts.
+template <class T, class Add>
+std::optional<double> ratio_over(const std::map<std::string, T>& a,
+                                 const std::map<std::string, T>& b,
+                                 const std::string& group,
+                                 Add&& add) {
+  Link link;
+  for (const auto& [name, now] : b)
+    if (const auto before = a.find(name);
+        before != a.end() && group_of(name) == group)
+      add(link, before->second, now);
+  return link.ratio();
+}
+
 std::optional<double> loss_ratio(const PastBaseline& a,
                                  const PastBaseline& b,
                                  const std::string& group) {
-  Link link;
-  for (const auto& [name, stage] : b.stages)
-    if (group_of(name) == group)
-      if (const auto at = a.stages.find(name); at != a.stages.end())
-        if (losses_compare(at->second, stage))
-          link.add(raised(*at->second.loss), raised(*stage.loss));
-  return link.ratio();
+  const auto add = [](Link& link, const auto& before, const auto& now) {
+    if (losses_compare(before, now))
+      link.add(raised(*before.loss), raised(*now.loss));
+  };
+  return ratio_over(a.stages, b.stages, group, add);
 }
 
 std::optional<double> time_ratio(const PastBaseline& a,
                                  const PastBaseline& b,
                                  const std::string& group) {
   if (a.machine != b.machine) return {};
-  Link link;
-  for (const auto& [name, stage] : b.stages)
-    if (group_of(name) == group)
-      if (const auto at = a.stages.find(name); at != a.stages.end())
-        if (!at->second.failed() && !stage.failed())
-          link.add(at->second.fastest_ms, stage.fastest_ms);
-  return link.ratio();
+  const auto add = [](Link& link, const auto& before, const auto& now) {
+    if (!before.failed() && !now.failed())
+      link.add(before.fastest_ms, now.fastest_ms);
+  };
+  return ratio_over(a.stages, b.stages, group, add);
 }
 
 std::optional<double> instruction_ratio(const PastBaseline& a,
                                         const PastBaseline& b,
                                         const std::string& group) {
   if (a.counter != b.counter) return {};
-  Link link;
-  for (const auto& [name, count] : b.instructions)
-    if (group_of(name) == group)
-      if (const auto at = a.instructions.find(name); at != a.instructions.end())
-        link.add(static_cast<double>(at->second), static_cast<double>(count));
-  return link.ratio();
+  const auto add = [](Link& link, std::uint64_t before, std::uint64_t now) {
+    link.add(static_cast<double>(before), static_cast<double>(now));
+  };
+  return ratio_over(a.instructions, b.instructions, group, add);
 }
 
 Figure index_figure(const std::vector<PastBaseline>& past,
@@ -171,7 +178,7 @@ bool other_losses(const PastBaseline::Stage& a, const PastBaseline::Stage& b) {
   return std::abs(to - from) > kSameLoss * from;
 }
 
-Moved moved(const PastBaseline& a, const PastBaseline& b) {
+Moved moved_between(const PastBaseline& a, const PastBaseline& b) {
   Moved out;
   for (const auto& [name, stage] : b.stages) {
     const auto at = a.stages.find(name);
@@ -197,12 +204,12 @@ double failed_in(const PastBaseline& past) {
 Cell count_cell(double value) { return {.ours = value}; }
 
 Cell ratio_cell(const std::vector<std::optional<double>>& all) {
-  double sum = 0, count = 0;
+  Link link;
   for (const auto& ratio : all)
-    if (ratio) sum += math::log(*ratio), ++count;
-  if (count == 0) return {.text = "–"};
-  const double mean = math::exp(sum / count);
-  return {.ours = mean, .text = fmt::format("×{:.3g}", mean)};
+    if (ratio) link.add(1, *ratio);
+  const auto mean = link.ratio();
+  if (!mean) return {.text = "–"};
+  return {.ours = *mean, .text = fmt::format("×{:.3g}", *mean)};
 }
 
 Table commits_table(const std::vector<PastBaseline>& past,
@@ -223,7 +230,7 @@ Table commits_table(const std::vector<PastBaseline>& past,
   for (std::size_t k = past.size(); k-- > 0;) {
     const PastBaseline& b = past[k];
     const PastBaseline& a = past[k == 0 ? 0 : k - 1];
-    const Moved m = moved(a, b);
+    const Moved m = moved_between(a, b);
     std::vector<std::optional<double>> instructions, seconds;
     for (const std::string& group : groups) {
       instructions.push_back(instruction_ratio(a, b, group));
@@ -275,7 +282,7 @@ PastBaseline past_baseline(std::string_view text) {
       past.counter = rest.substr(words[1].size() + 1);
     } else if (key.find('/') != key.npos && counts && words.size() == 2) {
       past.instructions[std::string(key)] =
-          whole_part<std::uint64_t>(decimal(words[1]));
+          whole_part<std::uint64_t>(number(words[1]));
     } else if (key.find('/') != key.npos && !counts) {
       add_stage(past, words);
     }

@@ -4,7 +4,6 @@
 
 #include <map>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "suite/harness/campaign.h"
 #include "suite/harness/errors.h"
@@ -14,10 +13,10 @@
 namespace physinv {
 namespace {
 
-std::vector<StageLine> run(const std::vector<Case>& cases,
-                           const MeasureOptions& options,
-                           bool disturb,
-                           const Screen& screen) {
+std::vector<StageLine> run_traced(const std::vector<Case>& cases,
+                                  const MeasureOptions& options,
+                                  bool disturb,
+                                  const Screen& screen) {
   if (cases.empty()) return {};
   const CampaignOptions campaign{.out = options.out,
                                  .jobs = options.jobs,
@@ -34,8 +33,7 @@ std::vector<StageLine> run(const std::vector<Case>& cases,
     throw ExitError(ExitCode::interrupted,
                     fmt::format("interrupted; what had finished is in {}",
                                 options.out.string()));
-  std::set<std::string> names;
-  for (const Case& c : cases) names.insert(c.info.name);
+  const auto names = names_of(cases);
   auto records = load_results(options.out).cases();
   std::erase_if(records,
                 [&](const auto& c) { return !names.contains(c.info.name); });
@@ -43,6 +41,12 @@ std::vector<StageLine> run(const std::vector<Case>& cases,
 }
 
 }  // namespace
+
+std::set<std::string> names_of(const std::vector<Case>& cases) {
+  std::set<std::string> names;
+  for (const Case& c : cases) names.insert(c.info.name);
+  return names;
+}
 
 std::vector<StageLine> lines_of(const std::vector<CaseRecord>& cases) {
   std::vector<StageLine> lines;
@@ -61,7 +65,7 @@ std::vector<StageLine> lines_of(const std::vector<CaseRecord>& cases) {
 std::vector<StageLine> measure(const std::vector<Case>& cases,
                                const MeasureOptions& options,
                                const Screen& screen) {
-  return run(cases, options, false, screen);
+  return run_traced(cases, options, false, screen);
 }
 
 void measure_digits(std::vector<StageLine>& lines,
@@ -70,14 +74,14 @@ void measure_digits(std::vector<StageLine>& lines,
                     const Screen& screen) {
   options.out /= "disturbed";
   std::map<std::string, StageLine> repeats;
-  for (auto& line : run(cases, options, true, screen))
+  for (auto& line : run_traced(cases, options, true, screen))
     repeats.emplace(line.name, line);
   std::map<std::string, Precision> precisions;
   for (const Case& c : cases) precisions[c.info.name] = working_precision(c);
   for (StageLine& line : lines) {
     const auto at = repeats.find(line.name);
     if (at != repeats.end())
-      repeated(line, at->second, precisions[case_of(line.name)]);
+      enter_disturbed(line, at->second, precisions[case_of(line.name)]);
   }
 }
 

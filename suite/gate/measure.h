@@ -2,9 +2,11 @@
 #pragma once
 
 #include <filesystem>
+#include <set>
+#include <string>
 #include <vector>
 
-#include "suite/gate/baseline.h"
+#include "suite/gate/stage_line.h"
 #include "suite/harness/screen.h"
 
 namespace physinv {
@@ -17,6 +19,8 @@ struct MeasureOptions {
   int jobs = 1;
   bool resume = false;
 };
+
+std::set<std::string> names_of(const std::vector<Case>& cases);
 
 /// Stages of these cases, run with a trace into `out`. Throws ExitError if it
 /// was interrupted.

@@ -1,7 +1,6 @@
 #include "suite/gate/sequential.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numeric>
 

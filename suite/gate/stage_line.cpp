@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <set>
 #include <stdexcept>
 #include <vector>
 
+#include "suite/core/decimal.h"
 #include "suite/core/double_double.h"
 #include "suite/core/hash.h"
 #include "suite/core/median.h"
@@ -54,18 +54,14 @@ std::string hash_of(const StageRecord& r) {
   return hex64(hash.value());
 }
 
-std::uint64_t apart(std::uint64_t a, std::uint64_t b) {
+std::uint64_t difference(std::uint64_t a, std::uint64_t b) {
   return a > b ? a - b : b - a;
 }
 
 template <class T>
-T number(std::string_view text) {
-  T value{};
-  const char* end = text.data() + text.size();
-  const auto [at, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc() || at != end)
-    throw std::runtime_error(fmt::format("'{}' is no number", text));
-  return value;
+T parse_number(std::string_view text) {
+  if (const auto value = decimal<T>(text)) return *value;
+  throw std::runtime_error(fmt::format("'{}' is no number", text));
 }
 
 /// Cuts `text` at the first `mark`; what follows it stays in `text`.
@@ -78,33 +74,33 @@ std::string_view cut(std::string_view& text, std::string_view mark) {
 }
 
 template <class E, std::size_t kSize>
-E word(std::string_view text, const std::array<E, kSize>& all) {
+E parse_word(std::string_view text, const std::array<E, kSize>& all) {
   for (const E e : all)
     if (to_string(e) == text) return e;
   throw std::runtime_error(fmt::format("unknown word '{}'", text));
 }
 
-StatusCounts statuses(std::string_view text) {
+StatusCounts parse_statuses(std::string_view text) {
   StatusCounts counts{};
   while (!text.empty()) {
     std::string_view part = cut(text, ",");
-    const Status s = word(cut(part, ":"), kAllStatuses);
-    counts[static_cast<std::size_t>(s)] = number<Index>(part);
+    const Status s = parse_word(cut(part, ":"), kAllStatuses);
+    counts[static_cast<std::size_t>(s)] = parse_number<Index>(part);
   }
   return counts;
 }
 
-Losses losses(std::string_view text) {
+Losses parse_losses(std::string_view text) {
   Losses l;
-  l.best = number<double>(cut(text, ","));
-  l.median = number<double>(cut(text, ","));
-  l.worst = number<double>(text);
+  l.best = parse_number<double>(cut(text, ","));
+  l.median = parse_number<double>(cut(text, ","));
+  l.worst = parse_number<double>(text);
   return l;
 }
 
-int digits(std::string_view text) {
+int parse_digits(std::string_view text) {
   if (text == kNone) return kNoDigits;
-  const int value = number<int>(text);
+  const int value = parse_number<int>(text);
   if (value < 0 || value > kMost64)
     throw std::runtime_error(fmt::format(
         "digits={} is not from 0 to {}, nor {}", text, kMost64, kNone));
@@ -116,32 +112,32 @@ void read_work(StageLine& line, std::string_view key, std::string_view value) {
   if (at == kWork.end())
     throw std::runtime_error(fmt::format("unknown key '{}'", key));
   const auto i = static_cast<std::size_t>(at - kWork.begin());
-  line.work[i] = number<std::uint64_t>(cut(value, "~"));
-  if (!value.empty()) line.jitter[i] = number<std::uint64_t>(value);
+  line.work[i] = parse_number<std::uint64_t>(cut(value, "~"));
+  if (!value.empty()) line.jitter[i] = parse_number<std::uint64_t>(value);
 }
 
-void read(StageLine& line, std::string_view key, std::string_view value) {
+void read_field(StageLine& line, std::string_view key, std::string_view value) {
   if (key == "trajectory") {
     line.trajectory = value;
   } else if (key == "results") {
     line.results = value;
   } else if (key == "stop") {
-    line.stop = word(value, kAllStops);
+    line.stop = parse_word(value, kAllStops);
   } else if (key == "status") {
-    line.statuses = statuses(value);
+    line.statuses = parse_statuses(value);
   } else if (key == "loss") {
     const Index nonfinite = line.losses.nonfinite;
-    line.losses = losses(value);
+    line.losses = parse_losses(value);
     line.losses.nonfinite = nonfinite;
   } else if (key == "nonfinite") {
-    line.losses.nonfinite = number<Index>(value);
+    line.losses.nonfinite = parse_number<Index>(value);
   } else if (key == "x") {
-    line.x = number<double>(value);
+    line.x = parse_number<double>(value);
   } else if (key == "digits") {
-    line.digits = digits(value);
+    line.digits = parse_digits(value);
   } else if (key == "ms") {
-    line.fastest = number<double>(cut(value, ".."));
-    line.slowest = number<double>(value);
+    line.fastest = parse_number<double>(cut(value, ".."));
+    line.slowest = parse_number<double>(value);
   } else {
     read_work(line, key, value);
   }
@@ -198,7 +194,9 @@ StageLine line_of(const StageRecord& r) {
   return line;
 }
 
-void repeated(StageLine& line, const StageLine& other, Precision precision) {
+void enter_disturbed(StageLine& line,
+                     const StageLine& other,
+                     Precision precision) {
   const int most = precision == Precision::f32 ? kMost32 : kMost64;
   const auto pairs = {std::pair(line.losses.best, other.losses.best),
                       std::pair(line.losses.median, other.losses.median),
@@ -209,7 +207,7 @@ void repeated(StageLine& line, const StageLine& other, Precision precision) {
   line.digits =
       same_bits(line, other) ? kUnmeasured : stable_digits(apart_by, most);
   for (std::size_t i = 0; i < kWork.size(); ++i)
-    line.jitter[i] = apart(line.work[i], other.work[i]);
+    line.jitter[i] = difference(line.work[i], other.work[i]);
   line.fastest = std::min(line.fastest, other.fastest);
   line.slowest = std::max(line.slowest, other.slowest);
 }
@@ -259,7 +257,7 @@ StageLine stage_line(std::string_view text) {
     const std::string_view key = cut(value, "=");
     if (!seen.insert(key).second)
       throw std::runtime_error(fmt::format("{}: {} twice", line.name, key));
-    read(line, key, value);
+    read_field(line, key, value);
   }
   for (const auto field : kStageFields)
     if (!seen.contains(field))

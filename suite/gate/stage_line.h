@@ -51,12 +51,15 @@ struct StageLine {
   double fastest = 0, slowest = 0;  ///< milliseconds of solving, of the runs
 };
 
-/// Of a finished stage; `digits` and `jitter` are for `repeated`.
+/// Of a finished stage that ran once: `enter_disturbed` adds `digits` and
+/// `jitter`.
 StageLine line_of(const StageRecord& record);
 
 /// Enters what the same stage did with data one ulp off. Numbers in that
 /// `precision` were computed.
-void repeated(StageLine& line, const StageLine& disturbed, Precision precision);
+void enter_disturbed(StageLine& line,
+                     const StageLine& disturbed,
+                     Precision precision);
 
 /// Digits after the point of its losses, as the line has them.
 int shown_digits(const StageLine& line);

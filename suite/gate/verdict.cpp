@@ -14,7 +14,7 @@
 namespace physinv {
 namespace {
 
-std::vector<std::string>& side(Reasons& reasons, Direction direction) {
+std::vector<std::string>& reasons_of(Reasons& reasons, Direction direction) {
   return direction == Direction::worse    ? reasons.worse
          : direction == Direction::better ? reasons.better
                                           : reasons.other;
@@ -36,14 +36,14 @@ void compare_ends(const StageLine& a,
                   Rules rules,
                   Reasons& found) {
   if (a.stop != b.stop)
-    side(found, direction(a.stop, b.stop))
+    reasons_of(found, direction(a.stop, b.stop))
         .push_back(fmt::format("{} -> {}{}{}",
                                to_string(a.stop),
                                to_string(b.stop),
                                b.message.empty() ? "" : ": ",
                                b.message));
   if (a.statuses != b.statuses)
-    side(found, direction_of_examples(a, b, rules))
+    reasons_of(found, direction_of_examples(a, b, rules))
         .push_back(fmt::format(
             "{} -> {}", status_text(a.statuses), status_text(b.statuses)));
   if (a.losses.nonfinite != b.losses.nonfinite)
@@ -62,10 +62,10 @@ void compare_losses(const StageLine& a, const StageLine& b, Reasons& found) {
         const double moved = log_distance(before, now);
         if (!(std::abs(moved) > tolerance(a.digits))) return;
         const int shown = std::clamp(a.digits, 1, 12);
-        side(found,
-             !counts     ? Direction::other
-             : moved > 0 ? Direction::worse
-                         : Direction::better)
+        reasons_of(found,
+                   !counts     ? Direction::other
+                   : moved > 0 ? Direction::worse
+                               : Direction::better)
             .push_back(fmt::format("{} loss {:.{}e} -> {:.{}e} ({} stable "
                                    "digits)",
                                    which,

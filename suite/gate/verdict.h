@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "suite/gate/baseline.h"
+#include "suite/gate/stage_line.h"
 
 namespace physinv {
 

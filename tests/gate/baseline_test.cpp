@@ -118,16 +118,16 @@ TEST(Digits, AreWhatOneUlpLeaves) {
 
 TEST(Digits, OfAStageThatNoDisturbanceReachedAreFew) {
   StageLine a = line("c/s"), b = a;
-  repeated(a, b, Precision::f64);
+  enter_disturbed(a, b, Precision::f64);
   EXPECT_EQ(a.digits, 3);
   b.trajectory = "0000000000000001";
-  repeated(a, b, Precision::f64);
+  enter_disturbed(a, b, Precision::f64);
   EXPECT_EQ(a.digits, 12);
-  repeated(a, b, Precision::f32);
+  enter_disturbed(a, b, Precision::f32);
   EXPECT_EQ(a.digits, 5);
   b.losses.median *= 1.01;
   b.work[0] += 3;
-  repeated(a, b, Precision::f64);
+  enter_disturbed(a, b, Precision::f64);
   EXPECT_EQ(a.digits, 1);
   EXPECT_EQ(a.jitter[0], 3u);
 }
