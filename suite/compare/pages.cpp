@@ -16,7 +16,7 @@
 namespace physinv {
 namespace {
 
-Cell number(double value, const char* format) {
+Cell number_cell(double value, const char* format) {
   return std::isfinite(value)
              ? Cell{.ours = value,
                     .text = fmt::format(fmt::runtime(format), value)}
@@ -42,7 +42,8 @@ std::string factor_text(double r) {
 }
 
 /// The median of its pairs, and how far apart its quartiles are.
-Cell factor(const std::optional<Quartiles>& ratios, const std::string& why) {
+Cell factor_cell(const std::optional<Quartiles>& ratios,
+                 const std::string& why) {
   if (!ratios) return {.text = why.empty() ? "–" : why};
   Cell cell{.text = std::isfinite(ratios->median) ? factor_text(ratios->median)
                                                   : "not finite"};
@@ -51,7 +52,7 @@ Cell factor(const std::optional<Quartiles>& ratios, const std::string& why) {
 }
 
 /// `unit` of the cell in units of the quartiles.
-void spread(Cell& cell, const Quartiles& quartiles, double unit = 1) {
+void set_spread(Cell& cell, const Quartiles& quartiles, double unit = 1) {
   const auto range = quartiles.range();
   if (cell.ours && range && std::isfinite(*range)) cell.spread = *range / unit;
 }
@@ -66,7 +67,7 @@ std::string ends_text(const Reading& r) {
   return out;
 }
 
-Cell bits(const Reading& r) {
+Cell bits_cell(const Reading& r) {
   return {.text = r.same_bits == r.stages
                       ? "same"
                       : fmt::format("{} of {}", r.same_bits, r.stages)};
@@ -110,17 +111,17 @@ const Quartiles& seconds_of(const Times& times) {
 Cell time_cell(const Reading& r) {
   if (!r.times) return {.text = ends_text(r)};
   const Quartiles& seconds = seconds_of(*r.times);
-  Cell cell = number(1e3 * seconds.median, "{:.4g}");
+  Cell cell = number_cell(1e3 * seconds.median, "{:.4g}");
   if (!r.times->of_one_core() && r.times->crowded) cell.text += " (crowded)";
   if (r.stages > 1 && seconds.count < r.stages)
     cell.text += fmt::format(" ({} of {})", seconds.count, r.stages);
-  spread(cell, seconds, 1e-3);
+  set_spread(cell, seconds, 1e-3);
   return cell;
 }
 
 Cell loss_cell(const Reading& r) {
-  Cell cell = number(r.loss.median, "{:.2e}");
-  spread(cell, r.loss);
+  Cell cell = number_cell(r.loss.median, "{:.2e}");
+  set_spread(cell, r.loss);
   return cell;
 }
 
@@ -136,21 +137,22 @@ void add_sides(TableRow& row, const Compared& c, F&& cell) {
 void add_against(TableRow& out, const Compared& row, std::size_t s) {
   const Against sum = against(row, s);
   const auto ratio = [&](const auto& ratios, const std::string& why = "") {
-    out.cells.push_back(factor(ratios, why));
-    if (ratios) spread(out.cells.back(), *ratios);
+    out.cells.push_back(factor_cell(ratios, why));
+    if (ratios) set_spread(out.cells.back(), *ratios);
   };
   ratio(sum.loss);
   ratio(sum.time, sum.no_time);
   if (row.members.empty() && sum.time) {  // over repetitions
     const TimeRatio t = time_ratio(*row.sides.front(), *row.sides[s]);
-    spread(out.cells.back(), t.b, t.a.median);
+    set_spread(out.cells.back(), t.b, t.a.median);
   }
   if (sum.time && sum.timed < sum.pairs)
     out.cells.back().text += fmt::format(" ({} of {})", sum.timed, sum.pairs);
   ratio(sum.simulations);
   ratio(sum.passes);
   out.cells.push_back(ends_cell(row, s, sum.worse));
-  out.cells.push_back(sum.pairs > 0 ? bits(*row.sides[s]) : Cell{.text = "–"});
+  out.cells.push_back(sum.pairs > 0 ? bits_cell(*row.sides[s])
+                                    : Cell{.text = "–"});
   if (row.members.empty()) return;
   out.cells.push_back(
       {.text = fmt::format("{} of {}", sum.wins, sum.pairs) +
@@ -198,7 +200,7 @@ Comparison of_experiment(const Comparison& all, const std::string& name) {
 }
 
 /// Loss over time of every method and side: a point per stage or group.
-Figure overlay(const Comparison& c) {
+Figure loss_over_time(const Comparison& c) {
   Figure figure{.id = "work_precision",
                 .title = "Loss over time of solving",
                 .columns = 1};
@@ -250,7 +252,7 @@ Section overview(const Comparison& c,
   return section;
 }
 
-std::string word(const ClaimResult& claim) {
+std::string verdict_word(const ClaimResult& claim) {
   return std::string(words_of(claim.verdict, claim.origin));
 }
 
@@ -297,7 +299,7 @@ std::vector<Table> detail_tables(const Comparison& c) {
       }));
   tables.push_back(
       per_side(c, "iterations", "Iterations", "", [](const Reading& r) {
-        return number(static_cast<double>(r.iterations), "{:.0f}");
+        return number_cell(static_cast<double>(r.iterations), "{:.0f}");
       }));
   for (std::size_t i = 0; i < kCounters; ++i) {
     const auto counter = static_cast<Counter>(i);
@@ -311,7 +313,7 @@ std::vector<Table> detail_tables(const Comparison& c) {
     tables.push_back(
         per_side(c, name.c_str(), name.c_str(), "", [&](const Reading& r) {
           if (!r.counts.knows(counter)) return Cell{.text = "not counted"};
-          return number(static_cast<double>(r.counts[counter]), "{:.0f}");
+          return number_cell(static_cast<double>(r.counts[counter]), "{:.0f}");
         }));
   }
   return tables;
@@ -354,7 +356,8 @@ Table claims_table(const std::vector<ChangedClaim>& changed,
         row.label = fmt::format(
             "{} {}: {}", c.experiment, side->id, shortened(side->says, 60));
     for (std::size_t s = 0; s < c.sides.size(); ++s)
-      row.cells.push_back({.text = word(c.sides[s].value_or(ClaimResult{}))});
+      row.cells.push_back(
+          {.text = verdict_word(c.sides[s].value_or(ClaimResult{}))});
     table.rows.push_back(std::move(row));
   }
   return table;
@@ -375,7 +378,7 @@ std::vector<Section> compare_sections(const Comparison& c,
     section.tables.push_back(changes_table(own, own.rows.size()));
     for (auto& table : detail_tables(own))
       section.tables.push_back(std::move(table));
-    section.figures.push_back(overlay(own));
+    section.figures.push_back(loss_over_time(own));
     const CommonRuns runs = common_runs(all, name);
     add_standings(section, runs, {});
     for (auto& figure : performance_profile_figures(

@@ -17,7 +17,7 @@ double or_infinite(double value) {
   return std::isfinite(value) ? value : kInfinite;
 }
 
-Quartiles solving(const StageRecord& s, double Seconds::*clock) {
+Quartiles solving_quartiles(const StageRecord& s, double Seconds::*clock) {
   std::vector<double> seconds = solving_times(s, clock);
   for (double& value : seconds) value = or_infinite(value);
   return quartiles_of(seconds);
@@ -25,15 +25,16 @@ Quartiles solving(const StageRecord& s, double Seconds::*clock) {
 
 std::optional<Times> times_of(const StageRecord& s) {
   if (!has_time(s)) return {};
-  return Times{solving(s, &Seconds::wall),
-               solving(s, &Seconds::cpu),
+  return Times{solving_quartiles(s, &Seconds::wall),
+               solving_quartiles(s, &Seconds::cpu),
                s.run.threads,
                s.crowded};
 }
 
 /// Of all stages' medians.
 template <class F>
-Quartiles over(const std::vector<const Reading*>& stages, F&& number) {
+Quartiles quartiles_over(const std::vector<const Reading*>& stages,
+                         F&& number) {
   std::vector<double> values;
   for (const Reading* r : stages) values.push_back(number(*r));
   return quartiles_of(values);
@@ -43,8 +44,10 @@ std::optional<Times> times_of(std::vector<const Reading*> stages) {
   std::erase_if(stages, [](const Reading* r) { return !r->times; });
   if (stages.empty()) return {};
   Times times{
-      over(stages, [](const Reading& r) { return r.times->wall.median; }),
-      over(stages, [](const Reading& r) { return r.times->cpu.median; })};
+      quartiles_over(stages,
+                     [](const Reading& r) { return r.times->wall.median; }),
+      quartiles_over(stages,
+                     [](const Reading& r) { return r.times->cpu.median; })};
   for (const Reading* r : stages) {
     if (r->times->threads != 1) times.threads = r->times->threads;
     times.crowded = times.crowded || r->times->crowded;
@@ -116,7 +119,8 @@ Reading reading_of(const std::vector<const Reading*>& stages) {
     sum.iterations += r->iterations;
     sum.counts += r->counts;
   }
-  sum.loss = over(stages, [](const Reading& r) { return r.loss.median; });
+  sum.loss =
+      quartiles_over(stages, [](const Reading& r) { return r.loss.median; });
   sum.times = times_of(stages);
   return sum;
 }

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "suite/evidence/rank_test.h"
 #include "suite/results/ends.h"
 #include "suite/store/record.h"
 

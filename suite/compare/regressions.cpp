@@ -26,7 +26,7 @@ struct Worse {
   bool of_time = false;
 };
 
-std::string times(double ratio) {
+std::string ratio_text(double ratio) {
   return std::isfinite(ratio) ? fmt::format("×{:.3g}", ratio)
                               : "no longer finite";
 }
@@ -44,7 +44,7 @@ std::optional<Worse> worse_loss(const Reading& a,
                                 double factor) {
   const double ratio = loss_ratio(a, b);
   if (!(ratio > factor)) return {};
-  return Worse{ratio, times(ratio)};
+  return Worse{ratio, ratio_text(ratio)};
 }
 
 std::optional<Worse> worse_end(const Reading& a, const Reading& b) {
@@ -163,7 +163,7 @@ TimedPairs timed_pairs(const Comparison& c) {
   return sum;
 }
 
-std::string reasons(const std::map<std::string, std::size_t>& counts) {
+std::string reasons_text(const std::map<std::string, std::size_t>& counts) {
   std::string text;
   for (const auto& [why, count] : counts)
     text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, why);
@@ -197,7 +197,7 @@ std::optional<Regression> regression(Aspect aspect,
   if (timed.compared > 0 || timed.unknown == 0) return {};
   return Regression{
       .worst = fmt::format("it has no times to be held against: {}",
-                           reasons(timed.without)),
+                           reasons_text(timed.without)),
       .of_time = true};
 }
 
@@ -216,8 +216,9 @@ std::string pairs_text(const Comparison& c) {
       worse,
       better,
       timed.compared,
-      timed.without.empty() ? ""
-                            : "; of the others: " + reasons(timed.without));
+      timed.without.empty()
+          ? ""
+          : "; of the others: " + reasons_text(timed.without));
 }
 
 }  // namespace physinv
