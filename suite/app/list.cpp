@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -50,8 +49,8 @@ void print_table(const std::vector<Case>& cases) {
   double sum = 0;
   for (const Case& c : cases) {
     table.add(
-        {c.info.name, stages_of(c), fmt::format("{:.2g}", operations.of(c))});
-    sum += operations.of(c);
+        {c.info.name, stages_of(c), fmt::format("{:.2g}", operations(c))});
+    sum += operations(c);
   }
   fmt::print("{}{} cases, about {:.2g} floating-point operations\n",
              table.text(Screen::of(stdout).room()),

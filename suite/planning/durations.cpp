@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <sstream>
 
 #include "suite/core/clock.h"
+#include "suite/core/decimal.h"
 #include "suite/core/math.h"
 #include "suite/store/errors.h"
 #include "suite/store/file.h"
@@ -40,11 +40,8 @@ std::optional<Line> line_of(const std::string& text) {
   std::string word;
   for (double& number : line.numbers) {
     if (!std::getline(in, word, ',')) return {};
-    const char* end = word.data() + word.size();
-    const auto [at, error] = std::from_chars(word.data(), end, number);
-    if (error != std::errc() || at != end || !(number >= 0) ||
-        !std::isfinite(number))
-      return {};
+    number = decimal<double>(word).value_or(-1);
+    if (!(number >= 0) || !std::isfinite(number)) return {};
   }
   if (std::getline(in, word)) return {};
   return line;
@@ -70,10 +67,10 @@ Durations Durations::read(const fs::path& file) {
   return all;
 }
 
-std::optional<TimeRange> Durations::of(const std::string& experiment,
-                                       const std::string& method,
-                                       const std::string& stage,
-                                       double operations) const {
+std::optional<TimeRange> Durations::time(const std::string& experiment,
+                                         const std::string& method,
+                                         const std::string& stage,
+                                         double operations) const {
   constexpr double kSame = 1.01;  // rows have three digits
   const auto at = rows_.find({experiment, method, stage});
   if (at == rows_.end()) return {};

@@ -27,10 +27,10 @@ class Durations {
   /// By the row of this experiment, method and stage whose counted operations
   /// are nearest, in proportion to them. Nothing if there is none, or if they
   /// differ by more than a factor of four.
-  std::optional<TimeRange> of(const std::string& experiment,
-                              const std::string& method,
-                              const std::string& stage,
-                              double operations) const;
+  std::optional<TimeRange> time(const std::string& experiment,
+                                const std::string& method,
+                                const std::string& stage,
+                                double operations) const;
   /// The bytes of buffers that this stage counted on n samples.
   std::optional<double> bytes(const std::string& experiment,
                               const std::string& method,

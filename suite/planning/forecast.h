@@ -18,7 +18,7 @@ std::vector<Cost> forecast(const std::vector<Case>& cases,
                            const Trials& trials,
                            double factor);
 
-/// Puts counted memory into them, see memory.h.
+/// Puts counted memory into them.
 void add_memory(std::vector<Cost>& costs,
                 const std::vector<Case>& cases,
                 const Durations& published);

@@ -12,6 +12,10 @@
 
 namespace physinv {
 
+/// Of a worker before it does anything: code, libraries, registry, and what
+/// the allocator keeps.
+inline constexpr double kProgramMemory = 32e6;  // bytes
+
 /// Experiment, method, precision and iterations: chains that differ in n and
 /// seed alone.
 using Kind =
@@ -29,7 +33,7 @@ Kinds kinds_of(const std::vector<Case>& cases);
 /// and networks are made for it.
 class Operations {
  public:
-  double of(const Case& c) {
+  double operator()(const Case& c) {
     const auto [at, is_new] =
         known_.try_emplace({c.method, c.info.n, c.stage_iterations});
     if (is_new) at->second = c.operations();

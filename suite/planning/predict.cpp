@@ -8,8 +8,6 @@
 namespace physinv {
 namespace {
 
-/// What a worker needs before it does anything: code, libraries, registry.
-constexpr double kBaseMemory = 32e6;
 /// HDF5's tables of a case and of each stage; a line of the journal.
 constexpr double kCaseDisk = 6e3, kStageDisk = 5e3;
 /// Trials of whole chains take about this long; with more samples, only their
@@ -30,20 +28,20 @@ struct StageTrials {
   const StageTrial *few, *many;
 
   template <class F>
-  double at(Index n, F&& of) const {
+  double estimate(Index n, F&& number) const {
     return on_line(
-        of(*few), of(*many), few->n, many->n, static_cast<double>(n));
+        number(*few), number(*many), few->n, many->n, static_cast<double>(n));
   }
 };
 
 void add_stage(Cost& cost, Index n, const StageTrials& t) {
-  const double kept = t.at(n, [](auto& s) { return s.kept; });
+  const double kept = t.estimate(n, [](auto& s) { return s.kept; });
   cost.stage_seconds.push_back(
-      t.at(n, [](auto& s) { return s.setup + s.seconds + s.measure; }));
+      t.estimate(n, [](auto& s) { return s.setup + s.seconds + s.measure; }));
   cost.seconds += cost.stage_seconds.back();
   cost.disk += kStageDisk + kept;
-  cost.memory = std::max(cost.memory,
-                         t.at(n, [](auto& s) { return s.memory; }) + 3 * kept);
+  cost.memory = std::max(
+      cost.memory, t.estimate(n, [](auto& s) { return s.memory; }) + 3 * kept);
 }
 
 double data_bytes(const Case& c) {
@@ -104,7 +102,7 @@ Kinds kinds_of(const std::vector<Case>& cases) {
 
 std::vector<Trial> trials_of(const Sizes& s, Trials& trials) {
   return collect(s, [&](const Case& c, bool training_only) {
-    return trials.of(c, training_only);
+    return trials.measured(c, training_only);
   });
 }
 
@@ -121,7 +119,7 @@ std::vector<Trial> known_trials(const Sizes& s, const Trials& trials) {
 
 Cost unmeasured_cost(const Case& c) {
   return {.seconds = std::numeric_limits<double>::quiet_NaN(),
-          .memory = kBaseMemory,
+          .memory = kProgramMemory,
           .disk = kCaseDisk + data_bytes(c) +
                   kStageDisk * static_cast<double>(c.info.stages.size()),
           .stage_seconds = {}};
@@ -132,7 +130,7 @@ Cost cost_of(const Case& c, const std::vector<Trial>& all) {
   for (std::size_t k = 0; k < all.front().size(); ++k)
     add_stage(cost, c.info.n, {&all.front()[k], last_with(all, k)});
   constexpr double kWide = 2;
-  cost.memory += kBaseMemory;
+  cost.memory += kProgramMemory;
   cost.least = cost.seconds / kWide, cost.most = cost.seconds * kWide;
   return cost;
 }

@@ -4,12 +4,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
 
+#include "suite/core/decimal.h"
 #include "suite/harness/child.h"
 #include "suite/harness/context.h"
 #include "suite/harness/errors.h"
@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 /// sbatch replaces what follows a % in the names of output files: %% is one.
-std::string pattern(const fs::path& directory) {
+std::string output_pattern(const fs::path& directory) {
   std::string out;
   for (const char c : directory.string())
     out += c == '%' ? "%%" : std::string(1, c);
@@ -106,10 +106,8 @@ ChildLimits slurm_limits() {
   const std::string text = variable(kName);
   ChildLimits limits{.seconds = kUsual, .bytes = 16 << 20};
   if (text.empty()) return limits;
-  const char* end = text.data() + text.size();
-  const auto [at, error] = std::from_chars(text.data(), end, limits.seconds);
-  if (error != std::errc() || at != end ||
-      !(limits.seconds > 0 && limits.seconds <= kLongest))
+  limits.seconds = decimal<double>(text).value_or(0);
+  if (!(limits.seconds > 0 && limits.seconds <= kLongest))
     throw UsageError(fmt::format(
         "{}={} is no number of seconds up to {:g}", kName, text, kLongest));
   return limits;
@@ -121,7 +119,7 @@ bool is_number(std::string_view text) {
 }
 
 /// Could this program have written it?
-bool sound(const Submission& s) {
+bool is_sound(const Submission& s) {
   return std::all_of(s.jobs.begin(), s.jobs.end(), is_number) &&
          (s.merges_after.empty() || is_number(s.merges_after)) &&
          std::all_of(s.tasks.begin(), s.tasks.end(), [](const Task& t) {
@@ -207,11 +205,8 @@ std::optional<QueueLine> queue_line(const std::string& text) {
 /// none.
 std::optional<std::size_t> task_number(const std::string& text,
                                        std::size_t tasks) {
-  std::size_t value{};
-  const char* end = text.data() + text.size();
-  const auto [at, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc() || at != end || value >= tasks) return {};
-  return value;
+  const auto value = decimal<std::size_t>(text);
+  return value && *value < tasks ? value : std::nullopt;
 }
 
 /// The lines of an answer. Banners are passed over, but an answer of nothing
@@ -257,7 +252,7 @@ Submission Submission::read(const fs::path& directory) {
       s.tasks.push_back({t.at("cases").get<std::vector<std::string>>(),
                          t.at("seconds").get<double>(),
                          t.value("memory", 0.0)});
-    if (sound(s)) return s;
+    if (is_sound(s)) return s;
   } catch (const json::exception&) {
   }
   throw StoreError(fmt::format(
@@ -359,7 +354,7 @@ std::string submit_array(const Submission& s,
       "--requeue",
       "--open-mode=append",
       "--job-name=physinv",
-      "--output=" + pattern(s.directory) + "/log/task-%a.txt"};
+      "--output=" + output_pattern(s.directory) + "/log/task-%a.txt"};
   if (const auto memory = memory_option(s, tasks, sbatch_options);
       !memory.empty())
     array.push_back(memory);
@@ -382,7 +377,7 @@ void submit_merge(const Submission& s, const std::string& after) {
       "--requeue",
       "--open-mode=append",
       "--job-name=physinv-merge",
-      "--output=" + pattern(s.directory) + "/log/merge.txt",
+      "--output=" + output_pattern(s.directory) + "/log/merge.txt",
       (s.directory / "merge.sh").string()};
   if (!after.empty())
     merge.insert(merge.begin(), "--dependency=afterany:" + after);

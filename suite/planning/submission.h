@@ -11,8 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "suite/harness/case.h"
-
 namespace physinv {
 
 struct Task {

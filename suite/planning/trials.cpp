@@ -29,12 +29,6 @@ constexpr Index kFirstIterations = 16;
 /// Seconds and bytes beyond all reason.
 constexpr double kLargest = 1e15;
 
-double curve_points(Index iterations) {
-  Index points = 1;
-  for (Index i = 0; i < iterations; i = next_measured(i)) ++points;
-  return static_cast<double>(points);
-}
-
 double bytes(const Batch<double>& b) {
   return 8.0 * static_cast<double>(b.size());
 }
@@ -66,7 +60,7 @@ struct Ran {
   std::vector<double> each;  ///< seconds of an iteration
 };
 
-Ran run(const Case& c, const Case& cut) {
+Ran run_trial(const Case& c, const Case& cut) {
   Ran ran;
   bool good = true;
   Threads threads(1);
@@ -83,7 +77,7 @@ Ran run(const Case& c, const Case& cut) {
 }
 
 /// Does the counted work of a stage follow its iterations?
-bool follows(const Case& c, std::size_t stage) {
+bool follows_iterations(const Case& c, std::size_t stage) {
   auto half = c.stage_iterations;
   half[stage] = std::max<Index>(1, half[stage] / 2);
   return resized(c, c.info.n, half).operations(stage) < c.operations(stage);
@@ -91,15 +85,16 @@ bool follows(const Case& c, std::size_t stage) {
 
 bool trains(const Case& c) {
   for (std::size_t k = 0; k < c.info.stages.size(); ++k)
-    if (follows(c, k)) return true;
+    if (follows_iterations(c, k)) return true;
   return false;
 }
 
 /// Where the work follows the iterations, at most so many.
-Case cut(const Case& c, const std::vector<Index>& most) {
+Case with_fewer_iterations(const Case& c, const std::vector<Index>& most) {
   auto iterations = c.stage_iterations;
   for (std::size_t k = 0; k < iterations.size(); ++k)
-    if (follows(c, k)) iterations[k] = std::min(iterations[k], most[k]);
+    if (follows_iterations(c, k))
+      iterations[k] = std::min(iterations[k], most[k]);
   return resized(c, c.info.n, iterations);
 }
 
@@ -112,22 +107,24 @@ std::vector<Index> fitting(const std::vector<double>& each) {
   return most;
 }
 
-Trial measure(const Case& c) {
+Trial measure_trial(const Case& c) {
   const std::size_t stages = c.info.stages.size();
   const std::vector<Index> few(stages, kFirstIterations);
-  Ran first = run(c, cut(c, few));
+  Ran first = run_trial(c, with_fewer_iterations(c, few));
   if (first.trial.size() < stages || !trains(c)) return first.trial;
-  const Case longer = cut(c, fitting(first.each));
+  const Case longer = with_fewer_iterations(c, fitting(first.each));
   for (std::size_t k = 0; k < stages; ++k)
-    if (follows(c, k) && longer.stage_iterations[k] > 2 * kFirstIterations)
-      return run(c, longer).trial;
+    if (follows_iterations(c, k) &&
+        longer.stage_iterations[k] > 2 * kFirstIterations)
+      return run_trial(c, longer).trial;
   return first.trial;
 }
 
 /// The chain up to the last stage whose work follows its iterations.
 std::size_t training_stages(const Case& c) {
   std::size_t stages = 0;
-  while (stages < c.info.stages.size() && follows(c, stages)) ++stages;
+  while (stages < c.info.stages.size() && follows_iterations(c, stages))
+    ++stages;
   return stages;
 }
 
@@ -158,6 +155,12 @@ fs::path named_directory(const char* name) {
 }
 
 }  // namespace
+
+double curve_points(Index iterations) {
+  Index points = 1;
+  for (Index i = 0; i < iterations; i = next_measured(i)) ++points;
+  return static_cast<double>(points);
+}
 
 std::map<std::string, Trial> parse_trials(std::string_view bytes,
                                           const fs::path& path) {
@@ -219,11 +222,11 @@ const Trial* Trials::known(const Case& c, bool training_only) const {
              : nullptr;
 }
 
-const Trial& Trials::of(const Case& c, bool training_only) {
+const Trial& Trials::measured(const Case& c, bool training_only) {
   if (const Trial* found = known(c, training_only)) return *found;
   const std::string key = key_of(c, training_only);
   ++ran_;
-  if (!training_only) return known_[key] = measure(c);
+  if (!training_only) return known_[key] = measure_trial(c);
   Method part = *c.method;
   const std::size_t stages = training_stages(c);
   part.chain.resize(stages);
@@ -231,7 +234,7 @@ const Trial& Trials::of(const Case& c, bool training_only) {
   shorter.method = &part;
   shorter.info.stages.resize(stages);
   shorter.stage_iterations.resize(stages);
-  return known_[key] = stages > 0 ? measure(shorter) : Trial{};
+  return known_[key] = stages > 0 ? measure_trial(shorter) : Trial{};
 }
 
 void Trials::save() const {

@@ -25,6 +25,9 @@ struct StageTrial {
   double kept = 0;     ///< bytes of estimates, curve and findings
 };
 
+/// Of the curve of so many iterations.
+double curve_points(Index iterations);
+
 /// The stages of one chain; fewer if the chain was not run to its end.
 using Trial = std::vector<StageTrial>;
 
@@ -46,7 +49,7 @@ class Trials {
   /// Runs the chain of `c` for a moment, or knows it already. Stages whose
   /// work does not follow their iterations run whole, on few samples; with
   /// `training_only` they and all after them are left out.
-  const Trial& of(const Case& c, bool training_only);
+  const Trial& measured(const Case& c, bool training_only);
 
   /// What is known of the same; null if nothing is.
   const Trial* known(const Case& c, bool training_only) const;

@@ -66,14 +66,14 @@ TEST(Durations, TellOfWorkThatIsNearAndOfNothingElse) {
                          "most,bytes\n"
                          "sip/heat,adam,train,8,1e9,2,1,3,1000\n";
   const Durations d = Durations::read(file);
-  const auto same = d.of("sip/heat", "adam", "train", 1e9);
+  const auto same = d.time("sip/heat", "adam", "train", 1e9);
   ASSERT_TRUE(same);
   EXPECT_DOUBLE_EQ(same->seconds, 2);
   EXPECT_LT(same->least, 1);
   EXPECT_GT(same->most, 3);
-  EXPECT_NEAR(d.of("sip/heat", "adam", "train", 2e9)->seconds, 4, 1e-12);
-  EXPECT_FALSE(d.of("sip/heat", "adam", "train", 5e9));
-  EXPECT_FALSE(d.of("sip/heat", "sgd", "train", 1e9));
+  EXPECT_NEAR(d.time("sip/heat", "adam", "train", 2e9)->seconds, 4, 1e-12);
+  EXPECT_FALSE(d.time("sip/heat", "adam", "train", 5e9));
+  EXPECT_FALSE(d.time("sip/heat", "sgd", "train", 1e9));
   EXPECT_EQ(d.bytes("sip/heat", "adam", "train", 8), 1000);
   EXPECT_FALSE(d.bytes("sip/heat", "adam", "train", 9));
   for (const char* bad : {"a,b,c,1,2,3,4,5",
@@ -84,7 +84,7 @@ TEST(Durations, TellOfWorkThatIsNearAndOfNothingElse) {
     EXPECT_THROW(Durations::read(file), StoreError) << bad;
   }
   std::filesystem::remove(file);
-  EXPECT_FALSE(Durations::read(file).of("sip/heat", "adam", "train", 1e9));
+  EXPECT_FALSE(Durations::read(file).time("sip/heat", "adam", "train", 1e9));
 }
 
 TEST(Budget, RankingIsOpenUntilRangesPart) {
