@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <type_traits>
 
 #include "suite/core/dataset.h"
 #include "suite/store/checksum.h"
+#include "suite/store/fields.h"
 #include "suite/store/storable.h"
 
 namespace physinv {
@@ -16,30 +18,12 @@ namespace fs = std::filesystem;
 constexpr std::string_view kTrailer = "physinv:";
 constexpr std::size_t kTrailerBytes = 16;
 
-/// A number per example; (1, examples) in version 1.
-Vector<double> read_vector(hid_t group, const std::string& name) {
-  if (hdf5::rank(group, name) == 1) {
-    const auto list = hdf5::read_list(group, name);
-    return Eigen::Map<const Vector<double>>(list.data(),
-                                            static_cast<Index>(list.size()));
-  }
-  Batch<double> column = hdf5::read_batch(group, name);
-  if (column.cols() != 1 && column.size() > 0)
-    throw StoreError(fmt::format("array {} is no list of examples", name));
-  return column.reshaped();
-}
-
 /// Of one row, a list.
 Batch<double> read_array(hid_t group, const std::string& name) {
   if (hdf5::rank(group, name) == 2) return hdf5::read_batch(group, name);
   const auto list = hdf5::read_list(group, name);
   return Eigen::Map<const Batch<double>>(
       list.data(), 1, static_cast<Index>(list.size()));
-}
-
-Batch<double> read_estimates(hid_t curve) {
-  return hdf5::rank(curve, "x") == 2 ? hdf5::read_batch(curve, "x")
-                                     : hdf5::read_cube(curve, "x");
 }
 
 std::vector<double> list_of(const Vector<double>& v) {
@@ -106,42 +90,63 @@ std::string group_name(const StageRecord& r) {
   return fmt::format("{}_{}", r.position, r.stage);
 }
 
+void add(ArrayHash& hash, const Batch<double>& v) { hash.add(v); }
 void add(ArrayHash& hash, const std::vector<double>& v) {
   hash.add(v.data(), static_cast<Index>(v.size()), 1);
+}
+void add(ArrayHash& hash, const std::vector<Status>& v) {
+  hash.add(static_cast<std::uint64_t>(v.size()));
+  for (const Status s : v) hash.add(static_cast<std::uint64_t>(s));
 }
 
 ArrayHash hash_results(const StageRecord& r) {
   ArrayHash hash;
-  hash.add(r.x).add(r.loss);
-  hash.add(static_cast<std::uint64_t>(r.status.size()));
-  for (const Status s : r.status) hash.add(static_cast<std::uint64_t>(s));
-  hash.add(r.example_iterations).add(r.example_evaluations);
-  add(hash, r.curve.iteration);
-  add(hash, r.curve.evaluations);
-  hash.add(r.curve.loss).add(r.curve.x);
+  each_array(r, [&](const ArrayPlace& at, const auto& array) {
+    if (at.unit != "s") add(hash, array);
+  });
   for (const auto& [name, array] : r.arrays)
     hash.add(std::string_view(name)).add(array);
   return hash;
 }
 
+bool is_cube(const ArrayPlace& at) {
+  return std::count(at.axes.begin(), at.axes.end(), ',') == 2;
+}
+
+void read(hid_t group, const ArrayPlace& at, std::vector<double>& to) {
+  to = hdf5::read_list(group, at.name);
+}
+/// A number per example; (1, examples) in version 1.
+void read(hid_t group, const ArrayPlace& at, Vector<double>& to) {
+  const Batch<double> all = read_array(group, at.name);
+  if (hdf5::rank(group, at.name) == 2 && all.cols() != 1 && all.size() > 0)
+    throw StoreError(fmt::format("array {} is no list of examples", at.name));
+  to = all.reshaped();
+}
+void read(hid_t group, const ArrayPlace& at, Batch<double>& to) {
+  to = is_cube(at) && hdf5::rank(group, at.name) != 2
+           ? hdf5::read_cube(group, at.name)
+           : hdf5::read_batch(group, at.name);
+}
+void read(hid_t group, const ArrayPlace& at, std::vector<Status>& to) {
+  to.clear();
+  for (const auto code : hdf5::read_codes(group, at.name))
+    to.push_back(status_of(code));
+}
+
 void read_arrays(const hdf5::Handle& group, StageRecord& r) {
-  r.x = hdf5::read_batch(group, "x");
-  r.loss = read_vector(group, "loss");
-  r.status.clear();
-  for (const auto s : hdf5::read_codes(group, "status"))
-    r.status.push_back(status_of(s));
-  r.example_iterations = read_vector(group, "iterations");
-  r.example_evaluations = read_vector(group, "evaluations");
-  const auto curve = hdf5::open_group(group, "curve");
-  r.curve = {.iteration = hdf5::read_list(curve, "iteration"),
-             .seconds = hdf5::read_list(curve, "seconds"),
-             .evaluations = hdf5::read_list(curve, "evaluations"),
-             .loss = hdf5::read_batch(curve, "loss"),
-             .x = read_estimates(curve)};
+  hdf5::open_group(group, "curve");  // it is no link
+  each_array(
+      r, [&](const ArrayPlace& at, auto& array) { read(group, at, array); });
   const auto arrays = hdf5::open_group(group, "arrays");
   r.arrays.clear();
   for (const auto& name : hdf5::names(arrays))
     r.arrays[ArrayKey::own(name)] = read_array(arrays, name);
+}
+
+hdf5::Note note_of(const ArrayPlace& at, const Meaning& unknowns) {
+  if (at.unit != kUnknowns) return {.axes = at.axes, .unit = at.unit};
+  return {.axes = at.axes, .unit = unknowns.unit, .names = unknowns.names};
 }
 
 /// 1 had none.
@@ -356,34 +361,25 @@ void CaseFile::put_stage(const StageRecord& r, const std::string& hash) {
 
 void CaseFile::put_arrays(const hdf5::Handle& group,
                           const StageRecord& r) const {
-  const std::string none = "1", seconds = "s";
-  const Meaning& x = about_.unknowns;
-  const hdf5::Note sample{.axes = "samples", .unit = none};
-  hdf5::write(group,
-              "x",
-              r.x,
-              {.axes = "samples,unknowns", .unit = x.unit, .names = x.names});
-  hdf5::write(group, "loss", list_of(r.loss), sample);
-  hdf5::write(group, "status", r.status, {.axes = "samples"});
-  hdf5::write(group, "iterations", list_of(r.example_iterations), sample);
-  hdf5::write(group, "evaluations", list_of(r.example_evaluations), sample);
-  const auto curve = hdf5::create_group(group, "curve");
-  const hdf5::Note point{.axes = "points", .unit = none};
-  hdf5::write(curve, "iteration", r.curve.iteration, point);
-  hdf5::write(
-      curve, "seconds", r.curve.seconds, {.axes = "points", .unit = seconds});
-  hdf5::write(curve, "evaluations", r.curve.evaluations, point);
-  hdf5::write(
-      curve, "loss", r.curve.loss, {.axes = "points,samples", .unit = none});
-  // Examples whose unknowns are not known apart are one.
-  const Index unknowns = r.x.rows(), all = r.curve.x.rows();
-  const bool apart = unknowns > 0 && all % unknowns == 0 && all > 0;
-  hdf5::write_cube(
-      curve,
-      "x",
-      r.curve.x,
-      apart ? all / unknowns : 1,
-      {.axes = "points,samples,unknowns", .unit = x.unit, .names = x.names});
+  const Index unknowns = r.x.rows();
+  each_array(r, [&](const ArrayPlace& at, const auto& array) {
+    using T = std::remove_cvref_t<decltype(array)>;
+    if (at.name.starts_with("curve/") && !hdf5::has(group, "curve"))
+      hdf5::create_group(group, "curve");
+    const auto note = note_of(at, about_.unknowns);
+    if constexpr (std::is_same_v<T, Batch<double>>) {
+      const Index all = array.rows();
+      // Examples whose unknowns are not known apart are one.
+      const bool apart = unknowns > 0 && all % unknowns == 0 && all > 0;
+      if (is_cube(at))
+        return hdf5::write_cube(
+            group, at.name, array, apart ? all / unknowns : 1, note);
+    }
+    if constexpr (std::is_same_v<T, Vector<double>>)
+      hdf5::write(group, at.name, list_of(array), note);
+    else
+      hdf5::write(group, at.name, array, note);
+  });
   const auto arrays = hdf5::create_group(group, "arrays");
   for (const auto& [key, array] : r.arrays) {
     if (array.rows() == 1) {

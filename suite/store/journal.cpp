@@ -10,9 +10,20 @@
 #include <nlohmann/json.hpp>
 
 #include "suite/store/checksum.h"
+#include "suite/store/field_json.h"
 #include "suite/store/names.h"
 
 namespace physinv {
+
+template <class F>
+void each_field(MaybeConst<JournalEntry> auto& entry, F&& f) {
+  f("info", entry.info);
+  f("record", entry.stage);
+  f("file", entry.file);
+  f("data_hash", entry.data_hash);
+  f("arrays_hash", entry.arrays_hash);
+}
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -88,14 +99,6 @@ void check_header(const fs::path& path, std::string_view line) {
   if (version < 1) fail_line(path, 1, 0, line, "is no journal's header");
 }
 
-json to_json(const JournalEntry& e) {
-  return {{"info", physinv::to_json(e.info)},
-          {"record", physinv::to_json(e.stage)},
-          {"file", e.file},
-          {"data_hash", e.data_hash},
-          {"arrays_hash", e.arrays_hash}};
-}
-
 void require(bool good, const char* what) {
   if (!good) throw std::runtime_error(what);
 }
@@ -109,12 +112,8 @@ void check_stage(const StageRecord& r, const CaseInfo& info) {
       "a stage is not in its chain");
 }
 
-JournalEntry entry_from_json(const json& j) {
-  JournalEntry entry{.info = case_from_json(j.at("info")),
-                     .stage = stage_from_json(j.at("record")),
-                     .file = j.at("file"),
-                     .data_hash = j.at("data_hash"),
-                     .arrays_hash = j.at("arrays_hash")};
+JournalEntry entry_of(std::string_view line) {
+  auto entry = from_object<JournalEntry>(parse_line(line));
   check_case(entry.info);
   check_stage(entry.stage, entry.info);
   return entry;
@@ -178,7 +177,7 @@ JournalText parse_journal(std::string_view bytes, const fs::path& path) {
       if (number == 0) {
         check_header(path, line);
       } else {
-        text.entries.push_back(entry_from_json(parse_line(line)));
+        text.entries.push_back(entry_of(line));
       }
     } catch (const UnreadableInput&) {
       throw;
@@ -258,7 +257,7 @@ void Journal::require_there() const {
 void Journal::append(std::span<const JournalEntry> entries) {
   require_there();
   std::string lines;
-  for (const JournalEntry& entry : entries) lines += to_line(to_json(entry));
+  for (const JournalEntry& entry : entries) lines += to_line(to_object(entry));
   if (size_ + lines.size() > kLargestData)
     throw StoreError(fmt::format(
         "{} would be larger than what is read, {} bytes (choose another --out)",

@@ -2,18 +2,23 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "suite/store/checksum.h"
+#include "suite/store/field_json.h"
 #include "suite/store/folder.h"
-#include "suite/store/json.h"
 #include "suite/store/names.h"
 
 namespace physinv {
+
+template <class F>
+void each_field(MaybeConst<StageState> auto& state, F&& f) {
+  f("case", state.case_name);
+  f("stage", state.stage);
+  f("iteration", state.iteration);
+}
+
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
 
 constexpr std::size_t kSum = 8;
 constexpr const char* kFolder = "checkpoints";
@@ -34,13 +39,10 @@ std::optional<Folder> states_of(const fs::path& store) {
 StageState parsed(std::string_view text) {
   const auto end = text.find('\n');
   if (end == std::string_view::npos) throw std::runtime_error("no header");
-  const json head = parse_json(text.substr(0, end));
-  const Index iteration = whole(head.at("iteration"));
-  if (iteration < 0) throw std::runtime_error("no iteration");
-  return {.case_name = head.at("case"),
-          .stage = head.at("stage"),
-          .iteration = iteration,
-          .bytes = std::string(text.substr(end + 1))};
+  auto state = from_object<StageState>(parse_json(text.substr(0, end)));
+  if (state.iteration < 0) throw std::runtime_error("no iteration");
+  state.bytes = text.substr(end + 1);
+  return state;
 }
 
 }  // namespace
@@ -48,10 +50,8 @@ StageState parsed(std::string_view text) {
 void write_state(const fs::path& store,
                  const std::string& key,
                  const StageState& state) {
-  const json head = {{"case", state.case_name},
-                     {"stage", state.stage},
-                     {"iteration", state.iteration}};
-  const std::string text = fmt::format(" {}\n{}", head.dump(), state.bytes);
+  const std::string text =
+      fmt::format(" {}\n{}", to_object(state).dump(), state.bytes);
   Folder(store).make(kFolder).write(
       checked(key), fmt::format("{:08x}{}", crc32c(text), text));
 }

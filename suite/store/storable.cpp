@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 
+#include "suite/store/fields.h"
 #include "suite/store/file.h"
 
 namespace physinv {
@@ -14,32 +15,25 @@ namespace {
 
 constexpr std::size_t kLongestName = 1000;
 
-/// Arrays that are read together have one length.
-std::string wrong_count(Index count, Index expected, const char* name) {
-  return count == expected
-             ? ""
-             : fmt::format("{} has {} entries where {} are expected",
-                           name,
-                           count,
-                           expected);
+Index length_of(const Batch<double>& array) { return array.cols(); }
+template <class List>
+Index length_of(const List& list) {
+  return static_cast<Index>(list.size());
 }
 
+/// The first axis of every array counts examples or points of the curve.
 std::string wrong_counts(const StageRecord& r) {
-  const Index n = r.loss.size(), points = r.curve.points();
-  const auto size = [](const auto& list) {
-    return static_cast<Index>(list.size());
-  };
-  for (const auto& wrong :
-       {wrong_count(size(r.status), n, "status"),
-        wrong_count(r.example_iterations.size(), n, "iterations"),
-        wrong_count(r.example_evaluations.size(), n, "evaluations"),
-        wrong_count(std::max(r.x.cols(), n), n, "x"),
-        wrong_count(size(r.curve.seconds), points, "curve/seconds"),
-        wrong_count(size(r.curve.evaluations), points, "curve/evaluations"),
-        wrong_count(r.curve.loss.cols(), points, "curve/loss"),
-        wrong_count(r.curve.x.cols(), points, "curve/x")})
-    if (!wrong.empty()) return wrong;
-  return "";
+  std::string wrong;
+  each_array(r, [&](const ArrayPlace& at, const auto& array) {
+    const bool points = at.axes.starts_with("points");
+    const Index expected = points ? r.curve.points() : r.loss.size();
+    const Index length = length_of(array);
+    const bool some = at.name == "x" && length < expected;
+    if (wrong.empty() && length != expected && !some)
+      wrong = fmt::format(
+          "{} has {} entries where {} are expected", at.name, length, expected);
+  });
+  return wrong;
 }
 
 template <class List>
@@ -117,10 +111,13 @@ std::string wrong_status(const StageRecord& r) {
 }
 
 std::uint64_t array_bytes(const StageRecord& r) {
-  Index numbers = r.x.size() + 4 * r.loss.size() + 3 * r.curve.points() +
-                  r.curve.loss.size() + r.curve.x.size();
-  for (const auto& [name, array] : r.arrays) numbers += array.size();
-  return static_cast<std::uint64_t>(numbers) * sizeof(double);
+  std::uint64_t numbers = 0;
+  const auto add = [&](const auto&, const auto& array) {
+    numbers += static_cast<std::uint64_t>(array.size());
+  };
+  each_array(r, add);
+  for (const auto& [name, array] : r.arrays) add(name, array);
+  return numbers * sizeof(double);
 }
 
 }  // namespace
