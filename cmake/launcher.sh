@@ -2,7 +2,7 @@
 # Sourced by ./bench and ./check: packages, configure, build. Everything here
 # writes to stderr and ends in status 9 when the machine, not the suite, is at
 # fault: packages missing, configuring failed, the code does not compile.
-# When all is up to date only flock and ninja are started.
+# When nothing changed since the last build, only find is started.
 : "${root:?set by the launcher}"
 # cmake and ctest take a checkout's path from it, where it is the same folder:
 # through a symbolic link they would see another one, and build all anew.
@@ -107,6 +107,33 @@ configure() {
     -DPHYSINV_TESTS="$tests" "${compiler[@]}" || build_failed
   printf '%s\n' "$tests $root" >"$tree/.configured"
 }
+
+# is_built TREE PROGRAM...: are they what `built` noted, and has nothing changed
+# since that a build reads? By times: sources, where git stands, how the tree is
+# configured, the headers of the machine, which its packages are. Ninja would look
+# at each of its thousands of files.
+is_built() {
+  local tree=$1 git=$root/.git known='' file
+  shift
+  local stamp="$tree/.built-$*"
+  [[ -r $stamp ]] && read -r known <"$stamp" && [[ $known == "$root" ]] || return
+  [[ -e /var/lib/dpkg/status ]] || return  # no Debian: ninja looks
+  for file; do [[ -x $tree/$file ]] || return; done
+  if [[ -f $git ]]; then  # of a linked worktree
+    read -r _ git <"$git"
+    [[ $git == /* ]] || git=$root/$git
+  fi
+  for file in "$git"{,/HEAD,/logs/HEAD,/packed-refs} "$tree/build.ninja" \
+    /var/lib/dpkg/status; do
+    [[ ! $file -nt $stamp ]] || return
+  done
+  [[ -z $(find "$root" /usr/local/include \
+    \( -path "$root/build" -o -path "$root/results" -o -name .git \) -prune \
+    -o -newer "$stamp" -print -quit 2>/dev/null) ]]
+}
+# built TREE PROGRAM...: by what was there when `begin TREE` was called.
+begin() { printf '%s\n' "$root" >"$1/.begun"; }
+built() { mv "$1/.begun" "$1/.built-${*:2}"; }
 
 # build TREE [TARGET...]: one moving line on a terminal, one line elsewhere;
 # warnings and errors in full.
