@@ -1,7 +1,7 @@
 # shellcheck shell=bash
 # find_folder ARGUMENTS: sets `folder` to the folder of suite/cases that has all
 # experiments which a run with these arguments can choose, and all that its
-# results hold so far, by the list experiments.txt; and `filter` to what chooses
+# results hold so far, by the list experiments.def; and `filter` to what chooses
 # the same in any program, as a word means nothing without the other papers.
 # `folder` is empty where more than one has them, and where there is a doubt:
 # another verb, a flag that is not listed here, several filters, an expression
@@ -36,8 +36,7 @@ find_folder() {
   else
     return 0
   fi
-  while IFS=: read -r line _ names; do
-    [[ $line != '#'* ]] || continue
+  while IFS='"' read -r _ line _ _ _ names _; do
     read -ra names <<<"$names"
     for name in "${names[@]}"; do
       can_choose || continue
@@ -45,7 +44,7 @@ find_folder() {
       found=$line all=("${names[@]}")
       [[ -z $word ]] || filter=^$name/
     done
-  done <"$root/suite/cases/experiments.txt"
+  done <"$root/suite/cases/experiments.def"
   [[ $filter != *'*'/ ]] && results_are_of "${out:-results/$profile}" "${all[@]}" ||
     return 0
   # shellcheck disable=SC2034 # read by who calls this

@@ -23,7 +23,7 @@
 namespace physinv {
 namespace {
 
-/// As write_registration.cmake does it for the program over the folder.
+/// As registration.cpp does it for the program over the folder.
 void register_alone(const CaseFolder& folder) {
   std::vector<std::string> others;
   for (const CaseFolder& other : folders())

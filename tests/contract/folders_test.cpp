@@ -1,12 +1,10 @@
-// The list of folders (suite/cases/experiments.txt) against what they register.
+// The list of folders (suite/cases/experiments.def) against what they register.
 #include "suite/cases/common/folders.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <fstream>
 #include <map>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -18,13 +16,8 @@ using Names = std::vector<std::string>;
 /// Names of experiments by folder.
 std::map<std::string, Names> listed() {
   std::map<std::string, Names> all;
-  std::ifstream in(PHYSINV_SOURCE_DIR "/suite/cases/experiments.txt");
-  for (std::string line; std::getline(in, line);) {
-    if (line.empty() || line.starts_with('#')) continue;
-    std::istringstream names(line.substr(line.rfind(':') + 1));
-    Names& own = all[line.substr(0, line.find(':'))];
-    for (std::string name; names >> name;) own.push_back(name);
-  }
+  for (const CaseFolder& folder : folders())
+    all[folder.path] = folder.experiments;
   return all;
 }
 
@@ -36,7 +29,7 @@ bool covers(const std::string& listed, const std::string& name) {
 
 TEST(Folders, HaveTheExperimentsOfTheirLineAlone) {
   const auto all = listed();
-  EXPECT_EQ(folders().size(), all.size());
+  EXPECT_EQ(folders().size(), all.size()) << "lines of one folder together";
   std::size_t experiments = 0;
   for (const CaseFolder& folder : folders()) {
     Registry own;
@@ -49,8 +42,7 @@ TEST(Folders, HaveTheExperimentsOfTheirLineAlone) {
           if (covers(name, e->name)) lines += path + " ";
       EXPECT_EQ(lines, folder.path + " ") << e->name;
     }
-    ASSERT_TRUE(all.contains(folder.path)) << folder.path;
-    for (const std::string& name : all.at(folder.path))
+    for (const std::string& name : folder.experiments)
       EXPECT_TRUE(std::any_of(own.experiments().begin(),
                               own.experiments().end(),
                               [&](auto& e) { return covers(name, e->name); }))

@@ -1,6 +1,7 @@
 """What ./bench builds for a filter: the program over one folder of experiments
 where it can choose no others, else all; and what such a program is made of: all
-sources that its own include, and none of other problems.
+sources that its own include, and none of other problems. The list of folders
+names every function that registers.
 
     folders_test.py PROGRAM SOURCES BUILD"""
 
@@ -78,9 +79,31 @@ def names(*arguments):
 
 def listed():
     """Layers and names of experiments by folder."""
-    lines = (SOURCES / "suite/cases/experiments.txt").read_text().split("\n")
-    rows = [line.split(":") for line in lines if line and line[0] != "#"]
-    return {row[0]: (row[1].split(), row[2].split()) for row in rows}
+    text = (SOURCES / "suite/cases/experiments.def").read_text()
+    rows = re.findall(r'^FOLDER\("(.*?)", "(.*?)", "(.*?)"', text, re.M)
+    return {path: (layers.split(), names.split())
+            for path, layers, names in reversed(rows)}  # the first line counts
+
+
+def functions_listed():
+    """What a folder's sources define is what its lines name."""
+    text = (SOURCES / "suite/cases/experiments.def").read_text()
+    named, defined = set(), set()
+    for path, space, functions in re.findall(
+            r'^FOLDER\("(.*?)", ".*?", ".*?", ([\w:]+), (.*)\)$', text, re.M):
+        named |= {(path, space, f) for f in functions.split(", ")}
+    for source in (SOURCES / "suite/cases").glob("*/*/*.cpp"):
+        path = str(source.parent.relative_to(SOURCES / "suite/cases"))
+        if path.endswith("/common"):
+            continue
+        for space, function in re.findall(
+                r"^namespace physinv::([\w:]+) \{|^void (add_\w+)\(Registry&",
+                source.read_text(), re.M):
+            inside = space or inside
+            if function:
+                defined.add((path, inside, function))
+    check(len(defined) > 80, "functions that register:", len(defined))
+    check(named == defined, "listed or defined alone:", sorted(named ^ defined))
 
 
 def words_of(cases):
@@ -191,5 +214,6 @@ with tempfile.TemporaryDirectory() as directory:
     for profile in ("smoke", "quick"):
         chosen_alone(profile, {t for t in texts if "/" not in t}, directory)
     results_count(directory)
+functions_listed()
 made_of(compiled())
 sys.exit("\n".join(" ".join(map(str, w)) for w in WRONG) or 0)

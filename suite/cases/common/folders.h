@@ -1,6 +1,4 @@
-/// What is registered: experiments.txt has a line for each folder of
-/// experiments, in the order of the cases. The table is written from the
-/// functions that a folder's sources define (cmake/write_registration.cmake).
+/// What is registered, as suite/cases/experiments.def lists it.
 #pragma once
 
 #include <string>
@@ -10,17 +8,20 @@
 
 namespace physinv {
 
-/// What the folder of an experiment defines: `add_experiments`
-/// (experiment.cpp), `add_claims` (claims.cpp), `add_reports` (figures.cpp).
+/// What the sources of a folder define: `add_experiments` (experiment.cpp),
+/// `add_claims` (claims.cpp), `add_reports` (figures.cpp).
 using Add = void(Registry&);
 
 /// A folder of suite/cases by what its sources add.
 struct CaseFolder {
-  std::string path;  ///< <paper>/<folder>
-  Add* add;
-  /// Names, as its line of experiments.txt has them: with a star, all that
-  /// begin so.
+  std::string path;        ///< <paper>/<folder>
+  std::vector<Add*> adds;  ///< in their order
+  /// Names; with a star, all that begin so.
   std::vector<std::string> experiments;
+
+  void add(Registry& r) const {
+    for (Add* one : adds) one(r);
+  }
 };
 /// Of the program: all, or the one that it is over.
 std::vector<CaseFolder> folders();
