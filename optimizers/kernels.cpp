@@ -2,8 +2,6 @@
 // by the half-inverse and its parts, at the experiments' sizes.
 #include "optimizers/half_inverse/kernels.h"
 
-#include <benchmark/benchmark.h>
-
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -21,6 +19,8 @@
 namespace physinv {
 namespace {
 
+using benchmark::State;
+
 void rosenbrock(std::span<const Index>,
                 BatchIn<double> x,
                 VectorOut<double> loss,
@@ -33,7 +33,7 @@ void rosenbrock(std::span<const Index>,
   }
 }
 
-void bm_bfgs_update(benchmark::State& state) {
+void bfgs_update(State& state) {
   const Index d = state.range(0);
   std::vector<double> h(static_cast<std::size_t>(d * d));
   Vector<double> s(d), y(d), scratch(d);
@@ -42,21 +42,14 @@ void bm_bfgs_update(benchmark::State& state) {
     y(i) = (1 + 0.5 * math::cos(static_cast<double>(i))) * s(i);
   }
   dense::set_identity(d, h.data());
-  for (auto _ : state) {
+  measure(state, [&] {
     dense::bfgs_update(d, s.data(), y.data(), h.data(), scratch.data());
-    benchmark::ClobberMemory();
-  }
+  });
   state.SetItemsProcessed(state.iterations());
 }
-BENCHMARK(bm_bfgs_update)
-    ->Name("optimizers/bfgs_update")
-    ->ArgName("d")
-    ->Arg(2)
-    ->Arg(16)
-    ->Arg(128);
 
 /// Whole runs of 128 problems, as a table of billiards needs them.
-void bm_bfgs_batch(benchmark::State& state) {
+void bfgs_batch(State& state) {
   const Index n = 128;
   Batch<double> x0(2, n);
   for (Index i = 0; i < n; ++i) {
@@ -72,13 +65,19 @@ void bm_bfgs_batch(benchmark::State& state) {
   state.counters["rounds"] = static_cast<double>(solver.rounds());
   state.SetItemsProcessed(state.iterations() * n);
 }
-BENCHMARK(bm_bfgs_batch)->Name("optimizers/bfgs_rosenbrock_128");
+
+const bool kAdded =
+    add_kernels({{"optimizers/bfgs_update", {{2}, {16}, {128}}, bfgs_update}},
+                [](auto& kernel) { kernel.ArgName("d"); }) &&
+    add_kernels({{"optimizers/bfgs_rosenbrock_128", {}, bfgs_batch}});
 
 }  // namespace
 }  // namespace physinv
 
 namespace physinv::hig {
 namespace {
+
+using benchmark::State;
 
 /// Sizes of an experiment: batch x observations rows, dense layers with their
 /// input and output, or the convolutions of the quantum dipole.
@@ -167,12 +166,10 @@ struct Update {
   StructuredGram form;
 };
 
-void label(benchmark::State& state) {
-  state.SetLabel(size_of(state.range(0)).name);
-}
+void label(State& state) { state.SetLabel(size_of(state.range(0)).name); }
 
 /// All of it but the solver.
-void bm_update(benchmark::State& state) {
+void update(State& state) {
   Update u(size_of(state.range(0)));
   HalfInverseStep<double> step({.power = {.tau = 1e-5}, .rate = 0});
   for (auto _ : state) step(*u.net, u.theta, u.tape, u.solver, u.g, u.work);
@@ -180,17 +177,16 @@ void bm_update(benchmark::State& state) {
   label(state);
 }
 
-void bm_update_rows(benchmark::State& state) {
+void update_rows(State& state) {
   Update u(size_of(state.range(0)));
-  for (auto _ : state) {
+  measure(state, [&] {
     const Workspace::Scope scope(u.work);
     u.rows();
-    benchmark::ClobberMemory();
-  }
+  });
   label(state);
 }
 
-void bm_update_gram(benchmark::State& state) {
+void update_gram(State& state) {
   Update u(size_of(state.range(0)));
   const Workspace::Scope scope(u.work);
   u.rows();
@@ -200,16 +196,13 @@ void bm_update_gram(benchmark::State& state) {
         static_cast<double>(std::min(l.positions * l.positions,
                                      l.positions > 1 ? l.inputs + 1 : 1) *
                             l.outputs);
-  for (auto _ : state) {
-    u.form_gram();
-    benchmark::ClobberMemory();
-  }
+  measure(state, [&] { u.form_gram(); });
   // One triangle, two flops a product.
   count_flops(state, double(u.gram.rows() * u.gram.rows()) * features);
   label(state);
 }
 
-void bm_update_power(benchmark::State& state) {
+void update_power(State& state) {
   Update u(size_of(state.range(0)));
   const Workspace::Scope scope(u.work);
   u.rows();
@@ -224,23 +217,22 @@ void bm_update_power(benchmark::State& state) {
   label(state);
 }
 
-void bm_update_pullback(benchmark::State& state) {
+void update_pullback(State& state) {
   Update u(size_of(state.range(0)));
-  for (auto _ : state) {
-    u.pull_back();
-    benchmark::ClobberMemory();
-  }
+  measure(state, [&] { u.pull_back(); });
   label(state);
 }
 
-void experiments(benchmark::internal::Benchmark* b) {
-  b->ArgName("experiment")->DenseRange(0, 3)->Unit(benchmark::kMillisecond);
-}
-BENCHMARK(bm_update)->Name("hig/update")->Apply(experiments);
-BENCHMARK(bm_update_rows)->Name("hig/update_rows")->Apply(experiments);
-BENCHMARK(bm_update_gram)->Name("hig/update_gram")->Apply(experiments);
-BENCHMARK(bm_update_power)->Name("hig/update_power")->Apply(experiments);
-BENCHMARK(bm_update_pullback)->Name("hig/update_pullback")->Apply(experiments);
+const std::vector<std::vector<std::int64_t>> kExperiments = {
+    {0}, {1}, {2}, {3}};
+
+const bool kAdded =
+    add_kernels({{"hig/update", kExperiments, update},
+                 {"hig/update_rows", kExperiments, update_rows},
+                 {"hig/update_gram", kExperiments, update_gram},
+                 {"hig/update_power", kExperiments, update_power},
+                 {"hig/update_pullback", kExperiments, update_pullback}},
+                in_milliseconds("experiment"));
 
 }  // namespace
 }  // namespace physinv::hig

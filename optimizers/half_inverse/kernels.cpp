@@ -2,8 +2,6 @@
 // the build links it (PHYSINV_BENCH_LAPACK). GFlop/s count 4/3 m^3.
 #include "optimizers/half_inverse/kernels.h"
 
-#include <benchmark/benchmark.h>
-
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -45,6 +43,8 @@ namespace physinv::hig {
 using namespace linalg;
 namespace {
 
+using benchmark::State;
+
 /// J J^T with singular values over six decades, and a g.
 struct Sample {
   Batch<double> gram;
@@ -76,12 +76,7 @@ const Sample& sample(Index m) {
   return made.emplace_back(m, Sample(m)).second;
 }
 
-void sizes(benchmark::internal::Benchmark* b) {
-  b->ArgName("m")->Unit(benchmark::kMillisecond);
-  for (const int m : {448, 512, 1024, 2048, 4096}) b->Arg(m);
-}
-
-void bm_spectral_power(benchmark::State& state) {
+void spectral_power(State& state) {
   const Sample& s = sample(state.range(0));
   SpectralPower spectral;
   Vector<double> v(s.g.size());
@@ -92,52 +87,49 @@ void bm_spectral_power(benchmark::State& state) {
   state.counters["rotations"] = static_cast<double>(spectral.rotations());
   count_flops(state, reduction_flops(s.g.size()));
 }
-BENCHMARK(bm_spectral_power)->Name("hig/spectral_power")->Apply(sizes);
 
 /// One more setting for a factored matrix: weights, estimate, way back.
-void bm_setting(benchmark::State& state) {
+void setting(State& state) {
   const Sample& s = sample(state.range(0));
   SpectralPower spectral;
   Vector<double> v(s.g.size());
   spectral.factor(s.gram, s.g);
   for (auto _ : state) benchmark::DoNotOptimize(spectral.apply({}, v));
 }
-BENCHMARK(bm_setting)->Name("hig/further_setting")->Apply(sizes);
+
+void fill(Tridiagonalize& reduction, const Batch<double>& gram) {
+  const Symmetric a = reduction.matrix(gram.rows());
+  for (Index j = 0; j < a.n; ++j)
+    std::copy_n(gram.col(j).data() + j, a.n - j, a.row(j) + j);
+}
 
 template <Stages kStages>
-void bm_reduction(benchmark::State& state) {
+void reduction(State& state) {
   const Sample& s = sample(state.range(0));
   Tridiagonalize reduction;
   for (auto _ : state) {
-    const Symmetric a = reduction.matrix(s.g.size());
-    for (Index j = 0; j < a.n; ++j)
-      std::copy_n(s.gram.col(j).data() + j, a.n - j, a.row(j) + j);
+    fill(reduction, s.gram);
     reduction.reduce(kStages);
   }
   count_flops(state, reduction_flops(s.g.size()));
 }
-BENCHMARK(bm_reduction<Stages::one>)->Name("hig/one_stage")->Apply(sizes);
-BENCHMARK(bm_reduction<Stages::two>)->Name("hig/two_stages")->Apply(sizes);
 
-void bm_rotations(benchmark::State& state) {
+void rotations(State& state) {
   const Sample& s = sample(state.range(0));
   Tridiagonalize reduction;
-  const Symmetric a = reduction.matrix(s.g.size());
-  for (Index j = 0; j < a.n; ++j)
-    std::copy_n(s.gram.col(j).data() + j, a.n - j, a.row(j) + j);
+  fill(reduction, s.gram);
   reduction.reduce();
   TridiagonalQr qr;
   Vector<double> d, e, x;
   for (auto _ : state) {
     d = reduction.diagonal(), e = reduction.off_diagonal();
-    x.setOnes(a.n);
+    x.setOnes(d.size());
     qr.run(d, e, x);
   }
   state.counters["rotations"] = static_cast<double>(qr.rotations());
 }
-BENCHMARK(bm_rotations)->Name("hig/tridiagonal_qr")->Apply(sizes);
 
-void bm_definite(benchmark::State& state) {
+void definite(State& state) {
   Sample s(state.range(0));
   s.gram.diagonal().array() += 1e-3 * s.gram.trace();
   DefiniteSolve solve;
@@ -147,24 +139,16 @@ void bm_definite(benchmark::State& state) {
     if (!solve(s.gram, s.g, {.kappa = -1, .tau = 1e-5}, 1e-8, v, report))
       state.SkipWithError("no proof");
 }
-BENCHMARK(bm_definite)->Name("hig/definite_solve")->Apply(sizes);
 
-void bm_eigen(benchmark::State& state) {
+void eigen(State& state) {
   const Sample& s = sample(state.range(0));
   for (auto _ : state) {
     Eigen::SelfAdjointEigenSolver<Batch<double>> solver(s.gram);
     benchmark::DoNotOptimize(solver.eigenvalues().data());
   }
 }
-BENCHMARK(bm_eigen)
-    ->Name("hig/eigen_eigenvectors")
-    ->ArgName("m")
-    ->Unit(benchmark::kMillisecond)
-    ->Arg(512)
-    ->Arg(1024)
-    ->Arg(2048);
 
-void bm_eigen_reduction(benchmark::State& state) {
+void eigen_reduction(State& state) {
   const Sample& s = sample(state.range(0));
   for (auto _ : state) {
     Eigen::Tridiagonalization<Batch<double>> t(s.gram);
@@ -172,16 +156,9 @@ void bm_eigen_reduction(benchmark::State& state) {
   }
   count_flops(state, reduction_flops(s.g.size()));
 }
-BENCHMARK(bm_eigen_reduction)
-    ->Name("hig/eigen_reduction")
-    ->ArgName("m")
-    ->Unit(benchmark::kMillisecond)
-    ->Arg(512)
-    ->Arg(1024)
-    ->Arg(2048);
 
 #ifdef PHYSINV_BENCH_LAPACK
-void bm_dsytrd(benchmark::State& state) {
+void dsytrd(State& state) {
   const Sample& s = sample(state.range(0));
   const int m = static_cast<int>(s.g.size()), work_size = 64 * m;
   Vector<double> d(m), e(m), tau(m), work(work_size);
@@ -202,9 +179,8 @@ void bm_dsytrd(benchmark::State& state) {
   }
   count_flops(state, reduction_flops(m));
 }
-BENCHMARK(bm_dsytrd)->Name("hig/lapack_dsytrd")->Apply(sizes);
 
-void bm_dsyevd(benchmark::State& state) {
+void dsyevd(State& state) {
   const Sample& s = sample(state.range(0));
   const int m = static_cast<int>(s.g.size());
   const int size = 1 + 6 * m + 2 * m * m, integers = 3 + 5 * m;
@@ -227,8 +203,29 @@ void bm_dsyevd(benchmark::State& state) {
             &info);
   }
 }
-BENCHMARK(bm_dsyevd)->Name("hig/lapack_dsyevd")->Apply(sizes);
+
 #endif
+
+std::vector<Kernel> all() {
+  const std::vector<std::vector<std::int64_t>> some = {{512}, {1024}, {2048}};
+  const std::vector<std::vector<std::int64_t>> sizes = {
+      {448}, {512}, {1024}, {2048}, {4096}};
+  return {{"hig/spectral_power", sizes, spectral_power},
+          {"hig/further_setting", sizes, setting},
+          {"hig/one_stage", sizes, reduction<Stages::one>},
+          {"hig/two_stages", sizes, reduction<Stages::two>},
+          {"hig/tridiagonal_qr", sizes, rotations},
+          {"hig/definite_solve", sizes, definite},
+          {"hig/eigen_eigenvectors", some, eigen},
+          {"hig/eigen_reduction", some, eigen_reduction},
+#ifdef PHYSINV_BENCH_LAPACK
+          {"hig/lapack_dsytrd", sizes, dsytrd},
+          {"hig/lapack_dsyevd", sizes, dsyevd}
+#endif
+  };
+}
+
+const bool kAdded = add_kernels(all(), in_milliseconds("m"));
 
 }  // namespace
 }  // namespace physinv::hig

@@ -1,11 +1,8 @@
-/// Counters of the kernel benchmarks.
+/// What the benchmarks of half-inverse updates share.
 #pragma once
 
-#include <benchmark/benchmark.h>
-
-#include <cmath>
-
 #include "suite/core/batch.h"
+#include "suite/core/kernels.h"
 #include "suite/core/math.h"
 
 namespace physinv::hig {
@@ -16,9 +13,14 @@ inline double reduction_flops(Index m) {
 }
 
 inline void count_flops(benchmark::State& state, double flops) {
-  state.counters["GFlop/s"] =
-      benchmark::Counter(flops * 1e-9 * static_cast<double>(state.iterations()),
-                         benchmark::Counter::kIsRate);
+  count_rate(state, "GFlop/s", 1e-9 * flops);
+}
+
+/// Of a table in milliseconds, with a name for the argument.
+inline auto in_milliseconds(const char* argument) {
+  return [=](benchmark::internal::Benchmark& kernel) {
+    kernel.ArgName(argument)->Unit(benchmark::kMillisecond);
+  };
 }
 
 }  // namespace physinv::hig

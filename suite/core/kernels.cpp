@@ -1,11 +1,8 @@
 // Transforms of real signals: the suite's, a signal per lane, beside FFTW's of
 // as many signals. Arguments: points.
-#include <benchmark/benchmark.h>
-#include <fmt/format.h>
+#include "suite/core/kernels.h"
 
-#include <cmath>
 #include <string>
-#include <type_traits>
 #include <vector>
 
 #include "suite/core/lanes_fft.h"
@@ -16,34 +13,32 @@
 namespace physinv {
 namespace {
 
-template <class T>
-constexpr Index kSignals = kLanes<T>;
-
-/// 5/2 n log2(n) per signal and direction, as FFTW counts.
-void report(benchmark::State& state, Index signals) {
+/// There and back, of some signals: 5/2 n log2(n) flops for each of them and
+/// way, as FFTW counts.
+template <class Fft, class U, class Y>
+void measure_fft(
+    benchmark::State& state, const Fft& fft, Index signals, U* u, Y* y) {
+  measure(state, [&] {
+    fft.forward(u, y);
+    fft.inverse(y, u);
+  });
   const auto n = static_cast<double>(state.range(0));
-  state.counters["flops"] =
-      benchmark::Counter(5 * n * math::log2(n) * static_cast<double>(signals),
-                         benchmark::Counter::kIsIterationInvariantRate);
+  const auto all = static_cast<double>(signals);
+  count_rate(state, "flops", 5 * n * math::log2(n) * all);
   state.counters["per_signal"] =
-      benchmark::Counter(static_cast<double>(signals),
+      benchmark::Counter(all,
                          benchmark::Counter::kIsIterationInvariantRate |
                              benchmark::Counter::kInvert);
 }
 
-/// There and back, of a full register.
+/// A full register.
 template <class T>
 void lanes(benchmark::State& state) {
   using P = Pack<T, kLanes<T>>;
   const LanesFft<T> fft(state.range(0));
   std::vector<P> u(static_cast<std::size_t>(fft.size())),
       y(static_cast<std::size_t>(fft.spectrum()));
-  for (auto _ : state) {
-    fft.forward(u.data(), y.data());
-    fft.inverse(y.data(), u.data());
-    benchmark::ClobberMemory();
-  }
-  report(state, kSignals<T>);
+  measure_fft(state, fft, kLanes<T>, u.data(), y.data());
 }
 
 template <class T, Codelets codelets, Index signals>
@@ -53,35 +48,26 @@ void fftw(benchmark::State& state) {
   auto u = work.take<T>(fft.signal_stride(), signals);
   auto y = work.take<T>(fft.spectrum_stride(), signals);
   u.setZero();
-  for (auto _ : state) {
-    fft.forward(u.data(), y.data());
-    fft.inverse(y.data(), u.data());
-    benchmark::ClobberMemory();
-  }
-  report(state, signals);
+  measure_fft(state, fft, signals, u.data(), y.data());
 }
 
 template <class T>
-void add(const std::string& type) {
-  const auto named = [&](const char* what, auto* run) {
-    return benchmark::RegisterBenchmark(
-        fmt::format("fft/{}<{}>", what, type).c_str(), run);
-  };
-  constexpr Index kMany = kSignals<T>;
-  for (auto* b : {named("lanes", lanes<T>),
-                  named("fftw_scalar", fftw<T, Codelets::scalar, kMany>),
-                  named("fftw_simd", fftw<T, Codelets::simd, kMany>),
-                  named("fftw_scalar_alone", fftw<T, Codelets::scalar, 1>),
-                  named("fftw_simd_alone", fftw<T, Codelets::simd, 1>)})
-    b->RangeMultiplier(4)->Range(64, 65536);
-  named("fftw_scalar_odd", fftw<T, Codelets::scalar, kMany>)
-      ->Arg(63)
-      ->Arg(125)
-      ->Arg(1001)
-      ->Arg(4095);
+bool add(const std::string& type) {
+  constexpr Index kMany = kLanes<T>;
+  const std::vector<std::vector<std::int64_t>> points = {
+      {64}, {256}, {1024}, {4096}, {16384}, {65536}};
+  return add_kernels(
+      {{"fft/lanes" + type, points, lanes<T>},
+       {"fft/fftw_scalar" + type, points, fftw<T, Codelets::scalar, kMany>},
+       {"fft/fftw_simd" + type, points, fftw<T, Codelets::simd, kMany>},
+       {"fft/fftw_scalar_alone" + type, points, fftw<T, Codelets::scalar, 1>},
+       {"fft/fftw_simd_alone" + type, points, fftw<T, Codelets::simd, 1>},
+       {"fft/fftw_scalar_odd" + type,
+        {{63}, {125}, {1001}, {4095}},
+        fftw<T, Codelets::scalar, kMany>}});
 }
 
-const bool kAdded = (add<float>("float"), add<double>("double"), true);
+const bool kAdded = add<float>("<float>") && add<double>("<double>");
 
 }  // namespace
 }  // namespace physinv
