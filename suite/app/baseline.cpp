@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -57,8 +56,7 @@ void check_known(const Results& results) {
 
 std::vector<CaseRecord> records_of(const Results& results,
                                    const std::vector<Case>& cases) {
-  std::set<std::string> names;
-  for (const Case& c : cases) names.insert(c.info.name);
+  const auto names = names_of(cases);
   auto records = results.cases();
   const auto all = records.size();
   std::erase_if(records,

@@ -6,8 +6,8 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
 
+#include "suite/core/decimal.h"
 #include "suite/harness/context.h"
 #include "suite/harness/select.h"
 #include "suite/results/nearest.h"
@@ -16,13 +16,11 @@ namespace physinv {
 namespace {
 
 int whole(const char* name, const std::string& text, int least) {
-  int value{};
-  const char* end = text.data() + text.size();
-  const auto [at, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc() || at != end || value < least || value > 1'000'000)
+  const auto value = decimal<int>(text);
+  if (!value || *value < least || *value > 1'000'000)
     throw UsageError(
         fmt::format("{}={} is no whole number from {} on", name, text, least));
-  return value;
+  return *value;
 }
 
 void check(const char* flag,

@@ -1,14 +1,15 @@
 #include "suite/app/campaign_file.h"
 
 #include <fmt/format.h>
+#include <toml++/toml.h>
 
+#include <algorithm>
 #include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <utility>
 
-#include "suite/app/campaign_toml.h"
 #include "suite/harness/errors.h"
 #include "suite/store/file.h"
 #include "suite/store/plain_text.h"
@@ -17,6 +18,9 @@ namespace physinv {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr std::string_view kNoValue =
+    "is neither text, number, yes or no, nor a list of them";
 
 std::string at_line(const std::string& path, std::size_t line) {
   return fmt::format("{}:{}", path, line);
@@ -102,6 +106,55 @@ std::vector<FileFlag> from_json(const std::string& path,
   return flags;
 }
 
+std::string text_of(const toml::node& node, const FileFlag& flag) {
+  if (const auto* text = node.as_string()) return text->get();
+  if (const auto* number = node.as_integer())
+    return fmt::format("{}", number->get());
+  if (const auto* number = node.as_floating_point())
+    return fmt::format("{}", number->get());
+  if (const auto* yes = node.as_boolean()) return yes->get() ? "true" : "false";
+  throw UsageError(fmt::format("{}: {} {}", flag.where, flag.name, kNoValue));
+}
+
+toml::table parsed_toml(const std::string& path, std::string_view text) {
+  try {
+    return toml::parse(text);
+  } catch (const toml::parse_error& error) {
+    throw UsageError(fmt::format("{}:{}: the file of --config is no TOML: {}",
+                                 path,
+                                 error.source().begin.line,
+                                 error.description()));
+  }
+}
+
+/// TOML 1.0 without tables, dates or lists in lists.
+std::vector<FileFlag> from_toml(const std::string& path,
+                                std::string_view text) {
+  const toml::table all = parsed_toml(path, text);
+  std::vector<std::pair<toml::source_position, FileFlag>> found;
+  for (const auto& [key, node] : all) {
+    const toml::source_position at = key.source().begin;
+    FileFlag flag{.name = std::string(key.str()),
+                  .values = {},
+                  .where = fmt::format("{}:{}", path, at.line)};
+    if (const toml::array* list = node.as_array()) {
+      for (const toml::node& one : *list)
+        flag.values.push_back(text_of(one, flag));
+    } else {
+      flag.values.push_back(text_of(node, flag));
+    }
+    found.emplace_back(at, std::move(flag));
+  }
+  // A table sorts its keys.
+  std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) {
+    return std::pair(a.first.line, a.first.column) <
+           std::pair(b.first.line, b.first.column);
+  });
+  std::vector<FileFlag> flags;
+  for (auto& [at, flag] : found) flags.push_back(std::move(flag));
+  return flags;
+}
+
 void check_values(const FileFlag& flag) {
   if (flag.values.empty())
     throw UsageError(
@@ -125,7 +178,7 @@ std::vector<FileFlag> read_campaign_file(const std::string& path) {
   const bool is_json =
       path.ends_with(".json") ||
       (!path.ends_with(".toml") && begin != text.npos && text[begin] == '{');
-  auto flags = is_json ? from_json(path, text) : flags_of_toml(path, text);
+  auto flags = is_json ? from_json(path, text) : from_toml(path, text);
   for (const FileFlag& flag : flags) check_values(flag);
   return flags;
 }

@@ -7,16 +7,15 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <set>
 #include <type_traits>
 #include <utility>
 
 #include "suite/app/campaign_file.h"
+#include "suite/core/decimal.h"
 #include "suite/results/nearest.h"
 
 namespace physinv {
@@ -38,16 +37,6 @@ std::string unknown_flag(const CLI::App& app, const std::string& word) {
   return near.empty()
              ? fmt::format("unknown flag {}; see --help", flag)
              : fmt::format("unknown flag {}; did you mean {}?", flag, near);
-}
-
-/// The whole text as a number in decimal.
-template <class T>
-std::optional<T> decimal(const std::string& text) {
-  T value{};
-  const char* end = text.data() + text.size();
-  const auto [at, error] = std::from_chars(text.data(), end, value);
-  return error == std::errc() && at == end ? std::optional(value)
-                                           : std::nullopt;
 }
 
 std::string check_positive(const std::string& text) {

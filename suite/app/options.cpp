@@ -10,6 +10,7 @@
 #include <sstream>
 #include <utility>
 
+#include "suite/core/decimal.h"
 #include "suite/harness/keys.h"
 #include "suite/harness/registry.h"
 #include "suite/harness/registry_errors.h"
@@ -47,18 +48,15 @@ constexpr Range kShards{1, 1'000'000};
 constexpr std::size_t kLongestList = 100'000;
 
 Index number(std::string_view key, std::string_view text, Range range) {
-  Index value{};
-  const char* end = text.data() + text.size();
-  const auto [at, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc() || at != end || value < range.least ||
-      value > range.most)
+  const auto value = decimal<Index>(text);
+  if (!value || *value < range.least || *value > range.most)
     throw UsageError(
         fmt::format("'{}' is no value for {}; a whole number from {} to {} is",
                     text,
                     key,
                     range.least,
                     range.most));
-  return value;
+  return *value;
 }
 
 /// "0,1" or "0-3", also mixed.
