@@ -1,6 +1,7 @@
 #include "suite/core/options.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace physinv {
 
@@ -22,12 +23,7 @@ std::string in_line(const Options& options) {
 
 std::string joined(const std::vector<std::string>& texts,
                    std::string_view separator) {
-  std::string line;
-  for (const auto& text : texts) {
-    if (&text != &texts.front()) line += separator;
-    line += text;
-  }
-  return line;
+  return fmt::format("{}", fmt::join(texts, separator));
 }
 
 std::string text_of(double number) { return fmt::format("{}", number); }

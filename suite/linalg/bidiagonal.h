@@ -6,8 +6,6 @@
 /// u_1 = a_1 v_1 / s (Golub and Kahan 1965; as LSQR does by Lanczos).
 #pragma once
 
-#include <vector>
-
 #include "suite/core/batch.h"
 #include "suite/core/workspace.h"
 

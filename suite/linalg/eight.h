@@ -22,7 +22,7 @@ inline constexpr int kParts = sizeof(Pack8) / sizeof(Part);
 inline constexpr Index kPartWidth = kWidth / kParts;
 
 template <class P>
-PHYSINV_LANES Pack8 joined(const P* parts) {
+PHYSINV_LANES Pack8 from_parts(const P* parts) {
   using Whole = FixedPack<LaneScalar<P>, kWidth>;
   if constexpr (kParts == 1) {
     return parts[0];

@@ -74,7 +74,7 @@ template <int kRows>
     add_columns<kRows, 2>(rows, a.stride, c, x, y, s, dot);
   if (c < a.n) add_columns<kRows, 1>(rows, a.stride, c, x, y, s, dot);
 #pragma GCC unroll 4
-  for (int i = 0; i < kRows; ++i) y[r + i] += sum_of(joined(dot[i]));
+  for (int i = 0; i < kRows; ++i) y[r + i] += sum_of(from_parts(dot[i]));
 }
 
 enum class Way { down, up };

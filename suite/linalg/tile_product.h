@@ -4,8 +4,6 @@
 /// tile it falls into nor on threads.
 #pragma once
 
-#include <utility>
-
 #include "suite/linalg/eight.h"
 
 namespace physinv::linalg {
@@ -68,7 +66,7 @@ template <int M, class Finish>
     add_outer(at, a.row, b, acc);
 #pragma GCC unroll 8
   for (int r = 0; r < M; ++r)
-    finish(r, joined(acc[r]), joined(acc[r] + kParts));
+    finish(r, from_parts(acc[r]), from_parts(acc[r] + kParts));
 }
 
 /// The same for any number of rows.
