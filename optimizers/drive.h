@@ -2,13 +2,23 @@
 #pragma once
 
 #include <concepts>
+#include <span>
 #include <type_traits>
 
 #include "optimizers/batched_solver.h"
-#include "optimizers/objective.h"
 #include "suite/core/batch.h"
 
 namespace physinv {
+
+/// Losses and gradients of independent problems, in one batch. Column j of x
+/// belongs to problem active[j]; loss and gradient are filled in that order.
+///   f(active, x, loss, gradient)
+template <class F>
+concept BatchObjective = std::invocable<F&,
+                                        std::span<const Index>,
+                                        BatchIn<double>,
+                                        VectorOut<double>,
+                                        BatchOut<double>>;
 
 /// An observer that only lets time pass.
 struct NoObserver {

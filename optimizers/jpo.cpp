@@ -1,18 +1,53 @@
 #include "optimizers/jpo.h"
 
-#include "optimizers/best_so_far.h"
+#include <cmath>
+#include <limits>
+#include <utility>
+
 #include "optimizers/stage.h"
 #include "optimizers/steps/clip_percentile.h"
 #include "optimizers/steps/rule_check.h"
 #include "optimizers/training/first_order.h"
 #include "optimizers/training/loop.h"
 #include "optimizers/training/output_map.h"
+#include "suite/core/archive.h"
 #include "suite/core/check.h"
 #include "suite/core/oracle.h"
 #include "suite/core/probe.h"
 
 namespace physinv {
 namespace {
+
+/// The best estimate each example had at any time.
+template <class T>
+class BestSoFar {
+ public:
+  /// Of nothing seen yet, the start is best.
+  explicit BestSoFar(Batch<T> start)
+      : x_(std::move(start)),
+        loss_(Vector<T>::Constant(x_.cols(),
+                                  std::numeric_limits<T>::infinity())) {}
+
+  /// Losses are compared in the precision of training. False if none is finite.
+  bool offer(const Batch<T>& x, const Vector<double>& losses) {
+    bool finite = false;
+    for (Index i = 0; i < losses.size(); ++i) {
+      finite = finite || std::isfinite(losses(i));
+      const T loss = static_cast<T>(losses(i));
+      if (!(loss < loss_(i))) continue;  // NaN is never better
+      loss_(i) = loss;
+      x_.col(i) = x.col(i);
+    }
+    return finite;
+  }
+
+  const Batch<T>& x() const { return x_; }
+  void serialize(Archive& archive) { archive(x_, loss_); }
+
+ private:
+  Batch<T> x_;
+  Vector<T> loss_;
+};
 
 /// The signal: losses and clipped gradients of the case's own problems, all of
 /// them at every evaluation.

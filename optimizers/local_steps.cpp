@@ -91,16 +91,16 @@ class LocalSteps final : public StepwiseSolver {
           };
           (*rule_)(numbers(x_), numbers(next_), numbers(next_));
         } else {
-          go(-rate_);
+          step_by(-rate_);
         }
         return;
       case LocalStep::newton:
         newton();
-        go(rate_);
+        step_by(rate_);
         return;
       case LocalStep::inverse_gradient:
         inverse_gradient();
-        go(rate_);
+        step_by(rate_);
         return;
       case LocalStep::inverse_simulator:
         closer_observation();
@@ -114,7 +114,7 @@ class LocalSteps final : public StepwiseSolver {
   }
 
   /// next_ = x + factor next_.
-  void go(T factor) {
+  void step_by(T factor) {
     BatchOut<T> out = next_;
     for_numbers<T>(next_, x_, out, [factor](T step, T x) {
       return std::fma(factor, step, x);

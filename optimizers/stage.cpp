@@ -1,6 +1,5 @@
 #include "optimizers/stage.h"
 
-#include <algorithm>
 #include <iterator>
 
 namespace physinv {

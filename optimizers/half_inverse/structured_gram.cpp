@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "suite/core/check.h"
 #include "suite/linalg/tile_product.h"

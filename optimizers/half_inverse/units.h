@@ -1,8 +1,6 @@
 /// Powers of J = unit J', unit > 0, from those of J'.
 #pragma once
 
-#include <cmath>
-
 #include "optimizers/half_inverse/power.h"
 #include "suite/core/math.h"
 

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <vector>
 
-#include "optimizers/objective.h"
 #include "optimizers/steps/rule.h"
 
 namespace physinv {
@@ -23,6 +22,12 @@ class StepsTest : public testing::Test {
 };
 using Types = testing::Types<float, double>;
 TYPED_TEST_SUITE(StepsTest, Types);
+
+/// Turns a gradient and its own state into a step: x is updated in place.
+template <class U, class T>
+concept UpdateRule = requires(U u, VectorOut<T> x, VectorIn<T> gradient) {
+  u.step(x, gradient);
+};
 
 static_assert(UpdateRule<Adam<float>, float>);
 static_assert(UpdateRule<Sgd<double>, double>);
