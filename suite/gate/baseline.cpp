@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <gnu/libc-version.h>
 
-#include <array>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
@@ -72,19 +71,21 @@ void read_counts(Baseline& b, Lines& lines, const std::string& head) {
   }
 }
 
-/// What every baseline says, once.
-constexpr std::array<std::string_view, 8> kHeader = {"profile",
-                                                     "bits",
-                                                     "build",
-                                                     "numerics",
-                                                     "machine",
-                                                     "revision",
-                                                     "date",
-                                                     "stages"};
+/// Lines of the header, which every baseline has once.
+struct HeaderLine {
+  std::string_view key;
+  std::string Baseline::*text;
+};
+constexpr HeaderLine kHeader[] = {{"bits", &Baseline::bits},
+                                  {"build", &Baseline::build},
+                                  {"numerics", &Baseline::numerics},
+                                  {"machine", &Baseline::machine},
+                                  {"revision", &Baseline::revision},
+                                  {"date", &Baseline::date}};
 
 Baseline parse_body(Lines lines) {
   Baseline b;
-  std::set<std::string> seen;
+  std::set<std::string, std::less<>> seen;
   while (!lines.empty()) {
     const auto [key, value] = first_word_and_rest(lines.next());
     const bool repeats = key == "filter" || key == "set";
@@ -96,18 +97,18 @@ Baseline parse_body(Lines lines) {
     if (key == "seeds") b.chosen.seeds = value;
     if (key == "filter") b.chosen.filters.push_back(value);
     if (key == "set") b.chosen.sets.push_back(value);
-    if (key == "bits") b.bits = value;
-    if (key == "build") b.build = value;
-    if (key == "numerics") b.numerics = value;
-    if (key == "machine") b.machine = value;
-    if (key == "revision") b.revision = value;
-    if (key == "date") b.date = value;
+    for (const HeaderLine& line : kHeader)
+      if (key == line.key) b.*line.text = value;
     if (key == "stages") read_stages(b, lines, value);
     if (key == "instructions") read_counts(b, lines, value);
   }
-  for (const auto field : kHeader)
-    if (!seen.contains(std::string(field)))
-      throw std::runtime_error(fmt::format("it has no {}", field));
+  const auto require = [&](std::string_view key) {
+    if (!seen.contains(key))
+      throw std::runtime_error(fmt::format("it has no {}", key));
+  };
+  require("profile");
+  for (const HeaderLine& line : kHeader) require(line.key);
+  require("stages");
   return b;
 }
 
@@ -177,16 +178,9 @@ std::string to_text(const Baseline& b) {
   for (const auto& filter : b.chosen.filters) text += "filter " + filter + '\n';
   for (const auto& set : b.chosen.sets) text += "set " + set + '\n';
   if (!b.chosen.seeds.empty()) text += "seeds " + b.chosen.seeds + '\n';
-  text += fmt::format(
-      "bits {}\nbuild {}\nnumerics {}\nmachine {}\nrevision {}\ndate {}\n"
-      "stages {}\n",
-      b.bits,
-      b.build,
-      b.numerics,
-      b.machine,
-      b.revision,
-      b.date,
-      b.stages.size());
+  for (const HeaderLine& line : kHeader)
+    text += fmt::format("{} {}\n", line.key, b.*line.text);
+  text += fmt::format("stages {}\n", b.stages.size());
   for (const auto& line : b.stages) text += to_text(line) + '\n';
   if (!b.counts.counter.empty())
     text += fmt::format(

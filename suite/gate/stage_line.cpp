@@ -16,6 +16,7 @@
 #include "suite/core/rng.h"
 #include "suite/gate/digits.h"
 #include "suite/store/checksum.h"
+#include "suite/store/fields.h"
 
 namespace physinv {
 namespace {
@@ -25,14 +26,6 @@ constexpr std::string_view kNone = "none";
 /// Of a stage that draws data of its own, so that no disturbance reaches it.
 constexpr int kUnmeasured = 3;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-constexpr std::array kAllStatuses = {
-    Status::gtol, Status::maxiter, Status::linesearch, Status::nonfinite};
-constexpr std::array kAllStops = {Stop::converged,
-                                  Stop::iterations,
-                                  Stop::diverged,
-                                  Stop::failed,
-                                  Stop::skipped};
 
 Losses losses_of(const Vector<double>& all) {
   std::vector<double> finite;
@@ -73,18 +66,11 @@ std::string_view cut(std::string_view& text, std::string_view mark) {
   return head;
 }
 
-template <class E, std::size_t kSize>
-E parse_word(std::string_view text, const std::array<E, kSize>& all) {
-  for (const E e : all)
-    if (to_string(e) == text) return e;
-  throw std::runtime_error(fmt::format("unknown word '{}'", text));
-}
-
 StatusCounts parse_statuses(std::string_view text) {
   StatusCounts counts{};
   while (!text.empty()) {
     std::string_view part = cut(text, ",");
-    const Status s = parse_word(cut(part, ":"), kAllStatuses);
+    const Status s = value_of<Status>(cut(part, ":"));
     counts[static_cast<std::size_t>(s)] = parse_number<Index>(part);
   }
   return counts;
@@ -122,7 +108,7 @@ void read_field(StageLine& line, std::string_view key, std::string_view value) {
   } else if (key == "results") {
     line.results = value;
   } else if (key == "stop") {
-    line.stop = parse_word(value, kAllStops);
+    line.stop = value_of<Stop>(value);
   } else if (key == "status") {
     line.statuses = parse_statuses(value);
   } else if (key == "loss") {
