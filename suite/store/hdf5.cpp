@@ -4,12 +4,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <iterator>
 #include <span>
 
 #include "suite/store/errors.h"
+#include "suite/store/fields.h"
 #include "suite/store/hdf5_form.h"
 
 namespace physinv::hdf5 {
@@ -88,14 +88,11 @@ Handle write_array(hid_t parent,
   return set;
 }
 
-constexpr std::array kStatuses{
-    Status::gtol, Status::maxiter, Status::linesearch, Status::nonfinite};
-
 /// The enumeration of Status, as version 2 stored it.
 hid_t status_type() {
   static const Handle type = [] {
     Handle names(H5Tenum_create(H5T_STD_U8LE), H5Tclose, "make a type");
-    for (const Status s : kStatuses) {
+    for (const Status s : kValues<Status>) {
       const auto value = static_cast<std::uint8_t>(s);
       check(H5Tenum_insert(names, to_string(s).data(), &value), "make a type");
     }
@@ -290,7 +287,7 @@ void write(hid_t parent,
   const Handle set =
       write_array(parent, name, shape, H5T_STD_I32LE, codes.data(), note);
   std::vector<std::string_view> words;
-  for (const Status s : kStatuses)
+  for (const Status s : kValues<Status>)
     values.push_back(code(s)), words.push_back(to_string(s));
   write_attribute(set, "flag_values", values);
   write_attribute(

@@ -7,6 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <type_traits>
 
 #include "suite/store/checksum.h"
 #include "suite/store/field_json.h"
@@ -40,45 +41,30 @@ double time_from(const json& j) {
   return j;
 }
 
-json binary(const double* data, Index rows, Index cols) {
-  json::binary_t::container_type bytes(static_cast<std::size_t>(rows * cols) *
-                                       sizeof(double));
-  if (!bytes.empty()) std::memcpy(bytes.data(), data, bytes.size());
-  return json::array({rows, cols, json::binary(std::move(bytes))});
+/// Rows, columns and bytes; a list is one column.
+template <class Array>
+json binary(const Array& a) {
+  json::binary_t::container_type bytes(static_cast<std::size_t>(a.size()) *
+                                       sizeof(*a.data()));
+  if (!bytes.empty()) std::memcpy(bytes.data(), a.data(), bytes.size());
+  auto all = json::array({a.size(), 1, json::binary(std::move(bytes))});
+  if constexpr (requires { a.rows(); }) all[0] = a.rows(), all[1] = a.cols();
+  return all;
 }
 
-template <class M>
-json binary(const M& m) {
-  return binary(m.data(), m.rows(), m.cols());
-}
-
-json binary(const std::vector<double>& v) {
-  return binary(v.data(), static_cast<Index>(v.size()), 1);
-}
-
-Batch<double> batch(const json& j) {
-  Batch<double> b(j.at(0).get<Index>(), j.at(1).get<Index>());
+template <class Array>
+void read_binary(const json& j, Array& to) {
+  const Index rows = whole(j.at(0)), cols = whole(j.at(1));
   const auto& bytes = j.at(2).get_binary();
-  if (bytes.size() != static_cast<std::size_t>(b.size()) * sizeof(double))
+  const std::size_t size = bytes.size() / sizeof(*to.data());
+  if (rows < 0 || cols < 0 || size * sizeof(*to.data()) != bytes.size() ||
+      size != static_cast<std::size_t>(rows) * static_cast<std::size_t>(cols))
     throw std::runtime_error("an array has the wrong size");
-  if (!bytes.empty()) std::memcpy(b.data(), bytes.data(), bytes.size());
-  return b;
-}
-
-json binary(const std::vector<Status>& status) {
-  json::binary_t::container_type bytes;
-  for (const Status s : status) bytes.push_back(static_cast<std::uint8_t>(s));
-  return json::binary(std::move(bytes));
-}
-
-void read_binary(const json& j, Batch<double>& to) { to = batch(j); }
-void read_binary(const json& j, Vector<double>& to) { to = batch(j); }
-void read_binary(const json& j, std::vector<double>& to) {
-  const Batch<double> b = batch(j);
-  to.assign(b.data(), b.data() + b.size());
-}
-void read_binary(const json& j, std::vector<Status>& to) {
-  for (const auto s : j.get_binary()) to.push_back(static_cast<Status>(s));
+  if constexpr (std::is_same_v<Array, Batch<double>>)
+    to.resize(rows, cols);
+  else
+    to.resize(static_cast<decltype(to.size())>(size));
+  if (!bytes.empty()) std::memcpy(to.data(), bytes.data(), bytes.size());
 }
 
 }  // namespace
@@ -197,7 +183,7 @@ StageRecord from_wire(std::span<const std::uint8_t> bytes) {
     read_binary(j.at("arrays").at(at.name), array);
   });
   for (const auto& [name, array] : j.at("findings").items())
-    record.arrays[ArrayKey::own(name)] = batch(array);
+    read_binary(array, record.arrays[ArrayKey::own(name)]);
   return record;
 }
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "suite/core/median.h"
+#include "suite/store/fields.h"
 #include "suite/store/json.h"
 #include "suite/store/repetitions.h"
 
@@ -44,8 +45,7 @@ void add_accuracy(Json& j, const Vector<double>& loss) {
 
 Json statuses(const std::vector<Status>& status) {
   Json j = Json::object();
-  for (const Status s :
-       {Status::gtol, Status::maxiter, Status::linesearch, Status::nonfinite})
+  for (const Status s : kValues<Status>)
     j[std::string(to_string(s))] = std::count(status.begin(), status.end(), s);
   return j;
 }
