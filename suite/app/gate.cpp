@@ -18,9 +18,9 @@
 #include "suite/gate/verdict.h"
 #include "suite/harness/build_info.h"
 #include "suite/harness/context.h"
-#include "suite/results/nearest.h"
 #include "suite/harness/progress.h"
 #include "suite/harness/select.h"
+#include "suite/results/nearest.h"
 #include "suite/store/file.h"
 
 namespace physinv {

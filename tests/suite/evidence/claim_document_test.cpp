@@ -232,7 +232,7 @@ TEST(ClaimDocument, NamesThePlaceOfALineThatItCannotRead) {
             "claims.md:3:10: this is nested too deeply");
   EXPECT_EQ(error("```claims\na(x) = x + x + x + x + x + x + x + x + x + x\n"
                   "b = a(a(a(a(\"x\"))))\n```\n"),
-            "claims.md:2:40: this text is too long");
+            "claims.md:3:10: this text is too long");
 }
 
 }  // namespace
