@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <exception>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -246,7 +247,7 @@ class Expression {
     std::vector<std::string> forms;
     for (const ClaimNames::Function& f : *functions) {
       if (f.parameters.size() == arguments.size())
-        if (auto result = f.call({arguments, names_, depth_ + 1, calls_left_}))
+        if (auto result = result_of_call(f, arguments, t))
           return std::move(*result);
       std::vector<std::string> kinds;
       for (const auto& p : f.parameters) kinds.push_back(kind_of(p));
@@ -259,6 +260,17 @@ class Expression {
                                       t.text,
                                       fmt::join(forms, " or "),
                                       fmt::join(given, ", "))};
+  }
+
+  /// What the function throws stands where it was called.
+  std::optional<ClaimValue> result_of_call(const ClaimNames::Function& f,
+                                           const ClaimList& arguments,
+                                           const Token& t) const {
+    try {
+      return f.call({arguments, names_, depth_ + 1, calls_left_});
+    } catch (const std::exception& error) {
+      throw ExpressionError{t.place, error.what()};
+    }
   }
 
   [[noreturn]] void unknown(const Token& t) const {

@@ -16,6 +16,7 @@ physinv_claim_texts:
     claims hig/poisson
     claims hig/quantum_dipole
     claims hig/toy
+    claims physgrad/scaling
     claims sip/exponential
     claims sip/fluid
     claims sip/heat

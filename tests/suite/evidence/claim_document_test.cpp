@@ -25,6 +25,7 @@ std::vector<Claim> claims(const std::string& text) {
   ClaimNames names = claim_names();
   names.add("loss", [] { return of_row(losses(), mean_of); });
   names.add("Two", 2);
+  names.add("refuse", []() -> double { throw std::logic_error("not today"); });
   names.add("pair", [](const Quantity& q) {
     return std::vector{above("one", q, 0), below("two", q, 9)};
   });
@@ -207,6 +208,7 @@ TEST(ClaimDocument, NamesThePlaceOfAnErrorAndWhatWouldBeRight) {
             "claims.md:5:11: ';' means nothing here");
   EXPECT_EQ(error_of_expression("\"a\" - 1"),
             "claims.md:5:11: text - a number has no meaning");
+  EXPECT_EQ(error_of_expression("1 + refuse()"), "claims.md:5:11: not today");
   EXPECT_EQ(error_of_expression("Two in 1"),
             "claims.md:5:15: '..' is missing here");
 }
