@@ -16,6 +16,9 @@ physinv_claim_texts:
     claims hig/poisson
     claims hig/quantum_dipole
     claims hig/toy
+    claims jpo/billiards
+    claims jpo/kuramoto_sivashinsky
+    claims jpo/robotic_arm
     claims physgrad/scaling
     claims sip/exponential
     claims sip/fluid
