@@ -148,46 +148,23 @@ inline V bend_lanes(Activation a, V y, V v) {
 
 /// Rows [first, last) of z through the activation, in place.
 template <class T>
-void activate_rows(Activation a, Lanes<T> z, Index first, Index last);
+void activate_rows(Activation a, Rows<T> z, Index first, Index last);
 
 /// x_bar *= derivative at `gate`; what a layer does to its input's cotangent
 /// when it has no tile store to fuse it into.
 template <class T>
-void apply_gate(const Gate<T>& gate, Lanes<T> x_bar);
+void apply_gate(const Gate<T>& gate, Rows<T> x_bar);
 
 /// The same and its derivative, the gate's y moving along y_dot.
 template <class T>
 void apply_gate_tangent(const Gate<T>& gate,
-                        Lanes<const T> y_dot,
-                        Lanes<T> x_bar,
-                        Lanes<T> x_bar_dot);
+                        Rows<const T> y_dot,
+                        Rows<T> x_bar,
+                        Rows<T> x_bar_dot);
 
 /// An activation on its own: behind a layer that cannot take it in, or one
 /// whose derivative needs the input (SiLU, GELU).
 template <class T>
-class ActivationLayer final : public Layer<T> {
- public:
-  ActivationLayer(Activation a, Index features)
-      : Layer<T>(features, features), activation_(a) {}
-
-  Activation kind() const { return activation_; }
-  const Activation* pure_activation() const override { return &activation_; }
-  void forward(const LayerArgs<T>& at,
-               Lanes<const T> x,
-               Lanes<T> y) const override;
-  void backward(const LayerArgs<T>& at, const Backward<T>& b) const override;
-  void tangent(const LayerArgs<T>& at, const Tangent<T>& t) const override;
-  void backward_tangent(const LayerArgs<T>& at,
-                        const BackwardTangent<T>& b) const override;
-  bool evaluate_plainly(const double* /*parameters*/,
-                        const Vector<double>& x,
-                        Vector<double>& y) const override {
-    for (Index i = 0; i < x.size(); ++i) y(i) = activate(activation_, x(i));
-    return true;
-  }
-
- private:
-  Activation activation_;
-};
+LayerPointer<T> activation_layer(Activation a, Index features);
 
 }  // namespace physinv::nn

@@ -31,8 +31,8 @@ template <class T, int N, bool kRelu>
 void normalise_cells(const NormShape& s,
                      const NormColumns<T>& at,
                      const T* parameters,
-                     Lanes<const T> x,
-                     Lanes<T> y,
+                     Rows<const T> x,
+                     Rows<T> y,
                      Index begin,
                      Index end) {
   const Activation f = kRelu ? Activation::relu : s.activation;
@@ -59,15 +59,15 @@ template <class T, int N, bool kRelu>
 void sum_cells(const NormShape& s,
                const NormColumns<T>& at,
                const T* parameters,
-               Lanes<const T> x,
-               Lanes<const T> y,
-               Lanes<const T> y_bar,
+               Rows<const T> x,
+               Rows<const T> y,
+               Rows<const T> y_bar,
                Index begin,
                Index end,
                T* sums) {
   const Activation f = kRelu ? Activation::relu : s.activation;
   const NormCell<N> cell(s);
-  const LaneMask<T> mask(x.samples);
+  const SampleMask<T> mask(x.samples);
   for (Index c = 0; c < s.channels; ++c) {
     const NormChannel<T> u(at, parameters, s.channels, c);
     V<T> sum{}, product{};
@@ -101,15 +101,15 @@ void pull_cells(const NormShape& s,
                 const NormColumns<T>& at,
                 const T* parameters,
                 const T* means,
-                Lanes<const T> x,
-                Lanes<const T> y,
-                Lanes<const T> y_bar,
-                Lanes<T> x_bar,
+                Rows<const T> x,
+                Rows<const T> y,
+                Rows<const T> y_bar,
+                Rows<T> x_bar,
                 Index begin,
                 Index end) {
   const Activation f = kRelu ? Activation::relu : s.activation;
   const NormCell<N> cell(s);
-  const LaneMask<T> mask(x.samples);
+  const SampleMask<T> mask(x.samples);
   for (Index c = 0; c < s.channels; ++c) {
     const NormChannel<T> u(at, parameters, s.channels, c);
     const V<T> mean = broadcast<V<T>>(means[c]);
@@ -150,13 +150,13 @@ void pull_cells(const NormShape& s,
 /// Moments of G neighbouring channels at once: their sums hide each other's
 /// latency.
 template <class T, int G>
-void moments_of(Lanes<const T> x,
+void moments_of(Rows<const T> x,
                 Index channels,
                 Index channel,
                 Index begin,
                 Index end,
                 T* moments) {
-  const LaneMask<T> mask(x.samples);
+  const SampleMask<T> mask(x.samples);
   const auto count = static_cast<double>((end - begin) * x.samples);
   V<T> mean[G] = {}, sum[G] = {};
   const auto pass = [&](auto&& add) {
@@ -201,7 +201,7 @@ Grid NormShape::pooled() const {
 
 template <class T>
 void block_moments(
-    Lanes<const T> x, Index channels, Index begin, Index end, T* moments) {
+    Rows<const T> x, Index channels, Index begin, Index end, T* moments) {
   Index c = 0;
   for (; c + 4 <= channels; c += 4)
     moments_of<T, 4>(x, channels, c, begin, end, moments + c);
@@ -264,8 +264,8 @@ template <class T>
 void normalise(const NormShape& shape,
                const NormColumns<T>& at,
                const T* parameters,
-               Lanes<const T> x,
-               Lanes<T> y,
+               Rows<const T> x,
+               Rows<T> y,
                Index begin,
                Index end) {
   dispatch_norm(shape, [&]<int N, bool kRelu>() {
@@ -277,9 +277,9 @@ template <class T>
 void block_sums(const NormShape& shape,
                 const NormColumns<T>& at,
                 const T* parameters,
-                Lanes<const T> x,
-                Lanes<const T> y,
-                Lanes<const T> y_bar,
+                Rows<const T> x,
+                Rows<const T> y,
+                Rows<const T> y_bar,
                 Index begin,
                 Index end,
                 T* sums) {
@@ -304,10 +304,10 @@ void pull_norm(const NormShape& shape,
                const NormColumns<T>& at,
                const T* parameters,
                const T* means,
-               Lanes<const T> x,
-               Lanes<const T> y,
-               Lanes<const T> y_bar,
-               Lanes<T> x_bar,
+               Rows<const T> x,
+               Rows<const T> y,
+               Rows<const T> y_bar,
+               Rows<T> x_bar,
                Index begin,
                Index end) {
   dispatch_norm(shape, [&]<int N, bool kRelu>() {

@@ -38,7 +38,7 @@ struct NormColumns {
 /// moments = channels means, then channels sums.
 template <class T>
 void block_moments(
-    Lanes<const T> x, Index channels, Index begin, Index end, T* moments);
+    Rows<const T> x, Index channels, Index begin, Index end, T* moments);
 
 /// Puts the moments of blocks of `per_block` positions together, in order and
 /// in double.
@@ -63,8 +63,8 @@ template <class T>
 void normalise(const NormShape& shape,
                const NormColumns<T>& at,
                const T* parameters,
-               Lanes<const T> x,
-               Lanes<T> y,
+               Rows<const T> x,
+               Rows<T> y,
                Index begin,
                Index end);
 
@@ -74,9 +74,9 @@ template <class T>
 void block_sums(const NormShape& shape,
                 const NormColumns<T>& at,
                 const T* parameters,
-                Lanes<const T> x,
-                Lanes<const T> y,
-                Lanes<const T> y_bar,
+                Rows<const T> x,
+                Rows<const T> y,
+                Rows<const T> y_bar,
                 Index begin,
                 Index end,
                 T* sums);
@@ -93,10 +93,10 @@ void pull_norm(const NormShape& shape,
                const NormColumns<T>& at,
                const T* parameters,
                const T* means,
-               Lanes<const T> x,
-               Lanes<const T> y,
-               Lanes<const T> y_bar,
-               Lanes<T> x_bar,
+               Rows<const T> x,
+               Rows<const T> y,
+               Rows<const T> y_bar,
+               Rows<T> x_bar,
                Index begin,
                Index end);
 

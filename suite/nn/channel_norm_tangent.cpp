@@ -33,7 +33,7 @@ struct ChannelTangent : NormChannel<T> {
 
 template <class T, int N, bool kRelu>
 void normalise_cells(const NormTangent<T>& of,
-                     Lanes<T> y_dot,
+                     Rows<T> y_dot,
                      Index begin,
                      Index end) {
   const Activation f = kRelu ? Activation::relu : of.shape.activation;
@@ -65,16 +65,16 @@ void normalise_cells(const NormTangent<T>& of,
 
 template <class T, int N, bool kRelu>
 void open(const NormTangent<T>& of,
-          Lanes<const T> y_dot,
-          Lanes<const T> y_bar,
-          Lanes<const T> y_bar_dot,
-          Lanes<T> u_bar,
-          Lanes<T> u_bar_dot,
+          Rows<const T> y_dot,
+          Rows<const T> y_bar,
+          Rows<const T> y_bar_dot,
+          Rows<T> u_bar,
+          Rows<T> u_bar_dot,
           Index begin,
           Index end) {
   const Activation f = kRelu ? Activation::relu : of.shape.activation;
   const NormCell<N> cell(of.shape);
-  const LaneMask<T> mask(of.x.samples);
+  const SampleMask<T> mask(of.x.samples);
   const Index channels = of.shape.channels;
   for (Index c = 0; c < channels; ++c) {
     const NormChannel<T> u(of.at, of.parameters, channels, c);
@@ -111,7 +111,7 @@ void open(const NormTangent<T>& of,
 
 template <class T>
 void normalise_tangent(const NormTangent<T>& of,
-                       Lanes<T> y_dot,
+                       Rows<T> y_dot,
                        Index begin,
                        Index end) {
   dispatch_norm(of.shape, [&]<int N, bool kRelu>() {
@@ -121,11 +121,11 @@ void normalise_tangent(const NormTangent<T>& of,
 
 template <class T>
 void open_cells(const NormTangent<T>& of,
-                Lanes<const T> y_dot,
-                Lanes<const T> y_bar,
-                Lanes<const T> y_bar_dot,
-                Lanes<T> u_bar,
-                Lanes<T> u_bar_dot,
+                Rows<const T> y_dot,
+                Rows<const T> y_bar,
+                Rows<const T> y_bar_dot,
+                Rows<T> u_bar,
+                Rows<T> u_bar_dot,
                 Index begin,
                 Index end) {
   dispatch_norm(of.shape, [&]<int N, bool kRelu>() {
@@ -137,11 +137,11 @@ void open_cells(const NormTangent<T>& of,
 template <class T>
 void pull_norm_tangent(const NormTangent<T>& of,
                        const NormMeans<T>& means,
-                       Lanes<T> bar,
-                       Lanes<T> bar_dot,
+                       Rows<T> bar,
+                       Rows<T> bar_dot,
                        Index begin,
                        Index end) {
-  const LaneMask<T> mask(of.x.samples);
+  const SampleMask<T> mask(of.x.samples);
   const Index channels = of.shape.channels;
   for (Index c = 0; c < channels; ++c) {
     const ChannelTangent<T> u(of, c);

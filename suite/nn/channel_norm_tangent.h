@@ -27,13 +27,13 @@ struct NormTangent {
   NormColumns<T> at;
   NormDots<T> dots;
   const T *parameters, *parameters_dot;  ///< scales, then offsets
-  Lanes<const T> x, x_dot, y;
+  Rows<const T> x, x_dot, y;
 };
 
 /// y_dot at output positions [begin, end).
 template <class T>
 void normalise_tangent(const NormTangent<T>& of,
-                       Lanes<T> y_dot,
+                       Rows<T> y_dot,
                        Index begin,
                        Index end);
 
@@ -42,11 +42,11 @@ void normalise_tangent(const NormTangent<T>& of,
 /// lanes become zero.
 template <class T>
 void open_cells(const NormTangent<T>& of,
-                Lanes<const T> y_dot,
-                Lanes<const T> y_bar,
-                Lanes<const T> y_bar_dot,
-                Lanes<T> u_bar,
-                Lanes<T> u_bar_dot,
+                Rows<const T> y_dot,
+                Rows<const T> y_bar,
+                Rows<const T> y_bar_dot,
+                Rows<T> u_bar,
+                Rows<T> u_bar_dot,
                 Index begin,
                 Index end);
 
@@ -61,8 +61,8 @@ struct NormMeans {
 template <class T>
 void pull_norm_tangent(const NormTangent<T>& of,
                        const NormMeans<T>& means,
-                       Lanes<T> bar,
-                       Lanes<T> bar_dot,
+                       Rows<T> bar,
+                       Rows<T> bar_dot,
                        Index begin,
                        Index end);
 

@@ -24,21 +24,19 @@ std::unique_ptr<Network<T>> make(const CnnOptions& o,
   SUITE_CHECK(o.taps > 0, "a convolution has taps");
   SUITE_CHECK(inputs == o.positions * o.channels,
               "the network's grid is not that of its input");
-  typename Sequential<T>::Layers layers;
+  Layers<T> layers;
   Index positions = o.positions, channels = o.channels;
   for (const Index width : o.features) {
-    layers.push_back(
-        std::make_unique<Conv<T>>(ConvOptions{.grid = {positions},
-                                              .in = channels,
-                                              .out = width,
-                                              .taps = {o.taps, 1},
-                                              .padding = Padding::none}));
+    layers.push_back(conv<T>({.grid = {positions},
+                              .in = channels,
+                              .out = width,
+                              .taps = {o.taps, 1},
+                              .padding = Padding::none}));
     positions -= o.taps - 1, channels = width;
-    layers.push_back(std::make_unique<ActivationLayer<T>>(
-        o.activation, positions * channels));
+    layers.push_back(activation_layer<T>(o.activation, positions * channels));
   }
-  layers.push_back(std::make_unique<Linear<T>>(positions * channels, outputs));
-  return std::make_unique<Sequential<T>>(std::move(layers), o.init);
+  layers.push_back(linear<T>(positions * channels, outputs));
+  return sequential<T>(std::move(layers), o.init);
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 
 #include "suite/core/network.h"
 #include "suite/core/options.h"
-#include "suite/nn/layer.h"
+#include "suite/nn/kinds.h"
 
 namespace physinv::nn {
 

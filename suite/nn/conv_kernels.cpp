@@ -19,17 +19,17 @@ constexpr int kPanel = 4, kColumns = 3;
 template <class T, class V, int N, bool kPair>
 struct Columns {
   using Reg = Register<T, V, kPair>;
-  using Whole = typename Reg::Whole;
+  using P = typename Reg::P;
   static constexpr int kCount = N * Reg::kVectors;
   const T* x[kCount];
   T* y[kCount];
 
-  template <class P>
-  static Whole at(const P* of, int c, Index offset) {
+  template <class U>
+  static P at(const U* of, int c, Index offset) {
     return Reg::of(of[c * Reg::kVectors] + offset,
                    of[(c + 1) * Reg::kVectors - 1] + offset);
   }
-  void put(Whole v, int c, Index offset) const {
+  void put(P v, int c, Index offset) const {
     Reg::put(v,
              y[c * Reg::kVectors] + offset,
              y[(c + 1) * Reg::kVectors - 1] + offset);
@@ -52,7 +52,7 @@ template <class T, int M, int N, class C>
                             const T* bias,
                             Index output,
                             const C& columns) {
-  using V = typename C::Whole;
+  using V = typename C::P;
   V acc[M][N];
 #pragma GCC unroll 16
   for (int r = 0; r < M; ++r)
@@ -179,18 +179,22 @@ void convolve_pieces(const Product<T>& g,
 /// from `run` on, those alike together: so the single positions at the edges
 /// of a plane's rows fill a tile.
 template <class F>
-void for_alike(const Run* run, const Run* last, Index begin, Index end, F&& f) {
+void for_alike(const WindowRun* run,
+               const WindowRun* last,
+               Index begin,
+               Index end,
+               F&& f) {
   constexpr Index kMost = 64;
   while (run != last && run->first < end) {
     // At most so many runs at once.
-    const Run* stop = run;
+    const WindowRun* stop = run;
     while (stop != last && stop->first < end && stop - run < kMost) ++stop;
     std::uint64_t done = 0;
     for (Index i = 0; i < stop - run; ++i) {
       Piece pieces[kMost];
       Index found = 0, count = 0;
       for (Index j = i; j < stop - run; ++j) {
-        const Run& r = run[j];
+        const WindowRun& r = run[j];
         if ((done >> j & 1) != 0 || r.alike != run[i].alike) continue;
         done |= std::uint64_t{1} << j;
         const Index first = std::max(begin, r.first);
@@ -242,20 +246,20 @@ void pack_flipped(const ConvShape& shape, const T* weights, T* packed) {
 
 template <class T>
 void convolve(const ConvShape& shape,
-              const std::vector<Run>& runs,
+              const std::vector<WindowRun>& runs,
               const T* packed,
               const T* bias,
-              Lanes<const T> x,
-              Lanes<T> y,
+              Rows<const T> x,
+              Rows<T> y,
               Index begin,
               Index end,
               Into into) {
-  using Wide = Pack<T>;
-  using Narrow = NarrowPack<T>;
   const Split<T> split(x.width);
   const Index out = shape.out;
   const Index x_step = shape.in * x.stride, y_step = out * x.stride;
-  const auto product = [&](const Run& like, const Piece* pieces, Index count) {
+  const auto product = [&](const WindowRun& like,
+                           const Piece* pieces,
+                           Index count) {
     const Product<T> g{shape.in,
                        shape.depth(),
                        x.stride,
@@ -272,12 +276,12 @@ void convolve(const ConvShape& shape,
             {x_step, y_step, lane0, vectors, x.data, y.data, pieces},
             vectors * count);
     };
-    by.template operator()<Wide>(0, split.wide);
-    by.template operator()<Narrow>(split.wide * kLanes<T>, split.narrow);
+    by.template operator()<Pack<T>>(0, split.wide);
+    by.template operator()<NarrowPack<T>>(split.wide * kLanes<T>, split.narrow);
   };
-  const Run* const last = runs.data() + runs.size();
-  const Run* const some =
-      std::partition_point(runs.data(), last, [&](const Run& r) {
+  const WindowRun* const last = runs.data() + runs.size();
+  const WindowRun* const some =
+      std::partition_point(runs.data(), last, [&](const WindowRun& r) {
         return r.first + r.count <= begin;
       });
   for_alike(some, last, begin, end, product);

@@ -21,7 +21,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "suite/nn/lanes.h"
+#include "suite/nn/rows.h"
 #include "suite/nn/window.h"
 
 namespace physinv::nn {
@@ -55,11 +55,11 @@ enum class Into : std::uint8_t { nothing, sum };
 /// place of the bias.
 template <class T>
 void convolve(const ConvShape& shape,
-              const std::vector<Run>& runs,
+              const std::vector<WindowRun>& runs,
               const T* packed,
               const T* bias,  ///< or null for zero
-              Lanes<const T> x,
-              Lanes<T> y,
+              Rows<const T> x,
+              Rows<T> y,
               Index begin,
               Index end,
               Into into = Into::nothing);

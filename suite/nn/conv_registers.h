@@ -12,10 +12,10 @@ namespace physinv::nn {
 template <class T, class V, bool kPair>
 struct Register {
   static constexpr int kVectors = kPair ? 2 : 1;
-  using Whole = Pack<T, kVectors* static_cast<int>(sizeof(V) / sizeof(T))>;
+  using P = Pack<T, kVectors* static_cast<int>(sizeof(V) / sizeof(T))>;
 
   /// a, and b if there is room for it.
-  static Whole of(const T* a, const T* b) {
+  static P of(const T* a, const T* b) {
     if constexpr (kPair) {
       return side_by_side(load<V>(a), load<V>(b));
     } else {
@@ -23,19 +23,19 @@ struct Register {
     }
   }
   /// a in both halves, by one load and no shuffle.
-  static Whole twice(const T* a) {
+  static P twice(const T* a) {
 #ifdef PHYSINV_AVX512
     if constexpr (kPair && sizeof(T) == 4) {
-      return reinterpret_cast<Whole>(
+      return reinterpret_cast<P>(
           _mm512_maskz_broadcast_f32x8(0xFFFF, _mm256_loadu_ps(a)));
     } else if constexpr (kPair) {
-      return reinterpret_cast<Whole>(
+      return reinterpret_cast<P>(
           _mm512_maskz_broadcast_f64x4(0xFF, _mm256_loadu_pd(a)));
     }
 #endif
     return of(a, a);
   }
-  static void put(Whole v, T* a, T* b) {
+  static void put(P v, T* a, T* b) {
     if constexpr (kPair) {
       V halves[2];
       std::memcpy(halves, &v, sizeof(v));

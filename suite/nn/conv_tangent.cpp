@@ -20,33 +20,34 @@ void for_positions(Threads* threads, Index count, Index some, F&& f) {
 /// all samples and positions.
 template <class T>
 struct Moving {
-  Moving(const BlockParts<T>& owner, const LayerArgs<T>& args, Lanes<const T> y)
+  /// Of a `Tangent` or a `BackwardTangent`.
+  template <class Step>
+  Moving(const BlockParts<T>& owner, const Replay<T>& args, const Step& step)
       : block(owner),
         at(args),
-        threads(block.conv.threads(at, y.samples)),
-        z(at.tape->template view<T>(at.slot).data(),
-          block.conv.outputs(),
-          y.samples),
-        z_dot(at.dots->template view<T>(at.slot).data(), z.rows, z.samples),
+        threads(block.conv.threads(at, step.x.samples)),
+        z(kept_rows<T>(
+            *at.tape, at.slot, block.conv.outputs(), step.x.samples)),
+        z_dot(kept_rows<T>(*step.dots, at.slot, z.rows, z.samples)),
         some(block.conv.per_block(z)),
         of{.shape = block.norm,
            .at = {at.tape->template view<T>(at.slot + 1).data(),
                   block.norm.channels},
-           .dots = {at.dots->template view<T>(at.slot + 1).data(),
+           .dots = {step.dots->template view<T>(at.slot + 1).data(),
                     block.norm.channels},
            .parameters = at.parameters + block.conv.parameter_count(),
-           .parameters_dot = at.parameters_dot + block.conv.parameter_count(),
+           .parameters_dot = step.parameters_dot + block.conv.parameter_count(),
            .x = z,
            .x_dot = z_dot,
-           .y = y} {}
+           .y = step.y} {}
 
   Index sums_size() const { return 2 * of.shape.channels; }
   Index blocks() const { return block.conv.blocks(z); }
   /// Of bar, then of bar (x - mean) inverse: channels each, at positions
   /// [begin, end).
   void add_up(const NormColumns<T>& columns,
-              Lanes<const T> x,
-              Lanes<const T> bar,
+              Rows<const T> x,
+              Rows<const T> bar,
               Index begin,
               Index end,
               T* sums) const {
@@ -88,9 +89,9 @@ struct Moving {
   }
 
   const BlockParts<T>& block;
-  const LayerArgs<T>& at;
+  const Replay<T>& at;
   Threads* threads;
-  Lanes<T> z, z_dot;
+  Rows<T> z, z_dot;
   Index some;
   NormTangent<T> of;
 };
@@ -99,24 +100,19 @@ struct Moving {
 
 template <class T>
 void push_block(const BlockParts<T>& block,
-                const LayerArgs<T>& at,
+                const Replay<T>& at,
                 const Tangent<T>& t) {
   const Index channels = block.norm.channels;
-  const Lanes<T> shape(nullptr, block.conv.outputs(), t.x.samples);
-  at.dots->template slot<T>(at.slot, shape.stride, shape.rows);
-  at.dots->template slot<T>(at.slot + 1, channels, NormDots<T>::kCount);
+  open_rows<T>(*t.dots, at.slot, block.conv.outputs(), t.x.samples);
+  t.dots->template slot<T>(at.slot + 1, channels, NormDots<T>::kCount);
   const Workspace::Scope scope(*at.work);
-  const Moving<T> m(block, at, t.y);
+  const Moving<T> m(block, at, t);
   T* parts = m.parts();
-  push_convolution(block.conv,
-                   at,
-                   t.x,
-                   t.x_dot,
-                   m.z_dot,
-                   [&](Index i, Index begin, Index end) {
-                     T* part = parts + i * m.sums_size();
-                     m.add_up(m.of.at, m.z, m.z_dot, begin, end, part);
-                   });
+  push_convolution(
+      block.conv, at, t, m.z_dot, [&](Index i, Index begin, Index end) {
+        T* part = parts + i * m.sums_size();
+        m.add_up(m.of.at, m.z, m.z_dot, begin, end, part);
+      });
   const T* const sums = m.total(parts);
   for (Index c = 0; c < channels; ++c) {
     m.of.dots.mean[c] = m.share() * sums[c];
@@ -132,15 +128,14 @@ void push_block(const BlockParts<T>& block,
 
 template <class T>
 void pull_block(const BlockParts<T>& block,
-                const LayerArgs<T>& at,
+                const Replay<T>& at,
                 const BackwardTangent<T>& b) {
   const Index channels = block.norm.channels;
   const Workspace::Scope scope(*at.work);
-  const Moving<T> m(block, at, b.y);
+  const Moving<T> m(block, at, b);
   // First the cotangents of the normalised, then, in place, of z.
-  Lanes<T> bar = m.z, bar_dot = m.z;
-  bar.data = at.work->template take<T>(bar.stride, bar.rows).data();
-  bar_dot.data = at.work->template take<T>(bar.stride, bar.rows).data();
+  const auto bar = take_rows<T>(*at.work, m.z.rows, m.z.samples);
+  const auto bar_dot = take_rows<T>(*at.work, m.z.rows, m.z.samples);
   const auto open = [&](Index begin, Index end) {
     open_cells<T>(
         m.of, b.y_dot, b.y_bar, b.y_bar_dot, bar, bar_dot, begin, end);

@@ -17,12 +17,12 @@ struct BlockParts {
 /// Slots as the block's own: z_dot, then NormDots.
 template <class T>
 void push_block(const BlockParts<T>& block,
-                const LayerArgs<T>& at,
+                const Replay<T>& at,
                 const Tangent<T>& t);
 
 template <class T>
 void pull_block(const BlockParts<T>& block,
-                const LayerArgs<T>& at,
+                const Replay<T>& at,
                 const BackwardTangent<T>& b);
 
 }  // namespace physinv::nn

@@ -25,7 +25,7 @@ struct Span {
 };
 
 /// Of a run, positions [begin, end).
-Span part_of(const Run& run, Index begin, Index end) {
+Span part_of(const WindowRun& run, Index begin, Index end) {
   const Index first = std::max(begin, run.first);
   return {first, std::min(end, run.first + run.count) - first, 0};
 }
@@ -48,7 +48,7 @@ struct Sweep {
 template <class T, class V, int R, int Q, bool kOne>
 [[gnu::noinline]] void weight_tile(const Sweep<T>& g, Index o, Index k) {
   using Reg = Register<T, V, kPairs<T, V> && Q % 2 == 0>;
-  using W = typename Reg::Whole;
+  using W = typename Reg::P;
   constexpr Index w = sizeof(V) / sizeof(T), wide = sizeof(W) / sizeof(T);
   constexpr int kInputs = Q / Reg::kVectors;
   const Index row = kOne ? w : g.stride, vectors = g.vectors;
@@ -137,15 +137,15 @@ void weight_columns(const Sweep<T>& g, Index depth) {
 template <class T, class V>
 void weights_by_tap(Sweep<T> g,
                     const ConvShape& shape,
-                    const Run* run,
-                    const Run* last,
+                    const WindowRun* run,
+                    const WindowRun* last,
                     Index begin,
                     Index end) {
   Span spans[kMostSpans];
   T* const sums = g.sums;
   for (Index tap = 0; tap < shape.taps.count(); ++tap) {
     Span* next = spans;
-    for (const Run* r = run; r != last && r->first < end; ++r) {
+    for (const WindowRun* r = run; r != last && r->first < end; ++r) {
       Span span = part_of(*r, begin, end);
       for (const Segment& s : r->segments) {
         if (tap < s.tap || tap >= s.tap + s.taps) continue;
@@ -170,8 +170,8 @@ void weights_by_tap(Sweep<T> g,
 template <class T, class V>
 void weights_by_run(Sweep<T> g,
                     const ConvShape& shape,
-                    const Run* run,
-                    const Run* last,
+                    const WindowRun* run,
+                    const WindowRun* last,
                     Index begin,
                     Index end) {
   constexpr Index w = sizeof(V) / sizeof(T);
@@ -211,9 +211,9 @@ Index weight_sums(const ConvShape& shape) {
 
 template <class T>
 void accumulate_weights(const ConvShape& shape,
-                        const std::vector<Run>& runs,
-                        Lanes<const T> x,
-                        Lanes<const T> y_bar,
+                        const std::vector<WindowRun>& runs,
+                        Rows<const T> x,
+                        Rows<const T> y_bar,
                         Index begin,
                         Index end,
                         T* sums) {
@@ -230,12 +230,12 @@ void accumulate_weights(const ConvShape& shape,
   const auto sweep = vectors < kFewVectors && in > kInTile
                          ? weights_by_tap<T, V>
                          : weights_by_run<T, V>;
-  const Run* run = runs.data();
-  const Run* const last = run + runs.size();
+  const WindowRun* run = runs.data();
+  const WindowRun* const last = run + runs.size();
   for (Index p = begin; p < end; p += per_block) {
     const Index stop = std::min(end, p + per_block);
     run = std::partition_point(
-        run, last, [&](const Run& r) { return r.first + r.count <= p; });
+        run, last, [&](const WindowRun& r) { return r.first + r.count <= p; });
     for (Index v = 0; v < vectors; v += per_row)
       sweep({.spans = nullptr,
              .span_count = 0,
@@ -271,7 +271,7 @@ void order_weights(const ConvShape& shape, const T* totals, T* weights_bar) {
 }
 
 template <class T>
-Index positions_per_block(Lanes<const T> x, Index channels) {
+Index positions_per_block(Rows<const T> x, Index channels) {
   const Index bytes = channels * x.stride * static_cast<Index>(sizeof(T));
   return std::max<Index>(1, kBlockBytes / bytes);
 }

@@ -19,9 +19,9 @@ Index weight_sums(const ConvShape& shape);
 /// samples each. Padding lanes of y_bar must be zero, of x finite.
 template <class T>
 void accumulate_weights(const ConvShape& shape,
-                        const std::vector<Run>& runs,
-                        Lanes<const T> x,
-                        Lanes<const T> y_bar,
+                        const std::vector<WindowRun>& runs,
+                        Rows<const T> x,
+                        Rows<const T> y_bar,
                         Index begin,
                         Index end,
                         T* sums);
@@ -78,6 +78,6 @@ class WeightSums {
 /// Positions of a block that should stay in the L1 cache, by shape and samples
 /// alone.
 template <class T>
-Index positions_per_block(Lanes<const T> x, Index channels);
+Index positions_per_block(Rows<const T> x, Index channels);
 
 }  // namespace physinv::nn

@@ -11,7 +11,7 @@ constexpr Index kMostParts = 8;
 }  // namespace
 
 template <class T>
-void channel_sums(Workspace& work, Lanes<const T> x, Index channels, T* sums) {
+void channel_sums(Workspace& work, Rows<const T> x, Index channels, T* sums) {
   const Workspace::Scope scope(work);
   auto per_row = work.take<T>(x.rows, 1);
   row_sums<T>(x, per_row.data());
@@ -36,7 +36,7 @@ Convolution<T>::Convolution(
   // Circular: the outer rows of a plane see the far side.
   if (padding == Padding::circular && !grid.flat())
     edge_ = std::min(taps.y / 2 * grid.columns, positions);
-  for (const Run& run : runs_) {
+  for (const WindowRun& run : runs_) {
     const Index end = run.first + run.count;
     if (end <= edge_ || run.first >= positions - edge_) continue;
     for (const Segment& s : run.segments)
@@ -61,7 +61,7 @@ double Convolution<T>::operations() const {
 }
 
 template <class T>
-Threads* Convolution<T>::threads(const LayerArgs<T>& at, Index samples) const {
+Threads* Convolution<T>::threads(const Replay<T>& at, Index samples) const {
   const bool worth = operations() * static_cast<double>(samples) > kThreadFlops;
   return worth ? at.work->threads() : nullptr;
 }
@@ -74,8 +74,8 @@ Index Convolution<T>::parts(Index samples) const {
                     std::min(kMostParts, shape_.positions()));
 }
 
-template void channel_sums(Workspace&, Lanes<const float>, Index, float*);
-template void channel_sums(Workspace&, Lanes<const double>, Index, double*);
+template void channel_sums(Workspace&, Rows<const float>, Index, float*);
+template void channel_sums(Workspace&, Rows<const double>, Index, double*);
 template class Convolution<float>;
 template class Convolution<double>;
 

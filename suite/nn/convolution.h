@@ -16,7 +16,7 @@ namespace physinv::nn {
 
 /// Sums over positions and samples, one per channel.
 template <class T>
-void channel_sums(Workspace& work, Lanes<const T> x, Index channels, T* sums);
+void channel_sums(Workspace& work, Rows<const T> x, Index channels, T* sums);
 
 template <class T>
 class Convolution {
@@ -33,10 +33,10 @@ class Convolution {
   double operations() const;
 
   /// Positions of a block, of one channel count on one side.
-  Index per_block(Lanes<const T> y) const {
+  Index per_block(Rows<const T> y) const {
     return positions_per_block<T>(y, shape_.out);
   }
-  Index blocks(Lanes<const T> y) const {
+  Index blocks(Rows<const T> y) const {
     const Index some = per_block(y);
     return (shape_.positions() + some - 1) / some;
   }
@@ -44,22 +44,19 @@ class Convolution {
   /// One of a sum of products, weights [out][in][tap] with x.
   struct Term {
     const T* weights;
-    Lanes<const T> x;
+    Rows<const T> x;
   };
   /// y = bias + the terms' convolutions, then `done(block, begin, end)` on each
   /// block of positions while it is in the cache. No bias: null.
   template <class F>
-  void forward(const LayerArgs<T>& at,
+  void forward(const Replay<T>& at,
                std::initializer_list<Term> terms,
                const T* bias,
-               Lanes<T> y,
+               Rows<T> y,
                F&& done) const;
   /// Of the layer's own weights and biases.
   template <class F>
-  void forward(const LayerArgs<T>& at,
-               Lanes<const T> x,
-               Lanes<T> y,
-               F&& done) const;
+  void forward(const Replay<T>& at, Rows<const T> x, Rows<T> y, F&& done) const;
 
   /// Number of partial sums a gradient is added up from: depends on the shape
   /// and the samples, not on the threads.
@@ -68,23 +65,23 @@ class Convolution {
   /// positions [begin, end), a multiple of `unit`, just before both read them.
   /// Either may be null.
   template <class F>
-  void gradients(const LayerArgs<T>& at,
-                 Lanes<const T> x,
-                 Lanes<const T> y_bar,
+  void gradients(const Replay<T>& at,
+                 Rows<const T> x,
+                 Rows<const T> y_bar,
                  Index unit,
                  T* weights_bar,
-                 Lanes<T> x_bar,
+                 Rows<T> x_bar,
                  F&& fill) const;
 
   /// Threads for the pass over this many samples, or null if it is too short.
-  Threads* threads(const LayerArgs<T>& at, Index samples) const;
+  Threads* threads(const Replay<T>& at, Index samples) const;
 
  private:
   struct Pull {
     ConvShape flipped;
     const T* packed;
-    Lanes<const T> y_bar;
-    Lanes<T> x_bar;
+    Rows<const T> y_bar;
+    Rows<T> x_bar;
   };
   void pull(const Pull& at, Index begin, Index end) const;
   void pull_inner(const Pull& at, Index begin, Index end) const;
@@ -97,7 +94,7 @@ class Convolution {
 
   ConvShape shape_;
   Index input_positions_;
-  std::vector<Run> runs_, flipped_runs_;
+  std::vector<WindowRun> runs_, flipped_runs_;
   /// Outputs of this many first and last positions may be far from their
   /// inputs; the others' largest distance is the reach.
   Index edge_ = 0, reach_ = 0;
@@ -105,19 +102,19 @@ class Convolution {
 
 template <class T>
 template <class F>
-void Convolution<T>::forward(const LayerArgs<T>& at,
-                             Lanes<const T> x,
-                             Lanes<T> y,
+void Convolution<T>::forward(const Replay<T>& at,
+                             Rows<const T> x,
+                             Rows<T> y,
                              F&& done) const {
   forward(at, {{at.parameters, x}}, at.parameters + shape_.weights(), y, done);
 }
 
 template <class T>
 template <class F>
-void Convolution<T>::forward(const LayerArgs<T>& at,
+void Convolution<T>::forward(const Replay<T>& at,
                              std::initializer_list<Term> terms,
                              const T* bias,
-                             Lanes<T> y,
+                             Rows<T> y,
                              F&& done) const {
   const Workspace::Scope scope(*at.work);
   const Index size = shape_.weights();
@@ -187,12 +184,12 @@ void Convolution<T>::pull_borders(Threads* threads,
 
 template <class T>
 template <class F>
-void Convolution<T>::gradients(const LayerArgs<T>& at,
-                               Lanes<const T> x,
-                               Lanes<const T> y_bar,
+void Convolution<T>::gradients(const Replay<T>& at,
+                               Rows<const T> x,
+                               Rows<const T> y_bar,
                                Index unit,
                                T* weights_bar,
-                               Lanes<T> x_bar,
+                               Rows<T> x_bar,
                                F&& fill) const {
   const Workspace::Scope scope(*at.work);
   const Index parts = this->parts(x.samples);

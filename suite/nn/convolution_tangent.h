@@ -6,17 +6,16 @@
 
 namespace physinv::nn {
 
-/// y_dot of x_dot and at.parameters_dot, with `done` as in `forward`.
+/// y_dot of t.x_dot and t.parameters_dot, with `done` as in `forward`.
 template <class T, class F>
 void push_convolution(const Convolution<T>& conv,
-                      const LayerArgs<T>& at,
-                      Lanes<const T> x,
-                      Lanes<const T> x_dot,
-                      Lanes<T> y_dot,
+                      const Replay<T>& at,
+                      const Tangent<T>& t,
+                      Rows<T> y_dot,
                       F&& done) {
   conv.forward(at,
-               {{at.parameters_dot, x}, {at.parameters, x_dot}},
-               at.parameters_dot + conv.shape().weights(),
+               {{t.parameters_dot, t.x}, {at.parameters, t.x_dot}},
+               t.parameters_dot + conv.shape().weights(),
                y_dot,
                done);
 }
@@ -26,9 +25,9 @@ void push_convolution(const Convolution<T>& conv,
 /// so may the pair b.x_bar, b.x_bar_dot.
 template <class T>
 void pull_convolution(const Convolution<T>& conv,
-                      const LayerArgs<T>& at,
+                      const Replay<T>& at,
                       const BackwardTangent<T>& b,
-                      Lanes<const T> y_bar,
-                      Lanes<const T> y_bar_dot);
+                      Rows<const T> y_bar,
+                      Rows<const T> y_bar_dot);
 
 }  // namespace physinv::nn

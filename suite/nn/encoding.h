@@ -10,24 +10,6 @@
 namespace physinv::nn {
 
 template <class T>
-class PositionalEncoding final : public Layer<T> {
- public:
-  PositionalEncoding(Index inputs, Index frequencies)
-      : Layer<T>(inputs, 2 * frequencies * inputs), frequencies_(frequencies) {}
-
-  void forward(const LayerArgs<T>& at,
-               Lanes<const T> x,
-               Lanes<T> y) const override;
-  void backward(const LayerArgs<T>& at, const Backward<T>& b) const override;
-  void tangent(const LayerArgs<T>& at, const Tangent<T>& t) const override;
-  void backward_tangent(const LayerArgs<T>& at,
-                        const BackwardTangent<T>& b) const override;
-
- private:
-  Index frequencies_;
-};
-
-extern template class PositionalEncoding<float>;
-extern template class PositionalEncoding<double>;
+LayerPointer<T> positional_encoding(Index inputs, Index frequencies);
 
 }  // namespace physinv::nn

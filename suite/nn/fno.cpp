@@ -21,23 +21,20 @@ namespace {
 constexpr Index kPiece = 8;
 
 template <class T>
-std::unique_ptr<Layer<T>> pointwise(Grid grid, Index in, Index out) {
-  return std::make_unique<Conv<T>>(
-      ConvOptions{.grid = grid, .in = in, .out = out, .taps = {1, 1}});
+LayerPointer<T> pointwise(Grid grid, Index in, Index out) {
+  return conv<T>({.grid = grid, .in = in, .out = out, .taps = {1, 1}});
 }
 
 /// width -> hidden, GELU, -> 1.
 template <class T>
-std::unique_ptr<Layer<T>> head(const FnoOptions& o) {
+LayerPointer<T> head(const FnoOptions& o) {
   const Index piece = std::gcd(o.grid.positions(), kPiece);
   const Grid some{piece};
-  typename PerPiece<T>::Layers inner;
+  Layers<T> inner;
   inner.push_back(pointwise<T>(some, o.width, o.hidden));
-  inner.push_back(
-      std::make_unique<ActivationLayer<T>>(Activation::gelu, piece * o.hidden));
+  inner.push_back(activation_layer<T>(Activation::gelu, piece * o.hidden));
   inner.push_back(pointwise<T>(some, o.hidden, 1));
-  return std::make_unique<PerPiece<T>>(o.grid.positions() / piece,
-                                       std::move(inner));
+  return per_piece<T>(o.grid.positions() / piece, std::move(inner));
 }
 
 template <class T>
@@ -53,19 +50,19 @@ std::unique_ptr<Network<T>> make(const FnoOptions& o,
               "width and hidden are numbers of channels, at least 1");
   SUITE_CHECK(o.padding >= 0, "padding is not negative");
   const Grid period{o.grid.columns + o.padding, o.grid.rows + o.padding};
-  typename Sequential<T>::Layers layers;
-  layers.push_back(std::make_unique<Coordinates<T>>(o.grid));
+  Layers<T> layers;
+  layers.push_back(coordinates<T>(o.grid));
   layers.push_back(pointwise<T>(o.grid, 3, o.width));
   for (Index block = 0; block < o.blocks; ++block)
-    layers.push_back(std::make_unique<SpectralBlock<T>>(SpectralOptions{
-        .from = block == 0 ? o.grid : period,
-        .to = block == o.blocks - 1 ? o.grid : period,
-        .period = period,
-        .channels = o.width,
-        .modes = o.modes,
-        .before = block == 0 ? Activation::identity : Activation::gelu}));
+    layers.push_back(spectral_block<T>(
+        {.from = block == 0 ? o.grid : period,
+         .to = block == o.blocks - 1 ? o.grid : period,
+         .period = period,
+         .channels = o.width,
+         .modes = o.modes,
+         .before = block == 0 ? Activation::identity : Activation::gelu}));
   layers.push_back(head<T>(o));
-  return std::make_unique<Sequential<T>>(std::move(layers), Init::uniform);
+  return sequential<T>(std::move(layers), Init::uniform);
 }
 
 }  // namespace

@@ -254,23 +254,21 @@ void panels(const Gemm<T>& g, Part p, Index end) {
 
 template <class T, bool kUnit>
 void rows(const Gemm<T>& g, Index begin, Index end) {
-  using Wide = Pack<T>;
-  using Narrow = NarrowPack<T>;
-  constexpr Index wide = sizeof(Wide) / sizeof(T);
-  constexpr Index narrow = sizeof(Narrow) / sizeof(T);
+  using V = Pack<T>;
+  using N = NarrowPack<T>;
+  constexpr Index wide = kLanes<T>, narrow = kNarrowLanes<T>;
   Index k0 = 0;
   do {
     const Index k1 = std::min(k0 + kDepth, g.k);
     Index j = 0;
     for (; j + 2 * wide <= g.n; j += 2 * wide)
-      panels<T, Wide, kRows2<T>, 2, kUnit>(
-          g, {begin, j, k0, k1, 2 * wide}, end);
+      panels<T, V, kRows2<T>, 2, kUnit>(g, {begin, j, k0, k1, 2 * wide}, end);
     for (; j + wide <= g.n; j += wide)
-      panels<T, Wide, kRows1, 1, kUnit>(g, {begin, j, k0, k1, wide}, end);
+      panels<T, V, kRows1, 1, kUnit>(g, {begin, j, k0, k1, wide}, end);
     for (; j + narrow <= g.n; j += narrow)
-      panels<T, Narrow, kRows1, 1, kUnit>(g, {begin, j, k0, k1, narrow}, end);
+      panels<T, N, kRows1, 1, kUnit>(g, {begin, j, k0, k1, narrow}, end);
     if (j < g.n)
-      panels<T, Narrow, kRows1, 1, kUnit, false>(
+      panels<T, N, kRows1, 1, kUnit, false>(
           g, {begin, j, k0, k1, g.n - j}, end);
     k0 = k1;
   } while (k0 < g.k);

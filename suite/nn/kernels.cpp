@@ -4,11 +4,14 @@
 
 #include "suite/nn/kernels.h"
 
-#include <benchmark/benchmark.h>
+#include <fmt/format.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstring>
-#include <memory>
+#include <functional>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "optimizers/steps/adam.h"
@@ -28,23 +31,23 @@
 namespace physinv::nn {
 namespace {
 
+using benchmark::State;
+
 // ------------------------------------------------------------ the machine
 
 template <class T>
-void machine_gemm(benchmark::State& state) {
-  const Index m = state.range(0), n = state.range(1), k = state.range(2);
-  const Batch<T> a = Batch<T>::Random(m, k), b = Batch<T>::Random(k, n);
-  Batch<T> c(m, n);
-  for (auto _ : state) {
+void machine_gemm(State& state) {
+  const ProductShape s(state);
+  const Batch<T> a = Batch<T>::Random(s.m, s.k), b = Batch<T>::Random(s.k, s.n);
+  Batch<T> c(s.m, s.n);
+  measure_flops(state, s.flops(), [&] {
     c.noalias() = a * b;
     benchmark::DoNotOptimize(c.data());
-    benchmark::ClobberMemory();
-  }
-  flops(state, products(m, n, k));
+  });
 }
 
 template <class T>
-void machine_fma(benchmark::State& state) {
+void machine_fma(State& state) {
   using V = Pack<T>;
   constexpr int kChains = 24, kSteps = 1000;  // more than latency x ports
   V chain[kChains];
@@ -58,235 +61,235 @@ void machine_fma(benchmark::State& state) {
       for (int i = 0; i < kChains; ++i) chain[i] = fma_lanes(chain[i], a, b);
     for (V& v : chain) benchmark::DoNotOptimize(v);
   }
-  flops(state, 2.0 * kSteps * kChains * kVectorBytes / sizeof(T));
+  count_rate(state, "FLOPS", 2.0 * kSteps * kChains * kLanes<T>);
 }
 
-void machine_copy(benchmark::State& state) {
+void machine_copy(State& state) {
   const std::size_t bytes = std::size_t{64} << 20;
   std::vector<char> a(bytes, 1), b(bytes, 2);
-  for (auto _ : state) {
-    std::memcpy(b.data(), a.data(), bytes);
-    benchmark::ClobberMemory();
-  }
+  measure(state, [&] { std::memcpy(b.data(), a.data(), bytes); });
   state.SetBytesProcessed(static_cast<std::int64_t>(2 * bytes) *
                           state.iterations());
 }
-
-BENCHMARK(machine_fma<float>)->Name("machine/fma<float>");
-BENCHMARK(machine_fma<double>)->Name("machine/fma<double>");
-BENCHMARK(machine_gemm<float>)
-    ->Name("machine/gemm<float>")
-    ->Args({1024, 1024, 1024})
-    ->Args({128, 128, 128})
-    ->Args({128, 8, 128});
-BENCHMARK(machine_gemm<double>)
-    ->Name("machine/gemm<double>")
-    ->Args({1024, 1024, 1024})
-    ->Args({128, 128, 128})
-    ->Args({128, 8, 128});
-BENCHMARK(machine_copy)->Name("machine/copy_64MiB");
 
 // --------------------------------------------------------------- products
 
 /// W X, with rows of W contiguous in k (forward) or in m (input gradient).
 template <class T, bool kTransposed>
-void product(benchmark::State& state) {
-  const Index m = state.range(0), n = state.range(1), k = state.range(2);
-  const Vector<T> w = Vector<T>::Random(m * k);
-  LaneBlock<T> b(k, n), c(m, n);
-  for (auto _ : state) {
-    gemm<T>({.m = m,
-             .n = b.lanes.width,
-             .k = k,
+void product(State& state) {
+  const ProductShape s(state);
+  const Vector<T> w = Vector<T>::Random(s.m * s.k);
+  RandomRows<T> b(s.k, s.n), c(s.m, s.n);
+  measure_flops(state, s.flops(), [&] {
+    gemm<T>({.m = s.m,
+             .n = b.width,
+             .k = s.k,
              .a = w.data(),
-             .a_row = kTransposed ? 1 : k,
-             .a_k = kTransposed ? m : 1,
-             .b = b.lanes.data,
-             .b_stride = b.lanes.stride,
-             .c = c.lanes.data,
-             .c_stride = c.lanes.stride});
-    benchmark::ClobberMemory();
-  }
-  flops(state, products(m, n, k));
+             .a_row = kTransposed ? 1 : s.k,
+             .a_k = kTransposed ? s.m : 1,
+             .b = b.data,
+             .b_stride = b.stride,
+             .c = c.data,
+             .c_stride = c.stride});
+  });
 }
 
 template <class T>
-void weight_product(benchmark::State& state) {
-  const Index m = state.range(0), n = state.range(1), k = state.range(2);
-  LaneBlock<T> y_bar(m, k), xt(k, n);
-  Vector<T> w(m * n);
-  for (auto _ : state) {
-    gemm<T>({.m = m,
-             .n = n,
-             .k = k,
-             .a = y_bar.lanes.data,
-             .a_row = y_bar.lanes.stride,
+void weight_product(State& state) {
+  const ProductShape s(state);
+  RandomRows<T> y_bar(s.m, s.k), xt(s.k, s.n);
+  Vector<T> w(s.m * s.n);
+  measure_flops(state, s.flops(), [&] {
+    gemm<T>({.m = s.m,
+             .n = s.n,
+             .k = s.k,
+             .a = y_bar.data,
+             .a_row = y_bar.stride,
              .a_k = 1,
-             .b = xt.lanes.data,
-             .b_stride = xt.lanes.stride,
+             .b = xt.data,
+             .b_stride = xt.stride,
              .c = w.data(),
-             .c_stride = n});
-    benchmark::ClobberMemory();
-  }
-  flops(state, products(m, n, k));
+             .c_stride = s.n});
+  });
 }
-
-void shapes(benchmark::internal::Benchmark* b) {
-  b->Args({128, 128, 128})->Args({128, 8, 128})->Args({128, 4, 128});
-  b->Args({128, 128, 32})->Args({2, 128, 128})->Args({128, 128, 2});
-}
-void weight_shapes(benchmark::internal::Benchmark* b) {
-  b->Args({128, 128, 128})->Args({128, 128, 8})->Args({128, 32, 128});
-  b->Args({2, 128, 128});
-}
-
-#define PHYSINV_BENCH(T)                                                     \
-  BENCHMARK((product<T, false>))->Name("nn/forward<" #T ">")->Apply(shapes); \
-  BENCHMARK((product<T, true>))                                              \
-      ->Name("nn/input_gradient<" #T ">")                                    \
-      ->Apply(shapes);                                                       \
-  BENCHMARK(weight_product<T>)                                               \
-      ->Name("nn/weight_gradient<" #T ">")                                   \
-      ->Apply(weight_shapes);
-PHYSINV_BENCH(float)
-PHYSINV_BENCH(double)
-#undef PHYSINV_BENCH
 
 // ----------------------------------------------------------------- layers
 
-template <class T>
-void run_layer(benchmark::State& state,
-               std::unique_ptr<Layer<T>> layer,
-               bool backward) {
+void run_layer(State& state, const Layer<float>& layer, bool backward) {
   const Index n = state.range(0);
   Index size = 0;
-  for (const TensorInfo& t : layer->tensors()) size += t.size;
-  const Vector<T> p = Vector<T>::Random(size);
-  Vector<T> p_bar(size), s(layer->state_count());
-  layer->initialize_state(s.data());
-  LaneBlock<T> x(layer->inputs(), n), y(layer->outputs(), n);
-  LaneBlock<T> y_bar(layer->outputs(), n), x_bar(layer->inputs(), n);
+  for (const TensorInfo& t : layer.tensors()) size += t.size;
+  const Vector<float> p = Vector<float>::Random(size);
+  Vector<float> p_bar(size), s(layer.state_count());
+  layer.initialize_state(s.data());
+  RandomRows<float> x(layer.inputs(), n), y(layer.outputs(), n);
+  RandomRows<float> y_bar(layer.outputs(), n), x_bar(layer.inputs(), n);
   Tape tape;
   Workspace work;
-  const LayerArgs<T> at{.parameters = p.data(),
-                        .state = s.data(),
-                        .tape = &tape,
-                        .work = &work,
-                        .training = true};
-  layer->forward(at, x.lanes, y.lanes);
-  for (auto _ : state) {
-    if (backward) {
-      layer->backward(at,
-                      {.x = x.lanes,
-                       .y = y.lanes,
-                       .y_bar = y_bar.lanes,
-                       .parameters_bar = p_bar.data(),
-                       .x_bar = x_bar.lanes});
-    } else {
-      layer->forward(at, x.lanes, y.lanes);
-    }
-    benchmark::ClobberMemory();
-  }
-  flops(state, layer->operations() * double(n) * (backward ? 2 : 1));
+  const Run<float> at({.parameters = p.data(), .work = &work, .training = true},
+                      tape,
+                      s.data());
+  layer.forward(at, x, y);
+  const double flops = layer.operations() * double(n) * (backward ? 2 : 1);
+  measure_flops(state, flops, [&] {
+    if (!backward) return layer.forward(at, x, y);
+    layer.backward(at,
+                   {.x = x,
+                    .y = y,
+                    .y_bar = y_bar,
+                    .parameters_bar = p_bar.data(),
+                    .x_bar = x_bar});
+  });
 }
 
-using Made = std::unique_ptr<Layer<float>>;
-Made linear() { return std::make_unique<Linear<float>>(128, 128); }
-Made batch_norm() { return std::make_unique<BatchNorm<float>>(128); }
-Made encoding() { return std::make_unique<PositionalEncoding<float>>(4, 4); }
-template <Activation a>
-Made activation() {
-  return std::make_unique<ActivationLayer<float>>(a, 128);
+void add_layer(std::vector<Kernel>& to,
+               std::string_view name,
+               const std::function<LayerPointer<float>()>& make) {
+  for (const bool backward : {false, true})
+    to.push_back(
+        {fmt::format("nn/layer/{}/{}", name, backward ? "backward" : "forward"),
+         {{8}, {128}},
+         [=](State& state) { run_layer(state, *make(), backward); }});
 }
-
-template <Made (*make)(), bool kBackward>
-void layer(benchmark::State& state) {
-  run_layer<float>(state, make(), kBackward);
-}
-
-#define PHYSINV_LAYER(name, make)          \
-  BENCHMARK((layer<make, false>))          \
-      ->Name("nn/layer/" name "/forward")  \
-      ->Arg(8)                             \
-      ->Arg(128);                          \
-  BENCHMARK((layer<make, true>))           \
-      ->Name("nn/layer/" name "/backward") \
-      ->Arg(8)                             \
-      ->Arg(128);
-PHYSINV_LAYER("linear", linear)
-PHYSINV_LAYER("batch_norm", batch_norm)
-PHYSINV_LAYER("encoding", encoding)
-PHYSINV_LAYER("tanh", activation<Activation::tanh>)
-PHYSINV_LAYER("softplus", activation<Activation::softplus>)
-PHYSINV_LAYER("silu", activation<Activation::silu>)
-#undef PHYSINV_LAYER
 
 // --------------------------------------------------------------- networks
 
-enum class What { forward, parameters, input, iteration, surrogate };
+/// What an iteration consists of.
+enum : unsigned {
+  kTraining = 1,
+  kSameInput = 2,
+  kFixedInput = 4,
+  kForward = 8,
+  kParameters = 16,
+  kInput = 32,
+  kAdam = 64,
+  kTangent = 128,
+  kHessian = 256,
+};
+struct Step {
+  const char* name;
+  double passes;  ///< cost in forward passes
+  unsigned what;
+};
 
-/// 4 -> encoding 32 -> 128-128-128 -> 2.
-template <class T, What what, bool kFixed>
-void network(benchmark::State& state) {
-  const Index n = state.range(0);
-  const auto net =
-      mlp({.hidden = {128, 128, 128}, .frequencies = 4}).make<T>(4, 2);
-  Vector<T> p(net->parameter_count()), p_bar(p.size()), s(0);
+constexpr Step kDenseSteps[] = {
+    {"forward", 1, kSameInput | kForward},
+    {"parameters", 2, kParameters},
+    {"input", 1, kInput},
+    {"iteration", 3, kSameInput | kForward | kParameters | kAdam},
+    {"iteration", 3, kSameInput | kFixedInput | kForward | kParameters | kAdam},
+    {"surrogate", 2, kForward | kInput}};
+
+/// As the experiments train networks on fields; then products at one point, of
+/// which only they are timed.
+constexpr Step kFieldSteps[] = {
+    {"forward", 1, kTraining | kForward},
+    {"training", 3, kTraining | kSameInput | kForward | kParameters},
+    {"input", 2, kForward | kInput},
+    {"gauss_newton", 4, kTraining | kTangent | kParameters},
+    {"hessian", 8, kTraining | kTangent | kHessian}};
+
+struct Sized {
+  const char* name;
+  Index inputs, outputs;
+  NetworkRecipe recipe;
+};
+
+template <class T>
+void run_network(State& state, const Sized& sized, const Step& step) {
+  const auto has = [what = step.what](unsigned part) { return what & part; };
+  const Index n = state.range(0), inputs = sized.inputs;
+  const auto net = sized.recipe.make<T>(inputs, sized.outputs);
+  Vector<T> p(net->parameter_count()), p_bar(p.size()), s(net->state_count());
   net->initialize(Rng::root("kernels", 0), p, s);
-  Batch<T> in = Batch<T>::Random(4, n), out(2, n), in_bar(4, n);
-  in.row(0).setConstant(T(1)), in.bottomRows(2).setConstant(T(0.5));
-  const Batch<T> out_bar = Batch<T>::Random(2, n) * T(1e-3);
-  Tape tape;
+  Batch<T> in = Batch<T>::Random(inputs, n), in_bar(inputs, n);
+  if (has(kFixedInput))
+    in.row(0).setConstant(T(1)), in.bottomRows(2).setConstant(T(0.5));
+  const Batch<T> out_bar = Batch<T>::Random(sized.outputs, n) * T(1e-3);
+  const Vector<T> p_dot = Vector<T>::Random(p.size());
+  const Batch<T> no_input(inputs, 0);
+  Batch<T> out(sized.outputs, n), out_dot(sized.outputs, n);
+  Tape tape, dots;
   Workspace work;
   Adam<T> adam({.rate = 1e-9});
   VectorOut<T> p_out(p_bar);
   BatchOut<T> in_out(in_bar);
-  Pass pass{.fixed_input = kFixed};
+  Pass pass{.training = has(kTraining) != 0,
+            .fixed_input = has(kFixedInput) != 0};
   net->forward(p, s, in, out, tape, work, pass);
-  pass.same_input = what != What::surrogate;
-  for (auto _ : state) {
-    if (what != What::parameters && what != What::input)
-      net->forward(p, s, in, out, tape, work, pass);
-    if (what == What::parameters || what == What::iteration)
-      net->backward(p, tape, out_bar, &p_out, nullptr, work);
-    if (what == What::input || what == What::surrogate)
-      net->backward(p, tape, out_bar, nullptr, &in_out, work);
-    if (what == What::iteration) adam.step(p, p_bar);
-    benchmark::ClobberMemory();
-  }
-  constexpr double passes = what == What::iteration    ? 3
-                            : what == What::parameters ? 2
-                            : what == What::surrogate  ? 2
-                                                       : 1;
-  flops(state, net->operations() * double(n) * passes);
+  pass.same_input = has(kSameInput) != 0;
+  measure_flops(state, net->operations() * double(n) * step.passes, [&] {
+    if (has(kForward)) net->forward(p, s, in, out, tape, work, pass);
+    if (has(kTangent))
+      net->tangent(p, tape, p_dot, no_input, out_dot, dots, work);
+    if (has(kParameters))
+      net->backward(
+          p, tape, has(kTangent) ? out_dot : out_bar, &p_out, nullptr, work);
+    if (has(kInput)) net->backward(p, tape, out_bar, nullptr, &in_out, work);
+    if (has(kHessian))
+      net->backward_tangent(
+          p, tape, p_dot, dots, out_bar, out_dot, nullptr, p_bar, work);
+    if (has(kAdam)) adam.step(p, p_bar);
+  });
 }
 
-void samples(benchmark::internal::Benchmark* b) {
-  b->Arg(2)->Arg(8)->Arg(32)->Arg(128);
+/// 4 -> encoding 32 -> 128-128-128 -> 2.
+template <class T>
+void add_mlp(std::vector<Kernel>& to, const char* type) {
+  const Sized sized{
+      "mlp", 4, 2, mlp({.hidden = {128, 128, 128}, .frequencies = 4})};
+  for (const Step& step : kDenseSteps)
+    to.push_back({fmt::format("nn/mlp<{}>/{}/fixed={}",
+                              type,
+                              step.name,
+                              (step.what & kFixedInput) != 0),
+                  {{2}, {8}, {32}, {128}},
+                  [=](State& state) { run_network<T>(state, sized, step); }});
 }
 
-#define PHYSINV_NETWORK(T, what, fixed)                \
-  BENCHMARK((network<T, What::what, fixed>))           \
-      ->Name("nn/mlp<" #T ">/" #what "/fixed=" #fixed) \
-      ->Apply(samples);
-#define PHYSINV_NETWORKS(T)             \
-  PHYSINV_NETWORK(T, forward, false)    \
-  PHYSINV_NETWORK(T, parameters, false) \
-  PHYSINV_NETWORK(T, input, false)      \
-  PHYSINV_NETWORK(T, iteration, false)  \
-  PHYSINV_NETWORK(T, iteration, true)   \
-  PHYSINV_NETWORK(T, surrogate, false)
-PHYSINV_NETWORKS(float)
-PHYSINV_NETWORKS(double)
-#undef PHYSINV_NETWORKS
-#undef PHYSINV_NETWORK
+template <class T>
+void add_field_network(std::vector<Kernel>& to,
+                       const char* type,
+                       const Sized& sized,
+                       std::span<const Step> steps) {
+  for (const Step& step : steps)
+    to.push_back({fmt::format("nn/{}<{}>/{}", sized.name, type, step.name),
+                  {{8}, {32}, {128}, {256}},
+                  [=](State& state) { run_network<T>(state, sized, step); }});
+}
+
+void add_field_networks(std::vector<Kernel>& to) {
+  const Index plane = 64 * 64;
+  const VggOptions packet{.channels = 1,
+                          .grid = {256},
+                          .features = {16, 16, 16, 16, 16},
+                          .hidden = {64, 32}};
+  const VggOptions ks{.channels = 2,
+                      .grid = {128},
+                      .features = {32, 32, 64, 64},
+                      .hidden = {64, 64}};
+  const UnetOptions on_plane{
+      .grid = {64, 64}, .padding = Padding::circular, .batch_statistics = true};
+  const Sized all[] = {
+      {"packet_vgg", 256, 1, vgg(packet)},
+      {"ks_vgg", 256, 2, vgg(ks)},
+      {"packet_unet", 257, 256, unet({.grid = {256}, .scalars_before = 1})},
+      {"ks_unet", 130, 128, unet({.grid = {128}, .scalars_after = 2})},
+      {"plane_unet", plane, plane, unet(on_plane)},
+      {"plane_fno", plane, plane, fno({.grid = {64, 64}})}};
+  const std::span steps(kFieldSteps);
+  for (std::size_t i = 0; i < 6; ++i)
+    add_field_network<float>(to, "float", all[i], steps.first(i == 4 ? 5 : 3));
+  for (const std::size_t i : {0, 2})
+    add_field_network<double>(to, "double", all[i], steps.subspan(1, 1));
+}
 
 // ---------------------------------------------------------- convolutions
 
 /// A convolution with 3 taps, and the same products as a plain matrix product
 /// on rows gathered before (im2col), the gathering included.
 struct Field {
-  Field(const benchmark::State& state)
+  Field(const State& state)
       : shape{.grid = {state.range(0)},
               .in = state.range(1),
               .out = state.range(2),
@@ -301,87 +304,77 @@ struct Field {
     return 2.0 * static_cast<double>(shape.weights() * shape.positions() * n);
   }
   ConvShape shape;
-  std::vector<Run> runs;
+  std::vector<WindowRun> runs;
   Index n;
-  LaneBlock<float> x, y;
+  RandomRows<float> x, y;
   Vector<float> weights, packed;
 };
 
-void conv_forward(benchmark::State& state) {
+void conv_forward(State& state) {
   Field f(state);
-  for (auto _ : state) {
+  measure_flops(state, f.flops(), [&] {
     pack_weights(f.shape, f.weights.data(), f.packed.data());
     convolve<float>(f.shape,
                     f.runs,
                     f.packed.data(),
                     nullptr,
-                    f.x.lanes,
-                    f.y.lanes,
+                    f.x,
+                    f.y,
                     0,
                     f.shape.positions());
-    benchmark::ClobberMemory();
-  }
-  flops(state, f.flops());
+  });
 }
 
-void conv_weights(benchmark::State& state) {
+void conv_weights(State& state) {
   Field f(state);
   Workspace work;
-  for (auto _ : state) {
+  measure_flops(state, f.flops(), [&] {
     const Workspace::Scope scope(work);
     const WeightSums<float> sums(f.shape, 1, true, work);
-    accumulate_weights<float>(f.shape,
-                              f.runs,
-                              f.x.lanes,
-                              f.y.lanes,
-                              0,
-                              f.shape.positions(),
-                              sums.begin(0));
+    accumulate_weights<float>(
+        f.shape, f.runs, f.x, f.y, 0, f.shape.positions(), sums.begin(0));
     sums.end(0);
     sums.finish(f.weights.data());
-    benchmark::ClobberMemory();
-  }
-  flops(state, f.flops());
+  });
 }
 
 /// One `gemm` per position on shifted rows.
-void conv_shifted_gemm(benchmark::State& state) {
+void conv_shifted_gemm(State& state) {
   Field f(state);
   const Index depth = f.shape.depth();
-  for (auto _ : state) {
+  measure_flops(state, f.flops(), [&] {
     for (Index p = 0; p < f.shape.positions(); ++p) {
       const Index skip = p == 0 ? f.shape.in : 0;
       const Index end = p + 1 == f.shape.positions() ? f.shape.in : 0;
       gemm<float>({.m = f.shape.out,
-                   .n = f.x.lanes.width,
+                   .n = f.x.width,
                    .k = depth - skip - end,
                    .a = f.weights.data() + skip,
                    .a_row = depth,
                    .a_k = 1,
-                   .b = f.x.lanes.row((p - 1) * f.shape.in + skip),
-                   .b_stride = f.x.lanes.stride,
-                   .c = f.y.lanes.row(p * f.shape.out),
-                   .c_stride = f.y.lanes.stride});
+                   .b = f.x.row((p - 1) * f.shape.in + skip),
+                   .b_stride = f.x.stride,
+                   .c = f.y.row(p * f.shape.out),
+                   .c_stride = f.y.stride});
     }
-    benchmark::ClobberMemory();
-  }
-  flops(state, f.flops());
+  });
 }
 
 /// Gathered to [channel and tap][position and sample], one product for all.
-void conv_im2col(benchmark::State& state) {
+void conv_im2col(State& state) {
   Field f(state);
-  const Index width = f.x.lanes.width, columns = f.shape.positions() * width;
+  const Index width = f.x.width, columns = f.shape.positions() * width;
   const Index depth = f.shape.depth(), in = f.shape.in;
   Batch<float> gathered = Batch<float>::Zero(columns, depth);
   Batch<float> out(columns, f.shape.out);
-  for (auto _ : state) {
+  measure_flops(state, f.flops(), [&] {
     for (Index k = 0; k < depth; ++k)
       for (Index p = 0; p < f.shape.positions(); ++p) {
         const Index from = p + k / in - 1;
         if (from < 0 || from >= f.shape.positions()) continue;
-        const float* row = f.x.lanes.row(from * in + k % in);
-        std::copy(row, row + width, gathered.col(k).data() + p * width);
+        std::copy_n(f.x.row(from * in + k % in),
+                    width,
+                    gathered.col(k).data() + p * width);
       }
     gemm<float>({.m = f.shape.out,
                  .n = columns,
@@ -393,158 +386,67 @@ void conv_im2col(benchmark::State& state) {
                  .b_stride = columns,
                  .c = out.data(),
                  .c_stride = columns});
-    benchmark::ClobberMemory();
-  }
-  flops(state, f.flops());
+  });
 }
-
-void conv_shapes(benchmark::internal::Benchmark* b) {
-  for (const std::int64_t n : {8, 128}) {
-    b->Args({256, 1, 16, n})->Args({128, 16, 16, n})->Args({16, 64, 64, n});
-    b->Args({256, 32, 16, n});
-  }
-}
-BENCHMARK(conv_forward)->Name("nn/conv/forward")->Apply(conv_shapes);
-BENCHMARK(conv_weights)->Name("nn/conv/weight_gradient")->Apply(conv_shapes);
-BENCHMARK(conv_shifted_gemm)
-    ->Name("nn/conv/forward_by_gemm_per_position")
-    ->Apply(conv_shapes);
-BENCHMARK(conv_im2col)->Name("nn/conv/forward_by_im2col")->Apply(conv_shapes);
-
-enum class Step { forward, training, input, gauss_newton, hessian };
-
-/// As the experiments train them.
-template <class T, Step step>
-void field_network(benchmark::State& state,
-                   const NetworkRecipe& recipe,
-                   Index inputs,
-                   Index outputs) {
-  const Index n = state.range(0);
-  const auto net = recipe.make<T>(inputs, outputs);
-  Vector<T> p(net->parameter_count()), p_bar(p.size()), s(net->state_count());
-  net->initialize(Rng::root("kernels", 0), p, s);
-  const Batch<T> in = Batch<T>::Random(inputs, n);
-  const Batch<T> out_bar = Batch<T>::Random(outputs, n);
-  Batch<T> out(outputs, n), in_bar(inputs, n);
-  Tape tape;
-  Workspace work;
-  VectorOut<T> p_out(p_bar);
-  BatchOut<T> in_out(in_bar);
-  Pass pass{.training = step != Step::input};
-  net->forward(p, s, in, out, tape, work, pass);
-  pass.same_input = step == Step::training;
-  // Products at one point: only they are timed.
-  constexpr bool kProduct = step == Step::gauss_newton || step == Step::hessian;
-  const Vector<T> p_dot = Vector<T>::Random(p.size());
-  const Batch<T> no_input(inputs, 0);
-  Batch<T> out_dot(outputs, n);
-  Tape dots;
-  for (auto _ : state) {
-    if (kProduct) net->tangent(p, tape, p_dot, no_input, out_dot, dots, work);
-    if (step == Step::gauss_newton)
-      net->backward(p, tape, out_dot, &p_out, nullptr, work);
-    if (step == Step::hessian)
-      net->backward_tangent(
-          p, tape, p_dot, dots, out_bar, out_dot, nullptr, p_bar, work);
-    if (kProduct) continue;
-    net->forward(p, s, in, out, tape, work, pass);
-    if (step == Step::training)
-      net->backward(p, tape, out_bar, &p_out, nullptr, work);
-    if (step == Step::input)
-      net->backward(p, tape, out_bar, nullptr, &in_out, work);
-    benchmark::ClobberMemory();
-  }
-  const double passes = step == Step::forward        ? 1
-                        : step == Step::training     ? 3
-                        : step == Step::gauss_newton ? 4
-                        : step == Step::hessian      ? 8
-                                                     : 2;
-  flops(state, net->operations() * double(n) * passes);
-}
-
-template <class T, Step step>
-void packet_vgg(benchmark::State& state) {
-  field_network<T, step>(state,
-                         vgg({.channels = 1,
-                              .grid = {256},
-                              .features = {16, 16, 16, 16, 16},
-                              .hidden = {64, 32}}),
-                         256,
-                         1);
-}
-template <class T, Step step>
-void ks_vgg(benchmark::State& state) {
-  field_network<T, step>(state,
-                         vgg({.channels = 2,
-                              .grid = {128},
-                              .features = {32, 32, 64, 64},
-                              .hidden = {64, 64}}),
-                         256,
-                         2);
-}
-template <class T, Step step>
-void packet_unet(benchmark::State& state) {
-  field_network<T, step>(
-      state, unet({.grid = {256}, .scalars_before = 1}), 257, 256);
-}
-template <class T, Step step>
-void ks_unet(benchmark::State& state) {
-  field_network<T, step>(
-      state, unet({.grid = {128}, .scalars_after = 2}), 130, 128);
-}
-template <class T, Step step>
-void plane_unet(benchmark::State& state) {
-  field_network<T, step>(state,
-                         unet({.grid = {64, 64},
-                               .padding = Padding::circular,
-                               .batch_statistics = true}),
-                         64 * 64,
-                         64 * 64);
-}
-
-template <class T, Step step>
-void plane_fno(benchmark::State& state) {
-  field_network<T, step>(state, fno({.grid = {64, 64}}), 64 * 64, 64 * 64);
-}
-
-#define PHYSINV_FIELD_NETWORK(T, name, step) \
-  BENCHMARK((name<T, Step::step>))           \
-      ->Name("nn/" #name "<" #T ">/" #step)  \
-      ->Arg(8)                               \
-      ->Arg(32)                              \
-      ->Arg(128)                             \
-      ->Arg(256);
-#define PHYSINV_FIELD_NETWORKS(T, name)    \
-  PHYSINV_FIELD_NETWORK(T, name, forward)  \
-  PHYSINV_FIELD_NETWORK(T, name, training) \
-  PHYSINV_FIELD_NETWORK(T, name, input)
-PHYSINV_FIELD_NETWORKS(float, packet_vgg)
-PHYSINV_FIELD_NETWORKS(float, ks_vgg)
-PHYSINV_FIELD_NETWORKS(float, packet_unet)
-PHYSINV_FIELD_NETWORKS(float, ks_unet)
-PHYSINV_FIELD_NETWORKS(float, plane_unet)
-PHYSINV_FIELD_NETWORK(float, plane_unet, gauss_newton)
-PHYSINV_FIELD_NETWORK(float, plane_unet, hessian)
-PHYSINV_FIELD_NETWORKS(float, plane_fno)
-PHYSINV_FIELD_NETWORK(double, packet_vgg, training)
-PHYSINV_FIELD_NETWORK(double, packet_unet, training)
-#undef PHYSINV_FIELD_NETWORKS
-#undef PHYSINV_FIELD_NETWORK
 
 template <class T>
-void adam_step(benchmark::State& state) {
+void adam_step(State& state) {
   Vector<T> x = Vector<T>::Random(37506);
   const Vector<T> g = Vector<T>::Random(x.size());
   Adam<T> adam;
-  for (auto _ : state) {
-    adam.step(x, g);
-    benchmark::ClobberMemory();
-  }
+  measure(state, [&] { adam.step(x, g); });
   state.SetBytesProcessed(state.iterations() * x.size() *
                           static_cast<std::int64_t>(7 * sizeof(T)));
 }
-BENCHMARK(adam_step<float>)->Name("steps/adam<float>/37506");
-BENCHMARK(adam_step<double>)->Name("steps/adam<double>/37506");
+
+// ------------------------------------------------------------- the table
+
+template <class T>
+void add_products(std::vector<Kernel>& to, const std::string& type) {
+  to.push_back({"nn/forward" + type, kProductShapes, product<T, false>});
+  to.push_back({"nn/input_gradient" + type, kProductShapes, product<T, true>});
+  to.push_back({"nn/weight_gradient" + type,
+                {{128, 128, 128}, {128, 128, 8}, {128, 32, 128}, {2, 128, 128}},
+                weight_product<T>});
+}
+
+std::vector<Kernel> all() {
+  const std::vector<std::vector<std::int64_t>> square = {
+      {1024, 1024, 1024}, {128, 128, 128}, {128, 8, 128}};
+  std::vector<Kernel> all = {
+      {"machine/fma<float>", {}, machine_fma<float>},
+      {"machine/fma<double>", {}, machine_fma<double>},
+      {"machine/gemm<float>", square, machine_gemm<float>},
+      {"machine/gemm<double>", square, machine_gemm<double>},
+      {"machine/copy_64MiB", {}, machine_copy}};
+  add_products<float>(all, "<float>");
+  add_products<double>(all, "<double>");
+  add_layer(all, "linear", [] { return linear<float>(128, 128); });
+  add_layer(all, "batch_norm", [] { return batch_norm<float>(128); });
+  add_layer(all, "encoding", [] { return positional_encoding<float>(4, 4); });
+  for (const Activation a :
+       {Activation::tanh, Activation::softplus, Activation::silu})
+    add_layer(
+        all, to_string(a), [=] { return activation_layer<float>(a, 128); });
+  add_mlp<float>(all, "float");
+  add_mlp<double>(all, "double");
+  std::vector<std::vector<std::int64_t>> fields;
+  for (const std::int64_t n : {8, 128})
+    fields.insert(
+        fields.end(),
+        {{256, 1, 16, n}, {128, 16, 16, n}, {16, 64, 64, n}, {256, 32, 16, n}});
+  all.push_back({"nn/conv/forward", fields, conv_forward});
+  all.push_back({"nn/conv/weight_gradient", fields, conv_weights});
+  all.push_back(
+      {"nn/conv/forward_by_gemm_per_position", fields, conv_shifted_gemm});
+  all.push_back({"nn/conv/forward_by_im2col", fields, conv_im2col});
+  add_field_networks(all);
+  all.push_back({"steps/adam<float>/37506", {}, adam_step<float>});
+  all.push_back({"steps/adam<double>/37506", {}, adam_step<double>});
+  return all;
+}
+
+const bool kAdded = add_kernels(all());
 
 }  // namespace
 }  // namespace physinv::nn

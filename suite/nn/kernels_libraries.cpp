@@ -2,10 +2,9 @@
 // by oneDNN in whatever order of memory it likes best, small matrices by
 // libxsmm. Rows that the build links a library for (PHYSINV_BENCH_DNNL,
 // PHYSINV_BENCH_XSMM). One thread.
-#include <benchmark/benchmark.h>
-
 #include <unordered_map>
 #include <utility>
+#include <vector>
 
 #include "suite/core/workspace.h"
 #include "suite/nn/conv.h"
@@ -22,9 +21,11 @@ extern "C" void omp_set_num_threads(int count);
 namespace physinv::nn {
 namespace {
 
+using benchmark::State;
+
 /// height x width, channels in and out, samples: layers of the U-nets.
 struct ConvShape {
-  explicit ConvShape(const benchmark::State& state)
+  explicit ConvShape(const State& state)
       : height(state.range(0)),
         width(state.range(1)),
         in(state.range(2)),
@@ -32,55 +33,40 @@ struct ConvShape {
         n(state.range(4)) {}
   Index height, width, in, out, n;
 
-  /// Products of one pass, the border's taps included.
-  void count(benchmark::State& state) const {
-    flops(state, products(out, height * width * n, 9 * in));
+  /// Of one pass, the border's taps included.
+  double flops() const {
+    return 2.0 * static_cast<double>(out * height * width * n * 9 * in);
   }
 };
-
-void planes(benchmark::internal::Benchmark* b) {
-  for (const std::int64_t n : {8, 128}) {
-    b->Args({64, 64, 16, 16, n})->Args({32, 32, 16, 16, n});
-    b->Args({64, 64, 32, 16, n})->Args({16, 16, 16, 16, n});
-  }
-}
 
 enum class Which { forward, weights, input };
 
 template <Which pass>
-void own(benchmark::State& state) {
+void own(State& state) {
   const ConvShape shape(state);
-  const Conv<float> layer({.grid = {shape.height, shape.width},
-                           .in = shape.in,
-                           .out = shape.out,
-                           .taps = {3, 3}});
-  const Index inputs = layer.inputs(), outputs = layer.outputs();
-  LaneBlock<float> x(inputs, shape.n), x_bar(inputs, shape.n);
-  LaneBlock<float> y(outputs, shape.n), y_bar(outputs, shape.n);
+  const auto layer = conv<float>({.grid = {shape.height, shape.width},
+                                  .in = shape.in,
+                                  .out = shape.out,
+                                  .taps = {3, 3}});
+  const Index inputs = layer->inputs(), outputs = layer->outputs();
+  RandomRows<float> x(inputs, shape.n), x_bar(inputs, shape.n);
+  RandomRows<float> y(outputs, shape.n), y_bar(outputs, shape.n);
   Index weights = 0;
-  for (const TensorInfo& t : layer.tensors()) weights += t.size;
+  for (const TensorInfo& t : layer->tensors()) weights += t.size;
   const Vector<float> p = Vector<float>::Random(weights);
   Vector<float> p_bar(weights);
   Workspace work;
   Tape tape;
-  const LayerArgs<float> at{
-      .parameters = p.data(), .tape = &tape, .work = &work, .training = true};
-  layer.forward(at, x.lanes, y.lanes);
-  Backward<float> b{.x = x.lanes, .y = y.lanes, .y_bar = y_bar.lanes};
+  const Run<float> at(
+      {.parameters = p.data(), .work = &work, .training = true}, tape, nullptr);
+  layer->forward(at, x, y);
+  Backward<float> b{.x = x, .y = y, .y_bar = y_bar};
   if (pass == Which::weights) b.parameters_bar = p_bar.data();
-  if (pass == Which::input) b.x_bar = x_bar.lanes;
-  for (auto _ : state) {
-    if (pass == Which::forward)
-      layer.forward(at, x.lanes, y.lanes);
-    else
-      layer.backward(at, b);
-    benchmark::ClobberMemory();
-  }
-  shape.count(state);
+  if (pass == Which::input) b.x_bar = x_bar;
+  measure_flops(state, shape.flops(), [&] {
+    pass == Which::forward ? layer->forward(at, x, y) : layer->backward(at, b);
+  });
 }
-BENCHMARK(own<Which::forward>)->Name("nn/plane/forward")->Apply(planes);
-BENCHMARK(own<Which::weights>)->Name("nn/plane/weight_gradient")->Apply(planes);
-BENCHMARK(own<Which::input>)->Name("nn/plane/input_gradient")->Apply(planes);
 
 #ifdef PHYSINV_BENCH_DNNL
 
@@ -143,7 +129,7 @@ auto primitive(const dnnl::engine& engine, const ConvMemory& m, Make make)
 }
 
 template <Which pass>
-void onednn(benchmark::State& state) {
+void onednn(State& state) {
   omp_set_num_threads(1);
   const ConvShape shape(state);
   const dnnl::engine engine(dnnl::engine::kind::cpu, 0);
@@ -155,53 +141,64 @@ void onednn(benchmark::State& state) {
     Eigen::Map<Vector<float>>(numbers, count).setRandom();
     return m;
   };
-  const auto [run, arguments] =
-      primitive<pass>(engine, ConvMemory(shape), random);
-  for (auto _ : state) {
-    run.execute(stream, arguments);
+  const auto made = primitive<pass>(engine, ConvMemory(shape), random);
+  measure_flops(state, shape.flops(), [&] {
+    made.first.execute(stream, made.second);
     stream.wait();
-  }
-  shape.count(state);
+  });
 }
-BENCHMARK(onednn<Which::forward>)->Name("nn/onednn/forward")->Apply(planes);
-BENCHMARK(onednn<Which::weights>)
-    ->Name("nn/onednn/weight_gradient")
-    ->Apply(planes);
-BENCHMARK(onednn<Which::input>)
-    ->Name("nn/onednn/input_gradient")
-    ->Apply(planes);
 
 #endif
 #ifdef PHYSINV_BENCH_XSMM
 
 /// C = A B, column-major, of the shapes of nn/forward.
-void xsmm(benchmark::State& state) {
-  const auto m = static_cast<int>(state.range(0)),
-             n = static_cast<int>(state.range(1)),
-             k = static_cast<int>(state.range(2));
+void xsmm(State& state) {
+  const ProductShape s(state);
   // Ours have samples contiguous: their product is this one's transpose.
-  const auto kernel = libxsmm_smmdispatch(
-      n, m, k, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr);
+  const auto kernel = libxsmm_smmdispatch(static_cast<int>(s.n),
+                                          static_cast<int>(s.m),
+                                          static_cast<int>(s.k),
+                                          nullptr,
+                                          nullptr,
+                                          nullptr,
+                                          nullptr,
+                                          nullptr,
+                                          nullptr,
+                                          nullptr);
   if (kernel == nullptr) return state.SkipWithError("no kernel of this shape");
-  const Batch<float> x = Batch<float>::Random(n, k);
-  const Batch<float> w = Batch<float>::Random(k, m);
-  Batch<float> y = Batch<float>::Zero(n, m);
-  for (auto _ : state) {
-    kernel(x.data(), w.data(), y.data());
-    benchmark::ClobberMemory();
-  }
-  flops(state, products(m, n, k));
+  const Batch<float> x = Batch<float>::Random(s.n, s.k);
+  const Batch<float> w = Batch<float>::Random(s.k, s.m);
+  Batch<float> y = Batch<float>::Zero(s.n, s.m);
+  measure_flops(
+      state, s.flops(), [&] { kernel(x.data(), w.data(), y.data()); });
 }
-BENCHMARK(xsmm)
-    ->Name("nn/libxsmm/forward<float>")
-    ->Args({128, 128, 128})
-    ->Args({128, 8, 128})
-    ->Args({128, 4, 128})
-    ->Args({128, 128, 32})
-    ->Args({2, 128, 128})
-    ->Args({128, 128, 2});
 
 #endif
+
+std::vector<Kernel> all() {
+  std::vector<std::vector<std::int64_t>> planes;
+  for (const std::int64_t n : {8, 128})
+    planes.insert(planes.end(),
+                  {{64, 64, 16, 16, n},
+                   {32, 32, 16, 16, n},
+                   {64, 64, 32, 16, n},
+                   {16, 16, 16, 16, n}});
+  return {
+      {"nn/plane/forward", planes, own<Which::forward>},
+      {"nn/plane/weight_gradient", planes, own<Which::weights>},
+      {"nn/plane/input_gradient", planes, own<Which::input>},
+#ifdef PHYSINV_BENCH_DNNL
+      {"nn/onednn/forward", planes, onednn<Which::forward>},
+      {"nn/onednn/weight_gradient", planes, onednn<Which::weights>},
+      {"nn/onednn/input_gradient", planes, onednn<Which::input>},
+#endif
+#ifdef PHYSINV_BENCH_XSMM
+      {"nn/libxsmm/forward<float>", kProductShapes, xsmm},
+#endif
+  };
+}
+
+const bool kAdded = add_kernels(all());
 
 }  // namespace
 }  // namespace physinv::nn

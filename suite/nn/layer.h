@@ -1,13 +1,12 @@
-/// A layer: a pure function on lanes, and its reverse.
+/// A layer: a pure function on rows, and its reverse.
 ///
 /// A layer owns no numbers. Parameters, state, tape slots and scratch come
 /// with each call, so one object serves any number of threads and vectors.
 ///
 /// How more fits in without touching what is there:
-///  - Fields: between `FieldInput` and `Flatten` rows are [position][channel]
+///  - Fields: between `field_input` and `flatten` rows are [position][channel]
 ///    (window.h); everything element-wise works as it is.
-///  - Composite layers own inner layers, add up their tensors and slots, and
-///    keep what runs between them in tape slots of their own (skip.h).
+///  - Composite layers own inner layers as a `Chain` (chain.h).
 ///  - Forward mode and its reverse: `tangent` and `backward_tangent`, with
 ///    defaults that report the lack; they read the same tape and keep what they
 ///    share on one of their own, slot by slot its derivative. A layer that
@@ -18,56 +17,41 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstdint>
-#include <string>
-#include <string_view>
+#include <memory>
 #include <vector>
 
 #include "suite/core/check.h"
 #include "suite/core/network.h"
 #include "suite/core/threads.h"
-#include "suite/nn/lanes.h"
+#include "suite/nn/kinds.h"
 #include "suite/nn/layer_rows.h"
+#include "suite/nn/rows.h"
 
 namespace physinv::nn {
 
-enum class Activation : std::uint8_t {
-  identity,
-  relu,
-  tanh,
-  sigmoid,
-  softplus,
-  silu,       ///< z sigma(z)
-  half_tanh,  ///< tanh(z / 2) = 2 sigma(z) - 1
-  gelu,       ///< z Phi(z), Phi the normal distribution
-};
-std::string_view to_string(Activation a);
-
-/// How weights are drawn, uniform within +-bound; biases and offsets start at
-/// 0, scales at 1. Tensors with a range of their own (TensorInfo) keep it.
-enum class Init : std::uint8_t {
-  fan_in,   ///< bound 1 / sqrt(fan_in)
-  glorot,   ///< bound sqrt(6 / (fan_in + fan_out)), Keras' default
-  uniform,  ///< weights and biases as fan_in, PyTorch's default
-  he,       ///< bound sqrt(6 / fan_in), for ReLU
-};
-
-std::string_view to_string(Init init);
-
-/// Everything a layer uses beside its input and output.
+/// What a layer uses beside its input and output: where its numbers are, and
+/// what a pass has left on the tape.
 template <class T>
-struct LayerArgs {
+struct Replay {
   const T* parameters = nullptr;  ///< this layer's part of the flat vector
-  const T* state = nullptr;       ///< this layer's part; null in backward
-  Tape* tape = nullptr;
+  const Tape* tape = nullptr;
   std::size_t slot = 0;  ///< first of this layer's `slots()` tape slots
   Workspace* work = nullptr;
-  const T* parameters_dot = nullptr;  ///< in tangents: the direction
-  Tape* dots = nullptr;               ///< derivatives of the tape's slots
   bool training = false;
   /// The first `leading` and last `trailing` input rows are constant over the
   /// batch; a layer may fold them or ignore this.
   Index leading = 0, trailing = 0;
+};
+
+/// The same in the pass that fills the tape.
+template <class T>
+struct Run : Replay<T> {
+  Run(const Replay<T>& at, Tape& fills, const T* reads)
+      : Replay<T>(at), tape(&fills), state(reads) {
+    Replay<T>::tape = tape;
+  }
+  Tape* tape;
+  const T* state;  ///< this layer's part
 };
 
 /// The activation in front of a layer: its derivative at the stored output
@@ -75,16 +59,16 @@ struct LayerArgs {
 template <class T>
 struct Gate {
   Activation activation = Activation::identity;
-  Lanes<const T> y = {};
+  Rows<const T> y = {};
 };
 
 /// One layer's step back. y_bar already carries the derivative of the
 /// activation the layer has taken in; x_bar leaves with that of `gate`.
 template <class T>
 struct Backward {
-  Lanes<const T> x, y, y_bar;
+  Rows<const T> x, y, y_bar;
   T* parameters_bar = nullptr;  ///< overwritten; null: not wanted
-  Lanes<T> x_bar = {};          ///< overwritten; null: not wanted
+  Rows<T> x_bar = {};           ///< overwritten; null: not wanted
   Gate<T> gate = {};
 };
 
@@ -93,8 +77,10 @@ struct Backward {
 /// are finite.
 template <class T>
 struct Tangent {
-  Lanes<const T> x, y, x_dot;
-  Lanes<T> y_dot = {};
+  Rows<const T> x, y, x_dot;
+  Rows<T> y_dot = {};
+  const T* parameters_dot = nullptr;  ///< the direction
+  Tape* dots = nullptr;               ///< derivatives of the tape's slots
 };
 
 /// One layer's step back and its derivative along the direction of the last
@@ -102,10 +88,12 @@ struct Tangent {
 /// derivative of any gate.
 template <class T>
 struct BackwardTangent {
-  Lanes<const T> x, y, x_dot, y_dot, y_bar, y_bar_dot;
-  T* parameters_bar = nullptr;      ///< overwritten; null: not wanted
-  T* parameters_bar_dot = nullptr;  ///< overwritten; there as soon as tensors
-  Lanes<T> x_bar = {}, x_bar_dot = {};  ///< overwritten; null: not wanted
+  Rows<const T> x, y, x_dot, y_dot, y_bar, y_bar_dot;
+  const T* parameters_dot = nullptr;  ///< the direction
+  const Tape* dots = nullptr;         ///< as `tangent` left them
+  T* parameters_bar = nullptr;        ///< overwritten; null: not wanted
+  T* parameters_bar_dot = nullptr;    ///< overwritten; there as soon as tensors
+  Rows<T> x_bar = {}, x_bar_dot = {};  ///< overwritten; null: not wanted
 
   Backward<T> base() const {
     return {.x = x,
@@ -114,13 +102,21 @@ struct BackwardTangent {
             .parameters_bar = parameters_bar,
             .x_bar = x_bar};
   }
+  /// The same step with the derivative's cotangents.
+  Backward<T> base_dot() const {
+    return {.x = x,
+            .y = y,
+            .y_bar = y_bar_dot,
+            .parameters_bar = parameters_bar_dot,
+            .x_bar = x_bar_dot};
+  }
 };
 
 /// f(begin, end) on blocks of `count` rows or positions, of `numbers` each,
 /// over the threads: for passes that store every number once, so that no bit
 /// depends on the blocks.
 template <class T, class F>
-void for_rows(const LayerArgs<T>& at, Index count, Index numbers, F&& f) {
+void for_rows(const Replay<T>& at, Index count, Index numbers, F&& f) {
   constexpr Index kNumbers = 16384;  // some 10 us
   const Index some = std::max<Index>(1, kNumbers / numbers);
   for_blocks(
@@ -149,27 +145,24 @@ class Layer {
   virtual const Activation* pure_activation() const { return nullptr; }
   /// Takes a following activation into its own store, if it can.
   virtual bool fuse(Activation) { return false; }
-  /// Whether it makes use of `LayerArgs::leading` and `trailing`.
+  /// Whether it makes use of `Replay::leading` and `trailing`.
   virtual bool folds_constants() const { return false; }
   /// The activation taken in.
   virtual Activation fused() const { return Activation::identity; }
 
-  virtual void forward(const LayerArgs<T>& at,
-                       Lanes<const T> x,
-                       Lanes<T> y) const = 0;
-  virtual void backward(const LayerArgs<T>& at, const Backward<T>& b) const = 0;
-  virtual void tangent(const LayerArgs<T>& /*at*/,
-                       const Tangent<T>& /*t*/) const {
+  virtual void forward(const Run<T>& at, Rows<const T> x, Rows<T> y) const = 0;
+  virtual void backward(const Replay<T>& at, const Backward<T>& b) const = 0;
+  virtual void tangent(const Replay<T>& /*at*/, const Tangent<T>& /*t*/) const {
     SUITE_CHECK(false, "this layer has no forward mode");
   }
-  virtual void backward_tangent(const LayerArgs<T>& /*at*/,
+  virtual void backward_tangent(const Replay<T>& /*at*/,
                                 const BackwardTangent<T>& /*b*/) const {
     SUITE_CHECK(false, "this layer has no products with its Hessian");
   }
   /// Appends its columns of a stacked Jacobian: see RowJacobian. x
   /// has the samples, y_bar the rows.
-  virtual void add_rows(Lanes<const T> /*x*/,
-                        Lanes<const T> /*y_bar*/,
+  virtual void add_rows(Rows<const T> /*x*/,
+                        Rows<const T> /*y_bar*/,
                         Index /*offset*/,
                         std::vector<LayerRows<T>>&) const {
     SUITE_CHECK(tensors().empty(), "this layer gives no rows");
@@ -190,5 +183,10 @@ class Layer {
  private:
   Index inputs_, outputs_;
 };
+
+template <class T>
+using LayerPointer = std::unique_ptr<Layer<T>>;
+template <class T>
+using Layers = std::vector<LayerPointer<T>>;
 
 }  // namespace physinv::nn

@@ -21,26 +21,24 @@ std::unique_ptr<Network<T>> make(const MlpOptions& o,
                                  Index outputs) {
   SUITE_CHECK(all_positive(o.hidden), "a hidden layer has at least 1 feature");
   SUITE_CHECK(o.frequencies >= 0, "frequencies are a number from 0 on");
-  typename Sequential<T>::Layers layers;
+  Layers<T> layers;
   Index size = inputs;
   const auto add = [&](auto layer) {
     size = layer->outputs();
     layers.push_back(std::move(layer));
   };
   const auto add_activation = [&](Activation a) {
-    if (a != Activation::identity)
-      add(std::make_unique<ActivationLayer<T>>(a, size));
+    if (a != Activation::identity) add(activation_layer<T>(a, size));
   };
-  if (o.frequencies > 0)
-    add(std::make_unique<PositionalEncoding<T>>(size, o.frequencies));
+  if (o.frequencies > 0) add(positional_encoding<T>(size, o.frequencies));
   for (const Index width : o.hidden) {
-    add(std::make_unique<Linear<T>>(size, width));
+    add(linear<T>(size, width));
     add_activation(o.activation);
-    if (o.batch_norm) add(std::make_unique<BatchNorm<T>>(size));
+    if (o.batch_norm) add(batch_norm<T>(size));
   }
-  add(std::make_unique<Linear<T>>(size, outputs));
+  add(linear<T>(size, outputs));
   add_activation(o.output);
-  return std::make_unique<Sequential<T>>(std::move(layers), o.init);
+  return sequential<T>(std::move(layers), o.init);
 }
 
 UnusedIncludes unused(const MlpOptions& o) {

@@ -12,9 +12,9 @@ namespace physinv::nn {
 
 /// The lanes of a row's last vector that hold samples.
 template <class T>
-struct LaneMask {
+struct SampleMask {
   using V = NarrowPack<T>;
-  explicit LaneMask(Index samples)
+  explicit SampleMask(Index samples)
       : full(samples / kNarrowLanes<T> * kNarrowLanes<T>) {
     V lane{};
     for (Index l = 0; l < kNarrowLanes<T>; ++l) lane[l] = static_cast<T>(l);

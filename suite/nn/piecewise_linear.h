@@ -12,15 +12,13 @@ class PiecewiseLinear : public Layer<T> {
  public:
   using Layer<T>::Layer;
 
-  void tangent(const LayerArgs<T>& at, const Tangent<T>& t) const override {
-    this->forward(at, t.x_dot, t.y_dot);
+  void tangent(const Replay<T>& at, const Tangent<T>& t) const override {
+    this->forward({at, *t.dots, nullptr}, t.x_dot, t.y_dot);
   }
-  void backward_tangent(const LayerArgs<T>& at,
+  void backward_tangent(const Replay<T>& at,
                         const BackwardTangent<T>& b) const override {
-    Backward<T> step = b.base();
-    this->backward(at, step);
-    step.y_bar = b.y_bar_dot, step.x_bar = b.x_bar_dot;
-    this->backward(at, step);
+    this->backward(at, b.base());
+    this->backward(at, b.base_dot());
   }
 };
 

@@ -29,48 +29,45 @@ class Builder {
     if (!o_.pool_first) pool();
   }
   void flatten() {
-    add<Flatten<T>>(grid_.positions(), channels_);
+    add(nn::flatten<T>(grid_.positions(), channels_));
     channels_ *= grid_.positions();
   }
   void dense(Index width, Activation activation) {
-    add<Linear<T>>(channels_, width);
+    add(linear<T>(channels_, width));
     if (activation != Activation::identity)
-      add<ActivationLayer<T>>(activation, width);
+      add(activation_layer<T>(activation, width));
     channels_ = width;
   }
   std::unique_ptr<Network<T>> network() {
-    return std::make_unique<Sequential<T>>(std::move(layers_), o_.init);
+    return sequential<T>(std::move(layers_), o_.init);
   }
 
  private:
-  template <class L, class... Args>
-  void add(Args&&... args) {
-    layers_.push_back(std::make_unique<L>(std::forward<Args>(args)...));
-  }
+  void add(LayerPointer<T> layer) { layers_.push_back(std::move(layer)); }
   void pool() {
-    add<MaxPool<T>>(grid_, channels_);
+    add(max_pool<T>(grid_, channels_));
     grid_ = halved(grid_);
   }
   void convolve(Index width) {
-    const ConvOptions conv{.grid = grid_,
-                           .in = channels_,
-                           .out = width,
-                           .taps = {3, 1},
-                           .padding = o_.padding,
-                           .batch_statistics = o_.batch_norm};
+    const ConvOptions options{.grid = grid_,
+                              .in = channels_,
+                              .out = width,
+                              .taps = {3, 1},
+                              .padding = o_.padding,
+                              .batch_statistics = o_.batch_norm};
     channels_ = width;
     if (o_.batch_norm) {
-      add<ConvBlock<T>>(conv, Activation::relu, false);
+      add(conv_block<T>(options, Activation::relu, false));
     } else {
-      add<Conv<T>>(conv);
-      add<ActivationLayer<T>>(Activation::relu, grid_.positions() * width);
+      add(conv<T>(options));
+      add(activation_layer<T>(Activation::relu, grid_.positions() * width));
     }
   }
 
   const PooledCnnOptions& o_;
   Grid grid_;
   Index channels_ = 1;
-  typename Sequential<T>::Layers layers_;
+  Layers<T> layers_;
 };
 
 template <class T>

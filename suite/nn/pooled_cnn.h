@@ -19,7 +19,7 @@
 
 #include "suite/core/network.h"
 #include "suite/nn/grid.h"
-#include "suite/nn/layer.h"
+#include "suite/nn/kinds.h"
 
 namespace physinv::nn {
 

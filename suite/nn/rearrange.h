@@ -21,76 +21,19 @@ struct FieldInputOptions {
 };
 
 template <class T>
-class FieldInput final : public PiecewiseLinear<T> {
- public:
-  explicit FieldInput(const FieldInputOptions& options);
-
-  void forward(const LayerArgs<T>& at,
-               Lanes<const T> x,
-               Lanes<T> y) const override;
-  void backward(const LayerArgs<T>& at, const Backward<T>& b) const override;
-  void tangent(const LayerArgs<T>& at, const Tangent<T>& t) const override;
-
- private:
-  FieldInputOptions o_;
-};
+LayerPointer<T> field_input(const FieldInputOptions& options);
 
 /// One channel -> [position](value, row, column), the coordinates from 0 to 1
 /// over the grid.
 template <class T>
-class Coordinates final : public Layer<T> {
- public:
-  explicit Coordinates(Grid grid)
-      : Layer<T>(grid.positions(), 3 * grid.positions()), grid_(grid) {}
-
-  void forward(const LayerArgs<T>& at,
-               Lanes<const T> x,
-               Lanes<T> y) const override;
-  void backward(const LayerArgs<T>& at, const Backward<T>& b) const override;
-  void tangent(const LayerArgs<T>& at, const Tangent<T>& t) const override;
-  void backward_tangent(const LayerArgs<T>& at,
-                        const BackwardTangent<T>& b) const override;
-
- private:
-  Grid grid_;
-};
+LayerPointer<T> coordinates(Grid grid);
 
 /// [position][channel] -> [channel][position], without the first `hidden` of
 /// the grid's columns.
 template <class T>
-class Flatten final : public PiecewiseLinear<T> {
- public:
-  Flatten(Index positions, Index channels, Index columns = 1, Index hidden = 0)
-      : PiecewiseLinear<T>(positions * channels,
-                           positions / columns * (columns - hidden) * channels),
-        positions_(positions),
-        channels_(channels),
-        columns_(columns),
-        hidden_(hidden) {}
-
-  void forward(const LayerArgs<T>& at,
-               Lanes<const T> x,
-               Lanes<T> y) const override;
-  void backward(const LayerArgs<T>& at, const Backward<T>& b) const override;
-
- private:
-  /// f(position, place among those that are left).
-  template <class F>
-  void each_left(F&& f) const {
-    Index left = 0;
-    for (Index p = 0; p < positions_; ++p)
-      if (p % columns_ >= hidden_) f(p, left++);
-  }
-  Index left() const { return this->outputs() / channels_; }
-
-  Index positions_, channels_, columns_, hidden_;
-};
-
-extern template class FieldInput<float>;
-extern template class FieldInput<double>;
-extern template class Coordinates<float>;
-extern template class Coordinates<double>;
-extern template class Flatten<float>;
-extern template class Flatten<double>;
+LayerPointer<T> flatten(Index positions,
+                        Index channels,
+                        Index columns = 1,
+                        Index hidden = 0);
 
 }  // namespace physinv::nn

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
+#include <vector>
 
 #include "suite/core/check.h"
 #include "suite/nn/activation.h"
@@ -62,7 +64,7 @@ struct Shares {
 };
 
 template <class T, class F>
-void each_position(const LayerArgs<T>& at, Grid grid, Index numbers, F&& f) {
+void each_position(const Replay<T>& at, Grid grid, Index numbers, F&& f) {
   for_rows(at, grid.positions(), numbers, [&](Index begin, Index end) {
     for (Index p = begin; p < end; ++p) f(p);
   });
@@ -70,11 +72,8 @@ void each_position(const LayerArgs<T>& at, Grid grid, Index numbers, F&& f) {
 
 /// f(output row, its 2 or 4 input rows) of every pooling cell.
 template <class T, class F>
-void each_output(const LayerArgs<T>& at,
-                 Lanes<const T> y,
-                 Grid grid,
-                 Index channels,
-                 F&& f) {
+void each_output(
+    const Replay<T>& at, Rows<const T> y, Grid grid, Index channels, F&& f) {
   const auto cells = [&]<int N>() {
     for_rows(at, y.rows, y.stride, [&](Index begin, Index end) {
       for (Index i = begin; i < end;) {
@@ -102,136 +101,155 @@ void check_axis(Index n, Index m) {
               "upsampling doubles an axis, plus one at most");
 }
 
+template <class T>
+class MaxPool final : public PiecewiseLinear<T> {
+ public:
+  /// `grid` is that of the input.
+  MaxPool(Grid grid, Index channels)
+      : PiecewiseLinear<T>(grid.positions() * channels,
+                           halved(grid).positions() * channels),
+        grid_(grid),
+        channels_(channels) {}
+
+  void forward(const Run<T>& at, Rows<const T> x, Rows<T> y) const override {
+    each_output<T>(at, y, grid_, channels_, [&](Index i, const auto& rows) {
+      for (Index j = 0; j < x.width; j += kNarrowLanes<T>) {
+        V<T> top = load<V<T>>(x.row(rows[0]) + j);
+        for (std::size_t k = 1; k < rows.size(); ++k) {
+          const V<T> v = load<V<T>>(x.row(rows[k]) + j);
+          top = ((top >= v) | (top != top)) ? top : v;  // keeps NaN
+        }
+        store(y.row(i) + j, top);
+      }
+    });
+  }
+
+  void backward(const Replay<T>& at, const Backward<T>& b) const override {
+    if (!b.x_bar) return;
+    if (grid_.columns % 2 != 0 || (!grid_.flat() && grid_.rows % 2 != 0))
+      std::fill_n(b.x_bar.data, b.x_bar.rows * b.x_bar.stride, T(0));
+    each_output<T>(at, b.y, grid_, channels_, [&](Index i, const auto& rows) {
+      for (Index j = 0; j < b.x.width; j += kNarrowLanes<T>) {
+        const V<T> top = load<V<T>>(b.y.row(i) + j);
+        V<T> rest = load<V<T>>(b.y_bar.row(i) + j);
+        for (const Index row : rows) {
+          const auto here = load<V<T>>(b.x.row(row) + j) == top;
+          store(b.x_bar.row(row) + j, here ? rest : V<T>{});
+          rest = here ? V<T>{} : rest;
+        }
+      }
+    });
+    apply_gate(b.gate, b.x_bar);
+  }
+
+  void tangent(const Replay<T>& at, const Tangent<T>& t) const override {
+    each_output<T>(at, t.y, grid_, channels_, [&](Index i, const auto& rows) {
+      for (Index j = 0; j < t.x.width; j += kNarrowLanes<T>) {
+        const V<T> top = load<V<T>>(t.y.row(i) + j);
+        V<T> dot{};
+        for (std::size_t k = rows.size(); k-- > 0;) {
+          const auto here = load<V<T>>(t.x.row(rows[k]) + j) == top;
+          dot = here ? load<V<T>>(t.x_dot.row(rows[k]) + j) : dot;
+        }
+        store(t.y_dot.row(i) + j, dot);
+      }
+    });
+  }
+
+ private:
+  Grid grid_;
+  Index channels_;
+};
+
+template <class T>
+class Upsample final : public PiecewiseLinear<T> {
+ public:
+  Upsample(Grid from, Grid to, Index channels)
+      : PiecewiseLinear<T>(from.positions() * channels,
+                           to.positions() * channels),
+        grid_(from),
+        fine_(to),
+        channels_(channels) {
+    check_axis(from.columns, to.columns);
+    check_axis(from.rows, to.rows);
+  }
+
+  void forward(const Run<T>& at, Rows<const T> x, Rows<T> y) const override {
+    const auto row = [&](Index r, Index c, Index channel, Index j) {
+      return load<V<T>>(x.row((r * grid_.columns + c) * channels_ + channel) +
+                        j);
+    };
+    each_position(at, fine_, channels_ * x.stride, [&](Index p) {
+      const Pair h = sources(p % fine_.columns, grid_.columns, fine_.columns);
+      const Pair v = sources(p / fine_.columns, grid_.rows, fine_.rows);
+      const auto two = [](const Pair& pair, V<T> near, V<T> far) {
+        return fma_lanes(broadcast<V<T>>(static_cast<T>(1 - pair.weight)),
+                         far,
+                         broadcast<V<T>>(static_cast<T>(pair.weight)) * near);
+      };
+      for (Index c = 0; c < channels_; ++c)
+        for (Index j = 0; j < x.width; j += kNarrowLanes<T>) {
+          const auto along = [&](Index r) {
+            return two(h, row(r, h.near, c, j), row(r, h.far, c, j));
+          };
+          V<T> value = along(v.near);
+          if (!grid_.flat()) value = two(v, value, along(v.far));
+          store(y.row(p * channels_ + c) + j, value);
+        }
+    });
+  }
+
+  void backward(const Replay<T>& at, const Backward<T>& b) const override {
+    if (!b.x_bar) return;
+    // Every input gathers from its outputs, in order.
+    each_position(at, grid_, channels_ * b.x_bar.stride, [&](Index p) {
+      const Shares h(p % grid_.columns, grid_.columns, fine_.columns);
+      const Shares v(p / grid_.columns, grid_.rows, fine_.rows);
+      std::array<const T*, 49> from;
+      std::array<T, 49> weight;
+      std::size_t count = 0;
+      for (std::size_t a = 0; a < v.count; ++a)
+        for (std::size_t k = 0; k < h.count; ++k) {
+          const Index output = v.output[a] * fine_.columns + h.output[k];
+          from[count] = b.y_bar.row(output * channels_);
+          weight[count++] = static_cast<T>(v.weight[a] * h.weight[k]);
+        }
+      T* const to = b.x_bar.row(p * channels_);
+      for (Index c = 0; c < channels_; ++c)
+        for (Index j = 0; j < b.x_bar.width; j += kNarrowLanes<T>) {
+          const Index at_lane = c * b.x_bar.stride + j;
+          V<T> sum{};
+          for (std::size_t k = 0; k < count; ++k)
+            sum = fma_lanes(
+                broadcast<V<T>>(weight[k]), load<V<T>>(from[k] + at_lane), sum);
+          store(to + at_lane, sum);
+        }
+    });
+    apply_gate(b.gate, b.x_bar);
+  }
+
+ private:
+  Grid grid_, fine_;
+  Index channels_;
+};
+
 }  // namespace
 
 template <class T>
-MaxPool<T>::MaxPool(Grid grid, Index channels)
-    : PiecewiseLinear<T>(grid.positions() * channels,
-                         halved(grid).positions() * channels),
-      grid_(grid),
-      channels_(channels) {}
-
-template <class T>
-void MaxPool<T>::forward(const LayerArgs<T>& at,
-                         Lanes<const T> x,
-                         Lanes<T> y) const {
-  each_output<T>(at, y, grid_, channels_, [&](Index i, const auto& rows) {
-    for (Index j = 0; j < x.width; j += kNarrowLanes<T>) {
-      V<T> top = load<V<T>>(x.row(rows[0]) + j);
-      for (std::size_t k = 1; k < rows.size(); ++k) {
-        const V<T> v = load<V<T>>(x.row(rows[k]) + j);
-        top = ((top >= v) | (top != top)) ? top : v;  // keeps NaN
-      }
-      store(y.row(i) + j, top);
-    }
-  });
+LayerPointer<T> max_pool(Grid grid, Index channels) {
+  return std::make_unique<MaxPool<T>>(grid, channels);
 }
 
 template <class T>
-void MaxPool<T>::backward(const LayerArgs<T>& at, const Backward<T>& b) const {
-  if (!b.x_bar) return;
-  if (grid_.columns % 2 != 0 || (!grid_.flat() && grid_.rows % 2 != 0))
-    std::fill_n(b.x_bar.data, b.x_bar.rows * b.x_bar.stride, T(0));
-  each_output<T>(at, b.y, grid_, channels_, [&](Index i, const auto& rows) {
-    for (Index j = 0; j < b.x.width; j += kNarrowLanes<T>) {
-      const V<T> top = load<V<T>>(b.y.row(i) + j);
-      V<T> rest = load<V<T>>(b.y_bar.row(i) + j);
-      for (const Index row : rows) {
-        const auto here = load<V<T>>(b.x.row(row) + j) == top;
-        store(b.x_bar.row(row) + j, here ? rest : V<T>{});
-        rest = here ? V<T>{} : rest;
-      }
-    }
-  });
-  apply_gate(b.gate, b.x_bar);
+LayerPointer<T> upsample(Grid from, Grid to, Index channels) {
+  return std::make_unique<Upsample<T>>(from, to, channels);
 }
 
-template <class T>
-void MaxPool<T>::tangent(const LayerArgs<T>& at, const Tangent<T>& t) const {
-  each_output<T>(at, t.y, grid_, channels_, [&](Index i, const auto& rows) {
-    for (Index j = 0; j < t.x.width; j += kNarrowLanes<T>) {
-      const V<T> top = load<V<T>>(t.y.row(i) + j);
-      V<T> dot{};
-      for (std::size_t k = rows.size(); k-- > 0;) {
-        const auto here = load<V<T>>(t.x.row(rows[k]) + j) == top;
-        dot = here ? load<V<T>>(t.x_dot.row(rows[k]) + j) : dot;
-      }
-      store(t.y_dot.row(i) + j, dot);
-    }
-  });
-}
-
-template <class T>
-Upsample<T>::Upsample(Grid from, Grid to, Index channels)
-    : PiecewiseLinear<T>(from.positions() * channels,
-                         to.positions() * channels),
-      grid_(from),
-      fine_(to),
-      channels_(channels) {
-  check_axis(from.columns, to.columns);
-  check_axis(from.rows, to.rows);
-}
-
-template <class T>
-void Upsample<T>::forward(const LayerArgs<T>& at,
-                          Lanes<const T> x,
-                          Lanes<T> y) const {
-  const auto row = [&](Index r, Index c, Index channel, Index j) {
-    return load<V<T>>(x.row((r * grid_.columns + c) * channels_ + channel) + j);
-  };
-  each_position(at, fine_, channels_ * x.stride, [&](Index p) {
-    const Pair h = sources(p % fine_.columns, grid_.columns, fine_.columns);
-    const Pair v = sources(p / fine_.columns, grid_.rows, fine_.rows);
-    const auto two = [](const Pair& pair, V<T> near, V<T> far) {
-      return fma_lanes(broadcast<V<T>>(static_cast<T>(1 - pair.weight)),
-                       far,
-                       broadcast<V<T>>(static_cast<T>(pair.weight)) * near);
-    };
-    for (Index c = 0; c < channels_; ++c)
-      for (Index j = 0; j < x.width; j += kNarrowLanes<T>) {
-        const auto along = [&](Index r) {
-          return two(h, row(r, h.near, c, j), row(r, h.far, c, j));
-        };
-        V<T> value = along(v.near);
-        if (!grid_.flat()) value = two(v, value, along(v.far));
-        store(y.row(p * channels_ + c) + j, value);
-      }
-  });
-}
-
-template <class T>
-void Upsample<T>::backward(const LayerArgs<T>& at, const Backward<T>& b) const {
-  if (!b.x_bar) return;
-  // Every input gathers from its outputs, in order.
-  each_position(at, grid_, channels_ * b.x_bar.stride, [&](Index p) {
-    const Shares h(p % grid_.columns, grid_.columns, fine_.columns);
-    const Shares v(p / grid_.columns, grid_.rows, fine_.rows);
-    std::array<const T*, 49> from;
-    std::array<T, 49> weight;
-    std::size_t count = 0;
-    for (std::size_t a = 0; a < v.count; ++a)
-      for (std::size_t k = 0; k < h.count; ++k) {
-        const Index output = v.output[a] * fine_.columns + h.output[k];
-        from[count] = b.y_bar.row(output * channels_);
-        weight[count++] = static_cast<T>(v.weight[a] * h.weight[k]);
-      }
-    T* const to = b.x_bar.row(p * channels_);
-    for (Index c = 0; c < channels_; ++c)
-      for (Index j = 0; j < b.x_bar.width; j += kNarrowLanes<T>) {
-        const Index at_lane = c * b.x_bar.stride + j;
-        V<T> sum{};
-        for (std::size_t k = 0; k < count; ++k)
-          sum = fma_lanes(
-              broadcast<V<T>>(weight[k]), load<V<T>>(from[k] + at_lane), sum);
-        store(to + at_lane, sum);
-      }
-  });
-  apply_gate(b.gate, b.x_bar);
-}
-
-template class MaxPool<float>;
-template class MaxPool<double>;
-template class Upsample<float>;
-template class Upsample<double>;
+#define PHYSINV_INSTANTIATE(T)                \
+  template decltype(max_pool<T>) max_pool<T>; \
+  template decltype(upsample<T>) upsample<T>;
+PHYSINV_INSTANTIATE(float)
+PHYSINV_INSTANTIATE(double)
+#undef PHYSINV_INSTANTIATE
 
 }  // namespace physinv::nn

@@ -2,8 +2,6 @@
 /// by position (see window.h).
 #pragma once
 
-#include <vector>
-
 #include "suite/nn/channel_norm.h"
 #include "suite/nn/piecewise_linear.h"
 
@@ -12,21 +10,7 @@ namespace physinv::nn {
 /// The largest of each cell; a tie's cotangent goes to the first. The last of
 /// an odd number of columns or rows is in no cell.
 template <class T>
-class MaxPool final : public PiecewiseLinear<T> {
- public:
-  /// `grid` is that of the input.
-  MaxPool(Grid grid, Index channels);
-
-  void forward(const LayerArgs<T>& at,
-               Lanes<const T> x,
-               Lanes<T> y) const override;
-  void backward(const LayerArgs<T>& at, const Backward<T>& b) const override;
-  void tangent(const LayerArgs<T>& at, const Tangent<T>& t) const override;
-
- private:
-  Grid grid_;
-  Index channels_;
-};
+LayerPointer<T> max_pool(Grid grid, Index channels);
 
 /// Half-pixel centres, clamped ends; per axis of n inputs and m outputs, m = 2
 /// n or 2 n + 1,
@@ -38,23 +22,6 @@ class MaxPool final : public PiecewiseLinear<T> {
 ///
 ///   y[2i] = v[i-1] / 4 + 3 v[i] / 4,  y[2i+1] = 3 v[i] / 4 + v[i+1] / 4.
 template <class T>
-class Upsample final : public PiecewiseLinear<T> {
- public:
-  Upsample(Grid from, Grid to, Index channels);
-
-  void forward(const LayerArgs<T>& at,
-               Lanes<const T> x,
-               Lanes<T> y) const override;
-  void backward(const LayerArgs<T>& at, const Backward<T>& b) const override;
-
- private:
-  Grid grid_, fine_;
-  Index channels_;
-};
-
-extern template class MaxPool<float>;
-extern template class MaxPool<double>;
-extern template class Upsample<float>;
-extern template class Upsample<double>;
+LayerPointer<T> upsample(Grid from, Grid to, Index channels);
 
 }  // namespace physinv::nn

@@ -103,7 +103,7 @@ inline bool are_thin(Index x_rows, Index y_rows) {
 /// one, the others in groups.
 template <class T>
 void row_products(
-    Lanes<const T> x, Lanes<const T> y, T* out, Index x_step, Index y_step) {
+    Rows<const T> x, Rows<const T> y, T* out, Index x_step, Index y_step) {
   using V = NarrowPack<T>;
   constexpr Index w = kNarrowLanes<T>;
   if (y.rows < x.rows) std::swap(x, y), std::swap(x_step, y_step);

@@ -15,22 +15,18 @@
 namespace physinv::nn {
 namespace {
 
-template <class T>
-using Layers = typename Sequential<T>::Layers;
-
 /// D(in -> f)
 template <class T>
 void add_double(Layers<T>& to, const UnetOptions& o, Grid grid, Index in) {
   for (const Index from : {in, o.features})
-    to.push_back(std::make_unique<ConvBlock<T>>(
-        ConvOptions{.grid = grid,
-                    .in = from,
-                    .out = o.features,
-                    .taps = {3, grid.flat() ? 1 : 3},
-                    .padding = o.padding,
-                    .batch_statistics = o.batch_statistics},
-        Activation::relu,
-        false));
+    to.push_back(conv_block<T>({.grid = grid,
+                                .in = from,
+                                .out = o.features,
+                                .taps = {3, grid.flat() ? 1 : 3},
+                                .padding = o.padding,
+                                .batch_statistics = o.batch_statistics},
+                               Activation::relu,
+                               false));
 }
 
 /// D(in -> f), and below it the coarser levels around a skip connection.
@@ -43,10 +39,10 @@ void add_level(
   SUITE_CHECK(grid.flat() == halved(grid).flat(),
               "a u-net's coarsest plane has at least two rows");
   Layers<T> inner;
-  inner.push_back(std::make_unique<MaxPool<T>>(grid, f));
+  inner.push_back(max_pool<T>(grid, f));
   add_level<T>(inner, o, halved(grid), f, levels - 1);
-  inner.push_back(std::make_unique<Upsample<T>>(halved(grid), grid, f));
-  to.push_back(std::make_unique<Skip<T>>(grid.positions(), std::move(inner)));
+  inner.push_back(upsample<T>(halved(grid), grid, f));
+  to.push_back(skip<T>(grid.positions(), std::move(inner)));
   add_double<T>(to, o, grid, 2 * f);
 }
 
@@ -81,14 +77,14 @@ std::unique_ptr<Network<T>> make_unet(const UnetOptions& o,
   SUITE_CHECK(o.levels >= 1, "a u-net has at least one level");
   Layers<T> layers;
   if (input.width() > 1 || o.hidden > 0)
-    layers.push_back(std::make_unique<FieldInput<T>>(input));
+    layers.push_back(field_input<T>(input));
   add_level<T>(layers, o, o.grid, input.width(), o.levels);
-  layers.push_back(std::make_unique<Conv<T>>(ConvOptions{
-      .grid = o.grid, .in = o.features, .out = o.outputs, .taps = {1, 1}}));
+  layers.push_back(conv<T>(
+      {.grid = o.grid, .in = o.features, .out = o.outputs, .taps = {1, 1}}));
   if (o.outputs > 1)
-    layers.push_back(std::make_unique<Flatten<T>>(
-        positions, o.outputs, o.grid.columns, o.hidden));
-  return std::make_unique<Sequential<T>>(std::move(layers), o.init);
+    layers.push_back(
+        flatten<T>(positions, o.outputs, o.grid.columns, o.hidden));
+  return sequential<T>(std::move(layers), o.init);
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ template <class T>
 std::unique_ptr<Network<T>> make_vgg(const VggOptions& o,
                                      Index inputs,
                                      Index outputs) {
-  typename Sequential<T>::Layers layers;
+  Layers<T> layers;
   const auto add = [&](auto layer) { layers.push_back(std::move(layer)); };
   Grid grid = o.grid;
   Index channels = o.channels;
@@ -31,29 +31,27 @@ std::unique_ptr<Network<T>> make_vgg(const VggOptions& o,
   SUITE_CHECK(inputs == channels * grid.positions(),
               "the network's grid is not that of its input");
   if (channels > 1)
-    add(std::make_unique<FieldInput<T>>(FieldInputOptions{
-        .positions = grid.positions(), .channels = channels}));
+    add(field_input<T>({.positions = grid.positions(), .channels = channels}));
   for (const Index width : o.features) {
-    add(std::make_unique<ConvBlock<T>>(
-        ConvOptions{.grid = grid,
-                    .in = channels,
-                    .out = width,
-                    .taps = {3, grid.flat() ? 1 : 3}},
-        Activation::relu,
-        true));
+    add(conv_block<T>({.grid = grid,
+                       .in = channels,
+                       .out = width,
+                       .taps = {3, grid.flat() ? 1 : 3}},
+                      Activation::relu,
+                      true));
     grid = halved(grid);
     channels = width;
   }
-  add(std::make_unique<Flatten<T>>(grid.positions(), channels));
+  add(flatten<T>(grid.positions(), channels));
   Index size = grid.positions() * channels;
   for (const Index width : o.hidden) {
-    add(std::make_unique<Linear<T>>(size, width));
-    add(std::make_unique<ActivationLayer<T>>(Activation::relu, width));
-    add(std::make_unique<BatchNorm<T>>(width));
+    add(linear<T>(size, width));
+    add(activation_layer<T>(Activation::relu, width));
+    add(batch_norm<T>(width));
     size = width;
   }
-  add(std::make_unique<Linear<T>>(size, outputs));
-  return std::make_unique<Sequential<T>>(std::move(layers));
+  add(linear<T>(size, outputs));
+  return sequential<T>(std::move(layers));
 }
 
 }  // namespace

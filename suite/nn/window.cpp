@@ -33,7 +33,7 @@ std::vector<Segment> segments_at(
   return segments;
 }
 
-std::vector<Run> with_alike(std::vector<Run> runs) {
+std::vector<WindowRun> with_alike(std::vector<WindowRun> runs) {
   std::vector<Index> kinds;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const auto same = std::find_if(kinds.begin(), kinds.end(), [&](Index k) {
@@ -46,11 +46,11 @@ std::vector<Run> with_alike(std::vector<Run> runs) {
 }
 
 /// Inside a row of `inputs`, output position p's first tap lies at p + first.
-std::vector<Run> row_runs(Index outputs,
-                          Index inputs,
-                          Index taps,
-                          Index first) {
-  std::vector<Run> runs;
+std::vector<WindowRun> row_runs(Index outputs,
+                                Index inputs,
+                                Index taps,
+                                Index first) {
+  std::vector<WindowRun> runs;
   for (Index p = 0; p < outputs; ++p) {
     const Index begin = std::max<Index>(0, -(p + first));
     const Index end = std::min(taps, inputs - p - first);
@@ -73,7 +73,7 @@ Grid window_output(Grid grid, Taps taps, Padding padding) {
   return {grid.columns - taps.x + 1};
 }
 
-std::vector<Run> window_runs(Grid grid, Taps taps, Padding padding) {
+std::vector<WindowRun> window_runs(Grid grid, Taps taps, Padding padding) {
   SUITE_CHECK(taps.x % 2 == 1 && taps.y % 2 == 1, "taps are odd per axis");
   SUITE_CHECK(grid.columns > 0 && grid.rows > 0, "a grid has positions");
   if (padding == Padding::none)
@@ -81,7 +81,7 @@ std::vector<Run> window_runs(Grid grid, Taps taps, Padding padding) {
         window_output(grid, taps, padding).columns, grid.columns, taps.x, 0);
   // Between the edges of a row all windows are the same.
   const Index edge = taps.x / 2, last_inside = grid.columns - edge - 1;
-  std::vector<Run> runs;
+  std::vector<WindowRun> runs;
   for (Index p = 0, count = 1; p < grid.positions(); p += count) {
     const Index column = p % grid.columns;
     count = column == edge ? std::max<Index>(1, last_inside - edge + 1) : 1;
@@ -96,7 +96,7 @@ std::vector<Run> window_runs(Grid grid, Taps taps, Padding padding) {
   return with_alike(std::move(runs));
 }
 
-std::vector<Run> flipped_runs(Grid grid, Taps taps, Padding padding) {
+std::vector<WindowRun> flipped_runs(Grid grid, Taps taps, Padding padding) {
   if (padding != Padding::none) return window_runs(grid, taps, padding);
   return row_runs(grid.columns,
                   window_output(grid, taps, padding).columns,

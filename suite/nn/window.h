@@ -21,7 +21,7 @@ struct Segment {
 };
 
 /// Neighbouring output positions with the same segments.
-struct Run {
+struct WindowRun {
   Index first = 0, count = 0;
   std::vector<Segment> segments;
   Index alike = 0;  ///< the first run with these segments
@@ -33,11 +33,11 @@ struct Taps {
   Index count() const { return x * y; }
 };
 
-std::vector<Run> window_runs(Grid grid, Taps taps, Padding padding);
+std::vector<WindowRun> window_runs(Grid grid, Taps taps, Padding padding);
 
 /// The same for the input gradient, whose outputs are the positions of `grid`
 /// and whose inputs are those of the convolution's output.
-std::vector<Run> flipped_runs(Grid grid, Taps taps, Padding padding);
+std::vector<WindowRun> flipped_runs(Grid grid, Taps taps, Padding padding);
 
 /// Extent of the output: smaller by taps - 1 without padding.
 Grid window_output(Grid grid, Taps taps, Padding padding);

@@ -3,26 +3,13 @@
 #include <gtest/gtest.h>
 
 #include "suite/core/check.h"
-#include "suite/nn/sequential.h"
 #include "tests/suite/nn/nn_testing.h"
 
 namespace physinv::nn {
 namespace {
 
-template <class T>
-NetworkRecipe only_batch_norm() {
-  const auto make = [](auto zero) {
-    return [](Index in, Index) {
-      using U = decltype(zero);
-      typename Sequential<U>::Layers layers;
-      layers.push_back(std::make_unique<BatchNorm<U>>(in));
-      return std::unique_ptr<Network<U>>(
-          std::make_unique<Sequential<U>>(std::move(layers)));
-    };
-  };
-  return {.description = "batch norm",
-          .make_float = make(0.0F),
-          .make_double = make(0.0)};
+NetworkRecipe only_batch_norm(Index features) {
+  return network([=]<class U>() { return layers(batch_norm<U>(features)); });
 }
 
 template <class T>
@@ -36,7 +23,7 @@ TYPED_TEST_SUITE(BatchNormTest, Types);
 TYPED_TEST(BatchNormTest, FollowsTheFormulas) {
   using T = TypeParam;
   const Index features = 5, n = 11;
-  Bench<T> b(only_batch_norm<T>(), features, features);
+  Bench<T> b(only_batch_norm(features), 0, 0);
   Batch<T> in = wavy<T>(features, n);
   in.row(2).array() += T(3);
   const Batch<T> fresh = b.forward(in);
@@ -70,7 +57,7 @@ TYPED_TEST(BatchNormTest, FollowsTheFormulas) {
 
 TYPED_TEST(BatchNormTest, OneSampleHasNoStatistics) {
   using T = TypeParam;
-  Bench<T> b(only_batch_norm<T>(), 3, 3);
+  Bench<T> b(only_batch_norm(3), 0, 0);
   EXPECT_THROW(b.forward(wavy<T>(3, 1), {.training = true}), ContractError);
   b.forward(wavy<T>(3, 1));
   EXPECT_THROW(b.net->update_state(b.tape, b.s), ContractError);

@@ -313,13 +313,13 @@ TEST(Cnn, RowsAreBackwardPasses) {
 }
 
 TEST(Cnn, PaddedConvolutionsGiveNoRows) {
-  const Conv<double> padded({.grid = {5}, .in = 2, .out = 3});
+  const auto padded = conv<double>({.grid = {5}, .in = 2, .out = 3});
   std::vector<LayerRows<double>> layers;
-  EXPECT_THROW(padded.add_rows({}, {}, 0, layers), ContractError);
-  EXPECT_THROW(Conv<double>({.grid = {2}, .padding = Padding::none}),
+  EXPECT_THROW(padded->add_rows({}, {}, 0, layers), ContractError);
+  EXPECT_THROW(conv<double>({.grid = {2}, .padding = Padding::none}),
                ContractError);
   EXPECT_THROW(
-      Conv<double>({.grid = {5, 5}, .taps = {3, 3}, .padding = Padding::none}),
+      conv<double>({.grid = {5, 5}, .taps = {3, 3}, .padding = Padding::none}),
       ContractError);
 }
 

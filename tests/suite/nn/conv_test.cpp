@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 
 #include "suite/nn/activation.h"
 #include "suite/nn/rearrange.h"
@@ -16,36 +15,6 @@
 
 namespace physinv::nn {
 namespace {
-
-template <class T>
-using LayersOf = typename Sequential<T>::Layers;
-
-/// A network of the layers that `add` appends; the same in both precisions.
-NetworkRecipe network(
-    const std::function<void(LayersOf<float>&)>& add_float,
-    const std::function<void(LayersOf<double>&)>& add_double) {
-  const auto make = [](const auto& add, auto zero) {
-    return [add](Index, Index) {
-      using T = decltype(zero);
-      LayersOf<T> layers;
-      add(layers);
-      return std::unique_ptr<Network<T>>(
-          std::make_unique<Sequential<T>>(std::move(layers)));
-    };
-  };
-  return {.description = "layers",
-          .make_float = make(add_float, 0.0F),
-          .make_double = make(add_double, 0.0)};
-}
-template <class F>
-NetworkRecipe network(F add) {
-  return network(std::function<void(LayersOf<float>&)>(add),
-                 std::function<void(LayersOf<double>&)>(add));
-}
-/// T of the layers a generic lambda appends to.
-template <class L>
-using Number =
-    std::conditional_t<std::is_same_v<L, LayersOf<float>>, float, double>;
 
 template <class T>
 Bench<T> bench(const NetworkRecipe& recipe) {
@@ -123,10 +92,7 @@ TYPED_TEST(ConvTest, AgreesWithTheDirectSum) {
   using T = TypeParam;
   for (const auto& [options, n] : cases()) {
     const ConvOptions o = options;
-    auto b = bench<T>(network([o](auto& layers) {
-      using U = Number<std::decay_t<decltype(layers)>>;
-      layers.push_back(std::make_unique<Conv<U>>(o));
-    }));
+    auto b = bench<T>(network([o]<class U>() { return layers(conv<U>(o)); }));
     const Index outputs =
         window_output(o.grid, o.taps, o.padding).positions() * o.out;
     const Batch<T> in = wavy<T>(o.grid.positions() * o.in, n);
@@ -159,9 +125,8 @@ TYPED_TEST(ConvTest, AgreesWithTheDirectSum) {
 
 TYPED_TEST(ConvTest, PoolingTakesTheLargestAndTheFirstOfEquals) {
   using T = TypeParam;
-  auto b = bench<T>(network([](auto& layers) {
-    using U = Number<std::decay_t<decltype(layers)>>;
-    layers.push_back(std::make_unique<MaxPool<U>>(Grid{4, 2}, 1));
+  auto b = bench<T>(network([]<class U>() {
+    return layers(max_pool<U>(Grid{4, 2}, 1));
   }));
   Batch<T> in(8, 2);
   in.col(0) << 1, 2, 5, 5, 4, 3, 5, 5;
@@ -179,9 +144,8 @@ TYPED_TEST(ConvTest, PoolingTakesTheLargestAndTheFirstOfEquals) {
 
 TYPED_TEST(ConvTest, PoolingLeavesAnOddColumnAndRowOut) {
   using T = TypeParam;
-  auto b = bench<T>(network([](auto& layers) {
-    using U = Number<std::decay_t<decltype(layers)>>;
-    layers.push_back(std::make_unique<MaxPool<U>>(Grid{3, 5}, 1));
+  auto b = bench<T>(network([]<class U>() {
+    return layers(max_pool<U>(Grid{3, 5}, 1));
   }));
   Batch<T> in(15, 1), expected = Batch<T>::Zero(15, 1);
   for (Index i = 0; i < 15; ++i) in(i) = static_cast<T>(i);
@@ -195,10 +159,8 @@ TYPED_TEST(ConvTest, PoolingLeavesAnOddColumnAndRowOut) {
 
 TYPED_TEST(ConvTest, UpsamplingReachesAnOddExtent) {
   using T = TypeParam;
-  auto b = bench<T>(network([](auto& layers) {
-    using U = Number<std::decay_t<decltype(layers)>>;
-    layers.push_back(std::make_unique<Upsample<U>>(Grid{3}, Grid{7}, 1));
-  }));
+  auto b = bench<T>(network(
+      []<class U>() { return layers(upsample<U>(Grid{3}, Grid{7}, 1)); }));
   Batch<T> in(3, 1);
   in << 14, 28, 0;
   const Batch<T> out = b.forward(in);
@@ -215,24 +177,19 @@ TYPED_TEST(ConvTest, UpsamplingReachesAnOddExtent) {
 
 TYPED_TEST(ConvTest, UpsamplingClampsItsEnds) {
   using T = TypeParam;
-  auto line = bench<T>(network([](auto& layers) {
-    using U = Number<std::decay_t<decltype(layers)>>;
-    layers.push_back(std::make_unique<Upsample<U>>(Grid{3}, Grid{6}, 1));
-  }));
+  auto line = bench<T>(network(
+      []<class U>() { return layers(upsample<U>(Grid{3}, Grid{6}, 1)); }));
   Batch<T> in(3, 1), expected(6, 1);
   in << 4, 8, 0;
   expected << 4, 5, 7, 6, 2, 0;
   expect_same_bits(line.forward(in), expected);
-  auto point = bench<T>(network([](auto& layers) {
-    using U = Number<std::decay_t<decltype(layers)>>;
-    layers.push_back(std::make_unique<Upsample<U>>(Grid{1}, Grid{2}, 2));
-  }));
+  auto point = bench<T>(network(
+      []<class U>() { return layers(upsample<U>(Grid{1}, Grid{2}, 2)); }));
   expect_same_bits(point.forward(in.topRows(2)),
                    Batch<T>(in(std::vector<Index>{0, 1, 0, 1}, Eigen::all)));
   // On a plane, a product of lines: exact for a x + b y inside.
-  auto plane = bench<T>(network([](auto& layers) {
-    using U = Number<std::decay_t<decltype(layers)>>;
-    layers.push_back(std::make_unique<Upsample<U>>(Grid{4, 3}, Grid{8, 6}, 1));
+  auto plane = bench<T>(network([]<class U>() {
+    return layers(upsample<U>(Grid{4, 3}, Grid{8, 6}, 1));
   }));
   const auto slope = [](Index columns, Index rows, double step, double first) {
     return Batch<T>::NullaryExpr(columns * rows, 1, [=](Index i, Index) {
@@ -250,16 +207,14 @@ TYPED_TEST(ConvTest, UpsamplingClampsItsEnds) {
 
 TYPED_TEST(ConvTest, FieldInputSpreadsNumbersAndFlattenTurnsBack) {
   using T = TypeParam;
-  auto b = bench<T>(network([](auto& layers) {
-    using U = Number<std::decay_t<decltype(layers)>>;
-    layers.push_back(
-        std::make_unique<FieldInput<U>>(FieldInputOptions{.positions = 3,
-                                                          .before = 1,
-                                                          .channels = 2,
-                                                          .after = 1,
-                                                          .shift = 1,
-                                                          .unit = 0.25}));
-    layers.push_back(std::make_unique<Flatten<U>>(3, 4));
+  auto b = bench<T>(network([]<class U>() {
+    return layers(field_input<U>({.positions = 3,
+                                  .before = 1,
+                                  .channels = 2,
+                                  .after = 1,
+                                  .shift = 1,
+                                  .unit = 0.25}),
+                  flatten<U>(3, 4));
   }));
   Batch<T> in(8, 1), expected(12, 1), bar(12, 1), in_bar(8, 1);
   in << 2, 10, 11, 12, 20, 21, 22, 0.5;
@@ -320,10 +275,8 @@ const std::vector<BlockCase> kBlocks = {
     {{.grid = {5, 3}, .in = 1, .out = 4, .taps = {3, 3}}, false}};
 
 NetworkRecipe block(const BlockCase& c, Activation f = Activation::relu) {
-  return network([=](auto& layers) {
-    using U = Number<std::decay_t<decltype(layers)>>;
-    layers.push_back(std::make_unique<ConvBlock<U>>(c.options, f, c.pool));
-  });
+  return network(
+      [=]<class U>() { return layers(conv_block<U>(c.options, f, c.pool)); });
 }
 
 TYPED_TEST(ConvTest, BlockFollowsTheFormulas) {
@@ -366,29 +319,22 @@ TYPED_TEST(ConvTest, BlockFollowsTheFormulas) {
 
 /// Skip, pooling and upsampling around a block, on lines and planes.
 NetworkRecipe nested(bool plane) {
-  return network([plane](auto& layers) {
-    using L = std::decay_t<decltype(layers)>;
-    using U = Number<L>;
+  return network([plane]<class U>() {
     const Grid grid = plane ? Grid{4, 4} : Grid{8}, half = halved(grid);
     const Taps taps = plane ? Taps{3, 3} : Taps{3, 1};
     const auto block = [&](Grid g, Index in, Index out, Activation f) {
-      return std::make_unique<ConvBlock<U>>(
-          ConvOptions{.grid = g, .in = in, .out = out, .taps = taps}, f, false);
+      return conv_block<U>(
+          {.grid = g, .in = in, .out = out, .taps = taps}, f, false);
     };
-    layers.push_back(block(grid, 2, 3, Activation::tanh));
-    L inner;
-    inner.push_back(std::make_unique<MaxPool<U>>(grid, 3));
-    inner.push_back(block(half, 3, 4, Activation::softplus));
-    inner.push_back(std::make_unique<Upsample<U>>(half, grid, 4));
-    layers.push_back(
-        std::make_unique<Skip<U>>(grid.positions(), std::move(inner)));
-    layers.push_back(block(grid, 7, 2, Activation::sigmoid));
-    layers.push_back(std::make_unique<Conv<U>>(
-        ConvOptions{.grid = grid, .in = 2, .out = 2, .taps = taps}));
-    layers.push_back(std::make_unique<ActivationLayer<U>>(
-        Activation::tanh, 2 * grid.positions()));
-    layers.push_back(std::make_unique<Conv<U>>(
-        ConvOptions{.grid = grid, .in = 2, .out = 1, .taps = {1, 1}}));
+    auto inner = layers(max_pool<U>(grid, 3),
+                        block(half, 3, 4, Activation::softplus),
+                        upsample<U>(half, grid, 4));
+    return layers(block(grid, 2, 3, Activation::tanh),
+                  skip<U>(grid.positions(), std::move(inner)),
+                  block(grid, 7, 2, Activation::sigmoid),
+                  conv<U>({.grid = grid, .in = 2, .out = 2, .taps = taps}),
+                  activation_layer<U>(Activation::tanh, 2 * grid.positions()),
+                  conv<U>({.grid = grid, .in = 2, .out = 1, .taps = {1, 1}}));
   });
 }
 

@@ -8,7 +8,6 @@
 
 #include "suite/core/threads.h"
 #include "suite/nn/activation.h"
-#include "suite/nn/sequential.h"
 #include "suite/nn/spectral.h"
 #include "tests/suite/nn/nn_testing.h"
 #include "tests/support/tolerance.h"
@@ -80,22 +79,17 @@ class Spectral : public testing::TestWithParam<Plane> {
  protected:
   static constexpr Index kChannels = 2, kModes = 3;
   Bench<double> make() const {
-    const NetworkRecipe recipe{
-        .description = "block",
-        .make_float = {},
-        .make_double = [](Index, Index) -> std::unique_ptr<Network<double>> {
-          const Plane& p = GetParam();
-          Sequential<double>::Layers layers;
-          layers.push_back(std::make_unique<SpectralBlock<double>>(
-              SpectralOptions{.from = p.from,
-                              .to = p.to,
-                              .period = p.period,
-                              .channels = kChannels,
-                              .modes = kModes,
-                              .before = Activation::gelu}));
-          return std::make_unique<Sequential<double>>(std::move(layers),
-                                                      Init::uniform);
-        }};
+    const Plane& p = GetParam();
+    const auto recipe = network(
+        [&]<class U>() {
+          return layers(spectral_block<U>({.from = p.from,
+                                           .to = p.to,
+                                           .period = p.period,
+                                           .channels = kChannels,
+                                           .modes = kModes,
+                                           .before = Activation::gelu}));
+        },
+        Init::uniform);
     return Bench<double>(recipe, 0, 0);
   }
 };

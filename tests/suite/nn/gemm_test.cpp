@@ -30,13 +30,13 @@ Gemm<T> product(const Batch<T>& a, const Batch<T>& b, Index n, Batch<T>& c) {
 
 /// A batch as lanes, in memory that held something else.
 template <class T>
-struct LaneCopy {
-  explicit LaneCopy(const Batch<T>& in) : lanes(nullptr, in.rows(), in.cols()) {
+struct RowsCopy {
+  explicit RowsCopy(const Batch<T>& in) : lanes(nullptr, in.rows(), in.cols()) {
     memory.setConstant(lanes.stride, in.rows(), T(7));
     lanes.data = memory.data();
-    to_lanes<T>(in, lanes);
+    to_rows<T>(in, lanes);
   }
-  Lanes<T> lanes;
+  Rows<T> lanes;
   Batch<T> memory;
 };
 
@@ -48,7 +48,7 @@ TYPED_TEST(GemmTest, EqualsTheSequentialSumBitwise) {
   for (const Index m : {1, 2, 5, 7, 17, 40}) {
     for (const Index n : {1, 3, 8, 13, 16, 24, 37, 64}) {
       for (const Index k : {0, 1, 2, 19, 300, 520}) {
-        const Index stride = lane_stride<T>(round_up(n, kNarrowLanes<T>));
+        const Index stride = row_stride<T>(round_up(n, kNarrowLanes<T>));
         const Batch<T> a = wavy<T>(k, m), b = wavy<T>(stride, k, 0.3);
         const Vector<T> bias = wavy<T>(m, 1, 0.7);
         // One more column: nothing may be written behind the last.
@@ -77,7 +77,7 @@ TYPED_TEST(GemmTest, TransposedAndGated) {
   };
   for (const auto& [m, k] : {Size{29, 33}, Size{7, 2}}) {
     for (const Activation f : {Activation::relu, Activation::tanh}) {
-      const Index n = 40, stride = lane_stride<T>(n);
+      const Index n = 40, stride = row_stride<T>(n);
       const Batch<T> a = wavy<T>(m, k), b = wavy<T>(stride, k, 0.3);
       const Batch<T> gate = wavy<T>(stride, m, 0.9);
       Batch<T> c(stride, m);
@@ -113,7 +113,7 @@ TYPED_TEST(GemmTest, ThinProductsHaveTheBitsOfTiles) {
   const Vector<T> bias = wavy<T>(many, 1, 0.7);
   for (const Activation f : {Activation::tanh, Activation::sigmoid}) {
     for (const Index n : {3, 8, 37, 64}) {
-      const Index stride = lane_stride<T>(round_up(n, kNarrowLanes<T>));
+      const Index stride = row_stride<T>(round_up(n, kNarrowLanes<T>));
       const Batch<T> b = wavy<T>(stride, k, 0.3);
       Batch<T> thin = Batch<T>::Constant(n + 1, few, T(9));
       Batch<T> tiles = Batch<T>::Constant(n + 1, many, T(9));
@@ -132,7 +132,7 @@ TYPED_TEST(GemmTest, RowProductsAreSumsOverSamples) {
   using T = TypeParam;
   for (const Index n : {1, 8, 37, 64}) {
     const Batch<T> in = wavy<T>(2, n), bar = wavy<T>(7, n, 0.4);
-    LaneCopy<T> x(in), y(bar);
+    RowsCopy<T> x(in), y(bar);
     if (n < x.lanes.width) x.lanes.data[n] = T(3);  // as an activation's
     Batch<T> out = Batch<T>::Constant(3, 7, T(9));
     row_products<T>(x.lanes, y.lanes, out.data(), 1, 3);
@@ -144,7 +144,7 @@ TYPED_TEST(GemmTest, RowProductsAreSumsOverSamples) {
 
 TYPED_TEST(GemmTest, ThreadsDoNotChangeBits) {
   using T = TypeParam;
-  const Index m = 131, n = 128, k = 90, stride = lane_stride<T>(n);
+  const Index m = 131, n = 128, k = 90, stride = row_stride<T>(n);
   const Batch<T> a = wavy<T>(k, m), b = wavy<T>(stride, k);
   Batch<T> one(stride, m), three(stride, m);
   one.setZero(), three.setZero();
@@ -159,13 +159,13 @@ TYPED_TEST(GemmTest, LanesTransposeBothWays) {
   for (const Index rows : {1, 4, 9, 32}) {
     for (const Index n : {1, 8, 11, 40}) {
       const Batch<T> in = wavy<T>(rows, n);
-      const LaneCopy<T> copy(in);
-      const Lanes<T>& x = copy.lanes;
+      const RowsCopy<T> copy(in);
+      const Rows<T>& x = copy.lanes;
       Batch<T> out(rows, n);
       for (Index i = 0; i < rows; ++i)
         for (Index j = 0; j < x.width; ++j)
           ASSERT_EQ(x.row(i)[j], j < n ? in(i, j) : T(0));
-      from_lanes<T>(x, out);
+      from_rows<T>(x, out);
       expect_same_bits(in, out);
       const Index up = round_up(n, kNarrowLanes<T>);
       Batch<T> padded = Batch<T>::Constant(up + 1, rows, T(7));

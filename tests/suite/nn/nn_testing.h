@@ -5,10 +5,36 @@
 
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "suite/core/network.h"
+#include "suite/nn/sequential.h"
 
 namespace physinv::nn {
+
+/// Layers one after the other.
+template <class T, class... Behind>
+Layers<T> layers(LayerPointer<T> first, Behind... behind) {
+  Layers<T> all;
+  all.push_back(std::move(first));
+  (all.push_back(std::move(behind)), ...);
+  return all;
+}
+
+/// A network of the layers that make<T>() gives, the same in both precisions.
+template <class F>
+NetworkRecipe network(F make, Init init = Init::fan_in) {
+  return {
+      .description = "layers",
+      .make_float =
+          [=](Index, Index) {
+            return sequential<float>(make.template operator()<float>(), init);
+          },
+      .make_double =
+          [=](Index, Index) {
+            return sequential<double>(make.template operator()<double>(), init);
+          }};
+}
 
 template <class T>
 struct Bench {

@@ -6,7 +6,6 @@
 
 #include "suite/nn/encoding.h"
 #include "suite/nn/mlp.h"
-#include "suite/nn/sequential.h"
 #include "tests/suite/nn/nn_testing.h"
 #include "tests/support/formula_weights.h"
 
@@ -29,16 +28,13 @@ void check_encoding(const Json& e) {
   ASSERT_GE(in.rows(), 1);
   // Sines and cosines of one to `frequencies` times each number.
   const Index frequencies = expected.rows() / (2 * in.rows());
-  typename Sequential<T>::Layers layers;
-  layers.push_back(
-      std::make_unique<PositionalEncoding<T>>(in.rows(), frequencies));
-  const Sequential<T> net(std::move(layers));
-  ASSERT_EQ(net.outputs(), expected.rows());
-  Batch<T> out(expected.rows(), in.cols());
-  Vector<T> none(0);
-  Tape tape;
-  Workspace work;
-  net.forward(none, none, in, out, tape, work);
+  Bench<T> b(network([&]<class U>() {
+               return layers(positional_encoding<U>(in.rows(), frequencies));
+             }),
+             0,
+             0);
+  ASSERT_EQ(b.net->outputs(), expected.rows());
+  const Batch<T> out = b.forward(in);
   // Rounding the input to float already moves sin(4a).
   const double tol = test::number(e["atol"]);
   EXPECT_TRUE(test::Comparator(0, sizeof(T) == 4 ? 1e-6 : tol)(out, expected));

@@ -164,8 +164,7 @@ TYPED_TEST(SequentialTest, AllocatesNothingAfterTheFirstStep) {
 }
 
 TEST(Sequential, RefusesLayersThatDoNotFit) {
-  using L = Sequential<double>::Layers;
-  EXPECT_THROW(Sequential<double>{L{}}, ContractError);
+  EXPECT_THROW(sequential<double>({}), ContractError);
   Bench<double> b(mlp({.hidden = {4}}), 3, 2);
   EXPECT_THROW(b.forward(wavy<double>(2, 5)), ContractError);
   EXPECT_THROW(b.forward(wavy<double>(3, 5), {.same_input = true}),

@@ -12,7 +12,6 @@
 #include "suite/nn/conv.h"
 #include "suite/nn/fno.h"
 #include "suite/nn/mlp.h"
-#include "suite/nn/sequential.h"
 #include "suite/nn/unet.h"
 #include "suite/nn/vgg.h"
 #include "tests/suite/nn/nn_testing.h"
@@ -28,23 +27,20 @@ struct Built {
 
 /// A pooled block on a plane whose pooling has an activation with a bend, and
 /// an activation of its own behind a convolution.
-template <class T>
-std::unique_ptr<Network<T>> bent(Index, Index) {
-  typename Sequential<T>::Layers layers;
-  const ConvOptions o{.grid = {6, 4},
-                      .in = 2,
-                      .out = 3,
-                      .taps = {3, 3},
-                      .padding = Padding::circular};
-  layers.push_back(std::make_unique<ConvBlock<T>>(o, Activation::tanh, true));
-  layers.push_back(std::make_unique<Conv<T>>(
-      ConvOptions{.grid = {3, 2}, .in = 3, .out = 2, .taps = {3, 3}}));
-  layers.push_back(
-      std::make_unique<ActivationLayer<T>>(Activation::sigmoid, 12));
-  layers.push_back(std::make_unique<Conv<T>>(
-      ConvOptions{.grid = {3, 2}, .in = 2, .out = 1, .taps = {1, 1}}));
-  layers.push_back(std::make_unique<ActivationLayer<T>>(Activation::silu, 6));
-  return std::make_unique<Sequential<T>>(std::move(layers));
+NetworkRecipe bent() {
+  return network([]<class T>() {
+    return layers(conv_block<T>({.grid = {6, 4},
+                                 .in = 2,
+                                 .out = 3,
+                                 .taps = {3, 3},
+                                 .padding = Padding::circular},
+                                Activation::tanh,
+                                true),
+                  conv<T>({.grid = {3, 2}, .in = 3, .out = 2, .taps = {3, 3}}),
+                  activation_layer<T>(Activation::sigmoid, 12),
+                  conv<T>({.grid = {3, 2}, .in = 2, .out = 1, .taps = {1, 1}}),
+                  activation_layer<T>(Activation::silu, 6));
+  });
 }
 
 std::vector<Built> networks() {
@@ -63,12 +59,7 @@ std::vector<Built> networks() {
        mlp({.hidden = {6}, .frequencies = 3, .activation = Activation::tanh}),
        2,
        2},
-      {"bent",
-       {.description = "bent",
-        .make_float = bent<float>,
-        .make_double = bent<double>},
-       48,
-       6},
+      {"bent", bent(), 48, 6},
       {"vgg",
        vgg({.channels = 2, .grid = {16}, .features = {4, 5}, .hidden = {6}}),
        32,

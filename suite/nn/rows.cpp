@@ -1,4 +1,4 @@
-#include "suite/nn/lanes.h"
+#include "suite/nn/rows.h"
 
 #include <algorithm>
 
@@ -109,9 +109,9 @@ void transpose(const T* from,
 }
 
 template <class T>
-void to_lanes(BatchIn<T> from, Lanes<T> to) {
+void to_rows(BatchIn<T> from, Rows<T> to) {
   SUITE_CHECK(from.rows() == to.rows && from.cols() == to.samples,
-              "lanes and batch differ in shape");
+              "rows and batch differ in shape");
   transpose(from.data(),
             from.outerStride(),
             from.cols(),
@@ -122,9 +122,9 @@ void to_lanes(BatchIn<T> from, Lanes<T> to) {
 }
 
 template <class T>
-void from_lanes(Lanes<const T> from, BatchOut<T> to) {
+void from_rows(Rows<const T> from, BatchOut<T> to) {
   SUITE_CHECK(to.rows() == from.rows && to.cols() == from.samples,
-              "lanes and batch differ in shape");
+              "rows and batch differ in shape");
   transpose(from.data,
             from.stride,
             from.rows,
@@ -134,7 +134,7 @@ void from_lanes(Lanes<const T> from, BatchOut<T> to) {
 }
 
 template <class T>
-void add_lanes(Lanes<const T> more, Lanes<T> to) {
+void add_to_rows(Rows<const T> more, Rows<T> to) {
   using V = NarrowPack<T>;
   for (Index i = 0; i < to.rows; ++i)
     for (Index j = 0; j < to.width; j += kNarrowLanes<T>)
@@ -170,7 +170,7 @@ PHYSINV_LANES void sums_of(const NarrowPack<float> (&v)[4], float* sums) {
 }  // namespace
 
 template <class T>
-void row_sums(Lanes<const T> x, T* sums) {
+void row_sums(Rows<const T> x, T* sums) {
   using V = NarrowPack<T>;
   constexpr Index w = kNarrowLanes<T>, kRows = 4;
   const Index full = x.samples / w * w;
@@ -198,11 +198,11 @@ void row_sums(Lanes<const T> x, T* sums) {
   }
 }
 
-#define PHYSINV_INSTANTIATE(T)                    \
-  template decltype(transpose<T>) transpose<T>;   \
-  template decltype(to_lanes<T>) to_lanes<T>;     \
-  template decltype(from_lanes<T>) from_lanes<T>; \
-  template decltype(add_lanes<T>) add_lanes<T>;   \
+#define PHYSINV_INSTANTIATE(T)                      \
+  template decltype(transpose<T>) transpose<T>;     \
+  template decltype(to_rows<T>) to_rows<T>;         \
+  template decltype(from_rows<T>) from_rows<T>;     \
+  template decltype(add_to_rows<T>) add_to_rows<T>; \
   template decltype(row_sums<T>) row_sums<T>;
 PHYSINV_INSTANTIATE(float)
 PHYSINV_INSTANTIATE(double)

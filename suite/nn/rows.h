@@ -1,4 +1,4 @@
-/// Lanes: how activations lie inside a network. Row = feature, columns =
+/// Rows: how activations lie inside a network. Row = feature, columns =
 /// samples, contiguous and padded to whole narrow packs. Batches (one
 /// sample = one column) are transposed only at the network's boundary.
 ///
@@ -6,19 +6,21 @@
 /// no result may depend on it.
 #pragma once
 
+#include <cstddef>
 #include <type_traits>
 
 #include "suite/core/batch.h"
 #include "suite/core/simd/pack.h"
+#include "suite/core/workspace.h"
 
 namespace physinv::nn {
 
-/// Distance between rows of `width` lanes. From three cache lines on an odd
+/// Distance between rows of `width` numbers. From three cache lines on an odd
 /// number of them: with 512-byte rows a column of 128 features would fall into
 /// 8 sets of the L1. With two lines it fits, and a third of the memory is
 /// saved.
 template <class T>
-constexpr Index lane_stride(Index width) {
+constexpr Index row_stride(Index width) {
   constexpr Index line = 2 * kNarrowLanes<T>;
   if (width <= line) return width;
   const Index lines = (width + line - 1) / line;
@@ -27,24 +29,49 @@ constexpr Index lane_stride(Index width) {
 
 /// View of features x samples. `T` may be const.
 template <class T>
-struct Lanes {
+struct Rows {
   T* data = nullptr;
   Index rows = 0, samples = 0, width = 0, stride = 0;
 
-  Lanes() = default;
-  Lanes(T* d, Index r, Index n)
+  Rows() = default;
+  Rows(T* d, Index r, Index n)
       : data(d),
         rows(r),
         samples(n),
         width(round_up(n, kNarrowLanes<std::remove_const_t<T>>)),
-        stride(lane_stride<std::remove_const_t<T>>(width)) {}
+        stride(row_stride<std::remove_const_t<T>>(width)) {}
 
   T* row(Index i) const { return data + i * stride; }
   explicit operator bool() const { return data != nullptr; }
-  operator Lanes<const T>() const requires(!std::is_const_v<T>) {
+  operator Rows<const T>() const requires(!std::is_const_v<T>) {
     return {data, rows, samples};
   }
 };
+
+/// Memory for rows, until the scope ends.
+template <class T>
+Rows<T> take_rows(Workspace& work, Index rows, Index samples) {
+  Rows<T> x(nullptr, rows, samples);
+  x.data = work.take<T>(x.stride, rows).data();
+  return x;
+}
+
+/// A slot of a tape as rows, opened for writing.
+template <class T>
+Rows<T> open_rows(Tape& tape, std::size_t slot, Index rows, Index samples) {
+  Rows<T> x(nullptr, rows, samples);
+  x.data = tape.slot<T>(slot, x.stride, rows).data();
+  return x;
+}
+
+/// And as it was left.
+template <class T>
+Rows<T> kept_rows(const Tape& tape,
+                  std::size_t slot,
+                  Index rows,
+                  Index samples) {
+  return {tape.view<T>(slot).data(), rows, samples};
+}
 
 /// What a transpose writes behind the last of its rows, up to a whole vector.
 enum class Behind { none, zeros };
@@ -59,20 +86,20 @@ void transpose(const T* from,
                Index to_stride,
                Behind behind = Behind::none);
 
-/// Samples as columns -> lanes; the padding becomes zero.
+/// Samples as columns -> rows; the padding becomes zero.
 template <class T>
-void to_lanes(BatchIn<T> from, Lanes<T> to);
+void to_rows(BatchIn<T> from, Rows<T> to);
 
 template <class T>
-void from_lanes(Lanes<const T> from, BatchOut<T> to);
+void from_rows(Rows<const T> from, BatchOut<T> to);
 
 /// to += more, padding included.
 template <class T>
-void add_lanes(Lanes<const T> more, Lanes<T> to);
+void add_to_rows(Rows<const T> more, Rows<T> to);
 
 /// sums[i] = sum of row i over its samples. Lane l adds samples l, l + W, ...;
 /// the lanes are then added pairwise, so the order is that of n alone.
 template <class T>
-void row_sums(Lanes<const T> x, T* sums);
+void row_sums(Rows<const T> x, T* sums);
 
 }  // namespace physinv::nn
