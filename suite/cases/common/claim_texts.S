@@ -18,7 +18,9 @@ physinv_claim_texts:
     claims hig/toy
     claims jpo/billiards
     claims jpo/kuramoto_sivashinsky
+    claims jpo/navier_stokes
     claims jpo/robotic_arm
+    claims jpo/wave_packet
     claims physgrad/scaling
     claims sip/exponential
     claims sip/fluid
