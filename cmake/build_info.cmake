@@ -1,15 +1,11 @@
 # physinv_build_info: what this build is made of (suite/harness/build_info.h),
 # with hash and #include lines of every source that numbers can come from, read
-# at build time by physinv-sources. The file is rewritten only when its content
-# changes, which comments and formatting do not.
+# at build time by physinv-sources (sources.cpp). The file is rewritten only when
+# its content changes, which comments and formatting do not.
 # The bits of exp and sin are SLEEF's, whose version stands in its header.
-set(physinv_sleef)
-foreach(part MAJOR MINOR PATCHLEVEL)
-  file(STRINGS ${SLEEF_INCLUDE_DIR}/sleef.h line
-    REGEX "^#define SLEEF_VERSION_${part} ")
-  string(REGEX REPLACE "[^0-9]+" "" line "${line}")
-  list(APPEND physinv_sleef ${line})
-endforeach()
+file(STRINGS ${SLEEF_INCLUDE_DIR}/sleef.h lines
+  REGEX "^#define SLEEF_VERSION_(MAJOR|MINOR|PATCHLEVEL) ")
+string(REGEX MATCHALL "[0-9]+" physinv_sleef "${lines}")
 list(JOIN physinv_sleef "." physinv_sleef)
 include(${CMAKE_CURRENT_LIST_DIR}/libc.cmake)
 physinv_libc_version(physinv_libc)
@@ -37,37 +33,32 @@ string(REGEX REPLACE " +" " " physinv_bit_flags "${physinv_bit_flags}")
 string(STRIP "${physinv_bit_flags}" physinv_bit_flags)
 
 set(physinv_info ${PROJECT_BINARY_DIR}/build_info)
-file(CONFIGURE OUTPUT ${physinv_info}/values.cmake @ONLY CONTENT [[
-set(compiler "@CMAKE_CXX_COMPILER_ID@")
-set(compiler_version "@CMAKE_CXX_COMPILER_VERSION@")
-set(flags "@physinv_flags_text@")
-set(bit_flags "@physinv_bit_flags@")
-set(build_type "@CMAKE_BUILD_TYPE@")
-set(instruction_set "@physinv_arch@")
-set(version "@PROJECT_VERSION@")
-set(eigen "@Eigen3_VERSION@")
-set(sleef "@physinv_sleef@")
-set(hdf5 "@HDF5_VERSION@")
-set(json "@nlohmann_json_VERSION@")
-set(fmt "@fmt_VERSION@")
-set(cli11 "@CLI11_VERSION@")
-set(libc "@physinv_libc@")
-set(emulator "@CMAKE_CROSSCOMPILING_EMULATOR@")
-]])
+file(CONFIGURE OUTPUT ${physinv_info}/values.txt @ONLY CONTENT
+"compiler=@CMAKE_CXX_COMPILER_ID@
+compiler_version=@CMAKE_CXX_COMPILER_VERSION@
+flags=@physinv_flags_text@
+bit_flags=@physinv_bit_flags@
+build_type=@CMAKE_BUILD_TYPE@
+instruction_set=@physinv_arch@
+version=@PROJECT_VERSION@
+eigen=@Eigen3_VERSION@
+sleef=@physinv_sleef@
+hdf5=@HDF5_VERSION@
+json=@nlohmann_json_VERSION@
+fmt=@fmt_VERSION@
+cli11=@CLI11_VERSION@
+libc=@physinv_libc@
+")
 
 add_executable(physinv-sources cmake/sources.cpp suite/core/hash.cpp)
 target_include_directories(physinv-sources PRIVATE ${PROJECT_SOURCE_DIR})
-target_link_libraries(physinv-sources PRIVATE fmt::fmt)
-
+target_link_libraries(physinv-sources PRIVATE fmt::fmt re2::re2)
 add_custom_command(
   OUTPUT ${physinv_info}/build_info.cpp
   BYPRODUCTS ${physinv_info}/physinv-build.cmake
   DEPFILE ${physinv_info}/build_info.d
-  DEPENDS physinv-sources ${physinv_info}/values.cmake
-    ${CMAKE_CURRENT_LIST_DIR}/write_build_info.cmake
-  COMMAND ${CMAKE_COMMAND} -D source_dir=${PROJECT_SOURCE_DIR}
-    -D info=${physinv_info} -D scanner=$<TARGET_FILE:physinv-sources>
-    -P ${CMAKE_CURRENT_LIST_DIR}/write_build_info.cmake
+  DEPENDS ${physinv_info}/values.txt
+  COMMAND physinv-sources --build-info ${PROJECT_SOURCE_DIR} ${physinv_info}
   COMMENT "Sources of the numerics"
   VERBATIM)
 physinv_layer(build_info SOURCES ${physinv_info}/build_info.cpp)

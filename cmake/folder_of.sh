@@ -44,7 +44,7 @@ find_folder() {
       found=$line all=("${names[@]}")
       [[ -z $word ]] || filter=^$name/
     done
-  done <"$root/suite/cases/experiments.def"
+  done <"$root/suite/cases/common/experiments.def"
   [[ $filter != *'*'/ ]] && results_are_of "${out:-results/$profile}" "${all[@]}" ||
     return 0
   # shellcheck disable=SC2034 # read by who calls this

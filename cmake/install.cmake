@@ -12,21 +12,17 @@ install(CODE "
   endif()" ALL_COMPONENTS)
 
 add_library(physinv INTERFACE)
-set(physinv_exported physinv physinv_flags)
 set_target_properties(physinv_flags PROPERTIES EXPORT_NAME flags)
-set(layers ${physinv_numbers})
+set(layers ${physinv_numbers} decompositions nn problems optimizers store results
+  evidence build_info harness)
 list(FILTER layers EXCLUDE REGEX "_numbers$")  # of experiments
-foreach(layer ${layers} decompositions nn problems optimizers store results evidence
-               build_info harness)
-  target_link_libraries(physinv INTERFACE physinv_${layer})
-  list(APPEND physinv_exported physinv_${layer})
-endforeach()
+list(TRANSFORM layers PREPEND physinv_)
+target_link_libraries(physinv INTERFACE ${layers})
 
 set(physinv_package ${CMAKE_INSTALL_LIBDIR}/cmake/physinv)
-install(TARGETS ${physinv_exported} EXPORT physinv COMPONENT development)
-foreach(layer app_run app gate compare planning reports)
-  install(TARGETS physinv_${layer} EXPORT physinv COMPONENT development)
-endforeach()
+install(TARGETS physinv physinv_flags ${layers} physinv_app_run physinv_app
+  physinv_gate physinv_compare physinv_planning physinv_reports
+  EXPORT physinv COMPONENT development)
 # Their main, which stands in the sources of a program.
 install(TARGETS physinv_main EXPORT physinv
   OBJECTS DESTINATION ${CMAKE_INSTALL_LIBDIR}/physinv COMPONENT development)

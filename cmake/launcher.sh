@@ -108,10 +108,9 @@ configure() {
   printf '%s\n' "$tests $root" >"$tree/.configured"
 }
 
-# is_built TREE PROGRAM...: are they what `built` noted, and has nothing changed
-# since that a build reads? By times: sources, where git stands, how the tree is
-# configured, the headers of the machine, which its packages are. Ninja would look
-# at each of its thousands of files.
+# is_built TREE PROGRAM...: are they as `built` noted them, and is nothing newer that
+# a build reads? Sources, where git stands, the tree's configuration, the machine's
+# headers by its packages. Ninja would look at each of its thousands of files.
 is_built() {
   local tree=$1 git=$root/.git known='' file
   shift

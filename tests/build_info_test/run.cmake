@@ -1,9 +1,9 @@
-# What write_build_info.cmake makes of a little tree, and of edits to it.
+# What physinv-sources makes of a little tree, and of edits to it.
 # Usage: cmake -D source=... -D scanner=... -D work=... -P run.cmake
 cmake_minimum_required(VERSION 3.25)
 set(tree ${work}/tree)
 file(REMOVE_RECURSE ${work})
-file(WRITE ${work}/values.cmake "set(compiler GNU)\nset(bit_flags -O3)\n")
+file(WRITE ${work}/values.txt "compiler=GNU\nbit_flags=-O3 \"\\\n")
 file(WRITE ${tree}/suite/harness/run_stage.cpp "int runs;\n")
 file(WRITE ${tree}/suite/harness/run_stage.h "")
 file(WRITE ${tree}/suite/core/rng.h "#include <cstdint>\n")
@@ -16,8 +16,7 @@ file(WRITE ${tree}/reports/page.cpp "")
 
 macro(make)
   execute_process(
-    COMMAND ${CMAKE_COMMAND} -D source_dir=${tree} -D info=${work}
-      -D scanner=${scanner} -P ${source}/cmake/write_build_info.cmake
+    COMMAND ${scanner} --build-info ${tree} ${work}
     COMMAND_ERROR_IS_FATAL ANY)
   set(before_fingerprint ${fingerprint})
   set(before_foundation ${foundation})
@@ -50,6 +49,8 @@ function(entry path)
 endfunction()
 
 make()
+string(FIND "${made}" "i.bit_flags = \"-O3 \\\"\\\\\";" at)
+differ("values are texts of C++" "${at}" -1)
 entry(problems/heat/heat.cpp)
 same("both lines are read" "${includes}"
   "problems/heat/heat.h suite/core/rng.h ")
@@ -100,13 +101,13 @@ file(APPEND ${tree}/suite/harness/run_stage.cpp "int otherwise;\n")
 make()
 differ("what runs every stage is foundation"
   "${foundation}" "${before_foundation}")
-file(APPEND ${work}/values.cmake "set(bit_flags -O2)\n")
+file(APPEND ${work}/values.txt "bit_flags=-O2\n")
 make()
 differ("and so are flags" "${foundation}" "${before_foundation}")
-file(APPEND ${work}/values.cmake "set(instruction_set x86-64-v4)\n")
+file(APPEND ${work}/values.txt "instruction_set=x86-64-v4\n")
 make()
 same("registers are not" "${foundation}" "${before_foundation}")
-file(APPEND ${work}/values.cmake "set(compiler Clang)\n")
+file(APPEND ${work}/values.txt "compiler=Clang\n")
 make()
 same("nor is the compiler" "${foundation}" "${before_foundation}")
 differ("a plug-in is built by the same" "${interfaces}"

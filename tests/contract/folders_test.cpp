@@ -1,4 +1,5 @@
-// The list of folders (suite/cases/experiments.def) against what they register.
+// The list of folders (suite/cases/common/experiments.def) against what they
+// register.
 #include "suite/cases/common/folders.h"
 
 #include <gtest/gtest.h>

@@ -79,7 +79,7 @@ def names(*arguments):
 
 def listed():
     """Layers and names of experiments by folder."""
-    text = (SOURCES / "suite/cases/experiments.def").read_text()
+    text = (SOURCES / "suite/cases/common/experiments.def").read_text()
     rows = re.findall(r'^FOLDER\("(.*?)", "(.*?)", "(.*?)"', text, re.M)
     return {path: (layers.split(), names.split())
             for path, layers, names in reversed(rows)}  # the first line counts
@@ -87,7 +87,7 @@ def listed():
 
 def functions_listed():
     """What a folder's sources define is what its lines name."""
-    text = (SOURCES / "suite/cases/experiments.def").read_text()
+    text = (SOURCES / "suite/cases/common/experiments.def").read_text()
     named, defined = set(), set()
     for path, space, functions in re.findall(
             r'^FOLDER\("(.*?)", ".*?", ".*?", ([\w:]+), (.*)\)$', text, re.M):

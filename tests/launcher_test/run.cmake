@@ -9,8 +9,8 @@ file(COPY ${source}/bench ${source}/check ${source}/CMakePresets.json
   DESTINATION ${checkout})
 file(COPY ${source}/cmake/launcher.sh ${source}/cmake/folder_of.sh
   DESTINATION ${checkout}/cmake)
-file(COPY ${source}/suite/cases/experiments.def
-  DESTINATION ${checkout}/suite/cases)
+file(COPY ${source}/suite/cases/common/experiments.def
+  DESTINATION ${checkout}/suite/cases/common)
 file(WRITE ${checkout}/apt-packages.txt "[bench]\n[test]\n[dev]\n")
 file(WRITE ${checkout}/main.cpp "int main() {}\n")
 file(WRITE ${checkout}/CMakeLists.txt [[

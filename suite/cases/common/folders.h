@@ -1,4 +1,4 @@
-/// What is registered, as suite/cases/experiments.def lists it.
+/// What is registered, as suite/cases/common/experiments.def lists it.
 #pragma once
 
 #include <string>

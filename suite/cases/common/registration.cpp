@@ -19,7 +19,7 @@ namespace physinv {
   namespace space {                             \
   Add __VA_ARGS__;                              \
   }
-#include "suite/cases/experiments.def"
+#include "suite/cases/common/experiments.def"
 #undef FOLDER
 
 namespace {
@@ -51,7 +51,7 @@ std::vector<CaseFolder> listed() {
   } else {                                      \
     append(all, path, names, {});               \
   }
-#include "suite/cases/experiments.def"
+#include "suite/cases/common/experiments.def"
 #undef FOLDER
   return all;
 }
