@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <iterator>
+
 #include "suite/evidence/run_values.h"
 #include "suite/evidence/statistics.h"
 #include "suite/results/published.h"
@@ -187,6 +190,13 @@ TEST(ClaimDocument, ANumberIsKeptByItsLabelWhateverTextIsShown) {
   const Claim renamed = claim("- new words: `mean(\"a\", loss()) > 1`\n");
   EXPECT_EQ(judge_again(renamed, kept, {nothing, nothing}).verdict,
             Verdict::not_judged);
+}
+
+TEST(ClaimDocument, ThePageOfClaimsListsEveryName) {
+  std::ifstream file(PHYSINV_SOURCE_DIR "/docs/claims.md");
+  const std::string page{std::istreambuf_iterator<char>(file), {}};
+  for (const std::string& name : claim_names().all())
+    EXPECT_NE(page.find("`" + name + "("), std::string::npos) << name;
 }
 
 TEST(ClaimDocument, NamesThePlaceOfAnErrorAndWhatWouldBeRight) {
