@@ -76,8 +76,8 @@ class Registry {
 /// The program's registry; safe to use while statics are initialised.
 Registry& registry();
 
-/// What a program is over: every program defines it, the suite's by CMake
-/// (write_registration.cmake), and its main calls it once for `registry()`.
+/// What a program is over: every program defines it, the suite's in
+/// suite/cases/common, and its main calls it once for `registry()`.
 void register_all(Registry& registry);
 
 /// For sources of others, which register when the program or plug-in is loaded;
