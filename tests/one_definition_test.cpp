@@ -153,7 +153,11 @@ std::string inline_variable(const Tokens& head) {
     if (head[end] == "(" || head[end] == "namespace") return "";
     shared = shared || head[end] == "inline";
   }
-  return shared && end > 0 ? head[end - 1] : "";
+  if (!shared || end == 0) return "";
+  if (head[end - 1] != ">") return head[end - 1];
+  std::size_t name = end - 1;  // of a specialization: with its arguments
+  while (name > 0 && head[name] != "<") --name;
+  return name > 0 ? joined(head, name - 1, end) : "";
 }
 
 /// Namespace and name of all that a source defines so, outside unnamed

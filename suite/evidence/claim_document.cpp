@@ -236,8 +236,11 @@ class Reader {
     }
     if (alternatives.empty()) fail(whole.place(0), "a condition is missing");
     Condition all = alternatives.back();
-    for (auto k = alternatives.size() - 1; k-- > 0;)
+    for (auto k = alternatives.size() - 1; k-- > 0;) {
+      const bool stages = alternatives[k].of_stages && all.of_stages;
       all = either(alternatives[k], all);
+      all.of_stages = stages;
+    }
     to.push_back(std::move(all));
   }
 

@@ -114,23 +114,24 @@ bool is_cube(const ArrayPlace& at) {
 }
 
 void read(hid_t group, const ArrayPlace& at, std::vector<double>& to) {
-  to = hdf5::read_list(group, at.name);
+  to = hdf5::read_list(group, at.name_text());
 }
 /// A number per example; (1, examples) in version 1.
 void read(hid_t group, const ArrayPlace& at, Vector<double>& to) {
-  const Batch<double> all = read_array(group, at.name);
-  if (hdf5::rank(group, at.name) == 2 && all.cols() != 1 && all.size() > 0)
+  const Batch<double> all = read_array(group, at.name_text());
+  if (hdf5::rank(group, at.name_text()) == 2 && all.cols() != 1 &&
+      all.size() > 0)
     throw StoreError(fmt::format("array {} is no list of examples", at.name));
   to = all.reshaped();
 }
 void read(hid_t group, const ArrayPlace& at, Batch<double>& to) {
-  to = is_cube(at) && hdf5::rank(group, at.name) != 2
-           ? hdf5::read_cube(group, at.name)
-           : hdf5::read_batch(group, at.name);
+  to = is_cube(at) && hdf5::rank(group, at.name_text()) != 2
+           ? hdf5::read_cube(group, at.name_text())
+           : hdf5::read_batch(group, at.name_text());
 }
 void read(hid_t group, const ArrayPlace& at, std::vector<Status>& to) {
   to.clear();
-  for (const auto code : hdf5::read_codes(group, at.name))
+  for (const auto code : hdf5::read_codes(group, at.name_text()))
     to.push_back(status_of(code));
 }
 
@@ -145,8 +146,11 @@ void read_arrays(const hdf5::Handle& group, StageRecord& r) {
 }
 
 hdf5::Note note_of(const ArrayPlace& at, const Meaning& unknowns) {
-  if (at.unit != kUnknowns) return {.axes = at.axes, .unit = at.unit};
-  return {.axes = at.axes, .unit = unknowns.unit, .names = unknowns.names};
+  if (at.unit != kUnknowns)
+    return {.axes = std::string(at.axes), .unit = std::string(at.unit)};
+  return {.axes = std::string(at.axes),
+          .unit = unknowns.unit,
+          .names = unknowns.names};
 }
 
 /// 1 had none.
@@ -366,6 +370,7 @@ void CaseFile::put_arrays(const hdf5::Handle& group,
     using T = std::remove_cvref_t<decltype(array)>;
     if (at.name.starts_with("curve/") && !hdf5::has(group, "curve"))
       hdf5::create_group(group, "curve");
+    const std::string name = at.name_text();
     const auto note = note_of(at, about_.unknowns);
     if constexpr (std::is_same_v<T, Batch<double>>) {
       const Index all = array.rows();
@@ -373,12 +378,12 @@ void CaseFile::put_arrays(const hdf5::Handle& group,
       const bool apart = unknowns > 0 && all % unknowns == 0 && all > 0;
       if (is_cube(at))
         return hdf5::write_cube(
-            group, at.name, array, apart ? all / unknowns : 1, note);
+            group, name, array, apart ? all / unknowns : 1, note);
     }
     if constexpr (std::is_same_v<T, Vector<double>>)
-      hdf5::write(group, at.name, list_of(array), note);
+      hdf5::write(group, name, list_of(array), note);
     else
-      hdf5::write(group, at.name, array, note);
+      hdf5::write(group, name, array, note);
   });
   const auto arrays = hdf5::create_group(group, "arrays");
   for (const auto& [key, array] : r.arrays) {

@@ -98,11 +98,13 @@ void each_field(MaybeConst<CaseInfo> auto& info, F&& f) {
 
 /// An array of a stage in the case file.
 struct ArrayPlace {
-  std::string name;  ///< "loss", or of the curve "curve/loss"
-  std::string axes;  ///< what they count, the slowest first
-  std::string unit;  ///< "1" for none, kUnknowns for that of the unknowns
+  std::string_view name;  ///< "loss", or of the curve "curve/loss"
+  std::string_view axes;  ///< what they count, the slowest first
+  std::string_view unit;  ///< "1" for none, kUnknowns for that of the unknowns
+
+  std::string name_text() const { return std::string(name); }
 };
-inline constexpr const char* kUnknowns = "unknowns";
+inline constexpr std::string_view kUnknowns = "unknowns";
 
 /// Calls f(place, array) for each array in the order of their hash; after them
 /// come the findings, under names of their own.

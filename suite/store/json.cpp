@@ -167,7 +167,7 @@ CaseInfo case_from_json(const json& j) { return from_object<CaseInfo>(j); }
 std::vector<std::uint8_t> to_wire(const StageRecord& record) {
   json arrays = json::object(), findings = json::object();
   each_array(record, [&](const ArrayPlace& at, const auto& array) {
-    arrays[at.name] = binary(array);
+    arrays[at.name_text()] = binary(array);
   });
   for (const auto& [name, array] : record.arrays)
     findings[name] = binary(array);
@@ -180,7 +180,7 @@ StageRecord from_wire(std::span<const std::uint8_t> bytes) {
   const json j = json::from_msgpack(bytes.begin(), bytes.end());
   auto record = stage_from_json(j.at("stage"));
   each_array(record, [&](const ArrayPlace& at, auto& array) {
-    read_binary(j.at("arrays").at(at.name), array);
+    read_binary(j.at("arrays").at(at.name_text()), array);
   });
   for (const auto& [name, array] : j.at("findings").items())
     read_binary(array, record.arrays[ArrayKey::own(name)]);
