@@ -29,7 +29,8 @@ std::vector<double> distances_of_guess(const Run& run) {
 std::vector<double> approached(const Run& run) {
   const auto first = first_tracked(0)(run), last = last_tracked(0)(run);
   std::vector<double> flags;
-  for (std::size_t i = 0; i < first.size(); ++i) {
+  const auto known = static_cast<std::size_t>(run.record->data.x.cols());
+  for (std::size_t i = 0; i < std::min(first.size(), known); ++i) {
     const double truth = run.record->data.x(0, static_cast<Index>(i));
     flags.push_back(std::abs(last[i] - truth) < std::abs(first[i] - truth));
   }

@@ -31,10 +31,11 @@ Labelled largest_rate(const Select& of,
   };
 }
 
-/// At the last measured point up to there.
-double error_by(const Run& run, double seconds) {
+/// At the last measured point up to there, if there is one.
+std::optional<double> error_by(const Run& run, double seconds) {
   const auto& all = run.stage->curve.seconds;
   const auto after = std::upper_bound(all.begin(), all.end(), seconds);
+  if (after == all.begin()) return {};
   return CurveRow{*run.stage, "metrics", kError}(
       static_cast<Index>(after - all.begin()) - 1);
 }
@@ -47,7 +48,10 @@ RunValue over_at_equal_time(const Select& other) {
       return {};
     const double seconds = std::min(run.stage->curve.seconds.back(),
                                     rival->stage->curve.seconds.back());
-    return error_by(run, seconds) / error_by(*rival, seconds);
+    const auto error = error_by(run, seconds),
+               theirs = error_by(*rival, seconds);
+    if (!error || !theirs) return {};
+    return *error / *theirs;
   };
 }
 /// Error of direct estimates over that of zero, mean over the examples.
