@@ -3,9 +3,11 @@ set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})
 
 find_program(PHYSINV_CCACHE ccache)
 if(PHYSINV_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  # What ccache asks for where headers are precompiled.
+  # What ccache asks for where headers are precompiled; with comments, as the
+  # compiler knows a precompiled header again by all of its bytes.
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
-    CCACHE_SLOPPINESS=pch_defines,time_macros ${PHYSINV_CCACHE})
+    CCACHE_SLOPPINESS=pch_defines,time_macros CCACHE_COMMENTS=1
+    ${PHYSINV_CCACHE})
   add_compile_options($<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
 endif()
 
