@@ -156,6 +156,9 @@ RunValue decrease_before(bool from_prior) {
     if (!fit || !begins) return {};
     const Curve& curve = begins->stage->curve;
     if (curve.points() == 0 || curve.iteration.front() != 0) return {};
+    const Index problems = run.stage->loss.size();
+    if (fit->stage->loss.size() != problems || curve.loss.rows() != problems)
+      return {};
     return decrease_share(curve.loss.col(0), fit->stage->loss, run.stage->loss);
   };
 }
