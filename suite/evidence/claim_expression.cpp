@@ -7,10 +7,10 @@
 #include <cctype>
 #include <charconv>
 #include <exception>
-#include <memory>
 #include <optional>
 #include <utility>
 
+#include "suite/core/decimal.h"
 #include "suite/evidence/training.h"
 #include "suite/results/nearest.h"
 
@@ -149,6 +149,11 @@ class Expression {
   }
   Token take() { return tokens_[next_++]; }
   const Token& now() const { return tokens_[next_]; }
+  /// What has not been read.
+  Tokens rest() const {
+    return {tokens_.begin() + static_cast<std::ptrdiff_t>(next_),
+            tokens_.end()};
+  }
   void expect_end() {
     if (now().kind != Token::Kind::end)
       fail(fmt::format("'{}' is not expected here", now().text));
@@ -188,7 +193,10 @@ class Expression {
     if (depth_ > kDeepest) fail("this is nested too deeply");
     if (t.kind == Token::Kind::end) fail("an expression is missing here");
     ++next_;
-    if (t.kind == Token::Kind::number) return number(t);
+    if (t.kind == Token::Kind::number) {
+      if (const auto number = decimal<double>(t.text)) return *number;
+      throw ExpressionError{t.place, t.text + " is no number that fits"};
+    }
     if (t.kind == Token::Kind::text) return t.text;
     if (t.kind == Token::Kind::name) return is("(") ? call(t) : value(t);
     if (t.text == "-") {
@@ -207,12 +215,6 @@ class Expression {
     if (t.text == "[") return list("]");
     throw ExpressionError{t.place,
                           fmt::format("'{}' is not expected here", t.text)};
-  }
-
-  static ClaimValue number(const Token& t) {
-    double value = 0;
-    std::from_chars(t.text.data(), t.text.data() + t.text.size(), value);
-    return value;
   }
 
   ClaimList list(std::string_view close) {
@@ -437,10 +439,10 @@ std::vector<Condition> conditions_of(const std::string& label,
 }
 
 void define(const PlacedText& code, ClaimNames& names) {
-  const auto tokens = std::make_shared<const Tokens>(tokens_of(code));
+  const Tokens tokens = tokens_of(code);
   const Locals none;
   int calls_left = kMostCalls;
-  Expression e(*tokens, names, none, calls_left);
+  Expression e(tokens, names, none, calls_left);
   if (e.now().kind != Token::Kind::name) e.fail("a name is missing here");
   const Token name = e.take();
   const bool is_function = e.is("(");
@@ -451,22 +453,17 @@ void define(const PlacedText& code, ClaimNames& names) {
     e.expect_end();
     return;
   }
-  const auto body = std::make_shared<const Tokens>(
-      std::find_if(tokens->begin(),
-                   tokens->end(),
-                   [](const Token& t) { return t.text == "="; }) +
-          1,
-      tokens->end());
   names.add(
       name.text,
       ClaimNames::Function{
           std::vector<std::type_index>(parameters.size(), typeid(ClaimValue)),
-          [=](const ClaimNames::Call& call) -> std::optional<ClaimValue> {
+          [parameters, body = e.rest()](
+              const ClaimNames::Call& call) -> std::optional<ClaimValue> {
             Locals locals;
             for (std::size_t k = 0; k < parameters.size(); ++k)
               locals[parameters[k]] = call.arguments[k];
             Expression inside(
-                *body, call.names, locals, call.calls_left, call.depth);
+                body, call.names, locals, call.calls_left, call.depth);
             ClaimValue result = inside.sum();
             inside.expect_end();
             return result;

@@ -192,6 +192,8 @@ void add_run_values(ClaimNames& names) {
   names.add("mean_of", [](const RunRow& row) { return of_row(row, mean_of); });
   names.add("least_of",
             [](const RunRow& row) { return of_row(row, least_of); });
+  names.add("median_of",
+            [](const RunRow& row) { return of_row(row, physinv::median); });
   names.add("most_of", [](const RunRow& row) { return of_row(row, most_of); });
 }
 

@@ -213,6 +213,8 @@ TEST(ClaimDocument, NamesThePlaceOfAnErrorAndWhatWouldBeRight) {
             "claims.md:5:10: an expression is missing here");
   EXPECT_EQ(error_of_expression("1 2"),
             "claims.md:5:9: '2' is not expected here");
+  EXPECT_EQ(error_of_expression("1e999"),
+            "claims.md:5:7: 1e999 is no number that fits");
   EXPECT_EQ(error_of_expression("(1"), "claims.md:5:9: ')' is missing here");
   EXPECT_EQ(error_of_expression("Two ; 3"),
             "claims.md:5:11: ';' means nothing here");

@@ -82,9 +82,6 @@ void add_claims(Registry& r) {
       jpo::beyond_training(problem<NavierStokes>("navier_stokes"), 0, kLabels));
   names.add("better_in_band", better(Equality::band));
   names.add("equal_in_band", equal(Equality::band));
-  names.add("median_loss", of_row(losses(), [](auto losses) {
-              return median(std::move(losses));
-            }));
   names.add("table3_from_prior",
             [](Index seeds) { return table3(seeds, true); });
   add_claims_of_folder(r, "jpo/navier_stokes", names);

@@ -25,9 +25,6 @@ double slack_of_misses(const Run& run) {
 void add_claims(Registry& r) {
   ClaimNames names = jpo::claim_names();
   names.add("slack_of_misses", RunValue(slack_of_misses));
-  names.add("median_loss", of_row(losses(), [](auto losses) {
-              return median(std::move(losses));
-            }));
   add_claims_of_folder(r, "jpo/robotic_arm", names);
 }
 
