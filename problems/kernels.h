@@ -5,28 +5,26 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
-#include <string>
-#include <type_traits>
+#include <utility>
 #include <vector>
 
-#include "suite/core/problem.h"
+#include "suite/core/any_problem.h"
 
 namespace physinv {
 
 /// A problem with n of its own samples and room for whatever is asked of it.
-template <template <class> class Kind, class T>
+template <class T>
 struct KernelFixture {
-  explicit KernelFixture(Index n, const typename Kind<T>::Options& options = {})
-      : problem(options) {
-    const Shape shape = problem.shape();
-    const auto s = problem.sample_labelled(0, n, Rng::root("kernels", 0));
+  KernelFixture(const ProblemRecipe& recipe, Index n) : problem(recipe) {
+    const auto s =
+        recipe.make<double>()->sample_labelled(0, n, Rng::root("kernels", 0));
     x = s.x.template cast<T>();
     given = s.given.template cast<T>();
     y_bar = y = target = s.y.template cast<T>();
-    x_bar.resize(shape.unknowns, n);
+    x_bar.resize(x.rows(), n);
   }
 
-  Kind<T> problem;
+  AnyProblem<T> problem;
   Batch<T> x, given, target, y, y_bar, x_bar, j;
   Workspace work;
   Tape tape;
@@ -46,12 +44,10 @@ struct KernelSizes {
 };
 
 /// Registers BM_<problem>_<what><T> for both precisions.
-template <template <class> class Kind>
 class Kernels {
  public:
-  explicit Kernels(std::string problem) : name_(std::move(problem)) {}
-  Kernels(std::string problem, const KernelSizes& sizes)
-      : Kernels(std::move(problem)) {
+  Kernels(ProblemRecipe recipe, const KernelSizes& sizes)
+      : recipe_(std::move(recipe)) {
     add("forward", sizes.forward, [](auto& f) {
       f.problem.forward(f.x, f.given, f.y, f.work);
     });
@@ -59,12 +55,10 @@ class Kernels {
       f.problem.linearize(f.x, f.given, f.y, f.tape);
       f.problem.pullback(f.tape, f.y_bar, f.x_bar, f.work);
     });
-    if constexpr (std::is_base_of_v<Jacobian<float>, Kind<float>>) {
-      add("jacobian", sizes.jacobian, [](auto& f) {
-        f.j.resize(f.y.rows() * f.x.rows(), f.x.cols());
-        f.problem.jacobian(f.x, f.given, f.j, f.work);
-      });
-    }
+    add("jacobian", sizes.jacobian, [](auto& f) {
+      f.j.resize(f.y.rows() * f.x.rows(), f.x.cols());
+      f.problem.jacobian(f.x, f.given, f.j, f.work);
+    });
   }
 
   /// `run(fixture)` is what is timed.
@@ -83,9 +77,9 @@ class Kernels {
               F run) {
     if (sizes.empty()) return;
     auto* registered = benchmark::RegisterBenchmark(
-        fmt::format("BM_{}_{}<{}>", name_, what, type).c_str(),
-        [run](benchmark::State& state) mutable {
-          KernelFixture<Kind, T> f(state.range(0));
+        fmt::format("BM_{}_{}<{}>", recipe_.name, what, type).c_str(),
+        [run, recipe = recipe_](benchmark::State& state) mutable {
+          KernelFixture<T> f(recipe, state.range(0));
           for (auto _ : state) {
             run(f);
             benchmark::ClobberMemory();
@@ -95,7 +89,7 @@ class Kernels {
     for (const Index n : sizes) registered->Arg(n);
   }
 
-  std::string name_;
+  ProblemRecipe recipe_;
 };
 
 }  // namespace physinv

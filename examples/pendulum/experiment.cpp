@@ -45,7 +45,7 @@ const bool kRegistered = register_experiment({
     .name = "pendulum",
     .title = "Damped pendulum",
     .citation = {.paper = "pendulum", .where = "docs/extending.md"},
-    .problem = problem<Pendulum>("pendulum"),
+    .problem = pendulum(),
     .setting = {.gtol = 1e-8},
     .profiles = {{.name = "smoke",
                   .rows = {row({"bfgs", "momentum"}, 4, 1, 20)}},

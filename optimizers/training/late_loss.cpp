@@ -15,7 +15,7 @@ LateError late_loss(const ProblemRecipe& recipe, double share) {
             Batch<double> answer(y.rows(), y.cols());
             Vector<double> loss(x.cols());
             Workspace work;
-            problem->forward(x, given, answer, work);
+            problem->forward({x, given}, answer, work);
             problem->loss(answer, y, loss);
             return loss.mean();
           }};

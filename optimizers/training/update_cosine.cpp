@@ -74,9 +74,9 @@ class WatchedProxy final : public Signal<T> {
     input_ = batches_.input(0, n), target_ = batches_.target(0, n);
     before_ = mean_estimate();
     Batch<double> there(x_.rows(), n);
-    inverse_.invert(batches_.exact_target(0, n),
-                    batches_.given(0, n).template cast<double>(),
-                    x_.template cast<double>(),
+    inverse_.invert({x_.template cast<double>(),
+                     batches_.given(0, n).template cast<double>()},
+                    batches_.exact_target(0, n),
                     there,
                     work_);
     wanted_ = there.rowwise().mean() - before_;

@@ -12,7 +12,7 @@
 namespace physinv {
 namespace {
 
-using Point = std::array<double, 2>;
+using Place = std::array<double, 2>;
 
 double reach(const BilliardsOptions& o) {
   return (1 + o.elasticity) / (2 * o.drag);
@@ -126,35 +126,21 @@ PHYSINV_LANES void differentiate(const Constants<T>& k,
 /// Runs body(constants, contact, block) for every block; returns the hits.
 template <class T, class F>
 PHYSINV_LANES Index for_contacts(const BilliardsOptions& options,
-                                 BatchIn<T> x,
-                                 BatchIn<T> given,
+                                 const Point<T>& at,
                                  F&& body) {
   const Constants<T> k(options);
-  const Index blocks = Lanes<T>::blocks(x.cols());
+  const Index blocks = Lanes<T>::blocks(at.x.cols());
   Mask<T> hits{};
   for (Index b = 0; b < blocks; ++b) {
     Pack<T> v[2], ball[2];
-    Lanes<T>(v, 2).load(x, b * kLanes<T>);
-    Lanes<T>(ball, 2).load(given, b * kLanes<T>);
+    Lanes<T>(v, 2).load(at.x, b * kLanes<T>);
+    Lanes<T>(ball, 2).load(at.given, b * kLanes<T>);
     Contact<T> contact;
     find_contact(k, v, ball, contact);
     hits += contact.hit;
     body(k, contact, b);
   }
   return count_set(hits);
-}
-
-template <class T>
-void check_input(BatchIn<T> x, BatchIn<T> given) {
-  SUITE_CHECK(x.rows() == 2, "a velocity has two rows");
-  SUITE_CHECK(given.rows() == 2 && given.cols() == x.cols(),
-              "a ball has two rows and each velocity one ball");
-}
-
-template <class M>
-void check_output(const M& out, Index rows, Index cols) {
-  SUITE_CHECK(out.rows() == rows && out.cols() == cols,
-              "output has the wrong size");
 }
 
 template <class T>
@@ -183,7 +169,7 @@ void check_options(const BilliardsOptions& o) {
 
 /// Travelled fraction until two balls a distance d apart, of relative speed u,
 /// touch; negative if they never do.
-double next_contact(const Point& d, const Point& u, const BilliardsOptions& o) {
+double next_contact(const Place& d, const Place& u, const BilliardsOptions& o) {
   using K = Constants<double>;
   const double gap = 2 * o.radius, along = d[0] * u[0] + d[1] * u[1];
   const double uu = u[0] * u[0] + u[1] * u[1];
@@ -192,15 +178,6 @@ double next_contact(const Point& d, const Point& u, const BilliardsOptions& o) {
   if (!(along > 0) || !(disc > K::kGrazing * along * along)) return -1;
   const double s = (along - std::sqrt(disc)) / uu;
   return 1 - o.drag * s > K::kStopping ? s : -1;
-}
-
-/// The first draw of a sample's stream.
-Point draw_ball(const BilliardsOptions& o, Stream& stream) {
-  return {o.ball_x, stream.uniform(o.ball_y[0], o.ball_y[1])};
-}
-
-Stream stream_of(const Rng& rng, Index i) {
-  return rng.child(static_cast<std::uint64_t>(i)).stream();
 }
 
 enum Slot : std::size_t { kJacobians, kLive, kCount };
@@ -238,13 +215,13 @@ Collision<T> collide(const std::array<T, 2>& velocity,
 template decltype(collide<float>) collide<float>;
 template decltype(collide<double>) collide<double>;
 
-BilliardsPath simulate_events(const Point& velocity,
-                              const Point& ball,
+BilliardsPath simulate_events(const Place& velocity,
+                              const Place& ball,
                               const BilliardsOptions& o) {
-  Point p[2] = {o.cue, ball}, v[2] = {velocity, {0, 0}};
+  Place p[2] = {o.cue, ball}, v[2] = {velocity, {0, 0}};
   BilliardsPath path;
   for (; path.events < 8; ++path.events) {
-    const Point d = {p[1][0] - p[0][0], p[1][1] - p[0][1]};
+    const Place d = {p[1][0] - p[0][0], p[1][1] - p[0][1]};
     const double s = next_contact(d, {v[0][0] - v[1][0], v[0][1] - v[1][1]}, o);
     if (s < 0) break;
     for (int b = 0; b < 2; ++b)
@@ -252,7 +229,7 @@ BilliardsPath simulate_events(const Point& velocity,
         p[b][i] += v[b][i] * s;
         v[b][i] *= 1 - o.drag * s;
       }
-    const Point n = {(p[1][0] - p[0][0]) / (2 * o.radius),
+    const Place n = {(p[1][0] - p[0][0]) / (2 * o.radius),
                      (p[1][1] - p[0][1]) / (2 * o.radius)};
     const double kick =
         0.5 * (1 + o.elasticity) *
@@ -269,12 +246,12 @@ BilliardsPath simulate_events(const Point& velocity,
   return path;
 }
 
-std::array<double, 2> exact_velocity(const Point& ball,
+std::array<double, 2> exact_velocity(const Place& ball,
                                      const BilliardsOptions& o) {
   const double lx = o.target[0] - ball[0], ly = o.target[1] - ball[1];
   const double l = math::hypot(lx, ly);
-  const Point n = {lx / l, ly / l};
-  const Point w = {ball[0] - 2 * o.radius * n[0] - o.cue[0],
+  const Place n = {lx / l, ly / l};
+  const Place w = {ball[0] - 2 * o.radius * n[0] - o.cue[0],
                    ball[1] - 2 * o.radius * n[1] - o.cue[1]};
   const double length = math::hypot(w[0], w[1]);
   const double cosine = (n[0] * w[0] + n[1] * w[1]) / length;
@@ -282,134 +259,112 @@ std::array<double, 2> exact_velocity(const Point& ball,
   return {w[0] / length * speed, w[1] / length * speed};
 }
 
-template <class T>
-Billiards<T>::Billiards(const Options& options) : options_(options) {
-  check_options<T>(options);
-}
+namespace {
 
 template <class T>
-Vector<double> Billiards<T>::start() const {
-  return Eigen::Vector2d(options_.start[0], options_.start[1]);
-}
-
-template <class T>
-Samples<double> Billiards<T>::sample(Index first,
-                                     Index count,
-                                     const Rng& rng) const {
-  Samples<double> out;
-  out.x.resize(2, count), out.y.resize(2, count), out.given.resize(2, count);
-  for (Index i = 0; i < count; ++i) {
-    Stream stream = stream_of(rng, first + i);
-    const Point ball = draw_ball(options_, stream);
-    const Point v = exact_velocity(ball, options_);
-    out.given.col(i) << ball[0], ball[1];
-    out.y.col(i) << options_.target[0], options_.target[1];
-    out.x.col(i) << v[0], v[1];
+class Billiards final : public Problem<T>, public Vjp<T>, public Jacobian<T> {
+ public:
+  explicit Billiards(const BilliardsOptions& options) : options_(options) {
+    check_options<T>(options);
   }
-  return out;
-}
 
-template <class T>
-Samples<double> Billiards<T>::sample_labelled(Index first,
-                                              Index count,
-                                              const Rng& rng) const {
-  Samples<double> out;
-  out.x.resize(2, count), out.y.resize(2, count), out.given.resize(2, count);
-  const double spread = options_.velocity_spread;
-  for (Index i = 0; i < count; ++i) {
-    Stream stream = stream_of(rng, first + i);
-    const Point ball = draw_ball(options_, stream);
-    out.given.col(i) << ball[0], ball[1];
-    for (int j = 0; j < 2; ++j)
-      out.x(j, i) = options_.start[j] + stream.uniform(-spread, spread);
+  Shape shape() const override { return {2, 2, 2}; }
+  Vector<double> start() const override {
+    return Eigen::Vector2d(options_.start[0], options_.start[1]);
   }
-  Workspace work;
-  Billiards<double>(options_).forward(out.x, out.given, out.y, work);
-  return out;
-}
 
-template <class T>
-void Billiards<T>::forward(BatchIn<T> x,
-                           BatchIn<T> given,
-                           BatchOut<T> y,
-                           Workspace& work) const {
-  check_input<T>(x, given);
-  check_output(y, 2, x.cols());
-  work.counts[Counter::skipped_events] += for_contacts<T>(
-      options_, x, given, [&](const auto&, Contact<T>& at, Index b) {
-        Lanes<T>(at.y, 2).store(y, b * kLanes<T>);
-      });
-}
-
-template <class T>
-void Billiards<T>::linearize(BatchIn<T> x,
-                             BatchIn<T> given,
-                             BatchOut<T> y,
-                             Tape& tape) const {
-  check_input<T>(x, given);
-  check_output(y, 2, x.cols());
-  constexpr int W = kLanes<T>;
-  const Index blocks = Lanes<T>::blocks(x.cols());
-  auto jacobians = tape.slot<T>(kJacobians, 4 * W, blocks);
-  auto live = tape.slot<LaneInt<T>>(kLive, W, blocks);
-  tape.slot<Index>(kCount, 1, 1)(0, 0) = x.cols();
-  auto* j = reinterpret_cast<Pack<T>*>(jacobians.data());
-  auto* mask = reinterpret_cast<Mask<T>*>(live.data());
-  tape.counts[Counter::skipped_events] += for_contacts<T>(
-      options_, x, given, [&](const auto& k, Contact<T>& at, Index b) {
-        Lanes<T>(at.y, 2).store(y, b * W);
-        mask[b] = at.hit | at.broken;
-        differentiate(k, at, j + 4 * b);
-      });
-}
-
-template <class T>
-void Billiards<T>::pullback(const Tape& tape,
-                            BatchIn<T> y_bar,
-                            BatchOut<T> x_bar,
-                            Workspace& work) const {
-  using P = Pack<T>;
-  const Index count = tape.view<Index>(kCount)(0, 0);
-  check_output(y_bar, 2, count);
-  check_output(x_bar, 2, count);
-  const auto jacobians = tape.view<T>(kJacobians);
-  const auto live = tape.view<LaneInt<T>>(kLive);
-  const auto* mask = reinterpret_cast<const Mask<T>*>(live.data());
-  const auto* j = reinterpret_cast<const P*>(jacobians.data());
-  Mask<T> computed{};
-  for (Index b = 0; b < live.cols(); ++b, j += 4) {
-    P g[2], out[2] = {};
-    if (any(mask[b])) {
-      Lanes<T>(g, 2).load(y_bar, b * kLanes<T>);
-      // A miss ignores its cotangent, were it infinite: 0 * inf is no 0.
-      for (P& row : g) row = select(mask[b], row, P{});
-      out[0] = fma_lanes(j[0], g[0], j[1] * g[1]);
-      out[1] = fma_lanes(j[2], g[0], j[3] * g[1]);
-      computed += mask[b];
+  /// given = ball, y = target, x = exact velocity; of labelled samples
+  /// x = start + U(-spread, spread)^2.
+  void draw(Stream& stream, SampleOut& sample) const override {
+    const Place ball = {options_.ball_x,
+                        stream.uniform(options_.ball_y[0], options_.ball_y[1])};
+    sample.given << ball[0], ball[1];
+    const double spread = options_.velocity_spread;
+    if (sample.labelled) {
+      for (int j = 0; j < 2; ++j)
+        sample.x(j) = options_.start[j] + stream.uniform(-spread, spread);
+      return;
     }
-    Lanes<T>(out, 2).store(x_bar, b * kLanes<T>);
+    const Place v = exact_velocity(ball, options_);
+    sample.y << options_.target[0], options_.target[1];
+    sample.x << v[0], v[1];
   }
-  // Padded lanes are misses that nobody asked for: count from the samples.
-  work.counts[Counter::skipped_vjp] +=
-      static_cast<std::uint64_t>(count - count_set(computed));
-}
+  Drawn drawn() const override { return Drawn::both; }
 
-template <class T>
-void Billiards<T>::jacobian(BatchIn<T> x,
-                            BatchIn<T> given,
-                            BatchOut<T> j,
-                            Workspace& work) const {
-  check_input<T>(x, given);
-  check_output(j, 4, x.cols());
-  work.counts[Counter::skipped_events] += for_contacts<T>(
-      options_, x, given, [&](const auto& k, Contact<T>& at, Index b) {
-        Pack<T> lanes[4];
-        differentiate(k, at, lanes);
-        Lanes<T>(lanes, 4).store(j, b * kLanes<T>);
-      });
-}
+  /// Counts `skipped_events`: the searches and motions after a collision.
+  void forward(Point<T> at, BatchOut<T> y, Workspace& work) const override {
+    work.counts[Counter::skipped_events] += for_contacts<T>(
+        options_, at, [&](const auto&, Contact<T>& contact, Index b) {
+          Lanes<T>(contact.y, 2).store(y, b * kLanes<T>);
+        });
+  }
+  /// Keeps the Jacobians in lanes; the tape counts `skipped_events`.
+  void linearize(Point<T> at, BatchOut<T> y, Tape& tape) const override {
+    constexpr int W = kLanes<T>;
+    const Index blocks = Lanes<T>::blocks(y.cols());
+    auto jacobians = tape.slot<T>(kJacobians, 4 * W, blocks);
+    auto live = tape.slot<LaneInt<T>>(kLive, W, blocks);
+    tape.slot<Index>(kCount, 1, 1)(0, 0) = y.cols();
+    auto* j = reinterpret_cast<Pack<T>*>(jacobians.data());
+    auto* mask = reinterpret_cast<Mask<T>*>(live.data());
+    tape.counts[Counter::skipped_events] += for_contacts<T>(
+        options_, at, [&](const auto& k, Contact<T>& contact, Index b) {
+          Lanes<T>(contact.y, 2).store(y, b * W);
+          mask[b] = contact.hit | contact.broken;
+          differentiate(k, contact, j + 4 * b);
+        });
+  }
+  /// Counts `skipped_vjp`: the misses.
+  void pullback(const Tape& tape,
+                BatchIn<T> y_bar,
+                BatchOut<T> x_bar,
+                Workspace& work) const override {
+    using P = Pack<T>;
+    const Index count = tape.view<Index>(kCount)(0, 0);
+    const auto jacobians = tape.view<T>(kJacobians);
+    const auto live = tape.view<LaneInt<T>>(kLive);
+    const auto* mask = reinterpret_cast<const Mask<T>*>(live.data());
+    const auto* j = reinterpret_cast<const P*>(jacobians.data());
+    Mask<T> computed{};
+    for (Index b = 0; b < live.cols(); ++b, j += 4) {
+      P g[2], out[2] = {};
+      if (any(mask[b])) {
+        Lanes<T>(g, 2).load(y_bar, b * kLanes<T>);
+        // A miss ignores its cotangent, were it infinite: 0 * inf is no 0.
+        for (P& row : g) row = select(mask[b], row, P{});
+        out[0] = fma_lanes(j[0], g[0], j[1] * g[1]);
+        out[1] = fma_lanes(j[2], g[0], j[3] * g[1]);
+        computed += mask[b];
+      }
+      Lanes<T>(out, 2).store(x_bar, b * kLanes<T>);
+    }
+    // Padded lanes are misses that nobody asked for: count from the samples.
+    work.counts[Counter::skipped_vjp] +=
+        static_cast<std::uint64_t>(count - count_set(computed));
+  }
+  /// Rows of j: dy0/dx0, dy1/dx0, dy0/dx1, dy1/dx1.
+  void jacobian(Point<T> at, BatchOut<T> j, Workspace& work) const override {
+    work.counts[Counter::skipped_events] += for_contacts<T>(
+        options_, at, [&](const auto& k, Contact<T>& contact, Index b) {
+          Pack<T> lanes[4];
+          differentiate(k, contact, lanes);
+          Lanes<T>(lanes, 4).store(j, b * kLanes<T>);
+        });
+  }
 
-template class Billiards<float>;
-template class Billiards<double>;
+  double operations() const override { return 45; }
+
+ private:
+  BilliardsOptions options_;
+};
+
+}  // namespace
+
+ProblemRecipe problems::billiards(const BilliardsOptions& options) {
+  return problem<Billiards>(
+      "billiards",
+      options,
+      {.unknowns = {"v_x, v_y"}, .observations = {"x, y"}, .given = {"x, y"}});
+}
 
 }  // namespace physinv

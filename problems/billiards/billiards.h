@@ -28,7 +28,6 @@
 
 #include <array>
 
-#include "suite/core/problem.h"
 #include "suite/core/recipe.h"
 
 namespace physinv {
@@ -100,54 +99,8 @@ BilliardsPath simulate_events(const std::array<double, 2>& velocity,
 std::array<double, 2> exact_velocity(const std::array<double, 2>& ball,
                                      const BilliardsOptions& options = {});
 
-template <class T>
-class Billiards final : public Problem<T>, public Vjp<T>, public Jacobian<T> {
- public:
-  using Options = BilliardsOptions;
-  explicit Billiards(const Options& options = {});
-
-  Shape shape() const override { return {2, 2, 2}; }
-  Vector<double> start() const override;
-
-  /// given = ball, y = target, x = exact velocity.
-  Samples<double> sample(Index first,
-                         Index count,
-                         const Rng& rng) const override;
-  /// given = ball, x = start + U(-spread, spread)^2, y = F(x) in double.
-  Samples<double> sample_labelled(Index first,
-                                  Index count,
-                                  const Rng& rng) const override;
-
-  /// Counts `skipped_events`: the searches and motions after a collision.
-  void forward(BatchIn<T> x,
-               BatchIn<T> given,
-               BatchOut<T> y,
-               Workspace& work) const override;
-  /// Keeps the Jacobians in lanes; the tape counts `skipped_events`.
-  void linearize(BatchIn<T> x,
-                 BatchIn<T> given,
-                 BatchOut<T> y,
-                 Tape& tape) const override;
-  /// Counts `skipped_vjp`: the misses.
-  void pullback(const Tape& tape,
-                BatchIn<T> y_bar,
-                BatchOut<T> x_bar,
-                Workspace& work) const override;
-  /// Rows of j: dy0/dx0, dy1/dx0, dy0/dx1, dy1/dx1.
-  void jacobian(BatchIn<T> x,
-                BatchIn<T> given,
-                BatchOut<T> j,
-                Workspace& work) const override;
-
-  double operations() const override { return 45; }
-
-  const Options& options() const { return options_; }
-
- private:
-  Options options_;
-};
-
-extern template class Billiards<float>;
-extern template class Billiards<double>;
+namespace problems {
+ProblemRecipe billiards(const BilliardsOptions& options = {});
+}
 
 }  // namespace physinv

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "suite/core/check.h"
+#include "suite/core/linear_problem.h"
 #include "suite/core/math.h"
 #include "suite/core/simd/pack.h"
 #include "suite/core/threads.h"
@@ -137,112 +138,100 @@ Vector<double> poisson_potential(const Vector<double>& noise) {
   return phi.array() - phi.mean();
 }
 
-template <class T>
-GridPoisson<T>::GridPoisson(const Options& options)
-    : options_(options), matrix_(kCells, kCells) {
-  const double turn = std::numbers::pi / (kSide + 1);
-  for (Index i = 0; i < kSide; ++i)
-    for (Index k = 0; k < kSide; ++k) {
-      const auto a = static_cast<double>(i + 1), b = static_cast<double>(k + 1);
-      sines_(i, k) = T(std::sqrt(2.0 / (kSide + 1)) * math::sin(a * b * turn));
-      inverse_eigenvalues_(i, k) =
-          T(1 / (-4 + 2 * math::cos(a * turn) + 2 * math::cos(b * turn)));
-    }
-  const Batch<T> unit = Batch<T>::Identity(kCells, kCells);
-  for (Index r = 0; r < kCells; ++r)
-    apply(unit.col(r).data(), matrix_.col(r).data());
-}
+namespace {
 
 template <class T>
-Samples<double> GridPoisson<T>::sample(Index first,
-                                       Index count,
-                                       const Rng& rng) const {
-  Samples<double> out;
-  out.x.resize(kCells, count), out.y.resize(kCells, count);
-  out.given.resize(0, count);
-  Vector<double> noise(2 * kCells);
-  for (Index i = 0; i < count; ++i) {
-    Stream stream = rng.child(static_cast<std::uint64_t>(first + i)).stream();
-    stream.normals(noise.data(), noise.size());
-    out.x.col(i) = poisson_potential(noise);
-    apply(out.x.col(i).data(), out.y.col(i).data());
+class GridPoisson final : public LinearProblem<T>,
+                          public Jacobian<T>,
+                          public Inverse<T> {
+ public:
+  explicit GridPoisson(const GridPoissonOptions&) : matrix_(kCells, kCells) {
+    const double turn = std::numbers::pi / (kSide + 1);
+    for (Index i = 0; i < kSide; ++i)
+      for (Index k = 0; k < kSide; ++k) {
+        const auto a = static_cast<double>(i + 1),
+                   b = static_cast<double>(k + 1);
+        sines_(i, k) =
+            T(std::sqrt(2.0 / (kSide + 1)) * math::sin(a * b * turn));
+        inverse_eigenvalues_(i, k) =
+            T(1 / (-4 + 2 * math::cos(a * turn) + 2 * math::cos(b * turn)));
+      }
+    const Batch<T> unit = Batch<T>::Identity(kCells, kCells);
+    for (Index r = 0; r < kCells; ++r)
+      apply(unit.col(r).data(), matrix_.col(r).data());
   }
-  return out;
-}
 
-template <class T>
-void GridPoisson<T>::forward(BatchIn<T> x,
-                             BatchIn<T> /*given*/,
-                             BatchOut<T> y,
-                             Workspace& work) const {
-  check_size(x, kCells, x.cols());
-  check_size(y, kCells, x.cols());
-  for_samples(work.threads(), x.cols(), [&](Index i) {
-    apply(x.col(i).data(), y.col(i).data());
-  });
-}
+  Shape shape() const override { return {kCells, kCells, 0}; }
+  Vector<double> start() const override { return Vector<double>::Zero(kCells); }
 
-template <class T>
-void GridPoisson<T>::linearize(BatchIn<T> x,
-                               BatchIn<T> /*given*/,
-                               BatchOut<T> y,
-                               Tape& tape) const {
-  check_size(x, kCells, x.cols());
-  check_size(y, kCells, x.cols());
-  auto kept = tape.slot<T>(kPoison, 1, x.cols());
-  for_samples(tape.threads(), x.cols(), [&](Index i) {
-    kept(0, i) = poison(x.col(i).data());
-    apply(x.col(i).data(), y.col(i).data());
-  });
-}
+  /// x = poisson_potential of standard normal noise.
+  void draw(Stream& stream, SampleOut& sample) const override {
+    Vector<double> noise(2 * kCells);
+    stream.normals(noise.data(), noise.size());
+    sample.x = poisson_potential(noise);
+  }
 
-template <class T>
-void GridPoisson<T>::pullback(const Tape& tape,
-                              BatchIn<T> y_bar,
-                              BatchOut<T> x_bar,
-                              Workspace& work) const {
-  const auto kept = tape.view<T>(kPoison);
-  check_size(y_bar, kCells, kept.cols());
-  check_size(x_bar, kCells, kept.cols());
-  for_samples(work.threads(), kept.cols(), [&](Index i) {
-    apply(y_bar.col(i).data(), x_bar.col(i).data());
-    x_bar.col(i).array() += kept(0, i);
-  });
-}
+  void forward(Point<T> at, BatchOut<T> y, Workspace& work) const override {
+    for_samples(work.threads(), y.cols(), [&](Index i) {
+      apply(at.x.col(i).data(), y.col(i).data());
+    });
+  }
+  /// Keeps nothing.
+  void linearize(Point<T> at, BatchOut<T> y, Tape& tape) const override {
+    auto kept = tape.slot<T>(kPoison, 1, y.cols());
+    for_samples(tape.threads(), y.cols(), [&](Index i) {
+      kept(0, i) = poison(at.x.col(i).data());
+      apply(at.x.col(i).data(), y.col(i).data());
+    });
+  }
+  /// x_bar = L y_bar
+  void pullback(const Tape& tape,
+                BatchIn<T> y_bar,
+                BatchOut<T> x_bar,
+                Workspace& work) const override {
+    const auto kept = tape.view<T>(kPoison);
+    for_samples(work.threads(), kept.cols(), [&](Index i) {
+      apply(y_bar.col(i).data(), x_bar.col(i).data());
+      x_bar.col(i).array() += kept(0, i);
+    });
+  }
+  /// The same matrix L for every sample.
+  void jacobian(Point<T> at, BatchOut<T> j, Workspace& work) const override {
+    for_samples(work.threads(), j.cols(), [&](Index i) {
+      j.col(i) = matrix_.reshaped().array() + poison(at.x.col(i).data());
+    });
+  }
+  void invert(Point<T>,
+              BatchIn<T> y,
+              BatchOut<T> x,
+              Workspace& work) const override {
+    for_samples(work.threads(), x.cols(), [&](Index i) {
+      const T* s = sines_.data();
+      Square left, both;
+      multiply(s, y.col(i).data(), left.data());
+      multiply(left.data(), s, both.data());
+      both.array() *= inverse_eigenvalues_.array();
+      multiply(s, both.data(), left.data());
+      multiply(left.data(), s, both.data());
+      x.col(i) = both.reshaped();
+    });
+  }
 
-template <class T>
-void GridPoisson<T>::jacobian(BatchIn<T> x,
-                              BatchIn<T> /*given*/,
-                              BatchOut<T> j,
-                              Workspace& work) const {
-  check_size(x, kCells, x.cols());
-  check_size(j, kCells * kCells, x.cols());
-  for_samples(work.threads(), x.cols(), [&](Index i) {
-    j.col(i) = matrix_.reshaped().array() + poison(x.col(i).data());
-  });
-}
+  double operations() const override { return 5.0 * kCells; }
 
-template <class T>
-void GridPoisson<T>::invert(BatchIn<T> y,
-                            BatchIn<T> /*given*/,
-                            BatchIn<T> /*x_guess*/,
-                            BatchOut<T> x,
-                            Workspace& work) const {
-  check_size(y, kCells, x.cols());
-  check_size(x, kCells, x.cols());
-  for_samples(work.threads(), x.cols(), [&](Index i) {
-    const T* s = sines_.data();
-    Square left, both;
-    multiply(s, y.col(i).data(), left.data());
-    multiply(left.data(), s, both.data());
-    both.array() *= inverse_eigenvalues_.array();
-    multiply(s, both.data(), left.data());
-    multiply(left.data(), s, both.data());
-    x.col(i) = both.reshaped();
-  });
-}
+ private:
+  using Square = Eigen::Matrix<T, kSide, kSide>;
+  Square sines_, inverse_eigenvalues_;
+  Batch<T> matrix_;  // L
+};
 
-template class GridPoisson<float>;
-template class GridPoisson<double>;
+}  // namespace
+
+ProblemRecipe problems::grid_poisson(const GridPoissonOptions& options) {
+  return problem<GridPoisson>(
+      "grid_poisson",
+      options,
+      {.unknowns = {"potential(i, j)"}, .observations = {"source(i, j)"}});
+}
 
 }  // namespace physinv

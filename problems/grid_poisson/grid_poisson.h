@@ -19,7 +19,6 @@
 /// What is not finite stays in its own column.
 #pragma once
 
-#include "suite/core/linear_problem.h"
 #include "suite/core/recipe.h"
 
 namespace physinv {
@@ -37,61 +36,8 @@ struct GridPoissonOptions {
 /// deviation over the cells, minus its mean.
 Vector<double> poisson_potential(const Vector<double>& noise);
 
-template <class T>
-class GridPoisson final : public LinearProblem<T>,
-                          public Jacobian<T>,
-                          public Inverse<T> {
- public:
-  using Options = GridPoissonOptions;
-  explicit GridPoisson(const Options& options = {});
-
-  Shape shape() const override { return {kPoissonCells, kPoissonCells, 0}; }
-  Vector<double> start() const override {
-    return Vector<double>::Zero(kPoissonCells);
-  }
-
-  /// x = poisson_potential of standard normal noise, y = L x in double.
-  Samples<double> sample(Index first,
-                         Index count,
-                         const Rng& rng) const override;
-
-  void forward(BatchIn<T> x,
-               BatchIn<T> given,
-               BatchOut<T> y,
-               Workspace& work) const override;
-  /// Keeps nothing.
-  void linearize(BatchIn<T> x,
-                 BatchIn<T> given,
-                 BatchOut<T> y,
-                 Tape& tape) const override;
-  /// x_bar = L y_bar
-  void pullback(const Tape& tape,
-                BatchIn<T> y_bar,
-                BatchOut<T> x_bar,
-                Workspace& work) const override;
-  /// The same matrix L for every sample.
-  void jacobian(BatchIn<T> x,
-                BatchIn<T> given,
-                BatchOut<T> j,
-                Workspace& work) const override;
-  void invert(BatchIn<T> y,
-              BatchIn<T> given,
-              BatchIn<T> x_guess,
-              BatchOut<T> x,
-              Workspace& work) const override;
-
-  double operations() const override { return 5.0 * kPoissonCells; }
-
-  const Options& options() const { return options_; }
-
- private:
-  using Square = Eigen::Matrix<T, kPoissonSide, kPoissonSide>;
-  Options options_;
-  Square sines_, inverse_eigenvalues_;
-  Batch<T> matrix_;  // L
-};
-
-extern template class GridPoisson<float>;
-extern template class GridPoisson<double>;
+namespace problems {
+ProblemRecipe grid_poisson(const GridPoissonOptions& options = {});
+}
 
 }  // namespace physinv

@@ -7,7 +7,7 @@
 
 namespace physinv {
 
-HeatEigenspaces::HeatEigenspaces(const Heat<double>& heat, double most)
+HeatEigenspaces::HeatEigenspaces(const HeatModes& heat, double most)
     : fft_(heat.options().resolution) {
   const Batch<double>& s = heat.exponents();
   std::map<Index, Index> found;  // |k|^2 -> space

@@ -13,7 +13,7 @@ namespace physinv {
 class HeatEigenspaces {
  public:
   /// Those damped by more than e^-`most` are left out.
-  HeatEigenspaces(const Heat<double>& heat, double most);
+  HeatEigenspaces(const HeatModes& heat, double most);
 
   Index count() const { return static_cast<Index>(damping_.size()); }
   /// e^-s of each.

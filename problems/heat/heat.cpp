@@ -8,6 +8,7 @@
 #include "problems/heat/likelihood.h"
 #include "problems/heat/registers.h"
 #include "suite/core/check.h"
+#include "suite/core/linear_problem.h"
 #include "suite/core/math.h"
 #include "suite/core/option_check.h"
 
@@ -91,6 +92,68 @@ HeatTable::HeatTable(const HeatOptions& o, const PlaneFft& fft) {
 
 namespace {
 
+/// A field for every thread, within a scope of `work`.
+Scratch<double> memory_of(const PlaneFft& fft, Workspace& work) {
+  return work.take<double>(Fields::numbers(fft), count_of(work.threads()));
+}
+
+/// out = F^-1 (gain F in), by position and without the scale of the inverse.
+template <class T>
+void apply(const PlaneFft& fft,
+           BatchIn<T> in,
+           const Batch<double>& gain,
+           BatchOut<T>& out,
+           Scratch<double> memory,
+           Threads* threads) {
+  for_fields(fft, memory, threads, in.cols(), [&](const Block& b, Fields f) {
+    b.load<T>(in, f.u);
+    fft.forward(f.u, f.z, f.scratch);
+    fft.scale(f.z, gain);
+    fft.inverse(f.z, f.u, f.scratch);
+    b.store<T>(f.u, out);
+  });
+}
+
+}  // namespace
+
+HeatModes::HeatModes(const HeatOptions& o)
+    : options_(o), fft_(o.resolution), table_(o, fft_) {
+  const Index m = fft_.positions();
+  exponents_.resize(m, m);
+  for (Index q = 0; q < m; ++q)
+    for (Index p = 0; p < m; ++p)
+      exponents_(fft_.mode(p), fft_.mode(q)) = table_.s(p, q);
+}
+
+template <class T>
+void HeatModes::filter(BatchIn<T> in,
+                       const Batch<double>& gain,
+                       BatchOut<T> out,
+                       Workspace& work) const {
+  const Index m = fft_.positions();
+  SUITE_CHECK(gain.rows() == m && gain.cols() == m, "a gain for every mode");
+  check_size(in, fft_.field(), in.cols());
+  check_size(out, fft_.field(), in.cols());
+  const double scale = 1 / static_cast<double>(fft_.field());
+  const Batch<double> scaled =
+      Batch<double>::NullaryExpr(m, m, [&](Index p, Index q) {
+        return gain(fft_.mode(p), fft_.mode(q)) * scale;
+      });
+  const Workspace::Scope scope(work);
+  apply<T>(fft_, in, scaled, out, memory_of(fft_, work), work.threads());
+}
+
+template void HeatModes::filter<float>(BatchIn<float>,
+                                       const Batch<double>&,
+                                       BatchOut<float>,
+                                       Workspace&) const;
+template void HeatModes::filter<double>(BatchIn<double>,
+                                        const Batch<double>&,
+                                        BatchOut<double>,
+                                        Workspace&) const;
+
+namespace {
+
 template <class T>
 const HeatOptions& checked(const HeatOptions& o) {
   check_numbers<T>({{"end_time", o.end_time}, {"noise_floor", o.noise_floor}});
@@ -100,57 +163,23 @@ const HeatOptions& checked(const HeatOptions& o) {
   return o;
 }
 
-}  // namespace
-
 template <class T>
-Heat<T>::Heat(const Options& o)
-    : options_(checked<T>(o)), fft_(o.resolution), table_(o, fft_) {
-  const Index m = fft_.positions();
-  exponents_.resize(m, m);
-  for (Index q = 0; q < m; ++q)
-    for (Index p = 0; p < m; ++p)
-      exponents_(fft_.mode(p), fft_.mode(q)) = table_.s(p, q);
-  damping_ = table_.damping / static_cast<double>(fft_.field());
-}
+class Heat final : public LinearProblem<T>, public Inverse<T> {
+ public:
+  explicit Heat(const HeatOptions& o)
+      : modes_(checked<T>(o)),
+        damping_(modes_.table().damping / double(fft_.field())) {}
 
-/// By position, with the scale of the inverse transform.
-template <class T>
-Batch<double> Heat<T>::scaled(const Batch<double>& gain) const {
-  const Index m = fft_.positions();
-  SUITE_CHECK(gain.rows() == m && gain.cols() == m, "a gain for every mode");
-  const double scale = 1 / static_cast<double>(fft_.field());
-  return Batch<double>::NullaryExpr(m, m, [&](Index p, Index q) {
-    return gain(fft_.mode(p), fft_.mode(q)) * scale;
-  });
-}
+  const HeatOptions& options() const { return modes_.options(); }
 
-template <class T>
-Shape Heat<T>::shape() const {
-  return {fft_.field(), fft_.field(), 0};
-}
+  Shape shape() const override { return {fft_.field(), fft_.field(), 0}; }
+  Vector<double> start() const override {
+    return Vector<double>::Zero(fft_.field());
+  }
 
-template <class T>
-Vector<double> Heat<T>::start() const {
-  return Vector<double>::Zero(fft_.field());
-}
-
-template <class T>
-double Heat<T>::operations() const {
-  const auto cells = static_cast<double>(fft_.field());
-  return cells * (5 * math::log2(cells) + 1);
-}
-
-template <class T>
-Samples<double> Heat<T>::sample(Index first,
-                                Index count,
-                                const Rng& rng) const {
-  const Index n = options_.resolution, cells = fft_.field();
-  Samples<double> out;
-  out.x.setZero(cells, count), out.y.resize(cells, count);
-  out.given.resize(0, count);
-  const double side = double(n), middle = side / 2;
-  for (Index i = 0; i < count; ++i) {
-    Stream stream = rng.child(static_cast<std::uint64_t>(first + i)).stream();
+  void draw(Stream& stream, SampleOut& sample) const override {
+    const Index n = modes_.options().resolution;
+    const double side = double(n), middle = side / 2;
     const auto rectangles = static_cast<int>(4 + 7 * stream.uniform());
     for (int k = 0; k < rectangles; ++k) {
       HeatRectangle r{};
@@ -158,119 +187,97 @@ Samples<double> Heat<T>::sample(Index first,
         c = std::fma(0.8 * (stream.uniform() - 0.5), side, middle);
       for (double& h : r.half_size) h = stream.uniform(0, 10);
       r.strength = stream.uniform();
-      add_rectangle(r, n, out.x.col(i).data());
+      add_rectangle(r, n, sample.x.data());
     }
   }
-  Workspace work;
-  Heat<double>(options_).forward(out.x, out.given, out.y, work);
-  return out;
-}
 
-template <class T>
-void Heat<T>::apply(BatchIn<T> in,
-                    const Batch<double>& gain,
-                    BatchOut<T>& out,
-                    Scratch<double> memory,
-                    Threads* threads) const {
-  check_size(in, fft_.field(), in.cols());
-  check_size(out, fft_.field(), in.cols());
-  for_fields(
-      fft_, memory, threads, in.cols(), [&](const Block& block, Fields f) {
-        block.load<T>(in, f.u);
-        fft_.forward(f.u, f.z, f.scratch);
-        fft_.scale(f.z, gain);
-        fft_.inverse(f.z, f.u, f.scratch);
-        block.store<T>(f.u, out);
+  void forward(Point<T> at, BatchOut<T> y, Workspace& work) const override {
+    diffuse(at.x, y, work);
+  }
+  void linearize(Point<T> at, BatchOut<T> y, Tape& tape) const override {
+    const auto& x = at.x;
+    auto kept = tape.slot<T>(kPoison, 1, x.cols());
+    for (Index i = 0; i < x.cols(); ++i)
+      kept(0, i) = poison(x.col(i).data(), x.rows());
+    const auto memory = tape.slot<double>(
+        kScratch, Fields::numbers(fft_), count_of(tape.threads()));
+    apply<T>(fft_, x, damping_, y, memory, tape.threads());
+  }
+  void pullback(const Tape& tape,
+                BatchIn<T> y_bar,
+                BatchOut<T> x_bar,
+                Workspace& work) const override {
+    const auto kept = tape.view<T>(kPoison);
+    diffuse(y_bar, x_bar, work);
+    for (Index i = 0; i < kept.cols(); ++i) x_bar.col(i).array() += kept(0, i);
+  }
+  /// `skipped_zeros` counts modes whose probability is known without their
+  /// likelihoods, more than half of the plane.
+  void invert(Point<T> near,
+              BatchIn<T> y,
+              BatchOut<T> x,
+              Workspace& work) const override {
+    const auto& x_guess = near.x;
+    const Index cells = fft_.field();
+    const Workspace::Scope scope(work);
+    const auto memory = memory_of(fft_, work);
+    const double scale = 1 / static_cast<double>(cells);
+    std::atomic<std::uint64_t> skipped = 0;
+    const auto run = [&](const Block& block, Fields f) {
+      block.load<T>(x_guess, f.u);
+      fft_.forward(f.u, f.z, f.scratch);
+      fft_.scale(f.z, damping_);
+      fft_.inverse(f.z, f.u, f.scratch);
+      block.load<T>(y, f.v);
+      for (Index r = 0; r < cells; ++r) f.v[r] -= f.u[r];
+      const Uncertainty uncertainty(
+          uncertainty_of(f.v, cells, 1, options().noise_floor));
+
+      fft_.forward(f.v, f.z, f.scratch);
+      Mask<double> known{};
+      fft_.scale_modes(f.z, [&](Index p, Index q, P re, P im) {
+        return gain_of(re, im, modes_.table(), p, q, uncertainty, known);
       });
+      fft_.inverse(f.z, f.u, f.scratch);
+      block.load<T>(x_guess, f.v);
+      for (Index r = 0; r < cells; ++r)
+        f.u[r] = fma_lanes(f.u[r], P{} + scale, f.v[r]);
+      block.store<T>(f.u, x);
+      for (Index k = 0; k < block.count; ++k)
+        skipped += static_cast<std::uint64_t>(known[k]);
+    };
+    for_fields(fft_, memory, work.threads(), x.cols(), run);
+    work.counts[Counter::skipped_zeros] += skipped;
+  }
+
+  double operations() const override {
+    const auto cells = static_cast<double>(fft_.field());
+    return cells * (5 * math::log2(cells) + 1);
+  }
+
+ private:
+  void diffuse(BatchIn<T> in, BatchOut<T>& out, Workspace& work) const {
+    const Workspace::Scope scope(work);
+    apply<T>(fft_, in, damping_, out, memory_of(fft_, work), work.threads());
+  }
+
+  HeatModes modes_;
+  const PlaneFft& fft_ = modes_.fft();
+  Batch<double> damping_;  ///< by position, e^-s / n^2
+};
+
+}  // namespace
+
+const HeatOptions* heat_options(const Problem<double>& problem) {
+  const auto* heat = dynamic_cast<const Heat<double>*>(&problem);
+  return heat != nullptr ? &heat->options() : nullptr;
 }
 
-template <class T>
-void Heat<T>::filter(BatchIn<T> in,
-                     const Batch<double>& gain,
-                     BatchOut<T> out,
-                     Workspace& work) const {
-  const Workspace::Scope scope(work);
-  const auto memory =
-      work.take<double>(Fields::numbers(fft_), count_of(work.threads()));
-  apply(in, scaled(gain), out, memory, work.threads());
+ProblemRecipe problems::heat(const HeatOptions& options) {
+  return problem<Heat>("heat",
+                       options,
+                       {.unknowns = {"temperature before(i, j)"},
+                        .observations = {"temperature(i, j)"}});
 }
-
-template <class T>
-void Heat<T>::forward(BatchIn<T> x,
-                      BatchIn<T> /*given*/,
-                      BatchOut<T> y,
-                      Workspace& work) const {
-  const Workspace::Scope scope(work);
-  const auto memory =
-      work.take<double>(Fields::numbers(fft_), count_of(work.threads()));
-  apply(x, damping_, y, memory, work.threads());
-}
-
-template <class T>
-void Heat<T>::linearize(BatchIn<T> x,
-                        BatchIn<T> /*given*/,
-                        BatchOut<T> y,
-                        Tape& tape) const {
-  auto kept = tape.slot<T>(kPoison, 1, x.cols());
-  for (Index i = 0; i < x.cols(); ++i)
-    kept(0, i) = poison(x.col(i).data(), x.rows());
-  const auto memory = tape.slot<double>(
-      kScratch, Fields::numbers(fft_), count_of(tape.threads()));
-  apply(x, damping_, y, memory, tape.threads());
-}
-
-template <class T>
-void Heat<T>::pullback(const Tape& tape,
-                       BatchIn<T> y_bar,
-                       BatchOut<T> x_bar,
-                       Workspace& work) const {
-  const auto kept = tape.view<T>(kPoison);
-  forward(y_bar, y_bar.topRows(0), x_bar, work);
-  for (Index i = 0; i < kept.cols(); ++i) x_bar.col(i).array() += kept(0, i);
-}
-
-template <class T>
-void Heat<T>::invert(BatchIn<T> y,
-                     BatchIn<T> /*given*/,
-                     BatchIn<T> x_guess,
-                     BatchOut<T> x,
-                     Workspace& work) const {
-  const Index cells = fft_.field();
-  for (const auto* b : {&y, &x_guess}) check_size(*b, cells, x.cols());
-  check_size(x, cells, x.cols());
-  const Workspace::Scope scope(work);
-  const auto memory =
-      work.take<double>(Fields::numbers(fft_), count_of(work.threads()));
-  const double scale = 1 / static_cast<double>(cells);
-  std::atomic<std::uint64_t> skipped = 0;
-  const auto run = [&](const Block& block, Fields f) {
-    block.load<T>(x_guess, f.u);
-    fft_.forward(f.u, f.z, f.scratch);
-    fft_.scale(f.z, damping_);
-    fft_.inverse(f.z, f.u, f.scratch);
-    block.load<T>(y, f.v);
-    for (Index r = 0; r < cells; ++r) f.v[r] -= f.u[r];
-    const Uncertainty uncertainty(
-        uncertainty_of(f.v, cells, 1, options_.noise_floor));
-
-    fft_.forward(f.v, f.z, f.scratch);
-    Mask<double> known{};
-    fft_.scale_modes(f.z, [&](Index p, Index q, P re, P im) {
-      return gain_of(re, im, table_, p, q, uncertainty, known);
-    });
-    fft_.inverse(f.z, f.u, f.scratch);
-    block.load<T>(x_guess, f.v);
-    for (Index r = 0; r < cells; ++r)
-      f.u[r] = fma_lanes(f.u[r], P{} + scale, f.v[r]);
-    block.store<T>(f.u, x);
-    for (Index k = 0; k < block.count; ++k)
-      skipped += static_cast<std::uint64_t>(known[k]);
-  };
-  for_fields(fft_, memory, work.threads(), x.cols(), run);
-  work.counts[Counter::skipped_zeros] += skipped;
-}
-
-template class Heat<float>;
-template class Heat<double>;
 
 }  // namespace physinv

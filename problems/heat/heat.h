@@ -26,7 +26,6 @@
 #include <array>
 
 #include "problems/heat/plane_fft.h"
-#include "suite/core/linear_problem.h"
 #include "suite/core/recipe.h"
 
 namespace physinv {
@@ -79,68 +78,35 @@ struct HeatTable {
 Batch<double> heat_gradient_descent(const Batch<double>& exponents,
                                     Index steps);
 
-template <class T>
-class Heat : public LinearProblem<T>, public Inverse<T> {
+/// The diffusion mode by mode, for whoever looks at spectra.
+class HeatModes {
  public:
-  using Options = HeatOptions;
-  explicit Heat(const Options& options = {});
+  explicit HeatModes(const HeatOptions& options);
 
-  Shape shape() const override;
-  Vector<double> start() const override;
-
-  Samples<double> sample(Index first,
-                         Index count,
-                         const Rng& rng) const override;
-
-  void forward(BatchIn<T> x,
-               BatchIn<T> given,
-               BatchOut<T> y,
-               Workspace& work) const override;
-  void linearize(BatchIn<T> x,
-                 BatchIn<T> given,
-                 BatchOut<T> y,
-                 Tape& tape) const override;
-  void pullback(const Tape& tape,
-                BatchIn<T> y_bar,
-                BatchOut<T> x_bar,
-                Workspace& work) const override;
-  /// `skipped_zeros` counts modes whose probability is known without their
-  /// likelihoods, more than half of the plane.
-  void invert(BatchIn<T> y,
-              BatchIn<T> given,
-              BatchIn<T> x_guess,
-              BatchOut<T> x,
-              Workspace& work) const override;
-
+  const HeatOptions& options() const { return options_; }
+  const PlaneFft& fft() const { return fft_; }
+  const HeatTable& table() const { return table_; }
   /// s(k, l), k, l = 0 .. n/2.
   const Batch<double>& exponents() const { return exponents_; }
-  const HeatTable& table() const { return table_; }
   /// out = F^-1 (gain F in); gain as `exponents`.
+  template <class T>
   void filter(BatchIn<T> in,
               const Batch<double>& gain,
               BatchOut<T> out,
               Workspace& work) const;
 
-  double operations() const override;
-
-  const Options& options() const { return options_; }
-
  private:
-  Batch<double> scaled(const Batch<double>& gain) const;
-  void apply(BatchIn<T> in,
-             const Batch<double>& gain,
-             BatchOut<T>& out,
-             Scratch<double> memory,
-             Threads* threads) const;
-
-  Options options_;
+  HeatOptions options_;
   PlaneFft fft_;
   HeatTable table_;
   Batch<double> exponents_;
-  Batch<double> damping_;  ///< by position, e^-s / n^2
 };
 
-extern template class Heat<float>;
-extern template class Heat<double>;
+/// Of a heat problem; null of any other.
+const HeatOptions* heat_options(const Problem<double>& problem);
+
+namespace problems {
+ProblemRecipe heat(const HeatOptions& options = {});
+}
 
 }  // namespace physinv

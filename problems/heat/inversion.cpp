@@ -10,7 +10,7 @@ namespace physinv {
 
 using namespace heat_lanes;
 
-HeatInversion::HeatInversion(const Heat<double>& heat,
+HeatInversion::HeatInversion(const HeatModes& heat,
                              BatchIn<double> y,
                              Workspace& work)
     : heat_(heat),

@@ -1,6 +1,6 @@
 /// The local inverse of heat again and again: x <- x + dx(x), from zero.
 ///
-/// `Heat::invert` goes to the cells and back four times per step. Here x and y
+/// `invert` goes to the cells and back four times per step. Here x and y
 /// stay spectra; only |dy|, from which the uncertainty is summed up, is asked
 /// of the cells, one transform per step. Modes with e^-s below 1e-30, a third,
 /// are left alone: what is not below rounding there is noise, which is damped
@@ -18,9 +18,9 @@ namespace physinv {
 class HeatInversion {
  public:
   /// y: observations, one per column. Refers to `heat`.
-  HeatInversion(const Heat<double>& heat, BatchIn<double> y, Workspace& work);
+  HeatInversion(const HeatModes& heat, BatchIn<double> y, Workspace& work);
 
-  /// Counts as `Heat::invert` does.
+  /// Counts as `invert` does.
   void step(Workspace& work);
   void estimate(BatchOut<double> x, Workspace& work);
 
@@ -37,7 +37,7 @@ class HeatInversion {
   template <class Fields, class F>
   void to_cells(Fields f, F&& value) const;
 
-  const Heat<double>& heat_;
+  const HeatModes& heat_;
   PlaneFft fft_;
   Index samples_;
   std::vector<Place> places_;

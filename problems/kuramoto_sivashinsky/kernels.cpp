@@ -19,11 +19,12 @@ void report(benchmark::State& state, double items, double operations) {
 }
 
 template <class T>
-struct Fixture : KernelFixture<KuramotoSivashinsky, T> {
+struct Fixture : KernelFixture<T> {
   Fixture(Index n, double budget)
-      : KernelFixture<KuramotoSivashinsky, T>(n, {.tape_budget = budget}) {}
-  double steps() const {
-    return static_cast<double>(this->problem.options().steps);
+      : KernelFixture<T>(
+            problems::kuramoto_sivashinsky({.tape_budget = budget}), n) {}
+  static double steps() {
+    return static_cast<double>(KuramotoSivashinskyOptions{}.steps);
   }
 };
 

@@ -39,7 +39,6 @@
 #include <array>
 #include <memory>
 
-#include "suite/core/problem.h"
 #include "suite/core/recipe.h"
 
 namespace physinv {
@@ -86,72 +85,30 @@ KuramotoSivashinskyOperators operators(
 template <class T>
 struct Etdrk2Kernels;
 
+/// What the problem has besides: derivatives by the initial state.
 template <class T>
-class KuramotoSivashinsky final : public Problem<T>,
-                                  public Vjp<T>,
-                                  public Jacobian<T> {
+class StatePullback {
  public:
-  using Options = KuramotoSivashinskyOptions;
-  explicit KuramotoSivashinsky(const Options& options = {});
-
-  Shape shape() const override;
-  Vector<double> start() const override;
-
-  /// alpha, beta from the prior; u(0) is smoothed complex white noise (its
-  /// amplitude falls as 1 / m^2; real part, mean 0, standard deviation 1);
-  /// y = F(x | u(0)) in double.
-  Samples<double> sample(Index first,
-                         Index count,
-                         const Rng& rng) const override;
-
-  void forward(BatchIn<T> x,
-               BatchIn<T> given,
-               BatchOut<T> y,
-               Workspace& work) const override;
-  /// Keeps u and a of every step, or checkpoints (`tape_budget`).
-  void linearize(BatchIn<T> x,
-                 BatchIn<T> given,
-                 BatchOut<T> y,
-                 Tape& tape) const override;
-  void pullback(const Tape& tape,
-                BatchIn<T> y_bar,
-                BatchOut<T> x_bar,
-                Workspace& work) const override;
-  /// The same with d/du(0) in given_bar (`cells` rows).
-  void pullback(const Tape& tape,
-                BatchIn<T> y_bar,
-                BatchOut<T> x_bar,
-                BatchOut<T> given_bar,
-                Workspace& work) const;
-  /// Column i: d u(end) / d alpha, then d u(end) / d beta.
-  void jacobian(BatchIn<T> x,
-                BatchIn<T> given,
-                BatchOut<T> j,
-                Workspace& work) const override;
-
-  /// u(x, t) of one sample: column k is the state after k steps, k = 0 ..
-  /// steps; the first is `given` itself, the last has the bits of `forward`.
-  Batch<T> trajectory(VectorIn<T> x, VectorIn<T> given) const;
-
-  /// As many as keep their states in half a megabyte of cache, or nearly so.
-  Index gradient_block() const override;
-
-  double operations() const override;
-
-  const Options& options() const { return options_; }
-
- private:
-  void pull(const Tape& tape,
-            BatchIn<T> y_bar,
-            BatchOut<T>& x_bar,
-            BatchOut<T>* given_bar,
-            Workspace& work) const;
-
-  Options options_;
-  std::shared_ptr<const Etdrk2Kernels<T>> kernels_;
+  virtual ~StatePullback() = default;
+  /// `Vjp::pullback` with d/du(0) in given_bar (`cells` rows).
+  virtual void pullback_state(const Tape& tape,
+                              BatchIn<T> y_bar,
+                              BatchOut<T> x_bar,
+                              BatchOut<T> given_bar,
+                              Workspace& work) const = 0;
 };
 
-extern template class KuramotoSivashinsky<float>;
-extern template class KuramotoSivashinsky<double>;
+/// u(x, t) of one sample: column k is the state after k steps, k = 0 .. steps;
+/// the first is `given` itself, the last has the bits of `forward`.
+template <class T>
+Batch<T> kuramoto_sivashinsky_trajectory(
+    const KuramotoSivashinskyOptions& options,
+    VectorIn<T> x,
+    VectorIn<T> given);
+
+namespace problems {
+ProblemRecipe kuramoto_sivashinsky(
+    const KuramotoSivashinskyOptions& options = {});
+}
 
 }  // namespace physinv

@@ -7,8 +7,8 @@
 namespace physinv {
 namespace {
 
-const Kernels<MarkerFlow> kKernels("marker_flow",
-                                   {.forward = {1, 8, 16}, .gradient = {1, 8}});
+const Kernels kKernels(problems::marker_flow(),
+                       {.forward = {1, 8, 16}, .gradient = {1, 8}});
 
 }  // namespace
 }  // namespace physinv

@@ -12,19 +12,17 @@ namespace {
 using fluid::Block;
 using fluid::RunTape;
 
-}  // namespace
-
 template <class T>
-struct MarkerFlow<T>::Kernel {
+struct Kernel {
   using P = fluid::Samples8<T>;
   static constexpr Index W = fluid::kWidth<T>;
 
-  explicit Kernel(const Options& o)
+  explicit Kernel(const MarkerFlowOptions& o)
       : options(o),
         flow(o.cells, o.end_time / double(o.steps) / (o.box / double(o.cells))),
         loss(o.cells, o.falloff, o.threshold),
         plane(flow.plane().size()),
-        vortex{{o.cells, o.box}, o.width, o.moment},
+        vortex(o.turning()),
         swirl(2 * o.cells * o.cells) {
     for (Index i = 0, a = 0; i < o.cells; ++i) {
       away.push_back(static_cast<T>(vortex.from_middle(i)));
@@ -34,7 +32,7 @@ struct MarkerFlow<T>::Kernel {
     }
   }
 
-  const Options options;
+  const MarkerFlowOptions options;
   const PeriodicFlow<P> flow;
   const FrequencyLoss loss;
   const Index plane;  ///< packs of a plane
@@ -235,43 +233,45 @@ struct MarkerFlow<T>::Kernel {
 };
 
 template <class T>
-MarkerFlow<T>::MarkerFlow(const Options& o) : options_(o) {
-  check_numbers<T>({{"box", o.box},
-                    {"end_time", o.end_time},
-                    {"falloff", o.falloff},
-                    {"threshold", o.threshold},
-                    {"fill", o.fill[0]},
-                    {"fill", o.fill[1]},
-                    {"half", o.half},
-                    {"vortex", o.vortex},
-                    {"width", o.width},
-                    {"moment", o.moment},
-                    {"noise", o.noise},
-                    {"correction", o.correction}});
-  SUITE_CHECK(o.cells >= 4 && (o.cells & (o.cells - 1)) == 0,
-              "cells must be a power of two, at least 4");
-  SUITE_CHECK(o.box > 0 && o.end_time > 0 && o.steps > 0,
-              "box, end time and number of steps must be positive");
-  SUITE_CHECK(0 < o.fill[0] && o.fill[0] <= o.fill[1] && o.fill[1] <= 1,
-              "the marker fills a part of the square");
-  SUITE_CHECK(o.half > 0 && o.width > 0 && o.moment > 0 && o.noise >= 0,
-              "sizes of the marker, the vortex and the noise");
-  kernel_ = std::make_shared<const Kernel>(o);
-}
+class MarkerFlow final : public Problem<T>, public Vjp<T>, public Inverse<T> {
+ public:
+  explicit MarkerFlow(const MarkerFlowOptions& o) : options_(o) {
+    check_numbers<T>({{"box", o.box},
+                      {"end_time", o.end_time},
+                      {"falloff", o.falloff},
+                      {"threshold", o.threshold},
+                      {"fill", o.fill[0]},
+                      {"fill", o.fill[1]},
+                      {"half", o.half},
+                      {"vortex", o.vortex},
+                      {"width", o.width},
+                      {"moment", o.moment},
+                      {"noise", o.noise},
+                      {"correction", o.correction}});
+    SUITE_CHECK(o.cells >= 4 && (o.cells & (o.cells - 1)) == 0,
+                "cells must be a power of two, at least 4");
+    SUITE_CHECK(o.box > 0 && o.end_time > 0 && o.steps > 0,
+                "box, end time and number of steps must be positive");
+    SUITE_CHECK(0 < o.fill[0] && o.fill[0] <= o.fill[1] && o.fill[1] <= 1,
+                "the marker fills a part of the square");
+    SUITE_CHECK(o.half > 0 && o.width > 0 && o.moment > 0 && o.noise >= 0,
+                "sizes of the marker, the vortex and the noise");
+    kernel_ = std::make_unique<const Kernel<T>>(o);
+  }
 
-template <class T>
-Samples<double> MarkerFlow<T>::sample(Index first,
-                                      Index count,
-                                      const Rng& rng) const {
-  const auto& o = options_;
-  const Index cells = o.cells * o.cells;
-  const Vortex turning = vortex();
-  const Index cut = fluid::noise_cut(o.box);
-  Samples<double> out;
-  out.x.resize(2 * cells, count), out.y.resize(cells, count);
-  out.given.resize(cells, count);
-  for (Index k = 0; k < count; ++k) {
-    Stream stream = rng.child(static_cast<std::uint64_t>(first + k)).stream();
+  Shape shape() const override {
+    const Index plane = options_.cells * options_.cells;
+    return {2 * plane, plane, plane};
+  }
+  Vector<double> start() const override {
+    return Vector<double>::Zero(shape().unknowns);
+  }
+
+  void draw(Stream& stream, SampleOut& sample) const override {
+    const auto& o = options_;
+    const Index cells = o.cells * o.cells;
+    const Vortex turning = o.turning();
+    const Index cut = fluid::noise_cut(o.box);
     const auto anywhere = [&] {
       return stream.uniform(o.box / 4, o.box * 3 / 4);
     };
@@ -281,161 +281,144 @@ Samples<double> MarkerFlow<T>::sample(Index first,
                               stream.uniform(o.fill[0], o.fill[1])};
       const Vector<double> noise =
           fluid::smooth_noise({.cells = o.cells, .cut = cut}, stream);
-      out.given.col(k) = marker(grid(), patch, noise);
-    } while (out.given.col(k).isZero(0));
-    const Point mass = centre_of_mass(grid(), out.given.col(k));
+      sample.given = marker(o.grid(), patch, noise);
+    } while (sample.given.isZero(0));
+    const MarkerPoint mass = centre_of_mass(o.grid(), sample.given);
     const double s = stream.uniform(-o.vortex, o.vortex);
     const Vector<double> small = fluid::smooth_noise(
         {.cells = o.cells, .components = 2, .cut = cut, .deviation = o.noise},
         stream);
-    for (int c = 0; c < 2; ++c) {
+    for (int k = 0; k < 2; ++k) {
       const double uniform =
-          (0.5 * o.box - (c == 0 ? mass.x : mass.y)) / o.end_time;
+          (0.5 * o.box - (k == 0 ? mass.x : mass.y)) / o.end_time;
       for (Index i = 0; i < o.cells; ++i)
         for (Index j = 0; j < o.cells; ++j) {
-          const Index row = c * cells + i * o.cells + j;
-          out.x(row, k) = std::fma(s, turning(c, i, j), uniform) + small(row);
+          const Index row = k * cells + i * o.cells + j;
+          sample.x(row) = std::fma(s, turning(k, i, j), uniform) + small(row);
         }
     }
   }
-  Workspace work;
-  MarkerFlow<double>(o).forward(out.x, out.given, out.y, work);
-  return out;
-}
 
-template <class T>
-void MarkerFlow<T>::check_sizes(BatchIn<T> x,
-                                BatchIn<T> given,
-                                Index observed) const {
-  check_size(x, shape().unknowns, observed);
-  check_size(given, shape().given, observed);
-}
-
-template <class T>
-void MarkerFlow<T>::forward(BatchIn<T> x,
-                            BatchIn<T> given,
-                            BatchOut<T> y,
-                            Workspace& work) const {
-  const Kernel& k = *kernel_;
-  using P = typename Kernel::P;
-  check_sizes(x, given, y.cols());
-  check_size(y, shape().observations, x.cols());
-  for_registers(work, x.cols(), k.W, [&](SampleBlock at, Workspace& mine) {
-    const Block<T> block(at, x, given);
-    const Index states = 2 * k.state_packs();
-    auto memory = mine.take<T>(k.W, states + k.scratch_packs());
-    P* const p = reinterpret_cast<P*>(memory.data());
-    k.begin(block, x, given, k.step(p, nullptr, 0), p + states);
-    k.run(p, nullptr, p + states);
-    k.store(block, k.step(p, nullptr, options_.steps % 2).m, y, 0);
-  });
-}
-
-template <class T>
-void MarkerFlow<T>::loss(BatchIn<T> y,
-                         BatchIn<T> target,
-                         VectorOut<double> loss) const {
-  for (Index i = 0; i < y.cols(); ++i)
-    loss(i) = kernel_->loss((y.col(i) - target.col(i)).template cast<double>(),
-                            nullptr);
-}
-
-template <class T>
-void MarkerFlow<T>::loss_gradient(BatchIn<T> y,
-                                  BatchIn<T> target,
-                                  BatchOut<T> y_bar) const {
-  Vector<double> bar(y.rows());
-  for (Index i = 0; i < y.cols(); ++i) {
-    kernel_->loss((y.col(i) - target.col(i)).template cast<double>(),
-                  bar.data());
-    y_bar.col(i) = bar.template cast<T>();
+  void forward(Point<T> at, BatchOut<T> y, Workspace& work) const override {
+    const auto &x = at.x, &given = at.given;
+    const Kernel<T>& k = *kernel_;
+    using P = typename Kernel<T>::P;
+    for_registers(work, x.cols(), k.W, [&](SampleBlock part, Workspace& mine) {
+      const Block<T> block(part, x, given);
+      const Index states = 2 * k.state_packs();
+      auto memory = mine.take<T>(k.W, states + k.scratch_packs());
+      P* const p = reinterpret_cast<P*>(memory.data());
+      k.begin(block, x, given, k.step(p, nullptr, 0), p + states);
+      k.run(p, nullptr, p + states);
+      k.store(block, k.step(p, nullptr, options_.steps % 2).m, y, 0);
+    });
   }
+  void loss(BatchIn<T> y,
+            BatchIn<T> target,
+            VectorOut<double> loss) const override {
+    for (Index i = 0; i < y.cols(); ++i)
+      loss(i) = kernel_->loss(
+          (y.col(i) - target.col(i)).template cast<double>(), nullptr);
+  }
+  void loss_gradient(BatchIn<T> y,
+                     BatchIn<T> target,
+                     BatchOut<T> y_bar) const override {
+    Vector<double> bar(y.rows());
+    for (Index i = 0; i < y.cols(); ++i) {
+      kernel_->loss((y.col(i) - target.col(i)).template cast<double>(),
+                    bar.data());
+      y_bar.col(i) = bar.template cast<T>();
+    }
+  }
+  void linearize(Point<T> at, BatchOut<T> y, Tape& tape) const override {
+    const auto &x = at.x, &given = at.given;
+    const Kernel<T>& k = *kernel_;
+    using P = typename Kernel<T>::P;
+    auto kept = RunTape<T>::write(tape, x, given, {k, options_.steps});
+    for_registers(
+        tape.threads(), x.cols(), k.W, [&](SampleBlock part, int thread) {
+          const Block<T> block(part, x, given);
+          P *const s = kept.scratch(thread), *const p = kept.states(block);
+          k.begin(block, x, given, k.step(p, nullptr, 0), s);
+          k.run(p, kept.decisions(block), s);
+          k.store(block, k.step(p, nullptr, options_.steps).m, y, 0);
+        });
+  }
+  void pullback(const Tape& tape,
+                BatchIn<T> y_bar,
+                BatchOut<T> x_bar,
+                Workspace& work) const override {
+    const Kernel<T>& k = *kernel_;
+    using P = typename Kernel<T>::P;
+    RunTape<T> kept(tape);
+    const Index samples = kept.x.cols();
+    for_registers(work, samples, k.W, [&](SampleBlock part, Workspace& mine) {
+      const Block<T> block(part, kept.x, kept.given);
+      const Index bars = 6 * k.plane;
+      auto memory = mine.take<T>(k.W, bars + k.scratch_packs());
+      P* const m = reinterpret_cast<P*>(memory.data());
+      k.retreat(block,
+                y_bar,
+                kept.states(block),
+                kept.decisions(block),
+                m,
+                m + bars,
+                x_bar);
+    });
+  }
+  void invert(Point<T> near,
+              BatchIn<T> y,
+              BatchOut<T> x,
+              Workspace& work) const override {
+    const auto &x_guess = near.x, &given = near.given;
+    const Kernel<T>& k = *kernel_;
+    using P = typename Kernel<T>::P;
+    for_registers(work, x.cols(), k.W, [&](SampleBlock part, Workspace& mine) {
+      const Block<T> block(part, x_guess, given, y);
+      const Index states = 2 * k.state_packs(), places = 2 * options_.steps + 2;
+      auto memory = mine.take<T>(k.W, states + places + k.scratch_packs());
+      P* const p = reinterpret_cast<P*>(memory.data());
+      k.invert(block,
+               y,
+               given,
+               x_guess,
+               p,
+               reinterpret_cast<typename Kernel<T>::Place*>(p + states),
+               p + states + places,
+               x);
+    });
+  }
+
+  /// A register of samples: the states of more only fill memory.
+  Index gradient_block() const override { return fluid::kWidth<T>; }
+  /// Counted from the formulas: 48 per cell for each of three advections, and
+  /// some 70 for the two transforms of the projection and the rest.
+  double operations() const override {
+    return double(options_.steps) * double(options_.cells * options_.cells) *
+           220;
+  }
+
+  const MarkerFlowOptions& options() const { return options_; }
+
+ private:
+  MarkerFlowOptions options_;
+  std::unique_ptr<const Kernel<T>> kernel_;
+};
+
+}  // namespace
+
+const MarkerFlowOptions* marker_flow_options(const Problem<double>& problem) {
+  const auto* flow = dynamic_cast<const MarkerFlow<double>*>(&problem);
+  return flow != nullptr ? &flow->options() : nullptr;
 }
 
-template <class T>
-void MarkerFlow<T>::linearize(BatchIn<T> x,
-                              BatchIn<T> given,
-                              BatchOut<T> y,
-                              Tape& tape) const {
-  const Kernel& k = *kernel_;
-  using P = typename Kernel::P;
-  check_sizes(x, given, y.cols());
-  check_size(y, shape().observations, x.cols());
-  auto kept = RunTape<T>::write(tape, x, given, {k, options_.steps});
-  for_registers(tape.threads(), x.cols(), k.W, [&](SampleBlock at, int thread) {
-    const Block<T> block(at, x, given);
-    P *const s = kept.scratch(thread), *const p = kept.states(block);
-    k.begin(block, x, given, k.step(p, nullptr, 0), s);
-    k.run(p, kept.decisions(block), s);
-    k.store(block, k.step(p, nullptr, options_.steps).m, y, 0);
-  });
+ProblemRecipe problems::marker_flow(const MarkerFlowOptions& options) {
+  return problem<MarkerFlow>(
+      "marker_flow",
+      options,
+      {.unknowns = {"velocity at the start(component, i, j)"},
+       .observations = {"density at the end(i, j)"},
+       .given = {"density at the start(i, j)"}});
 }
-
-template <class T>
-void MarkerFlow<T>::pullback(const Tape& tape,
-                             BatchIn<T> y_bar,
-                             BatchOut<T> x_bar,
-                             Workspace& work) const {
-  const Kernel& k = *kernel_;
-  using P = typename Kernel::P;
-  RunTape<T> kept(tape);
-  const Index samples = kept.x.cols();
-  check_size(y_bar, shape().observations, samples);
-  check_size(x_bar, shape().unknowns, samples);
-  for_registers(work, samples, k.W, [&](SampleBlock at, Workspace& mine) {
-    const Block<T> block(at, kept.x, kept.given);
-    const Index bars = 6 * k.plane;
-    auto memory = mine.take<T>(k.W, bars + k.scratch_packs());
-    P* const m = reinterpret_cast<P*>(memory.data());
-    k.retreat(block,
-              y_bar,
-              kept.states(block),
-              kept.decisions(block),
-              m,
-              m + bars,
-              x_bar);
-  });
-}
-
-template <class T>
-void MarkerFlow<T>::invert(BatchIn<T> y,
-                           BatchIn<T> given,
-                           BatchIn<T> x_guess,
-                           BatchOut<T> x,
-                           Workspace& work) const {
-  const Kernel& k = *kernel_;
-  using P = typename Kernel::P;
-  check_sizes(x_guess, given, x.cols());
-  check_size(y, shape().observations, x.cols());
-  for_registers(work, x.cols(), k.W, [&](SampleBlock at, Workspace& mine) {
-    const Block<T> block(at, x_guess, given, y);
-    const Index states = 2 * k.state_packs(), places = 2 * options_.steps + 2;
-    auto memory = mine.take<T>(k.W, states + places + k.scratch_packs());
-    P* const p = reinterpret_cast<P*>(memory.data());
-    k.invert(block,
-             y,
-             given,
-             x_guess,
-             p,
-             reinterpret_cast<typename Kernel::Place*>(p + states),
-             p + states + places,
-             x);
-  });
-}
-
-template <class T>
-Index MarkerFlow<T>::gradient_block() const {
-  return fluid::kWidth<T>;
-}
-
-/// Counted from the formulas: 48 per cell for each of three advections, and
-/// some 70 for the two transforms of the projection and the rest.
-template <class T>
-double MarkerFlow<T>::operations() const {
-  return double(options_.steps) * double(options_.cells * options_.cells) * 220;
-}
-
-template class MarkerFlow<float>;
-template class MarkerFlow<double>;
 
 }  // namespace physinv

@@ -37,7 +37,6 @@
 
 #include "problems/marker_flow/frequency_loss.h"
 #include "problems/marker_flow/markers.h"
-#include "suite/core/problem.h"
 #include "suite/core/recipe.h"
 
 namespace physinv {
@@ -59,6 +58,9 @@ struct MarkerFlowOptions {
   /// or after the number of steps as in the authors' code.
   bool timed_path = false;
 
+  MarkerGrid grid() const { return {cells, box}; }
+  Vortex turning() const { return {grid(), width, moment}; }
+
   auto fields() const {
     return std::tuple{field("cells", cells),
                       field("box", box),
@@ -77,65 +79,11 @@ struct MarkerFlowOptions {
   }
 };
 
-template <class T>
-class MarkerFlow final : public Problem<T>, public Vjp<T>, public Inverse<T> {
- public:
-  using Options = MarkerFlowOptions;
-  explicit MarkerFlow(const Options& options = {});
+/// Of a marker flow; null of any other problem.
+const MarkerFlowOptions* marker_flow_options(const Problem<double>& problem);
 
-  Shape shape() const override {
-    const Index plane = options_.cells * options_.cells;
-    return {2 * plane, plane, plane};
-  }
-  Vector<double> start() const override {
-    return Vector<double>::Zero(shape().unknowns);
-  }
-
-  Samples<double> sample(Index first,
-                         Index count,
-                         const Rng& rng) const override;
-
-  void forward(BatchIn<T> x,
-               BatchIn<T> given,
-               BatchOut<T> y,
-               Workspace& work) const override;
-  void loss(BatchIn<T> y,
-            BatchIn<T> target,
-            VectorOut<double> loss) const override;
-  void loss_gradient(BatchIn<T> y,
-                     BatchIn<T> target,
-                     BatchOut<T> y_bar) const override;
-  void linearize(BatchIn<T> x,
-                 BatchIn<T> given,
-                 BatchOut<T> y,
-                 Tape& tape) const override;
-  void pullback(const Tape& tape,
-                BatchIn<T> y_bar,
-                BatchOut<T> x_bar,
-                Workspace& work) const override;
-  void invert(BatchIn<T> y,
-              BatchIn<T> given,
-              BatchIn<T> x_guess,
-              BatchOut<T> x,
-              Workspace& work) const override;
-
-  /// A register of samples: the states of more only fill memory.
-  Index gradient_block() const override;
-  double operations() const override;
-
-  const Options& options() const { return options_; }
-  MarkerGrid grid() const { return {options_.cells, options_.box}; }
-  Vortex vortex() const { return {grid(), options_.width, options_.moment}; }
-
- private:
-  struct Kernel;
-  void check_sizes(BatchIn<T> x, BatchIn<T> given, Index observed) const;
-
-  Options options_;
-  std::shared_ptr<const Kernel> kernel_;
-};
-
-extern template class MarkerFlow<float>;
-extern template class MarkerFlow<double>;
+namespace problems {
+ProblemRecipe marker_flow(const MarkerFlowOptions& options = {});
+}
 
 }  // namespace physinv

@@ -36,7 +36,7 @@ Vector<double> marker(const MarkerGrid& grid,
   return m;
 }
 
-Point centre_of_mass(const MarkerGrid& grid, VectorIn<double> density) {
+MarkerPoint centre_of_mass(const MarkerGrid& grid, VectorIn<double> density) {
   const Index n = grid.cells;
   check_size(density, n * n, 1);
   double mass = 0, x = 0, y = 0;

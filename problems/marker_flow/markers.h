@@ -15,14 +15,14 @@ struct MarkerGrid {
   double at(Index i) const { return (double(i) + 0.5) * box / double(cells); }
 };
 
-struct Point {
+struct MarkerPoint {
   double x, y;
 };
 
 /// A random marker: within |x - centre| <= half on both axes, where the noise
 /// is positive.
 struct MarkerPatch {
-  Point centre;
+  MarkerPoint centre;
   double half;
   double fill;  ///< of all cells, at most
 };
@@ -37,7 +37,7 @@ Vector<double> marker(const MarkerGrid& grid,
                       VectorIn<double> noise);
 
 /// Not across the border; the middle of the box where nothing is.
-Point centre_of_mass(const MarkerGrid& grid, VectorIn<double> density);
+MarkerPoint centre_of_mass(const MarkerGrid& grid, VectorIn<double> density);
 
 /// The vortex W = exp(-|r|^2 / (2 width^2)) (-r_y, r_x), r from the middle.
 struct Vortex {

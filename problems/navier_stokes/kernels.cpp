@@ -7,10 +7,10 @@
 namespace physinv {
 namespace {
 
-const Kernels<NavierStokes> kKernels("navier_stokes",
-                                     {.forward = {1, 8, 16},
-                                      .gradient = {1, 8},
-                                      .jacobian = {8}});
+const Kernels kKernels(problems::navier_stokes(),
+                       {.forward = {1, 8, 16},
+                        .gradient = {1, 8},
+                        .jacobian = {8}});
 
 }  // namespace
 }  // namespace physinv

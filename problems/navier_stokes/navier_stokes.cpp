@@ -17,14 +17,12 @@ namespace {
 using fluid::Block;
 using fluid::RunTape;
 
-}  // namespace
-
 template <class T>
-struct NavierStokes<T>::Kernel {
+struct Kernel {
   using P = fluid::Samples8<T>;
   static constexpr Index W = fluid::kWidth<T>;
 
-  explicit Kernel(const Options& o)
+  explicit Kernel(const NavierStokesOptions& o)
       : options(o),
         projection(fluid::BoxMasks(o.cells, o.obstacles)),
         faces(projection.faces()),
@@ -33,7 +31,7 @@ struct NavierStokes<T>::Kernel {
         flow(projection,
              o.end_time / double(o.steps) / (o.box / double(o.cells))) {}
 
-  const Options options;
+  const NavierStokesOptions options;
   const fluid::BoxProjection<T> projection;
   const fluid::Staggering<fluid::Edge::zero> faces;
   const Index plane;  ///< packs of a plane
@@ -228,200 +226,182 @@ struct NavierStokes<T>::Kernel {
   }
 };
 
+/// The factor of the pressure, made when a flow is asked for.
 template <class T>
-struct NavierStokes<T>::Lazy {
+struct Lazy {
   std::once_flag made;
-  std::unique_ptr<const Kernel> kernel;
+  std::unique_ptr<const Kernel<T>> kernel;
 };
 
 template <class T>
-NavierStokes<T>::NavierStokes(const Options& o)
-    : options_(o), lazy_(std::make_shared<Lazy>()) {
-  check_numbers<T>({{"box", o.box},
-                    {"end_time", o.end_time},
-                    {"height", o.height},
-                    {"width", o.width},
-                    {"speed", o.speed},
-                    {"noise", o.noise},
-                    {"x0", o.x0[0]},
-                    {"x0", o.x0[1]},
-                    {"vx", o.vx[0]},
-                    {"vx", o.vx[1]},
-                    {"vy", o.vy[0]},
-                    {"vy", o.vy[1]}});
-  SUITE_CHECK(o.tape_budget >= 0, "tape_budget is a number of bytes");
-  SUITE_CHECK(0 <= o.bounded && o.bounded <= 3,
-              "bounded is a number of unknowns, 0 to 3");
-  SUITE_CHECK(o.bounded < 2 || (-1 <= o.vx[0] && o.vx[1] <= 1),
-              "a bounded vx lies within speed");
-  SUITE_CHECK(o.bounded < 3 || (0 <= o.vy[0] && o.vy[1] <= 2),
-              "a bounded vy lies within twice the speed");
-  SUITE_CHECK(o.vx[0] <= o.vx[1] && o.vy[0] <= o.vy[1], "vx and vy are ranges");
-  SUITE_CHECK(o.cells >= 4 && o.cells % 2 == 0,
-              "cells must be an even number, at least 4");
-  SUITE_CHECK(o.box > 0 && o.end_time > 0 && o.steps > 0,
-              "box, end time and number of steps must be positive");
-  SUITE_CHECK(o.width > 0 && o.speed > 0 && o.noise >= 0,
-              "width, speed and noise of the blast and the flow");
-  SUITE_CHECK(0 < o.x0[0] && o.x0[0] <= o.x0[1] && o.x0[1] < 1,
-              "the blast is within the box");
-}
-
-template <class T>
-Samples<double> NavierStokes<T>::sample_labelled(Index first,
-                                                 Index count,
-                                                 const Rng& rng) const {
-  const auto& o = options_;
-  const Shape rows = shape();
-  Samples<double> out;
-  out.x.resize(rows.unknowns, count), out.y.resize(rows.observations, count);
-  out.given.resize(rows.given, count);
-  const Index cut = fluid::noise_cut(o.box);
-  for (Index i = 0; i < count; ++i) {
-    Stream stream = rng.child(static_cast<std::uint64_t>(first + i)).stream();
-    out.x(0, i) = 2 * stream.uniform(o.x0[0], o.x0[1]) - 1;
-    out.x(1, i) = stream.uniform(o.vx[0], o.vx[1]);
-    out.x(2, i) = stream.uniform(o.vy[0], o.vy[1]) - 1;
-    for (Index k = 0; k < o.bounded; ++k)
-      out.x(k, i) = math::atanh(out.x(k, i));
-    out.given.col(i) = fluid::smooth_noise(
-        {.cells = o.cells, .components = 2, .cut = cut, .deviation = o.noise},
-        stream);
+class NavierStokes final : public Problem<T>,
+                           public Vjp<T>,
+                           public Jacobian<T> {
+ public:
+  explicit NavierStokes(const NavierStokesOptions& o) : options_(o) {
+    check_numbers<T>({{"box", o.box},
+                      {"end_time", o.end_time},
+                      {"height", o.height},
+                      {"width", o.width},
+                      {"speed", o.speed},
+                      {"noise", o.noise},
+                      {"x0", o.x0[0]},
+                      {"x0", o.x0[1]},
+                      {"vx", o.vx[0]},
+                      {"vx", o.vx[1]},
+                      {"vy", o.vy[0]},
+                      {"vy", o.vy[1]}});
+    SUITE_CHECK(o.tape_budget >= 0, "tape_budget is a number of bytes");
+    SUITE_CHECK(0 <= o.bounded && o.bounded <= 3,
+                "bounded is a number of unknowns, 0 to 3");
+    SUITE_CHECK(o.bounded < 2 || (-1 <= o.vx[0] && o.vx[1] <= 1),
+                "a bounded vx lies within speed");
+    SUITE_CHECK(o.bounded < 3 || (0 <= o.vy[0] && o.vy[1] <= 2),
+                "a bounded vy lies within twice the speed");
+    SUITE_CHECK(o.vx[0] <= o.vx[1] && o.vy[0] <= o.vy[1],
+                "vx and vy are ranges");
+    SUITE_CHECK(o.cells >= 4 && o.cells % 2 == 0,
+                "cells must be an even number, at least 4");
+    SUITE_CHECK(o.box > 0 && o.end_time > 0 && o.steps > 0,
+                "box, end time and number of steps must be positive");
+    SUITE_CHECK(o.width > 0 && o.speed > 0 && o.noise >= 0,
+                "width, speed and noise of the blast and the flow");
+    SUITE_CHECK(0 < o.x0[0] && o.x0[0] <= o.x0[1] && o.x0[1] < 1,
+                "the blast is within the box");
   }
-  Workspace work;
-  NavierStokes<double>(o).forward(out.x, out.given, out.y, work);
-  return out;
-}
 
-template <class T>
-Samples<double> NavierStokes<T>::sample(Index first,
-                                        Index count,
-                                        const Rng& rng) const {
-  Samples<double> out = sample_labelled(first, count, rng);
-  const Index n = options_.cells;
-  for (Index line = 0; line < 2 * n; ++line)
-    out.given.middleRows(line * n, n / 2).setZero();
-  return out;
-}
+  Shape shape() const override {
+    const Index cells = options_.cells * options_.cells;
+    return {3, cells, 2 * cells};
+  }
+  Vector<double> start() const override { return Vector<double>::Zero(3); }
 
-template <class T>
-void NavierStokes<T>::check_sizes(BatchIn<T> x, BatchIn<T> given) const {
-  check_size(x, shape().unknowns, x.cols());
-  check_size(given, shape().given, x.cols());
-}
+  void draw(Stream& stream, SampleOut& sample) const override {
+    const auto& o = options_;
+    auto& x = sample.x;
+    x(0) = 2 * stream.uniform(o.x0[0], o.x0[1]) - 1;
+    x(1) = stream.uniform(o.vx[0], o.vx[1]);
+    x(2) = stream.uniform(o.vy[0], o.vy[1]) - 1;
+    for (Index k = 0; k < o.bounded; ++k) x(k) = math::atanh(x(k));
+    sample.given = fluid::smooth_noise({.cells = o.cells,
+                                        .components = 2,
+                                        .cut = fluid::noise_cut(o.box),
+                                        .deviation = o.noise},
+                                       stream);
+  }
+  /// The flow below.
+  void hide(BatchOut<double> given) const override {
+    const Index n = options_.cells;
+    for (Index line = 0; line < 2 * n; ++line)
+      given.middleRows(line * n, n / 2).setZero();
+  }
 
-template <class T>
-void NavierStokes<T>::forward(BatchIn<T> x,
-                              BatchIn<T> given,
-                              BatchOut<T> y,
-                              Workspace& work) const {
-  const Kernel& k = kernel();
-  using P = typename Kernel::P;
-  check_sizes(x, given);
-  check_size(y, shape().observations, x.cols());
-  for_registers(work, x.cols(), k.W, [&](SampleBlock at, Workspace& mine) {
-    const Block<T> block(at, x, given);
-    const Index states = 2 * k.state_packs();
-    auto memory = mine.take<T>(k.W, states + k.scratch_packs());
-    P* const p = reinterpret_cast<P*>(memory.data());
-    k.run(block, x, given, p, nullptr, p + states);
-    k.observe(block, p, options_.steps % 2, y);
-  });
-}
+  void forward(Point<T> at, BatchOut<T> y, Workspace& work) const override {
+    const auto &x = at.x, &given = at.given;
+    const Kernel<T>& k = kernel();
+    using P = typename Kernel<T>::P;
+    for_registers(work, x.cols(), k.W, [&](SampleBlock part, Workspace& mine) {
+      const Block<T> block(part, x, given);
+      const Index states = 2 * k.state_packs();
+      auto memory = mine.take<T>(k.W, states + k.scratch_packs());
+      P* const p = reinterpret_cast<P*>(memory.data());
+      k.run(block, x, given, p, nullptr, p + states);
+      k.observe(block, p, options_.steps % 2, y);
+    });
+  }
+  void linearize(Point<T> at, BatchOut<T> y, Tape& tape) const override {
+    const auto &x = at.x, &given = at.given;
+    const Kernel<T>& k = kernel();
+    using P = typename Kernel<T>::P;
+    const fluid::RunSize size(k, options_.steps);
+    const double blocks = double(registers(x.cols(), k.W));
+    const bool all = blocks * size.bytes<T>() <= options_.tape_budget;
+    auto kept = RunTape<T>::write(tape, x, given, size, all);
+    for_registers(
+        tape.threads(), x.cols(), k.W, [&](SampleBlock part, int thread) {
+          const Block<T> block(part, x, given);
+          P* const s = kept.scratch(thread);
+          P* const p = all ? kept.states(block) : s + k.scratch_packs();
+          k.run(block, x, given, p, kept.decisions(block), s);
+          k.observe(block, p, all ? options_.steps : options_.steps % 2, y);
+        });
+  }
+  void pullback(const Tape& tape,
+                BatchIn<T> y_bar,
+                BatchOut<T> x_bar,
+                Workspace& work) const override {
+    const Kernel<T>& k = kernel();
+    using P = typename Kernel<T>::P;
+    RunTape<T> kept(tape);
+    const auto &x = kept.x, &given = kept.given;
+    for_registers(work, x.cols(), k.W, [&](SampleBlock part, Workspace& mine) {
+      const Block<T> block(part, x, given);
+      const Index bars = 4 * k.plane;
+      auto memory = mine.take<T>(k.W, bars + k.scratch_packs());
+      P* const m = reinterpret_cast<P*>(memory.data());
+      P* p = kept.keeps() ? kept.states(block) : nullptr;
+      std::uint8_t* decisions = kept.decisions(block);
+      if (!kept.keeps()) {
+        auto again = mine.take<T>(k.W, (options_.steps + 1) * k.state_packs());
+        auto bytes = mine.take<std::uint8_t>(k.state_bytes(), options_.steps);
+        p = reinterpret_cast<P*>(again.data()), decisions = bytes.data();
+        k.run(block, x, given, p, decisions, m + bars);
+      }
+      k.retreat(block, x, y_bar, p, decisions, m, m + bars, x_bar);
+    });
+  }
+  void jacobian(Point<T> at, BatchOut<T> j, Workspace& work) const override {
+    const auto &x = at.x, &given = at.given;
+    const Kernel<T>& k = kernel();
+    using P = typename Kernel<T>::P;
+    for_registers(work, x.cols(), k.W, [&](SampleBlock part, Workspace& mine) {
+      const Block<T> block(part, x, given);
+      const Index states = 2 * k.state_packs(), tangents = 12 * k.plane;
+      auto memory = mine.take<T>(k.W, states + tangents + k.scratch_packs());
+      auto held = mine.take<std::uint8_t>(2 * k.state_bytes(), 1);
+      P* const p = reinterpret_cast<P*>(memory.data());
+      k.push(block,
+             x,
+             given,
+             p,
+             held.data(),
+             p + states,
+             p + states + tangents,
+             j);
+    });
+  }
 
-template <class T>
-void NavierStokes<T>::linearize(BatchIn<T> x,
-                                BatchIn<T> given,
-                                BatchOut<T> y,
-                                Tape& tape) const {
-  const Kernel& k = kernel();
-  using P = typename Kernel::P;
-  check_sizes(x, given);
-  check_size(y, shape().observations, x.cols());
-  const fluid::RunSize size(k, options_.steps);
-  const double blocks = double(registers(x.cols(), k.W));
-  const bool all = blocks * size.bytes<T>() <= options_.tape_budget;
-  auto kept = RunTape<T>::write(tape, x, given, size, all);
-  for_registers(tape.threads(), x.cols(), k.W, [&](SampleBlock at, int thread) {
-    const Block<T> block(at, x, given);
-    P* const s = kept.scratch(thread);
-    P* const p = all ? kept.states(block) : s + k.scratch_packs();
-    k.run(block, x, given, p, kept.decisions(block), s);
-    k.observe(block, p, all ? options_.steps : options_.steps % 2, y);
-  });
-}
+  /// A register of samples: the states of more only fill memory.
+  Index gradient_block() const override { return fluid::kWidth<T>; }
+  /// Counted from the formulas: 83 per face for the lookups and the limiter,
+  /// and the projection's factor, some 30 per cell.
+  double operations() const override {
+    const double cells = double(options_.cells * options_.cells);
+    return double(options_.steps) * cells * 166;
+  }
 
-template <class T>
-void NavierStokes<T>::pullback(const Tape& tape,
-                               BatchIn<T> y_bar,
-                               BatchOut<T> x_bar,
-                               Workspace& work) const {
-  const Kernel& k = kernel();
-  using P = typename Kernel::P;
-  RunTape<T> kept(tape);
-  const auto &x = kept.x, &given = kept.given;
-  check_size(y_bar, shape().observations, x.cols());
-  check_size(x_bar, 3, x.cols());
-  for_registers(work, x.cols(), k.W, [&](SampleBlock at, Workspace& mine) {
-    const Block<T> block(at, x, given);
-    const Index bars = 4 * k.plane;
-    auto memory = mine.take<T>(k.W, bars + k.scratch_packs());
-    P* const m = reinterpret_cast<P*>(memory.data());
-    P* p = kept.keeps() ? kept.states(block) : nullptr;
-    std::uint8_t* decisions = kept.decisions(block);
-    if (!kept.keeps()) {
-      auto again = mine.take<T>(k.W, (options_.steps + 1) * k.state_packs());
-      auto bytes = mine.take<std::uint8_t>(k.state_bytes(), options_.steps);
-      p = reinterpret_cast<P*>(again.data()), decisions = bytes.data();
-      k.run(block, x, given, p, decisions, m + bars);
-    }
-    k.retreat(block, x, y_bar, p, decisions, m, m + bars, x_bar);
-  });
-}
+ private:
+  /// A problem that nobody asks for a flow factors nothing.
+  const Kernel<T>& kernel() const {
+    std::call_once(lazy_->made, [&] {
+      lazy_->kernel = std::make_unique<const Kernel<T>>(options_);
+    });
+    return *lazy_->kernel;
+  }
 
-template <class T>
-void NavierStokes<T>::jacobian(BatchIn<T> x,
-                               BatchIn<T> given,
-                               BatchOut<T> j,
-                               Workspace& work) const {
-  const Kernel& k = kernel();
-  using P = typename Kernel::P;
-  check_sizes(x, given);
-  check_size(j, 3 * shape().observations, x.cols());
-  for_registers(work, x.cols(), k.W, [&](SampleBlock at, Workspace& mine) {
-    const Block<T> block(at, x, given);
-    const Index states = 2 * k.state_packs(), tangents = 12 * k.plane;
-    auto memory = mine.take<T>(k.W, states + tangents + k.scratch_packs());
-    auto held = mine.take<std::uint8_t>(2 * k.state_bytes(), 1);
-    P* const p = reinterpret_cast<P*>(memory.data());
-    k.push(
-        block, x, given, p, held.data(), p + states, p + states + tangents, j);
-  });
-}
+  NavierStokesOptions options_;
+  std::unique_ptr<Lazy<T>> lazy_ = std::make_unique<Lazy<T>>();
+};
 
-template <class T>
-Index NavierStokes<T>::gradient_block() const {
-  return fluid::kWidth<T>;
-}
+}  // namespace
 
-/// Counted from the formulas: 83 per face for the lookups and the limiter, and
-/// the projection's factor, some 30 per cell.
-/// A problem that nobody asks for a flow factors nothing.
-template <class T>
-const typename NavierStokes<T>::Kernel& NavierStokes<T>::kernel() const {
-  std::call_once(lazy_->made, [&] {
-    lazy_->kernel = std::make_unique<const Kernel>(options_);
-  });
-  return *lazy_->kernel;
+ProblemRecipe problems::navier_stokes(const NavierStokesOptions& options) {
+  return problem<NavierStokes>(
+      "navier_stokes",
+      options,
+      {.unknowns = {"z_0, z_1, z_2"},
+       .observations = {"velocity at the end(component, i, j)"},
+       .given = {"velocity at the start(component, i, j)"}});
 }
-
-template <class T>
-double NavierStokes<T>::operations() const {
-  const double cells = double(options_.cells * options_.cells);
-  return double(options_.steps) * cells * 166;
-}
-
-template class NavierStokes<float>;
-template class NavierStokes<double>;
 
 }  // namespace physinv

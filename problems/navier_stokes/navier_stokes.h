@@ -32,7 +32,6 @@
 #include <vector>
 
 #include "problems/fluid/box_projection.h"
-#include "suite/core/problem.h"
 #include "suite/core/recipe.h"
 
 namespace physinv {
@@ -73,63 +72,8 @@ struct NavierStokesOptions {
   }
 };
 
-template <class T>
-class NavierStokes final : public Problem<T>,
-                           public Vjp<T>,
-                           public Jacobian<T> {
- public:
-  using Options = NavierStokesOptions;
-  explicit NavierStokes(const Options& options = {});
-
-  Shape shape() const override {
-    const Index cells = options_.cells * options_.cells;
-    return {3, cells, 2 * cells};
-  }
-  Vector<double> start() const override { return Vector<double>::Zero(3); }
-
-  /// z of the truth; the flow below is zero in `given`, not in what made y.
-  Samples<double> sample(Index first,
-                         Index count,
-                         const Rng& rng) const override;
-  /// The same with the whole flow as given.
-  Samples<double> sample_labelled(Index first,
-                                  Index count,
-                                  const Rng& rng) const override;
-
-  void forward(BatchIn<T> x,
-               BatchIn<T> given,
-               BatchOut<T> y,
-               Workspace& work) const override;
-  void linearize(BatchIn<T> x,
-                 BatchIn<T> given,
-                 BatchOut<T> y,
-                 Tape& tape) const override;
-  void pullback(const Tape& tape,
-                BatchIn<T> y_bar,
-                BatchOut<T> x_bar,
-                Workspace& work) const override;
-  void jacobian(BatchIn<T> x,
-                BatchIn<T> given,
-                BatchOut<T> j,
-                Workspace& work) const override;
-
-  /// A register of samples: the states of more only fill memory.
-  Index gradient_block() const override;
-  double operations() const override;
-
-  const Options& options() const { return options_; }
-
- private:
-  struct Kernel;
-  struct Lazy;
-  const Kernel& kernel() const;
-  void check_sizes(BatchIn<T> x, BatchIn<T> given) const;
-
-  Options options_;
-  std::shared_ptr<Lazy> lazy_;  ///< the factor of the pressure, when needed
-};
-
-extern template class NavierStokes<float>;
-extern template class NavierStokes<double>;
+namespace problems {
+ProblemRecipe navier_stokes(const NavierStokesOptions& options = {});
+}
 
 }  // namespace physinv

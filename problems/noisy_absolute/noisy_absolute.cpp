@@ -49,10 +49,8 @@ void evaluate(
 
 /// Runs body(i, y, slope) for every column.
 template <class T, class F>
-void for_columns(Index terms, BatchIn<T> x, BatchIn<T> given, F&& body) {
-  SUITE_CHECK(x.rows() == 1 && given.rows() == kNoise + 3 * terms &&
-                  given.cols() == x.cols(),
-              "x and given match the problem");
+void for_columns(Index terms, const Point<T>& at, F&& body) {
+  const auto &x = at.x, &given = at.given;
   for (Index first = 0; first < x.cols(); first += kLanes<T>) {
     const Index count = std::min<Index>(kLanes<T>, x.cols() - first);
     Pack<T> y, slope;
@@ -76,41 +74,42 @@ double noise_level(VectorIn<double> amplitude, VectorIn<double> omega) {
   return amplitude.cwiseProduct(omega).norm();
 }
 
-template <class T>
-NoisyAbsolute<T>::NoisyAbsolute(const Options& options) : options_(options) {
-  check_numbers<T>({{"gamma", options.gamma},
-                    {"omega_min", options.omega_min},
-                    {"omega_max", options.omega_max},
-                    {"level", options.level},
-                    {"decades", options.decades},
-                    {"snr", options.snr}});
-  SUITE_CHECK(options.terms >= 0, "the number of terms is not negative");
-  SUITE_CHECK(options.gamma > 0, "gamma has a range");
-  SUITE_CHECK(options.level >= 0 && options.decades >= 0 && options.snr >= 0,
-              "levels and their ratio are not negative");
-  SUITE_CHECK(options.omega_max >= options.omega_min,
-              "frequencies have a range");
-}
+namespace {
 
 template <class T>
-Samples<double> NoisyAbsolute<T>::draw(Index first,
-                                       Index count,
-                                       const Rng& rng,
-                                       double spread) const {
-  const Index m = options_.terms;
-  Samples<double> out;
-  out.x.resize(1, count), out.y.resize(1, count);
-  out.given.resize(shape().given, count);
-  for (Index i = 0; i < count; ++i) {
-    Stream stream = rng.child(static_cast<std::uint64_t>(first + i)).stream();
-    auto given = out.given.col(i);
+class NoisyAbsolute final : public Problem<T>, public Vjp<T> {
+ public:
+  explicit NoisyAbsolute(const NoisyAbsoluteOptions& options)
+      : options_(options) {
+    check_numbers<T>({{"gamma", options.gamma},
+                      {"omega_min", options.omega_min},
+                      {"omega_max", options.omega_max},
+                      {"level", options.level},
+                      {"decades", options.decades},
+                      {"snr", options.snr}});
+    SUITE_CHECK(options.terms >= 0, "the number of terms is not negative");
+    SUITE_CHECK(options.gamma > 0, "gamma has a range");
+    SUITE_CHECK(options.level >= 0 && options.decades >= 0 && options.snr >= 0,
+                "levels and their ratio are not negative");
+    SUITE_CHECK(options.omega_max >= options.omega_min,
+                "frequencies have a range");
+  }
+
+  Shape shape() const override { return {1, 1, 3 + 3 * options_.terms}; }
+  Vector<double> start() const override { return Vector<double>::Zero(1); }
+
+  /// x = x*, of labelled samples x* + U(-1, 1), off the kink.
+  void draw(Stream& stream, SampleOut& sample) const override {
+    const Index m = options_.terms;
+    auto& given = sample.given;
     given(kGamma) = stream.uniform(-options_.gamma, options_.gamma);
     given(kSolution) = solution_at(options_.solution, given(kGamma));
     const double level =
         options_.level *
         math::pow(10, options_.decades * stream.uniform(-1.0, 1.0));
     given(kLambda) = options_.snr * level;
-    out.x(0, i) = given(kSolution) + spread * stream.uniform(-1.0, 1.0);
+    const double away = stream.uniform(-1.0, 1.0);
+    sample.x(0) = given(kSolution) + (sample.labelled ? away : 0);
     auto a = given.segment(kNoise, m), w = given.segment(kNoise + m, m);
     for (Index j = 0; j < m; ++j) {
       a(j) = stream.uniform();
@@ -120,68 +119,53 @@ Samples<double> NoisyAbsolute<T>::draw(Index first,
     const double drawn = noise_level(a, w);
     if (drawn > 0) a *= level / drawn;
   }
-  Workspace work;
-  NoisyAbsolute<double>(options_).forward(out.x, out.given, out.y, work);
-  return out;
-}
 
-template <class T>
-Samples<double> NoisyAbsolute<T>::sample(Index first,
-                                         Index count,
-                                         const Rng& rng) const {
-  return draw(first, count, rng, 0);
-}
+  void forward(Point<T> at, BatchOut<T> y, Workspace&) const override {
+    for_columns<T>(
+        options_.terms, at, [&](Index i, T loss, T) { y(0, i) = loss; });
+  }
+  void loss(BatchIn<T> y,
+            BatchIn<T> target,
+            VectorOut<double> loss) const override {
+    loss = (y - target).row(0).transpose().template cast<double>();
+  }
+  void loss_gradient(BatchIn<T> /*y*/,
+                     BatchIn<T> /*target*/,
+                     BatchOut<T> y_bar) const override {
+    y_bar.setOnes();
+  }
+  void linearize(Point<T> at, BatchOut<T> y, Tape& tape) const override {
+    auto slopes = tape.slot<T>(0, 1, y.cols());
+    for_columns<T>(options_.terms, at, [&](Index i, T loss, T slope) {
+      y(0, i) = loss, slopes(0, i) = slope;
+    });
+  }
+  void pullback(const Tape& tape,
+                BatchIn<T> y_bar,
+                BatchOut<T> x_bar,
+                Workspace&) const override {
+    x_bar = tape.view<T>(0).cwiseProduct(y_bar);
+  }
 
-template <class T>
-Samples<double> NoisyAbsolute<T>::sample_labelled(Index first,
-                                                  Index count,
-                                                  const Rng& rng) const {
-  return draw(first, count, rng, 1);
-}
+  /// A sine or cosine counts as 10.
+  double operations() const override {
+    return 4 + 25 * static_cast<double>(options_.terms);
+  }
 
-template <class T>
-void NoisyAbsolute<T>::forward(BatchIn<T> x,
-                               BatchIn<T> given,
-                               BatchOut<T> y,
-                               Workspace& /*work*/) const {
-  for_columns<T>(
-      options_.terms, x, given, [&](Index i, T loss, T) { y(0, i) = loss; });
-}
+ private:
+  NoisyAbsoluteOptions options_;
+};
 
-template <class T>
-void NoisyAbsolute<T>::loss(BatchIn<T> y,
-                            BatchIn<T> target,
-                            VectorOut<double> loss) const {
-  loss = (y - target).row(0).transpose().template cast<double>();
-}
+}  // namespace
 
-template <class T>
-void NoisyAbsolute<T>::loss_gradient(BatchIn<T> /*y*/,
-                                     BatchIn<T> /*target*/,
-                                     BatchOut<T> y_bar) const {
-  y_bar.setOnes();
+ProblemRecipe problems::noisy_absolute(const NoisyAbsoluteOptions& options) {
+  return problem<NoisyAbsolute>(
+      "noisy_absolute",
+      options,
+      {.unknowns = {"x"},
+       .observations = {"loss"},
+       .given = {"gamma, x*, lambda, amplitudes(term), frequencies(term), "
+                 "phases(term)"}});
 }
-
-template <class T>
-void NoisyAbsolute<T>::linearize(BatchIn<T> x,
-                                 BatchIn<T> given,
-                                 BatchOut<T> y,
-                                 Tape& tape) const {
-  auto slopes = tape.slot<T>(0, 1, x.cols());
-  for_columns<T>(options_.terms, x, given, [&](Index i, T loss, T slope) {
-    y(0, i) = loss, slopes(0, i) = slope;
-  });
-}
-
-template <class T>
-void NoisyAbsolute<T>::pullback(const Tape& tape,
-                                BatchIn<T> y_bar,
-                                BatchOut<T> x_bar,
-                                Workspace& /*work*/) const {
-  x_bar = tape.view<T>(0).cwiseProduct(y_bar);
-}
-
-template class NoisyAbsolute<float>;
-template class NoisyAbsolute<double>;
 
 }  // namespace physinv

@@ -17,7 +17,6 @@
 /// A column of x that is not finite gives NaN in its own column only.
 #pragma once
 
-#include "suite/core/problem.h"
 #include "suite/core/recipe.h"
 
 namespace physinv {
@@ -57,58 +56,8 @@ struct NoisyAbsoluteOptions {
 /// sqrt(sum_j (A_j w_j)^2).
 double noise_level(VectorIn<double> amplitude, VectorIn<double> omega);
 
-template <class T>
-class NoisyAbsolute final : public Problem<T>, public Vjp<T> {
- public:
-  using Options = NoisyAbsoluteOptions;
-  explicit NoisyAbsolute(const Options& options = {});
-
-  Shape shape() const override { return {1, 1, 3 + 3 * options_.terms}; }
-  Vector<double> start() const override { return Vector<double>::Zero(1); }
-
-  /// x = x*.
-  Samples<double> sample(Index first,
-                         Index count,
-                         const Rng& rng) const override;
-  /// x = x* + U(-1, 1), off the kink.
-  Samples<double> sample_labelled(Index first,
-                                  Index count,
-                                  const Rng& rng) const override;
-
-  void forward(BatchIn<T> x,
-               BatchIn<T> given,
-               BatchOut<T> y,
-               Workspace& work) const override;
-  void loss(BatchIn<T> y,
-            BatchIn<T> target,
-            VectorOut<double> loss) const override;
-  void loss_gradient(BatchIn<T> y,
-                     BatchIn<T> target,
-                     BatchOut<T> y_bar) const override;
-  void linearize(BatchIn<T> x,
-                 BatchIn<T> given,
-                 BatchOut<T> y,
-                 Tape& tape) const override;
-  void pullback(const Tape& tape,
-                BatchIn<T> y_bar,
-                BatchOut<T> x_bar,
-                Workspace& work) const override;
-
-  /// A sine or cosine counts as 10.
-  double operations() const override {
-    return 4 + 25 * static_cast<double>(options_.terms);
-  }
-
- private:
-  Samples<double> draw(Index first,
-                       Index count,
-                       const Rng& rng,
-                       double spread) const;
-
-  Options options_;
-};
-
-extern template class NoisyAbsolute<float>;
-extern template class NoisyAbsolute<double>;
+namespace problems {
+ProblemRecipe noisy_absolute(const NoisyAbsoluteOptions& options = {});
+}
 
 }  // namespace physinv

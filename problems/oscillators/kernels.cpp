@@ -5,10 +5,10 @@
 namespace physinv {
 namespace {
 
-const Kernels<Oscillators> kKernels("oscillators",
-                                    {.forward = {1, 128, 4096},
-                                     .gradient = {1, 128, 512},
-                                     .jacobian = {1, 128}});
+const Kernels kKernels(problems::oscillators(),
+                       {.forward = {1, 128, 4096},
+                        .gradient = {1, 128, 512},
+                        .jacobian = {1, 128}});
 
 }  // namespace
 }  // namespace physinv

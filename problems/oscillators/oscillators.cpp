@@ -220,7 +220,7 @@ Four<Wide<T, 4>> differentiate(const Constants<T>& k,
   return bar;
 }
 
-enum Slot : std::size_t { kKept, kCount };
+enum Slot : std::size_t { kKept };
 
 }  // namespace
 
@@ -255,155 +255,128 @@ OscillatorsStep oscillators_step(const std::array<double, 4>& state,
 template decltype(oscillators_step<float>) oscillators_step<float>;
 template decltype(oscillators_step<double>) oscillators_step<double>;
 
-template <class T>
-Oscillators<T>::Oscillators(const Options& options) : options_(options) {
-  check_numbers<T>({{"dt", options.dt},
-                    {"coupling", options.coupling},
-                    {"control", options.control},
-                    {"deviation", options.deviation}});
-  SUITE_CHECK(options.steps > 0 && options.dt > 0,
-              "there must be steps, forward in time");
-  SUITE_CHECK(options.deviation >= 0, "deviation must not be negative");
-}
+namespace {
 
 template <class T>
-Vector<double> Oscillators<T>::start() const {
-  return Vector<double>::Zero(options_.steps);
-}
-
-template <class T>
-Samples<double> Oscillators<T>::sample(Index first,
-                                       Index count,
-                                       const Rng& rng) const {
-  Samples<double> out;
-  out.x.resize(0, count), out.given.resize(4, count);
-  for (Index i = 0; i < count; ++i) {
-    Stream stream = rng.child(static_cast<std::uint64_t>(first + i)).stream();
-    for (Index k = 0; k < 4; ++k) out.given(k, i) = stream.uniform();
+class Oscillators final : public Problem<T>, public Vjp<T>, public Jacobian<T> {
+ public:
+  explicit Oscillators(const OscillatorsOptions& options) : options_(options) {
+    check_numbers<T>({{"dt", options.dt},
+                      {"coupling", options.coupling},
+                      {"control", options.control},
+                      {"deviation", options.deviation}});
+    SUITE_CHECK(options.steps > 0 && options.dt > 0,
+                "there must be steps, forward in time");
+    SUITE_CHECK(options.deviation >= 0, "deviation must not be negative");
   }
-  out.y = out.given;
-  return out;
-}
 
-template <class T>
-Samples<double> Oscillators<T>::sample_labelled(Index first,
-                                                Index count,
-                                                const Rng& rng) const {
-  Samples<double> out = sample(first, count, rng);
-  out.x.resize(options_.steps, count);
-  for (Index i = 0; i < count; ++i) {
-    Stream stream = rng.child(static_cast<std::uint64_t>(first + i))
-                        .child("control")
-                        .stream();
-    stream.normals(out.x.col(i).data(), options_.steps);
-    out.x.col(i) *= options_.deviation;
+  Shape shape() const override { return {options_.steps, 4, 4}; }
+  /// No control.
+  Vector<double> start() const override {
+    return Vector<double>::Zero(options_.steps);
   }
-  Workspace work;
-  Oscillators<double>(options_).forward(out.x, out.given, out.y, work);
-  return out;
-}
 
-template <class T>
-void Oscillators<T>::forward(BatchIn<T> x,
-                             BatchIn<T> given,
-                             BatchOut<T> y,
-                             Workspace& work) const {
-  const Index samples = x.cols();
-  check_size(x, options_.steps, samples);
-  check_size(given, 4, samples);
-  check_size(y, 4, samples);
-  const Constants<T> k(options_);
-  for_blocks(work.threads(), group_count<T>(samples), [&](Index b, int) {
-    const Index first = b * Group<T>::kCount;
-    auto s = load_state<T>(given, first);
-    integrate<T>(k, x, first, s, nullptr);
-    store_state<T>(s, y, first);
-  });
-}
+  /// States uniform in [0, 1)^4, observed where they started; of labelled
+  /// samples under random controls, and where these lead.
+  void draw(Stream& stream, SampleOut& sample) const override {
+    for (Index k = 0; k < 4; ++k) sample.given(k) = stream.uniform();
+    sample.y = sample.given;
+    if (!sample.labelled) return;
+    Stream controls = sample.rng.child("control").stream();
+    controls.normals(sample.x.data(), options_.steps);
+    sample.x *= options_.deviation;
+  }
+  Drawn drawn() const override { return Drawn::observations; }
 
-template <class T>
-void Oscillators<T>::linearize(BatchIn<T> x,
-                               BatchIn<T> given,
-                               BatchOut<T> y,
-                               Tape& tape) const {
-  const Index samples = x.cols(), groups = group_count<T>(samples);
-  check_size(x, options_.steps, samples);
-  check_size(given, 4, samples);
-  check_size(y, 4, samples);
-  const Constants<T> k(options_);
-  tape.slot<Index>(kCount, 1, 1)(0, 0) = samples;
-  auto kept =
-      tape.slot<T>(kKept, options_.steps * kStages * Group<T>::kCount, groups);
-  for_blocks(tape.threads(), groups, [&](Index b, int) {
-    const Index first = b * Group<T>::kCount;
-    auto s = load_state<T>(given, first);
-    integrate<T>(
-        k, x, first, s, reinterpret_cast<Group<T>*>(kept.col(b).data()));
-    store_state<T>(s, y, first);
-  });
-}
+  void forward(Point<T> at, BatchOut<T> y, Workspace& work) const override {
+    const auto &x = at.x, &given = at.given;
+    const Index samples = x.cols();
+    const Constants<T> k(options_);
+    for_blocks(work.threads(), group_count<T>(samples), [&](Index b, int) {
+      const Index first = b * Group<T>::kCount;
+      auto s = load_state<T>(given, first);
+      integrate<T>(k, x, first, s, nullptr);
+      store_state<T>(s, y, first);
+    });
+  }
+  /// Keeps four numbers per step and sample.
+  void linearize(Point<T> at, BatchOut<T> y, Tape& tape) const override {
+    const auto &x = at.x, &given = at.given;
+    const Index groups = group_count<T>(x.cols());
+    const Constants<T> k(options_);
+    auto kept = tape.slot<T>(
+        kKept, options_.steps * kStages * Group<T>::kCount, groups);
+    for_blocks(tape.threads(), groups, [&](Index b, int) {
+      const Index first = b * Group<T>::kCount;
+      auto s = load_state<T>(given, first);
+      integrate<T>(
+          k, x, first, s, reinterpret_cast<Group<T>*>(kept.col(b).data()));
+      store_state<T>(s, y, first);
+    });
+  }
+  void pullback(const Tape& tape,
+                BatchIn<T> y_bar,
+                BatchOut<T> x_bar,
+                Workspace& work) const override {
+    const auto kept = tape.view<T>(kKept);
+    const Constants<T> k(options_);
+    for_blocks(work.threads(), kept.cols(), [&](Index b, int) {
+      const Index first = b * Group<T>::kCount;
+      pull_group<T>(k,
+                    reinterpret_cast<const Group<T>*>(kept.col(b).data()),
+                    load_state<T>(y_bar, first),
+                    x_bar,
+                    first);
+    });
+  }
+  void jacobian(Point<T> at, BatchOut<T> j, Workspace& work) const override {
+    const auto &x = at.x, &given = at.given;
+    const Index samples = x.cols(), steps = options_.steps;
+    const Constants<T> k(options_);
+    Threads* threads = work.threads();
+    if (threads != nullptr) work.of_thread(0);  // makes them all
+    for_blocks(threads, group_count<T>(samples), [&](Index b, int thread) {
+      Workspace& own = threads != nullptr ? work.of_thread(thread) : work;
+      const Workspace::Scope scope(own);
+      auto* kept = reinterpret_cast<Group<T>*>(
+          own.take<T>(steps * kStages * Group<T>::kCount, 1).data());
+      const Index first = b * Group<T>::kCount;
+      auto s = load_state<T>(given, first);
+      integrate<T>(k, x, first, s, kept);
+      for (int g = 0; g < kGroups && first + g * kLanes<T> < samples; ++g)
+        differentiate(k, kept, g, j, first + g * kLanes<T>);
+    });
+  }
 
-template <class T>
-void Oscillators<T>::pullback(const Tape& tape,
-                              BatchIn<T> y_bar,
-                              BatchOut<T> x_bar,
-                              Workspace& work) const {
-  const Index samples = tape.view<Index>(kCount)(0, 0);
-  check_size(y_bar, 4, samples);
-  check_size(x_bar, options_.steps, samples);
-  const auto kept = tape.view<T>(kKept);
-  const Constants<T> k(options_);
-  for_blocks(work.threads(), kept.cols(), [&](Index b, int) {
-    const Index first = b * Group<T>::kCount;
-    pull_group<T>(k,
-                  reinterpret_cast<const Group<T>*>(kept.col(b).data()),
-                  load_state<T>(y_bar, first),
-                  x_bar,
-                  first);
-  });
-}
+  /// |y - target|^2
+  void loss(BatchIn<T> y,
+            BatchIn<T> target,
+            VectorOut<double> loss) const override {
+    Problem<T>::loss(y, target, loss);
+    loss *= 2;
+  }
+  void loss_gradient(BatchIn<T> y,
+                     BatchIn<T> target,
+                     BatchOut<T> y_bar) const override {
+    for_numbers<T>(y, target, y_bar, [](T a, T b) { return T(2) * (a - b); });
+  }
 
-template <class T>
-void Oscillators<T>::jacobian(BatchIn<T> x,
-                              BatchIn<T> given,
-                              BatchOut<T> j,
-                              Workspace& work) const {
-  const Index samples = x.cols(), steps = options_.steps;
-  check_size(x, steps, samples);
-  check_size(given, 4, samples);
-  check_size(j, 4 * steps, samples);
-  const Constants<T> k(options_);
-  Threads* threads = work.threads();
-  if (threads != nullptr) work.of_thread(0);  // makes them all
-  for_blocks(threads, group_count<T>(samples), [&](Index b, int thread) {
-    Workspace& own = threads != nullptr ? work.of_thread(thread) : work;
-    const Workspace::Scope scope(own);
-    auto* kept = reinterpret_cast<Group<T>*>(
-        own.take<T>(steps * kStages * Group<T>::kCount, 1).data());
-    const Index first = b * Group<T>::kCount;
-    auto s = load_state<T>(given, first);
-    integrate<T>(k, x, first, s, kept);
-    for (int g = 0; g < kGroups && first + g * kLanes<T> < samples; ++g)
-      differentiate(k, kept, g, j, first + g * kLanes<T>);
-  });
-}
+  double operations() const override {
+    return 80.0 * static_cast<double>(options_.steps);
+  }
 
-template <class T>
-void Oscillators<T>::loss(BatchIn<T> y,
-                          BatchIn<T> target,
-                          VectorOut<double> loss) const {
-  Problem<T>::loss(y, target, loss);
-  loss *= 2;
-}
+ private:
+  OscillatorsOptions options_;
+};
 
-template <class T>
-void Oscillators<T>::loss_gradient(BatchIn<T> y,
-                                   BatchIn<T> target,
-                                   BatchOut<T> y_bar) const {
-  for_numbers<T>(y, target, y_bar, [](T a, T b) { return T(2) * (a - b); });
-}
+}  // namespace
 
-template class Oscillators<float>;
-template class Oscillators<double>;
+ProblemRecipe problems::oscillators(const OscillatorsOptions& options) {
+  return problem<Oscillators>("oscillators",
+                              options,
+                              {.unknowns = {"u(step)"},
+                               .observations = {"x1, x2, p1, p2"},
+                               .given = {"x1, x2, p1, p2"}});
+}
 
 }  // namespace physinv

@@ -20,7 +20,6 @@
 
 #include <array>
 
-#include "suite/core/problem.h"
 #include "suite/core/recipe.h"
 
 namespace physinv {
@@ -55,62 +54,8 @@ OscillatorsStep oscillators_step(const std::array<double, 4>& state,
                                  double u,
                                  const OscillatorsOptions& options = {});
 
-template <class T>
-class Oscillators final : public Problem<T>, public Vjp<T>, public Jacobian<T> {
- public:
-  using Options = OscillatorsOptions;
-  explicit Oscillators(const Options& options = {});
-
-  Shape shape() const override { return {options_.steps, 4, 4}; }
-  /// No control.
-  Vector<double> start() const override;
-
-  /// States uniform in [0, 1)^4, observed where they started; no truth.
-  Samples<double> sample(Index first,
-                         Index count,
-                         const Rng& rng) const override;
-  /// The same states under random controls, and where these lead.
-  Samples<double> sample_labelled(Index first,
-                                  Index count,
-                                  const Rng& rng) const override;
-
-  void forward(BatchIn<T> x,
-               BatchIn<T> given,
-               BatchOut<T> y,
-               Workspace& work) const override;
-  /// Keeps four numbers per step and sample.
-  void linearize(BatchIn<T> x,
-                 BatchIn<T> given,
-                 BatchOut<T> y,
-                 Tape& tape) const override;
-  void pullback(const Tape& tape,
-                BatchIn<T> y_bar,
-                BatchOut<T> x_bar,
-                Workspace& work) const override;
-  void jacobian(BatchIn<T> x,
-                BatchIn<T> given,
-                BatchOut<T> j,
-                Workspace& work) const override;
-
-  /// |y - target|^2
-  void loss(BatchIn<T> y,
-            BatchIn<T> target,
-            VectorOut<double> loss) const override;
-  void loss_gradient(BatchIn<T> y,
-                     BatchIn<T> target,
-                     BatchOut<T> y_bar) const override;
-
-  double operations() const override {
-    return 80.0 * static_cast<double>(options_.steps);
-  }
-
-  const Options& options() const { return options_; }
-
- private:
-  Options options_;
-};
-
-extern template class Oscillators<float>;
-extern template class Oscillators<double>;
+namespace problems {
+ProblemRecipe oscillators(const OscillatorsOptions& options = {});
+}
 
 }  // namespace physinv

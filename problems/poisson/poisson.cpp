@@ -6,6 +6,7 @@
 
 #include "suite/core/check.h"
 #include "suite/core/eigen_caches.h"
+#include "suite/core/linear_problem.h"
 #include "suite/core/math.h"
 #include "suite/core/option_check.h"
 #include "suite/core/threads.h"
@@ -109,6 +110,12 @@ Batch<double> poisson_source(const Batch<double>& re, const Batch<double>& im) {
   return x;
 }
 
+Batch<double> poisson_eigenvalues(Index rows, Index columns) {
+  return Batch<double>::NullaryExpr(columns, rows, [&](Index l, Index k) {
+    return eigenvalue(k, rows) + eigenvalue(l, columns);
+  });
+}
+
 Batch<double> laplacian(const Batch<double>& y) {
   const Index p = y.rows(), q = y.cols();
   Batch<double> out = -4 * y;
@@ -119,117 +126,113 @@ Batch<double> laplacian(const Batch<double>& y) {
   return out;
 }
 
-template <class T>
-Poisson<T>::Poisson(const Options& options)
-    : options_(checked(options)),
-      along_rows_(sines(options.rows)),
-      along_columns_(sines(options.columns)),
-      lambda_(Batch<double>::NullaryExpr(
-          options.columns, options.rows, [&](Index l, Index k) {
-            return eigenvalue(k, options.rows) + eigenvalue(l, options.columns);
-          })) {}
+namespace {
 
 template <class T>
-void Poisson<T>::solve(const Batch<double>& x, Batch<double>& y) const {
-  if (options_.relative > 0) return iterate(options_, x, y);
-  Batch<double> modes(x.rows(), x.cols());
-  y.resizeLike(x);
-  y.noalias() = along_columns_ * x;
-  modes.noalias() = y * along_rows_;
-  modes.array() /= lambda_.array();
-  y.noalias() = along_columns_ * modes;
-  modes.noalias() = y * along_rows_;
-  y.swap(modes);
-}
+class Poisson final : public LinearProblem<T>, public Inverse<T> {
+ public:
+  explicit Poisson(const PoissonOptions& options)
+      : options_(checked(options)),
+        along_rows_(sines(options.rows)),
+        along_columns_(sines(options.columns)),
+        lambda_(poisson_eigenvalues(options.rows, options.columns)) {}
 
-template <class T>
-void Poisson<T>::solve_all(BatchIn<T> x,
-                           BatchOut<T> y,
-                           Threads* threads) const {
-  const Index p = options_.rows, q = options_.columns;
-  check_size(x, p * q, y.cols());
-  check_size(y, p * q, x.cols());
-  for_blocks(threads, x.cols(), [&](Index i, int) {
-    Batch<double> field = Eigen::Map<const Batch<T>>(x.col(i).data(), q, p)
-                              .template cast<double>();
-    Batch<double> found;
-    solve(field, found);
-    y.col(i) = found.reshaped().template cast<T>();
-  });
-}
+  Shape shape() const override {
+    const Index cells = options_.rows * options_.columns;
+    return {cells, cells, 0};
+  }
+  Vector<double> start() const override {
+    return Vector<double>::Zero(options_.rows * options_.columns);
+  }
 
-template <class T>
-Samples<double> Poisson<T>::sample(Index first,
-                                   Index count,
-                                   const Rng& rng) const {
-  const Index p = options_.rows, q = options_.columns;
-  Samples<double> out;
-  out.x.resize(p * q, count), out.y.resize(p * q, count);
-  out.given.resize(0, count);
-  Batch<double> re(p, q), im(p, q), found;
-  Vector<double> pairs(2 * p * q);
-  for (Index i = 0; i < count; ++i) {
-    Stream stream = rng.child(static_cast<std::uint64_t>(first + i)).stream();
+  /// x = poisson_source of standard normal noise.
+  void draw(Stream& stream, SampleOut& sample) const override {
+    const Index p = options_.rows, q = options_.columns;
+    Batch<double> re(p, q), im(p, q);
+    Vector<double> pairs(2 * p * q);
     stream.normals(pairs.data(), pairs.size());
     for (Index k = 0, at = 0; k < p; ++k)
       for (Index l = 0; l < q; ++l, at += 2)
         re(k, l) = pairs(at), im(k, l) = pairs(at + 1);
     const Batch<double> x = poisson_source(re, im).transpose();
-    solve(x, found);
-    out.x.col(i) = x.reshaped(), out.y.col(i) = found.reshaped();
+    sample.x = x.reshaped();
   }
-  return out;
-}
 
-template <class T>
-void Poisson<T>::forward(BatchIn<T> x,
-                         BatchIn<T> /*given*/,
-                         BatchOut<T> y,
-                         Workspace& work) const {
-  solve_all(x, y, work.threads());
-}
+  void forward(Point<T> at, BatchOut<T> y, Workspace& work) const override {
+    solve_all(at.x, y, work.threads());
+  }
+  /// Keeps which samples are finite.
+  void linearize(Point<T> at, BatchOut<T> y, Tape& tape) const override {
+    auto finite = tape.slot<T>(kFinite, 1, y.cols());
+    for (Index i = 0; i < y.cols(); ++i)
+      finite(0, i) = at.x.col(i).allFinite() ? T(1) : T(0);
+    solve_all(at.x, y, tape.threads());
+  }
+  void pullback(const Tape& tape,
+                BatchIn<T> y_bar,
+                BatchOut<T> x_bar,
+                Workspace& work) const override {
+    solve_all(y_bar, x_bar, work.threads());
+    const auto finite = tape.view<T>(kFinite);
+    for (Index i = 0; i < finite.cols(); ++i)
+      if (finite(0, i) == T(0))
+        x_bar.col(i).setConstant(std::numeric_limits<T>::quiet_NaN());
+  }
+  void invert(Point<T>,
+              BatchIn<T> y,
+              BatchOut<T> x,
+              Workspace& work) const override {
+    const Index p = options_.rows, q = options_.columns;
+    for_blocks(work.threads(), y.cols(), [&](Index i, int) {
+      const Batch<double> field =
+          Eigen::Map<const Batch<T>>(y.col(i).data(), q, p)
+              .template cast<double>();
+      x.col(i) = laplacian(field).reshaped().template cast<T>();
+    });
+  }
 
-template <class T>
-void Poisson<T>::linearize(BatchIn<T> x,
-                           BatchIn<T> /*given*/,
-                           BatchOut<T> y,
-                           Tape& tape) const {
-  auto finite = tape.slot<T>(kFinite, 1, x.cols());
-  for (Index i = 0; i < x.cols(); ++i)
-    finite(0, i) = x.col(i).allFinite() ? T(1) : T(0);
-  solve_all(x, y, tape.threads());
-}
+  double operations() const override {
+    const auto p = static_cast<double>(options_.rows),
+               q = static_cast<double>(options_.columns);
+    return 4 * p * q * (p + q);
+  }
 
-template <class T>
-void Poisson<T>::pullback(const Tape& tape,
-                          BatchIn<T> y_bar,
-                          BatchOut<T> x_bar,
-                          Workspace& work) const {
-  solve_all(y_bar, x_bar, work.threads());
-  const auto finite = tape.view<T>(kFinite);
-  for (Index i = 0; i < finite.cols(); ++i)
-    if (finite(0, i) == T(0))
-      x_bar.col(i).setConstant(std::numeric_limits<T>::quiet_NaN());
-}
+ private:
+  /// One field, columns x rows as it lies in memory.
+  void solve(const Batch<double>& x, Batch<double>& y) const {
+    if (options_.relative > 0) return iterate(options_, x, y);
+    Batch<double> modes(x.rows(), x.cols());
+    y.resizeLike(x);
+    y.noalias() = along_columns_ * x;
+    modes.noalias() = y * along_rows_;
+    modes.array() /= lambda_.array();
+    y.noalias() = along_columns_ * modes;
+    modes.noalias() = y * along_rows_;
+    y.swap(modes);
+  }
+  void solve_all(BatchIn<T> x, BatchOut<T> y, Threads* threads) const {
+    const Index p = options_.rows, q = options_.columns;
+    for_blocks(threads, x.cols(), [&](Index i, int) {
+      Batch<double> field = Eigen::Map<const Batch<T>>(x.col(i).data(), q, p)
+                                .template cast<double>();
+      Batch<double> found;
+      solve(field, found);
+      y.col(i) = found.reshaped().template cast<T>();
+    });
+  }
 
-template <class T>
-void Poisson<T>::invert(BatchIn<T> y,
-                        BatchIn<T> /*given*/,
-                        BatchIn<T> /*x_guess*/,
-                        BatchOut<T> x,
-                        Workspace& work) const {
-  const Index p = options_.rows, q = options_.columns;
-  check_size(y, p * q, x.cols());
-  check_size(x, p * q, y.cols());
-  for_blocks(work.threads(), y.cols(), [&](Index i, int) {
-    const Batch<double> field =
-        Eigen::Map<const Batch<T>>(y.col(i).data(), q, p)
-            .template cast<double>();
-    x.col(i) = laplacian(field).reshaped().template cast<T>();
-  });
-}
+  PoissonOptions options_;
+  Batch<double> along_rows_, along_columns_;  ///< S_p, S_q
+  Batch<double> lambda_;                      ///< q x p
+};
 
-template class Poisson<float>;
-template class Poisson<double>;
+}  // namespace
+
+ProblemRecipe problems::poisson(const PoissonOptions& options) {
+  return problem<Poisson>(
+      "poisson",
+      options,
+      {.unknowns = {"source(i, j)"}, .observations = {"potential(i, j)"}});
+}
 
 }  // namespace physinv

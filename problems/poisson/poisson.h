@@ -22,7 +22,6 @@
 /// What is not finite stays in its own column.
 #pragma once
 
-#include "suite/core/linear_problem.h"
 #include "suite/core/recipe.h"
 
 namespace physinv {
@@ -45,67 +44,14 @@ struct PoissonOptions {
 /// i im and k = 10 f, f in cycles per cell, without k^2 <= 0.1.
 Batch<double> poisson_source(const Batch<double>& re, const Batch<double>& im);
 
+/// Eigenvalues of L, q x p.
+Batch<double> poisson_eigenvalues(Index rows, Index columns);
+
 /// L y of one field, p x q.
 Batch<double> laplacian(const Batch<double>& y);
 
-template <class T>
-class Poisson : public LinearProblem<T>, public Inverse<T> {
- public:
-  using Options = PoissonOptions;
-  explicit Poisson(const Options& options = {});
-
-  Shape shape() const override {
-    return {
-        options_.rows * options_.columns, options_.rows * options_.columns, 0};
-  }
-  Vector<double> start() const override {
-    return Vector<double>::Zero(options_.rows * options_.columns);
-  }
-
-  /// x = poisson_source of standard normal noise.
-  Samples<double> sample(Index first,
-                         Index count,
-                         const Rng& rng) const override;
-
-  void forward(BatchIn<T> x,
-               BatchIn<T> given,
-               BatchOut<T> y,
-               Workspace& work) const override;
-  /// Keeps which samples are finite.
-  void linearize(BatchIn<T> x,
-                 BatchIn<T> given,
-                 BatchOut<T> y,
-                 Tape& tape) const override;
-  void pullback(const Tape& tape,
-                BatchIn<T> y_bar,
-                BatchOut<T> x_bar,
-                Workspace& work) const override;
-  void invert(BatchIn<T> y,
-              BatchIn<T> given,
-              BatchIn<T> x_guess,
-              BatchOut<T> x,
-              Workspace& work) const override;
-
-  double operations() const override {
-    const auto p = static_cast<double>(options_.rows),
-               q = static_cast<double>(options_.columns);
-    return 4 * p * q * (p + q);
-  }
-
-  const Options& options() const { return options_; }
-  const Batch<double>& eigenvalues() const { return lambda_; }
-
- private:
-  /// One field, columns x rows as it lies in memory.
-  void solve(const Batch<double>& x, Batch<double>& y) const;
-  void solve_all(BatchIn<T> x, BatchOut<T> y, Threads* threads) const;
-
-  Options options_;
-  Batch<double> along_rows_, along_columns_;  ///< S_p, S_q
-  Batch<double> lambda_;                      ///< q x p
-};
-
-extern template class Poisson<float>;
-extern template class Poisson<double>;
+namespace problems {
+ProblemRecipe poisson(const PoissonOptions& options = {});
+}
 
 }  // namespace physinv

@@ -5,10 +5,10 @@
 namespace physinv {
 namespace {
 
-const Kernels<QuantumDipole> kKernels("quantum_dipole",
-                                      {.forward = {1, 16, 1024},
-                                       .gradient = {1, 16, 256},
-                                       .jacobian = {1, 16}});
+const Kernels kKernels(problems::quantum_dipole(),
+                       {.forward = {1, 16, 1024},
+                        .gradient = {1, 16, 256},
+                        .jacobian = {1, 16}});
 
 }  // namespace
 }  // namespace physinv

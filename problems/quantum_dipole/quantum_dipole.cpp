@@ -7,6 +7,7 @@
 
 #include "problems/quantum_dipole/cayley.h"
 #include "suite/core/check.h"
+#include "suite/core/gradient_projection.h"
 #include "suite/core/math.h"
 #include "suite/core/option_check.h"
 #include "suite/core/threads.h"
@@ -209,196 +210,10 @@ Vector<double> quantum_observation(const Vector<double>& real_state) {
 }
 
 template <class T>
-QuantumDipole<T>::QuantumDipole(const Options& options) : options_(options) {
-  check_numbers<T>({{"dt", options.dt}, {"deviation", options.deviation}});
-  check_numbers<double>("angles", options.angles);
-  SUITE_CHECK(options.steps > 0 && options.dt > 0,
-              "there must be steps, forward in time");
-  SUITE_CHECK(options.deviation >= 0, "deviation must not be negative");
-}
-
-template <class T>
-Vector<double> QuantumDipole<T>::start() const {
-  if (options_.zero_start) return Vector<double>::Zero(options_.steps);
-  Stream stream = Rng::root("quantum_dipole/start", 0).stream();
-  return Vector<double>::NullaryExpr(options_.steps, [&](Index) {
-    return options_.deviation * stream.normal();
-  });
-}
-
-template <class T>
-Samples<double> QuantumDipole<T>::sample(Index first,
-                                         Index count,
-                                         const Rng& rng) const {
-  const Vector<double> psi2 = quantum_observation(quantum_eigenstate(2));
-  const Vector<double> psi3 = quantum_observation(quantum_eigenstate(3));
-  Samples<double> out;
-  out.x.resize(0, count), out.y.resize(kRows, count),
-      out.given.resize(0, count);
-  for (Index i = 0; i < count; ++i) {
-    Stream stream = rng.child(static_cast<std::uint64_t>(first + i)).stream();
-    double f1 = stream.normal(), f2 = stream.normal();
-    if (const auto k = static_cast<std::size_t>(first + i);
-        k < options_.angles.size())
-      f1 = math::cos(options_.angles[k]), f2 = math::sin(options_.angles[k]);
-    out.y.col(i) = (f1 * psi2 + f2 * psi3) / math::hypot(f1, f2);
-  }
-  return out;
-}
-
-template <class T>
-Samples<double> QuantumDipole<T>::sample_labelled(Index first,
-                                                  Index count,
-                                                  const Rng& rng) const {
-  Samples<double> out;
-  out.x.resize(options_.steps, count);
-  out.y.resize(kRows, count), out.given.resize(0, count);
-  for (Index i = 0; i < count; ++i) {
-    Stream stream = rng.child(static_cast<std::uint64_t>(first + i)).stream();
-    stream.normals(out.x.col(i).data(), options_.steps);
-    out.x.col(i) *= options_.deviation;
-  }
-  Workspace work;
-  QuantumDipole<double>(options_).forward(out.x, out.given, out.y, work);
-  return out;
-}
-
-template <class T>
-void QuantumDipole<T>::forward(BatchIn<T> x,
-                               BatchIn<T> /*given*/,
-                               BatchOut<T> y,
-                               Workspace& work) const {
-  check_size(x, options_.steps, x.cols());
-  check_size(y, kRows, x.cols());
-  const Constants<T> k(options_);
-  constexpr Index kWidth = Group<T>::kCount;
-  for_blocks(work.threads(),
-             block_count<T>(x.cols(), kWidth),
-             [&](Index b, int) { propagate<T>(k, x, b * kWidth, y); });
-}
-
-template <class T>
-void QuantumDipole<T>::linearize(BatchIn<T> x,
-                                 BatchIn<T> /*given*/,
-                                 BatchOut<T> y,
-                                 Tape& tape) const {
-  check_size(x, options_.steps, x.cols());
-  check_size(y, kRows, x.cols());
-  const Constants<T> k(options_);
-  constexpr Index kWidth = Group<T>::kCount;
-  for_blocks(tape.threads(),
-             block_count<T>(x.cols(), kWidth),
-             [&](Index b, int) { propagate<T>(k, x, b * kWidth, y); });
-  tape.slot<T>(kControls, x.rows(), x.cols()) = x;
-  tape.slot<T>(kEnd, kRows, x.cols()) = y;
-}
-
-template <class T>
-void QuantumDipole<T>::pullback(const Tape& tape,
-                                BatchIn<T> y_bar,
-                                BatchOut<T> x_bar,
-                                Workspace& work) const {
-  const auto x = tape.view<T>(kControls), psi = tape.view<T>(kEnd);
-  check_size(y_bar, kRows, x.cols());
-  check_size(x_bar, options_.steps, x.cols());
-  const Constants<T> k(options_);
-  for_blocks(
-      work.threads(), block_count<T>(x.cols(), kLanes<T>), [&](Index b, int) {
-        pull_block<T>(k, x, psi, y_bar, b * kLanes<T>, x_bar);
-      });
-}
-
-template <class T>
-void QuantumDipole<T>::jacobian(BatchIn<T> x,
-                                BatchIn<T> /*given*/,
-                                BatchOut<T> j,
-                                Workspace& work) const {
-  check_size(x, options_.steps, x.cols());
-  check_size(j, kRows * options_.steps, x.cols());
-  const Constants<double> k(options_);
-  constexpr Index kWidth = Group<double>::kCount;
-  const auto differentiate =
-      [&](BatchIn<double> u, Workspace& own, BatchOut<double> out) {
-        auto psi = own.take<double>(kRows, u.cols());
-        BatchOut<double> end(psi);
-        propagate<double>(k, u, 0, end);
-        for (Index i = 0; i < u.cols(); i += kLanes<double>)
-          differentiate_block<double>(k, u, psi, i, out);
-      };
-  Threads* const threads = work.threads();
-  if (threads != nullptr) work.of_thread(0);  // makes them all
-  const Index blocks = block_count<double>(x.cols(), kWidth);
-  for_blocks(threads, blocks, [&](Index b, int thread) {
-    Workspace& own = threads != nullptr ? work.of_thread(thread) : work;
-    const Workspace::Scope scope(own);
-    const Index first = b * kWidth;
-    const Index some = std::min(kWidth, x.cols() - first);
-    const auto u = x.middleCols(first, some);
-    auto out = j.middleCols(first, some);
-    if constexpr (std::is_same_v<T, double>) {
-      differentiate(u, own, out);
-    } else {
-      auto wide = own.take<double>(u.rows(), some);
-      auto exact = own.take<double>(j.rows(), some);
-      // As forward, which knows no number where the square overflows.
-      wide = u.unaryExpr([](T v) {
-                return std::isfinite(v * v) ? v : v * v;
-              }).template cast<double>();
-      differentiate(wide, own, exact);
-      out = exact.template cast<T>();
-    }
-  });
-}
-
-template <class T>
-void QuantumDipole<T>::loss(BatchIn<T> y,
-                            BatchIn<T> target,
-                            VectorOut<double> loss) const {
-  for (Index i = 0; i < y.cols(); ++i) {
-    const auto psi = y.col(i), t = target.col(i);
-    const std::complex<double> ip = inner(t, psi);
-    loss(i) = 1 - std::norm(ip);
-    if (!options_.accurate_loss) continue;
-    double rest = 0;
-    for (Index j = 0; j < kPoints; ++j) {
-      const std::complex<double> at(psi(2 * j), psi(2 * j + 1));
-      rest += std::norm(at - ip * std::complex<double>(t(2 * j), t(2 * j + 1)));
-    }
-    loss(i) = rest;
-  }
-}
-
-template <class T>
-void QuantumDipole<T>::loss_gradient(BatchIn<T> y,
-                                     BatchIn<T> target,
-                                     BatchOut<T> y_bar) const {
-  for (Index i = 0; i < y.cols(); ++i) {
-    const auto t = target.col(i);
-    const std::complex<double> ip = inner(t, y.col(i));
-    const double a = -2 * ip.real(), b = -2 * ip.imag();
-    for (Index j = 0; j < kPoints; ++j) {
-      const double re = t(2 * j), im = t(2 * j + 1);
-      y_bar(2 * j, i) = T(std::fma(a, re, -(b * im)));
-      y_bar(2 * j + 1, i) = T(std::fma(a, im, b * re));
-    }
-  }
-}
-
-template <class T>
-void QuantumDipole<T>::project(BatchIn<T> y, BatchOut<T> y_bar) const {
-  for (Index i = 0; i < y.cols(); ++i) {
-    double along = 0;
-    for (Index r = 0; r < kRows; ++r) along += double(y(r, i)) * y_bar(r, i);
-    for (Index r = 0; r < kRows; ++r)
-      y_bar(r, i) = T(y_bar(r, i) - along * y(r, i));
-  }
-}
-
-template <class T>
-void QuantumDipole<T>::level_loss(int k,
-                                  BatchIn<T> y,
-                                  BatchIn<T> target,
-                                  VectorOut<double> loss) const {
+void quantum_level_loss(int k,
+                        BatchIn<T> y,
+                        BatchIn<T> target,
+                        VectorOut<double> loss) {
   const Vector<double> level = quantum_observation(quantum_eigenstate(k));
   for (Index i = 0; i < y.cols(); ++i) {
     const double miss = math::abs(inner(level, y.col(i))) -
@@ -407,7 +222,180 @@ void QuantumDipole<T>::level_loss(int k,
   }
 }
 
-template class QuantumDipole<float>;
-template class QuantumDipole<double>;
+template decltype(quantum_level_loss<float>) quantum_level_loss<float>;
+template decltype(quantum_level_loss<double>) quantum_level_loss<double>;
+
+namespace {
+
+template <class T>
+class QuantumDipole final : public Problem<T>,
+                            public Vjp<T>,
+                            public Jacobian<T>,
+                            public GradientProjection<T> {
+ public:
+  explicit QuantumDipole(const QuantumDipoleOptions& options)
+      : options_(options) {
+    check_numbers<T>({{"dt", options.dt}, {"deviation", options.deviation}});
+    check_numbers<double>("angles", options.angles);
+    SUITE_CHECK(options.steps > 0 && options.dt > 0,
+                "there must be steps, forward in time");
+    SUITE_CHECK(options.deviation >= 0, "deviation must not be negative");
+  }
+
+  Shape shape() const override { return {options_.steps, kRows, 0}; }
+  /// Small random controls, always the same; or none (`zero_start`).
+  Vector<double> start() const override {
+    if (options_.zero_start) return Vector<double>::Zero(options_.steps);
+    Stream stream = Rng::root("quantum_dipole/start", 0).stream();
+    return Vector<double>::NullaryExpr(options_.steps, [&](Index) {
+      return options_.deviation * stream.normal();
+    });
+  }
+
+  /// Targets f1 psi_2 + f2 psi_3, (f1, f2) uniform on the circle; labelled
+  /// samples are random controls.
+  void draw(Stream& stream, SampleOut& sample) const override {
+    if (sample.labelled) {
+      stream.normals(sample.x.data(), options_.steps);
+      sample.x *= options_.deviation;
+      return;
+    }
+    const Vector<double> psi2 = quantum_observation(quantum_eigenstate(2));
+    const Vector<double> psi3 = quantum_observation(quantum_eigenstate(3));
+    double f1 = stream.normal(), f2 = stream.normal();
+    if (const auto k = static_cast<std::size_t>(sample.index);
+        k < options_.angles.size())
+      f1 = math::cos(options_.angles[k]), f2 = math::sin(options_.angles[k]);
+    sample.y = (f1 * psi2 + f2 * psi3) / math::hypot(f1, f2);
+  }
+  Drawn drawn() const override { return Drawn::observations; }
+
+  void forward(Point<T> at, BatchOut<T> y, Workspace& work) const override {
+    const auto& x = at.x;
+    const Constants<T> k(options_);
+    constexpr Index kWidth = Group<T>::kCount;
+    for_blocks(work.threads(),
+               block_count<T>(x.cols(), kWidth),
+               [&](Index b, int) { propagate<T>(k, x, b * kWidth, y); });
+  }
+  /// Keeps controls and final states; the pullback goes back from there.
+  void linearize(Point<T> at, BatchOut<T> y, Tape& tape) const override {
+    const auto& x = at.x;
+    const Constants<T> k(options_);
+    constexpr Index kWidth = Group<T>::kCount;
+    for_blocks(tape.threads(),
+               block_count<T>(x.cols(), kWidth),
+               [&](Index b, int) { propagate<T>(k, x, b * kWidth, y); });
+    tape.slot<T>(kControls, x.rows(), x.cols()) = x;
+    tape.slot<T>(kEnd, kRows, x.cols()) = y;
+  }
+  void pullback(const Tape& tape,
+                BatchIn<T> y_bar,
+                BatchOut<T> x_bar,
+                Workspace& work) const override {
+    const auto x = tape.view<T>(kControls), psi = tape.view<T>(kEnd);
+    const Constants<T> k(options_);
+    for_blocks(
+        work.threads(), block_count<T>(x.cols(), kLanes<T>), [&](Index b, int) {
+          pull_block<T>(k, x, psi, y_bar, b * kLanes<T>, x_bar);
+        });
+  }
+  void jacobian(Point<T> at, BatchOut<T> j, Workspace& work) const override {
+    const auto& x = at.x;
+    const Constants<double> k(options_);
+    constexpr Index kWidth = Group<double>::kCount;
+    const auto differentiate =
+        [&](BatchIn<double> u, Workspace& own, BatchOut<double> out) {
+          auto psi = own.take<double>(kRows, u.cols());
+          BatchOut<double> end(psi);
+          propagate<double>(k, u, 0, end);
+          for (Index i = 0; i < u.cols(); i += kLanes<double>)
+            differentiate_block<double>(k, u, psi, i, out);
+        };
+    Threads* const threads = work.threads();
+    if (threads != nullptr) work.of_thread(0);  // makes them all
+    const Index blocks = block_count<double>(x.cols(), kWidth);
+    for_blocks(threads, blocks, [&](Index b, int thread) {
+      Workspace& own = threads != nullptr ? work.of_thread(thread) : work;
+      const Workspace::Scope scope(own);
+      const Index first = b * kWidth;
+      const Index some = std::min(kWidth, x.cols() - first);
+      const auto u = x.middleCols(first, some);
+      auto out = j.middleCols(first, some);
+      if constexpr (std::is_same_v<T, double>) {
+        differentiate(u, own, out);
+      } else {
+        auto wide = own.take<double>(u.rows(), some);
+        auto exact = own.take<double>(j.rows(), some);
+        // As forward, which knows no number where the square overflows.
+        wide = u.unaryExpr([](T v) {
+                  return std::isfinite(v * v) ? v : v * v;
+                }).template cast<double>();
+        differentiate(wide, own, exact);
+        out = exact.template cast<T>();
+      }
+    });
+  }
+
+  void loss(BatchIn<T> y,
+            BatchIn<T> target,
+            VectorOut<double> loss) const override {
+    for (Index i = 0; i < y.cols(); ++i) {
+      const auto psi = y.col(i), t = target.col(i);
+      const std::complex<double> ip = inner(t, psi);
+      loss(i) = 1 - std::norm(ip);
+      if (!options_.accurate_loss) continue;
+      double rest = 0;
+      for (Index j = 0; j < kPoints; ++j) {
+        const std::complex<double> at(psi(2 * j), psi(2 * j + 1));
+        rest +=
+            std::norm(at - ip * std::complex<double>(t(2 * j), t(2 * j + 1)));
+      }
+      loss(i) = rest;
+    }
+  }
+  /// -2 <t, psi> t
+  void loss_gradient(BatchIn<T> y,
+                     BatchIn<T> target,
+                     BatchOut<T> y_bar) const override {
+    for (Index i = 0; i < y.cols(); ++i) {
+      const auto t = target.col(i);
+      const std::complex<double> ip = inner(t, y.col(i));
+      const double a = -2 * ip.real(), b = -2 * ip.imag();
+      for (Index j = 0; j < kPoints; ++j) {
+        const double re = t(2 * j), im = t(2 * j + 1);
+        y_bar(2 * j, i) = T(std::fma(a, re, -(b * im)));
+        y_bar(2 * j + 1, i) = T(std::fma(a, im, b * re));
+      }
+    }
+  }
+
+  /// y_bar - psi Re<psi, y_bar>. Once trained, nearly all of the gradient is
+  /// that part.
+  void project(BatchIn<T> y, BatchOut<T> y_bar) const override {
+    for (Index i = 0; i < y.cols(); ++i) {
+      double along = 0;
+      for (Index r = 0; r < kRows; ++r) along += double(y(r, i)) * y_bar(r, i);
+      for (Index r = 0; r < kRows; ++r)
+        y_bar(r, i) = T(y_bar(r, i) - along * y(r, i));
+    }
+  }
+
+  double operations() const override {
+    return 480.0 * static_cast<double>(options_.steps);
+  }
+
+ private:
+  QuantumDipoleOptions options_;
+};
+
+}  // namespace
+
+ProblemRecipe problems::quantum_dipole(const QuantumDipoleOptions& options) {
+  return problem<QuantumDipole>(
+      "quantum_dipole",
+      options,
+      {.unknowns = {"u(step)"}, .observations = {"psi(point, part)"}});
+}
 
 }  // namespace physinv

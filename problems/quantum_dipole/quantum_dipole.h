@@ -34,8 +34,6 @@
 
 #include <vector>
 
-#include "suite/core/gradient_projection.h"
-#include "suite/core/problem.h"
 #include "suite/core/recipe.h"
 
 namespace physinv {
@@ -75,78 +73,16 @@ double quantum_energy(int k);
 /// A real state as an observation.
 Vector<double> quantum_observation(const Vector<double>& real_state);
 
+/// (|<psi_k, psi>| - |<psi_k, t>|)^2 of states y and targets: k = 2 is the
+/// paper's low-energy loss, k = 3 its high-energy loss.
 template <class T>
-class QuantumDipole final : public Problem<T>,
-                            public Vjp<T>,
-                            public Jacobian<T>,
-                            public GradientProjection<T> {
- public:
-  using Options = QuantumDipoleOptions;
-  explicit QuantumDipole(const Options& options = {});
+void quantum_level_loss(int k,
+                        BatchIn<T> y,
+                        BatchIn<T> target,
+                        VectorOut<double> loss);
 
-  Shape shape() const override {
-    return {options_.steps, 2 * kQuantumPoints, 0};
-  }
-  /// Small random controls, always the same; or none (`zero_start`).
-  Vector<double> start() const override;
-
-  /// Targets f1 psi_2 + f2 psi_3, (f1, f2) uniform on the circle; no truth.
-  Samples<double> sample(Index first,
-                         Index count,
-                         const Rng& rng) const override;
-  /// Random controls, and the states they lead to.
-  Samples<double> sample_labelled(Index first,
-                                  Index count,
-                                  const Rng& rng) const override;
-
-  void forward(BatchIn<T> x,
-               BatchIn<T> given,
-               BatchOut<T> y,
-               Workspace& work) const override;
-  /// Keeps controls and final states; the pullback goes back from there.
-  void linearize(BatchIn<T> x,
-                 BatchIn<T> given,
-                 BatchOut<T> y,
-                 Tape& tape) const override;
-  void pullback(const Tape& tape,
-                BatchIn<T> y_bar,
-                BatchOut<T> x_bar,
-                Workspace& work) const override;
-  void jacobian(BatchIn<T> x,
-                BatchIn<T> given,
-                BatchOut<T> j,
-                Workspace& work) const override;
-
-  void loss(BatchIn<T> y,
-            BatchIn<T> target,
-            VectorOut<double> loss) const override;
-  /// -2 <t, psi> t
-  void loss_gradient(BatchIn<T> y,
-                     BatchIn<T> target,
-                     BatchOut<T> y_bar) const override;
-
-  /// y_bar - psi Re<psi, y_bar>. Once trained, nearly all of the gradient is
-  /// that part.
-  void project(BatchIn<T> y, BatchOut<T> y_bar) const override;
-
-  /// (|<psi_k, psi>| - |<psi_k, t>|)^2: k = 2 is the paper's low-energy loss,
-  /// k = 3 its high-energy loss.
-  void level_loss(int k,
-                  BatchIn<T> y,
-                  BatchIn<T> target,
-                  VectorOut<double> loss) const;
-
-  double operations() const override {
-    return 480.0 * static_cast<double>(options_.steps);
-  }
-
-  const Options& options() const { return options_; }
-
- private:
-  Options options_;
-};
-
-extern template class QuantumDipole<float>;
-extern template class QuantumDipole<double>;
+namespace problems {
+ProblemRecipe quantum_dipole(const QuantumDipoleOptions& options = {});
+}
 
 }  // namespace physinv

@@ -5,9 +5,8 @@
 namespace physinv {
 namespace {
 
-const Kernels<RoboticArm> kKernels("robotic_arm",
-                                   {.forward = {8, 128, 1024},
-                                    .gradient = {8, 128, 1024}});
+const Kernels kKernels(problems::robotic_arm(),
+                       {.forward = {8, 128, 1024}, .gradient = {8, 128, 1024}});
 
 }  // namespace
 }  // namespace physinv

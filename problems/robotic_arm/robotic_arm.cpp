@@ -43,7 +43,7 @@ void for_arms(const RoboticArmOptions& options, BatchIn<T> x, F&& body) {
   }
 }
 
-enum Slot : std::size_t { kDerivatives, kCount };
+enum Slot : std::size_t { kDerivatives };
 
 }  // namespace
 
@@ -59,110 +59,95 @@ std::array<std::array<double, 2>, 4> arm_joints(const std::array<double, 4>& x,
   return at;
 }
 
+namespace {
+
 template <class T>
-RoboticArm<T>::RoboticArm(const Options& options) : options_(options) {
-  for (const double l : options.links) {
-    check_numbers<T>({{"links", l}});
-    SUITE_CHECK(l > 0, "links must have a length");
+class RoboticArm final : public Problem<T>, public Vjp<T>, public Jacobian<T> {
+ public:
+  explicit RoboticArm(const RoboticArmOptions& options) : options_(options) {
+    for (const double l : options.links) {
+      check_numbers<T>({{"links", l}});
+      SUITE_CHECK(l > 0, "links must have a length");
+    }
+    for (const double m : options.mean) check_numbers<T>({{"mean", m}});
+    for (const double s : options.deviation)
+      check_numbers<T>({{"deviation", s}});
+    for (const double s : options.deviation)
+      SUITE_CHECK(s >= 0, "deviations must not be negative");
   }
-  for (const double m : options.mean) check_numbers<T>({{"mean", m}});
-  for (const double s : options.deviation) check_numbers<T>({{"deviation", s}});
-  for (const double s : options.deviation)
-    SUITE_CHECK(s >= 0, "deviations must not be negative");
-}
 
-template <class T>
-Vector<double> RoboticArm<T>::start() const {
-  return Eigen::Map<const Eigen::Vector4d>(options_.mean.data());
-}
+  Shape shape() const override { return {4, 2, 0}; }
+  Vector<double> start() const override {
+    return Eigen::Map<const Eigen::Vector4d>(options_.mean.data());
+  }
 
-template <class T>
-Samples<double> RoboticArm<T>::sample(Index first,
-                                      Index count,
-                                      const Rng& rng) const {
-  Samples<double> out;
-  out.x.resize(4, count), out.y.resize(2, count), out.given.resize(0, count);
-  for (Index i = 0; i < count; ++i) {
-    Stream stream = rng.child(static_cast<std::uint64_t>(first + i)).stream();
+  /// x ~ N(mean, deviation^2): every tip is in reach.
+  void draw(Stream& stream, SampleOut& sample) const override {
     for (std::size_t j = 0; j < 4; ++j)
-      out.x(static_cast<Index>(j), i) =
+      sample.x(static_cast<Index>(j)) =
           options_.mean[j] + options_.deviation[j] * stream.normal();
   }
-  Workspace work;
-  RoboticArm<double>(options_).forward(out.x, out.given, out.y, work);
-  return out;
-}
 
-template <class T>
-void RoboticArm<T>::forward(BatchIn<T> x,
-                            BatchIn<T> /*given*/,
-                            BatchOut<T> y,
-                            Workspace& /*work*/) const {
-  check_size(x, 4, x.cols());
-  check_size(y, 2, x.cols());
-  for_arms<T>(options_, x, [&](Index b, Reach<T>& arms) {
-    Lanes<T>(arms.y, 2).store(y, b * kLanes<T>);
-  });
-}
-
-template <class T>
-void RoboticArm<T>::linearize(BatchIn<T> x,
-                              BatchIn<T> /*given*/,
-                              BatchOut<T> y,
-                              Tape& tape) const {
-  check_size(x, 4, x.cols());
-  check_size(y, 2, x.cols());
-  const Index blocks = Lanes<T>::blocks(x.cols());
-  auto kept = tape.slot<T>(kDerivatives, 6 * kLanes<T>, blocks);
-  tape.slot<Index>(kCount, 1, 1)(0, 0) = x.cols();
-  for_arms<T>(options_, x, [&](Index b, Reach<T>& arms) {
-    Lanes<T>(arms.y, 2).store(y, b * kLanes<T>);
-    std::memcpy(kept.col(b).data(), arms.d, sizeof(arms.d));
-  });
-}
-
-template <class T>
-void RoboticArm<T>::pullback(const Tape& tape,
-                             BatchIn<T> y_bar,
-                             BatchOut<T> x_bar,
-                             Workspace& /*work*/) const {
-  using P = Pack<T>;
-  const Index count = tape.view<Index>(kCount)(0, 0);
-  const auto kept = tape.view<T>(kDerivatives);
-  check_size(y_bar, 2, count);
-  check_size(x_bar, 4, count);
-  for (Index b = 0; b < kept.cols(); ++b) {
-    P d[6], r[2], t[3];
-    std::memcpy(d, kept.col(b).data(), sizeof(d));
-    Lanes<T>(r, 2).load(y_bar, b * kLanes<T>);
-    for (int k = 0; k < 3; ++k)
-      t[k] = fma_lanes(d[2 * k], r[0], d[2 * k + 1] * r[1]);
-    P out[4] = {r[1], t[0] - t[1] - t[2], t[1] - t[2], t[2]};
-    Lanes<T>(out, 4).store(x_bar, b * kLanes<T>);
+  void forward(Point<T> at, BatchOut<T> y, Workspace&) const override {
+    for_arms<T>(options_, at.x, [&](Index b, Reach<T>& arms) {
+      Lanes<T>(arms.y, 2).store(y, b * kLanes<T>);
+    });
   }
-}
-
-template <class T>
-void RoboticArm<T>::jacobian(BatchIn<T> x,
-                             BatchIn<T> /*given*/,
-                             BatchOut<T> j,
-                             Workspace& /*work*/) const {
-  check_size(x, 4, x.cols());
-  check_size(j, 8, x.cols());
-  for_arms<T>(options_, x, [&](Index b, Reach<T>& arms) {
-    const auto& d = arms.d;
-    Pack<T> columns[8];
-    for (int r = 0; r < 2; ++r) {
-      columns[r] = Pack<T>{} + T(r);
-      columns[2 + r] = d[r] - d[2 + r] - d[4 + r];
-      columns[4 + r] = d[2 + r] - d[4 + r];
-      columns[6 + r] = d[4 + r];
+  /// Keeps d_1, d_2, d_3 per sample.
+  void linearize(Point<T> at, BatchOut<T> y, Tape& tape) const override {
+    const Index blocks = Lanes<T>::blocks(y.cols());
+    auto kept = tape.slot<T>(kDerivatives, 6 * kLanes<T>, blocks);
+    for_arms<T>(options_, at.x, [&](Index b, Reach<T>& arms) {
+      Lanes<T>(arms.y, 2).store(y, b * kLanes<T>);
+      std::memcpy(kept.col(b).data(), arms.d, sizeof(arms.d));
+    });
+  }
+  void pullback(const Tape& tape,
+                BatchIn<T> y_bar,
+                BatchOut<T> x_bar,
+                Workspace&) const override {
+    using P = Pack<T>;
+    const auto kept = tape.view<T>(kDerivatives);
+    for (Index b = 0; b < kept.cols(); ++b) {
+      P d[6], r[2], t[3];
+      std::memcpy(d, kept.col(b).data(), sizeof(d));
+      Lanes<T>(r, 2).load(y_bar, b * kLanes<T>);
+      for (int k = 0; k < 3; ++k)
+        t[k] = fma_lanes(d[2 * k], r[0], d[2 * k + 1] * r[1]);
+      P out[4] = {r[1], t[0] - t[1] - t[2], t[1] - t[2], t[2]};
+      Lanes<T>(out, 4).store(x_bar, b * kLanes<T>);
     }
-    Lanes<T>(columns, 8).store(j, b * kLanes<T>);
-  });
-}
+  }
+  /// Rows of j: dy0/dx0, dy1/dx0, dy0/dx1, ...
+  void jacobian(Point<T> at, BatchOut<T> j, Workspace&) const override {
+    for_arms<T>(options_, at.x, [&](Index b, Reach<T>& arms) {
+      const auto& d = arms.d;
+      Pack<T> columns[8];
+      for (int r = 0; r < 2; ++r) {
+        columns[r] = Pack<T>{} + T(r);
+        columns[2 + r] = d[r] - d[2 + r] - d[4 + r];
+        columns[4 + r] = d[2 + r] - d[4 + r];
+        columns[6 + r] = d[4 + r];
+      }
+      Lanes<T>(columns, 8).store(j, b * kLanes<T>);
+    });
+  }
 
-template class RoboticArm<float>;
-template class RoboticArm<double>;
+  /// A sine with its cosine counts as 20.
+  double operations() const override { return 75; }
+
+ private:
+  RoboticArmOptions options_;
+};
+
+}  // namespace
+
+ProblemRecipe problems::robotic_arm(const RoboticArmOptions& options) {
+  return problem<RoboticArm>(
+      "robotic_arm",
+      options,
+      {.unknowns = {"height, angle_1, angle_2, angle_3", "1, rad, rad, rad"},
+       .observations = {"x, y"}});
+}
 
 }  // namespace physinv

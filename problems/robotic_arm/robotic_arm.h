@@ -22,7 +22,6 @@
 
 #include <array>
 
-#include "suite/core/problem.h"
 #include "suite/core/recipe.h"
 
 namespace physinv {
@@ -44,50 +43,8 @@ struct RoboticArmOptions {
 std::array<std::array<double, 2>, 4> arm_joints(
     const std::array<double, 4>& x, const RoboticArmOptions& options = {});
 
-template <class T>
-class RoboticArm final : public Problem<T>, public Vjp<T>, public Jacobian<T> {
- public:
-  using Options = RoboticArmOptions;
-  explicit RoboticArm(const Options& options = {});
-
-  Shape shape() const override { return {4, 2, 0}; }
-  Vector<double> start() const override;
-
-  /// x ~ N(mean, deviation^2), y = F(x) in double: every tip is in reach.
-  /// Labelled samples come from the same distribution.
-  Samples<double> sample(Index first,
-                         Index count,
-                         const Rng& rng) const override;
-
-  void forward(BatchIn<T> x,
-               BatchIn<T> given,
-               BatchOut<T> y,
-               Workspace& work) const override;
-  /// Keeps d_1, d_2, d_3 per sample.
-  void linearize(BatchIn<T> x,
-                 BatchIn<T> given,
-                 BatchOut<T> y,
-                 Tape& tape) const override;
-  void pullback(const Tape& tape,
-                BatchIn<T> y_bar,
-                BatchOut<T> x_bar,
-                Workspace& work) const override;
-  /// Rows of j: dy0/dx0, dy1/dx0, dy0/dx1, ...
-  void jacobian(BatchIn<T> x,
-                BatchIn<T> given,
-                BatchOut<T> j,
-                Workspace& work) const override;
-
-  /// A sine with its cosine counts as 20.
-  double operations() const override { return 75; }
-
-  const Options& options() const { return options_; }
-
- private:
-  Options options_;
-};
-
-extern template class RoboticArm<float>;
-extern template class RoboticArm<double>;
+namespace problems {
+ProblemRecipe robotic_arm(const RoboticArmOptions& options = {});
+}
 
 }  // namespace physinv

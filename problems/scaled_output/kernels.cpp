@@ -5,7 +5,7 @@
 namespace physinv {
 namespace {
 
-const Kernels<ScaledOutput> kKernels("scaled_output", {.gradient = {256}});
+const Kernels kKernels(problems::scaled_output(), {.gradient = {256}});
 
 }  // namespace
 }  // namespace physinv

@@ -1,6 +1,7 @@
 #include "problems/scaled_output/scaled_output.h"
 
 #include "suite/core/check.h"
+#include "suite/core/linear_problem.h"
 #include "suite/core/math.h"
 #include "suite/core/option_check.h"
 
@@ -33,97 +34,73 @@ T poison(T a, T b) {
 
 enum Slot : std::size_t { kPoison };
 
+template <class T>
+class ScaledOutput final : public LinearProblem<T>, public Jacobian<T> {
+ public:
+  explicit ScaledOutput(const ScaledOutputOptions& options)
+      : options_(options) {
+    check_numbers<T>({{"gamma", options.gamma}});
+    SUITE_CHECK(options.gamma > 0, "gamma must be positive");
+  }
+
+  Shape shape() const override { return {2, 2, 1}; }
+  Vector<double> start() const override { return Vector<double>::Zero(2); }
+
+  /// t uniform in [-1, 1), y = (sin 6 t, cos 9 t), x = (y_1, y_2 / gamma).
+  void draw(Stream& stream, SampleOut& s) const override {
+    const double t = s.given(0) = stream.uniform(-1, 1);
+    s.y << math::sin(6 * t), math::cos(9 * t);
+    s.x << s.y(0), s.y(1) / options_.gamma;
+  }
+  Drawn drawn() const override { return Drawn::both; }
+
+  void forward(Point<T> at, BatchOut<T> y, Workspace&) const override {
+    scale<T>(T(options_.gamma), at.x, y);
+  }
+  void linearize(Point<T> at, BatchOut<T> y, Tape& tape) const override {
+    const auto& x = at.x;
+    auto kept = tape.slot<T>(kPoison, 1, x.cols());
+    for_columns<T>(x,
+                   y,
+                   [gamma = T(options_.gamma), zero = kept.data()](
+                       Index i, T a, T b, T* out) {
+                     zero[i] = poison(a, b);
+                     out[0] = a, out[1] = gamma * b;
+                   });
+  }
+  void pullback(const Tape& tape,
+                BatchIn<T> y_bar,
+                BatchOut<T> x_bar,
+                Workspace&) const override {
+    const auto kept = tape.view<T>(kPoison);
+    for_columns<T>(y_bar,
+                   x_bar,
+                   [gamma = T(options_.gamma), zero = kept.data()](
+                       Index i, T a, T b, T* out) {
+                     out[0] = a + zero[i], out[1] = gamma * b + zero[i];
+                   });
+  }
+  void jacobian(Point<T> at, BatchOut<T> j, Workspace&) const override {
+    const auto& x = at.x;
+    for (Index i = 0; i < x.cols(); ++i) {
+      const T zero = poison(x(0, i), x(1, i));
+      j.col(i) << T(1) + zero, zero, zero, T(options_.gamma) + zero;
+    }
+  }
+
+  double operations() const override { return 1; }
+
+ private:
+  ScaledOutputOptions options_;
+};
+
 }  // namespace
 
-template <class T>
-ScaledOutput<T>::ScaledOutput(const Options& options) : options_(options) {
-  check_numbers<T>({{"gamma", options.gamma}});
-  SUITE_CHECK(options.gamma > 0, "gamma must be positive");
+ProblemRecipe problems::scaled_output(const ScaledOutputOptions& options) {
+  return problem<ScaledOutput>(
+      "scaled_output",
+      options,
+      {.unknowns = {"x_1, x_2"}, .observations = {"z_1, z_2"}, .given = {"t"}});
 }
-
-template <class T>
-Samples<double> ScaledOutput<T>::sample(Index first,
-                                        Index count,
-                                        const Rng& rng) const {
-  Samples<double> out;
-  out.x.resize(2, count), out.y.resize(2, count), out.given.resize(1, count);
-  for (Index i = 0; i < count; ++i) {
-    Stream stream = rng.child(static_cast<std::uint64_t>(first + i)).stream();
-    const double t = stream.uniform(-1, 1);
-    out.given(0, i) = t;
-    out.y.col(i) << math::sin(6 * t), math::cos(9 * t);
-    out.x.col(i) << out.y(0, i), out.y(1, i) / options_.gamma;
-  }
-  return out;
-}
-
-template <class T>
-Samples<double> ScaledOutput<T>::sample_labelled(Index first,
-                                                 Index count,
-                                                 const Rng& rng) const {
-  Samples<double> out = sample(first, count, rng);
-  Workspace work;
-  ScaledOutput<double>(options_).forward(out.x, out.given, out.y, work);
-  return out;
-}
-
-template <class T>
-void ScaledOutput<T>::forward(BatchIn<T> x,
-                              BatchIn<T> /*given*/,
-                              BatchOut<T> y,
-                              Workspace& /*work*/) const {
-  check_size(x, 2, x.cols());
-  check_size(y, 2, x.cols());
-  scale<T>(T(options_.gamma), x, y);
-}
-
-template <class T>
-void ScaledOutput<T>::linearize(BatchIn<T> x,
-                                BatchIn<T> /*given*/,
-                                BatchOut<T> y,
-                                Tape& tape) const {
-  check_size(x, 2, x.cols());
-  check_size(y, 2, x.cols());
-  auto kept = tape.slot<T>(kPoison, 1, x.cols());
-  for_columns<T>(x,
-                 y,
-                 [gamma = T(options_.gamma), zero = kept.data()](
-                     Index i, T a, T b, T* out) {
-                   zero[i] = poison(a, b);
-                   out[0] = a, out[1] = gamma * b;
-                 });
-}
-
-template <class T>
-void ScaledOutput<T>::pullback(const Tape& tape,
-                               BatchIn<T> y_bar,
-                               BatchOut<T> x_bar,
-                               Workspace& /*work*/) const {
-  const auto kept = tape.view<T>(kPoison);
-  check_size(y_bar, 2, kept.cols());
-  check_size(x_bar, 2, kept.cols());
-  for_columns<T>(y_bar,
-                 x_bar,
-                 [gamma = T(options_.gamma), zero = kept.data()](
-                     Index i, T a, T b, T* out) {
-                   out[0] = a + zero[i], out[1] = gamma * b + zero[i];
-                 });
-}
-
-template <class T>
-void ScaledOutput<T>::jacobian(BatchIn<T> x,
-                               BatchIn<T> /*given*/,
-                               BatchOut<T> j,
-                               Workspace& /*work*/) const {
-  check_size(x, 2, x.cols());
-  check_size(j, 4, x.cols());
-  for (Index i = 0; i < x.cols(); ++i) {
-    const T zero = poison(x(0, i), x(1, i));
-    j.col(i) << T(1) + zero, zero, zero, T(options_.gamma) + zero;
-  }
-}
-
-template class ScaledOutput<float>;
-template class ScaledOutput<double>;
 
 }  // namespace physinv

@@ -11,7 +11,6 @@
 /// What is not finite stays in its own column.
 #pragma once
 
-#include "suite/core/linear_problem.h"
 #include "suite/core/recipe.h"
 
 namespace physinv {
@@ -22,50 +21,8 @@ struct ScaledOutputOptions {
   auto fields() const { return std::tuple{field("gamma", gamma)}; }
 };
 
-template <class T>
-class ScaledOutput final : public LinearProblem<T>, public Jacobian<T> {
- public:
-  using Options = ScaledOutputOptions;
-  explicit ScaledOutput(const Options& options = {});
-
-  Shape shape() const override { return {2, 2, 1}; }
-  Vector<double> start() const override { return Vector<double>::Zero(2); }
-
-  /// t uniform in [-1, 1), y = (sin 6 t, cos 9 t), x = (y_1, y_2 / gamma).
-  Samples<double> sample(Index first,
-                         Index count,
-                         const Rng& rng) const override;
-  /// The same with y = F(x) as rounded.
-  Samples<double> sample_labelled(Index first,
-                                  Index count,
-                                  const Rng& rng) const override;
-
-  void forward(BatchIn<T> x,
-               BatchIn<T> given,
-               BatchOut<T> y,
-               Workspace& work) const override;
-  void linearize(BatchIn<T> x,
-                 BatchIn<T> given,
-                 BatchOut<T> y,
-                 Tape& tape) const override;
-  void pullback(const Tape& tape,
-                BatchIn<T> y_bar,
-                BatchOut<T> x_bar,
-                Workspace& work) const override;
-  void jacobian(BatchIn<T> x,
-                BatchIn<T> given,
-                BatchOut<T> j,
-                Workspace& work) const override;
-
-  double operations() const override { return 1; }
-
-  const Options& options() const { return options_; }
-
- private:
-  Options options_;
-};
-
-extern template class ScaledOutput<float>;
-extern template class ScaledOutput<double>;
+namespace problems {
+ProblemRecipe scaled_output(const ScaledOutputOptions& options = {});
+}
 
 }  // namespace physinv

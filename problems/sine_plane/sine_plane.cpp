@@ -109,134 +109,113 @@ Pair limited_newton_step(const SinePlaneOptions& options,
   return step_of(Frame(options), options.limit, x, target);
 }
 
-template <class T>
-SinePlane<T>::SinePlane(const Options& options) : options_(options) {
-  check_numbers<T>({{"gamma", options.gamma},
-                    {"xi", options.xi},
-                    {"degrees", options.degrees}});
-  SUITE_CHECK(options.gamma > 0 && options.xi > 0 && options.limit > 0,
-              "gamma, xi and limit must be positive");
-}
+namespace {
 
 template <class T>
-Samples<double> SinePlane<T>::sample(Index first,
-                                     Index count,
-                                     const Rng& rng) const {
-  Samples<double> out;
-  out.x.resize(2, count), out.y.resize(2, count), out.given.resize(0, count);
-  for (Index i = 0; i < count; ++i) {
-    Stream stream = rng.child(static_cast<std::uint64_t>(first + i)).stream();
-    out.y(0, i) = stream.uniform(-1, 1);
-    out.y(1, i) = stream.uniform(-1, 1);
-    put<double>(
-        out.x, i, nearest_solution(options_, {0, 0}, column<double>(out.y, i)));
+class SinePlane final : public Problem<T>,
+                        public Vjp<T>,
+                        public Jacobian<T>,
+                        public Hessian<T>,
+                        public Inverse<T> {
+ public:
+  explicit SinePlane(const SinePlaneOptions& options) : options_(options) {
+    check_numbers<T>({{"gamma", options.gamma},
+                      {"xi", options.xi},
+                      {"degrees", options.degrees}});
+    SUITE_CHECK(options.gamma > 0 && options.xi > 0 && options.limit > 0,
+                "gamma, xi and limit must be positive");
   }
-  // The observation of that very x, to the last bit.
-  Workspace work;
-  SinePlane<double>(options_).forward(out.x, out.given, out.y, work);
-  return out;
-}
 
-template <class T>
-void SinePlane<T>::forward(BatchIn<T> x,
-                           BatchIn<T> /*given*/,
-                           BatchOut<T> y,
-                           Workspace& /*work*/) const {
-  check_size(x, 2, y.cols());
-  check_size(y, 2, x.cols());
-  const Frame f(options_);
-  for (Index i = 0; i < x.cols(); ++i) {
-    const Pair at = column<T>(x, i), u = f.scaled(at[0], at[1]);
-    put<T>(y, i, {math::sincos(u[0]).sine, u[1]});
+  Shape shape() const override { return {2, 2, 0}; }
+  Vector<double> start() const override { return Vector<double>::Zero(2); }
+
+  /// x is the solution nearest to 0 of some y in [-1, 1]^2.
+  void draw(Stream& stream, SampleOut& sample) const override {
+    const double first = stream.uniform(-1, 1), second = stream.uniform(-1, 1);
+    const Pair x = nearest_solution(options_, {0, 0}, {first, second});
+    sample.x << x[0], x[1];
   }
-}
 
-template <class T>
-void SinePlane<T>::linearize(BatchIn<T> x,
-                             BatchIn<T> /*given*/,
-                             BatchOut<T> y,
-                             Tape& tape) const {
-  check_size(x, 2, y.cols());
-  check_size(y, 2, x.cols());
-  const Frame f(options_);
-  auto cosine = tape.slot<double>(kCosine, 1, x.cols());
-  for (Index i = 0; i < x.cols(); ++i) {
-    const Pair at = column<T>(x, i), u = f.scaled(at[0], at[1]);
-    const auto [sine, slope] = math::sincos(u[0]);
-    put<T>(y, i, {sine, u[1]});
-    cosine(0, i) = slope;
-  }
-}
-
-template <class T>
-void SinePlane<T>::pullback(const Tape& tape,
-                            BatchIn<T> y_bar,
-                            BatchOut<T> x_bar,
-                            Workspace& /*work*/) const {
-  const Frame f(options_);
-  const auto cosine = tape.view<double>(kCosine);
-  check_size(y_bar, 2, cosine.cols());
-  check_size(x_bar, 2, cosine.cols());
-  for (Index i = 0; i < cosine.cols(); ++i) {
-    const Pair bar = column<T>(y_bar, i);
-    put<T>(x_bar, i, f.back(f.a * cosine(0, i) * bar[0], f.b * bar[1]));
-  }
-}
-
-template <class T>
-void SinePlane<T>::jacobian(BatchIn<T> x,
-                            BatchIn<T> /*given*/,
-                            BatchOut<T> j,
-                            Workspace& /*work*/) const {
-  check_size(j, 4, x.cols());
-  const Frame f(options_);
-  for (Index i = 0; i < x.cols(); ++i) {
-    const Pair at = column<T>(x, i), u = f.scaled(at[0], at[1]);
-    const double slope = f.a * math::sincos(u[0]).cosine;
-    const Pair first = f.back(slope, 0), second = f.back(0, f.b);
-    for (Index k = 0; k < 2; ++k) {
-      j(2 * k, i) = static_cast<T>(first[static_cast<std::size_t>(k)]);
-      j(2 * k + 1, i) = static_cast<T>(second[static_cast<std::size_t>(k)]);
+  void forward(Point<T> at, BatchOut<T> y, Workspace&) const override {
+    const Frame f(options_);
+    for (Index i = 0; i < y.cols(); ++i) {
+      const Pair p = column<T>(at.x, i), u = f.scaled(p[0], p[1]);
+      put<T>(y, i, {math::sincos(u[0]).sine, u[1]});
     }
   }
-}
-
-template <class T>
-void SinePlane<T>::hessian(BatchIn<T> x,
-                           BatchIn<T> /*given*/,
-                           BatchIn<T> target,
-                           BatchOut<T> h,
-                           Workspace& /*work*/) const {
-  check_size(h, 4, x.cols());
-  const Frame f(options_);
-  for (Index i = 0; i < x.cols(); ++i) {
-    const Model m(f, column<T>(x, i), column<T>(target, i));
-    const auto [s1, s2] = m.curvature;
-    const double off = (s2 - s1) * f.c * f.s;
-    h(0, i) = static_cast<T>(std::fma(s1 * f.c, f.c, s2 * f.s * f.s));
-    h(1, i) = h(2, i) = static_cast<T>(off);
-    h(3, i) = static_cast<T>(std::fma(s1 * f.s, f.s, s2 * f.c * f.c));
+  /// Keeps the derivative of the sine.
+  void linearize(Point<T> at, BatchOut<T> y, Tape& tape) const override {
+    const Frame f(options_);
+    auto cosine = tape.slot<double>(kCosine, 1, y.cols());
+    for (Index i = 0; i < y.cols(); ++i) {
+      const Pair p = column<T>(at.x, i), u = f.scaled(p[0], p[1]);
+      const auto [sine, slope] = math::sincos(u[0]);
+      put<T>(y, i, {sine, u[1]});
+      cosine(0, i) = slope;
+    }
   }
-}
-
-template <class T>
-void SinePlane<T>::invert(BatchIn<T> y,
-                          BatchIn<T> /*given*/,
-                          BatchIn<T> x_guess,
-                          BatchOut<T> x,
-                          Workspace& /*work*/) const {
-  check_size(y, 2, x.cols());
-  check_size(x_guess, 2, x.cols());
-  check_size(x, 2, x.cols());
-  const Frame f(options_);
-  for (Index i = 0; i < x.cols(); ++i) {
-    const Pair at = column<T>(x_guess, i);
-    const Pair dx = step_of(f, options_.limit, at, column<T>(y, i));
-    put<T>(x, i, {at[0] + dx[0], at[1] + dx[1]});
+  void pullback(const Tape& tape,
+                BatchIn<T> y_bar,
+                BatchOut<T> x_bar,
+                Workspace&) const override {
+    const Frame f(options_);
+    const auto cosine = tape.view<double>(kCosine);
+    for (Index i = 0; i < cosine.cols(); ++i) {
+      const Pair bar = column<T>(y_bar, i);
+      put<T>(x_bar, i, f.back(f.a * cosine(0, i) * bar[0], f.b * bar[1]));
+    }
   }
-}
+  void jacobian(Point<T> at, BatchOut<T> j, Workspace&) const override {
+    const Frame f(options_);
+    for (Index i = 0; i < j.cols(); ++i) {
+      const Pair p = column<T>(at.x, i), u = f.scaled(p[0], p[1]);
+      const double slope = f.a * math::sincos(u[0]).cosine;
+      const Pair first = f.back(slope, 0), second = f.back(0, f.b);
+      for (Index k = 0; k < 2; ++k) {
+        j(2 * k, i) = static_cast<T>(first[static_cast<std::size_t>(k)]);
+        j(2 * k + 1, i) = static_cast<T>(second[static_cast<std::size_t>(k)]);
+      }
+    }
+  }
+  void hessian(Point<T> at,
+               BatchIn<T> target,
+               BatchOut<T> h,
+               Workspace&) const override {
+    const Frame f(options_);
+    for (Index i = 0; i < target.cols(); ++i) {
+      const Model m(f, column<T>(at.x, i), column<T>(target, i));
+      const auto [s1, s2] = m.curvature;
+      const double off = (s2 - s1) * f.c * f.s;
+      h(0, i) = static_cast<T>(std::fma(s1 * f.c, f.c, s2 * f.s * f.s));
+      h(1, i) = h(2, i) = static_cast<T>(off);
+      h(3, i) = static_cast<T>(std::fma(s1 * f.s, f.s, s2 * f.c * f.c));
+    }
+  }
+  void invert(Point<T> near,
+              BatchIn<T> y,
+              BatchOut<T> x,
+              Workspace&) const override {
+    const Frame f(options_);
+    for (Index i = 0; i < y.cols(); ++i) {
+      const Pair guess = column<T>(near.x, i);
+      const Pair dx = step_of(f, options_.limit, guess, column<T>(y, i));
+      put<T>(x, i, {guess[0] + dx[0], guess[1] + dx[1]});
+    }
+  }
 
-template class SinePlane<float>;
-template class SinePlane<double>;
+  double operations() const override { return 50; }
+
+ private:
+  SinePlaneOptions options_;
+};
+
+}  // namespace
+
+ProblemRecipe problems::sine_plane(const SinePlaneOptions& options) {
+  return problem<SinePlane>(
+      "sine_plane",
+      options,
+      {.unknowns = {"x_1, x_2"}, .observations = {"y_1, y_2"}});
+}
 
 }  // namespace physinv

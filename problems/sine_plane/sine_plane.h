@@ -26,7 +26,6 @@
 
 #include <array>
 
-#include "suite/core/problem.h"
 #include "suite/core/recipe.h"
 
 namespace physinv {
@@ -57,59 +56,8 @@ Pair limited_newton_step(const SinePlaneOptions& options,
                          const Pair& x,
                          const Pair& target);
 
-template <class T>
-class SinePlane : public Problem<T>,
-                  public Vjp<T>,
-                  public Jacobian<T>,
-                  public Hessian<T>,
-                  public Inverse<T> {
- public:
-  using Options = SinePlaneOptions;
-  explicit SinePlane(const Options& options = {});
-
-  Shape shape() const override { return {2, 2, 0}; }
-  Vector<double> start() const override { return Vector<double>::Zero(2); }
-
-  /// x is the solution nearest to 0.
-  Samples<double> sample(Index first,
-                         Index count,
-                         const Rng& rng) const override;
-
-  void forward(BatchIn<T> x,
-               BatchIn<T> given,
-               BatchOut<T> y,
-               Workspace& work) const override;
-  /// Keeps the derivative of the sine.
-  void linearize(BatchIn<T> x,
-                 BatchIn<T> given,
-                 BatchOut<T> y,
-                 Tape& tape) const override;
-  void pullback(const Tape& tape,
-                BatchIn<T> y_bar,
-                BatchOut<T> x_bar,
-                Workspace& work) const override;
-  void jacobian(BatchIn<T> x,
-                BatchIn<T> given,
-                BatchOut<T> j,
-                Workspace& work) const override;
-  void hessian(BatchIn<T> x,
-               BatchIn<T> given,
-               BatchIn<T> target,
-               BatchOut<T> h,
-               Workspace& work) const override;
-  void invert(BatchIn<T> y,
-              BatchIn<T> given,
-              BatchIn<T> x_guess,
-              BatchOut<T> x,
-              Workspace& work) const override;
-
-  double operations() const override { return 50; }
-
- private:
-  Options options_;
-};
-
-extern template class SinePlane<float>;
-extern template class SinePlane<double>;
+namespace problems {
+ProblemRecipe sine_plane(const SinePlaneOptions& options = {});
+}
 
 }  // namespace physinv

@@ -6,8 +6,8 @@ namespace physinv {
 namespace {
 
 const auto kKernels =
-    Kernels<WavePacket>("wave_packet",
-                        {.forward = {8, 32, 256}, .gradient = {8, 32, 256}})
+    Kernels(problems::wave_packet(),
+            {.forward = {8, 32, 256}, .gradient = {8, 32, 256}})
         .add("loss", {32}, [loss = Vector<double>()](auto& f) mutable {
           loss.resize(f.y.cols());
           f.problem.loss(f.y, f.target, loss);

@@ -82,250 +82,237 @@ double half_square(const T* y, const T* target, Index count) {
   return 0.5 * sum_block<double>(sums);
 }
 
-}  // namespace
-
 template <class T>
-WavePacket<T>::WavePacket(const Options& o) : options_(o) {
-  check_numbers<T>({{"amplitude", o.amplitude},
-                    {"frequency", o.frequency},
-                    {"phase", o.phase},
-                    {"width", o.width},
-                    {"centre", o.centre},
-                    {"scale", o.scale},
-                    {"noise", o.noise},
-                    {"range", o.range[0]},
-                    {"range", o.range[1]}});
-  SUITE_CHECK(o.samples > 0 && o.samples % 64 == 0,
-              "signals come in blocks of 64 samples");
-  // Below, the correction for the fraction of t0 would leave float's range.
-  SUITE_CHECK(o.width >= 1, "a packet is at least as wide as a sample");
-  SUITE_CHECK(o.scale > 0 && o.noise >= 0 && o.range[0] <= o.range[1],
-              "scale, noise and range of the true centres");
-  const double s = o.width;
-  tables_.reach = static_cast<Index>(std::ceil(kReach<T> * s));
-  const Index first = -tables_.reach - kBlock<T>;
-  const auto size = static_cast<std::size_t>(1 - 2 * first);
-  tables_.cosine.assign(size, T(0)), tables_.sine.assign(size, T(0));
-  for (Index m = -tables_.reach; m <= tables_.reach; ++m) {
-    const auto d = static_cast<double>(m);
-    const double envelope = o.amplitude * math::exp(-d * d / (2 * s * s));
-    const auto at = static_cast<std::size_t>(m - first);
-    tables_.cosine[at] = static_cast<T>(envelope * math::cos(o.frequency * d));
-    tables_.sine[at] = static_cast<T>(envelope * math::sin(o.frequency * d));
-  }
-}
-
-/// With c the integer next to t0, f = t0 - c and m = t - c,
-///   exp(-d^2 / (2 s^2)) = exp(-m^2 / (2 s^2)) exp(m f / s^2 - f^2 / (2 s^2)),
-///   cos(w d + p) = cos(w m) cos(w f - p) + sin(w m) sin(w f - p):
-/// two tables over m and a geometric sequence. Every fused operation is
-/// written out, because forward and linearize must agree to the last bit.
-template <class T>
-template <bool kSlope>
-[[gnu::noinline]] void WavePacket<T>::draw(
-    double t0, Span span, const T* given, T* y, T* slope) const {
-  using P = Pack<T>;
-  constexpr int W = kLanes<T>;
-  const double w = options_.frequency;
-  const double narrow = 1 / (options_.width * options_.width);
-  const double c = std::floor(t0 + 0.5), f = t0 - c, rate = f * narrow;
-  const double m0 = static_cast<double>(span.first + 1) - c;
-  const double turn = std::fma(w, f, -options_.phase);
-  const auto [sine, cosine] = math::sincos(turn);
-
-  P growth[kPacks];
-  const auto steps = math::exp(Pack<double, 4>{
-      (m0 - 0.5 * f) * rate, rate, static_cast<double>(kBlock<T>) * rate});
-  powers<T>(steps[0], steps[1], growth);
-  const P per_block = P{} + static_cast<T>(steps[2]);
-  const P a = P{} + static_cast<T>(cosine), b = P{} + static_cast<T>(sine);
-  const P wa = P{} + static_cast<T>(w * cosine);
-  const P wb = P{} - static_cast<T>(w * sine);
-  const P slant = P{} + static_cast<T>(narrow);
-  const P back = P{} - static_cast<T>(rate);
-  P m{};
-  for (int k = 0; k < W; ++k) m[k] = static_cast<T>(m0 + k);
-
-  const Index table =
-      span.first + 1 - static_cast<Index>(c) + tables_.reach + kBlock<T>;
-  const T* cosines = tables_.cosine.data() + table;
-  const T* sines = tables_.sine.data() + table;
-  given += span.first, y += span.first;
-  if constexpr (kSlope) slope += span.first;
-  for (Index i = 0; i < span.last - span.first; i += kBlock<T>) {
-    for (int k = 0; k < kPacks; ++k) {
-      const Index at = i + k * W;
-      const P cm = load<P>(cosines + at), sm = load<P>(sines + at);
-      const P wave = fma_lanes(a, cm, b * sm);
-      store(y + at, fma_lanes(wave, growth[k], load<P>(given + at)));
-      if constexpr (kSlope) {
-        const P quadrature = fma_lanes(wa, sm, wb * cm);
-        const P d = fma_lanes(m, slant, back);
-        store(slope + at, growth[k] * fma_lanes(wave, d, quadrature));
-        m += static_cast<T>(W);
-      }
-      growth[k] *= per_block;
+class WavePacket final : public Problem<T>, public Vjp<T>, public Jacobian<T> {
+ public:
+  explicit WavePacket(const WavePacketOptions& o) : options_(o) {
+    check_numbers<T>({{"amplitude", o.amplitude},
+                      {"frequency", o.frequency},
+                      {"phase", o.phase},
+                      {"width", o.width},
+                      {"centre", o.centre},
+                      {"scale", o.scale},
+                      {"noise", o.noise},
+                      {"range", o.range[0]},
+                      {"range", o.range[1]}});
+    SUITE_CHECK(o.samples > 0 && o.samples % 64 == 0,
+                "signals come in blocks of 64 samples");
+    // Below, the correction for the fraction of t0 would leave float's range.
+    SUITE_CHECK(o.width >= 1, "a packet is at least as wide as a sample");
+    SUITE_CHECK(o.scale > 0 && o.noise >= 0 && o.range[0] <= o.range[1],
+                "scale, noise and range of the true centres");
+    const double s = o.width;
+    tables_.reach = static_cast<Index>(std::ceil(kReach<T> * s));
+    const Index first = -tables_.reach - kBlock<T>;
+    const auto size = static_cast<std::size_t>(1 - 2 * first);
+    tables_.cosine.assign(size, T(0)), tables_.sine.assign(size, T(0));
+    for (Index m = -tables_.reach; m <= tables_.reach; ++m) {
+      const auto d = static_cast<double>(m);
+      const double envelope = o.amplitude * math::exp(-d * d / (2 * s * s));
+      const auto at = static_cast<std::size_t>(m - first);
+      tables_.cosine[at] =
+          static_cast<T>(envelope * math::cos(o.frequency * d));
+      tables_.sine[at] = static_cast<T>(envelope * math::sin(o.frequency * d));
     }
   }
-}
 
-/// One signal; returns where its packet, and slope, may differ from 0.
-template <class T>
-template <bool kSlope>
-auto WavePacket<T>::packet(T xi, const T* given, T* y, T* slope) const -> Span {
-  const Index n = options_.samples;
-  if (!std::isfinite(xi)) {
-    constexpr T kNan = std::numeric_limits<T>::quiet_NaN();
-    std::fill_n(y, n, kNan);
-    if constexpr (kSlope) std::fill_n(slope, n, kNan);
-    return {0, n};
+  Shape shape() const override {
+    return {1, options_.samples, options_.samples};
   }
-  // In double also for float: far away the fraction of t0 is what counts.
-  const double t0 = options_.centre + options_.scale * static_cast<double>(xi);
-  const auto reach = static_cast<double>(tables_.reach);
-  const bool seen =
-      t0 + 0.5 >= 1 - reach && t0 - 0.5 < static_cast<double>(n) + reach;
-  Span span{0, 0};
-  if (seen) {
-    const auto c = static_cast<Index>(std::floor(t0 + 0.5));
-    const Index from = std::max<Index>(c - tables_.reach, 1) - 1;
-    const Index to = std::min(c + tables_.reach, n);
-    span = {from / kBlock<T> * kBlock<T>,
-            (to + kBlock<T> - 1) / kBlock<T> * kBlock<T>};
-    draw<kSlope>(t0, span, given, y, slope);
-  }
-  std::copy_n(given, span.first, y);
-  std::copy_n(given + span.last, n - span.last, y + span.last);
-  return span;
-}
+  Vector<double> start() const override { return Vector<double>::Zero(1); }
 
-template <class T>
-Samples<double> WavePacket<T>::sample_labelled(Index first,
-                                               Index count,
-                                               const Rng& rng) const {
-  const Index n = options_.samples;
-  Samples<double> out;
-  out.x.resize(1, count), out.y.resize(n, count), out.given.resize(n, count);
-  for (Index i = 0; i < count; ++i) {
-    Stream stream = rng.child(static_cast<std::uint64_t>(first + i)).stream();
+  void draw(Stream& stream, SampleOut& sample) const override {
     const double t0 = stream.uniform(options_.range[0], options_.range[1]);
-    out.x(0, i) = (t0 - options_.centre) / options_.scale;
-    stream.normals(out.given.col(i).data(), n);
-    out.given.col(i) *= options_.noise;
+    sample.x(0) = (t0 - options_.centre) / options_.scale;
+    stream.normals(sample.given.data(), options_.samples);
+    sample.given *= options_.noise;
   }
-  Workspace work;
-  WavePacket<double>(options_).forward(out.x, out.given, out.y, work);
-  return out;
-}
+  /// The noise.
+  void hide(BatchOut<double> given) const override { given.setZero(); }
 
-template <class T>
-Samples<double> WavePacket<T>::sample(Index first,
-                                      Index count,
-                                      const Rng& rng) const {
-  Samples<double> out = sample_labelled(first, count, rng);
-  out.given.setZero();
-  return out;
-}
-
-template <class T>
-void WavePacket<T>::forward(BatchIn<T> x,
-                            BatchIn<T> given,
-                            BatchOut<T> y,
-                            Workspace& work) const {
-  const Index n = options_.samples;
-  check_size(x, 1, x.cols());
-  check_size(given, n, x.cols());
-  check_size(y, n, x.cols());
-  Index drawn = 0;
-  for (Index i = 0; i < x.cols(); ++i) {
-    const Span span =
-        packet<false>(x(0, i), given.col(i).data(), y.col(i).data(), nullptr);
-    drawn += span.last - span.first;
+  void forward(Point<T> at, BatchOut<T> y, Workspace& work) const override {
+    const auto &x = at.x, &given = at.given;
+    const Index n = options_.samples;
+    Index drawn = 0;
+    for (Index i = 0; i < x.cols(); ++i) {
+      const Span span =
+          packet<false>(x(0, i), given.col(i).data(), y.col(i).data(), nullptr);
+      drawn += span.last - span.first;
+    }
+    work.counts[Counter::skipped_zeros] +=
+        static_cast<std::uint64_t>(n * x.cols() - drawn);
   }
-  work.counts[Counter::skipped_zeros] +=
-      static_cast<std::uint64_t>(n * x.cols() - drawn);
-}
-
-template <class T>
-void WavePacket<T>::linearize(BatchIn<T> x,
-                              BatchIn<T> given,
-                              BatchOut<T> y,
-                              Tape& tape) const {
-  const Index n = options_.samples;
-  check_size(x, 1, x.cols());
-  check_size(given, n, x.cols());
-  check_size(y, n, x.cols());
-  auto slopes = tape.slot<T>(kSlopes, n, x.cols());
-  auto spans = tape.slot<Index>(kSpans, 2, x.cols());
-  Index drawn = 0;
-  for (Index i = 0; i < x.cols(); ++i) {
-    const Span span = packet<true>(
-        x(0, i), given.col(i).data(), y.col(i).data(), slopes.col(i).data());
-    spans(0, i) = span.first, spans(1, i) = span.last;
-    drawn += span.last - span.first;
+  /// Keeps du/dt0 and where it is not 0.
+  void linearize(Point<T> at, BatchOut<T> y, Tape& tape) const override {
+    const auto &x = at.x, &given = at.given;
+    const Index n = options_.samples;
+    auto slopes = tape.slot<T>(kSlopes, n, x.cols());
+    auto spans = tape.slot<Index>(kSpans, 2, x.cols());
+    Index drawn = 0;
+    for (Index i = 0; i < x.cols(); ++i) {
+      const Span span = packet<true>(
+          x(0, i), given.col(i).data(), y.col(i).data(), slopes.col(i).data());
+      spans(0, i) = span.first, spans(1, i) = span.last;
+      drawn += span.last - span.first;
+    }
+    tape.counts[Counter::skipped_zeros] +=
+        static_cast<std::uint64_t>(n * x.cols() - drawn);
   }
-  tape.counts[Counter::skipped_zeros] +=
-      static_cast<std::uint64_t>(n * x.cols() - drawn);
-}
-
-template <class T>
-void WavePacket<T>::pullback(const Tape& tape,
-                             BatchIn<T> y_bar,
-                             BatchOut<T> x_bar,
-                             Workspace& /*work*/) const {
-  const auto slopes = tape.view<T>(kSlopes);
-  const auto spans = tape.view<Index>(kSpans);
-  check_size(y_bar, options_.samples, slopes.cols());
-  check_size(x_bar, 1, slopes.cols());
-  for (Index i = 0; i < slopes.cols(); ++i) {
-    const Index first = spans(0, i), count = spans(1, i) - first;
-    x_bar(0, i) =
-        static_cast<T>(options_.scale) *
-        dot(slopes.col(i).data() + first, y_bar.col(i).data() + first, count);
+  void pullback(const Tape& tape,
+                BatchIn<T> y_bar,
+                BatchOut<T> x_bar,
+                Workspace&) const override {
+    const auto slopes = tape.view<T>(kSlopes);
+    const auto spans = tape.view<Index>(kSpans);
+    for (Index i = 0; i < slopes.cols(); ++i) {
+      const Index first = spans(0, i), count = spans(1, i) - first;
+      x_bar(0, i) =
+          static_cast<T>(options_.scale) *
+          dot(slopes.col(i).data() + first, y_bar.col(i).data() + first, count);
+    }
   }
-}
-
-template <class T>
-void WavePacket<T>::jacobian(BatchIn<T> x,
-                             BatchIn<T> given,
-                             BatchOut<T> j,
-                             Workspace& work) const {
-  const Index n = options_.samples;
-  check_size(x, 1, x.cols());
-  check_size(given, n, x.cols());
-  check_size(j, n, x.cols());
-  Workspace::Scope scope(work);
-  auto y = work.take<T>(n, 1);
-  for (Index i = 0; i < x.cols(); ++i) {
-    const Span span =
-        packet<true>(x(0, i), given.col(i).data(), y.data(), j.col(i).data());
-    j.col(i).head(span.first).setZero();
-    j.col(i).tail(n - span.last).setZero();
-    j.col(i) *= static_cast<T>(options_.scale);
+  void jacobian(Point<T> at, BatchOut<T> j, Workspace& work) const override {
+    const auto &x = at.x, &given = at.given;
+    const Index n = options_.samples;
+    Workspace::Scope scope(work);
+    auto y = work.take<T>(n, 1);
+    for (Index i = 0; i < x.cols(); ++i) {
+      const Span span =
+          packet<true>(x(0, i), given.col(i).data(), y.data(), j.col(i).data());
+      j.col(i).head(span.first).setZero();
+      j.col(i).tail(n - span.last).setZero();
+      j.col(i) *= static_cast<T>(options_.scale);
+    }
   }
-}
 
-template <class T>
-void WavePacket<T>::loss(BatchIn<T> y,
-                         BatchIn<T> target,
-                         VectorOut<double> loss) const {
-  check_size(y, options_.samples, loss.size());
-  check_size(target, options_.samples, loss.size());
-  for (Index i = 0; i < y.cols(); ++i)
-    loss(i) =
-        half_square(y.col(i).data(), target.col(i).data(), options_.samples);
-  if (!options_.half_loss) loss *= 2;
-}
+  /// Squared error or half of it, in lanes of double added up in a fixed order:
+  /// signals with the same bits have the same loss, whoever computed them.
+  void loss(BatchIn<T> y,
+            BatchIn<T> target,
+            VectorOut<double> loss) const override {
+    for (Index i = 0; i < y.cols(); ++i)
+      loss(i) =
+          half_square(y.col(i).data(), target.col(i).data(), options_.samples);
+    if (!options_.half_loss) loss *= 2;
+  }
+  void loss_gradient(BatchIn<T> y,
+                     BatchIn<T> target,
+                     BatchOut<T> y_bar) const override {
+    Problem<T>::loss_gradient(y, target, y_bar);
+    if (!options_.half_loss) y_bar *= T(2);
+  }
 
-template <class T>
-void WavePacket<T>::loss_gradient(BatchIn<T> y,
-                                  BatchIn<T> target,
-                                  BatchOut<T> y_bar) const {
-  Problem<T>::loss_gradient(y, target, y_bar);
-  if (!options_.half_loss) y_bar *= T(2);
-}
+  /// Six per sample, and four transcendental functions of 20 each.
+  double operations() const override {
+    return 6 * static_cast<double>(options_.samples) + 80;
+  }
 
-template class WavePacket<float>;
-template class WavePacket<double>;
+ private:
+  /// cos(w m) and sin(w m) times exp(-m^2 / (2 s^2)) at integers m, 0 beyond
+  /// the reach, with a block of zeros on either side.
+  struct Tables {
+    std::vector<T> cosine, sine;
+    Index reach = 0;  ///< largest |m| that counts
+  };
+  /// Samples first .. last - 1 of a signal.
+  struct Span {
+    Index first, last;
+  };
+
+  /// One signal; returns where its packet, and slope, may differ from 0.
+  template <bool kSlope>
+  Span packet(T xi, const T* given, T* y, T* slope) const {
+    const Index n = options_.samples;
+    if (!std::isfinite(xi)) {
+      constexpr T kNan = std::numeric_limits<T>::quiet_NaN();
+      std::fill_n(y, n, kNan);
+      if constexpr (kSlope) std::fill_n(slope, n, kNan);
+      return {0, n};
+    }
+    // In double also for float: far away the fraction of t0 is what counts.
+    const double t0 =
+        options_.centre + options_.scale * static_cast<double>(xi);
+    const auto reach = static_cast<double>(tables_.reach);
+    const bool seen =
+        t0 + 0.5 >= 1 - reach && t0 - 0.5 < static_cast<double>(n) + reach;
+    Span span{0, 0};
+    if (seen) {
+      const auto c = static_cast<Index>(std::floor(t0 + 0.5));
+      const Index from = std::max<Index>(c - tables_.reach, 1) - 1;
+      const Index to = std::min(c + tables_.reach, n);
+      span = {from / kBlock<T> * kBlock<T>,
+              (to + kBlock<T> - 1) / kBlock<T> * kBlock<T>};
+      render<kSlope>(t0, span, given, y, slope);
+    }
+    std::copy_n(given, span.first, y);
+    std::copy_n(given + span.last, n - span.last, y + span.last);
+    return span;
+  }
+  /// With c the integer next to t0, f = t0 - c and m = t - c,
+  ///   exp(-d^2 / (2 s^2)) = exp(-m^2 / (2 s^2)) exp(m f / s^2 - f^2 / (2
+  ///   s^2)), cos(w d + p) = cos(w m) cos(w f - p) + sin(w m) sin(w f - p):
+  /// two tables over m and a geometric sequence. Every fused operation is
+  /// written out, because forward and linearize must agree to the last bit.
+  template <bool kSlope>
+  [[gnu::noinline]] void render(
+      double t0, Span span, const T* given, T* y, T* slope) const {
+    using P = Pack<T>;
+    constexpr int W = kLanes<T>;
+    const double w = options_.frequency;
+    const double narrow = 1 / (options_.width * options_.width);
+    const double c = std::floor(t0 + 0.5), f = t0 - c, rate = f * narrow;
+    const double m0 = static_cast<double>(span.first + 1) - c;
+    const double turn = std::fma(w, f, -options_.phase);
+    const auto [sine, cosine] = math::sincos(turn);
+
+    P growth[kPacks];
+    const auto steps = math::exp(Pack<double, 4>{
+        (m0 - 0.5 * f) * rate, rate, static_cast<double>(kBlock<T>) * rate});
+    powers<T>(steps[0], steps[1], growth);
+    const P per_block = P{} + static_cast<T>(steps[2]);
+    const P a = P{} + static_cast<T>(cosine), b = P{} + static_cast<T>(sine);
+    const P wa = P{} + static_cast<T>(w * cosine);
+    const P wb = P{} - static_cast<T>(w * sine);
+    const P slant = P{} + static_cast<T>(narrow);
+    const P back = P{} - static_cast<T>(rate);
+    P m{};
+    for (int k = 0; k < W; ++k) m[k] = static_cast<T>(m0 + k);
+
+    const Index table =
+        span.first + 1 - static_cast<Index>(c) + tables_.reach + kBlock<T>;
+    const T* cosines = tables_.cosine.data() + table;
+    const T* sines = tables_.sine.data() + table;
+    given += span.first, y += span.first;
+    if constexpr (kSlope) slope += span.first;
+    for (Index i = 0; i < span.last - span.first; i += kBlock<T>) {
+      for (int k = 0; k < kPacks; ++k) {
+        const Index at = i + k * W;
+        const P cm = load<P>(cosines + at), sm = load<P>(sines + at);
+        const P wave = fma_lanes(a, cm, b * sm);
+        store(y + at, fma_lanes(wave, growth[k], load<P>(given + at)));
+        if constexpr (kSlope) {
+          const P quadrature = fma_lanes(wa, sm, wb * cm);
+          const P d = fma_lanes(m, slant, back);
+          store(slope + at, growth[k] * fma_lanes(wave, d, quadrature));
+          m += static_cast<T>(W);
+        }
+        growth[k] *= per_block;
+      }
+    }
+  }
+
+  WavePacketOptions options_;
+  Tables tables_;
+};
+
+}  // namespace
+
+ProblemRecipe problems::wave_packet(const WavePacketOptions& options) {
+  return problem<WavePacket>("wave_packet",
+                             options,
+                             {.unknowns = {"xi"},
+                              .observations = {"signal(sample)"},
+                              .given = {"disturbance(sample)"}});
+}
 
 }  // namespace physinv

@@ -23,7 +23,6 @@
 #include <array>
 #include <vector>
 
-#include "suite/core/problem.h"
 #include "suite/core/recipe.h"
 
 namespace physinv {
@@ -54,82 +53,8 @@ struct WavePacketOptions {
   }
 };
 
-template <class T>
-class WavePacket : public Problem<T>, public Vjp<T>, public Jacobian<T> {
- public:
-  using Options = WavePacketOptions;
-  explicit WavePacket(const Options& options = {});
-
-  Shape shape() const override {
-    return {1, options_.samples, options_.samples};
-  }
-  Vector<double> start() const override { return Vector<double>::Zero(1); }
-
-  /// x is the true xi, given is 0.
-  Samples<double> sample(Index first,
-                         Index count,
-                         const Rng& rng) const override;
-  /// The same signals with their noise as given.
-  Samples<double> sample_labelled(Index first,
-                                  Index count,
-                                  const Rng& rng) const override;
-
-  void forward(BatchIn<T> x,
-               BatchIn<T> given,
-               BatchOut<T> y,
-               Workspace& work) const override;
-  /// Keeps du/dt0 and where it is not 0.
-  void linearize(BatchIn<T> x,
-                 BatchIn<T> given,
-                 BatchOut<T> y,
-                 Tape& tape) const override;
-  void pullback(const Tape& tape,
-                BatchIn<T> y_bar,
-                BatchOut<T> x_bar,
-                Workspace& work) const override;
-  void jacobian(BatchIn<T> x,
-                BatchIn<T> given,
-                BatchOut<T> j,
-                Workspace& work) const override;
-
-  /// Squared error or half of it, in lanes of double added up in a fixed order:
-  /// signals with the same bits have the same loss, whoever computed them.
-  void loss(BatchIn<T> y,
-            BatchIn<T> target,
-            VectorOut<double> loss) const override;
-  void loss_gradient(BatchIn<T> y,
-                     BatchIn<T> target,
-                     BatchOut<T> y_bar) const override;
-
-  /// Six per sample, and four transcendental functions of 20 each.
-  double operations() const override {
-    return 6 * static_cast<double>(options_.samples) + 80;
-  }
-
-  const Options& options() const { return options_; }
-
- private:
-  /// cos(w m) and sin(w m) times exp(-m^2 / (2 s^2)) at integers m, 0 beyond
-  /// the reach, with a block of zeros on either side.
-  struct Tables {
-    std::vector<T> cosine, sine;
-    Index reach = 0;  ///< largest |m| that counts
-  };
-  /// Samples first .. last - 1 of a signal.
-  struct Span {
-    Index first, last;
-  };
-
-  template <bool kSlope>
-  Span packet(T xi, const T* given, T* y, T* slope) const;
-  template <bool kSlope>
-  void draw(double t0, Span span, const T* given, T* y, T* slope) const;
-
-  Options options_;
-  Tables tables_;
-};
-
-extern template class WavePacket<float>;
-extern template class WavePacket<double>;
+namespace problems {
+ProblemRecipe wave_packet(const WavePacketOptions& options = {});
+}
 
 }  // namespace physinv

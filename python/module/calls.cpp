@@ -132,7 +132,7 @@ void define_passes(py::class_<PyProblem>& c) {
         const auto side = call.given(b);
         auto y = call.out(call.shape.observations);
         call.compute([&](Workspace& work) {
-          call.problem().forward(at.batch, side.batch, y.batch, work);
+          call.problem().forward({at.batch, side.batch}, y.batch, work);
         });
         return y.array;
       },
@@ -152,7 +152,7 @@ void define_passes(py::class_<PyProblem>& c) {
         auto y = call.out(call.shape.observations);
         const auto point = call.linearization();
         call.compute([&](Workspace&) {
-          vjp.linearize(at.batch, side.batch, y.batch, point->tape());
+          vjp.linearize({at.batch, side.batch}, y.batch, point->tape());
         });
         return py::make_tuple(y.array, point);
       },
@@ -177,7 +177,7 @@ void define_pushforward(py::class_<PyProblem>& c) {
         auto y_dot = call.out(call.shape.observations);
         const auto point = call.linearization();
         call.compute([&](Workspace& work) {
-          vjp.linearize(at.batch, side.batch, y_dot.batch, point->tape());
+          vjp.linearize({at.batch, side.batch}, y_dot.batch, point->tape());
           jvp.pushforward(point->tape(), x_dot.batch, y_dot.batch, work);
         });
         return y_dot.array;
@@ -200,7 +200,7 @@ void define_matrices(py::class_<PyProblem>& c) {
         const auto side = call.given(b);
         auto j = call.out(call.shape.unknowns, call.shape.observations);
         call.compute([&](Workspace& work) {
-          jacobian.jacobian(at.batch, side.batch, j.batch, work);
+          jacobian.jacobian({at.batch, side.batch}, j.batch, work);
         });
         return j.array.attr("transpose")(0, 2, 1);
       },
@@ -219,7 +219,7 @@ void define_matrices(py::class_<PyProblem>& c) {
         const auto side = call.given(g);
         auto h = call.out(call.shape.unknowns, call.shape.unknowns);
         call.compute([&](Workspace& work) {
-          hessian.hessian(at.batch, side.batch, target.batch, h.batch, work);
+          hessian.hessian({at.batch, side.batch}, target.batch, h.batch, work);
         });
         return h.array;
       },
@@ -249,7 +249,7 @@ void define_inverse(py::class_<PyProblem>& c) {
           from.batch = call.next(near, "guess", call.shape.unknowns).batch;
         auto x = call.out(call.shape.unknowns);
         call.compute([&](Workspace& work) {
-          inverse.invert(y.batch, side.batch, from.batch, x.batch, work);
+          inverse.invert({from.batch, side.batch}, y.batch, x.batch, work);
         });
         return x.array;
       },

@@ -2,7 +2,7 @@
 /// where a matrix is singular or its entries leave the range of numbers.
 #pragma once
 
-#include "suite/core/batch.h"
+#include "suite/core/problem.h"
 
 namespace physinv {
 
@@ -11,13 +11,11 @@ class ClosedSteps {
  public:
   virtual ~ClosedSteps() = default;
   /// dx = -H^-1 d loss / d x.
-  virtual void newton_step(BatchIn<T> x,
-                           BatchIn<T> given,
+  virtual void newton_step(Point<T> at,
                            BatchIn<T> target,
                            BatchOut<T> dx) const = 0;
   /// dx = J^-1 (target - y).
-  virtual void inverse_gradient_step(BatchIn<T> x,
-                                     BatchIn<T> given,
+  virtual void inverse_gradient_step(Point<T> at,
                                      BatchIn<T> target,
                                      BatchOut<T> dx) const = 0;
 };

@@ -3,32 +3,29 @@
 /// (`Oracle::problem`); whoever runs it gives its counts back (`Oracle::add`).
 #pragma once
 
-#include <memory>
-
-#include "suite/core/closed_steps.h"
-#include "suite/core/gradient_projection.h"
-#include "suite/core/problem.h"
+#include "suite/core/any_problem.h"
 
 namespace physinv {
 
-/// Calls are those of the problem's abilities; one that it lacks, or that is
-/// not among `allowed`, is refused.
+/// Calls are those of AnyProblem.
 template <class T>
 class CountedProblem {
  public:
   CountedProblem(std::unique_ptr<const Problem<T>> problem,
                  Needs allowed,
-                 Threads* threads = nullptr);
+                 Threads* threads = nullptr)
+      : problem_(std::move(problem), allowed), tape_(threads), work_(threads) {}
 
   // Of a point whose observations are known: not counted.
   void loss(BatchIn<T> y, BatchIn<T> target, VectorOut<double> loss) const {
-    problem_->loss(y, target, loss);
+    problem_.loss(y, target, loss);
   }
   void loss_gradient(BatchIn<T> y, BatchIn<T> target, BatchOut<T> y_bar) const {
-    problem_->loss_gradient(y, target, y_bar);
+    problem_.loss_gradient(y, target, y_bar);
   }
-  /// GradientProjection, if the problem has one.
-  void project(BatchIn<T> y, BatchOut<T> y_bar) const;
+  void project(BatchIn<T> y, BatchOut<T> y_bar) const {
+    problem_.project(y, y_bar);
+  }
 
   /// Counted as `forward`.
   void forward(BatchIn<T> x, BatchIn<T> given, BatchOut<T> y);
@@ -57,7 +54,7 @@ class CountedProblem {
               BatchOut<T> x);
 
   /// ClosedSteps, counted as the `vjp` and the `jacobian` that they stand for.
-  bool has_closed_steps() const { return closed_ != nullptr; }
+  bool has_closed_steps() const { return problem_.has_closed_steps(); }
   void newton_step(BatchIn<T> x,
                    BatchIn<T> given,
                    BatchIn<T> target,
@@ -72,23 +69,12 @@ class CountedProblem {
   std::size_t bytes() const { return tape_.bytes() + work_.bytes(); }
 
  private:
-  const ClosedSteps<T>& closed_for(Needs needs) const;
   void count(Counter counter, Index n) {
     counts_[counter] += static_cast<std::uint64_t>(n);
   }
 
-  std::unique_ptr<const Problem<T>> problem_;
-  // The abilities that may be used; null if the problem lacks one or the
-  // method did not declare it.
-  const Vjp<T>* vjp_;
-  const Jvp<T>* jvp_;
-  const PullbackTangent<T>* pullback_tangent_;
-  const Jacobian<T>* jacobian_;
-  const Hessian<T>* hessian_;
-  const Inverse<T>* inverse_;
-  const ClosedSteps<T>* closed_;
-  const GradientProjection<T>* projection_;
-  Needs allowed_;
+  AnyProblem<T> problem_;
+  Index linearized_ = 0;  ///< samples of the last `linearize`
   Tape tape_;
   Workspace work_;
   Counts counts_;

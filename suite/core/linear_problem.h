@@ -16,15 +16,13 @@ class LinearProblem : public Problem<T>,
                    BatchIn<T> x_dot,
                    BatchOut<T> y_dot,
                    Workspace& work) const override {
-    this->forward(x_dot, x_dot.topRows(0), y_dot, work);
+    this->forward({x_dot, x_dot.topRows(0)}, y_dot, work);
   }
   void pullback_tangent(const Tape& tape,
-                        BatchIn<T> /*x_dot*/,
-                        BatchIn<T> /*y_bar*/,
-                        BatchIn<T> y_bar_dot,
+                        Directions<T> along,
                         BatchOut<T> x_bar_dot,
                         Workspace& work) const override {
-    this->pullback(tape, y_bar_dot, x_bar_dot, work);
+    this->pullback(tape, along.y_bar_dot, x_bar_dot, work);
   }
 };
 

@@ -123,7 +123,7 @@ void Oracle::evaluate(std::span<const Index> active,
   Workspace::Scope scope(*work_);
   const Packed<T> data(s, active, *work_);
   auto y = work_->take<T>(shape_.observations, m);
-  s.problem->forward(x, data.given_of(s), y, *work_);
+  s.problem->forward({x, data.given_of(s)}, y, *work_);
   s.problem->loss(y, data.y_of(s), loss);
   add(Counter::forward, m);
 }
@@ -155,7 +155,7 @@ void Oracle::evaluate(std::span<const Index> active,
     const auto part = [=](const auto& all) {
       return all.middleCols(first, some);
     };
-    s.vjp->linearize(part(x), part(given), y.leftCols(some), s.tape);
+    s.vjp->linearize({part(x), part(given)}, y.leftCols(some), s.tape);
     s.problem->loss(y.leftCols(some), part(target), loss.segment(first, some));
     s.problem->loss_gradient(
         y.leftCols(some), part(target), y_bar.leftCols(some));
@@ -244,7 +244,7 @@ void Oracle::measure(BatchIn<double> x,
   const DefaultFloatEnvironment floats;  // whatever the method has
   Side<double>& s = side<double>();
   Workspace::Scope scope(*measuring_);
-  s.problem->forward(x, s.given, y, *measuring_);
+  s.problem->forward({x, s.given}, y, *measuring_);
   s.problem->loss(y, s.y, loss);
 }
 

@@ -1,8 +1,10 @@
 /// A physics inverse problem y = F(x | given): find x from y.
 ///
-/// Every call takes batches (a single problem is a batch of one) and is a pure
-/// function of its arguments. Abilities beyond the forward pass are separate
-/// base classes; the base-class list is the declaration, read by `provides`.
+/// Every call takes batches (a single problem is a batch of one), is a pure
+/// function of its arguments and leaves their sizes to its callers: AnyProblem,
+/// CountedProblem, the oracle and Python check them. Abilities beyond the
+/// forward pass are separate base classes; the base-class list is the
+/// declaration, read by `provides`.
 #pragma once
 
 #include <cmath>
@@ -23,6 +25,33 @@ struct Shape {
   Index given = 0;         ///< side input, may be 0
 };
 
+/// Where a problem is looked at, a column per sample.
+template <class T>
+struct Point {
+  Eigen::Ref<const Batch<T>> x, given;
+};
+
+/// Along what a pullback changes: x moves along x_dot, y_bar along y_bar_dot.
+template <class T>
+struct Directions {
+  Eigen::Ref<const Batch<T>> x_dot, y_bar, y_bar_dot;
+};
+
+/// One sample while it is drawn, in double: zeros to be written.
+struct SampleOut {
+  Index index;    ///< in its set
+  Rng rng;        ///< its own, for streams besides the first
+  bool labelled;  ///< a pair (x, F(x)), not an inverse problem
+  VectorOut<double> x, y, given;
+};
+
+/// What of an inverse problem `draw` writes besides `given`.
+enum class Drawn : std::uint8_t {
+  unknowns,      ///< x; y = F(x | given)
+  both,          ///< y, and the x that explains it
+  observations,  ///< y; no solution is known
+};
+
 template <class T>
 class Problem {
  public:
@@ -33,26 +62,35 @@ class Problem {
   /// Where classical optimizers start, one point for all problems.
   virtual Vector<double> start() const = 0;
 
+  /// Draws one sample, `stream` being the first of its own. Sets that are not
+  /// drawn override `sample`.
+  virtual void draw(Stream& /*stream*/, SampleOut& /*sample*/) const {}
+  /// Of labelled samples, always `unknowns`.
+  virtual Drawn drawn() const { return Drawn::unknowns; }
+  /// Takes out of the side input of an inverse problem what helped to make y
+  /// and is not known.
+  virtual void hide(BatchOut<double> /*given*/) const {}
+
   /// Inverse problems first .. first+count-1 of the set `rng` addresses; the
   /// i-th draws from rng.child(i), so small sets are prefixes of large ones.
-  /// x holds the true solution where one is known (no rows otherwise).
+  /// x holds the true solution where one is known (no rows otherwise). Of
+  /// problems in double alone.
   virtual Samples<double> sample(Index first,
                                  Index count,
-                                 const Rng& rng) const = 0;
+                                 const Rng& rng) const {
+    return draw_set(first, count, rng, false);
+  }
 
   /// Pairs (x, y = F(x)) for methods that learn from labels.
   virtual Samples<double> sample_labelled(Index first,
                                           Index count,
                                           const Rng& rng) const {
-    return sample(first, count, rng);
+    return draw_set(first, count, rng, true);
   }
 
   /// y = F(x | given). A diverging sample fills its column with non-finite
   /// values and disturbs no other.
-  virtual void forward(BatchIn<T> x,
-                       BatchIn<T> given,
-                       BatchOut<T> y,
-                       Workspace& work) const = 0;
+  virtual void forward(Point<T> at, BatchOut<T> y, Workspace& work) const = 0;
 
   /// Loss per sample, half squared error unless the paper has another, summed
   /// in double.
@@ -82,7 +120,18 @@ class Problem {
 
   /// Rough floating-point operations of one forward pass of one sample.
   virtual double operations() const = 0;
+
+ private:
+  Samples<double> draw_set(Index first,
+                           Index count,
+                           const Rng& rng,
+                           bool labelled) const;
 };
+
+template <>
+Samples<double> Problem<float>::draw_set(Index, Index, const Rng&, bool) const;
+template <>
+Samples<double> Problem<double>::draw_set(Index, Index, const Rng&, bool) const;
 
 /// Exact derivative of the discrete forward, in reverse.
 template <class T>
@@ -90,10 +139,7 @@ class Vjp {
  public:
   virtual ~Vjp() = default;
   /// Forward pass that remembers what `pullback` needs.
-  virtual void linearize(BatchIn<T> x,
-                         BatchIn<T> given,
-                         BatchOut<T> y,
-                         Tape& tape) const = 0;
+  virtual void linearize(Point<T> at, BatchOut<T> y, Tape& tape) const = 0;
   /// x_bar = J^T y_bar at the point of the last `linearize` on this tape.
   virtual void pullback(const Tape& tape,
                         BatchIn<T> y_bar,
@@ -124,9 +170,7 @@ class PullbackTangent {
   /// `Vjp::pullback` where x moves along x_dot and y_bar along y_bar_dot, at
   /// the point of the last `linearize` on this tape.
   virtual void pullback_tangent(const Tape& tape,
-                                BatchIn<T> x_dot,
-                                BatchIn<T> y_bar,
-                                BatchIn<T> y_bar_dot,
+                                Directions<T> along,
                                 BatchOut<T> x_bar_dot,
                                 Workspace& work) const = 0;
 };
@@ -137,20 +181,16 @@ template <class T>
 class Jacobian {
  public:
   virtual ~Jacobian() = default;
-  virtual void jacobian(BatchIn<T> x,
-                        BatchIn<T> given,
-                        BatchOut<T> j,
-                        Workspace& work) const = 0;
+  virtual void jacobian(Point<T> at, BatchOut<T> j, Workspace& work) const = 0;
 };
 
-/// Local inverse near a guess.
+/// Local inverse near a guess: `near.x` is the guess.
 template <class T>
 class Inverse {
  public:
   virtual ~Inverse() = default;
-  virtual void invert(BatchIn<T> y,
-                      BatchIn<T> given,
-                      BatchIn<T> x_guess,
+  virtual void invert(Point<T> near,
+                      BatchIn<T> y,
                       BatchOut<T> x,
                       Workspace& work) const = 0;
 };
@@ -160,8 +200,7 @@ template <class T>
 class Hessian {
  public:
   virtual ~Hessian() = default;
-  virtual void hessian(BatchIn<T> x,
-                       BatchIn<T> given,
+  virtual void hessian(Point<T> at,
                        BatchIn<T> target,
                        BatchOut<T> h,
                        Workspace& work) const = 0;

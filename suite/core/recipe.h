@@ -11,6 +11,7 @@
 
 #include "suite/core/options.h"
 #include "suite/core/problem.h"
+#include "suite/core/quantities.h"
 
 namespace physinv {
 
@@ -22,6 +23,7 @@ struct ProblemRecipe {
   std::function<std::unique_ptr<Problem<float>>()> make_float;
   std::function<std::unique_ptr<Problem<double>>()> make_double;
   std::string source;  ///< its header, relative to the project's root
+  Quantities quantities = {};
 
   template <class T>
   std::unique_ptr<Problem<T>> make() const {
@@ -33,18 +35,25 @@ struct ProblemRecipe {
   }
 };
 
-/// problem<Heat>("heat", options): reads abilities from the base-class list.
-/// The name is that of the problem's folder.
-template <template <class> class P>
+/// problems::heat(options, quantities): reads abilities from the
+/// base-class list. The name is that of the problem's folder.
+template <template <class> class P, class Options>
 ProblemRecipe problem(const std::string& name,
-                      typename P<double>::Options options = {}) {
+                      const Options& options,
+                      Quantities quantities) {
   return {
       .name = name,
       .options = describe(options),
       .provided = provides<P<double>, double>(),
       .make_float = [options] { return std::make_unique<P<float>>(options); },
       .make_double = [options] { return std::make_unique<P<double>>(options); },
-      .source = "problems/" + name + '/' + name + ".h"};
+      .source = "problems/" + name + '/' + name + ".h",
+      .quantities = std::move(quantities)};
+}
+template <template <class> class P>
+ProblemRecipe problem(const std::string& name,
+                      const typename P<double>::Options& options = {}) {
+  return problem<P>(name, options, {});
 }
 
 }  // namespace physinv

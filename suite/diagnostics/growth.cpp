@@ -27,7 +27,7 @@ Growth measure(const ProblemRecipe& recipe,
   const Samples<T> s = exact.cast<T>();
   const Batch<T> start = problem->start().template cast<T>().replicate(1, n);
   Batch<T> y(exact.y.rows(), n), y_bar = y, gradient = start, moved = y;
-  vjp->linearize(start, s.given, y, tape);
+  vjp->linearize({start, s.given}, y, tape);
   problem->loss_gradient(y, s.y, y_bar);
   vjp->pullback(tape, y_bar, gradient, work);
 
@@ -36,8 +36,8 @@ Growth measure(const ProblemRecipe& recipe,
     given.col(i) +=
         (size * exact.given.col(i).norm() * others.col(i).normalized())
             .template cast<T>();
-  problem->forward(s.x, s.given, y, work);
-  problem->forward(s.x, given, moved, work);
+  problem->forward({s.x, s.given}, y, work);
+  problem->forward({s.x, given}, moved, work);
   // The differences that were taken, after rounding.
   return {y.template cast<double>(),
           gradient.template cast<double>(),

@@ -40,7 +40,7 @@ class Trial {
         problem_(setup.problem->make<T>()),
         shape_(problem_->shape()),
         model_(run.setting.predictor, shape_, shape_.unknowns, nullptr) {
-    const Samples<double> drawn = problem_->sample(
+    const Samples<double> drawn = setup.problem->make<double>()->sample(
         0, setup.samples, run.batches.child("half_inverse_stress"));
     const Index copies = setup.copies;
     target_ = drawn.y.replicate(1, copies).template cast<T>();
@@ -80,7 +80,7 @@ class Trial {
   double loss() {
     x_ = model_.forward(input_);
     x_.colwise() += problem_->start().template cast<T>();
-    problem_->forward(x_, given_, y_, work_);
+    problem_->forward({x_, given_}, y_, work_);
     Vector<double> losses(count());
     problem_->loss(y_, target_, losses);
     return losses.mean();
@@ -90,7 +90,7 @@ class Trial {
     problem_->loss_gradient(y_, target_, g_);
     g_ /= static_cast<T>(count());
     dynamic_cast<const Jacobian<T>&>(*problem_).jacobian(
-        x_, given_, jacobian_, work_);
+        {x_, given_}, jacobian_, work_);
     if (setup_.start->blind) jacobian_.setZero();
     const bool taken = step(model_.network(),
                             model_.parameters(),

@@ -51,7 +51,7 @@ Side evaluate(const ProblemRecipe& recipe,
   Tape tape;
   const Batch<T> points = x.cast<T>(), states = given.cast<T>();
   Batch<T> y(w.size(), x.cols()), x_bar(x.rows(), x.cols());
-  vjp->linearize(points, states, y, tape);
+  vjp->linearize({points, states}, y, tape);
   vjp->pullback(tape, w.cast<T>().replicate(1, x.cols()).eval(), x_bar, work);
   return {y.template cast<double>(), x_bar.template cast<double>()};
 }
@@ -75,8 +75,8 @@ Batch<double> central_differences(const Problem<double>& problem,
       up.col(j) = x.col(j) + step * v;
       down.col(j) = x.col(j) - step * v;
     }
-    problem.forward(up, given, y_up, work);
-    problem.forward(down, given, y_down, work);
+    problem.forward({up, given}, y_up, work);
+    problem.forward({down, given}, y_down, work);
     for (Index j = 0; j < x.cols(); ++j) {
       const Vector<double> beside = (up - down).col(j) - 2 * step * v;
       const double change =
@@ -96,7 +96,7 @@ Vector<double> tangents(const Jacobian<double>& problem,
                         const Vector<double>& v,
                         Workspace& work) {
   Batch<double> j(w.size() * x.rows(), x.cols());
-  problem.jacobian(x, given, j, work);
+  problem.jacobian({x, given}, j, work);
   Vector<double> out(x.cols());
   for (Index i = 0; i < x.cols(); ++i) {
     const Eigen::Map<const Batch<double>> of_one(

@@ -96,13 +96,13 @@ class View {
 
   void forward(Index first, Index count, Workspace& work) {
     const auto part = [&](auto& all) { return all.middleCols(first, count); };
-    problem_->forward(part(x_), part(given_), part(y_), work);
+    problem_->forward({part(x_), part(given_)}, part(y_), work);
   }
 
   void gradient(Index first, Index count, Tape& tape, Workspace& work) {
     const auto part = [&](auto& all) { return all.middleCols(first, count); };
     const auto& vjp = dynamic_cast<const Vjp<T>&>(*problem_);
-    vjp.linearize(part(x_), part(given_), part(y_), tape);
+    vjp.linearize({part(x_), part(given_)}, part(y_), tape);
     problem_->loss_gradient(part(y_), part(target_), part(y_bar_));
     vjp.pullback(tape, part(y_bar_), part(x_bar_), work);
   }
@@ -119,7 +119,7 @@ class View {
   void inverse(Index first, Index count, Workspace& work) {
     const auto part = [&](auto& all) { return all.middleCols(first, count); };
     dynamic_cast<const Inverse<T>&>(*problem_).invert(
-        part(y_), part(given_), part(start_), part(x_bar_), work);
+        {part(start_), part(given_)}, part(y_), part(x_bar_), work);
   }
 
   Batch<double> found() const { return x_bar_.template cast<double>(); }

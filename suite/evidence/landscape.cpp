@@ -23,7 +23,7 @@ Vector<double> losses_of(const Problem<double>& problem,
   Batch<double> y(observed.y.size(), x.cols());
   Vector<double> loss(x.cols());
   Workspace work;
-  problem.forward(x, target.given, y, work);
+  problem.forward({x, target.given}, y, work);
   problem.loss(y, target.y, loss);
   return loss;
 }
@@ -57,17 +57,17 @@ Panel line_panel(std::string method,
 }
 
 std::vector<Panel> loss_and_derivative(const Problem<double>& problem,
-                                       const Vjp<double>& derivative,
                                        const Observed& observed,
                                        BatchIn<double> x,
                                        const LossAxis& axis,
                                        const std::string& method) {
+  const auto& derivative = dynamic_cast<const Vjp<double>&>(problem);
   const Repeated target(observed, x.cols());
   Batch<double> y(observed.y.size(), x.cols()), y_bar = y, x_bar = x;
   Vector<double> loss(x.cols());
   Tape tape;
   Workspace work;
-  derivative.linearize(x, target.given, y, tape);
+  derivative.linearize({x, target.given}, y, tape);
   problem.loss(y, target.y, loss);
   problem.loss_gradient(y, target.y, y_bar);
   derivative.pullback(tape, y_bar, x_bar, work);

@@ -1,7 +1,6 @@
 /// How a problem's loss looks over one or two of its unknowns.
 #pragma once
 
-#include <concepts>
 #include <string>
 #include <vector>
 
@@ -42,20 +41,12 @@ Panel line_panel(std::string method,
                  const Vector<double>& x,
                  const Vector<double>& y);
 
-/// The loss at the points x, a panel, and its derivative along the axis.
+/// The loss at the points x, a panel, and its derivative along the axis. The
+/// problem has a Vjp.
 std::vector<Panel> loss_and_derivative(const Problem<double>& problem,
-                                       const Vjp<double>& derivative,
                                        const Observed& observed,
                                        BatchIn<double> x,
                                        const LossAxis& axis,
                                        const std::string& method);
-template <std::derived_from<Vjp<double>> P>
-std::vector<Panel> loss_and_derivative(const P& problem,
-                                       const Observed& observed,
-                                       BatchIn<double> x,
-                                       const LossAxis& axis,
-                                       const std::string& method) {
-  return loss_and_derivative(problem, problem, observed, x, axis, method);
-}
 
 }  // namespace physinv

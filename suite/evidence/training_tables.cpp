@@ -170,7 +170,7 @@ Vector<double> observed(const Problem<double>& problem,
                         const Answered& answer) {
   Batch<double> y(problem.shape().observations, 1);
   Workspace work;
-  problem.forward(answer.x, answer.given, y, work);
+  problem.forward({answer.x, answer.given}, y, work);
   return y;
 }
 

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "suite/harness/quantities.h"
-
 namespace physinv {
 namespace {
 
@@ -71,11 +69,10 @@ Case declared_case(const std::shared_ptr<const Experiment>& e,
   c.info.n = n;
   c.info.seed = seed;
   c.info.about.problem = e->problem.name;
-  if (const Quantities* q = find_quantities(e->problem.name)) {
-    c.info.about.unknowns = q->unknowns;
-    c.info.about.observations = q->observations;
-    c.info.about.given = q->given;
-  }
+  const Quantities& of = e->problem.quantities;
+  c.info.about.unknowns = {of.unknowns.names, of.unknowns.unit};
+  c.info.about.observations = {of.observations.names, of.observations.unit};
+  c.info.about.given = {of.given.names, of.given.unit};
   c.info.precision = has_precision(method) ? row.precision : Precision::f64;
   for (const auto& stage : method.chain) {
     c.info.stages.push_back(stage->name());

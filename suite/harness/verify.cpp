@@ -25,7 +25,7 @@ double loss_of(const Problem<double>& problem,
   Vector<double> loss(1);
   Batch<double> given(data.given.rows(), 1);
   if (given.rows() > 0) given = data.given.col(i);
-  problem.forward(x.col(i), given, y, work);
+  problem.forward({x.col(i), given}, y, work);
   problem.loss(y, data.y.col(i), loss);
   return loss(0);
 }

@@ -29,7 +29,6 @@ void register_alone(const CaseFolder& folder) {
   for (const CaseFolder& other : folders())
     if (other.path != folder.path)
       for (const std::string& name : other.experiments) others.push_back(name);
-  name_quantities();
   name_elsewhere(std::move(others));
   folder.add(registry());
 }

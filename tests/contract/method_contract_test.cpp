@@ -82,8 +82,7 @@ std::string cell_name(const testing::TestParamInfo<Cell>& info) {
 ExperimentPtr brief(const ExperimentPtr& experiment) {
   if (experiment->problem.name != "navier_stokes") return experiment;
   Experiment shorter = *experiment;
-  shorter.problem =
-      problem<NavierStokes>("navier_stokes", {.end_time = 8, .steps = 4});
+  shorter.problem = problems::navier_stokes({.end_time = 8, .steps = 4});
   return std::make_shared<const Experiment>(std::move(shorter));
 }
 

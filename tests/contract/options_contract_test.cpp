@@ -299,7 +299,7 @@ void diagnostics() {
     expect_distinct(
         name, options, [make](const auto& o) { return key(*make(o)); });
   };
-  const ProblemRecipe heat = problem<Heat>("heat");
+  const ProblemRecipe heat = problems::heat();
   distinct("GrowthOptions", GrowthOptions{.horizons = {{1, heat}}}, growth);
   distinct("StabilitySweepOptions",
            StabilitySweepOptions{.problems = {heat},

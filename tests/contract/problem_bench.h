@@ -21,7 +21,7 @@ struct ProblemBench {
 
   Batch<T> forward(const Batch<T>& x, const Batch<T>& given) {
     Batch<T> seen(problem->shape().observations, x.cols());
-    problem->forward(x, given, seen, work);
+    problem->forward({x, given}, seen, work);
     return seen;
   }
   /// Leaves y of the linearization in `y`.
@@ -30,7 +30,7 @@ struct ProblemBench {
                 const Batch<T>& y_bar) {
     y.resize(problem->shape().observations, x.cols());
     Batch<T> x_bar(problem->shape().unknowns, x.cols());
-    vjp->linearize(x, given, y, tape);
+    vjp->linearize({x, given}, y, tape);
     vjp->pullback(tape, y_bar, x_bar, work);
     return x_bar;
   }

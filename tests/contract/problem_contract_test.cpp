@@ -61,7 +61,8 @@ TEST_P(ProblemContract, ShapesAndAbilitiesAreAsDeclared) {
     EXPECT_EQ(dynamic_cast<Jvp<T>*>(p.get()) != nullptr, provides(Needs::jvp));
     EXPECT_EQ(dynamic_cast<PullbackTangent<T>*>(p.get()) != nullptr,
               provides(Needs::pullback_tangent));
-    for (const auto& set : {p->sample(0, 5, rng_), labelled(5)}) {
+    for (const auto& set :
+         {recipe().make<double>()->sample(0, 5, rng_), labelled(5)}) {
       EXPECT_EQ(set.y.rows(), s.observations);
       EXPECT_EQ(set.given.rows(), s.given);
       EXPECT_EQ(set.y.cols(), 5);
@@ -97,17 +98,14 @@ TEST_P(ProblemContract, SamplesRepeatAndSmallSetsArePrefixes) {
         EXPECT_TRUE(same_bits(cut(all.given), part.given));
       };
   const auto d = recipe().make<double>();
-  const auto f = recipe().make<float>();
   const Rng other = Rng::root("problem_contract", 2);
   const auto all = d->sample(0, kCount, rng_);
   expect_part(all, d->sample(0, 4, rng_), 0);
   expect_part(all, d->sample(9, 11, rng_), 9);
-  expect_part(all, f->sample(0, kCount, rng_), 0);
   EXPECT_NE(content_hash(all), content_hash(d->sample(0, kCount, other)));
   const auto pairs = labelled();
   expect_part(pairs, d->sample_labelled(0, 4, rng_), 0);
   expect_part(pairs, d->sample_labelled(9, 11, rng_), 9);
-  expect_part(pairs, f->sample_labelled(0, kCount, rng_), 0);
 }
 
 TEST_P(ProblemContract, PullbackAgreesWithCentralDifferences) {
@@ -205,7 +203,8 @@ TEST_P(ProblemContract, PullbackTangentAgreesWithCentralDifferences) {
   const Batch<double> y_bar_dot = directions<double>(l.y.rows(), 24, 1.3);
   Batch<double> x_bar_dot(l.x.rows(), 24);
   b.pull(l.x, l.given, y_bar);
-  tangent.pullback_tangent(b.tape, x_dot, y_bar, y_bar_dot, x_bar_dot, b.work);
+  tangent.pullback_tangent(
+      b.tape, {x_dot, y_bar, y_bar_dot}, x_bar_dot, b.work);
   Index checked = 0;
   for (Index i = 0; i < 24; ++i) {
     const Batch<double> given = l.given.col(i);
@@ -234,7 +233,7 @@ TEST_P(ProblemContract, JacobianAgreesWithPullback) {
     const auto l = labelled().template cast<T>();
     const Index m = l.y.rows(), d = l.x.rows();
     Batch<T> j(m * d, kCount);
-    b.jac->jacobian(l.x, l.given, j, b.work);
+    b.jac->jacobian({l.x, l.given}, j, b.work);
     const Batch<T> y_bar = directions<T>(m, kCount, 0.4);
     const Batch<T> x_bar = b.pull(l.x, l.given, y_bar);
     for (Index i = 0; i < kCount; ++i) {
@@ -254,7 +253,7 @@ TEST_P(ProblemContract, HessianIsSymmetricAndTheGradientsDerivative) {
   const Index d = l.x.rows();
   Batch<double> h(d * d, 12);
   dynamic_cast<const Hessian<double>&>(*b.problem)
-      .hessian(l.x, l.given, target, h, b.work);
+      .hessian({l.x, l.given}, target, h, b.work);
   for (Index i = 0; i < 12; ++i) {
     const Batch<double> given = l.given.col(i);
     const auto gradient = [&](const Vector<double>& x) {
@@ -285,7 +284,7 @@ TEST_P(ProblemContract, InverseLowersTheLossAndColumnsAreIndependent) {
     if (recipe().name == "marker_flow")
       guess.colwise() = b.problem->start().template cast<T>();
     Batch<T> x(l.x.rows(), kCount), one(l.x.rows(), 1);
-    inverse.invert(l.y, l.given, guess, x, b.work);
+    inverse.invert({guess, l.given}, l.y, x, b.work);
     Vector<double> before(kCount), after(kCount);
     b.problem->loss(b.forward(guess, l.given), l.y, before);
     // Near an extremum of a sine as flat as the line the limit lets a step
@@ -295,7 +294,7 @@ TEST_P(ProblemContract, InverseLowersTheLossAndColumnsAreIndependent) {
     b.problem->loss(b.forward(there, l.given), l.y, after);
     for (Index i = 0; i < kCount; ++i) {
       EXPECT_LT(after(i), before(i)) << "sample " << i;
-      inverse.invert(l.y.col(i), l.given.col(i), guess.col(i), one, b.work);
+      inverse.invert({guess.col(i), l.given.col(i)}, l.y.col(i), one, b.work);
       EXPECT_TRUE(same_bits(one, Batch<T>(x.col(i))));
     }
   });

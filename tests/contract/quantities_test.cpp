@@ -1,6 +1,4 @@
 // Names of what stands in the columns of problems' arrays, against the shapes.
-#include "suite/harness/quantities.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +13,7 @@ Index listed(const std::string& text) {
 }
 
 /// A field, u(i, j), stands for any number of columns.
-bool fits(const Meaning& meaning, Index columns) {
+bool fits(const Quantities::Array& meaning, Index columns) {
   const bool field = meaning.names.find('(') != std::string::npos;
   return field ? columns > 0
                : listed(meaning.names) == columns &&
@@ -25,12 +23,11 @@ bool fits(const Meaning& meaning, Index columns) {
 
 TEST(Quantities, NameEveryColumnOfEveryProblem) {
   for (const auto& e : registry().experiments()) {
-    const Quantities* q = find_quantities(e->problem.name);
-    ASSERT_NE(q, nullptr) << e->problem.name;
+    const Quantities& q = e->problem.quantities;
     const Shape shape = e->problem.make<double>()->shape();
-    EXPECT_TRUE(fits(q->unknowns, shape.unknowns)) << e->name;
-    EXPECT_TRUE(fits(q->observations, shape.observations)) << e->name;
-    EXPECT_TRUE(fits(q->given, shape.given)) << e->name;
+    EXPECT_TRUE(fits(q.unknowns, shape.unknowns)) << e->name;
+    EXPECT_TRUE(fits(q.observations, shape.observations)) << e->name;
+    EXPECT_TRUE(fits(q.given, shape.given)) << e->name;
   }
 }
 
@@ -39,10 +36,6 @@ TEST(Quantities, StandInEveryCase) {
     EXPECT_EQ(c.info.about.problem, c.experiment->problem.name);
     EXPECT_FALSE(c.info.about.unknowns.names.empty()) << c.info.name;
   }
-}
-
-TEST(Quantities, OfNobodyAreNone) {
-  EXPECT_EQ(find_quantities("no such problem"), nullptr);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "optimizers/jpo.h"
 #include "optimizers/network_model.h"
 #include "problems/billiards/billiards.h"
+#include "suite/core/any_problem.h"
 #include "suite/core/oracle.h"
 #include "suite/nn/mlp.h"
 #include "tests/support/bits.h"
@@ -23,7 +24,7 @@ namespace {
 
 constexpr Index kCount = 61;
 
-ProblemRecipe billiards() { return problem<Billiards>("billiards"); }
+ProblemRecipe billiards() { return problems::billiards(); }
 
 Oracle make_oracle(Needs needs = Needs::forward | Needs::vjp) {
   return Oracle(billiards(), kCount, Rng::root("skip_test", 1), needs);
@@ -56,7 +57,7 @@ TEST(Skip, GradientsOfMisses) {
   EXPECT_TRUE(same_bits(Batch<double>(all(Eigen::all, hit)), of_hits));
 
   // Without the skip: the transposed Jacobian of every sample.
-  const Billiards<double> problem;
+  const AnyProblem<double> problem(problems::billiards());
   Workspace work;
   Batch<double> y(2, kCount), j(4, kCount);
   problem.forward(x, oracle.given(), y, work);
@@ -76,7 +77,7 @@ TEST(Skip, GradientsOfMisses) {
 TEST(Skip, MotionNobodyObserves) {
   Oracle oracle = make_oracle();
   const auto hit = hits(oracle.given());
-  const Billiards<double> problem;
+  const AnyProblem<double> problem(problems::billiards());
   Workspace work;
   Batch<double> y(2, kCount);
   problem.forward(oracle.start(), oracle.given(), y, work);

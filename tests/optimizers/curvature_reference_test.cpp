@@ -59,10 +59,8 @@ class ListedPoisson final : public LinearProblem<T> {
     const Batch<double> y = y_.middleCols(first, count);
     return {y, y, Batch<double>(0, count)};
   }
-  void forward(BatchIn<T> x,
-               BatchIn<T>,
-               BatchOut<T> y,
-               Workspace&) const override {
+  void forward(Point<T> at, BatchOut<T> y, Workspace&) const override {
+    const auto& x = at.x;
     for (Index i = 0; i < x.cols(); ++i) {
       // A column of the field is a row of cells.
       Batch<double> field = x.col(i).template cast<double>().reshaped(
@@ -72,18 +70,15 @@ class ListedPoisson final : public LinearProblem<T> {
       y.col(i) = field.reshaped().template cast<T>();
     }
   }
-  void linearize(BatchIn<T> x,
-                 BatchIn<T> given,
-                 BatchOut<T> y,
-                 Tape&) const override {
+  void linearize(Point<T> at, BatchOut<T> y, Tape&) const override {
     Workspace none;
-    forward(x, given, y, none);
+    forward(at, y, none);
   }
   void pullback(const Tape&,
                 BatchIn<T> y_bar,
                 BatchOut<T> x_bar,
                 Workspace& work) const override {
-    forward(y_bar, y_bar.topRows(0), x_bar, work);
+    forward({y_bar, y_bar.topRows(0)}, x_bar, work);
   }
   double operations() const override { return 1; }
 

@@ -28,11 +28,8 @@ constexpr AdaHessianOptions kAdaHessian{.rate = 1e-2};
 constexpr HessianFreeOptions kHessianFree{.solver = {.iterations = 20}};
 
 StageBench bench_of(const Stage& stage, Index updates) {
-  return StageBench(stage,
-                    16,
-                    updates,
-                    problem<Exponential>("exponential"),
-                    smooth_setting());
+  return StageBench(
+      stage, 16, updates, problems::exponential(), smooth_setting());
 }
 
 TEST(CurvatureRules, Learn) {

@@ -91,11 +91,11 @@ At::At(const Learner& l,
   g.resizeLike(y), loss.resize(n);
   jacobian.resize(y.rows() * x.rows(), n);
   net.forward(theta, Vector<double>(), in, x, tape, work, {.training = true});
-  l.problem->forward(x, given, y, work);
+  l.problem->forward({x, given}, y, work);
   l.problem->loss(y, target, loss);
   l.problem->loss_gradient(y, target, g);
   dynamic_cast<const Jacobian<double>&>(*l.problem)
-      .jacobian(x, given, jacobian, work);
+      .jacobian({x, given}, jacobian, work);
   mean_gradient = g / static_cast<double>(n);
   g *= l.factor(n);
   if (auto* p =
@@ -142,9 +142,10 @@ Vector<double> At::update_in_float(
   Workspace work1;
   net.forward(
       weights, Vector<float>(), in1, x1, tape1, work1, {.training = true});
-  solver.forward(x1, given1, y1, work1);
+  solver.forward({x1, given1}, y1, work1);
   solver.loss_gradient(y1, target.cast<float>(), g1);
-  dynamic_cast<const Jacobian<float>&>(solver).jacobian(x1, given1, j1, work1);
+  dynamic_cast<const Jacobian<float>&>(solver).jacobian(
+      {x1, given1}, j1, work1);
   g1 *= static_cast<float>(learner.factor(x.cols()));
   if (auto* p = dynamic_cast<const GradientProjection<float>*>(&solver))
     p->project(y1, g1);

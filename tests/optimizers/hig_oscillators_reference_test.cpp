@@ -11,8 +11,8 @@ namespace physinv::test {
 namespace {
 
 Learner oscillators() {
-  return {.problem = std::make_unique<Oscillators<double>>(),
-          .single = std::make_unique<Oscillators<float>>(),
+  return {.problem = problems::oscillators().make<double>(),
+          .single = problems::oscillators().make<float>(),
           .network = {{4, 20, 20, 20, 96}, nn::Activation::relu},
           .factor = [](Index b) { return 1.0 / static_cast<double>(b); },
           .given_is_target = true};

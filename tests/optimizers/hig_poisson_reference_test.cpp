@@ -9,8 +9,8 @@ namespace physinv::test {
 namespace {
 
 Learner poisson() {
-  return {.problem = std::make_unique<GridPoisson<double>>(),
-          .single = std::make_unique<GridPoisson<float>>(),
+  return {.problem = problems::grid_poisson().make<double>(),
+          .single = problems::grid_poisson().make<float>(),
           .network = {{64, 64, 256, 64, 64}, nn::Activation::tanh},
           .factor = [](Index) { return 1.0; }};
 }

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "problems/quantum_dipole/quantum_dipole.h"
+#include "suite/core/any_problem.h"
 #include "tests/optimizers/hig_learner.h"
 
 namespace physinv::test {
@@ -16,8 +17,8 @@ Learner quantum(const std::string& network) {
   if (network != "fc" && network != "cnn")
     throw std::runtime_error("no test has the network " + network);
   return {
-      .problem = std::make_unique<QuantumDipole<double>>(),
-      .single = std::make_unique<QuantumDipole<float>>(),
+      .problem = problems::quantum_dipole().make<double>(),
+      .single = problems::quantum_dipole().make<float>(),
       .network =
           network == "fc"
               ? Ordered({28, 20, 20, 20, 384}, nn::Activation::tanh)
@@ -47,11 +48,10 @@ void check_quantum_batch(const Json& entry) {
   EXPECT_TRUE(same(at.loss, flat(out.at("loss_each"))));
   // Before the projection.
   EXPECT_TRUE(same(at.mean_gradient.reshaped(), flat(out.at("g"))));
-  const QuantumDipole<double> box;
   Vector<double> level(target.cols());
-  box.level_loss(2, at.y, target, level);
+  quantum_level_loss<double>(2, at.y, target, level);
   EXPECT_TRUE(same(level.mean(), number(out.at("low_energy_loss"))));
-  box.level_loss(3, at.y, target, level);
+  quantum_level_loss<double>(3, at.y, target, level);
   EXPECT_TRUE(same(level.mean(), number(out.at("high_energy_loss"))));
 }
 
@@ -61,7 +61,7 @@ void check_direct(const Json& entry) {
   const Json in = entry.at("input"), out = entry.at("expected");
   const auto same = HigTolerance(entry).array();
   Batch<double> x = flat(in.at("u0"));
-  const QuantumDipole<double> box({.steps = x.rows()});
+  const AnyProblem<double> box(problems::quantum_dipole({.steps = x.rows()}));
   const Index m = box.shape().observations;
   const Batch<double> target = flat(in.at("target"), m);
   Batch<double> y(m, 1), g(m, 1), s(m * x.rows(), 1);

@@ -9,6 +9,7 @@
 
 #include "optimizers/steps/rule.h"
 #include "problems/scaled_output/scaled_output.h"
+#include "suite/core/any_problem.h"
 #include "suite/nn/mlp.h"
 #include "tests/optimizers/hig_learner.h"
 #include "tests/support/singular_values.h"
@@ -18,10 +19,10 @@ namespace {
 
 Learner toy(double gamma, double grad_scale = 2) {
   return {
-      .problem = std::make_unique<ScaledOutput<double>>(
-          ScaledOutputOptions{.gamma = gamma}),
-      .single = std::make_unique<ScaledOutput<float>>(
-          ScaledOutputOptions{.gamma = gamma}),
+      .problem = problems::scaled_output(ScaledOutputOptions{.gamma = gamma})
+                     .make<double>(),
+      .single = problems::scaled_output(ScaledOutputOptions{.gamma = gamma})
+                    .make<float>(),
       .network = {{1, 7, 2}, nn::Activation::tanh},
       .factor = [=](Index b) { return grad_scale / static_cast<double>(b); },
       .input_is_given = true};
@@ -77,7 +78,8 @@ void check_toy_forward(const Json& entry) {
   // In float, as far as float goes.
   const auto net = nn::mlp({.hidden = {7}, .activation = nn::Activation::tanh})
                        .make<float>(1, 2);
-  const ScaledOutput<float> problem({.gamma = in.at("gamma")});
+  const AnyProblem<float> problem(
+      problems::scaled_output({.gamma = in.at("gamma")}));
   const Vector<float> theta =
       l.network.ours(flat(in.at("theta"), 30)).cast<float>();
   Batch<float> y(2, x.cols()), z(2, x.cols()), bar(2, x.cols());

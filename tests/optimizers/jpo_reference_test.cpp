@@ -16,7 +16,7 @@ void check_in(const Json& entry, Precision precision) {
   const auto target = BilliardsOptions{}.target;
   Samples<double> s{{}, Batch<double>(2, balls.cols()), balls};
   s.y.colwise() = Eigen::Vector2d(target[0], target[1]);
-  expect_jpo<Billiards>(
+  expect_jpo(
       kId,
       entry,
       {.inputs = {Field::given, Field::observations},
@@ -24,6 +24,7 @@ void check_in(const Json& entry, Precision precision) {
                            .frequencies = sizes.front() / 8}),
        .rate = 1e-4,
        .last_matrix = 0.05},
+      problems::billiards(),
       s,
       precision);
 }

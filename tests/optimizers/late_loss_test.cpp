@@ -10,8 +10,7 @@ namespace physinv::test {
 namespace {
 
 TEST(LateLoss, IsTheMeanOfTheProblemsOwn) {
-  const LateError late =
-      late_loss(problem<Exponential>("exponential", {}), 0.5);
+  const LateError late = late_loss(problems::exponential(), 0.5);
   EXPECT_EQ(late.name, "loss");
   EXPECT_EQ(late.share, 0.5);
   Batch<double> x(1, 2), y(1, 2);

@@ -24,62 +24,6 @@ AimedOptions squared(double x1, double x2) {
   return {.scaling = {.power = 2, .start = {x1, x2}}};
 }
 
-/// The same physics without closed steps.
-template <class T>
-class Open final : public Problem<T>,
-                   public Vjp<T>,
-                   public Jacobian<T>,
-                   public Hessian<T> {
- public:
-  using Options = AimedOptions;
-  explicit Open(const Options& options = {}) : p_(options) {}
-  Shape shape() const override { return p_.shape(); }
-  Vector<double> start() const override { return p_.start(); }
-  Samples<double> sample(Index a, Index n, const Rng& r) const override {
-    return p_.sample(a, n, r);
-  }
-  void forward(BatchIn<T> x,
-               BatchIn<T> given,
-               BatchOut<T> y,
-               Workspace& work) const override {
-    p_.forward(x, given, y, work);
-  }
-  void linearize(BatchIn<T> x,
-                 BatchIn<T> given,
-                 BatchOut<T> y,
-                 Tape& tape) const override {
-    p_.linearize(x, given, y, tape);
-  }
-  void pullback(const Tape& tape,
-                BatchIn<T> y_bar,
-                BatchOut<T> x_bar,
-                Workspace& work) const override {
-    p_.pullback(tape, y_bar, x_bar, work);
-  }
-  void jacobian(BatchIn<T> x,
-                BatchIn<T> given,
-                BatchOut<T> j,
-                Workspace& work) const override {
-    p_.jacobian(x, given, j, work);
-  }
-  void hessian(BatchIn<T> x,
-               BatchIn<T> given,
-               BatchIn<T> target,
-               BatchOut<T> h,
-               Workspace& work) const override {
-    p_.hessian(x, given, target, h, work);
-  }
-  void loss_gradient(BatchIn<T> y,
-                     BatchIn<T> target,
-                     BatchOut<T> y_bar) const override {
-    p_.loss_gradient(y, target, y_bar);
-  }
-  double operations() const override { return 2; }
-
- private:
-  Aimed<T> p_;
-};
-
 TEST(LocalSteps, ClosedStepsAreThoseOfTheMatrices) {
   for (const int power : {1, 2})
     for (const double goal : {0.0, 0.7})
@@ -129,7 +73,7 @@ TEST(LocalSteps, ScalesBeyondTheRootOfTheRange) {
 }
 
 TEST(LocalSteps, WhatOverflowsHasDivergedAndStaysFinite) {
-  const auto run = run_steps(problem<Scaling>("scaling", {.scales = {1e6, 1}}),
+  const auto run = run_steps(problems::scaling({.scales = {1e6, 1}}),
                              {.step = kGradient, .rate = 0.03},
                              60,
                              Precision::f64,
@@ -140,7 +84,7 @@ TEST(LocalSteps, WhatOverflowsHasDivergedAndStaysFinite) {
   EXPECT_EQ(run.out.iterations(1), 60);
   EXPECT_EQ(run.out.stop, Stop::iterations);
   EXPECT_TRUE(run.out.x.allFinite());
-  const auto alone = run_steps(problem<Scaling>("scaling", {.scales = {1e6}}),
+  const auto alone = run_steps(problems::scaling({.scales = {1e6}}),
                                {.step = kGradient, .rate = 0.03},
                                60);
   EXPECT_EQ(alone.out.stop, Stop::diverged);
@@ -149,7 +93,7 @@ TEST(LocalSteps, WhatOverflowsHasDivergedAndStaysFinite) {
 TEST(LocalSteps, PathsAreKeptWhereTheyAreAskedFor) {
   const auto rows = [](Index paths) {
     const auto stage = local_steps({.paths = paths});
-    StageBench bench(*stage, 3, 5, problem<Scaling>("scaling"));
+    StageBench bench(*stage, 3, 5, problems::scaling());
     const Outcome out = bench.run();
     const auto path = out.arrays.find("path");
     return path == out.arrays.end() ? 0 : path->second.rows();
@@ -258,8 +202,7 @@ TEST(LocalSteps, RefusesOptionsThatAreNoNumbers) {
     EXPECT_THROW(NumericInverse(counted_scaling(), bad), ContractError);
   // A rate that is 0 in float.
   EXPECT_THROW(
-      run_steps(
-          problem<Scaling>("scaling"), {.rate = 1e-60}, 1, Precision::f32),
+      run_steps(problems::scaling(), {.rate = 1e-60}, 1, Precision::f32),
       ContractError);
 }
 
@@ -300,7 +243,7 @@ void expect_flow_of_stages(double tolerance) {
       SCOPED_TRACE(testing::Message() << power << " " << int(step));
       const double rate = step == kGradient ? 0.003 : 0.3;
       const ScalingOptions o{.scales = {1}, .power = power, .start = {2, -1.5}};
-      const auto recipe = problem<Scaling>("scaling", o);
+      const auto recipe = problems::scaling(o);
       const auto run =
           run_steps(recipe,
                     {.step = step, .rate = rate},

@@ -8,6 +8,7 @@
 
 #include "optimizers/local_steps.h"
 #include "problems/scaling/scaling.h"
+#include "suite/core/any_problem.h"
 #include "tests/optimizers/scaling_support.h"
 #include "tests/support/reference.h"
 
@@ -113,7 +114,7 @@ void check_step(const Json& entry) {
   if (!holds<T>(in)) return;
   const Expect<T> expect(entry);
   const AimedOptions options = problem_of(in, "x", in.value("alpha", 1.0));
-  const Aimed<T> problem(options);
+  const AnyProblem<T> problem(physinv::problem<Aimed>("scaling", options));
   const auto data = problem.sample(0, 1, Rng::root("", 0)).template cast<T>();
   const Batch<T> x = problem.start().template cast<T>();
   Batch<T> y(2, 1), y_bar(2, 1), g(2, 1), m(4, 1);
@@ -216,7 +217,7 @@ void check_local_inverse(const Json& entry) {
   if (!holds<T>(in)) return;
   const Vector<double> y = vector(in.at("y")),
                        x0 = vector(in.at("x0"), y.size());
-  const Scaling<T> problem({.power = 2});
+  const AnyProblem<T> problem(problems::scaling({.power = 2}));
   Batch<T> at(2, y.size()), guess(2, y.size()), x(2, y.size());
   at << y.transpose().cast<T>(), y.transpose().cast<T>();
   guess << x0.transpose().cast<T>(), x0.transpose().cast<T>();
@@ -234,7 +235,7 @@ void check_linear_loss(const Json& entry) {
   const Expect<T> expect(entry);
   const Vector<double> alphas = vector(in.at("alpha"));
   const T eta = in.at("eta"), wanted = in.at("delta_loss");
-  const Scaling<T> problem;
+  const AnyProblem<T> problem(problems::scaling());
   const Index n = alphas.size();
   const Batch<T> given = alphas.transpose().cast<T>();
   const Batch<T> zero = Batch<T>::Zero(2, n);

@@ -5,6 +5,7 @@
 
 #include "optimizers/local_steps.h"
 #include "problems/scaling/scaling.h"
+#include "tests/support/listed.h"
 #include "tests/support/quadratic.h"
 
 namespace physinv::test {
@@ -17,28 +18,47 @@ struct AimedOptions {
   }
 };
 
+/// Without the closed steps.
 template <class T>
-class Aimed final : public Scaling<T> {
+class Open : public Listed<T> {
  public:
   using Options = AimedOptions;
-  explicit Aimed(const Options& options = {})
-      : Scaling<T>(options.scaling), target_(options.target) {}
+  explicit Open(const Options& options = {})
+      : Listed<T>(problems::scaling(options.scaling), {}), options_(options) {}
 
   Samples<double> sample(Index first,
                          Index count,
                          const Rng& rng) const override {
-    Samples<double> s = Scaling<T>::sample(first, count, rng);
-    s.y.colwise() = Eigen::Vector2d(target_[0], target_[1]);
+    const auto scaling = problems::scaling(options_.scaling).make<double>();
+    Samples<double> s = scaling->sample(first, count, rng);
+    s.y.colwise() = Eigen::Vector2d(options_.target[0], options_.target[1]);
     return s;
   }
 
  private:
-  std::array<double, 2> target_;
+  AimedOptions options_;
+};
+
+template <class T>
+class Aimed final : public Open<T>, public ClosedSteps<T> {
+ public:
+  using Open<T>::Open;
+
+  void newton_step(Point<T> at,
+                   BatchIn<T> target,
+                   BatchOut<T> dx) const override {
+    this->of_.newton_step(at.x, at.given, target, dx);
+  }
+  void inverse_gradient_step(Point<T> at,
+                             BatchIn<T> target,
+                             BatchOut<T> dx) const override {
+    this->of_.inverse_gradient_step(at.x, at.given, target, dx);
+  }
 };
 
 inline CountedProblem<double> counted_scaling(
     const ScalingOptions& options = {}) {
-  return {std::make_unique<Scaling<double>>(options),
+  return {problems::scaling(options).make<double>(),
           Needs::forward | Needs::vjp};
 }
 

@@ -11,6 +11,7 @@
 #include "problems/exponential/exponential.h"
 #include "suite/core/math.h"
 #include "suite/nn/mlp.h"
+#include "tests/support/listed.h"
 #include "tests/support/quadratic.h"
 #include "tests/support/reference.h"
 
@@ -19,30 +20,15 @@ namespace {
 
 const std::string kId = "sip-exp";
 
-struct ListedOptions {
-  std::vector<double> x;
-};
-Options describe(const ListedOptions&) { return {}; }
-
-/// The exponential on a list of samples, whatever set is asked for.
-template <class T>
-class Listed final : public Exponential<T> {
- public:
-  using Options = ListedOptions;
-  explicit Listed(const Options& options = {}) : x_(options.x) {}
-
-  Samples<double> sample(Index first, Index count, const Rng&) const override {
-    Samples<double> s{Batch<double>(1, count), {}, {}};
-    s.given.resize(0, count);
-    for (Index i = 0; i < count; ++i)
-      s.x(0, i) = x_.at(static_cast<std::size_t>(first + i));
-    s.y = s.x.unaryExpr([](double v) { return std::exp(v); });
-    return s;
-  }
-
- private:
-  std::vector<double> x_;
-};
+/// The exponential on a list of unknowns.
+ProblemRecipe listed_exponential(const std::vector<double>& x_star) {
+  const auto n = static_cast<Index>(x_star.size());
+  const Batch<double> x = Eigen::Map<const Batch<double>>(x_star.data(), 1, n);
+  return with_samples(problems::exponential(),
+                      {x,
+                       x.unaryExpr([](double v) { return std::exp(v); }),
+                       Batch<double>(0, n)});
+}
 
 Setting setting_of_network() {
   const auto net =
@@ -85,7 +71,7 @@ Outcome run(const Json& rule, const Run& r) {
   StageBench bench(*stage,
                    static_cast<Index>(r.samples.size()),
                    r.updates,
-                   problem<Listed>("exponential", {r.samples}),
+                   listed_exponential(r.samples),
                    setting_of_network());
   Outcome before;
   before.arrays["parameters"] = weights(rule);
@@ -119,7 +105,7 @@ void check_weights(const Json& entry) {
 template <class T>
 struct Adjoints {
   Adjoints(const Batch<T>& x, const Batch<T>& y) {
-    const Exponential<T> problem;
+    const AnyProblem<T> problem(problems::exponential());
     Workspace work;
     Tape tape;
     const Batch<T> given(0, x.cols());
@@ -142,7 +128,7 @@ Batch<double> newton_adjoints(const Batch<double>& x,
                               const Batch<double>& y,
                               const Batch<double>& gradient,
                               const NewtonOptions& options) {
-  const Exponential<double> problem;
+  const AnyProblem<double> problem(problems::exponential());
   Workspace work;
   Batch<double> h(x), adjoint(x);
   problem.hessian(x, Batch<double>(0, x.cols()), y, h, work);
@@ -295,7 +281,7 @@ TEST(SipExp, SignsOfTheDistanceAreThoseOfTheSlope) {
 }
 
 TEST(Proxy, ASolvedSampleIsNotPushedAndCallsAreCounted) {
-  const Exponential<float> problem;
+  const AnyProblem<float> problem(problems::exponential());
   Workspace work;
   Batch<float> x = Batch<float>::Constant(1, 3, -2.3F), y(1, 3), given(0, 3);
   problem.forward(x, given, y, work);
@@ -307,11 +293,7 @@ TEST(Proxy, ASolvedSampleIsNotPushedAndCallsAreCounted) {
                             .batch = 4,
                             .signal = inverse_proxy()});
   EXPECT_EQ(stage->needs(), Needs::forward | Needs::inverse);
-  StageBench bench(*stage,
-                   8,
-                   5,
-                   physinv::problem<Exponential>("exponential"),
-                   setting_of_network());
+  StageBench bench(*stage, 8, 5, problems::exponential(), setting_of_network());
   bench.run();
   EXPECT_EQ(bench.oracle.counts()[Counter::inverse], 20U);
   EXPECT_EQ(bench.oracle.counts()[Counter::vjp], 0U);
@@ -341,11 +323,8 @@ TEST(Newton, StepsAlongEigenvectors) {
 
 /// Of 16 examples, after so many updates of a network.
 double error_after_60(const Stage& stage) {
-  StageBench bench(stage,
-                   16,
-                   60,
-                   physinv::problem<Exponential>("exponential"),
-                   setting_of_network());
+  StageBench bench(
+      stage, 16, 60, problems::exponential(), setting_of_network());
   const Outcome out = bench.run();
   return (out.x - bench.oracle.data().x).cwiseAbs().mean();
 }

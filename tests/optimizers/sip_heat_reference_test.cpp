@@ -10,6 +10,7 @@
 #include "problems/heat/heat.h"
 #include "suite/nn/unet.h"
 #include "tests/support/bits.h"
+#include "tests/support/listed.h"
 #include "tests/support/quadratic.h"
 #include "tests/support/reference.h"
 
@@ -17,11 +18,6 @@ namespace physinv::test {
 namespace {
 
 const std::string kHeatId = "sip-heat";
-
-struct ObservedOptions {
-  Batch<double> y;  ///< square fields
-};
-Options describe(const ObservedOptions&) { return {}; }
 
 Index side_of(const Batch<double>& y) {
   const auto side = Index(std::lround(std::sqrt(double(y.rows()))));
@@ -31,22 +27,11 @@ Index side_of(const Batch<double>& y) {
   return side;
 }
 
-/// Heat on a list of observations, whatever set is asked for.
-template <class T>
-class Observed final : public Heat<T> {
- public:
-  using Options = ObservedOptions;
-  explicit Observed(const Options& options = {})
-      : Heat<T>({.resolution = side_of(options.y)}), y_(options.y) {}
-
-  Samples<double> sample(Index first, Index count, const Rng&) const override {
-    const Batch<double> y = y_.middleCols(first, count);
-    return {y, y, Batch<double>(0, count)};
-  }
-
- private:
-  Batch<double> y_;
-};
+/// Heat on a list of observations.
+ProblemRecipe observed(const Batch<double>& y) {
+  return with_samples(problems::heat({.resolution = side_of(y)}),
+                      {y, y, Batch<double>(0, y.cols())});
+}
 
 Setting heat_setting(Index side) {
   const auto net = nn::unet({.grid = {side, side},
@@ -85,11 +70,8 @@ Outcome train_on(const Json& rule,
              .signal = sip ? inverse_proxy(ProxyNorm::square,
                                            ProxyPrecision::in_double)
                            : solver_loss()});
-  StageBench bench(*stage,
-                   y.cols(),
-                   updates,
-                   problem<Observed>("heat", {y}),
-                   heat_setting(side_of(y)));
+  StageBench bench(
+      *stage, y.cols(), updates, observed(y), heat_setting(side_of(y)));
   Outcome before;
   before.arrays["parameters"] = heat_weights(rule);
   before.arrays["state"] = Batch<double>(0, 1);
@@ -197,11 +179,8 @@ TEST(Proxy, InDoubleIsTheSameForNetworksInDouble) {
         train({.rule = SgdOptions{.rate = 1e-3},
                .batch = 1,
                .signal = inverse_proxy(ProxyNorm::square, precision)});
-    StageBench bench(*stage,
-                     y.cols(),
-                     4,
-                     problem<Observed>("heat", {y}),
-                     heat_setting(side_of(y)));
+    StageBench bench(
+        *stage, y.cols(), 4, observed(y), heat_setting(side_of(y)));
     return Batch<double>(bench.run().arrays.at("parameters"));
   };
   EXPECT_TRUE(same_bits(after(ProxyPrecision::of_network),

@@ -9,6 +9,7 @@
 #include "optimizers/training/proxy.h"
 #include "problems/poisson/poisson.h"
 #include "suite/nn/unet.h"
+#include "tests/support/listed.h"
 #include "tests/support/quadratic.h"
 #include "tests/support/reference.h"
 
@@ -28,9 +29,7 @@ void check_spectrum(const Json& entry) {
   const Json values = entry.at("expected").at("values");
   ASSERT_EQ(grids.size(), values.size());
   for (std::size_t g = 0; g < grids.size(); ++g) {
-    const Poisson<double> problem(
-        {.rows = grids[g][0], .columns = grids[g][1]});
-    const auto size = -problem.eigenvalues().array();
+    const auto size = -poisson_eigenvalues(grids[g][0], grids[g][1]).array();
     const double squared = 1 / std::pow(size.minCoeff(), 2);
     const Vector<double> found =
         Eigen::Vector4d(size.minCoeff(), size.maxCoeff(), squared, 2 / squared);
@@ -47,7 +46,7 @@ void check_small(const Json& entry) {
   const auto p = Index(in.at("x").size()), q = Index(in.at("x").front().size());
   const Batch<T> x = field(in.at("x")).cast<T>(),
                  truth = field(in.at("x_star"), p, q).cast<T>(), none(0, 1);
-  const Poisson<T> problem({.rows = p, .columns = q});
+  const AnyProblem<T> problem(problems::poisson({.rows = p, .columns = q}));
   Batch<T> y(x), target(x), y_bar(x), gradient(x), found(x);
   Vector<double> loss(1);
   Workspace work;
@@ -85,7 +84,7 @@ void check_large(const Json& entry) {
   const Batch<T> x = Batch<T>::NullaryExpr(
       p * q, 1, [&](Index k, Index) { return static_cast<T>(u(k)); });
   const Batch<T> none(0, 1);
-  const Poisson<T> problem({.rows = p, .columns = q});
+  const AnyProblem<T> problem(problems::poisson({.rows = p, .columns = q}));
   Batch<T> y(x), gradient(x);
   Workspace work;
   Tape tape;
@@ -120,27 +119,6 @@ void check_noise(const Json& entry) {
 }
 
 // ---- training ---------------------------------------------------------------
-
-struct ListedOfPoissonOptions {
-  Batch<double> y;
-  Index rows, columns;
-};
-Options describe(const ListedOfPoissonOptions&) { return {}; }
-
-template <class T>
-class ListedOfPoisson final : public Poisson<T> {
- public:
-  using Options = ListedOfPoissonOptions;
-  explicit ListedOfPoisson(const Options& o)
-      : Poisson<T>({.rows = o.rows, .columns = o.columns}), y_(o.y) {}
-  Samples<double> sample(Index first, Index count, const Rng&) const override {
-    const Batch<double> y = y_.middleCols(first, count);
-    return {y, y, Batch<double>(0, count)};
-  }
-
- private:
-  Batch<double> y_;
-};
 
 NetworkRecipe unet_on(Index rows, Index columns) {
   return nn::unet({.grid = {columns, rows},
@@ -190,7 +168,9 @@ Outcome run(const Json& rule, const Plane& plane, const PoissonRun& r) {
       *stage,
       n,
       r.updates,
-      problem<ListedOfPoisson>("poisson", {plane.y, plane.rows, plane.columns}),
+      with_samples(
+          problems::poisson({.rows = plane.rows, .columns = plane.columns}),
+          {plane.y, plane.y, Batch<double>(0, plane.y.cols())}),
       {.predictor = {{Field::observations}, unet_on(plane.rows, plane.columns)},
        .surrogate = {}});
   Outcome before;
@@ -291,9 +271,10 @@ TEST(SipPoissonReference, ProblemAndTraining) {
 // As the authors' float code: error of y, relative to its largest value.
 TEST(Poisson, ConjugateGradientsComeToTheExactSolution) {
   for (const Index columns : {32, 60}) {
-    const Poisson<double> exact({.rows = 32, .columns = columns});
-    const Poisson<double> iterated(
-        {.rows = 32, .columns = columns, .relative = 1e-5});
+    const AnyProblem<double> exact(
+        problems::poisson({.rows = 32, .columns = columns}));
+    const AnyProblem<double> iterated(
+        problems::poisson({.rows = 32, .columns = columns, .relative = 1e-5}));
     const auto drawn = exact.sample(0, 3, Rng::root("poisson", 0));
     Batch<double> y(drawn.y);
     Workspace work;
@@ -305,7 +286,8 @@ TEST(Poisson, ConjugateGradientsComeToTheExactSolution) {
 }
 
 TEST(Poisson, SourcesHaveNoMeanAndUnitVariance) {
-  const Poisson<double> problem({.rows = 20, .columns = 12});
+  const AnyProblem<double> problem(
+      problems::poisson({.rows = 20, .columns = 12}));
   const auto drawn = problem.sample(0, 5, Rng::root("poisson", 1));
   for (Index i = 0; i < 5; ++i) {
     EXPECT_NEAR(drawn.x.col(i).mean(), 0, 1e-13);

@@ -9,6 +9,7 @@
 #include "optimizers/training/proxy.h"
 #include "problems/sine_plane/sine_plane.h"
 #include "suite/nn/mlp.h"
+#include "tests/support/listed.h"
 #include "tests/support/quadratic.h"
 #include "tests/support/reference.h"
 
@@ -18,34 +19,18 @@ namespace {
 const std::string kId = "sip-sine";
 constexpr auto kBoth = {Precision::f64, Precision::f32};
 
-struct ListedSineOptions {
-  std::vector<Pair> y;
-  SinePlaneOptions sine;
-};
-Options describe(const ListedSineOptions&) { return {}; }
-
-/// The sine on a list of observations, whatever set is asked for.
-template <class T>
-class ListedSine final : public SinePlane<T> {
- public:
-  using Options = ListedSineOptions;
-  explicit ListedSine(const Options& options = {})
-      : SinePlane<T>(options.sine), y_(options.y) {}
-
-  Samples<double> sample(Index first, Index count, const Rng&) const override {
-    Samples<double> s{
-        Batch<double>::Zero(2, count), Batch<double>(2, count), {}};
-    s.given.resize(0, count);
-    for (Index i = 0; i < count; ++i) {
-      const Pair& y = y_.at(static_cast<std::size_t>(first + i));
-      s.y.col(i) << y[0], y[1];
-    }
-    return s;
+/// The sine on a list of observations.
+ProblemRecipe listed_sine(const std::vector<Pair>& pairs,
+                          const SinePlaneOptions& options) {
+  const auto n = static_cast<Index>(pairs.size());
+  Batch<double> y(2, n);
+  for (Index i = 0; i < n; ++i) {
+    const Pair& pair = pairs[static_cast<std::size_t>(i)];
+    y.col(i) << pair[0], pair[1];
   }
-
- private:
-  std::vector<Pair> y_;
-};
+  return with_samples(problems::sine_plane(options),
+                      {Batch<double>::Zero(2, n), y, Batch<double>(0, n)});
+}
 
 Setting sine_setting() {
   return {
@@ -84,7 +69,7 @@ void check_point_in(const Json& entry) {
   const auto same = std::is_same_v<T, double>
                         ? tolerance_of(entry, Precision::f64)
                         : Comparator(3e-3, 1e-5);  // u is up to 640 here
-  const SinePlane<T> problem(options);
+  const AnyProblem<T> problem(problems::sine_plane(options));
   const Batch<T> x = vector(in.at("x"), 2).cast<T>(),
                  target = vector(in.at("y_target"), 2).cast<T>(), given(0, 1);
   Batch<T> y(2, 1), y_bar(2, 1), gradient(2, 1), hessian(4, 1), found(2, 1);
@@ -142,11 +127,12 @@ void check_point(const Json& entry) {
   options.degrees = 0;
   Batch<double> straight(4, 1);
   Workspace work;
-  SinePlane<double>(options).hessian(w,
-                                     Batch<double>(0, 1),
-                                     Eigen::Vector2d(target[0], target[1]),
-                                     straight,
-                                     work);
+  AnyProblem<double>(problems::sine_plane(options))
+      .hessian(w,
+               Batch<double>(0, 1),
+               Eigen::Vector2d(target[0], target[1]),
+               straight,
+               work);
   EXPECT_TRUE(same(Eigen::Vector2d(std::min(straight(0), straight(3)),
                                    std::max(straight(0), straight(3)))
                        .eval(),
@@ -168,7 +154,7 @@ Outcome run(const Json& rule, const SineRun& r) {
   StageBench bench(*stage,
                    static_cast<Index>(r.samples.size()),
                    r.updates,
-                   problem<ListedSine>("sine_plane", {r.samples, r.problem}),
+                   listed_sine(r.samples, r.problem),
                    sine_setting());
   Outcome before;
   before.arrays["parameters"] = sine_weights(rule);
@@ -233,7 +219,7 @@ void check_gradient(const Json& entry) {
                                .batch = count,
                                .updates = 0})
                               .x;
-  const SinePlane<double> problem(options);
+  const AnyProblem<double> problem(problems::sine_plane(options));
   const Batch<double> target = columns(in.at("y")), given(0, count);
   Batch<double> y(2, count), adjoint(2, count);
   Workspace work;
@@ -332,7 +318,7 @@ TEST(SinePlane, StepsAreFiniteAndGoDown) {
       x = {std::cos(angle) * x[0] + std::sin(angle) * w,
            -std::sin(angle) * x[0] + std::cos(angle) * w};
     }
-    const SinePlane<double> problem(options);
+    const AnyProblem<double> problem(problems::sine_plane(options));
     const Batch<double> at = Eigen::Vector2d(x[0], x[1]),
                         target = Eigen::Vector2d(y[0], y[1]), none(0, 1);
     Batch<double> seen(2, 1), g(2, 1), h(4, 1);

@@ -11,6 +11,7 @@
 #include "optimizers/training.h"
 #include "problems/wave_packet/wave_packet.h"
 #include "suite/nn/pooled_cnn.h"
+#include "tests/support/listed.h"
 #include "tests/support/quadratic.h"
 #include "tests/support/reference.h"
 
@@ -82,7 +83,7 @@ template <class T>
 struct Packet {
   Packet(const Vector<double>& t0, const Batch<double>& target)
       : y(target.rows(), t0.size()), slope(1, t0.size()), loss(t0.size()) {
-    const WavePacket<T> packet(sine(target.rows()));
+    const AnyProblem<T> packet(problems::wave_packet(sine(target.rows())));
     const Batch<T> xi = (t0.array() - kCentre).matrix().transpose().cast<T>();
     const Batch<T> seen = target.cast<T>();
     Batch<T> y_bar(y), given = Batch<T>::Zero(y.rows(), y.cols());
@@ -226,28 +227,13 @@ void check_network(const Json& entry) {
                    vector(want.at("last_layer_gradient"))));
 }
 
-struct ListedPacketOptions {
-  Batch<double> y;
-};
-Options describe(const ListedPacketOptions&) { return {}; }
-
-/// These signals, whatever set is asked for.
-template <class T>
-class Listed final : public WavePacket<T> {
- public:
-  using Options = ListedPacketOptions;
-  explicit Listed(const Options& options)
-      : WavePacket<T>(sine(options.y.rows())), y_(options.y) {}
-
-  Samples<double> sample(Index first, Index count, const Rng&) const override {
-    return {Batch<double>::Zero(1, count),
-            y_.middleCols(first, count),
-            Batch<double>::Zero(y_.rows(), count)};
-  }
-
- private:
-  Batch<double> y_;
-};
+/// These signals.
+ProblemRecipe listed_packets(const Batch<double>& y) {
+  return with_samples(problems::wave_packet(sine(y.rows())),
+                      {Batch<double>::Zero(1, y.cols()),
+                       y,
+                       Batch<double>::Zero(y.rows(), y.cols())});
+}
 
 /// The network, weights and signals of another entry.
 Json start_of(const Json& entry) {
@@ -278,7 +264,7 @@ void check_packet_steps(const Json& entry) {
       StageBench bench(*stage,
                        y.cols(),
                        k + 1,
-                       problem<Listed>("wave_packet", {y}),
+                       listed_packets(y),
                        {.predictor = {{Field::observations}, net},
                         .output_scale = kHalfRange});
       Outcome before;

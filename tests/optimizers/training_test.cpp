@@ -61,7 +61,7 @@ void expect_gradient_descent(Index chunk) {
   for (int k = 0; k < 3; ++k) {
     const Batch<double> x = start + model.forward(input);
     Batch<double> y(2, kCount), x_bar(2, kCount);
-    problem.forward(x, data.given, y, work);
+    problem.forward({x, data.given}, y, work);
     problem.pullback(tape, (y - data.y) / kCount, x_bar, work);
     model.parameters() -= 0.1 * model.backward(x_bar);
   }

@@ -4,6 +4,7 @@
 
 #include "optimizers/training.h"
 #include "problems/sine_plane/sine_plane.h"
+#include "suite/core/any_problem.h"
 #include "suite/nn/mlp.h"
 #include "tests/support/bits.h"
 #include "tests/support/memory_checkpoint.h"
@@ -14,8 +15,7 @@ namespace {
 
 constexpr Index kCount = 12, kUpdates = 20;
 
-const ProblemRecipe kSine =
-    problem<SinePlane>("sine_plane", {.gamma = 2, .degrees = 30});
+const ProblemRecipe kSine = problems::sine_plane({.gamma = 2, .degrees = 30});
 const Setting kSetting = {
     .predictor = {{Field::observations}, nn::mlp({.hidden = {16, 16}})},
     .surrogate = {}};
@@ -80,7 +80,7 @@ TEST(UpdateCosine, IsThatOfTheMeans) {
   const Batch<double> before = model.forward(y);
   Batch<double> there(2, kCount);
   Workspace work;
-  SinePlane<double>({.gamma = 2, .degrees = 30})
+  AnyProblem<double>(problems::sine_plane({.gamma = 2, .degrees = 30}))
       .invert(y, Batch<double>(0, kCount), before, there, work);
   const Batch<double> dx = there - before;
   model.parameters() -= rate * model.backward(Batch<double>(-dx / kCount));

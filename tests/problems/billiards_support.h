@@ -4,6 +4,7 @@
 #include <array>
 
 #include "problems/billiards/billiards.h"
+#include "suite/core/any_problem.h"
 
 namespace physinv::test {
 
@@ -22,7 +23,7 @@ Result<T> evaluate(const Batch<T>& x,
                    const Batch<T>& given,
                    const Batch<T>* y_bar = nullptr,
                    const BilliardsOptions& options = {}) {
-  const Billiards<T> problem(options);
+  const AnyProblem<T> problem(problems::billiards(options));
   const Index n = x.cols();
   Result<T> r;
   r.y.resize(2, n), r.x_bar.resize(2, n), r.jacobian.resize(4, n);

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "problems/grid_poisson/grid_poisson.h"
+#include "suite/core/any_problem.h"
 #include "suite/linalg/decompositions.h"
 #include "tests/problems/physics_checks.h"
 #include "tests/support/hig_reference.h"
@@ -27,7 +28,7 @@ template <class T>
 void check_stencil(const Json& entry, const TwoNorm& same) {
   const Batch<T> f = cells_of(entry.at("input").at("f")).cast<T>(), given(0, 1);
   const Vector<double> laplace = flat(entry.at("expected").at("laplace"));
-  const GridPoisson<T> grid;
+  const AnyProblem<T> grid(problems::grid_poisson());
   Physics at(grid);
   EXPECT_TRUE(same(at.forward(f, given), laplace));
   at.linearize(f, given);
@@ -39,7 +40,7 @@ void check_stencil(const Json& entry, const TwoNorm& same) {
 void check_laplacian(const Json& entry) {
   check_stencil<double>(entry, HigTolerance(entry).array());
   check_stencil<float>(entry, {1e-6, 1e-6});
-  const GridPoisson<double> grid;
+  const AnyProblem<double> grid(problems::grid_poisson());
   Physics at(grid);
   const Batch<double> j =
       at.jacobian(Batch<double>::Zero(kPoissonCells, 1), Batch<double>(0, 1));
@@ -55,7 +56,7 @@ void check_sample(const Json& entry) {
       cells_of(entry.at("input").at("noise_im"));
   const Batch<double> phi = poisson_potential(noise);
   EXPECT_TRUE(same(phi, flat(entry.at("expected").at("phi"))));
-  const GridPoisson<double> grid;
+  const AnyProblem<double> grid(problems::grid_poisson());
   Physics at(grid);
   EXPECT_TRUE(same(at.forward(phi, Batch<double>(0, 1)),
                    flat(entry.at("expected").at("rho"))));

@@ -1,5 +1,6 @@
 #include "problems/grid_poisson/grid_poisson.h"
 
+#include "suite/core/any_problem.h"
 #include "suite/linalg/decompositions.h"
 #include "tests/problems/physics_checks.h"
 
@@ -9,13 +10,13 @@ namespace {
 const Rng kRng = Rng::root("grid_poisson_test", 1);
 
 TEST(GridPoisson, DerivativesAgreeWithDifferences) {
-  const GridPoisson<double> grid;
+  const AnyProblem<double> grid(problems::grid_poisson());
   const auto s = grid.sample(0, 3, kRng);
   expect_derivatives(grid, s.x, s.given);
 }
 
 TEST(GridPoisson, TheOperatorIsSymmetricAndNegative) {
-  const GridPoisson<double> grid;
+  const AnyProblem<double> grid(problems::grid_poisson());
   Physics at(grid);
   const Batch<double> j =
       at.jacobian(Batch<double>::Zero(64, 1), Batch<double>(0, 1));
@@ -27,7 +28,7 @@ TEST(GridPoisson, TheOperatorIsSymmetricAndNegative) {
 }
 
 TEST(GridPoisson, AConstantFeelsOnlyTheBorder) {
-  const GridPoisson<float> grid;
+  const AnyProblem<float> grid(problems::grid_poisson());
   Physics at(grid);
   const Batch<float> y =
       at.forward(Batch<float>::Ones(64, 1), Batch<float>(0, 1));
@@ -39,7 +40,7 @@ TEST(GridPoisson, AConstantFeelsOnlyTheBorder) {
 
 template <class T>
 void check_independent() {
-  const GridPoisson<T> grid;
+  const AnyProblem<T> grid(problems::grid_poisson());
   const auto s = grid.sample(0, 200, kRng).template cast<T>();
   expect_independent_samples<T>(grid, s.x, s.given);
   Workspace work;
@@ -58,7 +59,7 @@ TEST(GridPoisson, ASampleDoesNotDependOnItsBatch) {
 
 template <class T>
 void check_contained() {
-  const GridPoisson<T> grid;
+  const AnyProblem<T> grid(problems::grid_poisson());
   const auto s = grid.sample(0, 19, kRng).template cast<T>();
   for (const T bad : {std::numeric_limits<T>::quiet_NaN(),
                       std::numeric_limits<T>::infinity()}) {
@@ -75,7 +76,7 @@ TEST(GridPoisson, WhatIsNotFiniteStaysInItsColumn) {
 
 template <class T>
 void check_inverse(double near) {
-  const GridPoisson<T> grid;
+  const AnyProblem<T> grid(problems::grid_poisson());
   const auto s = grid.sample(0, 70, kRng).template cast<T>();
   Workspace work;
   Batch<T> x(64, 70);
@@ -89,7 +90,7 @@ TEST(GridPoisson, InvertsExactly) {
 }
 
 TEST(GridPoisson, PotentialsAreStandardizedAndSmooth) {
-  const GridPoisson<double> grid;
+  const AnyProblem<double> grid(problems::grid_poisson());
   const auto s = grid.sample(0, 4096, kRng);
   EXPECT_LE(s.x.colwise().mean().cwiseAbs().maxCoeff(), 1e-14);
   EXPECT_TRUE(

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "problems/heat/heat.h"
+#include "suite/core/any_problem.h"
 #include "tests/support/physics.h"
 #include "tests/support/reference.h"
 
@@ -78,7 +79,7 @@ Vector<double> at_cells(const Vector<double>& field,
 void check_kernel(const Json& entry) {
   const Json want = entry.at("expected");
   const HeatOptions options = options_of(entry);
-  const Heat<double> heat(options);
+  const HeatModes heat(options);
   const std::vector<std::array<Index, 2>> indices =
       entry.at("inputs").at("indices");
   const auto count = static_cast<Index>(indices.size());
@@ -140,7 +141,7 @@ void check_forward(const Json& entry) {
   Batch<T> fields(cells, 2);
   fields.col(0) = field_of(entry, side).cast<T>();
   fields.col(1) = start_of(in, cells).cast<T>();
-  Physics heat{Heat<T>(options)};
+  Physics heat{AnyProblem<T>(problems::heat(options))};
   const Batch<T> given(0, 2), y = heat.forward(fields, given);
   const auto same = tolerance<T>(entry);
   const Vector<double> seen = y.col(0).template cast<double>();
@@ -161,7 +162,8 @@ template <class T>
 void check_gd(const Json& entry) {
   const Json want = entry.at("expected");
   const HeatOptions options = options_of(entry);
-  const Heat<T> heat(options);
+  const AnyProblem<T> heat(problems::heat(options));
+  const HeatModes modes(options);
   Workspace work;
   const Batch<double> exact = field_of(entry, options.resolution);
   const Batch<T> truth = exact.cast<T>(), given(0, 1);
@@ -185,7 +187,7 @@ void check_gd(const Json& entry) {
       x += step;
     }
     EXPECT_TRUE(same(error(x), stored)) << n;
-    heat.filter(y, heat_gradient_descent(heat.exponents(), n), step, work);
+    modes.filter<T>(y, heat_gradient_descent(modes.exponents(), n), step, work);
     EXPECT_TRUE(same(error(step), stored)) << n;
     EXPECT_TRUE(same(x, step));
   }
@@ -196,7 +198,7 @@ void check_iteration(const Json& entry) {
   // Section 2: the floor of the direct runs.
   const HeatOptions options = options_of(
       entry, setting(entry, "uncertainty_floor", "\\*1e-6\\+", 1e-8));
-  const Heat<T> heat(options);
+  const AnyProblem<T> heat(problems::heat(options));
   Workspace work;
   const Batch<double> exact = field_of(entry, options.resolution);
   const Batch<T> truth = exact.cast<T>(), given(0, 1);
@@ -224,7 +226,7 @@ Eigen::MatrixXcd spectrum(const Batch<double>& field) {
 
 template <class T>
 Batch<T> step_of(const Batch<double>& dy, const HeatOptions& options) {
-  const Heat<T> heat(options);
+  const AnyProblem<T> heat(problems::heat(options));
   Workspace work;
   Batch<T> dx(dy.rows(), 1);
   heat.invert(
@@ -236,7 +238,7 @@ Batch<T> step_of(const Batch<double>& dy, const HeatOptions& options) {
 struct TakenModes {
   TakenModes(const Batch<double>& dy, const HeatOptions& options)
       : z(spectrum(dy)), probability(dy), gain(dy) {
-    const Heat<double> heat(options);
+    const HeatModes heat(options);
     uncertainty =
         (dy.array().abs() * 1e-6 + options.noise_floor).matrix().norm();
     const Index n = dy.rows();

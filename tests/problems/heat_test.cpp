@@ -2,6 +2,7 @@
 
 #include "problems/heat/inversion.h"
 #include "problems/heat/likelihood.h"
+#include "suite/core/any_problem.h"
 #include "suite/core/threads.h"
 #include "tests/support/bits.h"
 #include "tests/support/gradient_check.h"
@@ -13,7 +14,7 @@ namespace {
 const Rng kHeatRng = Rng::root("heat_test", 1);
 
 template <class T>
-Batch<T> inverted(const Heat<T>& heat,
+Batch<T> inverted(const AnyProblem<T>& heat,
                   const Batch<T>& y,
                   const Batch<T>& guess,
                   Threads* threads = nullptr) {
@@ -25,12 +26,13 @@ Batch<T> inverted(const Heat<T>& heat,
 
 /// The step for dy itself: from zero.
 Batch<double> step(const Batch<double>& dy, double end_time = 8) {
-  const Heat<double> heat({.resolution = 16, .end_time = end_time});
+  const AnyProblem<double> heat(
+      problems::heat({.resolution = 16, .end_time = end_time}));
   return inverted<double>(heat, dy, Batch<double>::Zero(256, dy.cols()));
 }
 
 TEST(Heat, IsItsOwnAdjointAndAProductOfCirculants) {
-  const Heat<double> heat({.resolution = 16});
+  const AnyProblem<double> heat(problems::heat({.resolution = 16}));
   Workspace work;
   const Batch<double> unit = Batch<double>::Identity(256, 256), given(0, 256);
   Batch<double> matrix(256, 256);
@@ -56,7 +58,7 @@ TEST(Heat, IsItsOwnAdjointAndAProductOfCirculants) {
 
 template <class T>
 void check_one_field_by_itself() {
-  const Heat<T> heat;
+  const AnyProblem<T> heat(problems::heat());
   const auto s = heat.sample(0, 19, kHeatRng).template cast<T>();
   const Batch<T> zero = Batch<T>::Zero(s.x.rows(), 19);
   const Batch<T> all = inverted(heat, s.y, zero);
@@ -154,7 +156,7 @@ TEST(Heat, BetweenTheThresholdsNothingIsAmplified) {
 
 /// Every mode by its own likelihoods, none taken for granted.
 TEST(Heat, ModesWithoutSignalAreSkippedToTheSameBits) {
-  const Heat<double> heat;
+  const AnyProblem<double> heat(problems::heat());
   const auto s = heat.sample(0, 3, kHeatRng);
   Workspace work;
   Batch<double> x(s.x);
@@ -164,7 +166,8 @@ TEST(Heat, ModesWithoutSignalAreSkippedToTheSameBits) {
   EXPECT_GT(skipped, modes / 2);
   EXPECT_LT(skipped, modes);
 
-  const PlaneFft fft(64);
+  const HeatModes of({});
+  const PlaneFft& fft = of.fft();
   using Lane = Pack<double, 2>;
   std::vector<Lane> u(4096), z(std::size_t(fft.spectrum())),
       scratch(std::size_t(fft.scratch()));
@@ -178,7 +181,7 @@ TEST(Heat, ModesWithoutSignalAreSkippedToTheSameBits) {
     }
     fft.forward(u.data(), z.data(), scratch.data());
     fft.scale_modes(z.data(), [&](Index p, Index q, Lane re, Lane im) {
-      const double e = heat.exponents()(fft.mode(p), fft.mode(q));
+      const double e = of.exponents()(fft.mode(p), fft.mode(q));
       const double amplitude = std::sqrt(std::fma(re[0], re[0], im[0] * im[0]));
       const auto mode =
           HeatMode::of(amplitude, e, 64 * std::exp(-e), std::sqrt(sum));
@@ -198,10 +201,11 @@ TEST(Heat, ModesWithoutSignalAreSkippedToTheSameBits) {
 // Without a floor, the second step amplifies what rounding has left.
 TEST(Heat, InversionOnSpectraIsThatOfCells) {
   for (const double floor : {0.0, 1e-8, 1e-3}) {
-    const Heat<double> heat({.noise_floor = floor});
+    const AnyProblem<double> heat(problems::heat({.noise_floor = floor}));
     const auto s = heat.sample(0, 11, kHeatRng);
     Workspace work, of_cells;
-    HeatInversion inversion(heat, s.y, work);
+    const HeatModes modes({.noise_floor = floor});
+    HeatInversion inversion(modes, s.y, work);
     Batch<double> x = Batch<double>::Zero(4096, 11), seen = x;
     for (int k = 0; k < (floor > 0 ? 12 : 1); ++k) {
       heat.invert(s.y, s.given, x, x, of_cells);
@@ -221,7 +225,7 @@ TEST(Heat, InversionOnSpectraIsThatOfCells) {
 /// Amplitudes and uncertainties of every size, with and without likelihoods.
 TEST(Heat, WhatIsKnownOfAModeHasTheBitsOfItsLikelihoods) {
   using namespace heat_lanes;
-  const Heat<double> heat;
+  const HeatModes heat({});
   const HeatTable& table = heat.table();
   const auto gain_by_itself = [&](double z, Index p, double u) {
     return Modes::of(P{} + std::sqrt(z * z),
@@ -254,7 +258,7 @@ TEST(Heat, WhatIsKnownOfAModeHasTheBitsOfItsLikelihoods) {
 }
 
 TEST(Heat, RectanglesAreAsManyAndAsHotAsInThePaper) {
-  const Heat<double> heat;
+  const AnyProblem<double> heat(problems::heat());
   const auto s = heat.sample(0, 600, kHeatRng);
   EXPECT_GE(s.x.minCoeff(), 0);
   const Vector<double> sums = s.x.colwise().sum();
@@ -292,16 +296,20 @@ TEST(Heat, RectanglesStayInside) {
 }
 
 TEST(Heat, OptionsAreLookedAt) {
-  EXPECT_THROW(Heat<double>({.resolution = 60}), ContractError);
-  EXPECT_THROW(Heat<double>({.resolution = 4}), ContractError);
-  EXPECT_THROW(Heat<double>({.end_time = 0}), ContractError);
-  EXPECT_THROW(Heat<double>({.noise_floor = -1}), ContractError);
+  EXPECT_THROW(AnyProblem<double>(problems::heat({.resolution = 60})),
+               ContractError);
+  EXPECT_THROW(AnyProblem<double>(problems::heat({.resolution = 4})),
+               ContractError);
+  EXPECT_THROW(AnyProblem<double>(problems::heat({.end_time = 0})),
+               ContractError);
+  EXPECT_THROW(AnyProblem<double>(problems::heat({.noise_floor = -1})),
+               ContractError);
 }
 
 // Beyond end_time 36 the finest factors are zero.
 TEST(Heat, TimesThatLeaveNothing) {
   for (const double end_time : {1.0, 36.0, 64.0, 1000.0}) {
-    const Heat<double> heat({.end_time = end_time});
+    const AnyProblem<double> heat(problems::heat({.end_time = end_time}));
     const auto s = heat.sample(0, 5, kHeatRng);
     const Batch<double> x =
         inverted<double>(heat, s.y, Batch<double>::Zero(4096, 5));

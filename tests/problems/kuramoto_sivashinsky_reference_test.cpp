@@ -8,6 +8,7 @@
 #include <set>
 
 #include "problems/kuramoto_sivashinsky/kuramoto_sivashinsky.h"
+#include "suite/core/any_problem.h"
 #include "suite/nn/vgg.h"
 #include "tests/support/jpo_entries.h"
 #include "tests/support/jpo_reference.h"
@@ -47,7 +48,8 @@ Batch<double> simulate(const Batch<double>& x,
   Workspace work;
   auto options = options_on(u0.rows());
   options.steps = steps;
-  KuramotoSivashinsky<T>(options).forward(x.cast<T>(), u0.cast<T>(), y, work);
+  AnyProblem<T>(problems::kuramoto_sivashinsky(options))
+      .forward(x.cast<T>(), u0.cast<T>(), y, work);
   return y.template cast<double>();
 }
 
@@ -61,7 +63,8 @@ struct Observed {
                   VectorOut<double> loss,
                   BatchOut<T> gradient) const {
     const std::vector<Index> some(active.begin(), active.end());
-    Physics at{KuramotoSivashinsky<T>(options_on(data.y.rows()))};
+    Physics at{AnyProblem<T>(
+        problems::kuramoto_sivashinsky(options_on(data.y.rows())))};
     const auto found =
         at.losses(x, data.given(Eigen::all, some), data.y(Eigen::all, some));
     loss = found.loss, gradient = found.x_bar;
@@ -96,7 +99,7 @@ void check_intermediate(const Json& entry) {
   ASSERT_GE(*std::min_element(steps.begin(), steps.end()), 1);
   auto options = options_on(u0.rows());
   options.steps = *std::max_element(steps.begin(), steps.end());
-  const Batch<T> path = KuramotoSivashinsky<T>(options).trajectory(x, u0);
+  const Batch<T> path = kuramoto_sivashinsky_trajectory<T>(options, x, u0);
   for (std::size_t i = 0; i < steps.size(); ++i) {
     const Index k = steps[i];
     const Vector<double> expected = vector(entry.at("u").at(i));
@@ -172,21 +175,20 @@ void check_runs(const Json& entry) {
 template <Precision precision>
 void check_jpo(const Json& entry) {
   const Samples<double> data = problems();
-  expect_jpo<KuramotoSivashinsky>(
-      kId,
-      entry,
-      {.inputs = {Field::given, Field::observations},
-       .network = nn::vgg({.channels = 2,
-                           .grid = {.columns = data.given.rows()},
-                           .features = {32, 32, 64, 64},
-                           .hidden = {64, 64}}),
-       .rate = 1e-3,
-       .last_matrix = 0.1,
-       .output_scale = 0.25,
-       .single = {.loss = 2e-4, .gradient = 1e-2}},
-      data,
-      precision,
-      options_on(data.given.rows()));
+  expect_jpo(kId,
+             entry,
+             {.inputs = {Field::given, Field::observations},
+              .network = nn::vgg({.channels = 2,
+                                  .grid = {.columns = data.given.rows()},
+                                  .features = {32, 32, 64, 64},
+                                  .hidden = {64, 64}}),
+              .rate = 1e-3,
+              .last_matrix = 0.1,
+              .output_scale = 0.25,
+              .single = {.loss = 2e-4, .gradient = 1e-2}},
+             problems::kuramoto_sivashinsky(options_on(data.given.rows())),
+             data,
+             precision);
 }
 
 TEST(KuramotoSivashinskyReference, EveryEntry) {

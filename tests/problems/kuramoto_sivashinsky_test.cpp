@@ -18,24 +18,28 @@
 namespace physinv::test {
 namespace {
 
-using Equation = KuramotoSivashinsky<double>;
+AnyProblem<double> equation(const KuramotoSivashinskyOptions& o = {}) {
+  return AnyProblem<double>(problems::kuramoto_sivashinsky(o));
+}
 
 Samples<double> draw(Index n, const KuramotoSivashinskyOptions& o = {}) {
-  return Equation(o).sample(0, n, Rng::root("test/ks", 1));
+  return equation(o).sample(0, n, Rng::root("test/ks", 1));
 }
 
 template <class T>
-struct Bench : Physics<KuramotoSivashinsky<T>> {
+struct Bench : Physics<AnyProblem<T>> {
   explicit Bench(const KuramotoSivashinskyOptions& o = {}, int count = 1)
-      : Physics<KuramotoSivashinsky<T>>(KuramotoSivashinsky<T>(o), count) {}
+      : Physics<AnyProblem<T>>(AnyProblem<T>(problems::kuramoto_sivashinsky(o)),
+                               count) {}
 
   /// d/dx above d/du(0), at a y that has the bits of `forward`.
   Batch<T> pull(const Batch<T>& x, const Batch<T>& u0, const Batch<T>& y_bar) {
     const Index n = u0.rows();
     Batch<T> both(n + 2, x.cols());
     const Batch<T> y = this->linearize(x, u0);
-    this->problem.pullback(
-        this->tape, y_bar, both.topRows(2), both.bottomRows(n), this->work);
+    dynamic_cast<const StatePullback<T>&>(this->problem.problem())
+        .pullback_state(
+            this->tape, y_bar, both.topRows(2), both.bottomRows(n), this->work);
     EXPECT_TRUE(same_bits(Batch<T>(both.topRows(2)), this->pullback(y_bar)));
     EXPECT_TRUE(same_bits(y, this->forward(x, u0)));
     return both;
@@ -187,7 +191,7 @@ TYPED_TEST(KuramotoSivashinskyIn, TrajectoriesPassThroughEveryState) {
   using T = TypeParam;
   const auto s = draw(1).cast<T>();
   const Batch<T> path =
-      KuramotoSivashinsky<T>().trajectory(s.x.col(0), s.given.col(0));
+      kuramoto_sivashinsky_trajectory<T>({}, s.x.col(0), s.given.col(0));
   ASSERT_EQ(path.cols(), 101);
   EXPECT_TRUE(same_bits(Batch<T>(path.leftCols(1)), s.given));
   for (const Index k : {1, 2, 37, 100}) {
@@ -313,8 +317,7 @@ TYPED_TEST(KuramotoSivashinskyIn, DivergedSamplesDisturbNoOther) {
     EXPECT_TRUE(same_bits(b.forward(x, u0), y));
     EXPECT_TRUE(same_bits(b.pull(x, u0, y_bar), pulled));
     EXPECT_TRUE(same_bits(b.jacobian(x, u0), j));
-    EXPECT_TRUE(KuramotoSivashinsky<T>()
-                    .trajectory(x.col(2), u0.col(2))
+    EXPECT_TRUE(kuramoto_sivashinsky_trajectory<T>({}, x.col(2), u0.col(2))
                     .rightCols(50)
                     .array()
                     .isNaN()
@@ -328,7 +331,7 @@ TEST(KuramotoSivashinsky, DivergedSamplesAreNotSteppedOn) {
   const auto s = draw(n);
   Batch<double> x = s.x, y(128, n), x_bar(2, n);
   x.row(1).setConstant(1e4);
-  const Equation problem;
+  const auto problem = equation();
   Workspace work;
   Tape tape;
   problem.forward(x, s.given, y, work);
@@ -406,16 +409,16 @@ TEST(KuramotoSivashinsky, SamplesAreWhatTheEquationGives) {
 }
 
 TEST(KuramotoSivashinsky, ChecksItsContract) {
-  const Equation problem;
+  const auto problem = equation();
   Workspace work;
   Batch<double> x(2, 3), u0(128, 3), y(128, 3);
   EXPECT_THROW(problem.forward(x.topRows(1), u0, y, work), ContractError);
   EXPECT_THROW(problem.forward(x, u0.leftCols(2), y, work), ContractError);
   EXPECT_THROW(problem.forward(x, u0, y.topRows(64), work), ContractError);
-  EXPECT_THROW(Equation({.cells = 100}), ContractError);
-  EXPECT_THROW(Equation({.cells = 8}), ContractError);
-  EXPECT_THROW(Equation({.steps = 0}), ContractError);
-  EXPECT_THROW(Equation({.prior_low = 2}), ContractError);
+  EXPECT_THROW(equation({.cells = 100}), ContractError);
+  EXPECT_THROW(equation({.cells = 8}), ContractError);
+  EXPECT_THROW(equation({.steps = 0}), ContractError);
+  EXPECT_THROW(equation({.prior_low = 2}), ContractError);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "problems/marker_flow/marker_flow.h"
 #include "problems/marker_flow/periodic_flow.h"
+#include "suite/core/any_problem.h"
 #include "tests/support/mac_cormack_reference.h"
 #include "tests/support/physics.h"
 
@@ -113,10 +114,9 @@ void check_vortex(const Json& entry) {
   const Json want = entry.at("outputs");
   EXPECT_TRUE(entry.at("inputs").empty()) << entry.at("inputs");
   const FileTolerance<double> near(entry);
-  const MarkerFlow<double> problem;
-  const auto& o = problem.options();
+  const MarkerFlowOptions o;
   const Index n = o.cells;
-  const Vortex vortex = problem.vortex();
+  const Vortex vortex = o.turning();
   Vector<double> all(2 * n * n);
   for (Index row = 0; row < all.size(); ++row)
     all(row) = vortex(int(row / (n * n)), row % (n * n) / n, row % n);
@@ -141,7 +141,7 @@ void check_discretise(const Json& entry) {
       {in.at("centre")[0], in.at("centre")[1]}, in.at("half"), fill};
   const Vector<double> found = marker(grid, patch, field(in.at("noise"), n, n));
   EXPECT_EQ(found, field(want.at("marker")));
-  const Point mass = centre_of_mass(grid, found);
+  const MarkerPoint mass = centre_of_mass(grid, found);
   const FileTolerance<double> near(entry);
   near(Eigen::Vector2d(mass.x, mass.y), vector(want.at("com")), "com");
 }
@@ -216,24 +216,24 @@ struct Scene {
     found = Physics(problem).losses(guess, given, target);
   }
   Batch<T> at(const Batch<T>& x, Index steps = 8) {
-    const auto& o = problem.options();
-    const MarkerFlow<T> until(
+    const MarkerFlowOptions o;
+    const AnyProblem<T> until(problems::marker_flow(
         {.end_time = o.end_time * double(steps) / double(o.steps),
-         .steps = steps});
+         .steps = steps}));
     return Physics(until).forward(x, given);
   }
   Vector<double> inverse(bool timed) {
-    const MarkerFlow<T> other({.timed_path = timed});
+    const AnyProblem<T> other(problems::marker_flow({.timed_path = timed}));
     return Physics(other).invert(target, given, guess).template cast<double>();
   }
 
-  MarkerFlow<T> problem;
+  AnyProblem<T> problem{problems::marker_flow()};
   Batch<T> given, truth, guess, target;
-  typename Physics<MarkerFlow<T>&>::Losses found;
+  typename Physics<AnyProblem<T>&>::Losses found;
 };
 
 Vector<double> mass_of(const Batch<double>& m) {
-  const Point p = centre_of_mass({}, m.col(0));
+  const MarkerPoint p = centre_of_mass({}, m.col(0));
   return Eigen::Vector2d(p.x, p.y);
 }
 
@@ -276,7 +276,7 @@ void check_scene(const Json& entry) {
   for (Index t = 1; t <= 8; ++t)
     place(scene.at(scene.guess, t).template cast<double>(),
           want.at("com_forward")[std::size_t(t - 1)]);
-  const auto& o = scene.problem.options();
+  const MarkerFlowOptions o;
   const double floor = FrequencyLoss(o.cells, o.falloff, o.threshold).floor();
   relative(scene.found.loss(0) + floor, want.at("loss"), is.loss);
 

@@ -7,6 +7,7 @@
 #include <complex>
 #include <numbers>
 
+#include "suite/core/any_problem.h"
 #include "tests/support/bits.h"
 #include "tests/support/gradient_check.h"
 #include "tests/support/physics.h"
@@ -20,13 +21,13 @@ MarkerFlowOptions small() {
 }
 
 Samples<double> draw(Index n, const MarkerFlowOptions& options = small()) {
-  return MarkerFlow<double>(options).sample(
-      0, n, Rng::root("test/marker_flow", 1));
+  return AnyProblem<double>(problems::marker_flow(options))
+      .sample(0, n, Rng::root("test/marker_flow", 1));
 }
 
 template <class T>
 auto physics(int threads = 1) {
-  return Physics(MarkerFlow<T>(small()), threads);
+  return Physics(AnyProblem<T>(problems::marker_flow(small())), threads);
 }
 
 /// Numbers without structure, between -1 and 1.
@@ -56,7 +57,7 @@ TEST(MarkerFlow, GradientIsTheDerivative) {
 
 TEST(MarkerFlow, LossGradientIsTheDerivative) {
   const auto s = draw(2);
-  const MarkerFlow<double> problem(small());
+  const AnyProblem<double> problem(problems::marker_flow(small()));
   const Batch<double> y = s.y + 0.1 * rough(256, 2, 3), dot = rough(256, 2, 8);
   Batch<double> bar(y);
   problem.loss_gradient(y, s.y, bar);
@@ -196,17 +197,18 @@ TEST(MarkerFlow, VelocitiesFarTooLargeAreSafe) {
 
 /// Spec of the data: box, positive noise, what the truth is made of.
 TEST(MarkerFlow, SamplesAreWhatTheySay) {
-  const MarkerFlow<double> problem;
+  const AnyProblem<double> problem(problems::marker_flow());
   const auto s = problem.sample(0, 3, Rng::root("test/marker_flow", 2));
   for (Index k = 0; k < 3; ++k) {
     const auto m = s.given.col(k);
     EXPECT_TRUE((m.array() * (1 - m.array())).isZero(0));
     EXPECT_GE(m.sum(), 50);
     EXPECT_LE(m.sum(), 0.15 * 4096 + 1);
-    const Point mass = centre_of_mass(problem.grid(), m);
+    const MarkerPoint mass = centre_of_mass(MarkerFlowOptions{}.grid(), m);
     EXPECT_NEAR(s.x.col(k).head(4096).mean(), (64 - mass.x) / 2, 1e-10);
     EXPECT_NEAR(s.x.col(k).tail(4096).mean(), (64 - mass.y) / 2, 1e-10);
-    EXPECT_LE(std::abs(problem.vortex().strength(s.x.col(k))), 2.01);
+    EXPECT_LE(std::abs(MarkerFlowOptions{}.turning().strength(s.x.col(k))),
+              2.01);
   }
   const auto later = problem.sample(1, 1, Rng::root("test/marker_flow", 2));
   EXPECT_TRUE(same_bits(Batch<double>(s.x.col(1)), later.x));
@@ -218,8 +220,8 @@ TEST(MarkerFlow, InverseDrawsNear) {
   const std::vector<double> offsets = {0, -4, -2, -1, -0.5, 0.5, 1, 2, 4};
   for (const bool timed : {false, true}) {
     const MarkerFlowOptions options{.timed_path = timed};
-    Physics bench{MarkerFlow<double>(options)};
-    const Vortex vortex = bench.problem.vortex();
+    Physics bench{AnyProblem<double>(problems::marker_flow(options))};
+    const Vortex vortex = options.turning();
     const auto count = static_cast<Index>(offsets.size());
     const auto s = bench.problem.sample(0, 12, Rng::root("test/fluid", 3));
     for (Index k = 0; k < s.count(); ++k) {

@@ -11,6 +11,7 @@
 #include "problems/navier_stokes/blast.h"
 #include "problems/navier_stokes/box_flow.h"
 #include "problems/navier_stokes/navier_stokes.h"
+#include "suite/core/any_problem.h"
 #include "tests/support/hig_reference.h"
 #include "tests/support/mac_cormack_reference.h"
 #include "tests/support/physics.h"
@@ -275,7 +276,7 @@ Vector<double> upper_half(Vector<double> flow, Index n) {
 
 /// A run of BFGS, which another line search may end elsewhere: it starts where
 /// it says, and the end has the stored loss and is better.
-void check_informational(const NavierStokes<double>& problem,
+void check_informational(const AnyProblem<double>& problem,
                          const Batch<double>& given,
                          const Batch<double>& target,
                          const Json& run) {
@@ -307,7 +308,7 @@ void check_scene(const Json& entry) {
       kFloat ? 5e-2 : number(tolerance.at("grad_rel_to_max"));
   NavierStokesOptions o;
   o.steps = in.at("steps").get<Index>(), o.end_time = in.at("T");
-  const NavierStokes<T> problem(o);
+  const AnyProblem<T> problem(problems::navier_stokes(o));
   const Index n = o.cells;
 
   const Vector<double> xi = vector(in.at("xi_true"), 3);
@@ -320,7 +321,8 @@ void check_scene(const Json& entry) {
       Batch<T>(truth.cast<T>()), Batch<T>(flow.cast<T>()), seen, work);
   // Every z sees data in double, so that a float's loss is its own.
   Batch<double> target(n * n, 1);
-  NavierStokes<double>(o).forward(truth, flow, target, work);
+  AnyProblem<double>(problems::navier_stokes(o))
+      .forward(truth, flow, target, work);
   EXPECT_TRUE(
       Comparator(loss_rel, 0)(0.5 * seen.template cast<double>().squaredNorm(),
                               number(out.at("obs_norm_half_sq"))));

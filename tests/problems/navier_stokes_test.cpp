@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "suite/core/any_problem.h"
 #include "tests/support/bits.h"
 #include "tests/support/gradient_check.h"
 #include "tests/support/physics.h"
@@ -22,13 +23,14 @@ NavierStokesOptions small(double tape_budget = 1e9) {
 }
 
 Samples<double> draw(Index n) {
-  return NavierStokes<double>(small()).sample(
-      0, n, Rng::root("test/navier_stokes", 1));
+  return AnyProblem<double>(problems::navier_stokes(small()))
+      .sample(0, n, Rng::root("test/navier_stokes", 1));
 }
 
 template <class T>
 auto physics(int threads = 1, double budget = 1e9) {
-  return Physics(NavierStokes<T>(small(budget)), threads);
+  return Physics(AnyProblem<T>(problems::navier_stokes(small(budget))),
+                 threads);
 }
 
 template <class T>
@@ -44,8 +46,9 @@ TEST(NavierStokes, SamplesAreWhatTheyShouldBe) {
   EXPECT_TRUE(same_bits(Batch<double>(s.given.leftCols(3)), few.given));
   EXPECT_LE(s.x.row(0).cwiseAbs().maxCoeff(), std::atanh(0.7));
   EXPECT_LE(s.x.bottomRows(2).cwiseAbs().maxCoeff(), 1);
-  const auto all = NavierStokes<double>(small()).sample_labelled(
-      0, 12, Rng::root("test/navier_stokes", 1));
+  const auto all =
+      AnyProblem<double>(problems::navier_stokes(small()))
+          .sample_labelled(0, 12, Rng::root("test/navier_stokes", 1));
   EXPECT_NEAR(std::sqrt(all.given.squaredNorm() / double(all.given.size())),
               0.5,
               1e-12);
@@ -93,7 +96,7 @@ TEST(NavierStokes, BoundsAreOtherCoordinatesOfTheSameBlast) {
   for (const Index bounded : {0, 2, 3}) {
     NavierStokesOptions o = small();
     o.bounded = bounded;
-    Physics bench{NavierStokes<double>(o)};
+    Physics bench{AnyProblem<double>(problems::navier_stokes(o))};
     const auto s =
         bench.problem.sample(0, 2, Rng::root("test/navier_stokes", 1));
     EXPECT_TRUE(same_bits(s.given, ours.given));

@@ -30,11 +30,11 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
-/// What is said of a problem; nothing if it is made.
-template <class P>
-std::string said(const typename P::Options& options) {
+/// What is said of a problem in T; nothing if it is made.
+template <class T = double>
+std::string said(const ProblemRecipe& recipe) {
   try {
-    const P problem(options);
+    recipe.make<T>();
   } catch (const ContractError& e) {
     return e.what();
   }
@@ -47,202 +47,214 @@ void expect_line(const std::string& line) {
 }
 
 /// Each of `numbers` is a field that is a number.
-template <template <class> class P, class Options>
+template <class Options>
 void expect_numbers(
+    ProblemRecipe (*recipe)(const Options&),
     const std::vector<std::function<double&(Options&)>>& numbers,
     Options options = {}) {
-  EXPECT_EQ(said<P<double>>(options), "");
-  EXPECT_EQ(said<P<float>>(options), "");
+  EXPECT_EQ(said(recipe(options)), "");
+  EXPECT_EQ(said<float>(recipe(options)), "");
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     SCOPED_TRACE(i);
     for (const double bad : {kNan, kInf, -kInf}) {
       Options spoilt = options;
       numbers[i](spoilt) = bad;
-      expect_line(said<P<double>>(spoilt));
-      expect_line(said<P<float>>(spoilt));
+      expect_line(said(recipe(spoilt)));
+      expect_line(said<float>(recipe(spoilt)));
     }
     for (const double far : {1e100, 1e-100}) {
       Options spoilt = options;
       numbers[i](spoilt) = far;
-      expect_line(said<P<float>>(spoilt));
+      expect_line(said<float>(recipe(spoilt)));
     }
   }
 }
 
 TEST(ProblemOptions, Billiards) {
   using O = BilliardsOptions;
-  expect_numbers<Billiards, O>(
-      {[](O& o) -> double& { return o.radius; },
-       [](O& o) -> double& { return o.elasticity; },
-       [](O& o) -> double& { return o.drag; },
-       [](O& o) -> double& { return o.cue[0]; },
-       [](O& o) -> double& { return o.cue[1]; },
-       [](O& o) -> double& { return o.ball_x; },
-       [](O& o) -> double& { return o.ball_y[0]; },
-       [](O& o) -> double& { return o.ball_y[1]; },
-       [](O& o) -> double& { return o.target[0]; },
-       [](O& o) -> double& { return o.target[1]; },
-       [](O& o) -> double& { return o.start[0]; },
-       [](O& o) -> double& { return o.start[1]; },
-       [](O& o) -> double& { return o.velocity_spread; }});
-  expect_line(said<Billiards<double>>({.velocity_spread = -1}));
-  expect_line(said<Billiards<double>>({.ball_y = {1, 0}}));
+  expect_numbers<O>(problems::billiards,
+                    {[](O& o) -> double& { return o.radius; },
+                     [](O& o) -> double& { return o.elasticity; },
+                     [](O& o) -> double& { return o.drag; },
+                     [](O& o) -> double& { return o.cue[0]; },
+                     [](O& o) -> double& { return o.cue[1]; },
+                     [](O& o) -> double& { return o.ball_x; },
+                     [](O& o) -> double& { return o.ball_y[0]; },
+                     [](O& o) -> double& { return o.ball_y[1]; },
+                     [](O& o) -> double& { return o.target[0]; },
+                     [](O& o) -> double& { return o.target[1]; },
+                     [](O& o) -> double& { return o.start[0]; },
+                     [](O& o) -> double& { return o.start[1]; },
+                     [](O& o) -> double& { return o.velocity_spread; }});
+  expect_line(said(problems::billiards({.velocity_spread = -1})));
+  expect_line(said(problems::billiards({.ball_y = {1, 0}})));
 }
 
 TEST(ProblemOptions, Exponential) {
   using O = ExponentialOptions;
-  expect_numbers<Exponential, O>({[](O& o) -> double& { return o.lowest; }});
-  expect_line(said<Exponential<double>>({.lowest = 0}));
+  expect_numbers<O>(problems::exponential,
+                    {[](O& o) -> double& { return o.lowest; }});
+  expect_line(said(problems::exponential({.lowest = 0})));
 }
 
 TEST(ProblemOptions, Heat) {
   using O = HeatOptions;
-  expect_numbers<Heat, O>({[](O& o) -> double& { return o.end_time; },
-                           [](O& o) -> double& { return o.noise_floor; }},
-                          {.resolution = 8});
+  expect_numbers<O>(problems::heat,
+                    {[](O& o) -> double& { return o.end_time; },
+                     [](O& o) -> double& { return o.noise_floor; }},
+                    {.resolution = 8});
   for (const Index n : {0, -8, 4, 12})
-    expect_line(said<Heat<double>>({.resolution = n}));
+    expect_line(said(problems::heat({.resolution = n})));
 }
 
 TEST(ProblemOptions, KuramotoSivashinsky) {
   using O = KuramotoSivashinskyOptions;
-  expect_numbers<KuramotoSivashinsky, O>(
-      {[](O& o) -> double& { return o.box; },
-       [](O& o) -> double& { return o.time_step; },
-       [](O& o) -> double& { return o.prior_low; },
-       [](O& o) -> double& { return o.prior_high; },
-       [](O& o) -> double& { return o.start[0]; },
-       [](O& o) -> double& { return o.start[1]; }},
-      {.cells = 16, .steps = 2});
-  expect_line(said<KuramotoSivashinsky<double>>({.tape_budget = kNan}));
-  expect_line(said<KuramotoSivashinsky<double>>({.tape_budget = -1}));
+  expect_numbers<O>(problems::kuramoto_sivashinsky,
+                    {[](O& o) -> double& { return o.box; },
+                     [](O& o) -> double& { return o.time_step; },
+                     [](O& o) -> double& { return o.prior_low; },
+                     [](O& o) -> double& { return o.prior_high; },
+                     [](O& o) -> double& { return o.start[0]; },
+                     [](O& o) -> double& { return o.start[1]; }},
+                    {.cells = 16, .steps = 2});
+  expect_line(said(problems::kuramoto_sivashinsky({.tape_budget = kNan})));
+  expect_line(said(problems::kuramoto_sivashinsky({.tape_budget = -1})));
 }
 
 TEST(ProblemOptions, MarkerFlow) {
   using O = MarkerFlowOptions;
-  expect_numbers<MarkerFlow, O>({[](O& o) -> double& { return o.box; },
-                                 [](O& o) -> double& { return o.end_time; },
-                                 [](O& o) -> double& { return o.falloff; },
-                                 [](O& o) -> double& { return o.threshold; },
-                                 [](O& o) -> double& { return o.fill[0]; },
-                                 [](O& o) -> double& { return o.fill[1]; },
-                                 [](O& o) -> double& { return o.half; },
-                                 [](O& o) -> double& { return o.vortex; },
-                                 [](O& o) -> double& { return o.width; },
-                                 [](O& o) -> double& { return o.moment; },
-                                 [](O& o) -> double& { return o.noise; },
-                                 [](O& o) -> double& { return o.correction; }},
-                                {.cells = 8});
+  expect_numbers<O>(problems::marker_flow,
+                    {[](O& o) -> double& { return o.box; },
+                     [](O& o) -> double& { return o.end_time; },
+                     [](O& o) -> double& { return o.falloff; },
+                     [](O& o) -> double& { return o.threshold; },
+                     [](O& o) -> double& { return o.fill[0]; },
+                     [](O& o) -> double& { return o.fill[1]; },
+                     [](O& o) -> double& { return o.half; },
+                     [](O& o) -> double& { return o.vortex; },
+                     [](O& o) -> double& { return o.width; },
+                     [](O& o) -> double& { return o.moment; },
+                     [](O& o) -> double& { return o.noise; },
+                     [](O& o) -> double& { return o.correction; }},
+                    {.cells = 8});
 }
 
 TEST(ProblemOptions, NavierStokes) {
   using O = NavierStokesOptions;
-  expect_numbers<NavierStokes, O>({[](O& o) -> double& { return o.box; },
-                                   [](O& o) -> double& { return o.end_time; },
-                                   [](O& o) -> double& { return o.height; },
-                                   [](O& o) -> double& { return o.width; },
-                                   [](O& o) -> double& { return o.speed; },
-                                   [](O& o) -> double& { return o.noise; },
-                                   [](O& o) -> double& { return o.x0[0]; },
-                                   [](O& o) -> double& { return o.x0[1]; },
-                                   [](O& o) -> double& { return o.vx[0]; },
-                                   [](O& o) -> double& { return o.vx[1]; },
-                                   [](O& o) -> double& { return o.vy[0]; },
-                                   [](O& o) -> double& { return o.vy[1]; }});
-  expect_line(said<NavierStokes<double>>({.vx = {1, -1}}));
-  expect_line(said<NavierStokes<double>>({.tape_budget = kNan}));
+  expect_numbers<O>(problems::navier_stokes,
+                    {[](O& o) -> double& { return o.box; },
+                     [](O& o) -> double& { return o.end_time; },
+                     [](O& o) -> double& { return o.height; },
+                     [](O& o) -> double& { return o.width; },
+                     [](O& o) -> double& { return o.speed; },
+                     [](O& o) -> double& { return o.noise; },
+                     [](O& o) -> double& { return o.x0[0]; },
+                     [](O& o) -> double& { return o.x0[1]; },
+                     [](O& o) -> double& { return o.vx[0]; },
+                     [](O& o) -> double& { return o.vx[1]; },
+                     [](O& o) -> double& { return o.vy[0]; },
+                     [](O& o) -> double& { return o.vy[1]; }});
+  expect_line(said(problems::navier_stokes({.vx = {1, -1}})));
+  expect_line(said(problems::navier_stokes({.tape_budget = kNan})));
 }
 
 TEST(ProblemOptions, NoisyAbsolute) {
   using O = NoisyAbsoluteOptions;
-  expect_numbers<NoisyAbsolute, O>({[](O& o) -> double& { return o.gamma; },
-                                    [](O& o) -> double& { return o.omega_min; },
-                                    [](O& o) -> double& { return o.omega_max; },
-                                    [](O& o) -> double& { return o.level; },
-                                    [](O& o) -> double& { return o.decades; },
-                                    [](O& o) -> double& { return o.snr; }});
+  expect_numbers<O>(problems::noisy_absolute,
+                    {[](O& o) -> double& { return o.gamma; },
+                     [](O& o) -> double& { return o.omega_min; },
+                     [](O& o) -> double& { return o.omega_max; },
+                     [](O& o) -> double& { return o.level; },
+                     [](O& o) -> double& { return o.decades; },
+                     [](O& o) -> double& { return o.snr; }});
 }
 
 TEST(ProblemOptions, Oscillators) {
   using O = OscillatorsOptions;
-  expect_numbers<Oscillators, O>({[](O& o) -> double& { return o.dt; },
-                                  [](O& o) -> double& { return o.coupling; },
-                                  [](O& o) -> double& { return o.control; },
-                                  [](O& o) -> double& { return o.deviation; }});
-  expect_line(said<Oscillators<double>>({.deviation = -1}));
+  expect_numbers<O>(problems::oscillators,
+                    {[](O& o) -> double& { return o.dt; },
+                     [](O& o) -> double& { return o.coupling; },
+                     [](O& o) -> double& { return o.control; },
+                     [](O& o) -> double& { return o.deviation; }});
+  expect_line(said(problems::oscillators({.deviation = -1})));
 }
 
 TEST(ProblemOptions, Poisson) {
   // Computed in double whatever T is.
   for (const double bad : {kNan, kInf, -1.0}) {
-    expect_line(said<Poisson<double>>({.relative = bad}));
-    expect_line(said<Poisson<float>>({.relative = bad}));
+    expect_line(said(problems::poisson({.relative = bad})));
+    expect_line(said<float>(problems::poisson({.relative = bad})));
   }
-  expect_line(said<Poisson<double>>({.rows = -4}));
-  expect_line(said<Poisson<double>>({.columns = 0}));
-  expect_line(said<Poisson<double>>({.most = 0}));
-  EXPECT_EQ(said<Poisson<float>>({.relative = 1e-100}), "");
+  expect_line(said(problems::poisson({.rows = -4})));
+  expect_line(said(problems::poisson({.columns = 0})));
+  expect_line(said(problems::poisson({.most = 0})));
+  EXPECT_EQ(said<float>(problems::poisson({.relative = 1e-100})), "");
 }
 
 TEST(ProblemOptions, QuantumDipole) {
   using O = QuantumDipoleOptions;
-  expect_numbers<QuantumDipole, O>(
-      {[](O& o) -> double& { return o.dt; },
-       [](O& o) -> double& { return o.deviation; }});
-  expect_line(said<QuantumDipole<double>>({.angles = {0, kNan}}));
-  expect_line(said<QuantumDipole<double>>({.deviation = -1}));
+  expect_numbers<O>(problems::quantum_dipole,
+                    {[](O& o) -> double& { return o.dt; },
+                     [](O& o) -> double& { return o.deviation; }});
+  expect_line(said(problems::quantum_dipole({.angles = {0, kNan}})));
+  expect_line(said(problems::quantum_dipole({.deviation = -1})));
 }
 
 TEST(ProblemOptions, RoboticArm) {
   using O = RoboticArmOptions;
-  expect_numbers<RoboticArm, O>(
-      {[](O& o) -> double& { return o.links[0]; },
-       [](O& o) -> double& { return o.links[2]; },
-       [](O& o) -> double& { return o.mean[3]; },
-       [](O& o) -> double& { return o.deviation[1]; }});
+  expect_numbers<O>(problems::robotic_arm,
+                    {[](O& o) -> double& { return o.links[0]; },
+                     [](O& o) -> double& { return o.links[2]; },
+                     [](O& o) -> double& { return o.mean[3]; },
+                     [](O& o) -> double& { return o.deviation[1]; }});
 }
 
 TEST(ProblemOptions, ScaledOutput) {
   using O = ScaledOutputOptions;
-  expect_numbers<ScaledOutput, O>({[](O& o) -> double& { return o.gamma; }});
+  expect_numbers<O>(problems::scaled_output,
+                    {[](O& o) -> double& { return o.gamma; }});
 }
 
 TEST(ProblemOptions, Scaling) {
   using O = ScalingOptions;
-  expect_numbers<Scaling, O>({[](O& o) -> double& { return o.scales[1]; },
-                              [](O& o) -> double& { return o.start[0]; },
-                              [](O& o) -> double& { return o.start[1]; }},
-                             {.scales = {1, 3}});
+  expect_numbers<O>(problems::scaling,
+                    {[](O& o) -> double& { return o.scales[1]; },
+                     [](O& o) -> double& { return o.start[0]; },
+                     [](O& o) -> double& { return o.start[1]; }},
+                    {.scales = {1, 3}});
   // Double can hold them.
   for (const double alpha : {1e100, 1e-100, -1e-160}) {
-    EXPECT_EQ(said<Scaling<double>>({.scales = {alpha}}), "");
-    const std::string line = said<Scaling<float>>({.scales = {alpha}});
+    EXPECT_EQ(said(problems::scaling({.scales = {alpha}})), "");
+    const std::string line =
+        said<float>(problems::scaling({.scales = {alpha}}));
     EXPECT_NE(line.find("scales = "), std::string::npos) << line;
     EXPECT_NE(line.find("range of float"), std::string::npos) << line;
   }
-  EXPECT_EQ(said<Scaling<float>>({.scales = {1e38, 1e-38}}), "");
-  expect_line(said<Scaling<double>>({.scales = {0}}));
+  EXPECT_EQ(said<float>(problems::scaling({.scales = {1e38, 1e-38}})), "");
+  expect_line(said(problems::scaling({.scales = {0}})));
 }
 
 TEST(ProblemOptions, SinePlane) {
   using O = SinePlaneOptions;
-  expect_numbers<SinePlane, O>({[](O& o) -> double& { return o.gamma; },
-                                [](O& o) -> double& { return o.xi; },
-                                [](O& o) -> double& { return o.degrees; }});
-  expect_line(said<SinePlane<double>>({.limit = kNan}));
+  expect_numbers<O>(problems::sine_plane,
+                    {[](O& o) -> double& { return o.gamma; },
+                     [](O& o) -> double& { return o.xi; },
+                     [](O& o) -> double& { return o.degrees; }});
+  expect_line(said(problems::sine_plane({.limit = kNan})));
 }
 
 TEST(ProblemOptions, WavePacket) {
   using O = WavePacketOptions;
-  expect_numbers<WavePacket, O>({[](O& o) -> double& { return o.amplitude; },
-                                 [](O& o) -> double& { return o.frequency; },
-                                 [](O& o) -> double& { return o.phase; },
-                                 [](O& o) -> double& { return o.width; },
-                                 [](O& o) -> double& { return o.centre; },
-                                 [](O& o) -> double& { return o.scale; },
-                                 [](O& o) -> double& { return o.noise; },
-                                 [](O& o) -> double& { return o.range[0]; },
-                                 [](O& o) -> double& { return o.range[1]; }});
+  expect_numbers<O>(problems::wave_packet,
+                    {[](O& o) -> double& { return o.amplitude; },
+                     [](O& o) -> double& { return o.frequency; },
+                     [](O& o) -> double& { return o.phase; },
+                     [](O& o) -> double& { return o.width; },
+                     [](O& o) -> double& { return o.centre; },
+                     [](O& o) -> double& { return o.scale; },
+                     [](O& o) -> double& { return o.noise; },
+                     [](O& o) -> double& { return o.range[0]; },
+                     [](O& o) -> double& { return o.range[1]; }});
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // The solver entries of hig-oscillators.
 
 #include "problems/oscillators/oscillators.h"
+#include "suite/core/any_problem.h"
 #include "tests/problems/physics_checks.h"
 #include "tests/support/hig_reference.h"
 
@@ -15,13 +16,15 @@ void check_solver(const Json& entry, const TwoNorm& same) {
   const double g = number(in.at("g_cubic"));
   const Batch<T> x = flat(in.at("u")).cast<T>();
   const Batch<T> given = flat(in.at("x0"), 4).cast<T>();
-  const Oscillators<T> pair({.steps = x.rows(), .coupling = g});
+  const AnyProblem<T> pair(
+      problems::oscillators({.steps = x.rows(), .coupling = g}));
   Physics at(pair);
   const Batch<T> y = at.linearize(x, given);
   EXPECT_TRUE(same(y, flat(out.at("y"))));
   for (const auto& [steps, state] : states_after(out)) {
     ASSERT_TRUE(1 <= steps && steps <= x.rows()) << steps;
-    const Oscillators<T> part({.steps = steps, .coupling = g});
+    const AnyProblem<T> part(
+        problems::oscillators({.steps = steps, .coupling = g}));
     EXPECT_TRUE(same(Physics(part).forward(x.topRows(steps), given), state))
         << "after " << steps;
   }

@@ -1,5 +1,6 @@
 #include "problems/oscillators/oscillators.h"
 
+#include "suite/core/any_problem.h"
 #include "tests/problems/physics_checks.h"
 
 namespace physinv::test {
@@ -10,7 +11,7 @@ const Rng kRng = Rng::root("oscillators_test", 1);
 TEST(Oscillators, DerivativesAgreeWithDifferences) {
   for (const double g : {1.0, 4.0, 0.0}) {
     SCOPED_TRACE(g);
-    const Oscillators<double> pair({.coupling = g});
+    const AnyProblem<double> pair(problems::oscillators({.coupling = g}));
     const auto s = pair.sample_labelled(0, 5, kRng);
     expect_derivatives(pair, s.x, s.given);
   }
@@ -19,7 +20,7 @@ TEST(Oscillators, DerivativesAgreeWithDifferences) {
 TEST(Oscillators, AnyNumberOfSteps) {
   for (const Index steps : {1, 2, 3, 5, 97}) {
     SCOPED_TRACE(steps);
-    const Oscillators<double> pair({.steps = steps});
+    const AnyProblem<double> pair(problems::oscillators({.steps = steps}));
     const auto s = pair.sample_labelled(0, 9, kRng);
     expect_derivatives(pair, s.x, s.given);
     expect_independent_samples<double>(pair, s.x, s.given);
@@ -28,7 +29,7 @@ TEST(Oscillators, AnyNumberOfSteps) {
 
 template <class T>
 void check_independent() {
-  const Oscillators<T> pair;
+  const AnyProblem<T> pair(problems::oscillators());
   const auto s = pair.sample_labelled(0, 37, kRng).template cast<T>();
   expect_independent_samples<T>(pair, s.x, s.given);
 }
@@ -40,7 +41,7 @@ TEST(Oscillators, ASampleDoesNotDependOnItsBatch) {
 
 template <class T>
 void check_contained() {
-  const Oscillators<T> pair;
+  const AnyProblem<T> pair(problems::oscillators());
   const auto s = pair.sample_labelled(0, 19, kRng).template cast<T>();
   for (const T u : {std::numeric_limits<T>::quiet_NaN(),
                     std::numeric_limits<T>::infinity(),
@@ -72,8 +73,8 @@ TEST(Oscillators, EnergyIsConservedWithoutControlToFourthOrder) {
   double error[2] = {0, 0};
   for (int fine = 0; fine < 2; ++fine) {
     const Index steps = fine == 1 ? 192 : 96;
-    const Oscillators<double> pair(
-        {.steps = steps, .dt = 12.0 / double(steps)});
+    const AnyProblem<double> pair(
+        problems::oscillators({.steps = steps, .dt = 12.0 / double(steps)}));
     const auto s = pair.sample(0, 16, rng);
     Physics at(pair);
     const Batch<double> y = at.forward(Batch<double>::Zero(steps, 16), s.given);
@@ -88,7 +89,8 @@ TEST(Oscillators, EnergyIsConservedWithoutControlToFourthOrder) {
 
 TEST(Oscillators, CouplingActsOnTheDifferenceOnly) {
   // The momenta of a pair without control sum to those of one free oscillator.
-  const Oscillators<double> coupled({.coupling = 4}), free({.coupling = 0});
+  const AnyProblem<double> coupled(problems::oscillators({.coupling = 4})),
+      free(problems::oscillators({.coupling = 0}));
   const auto s = coupled.sample(0, 11, kRng);
   const Batch<double> x = Batch<double>::Zero(96, 11);
   Physics a(coupled), b(free);
@@ -101,7 +103,7 @@ TEST(Oscillators, CouplingActsOnTheDifferenceOnly) {
 }
 
 TEST(Oscillators, LossIsTheWholeSquareOfTheMiss) {
-  const Oscillators<float> pair;
+  const AnyProblem<float> pair(problems::oscillators());
   Batch<float> y(4, 2), target(4, 2), g(4, 2);
   y << 1, 0, 2, 0, 3, 0, 4, 1;
   target << 0, 0, 0, 0, 0, 0, 0, 3;
@@ -114,7 +116,7 @@ TEST(Oscillators, LossIsTheWholeSquareOfTheMiss) {
 }
 
 TEST(Oscillators, StatesAreDrawnUniformlyAndWantedBack) {
-  const Oscillators<double> pair;
+  const AnyProblem<double> pair(problems::oscillators());
   const auto s = pair.sample(0, 4096, kRng);
   EXPECT_EQ(s.x.rows(), 0);
   EXPECT_TRUE(same_bits(s.y, s.given));
@@ -129,7 +131,7 @@ TEST(Oscillators, StatesAreDrawnUniformlyAndWantedBack) {
 }
 
 TEST(Oscillators, TakesNoMoreMemoryAndLittleOfIt) {
-  const Oscillators<double> pair;
+  const AnyProblem<double> pair(problems::oscillators());
   const auto s = pair.sample_labelled(0, 512, kRng);
   Physics at(pair);
   at.gradient(s.x, s.given, s.y);
@@ -142,12 +144,13 @@ TEST(Oscillators, TakesNoMoreMemoryAndLittleOfIt) {
 }
 
 TEST(Oscillators, RejectsWrongSizes) {
-  const Oscillators<double> pair;
+  const AnyProblem<double> pair(problems::oscillators());
   Workspace work;
   Batch<double> x(95, 2), given(4, 2), y(4, 2);
   x.setZero(), given.setZero();
   EXPECT_THROW(pair.forward(x, given, y, work), ContractError);
-  EXPECT_THROW(Oscillators<double>({.steps = 0}), ContractError);
+  EXPECT_THROW(AnyProblem<double>(problems::oscillators({.steps = 0})),
+               ContractError);
 }
 
 }  // namespace

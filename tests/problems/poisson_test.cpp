@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "suite/core/any_problem.h"
 #include "tests/support/bits.h"
 
 namespace physinv {
@@ -22,8 +23,8 @@ Batch<T> sources() {
 
 template <class T>
 Batch<T> potential(const Batch<T>& x, double relative) {
-  const Poisson<T> problem(
-      {.rows = kRows, .columns = kColumns, .relative = relative});
+  const AnyProblem<T> problem(problems::poisson(
+      {.rows = kRows, .columns = kColumns, .relative = relative}));
   Batch<T> y(x.rows(), x.cols());
   Workspace work;
   problem.forward(x, Batch<T>(0, x.cols()), y, work);

@@ -1,6 +1,7 @@
 // The solver entries of hig-quantum-dipole.
 
 #include "problems/quantum_dipole/quantum_dipole.h"
+#include "suite/core/any_problem.h"
 #include "tests/problems/physics_checks.h"
 #include "tests/support/hig_reference.h"
 #include "tests/support/singular_values.h"
@@ -45,21 +46,22 @@ void check_solver(const Json& entry, const TwoNorm& same) {
   const Json in = entry.at("input"), out = entry.at("expected");
   const Batch<T> x = flat(in.at("u")).cast<T>(), given(0, 1);
   const Batch<T> target = flat(in.at("target"), 2 * kQuantumPoints).cast<T>();
-  const QuantumDipole<T> box({.steps = x.rows()});
+  const AnyProblem<T> box(problems::quantum_dipole({.steps = x.rows()}));
   Physics at(box);
   const Batch<T> y = at.linearize(x, given);
   EXPECT_TRUE(same(y, flat(out.at("psi"))));
   EXPECT_TRUE(same(double(y.squaredNorm()), number(out.at("norm2"))));
   for (const auto& [steps, state] : states_after(out)) {
     ASSERT_TRUE(1 <= steps && steps <= x.rows()) << steps;
-    const QuantumDipole<T> part({.steps = steps});
+    const AnyProblem<T> part(problems::quantum_dipole({.steps = steps}));
     EXPECT_TRUE(same(Physics(part).forward(x.topRows(steps), given), state))
         << "after " << steps;
   }
   Vector<double> loss(1);
   Batch<T> y_bar(y);
   for (const bool accurate : {false, true}) {
-    const QuantumDipole<T> p({.steps = x.rows(), .accurate_loss = accurate});
+    const AnyProblem<T> p(problems::quantum_dipole(
+        {.steps = x.rows(), .accurate_loss = accurate}));
     p.loss(y, target, loss);
     EXPECT_TRUE(same(loss(0), number(out.at("loss"))));
     p.loss_gradient(y, target, y_bar);

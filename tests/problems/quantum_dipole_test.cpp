@@ -2,6 +2,7 @@
 
 #include <complex>
 
+#include "suite/core/any_problem.h"
 #include "tests/problems/physics_checks.h"
 #include "tests/support/bits.h"
 
@@ -17,20 +18,21 @@ Batch<T> none(Index n) {
 
 /// Normal controls of deviation `scale`.
 Batch<double> controls(Index steps, Index n, double scale) {
-  return QuantumDipole<double>({.steps = steps, .deviation = scale})
+  return AnyProblem<double>(
+             problems::quantum_dipole({.steps = steps, .deviation = scale}))
       .sample_labelled(0, n, kRng)
       .x;
 }
 
 TEST(QuantumDipole, DerivativesAgreeWithDifferences) {
-  const QuantumDipole<double> box;
+  const AnyProblem<double> box(problems::quantum_dipole());
   expect_derivatives(box, controls(384, 3, 0.3), none<double>(3), 1e-6);
 }
 
 TEST(QuantumDipole, AnyNumberOfSteps) {
   for (const Index steps : {1, 2, 3, 5, 11}) {
     SCOPED_TRACE(steps);
-    const QuantumDipole<double> box({.steps = steps});
+    const AnyProblem<double> box(problems::quantum_dipole({.steps = steps}));
     const Batch<double> x = controls(steps, 9, 0.5);
     expect_derivatives(box, x, none<double>(9), 1e-6);
     expect_independent_samples<double>(box, x, none<double>(9));
@@ -39,7 +41,7 @@ TEST(QuantumDipole, AnyNumberOfSteps) {
 
 template <class T>
 void check_independent() {
-  const QuantumDipole<T> box;
+  const AnyProblem<T> box(problems::quantum_dipole());
   expect_independent_samples<T>(
       box, controls(384, 37, 0.3).template cast<T>(), none<T>(37));
 }
@@ -51,7 +53,7 @@ TEST(QuantumDipole, ASampleDoesNotDependOnItsBatch) {
 
 template <class T>
 void check_contained() {
-  const QuantumDipole<T> box;
+  const AnyProblem<T> box(problems::quantum_dipole());
   const Batch<T> good = controls(384, 19, 0.1).template cast<T>();
   for (const T u : {std::numeric_limits<T>::quiet_NaN(),
                     std::numeric_limits<T>::infinity(),
@@ -76,11 +78,11 @@ TEST(QuantumDipole, TheNormIsConserved) {
   for (const double scale : {0.0, 0.3, 30.0, 3000.0, 1e7}) {
     SCOPED_TRACE(scale);
     const Batch<double> x = controls(384, 8, scale);
-    const QuantumDipole<double> box;
+    const AnyProblem<double> box(problems::quantum_dipole());
     Physics at(box);
     const Batch<double> y = at.forward(x, none<double>(8));
     EXPECT_LE((y.colwise().norm().array() - 1).abs().maxCoeff(), 1e-12);
-    const QuantumDipole<float> rough;
+    const AnyProblem<float> rough(problems::quantum_dipole());
     Physics rounded(rough);
     const Batch<float> z = rounded.forward(x.cast<float>(), none<float>(8));
     EXPECT_LE((z.colwise().norm().array() - 1).abs().maxCoeff(), 1e-4);
@@ -91,7 +93,7 @@ TEST(QuantumDipole, TheNormIsConserved) {
 }
 
 TEST(QuantumDipole, NoControlMovesTheStateAlongItself) {
-  const QuantumDipole<double> box;
+  const AnyProblem<double> box(problems::quantum_dipole());
   Physics at(box);
   const Batch<double> x = controls(384, 6, 0.3);
   const Batch<double> psi = at.linearize(x, none<double>(6));
@@ -100,7 +102,7 @@ TEST(QuantumDipole, NoControlMovesTheStateAlongItself) {
 }
 
 TEST(QuantumDipole, WithoutControlOnlyThePhaseTurns) {
-  const QuantumDipole<double> box;
+  const AnyProblem<double> box(problems::quantum_dipole());
   Physics at(box);
   const Batch<double> y =
       at.forward(Batch<double>::Zero(384, 1), none<double>(1));
@@ -116,7 +118,8 @@ TEST(QuantumDipole, WithoutControlOnlyThePhaseTurns) {
 }
 
 TEST(QuantumDipole, LossesOfKnownStates) {
-  const QuantumDipole<double> box, accurate({.accurate_loss = true});
+  const AnyProblem<double> box(problems::quantum_dipole()),
+      accurate(problems::quantum_dipole({.accurate_loss = true}));
   const Vector<double> psi1 = quantum_observation(quantum_eigenstate(1));
   const Vector<double> psi2 = quantum_observation(quantum_eigenstate(2));
   const Vector<double> psi3 = quantum_observation(quantum_eigenstate(3));
@@ -126,8 +129,8 @@ TEST(QuantumDipole, LossesOfKnownStates) {
   Vector<double> loss(3), low(3), high(3), same(3);
   box.loss(y, t, loss);
   accurate.loss(y, t, same);
-  box.level_loss(2, y, t, low);
-  box.level_loss(3, y, t, high);
+  quantum_level_loss<double>(2, y, t, low);
+  quantum_level_loss<double>(3, y, t, high);
   const Comparator near(0, 1e-14);
   EXPECT_TRUE(near(loss, Eigen::Vector3d(1, 1 - 0.96 * 0.96, 0)));
   EXPECT_TRUE(near(same, loss));
@@ -136,7 +139,7 @@ TEST(QuantumDipole, LossesOfKnownStates) {
 }
 
 TEST(QuantumDipole, LossGradientAgreesWithDifferences) {
-  const QuantumDipole<double> box;
+  const AnyProblem<double> box(problems::quantum_dipole());
   const Batch<double> y = waves<double>(28, 4, 0.2) * 0.3;
   const Batch<double> t = waves<double>(28, 4, 1.1) * 0.4;
   Batch<double> g(28, 4);
@@ -153,8 +156,13 @@ TEST(QuantumDipole, LossGradientAgreesWithDifferences) {
 }
 
 TEST(QuantumDipole, TheAccurateLossResolvesWhatTheOtherRoundsAway) {
-  const QuantumDipole<float> box({.accurate_loss = true}), plain;
-  Batch<float> t = plain.sample(0, 1, kRng).y.cast<float>(), y = t;
+  const AnyProblem<float> box(
+      problems::quantum_dipole({.accurate_loss = true})),
+      plain(problems::quantum_dipole());
+  Batch<float> t = AnyProblem<double>(problems::quantum_dipole())
+                       .sample(0, 1, kRng)
+                       .y.cast<float>(),
+               y = t;
   const double angle = 1e-5;
   y += float(angle) * quantum_observation(quantum_eigenstate(1)).cast<float>();
   Vector<double> loss(1), rough(1);
@@ -165,21 +173,20 @@ TEST(QuantumDipole, TheAccurateLossResolvesWhatTheOtherRoundsAway) {
 }
 
 TEST(QuantumDipole, ProjectionTakesOutWhatNoControlActsOn) {
-  const QuantumDipole<double> box;
+  const AnyProblem<double> box(problems::quantum_dipole());
   Physics at(box);
   const Batch<double> x = controls(384, 5, 0.3);
   const Batch<double> psi = at.linearize(x, none<double>(5));
   const Batch<double> raw = waves<double>(28, 5, 0.7);
   Batch<double> g = raw;
-  const GradientProjection<double>& hook = box;
-  hook.project(psi, g);
+  box.project(psi, g);
   EXPECT_LE((psi.array() * g.array()).colwise().sum().abs().maxCoeff(), 1e-13);
   EXPECT_GT((raw - g).norm(), 0.05);
   EXPECT_TRUE(Comparator(1e-12, 0)(at.pullback(g), at.pullback(raw)));
 }
 
 TEST(QuantumDipole, TargetsAreUniformOnACircleOfStates) {
-  const QuantumDipole<double> box;
+  const AnyProblem<double> box(problems::quantum_dipole());
   const auto s = box.sample(0, 1024, kRng);
   EXPECT_EQ(s.x.rows(), 0);
   const Vector<double> psi2 = quantum_observation(quantum_eigenstate(2));
@@ -196,7 +203,7 @@ TEST(QuantumDipole, TargetsAreUniformOnACircleOfStates) {
 }
 
 TEST(QuantumDipole, NoControlCannotReachTheThirdLevelAtFirstOrder) {
-  const QuantumDipole<double> box;
+  const AnyProblem<double> box(problems::quantum_dipole());
   Physics at(box);
   const Batch<double> j =
       at.jacobian(Batch<double>::Zero(384, 1), none<double>(1));
@@ -212,8 +219,8 @@ TEST(QuantumDipole, NoControlCannotReachTheThirdLevelAtFirstOrder) {
 // An inverse power multiplies what is lost here.
 TEST(QuantumDipole, JacobiansInFloatAreThoseOfDoubleRounded) {
   const Batch<float> x = controls(384, 21, 0.3).cast<float>();
-  const QuantumDipole<float> single;
-  const QuantumDipole<double> box;
+  const AnyProblem<float> single(problems::quantum_dipole());
+  const AnyProblem<double> box(problems::quantum_dipole());
   Batch<float> j(28 * 384, 21);
   Batch<double> exact(28 * 384, 21);
   Workspace work;
@@ -223,7 +230,7 @@ TEST(QuantumDipole, JacobiansInFloatAreThoseOfDoubleRounded) {
 }
 
 TEST(QuantumDipole, TakesLittleMemory) {
-  const QuantumDipole<double> box;
+  const AnyProblem<double> box(problems::quantum_dipole());
   const Batch<double> x = controls(384, 256, 0.1);
   Physics at(box);
   at.gradient(x, none<double>(256), waves<double>(28, 256, 0));
@@ -234,7 +241,7 @@ TEST(QuantumDipole, TakesLittleMemory) {
 }
 
 TEST(QuantumDipole, RejectsWrongSizes) {
-  const QuantumDipole<double> box;
+  const AnyProblem<double> box(problems::quantum_dipole());
   Workspace work;
   Batch<double> x = Batch<double>::Zero(383, 2), y(28, 2);
   EXPECT_THROW(box.forward(x, none<double>(2), y, work), ContractError);

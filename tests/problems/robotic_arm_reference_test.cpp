@@ -6,6 +6,7 @@
 #include <map>
 
 #include "problems/robotic_arm/robotic_arm.h"
+#include "suite/core/any_problem.h"
 #include "suite/nn/mlp.h"
 #include "tests/support/jpo_entries.h"
 #include "tests/support/jpo_reference.h"
@@ -22,7 +23,7 @@ const std::string kId = "jpo-robotic-arm";
 /// as T rounds them.
 template <class T>
 void check_case(const Json& c, const Comparator& same) {
-  Physics at{RoboticArm<T>()};
+  Physics at{AnyProblem<T>(problems::robotic_arm())};
   const Batch<T> x = vector(c.at("x"), 4).cast<T>(), given(0, 1);
   const Batch<T> target = vector(c.at("target"), 2).cast<T>();
   const auto [y, loss, x_bar] = at.losses(x, given, target);
@@ -50,18 +51,18 @@ void check_forward(const Json& entry) {
 void check_bfgs(const Json& entry) {
   for (const Json& stored : entry.at("runs")) {
     SCOPED_TRACE(stored.at("target").dump());
-    const auto run =
-        record_bfgs(Matching<RoboticArm>{vector(stored.at("target"), 2)},
-                    vector(stored.at("x0"), 4),
-                    stored.at("gtol"));
+    const auto run = record_bfgs(
+        Matching{vector(stored.at("target"), 2), problems::robotic_arm()},
+        vector(stored.at("x0"), 4),
+        stored.at("gtol"));
     expect_run(entry, stored, run, 1);
   }
 }
 
 void check_arm_descent(const Json& entry) {
-  const Matching<RoboticArm> problems{columns(entry.at("targets"), 2)};
+  const Matching at{columns(entry.at("targets"), 2), problems::robotic_arm()};
   // Section 3: gtol.
-  check_descent(entry, problems, 4, problems.targets.cols(), 1e-10);
+  check_descent(entry, at, 4, at.targets.cols(), 1e-10);
 }
 
 void check_jpo(const Json& entry) {
@@ -70,12 +71,13 @@ void check_jpo(const Json& entry) {
   const Samples<double> s{{}, targets, Batch<double>(0, targets.cols())};
   for (const Precision precision : {Precision::f64, Precision::f32}) {
     SCOPED_TRACE(to_string(precision));
-    expect_jpo<RoboticArm>(
+    expect_jpo(
         kId,
         entry,
         {.inputs = {Field::observations},
          .network = nn::mlp({.hidden = {sizes.begin() + 1, sizes.end() - 1}}),
          .rate = 1e-3},
+        problems::robotic_arm(),
         s,
         precision);
   }

@@ -9,6 +9,7 @@
 #include "optimizers/bfgs.h"
 #include "optimizers/drive.h"
 #include "optimizers/gradient_descent.h"
+#include "suite/core/any_problem.h"
 #include "suite/core/check.h"
 #include "tests/support/bits.h"
 #include "tests/support/gradient_check.h"
@@ -25,21 +26,23 @@ Batch<T> none(const Batch<T>& x) {
 
 template <class T>
 Batch<T> tips(const Batch<T>& x) {
-  return Physics{RoboticArm<T>()}.forward(x, none(x));
+  return Physics{AnyProblem<T>(problems::robotic_arm())}.forward(x, none(x));
 }
 
 template <class T>
 Batch<T> jacobians(const Batch<T>& x) {
-  return Physics{RoboticArm<T>()}.jacobian(x, none(x));
+  return Physics{AnyProblem<T>(problems::robotic_arm())}.jacobian(x, none(x));
 }
 
 template <class T>
 Batch<T> pulled(const Batch<T>& x, const Batch<T>& y_bar) {
-  return Physics{RoboticArm<T>()}.gradient(x, none(x), y_bar);
+  return Physics{AnyProblem<T>(problems::robotic_arm())}.gradient(
+      x, none(x), y_bar);
 }
 
 Samples<double> draw(Index n, std::uint64_t seed = 1) {
-  return RoboticArm<double>().sample(0, n, Rng::root("test/arm", seed));
+  return AnyProblem<double>(problems::robotic_arm())
+      .sample(0, n, Rng::root("test/arm", seed));
 }
 
 /// The loss of every arm against one target.
@@ -136,15 +139,18 @@ TYPED_TEST(RoboticArmIn, ReadsAndWritesBlocksOfLargerMatrices) {
   Batch<T> big(7, 30), out = Batch<T>::Constant(5, 30, T(-3));
   big.block(1, 4, 4, 20) = x;
   Workspace work;
-  RoboticArm<T>().forward(
-      big.block(1, 4, 4, 20), Batch<T>(0, 20), out.block(2, 6, 2, 20), work);
+  AnyProblem<T>(problems::robotic_arm())
+      .forward(big.block(1, 4, 4, 20),
+               Batch<T>(0, 20),
+               out.block(2, 6, 2, 20),
+               work);
   EXPECT_TRUE(same_bits(Batch<T>(out.block(2, 6, 2, 20)), tips(x)));
   EXPECT_EQ((out.array() == T(-3)).count(), 5 * 30 - 2 * 20);
 }
 
 TYPED_TEST(RoboticArmIn, EmptyBatchesAndMemory) {
   using T = TypeParam;
-  const RoboticArm<T> arm;
+  const AnyProblem<T> arm(problems::robotic_arm());
   Tape tape;
   Workspace work;
   for (const Index n : {128, 0, 3, 128}) {
@@ -216,12 +222,15 @@ TEST(RoboticArm, SamplesHaveTheirDistribution) {
 }
 
 TEST(RoboticArm, ChecksItsContract) {
-  const RoboticArm<double> arm;
+  const AnyProblem<double> arm(problems::robotic_arm());
   Batch<double> x(3, 2), given(0, 2), y(2, 2);
   Workspace work;
   EXPECT_THROW(arm.forward(x, given, y, work), ContractError);
-  EXPECT_THROW(RoboticArm<double>({.links = {1, 0, 1}}), ContractError);
-  EXPECT_THROW(RoboticArm<double>({.deviation = {1, 1, -1, 1}}), ContractError);
+  EXPECT_THROW(AnyProblem<double>(problems::robotic_arm({.links = {1, 0, 1}})),
+               ContractError);
+  EXPECT_THROW(
+      AnyProblem<double>(problems::robotic_arm({.deviation = {1, 1, -1, 1}})),
+      ContractError);
 }
 
 }  // namespace

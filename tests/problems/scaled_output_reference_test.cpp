@@ -2,6 +2,7 @@
 // before the problem's own derivatives.
 
 #include "problems/scaled_output/scaled_output.h"
+#include "suite/core/any_problem.h"
 #include "tests/problems/physics_checks.h"
 #include "tests/support/hig_reference.h"
 #include "tests/support/singular_values.h"
@@ -39,7 +40,8 @@ void check_forward(const Json& entry) {
   const Vector<double> theta = flat(in.at("theta"), 30),
                        points = flat(in.at("x"));
   const Index n = points.size();
-  const ScaledOutput<double> fit({.gamma = number(in.at("gamma"))});
+  const AnyProblem<double> fit(
+      problems::scaled_output({.gamma = number(in.at("gamma"))}));
   Physics at(fit);
   Batch<double> y(2, n), target(2, n), hidden(7, n), stacked(2 * n, 30);
   std::vector<Network> nets;

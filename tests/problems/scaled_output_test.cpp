@@ -1,5 +1,6 @@
 #include "problems/scaled_output/scaled_output.h"
 
+#include "suite/core/any_problem.h"
 #include "tests/problems/physics_checks.h"
 
 namespace physinv::test {
@@ -9,7 +10,7 @@ const Rng kRng = Rng::root("scaled_output_test", 1);
 
 TEST(ScaledOutput, DerivativesAgreeWithDifferences) {
   for (const double gamma : {1.0, 0.1, 0.01, 1e-12}) {
-    const ScaledOutput<double> fit({.gamma = gamma});
+    const AnyProblem<double> fit(problems::scaled_output({.gamma = gamma}));
     const auto s = fit.sample(0, 5, kRng);
     const Batch<double> x = waves<double>(2, 5, 0.3);
     expect_derivatives(fit, x, s.given, 1e-8);
@@ -20,7 +21,7 @@ TEST(ScaledOutput, DerivativesAgreeWithDifferences) {
 
 template <class T>
 void check_columns() {
-  const ScaledOutput<T> fit;
+  const AnyProblem<T> fit(problems::scaled_output());
   const auto s = fit.sample(0, 37, kRng).template cast<T>();
   expect_independent_samples<T>(fit, s.x, s.given);
   for (const Index row : {0, 1}) {
@@ -36,7 +37,7 @@ TEST(ScaledOutput, ColumnsAreIndependent) {
 }
 
 TEST(ScaledOutput, PointsAreUniformAndSolutionsExact) {
-  const ScaledOutput<double> fit({.gamma = 0.01});
+  const AnyProblem<double> fit(problems::scaled_output({.gamma = 0.01}));
   const auto s = fit.sample(0, 8192, kRng);
   EXPECT_GE(s.given.minCoeff(), -1);
   EXPECT_LT(s.given.maxCoeff(), 1);
@@ -50,8 +51,9 @@ TEST(ScaledOutput, PointsAreUniformAndSolutionsExact) {
 }
 
 TEST(ScaledOutput, RejectsWhatItCannotDo) {
-  EXPECT_THROW(ScaledOutput<double>({.gamma = 0}), ContractError);
-  const ScaledOutput<double> fit;
+  EXPECT_THROW(AnyProblem<double>(problems::scaled_output({.gamma = 0})),
+               ContractError);
+  const AnyProblem<double> fit(problems::scaled_output());
   Workspace work;
   Batch<double> x = Batch<double>::Zero(3, 2), given(1, 2), y(2, 2);
   EXPECT_THROW(fit.forward(x, given, y, work), ContractError);

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "problems/wave_packet/wave_packet.h"
+#include "suite/core/any_problem.h"
 #include "suite/nn/vgg.h"
 #include "tests/support/jpo_entries.h"
 #include "tests/support/jpo_reference.h"
@@ -35,7 +36,7 @@ double xi_of(double t0) {
 /// Of every column of x against the same column of targets.
 template <class T>
 auto evaluated(const Batch<double>& xi, const Batch<double>& targets) {
-  Physics at{WavePacket<T>(options_of(targets.rows()))};
+  Physics at{AnyProblem<T>(problems::wave_packet(options_of(targets.rows())))};
   const Batch<T> x = xi.cast<T>();
   const Batch<T> given = Batch<T>::Zero(targets.rows(), xi.cols());
   auto found = at.losses(x, given, targets.cast<T>());
@@ -112,18 +113,18 @@ void check_bfgs(const Json& entry) {
   for (Index i = 0; i < y.cols(); ++i) {
     SCOPED_TRACE(i);
     const Json stored = runs.at(static_cast<std::size_t>(i));
-    const auto run =
-        record_bfgs(Matching<WavePacket>{y.col(i), options_of(y.rows())},
-                    vector(stored.at("x0"), 1),
-                    stored.at("gtol"));
+    const auto run = record_bfgs(
+        Matching{y.col(i), problems::wave_packet(options_of(y.rows()))},
+        vector(stored.at("x0"), 1),
+        stored.at("gtol"));
     expect_run(entry, stored, run, 1);
   }
 }
 
 void check_packet_descent(const Json& entry) {
   const Batch<double> y = signals();
-  const Matching<WavePacket> problems{y, options_of(y.rows())};
-  check_descent(entry, problems, 1, y.cols(), 1e-5);  // section 3: gtol
+  const Matching at{y, problems::wave_packet(options_of(y.rows()))};
+  check_descent(entry, at, 1, y.cols(), 1e-5);  // section 3: gtol
 }
 
 void check_jpo(const Json& entry) {
@@ -131,21 +132,20 @@ void check_jpo(const Json& entry) {
   const Samples<double> s{{}, y, Batch<double>::Zero(y.rows(), y.cols())};
   for (const Precision precision : {Precision::f64, Precision::f32}) {
     SCOPED_TRACE(to_string(precision));
-    expect_jpo<WavePacket>(
-        kId,
-        entry,
-        {.inputs = {Field::observations},
-         .network = nn::vgg({.grid = {.columns = y.rows()},
-                             .features = {16, 16, 16, 16, 16},
-                             .hidden = {64, 32}}),
-         .rate = 1e-3,
-         // Fifteen times M9's: the signal is 128 times as long as a unit of xi,
-         // so what rounding does to the network's output, 1e-6, moves the
-         // gradient by up to 1.02e-3 of its largest entry.
-         .single = {.gradient = 1.5e-3}},
-        s,
-        precision,
-        options_of(y.rows()));
+    expect_jpo(kId,
+               entry,
+               {.inputs = {Field::observations},
+                .network = nn::vgg({.grid = {.columns = y.rows()},
+                                    .features = {16, 16, 16, 16, 16},
+                                    .hidden = {64, 32}}),
+                .rate = 1e-3,
+                // Fifteen times M9's: the signal is 128 times as long as a unit
+                // of xi, so what rounding does to the network's output, 1e-6,
+                // moves the gradient by up to 1.02e-3 of its largest entry.
+                .single = {.gradient = 1.5e-3}},
+               problems::wave_packet(options_of(y.rows())),
+               s,
+               precision);
   }
 }
 

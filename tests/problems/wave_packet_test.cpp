@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "suite/core/any_problem.h"
 #include "suite/core/check.h"
 #include "tests/support/bits.h"
 #include "tests/support/gradient_check.h"
@@ -25,7 +26,7 @@ Batch<T> quiet(Index n) {
 
 template <class T>
 Batch<T> signals(const Batch<T>& x, const Batch<T>& given) {
-  return Physics{WavePacket<T>()}.forward(x, given);
+  return Physics{AnyProblem<T>(problems::wave_packet())}.forward(x, given);
 }
 
 template <class T>
@@ -35,18 +36,19 @@ Batch<T> signals(const Batch<T>& x) {
 
 template <class T>
 Batch<T> jacobians(const Batch<T>& x) {
-  return Physics{WavePacket<T>()}.jacobian(x, quiet<T>(x.cols()));
+  return Physics{AnyProblem<T>(problems::wave_packet())}.jacobian(
+      x, quiet<T>(x.cols()));
 }
 
 template <class T>
 Batch<T> pulled(const Batch<T>& x, const Batch<T>& given, const Batch<T>& r) {
-  return Physics{WavePacket<T>()}.gradient(x, given, r);
+  return Physics{AnyProblem<T>(problems::wave_packet())}.gradient(x, given, r);
 }
 
 template <class T>
 Vector<double> losses(const Batch<T>& y, const Batch<T>& target) {
   Vector<double> loss(y.cols());
-  WavePacket<T>().loss(y, target, loss);
+  AnyProblem<T>(problems::wave_packet()).loss(y, target, loss);
   return loss;
 }
 
@@ -62,8 +64,8 @@ double slope(double t, double xi) {
 }
 
 Samples<double> draw(Index n, std::uint64_t seed = 1) {
-  return WavePacket<double>().sample_labelled(
-      0, n, Rng::root("test/wave_packet", seed));
+  return AnyProblem<double>(problems::wave_packet())
+      .sample_labelled(0, n, Rng::root("test/wave_packet", seed));
 }
 
 /// Centres inside the window, around it, and where packets end.
@@ -105,7 +107,7 @@ TEST(WavePacket, OtherConstants) {
                             .width = 1.5,
                             .centre = 30,
                             .scale = 10};
-  const WavePacket<double> packet(o);
+  const AnyProblem<double> packet(problems::wave_packet(o));
   Batch<double> x(1, 101), y(64, 101);
   x.row(0).setLinSpaced(-4, 5);
   Workspace work;
@@ -116,7 +118,8 @@ TEST(WavePacket, OtherConstants) {
 }
 
 TEST(WavePacket, WholeSquaredErrorIsTwiceTheHalf) {
-  const WavePacket<double> half, whole({.half_loss = false});
+  const AnyProblem<double> half(problems::wave_packet()),
+      whole(problems::wave_packet({.half_loss = false}));
   const Batch<double> y = draw(3, 1).y, target = draw(3, 2).y;
   Vector<double> a(3), b(3);
   Batch<double> slope(y), twice(y);
@@ -180,10 +183,11 @@ TYPED_TEST(WavePacketIn, ReadsAndWritesBlocksOfLargerMatrices) {
   big.block(1, 4, 1, 20) = s.x;
   given.block(7, 2, kSamples, 20) = s.given;
   Workspace work;
-  WavePacket<T>().forward(big.block(1, 4, 1, 20),
-                          given.block(7, 2, kSamples, 20),
-                          out.block(3, 6, kSamples, 20),
-                          work);
+  AnyProblem<T>(problems::wave_packet())
+      .forward(big.block(1, 4, 1, 20),
+               given.block(7, 2, kSamples, 20),
+               out.block(3, 6, kSamples, 20),
+               work);
   EXPECT_TRUE(same_bits(Batch<T>(out.block(3, 6, kSamples, 20)),
                         signals<T>(s.x, s.given)));
   EXPECT_EQ((out.array() == T(-3)).count(), 301 * 30 - kSamples * 20);
@@ -191,7 +195,7 @@ TYPED_TEST(WavePacketIn, ReadsAndWritesBlocksOfLargerMatrices) {
 
 TYPED_TEST(WavePacketIn, EmptyBatchesAndMemory) {
   using T = TypeParam;
-  const WavePacket<T> packet;
+  const AnyProblem<T> packet(problems::wave_packet());
   Tape tape;
   Workspace work;
   for (const Index n : {64, 0, 3, 64}) {
@@ -256,8 +260,8 @@ TYPED_TEST(WavePacketIn, CountsWhatItDoesNotCompute) {
     Batch<T> y(kSamples, 1);
     Workspace work;
     Tape tape;
-    WavePacket<T>().forward(x, quiet<T>(1), y, work);
-    WavePacket<T>().linearize(x, quiet<T>(1), y, tape);
+    AnyProblem<T>(problems::wave_packet()).forward(x, quiet<T>(1), y, work);
+    AnyProblem<T>(problems::wave_packet()).linearize(x, quiet<T>(1), y, tape);
     EXPECT_EQ(work.counts, tape.counts);
     return work.counts[Counter::skipped_zeros];
   };
@@ -316,7 +320,7 @@ TYPED_TEST(WavePacketIn, LossIsHalfTheSquaredErrorInDouble) {
 }
 
 TEST(WavePacket, TestSetsHideTheNoiseOfTheSameSignals) {
-  const WavePacket<double> packet;
+  const AnyProblem<double> packet(problems::wave_packet());
   const Rng rng = Rng::root("test/wave_packet", 3);
   const auto shown = packet.sample_labelled(0, 50, rng);
   const auto hidden = packet.sample(0, 50, rng);
@@ -343,15 +347,18 @@ TEST(WavePacket, SamplesHaveTheirDistribution) {
 }
 
 TEST(WavePacket, ChecksItsContract) {
-  const WavePacket<double> packet;
+  const AnyProblem<double> packet(problems::wave_packet());
   Batch<double> x(2, 2), given(256, 2), y(256, 2);
   Workspace work;
   EXPECT_THROW(packet.forward(x, given, y, work), ContractError);
   EXPECT_THROW(packet.forward(x.topRows(1), given.topRows(9), y, work),
                ContractError);
-  EXPECT_THROW(WavePacket<double>({.samples = 100}), ContractError);
-  EXPECT_THROW(WavePacket<double>({.width = 0.5}), ContractError);
-  EXPECT_THROW(WavePacket<double>({.noise = -1}), ContractError);
+  EXPECT_THROW(AnyProblem<double>(problems::wave_packet({.samples = 100})),
+               ContractError);
+  EXPECT_THROW(AnyProblem<double>(problems::wave_packet({.width = 0.5})),
+               ContractError);
+  EXPECT_THROW(AnyProblem<double>(problems::wave_packet({.noise = -1})),
+               ContractError);
 }
 
 }  // namespace

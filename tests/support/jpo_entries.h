@@ -11,23 +11,22 @@
 
 #include "optimizers/drive.h"
 #include "optimizers/gradient_descent.h"
-#include "suite/core/workspace.h"
+#include "suite/core/any_problem.h"
 #include "tests/support/physics.h"
 #include "tests/support/reference.h"
 
 namespace physinv::test {
 
-/// The losses of problems P with observations target.col(i), for the solvers.
-template <template <class> class P>
+/// The losses of problems with observations target.col(i), for the solvers.
 struct Matching {
   Batch<double> targets;
-  typename P<double>::Options options = {};
+  ProblemRecipe recipe;
 
   void operator()(std::span<const Index> active,
                   BatchIn<double> x,
                   VectorOut<double> loss,
                   BatchOut<double> gradient) const {
-    Physics at{P<double>(options)};
+    Physics at{AnyProblem<double>(recipe)};
     const std::vector<Index> some(active.begin(), active.end());
     const auto found =
         at.losses(x,

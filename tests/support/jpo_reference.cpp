@@ -8,6 +8,7 @@
 #include "optimizers/jpo.h"
 #include "optimizers/steps/clip_percentile.h"
 #include "tests/support/formula_weights.h"
+#include "tests/support/listed.h"
 #include "tests/support/quadratic.h"
 
 namespace physinv::test {
@@ -70,15 +71,35 @@ class Noting final : public Network<T> {
   double shift_, last_;
 };
 
+/// Writes down where it was linearized, and the gradients there.
+template <class T>
+class Noted final : public Listed<T> {
+ public:
+  using Listed<T>::Listed;
+
+  void linearize(Point<T> at, BatchOut<T> y, Tape& tape) const override {
+    Listed<T>::linearize(at, y, tape);
+    notes->xi.emplace_back(at.x.template cast<double>());
+  }
+  void pullback(const Tape& tape,
+                BatchIn<T> y_bar,
+                BatchOut<T> x_bar,
+                Workspace& work) const override {
+    Listed<T>::pullback(tape, y_bar, x_bar, work);
+    notes->gradients.emplace_back(x_bar.template cast<double>());
+  }
+};
+
 }  // namespace
 
 void expect_jpo(const std::string& id,
                 const Json& entry,
                 JpoEntry about,
-                const ProblemRecipe& fixed,
-                Index problems,
+                const ProblemRecipe& problem,
+                Samples<double> samples,
                 Precision precision) {
   Notes seen;
+  samples.x.resize(0, samples.count());
   notes = &seen;
   about.rate = setting(entry, "lr", "lr", about.rate);
   about.output_scale =
@@ -105,18 +126,18 @@ void expect_jpo(const std::string& id,
   const auto count = static_cast<Index>(steps.size());
   ASSERT_GE(count, 2);  // a step or more, and what they led to
   StageBench bench(*jpo,
-                   problems,
+                   samples.count(),
                    count,
-                   fixed,
+                   with_samples<Noted>(problem, samples),
                    {.predictor = {about.inputs, net},
                     .surrogate = {},
                     .output_scale = about.output_scale});
-  const Shape shape = fixed.make<double>()->shape();
+  const Shape shape = problem.make<double>()->shape();
   const Index in = input_rows(about.inputs, shape), out = shape.unknowns;
   const auto plain = about.network.make<double>(in, out);
   expect_parameters(entry, plain->parameter_count());
   bench.run(nullptr, precision);
-  const Batch<double> losses = bench.traced<double>(problems);
+  const Batch<double> losses = bench.traced<double>(samples.count());
 
   const bool single = precision == Precision::f32;
   const Comparator exact = EntryTolerance(entry).array();
@@ -146,9 +167,10 @@ void expect_jpo(const std::string& id,
     Batch<double> again = g;
     EXPECT_TRUE(follows(ClipPercentile(0.9).operator()<double>(again),
                         number(step.at("clip_threshold"))));
-    EXPECT_TRUE(follows(
-        seen.clipped.at(at + 1),
-        about.output_scale * columns(step.at("grad_clipped"), out, problems)));
+    EXPECT_TRUE(
+        follows(seen.clipped.at(at + 1),
+                about.output_scale *
+                    columns(step.at("grad_clipped"), out, samples.count())));
 
     const Vector<double>& w = seen.weights.at(at + 1);
     const Json first = step.at("weight_grad_first_entries");

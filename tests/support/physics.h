@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "suite/core/any_problem.h"
 #include "suite/core/problem.h"
 #include "suite/core/threads.h"
 #include "tests/support/bits.h"
@@ -16,7 +17,8 @@ template <template <class> class P, class T>
 T number_of(const P<T>&);
 
 /// A problem with its scratch, on so many threads: `Physics at(problem)` refers
-/// to one, `Physics at{Heat<float>(options)}` has its own.
+/// to one, `Physics at{AnyProblem<float>(problems::heat(options))}` has its
+/// own.
 template <class P>
 struct Physics {
   using T = decltype(number_of(std::declval<const P&>()));

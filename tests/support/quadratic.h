@@ -45,21 +45,16 @@ class GradientQuadratic : public Problem<T>, public Vjp<T> {
     s.y = GradientQuadratic<double>::matrix() * s.x + s.given;
     return s;
   }
-  void forward(BatchIn<T> x,
-               BatchIn<T> given,
-               BatchOut<T> y,
-               Workspace&) const override {
+  void forward(Point<T> at, BatchOut<T> y, Workspace&) const override {
+    const auto &x = at.x, &given = at.given;
     for (Index i = 0; i < x.cols(); ++i) {
       y.col(i) = matrix() * x.col(i) + given.col(i);
       if (x(0, i) > T(options_.broken_above)) y.col(i).setConstant(kNan);
     }
   }
-  void linearize(BatchIn<T> x,
-                 BatchIn<T> given,
-                 BatchOut<T> y,
-                 Tape&) const override {
+  void linearize(Point<T> at, BatchOut<T> y, Tape&) const override {
     Workspace none;
-    forward(x, given, y, none);
+    forward(at, y, none);
   }
   void pullback(const Tape&,
                 BatchIn<T> y_bar,
@@ -91,18 +86,14 @@ class Quadratic final : public GradientQuadratic<T>,
       y_dot.col(i) = this->matrix() * x_dot.col(i);
   }
   void pullback_tangent(const Tape& tape,
-                        BatchIn<T>,
-                        BatchIn<T>,
-                        BatchIn<T> y_bar_dot,
+                        Directions<T> along,
                         BatchOut<T> x_bar_dot,
                         Workspace& work) const override {
-    this->pullback(tape, y_bar_dot, x_bar_dot, work);
+    this->pullback(tape, along.y_bar_dot, x_bar_dot, work);
   }
 
-  void jacobian(BatchIn<T> x,
-                BatchIn<T>,
-                BatchOut<T> j,
-                Workspace&) const override {
+  void jacobian(Point<T> at, BatchOut<T> j, Workspace&) const override {
+    const auto& x = at.x;
     const auto a = this->matrix();
     for (Index i = 0; i < x.cols(); ++i) {
       j.col(i) = a.reshaped();

@@ -26,7 +26,4 @@ struct CaseFolder {
 /// Of the program: all, or the one that it is over.
 std::vector<CaseFolder> folders();
 
-/// Of problems' columns (suite/harness/quantities.h).
-void name_quantities();
-
 }  // namespace physinv

@@ -65,7 +65,6 @@ std::vector<CaseFolder> folders() {
 }
 
 void register_all(Registry& r) {
-  name_quantities();
   std::vector<std::string> elsewhere;
   for (const CaseFolder& folder : listed())
     if (folder.adds.empty())

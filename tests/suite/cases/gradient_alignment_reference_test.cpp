@@ -9,6 +9,7 @@
 
 #include "problems/noisy_absolute/noisy_absolute.h"
 #include "suite/cases/jpo/gradient_alignment/theory.h"
+#include "suite/core/any_problem.h"
 #include "suite/diagnostics/one_step.h"
 #include "tests/support/formula_weights.h"
 #include "tests/support/reference.h"
@@ -74,7 +75,8 @@ void check_noise(const Json& entry) {
   const Index n = a.cols();
   const Batch<double> w = columns(entry.at("omega"), a.rows(), n),
                       phi = columns(entry.at("phi"), a.rows(), n);
-  const NoisyAbsolute<double> problem({.terms = a.rows()});
+  const AnyProblem<double> problem(
+      problems::noisy_absolute({.terms = a.rows()}));
   Batch<double> given(problem.shape().given, n);
   given << Batch<double>::Zero(1, n), vector(entry.at("x_star"), n).transpose(),
       vector(entry.at("lam"), n).transpose(), a, w, phi;

@@ -5,6 +5,7 @@
 
 #include "problems/noisy_absolute/noise_lanes.h"
 #include "suite/cases/jpo/gradient_alignment/theory.h"
+#include "suite/core/any_problem.h"
 #include "suite/core/oracle.h"
 #include "suite/core/probe.h"
 #include "suite/diagnostics/alignment.h"
@@ -222,7 +223,7 @@ TEST(NoiseLanes, DrawsWhatTheProblemDraws) {
   const NoisyAbsoluteOptions options{
       .solution = Solution::sine, .decades = 2, .snr = 0.5};
   constexpr Index kCount = 4000;
-  const NoisyAbsolute<double> problem(options);
+  const AnyProblem<double> problem(problems::noisy_absolute(options));
   const auto set = problem.sample_labelled(0, kCount, Rng::root("noise", 1));
   Batch<double> y(1, kCount), slope(1, kCount);
   Tape tape;
@@ -256,12 +257,13 @@ TEST(NoisyAbsolute, NoNoiseIsLevelZero) {
     auto random = streams<float>(5);
     const Pack<float> one = 1 - Pack<float>{};
     EXPECT_EQ(NoiseLanes<float>(options).noise(random, one)[0], 0);
-    const auto set =
-        NoisyAbsolute<float>(options).sample(0, 3, Rng::root("quiet", 1));
+    const auto set = AnyProblem<double>(problems::noisy_absolute(options))
+                         .sample(0, 3, Rng::root("quiet", 1));
     EXPECT_TRUE(set.given.allFinite());
     EXPECT_TRUE(set.y.allFinite());
   }
-  EXPECT_EQ(NoisyAbsolute<float>(silent).shape().given, 3);
+  EXPECT_EQ(AnyProblem<float>(problems::noisy_absolute(silent)).shape().given,
+            3);
 }
 
 // ---- clipping --------------------------------------------------------------
@@ -406,8 +408,7 @@ Arrays measure(const AlignmentOptions<NoiseLanes>& options,
   const MeasureAlignment<NoiseLanes> stage(options);
   Threads pool(threads);
   const Rng root = Rng::root("gradient_alignment_test", 7);
-  Oracle oracle(
-      problem<NoisyAbsolute>("noisy_absolute"), n, root, stage.needs(), &pool);
+  Oracle oracle(problems::noisy_absolute(), n, root, stage.needs(), &pool);
   Probe probe(oracle, repetitions);
   const Setting setting;
   StageRun run{.oracle = oracle,

@@ -19,7 +19,7 @@ Section section_of(const JpoReportOptions& options, const Evidence& evidence) {
     registry().add(Experiment{
         .name = evidence.experiment,
         .title = "Toy",
-        .problem = problem<NoisyAbsolute>("noisy_absolute"),
+        .problem = problems::noisy_absolute(),
         .setting = {.predictor = {{Field::observations}, nn::mlp({})}}});
   return jpo_section(options, evidence);
 }

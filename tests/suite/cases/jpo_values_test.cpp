@@ -120,7 +120,7 @@ TEST_F(JpoValues, WhereALossIsFirstReached) {
 }
 
 TEST(JpoTraining, EndsAtOrBeyondTheTrainingSamples) {
-  const auto recipe = problem<Billiards>("billiards");
+  const auto recipe = problems::billiards();
   const Batch<double> samples =
       recipe.make<double>()
           ->sample_labelled(0, 4, Rng::root("toy", 0).child("data/train"))

@@ -14,7 +14,7 @@ constexpr Index kExamples = 3;
 
 Outcome solved(heat::Direct solver, Index steps) {
   const auto stage = heat::direct({.solver = solver});
-  StageBench bench(*stage, kExamples, steps, problem<Heat>("heat"), {});
+  StageBench bench(*stage, kExamples, steps, problems::heat(), {});
   return bench.run();
 }
 
@@ -35,7 +35,7 @@ TEST(HeatDirect, LbfgsbByModesIsLbfgsbByCells) {
   for (const Index steps : {1, 2, 5, 15}) {
     SCOPED_TRACE(steps);
     const Outcome modes = solved(heat::Direct::lbfgsb_modes, steps);
-    StageBench bench(*stage, kExamples, steps, problem<Heat>("heat"), {});
+    StageBench bench(*stage, kExamples, steps, problems::heat(), {});
     Lbfgsb cells(
         {.memory = 10, .pgtol = 1e-14, .ftol = 1e-14, .maxiter = steps});
     drive(

@@ -43,12 +43,10 @@ class InBlocks final : public GradientQuadratic<T> {
   static inline std::vector<Index> given_;
 
   Index gradient_block() const override { return 4; }
-  void linearize(BatchIn<T> x,
-                 BatchIn<T> given,
-                 BatchOut<T> y,
-                 Tape& tape) const override {
+  void linearize(Point<T> at, BatchOut<T> y, Tape& tape) const override {
+    const auto& x = at.x;
     given_.push_back(x.cols());
-    GradientQuadratic<T>::linearize(x, given, y, tape);
+    GradientQuadratic<T>::linearize(at, y, tape);
   }
 };
 

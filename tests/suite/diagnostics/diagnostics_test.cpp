@@ -41,22 +41,18 @@ class Toy final : public Problem<T>, public Vjp<T>, public Jacobian<T> {
     s.given.resize(0, count);
     return s;
   }
-  void forward(BatchIn<T> x,
-               BatchIn<T>,
-               BatchOut<T> y,
-               Workspace&) const override {
+  void forward(Point<T> at, BatchOut<T> y, Workspace&) const override {
+    const auto& x = at.x;
     constexpr T kOffset = 1e8;
     for (Index i = 0; i < x.cols(); ++i) {
       y(0, i) = std::exp(x(0, i));
       y(1, i) = std::sqrt(x(1, i) * x(1, i) + kOffset * kOffset) - kOffset;
     }
   }
-  void linearize(BatchIn<T> x,
-                 BatchIn<T> given,
-                 BatchOut<T> y,
-                 Tape& tape) const override {
+  void linearize(Point<T> at, BatchOut<T> y, Tape& tape) const override {
+    const auto& x = at.x;
     Workspace none;
-    forward(x, given, y, none);
+    forward(at, y, none);
     auto j = tape.slot<T>(0, 2, x.cols());
     slopes(x, j);
   }
@@ -67,10 +63,8 @@ class Toy final : public Problem<T>, public Vjp<T>, public Jacobian<T> {
     x_bar = tape.view<T>(0).cwiseProduct(y_bar);
     x_bar.row(0).array() += T(options_.slope_error);
   }
-  void jacobian(BatchIn<T> x,
-                BatchIn<T>,
-                BatchOut<T> j,
-                Workspace&) const override {
+  void jacobian(Point<T> at, BatchOut<T> j, Workspace&) const override {
+    const auto& x = at.x;
     Batch<T> slope(2, x.cols());
     slopes(x, slope);
     j.setZero();
@@ -258,16 +252,12 @@ class Pointwise final : public Problem<T>, public Vjp<T> {
       }
     return s;
   }
-  void forward(BatchIn<T> x,
-               BatchIn<T> given,
-               BatchOut<T> y,
-               Workspace&) const override {
+  void forward(Point<T> at, BatchOut<T> y, Workspace&) const override {
+    const auto &x = at.x, &given = at.given;
     y = x + given;
   }
-  void linearize(BatchIn<T> x,
-                 BatchIn<T> given,
-                 BatchOut<T> y,
-                 Tape&) const override {
+  void linearize(Point<T> at, BatchOut<T> y, Tape&) const override {
+    const auto &x = at.x, &given = at.given;
     y = x + given;
   }
   void pullback(const Tape&,
@@ -303,7 +293,7 @@ TEST(WorkPrecision, FinerSettingsSeeTheSameFunctions) {
 }
 
 TEST(WorkPrecision, InversesAreMeasuredAgainstTheUnknowns) {
-  const auto exponential = problem<Exponential>("exponential");
+  const auto exponential = problems::exponential();
   const auto stage = work_precision({.name = "inverse",
                                      .problem = exponential,
                                      .base = exponential,

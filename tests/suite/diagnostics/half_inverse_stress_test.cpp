@@ -36,7 +36,7 @@ Found stress(double gamma,
              StressStart start,
              Index samples = 4,
              double rate = 1) {
-  const auto recipe = problem<ScaledOutput>("scaled_output", {.gamma = gamma});
+  const auto recipe = problems::scaled_output({.gamma = gamma});
   const auto stage = half_inverse_stress({.problems = {recipe},
                                           .taus = {tau},
                                           .kappas = {kappa},

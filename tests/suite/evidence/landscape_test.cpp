@@ -13,18 +13,15 @@ class Stretch final : public Problem<double>, public Vjp<double> {
   Shape shape() const override { return {2, 2, 1}; }
   Vector<double> start() const override { return Vector<double>::Zero(2); }
   Samples<double> sample(Index, Index, const Rng&) const override { return {}; }
-  void forward(BatchIn<double> x,
-               BatchIn<double> given,
+  void forward(Point<double> at,
                BatchOut<double> y,
                Workspace&) const override {
+    const auto &x = at.x, &given = at.given;
     y.row(0) = x.row(0) + given.row(0), y.row(1) = 2 * x.row(1);
   }
-  void linearize(BatchIn<double> x,
-                 BatchIn<double> given,
-                 BatchOut<double> y,
-                 Tape&) const override {
+  void linearize(Point<double> at, BatchOut<double> y, Tape&) const override {
     Workspace work;
-    forward(x, given, y, work);
+    forward(at, y, work);
   }
   void pullback(const Tape&,
                 BatchIn<double> y_bar,

@@ -65,22 +65,18 @@ class Cubic final : public Problem<T>, public Vjp<T> {
     }
     return s;
   }
-  void forward(BatchIn<T> x,
-               BatchIn<T> given,
-               BatchOut<T> y,
-               Workspace&) const override {
+  void forward(Point<T> at, BatchOut<T> y, Workspace&) const override {
+    const auto &x = at.x, &given = at.given;
     const T slope = static_cast<T>(options_.slope);
     for (Index i = 0; i < x.cols(); ++i)
       for (Index j = 0; j < 2; ++j)
         y(j, i) = x(j, i) * x(j, i) * x(j, i) + slope * x(j, i) + given(0, i);
     if (other_) y *= 2;
   }
-  void linearize(BatchIn<T> x,
-                 BatchIn<T> given,
-                 BatchOut<T> y,
-                 Tape& tape) const override {
+  void linearize(Point<T> at, BatchOut<T> y, Tape& tape) const override {
+    const auto& x = at.x;
     Workspace none;
-    forward(x, given, y, none);
+    forward(at, y, none);
     auto kept = tape.slot<T>(0, 2, x.cols());
     kept =
         (T(3) * x.array().square() + static_cast<T>(options_.slope)).matrix();

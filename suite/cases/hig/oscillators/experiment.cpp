@@ -127,7 +127,7 @@ void add_experiments(Registry& r) {
       .name = kName,
       .title = "Nonlinear oscillators",
       .citation = {.paper = "hig", .where = "Sec. 3.1, Figs. 2, 5, 6, 12, 13"},
-      .problem = problem<Oscillators>("oscillators"),
+      .problem = problems::oscillators(),
       .setting = kSetting,
       .profiles =
           {{.name = "smoke",

@@ -154,7 +154,7 @@ void add_experiments(Registry& r) {
       .name = "hig/poisson",
       .title = "Poisson's equation",
       .citation = {.paper = "hig", .where = "Sec. 3.2, Figs. 3, 7, Table 4"},
-      .problem = problem<GridPoisson>("grid_poisson"),
+      .problem = problems::grid_poisson(),
       .setting = kSetting,
       .profiles = kProfiles,
       .methods = methods(),

@@ -126,7 +126,7 @@ void add_direct_experiment(Registry& r) {
       .name = kDirect,
       .title = "Quantum dipole, control without a network",
       .citation = {.paper = "hig", .where = "Sec. 3.3, Fig. 4b"},
-      .problem = problem<QuantumDipole>("quantum_dipole", {.angles = {0.7, 2}}),
+      .problem = problems::quantum_dipole({.angles = {0.7, 2}}),
       .setting = {.recorded = 16},
       .profiles = {{.name = "smoke", .rows = few(1, 20)},
                    {.name = "quick", .rows = few(3, 100)},

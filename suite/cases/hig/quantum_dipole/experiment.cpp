@@ -173,7 +173,7 @@ std::vector<Profile> conv_profiles() {
 }
 
 ProblemRecipe steered_by_a_network() {
-  return problem<QuantumDipole>("quantum_dipole", {.zero_start = true});
+  return problems::quantum_dipole({.zero_start = true});
 }
 
 }  // namespace

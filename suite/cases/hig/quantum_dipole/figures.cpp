@@ -9,6 +9,7 @@
 #include "suite/cases/hig/common/jacobian_times.h"
 #include "suite/cases/hig/quantum_dipole/grids.h"
 #include "suite/cases/hig/quantum_dipole/metrics.h"
+#include "suite/core/any_problem.h"
 #include "suite/evidence/cell.h"
 #include "suite/evidence/training.h"
 #include "suite/evidence/training_report.h"
@@ -166,7 +167,7 @@ Panel probability(const Answered& answer, std::string title) {
   Workspace work;
   for (Index k = 0; k < frames.cols(); ++k) {
     const Index steps = (k + 1) * kFrame;
-    const QuantumDipole<double> until({.steps = steps});
+    const AnyProblem<double> until(problems::quantum_dipole({.steps = steps}));
     Batch<double> psi(answer.wanted.size(), 1);
     until.forward(answer.x.head(steps), Batch<double>(0, 1), psi, work);
     for (Index j = 0; j < points; ++j)
@@ -184,7 +185,7 @@ Panel probability(const Answered& answer, std::string title) {
 
 /// The probability at the end beside the wanted one.
 Panel at_the_end(const Answered& answer, std::string title) {
-  const QuantumDipole<double> dipole;
+  const AnyProblem<double> dipole(problems::quantum_dipole());
   Workspace work;
   Batch<double> psi(answer.wanted.size(), 1);
   dipole.forward(answer.x, Batch<double>(0, 1), psi, work);

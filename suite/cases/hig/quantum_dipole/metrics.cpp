@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "problems/quantum_dipole/quantum_dipole.h"
+#include "suite/core/any_problem.h"
 #include "suite/core/oracle.h"
 
 namespace physinv::dipole {
@@ -11,11 +12,10 @@ namespace {
 void level_losses(const Snapshot& at, VectorOut<double> out) {
   out.setZero();
   if (at.y.rows() != 2 * kQuantumPoints) return;  // not of this problem
-  const QuantumDipole<double> problem;
   Vector<double> loss(at.y.cols());
-  problem.level_loss(2, at.y, at.oracle.observations(), loss);
+  quantum_level_loss<double>(2, at.y, at.oracle.observations(), loss);
   out(kLow) = loss.mean();
-  problem.level_loss(3, at.y, at.oracle.observations(), loss);
+  quantum_level_loss<double>(3, at.y, at.oracle.observations(), loss);
   out(kHigh) = loss.mean();
 }
 
@@ -28,7 +28,8 @@ void float_losses(const Snapshot& at, VectorOut<double> out) {
   Vector<double> loss(x.cols());
   Workspace work;
   for (const bool accurate : {false, true}) {
-    const QuantumDipole<float> problem({.accurate_loss = accurate});
+    const AnyProblem<float> problem(
+        problems::quantum_dipole({.accurate_loss = accurate}));
     problem.forward(x, given, y, work);
     problem.loss(y, target, loss);
     out(accurate ? kRest : kOverlap) =

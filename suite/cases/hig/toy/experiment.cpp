@@ -90,8 +90,7 @@ void add_experiments(Registry& r) {
         .title = gamma.title,
         .citation = {.paper = "hig",
                      .where = "Secs. 2.1, 2.2, App. B.1, Fig. 1"},
-        .problem =
-            problem<ScaledOutput>("scaled_output", {.gamma = gamma.value}),
+        .problem = problems::scaled_output({.gamma = gamma.value}),
         .setting = {.predictor = {{Field::given},
                                   nn::mlp({.hidden = {kHidden},
                                            .activation = nn::Activation::tanh,

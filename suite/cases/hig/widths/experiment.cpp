@@ -20,7 +20,7 @@ Experiment experiment(Index width) {
   return {.name = name_of(width),
           .title = fmt::format("Nonlinear oscillators, {} wide", width),
           .citation = {.paper = "hig", .where = "Sec. 2.3"},
-          .problem = problem<Oscillators>("oscillators"),
+          .problem = problems::oscillators(),
           .setting = {.predictor = {{Field::observations},
                                     nn::mlp({.hidden = {width, width, width},
                                              .init = nn::Init::glorot})},

@@ -43,8 +43,7 @@ Experiment experiment(const Study& s) {
                .title = s.title,
                .citation = {.paper = "jpo", .where = "Tables 4 and 5"}};
   if (std::string_view(s.varied) == "jpo/billiards") {
-    e.problem =
-        problem<Billiards>("billiards", {.velocity_spread = s.velocity_spread});
+    e.problem = problems::billiards({.velocity_spread = s.velocity_spread});
     e.setting = jpo::billiards::setting();
     e.profiles = profiles({2, 8, 32, 128}, first_seeds(3));
   } else {

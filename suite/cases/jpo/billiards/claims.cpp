@@ -71,7 +71,7 @@ void add_claims(Registry& r) {
   names.add("elsewhere", RunRow(elsewhere));
   names.set("start_misses", Problems(start_misses));
   names.add("beyond_training",
-            jpo::beyond_training(problem<Billiards>("billiards"), 0.02));
+            jpo::beyond_training(problems::billiards(), 0.02));
   names.add("small_differences", [](const Select& runs) {
     return Labelled([=](const std::string& label) {
       return std::vector{small_differences(label, runs)};

@@ -12,8 +12,7 @@ namespace {
 
 /// Fig. 4a: the loss over the cue ball's velocity, for one position.
 Figure landscape() {
-  const Billiards<double> billiards;
-  const auto& target = billiards.options().target;
+  const auto target = BilliardsOptions{}.target;
   const std::array<double, 2> ball = {1.0, 0.3};
   const auto exact = exact_velocity(ball);
   return {
@@ -26,7 +25,7 @@ Figure landscape() {
                   .series = {mark("start", "bfgs", 1, 0),
                              mark("solution", "solution", exact[0], exact[1])},
                   .field = loss_over_plane(
-                      billiards,
+                      *problems::billiards().make<double>(),
                       {.y = Eigen::Vector2d(target[0], target[1]),
                        .given = Eigen::Vector2d(ball[0], ball[1])},
                       spaced(0, 3, 161),

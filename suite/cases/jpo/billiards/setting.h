@@ -7,7 +7,7 @@
 
 namespace physinv::jpo::billiards {
 
-inline ProblemRecipe recipe() { return problem<Billiards>("billiards"); }
+inline ProblemRecipe recipe() { return problems::billiards(); }
 
 inline Setting setting() {
   const auto network = nn::mlp({.hidden = {128, 128, 128}, .frequencies = 4});

@@ -72,7 +72,7 @@ Experiment experiment() {
   e.name = kName;
   e.title = "Gradient alignment";
   e.citation = {.paper = "jpo", .where = "Secs. 2-3, Fig. 2, Apps. A, B"};
-  e.problem = problem<NoisyAbsolute>("noisy_absolute", kSine);
+  e.problem = problems::noisy_absolute(kSine);
   e.profiles = {profile("smoke", {1, 2, 4, 8}, 20),
                 profile("quick", kSizes, kJudged),
                 with_clipped(profile("paper", kSizes, kFull))};

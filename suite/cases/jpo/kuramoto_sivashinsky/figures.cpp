@@ -22,16 +22,17 @@ constexpr const char* kName = "jpo/kuramoto-sivashinsky";
 const Solved kNear = within_of_truth(1e-3);
 
 /// The first problem of seed 0.
-Samples<double> example(const KuramotoSivashinsky<double>& physics) {
+Samples<double> example(const Problem<double>& physics) {
   return physics.sample(0, 1, Rng::root(kName, 0).child("data/test"));
 }
 
 /// Fig. 5a: one trajectory.
 Figure trajectory() {
-  const KuramotoSivashinsky<double> physics;
-  const auto& options = physics.options();
-  const Samples<double> s = example(physics);
-  const Batch<double> u = physics.trajectory(s.x.col(0), s.given.col(0));
+  const KuramotoSivashinskyOptions options;
+  const Samples<double> s =
+      example(*problems::kuramoto_sivashinsky().make<double>());
+  const Batch<double> u = kuramoto_sivashinsky_trajectory<double>(
+      options, s.x.col(0), s.given.col(0));
   Field2D field{.label = "u"};
   for (Index k = 0; k < u.cols(); ++k)
     field.x.push_back(static_cast<double>(k) * options.time_step);
@@ -54,16 +55,17 @@ Figure trajectory() {
 
 /// Fig. 5b: the loss over beta at the true alpha.
 Figure landscape() {
-  const KuramotoSivashinsky<double> physics;
-  const Samples<double> s = example(physics);
+  const auto physics = problems::kuramoto_sivashinsky().make<double>();
+  const Samples<double> s = example(*physics);
   Batch<double> x(2, 401);
   x.row(0).setConstant(s.x(0, 0));
   x.row(1).setLinSpaced(0.5, 1.5);
-  Panel panel = line_panel("bfgs",
-                           "beta",
-                           "loss",
-                           x.row(1),
-                           losses_of(physics, {s.y.col(0), s.given.col(0)}, x));
+  Panel panel =
+      line_panel("bfgs",
+                 "beta",
+                 "loss",
+                 x.row(1),
+                 losses_of(*physics, {s.y.col(0), s.given.col(0)}, x));
   panel.series.push_back(mark("solution", "truth", s.x(1, 0), 0));
   return {
       .id = "fig5b",

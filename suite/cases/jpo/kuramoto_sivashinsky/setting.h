@@ -8,9 +8,7 @@
 
 namespace physinv::jpo::kuramoto_sivashinsky {
 
-inline ProblemRecipe recipe() {
-  return problem<KuramotoSivashinsky>("kuramoto_sivashinsky");
-}
+inline ProblemRecipe recipe() { return problems::kuramoto_sivashinsky(); }
 
 inline Setting setting() {
   const nn::VggOptions predictor{.channels = 2,

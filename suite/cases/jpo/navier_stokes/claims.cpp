@@ -79,7 +79,7 @@ void add_claims(Registry& r) {
   names.add("stuck", RunRow(stuck));
   names.add(
       "beyond_training",
-      jpo::beyond_training(problem<NavierStokes>("navier_stokes"), 0, kLabels));
+      jpo::beyond_training(problems::navier_stokes(), 0, kLabels));
   names.add("better_in_band", better(Equality::band));
   names.add("equal_in_band", equal(Equality::band));
   names.add("table3_from_prior",

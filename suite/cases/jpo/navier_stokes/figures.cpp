@@ -8,6 +8,7 @@
 
 #include "problems/navier_stokes/navier_stokes.h"
 #include "suite/cases/jpo/common/report.h"
+#include "suite/core/any_problem.h"
 #include "suite/core/math.h"
 #include "suite/evidence/field_panel.h"
 #include "suite/harness/networks.h"
@@ -53,7 +54,7 @@ std::array<double, 3> blast(const Vector<double>& z) {
 /// Fig. 6a: the first problem at t = 0, what is hidden and the blast, too.
 Figure at_the_start(const CaseRecord& first) {
   const NavierStokesOptions o;
-  const NavierStokes<double> physics(o);
+  const AnyProblem<double> physics(problems::navier_stokes(o));
   const auto shown = physics.sample_labelled(
       0, 1, root_of(kName, first.info.seed).child("data/test"));
   const auto [x0, vx, vy] = blast(first.data.x.col(0));
@@ -105,7 +106,7 @@ Vector<double> blown(const Batch<double>& x,
   NavierStokesOptions o;
   o.end_time *= double(steps) / double(o.steps);
   o.steps = steps;
-  const NavierStokes<double> physics(o);
+  const AnyProblem<double> physics(problems::navier_stokes(o));
   Batch<double> y(physics.shape().observations, 1);
   Workspace work;
   physics.forward(x, given, y, work);

@@ -15,7 +15,7 @@ inline constexpr BfgsStageOptions kBfgs{
 
 /// `bounded`: so many unknowns pass through tanh.
 inline ProblemRecipe recipe(Index bounded = 1) {
-  return problem<NavierStokes>("navier_stokes", {.bounded = bounded});
+  return problems::navier_stokes({.bounded = bounded});
 }
 
 inline Setting setting() {

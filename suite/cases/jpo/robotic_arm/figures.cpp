@@ -58,7 +58,7 @@ Figure landscape() {
       .title = "Loss and gradient over the first joint angle",
       .where = "Fig. 25b",
       .panels = loss_and_derivative(
-          RoboticArm<double>(),
+          *problems::robotic_arm().make<double>(),
           {Eigen::Vector2d(kTarget[0], kTarget[1])},
           x,
           {.label = "angle 1", .at = x.row(1), .unknown = 1},

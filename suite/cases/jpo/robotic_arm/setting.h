@@ -7,7 +7,7 @@
 
 namespace physinv::jpo::robotic_arm {
 
-inline ProblemRecipe recipe() { return problem<RoboticArm>("robotic_arm"); }
+inline ProblemRecipe recipe() { return problems::robotic_arm(); }
 
 inline Setting setting() {
   const auto network = nn::mlp({.hidden = {128, 128, 128}});

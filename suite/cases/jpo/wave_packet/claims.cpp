@@ -64,7 +64,7 @@ void add_claims(Registry& r) {
   names.add("approached", RunRow(approached));
   names.add("settled", RunRow(settled));
   names.add("beyond_training",
-            jpo::beyond_training(problem<WavePacket>("wave_packet"), 0.02));
+            jpo::beyond_training(problems::wave_packet(), 0.02));
   add_claims_of_folder(r, "jpo/wave_packet", names);
 }
 

@@ -6,6 +6,7 @@
 
 #include "problems/wave_packet/wave_packet.h"
 #include "suite/cases/jpo/common/report.h"
+#include "suite/core/any_problem.h"
 #include "suite/evidence/landscape.h"
 #include "suite/harness/registry.h"
 
@@ -23,11 +24,11 @@ struct Example {
     problem.forward(truth, Batch<double>::Zero(signal.rows(), 1), packet, work);
   }
   double centre() const {
-    const auto& o = problem.options();
+    const WavePacketOptions o;
     return o.centre + o.scale * truth(0, 0);
   }
 
-  WavePacket<double> problem;
+  AnyProblem<double> problem{problems::wave_packet()};
   Batch<double> truth, signal, packet;
 };
 
@@ -55,13 +56,13 @@ Figure waveform(const Example& e) {
 }
 
 Figure landscape(const Example& e) {
-  const auto& o = e.problem.options();
+  const WavePacketOptions o;
   const Vector<double> t0 = Vector<double>::LinSpaced(1021, 1, 256);
   return {.id = "fig3b",
           .title = "Loss and gradient over the packet's centre",
           .where = "Fig. 3b",
           .panels = loss_and_derivative(
-              e.problem,
+              e.problem.problem(),
               {e.signal.col(0), Vector<double>::Zero(o.samples)},
               (t0.array() - o.centre).matrix().transpose() / o.scale,
               {.label = "t0", .at = t0, .scale = o.scale},

@@ -14,7 +14,7 @@ inline constexpr nn::Grid kGrid{.columns = 256};
 
 /// `unit`: so many samples are one.
 inline ProblemRecipe recipe(double unit = WavePacketOptions{}.scale) {
-  return problem<WavePacket>("wave_packet", {.scale = unit});
+  return problems::wave_packet({.scale = unit});
 }
 
 inline NetworkRole predictor(const std::vector<Index>& hidden) {

@@ -40,7 +40,7 @@ std::vector<double> speeds() {
   return all;
 }
 
-const ProblemRecipe kBilliards = problem<Billiards>("billiards", kAhead);
+const ProblemRecipe kBilliards = problems::billiards(kAhead);
 
 }  // namespace
 
@@ -63,8 +63,8 @@ void add_experiments(Registry& r) {
                    .point = velocity,
                    .problems = {kBilliards}}},
        .parameters = {batch_parameter(
-           problem<Billiards>("billiards"), 1024, {}, billiards_closed_form())},
-       .problem = problem<Billiards>("billiards")});
+           problems::billiards(), 1024, {}, billiards_closed_form())},
+       .problem = problems::billiards()});
 }
 
 }  // namespace physinv::numerics::billiards

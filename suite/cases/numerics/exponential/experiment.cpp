@@ -13,24 +13,22 @@ const SweepAxis kOffset{"offset", spaced(-1, 1, 9), false};
 }  // namespace
 
 void add_experiments(Registry& r) {
-  add_atlas(r,
-            {.name = "numerics/exponential",
-             .title = "Numerics of the exponential",
-             .citation = {.paper = "sip", .where = "App. C.2"},
-             .sweeps = {{.id = "places",
-                         .title = "The unknown, coarse and fine",
-                         .x = kPlace,
-                         .y = kOffset,
-                         .point =
-                             [](double place, double offset) {
-                               return Vector<double>::Constant(1,
-                                                               place + offset);
-                             },
-                         .problems = {problem<Exponential>("exponential")}}},
-             .parameters = {batch_parameter(problem<Exponential>("exponential"),
-                                            4096,
-                                            {},
-                                            exponential_closed_form())}});
+  add_atlas(
+      r,
+      {.name = "numerics/exponential",
+       .title = "Numerics of the exponential",
+       .citation = {.paper = "sip", .where = "App. C.2"},
+       .sweeps = {{.id = "places",
+                   .title = "The unknown, coarse and fine",
+                   .x = kPlace,
+                   .y = kOffset,
+                   .point =
+                       [](double place, double offset) {
+                         return Vector<double>::Constant(1, place + offset);
+                       },
+                   .problems = {problems::exponential()}}},
+       .parameters = {batch_parameter(
+           problems::exponential(), 4096, {}, exponential_closed_form())}});
 }
 
 }  // namespace physinv::numerics::exponential

@@ -21,7 +21,7 @@ Vector<double> potential(double size, double k) {
   });
 }
 
-const ProblemRecipe kPoisson = problem<GridPoisson>("grid_poisson");
+const ProblemRecipe kPoisson = problems::grid_poisson();
 
 }  // namespace
 

@@ -20,8 +20,7 @@ std::shared_ptr<const Stage> stress() {
                                    .starts = kStarts,
                                    .samples = kSamples};
   for (const double gamma : kGammas)
-    options.problems.push_back(
-        problem<ScaledOutput>("scaled_output", {.gamma = gamma}));
+    options.problems.push_back(problems::scaled_output({.gamma = gamma}));
   return half_inverse_stress(std::move(options));
 }
 
@@ -34,7 +33,7 @@ void add_experiments(Registry& r) {
       .name = kName,
       .title = "Numerics of half-inverse updates",
       .citation = {.paper = "hig", .where = "Secs. 2.1, 2.3"},
-      .problem = problem<ScaledOutput>("scaled_output"),
+      .problem = problems::scaled_output(),
       .setting = {.predictor = {{Field::given},
                                 nn::mlp({.hidden = {7},
                                          .activation = nn::Activation::tanh,

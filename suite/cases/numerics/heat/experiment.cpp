@@ -15,8 +15,7 @@ namespace {
 constexpr Index kSide = 16;
 
 ProblemRecipe until(double end_time, double noise_floor = 0) {
-  return problem<Heat>(
-      "heat",
+  return problems::heat(
       {.resolution = kSide, .end_time = end_time, .noise_floor = noise_floor});
 }
 
@@ -51,25 +50,24 @@ constexpr HeatOptions kFew{.resolution = 8, .end_time = 1};
 }  // namespace
 
 void add_experiments(Registry& r) {
-  add_atlas(
-      r,
-      {.name = "numerics/heat",
-       .title = "Numerics of heat",
-       .citation = {.paper = "sip", .where = "App. B.3"},
-       .sweeps = {{.id = "times",
-                   .title = "Wave number and end time",
-                   .x = {"wave number", {0, 1, 2, 3, 4, 5, 6, 7, 8}},
-                   .y = kTimes,
-                   .point = wave,
-                   .problems =
-                       along(kTimes,
+  add_atlas(r,
+            {.name = "numerics/heat",
+             .title = "Numerics of heat",
+             .citation = {.paper = "sip", .where = "App. B.3"},
+             .sweeps = {{.id = "times",
+                         .title = "Wave number and end time",
+                         .x = {"wave number", {0, 1, 2, 3, 4, 5, 6, 7, 8}},
+                         .y = kTimes,
+                         .point = wave,
+                         .problems = along(
+                             kTimes,
                              [](double end_time) { return until(end_time); })}},
-       .parameters = {
-           floor_parameter(1),
-           floor_parameter(8),
-           floor_parameter(64),
-           batch_parameter(
-               problem<Heat>("heat", kFew), 32, {}, heat_closed_form(kFew))}});
+             .parameters = {
+                 floor_parameter(1),
+                 floor_parameter(8),
+                 floor_parameter(64),
+                 batch_parameter(
+                     problems::heat(kFew), 32, {}, heat_closed_form(kFew))}});
 }
 
 }  // namespace physinv::numerics::heat

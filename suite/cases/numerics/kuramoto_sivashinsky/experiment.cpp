@@ -14,8 +14,7 @@ namespace physinv::ks_numerics {
 namespace {
 
 ProblemRecipe solver(double end, Index steps, Index cells = 128) {
-  return problem<KuramotoSivashinsky>(
-      "kuramoto_sivashinsky",
+  return problems::kuramoto_sivashinsky(
       {.cells = cells,
        .time_step = end / static_cast<double>(steps),
        .steps = steps});

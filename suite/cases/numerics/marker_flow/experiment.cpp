@@ -11,7 +11,7 @@ namespace physinv::numerics::marker_flow {
 namespace {
 
 ProblemRecipe of_steps(Index steps) {
-  return problem<MarkerFlow>("marker_flow", {.cells = 32, .steps = steps});
+  return problems::marker_flow({.cells = 32, .steps = steps});
 }
 
 /// Two waves for each component, of which no two neighbours have one value: the
@@ -58,8 +58,7 @@ void add_experiments(Registry& r) {
                        },
                    .problems = along(kGrids,
                                      [](double cells) {
-                                       return problem<MarkerFlow>(
-                                           "marker_flow",
+                                       return problems::marker_flow(
                                            {.cells = static_cast<Index>(cells),
                                             .end_time = 0.25,
                                             .steps = 1});
@@ -72,8 +71,7 @@ void add_experiments(Registry& r) {
                                double) { return flow(speed, 32); },
                    .problems = along(kTimes,
                                      [](double end_time) {
-                                       return problem<MarkerFlow>(
-                                           "marker_flow",
+                                       return problems::marker_flow(
                                            {.cells = 32,
                                             .end_time = end_time,
                                             .steps = static_cast<Index>(
@@ -90,7 +88,7 @@ void add_experiments(Registry& r) {
                        .reference = of_steps(32),
                        .samples = 4,
                        .repetitions = 3}},
-       .problem = problem<MarkerFlow>("marker_flow")});
+       .problem = problems::marker_flow()});
 }
 
 }  // namespace physinv::numerics::marker_flow

@@ -14,11 +14,10 @@ namespace {
 const SweepAxis kSpeeds{"speed", {0, 0.1, 1, 10, 100, 1e4, 1e6, 1e8}, true};
 
 ProblemRecipe brief(Index cells, std::vector<fluid::Obstacle> obstacles) {
-  return problem<NavierStokes>("navier_stokes",
-                               {.cells = cells,
-                                .end_time = 4,
-                                .steps = 2,
-                                .obstacles = std::move(obstacles)});
+  return problems::navier_stokes({.cells = cells,
+                                  .end_time = 4,
+                                  .steps = 2,
+                                  .obstacles = std::move(obstacles)});
 }
 
 Vector<double> blast(double speed, double) {
@@ -49,8 +48,7 @@ ProblemRecipe in_scene(double which) {
 
 const SweepAxis kTimeSteps{"time step", {8, 4, 2, 1}, true};
 ProblemRecipe stepping(double step) {
-  return problem<NavierStokes>("navier_stokes",
-                               {.steps = static_cast<Index>(56 / step)});
+  return problems::navier_stokes({.steps = static_cast<Index>(56 / step)});
 }
 
 }  // namespace
@@ -79,7 +77,7 @@ void add_experiments(Registry& r) {
                              .reference = stepping(0.5),
                              .samples = 2,
                              .repetitions = 2}},
-             .problem = problem<NavierStokes>("navier_stokes")});
+             .problem = problems::navier_stokes()});
 }
 
 }  // namespace physinv::numerics::navier_stokes

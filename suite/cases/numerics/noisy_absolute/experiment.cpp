@@ -12,7 +12,7 @@ const SweepAxis kPlace{"place", decades(-12, 6), true};
 const SweepAxis kLevel{"noise level", decades(-12, 12, 2), true};
 
 ProblemRecipe noisy(double level) {
-  return problem<NoisyAbsolute>("noisy_absolute", {.level = level});
+  return problems::noisy_absolute({.level = level});
 }
 
 }  // namespace

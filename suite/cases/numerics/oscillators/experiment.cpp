@@ -14,8 +14,7 @@ const SweepAxis kStep{"time step", decades(-3, 1, 0.25), true};
 constexpr double kEnd = 12;
 
 ProblemRecipe stepping(double dt) {
-  return problem<Oscillators>(
-      "oscillators",
+  return problems::oscillators(
       {.steps = static_cast<Index>(std::lround(kEnd / dt)), .dt = dt});
 }
 
@@ -38,8 +37,7 @@ void add_experiments(Registry& r) {
                                double) { return uneven(96, size); },
                    .problems = along(kStep,
                                      [](double dt) {
-                                       return problem<Oscillators>(
-                                           "oscillators", {.dt = dt});
+                                       return problems::oscillators({.dt = dt});
                                      }),
                    .examples = 2}},
        .parameters = {

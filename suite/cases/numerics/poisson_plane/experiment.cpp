@@ -10,14 +10,13 @@ namespace physinv::numerics::poisson_plane {
 namespace {
 
 ProblemRecipe plane(double side) {
-  return problem<Poisson>(
-      "poisson",
+  return problems::poisson(
       {.rows = static_cast<Index>(side), .columns = static_cast<Index>(side)});
 }
 
 /// Conjugate gradients until this relative residual, on 64 x 64 cells.
 ProblemRecipe iterated(double relative) {
-  return problem<Poisson>("poisson", {.relative = relative});
+  return problems::poisson({.relative = relative});
 }
 
 /// The eigenvector of wave numbers (k, k).

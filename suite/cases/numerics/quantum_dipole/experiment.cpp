@@ -16,8 +16,7 @@ const SweepAxis kStep{"time step", decades(-8, 4, 1), true};
 /// The experiment's step of 0.05, halved so many times.
 ProblemRecipe stepping(double end, int halved) {
   const double dt = std::ldexp(0.05, -halved);
-  return problem<QuantumDipole>(
-      "quantum_dipole",
+  return problems::quantum_dipole(
       {.steps = static_cast<Index>(std::lround(end / dt)), .dt = dt});
 }
 
@@ -59,8 +58,8 @@ void add_experiments(Registry& r) {
                                double) { return uneven(384, size); },
                    .problems = along(kStep,
                                      [](double dt) {
-                                       return problem<QuantumDipole>(
-                                           "quantum_dipole", {.dt = dt});
+                                       return problems::quantum_dipole(
+                                           {.dt = dt});
                                      }),
                    // psi has norm 1 and 384 roundings: differences over 0.1 are
                    // known to 1e-12.

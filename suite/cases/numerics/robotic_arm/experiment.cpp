@@ -35,7 +35,7 @@ Vector<double> bent(double base, double direction, double bend) {
   return pose(base, {direction, direction + bend, direction - bend});
 }
 
-const ProblemRecipe kArm = problem<RoboticArm>("robotic_arm");
+const ProblemRecipe kArm = problems::robotic_arm();
 
 }  // namespace
 

@@ -28,13 +28,11 @@ void add_experiments(Registry& r) {
                    .point = unknowns,
                    .problems = along(kGamma,
                                      [](double gamma) {
-                                       return problem<ScaledOutput>(
-                                           "scaled_output", {.gamma = gamma});
+                                       return problems::scaled_output(
+                                           {.gamma = gamma});
                                      })}},
-       .parameters = {batch_parameter(problem<ScaledOutput>("scaled_output"),
-                                      4096,
-                                      {},
-                                      scaled_output_closed_form())}});
+       .parameters = {batch_parameter(
+           problems::scaled_output(), 4096, {}, scaled_output_closed_form())}});
 }
 
 }  // namespace physinv::numerics::scaled_output

@@ -9,9 +9,7 @@
 namespace physinv::numerics::sine_plane {
 namespace {
 
-ProblemRecipe stretched(double xi) {
-  return problem<SinePlane>("sine_plane", {.xi = xi});
-}
+ProblemRecipe stretched(double xi) { return problems::sine_plane({.xi = xi}); }
 
 const SweepAxis kStretches{"xi", {1, 2, 4, 8, 16, 32}, true};
 /// Extrema of the sine at odd quarters, its zeros at whole halves.

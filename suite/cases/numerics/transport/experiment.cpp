@@ -139,7 +139,7 @@ void add_experiments(Registry& r) {
   r.add(Experiment{.name = kName,
                    .title = "Numerics of carried fields",
                    .citation = {.paper = "sip", .where = "App. B.4"},
-                   .problem = problem<MarkerFlow>("marker_flow", {.cells = 32}),
+                   .problem = problems::marker_flow({.cells = 32}),
                    .setting = {},
                    .profiles = {{.name = "smoke", .rows = {kRow}},
                                 {.name = "quick", .rows = {kRow}},

@@ -9,6 +9,7 @@
 #include "problems/fluid/mac_cormack.h"
 #include "problems/marker_flow/marker_flow.h"
 #include "problems/marker_flow/periodic_flow.h"
+#include "suite/core/any_problem.h"
 #include "suite/core/math.h"
 #include "suite/core/probe.h"
 #include "suite/diagnostics/diagnostic.h"
@@ -107,14 +108,14 @@ class EnergyDrift final : public Diagnostic {
  protected:
   std::string kind() const override { return "energy_drift"; }
   std::vector<ProblemRecipe> problems() const override {
-    return {problem<MarkerFlow>("marker_flow", flow())};
+    return {problems::marker_flow(flow())};
   }
   Options settings() const override {
     return {{"problems", fingerprint(problems())}, {"steps", text_of(kSteps)}};
   }
   void diagnose(StageRun& run, Outcome& out) const override {
     run.probe.begin();
-    const MarkerFlow<double> problem(flow());
+    const AnyProblem<double> problem(problems::marker_flow(flow()));
     const Batch<double> x =
         problem.sample(0, kSamples, run.batches.child("energy")).x;
     Drift exact = drift<double>(flow(), x), rough = drift<float>(flow(), x);

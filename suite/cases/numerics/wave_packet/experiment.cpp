@@ -38,7 +38,7 @@ std::shared_ptr<const Stage> sweep(const char* name,
   const WavePacketOptions physics;
   StabilitySweepOptions options{
       .name = name,
-      .problems = {problem<WavePacket>("wave_packet", physics)},
+      .problems = {problems::wave_packet(physics)},
       .points = {},
       // Derivatives are near 100, their errors 1e-13 (float: 1e-6) of that.
       .zero = 1e-2};
@@ -49,12 +49,10 @@ std::shared_ptr<const Stage> sweep(const char* name,
 }
 
 const std::vector<NumericalParameter>& parameters() {
-  static const std::vector<NumericalParameter>& all =
-      declare_parameters(kName,
-                         {batch_parameter(problem<WavePacket>("wave_packet"),
-                                          256,
-                                          {},
-                                          wave_packet_closed_form())});
+  static const std::vector<NumericalParameter>& all = declare_parameters(
+      kName,
+      {batch_parameter(
+          problems::wave_packet(), 256, {}, wave_packet_closed_form())});
   return all;
 }
 
@@ -110,7 +108,7 @@ void add_experiments(Registry& r) {
       .name = kName,
       .title = "Numerics of the wave packet",
       .citation = {.paper = "jpo", .where = "App. D.1"},
-      .problem = problem<WavePacket>("wave_packet"),
+      .problem = problems::wave_packet(),
       .setting = {},  // nothing is learned here
       .profiles = {{.name = "smoke", .rows = rows()},
                    {.name = "quick", .rows = rows()},

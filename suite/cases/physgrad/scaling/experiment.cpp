@@ -66,17 +66,17 @@ Experiment scaling() {
     return std::vector<Row>{row({"gd", "gd_large"}, 3, steps),
                             row(kInvariant, all, steps)};
   };
-  Experiment e{.name = kScaling,
-               .title = "Scaling",
-               .citation = {.paper = "physgrad", .where = "Crux of the matter"},
-               .problem = problem<Scaling>(
-                   "scaling", {.scales = {1, 3, 5, 1e-3, 1e3, 1e6}}),
-               .profiles = profiles(rows(3, 10), rows(6, 50)),
-               .methods = {method("gd", gradient, 0.03),
-                           method("gd_large", gradient, 0.05),
-                           method("newton", newton, kRate),
-                           method("ig", inverse_gradient, kRate),
-                           method("pg", inverse_simulator, kRate)}};
+  Experiment e{
+      .name = kScaling,
+      .title = "Scaling",
+      .citation = {.paper = "physgrad", .where = "Crux of the matter"},
+      .problem = problems::scaling({.scales = {1, 3, 5, 1e-3, 1e3, 1e6}}),
+      .profiles = profiles(rows(3, 10), rows(6, 50)),
+      .methods = {method("gd", gradient, 0.03),
+                  method("gd_large", gradient, 0.05),
+                  method("newton", newton, kRate),
+                  method("ig", inverse_gradient, kRate),
+                  method("pg", inverse_simulator, kRate)}};
   add_batches(e, 1);
   return e;
 }
@@ -126,7 +126,7 @@ Experiment comparison() {
       .name = kComparison,
       .title = "Comparison",
       .citation = {.paper = "physgrad", .where = "notebook of the chapter"},
-      .problem = problem<Scaling>("scaling", {.power = 2, .start = {3, 3}}),
+      .problem = problems::scaling({.power = 2, .start = {3, 3}}),
       .profiles = profiles({ten}, all),
       .methods = comparison_methods()};
   add_batches(e, 2);

@@ -3,6 +3,7 @@
 #include "problems/oscillators/oscillators.h"
 #include "problems/scaling/scaling.h"
 #include "suite/cases/physgrad/scaling/scaling.h"
+#include "suite/core/any_problem.h"
 #include "suite/core/math.h"
 #include "suite/core/oracle.h"
 #include "suite/core/probe.h"
@@ -15,7 +16,7 @@ constexpr double kStep = 0.1;
 
 /// A problem on a batch of its own.
 struct Bench {
-  explicit Bench(int power) : problem({.power = power}) {}
+  explicit Bench(int power) : problem(problems::scaling({.power = power})) {}
 
   Batch<double> forward(const Batch<double>& x, const Batch<double>& alpha) {
     Batch<double> y(2, x.cols());
@@ -28,7 +29,7 @@ struct Bench {
     return x;
   }
 
-  Scaling<double> problem;
+  AnyProblem<double> problem;
   Workspace work;
 };
 
@@ -199,7 +200,8 @@ Batch<double> reversed() {
   for (Index k = 0; k < 3; ++k) {
     const Index steps = 96 << k;
     const double dt = std::ldexp(0.125, -static_cast<int>(k));
-    const Oscillators<double> problem({.steps = steps, .dt = dt});
+    const AnyProblem<double> problem(
+        problems::oscillators({.steps = steps, .dt = dt}));
     Batch<double> control(steps, 1), start(4, 1), end(4, 1), back(4, 1);
     for (Index i = 0; i < steps; ++i)
       control(i, 0) = 0.3 * math::cos(double(i >> k) / 8);

@@ -72,7 +72,7 @@ void add_experiments(Registry& r) {
       .name = "sip/exponential",
       .title = "Exponential",
       .citation = {.paper = "sip", .where = "App. C.2, Fig. 2"},
-      .problem = problem<Exponential>("exponential", {}),
+      .problem = problems::exponential(),
       .setting = {.predictor = {{Field::observations},
                                 nn::mlp({.hidden = {16, 64, 16},
                                          .activation = nn::Activation::sigmoid,

@@ -70,23 +70,22 @@ std::vector<Profile> profiles(const Variant& variant) {
 }
 
 Experiment experiment(const Variant& variant) {
-  return {
-      .name = variant.experiment,
-      .title = variant.title,
-      .citation = {.paper = "sip", .where = "App. B.4, Figs. 14, 15"},
-      .problem = problem<MarkerFlow>(
-          "marker_flow", {.cells = kCells, .timed_path = variant.timed_path}),
-      .setting = {.predictor = {{Field::given, Field::observations},
-                                nn::unet({.grid = {kCells, kCells},
-                                          .channels = 2,
-                                          .levels = 5,
-                                          .outputs = 2,
-                                          .padding = nn::Padding::circular,
-                                          .batch_statistics = true,
-                                          .init = nn::Init::uniform})},
-                  .recorded = 8},
-      .profiles = profiles(variant),
-      .methods = methods()};
+  return {.name = variant.experiment,
+          .title = variant.title,
+          .citation = {.paper = "sip", .where = "App. B.4, Figs. 14, 15"},
+          .problem = problems::marker_flow(
+              {.cells = kCells, .timed_path = variant.timed_path}),
+          .setting = {.predictor = {{Field::given, Field::observations},
+                                    nn::unet({.grid = {kCells, kCells},
+                                              .channels = 2,
+                                              .levels = 5,
+                                              .outputs = 2,
+                                              .padding = nn::Padding::circular,
+                                              .batch_statistics = true,
+                                              .init = nn::Init::uniform})},
+                      .recorded = 8},
+          .profiles = profiles(variant),
+          .methods = methods()};
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "problems/marker_flow/marker_flow.h"
 #include "suite/cases/sip/fluid/fluid.h"
 #include "suite/cases/sip/fluid/metrics.h"
+#include "suite/core/any_problem.h"
 #include "suite/evidence/field_panel.h"
 #include "suite/evidence/training_report.h"
 #include "suite/harness/registry.h"
@@ -37,7 +38,7 @@ Vector<double> carried(const Vector<double>& x,
   o.steps = steps;
   Batch<double> y(kPlane, 1);
   Workspace work;
-  MarkerFlow<double>(o).forward(x, marker, y, work);
+  AnyProblem<double>(problems::marker_flow(o)).forward(x, marker, y, work);
   return y;
 }
 

@@ -8,10 +8,9 @@ namespace {
 
 void evaluate(const Snapshot& s, VectorOut<double> values) {
   values.setZero();
-  const auto* flow =
-      dynamic_cast<const MarkerFlow<double>*>(&s.oracle.inspect());
+  const MarkerFlowOptions* flow = marker_flow_options(s.oracle.inspect());
   if (flow == nullptr) return;  // these numbers are of no other problem
-  const Vortex vortex = flow->vortex();
+  const Vortex vortex = flow->turning();
   const Batch<double>& truth = s.oracle.data().x;
   const Index n = vortex.grid.cells, cells = n * n;
   Batch<double> small = truth;

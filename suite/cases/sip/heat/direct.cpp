@@ -8,6 +8,8 @@
 #include "problems/heat/eigenspaces.h"
 #include "problems/heat/inversion.h"
 #include "suite/cases/sip/heat/metrics.h"
+#include "suite/core/any_problem.h"
+#include "suite/core/check.h"
 #include "suite/core/oracle.h"
 
 namespace physinv::heat {
@@ -40,12 +42,13 @@ class Descent final : public Solver {
   Vector<double> loss_;
 };
 
-/// The case's problem, with another noise floor if one is named.
-Heat<double> heat_of(const StageRun& run, double noise_floor = 0) {
-  HeatOptions options =
-      dynamic_cast<const Heat<double>&>(run.oracle.inspect()).options();
+/// Those of the case's problem, with another noise floor if one is named.
+HeatOptions heat_of(const StageRun& run, double noise_floor = 0) {
+  const HeatOptions* of_case = heat_options(run.oracle.inspect());
+  SUITE_CHECK(of_case != nullptr, "these solvers are of heat alone");
+  HeatOptions options = *of_case;
   options.noise_floor = noise_floor;
-  return Heat<double>(options);
+  return options;
 }
 
 class DescentOfModes final : public Solver {
@@ -58,12 +61,12 @@ class DescentOfModes final : public Solver {
 
   void step() override { ++steps_; }
   void estimate(BatchOut<double> x) override {
-    heat_.filter(
+    heat_.filter<double>(
         y_, heat_gradient_descent(heat_.exponents(), steps_), x, work_);
   }
 
  private:
-  Heat<double> heat_;
+  HeatModes heat_;
   const Batch<double>& y_;
   Workspace work_;
   Index steps_ = 0;
@@ -73,7 +76,7 @@ class InversePhysics final : public Solver {
  public:
   InversePhysics(StageRun& run, double noise_floor)
       : Solver(run),
-        heat_(heat_of(run, noise_floor)),
+        heat_(problems::heat(heat_of(run, noise_floor))),
         x_(oracle_.start()),
         work_(run.threads) {}
 
@@ -85,7 +88,7 @@ class InversePhysics final : public Solver {
   void export_to(Outcome&) override { oracle_.add(work_.counts); }
 
  private:
-  Heat<double> heat_;
+  AnyProblem<double> heat_;
   Batch<double> x_;
   Workspace work_;
 };
@@ -106,7 +109,7 @@ class InversePhysicsOfModes final : public Solver {
   void export_to(Outcome&) override { oracle_.add(work_.counts); }
 
  private:
-  Heat<double> heat_;
+  HeatModes heat_;
   Workspace work_;
   HeatInversion inversion_;
 };
@@ -141,7 +144,7 @@ class LbfgsbOfModes final : public Solver {
       const Vector<double> gain =
           (lengths_.col(i).array() > 0)
               .select(xi.array() / lengths_.col(i).array(), 0.0);
-      heat_.filter(y_.col(i), spaces_.spread(gain), one, work_);
+      heat_.filter<double>(y_.col(i), spaces_.spread(gain), one, work_);
       x.col(i) = one;
     }
   }
@@ -175,7 +178,7 @@ class LbfgsbOfModes final : public Solver {
     }
   }
 
-  Heat<double> heat_;
+  HeatModes heat_;
   HeatEigenspaces spaces_;
   const Batch<double>& y_;
   Batch<double> lengths_;

@@ -24,7 +24,7 @@ namespace {
 
 constexpr Index kPaperSteps = 10'000, kStudy = 2'000;
 
-const ProblemRecipe kProblem = problem<Heat>("heat", {.resolution = kSide});
+const ProblemRecipe kProblem = problems::heat({.resolution = kSide});
 
 enum class Push { solver, inverse, watched_inverse };
 

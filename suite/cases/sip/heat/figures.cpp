@@ -147,14 +147,14 @@ Figure pictures(const Evidence& e) {
   auto lines = networks();
   std::erase_if(lines, [](const auto& l) { return l.method == "sgd-b8-lr3"; });
   lines.insert(lines.end(), kDirect.begin(), kDirect.end());
-  const Heat<double> physics({.resolution = kSide});
+  const auto physics = problems::heat({.resolution = kSide}).make<double>();
   return answered_fields(
       e,
       lines,
       {.where = "Fig. 10",
        .examples = 2,
        .picture = picture,
-       .observe = [&](const Answered& a) { return observed(physics, a); }});
+       .observe = [&](const Answered& a) { return observed(*physics, a); }});
 }
 
 constexpr const char* kByRate = "Error by rate and batch";

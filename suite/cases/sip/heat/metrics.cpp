@@ -16,24 +16,25 @@ double error_of(const Batch<double>& x, const Batch<double>& truth) {
 /// Energy that a filter leaves.
 class Band {
  public:
-  Band(const Heat<double>& heat, Index columns)
-      : heat_(heat), seen_(heat.shape().unknowns, columns) {}
+  Band(const HeatOptions& options, Index columns)
+      : heat_(options), seen_(heat_.fft().field(), columns) {}
 
   template <class F>
   double operator()(const Batch<double>& field, F&& gain) {
-    heat_.filter(field, heat_.exponents().unaryExpr(gain), seen_, work_);
+    heat_.filter<double>(
+        field, heat_.exponents().unaryExpr(gain), seen_, work_);
     return seen_.squaredNorm();
   }
 
  private:
-  const Heat<double>& heat_;
+  HeatModes heat_;
   Batch<double> seen_;
   Workspace work_;
 };
 
 void evaluate(const Snapshot& s, VectorOut<double> values) {
   values.setZero();
-  const auto* heat = dynamic_cast<const Heat<double>*>(&s.oracle.inspect());
+  const HeatOptions* heat = heat_options(s.oracle.inspect());
   if (heat == nullptr) return;  // these numbers are of no other problem
   const Batch<double>&truth = s.oracle.data().x, &y = s.oracle.observations();
   const Batch<double> error = s.x - truth;

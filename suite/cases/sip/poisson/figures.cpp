@@ -37,8 +37,9 @@ Section report(const Domain& domain, const Evidence& e) {
   curves.losses(kLines, "losses", "Losses of y", "");
   curves.add(update_times(e, kLines, "Fig. 15"));
   const FieldLayout layout{domain.columns, domain.rows, 1, domain.columns};
-  const Poisson<double> physics(
-      {.rows = domain.rows, .columns = domain.columns});
+  const auto physics =
+      problems::poisson({.rows = domain.rows, .columns = domain.columns})
+          .make<double>();
   Figure fields = answered_fields(
       e,
       kLines,
@@ -48,7 +49,7 @@ Section report(const Domain& domain, const Evidence& e) {
            [&](std::string title, const Vector<double>& field) {
              return field_panel(std::move(title), layout, field);
            },
-       .observe = [&](const Answered& a) { return observed(physics, a); }});
+       .observe = [&](const Answered& a) { return observed(*physics, a); }});
   if (!fields.panels.empty()) section.figures.push_back(std::move(fields));
   return section;
 }

@@ -110,7 +110,7 @@ Experiment experiment(std::string name,
   return {.name = std::move(name),
           .title = std::move(title),
           .citation = {.paper = "sip", .where = "App. B.1, Fig. 5"},
-          .problem = problem<SinePlane>("sine_plane", options),
+          .problem = problems::sine_plane(options),
           .setting = {.predictor = {{Field::observations},
                                     nn::mlp({.hidden = {32, 64, 32},
                                              .init = nn::Init::uniform})}}};

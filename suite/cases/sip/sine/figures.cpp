@@ -105,10 +105,11 @@ Figure landscape() {
           .title = "The loss for y* = (0.3, -0.5), xi = 1, phi = 15 degrees",
           .panels = {{.x_label = "x_1",
                       .y_label = "x_2",
-                      .field = loss_over_plane(SinePlane<double>(options),
-                                               {Eigen::Vector2d(0.3, -0.5)},
-                                               axis,
-                                               axis)}},
+                      .field = loss_over_plane(
+                          *problems::sine_plane(options).make<double>(),
+                          {Eigen::Vector2d(0.3, -0.5)},
+                          axis,
+                          axis)}},
           .columns = 1};
 }
 

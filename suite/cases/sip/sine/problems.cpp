@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "suite/core/any_problem.h"
 #include "suite/store/record.h"
 
 namespace physinv::sine {
@@ -24,7 +25,7 @@ std::vector<double> slopes(const SinePlaneOptions& options,
   const Index n = data.x.cols();
   Batch<double> x(2, n), y(2, n), g(2, n), h(4, n);
   for (Index i = 0; i < n; ++i) x.col(i) = data.x.col((i + 1) % n);
-  const SinePlane<double> problem(options);
+  const AnyProblem<double> problem(problems::sine_plane(options));
   Workspace work;
   Tape tape;
   problem.linearize(x, data.given, y, tape);
@@ -84,7 +85,8 @@ RunValue residual(const SinePlaneOptions& options) {
       x.col(i) << at[0], at[1];
     }
     Workspace work;
-    SinePlane<double>(options).forward(x, data.given, y, work);
+    AnyProblem<double>(problems::sine_plane(options))
+        .forward(x, data.given, y, work);
     return (y - data.y).cwiseAbs().maxCoeff();
   };
 }

@@ -16,15 +16,14 @@ inline constexpr AdamOptions kAdam{.rate = 1e-3, .eps = 1e-8};
 
 /// The unknown is t0 - 76.8, in samples, of which line searches know nothing.
 inline ProblemRecipe recipe(double width = 20) {
-  return problem<WavePacket>("wave_packet",
-                             {.frequency = kFrequency,
-                              .phase = -std::numbers::pi / 2,
-                              .width = width,
-                              .centre = 76.8,
-                              .scale = 1,
-                              .noise = 0.1,
-                              .range = {25.6, 128},
-                              .half_loss = false});
+  return problems::wave_packet({.frequency = kFrequency,
+                                .phase = -std::numbers::pi / 2,
+                                .width = width,
+                                .centre = 76.8,
+                                .scale = 1,
+                                .noise = 0.1,
+                                .range = {25.6, 128},
+                                .half_loss = false});
 }
 
 inline nn::PooledCnnOptions network() {
