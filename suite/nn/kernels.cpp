@@ -1,6 +1,5 @@
 // Single thread. Shares of peak: FLOPS over those of machine/fma<T>, the limit
-// of the widest registers of this build, measured in the same run;
-// machine/gemm<T> is Eigen's product, which stays with 256 bits.
+// of the widest registers of this build, measured in the same run.
 
 #include "suite/nn/kernels.h"
 
@@ -34,17 +33,6 @@ namespace {
 using benchmark::State;
 
 // ------------------------------------------------------------ the machine
-
-template <class T>
-void machine_gemm(State& state) {
-  const ProductShape s(state);
-  const Batch<T> a = Batch<T>::Random(s.m, s.k), b = Batch<T>::Random(s.k, s.n);
-  Batch<T> c(s.m, s.n);
-  measure_flops(state, s.flops(), [&] {
-    c.noalias() = a * b;
-    benchmark::DoNotOptimize(c.data());
-  });
-}
 
 template <class T>
 void machine_fma(State& state) {
@@ -411,13 +399,9 @@ void add_products(std::vector<Kernel>& to, const std::string& type) {
 }
 
 std::vector<Kernel> all() {
-  const std::vector<std::vector<std::int64_t>> square = {
-      {1024, 1024, 1024}, {128, 128, 128}, {128, 8, 128}};
   std::vector<Kernel> all = {
       {"machine/fma<float>", {}, machine_fma<float>},
       {"machine/fma<double>", {}, machine_fma<double>},
-      {"machine/gemm<float>", square, machine_gemm<float>},
-      {"machine/gemm<double>", square, machine_gemm<double>},
       {"machine/copy_64MiB", {}, machine_copy}};
   add_products<float>(all, "<float>");
   add_products<double>(all, "<double>");
