@@ -62,9 +62,8 @@ class Problem {
   /// Where classical optimizers start, one point for all problems.
   virtual Vector<double> start() const = 0;
 
-  /// Draws one sample, `stream` being the first of its own. Sets that are not
-  /// drawn override `sample`.
-  virtual void draw(Stream& /*stream*/, SampleOut& /*sample*/) const {}
+  /// Draws one sample, `stream` being the first of its own.
+  virtual void draw(Stream& stream, SampleOut& sample) const = 0;
   /// Of labelled samples, always `unknowns`.
   virtual Drawn drawn() const { return Drawn::unknowns; }
   /// Takes out of the side input of an inverse problem what helped to make y
@@ -75,16 +74,14 @@ class Problem {
   /// i-th draws from rng.child(i), so small sets are prefixes of large ones.
   /// x holds the true solution where one is known (no rows otherwise). Of
   /// problems in double alone.
-  virtual Samples<double> sample(Index first,
-                                 Index count,
-                                 const Rng& rng) const {
+  Samples<double> sample(Index first, Index count, const Rng& rng) const {
     return draw_set(first, count, rng, false);
   }
 
   /// Pairs (x, y = F(x)) for methods that learn from labels.
-  virtual Samples<double> sample_labelled(Index first,
-                                          Index count,
-                                          const Rng& rng) const {
+  Samples<double> sample_labelled(Index first,
+                                  Index count,
+                                  const Rng& rng) const {
     return draw_set(first, count, rng, true);
   }
 

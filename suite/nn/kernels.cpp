@@ -399,10 +399,9 @@ void add_products(std::vector<Kernel>& to, const std::string& type) {
 }
 
 std::vector<Kernel> all() {
-  std::vector<Kernel> all = {
-      {"machine/fma<float>", {}, machine_fma<float>},
-      {"machine/fma<double>", {}, machine_fma<double>},
-      {"machine/copy_64MiB", {}, machine_copy}};
+  std::vector<Kernel> all = {{"machine/fma<float>", {}, machine_fma<float>},
+                             {"machine/fma<double>", {}, machine_fma<double>},
+                             {"machine/copy_64MiB", {}, machine_copy}};
   add_products<float>(all, "<float>");
   add_products<double>(all, "<double>");
   add_layer(all, "linear", [] { return linear<float>(128, 128); });

@@ -55,10 +55,10 @@ class ListedPoisson final : public LinearProblem<T> {
   Vector<double> start() const override {
     return Vector<double>::Zero(y_.rows());
   }
-  Samples<double> sample(Index first, Index count, const Rng&) const override {
-    const Batch<double> y = y_.middleCols(first, count);
-    return {y, y, Batch<double>(0, count)};
+  void draw(Stream&, SampleOut& sample) const override {
+    sample.x = sample.y = y_.col(sample.index);
   }
+  Drawn drawn() const override { return Drawn::both; }
   void forward(Point<T> at, BatchOut<T> y, Workspace&) const override {
     const auto& x = at.x;
     for (Index i = 0; i < x.cols(); ++i) {

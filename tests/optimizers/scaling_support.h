@@ -26,14 +26,11 @@ class Open : public Listed<T> {
   explicit Open(const Options& options = {})
       : Listed<T>(problems::scaling(options.scaling), {}), options_(options) {}
 
-  Samples<double> sample(Index first,
-                         Index count,
-                         const Rng& rng) const override {
-    const auto scaling = problems::scaling(options_.scaling).make<double>();
-    Samples<double> s = scaling->sample(first, count, rng);
-    s.y.colwise() = Eigen::Vector2d(options_.target[0], options_.target[1]);
-    return s;
+  void draw(Stream& stream, SampleOut& sample) const override {
+    this->of_.problem().draw(stream, sample);
+    sample.y << options_.target[0], options_.target[1];
   }
+  Drawn drawn() const override { return Drawn::both; }
 
  private:
   AimedOptions options_;

@@ -232,13 +232,11 @@ template <class T>
 class SlowToDraw final : public GradientQuadratic<T> {
  public:
   using GradientQuadratic<T>::GradientQuadratic;
-  Samples<double> sample(Index first,
-                         Index count,
-                         const Rng& rng) const override {
+  void draw(Stream& stream, SampleOut& sample) const override {
     const double begun = now().cpu;
     while (now().cpu < begun + 2e-3) {
     }
-    return GradientQuadratic<T>::sample(first, count, rng);
+    GradientQuadratic<T>::draw(stream, sample);
   }
 };
 

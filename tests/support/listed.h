@@ -22,15 +22,13 @@ class Listed : public Problem<T>,
   Shape shape() const override { return of_.shape(); }
   Vector<double> start() const override { return of_.start(); }
   double operations() const override { return of_.problem().operations(); }
-  Samples<double> sample(Index first, Index count, const Rng&) const override {
-    return {samples_.x.middleCols(first, count),
-            samples_.y.middleCols(first, count),
-            samples_.given.middleCols(first, count)};
+  void draw(Stream&, SampleOut& sample) const override {
+    if (drawn() == Drawn::both) sample.x = samples_.x.col(sample.index);
+    sample.y = samples_.y.col(sample.index);
+    sample.given = samples_.given.col(sample.index);
   }
-  Samples<double> sample_labelled(Index first,
-                                  Index count,
-                                  const Rng& rng) const override {
-    return sample(first, count, rng);
+  Drawn drawn() const override {
+    return samples_.x.rows() > 0 ? Drawn::both : Drawn::observations;
   }
 
   void forward(Point<T> at, BatchOut<T> y, Workspace& work) const override {

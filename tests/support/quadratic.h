@@ -32,18 +32,9 @@ class GradientQuadratic : public Problem<T>, public Vjp<T> {
   }
   Shape shape() const override { return {2, 2, 2}; }
   Vector<double> start() const override { return Eigen::Vector2d(0.5, -0.5); }
-  Samples<double> sample(Index first,
-                         Index count,
-                         const Rng& rng) const override {
-    Samples<double> s{Batch<double>(2, count), Batch<double>(2, count), {}};
-    s.given.resize(2, count);
-    for (Index i = 0; i < count; ++i) {
-      Stream r = rng.child(static_cast<std::uint64_t>(first + i)).stream();
-      for (Index j = 0; j < 2; ++j) s.x(j, i) = r.uniform(-1, 1);
-      for (Index j = 0; j < 2; ++j) s.given(j, i) = r.uniform(-1, 1);
-    }
-    s.y = GradientQuadratic<double>::matrix() * s.x + s.given;
-    return s;
+  void draw(Stream& stream, SampleOut& sample) const override {
+    for (Index j = 0; j < 2; ++j) sample.x(j) = stream.uniform(-1, 1);
+    for (Index j = 0; j < 2; ++j) sample.given(j) = stream.uniform(-1, 1);
   }
   void forward(Point<T> at, BatchOut<T> y, Workspace&) const override {
     const auto &x = at.x, &given = at.given;

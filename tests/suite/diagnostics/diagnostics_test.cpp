@@ -35,12 +35,8 @@ class Toy final : public Problem<T>, public Vjp<T>, public Jacobian<T> {
 
   Shape shape() const override { return {2, 2, 0}; }
   Vector<double> start() const override { return Eigen::Vector2d(0, 0); }
-  Samples<double> sample(Index, Index count, const Rng&) const override {
-    Samples<double> s{Batch<double>::Zero(2, count), {}, {}};
-    s.y = Batch<double>::Zero(2, count);
-    s.given.resize(0, count);
-    return s;
-  }
+  void draw(Stream&, SampleOut&) const override {}
+  Drawn drawn() const override { return Drawn::both; }
   void forward(Point<T> at, BatchOut<T> y, Workspace&) const override {
     const auto& x = at.x;
     constexpr T kOffset = 1e8;
@@ -241,16 +237,11 @@ class Pointwise final : public Problem<T>, public Vjp<T> {
   explicit Pointwise(const Options& o = {}) : n_(o.steps) {}
   Shape shape() const override { return {n_, n_, n_}; }
   Vector<double> start() const override { return Vector<double>::Zero(n_); }
-  Samples<double> sample(Index, Index count, const Rng&) const override {
-    Samples<double> s{Batch<double>(n_, count), Batch<double>(n_, count), {}};
-    s.given.resize(n_, count);
-    for (Index i = 0; i < count; ++i)
-      for (Index k = 0; k < n_; ++k) {
-        s.x(k, i) = double(k + 1) + double(i);
-        s.given(k, i) = std::cos(2 * std::numbers::pi * double(k) / double(n_));
-        s.y(k, i) = s.x(k, i) + s.given(k, i);
-      }
-    return s;
+  void draw(Stream&, SampleOut& sample) const override {
+    for (Index k = 0; k < n_; ++k) {
+      sample.x(k) = double(k + 1) + double(sample.index);
+      sample.given(k) = std::cos(2 * std::numbers::pi * double(k) / double(n_));
+    }
   }
   void forward(Point<T> at, BatchOut<T> y, Workspace&) const override {
     const auto &x = at.x, &given = at.given;

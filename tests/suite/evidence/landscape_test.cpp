@@ -12,7 +12,7 @@ class Stretch final : public Problem<double>, public Vjp<double> {
  public:
   Shape shape() const override { return {2, 2, 1}; }
   Vector<double> start() const override { return Vector<double>::Zero(2); }
-  Samples<double> sample(Index, Index, const Rng&) const override { return {}; }
+  void draw(Stream&, SampleOut&) const override {}
   void forward(Point<double> at,
                BatchOut<double> y,
                Workspace&) const override {

@@ -48,23 +48,15 @@ class Cubic final : public Problem<T>, public Vjp<T> {
 
   Shape shape() const override { return {2, 2, 1}; }
   Vector<double> start() const override { return Vector<double>::Ones(2); }
-  Samples<double> sample(Index first,
-                         Index count,
-                         const Rng& rng) const override {
-    Samples<double> s{Batch<double>(2, count),
-                      Batch<double>(2, count),
-                      Batch<double>(1, count)};
-    for (Index i = 0; i < count; ++i) {
-      Stream stream = rng.child(static_cast<std::uint64_t>(first + i)).stream();
-      s.given(0, i) = stream.uniform(-1, 1);
-      for (Index j = 0; j < 2; ++j) {
-        const double x = s.x(j, i) = stream.uniform(-1, 1);
-        s.y(j, i) = or_next(x * x * x + options_.slope * x + s.given(0, i),
+  void draw(Stream& stream, SampleOut& sample) const override {
+    sample.given(0) = stream.uniform(-1, 1);
+    for (Index j = 0; j < 2; ++j) {
+      const double x = sample.x(j) = stream.uniform(-1, 1);
+      sample.y(j) = or_next(x * x * x + options_.slope * x + sample.given(0),
                             "ulp in the data");
-      }
     }
-    return s;
   }
+  Drawn drawn() const override { return Drawn::both; }
   void forward(Point<T> at, BatchOut<T> y, Workspace&) const override {
     const auto &x = at.x, &given = at.given;
     const T slope = static_cast<T>(options_.slope);

@@ -77,9 +77,8 @@ void add_claims(Registry& r) {
   names.add("slope_over_n", slope_over_n);
   names.add("without_worst", RunValue(without_worst));
   names.add("stuck", RunRow(stuck));
-  names.add(
-      "beyond_training",
-      jpo::beyond_training(problems::navier_stokes(), 0, kLabels));
+  names.add("beyond_training",
+            jpo::beyond_training(problems::navier_stokes(), 0, kLabels));
   names.add("better_in_band", better(Equality::band));
   names.add("equal_in_band", equal(Equality::band));
   names.add("table3_from_prior",
