@@ -143,8 +143,9 @@ std::string page_html(const PageParts& parts) {
       "<meta name=\"viewport\" content=\"width=device-width, "
       "initial-scale=1\"/>\n"
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src "
-      "'none'; img-src data:; style-src 'unsafe-inline'; script-src "
-      "'unsafe-inline'\"/>\n"
+      "'none'; img-src " +
+      std::string(parts.pictures ? "'self' " : "") +
+      "data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'\"/>\n"
       "<title>" +
       html(parts.title) + "</title>\n<style>\n";
   out += page_style_sheet();

@@ -20,10 +20,11 @@ namespace physinv {
 std::string report_html(const std::vector<Section>& sections,
                         const nlohmann::ordered_json& provenance);
 
-/// What leads to the pages of experiments, <folder>/index.html: sections that
-/// stand in front, then of each paper its experiments with the numbers that
-/// stand beside the paper's, statements that do not hold as sentences, and how
-/// many are not judged.
+/// The index of the pages of experiments, <folder>/index.html: sections that
+/// stand in front; of each paper a card per experiment with its key figure,
+/// <folder>/card.svg, how its methods compare, and the verdicts; below all
+/// cards the statements that do not hold as printed, with what was measured
+/// and why, then numbers that papers print beside the measured ones.
 std::string index_html(const std::vector<Section>& sections,
                        const Pages& pages,
                        const nlohmann::ordered_json& provenance);

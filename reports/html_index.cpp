@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <set>
@@ -29,25 +30,31 @@ bool needs_words(Verdict verdict) {
          verdict == Verdict::partly_judged;
 }
 
-std::string numbers_html(const Section& section) {
+/// Numbers of a paper beside those measured here; statements that do not hold
+/// have sentences of their own.
+std::string numbers_html(const std::vector<const Section*>& sections) {
   std::string rows;
-  for (const Statement& s : statements_of(section, kNumbers)) {
-    if (s.here.empty() || needs_words(s.verdict)) continue;
-    rows += fmt::format(
-        "<tr><th scope=\"row\">{}</th><td>{}</td><td class=\"paper\">{}</td>"
-        "<td class=\"{}\">{} {}</td></tr>\n",
-        html(s.what),
-        html(s.here),
-        html(s.paper),
-        css_of(s.verdict),
-        mark_of(s.verdict),
-        words_of(s.verdict, s.origin));
-  }
+  for (const Section* section : sections)
+    for (const Statement& s : statements_of(*section, kNumbers)) {
+      if (s.here.empty() || needs_words(s.verdict)) continue;
+      rows += fmt::format(
+          "<tr><th scope=\"row\"><a href=\"{}/index.html\">{}</a></th>"
+          "<td class=\"what\">{}</td><td>{}</td><td class=\"paper\">{}</td>"
+          "<td class=\"{}\">{} {}</td></tr>\n",
+          html(folder_of(section->experiment)),
+          html(section->title),
+          html(s.what),
+          html(s.here),
+          html(s.paper),
+          css_of(s.verdict),
+          mark_of(s.verdict),
+          words_of(s.verdict, s.origin));
+    }
   if (rows.empty()) return "";
   return "<div class=\"scroll\">\n<table class=\"numbers\">\n<thead>\n<tr>"
-         "<th scope=\"col\">statement</th><th scope=\"col\">here</th>"
-         "<th scope=\"col\">paper</th><th scope=\"col\">verdict</th></tr>\n"
-         "</thead>\n<tbody>\n" +
+         "<th scope=\"col\">experiment</th><th scope=\"col\">statement</th>"
+         "<th scope=\"col\">measured</th><th scope=\"col\">paper</th>"
+         "<th scope=\"col\">verdict</th></tr>\n</thead>\n<tbody>\n" +
          rows + "</tbody>\n</table>\n</div>\n";
 }
 
@@ -97,8 +104,9 @@ std::string sentence_html(const ClaimResult& c, const std::string& page) {
 
 /// Statements that do not hold as printed, with what was measured and why:
 /// what fails first, in the order of verdicts from there.
-std::string failing_html(const Section& section, const std::string& folder) {
+std::string failing_html(const Section& section) {
   const Anchors anchors = anchors_of({section}).front();
+  const std::string folder = folder_of(section.experiment);
   std::string items;
   for (const Verdict verdict : {Verdict::not_reproduced,
                                 Verdict::contradiction,
@@ -109,64 +117,97 @@ std::string failing_html(const Section& section, const std::string& folder) {
       if (section.claims[k].verdict == verdict)
         items += sentence_html(section.claims[k],
                                folder + "/index.html#" + anchors.claims[k]);
-  return items.empty() ? "" : "<ul class=\"failing\">\n" + items + "</ul>\n";
+  return items.empty() ? ""
+                       : fmt::format(
+                             "<h4>{}</h4>\n<ul class=\"failing\">\n{}"
+                             "</ul>\n",
+                             html(section.title),
+                             items);
 }
 
 /// One line for all that nobody could judge.
-std::string open_html(const Section& section) {
+std::string open_html(const std::vector<const Section*>& sections) {
   std::set<std::string> profiles;
   int count = 0;
-  for (const ClaimResult& c : section.claims)
-    if (is_open(c)) ++count, profiles.insert(c.from);
+  for (const Section* section : sections)
+    for (const ClaimResult& c : section->claims)
+      if (is_open(c)) ++count, profiles.insert(c.from);
   if (count == 0) return "";
-  std::string from;
-  for (const auto& profile : profiles)
-    from += (from.empty() ? "" : ", ") + html(profile);
   return fmt::format("<p class=\"remark\">{} {}; decided by profile {}</p>\n",
                      count,
                      words_of(Verdict::not_judged, Origin::paper),
-                     from);
+                     html(fmt::format("{}", fmt::join(profiles, ", "))));
 }
 
-std::string experiment_html(const Section& section) {
-  const std::string folder = folder_of(section.experiment);
-  const std::string papers =
-      verdicts_html(tally(section, Origin::paper), Origin::paper);
-  const std::string ranges =
-      verdicts_html(tally(section, Origin::suite), Origin::suite);
-  std::string out = fmt::format(
-      "<article>\n<h3><a href=\"{}/index.html\">{}</a> <code>{}</code></h3>\n",
-      html(folder),
-      html(section.title),
-      html(section.experiment));
-  if (!papers.empty()) out += "<p>The paper: " + papers + "</p>\n";
-  if (!ranges.empty())
-    out += "<p class=\"remark\">Ranges of the suite: " + ranges + "</p>\n";
-  if (!section.standing.empty())
-    out += "<p class=\"remark\">" + html(section.standing) + ".</p>\n";
-  return out + numbers_html(section) + failing_html(section, folder) +
-         open_html(section) + "</article>\n";
+/// A paper, or what else stands together.
+struct Part {
+  Group group;
+  std::vector<const Section*> sections;
+};
+
+/// Of all parts: what `of` says of each below its title, or nothing.
+template <class Of>
+std::string chapter_html(const char* id,
+                         const char* title,
+                         const std::vector<Part>& parts,
+                         Of of) {
+  std::string out;
+  for (const Part& part : parts)
+    if (const std::string own = of(part); !own.empty())
+      out += "<h3>" + html(part.group.title) + "</h3>\n" + own;
+  return out.empty() ? ""
+                     : fmt::format(
+                           "<section id=\"{0}\" aria-labelledby=\"{0}-title\">"
+                           "\n<h2 id=\"{0}-title\">{1}</h2>\n{2}</section>\n",
+                           id,
+                           title,
+                           out);
 }
 
-std::string group_html(const Group& group,
-                       const std::vector<Section>& sections) {
-  std::string own;
-  for (const Section& section : sections)
-    if (key_of(section) == group.key) own += experiment_html(section);
-  if (own.empty()) return "";
+constexpr const char *kDeviations = "Statements that do not hold as printed",
+                     *kMeasured = "Measured and published numbers";
+
+std::string chapters_html(const std::vector<Part>& parts) {
+  return chapter_html("deviations",
+                      kDeviations,
+                      parts,
+                      [](const Part& part) {
+                        std::string out;
+                        for (const Section* s : part.sections)
+                          out += failing_html(*s);
+                        return out;
+                      }) +
+         chapter_html("numbers", kMeasured, parts, [](const Part& part) {
+           const std::string table = numbers_html(part.sections);
+           return table + open_html(part.sections);
+         });
+}
+
+/// The cards of a paper, those with a picture first.
+std::string cards_html(const Part& part,
+                       const Pages& pages,
+                       const Palette& palette) {
   std::string out = fmt::format(
       "<section id=\"{0}\" aria-labelledby=\"{0}-title\">\n"
       "<h2 id=\"{0}-title\">{1}</h2>\n",
-      html(group.key),
-      html(group.title));
-  if (!group.text.empty())
+      html(part.group.key),
+      html(part.group.title));
+  if (!part.group.text.empty())
     out += fmt::format(
         "<p class=\"remark\">{}{}</p>\n",
-        html(group.text),
-        group.link.empty()
+        html(part.group.text),
+        part.group.link.empty()
             ? ""
-            : fmt::format(" <a href=\"{0}\">{0}</a>", html(group.link)));
-  return out + own + "</section>\n";
+            : fmt::format(" <a href=\"{0}\">{0}</a>", html(part.group.link)));
+  std::string with, without;
+  for (const Section* section : part.sections) {
+    const auto picture =
+        card_picture(*section, palette, pictures_of(pages, *section));
+    (picture ? with : without) +=
+        card_html(*section, folder_of(section->experiment), picture);
+  }
+  return out + "<div class=\"cards\">\n" + with + without +
+         "</div>\n</section>\n";
 }
 
 /// The groups asked for, then one for each key that none of them has.
@@ -182,22 +223,34 @@ std::vector<Group> all_groups(std::vector<Group> groups,
   return groups;
 }
 
-std::string contents_html(const std::vector<Group>& groups,
-                          const std::vector<Section>& sections) {
-  std::string out = "<nav id=\"contents\" aria-label=\"Contents\">\n";
+std::vector<Part> parts_of(const std::vector<Group>& groups,
+                           const std::vector<Section>& sections) {
+  std::vector<Part> parts;
   for (const Group& group : groups) {
-    std::string items;
+    Part part{group, {}};
     for (const Section& section : sections)
-      if (key_of(section) == group.key)
-        items += fmt::format("<li><a href=\"{}/index.html\">{}</a></li>\n",
-                             html(folder_of(section.experiment)),
-                             html(section.title));
-    if (!items.empty())
-      out += fmt::format(
-          "<details>\n<summary>{}</summary>\n<ul>\n{}</ul>\n</details>\n",
-          html(group.key),
-          items);
+      if (key_of(section) == group.key) part.sections.push_back(&section);
+    if (!part.sections.empty()) parts.push_back(std::move(part));
   }
+  return parts;
+}
+
+std::string contents_html(const std::vector<Part>& parts,
+                          const std::string& chapters) {
+  std::string out = "<nav id=\"contents\" aria-label=\"Contents\">\n";
+  for (const Part& part : parts) {
+    out += fmt::format("<details>\n<summary>{}</summary>\n<ul>\n",
+                       html(part.group.key));
+    for (const Section* section : part.sections)
+      out += fmt::format("<li><a href=\"{}/index.html\">{}</a></li>\n",
+                         html(folder_of(section->experiment)),
+                         html(section->title));
+    out += "</ul>\n</details>\n";
+  }
+  for (const auto& [id, words] :
+       {std::pair("deviations", kDeviations), std::pair("numbers", kMeasured)})
+    if (chapters.find(fmt::format("<section id=\"{}\"", id)) != out.npos)
+      out += fmt::format("<p><a href=\"#{}\">{}</a></p>\n", id, words);
   return out + "<p><a href=\"#provenance\">Provenance</a></p>\n</nav>\n";
 }
 
@@ -208,7 +261,8 @@ std::string tallies_html(const std::vector<Section>& sections) {
       }))
     return "";
   return fmt::format(
-      "<p>What the papers say: {}. Ranges of the suite: {}.</p>\n",
+      "<p>Statements of the papers: {}.</p>\n"
+      "<p class=\"remark\">Regression checks of this suite: {}.</p>\n",
       tally_text(tally(sections, Origin::paper), Origin::paper),
       tally_text(tally(sections, Origin::suite), Origin::suite));
 }
@@ -222,13 +276,18 @@ std::string index_html(const std::vector<Section>& sections,
                                             pages.front, sections.size()));
   const std::vector<Section> whole(sections.begin(), front),
       others(front, sections.end());
-  const auto all = all_groups(pages.groups, others);
-  PageParts parts{.title = "Physics inverse problems: report"};
+  const auto all = parts_of(all_groups(pages.groups, others), others);
+  const std::string chapters = chapters_html(all);
+  PageParts parts{.title = "Physics inverse problems: report",
+                  .header = {},
+                  .contents = contents_html(all, chapters),
+                  .main = {},
+                  .footer = {},
+                  .pictures = true};
   nlohmann::ordered_json brief = provenance;
   if (brief.is_object()) brief.erase("papers");  // the groups name them
   parts.header = "<h1>" + html(heading_of(provenance)) + "</h1>\n" +
                  summary_html(brief) + tallies_html(sections);
-  parts.contents = contents_html(all, others);
   const auto anchors = anchors_of(whole);
   const Palette palette(sections);
   for (std::size_t k = 0; k < whole.size(); ++k)
@@ -236,7 +295,8 @@ std::string index_html(const std::vector<Section>& sections,
                                anchors[k],
                                palette,
                                {.folder = folder_of(whole[k].experiment)});
-  for (const Group& group : all) parts.main += group_html(group, others);
+  for (const Part& part : all) parts.main += cards_html(part, pages, palette);
+  parts.main += chapters;
   parts.footer = provenance_html(brief);
   return page_html(parts);
 }

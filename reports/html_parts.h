@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "reports/anchors.h"
+#include "reports/key_figure.h"
 #include "reports/palette.h"
 #include "reports/report.h"
 #include "suite/results/report_model.h"
@@ -46,6 +47,7 @@ std::string verdicts_html(const VerdictCounts& counts, Origin origin);
 struct PageParts {
   std::string title;  ///< plain, of the window
   std::string header, contents, main, footer;
+  bool pictures = false;  ///< shows files of its folder
 };
 /// A page that needs nothing but itself.
 std::string page_html(const PageParts& parts);
@@ -70,6 +72,12 @@ std::string section_page_html(const Section& section,
                               const nlohmann::ordered_json& provenance,
                               const Palette& palette,
                               const std::vector<Picture>& pictures = {});
+
+/// A card of the index: picture, if there is one, title, answer, verdicts; the
+/// title leads to the page of the experiment.
+std::string card_html(const Section& section,
+                      const std::string& folder,
+                      const std::optional<CardPicture>& picture);
 
 /// What stands beside a page.
 struct Beside {

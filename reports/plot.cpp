@@ -134,4 +134,22 @@ std::string render_svg(const Figure& figure, const Palette& report) {
   return std::move(svg).str();
 }
 
+std::string render_card(const Figure& figure, const Palette& report) {
+  constexpr double kLeast = 170;  // of the panel below a long legend
+  Palette palette = palette_of(figure, report);
+  std::vector<Key> keys = legend_keys(figure);
+  const double legend = lay_out(keys, kCardWidth);
+  const PanelPlot plot(figure.panels.at(0), figure.id, palette);
+  const double panel =
+      plot.height(kCardWidth, std::max(kLeast, kCardHeight - legend));
+  Svg svg(kCardWidth,
+          legend + panel,
+          figure.title,
+          describe(figure),
+          style_sheet());
+  for (const Key& key : keys) draw_key(svg, key, palette, 0, 0);
+  plot.draw(svg, {0, legend, kCardWidth, panel});
+  return std::move(svg).str();
+}
+
 }  // namespace physinv

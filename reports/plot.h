@@ -17,4 +17,10 @@ namespace physinv {
 /// Methods have the inks of `report`.
 std::string render_svg(const Figure& figure, const Palette& report = {});
 
+/// The first panel alone under its legend, for a narrow place: kCardWidth wide
+/// and kCardHeight high, or higher if the names of its rows need it. Has no
+/// title, which stands beside it as text.
+std::string render_card(const Figure& figure, const Palette& report = {});
+inline constexpr int kCardWidth = 360, kCardHeight = 270;
+
 }  // namespace physinv

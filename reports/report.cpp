@@ -8,6 +8,7 @@
 
 #include "reports/html.h"
 #include "reports/html_parts.h"
+#include "reports/key_figure.h"
 #include "reports/plot.h"
 #include "reports/tables.h"
 #include "reports/vega_lite.h"
@@ -77,12 +78,25 @@ void write_section(Writer& writer,
   }
 }
 
+void write_page(Writer& writer,
+                const Section& section,
+                const Json& provenance,
+                const Palette& palette,
+                const Pages& pages) {
+  const fs::path folder = folder_of(section.experiment);
+  const auto pictures = pictures_of(pages, section);
+  writer.write(folder / "index.html",
+               section_page_html(section, provenance, palette, pictures));
+  if (const auto card = card_picture(section, palette, pictures))
+    writer.write(folder / "card.svg", card->svg);
+}
+
+}  // namespace
+
 std::vector<Picture> pictures_of(const Pages& pages, const Section& section) {
   const auto own = pages.pictures.find(section.experiment);
   return own == pages.pictures.end() ? std::vector<Picture>() : own->second;
 }
-
-}  // namespace
 
 std::string folder_of(std::string_view experiment) {
   constexpr std::string_view kPlain =
@@ -131,9 +145,7 @@ std::vector<fs::path> write_report(const fs::path& dir,
     const Section& s = sections[k];
     write_section(writer, s, palette);
     if (!pages.one_file && k >= pages.front)
-      writer.write(
-          fs::path(folder_of(s.experiment)) / "index.html",
-          section_page_html(s, provenance, palette, pictures_of(pages, s)));
+      write_page(writer, s, provenance, palette, pages);
     writer.flush();
     Json one{{"experiment", s.experiment},
              {"title", s.title},

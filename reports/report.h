@@ -56,8 +56,12 @@ struct Pages {
   std::map<std::string, std::vector<Picture>> pictures = {};
 };
 
+/// Of an experiment; empty if there are none.
+std::vector<Picture> pictures_of(const Pages& pages, const Section& section);
+
 /// Files below `dir`, where jpo/billiards becomes jpo-billiards:
-///   index.html, report.md, and with several pages <experiment>/index.html,
+///   index.html, report.md, and with several pages <experiment>/index.html
+///   and, where there is a figure, <experiment>/card.svg,
 ///   claims.json ({provenance, sections: [{..., claims}]}),
 ///   <experiment>/tables/<id>.{json,csv,md},
 ///   <experiment>/figures/<id>.{json,csv,vl.json,svg}; vl is Vega-Lite.

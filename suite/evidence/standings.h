@@ -32,8 +32,9 @@ struct Standings {
 /// equal; that of a chain that failed is not finite.
 Standings standings(const CommonRuns& common);
 
-/// "Of 5 methods JPO has the lowest mean rank ...": the first against the next.
-/// Empty if no two methods can be compared.
+/// The first against the next: "JPO ranks best of 5 methods: on 336 problems
+/// its final loss compared with BFGS, the next, is lower on 32 % ...", or that
+/// no method is clearly ahead. Empty if no two methods can be compared.
 std::string standing_text(const CommonRuns& common,
                           const Standings& standings,
                           const std::map<std::string, std::string>& titles);

@@ -3,6 +3,7 @@
 #include "reports/anchors.h"
 #include "reports/html.h"
 #include "reports/html_parts.h"
+#include "reports/key_figure.h"
 #include "reports/statements.h"
 
 namespace physinv {
@@ -92,6 +93,75 @@ TEST(Index, FailingStatementsAreSentencesAndOpenOnesALine) {
   EXPECT_EQ(page.find("P3 is"), page.npos);
   EXPECT_NE(page.find("2 not judged; decided by profile paper"), page.npos);
   EXPECT_LT(page.size(), 40'000U);
+}
+
+Figure curves_of(const char* title, const char* x_label, bool y_log) {
+  const Series one{
+      .label = "A <1>", .method = "a", .x = {1, 2, 3}, .y = {3, 2, 1}},
+      other{.label = "B", .method = "b", .x = {1, 2, 3}, .y = {3, 1, 0.1}};
+  Panel panel{.title = "n = 8",
+              .x_label = x_label,
+              .y_label = "loss",
+              .x_log = true,
+              .y_log = y_log,
+              .series = {one, other}};
+  Panel larger = panel;
+  larger.title = "n = 16";
+  return {.id = "f", .title = title, .panels = {panel, larger}};
+}
+
+TEST(Index, ACardHasLearningCurvesAnAnswerAndVerdicts) {
+  auto all = sections();
+  all[0].standing = "JPO ranks best <of 2>";
+  all[0].figures = {curves_of("Costs", "seconds", true),
+                    curves_of("Learning", "updates", true)};
+  const std::string page = index_html(all, {.one_file = false}, {});
+  const auto begin = page.find("<article class=\"card\">");
+  const std::string card =
+      page.substr(begin, page.find("</article>", begin) - begin);
+  for (const char* part :
+       {"<a href=\"jpo-toy/index.html\">Toy</a>",
+        "src=\"jpo-toy/card.svg\" alt=\"Learning, n = 16: loss over updates; "
+        "A &lt;1&gt;, B\"",
+        "<p class=\"answer\">JPO ranks best &lt;of 2&gt;.</p>",
+        "✓ 1 reproduced</span>, <span class=\"no\">✗ 1 not reproduced</span>, "
+        "<span class=\"open\">– 2 not judged</span>"})
+    EXPECT_NE(card.find(part), card.npos) << part << '\n' << card;
+  EXPECT_EQ(page.find("sip-toy/card.svg"), page.npos) << "has no figure";
+  EXPECT_LT(page.rfind("</article>"), page.find("P2 is &lt;so&gt;"))
+      << "sentences stand below all cards";
+  EXPECT_LT(page.find("P2 is &lt;so&gt;"), page.find("<footer"));
+  EXPECT_NE(page.find("img-src 'self' data:;"), page.npos);
+}
+
+TEST(Index, TheKeyFigureIsOfLearningCurves) {
+  Section one{.experiment = "e", .title = "E"};
+  EXPECT_FALSE(key_figure(one));
+  Figure bars = curves_of("Bars", "n", false),
+         none{.id = "none", .title = "None", .panels = {Panel{}}};
+  one.figures = {none, bars};
+  ASSERT_TRUE(key_figure(one));
+  EXPECT_EQ(key_figure(one)->title, "Bars");
+  EXPECT_EQ(key_figure(one)->panels.front().title, "n = 8") << "the first";
+  one.figures.push_back(curves_of("Costs", "seconds", true));
+  EXPECT_EQ(key_figure(one)->title, "Costs");
+  one.figures.push_back(curves_of("Learning", "iteration + 1", true));
+  one.figures.push_back(curves_of("More", "updates", true));
+  EXPECT_EQ(key_figure(one)->title, "Learning") << "the first of its kind";
+  ASSERT_EQ(key_figure(one)->panels.size(), 1U);
+  EXPECT_EQ(key_figure(one)->panels.front().title, "n = 16") << "the last";
+}
+
+TEST(Index, WithoutFiguresACardShowsWhatWasDrawnBefore) {
+  const Section one{.experiment = "jpo/toy", .title = "Toy"};
+  const std::vector<Picture> drawn = {
+      {.title = "Fig. 1 · Task", .svg = "<svg>1</svg>", .note = {}},
+      {.title = "Fig. 2 · Learning curves", .svg = "<svg>2</svg>", .note = {}}};
+  const auto card = card_picture(one, {}, drawn);
+  ASSERT_TRUE(card);
+  EXPECT_EQ(card->svg, "<svg>2</svg>");
+  EXPECT_EQ(card->alt, "Fig. 2 · Learning curves");
+  EXPECT_FALSE(card_picture(one, {}, {}));
 }
 
 /// What a sentence of the index says of one claim.

@@ -57,6 +57,16 @@ def links(path):
     return count
 
 
+def cards(index):
+    """Each card of the index has its picture, which says what it shows."""
+    pictures = re.findall(r'<img src="([^"]+)" alt="([^"]*)"', read(index))
+    for target, alt in pictures:
+        there = os.path.join(os.path.dirname(index), target)
+        check(os.path.exists(there), f"{index}: no {target}")
+        check(len(alt) > 10, f"{index}: {target} is called {alt!r}")
+    return len(pictures)
+
+
 def legends(path):
     """Samples beside the names differ."""
     count = 0
@@ -142,6 +152,7 @@ def main():
                       f"the index has {os.path.getsize(index)} bytes")
             if not flags:
                 check(len(pages) > 40, f"{len(pages)} pages")
+                check(cards(index) > 40, f"{cards(index)} cards with a picture")
             looked_at = [index] + ([] if flags else pages)
             found = sum(links(path) for path in looked_at)
             entries = sum(legends(path) for path in looked_at)

@@ -1,0 +1,68 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "reports/html_parts.h"
+#include "reports/plot.h"
+#include "suite/results/verdict_words.h"
+
+namespace physinv {
+namespace {
+
+/// How the methods compare; else the first statement of the paper that was
+/// decided, the reproduced ones first.
+std::string answer_html(const Section& section) {
+  if (!section.standing.empty()) return html(section.standing) + '.';
+  for (const bool reproduced : {true, false})
+    for (const ClaimResult& c : section.claims)
+      if (c.origin == Origin::paper && c.verdict != Verdict::not_judged &&
+          c.verdict != Verdict::reported &&
+          (c.verdict == Verdict::reproduced) == reproduced)
+        return fmt::format("{} <span class=\"{}\">{} {}</span>",
+                           html(c.says),
+                           css_of(c.verdict),
+                           mark_of(c.verdict),
+                           words_of(c.verdict, c.origin));
+  return "";
+}
+
+/// Of the paper's statements; those that are not judged, too.
+std::string counts_html(const Section& section) {
+  const VerdictCounts counts = tally(section, Origin::paper);
+  std::string out = verdicts_html(counts, Origin::paper);
+  const int open = counts[static_cast<std::size_t>(Verdict::not_judged)];
+  if (open > 0)
+    out += fmt::format("{}<span class=\"open\">{} {} {}</span>",
+                       out.empty() ? "" : ", ",
+                       mark_of(Verdict::not_judged),
+                       open,
+                       words_of(Verdict::not_judged, Origin::paper));
+  return out;
+}
+
+}  // namespace
+
+std::string card_html(const Section& section,
+                      const std::string& folder,
+                      const std::optional<CardPicture>& picture) {
+  std::string out = fmt::format(
+      "<article class=\"card\">\n<h3><a href=\"{0}/index.html\">{1}</a></h3>\n",
+      html(folder),
+      html(section.title));
+  if (picture)
+    out += fmt::format(
+        "<a href=\"{0}/index.html\" tabindex=\"-1\"><img "
+        "src=\"{0}/card.svg\" alt=\"{1}\" width=\"{2}\" height=\"{3}\" "
+        "loading=\"lazy\"/></a>\n",
+        html(folder),
+        html(picture->alt),
+        kCardWidth,
+        kCardHeight);
+  if (const std::string answer = answer_html(section); !answer.empty())
+    out += "<p class=\"answer\">" + answer + "</p>\n";
+  if (const std::string counts = counts_html(section); !counts.empty())
+    out += "<p class=\"counts\">" + counts + "</p>\n";
+  return out + "</article>\n";
+}
+
+}  // namespace physinv

@@ -1,0 +1,31 @@
+/// The picture of an experiment's card on the index of a report.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "reports/palette.h"
+#include "reports/report.h"
+#include "suite/results/report_model.h"
+
+namespace physinv {
+
+/// A figure of the one panel that shows most: learning curves of several
+/// methods (a logarithmic axis over updates or iterations; of several panels
+/// of a figure the last, which has the largest n), else other curves of
+/// several methods on two logarithmic axes, else the first panel that has
+/// something to draw. Nothing if no panel has.
+std::optional<Figure> key_figure(const Section& section);
+
+struct CardPicture {
+  std::string svg;
+  std::string alt;  ///< what it shows, in words
+};
+/// Of the key figure; without one, of the figures that were drawn before, the
+/// curves first. Nothing if there are none.
+std::optional<CardPicture> card_picture(const Section& section,
+                                        const Palette& palette,
+                                        const std::vector<Picture>& drawn);
+
+}  // namespace physinv
