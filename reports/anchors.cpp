@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <climits>
+#include <numeric>
 #include <set>
+#include <utility>
 
 namespace physinv {
 namespace {
@@ -67,6 +70,7 @@ std::vector<Anchors> anchors_of(const std::vector<Section>& sections) {
     for (const auto& c : s.claims) a.claims.push_back(below(c.id));
     for (const auto& t : s.tables) a.tables.push_back(below(t.id));
     for (const auto& f : s.figures) a.figures.push_back(below(f.id));
+    a.statements = below("statements");
     all.push_back(std::move(a));
   }
   return all;
@@ -102,6 +106,37 @@ bool share_place(std::string_view a, std::string_view b) {
   return std::any_of(of_a.begin(), of_a.end(), [&](const auto& place) {
     return std::find(of_b.begin(), of_b.end(), place) != of_b.end();
   });
+}
+
+namespace {
+
+/// Number and letter of the first figure that is named; {INT_MAX, ""} if none
+/// is.
+std::pair<int, std::string> figure_of(std::string_view where) {
+  bool figures = false;
+  std::pair<int, std::string> place{INT_MAX, ""};
+  for (const std::string& token : tokens_of(where)) {
+    if (place.first != INT_MAX) {
+      if (token.size() == 1 && is_letter(token.front())) place.second = token;
+      return place;
+    }
+    if (is_letter(token.front()))
+      figures = kind_of(token) == "fig";
+    else if (figures && is_digit(token.front()) && token.size() <= 4)
+      place.first = std::stoi(token);
+  }
+  return place;
+}
+
+}  // namespace
+
+std::vector<std::size_t> order_of(const std::vector<Figure>& figures) {
+  std::vector<std::size_t> order(figures.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) {
+    return figure_of(figures[a].where) < figure_of(figures[b].where);
+  });
+  return order;
 }
 
 }  // namespace physinv

@@ -14,6 +14,7 @@ namespace physinv {
 struct Anchors {
   std::string section;
   std::vector<std::string> claims, tables, figures;
+  std::string statements = {};  ///< all claims
 };
 
 /// Unique among the sections of one page.
@@ -25,5 +26,9 @@ std::vector<std::string> places_of(std::string_view text);
 
 /// Do both name a place that is the same?
 bool share_place(std::string_view a, std::string_view b);
+
+/// Figures in the order of the paper, "Fig. 4a" before "Fig. 4b" before
+/// "Fig. 11"; those that it does not have after them, as they are.
+std::vector<std::size_t> order_of(const std::vector<Figure>& figures);
 
 }  // namespace physinv

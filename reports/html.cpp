@@ -213,14 +213,14 @@ std::string section_page_html(const Section& section,
   Json own = provenance;
   if (own.is_object() && own.contains("papers"))
     own["papers"] = papers_of(own["papers"], section.paper);
-  parts.header = "<p><a href=\"../index.html\">← All experiments</a></p>\n" +
-                 summary_html(own);
+  parts.header = "<p><a href=\"../index.html\">← All experiments</a></p>\n";
   parts.contents = contents_html({section}, anchors);
-  parts.main = section_html(
-      section, anchors[0], palette, {"", command_of(section, provenance)});
+  Beside beside{.folder = "", .command = command_of(section, provenance)};
+  beside.about = summary_html(own);
   if (!pictures.empty())
-    parts.main += "<h3>Figures as they were published</h3>\n";
-  for (const Picture& p : pictures) parts.main += picture_html(p);
+    beside.pictures = "<h3>Figures as they were published</h3>\n";
+  for (const Picture& p : pictures) beside.pictures += picture_html(p);
+  parts.main = section_html(section, anchors[0], palette, beside);
   parts.footer = provenance_html(own);
   return page_html(parts);
 }

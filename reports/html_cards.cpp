@@ -26,7 +26,8 @@ std::string answer_html(const Section& section) {
   return "";
 }
 
-/// Of the paper's statements; those that are not judged, too.
+}  // namespace
+
 std::string counts_html(const Section& section) {
   const VerdictCounts counts = tally(section, Origin::paper);
   std::string out = verdicts_html(counts, Origin::paper);
@@ -39,8 +40,6 @@ std::string counts_html(const Section& section) {
                        words_of(Verdict::not_judged, Origin::paper));
   return out;
 }
-
-}  // namespace
 
 std::string card_html(const Section& section,
                       const std::string& folder,

@@ -104,17 +104,17 @@ std::string contents_html(const std::vector<Section>& sections,
     const Anchors& a = anchors[k];
     out += fmt::format("<details>\n<summary>{}</summary>\n<ul>\n<li>{}</li>\n",
                        html(s.title),
-                       link(a.section, s.claims.empty() ? "Top" : "Claims"));
-    for (std::size_t i = 0; i < s.tables.size(); ++i) {
-      out += fmt::format(
-          "<li>{}</li>\n",
-          link(a.tables[i], name_of(s.tables[i].where, s.tables[i].title)));
-    }
-    for (std::size_t i = 0; i < s.figures.size(); ++i) {
+                       link(a.section, "Top"));
+    for (const std::size_t i : order_of(s.figures))
       out += fmt::format(
           "<li>{}</li>\n",
           link(a.figures[i], name_of(s.figures[i].where, s.figures[i].title)));
-    }
+    if (!s.claims.empty())
+      out += fmt::format("<li>{}</li>\n", link(a.statements, "Statements"));
+    for (std::size_t i = 0; i < s.tables.size(); ++i)
+      out += fmt::format(
+          "<li>{}</li>\n",
+          link(a.tables[i], name_of(s.tables[i].where, s.tables[i].title)));
     out += "</ul>\n</details>\n";
   }
   return out + "<p>" + link("provenance", "Provenance") + "</p>\n</nav>\n";

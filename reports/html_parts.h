@@ -43,6 +43,9 @@ std::string_view css_of(Verdict verdict);
 /// "✓ 3 reproduced, ✗ 1 not reproduced"; nothing where nothing is decided.
 std::string verdicts_html(const VerdictCounts& counts, Origin origin);
 
+/// The same with those that are not judged.
+std::string counts_html(const Section& section);
+
 /// What stands on a page; all of it is HTML.
 struct PageParts {
   std::string title;  ///< plain, of the window
@@ -79,14 +82,29 @@ std::string card_html(const Section& section,
                       const std::string& folder,
                       const std::optional<CardPicture>& picture);
 
+/// A paper, or what else stands together.
+struct Part {
+  Group group;
+  std::vector<const Section*> sections;
+};
+constexpr const char *kDeviations = "Statements that do not hold as printed",
+                     *kMeasured = "Measured and published numbers";
+/// Sections `deviations` and `numbers` of the index: by paper, statements that
+/// do not hold with what was measured and why; numbers that papers print beside
+/// those measured, and how many statements are not judged.
+std::string chapters_html(const std::vector<Part>& parts);
+
 /// What stands beside a page.
 struct Beside {
   /// Of the data of tables and figures, from the page; nothing: not linked.
   std::optional<std::string> folder = {};
-  std::string command = {};  ///< what makes them
+  std::string command = {};   ///< what makes them
+  std::string about = {};     ///< HTML below the section's head
+  std::string pictures = {};  ///< HTML below its figures
 };
-/// The part of a page that shows an experiment: claims with links to the tables
-/// and figures of the places they name, and back.
+/// The part of a page that shows an experiment: how its methods compare and the
+/// counts of verdicts; figures in the paper's order; claims with links to the
+/// tables and figures of the places they name, and back; tables; the work.
 std::string section_html(const Section& section,
                          const Anchors& anchors,
                          const Palette& palette,

@@ -112,7 +112,7 @@ std::string claims_html(const Section& section,
   }
   if (judged.empty() && open.empty()) return "";
   const std::string title =
-      origin == Origin::paper ? "What the paper says" : "Ranges of the suite";
+      origin == Origin::paper ? "What the paper says" : "Regression checks";
   std::string out = fmt::format("<h3>{}</h3>\n", title);
   if (!judged.empty()) out += claims_table_html(title, section, judged);
   if (!open.empty())
@@ -157,41 +157,34 @@ std::string command_of(const Section& section, const Json& provenance) {
                                        section.experiment);
 }
 
-std::string section_html(const Section& section,
-                         const Anchors& anchors,
-                         const Palette& palette,
-                         const Beside& beside) {
+namespace {
+
+std::string head_html(const Section& section,
+                      const Anchors& anchors,
+                      const std::string& about) {
   std::string out = fmt::format(
       "<section id=\"{0}\" aria-labelledby=\"{0}-title\">\n"
-      "<h2 id=\"{0}-title\"><a class=\"self\" href=\"#{0}\">{1}</a></h2>\n"
-      "<p class=\"remark\"><code>{2}</code></p>\n",
+      "<h2 id=\"{0}-title\"><a class=\"self\" href=\"#{0}\">{1}</a> "
+      "<code>{2}</code></h2>\n",
       anchors.section,
       html(section.title),
       html(section.experiment));
-  const std::string within =
-      beside.folder.value_or("").empty() ? "" : html(*beside.folder) + '/';
   if (!section.standing.empty())
-    out += "<p>" + html(section.standing) + ".</p>\n";
-  if (section.work)
-    if (const std::string text = work_text(*section.work, html, code_html);
-        !text.empty())
-      out += "<p class=\"remark\">" + text + "</p>\n";
-  for (const Origin origin : {Origin::paper, Origin::suite})
-    out += claims_html(section, anchors, origin);
-  if (!section.tables.empty()) out += "<h3>Tables</h3>\n";
-  for (std::size_t k = 0; k < section.tables.size(); ++k) {
-    const Table& table = section.tables[k];
-    out += table_html(table, anchors.tables[k]) +
-           said_of(table.where, section, anchors);
-    if (beside.folder)
-      out +=
-          data_html(within + "tables/",
-                    table.id,
-                    {{".csv", "CSV"}, {".json", "JSON"}, {".md", "Markdown"}},
-                    beside.command);
-  }
+    out += "<p class=\"answer\">" + html(section.standing) + ".</p>\n";
+  const std::string papers = counts_html(section);
+  if (!papers.empty())
+    out += "<p class=\"counts\">The paper's statements: " + papers + "</p>\n";
+  return out + about;
+}
+
+std::string figures_html(const Section& section,
+                         const Anchors& anchors,
+                         const Palette& palette,
+                         const Beside& beside,
+                         const std::string& within) {
+  std::string out;
   if (!section.figures.empty()) out += "<h3>Figures</h3>\n";
-  for (std::size_t k = 0; k < section.figures.size(); ++k) {
+  for (const std::size_t k : order_of(section.figures)) {
     const Figure& figure = section.figures[k];
     out += figure_html(figure, anchors.figures[k], palette) +
            said_of(figure.where, section, anchors);
@@ -204,7 +197,56 @@ std::string section_html(const Section& section,
                         {".vl.json", "Vega-Lite"}},
                        beside.command);
   }
-  return out + "</section>\n";
+  return out;
+}
+
+std::string tables_html(const Section& section,
+                        const Anchors& anchors,
+                        const Beside& beside,
+                        const std::string& within) {
+  std::string out;
+  if (!section.tables.empty()) out += "<h3>Tables</h3>\n";
+  for (std::size_t k = 0; k < section.tables.size(); ++k) {
+    const Table& table = section.tables[k];
+    out += table_html(table, anchors.tables[k]) +
+           said_of(table.where, section, anchors);
+    if (beside.folder)
+      out +=
+          data_html(within + "tables/",
+                    table.id,
+                    {{".csv", "CSV"}, {".json", "JSON"}, {".md", "Markdown"}},
+                    beside.command);
+  }
+  return out;
+}
+
+/// What the methods called and what they could skip.
+std::string work_html(const Section& section) {
+  if (!section.work) return "";
+  const std::string text = work_text(*section.work, html, code_html);
+  return text.empty() ? ""
+                      : "<h3>Work</h3>\n<p class=\"remark\">" + text + "</p>\n";
+}
+
+}  // namespace
+
+std::string section_html(const Section& section,
+                         const Anchors& anchors,
+                         const Palette& palette,
+                         const Beside& beside) {
+  const std::string within =
+      beside.folder.value_or("").empty() ? "" : html(*beside.folder) + '/';
+  std::string out = head_html(section, anchors, beside.about) +
+                    figures_html(section, anchors, palette, beside, within) +
+                    beside.pictures;
+  if (!section.claims.empty()) {
+    out += fmt::format("<div id=\"{}\">\n", anchors.statements);
+    for (const Origin origin : {Origin::paper, Origin::suite})
+      out += claims_html(section, anchors, origin);
+    out += "</div>\n";
+  }
+  return out + tables_html(section, anchors, beside, within) +
+         work_html(section) + "</section>\n";
 }
 
 }  // namespace physinv

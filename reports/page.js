@@ -22,6 +22,11 @@
   nameTheme();
   document.body.prepend(theme);
 
+  // ---- contents of one experiment are open beside a wide page --------------
+  const parts = document.querySelectorAll('nav details');
+  if (parts.length === 1 && matchMedia('(min-width:70rem)').matches)
+    parts[0].open = true;
+
   // ---- series on and off --------------------------------------------------
   for (const item of document.querySelectorAll('.legend li')) {
     const button = document.createElement('button');

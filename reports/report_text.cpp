@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "reports/anchors.h"
 #include "reports/report.h"
 #include "reports/tables.h"
 #include "reports/text.h"
@@ -26,8 +27,8 @@ std::string claims_markdown(const Section& section, Origin origin) {
     if (out.empty())
       out = origin == Origin::paper
                 ? "\n### What the paper says\n\n"
-                : "\n### Ranges of the suite\n\nFrom earlier runs of this "
-                  "code or of independent programs; regression checks.\n\n";
+                : "\n### Regression checks\n\nRanges from earlier runs of this "
+                  "code or of independent programs.\n\n";
     if (out.ends_with("\n\n"))
       out +=
           "| id | claim | verdict | judged from | gates | evidence |\n"
@@ -61,12 +62,9 @@ std::string section_markdown(const Section& section) {
     out += fmt::format("\nPaper: {}\n", markdown(section.paper));
   if (!section.standing.empty())
     out += fmt::format("\n{}.\n", markdown(section.standing));
-  for (const Origin origin : {Origin::paper, Origin::suite})
-    out += claims_markdown(section, origin);
-  if (!section.tables.empty()) out += "\n### Tables\n";
-  for (const Table& t : section.tables) out += '\n' + to_markdown(t);
   if (!section.figures.empty()) out += "\n### Figures\n";
-  for (const Figure& f : section.figures) {
+  for (const std::size_t k : order_of(section.figures)) {
+    const Figure& f = section.figures[k];
     const std::string name =
         f.where.empty() ? f.title : f.where + " · " + f.title;
     out += fmt::format("\n![{}]({}/figures/{}.svg)\n",
@@ -75,6 +73,10 @@ std::string section_markdown(const Section& section) {
                        f.id);
     if (!f.note.empty()) out += '\n' + markdown(f.note) + '\n';
   }
+  for (const Origin origin : {Origin::paper, Origin::suite})
+    out += claims_markdown(section, origin);
+  if (!section.tables.empty()) out += "\n### Tables\n";
+  for (const Table& t : section.tables) out += '\n' + to_markdown(t);
   return out;
 }
 
@@ -88,7 +90,7 @@ std::string provenance_markdown(const Json& provenance) {
         markdown(key),
         markdown(value.is_string() ? value.get<std::string>() : value.dump()));
   }
-  return out.empty() ? out : "\n" + out;
+  return out.empty() ? out : "\n## Provenance\n\n" + out;
 }
 
 }  // namespace
@@ -96,9 +98,8 @@ std::string provenance_markdown(const Json& provenance) {
 std::string report_markdown(const std::vector<Section>& sections,
                             const nlohmann::ordered_json& provenance) {
   std::string out = "# Report\n\nOf the " + summary(sections) + ".\n";
-  out += provenance_markdown(provenance);
   for (const Section& s : sections) out += section_markdown(s);
-  return out;
+  return out + provenance_markdown(provenance);
 }
 
 std::string render_claims_text(const std::vector<Section>& sections,

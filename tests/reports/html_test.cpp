@@ -6,6 +6,8 @@
 #include <regex>
 #include <set>
 
+#include "reports/anchors.h"
+#include "reports/html_parts.h"
 #include "tests/reports/xml_check.h"
 
 namespace physinv {
@@ -194,6 +196,48 @@ TEST(ReportHtml, TellsWorkMadeAndSaved) {
                   "gradients known to be zero. Not counted: "
                   "<code>skipped_terms</code>.</p>\n"),
             1U);
+}
+
+TEST(ReportHtml, FiguresComeFirstThenStatementsTablesAndWork) {
+  Section own = section("jpo/toy");
+  own.standing = "JPO ranks best";
+  own.work = Counts();
+  (*own.work)[Counter::forward] = 5;
+  const std::string page =
+      section_page_html(own, provenance(), Palette({own}), {});
+  std::size_t last = 0;
+  for (const char* part : {"All experiments",
+                           "<p class=\"answer\">JPO ranks best.</p>",
+                           "<p class=\"counts\">The paper's statements: ",
+                           "profile quick · 2024-01-02",
+                           "<figure id=\"jpo-toy-fig1\">",
+                           "<div id=\"jpo-toy-statements\">",
+                           "<div class=\"table\" id=\"jpo-toy-table1\">",
+                           "Work: 5 simulations.",
+                           "<dt>compiler flags</dt>"}) {
+    const auto at = page.find(part, last);
+    EXPECT_NE(at, page.npos) << part;
+    last = at == page.npos ? last : at;
+  }
+}
+
+TEST(ReportHtml, FiguresAreInThePapersOrder) {
+  const auto figure = [](const char* where) {
+    return Figure{.id = where, .title = where, .where = where};
+  };
+  using Order = std::vector<std::size_t>;
+  EXPECT_EQ(order_of({figure("Fig. 11"),
+                      figure(""),
+                      figure("Fig. 4b, right"),
+                      figure("Figs. 4a, 11"),
+                      figure("Table 2"),
+                      figure("Fig. 4b")}),
+            (Order{3, 2, 5, 0, 1, 4}));
+  Section own = section("jpo/toy");
+  own.figures = {figure("Fig. 9"), figure("Fig. 2")};
+  const std::string page = report_html({own}, provenance());
+  EXPECT_LT(page.find("<figure id=\"jpo-toy-Fig--2\">"),
+            page.find("<figure id=\"jpo-toy-Fig--9\">"));
 }
 
 TEST(ReportHtml, TablesPutThePaperBeside) {
