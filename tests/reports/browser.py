@@ -1,71 +1,143 @@
-"""Pages in Chromium without a window."""
+"""Pages in Chromium without a window, which is asked over its pipe (DevTools
+protocol: messages of JSON that end with NUL on the descriptors 3 and 4)."""
 
+import base64
+import json
 import os
 import re
+import select
+import shutil
 import subprocess
 import tempfile
+import time
 
 WIDTHS = (390, 800, 1400)
+SHEET = 680  # pixels of A4 between margins of 15 mm
 FLAGS = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic",
          "--no-first-run", "--disable-background-networking",
-         "--disable-component-update", "--disable-sync"]
+         "--disable-component-update", "--disable-sync", "--hide-scrollbars",
+         "--remote-debugging-pipe"]
+LONGEST = 120  # seconds until an answer
 
 
-def asked(chromium, path, width, d, expression, change=lambda page: page):
-    """An integer of the page, as it is changed, once it is loaded."""
-    probe = os.path.join(d, "probe.html")
-    with open(path) as f:
-        page = change(f.read())
-    with open(probe, "w") as f:
-        f.write(page + "<script>addEventListener('load', () => setTimeout(() => {"
-                f"document.body.innerHTML = 'is ' + ({expression}) + ' end'"
-                "}))</script>")
-    p = subprocess.run([chromium, *FLAGS, "--dump-dom",
-                        "--user-data-dir=" + tempfile.mkdtemp(dir=d),
-                        f"--window-size={width},900", "file://" + probe],
-                       capture_output=True, text=True, timeout=120)
-    found = re.search(r"is (-?\d+) end", p.stdout)
-    return int(found[1]) if found else None
+def installed():
+    return shutil.which("chromium")
 
 
-def too_wide(chromium, path, width, d):
-    """Pixels by which the page is wider than the window."""
-    return asked(chromium, path, width, d,
-                 "document.documentElement.scrollWidth - innerWidth")
+class Browser:
+    def __enter__(self):
+        self.profile = tempfile.mkdtemp()
+        reads, to = os.pipe()
+        self.answers, writes = os.pipe()
+        self.process = subprocess.Popen(
+            ["bash", "-c", f'exec "$@" 3<&{reads} 4>&{writes}', "bash",
+             installed(), *FLAGS, "--user-data-dir=" + self.profile],
+            pass_fds=(reads, writes), stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL)
+        os.close(reads)
+        os.close(writes)
+        self.to, self.pending, self.last, self.session = to, b"", 0, None
+        page = self.call("Target.createTarget", url="about:blank")
+        self.session = self.call("Target.attachToTarget", flatten=True,
+                                 targetId=page["targetId"])["sessionId"]
+        self.call("Page.enable")
+        return self
 
+    def __exit__(self, *_):
+        self.process.terminate()
+        self.process.wait(LONGEST)
+        os.close(self.to)
+        os.close(self.answers)
+        shutil.rmtree(self.profile, ignore_errors=True)
 
-def elements(chromium, path, d):
-    """Of the page, its script's included: what loading takes goes with them."""
-    return asked(chromium, path, 1400, d,
-                 "document.getElementsByTagName('*').length")
+    def message(self):
+        end = time.monotonic() + LONGEST
+        while b"\0" not in self.pending:
+            if not select.select([self.answers], [], [],
+                                 max(0, end - time.monotonic()))[0]:
+                raise TimeoutError("Chromium does not answer")
+            self.pending += os.read(self.answers, 1 << 20)
+        text, self.pending = self.pending.split(b"\0", 1)
+        return json.loads(text)
 
+    def call(self, method, until=None, **parameters):
+        """What the method returns, after an event if one is named."""
+        self.last += 1
+        call = {"id": self.last, "method": method, "params": parameters}
+        if self.session:
+            call["sessionId"] = self.session
+        os.write(self.to, json.dumps(call).encode() + b"\0")
+        answer = None
+        while answer is None or until:
+            message = self.message()
+            if message.get("method") == until:
+                until = None
+            if message.get("id") == self.last:
+                if "error" in message:
+                    raise RuntimeError(f"{method}: {message['error']}")
+                answer = message["result"]
+        return answer
 
-def load_ms(chromium, path, d):
-    """From the start of navigation to the end of the load event, the least of
-    three."""
-    times = [asked(chromium, path, 1400, d,
-                   "Math.round(performance.getEntriesByType('navigation')[0]"
-                   ".loadEventEnd)") for _ in range(3)]
-    return min(t for t in times if t is not None)
+    def open(self, path, width=1400, dark=False, media="screen"):
+        """Loads the page in a window of this width."""
+        self.call("Emulation.setDeviceMetricsOverride", width=width,
+                  height=900, deviceScaleFactor=1, mobile=False)
+        scheme = "dark" if dark else "light"
+        self.call("Emulation.setEmulatedMedia", media=media, features=[
+            {"name": "prefers-color-scheme", "value": scheme}])
+        self.call("Page.navigate", until="Page.loadEventFired",
+                  url="file://" + os.path.abspath(path))
 
+    def value(self, expression):
+        answer = self.call("Runtime.evaluate", expression=expression,
+                           awaitPromise=True,
+                           returnByValue=True)
+        if "exceptionDetails" in answer:
+            raise RuntimeError(answer["exceptionDetails"])
+        return answer["result"].get("value")
 
-SHEET = 680  # pixels of A4 between margins of 15 mm
+    def too_wide(self, path, width):
+        """Pixels by which the page is wider than the window."""
+        self.open(path, width)
+        return self.value("document.documentElement.scrollWidth - innerWidth")
 
+    def elements(self, path):
+        """Of the page, its script's included: what loading takes goes with
+        them."""
+        self.open(path)
+        return self.value("document.getElementsByTagName('*').length")
 
-def cut_in_print(chromium, path, d):
-    """Tables that are wider than a sheet of paper."""
-    return asked(chromium, path, SHEET, d,
-                 "[...document.querySelectorAll('.scroll')].filter(e => "
-                 "e.firstElementChild.scrollWidth > e.clientWidth + 1).length",
-                 lambda page: page.replace("@media print{", "@media all{"))
+    def load_ms(self, path):
+        """From the start of navigation to the end of the load event, the least
+        of three."""
+        times = []
+        for _ in range(3):
+            self.open(path)
+            times.append(self.value(
+                "Math.round(performance.getEntriesByType('navigation')[0]"
+                ".loadEventEnd)"))
+        return min(times)
 
+    def cut_in_print(self, path):
+        """Tables that are wider than a sheet of paper."""
+        self.open(path, SHEET, media="print")
+        return self.value(
+            "[...document.querySelectorAll('.scroll')].filter(e => "
+            "e.firstElementChild.scrollWidth > e.clientWidth + 1).length")
 
-def printed_pages(chromium, path, d):
-    """Sheets of paper."""
-    out = os.path.join(d, "printed.pdf")
-    subprocess.run([chromium, *FLAGS, "--no-pdf-header-footer",
-                    "--user-data-dir=" + tempfile.mkdtemp(dir=d),
-                    "--print-to-pdf=" + out, "file://" + path],
-                   capture_output=True, timeout=120)
-    with open(out, "rb") as f:
-        return len(re.findall(rb"/Type\s*/Page\b(?!s)", f.read()))
+    def printed_pages(self, path):
+        """Sheets of paper."""
+        self.open(path)
+        pdf = self.call("Page.printToPDF", preferCSSPageSize=True)
+        return len(re.findall(rb"/Type\s*/Page\b(?!s)",
+                              base64.b64decode(pdf["data"])))
+
+    def picture(self, path, highest):
+        """Of the open page as PNG, from its top."""
+        size = self.value("[innerWidth, document.documentElement.scrollHeight]")
+        clip = {"x": 0, "y": 0, "width": size[0],
+                "height": min(size[1], highest), "scale": 1}
+        png = self.call("Page.captureScreenshot", format="png", clip=clip,
+                        captureBeyondViewport=True)
+        with open(path, "wb") as f:
+            f.write(base64.b64decode(png["data"]))

@@ -12,13 +12,11 @@ import glob
 import json
 import os
 import re
-import shutil
 import subprocess
 import sys
 import tempfile
 
-from browser import (WIDTHS, cut_in_print, elements, load_ms, printed_pages,
-                     too_wide)
+from browser import WIDTHS, Browser, installed
 
 PROGRAM, STORE, SOURCES = (os.path.abspath(p) for p in sys.argv[1:4])
 LARGEST_INDEX = 150_000
@@ -119,23 +117,23 @@ def printed_curves(out):
     return drawn
 
 
-def in_chromium(chromium, index, pages, d):
+def in_chromium(index, pages, d):
     largest = sorted(pages, key=os.path.getsize)[-3:]
-    for path in [index, *largest]:
-        for width in WIDTHS:
-            wide = too_wide(chromium, path, width, d)
-            check(wide is not None and wide <= 0,
-                  f"{path} is {wide} too wide for {width}")
-        count, ms = elements(chromium, path, d), load_ms(chromium, path, d)
-        sheets = printed_pages(chromium, path, d)
-        print(f"{os.path.relpath(path, d)}: {os.path.getsize(path)} bytes, "
-              f"{count} elements, loaded in {ms} ms, {sheets} sheets")
-        check(count <= MOST_ELEMENTS, f"{path} has {count} elements")
-        quiet = os.getloadavg()[0] <= os.cpu_count()
-        check(ms <= LONGEST_LOAD_MS or not quiet, f"{path} takes {ms} ms")
-        check(0 < sheets <= MOST_SHEETS, f"{path} takes {sheets} sheets")
-        cut = cut_in_print(chromium, path, d)
-        check(cut == 0, f"{path}: print cuts {cut} tables")
+    with Browser() as browser:
+        for path in [index, *largest]:
+            for width in WIDTHS:
+                wide = browser.too_wide(path, width)
+                check(wide <= 0, f"{path} is {wide} too wide for {width}")
+            count, ms = browser.elements(path), browser.load_ms(path)
+            sheets = browser.printed_pages(path)
+            print(f"{os.path.relpath(path, d)}: {os.path.getsize(path)} bytes, "
+                  f"{count} elements, loaded in {ms} ms, {sheets} sheets")
+            check(count <= MOST_ELEMENTS, f"{path} has {count} elements")
+            quiet = os.getloadavg()[0] <= os.cpu_count()
+            check(ms <= LONGEST_LOAD_MS or not quiet, f"{path} takes {ms} ms")
+            check(0 < sheets <= MOST_SHEETS, f"{path} takes {sheets} sheets")
+            cut = browser.cut_in_print(path)
+            check(cut == 0, f"{path}: print cuts {cut} tables")
 
 
 def main():
@@ -164,12 +162,11 @@ def main():
                 continue
             print(f"{vega_lite(out)} figures are Vega-Lite, too, and "
                   f"{printed_curves(out)} printed curves are drawn")
-            chromium = shutil.which("chromium")
-            if not chromium or not os.environ.get("PHYSINV_FULL"):
+            if not installed() or not os.environ.get("PHYSINV_FULL"):
                 print("widths are not looked at: ./check --full does, with "
                       "chromium")
                 continue
-            in_chromium(chromium, index, pages, d)
+            in_chromium(index, pages, d)
     sys.exit(f"{len(FAILED)} failed" if FAILED else 0)
 
 

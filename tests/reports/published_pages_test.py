@@ -7,12 +7,11 @@ command makes the pages of all of them, and git's baselines are a history.
 import glob
 import os
 import re
-import shutil
 import subprocess
 import sys
 import tempfile
 
-from browser import WIDTHS, too_wide
+from browser import WIDTHS, Browser, installed
 
 PROGRAM, SOURCES = (os.path.abspath(p) for p in sys.argv[1:3])
 CAMPAIGNS = os.path.join(SOURCES, "reports", "campaigns")
@@ -70,13 +69,12 @@ def pages_of_all(d):
     check(found > 3 * len(names), f"{found} links")
     check(not os.path.exists(f"{d}/RESULTS.md"), "no RESULTS.md")
     print(f"{len(names)} campaigns, {found} links")
-    chromium = shutil.which("chromium")
-    if chromium and os.environ.get("PHYSINV_FULL"):
-        for page in ("index.html", names[0] + "/index.html"):
-            for width in WIDTHS:
-                wide = too_wide(chromium, f"{d}/pages/{page}", width, d)
-                check(wide is not None and wide <= 0,
-                      f"{page} is {wide} too wide for {width}")
+    if installed() and os.environ.get("PHYSINV_FULL"):
+        with Browser() as browser:
+            for page in ("index.html", names[0] + "/index.html"):
+                for width in WIDTHS:
+                    wide = browser.too_wide(f"{d}/pages/{page}", width)
+                    check(wide <= 0, f"{page} is {wide} too wide for {width}")
 
 
 def one_by_one(d):
