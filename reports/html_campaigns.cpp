@@ -22,7 +22,7 @@ std::string campaign_html(const CampaignPages& campaign) {
       verdicts_html(tally(campaign.sections, Origin::suite), Origin::suite);
   if (!papers.empty()) out += "<p>The papers: " + papers + "</p>\n";
   if (!ranges.empty())
-    out += "<p class=\"remark\">Ranges of the suite: " + ranges + "</p>\n";
+    out += "<p class=\"remark\">Regression checks: " + ranges + "</p>\n";
   return out + "<p class=\"remark data\"><code>" + html(campaign.command) +
          "</code></p>\n</article>\n";
 }
@@ -35,9 +35,9 @@ std::string campaigns_html(
   PageParts parts{.title = "Physics inverse problems: published campaigns"};
   parts.header =
       "<h1>Physics inverse problems: published campaigns</h1>\n"
-      "<p>Claims and tables of each campaign that is kept with the sources, "
-      "judged by what is claimed today, and figures of curves where they "
-      "were published; the command makes all.</p>\n";
+      "<p>Statements, tables and published figures of each campaign that is "
+      "stored with the sources. Statements are judged by their current "
+      "definitions. The command below a campaign runs it again.</p>\n";
   for (const auto& [folder, title] : others)
     parts.header += fmt::format(
         "<p><a href=\"{}/index.html\">{}</a></p>\n", html(folder), html(title));

@@ -31,13 +31,14 @@ std::string totals_html(const std::vector<Section>& sections) {
   }
   return out +
          fmt::format(
-             "</ul>\n<p>Ranges of the suite, from earlier runs (regression "
-             "checks): {}. {}</p>\n",
+             "</ul>\n<p>Regression checks (ranges from earlier runs): "
+             "{}. {}</p>\n",
              tally_text(tally(sections, Origin::suite), Origin::suite),
-             unmet == 0 ? "No gating claim (marked •) is missed."
-                        : fmt::format("Gating claims (marked •) that are not "
-                                      "met: {}.",
-                                      unmet));
+             unmet == 0
+                 ? "All gating claims (marked •) that were judged are met."
+                 : fmt::format("Gating claims (marked •) that are not "
+                               "met: {}.",
+                               unmet));
 }
 
 std::string chips_html(const Section& section,

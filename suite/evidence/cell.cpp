@@ -63,10 +63,10 @@ std::optional<double> TimedStages::seconds(const StageRecord& stage) {
 
 std::string TimedStages::note() const {
   std::string text =
-      "Times are CPU time of solving, wall time where several threads ran.";
+      "Times are CPU times of solving, or wall times if several threads ran.";
   if (crowded_ > 0)
     text += fmt::format(
-        " {} of {} stages shared their cores (crowded); those of several "
+        " {} of {} stages shared their cores (crowded); those with several "
         "threads are left out.",
         crowded_,
         stages_);

@@ -69,10 +69,10 @@ Table failed_runs(const Results& results, const std::string& experiment) {
          {c.info.method, n, seed}});
   }
   table.note = fmt::format(
-      "{} of {} runs. Claims and cells that they would belong to have no "
-      "value; how methods are compared counts them as unsolved, with the time "
-      "and the simulations that they took, and their final losses as the "
-      "highest. Figures are of the other runs.",
+      "{} of {} runs failed. Claims and cells that depend on them have no "
+      "value. Comparisons of methods count them as unsolved, with the time and "
+      "the simulations that they spent and the highest final loss. Figures "
+      "show the other runs.",
       table.rows.size(),
       runs);
   return table;

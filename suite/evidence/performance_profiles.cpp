@@ -119,12 +119,12 @@ std::string tolerance_text(double tolerance) {
 
 std::string target_note(const TargetCosts& costs) {
   std::string note = fmt::format(
-      "A problem ({}) is solved to tau once its "
-      "loss is at most f_L + tau (f_0 - f_L), f_L the lowest loss any method "
-      "found for it, f_0 the lowest at which any method starts (More and Wild "
-      "2009). {} problems of n = {} and {} seed{}; {} more start there or "
-      "without a number and are left out. Costs are those of the whole chain "
-      "of stages, refinement included. {}",
+      "A problem ({}) is solved to tau when its loss is at most f_L + tau "
+      "(f_0 - f_L), where f_L is the lowest loss that any method found for it "
+      "and f_0 the lowest loss at which any method starts (More and Wild "
+      "2009). {} problems of n = {} and {} seed{}; {} more are left out "
+      "because they start at the target or without a finite loss. Costs "
+      "include all stages, also refinement. {}",
       costs.runs ? "one run: the mean test loss of one seed"
                  : "one example of one n and seed",
       costs.problems,
@@ -133,18 +133,20 @@ std::string target_note(const TargetCosts& costs) {
       costs.seeds == 1 ? "" : "s",
       costs.solved_at_start,
       costs.runs
-          ? "Simulations are those of training, gradients included."
-          : "Curves hold the times of a batch: an example's seconds are the "
-            "batch's when it first meets its target. Simulations, gradients "
-            "included, are the batch's at that time over n, at least 1; those "
-            "behind labelled training samples are not counted.");
+          ? "Simulations are those of training and include gradients."
+          : "Curves record the times of a batch: the time of an example is the "
+            "time of its batch when the example first reaches the target. "
+            "Simulations include gradients; they are those of the batch at "
+            "that time divided by n, at least 1. Simulations for labelled "
+            "training samples are not counted.");
   if (costs.left_out > 0)
-    note +=
-        fmt::format(" The {} methods that end lowest; {} more are left out.",
-                    costs.methods.size(),
-                    costs.left_out);
+    note += fmt::format(
+        " Only the {} methods with the lowest final losses; {} more are left "
+        "out.",
+        costs.methods.size(),
+        costs.left_out);
   if (costs.crowded) {
-    note += " Some stages shared their cores: their seconds are too many.";
+    note += " Some stages shared their cores, so their times are too long.";
   }
   return note;
 }
@@ -239,11 +241,11 @@ Figure distribution_figure(const CommonRuns& common,
       .id = "runtime_distribution",
       .title = options.title + ": runtime distribution over all targets",
       .note = fmt::format(
-          "Share of all pairs of a problem and a target that a method has "
-          "reached after so many seconds or simulations: the ECDF of run times "
-          "of COCO (Hansen et al. 2021), over {} targets tau from {:.2g} to "
-          "{:.2g}, evenly in their exponent. The further up and left, the "
-          "better. {} pairs.",
+          "Share of all (problem, target) pairs that a method has reached "
+          "after a number of seconds or simulations: COCO's ECDF of run times "
+          "(Hansen et al. 2021) over {} targets tau from {:.2g} to {:.2g} with "
+          "evenly spaced exponents. Higher and further left is better. {} "
+          "pairs.",
           targets.size(),
           targets.front(),
           targets.back(),
@@ -288,9 +290,9 @@ std::vector<Figure> performance_profile_figures(const CommonRuns& common,
     if (costs.methods.size() < 2 || costs.sizes.empty()) {
       profile.note = reached.note =
           costs.methods.size() < 2
-              ? "Not made: only one method was run."
-              : "Not made: no n and seed at which every method is finished "
-                "and has the losses of the same problems.";
+              ? "Not drawn: only one method was run."
+              : "Not drawn: there is no n and seed at which every method has "
+                "finished with losses of the same problems.";
       profile.panels = reached.panels = {Panel{}};
       return {std::move(profile), std::move(reached)};
     }
@@ -302,8 +304,8 @@ std::vector<Figure> performance_profile_figures(const CommonRuns& common,
       panel.title = fmt::format("By {}, {}",
                                 by_time ? "wall time" : "simulations",
                                 tolerance_text(tolerance));
-      panel.x_label = by_time ? "seconds over the best method's"
-                              : "simulations over the best method's";
+      panel.x_label =
+          by_time ? "seconds / best method's" : "simulations / best method's";
       panel.y_label = "share of problems";
       profile.panels.push_back(std::move(panel));
 
@@ -317,14 +319,14 @@ std::vector<Figure> performance_profile_figures(const CommonRuns& common,
     }
   }
   profile.note =
-      "Share of problems that a method solves within a factor of what the "
-      "best method needs for the same problem (Dolan and More 2002); a method "
-      "that fails never counts. The left end is the share of problems where "
-      "a method is fastest, the right end the share it solves at all. " +
+      "Share of problems that a method solves within a factor of the cost of "
+      "the best method for the same problem (Dolan and More 2002). Failures "
+      "are never solved. The left end is the share of problems on which a "
+      "method is fastest, the right end the share that it solves. " +
       note;
   reached.note =
-      "Share of problems solved after so many seconds or simulations, as in "
-      "the performance profiles.";
+      "Share of problems solved after a number of seconds or simulations, "
+      "solved as in the performance profiles.";
   return {std::move(profile),
           std::move(reached),
           distribution_figure(common, options)};

@@ -129,10 +129,10 @@ Table standings_table(const CommonRuns& common,
                            number(profile_score(seconds[m])),
                            number(profile_score(simulations[m]))}});
   table.note = fmt::format(
-      "Ranks of the final losses on {} {}, 1 is the lowest; losses below "
-      "{:g} are equal. Scores: the area below the performance profile of "
-      "tau = {:g} between factors of 1 and {:g}, over its width (AlgoPerf): 1 "
-      "is fastest everywhere.{}{}",
+      "Ranks of the final losses on {} {}; 1 is the lowest, and losses below "
+      "{:g} count as equal. Scores (AlgoPerf): mean height of the performance "
+      "profile of tau = {:g} between factors of 1 and {:g}; a method that is "
+      "fastest on every problem has 1.{}{}",
       s.problems,
       noun(common),
       kSolvedLoss,
@@ -190,16 +190,16 @@ Table times_table(const CommonRuns& common,
                 fmt::format("{}/{:g}", common.methods[m], kTolerances[k]));
     }
   table.note = fmt::format(
-      "All that was spent until the loss is at most f_L + tau (f_0 - f_L) "
-      "(performance profiles say what they are) or until the end, over the "
-      "number of {} solved: the expected running time of COCO. From .. to: 95 "
-      "% of 1,000 resamplings of the {}, which count as independent.{}{}{}",
+      "Everything spent until the loss is at most f_L + tau (f_0 - f_L), as "
+      "in the performance profiles, or until the end, divided by the number "
+      "of {} solved: COCO's expected running time. From, to: 95 % interval of "
+      "1,000 resamplings of the {}, which count as independent.{}{}{}",
       noun(common),
       noun(common),
       spent_note(common, title),
       left_out(common),
       common.crowded
-          ? " Some stages shared their cores: their seconds are too many."
+          ? " Some stages shared their cores, so their times are too long."
           : "");
   return table;
 }
@@ -227,15 +227,15 @@ Table pairs_table(const CommonRuns& common,
                                                            : "higher"}}});
   }
   table.note = fmt::format(
-      "Final losses on the same {} {}: Wilcoxon's signed rank test of the "
-      "ratios, two-sided, ties dropped, p corrected by Holm over {} pairs; "
-      "below {:g} it is a difference.{}{}{}{}",
+      "Final losses on the same {} {}: two-sided Wilcoxon signed rank test of "
+      "the ratios without ties. p by Holm is corrected for {} pairs; below "
+      "{:g} the difference is significant.{}{}{}{}",
       s.problems,
       noun(common),
       s.pairs.size(),
       kSignificant,
       common.runs ? ""
-                  : fmt::format(" Problems of one network are not independent: "
+                  : fmt::format(" Problems of one network are not independent; "
                                 "there were {} runs.",
                                 common.groups.size()),
       s.pairs.size() > shown

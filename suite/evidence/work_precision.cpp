@@ -231,20 +231,20 @@ Table table_of(const std::vector<SettingHistory>& settings,
     table.rows.push_back(std::move(row));
   }
   table.note = fmt::format(
-      "At the end of the budget: medians over the seeds that all settings of "
-      "one n share, 10 % and 90 % quantiles. Seconds per problem (of a network "
-      "judged on a test set: of its training); mean loss over the lowest at "
-      "which any method starts. Targets leave 10, 1 and 0.1 % of the way from "
-      "the start to the lowest loss of all. The hull is the lower left one "
-      "over all budgets. {}{}{}",
-      dominated.empty() ? "Nothing is dominated."
+      "Values at the end of the budget: medians with 10 % and 90 % quantiles "
+      "over the seeds that all settings of one n share. Seconds per problem "
+      "(for a network judged on a test set, seconds of training); mean loss "
+      "divided by the lowest loss at which any method starts. The targets "
+      "leave 10, 1 and 0.1 % of the way from the start to the lowest loss "
+      "found. The hull is the lower-left hull over all budgets. {}{}{}",
+      dominated.empty() ? "No setting is dominated at every budget."
                         : fmt::format("Dominated at every budget: {}.",
                                       fmt::join(dominated, "; ")),
       failed.empty() ? ""
-                     : fmt::format(" A run that failed has an infinite loss "
-                                   "from there on: {}.",
+                     : fmt::format(" A failed run has an infinite loss after "
+                                   "its failure: {}.",
                                    fmt::join(failed, "; ")),
-      crowded ? " Some stages shared their cores: their seconds are too many."
+      crowded ? " Some stages shared their cores, so their times are too long."
               : "");
   return table;
 }
@@ -273,7 +273,7 @@ Figure figure_of(const std::vector<SettingHistory>& settings,
   const auto panel = [](std::string title) {
     return Panel{.title = std::move(title),
                  .x_label = "seconds per problem",
-                 .y_label = "loss over the start's",
+                 .y_label = "loss / loss at the start",
                  .x_log = true,
                  .y_log = true};
   };
@@ -300,9 +300,9 @@ Figure figure_of(const std::vector<SettingHistory>& settings,
       .title = "Run time against loss",
       .panels = {std::move(budget), std::move(sizes)},
       .note =
-          "Medians over seeds with 10 % and 90 % quantiles. A curve cut off "
-          "anywhere is a smaller budget; the hull goes over all settings "
-          "and budgets."};
+          "Medians over seeds with 10 % and 90 % quantiles. Each point of a "
+          "curve is the result of a smaller budget; the hull covers all "
+          "settings and budgets."};
 }
 
 }  // namespace

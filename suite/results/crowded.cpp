@@ -12,7 +12,7 @@ std::string crowded_text(const std::vector<CaseRecord>& cases) {
   return fmt::format(
       "{} of {} stages were crowded (wall time above {} times CPU time, or "
       "more workers x threads than cores): their wall times are too long, "
-      "tables take CPU time",
+      "so tables use CPU time",
       crowded,
       all,
       kCrowdedFactor);

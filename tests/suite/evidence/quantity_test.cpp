@@ -128,7 +128,7 @@ TEST(FailedRuns, AreATableOfTheirOwn) {
   EXPECT_EQ(table.rows[0].label, "a, n = 2, seed 1");
   EXPECT_EQ(table.rows[0].cells[0].text, "refine");
   EXPECT_EQ(table.rows[0].cells[1].text, "out of memory");
-  EXPECT_TRUE(table.note.starts_with("1 of 4 runs.")) << table.note;
+  EXPECT_TRUE(table.note.starts_with("1 of 4 runs failed.")) << table.note;
   EXPECT_TRUE(failed_runs(campaign(), "toy").rows.empty());
 }
 
