@@ -1,5 +1,9 @@
 #include "suite/evidence/claim_names.h"
 
+#include <fmt/format.h>
+
+#include <stdexcept>
+
 #include "suite/evidence/curve_shape.h"
 #include "suite/evidence/of_experiment.h"
 #include "suite/evidence/run_values.h"
@@ -26,6 +30,13 @@ std::vector<std::string> ClaimNames::all() const {
   return names;
 }
 
+ArrayKey array_named(const std::string& name) {
+  const ArrayInfo* found = find_array(name);
+  if (found == nullptr)
+    throw std::logic_error(fmt::format("there is no array {}", name));
+  return ArrayKey::own(found->name);
+}
+
 std::string kind_of(std::type_index type) {
   static const std::map<std::type_index, const char*> kinds{
       {typeid(double), "a number"},
@@ -38,6 +49,7 @@ std::string kind_of(std::type_index type) {
       {typeid(RunRow), "a value of each example"},
       {typeid(Quantity), "a number of the campaign"},
       {typeid(std::vector<Quantity>), "a list of numbers of the campaign"},
+      {typeid(ArrayKey), "the name of an array"},
       {typeid(Clock), "a clock"},
       {typeid(RowOfCurve), "a row of the curve"},
       {typeid(Condition), "a condition"},

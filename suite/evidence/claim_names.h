@@ -1,13 +1,13 @@
 /// What the names in claims.md mean: numbers, runs, values of a run, functions.
 ///
 ///   ClaimNames names = claim_names();  // median, loss_after, least, ...
-///   names.add("close", 1e-2);
-///   names.add("rescued", [](double first) { return rescued(first); });
+///   names.set("close", 1e-2);                                  // a value
+///   names.add("later", [](double t) { return loss_after(t); });  // a function
 ///
 /// Functions take and return C++ types. A call takes the first function of its
 /// name whose parameters its arguments are, or become: a number becomes an
-/// integer or a quantity, text becomes the runs of that method, a list becomes
-/// a vector.
+/// integer or a quantity, text becomes the runs of that method or the array of
+/// that name, a list becomes a vector.
 #pragma once
 
 #include <any>
@@ -24,6 +24,7 @@
 #include <utility>
 #include <vector>
 
+#include "suite/core/arrays.h"
 #include "suite/evidence/condition.h"
 
 namespace physinv {
@@ -37,6 +38,9 @@ template <class T>
 struct IsVector : std::false_type {};
 template <class T>
 struct IsVector<std::vector<T>> : std::true_type {};
+
+/// Of array_table.h. Throws std::logic_error.
+ArrayKey array_named(const std::string& name);
 
 /// Empty if the value is not a T and does not become one.
 template <class T>
@@ -53,6 +57,8 @@ std::optional<T> claim_value_as(const ClaimValue& value) {
     if (number != nullptr) return Quantity(*number);
   if constexpr (std::same_as<T, Select>)
     if (text != nullptr) return Select{*text};
+  if constexpr (std::same_as<T, ArrayKey>)
+    if (text != nullptr) return array_named(*text);
   if constexpr (IsVector<T>::value)
     if (const auto* list = std::any_cast<ClaimList>(&value)) {
       T all;
@@ -80,25 +86,29 @@ class ClaimNames {
     std::function<std::optional<ClaimValue>(const Call&)> call;
   };
 
-  /// A function, or a value.
-  template <class T>
-  void add(const std::string& name, T meaning) {
-    if constexpr (requires { std::function{meaning}; } &&
-                  !std::same_as<T, RunValue> && !std::same_as<T, RunRow> &&
-                  !std::same_as<T, std::function<bool(double)>>)
-      add_function(name, std::function{std::move(meaning)});
-    else if constexpr (std::is_arithmetic_v<T>)
-      values_[name] = static_cast<double>(meaning);
-    else if constexpr (std::convertible_to<T, std::string>)
-      values_[name] = std::string(meaning);
-    else
-      values_[name] = std::move(meaning);
+  /// A function beside those of its name, with other parameters.
+  template <class F>
+  void add(const std::string& name, F function) {
+    add_function(name, std::function{std::move(function)});
   }
   void add(const std::string& name, Function function) {
     functions_[name].push_back(std::move(function));
   }
-  void set(const std::string& name, ClaimValue value) {
-    values_[name] = std::move(value);
+
+  /// A value: numbers are double; what takes a run is a value of a run, or of
+  /// each of its examples.
+  template <class T>
+  void set(const std::string& name, T meaning) {
+    if constexpr (std::is_arithmetic_v<T>)
+      values_[name] = static_cast<double>(meaning);
+    else if constexpr (std::convertible_to<T, std::string>)
+      values_[name] = std::string(std::move(meaning));
+    else if constexpr (std::convertible_to<T, RunRow>)
+      values_[name] = RunRow(std::move(meaning));
+    else if constexpr (std::convertible_to<T, RunValue>)
+      values_[name] = RunValue(std::move(meaning));
+    else
+      values_[name] = std::move(meaning);
   }
 
   /// Null if there is none.
@@ -109,6 +119,8 @@ class ClaimNames {
  private:
   template <class R, class... P>
   void add_function(const std::string& name, std::function<R(P...)> f) {
+    static_assert((!std::same_as<std::decay_t<P>, Run> && ...),
+                  "of a run: a value, for set()");
     const auto with =
         [f = std::move(f)](const Call& call) -> std::optional<ClaimValue> {
       return [&]<std::size_t... I>(std::index_sequence<I...>)

@@ -27,7 +27,9 @@ Results two_methods() {
 std::vector<Claim> claims(const std::string& text) {
   ClaimNames names = claim_names();
   names.add("loss", [] { return of_row(losses(), mean_of); });
-  names.add("Two", 2);
+  names.set("Two", 2);
+  names.set("loss_of_run", [](const Run& run) { return run.stage->loss(0); });
+  names.add("letters", [](ArrayKey a) { return double(a.name().size()); });
   names.add("refuse", []() -> double { throw std::logic_error("not today"); });
   names.add("pair", [](const Quantity& q) {
     return std::vector{above("one", q, 0), below("two", q, 9)};
@@ -107,6 +109,8 @@ TEST(ClaimDocument, ComputesExpressions) {
   EXPECT_EQ(value("0.5 * mean(\"b\", loss())"), 3);
   EXPECT_EQ(value("least([mean(\"b\", loss()), mean(\"a\", loss())])"), 2);
   EXPECT_EQ(value("median(\"b\", loss() / beside(\"a\", loss()))"), 3);
+  EXPECT_EQ(value("median(\"b\", loss_of_run)"), 5);
+  EXPECT_EQ(value("letters(\"kept\")"), 4);
 }
 
 TEST(ClaimDocument, ReadsEveryRelation) {
@@ -221,6 +225,8 @@ TEST(ClaimDocument, NamesThePlaceOfAnErrorAndWhatWouldBeRight) {
   EXPECT_EQ(error_of_expression("\"a\" - 1"),
             "claims.md:5:11: text - a number has no meaning");
   EXPECT_EQ(error_of_expression("1 + refuse()"), "claims.md:5:11: not today");
+  EXPECT_EQ(error_of_expression("letters(\"keep\")"),
+            "claims.md:5:7: there is no array keep");
   EXPECT_EQ(error_of_expression("Two in 1"),
             "claims.md:5:15: '..' is missing here");
 }

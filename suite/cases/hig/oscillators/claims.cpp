@@ -54,8 +54,8 @@ Quantity highest_spread_along(const std::vector<Select>& runs, double first) {
 
 void add_claims(Registry& r) {
   ClaimNames names = claim_names();
-  names.add("paper", kPaperClock);
-  names.add("unstable", RunValue(unstable));
+  names.set("paper", kPaperClock);
+  names.set("unstable", unstable);
   names.add("if_stable", if_stable);
   names.add("rates_and_batches", rates_and_batches);
   names.add("highest_spread_along", highest_spread_along);

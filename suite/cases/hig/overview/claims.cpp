@@ -61,8 +61,8 @@ Quantity steepest_growth() {
 
 void add_claims(Registry& r) {
   ClaimNames names = claim_names();
-  names.add("paper", paper());
-  names.add("first_smallest", RunValue(first_smallest));
+  names.set("paper", paper());
+  names.set("first_smallest", first_smallest);
   names.add("cpu_of_update", cpu_of_update);
   names.add("steepest_growth", steepest_growth);
   r.add(Overview{

@@ -129,8 +129,8 @@ std::optional<double> highest_of_return(const Run& run) {
 void add_claims(Registry& r) {
   ClaimNames names = claim_names();
   // Half an order less than three: read from a plot.
-  names.add("three_orders", math::power_of_ten(2.5));
-  names.add("paper", paper());
+  names.set("three_orders", math::power_of_ten(2.5));
+  names.set("paper", paper());
   names.add("fall_by", fall_by);
   names.add("lowest_share", of_medians(lowest_share));
   names.add("least_fall", of_medians(least_fall));
@@ -140,10 +140,10 @@ void add_claims(Registry& r) {
   names.add("smallest_seen", [] { return of_phases(smallest_seen); });
   names.add("smallest_seen_late",
             [] { return of_phases(smallest_seen, true); });
-  names.add("megabytes", RunValue(megabytes));
+  names.set("megabytes", megabytes);
   names.add("if_it_dropped", if_it_dropped);
-  names.add("return_updates", kReturn);
-  names.add("highest_of_return", RunValue(highest_of_return));
+  names.set("return_updates", kReturn);
+  names.set("highest_of_return", highest_of_return);
   add_claims_of_folder(r, "hig/poisson", names);
 }
 

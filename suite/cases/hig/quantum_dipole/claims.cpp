@@ -66,12 +66,12 @@ std::optional<double> rise_ratio(const Run& run) {
 
 void add_claims(Registry& r) {
   ClaimNames names = claim_names();
-  names.add("paper", paper());
-  names.add("lag", RunValue(lag));
-  names.add("rise", RunValue(rise));
-  names.add("rise_ratio", RunValue(rise_ratio));
-  names.add("overlap", metric(kOverlap));
-  names.add("rest", metric(kRest));
+  names.set("paper", paper());
+  names.set("lag", lag);
+  names.set("rise", rise);
+  names.set("rise_ratio", rise_ratio);
+  names.set("overlap", metric(kOverlap));
+  names.set("rest", metric(kRest));
   add_claims_of_folder(r, "hig/quantum_dipole", names);
 }
 

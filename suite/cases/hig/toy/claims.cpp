@@ -70,12 +70,12 @@ Quantity errors_apart(const Select& a, const Select& b) {
 
 void add_claims(Registry& r) {
   ClaimNames names = claim_names();
-  names.add("second_loss", metric(kSecondLoss));
-  names.add("second_lost", RunValue(second_lost));
-  names.add("straightness", RunValue(straightness));
-  names.add("last_deviations", RunRow(last_deviations));
-  names.add("is_saturated", std::function<bool(double)>(is_saturated));
-  names.add("saturated_neurons", saturated_neurons());
+  names.set("second_loss", metric(kSecondLoss));
+  names.set("second_lost", second_lost);
+  names.set("straightness", straightness);
+  names.set("last_deviations", last_deviations);
+  names.set("is_saturated", std::function<bool(double)>(is_saturated));
+  names.set("saturated_neurons", saturated_neurons());
   names.add("highest_median", highest_median);
   names.add("most_diverged", most_diverged);
   names.add("errors_apart", errors_apart);

@@ -67,10 +67,10 @@ Condition small_differences(const std::string& label, const Select& runs) {
 
 void add_claims(Registry& r) {
   ClaimNames names = jpo::claim_names();
-  names.add("on_plateau", RunRow(on_plateau));
-  names.add("elsewhere", RunRow(elsewhere));
+  names.set("on_plateau", on_plateau);
+  names.set("elsewhere", elsewhere);
   names.set("start_misses", Problems(start_misses));
-  names.add("beyond_training",
+  names.set("beyond_training",
             jpo::beyond_training(problems::billiards(), 0.02));
   names.add("small_differences", [](const Select& runs) {
     return Labelled([=](const std::string& label) {

@@ -13,37 +13,37 @@ void add_of_solved(ClaimNames& names, const char* name, F f) {
 }
 
 void add_runs(ClaimNames& names) {
-  names.add("bfgs", bfgs());
-  names.add("gradient_descent", gd());
-  names.add("jpo", kJpo);
-  names.add("jpo_refined", kRefined);
-  names.add("supervised", kSupervised);
-  names.add("supervised_refined", kSupervisedRefined);
-  names.add("adjoint", kAdjoint);
-  names.add("adjoint_refined", kAdjointRefined);
+  names.set("bfgs", bfgs());
+  names.set("gradient_descent", gd());
+  names.set("jpo", kJpo);
+  names.set("jpo_refined", kRefined);
+  names.set("supervised", kSupervised);
+  names.set("supervised_refined", kSupervisedRefined);
+  names.set("adjoint", kAdjoint);
+  names.set("adjoint_refined", kAdjointRefined);
 }
 
 void add_run_values(ClaimNames& names) {
-  names.add("better", better());
-  names.add("equal", equal());
-  names.add("worse", worse());
-  names.add("f", f());
-  names.add("decrease_before", decrease_before());
-  names.add("decrease_from_prior", decrease_before(true));
-  names.add("worsened", worsened());
-  names.add("mean_loss", mean_loss());
-  names.add("worst_loss", worst_loss());
+  names.set("better", better());
+  names.set("equal", equal());
+  names.set("worse", worse());
+  names.set("f", f());
+  names.set("decrease_before", decrease_before());
+  names.set("decrease_from_prior", decrease_before(true));
+  names.set("worsened", worsened());
+  names.set("mean_loss", mean_loss());
+  names.set("worst_loss", worst_loss());
   names.add("over_bfgs", over_bfgs);
-  names.add("seconds", seconds());
+  names.set("seconds", seconds());
   add_of_solved(names, "solved", solved);
   add_of_solved(names, "gain", gain);
 }
 
 void add_problem_values(ClaimNames& names) {
   names.add("iterations_to", first_below);
-  names.add("start_losses", start_losses());
+  names.set("start_losses", start_losses());
   names.add("where", where);
-  names.add("holds", std::function<bool(double)>(holds));
+  names.set("holds", std::function<bool(double)>(holds));
   add_of_solved(names, "if_solved", if_solved);
   add_of_solved(names, "is_solved", is_solved);
   add_of_solved(names, "bfgs_unsolved", bfgs_unsolved);

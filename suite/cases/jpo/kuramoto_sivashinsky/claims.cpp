@@ -38,7 +38,7 @@ void add_claims(Registry& r) {
   ClaimNames names = jpo::claim_names();
   names.set("within", kSolved);
   names.set("gets_solved", Problems(gets_solved));
-  names.add("loss_over_start", RunRow(loss_over_start));
+  names.set("loss_over_start", loss_over_start);
   names.add("diverged_share", diverged_share);
   add_claims_of_folder(r, "jpo/kuramoto_sivashinsky", names);
 }

@@ -73,14 +73,14 @@ std::vector<double> stuck(const Run& run) {
 
 void add_claims(Registry& r) {
   ClaimNames names = jpo::claim_names();
-  names.add("order_over_bfgs", RunValue(order_over_bfgs));
+  names.set("order_over_bfgs", order_over_bfgs);
   names.add("slope_over_n", slope_over_n);
-  names.add("without_worst", RunValue(without_worst));
-  names.add("stuck", RunRow(stuck));
-  names.add("beyond_training",
+  names.set("without_worst", without_worst);
+  names.set("stuck", stuck);
+  names.set("beyond_training",
             jpo::beyond_training(problems::navier_stokes(), 0, kLabels));
-  names.add("better_in_band", better(Equality::band));
-  names.add("equal_in_band", equal(Equality::band));
+  names.set("better_in_band", better(Equality::band));
+  names.set("equal_in_band", equal(Equality::band));
   names.add("table3_from_prior",
             [](Index seeds) { return table3(seeds, true); });
   add_claims_of_folder(r, "jpo/navier_stokes", names);

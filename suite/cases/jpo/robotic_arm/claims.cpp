@@ -24,7 +24,7 @@ double slack_of_misses(const Run& run) {
 
 void add_claims(Registry& r) {
   ClaimNames names = jpo::claim_names();
-  names.add("slack_of_misses", RunValue(slack_of_misses));
+  names.set("slack_of_misses", slack_of_misses);
   add_claims_of_folder(r, "jpo/robotic_arm", names);
 }
 

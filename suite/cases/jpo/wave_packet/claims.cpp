@@ -56,14 +56,14 @@ std::vector<double> settled(const Run& run) {
 
 void add_claims(Registry& r) {
   ClaimNames names = jpo::claim_names();
-  names.add("period", kPeriod);
-  names.add("distances", distances_in(kScale));
-  names.add("first_steps", first_steps_in(kScale));
-  names.add("farther_than_bfgs", farther_than_bfgs_in(kScale));
-  names.add("distances_of_guess", RunRow(distances_of_guess));
-  names.add("approached", RunRow(approached));
-  names.add("settled", RunRow(settled));
-  names.add("beyond_training",
+  names.set("period", kPeriod);
+  names.set("distances", distances_in(kScale));
+  names.set("first_steps", first_steps_in(kScale));
+  names.set("farther_than_bfgs", farther_than_bfgs_in(kScale));
+  names.set("distances_of_guess", distances_of_guess);
+  names.set("approached", approached);
+  names.set("settled", settled);
+  names.set("beyond_training",
             jpo::beyond_training(problems::wave_packet(), 0.02));
   add_claims_of_folder(r, "jpo/wave_packet", names);
 }

@@ -115,8 +115,8 @@ Quantity mean_apart(const Select& method) {
 }
 void add_paths(ClaimNames& names) {
   // Places of the scales 1, 3, 5 among the problems.
-  names.add("alpha_3", 1);
-  names.add("alpha_5", 2);
+  names.set("alpha_3", 1);
+  names.set("alpha_5", 2);
   names.add("of", of);
   names.add("of", [](const Select& method, const OfPath& value) {
     return of(method, value, 0);
@@ -144,11 +144,7 @@ void add_paths(ClaimNames& names) {
 
 /// Of single steps, from the arrays of the stage `identities`.
 void add_identities(ClaimNames& names) {
-  names.add("identity", [](const std::string& array, const OfArray& value) {
-    const ArrayInfo* known = find_array(array);
-    if (known == nullptr) throw std::logic_error("there is no array " + array);
-    return identity(ArrayKey::own(known->name), value);
-  });
+  names.add("identity", identity);
   const std::pair<const char*, OfArray> numbers[] = {
       {"slope", slope},
       {"gd_off", gd_off},

@@ -7,11 +7,11 @@ namespace physinv::exponential {
 
 void add_claims(Registry& r) {
   ClaimNames names = claim_names();
-  names.add("mean_error", metric(kMean));
-  names.add("low", metric(kLow));
-  names.add("high", metric(kHigh));
-  names.add("spread", metric(kSpread));
-  names.add("rise", metric(kRise));
+  names.set("mean_error", metric(kMean));
+  names.set("low", metric(kLow));
+  names.set("high", metric(kHigh));
+  names.set("spread", metric(kSpread));
+  names.set("rise", metric(kRise));
   add_claims_of_folder(r, "sip/exponential", names);
 }
 

@@ -97,14 +97,14 @@ std::optional<double> marker_left(const Run& run) {
 
 void add_claims(Registry& r) {
   ClaimNames names = claim_names();
-  names.add("error", metric(kError));
-  names.add("large_scales", metric(kLarge));
+  names.set("error", metric(kError));
+  names.set("large_scales", metric(kLarge));
   names.add("with_floor", with_floor);
-  names.add("vortices_found", RunValue(vortices_found));
-  names.add("recorded_error", RunValue(recorded_error));
-  names.add("fine_scales", RunValue(fine_scales));
-  names.add("overtakes_sip", RunValue(overtakes));
-  names.add("marker_left", RunValue(marker_left));
+  names.set("vortices_found", vortices_found);
+  names.set("recorded_error", recorded_error);
+  names.set("fine_scales", fine_scales);
+  names.set("overtakes_sip", overtakes);
+  names.set("marker_left", marker_left);
   add_claims_of_folder(r, "sip/fluid", names);
 }
 

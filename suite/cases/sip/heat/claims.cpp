@@ -30,13 +30,13 @@ RunValue seconds_per_example(double iterations) {
 
 void add_claims(Registry& r) {
   ClaimNames names = claim_names();
-  names.add("error", metric(kError));
-  names.add("clamped_error", metric(kClamped));
-  names.add("coarse_left", metric(kCoarse));
-  names.add("fine_left", metric(kFine));
-  names.add("error_of_mean", metric(kOfMean));
-  names.add("error_of_observed", metric(kOfObserved));
-  names.add("undamped", metric(kOfInverse));
+  names.set("error", metric(kError));
+  names.set("clamped_error", metric(kClamped));
+  names.set("coarse_left", metric(kCoarse));
+  names.set("fine_left", metric(kFine));
+  names.set("error_of_mean", metric(kOfMean));
+  names.set("error_of_observed", metric(kOfObserved));
+  names.set("undamped", metric(kOfInverse));
   names.add("mean_loss_after", mean_loss_after);
   names.add("seconds_per_example", seconds_per_example);
   add_claims_of_folder(r, "sip/heat", names);

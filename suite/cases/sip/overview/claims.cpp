@@ -122,7 +122,7 @@ Section step_times(const Evidence& e) {
 
 void add_claims(Registry& r) {
   ClaimNames names = claim_names();
-  names.add("update_cosines", RunRow(update_cosines));
+  names.set("update_cosines", update_cosines);
   r.add(
       Overview{.paper = "sip",
                .title = "Scale-invariant learning",

@@ -75,7 +75,7 @@ Section report(const Evidence& evidence) {
 
 void add_claims(Registry& r) {
   ClaimNames names = claim_names();
-  names.add("columns_of_every_setting", kStudy.conditions());
+  names.set("columns_of_every_setting", kStudy.conditions());
   add_claims_of_folder(r, "sip/packet_width", names);
   r.add_report(choices().front().name(), report);
 }

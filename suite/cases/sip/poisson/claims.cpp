@@ -82,15 +82,15 @@ std::optional<double> steepest_rise(const Run& run) {
 
 void add_claims(Registry& r) {
   ClaimNames names = claim_names();
-  names.add("error", metric(kError));
-  names.add("error_of_zero", metric(kOfZero));
+  names.set("error", metric(kError));
+  names.set("error_of_zero", metric(kOfZero));
   names.add("largest_rate", largest_rate);
   names.add("over_at_equal_time", over_at_equal_time);
-  names.add("direct_error", direct_error());
-  names.add("direct_error_in_double", direct_error(Precision::f64));
-  names.add("direct_error_in_float", direct_error(Precision::f32));
-  names.add("growth", RunValue(growth));
-  names.add("steepest_rise", RunValue(steepest_rise));
+  names.set("direct_error", direct_error());
+  names.set("direct_error_in_double", direct_error(Precision::f64));
+  names.set("direct_error_in_float", direct_error(Precision::f32));
+  names.set("growth", growth);
+  names.set("steepest_rise", steepest_rise);
   names.add("parameters", [](const std::string& of) { return parameters(of); });
   names.add("parameters_complex_once", parameters_complex_once);
   add_claims_of_folder(r, "sip/poisson", names);
