@@ -21,6 +21,7 @@ physinv_claim_texts:
     claims jpo/navier_stokes
     claims jpo/robotic_arm
     claims jpo/wave_packet
+    claims numerics/half_inverse
     claims physgrad/scaling
     claims sip/exponential
     claims sip/fluid
