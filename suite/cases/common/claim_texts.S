@@ -21,7 +21,9 @@ physinv_claim_texts:
     claims jpo/navier_stokes
     claims jpo/robotic_arm
     claims jpo/wave_packet
+    claims numerics/common
     claims numerics/half_inverse
+    claims numerics/kuramoto_sivashinsky
     claims physgrad/scaling
     claims sip/exponential
     claims sip/fluid

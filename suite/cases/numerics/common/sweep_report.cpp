@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "suite/cases/common/claims.h"
 #include "suite/core/power_of_ten.h"
 #include "suite/core/whole.h"
 #include "suite/evidence/cell.h"
@@ -213,16 +214,18 @@ Quantity total(const std::vector<Select>& sweeps,
 Claim adjoint_claim(std::string id, const std::vector<std::string>& stages) {
   std::vector<Select> sweeps;
   for (const std::string& stage : stages) sweeps.push_back({kStability, stage});
-  return {
-      .id = std::move(id),
-      .from = "smoke",
-      .says =
-          "Wherever the forward pass is finite in double, the adjoint "
-          "agrees with the tangent and with central differences",
-      .conditions = {reported("cells", total(sweeps, &AdjointTally::finite)),
-                     at_most("wrong", total(sweeps, &AdjointTally::wrong), 0),
-                     reported("undecided by differences",
-                              total(sweeps, &AdjointTally::undecided))}};
+  ClaimNames names = claim_names();
+  names.set("sweeps", sweeps);
+  const auto number = [&](const char* name, double AdjointTally::*of) {
+    names.add(name,
+              [of](const std::vector<Select>& all) { return total(all, of); });
+  };
+  number("finite", &AdjointTally::finite);
+  number("wrong", &AdjointTally::wrong);
+  number("undecided", &AdjointTally::undecided);
+  Claim claim = claims_of_folder("numerics/common", names).at(0).claims.at(0);
+  claim.id = std::move(id);
+  return claim;
 }
 
 }  // namespace physinv
