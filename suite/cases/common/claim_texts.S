@@ -24,6 +24,7 @@ physinv_claim_texts:
     claims numerics/common
     claims numerics/half_inverse
     claims numerics/kuramoto_sivashinsky
+    claims numerics/transport
     claims physgrad/scaling
     claims sip/exponential
     claims sip/fluid

@@ -1,14 +1,10 @@
 // How fluids are carried: energy over a thousand steps, order of the advection.
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "problems/marker_flow/marker_flow.h"
 #include "suite/cases/numerics/transport/transport.h"
-#include "suite/core/math.h"
-#include "suite/evidence/claim.h"
-#include "suite/evidence/quantity.h"
 #include "suite/harness/registry.h"
 
 namespace physinv::numerics::transport {
@@ -17,47 +13,6 @@ namespace {
 constexpr const char* kName = "numerics/transport";
 
 const Row kRow{.methods = {"carry"}, .n = {1}, .seeds = {0}};
-
-// ---- claims ---------------------------------------------------------------
-
-/// The largest entry of an array, nothing where one was not finite.
-Quantity largest(const char* stage, ArrayKey array) {
-  return median({.method = "carry", .stage = stage},
-                [=](const Run& run) -> std::optional<double> {
-                  const auto& all = run.stage->arrays.at(array);
-                  if (all.minCoeff() < 0) return {};
-                  return all.maxCoeff();
-                });
-}
-
-/// log2 of the errors' ratio between the two finest grids.
-Quantity order(ArrayKey array) {
-  return median({.method = "carry", .stage = "order"},
-                [=](const Run& run) -> std::optional<double> {
-                  const auto& e = run.stage->arrays.at(array);
-                  const Index last = e.cols() - 1;
-                  return math::log2(e(0, last - 1) / e(0, last));
-                });
-}
-
-const std::vector<Claim> kClaims(
-    {{.id = "N1",
-      .from = "smoke",
-      .says = "A thousand steps keep the energy to rounding, and no cell loses "
-              "air",
-      .conditions =
-          {below("energy, double", largest("energy", "energy"), 1e-12),
-           below("energy, float", largest("energy", "energy_single"), 1e-4),
-           below("net flow out of a cell",
-                 largest("energy", "divergence"),
-                 1e-11)}},
-     {.id = "N2",
-      .from = "smoke",
-      .says = "Away from the limiter a step of MacCormack leaves an error of "
-              "third order, many steps one of second",
-      .conditions = {above("order of one step", order("free"), 2.7),
-                     above("order, constant velocity", order("constant"), 1.7),
-                     above("order, shear", order("shear"), 1.7)}}});
 
 // ---- pages ----------------------------------------------------------------
 
@@ -145,7 +100,6 @@ void add_experiments(Registry& r) {
                                 {.name = "quick", .rows = {kRow}},
                                 {.name = "paper", .rows = {kRow}}},
                    .methods = {{"carry", {energy_drift(), advection_order()}}},
-                   .claims = kClaims,
                    .report = report});
 }
 
