@@ -6,11 +6,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <vector>
 
 #include "suite/cases/hig/quantum_dipole/grids.h"
 #include "suite/cases/hig/quantum_dipole/metrics.h"
+#include "suite/core/median.h"
 #include "suite/evidence/curve_shape.h"
 #include "suite/evidence/options.h"
+#include "suite/evidence/training.h"
 #include "suite/store/record.h"
 
 namespace physinv::dipole {
@@ -62,6 +66,43 @@ std::optional<double> rise_ratio(const Run& run) {
   return until_high(run, 0.1, [](double a, double b) { return a / b; });
 }
 
+// ---- a control without a network --------------------------------------------
+
+/// At the first measured point of so many updates or more.
+template <class F>
+RunValue at_update(Index updates, F value) {
+  return [=](const Run& run) -> std::optional<double> {
+    const StageRecord& s = *run.stage;
+    for (Index k = 0; k < s.curve.points(); ++k)
+      if (CurveRow{s}.updates(k) >= static_cast<double>(updates))
+        return value(s, k);
+    return {};
+  };
+}
+
+RunValue value_at(RowOfCurve of, Index updates) {
+  return at_update(updates, [of](const StageRecord& s, Index k) {
+    return CurveRow{s, of.array, of.row}(k);
+  });
+}
+/// Of the two named targets.
+RunValue worse_named_at(Index updates) {
+  return at_update(updates, [](const StageRecord& s, Index k) {
+    return s.curve.loss.col(k).head(kNamed).maxCoeff();
+  });
+}
+RunValue median_loss_at(Index updates) {
+  return at_update(updates, [](const StageRecord& s, Index k) {
+    const Vector<double> all = s.curve.loss.col(k);
+    return median(std::vector<double>(all.begin(), all.end()));
+  });
+}
+RunValue worst_loss_at(Index updates) {
+  return at_update(updates, [](const StageRecord& s, Index k) {
+    return s.curve.loss.col(k).maxCoeff();
+  });
+}
+
 }  // namespace
 
 void add_claims(Registry& r) {
@@ -72,6 +113,10 @@ void add_claims(Registry& r) {
   names.set("rise_ratio", rise_ratio);
   names.set("overlap", metric(kOverlap));
   names.set("rest", metric(kRest));
+  names.add("value_at", value_at);
+  names.add("worse_named_at", worse_named_at);
+  names.add("median_loss_at", median_loss_at);
+  names.add("worst_loss_at", worst_loss_at);
   add_claims_of_folder(r, "hig/quantum_dipole", names);
 }
 

@@ -1,7 +1,5 @@
 // HIG paper, Fig. 4b's floor: the quantum dipole's control optimised without a
 // network, in double and in float.
-#include <algorithm>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,8 +7,6 @@
 #include "problems/quantum_dipole/quantum_dipole.h"
 #include "suite/cases/hig/quantum_dipole/grids.h"
 #include "suite/cases/hig/quantum_dipole/metrics.h"
-#include "suite/evidence/statistics.h"
-#include "suite/evidence/training.h"
 #include "suite/evidence/training_report.h"
 #include "suite/harness/registry.h"
 
@@ -23,54 +19,6 @@ Method method(std::string id, double kappa, double tau = 1e-5) {
                                          .rate = 0.5,
                                          .metrics = losses_in_float()})}};
 }
-
-// ---- claim ------------------------------------------------------------------
-
-/// A number of update 100.
-RunValue after_100(double (*value)(const StageRecord&, Index)) {
-  return [=](const Run& run) -> std::optional<double> {
-    const StageRecord& s = *run.stage;
-    for (Index k = 0; k < s.curve.points(); ++k)
-      if (CurveRow{s}.updates(k) >= 100) return value(s, k);
-    return {};
-  };
-}
-
-double worse_named(const StageRecord& s, Index k) {
-  return s.curve.loss.col(k).head(kNamed).maxCoeff();
-}
-double middle(const StageRecord& s, Index k) {
-  const Vector<double> all = s.curve.loss.col(k);
-  return median({all.begin(), all.end()});
-}
-double worst(const StageRecord& s, Index k) {
-  return s.curve.loss.col(k).maxCoeff();
-}
-double overlap(const StageRecord& s, Index k) {
-  return CurveRow{s, "metrics", kOverlap}(k);
-}
-double rest(const StageRecord& s, Index k) {
-  return CurveRow{s, "metrics", kRest}(k);
-}
-
-const Claim kNoFloor{
-    .id = "A9",
-    .says =
-        "A control optimised without a network (target angles 0.7 and 2, "
-        "100 updates) has no floor near 1e-6, in double and, by the "
-        "formula that does not cancel, in float",
-    .conditions = {
-        below("float64", highest({"hig"}, after_100(worse_named)), 1e-7),
-        below("float32, |psi - <t, psi> t|^2",
-              highest({"hig-f32"}, after_100(rest)),
-              1e-7),
-        reported("float32, 1 - |<t, psi>|^2",
-                 highest({"hig-f32"}, after_100(overlap))),
-        reported("GN float64", highest({"gn"}, after_100(worse_named))),
-        reported("GN float32", highest({"gn-f32"}, after_100(rest))),
-        reported("random targets, float64, median",
-                 highest({"hig"}, after_100(middle))),
-        reported("worst", highest({"hig"}, after_100(worst)))}};
 
 // ---- report -----------------------------------------------------------------
 
@@ -138,7 +86,6 @@ void add_direct_experiment(Registry& r) {
                   method("gn-f32", -1),
                   method("hig-tau7", -0.5, 1e-7),
                   method("hig-f32-tau7", -0.5, 1e-7)},
-      .claims = {kNoFloor},
       .report = report,
   });
 }
