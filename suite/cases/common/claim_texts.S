@@ -16,6 +16,7 @@ physinv_claim_texts:
     claims hig/poisson
     claims hig/quantum_dipole
     claims hig/toy
+    claims jpo/adjoint_wall
     claims jpo/billiards
     claims jpo/flow_bounds
     claims jpo/kuramoto_sivashinsky

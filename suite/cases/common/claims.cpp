@@ -31,4 +31,15 @@ void add_claims_of_folder(Registry& registry,
     registry.add_claims(e.experiment, std::move(e.claims));
 }
 
+void add_claims_of_experiment(Registry& registry,
+                              const std::string& folder,
+                              const std::string& experiment,
+                              ClaimNames names) {
+  for (ClaimsOfExperiment& e : claims_of_folder(folder, std::move(names)))
+    if (e.experiment == experiment)
+      return registry.add_claims(experiment, std::move(e.claims));
+  throw std::logic_error(
+      fmt::format("suite/cases/{}/claims.md lacks {}", folder, experiment));
+}
+
 }  // namespace physinv

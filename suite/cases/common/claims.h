@@ -19,4 +19,11 @@ void add_claims_of_folder(Registry& registry,
                           const std::string& folder,
                           ClaimNames names = claim_names());
 
+/// Registers those of one experiment of the folder, with names that are its
+/// own. Throws std::logic_error if the document has none.
+void add_claims_of_experiment(Registry& registry,
+                              const std::string& folder,
+                              const std::string& experiment,
+                              ClaimNames names);
+
 }  // namespace physinv
