@@ -17,6 +17,7 @@ physinv_claim_texts:
     claims hig/quantum_dipole
     claims hig/toy
     claims jpo/adjoint_wall
+    claims jpo/bfgs_precision
     claims jpo/billiards
     claims jpo/flow_bounds
     claims jpo/kuramoto_sivashinsky
