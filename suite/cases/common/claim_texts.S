@@ -22,6 +22,7 @@ physinv_claim_texts:
     claims jpo/flow_bounds
     claims jpo/kuramoto_sivashinsky
     claims jpo/navier_stokes
+    claims jpo/overview
     claims jpo/packet_unit
     claims jpo/robotic_arm
     claims jpo/wave_packet
