@@ -20,6 +20,7 @@ physinv_claim_texts:
     claims jpo/bfgs_precision
     claims jpo/billiards
     claims jpo/flow_bounds
+    claims jpo/gradient_alignment
     claims jpo/kuramoto_sivashinsky
     claims jpo/navier_stokes
     claims jpo/overview
