@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "suite/evidence/claim_expression.h"
+#include "suite/evidence/claim_conditions.h"
 
 namespace physinv {
 namespace {
