@@ -28,16 +28,15 @@ std::string answer_html(const Section& section) {
 
 }  // namespace
 
-std::string counts_html(const Section& section) {
-  const VerdictCounts counts = tally(section, Origin::paper);
-  std::string out = verdicts_html(counts, Origin::paper);
+std::string counts_html(const VerdictCounts& counts, Origin origin) {
+  std::string out = verdicts_html(counts, origin);
   const int open = counts[static_cast<std::size_t>(Verdict::not_judged)];
   if (open > 0)
     out += fmt::format("{}<span class=\"open\">{} {} {}</span>",
                        out.empty() ? "" : ", ",
                        mark_of(Verdict::not_judged),
                        open,
-                       words_of(Verdict::not_judged, Origin::paper));
+                       words_of(Verdict::not_judged, origin));
   return out;
 }
 
@@ -59,7 +58,9 @@ std::string card_html(const Section& section,
         kCardHeight);
   if (const std::string answer = answer_html(section); !answer.empty())
     out += "<p class=\"answer\">" + answer + "</p>\n";
-  if (const std::string counts = counts_html(section); !counts.empty())
+  if (const std::string counts =
+          counts_html(tally(section, Origin::paper), Origin::paper);
+      !counts.empty())
     out += "<p class=\"counts\">" + counts + "</p>\n";
   return out + "</article>\n";
 }

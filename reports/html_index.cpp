@@ -85,17 +85,17 @@ std::string contents_html(const std::vector<Part>& parts,
   return out + "<p><a href=\"#provenance\">Provenance</a></p>\n</nav>\n";
 }
 
-/// What claims nothing has nothing to count.
+/// Verdicts that occur.
 std::string tallies_html(const std::vector<Section>& sections) {
-  if (std::all_of(sections.begin(), sections.end(), [](const Section& s) {
-        return s.claims.empty();
-      }))
-    return "";
-  return fmt::format(
-      "<p>Statements of the papers: {}.</p>\n"
-      "<p class=\"remark\">Regression checks of this suite: {}.</p>\n",
-      tally_text(tally(sections, Origin::paper), Origin::paper),
-      tally_text(tally(sections, Origin::suite), Origin::suite));
+  std::string out;
+  const auto add = [&](const char* format, Origin origin) {
+    const auto counts = counts_html(tally(sections, origin), origin);
+    if (!counts.empty()) out += fmt::format(fmt::runtime(format), counts);
+  };
+  add("<p>Statements of the papers: {}.</p>\n", Origin::paper);
+  add("<p class=\"remark\">Regression checks of this suite: {}.</p>\n",
+      Origin::suite);
+  return out;
 }
 
 }  // namespace

@@ -44,7 +44,7 @@ std::string_view css_of(Verdict verdict);
 std::string verdicts_html(const VerdictCounts& counts, Origin origin);
 
 /// The same with those that are not judged.
-std::string counts_html(const Section& section);
+std::string counts_html(const VerdictCounts& counts, Origin origin);
 
 /// What stands on a page; all of it is HTML.
 struct PageParts {

@@ -171,7 +171,8 @@ std::string head_html(const Section& section,
       html(section.experiment));
   if (!section.standing.empty())
     out += "<p class=\"answer\">" + html(section.standing) + ".</p>\n";
-  const std::string papers = counts_html(section);
+  const std::string papers =
+      counts_html(tally(section, Origin::paper), Origin::paper);
   if (!papers.empty())
     out += "<p class=\"counts\">The paper's statements: " + papers + "</p>\n";
   return out + about;

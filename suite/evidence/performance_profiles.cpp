@@ -304,8 +304,8 @@ std::vector<Figure> performance_profile_figures(const CommonRuns& common,
       panel.title = fmt::format("By {}, {}",
                                 by_time ? "wall time" : "simulations",
                                 tolerance_text(tolerance));
-      panel.x_label =
-          by_time ? "seconds / best method's" : "simulations / best method's";
+      panel.x_label = by_time ? "seconds / those of the best method"
+                              : "simulations / those of the best method";
       panel.y_label = "share of problems";
       profile.panels.push_back(std::move(panel));
 

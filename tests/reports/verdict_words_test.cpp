@@ -2,6 +2,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <iterator>
+
 #include "reports/html.h"
 #include "reports/report.h"
 #include "reports/results_page.h"
@@ -40,6 +43,16 @@ TEST_P(WordsOf, StandInTheReport) {
             std::string::npos);
   EXPECT_EQ(to_json(claim_)["verdict"], words_);
   EXPECT_EQ(claim_from(to_json(claim_)).verdict, verdict_);
+}
+
+TEST_P(WordsOf, AreDefinedInTheDocumentation) {
+  std::ifstream file(PHYSINV_SOURCE_DIR "/docs/verdicts.md");
+  const std::string page(std::istreambuf_iterator<char>(file), {});
+  const std::string row = fmt::format("\n| {} | {} | {} | ",
+                                      mark_of(verdict_),
+                                      words_of(verdict_, Origin::paper),
+                                      words_of(verdict_, Origin::suite));
+  EXPECT_NE(page.find(row), page.npos) << row;
 }
 
 TEST_P(WordsOf, ComeWithTheirCause) {
