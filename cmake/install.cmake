@@ -71,8 +71,6 @@ endfunction()
 foreach(component programs development)
   install(DIRECTORY reports/published
     DESTINATION ${CMAKE_INSTALL_DATADIR}/physinv COMPONENT ${component})
-  install(FILES ${PROJECT_SOURCE_DIR}/reports/expected_failures.json
-    DESTINATION ${CMAKE_INSTALL_DATADIR}/physinv COMPONENT ${component})
 endforeach()
 
 # Component `python`, where it is built.

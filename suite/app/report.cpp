@@ -13,8 +13,7 @@
 #include "suite/app/options.h"
 #include "suite/app/published_campaign.h"
 #include "suite/app/sections.h"
-#include "suite/harness/expected.h"
-#include "suite/harness/outside.h"
+#include "suite/harness/claim_tally.h"
 #include "suite/harness/screen.h"
 #include "suite/store/file.h"
 #include "suite/store/folder.h"
@@ -37,27 +36,6 @@ std::string unknown_text(const Results& results) {
   return fmt::format("{}", fmt::join(unknown, ", "));
 }
 
-/// The list named by the flag, else the one beside the published numbers.
-std::vector<ExpectedFailure> expected_failures(
-    const std::string& named,
-    const fs::path& published,
-    const std::vector<Section>& sections) {
-  const fs::path path = named.empty()
-                            ? published.parent_path() / "expected_failures.json"
-                            : fs::path(named);
-  if (named.empty() && !is_there(path)) return {};
-  if (!is_file(path))
-    throw UsageError(fmt::format(
-        "there is no file '{}' of expected failures; a JSON list of experiment,"
-        " claim and reason is expected",
-        path.string()));
-  auto expected = read_expected(path);
-  if (named.empty() && outside_program() != nullptr)
-    expected = known_to(registry(), std::move(expected));
-  check_expected(expected, registry(), sections, path);
-  return expected;
-}
-
 /// Says how the gating claims stand; ExitError if one fails unexpectedly.
 void check_claims(const ClaimTally& j) {
   const auto failing =
@@ -74,7 +52,7 @@ void check_claims(const ClaimTally& j) {
   for (const auto& claim : j.known_misses)
     fmt::print("expected to fail: {}\n", claim);
   for (const auto& claim : j.surprises)
-    fmt::print("holds, although listed as expected to fail: {}\n", claim);
+    fmt::print("holds, although expected to fail: {}\n", claim);
   for (const auto& claim : j.stale)
     fmt::print("holds, although its cause says: {}\n", claim);
   if (!j.misses.empty())
@@ -163,13 +141,14 @@ bool parse_flags(const Arguments& arguments, ReportFlags& flags) {
         &flags.publish,
         "DIR"},
        {"--check",
-        "exit 7 if a gating claim is not reproduced and not expected to "
-        "fail, 10 if these runs decide none",
+        "exit 7 if a gating claim is not reproduced and states no cause of "
+        "it, 10 if these runs decide none",
         &flags.check},
        {"--expected",
-        "claims expected to fail; default: reports/expected_failures.json",
+        "claims that --check lets fail without a cause, as 'jpo/arm R3, "
+        "jpo/billiards P1'",
         &flags.expected,
-        "FILE"}},
+        "CLAIMS"}},
       arguments);
 }
 
@@ -190,10 +169,7 @@ ExitCode report_verb(const Arguments& arguments) {
   const auto sections = sections_of(loaded.results, numbers);
   const auto unknown = unknown_text(loaded.results);
   if (sections.empty()) refuse_empty(flags, loaded, unknown);
-  const auto listed =
-      flags.check || !flags.expected.empty()
-          ? expected_failures(flags.expected, published_directory(), sections)
-          : std::vector<ExpectedFailure>();
+  const auto expected = expected_to_fail(flags.expected, registry(), sections);
   const fs::path target = flags.out.empty()
                               ? Folder(flags.results).make("report").path()
                               : fs::path(flags.out);
@@ -209,8 +185,7 @@ ExitCode report_verb(const Arguments& arguments) {
     throw EnvironmentError(error.what());
   }
   print_summary(sections, target, origin, unknown);
-  const auto judgement = compare(sections, listed, origin.value("profile", ""));
-  if (flags.check) check_claims(judgement);
+  if (flags.check) check_claims(tally(sections, expected));
   require_complete(loaded.lacks, kRunAgain);
   if (flags.check &&
       decided_by_runs(registry(), sections, loaded.results, numbers) == 0)

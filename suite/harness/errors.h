@@ -37,7 +37,7 @@ inline constexpr std::string_view kExitCodeHelp =
        missing
     6  slower: gate, by instructions or by the clock; compare --fail-on, where
        nothing else got worse
-    7  a gating claim is not reproduced and not listed as expected to fail
+    7  a gating claim is not reproduced and states no cause of it
        (report --check); a claim comes to another verdict (reproduce)
     8  gate --strict: the clock came to no verdict within its budget
     9  environment: disk full, unwritable, corrupt store

@@ -48,9 +48,6 @@ READERS = {
     "results": Reader(["results", "--campaigns=campaigns", "--out=page.md"],
                       ("campaigns",), ("page.md",)),
     "list": Reader(["list", *SMALL, "--cases=names.txt"], ("names.txt",)),
-    "expected": Reader(["report", "done", "--out=page", "--check",
-                        "--expected=expected.json"],
-                       ("done", "expected.json")),
     "published": Reader(["report", "done", "--out=page"],
                         ("done", "published"), env=PUBLISHED),
     "status": Reader(["status", "cluster"], ("cluster",)),
@@ -78,7 +75,6 @@ TARGETS = {
     "submission": ("cluster/submission.json", ("status",)),
     "campaign": ("campaigns/one/digest.json", ("results",)),
     "published": ("published/*.json", ("published",)),
-    "expected": ("expected.json", ("expected",)),
     "names": ("names.txt", ("list",)),
 }
 
@@ -143,8 +139,6 @@ def make(world):
     reports = os.path.join(SOURCE, "reports")
     shutil.copytree(os.path.join(reports, "published"),
                     os.path.join(world.golden, "published"))
-    shutil.copy(os.path.join(reports, "expected_failures.json"),
-                os.path.join(world.golden, "expected.json"))
     for kind in TARGETS:
         if not files(world.golden, kind):
             raise SystemExit(f"there is no file of the kind {kind} to attack")

@@ -19,7 +19,6 @@ void claims(std::string_view bytes);
 void command_line(std::string_view bytes);
 void config(std::string_view bytes);
 void digest(std::string_view bytes);
-void expected(std::string_view bytes);
 void hdf5(std::string_view bytes);
 void journal(std::string_view bytes);
 void plan(std::string_view bytes);

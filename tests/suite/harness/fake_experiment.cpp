@@ -408,6 +408,8 @@ Section report(const Evidence& e) {
                                                  : Verdict::not_reproduced;
   if (std::getenv("PHYSINV_FAKE_DOUBT") != nullptr)
     claim.verdict = Verdict::not_reproduced;
+  if (const char* cause = std::getenv("PHYSINV_FAKE_CAUSE"))
+    claim.cause = cause;
   return {.experiment = "fake/cubic",
           .title = "Cubic",
           .paper = "fake",
