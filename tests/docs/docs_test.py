@@ -3,7 +3,8 @@
 
 README is short, every link leads to a file and place, commands have the verbs and
 flags of the program, counts are the program's and verdicts those of RESULTS.md,
-where what is not reproduced has a cause. Pages of papers have no measured numbers:
+where what is not reproduced has a cause. Prose has short sentences and usual words.
+Pages of papers have no measured numbers:
 those stand on pages that the program writes. The table of features has a sign of
 each suite. The baseline of CI has all cases of its profile. A source that a page or
 a comment names is there.
@@ -97,6 +98,40 @@ def measured(name, text):
             r"(?<![\w.])\d+\.\d+ (?:%|ms|us|ns|s|min|h)\b|"
             r"(?<![\w.])\d+ (?:ms|us|ns|MB|kB|GB|hours|GFLOP)\b", prose):
         yield f"{name}: '{found[0]}' is written by hand"
+
+
+# Pages whose prose is held to plain English.
+PLAIN = {"README.md", *(f"docs/{name}.md" for name in (
+    "architecture", "clusters", "compare", "data", "gate", "methods",
+    "numerics", "output", "processors", "python", "running", "verdicts"))}
+LONGEST_SENTENCE = 35  # words
+# What these say has a usual word: next to, running, saves, resumes, prints, ...
+UNUSUAL = re.compile(
+    r"\b(besides?|whoever|nobody|under way|anew|all else|one's own|lays? down|"
+    r"takes? up|took up|c[ao]mes? to|goes by|stands? (?:in|at|apart|below|on)|"
+    r"(?:is|are) told|tells|holds? against)\b", re.I)
+
+
+def prose(text):
+    """Paragraphs and items of lists, without code, tables and headings."""
+    text = re.sub(r"```.*?```", "", text, flags=re.S)
+    for block in re.split(r"\n\s*\n|\n(?=[-*] |\d+\. )", text):
+        if not block.lstrip().startswith(("|", "#", "!")):
+            yield re.sub(r"\]\([^)]*\)|`[^`]*`", "x", " ".join(block.split()))
+
+
+def not_plain(name, text):
+    """Words that have a usual one, and sentences that are too long."""
+    if name not in PLAIN:
+        return
+    for words in prose(text):
+        for found in UNUSUAL.finditer(words):
+            yield (f"{name}: '{found[0]}' in "
+                   f"'{words[max(0, found.start() - 30):found.end() + 30]}'")
+        for sentence in re.split(r"(?<=[.!?:;])\s+", words):
+            count = len(sentence.split())
+            if count > LONGEST_SENTENCE:
+                yield f"{name}: {count} words: {sentence[:60]}..."
 
 
 SUITES = 17
@@ -229,7 +264,7 @@ def main():
     checked = 0
     for name, text in pages(SOURCES):
         wrong += [*dead_links(name, text), *unknown_words(name, text),
-                  *measured(name, text)]
+                  *measured(name, text), *not_plain(name, text)]
         if name != "CHANGELOG.md":  # names what was
             spans = re.findall("`[^`\n]*`", text)
             wrong += lost_sources(name, "\n".join(spans))
