@@ -143,16 +143,16 @@ std::vector<Case> listed(std::vector<Case> cases, const std::string& file) {
 std::vector<Flag> Selection::flags(const std::vector<Flag>& own) {
   std::vector<Flag> chosen = {
       {"--filter",
-       fmt::format("cases whose name matches: a word, such as billiards, is a "
-                   "whole part of the names of papers' experiments if there is "
-                   "one; anything else a regular expression; a leading - "
-                   "negates ({}), repeats unite",
+       fmt::format("select cases by name: a word, such as billiards, selects "
+                   "papers' experiments that have it as a part of their name; "
+                   "anything else is a regular expression; a leading - "
+                   "excludes ({}); several filters are combined",
                    filter_example(profile)),
        &filters,
        "REGEX"},
       {"--all",
-       "a word is searched in all experiments, those of no paper (matrix, "
-       "numerics) too",
+       "search words in all experiments, also in those of no paper (matrix, "
+       "numerics)",
        &all},
       {"--profile",
        fmt::format(
@@ -160,7 +160,7 @@ std::vector<Flag> Selection::flags(const std::vector<Flag>& own) {
        &profile,
        "NAME"},
       {"--set",
-       fmt::format("replace a key of the profile's rows, e.g. "
+       fmt::format("override a key of the profile's rows, e.g. "
                    "n=8,32; keys: {}",
                    kKeys),
        &sets,
@@ -171,7 +171,7 @@ std::vector<Flag> Selection::flags(const std::vector<Flag>& own) {
        &shard,
        "I/N"},
       {"--cases",
-       "of the selection those whose names stand in this file, one a line",
+       "only selected cases whose names are in this file, one per line",
        &list,
        "FILE"}};
   chosen.insert(chosen.end(), own.begin(), own.end());
@@ -180,7 +180,7 @@ std::vector<Flag> Selection::flags(const std::vector<Flag>& own) {
 
 Flag Selection::arguments() {
   return {.name = "FILTER",
-          .help = "the same as --filter=FILTER; has to match a case",
+          .help = "the same as --filter=FILTER; must match a case",
           .to = &words,
           .optional = true};
 }

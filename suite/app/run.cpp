@@ -58,33 +58,33 @@ struct RunFlags {
          "threads inside a case (default 1); results do not change",
          &campaign.threads},
         {"--time-budget",
-         "start no case that would end later, such as 10m: first every method "
-         "on one seed, then more seeds where the ranking is undecided; what "
-         "is left out is named (exit 10), and the next run goes on with it",
+         "wall time of the run, such as 10m: all methods on one seed first, "
+         "then more seeds where the ranking is undecided; cases that would "
+         "end later are listed (exit 10), and the next run continues there",
          &budget,
          "TIME"},
-        {"--out", "where to; default: results/<profile>", &out, "DIR"},
+        {"--out", "output directory; default: results/<profile>", &out, "DIR"},
         {"--resume,!--fresh",
          "reuse finished stages (default), or run the selected cases again",
          &campaign.resume},
         {"--checkpoint",
-         "how often a stage under way lays its state down, to go on from there "
-         "should it be killed (default 60 s)",
+         "how often a running stage saves a checkpoint, from which it resumes "
+         "if it is killed (default 60 s)",
          &checkpoint,
          "TIME"},
         {"--break-lock",
-         "where the file system has no locks: take over from a process of "
+         "on file systems without locks: remove the lock of a process on "
          "another machine that has ended; its name is shown",
          &campaign.break_lock},
         {"--config",
-         "flags from this file, as TOML or JSON, those of the command line "
-         "go before them; its text is recorded with the results",
+         "read flags from this TOML or JSON file; flags on the command line "
+         "override it; its text is recorded with the results",
          &config},
-        {"--dry-run", "say what would run and what is reused", &dry},
-        {"-q,--quiet", "no word until the end", &quiet},
+        {"--dry-run", "print what would run and what is reused", &dry},
+        {"-q,--quiet", "print nothing until the end", &quiet},
         {"--report,!--no-report",
-         "write a page and say what was measured beside what the papers have "
-         "(default; a shard and --cases do not)",
+         "write the report and print measured and published values (default; "
+         "off for a shard and --cases)",
          &report},
         {"--trace",
          "record a hash of all iterates of the stages that run",
