@@ -29,7 +29,8 @@ void check_spectrum(const Json& entry) {
   const Json values = entry.at("expected").at("values");
   ASSERT_EQ(grids.size(), values.size());
   for (std::size_t g = 0; g < grids.size(); ++g) {
-    const auto size = -poisson_eigenvalues(grids[g][0], grids[g][1]).array();
+    const Batch<double> lambda = poisson_eigenvalues(grids[g][0], grids[g][1]);
+    const auto size = -lambda.array();
     const double squared = 1 / std::pow(size.minCoeff(), 2);
     const Vector<double> found =
         Eigen::Vector4d(size.minCoeff(), size.maxCoeff(), squared, 2 / squared);
