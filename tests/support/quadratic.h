@@ -35,7 +35,10 @@ class GradientQuadratic : public Problem<T>, public Vjp<T> {
   void draw(Stream& stream, SampleOut& sample) const override {
     for (Index j = 0; j < 2; ++j) sample.x(j) = stream.uniform(-1, 1);
     for (Index j = 0; j < 2; ++j) sample.given(j) = stream.uniform(-1, 1);
+    sample.y = GradientQuadratic<double>::matrix() * sample.x + sample.given;
   }
+  /// So that problems can be solved where the physics are broken.
+  Drawn drawn() const override { return Drawn::both; }
   void forward(Point<T> at, BatchOut<T> y, Workspace&) const override {
     const auto &x = at.x, &given = at.given;
     for (Index i = 0; i < x.cols(); ++i) {

@@ -137,7 +137,7 @@ def in_pages():
     for page in ("running.md", "gate.md"):
         with open(os.path.join(DOCS, page)) as f:
             text += f.read()
-    rows = text.split("| verb | exit codes beside 0 |")[1].split("\n\n")[0]
+    rows = text.split("| verb | exit codes other than 0 |")[1].split("\n\n")[0]
     said = {}
     for verbs, cell in re.findall(r"^\| ([a-z, ]+) \| (.*) \|$", rows, re.M):
         codes = {int(c) for part in re.findall(r"(?:^|; )(\d+(?: or \d+)*) ",
