@@ -32,7 +32,7 @@ install(DIRECTORY suite problems optimizers baselines
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/physinv COMPONENT development
   FILES_MATCHING PATTERN *.h
   PATTERN app EXCLUDE PATTERN cases EXCLUDE PATTERN kernels.h EXCLUDE
-  PATTERN real_fft.h EXCLUDE)
+  PATTERN libraries EXCLUDE PATTERN real_fft.h EXCLUDE)
 
 write_basic_package_version_file(
   ${PROJECT_BINARY_DIR}/physinv-config-version.cmake

@@ -25,6 +25,8 @@ const std::map<std::string, Layer> kLayers{
     {"problems", {{"suite/core"}, {"eigen"}}},
     {"optimizers", {{"suite/core", "suite/linalg", "suite/nn"}, {"eigen"}}},
     {"baselines", {{"suite/core", "suite/nn", "optimizers"}, {"eigen"}}},
+    {"baselines/libraries",
+     {{"suite/core", "optimizers", "suite/harness"}, {"eigen", "gsl"}}},
     {"suite/diagnostics",
      {{"suite/core", "suite/nn", "problems", "optimizers"}, {"eigen"}}},
     {"suite/store", {{"suite/core"}, {"json", "hdf5", "zlib"}}},
@@ -90,7 +92,10 @@ const std::map<std::string, Layer> kLayers{
 };
 
 // "suite/nn/unet.h" -> "suite/nn", "problems/heat/heat.h" -> "problems".
+// baselines/libraries is a project of its own, which builds a plug-in.
 std::string layer_of(const std::string& path) {
+  const std::string plugin = "baselines/libraries";
+  if (path.starts_with(plugin + '/')) return plugin;
   const auto depth =
       path.starts_with("suite/") ? path.find('/', 6) : path.find('/');
   return path.substr(0, depth);
@@ -116,6 +121,7 @@ std::string library_of(const std::string& header) {
       {"unsupported/Eigen/", "eigen"},
       {"fftw3", "fftw"},
       {"sleef.h", "sleef"},
+      {"gsl/", "gsl"},
       {"hdf5", "hdf5"},
       {"H5", "hdf5"},
       {"Random123/", "random123"},
@@ -153,6 +159,8 @@ std::string objection(const std::string& file,
     if (library.empty() || layer->second.libraries.contains(library)) return "";
     return from + " does not use " + library;
   }
+  if (from == "baselines/libraries" && header.find('/') == header.npos)
+    return "";  // of its own folder
   const std::string to = layer_of(header);
   if (!kLayers.contains(to)) return "not relative to the project's root";
   if (to != from && !layer->second.layers.contains(to)) {
@@ -218,6 +226,10 @@ TEST(Layering, ArrowsThatMustNotBe) {
   EXPECT_TRUE(angled("problems/heat/heat.cpp", "benchmark/benchmark.h"));
   EXPECT_TRUE(quoted("suite/nn/kernels.cpp", "suite/app/verbs.h"));
   EXPECT_TRUE(angled("suite/core/rng.cpp", "boost/random.hpp"));
+  EXPECT_TRUE(angled("optimizers/bfgs.cpp", "gsl/gsl_multimin.h"));
+  EXPECT_TRUE(angled("baselines/supervised.cpp", "gsl/gsl_multimin.h"));
+  EXPECT_TRUE(quoted("baselines/a.cpp", "baselines/libraries/fiber.h"));
+  EXPECT_TRUE(quoted("baselines/libraries/a.cpp", "problems/heat/heat.h"));
 }
 
 TEST(Layering, ArrowsThatMayBe) {

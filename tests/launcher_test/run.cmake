@@ -8,10 +8,10 @@ file(REAL_PATH ${work}/checkout checkout)
 file(COPY ${source}/bench ${source}/check ${source}/CMakePresets.json
   DESTINATION ${checkout})
 file(COPY ${source}/cmake/launcher.sh ${source}/cmake/folder_of.sh
-  DESTINATION ${checkout}/cmake)
+  ${source}/cmake/plugin_of.sh DESTINATION ${checkout}/cmake)
 file(COPY ${source}/suite/cases/common/experiments.def
   DESTINATION ${checkout}/suite/cases/common)
-file(WRITE ${checkout}/apt-packages.txt "[bench]\n[test]\n[dev]\n")
+file(WRITE ${checkout}/apt-packages.txt "[bench]\n[test]\n[dev]\n[libraries]\n")
 file(WRITE ${checkout}/main.cpp "int main() {}\n")
 file(WRITE ${checkout}/CMakeLists.txt [[
 cmake_minimum_required(VERSION 3.25)
@@ -22,6 +22,12 @@ if(PHYSINV_TESTS)
   enable_testing()
   add_test(NAME where COMMAND ${CMAKE_COMMAND} -E echo at ${CMAKE_BINARY_DIR})
 endif()
+]])
+file(WRITE ${checkout}/baselines/libraries/CMakeLists.txt [[
+cmake_minimum_required(VERSION 3.25)
+project(libraries LANGUAGES CXX)
+add_library(libraries MODULE ${CMAKE_SOURCE_DIR}/../../main.cpp)
+set_target_properties(libraries PROPERTIES PREFIX "")
 ]])
 file(CREATE_LINK ${checkout} ${work}/link SYMBOLIC)
 
@@ -58,6 +64,17 @@ if(NOT EXISTS ${checkout}/build/release/physinv-bench)
 endif()
 launch(${work}/link bench run)
 expect_one_build("the link after the path")
+# Its plug-in is built for a filter of experiments that it has alone.
+set(plugin ${checkout}/build/release/libraries.so)
+if(EXISTS ${plugin})
+  message(SEND_ERROR "a run of all builds the plug-in of other libraries")
+endif()
+launch(${checkout} bench "'--filter=^libraries/'")
+if(NOT EXISTS ${plugin})
+  message(SEND_ERROR "a run of other libraries does not build their plug-in")
+endif()
+launch(${work}/link bench --filter=libraries)
+expect_one_build("other libraries, through the link")
 launch(${work}/link check -V)  # configures again, with tests
 expect_one_build("tests through the link")
 string(FIND "${output}" "at ${checkout}/build/release" at)

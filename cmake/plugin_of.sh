@@ -1,0 +1,29 @@
+# shellcheck shell=bash
+# find_plugin ARGUMENTS: sets `plugin` to the folder of baselines whose plug-in
+# has the experiments that a filter among these arguments names, and is the
+# section of apt-packages.txt with what it needs; empty if no filter names any.
+: "${root:?set by who sources this}"
+
+find_plugin() {
+  local argument
+  plugin=''
+  for argument; do
+    case $argument in
+      --filter=libraries | --filter=libraries/* | --filter=^libraries/*)
+        # shellcheck disable=SC2034 # read by who calls this
+        plugin=libraries ;;
+    esac
+  done
+}
+
+# build_plugin TREE NAME: TREE/NAME.so, on what TREE has built. It is a project
+# of its own, as anybody's: the suite is installed for it into TREE/prefix.
+build_plugin() {
+  local tree=$1 name=$2
+  quietly "$tree/install.log" cmake --install "$tree" --component development \
+    --prefix "$tree/prefix" || build_failed
+  quietly "$tree/configure.log" cmake -S "$root/baselines/$name" \
+    -B "$tree/plugins/$name" -G Ninja -DCMAKE_PREFIX_PATH="$tree/prefix" \
+    -DCMAKE_LIBRARY_OUTPUT_DIRECTORY="$tree" || build_failed
+  build "$tree/plugins/$name"
+}

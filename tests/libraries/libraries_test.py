@@ -1,0 +1,102 @@
+#!/usr/bin/env python3
+"""libraries_test.py PROGRAM SOURCES BUILD WORK COMPILER: the plug-in of other
+libraries' solvers, built on the installed suite. Skipped where its packages are
+missing: apt-packages.txt, [libraries].
+
+Its methods keep the contracts and run on the suite's problems, beside the suite's
+own, which have the same losses as in the suite's experiments; versions are
+recorded; verify finds the same bits; GSL is in the plug-in and not in the program.
+"""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import unittest
+
+PROGRAM, SOURCES, BUILD, WORK, COMPILER = sys.argv[1:6]
+HEADERS = ["gsl/gsl_multimin.h"]
+RESULTS, PLUGIN = WORK + "/results", WORK + "/tree/libraries.so"
+
+
+def run(*command, status=0):
+    done = subprocess.run(
+        command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+        cwd=WORK)
+    if done.returncode != status:
+        raise AssertionError(f"{command}: {done.returncode}\n{done.stdout}")
+    return done.stdout
+
+
+def bench(*arguments, plugin=True, **options):
+    return run(PROGRAM, *arguments, *["--plugin=" + PLUGIN] * plugin, **options)
+
+
+def stages(folder):
+    with open(folder + "/results.json") as f:
+        return json.load(f)["benchmarks"]
+
+
+class Libraries(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        shutil.rmtree(WORK, ignore_errors=True)
+        os.makedirs(WORK)
+        run("cmake", "--install", BUILD, "--prefix", WORK + "/prefix",
+            "--component", "development")
+        run("cmake", "-S", SOURCES + "/baselines/libraries", "-B",
+            WORK + "/tree", "-G", "Ninja", "-D", "LIBRARIES_TESTS=ON",
+            "-D", "CMAKE_CXX_COMPILER=" + COMPILER,
+            "-D", "CMAKE_CXX_FLAGS=-Wall -Wextra -Wshadow -Werror",
+            "-D", "CMAKE_CXX_FLAGS_RELEASE=-O1",  # the same bits, sooner
+            "-D", "CMAKE_PREFIX_PATH=" + WORK + "/prefix")
+        run("ninja", "-C", WORK + "/tree")
+        bench("--profile=smoke", "--filter=^libraries/", "--out=" + RESULTS,
+              "--no-report")
+
+    def test_solver(self):
+        print(run(WORK + "/tree/library_solver_test").splitlines()[-1])
+
+    def test_losses_of_our_own_are_the_suites(self):
+        suite = WORK + "/suite"
+        bench("--profile=smoke", "--filter=^jpo/wave-packet/bfgs/",
+              "--out=" + suite, "--no-report", plugin=False)
+
+        def ends(folder):
+            return {s["name"].split("/", 2)[2]:
+                    (s["loss_mean"], s["loss_median"], s["vjp"])
+                    for s in stages(folder) if "/bfgs/" in s["name"]}
+        self.assertGreater(len(ends(suite)), 1)
+        self.assertEqual(ends(suite), ends(RESULTS))
+
+    def test_what_is_recorded(self):
+        found = [s["physinv"] for s in stages(RESULTS)
+                 if "/gsl-bfgs2/" in s["name"]]
+        self.assertGreater(len(found), 1)
+        for stage in found:
+            self.assertIn(stage["stop"], ("converged", "iterations"))
+            self.assertIn("gsl 2.", stage["options"]["library"])
+            self.assertIn(" x ", stage["message"])
+
+    def test_the_same_bits(self):
+        self.assertIn("0 mismatches", bench("verify", RESULTS))
+
+    def test_contracts(self):
+        said = bench("conformance", "libraries")
+        self.assertIn("gsl-bfgs2", said)
+        self.assertIn(" 0 failed", said)
+
+    def test_licence(self):
+        linked = run("ldd", PLUGIN)
+        self.assertIn("libgsl.", linked)
+        self.assertNotIn("libgsl", run("ldd", PROGRAM))
+
+
+if __name__ == "__main__":
+    missing = [h for h in HEADERS if not os.path.exists("/usr/include/" + h)]
+    if missing:
+        print(f"skipped: there is no {', '.join(missing)} (apt-packages.txt, "
+              "[libraries])")
+        sys.exit(77)
+    unittest.main(argv=sys.argv[:1])
