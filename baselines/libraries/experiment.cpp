@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gsl.h"
+#include "nlopt_solvers.h"
 #include "optimizers/classical.h"
 #include "suite/harness/registry.h"
 #include "suite/harness/study.h"
@@ -16,21 +17,34 @@ namespace {
 using physinv::Experiment;
 using physinv::Profile;
 
-std::vector<physinv::Method> methods() {
-  return {{"bfgs", {physinv::bfgs_solve()}},
-          {"lbfgsb", {physinv::lbfgsb_solve()}},
-          {"gsl-bfgs2", {gsl_bfgs2()}}};
+/// The suite's own as in the experiment, and each library's for as many
+/// iterations.
+std::vector<physinv::Method> methods(const physinv::Method& bfgs) {
+  const Index limit = bfgs.chain.front()->default_iterations();
+  return {bfgs,
+          {"lbfgsb", {physinv::lbfgsb_solve({.iterations = limit})}},
+          {"gsl-bfgs2", {gsl_bfgs2({.iterations = limit})}},
+          {"nlopt-lbfgs", {nlopt_solve(NloptAlgorithm::lbfgs, limit)}},
+          {"nlopt-slsqp", {nlopt_solve(NloptAlgorithm::slsqp, limit)}},
+          {"nlopt-mma", {nlopt_solve(NloptAlgorithm::mma, limit)}}};
 }
 
-/// The rows in which the suite's BFGS runs, for all methods here.
-std::vector<Profile> profiles(const Experiment& of) {
+constexpr Index kSmokeSize = 8;
+
+/// The rows in which the suite's BFGS runs, for all methods here; of `smoke`,
+/// which takes seconds, those of few problems.
+std::vector<Profile> profiles(const Experiment& of,
+                              const std::vector<physinv::Method>& methods) {
   std::vector<std::string> all;
-  for (const auto& method : methods()) all.push_back(method.id);
+  for (const auto& method : methods) all.push_back(method.id);
   std::vector<Profile> result;
   for (const Profile& profile : of.profiles) {
     Profile mine{.name = profile.name, .rows = {}};
     for (physinv::Row row : profile.rows) {
       if (std::ranges::find(row.methods, "bfgs") == row.methods.end()) continue;
+      if (profile.name == "smoke")
+        std::erase_if(row.n, [](Index n) { return n > kSmokeSize; });
+      if (row.n.empty()) continue;
       row.methods = all;
       mine.rows.push_back(std::move(row));
     }
@@ -39,24 +53,26 @@ std::vector<Profile> profiles(const Experiment& of) {
   return result;
 }
 
-/// Programs over one folder of experiments, and contract tests, lack some.
-void add(const std::string& problem, const std::string& of) {
+/// Programs over one folder of experiments lack those of the others.
+void add(const std::string& problem) {
+  const std::string of = "jpo/" + problem, name = "libraries/" + problem;
   const auto base = physinv::registry().find(of);
   if (base == nullptr) return;
-  const std::string name = "libraries/" + problem;
+  const auto all = methods(*physinv::find_method(*base, "bfgs"));
   physinv::register_study(name, of);  // the same problems
   physinv::register_experiment({.name = name,
                                 .title = base->title + ", other libraries",
                                 .citation = base->citation,
                                 .problem = base->problem,
                                 .setting = base->setting,
-                                .profiles = profiles(*base),
-                                .methods = methods(),
+                                .profiles = profiles(*base, all),
+                                .methods = all,
                                 .styles = base->styles});
 }
 
 const bool kRegistered = [] {
-  add("wave-packet", "jpo/wave-packet");
+  for (const char* problem : {"billiards", "wave-packet", "robotic-arm"})
+    add(problem);
   return true;
 }();
 

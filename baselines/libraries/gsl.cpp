@@ -5,9 +5,10 @@
 #include <gsl/gsl_version.h>
 
 #include <memory>
+#include <new>
+#include <string>
 
-#include "library_solver.h"
-#include "optimizers/minimize.h"
+#include "library_stage.h"
 #include "suite/core/check.h"
 
 namespace libraries {
@@ -95,32 +96,18 @@ LibraryEnd minimize(const GslOptions& options,
 std::shared_ptr<const physinv::Stage> gsl_bfgs2(const GslOptions& options) {
   SUITE_CHECK(options.step > 0 && options.tol > 0,
               "GSL's step and tol are positive");
-  const auto operations = [](const physinv::CaseSize& size) {
-    const auto d = static_cast<double>(size.shape.unknowns);
-    return 40.0 * static_cast<double>(size.n) *
-           (3 * size.problem_operations + 1000 + 20 * d);
-  };
-  return physinv::make_stage(
-      {.name = "solve",
-       .needs = physinv::Needs::forward | physinv::Needs::vjp,
-       .options =
+  return library_solve(
+      {.options =
            physinv::chained(physinv::describe(options),
                             {{"library", std::string("gsl ") + gsl_version}}),
        .iterations = options.iterations,
-       .networks = physinv::Networks::none,
-       .operations = operations},
-      [options](physinv::StageRun& run) {
+       .evaluations = options.evaluations},
+      [options](double gtol) -> Library {
         gsl_set_error_handler_off();  // errors are values
-        const double gtol = run.setting.gtol;
-        LibrarySolver solver(
-            [&](Objective& f, const Vector<double>& x0, Index iterations) {
-              return minimize(options, gtol, f, x0, iterations);
-            },
-            run.iterations,
-            options.evaluations);
-        auto out = physinv::minimize(solver, run, run.oracle.start());
-        solver.report(out);
-        return out;
+        return [options, gtol](
+                   Objective& f, const Vector<double>& x0, Index iterations) {
+          return minimize(options, gtol, f, x0, iterations);
+        };
       });
 }
 

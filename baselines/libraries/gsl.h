@@ -21,8 +21,7 @@ struct GslOptions {
     return std::tuple{physinv::word("algorithm", "gsl_vector_bfgs2"),
                       physinv::field("step", step),
                       physinv::field("tol", tol),
-                      physinv::field("evaluations", evaluations),
-                      physinv::implied(iterations)};
+                      physinv::implied(iterations, evaluations)};
   }
 };
 

@@ -16,7 +16,7 @@ import sys
 import unittest
 
 PROGRAM, SOURCES, BUILD, WORK, COMPILER = sys.argv[1:6]
-HEADERS = ["gsl/gsl_multimin.h"]
+HEADERS = ["gsl/gsl_multimin.h", "nlopt.h"]
 RESULTS, PLUGIN = WORK + "/results", WORK + "/tree/libraries.so"
 
 
@@ -60,24 +60,29 @@ class Libraries(unittest.TestCase):
 
     def test_losses_of_our_own_are_the_suites(self):
         suite = WORK + "/suite"
-        bench("--profile=smoke", "--filter=^jpo/wave-packet/bfgs/",
-              "--out=" + suite, "--no-report", plugin=False)
+        bench("--profile=smoke", "--no-report", "--out=" + suite,
+              "--filter=^jpo/(billiards|wave-packet|robotic-arm)/bfgs/n=4/",
+              plugin=False)
 
         def ends(folder):
-            return {s["name"].split("/", 2)[2]:
+            return {s["name"].split("/", 1)[1]:
                     (s["loss_mean"], s["loss_median"], s["vjp"])
                     for s in stages(folder) if "/bfgs/" in s["name"]}
         self.assertGreater(len(ends(suite)), 1)
         self.assertEqual(ends(suite), ends(RESULTS))
 
     def test_what_is_recorded(self):
-        found = [s["physinv"] for s in stages(RESULTS)
-                 if "/gsl-bfgs2/" in s["name"]]
-        self.assertGreater(len(found), 1)
-        for stage in found:
-            self.assertIn(stage["stop"], ("converged", "iterations"))
-            self.assertIn("gsl 2.", stage["options"]["library"])
-            self.assertIn(" x ", stage["message"])
+        for method, library in (("gsl-bfgs2", "gsl 2."),
+                                ("nlopt-lbfgs", "nlopt 2."),
+                                ("nlopt-slsqp", "nlopt 2."),
+                                ("nlopt-mma", "nlopt 2.")):
+            found = [s["physinv"] for s in stages(RESULTS)
+                     if f"/{method}/" in s["name"]]
+            self.assertEqual(len(found), 3, method)
+            for stage in found:
+                self.assertIn(stage["stop"], ("converged", "iterations"))
+                self.assertIn(library, stage["options"]["library"])
+                self.assertIn(" x ", stage["message"])
 
     def test_the_same_bits(self):
         self.assertIn("0 mismatches", bench("verify", RESULTS))

@@ -1,5 +1,5 @@
-// Libraries made up here, and GSL, on x -> (x - 3)^2 / 2 per unknown. Whatever
-// a library does is a result.
+// Libraries made up here, on half the squared distance from (3, 3). Whatever a
+// library does is a result.
 #include "library_solver.h"
 
 #include <gtest/gtest.h>
