@@ -99,8 +99,9 @@ TEST(Supervised, SeesOnlyTheLabelledSamples) {
   StageBench other(*stage, kExamples, 20, problem<OtherProblems>("quadratic"));
   const Outcome on_other = other.run();
   EXPECT_FALSE(same_bits(on_other.x, out.x));
-  for (const char* array : {"training_loss", "weight_change"})
-    EXPECT_TRUE(same_bits(on_other.arrays.at(array), out.arrays.at(array)));
+  EXPECT_TRUE(same_bits(on_other.arrays.at("weight_change"),
+                        out.arrays.at("weight_change")));
+  EXPECT_EQ(training_loss(on_other), training_loss(out));
 }
 
 TEST(Supervised, TargetsAreScaledLikeTheOutput) {
