@@ -144,7 +144,7 @@ def in_pages():
                                                cell)
                  for c in part.split(" or ")}
         said.update({verb: codes for verb in verbs.split(", ")})
-    gate = re.search(r"Exit codes: 0 passed,([^.]*)\.", text)[1]
+    gate = re.search(r"Exit codes: 0 passed;([^.]*)\.", text)[1]
     said["gate"] = {int(c) for c in re.findall(r"\b(\d+)\s", gate)}
     return said
 
