@@ -57,7 +57,7 @@ add_custom_command(
   OUTPUT ${physinv_info}/build_info.cpp
   BYPRODUCTS ${physinv_info}/physinv-build.cmake
   DEPFILE ${physinv_info}/build_info.d
-  DEPENDS ${physinv_info}/values.txt
+  DEPENDS physinv-sources ${physinv_info}/values.txt
   COMMAND physinv-sources --build-info ${PROJECT_SOURCE_DIR} ${physinv_info}
   COMMENT "Sources of the numerics"
   VERBATIM)

@@ -110,7 +110,9 @@ std::map<std::string, std::string> values_in(const fs::path& path) {
 }
 
 void write_build_info(const fs::path& root, const fs::path& info) {
-  const auto none = R"(/(kernels|kernels_libraries|real_fft|array_table)\.)";
+  // baselines/libraries is a project of its own.
+  const auto none =
+      R"(/(kernels|kernels_libraries|real_fft|array_table)\.|^baselines/lib)";
   const Names numerics =
       below(root,
             "suite/core suite/linalg suite/nn problems optimizers baselines "
@@ -124,7 +126,7 @@ void write_build_info(const fs::path& root, const fs::path& info) {
       below(root,
             "suite problems optimizers baselines",
             R"(\.h$)",
-            R"(^suite/(app|cases)/|/(kernels|real_fft)\.)");
+            R"(^suite/(app|cases)/|^baselines/lib|/(kernels|real_fft)\.)");
 
   const std::string lines = lines_of(root, numerics);
   auto values = values_in(info / "values.txt");
