@@ -27,6 +27,7 @@ file(WRITE ${checkout}/baselines/libraries/CMakeLists.txt [[
 cmake_minimum_required(VERSION 3.25)
 project(libraries LANGUAGES CXX)
 add_library(libraries MODULE ${CMAKE_SOURCE_DIR}/../../main.cpp)
+file(WRITE ${CMAKE_SOURCE_DIR}/../../build/compiler ${CMAKE_CXX_COMPILER})
 set_target_properties(libraries PROPERTIES PREFIX "")
 ]])
 file(CREATE_LINK ${checkout} ${work}/link SYMBOLIC)
@@ -75,6 +76,20 @@ if(NOT EXISTS ${plugin})
 endif()
 launch(${work}/link bench --filter=libraries)
 expect_one_build("other libraries, through the link")
+# By the compiler of the suite, whatever the environment names now and another
+# one has left.
+file(WRITE ${work}/another "#!/bin/sh\nexec '${compiler}' \"$@\"\n")
+file(CHMOD ${work}/another PERMISSIONS OWNER_READ OWNER_EXECUTE)
+file(REMOVE_RECURSE ${plugin} ${checkout}/build/release/plugins)
+execute_process(COMMAND ${CMAKE_COMMAND} -S ${checkout}/baselines/libraries
+  -B ${checkout}/build/release/plugins/libraries -G Ninja
+  -DCMAKE_CXX_COMPILER=${work}/another OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND bash -c
+  "cd '${checkout}' && CXX='${work}/another' ./bench --filter=libraries")
+file(READ ${checkout}/build/compiler used)
+if(NOT EXISTS ${plugin} OR NOT used STREQUAL compiler)
+  message(SEND_ERROR "the plug-in is built by ${used}, not by ${compiler}")
+endif()
 launch(${work}/link check -V)  # configures again, with tests
 expect_one_build("tests through the link")
 string(FIND "${output}" "at ${checkout}/build/release" at)
