@@ -26,10 +26,13 @@ list(FILTER PHYSINV_HEADERS INCLUDE REGEX "/include/physinv$")
 list(GET PHYSINV_HEADERS 0 PHYSINV_HEADERS)
 cmake_path(SET PHYSINV_DATA NORMALIZE
   "${PHYSINV_HEADERS}/../../share/physinv")
-# The contract tests, where they were built (./bench conformance, ./check).
+# The contract tests, where they were built (./bench conformance, ./check) and no
+# build stopped on the way.
 file(GLOB physinv_contract
   ${CMAKE_CURRENT_LIST_DIR}/../../libphysinv_contract.a)
-if(physinv_contract)
+file(GLOB physinv_conformance
+  ${CMAKE_CURRENT_LIST_DIR}/../../physinv/objects-*/physinv_conformance/*.o)
+if(physinv_contract AND physinv_conformance)
   find_package(GTest QUIET)
   if(GTest_FOUND)
     include(${CMAKE_CURRENT_LIST_DIR}/physinv-contract-targets.cmake)

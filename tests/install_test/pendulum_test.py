@@ -5,6 +5,7 @@ moved, warnings that are errors. What an edit makes stale, report, verify, gate,
 the contract tests, and what the stock program says of its results.
 """
 
+import glob
 import json
 import os
 import shutil
@@ -232,6 +233,20 @@ except ValueError as e: print(e)
         self.assertEqual(pendulum("conformance"), run(
             TREE + "/pendulum_contract_test"))
         self.assertIn("nearest are pendulum", self.conformance("no", status=3))
+
+    def test_8_a_build_that_stopped_has_no_contract_tests(self):
+        stopped = WORK + "/stopped"
+        shutil.copytree(PREFIX, stopped, symlinks=True)
+        objects = glob.glob(stopped + "/lib/**/physinv_conformance/*.o",
+                            recursive=True)
+        self.assertEqual(len(objects), 1)
+        os.remove(objects[0])
+        out = run("cmake", "-S", PROJECT, "-B", WORK + "/none", "-G", "Ninja",
+                  "-D", "CMAKE_CXX_COMPILER=" + COMPILER,
+                  "-D", "CMAKE_PREFIX_PATH=" + stopped, status=1)
+        self.assertIn("installed from a tree without contract tests",
+                      " ".join(out.split()))
+        shutil.rmtree(stopped)
 
     def conformance(self, *arguments, status=0):
         return run(PREFIX + "/bin/physinv-bench", "conformance", *arguments,
