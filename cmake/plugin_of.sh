@@ -18,23 +18,16 @@ find_plugin() {
 
 # build_plugin TREE NAME: TREE/NAME.so, on what TREE has built. It is a project
 # of its own, as anybody's: the suite is installed for it into TREE/prefix. Its
-# compiler is that of TREE, whatever $CXX says now; what another compiler or
-# another checkout left there is made anew.
+# compiler is that of TREE, whatever $CXX says now; the configuration is fresh,
+# as another compiler or another checkout may have left one.
 build_plugin() {
-  local tree=$1 at=$1/plugins/$2 from=$root/baselines/$2 compiler
-  compiler=$(compiler_of "$tree")
-  if [[ $(compiler_of "$at") != "$compiler" ]] ||
-    ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$from" "$at/CMakeCache.txt"; then
-    rm -rf "$at"
-  fi
+  local tree=$1 at=$1/plugins/$2 compiler
+  compiler=$(sed -n 's/^CMAKE_CXX_COMPILER:[A-Z]*=//p' "$tree/CMakeCache.txt")
   quietly "$tree/install.log" cmake --install "$tree" --component development \
     --prefix "$tree/prefix" || build_failed
-  quietly "$tree/configure.log" cmake -S "$from" -B "$at" -G Ninja \
+  quietly "$tree/configure.log" cmake --fresh \
+    -S "$root/baselines/$2" -B "$at" -G Ninja \
     -DCMAKE_PREFIX_PATH="$tree/prefix" -DCMAKE_CXX_COMPILER="$compiler" \
     -DCMAKE_LIBRARY_OUTPUT_DIRECTORY="$tree" || build_failed
   build "$at"
-}
-compiler_of() {
-  [[ ! -e $1/CMakeCache.txt ]] ||
-    sed -n 's/^CMAKE_CXX_COMPILER:[A-Z]*=//p' "$1/CMakeCache.txt"
 }
