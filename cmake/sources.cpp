@@ -61,7 +61,7 @@ std::string lines_of(const fs::path& root, const Names& files) {
 }
 
 /// What is below some folders, sorted: all whose paths have the end, but what
-/// a pattern finds.
+/// a pattern finds and baselines/libraries, a project of its own.
 Names below(const fs::path& root,
             const char* folders,
             const char* end,
@@ -73,7 +73,8 @@ Names below(const fs::path& root,
     if (!fs::exists(root / folder)) continue;
     for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
       const auto path = entry.path().lexically_relative(root).string();
-      if (RE2::PartialMatch(path, wanted) && !RE2::PartialMatch(path, others))
+      if (RE2::PartialMatch(path, wanted) && !RE2::PartialMatch(path, others) &&
+          !path.starts_with("baselines/libraries/"))
         all.push_back(path);
     }
   }
@@ -110,9 +111,7 @@ std::map<std::string, std::string> values_in(const fs::path& path) {
 }
 
 void write_build_info(const fs::path& root, const fs::path& info) {
-  // baselines/libraries is a project of its own.
-  const auto none =
-      R"(/(kernels|kernels_libraries|real_fft|array_table)\.|^baselines/lib)";
+  const auto none = R"(/(kernels|kernels_libraries|real_fft|array_table)\.)";
   const Names numerics =
       below(root,
             "suite/core suite/linalg suite/nn problems optimizers baselines "
@@ -126,7 +125,7 @@ void write_build_info(const fs::path& root, const fs::path& info) {
       below(root,
             "suite problems optimizers baselines",
             R"(\.h$)",
-            R"(^suite/(app|cases)/|^baselines/lib|/(kernels|real_fft)\.)");
+            R"(^suite/(app|cases)/|/(kernels|real_fft)\.)");
 
   const std::string lines = lines_of(root, numerics);
   auto values = values_in(info / "values.txt");
