@@ -42,7 +42,7 @@ std::string counts_html(const VerdictCounts& counts, Origin origin) {
 
 std::string card_html(const Section& section,
                       const std::string& folder,
-                      const std::optional<CardPicture>& picture) {
+                      const std::optional<std::string>& picture) {
   std::string out = fmt::format(
       "<article class=\"card\">\n<h3><a href=\"{0}/index.html\">{1}</a></h3>\n",
       html(folder),
@@ -53,7 +53,7 @@ std::string card_html(const Section& section,
         "src=\"{0}/card.svg\" alt=\"{1}\" width=\"{2}\" height=\"{3}\" "
         "loading=\"lazy\"/></a>\n",
         html(folder),
-        html(picture->alt),
+        html(*picture),
         kCardWidth,
         kCardHeight);
   if (const std::string answer = answer_html(section); !answer.empty())

@@ -5,6 +5,7 @@
 #include "reports/anchors.h"
 #include "reports/html.h"
 #include "reports/html_parts.h"
+#include "reports/key_figure.h"
 #include "suite/results/verdict_words.h"
 
 namespace physinv {
@@ -15,9 +16,7 @@ std::string key_of(const Section& section) {
 }
 
 /// The cards of a paper, those with a picture first.
-std::string cards_html(const Part& part,
-                       const Pages& pages,
-                       const Palette& palette) {
+std::string cards_html(const Part& part, const Pages& pages) {
   std::string out = fmt::format(
       "<section id=\"{0}\" aria-labelledby=\"{0}-title\">\n"
       "<h2 id=\"{0}-title\">{1}</h2>\n",
@@ -32,8 +31,7 @@ std::string cards_html(const Part& part,
             : fmt::format(" <a href=\"{0}\">{0}</a>", html(part.group.link)));
   std::string with, without;
   for (const Section* section : part.sections) {
-    const auto picture =
-        card_picture(*section, palette, pictures_of(pages, *section));
+    const auto picture = card_text(*section, pictures_of(pages, *section));
     (picture ? with : without) +=
         card_html(*section, folder_of(section->experiment), picture);
   }
@@ -126,7 +124,7 @@ std::string index_html(const std::vector<Section>& sections,
                                anchors[k],
                                palette,
                                {.folder = folder_of(whole[k].experiment)});
-  for (const Part& part : all) parts.main += cards_html(part, pages, palette);
+  for (const Part& part : all) parts.main += cards_html(part, pages);
   parts.main += chapters;
   parts.footer = provenance_html(brief);
   return page_html(parts);

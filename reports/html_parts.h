@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "reports/anchors.h"
-#include "reports/key_figure.h"
 #include "reports/palette.h"
 #include "reports/report.h"
 #include "suite/results/report_model.h"
@@ -76,11 +75,11 @@ std::string section_page_html(const Section& section,
                               const Palette& palette,
                               const std::vector<Picture>& pictures = {});
 
-/// A card of the index: picture, if there is one, title, answer, verdicts; the
-/// title leads to the page of the experiment.
+/// A card of the index: picture, if there is one, which shows this; title,
+/// answer, verdicts; the title leads to the page of the experiment.
 std::string card_html(const Section& section,
                       const std::string& folder,
-                      const std::optional<CardPicture>& picture);
+                      const std::optional<std::string>& picture);
 
 /// A paper, or what else stands together.
 struct Part {

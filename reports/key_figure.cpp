@@ -34,7 +34,7 @@ Rank rank_of(const Panel& panel) {
   return panel.x_log ? Rank::curves : Rank::something;
 }
 
-std::string alt_of(const Figure& figure) {
+std::string text_of(const Figure& figure) {
   const Panel& panel = figure.panels.front();
   std::vector<std::string> labels;
   for (const Series* s : legend_of(figure)) labels.push_back(s->label);
@@ -44,6 +44,14 @@ std::string alt_of(const Figure& figure) {
     text += fmt::format(": {} over {}", panel.y_label, panel.x_label);
   if (!labels.empty()) text += fmt::format("; {}", fmt::join(labels, ", "));
   return text;
+}
+
+const Picture& shown_of(const std::vector<Picture>& drawn) {
+  const auto curves =
+      std::find_if(drawn.begin(), drawn.end(), [](const Picture& p) {
+        return p.title.find("curve") != p.title.npos;
+      });
+  return curves == drawn.end() ? drawn.front() : *curves;
 }
 
 }  // namespace
@@ -72,18 +80,20 @@ std::optional<Figure> key_figure(const Section& section) {
   return figure;
 }
 
-std::optional<CardPicture> card_picture(const Section& section,
-                                        const Palette& palette,
-                                        const std::vector<Picture>& drawn) {
+std::optional<std::string> card_svg(const Section& section,
+                                    const Palette& palette,
+                                    const std::vector<Picture>& drawn) {
   if (const auto figure = key_figure(section))
-    return CardPicture{render_card(*figure, palette), alt_of(*figure)};
+    return render_card(*figure, palette);
   if (drawn.empty()) return {};
-  const auto curves =
-      std::find_if(drawn.begin(), drawn.end(), [](const Picture& p) {
-        return p.title.find("curve") != p.title.npos;
-      });
-  const Picture& picture = curves == drawn.end() ? drawn.front() : *curves;
-  return CardPicture{picture.svg, picture.title};
+  return shown_of(drawn).svg;
+}
+
+std::optional<std::string> card_text(const Section& section,
+                                     const std::vector<Picture>& drawn) {
+  if (const auto figure = key_figure(section)) return text_of(*figure);
+  if (drawn.empty()) return {};
+  return shown_of(drawn).title;
 }
 
 }  // namespace physinv

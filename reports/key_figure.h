@@ -18,14 +18,13 @@ namespace physinv {
 /// something to draw. Nothing if no panel has.
 std::optional<Figure> key_figure(const Section& section);
 
-struct CardPicture {
-  std::string svg;
-  std::string alt;  ///< what it shows, in words
-};
-/// Of the key figure; without one, of the figures that were drawn before, the
-/// curves first. Nothing if there are none.
-std::optional<CardPicture> card_picture(const Section& section,
-                                        const Palette& palette,
-                                        const std::vector<Picture>& drawn);
+/// The card's picture as SVG, and what it shows in words: the key figure;
+/// without one, of the figures that were drawn before, the curves first.
+/// Nothing if there are none.
+std::optional<std::string> card_svg(const Section& section,
+                                    const Palette& palette,
+                                    const std::vector<Picture>& drawn);
+std::optional<std::string> card_text(const Section& section,
+                                     const std::vector<Picture>& drawn);
 
 }  // namespace physinv

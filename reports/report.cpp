@@ -87,8 +87,8 @@ void write_page(Writer& writer,
   const auto pictures = pictures_of(pages, section);
   writer.write(folder / "index.html",
                section_page_html(section, provenance, palette, pictures));
-  if (const auto card = card_picture(section, palette, pictures))
-    writer.write(folder / "card.svg", card->svg);
+  if (const auto card = card_svg(section, palette, pictures))
+    writer.write(folder / "card.svg", *card);
 }
 
 }  // namespace

@@ -157,11 +157,10 @@ TEST(Index, WithoutFiguresACardShowsWhatWasDrawnBefore) {
   const std::vector<Picture> drawn = {
       {.title = "Fig. 1 · Task", .svg = "<svg>1</svg>", .note = {}},
       {.title = "Fig. 2 · Learning curves", .svg = "<svg>2</svg>", .note = {}}};
-  const auto card = card_picture(one, {}, drawn);
-  ASSERT_TRUE(card);
-  EXPECT_EQ(card->svg, "<svg>2</svg>");
-  EXPECT_EQ(card->alt, "Fig. 2 · Learning curves");
-  EXPECT_FALSE(card_picture(one, {}, {}));
+  EXPECT_EQ(card_svg(one, {}, drawn), "<svg>2</svg>");
+  EXPECT_EQ(card_text(one, drawn), "Fig. 2 · Learning curves");
+  EXPECT_FALSE(card_svg(one, {}, {}));
+  EXPECT_FALSE(card_text(one, {}));
 }
 
 /// What a sentence of the index says of one claim.
