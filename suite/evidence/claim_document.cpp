@@ -60,23 +60,36 @@ std::vector<Line> lines_of(std::string_view text) {
 
 class Reader {
  public:
-  Reader(std::string_view text, ClaimNames names)
-      : lines_(lines_of(text)), names_(std::move(names)) {}
+  Reader(std::string_view text, ClaimNames names, std::string_view only)
+      : lines_(lines_of(text)), names_(std::move(names)), only_(only) {}
 
   std::vector<ClaimsOfExperiment> read() {
     while (next_ < lines_.size()) block();
     end_claim();
     std::vector<ClaimsOfExperiment> all;
-    for (ClaimsOfExperiment& part : parts_)
-      for (std::string_view names = part.experiment; !names.empty();) {
-        const auto end = std::min(names.find(kAnd), names.size());
-        all.push_back({std::string(names.substr(0, end)), part.claims});
-        names.remove_prefix(std::min(end + kAnd.size(), names.size()));
-      }
+    for (const Part& part : parts_)
+      for (const std::string& name : part.experiments)
+        all.push_back({name, part.claims});
     return all;
   }
 
  private:
+  struct Part {
+    std::vector<std::string> experiments;  ///< those that are asked for
+    std::vector<Claim> claims;
+  };
+
+  std::vector<std::string> experiments_of(std::string_view heading) const {
+    std::vector<std::string> all;
+    while (!heading.empty()) {
+      const auto name = heading.substr(0, heading.find(kAnd));
+      if (only_.empty() || name == only_) all.emplace_back(name);
+      heading.remove_prefix(
+          std::min(name.size() + kAnd.size(), heading.size()));
+    }
+    return all;
+  }
+
   [[noreturn]] static void fail(PlacedText::Place place, std::string what) {
     throw ExpressionError{place, std::move(what)};
   }
@@ -90,7 +103,7 @@ class Reader {
       definitions();
     } else if (skip(text, "# ")) {
       end_claim();
-      parts_.push_back({std::string(text), {}});
+      parts_.push_back({experiments_of(text), {}});
       ++next_;
     } else if (text.starts_with("## ")) {
       end_claim();
@@ -207,7 +220,8 @@ class Reader {
 
   /// "label: `expression` or label: `expression`"
   void item(const PlacedText& whole) {
-    if (!claim_) return;  // a list for readers
+    if (!claim_) return;                            // a list for readers
+    if (parts_.back().experiments.empty()) return;  // nobody asks for them
     auto& to =
         claim_->cause.why.empty() ? claim_->conditions : claim_->cause.shown_by;
     std::vector<Condition> alternatives;
@@ -276,8 +290,9 @@ class Reader {
 
   std::vector<Line> lines_;
   ClaimNames names_;
+  std::string_view only_;
   std::size_t next_ = 0;
-  std::vector<ClaimsOfExperiment> parts_;
+  std::vector<Part> parts_;
   std::optional<Claim> claim_;
 };
 
@@ -285,9 +300,10 @@ class Reader {
 
 std::vector<ClaimsOfExperiment> read_claims(std::string_view text,
                                             const std::string& file,
-                                            ClaimNames names) {
+                                            ClaimNames names,
+                                            std::string_view experiment) {
   try {
-    return Reader(text, std::move(names)).read();
+    return Reader(text, std::move(names), experiment).read();
   } catch (const ExpressionError& e) {
     throw ClaimDocumentError(fmt::format(
         "{}:{}:{}: {}", file, e.place.line, e.place.column, e.what));

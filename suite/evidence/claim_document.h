@@ -55,10 +55,11 @@ struct ClaimsOfExperiment {
   std::vector<Claim> claims;
 };
 
-/// In the order of the document. `file` is for messages. Throws
-/// ClaimDocumentError.
+/// In the order of the document; of one experiment alone, if one is named.
+/// `file` is for messages. Throws ClaimDocumentError.
 std::vector<ClaimsOfExperiment> read_claims(std::string_view text,
                                             const std::string& file,
-                                            ClaimNames names);
+                                            ClaimNames names,
+                                            std::string_view experiment = "");
 
 }  // namespace physinv

@@ -9,10 +9,13 @@
 
 namespace physinv {
 
-/// Those of suite/cases/<folder>/claims.md. Throws ClaimDocumentError, and
-/// std::logic_error of a folder that claim_texts.S does not list.
+/// Those of suite/cases/<folder>/claims.md, or of one of its experiments.
+/// Throws ClaimDocumentError, and std::logic_error of a folder that
+/// claim_texts.S does not list.
 std::vector<ClaimsOfExperiment> claims_of_folder(
-    const std::string& folder, ClaimNames names = claim_names());
+    const std::string& folder,
+    ClaimNames names = claim_names(),
+    const std::string& experiment = "");
 
 /// Registers them.
 void add_claims_of_folder(Registry& registry,
