@@ -37,10 +37,10 @@ from world import Attempt, World, say
 
 # name -> function, attempts or hits, the same of --short
 KINDS = {
-    "kills": (kills.kills, 300, 6),
+    "kills": (kills.kills, 300, 5),
     "signals": (kills.signals, 100, 4),
-    "between": (between.between, 350, 10),
-    "returns": (returns.returns, 300, 12),
+    "between": (between.between, 350, 5),
+    "returns": (returns.returns, 300, 6),
     "disks": (disks.disks, 80, 5),
     "locks": (locks.locks, 15, 2),
     "flips": (files.flips, 1000, 32),

@@ -13,7 +13,7 @@ import stores
 IN_A_ROW = 5  # accidents of a campaign before it may end
 # Enough that a training takes seconds and has checkpoints of a second.
 LONG = {"iterations": 12_000, "checkpoint": "1"}
-BRIEF = {"iterations": 4_000, "checkpoint": "0.05"}
+BRIEF = {"iterations": 1_500, "checkpoint": "0.03"}
 OWN = re.compile(r"(lock|journal\.jsonl|plan\.json|results\.json|cases"
                  r"|cases/[^/]*\.h5|checkpoints|report(/.*)?)?")
 STOPS = (signal.SIGINT, signal.SIGTERM)
