@@ -38,8 +38,6 @@ struct NamedDigest {
   nlohmann::ordered_json digest;
   std::map<std::string, double> cpu_seconds = {};  ///< by experiment
   std::map<std::string, Counts> work = {};         ///< made and saved, alike
-  /// As it was published, if its claims were judged anew since.
-  nlohmann::ordered_json published = {};
 };
 
 /// With the work of each.

@@ -18,50 +18,55 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What fails stands first.
+/// Of a table's rows.
 constexpr std::array kOrder{Verdict::not_reproduced,
                             Verdict::contradiction,
                             Verdict::depends,
                             Verdict::differs,
                             Verdict::partly_judged,
-                            Verdict::not_judged,
-                            Verdict::reported,
-                            Verdict::reproduced};
-static_assert(kOrder.size() == kVerdictCount);
+                            Verdict::not_judged};
 
-constexpr std::array kOrigins{Origin::paper, Origin::suite};
+std::string page_link(const std::string& experiment,
+                      const std::string& text,
+                      const std::string& pages) {
+  return fmt::format("[{}]({}{}.md)",
+                     markdown(text),
+                     pages.empty() ? "" : pages + "/",
+                     folder_of(experiment));
+}
+
+std::string paper_name(const std::string& key) {
+  return key.empty() ? "(none)" : markdown(key);
+}
+
+int sum_of(const VerdictCounts& counts, std::initializer_list<Verdict> which) {
+  int sum = 0;
+  for (const Verdict v : which) sum += counts[static_cast<std::size_t>(v)];
+  return sum;
+}
 
 std::string overview(const Papers& papers) {
-  std::array<VerdictCounts, 2> totals{};
-  for (const auto& [paper, claims] : papers)
-    for (std::size_t o = 0; o < kOrigins.size(); ++o)
-      for (const Verdict v : kVerdicts)
-        totals[o][static_cast<std::size_t>(v)] +=
-            counts_of(claims, kOrigins[o])[static_cast<std::size_t>(v)];
-  std::string out = "| paper |", line = "\n| --- |";
-  for (std::size_t o = 0; o < kOrigins.size(); ++o)
-    for (const Verdict v : columns_of(totals[o])) {
-      const bool first_range =
-          kOrigins[o] == Origin::suite && v == kVerdicts[0];
-      out += fmt::format(" {}{} |",
-                         first_range ? "ranges of the suite: " : "",
-                         words_of(v, kOrigins[o]));
-      line += " --- |";
-    }
-  out += line + '\n';
-  for (const auto& [paper, c] : papers) {
-    out += fmt::format("| {} |", paper.empty() ? "(none)" : markdown(paper));
-    for (std::size_t o = 0; o < kOrigins.size(); ++o)
-      for (const Verdict v : columns_of(totals[o]))
-        out += fmt::format(
-            " {} |", counts_of(c, kOrigins[o])[static_cast<std::size_t>(v)]);
-    out += '\n';
+  std::string out =
+      "| paper | reproduced | differs | depends or contradiction | not "
+      "reproduced | undecided |\n| --- | --- | --- | --- | --- | --- |\n";
+  for (const auto& [paper, claims] : papers) {
+    const VerdictCounts c = counts_of(claims, Origin::paper);
+    out += fmt::format(
+        "| {} | {} | {} | {} | {} | {} |\n",
+        paper_name(paper),
+        sum_of(c, {Verdict::reproduced}),
+        sum_of(c, {Verdict::differs}),
+        sum_of(c, {Verdict::depends, Verdict::contradiction}),
+        sum_of(c, {Verdict::not_reproduced}),
+        sum_of(
+            c,
+            {Verdict::partly_judged, Verdict::not_judged, Verdict::reported}));
   }
   return out;
 }
 
-/// What the row shows of all conditions; of a claim that only reports, its
-/// first number.
+/// The condition that a row shows; of a claim that only reports, its first
+/// number.
 const ConditionResult* shown(const ClaimResult& claim) {
   if (const ConditionResult* c = telling(claim)) return c;
   for (const ConditionResult& c : claim.conditions)
@@ -69,68 +74,82 @@ const ConditionResult* shown(const ClaimResult& claim) {
   return nullptr;
 }
 
-std::string asked(const ClaimResult& claim) {
-  const ConditionResult* c = shown(claim);
-  if (c == nullptr) return "";
-  return c->bounds.empty() ? c->label : c->label + " " + c->bounds;
-}
-
+/// "75.3 ± 4.03 (mean of the four, %: printed 68.5 +- 4.37)"
 std::string measured(const ClaimResult& claim) {
   const ConditionResult* c = shown(claim);
-  if (c == nullptr || !c->value) return "";
-  std::string text = value_text(*c->value);
-  if (c->spread) text += " ± " + value_text(*c->spread);
-  return text;
+  if (c == nullptr) return "";
+  std::string value = "not run";
+  if (c->value) value = value_text(*c->value);
+  if (c->spread) value += " ± " + value_text(*c->spread);
+  return markdown(fmt::format("{} ({}{}{})",
+                              value,
+                              c->label,
+                              c->bounds.empty() ? "" : ": ",
+                              c->bounds));
 }
 
 std::string row(const ClaimKey& key,
-                const LatestClaim& s,
-                const ResultsLinks& links) {
-  std::string cause = s.claim.cause;
-  if (cause.empty() && s.claim.verdict != Verdict::reproduced)
-    cause = "unknown";
-  return fmt::format("| [{}]({}/{}.md) {} | {} | {} | {} | {} | {} | {} |\n",
-                     markdown(key.first),
-                     links.pages,
-                     folder_of(key.first),
+                const ClaimResult& claim,
+                const std::string& pages) {
+  return fmt::format("| {} {} | {} | {} | {} | {} |\n",
+                     page_link(key.first, key.first, pages),
                      markdown(key.second),
-                     markdown(s.claim.says),
-                     words_of(s.claim.verdict, s.claim.origin),
-                     markdown(asked(s.claim)),
-                     markdown(measured(s.claim)),
-                     markdown(cause),
-                     markdown(s.campaign));
+                     markdown(claim.says),
+                     measured(claim),
+                     words_of(claim.verdict, claim.origin),
+                     markdown(claim.cause.empty() ? "unknown" : claim.cause));
 }
-
-constexpr const char* kHead =
-    "\n| claim | says | verdict | asked | measured | cause | campaign |\n"
-    "| --- | --- | --- | --- | --- | --- | --- |\n";
 
 bool is_study(const ClaimKey& key) { return key.first.starts_with("studies/"); }
 
-/// Claims of an origin, those of `but` and of studies left out.
-std::string rows_of(const LatestClaims& all,
-                    Origin origin,
-                    const std::set<Verdict>& but,
-                    const ResultsLinks& links) {
+/// The claims that are neither met nor only reported; empty if there are none.
+std::string table_of(const Papers& papers,
+                     Origin origin,
+                     const std::string& pages) {
   std::string rows;
   for (const Verdict v : kOrder)
-    for (const auto& [key, s] : all)
-      if (s.claim.origin == origin && s.claim.verdict == v &&
-          !but.contains(v) && !is_study(key))
-        rows += row(key, s, links);
-  return rows;
+    for (const auto& [paper, all] : papers)
+      for (const auto& [key, s] : all)
+        if (s.claim.origin == origin && s.claim.verdict == v && !is_study(key))
+          rows += row(key, s.claim, pages);
+  if (rows.empty()) return "";
+  return "\n| claim | says | measured (condition) | verdict | cause |\n"
+         "| --- | --- | --- | --- | --- |\n" +
+         rows;
 }
 
-/// What a publication is called in the provenance of some campaign.
-std::string publication(const std::string& paper,
-                        const std::vector<NamedDigest>& campaigns) {
-  for (const NamedDigest& c : campaigns)
-    for (const Json& text :
-         c.digest.at("provenance").value("papers", Json::array()))
-      if (text.get<std::string>().starts_with(paper + ": "))
-        return text.get<std::string>().substr(paper.size() + 2);
-  return "";
+/// The paper's question, and its main statements with what was measured.
+std::string answer(const Publication& paper,
+                   const LatestClaims& claims,
+                   const ResultsLinks& links) {
+  std::string out = fmt::format("\n**{}** ({}). {}",
+                                markdown(paper.title),
+                                markdown(paper.key),
+                                markdown(paper.question));
+  for (const auto& [experiment, id] : paper.main_claims) {
+    const auto found = claims.find({experiment, id});
+    if (found == claims.end()) continue;
+    const ClaimResult& claim = found->second.claim;
+    out +=
+        fmt::format(" {}: **{} {}**, {}, {}.",
+                    markdown(claim.says),
+                    mark_of(claim.verdict),
+                    words_of(claim.verdict, claim.origin),
+                    measured(claim),
+                    page_link(experiment, experiment + ' ' + id, links.pages));
+  }
+  return out + '\n';
+}
+
+std::string answers(const Papers& papers,
+                    const std::vector<Publication>& publications,
+                    const ResultsLinks& links) {
+  std::string out;
+  for (const Publication& p : publications)
+    if (const auto found = papers.find(p.key);
+        found != papers.end() && !p.main_claims.empty())
+      out += answer(p, found->second, links);
+  return out.empty() ? "" : "\n## Answers\n" + out;
 }
 
 /// Hours, machines and revisions of the campaigns that ran a paper's cases.
@@ -138,50 +157,67 @@ std::string spent(const std::string& paper,
                   const std::vector<NamedDigest>& campaigns) {
   constexpr double kSecondsAnHour = 3600;
   double seconds = 0;
-  std::set<std::string> machines;
-  std::vector<std::string> revisions;
+  std::set<std::string> machines, revisions;
   int count = 0;
-  for (const NamedDigest& c : newest_first(campaigns)) {
+  for (const NamedDigest& c : campaigns) {
     bool any = false;
     for (const auto& [experiment, cpu] : c.cpu_seconds)
       if (experiment.starts_with(paper + "/")) seconds += cpu, any = true;
     if (!any) continue;
     const Json& p = c.digest.at("provenance");
     machines.insert(text_of(p, "cpu_model"));
-    const std::string revision = text_of(p, "git_revision").substr(0, 8);
-    if (std::find(revisions.begin(), revisions.end(), revision) ==
-        revisions.end())
-      revisions.push_back(revision);
+    revisions.insert(text_of(p, "git_revision").substr(0, 8));
     ++count;
   }
   if (count == 0) return "";
-  return fmt::format(
-      "{} campaigns, {:.2f} CPU-hours of solving, {}; revisions {}.\n",
-      count,
-      seconds / kSecondsAnHour,
-      markdown(fmt::format("{}", fmt::join(machines, ", "))),
-      markdown(fmt::format("{}", fmt::join(revisions, ", "))));
+  return fmt::format("| {} | {} | {} | {:.2f} | {} |\n",
+                     paper_name(paper),
+                     count,
+                     revisions.size(),
+                     seconds / kSecondsAnHour,
+                     markdown(fmt::format("{}", fmt::join(machines, ", "))));
 }
 
-/// Links to pages of experiments about which no claim is shown above.
-std::string others(const std::vector<NamedDigest>& campaigns,
-                   const ResultsLinks& links) {
-  std::map<std::string, bool> stated;
+std::string runs(const Papers& papers,
+                 const std::vector<NamedDigest>& campaigns) {
+  std::string rows;
+  for (const auto& [paper, claims] : papers) rows += spent(paper, campaigns);
+  if (rows.empty()) return "";
+  return "\n## Runs\n\n| paper | campaigns | revisions | CPU-hours of solving "
+         "| "
+         "machines |\n| --- | --- | --- | --- | --- |\n" +
+         rows;
+}
+
+/// Links to the pages of a paper's experiments, with how many of the
+/// statements there are reproduced.
+std::string experiments(const std::vector<NamedDigest>& campaigns,
+                        const Papers& papers,
+                        const ResultsLinks& links) {
+  std::map<std::string, std::map<std::string, std::array<int, 2>>> pages;
   for (const NamedDigest& c : campaigns)
     for (const Json& section : c.digest.at("sections")) {
-      bool& any = stated[section.at("experiment").get<std::string>()];
-      for (const Json& claim : section.at("claims"))
-        any = any || claim_from(claim).origin == Origin::paper;
+      const auto name = section.at("experiment").get<std::string>();
+      pages[name.substr(0, name.find('/'))][name] = {};
+    }
+  for (const auto& [paper, claims] : papers)
+    for (const auto& [key, s] : claims) {
+      if (s.claim.origin != Origin::paper) continue;
+      auto& counts = pages[key.first.substr(0, key.first.find('/'))][key.first];
+      ++counts[1], counts[0] += s.claim.verdict == Verdict::reproduced;
     }
   std::string out;
-  for (const auto& [experiment, any] : stated)
-    if (!any)
-      out += fmt::format("{}[{}]({}/{}.md)",
-                         out.empty() ? "" : ", ",
-                         markdown(experiment),
-                         links.pages,
-                         folder_of(experiment));
-  return out.empty() ? "" : "\nPages without a statement: " + out + ".\n";
+  for (const auto& [group, names] : pages) {
+    std::string line;
+    for (const auto& [name, counts] : names) {
+      const std::string text =
+          name == group ? "all together" : name.substr(name.find('/') + 1);
+      line += (line.empty() ? "" : ", ") + page_link(name, text, links.pages);
+      if (counts[1] > 0) line += fmt::format(" {} of {}", counts[0], counts[1]);
+    }
+    out += fmt::format("- {}: {}\n", markdown(group), line);
+  }
+  return out;
 }
 
 /// What studies came to, in a paragraph.
@@ -190,72 +226,85 @@ std::string studies_line(const Papers& papers, const ResultsLinks& links) {
   for (const auto& [paper, all] : papers)
     for (const auto& [key, s] : all)
       if (is_study(key))
-        out += fmt::format("{}[{}]({}/{}.md) {}",
+        out += fmt::format("{}{} {}",
                            out.empty() ? "" : "; ",
-                           markdown(key.first.substr(key.first.find('/') + 1)),
-                           links.pages,
-                           folder_of(key.first),
+                           page_link(key.first,
+                                     key.first.substr(key.first.find('/') + 1),
+                                     links.pages),
                            words_of(s.claim.verdict, s.claim.origin));
   if (out.empty()) return "";
-  return "\nStudies, whether numbers come out whatever is chosen where the "
-         "paper "
-         "prints no choice: " +
-         out + ".\n";
+  return "- Studies vary settings that the papers do not print: " + out + "\n";
 }
 
-std::string audit_link(const std::vector<NamedDigest>& campaigns,
-                       const ResultsLinks& links) {
-  if (audit_markdown(campaigns, links).empty()) return "";
-  return fmt::format("What earlier judgements said: [audit]({}/{}).\n",
-                     links.pages,
-                     kAuditPage);
+template <class Page>
+std::string checked(Page&& page) {
+  try {
+    return page();
+  } catch (const nlohmann::json::exception& error) {
+    throw std::runtime_error(std::string("no digest of a campaign: ") +
+                             error.what());
+  }
+}
+
+std::string section(const char* title, const std::string& body) {
+  return body.empty() ? "" : fmt::format("\n## {}\n{}", title, body);
 }
 
 }  // namespace
 
 std::string results_markdown(const std::vector<NamedDigest>& campaigns,
+                             const std::vector<Publication>& publications,
                              const ResultsLinks& links) {
-  std::string out = fmt::format(
-      "# Results\n\n{} from the campaigns under `reports/campaigns`; nothing "
-      "here is copied by hand. A claim is the paper's (its sentence, number or "
-      "figure) or a range of the suite, which earlier runs of this code or of "
-      "independent programs showed. Only the former count as reproduced or "
-      "not. Verdicts are today's, on the numbers that the campaigns kept; the "
-      "newest campaign that decided counts, unless an older one ran more "
-      "cases for it. `differs`: stronger or weaker than "
-      "printed, the same direction; `depends`: on a choice that the paper does "
-      "not print; `contradiction`: within the paper. Asked and measured is the "
-      "first condition that does not hold, or the first one; a claim's page "
-      "has all.\n\n",
-      kWrittenByResults);
-  try {
+  return checked([&] {
     const auto papers = latest_claims(campaigns);
-    out += overview(papers);
-    std::string ranges;
-    for (const auto& [paper, all] : papers) {
-      const std::string rows = rows_of(all, Origin::paper, {}, links);
-      if (!rows.empty())
-        out += fmt::format("\n## {}\n\n{} {}{}{}",
-                           paper.empty() ? "(none)" : markdown(paper),
-                           markdown(publication(paper, campaigns)),
-                           spent(paper, campaigns),
-                           kHead,
-                           rows);
-      ranges +=
-          rows_of(all,
-                  Origin::suite,
-                  {Verdict::reproduced, Verdict::not_judged, Verdict::reported},
-                  links);
-    }
-    if (!ranges.empty())
+    return fmt::format(
+               "# Results\n\n{} from the numbers that the campaigns under "
+               "`reports/campaigns` stored. [Verdicts](docs/verdicts.md) "
+               "defines the words. The newest campaign that decided a "
+               "statement counts, unless an older one ran more cases for it. "
+               "A row shows the first condition that is not met, or the first "
+               "one; the page behind the link has all of them. "
+               "[Regression checks]({}/{}) are listed separately.\n",
+               kWrittenByResults,
+               links.pages,
+               kChecksPage) +
+           answers(papers, publications, links) + '\n' + overview(papers) +
+           section("Statements that are not reproduced or undecided, and why",
+                   table_of(papers, Origin::paper, links.pages)) +
+           section("Pages of experiments, with reproduced of all statements",
+                   '\n' + experiments(campaigns, papers, links)) +
+           studies_line(papers, links) + runs(papers, campaigns);
+  });
+}
+
+std::string checks_markdown(const std::vector<NamedDigest>& campaigns,
+                            const ResultsLinks& links) {
+  return checked([&] {
+    const auto papers = latest_claims(campaigns);
+    std::string out = fmt::format(
+        "# Regression checks\n\n{}; back to [all results]({}). A regression "
+        "check is a range that earlier runs of this suite, or an independent "
+        "program, gave for a number. Pages of experiments list all of them.\n\n"
+        "| paper | hold | differ or depend | fail | undecided |\n"
+        "| --- | --- | --- | --- | --- |\n",
+        kWrittenByResults,
+        links.overview);
+    for (const auto& [paper, claims] : papers) {
+      const VerdictCounts c = counts_of(claims, Origin::suite);
       out += fmt::format(
-          "\n## Ranges of the suite that fail\n{}{}", kHead, ranges);
-    return out + studies_line(papers, links) + others(campaigns, links) +
-           audit_link(campaigns, links);
-  } catch (const nlohmann::json::exception& error) {
-    throw std::runtime_error(std::string("no digest of a campaign: ") +
-                             error.what());
-  }
+          "| {} | {} | {} | {} | {} |\n",
+          paper_name(paper),
+          sum_of(c, {Verdict::reproduced}),
+          sum_of(c,
+                 {Verdict::differs, Verdict::depends, Verdict::contradiction}),
+          sum_of(c, {Verdict::not_reproduced}),
+          sum_of(c,
+                 {Verdict::partly_judged,
+                  Verdict::not_judged,
+                  Verdict::reported}));
+    }
+    return out + table_of(papers, Origin::suite, "");
+  });
 }
 
 }  // namespace physinv

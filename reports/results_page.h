@@ -1,5 +1,5 @@
-/// The pages of published campaigns: one that has every statement once, and one
-/// for each experiment.
+/// The pages of published campaigns: an overview of the papers' statements, the
+/// regression checks, and a page for each experiment.
 #pragma once
 
 #include <map>
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "reports/digest.h"
+#include "suite/results/published.h"
 
 namespace physinv {
 
@@ -17,27 +18,26 @@ struct ResultsLinks {
   std::string campaigns = "../../reports/campaigns";  ///< from a page
 };
 
-/// Markdown: how many of each paper's claims are reproduced, then by paper each
-/// of its statements once, what fails first, with what was asked and measured,
-/// its cause and the campaign; last the suite's ranges that do not hold. The
-/// newest campaign that decided counts. std::runtime_error if a digest lacks
-/// what it should have.
+/// Markdown: the answer to each paper's main question (its main claims), how
+/// many of its statements are reproduced, those that are not with what was
+/// measured and the cause, those that are undecided, links to the experiments'
+/// pages, and what the campaigns took. The newest campaign that decided a claim
+/// counts. std::runtime_error if a digest lacks what it should have.
 std::string results_markdown(const std::vector<NamedDigest>& campaigns,
+                             const std::vector<Publication>& publications = {},
                              const ResultsLinks& links = {});
+
+/// Markdown, beside the experiments' pages: how many regression checks hold,
+/// and those that do not. std::runtime_error as above.
+inline constexpr const char* kChecksPage = "regression-checks.md";
+std::string checks_markdown(const std::vector<NamedDigest>& campaigns,
+                            const ResultsLinks& links = {});
 
 /// By the name of the file, jpo-billiards.md: claims with all that was measured
 /// for them, then by campaign, the newest first, its command, machine, build
 /// and date, tables and figures. std::runtime_error as above.
 std::map<std::string, std::string> experiment_pages(
     const std::vector<NamedDigest>& campaigns, const ResultsLinks& links = {});
-
-/// Markdown: all of the papers' claims as campaigns were published before
-/// claims had causes, and as they stand now with cause, deciding campaign and
-/// its runs; then the CPU-hours by paper, machine and revision. Empty if no
-/// campaign is so old. std::runtime_error as above.
-inline constexpr const char* kAuditPage = "audit.md";
-std::string audit_markdown(const std::vector<NamedDigest>& campaigns,
-                           const ResultsLinks& links = {});
 
 /// How each of these pages begins, after its title.
 inline constexpr const char* kWrittenByResults = "Written by `./bench results`";

@@ -137,8 +137,7 @@ NamedDigest published_digest(const fs::path& folder,
     NamedDigest named{folder.filename().string(),
                       digest,
                       cpu_seconds(results),
-                      work_of(stages),
-                      digest};
+                      work_of(stages)};
     renew(named.digest, stages, published);
     results_markdown({named});
     experiment_pages({named});

@@ -91,11 +91,12 @@ void write_pages(const fs::path& directory,
 ExitCode results_verb(const Arguments& arguments) {
   std::string campaigns = "reports/campaigns", out = "RESULTS.md", pages, html;
   if (!parse("results",
-             "Writes a page of all published campaigns that has every "
-             "statement once, what is not reproduced first and why, and a page "
-             "for each experiment with tables, figures, machine, build, date "
-             "and command. Claims are judged anew by the numbers that were "
-             "kept.",
+             "Writes an overview of all published campaigns: the answer to "
+             "each paper's main question, and the statements that are not "
+             "reproduced with their causes. Writes a page for each experiment "
+             "with its statements, tables, figures, machine, build, date and "
+             "command, and a page of regression checks. Claims are judged by "
+             "the numbers that the campaigns stored.",
              {{"--campaigns",
                "folder of what report --publish wrote; the newest that decided "
                "a claim counts (default reports/campaigns)",
@@ -130,13 +131,14 @@ ExitCode results_verb(const Arguments& arguments) {
                            .campaigns = link(below, campaigns)};
   try {
     auto written = experiment_pages(found, links);
-    if (auto audit = audit_markdown(found, links); !audit.empty())
-      written[kAuditPage] = std::move(audit);
+    written[kChecksPage] = checks_markdown(found, links);
     write_pages(below, written);
   } catch (const std::runtime_error& error) {
     throw EnvironmentError(error.what());
   }
-  write_atomically(out, results_markdown(found, links));
+  const Published published(published_directory());
+  write_atomically(out,
+                   results_markdown(found, published.publications(), links));
   fmt::print("{} campaigns: {}\n", found.size(), out);
   return ExitCode::good;
 }

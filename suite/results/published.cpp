@@ -26,7 +26,10 @@ Publication publication_from(const nlohmann::json& j) {
           .authors = j.at("authors"),
           .year = static_cast<int>(whole(j.at("year"))),
           .venue = j.at("venue"),
-          .arxiv = j.value("arxiv", "")};
+          .arxiv = j.value("arxiv", ""),
+          .question = j.value("question", ""),
+          .main_claims =
+              j.value("main_claims", decltype(Publication::main_claims)())};
 }
 
 double real(const nlohmann::json& j) {

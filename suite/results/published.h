@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace physinv {
@@ -18,6 +19,9 @@ struct Publication {
   int year = 0;
   std::string venue;
   std::string arxiv;  ///< "2203.10131"; may be empty
+  std::string question;  ///< that the paper asks; may be empty
+  /// Experiment and id of the claims that answer it, the main one first.
+  std::vector<std::pair<std::string, std::string>> main_claims;
 
   /// "Ann Ames, Bo Berg: Title. Venue, 2022. arXiv:2203.10131"
   std::string text() const;

@@ -65,19 +65,41 @@ void expect_words(const std::string& page,
     EXPECT_NE(page.find(words), page.npos) << words << "\n" << page;
 }
 
-TEST(Digest, PageHasEveryStatementOnceAndTheRangesThatFail) {
-  auto campaign = named("first", Verdict::reproduced, Verdict::not_reproduced);
+TEST(Digest, PageHasAnswersAndWhatIsNotReproduced) {
+  auto campaign = named("first", Verdict::not_reproduced, Verdict::reproduced);
   campaign.cpu_seconds = {{"jpo/toy", 1800}, {"hig/toy", 7}};
-  const std::string page = results_markdown({campaign});
+  const std::vector<Publication> papers{
+      {.key = "jpo",
+       .title = "A title",
+       .question = "Does it?",
+       .main_claims = {{"jpo/toy", "P1"}, {"jpo/gone", "P2"}}}};
+  const std::string page = results_markdown({campaign}, papers);
   expect_words(
       page,
-      {"| [jpo/toy](docs/results/jpo-toy.md) P1 | a \\| b | reproduced | "
-       "better > 0.5 | 0.98 ± 0.01 |  | first |",
-       "## Ranges of the suite that fail",
-       "R1 | range | fails |  |  | unknown | first |",
-       "A. Author: A title. A venue, 2024.",
-       "1 campaigns, 0.50 CPU-hours of solving, A processor; revisions abc.",
-       "| jpo | 1 | 0 | 0 | 0 | 0 | 1 | 0 | 0 |"});
+      {"**A title** (jpo). Does it? a \\| b: **✗ not reproduced**, 0.98 ± "
+       "0.01 (better: > 0.5), [jpo/toy P1](docs/results/jpo-toy.md).\n",
+       "| [jpo/toy](docs/results/jpo-toy.md) P1 | a \\| b | 0.98 ± 0.01 "
+       "(better: > 0.5) | not reproduced | unknown |",
+       "\n- jpo: [toy](docs/results/jpo-toy.md) 0 of 1\n",
+       "| jpo | 1 | 1 | 0.50 | A processor |",
+       "| jpo | 0 | 0 | 0 | 1 | 0 |"});
+  EXPECT_EQ(page.find("R1"), page.npos);
+  expect_words(
+      results_markdown({named("a", Verdict::reproduced, Verdict::reproduced)},
+                       papers),
+      {"a \\| b: **✓ reproduced**, 0.98",
+       "toy](docs/results/jpo-toy.md) 1 of 1"});
+}
+
+TEST(Digest, PageOfRegressionChecksHasThoseThatFail) {
+  const auto campaign =
+      named("first", Verdict::reproduced, Verdict::not_reproduced);
+  const std::string page = checks_markdown({campaign});
+  expect_words(page,
+               {kWrittenByResults,
+                "| [jpo/toy](jpo-toy.md) R1 | range |  | fails | unknown |",
+                "| jpo | 0 | 0 | 1 | 0 |"});
+  EXPECT_EQ(page.find("P1"), page.npos);
 }
 
 TEST(Digest, PageOfAnExperimentSaysWhereItsNumbersComeFrom) {
@@ -194,7 +216,7 @@ TEST(Digest, TheNewestByDateCountsWhateverItIsCalled) {
         at("b", "2024-05-06", Verdict::reproduced),
         at("a", "2024-06-06", Verdict::not_reproduced)};
     if (swap) std::swap(all[0], all[1]);
-    expect_words(results_markdown(all), {"| jpo | 0 | 1 | 0 | 0 | 1 |"});
+    expect_words(results_markdown(all), {"| jpo | 0 | 0 | 0 | 1 | 0 |"});
     const std::string page = experiment_pages(all).begin()->second;
     EXPECT_LT(page.find("## Campaign a"), page.find("## Campaign b"));
   }
@@ -210,15 +232,15 @@ TEST(Digest, TheLastCampaignThatDecidedCounts) {
     return text.find(row) != text.npos;
   };
   EXPECT_TRUE(counts(page(Verdict::reproduced, Verdict::not_judged),
-                     "| jpo | 1 | 0 | 0 | 0 | 1 |"));
+                     "| jpo | 1 | 0 | 0 | 0 | 0 |"));
   EXPECT_TRUE(counts(page(Verdict::reproduced, Verdict::not_reproduced),
-                     "| jpo | 0 | 1 | 0 | 0 | 1 |"));
+                     "| jpo | 0 | 0 | 0 | 1 | 0 |"));
   EXPECT_TRUE(counts(page(Verdict::not_judged, Verdict::not_judged),
-                     "| jpo | 0 | 0 | 1 | 0 | 1 |"));
+                     "| jpo | 0 | 0 | 0 | 0 | 1 |"));
   EXPECT_TRUE(counts(page(Verdict::not_reproduced, Verdict::reported),
-                     "| jpo | 0 | 1 | 0 | 0 | 1 |"));
+                     "| jpo | 0 | 0 | 0 | 1 | 0 |"));
   EXPECT_TRUE(counts(page(Verdict::reported, Verdict::not_judged),
-                     "| jpo | 0 | 0 | 0 | 1 | 1 |"));
+                     "| jpo | 0 | 0 | 0 | 0 | 1 |"));
 }
 
 TEST(Digest, WhoRanAPartAnewDoesNotDecideOfTheWhole) {
@@ -234,28 +256,9 @@ TEST(Digest, WhoRanAPartAnewDoesNotDecideOfTheWhole) {
         {ran(named("a", Verdict::reproduced, Verdict::reproduced), first),
          ran(later, second)});
   };
-  expect_words(page(8, 2), {"| jpo | 1 | 0 | 0 | 0 | 1 |"});
-  expect_words(page(8, 8), {"| jpo | 0 | 1 | 0 | 0 | 1 |"});
-  expect_words(page(2, 8), {"| jpo | 0 | 1 | 0 | 0 | 1 |"});
-}
-
-TEST(Digest, AuditTellsVerdictsOfBeforeClaimsHadCauses) {
-  auto old = named("old", Verdict::not_reproduced, Verdict::reproduced);
-  EXPECT_EQ(audit_markdown({old}), "");
-  old.published = old.digest;
-  EXPECT_EQ(audit_markdown({old}), "");
-  for (Json& claim : old.published["sections"][0]["claims"])
-    claim.erase("cause");
-  auto later = named("later", Verdict::depends, Verdict::reproduced);
-  later.digest["provenance"]["date"] = "2024-06-06";
-  later.digest["sections"][0]["claims"][0]["cause"] = "a choice";
-  later.digest["sections"][0]["claims"][0]["conditions"][0]["runs"] = 3;
-  expect_words(audit_markdown({old, later}),
-               {"| then | 0 | 0 | 1 | 0 | 0 |",
-                "| now | 0 | 1 | 0 | 0 | 0 |",
-                "| [jpo/toy](jpo-toy.md) P1 | not reproduced | depends | a "
-                "choice | later, 3 runs |"});
-  expect_words(results_markdown({old, later}), {"](docs/results/audit.md)"});
+  expect_words(page(8, 2), {"| jpo | 1 | 0 | 0 | 0 | 0 |"});
+  expect_words(page(8, 8), {"| jpo | 0 | 0 | 0 | 1 | 0 |"});
+  expect_words(page(2, 8), {"| jpo | 0 | 0 | 0 | 1 | 0 |"});
 }
 
 TEST(Digest, StudiesStandInAParagraph) {
@@ -264,26 +267,9 @@ TEST(Digest, StudiesStandInAParagraph) {
   study.claims.erase(study.claims.begin());
   const std::string page =
       results_markdown({{"a", digest_json({study}, origin())}});
-  expect_words(page, {"[a-choice](docs/results/studies-a-choice.md) depends."});
+  expect_words(page,
+               {"[a-choice](docs/results/studies-a-choice.md) depends\n"});
   EXPECT_EQ(page.find("| [studies/"), page.npos) << page;
-}
-
-TEST(Digest, AuditHasWhatStayedReproducedAndTheHours) {
-  auto old = named("old", Verdict::reproduced, Verdict::reproduced);
-  old.published = old.digest;
-  for (Json& claim : old.published["sections"][0]["claims"])
-    claim.erase("cause");
-  auto later = named("later", Verdict::reproduced, Verdict::reproduced);
-  later.digest["provenance"]["date"] = "2024-06-06";
-  later.digest["provenance"]["git_revision"] = "0123456789";
-  old.cpu_seconds = {{"jpo/toy", 900}, {"hig/toy", 36}};
-  later.cpu_seconds = {{"jpo/toy", 1800}, {"jpo/other", 900}};
-  expect_words(audit_markdown({old, later}),
-               {"| [jpo/toy](jpo-toy.md) P1 | reproduced | reproduced |",
-                "| jpo | A processor | 01234567 | later | 0.75 |",
-                "| jpo | A processor | abc | old | 0.25 |",
-                "| jpo | all |  |  | 1.00 |",
-                "| hig | A processor | abc | old | 0.01 |"});
 }
 
 TEST(Digest, PagesTellWorkMadeAndSaved) {
@@ -307,7 +293,7 @@ TEST(Digest, WhatIsNotJudgedSaysWhatIsMissing) {
   waits.claims[0].cause = "an hour";
   waits.claims[0].conditions.clear();
   const std::vector<NamedDigest> all{{"a", digest_json({waits}, origin())}};
-  expect_words(results_markdown(all), {"| not judged |  |  | an hour | a |"});
+  expect_words(results_markdown(all), {"|  | not judged | an hour |"});
   expect_words(experiment_pages(all).begin()->second,
                {"| not judged | needs the profile paper **Cause: an hour**"});
 }

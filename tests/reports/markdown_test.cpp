@@ -132,7 +132,12 @@ TEST(Markdown, NamesAreNoStructureOfThePageOfResults) {
                                       {"papers", {kHostile}}};
   const std::vector<NamedDigest> all{
       {kHostile, digest_json({hostile_section()}, origin)}};
-  expect_tame(results_markdown(all));
+  expect_tame(results_markdown(all,
+                               {{.key = kHostile,
+                                 .title = kHostile,
+                                 .question = kHostile,
+                                 .main_claims = {{kHostile, kHostile}}}}));
+  expect_tame(checks_markdown(all));
   for (const auto& [name, page] : experiment_pages(all)) expect_tame(page);
 }
 
