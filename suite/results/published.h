@@ -18,7 +18,7 @@ struct Publication {
   std::vector<std::string> authors;
   int year = 0;
   std::string venue;
-  std::string arxiv;  ///< "2203.10131"; may be empty
+  std::string arxiv;     ///< "2203.10131"; may be empty
   std::string question;  ///< that the paper asks; may be empty
   /// Experiment and id of the claims that answer it, the main one first.
   std::vector<std::pair<std::string, std::string>> main_claims;
