@@ -19,7 +19,7 @@ PROGRAM, SOURCES = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
 CAMPAIGNS = {  # those that the pages read: the flags of what stands in for them
     **dict.fromkeys(("results/paper", "results/quick", "results/old",
                      "results/new", "results/a", "results/b", "results/base",
-                     "base"), ()),
+                     "results/first", "base"), ()),
     "head": ("--set=iterations=2",)}
 ELSEWHERE = {  # verb or flag -> the test that runs it
     "submit": "slurm", "status": "slurm", "gate": "gate.project",

@@ -4,6 +4,7 @@ Tesseract's runtime is taken as it is installed, or else two of its names."""
 
 import importlib.util
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -66,6 +67,25 @@ class Examples(unittest.TestCase):
         rows = physinv.compare(WORK + "/own_optimizer")
         losses = {r["method"]: r["loss"] for r in rows}
         self.assertLess(losses["best-of-64"], losses["bfgs"])
+
+    def test_tutorial(self):
+        with open(EXAMPLES + "/../../docs/tutorial.md") as f:
+            blocks = re.findall(r"^```python\n(.*?)^```", f.read(), re.S | re.M)
+        self.assertGreater(len(blocks), 3)
+        shutil.rmtree(WORK, ignore_errors=True)
+        os.makedirs(WORK)
+        done = subprocess.run([sys.executable, "-c", "\n".join(blocks)],
+                              cwd=WORK, check=True, stdout=subprocess.PIPE,
+                              text=True)
+        solved = {(n, method, stage): float(share) for n, method, stage, share
+                  in map(str.split, done.stdout.splitlines()[-12:])}
+        bfgs, momentum = (solved["128", method, "solve"]
+                          for method in ("bfgs", "momentum"))
+        self.assertLess(bfgs, 0.5)
+        self.assertGreater(momentum, 0.5)
+        self.assertGreater(solved["128", "jpo", "refine"], momentum)
+        with open(WORK + "/first.svg") as f:
+            self.assertIn("momentum", f.read())
 
     def test_tesseract(self):
         if importlib.util.find_spec("tesseract_core") is None:
