@@ -1,9 +1,9 @@
 /// BFGS with the semantics of SciPy 1.10 `minimize(method="BFGS", jac=True,
 /// tol=gtol)`, run for many independent problems together.
 ///
-/// How it is used: batched_solver.h. Where SciPy would walk on with NaN, a
-/// search fails (see line_search.h): results are finite if the start and its
-/// loss are.
+/// How it is used: batched_solver.h. A search halves its interval at a loss of
+/// +inf, as SciPy's does. Where SciPy would walk on with NaN, it fails (see
+/// line_search.h): results are finite if the start and its loss are.
 #pragma once
 
 #include <vector>

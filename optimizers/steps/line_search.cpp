@@ -9,6 +9,7 @@ namespace physinv {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInf = std::numeric_limits<double>::infinity();
 
 /// Slope-weighted root term of the cubic through two points; `floor` keeps the
 /// radicand from going below zero by rounding.
@@ -81,14 +82,17 @@ Next LineSearch::move_on(const LineSearchOptions& options,
                          double f,
                          double slope) {
   const bool finite = std::isfinite(f) && std::isfinite(slope);
+  // Search 2 halves its interval where the loss is +inf; the slope there is not
+  // read.
+  const bool comparable = finite || f == kInf;
   const Point p{step_, f, slope};
   switch (phase_) {
     case Phase::more_thuente:
       return finite ? more_thuente(options, p) : start_doubling(options);
     case Phase::doubling:
-      return finite ? doubling(options, p) : Next::nonfinite;
+      return comparable ? doubling(options, p) : Next::nonfinite;
     case Phase::zoom:
-      return finite ? zoom(options, p) : Next::nonfinite;
+      return comparable ? zoom(options, p) : Next::nonfinite;
   }
   return Next::fail;
 }
@@ -263,7 +267,8 @@ Next LineSearch::start_doubling(const LineSearchOptions& options) {
 }
 
 Next LineSearch::doubling(const LineSearchOptions& options, Point p) {
-  if (round_ == options.max_doublings) return Next::accept;
+  if (round_ == options.max_doublings)
+    return p.f < kInf ? Next::accept : Next::nonfinite;
   const double limit = origin_.f + options.decrease * p.a * origin_.d;
   if (p.f > limit || (round_ > 0 && p.f >= x_.f)) return start_zoom(x_, p);
   // No absolute value on the right: never true while the slope at 0 rises.

@@ -4,9 +4,10 @@
 ///
 /// Search 1 is More & Thuente (ACM TOMS 20, 1994; MINPACK-2 dcsrch); if it
 /// fails, search 2 (Nocedal & Wright, algorithms 3.5 and 3.6: bracket, then
-/// zoom) starts again from the first trial step, as in SciPy 1.10. SciPy would
-/// walk on with values that are not finite: here they fail search 1, and end
-/// search 2 with `nonfinite`.
+/// zoom) starts again from the first trial step, as in SciPy 1.10. Values that
+/// are not finite fail search 1. In search 2 a loss of +inf is above any limit,
+/// as in SciPy, so that the interval is halved; SciPy would walk on with NaN,
+/// which here ends search 2 with `nonfinite`.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +35,7 @@ class LineSearch {
     evaluate,   ///< call `supply` with f and slope at `step()`
     accept,     ///< `step()`, the point just supplied, fulfils the conditions
     fail,       ///< no acceptable step
-    nonfinite,  ///< search 2 met a value that is not finite
+    nonfinite,  ///< search 2 met NaN or -inf
   };
 
   /// f and slope g.p at step 0, and the first trial step >= 0.

@@ -337,6 +337,20 @@ TEST(Bfgs, NonFiniteRegionIsNeverEntered) {
   EXPECT_EQ(c.skipped_trials(), 1U);
 }
 
+TEST(Bfgs, RecoversFromAWallOfInfinity) {
+  // SciPy 1.10.1 ends at 0.01 with a loss of 4.1e-29 from both starts.
+  const auto walled = single([](const Vector<double>& x, Vector<double>& g) {
+    g(0) = 2e4 * (x(0) - 0.01);
+    return x(0) < 0 ? kInf : 1e4 * (x(0) - 0.01) * (x(0) - 0.01);
+  });
+  for (const double from : {1.0, 0.8}) {
+    const Bfgs b = solve(walled, Batch<double>::Constant(1, 1, from));
+    EXPECT_EQ(b.status()[0], Status::gtol);
+    EXPECT_NEAR(b.x()(0), 0.01, 1e-9);
+    EXPECT_LT(b.loss()(0), 1e-12);
+  }
+}
+
 TEST(Bfgs, OverflowingPointsAreNotEvaluated) {
   // tanh is finite at infinity, with a gradient of 0: a trap.
   const auto trap = single([](const Vector<double>& x, Vector<double>& g) {

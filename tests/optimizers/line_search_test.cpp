@@ -12,6 +12,7 @@ namespace {
 
 using Next = LineSearch::Next;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInf = std::numeric_limits<double>::infinity();
 
 struct Value {
   double f, d;
@@ -114,6 +115,31 @@ TEST(LineSearch, NonFiniteTrialRestartsThenEnds) {
   const Trace t = search([](double) { return Value{kNan, 0}; }, {0, -1}, 0.5);
   EXPECT_EQ(t.end, Next::nonfinite);
   EXPECT_EQ(t.steps, (std::vector<double>{0.5, 0.5}));
+}
+
+TEST(LineSearch, SearchTwoHalvesItsIntervalAtInfinity) {
+  // A wall of +inf beyond 0.3, whatever the slope there is.
+  for (const double slope : {0.0, kNan, kInf, -kInf}) {
+    const auto phi = [&](double a) {
+      return a > 0.3 ? Value{kInf, slope}
+                     : Value{(a - 0.2) * (a - 0.2), 2 * (a - 0.2)};
+    };
+    const Trace t = search(phi, {0.04, -0.4}, 1);
+    EXPECT_EQ(t.end, Next::accept);
+    EXPECT_EQ(t.steps, (std::vector<double>{1, 1, 0.5, 0.25}));
+  }
+}
+
+TEST(LineSearch, AcceptsNoInfinityAndNoNan) {
+  // The doublings end in the wall: its point is not accepted.
+  const auto wall = [](double a) {
+    return a > 600e-120 ? Value{kInf, 0} : Value{-a, -1};
+  };
+  EXPECT_EQ(search(wall, {0, -1}, 1e-120).end, Next::nonfinite);
+  const auto everywhere = [](double) { return Value{kInf, kNan}; };
+  EXPECT_EQ(search(everywhere, {0, -1}, 1).end, Next::fail);
+  const auto below = [](double) { return Value{-kInf, 0}; };
+  EXPECT_EQ(search(below, {0, -1}, 1).end, Next::nonfinite);
 }
 
 TEST(LineSearch, NonFiniteBeyondTheRestartIsSurvived) {
