@@ -47,7 +47,8 @@ std::string numbers_html(const std::vector<const Section*>& sections) {
   if (rows.empty()) return "";
   return "<div class=\"scroll\">\n<table class=\"numbers\">\n<thead>\n<tr>"
          "<th scope=\"col\">experiment</th><th scope=\"col\">statement</th>"
-         "<th scope=\"col\">measured</th><th scope=\"col\">paper</th>"
+         "<th scope=\"col\">measured</th><th scope=\"col\">condition or "
+         "printed</th>"
          "<th scope=\"col\">verdict</th></tr>\n</thead>\n<tbody>\n" +
          rows + "</tbody>\n</table>\n</div>\n";
 }

@@ -37,7 +37,7 @@ Statement statement_of(const ClaimResult& c) {
               .origin = c.origin};
   if (const ConditionResult* condition = telling(c)) {
     if (condition->value) f.here = value_text(*condition->value);
-    f.paper = (c.origin == Origin::suite ? "range " : "") + condition->bounds;
+    f.paper = condition->label + ' ' + condition->bounds;
   }
   return f;
 }

@@ -10,7 +10,8 @@
 namespace physinv {
 
 struct Statement {
-  std::string what, here, paper;
+  std::string what, here;
+  std::string paper;  ///< of a claim its condition, of a cell what was printed
   Verdict verdict = Verdict::not_judged;
   Origin origin = Origin::paper;
 };

@@ -31,8 +31,11 @@ namespace fs = std::filesystem;
 constexpr std::size_t kMostInFull = 6;
 /// Of an experiment, its name and the heads included.
 constexpr std::size_t kMostLines = 8;
+constexpr std::size_t kAll = 10000;
 /// Fewer cut words to nothing.
 constexpr std::size_t kColumnsOfTable = 60;
+/// Of a line, what a condition may take.
+constexpr std::size_t kConditionShare = 3;
 
 /// The sections of the run's experiments.
 std::vector<const Section*> own_sections(const std::vector<Section>& sections,
@@ -45,38 +48,45 @@ std::vector<const Section*> own_sections(const std::vector<Section>& sections,
 
 /// Where no table has room.
 std::string in_two_lines(const Statement& s, std::size_t room) {
-  const std::string here = s.here.empty() ? "" : "here " + s.here + ", ";
+  const std::string here = s.here.empty() ? "" : s.here + ", ";
   return fmt::format(
       "{} {}\n  {}\n",
       mark_of(s.verdict),
       shortened(s.what, room - 2),
       shortened(
-          fmt::format(
-              "{}paper {}: {}", here, s.paper, words_of(s.verdict, s.origin)),
+          fmt::format("{}{}: {}", here, s.paper, words_of(s.verdict, s.origin)),
           room - 2));
+}
+
+std::string more_text(std::size_t more) {
+  return more == 0 ? "" : fmt::format("   {} more on the page\n", more);
 }
 
 std::string in_full(const Section& section, std::size_t room) {
   const bool narrow = room < kColumnsOfTable;
   const std::size_t most = narrow ? (kMostLines - 1) / 2 : kMostLines - 2;
-  const auto statements = statements_of(section, most);
+  auto statements = statements_of(section, kAll);
+  const std::size_t more =
+      statements.size() - std::min(statements.size(), most);
+  statements.resize(statements.size() - more);
   std::string text =
       fmt::format("{} ({})\n", section.title, section.experiment);
   if (statements.empty()) return text;
   if (narrow) {
     text = shortened(text.substr(0, text.size() - 1), room) + '\n';
     for (const Statement& s : statements) text += in_two_lines(s, room);
-    return text;
+    return text + more_text(more);
   }
-  Columns table({"<", "<  statement", "here", "paper", "<verdict"});
+  Columns table(
+      {"<", "<  statement", "measured", "<condition or printed", "<verdict"});
   for (const Statement& s : statements)
     table.add({std::string(mark_of(s.verdict)),
                s.what,
                s.here,
-               s.paper,
+               shortened(s.paper, room / kConditionShare),
                std::string(words_of(s.verdict, s.origin))});
   return shortened(text.substr(0, text.size() - 1), room) + '\n' +
-         table.text(room);
+         table.text(room) + more_text(more);
 }
 
 /// A line for each: how many claims came to which verdict.

@@ -223,7 +223,7 @@ TEST(Statements, DecidedOnesThenTablesWithoutTimes) {
   ASSERT_EQ(all.size(), 3U);
   EXPECT_EQ(all[0].what.substr(0, 2), "P2");
   EXPECT_EQ(all[0].here, "1.25");
-  EXPECT_EQ(all[0].paper, "> 2");
+  EXPECT_EQ(all[0].paper, "x > 2");
   EXPECT_EQ(all[1].here, "3");
   EXPECT_EQ(all[2].what, "Table 1: a, row");
   Section own = sections()[0];
@@ -231,7 +231,7 @@ TEST(Statements, DecidedOnesThenTablesWithoutTimes) {
   EXPECT_EQ(statements_of(own, 8)[2].what, "Table 1: a");
   own.claims.front().origin = Origin::suite;
   own.claims.front().verdict = Verdict::not_reproduced;
-  EXPECT_EQ(statements_of(own, 8)[1].paper, "range > 2");
+  EXPECT_EQ(statements_of(own, 8)[1].paper, "x > 2");
   EXPECT_EQ(all[2].here, "5.0 %");
   EXPECT_EQ(all[2].paper, "7.0 %");
   EXPECT_EQ(all[2].verdict, Verdict::not_judged);
