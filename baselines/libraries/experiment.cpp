@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "ceres_solvers.h"
+#include "dlib_solvers.h"
 #include "gsl.h"
 #include "nlopt_solvers.h"
 #include "optimizers/classical.h"
@@ -21,12 +23,18 @@ using physinv::Profile;
 /// iterations.
 std::vector<physinv::Method> methods(const physinv::Method& bfgs) {
   const Index limit = bfgs.chain.front()->default_iterations();
-  return {bfgs,
-          {"lbfgsb", {physinv::lbfgsb_solve({.iterations = limit})}},
-          {"gsl-bfgs2", {gsl_bfgs2({.iterations = limit})}},
-          {"nlopt-lbfgs", {nlopt_solve(NloptAlgorithm::lbfgs, limit)}},
-          {"nlopt-slsqp", {nlopt_solve(NloptAlgorithm::slsqp, limit)}},
-          {"nlopt-mma", {nlopt_solve(NloptAlgorithm::mma, limit)}}};
+  return {
+      bfgs,
+      {"lbfgsb", {physinv::lbfgsb_solve({.iterations = limit})}},
+      {"gsl-bfgs2", {gsl_bfgs2({.iterations = limit})}},
+      {"nlopt-lbfgs", {nlopt_solve(NloptAlgorithm::lbfgs, limit)}},
+      {"nlopt-slsqp", {nlopt_solve(NloptAlgorithm::slsqp, limit)}},
+      {"nlopt-mma", {nlopt_solve(NloptAlgorithm::mma, limit)}},
+      {"ceres-bfgs", {ceres_solve(CeresDirection::bfgs, limit)}},
+      {"ceres-lbfgs", {ceres_solve(CeresDirection::lbfgs, limit)}},
+      {"dlib-bfgs", {dlib_solve({.iterations = limit})}},
+      {"dlib-lbfgs",
+       {dlib_solve({.strategy = DlibStrategy::lbfgs, .iterations = limit})}}};
 }
 
 constexpr Index kSmokeSize = 8;

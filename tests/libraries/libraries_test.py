@@ -5,8 +5,8 @@ missing: apt-packages.txt, [libraries].
 
 Its methods keep the contracts and run on the suite's problems, beside the
 suite's own, which have the same losses as in the suite's experiments; versions
-are recorded; verify finds the same bits; GSL is in the plug-in and not in the
-program.
+are recorded; verify finds the same bits; the libraries are in the plug-in and not
+in the program.
 """
 
 import json
@@ -17,7 +17,8 @@ import sys
 import unittest
 
 PROGRAM, SOURCES, BUILD, WORK, COMPILER = sys.argv[1:6]
-HEADERS = ["gsl/gsl_multimin.h", "nlopt.h"]
+HEADERS = ["ceres/gradient_problem_solver.h", "dlib/optimization.h",
+           "gsl/gsl_multimin.h", "nlopt.h"]
 RESULTS, PLUGIN = WORK + "/results", WORK + "/tree/libraries.so"
 
 
@@ -51,7 +52,9 @@ class Libraries(unittest.TestCase):
             "-D", "CMAKE_CXX_COMPILER=" + COMPILER,
             "-D", "CMAKE_CXX_FLAGS=-Wall -Wextra -Wshadow -Werror",
             "-D", "CMAKE_CXX_FLAGS_RELEASE=-O1",  # the same bits, sooner
-            "-D", "CMAKE_PREFIX_PATH=" + WORK + "/prefix")
+            "-D", "CMAKE_PREFIX_PATH=" + WORK + "/prefix",
+            "-D", "CMAKE_CXX_COMPILER_LAUNCHER="
+            + (shutil.which("ccache") or ""))
         run("ninja", "-C", WORK + "/tree")
         bench("--profile=smoke", "--filter=^libraries/", "--out=" + RESULTS,
               "--no-report")
@@ -76,7 +79,11 @@ class Libraries(unittest.TestCase):
         for method, library in (("gsl-bfgs2", "gsl 2."),
                                 ("nlopt-lbfgs", "nlopt 2."),
                                 ("nlopt-slsqp", "nlopt 2."),
-                                ("nlopt-mma", "nlopt 2.")):
+                                ("nlopt-mma", "nlopt 2."),
+                                ("ceres-bfgs", "ceres 2."),
+                                ("ceres-lbfgs", "ceres 2."),
+                                ("dlib-bfgs", "dlib 19."),
+                                ("dlib-lbfgs", "dlib 19.")):
             found = [s["physinv"] for s in stages(RESULTS)
                      if f"/{method}/" in s["name"]]
             self.assertEqual(len(found), 3, method)
@@ -94,9 +101,10 @@ class Libraries(unittest.TestCase):
         self.assertIn(" 0 failed", said)
 
     def test_licence(self):
-        linked = run("ldd", PLUGIN)
-        self.assertIn("libgsl.", linked)
-        self.assertNotIn("libgsl", run("ldd", PROGRAM))
+        linked, program = run("ldd", PLUGIN), run("ldd", PROGRAM)
+        for library in ("libgsl.", "libnlopt.", "libceres.", "libblas."):
+            self.assertIn(library, linked)
+            self.assertNotIn(library, program)
 
 
 if __name__ == "__main__":
