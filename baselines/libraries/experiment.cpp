@@ -7,6 +7,7 @@
 
 #include "ceres_solvers.h"
 #include "dlib_solvers.h"
+#include "ends.h"
 #include "gsl.h"
 #include "nlopt_solvers.h"
 #include "optimizers/classical.h"
@@ -75,7 +76,11 @@ void add(const std::string& problem) {
                                 .setting = base->setting,
                                 .profiles = profiles(*base, all),
                                 .methods = all,
-                                .styles = base->styles});
+                                .styles = base->styles,
+                                .report = [](const physinv::Evidence& e) {
+                                  return physinv::Section{
+                                      .tables = {ends_table(e)}};
+                                }});
 }
 
 const bool kRegistered = [] {

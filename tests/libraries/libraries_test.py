@@ -9,8 +9,11 @@ are recorded; verify finds the same bits; the libraries are in the plug-in and n
 in the program.
 """
 
+import collections
+import csv
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -20,6 +23,7 @@ PROGRAM, SOURCES, BUILD, WORK, COMPILER = sys.argv[1:6]
 HEADERS = ["ceres/gradient_problem_solver.h", "dlib/optimization.h",
            "gsl/gsl_multimin.h", "nlopt.h"]
 RESULTS, PLUGIN = WORK + "/results", WORK + "/tree/libraries.so"
+PROBLEMS, METHODS, OURS = 3, 10, {"bfgs", "lbfgsb"}
 
 
 def run(*command, status=0):
@@ -56,8 +60,7 @@ class Libraries(unittest.TestCase):
             "-D", "CMAKE_CXX_COMPILER_LAUNCHER="
             + (shutil.which("ccache") or ""))
         run("ninja", "-C", WORK + "/tree")
-        bench("--profile=smoke", "--filter=^libraries/", "--out=" + RESULTS,
-              "--no-report")
+        bench("--profile=smoke", "--filter=^libraries/", "--out=" + RESULTS)
 
     def test_solver(self):
         print(run(WORK + "/tree/library_solver_test").splitlines()[-1])
@@ -65,15 +68,18 @@ class Libraries(unittest.TestCase):
     def test_losses_of_our_own_are_the_suites(self):
         suite = WORK + "/suite"
         bench("--profile=smoke", "--no-report", "--out=" + suite,
-              "--filter=^jpo/(billiards|wave-packet|robotic-arm)/bfgs/n=4/",
+              "--filter=^jpo/(billiards|wave-packet|robotic-arm)"
+              "/bfgs/n=4/",
               plugin=False)
 
         def ends(folder):
             return {s["name"].split("/", 1)[1]:
                     (s["loss_mean"], s["loss_median"], s["vjp"])
                     for s in stages(folder) if "/bfgs/" in s["name"]}
-        self.assertGreater(len(ends(suite)), 1)
-        self.assertEqual(ends(suite), ends(RESULTS))
+        found = ends(RESULTS)
+        self.assertEqual(len(ends(suite)), 3)
+        for name, end in ends(suite).items():
+            self.assertEqual(found[name], end, name)
 
     def test_what_is_recorded(self):
         for method, library in (("gsl-bfgs2", "gsl 2."),
@@ -86,11 +92,33 @@ class Libraries(unittest.TestCase):
                                 ("dlib-lbfgs", "dlib 19.")):
             found = [s["physinv"] for s in stages(RESULTS)
                      if f"/{method}/" in s["name"]]
-            self.assertEqual(len(found), 3, method)
+            self.assertEqual(len(found), PROBLEMS, method)
             for stage in found:
                 self.assertIn(stage["stop"], ("converged", "iterations"))
                 self.assertIn(library, stage["options"]["library"])
                 self.assertIn(" x ", stage["message"])
+
+    def test_ends_are_counted(self):
+        """As often as the libraries say it in their own words."""
+        success = re.compile(r"(\d+) x (?:success$|SUCCESS|[FX]TOL_REACHED|"
+                             r"CONVERGENCE|change of the loss below)")
+        said = collections.Counter()
+        for s in stages(RESULTS):
+            experiment, method = s["name"].split("/")[1:3]
+            for words in s["physinv"]["message"].split("; "):
+                told = success.match(words)
+                said[experiment, method] += int(told[1]) if told else 0
+        for problem in sorted({p for p, _ in said}):
+            path = f"{RESULTS}/report/libraries-{problem}/tables/ends.csv"
+            with open(path) as f:
+                rows = {r["method"]: r for r in csv.DictReader(f)}
+            self.assertEqual(len(rows), METHODS)
+            for method in set(rows) - OURS:
+                self.assertEqual(int(rows[method]["claims success"]),
+                                 said[problem, method], (problem, method))
+                self.assertLessEqual(int(rows[method]["gradient left"]),
+                                     said[problem, method])
+        self.assertGreater(sum(said.values()), 0)
 
     def test_the_same_bits(self):
         self.assertIn("0 mismatches", bench("verify", RESULTS))
