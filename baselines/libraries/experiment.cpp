@@ -38,11 +38,18 @@ std::vector<physinv::Method> methods(const physinv::Method& bfgs) {
        {dlib_solve({.strategy = DlibStrategy::lbfgs, .iterations = limit})}}};
 }
 
-constexpr Index kSmokeSize = 8;
+/// Of `smoke`, which takes seconds.
+constexpr Index kFew = 8;
 
-/// The rows in which the suite's BFGS runs, for all methods here; of `smoke`,
-/// which takes seconds, those of few problems.
+struct Problem {
+  std::string name;
+  Index smoke_size = kFew;  ///< problems at most
+};
+
+/// The rows in which the suite's BFGS runs, for all methods here; of `smoke`
+/// those of few problems.
 std::vector<Profile> profiles(const Experiment& of,
+                              Index smoke_size,
                               const std::vector<physinv::Method>& methods) {
   std::vector<std::string> all;
   for (const auto& method : methods) all.push_back(method.id);
@@ -51,8 +58,10 @@ std::vector<Profile> profiles(const Experiment& of,
     Profile mine{.name = profile.name, .rows = {}};
     for (physinv::Row row : profile.rows) {
       if (std::ranges::find(row.methods, "bfgs") == row.methods.end()) continue;
-      if (profile.name == "smoke")
-        std::erase_if(row.n, [](Index n) { return n > kSmokeSize; });
+      if (profile.name == "smoke") {
+        std::erase_if(row.n, [](Index n) { return n > kFew; });
+        for (Index& n : row.n) n = std::min(n, smoke_size);
+      }
       if (row.n.empty()) continue;
       row.methods = all;
       mine.rows.push_back(std::move(row));
@@ -63,28 +72,34 @@ std::vector<Profile> profiles(const Experiment& of,
 }
 
 /// Programs over one folder of experiments lack those of the others.
-void add(const std::string& problem) {
-  const std::string of = "jpo/" + problem, name = "libraries/" + problem;
+void add(const Problem& problem) {
+  const std::string of = "jpo/" + problem.name;
+  const std::string name = "libraries/" + problem.name;
   const auto base = physinv::registry().find(of);
   if (base == nullptr) return;
   const auto all = methods(*physinv::find_method(*base, "bfgs"));
   physinv::register_study(name, of);  // the same problems
-  physinv::register_experiment({.name = name,
-                                .title = base->title + ", other libraries",
-                                .citation = base->citation,
-                                .problem = base->problem,
-                                .setting = base->setting,
-                                .profiles = profiles(*base, all),
-                                .methods = all,
-                                .styles = base->styles,
-                                .report = [](const physinv::Evidence& e) {
-                                  return physinv::Section{
-                                      .tables = {ends_table(e)}};
-                                }});
+  physinv::register_experiment(
+      {.name = name,
+       .title = base->title + ", other libraries",
+       .citation = base->citation,
+       .problem = base->problem,
+       .setting = base->setting,
+       .profiles = profiles(*base, problem.smoke_size, all),
+       .methods = all,
+       .styles = base->styles,
+       .report = [](const physinv::Evidence& e) {
+         return physinv::Section{.tables = {ends_table(e)}};
+       }});
 }
 
 const bool kRegistered = [] {
-  for (const char* problem : {"billiards", "wave-packet", "robotic-arm"})
+  for (const Problem& problem :
+       std::vector<Problem>{{"billiards"},
+                            {"wave-packet"},
+                            {"robotic-arm"},
+                            {"kuramoto-sivashinsky"},
+                            {.name = "navier-stokes", .smoke_size = 1}})
     add(problem);
   return true;
 }();
