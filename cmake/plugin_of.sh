@@ -9,7 +9,8 @@ find_plugin() {
   plugin=''
   for argument; do
     case $argument in
-      --filter=libraries | --filter=libraries/* | --filter=^libraries/*)
+      --filter=libraries | --filter=libraries/* | --filter=^libraries/* | \
+        --filter=studies/whose-bfgs* | --filter=^studies/whose-bfgs*)
         # shellcheck disable=SC2034 # read by who calls this
         plugin=libraries ;;
     esac

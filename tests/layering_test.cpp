@@ -127,6 +127,7 @@ std::string library_of(const std::string& header) {
       {"fftw3", "fftw"},
       {"sleef.h", "sleef"},
       {"ceres/", "ceres"},
+      {"glog/", "ceres"},  // logs its words
       {"dlib/", "dlib"},
       {"gsl/", "gsl"},
       {"nlopt.h", "nlopt"},

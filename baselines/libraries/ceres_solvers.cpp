@@ -3,6 +3,7 @@
 #include <ceres/gradient_problem.h>
 #include <ceres/gradient_problem_solver.h>
 #include <ceres/version.h>
+#include <glog/logging.h>
 
 #include <algorithm>
 #include <string>
@@ -123,6 +124,7 @@ std::shared_ptr<const physinv::Stage> ceres_solve(CeresDirection direction,
        .iterations = iterations,
        .evaluations = kEvaluations},
       [direction](double) -> Library {
+        FLAGS_minloglevel = google::GLOG_FATAL;  // the end has its own words
         return
             [direction](Objective& f, const Vector<double>& x0, Index limit) {
               return minimize(direction, f, x0, limit);

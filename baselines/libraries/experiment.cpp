@@ -5,38 +5,15 @@
 #include <utility>
 #include <vector>
 
-#include "ceres_solvers.h"
-#include "dlib_solvers.h"
 #include "ends.h"
-#include "gsl.h"
-#include "nlopt_solvers.h"
-#include "optimizers/classical.h"
-#include "suite/harness/registry.h"
+#include "solvers.h"
 #include "suite/harness/study.h"
 
 namespace libraries {
 namespace {
 
-using physinv::Experiment;
+using physinv::Index;
 using physinv::Profile;
-
-/// The suite's own as in the experiment, and each library's for as many
-/// iterations.
-std::vector<physinv::Method> methods(const physinv::Method& bfgs) {
-  const Index limit = bfgs.chain.front()->default_iterations();
-  return {
-      bfgs,
-      {"lbfgsb", {physinv::lbfgsb_solve({.iterations = limit})}},
-      {"gsl-bfgs2", {gsl_bfgs2({.iterations = limit})}},
-      {"nlopt-lbfgs", {nlopt_solve(NloptAlgorithm::lbfgs, limit)}},
-      {"nlopt-slsqp", {nlopt_solve(NloptAlgorithm::slsqp, limit)}},
-      {"nlopt-mma", {nlopt_solve(NloptAlgorithm::mma, limit)}},
-      {"ceres-bfgs", {ceres_solve(CeresDirection::bfgs, limit)}},
-      {"ceres-lbfgs", {ceres_solve(CeresDirection::lbfgs, limit)}},
-      {"dlib-bfgs", {dlib_solve({.iterations = limit})}},
-      {"dlib-lbfgs",
-       {dlib_solve({.strategy = DlibStrategy::lbfgs, .iterations = limit})}}};
-}
 
 /// Of `smoke`, which takes seconds.
 constexpr Index kFew = 8;
@@ -48,22 +25,20 @@ struct Problem {
 
 /// The rows in which the suite's BFGS runs, for all methods here; of `smoke`
 /// those of few problems.
-std::vector<Profile> profiles(const Experiment& of,
+std::vector<Profile> profiles(const physinv::Experiment& of,
                               Index smoke_size,
                               const std::vector<physinv::Method>& methods) {
-  std::vector<std::string> all;
-  for (const auto& method : methods) all.push_back(method.id);
   std::vector<Profile> result;
   for (const Profile& profile : of.profiles) {
     Profile mine{.name = profile.name, .rows = {}};
     for (physinv::Row row : profile.rows) {
-      if (std::ranges::find(row.methods, "bfgs") == row.methods.end()) continue;
+      if (!has(row, "bfgs")) continue;
       if (profile.name == "smoke") {
         std::erase_if(row.n, [](Index n) { return n > kFew; });
         for (Index& n : row.n) n = std::min(n, smoke_size);
       }
       if (row.n.empty()) continue;
-      row.methods = all;
+      row.methods = ids(methods);
       mine.rows.push_back(std::move(row));
     }
     if (!mine.rows.empty()) result.push_back(std::move(mine));
@@ -77,7 +52,7 @@ void add(const Problem& problem) {
   const std::string name = "libraries/" + problem.name;
   const auto base = physinv::registry().find(of);
   if (base == nullptr) return;
-  const auto all = methods(*physinv::find_method(*base, "bfgs"));
+  const auto all = solvers(*base);
   physinv::register_study(name, of);  // the same problems
   physinv::register_experiment(
       {.name = name,

@@ -23,7 +23,7 @@ CAMPAIGNS = {  # those that the pages read: the flags of what stands in for them
     "head": ("--set=iterations=2",)}
 ELSEWHERE = {  # verb or flag -> the test that runs it
     "submit": "slurm", "status": "slurm", "gate": "gate.project",
-    "=^libraries/": "libraries",
+    "=^libraries/": "libraries", "=^studies/whose-bfgs": "libraries",
     "conformance": "install.pendulum", "--plugin": "install.pendulum",
     "history": "history"}
 # Losses of fewer iterations are worse, as the page says.
@@ -71,7 +71,8 @@ def as_run(arguments):
 
 
 def elsewhere(arguments):
-    return any(a.split("=")[0] in ELSEWHERE or "=^libraries/" in a
+    return any(a.split("=")[0] in ELSEWHERE or
+               any(part in a for part in ELSEWHERE if part[0] == "=")
                for a in arguments)
 
 

@@ -5,8 +5,8 @@ missing: apt-packages.txt, [libraries].
 
 Its methods keep the contracts and run on the suite's problems, beside the
 suite's own, which have the same losses as in the suite's experiments; versions
-are recorded; verify finds the same bits; the libraries are in the plug-in and not
-in the program.
+are recorded; verify finds the same bits; the libraries are in the plug-in, not in
+the program.
 """
 
 import collections
@@ -42,6 +42,11 @@ def bench(*arguments, plugin=True, **options):
 def stages(folder):
     with open(folder + "/results.json") as f:
         return json.load(f)["benchmarks"]
+
+
+def table(folder, experiment, name):
+    with open(f"{folder}/report/{experiment}/tables/{name}.csv") as f:
+        return list(csv.DictReader(f))
 
 
 class Libraries(unittest.TestCase):
@@ -109,9 +114,8 @@ class Libraries(unittest.TestCase):
                 told = success.match(words)
                 said[experiment, method] += int(told[1]) if told else 0
         for problem in sorted({p for p, _ in said}):
-            path = f"{RESULTS}/report/libraries-{problem}/tables/ends.csv"
-            with open(path) as f:
-                rows = {r["method"]: r for r in csv.DictReader(f)}
+            rows = {r["method"]: r for r in
+                    table(RESULTS, "libraries-" + problem, "ends")}
             self.assertEqual(len(rows), METHODS)
             for method in set(rows) - OURS:
                 self.assertEqual(int(rows[method]["claims success"]),
@@ -119,6 +123,31 @@ class Libraries(unittest.TestCase):
                 self.assertLessEqual(int(rows[method]["gradient left"]),
                                      said[problem, method])
         self.assertGreater(sum(said.values()), 0)
+
+    def test_the_study_has_the_numbers_of_tables_4_and_5(self):
+        """Against our BFGS; of other libraries' it has a row each."""
+        suite, study = WORK + "/tables", WORK + "/study"
+        bench("--profile=smoke", "--out=" + suite,
+              "--filter=^jpo/(billiards|robotic-arm)/(bfgs|jpo)/n=4/",
+              plugin=False)
+        bench("--profile=smoke", "--out=" + study, "--filter="
+              "^studies/whose-bfgs-(billiards|robotic-arm)/")
+        for problem in ("billiards", "robotic-arm"):
+            rows = table(study, "studies-whose-bfgs-" + problem,
+                         "whose-bfgs")
+            self.assertEqual(len(rows), METHODS)
+            for row in rows:
+                for stage in ("", "refined "):
+                    better, equal, f = (float(row[stage + share + " [%]"])
+                                        for share in ("better", "equal", "f"))
+                    self.assertAlmostEqual(better + equal / 2, f)
+            ours = rows[0]
+            self.assertEqual(ours["against"], "bfgs")
+            for name, stage in (("table4", ""), ("table5", "refined ")):
+                paper = [r for r in table(suite, "jpo-" + problem, name)
+                         if (r["equality"], r["method"]) == ("strict", "JPO")]
+                for share in ("better [%]", "equal [%]"):
+                    self.assertEqual(ours[stage + share], paper[0][share])
 
     def test_the_same_bits(self):
         self.assertIn("0 mismatches", bench("verify", RESULTS))
