@@ -1,6 +1,5 @@
-/// dlib's `find_min` (D. E. King, "dlib C++ library";
-/// dlib/optimization/optimization_abstract.h). Strategies for the direction and
-/// for the end are the caller's: those here are of dlib's manual.
+/// dlib's `find_min` (D. E. King, "dlib C++ library"). Strategies for the
+/// direction and for the end are the caller's: those here are of dlib's manual.
 #pragma once
 
 #include <cstdint>
