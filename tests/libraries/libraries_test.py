@@ -11,6 +11,7 @@ the program.
 
 import collections
 import csv
+import importlib.util
 import json
 import os
 import re
@@ -148,6 +149,26 @@ class Libraries(unittest.TestCase):
                          if (r["equality"], r["method"]) == ("strict", "JPO")]
                 for share in ("better [%]", "equal [%]"):
                     self.assertEqual(ours[stage + share], paper[0][share])
+
+    def test_scipy_ends_as_our_port(self):
+        if not all(map(importlib.util.find_spec, ("numpy", "scipy"))) or \
+                not os.path.exists(BUILD + "/python/physinv"):
+            self.skipTest("no SciPy, or the package physinv is not built")
+        out = WORK + "/scipy"
+        run("env", f"PYTHONPATH={BUILD}/python", "PHYSINV_BENCH=" + PROGRAM,
+            sys.executable, SOURCES + "/baselines/libraries/scipy_solvers.py",
+            PLUGIN, "smoke", "out=" + out, "no_report=true",
+            "filter=^libraries/(billiards|wave-packet|robotic-arm)/"
+            "(bfgs|scipy-[a-z]*)/")
+        ends = {tuple(s["name"].split("/")[1:3]): s for s in stages(out)}
+        self.assertEqual(len(ends), 3 * 5)
+        for problem in ("billiards", "wave-packet", "robotic-arm"):
+            ours, theirs = ends[problem, "bfgs"], ends[problem, "scipy-bfgs"]
+            self.assertAlmostEqual(
+                theirs["loss_mean"] / max(ours["loss_mean"], 1e-12),
+                ours["loss_mean"] / max(ours["loss_mean"], 1e-12), 6)
+            self.assertIn("scipy",
+                          theirs["physinv"]["options"]["libraries"])
 
     def test_the_same_bits(self):
         self.assertIn("0 mismatches", bench("verify", RESULTS))
