@@ -134,7 +134,9 @@ std::vector<std::size_t> order_of(const std::vector<Figure>& figures) {
   std::vector<std::size_t> order(figures.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) {
-    return figure_of(figures[a].where) < figure_of(figures[b].where);
+    const Figure &f = figures[a], &g = figures[b];
+    return std::pair(!f.picture, figure_of(f.where)) <
+           std::pair(!g.picture, figure_of(g.where));
   });
   return order;
 }

@@ -27,8 +27,8 @@ std::vector<std::string> places_of(std::string_view text);
 /// Do both name a place that is the same?
 bool share_place(std::string_view a, std::string_view b);
 
-/// Figures in the order of the paper, "Fig. 4a" before "Fig. 4b" before
-/// "Fig. 11"; those that it does not have after them, as they are.
+/// Pictures first, then figures in the order of the paper, "Fig. 4a" before
+/// "Fig. 4b" before "Fig. 11"; those that it does not have last, as they are.
 std::vector<std::size_t> order_of(const std::vector<Figure>& figures);
 
 }  // namespace physinv

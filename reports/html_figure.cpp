@@ -51,11 +51,13 @@ std::string panel_html(const Panel& panel,
   const std::string& name = panel.title.empty() ? figure.title : panel.title;
   PanelPlot plot(panel, id, palette);
   const double height = plot.height(size.w, size.h);
-  Svg svg =
-      Svg::inlined(size.w,
-                   height,
-                   name,
-                   fmt::format("{} over {}", panel.y_label, panel.x_label));
+  Svg svg = Svg::inlined(
+      size.w,
+      height,
+      name,
+      panel.space || panel.y_label.empty()
+          ? figure.title
+          : fmt::format("{} over {}", panel.y_label, panel.x_label));
   std::vector<int> keys;
   for (const Series& s : panel.series) keys.push_back(legend_index(legend, s));
   plot.set_keys(std::move(keys));
@@ -74,6 +76,7 @@ std::string panels_html(const Figure& figure,
                         const std::string& id,
                         const std::vector<const Series*>& legend,
                         Palette& palette) {
+  if (figure.picture && figure.panels.empty()) return "";  // its note says why
   std::string out, empty, constant;
   int drawn = 0;
   for (std::size_t i = 0; i < figure.panels.size(); ++i) {
@@ -119,8 +122,9 @@ std::string figure_html(const Figure& figure,
   Palette palette = palette_of(figure, report);
   const auto legend = legend_of(figure);
   std::string out =
-      fmt::format("<figure id=\"{}\">\n<figcaption>{}</figcaption>\n{}",
+      fmt::format("<figure id=\"{}\"{}>\n<figcaption>{}</figcaption>\n{}",
                   id,
+                  figure.picture ? " class=\"picture\"" : "",
                   caption_html(id, figure.where, figure.title),
                   panels_html(figure, id, legend, palette));
   if (!figure.note.empty()) {

@@ -61,6 +61,7 @@ std::optional<Figure> key_figure(const Section& section) {
   std::size_t at = 0;
   Rank rank = Rank::nothing;
   for (const Figure& figure : section.figures) {
+    if (figure.picture) continue;
     for (std::size_t k = 0; k < figure.panels.size(); ++k) {
       const Rank own = rank_of(figure.panels[k]);
       const bool later = &figure == best && own == rank &&

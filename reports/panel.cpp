@@ -70,6 +70,16 @@ std::optional<double> constant_of(const Panel& panel) {
   return count > 1 ? value : std::nullopt;
 }
 
+double slope_of(const Panel& panel) {
+  if (panel.field && !panel.field->x.empty())
+    return static_cast<double>(panel.field->y.size()) /
+           static_cast<double>(panel.field->x.size());
+  if (!panel.x_min || !panel.x_max || !panel.y_min || !panel.y_max ||
+      !(*panel.x_max > *panel.x_min) || !(*panel.y_max > *panel.y_min))
+    return 1;
+  return (*panel.y_max - *panel.y_min) / (*panel.x_max - *panel.x_min);
+}
+
 PanelPlot::PanelPlot(const Panel& panel, std::string id, Palette& palette)
     : panel_(panel),
       id_(std::move(id)),
@@ -105,7 +115,7 @@ void PanelPlot::fit_axes() {
     x_.finish_tight();
     y_.finish_tight();
   } else {
-    x_.finish();
+    x_.finish(panel_.x_min, panel_.x_max);
     y_.finish(panel_.y_min, panel_.y_max);
   }
 }
@@ -118,8 +128,18 @@ double PanelPlot::py(const Rect& box, double value) const {
   return box.y + box.h * (1 - y_.place(value));
 }
 
+// What title, labels and colour bar leave of a place's cell.
+Rect PanelPlot::place_in(const Rect& cell) const {
+  const double top = panel_.title.empty() ? 10 : 28, margin = 10,
+               right = panel_.field ? 74 : margin, slope = slope_of(panel_);
+  const double w = std::max(
+      1.0, std::min(cell.w - margin - right, (cell.h - top - margin) / slope));
+  return {cell.x + margin, cell.y + top, w, w * slope};
+}
+
 // What the axes leave of a cell.
 Rect PanelPlot::box_in(const Rect& cell) const {
+  if (panel_.space) return place_in(cell);
   std::size_t tick_width = 2;
   const int y_ticks = std::max(2, static_cast<int>(cell.h / 50));
   for (const Tick& t : y_marks(y_ticks)) {
@@ -139,6 +159,11 @@ Rect PanelPlot::box_in(const Rect& cell) const {
 }
 
 double PanelPlot::height(double width, double usual) const {
+  if (panel_.space) {
+    constexpr double kHighest = 1e4;
+    return place_in({0, 0, width, kHighest}).h +
+           (panel_.title.empty() ? 20 : 38);
+  }
   const double names =
       panel_.field
           ? kNameHeight * static_cast<double>(panel_.field->y_names.size())
@@ -213,7 +238,7 @@ void PanelPlot::furniture(Svg& svg, const Rect& box, const Rect& cell) const {
              "middle",
              true);
   }
-  if (run_) ticks(svg, box, cell);
+  if (run_ && !panel_.space) ticks(svg, box, cell);
 }
 
 // The lines of the grid are one path.

@@ -25,6 +25,10 @@ bool has_points(const Panel& panel);
 /// The one value at which all of several points are; bands are none.
 std::optional<double> constant_of(const Panel& panel);
 
+/// Height over width of a place (`Panel::space`): of its field, whose cells are
+/// squares, or of its limits.
+double slope_of(const Panel& panel);
+
 class PanelPlot {
  public:
   /// `id` is unique in the document: it names the clip path.
@@ -34,7 +38,7 @@ class PanelPlot {
   /// and the panel with its axes, for the script of a page.
   void set_keys(std::vector<int> keys) { keys_ = std::move(keys); }
 
-  /// As usual, or what the names of its rows need.
+  /// As usual, or what the names of its rows or the shape of its place need.
   double height(double width, double usual) const;
 
   /// Draws into `cell`, labels included.
@@ -43,6 +47,7 @@ class PanelPlot {
  private:
   void fit_axes();
   Rect box_in(const Rect& cell) const;
+  Rect place_in(const Rect& cell) const;
   /// Ticks, their values being shares of the axis.
   std::vector<Tick> x_marks(int wanted) const;
   std::vector<Tick> y_marks(int wanted) const;

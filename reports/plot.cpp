@@ -79,9 +79,12 @@ std::string describe(const Figure& figure) {
 std::string render_svg(const Figure& figure, const Palette& report) {
   Palette palette = palette_of(figure, report);
   Grid grid = grid_of(figure);
+  double highest = 0;
   for (const Panel& panel : figure.panels)
-    grid.cell_h =
-        PanelPlot(panel, "", palette).height(grid.cell_w, grid.cell_h);
+    highest = std::max(
+        highest,
+        PanelPlot(panel, "", palette).height(grid.cell_w, grid.cell_h));
+  if (highest > 0) grid.cell_h = highest;
   const double inner = grid.columns * grid.cell_w;
   const auto chars = [&](double each) {
     return static_cast<std::size_t>(inner / each);
@@ -124,8 +127,11 @@ std::string render_svg(const Figure& figure, const Palette& report) {
                grid.cell_h});
   }
   if (figure.panels.empty()) {
-    svg.text(
-        "label", width / 2, panels_y + grid.cell_h / 2, "not run", "middle");
+    svg.text("label",
+             width / 2,
+             panels_y + grid.cell_h / 2,
+             figure.picture ? "nothing to draw" : "not run",
+             "middle");
   }
   for (std::size_t i = 0; i < note.size(); ++i) {
     const double y = note_y + 10 + kNoteLine * static_cast<double>(i);

@@ -38,6 +38,9 @@ Json to_json(const Panel& p) {
            {"series", Json::array()},
            {"field", nullptr},
            {"arrows", nullptr}};
+  if (p.x_min) out["x_min"] = *p.x_min;
+  if (p.x_max) out["x_max"] = *p.x_max;
+  if (p.space) out["space"] = true;
   for (const Series& s : p.series) out["series"].push_back(to_json(s));
   if (p.field) {
     out["field"] = {{"label", p.field->label},

@@ -118,8 +118,13 @@ Json roomy(Json axis, bool field) {
 }
 
 Json x_axis(const Panel& panel) {
-  return roomy(vega_axis("x", panel.x_label, panel.x_log),
-               panel.field.has_value());
+  Json out = vega_axis("x", panel.x_label, panel.x_log);
+  const Axis x(panel.x_log);
+  if (!panel.x_min || !panel.x_max || !x.shows(*panel.x_min) ||
+      !x.shows(*panel.x_max))
+    return roomy(std::move(out), panel.field.has_value());
+  out["scale"]["domain"] = {*panel.x_min, *panel.x_max};
+  return out;
 }
 
 bool is_limited(const Panel& panel) {
@@ -260,10 +265,11 @@ Json panel_of(const Panel& panel, const Scales& scales) {
   if (layers.empty())
     layers.push_back({{"data", {{"values", Json::array({Json::object()})}}},
                       {"mark", {{"type", "text"}, {"text", "not run"}}}});
-  return {{"title", panel.title},
-          {"width", 330},
-          {"height", 230},
-          {"layer", std::move(layers)}};
+  return {
+      {"title", panel.title},
+      {"width", 330},
+      {"height", panel.space ? std::max(1, int(330 * slope_of(panel))) : 230},
+      {"layer", std::move(layers)}};
 }
 
 }  // namespace

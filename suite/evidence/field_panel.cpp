@@ -27,7 +27,7 @@ Panel field_panel(std::string title,
     for (Index i = 0; i < layout.nx; ++i)
       field.values.push_back(f(i * layout.x_stride + j * layout.y_stride));
   }
-  return {.title = std::move(title), .field = std::move(field)};
+  return {.title = std::move(title), .field = std::move(field), .space = true};
 }
 
 Panel flow_panel(std::string title,

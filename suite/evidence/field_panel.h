@@ -17,7 +17,7 @@ struct FieldLayout {
   double size = 1, x0 = 0, y0 = 0;
 };
 
-/// The field, a pixel a cell.
+/// The field, a pixel a cell, as a place: its cells are squares.
 Panel field_panel(std::string title,
                   const FieldLayout& layout,
                   const Vector<double>&);

@@ -55,9 +55,15 @@ struct AnsweredFields {
   std::function<Vector<double>(const Answered&)> observe;
 };
 
-/// Of the first seed, two rows for each example: what is observed, and what of
-/// each method's answer would be; the truth, and what each method's network
-/// answers. Scales reach at least as far as that of a row's first field.
+/// The first line that answers of those whose labels are the same up to a comma
+/// ("SIP", "SIP, batch 8").
+std::vector<MethodLine> one_of_each(const Evidence& e,
+                                    const std::vector<MethodLine>& lines);
+
+/// A picture of the first seed, in pairs for each example: what is observed and
+/// the truth; then for `one_of_each` what would be observed of its answer, and
+/// the answer. All answers have a scale that reaches at least as far as the
+/// truth's, all observations one that reaches as far as the first.
 Figure answered_fields(const Evidence& e,
                        const std::vector<MethodLine>& lines,
                        const AnsweredFields& drawn);

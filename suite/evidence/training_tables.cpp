@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <iterator>
+#include <set>
+#include <string>
 #include <tuple>
 #include <utility>
 
@@ -178,6 +180,7 @@ namespace {
 
 /// Colours reach at least as far as in the first panel.
 void scale_like_first(std::vector<Panel>& row) {
+  if (row.empty()) return;
   share_scale({row.data(), 1});
   for (Panel& panel : row)
     if (panel.field && row.front().field) {
@@ -186,51 +189,67 @@ void scale_like_first(std::vector<Panel>& row) {
     }
 }
 
-/// The two rows of an example; none if nobody answers it.
-struct FieldRows {
+/// Each panel and its observation in turn, those of the truth first; none if
+/// nobody answers it.
+std::vector<Panel> fields_of(const Evidence& e,
+                             const std::vector<MethodLine>& lines,
+                             const AnsweredFields& drawn,
+                             Index example) {
   std::vector<Panel> observed, answers;
-};
-FieldRows rows_of(const Evidence& e,
-                  const std::vector<MethodLine>& lines,
-                  const AnsweredFields& drawn,
-                  Index example) {
-  FieldRows rows;
   for (const MethodLine& line : lines) {
     const auto answer = answer_of(e, line.method, example);
     if (!answer) continue;
-    if (rows.observed.empty()) {
-      rows.observed.push_back(drawn.picture("observed y*", answer->wanted));
-      rows.answers.push_back(drawn.picture("truth x*", answer->truth));
+    if (observed.empty()) {
+      observed.push_back(drawn.picture("observed y*", answer->wanted));
+      answers.push_back(drawn.picture("truth x*", answer->truth));
     }
-    rows.observed.push_back(
+    observed.push_back(
         drawn.picture(line.label + ", y", drawn.observe(*answer)));
-    rows.answers.push_back(drawn.picture(line.label + ", x", answer->x));
+    answers.push_back(drawn.picture(line.label + ", x", answer->x));
   }
-  return rows;
+  scale_like_first(observed), scale_like_first(answers);
+  std::vector<Panel> pairs;
+  for (std::size_t k = 0; k < observed.size(); ++k) {
+    pairs.push_back(std::move(observed[k]));
+    pairs.push_back(std::move(answers[k]));
+  }
+  return pairs;
 }
 
 }  // namespace
+
+std::vector<MethodLine> one_of_each(const Evidence& e,
+                                    const std::vector<MethodLine>& lines) {
+  std::vector<MethodLine> some;
+  std::set<std::string> names;
+  for (const MethodLine& line : lines)
+    if (answer_of(e, line.method) &&
+        names.insert(line.label.substr(0, line.label.find(','))).second)
+      some.push_back(line);
+  return some;
+}
 
 Figure answered_fields(const Evidence& e,
                        const std::vector<MethodLine>& lines,
                        const AnsweredFields& drawn) {
   Figure figure{.id = "fields",
                 .title = "What is seen, and what is found",
-                .where = drawn.where};
+                .where = drawn.where,
+                .columns = 4,
+                .picture = true};
+  const auto shown = one_of_each(e, lines);
   Index examples = 0;
   for (; examples < drawn.examples; ++examples) {
-    auto [observed, answers] = rows_of(e, lines, drawn, examples);
-    if (observed.empty()) break;
-    figure.columns = static_cast<int>(observed.size());
-    for (auto* row : {&observed, &answers}) {
-      scale_like_first(*row);
-      std::move(row->begin(), row->end(), std::back_inserter(figure.panels));
-    }
+    auto panels = fields_of(e, shown, drawn, examples);
+    if (panels.empty()) break;
+    std::move(panels.begin(), panels.end(), std::back_inserter(figure.panels));
   }
   figure.note = fmt::format(
-      "The first {} of the test set, two rows each: observations, the second "
-      "and further ones of what is found; truth and what is found. The scale "
-      "of a row is that of its first panel, or reaches further.",
+      "The first {} of the test set, in pairs: what is observed and the truth; "
+      "then what each method finds, x, and what is observed of it, y. All x "
+      "have the scale of the truth, or one that reaches further, and so have "
+      "all y. Methods that were run with several settings are shown with "
+      "one.",
       examples == 1 ? "example" : fmt::format("{} examples", examples));
   return figure;
 }

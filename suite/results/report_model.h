@@ -109,6 +109,10 @@ struct Panel {
   std::optional<Field2D> field;  ///< drawn below the series
   std::optional<Arrows> arrows = {};
   std::optional<double> y_min, y_max;
+  std::optional<double> x_min = {}, x_max = {};
+  /// Shows a place without ticks: one unit is as long along x as along y. Has a
+  /// field, whose cells are squares, or all four limits.
+  bool space = false;
 };
 
 struct Figure {
@@ -120,6 +124,9 @@ struct Figure {
   std::string note;
   /// So many panels after each other are one moment of a film; 0: no film.
   int moment = 0;
+  /// Shows what the problem is about; stands before the paper's figures. One
+  /// without panels says in its note why there is nothing to draw.
+  bool picture = false;
 };
 
 /// Whose claim it is: a sentence, number or figure of the paper, or a range

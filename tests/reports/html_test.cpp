@@ -233,11 +233,28 @@ TEST(ReportHtml, FiguresAreInThePapersOrder) {
                       figure("Table 2"),
                       figure("Fig. 4b")}),
             (Order{3, 2, 5, 0, 1, 4}));
+  Figure drawn = figure("Fig. 20");
+  drawn.picture = true;
+  EXPECT_EQ(order_of({figure("Fig. 1"), drawn}), (Order{1, 0}));
   Section own = section("jpo/toy");
   own.figures = {figure("Fig. 9"), figure("Fig. 2")};
   const std::string page = report_html({own}, provenance());
   EXPECT_LT(page.find("<figure id=\"jpo-toy-Fig--2\">"),
             page.find("<figure id=\"jpo-toy-Fig--9\">"));
+}
+
+TEST(ReportHtml, APictureWithoutPanelsSaysWhy) {
+  Section own = section("jpo/toy");
+  own.figures = {{.id = "picture",
+                  .title = "P",
+                  .note = "Unknowns are not stored.",
+                  .picture = true}};
+  const std::string page = report_html({own}, provenance());
+  const std::string figure = between(
+      page, "<figure id=\"jpo-toy-picture\" class=\"picture\">", "</figure>");
+  EXPECT_NE(figure.find("Unknowns are not stored."), figure.npos);
+  EXPECT_EQ(figure.find("not run"), figure.npos);
+  EXPECT_EQ(figure.find("<svg"), figure.npos);
 }
 
 TEST(ReportHtml, TablesPutThePaperBeside) {

@@ -20,6 +20,7 @@ from browser import WIDTHS, Browser, installed
 
 PROGRAM, STORE, SOURCES = (os.path.abspath(p) for p in sys.argv[1:4])
 LARGEST_INDEX = 150_000
+LARGEST_PICTURES = 200_000  # of an experiment
 MOST_ELEMENTS = 5_000
 LONGEST_LOAD_MS = 1_000
 MOST_SHEETS = 30
@@ -74,6 +75,24 @@ def legends(path):
         names = [name for _, name in entries]
         check(len(set(samples)) == len(samples), f"{path}: alike in {names}")
         count += len(entries)
+    return count
+
+
+def drawn(pages):
+    """Pictures of what problems are about: light, and each with its words."""
+    count = 0
+    for path in pages:
+        found = re.findall(r'<figure id="[^"]+" class="picture">.*?</figure>',
+                           read(path), re.S)
+        size = sum(len(figure) for figure in found)
+        check(size <= LARGEST_PICTURES, f"{path}: pictures of {size} bytes")
+        for figure in found:
+            panels = re.findall(r'<svg (?!class="sample")[^>]*role="img".*?</svg>',
+                                figure, re.S)
+            check(panels or "not stored" in figure, f"{path}: an empty picture")
+            check(all("<title>" in panel for panel in panels),
+                  f"{path}: a picture without a name")
+            count += len(panels)
     return count
 
 
@@ -150,6 +169,9 @@ def main():
                       f"the index has {os.path.getsize(index)} bytes")
             if not flags:
                 check(len(pages) > 40, f"{len(pages)} pages")
+                panels = drawn(pages)
+                check(panels > 60, f"{panels} panels of pictures")
+                print(f"{panels} panels of pictures")
                 check(cards(index) > 40, f"{cards(index)} cards with a picture")
             looked_at = [index] + ([] if flags else pages)
             found = sum(links(path) for path in looked_at)

@@ -190,6 +190,40 @@ TEST(RenderSvg, FieldsArePixels) {
   EXPECT_EQ(is.rgba[5][3], 0);
 }
 
+/// Width and height of the last frame, a panel's: its colour bar comes before.
+std::array<double, 2> frame_of(const std::string& svg) {
+  const auto at = svg.rfind("class=\"frame\"");
+  const auto number = [&](const char* name) {
+    return std::stod(svg.substr(svg.find(name, at) + std::strlen(name)));
+  };
+  return {number(" width=\""), number(" height=\"")};
+}
+
+// One unit is as long along x as along y, whatever the panel's width, and a
+// point has its place.
+TEST(RenderSvg, PlacesKeepTheirShape) {
+  Panel panel{.title = "p",
+              .y_min = 0,
+              .y_max = 2,
+              .x_min = -1,
+              .x_max = 4,
+              .space = true};
+  panel.series.push_back(
+      {.label = "s", .x = {-1, 4}, .y = {0, 2}, .style = PlotStyle{}});
+  Figure figure = one_panel(panel);
+  const auto [w, h] = frame_of(render_svg(figure));
+  EXPECT_NEAR(h / w, 2.0 / 5, 1e-3);
+  EXPECT_EQ(count(render_svg(figure), "class=\"tick\""), 0U);
+  figure.panels.assign(3, panel), figure.columns = 3;
+  const auto [narrow, low] = frame_of(render_svg(figure));
+  EXPECT_LT(narrow, w);
+  EXPECT_NEAR(low / narrow, 2.0 / 5, 1e-3);
+  panel.field = Field2D{.x = {0, 1, 2}, .y = {0, 1, 2, 3, 4, 5}};
+  panel.field->values.assign(18, 1);
+  const auto [a, b] = frame_of(render_svg(one_panel(panel)));
+  EXPECT_NEAR(b / a, 2, 1e-3) << "cells are squares";
+}
+
 TEST(RenderSvg, WideNamesOfColumnsStandUpright) {
   Panel panel;
   panel.field = Field2D{.x = {0, 1}, .y = {0}, .values = {0, 1}};

@@ -211,6 +211,17 @@ TEST(VegaLite, LimitsOfALogAxisArePositive) {
   EXPECT_EQ(scale().at("domain"), (Json{0.1, 1.0}));
 }
 
+TEST(VegaLite, PlacesHaveTheirLimitsAndShape) {
+  Figure f = figure();
+  Panel& p = f.panels[0];
+  p.x_log = p.y_log = false, p.field.reset();
+  p.x_min = 0, p.x_max = 2, p.y_min = 0, p.y_max = 1, p.space = true;
+  const Json panel = vega_lite(f).at("concat").at(0);
+  EXPECT_EQ(panel.at("width").get<int>(), 2 * panel.at("height").get<int>());
+  const Json& encoding = panel.at("layer").at(0).at("encoding");
+  EXPECT_EQ(encoding.at("x").at("scale").at("domain"), (Json{0.0, 2.0}));
+}
+
 TEST(FigureCsv, HasALineForEachPointAndCell) {
   const std::string csv = to_csv(figure());
   EXPECT_EQ(csv.substr(0, csv.find('\n')), "panel,series,x,y,from,to,value");

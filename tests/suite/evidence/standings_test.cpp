@@ -11,27 +11,30 @@
 namespace physinv {
 namespace {
 
-constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr double kInfiniteLoss = std::numeric_limits<double>::infinity();
 
 TEST(RunningTime, AllThatWasSpentOverWhatWasSolved) {
-  const RunningTime time = expected_running_time({2, kInf, 4}, {2, 10, 4}, "a");
+  const RunningTime time =
+      expected_running_time({2, kInfiniteLoss, 4}, {2, 10, 4}, "a");
   EXPECT_DOUBLE_EQ(time.expected, 8);
   EXPECT_EQ(time.solved, 2U);
   EXPECT_EQ(time.problems, 3U);
   EXPECT_LT(time.low, 8);
   EXPECT_GT(time.high, 8);
-  EXPECT_EQ(expected_running_time({kInf}, {10}, "a").expected, kInf);
+  EXPECT_EQ(expected_running_time({kInfiniteLoss}, {10}, "a").expected,
+            kInfiniteLoss);
 }
 
 TEST(RunningTime, WhatNobodyKnowsMakesNoValue) {
   const double unknown = std::numeric_limits<double>::quiet_NaN();
   const RunningTime time =
-      expected_running_time({2, kInf, 4}, {2, unknown, 4}, "a");
+      expected_running_time({2, kInfiniteLoss, 4}, {2, unknown, 4}, "a");
   for (const double value : {time.expected, time.low, time.high})
     EXPECT_TRUE(std::isnan(value));
   EXPECT_EQ(time.solved, 2U);
   EXPECT_EQ(time.problems, 3U);
-  EXPECT_EQ(expected_running_time({kInf}, {unknown}, "a").expected, kInf)
+  EXPECT_EQ(expected_running_time({kInfiniteLoss}, {unknown}, "a").expected,
+            kInfiniteLoss)
       << "never, whatever it took";
 }
 
@@ -54,8 +57,8 @@ TEST(RunningTime, TheIntervalHoldsAndRepeatsItself) {
 TEST(ProfileScore, IsTheAreaUpToAFactorOfFour) {
   EXPECT_DOUBLE_EQ(profile_score({1, 1}), 1);
   EXPECT_DOUBLE_EQ(profile_score({1, 4}), 0.5);
-  EXPECT_DOUBLE_EQ(profile_score({2.5, kInf}), 0.25);
-  EXPECT_DOUBLE_EQ(profile_score({kInf}), 0);
+  EXPECT_DOUBLE_EQ(profile_score({2.5, kInfiniteLoss}), 0.25);
+  EXPECT_DOUBLE_EQ(profile_score({kInfiniteLoss}), 0);
   EXPECT_EQ(profile_score({}), 0);
 }
 
@@ -83,7 +86,8 @@ CommonRuns runs_of(const std::vector<std::vector<double>>& losses) {
 }
 
 TEST(Standings, RanksByProblemAndPairs) {
-  const auto common = runs_of({{0.5, 0.4, kInf}, {0.1, 0.1, 0.1}, {0, 1, 0.1}});
+  const auto common =
+      runs_of({{0.5, 0.4, kInfiniteLoss}, {0.1, 0.1, 0.1}, {0, 1, 0.1}});
   const Standings s = standings(common);
   EXPECT_EQ(s.problems, 3U);
   EXPECT_EQ(s.order, (std::vector<std::size_t>{1, 2, 0}));
@@ -100,7 +104,7 @@ TEST(Standings, RanksByProblemAndPairs) {
 }
 
 TEST(Standings, WhoFailedIsNowhereTheLowest) {
-  auto common = runs_of({{0.5, kInf}, {0.1, kInf}});
+  auto common = runs_of({{0.5, kInfiniteLoss}, {0.1, kInfiniteLoss}});
   EXPECT_DOUBLE_EQ(standings(common).lowest[0], 0);
   EXPECT_DOUBLE_EQ(standings(common).lowest[1], 0.5) << "nobody has a number";
   // With a finite loss when it failed.
@@ -171,7 +175,7 @@ TEST(Standings, ASentenceWithWhatWasShown) {
 }
 
 TEST(Standings, TablesOfAnExperiment) {
-  const auto common = runs_of({{0.5, 0.5, kInf}, {0, 0.1, 0.1}});
+  const auto common = runs_of({{0.5, 0.5, kInfiniteLoss}, {0, 0.1, 0.1}});
   Section section;
   add_standings(section, common, {{"a", "BFGS"}});
   ASSERT_EQ(section.tables.size(), 3U);

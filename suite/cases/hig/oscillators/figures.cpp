@@ -86,10 +86,16 @@ Panel time_evolution(const Answered& answer, std::string title) {
   const OscillatorsOptions physics;
   const char* const names[] = {"x1", "x2", "p1", "p2"};
   Panel panel{.title = std::move(title), .x_label = "time"};
-  Series control{.label = "control u", .method = "u", .dashed = true};
+  constexpr Hue kHues[] = {Hue::blue, Hue::orange, Hue::teal, Hue::pink};
+  Series control{.label = "control u",
+                 .method = "u",
+                 .dashed = true,
+                 .style = PlotStyle{Hue::grey, Marker::circle}};
   std::vector<Series> states;
-  for (const char* name : names)
-    states.push_back({.label = name, .method = name});
+  for (std::size_t k = 0; k < 4; ++k)
+    states.push_back({.label = names[k],
+                      .method = names[k],
+                      .style = PlotStyle{kHues[k], Marker::circle}});
   std::array<double, 4> state{};
   std::copy_n(answer.given.data(), 4, state.begin());
   for (Index n = 0; n <= answer.x.size(); ++n) {
@@ -116,11 +122,11 @@ Panel time_evolution(const Answered& answer, std::string title) {
 
 Figure evolution_figure(const Evidence& e,
                         const std::vector<MethodLine>& lines) {
-  Figure figure{
-      .id = "fig2a",
-      .title = "Time evolution controlled by a network",
-      .where = "Fig. 2a",
-      .note = "First example of the test set; marks: what is wanted."};
+  Figure figure{.id = "fig2a",
+                .title = "Time evolution controlled by a network",
+                .where = "Fig. 2a",
+                .note = "First example of the test set; marks: what is wanted.",
+                .picture = true};
   for (const MethodLine& line : lines)
     if (const auto answer = answer_of(e, line.method))
       figure.panels.push_back(time_evolution(*answer, line.label));

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <initializer_list>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "problems/grid_poisson/grid_poisson.h"
@@ -148,8 +149,11 @@ Figure fields(const Evidence& e, const std::vector<MethodLine>& lines) {
   Figure figure{.id = "fig3a",
                 .title = "Source and inferred potentials",
                 .where = "Fig. 3a",
-                .columns = 3,
-                .note = "First example of the test set."};
+                .columns = 4,
+                .note =
+                    "First example of the test set. All potentials have "
+                    "one scale.",
+                .picture = true};
   for (const MethodLine& line : lines) {
     const auto answer = answer_of(e, line.method);
     if (!answer) continue;
@@ -160,7 +164,10 @@ Figure fields(const Evidence& e, const std::vector<MethodLine>& lines) {
     }
     figure.panels.push_back(cells(line.label, answer->x));
   }
-  if (figure.panels.empty()) figure.panels.emplace_back();  // reads "not run"
+  if (!figure.panels.empty())
+    share_scale(std::span(figure.panels).subspan(1));
+  else
+    figure.panels.emplace_back();  // reads "not run"
   return figure;
 }
 

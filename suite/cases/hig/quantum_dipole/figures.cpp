@@ -11,6 +11,7 @@
 #include "suite/cases/hig/quantum_dipole/metrics.h"
 #include "suite/core/any_problem.h"
 #include "suite/evidence/cell.h"
+#include "suite/evidence/field_panel.h"
 #include "suite/evidence/training.h"
 #include "suite/evidence/training_report.h"
 #include "suite/harness/registry.h"
@@ -189,8 +190,14 @@ Panel at_the_end(const Answered& answer, std::string title) {
   Workspace work;
   Batch<double> psi(answer.wanted.size(), 1);
   dipole.forward(answer.x, Batch<double>(0, 1), psi, work);
-  Series found{.label = "reached", .method = "reached", .markers = true},
-      wanted{.label = "wanted", .method = "wanted", .dashed = true};
+  Series found{.label = "reached",
+               .method = "reached",
+               .markers = true,
+               .style = PlotStyle{Hue::blue, Marker::circle}},
+      wanted{.label = "wanted",
+             .method = "wanted",
+             .dashed = true,
+             .style = PlotStyle{Hue::ink, Marker::cross}};
   for (Index j = 0; j < psi.rows() / 2; ++j) {
     const double x = 2.0 * static_cast<double>(j + 1) / 15;
     found.x.push_back(x), wanted.x.push_back(x);
@@ -204,7 +211,9 @@ Panel at_the_end(const Answered& answer, std::string title) {
 }
 
 Panel control(const Answered& answer, std::string title) {
-  Series u{.label = "u", .method = "u"};
+  Series u{.label = "u",
+           .method = "u",
+           .style = PlotStyle{Hue::teal, Marker::circle}};
   for (Index n = 0; n < answer.x.size(); ++n) {
     u.x.push_back(QuantumDipoleOptions{}.dt * static_cast<double>(n));
     u.y.push_back(answer.x(n));
@@ -220,7 +229,8 @@ Figure transitions(const Evidence& e, const std::vector<MethodLine>& lines) {
                 .title = "Transition controlled by a network",
                 .where = "Fig. 4a",
                 .columns = 3,
-                .note = "First example of the test set."};
+                .note = "First example of the test set.",
+                .picture = true};
   for (const MethodLine& line : lines) {
     const auto answer = answer_of(e, line.method);
     if (!answer) continue;
@@ -228,6 +238,7 @@ Figure transitions(const Evidence& e, const std::vector<MethodLine>& lines) {
     figure.panels.push_back(at_the_end(*answer, line.label));
     figure.panels.push_back(control(*answer, line.label));
   }
+  share_scale(figure.panels);
   if (figure.panels.empty()) figure.panels.emplace_back();  // reads "not run"
   return figure;
 }

@@ -36,6 +36,20 @@ Index JpoReport::largest_size() const {
   return largest == 0 && !all.empty() ? all.back() : largest;
 }
 
+Figure JpoReport::picture() const {
+  const Index n = largest_size();
+  std::vector<PicturedMethod> methods;
+  for (const auto& method : with_bfgs())
+    methods.push_back(
+        {method_title(method), jpo::at(jpo::ending(method, true), n)});
+  const auto problem =
+      registry().find(evidence_.experiment)->problem.make<double>();
+  PictureOptions drawn = options_.picture;
+  drawn.note += " BFGS refines what networks find.";
+  return physinv::picture(
+      drawn, pictured(evidence_, methods, problem->start(), drawn.worth));
+}
+
 Figure curves_with_descent(JpoReportOptions options,
                            FigureRef figure,
                            const Evidence& e) {
@@ -53,18 +67,21 @@ Section jpo_section(const JpoReportOptions& options, const Evidence& e) {
   std::map<std::string, std::string> titles;
   for (const auto& method : e.results.methods(e.experiment))
     titles[method] = method_title(method);
-  return {.tables = {report.seconds(),
-                     report.fit_share(),
-                     report.better_equal(false),
-                     report.better_equal(true),
-                     report.results_table()},
-          .figures = {report.fraction(),
-                      report.improvement(),
-                      report.curves(),
-                      report.trajectories(),
-                      report.weight_change()},
-          .claims = {},
-          .method_titles = std::move(titles)};
+  Section section{.tables = {report.seconds(),
+                             report.fit_share(),
+                             report.better_equal(false),
+                             report.better_equal(true),
+                             report.results_table()},
+                  .figures = {report.fraction(),
+                              report.improvement(),
+                              report.curves(),
+                              report.trajectories(),
+                              report.weight_change()},
+                  .claims = {},
+                  .method_titles = std::move(titles)};
+  if (options.picture.draw)
+    section.figures.insert(section.figures.begin(), report.picture());
+  return section;
 }
 
 }  // namespace physinv

@@ -9,6 +9,7 @@
 
 #include "suite/cases/jpo/common/values.h"
 #include "suite/evidence/cell.h"
+#include "suite/evidence/picture.h"
 #include "suite/results/published.h"
 #include "suite/results/report_model.h"
 #include "suite/results/results.h"
@@ -38,6 +39,7 @@ struct JpoReportOptions {
   FigureRef curves{"fig12", "Fig. 12"};
   FigureRef trajectories{"fig13", "Fig. 13"};
   FigureRef weight_change{"fig14", "Fig. 14"};
+  PictureOptions picture = {};  ///< how x is drawn; none without `draw`
 };
 
 /// The paper's colours.
@@ -63,6 +65,8 @@ class JpoReport {
   Table better_equal(bool refined) const;  ///< Table 4, refined Table 5
   Table results_table() const;             ///< per n and method
 
+  /// A problem of the largest set: BFGS and what refines the networks' answers.
+  Figure picture() const;
   Figure fraction() const;       ///< f_N over n of JPO and gradient descent
   Figure improvement() const;    ///< loss and f_N, before and after
   Figure curves() const;         ///< loss over iterations for four n

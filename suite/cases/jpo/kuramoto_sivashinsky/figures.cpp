@@ -11,6 +11,7 @@
 #include "suite/cases/jpo/common/values.h"
 #include "suite/evidence/cell.h"
 #include "suite/evidence/landscape.h"
+#include "suite/evidence/picture.h"
 #include "suite/evidence/series.h"
 #include "suite/harness/networks.h"
 #include "suite/harness/registry.h"
@@ -26,21 +27,51 @@ Samples<double> example(const Problem<double>& physics) {
   return physics.sample(0, 1, Rng::root(kName, 0).child("data/test"));
 }
 
-/// Fig. 5a: one trajectory.
-Figure trajectory() {
+/// u(x, t), of each so many steps and cells one.
+Field2D evolution(const Vector<double>& x,
+                  const Vector<double>& given,
+                  Index every = 1) {
   const KuramotoSivashinskyOptions options;
-  const Samples<double> s =
-      example(*problems::kuramoto_sivashinsky().make<double>());
-  const Batch<double> u = kuramoto_sivashinsky_trajectory<double>(
-      options, s.x.col(0), s.given.col(0));
-  Field2D field{.label = "u"};
-  for (Index k = 0; k < u.cols(); ++k)
+  const Batch<double> u =
+      kuramoto_sivashinsky_trajectory<double>(options, x, given);
+  Field2D field;
+  for (Index k = 0; k < u.cols(); k += every)
     field.x.push_back(static_cast<double>(k) * options.time_step);
-  for (Index j = 0; j < u.rows(); ++j) {
+  for (Index j = 0; j < u.rows(); j += every) {
     field.y.push_back((static_cast<double>(j) + 0.5) * options.box /
                       static_cast<double>(options.cells));
-    for (Index k = 0; k < u.cols(); ++k) field.values.push_back(u(j, k));
+    for (Index k = 0; k < u.cols(); k += every) field.values.push_back(u(j, k));
   }
+  return field;
+}
+
+/// What alpha and beta make of the first state.
+Panel run_from(const FoundBy& found, const Pictured& problem) {
+  Panel panel{.title = fmt::format(
+                  "{}: α {:.4g}, β {:.4g}", found.who, found.x(0), found.x(1)),
+              .x_label = "t",
+              .y_label = "x",
+              .field = evolution(found.x, problem.given, 2)};
+  for (double& u : panel.field->values) u = few_digits(u);
+  return panel;
+}
+
+PictureOptions evolutions() {
+  return {.title =
+              "u(x, t) with the true forcing α and advection β, the "
+              "first guess, and what each method finds",
+          .note =
+              "All begin with the same state; methods are given its end "
+              "with the true values, at t = 25.",
+          .draw = run_from};
+}
+
+/// Fig. 5a: one trajectory.
+Figure trajectory() {
+  const Samples<double> s =
+      example(*problems::kuramoto_sivashinsky().make<double>());
+  Field2D field = evolution(s.x.col(0), s.given.col(0));
+  field.label = "u";
   return {
       .id = "fig5a",
       .title = "A trajectory u(x, t)",
@@ -149,7 +180,8 @@ Section report(const Evidence& e) {
                                  .improvement = {"fig15", "Fig. 15"},
                                  .curves = {"fig16", "Fig. 16"},
                                  .trajectories = {"fig17", "Fig. 17"},
-                                 .weight_change = {"fig18", "Fig. 18"}};
+                                 .weight_change = {"fig18", "Fig. 18"},
+                                 .picture = evolutions()};
   Section section = jpo_section(options, e);
   section.figures.insert(
       section.figures.begin(),

@@ -84,8 +84,12 @@ struct Said {
   std::string who;
   Batch<double> x;
 };
+Batch<double> first_guess() {
+  return problems::navier_stokes().make<double>()->start();
+}
 std::vector<Said> said(const Evidence& e, const CaseRecord& first, Index n) {
-  std::vector<Said> all = {{"truth", first.data.x.leftCols(1)}};
+  std::vector<Said> all = {{"truth", first.data.x.leftCols(1)},
+                           {"start", first_guess()}};
   const auto add = [&](const std::string& who, const Select& runs) {
     for (const Run& run : find_runs(e, at(runs, n)))
       if (run.seed() == 0 && run.stage->x.cols() > 0)
@@ -122,7 +126,8 @@ Figure pictures(const CaseRecord& first, const std::vector<Said>& all) {
                 .note =
                     "Speed, first problem of the largest set of seed 0. "
                     "The truth blows into the flow that is given, whose "
-                    "lower half is hidden."};
+                    "lower half is hidden.",
+                .picture = true};
   figure.panels.push_back(observed("observed", first.data.y.col(0)));
   const Index steps = NavierStokesOptions{}.steps;
   for (const auto& [who, x] : all)
@@ -134,7 +139,9 @@ Figure pictures(const CaseRecord& first, const std::vector<Said>& all) {
 
 /// The same on its way, for the networks' unrefined answers.
 Figure film(const CaseRecord& first, std::vector<Said> all) {
-  std::erase_if(all, [](const Said& s) { return s.who.ends_with("refined"); });
+  std::erase_if(all, [](const Said& s) {
+    return s.who == "start" || s.who.ends_with("refined");
+  });
   Figure figure{.id = "film",
                 .title = "The blast on its way",
                 .where = "Fig. 6b",

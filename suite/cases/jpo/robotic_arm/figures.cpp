@@ -1,4 +1,4 @@
-// Fig. 25 of the JPO paper, beside what all its experiments show.
+// Poses and Fig. 25 of the JPO paper, beside what all its experiments show.
 #include <fmt/format.h>
 
 #include <array>
@@ -11,6 +11,7 @@
 #include "suite/cases/jpo/common/report.h"
 #include "suite/core/math.h"
 #include "suite/evidence/landscape.h"
+#include "suite/evidence/picture.h"
 #include "suite/evidence/series.h"
 #include "suite/harness/registry.h"
 
@@ -67,6 +68,51 @@ Figure landscape() {
           "Target ({}, {}), all other unknowns 0.", kTarget[0], kTarget[1])};
 }
 
+/// The arm on its rail; the title tells how far the tip is from the target.
+Panel pose(const FoundBy& found, const Pictured& problem) {
+  const auto joints =
+      arm_joints({found.x(0), found.x(1), found.x(2), found.x(3)});
+  const double miss = math::hypot(joints.back()[0] - problem.y(0),
+                                  joints.back()[1] - problem.y(1));
+  Panel panel{.title = fmt::format("{}: {:.2g} off", found.who, miss),
+              .y_min = -1,
+              .y_max = 1,
+              .x_min = -0.3,
+              .x_max = 2.2,
+              .space = true};
+  if (miss < 1e-3) panel.title = found.who + ": on target";
+  panel.series.push_back({.label = "rail",
+                          .method = "rail",
+                          .x = {0, 0},
+                          .y = {-1, 1},
+                          .style = PlotStyle{Hue::grey, Marker::circle}});
+  Series arm{.label = "arm",
+             .method = "arm",
+             .markers = true,
+             .style = PlotStyle{Hue::blue, Marker::circle}};
+  for (const auto& joint : joints) {
+    arm.x.push_back(few_digits(joint[0]));
+    arm.y.push_back(few_digits(joint[1]));
+  }
+  panel.series.push_back(std::move(arm));
+  panel.series.push_back(mark("target",
+                              "target of the tip",
+                              few_digits(problem.y(0)),
+                              few_digits(problem.y(1)),
+                              PlotStyle{Hue::ink, Marker::cross}));
+  return panel;
+}
+
+PictureOptions poses() {
+  return {.title =
+              "The arm: a pose that reaches, the first guess, and the "
+              "pose that each method finds",
+          .note =
+              "The base slides on the rail; the title says how far the "
+              "tip is from the target, which many poses reach.",
+          .draw = pose};
+}
+
 Section report(const Evidence& e) {
   const JpoReportOptions options{
       .solved = 1e-12,
@@ -75,7 +121,8 @@ Section report(const Evidence& e) {
       .improvement = {"fig25d", "Fig. 25d (loss after refinement)"},
       .curves = {"fig25c", "Fig. 25c"},
       .trajectories = {"trajectories", ""},
-      .weight_change = {"weight_change", ""}};
+      .weight_change = {"weight_change", ""},
+      .picture = poses()};
   Section section = jpo_section(options, e);
   // The paper has no table of this experiment.
   for (Table& table : section.tables) table.where.clear();

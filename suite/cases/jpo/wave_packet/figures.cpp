@@ -8,6 +8,7 @@
 #include "suite/cases/jpo/common/report.h"
 #include "suite/core/any_problem.h"
 #include "suite/evidence/landscape.h"
+#include "suite/evidence/picture.h"
 #include "suite/harness/registry.h"
 
 namespace physinv::jpo::wave_packet {
@@ -70,6 +71,44 @@ Figure landscape(const Example& e) {
           .note = fmt::format("The signal above: t0 = {:.1f}.", e.centre())};
 }
 
+/// The signal, and the packet where it is said to be.
+Panel packet_found(const FoundBy& found, const Pictured& problem) {
+  const WavePacketOptions o;
+  const AnyProblem<double> physics(problems::wave_packet(o));
+  const Index samples = problem.y.size();
+  Batch<double> y(samples, 1);
+  Workspace work;
+  physics.forward(found.x, Vector<double>::Zero(samples), y, work);
+  Series signal{.label = "observed",
+                .method = "signal",
+                .style = PlotStyle{Hue::grey, Marker::circle}},
+      packet{.label = "packet at t0",
+             .method = "packet",
+             .style = PlotStyle{Hue::blue, Marker::circle}};
+  for (Index i = 0; i < samples; ++i) {
+    const double t = static_cast<double>(i + 1);
+    signal.x.push_back(t), packet.x.push_back(t);
+    signal.y.push_back(few_digits(problem.y(i)));
+    packet.y.push_back(few_digits(y(i, 0)));
+  }
+  return {.title = fmt::format(
+              "{}: t0 = {:.1f}", found.who, o.centre + o.scale * found.x(0)),
+          .x_label = "t",
+          .series = {std::move(signal), std::move(packet)},
+          .y_min = -1.5,
+          .y_max = 1.5,
+          .x_min = 1,
+          .x_max = static_cast<double>(samples)};
+}
+
+PictureOptions packets() {
+  return {.title =
+              "One signal: the packet where it is, at the first guess, "
+              "and where each method finds it",
+          .note = "Grey: the signal that methods are given, with its noise.",
+          .draw = packet_found};
+}
+
 JpoReportOptions report_options() {
   return {.solved = within_of_truth(1 / WavePacketOptions{}.scale),
           .curve_sizes = {},
@@ -79,7 +118,8 @@ JpoReportOptions report_options() {
           .improvement = {"fig7", "Fig. 7"},
           .curves = {"fig8", "Fig. 8"},
           .trajectories = {"fig9", "Fig. 9"},
-          .weight_change = {"fig10", "Fig. 10"}};
+          .weight_change = {"fig10", "Fig. 10"},
+          .picture = packets()};
 }
 
 /// Fig. 3c: gradient descent beside BFGS and JPO, at the largest n.

@@ -48,7 +48,8 @@ Figure predictions(const Evidence& e) {
           .where = "Fig. 2",
           .panels = {std::move(panel)},
           .columns = 1,
-          .note = "Networks of the first seed on the test set."};
+          .note = "Networks of the first seed on the test set.",
+          .picture = true};
 }
 
 Section report(const Evidence& e) {

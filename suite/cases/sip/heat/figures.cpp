@@ -152,7 +152,6 @@ Figure pictures(const Evidence& e) {
       e,
       lines,
       {.where = "Fig. 10",
-       .examples = 2,
        .picture = picture,
        .observe = [&](const Answered& a) { return observed(*physics, a); }});
 }

@@ -44,7 +44,6 @@ Section report(const Domain& domain, const Evidence& e) {
       e,
       kLines,
       {.where = "Fig. 9",
-       .examples = 3,
        .picture =
            [&](std::string title, const Vector<double>& field) {
              return field_panel(std::move(title), layout, field);

@@ -155,7 +155,8 @@ Section report(const Evidence& e) {
               .where = "Fig. 16a",
               .panels = {example(e, 0), example(e, 1)},
               .columns = 1,
-              .note = "Of the first seed, at the end."});
+              .note = "Of the first seed, at the end.",
+              .picture = true});
   Panel loss = curves.panel({kNetLine});
   add_levels(e, losses(), loss);
   curves.add({.id = "fig16b",
