@@ -81,7 +81,7 @@ std::vector<std::string> tables_of(const Json& section, const Json& digest) {
   for (const Json& table : section.at("tables"))
     tables.push_back(table.get<std::string>());
   const std::string paper = section.at("paper");
-  if (paper != section.at("experiment")) return tables;
+  if (section.at("experiment").get<std::string>() != paper) return tables;
   std::vector<Table> kept;
   for (const std::string& table : tables) kept.push_back(table_of(table, ""));
   for (const Table& joined : joined_tables(sections_of(digest), paper))
