@@ -1,6 +1,6 @@
-/// Ceres' gradient problem solver (S. Agarwal, K. Mierle, "Ceres Solver";
-/// ceres/gradient_problem_solver.h): line search along the directions of BFGS
-/// or L-BFGS, with its defaults but for the limit of iterations.
+/// Ceres' GradientProblemSolver (S. Agarwal, K. Mierle, "Ceres Solver"): line
+/// search along the directions of BFGS or L-BFGS, with its defaults but for the
+/// limit of iterations.
 #pragma once
 
 #include <cstdint>
