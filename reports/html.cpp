@@ -218,7 +218,10 @@ std::string section_page_html(const Section& section,
   Beside beside{.folder = "", .command = command_of(section, provenance)};
   beside.about = summary_html(own);
   if (!pictures.empty())
-    beside.pictures = "<h3>Figures as they were published</h3>\n";
+    beside.pictures =
+        "<h3>Figures as they were published</h3>\n<p class=\"remark\">There is "
+        "no picture of single problems: a published campaign does not store "
+        "the unknowns that were found.</p>\n";
   for (const Picture& p : pictures) beside.pictures += picture_html(p);
   parts.main = section_html(section, anchors[0], palette, beside);
   parts.footer = provenance_html(own);

@@ -89,7 +89,9 @@ def one_by_one(d):
     p = run("report", drawn, "--out=drawn", cwd=d)
     check(p.returncode == 0 and "were published" in p.stdout, p.stdout[-300:])
     with open(f"{d}/drawn/jpo-robotic-arm/index.html") as f:
-        pictures = f.read().count("data:image/svg+xml;base64,")
+        page = f.read()
+    check("does not store the unknowns" in page, "why there is no picture")
+    pictures = page.count("data:image/svg+xml;base64,")
     check(pictures == len(listing(os.path.join(drawn, "figures"))),
           f"{pictures} pictures")
     p = run("report", quick, "--check", "--out=one", cwd=d)

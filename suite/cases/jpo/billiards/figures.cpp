@@ -90,10 +90,10 @@ Panel shot(const FoundBy& found, const Pictured& problem) {
   const double miss = math::hypot(c.final_ball[0] - problem.y(0),
                                   c.final_ball[1] - problem.y(1));
   Panel panel{.title = fmt::format("{}: {:.2g} off", found.who, miss),
-              .y_min = -0.6,
-              .y_max = 1.4,
+              .y_min = -0.7,
+              .y_max = 1.7,
               .x_min = -0.4,
-              .x_max = 2.6,
+              .x_max = 2.9,
               .space = true};
   if (miss < 1e-3) panel.title = found.who + ": on target";
   add_ball("cue ball", {Hue::blue, Marker::circle}, cue, panel);
@@ -112,8 +112,8 @@ PictureOptions shots() {
               "method plays",
           .note =
               "Circles are the balls, dashed where they start, whole where "
-              "they come to rest; the title says how far from the target "
-              "that is.",
+              "they come to rest; the title says how far from the target the "
+              "other ball stops.",
           .worth = {first_guess_misses,
                     "whose first guess misses the other ball, where the "
                     "gradient is zero"},
