@@ -2,11 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <stdexcept>
 #include <string_view>
 #include <utility>
 
-/// Names and texts of claim_texts.S in turn, each ended by a zero.
+#include "suite/harness/errors.h"
+
+/// Names and texts of claim_texts.S.in in turn, each ended by a zero.
 extern "C" const char physinv_claim_texts[];
 
 namespace physinv {
@@ -17,15 +18,22 @@ std::vector<ClaimsOfExperiment> claims_of_folder(
     const std::string& experiment) {
   for (const char* at = physinv_claim_texts; *at != '\0';) {
     const std::string_view name = at, text = at + name.size() + 1;
-    if (name == folder)
-      return read_claims(text,
-                         fmt::format("suite/cases/{}/claims.md", folder),
-                         names,
-                         experiment);
+    if (name == folder) {
+      try {
+        return read_claims(text,
+                           fmt::format("suite/cases/{}/claims.md", folder),
+                           names,
+                           experiment);
+      } catch (const ClaimDocumentError& error) {
+        throw UsageError(error.what());
+      }
+    }
     at = text.data() + text.size() + 1;
   }
-  throw std::logic_error(
-      fmt::format("suite/cases/common/claim_texts.S lacks {}", folder));
+  throw UsageError(fmt::format(
+      "there is no suite/cases/{}/claims.md, which add_claims reads; write it, "
+      "or take add_claims out of the line in experiments.def",
+      folder));
 }
 
 void add_claims_of_folder(Registry& registry,
@@ -41,8 +49,8 @@ void add_claims_of_experiment(Registry& registry,
                               ClaimNames names) {
   auto all = claims_of_folder(folder, std::move(names), experiment);
   if (all.empty())
-    throw std::logic_error(
-        fmt::format("suite/cases/{}/claims.md lacks {}", folder, experiment));
+    throw UsageError(fmt::format(
+        "suite/cases/{}/claims.md has no part '{}'", folder, experiment));
   registry.add_claims(experiment, std::move(all.front().claims));
 }
 

@@ -10,8 +10,8 @@
 namespace physinv {
 
 /// Those of suite/cases/<folder>/claims.md, or of one of its experiments.
-/// Throws ClaimDocumentError, and std::logic_error of a folder that
-/// claim_texts.S does not list.
+/// Throws UsageError of a mistake in the text, with its place, and of a folder
+/// without one.
 std::vector<ClaimsOfExperiment> claims_of_folder(
     const std::string& folder,
     ClaimNames names = claim_names(),
@@ -23,7 +23,7 @@ void add_claims_of_folder(Registry& registry,
                           ClaimNames names = claim_names());
 
 /// Registers those of one experiment of the folder, with names that are its
-/// own. Throws std::logic_error if the document has none.
+/// own. Throws UsageError if the document has none.
 void add_claims_of_experiment(Registry& registry,
                               const std::string& folder,
                               const std::string& experiment,
