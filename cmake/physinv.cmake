@@ -219,6 +219,23 @@ function(physinv_layer_v3 name kind sources depends)
   endif()
 endfunction()
 
+# physinv_refuse_unlisted(<layer>...): every source in this folder is of one of
+# these layers, but for kernels.cpp and the folder `libraries`.
+function(physinv_refuse_unlisted)
+  file(GLOB_RECURSE found CONFIGURE_DEPENDS
+    RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  list(FILTER found EXCLUDE REGEX "(^|/)kernels\\.cpp$|^libraries/")
+  foreach(layer IN LISTS ARGN)
+    get_target_property(listed physinv_${layer} SOURCES)
+    list(REMOVE_ITEM found ${listed})
+  endforeach()
+  if(found)
+    list(JOIN found ", " found)
+    message(FATAL_ERROR "${CMAKE_CURRENT_SOURCE_DIR}/CMakeLists.txt does not "
+      "list ${found}; add it to the SOURCES of a layer")
+  endif()
+endfunction()
+
 # physinv_layers(<name> <layer>...): one name for several, for who takes them all.
 function(physinv_layers name)
   add_library(physinv_${name} INTERFACE)
