@@ -60,18 +60,35 @@ bool explains_failure(const Cause& cause) {
   return cause.as == Verdict::not_reproduced || is_explained(cause.as);
 }
 
-/// The verdict of what was measured, and the cause of it; `check` judges a
-/// condition of the cause.
+/// What a number in the text of a cause is, of a claim whose conditions were
+/// judged; `check` judges another condition.
 template <class F>
-void explain(const Cause& cause, F&& check, ClaimResult& out) {
-  if (cause.why.empty()) return;
-  if (out.verdict != Verdict::not_reproduced) {
-    if (out.verdict != Verdict::reproduced || explains_failure(cause))
-      out.cause = cause.why;
+ConditionResult measured(const Claim& claim,
+                         const CauseNumber& number,
+                         const ClaimResult& judged,
+                         F&& check) {
+  if (number.number) return check(*number.number);
+  for (std::size_t k = 0; k < judged.conditions.size(); ++k)
+    if (claim.conditions[k].label == number.label) return judged.conditions[k];
+  for (const Condition& c : claim.cause.shown_by)
+    if (c.label == number.label) return check(c);
+  return {};
+}
+
+/// The verdict of what was measured, and the cause of it; `check` judges a
+/// condition of the cause, or a number in its text.
+template <class F>
+void explain(const Claim& claim, F&& check, ClaimResult& out) {
+  const Cause& cause = claim.cause;
+  const bool fails = out.verdict == Verdict::not_reproduced;
+  if (cause.why.empty() || (fails && !explains_failure(cause)) ||
+      (out.verdict == Verdict::reproduced && !explains_failure(cause)))
     return;
-  }
-  if (!explains_failure(cause)) return;
-  out.cause = cause.why;
+  out.cause =
+      with_numbers(cause.why, cause.numbers, [&](const CauseNumber& number) {
+        return measured(claim, number, out, check);
+      });
+  if (!fails) return;
   out.verdict = cause.as;
   for (const Condition& c : cause.shown_by) {
     out.shown_by.push_back(check(c));
@@ -113,7 +130,7 @@ ClaimResult judge(const Claim& claim,
     out.verdict = outcome(out.conditions);
   }
   explain(
-      claim.cause, [&](const Condition& c) { return c.judge(evidence); }, out);
+      claim, [&](const Condition& c) { return c.judge(evidence); }, out);
   return out;
 }
 
@@ -151,7 +168,7 @@ ClaimResult judge_again(const Claim& claim,
   Kept all = kept.conditions;
   all.insert(all.end(), kept.shown_by.begin(), kept.shown_by.end());
   explain(
-      claim.cause,
+      claim,
       [&](const Condition& c) { return decide_again(c, all, remains); },
       out);
   return out;
@@ -181,7 +198,10 @@ std::string conditions_text(const Claim& claim) {
 }
 
 std::vector<Condition> all_conditions(const Claim& claim) {
-  return joined({claim.conditions, claim.cause.shown_by});
+  auto all = joined({claim.conditions, claim.cause.shown_by});
+  for (const CauseNumber& n : claim.cause.numbers)
+    if (n.number) all.push_back(*n.number);
+  return all;
 }
 
 std::vector<std::string> errors_of(const Claim& claim,

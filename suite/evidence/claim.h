@@ -20,6 +20,7 @@
 #include <utility>
 #include <vector>
 
+#include "suite/evidence/cause_numbers.h"
 #include "suite/evidence/condition.h"
 
 namespace physinv {
@@ -28,11 +29,12 @@ struct Cause {
   /// What a claim that fails comes to; of a claim that is not judged or only
   /// reported, that.
   Verdict as = Verdict::not_reproduced;
-  std::string why = {};
+  std::string why = {};  ///< numbers in braces as they are written
   /// What has to hold for it, so far as it was run: the same direction, the
   /// printed numbers that disagree. If it does not, the claim fails
   /// unexplained.
   std::vector<Condition> shown_by = {};
+  std::vector<CauseNumber> numbers = {};  ///< in the braces of `why`
 };
 
 /// Stronger or weaker than printed, the same direction, which `shown_by` tells;
@@ -111,7 +113,8 @@ std::int64_t cases_behind(const Claim& claim,
 /// "Adam / HIG > 2; updates to 0.1 in 55 .. 95"
 std::string conditions_text(const Claim& claim);
 
-/// Its own and those of its cause: what registration checks.
+/// Its own, those of its cause and the numbers in its text: what registration
+/// checks.
 std::vector<Condition> all_conditions(const Claim& claim);
 
 /// What is wrong with a claim by itself, one line each: no id, a claim of the

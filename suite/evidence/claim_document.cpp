@@ -202,6 +202,9 @@ class Reader {
       if (skip(text, c.word)) {
         set_once(claim_->cause.why, text, paragraph);
         claim_->cause.as = c.as;
+        if (parts_.back().experiments.empty()) return;  // nobody asks for it
+        cause_ = paragraph.part(c.word.size(), paragraph.text.size());
+        claim_->cause.numbers = numbers_of(cause_, names_);
         return;
       }
     set_once(claim_->says, text, paragraph);
@@ -283,7 +286,46 @@ class Reader {
     return all;
   }
 
+  /// Does a condition of the claim pass, or perhaps of its cause?
+  template <class F>
+  bool any_condition(bool of_cause, F&& passes) const {
+    const auto any = [&](const std::vector<Condition>& all) {
+      return std::any_of(all.begin(), all.end(), passes);
+    };
+    return any(claim_->conditions) || (of_cause && any(claim_->cause.shown_by));
+  }
+
+  /// Do the words stand in the claim's sentence, note or labels?
+  bool names(const std::string& words) const {
+    const auto in = [&](const std::string& text) {
+      return text.find(words) != std::string::npos;
+    };
+    return in(claim_->says) || in(claim_->note) ||
+           any_condition(false, [&](const Condition& c) {
+             return in(c.label) || in(c.shown);
+           });
+  }
+
+  /// What numbers in the cause ask of the rest of the claim.
+  void check_cause() const {
+    for (const CauseNumber& n : claim_->cause.numbers) {
+      const auto is_its = [&](const Condition& c) {
+        return c.label == n.label;
+      };
+      if (n.kind == CauseNumber::Kind::setting && n.of.empty() &&
+          !names(n.text))
+        fail(cause_.place(n.begin),
+             fmt::format("neither sentence, note nor a label has the setting "
+                         "'{}'; a study's has its name behind it",
+                         n.text));
+      if (!n.label.empty() && !any_condition(true, is_its))
+        fail(cause_.place(n.begin),
+             fmt::format("the claim has no condition '{}'", n.label));
+    }
+  }
+
   void end_claim() {
+    if (claim_) check_cause();
     if (claim_) parts_.back().claims.push_back(std::move(*claim_));
     claim_.reset();
   }
@@ -294,6 +336,7 @@ class Reader {
   std::size_t next_ = 0;
   std::vector<Part> parts_;
   std::optional<Claim> claim_;
+  PlacedText cause_;  ///< of this claim
 };
 
 }  // namespace

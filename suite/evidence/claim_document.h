@@ -32,7 +32,8 @@
 /// Relations: > >= < <=, `in a .. b`, `= a`, `= a +- b`, `near a`, `about a`,
 /// `as printed("name", seeds)`, `as stated(a, seeds)`, each perhaps followed by
 /// `of stages`; condition.h says what they are. Causes: Fails, Differs,
-/// Depends, Contradiction, Not run, Reported (claim.h).
+/// Depends, Contradiction, Not run, Reported (claim.h); numbers in their text
+/// stand in braces (cause_numbers.h).
 #pragma once
 
 #include <stdexcept>

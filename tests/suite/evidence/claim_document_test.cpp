@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "suite/evidence/bare_numbers.h"
 #include "suite/evidence/run_values.h"
 #include "suite/evidence/statistics.h"
 #include "suite/results/published.h"
@@ -76,7 +77,7 @@ TEST(ClaimDocument, HasClaimsWithPlaceProfileNoteAndCause) {
       "## P1 (Sec. 2.1 (b), Fig. 3) from smoke, no gate\nIt holds,\nas long\n"
       "  as it does\n\n- a: `mean(\"a\", loss()) < 3`\n"
       "- long\n  label: `mean(\"b\",\n  loss()) in 1 .. 7`\n\n"
-      "Note: Read so,\nand so.\n\nDiffers: by 2\n\n- b: `Two > 1`\n\n"
+      "Note: Read so,\nand so.\n\nDiffers: by {\"a\"}\n\n- b: `Two > 1`\n\n"
       "## A1\nAnother\n\n- a: `Two`\n\n"
       "## A2 no gate\nOne more\n\nNot run: an hour\n");
   ASSERT_EQ(all.size(), 3U);
@@ -87,7 +88,7 @@ TEST(ClaimDocument, HasClaimsWithPlaceProfileNoteAndCause) {
   EXPECT_EQ(all[0].says, "It holds, as long as it does");
   EXPECT_EQ(all[0].note, "Read so, and so.");
   EXPECT_EQ(all[0].cause.as, Verdict::differs);
-  EXPECT_EQ(all[0].cause.why, "by 2");
+  EXPECT_EQ(all[0].cause.why, "by {\"a\"}");
   ASSERT_EQ(all[0].conditions.size(), 2U);
   EXPECT_EQ(all[0].conditions[1].label, "long label");
   EXPECT_EQ(all[0].conditions[1].bounds, "in 1 .. 7");
@@ -97,6 +98,88 @@ TEST(ClaimDocument, HasClaimsWithPlaceProfileNoteAndCause) {
   EXPECT_EQ(all[1].conditions[0].bounds, "");
   EXPECT_FALSE(all[2].gates);
   EXPECT_EQ(all[2].cause.as, Verdict::not_judged);
+}
+
+/// What the cause says of a claim whose condition `a` fails.
+std::string cause(const std::string& text) {
+  const auto all = claims(
+      "## P1 (Sec. 1) from quick\nIt holds for n = 4\n\n"
+      "- a: `mean(\"a\", loss()) > 3`\n\nFails: " +
+      text + "\n\n- b: `mean(\"b\", loss())`\n");
+  return all.empty() ? "" : judged_claim(all.front()).cause;
+}
+std::string error_of_cause(const std::string& text) {
+  return error(
+      "## P1 (Sec. 1)\nIt holds for n = 4\n\n- a: `Two > 3`\n\n"
+      "Fails: " +
+      text + "\n");
+}
+
+TEST(ClaimDocument, FillsInTheNumbersOfACause) {
+  EXPECT_EQ(cause("is {\"a\"} and {\"b\"}"), "is 2 and 6");
+  EXPECT_EQ(cause("is {percent \"a\"} %"), "is 200 %");
+  EXPECT_EQ(cause("is {mean(\"b\", loss()) / mean(\"a\", loss()) of stages}"),
+            "is 3");
+  EXPECT_EQ(cause("of {runs \"a\"}"), "of 2");
+  EXPECT_EQ(cause("is {mean(\"none\", loss()) of stages}"), "is (not run)");
+  EXPECT_EQ(cause("with {setting(\"n = 4\")}, not {printed(5.50, \"Table\n"
+                  "4\")}, {printed(\"half\", \"Sec. 5\")}"),
+            "with n = 4, not 5.50, half");
+}
+
+TEST(ClaimDocument, WritesNumbersOfACauseAsInASentence) {
+  const auto written = [](const std::string& factor) {
+    return cause("{" + factor + " * mean(\"a\", loss()) of stages}");
+  };
+  EXPECT_EQ(written("28.9489"), "57.9");
+  EXPECT_EQ(written("0.11653"), "0.233");
+  EXPECT_EQ(written("680.6"), "1,360");
+  EXPECT_EQ(written("-6172"), "-12,344");
+  EXPECT_EQ(written("499.98"), "1,000");
+  EXPECT_EQ(written("0.49999999"), "1");
+  EXPECT_EQ(written("2.6e-6"), "5.2e-6");
+  EXPECT_EQ(written("1.2345e7"), "2.47e7");
+}
+
+TEST(ClaimDocument, NamesWhatIsWrongWithANumberOfACause) {
+  EXPECT_EQ(error_of_cause("is {\"c\"}"),
+            "claims.md:7:11: the claim has no condition 'c'");
+  EXPECT_NE(error_of_cause("is {setting(\"n = 5\")}").find("n = 5"),
+            std::string::npos);
+  EXPECT_TRUE(error_of_cause("is 12 %").starts_with(
+      "claims.md:7:11: nothing says where '12' comes from"));
+  for (const char* text : {"is {2}",
+                           "is {2",
+                           "is 2}",
+                           "is {{2}}",
+                           "is {}",
+                           "is {printed(2, \"\")}",
+                           "is {printed(\"half\", \"\")}",
+                           "is {printed(2)}",
+                           "is {\"a\" + 1}",
+                           "is {mean(\"a\", loss())}",
+                           "is {runs 2}",
+                           "is {percent 2}"})
+    EXPECT_NE(error_of_cause(text), "none") << text;
+}
+
+TEST(ClaimDocument, FindsBareNumbers) {
+  using Words = std::vector<std::string>;
+  const auto bare = [](const char* text) {
+    Words all;
+    for (const BareNumber& b : bare_numbers(text)) all.push_back(b.text);
+    return all;
+  };
+  EXPECT_EQ(bare("it is 2 (-3e-4 of 5 %)"), (Words{"2", "3e-4", "5"}));
+  EXPECT_EQ(bare("P11, x0 and L2 of Tables 4, 5 and Figs. 12b to 13"), Words());
+  EXPECT_EQ(bare("Table 4 prints 5; Sec. 3.2: 7"), (Words{"5;", "7"}));
+  EXPECT_EQ(bare("in Table 4, 7 % and Table 5 8 %"), (Words{"7", "8"}));
+  EXPECT_EQ(bare("Tables 4, 5 6"), Words{"6"});
+  EXPECT_EQ(bare("is {printed(5, \"Table 4\")} {\"a 2\"} 3 n=4 \u22655"),
+            (Words{"3", "4", "5"}));
+  EXPECT_EQ(bare("twice, two-thirds or a tenth; the one that attends"),
+            (Words{"twice,", "two-thirds", "tenth;"}));
+  EXPECT_EQ(bare_numbers("is -2").front().begin, 4U);
 }
 
 TEST(ClaimDocument, ComputesExpressions) {
