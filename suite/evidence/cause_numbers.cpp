@@ -162,7 +162,7 @@ std::string in_sentence(double value) {
   if (size < 1e5 && value == std::round(value)) return with_comma(value);
   if (size >= 1e-3 && size < 999.5) return fmt::format("{:.3g}", value);
   if (size >= 1 && size < 999'500) {
-    const double step = std::pow(10, std::floor(std::log10(size)) - 2);
+    const double step = size < 1e4 ? 10 : size < 1e5 ? 100 : 1000;
     return with_comma(std::round(value / step) * step);
   }
   const std::string text = fmt::format("{:.2e}", value);
