@@ -253,9 +253,10 @@ void expect_whole_curves(const Case& c,
 
 // Of five updates where it repeats itself.
 TEST_P(MethodContract, ObeysItsBudgetAndLeavesFiniteEstimates) {
-  if (looks()) GTEST_SKIP() << "is seen to where it repeats itself";
+  const auto lengths =
+      looks() ? std::vector<Index>{0} : std::vector<Index>{0, 1};
   for (const auto precision : precisions()) {
-    for (const Index iterations : {0, 1}) {
+    for (const Index iterations : lengths) {
       const Case c = make(3, iterations, precision);
       expect_finite(c, run(c), iterations);
     }
@@ -269,7 +270,7 @@ TEST_P(MethodContract, CurvesAreWholeAndOnlyWhatIsDeclaredIsTouched) {
 }
 
 TEST_P(MethodContract, RepeatsItselfForAnyThreadsAndWhenResumed) {
-  const Index iterations = looks() ? 0 : 5;
+  const Index iterations = looks() ? 12 : 5;
   for (const auto precision : precisions()) {
     const Case c = make(3, iterations, precision);
     const Runs runs = run_thrice(c, 2);
@@ -281,8 +282,8 @@ TEST_P(MethodContract, RepeatsItselfForAnyThreadsAndWhenResumed) {
         EXPECT_TRUE(runs.restored[i]);
       }
     }
-    expect_finite(c, runs.first, iterations);
-    if (looks()) expect_whole_curves(c, runs.first);
+    looks() ? expect_whole_curves(c, runs.first)
+            : expect_finite(c, runs.first, iterations);
   }
 }
 
