@@ -7,7 +7,7 @@ if(PHYSINV_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   # compiler knows a precompiled header again by all of its bytes.
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
     CCACHE_SLOPPINESS=pch_defines,time_macros CCACHE_COMMENTS=1
-    ${PHYSINV_CCACHE})
+    ${CMAKE_CURRENT_LIST_DIR}/cached.sh ${PHYSINV_CCACHE})
   add_compile_options($<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
 endif()
 
