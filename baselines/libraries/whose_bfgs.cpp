@@ -1,13 +1,12 @@
 #include "whose_bfgs.h"
 
-#include <cmath>
 #include <map>
 #include <optional>
 #include <utility>
 #include <vector>
 
-#include "suite/core/check.h"
 #include "suite/evidence/cell.h"
+#include "suite/evidence/shares.h"
 #include "suite/evidence/statistics.h"
 #include "suite/harness/registry.h"
 #include "suite/results/results.h"
@@ -16,23 +15,27 @@ namespace libraries {
 namespace {
 
 using physinv::Cell;
+using physinv::Equality;
 using physinv::Evidence;
 using physinv::Index;
 using physinv::Quantity;
 using physinv::Run;
 using physinv::Select;
+using physinv::Shares;
 
-constexpr Equal kTables{}, kSameEnd{.relative = 1e-3, .solved = 1e-6};
+/// By where solvers end, not by when they stop.
+constexpr Equality kSameEnd{.relative = 1e-3, .both_below = 1e-6};
 
 const Select kFit{"jpo", "fit"}, kRefined{"jpo", "refine"};
 
 physinv::RunValue against(const std::string& solver,
                           double (*share)(const Shares&),
-                          Equal equal = kTables) {
+                          Equality equality) {
   return [=](const Run& run) -> std::optional<double> {
     const auto other = run.beside({solver});
     if (!other) return {};
-    return share(shares(run.stage->loss, other->stage->loss, equal));
+    return share(
+        physinv::compare_losses(run.stage->loss, other->stage->loss, equality));
   };
 }
 
@@ -44,17 +47,21 @@ struct Column {
   const char* head;
   const Select& of;
   double (*share)(const Shares&);
-  Equal equal = kTables;
+  Equality equality = Equality::strict;
   const char* printed = "";
 };
 
 const std::vector<Column>& columns() {
   static const std::vector<Column> kColumns = {
-      {"better", kFit, better, kTables, "table4/jpo/better"},
-      {"equal", kFit, equal, kTables, "table4/jpo/equal"},
+      {"better", kFit, better, Equality::strict, "table4/jpo/better"},
+      {"equal", kFit, equal, Equality::strict, "table4/jpo/equal"},
       {"f", kFit, f},
-      {"refined better", kRefined, better, kTables, "table5/jpo/better"},
-      {"refined equal", kRefined, equal, kTables, "table5/jpo/equal"},
+      {"refined better",
+       kRefined,
+       better,
+       Equality::strict,
+       "table5/jpo/better"},
+      {"refined equal", kRefined, equal, Equality::strict, "table5/jpo/equal"},
       {"refined f", kRefined, f},
       {"refined f, same end", kRefined, f, kSameEnd}};
   return kColumns;
@@ -62,13 +69,12 @@ const std::vector<Column>& columns() {
 
 /// Solvers by themselves, in the order of the experiment.
 std::vector<std::string> solvers(const Evidence& e) {
+  const auto experiment = physinv::registry().find(e.experiment);
   std::vector<std::string> all;
-  for (const auto& method : physinv::registry().find(e.experiment)->methods)
+  for (const auto& method : experiment->methods)
     if (method.chain.front()->name() == "solve") all.push_back(method.id);
   for (const auto& id : e.results.methods(e.experiment))
-    if (physinv::find_method(*physinv::registry().find(e.experiment), id) ==
-        nullptr)
-      all.push_back(id);
+    if (physinv::find_method(*experiment, id) == nullptr) all.push_back(id);
   return all;
 }
 
@@ -84,13 +90,13 @@ physinv::Table table(const std::string& varied, const Evidence& e) {
           "f = better + equal / 2. Equal is bit by bit; in the last column "
           "also within 0.1 % of the solver's loss, and where both are below "
           "1e-6. bfgs is the suite's, which follows SciPy's; the paper's "
-          "numbers "
-          "stand beside it."};
+          "numbers stand beside it."};
   for (const Column& c : columns()) table.columns.push_back(c.head);
   for (const std::string& solver : solvers(e)) {
     physinv::TableRow row{.label = solver};
     for (const Column& c : columns()) {
-      const Quantity q = percent(mean(c.of, against(solver, c.share, c.equal)));
+      const Quantity q =
+          percent(mean(c.of, against(solver, c.share, c.equality)));
       Cell cell = physinv::cell_of(q(e));
       if (solver == "bfgs" && *c.printed != '\0')
         cell = beside_printed(
@@ -104,7 +110,8 @@ physinv::Table table(const std::string& varied, const Evidence& e) {
 
 physinv::Series over_n(const std::string& solver, const Evidence& e) {
   std::map<Index, std::vector<double>> values;
-  for (const auto& s : sample(e, kRefined, against(solver, f)))
+  for (const auto& s :
+       sample(e, kRefined, against(solver, f, Equality::strict)))
     values[s.n].push_back(s.value);
   physinv::Series series{.label = solver, .method = solver, .markers = true};
   for (const auto& [n, of_seeds] : values) {
@@ -131,27 +138,6 @@ physinv::Figure figure(const Evidence& e) {
 }
 
 }  // namespace
-
-Shares shares(const physinv::Vector<double>& losses,
-              const physinv::Vector<double>& others,
-              Equal equal) {
-  SUITE_CHECK(losses.size() == others.size() && losses.size() > 0,
-              "losses of the same problems");
-  Shares s;
-  for (Index i = 0; i < losses.size(); ++i) {
-    const double a = losses(i), b = others(i);
-    if (!std::isfinite(a)) continue;
-    const bool near =
-        (a < equal.solved && b < equal.solved) ||
-        (std::isfinite(b) && std::abs(a - b) <= equal.relative * std::abs(b));
-    if (a == b || near)
-      s.equal += 1;
-    else if (!(a >= b))
-      s.better += 1;
-  }
-  const auto n = static_cast<double>(losses.size());
-  return {s.better / n, s.equal / n};
-}
 
 physinv::Section whose_bfgs(const std::string& varied, const Evidence& e) {
   return {.tables = {table(varied, e)}, .figures = {figure(e)}};

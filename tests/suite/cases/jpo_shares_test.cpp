@@ -88,6 +88,15 @@ TEST(CompareLosses, NonFinitePartnerIsBeaten) {
   EXPECT_EQ(t.better, 1);
 }
 
+TEST(CompareLosses, SmallLossesMayCountAsEqual) {
+  const Shares s = compare_losses(losses({1e-9, 1e-9, 1e-9, 2}),
+                                  losses({1e-8, 1, kNaN, 1e-9}),
+                                  {.relative = 1e-3, .both_below = 1e-6});
+  EXPECT_EQ(s.equal, 0.25);
+  EXPECT_EQ(s.better, 0.5);
+  EXPECT_EQ(s.worse, 0.25);
+}
+
 TEST(CompareLosses, OtherProblemsThrow) {
   EXPECT_THROW(compare_losses(losses({1}), losses({1, 2}), Equality::strict),
                ContractError);

@@ -5,38 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "suite/core/check.h"
-
 namespace physinv {
-namespace {
-
-bool are_equal(double a, double b, Equality equality) {
-  if (equality == Equality::strict || !std::isfinite(b)) return a == b;
-  const double wide = equality == Equality::band ? 1e-3 : 1e-6;
-  return std::abs(a - b) <= wide * std::abs(b);
-}
-
-}  // namespace
-
-Shares compare_losses(VectorIn<double> loss,
-                      VectorIn<double> bfgs,
-                      Equality equality) {
-  SUITE_CHECK(loss.size() == bfgs.size() && loss.size() > 0,
-              "losses of the same problems");
-  Index better = 0, equal = 0;
-  for (Index i = 0; i < loss.size(); ++i) {
-    if (!std::isfinite(loss[i])) continue;
-    if (are_equal(loss[i], bfgs[i], equality)) {
-      ++equal;
-    } else if (!(loss[i] >= bfgs[i])) {  // also where BFGS has NaN
-      ++better;
-    }
-  }
-  const auto count = static_cast<double>(loss.size());
-  return {static_cast<double>(better) / count,
-          static_cast<double>(equal) / count,
-          static_cast<double>(loss.size() - better - equal) / count};
-}
 
 std::optional<double> decrease_share(VectorIn<double> start,
                                      VectorIn<double> fit,

@@ -1,5 +1,6 @@
-/// What the inverse-problem cases of the JPO paper compare: losses with those
-/// of BFGS, what a network leaves to its refinement, what counts as solved.
+/// What the inverse-problem cases of the JPO paper compare: what a network
+/// leaves to its refinement, what counts as solved; losses with those of BFGS
+/// (suite/evidence/shares.h).
 #pragma once
 
 #include <functional>
@@ -8,26 +9,10 @@
 #include <utility>
 
 #include "suite/core/batch.h"
+#include "suite/evidence/shares.h"
 #include "suite/store/record.h"
 
 namespace physinv {
-
-/// When two losses count as equal: bitwise, |a - b| <= 1e-6 |b|, or 1e-3 |b|,
-/// which is nothing where solvers end at kinks.
-enum class Equality { strict, tol, band };
-
-/// Shares of problems on which a method ends below, at or above BFGS.
-struct Shares {
-  double better = 0, equal = 0, worse = 0;
-  /// f_N = N_better / N + N_equal / (2 N).
-  double f() const { return better + 0.5 * equal; }
-};
-
-/// A loss that is not finite is worse; a finite one is better than a BFGS
-/// loss that is not. Sizes must agree and be positive.
-Shares compare_losses(VectorIn<double> loss,
-                      VectorIn<double> bfgs,
-                      Equality equality);
 
 /// Share of the decrease made before the refinement, mean over problems:
 /// (start - fit) / (start - min(fit, refined)). Problems without decrease are
