@@ -4,16 +4,15 @@
 #include <array>
 #include <utility>
 
+#include "suite/evidence/claim_tokens.h"
+
 namespace physinv {
 namespace {
-
-bool is_decimal_digit(char c) { return c >= '0' && c <= '9'; }
 
 /// A word without what precedes its first letter or figure.
 std::string_view without_signs(std::string_view word) {
   const auto is_sign = [](char c) {
-    return !is_decimal_digit(c) && !(c >= 'a' && c <= 'z') &&
-           !(c >= 'A' && c <= 'Z');
+    return !is_digit(c) && !(c >= 'a' && c <= 'z') && !(c >= 'A' && c <= 'Z');
   };
   const auto first = std::find_if_not(word.begin(), word.end(), is_sign);
   word.remove_prefix(static_cast<std::size_t>(first - word.begin()));
@@ -27,7 +26,7 @@ bool is_number(std::string_view word) {
       "nine",  "ten",     "eleven", "twelve", "twenty",  "hundred",  "thousand",
       "twice", "half",    "third",  "thirds", "quarter", "quarters", "fifth",
       "sixth", "seventh", "eighth", "ninth",  "tenth"};
-  if (word.empty() || is_decimal_digit(word.front())) return !word.empty();
+  if (word.empty() || is_digit(word.front())) return !word.empty();
   word = word.substr(0, word.find_first_of(",;:.)%-"));
   return std::find(words.begin(), words.end(), word) != words.end();
 }
@@ -49,7 +48,7 @@ class PlacesInPaper {
     if (is_in(one)) state_ = State::before_one;
     if (is_in(some) || (before == State::behind_some && joins))
       state_ = State::before_some;
-    if (word.empty() || !is_decimal_digit(word.front())) return false;
+    if (word.empty() || !is_digit(word.front())) return false;
     if (before == State::before_some && word.ends_with(','))
       state_ = State::before_some;
     else if (before == State::before_some &&

@@ -9,13 +9,12 @@
 #include "suite/core/decimal.h"
 #include "suite/evidence/bare_numbers.h"
 #include "suite/evidence/claim_conditions.h"
+#include "suite/evidence/claim_tokens.h"
 
 namespace physinv {
 namespace {
 
 constexpr std::string_view kNumberNotRun = "(not run)";
-
-bool is_figure(char c) { return c >= '0' && c <= '9'; }
 
 /// Reads the inside of braces from left to right.
 class Inside {
@@ -37,7 +36,7 @@ class Inside {
   }
   bool is_number() {
     skip_spaces();
-    return at_ < code_.text.size() && is_figure(code_.text[at_]);
+    return at_ < code_.text.size() && is_digit(code_.text[at_]);
   }
   std::string quoted() {
     expect("\"");

@@ -90,6 +90,9 @@ class Reader {
     return all;
   }
 
+  /// The experiments of this part.
+  bool is_asked_for() const { return !parts_.back().experiments.empty(); }
+
   [[noreturn]] static void fail(PlacedText::Place place, std::string what) {
     throw ExpressionError{place, std::move(what)};
   }
@@ -202,7 +205,7 @@ class Reader {
       if (skip(text, c.word)) {
         set_once(claim_->cause.why, text, paragraph);
         claim_->cause.as = c.as;
-        if (parts_.back().experiments.empty()) return;  // nobody asks for it
+        if (!is_asked_for()) return;
         cause_ = paragraph.part(c.word.size(), paragraph.text.size());
         claim_->cause.numbers = numbers_of(cause_, names_);
         return;
@@ -223,8 +226,7 @@ class Reader {
 
   /// "label: `expression` or label: `expression`"
   void item(const PlacedText& whole) {
-    if (!claim_) return;                            // a list for readers
-    if (parts_.back().experiments.empty()) return;  // nobody asks for them
+    if (!claim_ || !is_asked_for()) return;  // without a claim, for readers
     auto& to =
         claim_->cause.why.empty() ? claim_->conditions : claim_->cause.shown_by;
     std::vector<Condition> alternatives;

@@ -33,9 +33,6 @@ namespace {
 bool begins_name(char c) {
   return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '_';
 }
-bool is_digit(char c) {
-  return std::isdigit(static_cast<unsigned char>(c)) != 0;
-}
 bool goes_on(char c) { return begins_name(c) || is_digit(c); }
 
 /// Where the token ends that begins at k; its kind.

@@ -33,6 +33,9 @@ struct Token {
 };
 using Tokens = std::vector<Token>;
 
+/// Of ASCII, whatever the locale.
+inline bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
 /// Up to the end, a token of its own. Throws ExpressionError.
 Tokens tokens_of(const PlacedText& code);
 
