@@ -39,28 +39,36 @@ std::string paper_name(const std::string& key) {
   return key.empty() ? "(none)" : markdown(key);
 }
 
-int sum_of(const VerdictCounts& counts, std::initializer_list<Verdict> which) {
-  int sum = 0;
-  for (const Verdict v : which) sum += counts[static_cast<std::size_t>(v)];
-  return sum;
-}
+/// A column of counts: of claims with one of these verdicts.
+struct CountColumn {
+  const char* head;
+  std::vector<Verdict> verdicts;
+};
 
-std::string overview(const Papers& papers) {
-  std::string out =
-      "| paper | reproduced | differs | depends or contradiction | not "
-      "reproduced | undecided |\n| --- | --- | --- | --- | --- | --- |\n";
+const CountColumn kUndecided{
+    "undecided",
+    {Verdict::partly_judged, Verdict::not_judged, Verdict::reported}};
+
+/// A row for each paper.
+std::string counts_table(const Papers& papers,
+                         Origin origin,
+                         const std::vector<CountColumn>& columns) {
+  std::string out = "| paper |", line = "| --- |";
+  for (const CountColumn& column : columns) {
+    out += fmt::format(" {} |", column.head);
+    line += " --- |";
+  }
+  out += '\n' + line + '\n';
   for (const auto& [paper, claims] : papers) {
-    const VerdictCounts c = counts_of(claims, Origin::paper);
-    out += fmt::format(
-        "| {} | {} | {} | {} | {} | {} |\n",
-        paper_name(paper),
-        sum_of(c, {Verdict::reproduced}),
-        sum_of(c, {Verdict::differs}),
-        sum_of(c, {Verdict::depends, Verdict::contradiction}),
-        sum_of(c, {Verdict::not_reproduced}),
-        sum_of(
-            c,
-            {Verdict::partly_judged, Verdict::not_judged, Verdict::reported}));
+    const VerdictCounts counts = counts_of(claims, origin);
+    out += fmt::format("| {} |", paper_name(paper));
+    for (const CountColumn& column : columns) {
+      int sum = 0;
+      for (const Verdict v : column.verdicts)
+        sum += counts[static_cast<std::size_t>(v)];
+      out += fmt::format(" {} |", sum);
+    }
+    out += '\n';
   }
   return out;
 }
@@ -268,7 +276,15 @@ std::string results_markdown(const std::vector<NamedDigest>& campaigns,
                kWrittenByResults,
                links.pages,
                kChecksPage) +
-           answers(papers, publications, links) + '\n' + overview(papers) +
+           answers(papers, publications, links) + '\n' +
+           counts_table(papers,
+                        Origin::paper,
+                        {{"reproduced", {Verdict::reproduced}},
+                         {"differs", {Verdict::differs}},
+                         {"depends or contradiction",
+                          {Verdict::depends, Verdict::contradiction}},
+                         {"not reproduced", {Verdict::not_reproduced}},
+                         kUndecided}) +
            section("Statements that are not reproduced or undecided, and why",
                    table_of(papers, Origin::paper, links.pages)) +
            section("Pages of experiments, with reproduced of all statements",
@@ -281,29 +297,22 @@ std::string checks_markdown(const std::vector<NamedDigest>& campaigns,
                             const ResultsLinks& links) {
   return checked([&] {
     const auto papers = latest_claims(campaigns);
-    std::string out = fmt::format(
-        "# Regression checks\n\n{}; back to [all results]({}). A regression "
-        "check is a range that earlier runs of this suite, or an independent "
-        "program, gave for a number. Pages of experiments list all of them.\n\n"
-        "| paper | hold | differ or depend | fail | undecided |\n"
-        "| --- | --- | --- | --- | --- |\n",
-        kWrittenByResults,
-        links.overview);
-    for (const auto& [paper, claims] : papers) {
-      const VerdictCounts c = counts_of(claims, Origin::suite);
-      out += fmt::format(
-          "| {} | {} | {} | {} | {} |\n",
-          paper_name(paper),
-          sum_of(c, {Verdict::reproduced}),
-          sum_of(c,
-                 {Verdict::differs, Verdict::depends, Verdict::contradiction}),
-          sum_of(c, {Verdict::not_reproduced}),
-          sum_of(c,
-                 {Verdict::partly_judged,
-                  Verdict::not_judged,
-                  Verdict::reported}));
-    }
-    return out + table_of(papers, Origin::suite, "");
+    return fmt::format(
+               "# Regression checks\n\n{}; back to [all results]({}). A "
+               "regression check is a range that earlier runs of this suite, "
+               "or an independent program, gave for a number. Pages of "
+               "experiments list all of them.\n\n",
+               kWrittenByResults,
+               links.overview) +
+           counts_table(
+               papers,
+               Origin::suite,
+               {{"hold", {Verdict::reproduced}},
+                {"differ or depend",
+                 {Verdict::differs, Verdict::depends, Verdict::contradiction}},
+                {"fail", {Verdict::not_reproduced}},
+                kUndecided}) +
+           table_of(papers, Origin::suite, "");
   });
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,7 @@ std::string value_text(double value);
 /// those that do not hold first; the suite's ranges that fail; cells of tables
 /// beside which the paper printed a number, of each table in turn. Tables of
 /// times are left out: the paper's machine was another one.
-std::vector<Statement> statements_of(const Section& section, std::size_t most);
+std::vector<Statement> statements_of(const Section& section,
+                                     std::size_t most = SIZE_MAX);
 
 }  // namespace physinv

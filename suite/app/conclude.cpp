@@ -31,7 +31,6 @@ namespace fs = std::filesystem;
 constexpr std::size_t kMostInFull = 6;
 /// Of an experiment, its name and the heads included.
 constexpr std::size_t kMostLines = 8;
-constexpr std::size_t kAll = 10000;
 /// Fewer cut words to nothing.
 constexpr std::size_t kColumnsOfTable = 60;
 /// Of a line, what a condition may take.
@@ -65,10 +64,10 @@ std::string more_text(std::size_t more) {
 std::string in_full(const Section& section, std::size_t room) {
   const bool narrow = room < kColumnsOfTable;
   const std::size_t most = narrow ? (kMostLines - 1) / 2 : kMostLines - 2;
-  auto statements = statements_of(section, kAll);
-  const std::size_t more =
-      statements.size() - std::min(statements.size(), most);
-  statements.resize(statements.size() - more);
+  auto statements = statements_of(section);
+  const std::size_t all = statements.size();
+  statements.resize(std::min(all, most));
+  const std::size_t more = all - statements.size();
   std::string text =
       fmt::format("{} ({})\n", section.title, section.experiment);
   if (statements.empty()) return text;

@@ -30,8 +30,8 @@ using Json = nlohmann::ordered_json;
 /// newest first, and the history of the gate where git has one.
 void write_html(const fs::path& directory,
                 const fs::path& campaigns,
-                const std::vector<NamedDigest>& found) {
-  const Published published(published_directory());
+                const std::vector<NamedDigest>& found,
+                const Published& published) {
   std::vector<CampaignPages> all;
   for (const NamedDigest& c : newest_first(found)) {
     CampaignPages pages{.name = c.name,
@@ -115,8 +115,9 @@ ExitCode results_verb(const Arguments& arguments) {
              arguments))
     return ExitCode::good;
   const auto found = published_digests(campaigns);
+  const Published published(published_directory());
   if (!html.empty()) {
-    write_html(html, campaigns, found);
+    write_html(html, campaigns, found, published);
     fmt::print("{} campaigns: {}\n",
                found.size(),
                (fs::path(html) / "index.html").string());
@@ -136,7 +137,6 @@ ExitCode results_verb(const Arguments& arguments) {
   } catch (const std::runtime_error& error) {
     throw EnvironmentError(error.what());
   }
-  const Published published(published_directory());
   write_atomically(out,
                    results_markdown(found, published.publications(), links));
   fmt::print("{} campaigns: {}\n", found.size(), out);
