@@ -22,7 +22,7 @@ const std::map<std::string, Layer> kLayers{
     {"suite/core", {{}, {"eigen", "fftw", "hdf5", "random123", "sleef"}}},
     {"suite/linalg", {{"suite/core"}, {"eigen"}}},
     {"suite/nn", {{"suite/core"}, {"eigen"}}},
-    {"problems", {{"suite/core"}, {"eigen"}}},
+    {"problems", {{"suite/core", "suite/linalg"}, {"eigen"}}},
     {"optimizers", {{"suite/core", "suite/linalg", "suite/nn"}, {"eigen"}}},
     {"baselines", {{"suite/core", "suite/nn", "optimizers"}, {"eigen"}}},
     {"baselines/libraries",

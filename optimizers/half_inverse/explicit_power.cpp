@@ -1,16 +1,15 @@
 #include "optimizers/half_inverse/explicit_power.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
 #include "optimizers/half_inverse/units.h"
 #include "suite/core/check.h"
 #include "suite/core/eigen_caches.h"
-#include "suite/core/math.h"
 #include "suite/core/unit_of.h"
 #include "suite/linalg/decompositions.h"
 #include "suite/linalg/householder.h"
+#include "suite/linalg/pivoted_qr.h"
 
 namespace physinv::hig {
 
@@ -70,8 +69,8 @@ bool orthogonalize_columns(BatchOut<double> x, VectorOut<double> h) {
         if (std::abs(along) <= angle * std::sqrt(a) * std::sqrt(b)) continue;
         turned = true;
         const double zeta = (b - a) / (2 * along);
-        const double t = std::copysign(1.0, zeta) /
-                         (std::abs(zeta) + math::hypot(1.0, zeta));
+        const double root = std::sqrt(std::fma(zeta, zeta, 1.0));
+        const double t = std::copysign(1.0, zeta) / (std::abs(zeta) + root);
         const double c = 1 / std::sqrt(1 + t * t), s = c * t;
         rotate(x.rows(), c, s, x.col(p).data(), x.col(q).data());
         note(p), note(q);
@@ -123,32 +122,25 @@ Ending ExplicitPower::factor(BatchIn<double> jacobian, VectorIn<double> g) {
 
   // Tall: J P = Q R, h = Q^T g. Wide: J^T P = Q R, h = P^T g.
   const bool tall = m >= p;
-  using Pivoted = Eigen::ColPivHouseholderQR<Batch<double>>;
-  Pivoted qr(tall ? m : p, n);
+  const PivotedQr qr(tall ? Batch<double>(jacobian * unscale)
+                          : Batch<double>(jacobian.transpose() * unscale));
+  Batch<double> h = g;
   if (tall) {
-    qr.compute(jacobian * unscale);
+    qr.apply_q_transposed(h);
   } else {
-    qr.compute(jacobian.transpose() * unscale);
+    for (Index i = 0; i < n; ++i) h(i) = g(qr.order(i));
   }
-  const Batch<double> r =
-      qr.matrixR().topRows(n).template triangularView<Eigen::Upper>();
-  Vector<double> h = g;
-  if (tall) {
-    h.applyOnTheLeft(qr.householderQ().adjoint());
-    h.conservativeResize(n);
-  } else {
-    h = qr.colsPermutation().transpose() * h;
-  }
+  Vector<double> top = h.col(0).head(n);
   // Tall: R^T = V diag(s) U^T, c = U^T h. Wide: J = P R^T Q^T, so that with
   // R = V diag(s) U^T the same c, and the update is Q V.
-  Batch<double> x = tall ? Batch<double>(r.transpose()) : r;
-  if (!decompose(x, h)) return ending_ = Ending::stalled;
+  Batch<double> x = tall ? Batch<double>(qr.r().transpose()) : qr.r();
+  if (!decompose(x, top)) return ending_ = Ending::stalled;
+  right_.setZero(p, n);
   if (tall) {
-    right_ = qr.colsPermutation() * x;
+    for (Index i = 0; i < n; ++i) right_.row(qr.order(i)) = x.row(i);
   } else {
-    right_.setZero(p, n);
     right_.topRows(n) = x;
-    right_.applyOnTheLeft(qr.householderQ());
+    qr.apply_q(right_);
   }
   // Entries of the error of J against s_max, as in SpectralPower.
   spectrum_.noise = {.slope = entry_noise(n, 0),

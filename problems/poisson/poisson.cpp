@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 #include "suite/core/check.h"
 #include "suite/core/eigen_caches.h"
@@ -11,6 +12,7 @@
 #include "suite/core/option_check.h"
 #include "suite/core/threads.h"
 #include "suite/core/unit_of.h"
+#include "suite/linalg/tile_product.h"
 
 namespace physinv {
 namespace {
@@ -25,6 +27,35 @@ Batch<double> sines(Index n) {
                static_cast<double>((i + 1) * (k + 1) % (2 * n + 2));
            return math::sin(std::numbers::pi * turn / steps);
          });
+}
+
+/// `n` up to the next multiple of a tile.
+Index padded(Index n) {
+  return (n + linalg::kTileColumns - 1) / linalg::kTileColumns *
+         linalg::kTileColumns;
+}
+
+/// Of the same columns, with further rows that hold `fill`.
+Batch<double> with_padded_rows(const Batch<double>& a, double fill) {
+  Batch<double> out = Batch<double>::Constant(padded(a.rows()), a.cols(), fill);
+  out.topRows(a.rows()) = a;
+  return out;
+}
+
+/// to = a b, whose sums run in the order of a's columns. The rows of a and `to`
+/// are as many as fill tiles; b's columns are `b_rows` numbers apart.
+void multiply(const Batch<double>& a,
+              const double* b,
+              Index b_rows,
+              Batch<double>& to) {
+  linalg::multiply<linalg::Into::set>(to.cols(),
+                                      to.rows(),
+                                      a.cols(),
+                                      {b, b_rows, 1},
+                                      a.data(),
+                                      a.rows(),
+                                      to.data(),
+                                      to.rows());
 }
 
 double eigenvalue(Index k, Index n) {
@@ -134,8 +165,9 @@ class Poisson final : public LinearProblem<T>, public Inverse<T> {
   explicit Poisson(const PoissonOptions& options)
       : options_(checked(options)),
         along_rows_(sines(options.rows)),
-        along_columns_(sines(options.columns)),
-        lambda_(poisson_eigenvalues(options.rows, options.columns)) {}
+        along_columns_(with_padded_rows(sines(options.columns), 0)),
+        lambda_(with_padded_rows(
+            poisson_eigenvalues(options.rows, options.columns), 1)) {}
 
   Shape shape() const override {
     const Index cells = options_.rows * options_.columns;
@@ -198,32 +230,40 @@ class Poisson final : public LinearProblem<T>, public Inverse<T> {
   }
 
  private:
-  /// One field, columns x rows as it lies in memory.
-  void solve(const Batch<double>& x, Batch<double>& y) const {
-    if (options_.relative > 0) return iterate(options_, x, y);
-    Batch<double> modes(x.rows(), x.cols());
-    y.resizeLike(x);
-    y.noalias() = along_columns_ * x;
-    modes.noalias() = y * along_rows_;
-    modes.array() /= lambda_.array();
-    y.noalias() = along_columns_ * modes;
-    modes.noalias() = y * along_rows_;
-    y.swap(modes);
+  /// Fields, columns x rows as they lie in memory, with padded rows.
+  struct Fields {
+    Batch<double> in, one, two;
+  };
+
+  /// fields.two = the potential of fields.in, whose rows are not padded.
+  void solve(Fields& fields) const {
+    auto& [in, one, two] = fields;
+    if (options_.relative > 0) return iterate(options_, in, two);
+    const Index p = options_.rows;
+    one.resize(lambda_.rows(), p), two.resize(lambda_.rows(), p);
+    multiply(along_columns_, in.data(), in.rows(), one);
+    multiply(one, along_rows_.data(), p, two);
+    two.array() /= lambda_.array();
+    multiply(along_columns_, two.data(), two.rows(), one);
+    multiply(one, along_rows_.data(), p, two);
   }
   void solve_all(BatchIn<T> x, BatchOut<T> y, Threads* threads) const {
     const Index p = options_.rows, q = options_.columns;
-    for_blocks(threads, x.cols(), [&](Index i, int) {
-      Batch<double> field = Eigen::Map<const Batch<T>>(x.col(i).data(), q, p)
-                                .template cast<double>();
-      Batch<double> found;
-      solve(field, found);
-      y.col(i) = found.reshaped().template cast<T>();
+    std::vector<Fields> fields(
+        static_cast<std::size_t>(threads == nullptr ? 1 : threads->count()));
+    for_blocks(threads, x.cols(), [&](Index i, int thread) {
+      Fields& own = fields[static_cast<std::size_t>(thread)];
+      own.in = Eigen::Map<const Batch<T>>(x.col(i).data(), q, p)
+                   .template cast<double>();
+      solve(own);
+      Eigen::Map<Batch<T>>(y.col(i).data(), q, p) =
+          own.two.topRows(q).template cast<T>();
     });
   }
 
   PoissonOptions options_;
-  Batch<double> along_rows_, along_columns_;  ///< S_p, S_q
-  Batch<double> lambda_;                      ///< q x p
+  Batch<double> along_rows_;              ///< S_p
+  Batch<double> along_columns_, lambda_;  ///< S_q and q x p, padded rows
 };
 
 }  // namespace

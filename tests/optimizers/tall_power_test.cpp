@@ -5,7 +5,9 @@
 
 #include <cmath>
 #include <limits>
+#include <set>
 
+#include "suite/linalg/pivoted_qr.h"
 #include "tests/optimizers/half_inverse_truth.h"
 
 namespace physinv::hig {
@@ -51,6 +53,33 @@ TEST(TallQr, HasTheSameProducts) {
                       j.col(c).dot(j.col(k)),
                       1e-14 * j.col(c).norm() * j.col(k).norm());
       }
+    }
+}
+
+TEST(PivotedQr, GivesTheMatrixBack) {
+  for (const Index rows : {9, 24, 101})
+    for (const Index columns : {1, 3, 9}) {
+      Batch<double> a = noise(rows, columns, 3);
+      for (Index c = 0; c < columns; ++c)
+        a.col(c) *= std::pow(10, -2.0 * static_cast<double>((5 * c) % 9));
+      if (columns > 3) a.col(2) = a.col(1);  // of rank columns - 1
+      const PivotedQr qr(a);
+      Batch<double> product = Batch<double>::Zero(rows, columns);
+      product.topRows(columns) = qr.r();
+      qr.apply_q(product);
+      std::set<Index> seen;
+      for (Index c = 0; c < columns; ++c) {
+        seen.insert(qr.order(c));
+        const auto column = a.col(qr.order(c));
+        EXPECT_LE((product.col(c) - column).norm(), 2e-15 * a.norm());
+        EXPECT_TRUE(qr.r().col(c).tail(columns - c - 1).isZero(0));
+        for (Index later = c + 1; later < columns; ++later)
+          EXPECT_LE(qr.r().col(later).segment(c, later - c + 1).norm(),
+                    std::abs(qr.r()(c, c)) * (1 + 1e-7));
+      }
+      EXPECT_EQ(static_cast<Index>(seen.size()), columns);
+      qr.apply_q_transposed(product);
+      EXPECT_LE((product.topRows(columns) - qr.r()).norm(), 2e-15 * a.norm());
     }
 }
 
