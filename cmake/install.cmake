@@ -20,8 +20,10 @@ list(TRANSFORM layers PREPEND physinv_)
 target_link_libraries(physinv INTERFACE ${layers})
 
 set(physinv_package ${CMAKE_INSTALL_LIBDIR}/cmake/physinv)
-install(TARGETS physinv physinv_flags ${layers} physinv_app_run physinv_app
+install(TARGETS physinv physinv_flags ${layers}
+  physinv_app_run physinv_app_end physinv_app
   physinv_gate physinv_compare physinv_planning physinv_reports
+  physinv_published_pages
   EXPORT physinv COMPONENT development)
 # Their main, which stands in the sources of a program.
 install(TARGETS physinv_main EXPORT physinv
