@@ -19,9 +19,9 @@ constexpr int kRounds = 30;
 double norm_bound(BatchIn<double> gram) {
   double total = 0;
   for (Index j = 0; j < gram.cols(); ++j) {
-    const Index below = gram.rows() - j - 1;
+    const double* below = gram.col(j).data() + j + 1;
     total +=
-        gram(j, j) * gram(j, j) + 2 * gram.col(j).tail(below).squaredNorm();
+        gram(j, j) * gram(j, j) + 2 * dot(gram.rows() - j - 1, below, below);
   }
   return std::sqrt(total) * (1 + 1e-12);
 }

@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "optimizers/half_inverse/units.h"
+#include "suite/core/simd/finite.h"
 #include "suite/core/unit_of.h"
 
 namespace physinv {
@@ -171,7 +172,7 @@ bool HalfInverseStep<T>::operator()(const Network<T>& network,
       static_cast<std::uint64_t>(report_.abandoned);
   hig::leave_units(power, double(unit), report_, update_.col(0));
   column_ = parameters - (options_.rate * update_.col(0)).template cast<T>();
-  const bool finite = column_.allFinite();
+  const bool finite = all_finite(column_.data(), column_.size());
   if (finite) parameters = column_;
   return finite;
 }

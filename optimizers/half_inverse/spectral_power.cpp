@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "suite/core/check.h"
+#include "suite/core/simd/finite.h"
 #include "suite/core/threads.h"
 #include "suite/linalg/householder.h"
 
@@ -12,14 +13,20 @@ namespace physinv::hig {
 using namespace linalg;
 
 bool finite_lower(BatchIn<double> a, double& largest) {
-  largest = 0;
-  double poison = 0;  // x * 0 is NaN unless x is finite
+  using V = Pack<double>;
+  V most{};
+  bool finite = true;
   for (Index j = 0; j < a.cols(); ++j) {
-    const auto x = a.col(j).tail(a.rows() - j);
-    largest = std::max(largest, x.cwiseAbs().maxCoeff());
-    poison += (0 * x).sum();
+    const double* x = a.col(j).data() + j;
+    finite = finite && all_finite(x, a.rows() - j);
+    for_pieces<V>(a.rows() - j, [&](Index i, auto lanes) {
+      const V size = abs_lanes(load_lanes<V>(x + i, lanes));
+      most = select(size > most, size, most);
+    });
   }
-  return poison == 0;
+  largest = 0;
+  for (int k = 0; k < kLanes<double>; ++k) largest = std::max(largest, most[k]);
+  return finite;
 }
 
 Ending SpectralPower::factor(BatchIn<double> gram,

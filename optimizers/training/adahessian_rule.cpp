@@ -1,5 +1,7 @@
 #include "optimizers/training/adahessian_rule.h"
 
+#include "suite/core/simd/finite.h"
+
 namespace physinv {
 
 template <class T>
@@ -16,7 +18,7 @@ bool AdaHessianRule<T>::operator()(Signal<T>& signal) {
   }
   signal.hessian_product(probe_, curvature_);
   step_.step(parameters, next_, curvature_, next_);
-  if (!next_.allFinite()) return false;
+  if (!all_finite(next_.data(), next_.size())) return false;
   parameters.swap(next_);
   return true;
 }

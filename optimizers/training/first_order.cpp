@@ -1,5 +1,7 @@
 #include "optimizers/training/first_order.h"
 
+#include "suite/core/simd/finite.h"
+
 namespace physinv {
 
 template <class T>
@@ -23,8 +25,7 @@ bool GuardedFirstOrder<T>::operator()(Signal<T>& signal) {
   Vector<T>& next = signal.gradient();
   Vector<T>& parameters = this->model_.parameters();
   this->step_(parameters, next, next);
-  // As allFinite(), but in registers.
-  if ((T(0) * next).sum() != T(0)) return false;
+  if (!all_finite(next.data(), next.size())) return false;
   parameters.swap(next);
   return true;
 }

@@ -4,7 +4,10 @@
 
 #include <bit>
 #include <cstdint>
+#include <limits>
 #include <vector>
+
+#include "suite/core/simd/finite.h"
 
 namespace physinv {
 namespace {
@@ -34,6 +37,31 @@ TEST(Nan, AlsoInFloatAndInMatrices) {
   EXPECT_FALSE(has_nan(m.data(), 11));
   Batch<double> none;
   unify_nan(none);
+}
+
+template <class T>
+void finds_each_of() {
+  constexpr T kMost = std::numeric_limits<T>::max();
+  for (Index n = 0; n <= 40; ++n) {
+    std::vector<T> v(static_cast<std::size_t>(n), kMost);
+    EXPECT_TRUE(all_finite(v.data(), n));
+    for (auto& x : v) {
+      for (const T bad : {std::numeric_limits<T>::quiet_NaN(),
+                          -std::numeric_limits<T>::quiet_NaN(),
+                          std::numeric_limits<T>::infinity(),
+                          -std::numeric_limits<T>::infinity()}) {
+        x = bad;
+        EXPECT_FALSE(all_finite(v.data(), n)) << n << " at " << &x - v.data();
+      }
+      x = -kMost;
+    }
+    EXPECT_TRUE(all_finite(v.data(), n));
+  }
+}
+
+TEST(Finite, FindsWhatIsNotAtAnyPlace) {
+  finds_each_of<double>();
+  finds_each_of<float>();
 }
 
 }  // namespace
