@@ -1,5 +1,6 @@
-# Component `programs`: those that are built. physinv-bench has every layer of
-# the component `development`: find_package(physinv) gives physinv::physinv, all
+# Component `programs`: physinv-bench; component `kernels`: its kernel benchmarks
+# and contract tests, where they are built. physinv-bench has every layer of the
+# component `development`: find_package(physinv) gives physinv::physinv, all
 # below the cases, with the flags that they were built with, and physinv::app,
 # the verbs.
 include(GNUInstallDirs)
@@ -51,16 +52,15 @@ install(FILES
   DESTINATION ${physinv_package} COMPONENT development)
 install(PROGRAMS $<TARGET_FILE:physinv-sources>
   DESTINATION ${physinv_package} COMPONENT development)
-foreach(program physinv-bench physinv-kernels)
-  if(TARGET ${program})
-    install(TARGETS ${program} COMPONENT programs OPTIONAL)
-  endif()
-endforeach()
+install(TARGETS physinv-bench COMPONENT programs OPTIONAL)
+if(TARGET physinv-kernels)
+  install(TARGETS physinv-kernels COMPONENT kernels OPTIONAL)
+endif()
 
 # Contract tests, where they were built: the verb `conformance`, and what users
 # link over what they register.
 function(physinv_install_contract_tests)
-  install(TARGETS physinv-conformance COMPONENT programs OPTIONAL)
+  install(TARGETS physinv-conformance COMPONENT kernels OPTIONAL)
   install(TARGETS physinv_contract physinv_test_quadratic physinv_test_equality
     EXPORT physinv-contract ARCHIVE COMPONENT development OPTIONAL)
   install(TARGETS physinv_conformance EXPORT physinv-contract
