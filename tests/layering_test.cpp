@@ -76,6 +76,7 @@ const std::map<std::string, Layer> kLayers{
        "suite/store",
        "suite/results",
        "suite/harness",
+       "suite/cases",
        "suite/app"},
       {"eigen", "pybind11"}}},
     {"suite/app",

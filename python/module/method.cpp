@@ -9,6 +9,9 @@
 
 #include "python/module/arrays.h"
 #include "python/module/solving.h"
+#include "python/module/user_experiment.h"
+#include "python/module/words.h"
+#include "python/module/worker.h"
 #include "suite/app/verbs.h"
 #include "suite/core/float_environment.h"
 #include "suite/core/threads.h"
@@ -83,26 +86,6 @@ Outcome outcome_of(py::object result, const Solving& solving) {
       !out.status.empty())
     out.stop = Stop::converged;
   return out;
-}
-
-/// UTF-8 without a NUL: what is neither becomes the escape that Python has for
-/// it.
-std::string plain_text(const py::object& text) {
-  const auto bytes = text.attr("encode")("utf-8", "backslashreplace");
-  std::string plain;
-  for (const char c : bytes.cast<std::string>())
-    plain += c == '\0' ? "\\x00" : std::string(1, c);
-  return plain;
-}
-
-/// "ArithmeticError: not today"
-std::string words_of(const py::error_already_set& error) {
-  const std::string type = plain_text(error.type().attr("__name__"));
-  try {
-    return fmt::format("{}: {}", type, plain_text(py::str(error.value())));
-  } catch (const py::error_already_set&) {
-    return type + ", whose text cannot be had";
-  }
 }
 
 /// What a method declares that it uses.
@@ -311,7 +294,7 @@ std::string problem_sources() {
   return project_sources().fingerprint({all});
 }
 
-bool running = false;
+bool running = false, forked = false;
 
 /// A worker is a fork, and Python is to know, and OpenMP, whose threads a child
 /// has not.
@@ -331,6 +314,7 @@ void after_fork_here() {
 
 void after_fork_there() {
   if (running) PyOS_AfterFork_Child();
+  forked = forked || running;
   running = false;  // what it forks is its own affair
 }
 
@@ -346,6 +330,7 @@ py::tuple call(const std::string& name, const Arguments& arguments) {
       pthread_atfork(before_fork, after_fork_here, after_fork_there);
   (void)kRegistered;
   const Verb& verb = verb_named(name);
+  renew_problems();
   renew_methods();
   const DefaultFloatEnvironment floats;
   running = true;
@@ -370,6 +355,16 @@ py::tuple call(const std::string& name, const Arguments& arguments) {
 }
 
 }  // namespace
+
+bool in_worker() { return forked; }
+
+Experiment with_methods_of(const Experiment& before, Experiment fresh) {
+  for (const Method& method : before.methods)
+    if (const PythonStage* stage = python_stage(method);
+        stage != nullptr && contains(fresh.problem.provided, method.needs()))
+      fresh = with_method(fresh, method);
+  return fresh;
+}
 
 void define_method(py::module_& module) {
   define_solving(module);

@@ -4,7 +4,13 @@
 
 #include <pybind11/pybind11.h>
 
+#include "suite/harness/case.h"
+
 namespace physinv::python {
+
+/// With the methods in Python that stand in `before`, where the problem of
+/// `fresh` provides what they need.
+Experiment with_methods_of(const Experiment& before, Experiment fresh);
 
 void define_method(pybind11::module_& module);
 

@@ -8,6 +8,7 @@
 #include "python/module/method.h"
 #include "python/module/problem.h"
 #include "python/module/results.h"
+#include "python/module/user_experiment.h"
 #include "suite/app/plugins.h"
 #include "suite/harness/context.h"
 #include "suite/harness/registry.h"
@@ -60,4 +61,5 @@ PYBIND11_MODULE(_core, module) {
   python::define_problem(module);
   python::define_results(module);
   python::define_method(module);
+  python::define_user_experiment(module);
 }

@@ -51,6 +51,21 @@ A method of one's own, as a case like any other:
         return x
 
     physinv.run("smoke", filter="jpo/billiards/(bfgs|momentum)")
+
+A problem of one's own, as an experiment like any other (help(physinv.Problem)):
+
+    @physinv.experiment("decay")
+    class Decay(physinv.Problem):
+        start = [1.0, 0.5]
+
+        def sample(self, seed, n):
+            return np.random.default_rng(seed).uniform(0.1, 2, (n, 2))
+
+        def forward(self, x, given):
+            return x[:, :1] * np.exp(-x[:, 1:] * TIMES)
+
+    physinv.conformance(Decay)             # what is wrong with it, in words
+    physinv.run("quick", filter="matrix/decay", out="results/decay")
 """
 
 import operator as _operator
@@ -63,13 +78,16 @@ _core = _load_core()
 from physinv._campaign import (ProgramError, Results, open, program, published,
                                run, verb)
 from physinv._compare import compare
+from physinv._conformance import conformance
 from physinv._methods import method
+from physinv._problems import Problem, experiment, skipped
 
-__all__ = ["Problem", "ProgramError", "Results", "Run", "Samples", "arrays", "compare",
-           "jax", "load_plugin", "method", "open", "problem", "problems", "program",
-           "published", "run", "torch", "verb", "version"]
+__all__ = ["Problem", "ProgramError", "RegisteredProblem", "Results", "Run",
+           "Samples", "arrays", "compare", "conformance", "experiment", "jax",
+           "load_plugin", "method", "open", "problem", "problems", "program",
+           "published", "run", "skipped", "torch", "verb", "version"]
 
-Problem = _core.Problem
+RegisteredProblem = _core.Problem
 Run = _core.Run
 Samples = _namedtuple("Samples", "x y given")
 Samples.__doc__ = """Inverse problems: unknowns x (no columns where the solution
@@ -125,7 +143,7 @@ def _sample(self, seed=0, n=1, first=0, labelled=False):
 
 
 _sample.__name__ = _sample.__qualname__ = "sample"
-Problem.sample = _sample
+RegisteredProblem.sample = _sample
 
 
 def torch(problem):

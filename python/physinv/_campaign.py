@@ -10,7 +10,7 @@ import subprocess
 import sys
 import tempfile
 
-from physinv import _core, _methods
+from physinv import _core, _methods, _problems
 
 
 class ProgramError(RuntimeError):
@@ -97,11 +97,11 @@ def _words(arguments, flags):
 def verb(name, *arguments, **flags):
     """Calls a verb of physinv-bench and returns what it prints; flags as
     keywords: verb("compare", "a", "b"), verb("list", profile="smoke",
-    seeds=[0, 1]). None leaves a flag out. With methods in Python it runs in
+    seeds=[0, 1]). None leaves a flag out. With methods or problems in Python it runs in
     this process, which knows them. ProgramError where it ends with a status;
     its `output` is what was printed."""
     words = _words(arguments, flags)
-    if _methods.registered():
+    if _in_process():
         with _captured() as printed:
             status, last = _call(name, words)
         output = printed()
@@ -113,6 +113,11 @@ def verb(name, *arguments, **flags):
     if status != 0:
         raise ProgramError(status, last, output)
     return output
+
+
+def _in_process():
+    """Methods and problems in Python are known here alone."""
+    return _methods.registered() or _problems.registered()
 
 
 def _decoded(printed):
@@ -147,7 +152,7 @@ def run(profile="quick", out=None, **flags):
     this process."""
     out = out or f"results/{profile}"
     flags = dict(profile=profile, out=out, **flags)
-    if _methods.registered():
+    if _in_process():
         status, last = _call("run", _words([], flags))
         if status != 0:
             raise ProgramError(status, last)

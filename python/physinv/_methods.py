@@ -67,19 +67,29 @@ def _package_key(problems):
 
 def words_of(name, function, options):
     """What the key has of a method, as pairs of texts."""
+    words = [("method", name),
+             *_words_of_source(f"method {name}", function)]
+    return words + [(key, _option_text(value, key))
+                    for key, value in sorted(options.items())]
+
+
+def words_of_problem(name, problem):
+    """What the key has of a problem: of its class and its attributes."""
+    return [("problem", name), *_words_of_source(f"problem {name}", problem)]
+
+
+def _words_of_source(what, value):
     try:
-        source, libraries = source_key(function, _name_of(function))
+        source, libraries = source_key(value, _name_of(value))
     except Refused as error:
-        raise ValueError(f"the key of the method {name} cannot name all that "
+        raise ValueError(f"the key of the {what} cannot name all that "
                          f"its numbers come from: {error}") from None
     own = {_libraries.PYTHON, _libraries.PHYSINV}
-    words = [("method", name), ("source", source),
-             ("python", "%d.%d" % sys.version_info[:2]),
+    words = [("source", source), ("python", "%d.%d" % sys.version_info[:2]),
              ("libraries", _libraries.versions((libraries | {"numpy"}) - own))]
     if _libraries.PHYSINV in libraries:
         words.append(("physinv", _package_key(_core.problem_sources())))
-    return words + [(key, _option_text(value, key))
-                    for key, value in sorted(options.items())]
+    return words
 
 
 def _name_of(function):

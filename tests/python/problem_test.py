@@ -249,14 +249,16 @@ class Problems(unittest.TestCase):
                 self.assertEqual(self.public(getattr(core, name)),
                                  {one.name for one in node.body}, name)
         own = self.stubs("__init__.pyi")
-        self.assertEqual(set(own) | {"Problem", "Run"}, set(physinv.__all__))
+        self.assertEqual(set(own) | {"RegisteredProblem", "Run"}, set(physinv.__all__))
         for name, node in own.items():
             if isinstance(node, ast.FunctionDef):
                 there = inspect.signature(getattr(physinv, name)).parameters
                 given = node.args
                 self.assertEqual(
-                    [a.arg for a in (*given.args, *filter(None, (
-                        given.vararg, given.kwarg)))], list(there), name)
+                    [a.arg for a in (*given.args, *given.kwonlyargs,
+                                     *filter(None, (given.vararg,
+                                                    given.kwarg)))],
+                    list(there), name)
 
     def test_threads_share_a_problem(self):
         p = physinv.problem("jpo/kuramoto-sivashinsky")

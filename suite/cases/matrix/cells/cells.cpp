@@ -196,6 +196,15 @@ std::vector<MatrixProblem> convolutional() {
   return all;
 }
 
+std::vector<MatrixProblem>& known() {
+  static std::vector<MatrixProblem> all = [] {
+    auto both = dense();
+    for (auto& problem : convolutional()) both.push_back(std::move(problem));
+    return both;
+  }();
+  return all;
+}
+
 }  // namespace
 
 const std::vector<MatrixMethod>& methods() {
@@ -241,13 +250,12 @@ const std::vector<MatrixMethod>& methods() {
   return all;
 }
 
-const std::vector<MatrixProblem>& problems() {
-  static const std::vector<MatrixProblem> all = [] {
-    auto both = dense();
-    for (auto& problem : convolutional()) both.push_back(std::move(problem));
-    return both;
-  }();
-  return all;
+const std::vector<MatrixProblem>& problems() { return known(); }
+
+void add_problem(MatrixProblem problem) {
+  std::erase_if(known(),
+                [&](const MatrixProblem& p) { return p.id == problem.id; });
+  known().push_back(std::move(problem));
 }
 
 std::string refusal(const MatrixProblem& problem, const MatrixMethod& method) {

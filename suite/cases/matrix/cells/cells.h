@@ -27,10 +27,14 @@ struct MatrixProblem {
   Index batch, updates;
   /// Its network gives its Jacobian by rows (RowJacobian).
   bool rows = true;
+  Index n = 128;  ///< problems of a case, but in profile smoke
 
   std::string experiment() const { return "matrix/" + id; }
 };
 const std::vector<MatrixProblem>& problems();
+
+/// A row of the matrix beside the suite's own (own.h); one of the same id goes.
+void add_problem(MatrixProblem problem);
 
 /// Why this cell is empty; nothing if it is not.
 std::string refusal(const MatrixProblem& problem, const MatrixMethod& method);

@@ -1,12 +1,10 @@
 // Every method on every problem that can carry it, which none of the papers
 // has.
-#include "suite/cases/matrix/cells/cells.h"
+#include "suite/cases/matrix/cells/own.h"
 #include "suite/harness/registry.h"
 
 namespace physinv::matrix {
 namespace {
-
-constexpr Index kProblems = 128;
 
 Method method(const MatrixMethod& m, const MatrixProblem& p) {
   TrainingOptions options = m.options;
@@ -15,6 +13,8 @@ Method method(const MatrixMethod& m, const MatrixProblem& p) {
   return {.id = m.id,
           .chain = {train_at_best_rate(options, {.rates = m.rates})}};
 }
+
+}  // namespace
 
 Experiment experiment(const MatrixProblem& p) {
   std::vector<Method> able;
@@ -25,7 +25,7 @@ Experiment experiment(const MatrixProblem& p) {
     ids.push_back(m.id);
     if (m.id == "adam" || m.id == "sip") few.push_back(m.id);
   }
-  const auto full = row(ids, kProblems, 3, p.updates);
+  const auto full = row(ids, p.n, 3, p.updates);
   return {.name = p.experiment(),
           .title = p.title,
           .citation = {},
@@ -33,13 +33,11 @@ Experiment experiment(const MatrixProblem& p) {
           .setting = p.setting,
           .profiles = {{.name = "smoke", .rows = {row(few, 4, 1, 2)}},
                        {.name = "quick",
-                        .rows = {row(ids, kProblems, 1, p.updates / 10)}},
+                        .rows = {row(ids, p.n, 1, p.updates / 10)}},
                        {.name = "standard", .rows = {full}},
                        {.name = "paper", .rows = {full}}},
           .methods = std::move(able)};
 }
-
-}  // namespace
 
 void add_experiments(Registry& r) {
   for (const MatrixProblem& p : problems()) r.add(experiment(p));
