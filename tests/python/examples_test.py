@@ -68,6 +68,30 @@ class Examples(unittest.TestCase):
         losses = {r["method"]: r["loss"] for r in rows}
         self.assertLess(losses["best-of-64"], losses["bfgs"])
 
+    def own_problem(self, name, package, methods):
+        """Losses by method; its table and its page are there."""
+        if importlib.util.find_spec(package) is None:
+            self.skipTest(f"python3-{package} is missing")
+        shutil.rmtree(WORK, ignore_errors=True)
+        os.makedirs(WORK)
+        done = subprocess.run([sys.executable, f"{EXAMPLES}/{name}.py"],
+                              cwd=WORK, check=True, text=True,
+                              stdout=subprocess.PIPE)
+        self.assertRegex(done.stdout, r"\nbfgs +solve +loss +[\d.e-]+ +solved")
+        self.assertTrue(os.path.isfile(f"{WORK}/{name}/report/index.html"))
+        r = physinv.open(f"{WORK}/{name}")
+        self.assertEqual({s["method"] for s in r.stages()}, methods)
+        return {s["method"]: r.examples(s["case"])["loss"] for s in r.stages()}
+
+    def test_own_problem(self):
+        losses = self.own_problem("own_problem", "torch", {
+            "bfgs", "lbfgsb", "gd", "jpo", "supervised", "na", "adam", "hig"})
+        self.assertLess(np.median(losses["bfgs"]), 1e-12)
+
+    def test_own_ode(self):
+        losses = self.own_problem("own_ode", "scipy", {"bfgs", "lbfgsb", "jpo"})
+        self.assertLess(np.median(losses["bfgs"]), 1e-12)
+
     def test_tutorial(self):
         with open(EXAMPLES + "/../../docs/tutorial.md") as f:
             blocks = re.findall(r"^```python\n(.*?)^```", f.read(), re.S | re.M)
