@@ -223,11 +223,12 @@ class Results:
                           in self._results._tidy().items()})
         parquet.write_table(table, str(path))
 
-    def plot(self, figure):
+    def plot(self, figure="learning_curves"):
         """A figure of the report as SVG text, by its id ("fig4a"), or with its
-        experiment ("jpo-billiards/fig4a") where several have one; the report is
-        made if it is not there, or older than the results. A wrong id is
-        answered with those there are."""
+        experiment ("jpo-billiards/fig4a") where several have one; without a
+        name the losses of all methods. The report is made if it is not there,
+        or older than the results. A wrong id is answered with those there
+        are."""
         return _figure(self.directory, figure)
 
 

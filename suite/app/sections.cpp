@@ -13,6 +13,7 @@
 #include "reports/joined_tables.h"
 #include "reports/printed_curves.h"
 #include "suite/app/installed.h"
+#include "suite/evidence/budget_figures.h"
 #include "suite/evidence/convergence_history.h"
 #include "suite/evidence/failures.h"
 #include "suite/evidence/performance_profiles.h"
@@ -142,6 +143,24 @@ void learn_titles(const Experiment& e, Section& section) {
       section.method_titles.try_emplace(method, *names.begin());
 }
 
+/// What every experiment shows of all its methods.
+void compare_methods(const Results& results,
+                     const std::string& experiment,
+                     Section& section) {
+  const ProfileOptions named{.title = section.title,
+                             .method_titles = section.method_titles};
+  const CommonRuns common = common_runs(results, experiment);
+  const auto add = [&](Figure figure) {
+    if (!figure.panels.empty()) section.figures.push_back(std::move(figure));
+  };
+  add(solved_by_budget(common, named));
+  add_work_precision(section, results, experiment, section.method_titles);
+  add(learning_curves(results, experiment, named));
+  add_standings(section, common, section.method_titles);
+  for (Figure& figure : performance_profile_figures(common, named))
+    section.figures.push_back(std::move(figure));
+}
+
 /// Rows of methods have their names.
 void name_rows(Section& section) {
   for (Table& table : section.tables)
@@ -214,16 +233,7 @@ std::vector<Section> sections_of(const Results& results,
     Section& section = sections[at];
     section.method_titles.insert(titles.begin(), titles.end());
     name_rows(section);
-    if (!only_diagnoses(*e)) {
-      add_work_precision(section, results, e->name, section.method_titles);
-      const CommonRuns common = common_runs(results, e->name);
-      add_standings(section, common, section.method_titles);
-      for (Figure& figure :
-           performance_profile_figures(common,
-                                       {.title = section.title,
-                                       .method_titles = section.method_titles}))
-        section.figures.push_back(std::move(figure));
-    }
+    if (!only_diagnoses(*e)) compare_methods(results, e->name, section);
     apply(e->styles, section.figures);
   }
   for (Section& overview : sections)

@@ -45,11 +45,18 @@ double mean_final_loss(const ConvergenceHistory& history) {
   return examples == 0 ? kHighest : sum / static_cast<double>(examples);
 }
 
-/// Those of `all` that end lowest, in the order of `all`.
-std::vector<std::string> lowest_of(const Results& results,
-                                   const std::string& experiment,
-                                   const std::vector<std::string>& all,
-                                   std::size_t most) {
+}  // namespace
+
+double final_loss(const ConvergenceHistory& history, Index i) {
+  if (history.failed || history.loss.empty()) return kHighest;
+  const double loss = history.loss.back()[i];
+  return std::isfinite(loss) ? loss : kHighest;
+}
+
+std::vector<std::string> lowest_methods(const Results& results,
+                                        const std::string& experiment,
+                                        std::size_t most) {
+  const auto all = results.methods(experiment);
   if (all.size() <= most) return all;
   std::vector<std::pair<double, std::size_t>> ends;
   for (std::size_t m = 0; m < all.size(); ++m) {
@@ -71,20 +78,12 @@ std::vector<std::string> lowest_of(const Results& results,
   return some;
 }
 
-}  // namespace
-
-double final_loss(const ConvergenceHistory& history, Index i) {
-  if (history.failed || history.loss.empty()) return kHighest;
-  const double loss = history.loss.back()[i];
-  return std::isfinite(loss) ? loss : kHighest;
-}
-
 CommonRuns common_runs(const Results& results,
                        const std::string& experiment,
                        std::size_t most) {
   CommonRuns out;
   const auto all = results.methods(experiment);
-  out.methods = lowest_of(results, experiment, all, most);
+  out.methods = lowest_methods(results, experiment, most);
   out.left_out = static_cast<Index>(all.size() - out.methods.size());
   std::set<std::uint64_t> seeds;
   std::set<Index> sizes;

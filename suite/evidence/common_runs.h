@@ -32,6 +32,12 @@ struct CommonRuns {
 /// loss is not finite.
 double final_loss(const ConvergenceHistory& history, Index i);
 
+/// Of an experiment's methods the `most` whose mean final losses are lowest, in
+/// the order of the results.
+std::vector<std::string> lowest_methods(const Results& results,
+                                        const std::string& experiment,
+                                        std::size_t most);
+
 /// A failed stage ends its chain, which counts: as unsolved, with what it spent
 /// and an infinite loss at its end. Of many methods, the `most` that end
 /// lowest.

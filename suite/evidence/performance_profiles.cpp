@@ -23,18 +23,11 @@ constexpr double kNearest = 1.02;
 std::optional<double> target_of(const CommonRun& group,
                                 Index example,
                                 double tolerance) {
-  double start = kInfinity, lowest = kInfinity;
-  for (const ConvergenceHistory& history : group.histories) {
-    for (std::size_t k = 0; k < history.loss.size(); ++k) {
-      const double loss = history.loss[k][example];
-      if (!std::isfinite(loss)) continue;
-      if (k == 0) start = std::min(start, loss);
-      lowest = std::min(lowest, loss);
-    }
-  }
-  if (!std::isfinite(start)) return {};
-  const double target = lowest + tolerance * (start - lowest);
-  if (start <= target) return {};
+  const auto range = loss_range(group, example);
+  if (!range) return {};
+  const double target =
+      range->lowest + tolerance * (range->start - range->lowest);
+  if (range->start <= target) return {};
   return target;
 }
 
@@ -90,29 +83,6 @@ void draw_steps(Series& series, const Steps& steps, double first, double last) {
   if (series.x.back() < last) point(last, level);
 }
 
-Panel panel_of(const std::vector<Costs>& values,
-               const std::vector<std::string>& methods,
-               const std::map<std::string, std::string>& titles) {
-  Panel panel{.x_log = true, .y_min = 0, .y_max = 1};
-  double first = kInfinity, last = 0;
-  for (const Costs& one : values) {
-    for (const double v : one) {
-      if (!std::isfinite(v)) continue;
-      first = std::min(first, v);
-      last = std::max(last, v);
-    }
-  }
-  if (last == 0) return panel;  // reads "not run"
-  for (std::size_t m = 0; m < methods.size(); ++m) {
-    const auto title = titles.find(methods[m]);
-    Series s{.label = title == titles.end() ? methods[m] : title->second,
-             .method = methods[m]};
-    draw_steps(s, distribution(values[m]), first, 1.1 * last);
-    panel.series.push_back(std::move(s));
-  }
-  return panel;
-}
-
 std::string tolerance_text(double tolerance) {
   return fmt::format("tau = {:g}", tolerance);
 }
@@ -153,6 +123,43 @@ std::string target_note(const TargetCosts& costs) {
 
 }  // namespace
 
+std::optional<LossRange> loss_range(const CommonRun& group, Index example) {
+  LossRange range{kInfinity, kInfinity};
+  for (const ConvergenceHistory& history : group.histories) {
+    for (std::size_t k = 0; k < history.loss.size(); ++k) {
+      const double loss = history.loss[k][example];
+      if (!std::isfinite(loss)) continue;
+      if (k == 0) range.start = std::min(range.start, loss);
+      range.lowest = std::min(range.lowest, loss);
+    }
+  }
+  if (!std::isfinite(range.start)) return {};
+  return range;
+}
+
+Panel cost_panel(const std::vector<Costs>& values,
+                 const std::vector<std::string>& methods,
+                 const std::map<std::string, std::string>& titles) {
+  Panel panel{.x_log = true, .y_min = 0, .y_max = 1};
+  double first = kInfinity, last = 0;
+  for (const Costs& one : values) {
+    for (const double v : one) {
+      if (!std::isfinite(v)) continue;
+      first = std::min(first, v);
+      last = std::max(last, v);
+    }
+  }
+  if (last == 0) return panel;  // reads "not run"
+  for (std::size_t m = 0; m < methods.size(); ++m) {
+    const auto title = titles.find(methods[m]);
+    Series s{.label = title == titles.end() ? methods[m] : title->second,
+             .method = methods[m]};
+    draw_steps(s, distribution(values[m]), first, 1.1 * last);
+    panel.series.push_back(std::move(s));
+  }
+  return panel;
+}
+
 std::vector<Costs> performance_ratios(const std::vector<Costs>& costs) {
   std::vector<Costs> ratios = costs;
   const std::size_t problems = costs.empty() ? 0 : costs.front().size();
@@ -178,7 +185,9 @@ Steps distribution(Costs values) {
   return steps;
 }
 
-TargetCosts target_costs(const CommonRuns& common, double tolerance) {
+TargetCosts target_costs(const CommonRuns& common,
+                         double tolerance,
+                         std::optional<Index> n) {
   TargetCosts out{.methods = common.methods,
                   .runs = common.runs,
                   .left_out = common.left_out,
@@ -191,6 +200,7 @@ TargetCosts target_costs(const CommonRuns& common, double tolerance) {
                       &out.spent_simulations})
     costs->resize(out.methods.size());
   for (const CommonRun& group : common.groups) {
+    if (n && group.n != *n) continue;
     for (Index i = 0; i < group.examples; ++i) {
       const auto target = target_of(group, i, tolerance);
       if (target) {
@@ -251,9 +261,9 @@ Figure distribution_figure(const CommonRuns& common,
           targets.back(),
           costs.problems)};
   for (const bool by_time : {true, false}) {
-    Panel panel = panel_of(by_time ? costs.seconds : costs.simulations,
-                           costs.methods,
-                           options.method_titles);
+    Panel panel = cost_panel(by_time ? costs.seconds : costs.simulations,
+                             costs.methods,
+                             options.method_titles);
     panel.title = by_time ? "By wall time" : "By simulations";
     panel.x_label = by_time ? "seconds" : "simulations per problem";
     panel.y_label = "share of problems and targets";
@@ -299,7 +309,7 @@ std::vector<Figure> performance_profile_figures(const CommonRuns& common,
     if (note.empty()) note = target_note(costs);
     for (const bool by_time : {true, false}) {
       const auto& spent = by_time ? costs.seconds : costs.simulations;
-      Panel panel = panel_of(
+      Panel panel = cost_panel(
           performance_ratios(spent), costs.methods, options.method_titles);
       panel.title = fmt::format("By {}, {}",
                                 by_time ? "wall time" : "simulations",
@@ -309,7 +319,7 @@ std::vector<Figure> performance_profile_figures(const CommonRuns& common,
       panel.y_label = "share of problems";
       profile.panels.push_back(std::move(panel));
 
-      panel = panel_of(spent, costs.methods, options.method_titles);
+      panel = cost_panel(spent, costs.methods, options.method_titles);
       panel.title = fmt::format("By {}, {}",
                                 by_time ? "wall time" : "simulations",
                                 tolerance_text(tolerance));

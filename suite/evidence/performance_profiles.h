@@ -18,6 +18,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,14 @@
 #include "suite/results/results.h"
 
 namespace physinv {
+
+/// The lowest losses at which any method of a group starts, and that any finds.
+struct LossRange {
+  double start, lowest;
+};
+
+/// Empty if nobody starts with a finite loss.
+std::optional<LossRange> loss_range(const CommonRun& group, Index example);
 
 /// Costs of one method, one entry per problem; infinite where it fails.
 using Costs = std::vector<double>;
@@ -68,11 +77,20 @@ struct TargetCosts {
   bool crowded = false;  ///< some stages shared their cores
 };
 
-TargetCosts target_costs(const CommonRuns& common, double tolerance);
+/// Of one n, or of all.
+TargetCosts target_costs(const CommonRuns& common,
+                         double tolerance,
+                         std::optional<Index> n = {});
 TargetCosts target_costs(const Results& results,
                          const std::string& experiment,
                          double tolerance,
                          std::size_t most = 12);
+
+/// A curve for each method: the share of its costs up to x. No curves if nobody
+/// has a finite cost.
+Panel cost_panel(const std::vector<Costs>& values,
+                 const std::vector<std::string>& methods,
+                 const std::map<std::string, std::string>& titles);
 
 /// Tolerances of the runtime distribution: 24, four to a decade.
 std::vector<double> distribution_targets();

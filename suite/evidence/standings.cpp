@@ -6,20 +6,38 @@
 #include <cmath>
 #include <numeric>
 
+#include "suite/evidence/performance_profiles.h"
 #include "suite/evidence/statistics.h"
 
 namespace physinv {
 namespace {
 
-/// Of each method, a loss per problem; infinite where there is none.
-std::vector<std::vector<double>> final_losses(const CommonRuns& common) {
+/// What counts for how a method ends on a problem: the hardest target tau that
+/// its final loss reaches; 1 where it reaches none, 2 where it lies above the
+/// start, infinite without a finite loss.
+double level_of(double loss, const LossRange& range) {
+  if (!std::isfinite(loss)) return loss;
+  const double lowest = std::max(range.lowest, kSolvedLoss);
+  const double start = std::max(range.start, lowest);
+  static const auto targets = distribution_targets();
+  if (loss > start) return 2;
+  double level = 1;
+  for (const double tau : targets)
+    if (loss <= lowest + tau * (start - lowest)) level = tau;
+  return level;
+}
+
+/// Of each method, a level per problem.
+std::vector<std::vector<double>> final_levels(const CommonRuns& common) {
   std::vector<std::vector<double>> all(common.methods.size());
   for (const CommonRun& group : common.groups)
-    for (std::size_t m = 0; m < all.size(); ++m)
-      for (Index i = 0; i < group.examples; ++i) {
-        all[m].push_back(
-            std::max(final_loss(group.histories[m], i), kSolvedLoss));
+    for (Index i = 0; i < group.examples; ++i) {
+      const auto range = loss_range(group, i);
+      for (std::size_t m = 0; m < all.size(); ++m) {
+        const double loss = final_loss(group.histories[m], i);
+        all[m].push_back(range ? level_of(loss, *range) : loss);
       }
+    }
   return all;
 }
 
@@ -62,7 +80,7 @@ std::string listed(std::vector<std::string> parts) {
 }  // namespace
 
 Standings standings(const CommonRuns& common) {
-  const auto losses = final_losses(common);
+  const auto losses = final_levels(common);
   Standings out;
   if (losses.size() < 2 || losses.front().empty()) return out;
   out.problems = losses.front().size();

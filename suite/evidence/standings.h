@@ -23,13 +23,15 @@ struct Standings {
   std::size_t problems = 0;
   std::vector<std::size_t> order;  ///< methods, lowest mean rank first
   std::vector<double> mean_rank;   ///< of each method, by its final losses
-  /// Share of problems where it is finite and none is lower.
+  /// Share of problems where it is finite and none reaches a harder target.
   std::vector<double> lowest;
   std::vector<MethodPair> pairs;  ///< of all methods, in this order
 };
 
-/// Losses at the end of the chains. Losses that are solved, or not finite, are
-/// equal; that of a chain that failed is not finite.
+/// Of losses at the end of the chains, by the hardest of the targets of the
+/// runtime distribution (performance_profiles.h) that they reach: losses that
+/// reach the same ones, that are below kSolvedLoss, or that are not finite, are
+/// equal. That of a chain that failed is not finite.
 Standings standings(const CommonRuns& common);
 
 /// The first against the next: "JPO ranks best of 5 methods: on 336 problems

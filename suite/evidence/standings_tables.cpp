@@ -129,8 +129,9 @@ Table standings_table(const CommonRuns& common,
                            number(profile_score(seconds[m])),
                            number(profile_score(simulations[m]))}});
   table.note = fmt::format(
-      "Ranks of the final losses on {} {}; 1 is the lowest, and losses below "
-      "{:g} count as equal. Scores (AlgoPerf): mean height of the performance "
+      "Ranks of the final losses on {} {}; 1 is the lowest. Losses that reach "
+      "the same of the 24 targets of the runtime distribution, or are below "
+      "{:g}, count as equal. Scores (AlgoPerf): mean height of the performance "
       "profile of tau = {:g} between factors of 1 and {:g}; a method that is "
       "fastest on every problem has 1.{}{}",
       s.problems,
@@ -228,7 +229,8 @@ Table pairs_table(const CommonRuns& common,
   }
   table.note = fmt::format(
       "Final losses on the same {} {}: two-sided Wilcoxon signed rank test of "
-      "the ratios without ties. p by Holm is corrected for {} pairs; below "
+      "the ratios of the targets reached, without ties. p by Holm is corrected "
+      "for {} pairs; below "
       "{:g} the difference is significant.{}{}{}{}",
       s.problems,
       noun(common),

@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include "suite/evidence/curve.h"
 #include "suite/evidence/failures.h"
+#include "suite/evidence/guests.h"
 #include "suite/evidence/statistics.h"
 #include "suite/evidence/training_report.h"
 
@@ -65,6 +67,24 @@ Series median_series(const std::vector<Points>& seeds,
   return s;
 }
 
+/// Mean losses of examples that are answered one by one.
+std::vector<Points> means_of(const Evidence& e, const std::string& method) {
+  std::vector<Points> seeds;
+  for (const Run& run : find_runs(e, {method})) {
+    const Curve& curve = run.stage->curve;
+    Points all;
+    for (Index k = 0; k < curve.points(); ++k) {
+      const auto at = static_cast<std::size_t>(k);
+      all.updates.push_back(curve.iteration[at]);
+      all.seconds.push_back(curve.seconds[at]);
+      all.paper.push_back(0);
+      all.value.push_back(curve.loss.col(k).mean());
+    }
+    seeds.push_back(std::move(all));
+  }
+  return seeds;
+}
+
 Panel over(const char* x_label, std::string y_label) {
   return {.x_label = x_label,
           .y_label = std::move(y_label),
@@ -88,6 +108,11 @@ std::vector<Points> losses_of(const Evidence& e,
   return seeds;
 }
 
+bool is_guest(const Evidence& e, const std::string& method) {
+  const auto added = guests(e);
+  return std::ranges::find(added, method) != added.end();
+}
+
 /// A panel for each axis; the paper's clock is known for some lines only.
 std::vector<Panel> loss_panels(const Evidence& e,
                                const std::vector<MethodLine>& lines,
@@ -96,7 +121,9 @@ std::vector<Panel> loss_panels(const Evidence& e,
         seconds = over("seconds", "test loss"),
         paper = over("seconds by the paper's clock", "test loss");
   for (const MethodLine& line : lines) {
-    const auto seeds = losses_of(e, line, which);
+    auto seeds = losses_of(e, line, which);
+    if (seeds.empty() && is_guest(e, line.method))
+      seeds = means_of(e, line.method);
     if (seeds.empty()) continue;
     updates.series.push_back(median_series(seeds, line, &Points::updates));
     seconds.series.push_back(median_series(seeds, line, &Points::seconds));
@@ -136,10 +163,28 @@ Figure loss_figure(std::vector<Panel> panels,
 
 }  // namespace
 
-void LearningCurves::losses(const std::vector<MethodLine>& lines,
+std::vector<MethodLine> guest_lines(const Evidence& e,
+                                    const std::vector<MethodLine>& lines) {
+  std::vector<MethodLine> others;
+  for (const std::string& method : guests(e))
+    if (std::ranges::find(lines, method, &MethodLine::method) == lines.end())
+      others.push_back({method, method});
+  return others;
+}
+
+std::vector<MethodLine> LearningCurves::with_guests(
+    std::vector<MethodLine> lines) {
+  if (std::exchange(guests_drawn_, true)) return lines;
+  const auto others = guest_lines(evidence_, lines);
+  lines.insert(lines.end(), others.begin(), others.end());
+  return lines;
+}
+
+void LearningCurves::losses(const std::vector<MethodLine>& shown,
                             std::string id,
                             std::string title,
                             std::string where) {
+  const auto lines = with_guests(shown);
   add(loss_figure(loss_panels(evidence_, lines, Stages::last),
                   std::move(id),
                   std::move(title),

@@ -122,11 +122,20 @@ class LearningCurves {
   void add(Figure figure);
 
  private:
+  /// With those in Python, in the section's first figure of losses.
+  std::vector<MethodLine> with_guests(std::vector<MethodLine> lines);
+
   const Evidence& evidence_;
   Section& section_;
+  bool guests_drawn_ = false;
 };
 
-/// Per method with results: test loss at the end, seconds and bytes per update.
+/// Those in Python that no line names, which answer each example on its own.
+std::vector<MethodLine> guest_lines(const Evidence& e,
+                                    const std::vector<MethodLine>& lines);
+
+/// Per method with results, those in Python too: test loss at the end, seconds
+/// and bytes per update.
 Table loss_table(const Evidence& e, const std::vector<MethodLine>& lines);
 
 /// CPU time of an update over the size of its batch: a curve for the lines

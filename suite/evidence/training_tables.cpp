@@ -12,6 +12,7 @@
 #include "suite/evidence/curve.h"
 #include "suite/evidence/failures.h"
 #include "suite/evidence/field_panel.h"
+#include "suite/evidence/guests.h"
 #include "suite/evidence/options.h"
 #include "suite/evidence/statistics.h"
 #include "suite/evidence/training_report.h"
@@ -37,6 +38,23 @@ UpdateCosts costs_of(const std::vector<const StageRecord*>& stages,
   return costs;
 }
 
+/// Last stages of its runs, be it a network or a method in Python that answers
+/// examples one by one.
+std::vector<const StageRecord*> ends_of(const Evidence& e,
+                                        const std::string& method) {
+  auto stages = trained_stages(e, method);
+  const auto added = guests(e);
+  if (stages.empty() && std::ranges::find(added, method) != added.end())
+    for (const Run& run : find_runs(e, {method}))
+      if (run.stage->curve.points() > 0) stages.push_back(run.stage);
+  return stages;
+}
+
+double end_loss(const StageRecord& s) {
+  if (s.stop == Stop::diverged) return kInfinite;
+  return s.arrays.contains("mean_loss") ? CurveRow{s}.last() : s.loss.mean();
+}
+
 }  // namespace
 
 Table loss_table(const Evidence& e, const std::vector<MethodLine>& lines) {
@@ -52,13 +70,14 @@ Table loss_table(const Evidence& e, const std::vector<MethodLine>& lines) {
                           "CPU ms / update",
                           "MB"}};
   TimedStages timed;
-  for (const MethodLine& line : lines) {
+  auto all = lines;
+  std::ranges::move(guest_lines(e, lines), std::back_inserter(all));
+  for (const MethodLine& line : all) {
     std::vector<double> losses, updates;
     UpdateCosts costs;
     int diverged = 0;
-    for (const auto* s : trained_stages(e, line.method)) {
-      losses.push_back(s->stop == Stop::diverged ? kInfinite
-                                                 : CurveRow{*s}.last());
+    for (const auto* s : ends_of(e, line.method)) {
+      losses.push_back(end_loss(*s));
       updates.push_back(s->curve.iteration.back());
       costs.add(*s, timed);
       diverged += s->stop == Stop::diverged;

@@ -161,6 +161,7 @@ class Campaign(unittest.TestCase):
             self.results.plot("no-such")
         name = str(e.exception).split("known are ")[1].split(",")[0]
         self.assertIn("<svg", self.results.plot(name))
+        self.assertIn("losses of all methods", self.results.plot())
         page = os.path.join(os.path.dirname(__file__), "../../docs/python.md")
         with open(page) as f:
             named = re.findall(r'r\.plot\("([^"]+)"\)', f.read())

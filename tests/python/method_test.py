@@ -305,7 +305,10 @@ class Methods(unittest.TestCase):
         self.assertEqual(e.exception.status, 10)  # as two of them failed
         pages = WORK + "/smoke/report/jpo-robotic-arm/"
         self.assertIn("py-momentum", self.read(pages, "index.html"))
-        for name in ("figures/run_time_against_loss.svg",
+        rows = self.read(pages, "tables/results.csv")
+        self.assertIn("py-momentum", rows)
+        for name in ("figures/fig25c.svg", "figures/learning_curves.svg",
+                     "figures/run_time_against_loss.svg",
                      "figures/performance_profile.svg"):
             self.assertIn("py-momentum", self.read(pages, name))
 

@@ -86,6 +86,26 @@ TEST(JpoReport, TablesHoldMeansAndSpreads) {
   EXPECT_EQ(table(s, "table3").rows[0].cells[1].text, "not run");
 }
 
+TEST(JpoReport, AMethodInPythonHasARowAndCurves) {
+  auto cases = some_results().cases();
+  StageRecord solve = stage_of("solve", {0, 0}, {1, 1});
+  solve.options = {{"algorithm", "python"}};
+  cases.push_back(case_of("mine", 2, 0, {"solve"}, {solve}));
+  const Results results(cases);
+  const Section s = section_of(kOptions, {results, {}, "toy"});
+  const Table& rows = table(s, "results");
+  ASSERT_EQ(rows.rows.size(), 8U);
+  EXPECT_EQ(rows.rows.back().label, "2 mine");
+  EXPECT_EQ(rows.rows.back().cells[0].ours, 1) << "solved";
+  EXPECT_EQ(rows.rows.back().cells[2].ours, 1) << "better than BFGS";
+  for (const char* id : {"fig4b", "fig11", "fig12", "fig13"}) {
+    const auto& all = figure(s, id).panels.at(0).series;
+    const auto mine = std::ranges::find(all, "mine", &Series::label);
+    ASSERT_NE(mine, all.end()) << id;
+    EXPECT_FALSE(mine->x.empty()) << id;
+  }
+}
+
 TEST(JpoReport, NothingIsSaidOfTheRunsThatDidNotFail) {
   const auto with = [](std::size_t failing) {
     auto cases = some_results().cases();

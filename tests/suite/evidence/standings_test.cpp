@@ -103,6 +103,19 @@ TEST(Standings, RanksByProblemAndPairs) {
   EXPECT_DOUBLE_EQ(s.pairs[1].p, 0.75) << "of three pairs";
 }
 
+TEST(Standings, LossesThatReachTheSameTargetsAreEqual) {
+  const auto common =
+      runs_of({{1e-10, 0.11, 2}, {1e-12, 0.12, 0.99}, {1e-3, 0, 0.98}});
+  const Standings s = standings(common);
+  // All three solved or not: 1e-10 and 1e-12 are, 1e-3 is not.
+  EXPECT_DOUBLE_EQ(s.mean_rank[0], (1.5 + 2.5 + 3) / 3);
+  EXPECT_DOUBLE_EQ(s.mean_rank[1], (1.5 + 2.5 + 2) / 3);
+  EXPECT_DOUBLE_EQ(s.mean_rank[2], (3.0 + 1 + 1) / 3);
+  EXPECT_DOUBLE_EQ(s.lowest[0], 1.0 / 3);
+  for (const MethodPair& pair : s.pairs)
+    EXPECT_EQ(pair.test.ties, pair.first == 1 && pair.second == 0 ? 2U : 0U);
+}
+
 TEST(Standings, WhoFailedIsNowhereTheLowest) {
   auto common = runs_of({{0.5, kInfiniteLoss}, {0.1, kInfiniteLoss}});
   EXPECT_DOUBLE_EQ(standings(common).lowest[0], 0);
@@ -164,7 +177,7 @@ TEST(Standings, ASentenceWithWhatWasShown) {
   EXPECT_EQ(standing_text(common, standings(common), {{"b", "JPO"}}),
             "JPO ranks best of 2 methods: on 100 problems its final loss "
             "compared with a, the next, is lower on 87 % and higher on 13 % "
-            "(p < 1e-6)");
+            "(p = 1.9e-06)");
   const auto few = runs_of({{0.5}, {0.1}});
   EXPECT_EQ(standing_text(few, standings(few), {}),
             "No method is clearly ahead of the other: b and a rank best, and "

@@ -78,6 +78,28 @@ TEST(TrainingReport, FailedAndDivergedRunsAreInTheTable) {
       << section.figures[0].note;
 }
 
+TEST(TrainingReport, AMethodInPythonHasARowAndACurve) {
+  StageRecord solve = stage_of("solve", {1, 3}, {8, 4});
+  solve.options = {{"algorithm", "python"}};
+  solve.curve.iteration = {1, 5}, solve.curve.seconds = {1, 5};
+  const Results results({trained_case("a", 0, {4, 2, 1}),
+                         case_of("mine", 4, 0, {"solve"}, {solve})});
+  const Evidence evidence{results, {}, "toy"};
+  const Table table = loss_table(evidence, {{"a", "A"}});
+  ASSERT_EQ(table.rows.size(), 2U);
+  EXPECT_EQ(table.rows[1].label, "mine");
+  EXPECT_EQ(table.rows[1].cells[1].ours, 2) << "mean of its examples";
+  Section section;
+  LearningCurves curves(evidence, section);
+  for (const char* id : {"f", "g"})
+    curves.losses({{"a", "A"}}, id, "F", "Fig. 1");
+  ASSERT_EQ(section.figures[0].panels[0].series.size(), 2U);
+  EXPECT_EQ(section.figures[0].panels[0].series[1].y,
+            (std::vector<double>{6, 2}));
+  EXPECT_EQ(section.figures[1].panels[0].series.size(), 1U)
+      << "in the first figure alone";
+}
+
 TEST(TrainingReport, AnswersAreOfTheExampleThatIsAskedFor) {
   CaseRecord two = answered("a");
   two.stages.back().x = Batch<double>::Ones(2, 2);

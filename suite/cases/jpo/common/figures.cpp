@@ -4,6 +4,7 @@
 #include <set>
 
 #include "suite/cases/jpo/common/report.h"
+#include "suite/evidence/guests.h"
 #include "suite/evidence/series.h"
 #include "suite/evidence/statistics.h"
 #include "suite/harness/networks.h"
@@ -80,13 +81,13 @@ Series JpoReport::over_n(std::string label,
 
 Series JpoReport::f_series(const std::string& method, bool refined) const {
   return over_n(
-      method_title(method), method, jpo::ending(method, refined), jpo::f());
+      method_title(method), method, ending(method, refined), jpo::f());
 }
 
 Series JpoReport::loss_series(const std::string& method, bool refined) const {
   return over_n(method_title(method),
                 method,
-                jpo::ending(method, refined),
+                ending(method, refined),
                 jpo::mean_loss(),
                 Over::quantiles);
 }
@@ -113,6 +114,8 @@ Figure JpoReport::fraction() const {
   panel.series.back().label += " refined";
   panel.series.back().dashed = true;
   panel.series.push_back(f_series("gd", false));
+  for (const auto& method : guests(evidence_))
+    panel.series.push_back(f_series(method, false));
   return {.id = options_.fraction.id,
           .title = title() + ": improvement over BFGS",
           .where = options_.fraction.where,
@@ -140,7 +143,7 @@ Figure JpoReport::improvement() const {
         .y_label = "mean loss",
         .x_log = true,
         .y_log = true};
-    for (const auto& method : with_bfgs()) {
+    for (const auto& method : drawn()) {
       panel.series.push_back(loss_series(method, refined));
     }
     figure.panels.push_back(std::move(panel));
@@ -154,9 +157,8 @@ Figure JpoReport::improvement() const {
                 .y_min = 0,
                 .y_max = 1};
     panel.series.push_back(reference_half());
-    for (const auto& method : options_.methods) {
-      panel.series.push_back(f_series(method, refined));
-    }
+    for (const auto& method : drawn())
+      if (method != "bfgs") panel.series.push_back(f_series(method, refined));
     figure.panels.push_back(std::move(panel));
   }
   return figure;
@@ -176,7 +178,8 @@ std::vector<Index> JpoReport::sizes_of_curves() const {
 Series JpoReport::curve_series(const std::string& method, Index n) const {
   std::vector<const Curve*> curves;
   std::set<double> iterations;
-  for (const Run& run : find_runs(evidence_, jpo::at(jpo::plain(method), n))) {
+  for (const Run& run :
+       find_runs(evidence_, jpo::at(ending(method, false), n))) {
     const Curve& curve = run.stage->curve;
     if (curve.points() == 0) continue;
     curves.push_back(&curve);
@@ -208,7 +211,7 @@ Figure JpoReport::curves() const {
                 .y_label = "mean loss",
                 .x_log = true,
                 .y_log = true};
-    for (const auto& method : with_bfgs()) {
+    for (const auto& method : drawn()) {
       panel.series.push_back(curve_series(method, n));
     }
     figure.panels.push_back(std::move(panel));
@@ -225,7 +228,7 @@ std::string JpoReport::unknown_name(Index j) const {
 const StageRecord* JpoReport::of_first_seed(const std::string& method,
                                             Index n) const {
   const auto seed = evidence_.results.seeds(evidence_.experiment).front();
-  for (const Run& run : find_runs(evidence_, jpo::at(jpo::plain(method), n)))
+  for (const Run& run : find_runs(evidence_, jpo::at(ending(method, false), n)))
     if (run.seed() == seed) return run.stage;
   return nullptr;
 }
@@ -250,7 +253,7 @@ Panel JpoReport::plane(Index n, Index example) const {
   Panel panel{.title = fmt::format("Problem {}", example),
               .x_label = unknown_name(0),
               .y_label = unknown_name(1)};
-  for (const auto& method : with_bfgs()) {
+  for (const auto& method : drawn()) {
     const StageRecord* stage = of_first_seed(method, n);
     if (stage == nullptr || !tracks(*stage, example)) continue;
     Series way{.label = method_title(method),
@@ -272,7 +275,7 @@ Panel JpoReport::over_iterations(Index n, Index example, Index unknown) const {
               .y_label = unknown_name(unknown),
               .x_log = true};
   double last = 1;
-  for (const auto& method : with_bfgs()) {
+  for (const auto& method : drawn()) {
     const StageRecord* stage = of_first_seed(method, n);
     if (stage == nullptr || !tracks(*stage, example)) continue;
     panel.series.push_back({.label = method_title(method),

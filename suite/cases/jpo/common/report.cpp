@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "suite/evidence/guests.h"
 #include "suite/harness/registry.h"
 
 namespace physinv {
@@ -24,6 +25,19 @@ std::vector<std::string> JpoReport::with_bfgs() const {
   std::vector<std::string> out{"bfgs"};
   out.insert(out.end(), options_.methods.begin(), options_.methods.end());
   return out;
+}
+
+std::vector<std::string> JpoReport::drawn() const {
+  std::vector<std::string> out = with_bfgs();
+  for (const auto& method : guests(evidence_)) out.push_back(method);
+  return out;
+}
+
+Select JpoReport::ending(const std::string& method, bool refined) const {
+  const auto added = guests(evidence_);
+  return std::ranges::find(added, method) == added.end()
+             ? jpo::ending(method, refined)
+             : Select{method};
 }
 
 // With a network, if there is one: BFGS alone may have seen more problems.

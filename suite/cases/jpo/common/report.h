@@ -106,6 +106,10 @@ class JpoReport {
                      const std::vector<Index>& tensors) const;
   std::string unknown_name(Index j) const;
   std::vector<std::string> with_bfgs() const;
+  /// And those in Python.
+  std::vector<std::string> drawn() const;
+  /// Those in Python end with their last stage.
+  Select ending(const std::string& method, bool refined) const;
   std::optional<double> solution_of(Index n, Index example, Index j) const;
 
   Cell over_seeds(const Select& runs, Index n, const RunValue& value) const;

@@ -4,6 +4,7 @@
 
 #include "suite/cases/jpo/common/report.h"
 #include "suite/evidence/failures.h"
+#include "suite/evidence/guests.h"
 #include "suite/evidence/statistics.h"
 
 namespace physinv {
@@ -193,6 +194,8 @@ Table JpoReport::results_table() const {
       table.rows.push_back(results_row(method, n, false, timed));
       table.rows.push_back(results_row(method, n, true, timed));
     }
+    for (const std::string& method : guests(evidence_))
+      table.rows.push_back(results_row(method, n, false, timed));
   }
   table.note = fmt::format(
       "Mean ± sample standard deviation over seeds. solved: share of problems "
@@ -209,7 +212,7 @@ TableRow JpoReport::results_row(const std::string& method,
                                 bool refined,
                                 TimedStages& timed) const {
   using Value = std::optional<double>;
-  const Select runs = jpo::ending(method, refined);
+  const Select runs = ending(method, refined);
   const auto f = [&](Equality equality) {
     if (method == "bfgs") return Cell{.text = kNothing};
     const auto failed = failed_text(evidence_, jpo::at(jpo::bfgs(), n));

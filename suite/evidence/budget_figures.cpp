@@ -1,0 +1,151 @@
+#include "suite/evidence/budget_figures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "suite/evidence/guests.h"
+#include "suite/evidence/statistics.h"
+#include "suite/results/published.h"
+
+namespace physinv {
+namespace {
+
+constexpr double kSolvedTolerance = 1e-5;
+constexpr std::size_t kMostPanels = 4, kMostCurves = 24;
+
+std::vector<Index> some_of(const std::vector<Index>& sizes) {
+  if (sizes.size() <= kMostPanels) return sizes;
+  std::vector<Index> some;
+  for (std::size_t k = 0; k < kMostPanels; ++k)
+    some.push_back(sizes[k * (sizes.size() - 1) / (kMostPanels - 1)]);
+  return some;
+}
+
+/// Mean losses over simulations per problem, ascending in both.
+struct MeanCurve {
+  std::vector<double> simulations, loss;
+  /// At the last point up to there; empty before the first.
+  std::optional<double> at(double x) const {
+    const auto after =
+        std::upper_bound(simulations.begin(), simulations.end(), x);
+    if (after == simulations.begin()) return {};
+    return loss[static_cast<std::size_t>(after - simulations.begin()) - 1];
+  }
+};
+
+MeanCurve curve_of(const ConvergenceHistory& history, Index n) {
+  MeanCurve curve;
+  for (std::size_t k = 0; k < history.loss.size(); ++k) {
+    // A run that is judged by a mean is one problem.
+    const Index problems = history.loss[k].size();
+    const double share = problems == 1 ? 1 : static_cast<double>(n);
+    curve.simulations.push_back(std::max(history.simulations[k] / share, 1.0));
+    curve.loss.push_back(history.loss[k].mean());
+  }
+  return curve;
+}
+
+Series series_of(const std::vector<MeanCurve>& seeds) {
+  std::set<double> points;
+  for (const MeanCurve& curve : seeds)
+    points.insert(curve.simulations.begin(), curve.simulations.end());
+  Series s;
+  for (const double x : points) {
+    std::vector<double> values;
+    for (const MeanCurve& curve : seeds)
+      if (const auto loss = curve.at(x)) values.push_back(*loss);
+    const double middle = median(values), hi = quantile(values, 0.9);
+    if (!std::isfinite(middle)) continue;
+    s.x.push_back(x);
+    s.y.push_back(middle);
+    s.lo.push_back(quantile(values, 0.1));
+    s.hi.push_back(std::isfinite(hi) ? hi : middle);
+  }
+  return s;
+}
+
+std::vector<std::string> drawn_methods(const Results& results,
+                                       const std::string& experiment) {
+  auto all = results.methods(experiment);
+  if (all.size() <= kMostCurves) return all;
+  const auto lowest = lowest_methods(results, experiment, kMostCurves);
+  const auto added = guests({results, {}, experiment});
+  std::erase_if(all, [&](const std::string& method) {
+    return std::ranges::find(lowest, method) == lowest.end() &&
+           std::ranges::find(added, method) == added.end();
+  });
+  return all;
+}
+
+std::string title_of(const std::string& method, const ProfileOptions& options) {
+  const auto title = options.method_titles.find(method);
+  return title == options.method_titles.end() ? method : title->second;
+}
+
+}  // namespace
+
+Figure solved_by_budget(const CommonRuns& common,
+                        const ProfileOptions& options) {
+  Figure figure{
+      .id = "solved_by_budget",
+      .title = options.title + ": problems solved with a budget",
+      .note = fmt::format(
+          "Share of problems whose loss has come within tau = {:g} of the way "
+          "from f_0, the lowest loss at which any method starts, to f_L, the "
+          "lowest that any method found.",
+          kSolvedTolerance)};
+  if (common.methods.size() < 2) return figure;
+  for (const Index n : some_of(common.sizes)) {
+    const TargetCosts costs = target_costs(common, kSolvedTolerance, n);
+    if (costs.problems == 0) continue;
+    Panel panel =
+        cost_panel(costs.simulations, costs.methods, options.method_titles);
+    panel.title = fmt::format("n = {}", n);
+    panel.x_label = "simulations per problem";
+    panel.y_label = "share of problems solved";
+    figure.panels.push_back(std::move(panel));
+  }
+  return figure;
+}
+
+Figure learning_curves(const Results& results,
+                       const std::string& experiment,
+                       const ProfileOptions& options) {
+  Figure figure{.id = "learning_curves",
+                .title = options.title + ": losses of all methods",
+                .note =
+                    "Mean over problems, median over seeds, band: 10 % and 90 "
+                    "% quantiles. All stages of a method, also refinement; "
+                    "simulations include gradients. Where a method learns from "
+                    "samples before its first simulation, its curve begins at "
+                    "1."};
+  const auto methods = drawn_methods(results, experiment);
+  for (const Index n : some_of(results.sizes(experiment))) {
+    Panel panel{.title = fmt::format("n = {}", n),
+                .x_label = "simulations per problem",
+                .y_label = "mean loss",
+                .x_log = true,
+                .y_log = true};
+    for (const std::string& method : methods) {
+      std::vector<MeanCurve> seeds;
+      for (const auto seed : results.seeds(experiment)) {
+        const auto* found = results.find_case(experiment, method, n, seed);
+        const auto history = found ? history_of(*found) : std::nullopt;
+        if (history && !history->loss.empty())
+          seeds.push_back(curve_of(*history, n));
+      }
+      if (seeds.empty()) continue;
+      Series s = series_of(seeds);
+      s.label = title_of(method, options), s.method = method;
+      if (!s.x.empty()) panel.series.push_back(std::move(s));
+    }
+    if (!panel.series.empty()) figure.panels.push_back(std::move(panel));
+  }
+  return figure;
+}
+
+}  // namespace physinv
