@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "suite/results/published.h"
 #include "tests/suite/evidence/campaigns.h"
 
 namespace physinv {
