@@ -156,7 +156,7 @@ ClaimResult judge_again(const Claim& claim,
     // Labels may repeat: each number is taken once.
     Kept left = kept.conditions;
     for (const Condition& c : claim.conditions) {
-      add(decide_again(c, left, remains), out);
+      add(judge_kept(c, left, remains), out);
       const auto taken =
           std::find_if(left.begin(), left.end(), [&](const auto& old) {
             return old.label == out.conditions.back().label;
@@ -169,7 +169,7 @@ ClaimResult judge_again(const Claim& claim,
   all.insert(all.end(), kept.shown_by.begin(), kept.shown_by.end());
   explain(
       claim,
-      [&](const Condition& c) { return decide_again(c, all, remains); },
+      [&](const Condition& c) { return judge_kept(c, all, remains); },
       out);
   return out;
 }

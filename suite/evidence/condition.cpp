@@ -21,39 +21,47 @@ ConditionResult result_of(const std::string& label,
           .missing = m.missing};
 }
 
+ConditionResult Condition::judge(const Evidence& evidence) const {
+  ConditionResult r;
+  if (alternatives.empty()) {
+    r = result_of(label, bounds, quantities.front()(evidence));
+    if (decide) decide(evidence, r);
+  } else {
+    // One that holds, else one that is not decided.
+    r = alternatives.front().judge(evidence);
+    for (std::size_t k = 1; k < alternatives.size(); ++k) {
+      if (r.holds.value_or(false)) break;
+      ConditionResult next = alternatives[k].judge(evidence);
+      if (next.holds.value_or(false) || (r.holds && !next.holds))
+        r = std::move(next);
+    }
+  }
+  if (r.label == label) r.shown = shown;
+  return r;
+}
+
 namespace {
 
-/// `decide` gets value and bound once both are there. A bound with runs behind
-/// it says its number beside its relation.
+/// A bound with runs behind it says its number beside its relation.
 Condition compare(std::string label,
                   Quantity q,
                   const char* relation,
                   Quantity bound,
-                  std::function<bool(double, double)> decide) {
-  const bool measured = !bound.runs().empty() || !bound.printed().empty();
+                  std::function<bool(double, double)> holds) {
   const auto words = [=](const Measured& b) {
-    if (b.value) return fmt::format("{} {}", relation, number_text(*b.value));
-    return fmt::format("{} {}", relation, b.missing);
+    return fmt::format(
+        "{} {}", relation, b.value ? number_text(*b.value) : b.missing);
   };
-  const std::string fixed =
-      measured ? fmt::format("{} what is measured", relation)
-               : words(Measured{.value = bound({{}, {}, ""}).value});
-  return {label,
-          fixed,
-          {q, bound},
-          [=](const Evidence& e) {
+  const bool measured = !bound.runs().empty() || !bound.printed().empty();
+  return {.label = std::move(label),
+          .bounds = measured ? fmt::format("{} what is measured", relation)
+                             : words(bound({{}, {}, ""})),
+          .quantities = {std::move(q), bound},
+          .decide = [=](const Evidence& e, ConditionResult& r) {
             const Measured b = bound(e);
-            ConditionResult r =
-                result_of(label, measured ? words(b) : fixed, q(e));
+            r.bounds = words(b);
             if (!b.value && r.missing.empty()) r.missing = b.missing;
-            if (r.value && b.value) r.holds = decide(*r.value, *b.value);
-            return r;
-          },
-          [=](const Evidence& e, const Kept&, ConditionResult& kept) {
-            // What a measured bound was, its words say with fewer digits.
-            if (measured || !kept.value) return;
-            kept.bounds = fixed;
-            kept.holds = decide(*kept.value, *bound(e).value);
+            if (r.value && b.value) r.holds = holds(*r.value, *b.value);
           }};
 }
 
@@ -88,18 +96,12 @@ Condition equals(std::string label, Quantity q, double value, double off) {
 Condition within(std::string label, Quantity q, double lowest, double highest) {
   const std::string words =
       fmt::format("in {} .. {}", number_text(lowest), number_text(highest));
-  return {label,
-          words,
-          {q},
-          [=](const Evidence& e) {
-            ConditionResult r = result_of(label, words, q(e));
+  return {.label = std::move(label),
+          .bounds = words,
+          .quantities = {std::move(q)},
+          .decide = [=](const Evidence&, ConditionResult& r) {
+            r.bounds = words;
             if (r.value) r.holds = *r.value >= lowest && *r.value <= highest;
-            return r;
-          },
-          [=](const Evidence&, const Kept&, ConditionResult& kept) {
-            if (!kept.value) return;
-            kept.bounds = words;
-            kept.holds = *kept.value >= lowest && *kept.value <= highest;
           }};
 }
 
@@ -113,27 +115,16 @@ std::vector<Condition> below_on_every_seed(const std::string& label,
 }
 
 Condition reported(std::string label, Quantity q) {
-  return {label, "", {q}, [=](const Evidence& e) {
-            return result_of(label, "", q(e));
-          }};
+  return {
+      .label = std::move(label), .bounds = {}, .quantities = {std::move(q)}};
 }
 
 Condition either(Condition a, Condition b) {
   std::vector<Quantity> both = a.quantities;
   both.insert(both.end(), b.quantities.begin(), b.quantities.end());
-  const std::string bounds =
-      fmt::format("{}, or {} {}", a.bounds, b.text(), b.bounds);
   return {.label = a.label,
-          .bounds = bounds,
+          .bounds = fmt::format("{}, or {} {}", a.bounds, b.text(), b.bounds),
           .quantities = std::move(both),
-          .judge =
-              [=](const Evidence& e) {
-                ConditionResult r = a.judge(e);
-                if (r.holds.value_or(false)) return r;
-                ConditionResult other = b.judge(e);
-                if (other.holds.value_or(false)) return other;
-                return r.holds && !other.holds ? other : r;
-              },
           .alternatives = {a, b},
           .shown = a.shown};
 }
@@ -145,11 +136,6 @@ Condition of_stages(Condition c) {
 }
 
 Condition shown_as(Condition c, std::string text) {
-  c.judge = [=, judge = std::move(c.judge)](const Evidence& e) {
-    ConditionResult r = judge(e);
-    r.shown = text;
-    return r;
-  };
   c.shown = std::move(text);
   return c;
 }

@@ -19,22 +19,19 @@ namespace physinv {
 using Kept = std::vector<ConditionResult>;
 
 struct Condition {
-  std::string label;                 ///< by which its number is kept
-  std::string bounds;                ///< in words: "in 55 .. 95"
-  std::vector<Quantity> quantities;  ///< what registration checks
-  std::function<ConditionResult(const Evidence&)> judge;
-  /// Decides anew about a number that was kept under this label, or about those
-  /// under the labels `parts`; empty: what was decided stands.
-  std::function<void(
-      const Evidence&, const Kept& all, ConditionResult& this_one)>
-      again = {};
-  std::vector<std::string> parts = {};
-  std::vector<Condition> alternatives = {};  ///< of `either`
+  std::string label;   ///< by which its number is kept
+  std::string bounds;  ///< in words: "in 55 .. 95"; none: it decides nothing
+  /// The number, and what it is held against: what registration checks.
+  std::vector<Quantity> quantities;
+  /// Holds a number, measured or kept, against its bound.
+  std::function<void(const Evidence&, ConditionResult& number)> decide = {};
+  std::vector<Condition> alternatives = {};  ///< of `either`; their numbers
   /// Asks for no more than results.json keeps of every stage.
   bool of_stages = false;
   std::string shown = {};  ///< instead of the label, if any
 
   const std::string& text() const { return shown.empty() ? label : shown; }
+  ConditionResult judge(const Evidence& evidence) const;
 };
 
 /// What is left of a campaign that was published.
@@ -48,15 +45,13 @@ struct Remains {
 /// What is missing where no number was kept, although runs were asked for.
 inline constexpr const char* kNotKept = "not kept; needs a run";
 
-/// From the stages that are left, if the condition is of them; else from what
-/// was kept of an earlier judgement under this label and relation, or was only
-/// reported under it. Missing if there is nothing.
-ConditionResult decide_again(const Condition& condition,
-                             const Kept& kept,
-                             const Remains& remains);
-
-/// The one under this label, null if none was kept.
-const ConditionResult* find_kept(const Kept& kept, const std::string& label);
+/// Judged by the stages that are left, if the condition is of them; else by the
+/// number that an earlier judgement kept under this label and relation, or only
+/// reported under it, or by the parts of the number. A bound that was measured
+/// is not kept: what was decided by it stands. Missing if there is nothing.
+ConditionResult judge_kept(const Condition& condition,
+                           const Kept& kept,
+                           const Remains& remains);
 
 /// What a condition of these words makes of a number before it is decided.
 ConditionResult result_of(const std::string& label,

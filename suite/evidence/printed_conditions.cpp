@@ -17,33 +17,25 @@ namespace {
 template <class F>
 Condition agree(
     std::string label, Quantity q, Quantity p, std::string words, F allowance) {
-  const auto decide = [=](const Evidence& e, ConditionResult& r) {
-    const Measured target = p(e);
-    r.holds.reset();
-    if (!target.value) {
-      if (r.missing.empty()) r.missing = target.missing;
-      return;
-    }
-    r.bounds = "printed " + number_text(*target.value);
-    if (!r.value) return;
-    const std::optional<double> band = allowance(e, r, *target.value);
-    if (!band) {
-      r.missing = "three seeds";
-      return;
-    }
-    r.bounds += " +- " + number_text(*band);
-    r.holds = std::abs(*r.value - *target.value) <= *band;
-  };
-  return {label,
-          words,
-          {q, p},
-          [=](const Evidence& e) {
-            ConditionResult r = result_of(label, words, q(e));
-            decide(e, r);
-            return r;
-          },
-          [=](const Evidence& e, const Kept&, ConditionResult& kept) {
-            decide(e, kept);
+  return {.label = std::move(label),
+          .bounds = std::move(words),
+          .quantities = {std::move(q), p},
+          .decide = [=](const Evidence& e, ConditionResult& r) {
+            const Measured target = p(e);
+            r.holds.reset();
+            if (!target.value) {
+              if (r.missing.empty()) r.missing = target.missing;
+              return;
+            }
+            r.bounds = "printed " + number_text(*target.value);
+            if (!r.value) return;
+            const std::optional<double> band = allowance(e, r, *target.value);
+            if (!band) {
+              r.missing = "three seeds";
+              return;
+            }
+            r.bounds += " +- " + number_text(*band);
+            r.holds = std::abs(*r.value - *target.value) <= *band;
           }};
 }
 
@@ -145,42 +137,28 @@ constexpr double kUnlikely = 0.05;
 std::vector<Condition> jointly_as_printed(std::string label,
                                           std::vector<PrintedMean> means,
                                           Index seeds) {
-  std::vector<Select> runs;
-  std::vector<std::string> names, parts;
+  std::vector<Quantity::Part> parts;
+  std::vector<std::string> names;
   std::vector<Condition> out;
   for (const PrintedMean& m : means) {
-    runs.insert(runs.end(), m.quantity.runs().begin(), m.quantity.runs().end());
-    names.push_back(m.name), parts.push_back(m.label);
+    parts.push_back({m.label, m.quantity});
+    names.push_back(m.name);
     out.push_back(reported(m.label, m.quantity));
     out.push_back(reported("printed", printed(m.name)));
   }
-  const auto probability = [=](const Evidence& e) -> Measured {
+  const auto probability = [=](const std::vector<Measured>& ours,
+                               const Evidence& e) -> Measured {
     Differences all(seeds);
-    for (const PrintedMean& m : means)
-      if (const auto lacks = all.add(m.quantity(e), printed(m.name)(e));
+    for (std::size_t k = 0; k < ours.size(); ++k)
+      if (const auto lacks = all.add(ours[k], printed(names[k])(e));
           !lacks.empty())
         return missing(lacks);
     return all.probability();
   };
-  Condition jointly =
-      at_least(std::move(label),
-               Quantity(probability, std::move(runs), std::move(names)),
-               kUnlikely);
-  jointly.parts = std::move(parts);
-  jointly.again = [=](const Evidence& e, const Kept& kept, ConditionResult& r) {
-    Differences all(seeds);
-    for (const PrintedMean& m : means) {
-      const ConditionResult* old = find_kept(kept, m.label);
-      if (old == nullptr) return;
-      r.missing = all.add({old->value, old->spread, old->runs, old->missing},
-                          printed(m.name)(e));
-      if (!r.missing.empty()) return;
-    }
-    const Measured found = all.probability();
-    r.value = found.value, r.runs = found.runs;
-    r.holds = *r.value >= kUnlikely;
-  };
-  out.insert(out.begin(), std::move(jointly));
+  out.insert(out.begin(),
+             at_least(std::move(label),
+                      Quantity::made_of(parts, probability, names),
+                      kUnlikely));
   return out;
 }
 

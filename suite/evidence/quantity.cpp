@@ -123,6 +123,35 @@ Quantity::Quantity(Measure measure,
                                               std::move(runs),
                                               std::move(printed)})) {}
 
+Quantity Quantity::made_of(const std::vector<Part>& parts,
+                           const Make& make,
+                           std::vector<std::string> printed) {
+  std::vector<Select> runs;
+  std::vector<std::string> labels;
+  for (const Part& part : parts) {
+    runs = joined(std::move(runs), part.number.runs());
+    labels.push_back(part.label);
+  }
+  const auto measure = [=](const Evidence& e) {
+    return make(each(parts, [&](const Part& part) { return part.number(e); }),
+                e);
+  };
+  Quantity made(measure, std::move(runs), std::move(printed));
+  Body body = *made.body_;
+  body.parts = std::move(labels), body.make = make;
+  made.body_ = std::make_shared<const Body>(std::move(body));
+  return made;
+}
+
+std::optional<Measured> Quantity::of_parts(const Evidence& evidence,
+                                           const Find& find) const {
+  std::vector<Measured> found;
+  for (const std::string& label : body_->parts)
+    if (auto part = find(label)) found.push_back(std::move(*part));
+  if (found.empty() || found.size() < body_->parts.size()) return {};
+  return body_->make(found, evidence);
+}
+
 Quantity median(Select select, RunValue value) {
   return of_ordered(std::move(select), std::move(value), [](auto values) {
     return median(std::move(values));

@@ -30,7 +30,16 @@ Measured missing(std::string why);
 class Quantity {
  public:
   using Measure = std::function<Measured(const Evidence&)>;
+  using Make =
+      std::function<Measured(const std::vector<Measured>&, const Evidence&)>;
+  using Find = std::function<std::optional<Measured>(const std::string&)>;
+  struct Part;
 
+  /// Of numbers that a campaign keeps under labels of their own, such as those
+  /// of other conditions of the claim. `make` gets them in this order.
+  static Quantity made_of(const std::vector<Part>& parts,
+                          const Make& make,
+                          std::vector<std::string> printed = {});
   Quantity(double constant);  // NOLINT(google-explicit-constructor)
   Quantity(Measure measure,
            std::vector<Select> runs,
@@ -39,6 +48,10 @@ class Quantity {
   Measured operator()(const Evidence& evidence) const {
     return body_->measure(evidence);
   }
+  /// Of its parts as `find` has them by label; nothing if it lacks one, or if
+  /// there are none.
+  std::optional<Measured> of_parts(const Evidence& evidence,
+                                   const Find& find) const;
   /// What registration looks up.
   const std::vector<Select>& runs() const { return body_->runs; }
   const std::vector<std::string>& printed() const { return body_->printed; }
@@ -48,9 +61,16 @@ class Quantity {
     Measure measure;
     std::vector<Select> runs;
     std::vector<std::string> printed;
+    std::vector<std::string> parts = {};
+    Make make = {};
   };
   /// Shared, as claims are made of copies of copies.
   std::shared_ptr<const Body> body_;
+};
+
+struct Quantity::Part {
+  std::string label;
+  Quantity number;
 };
 
 /// What `printed` looks up.

@@ -151,14 +151,10 @@ class AsPrinted : public testing::Test {
     return result(as_printed("a", kMean, quantity, 4), seeds).verdict;
   }
   Verdict jointly(const std::vector<double>& seeds) const {
-    return judged(jointly_as_printed("p",
-                                     {{"m", kMean, "spread"},
-                                      {"twice", times(2, kMean), "twice"}},
-                                     4),
-                  campaign("quick", seeds),
-                  published_)
-        .verdict;
+    return judged(joint_, campaign("quick", seeds), published_).verdict;
   }
+  const std::vector<Condition> joint_ = jointly_as_printed(
+      "p", {{"m", kMean, "spread"}, {"twice", times(2, kMean), "twice"}}, 4);
   TemporaryDirectory dir_;
   Published published_;
 };
@@ -313,6 +309,41 @@ TEST_F(AsPrinted, KeptNumbersAreJudgedAgain) {
       again({either(at_least("c", kMean, 9.6), above("a", kMean, 9))}, bound)
           .verdict,
       Verdict::reproduced);
+}
+
+TEST_F(AsPrinted, ABoundThatWasMeasuredStaysAsItWas) {
+  const Results plan = campaign("quick", {0, 0});
+  const Evidence planned{plan, published_, "toy"};
+  const Condition half = above("a", kMean, times(0.5, kMean)),
+                  twice = above("a", kMean, times(2, kMean));
+  for (const auto& [first, now] : {std::pair(half, twice), {twice, half}}) {
+    const auto kept = result(first, {9, 10});
+    const auto again =
+        judge_again({.id = "P1", .from = "quick", .conditions = {now}},
+                    kept,
+                    {planned, planned});
+    EXPECT_EQ(again.verdict, kept.verdict);
+    EXPECT_EQ(again.evidence, kept.evidence);
+  }
+}
+
+TEST_F(AsPrinted, WhatIsMadeOfKeptNumbersIsJudgedByThem) {
+  const Results plan = campaign("quick", {0, 0, 0, 0});
+  const Evidence planned{plan, published_, "toy"};
+  const auto again = [&](const std::vector<double>& seeds,
+                         const std::string& lost) {
+    auto kept = judged(joint_, campaign("quick", seeds), published_);
+    std::erase_if(kept.conditions,
+                  [&](const ConditionResult& c) { return c.label == lost; });
+    return judge_again({.id = "P1", .from = "quick", .conditions = joint_},
+                       kept,
+                       {planned, planned})
+        .verdict;
+  };
+  EXPECT_EQ(again({48, 50, 52, 54}, "p"), Verdict::reproduced);
+  EXPECT_EQ(again({50.5, 52.5, 54.5, 56.5}, "p"), Verdict::not_reproduced);
+  // With one part alone, what was decided stands.
+  EXPECT_EQ(again({50.5, 52.5, 54.5, 56.5}, "m"), Verdict::not_reproduced);
 }
 
 TEST_F(AsPrinted, WhatWasOnlyReportedIsHeldAgainstABound) {
