@@ -1,0 +1,47 @@
+# Every line of experiments.def names the layers of what its folder includes. Read
+# once all layers are known.
+set(list suite/cases/common/experiments.def)
+
+# The layer of each source that computes numbers.
+foreach(layer IN LISTS physinv_numbers)
+  get_target_property(sources physinv_${layer} SOURCES)
+  get_target_property(place physinv_${layer} SOURCE_DIR)
+  cmake_path(RELATIVE_PATH place BASE_DIRECTORY ${PROJECT_SOURCE_DIR})
+  list(TRANSFORM sources REPLACE "(.*)\\.cpp$" "layer_of_${place}/\\1")
+  foreach(source IN LISTS sources)
+    set(${source} ${layer})
+  endforeach()
+endforeach()
+
+foreach(folder IN LISTS physinv_folders)
+  string(REPLACE "/" "_" left physinv_${folder})
+  set(reached)
+  while(left)
+    list(POP_FRONT left layer)
+    if(layer IN_LIST reached)
+      continue()
+    elseif(NOT TARGET ${layer})
+      string(REPLACE physinv_ "" layer ${layer})
+      message(FATAL_ERROR "${list}: there is no layer '${layer}', which the "
+        "line of ${folder} names")
+    endif()
+    list(APPEND reached ${layer})
+    get_target_property(more ${layer} INTERFACE_LINK_LIBRARIES)
+    list(FILTER more INCLUDE REGEX "^physinv_")
+    list(APPEND left ${more})
+  endwhile()
+  file(GLOB files ${PROJECT_SOURCE_DIR}/suite/cases/${folder}/*.cpp
+    ${PROJECT_SOURCE_DIR}/suite/cases/${folder}/*.h)
+  foreach(file IN LISTS files)
+    file(STRINGS ${file} includes REGEX "^#include \"")
+    list(TRANSFORM includes REPLACE "^#include \"(.*)\\.h\".*" "layer_of_\\1")
+    foreach(include IN LISTS includes)
+      set(layer ${${include}})
+      if(layer AND NOT physinv_${layer} IN_LIST reached)
+        string(REPLACE layer_of_ "" include ${include})
+        message(FATAL_ERROR "${list}: the line of ${folder} lacks the layer "
+          "'${layer}', as ${file} includes ${include}.h")
+      endif()
+    endforeach()
+  endforeach()
+endforeach()
