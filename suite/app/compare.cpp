@@ -17,6 +17,7 @@
 #include "suite/compare/pages.h"
 #include "suite/compare/ranks.h"
 #include "suite/compare/regressions.h"
+#include "suite/compare/summary.h"
 #include "suite/harness/judge.h"
 #include "suite/harness/registry.h"
 #include "suite/harness/screen.h"
@@ -30,7 +31,7 @@ namespace fs = std::filesystem;
 struct CompareFlags {
   std::vector<std::string> sides, fail_on;
   std::string by = "seed", format = "text", out;
-  double factor = 1.5;
+  Thresholds thresholds;
   int lines = 30;
   bool one_file = false;
 };
@@ -118,7 +119,8 @@ void refuse_worse(const CompareFlags& flags,
   std::string worse;
   bool of_time = true;
   for (std::size_t i = 0; i < aspects.size(); ++i) {
-    const auto found = regression(aspects[i], c, claims, flags.factor);
+    const auto found =
+        regression(aspects[i], c, claims, flags.thresholds.factor);
     if (!found) continue;
     of_time = of_time && found->of_time;
     worse += fmt::format("{}{} ({})",
@@ -188,8 +190,12 @@ void print(const CompareFlags& flags,
         return rank.differs();
       }));
   const auto lines = static_cast<std::size_t>(flags.lines);
+  const auto methods = method_changes(own, ranks);
+  for (const auto& line : summary_sentences(methods, own))
+    fmt::print("{}\n\n", line);
   for (const Table& table :
-       {changes_table(own, lines),
+       {method_table(methods, own, lines),
+        folded_table(own, lines),
         rank_table(ranks, c.labels, std::min(lines, differing)),
         missing_table(c),
         claims_table(claims, c.labels)})
@@ -197,8 +203,7 @@ void print(const CompareFlags& flags,
       fmt::print("{}\n",
                  markdown ? to_markdown(table)
                           : render_text(table, Screen::of(stdout).room()));
-  for (const auto& line : rank_sentences(ranks, c.labels))
-    fmt::print("{}\n", line);
+  fmt::print("{}\n", unchanged_text(own));
   print_counts(own, changed, claims.size());
 }
 
@@ -239,18 +244,18 @@ void check_format(const CompareFlags& flags) {
 bool parse_flags(const Arguments& arguments, CompareFlags& flags) {
   return parse(
       "compare",
-      "Two or more result folders side by side, what changed most "
-      "first: losses, ends, times, work, claims. Runs pair by "
-      "experiment, method, n and seed. Times and work compare between "
-      "stages that both converged or ran their iterations: who fails, "
-      "is skipped or diverges has none. CPU time where both ran on one "
-      "thread, else wall time unless one was crowded; medians over "
-      "repetitions (run --benchmark_repetitions). Exit 0 whatever "
-      "changed, unless --fail-on.",
+      "Compares two or more result folders: one sentence says which methods "
+      "changed and how, then tables list methods and runs that changed: "
+      "losses, ends, times, work and claims. Runs are paired by experiment, "
+      "method, n and seed. Times and work are compared between stages that "
+      "both converged or used all their iterations; a stage that fails, is "
+      "skipped or diverges has none. CPU time is compared if both ran on one "
+      "thread, otherwise wall time unless one stage was crowded; of "
+      "repetitions (run --benchmark_repetitions), the median counts. The "
+      "exit code is 0 unless --fail-on is given.",
       {{"RESULTS",
         "directories that 'run' or 'report --publish' wrote, or "
-        "LABEL=DIRECTORY; the first "
-        "is what the others are held against",
+        "LABEL=DIRECTORY; the first one is the reference",
         &flags.sides},
        {"--by",
         "seed (every run, the default), n (over seeds), method (over n "
@@ -271,7 +276,7 @@ bool parse_flags(const Arguments& arguments, CompareFlags& flags) {
        {"--one-file",
         "of --out: one page that has everything",
         &flags.one_file},
-       {"--lines", "of the table (default 30)", &flags.lines},
+       {"--lines", "rows of a table at most (default 30)", &flags.lines},
        {"--fail-on",
         fmt::format("exit 5 if this got worse in any pair of runs, 6 if "
                     "only time did; a stage that ends worse counts for "
@@ -280,12 +285,16 @@ bool parse_flags(const Arguments& arguments, CompareFlags& flags) {
         &flags.fail_on,
         "WHAT"},
        {"--factor",
-        fmt::format("by which a loss or time must grow for --fail-on "
-                    "(default 1.5); losses below {:g} and times below "
-                    "{:g} ms are equal",
+        fmt::format("ratio from which a loss or time counts as worse for "
+                    "--fail-on, and a time as changed (default 1.5); losses "
+                    "below {:g} and times below {:g} ms count as equal",
                     kSolvedLoss,
                     1e3 * kShortTime),
-        &flags.factor}},
+        &flags.thresholds.factor},
+       {"--solved",
+        "loss at most which an example counts as solved (default 1e-6)",
+        &flags.thresholds.solved,
+        "LOSS"}},
       arguments);
 }
 
@@ -298,7 +307,7 @@ ExitCode compare_verb(const Arguments& arguments) {
   check_format(flags);
   const auto aspects = parse_fail_on(flags.fail_on);
   const auto sides = read_sides(flags);
-  const Comparison c = compare(sides, by);
+  const Comparison c = compare(sides, by, flags.thresholds);
   if (std::all_of(c.rows.begin(), c.rows.end(), [](const auto& row) {
         return row.missing();
       }))

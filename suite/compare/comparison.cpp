@@ -42,12 +42,13 @@ StageId group_id(StageId id, By by) {
 /// What every side says of one stage.
 Compared stage_of(const StageId& id,
                   const std::vector<const StageRecord*>& stages,
-                  const std::vector<Side>& sides) {
+                  const std::vector<Side>& sides,
+                  const Thresholds& thresholds) {
   Compared line{.id = id, .sides = {}, .members = {}};
   for (std::size_t s = 0; s < sides.size(); ++s) {
     line.sides.emplace_back();
     if (stages[s] != nullptr)
-      line.sides.back() = reading_of(*stages[s], stages.front());
+      line.sides.back() = reading_of(*stages[s], stages.front(), thresholds);
   }
   return line;
 }
@@ -95,6 +96,22 @@ double change_of(const Reading& a, const Reading& b) {
                             raised_ratio(time_ratio(a, b))})
     most = std::max(most, decades(ratio.value_or(1)));
   return most;
+}
+
+bool within(std::optional<double> ratio, double factor) {
+  return !ratio || *ratio == 1 || (*ratio<factor&& * ratio> 1 / factor);
+}
+
+bool same_apart_from_noise(const Reading& a,
+                           const Reading& b,
+                           const Thresholds& thresholds) {
+  constexpr double kEqual = 1.01;
+  return a.ends == b.ends && a.statuses == b.statuses &&
+         a.nonfinite == b.nonfinite && a.solved == b.solved &&
+         within(loss_ratio(a, b), kEqual) &&
+         within(ratio_of_work(a, b, &Reading::simulations), kEqual) &&
+         within(ratio_of_work(a, b, &Reading::passes), kEqual) &&
+         within(raised_ratio(time_ratio(a, b)), thresholds.factor);
 }
 
 /// Larger is worse.
@@ -152,6 +169,20 @@ bool Compared::ends_changed() const {
   return std::any_of(stages().begin(), stages().end(), changed);
 }
 
+bool Compared::unchanged_on(std::size_t side,
+                            const Thresholds& thresholds) const {
+  return std::all_of(stages().begin(), stages().end(), [&](const auto& stage) {
+    const auto &a = stage.sides.front(), &b = stage.sides[side];
+    return a && b && same_apart_from_noise(*a, *b, thresholds);
+  });
+}
+
+bool Compared::unchanged(const Thresholds& thresholds) const {
+  for (std::size_t s = 1; s < sides.size(); ++s)
+    if (!unchanged_on(s, thresholds)) return false;
+  return true;
+}
+
 double Compared::change() const {
   double most = 0;
   for (const Compared& stage : members) most = std::max(most, stage.change());
@@ -164,7 +195,7 @@ double Compared::change() const {
 
 Against against(const Compared& line, std::size_t side) {
   Against sum;
-  Ratios loss, time, simulations, passes;
+  Ratios loss, time, raised, simulations, passes;
   for (const Compared& stage : line.stages()) {
     const auto& a = stage.sides.front();
     const auto& b = stage.sides[side];
@@ -181,23 +212,27 @@ Against against(const Compared& line, std::size_t side) {
     const TimeRatio times = time_ratio(*a, *b);
     if (!times.why.empty()) sum.no_time = times.why;
     time.add(times.value);
+    raised.add(raised_ratio(times));
     simulations.add(ratio_of_work(*a, *b, &Reading::simulations));
     passes.add(ratio_of_work(*a, *b, &Reading::passes));
   }
   sum.timed = time.count();
   sum.loss = loss.quartiles();
   sum.time = time.quartiles();
+  sum.raised_time = raised.quartiles();
   sum.simulations = simulations.quartiles();
   sum.passes = passes.quartiles();
   return sum;
 }
 
-Comparison compare(const std::vector<Side>& sides, By by) {
-  Comparison out;
+Comparison compare(const std::vector<Side>& sides,
+                   By by,
+                   const Thresholds& thresholds) {
+  Comparison out{.labels = {}, .rows = {}, .thresholds = thresholds};
   for (const Side& s : sides) out.labels.push_back(s.label);
   std::map<StageId, std::vector<Compared>> groups;
   for (const auto& [id, stages] : pair_stages(sides))
-    groups[group_id(id, by)].push_back(stage_of(id, stages, sides));
+    groups[group_id(id, by)].push_back(stage_of(id, stages, sides, thresholds));
   for (auto& [id, stages] : groups)
     out.rows.push_back(by == By::seed ? std::move(stages.front())
                                       : group_of(id, std::move(stages)));
@@ -210,9 +245,16 @@ Comparison compare(const std::vector<Side>& sides, By by) {
 }
 
 Comparison common(const Comparison& all) {
-  Comparison own{all.labels, {}};
+  Comparison own{all.labels, {}, all.thresholds};
   for (const Compared& row : all.rows)
     if (!row.missing()) own.rows.push_back(row);
+  return own;
+}
+
+Comparison changed(const Comparison& all) {
+  Comparison own{all.labels, {}, all.thresholds};
+  for (const Compared& row : all.rows)
+    if (!row.unchanged(all.thresholds)) own.rows.push_back(row);
   return own;
 }
 

@@ -48,6 +48,10 @@ struct Compared {
   std::span<const Compared> stages() const;
   bool missing() const;
   bool ends_changed() const;
+  /// Ends and shares solved are equal, losses and work differ by less than
+  /// 1 %, times by less than the factor; in a group those of every stage.
+  bool unchanged(const Thresholds& thresholds) const;
+  bool unchanged_on(std::size_t side, const Thresholds& thresholds) const;
   /// How much: decades of loss, work and time, whichever is most; a changed
   /// end counts before any of them. That of a group is the most of its stages.
   double change() const;
@@ -63,7 +67,8 @@ struct Against {
   std::size_t timed = 0;  ///< pairs that have a ratio of times
   /// Ratios over the pairs, absent if there are none.
   std::optional<Quartiles> loss, time, simulations, passes;
-  std::string no_time;  ///< why there is none
+  std::optional<Quartiles> raised_time;  ///< both times raised to kShortTime
+  std::string no_time;                   ///< why there is none
   /// One that the side lacks, else of the worst end, else of the largest ratio
   /// of losses, else of times. Null if the line has no stage on the first side.
   const Compared* worst = nullptr;
@@ -76,13 +81,18 @@ struct Comparison {
   std::vector<std::string> labels;
   /// What all sides have, what changed most first; then what one lacks.
   std::vector<Compared> rows;
+  Thresholds thresholds = {};
 };
 /// What all sides have.
 Comparison common(const Comparison& all);
+/// Without the rows that are unchanged.
+Comparison changed(const Comparison& all);
 
 /// By seed: every stage. By n: over seeds. By method: over n and seeds. A
 /// group's readings are of the runs that all sides have.
-Comparison compare(const std::vector<Side>& sides, By by);
+Comparison compare(const std::vector<Side>& sides,
+                   By by,
+                   const Thresholds& thresholds = {});
 
 /// A claim whose verdict is not the same on all sides; where a side lacks it,
 /// it is not judged.

@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "suite/compare/summary.h"
 #include "suite/evidence/performance_profiles.h"
 #include "suite/evidence/standings.h"
 #include "suite/results/shortened.h"
@@ -85,10 +86,31 @@ Cell ends_cell(const Compared& row, std::size_t s, std::size_t worse) {
   return {.text = std::move(text)};
 }
 
+/// Does one median count as solved and the other not, in any pair? Such a ratio
+/// says on which side of a gap the medians are, not how far losses moved.
+bool crosses(const Compared& row, std::size_t s, double solved) {
+  const auto stages = row.stages();
+  return std::any_of(stages.begin(), stages.end(), [&](const Compared& stage) {
+    const auto &a = stage.sides.front(), &b = stage.sides[s];
+    return a && b && a->examples > 0 && b->examples > 0 &&
+           (a->loss.median <= solved) != (b->loss.median <= solved);
+  });
+}
+
+/// "solved 52 → 61 %"
+std::string solved_text(const Reading& a, const Reading& b) {
+  const auto percent = [](const Reading& r) {
+    return 100 * static_cast<double>(r.solved) /
+           static_cast<double>(std::max(r.examples, Index{1}));
+  };
+  return fmt::format("solved {:.0f} → {:.0f} %", percent(a), percent(b));
+}
+
 /// What sets a stage of a group apart from the others, and how it fared.
 std::string pair_text(const Compared& group,
                       const Compared& stage,
-                      std::size_t s) {
+                      std::size_t s,
+                      double solved) {
   std::string text;
   if (group.id.n < 0) text += fmt::format("n={}/", stage.id.n);
   text += fmt::format("seed={} ", stage.id.seed);
@@ -96,6 +118,7 @@ std::string pair_text(const Compared& group,
   const auto& b = stage.sides[s];
   if (!b) return text + "missing";
   if (a->ends != b->ends) return text + ends_text(*a) + " → " + ends_text(*b);
+  if (crosses(stage, s, solved)) return text + solved_text(*a, *b);
   const double loss = loss_ratio(*a, *b);
   const double time = raised_ratio(time_ratio(*a, *b)).value_or(1);
   return text + (std::isinf(loss)         ? "not finite"
@@ -134,19 +157,24 @@ void add_sides(TableRow& row, const Compared& c, F&& cell) {
 
 /// Of a side against the first: ratios, end and bits; of a group how many
 /// pairs it wins, and the worst.
-void add_against(TableRow& out, const Compared& row, std::size_t s) {
+void add_against(TableRow& out,
+                 const Compared& row,
+                 std::size_t s,
+                 double solved) {
   const Against sum = against(row, s);
   const auto ratio = [&](const auto& ratios, const std::string& why = "") {
     out.cells.push_back(factor_cell(ratios, why));
     if (ratios) set_spread(out.cells.back(), *ratios);
   };
   ratio(sum.loss);
-  ratio(sum.time, sum.no_time);
-  if (row.members.empty() && sum.time) {  // over repetitions
+  if (crosses(row, s, solved))
+    out.cells.back().text = solved_text(*row.sides.front(), *row.sides[s]);
+  ratio(sum.raised_time, sum.no_time);
+  if (row.members.empty() && sum.raised_time) {  // over repetitions
     const TimeRatio t = time_ratio(*row.sides.front(), *row.sides[s]);
-    set_spread(out.cells.back(), t.b, t.a.median);
+    set_spread(out.cells.back(), t.b, std::max(t.a.median, kShortTime));
   }
-  if (sum.time && sum.timed < sum.pairs)
+  if (sum.raised_time && sum.timed < sum.pairs)
     out.cells.back().text += fmt::format(" ({} of {})", sum.timed, sum.pairs);
   ratio(sum.simulations);
   ratio(sum.passes);
@@ -158,7 +186,7 @@ void add_against(TableRow& out, const Compared& row, std::size_t s) {
       {.text = fmt::format("{} of {}", sum.wins, sum.pairs) +
                (sum.ties > 0 ? fmt::format(", {} equal", sum.ties) : "")});
   out.cells.push_back(
-      {.text = sum.worst ? pair_text(row, *sum.worst, s) : "–"});
+      {.text = sum.worst ? pair_text(row, *sum.worst, s, solved) : "–"});
 }
 
 /// What a row is of, in columns of their own.
@@ -193,7 +221,7 @@ Table per_side(const Comparison& c,
 }
 
 Comparison of_experiment(const Comparison& all, const std::string& name) {
-  Comparison own{all.labels, {}};
+  Comparison own{all.labels, {}, all.thresholds};
   for (const auto& row : all.rows)
     if (row.id.experiment == name) own.rows.push_back(row);
   return own;
@@ -241,9 +269,13 @@ Section overview(const Comparison& c,
                  const std::vector<SideRank>& ranks) {
   Section section{.experiment = "compare",
                   .title = fmt::format("What changed from {}", c.labels[0])};
+  const Comparison own = common(c);
+  const auto methods = method_changes(own, ranks);
   section.standing =
-      fmt::format("{}", fmt::join(rank_sentences(ranks, c.labels), ". "));
-  section.tables.push_back(changes_table(common(c), 40));
+      fmt::format("{}", fmt::join(summary_sentences(methods, own), ". "));
+  for (Table& table :
+       std::vector{method_table(methods, own, 40), folded_table(own, 40)})
+    if (!table.rows.empty()) section.tables.push_back(std::move(table));
   if (!ranks.empty()) section.tables.push_back(rank_table(ranks, c.labels, 40));
   if (auto table = missing_table(c); !table.rows.empty())
     section.tables.push_back(std::move(table));
@@ -278,7 +310,8 @@ Table changes_table(const Comparison& c, std::size_t most) {
     if (table.rows.size() == most) break;
     TableRow out{row.id.text(), {}, keys_of(row.id)};
     add_sides(out, row, loss_cell);
-    for (std::size_t s = 1; s < c.labels.size(); ++s) add_against(out, row, s);
+    for (std::size_t s = 1; s < c.labels.size(); ++s)
+      add_against(out, row, s, c.thresholds.solved);
     table.rows.push_back(std::move(out));
   }
   if (groups)
@@ -287,6 +320,18 @@ Table changes_table(const Comparison& c, std::size_t most) {
     table.note += fmt::format("{}{} more lines changed less",
                               table.note.empty() ? "" : "; ",
                               c.rows.size() - most);
+  return table;
+}
+
+std::string unchanged_text(const Comparison& c) {
+  return fmt::format("{} of {} rows unchanged",
+                     c.rows.size() - changed(c).rows.size(),
+                     c.rows.size());
+}
+
+Table folded_table(const Comparison& c, std::size_t most) {
+  Table table = changes_table(changed(c), most);
+  table.note += (table.note.empty() ? "" : "; ") + unchanged_text(c);
   return table;
 }
 

@@ -13,6 +13,10 @@ namespace physinv {
 /// What changed: per line losses, their ratio, ratios of time and work, how
 /// stages ended. Of many lines the first `most`.
 Table changes_table(const Comparison& comparison, std::size_t most);
+/// The same without the rows that are unchanged, which its note counts.
+Table folded_table(const Comparison& comparison, std::size_t most);
+/// "20 of 24 rows unchanged"
+std::string unchanged_text(const Comparison& comparison);
 
 /// Per experiment how many stages each side lacks that another has.
 Table missing_table(const Comparison& comparison);

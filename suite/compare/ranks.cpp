@@ -58,19 +58,6 @@ Differences differences(const std::vector<Side>& sides) {
   return all;
 }
 
-std::string words_of(const SideRank& r) {
-  return fmt::format(
-      "{}/{} {} is {} on {:.0f} % of {} problems, {}",
-      r.experiment,
-      r.method,
-      r.stage,
-      r.better() ? "lower" : "higher",
-      100 * static_cast<double>(r.better() ? r.test.below : r.test.above()) /
-          static_cast<double>(r.test.pairs),
-      r.test.pairs,
-      p_text(r.p));
-}
-
 }  // namespace
 
 std::vector<SideRank> side_ranks(const std::vector<Side>& sides) {
@@ -132,35 +119,6 @@ Table rank_table(const std::vector<SideRank>& ranks,
     table.note += fmt::format(" {} more stages differ less surely.",
                               ranks.size() - table.rows.size());
   return table;
-}
-
-std::vector<std::string> rank_sentences(
-    const std::vector<SideRank>& ranks,
-    const std::vector<std::string>& labels) {
-  std::vector<std::string> lines;
-  for (std::size_t s = 1; s < labels.size(); ++s) {
-    std::size_t stages = 0, lower = 0, higher = 0;
-    const SideRank* surest = nullptr;
-    for (const SideRank& r : ranks) {
-      if (r.side != s) continue;
-      ++stages;
-      if (!r.differs()) continue;
-      ++(r.better() ? lower : higher);
-      if (surest == nullptr) surest = &r;
-    }
-    if (stages == 0) continue;
-    std::string line = fmt::format(
-        "{} against {}: of {} stages {} have lower losses, {} higher ones, for "
-        "the others no difference is shown (signed rank test, Holm)",
-        labels[s],
-        labels.front(),
-        stages,
-        lower,
-        higher);
-    if (surest != nullptr) line += "; surest: " + words_of(*surest);
-    lines.push_back(std::move(line));
-  }
-  return lines;
 }
 
 }  // namespace physinv

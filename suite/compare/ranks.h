@@ -32,9 +32,4 @@ Table rank_table(const std::vector<SideRank>& ranks,
                  const std::vector<std::string>& labels,
                  std::size_t most);
 
-/// "head against base: of 40 stages 2 end lower and 1 higher ..., best ..."; a
-/// line for each side after the first.
-std::vector<std::string> rank_sentences(const std::vector<SideRank>& ranks,
-                                        const std::vector<std::string>& labels);
-
 }  // namespace physinv

@@ -7,6 +7,7 @@
 
 #include "suite/evidence/statistics.h"
 #include "suite/results/crowded.h"
+#include "suite/results/loss_summary.h"
 #include "suite/store/case_file.h"
 #include "suite/store/repetitions.h"
 
@@ -88,7 +89,9 @@ double Reading::passes() const {
                              counts[Counter::network_backward]);
 }
 
-Reading reading_of(const StageRecord& s, const StageRecord* first) {
+Reading reading_of(const StageRecord& s,
+                   const StageRecord* first,
+                   const Thresholds& thresholds) {
   std::vector<double> losses;
   for (const double loss : s.loss) losses.push_back(or_infinite(loss));
   Reading r{
@@ -96,6 +99,14 @@ Reading reading_of(const StageRecord& s, const StageRecord* first) {
       .ends = {{s.stop, 1}},
       .statuses = count(s.status),
       .nonfinite = std::count(losses.begin(), losses.end(), kInfinite),
+      .solved =
+          std::count_if(losses.begin(),
+                        losses.end(),
+                        [&](double loss) { return loss <= thresholds.solved; }),
+      .examples = s.arrays.contains(kLossSummary)
+                      ? 0
+                      : static_cast<Index>(losses.size()),
+      .position = s.position,
       .message = s.message,
       .loss = quartiles_of(losses.empty() ? std::vector{kInfinite} : losses),
       .times = times_of(s),
@@ -116,6 +127,8 @@ Reading reading_of(const std::vector<const Reading*>& stages) {
     for (std::size_t i = 0; i < sum.statuses.size(); ++i)
       sum.statuses[i] += r->statuses[i];
     sum.nonfinite += r->nonfinite;
+    sum.solved += r->solved;
+    sum.examples += r->examples;
     sum.iterations += r->iterations;
     sum.counts += r->counts;
   }

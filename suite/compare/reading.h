@@ -41,6 +41,10 @@ struct Reading {
   std::map<Stop, Index> ends;
   StatusCounts statuses{};
   Index nonfinite = 0;  ///< losses
+  Index solved = 0;     ///< losses at most Thresholds::solved
+  /// Losses that are known one by one; 0 where only their median is stored.
+  Index examples = 0;
+  Index position = 0;   ///< of a stage in its chain
   std::string message;  ///< of a stage: why it failed or was skipped
   /// Over the examples of a stage, over the stages of a group; infinite where
   /// it is not finite.
@@ -55,8 +59,16 @@ struct Reading {
   double passes() const;  ///< of networks
 };
 
+/// From where a difference counts.
+struct Thresholds {
+  double factor = 1.5;   ///< a ratio of times within it is no change
+  double solved = 1e-6;  ///< an example with a loss of at most this is solved
+};
+
 /// `first` is the same stage on the first side, if that has it.
-Reading reading_of(const StageRecord& stage, const StageRecord* first);
+Reading reading_of(const StageRecord& stage,
+                   const StageRecord* first,
+                   const Thresholds& thresholds);
 /// Of the readings of its stages; one at least.
 Reading reading_of(const std::vector<const Reading*>& stages);
 

@@ -33,6 +33,9 @@ def compare(d):
                d, "0 claims changed")
     rows = p.stdout.splitlines()[-1].split()
     check(rows[0] == rows[3], "the same campaign twice has the same bits")
+    check(p.stdout.startswith("b against a: no method got better or worse") and
+          f"{rows[0]} of {rows[0]} rows unchanged" in p.stdout and
+          "What changed most" not in p.stdout, "rows that are equal are folded")
     p = expect(0, ["compare", "one=a", "two=f64", "--format=json"], d)
     table = json_of(p)
     check(table["labels"] == ["one", "two"], "labels")
@@ -61,8 +64,8 @@ def compare(d):
           ["experiment", "method", "n", "seed", "stage"] and
           all(r["n"].isdigit() and float(r["loss a"] or 0) >= 0 for r in rows),
           f"csv: {rows[0]}")
-    expect(0, ["compare", "a", "b", "--format=markdown"], d, "| ")
-    expect(0, ["compare", "a", "b", "--out=page"], d, "page/index.html")
+    expect(0, ["compare", "a", "f64", "--format=markdown"], d, "| ")
+    expect(0, ["compare", "a", "f64", "--out=page"], d, "page/index.html")
     check(os.path.exists(os.path.join(d, "page", "compare", "tables",
                                       "changes.csv")), "the page's tables")
     expect(2, ["compare", "a"], d, "one folder is no comparison")

@@ -7,6 +7,7 @@
 
 #include "suite/compare/pages.h"
 #include "suite/compare/regressions.h"
+#include "suite/compare/summary.h"
 
 namespace physinv {
 namespace {
@@ -117,17 +118,63 @@ TEST(Compare, ALowerLossOnTheSameProblemsIsTested) {
   EXPECT_EQ(ranks[0].test.below, 20U);
   EXPECT_EQ(ranks[1].test.ties, 20U);
   EXPECT_FALSE(ranks[1].differs());
-  const auto lines = rank_sentences(ranks, {"a", "b", "c"});
+  const Comparison c = compare(sides, By::seed);
+  const auto lines = summary_sentences(method_changes(c, ranks), c);
   ASSERT_EQ(lines.size(), 2U);
-  EXPECT_NE(lines[0].find("b against a: of 1 stages 1 have lower losses"),
-            std::string::npos)
+  EXPECT_TRUE(lines[0].starts_with(
+      "b against a: lower losses: m (on 100 % of 20 problems, p "))
       << lines[0];
-  EXPECT_NE(lines[0].find("lower on 100 % of 20 problems"), std::string::npos)
-      << lines[0];
-  EXPECT_NE(lines[1].find("0 have lower losses"), std::string::npos);
+  EXPECT_EQ(lines[1],
+            "c against a: no method got better or worse; 1 of 1 methods "
+            "unchanged");
   const Table table = rank_table(ranks, {"a", "b", "c"}, 1);
   ASSERT_EQ(table.rows.size(), 1U);
   EXPECT_EQ(table.rows[0].cells[5].text, "lower");
+}
+
+/// Of 20 examples, of which `solved` have a tiny loss and the others 0.5.
+CaseRecord two_peaked(Index solved, double seconds) {
+  StageRecord stage = stage_with("solve", 0.5, seconds);
+  stage.loss = Vector<double>::Constant(20, 0.5);
+  stage.loss.head(solved).setConstant(1e-11);
+  return case_with("m", 0, stage);
+}
+
+TEST(Compare, BetweenTwoPeaksTheShareSolvedIsShown) {
+  for (const By by : {By::seed, By::method}) {
+    const Comparison c = compare(
+        {side("a", {two_peaked(12, 1)}), side("b", {two_peaked(9, 1)})}, by);
+    const Table table = changes_table(c, 1);
+    EXPECT_EQ(table.rows[0].cells[2].text, "solved 60 → 45 %");
+    EXPECT_NEAR(*table.rows[0].cells[2].ours, 0.5 / 1e-11, 1) << "in CSV";
+    const Table methods = method_table(method_changes(c, {}), c, 9);
+    EXPECT_EQ(methods.rows.at(0).cells[0].text, "60 %");
+    EXPECT_EQ(methods.rows[0].cells[1].text, "45 %");
+  }
+  // The medians are of one peak: the ratio stays, and the share is a change.
+  const Comparison c = compare(
+      {side("a", {two_peaked(3, 1)}), side("b", {two_peaked(2, 1)})}, By::seed);
+  EXPECT_EQ(changes_table(c, 1).rows[0].cells[2].text, "=");
+  EXPECT_EQ(changed(c).rows.size(), 1U);
+}
+
+TEST(Compare, NothingBelowTenMillisecondsIsSlower) {
+  const auto of = [](double before, double after) {
+    return compare(
+        {side("a", {two_peaked(3, before)}), side("b", {two_peaked(3, after)})},
+        By::seed);
+  };
+  const Comparison brief = of(2e-3, 9e-3);
+  EXPECT_EQ(changes_table(brief, 1).rows[0].cells[3].text, "=");
+  EXPECT_EQ(unchanged_text(brief), "1 of 1 rows unchanged");
+  EXPECT_TRUE(folded_table(brief, 9).rows.empty());
+  EXPECT_TRUE(method_table(method_changes(brief, {}), brief, 9).rows.empty());
+  const Comparison slower = of(2e-3, 3e-2);
+  EXPECT_EQ(changes_table(slower, 1).rows[0].cells[3].text, "×3");
+  EXPECT_EQ(unchanged_text(slower), "0 of 1 rows unchanged");
+  EXPECT_EQ(summary_sentences(method_changes(slower, {}), slower),
+            std::vector<std::string>{
+                "b against a: slower: m (×3); 0 of 1 methods unchanged"});
 }
 
 TEST(Compare, WhoFailedHasTheHighestLoss) {
@@ -293,7 +340,7 @@ TEST(Compare, OneOfFourRunsIsSeenInAPool) {
   const auto& cells = table.rows[0].cells;
   EXPECT_EQ(table.columns[cells.size() - 2], "wins");
   EXPECT_EQ(cells[cells.size() - 2].text, "3 of 4");
-  EXPECT_EQ(cells.back().text, "n=4/seed=2 ×5.6e+10");
+  EXPECT_EQ(cells.back().text, "n=4/seed=2 solved 100 → 0 %");
   EXPECT_TRUE(cells[0].spread && cells[2].spread && cells[3].spread);
   EXPECT_GT(c.rows[0].change(), 10) << "not first of what changed";
 }
